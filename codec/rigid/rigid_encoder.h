@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "codec/base/result.h"
+#include "codec/rigid/contact.h"
+#include "codec/rigid/rigid.h"
+#include "codec/rigid/trigger.h"
+#include "codec/stream/header.h"
+
+namespace tactus {
+
+/// What one call of RigidEncoder::encode produced.
+struct EncodedPacket {
+  std::span<const std::uint8_t> bytes;  ///< empty: every trigger is silent, nothing to send. Valid until the next call
+  Reason reason = Reason::request;      ///< strongest reason among the updates (haptic > visual > heartbeat > request)
+  std::uint32_t updates = 0;            ///< objects in the packet
+};
+
+struct RigidEncoderOptions {
+  RigidTriggers triggers;
+  double key_interval = 5.0;  ///< [s] after this long the next packet builds on the initial state (a place to seek to); 0: never
+};
+
+/// Server side: true states in, at most one packet per tick out.
+///
+/// After every tick the decoder's prediction obeys, for every object and contact given,
+///   |x^ - x| <= visual_position,  angle(q^, q) <= visual_rotation,  haptic_ratio(f, f^) <= 1.
+/// The encoder holds the decoder's state (closed loop) and picks for every update the coarsest grid level that keeps the quantised
+/// state well inside these bounds.
+class RigidEncoder {
+ public:
+  /// err  invalid_argument R-STR-n: the header is not valid; R-API-4: a threshold is negative, NaN or finer than the grid.
+  static Result<RigidEncoder> create(StreamHeader header, const RigidEncoderOptions& options = {});
+
+  /// Look at one tick and decide.
+  /// in   tick      strictly increasing
+  ///      samples   one per object of the header, same order
+  ///      contacts  any number, from any clients
+  /// time O(objects), < 1 us per object; no allocation, no exception.
+  /// err  invalid_argument R-API-1..3 a sample is not finite or out of range; R-API-5 wrong count, tick order or contact;
+  ///      R-API-6 an object moved along an axis that the header says it cannot; R-API-7 the grid is too coarse for the contact's
+  ///      stiffness at this p. State is unchanged after any error.
+  Result<EncodedPacket> encode(std::int64_t tick, std::span<const RigidSample> samples, std::span<const Contact> contacts) noexcept;
+
+  const StreamHeader& header() const noexcept;
+  std::uint64_t state_hash() const noexcept;  ///< equals the decoder's after the same packets
+
+  RigidEncoder(RigidEncoder&&) noexcept;
+  RigidEncoder& operator=(RigidEncoder&&) noexcept;
+  ~RigidEncoder();
+
+ private:
+  struct Impl;
+  explicit RigidEncoder(std::unique_ptr<Impl> impl) noexcept;
+  std::unique_ptr<Impl> impl_;
+};
+
+} // namespace tactus

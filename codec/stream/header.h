@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Stream header: what both ends must know before the first packet. spec/20-stream.md section 3.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "codec/base/result.h"
+
+namespace tactus {
+
+enum class Profile : std::uint8_t { thesis = 0, main = 1 };
+
+/// Fixed-point grids: a value v [SI] is the integer round(v * 2^exp).
+///   field     quantity                unit        default   step at the default
+///   position  position                m           22        0.24 um, range +-512 m
+///   velocity  linear velocity         m/s         17        7.6 um/s
+///   rotation  half-angle vector       1           19        1.9e-6 (3.8e-6 rad); |v| = sin(angle / 2)
+///   spin      angular velocity        rad/s       12        0.24 mrad/s
+struct GridExponents {
+  std::uint8_t position = 22;
+  std::uint8_t velocity = 17;
+  std::uint8_t rotation = 19;
+  std::uint8_t spin = 12;
+  friend bool operator==(const GridExponents&, const GridExponents&) = default;
+};
+
+/// Degrees of freedom of a rigid object: world axes it may move along and turn about. No bit set: a static object, never sent.
+/// Rotation is about no axis, one axis or all three (R-STR-12).
+struct Dof {
+  static constexpr std::uint8_t x = 1, y = 2, z = 4, rx = 8, ry = 16, rz = 32;
+  static constexpr std::uint8_t none = 0, translation = 7, all = 63;
+};
+
+/// Integer pose and motion of one rigid object at one tick. This is all a decoder keeps per object.
+struct RigidState {
+  std::int64_t tick = 0;
+  std::array<std::int32_t, 3> position{};                     ///< x 2^-position m
+  std::array<std::int32_t, 4> rotation{1 << 30, 0, 0, 0};     ///< x 2^-30, Hamilton w, x, y, z
+  std::array<std::int32_t, 3> velocity{};                     ///< x 2^-velocity m/s
+  std::array<std::int32_t, 3> spin{};                         ///< x 2^-spin rad/s, world frame
+  friend bool operator==(const RigidState&, const RigidState&) = default;
+};
+
+struct RigidObject {
+  std::string name;              ///< UTF-8, 1..255 bytes
+  std::uint8_t dof = Dof::all;
+  RigidState initial;            ///< tick 0; the state that key packets build on
+};
+
+struct StreamHeader {
+  Profile profile = Profile::thesis;
+  std::uint32_t tick_rate = 1000;            ///< ticks per second, 1 .. 1 000 000
+  GridExponents grid;
+  std::uint16_t max_extrapolation = 2000;    ///< ticks; an object without updates stops moving after so long
+  std::uint8_t baseline_span = 1;            ///< how many of the newest states a receiver keeps as baselines, 1..64
+  std::vector<RigidObject> objects;          ///< order is the wire order
+};
+
+/// What a decoder accepts before it allocates.
+struct DecodeLimits {
+  std::uint32_t objects = 4096;
+  std::uint32_t header_bytes = 1u << 20;
+  std::uint32_t packet_bytes = 1u << 20;
+};
+
+/// Serialise a header. Deterministic: equal headers give equal bytes.
+/// err  invalid_argument with the R-STR rule that the header breaks.
+Result<std::vector<std::uint8_t>> write_header(const StreamHeader& header);
+
+/// A parsed header and the number of bytes it took.
+struct ParsedHeader {
+  StreamHeader header;
+  std::size_t size = 0;
+};
+
+/// Parse a header from the front of `bytes`; unknown extension records are skipped.
+/// err  truncated, malformed, invalid, unsupported, limit_exceeded, checksum: R-STR-1 .. R-STR-15.
+Result<ParsedHeader> parse_header(std::span<const std::uint8_t> bytes, const DecodeLimits& limits = {});
+
+/// Upper bound of the size of any packet of this stream, in bytes.
+std::size_t max_packet_size(const StreamHeader& header) noexcept;
+
+} // namespace tactus
