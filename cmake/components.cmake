@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+# Parts of Tactus that can be left out, and the packages that they need.
+
+# package          Debian package          target that proves it was found
+set(TACTUS_PACKAGES
+  "zstd            libzstd-dev             zstd::libzstd_shared"
+  "ode             libode-dev,pkgconf      PkgConfig::ode"
+  "tomlplusplus    libtomlplusplus-dev     tomlplusplus::tomlplusplus"
+  "CLI11           libcli11-dev            CLI11::CLI11"
+  "nlohmann_json   nlohmann-json3-dev      nlohmann_json::nlohmann_json"
+  "fmt             libfmt-dev              fmt::fmt"
+  "GTest           libgtest-dev            GTest::gtest_main"
+  "benchmark       libbenchmark-dev        benchmark::benchmark"
+  "Python3         python3                 Python3::Interpreter")
+
+# The two packages whose ways differ from `find_package(NAME)`: ODE comes without a CMake file, Python needs its component named.
+# A macro, so that what a package's own CMake file sets reaches the caller.
+macro(tactus_find package)
+  if(${package} STREQUAL ode)
+    find_package(PkgConfig QUIET)
+    if(PkgConfig_FOUND)
+      pkg_check_modules(ode QUIET IMPORTED_TARGET ode)
+    endif()
+  elseif(${package} STREQUAL Python3)
+    find_package(Python3 3.9 QUIET COMPONENTS Interpreter)
+  else()
+    find_package(${package} QUIET)
+  endif()
+endmacro()
+
+# tactus_missing(OUT required...): Debian packages or components of ours that are needed and not there; empty when all is well.
+# What is required is `trace` or `sim`, or a name from TACTUS_PACKAGES.
+function(tactus_missing out)
+  set(missing)
+  foreach(required IN LISTS ARGN)
+    if(required MATCHES "^(trace|sim)$")
+      if(NOT TARGET tactus_${required})
+        string(TOUPPER ${required} upper)
+        list(APPEND missing "the component TACTUS_WITH_${upper}")
+      endif()
+      continue()
+    endif()
+    set(row ${TACTUS_PACKAGES})
+    list(FILTER row INCLUDE REGEX "^${required} ")
+    separate_arguments(row UNIX_COMMAND "${row}")
+    list(GET row 1 debian)
+    list(GET row 2 target)
+    tactus_find(${required})
+    if(NOT TARGET ${target})
+      string(REPLACE "," " and " debian "${debian}")
+      list(APPEND missing "the Debian package ${debian}")
+    endif()
+  endforeach()
+  list(JOIN missing ", " missing)
+  set(${out} "${missing}" PARENT_SCOPE)
+endfunction()
+
+# tactus_component(NAME dir required...): build dir/ as TACTUS_WITH_<NAME> says.
+#   AUTO  when everything required is there; else one line tells what is left out and what brings it
+#   ON    what is missing is an error
+#   OFF   not at all
+function(tactus_component name dir)
+  if(NOT TACTUS_WITH_${name} OR NOT EXISTS ${PROJECT_SOURCE_DIR}/${dir}/CMakeLists.txt)  # until every folder has its sources
+    return()
+  endif()
+  tactus_missing(missing ${ARGN})
+  if(NOT missing)
+    add_subdirectory(${dir})
+  elseif(TACTUS_WITH_${name} STREQUAL AUTO)
+    message(STATUS "Leaving out ${dir}/ (TACTUS_WITH_${name}=AUTO): it needs ${missing}")
+  else()
+    message(FATAL_ERROR "TACTUS_WITH_${name}=${TACTUS_WITH_${name}}: ${dir}/ needs ${missing}")
+  endif()
+endfunction()
