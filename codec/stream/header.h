@@ -72,6 +72,9 @@ struct DecodeLimits {
 /// err  invalid_argument with the R-STR rule that the header breaks.
 Result<std::vector<std::uint8_t>> write_header(const StreamHeader& header);
 
+/// The rule that a header breaks, if any. Both write_header and every create() check it.
+Result<void> check_header(const StreamHeader& header, const DecodeLimits& limits = {});
+
 /// A parsed header and the number of bytes it took.
 struct ParsedHeader {
   StreamHeader header;
@@ -79,7 +82,7 @@ struct ParsedHeader {
 };
 
 /// Parse a header from the front of `bytes`; unknown extension records are skipped.
-/// err  truncated, malformed, invalid, unsupported, limit_exceeded, checksum: R-STR-1 .. R-STR-15.
+/// err  truncated, malformed, invalid, unsupported, limit_exceeded, checksum: R-STR-1 .. R-STR-16.
 Result<ParsedHeader> parse_header(std::span<const std::uint8_t> bytes, const DecodeLimits& limits = {});
 
 /// Upper bound of the size of any packet of this stream, in bytes.

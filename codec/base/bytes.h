@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Byte-aligned reading and writing: little-endian integers and variable-length integers. spec/10-conventions.md section 4.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace tactus {
+
+/// Reads from a span and distrusts it. Past the end it returns 0 and stays failed; a syntax function checks ok() once, at its end.
+class ByteReader {
+ public:
+  explicit ByteReader(std::span<const std::uint8_t> bytes, std::size_t origin = 0) noexcept : bytes_(bytes), origin_(origin) {}
+
+  bool ok() const noexcept { return !overrun_ && !overlong_; }
+  bool overrun() const noexcept { return overrun_; }
+  bool overlong() const noexcept { return overlong_; }  ///< a varint was not the shortest form or exceeds 64 bits
+  std::size_t position() const noexcept { return position_; }
+  std::size_t remaining() const noexcept { return bytes_.size() - position_; }
+  /// Position in the whole input, for error messages.
+  std::uint64_t bit_offset() const noexcept { return 8 * static_cast<std::uint64_t>(origin_ + position_); }
+
+  std::uint8_t u8() noexcept { return static_cast<std::uint8_t>(little_endian(1)); }
+  std::uint16_t u16() noexcept { return static_cast<std::uint16_t>(little_endian(2)); }
+  std::uint32_t u32() noexcept { return static_cast<std::uint32_t>(little_endian(4)); }
+  std::uint64_t u64() noexcept { return little_endian(8); }
+  std::int32_t i32() noexcept { return static_cast<std::int32_t>(u32()); }
+
+  /// Base-128, least significant group first, at most 10 bytes, shortest form only.
+  std::uint64_t varint() noexcept {
+    std::uint64_t value = 0;
+    for (unsigned shift = 0; shift < 64; shift += 7) {
+      const std::uint8_t byte = u8();
+      if (overrun_) return 0;
+      value |= static_cast<std::uint64_t>(byte & 0x7f) << shift;
+      if (byte & 0x80) continue;
+      overlong_ = overlong_ || (byte == 0 && shift > 0) || (shift == 63 && byte > 1);
+      return value;
+    }
+    overlong_ = true;
+    return 0;
+  }
+
+  std::span<const std::uint8_t> bytes(std::uint64_t count) noexcept {
+    if (overrun_ || count > remaining()) {
+      overrun_ = true;
+      return {};
+    }
+    const auto out = bytes_.subspan(position_, static_cast<std::size_t>(count));
+    position_ += static_cast<std::size_t>(count);
+    return out;
+  }
+
+  /// A reader for the next `count` bytes only; this reader moves past them.
+  ByteReader sub(std::uint64_t count) noexcept {
+    const std::size_t start = origin_ + position_;
+    return ByteReader(bytes(count), start);
+  }
+
+ private:
+  std::uint64_t little_endian(std::size_t count) noexcept {
+    if (overrun_ || count > remaining()) {
+      overrun_ = true;
+      return 0;
+    }
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < count; ++i) value |= static_cast<std::uint64_t>(bytes_[position_ + i]) << (8 * i);
+    position_ += count;
+    return value;
+  }
+
+  std::span<const std::uint8_t> bytes_;
+  std::size_t origin_ = 0;
+  std::size_t position_ = 0;
+  bool overrun_ = false;
+  bool overlong_ = false;
+};
+
+/// Appends to a vector. Used at set-up and for files, never on the hot path.
+class ByteWriter {
+ public:
+  explicit ByteWriter(std::vector<std::uint8_t>& out) noexcept : out_(out) {}
+
+  void u8(std::uint8_t value) { out_.push_back(value); }
+  void u16(std::uint16_t value) { little_endian(value, 2); }
+  void u32(std::uint32_t value) { little_endian(value, 4); }
+  void u64(std::uint64_t value) { little_endian(value, 8); }
+  void i32(std::int32_t value) { u32(static_cast<std::uint32_t>(value)); }
+  void varint(std::uint64_t value) {
+    for (; value >= 0x80; value >>= 7) u8(static_cast<std::uint8_t>(value | 0x80));
+    u8(static_cast<std::uint8_t>(value));
+  }
+  void bytes(std::span<const std::uint8_t> data) { out_.insert(out_.end(), data.begin(), data.end()); }
+
+ private:
+  void little_endian(std::uint64_t value, unsigned count) {
+    for (unsigned i = 0; i < count; ++i) u8(static_cast<std::uint8_t>(value >> (8 * i)));
+  }
+
+  std::vector<std::uint8_t>& out_;
+};
+
+}  // namespace tactus

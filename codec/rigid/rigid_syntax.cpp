@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "codec/rigid/rigid_syntax.h"
+
+#include <cstdlib>
+
+namespace tactus {
+
+const RigidModels& start_models() noexcept {
+  static const RigidModels models{};
+  return models;
+}
+
+std::vector<std::uint32_t> moving_objects(const StreamHeader& header) {
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t i = 0; i < header.objects.size(); ++i) {
+    if (header.objects[i].dof != Dof::none) out.push_back(i);
+  }
+  return out;
+}
+
+namespace {
+
+constexpr std::int64_t kSpinLimit = 1 << 25;
+
+struct Motion {
+  Vec3i velocity{};
+  Vec3i spin{};
+};
+
+Motion predict_motion(const RigidState& base, std::int64_t dt, const Residual& residual, unsigned level,
+                      const StreamHeader& header) noexcept {
+  Motion out{base.velocity, base.spin};
+  if (dt == 0) return out;
+  const GridExponents& grid = header.grid;
+  const std::int64_t rate3 = 3 * static_cast<std::int64_t>(header.tick_rate);
+  const std::int64_t moved = (2 * dt) << (grid.position - grid.velocity);
+  const std::int64_t turned = dt << (grid.rotation - grid.spin);  // the residual is half an angle
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::int64_t x = saturate32(static_cast<std::int64_t>(residual.of[0][i]) << (2 * level));
+    const std::int64_t r = saturate32(static_cast<std::int64_t>(residual.of[2][i]) << (2 * level));
+    if (x != 0) out.velocity[i] = saturate32(out.velocity[i] + round_div(x * rate3, moved));
+    if (r != 0) out.spin[i] = saturate32(out.spin[i] + round_div(r * rate3, turned));
+  }
+  return out;
+}
+
+std::optional<RigidPose> add_pose(const RigidPose& predicted, const Residual& residual, unsigned level,
+                                  const GridExponents& grid) noexcept {
+  RigidPose out = predicted;
+  const std::int64_t limit = std::int64_t{1} << grid.rotation;
+  std::array<std::int64_t, 3> half{};
+  std::int64_t square = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::int64_t moved = static_cast<std::int64_t>(residual.of[0][i]) << (2 * level);
+    out.position[i] = saturate32(predicted.position[i] + moved);
+    half[i] = static_cast<std::int64_t>(residual.of[2][i]) << (2 * level);
+    if (half[i] > limit || half[i] < -limit) return std::nullopt;
+    square += half[i] * half[i];
+  }
+  if (square > limit * limit) return std::nullopt;
+  if (square == 0) return out;
+  const unsigned shift = 30u - grid.rotation;
+  const std::uint32_t w = isqrt(static_cast<std::uint64_t>(limit * limit - square) << (2 * shift));
+  const Quat30 turn{static_cast<std::int32_t>(w), static_cast<std::int32_t>(half[0] << shift),
+                    static_cast<std::int32_t>(half[1] << shift), static_cast<std::int32_t>(half[2] << shift)};
+  out.rotation = renormalise(multiply(turn, predicted.rotation));
+  return out;
+}
+
+}  // namespace
+
+Residual quantise_pose(const RigidPose& predicted, const RigidState& truth, std::uint8_t dof, unsigned level,
+                       const GridExponents& grid) noexcept {
+  Residual out;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::int64_t difference = static_cast<std::int64_t>(truth.position[i]) - predicted.position[i];
+    if (dof >> i & 1u) out.of[0][i] = saturate32(round_shift(difference, 2 * level));
+  }
+  if (dof >> 3 == 0) return out;
+  const Quat30 turn = multiply(truth.rotation, conjugate(predicted.rotation));
+  const unsigned shift = 30u - grid.rotation + 2 * level;
+  std::int64_t square = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::int64_t half = turn[0] < 0 ? -turn[i + 1] : turn[i + 1];
+    if (dof >> (3 + i) & 1u) out.of[2][i] = static_cast<std::int32_t>(round_shift(half, shift));
+    square += static_cast<std::int64_t>(out.of[2][i]) * out.of[2][i];
+  }
+  // A half turn may round to just over length 1: take the longest component back.
+  while (square << (4 * level) > std::int64_t{1} << (2 * grid.rotation)) {
+    auto& v = out.of[2];
+    auto& longest = *std::max_element(v.begin(), v.end(), [](std::int32_t a, std::int32_t b) { return std::abs(a) < std::abs(b); });
+    square -= 2 * static_cast<std::int64_t>(std::abs(longest)) - 1;
+    longest += longest > 0 ? -1 : 1;
+  }
+  return out;
+}
+
+void quantise_motion(const Prediction& prediction, const RigidState& truth, std::uint8_t dof, unsigned level,
+                     const StreamHeader& header, Residual& residual) noexcept {
+  const Motion expected = predict_motion(prediction.base, truth.tick - prediction.base.tick, residual, level, header);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::int64_t velocity = static_cast<std::int64_t>(truth.velocity[i]) - expected.velocity[i];
+    const std::int64_t spin = static_cast<std::int64_t>(truth.spin[i]) - expected.spin[i];
+    residual.of[1][i] = dof >> i & 1u ? saturate32(round_shift(velocity, 2 * level)) : 0;
+    residual.of[3][i] = dof >> (3 + i) & 1u ? saturate32(round_shift(spin, 2 * level)) : 0;
+  }
+}
+
+std::optional<RigidState> reconstruct(const Prediction& prediction, std::int64_t tick, const CodedUpdate& update,
+                                      const StreamHeader& header) noexcept {
+  const auto pose = add_pose(prediction.pose, update.residual, update.level, header.grid);
+  if (!pose) return std::nullopt;
+  const Motion motion = predict_motion(prediction.base, tick - prediction.base.tick, update.residual, update.level, header);
+  RigidState out{tick, pose->position, pose->rotation, motion.velocity, motion.spin};
+  for (std::size_t i = 0; i < 3; ++i) {
+    out.velocity[i] = saturate32(out.velocity[i] + (static_cast<std::int64_t>(update.residual.of[1][i]) << (2 * update.level)));
+    const std::int64_t spin = out.spin[i] + (static_cast<std::int64_t>(update.residual.of[3][i]) << (2 * update.level));
+    out.spin[i] = static_cast<std::int32_t>(std::clamp(spin, -kSpinLimit, kSpinLimit));
+  }
+  return out;
+}
+
+}  // namespace tactus

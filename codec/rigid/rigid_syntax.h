@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Syntax and reconstruction of a rigid packet: shared by encoder and decoder, internal to the library. spec/40-rigid.md 2, 3 and 5.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "codec/base/fixed.h"
+#include "codec/base/range_coder.h"
+#include "codec/rigid/rigid.h"
+#include "codec/stream/header.h"
+
+namespace tactus {
+
+inline constexpr std::size_t kQuantities = 4;  // position, velocity, rotation, spin
+inline constexpr std::size_t kHints = 4;
+
+/// Every adaptive model of a packet. Restarted from start_models() for each packet, so that a packet needs nothing but its baseline.
+struct RigidModels {
+  BitModel key;
+  MagnitudeModel baseline;
+  MagnitudeModel tick_delta;
+  MagnitudeModel count;
+  MagnitudeModel gap;
+  TreeModel<2> reason;
+  TreeModel<3> level;
+  std::array<std::array<MagnitudeModel, kHints>, kQuantities> residual;
+};
+
+/// Start probabilities, spec/40-rigid.md table 4.
+const RigidModels& start_models() noexcept;
+
+struct PacketHead {
+  bool key = false;
+  std::uint32_t baseline_delta = 1;  ///< sequence numbers back, 1..baseline_span; unused by key packets
+  std::uint32_t tick_delta = 0;      ///< from the baseline's tick
+  std::uint32_t count = 1;           ///< updates
+};
+
+/// Quantised differences from the prediction, in units of 4^level grid steps; components an object lacks stay 0.
+struct Residual {
+  std::array<Vec3i, kQuantities> of{};
+};
+
+struct CodedUpdate {
+  Reason reason = Reason::request;
+  std::uint8_t level = 0;
+  Residual residual;
+};
+
+/// Indices of the objects that can move: the only ones a packet can name.
+std::vector<std::uint32_t> moving_objects(const StreamHeader& header);
+
+template <class Coder>
+void code_head(Coder& coder, RigidModels& models, const StreamHeader& header, std::size_t moving, PacketHead& head) noexcept {
+  head.key = coder.bit(models.key, head.key ? 1u : 0u);
+  if (!head.key && header.baseline_span > 1) {
+    const std::uint32_t back = coder.magnitude(models.baseline, head.baseline_delta - 1);
+    head.baseline_delta = back < 0xffffffffu ? back + 1 : back;
+  }
+  head.tick_delta = coder.magnitude(models.tick_delta, head.tick_delta);
+  if (moving > 1) {
+    const std::uint32_t more = coder.magnitude(models.count, head.count - 1);
+    head.count = more < 0xffffffffu ? more + 1 : more;
+  }
+}
+
+/// Hint for the next component: how large its predecessors in this update were.
+constexpr std::size_t hint_of(std::uint32_t magnitude) noexcept {
+  const int width = std::bit_width(magnitude);
+  return width == 0 ? 0 : width < 3 ? 1 : width < 6 ? 2 : 3;
+}
+
+template <class Coder>
+void code_update(Coder& coder, RigidModels& models, std::uint8_t dof, CodedUpdate& update) noexcept {
+  update.reason = static_cast<Reason>(coder.template tree<2>(models.reason, static_cast<std::uint32_t>(update.reason)));
+  update.level = static_cast<std::uint8_t>(coder.template tree<3>(models.level, update.level));
+  std::size_t hint = static_cast<std::size_t>(update.reason);
+  for (std::size_t quantity = 0; quantity < kQuantities; ++quantity) {
+    const unsigned axes = quantity < 2 ? dof & 7u : static_cast<unsigned>(dof >> 3);
+    if (axes == 0) continue;
+    if (quantity == 2) hint = static_cast<std::size_t>(update.reason);
+    std::uint32_t largest = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (!(axes >> axis & 1u)) continue;
+      std::int32_t& value = update.residual.of[quantity][axis];
+      value = coder.signed_value(models.residual[quantity][hint], value);
+      const std::uint32_t size = static_cast<std::uint32_t>(value < 0 ? -value : value);
+      if (size > largest) largest = size;
+      hint = hint_of(largest);
+    }
+  }
+}
+
+/// State of one object before a packet, and where dead reckoning puts it at the packet's tick.
+struct Prediction {
+  RigidState base;
+  RigidPose pose;
+};
+
+/// The pose residual alone: quantise `truth` against `predicted`.
+Residual quantise_pose(const RigidPose& predicted, const RigidState& truth, std::uint8_t dof, unsigned level,
+                       const GridExponents& grid) noexcept;
+
+/// The residual of velocity and spin, given that of the pose. An error e of the pose after dt speaks for a change of speed of
+/// 3 e / (2 dt); what is coded is the difference from that. spec 40-rigid 5.2
+void quantise_motion(const Prediction& prediction, const RigidState& truth, std::uint8_t dof, unsigned level,
+                     const StreamHeader& header, Residual& residual) noexcept;
+
+/// What a decoder holds after the update: prediction plus residual. Nothing when the rotation residual is longer than 1 (R-RIG-6).
+std::optional<RigidState> reconstruct(const Prediction& prediction, std::int64_t tick, const CodedUpdate& update,
+                                      const StreamHeader& header) noexcept;
+
+}  // namespace tactus

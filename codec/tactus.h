@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Everything of tactus::codec. Shapes, units and costs stand in the headers below.
+#pragma once
+
+#include "codec/base/geometry.h"
+#include "codec/base/result.h"
+#include "codec/client/replica.h"
+#include "codec/rigid/contact.h"
+#include "codec/rigid/rigid.h"
+#include "codec/rigid/rigid_decoder.h"
+#include "codec/rigid/rigid_encoder.h"
+#include "codec/rigid/trigger.h"
+#include "codec/stream/file.h"
+#include "codec/stream/header.h"
