@@ -53,7 +53,7 @@ class SymbolCoder {
     const std::uint32_t symbol = tree<4>(model, width < 15 ? width : 15);
     width = symbol < 15 ? symbol : 15 + self().raw(5, width - 15);
     if (width < 2) return width;
-    if (width > 32) return 0xffffffffu;  // decoder only; the caller's range check refuses it
+    if (width > 32) return refuse();
     std::uint32_t out = 1;
     for (std::uint32_t left = width - 1; left > 0;) {
       const std::uint32_t count = left < 16 ? left : 16;
@@ -68,12 +68,21 @@ class SymbolCoder {
     const std::uint32_t size = magnitude(model, static_cast<std::uint32_t>(value < 0 ? -static_cast<std::int64_t>(value) : value));
     if (size == 0) return 0;
     const bool negative = self().raw(1, value < 0 ? 1u : 0u) != 0;
-    const std::uint32_t bounded = size < 0x7fffffffu ? size : 0x7fffffffu;
-    return negative ? -static_cast<std::int32_t>(bounded) : static_cast<std::int32_t>(bounded);
+    const auto bounded = static_cast<std::int32_t>(size <= 0x7fffffffu ? size : refuse());
+    return negative ? -bounded : bounded;
   }
 
+  /// R-RNG-4: a magnitude had more than 32 bits, or a signed one more than 31. Never set while encoding.
+  bool too_wide() const noexcept { return too_wide_; }
+
  private:
+  std::uint32_t refuse() noexcept {
+    too_wide_ = true;
+    return 0;
+  }
   Coder& self() noexcept { return static_cast<Coder&>(*this); }
+
+  bool too_wide_ = false;
 };
 }  // namespace detail
 

@@ -57,6 +57,7 @@ class Replica {
     std::uint8_t gap_count = 0, gap_next = 0;
   };
   std::int64_t interval(const Track& track) const noexcept;
+  void begin_interpolation(Track& track, const RigidPose& shown) const noexcept;
 
   StreamHeader header_;
   Interpolation interpolation_ = Interpolation::none;

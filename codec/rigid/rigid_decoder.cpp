@@ -6,7 +6,7 @@
 namespace tactus {
 namespace {
 
-constexpr std::int64_t kTickLimit = std::int64_t{1} << 32;
+constexpr std::int64_t kTickLimit = 0xffffffff;
 
 /// A state that packets may build on.
 struct Slot {
@@ -43,7 +43,7 @@ struct RigidDecoder::Impl {
 
 Result<const Slot*> RigidDecoder::Impl::baseline_of(const PacketHead& head, std::uint16_t sequence) const noexcept {
   if (head.key) return &initial;
-  if (head.baseline_delta > header.baseline_span) return fail(Errc::invalid, "R-PKT-3");
+  if (head.baseline_delta < 1 || head.baseline_delta > header.baseline_span) return fail(Errc::invalid, "R-PKT-3");
   const Slot* slot = find(static_cast<std::uint16_t>(sequence - head.baseline_delta));
   if (slot == nullptr) return fail(Errc::state, "R-PKT-4");
   return slot;
@@ -56,10 +56,12 @@ Result<void> RigidDecoder::Impl::read_updates(RangeDecoder& coder, RigidModels& 
   std::uint64_t next = 0;  // index into `moving`
   for (std::uint32_t i = 0; i < head.count; ++i) {
     if (moving.size() > 1) next += coder.magnitude(models.gap, 0);
+    if (coder.too_wide()) return fail(Errc::malformed, "R-RNG-4");
     if (next >= moving.size()) return fail(Errc::invalid, "R-RIG-4");
     const std::uint32_t object = moving[static_cast<std::size_t>(next++)];
     CodedUpdate update;
     code_update(coder, models, header.objects[object].dof, update);
+    if (coder.too_wide()) return fail(Errc::malformed, "R-RNG-4");
     const RigidState& base = baseline.objects[object];
     const auto state = reconstruct({base, predict(base, tick, header)}, tick, update, header);
     if (!state) return fail(Errc::invalid, "R-RIG-6");
@@ -113,10 +115,11 @@ Result<DecodedPacket> RigidDecoder::decode(std::span<const std::uint8_t> packet)
   PacketHead head;
   const auto bit = [&] { return 16 + 8 * static_cast<std::uint64_t>(std::min(coder.position(), packet.size() - 2)); };
   code_head(coder, models, d.header, d.moving.size(), head);
+  if (coder.too_wide()) return fail(Errc::malformed, "R-RNG-4", bit());
   TACTUS_TRY(const Slot* baseline, d.baseline_of(head, sequence));
   const std::int64_t tick = baseline->tick + head.tick_delta;
   if (tick >= kTickLimit || (!first && tick < current.tick)) return fail(Errc::invalid, "R-RIG-1", bit());
-  if (head.count > d.moving.size()) return fail(Errc::invalid, "R-RIG-3", bit());
+  if (head.count < 1 || head.count > d.moving.size()) return fail(Errc::invalid, "R-RIG-3", bit());
   if (auto read = d.read_updates(coder, models, head, *baseline, tick); !read) return fail(read.error().code, read.error().rule, bit());
   if (const char* rule = coder.broken_rule()) return fail(Errc::malformed, rule, bit());
   d.commit(*baseline, sequence, tick);

@@ -19,6 +19,7 @@ struct EncodedPacket {
   std::span<const std::uint8_t> bytes;  ///< empty: every trigger is silent, nothing to send. Valid until the next call
   Reason reason = Reason::request;      ///< strongest reason among the updates (haptic > visual > heartbeat > request)
   std::uint32_t updates = 0;            ///< objects in the packet
+  bool key = false;                     ///< builds on the initial state: a place to seek to
 };
 
 struct RigidEncoderOptions {

@@ -98,11 +98,12 @@ Residual quantise_pose(const RigidPose& predicted, const RigidState& truth, std:
 void quantise_motion(const Prediction& prediction, const RigidState& truth, std::uint8_t dof, unsigned level,
                      const StreamHeader& header, Residual& residual) noexcept {
   const Motion expected = predict_motion(prediction.base, truth.tick - prediction.base.tick, residual, level, header);
+  const auto steps = [level](std::int32_t value, std::int32_t guess) {
+    return saturate32(round_shift(value, 2 * level) - round_shift(guess, 2 * level));
+  };
   for (std::size_t i = 0; i < 3; ++i) {
-    const std::int64_t velocity = static_cast<std::int64_t>(truth.velocity[i]) - expected.velocity[i];
-    const std::int64_t spin = static_cast<std::int64_t>(truth.spin[i]) - expected.spin[i];
-    residual.of[1][i] = dof >> i & 1u ? saturate32(round_shift(velocity, 2 * level)) : 0;
-    residual.of[3][i] = dof >> (3 + i) & 1u ? saturate32(round_shift(spin, 2 * level)) : 0;
+    residual.of[1][i] = dof >> i & 1u ? steps(truth.velocity[i], expected.velocity[i]) : 0;
+    residual.of[3][i] = dof >> (3 + i) & 1u ? steps(truth.spin[i], expected.spin[i]) : 0;
   }
 }
 
@@ -112,9 +113,10 @@ std::optional<RigidState> reconstruct(const Prediction& prediction, std::int64_t
   if (!pose) return std::nullopt;
   const Motion motion = predict_motion(prediction.base, tick - prediction.base.tick, update.residual, update.level, header);
   RigidState out{tick, pose->position, pose->rotation, motion.velocity, motion.spin};
+  const unsigned shift = 2u * update.level;
   for (std::size_t i = 0; i < 3; ++i) {
-    out.velocity[i] = saturate32(out.velocity[i] + (static_cast<std::int64_t>(update.residual.of[1][i]) << (2 * update.level)));
-    const std::int64_t spin = out.spin[i] + (static_cast<std::int64_t>(update.residual.of[3][i]) << (2 * update.level));
+    out.velocity[i] = saturate32((round_shift(motion.velocity[i], shift) + update.residual.of[1][i]) << shift);
+    const std::int64_t spin = (round_shift(motion.spin[i], shift) + update.residual.of[3][i]) << shift;
     out.spin[i] = static_cast<std::int32_t>(std::clamp(spin, -kSpinLimit, kSpinLimit));
   }
   return out;

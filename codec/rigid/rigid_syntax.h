@@ -58,19 +58,17 @@ template <class Coder>
 void code_head(Coder& coder, RigidModels& models, const StreamHeader& header, std::size_t moving, PacketHead& head) noexcept {
   head.key = coder.bit(models.key, head.key ? 1u : 0u);
   if (!head.key && header.baseline_span > 1) {
-    const std::uint32_t back = coder.magnitude(models.baseline, head.baseline_delta - 1);
-    head.baseline_delta = back < 0xffffffffu ? back + 1 : back;
+    head.baseline_delta = coder.magnitude(models.baseline, head.baseline_delta);
   }
   head.tick_delta = coder.magnitude(models.tick_delta, head.tick_delta);
   if (moving > 1) {
-    const std::uint32_t more = coder.magnitude(models.count, head.count - 1);
-    head.count = more < 0xffffffffu ? more + 1 : more;
+    head.count = coder.magnitude(models.count, head.count);
   }
 }
 
 /// Hint for the next component: how large its predecessors in this update were.
 constexpr std::size_t hint_of(std::uint32_t magnitude) noexcept {
-  const int width = std::bit_width(magnitude);
+  const auto width = static_cast<unsigned>(std::bit_width(magnitude));
   return width == 0 ? 0 : width < 3 ? 1 : width < 6 ? 2 : 3;
 }
 
@@ -106,7 +104,8 @@ Residual quantise_pose(const RigidPose& predicted, const RigidState& truth, std:
                        const GridExponents& grid) noexcept;
 
 /// The residual of velocity and spin, given that of the pose. An error e of the pose after dt speaks for a change of speed of
-/// 3 e / (2 dt); what is coded is the difference from that. spec 40-rigid 5.2
+/// 3 e / (2 dt); what is coded is the difference from that, in whole steps from zero, so that rest stays rest at every level.
+/// spec 40-rigid 5.2
 void quantise_motion(const Prediction& prediction, const RigidState& truth, std::uint8_t dof, unsigned level,
                      const StreamHeader& header, Residual& residual) noexcept;
 

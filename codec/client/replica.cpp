@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "codec/client/replica.h"
+
+#include <cmath>
+
+#include "codec/base/fixed.h"
+#include "codec/base/hash.h"
+
+namespace tactus {
+
+Result<Replica> Replica::create(const StreamHeader& header, const ReplicaOptions& options) {
+  TACTUS_CHECK(check_header(header));
+  const bool valid = options.share > 0 && options.share <= 1 && options.shortest >= 0 && options.shortest <= options.longest &&
+                     options.longest <= 10;
+  if (!valid) return fail(Errc::invalid_argument, "R-API-4");
+  Replica replica;
+  replica.header_ = header;
+  replica.interpolation_ = options.interpolation;
+  replica.share_ = static_cast<std::uint32_t>(std::floor(options.share * 65536 + 0.5));
+  replica.shortest_ = static_cast<std::int64_t>(std::floor(options.shortest * header.tick_rate + 0.5));
+  replica.longest_ = static_cast<std::int64_t>(std::floor(options.longest * header.tick_rate + 0.5));
+  replica.tracks_.resize(header.objects.size());
+  for (std::size_t i = 0; i < header.objects.size(); ++i) replica.tracks_[i].state = header.objects[i].initial;
+  return replica;
+}
+
+/// t_N in ticks: share of the mean gap, clipped; 0 while no gap is known. spec 50-client 3
+std::int64_t Replica::interval(const Track& track) const noexcept {
+  if (track.gap_count == 0) return 0;
+  std::int64_t sum = 0;
+  for (std::size_t i = 0; i < track.gap_count; ++i) sum += track.gaps[i];
+  const std::int64_t mean_share = round_div(sum * share_, static_cast<std::int64_t>(track.gap_count) << 16);
+  return std::clamp(mean_share, shortest_, longest_);
+}
+
+void Replica::apply(const DecodedPacket& packet, std::span<const RigidState> objects, std::int64_t now) noexcept {
+  for (const RigidUpdate& update : packet.updates) {
+    Track& track = tracks_[update.object];
+    const RigidPose shown = pose(update.object, now);
+    const bool running = now < track.end;
+    if (track.last_arrival >= 0) {
+      track.gaps[track.gap_next] = saturate32(now - track.last_arrival);
+      track.gap_next = static_cast<std::uint8_t>((track.gap_next + 1) % kArrivals);
+      track.gap_count = std::min<std::uint8_t>(static_cast<std::uint8_t>(track.gap_count + 1), kArrivals);
+    }
+    track.last_arrival = now;
+    track.state = objects[update.object];
+    track.begin = track.end = now;
+    if (interpolation_ == Interpolation::none || running) continue;
+    track.end = now + interval(track);
+    if (track.end > now) begin_interpolation(track, shown);
+  }
+}
+
+/// Remember both ends and the turn between them, so that pose() needs one sine pair per call.
+void Replica::begin_interpolation(Track& track, const RigidPose& shown) const noexcept {
+  track.from = shown;
+  track.to = predict(track.state, track.end, header_);
+  Quat30 turn = multiply(track.to.rotation, conjugate(shown.rotation));
+  if (turn[0] < 0) turn = {-turn[0], -turn[1], -turn[2], -turn[3]};
+  std::int64_t square = 0;
+  for (std::size_t i = 1; i < 4; ++i) square += static_cast<std::int64_t>(turn[i]) * turn[i];
+  const std::int64_t sine = isqrt(static_cast<std::uint64_t>(square));
+  track.half_turn = sine == 0 ? 0 : asin30(static_cast<std::int32_t>(std::min<std::int64_t>(sine, kOne30)));
+  for (std::size_t i = 0; i < 3; ++i) {
+    track.axis[i] = sine == 0 ? 0 : static_cast<std::int32_t>(round_div(static_cast<std::int64_t>(turn[i + 1]) << 30, sine));
+  }
+}
+
+RigidPose Replica::pose(std::uint32_t object, std::int64_t now) const noexcept {
+  const Track& track = tracks_[object];
+  if (now >= track.end) return predict(track.state, now, header_);
+  const std::int64_t part = now - track.begin, whole = track.end - track.begin;
+  RigidPose out = track.from;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::int64_t way = static_cast<std::int64_t>(track.to.position[i]) - track.from.position[i];
+    out.position[i] = saturate32(track.from.position[i] + round_div(way * part, whole));
+  }
+  const auto half = static_cast<std::uint32_t>(round_div(track.half_turn * part, whole));
+  if (half != 0) out.rotation = renormalise(multiply(axis_turn(track.axis, half), track.from.rotation));
+  return out;
+}
+
+std::uint64_t Replica::pose_hash(std::int64_t now) const noexcept {
+  Fnv1a hash;
+  for (std::uint32_t i = 0; i < tracks_.size(); ++i) {
+    if (header_.objects[i].dof == Dof::none) continue;
+    const RigidPose shown = pose(i, now);
+    for (const std::int32_t c : shown.position) hash.add32(c);
+    for (const std::int32_t c : shown.rotation) hash.add32(c);
+  }
+  return hash.value();
+}
+
+}  // namespace tactus
