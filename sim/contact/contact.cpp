@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/contact/contact.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace tactus {
+namespace {
+
+double& component(Vec3& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+double component(const Vec3& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+
+/// Height of a point over a face, negative below.
+double height(const Vec3& point, const BoxFace& face, const Vec3& half) {
+  const double along = component(point, face.axis);
+  return (face.negative ? -along : along) - component(half, face.axis);
+}
+
+void put_on(Vec3& point, const BoxFace& face, const Vec3& half) {
+  const double extent = component(half, face.axis);
+  component(point, face.axis) = face.negative ? -extent : extent;
+}
+
+} // namespace
+
+Vec3 BoxProxy::normal() const noexcept {
+  Vec3 normal;
+  component(normal, face_->axis) = face_->negative ? -1 : 1;
+  return normal;
+}
+
+void BoxProxy::place(const Vec3& probe) noexcept {
+  proxy_ = probe;
+  face_.reset();
+  double nearest = -std::numeric_limits<double>::infinity();
+  BoxFace face;
+  for (std::uint8_t axis = 0; axis < 3; ++axis) {
+    const BoxFace candidate{axis, component(probe, axis) < 0};
+    if (const double h = height(probe, candidate, half_); h > nearest) {
+      nearest = h;
+      face = candidate;
+    }
+  }
+  if (nearest >= 0) return;
+  face_ = face;
+  put_on(proxy_, face, half_);
+}
+
+void BoxProxy::move(const Vec3& probe) noexcept {
+  if (face_ && height(probe, *face_, half_) >= 0) face_.reset();
+  if (face_ || enter(probe))
+    slide(probe);
+  else
+    proxy_ = probe;
+}
+
+/// Where does the way from the proxy, which is outside, to the probe first meet the box? (slab test)
+bool BoxProxy::enter(const Vec3& probe) noexcept {
+  double first = 0, last = 1;
+  std::optional<BoxFace> met;
+  for (std::uint8_t axis = 0; axis < 3; ++axis) {
+    const double from = component(proxy_, axis), way = component(probe, axis) - from, extent = component(half_, axis);
+    if (way == 0) {
+      if (std::abs(from) >= extent) return false;
+      continue;
+    }
+    const double near = (-std::copysign(extent, way) - from) / way, far = (std::copysign(extent, way) - from) / way;
+    if (near >= first) {
+      first = near;
+      met = BoxFace{axis, way > 0};
+    }
+    last = std::min(last, far);
+  }
+  if (!met || first >= last) return false;
+  proxy_ = proxy_ + first * (probe - proxy_);
+  put_on(proxy_, *met, half_);
+  face_ = met;
+  return true;
+}
+
+void BoxProxy::slide(const Vec3& probe) noexcept {
+  const double depth = -height(probe, *face_, half_);
+  Vec3 foot = probe;
+  put_on(foot, *face_, half_);
+  const Vec3 lag = proxy_ - foot;
+  const double distance = norm(lag), rim = friction_ * depth;
+  if (distance <= rim) return;
+  proxy_ = foot + (rim / distance) * lag;
+  for (std::uint8_t axis = 0; axis < 3; ++axis) {
+    if (axis == face_->axis || std::abs(component(proxy_, axis)) <= component(half_, axis)) continue;
+    proxy_ = probe;
+    face_.reset();
+    return;
+  }
+}
+
+Probe::Probe(std::span<const SceneObject> objects, const SceneTouch& touch) : touch_(touch) {
+  proxies_.reserve(objects.size());
+  for (const SceneObject& object : objects) proxies_.emplace_back(0.5 * object.size, touch.friction);
+}
+
+/// Move the proxies; while one object is touched the others do not feel the probe.
+void Probe::follow(const Vec3& device, std::span<const Pose> poses) noexcept {
+  if (touched_) {
+    proxies_[*touched_].move(to_object(poses[*touched_], device));
+    if (proxies_[*touched_].face()) return;
+    touched_.reset();
+    for (std::size_t i = 0; i < proxies_.size(); ++i) proxies_[i].place(to_object(poses[i], device));
+  }
+  for (std::uint32_t i = 0; i < proxies_.size(); ++i) {
+    proxies_[i].move(to_object(poses[i], device));
+    if (proxies_[i].face() && !touched_) touched_ = i;
+  }
+}
+
+Touch Probe::move(const Vec3& device, bool button, std::span<const Pose> poses) noexcept {
+  if (!placed_ || (anchor_ && !button)) {
+    anchor_.reset();
+    touched_.reset();
+    for (std::size_t i = 0; i < proxies_.size(); ++i) proxies_[i].place(to_object(poses[i], device));
+    placed_ = true;
+  }
+  if (!anchor_) follow(device, poses);
+
+  Touch out{.contact = {}, .proxy = device, .force = {}};
+  out.contact.device = device;
+  if (!touched_) return out;
+  const BoxProxy& proxy = proxies_[*touched_];
+  if (button && !anchor_) anchor_ = proxy.position();
+  out.contact = {.kind = anchor_ ? ContactKind::spring : ContactKind::surface,
+                 .object = *touched_,
+                 .point = anchor_ ? *anchor_ : proxy.position(),
+                 .normal = proxy.normal(),
+                 .device = device,
+                 .stiffness = anchor_ ? touch_.lift_stiffness : touch_.stiffness};
+  out.proxy = to_world(poses[*touched_], out.contact.point);
+  out.force = out.contact.stiffness * (out.proxy - device);
+  return out;
+}
+
+} // namespace tactus

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/scene/scene.h"
+
+#include <bit>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include "codec/rigid/rigid.h"
+#include "sim/scene/toml_reader.h"
+
+namespace tactus {
+namespace {
+
+constexpr double kFarthest = 100;     // [m] well inside the codec's default grid
+constexpr double kLongest = 24 * 3600.0;  // [s]
+constexpr Range kPlace{-kFarthest, kFarthest};
+
+std::uint8_t read_axes(TomlReader& in, const toml::table& table, const std::string& path, std::string_view key,
+                       std::uint8_t fallback) {
+  static constexpr std::array<std::string_view, 6> kNames{"x", "y", "z", "rx", "ry", "rz"};
+  const toml::node* node = table.get(key);
+  if (!node) return fallback;
+  const toml::array* array = node->as_array();
+  if (!array) {
+    in.fail_at(node->source(), Errc::invalid, "R-SCN-5", TomlReader::join(path, key), "write an array such as [\"x\", \"rz\"]");
+    return fallback;
+  }
+  unsigned axes = 0;
+  for (const auto& element : *array) {
+    const auto name = element.value_or(std::string_view{});
+    const auto found = std::find(kNames.begin(), kNames.end(), name);
+    if (found == kNames.end())
+      in.fail_at(element.source(), Errc::invalid, "R-SCN-7", TomlReader::join(path, key), "use x, y, z, rx, ry, rz");
+    else
+      axes |= 1u << (found - kNames.begin());
+  }
+  const unsigned turns = axes & ~static_cast<unsigned>(Dof::translation);
+  if (const int count = std::popcount(turns); count == 2)
+    in.fail_at(node->source(), Errc::invalid, "R-SCN-6", TomlReader::join(path, key), "turn about no axis, one axis or all three");
+  return static_cast<std::uint8_t>(axes);
+}
+
+Quat read_rotation(TomlReader& in, const toml::table& table, const std::string& path) {
+  const toml::node* node = table.get("rotation");
+  if (!node) return {};
+  const auto [w, x, y, z] = in.numbers<4>(*node, path + ".rotation", {-1, 1});
+  const double length = std::sqrt(w * w + x * x + y * y + z * z);
+  if (std::abs(length - 1) > 1e-3) {
+    in.fail_at(node->source(), Errc::invalid, "R-SCN-6", path + ".rotation", "write a unit quaternion w, x, y, z");
+    return {};
+  }
+  return {w / length, x / length, y / length, z / length};
+}
+
+SceneObject read_object(TomlReader& in, const toml::table& table) {
+  const std::string path = "object";
+  in.allow(table, path, {"name", "size", "mass", "friction", "damping", "dof", "position", "rotation"});
+  SceneObject object;
+  object.name = in.text(table, path, "name");
+  object.size = in.vector(table, path, "size", {1e-4, kFarthest});
+  object.dof = read_axes(in, table, path, "dof", Dof::all);
+  object.mass = in.number(table, path, "mass", {1e-6, 1e6});
+  object.friction = in.number(table, path, "friction", {0, 100});
+  object.damping = in.number(table, path, "damping", {0, 1}, 1.0);
+  object.pose.position = in.vector(table, path, "position", kPlace);
+  object.pose.rotation = read_rotation(in, table, path);
+  return object;
+}
+
+SceneTouch read_touch(TomlReader& in, const toml::table& table) {
+  const std::string path = "touch";
+  in.allow(table, path, {"stiffness", "friction", "lift_stiffness"});
+  return {.stiffness = in.number(table, path, "stiffness", {1, 1e5}),
+          .friction = in.number(table, path, "friction", {0, 100}),
+          .lift_stiffness = in.number(table, path, "lift_stiffness", {1, 1e5})};
+}
+
+SceneDevice read_device(TomlReader& in, const toml::table& table) {
+  const std::string path = "user.device";
+  in.allow(table, path, {"max_force", "resolution", "filter", "axes"});
+  SceneDevice device;
+  device.max_force = in.number(table, path, "max_force", {0.01, 1000}, device.max_force);
+  device.resolution = in.number(table, path, "resolution", {1e-9, 0.1}, device.resolution);
+  const double filter = in.number(table, path, "filter", {1, 1000}, static_cast<double>(device.filter));
+  if (filter != std::floor(filter))
+    in.fail_at(table.get("filter")->source(), Errc::invalid, "R-SCN-5", path + ".filter", "write a whole number");
+  device.filter = static_cast<std::uint32_t>(filter);
+  device.axes = read_axes(in, table, path, "axes", device.axes) & Dof::translation;
+  return device;
+}
+
+PathPhase read_phase(TomlReader& in, const toml::table& table) {
+  const std::string path = "user.path";
+  in.allow(table, path, {"name", "frame", "to", "duration", "button"});
+  PathPhase phase;
+  phase.name = in.text(table, path, "name");
+  phase.frame = static_cast<PathFrame>(in.word(table, path, "frame", {"world", "object", "goal"}, "world"));
+  phase.to = in.vector(table, path, "to", kPlace);
+  phase.duration = in.number(table, path, "duration", {kTick, kLongest});
+  phase.button = in.flag(table, path, "button", false);
+  return phase;
+}
+
+std::uint32_t read_watched(TomlReader& in, const toml::table& table, const Scene& scene) {
+  const std::string name = in.text(table, "user", "object");
+  for (std::size_t i = 0; i < scene.objects.size(); ++i)
+    if (scene.objects[i].name == name) return static_cast<std::uint32_t>(i);
+  in.fail_at(table.source(), Errc::invalid, "R-SCN-7", "user.object", "name an object of this scene");
+  return 0;
+}
+
+SceneUser read_user(TomlReader& in, const toml::table& table, const Scene& scene) {
+  const std::string path = "user";
+  in.allow(table, path,
+           {"name", "grip", "tremor", "variation", "scatter", "object", "goal", "start", "device", "path"});
+  SceneUser user;
+  user.name = in.text(table, path, "name");
+  user.grip = static_cast<Grip>(in.word(table, path, "grip", {"loose", "normal", "firm"}, "normal"));
+  user.tremor = in.number(table, path, "tremor", {0, 0.01}, 0.0);
+  user.variation = in.number(table, path, "variation", {0, 0.5}, 0.0);
+  user.scatter = in.number(table, path, "scatter", {0, 0.1}, 0.0);
+  user.object = read_watched(in, table, scene);
+  user.start = in.vector(table, path, "start", kPlace);
+  user.goal = in.vector(table, path, "goal", kPlace, Vec3{});
+  if (const toml::table* device = in.table(table, path, "device")) user.device = read_device(in, *device);
+  for (const toml::table* phase : in.tables(table, path, "path")) user.path.push_back(read_phase(in, *phase));
+  return user;
+}
+
+void read_scene(TomlReader& in, const toml::table& root, Scene& scene) {
+  in.allow(root, "", {"name", "gravity", "duration", "floor", "touch", "object", "user"});
+  scene.name = in.text(root, "", "name");
+  scene.gravity = in.vector(root, "", "gravity", {-1000, 1000});
+  scene.duration = in.number(root, "", "duration", {kTick, kLongest});
+  if (root.contains("floor")) scene.floor = in.number(root, "", "floor", kPlace);
+  if (const toml::table* touch = in.table(root, "", "touch")) scene.touch = read_touch(in, *touch);
+
+  std::set<std::string> names;
+  for (const toml::table* table : in.tables(root, "", "object")) {
+    scene.objects.push_back(read_object(in, *table));
+    if (!names.insert(scene.objects.back().name).second)
+      in.fail_at(table->source(), Errc::invalid, "R-SCN-7", "object.name", "give every object a name of its own");
+  }
+  for (const toml::table* table : in.tables(root, "", "user")) {
+    scene.users.push_back(read_user(in, *table, scene));
+    if (!names.insert(scene.users.back().name).second)
+      in.fail_at(table->source(), Errc::invalid, "R-SCN-7", "user.name", "give every user a name of its own");
+  }
+  if (scene.objects.empty()) in.fail_at(root.source(), Errc::invalid, "R-SCN-4", "object", "add at least one [[object]]");
+  if (!scene.users.empty() && !scene.touch)
+    in.fail_at(root.source(), Errc::invalid, "R-SCN-4", "touch", "users need a [touch] table that says what they feel");
+}
+
+} // namespace
+
+std::string to_string(const SceneError& error) {
+  std::string out = error.file;
+  if (error.line > 0) out += ":" + std::to_string(error.line);
+  if (!error.key.empty()) out += ": " + error.key;
+  return out + ": " + error.error.rule + ": " + error.remedy;
+}
+
+tl::expected<Scene, SceneError> parse_scene(std::string_view text, std::string_view file) {
+  TomlReader in(file);
+  Scene scene;
+  scene.text = text;
+  try {
+    read_scene(in, toml::parse(text, file), scene);
+  } catch (const toml::parse_error& error) {
+    in.fail_at(error.source(), Errc::malformed, "R-SCN-2", "", std::string(error.description()));
+  }
+  if (in.failed()) return tl::unexpected(in.error());
+  return scene;
+}
+
+tl::expected<Scene, SceneError> load_scene(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (!file.good() && !file.eof())
+    return tl::unexpected(SceneError{Error{Errc::io, "R-SCN-1", 0}, path, 0, "", "name a file that can be read"});
+  return parse_scene(text, path);
+}
+
+tl::expected<std::string, SceneError> find_scene(const std::string& name) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  if (fs::is_regular_file(name, ignored)) return name;
+  for (const char* folder : {TACTUS_SCENES_SOURCE, TACTUS_SCENES_INSTALLED}) {
+    const fs::path path = fs::path(folder) / (name + ".toml");
+    if (name.find('/') == std::string::npos && fs::is_regular_file(path, ignored)) return path.string();
+  }
+  return tl::unexpected(SceneError{Error{Errc::io, "R-SCN-1", 0}, name, 0, "",
+                                   "no such file, nor a scene of that name; name a file or one of the scenes in sim/scenes"});
+}
+
+Result<StreamHeader> stream_header(const Scene& scene) {
+  StreamHeader header;
+  header.tick_rate = kTickRate;
+  for (const SceneObject& object : scene.objects) {
+    TACTUS_TRY(const RigidState initial, to_grid({.pose = object.pose, .velocity = {}, .angular_velocity = {}}, 0, header.grid));
+    header.objects.push_back({object.name, object.dof, initial});
+  }
+  return header;
+}
+
+} // namespace tactus

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Scenes: what a simulation contains, read from TOML. sim/scenes/README.md lists every key. SI units throughout.
+/// A scene says what it lacks by not naming it: without users no contact is computed, without a floor nothing collides with one.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "codec/base/geometry.h"
+#include "codec/base/result.h"
+#include "codec/stream/header.h"
+
+namespace tactus {
+
+inline constexpr std::uint32_t kTickRate = 1000;  ///< [Hz] haptic rate of every scene
+inline constexpr double kTick = 1e-3;             ///< [s]
+
+/// A box.
+struct SceneObject {
+  std::string name;
+  Vec3 size;                    ///< [m] edge lengths
+  double mass = 0;              ///< [kg]
+  double friction = 0;          ///< Coulomb coefficient against the floor and other objects (the smaller of two counts)
+  double damping = 1;           ///< d: velocities are multiplied by it every millisecond; 1: none
+  std::uint8_t dof = Dof::all;  ///< none: a static object
+  Pose pose;                    ///< at tick 0, of the box's centre
+};
+
+/// How the probe feels every object of the scene (thesis 2.3.4.1, 3.2.4.1, 3.2.5.1).
+struct SceneTouch {
+  double stiffness = 0;       ///< k_o [N/m]
+  double friction = 0;        ///< of the virtual proxy
+  double lift_stiffness = 0;  ///< [N/m] spring that ties the probe to the touched point while the button is down
+};
+
+struct SceneDevice {
+  double max_force = 3.3;        ///< [N] the rendered force is clipped to it
+  double resolution = 0.055e-3;  ///< [m] encoder step
+  std::uint32_t filter = 8;      ///< length of the moving average over positions, 1: none
+  std::uint8_t axes = Dof::translation;  ///< the hand moves the probe along these only
+};
+
+enum class Grip : std::uint8_t { loose, normal, firm };
+
+/// Frame that a waypoint is given in, fixed when its phase begins: the person looks once, then moves.
+enum class PathFrame : std::uint8_t {
+  world,
+  object,  ///< origin at the object's centre, z up, x along that face normal of the object which points most along world x
+  goal,    ///< origin at the object's centre, z up, x from there toward the goal
+};
+
+/// One minimum-jerk movement from where the last one ended.
+struct PathPhase {
+  std::string name;
+  PathFrame frame = PathFrame::world;
+  Vec3 to;              ///< [m]
+  double duration = 0;  ///< [s]
+  bool button = false;  ///< held down during the phase
+};
+
+struct SceneUser {
+  std::string name;
+  Grip grip = Grip::normal;
+  double tremor = 0;         ///< [m] RMS per axis of the free hand, 8-12 Hz
+  double variation = 0;      ///< share by which hand, speed and targets vary with the seed
+  double scatter = 0;        ///< [m] by which targets vary with the seed
+  std::uint32_t object = 0;  ///< the one the user looks at
+  Vec3 goal;                 ///< [m] where the user wants that object
+  Vec3 start;                ///< [m] of the probe
+  SceneDevice device;
+  std::vector<PathPhase> path;
+};
+
+struct Scene {
+  std::string name;
+  std::string text;  ///< the file itself, for the trace
+  Vec3 gravity;      ///< [m/s^2]
+  double duration = 0;               ///< [s]
+  std::optional<double> floor;       ///< [m] height of a plane that carries the objects
+  std::optional<SceneTouch> touch;   ///< there whenever there are users
+  std::vector<SceneObject> objects;  ///< order of trace and stream
+  std::vector<SceneUser> users;
+};
+
+/// Where a scene file broke which rule, and what would mend it.
+///   R-SCN-1 the file cannot be read    R-SCN-2 not TOML                  R-SCN-3 unknown key       R-SCN-4 key missing
+///   R-SCN-5 wrong type                 R-SCN-6 value out of range        R-SCN-7 unknown or repeated name
+struct SceneError {
+  Error error;
+  std::string file;
+  std::uint32_t line = 0;  ///< from 1; 0: none
+  std::string key;         ///< "object.mass"
+  std::string remedy;
+};
+std::string to_string(const SceneError& error);
+
+/// err  R-SCN-1..7; `file` only names the place in errors.
+tl::expected<Scene, SceneError> parse_scene(std::string_view text, std::string_view file);
+tl::expected<Scene, SceneError> load_scene(const std::string& path);
+
+/// Path of a scene: `name` itself if it is a file, else <name>.toml among the scenes that come with Tactus.   err  R-SCN-1
+tl::expected<std::string, SceneError> find_scene(const std::string& name);
+
+/// The stream that carries this scene: its objects in order, at rest in their first poses.   err  invalid_argument R-API-2
+Result<StreamHeader> stream_header(const Scene& scene);
+
+} // namespace tactus

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Typed access to a TOML table that remembers the first rule broken, so that scene.cpp reads as a list of keys.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <toml++/toml.h>
+#include <utility>
+
+#include "sim/scene/scene.h"
+
+namespace tactus {
+
+struct Range {
+  double low, high;
+};
+
+class TomlReader {
+ public:
+  explicit TomlReader(std::string_view file) : file_(file) {}
+
+  bool failed() const { return error_.has_value(); }
+  SceneError error() const { return *error_; }
+
+  void fail_at(const toml::source_region& where, Errc code, const char* rule, std::string key, std::string remedy) {
+    if (!error_) error_ = SceneError{Error{code, rule, 0}, file_, where.begin.line, std::move(key), std::move(remedy)};
+  }
+
+  /// Keys outside `known` are errors: a misspelt key must not turn into a default.
+  void allow(const toml::table& table, const std::string& path, std::initializer_list<std::string_view> known) {
+    for (const auto& [key, node] : table) {
+      if (std::find(known.begin(), known.end(), key.str()) != known.end()) continue;
+      std::string remedy = "use one of:";
+      for (const auto name : known) remedy.append(" ").append(name);
+      fail_at(key.source(), Errc::invalid, "R-SCN-3", join(path, key.str()), std::move(remedy));
+    }
+  }
+
+  double number(const toml::table& table, const std::string& path, std::string_view key, Range range,
+                std::optional<double> fallback = std::nullopt) {
+    const toml::node* node = find(table, path, key, fallback.has_value());
+    return node ? checked_number(*node, join(path, key), range) : fallback.value_or(range.low);
+  }
+
+  Vec3 vector(const toml::table& table, const std::string& path, std::string_view key, Range range,
+              std::optional<Vec3> fallback = std::nullopt) {
+    const toml::node* node = find(table, path, key, fallback.has_value());
+    if (!node) return fallback.value_or(Vec3{});
+    const auto v = numbers<3>(*node, join(path, key), range);
+    return {v[0], v[1], v[2]};
+  }
+
+  template <std::size_t N>
+  std::array<double, N> numbers(const toml::node& node, const std::string& key, Range range) {
+    std::array<double, N> out{};
+    const toml::array* array = node.as_array();
+    if (!array || array->size() != N) {
+      fail_at(node.source(), Errc::invalid, "R-SCN-5", key, "write an array of " + std::to_string(N) + " numbers");
+      return out;
+    }
+    for (std::size_t i = 0; i < N; ++i) out[i] = checked_number((*array)[i], key, range);
+    return out;
+  }
+
+  bool flag(const toml::table& table, const std::string& path, std::string_view key, bool fallback) {
+    const toml::node* node = find(table, path, key, true);
+    if (!node) return fallback;
+    if (!node->is_boolean()) fail_at(node->source(), Errc::invalid, "R-SCN-5", join(path, key), "write true or false");
+    return node->value_or(fallback);
+  }
+
+  std::string text(const toml::table& table, const std::string& path, std::string_view key,
+                   std::optional<std::string> fallback = std::nullopt) {
+    const toml::node* node = find(table, path, key, fallback.has_value());
+    if (!node) return fallback.value_or("");
+    const auto value = node->value_exact<std::string>();
+    if (!value || value->empty() || value->size() > 255)
+      fail_at(node->source(), Errc::invalid, "R-SCN-5", join(path, key), "write a string of 1 to 255 bytes");
+    return value.value_or("");
+  }
+
+  /// A word of a fixed list, as its index.
+  std::size_t word(const toml::table& table, const std::string& path, std::string_view key,
+                   std::initializer_list<std::string_view> words, std::string fallback) {
+    const std::string value = text(table, path, key, std::move(fallback));
+    const auto found = std::find(words.begin(), words.end(), value);
+    if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
+    std::string remedy = "use one of:";
+    for (const auto name : words) remedy.append(" ").append(name);
+    fail_at(table[key].node() ? table[key].node()->source() : table.source(), Errc::invalid, "R-SCN-7", join(path, key),
+            std::move(remedy));
+    return 0;
+  }
+
+  /// The tables of `[[key]]`; none if it is absent.
+  std::vector<const toml::table*> tables(const toml::table& table, const std::string& path, std::string_view key) {
+    std::vector<const toml::table*> out;
+    const toml::node* node = find(table, path, key, true);
+    if (!node) return out;
+    const toml::array* array = node->as_array();
+    if (!array || !array->is_homogeneous(toml::node_type::table)) {
+      fail_at(node->source(), Errc::invalid, "R-SCN-5", join(path, key), "write it as [[" + join(path, key) + "]]");
+      return out;
+    }
+    for (const auto& element : *array) out.push_back(element.as_table());
+    return out;
+  }
+
+  /// The table `[key]`; null if it is absent.
+  const toml::table* table(const toml::table& parent, const std::string& path, std::string_view key) {
+    const toml::node* node = find(parent, path, key, true);
+    if (node && !node->is_table())
+      fail_at(node->source(), Errc::invalid, "R-SCN-5", join(path, key), "write it as [" + join(path, key) + "]");
+    return node ? node->as_table() : nullptr;
+  }
+
+  static std::string join(const std::string& path, std::string_view key) {
+    return path.empty() ? std::string(key) : path + "." + std::string(key);
+  }
+
+ private:
+  const toml::node* find(const toml::table& table, const std::string& path, std::string_view key, bool optional) {
+    const toml::node* node = table.get(key);
+    if (!node && !optional)
+      fail_at(table.source(), Errc::invalid, "R-SCN-4", join(path, key), "add this key to the table that begins here");
+    return node;
+  }
+
+  double checked_number(const toml::node& node, const std::string& key, Range range) {
+    const auto value = node.value<double>();
+    if (!node.is_number() || !value) {
+      fail_at(node.source(), Errc::invalid, "R-SCN-5", key, "write a number");
+      return range.low;
+    }
+    if (!(*value >= range.low && *value <= range.high)) {
+      fail_at(node.source(), Errc::invalid, "R-SCN-6", key, "stay within " + short_number(range.low) + " to " + short_number(range.high));
+      return range.low;
+    }
+    return *value;
+  }
+
+  static std::string short_number(double value) {
+    char buffer[32];
+    std::snprintf(buffer, sizeof buffer, "%g", value);
+    return buffer;
+  }
+
+  std::string file_;
+  std::optional<SceneError> error_;
+};
+
+} // namespace tactus

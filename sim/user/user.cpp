@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/user/user.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace tactus {
+namespace {
+
+constexpr double kTremorLow = 8, kTremorHigh = 12;  // [Hz]
+
+HandImpedance varied(HandImpedance hand, double variation, Random& random) {
+  hand.mass *= random.uniform(1 - variation, 1 + variation);
+  hand.stiffness *= random.uniform(1 - variation, 1 + variation);
+  hand.damping *= random.uniform(1 - variation, 1 + variation);
+  return hand;
+}
+
+std::int64_t ticks(double duration) { return std::max<std::int64_t>(1, std::llround(duration / kTick)); }
+
+Vec3 only(const Vec3& v, std::uint8_t axes) {
+  return {axes & Dof::x ? v.x : 0, axes & Dof::y ? v.y : 0, axes & Dof::z ? v.z : 0};
+}
+
+/// Unit vector along the horizontal part of v; world x if there is none.
+Vec3 horizontal(const Vec3& v) {
+  const double length = std::hypot(v.x, v.y);
+  return length > 1e-9 ? Vec3{v.x / length, v.y / length, 0} : Vec3{1, 0, 0};
+}
+
+/// The face normal (of either sign) that points most along world x.
+Vec3 facing_x(const Quat& rotation) {
+  Vec3 best{-1, 0, 0};
+  for (const Vec3 axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
+    const Vec3 normal = rotate(rotation, axis);
+    const Vec3 forward = normal.x < 0 ? -normal : normal;
+    if (forward.x > best.x) best = forward;
+  }
+  return best;
+}
+
+} // namespace
+
+Tremor::Tremor(double rms, const HandImpedance& hand, Random& random) {
+  const double position = rms * std::sqrt(2.0 / kSines);  // amplitude of each sine
+  for (auto& axis : axes_) {
+    for (Sine& sine : axis) {
+      const double w = 2 * std::numbers::pi * random.uniform(kTremorLow, kTremorHigh);
+      const double gain = std::hypot(hand.stiffness - hand.mass * w * w, hand.damping * w);  // force per displacement
+      sine = {w, random.uniform(0, 2 * std::numbers::pi), position * gain};
+    }
+  }
+}
+
+Vec3 Tremor::force(double time) const noexcept {
+  std::array<double, 3> out{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const Sine& sine : axes_[axis]) out[axis] += sine.amplitude * std::sin(sine.frequency * time + sine.phase);
+  return {out[0], out[1], out[2]};
+}
+
+DeviceFilter::DeviceFilter(const SceneDevice& device, const Vec3& start) : resolution_(device.resolution), window_(device.filter) {
+  for (std::size_t i = 0; i < window_.size(); ++i) read(start);
+}
+
+Vec3 DeviceFilter::read(const Vec3& position) noexcept {
+  const auto step = [&](double v) { return resolution_ * std::round(v / resolution_); };
+  window_[next_] = {step(position.x), step(position.y), step(position.z)};
+  next_ = (next_ + 1) % window_.size();
+  Vec3 sum;
+  for (const Vec3& sample : window_) sum = sum + sample;
+  return (1.0 / static_cast<double>(window_.size())) * sum;
+}
+
+Vec3 waypoint(const PathPhase& phase, const Pose& object, const Vec3& goal) noexcept {
+  if (phase.frame == PathFrame::world) return phase.to;
+  const Vec3 x = horizontal(phase.frame == PathFrame::goal ? goal - object.position : facing_x(object.rotation));
+  const Vec3 y{-x.y, x.x, 0};
+  return object.position + phase.to.x * x + phase.to.y * y + Vec3{0, 0, phase.to.z};
+}
+
+Hand::Hand(const SceneUser& user, Grip grip, std::uint64_t seed)
+    : user_(user),
+      random_(seed),
+      impedance_(varied(hand_impedance(grip), user.variation, random_)),
+      tremor_(user.tremor, impedance_, random_),
+      filter_(user.device, user.start),
+      position_(user.start),
+      from_(user.start),
+      to_(user.start) {
+  for (PathPhase& phase : user_.path) {
+    phase.duration *= random_.uniform(1 - user.variation, 1 + user.variation);
+    for (double* part : {&phase.to.x, &phase.to.y, &phase.to.z}) *part += random_.uniform(-user.scatter, user.scatter);
+  }
+  phase_ = user_.path.size();
+}
+
+void Hand::begin_phases(const Pose& object) noexcept {
+  if (tick_ == 0 && !user_.path.empty()) phase_ = 0;
+  else if (phase_ == user_.path.size() || tick_ < end_) return;
+  else ++phase_;
+  from_ = to_;
+  begin_ = tick_;
+  if (phase_ == user_.path.size()) return;
+  to_ = waypoint(user_.path[phase_], object, user_.goal);
+  end_ = begin_ + ticks(user_.path[phase_].duration);
+}
+
+DeviceSample Hand::step(const Vec3& felt, const Pose& object) noexcept {
+  begin_phases(object);
+  const bool moving = phase_ < user_.path.size();
+  const double duration = static_cast<double>(end_ - begin_) * kTick;
+  const MinimumJerk done = moving ? minimum_jerk(static_cast<double>(tick_ - begin_) * kTick / duration) : MinimumJerk{1, 0};
+  const Vec3 target = from_ + done.place * (to_ - from_);
+  const Vec3 target_velocity = moving ? (done.slope / duration) * (to_ - from_) : Vec3{};
+
+  const Vec3 pull = impedance_.stiffness * (target - position_) + impedance_.damping * (target_velocity - velocity_);
+  const Vec3 force = only(pull + felt + tremor_.force(static_cast<double>(tick_) * kTick), user_.device.axes);
+  velocity_ = velocity_ + (kTick / impedance_.mass) * force;
+  position_ = position_ + kTick * velocity_;
+  ++tick_;
+  return {filter_.read(position_), moving && user_.path[phase_].button};
+}
+
+} // namespace tactus

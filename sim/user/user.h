@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A virtual hand on a force-feedback device: a mass pulled by a spring and a damper toward a minimum-jerk path, with tremor.
+///   m x'' = k (x_t - x) + b (x_t' - x') + f_felt + f_tremor
+/// What it feels closes the loop; what the device reports is quantised by its encoders and smoothed (thesis 3.2.4.1).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "codec/base/geometry.h"
+#include "sim/random.h"
+#include "sim/scene/scene.h"
+
+namespace tactus {
+
+struct HandImpedance {
+  double mass, stiffness, damping;  ///< [kg], [N/m], [N s/m]
+};
+
+/// A stylus held loosely to firmly. Order of magnitude of the human wrist and arm at rest; chosen, not fitted.
+constexpr HandImpedance hand_impedance(Grip grip) noexcept {
+  switch (grip) {
+    case Grip::loose: return {0.1, 220, 12};
+    case Grip::normal: return {0.2, 310, 16};
+    case Grip::firm: return {0.3, 400, 21};
+  }
+  return {};
+}
+
+/// Share of the way done at share s of the time, with zero velocity and acceleration at both ends (Flash and Hogan 1985), and its slope.
+struct MinimumJerk {
+  double place, slope;
+};
+constexpr MinimumJerk minimum_jerk(double s) noexcept {
+  return {s * s * s * (10 + s * (-15 + 6 * s)), 30 * s * s * (1 - s) * (1 - s)};
+}
+
+/// Band noise: per axis 16 sines of random phase and frequency in 8..12 Hz.
+class Tremor {
+ public:
+  /// Force on a hand of this impedance that makes its free motion `rms` per axis [m].
+  Tremor(double rms, const HandImpedance& hand, Random& random);
+  Vec3 force(double time) const noexcept;  ///< [N]
+
+ private:
+  static constexpr std::size_t kSines = 16;
+  struct Sine {
+    double frequency, phase, amplitude;  // [rad/s], [rad], [N]
+  };
+  std::array<std::array<Sine, kSines>, 3> axes_;
+};
+
+/// Encoders and the smoothing after them.
+class DeviceFilter {
+ public:
+  DeviceFilter(const SceneDevice& device, const Vec3& start);
+  Vec3 read(const Vec3& position) noexcept;
+
+ private:
+  double resolution_;
+  std::vector<Vec3> window_;
+  std::size_t next_ = 0;
+};
+
+/// What the device reports at one tick.
+struct DeviceSample {
+  Vec3 position;  ///< [m]
+  bool button = false;
+};
+
+/// Waypoint of a phase in the world, for an object seen like this.
+Vec3 waypoint(const PathPhase& phase, const Pose& object, const Vec3& goal) noexcept;
+
+class Hand {
+ public:
+  /// Everything that differs between two hands of one scene comes from the seed.
+  Hand(const SceneUser& user, Grip grip, std::uint64_t seed);
+
+  /// Advance by one tick.
+  /// in   felt    [N] force on the hand since the last call; clipped to the device's limit by whoever renders it
+  ///      object  the watched object as the user sees it
+  /// time O(1), about 1 us (the tremor's sines); no allocation.
+  DeviceSample step(const Vec3& felt, const Pose& object) noexcept;
+
+  const HandImpedance& impedance() const noexcept { return impedance_; }
+  const Vec3& position() const noexcept { return position_; }  ///< [m] of the hand itself, before the encoders
+
+ private:
+  void begin_phases(const Pose& object) noexcept;
+
+  SceneUser user_;
+  Random random_;
+  HandImpedance impedance_;
+  Tremor tremor_;
+  DeviceFilter filter_;
+  Vec3 position_, velocity_;
+  Vec3 from_, to_;                        // of the running phase
+  std::size_t phase_ = 0;                 // path.size(): done, the hand stays
+  std::int64_t tick_ = 0, begin_ = 0, end_ = 0;
+};
+
+} // namespace tactus
