@@ -174,7 +174,7 @@ Result<CodedUpdate> RigidEncoder::Impl::quantise(Pending& update, const Predicti
   for (unsigned level = touched && triggers.haptic == HapticRule::fixed ? fixed.level : visual.level;; --level) {
     CodedUpdate coded{update.reason, static_cast<std::uint8_t>(level),
                       quantise_pose(prediction.pose, truth[object], dof, level, header.grid)};
-    quantise_motion(prediction, truth[object], dof, level, header, coded.residual);
+    quantise_motion(prediction, truth[object], dof, header, coded);
     const auto state = reconstruct(prediction, truth[object].tick, coded, header);
     if (!state) return fail(Errc::internal, "R-RIG-6");
     const RigidPose shown{state->position, state->rotation};

@@ -27,17 +27,16 @@ struct Motion {
   Vec3i spin{};
 };
 
-Motion predict_motion(const RigidState& base, std::int64_t dt, const Residual& residual, unsigned level,
-                      const StreamHeader& header) noexcept {
+Motion predict_motion(const RigidState& base, std::int64_t dt, const CodedUpdate& update, const StreamHeader& header) noexcept {
   Motion out{base.velocity, base.spin};
-  if (dt == 0) return out;
+  if (dt == 0 || update.reason != Reason::haptic) return out;
   const GridExponents& grid = header.grid;
   const std::int64_t rate3 = 3 * static_cast<std::int64_t>(header.tick_rate);
   const std::int64_t moved = (2 * dt) << (grid.position - grid.velocity);
   const std::int64_t turned = dt << (grid.rotation - grid.spin);  // the residual is half an angle
   for (std::size_t i = 0; i < 3; ++i) {
-    const std::int64_t x = saturate32(static_cast<std::int64_t>(residual.of[0][i]) << (2 * level));
-    const std::int64_t r = saturate32(static_cast<std::int64_t>(residual.of[2][i]) << (2 * level));
+    const std::int64_t x = saturate32(static_cast<std::int64_t>(update.residual.of[0][i]) << (2 * update.level));
+    const std::int64_t r = saturate32(static_cast<std::int64_t>(update.residual.of[2][i]) << (2 * update.level));
     if (x != 0) out.velocity[i] = saturate32(out.velocity[i] + round_div(x * rate3, moved));
     if (r != 0) out.spin[i] = saturate32(out.spin[i] + round_div(r * rate3, turned));
   }
@@ -95,12 +94,13 @@ Residual quantise_pose(const RigidPose& predicted, const RigidState& truth, std:
   return out;
 }
 
-void quantise_motion(const Prediction& prediction, const RigidState& truth, std::uint8_t dof, unsigned level,
-                     const StreamHeader& header, Residual& residual) noexcept {
-  const Motion expected = predict_motion(prediction.base, truth.tick - prediction.base.tick, residual, level, header);
-  const auto steps = [level](std::int32_t value, std::int32_t guess) {
-    return saturate32(round_shift(value, 2 * level) - round_shift(guess, 2 * level));
+void quantise_motion(const Prediction& prediction, const RigidState& truth, std::uint8_t dof, const StreamHeader& header,
+                     CodedUpdate& update) noexcept {
+  const Motion expected = predict_motion(prediction.base, truth.tick - prediction.base.tick, update, header);
+  const auto steps = [shift = 2u * update.level](std::int32_t value, std::int32_t guess) {
+    return saturate32(round_shift(value, shift) - round_shift(guess, shift));
   };
+  Residual& residual = update.residual;
   for (std::size_t i = 0; i < 3; ++i) {
     residual.of[1][i] = dof >> i & 1u ? steps(truth.velocity[i], expected.velocity[i]) : 0;
     residual.of[3][i] = dof >> (3 + i) & 1u ? steps(truth.spin[i], expected.spin[i]) : 0;
@@ -111,7 +111,7 @@ std::optional<RigidState> reconstruct(const Prediction& prediction, std::int64_t
                                       const StreamHeader& header) noexcept {
   const auto pose = add_pose(prediction.pose, update.residual, update.level, header.grid);
   if (!pose) return std::nullopt;
-  const Motion motion = predict_motion(prediction.base, tick - prediction.base.tick, update.residual, update.level, header);
+  const Motion motion = predict_motion(prediction.base, tick - prediction.base.tick, update, header);
   RigidState out{tick, pose->position, pose->rotation, motion.velocity, motion.spin};
   const unsigned shift = 2u * update.level;
   for (std::size_t i = 0; i < 3; ++i) {

@@ -103,11 +103,11 @@ struct Prediction {
 Residual quantise_pose(const RigidPose& predicted, const RigidState& truth, std::uint8_t dof, unsigned level,
                        const GridExponents& grid) noexcept;
 
-/// The residual of velocity and spin, given that of the pose. An error e of the pose after dt speaks for a change of speed of
-/// 3 e / (2 dt); what is coded is the difference from that, in whole steps from zero, so that rest stays rest at every level.
-/// spec 40-rigid 5.2
-void quantise_motion(const Prediction& prediction, const RigidState& truth, std::uint8_t dof, unsigned level,
-                     const StreamHeader& header, Residual& residual) noexcept;
+/// The residual of velocity and spin, given that of the pose. An update that the haptic trigger asked for follows a steady change
+/// of speed: an error e of the pose after dt speaks for a change of 3 e / (2 dt), and what is coded is the difference from that.
+/// In whole steps from zero, so that rest stays rest at every level. spec 40-rigid 5.2
+void quantise_motion(const Prediction& prediction, const RigidState& truth, std::uint8_t dof, const StreamHeader& header,
+                     CodedUpdate& update) noexcept;
 
 /// What a decoder holds after the update: prediction plus residual. Nothing when the rotation residual is longer than 1 (R-RIG-6).
 std::optional<RigidState> reconstruct(const Prediction& prediction, std::int64_t tick, const CodedUpdate& update,
