@@ -8,7 +8,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "codec/base/result.h"
 
@@ -18,15 +17,16 @@ class ByteSource {
  public:
   /// path "-" is standard input.   err  io R-TRC-1
   static Result<ByteSource> open_file(const std::string& path);
-  /// `bytes` must outlive the source.
+  /// pre  `bytes` outlive the source.
   static ByteSource over_memory(std::span<const std::uint8_t> bytes) noexcept;
 
   /// Fill `out` from the current place; fewer bytes only at the end of the input.   err  io R-TRC-1
   Result<std::size_t> read(std::span<std::uint8_t> out) noexcept;
-  /// The last `count` bytes before `from_end`, without moving the current place; nothing when the input is a pipe or shorter.
-  std::optional<std::vector<std::uint8_t>> tail(std::uint64_t from_end, std::size_t count);
+
   /// Size in bytes; nothing when the input is a pipe.
   std::optional<std::uint64_t> size() noexcept;
+  /// Fill `out` from `offset` and return to the current place; false when that cannot be done.
+  bool read_at(std::uint64_t offset, std::span<std::uint8_t> out) noexcept;
 
  private:
   struct CloseFile {
@@ -34,7 +34,7 @@ class ByteSource {
   };
   ByteSource() = default;
 
-  std::unique_ptr<std::FILE, CloseFile> file_;
+  std::unique_ptr<std::FILE, CloseFile> file_;  // none: memory_
   std::span<const std::uint8_t> memory_;
   std::uint64_t position_ = 0;
 };

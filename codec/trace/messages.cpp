@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "codec/trace/messages.h"
+
+namespace tactus {
+namespace {
+
+constexpr std::uint64_t kNanoseconds = 1'000'000'000;
+constexpr std::string_view kFrame = "world";
+
+CdrWriter begin(std::vector<std::uint8_t>& message, std::uint64_t time) {
+  CdrWriter out(message);
+  out.u32(static_cast<std::uint32_t>(time / kNanoseconds));
+  out.u32(static_cast<std::uint32_t>(time % kNanoseconds));
+  out.text(kFrame);
+  return out;
+}
+
+/// std_msgs/Header; nothing when the stamp is no time.
+std::optional<std::uint64_t> read_header(CdrReader& in) noexcept {
+  const std::uint32_t seconds = in.u32();
+  const std::uint32_t nanoseconds = in.u32();
+  in.text();
+  if (seconds >= kMaxSeconds || nanoseconds >= kNanoseconds) return std::nullopt;
+  return seconds * kNanoseconds + nanoseconds;
+}
+
+bool is_finite(const Pose& pose) noexcept { return is_finite(pose.position) && is_finite(pose.rotation); }
+bool is_finite(const Twist& twist) noexcept { return is_finite(twist.linear) && is_finite(twist.angular); }
+bool is_finite(const Contact& contact) noexcept { return is_valid(contact); }
+
+Pose read_pose(CdrReader& in) noexcept {
+  Pose pose;
+  pose.position = in.vec3();
+  pose.rotation.x = in.f64();  // ROS writes x, y, z, w
+  pose.rotation.y = in.f64();
+  pose.rotation.z = in.f64();
+  pose.rotation.w = in.f64();
+  return pose;
+}
+
+Twist read_twist(CdrReader& in) noexcept {
+  const Vec3 linear = in.vec3();
+  return {linear, in.vec3()};
+}
+
+Vec3 read_vector(CdrReader& in) noexcept { return in.vec3(); }
+
+Contact read_contact(CdrReader& in) noexcept {
+  Contact contact;
+  contact.kind = static_cast<ContactKind>(in.u8());
+  contact.object = in.u32();
+  in.text();
+  contact.point = in.vec3();
+  contact.normal = in.vec3();
+  contact.stiffness = in.f64();
+  return contact;
+}
+
+template <class T>
+Result<Stamped<T>> decode(std::span<const std::uint8_t> message, T (*read)(CdrReader&) noexcept) noexcept {
+  CdrReader in(message);
+  if (!in.is_supported()) return fail(Errc::unsupported, "R-TRC-7");
+  const auto time = read_header(in);
+  const T value = read(in);
+  if (!in.done()) return fail(Errc::malformed, "R-TRC-13");
+  if (!time || !is_finite(value)) return fail(Errc::invalid, "R-TRC-14");
+  return Stamped<T>{*time, value};
+}
+
+}  // namespace
+
+std::uint64_t time_of_tick(std::int64_t tick, std::uint32_t tick_rate) noexcept {
+  const auto count = static_cast<std::uint64_t>(tick);
+  return count / tick_rate * kNanoseconds + (count % tick_rate * kNanoseconds + tick_rate / 2) / tick_rate;
+}
+
+std::int64_t tick_of_time(std::uint64_t time, std::uint32_t tick_rate) noexcept {
+  const std::uint64_t rest = (time % kNanoseconds * tick_rate + kNanoseconds / 2) / kNanoseconds;
+  return static_cast<std::int64_t>(time / kNanoseconds * tick_rate + rest);
+}
+
+bool is_valid(const Contact& contact) noexcept {
+  const bool known = contact.kind == ContactKind::surface || contact.kind == ContactKind::spring;
+  return known && is_finite(contact.point) && is_finite(contact.normal) && is_finite(contact.device) &&
+         std::isfinite(contact.stiffness) && contact.stiffness > 0;
+}
+
+void encode_pose(std::vector<std::uint8_t>& message, std::uint64_t time, const Pose& pose) {
+  CdrWriter out = begin(message, time);
+  out.vec3(pose.position);
+  out.f64(pose.rotation.x);
+  out.f64(pose.rotation.y);
+  out.f64(pose.rotation.z);
+  out.f64(pose.rotation.w);
+}
+
+void encode_twist(std::vector<std::uint8_t>& message, std::uint64_t time, const Twist& twist) {
+  CdrWriter out = begin(message, time);
+  out.vec3(twist.linear);
+  out.vec3(twist.angular);
+}
+
+void encode_vector(std::vector<std::uint8_t>& message, std::uint64_t time, const Vec3& vector) {
+  CdrWriter out = begin(message, time);
+  out.vec3(vector);
+}
+
+void encode_contact(std::vector<std::uint8_t>& message, std::uint64_t time, const Contact& contact, std::string_view object) {
+  CdrWriter out = begin(message, time);
+  out.u8(static_cast<std::uint8_t>(contact.kind));
+  out.u32(contact.object);
+  out.text(object);
+  out.vec3(contact.point);
+  out.vec3(contact.normal);
+  out.f64(contact.stiffness);
+}
+
+Result<Stamped<Pose>> decode_pose(std::span<const std::uint8_t> message) noexcept { return decode(message, read_pose); }
+Result<Stamped<Twist>> decode_twist(std::span<const std::uint8_t> message) noexcept { return decode(message, read_twist); }
+Result<Stamped<Vec3>> decode_vector(std::span<const std::uint8_t> message) noexcept { return decode(message, read_vector); }
+Result<Stamped<Contact>> decode_contact(std::span<const std::uint8_t> message) noexcept { return decode(message, read_contact); }
+
+}  // namespace tactus
