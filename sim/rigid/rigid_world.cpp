@@ -16,6 +16,9 @@ namespace {
 // Resting boxes stay this deep in what carries them [m]: at depth 0 rounding would open and close the contact in turn. The floor is
 // raised by as much, so that a box on it rests at the height the scene gives.
 constexpr double kSurfaceLayer = 1e-5;
+// dWorldStep loses friction for single ticks ("LCP internal error" on a pushed cube that sticks). QuickStep does not; for one cube
+// on the floor its error in the friction force falls from 3e-2 (20 iterations) over 1e-6 (50) to 1e-8 (100) of mu N.
+constexpr int kIterations = 100;
 constexpr int kMaxContacts = 8;       // per pair; box against box yields up to 8
 constexpr double kStandstill = 1e-9;  // [m/s] below this a contact point has no direction of sliding
 
@@ -74,6 +77,7 @@ RigidWorld::Impl::Impl(const Scene& scene) : gravity(scene.gravity) {
   contacts = dJointGroupCreate(0);
   dWorldSetGravity(world, gravity.x, gravity.y, gravity.z);
   dWorldSetContactSurfaceLayer(world, kSurfaceLayer);
+  dWorldSetQuickStepNumIterations(world, kIterations);
   if (scene.floor) floor = dCreatePlane(space, 0, 0, 1, *scene.floor + kSurfaceLayer);
   boxes.reserve(scene.objects.size());  // geoms point into it
   for (const SceneObject& object : scene.objects) add(object);
@@ -185,7 +189,7 @@ void RigidWorld::push(std::uint32_t object, const Vec3& force, const Vec3& point
 
 tl::expected<void, StepError> RigidWorld::step() {
   Impl& in = *impl_;
-  // ODE orders its constraints with one random generator per process; seeding it makes a step depend on nothing but this world.
+  // QuickStep shuffles its constraints with one random generator per process; seeding it makes a step depend on nothing but this world.
   dRandSetSeed(static_cast<unsigned long>(in.tick));
   dJointGroupEmpty(in.contacts);
   dSpaceCollide(in.space, &in, [](void* self, dGeomID a, dGeomID b) { static_cast<Impl*>(self)->collide(a, b); });
@@ -194,7 +198,7 @@ tl::expected<void, StepError> RigidWorld::step() {
     dBodyAddForce(box.body, box.force.x, box.force.y, box.force.z);
     dBodyAddTorque(box.body, box.torque.x, box.torque.y, box.torque.z);
   }
-  dWorldStep(in.world, kTick);
+  dWorldQuickStep(in.world, kTick);
   ++in.tick;
   for (std::uint32_t i = 0; i < in.boxes.size(); ++i) {
     Box& box = in.boxes[i];

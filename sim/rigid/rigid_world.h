@@ -33,7 +33,7 @@ class RigidWorld {
   void push(std::uint32_t object, const Vec3& force, const Vec3& point) noexcept;
 
   /// Advance by one tick.
-  /// time O(contacts^3), about 15 us for one cube on the floor; no allocation after the first contacts (tests/unit/rigid_world_test).
+  /// time O(contacts), about 15 us for one cube on the floor; no allocation after the first contacts (tests/unit/rigid_world_test).
   /// err  internal R-SIM-1: a pose or velocity is not finite.
   tl::expected<void, StepError> step();
 

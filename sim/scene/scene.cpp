@@ -96,7 +96,7 @@ PathPhase read_phase(TomlReader& in, const toml::table& table) {
   in.allow(table, path, {"name", "frame", "to", "duration", "button"});
   PathPhase phase;
   phase.name = in.text(table, path, "name");
-  phase.frame = static_cast<PathFrame>(in.word(table, path, "frame", {"world", "object", "goal"}, "world"));
+  phase.frame = static_cast<PathFrame>(in.word(table, path, "frame", {"world", "hand", "object", "toward_goal", "at_goal"}, "world"));
   phase.to = in.vector(table, path, "to", kPlace);
   phase.duration = in.number(table, path, "duration", {kTick, kLongest});
   phase.button = in.flag(table, path, "button", false);

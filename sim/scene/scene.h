@@ -46,11 +46,13 @@ struct SceneDevice {
 
 enum class Grip : std::uint8_t { loose, normal, firm };
 
-/// Frame that a waypoint is given in, fixed when its phase begins: the person looks once, then moves.
+/// Frame that a waypoint is given in, fixed when its phase begins: the person looks once, then moves. z is up in all of them.
 enum class PathFrame : std::uint8_t {
   world,
-  object,  ///< origin at the object's centre, z up, x along that face normal of the object which points most along world x
-  goal,    ///< origin at the object's centre, z up, x from there toward the goal
+  hand,         ///< origin where the last movement ended, world axes
+  object,       ///< origin at the object's centre, x along that face normal of the object which points most along world x
+  toward_goal,  ///< origin at the object's centre, x from there to the goal
+  at_goal,      ///< origin at the goal, x as before
 };
 
 /// One minimum-jerk movement from where the last one ended.

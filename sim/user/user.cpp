@@ -73,11 +73,13 @@ Vec3 DeviceFilter::read(const Vec3& position) noexcept {
   return (1.0 / static_cast<double>(window_.size())) * sum;
 }
 
-Vec3 waypoint(const PathPhase& phase, const Pose& object, const Vec3& goal) noexcept {
+Vec3 waypoint(const PathPhase& phase, const Pose& object, const Vec3& goal, const Vec3& hand) noexcept {
   if (phase.frame == PathFrame::world) return phase.to;
-  const Vec3 x = horizontal(phase.frame == PathFrame::goal ? goal - object.position : facing_x(object.rotation));
+  if (phase.frame == PathFrame::hand) return hand + phase.to;
+  const Vec3 x = horizontal(phase.frame == PathFrame::object ? facing_x(object.rotation) : goal - object.position);
   const Vec3 y{-x.y, x.x, 0};
-  return object.position + phase.to.x * x + phase.to.y * y + Vec3{0, 0, phase.to.z};
+  const Vec3& origin = phase.frame == PathFrame::at_goal ? goal : object.position;
+  return origin + phase.to.x * x + phase.to.y * y + Vec3{0, 0, phase.to.z};
 }
 
 Hand::Hand(const SceneUser& user, Grip grip, std::uint64_t seed)
@@ -103,7 +105,7 @@ void Hand::begin_phases(const Pose& object) noexcept {
   from_ = to_;
   begin_ = tick_;
   if (phase_ == user_.path.size()) return;
-  to_ = waypoint(user_.path[phase_], object, user_.goal);
+  to_ = waypoint(user_.path[phase_], object, user_.goal, from_);
   end_ = begin_ + ticks(user_.path[phase_].duration);
 }
 

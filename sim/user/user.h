@@ -71,8 +71,8 @@ struct DeviceSample {
   bool button = false;
 };
 
-/// Waypoint of a phase in the world, for an object seen like this.
-Vec3 waypoint(const PathPhase& phase, const Pose& object, const Vec3& goal) noexcept;
+/// Waypoint of a phase in the world, for an object seen like this and a last movement that ended at `hand`.
+Vec3 waypoint(const PathPhase& phase, const Pose& object, const Vec3& goal, const Vec3& hand) noexcept;
 
 class Hand {
  public:
