@@ -29,21 +29,21 @@ struct ChannelOptions {
   ReplicaOptions replica;
 };
 
-struct ClosedLoopOptions {
+struct SimulationOptions {
   std::uint64_t seed = 1;
   std::optional<Grip> grip;               ///< instead of the scene's, for every user
   std::optional<ChannelOptions> channel;  ///< none: the client sees the true poses
 };
 
-class ClosedLoop {
+class Simulation {
  public:
   /// pre  every call on the same thread (ODE keeps state per thread).
   /// err  invalid_argument R-API-n, R-STR-n: the options do not suit the scene (see RigidEncoder::create, Replica::create)
-  static Result<ClosedLoop> create(const Scene& scene, const ClosedLoopOptions& options = {});
+  static Result<Simulation> create(const Scene& scene, const SimulationOptions& options = {});
 
   /// One tick with the scene's virtual hands. Afterwards frame() is this tick.
   /// out  the packet of this tick, without bytes if none was needed; valid until the next call
-  /// time about 25 us for one cube and user; no allocation after set-up but what ODE needs (none once its arenas have grown).
+  /// time about 16 us for one cube and user; no allocation after set-up.
   /// err  internal R-SIM-1: the physics broke down; errors of RigidEncoder::encode and RigidDecoder::decode
   tl::expected<EncodedPacket, StepError> step();
 
@@ -54,16 +54,17 @@ class ClosedLoop {
 
   const TraceFrame& frame() const noexcept;            ///< pre  step() or replay() was called
   std::span<const Pose> client_poses() const noexcept; ///< as shown at the client in that tick, one per object
+  std::int64_t ticks() const noexcept;                 ///< length of the scene
   TraceInfo info() const;                              ///< for a TraceWriter of these frames
   const StreamHeader& header() const noexcept;         ///< of the packets
 
-  ClosedLoop(ClosedLoop&&) noexcept;
-  ClosedLoop& operator=(ClosedLoop&&) noexcept;
-  ~ClosedLoop();
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+  ~Simulation();
 
  private:
   struct Impl;
-  explicit ClosedLoop(std::unique_ptr<Impl> impl) noexcept;
+  explicit Simulation(std::unique_ptr<Impl> impl) noexcept;
   std::unique_ptr<Impl> impl_;
 };
 

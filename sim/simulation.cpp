@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/closed_loop.h"
+#include "sim/simulation.h"
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -35,7 +36,7 @@ Vec3 clipped(const Vec3& force, double limit) {
 
 } // namespace
 
-struct ClosedLoop::Impl {
+struct Simulation::Impl {
   Scene scene;
   std::uint64_t seed;
   StreamHeader header;
@@ -57,7 +58,7 @@ struct ClosedLoop::Impl {
 };
 
 /// Truth at this tick, as it is before any force of this tick acts.
-void ClosedLoop::Impl::observe() {
+void Simulation::Impl::observe() {
   frame.tick = world.tick();
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     frame.objects[i] = world.sample(i);
@@ -65,7 +66,7 @@ void ClosedLoop::Impl::observe() {
   }
 }
 
-void ClosedLoop::Impl::touch_server() {
+void Simulation::Impl::touch_server() {
   for (std::size_t i = 0; i < users.size(); ++i) {
     User& user = users[i];
     user.touch = user.server.move(user.device.position, user.device.button, true_poses);
@@ -74,7 +75,7 @@ void ClosedLoop::Impl::touch_server() {
   }
 }
 
-tl::expected<EncodedPacket, Error> ClosedLoop::Impl::transmit() {
+tl::expected<EncodedPacket, Error> Simulation::Impl::transmit() {
   if (!channel) {
     client_poses = true_poses;
     return EncodedPacket{};
@@ -89,7 +90,7 @@ tl::expected<EncodedPacket, Error> ClosedLoop::Impl::transmit() {
   return packet;
 }
 
-void ClosedLoop::Impl::touch_client() {
+void Simulation::Impl::touch_client() {
   for (std::size_t i = 0; i < users.size(); ++i) {
     User& user = users[i];
     user.felt = clipped(user.client.move(user.device.position, user.device.button, client_poses).force, user.max_force);
@@ -97,13 +98,13 @@ void ClosedLoop::Impl::touch_client() {
   }
 }
 
-tl::expected<void, StepError> ClosedLoop::Impl::act() {
+tl::expected<void, StepError> Simulation::Impl::act() {
   for (const User& user : users)
     if (user.touch.contact.kind != ContactKind::none) world.push(user.touch.contact.object, -user.rendered, user.touch.proxy);
   return world.step();
 }
 
-tl::expected<EncodedPacket, StepError> ClosedLoop::Impl::tick() {
+tl::expected<EncodedPacket, StepError> Simulation::Impl::tick() {
   touch_server();
   const auto packet = transmit();
   if (!packet) return tl::unexpected(StepError{packet.error(), frame.tick, 0});
@@ -112,7 +113,7 @@ tl::expected<EncodedPacket, StepError> ClosedLoop::Impl::tick() {
   return *packet;
 }
 
-Result<ClosedLoop> ClosedLoop::create(const Scene& scene, const ClosedLoopOptions& options) {
+Result<Simulation> Simulation::create(const Scene& scene, const SimulationOptions& options) {
   TACTUS_TRY(StreamHeader header, stream_header(scene));
   auto impl = std::make_unique<Impl>(scene, options.seed, header);
   if (options.channel) {
@@ -138,10 +139,10 @@ Result<ClosedLoop> ClosedLoop::create(const Scene& scene, const ClosedLoopOption
   impl->contacts.resize(scene.users.size());
   impl->true_poses.resize(scene.objects.size());
   for (const SceneObject& object : scene.objects) impl->client_poses.push_back(object.pose);
-  return ClosedLoop(std::move(impl));
+  return Simulation(std::move(impl));
 }
 
-tl::expected<EncodedPacket, StepError> ClosedLoop::step() {
+tl::expected<EncodedPacket, StepError> Simulation::step() {
   Impl& in = *impl_;
   in.observe();
   for (std::size_t i = 0; i < in.users.size(); ++i) {
@@ -151,7 +152,7 @@ tl::expected<EncodedPacket, StepError> ClosedLoop::step() {
   return in.tick();
 }
 
-tl::expected<EncodedPacket, StepError> ClosedLoop::replay(std::span<const UserSample> recorded) {
+tl::expected<EncodedPacket, StepError> Simulation::replay(std::span<const UserSample> recorded) {
   Impl& in = *impl_;
   in.observe();
   const auto refuse = [&](const char* rule) {
@@ -165,11 +166,13 @@ tl::expected<EncodedPacket, StepError> ClosedLoop::replay(std::span<const UserSa
   return in.tick();
 }
 
-const TraceFrame& ClosedLoop::frame() const noexcept { return impl_->frame; }
-std::span<const Pose> ClosedLoop::client_poses() const noexcept { return impl_->client_poses; }
-const StreamHeader& ClosedLoop::header() const noexcept { return impl_->header; }
+const TraceFrame& Simulation::frame() const noexcept { return impl_->frame; }
+std::span<const Pose> Simulation::client_poses() const noexcept { return impl_->client_poses; }
+const StreamHeader& Simulation::header() const noexcept { return impl_->header; }
 
-TraceInfo ClosedLoop::info() const {
+std::int64_t Simulation::ticks() const noexcept { return std::llround(impl_->scene.duration / kTick); }
+
+TraceInfo Simulation::info() const {
   TraceInfo info{.tick_rate = kTickRate, .objects = {}, .users = {}, .source = {}, .scene = impl_->scene.text};
   for (const SceneObject& object : impl_->scene.objects) info.objects.push_back({object.name, object.dof});
   for (const SceneUser& user : impl_->scene.users) info.users.push_back(user.name);
@@ -177,9 +180,9 @@ TraceInfo ClosedLoop::info() const {
   return info;
 }
 
-ClosedLoop::ClosedLoop(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}
-ClosedLoop::ClosedLoop(ClosedLoop&&) noexcept = default;
-ClosedLoop& ClosedLoop::operator=(ClosedLoop&&) noexcept = default;
-ClosedLoop::~ClosedLoop() = default;
+Simulation::Simulation(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+Simulation::~Simulation() = default;
 
 } // namespace tactus
