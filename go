@@ -1,0 +1,100 @@
+#!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
+# From a bare Debian 12 to a result. Needs root or sudo only for packages that are not there yet.
+#   ./go demo     build, simulate a touch, send it through the codec; report in out/demo/
+#   ./go test     build with g++ and clang, run every test
+#   ./go bench    build and run the benchmarks; JSON in build/bench/
+#   ./go format   rewrite the sources with clang-format
+# shellcheck disable=SC2086 # lists of packages are words
+set -eu
+cd "$(dirname "$0")"
+
+build_packages='g++ cmake ninja-build pkgconf libexpected-dev libzstd-dev libode-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev'
+test_packages='clang libclang-rt-dev clang-tidy clang-format libgtest-dev python3'
+bench_packages='libbenchmark-dev libgtest-dev python3'
+
+as_root() {
+  if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi
+}
+
+install() { # PACKAGE...
+  missing=
+  for package in "$@"; do
+    dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing="$missing $package"
+  done
+  [ -n "$missing" ] || return 0
+  step "install$missing" apt_install
+}
+
+apt_install() {
+  as_root apt-get update && as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $missing
+}
+
+# Run a command quietly; when it fails show the end of its log and how to run it again.
+step() { # TITLE COMMAND...
+  title=$1
+  shift
+  mkdir -p build/log
+  log=build/log/$(echo "$title" | tr -c 'a-z0-9+\n' '-' | cut -c 1-40).log
+  begin=$(date +%s)
+  printf '%s ... ' "$title"
+  if "$@" >"$log" 2>&1; then
+    echo "ok ($(($(date +%s) - begin)) s)"
+  else
+    echo FAILED
+    tail -n 40 "$log"
+    printf '\nThis step failed: %s\nIts whole output: %s\nRun it again with: %s\n' "$title" "$log" "$*"
+    exit 1
+  fi
+}
+
+run_test() {
+  install $build_packages $test_packages
+  step 'g++: build without warnings, all tests' tests/check.sh gcc
+  step 'clang: build without warnings, all tests' tests/check.sh clang
+  step 'all tests under AddressSanitizer and UndefinedBehaviorSanitizer' tests/check.sh asan
+  step 'codec alone: no package needed, nothing else linked' tests/check.sh codec-only
+  step 'same bits from every compiler and optimisation level' tests/check.sh exact
+  step 'clang-format' tests/check.sh format
+  step 'clang-tidy' tests/check.sh tidy
+  echo 'All tests passed.'
+}
+
+build_release() {
+  cmake -S . -B build/demo -G Ninja -DCMAKE_BUILD_TYPE=Release -DTACTUS_WITH_CLI=ON -DTACTUS_WITH_SIM=ON -DTACTUS_WITH_TESTS=OFF &&
+    cmake --build build/demo
+}
+
+run_demo() {
+  install $build_packages
+  step 'build' build_release
+  out=out/demo
+  tactus=build/demo/cli/tactus
+  mkdir -p "$out"
+  step 'simulate a hand that pushes a cube' "$tactus" sim push-1dof -o "$out/truth.mcap" -f
+  step 'encode what a client needs to see and feel' "$tactus" encode "$out/truth.mcap" -o "$out/stream.tct" -f --profile thesis -p 4% --visual 0.006,2deg
+  step 'decode what the client sees' "$tactus" decode "$out/stream.tct" -o "$out/replica.mcap" -f
+  "$tactus" compare "$out/truth.mcap" "$out/replica.mcap" --json >"$out/report.json"
+  "$tactus" compare "$out/truth.mcap" "$out/replica.mcap" >"$out/report.txt"
+  cat "$out/report.txt"
+  echo "Everything is in $out/"
+}
+
+run_bench() {
+  install $build_packages $bench_packages
+  tests/check.sh bench
+}
+
+run_format() {
+  install clang-format
+  find codec sim device cli conformance tests \( -name '*.h' -o -name '*.cpp' \) -exec clang-format -i {} +
+}
+
+case ${1-help} in
+  demo | test | bench | format) "run_$1" ;;
+  help | -h | --help) sed -n '3,7s/^# \{0,1\}//p' "$0" ;;
+  *)
+    echo "go: no such command: $1 (try ./go help)" >&2
+    exit 2
+    ;;
+esac

@@ -1,0 +1,129 @@
+#!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
+# One check of the project. `./go test` calls those that make up a full test; each builds below build/ and can be run alone.
+#   tests/check.sh CHECK
+#     debug release gcc clang asan tsan   build the preset with warnings as errors and run its tests
+#     codec-only      build the codec without any other package; what links it needs nothing but the C++ run-time library
+#     consumer [DIR]  install a build, then build and run projects that use it (DIR: a finished build; else codec-only)
+#     conformance     build and run the conformance suite
+#     exact           same hashes from g++ and clang, at -O0 to -O3, with and without the machine's own instructions
+#     tidy | format   clang-tidy, clang-format
+#     fuzz SECONDS    every libFuzzer target for so long
+#     bench           run the benchmarks, JSON into build/bench/
+set -eu
+cd "$(dirname "$0")/.."
+jobs=${TACTUS_JOBS:-$(nproc)}
+if [ -z "${CMAKE_GENERATOR-}" ] && command -v ninja >/dev/null; then export CMAKE_GENERATOR=Ninja; fi
+
+die() { echo "tests/check.sh: $*" >&2; exit 1; }
+
+build() { # PRESET
+  cmake --preset "$1"
+  cmake --build --preset "$1" -j "$jobs"
+}
+
+build_and_test() { # PRESET
+  build "$1"
+  ctest --preset "$1" -j "$jobs"
+}
+
+sources() { find codec sim device cli conformance tests \( -name '*.h' -o -name '*.cpp' \) -print | LC_ALL=C sort; }
+
+# Every installed header must stand alone: it includes what it needs, and only what is installed.
+check_headers() { # INCLUDE_DIR
+  (cd "$1" && find . -name '*.h') | while read -r header; do
+    echo "#include \"$header\"" | "${CXX:-c++}" -std=c++20 -fsyntax-only -I "$1" -x c++ - || die "$header does not stand alone"
+  done
+}
+
+consumer() { # BUILD_DIR
+  scratch=$1/consumer
+  rm -rf "$scratch"
+  cmake --install "$1" --prefix "$scratch/prefix" >/dev/null
+  check_headers "$scratch/prefix/include/tactus"
+  cmake -S tests/consumer/installed -B "$scratch/installed" -DCMAKE_PREFIX_PATH="$scratch/prefix"
+  cmake --build "$scratch/installed"
+  "$scratch/installed/consumer"
+  cmake -S tests/consumer/subproject -B "$scratch/subproject" -DTACTUS_SOURCE="$PWD"
+  cmake --build "$scratch/subproject"
+  "$scratch/subproject/consumer"
+}
+
+codec_only() {
+  build codec-only
+  consumer "$PWD/build/codec-only"
+  needed=$(readelf -d build/codec-only/consumer/installed/consumer | sed -n 's/.*NEEDED.*\[\(.*\)\]/\1/p' | sort | tr '\n' ' ')
+  echo "run-time libraries: $needed"
+  for library in $needed; do
+    case $library in
+      libstdc++.so.* | libm.so.* | libgcc_s.so.* | libc.so.*) ;;
+      *) die "the codec alone drags in $library" ;;
+    esac
+  done
+}
+
+exact() {
+  for compiler in g++ clang++; do
+    for level in -O0 -O2 -O3; do
+      for machine in '' -march=native; do
+        dir=build/exact/$compiler$level$machine
+        cmake -S . -B "$dir" -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_CXX_FLAGS="$level $machine" -DCMAKE_BUILD_TYPE=None \
+          -DTACTUS_WITH_TRACE=OFF -DTACTUS_WITH_CONFORMANCE=OFF -DTACTUS_WITH_TESTS=ON >/dev/null
+        cmake --build "$dir" --target tactus_golden -j "$jobs" >/dev/null
+        "$dir/tests/golden/tactus_golden" >"$dir/hashes.txt"
+        diff -u tests/golden/hashes.txt "$dir/hashes.txt" || die "$compiler $level $machine computes other bits"
+        echo "$(wc -l <"$dir/hashes.txt") hashes agree: $compiler $level $machine"
+      done
+    done
+  done
+}
+
+tidy() {
+  cmake --preset clang >/dev/null
+  run-clang-tidy -quiet -p build/clang -j "$jobs" "^$PWD/(codec|sim|device|cli|conformance)/" >build/clang/tidy.txt 2>&1 ||
+    { grep -E '(warning|error):' build/clang/tidy.txt | sort -u; die "clang-tidy has findings; the whole text is in build/clang/tidy.txt"; }
+}
+
+fuzz() { # SECONDS
+  build fuzz
+  for program in build/fuzz/tests/fuzz/*_fuzz; do
+    stem=$(basename "$program" _fuzz)
+    mkdir -p "build/fuzz/corpus/$stem"
+    echo "== $stem for $1 s"
+    "$program" -max_total_time="$1" -timeout=10 -rss_limit_mb=1024 -print_final_stats=1 -artifact_prefix="build/fuzz/$stem-" \
+      "build/fuzz/corpus/$stem" "tests/fuzz/corpus/$stem" >"build/fuzz/$stem.log" 2>&1 ||
+      { tail -40 "build/fuzz/$stem.log"; die "$stem: add the input to tests/fuzz/corpus/$stem/ once it is understood"; }
+    grep -E '^stat::(number_of_executed_units|peak_rss_mb)' "build/fuzz/$stem.log"
+  done
+}
+
+bench() {
+  build release
+  mkdir -p build/bench
+  for program in build/release/tests/bench/*_bench; do
+    "$program" --benchmark_out="build/bench/$(basename "$program").json" --benchmark_out_format=json \
+      --benchmark_context=commit="$(git describe --always --dirty 2>/dev/null || echo unknown)" \
+      --benchmark_context=compiler="$(c++ -dumpfullversion)" --benchmark_context=flags=-O3
+  done
+}
+
+case ${1-} in
+  debug) build_and_test dev ;;
+  release | gcc | clang | asan | tsan) build_and_test "$1" ;;
+  codec-only) codec_only ;;
+  consumer)
+    [ -n "${2-}" ] || build codec-only
+    consumer "${2:-$PWD/build/codec-only}"
+    ;;
+  conformance)
+    build gcc
+    ctest --preset gcc -R '^conformance'
+    ;;
+  exact | tidy | bench) "$1" ;;
+  format) sources | xargs clang-format --dry-run --Werror ;;
+  fuzz) fuzz "${2:?how many seconds?}" ;;
+  *)
+    sed -n '3,13s/^# \{0,1\}//p' "$0" >&2
+    exit 2
+    ;;
+esac
