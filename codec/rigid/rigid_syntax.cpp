@@ -5,8 +5,17 @@
 
 namespace tactus {
 
+namespace {
+
+constexpr std::array kStartModels{
+#include "rigid_start_models.inc"
+};
+static_assert(sizeof kStartModels == sizeof(RigidModels), "spec/tables/rigid-start-models.csv has one row per model");
+
+}  // namespace
+
 const RigidModels& start_models() noexcept {
-  static const RigidModels models{};
+  static constexpr RigidModels models = std::bit_cast<RigidModels>(kStartModels);
   return models;
 }
 

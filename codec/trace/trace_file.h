@@ -1,10 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Trace files: MCAP with zstd chunks and ROS 2 CDR messages. DESIGN 7.
+///
+/// topic                        message (header.frame_id "world")   when
+/// /objects/<name>/pose         geometry_msgs/msg/PoseStamped       every tick; a static object: first tick only
+/// /objects/<name>/twist        geometry_msgs/msg/TwistStamped      every tick, objects that can move
+/// /users/<name>/device         geometry_msgs/msg/PointStamped      every tick
+/// /users/<name>/force          geometry_msgs/msg/Vector3Stamped    every tick
+/// /users/<name>/server_force   geometry_msgs/msg/Vector3Stamped    every tick
+/// /users/<name>/contact        tactus_msgs/msg/Contact             ticks with contact
+/// When nothing else comes every tick, the first static object's pose does.
+///
+/// log_time, publish_time and header.stamp are round(tick * 1e9 / tick_rate), sequence is tick mod 2^32. The metadata record
+/// "tactus" holds format_version ("1"), tick_rate, source, objects and users (names in order, one a line); a pose channel's
+/// metadata holds dof; the scene is the attachment "scene.toml". Chunks end at whole ticks, after 1 MiB or 1 s.
+///
+/// rule      class             broken when
+/// R-TRC-1   io                the operating system refuses to open, read or write the file
+/// R-TRC-2   malformed         MCAP's magic bytes are not at the front, or not at the very end behind a footer
+/// R-TRC-3   truncated         the file ends before the header, or before the channels that its metadata announces
+/// R-TRC-4   malformed         a length inside a record reaches past the record's end
+/// R-TRC-5   limit_exceeded    a record, a chunk or all declarations are larger than accepted, or than zstd can yield
+/// R-TRC-6   checksum          a CRC-32 does not match
+/// R-TRC-7   unsupported       compression, message encoding or format version that this reader does not know
+/// R-TRC-8   malformed         a chunk's records are no zstd data of exactly the announced size
+/// R-TRC-9   malformed         a record or the summary stands where it must not
+///           invalid           the footer points elsewhere than to the summary
+/// R-TRC-10  invalid           a schema or channel is used undeclared or declared twice with a difference
+/// R-TRC-11  invalid           text is not UTF-8, or a key stands twice in a map
+/// R-TRC-12  invalid           the "tactus" metadata or the channels lack something or contradict each other
+/// R-TRC-13  malformed         a message is not CDR of its channel's type
+/// R-TRC-14  invalid           a value is NaN or infinite, or a contact or stamp is none
+/// R-TRC-15  invalid           ticks do not increase, a message's times disagree, or a tick lacks a message or has one twice
+/// R-TRC-16  unsupported       a foreign file without PoseStamped channels, or with one that begins after the look-ahead
+/// R-TRC-17  invalid_argument  TraceInfo: no object and no user, too many channels, tick rate out of 1..1000000, unknown dof bits,
+///                             or a name that is empty, repeated, over 255 bytes, not UTF-8 or has '/' or control characters
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "codec/base/result.h"
@@ -15,9 +50,11 @@ namespace tactus {
 /// Writes a trace as it happens. A process that dies leaves a file that reads up to its last whole chunk.
 class TraceWriter {
  public:
-  /// path "-" is standard output.   err  io R-TRC-1
+  /// path "-" is standard output.   err  io R-TRC-1; invalid_argument R-TRC-11 (source), R-TRC-17
   static Result<TraceWriter> create(const std::string& path, const TraceInfo& info);
-  /// Ticks increase strictly.   err  invalid_argument R-API-1 (not finite), R-API-5 (count, order); io R-TRC-1
+  /// in   frame  tick >= 0 and larger than the last; of a user without contact only contact.device is kept
+  /// err  invalid_argument R-API-1 not finite; R-API-5 wrong count, tick or contact; R-API-6 a static object moved; io R-TRC-1.
+  ///      Nothing was written after invalid_argument.
   Result<void> write(const TraceFrame& frame);
   /// Summary, index and footer. A writer destroyed without it leaves a readable but unindexed file.
   Result<void> finish();
@@ -32,17 +69,23 @@ class TraceWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Reads a trace front to back, one frame at a time.
+/// Reads a trace front to back, one frame at a time, in memory bounded by a chunk. A ROS 2 recording of somebody else is read too:
+/// each PoseStamped topic is an object, a TwistStamped topic beside it (same path but for the last part) its motion, otherwise
+/// backward differences are; ticks follow from log_time and the median spacing of the first poses. A topic holds its last value,
+/// and frames begin when every object has one.
 class TraceReader {
  public:
   /// path "-" is standard input.   err  io R-TRC-1; malformed, truncated, unsupported, checksum, limit_exceeded: R-TRC-n
   static Result<TraceReader> open(const std::string& path);
+  /// The same from memory that outlives the reader.
+  static Result<TraceReader> open_memory(std::span<const std::uint8_t> bytes);
   const TraceInfo& info() const noexcept;
   /// Number of frames if the file's summary tells it.
   std::optional<std::uint64_t> frame_count() const noexcept;
-  /// Next frame into `frame` (its vectors are reused); false at the end.
+  /// Next frame into `frame` (its vectors are reused); false at the end. After an error the reader must not be used further.
   Result<bool> next(TraceFrame& frame);
-  /// The file had no whole ending (crash, cut): everything up to its last whole chunk was delivered.
+  /// The file had no whole ending (crash, cut): everything up to its last whole chunk was delivered. Known once next()
+  /// has returned false.
   bool cut_short() const noexcept;
 
   TraceReader(TraceReader&&) noexcept;

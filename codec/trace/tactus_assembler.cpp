@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <utility>
+
+#include "codec/trace/frame_assembler.h"
+#include "codec/trace/messages.h"
+#include "codec/trace/text.h"
+#include "codec/trace/trace_layout.h"
+
+namespace tactus {
+namespace {
+
+std::vector<std::string> split_lines(std::string_view text) {
+  std::vector<std::string> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    lines.emplace_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
+std::string_view entry(const mcap::TextMap& map, const char* key) {
+  const auto found = map.find(key);
+  return found == map.end() ? std::string_view() : found->second;
+}
+
+class TactusAssembler final : public FrameAssembler {
+ public:
+  Result<void> start(mcap::Reader& mcap, const Preamble& preamble);
+  Result<bool> next(mcap::Reader& mcap, TraceFrame& frame) override;
+  const TraceInfo& info() const noexcept override { return info_; }
+  std::optional<std::uint16_t> frame_channel() const noexcept override { return frame_channel_; }
+
+ private:
+  struct Route {
+    TraceChannel channel;
+    std::int64_t last_tick = -1;
+  };
+  Result<void> find_channels(const mcap::Reader& mcap, Errc missing);
+  Result<void> advance(mcap::Reader& mcap);
+  Result<void> take(const mcap::Reader& mcap, std::int64_t tick);
+  Result<std::uint64_t> store(const mcap::Reader& mcap, const TraceChannel& channel);
+  bool is_complete(std::int64_t tick) const noexcept;
+
+  TraceInfo info_;
+  std::map<std::uint16_t, Route> routes_;  // by channel id
+  std::optional<std::uint16_t> frame_channel_;
+  mcap::Item item_ = mcap::Item::end;  // where the reader stands: at a message of a route, or at the end
+  std::int64_t last_tick_ = -1;
+  TraceFrame current_;
+};
+
+tl::unexpected<Error> refuse(const mcap::Reader& mcap, Errc code, const char* rule) noexcept {
+  return fail(code, rule, 8 * mcap.offset());
+}
+
+tl::unexpected<Error> refuse(const mcap::Reader& mcap, const Error& error) noexcept {
+  return refuse(mcap, error.code, error.rule);
+}
+
+Result<void> TactusAssembler::start(mcap::Reader& mcap, const Preamble& preamble) {
+  const mcap::TextMap& tactus = *preamble.tactus;
+  if (entry(tactus, "format_version") != "1") return refuse(mcap, Errc::unsupported, "R-TRC-7");
+  const auto tick_rate = parse_number<std::uint32_t>(entry(tactus, "tick_rate"));
+  if (!tick_rate || *tick_rate < 1 || *tick_rate > kMaxTickRate) return refuse(mcap, Errc::invalid, "R-TRC-12");
+  info_.tick_rate = *tick_rate;
+  info_.source = entry(tactus, "source");
+  info_.scene = preamble.scene;
+  for (std::string& name : split_lines(entry(tactus, "objects"))) info_.objects.push_back({std::move(name), Dof::all});
+  info_.users = split_lines(entry(tactus, "users"));
+  if (info_.objects.empty() && info_.users.empty()) return refuse(mcap, Errc::invalid, "R-TRC-12");
+  item_ = preamble.item;
+  const bool ended_early = item_ == mcap::Item::end && mcap.cut_short();
+  TACTUS_CHECK(find_channels(mcap, ended_early ? Errc::truncated : Errc::invalid));
+  current_.objects.resize(info_.objects.size());
+  current_.users.resize(info_.users.size());
+  if (item_ == mcap::Item::message && !routes_.contains(mcap.message().channel_id)) return advance(mcap);
+  return {};
+}
+
+/// Channels are found by topic: ids may change when other tools rewrite a file.
+Result<void> TactusAssembler::find_channels(const mcap::Reader& mcap, Errc missing) {
+  const char* const rule = missing == Errc::truncated ? "R-TRC-3" : "R-TRC-12";
+  std::map<std::string_view, const mcap::Channel*> by_topic;
+  for (const auto& [id, channel] : mcap.channels())
+    if (!by_topic.emplace(channel.topic, &channel).second) return refuse(mcap, Errc::invalid, "R-TRC-12");
+  for (TraceObject& object : info_.objects) {
+    const auto found = by_topic.find("/objects/" + object.name + "/pose");
+    if (found == by_topic.end()) return refuse(mcap, missing, rule);
+    const auto dof = parse_number<std::uint8_t>(entry(found->second->metadata, "dof"));
+    if (!dof || *dof > Dof::all) return refuse(mcap, Errc::invalid, "R-TRC-12");
+    object.dof = *dof;
+  }
+  for (TraceChannel& wanted : trace_channels(info_)) {
+    const auto found = by_topic.find(wanted.topic);
+    if (found == by_topic.end()) return refuse(mcap, missing, rule);
+    const mcap::Channel& channel = *found->second;
+    if (!carries(mcap, channel, schema_name(message_type(wanted.role)))) return refuse(mcap, Errc::invalid, "R-TRC-12");
+    if (wanted.occurs == Occurs::every_tick && !frame_channel_) frame_channel_ = channel.id;
+    if (!routes_.emplace(channel.id, Route{std::move(wanted)}).second) return refuse(mcap, Errc::invalid, "R-TRC-12");
+  }
+  return {};
+}
+
+Result<void> TactusAssembler::advance(mcap::Reader& mcap) {
+  do {
+    TACTUS_TRY(item_, mcap.next());
+  } while (item_ != mcap::Item::end && (item_ != mcap::Item::message || !routes_.contains(mcap.message().channel_id)));
+  return {};
+}
+
+Result<bool> TactusAssembler::next(mcap::Reader& mcap, TraceFrame& frame) {
+  if (item_ == mcap::Item::end) return false;
+  const std::uint64_t time = mcap.message().log_time;
+  const std::int64_t tick = tick_of_time(time, info_.tick_rate);
+  if (tick <= last_tick_ || tick / info_.tick_rate >= kMaxSeconds) return refuse(mcap, Errc::invalid, "R-TRC-15");
+  current_.tick = tick;
+  for (UserSample& user : current_.users) user.contact = Contact{};
+  while (item_ == mcap::Item::message && mcap.message().log_time == time) {
+    TACTUS_CHECK(take(mcap, tick));
+    TACTUS_CHECK(advance(mcap));
+  }
+  if (!is_complete(tick)) {
+    if (item_ == mcap::Item::end && mcap.cut_short()) return false;
+    return refuse(mcap, Errc::invalid, "R-TRC-15");
+  }
+  last_tick_ = tick;
+  frame = current_;
+  return true;
+}
+
+Result<void> TactusAssembler::take(const mcap::Reader& mcap, std::int64_t tick) {
+  const mcap::Message& message = mcap.message();
+  Route& route = routes_.at(message.channel_id);
+  const auto stamp = store(mcap, route.channel);
+  if (!stamp) return refuse(mcap, stamp.error());
+  const std::uint64_t time = time_of_tick(tick, info_.tick_rate);
+  const bool agrees = message.log_time == time && *stamp == time && message.sequence == static_cast<std::uint32_t>(tick);
+  const bool is_due = route.last_tick < tick && (route.channel.occurs != Occurs::first_tick || last_tick_ < 0);
+  if (!agrees || !is_due) return refuse(mcap, Errc::invalid, "R-TRC-15");
+  route.last_tick = tick;
+  return {};
+}
+
+/// Put a message's value into the current frame; the result is the time of its header.
+Result<std::uint64_t> TactusAssembler::store(const mcap::Reader& mcap, const TraceChannel& channel) {
+  const auto data = mcap.message().data;
+  if (channel.role == Role::pose) {
+    TACTUS_TRY(const auto pose, decode_pose(data));
+    current_.objects[channel.index].pose = pose.value;
+    return pose.time;
+  }
+  if (channel.role == Role::twist) {
+    TACTUS_TRY(const auto twist, decode_twist(data));
+    current_.objects[channel.index].velocity = twist.value.linear;
+    current_.objects[channel.index].angular_velocity = twist.value.angular;
+    return twist.time;
+  }
+  UserSample& user = current_.users[channel.index];
+  if (channel.role == Role::contact) {
+    TACTUS_TRY(auto contact, decode_contact(data));
+    if (contact.value.object >= info_.objects.size()) return fail(Errc::invalid, "R-TRC-14");
+    contact.value.device = user.contact.device;
+    user.contact = contact.value;
+    return contact.time;
+  }
+  TACTUS_TRY(const auto vector, decode_vector(data));
+  if (channel.role == Role::device) user.contact.device = vector.value;
+  if (channel.role == Role::force) user.force = vector.value;
+  if (channel.role == Role::server_force) user.server_force = vector.value;
+  return vector.time;
+}
+
+bool TactusAssembler::is_complete(std::int64_t tick) const noexcept {
+  return std::all_of(routes_.begin(), routes_.end(), [&](const auto& entry) {
+    const Route& route = entry.second;
+    const bool is_due = route.channel.occurs == Occurs::every_tick || (route.channel.occurs == Occurs::first_tick && last_tick_ < 0);
+    return !is_due || route.last_tick == tick;
+  });
+}
+
+}  // namespace
+
+Result<std::unique_ptr<FrameAssembler>> assemble_tactus(mcap::Reader& mcap, const Preamble& preamble) {
+  auto assembler = std::make_unique<TactusAssembler>();
+  TACTUS_CHECK(assembler->start(mcap, preamble));
+  return assembler;
+}
+
+}  // namespace tactus

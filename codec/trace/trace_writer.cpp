@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string_view>
+
+#include "codec/trace/mcap_writer.h"
+#include "codec/trace/messages.h"
+#include "codec/trace/text.h"
+#include "codec/trace/trace_file.h"
+#include "codec/trace/trace_layout.h"
+
+namespace tactus {
+namespace {
+
+constexpr std::size_t kChunkBytes = 1u << 20;
+constexpr std::uint64_t kChunkTime = 1'000'000'000;  // [ns]
+
+template <class Range, class Name>
+bool are_names(const Range& range, Name name) {
+  std::set<std::string_view> seen;
+  return std::all_of(range.begin(), range.end(),
+                     [&](const auto& item) { return is_plain_name(name(item)) && seen.insert(name(item)).second; });
+}
+
+Result<void> check(const TraceInfo& info) {
+  const bool has_names = are_names(info.objects, [](const TraceObject& object) -> const std::string& { return object.name; }) &&
+                         are_names(info.users, [](const std::string& user) -> const std::string& { return user; });
+  const bool has_dofs = std::all_of(info.objects.begin(), info.objects.end(), [](const auto& o) { return o.dof <= Dof::all; });
+  const bool is_empty = info.objects.empty() && info.users.empty();
+  const bool has_rate = info.tick_rate >= 1 && info.tick_rate <= kMaxTickRate;
+  if (!has_names || !has_dofs || is_empty || !has_rate) return fail(Errc::invalid_argument, "R-TRC-17");
+  if (!is_utf8(info.source)) return fail(Errc::invalid_argument, "R-TRC-11");
+  return {};
+}
+
+bool is_finite(const RigidSample& sample) noexcept {
+  return is_finite(sample.pose.position) && is_finite(sample.pose.rotation) && is_finite(sample.velocity) &&
+         is_finite(sample.angular_velocity);
+}
+
+bool is_finite(const UserSample& user) noexcept {
+  return is_finite(user.contact.device) && is_finite(user.force) && is_finite(user.server_force);
+}
+
+bool is_same_pose(const Pose& a, const Pose& b) noexcept { return a.position == b.position && a.rotation == b.rotation; }
+
+template <class Range, class Name>
+std::string lines(const Range& range, Name name) {
+  std::string text;
+  for (const auto& item : range) text.append(text.empty() ? "" : "\n").append(name(item));
+  return text;
+}
+
+mcap::Metadata metadata_of(const TraceInfo& info) {
+  return {"tactus",
+          {{"format_version", "1"},
+           {"tick_rate", std::to_string(info.tick_rate)},
+           {"source", info.source},
+           {"objects", lines(info.objects, [](const TraceObject& object) { return object.name; })},
+           {"users", lines(info.users, [](const std::string& user) { return user; })}}};
+}
+
+mcap::Attachment scene_of(const TraceInfo& info) {
+  return {0, 0, "scene.toml", "application/toml",
+          {reinterpret_cast<const std::uint8_t*>(info.scene.data()), info.scene.size()}};
+}
+
+}  // namespace
+
+struct TraceWriter::Impl {
+  Impl(mcap::Writer writer, const TraceInfo& trace_info)
+      : mcap(std::move(writer)), info(trace_info), channels(trace_channels(trace_info)) {}
+  ~Impl() {
+    if (!finished) (void)mcap.end_chunk();
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  Result<void> declare();
+  Result<void> check(const TraceFrame& frame) const;
+  void encode(const TraceChannel& channel, std::uint64_t time, const TraceFrame& frame);
+
+  mcap::Writer mcap;
+  TraceInfo info;
+  std::vector<TraceChannel> channels;  // channel i has id i + 1
+  std::vector<std::uint8_t> message;
+  std::int64_t last_tick = -1;
+  std::vector<RigidSample> first_samples;  // static objects keep these
+  bool finished = false;
+};
+
+Result<void> TraceWriter::Impl::declare() {
+  TACTUS_CHECK(mcap.add(metadata_of(info)));
+  if (!info.scene.empty()) TACTUS_CHECK(mcap.add(scene_of(info)));
+  std::set<MessageType> types;
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    const TraceChannel& channel = channels[i];
+    const MessageType type = message_type(channel.role);
+    const auto schema_id = static_cast<std::uint16_t>(static_cast<unsigned>(type) + 1);
+    if (types.insert(type).second)
+      TACTUS_CHECK(mcap.add(mcap::Schema{schema_id, std::string(schema_name(type)), "ros2msg", schema_text(type)}));
+    mcap::TextMap metadata;
+    if (channel.role == Role::pose) metadata["dof"] = std::to_string(info.objects[channel.index].dof);
+    TACTUS_CHECK(mcap.add(mcap::Channel{static_cast<std::uint16_t>(i + 1), schema_id, channel.topic, "cdr", metadata}));
+  }
+  return {};
+}
+
+Result<TraceWriter> TraceWriter::create(const std::string& path, const TraceInfo& info) {
+  TACTUS_CHECK(check(info));
+  const std::size_t channel_count = trace_channels(info).size();
+  if (channel_count > UINT16_MAX) return fail(Errc::invalid_argument, "R-TRC-17");
+  TACTUS_TRY(auto mcap, mcap::Writer::create(path, "ros2"));
+  auto impl = std::make_unique<Impl>(std::move(mcap), info);
+  TACTUS_CHECK(impl->declare());
+  return TraceWriter(std::move(impl));
+}
+
+Result<void> TraceWriter::Impl::check(const TraceFrame& frame) const {
+  const bool has_counts = frame.objects.size() == info.objects.size() && frame.users.size() == info.users.size();
+  const bool has_tick = frame.tick > last_tick && frame.tick / info.tick_rate < kMaxSeconds;
+  if (!has_counts || !has_tick) return fail(Errc::invalid_argument, "R-API-5");
+  for (std::size_t i = 0; i < frame.objects.size(); ++i) {
+    const RigidSample& sample = frame.objects[i];
+    if (!is_finite(sample)) return fail(Errc::invalid_argument, "R-API-1");
+    if (info.objects[i].dof != Dof::none) continue;
+    const bool rests = sample.velocity == Vec3{} && sample.angular_velocity == Vec3{};
+    const bool stays = first_samples.empty() || is_same_pose(sample.pose, first_samples[i].pose);
+    if (!rests || !stays) return fail(Errc::invalid_argument, "R-API-6");
+  }
+  for (const UserSample& user : frame.users) {
+    if (!is_finite(user)) return fail(Errc::invalid_argument, "R-API-1");
+    if (user.contact.kind == ContactKind::none) continue;
+    if (!is_valid(user.contact) || user.contact.object >= info.objects.size()) return fail(Errc::invalid_argument, "R-API-5");
+  }
+  return {};
+}
+
+void TraceWriter::Impl::encode(const TraceChannel& channel, std::uint64_t time, const TraceFrame& frame) {
+  switch (channel.role) {
+    case Role::pose: return encode_pose(message, time, frame.objects[channel.index].pose);
+    case Role::twist: {
+      const RigidSample& sample = frame.objects[channel.index];
+      return encode_twist(message, time, {sample.velocity, sample.angular_velocity});
+    }
+    case Role::device: return encode_vector(message, time, frame.users[channel.index].contact.device);
+    case Role::force: return encode_vector(message, time, frame.users[channel.index].force);
+    case Role::server_force: return encode_vector(message, time, frame.users[channel.index].server_force);
+    case Role::contact: {
+      const Contact& contact = frame.users[channel.index].contact;
+      return encode_contact(message, time, contact, info.objects[contact.object].name);
+    }
+  }
+}
+
+Result<void> TraceWriter::write(const TraceFrame& frame) {
+  TACTUS_CHECK(impl_->check(frame));
+  const std::uint64_t time = time_of_tick(frame.tick, impl_->info.tick_rate);
+  const bool is_first = impl_->last_tick < 0;
+  if (is_first) impl_->first_samples = frame.objects;
+  for (std::size_t i = 0; i < impl_->channels.size(); ++i) {
+    const TraceChannel& channel = impl_->channels[i];
+    if (channel.occurs == Occurs::first_tick && !is_first) continue;
+    if (channel.occurs == Occurs::in_contact && frame.users[channel.index].contact.kind == ContactKind::none) continue;
+    impl_->encode(channel, time, frame);
+    impl_->mcap.add(mcap::Message{static_cast<std::uint16_t>(i + 1), static_cast<std::uint32_t>(frame.tick), time, time,
+                                  impl_->message});
+  }
+  impl_->last_tick = frame.tick;
+  const bool is_full = impl_->mcap.chunk_size() >= kChunkBytes || time - impl_->mcap.chunk_start_time() >= kChunkTime;
+  return is_full ? impl_->mcap.end_chunk() : Result<void>();
+}
+
+Result<void> TraceWriter::finish() {
+  impl_->finished = true;
+  return impl_->mcap.finish();
+}
+
+TraceWriter::TraceWriter(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}
+TraceWriter::TraceWriter(TraceWriter&&) noexcept = default;
+TraceWriter& TraceWriter::operator=(TraceWriter&&) noexcept = default;
+TraceWriter::~TraceWriter() = default;
+
+}  // namespace tactus
