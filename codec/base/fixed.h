@@ -45,7 +45,7 @@ constexpr std::uint32_t isqrt(std::uint64_t v) noexcept {
   }
 }
 
-/// sin of an angle in units of 2^-32 turn, result x 2^-30. Error below 1.5 units.
+/// sin of an angle in units of 2^-32 turn, result x 2^-30. Error below 2.5 units.
 constexpr std::int32_t sin30(std::uint32_t turn) noexcept {
   constexpr std::array<std::int64_t, 6> kC{1686629713, -693598663, 85569264, -5026852, 172032, -3670};  // odd powers of a quarter turn
   const std::uint32_t quadrant = turn >> 30;

@@ -16,7 +16,7 @@
 namespace tactus {
 
 inline constexpr std::size_t kQuantities = 4;  // position, velocity, rotation, spin
-inline constexpr std::size_t kHints = 4;
+inline constexpr std::size_t kHints = 8;  // 0..3: the reason, 4..7: how large the components before were
 
 /// Every adaptive model of a packet. Restarted from start_models() for each packet, so that a packet needs nothing but its baseline.
 struct RigidModels {
@@ -66,10 +66,10 @@ void code_head(Coder& coder, RigidModels& models, const StreamHeader& header, st
   }
 }
 
-/// Hint for the next component: how large its predecessors in this update were.
-constexpr std::size_t hint_of(std::uint32_t magnitude) noexcept {
+/// Hint for the next component: how large its predecessors were.
+constexpr std::size_t size_hint(std::uint32_t magnitude) noexcept {
   const auto width = static_cast<unsigned>(std::bit_width(magnitude));
-  return width == 0 ? 0 : width < 3 ? 1 : width < 6 ? 2 : 3;
+  return width == 0 ? 4 : width < 3 ? 5 : width < 6 ? 6 : 7;
 }
 
 template <class Coder>
@@ -88,7 +88,7 @@ void code_update(Coder& coder, RigidModels& models, std::uint8_t dof, CodedUpdat
       value = coder.signed_value(models.residual[quantity][hint], value);
       const std::uint32_t size = static_cast<std::uint32_t>(value < 0 ? -value : value);
       if (size > largest) largest = size;
-      hint = hint_of(largest);
+      hint = size_hint(largest);
     }
   }
 }

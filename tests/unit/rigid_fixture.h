@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Scenes and motions that several tests of the rigid codec share.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "codec/tactus.h"
+
+namespace tactus::testing {
+
+inline StreamHeader scene_of(std::size_t objects, std::uint8_t dof = Dof::all) {
+  StreamHeader header;
+  header.objects.resize(objects);
+  for (std::size_t i = 0; i < objects; ++i) {
+    header.objects[i].name = "object " + std::to_string(i);
+    header.objects[i].dof = dof;
+  }
+  return header;
+}
+
+/// Smooth but eventful motion of one object from a seed: drifting sines in place and angle, with sudden kicks.
+class Motion {
+ public:
+  explicit Motion(std::uint64_t seed) : random_(seed) {}
+
+  RigidSample step(double dt) {
+    if (random_() % 200 == 0) velocity_ = {0.2 * normal_(random_), 0.2 * normal_(random_), 0.2 * normal_(random_)};
+    if (random_() % 200 == 0) spin_ = {3 * normal_(random_), 3 * normal_(random_), 3 * normal_(random_)};
+    velocity_ = velocity_ - (0.5 * dt) * position_;
+    position_ = position_ + dt * velocity_;
+    const Quat rate = Quat{0, spin_.x, spin_.y, spin_.z} * rotation_;
+    Quat q{rotation_.w + 0.5 * dt * rate.w, rotation_.x + 0.5 * dt * rate.x, rotation_.y + 0.5 * dt * rate.y,
+           rotation_.z + 0.5 * dt * rate.z};
+    const double length = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+    rotation_ = {q.w / length, q.x / length, q.y / length, q.z / length};
+    return {{position_, rotation_}, velocity_, spin_};
+  }
+
+ private:
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_;
+  Vec3 position_, velocity_, spin_;
+  Quat rotation_;
+};
+
+/// A probe pressed into the object's top face by `depth` metres.
+inline Contact touch(std::uint32_t object, const Pose& pose, double depth, double stiffness = 630) {
+  Contact contact;
+  contact.kind = ContactKind::surface;
+  contact.object = object;
+  contact.point = {0.005, -0.003, 0.02};
+  contact.normal = {0, 0, 1};
+  contact.stiffness = stiffness;
+  contact.device = to_world(pose, contact.point) - depth * rotate(pose.rotation, contact.normal);
+  return contact;
+}
+
+}  // namespace tactus::testing
