@@ -5,7 +5,7 @@
 
 namespace tactus {
 
-/// SplitMix64 (Steele, Lea, Flood 2014). Small, and the same numbers with every standard library, which std:: distributions are not.
+/// SplitMix64 (Steele, Lea, Flood 2014): small, and unlike std:: distributions the same numbers with every standard library.
 class Random {
  public:
   explicit constexpr Random(std::uint64_t seed) noexcept : state_(seed) {}
@@ -26,4 +26,4 @@ class Random {
   std::uint64_t state_;
 };
 
-} // namespace tactus
+}  // namespace tactus

@@ -24,9 +24,9 @@ struct User {
   Probe client;
   double max_force;
   DeviceSample device;
-  Touch touch;   // at the server
-  Vec3 rendered; // by the server, within the device's limit
-  Vec3 felt;     // by the client
+  Touch touch;    // at the server
+  Vec3 rendered;  // by the server, within the device's limit
+  Vec3 felt;      // by the client
 };
 
 Vec3 clipped(const Vec3& force, double limit) {
@@ -34,7 +34,7 @@ Vec3 clipped(const Vec3& force, double limit) {
   return magnitude > limit ? (limit / magnitude) * force : force;
 }
 
-} // namespace
+}  // namespace
 
 struct Simulation::Impl {
   Scene scene;
@@ -47,7 +47,8 @@ struct Simulation::Impl {
   std::vector<Contact> contacts;
   std::vector<Pose> true_poses, client_poses;
 
-  Impl(const Scene& in, std::uint64_t seed_, StreamHeader header_) : scene(in), seed(seed_), header(std::move(header_)), world(scene) {}
+  Impl(const Scene& in, std::uint64_t seed_, StreamHeader header_)
+      : scene(in), seed(seed_), header(std::move(header_)), world(scene) {}
 
   void observe();
   void touch_server();
@@ -185,4 +186,4 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
 
-} // namespace tactus
+}  // namespace tactus

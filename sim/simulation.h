@@ -43,7 +43,7 @@ class Simulation {
 
   /// One tick with the scene's virtual hands. Afterwards frame() is this tick.
   /// out  the packet of this tick, without bytes if none was needed; valid until the next call
-  /// time about 16 us for one cube and user; no allocation after set-up.
+  /// time about 16 us for one cube and user; no allocation after the first tick, in which ODE makes its arenas.
   /// err  internal R-SIM-1: the physics broke down; errors of RigidEncoder::encode and RigidDecoder::decode
   tl::expected<EncodedPacket, StepError> step();
 
@@ -52,11 +52,11 @@ class Simulation {
   /// err  as step(); invalid_argument R-API-5: wrong count, R-API-1: not finite
   tl::expected<EncodedPacket, StepError> replay(std::span<const UserSample> recorded);
 
-  const TraceFrame& frame() const noexcept;            ///< pre  step() or replay() was called
-  std::span<const Pose> client_poses() const noexcept; ///< as shown at the client in that tick, one per object
-  std::int64_t ticks() const noexcept;                 ///< length of the scene
-  TraceInfo info() const;                              ///< for a TraceWriter of these frames
-  const StreamHeader& header() const noexcept;         ///< of the packets
+  const TraceFrame& frame() const noexcept;             ///< pre  step() or replay() was called
+  std::span<const Pose> client_poses() const noexcept;  ///< as shown at the client in that tick, one per object
+  std::int64_t ticks() const noexcept;                  ///< length of the scene
+  TraceInfo info() const;                               ///< for a TraceWriter of these frames
+  const StreamHeader& header() const noexcept;          ///< of the packets
 
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
@@ -68,4 +68,4 @@ class Simulation {
   std::unique_ptr<Impl> impl_;
 };
 
-} // namespace tactus
+}  // namespace tactus

@@ -23,7 +23,7 @@ void put_on(Vec3& point, const BoxFace& face, const Vec3& half) {
   component(point, face.axis) = face.negative ? -extent : extent;
 }
 
-} // namespace
+}  // namespace
 
 Vec3 BoxProxy::normal() const noexcept {
   Vec3 normal;
@@ -140,4 +140,4 @@ Touch Probe::move(const Vec3& device, bool button, std::span<const Pose> poses) 
   return out;
 }
 
-} // namespace tactus
+}  // namespace tactus

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Haptic rendering of boxes: virtual proxy (god object) with friction cone. Thesis 2.3.4.1, figure 2.6, eq. 2.6.
 ///
-/// The proxy remembers where the probe entered and stays on that face while the probe is inside, so that neither a thin box lets the
-/// probe through nor an edge turns the force. It is kept in the box's frame and so moves with the box.
+/// The proxy remembers where the probe entered and stays on that face while the probe is inside, so that neither a thin box lets
+/// the probe through nor an edge turns the force. It is kept in the box's frame and so moves with the box.
 ///   g      foot of the probe on the face's plane          depth = |x_d - g|
 ///   inside the cone  |x_p - g| <= mu depth: the proxy stays (static friction)
 ///   outside          it follows to the circle's rim:  x_p = g + mu depth (x_p - g) / |x_p - g|
@@ -80,4 +80,4 @@ class Probe {
   bool placed_ = false;
 };
 
-} // namespace tactus
+}  // namespace tactus

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/rigid/rigid_world.h"
 
+#include <ode/ode.h>
 #include <algorithm>
 #include <array>
-#include <ode/ode.h>
 #include <vector>
 
 namespace tactus {
@@ -13,11 +13,11 @@ namespace {
 #error "ODE must be built with double precision"
 #endif
 
-// Resting boxes stay this deep in what carries them [m]: at depth 0 rounding would open and close the contact in turn. The floor is
-// raised by as much, so that a box on it rests at the height the scene gives.
+// Resting boxes stay this deep in what carries them [m]: at depth 0 rounding would open and close the contact in turn. The floor
+// is raised by as much, so that a box on it rests at the height the scene gives.
 constexpr double kSurfaceLayer = 1e-5;
-// dWorldStep loses friction for single ticks ("LCP internal error" on a pushed cube that sticks). QuickStep does not; for one cube
-// on the floor its error in the friction force falls from 3e-2 (20 iterations) over 1e-6 (50) to 1e-8 (100) of mu N.
+// dWorldStep loses friction for single ticks ("LCP internal error" on a pushed cube that sticks). QuickStep does not; for one
+// cube on the floor its error in the friction force falls from 3e-2 (20 iterations) over 1e-6 (50) to 1e-8 (100) of mu N.
 constexpr int kIterations = 100;
 constexpr int kMaxContacts = 8;       // per pair; box against box yields up to 8
 constexpr double kStandstill = 1e-9;  // [m/s] below this a contact point has no direction of sliding
@@ -43,11 +43,11 @@ struct Box {
   dBodyID body = nullptr;  // null: static
   dGeomID geom = nullptr;
   double mu = 0;
-  Vec3 inverse_inertia;    // [1/(kg m^2)] about the box's own axes
-  Vec3 force, torque;      // of this step [N, N m], world frame
+  Vec3 inverse_inertia;  // [1/(kg m^2)] about the box's own axes
+  Vec3 force, torque;    // of this step [N, N m], world frame
 };
 
-} // namespace
+}  // namespace
 
 struct RigidWorld::Impl {
   dWorldID world = nullptr;
@@ -114,10 +114,12 @@ Vec3 RigidWorld::Impl::velocity_without_contact(const Box* box, const Vec3& poin
   const Vec3 arm = point - vec(dBodyGetPosition(box->body));
   const dReal* r = dBodyGetRotation(box->body);
   const auto to_body = [&](const Vec3& v) {
-    return Vec3{r[0] * v.x + r[4] * v.y + r[8] * v.z, r[1] * v.x + r[5] * v.y + r[9] * v.z, r[2] * v.x + r[6] * v.y + r[10] * v.z};
+    return Vec3{r[0] * v.x + r[4] * v.y + r[8] * v.z, r[1] * v.x + r[5] * v.y + r[9] * v.z,
+                r[2] * v.x + r[6] * v.y + r[10] * v.z};
   };
   const auto to_world = [&](const Vec3& v) {
-    return Vec3{r[0] * v.x + r[1] * v.y + r[2] * v.z, r[4] * v.x + r[5] * v.y + r[6] * v.z, r[8] * v.x + r[9] * v.y + r[10] * v.z};
+    return Vec3{r[0] * v.x + r[1] * v.y + r[2] * v.z, r[4] * v.x + r[5] * v.y + r[6] * v.z,
+                r[8] * v.x + r[9] * v.y + r[10] * v.z};
   };
   const Vec3 t = to_body(box->torque);
   const Vec3& i = box->inverse_inertia;
@@ -189,7 +191,7 @@ void RigidWorld::push(std::uint32_t object, const Vec3& force, const Vec3& point
 
 tl::expected<void, StepError> RigidWorld::step() {
   Impl& in = *impl_;
-  // QuickStep shuffles its constraints with one random generator per process; seeding it makes a step depend on nothing but this world.
+  // QuickStep shuffles its constraints with the process's one random generator; seeded, a step depends on this world alone.
   dRandSetSeed(static_cast<unsigned long>(in.tick));
   dJointGroupEmpty(in.contacts);
   dSpaceCollide(in.space, &in, [](void* self, dGeomID a, dGeomID b) { static_cast<Impl*>(self)->collide(a, b); });
@@ -223,4 +225,4 @@ RigidSample RigidWorld::sample(std::uint32_t object) const noexcept {
 
 std::int64_t RigidWorld::tick() const noexcept { return impl_->tick; }
 
-} // namespace tactus
+}  // namespace tactus

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Boxes on a floor, stepped by ODE at 1 kHz (thesis 3.2.4.1).
 ///
-/// Coulomb friction  ODE bounds friction per axis (a pyramid). One axis is laid along the velocity that each contact point would have
-///                   without friction, so that the bound on it is mu N in every direction of sliding, not up to 41 % more.
+/// Coulomb friction  ODE bounds friction per axis (a pyramid). One axis is laid along the velocity that the contact point would
+///                   have without friction, so that the bound is mu N in every direction of sliding, not up to 41 % more.
 /// Damping           v and w are multiplied by the object's d after every step.
 /// Locked axes       an object keeps the exact bits of its first position along them, and of its first rotation.
 #pragma once
@@ -33,7 +33,7 @@ class RigidWorld {
   void push(std::uint32_t object, const Vec3& force, const Vec3& point) noexcept;
 
   /// Advance by one tick.
-  /// time O(contacts), about 15 us for one cube on the floor; no allocation after the first contacts (tests/unit/rigid_world_test).
+  /// time O(contacts), about 15 us for one cube on the floor; no allocation once ODE's arenas fit the contacts, in the first step.
   /// err  internal R-SIM-1: a pose or velocity is not finite.
   tl::expected<void, StepError> step();
 
@@ -50,4 +50,4 @@ class RigidWorld {
   std::unique_ptr<Impl> impl_;
 };
 
-} // namespace tactus
+}  // namespace tactus

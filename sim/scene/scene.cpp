@@ -13,7 +13,7 @@
 namespace tactus {
 namespace {
 
-constexpr double kFarthest = 100;     // [m] well inside the codec's default grid
+constexpr double kFarthest = 100;         // [m] well inside the codec's default grid
 constexpr double kLongest = 24 * 3600.0;  // [s]
 constexpr Range kPlace{-kFarthest, kFarthest};
 
@@ -38,7 +38,8 @@ std::uint8_t read_axes(TomlReader& in, const toml::table& table, const std::stri
   }
   const unsigned turns = axes & ~static_cast<unsigned>(Dof::translation);
   if (const int count = std::popcount(turns); count == 2)
-    in.fail_at(node->source(), Errc::invalid, "R-SCN-6", TomlReader::join(path, key), "turn about no axis, one axis or all three");
+    in.fail_at(node->source(), Errc::invalid, "R-SCN-6", TomlReader::join(path, key),
+               "turn about no axis, one axis or all three");
   return static_cast<std::uint8_t>(axes);
 }
 
@@ -96,7 +97,8 @@ PathPhase read_phase(TomlReader& in, const toml::table& table) {
   in.allow(table, path, {"name", "frame", "to", "duration", "button"});
   PathPhase phase;
   phase.name = in.text(table, path, "name");
-  phase.frame = static_cast<PathFrame>(in.word(table, path, "frame", {"world", "hand", "object", "toward_goal", "at_goal"}, "world"));
+  phase.frame =
+      static_cast<PathFrame>(in.word(table, path, "frame", {"world", "hand", "object", "toward_goal", "at_goal"}, "world"));
   phase.to = in.vector(table, path, "to", kPlace);
   phase.duration = in.number(table, path, "duration", {kTick, kLongest});
   phase.button = in.flag(table, path, "button", false);
@@ -113,8 +115,7 @@ std::uint32_t read_watched(TomlReader& in, const toml::table& table, const Scene
 
 SceneUser read_user(TomlReader& in, const toml::table& table, const Scene& scene) {
   const std::string path = "user";
-  in.allow(table, path,
-           {"name", "grip", "tremor", "variation", "scatter", "object", "goal", "start", "device", "path"});
+  in.allow(table, path, {"name", "grip", "tremor", "variation", "scatter", "object", "goal", "start", "device", "path"});
   SceneUser user;
   user.name = in.text(table, path, "name");
   user.grip = static_cast<Grip>(in.word(table, path, "grip", {"loose", "normal", "firm"}, "normal"));
@@ -153,7 +154,7 @@ void read_scene(TomlReader& in, const toml::table& root, Scene& scene) {
     in.fail_at(root.source(), Errc::invalid, "R-SCN-4", "touch", "users need a [touch] table that says what they feel");
 }
 
-} // namespace
+}  // namespace
 
 std::string to_string(const SceneError& error) {
   std::string out = error.file;
@@ -205,4 +206,4 @@ Result<StreamHeader> stream_header(const Scene& scene) {
   return header;
 }
 
-} // namespace tactus
+}  // namespace tactus

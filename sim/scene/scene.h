@@ -38,9 +38,9 @@ struct SceneTouch {
 };
 
 struct SceneDevice {
-  double max_force = 3.3;        ///< [N] the rendered force is clipped to it
-  double resolution = 0.055e-3;  ///< [m] encoder step
-  std::uint32_t filter = 8;      ///< length of the moving average over positions, 1: none
+  double max_force = 3.3;                ///< [N] the rendered force is clipped to it
+  double resolution = 0.055e-3;          ///< [m] encoder step
+  std::uint32_t filter = 8;              ///< length of the moving average over positions, 1: none
   std::uint8_t axes = Dof::translation;  ///< the hand moves the probe along these only
 };
 
@@ -79,8 +79,8 @@ struct SceneUser {
 
 struct Scene {
   std::string name;
-  std::string text;  ///< the file itself, for the trace
-  Vec3 gravity;      ///< [m/s^2]
+  std::string text;                  ///< the file itself, for the trace
+  Vec3 gravity;                      ///< [m/s^2]
   double duration = 0;               ///< [s]
   std::optional<double> floor;       ///< [m] height of a plane that carries the objects
   std::optional<SceneTouch> touch;   ///< there whenever there are users
@@ -110,4 +110,4 @@ tl::expected<std::string, SceneError> find_scene(const std::string& name);
 /// The stream that carries this scene: its objects in order, at rest in their first poses.   err  invalid_argument R-API-2
 Result<StreamHeader> stream_header(const Scene& scene);
 
-} // namespace tactus
+}  // namespace tactus

@@ -2,6 +2,7 @@
 /// Typed access to a TOML table that remembers the first rule broken, so that scene.cpp reads as a list of keys.
 #pragma once
 
+#include <toml++/toml.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,7 +10,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <toml++/toml.h>
 #include <utility>
 
 #include "sim/scene/scene.h"
@@ -138,7 +138,8 @@ class TomlReader {
       return range.low;
     }
     if (!(*value >= range.low && *value <= range.high)) {
-      fail_at(node.source(), Errc::invalid, "R-SCN-6", key, "stay within " + short_number(range.low) + " to " + short_number(range.high));
+      fail_at(node.source(), Errc::invalid, "R-SCN-6", key,
+              "stay within " + short_number(range.low) + " to " + short_number(range.high));
       return range.low;
     }
     return *value;
@@ -154,4 +155,4 @@ class TomlReader {
   std::optional<SceneError> error_;
 };
 
-} // namespace tactus
+}  // namespace tactus

@@ -40,7 +40,7 @@ Vec3 facing_x(const Quat& rotation) {
   return best;
 }
 
-} // namespace
+}  // namespace
 
 Tremor::Tremor(double rms, const HandImpedance& hand, Random& random) {
   const double position = rms * std::sqrt(2.0 / kSines);  // amplitude of each sine
@@ -60,7 +60,8 @@ Vec3 Tremor::force(double time) const noexcept {
   return {out[0], out[1], out[2]};
 }
 
-DeviceFilter::DeviceFilter(const SceneDevice& device, const Vec3& start) : resolution_(device.resolution), window_(device.filter) {
+DeviceFilter::DeviceFilter(const SceneDevice& device, const Vec3& start)
+    : resolution_(device.resolution), window_(device.filter) {
   for (std::size_t i = 0; i < window_.size(); ++i) read(start);
 }
 
@@ -95,23 +96,20 @@ Hand::Hand(const SceneUser& user, Grip grip, std::uint64_t seed)
     phase.duration *= random_.uniform(1 - user.variation, 1 + user.variation);
     for (double* part : {&phase.to.x, &phase.to.y, &phase.to.z}) *part += random_.uniform(-user.scatter, user.scatter);
   }
-  phase_ = user_.path.size();
 }
 
-void Hand::begin_phases(const Pose& object) noexcept {
-  if (tick_ == 0 && !user_.path.empty()) phase_ = 0;
-  else if (phase_ == user_.path.size() || tick_ < end_) return;
-  else ++phase_;
+void Hand::begin_phase(const Pose& object) noexcept {
+  if (tick_ < end_ || next_ == user_.path.size()) return;
+  const PathPhase& phase = user_.path[next_++];
   from_ = to_;
+  to_ = waypoint(phase, object, user_.goal, from_);
   begin_ = tick_;
-  if (phase_ == user_.path.size()) return;
-  to_ = waypoint(user_.path[phase_], object, user_.goal, from_);
-  end_ = begin_ + ticks(user_.path[phase_].duration);
+  end_ = begin_ + ticks(phase.duration);
 }
 
 DeviceSample Hand::step(const Vec3& felt, const Pose& object) noexcept {
-  begin_phases(object);
-  const bool moving = phase_ < user_.path.size();
+  begin_phase(object);
+  const bool moving = tick_ < end_;
   const double duration = static_cast<double>(end_ - begin_) * kTick;
   const MinimumJerk done = moving ? minimum_jerk(static_cast<double>(tick_ - begin_) * kTick / duration) : MinimumJerk{1, 0};
   const Vec3 target = from_ + done.place * (to_ - from_);
@@ -121,8 +119,9 @@ DeviceSample Hand::step(const Vec3& felt, const Pose& object) noexcept {
   const Vec3 force = only(pull + felt + tremor_.force(static_cast<double>(tick_) * kTick), user_.device.axes);
   velocity_ = velocity_ + (kTick / impedance_.mass) * force;
   position_ = position_ + kTick * velocity_;
+  const bool held = moving && user_.path[next_ - 1].button;
   ++tick_;
-  return {filter_.read(position_), moving && user_.path[phase_].button};
+  return {filter_.read(position_), held};
 }
 
-} // namespace tactus
+}  // namespace tactus

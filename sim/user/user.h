@@ -23,14 +23,18 @@ struct HandImpedance {
 /// A stylus held loosely to firmly. Order of magnitude of the human wrist and arm at rest; chosen, not fitted.
 constexpr HandImpedance hand_impedance(Grip grip) noexcept {
   switch (grip) {
-    case Grip::loose: return {0.1, 220, 12};
-    case Grip::normal: return {0.2, 310, 16};
-    case Grip::firm: return {0.3, 400, 21};
+    case Grip::loose:
+      return {0.1, 220, 12};
+    case Grip::normal:
+      return {0.2, 310, 16};
+    case Grip::firm:
+      return {0.3, 400, 21};
   }
   return {};
 }
 
-/// Share of the way done at share s of the time, with zero velocity and acceleration at both ends (Flash and Hogan 1985), and its slope.
+/// Share of the way done at share s of the time, with zero velocity and acceleration at both ends (Flash and Hogan 1985), and its
+/// slope.
 struct MinimumJerk {
   double place, slope;
 };
@@ -89,7 +93,7 @@ class Hand {
   const Vec3& position() const noexcept { return position_; }  ///< [m] of the hand itself, before the encoders
 
  private:
-  void begin_phases(const Pose& object) noexcept;
+  void begin_phase(const Pose& object) noexcept;
 
   SceneUser user_;
   Random random_;
@@ -97,9 +101,9 @@ class Hand {
   Tremor tremor_;
   DeviceFilter filter_;
   Vec3 position_, velocity_;
-  Vec3 from_, to_;                        // of the running phase
-  std::size_t phase_ = 0;                 // path.size(): done, the hand stays
+  Vec3 from_, to_;        // of the phase that runs or ran last
+  std::size_t next_ = 0;  // phase; after the last one the hand stays where it is
   std::int64_t tick_ = 0, begin_ = 0, end_ = 0;
 };
 
-} // namespace tactus
+}  // namespace tactus
