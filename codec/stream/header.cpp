@@ -162,9 +162,8 @@ Result<std::vector<std::uint8_t>> write_header(const StreamHeader& header) {
     for (const std::int32_t c : object.initial.position) b.i32(c);
     for (const std::int32_t c : object.initial.rotation) b.i32(c);
   }
-  std::vector<std::uint8_t> out;
+  std::vector<std::uint8_t> out(kMagic.begin(), kMagic.end());
   ByteWriter w(out);
-  w.bytes(kMagic);
   w.u8(kVersion);
   w.u8(static_cast<std::uint8_t>(header.profile));
   w.u16(0);
