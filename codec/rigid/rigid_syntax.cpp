@@ -7,15 +7,15 @@ namespace tactus {
 
 namespace {
 
-constexpr std::array kStartModels{
+constexpr BitModel kRows[] = {
 #include "rigid_start_models.inc"
 };
-static_assert(sizeof kStartModels == sizeof(RigidModels), "spec/tables/rigid-start-models.csv has one row per model");
+static_assert(sizeof kRows == sizeof(RigidModels), "spec/tables/rigid-start-models.csv has one row per model");
 
 }  // namespace
 
 const RigidModels& start_models() noexcept {
-  static constexpr RigidModels models = std::bit_cast<RigidModels>(kStartModels);
+  static constexpr RigidModels models = std::bit_cast<RigidModels>(std::to_array(kRows));
   return models;
 }
 
