@@ -22,6 +22,10 @@ constexpr int kIterations = 100;
 constexpr int kMaxContacts = 8;       // per pair; box against box yields up to 8
 constexpr double kStandstill = 1e-9;  // [m/s] below this a contact point has no direction of sliding
 
+// Beyond these a step no longer makes sense, and ODE ends the process when a rotation overflows.
+constexpr double kFastest = 1e4;      // [m/s]
+constexpr double kFastestTurn = 1e5;  // [rad/s]
+
 void start_ode() {
   struct Library {
     Library() { dInitODE2(0); }
@@ -37,6 +41,13 @@ Vec3 vec(const dReal* v) { return {v[0], v[1], v[2]}; }
 Vec3 along_free(const Vec3& v, std::uint8_t dof, int first) {
   return {dof >> first & 1 ? v.x : 0.0, dof >> (first + 1) & 1 ? v.y : 0.0, dof >> (first + 2) & 1 ? v.z : 0.0};
 }
+
+struct Motion {
+  Vec3 velocity, spin;  // [m/s], [rad/s]
+};
+
+/// Neither NaN nor absurd.
+bool can_step(const Motion& motion) { return norm(motion.velocity) < kFastest && norm(motion.spin) < kFastestTurn; }
 
 struct Box {
   SceneObject spec;
@@ -65,6 +76,7 @@ struct RigidWorld::Impl {
 
   void add(const SceneObject& spec);
   void collide(dGeomID a, dGeomID b);
+  Motion motion_without_contact(const Box& box) const;
   Vec3 velocity_without_contact(const Box* box, const Vec3& point) const;
   void project(Box& box) const;
   const Box* owner(dGeomID geom) const { return static_cast<const Box*>(dGeomGetData(geom)); }
@@ -108,24 +120,20 @@ void RigidWorld::Impl::add(const SceneObject& spec) {
   dGeomSetQuaternion(box.geom, rotation);
 }
 
-/// Velocity of a material point at the end of this step if nothing but gravity and pushes acted.
+/// Velocities at the end of this step if nothing but gravity and pushes acted.
+Motion RigidWorld::Impl::motion_without_contact(const Box& box) const {
+  const dReal* q = dBodyGetQuaternion(box.body);
+  const Quat rotation{q[0], q[1], q[2], q[3]};
+  const Vec3 torque = rotate(conjugate(rotation), box.torque);
+  const Vec3& i = box.inverse_inertia;
+  return {vec(dBodyGetLinearVel(box.body)) + kTick * (gravity + (1 / box.spec.mass) * box.force),
+          vec(dBodyGetAngularVel(box.body)) + kTick * rotate(rotation, {i.x * torque.x, i.y * torque.y, i.z * torque.z})};
+}
+
 Vec3 RigidWorld::Impl::velocity_without_contact(const Box* box, const Vec3& point) const {
   if (!box || !box->body) return {};
-  const Vec3 arm = point - vec(dBodyGetPosition(box->body));
-  const dReal* r = dBodyGetRotation(box->body);
-  const auto to_body = [&](const Vec3& v) {
-    return Vec3{r[0] * v.x + r[4] * v.y + r[8] * v.z, r[1] * v.x + r[5] * v.y + r[9] * v.z,
-                r[2] * v.x + r[6] * v.y + r[10] * v.z};
-  };
-  const auto to_world = [&](const Vec3& v) {
-    return Vec3{r[0] * v.x + r[1] * v.y + r[2] * v.z, r[4] * v.x + r[5] * v.y + r[6] * v.z,
-                r[8] * v.x + r[9] * v.y + r[10] * v.z};
-  };
-  const Vec3 t = to_body(box->torque);
-  const Vec3& i = box->inverse_inertia;
-  const Vec3 linear = vec(dBodyGetLinearVel(box->body)) + kTick * (gravity + (1 / box->spec.mass) * box->force);
-  const Vec3 angular = vec(dBodyGetAngularVel(box->body)) + kTick * to_world({i.x * t.x, i.y * t.y, i.z * t.z});
-  return linear + cross(angular, arm);
+  const Motion motion = motion_without_contact(*box);
+  return motion.velocity + cross(motion.spin, point - vec(dBodyGetPosition(box->body)));
 }
 
 void RigidWorld::Impl::collide(dGeomID a, dGeomID b) {
@@ -193,13 +201,16 @@ tl::expected<void, StepError> RigidWorld::step() {
   Impl& in = *impl_;
   // QuickStep shuffles its constraints with the process's one random generator; seeded, a step depends on this world alone.
   dRandSetSeed(static_cast<unsigned long>(in.tick));
-  dJointGroupEmpty(in.contacts);
-  dSpaceCollide(in.space, &in, [](void* self, dGeomID a, dGeomID b) { static_cast<Impl*>(self)->collide(a, b); });
-  for (const Box& box : in.boxes) {
+  const auto broken = [&](std::uint32_t i) { return tl::unexpected(StepError{Error{Errc::internal, "R-SIM-1", 0}, in.tick, i}); };
+  for (std::uint32_t i = 0; i < in.boxes.size(); ++i) {
+    const Box& box = in.boxes[i];
     if (!box.body) continue;
+    if (!can_step(in.motion_without_contact(box))) return broken(i);
     dBodyAddForce(box.body, box.force.x, box.force.y, box.force.z);
     dBodyAddTorque(box.body, box.torque.x, box.torque.y, box.torque.z);
   }
+  dJointGroupEmpty(in.contacts);
+  dSpaceCollide(in.space, &in, [](void* self, dGeomID a, dGeomID b) { static_cast<Impl*>(self)->collide(a, b); });
   dWorldQuickStep(in.world, kTick);
   ++in.tick;
   for (std::uint32_t i = 0; i < in.boxes.size(); ++i) {
@@ -208,8 +219,8 @@ tl::expected<void, StepError> RigidWorld::step() {
     if (!box.body) continue;
     in.project(box);
     const RigidSample s = sample(i);
-    if (!is_finite(s.pose.position) || !is_finite(s.pose.rotation) || !is_finite(s.velocity) || !is_finite(s.angular_velocity))
-      return tl::unexpected(StepError{Error{Errc::internal, "R-SIM-1", 0}, in.tick, i});
+    if (!is_finite(s.pose.position) || !is_finite(s.pose.rotation) || !can_step({s.velocity, s.angular_velocity}))
+      return broken(i);
   }
   return {};
 }

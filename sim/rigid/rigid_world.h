@@ -17,7 +17,7 @@
 
 namespace tactus {
 
-/// A simulation that cannot go on: which object's state stopped being finite, at which tick.   R-SIM-1
+/// A simulation that cannot go on: which object broke which rule at which tick.
 struct StepError {
   Error error;
   std::int64_t tick = 0;
@@ -29,12 +29,12 @@ class RigidWorld {
   /// Only the scene's objects, floor and gravity are looked at.   pre  every call on the same thread
   explicit RigidWorld(const Scene& scene);
 
-  /// Add a force [N] at a world point to the next step. Along locked axes it does nothing.
+  /// Add a force [N] at a world point to the next step. Along locked axes it only loads what carries the object.
   void push(std::uint32_t object, const Vec3& force, const Vec3& point) noexcept;
 
   /// Advance by one tick.
   /// time O(contacts), about 15 us for one cube on the floor; no allocation once ODE's arenas fit the contacts, in the first step.
-  /// err  internal R-SIM-1: a pose or velocity is not finite.
+  /// err  internal R-SIM-1: a pose is not finite, or an object got faster than 1e4 m/s or 1e5 rad/s; the world is then of no more use.
   tl::expected<void, StepError> step();
 
   /// State of an object now.   time O(1), no allocation.

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/rigid/rigid_world.h"
+
+#include <gtest/gtest.h>
+#include <ode/ode.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <numbers>
+
+#include "sim/random.h"
+
+namespace tactus {
+namespace {
+
+constexpr double kMass = 0.15, kMu = 0.7, kGravity = 9.81;
+constexpr double kFriction = kMu * kMass * kGravity;  // [N] of the sliding cube
+
+Scene cube_scene(std::uint8_t dof = Dof::all) {
+  Scene scene;
+  scene.gravity = {0, 0, -kGravity};
+  scene.floor = 0.0;
+  SceneObject cube;
+  cube.name = "cube";
+  cube.size = {0.04, 0.04, 0.04};
+  cube.mass = kMass;
+  cube.friction = kMu;
+  cube.dof = dof;
+  cube.pose.position = {0, 0, 0.02};
+  scene.objects.push_back(cube);
+  return scene;
+}
+
+void run(RigidWorld& world, int ticks, const Vec3& force = {}) {
+  for (int i = 0; i < ticks; ++i) {
+    world.push(0, force, world.sample(0).pose.position);
+    ASSERT_TRUE(world.step());
+  }
+}
+
+class SlidingCube : public ::testing::TestWithParam<double> {};
+
+TEST_P(SlidingCube, DeceleratesWithMuGInEveryDirection) {
+  const double angle = GetParam() * std::numbers::pi / 180;
+  const Vec3 direction{std::cos(angle), std::sin(angle), 0};
+  RigidWorld world(cube_scene());
+  run(world, 20, (kFriction + kMass * 50) * direction);  // to 1 m/s
+  const Vec3 before = world.sample(0).velocity;
+  run(world, 100);
+  const Vec3 after = world.sample(0).velocity;
+  EXPECT_NEAR((norm(before) - norm(after)) / 0.1, kMu * kGravity, 0.01 * kMu * kGravity);
+  const double drift = std::atan2(after.y, after.x) - angle;
+  EXPECT_LT(std::abs(drift), std::numbers::pi / 180);
+  EXPECT_GT(norm(after), 0.2) << "it must still be sliding for the figures to mean anything";
+}
+
+INSTANTIATE_TEST_SUITE_P(Directions, SlidingCube, ::testing::Values(0.0, 22.5, 45.0, 67.5, 90.0));
+
+TEST(RigidWorld, FrictionHoldsUpToMuNAndNoFurther) {
+  for (const double angle : {0.0, 0.4, std::numbers::pi / 4}) {
+    const Vec3 direction{std::cos(angle), std::sin(angle), 0};
+    RigidWorld held(cube_scene());
+    run(held, 1000, 0.98 * kFriction * direction);
+    EXPECT_LT(norm(held.sample(0).pose.position - Vec3{0, 0, 0.02}), 1e-7) << angle;
+    RigidWorld moved(cube_scene());
+    run(moved, 1000, 1.1 * kFriction * direction);
+    EXPECT_NEAR(norm(moved.sample(0).velocity), 0.1 * kFriction / kMass, 0.01 * kFriction / kMass) << angle;
+  }
+}
+
+TEST(RigidWorld, RestsWhereTheSceneStandsIt) {
+  RigidWorld world(cube_scene());
+  run(world, 2000);
+  EXPECT_LT(norm(world.sample(0).pose.position - Vec3{0, 0, 0.02}), 1e-9);
+  EXPECT_LT(norm(world.sample(0).velocity), 1e-9);
+  EXPECT_LT(angle_between(world.sample(0).pose.rotation, Quat{}), 1e-9);
+}
+
+TEST(RigidWorld, FreeFallWithDamping) {
+  Scene scene = cube_scene();
+  scene.floor.reset();
+  scene.objects[0].damping = 0.999;
+  RigidWorld world(scene);
+  run(world, 500);
+  // v' = d (v - g h) has the closed form v_n = -g h d (1 - d^n) / (1 - d)
+  const double d = 0.999, expected = -kGravity * kTick * d * (1 - std::pow(d, 500)) / (1 - d);
+  EXPECT_NEAR(world.sample(0).velocity.z, expected, 1e-10);
+  EXPECT_LT(world.sample(0).pose.position.z, -1);
+}
+
+TEST(RigidWorld, TipsOverItsEdgeOnlyAboveTheLever) {
+  // Pushed at height h a cube tips when F h > m g a / 2. F stays below the friction that would let it slide.
+  const double height = 0.036, needed = kMass * kGravity * 0.02 / height;
+  ASSERT_LT(1.05 * needed, kFriction);
+  for (const double share : {0.95, 1.05}) {
+    RigidWorld world(cube_scene());
+    for (int i = 0; i < 150; ++i) {
+      const RigidSample s = world.sample(0);
+      world.push(0, {share * needed, 0, 0}, to_world(s.pose, {-0.02, 0, height - 0.02}));
+      ASSERT_TRUE(world.step());
+    }
+    const double tilt = angle_between(world.sample(0).pose.rotation, Quat{});
+    if (share < 1)
+      EXPECT_LT(tilt, 1e-6);
+    else
+      EXPECT_GT(tilt, 0.05);
+  }
+}
+
+TEST(RigidWorld, LockedAxesKeepTheirBits) {
+  Scene scene = cube_scene(Dof::x);
+  scene.objects[0].pose = {{0.1, -0.3, 0.02}, {0.8, 0, 0, 0.6}};
+  RigidWorld world(scene);
+  const RigidSample start = world.sample(0);
+  Random random(3);
+  for (int i = 0; i < 2000; ++i) {
+    const auto any = [&] { return random.uniform(-3, 3); };
+    world.push(0, {any() + 1, any(), any()}, start.pose.position + Vec3{0.02, 0.01, 0.015});
+    ASSERT_TRUE(world.step());
+    const RigidSample s = world.sample(0);
+    ASSERT_EQ(s.pose.position.y, start.pose.position.y);
+    ASSERT_EQ(s.pose.position.z, start.pose.position.z);
+    ASSERT_EQ(s.pose.rotation, start.pose.rotation);
+    ASSERT_EQ(s.velocity, (Vec3{s.velocity.x, 0, 0}));
+    ASSERT_EQ(s.angular_velocity, Vec3{});
+  }
+  EXPECT_GT(std::abs(world.sample(0).pose.position.x - start.pose.position.x), 0.01);
+}
+
+TEST(RigidWorld, TurnsAboutItsOnlyFreeAxis) {
+  Scene scene = cube_scene(Dof::rz);
+  scene.objects[0].pose.rotation = {std::cos(0.2), std::sin(0.2), 0, 0};  // lies askew: a free one would turn about x, too
+  scene.objects[0].pose.position.z = 0.1;
+  RigidWorld world(scene);
+  const Quat start = world.sample(0).pose.rotation;
+  for (int i = 0; i < 300; ++i) {
+    world.push(0, {0.02, 0.05, 0.01}, world.sample(0).pose.position + Vec3{0.02, 0, 0.01});
+    ASSERT_TRUE(world.step());
+    const Quat turned = world.sample(0).pose.rotation * conjugate(start);
+    ASSERT_NEAR(turned.x, 0, 1e-12);
+    ASSERT_NEAR(turned.y, 0, 1e-12);
+  }
+  EXPECT_GT(angle_between(world.sample(0).pose.rotation, start), 0.1);
+  EXPECT_EQ(world.sample(0).pose.position, scene.objects[0].pose.position);
+}
+
+TEST(RigidWorld, StaticObjectCarriesAndNeverMoves) {
+  Scene scene = cube_scene();
+  scene.floor.reset();
+  SceneObject table = scene.objects[0];
+  table.dof = Dof::none;
+  table.size = {1, 1, 0.1};
+  table.pose.position = {0, 0, -0.05};
+  scene.objects.push_back(table);
+  RigidWorld world(scene);
+  for (int i = 0; i < 500; ++i) {
+    world.push(1, {100, 0, 100}, {0, 0, 0});
+    ASSERT_TRUE(world.step());
+  }
+  EXPECT_EQ(world.sample(1).pose.position, table.pose.position);
+  EXPECT_EQ(world.sample(1).velocity, Vec3{});
+  EXPECT_NEAR(world.sample(0).pose.position.z, 0.02, 5e-5);
+}
+
+TEST(RigidWorld, BrokenStateStopsWithTheObjectAndTheTick) {
+  Scene scene = cube_scene();
+  scene.objects.push_back(scene.objects[0]);
+  scene.objects[1].pose.position = {1, 0, 0.02};
+  for (const double force : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e300, 1e8}) {
+    RigidWorld world(scene);
+    run(world, 3);
+    world.push(1, {force, 0, 0}, {1, 0.01, 0.03});
+    const auto step = world.step();
+    ASSERT_FALSE(step) << force;
+    EXPECT_STREQ(step.error().error.rule, "R-SIM-1");
+    EXPECT_EQ(step.error().object, 1u);
+    EXPECT_EQ(step.error().tick, 3);
+  }
+}
+
+TEST(RigidWorld, WorldsDoNotDisturbEachOther) {
+  const auto push = [](RigidWorld& world, int tick) {
+    world.push(0, {1.2, 0.3 * std::sin(tick * 0.05), 0}, world.sample(0).pose.position + Vec3{-0.02, 0.004, 0.012});
+    return world.step().has_value();
+  };
+  RigidWorld alone(cube_scene()), first(cube_scene()), second(cube_scene());
+  for (int i = 0; i < 500; ++i) ASSERT_TRUE(push(alone, i));
+  for (int i = 0; i < 500; ++i) ASSERT_TRUE(push(first, i) && push(second, i + 77));
+  EXPECT_EQ(first.sample(0).pose.position, alone.sample(0).pose.position);
+  EXPECT_EQ(first.sample(0).pose.rotation, alone.sample(0).pose.rotation);
+  EXPECT_NE(second.sample(0).pose.position, alone.sample(0).pose.position);
+}
+
+std::size_t ode_allocations = 0;
+
+TEST(RigidWorld, OdeAllocatesNothingAfterTheFirstStep) {
+  dAllocFunction* const alloc = dGetAllocHandler();
+  dReallocFunction* const realloc = dGetReallocHandler();
+  dSetAllocHandler([](dsizeint size) {
+    ++ode_allocations;
+    return std::malloc(size);
+  });
+  dSetReallocHandler([](void* p, dsizeint, dsizeint size) {
+    ++ode_allocations;
+    return std::realloc(p, size);
+  });
+  {
+    RigidWorld world(cube_scene());
+    run(world, 1);
+    EXPECT_GT(ode_allocations, 0u) << "the counter must count";
+    ode_allocations = 0;
+    run(world, 1000, {1.2, 0.4, 0.1});
+    EXPECT_EQ(ode_allocations, 0u);
+  }
+  dSetAllocHandler(alloc);
+  dSetReallocHandler(realloc);
+}
+
+}  // namespace
+}  // namespace tactus

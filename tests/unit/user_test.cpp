@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/user/user.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <set>
+
+namespace tactus {
+namespace {
+
+SceneUser still_user() {
+  SceneUser user;
+  user.name = "hand";
+  user.start = {0.1, -0.2, 0.3};
+  user.device.resolution = 1e-9;
+  user.device.filter = 1;
+  return user;
+}
+
+TEST(MinimumJerk, StartsAndEndsAtRest) {
+  EXPECT_EQ(minimum_jerk(0).place, 0);
+  EXPECT_EQ(minimum_jerk(1).place, 1);
+  EXPECT_EQ(minimum_jerk(0).slope, 0);
+  EXPECT_EQ(minimum_jerk(1).slope, 0);
+  EXPECT_DOUBLE_EQ(minimum_jerk(0.5).place, 0.5);
+  EXPECT_DOUBLE_EQ(minimum_jerk(0.5).slope, 1.875);
+  for (double s = 0.01; s < 1; s += 0.01)
+    EXPECT_NEAR((minimum_jerk(s + 1e-6).place - minimum_jerk(s - 1e-6).place) / 2e-6, minimum_jerk(s).slope, 1e-8);
+}
+
+TEST(Random, IsUniformAndRepeats) {
+  Random random(42), again(42);
+  double sum = 0, squares = 0;
+  constexpr int kDraws = 100'000;
+  for (int i = 0; i < kDraws; ++i) {
+    const double u = random.uniform(-1, 3);
+    ASSERT_EQ(u, again.uniform(-1, 3));
+    ASSERT_TRUE(u >= -1 && u < 3);
+    sum += u;
+    squares += u * u;
+  }
+  EXPECT_NEAR(sum / kDraws, 1, 0.02);
+  EXPECT_NEAR(squares / kDraws - 1, 16.0 / 12, 0.02);
+}
+
+TEST(DeviceFilter, QuantisesAndAverages) {
+  SceneDevice device;
+  device.resolution = 0.055e-3;
+  device.filter = 8;
+  DeviceFilter filter(device, {0, 0, 0});
+  EXPECT_EQ(filter.read({0.4 * device.resolution, -0.4 * device.resolution, 0}), Vec3{}) << "below half a step: nothing";
+  Vec3 out;
+  for (int i = 1; i <= 8; ++i) {
+    out = filter.read({8.1 * device.resolution, 0, 0});
+    EXPECT_NEAR(out.x, i * device.resolution, 1e-15) << "one eighth of the step enters per sample";
+  }
+  EXPECT_NEAR(out.x, 8 * device.resolution, 1e-15);
+}
+
+/// RMS about the mean of one axis of a hand that nothing touches.
+Vec3 free_tremor(Grip grip, double rms, std::uint64_t seed) {
+  SceneUser user = still_user();
+  user.tremor = rms;
+  Hand hand(user, grip, seed);
+  constexpr int kSettle = 1000, kTicks = 20'000;
+  Vec3 sum, squares;
+  for (int i = 0; i < kSettle + kTicks; ++i) {
+    hand.step({}, {});
+    if (i < kSettle) continue;
+    const Vec3 d = hand.position() - user.start;
+    sum = sum + d;
+    squares = squares + Vec3{d.x * d.x, d.y * d.y, d.z * d.z};
+  }
+  const Vec3 mean = (1.0 / kTicks) * sum;
+  const auto deviation = [&](double square, double m) { return std::sqrt(square / kTicks - m * m); };
+  return {deviation(squares.x, mean.x), deviation(squares.y, mean.y), deviation(squares.z, mean.z)};
+}
+
+TEST(Hand, FreeTremorHasTheAmplitudeAskedForInEveryGrip) {
+  for (const Grip grip : {Grip::loose, Grip::normal, Grip::firm}) {
+    for (const double wanted : {0.07e-3, 0.2e-3}) {
+      const Vec3 rms = free_tremor(grip, wanted, 5);
+      for (const double axis : {rms.x, rms.y, rms.z}) EXPECT_NEAR(axis, wanted, 0.1 * wanted);
+    }
+  }
+  EXPECT_EQ(free_tremor(Grip::normal, 0, 5), Vec3{});
+}
+
+TEST(Hand, FollowsItsPathAndStaysAtItsEnd) {
+  SceneUser user = still_user();
+  user.path = {{"go", PathFrame::world, {0.2, 0, 0.1}, 0.8, false},
+               {"hold", PathFrame::world, {0.2, 0, 0.1}, 0.5, true},
+               {"back", PathFrame::hand, {0, 0.05, 0}, 0.5, false}};
+  Hand hand(user, Grip::normal, 1);
+  int pressed = 0;
+  for (int i = 0; i < 1300; ++i) pressed += hand.step({}, {}).button;
+  EXPECT_EQ(pressed, 500);
+  EXPECT_LT(norm(hand.position() - Vec3{0.2, 0, 0.1}), 1e-4);
+  for (int i = 0; i < 1500; ++i) EXPECT_FALSE(hand.step({}, {}).button);
+  EXPECT_LT(norm(hand.position() - Vec3{0.2, 0.05, 0.1}), 1e-9);
+}
+
+TEST(Hand, YieldsToWhatItFeelsAccordingToItsGrip) {
+  for (const Grip grip : {Grip::loose, Grip::normal, Grip::firm}) {
+    Hand hand(still_user(), grip, 1);
+    for (int i = 0; i < 3000; ++i) hand.step({0, 0, 2}, {});
+    EXPECT_NEAR(hand.position().z - 0.3, 2 / hand_impedance(grip).stiffness, 1e-9);
+  }
+}
+
+TEST(Hand, LockedAxesOfTheDeviceDoNotMove) {
+  SceneUser user = still_user();
+  user.tremor = 1e-4;
+  user.device.axes = Dof::x | Dof::z;
+  user.path = {{"go", PathFrame::world, {0.2, 0.4, 0.1}, 0.5, false}};
+  Hand hand(user, Grip::loose, 1);
+  for (int i = 0; i < 1000; ++i) {
+    hand.step({0, 1, 0}, {});
+    ASSERT_EQ(hand.position().y, user.start.y);
+  }
+  EXPECT_NEAR(hand.position().x, 0.2, 1e-3);
+}
+
+TEST(Hand, SeedsMakeDifferentHandsAndVariationBoundsThem) {
+  SceneUser user = still_user();
+  user.variation = 0.15;
+  std::set<double> stiffness;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const HandImpedance hand = Hand(user, Grip::normal, seed).impedance();
+    const HandImpedance preset = hand_impedance(Grip::normal);
+    EXPECT_NEAR(hand.stiffness, preset.stiffness, 0.15 * preset.stiffness);
+    EXPECT_NEAR(hand.mass, preset.mass, 0.15 * preset.mass);
+    EXPECT_NEAR(hand.damping, preset.damping, 0.15 * preset.damping);
+    stiffness.insert(hand.stiffness);
+  }
+  EXPECT_EQ(stiffness.size(), 20u);
+}
+
+TEST(Waypoint, IsGivenInTheFrameOfThePhase) {
+  const auto at = [](PathFrame frame, const Pose& object) {
+    return waypoint({"p", frame, {-0.1, 0.02, 0.03}, 1, false}, object, {1, 3, 0}, {5, 5, 5});
+  };
+  const auto near = [](const Vec3& a, const Vec3& b) { return norm(a - b) < 1e-12; };
+  const Pose straight{{1, 2, 0.5}, {}};
+  EXPECT_TRUE(near(at(PathFrame::world, straight), {-0.1, 0.02, 0.03}));
+  EXPECT_TRUE(near(at(PathFrame::hand, straight), {4.9, 5.02, 5.03}));
+  EXPECT_TRUE(near(at(PathFrame::object, straight), {0.9, 2.02, 0.53}));
+  EXPECT_TRUE(near(at(PathFrame::toward_goal, straight), {0.98, 1.9, 0.53})) << "x of the frame is world y here";
+  EXPECT_TRUE(near(at(PathFrame::at_goal, straight), {0.98, 2.9, 0.03}));
+}
+
+TEST(Waypoint, SeesACubeTheSameFromEverySide) {
+  // Quarter turns about any axis bring a cube onto itself: the aim must not change.
+  const Pose straight{{}, {}};
+  const PathPhase phase{"p", PathFrame::object, {-0.1, 0.02, 0.03}, 1, false};
+  const Vec3 expected = waypoint(phase, straight, {}, {});
+  const double h = std::sqrt(0.5);
+  for (const Quat& turn :
+       {Quat{h, h, 0, 0}, Quat{h, 0, h, 0}, Quat{h, 0, 0, h}, Quat{0, 1, 0, 0}, Quat{0, 0, 0, 1}, Quat{h, 0, 0, -h}})
+    EXPECT_LT(norm(waypoint(phase, {{}, turn}, {}, {}) - expected), 1e-12);
+  const Quat yaw{std::cos(0.2), 0, 0, std::sin(0.2)};
+  EXPECT_LT(norm(waypoint(phase, {{}, yaw * Quat{h, h, 0, 0}}, {}, {}) - rotate(yaw, expected)), 1e-12);
+}
+
+}  // namespace
+}  // namespace tactus
