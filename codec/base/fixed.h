@@ -29,8 +29,8 @@ constexpr std::int64_t round_div(std::int64_t a, std::int64_t b) noexcept {
 }
 
 constexpr std::int32_t saturate32(std::int64_t v) noexcept {
-  return static_cast<std::int32_t>(std::clamp<std::int64_t>(v, std::numeric_limits<std::int32_t>::min(),
-                                                            std::numeric_limits<std::int32_t>::max()));
+  return static_cast<std::int32_t>(
+      std::clamp<std::int64_t>(v, std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::max()));
 }
 
 /// floor(sqrt(v)).   time about 30 ns.
@@ -47,7 +47,8 @@ constexpr std::uint32_t isqrt(std::uint64_t v) noexcept {
 
 /// sin of an angle in units of 2^-32 turn, result x 2^-30. Error below 2.5 units.
 constexpr std::int32_t sin30(std::uint32_t turn) noexcept {
-  constexpr std::array<std::int64_t, 6> kC{1686629713, -693598663, 85569264, -5026852, 172032, -3670};  // odd powers of a quarter turn
+  constexpr std::array<std::int64_t, 6> kC{1686629713, -693598663, 85569264,
+                                           -5026852,   172032,     -3670};  // odd powers of a quarter turn
   const std::uint32_t quadrant = turn >> 30;
   std::int64_t t = turn & 0x3fffffffu;
   if (quadrant & 1) t = kOne30 - t;
@@ -73,11 +74,10 @@ constexpr std::uint32_t asin30(std::int32_t s) noexcept {
 /// Hamilton product, each term exact, one rounding per component.   pre  |components| <= 2^30
 constexpr Quat30 multiply(const Quat30& a, const Quat30& b) noexcept {
   const auto term = [](std::int32_t x, std::int32_t y) { return static_cast<std::int64_t>(x) * y; };
-  const std::array<std::int64_t, 4> sum{
-      term(a[0], b[0]) - term(a[1], b[1]) - term(a[2], b[2]) - term(a[3], b[3]),
-      term(a[0], b[1]) + term(a[1], b[0]) + term(a[2], b[3]) - term(a[3], b[2]),
-      term(a[0], b[2]) - term(a[1], b[3]) + term(a[2], b[0]) + term(a[3], b[1]),
-      term(a[0], b[3]) + term(a[1], b[2]) - term(a[2], b[1]) + term(a[3], b[0])};
+  const std::array<std::int64_t, 4> sum{term(a[0], b[0]) - term(a[1], b[1]) - term(a[2], b[2]) - term(a[3], b[3]),
+                                        term(a[0], b[1]) + term(a[1], b[0]) + term(a[2], b[3]) - term(a[3], b[2]),
+                                        term(a[0], b[2]) - term(a[1], b[3]) + term(a[2], b[0]) + term(a[3], b[1]),
+                                        term(a[0], b[3]) + term(a[1], b[2]) - term(a[2], b[1]) + term(a[3], b[0])};
   Quat30 out{};
   for (std::size_t i = 0; i < 4; ++i) {
     out[i] = static_cast<std::int32_t>(std::clamp<std::int64_t>(round_shift(sum[i], 30), -kOne30, kOne30));

@@ -55,8 +55,6 @@ struct Pose {
 
 /// p_world = x + R p_object
 constexpr Vec3 to_world(const Pose& pose, const Vec3& p) noexcept { return pose.position + rotate(pose.rotation, p); }
-constexpr Vec3 to_object(const Pose& pose, const Vec3& p) noexcept {
-  return rotate(conjugate(pose.rotation), p - pose.position);
-}
+constexpr Vec3 to_object(const Pose& pose, const Vec3& p) noexcept { return rotate(conjugate(pose.rotation), p - pose.position); }
 
-} // namespace tactus
+}  // namespace tactus

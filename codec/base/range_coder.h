@@ -65,7 +65,8 @@ class SymbolCoder {
 
   /// Magnitude, then for non-zero values one raw bit, 1 for negative. |value| < 2^31.
   std::int32_t signed_value(MagnitudeModel& model, std::int32_t value) noexcept {
-    const std::uint32_t size = magnitude(model, static_cast<std::uint32_t>(value < 0 ? -static_cast<std::int64_t>(value) : value));
+    const std::uint32_t size =
+        magnitude(model, static_cast<std::uint32_t>(value < 0 ? -static_cast<std::int64_t>(value) : value));
     if (size == 0) return 0;
     const bool negative = self().raw(1, value < 0 ? 1u : 0u) != 0;
     const auto bounded = static_cast<std::int32_t>(size <= 0x7fffffffu ? size : refuse());

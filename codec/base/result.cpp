@@ -5,18 +5,30 @@ namespace tactus {
 
 const char* errc_name(Errc code) noexcept {
   switch (code) {
-    case Errc::need_more_data: return "need_more_data";
-    case Errc::truncated: return "truncated";
-    case Errc::malformed: return "malformed";
-    case Errc::invalid: return "invalid";
-    case Errc::unsupported: return "unsupported";
-    case Errc::limit_exceeded: return "limit_exceeded";
-    case Errc::checksum: return "checksum";
-    case Errc::state: return "state";
-    case Errc::buffer_too_small: return "buffer_too_small";
-    case Errc::invalid_argument: return "invalid_argument";
-    case Errc::io: return "io";
-    case Errc::internal: return "internal";
+    case Errc::need_more_data:
+      return "need_more_data";
+    case Errc::truncated:
+      return "truncated";
+    case Errc::malformed:
+      return "malformed";
+    case Errc::invalid:
+      return "invalid";
+    case Errc::unsupported:
+      return "unsupported";
+    case Errc::limit_exceeded:
+      return "limit_exceeded";
+    case Errc::checksum:
+      return "checksum";
+    case Errc::state:
+      return "state";
+    case Errc::buffer_too_small:
+      return "buffer_too_small";
+    case Errc::invalid_argument:
+      return "invalid_argument";
+    case Errc::io:
+      return "io";
+    case Errc::internal:
+      return "internal";
   }
   return "unknown";
 }

@@ -8,18 +8,18 @@ namespace tactus {
 
 /// Error classes. Names and values are normative (spec/registry.md); the same input yields the same class and rule in every build.
 enum class Errc : std::uint8_t {
-  need_more_data = 1,    ///< not an error of the input: more bytes may follow
-  truncated = 2,         ///< the input ends inside an element
-  malformed = 3,         ///< syntax: a reserved bit is set, an encoding is not the shortest, bytes trail
-  invalid = 4,           ///< semantics: a value outside its declared range
-  unsupported = 5,       ///< a version, profile or required feature this build does not know
-  limit_exceeded = 6,    ///< valid, but larger than the caller's limits
-  checksum = 7,          ///< a check value does not match
-  state = 8,             ///< protocol order: baseline not held, packet stale
-  buffer_too_small = 9,  ///< the caller's output buffer is too small
-  invalid_argument = 10, ///< an argument of an API call is not finite or out of range
-  io = 11,               ///< the operating system refused to read or write
-  internal = 12,         ///< a defect of this library
+  need_more_data = 1,     ///< not an error of the input: more bytes may follow
+  truncated = 2,          ///< the input ends inside an element
+  malformed = 3,          ///< syntax: a reserved bit is set, an encoding is not the shortest, bytes trail
+  invalid = 4,            ///< semantics: a value outside its declared range
+  unsupported = 5,        ///< a version, profile or required feature this build does not know
+  limit_exceeded = 6,     ///< valid, but larger than the caller's limits
+  checksum = 7,           ///< a check value does not match
+  state = 8,              ///< protocol order: baseline not held, packet stale
+  buffer_too_small = 9,   ///< the caller's output buffer is too small
+  invalid_argument = 10,  ///< an argument of an API call is not finite or out of range
+  io = 11,                ///< the operating system refused to read or write
+  internal = 12,          ///< a defect of this library
 };
 
 /// Name of an error class as the specification writes it ("malformed").
@@ -28,15 +28,15 @@ const char* errc_name(Errc code) noexcept;
 /// What went wrong, where, and which rule of the specification says so. No allocation; `rule` points to static text.
 struct Error {
   Errc code = Errc::internal;
-  const char* rule = "";        ///< label in spec/, such as "R-STR-4"; API rules are "R-API-n"
-  std::uint64_t bit_offset = 0; ///< position in the input where the rule was broken, in bits; 0 when there is none
+  const char* rule = "";         ///< label in spec/, such as "R-STR-4"; API rules are "R-API-n"
+  std::uint64_t bit_offset = 0;  ///< position in the input where the rule was broken, in bits; 0 when there is none
 };
 
 template <class T>
 using Result = tl::expected<T, Error>;
 
 #ifdef TACTUS_BREAK_ON_ERROR
-[[gnu::noinline]] void break_on_error() noexcept; ///< set a debugger breakpoint here to stop where an error is born
+[[gnu::noinline]] void break_on_error() noexcept;  ///< set a debugger breakpoint here to stop where an error is born
 #endif
 
 /// Make the unexpected value of any Result.
@@ -47,19 +47,18 @@ inline tl::unexpected<Error> fail(Errc code, const char* rule, std::uint64_t bit
   return tl::unexpected<Error>(Error{code, rule, bit_offset});
 }
 
-} // namespace tactus
+}  // namespace tactus
 
 #define TACTUS_CONCAT_(a, b) a##b
 #define TACTUS_CONCAT(a, b) TACTUS_CONCAT_(a, b)
-#define TACTUS_TRY_(tmp, lhs, expr)                              \
-  auto tmp = (expr);                                             \
+#define TACTUS_TRY_(tmp, lhs, expr)                                \
+  auto tmp = (expr);                                               \
   if (!tmp) return ::tl::unexpected<::tactus::Error>(tmp.error()); \
   lhs = *std::move(tmp)
 /// `TACTUS_TRY(auto x, f());` binds the value of f() or returns its error. The only error macro.
 #define TACTUS_TRY(lhs, expr) TACTUS_TRY_(TACTUS_CONCAT(tactus_try_, __LINE__), lhs, expr)
 /// `TACTUS_CHECK(f());` for Result<void>.
-#define TACTUS_CHECK(expr)                                                                 \
-  do {                                                                                     \
-    if (auto tactus_check = (expr); !tactus_check)                                         \
-      return ::tl::unexpected<::tactus::Error>(tactus_check.error());                      \
+#define TACTUS_CHECK(expr)                                                                                         \
+  do {                                                                                                             \
+    if (auto tactus_check = (expr); !tactus_check) return ::tl::unexpected<::tactus::Error>(tactus_check.error()); \
   } while (false)

@@ -23,9 +23,9 @@ enum class Interpolation : std::uint8_t {
 /// ends it: the new state is applied at once.
 struct ReplicaOptions {
   Interpolation interpolation = Interpolation::none;
-  double share = 0.75;           ///< P
-  double shortest = 0.005;       ///< [s]
-  double longest = 0.100;        ///< [s]
+  double share = 0.75;      ///< P
+  double shortest = 0.005;  ///< [s]
+  double longest = 0.100;   ///< [s]
 };
 
 class Replica {
@@ -46,10 +46,10 @@ class Replica {
  private:
   static constexpr std::size_t kArrivals = 5;  // M
   struct Track {
-    RigidState state;                 // target: the newest state
-    RigidPose from;                   // shown when the interpolation began
-    RigidPose to;                     // predicted for its end
-    std::int64_t begin = 0, end = 0;  // [begin, end); empty: none is running
+    RigidState state;                    // target: the newest state
+    RigidPose from;                      // shown when the interpolation began
+    RigidPose to;                        // predicted for its end
+    std::int64_t begin = 0, end = 0;     // [begin, end); empty: none is running
     std::array<std::int32_t, 3> axis{};  // of the turn from `from` to `to`, x 2^-30
     std::uint32_t half_turn = 0;         // half its angle, 2^32 to the full circle
     std::int64_t last_arrival = -1;
@@ -61,9 +61,9 @@ class Replica {
 
   StreamHeader header_;
   Interpolation interpolation_ = Interpolation::none;
-  std::uint32_t share_ = 0;           // x 2^-16
+  std::uint32_t share_ = 0;  // x 2^-16
   std::int64_t shortest_ = 0, longest_ = 0;
   std::vector<Track> tracks_;
 };
 
-} // namespace tactus
+}  // namespace tactus

@@ -11,8 +11,8 @@ namespace tactus {
 
 enum class ContactKind : std::uint8_t {
   none = 0,
-  surface = 1, ///< probe below a face: force along the face's normal only
-  spring = 2,  ///< probe tied to a point of the object (lifting, pulling): force along the spring, whole vector
+  surface = 1,  ///< probe below a face: force along the face's normal only
+  spring = 2,   ///< probe tied to a point of the object (lifting, pulling): force along the spring, whole vector
 };
 
 /// symbol  shape  unit  frame
@@ -42,4 +42,4 @@ inline Vec3 contact_force(const Contact& contact, const Pose& pose) noexcept {
   return depth > 0 ? (contact.stiffness * depth) * normal : Vec3{};
 }
 
-} // namespace tactus
+}  // namespace tactus

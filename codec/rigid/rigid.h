@@ -50,4 +50,4 @@ RigidSample to_sample(const RigidState& state, const GridExponents& grid) noexce
 /// FNV-1a (64 bit) over tick, position, rotation, velocity and spin of every object that can move. spec 40-rigid 6
 std::uint64_t state_hash(const StreamHeader& header, std::span<const RigidState> objects) noexcept;
 
-} // namespace tactus
+}  // namespace tactus

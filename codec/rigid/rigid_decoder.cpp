@@ -49,8 +49,8 @@ Result<const Slot*> RigidDecoder::Impl::baseline_of(const PacketHead& head, std:
   return slot;
 }
 
-Result<void> RigidDecoder::Impl::read_updates(RangeDecoder& coder, RigidModels& models, const PacketHead& head, const Slot& baseline,
-                                              std::int64_t tick) noexcept {
+Result<void> RigidDecoder::Impl::read_updates(RangeDecoder& coder, RigidModels& models, const PacketHead& head,
+                                              const Slot& baseline, std::int64_t tick) noexcept {
   updates.clear();
   states.clear();
   std::uint64_t next = 0;  // index into `moving`
@@ -120,7 +120,8 @@ Result<DecodedPacket> RigidDecoder::decode(std::span<const std::uint8_t> packet)
   const std::int64_t tick = baseline->tick + head.tick_delta;
   if (tick >= kTickLimit || (!first && tick < current.tick)) return fail(Errc::invalid, "R-RIG-1", bit());
   if (head.count < 1 || head.count > d.moving.size()) return fail(Errc::invalid, "R-RIG-3", bit());
-  if (auto read = d.read_updates(coder, models, head, *baseline, tick); !read) return fail(read.error().code, read.error().rule, bit());
+  if (auto read = d.read_updates(coder, models, head, *baseline, tick); !read)
+    return fail(read.error().code, read.error().rule, bit());
   if (const char* rule = coder.broken_rule()) return fail(Errc::malformed, rule, bit());
   d.commit(*baseline, sequence, tick);
   return DecodedPacket{sequence, head.key, tick, d.updates, coder.range(), coder.code()};

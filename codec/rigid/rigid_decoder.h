@@ -15,15 +15,15 @@ namespace tactus {
 struct RigidUpdate {
   std::uint32_t object = 0;  ///< index into StreamHeader::objects
   Reason reason = Reason::request;
-  std::uint8_t level = 0;    ///< grid level: residuals were multiples of 4^level grid units
+  std::uint8_t level = 0;  ///< grid level: residuals were multiples of 4^level grid units
 };
 
 struct DecodedPacket {
   std::uint16_t sequence = 0;
-  bool key = false;                          ///< built on the initial state
+  bool key = false;  ///< built on the initial state
   std::int64_t tick = 0;
-  std::span<const RigidUpdate> updates;      ///< valid until the next call
-  std::uint32_t final_range = 0;             ///< range decoder's state after the last symbol (conformance)
+  std::span<const RigidUpdate> updates;  ///< valid until the next call
+  std::uint32_t final_range = 0;         ///< range decoder's state after the last symbol (conformance)
   std::uint32_t final_code = 0;
 };
 
@@ -53,4 +53,4 @@ class RigidDecoder {
   std::unique_ptr<Impl> impl_;
 };
 
-} // namespace tactus
+}  // namespace tactus

@@ -60,7 +60,8 @@ bool within(const Thresholds& t, const RigidPose& shown, const RigidState& truth
 /// Does the truth keep to the axes that the header declares?
 bool obeys_dof(const RigidObject& object, const RigidState& truth) noexcept {
   for (std::size_t i = 0; i < 3; ++i) {
-    if (!(object.dof >> i & 1u) && std::abs(static_cast<std::int64_t>(truth.position[i]) - object.initial.position[i]) > 1) return false;
+    if (!(object.dof >> i & 1u) && std::abs(static_cast<std::int64_t>(truth.position[i]) - object.initial.position[i]) > 1)
+      return false;
   }
   if (object.dof >> 3 == 7) return true;
   const Quat30 turn = multiply(truth.rotation, conjugate(object.initial.rotation));
@@ -103,9 +104,9 @@ struct RigidEncoder::Impl {
   std::vector<Pending> pending;
   std::vector<std::uint8_t> buffer;
   std::uint16_t sequence = 0;
-  std::int64_t last_tick = -1;    // of the last call
-  std::int64_t packet_tick = 0;   // of the last packet
-  std::int64_t key_tick = -1;     // of the last key packet; -1: none yet
+  std::int64_t last_tick = -1;   // of the last call
+  std::int64_t packet_tick = 0;  // of the last packet
+  std::int64_t key_tick = -1;    // of the last key packet; -1: none yet
 
   Result<void> read_truth(std::int64_t tick, std::span<const RigidSample> samples) noexcept;
   Reason reason_for(std::uint32_t object, const RigidPose& shown, const Pose& pose, std::span<const Contact> contacts,
@@ -168,9 +169,9 @@ Result<CodedUpdate> RigidEncoder::Impl::quantise(Pending& update, const Predicti
                                                  std::span<const Contact> contacts) const noexcept {
   const std::uint32_t object = update.object;
   const std::uint8_t dof = header.objects[object].dof;
-  const bool touched = triggers.haptic != HapticRule::off && std::any_of(contacts.begin(), contacts.end(), [object](const Contact& c) {
-                         return c.kind != ContactKind::none && c.object == object;
-                       });
+  const bool touched = triggers.haptic != HapticRule::off &&
+                       std::any_of(contacts.begin(), contacts.end(),
+                                   [object](const Contact& c) { return c.kind != ContactKind::none && c.object == object; });
   for (unsigned level = touched && triggers.haptic == HapticRule::fixed ? fixed.level : visual.level;; --level) {
     CodedUpdate coded{update.reason, static_cast<std::uint8_t>(level),
                       quantise_pose(prediction.pose, truth[object], dof, level, header.grid)};
@@ -244,7 +245,8 @@ Result<RigidEncoder> RigidEncoder::create(StreamHeader header, const RigidEncode
 Result<EncodedPacket> RigidEncoder::encode(std::int64_t tick, std::span<const RigidSample> samples,
                                            std::span<const Contact> contacts) noexcept {
   Impl& e = *impl_;
-  const bool contacts_valid = std::all_of(contacts.begin(), contacts.end(), [&](const Contact& c) { return is_valid(c, e.header); });
+  const bool contacts_valid =
+      std::all_of(contacts.begin(), contacts.end(), [&](const Contact& c) { return is_valid(c, e.header); });
   if (samples.size() != e.header.objects.size() || tick <= e.last_tick || tick >= 0xffffffff || !contacts_valid) {
     return fail(Errc::invalid_argument, "R-API-5");
   }
@@ -265,7 +267,8 @@ Result<EncodedPacket> RigidEncoder::encode(std::int64_t tick, std::span<const Ri
   }
   e.last_tick = e.packet_tick = tick;
   if (head.key) e.key_tick = tick;
-  return EncodedPacket{std::span<const std::uint8_t>(e.buffer).first(size), strongest, static_cast<std::uint32_t>(e.pending.size()), head.key};
+  return EncodedPacket{std::span<const std::uint8_t>(e.buffer).first(size), strongest,
+                       static_cast<std::uint32_t>(e.pending.size()), head.key};
 }
 
 const StreamHeader& RigidEncoder::header() const noexcept { return impl_->header; }

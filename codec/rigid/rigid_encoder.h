@@ -46,7 +46,8 @@ class RigidEncoder {
   /// err  invalid_argument R-API-1..3 a sample is not finite or out of range; R-API-5 wrong count, tick order or contact;
   ///      R-API-6 an object moved along an axis that the header says it cannot; R-API-7 the grid is too coarse for the contact's
   ///      stiffness at this p. State is unchanged after any error.
-  Result<EncodedPacket> encode(std::int64_t tick, std::span<const RigidSample> samples, std::span<const Contact> contacts) noexcept;
+  Result<EncodedPacket> encode(std::int64_t tick, std::span<const RigidSample> samples,
+                               std::span<const Contact> contacts) noexcept;
 
   const StreamHeader& header() const noexcept;
   std::uint64_t state_hash() const noexcept;  ///< equals the decoder's after the same packets
@@ -61,4 +62,4 @@ class RigidEncoder {
   std::unique_ptr<Impl> impl_;
 };
 
-} // namespace tactus
+}  // namespace tactus

@@ -96,7 +96,8 @@ Residual quantise_pose(const RigidPose& predicted, const RigidState& truth, std:
   // A half turn may round to just over length 1: take the longest component back.
   while (square << (4 * level) > std::int64_t{1} << (2 * grid.rotation)) {
     auto& v = out.of[2];
-    auto& longest = *std::max_element(v.begin(), v.end(), [](std::int32_t a, std::int32_t b) { return std::abs(a) < std::abs(b); });
+    auto& longest =
+        *std::max_element(v.begin(), v.end(), [](std::int32_t a, std::int32_t b) { return std::abs(a) < std::abs(b); });
     square -= 2 * static_cast<std::int64_t>(std::abs(longest)) - 1;
     longest += longest > 0 ? -1 : 1;
   }

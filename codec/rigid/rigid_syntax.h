@@ -16,7 +16,7 @@
 namespace tactus {
 
 inline constexpr std::size_t kQuantities = 4;  // position, velocity, rotation, spin
-inline constexpr std::size_t kHints = 8;  // 0..3: the reason, 4..7: how large the components before were
+inline constexpr std::size_t kHints = 8;       // 0..3: the reason, 4..7: how large the components before were
 
 /// Every adaptive model of a packet. Restarted from start_models() for each packet, so that a packet needs nothing but its baseline.
 struct RigidModels {

@@ -27,15 +27,15 @@ enum class HapticRule : std::uint8_t {
 /// Defaults are the thesis's (3.2.4.1) with p = 8 %.
 struct RigidTriggers {
   Reduction reduction = Reduction::dead_reckoning;
-  double heartbeat = 1.0;                                    ///< [s] 0 switches it off
-  double visual_position = 0.006;                            ///< [m]
-  double visual_rotation = 2.0 * std::numbers::pi / 180.0;   ///< [rad]
+  double heartbeat = 1.0;                                   ///< [s] 0 switches it off
+  double visual_position = 0.006;                           ///< [m]
+  double visual_rotation = 2.0 * std::numbers::pi / 180.0;  ///< [rad]
   HapticRule haptic = HapticRule::isotropic;
-  double weber_fraction = 0.08;                              ///< p, traffic control parameter
-  double cone_angle = 2.1 * std::numbers::pi / 180.0;        ///< alpha_max [rad]
-  double fixed_position = 0.0015;                            ///< [m]
-  double fixed_rotation = 2.0 * std::numbers::pi / 180.0;    ///< [rad]
-  double force_floor = 0.05;                                 ///< [N] below this force the threshold stays p * force_floor
+  double weber_fraction = 0.08;                            ///< p, traffic control parameter
+  double cone_angle = 2.1 * std::numbers::pi / 180.0;      ///< alpha_max [rad]
+  double fixed_position = 0.0015;                          ///< [m]
+  double fixed_rotation = 2.0 * std::numbers::pi / 180.0;  ///< [rad]
+  double force_floor = 0.05;                               ///< [N] below this force the threshold stays p * force_floor
 };
 
 /// Permitted force error at true force f: p * max(|f|, force_floor) [N].
@@ -49,4 +49,4 @@ double haptic_ratio(const RigidTriggers& triggers, const Vec3& truth, const Vec3
 /// below, linear between. DESIGN 6.1.
 double perceptual_fraction(double force) noexcept;
 
-} // namespace tactus
+}  // namespace tactus

@@ -38,8 +38,8 @@ class StreamFileWriter {
 };
 
 struct FilePacket {
-  std::int64_t tick = 0;                 ///< equals the tick inside the packet (R-FIL-7, checked by whoever decodes both)
-  std::span<const std::uint8_t> bytes;   ///< into the file's bytes
+  std::int64_t tick = 0;                ///< equals the tick inside the packet (R-FIL-7, checked by whoever decodes both)
+  std::span<const std::uint8_t> bytes;  ///< into the file's bytes
 };
 
 /// Reads a file that is in memory, front to back or from a key packet. Allocates for the header only.
@@ -62,9 +62,9 @@ class StreamFileReader {
  private:
   struct Record {
     std::uint8_t type = 0;
-    std::size_t start = 0;                  // of the payload
+    std::size_t start = 0;  // of the payload
     std::span<const std::uint8_t> payload;
-    std::size_t end = 0;                    // of the record
+    std::size_t end = 0;  // of the record
   };
   Result<Record> read_record(std::size_t at) const noexcept;
   bool find_index(std::span<const std::uint8_t>& entries) const noexcept;

@@ -200,8 +200,8 @@ Result<ParsedHeader> parse_header(std::span<const std::uint8_t> bytes, const Dec
 }
 
 std::size_t max_packet_size(const StreamHeader& header) noexcept {
-  const auto moving = static_cast<std::size_t>(
-      std::ranges::count_if(header.objects, [](const RigidObject& o) { return o.dof != Dof::none; }));
+  const auto moving =
+      static_cast<std::size_t>(std::ranges::count_if(header.objects, [](const RigidObject& o) { return o.dof != Dof::none; }));
   constexpr std::size_t kHead = 64;     // sequence, key, baseline, tick, count, tail
   constexpr std::size_t kUpdate = 192;  // gap, reason, level and 12 components at 15 bits per adaptive bit
   return kHead + kUpdate * moving;

@@ -39,26 +39,26 @@ struct Dof {
 /// Integer pose and motion of one rigid object at one tick. This is all a decoder keeps per object.
 struct RigidState {
   std::int64_t tick = 0;
-  std::array<std::int32_t, 3> position{};                     ///< x 2^-position m
-  std::array<std::int32_t, 4> rotation{1 << 30, 0, 0, 0};     ///< x 2^-30, Hamilton w, x, y, z
-  std::array<std::int32_t, 3> velocity{};                     ///< x 2^-velocity m/s
-  std::array<std::int32_t, 3> spin{};                         ///< x 2^-spin rad/s, world frame
+  std::array<std::int32_t, 3> position{};                  ///< x 2^-position m
+  std::array<std::int32_t, 4> rotation{1 << 30, 0, 0, 0};  ///< x 2^-30, Hamilton w, x, y, z
+  std::array<std::int32_t, 3> velocity{};                  ///< x 2^-velocity m/s
+  std::array<std::int32_t, 3> spin{};                      ///< x 2^-spin rad/s, world frame
   friend bool operator==(const RigidState&, const RigidState&) = default;
 };
 
 struct RigidObject {
-  std::string name;              ///< UTF-8, 1..255 bytes
+  std::string name;  ///< UTF-8, 1..255 bytes
   std::uint8_t dof = Dof::all;
-  RigidState initial;            ///< tick 0; the state that key packets build on
+  RigidState initial;  ///< tick 0; the state that key packets build on
 };
 
 struct StreamHeader {
   Profile profile = Profile::thesis;
-  std::uint32_t tick_rate = 1000;            ///< ticks per second, 1 .. 1 000 000
+  std::uint32_t tick_rate = 1000;  ///< ticks per second, 1 .. 1 000 000
   GridExponents grid;
-  std::uint16_t max_extrapolation = 2000;    ///< ticks; an object without updates stops moving after so long
-  std::uint8_t baseline_span = 1;            ///< how many of the newest states a receiver keeps as baselines, 1..64
-  std::vector<RigidObject> objects;          ///< order is the wire order
+  std::uint16_t max_extrapolation = 2000;  ///< ticks; an object without updates stops moving after so long
+  std::uint8_t baseline_span = 1;          ///< how many of the newest states a receiver keeps as baselines, 1..64
+  std::vector<RigidObject> objects;        ///< order is the wire order
 };
 
 /// What a decoder accepts before it allocates.
@@ -88,4 +88,4 @@ Result<ParsedHeader> parse_header(std::span<const std::uint8_t> bytes, const Dec
 /// Upper bound of the size of any packet of this stream, in bytes.
 std::size_t max_packet_size(const StreamHeader& header) noexcept;
 
-} // namespace tactus
+}  // namespace tactus

@@ -46,7 +46,7 @@ TEST(ClientReplica, WithoutInterpolationUpdatesJump) {
 TEST(ClientReplica, LinearInterpolationReachesThePredictedPlaceAfterTN) {
   Feeder f(Interpolation::linear);
   f.update(0, {}, {});
-  f.update(40, {}, {});                    // no interpolation before a gap is known; afterwards the gap is 40
+  f.update(40, {}, {});                     // no interpolation before a gap is known; afterwards the gap is 40
   f.update(80, {0.03, 0, 0}, {0.5, 0, 0});  // t_N = 0.75 * 40 = 30 ticks
   EXPECT_NEAR(f.shown(80).position.x, 0, 1e-6) << "thesis eq. 3.6 starts where the object was shown";
   EXPECT_NEAR(f.shown(95).position.x, 0.5 * (0.03 + 0.5 * 0.03), 1e-6) << "half way to the place predicted for its end";

@@ -22,7 +22,8 @@ TEST(Fixed, RoundingGoesHalfUpForBothSigns) {
   EXPECT_EQ(round_div(-8, 3), -3);
   for (std::int64_t a = -50; a <= 50; ++a) {
     for (std::int64_t b = 1; b <= 9; ++b) {
-      EXPECT_EQ(round_div(a, b), static_cast<std::int64_t>(std::floor((static_cast<double>(a) + static_cast<double>(b / 2)) / static_cast<double>(b))));
+      EXPECT_EQ(round_div(a, b), static_cast<std::int64_t>(
+                                     std::floor((static_cast<double>(a) + static_cast<double>(b / 2)) / static_cast<double>(b))));
     }
   }
 }

@@ -28,10 +28,14 @@ struct Models {
 template <class Coder>
 std::int64_t code(Coder& coder, Models& models, const Symbol& s) {
   switch (s.kind) {
-    case Symbol::bit: return coder.bit(models.bits[s.count % 3], static_cast<std::uint32_t>(s.value)) ? 1 : 0;
-    case Symbol::raw: return coder.raw(s.count, static_cast<std::uint32_t>(s.value));
-    case Symbol::magnitude: return coder.magnitude(models.magnitudes, static_cast<std::uint32_t>(s.value));
-    default: return coder.signed_value(models.signed_values, static_cast<std::int32_t>(s.value));
+    case Symbol::bit:
+      return coder.bit(models.bits[s.count % 3], static_cast<std::uint32_t>(s.value)) ? 1 : 0;
+    case Symbol::raw:
+      return coder.raw(s.count, static_cast<std::uint32_t>(s.value));
+    case Symbol::magnitude:
+      return coder.magnitude(models.magnitudes, static_cast<std::uint32_t>(s.value));
+    default:
+      return coder.signed_value(models.signed_values, static_cast<std::int32_t>(s.value));
   }
 }
 
@@ -49,7 +53,8 @@ void expect_round_trip(const std::vector<Symbol>& symbols) {
   const Bytes payload = encode(symbols);
   RangeDecoder decoder(payload);
   Models models;
-  for (std::size_t i = 0; i < symbols.size(); ++i) ASSERT_EQ(code(decoder, models, symbols[i]), symbols[i].value) << "symbol " << i;
+  for (std::size_t i = 0; i < symbols.size(); ++i)
+    ASSERT_EQ(code(decoder, models, symbols[i]), symbols[i].value) << "symbol " << i;
   EXPECT_EQ(decoder.broken_rule(), nullptr);
   EXPECT_FALSE(decoder.too_wide());
 }
@@ -179,7 +184,8 @@ TEST(RangeCoder, AnyBytesDecodeToSomething) {
     for (auto& b : payload) b = static_cast<std::uint8_t>(random() % 4 ? random() : 0xff);
     RangeDecoder decoder(payload);
     Models models;
-    for (int i = 0; i < 100; ++i) code(decoder, models, {static_cast<Symbol::Kind>(random() % 4), 1 + static_cast<unsigned>(random() % 16), 0});
+    for (int i = 0; i < 100; ++i)
+      code(decoder, models, {static_cast<Symbol::Kind>(random() % 4), 1 + static_cast<unsigned>(random() % 16), 0});
     EXPECT_GE(decoder.range(), 1u << 24);
   }
 }

@@ -26,7 +26,8 @@ TEST(RigidTrigger, ConeJudgesSizeAndDirectionApart) {
   const Vec3 force{0, 0, 1};
   EXPECT_NEAR(haptic_ratio(t, force, {0, 0, 1.18}), 1, 1e-12);
   EXPECT_NEAR(haptic_ratio(t, force, {std::sin(0.05), 0, std::cos(0.05)}), 1, 1e-9);
-  EXPECT_NEAR(haptic_ratio(t, force, {1.18 * std::sin(0.025), 0, 1.18 * std::cos(0.025)}), 1, 1e-9) << "the larger of both counts";
+  EXPECT_NEAR(haptic_ratio(t, force, {1.18 * std::sin(0.025), 0, 1.18 * std::cos(0.025)}), 1, 1e-9)
+      << "the larger of both counts";
   EXPECT_GT(haptic_ratio(t, force, {0, 0, -1}), 1) << "opposite";
   EXPECT_LT(haptic_ratio(t, {0, 0, 0.01}, {0.01, 0, 0}), 1) << "below the floor direction means nothing";
 }

@@ -58,7 +58,10 @@ TEST(StreamHeader, WriterRefusesWhatTheReaderWould) {
       {"R-STR-11", [](StreamHeader& h) { h.objects[0].name = "a\nb"; }},
       {"R-STR-12", [](StreamHeader& h) { h.objects[0].dof = Dof::rx | Dof::ry; }},
       {"R-STR-12", [](StreamHeader& h) { h.objects[0].dof = 64; }},
-      {"R-STR-13", [](StreamHeader& h) { h.objects[0].initial.rotation = {1 << 29, 0, 0, 0}; }},
+      {"R-STR-13",
+       [](StreamHeader& h) {
+         h.objects[0].initial.rotation = {1 << 29, 0, 0, 0};
+       }},
   };
   for (const auto& [rule, change] : cases) {
     StreamHeader header = two_objects();
