@@ -32,7 +32,7 @@ void start_ode() {
     ~Library() { dCloseODE(); }
   };
   static const Library library;
-  dAllocateODEDataForThread(dAllocateMaskAll);
+  dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll));
 }
 
 Vec3 vec(const dReal* v) { return {v[0], v[1], v[2]}; }
