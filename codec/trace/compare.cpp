@@ -45,7 +45,7 @@ Result<std::optional<StreamPlayer::Played>> StreamPlayer::play(std::int64_t tick
   waiting_.reset();
   const auto packet = decoder_.decode(bytes);
   if (!packet) return fail(packet.error().code, packet.error().rule, 8 * std::uint64_t{offset} + packet.error().bit_offset);
-  if (packet->tick != *due) return fail(Errc::malformed, "R-FIL-7", 8 * std::uint64_t{offset});
+  if (packet->tick != *due) return fail(Errc::invalid, "R-FIL-7", 8 * std::uint64_t{offset});
   replica_.apply(*packet, decoder_.objects(), *due);
   return Played{*packet, bytes.size(), offset};
 }

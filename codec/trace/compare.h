@@ -34,7 +34,7 @@ class StreamPlayer {
     std::size_t offset = 0;  ///< of the packet in the file
   };
   /// Apply the next packet that is due at `tick`; nothing when none is.
-  /// err  as StreamFileReader::next and RigidDecoder::decode, places counted from the start of the file; malformed R-FIL-7: the file
+  /// err  as StreamFileReader::next and RigidDecoder::decode, places counted from the start of the file; invalid R-FIL-7: the file
   ///      and the packet name different ticks.
   Result<std::optional<Played>> play(std::int64_t tick) noexcept;
   /// Tick of the next packet; nothing at the end.   err  as play()

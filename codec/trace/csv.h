@@ -1,9 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Recordings in text form: import with a column mapping, export of any trace.
+/// Recordings in text form: import with a column mapping, export of any trace. Decimal point, commas, names in the first line.
+///
+/// rule     class             broken when
+/// R-CSV-1  truncated         the text has no line of names and one of values, or its zstd data ends early
+///          malformed         its zstd data is damaged
+/// R-CSV-2  malformed         a column of the mapping is not there, or there twice
+/// R-CSV-3  malformed         a row has more or fewer fields than there are columns
+/// R-CSV-4  malformed         a field is not a finite decimal number, or not a whole number in range where one is needed
+/// R-CSV-5  invalid           time does not increase within a segment by a tick at least, or leaves 0 .. 2^31 s
+/// R-CSV-6  limit_exceeded    a line is longer than 1 MiB
+/// R-CSV-7  invalid_argument  the rate is unknown: no tick_rate in the mapping and no column of time with two rows
+/// R-CSV-8  invalid_argument  the mapping names some columns of a vector but not all, or nothing to record
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <functional>
 #include <iosfwd>
 #include <string>
 #include <vector>
@@ -14,19 +25,26 @@
 
 namespace tactus {
 
+enum class CsvLayout : std::uint8_t {
+  named_columns,  ///< one object, one user, columns as the mapping names them
+  tactus,         ///< columns of export_csv(): any objects and users; of the mapping only tick_rate counts
+};
+
 /// Which column feeds which quantity; an empty name means "not there". Named groups: see csv_presets().
 struct CsvMapping {
-  std::string time;                             ///< [s]; empty: one row per tick
-  std::string segment;                          ///< rows of one value belong together (a toss, a trial)
-  std::string position[3];                      ///< [m]
-  std::string rotation[4];                      ///< w, x, y, z; empty: no rotation
-  std::string velocity[3];                      ///< [m/s]; empty: differences of the position
-  std::string angular_velocity[3];              ///< [rad/s]; empty: differences of the rotation
-  std::string device[3];                        ///< [m] probe of one user
-  std::string force[3];                         ///< [N] on that user
+  CsvLayout layout = CsvLayout::named_columns;
+  std::string time;     ///< [s]; empty: one row per tick
+  std::string segment;  ///< rows of one value belong together (a toss, a trial); segments follow without a gap, the object jumps
+  std::array<std::string, 3> position;          ///< [m]; empty: no object, a user alone
+  std::array<std::string, 4> rotation;          ///< w, x, y, z, not normalised; empty: no rotation
+  std::array<std::string, 3> velocity;          ///< [m/s]; empty: backward differences, 0 where a segment begins
+  std::array<std::string, 3> angular_velocity;  ///< [rad/s]; empty: likewise
+  std::array<std::string, 3> device;            ///< [m] probe of the user
+  std::array<std::string, 3> force;             ///< [N] on the user; one recorded force stands for client and server
   std::string object = "object";                ///< name of the object in the trace
+  std::string user = "user";                    ///< name of the user in the trace, if there is a device or a force
   double length_scale = 1.0;                    ///< metres per unit of the file's lengths
-  std::uint32_t tick_rate = 0;                  ///< 0: from the preset or the time column
+  std::uint32_t tick_rate = 0;                  ///< 0: from the median spacing of the time column
 };
 
 struct CsvPreset {
@@ -50,10 +68,13 @@ struct CsvImport {
 };
 
 /// Read `path` (plain or zstd, told by its first bytes; "-" is standard input) into `out_path`.
-/// err  io R-TRC-1; malformed R-CSV-n (row length, not a number, missing column), with the place.
+/// err  io R-TRC-1; R-CSV-n; invalid_argument R-TRC-17, R-API-n when the trace cannot hold a value; with the place. A partly
+///      written file is removed.
 tl::expected<CsvImport, CsvError> import_csv(const std::string& path, const CsvMapping& mapping, const std::string& out_path);
 
-/// One row per tick: tick, time_s, then per object and user the columns of the trace, 17 significant digits.
+/// One row per tick: tick, time_s, then of each object and user the columns of csv_columns.h, named by their topics
+/// ("/objects/cube/qw"). Numbers are the shortest decimals that read back to the same bits. Returns the number of rows.
+/// err  io R-TRC-1: the stream refused; whatever TraceReader::next() reports.
 Result<std::uint64_t> export_csv(TraceReader& reader, std::ostream& out);
 
 } // namespace tactus

@@ -69,7 +69,9 @@ Result<void> TactusAssembler::start(mcap::Reader& mcap, const Preamble& preamble
   info_.scene = preamble.scene;
   for (std::string& name : split_lines(entry(tactus, "objects"))) info_.objects.push_back({std::move(name), Dof::all});
   info_.users = split_lines(entry(tactus, "users"));
-  if (info_.objects.empty() && info_.users.empty()) return refuse(mcap, Errc::invalid, "R-TRC-12");
+  const bool has_names = std::all_of(info_.objects.begin(), info_.objects.end(), [](const auto& o) { return is_plain_name(o.name); }) &&
+                         std::all_of(info_.users.begin(), info_.users.end(), is_plain_name);
+  if (!has_names || (info_.objects.empty() && info_.users.empty())) return refuse(mcap, Errc::invalid, "R-TRC-12");
   item_ = preamble.item;
   const bool ended_early = item_ == mcap::Item::end && mcap.cut_short();
   TACTUS_CHECK(find_channels(mcap, ended_early ? Errc::truncated : Errc::invalid));
