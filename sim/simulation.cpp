@@ -47,8 +47,8 @@ struct Simulation::Impl {
   std::vector<Contact> contacts;
   std::vector<Pose> true_poses, client_poses;
 
-  Impl(const Scene& in, std::uint64_t seed_, StreamHeader header_)
-      : scene(in), seed(seed_), header(std::move(header_)), world(scene) {}
+  Impl(Scene of, std::uint64_t from, StreamHeader stream)
+      : scene(std::move(of)), seed(from), header(std::move(stream)), world(scene) {}
 
   void observe();
   void touch_server();

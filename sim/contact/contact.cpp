@@ -50,10 +50,8 @@ void BoxProxy::place(const Vec3& probe) noexcept {
 
 void BoxProxy::move(const Vec3& probe) noexcept {
   if (face_ && height(probe, *face_, half_) >= 0) face_.reset();
-  if (face_ || enter(probe))
-    slide(probe);
-  else
-    proxy_ = probe;
+  if (face_ || enter(probe)) slide(probe);
+  else proxy_ = probe;
 }
 
 /// Where does the way from the proxy, which is outside, to the probe first meet the box? (slab test)

@@ -26,14 +26,17 @@ constexpr double kStandstill = 1e-9;  // [m/s] below this a contact point has no
 constexpr double kFastest = 1e4;      // [m/s]
 constexpr double kFastestTurn = 1e5;  // [rad/s]
 
-void start_ode() {
-  struct Library {
-    Library() { dInitODE2(0); }
-    ~Library() { dCloseODE(); }
-  };
-  static const Library library;
-  dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll));
-}
+/// Keeps ODE initialised for the process and its collision code for this thread.
+struct OdeThread {
+  OdeThread() {
+    struct Library {
+      Library() { dInitODE2(0); }
+      ~Library() { dCloseODE(); }
+    };
+    static const Library library;
+    dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll));
+  }
+};
 
 Vec3 vec(const dReal* v) { return {v[0], v[1], v[2]}; }
 
@@ -61,10 +64,11 @@ struct Box {
 }  // namespace
 
 struct RigidWorld::Impl {
-  dWorldID world = nullptr;
-  dSpaceID space = nullptr;
+  OdeThread ode;  // first: the others need it
+  dWorldID world = dWorldCreate();
+  dSpaceID space = dSimpleSpaceCreate(nullptr);
   dGeomID floor = nullptr;
-  dJointGroupID contacts = nullptr;
+  dJointGroupID contacts = dJointGroupCreate(0);
   Vec3 gravity;
   std::vector<Box> boxes;
   std::int64_t tick = 0;
@@ -83,10 +87,6 @@ struct RigidWorld::Impl {
 };
 
 RigidWorld::Impl::Impl(const Scene& scene) : gravity(scene.gravity) {
-  start_ode();
-  world = dWorldCreate();
-  space = dSimpleSpaceCreate(nullptr);
-  contacts = dJointGroupCreate(0);
   dWorldSetGravity(world, gravity.x, gravity.y, gravity.z);
   dWorldSetContactSurfaceLayer(world, kSurfaceLayer);
   dWorldSetQuickStepNumIterations(world, kIterations);

@@ -13,13 +13,13 @@
 namespace tactus {
 namespace {
 
-constexpr double kFarthest = 100;         // [m] well inside the codec's default grid
-constexpr double kLongest = 24 * 3600.0;  // [s]
+constexpr double kFarthest = 100;                                                  // [m] well inside the codec's default grid
+constexpr double kLongest = 24 * 3600.0;                                           // [s]
+constexpr std::array<std::string_view, 6> kAxes{"x", "y", "z", "rx", "ry", "rz"};  // order of the bits in Dof
 constexpr Range kPlace{-kFarthest, kFarthest};
 
 std::uint8_t read_axes(TomlReader& in, const toml::table& table, const std::string& path, std::string_view key,
                        std::uint8_t fallback) {
-  static constexpr std::array<std::string_view, 6> kNames{"x", "y", "z", "rx", "ry", "rz"};
   const toml::node* node = table.get(key);
   if (!node) return fallback;
   const toml::array* array = node->as_array();
@@ -30,11 +30,10 @@ std::uint8_t read_axes(TomlReader& in, const toml::table& table, const std::stri
   unsigned axes = 0;
   for (const auto& element : *array) {
     const auto name = element.value_or(std::string_view{});
-    const auto found = std::find(kNames.begin(), kNames.end(), name);
-    if (found == kNames.end())
+    const auto found = std::find(kAxes.begin(), kAxes.end(), name);
+    if (found == kAxes.end())
       in.fail_at(element.source(), Errc::invalid, "R-SCN-7", TomlReader::join(path, key), "use x, y, z, rx, ry, rz");
-    else
-      axes |= 1u << (found - kNames.begin());
+    else axes |= 1u << (found - kAxes.begin());
   }
   const unsigned turns = axes & ~static_cast<unsigned>(Dof::translation);
   if (const int count = std::popcount(turns); count == 2)

@@ -5,12 +5,13 @@
 #include <toml++/toml.h>
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <cstdio>
 #include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "sim/scene/scene.h"
 
@@ -75,7 +76,7 @@ class TomlReader {
   }
 
   std::string text(const toml::table& table, const std::string& path, std::string_view key,
-                   std::optional<std::string> fallback = std::nullopt) {
+                   const std::optional<std::string>& fallback = std::nullopt) {
     const toml::node* node = find(table, path, key, fallback.has_value());
     if (!node) return fallback.value_or("");
     const auto value = node->value_exact<std::string>();

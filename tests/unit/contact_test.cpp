@@ -51,7 +51,8 @@ TEST(BoxProxy, SticksInsideTheFrictionCone) {
   proxy.place({0, 0, 0.03});
   proxy.move({0, 0, 0.018});
   const Vec3 held = proxy.position();
-  for (double angle = 0; angle < 6.28; angle += 0.1) {
+  for (int i = 0; i < 63; ++i) {
+    const double angle = 0.1 * i;
     proxy.move({0.000999 * std::cos(angle), 0.000999 * std::sin(angle), 0.018});  // rim at 0.5 * 2 mm = 1 mm
     EXPECT_EQ(proxy.position(), held);
   }
@@ -60,7 +61,7 @@ TEST(BoxProxy, SticksInsideTheFrictionCone) {
 TEST(BoxProxy, TrailsByMuDepthOutsideTheCone) {
   BoxProxy proxy(kHalf, 0.5);
   proxy.place({-0.01, 0, 0.03});
-  for (double x = -0.01; x < 0.012; x += 0.0005) proxy.move({x, x / 2, 0.017});
+  for (int i = -20; i < 25; ++i) proxy.move({0.0005 * i, 0.00025 * i, 0.017});
   const Vec3 probe{0.0125, 0.00625, 0.017};
   proxy.move(probe);
   const Vec3 lag = proxy.position() - Vec3{probe.x, probe.y, 0.02};
@@ -72,8 +73,8 @@ TEST(BoxProxy, TrailsByMuDepthOutsideTheCone) {
 TEST(BoxProxy, EdgeDoesNotTurnTheForceWhileTheProbeIsInside) {
   BoxProxy proxy(kHalf, 0);
   proxy.place({0.01, 0, 0.03});
-  for (double x = 0.01; x < 0.02; x += 0.0001) {
-    proxy.move({x, 0, 0.01});  // 10 mm deep: soon far nearer to the side than to the top
+  for (int i = 0; i < 100; ++i) {
+    proxy.move({0.01 + 0.0001 * i, 0, 0.01});  // 10 mm deep: soon far nearer to the side than to the top
     ASSERT_TRUE(proxy.face());
     expect_near(proxy.normal(), {0, 0, 1});
   }

@@ -101,10 +101,8 @@ TEST(RigidWorld, TipsOverItsEdgeOnlyAboveTheLever) {
       ASSERT_TRUE(world.step());
     }
     const double tilt = angle_between(world.sample(0).pose.rotation, Quat{});
-    if (share < 1)
-      EXPECT_LT(tilt, 1e-6);
-    else
-      EXPECT_GT(tilt, 0.05);
+    if (share < 1) EXPECT_LT(tilt, 1e-6);
+    else EXPECT_GT(tilt, 0.05);
   }
 }
 
@@ -199,11 +197,11 @@ TEST(RigidWorld, OdeAllocatesNothingAfterTheFirstStep) {
   dReallocFunction* const realloc = dGetReallocHandler();
   dSetAllocHandler([](dsizeint size) {
     ++ode_allocations;
-    return std::malloc(size);
+    return std::malloc(size);  // NOLINT(cppcoreguidelines-no-malloc): ODE wants memory of this kind
   });
   dSetReallocHandler([](void* p, dsizeint, dsizeint size) {
     ++ode_allocations;
-    return std::realloc(p, size);
+    return std::realloc(p, size);  // NOLINT(cppcoreguidelines-no-malloc)
   });
   {
     RigidWorld world(cube_scene());

@@ -26,23 +26,25 @@ TEST(MinimumJerk, StartsAndEndsAtRest) {
   EXPECT_EQ(minimum_jerk(1).slope, 0);
   EXPECT_DOUBLE_EQ(minimum_jerk(0.5).place, 0.5);
   EXPECT_DOUBLE_EQ(minimum_jerk(0.5).slope, 1.875);
-  for (double s = 0.01; s < 1; s += 0.01)
+  for (int i = 1; i < 100; ++i) {
+    const double s = 0.01 * i;
     EXPECT_NEAR((minimum_jerk(s + 1e-6).place - minimum_jerk(s - 1e-6).place) / 2e-6, minimum_jerk(s).slope, 1e-8);
+  }
 }
 
 TEST(Random, IsUniformAndRepeats) {
   Random random(42), again(42);
   double sum = 0, squares = 0;
-  constexpr int kDraws = 100'000;
-  for (int i = 0; i < kDraws; ++i) {
+  constexpr int draws = 100'000;
+  for (int i = 0; i < draws; ++i) {
     const double u = random.uniform(-1, 3);
     ASSERT_EQ(u, again.uniform(-1, 3));
     ASSERT_TRUE(u >= -1 && u < 3);
     sum += u;
     squares += u * u;
   }
-  EXPECT_NEAR(sum / kDraws, 1, 0.02);
-  EXPECT_NEAR(squares / kDraws - 1, 16.0 / 12, 0.02);
+  EXPECT_NEAR(sum / draws, 1, 0.02);
+  EXPECT_NEAR(squares / draws - 1, 16.0 / 12, 0.02);
 }
 
 TEST(DeviceFilter, QuantisesAndAverages) {
@@ -64,17 +66,17 @@ Vec3 free_tremor(Grip grip, double rms, std::uint64_t seed) {
   SceneUser user = still_user();
   user.tremor = rms;
   Hand hand(user, grip, seed);
-  constexpr int kSettle = 1000, kTicks = 20'000;
+  constexpr int settle = 1000, ticks = 20'000;
   Vec3 sum, squares;
-  for (int i = 0; i < kSettle + kTicks; ++i) {
+  for (int i = 0; i < settle + ticks; ++i) {
     hand.step({}, {});
-    if (i < kSettle) continue;
+    if (i < settle) continue;
     const Vec3 d = hand.position() - user.start;
     sum = sum + d;
     squares = squares + Vec3{d.x * d.x, d.y * d.y, d.z * d.z};
   }
-  const Vec3 mean = (1.0 / kTicks) * sum;
-  const auto deviation = [&](double square, double m) { return std::sqrt(square / kTicks - m * m); };
+  const Vec3 mean = (1.0 / ticks) * sum;
+  const auto deviation = [&](double square, double m) { return std::sqrt(square / ticks - m * m); };
   return {deviation(squares.x, mean.x), deviation(squares.y, mean.y), deviation(squares.z, mean.z)};
 }
 
