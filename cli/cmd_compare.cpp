@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/cmd_compare.h"
+
+#include <fmt/format.h>
+
+#include "cli/report.h"
+#include "codec/trace/trace_file.h"
+
+namespace tactus::cli {
+namespace {
+
+struct CompareOptions {
+  std::string truth, replica;
+  TriggerArguments triggers;
+  CommonOptions common;
+};
+
+Outcome check_same_scene(const CompareOptions& options, const TraceInfo& truth, const TraceInfo& replica) {
+  const auto differ = [&](const std::string& what) {
+    return refuse(options.replica + ": " + what + " as in " + options.truth, "Compare a trace with the replica that was decoded from its own stream.");
+  };
+  if (truth.tick_rate != replica.tick_rate) return differ(fmt::format("the tick rate is {} Hz, not {} Hz", replica.tick_rate, truth.tick_rate));
+  if (truth.objects.size() != replica.objects.size()) {
+    return differ(fmt::format("there are {} objects, not {}", replica.objects.size(), truth.objects.size()));
+  }
+  for (std::size_t i = 0; i < truth.objects.size(); ++i) {
+    if (truth.objects[i].name != replica.objects[i].name) {
+      return differ(fmt::format("object {} is \"{}\", not \"{}\"", i, replica.objects[i].name, truth.objects[i].name));
+    }
+  }
+  return {};
+}
+
+/// Both traces side by side; ticks that only one of them has are passed over.
+/// out  number of the truth's ticks that the replica lacks
+tl::expected<std::uint64_t, Failure> compare_all(TraceReader& truth, TraceReader& replica, const CompareOptions& options, Report& report) {
+  Progress progress("compare", truth.frame_count(), options.common.progress());
+  std::uint64_t unmatched = 0;
+  TraceFrame frame, shown;
+  std::vector<Pose> poses(truth.info().objects.size());
+  bool more = true;
+  shown.tick = -1;
+  while (true) {
+    const auto next = truth.next(frame);
+    if (!next) return refuse(options.truth, next.error());
+    if (!*next) return unmatched;
+    while (more && shown.tick < frame.tick) {
+      const auto advanced = replica.next(shown);
+      if (!advanced) return refuse(options.replica, advanced.error());
+      more = *advanced;
+    }
+    if (!more || shown.tick != frame.tick) {
+      ++unmatched;
+      continue;
+    }
+    for (std::size_t i = 0; i < poses.size(); ++i) poses[i] = shown.objects[i].pose;
+    report.timings[0].times.measure([&] { return report.fidelity->add(frame, poses), true; });
+    progress.update(++report.ticks);
+  }
+}
+
+Outcome run(const CompareOptions& options) {
+  auto truth = TraceReader::open(options.truth);
+  if (!truth) return refuse(options.truth, truth.error());
+  auto replica = TraceReader::open(options.replica);
+  if (!replica) return refuse(options.replica, replica.error());
+  if (auto same = check_same_scene(options, truth->info(), replica->info()); !same) return same;
+
+  Report report{.command = "compare", .files = {{"truth", options.truth}, {"replica", options.replica}}};
+  report.describe(truth->info());
+  report.fidelity.emplace(truth->info(), options.triggers.triggers());
+  report.timings = {{"compare, per tick", {}}};
+  const auto unmatched = compare_all(*truth, *replica, options, report);
+  if (!unmatched) return tl::unexpected(unmatched.error());
+  if (report.ticks == 0) return refuse(options.replica + ": shares no tick with " + options.truth, "Decode with --like " + options.truth + ".");
+  if (*unmatched > 0) {
+    report.notes.emplace_back("warning", fmt::format("{} of {} ticks are not in the replica and were left out; decode with --like {}",
+                                                     *unmatched, *unmatched + report.ticks, options.truth));
+  }
+  print(report, options.common, Destination::standard_output);
+  return {};
+}
+
+}  // namespace
+
+void setup_compare(CLI::App& app, Action& action) {
+  auto options = std::make_shared<CompareOptions>();
+  CLI::App& command = *app.add_subcommand("compare", "Hold a replica against the truth");
+  command.add_option("TRUTH", options->truth, "What truly happened (MCAP)")->required();
+  command.add_option("REPLICA", options->replica, "What a client showed (MCAP)")->required();
+  options->triggers.add_to(command);
+  add_report_options(command, options->common);
+  command.footer("Ticks over a bound are counted; give the bounds that the stream was encoded with.\n"
+                 "Example:\n"
+                 "  tactus compare push.mcap replica.mcap -p 4% --visual 6mm,2deg");
+  on_chosen<CompareOptions>(command, action, options, run);
+}
+
+}  // namespace tactus::cli

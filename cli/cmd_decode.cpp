@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/cmd_decode.h"
+
+#include "cli/report.h"
+#include "codec/trace/trace_file.h"
+
+namespace tactus::cli {
+namespace {
+
+struct DecodeOptions {
+  std::string input, output, like;
+  std::optional<std::int64_t> ticks;
+  ReplicaOptions replica;
+  CommonOptions common;
+};
+
+/// The ticks to write, one after the other: those of another trace, a number of them, or all up to the last packet's.
+class TickSource {
+ public:
+  static tl::expected<TickSource, Failure> create(const DecodeOptions& options) {
+    TickSource source(options);
+    if (options.like.empty()) return source;
+    auto like = TraceReader::open(options.like);
+    if (!like) return refuse(options.like, like.error());
+    source.like_.emplace(std::move(*like));
+    return source;
+  }
+  tl::expected<std::optional<std::int64_t>, Failure> next(StreamPlayer& player) {
+    if (like_) {
+      const auto more = like_->next(frame_);
+      if (!more) return refuse(options_->like, more.error());
+      return *more ? std::optional(frame_.tick) : std::nullopt;
+    }
+    if (options_->ticks) return tick_ < *options_->ticks ? std::optional(tick_++) : std::nullopt;
+    const auto waiting = player.next_tick();
+    if (!waiting) return refuse(options_->input, waiting.error());
+    return *waiting ? std::optional(tick_++) : std::nullopt;
+  }
+
+ private:
+  explicit TickSource(const DecodeOptions& options) : options_(&options) {}
+  const DecodeOptions* options_;
+  std::optional<TraceReader> like_;
+  TraceFrame frame_;
+  std::int64_t tick_ = 0;
+};
+
+TraceInfo replica_info(const StreamHeader& header, const std::string& input) {
+  TraceInfo info;
+  info.tick_rate = header.tick_rate;
+  info.source = "decode " + input;
+  for (const RigidObject& object : header.objects) info.objects.push_back({object.name, object.dof});
+  return info;
+}
+
+/// Bring the player to `tick` and write what it shows there. The velocities are those of what is shown: differences from tick to tick
+/// would be noise, so a replica's trace holds none.
+Outcome decode_tick(StreamPlayer& player, std::int64_t tick, const DecodeOptions& options, TraceFrame& frame, Report& report) {
+  while (true) {
+    const auto played = report.timings[0].times.measure([&] { return player.play(tick); });
+    if (!played) return refuse(options.input, played.error());
+    if (!*played) break;
+    const StreamPlayer::Played& p = **played;
+    report.traffic->add(strongest_reason(p.packet), p.packet.updates.size(), p.bytes, p.packet.key);
+  }
+  frame.tick = tick;
+  for (std::uint32_t i = 0; i < frame.objects.size(); ++i) frame.objects[i].pose = player.pose(i, tick);
+  ++report.ticks;
+  return {};
+}
+
+Outcome decode_all(StreamPlayer& player, TraceWriter& writer, const DecodeOptions& options, Report& report) {
+  auto ticks = TickSource::create(options);
+  if (!ticks) return tl::unexpected(ticks.error());
+  TraceFrame frame;
+  frame.objects.resize(player.header().objects.size());
+  const auto total = options.ticks ? std::optional(static_cast<std::uint64_t>(*options.ticks)) : std::nullopt;
+  Progress progress("decode", total, options.common.progress());
+  while (true) {
+    const auto tick = ticks->next(player);
+    if (!tick) return tl::unexpected(tick.error());
+    if (!*tick) break;
+    if (auto done = decode_tick(player, **tick, options, frame, report); !done) return done;
+    if (const auto written = writer.write(frame); !written) return refuse(options.output, place_of_tick(frame.tick), written.error());
+    progress.update(report.ticks);
+  }
+  if (const auto done = writer.finish(); !done) return refuse(options.output, done.error());
+  return {};
+}
+
+Outcome run(const DecodeOptions& options) {
+  const auto bytes = read_file(options.input);
+  if (!bytes) return tl::unexpected(bytes.error());
+  auto player = StreamPlayer::open({reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()}, options.replica);
+  if (!player) return refuse(options.input, player.error());
+  auto output = OutputFile::create(options.output, options.common.existing());
+  if (!output) return tl::unexpected(output.error());
+  const TraceInfo info = replica_info(player->header(), options.input);
+  auto writer = TraceWriter::create(output->working_path(), info);
+  if (!writer) return refuse(options.output, writer.error());
+
+  Report report{.command = "decode", .files = {{"stream", options.input}, {"replica", options.output}}};
+  report.describe(info);
+  report.traffic.emplace();
+  report.timings = {{"decode and apply, per look", {}}};
+  const bool smooth = options.replica.interpolation == Interpolation::linear;
+  report.notes.emplace_back("client", smooth ? "interpolates" : "applies updates at once");
+  if (auto done = decode_all(*player, *writer, options, report); !done) return done;
+  if (const auto rest = player->next_tick(); rest && !*rest && !player->complete()) {
+    report.notes.emplace_back("warning", "the stream has no trailer: its writer did not finish");
+  }
+  if (auto kept = output->keep(); !kept) return kept;
+  print(report, options.common, beside(options.output));
+  return {};
+}
+
+}  // namespace
+
+void setup_decode(CLI::App& app, Action& action) {
+  auto options = std::make_shared<DecodeOptions>();
+  CLI::App& command = *app.add_subcommand("decode", "Reconstruct what a client shows from a stream");
+  command.add_option("STREAM", options->input, "Stream to decode, - is standard input")->required();
+  command.add_option("-o,--output", options->output, "Trace of the replica to write, - is standard output")->required()->type_name("FILE");
+  add_interpolation(command, options->replica);
+  CLI::Option* like = command.add_option("--like", options->like, "Write the ticks that this trace has")->type_name("TRACE");
+  command.add_option("--ticks", options->ticks, "Write so many ticks [up to the last packet]")->check(CLI::PositiveNumber)->excludes(like);
+  add_output_options(command, options->common);
+  command.footer("Examples:\n"
+                 "  tactus decode push.tct -o replica.mcap --like push.mcap\n"
+                 "  tactus decode push.tct -o smooth.mcap --interpolate");
+  on_chosen<DecodeOptions>(command, action, options, run);
+}
+
+}  // namespace tactus::cli

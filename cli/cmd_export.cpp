@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/cmd_export.h"
+
+#include "cli/options_codec.h"
+#include "codec/trace/csv.h"
+#include "codec/trace/trace_file.h"
+
+namespace tactus::cli {
+namespace {
+
+struct ExportOptions {
+  std::string input, output = "-";
+  bool force = false;
+};
+
+Outcome run(const ExportOptions& options) {
+  auto reader = TraceReader::open(options.input);
+  if (!reader) return refuse(options.input, reader.error());
+  auto output = OutputFile::create(options.output, options.force ? OutputFile::Existing::replace : OutputFile::Existing::keep);
+  if (!output) return tl::unexpected(output.error());
+  const auto stream = output->open();
+  if (!stream) return tl::unexpected(stream.error());
+  if (const auto rows = export_csv(*reader, **stream); !rows) return refuse(options.input, rows.error());
+  return output->keep();
+}
+
+}  // namespace
+
+void setup_export(CLI::App& app, Action& action) {
+  auto options = std::make_shared<ExportOptions>();
+  CLI::App& group = *app.add_subcommand("export", "Write a trace in another format");
+  group.require_subcommand(1);
+  CLI::App& command = *group.add_subcommand("csv", "One row per tick, 17 significant digits");
+  command.add_option("TRACE", options->input, "Trace to export (MCAP), - is standard input")->required();
+  command.add_option("-o,--output", options->output, "CSV to write [standard output]")->type_name("FILE");
+  command.add_flag("-f,--force", options->force, "Replace an output file that is there already");
+  command.footer("Example:\n  tactus export csv push.mcap -o push.csv");
+  on_chosen<ExportOptions>(command, action, options, run);
+}
+
+}  // namespace tactus::cli

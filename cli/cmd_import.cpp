@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/cmd_import.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <span>
+
+#include "cli/report.h"
+#include "cli/table.h"
+#include "codec/trace/csv.h"
+
+namespace tactus::cli {
+namespace {
+
+struct ImportOptions {
+  std::string input, output, preset;
+  std::vector<std::string> maps;
+  std::string object, user, time, segment;
+  double length_scale = 0;
+  std::uint32_t tick_rate = 0;
+  bool list_presets = false;
+  CommonOptions common;
+};
+
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == ',') parts.emplace_back();
+    else parts.back() += c;
+  }
+  return parts;
+}
+
+/// "position=x,y,z" into the mapping.
+Outcome apply_map(const std::string& text, CsvMapping& mapping) {
+  const std::map<std::string, std::span<std::string>> targets{
+      {"position", mapping.position}, {"rotation", mapping.rotation}, {"velocity", mapping.velocity},
+      {"angular_velocity", mapping.angular_velocity}, {"device", mapping.device}, {"force", mapping.force}};
+  const std::size_t equals = text.find('=');
+  const auto target = targets.find(text.substr(0, equals));
+  if (equals == std::string::npos || target == targets.end()) {
+    return refuse("--map '" + text + "': not QUANTITY=COLUMNS",
+                  "Quantities are position, rotation (w,x,y,z), velocity, angular_velocity, device and force.");
+  }
+  const auto columns = split(text.substr(equals + 1));
+  if (columns.size() != target->second.size()) {
+    return refuse(fmt::format("--map '{}': {} columns where {} needs {}", text, columns.size(), target->first, target->second.size()),
+                  "Name the columns as the first line of the file does, with commas between.");
+  }
+  std::copy(columns.begin(), columns.end(), target->second.begin());
+  return {};
+}
+
+tl::expected<CsvMapping, Failure> make_mapping(const ImportOptions& options) {
+  CsvMapping mapping;
+  if (!options.preset.empty()) {
+    const auto& presets = csv_presets();
+    const auto found = std::find_if(presets.begin(), presets.end(), [&](const CsvPreset& p) { return options.preset == p.name; });
+    if (found == presets.end()) return refuse("--preset " + options.preset + ": no such preset", "`tactus import csv --list-presets` names them.");
+    mapping = found->mapping;
+  }
+  for (const std::string& map : options.maps) {
+    if (auto applied = apply_map(map, mapping); !applied) return tl::unexpected(applied.error());
+  }
+  if (!options.object.empty()) mapping.object = options.object;
+  if (!options.user.empty()) mapping.user = options.user;
+  if (!options.time.empty()) mapping.time = options.time;
+  if (!options.segment.empty()) mapping.segment = options.segment;
+  if (options.length_scale > 0) mapping.length_scale = options.length_scale;
+  if (options.tick_rate > 0) mapping.tick_rate = options.tick_rate;
+  if (options.preset.empty() && options.maps.empty()) {
+    return refuse("nothing says which columns to read", "Give --preset NAME or --map position=x,y,z.");
+  }
+  return mapping;
+}
+
+tl::unexpected<Failure> refuse_csv(const std::string& file, const CsvError& e) {
+  std::string place = e.line > 0 ? fmt::format("line {}", e.line) : "";
+  if (!e.column.empty()) place += fmt::format("{}column {}", place.empty() ? "" : ", ", e.column);
+  if (!e.text.empty()) place += fmt::format("{}'{}'", place.empty() ? "" : ", ", e.text);
+  return refuse(file, place, e.error);
+}
+
+void list_presets() {
+  for (const CsvPreset& preset : csv_presets()) fmt::print("{:<24} {}\n", preset.name, preset.description);
+}
+
+Outcome run(const ImportOptions& options) {
+  if (options.list_presets) {
+    list_presets();
+    return {};
+  }
+  const auto mapping = make_mapping(options);
+  if (!mapping) return tl::unexpected(mapping.error());
+  auto output = OutputFile::create(options.output, options.common.existing());
+  if (!output) return tl::unexpected(output.error());
+  Report report{.command = "import csv", .files = {{"table", options.input}, {"trace", options.output}}};
+  report.timings = {{"import, whole file", {}}};
+  const auto imported = report.timings[0].times.measure([&] { return import_csv(options.input, *mapping, output->working_path()); });
+  if (!imported) return refuse_csv(options.input, imported.error());
+  if (options.output != "-") {
+    const auto reader = TraceReader::open(output->working_path());
+    if (!reader) return refuse(options.output, reader.error());
+    report.describe(reader->info());
+  }
+  report.ticks = imported->rows;
+  report.notes.emplace_back("content", fmt::format("{} in {}", counted(imported->rows, "row"), counted(imported->segments, "segment")));
+  if (auto kept = output->keep(); !kept) return kept;
+  print(report, options.common, beside(options.output));
+  return {};
+}
+
+}  // namespace
+
+void setup_import(CLI::App& app, Action& action) {
+  auto options = std::make_shared<ImportOptions>();
+  CLI::App& group = *app.add_subcommand("import", "Make a trace from a recording");
+  group.require_subcommand(1);
+  CLI::App& command = *group.add_subcommand("csv", "A table with one row per sample, plain or zstd");
+  CLI::Option* list = command.add_flag("--list-presets", options->list_presets, "Name the column mappings that are built in");
+  CLI::Option* input = command.add_option("FILE", options->input, "Table to read, - is standard input");
+  CLI::Option* output = command.add_option("-o,--output", options->output, "Trace to write (MCAP), - is standard output")->type_name("FILE");
+  command.add_option("--preset", options->preset, "Column mapping that is built in")->type_name("NAME");
+  command.add_option("--map", options->maps, "Columns of one quantity, such as position=x,y,z; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("QUANTITY=COLUMNS");
+  command.add_option("--time", options->time, "Column with the time in seconds")->type_name("COLUMN");
+  command.add_option("--segment", options->segment, "Column that tells one recording in the table from the next")->type_name("COLUMN");
+  command.add_option("--object", options->object, "Name of the object")->type_name("NAME");
+  command.add_option("--user", options->user, "Name of the user")->type_name("NAME");
+  add_quantity(command, "--length-unit", options->length_scale, Dimension::length, "Metres per unit of the table's lengths [1m]");
+  command.add_option("--tick-rate", options->tick_rate, "Samples per second [from the times]")->check(CLI::Range(1, 1000000))->type_name("HZ");
+  add_output_options(command, options->common);
+  command.footer("Examples:\n"
+                 "  tactus import csv tosses.csv.zst --preset cube-tosses -o tosses.mcap\n"
+                 "  tactus import csv arm.csv --time t --map position=x,y,z --map rotation=qw,qx,qy,qz -o arm.mcap");
+  command.callback([&action, options, list, input, output] {
+    if (list->count() == 0 && input->count() == 0) throw CLI::RequiredError("FILE");
+    if (list->count() == 0 && output->count() == 0) throw CLI::RequiredError("--output");
+    action = [options] { return run(*options); };
+  });
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/cmd_info.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "cli/output.h"
+#include "cli/table.h"
+#include "codec/trace/compare.h"
+#include "codec/trace/mcap_reader.h"
+#include "codec/trace/trace_file.h"
+#ifdef TACTUS_HAS_SIM
+#include "sim/scene/scene.h"
+#endif
+
+namespace tactus::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct InfoOptions {
+  std::string input;
+  bool packets = false, json = false;
+};
+
+constexpr std::array<const char*, 4> kReasons{"request", "heartbeat", "visual", "haptic"};  // index: Reason
+
+std::string dof_text(std::uint8_t dof) {
+  if (dof == Dof::none) return "static";
+  if (dof == Dof::all) return "all";
+  constexpr std::array<const char*, 6> kNames{"x", "y", "z", "rx", "ry", "rz"};
+  std::string text;
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    if (dof >> i & 1u) text += (text.empty() ? "" : " ") + std::string(kNames[i]);
+  }
+  return text;
+}
+
+Outcome show(const Json& info, bool as_json, void (*print_text)(const Json&)) {
+  if (as_json) {
+    fmt::print("{}\n", info.dump(2));
+  } else {
+    print_text(info);
+  }
+  return {};
+}
+
+std::string text_of(const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
+
+/// Scalars of an object as "name value" lines.
+void print_scalars(const Json& object) {
+  for (const auto& [name, value] : object.items()) {
+    if (value.is_primitive() && name != "schema") fmt::print("{:<18} {}\n", name, text_of(value));
+  }
+}
+
+/// A list of equal objects as a table.
+void print_list(const Json& list) {
+  if (list.empty()) return;
+  Table table;
+  std::vector<std::string> cells;
+  for (const auto& item : list.front().items()) cells.push_back(item.key());
+  table.heading(cells);
+  for (const Json& entry : list) {
+    cells.clear();
+    for (const auto& item : entry.items()) cells.push_back(text_of(item.value()));
+    table.row(cells);
+  }
+  fmt::print("\n");
+  table.print(stdout);
+}
+
+void print_info(const Json& info) {
+  print_scalars(info);
+  for (const auto& [name, value] : info.items()) {
+    if (value.is_array()) print_list(value);
+  }
+}
+
+Json packet_json(const StreamPlayer::Played& played) {
+  const DecodedPacket& p = played.packet;
+  Json out{{"tick", p.tick}, {"byte", played.offset}, {"sequence", p.sequence}, {"key", p.key ? "key" : "-"}, {"bytes", played.bytes},
+           {"reason", kReasons[static_cast<std::size_t>(strongest_reason(p))]}};
+  std::string updates;
+  for (const RigidUpdate& u : p.updates) updates += fmt::format("{}{}:{}", updates.empty() ? "" : " ", u.object, u.level);
+  out["object:level"] = updates;
+  return out;
+}
+
+/// Totals over a stream's packets.
+struct StreamTotals {
+  Traffic traffic;
+  std::array<std::uint64_t, 8> levels{};
+  std::int64_t last_tick = 0;
+  std::size_t smallest = SIZE_MAX, largest = 0;
+
+  void add(const StreamPlayer::Played& p) {
+    traffic.add(strongest_reason(p.packet), p.packet.updates.size(), p.bytes, p.packet.key);
+    for (const RigidUpdate& u : p.packet.updates) ++levels[u.level % levels.size()];
+    last_tick = p.packet.tick;
+    smallest = std::min(smallest, p.bytes);
+    largest = std::max(largest, p.bytes);
+  }
+  void write_to(Json& out) const {
+    out["packets"] = traffic.all_packets();
+    out["updates"] = traffic.updates;
+    out["key packets"] = traffic.keys;
+    if (traffic.all_packets() == 0) return;
+    for (std::size_t i = kReasons.size(); i-- > 0;) out[fmt::format("for {}", kReasons[i])] = traffic.packets[i];
+    out["bytes"] = traffic.bytes;
+    out["bytes per packet"] = fmt::format("{} to {}, mean {:.2f}", smallest, largest,
+                                          static_cast<double>(traffic.bytes) / static_cast<double>(traffic.all_packets()));
+    std::string text;
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      if (levels[i] > 0) text += fmt::format("{}{} x level {}", text.empty() ? "" : ", ", levels[i], i);
+    }
+    out["grid levels"] = text;
+    out["last tick"] = last_tick;
+  }
+};
+
+Json header_json(const StreamHeader& h, std::size_t size) {
+  const auto step = [](std::uint8_t exponent) { return 1.0 / static_cast<double>(std::uint64_t{1} << exponent); };
+  return {{"schema", "tactus.info/1"},
+          {"kind", "stream"},
+          {"profile", h.profile == Profile::thesis ? "thesis" : "main"},
+          {"file bytes", size},
+          {"ticks per second", h.tick_rate},
+          {"position grid", fmt::format("{:.3g} um", 1e6 * step(h.grid.position))},
+          {"rotation grid", fmt::format("{:.3g} urad", 2e6 * step(h.grid.rotation))},
+          {"extrapolation", fmt::format("at most {} ticks", h.max_extrapolation)},
+          {"baselines kept", h.baseline_span}};
+}
+
+Outcome info_stream(const InfoOptions& options) {
+  const auto bytes = read_file(options.input);
+  if (!bytes) return tl::unexpected(bytes.error());
+  auto player = StreamPlayer::open({reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()});
+  if (!player) return refuse(options.input, player.error());
+  Json info = header_json(player->header(), bytes->size());
+  StreamTotals totals;
+  Json packets = Json::array();
+  std::optional<Error> error;
+  while (true) {
+    const auto played = player->play(INT64_MAX);
+    if (!played) error = played.error();
+    if (!played || !*played) break;
+    totals.add(**played);
+    if (options.packets) packets.push_back(packet_json(**played));
+  }
+  totals.write_to(info);
+  info["ending"] = error ? fmt::format("broken at {} ({})", place_of_bit(error->bit_offset), error->rule)
+                         : player->complete() ? "complete" : "no trailer: the writer did not finish";
+  for (const RigidObject& o : player->header().objects) {
+    const Pose pose = to_pose({o.initial.position, o.initial.rotation}, player->header().grid);
+    info["objects"].push_back({{"object", o.name}, {"moves along", dof_text(o.dof)},
+                               {"first position [m]", fmt::format("{:.4f} {:.4f} {:.4f}", pose.position.x, pose.position.y, pose.position.z)}});
+  }
+  if (options.packets) info["packet list"] = std::move(packets);
+  if (auto shown = show(info, options.json, print_info); !shown || !error) return shown;
+  return refuse(options.input, *error);
+}
+
+/// Topics with their types and message counts, from the container alone.
+tl::expected<Json, Failure> channels_json(const std::string& path) {
+  auto source = ByteSource::open_file(path);
+  if (!source) return refuse(path, source.error());
+  auto reader = mcap::Reader::open(std::move(*source));
+  if (!reader) return refuse(path, reader.error());
+  std::map<std::uint16_t, std::uint64_t> counts;
+  while (true) {
+    const auto item = reader->next();
+    if (!item) return refuse(path, item.error());
+    if (*item == mcap::Item::end) break;
+    if (*item == mcap::Item::message) ++counts[reader->message().channel_id];
+  }
+  Json list = Json::array();
+  for (const auto& [id, channel] : reader->channels()) {
+    const auto schema = reader->schemas().find(channel.schema_id);
+    list.push_back({{"topic", channel.topic}, {"type", schema == reader->schemas().end() ? "-" : schema->second.name}, {"messages", counts[id]}});
+  }
+  return list;
+}
+
+Outcome info_trace(const InfoOptions& options) {
+  auto reader = TraceReader::open(options.input);
+  if (!reader) return refuse(options.input, reader.error());
+  const TraceInfo& trace = reader->info();
+  TraceFrame frame;
+  std::uint64_t frames = 0;
+  std::int64_t first = 0;
+  while (true) {
+    const auto more = reader->next(frame);
+    if (!more) return refuse(options.input, more.error());
+    if (!*more) break;
+    if (frames++ == 0) first = frame.tick;
+  }
+  Json info{{"schema", "tactus.info/1"}, {"kind", "trace"}, {"source", trace.source}, {"ticks per second", trace.tick_rate},
+            {"frames", frames}, {"first tick", first}, {"last tick", frame.tick},
+            {"seconds", static_cast<double>(frame.tick - first + (frames > 0 ? 1 : 0)) / trace.tick_rate},
+            {"scene", trace.scene.empty() ? "none" : fmt::format("{} bytes of TOML", trace.scene.size())},
+            {"ending", reader->cut_short() ? "cut short; everything up to there was read" : "complete"}};
+  for (const TraceObject& o : trace.objects) info["objects"].push_back({{"object", o.name}, {"moves along", dof_text(o.dof)}});
+  for (const std::string& user : trace.users) info["users"].push_back({{"user", user}});
+  auto channels = channels_json(options.input);
+  if (!channels) return tl::unexpected(channels.error());
+  info["channels"] = std::move(*channels);
+  return show(info, options.json, print_info);
+}
+
+#ifdef TACTUS_HAS_SIM
+Outcome info_scene(const InfoOptions& options) {
+  const auto scene = load_scene(options.input);
+  if (!scene) return refuse(to_string(scene.error()), "");
+  Json info{{"schema", "tactus.info/1"}, {"kind", "scene"}, {"name", scene->name}, {"seconds", scene->duration},
+            {"floor", scene->floor ? fmt::format("at {} m", *scene->floor) : "none"}};
+  if (scene->touch) info["touch stiffness"] = fmt::format("{} N/m", scene->touch->stiffness);
+  for (const SceneObject& o : scene->objects) {
+    info["objects"].push_back({{"object", o.name}, {"moves along", dof_text(o.dof)}, {"mass [kg]", o.mass}, {"friction", o.friction},
+                               {"size [m]", fmt::format("{} {} {}", o.size.x, o.size.y, o.size.z)}});
+  }
+  for (const SceneUser& u : scene->users) info["users"].push_back({{"user", u.name}, {"phases of the path", u.path.size()}});
+  return show(info, options.json, print_info);
+}
+#endif
+
+Outcome run(const InfoOptions& options) {
+#ifdef TACTUS_HAS_SIM
+  if (options.input.ends_with(".toml")) return info_scene(options);
+#endif
+  std::ifstream file(options.input, std::ios::binary);
+  std::string magic(mcap::kMagic.size(), '\0');
+  file.read(magic.data(), static_cast<std::streamsize>(magic.size()));
+  if (magic.substr(0, 5) == "\x89MCAP") return info_trace(options);
+  return info_stream(options);
+}
+
+}  // namespace
+
+void setup_info(CLI::App& app, Action& action) {
+  auto options = std::make_shared<InfoOptions>();
+  CLI::App& command = *app.add_subcommand("info", "Tell what a stream, trace or scene holds");
+  command.add_option("FILE", options->input, "Stream (.tct), trace (.mcap) or scene (.toml)")->required();
+  command.add_flag("--packets", options->packets, "List every packet of a stream");
+  command.add_flag("--json", options->json, "As JSON");
+  command.footer("Example:\n  tactus info push.tct --packets");
+  on_chosen<InfoOptions>(command, action, options, run);
+}
+
+}  // namespace tactus::cli

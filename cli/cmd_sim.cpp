@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/cmd_sim.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+
+#include "cli/report.h"
+#include "codec/trace/trace_file.h"
+#include "sim/simulation.h"
+
+namespace tactus::cli {
+namespace {
+
+struct SimOptions {
+  std::string scene, output, stream, replay;
+  std::uint64_t seed = 1;
+  double duration = 0;  // [s], 0: the scene's
+  std::optional<Grip> grip;
+  bool codec = false;
+  TriggerArguments triggers;
+  ReplicaOptions replica;
+  CommonOptions common;
+
+  bool has_channel() const {
+    return codec || !stream.empty() || triggers.any_given() || replica.interpolation != Interpolation::none;
+  }
+};
+
+/// Where packets go, if anywhere.
+struct StreamOutput {
+  OutputFile file;
+  StreamFileWriter writer;
+};
+
+tl::expected<StreamOutput, Failure> open_stream(const SimOptions& options, const StreamHeader& header) {
+  auto file = OutputFile::create(options.stream, options.common.existing());
+  if (!file) return tl::unexpected(file.error());
+  const auto out = file->open();
+  if (!out) return tl::unexpected(out.error());
+  auto writer = StreamFileWriter::create(**out, header);
+  if (!writer) return refuse(options.stream, writer.error());
+  return StreamOutput{std::move(*file), std::move(*writer)};
+}
+
+struct Run {
+  Simulation simulation;
+  TraceWriter trace;
+  std::optional<StreamOutput> stream;
+  std::optional<TraceReader> recording;
+  TraceFrame recorded;
+  std::uint64_t ticks_in_contact = 0;
+  double largest_force = 0;
+};
+
+/// One tick, by the scene's hands or by the recording.
+tl::expected<EncodedPacket, Failure> step(Run& run, const SimOptions& options, StepTimes& times) {
+  const auto stepped = times.measure([&] { return run.recording ? run.simulation.replay(run.recorded.users) : run.simulation.step(); });
+  if (!stepped) return refuse(options.scene, place_of_tick(stepped.error().tick), stepped.error().error);
+  return *stepped;
+}
+
+Outcome record(Run& run, const EncodedPacket& packet, const SimOptions& options, Report& report) {
+  const TraceFrame& frame = run.simulation.frame();
+  if (const auto written = run.trace.write(frame); !written) return refuse(options.output, place_of_tick(frame.tick), written.error());
+  if (report.traffic && !packet.bytes.empty()) report.traffic->add(packet.reason, packet.updates, packet.bytes.size(), packet.key);
+  if (run.stream && !packet.bytes.empty()) {
+    const auto added = run.stream->writer.add(frame.tick, packet.bytes, packet.key);
+    if (!added) return refuse(options.stream, added.error());
+  }
+  if (report.fidelity) {
+    report.fidelity->add(frame, run.simulation.client_poses());
+    report.fidelity->add_rendered(frame);
+  }
+  bool touched = false;
+  for (const UserSample& user : frame.users) {
+    touched = touched || user.contact.kind != ContactKind::none;
+    run.largest_force = std::max(run.largest_force, norm(user.force));
+  }
+  run.ticks_in_contact += touched ? 1 : 0;
+  ++report.ticks;
+  return {};
+}
+
+Outcome simulate(Run& run, std::int64_t ticks, const SimOptions& options, Report& report) {
+  Progress progress("sim", static_cast<std::uint64_t>(ticks), options.common.progress());
+  for (std::int64_t i = 0; i < ticks; ++i) {
+    if (run.recording) {
+      const auto more = run.recording->next(run.recorded);
+      if (!more) return refuse(options.replay, more.error());
+      if (!*more) break;
+    }
+    const auto packet = step(run, options, report.timings[0].times);
+    if (!packet) return tl::unexpected(packet.error());
+    if (auto done = record(run, *packet, options, report); !done) return done;
+    progress.update(report.ticks);
+  }
+  if (const auto done = run.trace.finish(); !done) return refuse(options.output, done.error());
+  if (!run.stream) return {};
+  if (const auto done = run.stream->writer.finish(); !done) return refuse(options.stream, done.error());
+  return run.stream->file.keep();
+}
+
+Report make_report(const SimOptions& options, const TraceInfo& info) {
+  Report report{.command = "sim", .files = {{"scene", options.scene}, {"trace", options.output}}};
+  if (!options.stream.empty()) report.files.emplace_back("stream", options.stream);
+  report.describe(info);
+  report.timings = {{options.has_channel() ? "simulate, encode, decode, per tick" : "simulate, per tick", {}}};
+  if (options.replay.empty()) report.notes.emplace_back("seed", fmt::to_string(options.seed));
+  else report.notes.emplace_back("replay", options.replay);
+  if (!options.has_channel()) return report;
+  report.traffic.emplace();
+  report.fidelity.emplace(info, options.triggers.triggers());
+  report.notes.emplace_back("client", options.replica.interpolation == Interpolation::none ? "applies updates at once" : "interpolates");
+  return report;
+}
+
+tl::expected<Scene, Failure> read_scene(const std::string& name) {
+  const auto path = find_scene(name);
+  if (!path) return refuse(to_string(path.error()), "");
+  auto scene = load_scene(*path);
+  if (!scene) return refuse(to_string(scene.error()), "");
+  return *scene;
+}
+
+Outcome run(const SimOptions& options) {
+  const auto scene = read_scene(options.scene);
+  if (!scene) return tl::unexpected(scene.error());
+  SimulationOptions settings{.seed = options.seed, .grip = options.grip, .channel = {}};
+  if (options.has_channel()) settings.channel = ChannelOptions{options.triggers.encoder(), options.replica};
+  auto simulation = Simulation::create(*scene, settings);
+  if (!simulation) return refuse(options.scene, simulation.error());
+  std::optional<TraceReader> recording;
+  if (!options.replay.empty()) {
+    auto reader = TraceReader::open(options.replay);
+    if (!reader) return refuse(options.replay, reader.error());
+    recording.emplace(std::move(*reader));
+  }
+  // The trace grows under its own name: what a crash leaves behind is readable.
+  if (auto free = OutputFile::create(options.output, options.common.existing()); !free) return tl::unexpected(free.error());
+  std::optional<StreamOutput> stream;
+  if (!options.stream.empty()) {
+    auto opened = open_stream(options, simulation->header());
+    if (!opened) return tl::unexpected(opened.error());
+    stream.emplace(std::move(*opened));
+  }
+  const TraceInfo info = simulation->info();
+  auto trace = TraceWriter::create(options.output, info);
+  if (!trace) return refuse(options.output, trace.error());
+
+  Report report = make_report(options, info);
+  Run session{std::move(*simulation), std::move(*trace), std::move(stream), std::move(recording), {}};
+  const auto ticks = options.duration > 0 ? static_cast<std::int64_t>(std::llround(options.duration * kTickRate)) : session.simulation.ticks();
+  if (auto done = simulate(session, ticks, options, report); !done) return done;
+  if (!info.users.empty()) {
+    report.notes.emplace_back("contact", fmt::format("{:.1f} % of the ticks, at most {:.2f} N",
+                                                     100.0 * static_cast<double>(session.ticks_in_contact) / static_cast<double>(report.ticks),
+                                                     session.largest_force));
+  }
+  print(report, options.common, beside(options.output));
+  return {};
+}
+
+}  // namespace
+
+void setup_sim(CLI::App& app, Action& action) {
+  auto options = std::make_shared<SimOptions>();
+  CLI::App& command = *app.add_subcommand("sim", "Simulate a touch into a trace");
+  command.add_option("SCENE", options->scene, "push-1dof, rotate-6dof, rotate-push-lift, or a TOML file")->required();
+  command.add_option("-o,--output", options->output, "Trace to write (MCAP), - is standard output")->required()->type_name("FILE");
+  command.add_option("--seed", options->seed, "Every random number follows from it")->capture_default_str()->type_name("N");
+  add_quantity(command, "--duration", options->duration, Dimension::time, "Length [the scene's]");
+  const std::map<std::string, Grip> grips{{"loose", Grip::loose}, {"normal", Grip::normal}, {"firm", Grip::firm}};
+  command.add_option_function<std::string>("--grip", [&grip = options->grip, grips](const std::string& name) { grip = grips.at(name); },
+                                           "How firmly the device is held: loose, normal or firm [the scene's]")
+      ->check(CLI::IsMember({"loose", "normal", "firm"}))
+      ->type_name("GRIP");
+  command.add_option("--replay", options->replay, "Move the device as in this trace instead")->type_name("TRACE");
+  command.add_flag("--codec", options->codec, "Close the loop through encoder, decoder and replica; so does every option below");
+  command.add_option("--stream", options->stream, "Also write the packets")->type_name("FILE");
+  add_interpolation(command, options->replica);
+  options->triggers.add_to(command);
+  options->triggers.add_encoder_to(command);
+  add_output_options(command, options->common);
+  command.footer("Examples:\n"
+                 "  tactus sim push-1dof -o push.mcap --seed 7\n"
+                 "  tactus sim rotate-push-lift -o felt.mcap --stream felt.tct -p 4% --interpolate");
+  on_chosen<SimOptions>(command, action, options, run);
+}
+
+}  // namespace tactus::cli

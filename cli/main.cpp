@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/cmd_compare.h"
+#include "cli/cmd_decode.h"
+#include "cli/cmd_encode.h"
+#include "cli/cmd_export.h"
+#include "cli/cmd_import.h"
+#include "cli/cmd_info.h"
+#include "cli/progress.h"
+#ifdef TACTUS_HAS_SIM
+#include "cli/cmd_sim.h"
+#endif
+
+namespace {
+
+enum ExitCode { kOk = 0, kFailed = 1, kUsage = 2 };
+
+int report_failure(const tactus::cli::Failure& failure) {
+  const bool coloured = tactus::cli::is_coloured(2);
+  fmt::print(stderr, "{}error:{} {}\n", coloured ? "\x1b[1;31m" : "", coloured ? "\x1b[0m" : "", failure.text);
+  if (!failure.remedy.empty()) fmt::print(stderr, "       {}\n", failure.remedy);
+  return kFailed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace tactus::cli;
+  CLI::App app{"Codec for shared haptic virtual environments: which object states to send, and in how few bits", "tactus"};
+  app.set_version_flag("--version", "tactus " TACTUS_VERSION);
+  app.require_subcommand(1);
+  app.get_formatter()->column_width(34);
+  app.footer("A first round:\n"
+             "  tactus sim push-1dof -o push.mcap                        simulate a touch\n"
+             "  tactus encode push.mcap -o push.tct -p 4%                turn it into packets\n"
+             "  tactus decode push.tct -o replica.mcap --like push.mcap  see it as a client does\n"
+             "  tactus compare push.mcap replica.mcap -p 4%              how far is that from the truth\n"
+             "`tactus COMMAND --help` tells more. Quantities take units: 2deg, 5mm, 4%, 100ms, 0.05N.");
+  Action action;
+#ifdef TACTUS_HAS_SIM
+  setup_sim(app, action);
+#endif
+  setup_import(app, action);
+  setup_encode(app, action);
+  setup_decode(app, action);
+  setup_compare(app, action);
+  setup_info(app, action);
+  setup_export(app, action);
+#ifdef TACTUS_HAS_SIM
+#endif
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? kOk : kUsage;
+  }
+  const Outcome outcome = action();
+  return outcome ? kOk : report_failure(outcome.error());
+}

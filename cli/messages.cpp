@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/messages.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace tactus::cli {
+namespace {
+
+struct RuleText {
+  std::string_view rule;
+  const char* broken;  ///< what is wrong
+  const char* remedy;  ///< what would mend it
+};
+
+constexpr const char* kNotAStream = "Give a stream file that `tactus encode` or `tactus sim --stream` wrote.";
+constexpr const char* kNotATrace = "Give a trace that `tactus sim` or `tactus import` wrote, or another MCAP file with PoseStamped channels.";
+constexpr const char* kDamaged = "The file was changed or cut after it was written; copy it again from its source.";
+constexpr const char* kNewer = "It comes from a newer or another program; use that version of Tactus.";
+constexpr const char* kEncoderFault = "Whatever encoded the stream has a defect, or the file was changed; encode it again.";
+constexpr const char* kOrder = "Packets must be decoded in the order in which they were sent; go to a key packet and decode on from there.";
+
+constexpr std::array kRules{
+    RuleText{"R-API-1", "a value is not a finite number", "Look for gaps or NaN in the recording at this place."},
+    RuleText{"R-API-2", "a position or velocity lies outside the stream's grid",
+             "Check that the recording is in metres, seconds and radians (import takes length-scale for other units)."},
+    RuleText{"R-API-3", "a rotation is not a unit quaternion", "Check the order of its components: w, x, y, z."},
+    RuleText{"R-API-4", "a threshold is zero, out of range or finer than the stream's grid",
+             "Give thresholds above 0: lengths of at least 2 um, angles of at least 0.001 deg and at most 180 deg."},
+    RuleText{"R-API-5", "ticks do not increase, a count is wrong, or a contact is not valid",
+             "Check that the inputs belong together and that the recording's times increase."},
+    RuleText{"R-API-6", "an object moves along an axis that its degrees of freedom exclude",
+             "Declare the axis in the scene or in the recording's channel (dof)."},
+    RuleText{"R-API-7", "the grid is too coarse for this contact's stiffness at this deadband",
+             "Take a larger deadband -p or a larger --force-floor."},
+    RuleText{"R-STR-1", "this is not a Tactus stream", kNotAStream},
+    RuleText{"R-STR-2", "the stream has a format version that this program does not know", kNewer},
+    RuleText{"R-STR-3", "the stream has a profile that this program does not know", kNewer},
+    RuleText{"R-STR-4", "reserved flags of the stream header are set", kNewer},
+    RuleText{"R-STR-5", "the stream header ends inside an element", kDamaged},
+    RuleText{"R-STR-6", "the tick rate is not within 1 to 1000000 per second", kEncoderFault},
+    RuleText{"R-STR-7", "the grid exponents are out of range", kEncoderFault},
+    RuleText{"R-STR-8", "the longest extrapolation is zero", kEncoderFault},
+    RuleText{"R-STR-9", "the baseline span is not within 1 to 64", kEncoderFault},
+    RuleText{"R-STR-10", "the scene declares an object of an unknown kind", kNewer},
+    RuleText{"R-STR-11", "an object's name is empty, too long, no plain text, or there twice", "Give every object its own name of 1 to 255 bytes."},
+    RuleText{"R-STR-12", "an object may turn about two axes, which no stream can say", "Declare rotation about none, one or all three axes."},
+    RuleText{"R-STR-13", "an object's first rotation is not a unit quaternion", kEncoderFault},
+    RuleText{"R-STR-14", "the scene is larger than this decoder accepts (4096 objects, 1 MiB)", "Split the scene into several streams."},
+    RuleText{"R-STR-15", "the check value of the stream header does not match", kDamaged},
+    RuleText{"R-STR-16", "extension records do not fill the stream header exactly", kEncoderFault},
+    RuleText{"R-FIL-1", "the file cannot be written", "Check the free space of the disk and your permissions."},
+    RuleText{"R-FIL-2", "the file ends inside a record", "The file was cut; `tactus info` tells how far it reads."},
+    RuleText{"R-FIL-3", "a record has an unknown type", kNewer},
+    RuleText{"R-FIL-4", "a packet is larger than this decoder accepts (1 MiB)", kEncoderFault},
+    RuleText{"R-FIL-5", "the check value of a record does not match", kDamaged},
+    RuleText{"R-FIL-6", "a record's time is missing, overlong or out of range", kEncoderFault},
+    RuleText{"R-FIL-7", "the file and the packet in it name different ticks", kEncoderFault},
+    RuleText{"R-FIL-8", "something follows the end of the stream", "Two files may have been joined; split them."},
+    RuleText{"R-PKT-1", "the packet is larger than the decoder accepts", kEncoderFault},
+    RuleText{"R-PKT-2", "the packet has fewer than two bytes", kEncoderFault},
+    RuleText{"R-PKT-3", "the packet builds on a state that the stream does not keep", kEncoderFault},
+    RuleText{"R-PKT-4", "the packet builds on a state that was never received", kOrder},
+    RuleText{"R-PKT-5", "the packet is older than what was already decoded", kOrder},
+    RuleText{"R-RIG-1", "the packet's tick is out of range or lies before the last one", kEncoderFault},
+    RuleText{"R-RIG-3", "the packet announces more updates than there are objects, or none", kEncoderFault},
+    RuleText{"R-RIG-4", "the packet names an object that is not there", kEncoderFault},
+    RuleText{"R-RIG-6", "a rotation residual is longer than 1", kEncoderFault},
+    RuleText{"R-RNG-1", "the packet begins with ff ff ff ff", kEncoderFault},
+    RuleText{"R-RNG-2", "bytes are left over behind the packet's last symbol", kEncoderFault},
+    RuleText{"R-RNG-3", "the packet ends with a zero byte, which is never the shortest form", kEncoderFault},
+    RuleText{"R-RNG-4", "a coded number is too wide", kEncoderFault},
+    RuleText{"R-TRC-1", "the file cannot be opened, read or written", "Check that the path is right and that you may use it."},
+    RuleText{"R-TRC-2", "this is not an MCAP file, or its end is not", kNotATrace},
+    RuleText{"R-TRC-3", "the file ends before its channels are declared", kDamaged},
+    RuleText{"R-TRC-4", "a length reaches past the end of its record", kDamaged},
+    RuleText{"R-TRC-5", "a record or chunk is larger than accepted (256 MiB)", "Write the recording with smaller chunks."},
+    RuleText{"R-TRC-6", "a check value does not match", kDamaged},
+    RuleText{"R-TRC-7", "compression, encoding or version is one that this program does not read", "Write the recording with zstd or without compression."},
+    RuleText{"R-TRC-8", "a chunk is not zstd data of the announced size", kDamaged},
+    RuleText{"R-TRC-9", "a record stands where it must not", kDamaged},
+    RuleText{"R-TRC-10", "a schema or channel is not declared, or declared twice", kDamaged},
+    RuleText{"R-TRC-11", "text is not UTF-8, or a key stands twice", kDamaged},
+    RuleText{"R-TRC-12", "the channels lack something or contradict the trace's metadata", kNotATrace},
+    RuleText{"R-TRC-13", "a message does not have its channel's type", kDamaged},
+    RuleText{"R-TRC-14", "a value is not finite, or a contact or time stamp is not valid", "Look for gaps or NaN in the recording at this place."},
+    RuleText{"R-TRC-15", "ticks do not increase, or a tick lacks a message or has one twice", "Record every channel once per tick."},
+    RuleText{"R-TRC-16", "there is no PoseStamped channel to read objects from", kNotATrace},
+    RuleText{"R-TRC-17", "the trace's description is not valid", "Give every object and user its own plain name, and a tick rate of 1 to 1000000."},
+    RuleText{"R-CSV-1", "the table has no line of names and one of values, or its zstd data ends early", "Give a table whose first line names the columns."},
+    RuleText{"R-CSV-2", "a column is not there, or there twice", "Compare the mapping with the first line of the table."},
+    RuleText{"R-CSV-3", "the row has more or fewer fields than there are columns", "Mend the row or remove it."},
+    RuleText{"R-CSV-4", "the field is not a finite number", "Mend the field or remove the row."},
+    RuleText{"R-CSV-5", "time does not increase within a segment", "Name the column that tells segments apart (--segment), or sort the rows."},
+    RuleText{"R-CSV-6", "a line is longer than 1 MiB", "Give a table with one sample per line."},
+    RuleText{"R-CSV-7", "the rate of the recording is unknown", "Give --tick-rate HZ, or --time COLUMN."},
+    RuleText{"R-CSV-8", "the mapping names some columns of a vector but not all, or nothing to record",
+             "Give --preset NAME, or --map with every column of a quantity."},
+    RuleText{"R-SIM-1", "the physics broke down: a state is no longer finite", "Soften the scene: a lower stiffness, or a heavier object."},
+};
+
+}  // namespace
+
+std::string place_of_bit(std::uint64_t bit_offset) {
+  if (bit_offset == 0) return {};
+  if (bit_offset % 8 == 0) return fmt::format("byte {}", bit_offset / 8);
+  return fmt::format("byte {}, bit {}", bit_offset / 8, bit_offset % 8);
+}
+
+tl::unexpected<Failure> refuse(const std::string& file, const std::string& place, const Error& error) {
+  const auto* text = std::find_if(kRules.begin(), kRules.end(), [&](const RuleText& r) { return r.rule == error.rule; });
+  const bool known = text != kRules.end();
+  return refuse(fmt::format("{}{}{}: {} ({}, {})", file, place.empty() ? "" : ", ", place,
+                            known ? text->broken : "breaks a rule of the specification", errc_name(error.code), error.rule),
+                known ? text->remedy : "");
+}
+
+tl::unexpected<Failure> refuse(const std::string& file, const Error& error) {
+  return refuse(file, place_of_bit(error.bit_offset), error);
+}
+
+tl::unexpected<Failure> refuse(std::string text, std::string remedy) {
+  return tl::unexpected(Failure{std::move(text), std::move(remedy)});
+}
+
+}  // namespace tactus::cli

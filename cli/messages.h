@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What went wrong, in words: file, place, rule and what would mend it. The libraries return rules; sentences are made here only.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "codec/base/result.h"
+
+namespace tactus::cli {
+
+/// Why a command failed. Ready to print.
+struct Failure {
+  std::string text;    ///< "s.tct, byte 132: the check value of a record does not match (checksum, R-FIL-5)"
+  std::string remedy;  ///< one sentence; may be empty
+};
+using Outcome = tl::expected<void, Failure>;
+
+/// Place of a bit in a file: "byte 132" or "byte 132, bit 3"; empty for 0.
+std::string place_of_bit(std::uint64_t bit_offset);
+inline std::string place_of_tick(std::int64_t tick) { return "tick " + std::to_string(tick); }
+
+/// A library's error about `file`, at `place` (may be empty).
+tl::unexpected<Failure> refuse(const std::string& file, const std::string& place, const Error& error);
+/// The same with the place that the error itself carries.
+tl::unexpected<Failure> refuse(const std::string& file, const Error& error);
+/// A failure of the program's own, without a rule.
+tl::unexpected<Failure> refuse(std::string text, std::string remedy);
+
+}  // namespace tactus::cli

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Options that several commands share.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <vector>
+
+#include "cli/output.h"
+#include "cli/progress.h"
+#include "cli/units.h"
+#include "codec/client/replica.h"
+#include "codec/rigid/rigid_encoder.h"
+
+namespace tactus::cli {
+
+/// What every command that writes or reports takes.
+struct CommonOptions {
+  bool json = false, quiet = false, no_progress = false, force = false;
+
+  Visibility progress() const { return quiet || no_progress ? Visibility::hidden : Visibility::shown; }
+  OutputFile::Existing existing() const { return force ? OutputFile::Existing::replace : OutputFile::Existing::keep; }
+};
+void add_report_options(CLI::App& app, CommonOptions& options);
+void add_output_options(CLI::App& app, CommonOptions& options);  ///< those of add_report_options, and -f
+
+/// When an update is worth sending, as typed.
+class TriggerArguments {
+ public:
+  void add_to(CLI::App& app);
+  /// Options of the encoder itself, beyond the bounds.
+  void add_encoder_to(CLI::App& app);
+  bool any_given() const;
+  RigidTriggers triggers() const;
+  RigidEncoderOptions encoder() const { return {.triggers = triggers(), .key_interval = key_interval_}; }
+
+ private:
+  double scaled(const Quantity& length) const { return length.bare ? length.value * length_unit_ : length.value; }
+
+  RigidTriggers triggers_;
+  PoseBound visual_{{triggers_.visual_position, true}, {triggers_.visual_rotation, false}};
+  PoseBound fixed_{{triggers_.fixed_position, true}, {triggers_.fixed_rotation, false}};
+  double length_unit_ = 1;
+  double key_interval_ = RigidEncoderOptions{}.key_interval;
+  bool no_reduction_ = false;
+  std::vector<const CLI::Option*> options_;
+};
+
+/// --interpolate
+CLI::Option* add_interpolation(CLI::App& app, ReplicaOptions& options);
+
+}  // namespace tactus::cli

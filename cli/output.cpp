@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/output.h"
+
+#include <filesystem>
+#include <iostream>
+#include <iterator>
+#include <system_error>
+
+namespace tactus::cli {
+namespace fs = std::filesystem;
+namespace {
+
+tl::unexpected<Failure> refuse_io(const std::string& path, const std::string& what) {
+  return refuse(path + ": " + what + ": " + std::generic_category().message(errno),
+                "Check that the path is right and that you may use it.");
+}
+
+}  // namespace
+
+tl::expected<OutputFile, Failure> OutputFile::create(const std::string& path, Existing existing) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  if (path == "-" || (fs::exists(status) && !fs::is_regular_file(status))) return OutputFile(path, path);
+  if (fs::exists(status) && existing == Existing::keep) {
+    return refuse(path + ": the file is there already", "Give -f to replace it, or another name.");
+  }
+  return OutputFile(path, path + ".part");
+}
+
+OutputFile::OutputFile(OutputFile&& other) noexcept
+    : path_(std::move(other.path_)), working_path_(std::move(other.working_path_)), stream_(std::move(other.stream_)) {
+  other.path_.clear();
+  other.working_path_.clear();
+}
+
+tl::expected<std::ostream*, Failure> OutputFile::open() {
+  if (working_path_ == "-") return &std::cout;
+  stream_.open(working_path_, std::ios::binary);
+  if (!stream_) return refuse_io(path_, "cannot be written");
+  return &stream_;
+}
+
+Outcome OutputFile::keep() {
+  if (stream_.is_open()) stream_.close();
+  if (stream_.fail()) return refuse_io(path_, "cannot be written");
+  if (!is_temporary()) return {};
+  std::error_code error;
+  fs::rename(working_path_, path_, error);
+  if (error) return refuse(path_ + ": cannot be written: " + error.message(), "Check that the path is right and that you may use it.");
+  working_path_ = path_;
+  return {};
+}
+
+OutputFile::~OutputFile() {
+  std::error_code ignored;
+  if (is_temporary()) fs::remove(working_path_, ignored);
+}
+
+tl::expected<std::string, Failure> read_file(const std::string& path) {
+  std::ifstream file;
+  if (path != "-") {
+    file.open(path, std::ios::binary);
+    if (!file) return refuse_io(path, "cannot be read");
+  }
+  std::istream& in = path == "-" ? std::cin : file;
+  std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  if (in.bad() || fs::is_directory(path)) return refuse(path + ": cannot be read", "Give a file.");
+  return bytes;
+}
+
+}  // namespace tactus::cli

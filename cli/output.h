@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Output files that are either whole or not there.
+#pragma once
+
+#include <fstream>
+#include <iosfwd>
+#include <string>
+
+#include "cli/messages.h"
+
+namespace tactus::cli {
+
+/// Something to write to PATH: goes to PATH.part and takes the name PATH when keep() is called; otherwise it is removed. "-" is
+/// standard output; that and what is not a plain file (a pipe, a device) are written directly.
+class OutputFile {
+ public:
+  enum class Existing { keep, replace };
+  /// err  PATH exists and is to be kept
+  static tl::expected<OutputFile, Failure> create(const std::string& path, Existing existing);
+
+  const std::string& path() const noexcept { return path_; }
+  const std::string& working_path() const noexcept { return working_path_; }  ///< where to write; "-": standard output
+  /// Open working_path() for writing; standard output if that is "-".   pre  called once
+  tl::expected<std::ostream*, Failure> open();
+  Outcome keep();
+
+  OutputFile(OutputFile&& other) noexcept;
+  OutputFile& operator=(OutputFile&&) = delete;
+  ~OutputFile();
+
+ private:
+  OutputFile(std::string path, std::string working_path) : path_(std::move(path)), working_path_(std::move(working_path)) {}
+  bool is_temporary() const noexcept { return path_ != working_path_; }
+
+  std::string path_, working_path_;
+  std::ofstream stream_;
+};
+
+/// All bytes of a file, "-" is standard input.
+tl::expected<std::string, Failure> read_file(const std::string& path);
+
+}  // namespace tactus::cli

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
+namespace tactus::cli {
+namespace {
+
+constexpr std::size_t kWidth = 30;
+constexpr std::chrono::milliseconds kPeriod{100};
+
+bool is_capable_terminal(int stream) {
+  const char* term = std::getenv("TERM");
+  return isatty(stream) != 0 && term != nullptr && std::string_view(term) != "dumb";
+}
+
+}  // namespace
+
+bool is_coloured(int stream) {
+  const char* refused = std::getenv("NO_COLOR");
+  return is_capable_terminal(stream) && (refused == nullptr || *refused == '\0');
+}
+
+Progress::Progress(std::string label, std::optional<std::uint64_t> total, Visibility visibility)
+    : label_(std::move(label)),
+      total_(total),
+      visible_(visibility == Visibility::shown && is_capable_terminal(STDERR_FILENO)),
+      coloured_(is_coloured(STDERR_FILENO)),
+      start_(Clock::now()),
+      next_(start_ + kPeriod) {}
+
+Progress::~Progress() {
+  if (drawn_) fmt::print(stderr, "\r\x1b[K");
+}
+
+void Progress::update(std::uint64_t done) {
+  if (!visible_) return;
+  if (const auto now = Clock::now(); now >= next_) draw(done, now);
+}
+
+void Progress::draw(std::uint64_t done, Clock::time_point now) {
+  next_ = now + kPeriod;
+  drawn_ = true;
+  const double seconds = std::chrono::duration<double>(now - start_).count();
+  if (!total_ || *total_ == 0) {
+    fmt::print(stderr, "\r{} {} in {:.0f} s\x1b[K", label_, done, seconds);
+  } else {
+    const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(*total_));
+    const auto filled = static_cast<std::size_t>(share * kWidth);
+    const double left = share > 0 ? seconds / share - seconds : 0;
+    fmt::print(stderr, "\r{} {}{:━<{}}{}{:─<{}} {:3.0f} %  {:.0f} s left\x1b[K", label_, coloured_ ? "\x1b[36m" : "", "", filled,
+               coloured_ ? "\x1b[0m" : "", "", kWidth - filled, 100 * share, left);
+  }
+  std::fflush(stderr);
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "cli/table.h"
+
+namespace tactus::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr std::uint64_t kUdpHeader = 28;  // IPv4 20, UDP 8
+constexpr std::array<const char*, 4> kReasons{"request", "heartbeat", "visual", "haptic"};  // index: Reason
+
+std::string percent(double share) {
+  if (share == 0 || share == 1) return fmt::format("{:.0f} %", 100 * share);
+  return fmt::format("{:.{}f} %", 100 * share, share < 0.0995 || share > 0.995 ? 2 : 1);
+}
+std::string significant(double value) { return value == 0 ? "0" : fmt::format("{:.3g}", value); }
+
+double per(double amount, double base) { return base > 0 ? amount / base : 0; }
+
+/// Rates of a stream at two sizes of what goes below a packet.
+struct Rates {
+  double bits_per_s, bytes_per_packet, bytes_per_update, saved_24, saved_48;
+};
+
+Rates rates(const Report& r, std::uint64_t header) {
+  const Traffic& t = *r.traffic;
+  const auto packets = static_cast<double>(t.all_packets());
+  const double bytes = static_cast<double>(t.bytes) + packets * static_cast<double>(header);
+  // Without reduction: one packet per tick with every moving object's state, raw.
+  const auto raw = [&](std::uint64_t state) { return static_cast<double>(r.ticks * (r.moving * state + header)); };
+  return {8 * per(bytes, r.seconds()), per(bytes, packets), per(bytes, static_cast<double>(t.updates)), 1 - per(bytes, raw(24)), 1 - per(bytes, raw(48))};
+}
+
+void traffic_rows(Table& table, const Report& r) {
+  const Traffic& t = *r.traffic;
+  table.heading({"packets", "number", "per second"});
+  for (std::size_t i = kReasons.size(); i-- > 0;) {
+    table.row({fmt::format("  {}", kReasons[i]), fmt::to_string(t.packets[i]),
+               fmt::format("{:.2f}", per(static_cast<double>(t.packets[i]), r.seconds()))});
+  }
+  const auto all = static_cast<double>(t.all_packets());
+  table.row({"  all", fmt::to_string(t.all_packets()), fmt::format("{:.2f}", per(all, r.seconds()))});
+  table.row({"  object updates in them", fmt::to_string(t.updates), fmt::format("{:.2f}", per(static_cast<double>(t.updates), r.seconds()))});
+  table.row({fmt::format("  fewer updates than {} per second", r.tick_rate),
+             percent(1 - per(static_cast<double>(t.updates), static_cast<double>(r.ticks * r.moving)))});
+  const Rates payload = rates(r, 0), datagram = rates(r, kUdpHeader);
+  table.heading({"size", "payload", "with UDP/IPv4"});
+  table.row({"  bit/s", fmt::format("{:.0f}", payload.bits_per_s), fmt::format("{:.0f}", datagram.bits_per_s)});
+  table.row({"  bytes per packet", fmt::format("{:.2f}", payload.bytes_per_packet), fmt::format("{:.2f}", datagram.bytes_per_packet)});
+  table.row({"  bytes per update", fmt::format("{:.2f}", payload.bytes_per_update), fmt::format("{:.2f}", datagram.bytes_per_update)});
+  table.row({"  smaller than raw 24-byte states", percent(payload.saved_24), percent(datagram.saved_24)});
+  table.row({"  smaller than raw 48-byte states", percent(payload.saved_48), percent(datagram.saved_48)});
+}
+
+std::string rule_name(const RigidTriggers& b) {
+  switch (b.haptic) {
+    case HapticRule::off: return "off";
+    case HapticRule::isotropic: return percent(b.weber_fraction);
+    case HapticRule::cone: return fmt::format("{}, {:.3g} deg", percent(b.weber_fraction), b.cone_angle / kDegree);
+    case HapticRule::fixed: return fmt::format("{:.3g} mm, {:.3g} deg", 1e3 * b.fixed_position, b.fixed_rotation / kDegree);
+  }
+  return {};
+}
+
+void error_row(Table& table, const Report& r, const std::string& name, const std::string& bound, const ErrorSeries& s, double unit) {
+  table.row({name, bound, significant(s.rms() / unit), significant(s.max() / unit), fmt::to_string(s.ticks_over()),
+             percent(per(static_cast<double>(s.ticks_over()), static_cast<double>(s.ticks()))),
+             fmt::format("{:.0f}", 1e3 * static_cast<double>(s.longest_run()) / r.tick_rate)});
+}
+
+void error_rows(Table& table, const Report& r) {
+  const Fidelity& f = *r.fidelity;
+  const RigidTriggers& b = f.bounds();
+  table.heading({"error", "bound", "RMS", "max", "ticks over", "share", "longest [ms]"});
+  error_row(table, r, "  position [mm]", significant(1e3 * b.visual_position), f.position(), 1e-3);
+  error_row(table, r, "  rotation [deg]", significant(b.visual_rotation / kDegree), f.rotation(), kDegree);
+  if (f.force().ticks() > 0) {
+    if (b.haptic != HapticRule::off) error_row(table, r, "  contact force [N]", rule_name(b), f.force(), 1);
+    error_row(table, r, "  contact force, perception [N]", "10..22 %", f.perceived(), 1);
+  }
+  if (f.rendered().ticks() > 0) error_row(table, r, "  rendered force, perception [N]", "10..22 %", f.rendered(), 1);
+}
+
+void time_rows(Table& table, const Report& r) {
+  table.heading({"time", "p50 [us]", "p99 [us]", "max [us]", "times real time"});
+  for (const Report::Timing& t : r.timings) {
+    if (t.times.empty()) continue;
+    table.row({"  " + t.step, fmt::format("{:.3f}", 1e6 * t.times.quantile(0.5)), fmt::format("{:.3f}", 1e6 * t.times.quantile(0.99)),
+               fmt::format("{:.3f}", 1e6 * t.times.quantile(1)), fmt::format("{:.0f}", per(r.seconds(), t.times.total()))});
+  }
+}
+
+void print_text(const Report& r, std::FILE* out) {
+  Table table;
+  table.heading({r.command});
+  for (const auto& [role, path] : r.files) table.row({fmt::format("  {:<8} {}", role, path)});
+  std::string scope = fmt::format("  {:<8} {} at {} Hz ({:.3f} s), {}", "scope", counted(r.ticks, "tick"), r.tick_rate, r.seconds(), counted(r.objects, "object"));
+  if (r.users > 0) scope += ", " + counted(r.users, "user");
+  table.row({scope});
+  for (const auto& [name, text] : r.notes) table.row({fmt::format("  {:<8} {}", name, text)});
+  table.print(out);
+  fmt::print(out, "\n");
+  Table figures;
+  if (r.traffic) traffic_rows(figures, r);
+  if (r.fidelity && r.fidelity->position().ticks() > 0) error_rows(figures, r);
+  if (!r.timings.empty()) time_rows(figures, r);
+  figures.print(out);
+}
+
+Json rates_json(const Rates& x) {
+  return {{"bit_per_s", x.bits_per_s}, {"bytes_per_packet", x.bytes_per_packet}, {"bytes_per_update", x.bytes_per_update},
+          {"reduction_from_24_byte_states", x.saved_24}, {"reduction_from_48_byte_states", x.saved_48}};
+}
+
+Json traffic_json(const Report& r) {
+  const Traffic& t = *r.traffic;
+  Json packets;
+  for (std::size_t i = kReasons.size(); i-- > 0;) {
+    packets[kReasons[i]] = {{"number", t.packets[i]}, {"per_s", per(static_cast<double>(t.packets[i]), r.seconds())}};
+  }
+  packets["all"] = {{"number", t.all_packets()}, {"per_s", per(static_cast<double>(t.all_packets()), r.seconds())}};
+  return {{"packets", packets}, {"key_packets", t.keys}, {"updates", t.updates}, {"bytes", t.bytes},
+          {"reduction_of_updates", 1 - per(static_cast<double>(t.updates), static_cast<double>(r.ticks * r.moving))},
+          {"payload", rates_json(rates(r, 0))}, {"with_udp_ipv4", rates_json(rates(r, kUdpHeader))}};
+}
+
+Json error_json(const Report& r, const ErrorSeries& s) {
+  return {{"rms", s.rms()}, {"max", s.max()}, {"ticks", s.ticks()}, {"ticks_over", s.ticks_over()},
+          {"share_over", per(static_cast<double>(s.ticks_over()), static_cast<double>(s.ticks()))},
+          {"longest_run_s", static_cast<double>(s.longest_run()) / r.tick_rate}};
+}
+
+Json errors_json(const Report& r) {
+  const Fidelity& f = *r.fidelity;
+  Json out;
+  out["position_m"] = error_json(r, f.position());
+  out["position_m"]["bound"] = f.bounds().visual_position;
+  out["rotation_rad"] = error_json(r, f.rotation());
+  out["rotation_rad"]["bound"] = f.bounds().visual_rotation;
+  if (f.force().ticks() > 0) {
+    if (f.bounds().haptic != HapticRule::off) {
+      out["contact_force_N"] = error_json(r, f.force());
+      out["contact_force_N"]["bound"] = rule_name(f.bounds());
+      out["contact_force_N"]["worst_ratio"] = f.worst_haptic_ratio();
+    }
+    out["contact_force_perception_N"] = error_json(r, f.perceived());
+  }
+  if (f.rendered().ticks() > 0) out["rendered_force_perception_N"] = error_json(r, f.rendered());
+  return out;
+}
+
+Json to_json(const Report& r) {
+  Json out{{"schema", "tactus.report/1"}, {"command", r.command}};
+  for (const auto& [role, path] : r.files) out["files"][role] = path;
+  out["tick_rate"] = r.tick_rate;
+  out["ticks"] = r.ticks;
+  out["seconds"] = r.seconds();
+  out["objects"] = r.objects;
+  out["users"] = r.users;
+  for (const auto& [name, text] : r.notes) out["notes"][name] = text;
+  if (r.traffic) out["traffic"] = traffic_json(r);
+  if (r.fidelity && r.fidelity->position().ticks() > 0) out["error"] = errors_json(r);
+  for (const Report::Timing& t : r.timings) {
+    if (t.times.empty()) continue;
+    out["time"].push_back({{"step", t.step}, {"count", t.times.count()}, {"p50_s", t.times.quantile(0.5)}, {"p99_s", t.times.quantile(0.99)},
+                           {"max_s", t.times.quantile(1)}, {"real_time_factor", per(r.seconds(), t.times.total())}});
+  }
+  return out;
+}
+
+}  // namespace
+
+double StepTimes::quantile(double share) const {
+  std::vector<std::uint32_t> sorted = nanoseconds_;
+  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
+  const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
+  std::nth_element(sorted.begin(), at, sorted.end());
+  return 1e-9 * *at;
+}
+
+double StepTimes::total() const noexcept {
+  std::uint64_t sum = 0;
+  for (const std::uint32_t t : nanoseconds_) sum += t;
+  return 1e-9 * static_cast<double>(sum);
+}
+
+void Report::describe(const TraceInfo& info) {
+  tick_rate = info.tick_rate;
+  objects = info.objects.size();
+  users = info.users.size();
+  moving = static_cast<std::uint64_t>(std::count_if(info.objects.begin(), info.objects.end(), [](const TraceObject& o) { return o.dof != Dof::none; }));
+}
+
+void print(const Report& report, const CommonOptions& options, Destination destination) {
+  std::FILE* out = destination == Destination::standard_output ? stdout : stderr;
+  if (options.json) {
+    fmt::print(out, "{}\n", to_json(report).dump(2));
+  } else if (!options.quiet) {
+    print_text(report, out);
+  }
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/units.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+namespace tactus::cli {
+namespace {
+
+struct Unit {
+  std::string_view name;
+  double factor;
+};
+
+constexpr std::array<Unit, 4> kLengths{{{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}}};
+constexpr std::array<Unit, 3> kAngles{{{"deg", std::numbers::pi / 180}, {"rad", 1}, {"mrad", 1e-3}}};
+constexpr std::array<Unit, 4> kTimes{{{"s", 1}, {"ms", 1e-3}, {"us", 1e-6}, {"min", 60}}};
+constexpr std::array<Unit, 2> kForces{{{"N", 1}, {"mN", 1e-3}}};
+constexpr std::array<Unit, 1> kFractions{{{"%", 1e-2}}};
+
+std::span<const Unit> units_of(Dimension dimension) {
+  switch (dimension) {
+    case Dimension::length: return kLengths;
+    case Dimension::angle: return kAngles;
+    case Dimension::time: return kTimes;
+    case Dimension::force: return kForces;
+    case Dimension::fraction: return kFractions;
+  }
+  return {};
+}
+
+const char* type_name(Dimension dimension) {
+  switch (dimension) {
+    case Dimension::length: return "LENGTH";
+    case Dimension::angle: return "ANGLE";
+    case Dimension::time: return "TIME";
+    case Dimension::force: return "FORCE";
+    case Dimension::fraction: return "FRACTION";
+  }
+  return "";
+}
+
+std::string list(std::span<const Unit> units) {
+  std::string text;
+  for (std::size_t i = 0; i < units.size(); ++i) {
+    text += i == 0 ? "" : i + 1 == units.size() ? " or " : ", ";
+    text += units[i].name;
+  }
+  return text;
+}
+
+template <class T>
+T or_usage_error(const std::string& option, tl::expected<T, std::string> parsed) {
+  if (!parsed) throw CLI::ValidationError(option, parsed.error());
+  return *parsed;
+}
+
+/// "-p,--deadband" is called "--deadband" in messages.
+std::string long_name(const std::string& names) { return names.substr(names.rfind(',') + 1); }
+
+}  // namespace
+
+tl::expected<Quantity, std::string> parse_quantity(std::string_view text, Dimension dimension) {
+  const auto units = units_of(dimension);
+  double number = 0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (status != std::errc() || !std::isfinite(number)) {
+    return tl::unexpected(fmt::format("'{}': not a number with a unit ({})", text, list(units)));
+  }
+  if (number < 0) return tl::unexpected(fmt::format("'{}': must not be negative", text));
+  const std::string_view suffix(end, static_cast<std::size_t>(text.data() + text.size() - end));
+  if (suffix.empty()) {
+    if (dimension == Dimension::angle) return tl::unexpected(fmt::format("'{}': an angle needs its unit: {}", text, list(units)));
+    return Quantity{number, true};
+  }
+  for (const Unit& unit : units) {
+    if (unit.name == suffix) return Quantity{number * unit.factor, false};
+  }
+  return tl::unexpected(fmt::format("'{}': unknown unit '{}'; use {}", text, suffix, list(units)));
+}
+
+tl::expected<PoseBound, std::string> parse_pose_bound(std::string_view text) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string_view::npos) return tl::unexpected(fmt::format("'{}': give a length and an angle, such as 6mm,2deg", text));
+  const auto length = parse_quantity(text.substr(0, comma), Dimension::length);
+  if (!length) return tl::unexpected(length.error());
+  const auto angle = parse_quantity(text.substr(comma + 1), Dimension::angle);
+  if (!angle) return tl::unexpected(angle.error());
+  return PoseBound{*length, *angle};
+}
+
+CLI::Option* add_quantity(CLI::App& app, const std::string& name, double& value, Dimension dimension, const std::string& help) {
+  const auto read = [&value, dimension, name](const std::string& text) {
+    value = or_usage_error(long_name(name), parse_quantity(text, dimension)).value;
+  };
+  return app.add_option_function<std::string>(name, read, help)->type_name(type_name(dimension));
+}
+
+CLI::Option* add_pose_bound(CLI::App& app, const std::string& name, PoseBound& value, const std::string& help) {
+  const auto read = [&value, name](const std::string& text) { value = or_usage_error(long_name(name), parse_pose_bound(text)); };
+  return app.add_option_function<std::string>(name, read, help)->type_name("LENGTH,ANGLE");
+}
+
+}  // namespace tactus::cli

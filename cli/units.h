@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Quantities as people type them: 2deg, 5mm, 4%, 100ms, 0.05N. Results are in SI units.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+
+namespace tactus::cli {
+
+enum class Dimension { length, angle, time, force, fraction };
+
+struct Quantity {
+  double value = 0;   ///< SI; a bare number is taken as SI already
+  bool bare = false;  ///< typed without a unit
+};
+
+/// err  a sentence that names the text, what is wrong and what would be right. An angle needs its unit: a bare 2 is too easily
+///      meant in degrees.
+tl::expected<Quantity, std::string> parse_quantity(std::string_view text, Dimension dimension);
+
+/// A length and an angle, "0.006,2deg".
+struct PoseBound {
+  Quantity length;
+  Quantity angle;
+};
+tl::expected<PoseBound, std::string> parse_pose_bound(std::string_view text);
+
+/// Option that takes one quantity in SI units.
+CLI::Option* add_quantity(CLI::App& app, const std::string& name, double& value, Dimension dimension, const std::string& help);
+/// Option that takes LENGTH,ANGLE.
+CLI::Option* add_pose_bound(CLI::App& app, const std::string& name, PoseBound& value, const std::string& help);
+
+}  // namespace tactus::cli
