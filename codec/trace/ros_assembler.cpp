@@ -106,6 +106,7 @@ Result<void> RosAssembler::look_ahead(mcap::Reader& mcap) {
     }
     ahead_.push_back(*std::move(sample));
   }
+  if (densest == nullptr && mcap.cut_short()) return refuse(mcap, Errc::truncated, "R-TRC-3");
   if (densest == nullptr) return refuse(mcap, Errc::unsupported, "R-TRC-16");
   info_.tick_rate = median_rate(*densest);
   return {};
@@ -131,7 +132,7 @@ Result<void> RosAssembler::find_objects(const mcap::Reader& mcap) {
 
 /// The next pose or twist of the file.
 Result<std::optional<Sample>> RosAssembler::read(mcap::Reader& mcap) {
-  for (; item_ != mcap::Item::end;) {
+  while (item_ != mcap::Item::end) {
     std::optional<Sample> sample;
     if (item_ == mcap::Item::message) {
       const mcap::Message& message = mcap.message();

@@ -17,7 +17,7 @@
 /// rule      class             broken when
 /// R-TRC-1   io                the operating system refuses to open, read or write the file
 /// R-TRC-2   malformed         MCAP's magic bytes are not at the front, or not at the very end behind a footer
-/// R-TRC-3   truncated         the file ends before the header, or before the channels that its metadata announces
+/// R-TRC-3   truncated         the file ends before the header, the channels that its metadata announces, or any pose
 /// R-TRC-4   malformed         a length inside a record reaches past the record's end
 /// R-TRC-5   limit_exceeded    a record, a chunk or all declarations are larger than accepted, or than zstd can yield
 /// R-TRC-6   checksum          a CRC-32 does not match

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Any bytes as a trace file: an error or frames, never a crash, and never a number that is not one.
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <vector>
+
+#include "codec/trace/trace_file.h"
+
+namespace {
+
+constexpr int kMaxFrames = 10'000;  // a mutated chunk may hold many small ones
+
+void require(bool holds) {
+  if (!holds) std::abort();
+}
+
+void check(const tactus::TraceInfo& info, const tactus::TraceFrame& frame) {
+  require(frame.objects.size() == info.objects.size() && frame.users.size() == info.users.size());
+  for (const auto& object : frame.objects) {
+    require(is_finite(object.pose.position) && is_finite(object.pose.rotation));
+    require(is_finite(object.velocity) && is_finite(object.angular_velocity));
+  }
+  for (const auto& user : frame.users) {
+    require(is_finite(user.contact.device) && is_finite(user.force) && is_finite(user.server_force));
+    require(user.contact.kind == tactus::ContactKind::none || user.contact.object < info.objects.size());
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::vector<std::uint8_t> exact(data, data + size);
+  auto reader = tactus::TraceReader::open_memory(exact);
+  if (!reader) return 0;
+  tactus::TraceFrame frame;
+  std::int64_t last_tick = -1;
+  for (int i = 0; i < kMaxFrames; ++i) {
+    const auto more = reader->next(frame);
+    if (!more || !*more) break;
+    require(frame.tick > last_tick);
+    last_tick = frame.tick;
+    check(reader->info(), frame);
+  }
+  return 0;
+}

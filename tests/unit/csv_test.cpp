@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "codec/trace/csv.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "codec/trace/compression.h"
+#include "tests/unit/trace_fixture.h"
+
+namespace tactus {
+namespace {
+
+const CsvMapping& preset(std::string_view name) {
+  const auto& all = csv_presets();
+  return std::find_if(all.begin(), all.end(), [&](const CsvPreset& p) { return p.name == name; })->mapping;
+}
+
+void write_text(const std::string& path, std::string_view text) { std::ofstream(path, std::ios::binary) << text; }
+
+struct Outcome {
+  TraceInfo info;
+  std::vector<TraceFrame> frames;
+  CsvImport done;
+  std::string rule;  // of the error, if there was one
+  CsvError error;
+};
+
+Outcome import(std::string_view text, const CsvMapping& mapping) {
+  const TempFile csv, trace;
+  write_text(csv.path(), text);
+  const auto done = import_csv(csv.path(), mapping, trace.path());
+  Outcome outcome;
+  if (!done) {
+    EXPECT_FALSE(std::filesystem::exists(trace.path()));
+    outcome.error = done.error();
+    outcome.rule = outcome.error.error.rule;
+    return outcome;
+  }
+  outcome.done = *done;
+  auto reader = TraceReader::open(trace.path());
+  EXPECT_TRUE(reader);
+  outcome.info = reader->info();
+  Reading reading = read_all(std::move(reader));
+  EXPECT_FALSE(reading.error);
+  outcome.frames = std::move(reading.frames);
+  return outcome;
+}
+
+CsvMapping xyz() {
+  CsvMapping mapping;
+  mapping.position = {"x", "y", "z"};
+  mapping.tick_rate = 100;
+  return mapping;
+}
+
+constexpr std::string_view kTosses =
+    "toss,sample,x,y,z,qw,qx,qy,qz,vx,vy,vz,wx,wy,wz\n"
+    "0,0,0.2098741,0.1958426,0.1257335,0.4319948,0.2302759,0.8712987,-0.0345272,-1.047518,-0.8494504,-0.02586917,-3.356067,"
+    "-0.7965873,3.893714\n"
+    "0,1,0.2028314,0.190134,0.1252054,0.4373504,0.2366988,0.8673623,-0.01951942,-1.045661,-0.8471008,-0.07806063,-3.369837,"
+    "-0.7949634,3.893714\n"
+    "1,0,0.1921133,0.2176422,0.1463789,0.9094638,-0.1445963,-0.3196285,-0.2231708,-0.818671,-0.7315462,-0.1418329,2.104309,"
+    "0.4019124,-2.376132\n";
+
+TEST(Csv, CubeTosses) {
+  const Outcome outcome = import(kTosses, preset("cube-tosses"));
+  ASSERT_EQ(outcome.rule, "");
+  EXPECT_EQ(outcome.done.rows, 3u);
+  EXPECT_EQ(outcome.done.segments, 2u);
+  EXPECT_EQ(outcome.info.tick_rate, 148u);
+  ASSERT_EQ(outcome.info.objects.size(), 1u);
+  EXPECT_EQ(outcome.info.objects[0].name, "cube");
+  ASSERT_EQ(outcome.frames.size(), 3u);
+  EXPECT_EQ(outcome.frames[2].tick, 2);
+  EXPECT_EQ(outcome.frames[1].objects[0].pose.position, (Vec3{0.2028314, 0.190134, 0.1252054}));
+  EXPECT_EQ(outcome.frames[2].objects[0].pose.rotation, (Quat{0.9094638, -0.1445963, -0.3196285, -0.2231708}));
+  EXPECT_EQ(outcome.frames[2].objects[0].velocity, (Vec3{-0.818671, -0.7315462, -0.1418329}));
+  EXPECT_EQ(outcome.frames[0].objects[0].angular_velocity, (Vec3{-3.356067, -0.7965873, 3.893714}));
+}
+
+TEST(Csv, ZstdInputGivesTheSameTrace) {
+  std::string text(kTosses);
+  for (int i = 1; i <= 5000; ++i) text += "2," + std::to_string(i) + ",0,0,0,1,0,0,0,0,0,0,0,0," + std::to_string(i) + "\n";
+  Compressor compressor;
+  const std::span<const std::uint8_t> raw(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+  const auto compressed = compressor.compress(raw).value();
+  const std::string packed(compressed.begin(), compressed.end());
+  const Outcome a = import(text, preset("cube-tosses")), b = import(packed, preset("cube-tosses"));
+  ASSERT_EQ(a.frames.size(), 5003u);
+  ASSERT_EQ(b.frames.size(), 5003u);
+  for (std::size_t i = 0; i < a.frames.size(); ++i) ASSERT_EQ(image(a.frames[i]), image(b.frames[i]));
+  EXPECT_EQ(import(packed.substr(0, packed.size() - 9), preset("cube-tosses")).rule, "R-CSV-1");
+  EXPECT_EQ(import(packed.substr(0, 20), preset("cube-tosses")).rule, "R-CSV-1");
+  std::string damaged = packed;
+  damaged[5] = static_cast<char>(~damaged[5]);
+  damaged[9] = static_cast<char>(~damaged[9]);
+  EXPECT_NE(import(damaged, preset("cube-tosses")).rule, "");
+}
+
+TEST(Csv, ExportReadsBackToTheSameBits) {
+  Recording recording = make_recording(300, 148);
+  recording.info.objects[0].name = "a \"cube\", red";
+  const TempFile trace, again;
+  write_recording(recording, trace.path());
+  std::ostringstream text;
+  auto reader = TraceReader::open(trace.path());
+  ASSERT_TRUE(reader);
+  EXPECT_EQ(export_csv(*reader, text), 300u);
+  const Outcome outcome = import(text.str(), preset("tactus"));
+  ASSERT_EQ(outcome.rule, "") << outcome.error.line << " " << outcome.error.column << " " << outcome.error.text;
+  EXPECT_EQ(outcome.info.tick_rate, 148u);
+  EXPECT_EQ(outcome.info.users, recording.info.users);
+  ASSERT_EQ(outcome.info.objects.size(), 2u);
+  EXPECT_EQ(outcome.info.objects[0].name, recording.info.objects[0].name);
+  EXPECT_EQ(outcome.info.objects[1].dof, Dof::none);
+  ASSERT_EQ(outcome.frames.size(), recording.frames.size());
+  for (std::size_t i = 0; i < outcome.frames.size(); ++i) ASSERT_EQ(image(outcome.frames[i]), image(recording.frames[i])) << i;
+}
+
+TEST(Csv, KinaestheticLayout) {
+  const Outcome outcome = import(
+      "human_position_x,human_position_y,human_position_z,human_velocity_x,human_velocity_y,human_velocity_z,robot_position_x,"
+      "robot_position_y,robot_position_z,robot_force_x,robot_force_y,robot_force_z\n"
+      "0.1,0.2,0.3,9,9,9,1,2,3,-1,-2,-3\n0.1,0.2,0.4,9,9,9,1,2,3.5,-1,-2,-4\n",
+      preset("kinaesthetic"));
+  ASSERT_EQ(outcome.rule, "");
+  EXPECT_EQ(outcome.info.tick_rate, 1000u);
+  ASSERT_EQ(outcome.frames.size(), 2u);
+  const TraceFrame& frame = outcome.frames[1];
+  EXPECT_EQ(frame.objects[0].pose.position, (Vec3{1, 2, 3.5}));
+  EXPECT_NEAR(frame.objects[0].velocity.z, 500, 1e-9);
+  EXPECT_EQ(frame.users[0].contact.device, (Vec3{0.1, 0.2, 0.4}));
+  EXPECT_EQ(frame.users[0].contact.kind, ContactKind::none);
+  EXPECT_EQ(frame.users[0].force, (Vec3{-1, -2, -4}));
+  EXPECT_EQ(frame.users[0].server_force, (Vec3{-1, -2, -4}));
+}
+
+TEST(Csv, MotionIsDerivedButNotAcrossSegments) {
+  CsvMapping mapping = xyz();
+  mapping.rotation = {"qw", "qx", "qy", "qz"};
+  mapping.segment = "trial";
+  mapping.length_scale = 0.001;
+  std::ostringstream text;
+  text << "trial,x,y,z,qw,qx,qy,qz\n";
+  text.precision(17);
+  for (int i = 0; i < 6; ++i) {
+    const double angle = 0.01 * i;  // about z
+    text << (i < 3 ? "a" : "b") << ',' << 20 * i << ",0,0," << std::cos(angle / 2) << ",0,0," << std::sin(angle / 2) << '\n';
+  }
+  const Outcome outcome = import(text.str(), mapping);
+  ASSERT_EQ(outcome.rule, "");
+  EXPECT_EQ(outcome.done.segments, 2u);
+  ASSERT_EQ(outcome.frames.size(), 6u);
+  for (std::size_t i = 0; i < 6; ++i) {
+    const bool begins = i % 3 == 0;
+    EXPECT_NEAR(outcome.frames[i].objects[0].velocity.x, begins ? 0.0 : 2.0, 1e-9) << i;
+    EXPECT_NEAR(outcome.frames[i].objects[0].angular_velocity.z, begins ? 0.0 : 1.0, 1e-9) << i;
+  }
+}
+
+TEST(Csv, RateAndTicksFollowTheTimeColumn) {
+  CsvMapping mapping = xyz();
+  mapping.tick_rate = 0;
+  mapping.time = "t";
+  mapping.segment = "s";
+  const Outcome outcome =
+      import("t,s,x,y,z\n5.000,1,0,0,0\n5.002,1,0,0,0\n5.0039,1,0,0,0\n5.010,1,0,0,0\n0,2,0,0,0\n0.002,2,0,0,0\n", mapping);
+  ASSERT_EQ(outcome.rule, "");
+  EXPECT_EQ(outcome.info.tick_rate, 500u);
+  std::vector<std::int64_t> ticks;
+  for (const TraceFrame& frame : outcome.frames) ticks.push_back(frame.tick);
+  EXPECT_EQ(ticks, (std::vector<std::int64_t>{0, 1, 2, 5, 6, 7}));
+  const Outcome back = import("t,s,x,y,z\n1.0,1,0,0,0\n1.002,1,0,0,0\n1.002,1,0,0,0\n1.004,1,0,0,0\n", mapping);
+  EXPECT_EQ(back.rule, "R-CSV-5");
+  EXPECT_EQ(back.error.line, 4u);
+}
+
+TEST(Csv, LineEndsQuotesBlanksAndByteOrderMark) {
+  const Outcome outcome = import("\xEF\xBB\xBF\"x\" , y,z\r\n1, 2 ,\"3\"\r\n\r\n4,5,6", xyz());
+  ASSERT_EQ(outcome.rule, "");
+  ASSERT_EQ(outcome.frames.size(), 2u);
+  EXPECT_EQ(outcome.frames[0].objects[0].pose.position, (Vec3{1, 2, 3}));
+  EXPECT_EQ(outcome.frames[1].objects[0].pose.position, (Vec3{4, 5, 6}));
+}
+
+TEST(Csv, MistakesAreNamedWithTheirPlace) {
+  const auto check = [](std::string_view text, std::string_view rule, std::uint64_t line, std::string_view column,
+                        std::string_view field) {
+    const Outcome outcome = import(text, xyz());
+    EXPECT_EQ(outcome.rule, rule) << text;
+    EXPECT_EQ(outcome.error.line, line) << text;
+    EXPECT_EQ(outcome.error.column, column) << text;
+    EXPECT_EQ(outcome.error.text, field) << text;
+  };
+  check("", "R-CSV-1", 1, "", "");
+  check("x,y,z\n", "R-CSV-1", 2, "", "");
+  check("x,y\n1,2\n", "R-CSV-2", 1, "z", "");
+  check("x,y,z,x\n1,2,3,4\n", "R-CSV-2", 1, "x", "");
+  check("x,y,z\n1,2,3\n\n1,2\n", "R-CSV-3", 4, "", "");
+  check("x,y,z\n1,2,3,4\n", "R-CSV-3", 2, "", "");
+  for (const char* bad : {"nan", "inf", "-inf", "1e999", "1.5x", "", "0x10", "1 2", "--1", "+1"})
+    check(std::string("x,y,z\n1,2,3\n4,") + bad + ",6\n", "R-CSV-4", 3, "y", bad);
+  check("x,y,z\n1,\"2\"3,4\n1,\"2\"x,3\n", "R-CSV-4", 3, "y", "2x");
+  check("x,y,z\n" + std::string((1u << 20) + (1u << 17), '1'), "R-CSV-6", 2, "", "");
+}
+
+TEST(Csv, MappingsThatMakeNoSense) {
+  CsvMapping partly = xyz();
+  partly.position[1].clear();
+  EXPECT_EQ(import("x,y,z\n1,2,3\n", partly).rule, "R-CSV-8");
+  EXPECT_EQ(import("x,y,z\n1,2,3\n", CsvMapping()).rule, "R-CSV-8");
+  CsvMapping no_rate = xyz();
+  no_rate.tick_rate = 0;
+  EXPECT_EQ(import("x,y,z\n1,2,3\n", no_rate).rule, "R-CSV-7");
+  CsvMapping bad_name = xyz();
+  bad_name.object = "a/b";
+  EXPECT_EQ(import("x,y,z\n1,2,3\n", bad_name).rule, "R-TRC-17");
+  const TempFile out;
+  EXPECT_EQ(import_csv(out.path() + ".absent", xyz(), out.path()).error().error.code, Errc::io);
+}
+
+TEST(Csv, TactusLayoutDistrustsItsNumbers) {
+  const Recording recording = make_recording(3);
+  const TempFile trace;
+  write_recording(recording, trace.path());
+  auto reader = TraceReader::open(trace.path());
+  std::ostringstream text;
+  ASSERT_TRUE(export_csv(*reader, text));
+  const auto with = [&text](std::string_view from, std::string_view to) {
+    std::string changed = text.str();
+    changed.replace(changed.find(from), from.size(), to);
+    return import(changed, preset("tactus")).rule;
+  };
+  EXPECT_EQ(with("\n0,0,63,", "\n0,0,63,"), "");
+  EXPECT_EQ(with("\n0,0,63,", "\n0,0,64,"), "R-CSV-4");
+  EXPECT_EQ(with("\n0,0,63,", "\n0,0,7,"), "R-CSV-4");  // not what the next row says
+  EXPECT_EQ(with("\n0,0,63,", "\n0.5,0,63,"), "R-CSV-4");
+  EXPECT_EQ(with("\n0,0,63,", "\n7,0,63,"), "R-CSV-5");
+  EXPECT_EQ(with("/users/left/contact_object", "/users/left/elsewhere"), "R-CSV-2");
+}
+
+}  // namespace
+}  // namespace tactus

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A recording with all that a trace can hold, written to and read from temporary files.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "codec/trace/trace_file.h"
+
+namespace tactus {
+
+using Bytes = std::vector<std::uint8_t>;
+
+class TempFile {
+ public:
+  TempFile() {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    static int count = 0;
+    path_ = ::testing::TempDir() + "tactus_" + test->name() + std::to_string(count++) + ".mcap";
+  }
+  ~TempFile() { std::filesystem::remove(path_); }
+  TempFile(const TempFile&) = delete;
+  TempFile& operator=(const TempFile&) = delete;
+  const std::string& path() const { return path_; }
+  Bytes bytes() const {
+    std::ifstream in(path_, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+
+ private:
+  std::string path_;
+};
+
+/// Bits, not values: -0 is not 0.
+inline std::string image(const TraceFrame& frame) {
+  std::string out;
+  const auto put = [&out](auto value) {
+    char raw[sizeof value];
+    std::memcpy(raw, &value, sizeof value);
+    out.append(raw, sizeof value);
+  };
+  const auto put_vec = [&put](const Vec3& v) { put(v.x), put(v.y), put(v.z); };
+  put(frame.tick);
+  for (const RigidSample& s : frame.objects) {
+    put_vec(s.pose.position), put_vec(s.velocity), put_vec(s.angular_velocity);
+    put(s.pose.rotation.w), put(s.pose.rotation.x), put(s.pose.rotation.y), put(s.pose.rotation.z);
+  }
+  for (const UserSample& u : frame.users) {
+    put(u.contact.kind), put(u.contact.object), put(u.contact.stiffness);
+    put_vec(u.contact.point), put_vec(u.contact.normal), put_vec(u.contact.device), put_vec(u.force), put_vec(u.server_force);
+  }
+  return out;
+}
+
+struct Recording {
+  TraceInfo info;
+  std::vector<TraceFrame> frames;
+};
+
+/// A cube that moves, a floor that does not, one user who touches now and then and one who never does.
+inline Recording make_recording(std::size_t frame_count, std::uint32_t tick_rate = 1000) {
+  std::mt19937_64 random(7);
+  const auto number = [&random] { return std::ldexp(static_cast<double>(random()), -60) - 8.0; };
+  const auto vec = [&number] { return Vec3{number(), number(), number()}; };
+  Recording recording;
+  recording.info = {
+      tick_rate, {{"cube", Dof::all}, {"floor \xC3\xA4", Dof::none}}, {"left", "right"}, "test", "[scene]\nname = \"x\"\n"};
+  const Pose floor{vec(), {0.6, 0, -0.8, -0.0}};
+  for (std::size_t i = 0; i < frame_count; ++i) {
+    TraceFrame frame;
+    frame.tick = static_cast<std::int64_t>(i < 3 ? i : 2 * i);  // a gap
+    frame.objects = {{{vec(), {number(), number(), number(), number()}}, vec(), {0.0, -0.0, 5e-324}}, {floor, {}, {}}};
+    UserSample touching{{}, vec(), vec()};
+    if (i % 3 == 1) touching.contact = {ContactKind::surface, 1, vec(), {0, 0, 1}, {}, 630.0};
+    if (i % 3 == 2) touching.contact = {ContactKind::spring, 0, vec(), vec(), {}, 1e-3};
+    touching.contact.device = vec();
+    UserSample apart;
+    apart.contact.device = vec();
+    frame.users = {touching, apart};
+    recording.frames.push_back(frame);
+  }
+  return recording;
+}
+
+inline Bytes write_recording(const Recording& recording, const std::string& path) {
+  auto writer = TraceWriter::create(path, recording.info);
+  EXPECT_TRUE(writer);
+  for (const TraceFrame& frame : recording.frames) EXPECT_TRUE(writer->write(frame));
+  EXPECT_TRUE(writer->finish());
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+struct Reading {
+  std::vector<TraceFrame> frames;
+  std::optional<Error> error;
+  bool cut_short = false;
+};
+
+inline Reading read_all(Result<TraceReader> reader) {
+  Reading reading;
+  TraceFrame frame;
+  while (reader) {
+    const auto more = reader->next(frame);
+    if (!more) reading.error = more.error();
+    if (!more || !*more) break;
+    reading.frames.push_back(frame);
+  }
+  if (!reader) reading.error = reader.error();
+  if (!reading.error) reading.cut_short = reader->cut_short();
+  return reading;
+}
+
+inline Reading read_bytes(std::span<const std::uint8_t> bytes) {
+  const Bytes exact(bytes.begin(), bytes.end());  // a heap block of just this size, so that a sanitizer sees every step too far
+  return read_all(TraceReader::open_memory(exact));
+}
+
+}  // namespace tactus
