@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Our decoder behind the testee contract: a stream file on stdin, JSON lines on stdout, exit 0, 1 (rejected) or 2 (usage).
+#include <cstdint>
+#include <cstdio>
+#include <iostream>
+#include <iterator>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "conformance/report.h"
+
+int main(int argc, char** argv) {
+  std::optional<tactus::Interpolation> replica;
+  const std::string_view kind = argc == 3 && std::string_view(argv[1]) == "--replica" ? argv[2] : "";
+  if (kind == "none") replica = tactus::Interpolation::none;
+  if (kind == "linear") replica = tactus::Interpolation::linear;
+  if (argc != 1 && !replica) {
+    std::fputs("usage: testee [--replica none|linear] <stream.tct\n", stderr);
+    return 2;
+  }
+  std::ios::sync_with_stdio(false);
+  const std::vector<char> file{std::istreambuf_iterator<char>(std::cin), {}};
+  const auto done =
+      tactus::conformance::report({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, replica, std::cout);
+  if (!done) tactus::conformance::report_error(tactus::errc_name(done.error().code), done.error().rule, std::cout);
+  return done ? 0 : 1;
+}
