@@ -86,8 +86,8 @@ Outcome run(const CompareOptions& options) {
 void setup_compare(CLI::App& app, Action& action) {
   auto options = std::make_shared<CompareOptions>();
   CLI::App& command = *app.add_subcommand("compare", "Hold a replica against the truth");
-  command.add_option("TRUTH", options->truth, "What truly happened (MCAP)")->required();
-  command.add_option("REPLICA", options->replica, "What a client showed (MCAP)")->required();
+  command.add_option("TRUTH", options->truth, "What truly happened (MCAP)")->type_name("")->required();
+  command.add_option("REPLICA", options->replica, "What a client showed (MCAP)")->type_name("")->required();
   options->triggers.add_to(command);
   add_report_options(command, options->common);
   command.footer("Ticks over a bound are counted; give the bounds that the stream was encoded with.\n"

@@ -53,19 +53,15 @@ TraceInfo replica_info(const StreamHeader& header, const std::string& input) {
   return info;
 }
 
-/// Bring the player to `tick` and write what it shows there. The velocities are those of what is shown: differences from tick to tick
-/// would be noise, so a replica's trace holds none.
-Outcome decode_tick(StreamPlayer& player, std::int64_t tick, const DecodeOptions& options, TraceFrame& frame, Report& report) {
+/// Bring the player to `tick` and take over what it shows there: poses only, a replica has no velocities of its own.
+Result<void> decode_tick(StreamPlayer& player, std::int64_t tick, TraceFrame& frame, Traffic& traffic) {
   while (true) {
-    const auto played = report.timings[0].times.measure([&] { return player.play(tick); });
-    if (!played) return refuse(options.input, played.error());
-    if (!*played) break;
-    const StreamPlayer::Played& p = **played;
-    report.traffic->add(strongest_reason(p.packet), p.packet.updates.size(), p.bytes, p.packet.key);
+    TACTUS_TRY(const auto played, player.play(tick));
+    if (!played) break;
+    traffic.add(strongest_reason(played->packet), played->packet.updates.size(), played->bytes, played->packet.key);
   }
   frame.tick = tick;
   for (std::uint32_t i = 0; i < frame.objects.size(); ++i) frame.objects[i].pose = player.pose(i, tick);
-  ++report.ticks;
   return {};
 }
 
@@ -80,9 +76,10 @@ Outcome decode_all(StreamPlayer& player, TraceWriter& writer, const DecodeOption
     const auto tick = ticks->next(player);
     if (!tick) return tl::unexpected(tick.error());
     if (!*tick) break;
-    if (auto done = decode_tick(player, **tick, options, frame, report); !done) return done;
+    const auto decoded = report.timings[0].times.measure([&] { return decode_tick(player, **tick, frame, *report.traffic); });
+    if (!decoded) return refuse(options.input, decoded.error());
     if (const auto written = writer.write(frame); !written) return refuse(options.output, place_of_tick(frame.tick), written.error());
-    progress.update(report.ticks);
+    progress.update(++report.ticks);
   }
   if (const auto done = writer.finish(); !done) return refuse(options.output, done.error());
   return {};
@@ -102,7 +99,7 @@ Outcome run(const DecodeOptions& options) {
   Report report{.command = "decode", .files = {{"stream", options.input}, {"replica", options.output}}};
   report.describe(info);
   report.traffic.emplace();
-  report.timings = {{"decode and apply, per look", {}}};
+  report.timings = {{"decode and show, per tick", {}}};
   const bool smooth = options.replica.interpolation == Interpolation::linear;
   report.notes.emplace_back("client", smooth ? "interpolates" : "applies updates at once");
   if (auto done = decode_all(*player, *writer, options, report); !done) return done;
@@ -119,7 +116,7 @@ Outcome run(const DecodeOptions& options) {
 void setup_decode(CLI::App& app, Action& action) {
   auto options = std::make_shared<DecodeOptions>();
   CLI::App& command = *app.add_subcommand("decode", "Reconstruct what a client shows from a stream");
-  command.add_option("STREAM", options->input, "Stream to decode, - is standard input")->required();
+  command.add_option("STREAM", options->input, "Stream to decode, - is standard input")->type_name("")->required();
   command.add_option("-o,--output", options->output, "Trace of the replica to write, - is standard output")->required()->type_name("FILE");
   add_interpolation(command, options->replica);
   CLI::Option* like = command.add_option("--like", options->like, "Write the ticks that this trace has")->type_name("TRACE");

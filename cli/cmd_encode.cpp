@@ -78,7 +78,7 @@ Outcome run(const EncodeOptions& options) {
 
   const RigidEncoderOptions encoder = options.triggers.encoder();
   auto session = start(reader->info(), frame, encoder, **stream);
-  if (!session) return refuse(options.input, place_of_tick(frame.tick), session.error());
+  if (!session) return refuse(options.input, session.error());
   Report report{.command = "encode", .files = {{"trace", options.input}, {"stream", options.output}}};
   report.describe(reader->info());
   report.traffic.emplace();
@@ -96,7 +96,7 @@ Outcome run(const EncodeOptions& options) {
 void setup_encode(CLI::App& app, Action& action) {
   auto options = std::make_shared<EncodeOptions>();
   CLI::App& command = *app.add_subcommand("encode", "Turn a trace into a stream of packets");
-  command.add_option("TRACE", options->input, "Trace to encode (MCAP), - is standard input")->required();
+  command.add_option("TRACE", options->input, "Trace to encode (MCAP), - is standard input")->type_name("")->required();
   command.add_option("-o,--output", options->output, "Stream to write, - is standard output")->required()->type_name("FILE");
   options->triggers.add_to(command);
   options->triggers.add_encoder_to(command);

@@ -117,10 +117,10 @@ Outcome run(const ImportOptions& options) {
 void setup_import(CLI::App& app, Action& action) {
   auto options = std::make_shared<ImportOptions>();
   CLI::App& group = *app.add_subcommand("import", "Make a trace from a recording");
-  group.require_subcommand(1);
+  group.require_subcommand(1)->footer("Example:\n  tactus import csv tosses.csv.zst --preset cube-tosses -o tosses.mcap");
   CLI::App& command = *group.add_subcommand("csv", "A table with one row per sample, plain or zstd");
   CLI::Option* list = command.add_flag("--list-presets", options->list_presets, "Name the column mappings that are built in");
-  CLI::Option* input = command.add_option("FILE", options->input, "Table to read, - is standard input");
+  CLI::Option* input = command.add_option("FILE", options->input, "Table to read, - is standard input")->type_name("");
   CLI::Option* output = command.add_option("-o,--output", options->output, "Trace to write (MCAP), - is standard output")->type_name("FILE");
   command.add_option("--preset", options->preset, "Column mapping that is built in")->type_name("NAME");
   command.add_option("--map", options->maps, "Columns of one quantity, such as position=x,y,z; may be repeated")
@@ -131,7 +131,7 @@ void setup_import(CLI::App& app, Action& action) {
   command.add_option("--object", options->object, "Name of the object")->type_name("NAME");
   command.add_option("--user", options->user, "Name of the user")->type_name("NAME");
   add_quantity(command, "--length-unit", options->length_scale, Dimension::length, "Metres per unit of the table's lengths [1m]");
-  command.add_option("--tick-rate", options->tick_rate, "Samples per second [from the times]")->check(CLI::Range(1, 1000000))->type_name("HZ");
+  command.add_option("--tick-rate", options->tick_rate, "Samples per second [from the times]")->check(CLI::Range(1, 1000000).description(""))->type_name("HZ");
   add_output_options(command, options->common);
   command.footer("Examples:\n"
                  "  tactus import csv tosses.csv.zst --preset cube-tosses -o tosses.mcap\n"

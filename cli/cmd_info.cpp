@@ -242,7 +242,7 @@ Outcome run(const InfoOptions& options) {
 void setup_info(CLI::App& app, Action& action) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App& command = *app.add_subcommand("info", "Tell what a stream, trace or scene holds");
-  command.add_option("FILE", options->input, "Stream (.tct), trace (.mcap) or scene (.toml)")->required();
+  command.add_option("FILE", options->input, "Stream (.tct), trace (.mcap) or scene (.toml)")->type_name("")->required();
   command.add_flag("--packets", options->packets, "List every packet of a stream");
   command.add_flag("--json", options->json, "As JSON");
   command.footer("Example:\n  tactus info push.tct --packets");

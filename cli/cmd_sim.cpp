@@ -167,14 +167,14 @@ Outcome run(const SimOptions& options) {
 void setup_sim(CLI::App& app, Action& action) {
   auto options = std::make_shared<SimOptions>();
   CLI::App& command = *app.add_subcommand("sim", "Simulate a touch into a trace");
-  command.add_option("SCENE", options->scene, "push-1dof, rotate-6dof, rotate-push-lift, or a TOML file")->required();
+  command.add_option("SCENE", options->scene, "push-1dof, rotate-6dof, rotate-push-lift, or a TOML file")->type_name("")->required();
   command.add_option("-o,--output", options->output, "Trace to write (MCAP), - is standard output")->required()->type_name("FILE");
   command.add_option("--seed", options->seed, "Every random number follows from it")->capture_default_str()->type_name("N");
   add_quantity(command, "--duration", options->duration, Dimension::time, "Length [the scene's]");
   const std::map<std::string, Grip> grips{{"loose", Grip::loose}, {"normal", Grip::normal}, {"firm", Grip::firm}};
   command.add_option_function<std::string>("--grip", [&grip = options->grip, grips](const std::string& name) { grip = grips.at(name); },
                                            "How firmly the device is held: loose, normal or firm [the scene's]")
-      ->check(CLI::IsMember({"loose", "normal", "firm"}))
+      ->check(one_of({"loose", "normal", "firm"}))
       ->type_name("GRIP");
   command.add_option("--replay", options->replay, "Move the device as in this trace instead")->type_name("TRACE");
   command.add_flag("--codec", options->codec, "Close the loop through encoder, decoder and replica; so does every option below");

@@ -11,6 +11,7 @@
 #include "cli/cmd_info.h"
 #include "cli/progress.h"
 #ifdef TACTUS_HAS_SIM
+#include "cli/cmd_reproduce.h"
 #include "cli/cmd_sim.h"
 #endif
 
@@ -50,6 +51,7 @@ int main(int argc, char** argv) {
   setup_info(app, action);
   setup_export(app, action);
 #ifdef TACTUS_HAS_SIM
+  setup_reproduce(app, action);
 #endif
   try {
     app.parse(argc, argv);

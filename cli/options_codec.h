@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <string>
 #include <vector>
 
 #include "cli/output.h"
@@ -44,6 +45,9 @@ class TriggerArguments {
   bool no_reduction_ = false;
   std::vector<const CLI::Option*> options_;
 };
+
+/// Accept these names only; the help text of the option lists them.
+CLI::Validator one_of(const std::vector<std::string>& names);
 
 /// --interpolate
 CLI::Option* add_interpolation(CLI::App& app, ReplicaOptions& options);

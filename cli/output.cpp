@@ -35,14 +35,14 @@ OutputFile::OutputFile(OutputFile&& other) noexcept
 
 tl::expected<std::ostream*, Failure> OutputFile::open() {
   if (working_path_ == "-") return &std::cout;
-  stream_.open(working_path_, std::ios::binary);
-  if (!stream_) return refuse_io(path_, "cannot be written");
-  return &stream_;
+  stream_ = std::make_unique<std::ofstream>(working_path_, std::ios::binary);
+  if (!*stream_) return refuse_io(path_, "cannot be written");
+  return stream_.get();
 }
 
 Outcome OutputFile::keep() {
-  if (stream_.is_open()) stream_.close();
-  if (stream_.fail()) return refuse_io(path_, "cannot be written");
+  if (stream_) stream_->close();
+  if (stream_ && stream_->fail()) return refuse_io(path_, "cannot be written");
   if (!is_temporary()) return {};
   std::error_code error;
   fs::rename(working_path_, path_, error);

@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <iosfwd>
+#include <memory>
 #include <string>
 
 #include "cli/messages.h"
@@ -33,7 +34,7 @@ class OutputFile {
   bool is_temporary() const noexcept { return path_ != working_path_; }
 
   std::string path_, working_path_;
-  std::ofstream stream_;
+  std::unique_ptr<std::ofstream> stream_;  // stays where it is when the file is moved
 };
 
 /// All bytes of a file, "-" is standard input.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "cli/progress.h"
 
@@ -24,6 +25,13 @@ void Table::print(std::FILE* out) const {
     widths.resize(std::max(widths.size(), line.cells.size()));
     for (std::size_t i = 0; i < line.cells.size(); ++i) widths[i] = std::max(widths[i], display_width(line.cells[i]));
   }
+  const auto is_text = [&](std::size_t column) {
+    return column == 0 || std::any_of(lines_.begin(), lines_.end(), [&](const Line& line) {
+      if (line.heading || column >= line.cells.size() || line.cells[column].empty()) return false;
+      const char first = line.cells[column].front();
+      return first == '/' || std::isalpha(static_cast<unsigned char>(first)) != 0;
+    });
+  };
   const bool coloured = is_coloured(fileno(out));
   bool first = true;
   for (const Line& line : lines_) {
@@ -33,7 +41,7 @@ void Table::print(std::FILE* out) const {
     for (std::size_t i = 0; i < line.cells.size(); ++i) {
       const std::string& cell = line.cells[i];
       const std::string pad(widths[i] - display_width(cell), ' ');
-      text += i == 0 ? cell + pad : "  " + pad + cell;
+      text += (i == 0 ? "" : "  ") + (is_text(i) ? cell + pad : pad + cell);
     }
     text.erase(text.find_last_not_of(' ') + 1);
     const bool bold = line.heading && coloured;

@@ -7,7 +7,7 @@
 
 namespace tactus::cli {
 
-/// Text in columns: the first to the left, the others to the right, widths common to the whole table.
+/// Text in columns with widths common to the whole table: words to the left, figures to the right.
 class Table {
  public:
   void heading(std::vector<std::string> cells);  ///< starts a block; emphasised on a terminal

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Independent jobs on all cores, each worker a process of its own: ODE keeps one random generator per process, so two worlds that
+/// step at the same time in one process would disturb each other and a seed would no longer name one result.
+#pragma once
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <thread>
+#include <type_traits>
+#include <vector>
+
+namespace tactus::cli {
+
+/// Job i yields job(i), for i below `count`; `on_done` is told how many are ready. Nothing when a worker died.
+/// pre  no thread is running; job writes no files and prints nothing.
+template <class Value, class Job, class OnDone>
+std::optional<std::vector<Value>> run_in_workers(std::size_t count, Job&& job, OnDone&& on_done) {
+  static_assert(std::is_trivially_copyable_v<Value>);
+  struct Message {
+    std::size_t index;
+    Value value;
+  };
+  static_assert(sizeof(Message) <= 512, "a pipe passes so much in one piece (POSIX PIPE_BUF)");
+  int pipe_ends[2];
+  if (pipe(pipe_ends) != 0) return std::nullopt;
+  const std::size_t workers = std::min<std::size_t>(count, std::max(1u, std::thread::hardware_concurrency()));
+  std::vector<pid_t> children;
+  for (std::size_t worker = 0; worker < workers; ++worker) {
+    const pid_t child = fork();
+    if (child == 0) {
+      for (std::size_t i = worker; i < count; i += workers) {
+        const Message message{i, job(i)};
+        if (write(pipe_ends[1], &message, sizeof message) != static_cast<ssize_t>(sizeof message)) _exit(1);
+      }
+      _exit(0);
+    }
+    if (child > 0) children.push_back(child);
+  }
+  close(pipe_ends[1]);
+  std::vector<Value> values(count);
+  std::size_t done = 0;
+  Message message;
+  while (read(pipe_ends[0], &message, sizeof message) == static_cast<ssize_t>(sizeof message)) {
+    values[message.index] = message.value;
+    on_done(++done);
+  }
+  close(pipe_ends[0]);
+  for (const pid_t child : children) waitpid(child, nullptr, 0);
+  return done == count ? std::optional(std::move(values)) : std::nullopt;
+}
+
+}  // namespace tactus::cli
