@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The runner, tested with testees that are wrong in different ways and with suites that are damaged."""
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import io
+import json
+import shlex
+import struct
+import sys
+import tempfile
+import unittest
+import zlib
+from pathlib import Path
+from unittest import mock
+
+import run
+
+HERE = Path(__file__).resolve().parent
+
+
+def with_crc(data: bytes) -> bytes:
+    return data + struct.pack("<I", zlib.crc32(data))
+
+
+# An empty scene: 1000 ticks/s, no object, no record. Its state hash is that of no bytes.
+BODY = struct.pack("<IBBBBHBB", 1000, 22, 17, 19, 12, 2000, 1, 0)
+VALID = with_crc(b"\x89TCT" + struct.pack("<BBHI", 1, 0, 0, len(BODY)) + BODY)
+HEADER_LINE = ('{"header":{"version":1,"profile":0,"tick_rate":1000,"grid":[22,17,19,12],"max_extrapolation":2000,'
+               '"baseline_span":1,"objects":[]}}\n')
+VALID_REPLY = HEADER_LINE + '{"end":{"complete":false,"packets":0,"state":"cbf29ce484222325"}}\n'
+WITH_FLAG = VALID[:6] + b"\x01" + VALID[7:]
+WITH_UNKNOWN_RECORD = VALID + with_crc(b"\x04\x00")
+
+
+class RunnerTest(unittest.TestCase):
+    def setUp(self) -> None:
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = Path(folder.name)
+        (self.root / "vectors" / "stream").mkdir(parents=True)
+        self.write_case("stream/001-empty", VALID, VALID_REPLY)
+        self.write_case("stream/002-flag", WITH_FLAG, "", "malformed", "R-STR-4")
+        self.write_case("stream/003-record", WITH_UNKNOWN_RECORD, HEADER_LINE, "unsupported", "R-FIL-3")
+        self.write_manifest(["001-empty", "002-flag", "003-record"])
+
+    def write_case(self, identity: str, data: bytes, reply: str, errc: str = "", rule: str = "") -> None:
+        base = self.root / "vectors" / identity
+        expect = {"class": "invalid", "errc": errc, "rule": rule} if errc else {"class": "valid"}
+        if errc:
+            reply += json.dumps({"error": {"errc": errc, "rule": rule}}, separators=(",", ":")) + "\n"
+        case = {"id": identity, "input": base.name + ".tct", "sha256": hashlib.sha256(data).hexdigest(), "args": [],
+                "expect": {**expect, "output": base.name + ".jsonl"}}
+        base.with_suffix(".tct").write_bytes(data)
+        base.with_suffix(".jsonl").write_text(reply, "ascii")
+        base.with_suffix(".json").write_text(json.dumps(case), "ascii")
+
+    def write_manifest(self, names: list[str]) -> None:
+        paths = [f"vectors/stream/{name}.json" for name in names]
+        (self.root / "manifest.json").write_text(json.dumps({"cases": paths}), "ascii")
+
+    def run_main(self, *arguments: str) -> tuple[int, str, str]:
+        out, err = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            status = run.main(list(arguments), self.root)
+        return status, out.getvalue(), err.getvalue()
+
+    def expect(self, status: int, counts: str, *arguments: str) -> str:
+        """Runs the suite, checks exit status and last line, returns what was printed."""
+        actual, out, _ = self.run_main(*arguments)
+        self.assertEqual((actual, out.splitlines()[-1]), (status, counts), out)
+        return out
+
+    def command(self, program: str) -> str:
+        """The command line of a testee written in Python."""
+        file = self.root / "testee.py"
+        file.write_text(program, "utf-8")
+        return shlex.join([sys.executable, str(file)])
+
+    # ---- testees ----
+
+    def test_second_decoder_passes(self) -> None:
+        self.expect(0, "3 passed, 0 failed, 0 skipped")
+
+    def test_accept_all(self) -> None:
+        testee = self.command(f"print({VALID_REPLY!r}, end='')")
+        self.expect(1, "1 passed, 2 failed, 0 skipped", "--testee", testee)
+
+    def test_reject_all(self) -> None:
+        testee = self.command("""print('{"error":{"errc":"malformed","rule":"R-STR-4"}}'); raise SystemExit(1)""")
+        self.expect(1, "1 passed, 2 failed, 0 skipped", "--testee", testee)
+
+    def test_rejection_with_the_wrong_status(self) -> None:
+        testee = self.command("""print('{"error":{"errc":"malformed","rule":"R-STR-4"}}')""")
+        out = self.expect(1, "0 passed, 1 failed, 0 skipped", "--testee", testee, "--only", "*/002-*")
+        self.assertIn("accepted", out)
+
+    def test_bit_flipper(self) -> None:
+        testee = self.command(f"""
+import subprocess, sys
+reply = subprocess.run([sys.executable, {str(HERE / "decoder.py")!r}], stdin=sys.stdin, stdout=subprocess.PIPE)
+place = reply.stdout.rfind(b'"}}') - 1
+sys.stdout.write(reply.stdout[:place].decode() + chr(reply.stdout[place] ^ 1) + reply.stdout[place + 1:].decode())
+sys.exit(reply.returncode)""")
+        self.expect(1, "0 passed, 3 failed, 0 skipped", "--testee", testee)
+
+    def test_lines_before_an_error_count(self) -> None:
+        testee = self.command("""print('{"error":{"errc":"unsupported","rule":"R-FIL-3"}}'); raise SystemExit(1)""")
+        out = self.expect(1, "0 passed, 1 failed, 0 skipped", "--testee", testee, "--only", "*/003-*")
+        self.assertIn("0 lines; must be 1", out)
+
+    def test_one_line_too_many(self) -> None:
+        testee = self.command(f"print({VALID_REPLY!r} + '{{}}')")
+        self.expect(1, "0 passed, 1 failed, 0 skipped", "--testee", testee, "--only", "*/001-*")
+
+    def test_hanger(self) -> None:
+        testee = self.command("import time\nwhile True: time.sleep(60)")
+        with mock.patch.object(run, "TIMEOUT", 0.5):
+            out = self.expect(1, "0 passed, 3 failed, 0 skipped", "--testee", testee)
+        self.assertEqual(out.count("crash: no end within 0.5 s"), 3)
+
+    def test_hanger_that_closed_its_output(self) -> None:
+        testee = self.command("import os, time\nos.close(1)\nwhile True: time.sleep(60)")
+        with mock.patch.object(run, "TIMEOUT", 0.5):
+            self.expect(1, "0 passed, 1 failed, 0 skipped", "--testee", testee, "--only", "*/001-*")
+
+    def test_hanger_in_a_child(self) -> None:
+        testee = "sh -c 'sleep 600 & wait'"
+        with mock.patch.object(run, "TIMEOUT", 0.5):
+            self.expect(1, "0 passed, 1 failed, 0 skipped", "--testee", testee, "--only", "*/001-*")
+
+    def test_crasher(self) -> None:
+        testee = self.command("import os, signal\nos.kill(os.getpid(), signal.SIGKILL)")
+        out = self.expect(1, "0 passed, 3 failed, 0 skipped", "--testee", testee)
+        self.assertEqual(out.count("crash: signal 9"), 3)
+
+    def test_unknown_status(self) -> None:
+        testee = self.command(f"print({VALID_REPLY!r}, end='')\nraise SystemExit(3)")
+        out = self.expect(1, "0 passed, 3 failed, 0 skipped", "--testee", testee)
+        self.assertEqual(out.count("crash: exit status 3"), 3)
+
+    def test_printers_of_garbage(self) -> None:
+        for garbage in (r"b'\xff\x00garbage\n'", "b'{}'", "b'[]\\n'", "b'{\\n'", "b'[' * 100000 + b'\\n'"):
+            with self.subTest(garbage):
+                testee = self.command(f"import os\nos.write(1, {garbage})")
+                out = self.expect(1, "0 passed, 1 failed, 0 skipped", "--testee", testee, "--only", "*/001-*")
+                self.assertIn("crash: output is not JSON lines", out)
+
+    def test_endless_printer(self) -> None:
+        testee = self.command("while True: print('{}')")
+        with mock.patch.object(run, "LARGEST_OUTPUT", 100000):
+            out = self.expect(1, "0 passed, 1 failed, 0 skipped", "--testee", testee, "--only", "*/001-*")
+        self.assertIn("more than 100000 bytes", out)
+
+    def test_testee_that_does_not_exist(self) -> None:
+        status, _, err = self.run_main("--testee", str(self.root / "nowhere"))
+        self.assertEqual(status, 2)
+        self.assertIn("nowhere", err)
+
+    # ---- suites ----
+
+    def test_missing_files(self) -> None:
+        for suffix in (".json", ".tct", ".jsonl"):
+            with self.subTest(suffix):
+                file = self.root / "vectors" / "stream" / ("002-flag" + suffix)
+                content = file.read_bytes()
+                file.unlink()
+                status, out, _ = self.run_main()
+                self.assertEqual(status, 1, out)
+                self.assertIn("2 passed", out)
+                file.write_bytes(content)
+
+    def test_file_that_no_case_names(self) -> None:
+        (self.root / "vectors" / "stream" / "004-more.tct").write_bytes(VALID)
+        out = self.expect(1, "3 passed, 1 failed, 0 skipped")
+        self.assertIn("004-more.tct", out)
+
+    def test_changed_input(self) -> None:
+        (self.root / "vectors" / "stream" / "001-empty.tct").write_bytes(VALID + b"\x04")
+        self.expect(1, "2 passed, 1 failed, 0 skipped")
+
+    def test_no_manifest(self) -> None:
+        (self.root / "manifest.json").unlink()
+        self.expect(1, "0 passed, 1 failed, 0 skipped")
+
+    def test_case_listed_twice(self) -> None:
+        self.write_manifest(["001-empty", "002-flag", "003-record", "001-empty"])
+        self.expect(1, "4 passed, 1 failed, 0 skipped")
+
+    def test_empty_manifest(self) -> None:
+        for path in (self.root / "vectors" / "stream").iterdir():
+            path.unlink()
+        self.write_manifest([])
+        self.expect(1, "0 passed, 1 failed, 0 skipped")
+
+    def test_only_that_matches_nothing(self) -> None:
+        self.expect(1, "0 passed, 1 failed, 0 skipped", "--only", "rigid/*")
+
+    def test_known_failures(self) -> None:
+        accept_all = self.command(f"print({VALID_REPLY!r}, end='')")
+        known = self.root / "known-failures.txt"
+        known.write_text("stream/002-flag\nstream/003-record\n")
+        self.expect(0, "1 passed, 0 failed, 2 skipped", "--testee", accept_all)
+        self.expect(1, "1 passed, 2 failed, 0 skipped")
+        known.write_text("stream/009-none\n")
+        self.expect(1, "3 passed, 1 failed, 0 skipped")
+
+    def test_json(self) -> None:
+        status, out, err = self.run_main("--json", "--only", "*/001-*")
+        report = json.loads(out)
+        self.assertEqual((status, report["passed"], report["failed"], report["skipped"]), (0, 1, 0, 0))
+        self.assertEqual(report["cases"], [{"id": "stream/001-empty", "result": "pass", "detail": ""}])
+        self.assertEqual(err, "1 passed, 0 failed, 0 skipped\n")
+
+
+if __name__ == "__main__":
+    unittest.main()
