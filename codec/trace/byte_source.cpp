@@ -29,8 +29,8 @@ Result<std::size_t> ByteSource::read(std::span<std::uint8_t> out) noexcept {
     position_ += count;
     return count;
   }
-  const auto part = memory_.subspan(static_cast<std::size_t>(position_)).first(
-      std::min(out.size(), memory_.size() - static_cast<std::size_t>(position_)));
+  const auto part = memory_.subspan(static_cast<std::size_t>(position_))
+                        .first(std::min(out.size(), memory_.size() - static_cast<std::size_t>(position_)));
   std::copy(part.begin(), part.end(), out.begin());
   position_ += part.size();
   return part.size();

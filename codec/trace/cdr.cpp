@@ -18,9 +18,7 @@ CdrWriter::CdrWriter(std::vector<std::uint8_t>& out) : bytes_(out), out_(out) {
   out_.bytes(kLittleEndian);
 }
 
-void CdrWriter::align(std::size_t size) {
-  bytes_.insert(bytes_.end(), padding(bytes_.size() - kLittleEndian.size(), size), 0);
-}
+void CdrWriter::align(std::size_t size) { bytes_.insert(bytes_.end(), padding(bytes_.size() - kLittleEndian.size(), size), 0); }
 
 void CdrWriter::u32(std::uint32_t value) {
   align(sizeof value);
@@ -45,7 +43,8 @@ void CdrWriter::vec3(const Vec3& value) {
 }
 
 CdrReader::CdrReader(std::span<const std::uint8_t> message) noexcept
-    : supported_(message.size() >= kLittleEndian.size() && std::equal(kLittleEndian.begin(), kLittleEndian.begin() + 2, message.begin())),
+    : supported_(message.size() >= kLittleEndian.size() &&
+                 std::equal(kLittleEndian.begin(), kLittleEndian.begin() + 2, message.begin())),
       body_(message.subspan(std::min(message.size(), kLittleEndian.size()))) {}
 
 void CdrReader::align(std::size_t size) noexcept { body_.bytes(padding(body_.position(), size)); }

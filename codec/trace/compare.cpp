@@ -20,7 +20,8 @@ Result<StreamHeader> stream_header(const TraceInfo& info, const TraceFrame& firs
   return header;
 }
 
-StreamPlayer::StreamPlayer(std::span<const std::uint8_t> file, StreamFileReader reader, RigidDecoder decoder, Replica replica) noexcept
+StreamPlayer::StreamPlayer(std::span<const std::uint8_t> file, StreamFileReader reader, RigidDecoder decoder,
+                           Replica replica) noexcept
     : file_(file), reader_(std::move(reader)), decoder_(std::move(decoder)), replica_(std::move(replica)) {}
 
 Result<StreamPlayer> StreamPlayer::open(std::span<const std::uint8_t> file, const ReplicaOptions& options) {

@@ -74,7 +74,7 @@ class ErrorSeries {
   void add(double error, bool over) noexcept;
   void end_tick() noexcept;
 
-  std::uint64_t ticks() const noexcept { return ticks_; }            ///< that had a sample
+  std::uint64_t ticks() const noexcept { return ticks_; }  ///< that had a sample
   std::uint64_t ticks_over() const noexcept { return ticks_over_; }
   std::uint64_t longest_run() const noexcept { return longest_run_; }  ///< [ticks] over without a break
   double rms() const noexcept;
@@ -99,12 +99,12 @@ class Fidelity {
   void add_rendered(const TraceFrame& truth) noexcept;
 
   const RigidTriggers& bounds() const noexcept { return bounds_; }
-  const ErrorSeries& position() const noexcept { return position_; }     ///< [m] against visual_position
-  const ErrorSeries& rotation() const noexcept { return rotation_; }     ///< [rad] against visual_rotation
-  const ErrorSeries& force() const noexcept { return force_; }           ///< [N] against the haptic rule
-  const ErrorSeries& perceived() const noexcept { return perceived_; }   ///< the same errors against perceptual_fraction
-  const ErrorSeries& rendered() const noexcept { return rendered_; }     ///< [N] as felt, against perceptual_fraction
-  double worst_haptic_ratio() const noexcept { return worst_ratio_; }    ///< largest haptic_ratio; <= 1: the rule held
+  const ErrorSeries& position() const noexcept { return position_; }    ///< [m] against visual_position
+  const ErrorSeries& rotation() const noexcept { return rotation_; }    ///< [rad] against visual_rotation
+  const ErrorSeries& force() const noexcept { return force_; }          ///< [N] against the haptic rule
+  const ErrorSeries& perceived() const noexcept { return perceived_; }  ///< the same errors against perceptual_fraction
+  const ErrorSeries& rendered() const noexcept { return rendered_; }    ///< [N] as felt, against perceptual_fraction
+  double worst_haptic_ratio() const noexcept { return worst_ratio_; }   ///< largest haptic_ratio; <= 1: the rule held
 
  private:
   bool breaks_rule(const Pose& truth, const Pose& shown, const Vec3& force, const Vec3& estimate) noexcept;

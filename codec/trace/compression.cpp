@@ -13,7 +13,7 @@ struct FreeDecompression {
   void operator()(ZSTD_DCtx* context) const noexcept { ZSTD_freeDCtx(context); }
 };
 
-} // namespace
+}  // namespace
 
 struct Compressor::Context {
   std::unique_ptr<ZSTD_CCtx, FreeCompression> zstd{ZSTD_createCCtx()};
@@ -28,8 +28,8 @@ Compressor::~Compressor() = default;
 Result<std::span<const std::uint8_t>> Compressor::compress(std::span<const std::uint8_t> input) {
   auto& output = context_->output;
   output.resize(ZSTD_compressBound(input.size()));
-  const std::size_t size = ZSTD_compressCCtx(context_->zstd.get(), output.data(), output.size(), input.data(), input.size(),
-                                             ZSTD_CLEVEL_DEFAULT);
+  const std::size_t size =
+      ZSTD_compressCCtx(context_->zstd.get(), output.data(), output.size(), input.data(), input.size(), ZSTD_CLEVEL_DEFAULT);
   if (ZSTD_isError(size) != 0) return fail(Errc::internal, "R-TRC-8");
   return std::span<const std::uint8_t>(output).first(size);
 }
@@ -57,4 +57,4 @@ Result<StreamDecompressor::Progress> StreamDecompressor::decompress(std::span<co
   return Progress{in.pos, out.pos};
 }
 
-} // namespace tactus
+}  // namespace tactus

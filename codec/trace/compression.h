@@ -53,4 +53,4 @@ class StreamDecompressor {
   bool at_frame_end_ = true;
 };
 
-} // namespace tactus
+}  // namespace tactus

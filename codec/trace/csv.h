@@ -77,4 +77,4 @@ tl::expected<CsvImport, CsvError> import_csv(const std::string& path, const CsvM
 /// err  io R-TRC-1: the stream refused; whatever TraceReader::next() reports.
 Result<std::uint64_t> export_csv(TraceReader& reader, std::ostream& out);
 
-} // namespace tactus
+}  // namespace tactus

@@ -18,18 +18,18 @@ struct TraceObject {
 };
 
 struct TraceInfo {
-  std::uint32_t tick_rate = 1000;        ///< ticks per second
+  std::uint32_t tick_rate = 1000;  ///< ticks per second
   std::vector<TraceObject> objects;
-  std::vector<std::string> users;        ///< empty: a recording without touch
-  std::string source;                    ///< "sim push-1dof seed 1", "import cube-tosses.csv"
-  std::string scene;                     ///< scene file (TOML) attached to the trace; may be empty
+  std::vector<std::string> users;  ///< empty: a recording without touch
+  std::string source;              ///< "sim push-1dof seed 1", "import cube-tosses.csv"
+  std::string scene;               ///< scene file (TOML) attached to the trace; may be empty
 };
 
 /// One user at one tick.
 struct UserSample {
-  Contact contact;       ///< contact.device is always the probe's position, even without contact
-  Vec3 force;            ///< [N] rendered at the client, what the hand felt
-  Vec3 server_force;     ///< [N] rendered at the server from the true state, same device sample
+  Contact contact;    ///< contact.device is always the probe's position, even without contact
+  Vec3 force;         ///< [N] rendered at the client, what the hand felt
+  Vec3 server_force;  ///< [N] rendered at the server from the true state, same device sample
 };
 
 struct TraceFrame {
@@ -38,4 +38,4 @@ struct TraceFrame {
   std::vector<UserSample> users;     ///< order of TraceInfo::users
 };
 
-} // namespace tactus
+}  // namespace tactus

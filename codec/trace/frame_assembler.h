@@ -23,8 +23,8 @@ class FrameAssembler {
 
 /// What a file tells ahead of its first message.
 struct Preamble {
-  mcap::Item item = mcap::Item::end;     ///< where the reader stands now: at a message, or at the end
-  std::optional<mcap::TextMap> tactus;   ///< our metadata record
+  mcap::Item item = mcap::Item::end;    ///< where the reader stands now: at a message, or at the end
+  std::optional<mcap::TextMap> tactus;  ///< our metadata record
   std::string scene;
 };
 

@@ -74,4 +74,4 @@ struct Statistics {
   std::map<std::uint16_t, std::uint64_t> channel_message_counts;
 };
 
-} // namespace tactus::mcap
+}  // namespace tactus::mcap

@@ -55,8 +55,10 @@ bool may_follow_data_end(Opcode opcode) noexcept {
     case Opcode::metadata_index:
     case Opcode::statistics:
     case Opcode::summary_offset:
-    case Opcode::footer: return true;
-    default: return !is_known(opcode);
+    case Opcode::footer:
+      return true;
+    default:
+      return !is_known(opcode);
   }
 }
 
@@ -188,13 +190,23 @@ Result<std::optional<Item>> Reader::next_at_top() {
 /// Records whose place has been found lawful.
 Result<std::optional<Item>> Reader::take_record(Opcode opcode, ByteReader content) {
   switch (opcode) {
-    case Opcode::schema: TACTUS_CHECK(add_schema(content)); return std::nullopt;
-    case Opcode::channel: TACTUS_CHECK(add_channel(content)); return std::nullopt;
-    case Opcode::chunk: TACTUS_CHECK(open_chunk(content)); return std::nullopt;
-    case Opcode::message: return take_message(content);
-    case Opcode::attachment: return take_attachment(content);
-    case Opcode::metadata: return take_metadata(content);
-    default: return std::nullopt;  // indexes and unknown records: not needed to read front to back
+    case Opcode::schema:
+      TACTUS_CHECK(add_schema(content));
+      return std::nullopt;
+    case Opcode::channel:
+      TACTUS_CHECK(add_channel(content));
+      return std::nullopt;
+    case Opcode::chunk:
+      TACTUS_CHECK(open_chunk(content));
+      return std::nullopt;
+    case Opcode::message:
+      return take_message(content);
+    case Opcode::attachment:
+      return take_attachment(content);
+    case Opcode::metadata:
+      return take_metadata(content);
+    default:
+      return std::nullopt;  // indexes and unknown records: not needed to read front to back
   }
 }
 
@@ -208,7 +220,8 @@ Result<void> Reader::open_chunk(ByteReader content) {
   if (!content.ok()) return refuse(Errc::malformed, "R-TRC-4");
   if (compression != "zstd" && !compression.empty()) return refuse(Errc::unsupported, "R-TRC-7");
   const bool zstd = !compression.empty();
-  if (size > limits_.chunk_bytes || (zstd && size > max_zstd_content(records.size()))) return refuse(Errc::limit_exceeded, "R-TRC-5");
+  if (size > limits_.chunk_bytes || (zstd && size > max_zstd_content(records.size())))
+    return refuse(Errc::limit_exceeded, "R-TRC-5");
   if (!zstd && size != records.size()) return refuse(Errc::malformed, "R-TRC-8");
   chunk_position_ = 0;
   chunk_.resize(static_cast<std::size_t>(size));
@@ -311,7 +324,8 @@ Result<void> Reader::end_file(ByteReader content, std::uint32_t crc_before) {
   const bool has_summary = section_ == Section::summary && record_start_ > summary_start_;
   if (summary_start != (has_summary ? summary_start_ : 0)) return refuse(Errc::invalid, "R-TRC-9");
   const auto covered = std::span<const std::uint8_t>(record_).first(kFooterContent - sizeof crc);
-  if (section_ == Section::summary && differs(crc, crc32(covered, crc32(prefix_, crc_before)))) return refuse(Errc::checksum, "R-TRC-6");
+  if (section_ == Section::summary && differs(crc, crc32(covered, crc32(prefix_, crc_before))))
+    return refuse(Errc::checksum, "R-TRC-6");
 
   record_start_ = position_;
   section_ = Section::done;

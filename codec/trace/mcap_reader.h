@@ -15,9 +15,9 @@ namespace tactus::mcap {
 
 /// What a reader accepts before it allocates.
 struct ReadLimits {
-  std::uint64_t record_bytes = 256u << 20;        ///< content of a record that must be held whole
-  std::uint64_t chunk_bytes = 256u << 20;         ///< uncompressed records of a chunk
-  std::uint64_t declaration_bytes = 16u << 20;    ///< all schemas and channels together
+  std::uint64_t record_bytes = 256u << 20;      ///< content of a record that must be held whole
+  std::uint64_t chunk_bytes = 256u << 20;       ///< uncompressed records of a chunk
+  std::uint64_t declaration_bytes = 16u << 20;  ///< all schemas and channels together
 };
 
 /// What next() found.
@@ -74,9 +74,9 @@ class Reader {
   Section section_ = Section::data;
   bool cut_short_ = false;
   std::uint64_t position_ = 0, record_start_ = 0, summary_start_ = 0;
-  std::uint32_t crc_ = 0;                        // of the section so far
-  std::vector<std::uint8_t> prefix_, record_;    // of the record at top level
-  std::vector<std::uint8_t> chunk_;              // decompressed
+  std::uint32_t crc_ = 0;                      // of the section so far
+  std::vector<std::uint8_t> prefix_, record_;  // of the record at top level
+  std::vector<std::uint8_t> chunk_;            // decompressed
   std::size_t chunk_position_ = 0;
   std::uint64_t declared_bytes_ = 0;
   std::map<std::uint16_t, Schema> schemas_;

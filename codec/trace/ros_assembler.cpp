@@ -126,7 +126,8 @@ Result<void> RosAssembler::find_objects(const mcap::Reader& mcap) {
     info_.objects.push_back({std::move(name), Dof::all});
   }
   for (const std::uint16_t id : twists)
-    if (const auto found = by_path.find(path_of(mcap.channels().at(id).topic)); found != by_path.end()) objects_[id] = found->second;
+    if (const auto found = by_path.find(path_of(mcap.channels().at(id).topic)); found != by_path.end())
+      objects_[id] = found->second;
   return {};
 }
 
@@ -192,6 +193,7 @@ Result<void> RosAssembler::apply(const mcap::Reader& mcap, const Sample& sample)
   Track& track = tracks_[found->second];
   if (!track.has_twist && track.known && sample.time > track.time) {
     const Twist motion = motion_between(object.pose, *pose, 1e-9 * static_cast<double>(sample.time - track.time));
+    if (!is_finite(motion.linear) || !is_finite(motion.angular)) return refuse(mcap, Errc::invalid, "R-TRC-14");
     object.velocity = motion.linear;
     object.angular_velocity = motion.angular;
   }

@@ -12,13 +12,14 @@ struct Definition {
   std::string_view fields;
 };
 
-constexpr Definition kTime{"builtin_interfaces/msg/Time", "int32 sec\nuint32 nanosec\n"};
-constexpr Definition kHeader{"std_msgs/msg/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"};
-constexpr Definition kPoint{"geometry_msgs/msg/Point", "float64 x\nfloat64 y\nfloat64 z\n"};
-constexpr Definition kVector3{"geometry_msgs/msg/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"};
-constexpr Definition kQuaternion{"geometry_msgs/msg/Quaternion", "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"};
-constexpr Definition kPose{"geometry_msgs/msg/Pose", "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n"};
-constexpr Definition kTwist{"geometry_msgs/msg/Twist", "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n"};
+// Without "/msg/", as recorders of ROS 2 write them and as fields refer to them.
+constexpr Definition kTime{"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"};
+constexpr Definition kHeader{"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"};
+constexpr Definition kPoint{"geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n"};
+constexpr Definition kVector3{"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"};
+constexpr Definition kQuaternion{"geometry_msgs/Quaternion", "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"};
+constexpr Definition kPose{"geometry_msgs/Pose", "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n"};
+constexpr Definition kTwist{"geometry_msgs/Twist", "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n"};
 
 struct Message {
   std::string_view fields;
@@ -28,35 +29,33 @@ struct Message {
 Message message_of(MessageType type) {
   switch (type) {
     case MessageType::pose:
-      return {"std_msgs/Header header\ngeometry_msgs/Pose pose\n",
-              {kHeader, kTime, kPose, kPoint, kQuaternion}};
+      return {"std_msgs/Header header\ngeometry_msgs/Pose pose\n", {kHeader, kTime, kPose, kPoint, kQuaternion}};
     case MessageType::twist:
-      return {"std_msgs/Header header\ngeometry_msgs/Twist twist\n",
-              {kHeader, kTime, kTwist, kVector3}};
+      return {"std_msgs/Header header\ngeometry_msgs/Twist twist\n", {kHeader, kTime, kTwist, kVector3}};
     case MessageType::point:
-      return {"std_msgs/Header header\ngeometry_msgs/Point point\n",
-              {kHeader, kTime, kPoint}};
+      return {"std_msgs/Header header\ngeometry_msgs/Point point\n", {kHeader, kTime, kPoint}};
     case MessageType::vector:
-      return {"std_msgs/Header header\ngeometry_msgs/Vector3 vector\n",
-              {kHeader, kTime, kVector3}};
-    case MessageType::contact: break;
+      return {"std_msgs/Header header\ngeometry_msgs/Vector3 vector\n", {kHeader, kTime, kVector3}};
+    case MessageType::contact:
+      break;
   }
-  return {"# A user's probe touches one object. No message at a tick: no contact.\n"
-          "uint8 SURFACE=1\n"
-          "uint8 SPRING=2\n"
-          "std_msgs/Header header\n"
-          "# SURFACE: force along the face's normal only. SPRING: probe tied to a point, whole vector.\n"
-          "uint8 kind\n"
-          "# The object touched, by its place in the trace and by its name.\n"
-          "uint32 object_index\n"
-          "string object\n"
-          "# [m] in the object's frame: a point of the face, or the spring's anchor.\n"
-          "geometry_msgs/Point point\n"
-          "# In the object's frame, outward, unit length.\n"
-          "geometry_msgs/Vector3 normal\n"
-          "# [N/m]\n"
-          "float64 stiffness\n",
-          {kHeader, kTime, kPoint, kVector3}};
+  return {
+      "# A user's probe touches one object. No message at a tick: no contact.\n"
+      "uint8 SURFACE=1\n"
+      "uint8 SPRING=2\n"
+      "std_msgs/Header header\n"
+      "# SURFACE: force along the face's normal only. SPRING: probe tied to a point, whole vector.\n"
+      "uint8 kind\n"
+      "# The object touched, by its place in the trace and by its name.\n"
+      "uint32 object_index\n"
+      "string object\n"
+      "# [m] in the object's frame: a point of the face, or the spring's anchor.\n"
+      "geometry_msgs/Point point\n"
+      "# In the object's frame, outward, unit length.\n"
+      "geometry_msgs/Vector3 normal\n"
+      "# [N/m]\n"
+      "float64 stiffness\n",
+      {kHeader, kTime, kPoint, kVector3}};
 }
 
 }  // namespace

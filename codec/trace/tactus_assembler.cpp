@@ -69,8 +69,9 @@ Result<void> TactusAssembler::start(mcap::Reader& mcap, const Preamble& preamble
   info_.scene = preamble.scene;
   for (std::string& name : split_lines(entry(tactus, "objects"))) info_.objects.push_back({std::move(name), Dof::all});
   info_.users = split_lines(entry(tactus, "users"));
-  const bool has_names = std::all_of(info_.objects.begin(), info_.objects.end(), [](const auto& o) { return is_plain_name(o.name); }) &&
-                         std::all_of(info_.users.begin(), info_.users.end(), is_plain_name);
+  const bool has_names =
+      std::all_of(info_.objects.begin(), info_.objects.end(), [](const auto& o) { return is_plain_name(o.name); }) &&
+      std::all_of(info_.users.begin(), info_.users.end(), is_plain_name);
   if (!has_names || (info_.objects.empty() && info_.users.empty())) return refuse(mcap, Errc::invalid, "R-TRC-12");
   item_ = preamble.item;
   const bool ended_early = item_ == mcap::Item::end && mcap.cut_short();
@@ -177,7 +178,8 @@ Result<std::uint64_t> TactusAssembler::store(const mcap::Reader& mcap, const Tra
 bool TactusAssembler::is_complete(std::int64_t tick) const noexcept {
   return std::all_of(routes_.begin(), routes_.end(), [&](const auto& entry) {
     const Route& route = entry.second;
-    const bool is_due = route.channel.occurs == Occurs::every_tick || (route.channel.occurs == Occurs::first_tick && last_tick_ < 0);
+    const bool is_due =
+        route.channel.occurs == Occurs::every_tick || (route.channel.occurs == Occurs::first_tick && last_tick_ < 0);
     return !is_due || route.last_tick == tick;
   });
 }

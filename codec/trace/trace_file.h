@@ -98,4 +98,4 @@ class TraceReader {
   std::unique_ptr<Impl> impl_;
 };
 
-} // namespace tactus
+}  // namespace tactus

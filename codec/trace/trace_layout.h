@@ -24,12 +24,17 @@ struct TraceChannel {
 
 inline MessageType message_type(Role role) noexcept {
   switch (role) {
-    case Role::pose: return MessageType::pose;
-    case Role::twist: return MessageType::twist;
-    case Role::device: return MessageType::point;
-    case Role::contact: return MessageType::contact;
+    case Role::pose:
+      return MessageType::pose;
+    case Role::twist:
+      return MessageType::twist;
+    case Role::device:
+      return MessageType::point;
+    case Role::contact:
+      return MessageType::contact;
     case Role::force:
-    case Role::server_force: break;
+    case Role::server_force:
+      break;
   }
   return MessageType::vector;
 }

@@ -19,7 +19,8 @@ Result<Preamble> read_preamble(mcap::Reader& mcap) {
         break;
       }
       case mcap::Item::message:
-      case mcap::Item::end: return preamble;
+      case mcap::Item::end:
+        return preamble;
     }
   }
 }

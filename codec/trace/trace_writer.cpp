@@ -62,8 +62,7 @@ mcap::Metadata metadata_of(const TraceInfo& info) {
 }
 
 mcap::Attachment scene_of(const TraceInfo& info) {
-  return {0, 0, "scene.toml", "application/toml",
-          {reinterpret_cast<const std::uint8_t*>(info.scene.data()), info.scene.size()}};
+  return {0, 0, "scene.toml", "application/toml", {reinterpret_cast<const std::uint8_t*>(info.scene.data()), info.scene.size()}};
 }
 
 }  // namespace
@@ -139,14 +138,18 @@ Result<void> TraceWriter::Impl::check(const TraceFrame& frame) const {
 
 void TraceWriter::Impl::encode(const TraceChannel& channel, std::uint64_t time, const TraceFrame& frame) {
   switch (channel.role) {
-    case Role::pose: return encode_pose(message, time, frame.objects[channel.index].pose);
+    case Role::pose:
+      return encode_pose(message, time, frame.objects[channel.index].pose);
     case Role::twist: {
       const RigidSample& sample = frame.objects[channel.index];
       return encode_twist(message, time, {sample.velocity, sample.angular_velocity});
     }
-    case Role::device: return encode_vector(message, time, frame.users[channel.index].contact.device);
-    case Role::force: return encode_vector(message, time, frame.users[channel.index].force);
-    case Role::server_force: return encode_vector(message, time, frame.users[channel.index].server_force);
+    case Role::device:
+      return encode_vector(message, time, frame.users[channel.index].contact.device);
+    case Role::force:
+      return encode_vector(message, time, frame.users[channel.index].force);
+    case Role::server_force:
+      return encode_vector(message, time, frame.users[channel.index].server_force);
     case Role::contact: {
       const Contact& contact = frame.users[channel.index].contact;
       return encode_contact(message, time, contact, info.objects[contact.object].name);
@@ -164,8 +167,8 @@ Result<void> TraceWriter::write(const TraceFrame& frame) {
     if (channel.occurs == Occurs::first_tick && !is_first) continue;
     if (channel.occurs == Occurs::in_contact && frame.users[channel.index].contact.kind == ContactKind::none) continue;
     impl_->encode(channel, time, frame);
-    impl_->mcap.add(mcap::Message{static_cast<std::uint16_t>(i + 1), static_cast<std::uint32_t>(frame.tick), time, time,
-                                  impl_->message});
+    impl_->mcap.add(
+        mcap::Message{static_cast<std::uint16_t>(i + 1), static_cast<std::uint32_t>(frame.tick), time, time, impl_->message});
   }
   impl_->last_tick = frame.tick;
   const bool is_full = impl_->mcap.chunk_size() >= kChunkBytes || time - impl_->mcap.chunk_start_time() >= kChunkTime;

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Our end of the interoperability test.
+///   trace_tool write FILE   a trace whose numbers trace_interop.mjs can compute by itself
+///   trace_tool csv FILE     any trace as CSV on standard output
+#include <cstdio>
+#include <iostream>
+#include <string_view>
+
+#include "codec/trace/csv.h"
+#include "codec/trace/csv_columns.h"
+#include "codec/trace/trace_file.h"
+
+namespace {
+
+using namespace tactus;
+
+constexpr std::int64_t kTicks = 2500;
+constexpr std::uint32_t kTickRate = 1000;
+
+/// Exact in binary, different for every tick and slot.
+double number(std::int64_t tick, std::size_t slot) {
+  return static_cast<double>(tick * 1031 + static_cast<std::int64_t>(slot) * 7 - 5000) / 64;
+}
+
+TraceFrame make_frame(std::int64_t tick) {
+  TraceFrame frame{tick, std::vector<RigidSample>(2), std::vector<UserSample>(1)};
+  for (std::size_t k = 0; k < kObjectColumns.size(); ++k) kObjectColumns[k].field(frame.objects[0]) = number(tick, k);
+  for (std::size_t k = 0; k < 7; ++k) kObjectColumns[k].field(frame.objects[1]) = number(0, 100 + k);  // static: pose only
+  const bool touches = tick % 3 == 1;
+  for (std::size_t k = 0; k < (touches ? kUserColumns.size() : 9); ++k)
+    kUserColumns[k].field(frame.users[0]) = number(tick, 200 + k);
+  frame.users[0].contact.kind = touches ? ContactKind::spring : ContactKind::none;
+  if (touches) frame.users[0].contact.stiffness = 630;
+  return frame;
+}
+
+Result<void> write(const char* path) {
+  TACTUS_TRY(auto writer, TraceWriter::create(
+                              path, {kTickRate, {{"cube", Dof::all}, {"floor", Dof::none}}, {"hand"}, "interop", "# scene\n"}));
+  for (std::int64_t tick = 0; tick < kTicks; ++tick) TACTUS_CHECK(writer.write(make_frame(tick)));
+  return writer.finish();
+}
+
+Result<void> print_csv(const char* path) {
+  TACTUS_TRY(auto reader, TraceReader::open(path));
+  const auto rows = export_csv(reader, std::cout);
+  return rows ? Result<void>() : tl::unexpected<Error>(rows.error());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string_view command = argc == 3 ? argv[1] : "";
+  if (command != "write" && command != "csv") {
+    std::fputs("usage: trace_tool write|csv FILE\n", stderr);
+    return 2;
+  }
+  const auto done = command == "write" ? write(argv[2]) : print_csv(argv[2]);
+  if (!done) std::fprintf(stderr, "%s: %s %s\n", argv[2], errc_name(done.error().code), done.error().rule);
+  return done ? 0 : 1;
+}
