@@ -27,9 +27,10 @@ StreamHeader scene(std::uint8_t choice) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   auto decoder = RigidDecoder::create(scene(data[0]));
-  if (!decoder) std::abort();
+  auto twin = RigidDecoder::create(scene(data[0]));  // sees accepted packets only: refused ones must leave no trace, not even in baselines
+  if (!decoder || !twin) std::abort();
   for (std::size_t at = 1; at + 2 <= size;) {
-    const std::size_t length = std::min<std::size_t>(data[at] | (data[at + 1] & 3) << 8, size - at - 2);
+    const std::size_t length = std::min<std::size_t>(data[at] | (data[at + 1] & 3u) << 8, size - at - 2);
     const std::vector<std::uint8_t> packet(data + at + 2, data + at + 2 + length);
     at += 2 + length;
     const std::uint64_t before = decoder->state_hash();
@@ -39,6 +40,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       if (decoder->state_hash() != before) std::abort();
       continue;
     }
+    const auto same = twin->decode(packet);
+    if (!same || same->final_code != decoded->final_code || twin->state_hash() != decoder->state_hash()) std::abort();
     for (const RigidUpdate& update : decoded->updates) {
       const RigidState& state = decoder->objects()[update.object];
       std::int64_t square = 0;
