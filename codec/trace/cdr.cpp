@@ -14,8 +14,7 @@ constexpr std::size_t padding(std::size_t position, std::size_t size) noexcept {
 }  // namespace
 
 CdrWriter::CdrWriter(std::vector<std::uint8_t>& out) : bytes_(out), out_(out) {
-  out.clear();
-  out_.bytes(kLittleEndian);
+  out.assign(kLittleEndian.begin(), kLittleEndian.end());
 }
 
 void CdrWriter::align(std::size_t size) { bytes_.insert(bytes_.end(), padding(bytes_.size() - kLittleEndian.size(), size), 0); }

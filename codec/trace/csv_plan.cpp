@@ -14,6 +14,14 @@ namespace {
 constexpr std::size_t kPosition = 0, kRotation = 3, kVelocity = 7, kSpin = 10;
 constexpr std::size_t kDevice = 0, kForce = 3, kServerForce = 6;
 
+template <class T, std::size_t N>
+std::vector<std::string> all_columns(const std::string& path, const std::array<CsvColumn<T>, N>& columns) {
+  std::vector<std::string> names;
+  names.reserve(N);
+  for (const auto& column : columns) names.push_back(path + column.name);
+  return names;
+}
+
 /// Notes the first mistake and lets the caller go on, so that a plan reads as a list of what it wants.
 class Planner {
  public:
@@ -113,18 +121,14 @@ void Planner::plan_tactus_object(const std::string& path) {
   constexpr std::size_t kRoot = std::string_view("/objects/").size();
   plan_.info.objects.push_back({path.substr(kRoot, path.size() - kRoot - 1), Dof::all});
   plan_.dof.push_back(column(path + kDofColumn));
-  std::vector<std::string> columns;
-  for (const auto& own : kObjectColumns) columns.push_back(path + own.name);
-  bind_object(columns, 0, 1.0);
+  bind_object(all_columns(path, kObjectColumns), 0, 1.0);
 }
 
 void Planner::plan_tactus_user(const std::string& path) {
   constexpr std::size_t kRoot = std::string_view("/users/").size();
   plan_.info.users.push_back(path.substr(kRoot, path.size() - kRoot - 1));
   plan_.contacts.push_back({column(path + kContactColumn), column(path + kContactObjectColumn)});
-  std::vector<std::string> columns;
-  for (const auto& own : kUserColumns) columns.push_back(path + own.name);
-  bind_user(columns, 0, 1.0);
+  bind_user(all_columns(path, kUserColumns), 0, 1.0);
 }
 
 }  // namespace

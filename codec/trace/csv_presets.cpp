@@ -36,8 +36,8 @@ CsvPreset kinaesthetic_preset() {
 }  // namespace
 
 const std::vector<CsvPreset>& csv_presets() {
-  static const std::vector<CsvPreset> kPresets{tactus_preset(), cube_tosses_preset(), kinaesthetic_preset()};
-  return kPresets;
+  static const std::vector<CsvPreset> presets{tactus_preset(), cube_tosses_preset(), kinaesthetic_preset()};
+  return presets;
 }
 
 }  // namespace tactus

@@ -104,7 +104,7 @@ Result<void> RosAssembler::look_ahead(mcap::Reader& mcap) {
       own.push_back(sample->time);
       if (densest == nullptr || own.size() > densest->size()) densest = &own;
     }
-    ahead_.push_back(*std::move(sample));
+    ahead_.push_back(*sample);
   }
   if (densest == nullptr && mcap.cut_short()) return refuse(mcap, Errc::truncated, "R-TRC-3");
   if (densest == nullptr) return refuse(mcap, Errc::unsupported, "R-TRC-16");
@@ -156,7 +156,7 @@ Result<std::optional<Sample>> RosAssembler::read(mcap::Reader& mcap) {
 
 Result<std::optional<Sample>> RosAssembler::next_sample(mcap::Reader& mcap) {
   if (ahead_.empty()) return read(mcap);
-  std::optional<Sample> sample = std::move(ahead_.front());
+  std::optional<Sample> sample = ahead_.front();
   ahead_.pop_front();
   return sample;
 }

@@ -1,11 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# tests/interop/run.sh TRACE_TOOL BUILD_DIR: install the pinned packages below BUILD_DIR and run trace_interop.mjs there.
+# tests/interop/run.sh TRACE_TOOL BUILD_DIR: install the pinned packages in BUILD_DIR and run trace_interop.mjs there.
 # Exits with 77 (skipped) where Node, npm or the packages are not to be had.
 set -eu
 tool=$1
-work=$2/interop
-source=$(cd "$(dirname "$0")" && pwd)
+work=$2
+source=$(cd "${0%/*}" && pwd)
 
 skip() { echo "skipped: $*"; exit 77; }
 

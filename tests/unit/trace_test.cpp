@@ -87,7 +87,7 @@ TEST(Trace, UserWithoutObjects) {
 
 TEST(Trace, WriterRefusesWhatATraceCannotHold) {
   const TempFile file;
-  const auto rule = [&](TraceInfo info) {
+  const auto rule = [&](const TraceInfo& info) {
     const auto writer = TraceWriter::create(file.path(), info);
     return std::string(writer ? "" : writer.error().rule);
   };
