@@ -17,9 +17,11 @@ struct CompareOptions {
 
 Outcome check_same_scene(const CompareOptions& options, const TraceInfo& truth, const TraceInfo& replica) {
   const auto differ = [&](const std::string& what) {
-    return refuse(options.replica + ": " + what + " as in " + options.truth, "Compare a trace with the replica that was decoded from its own stream.");
+    return refuse(options.replica + ": " + what + " as in " + options.truth,
+                  "Compare a trace with the replica that was decoded from its own stream.");
   };
-  if (truth.tick_rate != replica.tick_rate) return differ(fmt::format("the tick rate is {} Hz, not {} Hz", replica.tick_rate, truth.tick_rate));
+  if (truth.tick_rate != replica.tick_rate)
+    return differ(fmt::format("the tick rate is {} Hz, not {} Hz", replica.tick_rate, truth.tick_rate));
   if (truth.objects.size() != replica.objects.size()) {
     return differ(fmt::format("there are {} objects, not {}", replica.objects.size(), truth.objects.size()));
   }
@@ -33,7 +35,8 @@ Outcome check_same_scene(const CompareOptions& options, const TraceInfo& truth, 
 
 /// Both traces side by side; ticks that only one of them has are passed over.
 /// out  number of the truth's ticks that the replica lacks
-tl::expected<std::uint64_t, Failure> compare_all(TraceReader& truth, TraceReader& replica, const CompareOptions& options, Report& report) {
+tl::expected<std::uint64_t, Failure> compare_all(TraceReader& truth, TraceReader& replica, const CompareOptions& options,
+                                                 Report& report) {
   Progress progress("compare", truth.frame_count(), options.common.progress());
   std::uint64_t unmatched = 0;
   TraceFrame frame, shown;
@@ -72,10 +75,12 @@ Outcome run(const CompareOptions& options) {
   report.timings = {{"compare, per tick", {}}};
   const auto unmatched = compare_all(*truth, *replica, options, report);
   if (!unmatched) return tl::unexpected(unmatched.error());
-  if (report.ticks == 0) return refuse(options.replica + ": shares no tick with " + options.truth, "Decode with --like " + options.truth + ".");
+  if (report.ticks == 0)
+    return refuse(options.replica + ": shares no tick with " + options.truth, "Decode with --like " + options.truth + ".");
   if (*unmatched > 0) {
-    report.notes.emplace_back("warning", fmt::format("{} of {} ticks are not in the replica and were left out; decode with --like {}",
-                                                     *unmatched, *unmatched + report.ticks, options.truth));
+    report.notes.emplace_back(
+        "warning", fmt::format("{} of {} ticks are not in the replica and were left out; decode with --like {}", *unmatched,
+                               *unmatched + report.ticks, options.truth));
   }
   print(report, options.common, Destination::standard_output);
   return {};
@@ -90,9 +95,10 @@ void setup_compare(CLI::App& app, Action& action) {
   command.add_option("REPLICA", options->replica, "What a client showed (MCAP)")->type_name("")->required();
   options->triggers.add_to(command);
   add_report_options(command, options->common);
-  command.footer("Ticks over a bound are counted; give the bounds that the stream was encoded with.\n"
-                 "Example:\n"
-                 "  tactus compare push.mcap replica.mcap -p 4% --visual 6mm,2deg");
+  command.footer(
+      "Ticks over a bound are counted; give the bounds that the stream was encoded with.\n"
+      "Example:\n"
+      "  tactus compare push.mcap replica.mcap -p 4% --visual 6mm,2deg");
   on_chosen<CompareOptions>(command, action, options, run);
 }
 

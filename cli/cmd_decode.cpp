@@ -78,7 +78,8 @@ Outcome decode_all(StreamPlayer& player, TraceWriter& writer, const DecodeOption
     if (!*tick) break;
     const auto decoded = report.timings[0].times.measure([&] { return decode_tick(player, **tick, frame, *report.traffic); });
     if (!decoded) return refuse(options.input, decoded.error());
-    if (const auto written = writer.write(frame); !written) return refuse(options.output, place_of_tick(frame.tick), written.error());
+    if (const auto written = writer.write(frame); !written)
+      return refuse(options.output, place_of_tick(frame.tick), written.error());
     progress.update(++report.ticks);
   }
   if (const auto done = writer.finish(); !done) return refuse(options.output, done.error());
@@ -117,14 +118,19 @@ void setup_decode(CLI::App& app, Action& action) {
   auto options = std::make_shared<DecodeOptions>();
   CLI::App& command = *app.add_subcommand("decode", "Reconstruct what a client shows from a stream");
   command.add_option("STREAM", options->input, "Stream to decode, - is standard input")->type_name("")->required();
-  command.add_option("-o,--output", options->output, "Trace of the replica to write, - is standard output")->required()->type_name("FILE");
+  command.add_option("-o,--output", options->output, "Trace of the replica to write, - is standard output")
+      ->required()
+      ->type_name("FILE");
   add_interpolation(command, options->replica);
   CLI::Option* like = command.add_option("--like", options->like, "Write the ticks that this trace has")->type_name("TRACE");
-  command.add_option("--ticks", options->ticks, "Write so many ticks [up to the last packet]")->check(CLI::PositiveNumber)->excludes(like);
+  command.add_option("--ticks", options->ticks, "Write so many ticks [up to the last packet]")
+      ->check(CLI::PositiveNumber)
+      ->excludes(like);
   add_output_options(command, options->common);
-  command.footer("Examples:\n"
-                 "  tactus decode push.tct -o replica.mcap --like push.mcap\n"
-                 "  tactus decode push.tct -o smooth.mcap --interpolate");
+  command.footer(
+      "Examples:\n"
+      "  tactus decode push.tct -o replica.mcap --like push.mcap\n"
+      "  tactus decode push.tct -o smooth.mcap --interpolate");
   on_chosen<DecodeOptions>(command, action, options, run);
 }
 

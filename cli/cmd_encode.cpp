@@ -29,8 +29,12 @@ Result<Session> start(const TraceInfo& info, const TraceFrame& first, const Rigi
   TACTUS_TRY(RigidDecoder decoder, RigidDecoder::create(header));
   TACTUS_TRY(Replica replica, Replica::create(header));
   TACTUS_TRY(StreamFileWriter writer, StreamFileWriter::create(out, header));
-  return Session{std::move(encoder), std::move(decoder), std::move(replica), std::move(writer),
-                 std::vector<Contact>(info.users.size()), std::vector<Pose>(info.objects.size())};
+  return Session{std::move(encoder),
+                 std::move(decoder),
+                 std::move(replica),
+                 std::move(writer),
+                 std::vector<Contact>(info.users.size()),
+                 std::vector<Pose>(info.objects.size())};
 }
 
 Result<void> encode_frame(Session& s, const TraceFrame& frame, Report& report) {
@@ -85,7 +89,8 @@ Outcome run(const EncodeOptions& options) {
   report.fidelity.emplace(reader->info(), encoder.triggers);
   report.timings = {{"encode, per tick", {}}, {"decode, per packet", {}}};
   if (auto done = encode_all(*reader, *session, frame, options, report); !done) return done;
-  if (reader->cut_short()) report.notes.emplace_back("warning", "the trace ends without its index; everything up to there was encoded");
+  if (reader->cut_short())
+    report.notes.emplace_back("warning", "the trace ends without its index; everything up to there was encoded");
   if (auto kept = output->keep(); !kept) return kept;
   print(report, options.common, beside(options.output));
   return {};
@@ -101,9 +106,10 @@ void setup_encode(CLI::App& app, Action& action) {
   options->triggers.add_to(command);
   options->triggers.add_encoder_to(command);
   add_output_options(command, options->common);
-  command.footer("Examples:\n"
-                 "  tactus encode push.mcap -o push.tct -p 4% --visual 6mm,2deg\n"
-                 "  tactus encode tosses.mcap -o tosses.tct --visual 5mm,4deg --haptic off");
+  command.footer(
+      "Examples:\n"
+      "  tactus encode push.mcap -o push.tct -p 4% --visual 6mm,2deg\n"
+      "  tactus encode tosses.mcap -o tosses.tct --visual 5mm,4deg --haptic off");
   on_chosen<EncodeOptions>(command, action, options, run);
 }
 

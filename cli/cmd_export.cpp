@@ -29,7 +29,7 @@ Outcome run(const ExportOptions& options) {
 void setup_export(CLI::App& app, Action& action) {
   auto options = std::make_shared<ExportOptions>();
   CLI::App& group = *app.add_subcommand("export", "Write a trace in another format");
-  group.require_subcommand(1)->footer("Example:\n  tactus export csv push.mcap -o push.csv");
+  group.footer("Example:\n  tactus export csv push.mcap -o push.csv");
   CLI::App& command = *group.add_subcommand("csv", "One row per tick, 17 significant digits");
   command.add_option("TRACE", options->input, "Trace to export (MCAP), - is standard input")->type_name("")->required();
   command.add_option("-o,--output", options->output, "CSV to write [standard output]")->type_name("FILE");

@@ -36,8 +36,9 @@ std::vector<std::string> split(const std::string& text) {
 /// "position=x,y,z" into the mapping.
 Outcome apply_map(const std::string& text, CsvMapping& mapping) {
   const std::map<std::string, std::span<std::string>> targets{
-      {"position", mapping.position}, {"rotation", mapping.rotation}, {"velocity", mapping.velocity},
-      {"angular_velocity", mapping.angular_velocity}, {"device", mapping.device}, {"force", mapping.force}};
+      {"position", mapping.position}, {"rotation", mapping.rotation},
+      {"velocity", mapping.velocity}, {"angular_velocity", mapping.angular_velocity},
+      {"device", mapping.device},     {"force", mapping.force}};
   const std::size_t equals = text.find('=');
   const auto target = targets.find(text.substr(0, equals));
   if (equals == std::string::npos || target == targets.end()) {
@@ -46,8 +47,9 @@ Outcome apply_map(const std::string& text, CsvMapping& mapping) {
   }
   const auto columns = split(text.substr(equals + 1));
   if (columns.size() != target->second.size()) {
-    return refuse(fmt::format("--map '{}': {} columns where {} needs {}", text, columns.size(), target->first, target->second.size()),
-                  "Name the columns as the first line of the file does, with commas between.");
+    return refuse(
+        fmt::format("--map '{}': {} columns where {} needs {}", text, columns.size(), target->first, target->second.size()),
+        "Name the columns as the first line of the file does, with commas between.");
   }
   std::copy(columns.begin(), columns.end(), target->second.begin());
   return {};
@@ -58,7 +60,8 @@ tl::expected<CsvMapping, Failure> make_mapping(const ImportOptions& options) {
   if (!options.preset.empty()) {
     const auto& presets = csv_presets();
     const auto found = std::find_if(presets.begin(), presets.end(), [&](const CsvPreset& p) { return options.preset == p.name; });
-    if (found == presets.end()) return refuse("--preset " + options.preset + ": no such preset", "`tactus import csv --list-presets` names them.");
+    if (found == presets.end())
+      return refuse("--preset " + options.preset + ": no such preset", "`tactus import csv --list-presets` names them.");
     mapping = found->mapping;
   }
   for (const std::string& map : options.maps) {
@@ -98,7 +101,8 @@ Outcome run(const ImportOptions& options) {
   if (!output) return tl::unexpected(output.error());
   Report report{.command = "import csv", .files = {{"table", options.input}, {"trace", options.output}}};
   report.timings = {{"import, whole file", {}}};
-  const auto imported = report.timings[0].times.measure([&] { return import_csv(options.input, *mapping, output->working_path()); });
+  const auto imported =
+      report.timings[0].times.measure([&] { return import_csv(options.input, *mapping, output->working_path()); });
   if (!imported) return refuse_csv(options.input, imported.error());
   if (options.output != "-") {
     const auto reader = TraceReader::open(output->working_path());
@@ -106,7 +110,8 @@ Outcome run(const ImportOptions& options) {
     report.describe(reader->info());
   }
   report.ticks = imported->rows;
-  report.notes.emplace_back("content", fmt::format("{} in {}", counted(imported->rows, "row"), counted(imported->segments, "segment")));
+  report.notes.emplace_back("content",
+                            fmt::format("{} in {}", counted(imported->rows, "row"), counted(imported->segments, "segment")));
   if (auto kept = output->keep(); !kept) return kept;
   print(report, options.common, beside(options.output));
   return {};
@@ -117,25 +122,30 @@ Outcome run(const ImportOptions& options) {
 void setup_import(CLI::App& app, Action& action) {
   auto options = std::make_shared<ImportOptions>();
   CLI::App& group = *app.add_subcommand("import", "Make a trace from a recording");
-  group.require_subcommand(1)->footer("Example:\n  tactus import csv tosses.csv.zst --preset cube-tosses -o tosses.mcap");
+  group.footer("Example:\n  tactus import csv tosses.csv.zst --preset cube-tosses -o tosses.mcap");
   CLI::App& command = *group.add_subcommand("csv", "A table with one row per sample, plain or zstd");
   CLI::Option* list = command.add_flag("--list-presets", options->list_presets, "Name the column mappings that are built in");
   CLI::Option* input = command.add_option("FILE", options->input, "Table to read, - is standard input")->type_name("");
-  CLI::Option* output = command.add_option("-o,--output", options->output, "Trace to write (MCAP), - is standard output")->type_name("FILE");
+  CLI::Option* output =
+      command.add_option("-o,--output", options->output, "Trace to write (MCAP), - is standard output")->type_name("FILE");
   command.add_option("--preset", options->preset, "Column mapping that is built in")->type_name("NAME");
   command.add_option("--map", options->maps, "Columns of one quantity, such as position=x,y,z; may be repeated")
       ->allow_extra_args(false)
       ->type_name("QUANTITY=COLUMNS");
   command.add_option("--time", options->time, "Column with the time in seconds")->type_name("COLUMN");
-  command.add_option("--segment", options->segment, "Column that tells one recording in the table from the next")->type_name("COLUMN");
+  command.add_option("--segment", options->segment, "Column that tells one recording in the table from the next")
+      ->type_name("COLUMN");
   command.add_option("--object", options->object, "Name of the object")->type_name("NAME");
   command.add_option("--user", options->user, "Name of the user")->type_name("NAME");
   add_quantity(command, "--length-unit", options->length_scale, Dimension::length, "Metres per unit of the table's lengths [1m]");
-  command.add_option("--tick-rate", options->tick_rate, "Samples per second [from the times]")->check(CLI::Range(1, 1000000).description(""))->type_name("HZ");
+  command.add_option("--tick-rate", options->tick_rate, "Samples per second [from the times]")
+      ->check(CLI::Range(1, 1000000).description(""))
+      ->type_name("HZ");
   add_output_options(command, options->common);
-  command.footer("Examples:\n"
-                 "  tactus import csv tosses.csv.zst --preset cube-tosses -o tosses.mcap\n"
-                 "  tactus import csv arm.csv --time t --map position=x,y,z --map rotation=qw,qx,qy,qz -o arm.mcap");
+  command.footer(
+      "Examples:\n"
+      "  tactus import csv tosses.csv.zst --preset cube-tosses -o tosses.mcap\n"
+      "  tactus import csv arm.csv --time t --map position=x,y,z --map rotation=qw,qx,qy,qz -o arm.mcap");
   command.callback([&action, options, list, input, output] {
     if (list->count() == 0 && input->count() == 0) throw CLI::RequiredError("FILE");
     if (list->count() == 0 && output->count() == 0) throw CLI::RequiredError("--output");

@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/output.h"
 #include "cli/table.h"
@@ -47,7 +50,10 @@ Outcome show(const Json& info, bool as_json, void (*print_text)(const Json&)) {
   return {};
 }
 
-std::string text_of(const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
+std::string text_of(const Json& value) {
+  if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
 
 /// Scalars of an object as "name value" lines.
 void print_scalars(const Json& object) {
@@ -81,8 +87,9 @@ void print_info(const Json& info) {
 
 Json packet_json(const StreamPlayer::Played& played) {
   const DecodedPacket& p = played.packet;
-  Json out{{"tick", p.tick}, {"byte", played.offset}, {"sequence", p.sequence}, {"key", p.key ? "key" : "-"}, {"bytes", played.bytes},
-           {"reason", kReasons[static_cast<std::size_t>(strongest_reason(p))]}};
+  Json out{
+      {"tick", p.tick},        {"byte", played.offset},      {"sequence", p.sequence},
+      {"bytes", played.bytes}, {"key", p.key ? "key" : "-"}, {"reason", kReasons[static_cast<std::size_t>(strongest_reason(p))]}};
   std::string updates;
   for (const RigidUpdate& u : p.updates) updates += fmt::format("{}{}:{}", updates.empty() ? "" : " ", u.object, u.level);
   out["object:level"] = updates;
@@ -129,7 +136,7 @@ Json header_json(const StreamHeader& h, std::size_t size) {
           {"file bytes", size},
           {"ticks per second", h.tick_rate},
           {"position grid", fmt::format("{:.3g} um", 1e6 * step(h.grid.position))},
-          {"rotation grid", fmt::format("{:.3g} urad", 2e6 * step(h.grid.rotation))},
+          {"rotation grid", fmt::format("{:.3g} urad", 4e6 * step(h.grid.rotation))},
           {"extrapolation", fmt::format("at most {} ticks", h.max_extrapolation)},
           {"baselines kept", h.baseline_span}};
 }
@@ -151,12 +158,15 @@ Outcome info_stream(const InfoOptions& options) {
     if (options.packets) packets.push_back(packet_json(**played));
   }
   totals.write_to(info);
-  info["ending"] = error ? fmt::format("broken at {} ({})", place_of_bit(error->bit_offset), error->rule)
-                         : player->complete() ? "complete" : "no trailer: the writer did not finish";
+  info["ending"] = error                ? fmt::format("broken at {} ({})", place_of_bit(error->bit_offset), error->rule)
+                   : player->complete() ? "complete"
+                                        : "no trailer: the writer did not finish";
   for (const RigidObject& o : player->header().objects) {
     const Pose pose = to_pose({o.initial.position, o.initial.rotation}, player->header().grid);
-    info["objects"].push_back({{"object", o.name}, {"moves along", dof_text(o.dof)},
-                               {"first position [m]", fmt::format("{:.4f} {:.4f} {:.4f}", pose.position.x, pose.position.y, pose.position.z)}});
+    info["objects"].push_back(
+        {{"object", o.name},
+         {"moves along", dof_text(o.dof)},
+         {"first position [m]", fmt::format("{:.4f} {:.4f} {:.4f}", pose.position.x, pose.position.y, pose.position.z)}});
   }
   if (options.packets) info["packet list"] = std::move(packets);
   if (auto shown = show(info, options.json, print_info); !shown || !error) return shown;
@@ -179,7 +189,9 @@ tl::expected<Json, Failure> channels_json(const std::string& path) {
   Json list = Json::array();
   for (const auto& [id, channel] : reader->channels()) {
     const auto schema = reader->schemas().find(channel.schema_id);
-    list.push_back({{"topic", channel.topic}, {"type", schema == reader->schemas().end() ? "-" : schema->second.name}, {"messages", counts[id]}});
+    list.push_back({{"topic", channel.topic},
+                    {"type", schema == reader->schemas().end() ? "-" : schema->second.name},
+                    {"messages", counts[id]}});
   }
   return list;
 }
@@ -197,8 +209,13 @@ Outcome info_trace(const InfoOptions& options) {
     if (!*more) break;
     if (frames++ == 0) first = frame.tick;
   }
-  Json info{{"schema", "tactus.info/1"}, {"kind", "trace"}, {"source", trace.source}, {"ticks per second", trace.tick_rate},
-            {"frames", frames}, {"first tick", first}, {"last tick", frame.tick},
+  Json info{{"schema", "tactus.info/1"},
+            {"kind", "trace"},
+            {"source", trace.source},
+            {"ticks per second", trace.tick_rate},
+            {"frames", frames},
+            {"first tick", first},
+            {"last tick", frame.tick},
             {"seconds", static_cast<double>(frame.tick - first + (frames > 0 ? 1 : 0)) / trace.tick_rate},
             {"scene", trace.scene.empty() ? "none" : fmt::format("{} bytes of TOML", trace.scene.size())},
             {"ending", reader->cut_short() ? "cut short; everything up to there was read" : "complete"}};
@@ -214,11 +231,17 @@ Outcome info_trace(const InfoOptions& options) {
 Outcome info_scene(const InfoOptions& options) {
   const auto scene = load_scene(options.input);
   if (!scene) return refuse(to_string(scene.error()), "");
-  Json info{{"schema", "tactus.info/1"}, {"kind", "scene"}, {"name", scene->name}, {"seconds", scene->duration},
+  Json info{{"schema", "tactus.info/1"},
+            {"kind", "scene"},
+            {"name", scene->name},
+            {"seconds", scene->duration},
             {"floor", scene->floor ? fmt::format("at {} m", *scene->floor) : "none"}};
   if (scene->touch) info["touch stiffness"] = fmt::format("{} N/m", scene->touch->stiffness);
   for (const SceneObject& o : scene->objects) {
-    info["objects"].push_back({{"object", o.name}, {"moves along", dof_text(o.dof)}, {"mass [kg]", o.mass}, {"friction", o.friction},
+    info["objects"].push_back({{"object", o.name},
+                               {"moves along", dof_text(o.dof)},
+                               {"mass [kg]", o.mass},
+                               {"friction", o.friction},
                                {"size [m]", fmt::format("{} {} {}", o.size.x, o.size.y, o.size.z)}});
   }
   for (const SceneUser& u : scene->users) info["users"].push_back({{"user", u.name}, {"phases of the path", u.path.size()}});

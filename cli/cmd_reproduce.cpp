@@ -76,12 +76,12 @@ struct Measured {
   char rule[16] = {};  ///< of the failure
   std::int64_t tick = 0;
   double packets_per_s = 0, bytes_per_update = 0, bit_per_s = 0;
-  std::uint64_t rule_violations = 0;    ///< ticks in which the predicted state breaks the haptic rule
+  std::uint64_t rule_violations = 0;  ///< ticks in which the predicted state breaks the haptic rule
   std::uint64_t visual_violations = 0;
-  double shown_over = 0;                ///< share of ticks in contact in which what is shown breaks it
-  double shown_worst = 0;               ///< how far: largest ratio of error and permitted error
-  double over_jnd = 0;                  ///< share of ticks with a rendered force over the perceptual curve
-  double contact = 0;                   ///< share of all ticks
+  double shown_over = 0;   ///< share of ticks in contact in which what is shown breaks it
+  double shown_worst = 0;  ///< how far: largest ratio of error and permitted error
+  double over_jnd = 0;     ///< share of ticks with a rendered force over the perceptual curve
+  double contact = 0;      ///< share of all ticks
 };
 
 Measured failed_at(std::int64_t tick, const Error& error) {
@@ -90,7 +90,9 @@ Measured failed_at(std::int64_t tick, const Error& error) {
   return out;
 }
 
-double share(std::uint64_t part, std::uint64_t whole) { return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole); }
+double share(std::uint64_t part, std::uint64_t whole) {
+  return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
+}
 
 /// The state as predicted, beside what the simulation's own client shows: a second client without smoothing.
 struct Predictor {
@@ -109,7 +111,8 @@ Result<void> follow(Predictor& predictor, const EncodedPacket& packet, std::int6
     TACTUS_TRY(const DecodedPacket decoded, predictor.decoder.decode(packet.bytes));
     predictor.replica.apply(decoded, predictor.decoder.objects(), tick);
   }
-  for (std::uint32_t i = 0; i < poses.size(); ++i) poses[i] = to_pose(predictor.replica.pose(i, tick), predictor.decoder.header().grid);
+  for (std::uint32_t i = 0; i < poses.size(); ++i)
+    poses[i] = to_pose(predictor.replica.pose(i, tick), predictor.decoder.header().grid);
   return {};
 }
 
@@ -182,47 +185,64 @@ Row summarise(const Setting& setting, std::span<const Measured> runs) {
 
 /// Does a larger deadband cost fewer packets, with and without interpolation?
 bool is_ordered(std::span<const Row> rows, std::size_t first) {
-  return rows[first].mean > rows[first + 1].mean && rows[first + 1].mean > rows[first + 2].mean && rows[first + 2].mean > rows[first + 3].mean;
+  return rows[first].mean > rows[first + 1].mean && rows[first + 1].mean > rows[first + 2].mean &&
+         rows[first + 2].mean > rows[first + 3].mean;
 }
 constexpr std::size_t kFirstWithout = 2, kFirstWith = 6;  // rows of S4_NI and S4_WI
 
 std::string percent(double value) { return value == 0 ? "0 %" : fmt::format("{:.2f} %", 100 * value); }
 
 void print_text(const std::vector<Row>& rows, const ReproduceOptions& options, const Scene& scene) {
-  fmt::print("Thesis table 3.3 and figure 3.14: traffic control settings on {}, closed loop, {:.0f} s, seeds 1 to {}\n", scene.name,
-             scene.duration, options.seeds);
-  fmt::print("Chosen here: 1 virtual length unit = {} m, grip {}, the scene's hand and path; nothing is fitted to the thesis's rates.\n\n",
-             options.length_unit, options.grip);
+  fmt::print("Thesis table 3.3 and figure 3.14: traffic control settings on {}, closed loop, {:.0f} s, seeds 1 to {}\n",
+             scene.name, scene.duration, options.seeds);
+  fmt::print(
+      "Chosen here: 1 virtual length unit = {} m, grip {}, the scene's hand and path; nothing is fitted to the thesis's "
+      "rates.\n\n",
+      options.length_unit, options.grip);
   Table table;
-  table.heading({"setting", "packets/s", "+-", "thesis", "bit/s", "bytes/update", "rule broken", "visual broken", "shown over", "shown worst",
-                 "felt over JND"});
+  table.heading({"setting", "packets/s", "+-", "thesis", "bit/s", "bytes/update", "rule broken", "visual broken", "shown over",
+                 "shown worst", "felt over JND"});
   for (const Row& row : rows) {
     const Measured& m = row.average;
     const bool has_rule = row.setting->rule != HapticRule::off;
     table.row({row.setting->name, fmt::format("{:.1f}", row.mean), fmt::format("{:.1f}", row.deviation), row.setting->thesis_rate,
                fmt::format("{:.0f}", m.bit_per_s), fmt::format("{:.2f}", m.bytes_per_update),
                has_rule ? fmt::to_string(m.rule_violations) : "-", fmt::to_string(m.visual_violations),
-               has_rule ? percent(m.shown_over) : "-", has_rule ? fmt::format("{:.2f}", m.shown_worst) : "-", percent(m.over_jnd)});
+               has_rule ? percent(m.shown_over) : "-", has_rule ? fmt::format("{:.2f}", m.shown_worst) : "-",
+               percent(m.over_jnd)});
   }
   table.print(stdout);
-  fmt::print("\nrule broken     ticks in which the predicted state breaks the setting's haptic rule, all seeds together\n"
-             "visual broken   the same for its visual thresholds\n"
-             "shown over      share of ticks in contact in which what the client shows, smoothed or not, breaks the haptic rule\n"
-             "shown worst     largest error there, as a multiple of the permitted one\n"
-             "felt over JND   share of ticks whose rendered force is off by more than people notice (10 to 22 %)\n"
-             "contact         {:.0f} % of the ticks\n\n", 100 * rows.front().average.contact);
+  fmt::print(
+      "\nrule broken     ticks in which the predicted state breaks the setting's haptic rule, all seeds together\n"
+      "visual broken   the same for its visual thresholds\n"
+      "shown over      share of ticks in contact in which what the client shows, smoothed or not, breaks the haptic rule\n"
+      "shown worst     largest error there, as a multiple of the permitted one\n"
+      "felt over JND   share of ticks whose rendered force is off by more than people notice (10 to 22 %)\n"
+      "contact         {:.0f} % of the ticks\n\n",
+      100 * rows.front().average.contact);
   fmt::print("S4 > S8 > S18 > S30 without interpolation: {}\n", is_ordered(rows, kFirstWithout) ? "holds" : "does not hold");
   fmt::print("S4 > S8 > S18 > S30 with interpolation:    {}\n", is_ordered(rows, kFirstWith) ? "holds" : "does not hold");
 }
 
 void print_json(const std::vector<Row>& rows, const ReproduceOptions& options, const Scene& scene) {
-  Json out{{"schema", "tactus.reproduce/1"}, {"figure", "fig3.14"}, {"scene", scene.name}, {"seconds", scene.duration}, {"seeds", options.seeds},
-           {"length_unit_m", options.length_unit}, {"grip", options.grip}};
+  Json out{{"schema", "tactus.reproduce/1"},
+           {"figure", "fig3.14"},
+           {"scene", scene.name},
+           {"seconds", scene.duration},
+           {"seeds", options.seeds},
+           {"length_unit_m", options.length_unit},
+           {"grip", options.grip}};
   for (const Row& row : rows) {
     const Measured& m = row.average;
-    Json entry{{"setting", row.setting->name}, {"packets_per_s", row.mean}, {"standard_deviation", row.deviation},
-               {"thesis_packets_per_s", row.setting->thesis_rate}, {"payload_bit_per_s", m.bit_per_s}, {"bytes_per_update", m.bytes_per_update},
-               {"visual_violations", m.visual_violations}, {"share_felt_over_jnd", m.over_jnd}, {"share_in_contact", m.contact}};
+    Json entry{{"setting", row.setting->name},
+               {"packets_per_s", row.mean},
+               {"standard_deviation", row.deviation},
+               {"thesis_packets_per_s", row.setting->thesis_rate},
+               {"payload_bit_per_s", m.bit_per_s},
+               {"bytes_per_update", m.bytes_per_update},
+               {"visual_violations", m.visual_violations},
+               {"share_felt_over_jnd", m.over_jnd},
+               {"share_in_contact", m.contact}};
     if (row.setting->rule != HapticRule::off) {
       entry["haptic_violations"] = m.rule_violations;
       entry["share_shown_over"] = m.shown_over;
@@ -257,7 +277,8 @@ Outcome run(const ReproduceOptions& options) {
   for (std::size_t i = 0; i < jobs; ++i) {
     const Measured& m = (*results)[i];
     if (m.failed) return refuse(kSettings[i / options.seeds].name, place_of_tick(m.tick), Error{Errc::internal, m.rule, 0});
-    if (i % options.seeds == 0) rows.push_back(summarise(kSettings[i / options.seeds], std::span(*results).subspan(i, options.seeds)));
+    if (i % options.seeds == 0)
+      rows.push_back(summarise(kSettings[i / options.seeds], std::span(*results).subspan(i, options.seeds)));
   }
   options.common.json ? print_json(rows, options, *scene) : print_text(rows, options, *scene);
   return {};
@@ -268,9 +289,16 @@ Outcome run(const ReproduceOptions& options) {
 void setup_reproduce(CLI::App& app, Action& action) {
   auto options = std::make_shared<ReproduceOptions>();
   CLI::App& command = *app.add_subcommand("reproduce", "Set our figures beside those of the thesis");
-  command.add_option("FIGURE", options->figure, "fig3.14, also called table3.3")->required()->check(one_of({"fig3.14", "table3.3"}))->type_name("");
-  command.add_option("--seeds", options->seeds, "Runs per setting")->capture_default_str()->check(CLI::Range(1, 1000).description(""))->type_name("N");
-  add_quantity(command, "--length-unit", options->length_unit, Dimension::length, "Metres per virtual length unit of the thesis [0.05m]");
+  command.add_option("FIGURE", options->figure, "fig3.14, also called table3.3")
+      ->required()
+      ->check(one_of({"fig3.14", "table3.3"}))
+      ->type_name("");
+  command.add_option("--seeds", options->seeds, "Runs per setting")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000).description(""))
+      ->type_name("N");
+  add_quantity(command, "--length-unit", options->length_unit, Dimension::length,
+               "Metres per virtual length unit of the thesis [0.05m]");
   command.add_option("--grip", options->grip, "How firmly the device is held: loose, normal or firm [normal]")
       ->check(one_of({"loose", "normal", "firm"}))
       ->type_name("GRIP");

@@ -56,15 +56,18 @@ struct Run {
 
 /// One tick, by the scene's hands or by the recording.
 tl::expected<EncodedPacket, Failure> step(Run& run, const SimOptions& options, StepTimes& times) {
-  const auto stepped = times.measure([&] { return run.recording ? run.simulation.replay(run.recorded.users) : run.simulation.step(); });
+  const auto stepped =
+      times.measure([&] { return run.recording ? run.simulation.replay(run.recorded.users) : run.simulation.step(); });
   if (!stepped) return refuse(options.scene, place_of_tick(stepped.error().tick), stepped.error().error);
   return *stepped;
 }
 
 Outcome record(Run& run, const EncodedPacket& packet, const SimOptions& options, Report& report) {
   const TraceFrame& frame = run.simulation.frame();
-  if (const auto written = run.trace.write(frame); !written) return refuse(options.output, place_of_tick(frame.tick), written.error());
-  if (report.traffic && !packet.bytes.empty()) report.traffic->add(packet.reason, packet.updates, packet.bytes.size(), packet.key);
+  if (const auto written = run.trace.write(frame); !written)
+    return refuse(options.output, place_of_tick(frame.tick), written.error());
+  if (report.traffic && !packet.bytes.empty())
+    report.traffic->add(packet.reason, packet.updates, packet.bytes.size(), packet.key);
   if (run.stream && !packet.bytes.empty()) {
     const auto added = run.stream->writer.add(frame.tick, packet.bytes, packet.key);
     if (!added) return refuse(options.stream, added.error());
@@ -112,7 +115,8 @@ Report make_report(const SimOptions& options, const TraceInfo& info) {
   if (!options.has_channel()) return report;
   report.traffic.emplace();
   report.fidelity.emplace(info, options.triggers.triggers());
-  report.notes.emplace_back("client", options.replica.interpolation == Interpolation::none ? "applies updates at once" : "interpolates");
+  report.notes.emplace_back("client",
+                            options.replica.interpolation == Interpolation::none ? "applies updates at once" : "interpolates");
   return report;
 }
 
@@ -138,7 +142,7 @@ Outcome run(const SimOptions& options) {
     recording.emplace(std::move(*reader));
   }
   // The trace grows under its own name: what a crash leaves behind is readable.
-  if (auto free = OutputFile::create(options.output, options.common.existing()); !free) return tl::unexpected(free.error());
+  if (auto free = OutputFile::check_free(options.output, options.common.existing()); !free) return free;
   std::optional<StreamOutput> stream;
   if (!options.stream.empty()) {
     auto opened = open_stream(options, simulation->header());
@@ -151,12 +155,14 @@ Outcome run(const SimOptions& options) {
 
   Report report = make_report(options, info);
   Run session{std::move(*simulation), std::move(*trace), std::move(stream), std::move(recording), {}};
-  const auto ticks = options.duration > 0 ? static_cast<std::int64_t>(std::llround(options.duration * kTickRate)) : session.simulation.ticks();
+  const auto ticks =
+      options.duration > 0 ? static_cast<std::int64_t>(std::llround(options.duration * kTickRate)) : session.simulation.ticks();
   if (auto done = simulate(session, ticks, options, report); !done) return done;
   if (!info.users.empty()) {
-    report.notes.emplace_back("contact", fmt::format("{:.1f} % of the ticks, at most {:.2f} N",
-                                                     100.0 * static_cast<double>(session.ticks_in_contact) / static_cast<double>(report.ticks),
-                                                     session.largest_force));
+    report.notes.emplace_back(
+        "contact", fmt::format("{:.1f} % of the ticks, at most {:.2f} N",
+                               100.0 * static_cast<double>(session.ticks_in_contact) / static_cast<double>(report.ticks),
+                               session.largest_force));
   }
   print(report, options.common, beside(options.output));
   return {};
@@ -167,13 +173,19 @@ Outcome run(const SimOptions& options) {
 void setup_sim(CLI::App& app, Action& action) {
   auto options = std::make_shared<SimOptions>();
   CLI::App& command = *app.add_subcommand("sim", "Simulate a touch into a trace");
-  command.add_option("SCENE", options->scene, "push-1dof, rotate-6dof, rotate-push-lift, or a TOML file")->type_name("")->required();
-  command.add_option("-o,--output", options->output, "Trace to write (MCAP), - is standard output")->required()->type_name("FILE");
+  command.add_option("SCENE", options->scene, "push-1dof, rotate-6dof, rotate-push-lift, or a TOML file")
+      ->type_name("")
+      ->required();
+  command.add_option("-o,--output", options->output, "Trace to write (MCAP), - is standard output")
+      ->required()
+      ->type_name("FILE");
   command.add_option("--seed", options->seed, "Every random number follows from it")->capture_default_str()->type_name("N");
   add_quantity(command, "--duration", options->duration, Dimension::time, "Length [the scene's]");
   const std::map<std::string, Grip> grips{{"loose", Grip::loose}, {"normal", Grip::normal}, {"firm", Grip::firm}};
-  command.add_option_function<std::string>("--grip", [&grip = options->grip, grips](const std::string& name) { grip = grips.at(name); },
-                                           "How firmly the device is held: loose, normal or firm [the scene's]")
+  command
+      .add_option_function<std::string>(
+          "--grip", [&grip = options->grip, grips](const std::string& name) { grip = grips.at(name); },
+          "How firmly the device is held: loose, normal or firm [the scene's]")
       ->check(one_of({"loose", "normal", "firm"}))
       ->type_name("GRIP");
   command.add_option("--replay", options->replay, "Move the device as in this trace instead")->type_name("TRACE");
@@ -183,9 +195,10 @@ void setup_sim(CLI::App& app, Action& action) {
   options->triggers.add_to(command);
   options->triggers.add_encoder_to(command);
   add_output_options(command, options->common);
-  command.footer("Examples:\n"
-                 "  tactus sim push-1dof -o push.mcap --seed 7\n"
-                 "  tactus sim rotate-push-lift -o felt.mcap --stream felt.tct -p 4% --interpolate");
+  command.footer(
+      "Examples:\n"
+      "  tactus sim push-1dof -o push.mcap --seed 7\n"
+      "  tactus sim rotate-push-lift -o felt.mcap --stream felt.tct -p 4% --interpolate");
   on_chosen<SimOptions>(command, action, options, run);
 }
 

@@ -32,14 +32,14 @@ int main(int argc, char** argv) {
   using namespace tactus::cli;
   CLI::App app{"Codec for shared haptic virtual environments: which object states to send, and in how few bits", "tactus"};
   app.set_version_flag("--version", "tactus " TACTUS_VERSION);
-  app.require_subcommand(1);
   app.get_formatter()->column_width(34);
-  app.footer("A first round:\n"
-             "  tactus sim push-1dof -o push.mcap                        simulate a touch\n"
-             "  tactus encode push.mcap -o push.tct -p 4%                turn it into packets\n"
-             "  tactus decode push.tct -o replica.mcap --like push.mcap  see it as a client does\n"
-             "  tactus compare push.mcap replica.mcap -p 4%              how far is that from the truth\n"
-             "`tactus COMMAND --help` tells more. Quantities take units: 2deg, 5mm, 4%, 100ms, 0.05N.");
+  app.footer(
+      "A first round:\n"
+      "  tactus sim push-1dof -o push.mcap                        simulate a touch\n"
+      "  tactus encode push.mcap -o push.tct -p 4%                turn it into packets\n"
+      "  tactus decode push.tct -o replica.mcap --like push.mcap  see it as a client does\n"
+      "  tactus compare push.mcap replica.mcap -p 4%              how far is that from the truth\n"
+      "`tactus COMMAND --help` tells more. Quantities take units: 2deg, 5mm, 4%, 100ms, 0.05N.");
   Action action;
 #ifdef TACTUS_HAS_SIM
   setup_sim(app, action);
@@ -57,6 +57,11 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? kOk : kUsage;
+  }
+  if (!action) {
+    const auto groups = app.get_subcommands();
+    fmt::print(stderr, "{}", (groups.empty() ? &app : groups.front())->help());
+    return kUsage;
   }
   const Outcome outcome = action();
   return outcome ? kOk : report_failure(outcome.error());

@@ -17,11 +17,13 @@ struct RuleText {
 };
 
 constexpr const char* kNotAStream = "Give a stream file that `tactus encode` or `tactus sim --stream` wrote.";
-constexpr const char* kNotATrace = "Give a trace that `tactus sim` or `tactus import` wrote, or another MCAP file with PoseStamped channels.";
+constexpr const char* kNotATrace =
+    "Give a trace that `tactus sim` or `tactus import` wrote, or another MCAP file with PoseStamped channels.";
 constexpr const char* kDamaged = "The file was changed or cut after it was written; copy it again from its source.";
 constexpr const char* kNewer = "It comes from a newer or another program; use that version of Tactus.";
 constexpr const char* kEncoderFault = "Whatever encoded the stream has a defect, or the file was changed; encode it again.";
-constexpr const char* kOrder = "Packets must be decoded in the order in which they were sent; go to a key packet and decode on from there.";
+constexpr const char* kOrder =
+    "Packets must be decoded in the order in which they were sent; go to a key packet and decode on from there.";
 
 constexpr std::array kRules{
     RuleText{"R-API-1", "a value is not a finite number", "Look for gaps or NaN in the recording at this place."},
@@ -46,10 +48,13 @@ constexpr std::array kRules{
     RuleText{"R-STR-8", "the longest extrapolation is zero", kEncoderFault},
     RuleText{"R-STR-9", "the baseline span is not within 1 to 64", kEncoderFault},
     RuleText{"R-STR-10", "the scene declares an object of an unknown kind", kNewer},
-    RuleText{"R-STR-11", "an object's name is empty, too long, no plain text, or there twice", "Give every object its own name of 1 to 255 bytes."},
-    RuleText{"R-STR-12", "an object may turn about two axes, which no stream can say", "Declare rotation about none, one or all three axes."},
+    RuleText{"R-STR-11", "an object's name is empty, too long, no plain text, or there twice",
+             "Give every object its own name of 1 to 255 bytes."},
+    RuleText{"R-STR-12", "an object may turn about two axes, which no stream can say",
+             "Declare rotation about none, one or all three axes."},
     RuleText{"R-STR-13", "an object's first rotation is not a unit quaternion", kEncoderFault},
-    RuleText{"R-STR-14", "the scene is larger than this decoder accepts (4096 objects, 1 MiB)", "Split the scene into several streams."},
+    RuleText{"R-STR-14", "the scene is larger than this decoder accepts (4096 objects, 1 MiB)",
+             "Split the scene into several streams."},
     RuleText{"R-STR-15", "the check value of the stream header does not match", kDamaged},
     RuleText{"R-STR-16", "extension records do not fill the stream header exactly", kEncoderFault},
     RuleText{"R-FIL-1", "the file cannot be written", "Check the free space of the disk and your permissions."},
@@ -79,27 +84,34 @@ constexpr std::array kRules{
     RuleText{"R-TRC-4", "a length reaches past the end of its record", kDamaged},
     RuleText{"R-TRC-5", "a record or chunk is larger than accepted (256 MiB)", "Write the recording with smaller chunks."},
     RuleText{"R-TRC-6", "a check value does not match", kDamaged},
-    RuleText{"R-TRC-7", "compression, encoding or version is one that this program does not read", "Write the recording with zstd or without compression."},
+    RuleText{"R-TRC-7", "compression, encoding or version is one that this program does not read",
+             "Write the recording with zstd or without compression."},
     RuleText{"R-TRC-8", "a chunk is not zstd data of the announced size", kDamaged},
     RuleText{"R-TRC-9", "a record stands where it must not", kDamaged},
     RuleText{"R-TRC-10", "a schema or channel is not declared, or declared twice", kDamaged},
     RuleText{"R-TRC-11", "text is not UTF-8, or a key stands twice", kDamaged},
     RuleText{"R-TRC-12", "the channels lack something or contradict the trace's metadata", kNotATrace},
     RuleText{"R-TRC-13", "a message does not have its channel's type", kDamaged},
-    RuleText{"R-TRC-14", "a value is not finite, or a contact or time stamp is not valid", "Look for gaps or NaN in the recording at this place."},
-    RuleText{"R-TRC-15", "ticks do not increase, or a tick lacks a message or has one twice", "Record every channel once per tick."},
+    RuleText{"R-TRC-14", "a value is not finite, or a contact or time stamp is not valid",
+             "Look for gaps or NaN in the recording at this place."},
+    RuleText{"R-TRC-15", "ticks do not increase, or a tick lacks a message or has one twice",
+             "Record every channel once per tick."},
     RuleText{"R-TRC-16", "there is no PoseStamped channel to read objects from", kNotATrace},
-    RuleText{"R-TRC-17", "the trace's description is not valid", "Give every object and user its own plain name, and a tick rate of 1 to 1000000."},
-    RuleText{"R-CSV-1", "the table has no line of names and one of values, or its zstd data ends early", "Give a table whose first line names the columns."},
+    RuleText{"R-TRC-17", "the trace's description is not valid",
+             "Give every object and user its own plain name, and a tick rate of 1 to 1000000."},
+    RuleText{"R-CSV-1", "the table has no line of names and one of values, or its zstd data ends early",
+             "Give a table whose first line names the columns."},
     RuleText{"R-CSV-2", "a column is not there, or there twice", "Compare the mapping with the first line of the table."},
     RuleText{"R-CSV-3", "the row has more or fewer fields than there are columns", "Mend the row or remove it."},
     RuleText{"R-CSV-4", "the field is not a finite number", "Mend the field or remove the row."},
-    RuleText{"R-CSV-5", "time does not increase within a segment", "Name the column that tells segments apart (--segment), or sort the rows."},
+    RuleText{"R-CSV-5", "time does not increase within a segment",
+             "Name the column that tells segments apart (--segment), or sort the rows."},
     RuleText{"R-CSV-6", "a line is longer than 1 MiB", "Give a table with one sample per line."},
     RuleText{"R-CSV-7", "the rate of the recording is unknown", "Give --tick-rate HZ, or --time COLUMN."},
     RuleText{"R-CSV-8", "the mapping names some columns of a vector but not all, or nothing to record",
              "Give --preset NAME, or --map with every column of a quantity."},
-    RuleText{"R-SIM-1", "the physics broke down: a state is no longer finite", "Soften the scene: a lower stiffness, or a heavier object."},
+    RuleText{"R-SIM-1", "the physics broke down: a state is no longer finite",
+             "Soften the scene: a lower stiffness, or a heavier object."},
 };
 
 }  // namespace

@@ -21,27 +21,34 @@ void add_output_options(CLI::App& app, CommonOptions& options) {
 }
 
 void TriggerArguments::add_to(CLI::App& app) {
-  const std::map<std::string, HapticRule> rules{{"isotropic", HapticRule::isotropic}, {"cone", HapticRule::cone},
-                                                {"fixed", HapticRule::fixed}, {"off", HapticRule::off}};
+  const std::map<std::string, HapticRule> rules{
+      {"isotropic", HapticRule::isotropic}, {"cone", HapticRule::cone}, {"fixed", HapticRule::fixed}, {"off", HapticRule::off}};
   const auto rule = [this, rules](const std::string& name) { triggers_.haptic = rules.at(name); };
   options_ = {
-      add_quantity(app, "-p,--deadband", triggers_.weber_fraction, Dimension::fraction, "Permitted share of force error, Weber's law [8%]"),
+      add_quantity(app, "-p,--deadband", triggers_.weber_fraction, Dimension::fraction,
+                   "Permitted share of force error, Weber's law [8%]"),
       add_pose_bound(app, "--visual", visual_, "Permitted error of pose to the eye [0.006,2deg]"),
-      app.add_option_function<std::string>("--haptic", rule, "Permitted error of force: isotropic, cone, fixed or off [isotropic]")
+      app.add_option_function<std::string>("--haptic", rule,
+                                           "Permitted error of force: isotropic, cone, fixed or off [isotropic]")
           ->check(one_of({"isotropic", "cone", "fixed", "off"}))
           ->type_name("RULE"),
-      add_quantity(app, "--alpha", triggers_.cone_angle, Dimension::angle, "Permitted force direction error of the rule cone [2.1deg]"),
+      add_quantity(app, "--alpha", triggers_.cone_angle, Dimension::angle,
+                   "Permitted force direction error of the rule cone [2.1deg]"),
       add_pose_bound(app, "--fixed", fixed_, "Permitted pose error in contact of the rule fixed [0.0015,2deg]"),
-      add_quantity(app, "--force-floor", triggers_.force_floor, Dimension::force, "Below this force the deadband is that of it [0.05N]"),
+      add_quantity(app, "--force-floor", triggers_.force_floor, Dimension::force,
+                   "Below this force the deadband is that of it [0.05N]"),
       add_quantity(app, "--length-unit", length_unit_, Dimension::length, "Metres per unit of lengths typed without a unit [1m]"),
   };
 }
 
 void TriggerArguments::add_encoder_to(CLI::App& app) {
-  options_.push_back(add_quantity(app, "--heartbeat", triggers_.heartbeat, Dimension::time, "Longest silence, 0: unlimited [1s]"));
-  options_.push_back(add_quantity(app, "--key-interval", key_interval_, Dimension::time, "Time between places to seek to, 0: first only [5s]"));
+  options_.push_back(
+      add_quantity(app, "--heartbeat", triggers_.heartbeat, Dimension::time, "Longest silence, 0: unlimited [1s]"));
+  options_.push_back(
+      add_quantity(app, "--key-interval", key_interval_, Dimension::time, "Time between places to seek to, 0: first only [5s]"));
   options_.push_back(app.add_flag("--no-reduction", no_reduction_, "Send every object in every tick"));
-  options_.push_back(app.add_option("--profile", "Set of coding tools: thesis [thesis]")->check(one_of({"thesis"}))->type_name("NAME"));
+  options_.push_back(
+      app.add_option("--profile", "Set of coding tools: thesis [thesis]")->check(one_of({"thesis"}))->type_name("NAME"));
 }
 
 bool TriggerArguments::any_given() const {

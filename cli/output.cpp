@@ -17,14 +17,18 @@ tl::unexpected<Failure> refuse_io(const std::string& path, const std::string& wh
 
 }  // namespace
 
+Outcome OutputFile::check_free(const std::string& path, Existing existing) {
+  std::error_code ignored;
+  if (path == "-" || existing == Existing::replace || !fs::is_regular_file(path, ignored)) return {};
+  return refuse(path + ": the file is there already", "Give -f to replace it, or another name.");
+}
+
 tl::expected<OutputFile, Failure> OutputFile::create(const std::string& path, Existing existing) {
+  if (auto free = check_free(path, existing); !free) return tl::unexpected(free.error());
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
-  if (path == "-" || (fs::exists(status) && !fs::is_regular_file(status))) return OutputFile(path, path);
-  if (fs::exists(status) && existing == Existing::keep) {
-    return refuse(path + ": the file is there already", "Give -f to replace it, or another name.");
-  }
-  return OutputFile(path, path + ".part");
+  const bool direct = path == "-" || (fs::exists(status) && !fs::is_regular_file(status));
+  return OutputFile(path, direct ? path : path + ".part");
 }
 
 OutputFile::OutputFile(OutputFile&& other) noexcept
@@ -46,7 +50,8 @@ Outcome OutputFile::keep() {
   if (!is_temporary()) return {};
   std::error_code error;
   fs::rename(working_path_, path_, error);
-  if (error) return refuse(path_ + ": cannot be written: " + error.message(), "Check that the path is right and that you may use it.");
+  if (error)
+    return refuse(path_ + ": cannot be written: " + error.message(), "Check that the path is right and that you may use it.");
   working_path_ = path_;
   return {};
 }

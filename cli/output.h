@@ -17,6 +17,7 @@ class OutputFile {
  public:
   enum class Existing { keep, replace };
   /// err  PATH exists and is to be kept
+  static Outcome check_free(const std::string& path, Existing existing);
   static tl::expected<OutputFile, Failure> create(const std::string& path, Existing existing);
 
   const std::string& path() const noexcept { return path_; }

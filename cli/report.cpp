@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr std::uint64_t kUdpHeader = 28;  // IPv4 20, UDP 8
+constexpr std::uint64_t kUdpHeader = 28;                                                    // IPv4 20, UDP 8
 constexpr std::array<const char*, 4> kReasons{"request", "heartbeat", "visual", "haptic"};  // index: Reason
 
 std::string percent(double share) {
@@ -24,6 +24,11 @@ std::string percent(double share) {
   return fmt::format("{:.{}f} %", 100 * share, share < 0.0995 || share > 0.995 ? 2 : 1);
 }
 std::string significant(double value) { return value == 0 ? "0" : fmt::format("{:.3g}", value); }
+
+std::string duration(double seconds) {
+  if (seconds < 1e-3) return fmt::format("{:.2f} us", 1e6 * seconds);
+  return seconds < 1 ? fmt::format("{:.1f} ms", 1e3 * seconds) : fmt::format("{:.2f} s", seconds);
+}
 
 double per(double amount, double base) { return base > 0 ? amount / base : 0; }
 
@@ -38,41 +43,52 @@ Rates rates(const Report& r, std::uint64_t header) {
   const double bytes = static_cast<double>(t.bytes) + packets * static_cast<double>(header);
   // Without reduction: one packet per tick with every moving object's state, raw.
   const auto raw = [&](std::uint64_t state) { return static_cast<double>(r.ticks * (r.moving * state + header)); };
-  return {8 * per(bytes, r.seconds()), per(bytes, packets), per(bytes, static_cast<double>(t.updates)), 1 - per(bytes, raw(24)), 1 - per(bytes, raw(48))};
+  return {8 * per(bytes, r.seconds()), per(bytes, packets), per(bytes, static_cast<double>(t.updates)), 1 - per(bytes, raw(24)),
+          1 - per(bytes, raw(48))};
 }
 
 void traffic_rows(Table& table, const Report& r) {
   const Traffic& t = *r.traffic;
   table.heading({"packets", "number", "per second"});
   for (std::size_t i = kReasons.size(); i-- > 0;) {
+    const bool untouched = static_cast<Reason>(i) == Reason::haptic && r.users == 0 && t.packets[i] == 0;
+    if (untouched) continue;
     table.row({fmt::format("  {}", kReasons[i]), fmt::to_string(t.packets[i]),
                fmt::format("{:.2f}", per(static_cast<double>(t.packets[i]), r.seconds()))});
   }
   const auto all = static_cast<double>(t.all_packets());
   table.row({"  all", fmt::to_string(t.all_packets()), fmt::format("{:.2f}", per(all, r.seconds()))});
-  table.row({"  object updates in them", fmt::to_string(t.updates), fmt::format("{:.2f}", per(static_cast<double>(t.updates), r.seconds()))});
-  table.row({fmt::format("  fewer updates than {} per second", r.tick_rate),
+  table.row({"  object updates in them", fmt::to_string(t.updates),
+             fmt::format("{:.2f}", per(static_cast<double>(t.updates), r.seconds()))});
+  table.row({fmt::format("  fewer than {} per second and object", r.tick_rate),
              percent(1 - per(static_cast<double>(t.updates), static_cast<double>(r.ticks * r.moving)))});
   const Rates payload = rates(r, 0), datagram = rates(r, kUdpHeader);
   table.heading({"size", "payload", "with UDP/IPv4"});
   table.row({"  bit/s", fmt::format("{:.0f}", payload.bits_per_s), fmt::format("{:.0f}", datagram.bits_per_s)});
-  table.row({"  bytes per packet", fmt::format("{:.2f}", payload.bytes_per_packet), fmt::format("{:.2f}", datagram.bytes_per_packet)});
-  table.row({"  bytes per update", fmt::format("{:.2f}", payload.bytes_per_update), fmt::format("{:.2f}", datagram.bytes_per_update)});
+  table.row(
+      {"  bytes per packet", fmt::format("{:.2f}", payload.bytes_per_packet), fmt::format("{:.2f}", datagram.bytes_per_packet)});
+  table.row(
+      {"  bytes per update", fmt::format("{:.2f}", payload.bytes_per_update), fmt::format("{:.2f}", datagram.bytes_per_update)});
   table.row({"  smaller than raw 24-byte states", percent(payload.saved_24), percent(datagram.saved_24)});
   table.row({"  smaller than raw 48-byte states", percent(payload.saved_48), percent(datagram.saved_48)});
 }
 
 std::string rule_name(const RigidTriggers& b) {
   switch (b.haptic) {
-    case HapticRule::off: return "off";
-    case HapticRule::isotropic: return percent(b.weber_fraction);
-    case HapticRule::cone: return fmt::format("{}, {:.3g} deg", percent(b.weber_fraction), b.cone_angle / kDegree);
-    case HapticRule::fixed: return fmt::format("{:.3g} mm, {:.3g} deg", 1e3 * b.fixed_position, b.fixed_rotation / kDegree);
+    case HapticRule::off:
+      return "off";
+    case HapticRule::isotropic:
+      return percent(b.weber_fraction);
+    case HapticRule::cone:
+      return fmt::format("{}, {:.3g} deg", percent(b.weber_fraction), b.cone_angle / kDegree);
+    case HapticRule::fixed:
+      return fmt::format("{:.3g} mm, {:.3g} deg", 1e3 * b.fixed_position, b.fixed_rotation / kDegree);
   }
   return {};
 }
 
-void error_row(Table& table, const Report& r, const std::string& name, const std::string& bound, const ErrorSeries& s, double unit) {
+void error_row(Table& table, const Report& r, const std::string& name, const std::string& bound, const ErrorSeries& s,
+               double unit) {
   table.row({name, bound, significant(s.rms() / unit), significant(s.max() / unit), fmt::to_string(s.ticks_over()),
              percent(per(static_cast<double>(s.ticks_over()), static_cast<double>(s.ticks()))),
              fmt::format("{:.0f}", 1e3 * static_cast<double>(s.longest_run()) / r.tick_rate)});
@@ -92,23 +108,29 @@ void error_rows(Table& table, const Report& r) {
 }
 
 void time_rows(Table& table, const Report& r) {
-  table.heading({"time", "p50 [us]", "p99 [us]", "max [us]", "times real time"});
+  table.heading({"time", "p50", "p99", "max", "times real time"});
   for (const Report::Timing& t : r.timings) {
     if (t.times.empty()) continue;
-    table.row({"  " + t.step, fmt::format("{:.3f}", 1e6 * t.times.quantile(0.5)), fmt::format("{:.3f}", 1e6 * t.times.quantile(0.99)),
-               fmt::format("{:.3f}", 1e6 * t.times.quantile(1)), fmt::format("{:.0f}", per(r.seconds(), t.times.total()))});
+    table.row({"  " + t.step, duration(t.times.quantile(0.5)), duration(t.times.quantile(0.99)), duration(t.times.quantile(1)),
+               fmt::format("{:.0f}", per(r.seconds(), t.times.total()))});
   }
 }
 
-void print_text(const Report& r, std::FILE* out) {
+Table summary(const Report& r) {
   Table table;
   table.heading({r.command});
   for (const auto& [role, path] : r.files) table.row({fmt::format("  {:<8} {}", role, path)});
-  std::string scope = fmt::format("  {:<8} {} at {} Hz ({:.3f} s), {}", "scope", counted(r.ticks, "tick"), r.tick_rate, r.seconds(), counted(r.objects, "object"));
+  if (r.tick_rate == 0) return table;
+  std::string scope = fmt::format("  {:<8} {} at {} Hz ({:.3f} s), {}", "scope", counted(r.ticks, "tick"), r.tick_rate,
+                                  r.seconds(), counted(r.objects, "object"));
   if (r.users > 0) scope += ", " + counted(r.users, "user");
   table.row({scope});
   for (const auto& [name, text] : r.notes) table.row({fmt::format("  {:<8} {}", name, text)});
-  table.print(out);
+  return table;
+}
+
+void print_text(const Report& r, std::FILE* out) {
+  summary(r).print(out);
   fmt::print(out, "\n");
   Table figures;
   if (r.traffic) traffic_rows(figures, r);
@@ -118,8 +140,11 @@ void print_text(const Report& r, std::FILE* out) {
 }
 
 Json rates_json(const Rates& x) {
-  return {{"bit_per_s", x.bits_per_s}, {"bytes_per_packet", x.bytes_per_packet}, {"bytes_per_update", x.bytes_per_update},
-          {"reduction_from_24_byte_states", x.saved_24}, {"reduction_from_48_byte_states", x.saved_48}};
+  return {{"bit_per_s", x.bits_per_s},
+          {"bytes_per_packet", x.bytes_per_packet},
+          {"bytes_per_update", x.bytes_per_update},
+          {"reduction_from_24_byte_states", x.saved_24},
+          {"reduction_from_48_byte_states", x.saved_48}};
 }
 
 Json traffic_json(const Report& r) {
@@ -129,13 +154,20 @@ Json traffic_json(const Report& r) {
     packets[kReasons[i]] = {{"number", t.packets[i]}, {"per_s", per(static_cast<double>(t.packets[i]), r.seconds())}};
   }
   packets["all"] = {{"number", t.all_packets()}, {"per_s", per(static_cast<double>(t.all_packets()), r.seconds())}};
-  return {{"packets", packets}, {"key_packets", t.keys}, {"updates", t.updates}, {"bytes", t.bytes},
+  return {{"packets", packets},
+          {"key_packets", t.keys},
+          {"updates", t.updates},
+          {"bytes", t.bytes},
           {"reduction_of_updates", 1 - per(static_cast<double>(t.updates), static_cast<double>(r.ticks * r.moving))},
-          {"payload", rates_json(rates(r, 0))}, {"with_udp_ipv4", rates_json(rates(r, kUdpHeader))}};
+          {"payload", rates_json(rates(r, 0))},
+          {"with_udp_ipv4", rates_json(rates(r, kUdpHeader))}};
 }
 
 Json error_json(const Report& r, const ErrorSeries& s) {
-  return {{"rms", s.rms()}, {"max", s.max()}, {"ticks", s.ticks()}, {"ticks_over", s.ticks_over()},
+  return {{"rms", s.rms()},
+          {"max", s.max()},
+          {"ticks", s.ticks()},
+          {"ticks_over", s.ticks_over()},
           {"share_over", per(static_cast<double>(s.ticks_over()), static_cast<double>(s.ticks()))},
           {"longest_run_s", static_cast<double>(s.longest_run()) / r.tick_rate}};
 }
@@ -172,8 +204,12 @@ Json to_json(const Report& r) {
   if (r.fidelity && r.fidelity->position().ticks() > 0) out["error"] = errors_json(r);
   for (const Report::Timing& t : r.timings) {
     if (t.times.empty()) continue;
-    out["time"].push_back({{"step", t.step}, {"count", t.times.count()}, {"p50_s", t.times.quantile(0.5)}, {"p99_s", t.times.quantile(0.99)},
-                           {"max_s", t.times.quantile(1)}, {"real_time_factor", per(r.seconds(), t.times.total())}});
+    out["time"].push_back({{"step", t.step},
+                           {"count", t.times.count()},
+                           {"p50_s", t.times.quantile(0.5)},
+                           {"p99_s", t.times.quantile(0.99)},
+                           {"max_s", t.times.quantile(1)},
+                           {"real_time_factor", per(r.seconds(), t.times.total())}});
   }
   return out;
 }
@@ -198,7 +234,8 @@ void Report::describe(const TraceInfo& info) {
   tick_rate = info.tick_rate;
   objects = info.objects.size();
   users = info.users.size();
-  moving = static_cast<std::uint64_t>(std::count_if(info.objects.begin(), info.objects.end(), [](const TraceObject& o) { return o.dof != Dof::none; }));
+  moving = static_cast<std::uint64_t>(
+      std::count_if(info.objects.begin(), info.objects.end(), [](const TraceObject& o) { return o.dof != Dof::none; }));
 }
 
 void print(const Report& report, const CommonOptions& options, Destination destination) {

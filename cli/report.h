@@ -2,6 +2,7 @@
 /// The one table with which every computing command ends: what was sent, how far the replica was from the truth, what it cost.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <iosfwd>
@@ -43,9 +44,9 @@ struct Report {
   };
   std::string command;
   std::vector<std::pair<std::string, std::string>> files{};  ///< role, path
-  std::uint32_t tick_rate = 0;
-  std::uint64_t ticks = 0;    ///< looked at
-  std::uint64_t moving = 0;   ///< objects that can move
+  std::uint32_t tick_rate = 0;                               ///< 0: not known
+  std::uint64_t ticks = 0;                                   ///< looked at
+  std::uint64_t moving = 0;                                  ///< objects that can move
   std::size_t objects = 0, users = 0;
   std::vector<std::pair<std::string, std::string>> notes{};  ///< what else a reader must know
   std::optional<Traffic> traffic{};
@@ -54,13 +55,15 @@ struct Report {
 
   /// Take over what a trace's description says.
   void describe(const TraceInfo& info);
-  double seconds() const { return static_cast<double>(ticks) / tick_rate; }
+  double seconds() const { return tick_rate == 0 ? 0 : static_cast<double>(ticks) / tick_rate; }
 };
 
-/// Print as the options say: nothing when quiet, else text or JSON ("tactus.report/1"), to standard error if `data_on_stdout`.
 enum class Destination { standard_output, standard_error };
+/// Print as the options say: JSON ("tactus.report/1"), text, or nothing when quiet.
 void print(const Report& report, const CommonOptions& options, Destination destination);
 /// Where a report goes beside this output file.
-inline Destination beside(const std::string& path) { return path == "-" ? Destination::standard_error : Destination::standard_output; }
+inline Destination beside(const std::string& path) {
+  return path == "-" ? Destination::standard_error : Destination::standard_output;
+}
 
 }  // namespace tactus::cli

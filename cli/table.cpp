@@ -11,10 +11,13 @@
 namespace tactus::cli {
 
 std::size_t display_width(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
-std::string counted(unsigned long long number, const char* noun) { return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s"); }
+std::string counted(unsigned long long number, const char* noun) {
+  return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
+}
 
 void Table::heading(std::vector<std::string> cells) { lines_.push_back({true, std::move(cells)}); }
 void Table::row(std::vector<std::string> cells) { lines_.push_back({false, std::move(cells)}); }
@@ -27,10 +30,10 @@ void Table::print(std::FILE* out) const {
   }
   const auto is_text = [&](std::size_t column) {
     return column == 0 || std::any_of(lines_.begin(), lines_.end(), [&](const Line& line) {
-      if (line.heading || column >= line.cells.size() || line.cells[column].empty()) return false;
-      const char first = line.cells[column].front();
-      return first == '/' || std::isalpha(static_cast<unsigned char>(first)) != 0;
-    });
+             if (line.heading || column >= line.cells.size() || line.cells[column].empty()) return false;
+             const char first = line.cells[column].front();
+             return first == '/' || std::isalpha(static_cast<unsigned char>(first)) != 0;
+           });
   };
   const bool coloured = is_coloured(fileno(out));
   bool first = true;

@@ -25,22 +25,32 @@ constexpr std::array<Unit, 1> kFractions{{{"%", 1e-2}}};
 
 std::span<const Unit> units_of(Dimension dimension) {
   switch (dimension) {
-    case Dimension::length: return kLengths;
-    case Dimension::angle: return kAngles;
-    case Dimension::time: return kTimes;
-    case Dimension::force: return kForces;
-    case Dimension::fraction: return kFractions;
+    case Dimension::length:
+      return kLengths;
+    case Dimension::angle:
+      return kAngles;
+    case Dimension::time:
+      return kTimes;
+    case Dimension::force:
+      return kForces;
+    case Dimension::fraction:
+      return kFractions;
   }
   return {};
 }
 
 const char* type_name(Dimension dimension) {
   switch (dimension) {
-    case Dimension::length: return "LENGTH";
-    case Dimension::angle: return "ANGLE";
-    case Dimension::time: return "TIME";
-    case Dimension::force: return "FORCE";
-    case Dimension::fraction: return "FRACTION";
+    case Dimension::length:
+      return "LENGTH";
+    case Dimension::angle:
+      return "ANGLE";
+    case Dimension::time:
+      return "TIME";
+    case Dimension::force:
+      return "FORCE";
+    case Dimension::fraction:
+      return "FRACTION";
   }
   return "";
 }
@@ -86,7 +96,8 @@ tl::expected<Quantity, std::string> parse_quantity(std::string_view text, Dimens
 
 tl::expected<PoseBound, std::string> parse_pose_bound(std::string_view text) {
   const std::size_t comma = text.find(',');
-  if (comma == std::string_view::npos) return tl::unexpected(fmt::format("'{}': give a length and an angle, such as 6mm,2deg", text));
+  if (comma == std::string_view::npos)
+    return tl::unexpected(fmt::format("'{}': give a length and an angle, such as 6mm,2deg", text));
   const auto length = parse_quantity(text.substr(0, comma), Dimension::length);
   if (!length) return tl::unexpected(length.error());
   const auto angle = parse_quantity(text.substr(comma + 1), Dimension::angle);
