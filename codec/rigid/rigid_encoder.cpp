@@ -24,7 +24,7 @@ struct Thresholds {
 
 Result<Thresholds> make_thresholds(double distance, double angle, const GridExponents& grid) {
   const double unit = std::ldexp(1.0, -grid.position);
-  const double turn_unit = std::ldexp(2.0, -grid.rotation);
+  const double turn_unit = std::ldexp(4.0, -grid.rotation);
   if (!(distance >= 8 * unit && distance < 1e6) || !(angle >= 8 * turn_unit && angle <= std::numbers::pi)) {
     return fail(Errc::invalid_argument, "R-API-4");
   }

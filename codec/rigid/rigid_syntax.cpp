@@ -40,15 +40,27 @@ Motion predict_motion(const RigidState& base, std::int64_t dt, const CodedUpdate
   Motion out{base.velocity, base.spin};
   if (dt == 0 || update.reason != Reason::haptic) return out;
   const GridExponents& grid = header.grid;
-  const std::int64_t rate3 = 3 * static_cast<std::int64_t>(header.tick_rate);
+  const std::int64_t rate = header.tick_rate;
   const std::int64_t moved = (2 * dt) << (grid.position - grid.velocity);
-  const std::int64_t turned = dt << (grid.rotation - grid.spin);  // the residual is half an angle
+  const std::int64_t turned = dt << (grid.rotation - grid.spin);  // the residual is a quarter of the angle
   for (std::size_t i = 0; i < 3; ++i) {
     const std::int64_t x = saturate32(static_cast<std::int64_t>(update.residual.of[0][i]) << (2 * update.level));
     const std::int64_t r = saturate32(static_cast<std::int64_t>(update.residual.of[2][i]) << (2 * update.level));
-    if (x != 0) out.velocity[i] = saturate32(out.velocity[i] + round_div(x * rate3, moved));
-    if (r != 0) out.spin[i] = saturate32(out.spin[i] + round_div(r * rate3, turned));
+    if (x != 0) out.velocity[i] = saturate32(out.velocity[i] + round_div(3 * x * rate, moved));
+    if (r != 0) out.spin[i] = saturate32(out.spin[i] + round_div(6 * r * rate, turned));
   }
+  return out;
+}
+
+/// The turn with quarter-angle vector m / 2^exponent: (1 - |m|^2, 2 m) / (1 + |m|^2), regular up to a half turn where |m| = 1.
+/// pre  |m| <= 2^exponent
+Quat30 turn_of(const std::array<std::int64_t, 3>& m, std::int64_t square, unsigned exponent) noexcept {
+  const std::int64_t one = std::int64_t{1} << exponent;
+  const unsigned up = std::min(30u, 60 - 2 * exponent);  // the numerators stay below 2^62
+  const std::int64_t divisor = (one * one + square) >> (30 - up);
+  Quat30 out{static_cast<std::int32_t>(round_div((one * one - square) << up, divisor)), 0, 0, 0};
+  for (std::size_t i = 0; i < 3; ++i) out[i + 1] = static_cast<std::int32_t>(round_div((2 * one * m[i]) << up, divisor));
+  for (std::int32_t& c : out) c = std::clamp(c, -kOne30, kOne30);
   return out;
 }
 
@@ -56,22 +68,17 @@ std::optional<RigidPose> add_pose(const RigidPose& predicted, const Residual& re
                                   const GridExponents& grid) noexcept {
   RigidPose out = predicted;
   const std::int64_t limit = std::int64_t{1} << grid.rotation;
-  std::array<std::int64_t, 3> half{};
+  std::array<std::int64_t, 3> quarter{};
   std::int64_t square = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::int64_t moved = static_cast<std::int64_t>(residual.of[0][i]) << (2 * level);
     out.position[i] = saturate32(predicted.position[i] + moved);
-    half[i] = static_cast<std::int64_t>(residual.of[2][i]) << (2 * level);
-    if (half[i] > limit || half[i] < -limit) return std::nullopt;
-    square += half[i] * half[i];
+    quarter[i] = static_cast<std::int64_t>(residual.of[2][i]) << (2 * level);
+    if (quarter[i] > limit || quarter[i] < -limit) return std::nullopt;
+    square += quarter[i] * quarter[i];
   }
   if (square > limit * limit) return std::nullopt;
-  if (square == 0) return out;
-  const unsigned shift = 30u - grid.rotation;
-  const std::uint32_t w = isqrt(static_cast<std::uint64_t>(limit * limit - square) << (2 * shift));
-  const Quat30 turn{static_cast<std::int32_t>(w), static_cast<std::int32_t>(half[0] << shift),
-                    static_cast<std::int32_t>(half[1] << shift), static_cast<std::int32_t>(half[2] << shift)};
-  out.rotation = renormalise(multiply(turn, predicted.rotation));
+  if (square != 0) out.rotation = renormalise(multiply(turn_of(quarter, square, grid.rotation), predicted.rotation));
   return out;
 }
 
@@ -86,11 +93,13 @@ Residual quantise_pose(const RigidPose& predicted, const RigidState& truth, std:
   }
   if (dof >> 3 == 0) return out;
   const Quat30 turn = multiply(truth.rotation, conjugate(predicted.rotation));
-  const unsigned shift = 30u - grid.rotation + 2 * level;
   std::int64_t square = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    const std::int64_t half = turn[0] < 0 ? -turn[i + 1] : turn[i + 1];
-    if (dof >> (3 + i) & 1u) out.of[2][i] = static_cast<std::int32_t>(round_shift(half, shift));
+    if (!(dof >> (3 + i) & 1u)) continue;
+    // v / (1 + w) = tan(angle / 4) * axis, of the quaternion of the pair (q, -q) whose w is not negative
+    const std::int64_t v = turn[0] < 0 ? -static_cast<std::int64_t>(turn[i + 1]) : turn[i + 1];
+    const std::int64_t w = kOne30 + std::abs(static_cast<std::int64_t>(turn[0]));
+    out.of[2][i] = static_cast<std::int32_t>(round_div(v << grid.rotation, w << (2 * level)));
     square += static_cast<std::int64_t>(out.of[2][i]) * out.of[2][i];
   }
   // A half turn may round to just over length 1: take the longest component back.

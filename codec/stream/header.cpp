@@ -162,8 +162,10 @@ Result<std::vector<std::uint8_t>> write_header(const StreamHeader& header) {
     for (const std::int32_t c : object.initial.position) b.i32(c);
     for (const std::int32_t c : object.initial.rotation) b.i32(c);
   }
-  std::vector<std::uint8_t> out(kMagic.begin(), kMagic.end());
+  std::vector<std::uint8_t> out;
+  out.reserve(kFixedSize + body.size() + 4);
   ByteWriter w(out);
+  for (const std::uint8_t byte : kMagic) w.u8(byte);
   w.u8(kVersion);
   w.u8(static_cast<std::uint8_t>(header.profile));
   w.u16(0);

@@ -19,12 +19,12 @@ enum class Profile : std::uint8_t { thesis = 0, main = 1 };
 ///   field     quantity                unit        default   step at the default
 ///   position  position                m           22        0.24 um, range +-512 m
 ///   velocity  linear velocity         m/s         17        7.6 um/s
-///   rotation  half-angle vector       1           19        1.9e-6 (3.8e-6 rad); |v| = sin(angle / 2)
+///   rotation  quarter-angle vector    1           20        0.95e-6 (3.8e-6 rad); |v| = tan(angle / 4)
 ///   spin      angular velocity        rad/s       12        0.24 mrad/s
 struct GridExponents {
   std::uint8_t position = 22;
   std::uint8_t velocity = 17;
-  std::uint8_t rotation = 19;
+  std::uint8_t rotation = 20;
   std::uint8_t spin = 12;
   friend bool operator==(const GridExponents&, const GridExponents&) = default;
 };
