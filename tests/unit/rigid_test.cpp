@@ -312,6 +312,23 @@ TEST(Rigid, AKeyPacketAloneRestoresTheWholeScene) {
   EXPECT_GE(keys, 5);
 }
 
+TEST(Rigid, AKeyPacketHoldsTheBoundsAfterAHalfTurn) {
+  const StreamHeader header = scene_of(1);
+  for (int i = -20; i <= 20; ++i) {
+    auto encoder = RigidEncoder::create(header).value();
+    auto decoder = RigidDecoder::create(header).value();
+    const double half = (std::numbers::pi + 1e-5 * i) / 2;
+    RigidSample sample;
+    sample.pose.rotation = {std::cos(half), 0.6 * std::sin(half), 0, 0.8 * std::sin(half)};
+    const Contact contact = touch(0, sample.pose, 1e-4);
+    const auto packet = encoder.encode(0, {&sample, 1}, {&contact, 1});
+    ASSERT_TRUE(packet) << packet.error().rule;
+    ASSERT_TRUE(decoder.decode(packet->bytes));
+    const Pose shown = to_pose(predict(decoder.objects()[0], 0, header), header.grid);
+    EXPECT_LE(haptic_ratio({}, contact_force(contact, sample.pose), contact_force(contact, shown)), 1);
+  }
+}
+
 TEST(Rigid, LostAndStalePacketsChangeNothing) {
   const StreamHeader header = scene_of(1);
   RigidEncoderOptions options;
