@@ -29,6 +29,11 @@ Bytes first(const Bytes& bytes, std::size_t count) { return Bytes(bytes.begin(),
 
 Bytes without_last(const Bytes& bytes, std::size_t count) { return first(bytes, bytes.size() - count); }
 
+Bytes with_last_bit_flipped(Bytes bytes) {
+  bytes.back() ^= 1;
+  return bytes;
+}
+
 Bytes RawHeader::body() const {
   Bytes out;
   ByteWriter w(out);
@@ -139,7 +144,7 @@ Update random_update(Random& random, const StreamHeader& header, std::uint32_t o
   const std::uint8_t dof = header.objects[object].dof;
   const auto level = static_cast<std::uint8_t>(random.below(4) == 0 ? random.below(8) : random.below(3));
   Update out{object, static_cast<Reason>(random.below(4)), level, {}};
-  // A half-angle component of this width keeps three of them below length 1.
+  // Three rotation components of this width stay below length 1.
   const unsigned turn_width = header.grid.rotation > 2u * level + 1 ? header.grid.rotation - 2u * level - 1 : 0;
   const std::array<unsigned, kQuantities> widths{12, 10, std::min(turn_width, 16u), 8};
   for (std::size_t quantity = 0; quantity < kQuantities; ++quantity) {

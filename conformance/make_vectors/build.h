@@ -19,12 +19,17 @@ namespace tactus::conformance {
 
 using Bytes = std::vector<std::uint8_t>;
 
+// Vectors are to stay what they are: no default of the library enters them.
+inline constexpr std::uint8_t kRotationExp = 20;
+inline constexpr std::int32_t kHalfTurn = 1 << kRotationExp;  ///< the longest rotation residual
+
 /// Extends `bytes` by the little-endian CRC-32 of all of it.
 Bytes with_crc(Bytes bytes);
 Bytes varint(std::uint64_t value);
 Bytes operator+(Bytes a, const Bytes& b);
 Bytes first(const Bytes& bytes, std::size_t count);
 Bytes without_last(const Bytes& bytes, std::size_t count);
+Bytes with_last_bit_flipped(Bytes bytes);
 
 struct RawObject {
   std::string name = "cube";
@@ -38,7 +43,7 @@ struct RawObject {
 struct RawHeader {
   std::vector<RawObject> objects{RawObject{}};
   std::uint32_t tick_rate = 1000;
-  GridExponents grid{};
+  GridExponents grid{22, 17, kRotationExp, 12};
   std::uint16_t max_extrapolation = 2000;
   std::uint8_t baseline_span = 1;
   Bytes extensions{};
@@ -141,7 +146,7 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-/// A random update that keeps every rule: residuals of any size that the object's axes allow, half-angle vectors up to half a turn.
+/// A random update that keeps every rule: residuals of any size that the object's axes allow, rotations up to half a turn.
 Update random_update(Random& random, const StreamHeader& header, std::uint32_t object);
 
 }  // namespace tactus::conformance

@@ -39,11 +39,10 @@ Bytes still_object() {
 
 Bytes wide_turns() {
   Stream stream(cube());
-  const auto turn = [](Vec3i half) { return std::vector<Update>{{0, Reason::visual, 0, {{{}, {}, half, {}}}}}; };
-  constexpr std::int32_t full = 1 << 19;
-  stream.add({.tick = 0, .updates = turn({full, 0, 0}), .key = true});
+  const auto turn = [](Vec3i residual) { return std::vector<Update>{{0, Reason::visual, 0, {{{}, {}, residual, {}}}}}; };
+  stream.add({.tick = 0, .updates = turn({kHalfTurn, 0, 0}), .key = true});
   std::int64_t tick = 0;
-  for (const Vec3i& half : {Vec3i{0, full, 0}, Vec3i{full - 1, 0, 0}, Vec3i{0, 0, -full}, Vec3i{302697, 302697, -302697}, Vec3i{1, 0, 0}, Vec3i{}}) {
+  for (const Vec3i& half : {Vec3i{0, kHalfTurn, 0}, Vec3i{kHalfTurn - 1, 0, 0}, Vec3i{0, 0, -kHalfTurn}, Vec3i{605395, 605395, -605395}, Vec3i{1, 0, 0}, Vec3i{}}) {
     stream.add({.tick = tick += 60, .updates = turn(half)});
   }
   stream.add({.tick = tick + 60, .updates = turn({})});

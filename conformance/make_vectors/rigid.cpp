@@ -186,14 +186,13 @@ Bytes saturated_motion() {
 
 Bytes half_turns() {
   Stream stream(with_objects({{"cube", Dof::all, {}, {759250125, 0, 759250125, 0}}}));
-  const auto turn = [](Vec3i half, std::uint8_t level) { return std::vector<Update>{{0, Reason::visual, level, {{{}, {}, half, {}}}}}; };
-  constexpr std::int32_t full = 1 << 19;
-  stream.add({.tick = 0, .updates = turn({full, 0, 0}, 0), .key = true});
-  stream.add({.tick = 1, .updates = turn({0, -full, 0}, 0)});
-  stream.add({.tick = 2, .updates = turn({0, 0, full >> 6}, 3)});
-  stream.add({.tick = 3, .updates = turn({full - 1, 1023, 0}, 0)});
-  stream.add({.tick = 4, .updates = turn({302697, -302697, 302697}, 0)});
-  stream.add({.tick = 5, .updates = turn({-(full >> 14), 0, 0}, 7)});
+  const auto turn = [](Vec3i residual, std::uint8_t level) { return std::vector<Update>{{0, Reason::visual, level, {{{}, {}, residual, {}}}}}; };
+  stream.add({.tick = 0, .updates = turn({kHalfTurn, 0, 0}, 0), .key = true});
+  stream.add({.tick = 1, .updates = turn({0, -kHalfTurn, 0}, 0)});
+  stream.add({.tick = 2, .updates = turn({0, 0, kHalfTurn >> 6}, 3)});
+  stream.add({.tick = 3, .updates = turn({kHalfTurn - 1, 1447, 0}, 0)});
+  stream.add({.tick = 4, .updates = turn({605395, -605395, 605395}, 0)});
+  stream.add({.tick = 5, .updates = turn({-(kHalfTurn >> 14), 0, 0}, 7)});
   stream.add({.tick = 6, .updates = turn({1, 0, 0}, 0)});
   return stream.finish().bytes();
 }
@@ -240,8 +239,8 @@ void add_rigid(Catalogue& c) {
   c.valid("finest-grid", "Every grid exponent at its upper limit.", walk(with_grid({30, 30, 28, 20}, 1000), 416, 40), {"R-STR-7"});
   c.valid("widest-grid-steps", "Velocity and spin twelve binary orders coarser than position and rotation, 60 ticks per second.",
           walk(with_grid({30, 18, 28, 16}, 60), 417, 40), {"R-STR-7"});
-  c.valid("slowest-clock", "One tick per second.", walk(with_grid({22, 17, 19, 12}, 1), 418, 20), {"R-STR-6"});
-  c.valid("fastest-clock", "A million ticks per second.", walk(with_grid({22, 17, 19, 12}, 1000000), 419, 20), {"R-STR-6"});
+  c.valid("slowest-clock", "One tick per second.", walk(with_grid({22, 17, kRotationExp, 12}, 1), 418, 20), {"R-STR-6"});
+  c.valid("fastest-clock", "A million ticks per second.", walk(with_grid({22, 17, kRotationExp, 12}, 1000000), 419, 20), {"R-STR-6"});
 }
 
 }  // namespace tactus::conformance

@@ -100,22 +100,21 @@ void add_update_rules(Catalogue& c) {
             then_raw({false, 1, 0, 2}, {{0, {}}, {0xffffffffu, {}}}));
 }
 
-Bytes turned(std::uint8_t dof, const Vec3i& half, std::uint8_t level) {
+Bytes turned(std::uint8_t dof, const Vec3i& residual, std::uint8_t level) {
   RawHeader header;
   header.objects = {{"object", dof}};
   Stream stream(header);
   stream.add({.tick = 1, .updates = {{}}, .key = true});
-  return stream.add({.tick = 2, .updates = {{0, Reason::visual, level, {{{}, {}, half, {}}}}}}).bytes();
+  return stream.add({.tick = 2, .updates = {{0, Reason::visual, level, {{{}, {}, residual, {}}}}}}).bytes();
 }
 
 void add_rotation_rule(Catalogue& c) {
   const Rejection length{"invalid", "R-RIG-6"};
-  constexpr std::int32_t full = 1 << 19;
-  c.invalid("turn-about-one-axis", "A rotation about x alone, residual 2^rotation_exp + 1.", length, turned(Dof::rx, {full + 1, 0, 0}, 0));
+  c.invalid("turn-about-one-axis", "A rotation about x alone, residual 2^rotation_exp + 1.", length, turned(Dof::rx, {kHalfTurn + 1, 0, 0}, 0));
   c.invalid("turn-component", "A component of a rotation residual is -(2^rotation_exp + 1).", length,
-            turned(Dof::all, {0, -(full + 1), 0}, 0));
+            turned(Dof::all, {0, -(kHalfTurn + 1), 0}, 0));
   c.invalid("turn-length", "No component is too long; together they are, by the least there is.", length,
-            turned(Dof::all, {full, 0, 1}, 0));
+            turned(Dof::all, {kHalfTurn, 0, 1}, 0));
   c.invalid("turn-at-level-7", "The largest residual at the coarsest level: 45 bits.", length,
             turned(Dof::all, {0, 0, kLargest}, 7));
 }

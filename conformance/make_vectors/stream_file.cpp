@@ -70,12 +70,10 @@ void add_record_faults(Catalogue& c) {
             good + Bytes{1} + varint((1u << 20) + 6));
   c.invalid("huge-extension", "An extension record announces 2^63 bytes; none follows.", cut,
             good + Bytes{128} + varint(std::uint64_t{1} << 63));
-  Bytes wrong_crc = good;
-  wrong_crc.back() ^= 1;
-  c.invalid("wrong-record-crc", "One bit of a record's check value is wrong.", {"checksum", "R-FIL-5"}, wrong_crc);
-  Bytes wrong_extension = good + record(128, {1, 2, 3});
-  wrong_extension.back() ^= 1;
-  c.invalid("wrong-extension-crc", "The check value of a record that is skipped is wrong.", {"checksum", "R-FIL-5"}, wrong_extension);
+  c.invalid("wrong-record-crc", "One bit of a record's check value is wrong.", {"checksum", "R-FIL-5"},
+            with_last_bit_flipped(good));
+  c.invalid("wrong-extension-crc", "The check value of a record that is skipped is wrong.", {"checksum", "R-FIL-5"},
+            with_last_bit_flipped(good + record(128, {1, 2, 3})));
 }
 
 void add_tick_faults(Catalogue& c) {

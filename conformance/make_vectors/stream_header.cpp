@@ -112,9 +112,7 @@ void add_frame_faults(Catalogue& c) {
             first(good, 8) + Bytes{0x01, 0x00, 0x10, 0x00});
   c.invalid("cut-body", "The file ends inside the body.", cut, first(good, 20));
   c.invalid("cut-crc", "The last byte of the check value is missing.", cut, without_last(good, 1));
-  Bytes wrong_crc = good;
-  wrong_crc.back() ^= 0x80;
-  c.invalid("wrong-crc", "One bit of the check value is wrong.", {"checksum", "R-STR-15"}, wrong_crc);
+  c.invalid("wrong-crc", "One bit of the check value is wrong.", {"checksum", "R-STR-15"}, with_last_bit_flipped(good));
 }
 
 void add_parameter_faults(Catalogue& c) {
