@@ -32,7 +32,7 @@
 /// R-TRC-14  invalid           a value is NaN or infinite, or a contact or stamp is none
 /// R-TRC-15  invalid           ticks do not increase, a message's times disagree, or a tick lacks a message or has one twice
 /// R-TRC-16  unsupported       a foreign file without PoseStamped channels, or with one that begins after the look-ahead
-/// R-TRC-17  invalid_argument  TraceInfo: no object and no user, too many channels, tick rate out of 1..1000000, unknown dof bits,
+/// R-TRC-17  invalid_argument  TraceInfo: neither object nor user, over 65535 channels, tick rate not in 1..1000000, dof bits,
 ///                             or a name that is empty, repeated, over 255 bytes, not UTF-8 or has '/' or control characters
 #pragma once
 
@@ -69,7 +69,7 @@ class TraceWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Reads a trace front to back, one frame at a time, in memory bounded by a chunk. A ROS 2 recording of somebody else is read too:
+/// Reads a trace front to back, one frame at a time, in memory bounded by a chunk. ROS 2 recordings of other people are read too:
 /// each PoseStamped topic is an object, a TwistStamped topic beside it (same path but for the last part) its motion, otherwise
 /// backward differences are; ticks follow from log_time and the median spacing of the first poses. A topic holds its last value,
 /// and frames begin when every object has one.
