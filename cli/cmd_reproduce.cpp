@@ -193,7 +193,7 @@ constexpr std::size_t kFirstWithout = 2, kFirstWith = 6;  // rows of S4_NI and S
 std::string percent(double value) { return value == 0 ? "0 %" : fmt::format("{:.2f} %", 100 * value); }
 
 void print_text(const std::vector<Row>& rows, const ReproduceOptions& options, const Scene& scene) {
-  fmt::print("Thesis table 3.3 and figure 3.14: traffic control settings on {}, closed loop, {:.0f} s, seeds 1 to {}\n",
+  fmt::print("Thesis table 3.3 and figure 3.14: traffic control settings on {}, closed loop, {:.1f} s, seeds 1 to {}\n",
              scene.name, scene.duration, options.seeds);
   fmt::print(
       "Chosen here: 1 virtual length unit = {} m, grip {}, the scene's hand and path; nothing is fitted to the thesis's "
