@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Every conformance vector, damaged in every small way: an error with a rule or a decodable stream, nothing else. Check values are
+/// also mended after the damage, so that it reaches the code behind them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <random>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "codec/base/bytes.h"
+#include "codec/base/hash.h"
+#include "codec/tactus.h"
+#include "tests/property/allocated.h"
+
+namespace tactus {
+namespace {
+
+namespace fs = std::filesystem;
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr std::size_t kAllOf = 4096;   // files up to this size are damaged at every byte,
+constexpr std::size_t kSample = 400;   // larger ones at so many
+constexpr std::uint64_t kPerByte = 24, kPerByteAndState = 3, kFixed = 4096;  // allocation per byte of header, see earned()
+
+Bytes read_file(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return Bytes{std::istreambuf_iterator<char>(in), {}};
+}
+
+std::vector<fs::path> vectors() {
+  std::vector<fs::path> out;
+  for (const auto& entry : fs::recursive_directory_iterator(TACTUS_VECTORS)) {
+    if (entry.path().extension() == ".tct") out.push_back(entry.path());
+  }
+  std::ranges::sort(out);
+  return out;
+}
+
+/// What a file may make a decoder allocate: names, objects and states, which all take bytes of the header (spec/20-stream.md 5).
+std::uint64_t earned(std::size_t bytes, std::uint64_t states) { return kFixed + bytes * (kPerByte + kPerByteAndState * states); }
+
+bool has_rule(const Error& error) { return error.code <= Errc::state && std::string_view(error.rule).starts_with("R-"); }
+
+/// Null, or what went wrong with this file. Fails are texts and not EXPECTs, which would take most of the time.
+const char* survive(std::span<const std::uint8_t> bytes) {
+  const auto exact = std::make_unique_for_overwrite<std::uint8_t[]>(bytes.size());
+  std::ranges::copy(bytes, exact.get());
+  const std::uint64_t start = testing::allocated_bytes();
+  auto reader = StreamFileReader::open({exact.get(), bytes.size()});
+  if (!reader) {
+    if (testing::allocated_bytes() - start > earned(bytes.size(), 1)) return "a refused header allocates too much";
+    return has_rule(reader.error()) ? nullptr : "a refused header without a rule";
+  }
+  auto decoder = RigidDecoder::create(reader->header());
+  if (!decoder) return "a header is accepted by the reader, not by the decoder";
+  if (testing::allocated_bytes() - start > earned(bytes.size(), reader->header().baseline_span)) return "set-up allocates too much";
+  const std::uint64_t ready = testing::allocated_bytes();
+  reader->seek(1000);
+  reader->seek(0);
+  for (;;) {
+    const auto packet = reader->next();
+    if (testing::allocated_bytes() != ready) return "reading allocates";
+    if (!packet) return has_rule(packet.error()) ? nullptr : "a refused record without a rule";
+    if (!*packet) return nullptr;
+    const std::uint64_t before = decoder->state_hash();
+    const auto decoded = decoder->decode((*packet)->bytes);
+    if (testing::allocated_bytes() != ready) return "decoding allocates";
+    if (decoded) continue;
+    if (!has_rule(decoded.error())) return "a refused packet without a rule";
+    if (decoder->state_hash() != before) return "a refused packet changes the state";
+  }
+}
+
+/// Ends of the header and of every record: each covers the bytes since the one before and closes with their CRC-32.
+std::vector<std::size_t> section_ends(const Bytes& file) {
+  std::vector<std::size_t> ends;
+  const auto header = parse_header(file);
+  if (!header) return ends;
+  ends.push_back(header->size);
+  for (;;) {
+    ByteReader in(std::span<const std::uint8_t>(file).subspan(ends.back()));
+    in.u8();
+    in.bytes(in.varint());
+    in.u32();
+    if (!in.ok() || in.position() == 0) return ends;
+    ends.push_back(ends.back() + in.position());
+  }
+}
+
+/// `file` with the check value of the section around `at` computed anew.
+Bytes mended(Bytes file, const std::vector<std::size_t>& ends, std::size_t at) {
+  const auto end = std::ranges::upper_bound(ends, at);
+  if (end == ends.end() || at + 4 >= *end) return file;
+  const std::size_t start = end == ends.begin() ? 0 : *(end - 1);
+  const std::uint32_t crc = crc32(std::span(file).subspan(start, *end - 4 - start));
+  for (std::size_t i = 0; i < 4; ++i) file[*end - 4 + i] = static_cast<std::uint8_t>(crc >> (8 * i));
+  return file;
+}
+
+std::vector<std::size_t> places(std::size_t size, std::uint64_t seed) {
+  std::vector<std::size_t> out(size);
+  for (std::size_t i = 0; i < size; ++i) out[i] = i;
+  if (size <= kAllOf) return out;
+  std::mt19937_64 random(seed);
+  for (std::size_t i = 0; i < kSample; ++i) std::swap(out[i], out[i + random() % (size - i)]);
+  out.resize(kSample);
+  return out;
+}
+
+class EveryVector : public ::testing::TestWithParam<const char*> {
+ protected:
+  template <class Damage>
+  void each_place(Damage damage) {
+    std::size_t files = 0;
+    for (const fs::path& path : vectors()) {
+      if (path.parent_path().filename() != GetParam()) continue;
+      ++files;
+      const Bytes file = read_file(path);
+      const std::vector<std::size_t> ends = section_ends(file);
+      for (const std::size_t at : places(file.size(), files)) {
+        const char* wrong = damage(file, ends, at);
+        ASSERT_EQ(wrong, nullptr) << path << " byte " << at << ": " << wrong;
+      }
+    }
+    EXPECT_GT(files, 10u);
+  }
+};
+
+TEST_P(EveryVector, EveryPrefix) {
+  each_place([](const Bytes& file, const auto&, std::size_t at) { return survive(std::span(file).first(at)); });
+}
+
+TEST_P(EveryVector, EveryBitFlipped) {
+  each_place([](const Bytes& file, const auto& ends, std::size_t at) -> const char* {
+    for (unsigned bit = 0; bit < 8; ++bit) {
+      Bytes damaged = file;
+      damaged[at] = static_cast<std::uint8_t>(damaged[at] ^ 1u << bit);
+      if (const char* wrong = survive(damaged)) return wrong;
+      if (const char* wrong = survive(mended(damaged, ends, at))) return wrong;
+    }
+    return nullptr;
+  });
+}
+
+TEST_P(EveryVector, EveryByteZeroOrOnes) {
+  each_place([](const Bytes& file, const auto& ends, std::size_t at) -> const char* {
+    for (const std::uint8_t value : {std::uint8_t{0x00}, std::uint8_t{0xff}}) {
+      Bytes damaged = file;
+      damaged[at] = value;
+      if (const char* wrong = survive(mended(damaged, ends, at))) return wrong;
+    }
+    return nullptr;
+  });
+}
+
+TEST_P(EveryVector, OneByteMore) {
+  for (const fs::path& path : vectors()) {
+    if (path.parent_path().filename() != GetParam()) continue;
+    for (const std::uint8_t value : {std::uint8_t{0x00}, std::uint8_t{0x01}, std::uint8_t{0xff}}) {
+      Bytes longer = read_file(path);
+      longer.push_back(value);
+      const char* wrong = survive(longer);
+      EXPECT_EQ(wrong, nullptr) << path << ": " << wrong;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Hostile, EveryVector, ::testing::Values("stream", "range", "rigid", "client"),
+                         [](const auto& stem) { return std::string(stem.param); });
+
+TEST(Hostile, TheCounterCounts) {
+  const std::uint64_t before = testing::allocated_bytes();
+  const Bytes block(1000);
+  EXPECT_EQ(testing::allocated_bytes() - before, block.size());
+}
+
+TEST(Hostile, LimitsAreKept) {
+  StreamHeader header;
+  header.objects = {{"a", Dof::all, {}}, {"b", Dof::all, {}}};
+  const Bytes bytes = write_header(header).value();
+  EXPECT_STREQ(parse_header(bytes, {.objects = 1}).error().rule, "R-STR-14");
+  EXPECT_STREQ(parse_header(bytes, {.header_bytes = 20}).error().rule, "R-STR-14");
+  auto decoder = RigidDecoder::create(header, {.packet_bytes = 8}).value();
+  const auto too_long = decoder.decode(Bytes(9, 1));
+  ASSERT_FALSE(too_long);
+  EXPECT_EQ(too_long.error().code, Errc::limit_exceeded);
+  EXPECT_STREQ(too_long.error().rule, "R-PKT-1");
+}
+
+}  // namespace
+}  // namespace tactus
