@@ -60,7 +60,7 @@ endfunction()
 #   ON    what is missing is an error
 #   OFF   not at all
 function(tactus_component name dir)
-  if(NOT TACTUS_WITH_${name} OR NOT EXISTS ${PROJECT_SOURCE_DIR}/${dir}/CMakeLists.txt)  # until every folder has its sources
+  if(NOT TACTUS_WITH_${name})
     return()
   endif()
   tactus_missing(missing ${ARGN})
@@ -71,15 +71,4 @@ function(tactus_component name dir)
   else()
     message(FATAL_ERROR "TACTUS_WITH_${name}=${TACTUS_WITH_${name}}: ${dir}/ needs ${missing}")
   endif()
-endfunction()
-
-function(tactus_drop_absent target)  # until every file is there
-  get_target_property(sources ${target} SOURCES)
-  foreach(source IN LISTS sources)
-    if(NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${source})
-      list(REMOVE_ITEM sources ${source})
-    endif()
-  endforeach()
-  file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/none.cpp "")
-  set_target_properties(${target} PROPERTIES SOURCES "${sources};${CMAKE_CURRENT_BINARY_DIR}/none.cpp")
 endfunction()
