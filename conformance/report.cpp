@@ -61,7 +61,8 @@ void write_packet_line(std::uint64_t number, const DecodedPacket& packet, std::u
       << R"(,"tick":)" << packet.tick << R"(,"updates":[)";
   const char* comma = "";
   for (const RigidUpdate& update : packet.updates) {
-    out << comma << '[' << update.object << ',' << int{static_cast<std::uint8_t>(update.reason)} << ',' << int{update.level} << ']';
+    out << comma << '[' << update.object << ',' << int{static_cast<std::uint8_t>(update.reason)} << ',' << int{update.level}
+        << ']';
     comma = ",";
   }
   out << R"(],"range":")" << hex(packet.final_range, 8) << R"(","code":")" << hex(packet.final_code, 8) << R"(","state":")"

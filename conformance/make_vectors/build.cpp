@@ -25,7 +25,9 @@ Bytes operator+(Bytes a, const Bytes& b) {
   return a;
 }
 
-Bytes first(const Bytes& bytes, std::size_t count) { return Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(count)); }
+Bytes first(const Bytes& bytes, std::size_t count) {
+  return Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(count));
+}
 
 Bytes without_last(const Bytes& bytes, std::size_t count) { return first(bytes, bytes.size() - count); }
 
@@ -125,7 +127,8 @@ Stream& Stream::finish() {
   Bytes entries = varint(keys_.size());
   Key previous{0, 0};
   for (const Key& key : keys_) {
-    entries = std::move(entries) + varint(static_cast<std::uint64_t>(key.tick - previous.tick)) + varint(key.offset - previous.offset);
+    entries =
+        std::move(entries) + varint(static_cast<std::uint64_t>(key.tick - previous.tick)) + varint(key.offset - previous.offset);
     previous = key;
   }
   add_record(2, entries);

@@ -17,7 +17,9 @@ RawHeader cube(std::uint32_t tick_rate = 1000) {
 }
 
 /// An update that moves and turns the object and leaves it moving and turning.
-Update pushed(std::int32_t i) { return {0, Reason::haptic, 0, {{{900 + i, -500, 40 * i}, {3000, 20 * i, -700}, {9000, -3000 * i, 800}, {300, -90, 70 * i}}}}; }
+Update pushed(std::int32_t i) {
+  return {0, Reason::haptic, 0, {{{900 + i, -500, 40 * i}, {3000, 20 * i, -700}, {9000, -3000 * i, 800}, {300, -90, 70 * i}}}};
+}
 
 /// One object, updated at these ticks.
 Bytes updated_at(const RawHeader& header, std::initializer_list<std::int64_t> ticks) {
@@ -33,7 +35,8 @@ Bytes updated_at(const RawHeader& header, std::initializer_list<std::int64_t> ti
 Bytes still_object() {
   Stream stream(cube());
   stream.add({.tick = 0, .updates = {{0, Reason::visual, 2, {{{70, 80, 90}}}}}, .key = true});
-  for (std::int64_t tick = 1000; tick <= 3000; tick += 1000) stream.add({.tick = tick, .updates = {{0, Reason::heartbeat, 0, {}}}});
+  for (std::int64_t tick = 1000; tick <= 3000; tick += 1000)
+    stream.add({.tick = tick, .updates = {{0, Reason::heartbeat, 0, {}}}});
   return stream.finish().bytes();
 }
 
@@ -42,7 +45,8 @@ Bytes wide_turns() {
   const auto turn = [](Vec3i residual) { return std::vector<Update>{{0, Reason::visual, 0, {{{}, {}, residual, {}}}}}; };
   stream.add({.tick = 0, .updates = turn({kHalfTurn, 0, 0}), .key = true});
   std::int64_t tick = 0;
-  for (const Vec3i& half : {Vec3i{0, kHalfTurn, 0}, Vec3i{kHalfTurn - 1, 0, 0}, Vec3i{0, 0, -kHalfTurn}, Vec3i{605395, 605395, -605395}, Vec3i{1, 0, 0}, Vec3i{}}) {
+  for (const Vec3i& half : {Vec3i{0, kHalfTurn, 0}, Vec3i{kHalfTurn - 1, 0, 0}, Vec3i{0, 0, -kHalfTurn},
+                            Vec3i{605395, 605395, -605395}, Vec3i{1, 0, 0}, Vec3i{}}) {
     stream.add({.tick = tick += 60, .updates = turn(half)});
   }
   stream.add({.tick = tick + 60, .updates = turn({})});
@@ -82,7 +86,8 @@ Bytes unnamed_objects() {
 Bytes several_objects(std::uint64_t seed) {
   RawHeader header;
   header.max_extrapolation = 100;
-  header.objects = {{"a"}, {"b", Dof::x | Dof::y}, {"wall", Dof::none}, {"c", Dof::rz}, {"d", Dof::all, {1, 2, 3}, {0, kOne30, 0, 0}}};
+  header.objects = {
+      {"a"}, {"b", Dof::x | Dof::y}, {"wall", Dof::none}, {"c", Dof::rz}, {"d", Dof::all, {1, 2, 3}, {0, kOne30, 0, 0}}};
   Stream stream(header);
   Random random(seed);
   std::int64_t tick = 0;
@@ -108,7 +113,8 @@ void add_client(Catalogue& c) {
   linear("linear", "Straight lines and slerps towards the predicted state.", updated_at(cube(), {3, 40, 90, 150, 260}));
   linear("first-update", "One update: no gap is known, it is applied at once.", updated_at(cube(), {25}));
   linear("second-update", "Two updates: one gap is known.", updated_at(cube(), {25, 65, 65 + 200}));
-  linear("aborted", "Updates during an interpolation end it and are applied at once.", updated_at(cube(), {0, 100, 130, 140, 300, 374, 520, 600}));
+  linear("aborted", "Updates during an interpolation end it and are applied at once.",
+         updated_at(cube(), {0, 100, 130, 140, 300, 374, 520, 600}));
   linear("at-the-end", "Updates one tick before an interpolation ends, and at the tick where one ends.",
          updated_at(cube(), {0, 40, 40 + 29, 200, 250, 400}));
   linear("shortest", "Gaps of a tick: t_N is 5 ms.", updated_at(cube(), {0, 1, 2, 9, 10, 20}));
@@ -117,7 +123,8 @@ void add_client(Catalogue& c) {
          updated_at(cube(), {0, 400, 800, 850, 900, 950, 1000, 1050, 1100, 1180, 1300}));
   linear("same-tick", "Two updates at one tick: a gap of 0.", updated_at(cube(), {7, 7, 60, 60, 200}));
   linear("same-tick-60-hz", "Gaps of 0 where the shortest t_N rounds to 0 ticks.", updated_at(cube(60), {1, 1, 1, 3, 20}));
-  linear("rounded-limits", "At 100 ticks per second the shortest t_N, half a tick, rounds up to 1.", updated_at(cube(100), {1, 2, 3, 4, 30, 90}));
+  linear("rounded-limits", "At 100 ticks per second the shortest t_N, half a tick, rounds up to 1.",
+         updated_at(cube(100), {1, 2, 3, 4, 30, 90}));
   linear("heartbeat-only", "An object at rest that is only confirmed.", still_object());
   none("heartbeat-only-none", "The same without interpolation.", still_object());
   linear("wide-turns", "Turns by half a circle and by next to nothing; quaternions of both signs.", wide_turns());

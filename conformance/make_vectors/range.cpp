@@ -83,8 +83,10 @@ Bytes payload_with_run(std::uint64_t seed, std::size_t lead, std::size_t count, 
 }
 
 void add_valid_payloads(Catalogue& c) {
-  c.valid("empty-payload", "Packets of two bytes: an empty payload is a payload of zeros.", empty_payload(), {"R-RNG-3", "R-PKT-2"});
-  c.valid("unsigned-widths", "tick_delta of every width from 0 to 32 bits, smallest and largest value.", unsigned_widths(), {"R-RNG-4"});
+  c.valid("empty-payload", "Packets of two bytes: an empty payload is a payload of zeros.", empty_payload(),
+          {"R-RNG-3", "R-PKT-2"});
+  c.valid("unsigned-widths", "tick_delta of every width from 0 to 32 bits, smallest and largest value.", unsigned_widths(),
+          {"R-RNG-4"});
   c.valid("signed-widths", "Residuals of every width from 0 to 31 bits, both signs.", signed_widths(), {"R-RNG-4"});
   c.valid("slow-models", "Packets of 64 objects: models reach their slowest adaptation.", many_bits_per_model());
   c.valid("carry-4", "Four zero bytes inside a payload: a carry ran through them.", payload_with_run(302, 5, 4, 0x00, 3));
@@ -127,7 +129,8 @@ void add_range_faults(Catalogue& c) {
   const Bytes padded = padded_packet(slider);
   c.invalid("all-ones", "A payload of four bytes ff: every bit is 1, so tick_delta is too wide, long before R-RNG-1 is checked.",
             {"malformed", "R-RNG-4"}, file_of(slider, Bytes{0, 0, 0xff, 0xff, 0xff, 0xff}));
-  c.invalid("byte-left-over", "One byte more than the decoder takes.", {"malformed", "R-RNG-2"}, file_of(slider, padded + Bytes{1}));
+  c.invalid("byte-left-over", "One byte more than the decoder takes.", {"malformed", "R-RNG-2"},
+            file_of(slider, padded + Bytes{1}));
   c.invalid("zero-left-over", "One byte more than the decoder takes, and it is 0: R-RNG-2 is checked before R-RNG-3.",
             {"malformed", "R-RNG-2"}, file_of(slider, padded + Bytes{0}));
   c.invalid("zero-at-end", "The payload's last byte is 0.", {"malformed", "R-RNG-3"}, file_of(slider, padded));
@@ -136,7 +139,8 @@ void add_range_faults(Catalogue& c) {
     return [width](RangeEncoder& coder, RigidModels& models) { write_too_wide(coder, models.tick_delta, width); };
   };
   c.invalid("tick-delta-33-bits", "tick_delta has 33 bits.", wide, after_key(slider, head_only(33)));
-  c.invalid("tick-delta-46-bits", "tick_delta has 46 bits, the widest that can be written.", wide, after_key(slider, head_only(46)));
+  c.invalid("tick-delta-46-bits", "tick_delta has 46 bits, the widest that can be written.", wide,
+            after_key(slider, head_only(46)));
   RawHeader pair;
   pair.objects = {{"a", Dof::x}, {"b", Dof::x}};
   c.invalid("count-33-bits", "count has 33 bits.", wide, after_key(pair, [](RangeEncoder& coder, RigidModels& models) {

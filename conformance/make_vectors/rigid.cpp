@@ -58,7 +58,8 @@ Bytes gaps() {
   Stream stream(header);
   const auto naming = [](std::initializer_list<std::uint32_t> objects) {
     std::vector<Update> updates;
-    for (const std::uint32_t object : objects) updates.push_back({object, Reason::heartbeat, 0, {{{static_cast<std::int32_t>(object), 0, 0}}}});
+    for (const std::uint32_t object : objects)
+      updates.push_back({object, Reason::heartbeat, 0, {{{static_cast<std::int32_t>(object), 0, 0}}}});
     return updates;
   };
   stream.add({.tick = 1, .updates = naming({1, 2, 4, 299}), .key = true});
@@ -104,9 +105,12 @@ Bytes older_baselines() {
   Stream stream(chained(4, {{"a"}, {"b"}}));
   Random random(406);
   const auto add = [&](std::uint16_t sequence, std::int64_t tick, std::uint32_t baseline, std::uint32_t object) {
-    stream.add({.tick = tick, .updates = {random_update(random, stream.header(), object)}, .baseline = baseline, .sequence = sequence});
+    stream.add(
+        {.tick = tick, .updates = {random_update(random, stream.header(), object)}, .baseline = baseline, .sequence = sequence});
   };
-  stream.add({.tick = 5, .updates = {random_update(random, stream.header(), 0), random_update(random, stream.header(), 1)}, .key = true});
+  stream.add({.tick = 5,
+              .updates = {random_update(random, stream.header(), 0), random_update(random, stream.header(), 1)},
+              .key = true});
   add(1, 10, 1, 0);
   add(2, 20, 2, 1);
   add(4, 30, 2, 0);
@@ -118,7 +122,8 @@ Bytes older_baselines() {
 }
 
 Bytes random_baselines() {
-  RawHeader header = chained(64, {{"a"}, {"fixed", Dof::none}, {"b", Dof::translation}, {"c", Dof::rz}, {"d", Dof::all, {7, 7, 7}}});
+  RawHeader header =
+      chained(64, {{"a"}, {"fixed", Dof::none}, {"b", Dof::translation}, {"c", Dof::rz}, {"d", Dof::all, {7, 7, 7}}});
   Stream stream(header);
   Random random(407);
   std::int64_t tick = 0;
@@ -151,7 +156,8 @@ Bytes extrapolation_limit() {
   std::int64_t tick = 0;
   for (const int dt : {0, 1, 49, 50, 51, 5000, 3}) {
     tick += dt;
-    const Update update{0, dt % 2 == 0 ? Reason::visual : Reason::haptic, 1, {{{1, -1, 2}, {4000, -3000, 900}, {2, 3, -4}, {500, 2000, -900}}}};
+    const Update update{
+        0, dt % 2 == 0 ? Reason::visual : Reason::haptic, 1, {{{1, -1, 2}, {4000, -3000, 900}, {2, 3, -4}, {500, 2000, -900}}}};
     stream.add({.tick = tick, .updates = {update}, .key = tick == 0});
   }
   return stream.finish().bytes();
@@ -186,7 +192,9 @@ Bytes saturated_motion() {
 
 Bytes half_turns() {
   Stream stream(with_objects({{"cube", Dof::all, {}, {759250125, 0, 759250125, 0}}}));
-  const auto turn = [](Vec3i residual, std::uint8_t level) { return std::vector<Update>{{0, Reason::visual, level, {{{}, {}, residual, {}}}}}; };
+  const auto turn = [](Vec3i residual, std::uint8_t level) {
+    return std::vector<Update>{{0, Reason::visual, level, {{{}, {}, residual, {}}}}};
+  };
   stream.add({.tick = 0, .updates = turn({kHalfTurn, 0, 0}, 0), .key = true});
   stream.add({.tick = 1, .updates = turn({0, -kHalfTurn, 0}, 0)});
   stream.add({.tick = 2, .updates = turn({0, 0, kHalfTurn >> 6}, 3)});
@@ -204,7 +212,8 @@ Bytes fast_spin() {
   Stream stream(header);
   stream.add({.tick = 0, .updates = {{0, Reason::visual, 0, {{{}, {}, {}, {9000, -70000, 120001}}}}}, .key = true});
   std::int64_t tick = 0;
-  for (int i = 0; i < 40; ++i) stream.add({.tick = tick += 1 + i * i * 7, .updates = {{0, Reason::request, 0, {{{}, {}, {}, {1, -1, 7 * i}}}}}});
+  for (int i = 0; i < 40; ++i)
+    stream.add({.tick = tick += 1 + i * i * 7, .updates = {{0, Reason::request, 0, {{{}, {}, {}, {1, -1, 7 * i}}}}}});
   stream.add({.tick = tick + 65535, .updates = {{0, Reason::visual, 7, {{{}, {}, {}, {1 << 12, -(1 << 12), 1 << 12}}}}}});
   stream.add({.tick = tick + 2 * 65535, .updates = {{0, Reason::visual, 0, {{{1, 1, 1}}}}}});
   return stream.finish().bytes();
@@ -225,22 +234,26 @@ void add_rigid(Catalogue& c) {
   c.valid("single-axes", "Objects with one axis each among static ones, which no packet names.", single_axes(403));
   c.valid("gaps", "300 objects, a third of them static: gaps from 0 to 198.", gaps(), {"R-RIG-4"});
   c.valid("reasons-and-levels", "Every reason with every level.", reasons_and_levels());
-  c.valid("key-packets", "Key packets in the middle: what they do not name returns to its initial state.", key_packets(), {"R-PKT-4"});
+  c.valid("key-packets", "Key packets in the middle: what they do not name returns to its initial state.", key_packets(),
+          {"R-PKT-4"});
   c.valid("older-baselines", "Packets 3 and 7 are lost; each packet builds on one that arrived, up to 4 back.", older_baselines(),
           {"R-PKT-3", "R-PKT-4", "R-PKT-5"});
   c.valid("random-baselines", "250 packets that build on any of the 64 before.", random_baselines(), {"R-PKT-3", "R-PKT-4"});
   c.valid("sequence-wrap", "The sequence passes 65535, then jumps by 32767.", sequence_wrap(), {"R-PKT-5"});
   c.valid("extrapolation-limit", "Predictions up to, at and beyond max_extrapolation.", extrapolation_limit());
   c.valid("saturated-position", "Positions at both ends of 32 bits, by prediction and by residual.", saturated_position());
-  c.valid("saturated-motion", "Velocity at both ends of 32 bits, spin at +-2^25; motion predicted from haptic residuals.", saturated_motion());
+  c.valid("saturated-motion", "Velocity at both ends of 32 bits, spin at +-2^25; motion predicted from haptic residuals.",
+          saturated_motion());
   c.valid("half-turns", "Rotation residuals of length 1 and just below.", half_turns(), {"R-RIG-6"});
   c.valid("fast-spin", "Spins through many whole turns, up to the largest spin times the longest extrapolation.", fast_spin());
   c.valid("coarsest-grid", "Every grid exponent at its lower limit.", walk(with_grid({8, 0, 8, 0}, 1000), 415, 40), {"R-STR-7"});
-  c.valid("finest-grid", "Every grid exponent at its upper limit.", walk(with_grid({30, 30, 28, 20}, 1000), 416, 40), {"R-STR-7"});
+  c.valid("finest-grid", "Every grid exponent at its upper limit.", walk(with_grid({30, 30, 28, 20}, 1000), 416, 40),
+          {"R-STR-7"});
   c.valid("widest-grid-steps", "Velocity and spin twelve binary orders coarser than position and rotation, 60 ticks per second.",
           walk(with_grid({30, 18, 28, 16}, 60), 417, 40), {"R-STR-7"});
   c.valid("slowest-clock", "One tick per second.", walk(with_grid({22, 17, kRotationExp, 12}, 1), 418, 20), {"R-STR-6"});
-  c.valid("fastest-clock", "A million ticks per second.", walk(with_grid({22, 17, kRotationExp, 12}, 1000000), 419, 20), {"R-STR-6"});
+  c.valid("fastest-clock", "A million ticks per second.", walk(with_grid({22, 17, kRotationExp, 12}, 1000000), 419, 20),
+          {"R-STR-6"});
 }
 
 }  // namespace tactus::conformance

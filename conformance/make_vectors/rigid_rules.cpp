@@ -57,8 +57,9 @@ void add_packet_rules(Catalogue& c) {
             then(two_packets(), {.tick = 30, .updates = moved(1), .key = true, .sequence = std::uint16_t{101}}));
   c.invalid("late-packet", "A packet one older than the current state.", stale,
             then(two_packets(), {.tick = 30, .updates = moved(1), .key = true, .sequence = std::uint16_t{100}}));
-  c.invalid("half-the-circle", "A sequence number 32768 ahead counts as older.", stale,
-            then(two_packets(), {.tick = 30, .updates = moved(1), .key = true, .sequence = static_cast<std::uint16_t>(101 + 32768)}));
+  c.invalid(
+      "half-the-circle", "A sequence number 32768 ahead counts as older.", stale,
+      then(two_packets(), {.tick = 30, .updates = moved(1), .key = true, .sequence = static_cast<std::uint16_t>(101 + 32768)}));
 }
 
 void add_tick_rule(Catalogue& c) {
@@ -67,11 +68,13 @@ void add_tick_rule(Catalogue& c) {
             then_raw({true, 1, 0xffffffffu, 1}, {{}}));
   Stream late(two());
   late.add({.tick = 4294967294, .updates = moved(1), .key = true, .sequence = std::uint16_t{0}});
-  c.invalid("tick-runs-over", "tick_delta leads from tick 2^32 - 2 to 2^32 - 1; no record can say so.", tick,
-            Stream(late).add_packet(4294967294, raw_packet(late.header(), 1, {false, 1, 1, 1}, std::vector<RawUpdate>(1))).bytes());
+  c.invalid(
+      "tick-runs-over", "tick_delta leads from tick 2^32 - 2 to 2^32 - 1; no record can say so.", tick,
+      Stream(late).add_packet(4294967294, raw_packet(late.header(), 1, {false, 1, 1, 1}, std::vector<RawUpdate>(1))).bytes());
   Stream wrapped(late);
   c.invalid("tick-runs-over-far", "tick_delta 2^32 - 1 leads from tick 2^32 - 2 beyond 32 bits.", tick,
-            wrapped.add_packet(4294967294, raw_packet(late.header(), 1, {false, 1, 0xffffffffu, 1}, std::vector<RawUpdate>(1))).bytes());
+            wrapped.add_packet(4294967294, raw_packet(late.header(), 1, {false, 1, 0xffffffffu, 1}, std::vector<RawUpdate>(1)))
+                .bytes());
   c.invalid("key-in-the-past", "A key packet at tick 29, after tick 30; the record cannot say so.", tick,
             then_raw({true, 1, 29, 1}, {{}}));
   Stream older = two_packets(4);
@@ -89,11 +92,15 @@ void add_update_rules(Catalogue& c) {
   still.objects = {{"wall", Dof::none}};
   Stream nothing(still);
   c.invalid("nothing-moves", "A packet in a scene without moving objects.", count,
-            nothing.add_packet(0, coded_packet(0, [&](RangeEncoder& coder, RigidModels& models) {
-                                 PacketHead head{true, 1, 0, 1};
-                                 code_head(coder, models, nothing.header(), 0, head);
-                               })).bytes());
-  c.invalid("first-gap-beyond", "The first gap leads past the last moving object.", object, then_raw({false, 1, 0, 1}, {{2, {}}}));
+            nothing
+                .add_packet(0, coded_packet(0,
+                                            [&](RangeEncoder& coder, RigidModels& models) {
+                                              PacketHead head{true, 1, 0, 1};
+                                              code_head(coder, models, nothing.header(), 0, head);
+                                            }))
+                .bytes());
+  c.invalid("first-gap-beyond", "The first gap leads past the last moving object.", object,
+            then_raw({false, 1, 0, 1}, {{2, {}}}));
   c.invalid("second-gap-beyond", "The second gap leads past the last moving object.", object,
             then_raw({false, 1, 0, 2}, {{0, {}}, {1, {}}}));
   c.invalid("gap-wraps", "A second gap of 2^32 - 1 would lead back to the first object in 32-bit arithmetic.", object,
@@ -110,7 +117,8 @@ Bytes turned(std::uint8_t dof, const Vec3i& residual, std::uint8_t level) {
 
 void add_rotation_rule(Catalogue& c) {
   const Rejection length{"invalid", "R-RIG-6"};
-  c.invalid("turn-about-one-axis", "A rotation about x alone, residual 2^rotation_exp + 1.", length, turned(Dof::rx, {kHalfTurn + 1, 0, 0}, 0));
+  c.invalid("turn-about-one-axis", "A rotation about x alone, residual 2^rotation_exp + 1.", length,
+            turned(Dof::rx, {kHalfTurn + 1, 0, 0}, 0));
   c.invalid("turn-component", "A component of a rotation residual is -(2^rotation_exp + 1).", length,
             turned(Dof::all, {0, -(kHalfTurn + 1), 0}, 0));
   c.invalid("turn-length", "No component is too long; together they are, by the least there is.", length,

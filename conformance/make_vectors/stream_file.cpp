@@ -46,10 +46,10 @@ void add_valid_files(Catalogue& c) {
   c.valid("no-trailer", "The file ends after the index: readable, not complete.",
           without_last(extended([](Stream& s) { s.finish(); }), 14), {"R-FIL-2"});
   c.valid("empty-index", "No packets, an index without entries.", Stream(slider()).finish().bytes());
-  c.valid("wrong-index", "An index of nonsense gives the same packets.", extended([](Stream& s) {
-            s.add_record(2, Bytes(20, 0xff)).add_record(3, Bytes(8, 0xff));
-          }));
-  c.valid("file-extensions", "Extension records before, between and after packets are skipped.", between_extensions(), {"R-FIL-3"});
+  c.valid("wrong-index", "An index of nonsense gives the same packets.",
+          extended([](Stream& s) { s.add_record(2, Bytes(20, 0xff)).add_record(3, Bytes(8, 0xff)); }));
+  c.valid("file-extensions", "Extension records before, between and after packets are skipped.", between_extensions(),
+          {"R-FIL-3"});
   Stream late(slider());
   late.add({.tick = 4294967294, .updates = {moved(1)}, .key = true});
   c.valid("last-tick", "A packet at tick 2^32 - 2, the last there is.", late.finish().bytes(), {"R-FIL-6", "R-RIG-1"});
@@ -84,7 +84,8 @@ void add_tick_faults(Catalogue& c) {
   c.invalid("no-tick-delta", "A packet record without a byte.", malformed, good + record(1, {}));
   c.invalid("cut-tick-delta", "A packet record ends inside tick_delta.", malformed, good + record(1, {0x80}));
   c.invalid("overlong-tick-delta", "tick_delta 1 is written in two bytes.", malformed, good + record(1, Bytes{0x81, 0x00, 3, 0}));
-  c.invalid("record-tick-too-late", "A record's tick is 2^32 - 1.", malformed, good + record(1, varint(4294967295u - 5000) + Bytes{3, 0}));
+  c.invalid("record-tick-too-late", "A record's tick is 2^32 - 1.", malformed,
+            good + record(1, varint(4294967295u - 5000) + Bytes{3, 0}));
   Stream stream = three_packets();
   const Bytes packet = stream.packet({.tick = 5001, .updates = {moved(1)}});
   c.invalid("tick-mismatch", "The record says tick 5002, the packet 5001.", {"invalid", "R-FIL-7"},

@@ -45,7 +45,8 @@ RawHeader every_dof() {
 RawHeader many_objects() {
   RawHeader header;
   header.objects.clear();
-  for (int i = 0; i < 300; ++i) header.objects.push_back({std::to_string(i), i % 7 == 0 ? Dof::none : Dof::translation, {i, -i, i * i}});
+  for (int i = 0; i < 300; ++i)
+    header.objects.push_back({std::to_string(i), i % 7 == 0 ? Dof::none : Dof::translation, {i, -i, i * i}});
   return header;
 }
 
@@ -70,16 +71,18 @@ void add_valid_headers(Catalogue& c) {
   low.tick_rate = 1;
   low.grid = {8, 0, 8, 0};
   low.max_extrapolation = 1;
-  c.valid("lower-limits", "Every field of the header at its lower limit.", low.bytes(), {"R-STR-6", "R-STR-7", "R-STR-8", "R-STR-9"});
+  c.valid("lower-limits", "Every field of the header at its lower limit.", low.bytes(),
+          {"R-STR-6", "R-STR-7", "R-STR-8", "R-STR-9"});
   RawHeader high;
   high.tick_rate = 1000000;
   high.grid = {30, 30, 28, 20};
   high.max_extrapolation = 65535;
   high.baseline_span = 64;
   high.objects[0].position = {std::numeric_limits<std::int32_t>::min(), std::numeric_limits<std::int32_t>::max(), -1};
-  c.valid("upper-limits", "Every field of the header at its upper limit.", high.bytes(), {"R-STR-6", "R-STR-7", "R-STR-8", "R-STR-9"});
-  c.valid("widest-grid-steps", "Position and velocity, rotation and spin twelve binary orders apart.", with_grid({30, 18, 28, 16}),
-          {"R-STR-7"});
+  c.valid("upper-limits", "Every field of the header at its upper limit.", high.bytes(),
+          {"R-STR-6", "R-STR-7", "R-STR-8", "R-STR-9"});
+  c.valid("widest-grid-steps", "Position and velocity, rotation and spin twelve binary orders apart.",
+          with_grid({30, 18, 28, 16}), {"R-STR-7"});
   RawHeader names;
   names.objects = {{"a"},
                    {std::string(255, 'n')},
@@ -119,8 +122,9 @@ void add_parameter_faults(Catalogue& c) {
   const RawHeader header;
   const Rejection cut{"truncated", "R-STR-5"};
   c.invalid("short-parameters", "The body ends before object_count.", cut, header.around(first(header.body(), 11)));
-  c.invalid("overlong-count", "object_count 1 is written in two bytes.", {"malformed", "R-STR-5"},
-            changed([](RawHeader& h) { h.object_count = Bytes{0x81, 0x00}; }));
+  c.invalid("overlong-count", "object_count 1 is written in two bytes.", {"malformed", "R-STR-5"}, changed([](RawHeader& h) {
+              h.object_count = Bytes{0x81, 0x00};
+            }));
   c.invalid("count-over-64-bits", "object_count has ten bytes and a value of 2^64.", {"malformed", "R-STR-5"},
             changed([](RawHeader& h) { h.object_count = Bytes(9, 0x80) + Bytes{0x02}; }));
   for (const std::uint32_t rate : {0u, 1000001u}) {
@@ -171,8 +175,10 @@ void add_object_faults(Catalogue& c) {
   RawHeader twins;
   twins.objects = {{"left"}, {"right"}, {"left"}};
   c.invalid("equal-names", "The first and the last object have the same name.", name, twins.bytes());
-  for (const auto& [dof, what] : {std::pair{std::uint8_t{64}, "Bit 6 of dof is set."}, {std::uint8_t{128}, "Bit 7 of dof is set."},
-                                  {std::uint8_t{24}, "Rotation about x and y only."}, {std::uint8_t{40}, "Rotation about x and z only."},
+  for (const auto& [dof, what] : {std::pair{std::uint8_t{64}, "Bit 6 of dof is set."},
+                                  {std::uint8_t{128}, "Bit 7 of dof is set."},
+                                  {std::uint8_t{24}, "Rotation about x and y only."},
+                                  {std::uint8_t{40}, "Rotation about x and z only."},
                                   {std::uint8_t{48}, "Rotation about y and z only."}}) {
     c.invalid("dof-" + std::to_string(dof), what, {"invalid", "R-STR-12"},
               changed([dof = dof](RawHeader& h) { h.objects[0].dof = dof; }));

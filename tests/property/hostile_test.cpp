@@ -24,8 +24,8 @@ namespace {
 namespace fs = std::filesystem;
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr std::size_t kAllOf = 4096;   // files up to this size are damaged at every byte,
-constexpr std::size_t kSample = 400;   // larger ones at so many
+constexpr std::size_t kAllOf = 4096;                                         // files up to this size are damaged at every byte,
+constexpr std::size_t kSample = 400;                                         // larger ones at so many
 constexpr std::uint64_t kPerByte = 24, kPerByteAndState = 3, kFixed = 4096;  // allocation per byte of header, see earned()
 
 Bytes read_file(const fs::path& path) {
@@ -59,7 +59,8 @@ const char* survive(std::span<const std::uint8_t> bytes) {
   }
   auto decoder = RigidDecoder::create(reader->header());
   if (!decoder) return "a header is accepted by the reader, not by the decoder";
-  if (testing::allocated_bytes() - start > earned(bytes.size(), reader->header().baseline_span)) return "set-up allocates too much";
+  if (testing::allocated_bytes() - start > earned(bytes.size(), reader->header().baseline_span))
+    return "set-up allocates too much";
   const std::uint64_t ready = testing::allocated_bytes();
   reader->seek(1000);
   reader->seek(0);

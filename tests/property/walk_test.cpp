@@ -21,7 +21,8 @@ struct Outcome {
 
 /// Error of a shown pose over the fixed thresholds that hold while an object is touched.
 bool breaks_fixed(const RigidTriggers& t, const Pose& truth, const Pose& shown) {
-  return norm(shown.position - truth.position) > t.fixed_position || angle_between(shown.rotation, truth.rotation) > t.fixed_rotation;
+  return norm(shown.position - truth.position) > t.fixed_position ||
+         angle_between(shown.rotation, truth.rotation) > t.fixed_rotation;
 }
 
 Outcome walk(const RigidEncoderOptions& options, std::uint64_t seed) {
@@ -90,12 +91,14 @@ std::string name_of(const ::testing::TestParamInfo<Walk::ParamType>& setting) {
   static constexpr const char* kReductions[] = {"Every", "Triggered"};
   static constexpr const char* kRules[] = {"Off", "Isotropic", "Cone", "Fixed"};
   const auto& [reduction, haptic, p] = setting.param;
-  return std::string(kReductions[static_cast<int>(reduction)]) + kRules[static_cast<int>(haptic)] + std::to_string(static_cast<int>(100 * p));
+  return std::string(kReductions[static_cast<int>(reduction)]) + kRules[static_cast<int>(haptic)] +
+         std::to_string(static_cast<int>(100 * p));
 }
 
 INSTANTIATE_TEST_SUITE_P(Settings, Walk,
                          ::testing::Combine(::testing::Values(Reduction::none, Reduction::dead_reckoning),
-                                            ::testing::Values(HapticRule::off, HapticRule::isotropic, HapticRule::cone, HapticRule::fixed),
+                                            ::testing::Values(HapticRule::off, HapticRule::isotropic, HapticRule::cone,
+                                                              HapticRule::fixed),
                                             ::testing::Values(0.02, 0.08, 0.30)),
                          name_of);
 
