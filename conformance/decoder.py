@@ -250,15 +250,17 @@ def reconstruct_pose(h: Header, base: State, t: int, r: list[list[int]], s: int)
     """Section 5.1."""
     p, q = predict(h, base, t)
     position = tuple(sat32(p[a] + (r[0][a] << s)) for a in range(3))
-    turn = [c << s for c in r[2]]
-    n = sum(c * c for c in turn)
+    m = [c << s for c in r[2]]
+    n = sum(c * c for c in m)
     length = 1 << h.rotation_exp
-    require(all(abs(c) <= length for c in turn) and n <= length * length, "invalid", "R-RIG-6")
+    require(all(abs(c) <= length for c in m) and n <= length * length, "invalid", "R-RIG-6")
     if n == 0:
         return position, q
-    w = isqrt((length * length - n) << (60 - 2 * h.rotation_exp))
-    step = (w,) + tuple(c << (30 - h.rotation_exp) for c in turn)
-    return position, renorm(mul(step, q))
+    k = min(30, 60 - 2 * h.rotation_exp)
+    d = (length * length + n) >> (30 - k)
+    w = round_div((length * length - n) << k, d)
+    v = [round_div((2 * length * c) << k, d) for c in m]
+    return position, renorm(mul(tuple(clamp(c, -ONE, ONE) for c in (w, *v)), q))
 
 
 def reconstruct_motion(h: Header, base: State, t: int, r: list[list[int]], s: int, reason: int) -> tuple[tuple, tuple]:
@@ -268,9 +270,9 @@ def reconstruct_motion(h: Header, base: State, t: int, r: list[list[int]], s: in
         for a in range(3):
             e, f = sat32(r[0][a] << s), sat32(r[2][a] << s)
             if e != 0:
-                v[a] = sat32(v[a] + round_div(e * 3 * h.tick_rate, (2 * dt) << (h.position_exp - h.velocity_exp)))
+                v[a] = sat32(v[a] + round_div(3 * e * h.tick_rate, (2 * dt) << (h.position_exp - h.velocity_exp)))
             if f != 0:
-                o[a] = sat32(o[a] + round_div(f * 3 * h.tick_rate, dt << (h.rotation_exp - h.spin_exp)))
+                o[a] = sat32(o[a] + round_div(6 * f * h.tick_rate, dt << (h.rotation_exp - h.spin_exp)))
     velocity = tuple(sat32((round_shift(v[a], s) + r[1][a]) << s) for a in range(3))
     spin = tuple(clamp((round_shift(o[a], s) + r[3][a]) << s, -LARGEST_SPIN, LARGEST_SPIN) for a in range(3))
     return velocity, spin
