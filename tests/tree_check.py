@@ -63,8 +63,9 @@ def check_stems(root):
     for folder in sorted(p for p in (root / "codec").iterdir() if p.is_dir()):
         stem = folder.name
         names = {stem} | {p.stem for p in folder.iterdir() if p.suffix in CODE}
-        if not any((root / "tests/unit" / f"{n}_test.cpp").is_file() for n in names):
-            yield f"codec/{stem}: no tests/unit/<name>_test.cpp for any of {', '.join(sorted(names))}"
+        tests = [root / "tests/unit" / f"{prefix}{n}_test.cpp" for n in names for prefix in ("", f"{stem}_")]
+        if not any(t.is_file() for t in tests):
+            yield f"codec/{stem}: no tests/unit/[{stem}_]<name>_test.cpp for any of {', '.join(sorted(names))}"
         if stem in SHARED:
             continue
         if not any((root / "spec").glob(f"*{stem}*.md")):

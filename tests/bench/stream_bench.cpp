@@ -5,6 +5,8 @@
 #include <sstream>
 
 #include "codec/base/range_coder.h"
+#include "codec/stream/file.h"
+#include "codec/stream/header.h"
 #include "tests/unit/rigid_fixture.h"
 
 namespace tactus {
