@@ -23,7 +23,7 @@ std::string percent(double share) {
   if (share == 0 || share == 1) return fmt::format("{:.0f} %", 100 * share);
   return fmt::format("{:.{}f} %", 100 * share, share < 0.0995 || share > 0.995 ? 2 : 1);
 }
-std::string significant(double value) { return value == 0 ? "0" : fmt::format("{:.3g}", value); }
+std::string significant(double value, int digits = 3) { return value == 0 ? "0" : fmt::format("{:.{}g}", value, digits); }
 
 std::string duration(double seconds) {
   if (seconds < 1e-3) return fmt::format("{:.2f} us", 1e6 * seconds);
@@ -89,7 +89,8 @@ std::string rule_name(const RigidTriggers& b) {
 
 void error_row(Table& table, const Report& r, const std::string& name, const std::string& bound, const ErrorSeries& s,
                double unit) {
-  table.row({name, bound, significant(s.rms() / unit), significant(s.max() / unit), fmt::to_string(s.ticks_over()),
+  // five digits: a maximum just inside its bound must not read as the bound
+  table.row({name, bound, significant(s.rms() / unit), significant(s.max() / unit, 5), fmt::to_string(s.ticks_over()),
              percent(per(static_cast<double>(s.ticks_over()), static_cast<double>(s.ticks()))),
              fmt::format("{:.0f}", 1e3 * static_cast<double>(s.longest_run()) / r.tick_rate)});
 }
