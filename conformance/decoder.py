@@ -171,6 +171,7 @@ class File:
         size = rest.varint(FIL_2, FIL_6)
         require(kind in (PACKET, INDEX, TRAILER) or kind >= FIRST_EXTENSION, "unsupported", "R-FIL-3")
         require(kind != PACKET or size <= self.limits.packet_size + 5, "limit_exceeded", "R-FIL-4")
+        require(kind != TRAILER or size == 8, *FIL_6)
         require(size + 4 <= rest.left(), *FIL_2)
         payload = rest.take(size, FIL_2)
         expected = zlib.crc32(self.data[start:rest.position])

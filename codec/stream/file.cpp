@@ -14,7 +14,8 @@ constexpr std::uint8_t kPacket = 1;
 constexpr std::uint8_t kIndex = 2;
 constexpr std::uint8_t kTrailer = 3;
 constexpr std::uint8_t kFirstExtension = 128;
-constexpr std::size_t kTrailerSize = 1 + 1 + 8 + 4;  // type, size, offset of the index, check value
+constexpr std::uint64_t kTrailerPayload = 8;                       // offset of the index
+constexpr std::size_t kTrailerSize = 1 + 1 + kTrailerPayload + 4;  // type, size, payload, check value
 constexpr std::int64_t kTickLimit = 0xffffffff;
 
 }  // namespace
@@ -96,6 +97,7 @@ Result<StreamFileReader::Record> StreamFileReader::read_record(std::size_t at) c
   if (record.type == kPacket && size > std::uint64_t{limits_.packet_bytes} + 5) {
     return fail(Errc::limit_exceeded, "R-FIL-4", in.bit_offset());
   }
+  if (record.type == kTrailer && size != kTrailerPayload) return fail(Errc::malformed, "R-FIL-6", in.bit_offset());
   record.start = at + in.position();
   record.payload = in.bytes(size);
   [[maybe_unused]] const std::size_t covered = in.position();
@@ -132,7 +134,7 @@ Result<std::optional<FilePacket>> StreamFileReader::next() noexcept {
 bool StreamFileReader::find_index(std::span<const std::uint8_t>& entries) const noexcept {
   if (file_.size() < first_ + kTrailerSize) return false;
   const auto trailer = read_record(file_.size() - kTrailerSize);
-  if (!trailer || trailer->type != kTrailer || trailer->payload.size() != 8) return false;
+  if (!trailer || trailer->type != kTrailer) return false;
   const std::uint64_t offset = ByteReader(trailer->payload).u64();
   if (offset < first_ || offset >= file_.size()) return false;
   const auto index = read_record(static_cast<std::size_t>(offset));

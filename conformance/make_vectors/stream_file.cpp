@@ -86,6 +86,7 @@ void add_tick_faults(Catalogue& c) {
   c.invalid("overlong-tick-delta", "tick_delta 1 is written in two bytes.", malformed, good + record(1, Bytes{0x81, 0x00, 3, 0}));
   c.invalid("record-tick-too-late", "A record's tick is 2^32 - 1.", malformed,
             good + record(1, varint(4294967295u - 5000) + Bytes{3, 0}));
+  c.invalid("trailer-of-seven-bytes", "A trailer's payload is a byte short.", malformed, good + record(3, Bytes(7, 0)));
   Stream stream = three_packets();
   const Bytes packet = stream.packet({.tick = 5001, .updates = {moved(1)}});
   c.invalid("tick-mismatch", "The record says tick 5002, the packet 5001.", {"invalid", "R-FIL-7"},
