@@ -74,7 +74,6 @@ constexpr std::array kRules{
     RuleText{"R-RIG-3", "the packet announces more updates than there are objects, or none", kEncoderFault},
     RuleText{"R-RIG-4", "the packet names an object that is not there", kEncoderFault},
     RuleText{"R-RIG-6", "a rotation residual is longer than 1", kEncoderFault},
-    RuleText{"R-RNG-1", "the packet begins with ff ff ff ff", kEncoderFault},
     RuleText{"R-RNG-2", "bytes are left over behind the packet's last symbol", kEncoderFault},
     RuleText{"R-RNG-3", "the packet ends with a zero byte, which is never the shortest form", kEncoderFault},
     RuleText{"R-RNG-4", "a coded number is too wide", kEncoderFault},

@@ -79,6 +79,5 @@ class RangeDecoder:
 
     def check_end(self) -> None:
         """Section 5, after the last symbol."""
-        require(self.payload[:4] != b"\xff\xff\xff\xff", "malformed", "R-RNG-1")
         require(len(self.payload) <= self.position, "malformed", "R-RNG-2")
         require(self.payload[-1:] != b"\x00", "malformed", "R-RNG-3")

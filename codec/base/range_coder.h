@@ -162,7 +162,6 @@ class RangeDecoder : public detail::SymbolCoder<RangeDecoder> {
  public:
   explicit RangeDecoder(std::span<const std::uint8_t> in) noexcept : in_(in) {
     for (int i = 0; i < 4; ++i) code_ = (code_ << 8) | next();
-    bad_start_ = code_ == range_;
   }
 
   bool bit(BitModel& model, std::uint32_t = 0) noexcept {
@@ -195,9 +194,8 @@ class RangeDecoder : public detail::SymbolCoder<RangeDecoder> {
   /// Bytes taken so far, implied zeros included.
   std::size_t position() const noexcept { return position_; }
   /// After the last symbol: the first rule that the payload breaks, or null.
-  ///   R-RNG-1 the first four bytes are not all ff;  R-RNG-2 no byte is left over;  R-RNG-3 the last byte is not zero
+  ///   R-RNG-2 no byte is left over;  R-RNG-3 the last byte is not zero
   const char* broken_rule() const noexcept {
-    if (bad_start_) return "R-RNG-1";
     if (in_.size() > position_) return "R-RNG-2";
     if (!in_.empty() && in_.back() == 0) return "R-RNG-3";
     return nullptr;
@@ -220,7 +218,6 @@ class RangeDecoder : public detail::SymbolCoder<RangeDecoder> {
   std::size_t position_ = 0;
   std::uint32_t code_ = 0;
   std::uint32_t range_ = 0xffffffffu;
-  bool bad_start_ = false;
 };
 
 }  // namespace tactus

@@ -29,8 +29,10 @@ struct RigidDecoder::Impl {
   std::vector<RigidState> states;
 
   const Slot& current() const noexcept { return slots[newest].held ? slots[newest] : initial; }
+  /// Newest first: a sequence may come again while its namesake is still kept.
   const Slot* find(std::uint16_t sequence) const noexcept {
-    for (const Slot& slot : slots) {
+    for (std::size_t back = 0; back < slots.size(); ++back) {
+      const Slot& slot = slots[(newest + slots.size() - back) % slots.size()];
       if (slot.held && slot.sequence == sequence) return &slot;
     }
     return nullptr;

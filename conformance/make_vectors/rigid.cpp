@@ -149,6 +149,22 @@ Bytes sequence_wrap() {
   return stream.finish().bytes();
 }
 
+/// Sequences 5 to 10 come twice within the 64 states that are kept.
+Bytes sequence_repeats() {
+  Stream stream(chained(64, {{"x", Dof::x}}));
+  std::int64_t tick = 0;
+  const auto add = [&](std::optional<std::uint16_t> sequence) {
+    const std::int32_t by = static_cast<std::int32_t>(++tick);
+    const std::vector<Update> updates{{0, Reason::visual, 0, {{{by, 0, 0}, {by, 0, 0}}}}};
+    stream.add({.tick = tick, .updates = updates, .key = sequence.has_value(), .sequence = sequence});
+  };
+  for (const int start : {5, 32772, 65539}) {
+    add(static_cast<std::uint16_t>(start));
+    for (int i = 0; i < 6; ++i) add(std::nullopt);
+  }
+  return stream.finish().bytes();
+}
+
 Bytes extrapolation_limit() {
   RawHeader header = with_objects({{"cube"}});
   header.max_extrapolation = 50;
@@ -240,6 +256,8 @@ void add_rigid(Catalogue& c) {
           {"R-PKT-3", "R-PKT-4", "R-PKT-5"});
   c.valid("random-baselines", "250 packets that build on any of the 64 before.", random_baselines(), {"R-PKT-3", "R-PKT-4"});
   c.valid("sequence-wrap", "The sequence passes 65535, then jumps by 32767.", sequence_wrap(), {"R-PKT-5"});
+  c.valid("sequence-repeats", "Two kept states have the same sequence; the newest is the baseline.", sequence_repeats(),
+          {"R-PKT-4"});
   c.valid("extrapolation-limit", "Predictions up to, at and beyond max_extrapolation.", extrapolation_limit());
   c.valid("saturated-position", "Positions at both ends of 32 bits, by prediction and by residual.", saturated_position());
   c.valid("saturated-motion", "Velocity at both ends of 32 bits, spin at +-2^25; motion predicted from haptic residuals.",
