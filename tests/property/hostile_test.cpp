@@ -177,8 +177,8 @@ INSTANTIATE_TEST_SUITE_P(Hostile, EveryVector, ::testing::Values("stream", "rang
 
 TEST(Hostile, TheCounterCounts) {
   const std::uint64_t before = testing::allocated_bytes();
-  const Bytes block(1000);
-  EXPECT_EQ(testing::allocated_bytes() - before, block.size());
+  ::operator delete(::operator new(1000));  // called by name: a new expression may be optimised away
+  EXPECT_EQ(testing::allocated_bytes() - before, 1000u);
 }
 
 TEST(Hostile, LimitsAreKept) {

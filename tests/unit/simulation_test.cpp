@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/property/allocated.h"
+
 namespace tactus {
 namespace {
 
@@ -91,6 +93,21 @@ TEST(Simulation, OpenLoopRepeatsWhatItRecorded) {
     replayed.add(again->frame());
   }
   EXPECT_EQ(recorded.value(), replayed.value());
+}
+
+TEST(Simulation, StepsAllocateNothingOnceOdeHasItsArenas) {
+  auto simulation = Simulation::create(shipped("rotate-push-lift"), with_channel(1, 0.04));
+  ASSERT_TRUE(simulation);
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(simulation->step());
+  const std::uint64_t before = testing::allocated_bytes();
+  std::uint64_t packets = 0;
+  for (int i = 0; i < 8000; ++i) {
+    const auto packet = simulation->step();
+    if (!packet) break;
+    packets += packet->bytes.empty() ? 0u : 1u;
+  }
+  EXPECT_EQ(testing::allocated_bytes() - before, 0u) << "operator new, that is everything but what ODE takes from malloc";
+  EXPECT_GT(packets, 50u);
 }
 
 TEST(Simulation, ReplayRefusesWhatItCannotUse) {
