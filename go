@@ -89,7 +89,7 @@ run_bench() {
 
 run_format() {
   install clang-format
-  find codec sim device cli conformance tests \( -name '*.h' -o -name '*.cpp' \) -exec clang-format -i {} +
+  find codec sim cli conformance tests \( -name '*.h' -o -name '*.cpp' \) -exec clang-format -i {} +
 }
 
 case ${1-help} in

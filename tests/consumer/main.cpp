@@ -15,13 +15,15 @@ const char* round_trip() {
   auto decoder = tactus::RigidDecoder::create(header);
   if (!encoder || !decoder) return "the header is refused";
 
-  const tactus::RigidSample truth{.pose = {.position = {0.25, -0.5, 1.0}, .rotation = {}}, .velocity = {0.1, 0, 0}, .angular_velocity = {}};
+  const tactus::RigidSample truth{
+      .pose = {.position = {0.25, -0.5, 1.0}, .rotation = {}}, .velocity = {0.1, 0, 0}, .angular_velocity = {}};
   const auto packet = encoder->encode(1, {&truth, 1}, {});
   if (!packet || packet->bytes.empty()) return "a jump of a metre yields no packet";
   if (!decoder->decode(packet->bytes)) return "the packet is refused";
 
   const tactus::Pose seen = tactus::to_pose(tactus::predict(decoder->objects()[0], 1, header), header.grid);
-  if (tactus::norm(seen.position - truth.pose.position) > tactus::RigidTriggers{}.visual_position) return "the client sees another place";
+  if (tactus::norm(seen.position - truth.pose.position) > tactus::RigidTriggers{}.visual_position)
+    return "the client sees another place";
   if (decoder->state_hash() != encoder->state_hash()) return "the ends hold different states";
   return nullptr;
 }
