@@ -136,7 +136,8 @@ bool RigidEncoder::Impl::haptic_within(std::uint32_t object, const RigidPose& sh
     if (contact.kind == ContactKind::none || contact.object != object) continue;
     if (triggers.haptic == HapticRule::fixed) return within(fixed, shown, truth[object]);
     const Vec3 estimate = contact_force(contact, to_pose(shown, header.grid));
-    if (haptic_ratio(triggers, contact_force(contact, pose), estimate) > share) return false;
+    const double ratio = haptic_ratio(triggers, contact_force(contact, pose), estimate);
+    if (!(ratio <= share)) return false;  // forces too large to compare are outside, too
   }
   return true;
 }
@@ -208,7 +209,7 @@ Result<std::size_t> RigidEncoder::Impl::write(std::int64_t tick, PacketHead head
     code_update(coder, models, header.objects[update.object].dof, coded);
   }
   const std::size_t size = 2 + coder.finish();
-  if (coder.overflow()) return fail(Errc::internal, "R-PKT-1");
+  if (coder.overflow() || coder.too_wide()) return fail(Errc::internal, "R-PKT-1");
   sequence = next_sequence;
   return size;
 }

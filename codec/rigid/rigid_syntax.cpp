@@ -84,12 +84,15 @@ std::optional<RigidPose> add_pose(const RigidPose& predicted, const Residual& re
 
 }  // namespace
 
+/// What a signed magnitude can carry: 31 bits (R-RNG-4).
+static std::int32_t codable(std::int64_t v) noexcept { return saturate32(std::max<std::int64_t>(v, -0x7fffffff)); }
+
 Residual quantise_pose(const RigidPose& predicted, const RigidState& truth, std::uint8_t dof, unsigned level,
                        const GridExponents& grid) noexcept {
   Residual out;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::int64_t difference = static_cast<std::int64_t>(truth.position[i]) - predicted.position[i];
-    if (dof >> i & 1u) out.of[0][i] = saturate32(round_shift(difference, 2 * level));
+    if (dof >> i & 1u) out.of[0][i] = codable(round_shift(difference, 2 * level));
   }
   if (dof >> 3 == 0) return out;
   const Quat30 turn = multiply(truth.rotation, conjugate(predicted.rotation));
@@ -117,7 +120,7 @@ void quantise_motion(const Prediction& prediction, const RigidState& truth, std:
                      CodedUpdate& update) noexcept {
   const Motion expected = predict_motion(prediction.base, truth.tick - prediction.base.tick, update, header);
   const auto steps = [shift = 2u * update.level](std::int32_t value, std::int32_t guess) {
-    return saturate32(round_shift(value, shift) - round_shift(guess, shift));
+    return codable(round_shift(value, shift) - round_shift(guess, shift));
   };
   Residual& residual = update.residual;
   for (std::size_t i = 0; i < 3; ++i) {

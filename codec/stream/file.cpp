@@ -145,7 +145,7 @@ bool StreamFileReader::find_index(std::span<const std::uint8_t>& entries) const 
 
 bool StreamFileReader::seek(std::int64_t tick) noexcept {
   std::span<const std::uint8_t> entries;
-  if (!find_index(entries)) return false;
+  if (tick < 0 || !find_index(entries)) return false;
   ByteReader in(entries);
   std::uint64_t key_tick = 0, key_offset = 0, best_tick = 0, best_offset = 0;
   for (std::uint64_t left = in.varint(); left > 0 && in.ok(); --left) {

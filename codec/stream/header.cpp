@@ -138,6 +138,8 @@ Result<void> check_header(const StreamHeader& header, const DecodeLimits& limits
   for (const RigidObject& object : header.objects) {
     if (const char* rule = broken_object_rule(object)) return fail(Errc::invalid, rule);
     if (!names.insert(object.name).second) return fail(Errc::invalid, "R-STR-11");
+    const RigidState at_rest{0, object.initial.position, object.initial.rotation, {}, {}};
+    if (object.initial != at_rest) return fail(Errc::invalid, "R-API-8");
   }
   return {};
 }

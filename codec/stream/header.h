@@ -49,7 +49,7 @@ struct RigidState {
 struct RigidObject {
   std::string name;  ///< UTF-8, 1..255 bytes
   std::uint8_t dof = Dof::all;
-  RigidState initial;  ///< tick 0; the state that key packets build on
+  RigidState initial;  ///< at rest at tick 0 (R-API-8); the state that key packets build on
 };
 
 struct StreamHeader {

@@ -329,6 +329,24 @@ TEST(Rigid, AKeyPacketHoldsTheBoundsAfterAHalfTurn) {
   }
 }
 
+TEST(Rigid, JumpsAcrossTheWholeGridStayDecodable) {
+  StreamHeader header = scene_of(1);
+  header.grid = {30, 30, 28, 20};
+  RigidEncoderOptions options;
+  options.triggers.reduction = Reduction::none;
+  auto encoder = RigidEncoder::create(header, options).value();
+  auto decoder = RigidDecoder::create(header).value();
+  for (std::int64_t tick = 0; tick < 20; ++tick) {
+    RigidSample sample;
+    sample.velocity.x = tick % 2 == 0 ? 1.0 : -1.2;  // a change of more than 2^31 grid steps
+    const auto packet = encoder.encode(tick, {&sample, 1}, {});
+    ASSERT_TRUE(packet) << packet.error().rule;
+    const auto decoded = decoder.decode(packet->bytes);
+    ASSERT_TRUE(decoded) << decoded.error().rule;
+    EXPECT_EQ(decoder.state_hash(), encoder.state_hash());
+  }
+}
+
 TEST(Rigid, LostAndStalePacketsChangeNothing) {
   const StreamHeader header = scene_of(1);
   RigidEncoderOptions options;

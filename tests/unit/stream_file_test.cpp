@@ -64,6 +64,7 @@ TEST(StreamFile, SeekFindsTheLastKeyPacketAtOrBefore) {
   while (const auto packet = reader.next().value()) last = packet->tick;
   EXPECT_EQ(last, 90) << "reading goes on to the end from there";
   EXPECT_FALSE(reader.seek(9));
+  EXPECT_FALSE(reader.seek(-1));
 }
 
 TEST(StreamFile, DamageIsNamedAndTheReaderStays) {

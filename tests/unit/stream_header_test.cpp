@@ -83,6 +83,12 @@ std::vector<std::uint8_t> with_extension(std::vector<std::uint8_t> bytes, const 
   return bytes;
 }
 
+TEST(StreamHeader, AnInitialStateThatMovesIsRefused) {
+  StreamHeader header = two_objects();
+  header.objects[0].initial.velocity = {1, 0, 0};  // the bytes have no place for it: both ends would start apart
+  EXPECT_STREQ(write_header(header).error().rule, "R-API-8");
+}
+
 TEST(StreamHeader, UnknownExtensionsAreSkippedBrokenOnesRefused) {
   const auto bytes = write_header(two_objects()).value();
   EXPECT_TRUE(parse_header(with_extension(bytes, {0x90, 0x01, 3, 1, 2, 3, 7, 0})));
