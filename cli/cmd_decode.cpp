@@ -91,7 +91,7 @@ Outcome run(const DecodeOptions& options) {
   if (!bytes) return tl::unexpected(bytes.error());
   auto player = StreamPlayer::open({reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()}, options.replica);
   if (!player) return refuse(options.input, player.error());
-  auto output = OutputFile::create(options.output, options.common.existing());
+  auto output = OutputFile::create(options.output, options.common.existing(), {options.input, options.like});
   if (!output) return tl::unexpected(output.error());
   const TraceInfo info = replica_info(player->header(), options.input);
   auto writer = TraceWriter::create(output->working_path(), info);
@@ -124,7 +124,7 @@ void setup_decode(CLI::App& app, Action& action) {
   add_interpolation(command, options->replica);
   CLI::Option* like = command.add_option("--like", options->like, "Write the ticks that this trace has")->type_name("TRACE");
   command.add_option("--ticks", options->ticks, "Write so many ticks [up to the last packet]")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{0xffffffff}, "at least 1 and below 2^32"))
       ->excludes(like);
   add_output_options(command, options->common);
   command.footer(

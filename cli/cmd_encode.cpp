@@ -75,7 +75,7 @@ Outcome run(const EncodeOptions& options) {
   const auto any = reader->next(frame);
   if (!any) return refuse(options.input, any.error());
   if (!*any) return refuse(options.input + ": the trace has no frames", "Record or simulate at least one tick.");
-  auto output = OutputFile::create(options.output, options.common.existing());
+  auto output = OutputFile::create(options.output, options.common.existing(), {options.input});
   if (!output) return tl::unexpected(output.error());
   const auto stream = output->open();
   if (!stream) return tl::unexpected(stream.error());

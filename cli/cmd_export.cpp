@@ -16,7 +16,8 @@ struct ExportOptions {
 Outcome run(const ExportOptions& options) {
   auto reader = TraceReader::open(options.input);
   if (!reader) return refuse(options.input, reader.error());
-  auto output = OutputFile::create(options.output, options.force ? OutputFile::Existing::replace : OutputFile::Existing::keep);
+  auto output = OutputFile::create(options.output, options.force ? OutputFile::Existing::replace : OutputFile::Existing::keep,
+                                   {options.input});
   if (!output) return tl::unexpected(output.error());
   const auto stream = output->open();
   if (!stream) return tl::unexpected(stream.error());

@@ -97,14 +97,14 @@ Outcome run(const ImportOptions& options) {
   }
   const auto mapping = make_mapping(options);
   if (!mapping) return tl::unexpected(mapping.error());
-  auto output = OutputFile::create(options.output, options.common.existing());
+  auto output = OutputFile::create(options.output, options.common.existing(), {options.input});
   if (!output) return tl::unexpected(output.error());
   Report report{.command = "import csv", .files = {{"table", options.input}, {"trace", options.output}}};
   report.timings = {{"import, whole file", {}}};
   const auto imported =
       report.timings[0].times.measure([&] { return import_csv(options.input, *mapping, output->working_path()); });
   if (!imported) return refuse_csv(options.input, imported.error());
-  if (options.output != "-") {
+  if (output->is_temporary()) {
     const auto reader = TraceReader::open(output->working_path());
     if (!reader) return refuse(options.output, reader.error());
     report.describe(reader->info());

@@ -16,7 +16,7 @@ namespace {
 struct SimOptions {
   std::string scene, output, stream, replay;
   std::uint64_t seed = 1;
-  double duration = 0;  // [s], 0: the scene's
+  double duration = -1;  // [s], negative: the scene's
   std::optional<Grip> grip;
   bool codec = false;
   TriggerArguments triggers;
@@ -35,7 +35,7 @@ struct StreamOutput {
 };
 
 tl::expected<StreamOutput, Failure> open_stream(const SimOptions& options, const StreamHeader& header) {
-  auto file = OutputFile::create(options.stream, options.common.existing());
+  auto file = OutputFile::create(options.stream, options.common.existing(), {options.scene, options.replay});
   if (!file) return tl::unexpected(file.error());
   const auto out = file->open();
   if (!out) return tl::unexpected(out.error());
@@ -129,6 +129,8 @@ tl::expected<Scene, Failure> read_scene(const std::string& name) {
 }
 
 Outcome run(const SimOptions& options) {
+  if (options.duration >= 0 && options.duration < 0.5 / kTickRate)
+    return refuse("--duration: shorter than a tick", "Give at least 1ms.");
   const auto scene = read_scene(options.scene);
   if (!scene) return tl::unexpected(scene.error());
   SimulationOptions settings{.seed = options.seed, .grip = options.grip, .channel = {}};
@@ -142,7 +144,10 @@ Outcome run(const SimOptions& options) {
     recording.emplace(std::move(*reader));
   }
   // The trace grows under its own name: what a crash leaves behind is readable.
-  if (auto free = OutputFile::check_free(options.output, options.common.existing()); !free) return free;
+  if (auto free =
+          OutputFile::check_free(options.output, options.common.existing(), {options.stream, options.scene, options.replay});
+      !free)
+    return free;
   std::optional<StreamOutput> stream;
   if (!options.stream.empty()) {
     auto opened = open_stream(options, simulation->header());
@@ -156,9 +161,9 @@ Outcome run(const SimOptions& options) {
   Report report = make_report(options, info);
   Run session{std::move(*simulation), std::move(*trace), std::move(stream), std::move(recording), {}};
   const auto ticks =
-      options.duration > 0 ? static_cast<std::int64_t>(std::llround(options.duration * kTickRate)) : session.simulation.ticks();
+      options.duration < 0 ? session.simulation.ticks() : static_cast<std::int64_t>(std::llround(options.duration * kTickRate));
   if (auto done = simulate(session, ticks, options, report); !done) return done;
-  if (!info.users.empty()) {
+  if (!info.users.empty() && report.ticks > 0) {
     report.notes.emplace_back(
         "contact", fmt::format("{:.1f} % of the ticks, at most {:.2f} N",
                                100.0 * static_cast<double>(session.ticks_in_contact) / static_cast<double>(report.ticks),

@@ -9,6 +9,7 @@
 #include "cli/cmd_export.h"
 #include "cli/cmd_import.h"
 #include "cli/cmd_info.h"
+#include "cli/output.h"
 #include "cli/progress.h"
 #ifdef TACTUS_HAS_SIM
 #include "cli/cmd_reproduce.h"
@@ -63,6 +64,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "{}", (groups.empty() ? &app : groups.front())->help());
     return kUsage;
   }
-  const Outcome outcome = action();
+  Outcome outcome = action();
+  if (outcome) outcome = check_standard_output();
   return outcome ? kOk : report_failure(outcome.error());
 }

@@ -28,7 +28,7 @@ constexpr const char* kOrder =
 constexpr std::array kRules{
     RuleText{"R-API-1", "a value is not a finite number", "Look for gaps or NaN in the recording at this place."},
     RuleText{"R-API-2", "a position or velocity lies outside the stream's grid",
-             "Check that the recording is in metres, seconds and radians (import takes length-scale for other units)."},
+             "Check that the recording is in metres, seconds and radians (import takes --length-unit for other units)."},
     RuleText{"R-API-3", "a rotation is not a unit quaternion", "Check the order of its components: w, x, y, z."},
     RuleText{"R-API-4", "a threshold is zero, out of range or finer than the stream's grid",
              "Give thresholds above 0: lengths of at least 2 um, angles of at least 0.001 deg and at most 180 deg."},
@@ -38,6 +38,8 @@ constexpr std::array kRules{
              "Declare the axis in the scene or in the recording's channel (dof)."},
     RuleText{"R-API-7", "the grid is too coarse for this contact's stiffness at this deadband",
              "Take a larger deadband -p or a larger --force-floor."},
+    RuleText{"R-API-8", "an initial state moves or is not at tick 0",
+             "Start every object at rest; its first update brings the motion."},
     RuleText{"R-STR-1", "this is not a Tactus stream", kNotAStream},
     RuleText{"R-STR-2", "the stream has a format version that this program does not know", kNewer},
     RuleText{"R-STR-3", "the stream has a profile that this program does not know", kNewer},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/output.h"
 
+#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <iterator>
@@ -17,14 +18,20 @@ tl::unexpected<Failure> refuse_io(const std::string& path, const std::string& wh
 
 }  // namespace
 
-Outcome OutputFile::check_free(const std::string& path, Existing existing) {
+Outcome OutputFile::check_free(const std::string& path, Existing existing, std::initializer_list<std::string> others) {
   std::error_code ignored;
+  for (const std::string& other : others) {
+    if (path != "-" && (path == other || fs::equivalent(path, other, ignored))) {
+      return refuse(path + ": the output is also " + other + ", which the command needs", "Give another name.");
+    }
+  }
   if (path == "-" || existing == Existing::replace || !fs::is_regular_file(path, ignored)) return {};
   return refuse(path + ": the file is there already", "Give -f to replace it, or another name.");
 }
 
-tl::expected<OutputFile, Failure> OutputFile::create(const std::string& path, Existing existing) {
-  if (auto free = check_free(path, existing); !free) return tl::unexpected(free.error());
+tl::expected<OutputFile, Failure> OutputFile::create(const std::string& path, Existing existing,
+                                                     std::initializer_list<std::string> others) {
+  if (auto free = check_free(path, existing, others); !free) return tl::unexpected(free.error());
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
   const bool direct = path == "-" || (fs::exists(status) && !fs::is_regular_file(status));
@@ -63,14 +70,21 @@ OutputFile::~OutputFile() {
 
 tl::expected<std::string, Failure> read_file(const std::string& path) {
   std::ifstream file;
+  if (fs::is_directory(path)) return refuse(path + ": this is a folder", "Give a file.");
   if (path != "-") {
     file.open(path, std::ios::binary);
     if (!file) return refuse_io(path, "cannot be read");
   }
   std::istream& in = path == "-" ? std::cin : file;
   std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  if (in.bad() || fs::is_directory(path)) return refuse(path + ": cannot be read", "Give a file.");
+  if (in.bad()) return refuse_io(path, "cannot be read");
   return bytes;
+}
+
+Outcome check_standard_output() {
+  std::cout.flush();
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout) return {};
+  return refuse_io("standard output", "cannot be written");
 }
 
 }  // namespace tactus::cli

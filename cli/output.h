@@ -3,6 +3,7 @@
 #pragma once
 
 #include <fstream>
+#include <initializer_list>
 #include <iosfwd>
 #include <memory>
 #include <string>
@@ -16,12 +17,14 @@ namespace tactus::cli {
 class OutputFile {
  public:
   enum class Existing { keep, replace };
-  /// err  PATH exists and is to be kept
-  static Outcome check_free(const std::string& path, Existing existing);
-  static tl::expected<OutputFile, Failure> create(const std::string& path, Existing existing);
+  /// err  PATH exists and is to be kept, or is one of the files that the command reads or writes besides
+  static Outcome check_free(const std::string& path, Existing existing, std::initializer_list<std::string> others = {});
+  static tl::expected<OutputFile, Failure> create(const std::string& path, Existing existing,
+                                                  std::initializer_list<std::string> others = {});
 
   const std::string& path() const noexcept { return path_; }
   const std::string& working_path() const noexcept { return working_path_; }  ///< where to write; "-": standard output
+  bool is_temporary() const noexcept { return path_ != working_path_; }       ///< a plain file that can be read back
   /// Open working_path() for writing; standard output if that is "-".   pre  called once
   tl::expected<std::ostream*, Failure> open();
   Outcome keep();
@@ -32,7 +35,6 @@ class OutputFile {
 
  private:
   OutputFile(std::string path, std::string working_path) : path_(std::move(path)), working_path_(std::move(working_path)) {}
-  bool is_temporary() const noexcept { return path_ != working_path_; }
 
   std::string path_, working_path_;
   std::unique_ptr<std::ofstream> stream_;  // stays where it is when the file is moved
@@ -40,5 +42,8 @@ class OutputFile {
 
 /// All bytes of a file, "-" is standard input.
 tl::expected<std::string, Failure> read_file(const std::string& path);
+
+/// What was printed has reached its reader or its file.
+Outcome check_standard_output();
 
 }  // namespace tactus::cli

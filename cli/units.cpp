@@ -70,6 +70,12 @@ T or_usage_error(const std::string& option, tl::expected<T, std::string> parsed)
   return *parsed;
 }
 
+/// A share is above 0 and at most 1: a bare 4 is meant as 4 %, which it is not.
+tl::expected<Quantity, std::string> checked(std::string_view text, const Quantity& quantity, Dimension dimension) {
+  if (dimension != Dimension::fraction || (quantity.value > 0 && quantity.value <= 1)) return quantity;
+  return tl::unexpected(fmt::format("'{}': must be above 0 and at most 100 %; four percent is 4% or 0.04", text));
+}
+
 /// "-p,--deadband" is called "--deadband" in messages.
 std::string long_name(const std::string& names) { return names.substr(names.rfind(',') + 1); }
 
@@ -86,10 +92,10 @@ tl::expected<Quantity, std::string> parse_quantity(std::string_view text, Dimens
   const std::string_view suffix(end, static_cast<std::size_t>(text.data() + text.size() - end));
   if (suffix.empty()) {
     if (dimension == Dimension::angle) return tl::unexpected(fmt::format("'{}': an angle needs its unit: {}", text, list(units)));
-    return Quantity{number, true};
+    return checked(text, {number, true}, dimension);
   }
   for (const Unit& unit : units) {
-    if (unit.name == suffix) return Quantity{number * unit.factor, false};
+    if (unit.name == suffix) return checked(text, {number * unit.factor, false}, dimension);
   }
   return tl::unexpected(fmt::format("'{}': unknown unit '{}'; use {}", text, suffix, list(units)));
 }

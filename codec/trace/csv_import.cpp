@@ -215,7 +215,8 @@ tl::expected<CsvImport, CsvError> import_csv(const std::string& path, const CsvM
   Importer importer(mapping, *std::move(plan), out_path);
   const auto done = importer.run(*reader);
   if (done) return *done;
-  if (importer.has_output() && out_path != "-") std::remove(out_path.c_str());
+  std::error_code ignored;  // what is not a plain file was there before us
+  if (importer.has_output() && std::filesystem::is_regular_file(out_path, ignored)) std::filesystem::remove(out_path, ignored);
   return refuse(importer.place(done.error()));
 }
 
