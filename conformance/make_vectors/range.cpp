@@ -127,8 +127,8 @@ void write_too_wide(RangeEncoder& coder, MagnitudeModel& model, std::uint32_t wi
 void add_range_faults(Catalogue& c) {
   const RawHeader slider = one(Dof::x);
   const Bytes padded = padded_packet(slider);
-  c.invalid("all-ones", "A payload of four bytes ff: every bit is 1, so tick_delta is too wide.",
-            {"malformed", "R-RNG-4"}, file_of(slider, Bytes{0, 0, 0xff, 0xff, 0xff, 0xff}));
+  c.invalid("all-ones", "A payload of four bytes ff: every bit is 1, so tick_delta is too wide.", {"malformed", "R-RNG-4"},
+            file_of(slider, Bytes{0, 0, 0xff, 0xff, 0xff, 0xff}));
   c.invalid("byte-left-over", "One byte more than the decoder takes.", {"malformed", "R-RNG-2"},
             file_of(slider, padded + Bytes{1}));
   c.invalid("zero-left-over", "One byte more than the decoder takes, and it is 0: R-RNG-2 is checked before R-RNG-3.",

@@ -27,7 +27,8 @@ StreamHeader scene(std::uint8_t choice) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
   auto decoder = RigidDecoder::create(scene(data[0]));
-  auto twin = RigidDecoder::create(scene(data[0]));  // sees accepted packets only: refused ones must leave no trace, not even in baselines
+  auto twin = RigidDecoder::create(
+      scene(data[0]));  // sees accepted packets only: refused ones must leave no trace, not even in baselines
   if (!decoder || !twin) std::abort();
   for (std::size_t at = 1; at + 2 <= size;) {
     const std::size_t length = std::min<std::size_t>(data[at] | (data[at + 1] & 3u) << 8, size - at - 2);
