@@ -18,7 +18,7 @@
 
 namespace {
 
-enum ExitCode { kOk = 0, kFailed = 1, kUsage = 2 };
+constexpr int kOk = 0, kFailed = 1, kUsage = 2;
 
 int report_failure(const tactus::cli::Failure& failure) {
   const bool coloured = tactus::cli::is_coloured(2);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/output.h"
 
+#include <fmt/format.h>
+
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -22,7 +24,7 @@ Outcome OutputFile::check_free(const std::string& path, Existing existing, std::
   std::error_code ignored;
   for (const std::string& other : others) {
     if (path != "-" && (path == other || fs::equivalent(path, other, ignored))) {
-      return refuse(path + ": the output is also " + other + ", which the command needs", "Give another name.");
+      return refuse(fmt::format("{}: the output is also {}, which the command needs", path, other), "Give another name.");
     }
   }
   if (path == "-" || existing == Existing::replace || !fs::is_regular_file(path, ignored)) return {};
