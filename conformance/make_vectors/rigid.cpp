@@ -228,11 +228,10 @@ Bytes fast_spin() {
   Stream stream(header);
   stream.add({.tick = 0, .updates = {{0, Reason::visual, 0, {{{}, {}, {}, {9000, -70000, 120001}}}}}, .key = true});
   std::int64_t tick = 0;
-  for (std::int32_t i = 0; i < 40; ++i)
-    stream.add(
-        {.tick = tick += 1 + std::int64_t{7} * i * i, .updates = {{0, Reason::request, 0, {{{}, {}, {}, {1, -1, 7 * i}}}}}});
-  stream.add({.tick = tick + 65535, .updates = {{0, Reason::visual, 7, {{{}, {}, {}, {1 << 12, -(1 << 12), 1 << 12}}}}}});
-  stream.add({.tick = tick + 2 * 65535, .updates = {{0, Reason::visual, 0, {{{1, 1, 1}}}}}});
+  for (int i = 0; i < 40; ++i)
+    stream.add({.tick = tick += 1 + i * i * 7, .updates = {{0, Reason::request, 0, {{{}, {}, {}, {1, -1, 7 * i}}}}}});
+  stream.add({.tick = tick += 65535, .updates = {{0, Reason::visual, 7, {{{}, {}, {}, {1 << 12, -(1 << 12), 1 << 12}}}}}});
+  stream.add({.tick = tick += 65535, .updates = {{0, Reason::visual, 0, {{{1, 1, 1}}}}}});
   return stream.finish().bytes();
 }
 
