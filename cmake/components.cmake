@@ -8,6 +8,8 @@ set(TACTUS_PACKAGES
   "tomlplusplus    libtomlplusplus-dev     tomlplusplus::tomlplusplus"
   "CLI11           libcli11-dev            CLI11::CLI11"
   "nlohmann_json   nlohmann-json3-dev      nlohmann_json::nlohmann_json"
+  "Eigen3          libeigen3-dev           Eigen3::Eigen"
+  "OpenMesh        libopenmesh-dev         OpenMeshCore"
   "fmt             libfmt-dev              fmt::fmt"
   "GTest           libgtest-dev            GTest::gtest_main"
   "benchmark       libbenchmark-dev        benchmark::benchmark"
@@ -29,11 +31,11 @@ macro(tactus_find package)
 endmacro()
 
 # tactus_missing(OUT required...): Debian packages or components of ours that are needed and not there; empty when all is well.
-# What is required is `trace` or `sim`, or a name from TACTUS_PACKAGES.
+# What is required is a component of ours (trace, mesh, fem, surface, sim) or a name from TACTUS_PACKAGES.
 function(tactus_missing out)
   set(missing)
   foreach(required IN LISTS ARGN)
-    if(required MATCHES "^(trace|sim)$")
+    if(required MATCHES "^(trace|mesh|fem|surface|sim)$")
       if(NOT TARGET tactus_${required})
         string(TOUPPER ${required} upper)
         list(APPEND missing "TACTUS_WITH_${upper}")

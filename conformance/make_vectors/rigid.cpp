@@ -231,7 +231,7 @@ Bytes fast_spin() {
   for (int i = 0; i < 40; ++i)
     stream.add({.tick = tick += 1 + i * i * 7, .updates = {{0, Reason::request, 0, {{{}, {}, {}, {1, -1, 7 * i}}}}}});
   stream.add({.tick = tick += 65535, .updates = {{0, Reason::visual, 7, {{{}, {}, {}, {1 << 12, -(1 << 12), 1 << 12}}}}}});
-  stream.add({.tick = tick += 65535, .updates = {{0, Reason::visual, 0, {{{1, 1, 1}}}}}});
+  stream.add({.tick = tick + 65535, .updates = {{0, Reason::visual, 0, {{{1, 1, 1}}}}}});
   return stream.finish().bytes();
 }
 

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Triangle meshes: what is seen and touched of an object. Open or closed, several components, boundary allowed.
+///
+/// rule      class           element   broken when
+/// R-MSH-1   invalid         vertex    a coordinate is NaN or infinite, or larger than 1e6 m
+/// R-MSH-2   invalid         triangle  an index is not that of a vertex
+/// R-MSH-3   invalid         triangle  two of its corners are the same vertex, or its area is zero in double precision
+/// R-MSH-4   invalid         triangle  an edge belongs to a third triangle
+/// R-MSH-5   invalid         triangle  a neighbour across an edge is oriented the other way round (or the triangle stands there twice)
+/// R-MSH-6   invalid         vertex    its triangles form more than one fan
+/// R-MSH-7   limit_exceeded  0         more than 2^20 vertices or 2^21 triangles
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "codec/base/geometry.h"
+#include "codec/base/result.h"
+
+namespace tactus {
+
+using Triangle = std::array<std::uint32_t, 3>;  ///< corners counter-clockwise seen from outside
+
+struct TriMesh {
+  std::vector<Vec3> vertices;  ///< [m]
+  std::vector<Triangle> triangles;
+};
+
+inline constexpr std::size_t kMaxMeshVertices = std::size_t{1} << 20;
+inline constexpr std::size_t kMaxMeshTriangles = std::size_t{1} << 21;
+
+/// A mesh that broke a rule, and where.
+struct MeshError {
+  Error error;
+  std::uint32_t element = 0;  ///< vertex, triangle or tetrahedron, as the rule's table says
+};
+std::string to_string(const MeshError& error);  ///< "triangle 17: R-MSH-4: an edge belongs to a third triangle; ..." with remedy
+
+/// All rules above, the first broken one in element order.   time O(n log n); allocates.   err  R-MSH-1..7
+tl::expected<void, MeshError> check(const TriMesh& mesh);
+
+/// Triangles around vertices and across edges; made once from connectivity alone.
+/// pre  the mesh passed check()
+class MeshTopology {
+ public:
+  explicit MeshTopology(const TriMesh& mesh);
+
+  std::span<const std::uint32_t> triangles_of(std::uint32_t vertex) const noexcept;
+  std::span<const std::uint32_t> neighbours_of(std::uint32_t vertex) const noexcept;  ///< vertices across one edge, ascending
+  /// Triangle across the edge from corner k to corner k+1, or kNone at a boundary.
+  std::uint32_t across(std::uint32_t triangle, unsigned k) const noexcept { return across_[triangle][k]; }
+  static constexpr std::uint32_t kNone = 0xffffffff;
+
+  /// Triangles within `rings` rings around one, itself first, then ring by ring: ring r+1 holds those that share a vertex with
+  /// ring r (thesis 3.3.1.1, the area of interest).   in  out  cleared and filled; its capacity is reused
+  void rings_around(std::uint32_t triangle, unsigned rings, std::vector<std::uint32_t>& out) const;
+
+ private:
+  std::vector<std::uint32_t> first_triangle_, triangle_list_, first_neighbour_, neighbour_list_;
+  std::vector<std::array<std::uint32_t, 3>> across_;
+};
+
+}  // namespace tactus

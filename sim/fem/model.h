@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Linear tetrahedra, co-rotated (stiffness warping, Mueller and Gross 2004) or linear. Thesis 2.3.2.2, eq. 2.5:
+///   M u'' + D u' + k(u) = f,   D = mass_damping M + stiffness_damping K
+///
+/// symbol  shape       unit   meaning
+/// u, v    3N          m, m/s displacement and velocity of every vertex, x y z of vertex 0 first; zero at fixed vertices
+/// f       3N          N      forces on vertices; what acts on fixed ones is ignored
+/// k(u)    3N          N      sum over elements of R_e K_e (R_e^T x - X), R_e the rotation of the deformation gradient
+///
+/// Elements are worked on several at a time in the widest vectors of the machine (chosen at run time); each lane does the same
+/// operations in the same order without contraction, so every instruction set yields the same bits.
+///
+/// rule      class            broken when
+/// R-TET-n                    the mesh (tet_mesh.h)
+/// R-FEM-1   invalid          Young's modulus or density not in (0, 1e15], Poisson's ratio not in (-1, 0.5), or none of them finite
+/// R-FEM-2   invalid          neither one material nor one per tetrahedron
+/// R-FEM-3   invalid          a fixed vertex that does not exist; all vertices fixed is allowed
+/// R-FEM-4   invalid          a damping that is negative or not finite
+/// R-FEM-5   invalid_argument a force, displacement or time step that is not finite, or a vector of the wrong length; state unchanged
+/// R-FEM-6   internal         a step diverged: the state before it is kept
+/// R-FEM-7   internal         the system matrix cannot be factored (not positive definite)
+/// R-FEM-8   invalid_argument the method cannot do this: number of modes, tolerance, step outside [1e-9, 1] s
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/mesh/tet_mesh.h"
+
+namespace tactus {
+
+struct Material {
+  double young = 1e4;     ///< E [N/m^2]
+  double poisson = 0.45;  ///< nu
+  double density = 1000;  ///< [kg/m^3]
+};
+
+enum class Elasticity : std::uint8_t { corotated, linear };
+enum class MassMatrix : std::uint8_t { lumped, consistent };
+
+struct FemOptions {
+  std::vector<Material> materials;   ///< one for all or one per tetrahedron
+  std::vector<std::uint32_t> fixed;  ///< vertices
+  Elasticity elasticity = Elasticity::corotated;
+  MassMatrix mass = MassMatrix::lumped;
+  double mass_damping = 0;       ///< [1/s]
+  double stiffness_damping = 0;  ///< [s]
+};
+
+/// What stopped a deformable object, where, and what would help.
+struct FemError {
+  Error error;
+  std::int64_t step = -1;     ///< number of the step, -1: none
+  std::int64_t element = -1;  ///< tetrahedron, vertex or material that broke the rule, -1: none
+  std::string remedy;
+};
+std::string to_string(const FemError& error);
+
+struct FemState {
+  Eigen::VectorXd u;  ///< 3N [m]
+  Eigen::VectorXd v;  ///< 3N [m/s]
+};
+
+/// Row-major so that a product with a vector can be split by rows; only the free degrees of freedom (free_dofs()).
+using SparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
+
+class FemModel {
+ public:
+  /// err  R-TET-n, R-FEM-1..4
+  static tl::expected<FemModel, FemError> create(TetMesh mesh, FemOptions options);
+
+  const TetMesh& mesh() const noexcept;
+  const FemOptions& options() const noexcept;
+  Eigen::Index size() const noexcept;               ///< 3N
+  std::span<const int> free_dofs() const noexcept;  ///< their numbers in u, ascending
+  bool is_fixed(std::uint32_t vertex) const noexcept;
+  FemState rest() const;                                ///< zero displacement, zero velocity
+  const Eigen::VectorXd& lumped_mass() const noexcept;  ///< 3N [kg], row sums
+  const SparseMatrix& mass_matrix() const noexcept;     ///< free x free, diagonal when lumped [kg]
+  double total_mass() const noexcept;                   ///< [kg]
+
+  /// k(u) [N]; zero at fixed vertices. Rotations found are remembered as the next call's start.
+  /// time O(tets), 30 ns each; no allocation.
+  void internal_forces(const Eigen::VectorXd& u, Eigen::VectorXd& k) noexcept;
+  /// Elastic energy [J] at u.   time O(tets); no allocation.
+  double energy(const Eigen::VectorXd& u) noexcept;
+  /// Sum over elements of R_e K_e R_e^T with the rotations at u [N/m], free x free. `K` gets the pattern once, later calls only
+  /// rewrite its values.   time O(tets), 0.4 us each; no allocation after the first call with this K.
+  void stiffness(const Eigen::VectorXd& u, SparseMatrix& K);
+  /// The tangent dk/du with the derivative of the rotations, made positive semidefinite element by element where it is not.
+  void tangent(const Eigen::VectorXd& u, SparseMatrix& K);
+  /// Largest angular frequency [rad/s] of K against M at rest, by power iteration to a relative 1e-3, from above (5 % safety not included).
+  double largest_frequency() const;
+  /// First tetrahedron whose corners are not finite, or farther apart than 1e3 times their rest distance; -1: none.
+  std::int64_t broken_element(const Eigen::VectorXd& u) const noexcept;
+
+  FemModel(FemModel&&) noexcept;
+  FemModel& operator=(FemModel&&) noexcept;
+  ~FemModel();
+
+ private:
+  struct Impl;
+  explicit FemModel(std::unique_ptr<Impl> impl) noexcept;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// A force at a point inside a tetrahedron (weights of its four corners) or on a surface triangle, added to f.
+void add_force(std::span<const std::uint32_t> corners, std::span<const double> weights, const Vec3& force,
+               Eigen::VectorXd& f) noexcept;
+
+}  // namespace tactus
