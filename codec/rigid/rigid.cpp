@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::int32_t kSpinLimit = 1 << 25;
 
-/// Half the angle turned in `dt` ticks, 2^32 to the full circle, and the axis. spec 40-rigid 4.2
+/// Half the angle turned in `dt` ticks, 2^32 to the full circle, and the axis. spec 40-rigid 4
 struct Turn {
   Vec3i axis{};
   std::uint32_t half = 0;

@@ -18,7 +18,7 @@ struct RigidSample {
   Vec3 angular_velocity;  ///< [rad/s] world frame
 };
 
-/// Why an object's state was sent. Values are wire values (spec/40-rigid.md table 2).
+/// Why an object's state was sent. Values are wire values (spec/40-rigid.md table 1).
 enum class Reason : std::uint8_t {
   request = 0,    ///< no trigger: a key packet or a stream without data reduction
   heartbeat = 1,  ///< time-out since the last update

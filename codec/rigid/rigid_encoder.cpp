@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "codec/rigid/rigid_syntax.h"
 
@@ -18,7 +19,7 @@ constexpr std::int32_t kDofTolerance = 64;  // x 2^-30: a locked axis may be off
 /// Visual thresholds in grid units, shrunk so that the bound also holds for the unrounded truth.
 struct Thresholds {
   std::int64_t distance_squared = 0;
-  std::int64_t half_angle_squared = 0;  // (sin(angle / 2))^2 x 2^-60
+  std::int64_t half_angle_squared = 0;  // (sin(angle / 2))^2 x 2^-60 of a quaternion of length 1
   unsigned level = 0;                   // coarsest grid level whose rounding stays within kVisualShare
 };
 
@@ -52,9 +53,10 @@ bool within(const Thresholds& t, const RigidPose& shown, const RigidState& truth
   if (distance > t.distance_squared) return false;
   if (shown.rotation == truth.rotation) return true;
   const Quat30 turn = multiply(truth.rotation, conjugate(shown.rotation));
-  std::int64_t half = 0;
-  for (std::size_t i = 1; i < 4; ++i) half += static_cast<std::int64_t>(turn[i]) * turn[i];
-  return half <= t.half_angle_squared;
+  double half = 0;
+  for (std::size_t i = 1; i < 4; ++i) half += static_cast<double>(turn[i]) * turn[i];
+  const double length_squared = (half + static_cast<double>(turn[0]) * turn[0]) * 0x1p-60;  // 1 but for rounding
+  return half <= static_cast<double>(t.half_angle_squared) * length_squared;
 }
 
 /// Does the truth keep to the axes that the header declares?
@@ -165,7 +167,7 @@ void RigidEncoder::Impl::collect(std::int64_t tick, std::span<const RigidSample>
   if (!triggered) pending.clear();
 }
 
-/// The coarsest level whose rounding leaves room inside every bound.
+/// The coarsest level whose rounding leaves room inside every bound; without one, the finest that keeps them.
 Result<CodedUpdate> RigidEncoder::Impl::quantise(Pending& update, const Prediction& prediction, const Pose& pose,
                                                  std::span<const Contact> contacts) const noexcept {
   const std::uint32_t object = update.object;
@@ -173,21 +175,23 @@ Result<CodedUpdate> RigidEncoder::Impl::quantise(Pending& update, const Predicti
   const bool touched = triggers.haptic != HapticRule::off &&
                        std::any_of(contacts.begin(), contacts.end(),
                                    [object](const Contact& c) { return c.kind != ContactKind::none && c.object == object; });
-  for (unsigned level = touched && triggers.haptic == HapticRule::fixed ? fixed.level : visual.level;; --level) {
+  std::optional<CodedUpdate> finest;
+  const unsigned coarsest = touched && triggers.haptic == HapticRule::fixed ? fixed.level : visual.level;
+  for (unsigned levels = coarsest + 1; levels > 0; --levels) {
+    const unsigned level = levels - 1;
     CodedUpdate coded{update.reason, static_cast<std::uint8_t>(level),
                       quantise_pose(prediction.pose, truth[object], dof, level, header.grid)};
     quantise_motion(prediction, truth[object], dof, header, coded);
     const auto state = reconstruct(prediction, truth[object].tick, coded, header);
     if (!state) return fail(Errc::internal, "R-RIG-6");
     const RigidPose shown{state->position, state->rotation};
-    const bool fits = haptic_within(object, shown, pose, contacts, kHapticShare) && within(visual, shown, truth[object]);
-    const bool last = level == 0;
-    if (fits || (last && haptic_within(object, shown, pose, contacts, 1.0) && within(visual, shown, truth[object]))) {
-      update.state = *state;
-      return coded;
-    }
-    if (last) return fail(Errc::invalid_argument, "R-API-7");
+    if (!within(visual, shown, truth[object]) || !haptic_within(object, shown, pose, contacts, 1.0)) continue;
+    update.state = *state;
+    if (haptic_within(object, shown, pose, contacts, kHapticShare)) return coded;
+    finest = coded;
   }
+  if (!finest) return fail(Errc::invalid_argument, "R-API-7");
+  return *finest;
 }
 
 Result<std::size_t> RigidEncoder::Impl::write(std::int64_t tick, PacketHead head, std::span<const RigidSample> samples,

@@ -35,12 +35,13 @@ struct RigidEncoderOptions {
 /// state well inside these bounds.
 class RigidEncoder {
  public:
-  /// err  invalid_argument R-STR-n: the header is not valid; R-API-4: a threshold is negative, NaN or finer than the grid.
+  /// err  R-STR-n: the header is not valid, with the class that parse_header gives; invalid_argument R-API-4: a threshold is negative,
+  ///      NaN or finer than the grid.
   static Result<RigidEncoder> create(StreamHeader header, const RigidEncoderOptions& options = {});
 
   /// Look at one tick and decide.
   /// in   tick      strictly increasing
-  ///      samples   one per object of the header, same order
+  ///      samples   one per object of the header, same order; those of static objects are not looked at
   ///      contacts  any number, from any clients
   /// time O(objects), < 1 us per object; no allocation, no exception.
   /// err  invalid_argument R-API-1..3 a sample is not finite or out of range; R-API-5 wrong count, tick order or contact;

@@ -30,7 +30,7 @@ struct RigidModels {
   std::array<std::array<MagnitudeModel, kHints>, kQuantities> residual;
 };
 
-/// Start probabilities, spec/40-rigid.md table 4.
+/// Start probabilities, spec/40-rigid.md table 2.
 const RigidModels& start_models() noexcept;
 
 struct PacketHead {

@@ -347,6 +347,22 @@ TEST(Rigid, JumpsAcrossTheWholeGridStayDecodable) {
   }
 }
 
+TEST(Rigid, AStiffContactBeyondTheReachOfTheFinestLevelIsSentOneLevelUp) {
+  StreamHeader header = scene_of(1);
+  header.objects[0].initial.position = {-2100000000, 0, 0};  // farther from the truth than 2^31 steps of level 0
+  auto encoder = RigidEncoder::create(header, {.triggers = {.haptic = HapticRule::isotropic, .weber_fraction = 0.04}}).value();
+  auto decoder = RigidDecoder::create(header).value();
+  const double stiffness = 5e4;  // two grid steps are 0.6 of the permitted error
+  RigidSample sample;
+  sample.pose.position = {500, 0, 10 * 0x1p-22};  // ten grid steps: two off at level 1
+  const Contact contact = touch(0, sample.pose, 1 / stiffness, stiffness);
+  const auto packet = encoder.encode(1, {&sample, 1}, {&contact, 1});
+  ASSERT_TRUE(packet) << packet.error().rule;
+  ASSERT_TRUE(decoder.decode(packet->bytes));
+  const Pose shown = to_pose(predict(decoder.objects()[0], 1, header), header.grid);
+  EXPECT_LE(haptic_ratio({.weber_fraction = 0.04}, contact_force(contact, sample.pose), contact_force(contact, shown)), 1);
+}
+
 TEST(Rigid, LostAndStalePacketsChangeNothing) {
   const StreamHeader header = scene_of(1);
   RigidEncoderOptions options;
