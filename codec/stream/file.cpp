@@ -44,12 +44,13 @@ Result<void> StreamFileWriter::write_record(std::uint8_t type, std::span<const s
 
 Result<void> StreamFileWriter::add(std::int64_t tick, std::span<const std::uint8_t> packet, bool key) {
   if (tick < tick_ || tick >= kTickLimit) return fail(Errc::invalid_argument, "R-API-5");
-  if (key) keys_.push_back({tick, offset_});
+  const Entry entry{tick, offset_};
   payload_.clear();
   ByteWriter w(payload_);
   w.varint(static_cast<std::uint64_t>(tick - tick_));
   w.bytes(packet);
   TACTUS_CHECK(write_record(kPacket, payload_));
+  if (key) keys_.push_back(entry);
   tick_ = tick;
   return {};
 }
