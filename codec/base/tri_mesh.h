@@ -60,6 +60,7 @@ class MeshTopology {
 
  private:
   std::vector<std::uint32_t> first_triangle_, triangle_list_, first_neighbour_, neighbour_list_;
+  std::vector<Triangle> corners_;
   std::vector<std::array<std::uint32_t, 3>> across_;
 };
 

@@ -6,7 +6,7 @@
 /// R-TET-2   invalid         tet      an index is not that of a vertex
 /// R-TET-3   invalid         tet      two corners are the same vertex, or its volume is zero relative to its longest edge (1e-12 of its cube)
 /// R-TET-4   invalid         tet      inside out: negative volume
-/// R-TET-5   invalid         tet      a face belongs to a third tetrahedron, or the tetrahedron stands there twice
+/// R-TET-5   invalid         tet      a face belongs to a third tetrahedron, or two lie on the same side of it (as when one stands there twice)
 /// R-TET-6   invalid         vertex   belongs to no tetrahedron: it would have no mass
 /// R-TET-7   limit_exceeded  0        more than 2^20 vertices or 2^22 tetrahedra
 #pragma once
@@ -22,6 +22,8 @@ namespace tactus {
 
 /// Corners a b c d with (b-a) x (c-a) . (d-a) > 0.
 using Tet = std::array<std::uint32_t, 4>;
+
+inline constexpr std::size_t kMaxTets = std::size_t{1} << 22;
 
 struct TetMesh {
   std::vector<Vec3> vertices;  ///< [m]
@@ -47,7 +49,9 @@ TetSurface surface(const TetMesh& mesh);
 /// pre  nx, ny, nz >= 1; cell > 0
 TetMesh make_slab(std::uint32_t nx, std::uint32_t ny, std::uint32_t nz, double cell);
 
-/// A tetrahedral mesh with every edge halved `times` times: space error is measured against such.
+/// A tetrahedral mesh with every edge halved `times` times: space error is measured against such. Vertices keep their numbers, new
+/// ones follow; tetrahedron t becomes 8 t .. 8 t + 7, the four inner ones around the shortest diagonal.
+/// pre  the mesh passed check().   time O(n log n) of the result
 TetMesh refined(const TetMesh& mesh, unsigned times);
 
 }  // namespace tactus

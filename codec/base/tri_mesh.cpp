@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "codec/base/tri_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string_view>
+#include <utility>
+
+namespace tactus {
+namespace {
+
+constexpr double kMaxCoordinate = 1e6;  // [m]
+
+/// One side of an edge as a number that sorts by lower vertex, higher vertex, triangle, corner: 20 + 20 + 23 bits.
+using EdgeSide = std::uint64_t;
+static_assert(kMaxMeshVertices <= std::size_t{1} << 20 && 3 * kMaxMeshTriangles <= std::size_t{1} << 23);
+
+constexpr EdgeSide edge_of(EdgeSide side) noexcept { return side >> 23; }
+constexpr std::uint32_t low_vertex(EdgeSide side) noexcept { return static_cast<std::uint32_t>(side >> 43); }
+constexpr std::uint32_t high_vertex(EdgeSide side) noexcept { return static_cast<std::uint32_t>((side >> 23) & 0xfffff); }
+constexpr std::uint32_t corner_of(EdgeSide side) noexcept {
+  return static_cast<std::uint32_t>(side & 0x7fffff);
+}  // 3 triangle + k
+
+std::vector<EdgeSide> sorted_sides(const TriMesh& mesh) {
+  std::vector<EdgeSide> sides;
+  sides.reserve(3 * mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]);
+      sides.push_back(EdgeSide{low} << 43 | EdgeSide{high} << 23 | (3 * t + k));
+    }
+  }
+  std::sort(sides.begin(), sides.end());
+  return sides;
+}
+
+tl::unexpected<MeshError> broken(Errc code, const char* rule, std::size_t element) {
+  return tl::unexpected(MeshError{fail(code, rule).value(), static_cast<std::uint32_t>(element)});
+}
+
+bool is_in_range(const Vec3& v) noexcept {  // false for NaN
+  return std::abs(v.x) <= kMaxCoordinate && std::abs(v.y) <= kMaxCoordinate && std::abs(v.z) <= kMaxCoordinate;
+}
+
+tl::expected<void, MeshError> check_elements(const TriMesh& mesh) {
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    if (!is_in_range(mesh.vertices[v])) return broken(Errc::invalid, "R-MSH-1", v);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint32_t v : mesh.triangles[t])
+      if (v >= mesh.vertices.size()) return broken(Errc::invalid, "R-MSH-2", t);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto [a, b, c] = mesh.triangles[t];
+    const Vec3& origin = mesh.vertices[a];
+    const bool repeated = a == b || b == c || c == a;
+    if (repeated || cross(mesh.vertices[b] - origin, mesh.vertices[c] - origin) == Vec3{})
+      return broken(Errc::invalid, "R-MSH-3", t);
+  }
+  return {};
+}
+
+/// True where the edge is walked from its lower vertex to its higher one.
+bool is_upward(const TriMesh& mesh, EdgeSide side) noexcept {
+  return mesh.triangles[corner_of(side) / 3][corner_of(side) % 3] == low_vertex(side);
+}
+
+tl::expected<void, MeshError> check_edges(const TriMesh& mesh) {
+  const std::vector<EdgeSide> sides = sorted_sides(mesh);
+  std::uint32_t third = MeshTopology::kNone, turned = MeshTopology::kNone;
+  for (std::size_t i = 1; i < sides.size(); ++i) {
+    if (edge_of(sides[i]) != edge_of(sides[i - 1])) continue;
+    const std::uint32_t triangle = corner_of(sides[i]) / 3;
+    if (i >= 2 && edge_of(sides[i]) == edge_of(sides[i - 2])) third = std::min(third, triangle);
+    if (is_upward(mesh, sides[i]) == is_upward(mesh, sides[i - 1])) turned = std::min(turned, triangle);
+  }
+  if (third != MeshTopology::kNone) return broken(Errc::invalid, "R-MSH-4", third);
+  if (turned != MeshTopology::kNone) return broken(Errc::invalid, "R-MSH-5", turned);
+  return {};
+}
+
+std::uint32_t corner_at(const TriMesh& mesh, std::uint32_t triangle, std::uint32_t vertex) noexcept {
+  const Triangle& t = mesh.triangles[triangle];
+  return t[0] == vertex ? 0 : t[1] == vertex ? 1 : 2;
+}
+
+/// Triangles of the fan around `vertex` that holds `first`.
+std::size_t fan_size(const TriMesh& mesh, const MeshTopology& topology, std::uint32_t vertex, std::uint32_t first) {
+  std::size_t count = 1;
+  for (const std::uint32_t side : {2U, 0U}) {  // counter-clockwise across the edge that ends here; from a boundary the other way
+    std::uint32_t t = first;
+    while (true) {
+      t = topology.across(t, (corner_at(mesh, t, vertex) + side) % 3);
+      if (t == first) return count;
+      if (t == MeshTopology::kNone) break;
+      ++count;
+    }
+  }
+  return count;
+}
+
+tl::expected<void, MeshError> check_fans(const TriMesh& mesh) {
+  const MeshTopology topology(mesh);
+  for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
+    const auto triangles = topology.triangles_of(v);
+    if (!triangles.empty() && fan_size(mesh, topology, v, triangles[0]) != triangles.size())
+      return broken(Errc::invalid, "R-MSH-6", v);
+  }
+  return {};
+}
+
+/// Turn counts per vertex into where each vertex's part of a common list starts; the last entry is the list's length.
+void accumulate(std::vector<std::uint32_t>& first) { std::exclusive_scan(first.begin(), first.end(), first.begin(), 0U); }
+
+struct RuleText {
+  std::string_view rule;
+  const char* element;  ///< what is counted; nullptr: the mesh as a whole
+  const char* broken;
+  const char* remedy;
+};
+
+constexpr const char* kManifold = "remove the surplus element or take the mesh apart there";
+
+constexpr std::array kRules{
+    RuleText{"R-MSH-1", "vertex", "a coordinate is not a finite number or larger than 1e6 m",
+             "look for gaps in the file, or scale it to metres"},
+    RuleText{"R-MSH-2", "triangle", "a corner is no vertex of the mesh", "the file was cut or its numbers start elsewhere"},
+    RuleText{"R-MSH-3", "triangle", "two corners are the same, or its area is zero", "remove it or merge its vertices"},
+    RuleText{"R-MSH-4", "triangle", "an edge belongs to a third triangle", kManifold},
+    RuleText{"R-MSH-5", "triangle", "a neighbour is oriented the other way round, or it stands there twice",
+             "turn one of the two round or remove it"},
+    RuleText{"R-MSH-6", "vertex", "its triangles form more than one fan", "give each fan a vertex of its own"},
+    RuleText{"R-MSH-7", nullptr, "more than 2^20 vertices or 2^21 triangles", "simplify it or cut it into several objects"},
+    RuleText{"R-TET-1", "vertex", "a coordinate is not a finite number or larger than 1e6 m",
+             "look for gaps in the file, or scale it to metres"},
+    RuleText{"R-TET-2", "tetrahedron", "a corner is no vertex of the mesh", "the file was cut or its numbers start elsewhere"},
+    RuleText{"R-TET-3", "tetrahedron", "two corners are the same, or its volume is zero",
+             "fill the surface again with a better quality, or remove it"},
+    RuleText{"R-TET-4", "tetrahedron", "inside out", "swap two of its corners"},
+    RuleText{"R-TET-5", "tetrahedron", "a face belongs to a third tetrahedron, or to one on the same side", kManifold},
+    RuleText{"R-TET-6", "vertex", "belongs to no tetrahedron", "remove it: it would have no mass"},
+    RuleText{"R-TET-7", nullptr, "more than 2^20 vertices or 2^22 tetrahedra", "fill it with larger tetrahedra"},
+};
+
+}  // namespace
+
+std::string to_string(const MeshError& error) {
+  const std::string_view rule = error.error.rule;
+  const auto* text = std::find_if(kRules.begin(), kRules.end(), [&](const RuleText& r) { return r.rule == rule; });
+  if (text == kRules.end()) return "element " + std::to_string(error.element) + ": " + error.error.rule;
+  const std::string place = text->element == nullptr ? "mesh" : text->element + (' ' + std::to_string(error.element));
+  return place + ": " + error.error.rule + ": " + text->broken + "; " + text->remedy;
+}
+
+tl::expected<void, MeshError> check(const TriMesh& mesh) {
+  if (mesh.vertices.size() > kMaxMeshVertices || mesh.triangles.size() > kMaxMeshTriangles)
+    return broken(Errc::limit_exceeded, "R-MSH-7", 0);
+  return check_elements(mesh).and_then([&] { return check_edges(mesh); }).and_then([&] { return check_fans(mesh); });
+}
+
+MeshTopology::MeshTopology(const TriMesh& mesh)
+    : first_triangle_(mesh.vertices.size() + 1, 0),
+      triangle_list_(3 * mesh.triangles.size()),
+      first_neighbour_(mesh.vertices.size() + 1, 0),
+      corners_(mesh.triangles),
+      across_(mesh.triangles.size(), {kNone, kNone, kNone}) {
+  for (const Triangle& triangle : mesh.triangles)
+    for (const std::uint32_t v : triangle) ++first_triangle_[v];
+  accumulate(first_triangle_);
+  std::vector<std::uint32_t> end = first_triangle_;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint32_t v : mesh.triangles[t]) triangle_list_[end[v]++] = t;
+
+  std::vector<EdgeSide> sides = sorted_sides(mesh);
+  for (std::size_t i = 1; i < sides.size(); ++i) {
+    if (edge_of(sides[i]) != edge_of(sides[i - 1])) continue;
+    const std::uint32_t a = corner_of(sides[i - 1]), b = corner_of(sides[i]);
+    across_[a / 3][a % 3] = b / 3;
+    across_[b / 3][b % 3] = a / 3;
+  }
+  sides.erase(std::unique(sides.begin(), sides.end(), [](EdgeSide a, EdgeSide b) { return edge_of(a) == edge_of(b); }),
+              sides.end());
+  for (const EdgeSide side : sides) {
+    ++first_neighbour_[low_vertex(side)];
+    ++first_neighbour_[high_vertex(side)];
+  }
+  accumulate(first_neighbour_);
+  end = first_neighbour_;
+  neighbour_list_.resize(2 * sides.size());
+  for (const EdgeSide side : sides) {  // in this order each vertex meets its lower neighbours, then its higher ones, ascending
+    neighbour_list_[end[low_vertex(side)]++] = high_vertex(side);
+    neighbour_list_[end[high_vertex(side)]++] = low_vertex(side);
+  }
+}
+
+std::span<const std::uint32_t> MeshTopology::triangles_of(std::uint32_t vertex) const noexcept {
+  return std::span(triangle_list_).subspan(first_triangle_[vertex], first_triangle_[vertex + 1] - first_triangle_[vertex]);
+}
+
+std::span<const std::uint32_t> MeshTopology::neighbours_of(std::uint32_t vertex) const noexcept {
+  return std::span(neighbour_list_).subspan(first_neighbour_[vertex], first_neighbour_[vertex + 1] - first_neighbour_[vertex]);
+}
+
+void MeshTopology::rings_around(std::uint32_t triangle, unsigned rings, std::vector<std::uint32_t>& out) const {
+  const auto sort_from = [&out](std::ptrdiff_t start) {
+    std::sort(out.begin() + start, out.end());
+    out.erase(std::unique(out.begin() + start, out.end()), out.end());
+  };
+  out.assign(1, triangle);
+  std::ptrdiff_t before = 0, ring = 0;  // where the last ring but one and the last one start, each ascending
+  for (unsigned r = 0; r < rings; ++r) {
+    const auto next = std::ssize(out);
+    for (auto i = ring; i < next; ++i)
+      out.insert(out.end(), corners_[out[static_cast<std::size_t>(i)]].begin(), corners_[out[static_cast<std::size_t>(i)]].end());
+    sort_from(next);
+    const auto corners_end = std::ssize(out);
+    for (auto i = next; i < corners_end; ++i) {
+      const auto around = triangles_of(out[static_cast<std::size_t>(i)]);
+      out.insert(out.end(), around.begin(), around.end());
+    }
+    out.erase(out.begin() + next, out.begin() + corners_end);
+    sort_from(next);
+    // What touches a ring lies in it, in the one before or in the next.
+    const auto is_known = [&](std::uint32_t t) {
+      return std::binary_search(out.begin() + before, out.begin() + ring, t) ||
+             std::binary_search(out.begin() + ring, out.begin() + next, t);
+    };
+    out.erase(std::remove_if(out.begin() + next, out.end(), is_known), out.end());
+    if (std::ssize(out) == next) return;
+    before = std::exchange(ring, next);
+  }
+}
+
+}  // namespace tactus
