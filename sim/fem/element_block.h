@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Elements eight at a time, and the kernels that work on them, compiled once per instruction set from element_kernel.h.
+/// Nothing here may be an inline function: a linker could keep the copy that was compiled for a machine other than this one.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace tactus {
+
+inline constexpr std::size_t kBlockSize = 8;  ///< elements: lanes of the widest vectors there are
+
+/// Structure of arrays, lane last. Lanes after the last element have no stiffness.
+struct alignas(64) ElementBlock {
+  double gradient[9][kBlockSize];       ///< row r, column c of the inverse rest edges at 3 r + c: g_(r+1) [1/m]
+  double two_mu[kBlockSize];            ///< 2 mu V [J]
+  double lambda[kBlockSize];            ///< lambda V [J]
+  double rotation[4][kBlockSize];       ///< w x y z, of about unit length: R(q) divides by |q|^2
+  std::uint32_t corner[4][kBlockSize];  ///< 3 x vertex
+};
+
+struct BlockSpan {
+  ElementBlock* data;
+  std::size_t size;
+};
+
+struct ElementKernels {
+  void (*forces)(BlockSpan blocks, const double* u, double* k) noexcept;
+  void (*linear_forces)(BlockSpan blocks, const double* u, double* k) noexcept;
+  double (*energy)(BlockSpan blocks, const double* u) noexcept;
+  double (*linear_energy)(BlockSpan blocks, const double* u) noexcept;
+};
+
+/// portable: two lanes, SSE2 on x86-64. All sets yield the same bits.
+enum class InstructionSet : std::uint8_t { portable, avx2, avx512 };
+
+bool supported(InstructionSet set) noexcept;  ///< by this machine and this build
+InstructionSet widest() noexcept;             ///< of those supported
+ElementKernels kernels(InstructionSet set) noexcept;
+
+extern const ElementKernels kPortableKernels;
+#ifdef TACTUS_FEM_X86
+extern const ElementKernels kAvx2Kernels, kAvx512Kernels;
+#endif
+
+}  // namespace tactus

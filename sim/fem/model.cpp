@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/fem/model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "sim/fem/element.h"
+#include "sim/fem/element_assembly.h"
+#include "sim/fem/frequency.h"
+
+namespace tactus {
+namespace {
+
+using Failure = tl::unexpected<FemError>;
+
+Failure refuse(const char* rule, std::int64_t element, const char* remedy) {
+  return Failure(FemError{{Errc::invalid, rule}, -1, element, remedy});
+}
+
+/// The mesh's own sentence without place and rule, which FemError has already.
+FemError from_mesh(const MeshError& error) {
+  std::string text = to_string(error);
+  const std::string rule = std::string(error.error.rule) + ": ";
+  if (const std::size_t at = text.find(rule); at != std::string::npos) text.erase(0, at + rule.size());
+  return {error.error, -1, error.element, std::move(text)};
+}
+
+bool valid(const Material& m) {
+  constexpr double kLargest = 1e15;
+  return m.young > 0 && m.young <= kLargest && m.density > 0 && m.density <= kLargest && m.poisson > -1 && m.poisson < 0.5;
+}
+
+bool valid_damping(double d) { return d >= 0 && std::isfinite(d); }
+
+tl::expected<void, FemError> check(const TetMesh& mesh, const FemOptions& options) {
+  if (const auto checked = tactus::check(mesh); !checked) return Failure(from_mesh(checked.error()));
+  if (options.materials.size() != 1 && options.materials.size() != mesh.tets.size())
+    return refuse("R-FEM-2", static_cast<std::int64_t>(options.materials.size()),
+                  "give one material for all tetrahedra or one for each");
+  for (std::size_t i = 0; i < options.materials.size(); ++i) {
+    if (!valid(options.materials[i]))
+      return refuse(
+          "R-FEM-1", static_cast<std::int64_t>(i),
+          "Young's modulus and density in (0, 1e15], Poisson's ratio above -1 and below 0.5; incompressible material needs "
+          "0.499 or less");
+  }
+  for (const std::uint32_t v : options.fixed)
+    if (v >= mesh.vertices.size()) return refuse("R-FEM-3", v, "fix vertices that the mesh has");
+  if (!valid_damping(options.mass_damping) || !valid_damping(options.stiffness_damping))
+    return refuse("R-FEM-4", -1, "damping must be finite and not negative");
+  return {};
+}
+
+const Material& material(const FemOptions& options, std::size_t tet) {
+  return options.materials[options.materials.size() == 1 ? 0 : tet];
+}
+
+std::vector<Lame> lame(const TetMesh& mesh, const FemOptions& options) {
+  std::vector<Lame> out(mesh.tets.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const Material& m = material(options, i);
+    out[i] = {m.young / (2 * (1 + m.poisson)), m.young * m.poisson / ((1 + m.poisson) * (1 - 2 * m.poisson))};
+  }
+  return out;
+}
+
+double shortest_edge(const TetMesh& mesh) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const Tet& t : mesh.tets)
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = i + 1; j < 4; ++j) shortest = std::min(shortest, norm(mesh.vertices[t[i]] - mesh.vertices[t[j]]));
+  return shortest;
+}
+
+constexpr double kTorn = 1e3;  // times the rest distance: farther apart than this nothing deformable comes back
+
+}  // namespace
+
+std::string to_string(const FemError& error) {
+  std::string out;
+  if (error.step >= 0) out += "step " + std::to_string(error.step) + ": ";
+  if (error.element >= 0) out += "element " + std::to_string(error.element) + ": ";
+  out += std::string(error.error.rule) + " (" + errc_name(error.error.code) + ")";
+  return error.remedy.empty() ? out : out + ": " + error.remedy;
+}
+
+struct FemModel::Impl {
+  Impl(TetMesh m, FemOptions o)
+      : mesh(std::move(m)),
+        options(std::move(o)),
+        fixed(mesh.vertices.size(), 0),
+        elements(mesh, lame(mesh, options), options.elasticity == Elasticity::corotated) {
+    for (const std::uint32_t v : options.fixed) fixed[v] = 1;
+    std::vector<int> free_vertex(mesh.vertices.size(), -1);
+    int free_count = 0;
+    for (std::size_t v = 0; v < fixed.size(); ++v) {
+      for (int c = 0; c < 3; ++c) (fixed[v] != 0 ? fixed_dofs : free_dofs).push_back(3 * static_cast<int>(v) + c);
+      if (fixed[v] == 0) free_vertex[v] = free_count++;
+    }
+    assembly = Assembly(elements, free_vertex, free_count);
+    make_masses();
+    shortest = shortest_edge(mesh);
+  }
+
+  void make_masses();
+  bool corotated() const { return options.elasticity == Elasticity::corotated; }
+
+  TetMesh mesh;
+  FemOptions options;
+  std::vector<std::uint8_t> fixed;  // by vertex
+  std::vector<int> free_dofs, fixed_dofs;
+  Elements elements;
+  Assembly assembly;
+  Eigen::VectorXd lumped;
+  SparseMatrix mass;
+  double total_mass = 0;
+  double shortest = 0;  // rest edge [m]
+};
+
+void FemModel::Impl::make_masses() {
+  lumped = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(mesh.vertices.size()));
+  if (options.mass == MassMatrix::consistent) assembly.prepare(mass);
+  for (std::size_t e = 0; e < mesh.tets.size(); ++e) {
+    const double m = material(options, e).density * volume(mesh, e);
+    total_mass += m;
+    for (const std::uint32_t v : mesh.tets[e]) lumped.segment<3>(3 * static_cast<Eigen::Index>(v)).array() += m / 4;
+    if (options.mass == MassMatrix::lumped) continue;
+    ElementMatrix block;
+    for (std::size_t i = 0; i < 16; ++i)
+      for (std::size_t c = 0; c < 3; ++c) block[i].m[c][c] = i / 4 == i % 4 ? m / 10 : m / 20;
+    assembly.add(e, block, mass);
+  }
+  if (options.mass == MassMatrix::consistent) return;
+  const auto n = static_cast<Eigen::Index>(free_dofs.size());
+  mass.resize(n, n);
+  mass.reserve(Eigen::VectorXi::Constant(n, 1));
+  for (Eigen::Index i = 0; i < n; ++i) mass.insert(i, i) = lumped[free_dofs[static_cast<std::size_t>(i)]];
+  mass.makeCompressed();
+}
+
+tl::expected<FemModel, FemError> FemModel::create(TetMesh mesh, FemOptions options) {
+  if (auto checked = check(mesh, options); !checked) return Failure(std::move(checked).error());
+  return FemModel(std::make_unique<Impl>(std::move(mesh), std::move(options)));
+}
+
+FemModel::FemModel(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}
+FemModel::FemModel(FemModel&&) noexcept = default;
+FemModel& FemModel::operator=(FemModel&&) noexcept = default;
+FemModel::~FemModel() = default;
+
+const TetMesh& FemModel::mesh() const noexcept { return impl_->mesh; }
+const FemOptions& FemModel::options() const noexcept { return impl_->options; }
+Eigen::Index FemModel::size() const noexcept { return impl_->lumped.size(); }
+std::span<const int> FemModel::free_dofs() const noexcept { return impl_->free_dofs; }
+bool FemModel::is_fixed(std::uint32_t vertex) const noexcept { return impl_->fixed[vertex] != 0; }
+FemState FemModel::rest() const { return {Eigen::VectorXd::Zero(size()), Eigen::VectorXd::Zero(size())}; }
+const Eigen::VectorXd& FemModel::lumped_mass() const noexcept { return impl_->lumped; }
+const SparseMatrix& FemModel::mass_matrix() const noexcept { return impl_->mass; }
+double FemModel::total_mass() const noexcept { return impl_->total_mass; }
+
+void FemModel::internal_forces(const Eigen::VectorXd& u, Eigen::VectorXd& k) noexcept {
+  k.setZero(size());
+  impl_->elements.add_forces(u.data(), k.data());
+  for (const int i : impl_->fixed_dofs) k[i] = 0;
+}
+
+double FemModel::energy(const Eigen::VectorXd& u) noexcept { return impl_->elements.energy(u.data()); }
+
+void FemModel::stiffness(const Eigen::VectorXd& u, SparseMatrix& K) {
+  impl_->assembly.prepare(K);
+  impl_->elements.energy(u.data());  // finds the rotations
+  for (std::size_t e = 0; e < impl_->elements.size(); ++e)
+    impl_->assembly.add(e, rotated_stiffness(impl_->elements, e, impl_->corotated()), K);
+}
+
+void FemModel::tangent(const Eigen::VectorXd& u, SparseMatrix& K) {
+  if (!impl_->corotated()) return stiffness(u, K);
+  impl_->assembly.prepare(K);
+  impl_->elements.energy(u.data());
+  for (std::size_t e = 0; e < impl_->elements.size(); ++e)
+    impl_->assembly.add(e, tactus::tangent(impl_->elements, e, u.data()), K);
+}
+
+double FemModel::largest_frequency() const {
+  SparseMatrix K;
+  impl_->assembly.prepare(K);
+  for (std::size_t e = 0; e < impl_->elements.size(); ++e)
+    impl_->assembly.add(e, rotated_stiffness(impl_->elements, e, false), K);
+  return tactus::largest_frequency(K, impl_->mass);
+}
+
+std::int64_t FemModel::broken_element(const Eigen::VectorXd& u) const noexcept {
+  // A vertex may move by this much before any edge can be torn; almost every call ends here.
+  const double safe = (kTorn - 1) * impl_->shortest / 4;
+  bool all_safe = true;
+  for (const double x : u) all_safe &= std::abs(x) < safe;
+  if (all_safe) return -1;
+  const auto at = [&](std::uint32_t v) {
+    const Eigen::Index i = 3 * static_cast<Eigen::Index>(v);
+    return impl_->mesh.vertices[v] + Vec3{u[i], u[i + 1], u[i + 2]};
+  };
+  for (std::size_t e = 0; e < impl_->mesh.tets.size(); ++e) {
+    const Tet& t = impl_->mesh.tets[e];
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = i + 1; j < 4; ++j) {
+        const double now = norm(at(t[i]) - at(t[j])), rest = norm(impl_->mesh.vertices[t[i]] - impl_->mesh.vertices[t[j]]);
+        if (!(now <= kTorn * rest)) return static_cast<std::int64_t>(e);
+      }
+    }
+  }
+  return -1;
+}
+
+void add_force(std::span<const std::uint32_t> corners, std::span<const double> weights, const Vec3& force,
+               Eigen::VectorXd& f) noexcept {
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    f.segment<3>(3 * static_cast<Eigen::Index>(corners[i])) += weights[i] * Eigen::Vector3d(force.x, force.y, force.z);
+}
+
+}  // namespace tactus
