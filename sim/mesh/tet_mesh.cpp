@@ -136,6 +136,16 @@ double volume(const TetMesh& mesh, std::size_t tet) noexcept {
   return dot(cross(mesh.vertices[b] - origin, mesh.vertices[c] - origin), mesh.vertices[d] - origin) / 6;
 }
 
+Bounds bounds(std::span<const Vec3> points) noexcept {
+  if (points.empty()) return {};
+  Bounds box{points[0], points[0]};
+  for (const Vec3& p : points) {
+    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
+    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
+  }
+  return box;
+}
+
 tl::expected<void, MeshError> check(const TetMesh& mesh) {
   if (mesh.vertices.size() > kMaxMeshVertices || mesh.tets.size() > kMaxTets) return broken(Errc::limit_exceeded, "R-TET-7", 0);
   return check_elements(mesh).and_then([&] { return check_faces(mesh); }).and_then([&] { return check_use(mesh); });

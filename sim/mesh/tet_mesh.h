@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "codec/base/geometry.h"
@@ -32,6 +33,12 @@ struct TetMesh {
 
 /// (b-a) x (c-a) . (d-a) / 6 [m^3]
 double volume(const TetMesh& mesh, std::size_t tet) noexcept;
+
+/// The smallest box around points; both corners in the origin when there are none.
+struct Bounds {
+  Vec3 low, high;
+};
+Bounds bounds(std::span<const Vec3> points) noexcept;
 
 /// All rules above, the first broken one in element order.   time O(n log n); allocates.   err  R-TET-1..7
 tl::expected<void, MeshError> check(const TetMesh& mesh);

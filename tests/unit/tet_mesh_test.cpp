@@ -6,14 +6,10 @@
 #include <limits>
 #include <utility>
 
+#include "tests/unit/mesh_fixture.h"
+
 namespace tactus {
 namespace {
-
-double total_volume(const TetMesh& mesh) {
-  double sum = 0;
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) sum += volume(mesh, t);
-  return sum;
-}
 
 void expect_broken(const TetMesh& mesh, std::string_view rule, std::uint32_t element) {
   const auto checked = check(mesh);

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/mesh/tet_files.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+#include "tests/unit/mesh_fixture.h"
+
+namespace tactus {
+namespace {
+
+constexpr std::string_view kNode =
+    "4 3 2 1\n1 0 0 0 0.5 1 7\n2 1 0 0 1.5 2 7\n\n# a comment\n3 0 1 0 2.5 3 8 # another\n4 0 0 1 3.5 4 9\n";
+constexpr std::string_view kEle = "1 4 1\n1 1 2 3 4 -6\n";
+constexpr std::string_view kMsh2 =
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n10 0 0 0\n20 1 0 0\n5 0 1 0\n7 0 0 1\n$EndNodes\n"
+    "$Elements\n2\n1 2 2 0 1 10 20 5\n2 4 2 3 9 10 20 5 7\n$EndElements\n";
+constexpr std::string_view kMsh4 =
+    "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n1 4 5 20\n3 9 0 4\n10\n20\n5\n7\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n$EndNodes\n"
+    "$Elements\n2 2 1 2\n2 1 2 1\n1 10 20 5\n3 9 4 1\n2 10 20 5 7\n$EndElements\n";
+
+std::string replaced(std::string_view text, std::string_view from, std::string_view to) {
+  std::string out(text);
+  const std::size_t at = out.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return out.replace(at, from.size(), to);
+}
+
+template <class Read>
+void expect_broken(const Read& read, std::string_view rule, std::size_t line, std::string_view word) {
+  ASSERT_FALSE(read) << rule;
+  EXPECT_EQ(read.error().error.rule, rule);
+  EXPECT_EQ(read.error().line, line) << rule;
+  EXPECT_EQ(read.error().word, word) << rule;
+}
+
+TEST(TetFiles, NodeAndEleBringAttributesAndMarkers) {
+  const auto file = parse_node_ele(kNode, kEle);
+  ASSERT_TRUE(file) << to_string(file.error());
+  EXPECT_TRUE(check(file->mesh));
+  EXPECT_EQ(file->mesh.vertices[3], (Vec3{0, 0, 1}));
+  EXPECT_EQ(file->mesh.tets[0], (Tet{0, 1, 2, 3}));
+  EXPECT_EQ(file->vertex_attributes, (std::vector<double>{0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4}));
+  EXPECT_EQ(file->vertex_markers, (std::vector<std::int32_t>{7, 7, 8, 9}));
+  EXPECT_EQ(file->tet_attributes, std::vector<double>{-6});
+}
+
+TEST(TetFiles, NumbersMayStartFromZero) {
+  const auto file = parse_node_ele("4\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n", "1\n0 0 1 2 3");
+  ASSERT_TRUE(file) << to_string(file.error());
+  EXPECT_EQ(file->mesh.tets[0], (Tet{0, 1, 2, 3}));
+}
+
+TEST(TetFiles, EveryRuleOfNodeFilesNamesItsLine) {
+  const auto node = [](std::string_view from, std::string_view to) { return parse_node_ele(replaced(kNode, from, to), kEle); };
+  expect_broken(node("4 3 2 1", "9999999 3 2 1"), "R-MFL-2", 1, "9999999");
+  expect_broken(node("4 3 2 1", "999999 3 2 1"), "R-MFL-3", 1, "999999");
+  expect_broken(node("4 3 2 1", "5 3 2 1"), "R-MFL-3", 7, "");
+  expect_broken(node("4 3 2 1", "3 3 2 1"), "R-MFL-6", 7, "4");
+  expect_broken(node("4 3 2 1", "-4 3 2 1"), "R-MFL-4", 1, "-4");
+  expect_broken(node("4 3 2 1", "4 2 2 1"), "R-MFL-7", 1, "2");
+  expect_broken(node("4 3 2 1", "4 3 2 2"), "R-MFL-2", 1, "2");
+  expect_broken(node("2.5 3 8", "2.5x 3 8"), "R-MFL-4", 6, "2.5x");
+  expect_broken(node("2.5 3 8", "nan 3 8"), "R-MFL-5", 6, "nan");
+  expect_broken(node("2.5 3 8", "1e999 3 8"), "R-MFL-4", 6, "1e999");
+  expect_broken(node("2.5 3 8", "2.5 3"), "R-MFL-6", 6, "");
+  expect_broken(node("2.5 3 8", "2.5 3 8 0"), "R-MFL-6", 6, "0");
+  expect_broken(node("2.5 3 8", "2.5 3 99999999999"), "R-MFL-4", 6, "99999999999");
+  expect_broken(node("\n3 0 1", "\n5 0 1"), "R-MFL-8", 6, "5");
+  expect_broken(node("\n1 0 0", "\n2 0 0"), "R-MFL-8", 2, "2");
+  expect_broken(parse_node_ele("", kEle), "R-MFL-3", 0, "");
+}
+
+TEST(TetFiles, EveryRuleOfEleFilesNamesItsLine) {
+  const auto ele = [](std::string_view text) { return parse_node_ele(kNode, text); };
+  expect_broken(ele("9999999 4 0\n"), "R-MFL-2", 1, "9999999");
+  expect_broken(ele("9 4 0\n1 1 2 3 4\n"), "R-MFL-3", 1, "9");
+  expect_broken(ele("1 10 0\n1 1 2 3 4 5 6 7 8 9 10\n"), "R-MFL-7", 1, "10");
+  expect_broken(ele("1 4 0\n1 1 2 3 5\n"), "R-MFL-8", 2, "5");
+  expect_broken(ele("1 4 0\n1 0 1 2 3\n"), "R-MFL-8", 2, "0");
+  expect_broken(ele("1 4 0\n1 1 2 3\n "), "R-MFL-6", 2, "");
+  expect_broken(ele("1 4 0\n1 1 2 3 4 5\n"), "R-MFL-6", 2, "5");
+  expect_broken(ele("0 4 0\n"), "R-MFL-9", 1, "");
+}
+
+TEST(TetFiles, BothVersionsOfMshReadTheSame) {
+  for (const std::string_view text : {kMsh2, kMsh4}) {
+    const auto file = parse_msh(text);
+    ASSERT_TRUE(file) << to_string(file.error());
+    EXPECT_EQ(file->mesh.tets, std::vector{(Tet{0, 1, 2, 3})});
+    EXPECT_EQ(file->mesh.vertices[1], (Vec3{1, 0, 0}));
+    EXPECT_EQ(file->regions, std::vector<std::int32_t>{9});
+    EXPECT_EQ(file->ignored_elements, 1U);
+    EXPECT_EQ(file->ignored_vertices, 0U);
+  }
+}
+
+TEST(TetFiles, EveryRuleOfMshNamesItsLine) {
+  const auto msh = [](std::string_view text, std::string_view from, std::string_view to) {
+    return parse_msh(replaced(text, from, to));
+  };
+  expect_broken(msh(kMsh2, "2.2 0 8", "2.2 1 8"), "R-MFL-7", 2, "binary");
+  expect_broken(msh(kMsh2, "2.2 0 8", "4.0 0 8"), "R-MFL-7", 2, "4.0");
+  expect_broken(msh(kMsh2, "$Nodes\n4", "$Nodes\n9999999"), "R-MFL-2", 5, "9999999");
+  expect_broken(msh(kMsh2, "$Nodes\n4", "$Nodes\n999"), "R-MFL-3", 5, "999");
+  expect_broken(msh(kMsh2, "$Nodes\n4", "$Nodes\n3"), "R-MFL-6", 9, "7");
+  expect_broken(msh(kMsh2, "7 0 0 1", "7 0 inf 1"), "R-MFL-5", 9, "inf");
+  expect_broken(msh(kMsh2, "\n7 0 0 1", "\n5 0 0 1"), "R-MFL-8", 11, "5");
+  expect_broken(msh(kMsh2, "20 5 7", "20 5 8"), "R-MFL-8", 14, "8");
+  expect_broken(msh(kMsh2, "20 5 7", "20 5"), "R-MFL-6", 14, "");
+  expect_broken(msh(kMsh2, "2 4 2 3 9", "2 11 2 3 9"), "R-MFL-7", 14, "11");
+  expect_broken(msh(kMsh2, "2 4 2 3 9", "2 2 2 3 9"), "R-MFL-9", 15, "");
+  expect_broken(msh(kMsh2, "$EndElements", "$EndNodes"), "R-MFL-6", 15, "$EndNodes");
+  expect_broken(msh(kMsh2, "$Nodes", "$Names"), "R-MFL-3", 15, "");
+  expect_broken(msh(kMsh4, "1 4 5 20", "2 4 5 20"), "R-MFL-4", 15, "$EndNodes");
+  expect_broken(msh(kMsh4, "3 9 0 4", "3 9 0 5"), "R-MFL-2", 6, "5");
+  expect_broken(msh(kMsh4, "3 9 0 4", "3 9 0 3"), "R-MFL-6", 10, "");
+  expect_broken(msh(kMsh4, "1 4 5 20", "1 5 5 20"), "R-MFL-6", 14, "");
+  expect_broken(msh(kMsh4, "0 0 1\n$", "0 0 1 0.5\n$"), "R-MFL-6", 14, "0.5");
+  expect_broken(msh(kMsh4, "2 2 1 2", "2 3 1 2"), "R-MFL-6", 21, "");
+  expect_broken(msh(kMsh4, "2 2 1 2", "2 1 1 2"), "R-MFL-2", 20, "1");
+}
+
+TEST(TetFiles, MeshesThatGmshWroteAreSound) {
+  for (const char* name : {"half-cylinder-2.2.msh", "half-cylinder-4.1.msh", "half-cylinder-4.1-parametric.msh"}) {
+    const auto file = read_tet_mesh(std::string(TACTUS_TEST_DATA "/meshes/") + name);
+    ASSERT_TRUE(file) << to_string(file.error());
+    EXPECT_TRUE(check(file->mesh)) << to_string(check(file->mesh).error());
+    EXPECT_EQ(file->mesh.vertices.size(), 18U);
+    EXPECT_EQ(file->ignored_vertices, 1U);
+    EXPECT_EQ(file->mesh.tets.size() + file->ignored_elements, 85U);
+    const double cylinder = std::numbers::pi / 2 * 0.1 * 0.1 * 0.05;  // facets with corners on it stay below, by at most what
+    EXPECT_LT(total_volume(file->mesh), cylinder);                    // four chords in the half circle lose
+    EXPECT_GT(total_volume(file->mesh), 4 * 0.5 * 0.1 * 0.1 * std::sin(std::numbers::pi / 4) * 0.05);
+  }
+}
+
+TEST(TetFiles, WhatIsWrittenReadsBackToTheSameBits) {
+  TetMesh mesh = make_slab(2, 3, 1, 0.1);
+  mesh.vertices[5].x = 0.1 + 0.2;
+  mesh.vertices[6].y = -1e-300;
+  std::ostringstream node, ele, msh;
+  write_node(node, mesh), write_ele(ele, mesh), write_msh(msh, mesh);
+  for (const auto& file : {parse_node_ele(node.str(), ele.str()), parse_msh(msh.str())}) {
+    ASSERT_TRUE(file) << to_string(file.error());
+    EXPECT_EQ(file->mesh.vertices, mesh.vertices);
+    EXPECT_EQ(file->mesh.tets, mesh.tets);
+  }
+}
+
+TEST(TetFiles, SurfacesForTetGenHaveItsForm) {
+  const TriMesh triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1.5, 0}}, {{0, 1, 2}}};
+  std::ostringstream poly, smesh;
+  write_poly(poly, triangle), write_smesh(smesh, triangle);
+  EXPECT_EQ(poly.str(), "3 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1.5 0\n1 0\n1\n3 0 1 2\n0\n0\n");
+  EXPECT_EQ(smesh.str(), "3 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1.5 0\n1 0\n3 0 1 2\n0\n0\n");
+}
+
+TEST(TetFiles, EveryPrefixIsRefusedOrComplete) {
+  for (const std::string_view text : {kMsh2, kMsh4})
+    for (std::size_t size = 0; size < text.size() - 1; ++size) EXPECT_FALSE(parse_msh(text.substr(0, size))) << size;
+  for (std::size_t size = 0; size < kNode.size() - 3; ++size) EXPECT_FALSE(parse_node_ele(kNode.substr(0, size), kEle)) << size;
+}
+
+TEST(TetFiles, FilesAreFoundBesideOneAnotherAndErrorsNameThem) {
+  const TempFolder folder;
+  const std::string node = folder.write("m.node", kNode), ele = folder.write("m.ele", "1 4 0\n1 1 2 3 oops\n");
+  for (const std::string& path : {node, ele}) {
+    const auto file = read_tet_mesh(path);
+    ASSERT_FALSE(file);
+    EXPECT_EQ(to_string(file.error()).find(ele + ":2: 'oops': R-MFL-4: "), 0U) << to_string(file.error());
+  }
+  folder.write("m.ele", kEle);
+  EXPECT_TRUE(read_tet_mesh(ele));
+  std::filesystem::remove(node);
+  const auto gone = read_tet_mesh(ele);
+  ASSERT_FALSE(gone);
+  EXPECT_EQ(gone.error().file, node);
+  EXPECT_STREQ(gone.error().error.rule, "R-MFL-1");
+  expect_broken(read_tet_mesh(folder.write("m.vtk", "")), "R-MFL-10", 0, "");
+  std::filesystem::create_directory(folder.file("d.msh"));
+  expect_broken(read_tet_mesh(folder.file("d.msh")), "R-MFL-1", 0, "");
+}
+
+}  // namespace
+}  // namespace tactus
