@@ -120,7 +120,7 @@ struct Kernel {
   /// Turn R(q) towards the rotation nearest to F.   out  lanes that arrived there
   static Mask refine(const Matrix& f, Rotation& rotation) {
     constexpr int kSteps = 8;
-    constexpr double kArrived = 1e-15;  // of |omega|^2: the error left is of that size, Newton being quadratic
+    constexpr double kArrived = 1e-13;  // of |omega|^2: the error left is that times the strain, Newton being quadratic
     Matrix m = transposed_product(matrix(rotation), f);
     Mask open = ~Mask{}, arrived{};
     for (int step = 0; step < kSteps; ++step) {
