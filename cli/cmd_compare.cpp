@@ -71,6 +71,9 @@ Outcome run(const CompareOptions& options) {
 
   Report report{.command = "compare", .files = {{"truth", options.truth}, {"replica", options.replica}}};
   report.describe(truth->info());
+  if (!truth->info().meshes.empty())
+    report.notes.emplace_back("meshes",
+                              fmt::format("{} in the trace, not compared yet: rigid objects only", truth->info().meshes.size()));
   report.fidelity.emplace(truth->info(), options.triggers.triggers());
   report.timings = {{"compare, per tick", {}}};
   const auto unmatched = compare_all(*truth, *replica, options, report);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/cmd_encode.h"
 
+#include <fmt/format.h>
+
 #include "cli/report.h"
 #include "codec/trace/trace_file.h"
 
@@ -85,6 +87,9 @@ Outcome run(const EncodeOptions& options) {
   if (!session) return refuse(options.input, session.error());
   Report report{.command = "encode", .files = {{"trace", options.input}, {"stream", options.output}}};
   report.describe(reader->info());
+  if (!reader->info().meshes.empty())
+    report.notes.emplace_back("meshes",
+                              fmt::format("{} in the trace, not coded yet: rigid objects only", reader->info().meshes.size()));
   report.traffic.emplace();
   report.fidelity.emplace(reader->info(), encoder.triggers);
   report.timings = {{"encode, per tick", {}}, {"decode, per packet", {}}};

@@ -31,7 +31,7 @@ void setup_export(CLI::App& app, Action& action) {
   auto options = std::make_shared<ExportOptions>();
   CLI::App& group = *app.add_subcommand("export", "Write a trace in another format");
   group.footer("Example:\n  tactus export csv push.mcap -o push.csv");
-  CLI::App& command = *group.add_subcommand("csv", "One row per tick, 17 significant digits");
+  CLI::App& command = *group.add_subcommand("csv", "One row per tick, 17 significant digits; rigid objects and users, no meshes");
   command.add_option("TRACE", options->input, "Trace to export (MCAP), - is standard input")->type_name("")->required();
   command.add_option("-o,--output", options->output, "CSV to write [standard output]")->type_name("FILE");
   command.add_flag("-f,--force", options->force, "Replace an output file that is there already");

@@ -203,10 +203,12 @@ Outcome info_trace(const InfoOptions& options) {
   TraceFrame frame;
   std::uint64_t frames = 0;
   std::int64_t first = 0;
+  std::vector<std::uint64_t> shapes(trace.meshes.size());
   while (true) {
     const auto more = reader->next(frame);
     if (!more) return refuse(options.input, more.error());
     if (!*more) break;
+    for (std::size_t i = 0; i < shapes.size(); ++i) shapes[i] += frame.meshes[i].updated ? 1 : 0;
     if (frames++ == 0) first = frame.tick;
   }
   Json info{{"schema", "tactus.info/1"},
@@ -220,6 +222,13 @@ Outcome info_trace(const InfoOptions& options) {
             {"scene", trace.scene.empty() ? "none" : fmt::format("{} bytes of TOML", trace.scene.size())},
             {"ending", reader->cut_short() ? "cut short; everything up to there was read" : "complete"}};
   for (const TraceObject& o : trace.objects) info["objects"].push_back({{"object", o.name}, {"moves along", dof_text(o.dof)}});
+  for (std::size_t i = 0; i < trace.meshes.size(); ++i) {
+    const TriMesh& rest = trace.meshes[i].rest;
+    info["meshes"].push_back({{"mesh", trace.meshes[i].name},
+                              {"vertices", rest.vertices.size()},
+                              {"triangles", rest.triangles.size()},
+                              {"new shapes", shapes[i]}});
+  }
   for (const std::string& user : trace.users) info["users"].push_back({{"user", user}});
   auto channels = channels_json(options.input);
   if (!channels) return tl::unexpected(channels.error());

@@ -58,10 +58,17 @@ double CdrReader::f64() noexcept {
   return std::bit_cast<double>(body_.u64());
 }
 
+std::uint32_t CdrReader::count(std::size_t item_size) noexcept {
+  const std::uint32_t items = u32();
+  if (items <= body_.remaining() / item_size) return items;
+  malformed_ = true;
+  return 0;
+}
+
 std::string_view CdrReader::text() noexcept {
   const auto raw = body_.bytes(u32());
   if (raw.empty() || raw.back() != 0) {
-    malformed_text_ = true;
+    malformed_ = true;
     return {};
   }
   return {reinterpret_cast<const char*>(raw.data()), raw.size() - 1};

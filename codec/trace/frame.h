@@ -2,10 +2,13 @@
 /// What truly happened at one tick, in SI units. Uncompressed; the unit of a trace.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "codec/base/tri_mesh.h"
 #include "codec/rigid/contact.h"
 #include "codec/rigid/rigid.h"
 
@@ -17,12 +20,29 @@ struct TraceObject {
   std::uint8_t dof = Dof::all;
 };
 
+/// A deformable object: its surface before anything acted on it.
+struct TraceMesh {
+  std::string name;
+  TriMesh rest;  ///< [m] world frame
+};
+
 struct TraceInfo {
   std::uint32_t tick_rate = 1000;  ///< ticks per second
   std::vector<TraceObject> objects;
   std::vector<std::string> users;  ///< empty: a recording without touch
   std::string source;              ///< "sim push-1dof seed 1", "import cube-tosses.csv"
   std::string scene;               ///< scene file (TOML) attached to the trace; may be empty
+  std::vector<TraceMesh> meshes{};
+};
+
+/// Contact of one user's probe with the surface of a deformable object.
+struct MeshContact {
+  std::uint32_t mesh = 0;                  ///< into TraceInfo::meshes
+  std::uint32_t triangle = 0;              ///< touched
+  std::array<double, 3> weights{1, 0, 0};  ///< of the triangle's corners at the touched point, >= 0, sum 1
+  Vec3 proxy;                              ///< [m] world frame
+  Vec3 normal{0, 0, 1};                    ///< of the touched surface, world frame, outward, unit length
+  double stiffness = 0;                    ///< [N/m] of the coupling between proxy and device, > 0
 };
 
 /// One user at one tick.
@@ -30,12 +50,20 @@ struct UserSample {
   Contact contact;    ///< contact.device is always the probe's position, even without contact
   Vec3 force;         ///< [N] rendered at the client, what the hand felt
   Vec3 server_force;  ///< [N] rendered at the server from the true state, same device sample
+  std::optional<MeshContact> mesh_contact{};
+};
+
+/// Shape of one mesh. Deformations may be computed less often than every tick; in between the last shape holds.
+struct MeshSample {
+  bool updated = false;              ///< the shape is new at this tick
+  std::vector<float> displacements;  ///< [m] x y z of vertex 0 first, from the rest shape, world frame
 };
 
 struct TraceFrame {
   std::int64_t tick = 0;
   std::vector<RigidSample> objects;  ///< order of TraceInfo::objects
   std::vector<UserSample> users;     ///< order of TraceInfo::users
+  std::vector<MeshSample> meshes{};  ///< order of TraceInfo::meshes
 };
 
 }  // namespace tactus

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "codec/trace/messages.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace tactus {
 namespace {
 
@@ -27,6 +30,7 @@ std::optional<std::uint64_t> read_header(CdrReader& in) noexcept {
 bool is_finite(const Pose& pose) noexcept { return is_finite(pose.position) && is_finite(pose.rotation); }
 bool is_finite(const Twist& twist) noexcept { return is_finite(twist.linear) && is_finite(twist.angular); }
 bool is_finite(const Contact& contact) noexcept { return is_valid(contact); }
+bool is_finite(const MeshContact& contact) noexcept { return is_valid(contact); }
 
 Pose read_pose(CdrReader& in) noexcept {
   Pose pose;
@@ -51,6 +55,18 @@ Contact read_contact(CdrReader& in) noexcept {
   contact.object = in.u32();
   in.text();
   contact.point = in.vec3();
+  contact.normal = in.vec3();
+  contact.stiffness = in.f64();
+  return contact;
+}
+
+MeshContact read_mesh_contact(CdrReader& in) noexcept {
+  MeshContact contact;
+  contact.mesh = in.u32();
+  in.text();
+  contact.triangle = in.u32();
+  for (double& weight : contact.weights) weight = in.f64();
+  contact.proxy = in.vec3();
   contact.normal = in.vec3();
   contact.stiffness = in.f64();
   return contact;
@@ -83,6 +99,14 @@ bool is_valid(const Contact& contact) noexcept {
   const bool known = contact.kind == ContactKind::surface || contact.kind == ContactKind::spring;
   return known && is_finite(contact.point) && is_finite(contact.normal) && is_finite(contact.device) &&
          std::isfinite(contact.stiffness) && contact.stiffness > 0;
+}
+
+bool is_valid(const MeshContact& contact) noexcept {
+  constexpr double kRounding = 1e-6;  // weights of another program may be single precision
+  const auto& [a, b, c] = contact.weights;
+  const bool has_weights = std::min({a, b, c}) >= -kRounding && std::abs(a + b + c - 1) <= kRounding;  // so no NaN either
+  return has_weights && is_finite(contact.proxy) && is_finite(contact.normal) && std::isfinite(contact.stiffness) &&
+         contact.stiffness > 0;
 }
 
 void encode_pose(std::vector<std::uint8_t>& message, std::uint64_t time, const Pose& pose) {
@@ -119,5 +143,66 @@ Result<Stamped<Pose>> decode_pose(std::span<const std::uint8_t> message) noexcep
 Result<Stamped<Twist>> decode_twist(std::span<const std::uint8_t> message) noexcept { return decode(message, read_twist); }
 Result<Stamped<Vec3>> decode_vector(std::span<const std::uint8_t> message) noexcept { return decode(message, read_vector); }
 Result<Stamped<Contact>> decode_contact(std::span<const std::uint8_t> message) noexcept { return decode(message, read_contact); }
+
+Result<Stamped<MeshContact>> decode_mesh_contact(std::span<const std::uint8_t> message) noexcept {
+  return decode(message, read_mesh_contact);
+}
+
+void encode_mesh(std::vector<std::uint8_t>& message, const TriMesh& mesh) {
+  CdrWriter out(message);
+  out.u32(static_cast<std::uint32_t>(mesh.triangles.size()));
+  for (const Triangle& triangle : mesh.triangles)
+    for (const std::uint32_t corner : triangle) out.u32(corner);
+  out.u32(static_cast<std::uint32_t>(mesh.vertices.size()));
+  for (const Vec3& vertex : mesh.vertices) out.vec3(vertex);
+}
+
+Result<TriMesh> decode_mesh(std::span<const std::uint8_t> message) {
+  CdrReader in(message);
+  if (!in.is_supported()) return fail(Errc::unsupported, "R-TRC-7");
+  TriMesh mesh;
+  mesh.triangles.resize(in.count(3 * sizeof(std::uint32_t)));
+  for (Triangle& triangle : mesh.triangles)
+    for (std::uint32_t& corner : triangle) corner = in.u32();
+  mesh.vertices.resize(in.count(3 * sizeof(double)));
+  for (Vec3& vertex : mesh.vertices) vertex = in.vec3();
+  if (!in.done()) return fail(Errc::malformed, "R-TRC-13");
+  if (const auto sound = check(mesh); !sound) return tl::unexpected(sound.error().error);
+  return mesh;
+}
+
+void encode_displacements(std::vector<std::uint8_t>& message, std::uint64_t time, std::span<const float> displacements) {
+  CdrWriter out = begin(message, time);
+  out.u32(static_cast<std::uint32_t>(displacements.size()));
+  for (const float value : displacements) out.f32(value);
+}
+
+Result<std::uint64_t> decode_displacements(std::span<const std::uint8_t> message, std::span<float> out) noexcept {
+  CdrReader in(message);
+  if (!in.is_supported()) return fail(Errc::unsupported, "R-TRC-7");
+  const auto time = read_header(in);
+  const std::uint32_t count = in.count(sizeof(float));
+  if (count == out.size())
+    for (float& value : out) value = in.f32();
+  else
+    for (std::uint32_t i = 0; i < count; ++i) in.f32();
+  if (!in.done()) return fail(Errc::malformed, "R-TRC-13");
+  const bool is_sound =
+      count == out.size() && std::all_of(out.begin(), out.end(), [](float value) { return std::isfinite(value); });
+  if (!time || !is_sound) return fail(Errc::invalid, "R-TRC-14");
+  return *time;
+}
+
+void encode_mesh_contact(std::vector<std::uint8_t>& message, std::uint64_t time, const MeshContact& contact,
+                         std::string_view mesh) {
+  CdrWriter out = begin(message, time);
+  out.u32(contact.mesh);
+  out.text(mesh);
+  out.u32(contact.triangle);
+  for (const double weight : contact.weights) out.f64(weight);
+  out.vec3(contact.proxy);
+  out.vec3(contact.normal);
+  out.f64(contact.stiffness);
+}
 
 }  // namespace tactus

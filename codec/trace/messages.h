@@ -13,6 +13,7 @@
 #include "codec/base/result.h"
 #include "codec/rigid/contact.h"
 #include "codec/trace/cdr.h"
+#include "codec/trace/frame.h"
 
 namespace tactus {
 
@@ -38,6 +39,11 @@ void encode_vector(std::vector<std::uint8_t>& message, std::uint64_t time, const
 /// `device` is not part of the message.
 void encode_contact(std::vector<std::uint8_t>& message, std::uint64_t time, const Contact& contact, std::string_view object);
 
+void encode_mesh(std::vector<std::uint8_t>& message, const TriMesh& mesh);  ///< has no header
+void encode_displacements(std::vector<std::uint8_t>& message, std::uint64_t time, std::span<const float> displacements);
+void encode_mesh_contact(std::vector<std::uint8_t>& message, std::uint64_t time, const MeshContact& contact,
+                         std::string_view mesh);
+
 /// A decoded message and the time of its header.
 template <class T>
 struct Stamped {
@@ -47,13 +53,20 @@ struct Stamped {
 
 /// err  unsupported R-TRC-7: not plain little-endian CDR; malformed R-TRC-13: size or text does not fit the type;
 ///      invalid R-TRC-14: a number is NaN or infinite, a time is negative or has 1e9 ns or more, a contact's kind, normal or
-///      stiffness is none.
+///      stiffness is none, there are not as many displacements as `out` takes.
 Result<Stamped<Pose>> decode_pose(std::span<const std::uint8_t> message) noexcept;
 Result<Stamped<Twist>> decode_twist(std::span<const std::uint8_t> message) noexcept;
 Result<Stamped<Vec3>> decode_vector(std::span<const std::uint8_t> message) noexcept;
 Result<Stamped<Contact>> decode_contact(std::span<const std::uint8_t> message) noexcept;
 
+Result<Stamped<MeshContact>> decode_mesh_contact(std::span<const std::uint8_t> message) noexcept;
+/// out  `out` gets the displacements; the result is the time of the header
+Result<std::uint64_t> decode_displacements(std::span<const std::uint8_t> message, std::span<float> out) noexcept;
+/// err  also R-MSH-n: the mesh breaks a rule of tri_mesh.h
+Result<TriMesh> decode_mesh(std::span<const std::uint8_t> message);
+
 /// Whether a contact can be recorded: kind and numbers are what contact.h says.
 bool is_valid(const Contact& contact) noexcept;
+bool is_valid(const MeshContact& contact) noexcept;
 
 }  // namespace tactus

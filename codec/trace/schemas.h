@@ -8,7 +8,7 @@
 
 namespace tactus {
 
-enum class MessageType : std::uint8_t { pose, twist, point, vector, contact };
+enum class MessageType : std::uint8_t { pose, twist, point, vector, contact, mesh, displacements, mesh_contact };
 
 /// "geometry_msgs/msg/PoseStamped"
 std::string_view schema_name(MessageType type) noexcept;

@@ -38,9 +38,12 @@ class TactusAssembler final : public FrameAssembler {
     std::int64_t last_tick = -1;
   };
   Result<void> find_channels(const mcap::Reader& mcap, Errc missing);
+  Result<void> read_rest(mcap::Reader& mcap);
+  Result<bool> assemble(mcap::Reader& mcap);
   Result<void> advance(mcap::Reader& mcap);
   Result<void> take(const mcap::Reader& mcap, std::int64_t tick);
   Result<std::uint64_t> store(const mcap::Reader& mcap, const TraceChannel& channel);
+  Result<std::uint64_t> store_user(std::span<const std::uint8_t> data, const TraceChannel& channel);
   bool is_complete(std::int64_t tick) const noexcept;
 
   TraceInfo info_;
@@ -49,6 +52,7 @@ class TactusAssembler final : public FrameAssembler {
   mcap::Item item_ = mcap::Item::end;  // where the reader stands: at a message of a route, or at the end
   std::int64_t last_tick_ = -1;
   TraceFrame current_;
+  bool ahead_ = false;  // current_ was not delivered
 };
 
 tl::unexpected<Error> refuse(const mcap::Reader& mcap, Errc code, const char* rule) noexcept {
@@ -69,17 +73,28 @@ Result<void> TactusAssembler::start(mcap::Reader& mcap, const Preamble& preamble
   info_.scene = preamble.scene;
   for (std::string& name : split_lines(entry(tactus, "objects"))) info_.objects.push_back({std::move(name), Dof::all});
   info_.users = split_lines(entry(tactus, "users"));
+  for (std::string& name : split_lines(entry(tactus, "meshes"))) info_.meshes.push_back({std::move(name), {}});
   const bool has_names =
       std::all_of(info_.objects.begin(), info_.objects.end(), [](const auto& o) { return is_plain_name(o.name); }) &&
-      std::all_of(info_.users.begin(), info_.users.end(), is_plain_name);
-  if (!has_names || (info_.objects.empty() && info_.users.empty())) return refuse(mcap, Errc::invalid, "R-TRC-12");
+      std::all_of(info_.users.begin(), info_.users.end(), is_plain_name) &&
+      std::all_of(info_.meshes.begin(), info_.meshes.end(), [](const auto& m) { return is_plain_name(m.name); });
+  if (!has_names || (info_.objects.empty() && info_.users.empty() && info_.meshes.empty()))
+    return refuse(mcap, Errc::invalid, "R-TRC-12");
   item_ = preamble.item;
   const bool ended_early = item_ == mcap::Item::end && mcap.cut_short();
   TACTUS_CHECK(find_channels(mcap, ended_early ? Errc::truncated : Errc::invalid));
   current_.objects.resize(info_.objects.size());
   current_.users.resize(info_.users.size());
-  if (item_ == mcap::Item::message && !routes_.contains(mcap.message().channel_id)) return advance(mcap);
-  return {};
+  if (item_ == mcap::Item::message && !routes_.contains(mcap.message().channel_id)) TACTUS_CHECK(advance(mcap));
+  return info_.meshes.empty() ? Result<void>() : read_rest(mcap);
+}
+
+/// The first tick holds the rest shapes, which belong to the description.
+Result<void> TactusAssembler::read_rest(mcap::Reader& mcap) {
+  current_.meshes.resize(info_.meshes.size());
+  if (item_ == mcap::Item::end && !mcap.cut_short()) return refuse(mcap, Errc::invalid, "R-TRC-15");
+  TACTUS_TRY(ahead_, assemble(mcap));
+  return ahead_ ? Result<void>() : refuse(mcap, Errc::truncated, "R-TRC-3");
 }
 
 /// Channels are found by topic: ids may change when other tools rewrite a file.
@@ -114,12 +129,26 @@ Result<void> TactusAssembler::advance(mcap::Reader& mcap) {
 }
 
 Result<bool> TactusAssembler::next(mcap::Reader& mcap, TraceFrame& frame) {
+  if (!std::exchange(ahead_, false)) {
+    TACTUS_TRY(const bool more, assemble(mcap));
+    if (!more) return false;
+  }
+  frame = current_;
+  return true;
+}
+
+/// Put the messages of the next tick into current_; false at the end.
+Result<bool> TactusAssembler::assemble(mcap::Reader& mcap) {
   if (item_ == mcap::Item::end) return false;
   const std::uint64_t time = mcap.message().log_time;
   const std::int64_t tick = tick_of_time(time, info_.tick_rate);
   if (tick <= last_tick_ || tick / info_.tick_rate >= kMaxSeconds) return refuse(mcap, Errc::invalid, "R-TRC-15");
   current_.tick = tick;
-  for (UserSample& user : current_.users) user.contact = Contact{};
+  for (MeshSample& mesh : current_.meshes) mesh.updated = false;
+  for (UserSample& user : current_.users) {
+    user.contact = Contact{};
+    user.mesh_contact.reset();
+  }
   while (item_ == mcap::Item::message && mcap.message().log_time == time) {
     TACTUS_CHECK(take(mcap, tick));
     TACTUS_CHECK(advance(mcap));
@@ -129,7 +158,6 @@ Result<bool> TactusAssembler::next(mcap::Reader& mcap, TraceFrame& frame) {
     return refuse(mcap, Errc::invalid, "R-TRC-15");
   }
   last_tick_ = tick;
-  frame = current_;
   return true;
 }
 
@@ -160,7 +188,30 @@ Result<std::uint64_t> TactusAssembler::store(const mcap::Reader& mcap, const Tra
     current_.objects[channel.index].angular_velocity = twist.value.angular;
     return twist.time;
   }
+  if (channel.role == Role::rest) {
+    TriMesh& rest = info_.meshes[channel.index].rest;
+    TACTUS_TRY(rest, decode_mesh(data));
+    current_.meshes[channel.index].displacements.assign(3 * rest.vertices.size(), 0.0F);
+    return mcap.message().log_time;  // it has no header
+  }
+  if (channel.role == Role::displacement) {
+    MeshSample& mesh = current_.meshes[channel.index];
+    mesh.updated = true;
+    return decode_displacements(data, mesh.displacements);
+  }
+  return store_user(data, channel);
+}
+
+Result<std::uint64_t> TactusAssembler::store_user(std::span<const std::uint8_t> data, const TraceChannel& channel) {
   UserSample& user = current_.users[channel.index];
+  if (channel.role == Role::mesh_contact) {
+    TACTUS_TRY(const auto contact, decode_mesh_contact(data));
+    const MeshContact& touch = contact.value;
+    const bool is_there = touch.mesh < info_.meshes.size() && touch.triangle < info_.meshes[touch.mesh].rest.triangles.size();
+    if (!is_there) return fail(Errc::invalid, "R-TRC-14");
+    user.mesh_contact = touch;
+    return contact.time;
+  }
   if (channel.role == Role::contact) {
     TACTUS_TRY(auto contact, decode_contact(data));
     if (contact.value.object >= info_.objects.size()) return fail(Errc::invalid, "R-TRC-14");

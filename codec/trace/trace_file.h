@@ -8,16 +8,20 @@
 /// /users/<name>/force          geometry_msgs/msg/Vector3Stamped    every tick
 /// /users/<name>/server_force   geometry_msgs/msg/Vector3Stamped    every tick
 /// /users/<name>/contact        tactus_msgs/msg/Contact             ticks with contact
-/// When nothing else comes every tick, the first static object's pose does.
+/// /users/<name>/mesh_contact   tactus_msgs/msg/MeshContact         ticks with contact; only if there are meshes
+/// /meshes/<name>/rest          shape_msgs/msg/Mesh (no header)     first tick
+/// /meshes/<name>/displacement  tactus_msgs/msg/Displacements       ticks at which the shape is new; before the first, rest
+/// When nothing else comes every tick, the first static object's pose does, or without objects the first mesh's displacement.
 ///
 /// log_time, publish_time and header.stamp are round(tick * 1e9 / tick_rate), sequence is tick mod 2^32. The metadata record
-/// "tactus" holds format_version ("1"), tick_rate, source, objects and users (names in order, one a line); a pose channel's
-/// metadata holds dof; the scene is the attachment "scene.toml". Chunks end at whole ticks, after 1 MiB or 1 s.
+/// "tactus" holds format_version ("1"), tick_rate, source, objects, users and, if there are any, meshes (names in order, one a
+/// line); a pose channel's metadata holds dof; the scene is the attachment "scene.toml". Chunks end at whole ticks, after 1 MiB or 1 s.
 ///
 /// rule      class             broken when
 /// R-TRC-1   io                the operating system refuses to open, read or write the file
 /// R-TRC-2   malformed         MCAP's magic bytes are not at the front, or not at the very end behind a footer
-/// R-TRC-3   truncated         the file ends before the header, the channels that its metadata announces, or any pose
+/// R-TRC-3   truncated         the file ends before the header, the channels that its metadata announces, or any pose,
+///                             or the first tick of a recording with meshes
 /// R-TRC-4   malformed         a length inside a record reaches past the record's end
 /// R-TRC-5   limit_exceeded    a record, a chunk or all declarations are larger than accepted, or than zstd can yield
 /// R-TRC-6   checksum          a CRC-32 does not match
@@ -29,11 +33,12 @@
 /// R-TRC-11  invalid           text is not UTF-8, or a key stands twice in a map
 /// R-TRC-12  invalid           the "tactus" metadata or the channels lack something or contradict each other
 /// R-TRC-13  malformed         a message is not CDR of its channel's type
-/// R-TRC-14  invalid           a value is NaN or infinite, or a contact or stamp is none
+/// R-TRC-14  invalid           a value is NaN or infinite, a contact or stamp is none, or a mesh has another number of vertices
 /// R-TRC-15  invalid           ticks do not increase, a message's times disagree, or a tick lacks a message or has one twice
 /// R-TRC-16  unsupported       a foreign file without PoseStamped channels, or with one that begins after the look-ahead
-/// R-TRC-17  invalid_argument  TraceInfo: neither object nor user, over 65535 channels, tick rate not in 1..1000000, dof bits,
+/// R-TRC-17  invalid_argument  TraceInfo: nothing to record, over 65535 channels, tick rate not in 1..1000000, dof bits,
 ///                             or a name that is empty, repeated, over 255 bytes, not UTF-8 or has '/' or control characters
+/// R-MSH-n   as tri_mesh.h     a mesh's rest shape
 #pragma once
 
 #include <cstdint>
@@ -50,9 +55,10 @@ namespace tactus {
 /// Writes a trace as it happens. A process that dies leaves a file that reads up to its last whole chunk.
 class TraceWriter {
  public:
-  /// path "-" is standard output.   err  io R-TRC-1; invalid_argument R-TRC-11 (source), R-TRC-17
+  /// path "-" is standard output.   err  io R-TRC-1; invalid_argument R-TRC-11 (source), R-TRC-17, R-MSH-n
   static Result<TraceWriter> create(const std::string& path, const TraceInfo& info);
-  /// in   frame  tick >= 0 and larger than the last; of a user without contact only contact.device is kept
+  /// in   frame  tick >= 0 and larger than the last; of a user without contact only contact.device is kept,
+  ///             of a mesh that was not updated nothing
   /// err  invalid_argument R-API-1 not finite; R-API-5 wrong count, tick or contact; R-API-6 a static object moved; io R-TRC-1.
   ///      Nothing was written after invalid_argument.
   Result<void> write(const TraceFrame& frame);
@@ -75,7 +81,8 @@ class TraceWriter {
 /// and frames begin when every object has one.
 class TraceReader {
  public:
-  /// path "-" is standard input.   err  io R-TRC-1; malformed, truncated, unsupported, checksum, limit_exceeded: R-TRC-n
+  /// path "-" is standard input.   err  io R-TRC-1; malformed, truncated, invalid, unsupported, checksum, limit_exceeded: R-TRC-n,
+  ///      R-MSH-n
   static Result<TraceReader> open(const std::string& path);
   /// The same from memory that outlives the reader.
   static Result<TraceReader> open_memory(std::span<const std::uint8_t> bytes);

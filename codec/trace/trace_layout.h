@@ -12,13 +12,13 @@
 
 namespace tactus {
 
-enum class Role : std::uint8_t { pose, twist, device, force, server_force, contact };
-enum class Occurs : std::uint8_t { every_tick, first_tick, in_contact };
+enum class Role : std::uint8_t { pose, twist, device, force, server_force, contact, mesh_contact, rest, displacement };
+enum class Occurs : std::uint8_t { every_tick, first_tick, in_contact, when_updated };
 
 struct TraceChannel {
   Role role = Role::pose;
   Occurs occurs = Occurs::every_tick;
-  std::uint32_t index = 0;  ///< of the object (pose, twist) or the user
+  std::uint32_t index = 0;  ///< of the object (pose, twist), the mesh (rest, displacement) or the user
   std::string topic;
 };
 
@@ -32,6 +32,12 @@ inline MessageType message_type(Role role) noexcept {
       return MessageType::point;
     case Role::contact:
       return MessageType::contact;
+    case Role::mesh_contact:
+      return MessageType::mesh_contact;
+    case Role::rest:
+      return MessageType::mesh;
+    case Role::displacement:
+      return MessageType::displacements;
     case Role::force:
     case Role::server_force:
       break;
@@ -47,16 +53,22 @@ inline std::vector<TraceChannel> trace_channels(const TraceInfo& info) {
     channels.push_back({Role::pose, moves ? Occurs::every_tick : Occurs::first_tick, i, path + "/pose"});
     if (moves) channels.push_back({Role::twist, Occurs::every_tick, i, path + "/twist"});
   }
+  for (std::uint32_t i = 0; i < info.meshes.size(); ++i) {
+    const std::string path = "/meshes/" + info.meshes[i].name;
+    channels.push_back({Role::rest, Occurs::first_tick, i, path + "/rest"});
+    channels.push_back({Role::displacement, Occurs::when_updated, i, path + "/displacement"});
+  }
   for (std::uint32_t i = 0; i < info.users.size(); ++i) {
     const std::string path = "/users/" + info.users[i];
     channels.push_back({Role::device, Occurs::every_tick, i, path + "/device"});
     channels.push_back({Role::force, Occurs::every_tick, i, path + "/force"});
     channels.push_back({Role::server_force, Occurs::every_tick, i, path + "/server_force"});
     channels.push_back({Role::contact, Occurs::in_contact, i, path + "/contact"});
+    if (!info.meshes.empty()) channels.push_back({Role::mesh_contact, Occurs::in_contact, i, path + "/mesh_contact"});
   }
   const auto comes_every_tick = [](const TraceChannel& channel) { return channel.occurs == Occurs::every_tick; };
   if (!channels.empty() && std::none_of(channels.begin(), channels.end(), comes_every_tick))
-    channels.front().occurs = Occurs::every_tick;  // the ticks must show somewhere
+    channels[info.objects.empty() ? 1 : 0].occurs = Occurs::every_tick;  // the ticks must show: pose, or displacement behind rest
   return channels;
 }
 

@@ -24,13 +24,17 @@ bool are_names(const Range& range, Name name) {
 }
 
 Result<void> check(const TraceInfo& info) {
+  const auto mesh_name = [](const TraceMesh& mesh) -> const std::string& { return mesh.name; };
   const bool has_names = are_names(info.objects, [](const TraceObject& object) -> const std::string& { return object.name; }) &&
-                         are_names(info.users, [](const std::string& user) -> const std::string& { return user; });
+                         are_names(info.users, [](const std::string& user) -> const std::string& { return user; }) &&
+                         are_names(info.meshes, mesh_name);
   const bool has_dofs = std::all_of(info.objects.begin(), info.objects.end(), [](const auto& o) { return o.dof <= Dof::all; });
-  const bool is_empty = info.objects.empty() && info.users.empty();
+  const bool is_empty = info.objects.empty() && info.users.empty() && info.meshes.empty();
   const bool has_rate = info.tick_rate >= 1 && info.tick_rate <= kMaxTickRate;
   if (!has_names || !has_dofs || is_empty || !has_rate) return fail(Errc::invalid_argument, "R-TRC-17");
   if (!is_utf8(info.source)) return fail(Errc::invalid_argument, "R-TRC-11");
+  for (const TraceMesh& mesh : info.meshes)
+    if (const auto sound = check(mesh.rest); !sound) return fail(Errc::invalid_argument, sound.error().error.rule);
   return {};
 }
 
@@ -43,6 +47,10 @@ bool is_finite(const UserSample& user) noexcept {
   return is_finite(user.contact.device) && is_finite(user.force) && is_finite(user.server_force);
 }
 
+bool is_finite(const MeshSample& mesh) noexcept {
+  return std::all_of(mesh.displacements.begin(), mesh.displacements.end(), [](float value) { return std::isfinite(value); });
+}
+
 bool is_same_pose(const Pose& a, const Pose& b) noexcept { return a.position == b.position && a.rotation == b.rotation; }
 
 template <class Range, class Name>
@@ -53,12 +61,14 @@ std::string lines(const Range& range, Name name) {
 }
 
 mcap::Metadata metadata_of(const TraceInfo& info) {
-  return {"tactus",
-          {{"format_version", "1"},
-           {"tick_rate", std::to_string(info.tick_rate)},
-           {"source", info.source},
-           {"objects", lines(info.objects, [](const TraceObject& object) { return object.name; })},
-           {"users", lines(info.users, [](const std::string& user) { return user; })}}};
+  mcap::Metadata metadata{"tactus",
+                          {{"format_version", "1"},
+                           {"tick_rate", std::to_string(info.tick_rate)},
+                           {"source", info.source},
+                           {"objects", lines(info.objects, [](const TraceObject& object) { return object.name; })},
+                           {"users", lines(info.users, [](const std::string& user) { return user; })}}};
+  if (!info.meshes.empty()) metadata.entries["meshes"] = lines(info.meshes, [](const TraceMesh& mesh) { return mesh.name; });
+  return metadata;
 }
 
 mcap::Attachment scene_of(const TraceInfo& info) {
@@ -78,6 +88,8 @@ struct TraceWriter::Impl {
 
   Result<void> declare();
   Result<void> check(const TraceFrame& frame) const;
+  bool can_hold(const UserSample& user) const;
+  bool is_due(const TraceChannel& channel, const TraceFrame& frame) const;
   void encode(const TraceChannel& channel, std::uint64_t time, const TraceFrame& frame);
 
   mcap::Writer mcap;
@@ -116,8 +128,18 @@ Result<TraceWriter> TraceWriter::create(const std::string& path, const TraceInfo
   return TraceWriter(std::move(impl));
 }
 
+/// Whether a user's contacts are valid and name what is there.
+bool TraceWriter::Impl::can_hold(const UserSample& user) const {
+  const Contact& contact = user.contact;
+  if (contact.kind != ContactKind::none && (!is_valid(contact) || contact.object >= info.objects.size())) return false;
+  if (!user.mesh_contact) return true;
+  const MeshContact& touch = *user.mesh_contact;
+  return is_valid(touch) && touch.mesh < info.meshes.size() && touch.triangle < info.meshes[touch.mesh].rest.triangles.size();
+}
+
 Result<void> TraceWriter::Impl::check(const TraceFrame& frame) const {
-  const bool has_counts = frame.objects.size() == info.objects.size() && frame.users.size() == info.users.size();
+  const bool has_counts = frame.objects.size() == info.objects.size() && frame.users.size() == info.users.size() &&
+                          frame.meshes.size() == info.meshes.size();
   const bool has_tick = frame.tick > last_tick && frame.tick / info.tick_rate < kMaxSeconds;
   if (!has_counts || !has_tick) return fail(Errc::invalid_argument, "R-API-5");
   for (std::size_t i = 0; i < frame.objects.size(); ++i) {
@@ -130,8 +152,12 @@ Result<void> TraceWriter::Impl::check(const TraceFrame& frame) const {
   }
   for (const UserSample& user : frame.users) {
     if (!is_finite(user)) return fail(Errc::invalid_argument, "R-API-1");
-    if (user.contact.kind == ContactKind::none) continue;
-    if (!is_valid(user.contact) || user.contact.object >= info.objects.size()) return fail(Errc::invalid_argument, "R-API-5");
+    if (!can_hold(user)) return fail(Errc::invalid_argument, "R-API-5");
+  }
+  for (std::size_t i = 0; i < frame.meshes.size(); ++i) {
+    if (frame.meshes[i].displacements.size() != 3 * info.meshes[i].rest.vertices.size())
+      return fail(Errc::invalid_argument, "R-API-5");
+    if (!is_finite(frame.meshes[i])) return fail(Errc::invalid_argument, "R-API-1");
   }
   return {};
 }
@@ -154,18 +180,39 @@ void TraceWriter::Impl::encode(const TraceChannel& channel, std::uint64_t time, 
       const Contact& contact = frame.users[channel.index].contact;
       return encode_contact(message, time, contact, info.objects[contact.object].name);
     }
+    case Role::mesh_contact: {
+      const MeshContact& contact = *frame.users[channel.index].mesh_contact;
+      return encode_mesh_contact(message, time, contact, info.meshes[contact.mesh].name);
+    }
+    case Role::rest:
+      return encode_mesh(message, info.meshes[channel.index].rest);
+    case Role::displacement:
+      return encode_displacements(message, time, frame.meshes[channel.index].displacements);
   }
+}
+
+bool TraceWriter::Impl::is_due(const TraceChannel& channel, const TraceFrame& frame) const {
+  switch (channel.occurs) {
+    case Occurs::every_tick:
+      return true;
+    case Occurs::first_tick:
+      return last_tick < 0;
+    case Occurs::when_updated:
+      return frame.meshes[channel.index].updated;
+    case Occurs::in_contact:
+      break;
+  }
+  const UserSample& user = frame.users[channel.index];
+  return channel.role == Role::mesh_contact ? user.mesh_contact.has_value() : user.contact.kind != ContactKind::none;
 }
 
 Result<void> TraceWriter::write(const TraceFrame& frame) {
   TACTUS_CHECK(impl_->check(frame));
   const std::uint64_t time = time_of_tick(frame.tick, impl_->info.tick_rate);
-  const bool is_first = impl_->last_tick < 0;
-  if (is_first) impl_->first_samples = frame.objects;
+  if (impl_->last_tick < 0) impl_->first_samples = frame.objects;
   for (std::size_t i = 0; i < impl_->channels.size(); ++i) {
     const TraceChannel& channel = impl_->channels[i];
-    if (channel.occurs == Occurs::first_tick && !is_first) continue;
-    if (channel.occurs == Occurs::in_contact && frame.users[channel.index].contact.kind == ContactKind::none) continue;
+    if (!impl_->is_due(channel, frame)) continue;
     impl_->encode(channel, time, frame);
     impl_->mcap.add(
         mcap::Message{static_cast<std::uint16_t>(i + 1), static_cast<std::uint32_t>(frame.tick), time, time, impl_->message});

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Any bytes as a trace file: an error or frames, never a crash, and never a number that is not one.
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 
@@ -15,6 +17,7 @@ void require(bool holds) {
 
 void check(const tactus::TraceInfo& info, const tactus::TraceFrame& frame) {
   require(frame.objects.size() == info.objects.size() && frame.users.size() == info.users.size());
+  require(frame.meshes.size() == info.meshes.size());
   for (const auto& object : frame.objects) {
     require(is_finite(object.pose.position) && is_finite(object.pose.rotation));
     require(is_finite(object.velocity) && is_finite(object.angular_velocity));
@@ -22,6 +25,14 @@ void check(const tactus::TraceInfo& info, const tactus::TraceFrame& frame) {
   for (const auto& user : frame.users) {
     require(is_finite(user.contact.device) && is_finite(user.force) && is_finite(user.server_force));
     require(user.contact.kind == tactus::ContactKind::none || user.contact.object < info.objects.size());
+    if (!user.mesh_contact) continue;
+    require(user.mesh_contact->mesh < info.meshes.size());
+    require(user.mesh_contact->triangle < info.meshes[user.mesh_contact->mesh].rest.triangles.size());
+  }
+  for (std::size_t i = 0; i < info.meshes.size(); ++i) {
+    const auto& displacements = frame.meshes[i].displacements;
+    require(displacements.size() == 3 * info.meshes[i].rest.vertices.size());
+    require(std::all_of(displacements.begin(), displacements.end(), [](float value) { return std::isfinite(value); }));
   }
 }
 

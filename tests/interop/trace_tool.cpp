@@ -16,6 +16,7 @@ using namespace tactus;
 
 constexpr std::int64_t kTicks = 2500;
 constexpr std::uint32_t kTickRate = 1000;
+constexpr std::int64_t kDeformationTicks = 10;  // between new shapes of the mesh
 
 /// Exact in binary, different for every tick and slot.
 double number(std::int64_t tick, std::size_t slot) {
@@ -31,12 +32,23 @@ TraceFrame make_frame(std::int64_t tick) {
     kUserColumns[k].field(frame.users[0]) = number(tick, 200 + k);
   frame.users[0].contact.kind = touches ? ContactKind::spring : ContactKind::none;
   if (touches) frame.users[0].contact.stiffness = 630;
+  const auto at = [&](std::size_t slot) { return Vec3{number(tick, slot), number(tick, slot + 1), number(tick, slot + 2)}; };
+  if (tick % 4 == 2) frame.users[0].mesh_contact = {0, 3, {0.5, 0.375, 0.125}, at(300), at(303), 20};
+  MeshSample shape{tick % kDeformationTicks == 3, std::vector<float>(12)};
+  for (std::size_t k = 0; k < 12; ++k) shape.displacements[k] = static_cast<float>(number(tick, 400 + k));
+  frame.meshes.push_back(std::move(shape));
   return frame;
 }
 
+/// A tetrahedron.
+TriMesh make_mesh() { return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}}; }
+
 Result<void> write(const char* path) {
-  TACTUS_TRY(auto writer, TraceWriter::create(
-                              path, {kTickRate, {{"cube", Dof::all}, {"floor", Dof::none}}, {"hand"}, "interop", "# scene\n"}));
+  TACTUS_TRY(
+      auto writer,
+      TraceWriter::create(
+          path,
+          {kTickRate, {{"cube", Dof::all}, {"floor", Dof::none}}, {"hand"}, "interop", "# scene\n", {{"blob", make_mesh()}}}));
   for (std::int64_t tick = 0; tick < kTicks; ++tick) TACTUS_CHECK(writer.write(make_frame(tick)));
   return writer.finish();
 }

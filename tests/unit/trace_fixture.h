@@ -57,6 +57,14 @@ inline std::string image(const TraceFrame& frame) {
   for (const UserSample& u : frame.users) {
     put(u.contact.kind), put(u.contact.object), put(u.contact.stiffness);
     put_vec(u.contact.point), put_vec(u.contact.normal), put_vec(u.contact.device), put_vec(u.force), put_vec(u.server_force);
+    if (!u.mesh_contact) continue;
+    put(u.mesh_contact->mesh), put(u.mesh_contact->triangle), put(u.mesh_contact->stiffness);
+    for (const double weight : u.mesh_contact->weights) put(weight);
+    put_vec(u.mesh_contact->proxy), put_vec(u.mesh_contact->normal);
+  }
+  for (const MeshSample& m : frame.meshes) {
+    put(m.updated);
+    for (const float value : m.displacements) put(value);
   }
   return out;
 }
@@ -87,6 +95,24 @@ inline Recording make_recording(std::size_t frame_count, std::uint32_t tick_rate
     apart.contact.device = vec();
     frame.users = {touching, apart};
     recording.frames.push_back(frame);
+  }
+  return recording;
+}
+
+/// The same with two meshes: a tetrahedron that is new every third tick, and a square that never moves. One user touches them.
+inline Recording make_mesh_recording(std::size_t frame_count) {
+  Recording recording = make_recording(frame_count);
+  recording.info.meshes = {{"blob", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}}},
+                           {"sheet \xC3\xA4", {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}}}};
+  std::vector<float> shape(12);
+  for (std::size_t i = 0; i < frame_count; ++i) {
+    TraceFrame& frame = recording.frames[i];
+    const bool updated = i % 3 == 1;
+    if (updated)
+      for (std::size_t k = 0; k < shape.size(); ++k) shape[k] = std::ldexp(static_cast<float>(k + i), -7);
+    frame.meshes = {{updated, shape}, {false, std::vector<float>(12)}};
+    if (i % 4 == 2)
+      frame.users[1].mesh_contact = {static_cast<std::uint32_t>(i / 4 % 2), 1, {0.25, 0.5, 0.25}, {1, 2, 3}, {0, 0, 1}, 20.0};
   }
   return recording;
 }
