@@ -114,7 +114,7 @@ struct Kernel {
     const V det = a * aa + d * ad + e * ae, size = a + b + c, inverse = 1.0 / det;
     return {{(aa * wx + ad * wy + ae * wz) * inverse, (ad * wx + bb * wy + bf * wz) * inverse,
              (ae * wx + bf * wy + cc * wz) * inverse},
-            (a > 0.0) & (cc > 0.0) & (det > kRegular * size * size * size)};
+            (a > 0.0) & (cc > 0.0) & (size > 0.0) & (det > kRegular * size * size * size)};
   }
 
   /// Turn R(q) towards the rotation nearest to F.   out  lanes that arrived there

@@ -192,6 +192,22 @@ TEST(ElementRotation, IsTheOneOfTheRobustMethodToTheLastDigits) {
     EXPECT_LT(angle_between(elements.rotation(i), nearest_rotation(matrix3(f[i]), {})), 2e-12);
 }
 
+// A half turn away everything is stationary and Newton sees no slope.
+TEST(ElementRotation, LeavesTheSaddlesOfHalfTurns) {
+  Random random(6);
+  std::vector<Matrix3d> f;
+  for (int i = 0; i < 3000; ++i) {
+    const Vector3d axis = i % 2 == 0 ? Vector3d(Vector3d::Unit(i % 3)) : Vector3d(random_matrix(random).col(0).normalized());
+    const Matrix3d half_turn = Eigen::AngleAxisd(M_PI, axis).toRotationMatrix();
+    f.emplace_back(half_turn * (i % 4 < 2 ? Matrix3d(Matrix3d::Identity()) : Matrix3d(Vector3d(1.5, 1, 0.5).asDiagonal())) +
+                   1e-17 * random_matrix(random));
+  }
+  const Scattered turned = scatter(f);
+  Elements elements(turned.mesh, std::vector<Lame>(f.size(), {1, 1}), true);
+  elements.energy(turned.u.data());
+  for (std::size_t i = 0; i < f.size(); ++i) expect_best_rotation(f[i], elements.rotation(i), 1e-14);
+}
+
 // However often an element is turned, its remembered quaternion stays a rotation.
 TEST(ElementRotation, DoesNotDriftInAMillionSteps) {
   Elements elements(scatter({Matrix3d::Identity()}).mesh, std::vector<Lame>(1, {1, 1}), true);
