@@ -1,13 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Time integration of deformable objects behind one interface.
+/// Time integration of deformable objects behind one interface. All methods advance the same equation,
+///   M u'' + mass_damping M u' + k(u + stiffness_damping u') = f
+/// which is that of model.h: the elastic force a little ahead is the elastic force plus stiffness_damping K u', exactly when
+/// elasticity is linear, to first order else, and costs one evaluation.
 ///
-/// method            order  stable when          per step
-/// symplectic_euler  2 (1)  h omega_max < 2      one evaluation of k; order 2 in u for leapfrog's shifted velocities
-/// backward_euler    1      always, damps        Newton with one linear system each
-/// newmark           2      always               beta 1/4, gamma 1/2 (average acceleration); Newton
-/// tr_bdf2           2      always, L-stable     two stages, Newton
-/// modal             2      always               K modes of the linear problem, exact in time for constant forces
-/// projective        1      always, damps        one factorisation at start; each iteration solves with it (quasi-Newton)
+/// method            order  stable when            per step
+/// symplectic_euler  1      h omega_max < 2        one evaluation of k. Leapfrog with velocities half a step off: with v(0) moved by
+///                                                 half a step, displacements are of order 2
+/// backward_euler    1      always, damps          one stage
+/// newmark           2      always, no damping     one stage; beta 1/4, gamma 1/2 (average acceleration)
+/// tr_bdf2           2      always, damps high w   two stages: trapezoidal rule over (2 - sqrt 2) h, then BDF2
+/// projective        1      always, damps          backward Euler whose stages are solved with `prefactored`
+/// modal             exact  always                 K modes of the problem linearised at rest, whatever the elasticity; exact in
+///                                                 time for constant forces; motion outside the modes is lost
+///
+/// A stage is a nonlinear system. Each iteration finds a direction with the linear solver, and takes a shorter step along it when
+/// the residual says that it went too far; `newton_iterations` 1 is the linearly implicit variant, without that check.
+///
+/// solver               direction                                                    per iteration
+/// conjugate_gradients  (a M + b K(u))^-1, block Jacobi, warm start                  assembly, about 3 products at h omega = 0.6
+/// cholesky             (a M + b K(u))^-1                                            assembly, factorisation; linear: one at the start
+/// prefactored          quasi-Newton from (a M + b K(0))^-1, turned vertex by        one evaluation of k, one solve
+///                      vertex into the deformed shape, with limited memory (L-BFGS)
+///
+/// Mass: implicit methods take M as the model has it. Symplectic Euler with a consistent M factors it once and solves every step.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +35,7 @@
 namespace tactus {
 
 enum class Method : std::uint8_t { symplectic_euler, backward_euler, newmark, tr_bdf2, modal, projective };
-enum class LinearSolver : std::uint8_t { conjugate_gradients, cholesky };
+enum class LinearSolver : std::uint8_t { conjugate_gradients, cholesky, prefactored };
 
 const char* name(Method method) noexcept;  ///< "symplectic-euler"
 const char* name(LinearSolver solver) noexcept;
@@ -28,10 +44,10 @@ struct IntegratorOptions {
   Method method = Method::symplectic_euler;
   double step = 1e-3;  ///< h [s]
   LinearSolver solver = LinearSolver::conjugate_gradients;
-  double solver_tolerance = 1e-6;  ///< relative residual of the linear system
-  int newton_iterations = 10;      ///< at most; 1: semi-implicit
-  double newton_tolerance = 1e-8;  ///< stop when the update's energy norm is below this share of the first one's
-  int modes = 0;                   ///< of `modal`
+  double solver_tolerance = 1e-6;  ///< of conjugate gradients: relative residual of the linear system
+  int newton_iterations = 10;      ///< at most; 1: linearly implicit
+  double newton_tolerance = 1e-8;  ///< stop when the update's energy norm is below this share of the stage's first one
+  int modes = 0;                   ///< of `modal`, 1 .. free degrees of freedom
 };
 
 /// What a step took.
@@ -44,8 +60,12 @@ struct StepReport {
 class Integrator {
  public:
   /// Advance by h under constant external forces f [N].
-  /// time see the table; no allocation after the first step (cholesky and newton: none after the second).
-  /// err  R-FEM-5, R-FEM-6 (state unchanged, remedy named), R-FEM-7
+  ///
+  /// A step diverged (R-FEM-6) when its result is not finite, when a tetrahedron is torn (FemModel::broken_element, looked for
+  /// whenever vertices have moved far enough since the last look), or when kinetic and elastic energy, looked at every 64th step,
+  /// exceed ten times what was there at the first look plus the work of f since. The state before the step is kept.
+  /// time see the tables; no allocation after the first step.
+  /// err  R-FEM-5, R-FEM-6 (remedy named), R-FEM-7
   virtual tl::expected<StepReport, FemError> step(const Eigen::VectorXd& f, FemState& state) = 0;
   virtual const IntegratorOptions& options() const noexcept = 0;
   virtual ~Integrator() = default;
@@ -54,13 +74,17 @@ class Integrator {
 /// pre  `model` outlives the integrator and is used by it alone.   err  R-FEM-7, R-FEM-8
 tl::expected<std::unique_ptr<Integrator>, FemError> make_integrator(FemModel& model, const IntegratorOptions& options);
 
-/// What suits the scene: explicit when h omega_max <= 1.6, else the prefactored quasi-Newton scheme when a step must take less than
-/// real time, and why, in one sentence with the numbers.
+/// What suits the scene, and why, in one sentence with the numbers: explicit where it is safely stable, else TR-BDF2 with one
+/// factorisation at the start.
 struct Choice {
   IntegratorOptions options;
-  double largest_frequency = 0;  ///< [rad/s]
+  double largest_frequency = 0;  ///< [rad/s] as measured; 5 % safety are added before it is compared
   std::string reason;
 };
+/// time one power iteration, milliseconds for thousands of tetrahedra; allocates
 Choice choose(const FemModel& model, double step);
+
+/// What would help against a divergence, with the numbers of this object.
+std::string divergence_remedy(const FemModel& model, const IntegratorOptions& options);
 
 }  // namespace tactus

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/fem/guarded.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace tactus {
+namespace {
+
+constexpr std::int64_t kEnergyEvery = 64;  ///< steps
+constexpr double kEnergyFactor = 10;
+constexpr double kTornFrom = 400;  ///< an edge 1000 times its length takes vertices that moved more than this many lengths
+
+double shortest_edge(const TetMesh& mesh) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const Tet& tet : mesh.tets)
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = 0; j < i; ++j) shortest = std::min(shortest, norm(mesh.vertices[tet[i]] - mesh.vertices[tet[j]]));
+  return shortest;
+}
+
+/// Elastic energy when everything is strained by the rounding of a double.
+double rounding_energy(const FemModel& model) {
+  const auto& materials = model.options().materials;
+  double sum = 0;
+  for (std::size_t i = 0; i < model.mesh().tets.size(); ++i)
+    sum += materials[materials.size() == 1 ? 0 : i].young * volume(model.mesh(), i);
+  const double strain = 1e-12;
+  return sum * strain * strain;
+}
+
+}  // namespace
+
+Guarded::Guarded(FemModel& model, const IntegratorOptions& options)
+    : model_(model),
+      options_(options),
+      next_(model.rest()),
+      far_(kTornFrom * shortest_edge(model.mesh())),
+      rounding_(rounding_energy(model)),
+      last_(model.rest()) {}
+
+tl::expected<StepReport, FemError> Guarded::step(const Eigen::VectorXd& f, FemState& state) {
+  const auto usable = [&](const Eigen::VectorXd& x) { return x.size() == model_.size() && x.allFinite(); };
+  if (!usable(f) || !usable(state.u) || !usable(state.v))
+    return tl::unexpected(
+        FemError{{Errc::invalid_argument, "R-FEM-5"}, steps_, -1, "give finite numbers, three for each vertex"});
+  edited_ = steps_ == 0 || state.u != last_.u || state.v != last_.v;
+
+  auto report = advance(f, state, next_);
+  if (!report) {
+    FemError error = std::move(report.error());
+    error.step = steps_;
+    if (error.remedy.empty()) error.remedy = divergence_remedy(model_, options_);
+    return tl::unexpected(std::move(error));
+  }
+  if (diverged(f, state)) return tl::unexpected(divergence(model_.broken_element(next_.u)));
+  ++steps_;
+  last_ = next_;
+  std::swap(state, next_);
+  return report;
+}
+
+bool Guarded::diverged(const Eigen::VectorXd& f, const FemState& before) {
+  if (edited_) {
+    referenced_ = false;
+    moved_ = std::numeric_limits<double>::infinity();
+  }
+  double farthest = 0, work = 0, sum = 0;
+  for (Eigen::Index i = 0; i < f.size(); ++i) {
+    const double du = next_.u[i] - before.u[i];
+    farthest = std::max(farthest, std::abs(du));
+    work += f[i] * du;
+    sum += next_.v[i] + du;
+  }
+  if (!std::isfinite(sum) || !next_.u.allFinite() || !next_.v.allFinite()) return true;
+  work_ += std::abs(work);
+  moved_ += farthest;
+  if (moved_ > far_) {
+    moved_ = 0;
+    if (model_.broken_element(next_.u) >= 0) return true;
+  }
+  return may_gain_energy() && steps_ % kEnergyEvery == 0 && gained_energy();
+}
+
+bool Guarded::gained_energy() {
+  const double kinetic = 0.5 * next_.v.cwiseAbs2().dot(model_.lumped_mass());
+  const double energy = kinetic + model_.energy(next_.u);
+  if (!std::exchange(referenced_, true)) {
+    reference_ = energy;
+    work_ = 0;
+    return false;
+  }
+  return !(energy <= kEnergyFactor * (reference_ + work_) + rounding_);
+}
+
+FemError Guarded::divergence(std::int64_t element) const {
+  return {{Errc::internal, "R-FEM-6"}, steps_, element, divergence_remedy(model_, options_)};
+}
+
+}  // namespace tactus

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "sim/fem/integrator.h"
+
+namespace tactus {
+
+/// What all integrators have in common: input is checked, and no diverged state leaves a step (integrator.h).
+class Guarded : public Integrator {
+ public:
+  Guarded(FemModel& model, const IntegratorOptions& options);
+
+  tl::expected<StepReport, FemError> step(const Eigen::VectorXd& f, FemState& state) final;
+  const IntegratorOptions& options() const noexcept final { return options_; }
+
+ protected:
+  /// Compute `next` from `state`.   err  R-FEM-6, R-FEM-7; step and remedy are filled in here
+  virtual tl::expected<StepReport, FemError> advance(const Eigen::VectorXd& f, const FemState& state, FemState& next) = 0;
+  /// False: the method cannot, and FemModel::energy() is not what it conserves.
+  virtual bool may_gain_energy() const noexcept { return true; }
+  FemModel& model() noexcept { return model_; }
+  double h() const noexcept { return options_.step; }
+  /// Whether the state given is not the one that the last step returned.
+  bool edited() const noexcept { return edited_; }
+
+ private:
+  bool diverged(const Eigen::VectorXd& f, const FemState& before);
+  FemError divergence(std::int64_t element) const;
+  bool gained_energy();
+
+  FemModel& model_;
+  IntegratorOptions options_;
+  FemState next_;
+  std::int64_t steps_ = 0;
+  double far_ = 0;        // [m] movement that may have torn an element
+  double moved_ = 0;      // [m] since the last look at the elements
+  double work_ = 0;       // [J] of external forces since the reference
+  double reference_ = 0;  // [J]
+  double rounding_ = 0;   // [J] below which energy is noise
+  bool edited_ = true, referenced_ = false;
+  FemState last_;
+};
+
+}  // namespace tactus

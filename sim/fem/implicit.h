@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Backward Euler, Newmark and TR-BDF2: which stages a step consists of (newton.h).
+#pragma once
+
+#include "sim/fem/guarded.h"
+#include "sim/fem/newton.h"
+
+namespace tactus {
+
+enum class Scheme : std::uint8_t { backward_euler, newmark, tr_bdf2 };
+
+class Implicit final : public Guarded {
+ public:
+  Implicit(FemModel& model, const IntegratorOptions& options, Scheme scheme, std::unique_ptr<Direction> direction);
+
+  /// c of the stages: what a matrix factored at the start is made for.
+  static double stage_step(Scheme scheme, double h) noexcept;
+
+ private:
+  tl::expected<StepReport, FemError> advance(const Eigen::VectorXd& f, const FemState& state, FemState& next) override;
+  tl::expected<StepReport, FemError> backward_euler();
+  tl::expected<StepReport, FemError> trapezoidal(double duration);
+  tl::expected<StepReport, FemError> tr_bdf2();
+  tl::expected<StepReport, FemError> solve();
+
+  Scheme scheme_;
+  Newton newton_;
+  Stage stage_;
+  Eigen::VectorXd u_, v_, u0_, v0_, k_;  // free: state at work, state at the start
+};
+
+}  // namespace tactus

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/fem/integrator.h"
+
+#include "sim/fem/explicit.h"
+#include "sim/fem/implicit.h"
+#include "sim/fem/linear_solver.h"
+#include "sim/fem/modal.h"
+#include "sim/fem/projective.h"
+
+namespace tactus {
+namespace {
+
+Scheme scheme(Method method) {
+  if (method == Method::newmark) return Scheme::newmark;
+  return method == Method::tr_bdf2 ? Scheme::tr_bdf2 : Scheme::backward_euler;
+}
+
+/// What is wrong with the options, nullptr: nothing.
+const char* wrong(const FemModel& model, const IntegratorOptions& o) {
+  if (!(o.step >= 1e-9 && o.step <= 1)) return "a step between 1e-9 s and 1 s";
+  if (!(o.solver_tolerance > 0 && o.solver_tolerance < 1)) return "a solver tolerance between 0 and 1";
+  if (!(o.newton_tolerance > 0 && o.newton_tolerance < 1)) return "a Newton tolerance between 0 and 1";
+  if (o.newton_iterations < 1) return "at least one Newton iteration";
+  const auto free = static_cast<std::int64_t>(model.free_dofs().size());
+  if (o.method == Method::modal && (o.modes < 1 || o.modes > free)) return "between one mode and the free degrees of freedom";
+  return nullptr;
+}
+
+}  // namespace
+
+const char* name(Method method) noexcept {
+  switch (method) {
+    case Method::symplectic_euler:
+      return "symplectic-euler";
+    case Method::backward_euler:
+      return "backward-euler";
+    case Method::newmark:
+      return "newmark";
+    case Method::tr_bdf2:
+      return "tr-bdf2";
+    case Method::modal:
+      return "modal";
+    case Method::projective:
+      return "projective";
+  }
+  return "?";
+}
+
+const char* name(LinearSolver solver) noexcept {
+  switch (solver) {
+    case LinearSolver::conjugate_gradients:
+      return "cg";
+    case LinearSolver::cholesky:
+      return "cholesky";
+    case LinearSolver::prefactored:
+      return "prefactored";
+  }
+  return "?";
+}
+
+tl::expected<std::unique_ptr<Integrator>, FemError> make_integrator(FemModel& model, const IntegratorOptions& options) {
+  if (const char* remedy = wrong(model, options))
+    return tl::unexpected(FemError{{Errc::invalid_argument, "R-FEM-8"}, -1, -1, std::string("give ") + remedy});
+  if (options.method == Method::symplectic_euler) return std::make_unique<SymplecticEuler>(model, options);
+  if (options.method == Method::modal) return Modal::create(model, options);
+  const Scheme stages = scheme(options.method);
+  std::unique_ptr<Direction> direction;
+  if (options.method == Method::projective || options.solver == LinearSolver::prefactored) {
+    auto made = PrefactoredDirection::create(model, Implicit::stage_step(stages, options.step));
+    if (!made) return tl::unexpected(made.error());
+    direction = std::move(*made);
+  } else {
+    direction = std::make_unique<NewtonDirection>(model, options);
+  }
+  return std::make_unique<Implicit>(model, options, stages, std::move(direction));
+}
+
+}  // namespace tactus

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The K slowest modes of the problem linearised at rest.
+///   K phi = lambda M phi,  phi^T M phi = 1          u = sum q_i phi_i
+///   q'' + (alpha + beta lambda) q' + lambda q = phi^T f
+#pragma once
+
+#include <Eigen/Dense>
+
+#include "sim/fem/guarded.h"
+
+namespace tactus {
+
+/// Slowest modes first.
+struct Modes {
+  Eigen::VectorXd squares;  ///< lambda = omega^2 [1/s^2]
+  Eigen::MatrixXd shapes;   ///< free degrees of freedom x K [kg^-1/2]
+};
+
+/// Few modes: subspace iteration with the factor of K + shift M (Bathe 1996, 11.6), until the eigenvalues are good to 1e-10 of
+/// each; many: the dense problem.   pre  1 <= count <= free degrees of freedom.   err  R-FEM-7
+tl::expected<Modes, FemError> slowest_modes(FemModel& model, int count);
+
+class Modal final : public Guarded {
+ public:
+  static tl::expected<std::unique_ptr<Integrator>, FemError> create(FemModel& model, const IntegratorOptions& options);
+
+ private:
+  Modal(FemModel& model, const IntegratorOptions& options, Modes modes);
+  tl::expected<StepReport, FemError> advance(const Eigen::VectorXd& f, const FemState& state, FemState& next) override;
+  bool may_gain_energy() const noexcept override { return false; }
+
+  /// (q, h q') after a step from q, h q', h^2 p under a constant force p.
+  using Recurrence = Eigen::Matrix<double, 2, 3>;
+  Modes modes_;
+  Eigen::MatrixXd weighted_;  // M phi
+  std::vector<Recurrence> recurrence_;
+  Eigen::VectorXd q_, rate_, force_, free_;
+};
+
+}  // namespace tactus

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/fem/newton.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace tactus {
+
+StageSystem::StageSystem(FemModel& model)
+    : model_(model), ahead_(Eigen::VectorXd::Zero(model.size())), k_(ahead_), v_(Eigen::VectorXd::Zero(size())) {
+  SparseMatrix K;
+  model.stiffness(ahead_, K);
+  double longest = 0;
+  for (const Tet& tet : model.mesh().tets)
+    longest = std::max(longest, norm(model.mesh().vertices[tet[1]] - model.mesh().vertices[tet[0]]));
+  const double stiffest = K.size() == 0 ? 0.0 : K.diagonal().maxCoeff();
+  rounding_ = std::numeric_limits<double>::epsilon() * std::sqrt(static_cast<double>(size())) * stiffest * longest;
+}
+
+void StageSystem::gather(const Eigen::VectorXd& full, Eigen::VectorXd& free) const noexcept {
+  const auto dofs = model_.free_dofs();
+  for (std::size_t i = 0; i < dofs.size(); ++i) free[static_cast<Eigen::Index>(i)] = full[dofs[i]];
+}
+
+void StageSystem::scatter(const Eigen::VectorXd& free, Eigen::VectorXd& full) const noexcept {
+  const auto dofs = model_.free_dofs();
+  for (std::size_t i = 0; i < dofs.size(); ++i) full[dofs[i]] = free[static_cast<Eigen::Index>(i)];
+}
+
+void StageSystem::forces(const Eigen::VectorXd& u, const Eigen::VectorXd& v, Eigen::VectorXd& k) {
+  k = u + beta() * v;
+  scatter(k, ahead_);
+  model_.internal_forces(ahead_, k_);
+  gather(k_, k);
+}
+
+void StageSystem::residual(const Stage& stage, const Eigen::VectorXd& u, Eigen::VectorXd& r) {
+  v_ = (u - stage.a) / stage.c;
+  forces(u, v_, r);
+  r -= stage.f + stage.Mb / stage.c;
+  v_ *= 1 / stage.c + alpha();
+  r.noalias() += model_.mass_matrix() * v_;
+}
+
+Newton::Newton(FemModel& model, const IntegratorOptions& options, std::unique_ptr<Direction> direction)
+    : system_(model),
+      direction_(std::move(direction)),
+      iterations_(options.newton_iterations),
+      tolerance_(options.newton_tolerance),
+      r_(system_.size()),
+      next_r_(system_.size()),
+      d_(Eigen::VectorXd::Zero(system_.size())) {}
+
+tl::expected<StepReport, FemError> Newton::solve(const Stage& stage, Eigen::VectorXd& u) {
+  StepReport report{0, 0, false};
+  double first = 0;
+  system_.residual(stage, u, r_);
+  while (report.newton_iterations < iterations_) {
+    const double residual = r_.norm();
+    if (!std::isfinite(residual)) return tl::unexpected(FemError{{Errc::internal, "R-FEM-6"}, -1, -1, {}});
+    if (residual <= system_.rounding()) {
+      report.converged = true;
+      break;
+    }
+    const auto found = direction_->find(system_, stage, r_, d_);
+    if (!found) return tl::unexpected(found.error());
+    const double decrease = -d_.dot(r_);  // square of the update's energy norm
+    if (report.newton_iterations == 0) first = decrease;
+    ++report.newton_iterations;
+    report.solver_iterations += *found;
+    u += d_;
+    report.converged = decrease <= tolerance_ * tolerance_ * first;
+    if (report.converged || report.newton_iterations == iterations_) break;
+    search(stage, decrease, u);
+    next_r_.swap(r_);
+    next_r_ = r_ - next_r_;
+    direction_->moved(d_, next_r_);
+  }
+  return report;
+}
+
+/// Shorten the step just taken while the residual along it says that it went beyond the lowest point by more than half.
+/// Afterwards d is the step as it is and next_r its residual.
+void Newton::search(const Stage& stage, double decrease, Eigen::VectorXd& u) {
+  constexpr int kMost = 4;
+  for (int i = 0;; ++i) {
+    system_.residual(stage, u, next_r_);
+    const double slope = d_.dot(next_r_);
+    if (i == kMost || !(slope > 0.5 * decrease)) return;
+    const double shorter = std::max(0.1, decrease / (decrease + slope));
+    u -= (1 - shorter) * d_;
+    d_ *= shorter;
+    decrease *= shorter;
+  }
+}
+
+}  // namespace tactus

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/fem/projective.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/fem/linear_solver.h"
+
+namespace tactus {
+namespace {
+
+constexpr std::size_t kShare = 4;
+
+Eigen::Index dof(std::size_t vertex) { return static_cast<Eigen::Index>(3 * vertex); }
+
+}  // namespace
+
+VertexRotations::VertexRotations(const FemModel& model) {
+  const TetMesh& mesh = model.mesh();
+  for (const Vec3& x : mesh.vertices) rest_.emplace_back(x.x, x.y, x.z);
+  std::vector<std::vector<int>> around(rest_.size());
+  for (const Tet& tet : mesh.tets)
+    for (const std::uint32_t i : tet)
+      for (const std::uint32_t j : tet)
+        if (i != j) around[i].push_back(static_cast<int>(j));
+  begin_.push_back(0);
+  for (std::uint32_t i = 0; i < rest_.size(); ++i) {
+    if (model.is_fixed(i)) continue;
+    std::sort(around[i].begin(), around[i].end());
+    neighbours_.insert(neighbours_.end(), around[i].begin(), std::unique(around[i].begin(), around[i].end()));
+    begin_.push_back(neighbours_.size());
+    vertex_.push_back(static_cast<int>(i));
+  }
+  rotation_.assign(vertex_.size(), Eigen::Matrix3d::Identity());
+}
+
+void VertexRotations::follow(const Eigen::VectorXd& u, std::size_t share) noexcept {
+  const std::size_t count = (vertex_.size() + share - 1) / share;
+  for (std::size_t i = 0; i < count; ++i) {
+    turn(next_, u);
+    next_ = next_ + 1 == vertex_.size() ? 0 : next_ + 1;
+  }
+}
+
+/// Turn by omega = sum_i r_i x c_i / |sum_i r_i . c_i|, r_i and c_i the columns of the rotation and of the moments.
+void VertexRotations::turn(std::size_t vertex, const Eigen::VectorXd& u) noexcept {
+  const auto self = static_cast<std::size_t>(vertex_[vertex]);
+  const auto own = u.segment<3>(dof(self));
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  double size = 0;
+  for (std::size_t k = begin_[vertex]; k < begin_[vertex + 1]; ++k) {
+    const auto other = static_cast<std::size_t>(neighbours_[k]);
+    const Eigen::Vector3d edge = rest_[other] - rest_[self];
+    moments.noalias() += (edge + u.segment<3>(dof(other)) - own) * edge.transpose();
+    size += edge.squaredNorm();
+  }
+  Eigen::Matrix3d& R = rotation_[vertex];
+  Eigen::Vector3d omega = Eigen::Vector3d::Zero();
+  double along = 0;
+  for (int i = 0; i < 3; ++i) {
+    omega += R.col(i).cross(moments.col(i));
+    along += R.col(i).dot(moments.col(i));
+  }
+  omega /= std::abs(along) + 1e-9 * size;
+  const double angle = omega.norm();
+  if (angle < 1e-9 || !std::isfinite(angle)) return;
+  const Eigen::Quaterniond turned(Eigen::AngleAxisd(angle, omega / angle) * Eigen::Quaterniond(R));
+  R = turned.normalized().toRotationMatrix();
+}
+
+void VertexRotations::to_rest(const Eigen::VectorXd& in, Eigen::VectorXd& out) const noexcept {
+  for (std::size_t i = 0; i < rotation_.size(); ++i)
+    out.segment<3>(dof(i)).noalias() = rotation_[i].transpose() * in.segment<3>(dof(i));
+}
+
+void VertexRotations::to_shape(const Eigen::VectorXd& in, Eigen::VectorXd& out) const noexcept {
+  for (std::size_t i = 0; i < rotation_.size(); ++i) out.segment<3>(dof(i)).noalias() = rotation_[i] * in.segment<3>(dof(i));
+}
+
+PrefactoredDirection::PrefactoredDirection(const FemModel& model)
+    : rotations_(model), turning_(model.options().elasticity == Elasticity::corotated) {
+  turned_.resize(static_cast<Eigen::Index>(model.free_dofs().size()));
+  for (Pair& pair : pairs_) pair.s = pair.y = turned_;
+}
+
+tl::expected<std::unique_ptr<Direction>, FemError> PrefactoredDirection::create(FemModel& model, double c) {
+  std::unique_ptr<PrefactoredDirection> made(new PrefactoredDirection(model));
+  SystemMatrix matrix(model);
+  const double alpha = model.options().mass_damping, beta = model.options().stiffness_damping;
+  const SparseMatrix& A = matrix.assemble(Eigen::VectorXd::Zero(model.size()), (1 + c * alpha) / (c * c), 1 + beta / c);
+  made->cholesky_.analyse(A);
+  if (!made->cholesky_.factor(A)) return tl::unexpected(not_positive_definite());
+  return made;
+}
+
+void PrefactoredDirection::solve(Eigen::VectorXd& x) {
+  if (!turning_) return cholesky_.solve(x, x);
+  rotations_.to_rest(x, turned_);
+  cholesky_.solve(turned_, turned_);
+  rotations_.to_shape(turned_, x);
+}
+
+/// The two loops of L-BFGS, newest pair first and last.
+tl::expected<int, FemError> PrefactoredDirection::find(StageSystem& system, const Stage& /*stage*/, const Eigen::VectorXd& r,
+                                                       Eigen::VectorXd& d) {
+  if (turning_) rotations_.follow(system.ahead(), kShare);
+  d = -r;
+  for (std::size_t i = 0; i < kMemory; ++i) {
+    Pair& pair = pairs_[(newest_ + kMemory - i) % kMemory];
+    pair.weight = pair.inverse * pair.s.dot(d);
+    d -= pair.weight * pair.y;
+  }
+  solve(d);
+  for (std::size_t i = 0; i < kMemory; ++i) {
+    const Pair& pair = pairs_[(newest_ + 1 + i) % kMemory];
+    d += (pair.weight - pair.inverse * pair.y.dot(d)) * pair.s;
+  }
+  return 1;
+}
+
+void PrefactoredDirection::moved(const Eigen::VectorXd& s, const Eigen::VectorXd& y) {
+  const double along = s.dot(y);
+  if (!(along > 1e-8 * s.norm() * y.norm())) return;
+  newest_ = (newest_ + 1) % kMemory;
+  pairs_[newest_].s = s;
+  pairs_[newest_].y = y;
+  pairs_[newest_].inverse = 1 / along;
+}
+
+}  // namespace tactus

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Quasi-Newton directions from one factorisation of A0 = mass M + stiffness K(0), made at the start (Liu, Bouaziz and Kavan 2017).
+///
+/// The factor knows the rest shape only. Two things bring it to the shape at hand:
+///   turning   d = -Q A0^-1 Q^T r; Q turns each vertex as its surroundings are turned. Whatever rotations Q holds, the product is
+///             symmetric positive definite; one iteration of Mueller et al. 2016 on a quarter of the vertices per stage keeps up.
+///   memory    the last pairs (s, y) of steps and changes of r correct it along what was seen (L-BFGS, Nocedal and Wright 7.4)
+#pragma once
+
+#include <array>
+#include <utility>
+
+#include "sim/fem/cholesky.h"
+#include "sim/fem/newton.h"
+
+namespace tactus {
+
+/// How each vertex's surroundings are turned against the rest shape.
+class VertexRotations {
+ public:
+  explicit VertexRotations(const FemModel& model);
+
+  /// Look at the next `share`-th of the free vertices.   in  u [3N]   time O(vertices / share)
+  void follow(const Eigen::VectorXd& u, std::size_t share) noexcept;
+  /// out = Q^T in.   in, out: free degrees of freedom
+  void to_rest(const Eigen::VectorXd& in, Eigen::VectorXd& out) const noexcept;
+  /// out = Q in.
+  void to_shape(const Eigen::VectorXd& in, Eigen::VectorXd& out) const noexcept;
+
+ private:
+  void turn(std::size_t vertex, const Eigen::VectorXd& u) noexcept;
+
+  std::vector<Eigen::Vector3d> rest_;  // all vertices
+  std::vector<int> vertex_;            // free ones
+  std::vector<std::size_t> begin_;     // their neighbours, in neighbours_
+  std::vector<int> neighbours_;
+  std::vector<Eigen::Matrix3d> rotation_;  // of free ones
+  std::size_t next_ = 0;
+};
+
+class PrefactoredDirection final : public Direction {
+ public:
+  /// pre  stages have this c.   err  R-FEM-7
+  static tl::expected<std::unique_ptr<Direction>, FemError> create(FemModel& model, double c);
+
+  tl::expected<int, FemError> find(StageSystem& system, const Stage& stage, const Eigen::VectorXd& r,
+                                   Eigen::VectorXd& d) override;
+  void moved(const Eigen::VectorXd& s, const Eigen::VectorXd& y) override;
+
+ private:
+  explicit PrefactoredDirection(const FemModel& model);
+  void solve(Eigen::VectorXd& x);
+
+  struct Pair {
+    Eigen::VectorXd s, y;
+    double inverse = 0;  // 1 / (s . y); 0: none yet
+    double weight = 0;
+  };
+  static constexpr std::size_t kMemory = 5;
+
+  Cholesky cholesky_;
+  VertexRotations rotations_;
+  bool turning_;
+  std::array<Pair, kMemory> pairs_;
+  std::size_t newest_ = 0;
+  Eigen::VectorXd turned_;
+};
+
+}  // namespace tactus
