@@ -11,6 +11,9 @@
 #include "cli/cmd_info.h"
 #include "cli/output.h"
 #include "cli/progress.h"
+#ifdef TACTUS_HAS_STUDY
+#include "cli/cmd_bench.h"
+#endif
 #ifdef TACTUS_HAS_SIM
 #include "cli/cmd_reproduce.h"
 #include "cli/cmd_sim.h"
@@ -53,6 +56,9 @@ int main(int argc, char** argv) {
   setup_export(app, action);
 #ifdef TACTUS_HAS_SIM
   setup_reproduce(app, action);
+#endif
+#ifdef TACTUS_HAS_STUDY
+  setup_bench(app, action);
 #endif
   try {
     app.parse(argc, argv);

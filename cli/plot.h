@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Plots, drawn by the program `gnuplot` where it is installed (Debian package gnuplot-nox).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/output.h"
+
+namespace tactus::cli {
+
+/// Becomes the data block $name of the script. An empty row separates two lines or blocks, as a blank line does in gnuplot.
+struct PlotData {
+  std::string name;
+  std::vector<std::vector<double>> rows;
+};
+
+struct Plot {
+  std::string name;    ///< of the files
+  std::string script;  ///< gnuplot commands; terminal, output, fonts and colours are set before
+  std::vector<PlotData> data;
+  int width = 900, height = 560;  ///< [pixels]
+};
+
+/// Colours of line types 1 to 7, told apart by everybody (Okabe and Ito): blue, vermilion, green, purple, orange, sky, black.
+inline constexpr const char* kPlotColours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"};
+
+enum class Drawn : bool { no, yes };
+
+/// Write DIR/NAME.gp, which holds script and data and can be run by itself, and let gnuplot make DIR/NAME.svg and DIR/NAME.png of it.
+/// out  Drawn::no: there is no gnuplot; the script is there all the same
+/// err  a file cannot be written; gnuplot refuses the script (its message goes to standard error)
+tl::expected<Drawn, Failure> draw(const Plot& plot, const std::string& directory, OutputFile::Existing existing);
+
+/// What to tell when draw() said no.
+inline constexpr const char* kNoGnuplot = "gnuplot is not installed: plots are .gp files only (apt-get install gnuplot-nox)";
+
+}  // namespace tactus::cli

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/study/study.h"
+
+namespace tactus::study {
+
+const char* name(Verdict verdict) noexcept {
+  switch (verdict) {
+    case Verdict::stable:
+      return "stable";
+    case Verdict::limit:
+      return "limit";
+    case Verdict::diverges:
+      return "diverges";
+  }
+  return "";
+}
+
+}  // namespace tactus::study
