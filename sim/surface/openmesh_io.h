@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+/// OpenMesh behind two functions: no exception leaves it and nothing of it reaches the terminal.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "codec/base/tri_mesh.h"
+
+namespace tactus {
+
+using Polygon = std::vector<std::uint32_t>;
+
+/// Vertices and faces as they stand in a file, before anything is known about how they meet.
+struct PolygonSoup {
+  std::vector<Vec3> vertices;
+  std::vector<Polygon> polygons;
+};
+
+/// in   format  ".obj", ".ply", ".off", ".stl" to write, ".stla" (text) or ".stlb" (binary) to read
+/// err  what OpenMesh said, perhaps nothing
+tl::expected<PolygonSoup, std::string> openmesh_read(const std::string& text, const std::string& format);
+tl::expected<std::string, std::string> openmesh_write(const TriMesh& mesh, const std::string& format);
+
+}  // namespace tactus

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Triangle meshes in OBJ, PLY, STL and OFF files, read and written by OpenMesh.
+///
+/// OpenMesh keeps coordinates in single precision (6e-8 of their size), believes what a file announces and drops silently what it cannot
+/// use. So sizes are checked before it sees the file, and what it brings is counted against what the file holds.
+///
+/// rule      class           broken when
+/// R-SRF-1   io              the file cannot be opened, read or written
+/// R-SRF-2   limit_exceeded  it is larger than 512 MiB, or announces more than 2^20 vertices or 2^21 faces
+/// R-SRF-3   unsupported     the name ends in none of .obj, .ply, .stl and .off; a binary OFF; a PLY whose lists count beyond 16 bits
+/// R-SRF-4   malformed       the header is not that of the format, a number in it does not fit the file's size, or OpenMesh refuses it
+/// R-SRF-5   malformed       it holds more faces or vertices than could be read
+/// R-SRF-6   invalid         a polygon has fewer than 3 or more than 1024 corners, or no corner from which all of it is seen
+/// R-SRF-7   invalid         it holds no face
+/// R-MSH-1..7                the mesh is broken, see codec/base/tri_mesh.h
+#pragma once
+
+#include <string_view>
+
+#include "sim/surface/surface_error.h"
+
+namespace tactus {
+
+struct SurfaceFile {
+  TriMesh mesh;                     ///< passed check(); STL: vertices with the same coordinates are one
+  std::size_t polygons = 0;         ///< faces of more than three corners, cut into triangles
+  std::size_t unused_vertices = 0;  ///< of no face, left out
+};
+
+/// err  R-SRF-1..7, R-MSH-1..7
+tl::expected<SurfaceFile, SurfaceError> read_surface(const std::string& path);
+/// The same from memory; format is the name's ending, ".obj". The error names no file.
+tl::expected<SurfaceFile, SurfaceError> parse_surface(std::string_view text, std::string_view format);
+
+/// The format follows from the name: OBJ, PLY and OFF as text, STL binary.
+/// pre  the mesh passed check().   err  R-SRF-1, R-SRF-3
+tl::expected<void, SurfaceError> write_surface(const std::string& path, const TriMesh& mesh);
+
+}  // namespace tactus

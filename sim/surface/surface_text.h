@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What a surface file announces, looked at before OpenMesh reads it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "sim/surface/surface_error.h"
+
+namespace tactus {
+
+struct SurfaceText {
+  std::string text;       ///< what OpenMesh may read: comments, materials, textures and normals left out where they can be
+  std::string format;     ///< what OpenMesh calls it
+  std::size_t faces = 0;  ///< in the file
+  std::optional<std::size_t> vertices;  ///< in the file; none: STL, whose corners are merged
+};
+
+/// err  R-SRF-2, R-SRF-3, R-SRF-4
+tl::expected<SurfaceText, SurfaceError> prepare_surface(std::string_view text, std::string_view format);
+
+}  // namespace tactus

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/surface/surface_file.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstring>
+
+#include "tests/unit/mesh_fixture.h"
+
+namespace tactus {
+namespace {
+
+constexpr std::string_view kObj =
+    "# a tetrahedron\nmtllib ../../secret.mtl\nv 0 0 0\nv 1 0 0 0.5 0.5 0.5\nv 0 1.25 0\nvt 0 0\nvn 0 0 1\nv 0 0 1\nusemtl gold\n"
+    "f 1/1/1 3//1 2/1\nf -4 -3 -1\nf 2 3 \\\n 4 # side\nf 1 4 3\n";
+constexpr std::string_view kOff =
+    "OFF # comment\n# another\n4 4\n6\n0 0 0\n1 0 0\n0 1.25 0\n0 0 1\n3 0 2 1 255 0 0\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+constexpr std::string_view kPly =
+    "ply\nformat ascii 1.0\ncomment made by hand\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\n"
+    "property uchar red\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n0 0 0 1\n1 0 0 1\n0 1.25 0 1\n0 0 1 "
+    "1\n"
+    "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+
+/// Facets of the same tetrahedron, three corners each.
+constexpr float kCorners[4][9] = {{0, 0, 0, 0, 1.25F, 0, 1, 0, 0},
+                                  {0, 0, 0, 1, 0, 0, 0, 0, 1},
+                                  {1, 0, 0, 0, 1.25F, 0, 0, 0, 1},
+                                  {0, 0, 0, 0, 0, 1, 0, 1.25F, 0}};
+
+std::string ascii_stl() {
+  std::string text = "solid t\n";
+  for (const auto& c : kCorners) {
+    text += "facet normal 0 0 1\nouter loop\n";
+    for (int i = 0; i < 9; i += 3)
+      text += "vertex " + std::to_string(c[i]) + ' ' + std::to_string(c[i + 1]) + ' ' + std::to_string(c[i + 2]) + '\n';
+    text += "endloop\nendfacet\n";
+  }
+  return text + "endsolid t\n";
+}
+
+std::string binary_stl() {
+  std::string text(80, ' ');
+  text += std::string("\4\0\0\0", 4);
+  for (const auto& c : kCorners) {
+    text.append(12, '\0');
+    text.append(reinterpret_cast<const char*>(c), sizeof c);
+    text.append(2, '\0');
+  }
+  return text;
+}
+
+std::string replaced(std::string_view text, std::string_view from, std::string_view to) {
+  std::string out(text);
+  const std::size_t at = out.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return out.replace(at, from.size(), to);
+}
+
+double enclosed(const TriMesh& mesh) {
+  double sum = 0;
+  for (const auto& [a, b, c] : mesh.triangles) sum += dot(cross(mesh.vertices[a], mesh.vertices[b]), mesh.vertices[c]) / 6;
+  return sum;
+}
+
+void expect_broken(const tl::expected<SurfaceFile, SurfaceError>& file, std::string_view rule, std::string_view detail) {
+  ASSERT_FALSE(file) << rule;
+  EXPECT_EQ(file.error().error.rule, rule) << to_string(file.error());
+  EXPECT_EQ(file.error().detail, detail);
+  EXPECT_NE(to_string(file.error()).find(std::string(rule) + ": "), std::string::npos);
+}
+
+template <class T>
+void append(std::string& bytes, T value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+/// With a colour at each vertex and a quality at each face, as scanners' programs write them.
+std::string binary_ply() {
+  std::string text =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty "
+      "uchar red\n"
+      "element face 4\nproperty list uchar int vertex_indices\nproperty float quality\nend_header\n";
+  for (const auto& v :
+       {std::array{0.F, 0.F, 0.F}, std::array{1.F, 0.F, 0.F}, std::array{0.F, 1.25F, 0.F}, std::array{0.F, 0.F, 1.F}}) {
+    for (const float x : v) append(text, x);
+    append(text, std::uint8_t{200});
+  }
+  for (const auto& t : {Triangle{0, 2, 1}, Triangle{0, 1, 3}, Triangle{1, 2, 3}, Triangle{0, 3, 2}}) {
+    append(text, std::uint8_t{3});
+    for (const std::uint32_t v : t) append(text, v);
+    append(text, 0.5F);
+  }
+  return text;
+}
+
+TEST(SurfaceFile, AllFormatsBringTheSameTetrahedron) {
+  const std::pair<std::string, std::string> files[] = {{".obj", std::string(kObj)}, {".off", std::string(kOff)},
+                                                       {".ply", std::string(kPly)}, {".ply", binary_ply()},
+                                                       {".stl", ascii_stl()},       {".stl", binary_stl()}};
+  for (const auto& [format, text] : files) {
+    const auto file = parse_surface(text, format);
+    ASSERT_TRUE(file) << text.substr(0, 80) << to_string(file.error());
+    EXPECT_EQ(file->mesh.vertices.size(), 4U) << format;
+    EXPECT_EQ(file->mesh.triangles.size(), 4U) << format;
+    EXPECT_EQ(enclosed(file->mesh), 1.25 / 6) << format;
+  }
+}
+
+TEST(SurfaceFile, OpenMeshKeepsQuiet) {
+  testing::internal::CaptureStderr();
+  testing::internal::CaptureStdout();
+  const bool read = parse_surface(replaced(kObj, "f 1 4 3", "f 1 9 3"), ".obj").has_value();
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  EXPECT_FALSE(read);
+}
+
+TEST(SurfaceFile, PolygonsAreCutWhereTheyCanBe) {
+  // A dart: from its tip at (0, 0) and its notch at (1, 1) all of it is seen, from the others not.
+  const auto dart = parse_surface("v 3 0 0\nv 1 1 0\nv 0 3 0\nv 0 0 0\nv 9 9 9\nf 1 2 3 4\n", ".obj");
+  ASSERT_TRUE(dart) << to_string(dart.error());
+  EXPECT_EQ(dart->polygons, 1U);
+  EXPECT_EQ(dart->unused_vertices, 1U);
+  EXPECT_EQ(dart->mesh.triangles.size(), 2U);
+  for (const auto& [a, b, c] : dart->mesh.triangles) {
+    const auto& v = dart->mesh.vertices;
+    EXPECT_EQ(cross(v[b] - v[a], v[c] - v[a]).z, 3);
+  }
+  // A comb: no corner sees both gaps.
+  expect_broken(
+      parse_surface("v 0 0 0\nv 5 0 0\nv 5 2 0\nv 4 2 0\nv 4 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nf 1 2 3 4 5 6 7 8\n", ".obj"),
+      "R-SRF-6", "face 0");
+}
+
+TEST(SurfaceFile, WhatIsAnnouncedMustBeThere) {
+  expect_broken(parse_surface(replaced(kOff, "4 4\n6", "2000000 4\n6"), ".off"), "R-SRF-2", "2000000 vertices, 4 faces");
+  expect_broken(parse_surface(replaced(kOff, "4 4\n6", "4 900000 6"), ".off"), "R-SRF-4",
+                "the file is shorter than its header says");
+  expect_broken(parse_surface(replaced(kOff, "OFF", "OFF BINARY"), ".off"), "R-SRF-3", "binary");
+  expect_broken(parse_surface(replaced(kOff, "1.25", "nan"), ".off"), "R-SRF-4", "line 7, '0 nan 0'");
+  expect_broken(parse_surface(replaced(kPly, "vertex 4", "vertex 900000"), ".ply"), "R-SRF-4",
+                "the file is shorter than its header says");
+  expect_broken(parse_surface(replaced(kPly, "list uchar", "list uint"), ".ply"), "R-SRF-3", "list counts of type uint");
+  expect_broken(parse_surface(replaced(kPly, "double z", "real z"), ".ply"), "R-SRF-4", "real");
+  expect_broken(parse_surface(replaced(kPly, "end_header", "header_end"), ".ply"), "R-SRF-4",
+                "the file is shorter than its header says");
+  expect_broken(parse_surface(replaced(kObj, "1.25", "1,25"), ".obj"), "R-SRF-4", "line 5, 'v 0 1,25 0'");
+  expect_broken(parse_surface(replaced(kObj, "f 1 4 3", "f 1 4"), ".obj"), "R-SRF-4", "line 14, 'f 1 4'");
+  expect_broken(parse_surface("v 0 0 0\n", ".obj"), "R-SRF-7", "");
+  expect_broken(parse_surface(replaced(ascii_stl(), "1.250000", "inf"), ".stl"), "R-SRF-4",
+                "line 5, 'vertex 0.000000 inf 0.000000'");
+  std::string bits = binary_stl();
+  std::memset(bits.data() + 84 + 50 + 12, 0xff, 4);
+  expect_broken(parse_surface(bits, ".stl"), "R-SRF-4", "facet 1");
+  expect_broken(parse_surface(kObj, ".x3d"), "R-SRF-3", ".x3d");
+}
+
+TEST(SurfaceFile, WhatOpenMeshDropsIsNoticed) {
+  std::string flat = binary_stl();
+  std::memcpy(flat.data() + 84 + 12, flat.data() + 84 + 24, 12);  // two corners of facet 0 in one place
+  expect_broken(parse_surface(flat, ".stl"), "R-SRF-5", "3 of 4 faces");
+  const auto index = parse_surface(replaced(kPly, "3 0 3 2", "3 0 3 9"), ".ply");
+  ASSERT_FALSE(index);
+  EXPECT_EQ(to_string(index.error()).find("triangle 3: R-MSH-2: "), 0U);
+}
+
+TEST(SurfaceFile, BrokenMeshesNameTheirTriangle) {
+  const auto turned = parse_surface(replaced(kOff, "3 0 3 2", "3 0 2 3"), ".off");
+  ASSERT_FALSE(turned);
+  EXPECT_EQ(to_string(turned.error()).find("triangle 3: R-MSH-5: "), 0U) << to_string(turned.error());
+}
+
+TEST(SurfaceFile, EveryPrefixIsRefused) {
+  for (const auto& [format, text] : std::initializer_list<std::pair<std::string_view, std::string>>{
+           {".off", std::string(kOff)}, {".ply", std::string(kPly)}, {".ply", binary_ply()}, {".stl", binary_stl()}})
+    for (std::size_t size = 0; size < text.size() - 1; ++size)
+      EXPECT_FALSE(parse_surface(text.substr(0, size), format)) << format << size;
+}
+
+TEST(SurfaceFile, WrittenSurfacesReadBack) {
+  const TempFolder folder;
+  const TriMesh mesh = surface(make_slab(3, 2, 1, 0.25)).mesh;  // quarters are exact in single precision
+  for (const char* name : {"s.obj", "s.ply", "s.OFF", "s.stl"}) {
+    ASSERT_TRUE(write_surface(folder.file(name), mesh)) << name;
+    const auto file = read_surface(folder.file(name));
+    ASSERT_TRUE(file) << to_string(file.error());
+    EXPECT_EQ(file->mesh.triangles.size(), mesh.triangles.size());
+    EXPECT_EQ(file->mesh.vertices.size(), mesh.vertices.size());
+    EXPECT_EQ(enclosed(file->mesh), enclosed(mesh)) << name;
+  }
+  EXPECT_FALSE(write_surface(folder.file("s.x3d"), mesh));
+  const auto missing = read_surface(folder.file("gone.obj"));
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(to_string(missing.error()).find(folder.file("gone.obj") + ": R-SRF-1: "), 0U);
+  EXPECT_FALSE(write_surface(folder.file("no/folder.obj"), mesh));
+}
+
+}  // namespace
+}  // namespace tactus
