@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/child_process.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <filesystem>
+#include <system_error>
+
+namespace tactus::cli {
+namespace {
+
+/// Both ends of a pipe; none of them reaches a child unless it is put there.
+class Pipe {
+ public:
+  Pipe() { open_ = pipe2(ends_.data(), O_CLOEXEC) == 0; }
+  ~Pipe() {
+    close_writer();
+    if (open_) close(ends_[0]);
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+
+  bool is_open() const { return open_; }
+  int reader() const { return ends_[0]; }
+  int writer() const { return ends_[1]; }
+  void close_writer() {
+    if (open_ && ends_[1] >= 0) close(std::exchange(ends_[1], -1));
+  }
+
+ private:
+  std::array<int, 2> ends_{-1, -1};
+  bool open_ = false;
+};
+
+class SpawnActions {
+ public:
+  SpawnActions() { posix_spawn_file_actions_init(&actions_); }
+  ~SpawnActions() { posix_spawn_file_actions_destroy(&actions_); }
+  SpawnActions(const SpawnActions&) = delete;
+  SpawnActions& operator=(const SpawnActions&) = delete;
+
+  void read_nothing() { posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0); }
+  void redirect(int stream, const Pipe& pipe) { posix_spawn_file_actions_adddup2(&actions_, pipe.writer(), stream); }
+  const posix_spawn_file_actions_t* get() const { return &actions_; }
+
+ private:
+  posix_spawn_file_actions_t actions_{};
+};
+
+/// Read both until both are at their end, whichever has something first.
+void drain(const Pipe& first, std::string& into_first, const Pipe& second, std::string& into_second) {
+  std::array<pollfd, 2> watched{{{first.reader(), POLLIN, 0}, {second.reader(), POLLIN, 0}}};
+  const std::array<std::string*, 2> into{&into_first, &into_second};
+  std::array<char, 65536> buffer;
+  while (watched[0].fd >= 0 || watched[1].fd >= 0) {
+    if (poll(watched.data(), watched.size(), -1) < 0 && errno != EINTR) return;
+    for (std::size_t i = 0; i < watched.size(); ++i) {
+      if (watched[i].fd < 0 || watched[i].revents == 0) continue;
+      const ssize_t got = read(watched[i].fd, buffer.data(), buffer.size());
+      if (got > 0) into[i]->append(buffer.data(), static_cast<std::size_t>(got));
+      else if (got == 0 || errno != EINTR) watched[i].fd = -1;
+    }
+  }
+}
+
+}  // namespace
+
+tl::expected<ChildResult, Failure> run_child(const std::vector<std::string>& arguments) {
+  std::vector<char*> words;
+  for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
+  words.push_back(nullptr);
+  Pipe out, error;
+  SpawnActions actions;
+  actions.read_nothing();
+  actions.redirect(STDOUT_FILENO, out);
+  actions.redirect(STDERR_FILENO, error);
+  pid_t child = 0;
+  const int failed =
+      !out.is_open() || !error.is_open() ? errno : posix_spawnp(&child, words[0], actions.get(), nullptr, words.data(), environ);
+  if (failed != 0) {
+    return refuse(arguments[0] + ": the program cannot be started: " + std::generic_category().message(failed),
+                  "Install it, or correct PATH.");
+  }
+  out.close_writer();
+  error.close_writer();
+  ChildResult result;
+  drain(out, result.out, error, result.error);
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return result;
+}
+
+std::string own_program() {
+  std::error_code ignored;
+  return std::filesystem::read_symlink("/proc/self/exe", ignored).string();
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/cmd_sweep.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <filesystem>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <system_error>
+#include <thread>
+
+#include "cli/child_process.h"
+#include "cli/options_codec.h"
+#include "cli/sweep_plan.h"
+#include "cli/sweep_plots.h"
+#include "cli/sweep_results.h"
+#include "cli/table.h"
+
+namespace tactus::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+struct SweepOptions {
+  std::string plan, folder;
+  unsigned jobs = 0;  // 0: one per core
+  bool list = false;
+  CommonOptions common;
+};
+
+std::string as_typed(const std::vector<std::string>& words) {
+  std::string out = "tactus";
+  for (const std::string& word : words) out += word.find(' ') == std::string::npos ? " " + word : " '" + word + "'";
+  return out;
+}
+
+/// Run a command of this program.   err  it failed: the command and what it said
+tl::expected<std::string, Failure> run_command(const std::vector<std::string>& words) {
+  std::vector<std::string> arguments{own_program()};
+  arguments.insert(arguments.end(), words.begin(), words.end());
+  auto done = run_child(arguments);
+  if (!done) return tl::unexpected(done.error());
+  if (done->status == 0) return std::move(done->out);
+  while (!done->error.empty() && done->error.back() == '\n') done->error.pop_back();
+  return refuse(as_typed(words) + "\n" + done->error, "");
+}
+
+/// Inputs that are not there yet. Made aside and moved, so that a file with the right name is whole.
+Outcome make_inputs(const SweepPlan& plan, const std::string& folder, Visibility visibility) {
+  const fs::path aside = fs::path(folder) / "unfinished";
+  std::error_code failed;
+  Progress progress("inputs", plan.inputs.size(), visibility);
+  for (std::size_t i = 0; i < plan.inputs.size(); ++i) {
+    const SweepInput& input = plan.inputs[i];
+    const fs::path file = fs::path(folder) / input.file;
+    progress.update(i);
+    if (fs::exists(file)) continue;
+    fs::remove_all(aside, failed);
+    fs::create_directories(aside, failed);
+    std::vector<std::string> words = input.command;
+    for (std::string& word : words)
+      if (word == "{file}") word = (aside / input.file).string();
+    if (auto made = run_command(words); !made) return tl::unexpected(made.error());
+    fs::rename(aside / input.file, file, failed);
+    if (failed) {
+      return refuse(fmt::format("input {}: the command left no file: {}", input.name, failed.message()),
+                    "Let the command write to {file}.");
+    }
+  }
+  fs::remove_all(aside, failed);
+  return {};
+}
+
+/// The plan's measures out of a command's report.
+tl::expected<std::vector<std::string>, Failure> measure(const SweepPlan& plan, const std::vector<std::string>& words,
+                                                        const std::string& text) {
+  const Json report = Json::parse(text, nullptr, false);
+  if (report.is_discarded())
+    return refuse(as_typed(words) + "\n       printed no JSON report", "Sweep a command that takes --json.");
+  std::vector<std::string> out;
+  for (const SweepMeasure& wanted : plan.measures) {
+    const Json::json_pointer place(wanted.place);
+    if (!report.contains(place) || report[place].is_structured()) {
+      return refuse(fmt::format("{}\n       its report has no value at {}", as_typed(words), wanted.place),
+                    "Look at what the command prints with --json.");
+    }
+    const Json& value = report[place];
+    out.push_back(value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  return out;
+}
+
+/// The points that are still missing, spread over threads that each wait for one process at a time.
+class Workers {
+ public:
+  Workers(const SweepPlan& plan, SweepResults& results, Progress& progress)
+      : plan_(plan), results_(results), progress_(progress) {
+    for (std::size_t point = 0; point < plan.points(); ++point)
+      if (!results.has(plan.values(point))) missing_.push_back(point);
+  }
+
+  std::size_t missing() const { return missing_.size(); }
+  const std::vector<Failure>& failures() const { return failures_; }
+
+  void run(unsigned jobs) {
+    std::vector<std::thread> threads;
+    for (unsigned i = 0; i < std::min<std::size_t>(jobs, missing_.size()); ++i) threads.emplace_back([this] { work(); });
+    for (std::thread& thread : threads) thread.join();
+  }
+
+ private:
+  void work() {
+    for (std::size_t i = next_++; i < missing_.size() && !stop_; i = next_++) {
+      const auto words = plan_.words(missing_[i], results_.folder());
+      auto arguments = words;
+      arguments.insert(arguments.end(), {"--json", "--quiet"});
+      auto measured = run_command(arguments).and_then([&](const std::string& text) { return measure(plan_, words, text); });
+      const std::lock_guard lock(mutex_);
+      if (!measured) failures_.push_back(measured.error());
+      else if (auto kept = results_.add(plan_.values(missing_[i]), *measured); !kept) {
+        failures_.push_back(kept.error());
+        stop_ = true;
+      }
+      progress_.update(++done_);
+    }
+  }
+
+  const SweepPlan& plan_;
+  SweepResults& results_;
+  Progress& progress_;
+  std::vector<std::size_t> missing_;
+  std::atomic<std::size_t> next_ = 0;
+  std::atomic<bool> stop_ = false;
+  std::mutex mutex_;  // for what follows, and for results_ and progress_
+  std::vector<Failure> failures_;
+  std::size_t done_ = 0;
+};
+
+void print_commands(const SweepPlan& plan, const std::string& folder) {
+  for (const SweepInput& input : plan.inputs) fmt::print("{}\n", as_typed(input.command));
+  for (std::size_t point = 0; point < plan.points(); ++point) fmt::print("{}\n", as_typed(plan.words(point, folder)));
+}
+
+struct Summary {
+  std::size_t points = 0, computed = 0, failed = 0;
+  double seconds = 0;
+  std::vector<std::string> files;
+};
+
+void print_summary(const SweepOptions& options, const SweepPlan& plan, const Summary& s) {
+  if (options.common.json) {
+    fmt::print("{}\n", nlohmann::ordered_json{{"schema", "tactus.sweep-summary/1"},
+                                              {"plan", plan.name},
+                                              {"points", s.points},
+                                              {"computed", s.computed},
+                                              {"failed", s.failed},
+                                              {"seconds", s.seconds},
+                                              {"files", s.files}}
+                           .dump(2));
+    return;
+  }
+  if (options.common.quiet) return;
+  Table table;
+  table.heading({"sweep " + plan.name, "number"});
+  table.row({"  points of the plan", fmt::to_string(s.points)});
+  table.row({"  there before", fmt::to_string(s.points - s.computed - s.failed)});
+  table.row({"  computed now", fmt::to_string(s.computed)});
+  table.row({"  failed", fmt::to_string(s.failed)});
+  table.row({"  time [s]", fmt::format("{:.1f}", s.seconds)});
+  table.print(stdout);
+  for (const std::string& file : s.files) fmt::print("  {}\n", file);
+}
+
+Outcome run(const SweepOptions& options) {
+  const auto plan = load_plan(options.plan);
+  if (!plan) return tl::unexpected(plan.error());
+  const std::string folder = options.folder.empty() ? "out/" + plan->name : options.folder;
+  if (options.list) {
+    print_commands(*plan, folder);
+    return {};
+  }
+  const auto begin = std::chrono::steady_clock::now();
+  auto results = SweepResults::open(folder, *plan);
+  if (!results) return tl::unexpected(results.error());
+  if (auto made = make_inputs(*plan, folder, options.common.progress()); !made) return made;
+
+  Summary summary{.points = plan->points(), .files = {folder + "/points.csv", folder + "/context.json"}};
+  std::vector<Failure> failures;
+  {
+    const std::size_t before = results->rows(*plan).size();
+    Progress progress("sweep " + plan->name, plan->points() - before, options.common.progress());
+    Workers workers(*plan, *results, progress);
+    workers.run(options.jobs > 0 ? options.jobs : std::max(1u, std::thread::hardware_concurrency()));
+    failures = workers.failures();
+    summary.failed = failures.size();
+    summary.computed = workers.missing() - failures.size();
+  }
+  if (failures.empty()) {
+    if (auto sorted = results->sort(*plan); !sorted) return sorted;
+  }
+  auto drawn = draw_plots(*plan, *results);
+  if (!drawn) return tl::unexpected(drawn.error());
+  summary.files.insert(summary.files.end(), drawn->begin(), drawn->end());
+  summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  print_summary(options, *plan, summary);
+  if (failures.empty()) return {};
+  return refuse(
+      fmt::format("{} of {} points failed, the first one:\n       {}", failures.size(), summary.points, failures[0].text),
+      failures[0].remedy.empty() ? "Run the sweep again once it is mended; finished points are kept." : failures[0].remedy);
+}
+
+}  // namespace
+
+void setup_sweep(CLI::App& app, Action& action) {
+  auto options = std::make_shared<SweepOptions>();
+  CLI::App& command = *app.add_subcommand("sweep", "Run a command over a grid of parameters into a table and figures");
+  command.add_option("PLAN", options->plan, "TOML: the command, its parameters, what to measure and to draw")
+      ->type_name("")
+      ->required();
+  command.add_option("-o,--output", options->folder, "Folder to write or to go on with [out/NAME]")->type_name("DIR");
+  command.add_option("-j,--jobs", options->jobs, "Points computed at once [one per core]; 1 where times matter")
+      ->check(CLI::Range(1, 1024).description(""))
+      ->type_name("N");
+  command.add_flag("--list", options->list, "Print the commands and run none");
+  add_report_options(command, options->common);
+  command.footer(
+      "A sweep that was stopped goes on where it was: finished points are neither lost nor computed again.\n"
+      "Examples:\n"
+      "  tactus sweep plans/deadband.toml\n"
+      "  tactus sweep plans/deadband.toml -o results/deadband -j 1");
+  on_chosen<SweepOptions>(command, action, options, run);
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/sweep_plan.h"
+
+#include <set>
+
+#include "cli/output.h"
+#include "sim/scene/toml_reader.h"
+
+namespace tactus::cli {
+namespace {
+
+constexpr std::size_t kMostPoints = 1000000;
+
+bool is_simple(std::string_view name) {
+  const auto plain = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-' || c == '.'; };
+  return !name.empty() && name.front() != '.' && std::all_of(name.begin(), name.end(), plain);
+}
+
+class PlanReader {
+ public:
+  explicit PlanReader(std::string_view file) : in_(file) {}
+
+  SweepPlan read(const toml::table& root) {
+    in_.allow(root, "", {"name", "command", "input", "vary", "measure", "plot"});
+    SweepPlan plan;
+    plan.name = name(root, "", "name");
+    plan.command = strings(root, "", "command");
+    for (const toml::table* table : in_.tables(root, "", "input")) plan.inputs.push_back(input(*table));
+    if (const toml::table* vary = required_table(root, "vary")) {
+      for (const auto& [key, node] : *vary)
+        plan.parameters.push_back({std::string(key.str()), strings(*vary, "vary", key.str())});
+    }
+    if (const toml::table* measure = required_table(root, "measure")) {
+      for (const auto& [key, node] : *measure) plan.measures.push_back(measured(*measure, key.str()));
+    }
+    for (const toml::table* table : in_.tables(root, "", "plot")) plan.plots.push_back(plot(*table, plan));
+    check_uses(root, plan);
+    return plan;
+  }
+
+  void refuse_syntax(const toml::parse_error& error) {
+    in_.fail_at(error.source(), Errc::malformed, "R-SCN-2", "", std::string(error.description()));
+  }
+  bool failed() const { return in_.failed(); }
+  std::string error() const { return to_string(in_.error()); }
+
+ private:
+  void invalid(const toml::node& node, const char* rule, std::string key, std::string remedy) {
+    in_.fail_at(node.source(), Errc::invalid, rule, std::move(key), std::move(remedy));
+  }
+
+  const toml::table* required_table(const toml::table& root, const char* key) {
+    const toml::table* table = in_.table(root, "", key);
+    if (!table) invalid(root, "R-SCN-4", key, std::string("add a table [") + key + "]");
+    return table;
+  }
+
+  std::string name(const toml::table& table, const std::string& path, const char* key) {
+    std::string value = in_.text(table, path, key);
+    if (!value.empty() && !is_simple(value))
+      invalid(table, "R-SCN-6", TomlReader::join(path, key), "use letters, digits, '-', '_' and '.' only");
+    return value;
+  }
+
+  std::vector<std::string> strings(const toml::table& table, const std::string& path, std::string_view key) {
+    std::vector<std::string> out;
+    const toml::node* node = table.get(key);
+    const toml::array* array = node ? node->as_array() : nullptr;
+    const std::string place = TomlReader::join(path, key);
+    if (!array || array->empty()) {
+      invalid(node ? *node : table, node ? "R-SCN-5" : "R-SCN-4", place, "write an array of strings, at least one");
+      return out;
+    }
+    for (const auto& element : *array) {
+      const auto text = element.value_exact<std::string>();
+      if (!text) invalid(element, "R-SCN-5", place, "write strings, as on a command line: \"2.5%\"");
+      out.push_back(text.value_or(""));
+    }
+    return out;
+  }
+
+  SweepInput input(const toml::table& table) {
+    in_.allow(table, "input", {"name", "file", "command"});
+    return {name(table, "input", "name"), name(table, "input", "file"), strings(table, "input", "command")};
+  }
+
+  SweepMeasure measured(const toml::table& table, std::string_view column) {
+    SweepMeasure measure{std::string(column), in_.text(table, "measure", column)};
+    if (!measure.place.empty() && measure.place.front() != '/')
+      invalid(table, "R-SCN-6", TomlReader::join("measure", column), "write a JSON pointer, such as /traffic/payload/bit_per_s");
+    return measure;
+  }
+
+  std::string column(const toml::table& table, const char* key, const SweepPlan& plan) {
+    std::string value = in_.text(table, "plot", key);
+    const auto columns = plan.columns();
+    if (std::find(columns.begin(), columns.end(), value) == columns.end())
+      invalid(table, "R-SCN-7", TomlReader::join("plot", key), "name a parameter or a measure of this plan");
+    return value;
+  }
+
+  SweepPlot plot(const toml::table& table, const SweepPlan& plan) {
+    in_.allow(table, "plot", {"name", "title", "x", "y", "series", "x_label", "y_label", "log", "where"});
+    SweepPlot plot;
+    plot.name = name(table, "plot", "name");
+    plot.title = in_.text(table, "plot", "title", plot.name);
+    plot.x = column(table, "x", plan);
+    plot.y = column(table, "y", plan);
+    plot.series = column(table, "series", plan);
+    plot.x_label = in_.text(table, "plot", "x_label", plot.x);
+    plot.y_label = in_.text(table, "plot", "y_label", plot.y);
+    const std::size_t axes = in_.word(table, "plot", "log", {"none", "x", "y", "xy"}, "none");
+    plot.log_x = axes == 1 || axes == 3;
+    plot.log_y = axes >= 2;
+    if (const toml::table* where = in_.table(table, "plot", "where"))
+      for (const auto& [key, node] : *where) plot.where.emplace_back(key.str(), in_.text(*where, "plot.where", key.str()));
+    return plot;
+  }
+
+  /// Every parameter is used in the command, and the sweep has a sane number of points.
+  void check_uses(const toml::table& root, const SweepPlan& plan) {
+    std::size_t points = 1;
+    for (const SweepParameter& parameter : plan.parameters) {
+      points = std::min(points * parameter.values.size(), kMostPoints + 1);
+      const std::string word = "{" + parameter.name + "}";
+      const auto uses = [&](const std::string& w) { return w.find(word) != std::string::npos; };
+      if (std::none_of(plan.command.begin(), plan.command.end(), uses))
+        invalid(root, "R-SCN-7", "vary." + parameter.name, "use " + word + " in command, or leave the parameter out");
+    }
+    if (points > kMostPoints) invalid(root, "R-SCN-6", "vary", "stay below 1000000 combinations");
+    std::set<std::string> names;
+    for (const SweepInput& input : plan.inputs)
+      if (!names.insert(input.name).second || !names.insert(input.file).second)
+        invalid(root, "R-SCN-7", "input", "give every input a name and a file of its own");
+  }
+
+  TomlReader in_;
+};
+
+std::string replaced(std::string word, const std::string& what, const std::string& by) {
+  for (std::size_t at = word.find(what); at != std::string::npos; at = word.find(what, at + by.size()))
+    word.replace(at, what.size(), by);
+  return word;
+}
+
+}  // namespace
+
+std::size_t SweepPlan::points() const {
+  std::size_t count = 1;
+  for (const SweepParameter& parameter : parameters) count *= parameter.values.size();
+  return count;
+}
+
+std::vector<std::string> SweepPlan::values(std::size_t point) const {
+  std::vector<std::string> out(parameters.size());
+  for (std::size_t i = parameters.size(); i-- > 0;) {
+    const std::size_t count = parameters[i].values.size();
+    out[i] = parameters[i].values[point % count];
+    point /= count;
+  }
+  return out;
+}
+
+std::vector<std::string> SweepPlan::words(std::size_t point, const std::string& folder) const {
+  std::vector<std::string> out = command;
+  const auto chosen = values(point);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    std::string value = chosen[i];
+    for (const SweepInput& input : inputs)
+      if (input.name == value) value = folder + "/" + input.file;
+    for (std::string& word : out) word = replaced(std::move(word), "{" + parameters[i].name + "}", value);
+  }
+  return out;
+}
+
+std::vector<std::string> SweepPlan::columns() const {
+  std::vector<std::string> out;
+  for (const SweepParameter& parameter : parameters) out.push_back(parameter.name);
+  for (const SweepMeasure& measure : measures) out.push_back(measure.column);
+  return out;
+}
+
+tl::expected<SweepPlan, Failure> load_plan(const std::string& path) {
+  const auto text = read_file(path);
+  if (!text) return tl::unexpected(text.error());
+  PlanReader reader(path);
+  SweepPlan plan;
+  try {
+    plan = reader.read(toml::parse(*text, path));
+  } catch (const toml::parse_error& error) {
+    reader.refuse_syntax(error);
+  }
+  if (reader.failed()) return refuse(reader.error(), "");
+  plan.text = *text;
+  return plan;
+}
+
+}  // namespace tactus::cli

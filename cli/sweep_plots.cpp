@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/sweep_plots.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+
+#include "cli/plot.h"
+
+namespace tactus::cli {
+namespace {
+
+/// "0.05", "2.5%", "5mm,4deg": the number that a cell begins with.
+double leading_number(const std::string& cell) {
+  double value = 0;
+  const auto end = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  return end.ec == std::errc() ? value : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::size_t index_of(const std::vector<std::string>& columns, const std::string& name) {
+  return static_cast<std::size_t>(std::find(columns.begin(), columns.end(), name) - columns.begin());
+}
+
+/// Text as gnuplot takes it in double quotes.
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    if (static_cast<unsigned char>(c) >= ' ') out += c;
+  }
+  return out + '"';
+}
+
+/// One data block for each value of the series, in the order in which they first appear.
+struct Series {
+  std::string value;
+  std::vector<std::vector<double>> points;
+};
+
+std::vector<Series> series_of(const SweepPlot& wanted, const SweepPlan& plan, const std::vector<SweepResults::Row>& rows) {
+  const auto columns = plan.columns();
+  const std::size_t x = index_of(columns, wanted.x), y = index_of(columns, wanted.y), by = index_of(columns, wanted.series);
+  std::vector<Series> out;
+  for (const SweepResults::Row& row : rows) {
+    const bool shown = std::all_of(wanted.where.begin(), wanted.where.end(),
+                                   [&](const auto& rule) { return row[index_of(columns, rule.first)] == rule.second; });
+    if (!shown) continue;
+    auto found = std::find_if(out.begin(), out.end(), [&](const Series& s) { return s.value == row[by]; });
+    if (found == out.end()) found = out.insert(out.end(), {row[by], {}});
+    found->points.push_back({leading_number(row[x]), leading_number(row[y])});
+  }
+  for (Series& series : out) std::sort(series.points.begin(), series.points.end());
+  return out;
+}
+
+Plot figure(const SweepPlot& wanted, const std::vector<Series>& series) {
+  Plot plot{.name = wanted.name, .script = {}, .data = {}};
+  plot.script = fmt::format(
+      "set title {} noenhanced\nset xlabel {} noenhanced\nset ylabel {} noenhanced\n"
+      "set key outside right top title {} noenhanced\n",
+      quoted(wanted.title), quoted(wanted.x_label), quoted(wanted.y_label), quoted(wanted.series));
+  if (wanted.log_x) plot.script += "set logscale x\nset format x '10^{%L}'\n";
+  if (wanted.log_y) plot.script += "set logscale y\nset format y '10^{%L}'\n";
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    plot.data.push_back({"series" + std::to_string(i), series[i].points});
+    plot.script += fmt::format("{}$series{} using 1:2 with linespoints linetype {} title {} noenhanced",
+                               i == 0 ? "plot " : ", \\\n     ", i, i + 1, quoted(series[i].value));
+  }
+  plot.script += series.empty() ? "plot NaN notitle\n" : "\n";
+  return plot;
+}
+
+}  // namespace
+
+tl::expected<std::vector<std::string>, Failure> draw_plots(const SweepPlan& plan, const SweepResults& results) {
+  const auto rows = results.rows(plan);
+  std::vector<std::string> files;
+  for (const SweepPlot& wanted : plan.plots) {
+    const auto drawn = draw(figure(wanted, series_of(wanted, plan, rows)), results.folder(), OutputFile::Existing::replace);
+    if (!drawn) return tl::unexpected(drawn.error());
+    const std::string stem = results.folder() + "/" + wanted.name;
+    files.push_back(stem + ".gp");
+    if (*drawn == Drawn::yes) files.insert(files.end(), {stem + ".svg", stem + ".png"});
+  }
+  return files;
+}
+
+}  // namespace tactus::cli
