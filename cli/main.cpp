@@ -17,6 +17,7 @@
 #ifdef TACTUS_HAS_SIM
 #include "cli/cmd_reproduce.h"
 #include "cli/cmd_sim.h"
+#include "cli/cmd_sweep.h"
 #endif
 
 namespace {
@@ -55,6 +56,7 @@ int main(int argc, char** argv) {
   setup_info(app, action);
   setup_export(app, action);
 #ifdef TACTUS_HAS_SIM
+  setup_sweep(app, action);
   setup_reproduce(app, action);
 #endif
 #ifdef TACTUS_HAS_STUDY

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/contact/aabb_tree.h"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+namespace tactus {
+namespace {
+
+bool before(const Vec3& a, const Vec3& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
+
+double component(const Vec3& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+
+/// Is a point at this distance the better answer? Of several equally close the one that no renumbering changes.
+bool better(double distance2, const Vec3& point, std::uint32_t triangle, double best2, const SurfacePoint& best) {
+  if (distance2 != best2 || best.triangle == MeshTopology::kNone) return distance2 <= best2;
+  if (point != best.point) return before(point, best.point);
+  return triangle < best.triangle;
+}
+
+bool earlier(double t, std::uint32_t triangle, const std::optional<SurfaceHit>& first) {
+  return !first || t < first->t || (t == first->t && triangle < first->at.triangle);
+}
+
+}  // namespace
+
+AabbTree::AabbTree(const TriMesh& mesh) {
+  std::vector<std::uint32_t> all(mesh.triangles.size());
+  std::iota(all.begin(), all.end(), 0u);
+  build(mesh.triangles, all, mesh.vertices);
+}
+
+void AabbTree::reserve(std::size_t triangles, std::size_t numbers) {
+  leaves_.reserve(triangles);
+  nodes_.reserve(2 * triangles);
+  leaf_of_.resize(numbers, kAbsent);
+}
+
+void AabbTree::build(std::span<const Triangle> triangles, std::span<const std::uint32_t> chosen, std::span<const Vec3> vertices) {
+  for (const Leaf& leaf : leaves_) leaf_of_[leaf.triangle] = kAbsent;
+  leaf_of_.resize(triangles.size(), kAbsent);
+  leaves_.clear();
+  nodes_.clear();
+  for (const std::uint32_t number : chosen) {
+    Leaf leaf{{}, number, {0, 1, 2}};
+    const Triangle& corner = triangles[number];
+    std::sort(leaf.order.begin(), leaf.order.end(),
+              [&](std::uint8_t a, std::uint8_t b) { return before(vertices[corner[a]], vertices[corner[b]]); });
+    for (std::size_t k = 0; k < 3; ++k) leaf.vertices[k] = corner[leaf.order[k]];
+    leaves_.push_back(leaf);
+  }
+  if (!leaves_.empty()) split(0, static_cast<std::uint32_t>(leaves_.size()), vertices);
+  for (std::uint32_t i = 0; i < leaves_.size(); ++i) leaf_of_[leaves_[i].triangle] = i;
+  refit(vertices);
+}
+
+void AabbTree::split(std::uint32_t first, std::uint32_t last, std::span<const Vec3> vertices) {
+  const std::size_t node = nodes_.size();
+  nodes_.push_back({{}, first, last - first});
+  if (last - first <= kLeafSize) return;
+  const auto centre = [&](const Leaf& leaf, int axis) {  // three times it
+    const Corners v = corners(leaf, vertices);
+    return component(v[0], axis) + component(v[1], axis) + component(v[2], axis);
+  };
+  int longest = 0;
+  double length = -1;
+  for (int axis = 0; axis < 3; ++axis) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (std::uint32_t i = first; i < last; ++i) {
+      const double x = centre(leaves_[i], axis);
+      low = std::min(low, x);
+      high = std::max(high, x);
+    }
+    if (high - low > length) {
+      length = high - low;
+      longest = axis;
+    }
+  }
+  const std::uint32_t middle = first + (last - first) / 2;
+  std::nth_element(leaves_.begin() + first, leaves_.begin() + middle, leaves_.begin() + last,
+                   [&](const Leaf& a, const Leaf& b) { return centre(a, longest) < centre(b, longest); });
+  split(first, middle, vertices);
+  nodes_[node].next = static_cast<std::uint32_t>(nodes_.size());
+  nodes_[node].count = 0;
+  split(middle, last, vertices);
+}
+
+void AabbTree::refit(std::span<const Vec3> vertices) noexcept {
+  for (std::size_t i = nodes_.size(); i-- > 0;) {
+    Node& node = nodes_[i];
+    if (node.count == 0) {
+      const Box &a = nodes_[i + 1].box, &b = nodes_[node.next].box;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        node.box.low[axis] = std::min(a.low[axis], b.low[axis]);
+        node.box.high[axis] = std::max(a.high[axis], b.high[axis]);
+      }
+      continue;
+    }
+    Vec3 low = vertices[leaves_[node.next].vertices[0]], high = low;
+    for (const Leaf& leaf : std::span(leaves_).subspan(node.next, node.count)) {
+      for (const std::uint32_t vertex : leaf.vertices) {
+        const Vec3& v = vertices[vertex];
+        low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+        high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+      }
+    }
+    const auto fit = [&node](std::size_t axis, double least, double most) {
+      const double margin = 0x1p-22 * std::max(std::abs(least), std::abs(most)) + std::numeric_limits<float>::min();
+      node.box.low[axis] = static_cast<float>(least - margin);
+      node.box.high[axis] = static_cast<float>(most + margin);
+    };
+    fit(0, low.x, high.x);
+    fit(1, low.y, high.y);
+    fit(2, low.z, high.z);
+  }
+}
+
+Triangle AabbTree::triangle(std::uint32_t number) const noexcept {
+  const Leaf& leaf = leaves_[leaf_of_[number]];
+  Triangle out{};
+  for (std::size_t k = 0; k < 3; ++k) out[leaf.order[k]] = leaf.vertices[k];
+  return out;
+}
+
+SurfacePoint AabbTree::named(const Leaf& leaf, const std::array<double, 3>& weights, const Vec3& point, double distance) noexcept {
+  SurfacePoint out{leaf.triangle, {}, point, distance};
+  for (std::size_t k = 0; k < 3; ++k) out.weights[leaf.order[k]] = weights[k];
+  return out;
+}
+
+std::optional<SurfacePoint> AabbTree::closest(const Vec3& point, std::span<const Vec3> vertices, double within) const noexcept {
+  if (nodes_.empty()) return std::nullopt;
+  struct Entry {
+    std::uint32_t node;
+    double distance2;
+  };
+  std::array<Entry, kMaxDepth> stack;
+  std::size_t depth = 0;
+  stack[depth++] = {0, distance2(nodes_[0].box, point)};
+  SurfacePoint best;
+  double best2 = within * within;
+  while (depth > 0) {
+    const Entry entry = stack[--depth];
+    if (entry.distance2 * (1 - 1e-14) > best2) continue;
+    const Node& node = nodes_[entry.node];
+    if (node.count == 0) {
+      const Entry a{entry.node + 1, distance2(nodes_[entry.node + 1].box, point)};
+      const Entry b{node.next, distance2(nodes_[node.next].box, point)};
+      const bool a_first = a.distance2 <= b.distance2;
+      stack[depth++] = a_first ? b : a;
+      stack[depth++] = a_first ? a : b;
+      continue;
+    }
+    for (const Leaf& leaf : std::span(leaves_).subspan(node.next, node.count)) {
+      const TrianglePoint at = closest_on_triangle(point, corners(leaf, vertices));
+      if (!better(at.distance2, at.point, leaf.triangle, best2, best)) continue;
+      best = named(leaf, at.weights, at.point, 0);
+      best2 = at.distance2;
+    }
+  }
+  if (best.triangle == MeshTopology::kNone) return std::nullopt;
+  best.distance = std::sqrt(best2);
+  return best;
+}
+
+/// Separating axes of segment and box grown by the radius; errs on the side of "near".
+bool AabbTree::near_segment(const Box& box, const Vec3& from, const Vec3& way, double radius) noexcept {
+  const auto half = [&](std::size_t axis) { return 0.5 * (double{box.high[axis]} - box.low[axis]) + radius; };
+  const auto centre = [&](std::size_t axis) { return 0.5 * (double{box.high[axis]} + box.low[axis]); };
+  const Vec3 h = 0.5 * way, m{from.x + h.x - centre(0), from.y + h.y - centre(1), from.z + h.z - centre(2)};
+  const Vec3 a{std::abs(h.x), std::abs(h.y), std::abs(h.z)}, e{half(0), half(1), half(2)};
+  const double rounding = 1e-15 * (std::abs(from.x) + std::abs(from.y) + std::abs(from.z) + a.x + a.y + a.z);
+  if (std::abs(m.x) > e.x + a.x + rounding || std::abs(m.y) > e.y + a.y + rounding || std::abs(m.z) > e.z + a.z + rounding) {
+    return false;
+  }
+  const auto apart = [rounding](double m1, double h2, double m2, double h1, double e1, double a2, double e2, double a1) {
+    return std::abs(m1 * h2 - m2 * h1) > (e1 + rounding) * a2 + (e2 + rounding) * a1 + 1e-15 * (std::abs(m1) * a2 + std::abs(m2) * a1);
+  };
+  return !apart(m.y, h.z, m.z, h.y, e.y, a.z, e.z, a.y) && !apart(m.z, h.x, m.x, h.z, e.z, a.x, e.x, a.z) &&
+         !apart(m.x, h.y, m.y, h.x, e.x, a.y, e.y, a.x);
+}
+
+/// Call test(leaf), which returns the share of the way that still matters, for every triangle near what still matters of it.
+template <class Test>
+void AabbTree::along(const Vec3& from, const Vec3& way, double radius, Test&& test) const noexcept {
+  if (nodes_.empty()) return;
+  std::array<std::uint32_t, kMaxDepth> stack;
+  std::size_t depth = 0;
+  stack[depth++] = 0;
+  Vec3 rest = way;
+  while (depth > 0) {
+    const std::uint32_t index = stack[--depth];
+    const Node& node = nodes_[index];
+    if (!near_segment(node.box, from, rest, radius)) continue;
+    if (node.count != 0) {
+      for (const Leaf& leaf : std::span(leaves_).subspan(node.next, node.count)) rest = test(leaf) * way;
+      continue;
+    }
+    const Box &a = nodes_[index + 1].box, &b = nodes_[node.next].box;
+    const auto lead = [&](std::size_t axis) { return double{b.low[axis]} + b.high[axis] - a.low[axis] - a.high[axis]; };
+    const bool a_first = lead(0) * way.x + lead(1) * way.y + lead(2) * way.z >= 0;
+    stack[depth++] = a_first ? node.next : index + 1;
+    stack[depth++] = a_first ? index + 1 : node.next;
+  }
+}
+
+std::optional<SurfaceHit> AabbTree::first_hit(const Vec3& from, const Vec3& to, std::span<const Vec3> vertices) const noexcept {
+  std::optional<SurfaceHit> first;
+  const Vec3 way = to - from;
+  along(from, way, 0, [&](const Leaf& leaf) {
+    const auto hit = segment_hits_triangle(from, way, corners(leaf, vertices));
+    if (hit && earlier(hit->t, leaf.triangle, first)) {
+      first = {hit->t, hit->t, named(leaf, hit->weights, from + hit->t * way, 0)};
+    }
+    return first ? first->t : 1.0;
+  });
+  return first;
+}
+
+std::optional<SurfaceHit> AabbTree::sweep(const Sweep& sphere, std::span<const Vec3> vertices,
+                                          std::span<const std::uint32_t> left_out) const noexcept {
+  std::optional<SurfaceHit> first;
+  along(sphere.from, sphere.way, sphere.radius + sphere.slack, [&](const Leaf& leaf) {
+    const double limit = first ? first->t : 1.0;
+    if (std::find(left_out.begin(), left_out.end(), leaf.triangle) != left_out.end()) return limit;
+    const auto hit = sphere_hits_triangle(sphere, corners(leaf, vertices), limit);
+    if (!hit || !earlier(hit->t, leaf.triangle, first)) return limit;
+    first = {hit->t, hit->rest, named(leaf, hit->at.weights, hit->at.point, std::sqrt(hit->at.distance2))};
+    return hit->t;
+  });
+  return first;
+}
+
+std::optional<SurfaceHit> AabbTree::sweep(const Sweep& sphere, std::span<const Vec3> vertices,
+                                          std::uint32_t triangle) const noexcept {
+  const Leaf& leaf = leaves_[leaf_of_[triangle]];
+  const auto hit = sphere_hits_triangle(sphere, corners(leaf, vertices), 1);
+  if (!hit) return std::nullopt;
+  return SurfaceHit{hit->t, hit->rest, named(leaf, hit->at.weights, hit->at.point, std::sqrt(hit->at.distance2))};
+}
+
+}  // namespace tactus

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Which points lie inside of a mesh: below the closest point of a component that is closed. An open component has no inside.
+///
+/// "Below" means against the normals around the closest point, each weighted by the angle of its triangle there: the one weighting
+/// whose sign is right at every edge and corner (Baerentzen and Aanaes 2005).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "sim/contact/aabb_tree.h"
+
+namespace tactus {
+
+class Inside {
+ public:
+  /// pre  both outlive this object.   time O(n); allocates
+  Inside(const TriMesh& mesh, const MeshTopology& topology);
+
+  /// Normal at a point of the mesh, of unit length, outward; zero where triangles have no area.   time O(triangles there)
+  Vec3 normal(const SurfacePoint& at, std::span<const Vec3> vertices) const noexcept;
+  /// in  closest  the point of the mesh that is closest to `point`
+  bool contains(const Vec3& point, const SurfacePoint& closest, std::span<const Vec3> vertices) const noexcept;
+
+ private:
+  const TriMesh& mesh_;
+  const MeshTopology& topology_;
+  std::vector<bool> closed_;  // per triangle: no boundary anywhere in its component
+};
+
+}  // namespace tactus

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/contact/mesh_proxy.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus {
+namespace {
+
+constexpr std::uint32_t kNone = MeshTopology::kNone;
+constexpr int kMaxSweeps = 32;
+constexpr int kMaxPushes = 4;
+
+Corners corners_of(const Triangle& triangle, std::span<const Vec3> vertices) {
+  return {vertices[triangle[0]], vertices[triangle[1]], vertices[triangle[2]]};
+}
+
+Vec3 blend(const std::array<double, 3>& weights, const Corners& v) {
+  return weights[0] * v[0] + weights[1] * v[1] + weights[2] * v[2];
+}
+
+/// Axes that lie in a triangle like those of any other: along its first edge, across it, along its normal.
+std::optional<std::array<Vec3, 3>> axes(const Corners& v) {
+  const Vec3 edge = v[1] - v[0], normal = cross(edge, v[2] - v[0]);
+  const double length = norm(edge), area = norm(normal);
+  if (!(length > 0 && area > 0)) return std::nullopt;
+  const Vec3 x = (1 / length) * edge, z = (1 / area) * normal;
+  return std::array<Vec3, 3>{x, cross(z, x), z};
+}
+
+/// Unit vector from a point of the surface to the sphere's centre. On a face that of the plane itself: exact however close they are.
+Vec3 away_from(const SurfacePoint& at, const Vec3& centre, std::span<const Vec3> vertices, const AabbTree& tree) {
+  const Vec3 away = centre - at.point;
+  if (at.feature() == Feature::face) {
+    const Corners v = corners_of(tree.triangle(at.triangle), vertices);
+    const Vec3 normal = cross(v[1] - v[0], v[2] - v[0]);
+    return std::copysign(1 / norm(normal), dot(normal, away)) * normal;
+  }
+  const double length = norm(away);
+  return length > 0 ? (1 / length) * away : Vec3{0, 0, 1};
+}
+
+}  // namespace
+
+MeshProxy::MeshProxy(const MeshProxyOptions& options, double extent) noexcept
+    : options_(options), skin_(0x1p-24 * std::fmax(extent, options.radius)), slack_(skin_ / 8) {}
+
+Sweep MeshProxy::towards(const Vec3& goal) const noexcept { return {centre_, goal - centre_, distance(), slack_}; }
+
+/// Less than a quarter of the slack is rounding: a proxy that is held does not creep.
+bool MeshProxy::lets_move(const SurfaceHit& hit, const Vec3& way) const noexcept { return hit.rest * norm(way) > slack_ / 4; }
+
+/// The triangles that held the proxy last are asked first: a face that does not let it move at all settles the matter.
+std::optional<SurfaceHit> MeshProxy::first_contact(const Vec3& goal, std::span<const Vec3> vertices,
+                                                   const AabbTree& tree) const noexcept {
+  const Sweep sweep = towards(goal);
+  const std::span<const std::uint32_t> held(held_by_.data(), held_);
+  for (const std::uint32_t triangle : recent_) {
+    if (!tree.contains(triangle) || std::find(held.begin(), held.end(), triangle) != held.end()) continue;
+    const auto hit = tree.sweep(sweep, vertices, triangle);
+    if (hit && !lets_move(*hit, sweep.way) && hit->at.feature() == Feature::face) return hit;
+  }
+  return tree.sweep(sweep, vertices, held);
+}
+
+/// Make room by forgetting the planes that do not press, then those met first.
+void MeshProxy::hold(const Plane& plane) noexcept {
+  if (held_ == kMaxHalfspaces) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < held_; ++i)
+      if (depth_[i] > 0) planes_[kept++] = planes_[i];
+    if (kept == held_) std::move(planes_.begin() + 1, planes_.begin() + static_cast<std::ptrdiff_t>(kept--), planes_.begin());
+    held_ = kept;
+    for (std::size_t i = 0; i < held_; ++i) held_by_[i] = planes_[i].at.triangle;
+  }
+  planes_[held_] = plane;
+  held_by_[held_++] = plane.at.triangle;
+  const auto known = std::find(recent_.begin(), recent_.end() - 1, plane.at.triangle);
+  std::rotate(recent_.begin(), known, known + 1);
+  recent_.front() = plane.at.triangle;
+}
+
+void MeshProxy::release() noexcept {
+  held_ = 0;
+  depth_.fill(0);
+}
+
+/// Where the proxy wants to be: near the probe, above its planes, and held back by friction.
+std::optional<Vec3> MeshProxy::wanted(const Vec3& probe) noexcept {
+  if (held_ == 0) return probe;
+  std::array<Halfspace, kMaxHalfspaces> planes;  // as seen from the proxy, where rounding is smallest
+  for (std::size_t i = 0; i < held_; ++i) {
+    const Plane& plane = planes_[i];
+    planes[i] = {plane.normal, dot(plane.normal, plane.at.point - centre_) + (distance() + slack_)};
+  }
+  const auto nearest = nearest_within({planes.data(), held_}, probe - centre_, slack_ / 4);
+  if (!nearest) return std::nullopt;
+  depth_ = nearest->lambda;
+  const double lag = norm(nearest->point), rim = options_.friction * nearest->sum();
+  if (lag <= rim) return centre_;
+  return centre_ + (1 - rim / lag) * nearest->point;
+}
+
+void MeshProxy::follow(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
+  release();
+  bool moved = false;  // since the planes were last forgotten
+  for (int sweeps = 0; sweeps < kMaxSweeps;) {
+    const auto goal = wanted(probe);
+    if (!goal) {  // two planes as good as parallel: the one met last decides
+      const Plane last = planes_[held_ - 1];
+      release();
+      hold(last);
+      ++sweeps;
+      continue;
+    }
+    if (held_ > 0 && norm(*goal - centre_) <= slack_ / 4) {
+      if (!moved) return;
+      release();
+      moved = false;
+      continue;
+    }
+    const auto hit = first_contact(*goal, vertices, tree);
+    ++sweeps;
+    if (hit) {
+      const Vec3 from = centre_, way = *goal - centre_;
+      if (lets_move(*hit, way)) {
+        centre_ = from + hit->rest * way;
+        moved = true;
+      }
+      hold({hit->at, away_from(hit->at, from + hit->t * way, vertices, tree)});
+    } else {
+      centre_ = *goal;
+      if (held_ == 0) return;
+      release();
+      moved = false;
+    }
+  }
+}
+
+/// Move along with the surface, as the triangle of the anchor turned and moved.
+void MeshProxy::carry(std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
+  if (!tree.contains(anchor_.triangle)) return;
+  const Corners now = corners_of(tree.triangle(anchor_.triangle), vertices);
+  if (now == anchor_.corners) return;
+  const auto old_axes = axes(anchor_.corners), new_axes = axes(now);
+  Vec3 offset = centre_ - blend(anchor_.weights, anchor_.corners);
+  if (old_axes && new_axes) {
+    const Vec3 local{dot(offset, (*old_axes)[0]), dot(offset, (*old_axes)[1]), dot(offset, (*old_axes)[2])};
+    offset = local.x * (*new_axes)[0] + local.y * (*new_axes)[1] + local.z * (*new_axes)[2];
+  }
+  centre_ = blend(anchor_.weights, now) + offset;
+  keep_distance(vertices, tree);
+}
+
+/// Step back from triangles that came closer than they may.
+void MeshProxy::keep_distance(std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
+  for (int push = 0; push < kMaxPushes; ++push) {
+    const auto nearest = tree.closest(centre_, vertices, distance() - slack_);
+    if (!nearest) return;
+    const Vec3 goal = centre_ + (distance() + slack_ - nearest->distance) * away_from(*nearest, centre_, vertices, tree);
+    const auto hit = tree.sweep(towards(goal), vertices, {&nearest->triangle, 1});
+    centre_ = hit ? centre_ + hit->rest * (goal - centre_) : goal;
+  }
+}
+
+MeshTouch MeshProxy::settle(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
+  follow(probe, vertices, tree);
+  MeshTouch touch{.proxy = centre_};
+  anchor_ = {};
+  if (held_ > 0) {
+    Vec3 normal;
+    std::size_t firmest = 0;
+    for (std::size_t i = 0; i < held_; ++i) {
+      normal = normal + depth_[i] * planes_[i].normal;
+      if (depth_[i] > depth_[firmest]) firmest = i;
+    }
+    const double length = norm(normal);
+    touch.touched = true;
+    touch.triangle = planes_[firmest].at.triangle;
+    touch.weights = planes_[firmest].at.weights;
+    touch.normal = length > 0 ? (1 / length) * normal : planes_[firmest].normal;
+    anchor_ = {touch.triangle, touch.weights, corners_of(tree.triangle(touch.triangle), vertices)};
+  } else if (options_.reach > 0) {
+    if (const auto nearest = tree.closest(centre_, vertices, options_.reach)) {
+      anchor_ = {nearest->triangle, nearest->weights, corners_of(tree.triangle(nearest->triangle), vertices)};
+    }
+  }
+  probe_ = probe;
+  return touch;
+}
+
+MeshTouch MeshProxy::move(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
+  if (placed_) {
+    carry(vertices, tree);
+  } else if (is_finite(probe)) {
+    centre_ = probe;
+    placed_ = true;
+    keep_distance(vertices, tree);
+  }
+  return settle(is_finite(probe) ? probe : probe_, vertices, tree);
+}
+
+MeshTouch MeshProxy::place(const Vec3& probe, const Inside& inside, std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
+  if (!is_finite(probe)) return move(probe_, vertices, tree);
+  centre_ = probe;
+  placed_ = true;
+  if (const auto nearest = tree.closest(probe, vertices)) {
+    const bool below = inside.contains(probe, *nearest, vertices);
+    if (below) centre_ = nearest->point + (distance() + slack_) * inside.normal(*nearest, vertices);
+    if (below || nearest->distance < distance()) keep_distance(vertices, tree);
+  }
+  return settle(probe, vertices, tree);
+}
+
+}  // namespace tactus

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Haptic rendering of triangle meshes: virtual proxy (god object) with friction cone. Thesis 2.3.4.1, figure 2.6.
+///
+/// The proxy is a sphere that moves towards the probe as far as the mesh lets it, never through a triangle:
+///   1. It sweeps along the straight line to where it wants to be; the first triangle in its way stops it and adds a plane.
+///   2. It wants to be at the point nearest to the probe above the planes met so far: on a face one holds it, in a groove two,
+///      in a corner three (constraints.h). A triangle is convex, so it cannot be crossed by a proxy that stays above its plane.
+///   3. Friction: depths below the planes held by add up to D. Within mu D of where it wants to be the proxy stays (static friction),
+///      else it follows to that distance (dynamic friction).
+///   4. When no plane is new, the planes are forgotten and met again: behind a convex edge the old one holds no longer.
+/// The distance to the probe never grows, so this ends; what is left of it after a bounded number of sweeps waits for the next call.
+///
+/// Triangles have two sides; on an open mesh the proxy touches the side that it came from.
+///
+/// A point probe is a sphere, too: of radius `skin`, 2^-24 of the largest coordinate (6 nm at 0.1 m), a million times the rounding of
+/// positions. Every proxy keeps that distance on top of its radius.
+///
+/// Surfaces that move: the proxy first moves along with the point of the surface that holds it, or, if free, with the closest one
+/// within `reach`. A surface therefore never passes over the proxy, and friction carries it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "sim/contact/aabb_tree.h"
+#include "sim/contact/constraints.h"
+#include "sim/contact/inside.h"
+
+namespace tactus {
+
+struct MeshProxyOptions {
+  double friction = 0;  ///< mu >= 0
+  double radius = 0;    ///< [m] of the probe, 0: a point
+  double reach = 0;     ///< [m] at most so far does the surface move from call to call; 0: the mesh is rigid
+};
+
+/// What a probe touches.
+struct MeshTouch {
+  bool touched = false;  ///< no: the proxy is where the probe is, and the rest is of no meaning
+  std::uint32_t triangle = MeshTopology::kNone;
+  std::array<double, 3> weights{};  ///< of its corners: the point touched
+  Vec3 proxy;                       ///< [m] x_p, centre of the sphere
+  Vec3 normal{0, 0, 1};             ///< of unit length, along the sum of the normal forces, away from the surface
+};
+
+class MeshProxy {
+ public:
+  /// in  extent  [m] largest absolute coordinate of the mesh
+  MeshProxy(const MeshProxyOptions& options, double extent) noexcept;
+
+  /// Put the probe there without history: inside of the mesh or too close, the closest point of the surface holds it.
+  MeshTouch place(const Vec3& probe, const Inside& inside, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
+  /// Move the probe there; the first time it is put there, on whichever side of the surface that is. A probe that is not a finite point stays where it was.
+  /// in   vertices  where they are now; the tree is fitted to them. All in the frame of the mesh
+  /// time O(log n) per triangle crossed, about 1 us in the open and 3 us on a mesh of 100 000; no allocation
+  MeshTouch move(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
+
+  const Vec3& position() const noexcept { return centre_; }
+  double skin() const noexcept { return skin_; }
+
+ private:
+  struct Plane {
+    SurfacePoint at;
+    Vec3 normal;
+  };
+  /// Where on the surface the proxy is, and how the triangle lay then.
+  struct Anchor {
+    std::uint32_t triangle = MeshTopology::kNone;
+    std::array<double, 3> weights{};
+    Corners corners;
+  };
+
+  double distance() const noexcept { return options_.radius + skin_; }
+  Sweep towards(const Vec3& goal) const noexcept;
+  bool lets_move(const SurfaceHit& hit, const Vec3& way) const noexcept;
+  std::optional<SurfaceHit> first_contact(const Vec3& goal, std::span<const Vec3> vertices, const AabbTree& tree) const noexcept;
+  std::optional<Vec3> wanted(const Vec3& probe) noexcept;
+  void hold(const Plane& plane) noexcept;
+  void release() noexcept;
+  void carry(std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
+  void keep_distance(std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
+  void follow(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
+  MeshTouch settle(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
+
+  MeshProxyOptions options_;
+  double skin_, slack_;
+  Vec3 centre_, probe_;
+  bool placed_ = false;
+  std::array<Plane, kMaxHalfspaces> planes_;
+  std::array<std::uint32_t, kMaxHalfspaces> held_by_{};  // triangles of planes_
+  std::size_t held_ = 0;
+  std::array<double, kMaxHalfspaces> depth_{};            // below each plane
+  std::array<std::uint32_t, 4> recent_{MeshTopology::kNone, MeshTopology::kNone, MeshTopology::kNone, MeshTopology::kNone};
+  Anchor anchor_;
+};
+
+}  // namespace tactus

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What collision detection asks of a single triangle.
+///
+/// A triangle is convex, so its distance f(t) from a point that moves along a line is a convex function of t. Newton's method on
+/// f(t) = r therefore comes from the left and never passes the first contact of a moving sphere: no step is too long, however thin
+/// the triangle or grazing the way.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "codec/base/geometry.h"
+
+namespace tactus {
+
+/// Corners of a triangle, in an order that whoever asks keeps the same: results have the same bits only for the same order.
+using Corners = std::array<Vec3, 3>;
+
+/// Point of a triangle that is closest to another point.
+struct TrianglePoint {
+  std::array<double, 3> weights{};  ///< of the corners, sum 1; exactly zero for corners that have no part in it
+  Vec3 point;                       ///< [m]
+  double distance2 = 0;             ///< [m^2]
+};
+
+namespace detail {
+
+inline TrianglePoint closest_on_edge(const Vec3& p, const Corners& v, std::size_t i, std::size_t j) noexcept {
+  const Vec3 edge = v[j] - v[i];
+  const double along = dot(p - v[i], edge), length2 = dot(edge, edge);
+  TrianglePoint out;
+  if (!(along > 0)) {
+    out.weights[i] = 1;
+    out.point = v[i];
+  } else if (along >= length2) {
+    out.weights[j] = 1;
+    out.point = v[j];
+  } else {
+    out.weights[j] = along / length2;
+    out.weights[i] = 1 - out.weights[j];
+    out.point = v[i] + out.weights[j] * edge;
+  }
+  out.distance2 = dot(p - out.point, p - out.point);
+  return out;
+}
+
+}  // namespace detail
+
+/// Needles whose height is below 1e-10 of their length are their edges.   time about 15 ns
+inline TrianglePoint closest_on_triangle(const Vec3& p, const Corners& v) noexcept {
+  const Vec3 u = v[1] - v[0], w = v[2] - v[0], q = p - v[0];
+  const Vec3 normal = cross(u, w);
+  const double area2 = dot(normal, normal), longest2 = std::fmax(dot(u, u), dot(w, w));
+  std::array<double, 3> weight{-1, -1, -1};
+  if (area2 > 1e-20 * longest2 * longest2) {
+    weight[1] = dot(cross(q, w), normal) / area2;
+    weight[2] = dot(cross(u, q), normal) / area2;
+    weight[0] = 1 - weight[1] - weight[2];
+    if (weight[0] >= 0 && weight[1] >= 0 && weight[2] >= 0) {
+      const Vec3 point = v[0] + (weight[1] * u + weight[2] * w);
+      return {weight, point, dot(p - point, p - point)};
+    }
+  }
+  // The closest point lies on an edge that can be seen from p.
+  TrianglePoint best;
+  best.distance2 = HUGE_VAL;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (weight[k] >= 0) continue;
+    const std::size_t i = k == 0 ? 1 : 0, j = k == 2 ? 1 : 2;
+    const TrianglePoint on_edge = detail::closest_on_edge(p, v, i, j);
+    if (on_edge.distance2 < best.distance2) best = on_edge;
+  }
+  return best;
+}
+
+/// Where a segment first meets a triangle.
+struct TriangleHit {
+  double t = 0;                     ///< share of the segment, 0..1
+  std::array<double, 3> weights{};  ///< of the corners
+};
+
+namespace detail {
+
+/// First point inside of a segment that lies in the triangle's plane.
+inline std::optional<TriangleHit> coplanar_hit(const Vec3& from, const Vec3& way, const Corners& v, const Vec3& normal) noexcept {
+  double first = 0, last = 1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 inward = cross(normal, v[(k + 1) % 3] - v[k]);
+    const double start = dot(inward, from - v[k]), rate = dot(inward, way);
+    if (rate > 0) first = std::fmax(first, -start / rate);
+    else if (rate < 0) last = std::fmin(last, -start / rate);
+    else if (start < 0) return std::nullopt;
+  }
+  if (!(first <= last)) return std::nullopt;
+  return TriangleHit{first, closest_on_triangle(from + first * way, v).weights};
+}
+
+}  // namespace detail
+
+/// Edges and corners belong to the triangle. Two triangles with a common edge compute the same bits for it, with opposite sign, so
+/// that no segment slips through between them. A triangle without area is never met; its neighbours are.
+inline std::optional<TriangleHit> segment_hits_triangle(const Vec3& from, const Vec3& way, const Corners& v) noexcept {
+  const Vec3 a = v[0] - from, b = v[1] - from, c = v[2] - from;
+  const Vec3 normal = cross(b - a, c - a);
+  const double start = -dot(normal, a), rate = dot(normal, way), end = start + rate;
+  if ((start > 0 && end > 0) || (start < 0 && end < 0)) return std::nullopt;
+  if (start == 0 && end == 0) {
+    if (dot(normal, normal) == 0) return std::nullopt;
+    return detail::coplanar_hit(from, way, v, normal);
+  }
+  const double wa = dot(cross(b, c), way), wb = dot(cross(c, a), way), wc = dot(cross(a, b), way);
+  if (!((wa >= 0 && wb >= 0 && wc >= 0) || (wa <= 0 && wb <= 0 && wc <= 0))) return std::nullopt;
+  const double sum = wa + wb + wc;
+  if (sum == 0) return std::nullopt;
+  return TriangleHit{std::fmin(std::fmax(start / (start - end), 0.0), 1.0), {wa / sum, wb / sum, wc / sum}};
+}
+
+/// A moving sphere.
+struct Sweep {
+  Vec3 from, way;     ///< [m] start of the centre, and its end as seen from there
+  double radius = 0;  ///< [m] > 0
+  double slack = 0;   ///< [m] > 0: distance from contact at which it is to come to rest
+};
+
+/// Where a moving sphere first touches a triangle.
+struct TriangleTouch {
+  double t = 0;      ///< share of the way, 0..1, of the contact; up to there the distance is never below the radius
+  double rest = 0;   ///< share of the way, 0..t, up to which the distance is at least radius + slack (0: it is not even at the start)
+  TrianglePoint at;  ///< point touched
+};
+
+/// A sphere that touches at the start, or reaches into the triangle, is stopped when it would come closer, and free to leave.
+/// in  limit  later contacts are of no interest
+/// time about 20 ns for what is far or moves away, 60 ns for a contact; at most 32 steps, then it stops short of contact
+inline std::optional<TriangleTouch> sphere_hits_triangle(const Sweep& sweep, const Corners& v, double limit) noexcept {
+  constexpr int kMaxSteps = 32;
+  constexpr double kContact = 0x1p-20;  // of the slack
+  TriangleTouch touch{0, 0, closest_on_triangle(sweep.from, v)};
+  double slope = 0;
+  for (int step = 0; step < kMaxSteps; ++step) {
+    const double distance = std::sqrt(touch.at.distance2), gap = distance - sweep.radius;
+    const bool contact = gap <= kContact * sweep.slack;
+    if (contact && step > 0) break;
+    const Vec3 away = sweep.from + touch.t * sweep.way - touch.at.point;
+    slope = distance > 0 ? dot(away, sweep.way) / distance : -norm(sweep.way);
+    if (!(slope < 0) || touch.t - gap / slope > limit) return std::nullopt;
+    if (contact) break;
+    touch.t -= gap / slope;
+    touch.at = closest_on_triangle(sweep.from + touch.t * sweep.way, v);
+  }
+  touch.rest = std::fmax(0.0, touch.t + sweep.slack / slope);  // the last tangent lies below f here, too
+  return touch;
+}
+
+}  // namespace tactus
