@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/surface/tetgen.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <numeric>
+#include <optional>
+#include <sstream>
+
+#include "sim/mesh/tet_files.h"
+#include "sim/surface/program.h"
+
+namespace tactus {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kVolumeTolerance = 1e-9;  // relative; TetGen writes 16 digits
+constexpr double kSamePlace = 1e-12;       // of the surface's size; likewise
+
+tl::unexpected<SurfaceError> broken(Errc code, const char* rule, std::string detail) {
+  return tl::unexpected(SurfaceError{fail(code, rule).value(), {}, 0, std::move(detail)});
+}
+
+tl::expected<void, SurfaceError> check_options(const FillOptions& options) {
+  const bool volume = options.max_volume == 0 || (std::isfinite(options.max_volume) && options.max_volume > 0);
+  const bool quality = options.quality == 0 || (std::isfinite(options.quality) && options.quality >= 1.1);
+  if (!volume || !quality || !(options.time_limit > 0)) return broken(Errc::invalid_argument, "R-TGN-7", "");
+  return {};
+}
+
+double enclosed_volume(const TriMesh& mesh) {
+  const Vec3 origin = mesh.vertices.empty() ? Vec3{} : mesh.vertices[0];
+  double sum = 0;
+  for (const auto& [a, b, c] : mesh.triangles)
+    sum += dot(cross(mesh.vertices[a] - origin, mesh.vertices[b] - origin), mesh.vertices[c] - origin) / 6;
+  return sum;
+}
+
+tl::expected<void, SurfaceError> check_closed(const TriMesh& mesh) {
+  const MeshTopology topology(mesh);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (unsigned k = 0; k < 3; ++k)
+      if (topology.across(t, k) == MeshTopology::kNone) return broken(Errc::invalid, "R-TGN-2", "triangle " + std::to_string(t));
+  for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v)
+    if (topology.triangles_of(v).empty()) return broken(Errc::invalid, "R-TGN-8", "vertex " + std::to_string(v));
+  return {};
+}
+
+tl::expected<void, SurfaceError> check_places(const TriMesh& mesh) {
+  std::vector<std::uint32_t> order(mesh.vertices.size());
+  std::iota(order.begin(), order.end(), 0U);
+  const auto key = [&](std::uint32_t v) {
+    const Vec3& p = mesh.vertices[v];
+    return std::array{p.x, p.y, p.z};
+  };
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  const auto twice =
+      std::adjacent_find(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) == key(b); });
+  if (twice != order.end())
+    return broken(Errc::invalid, "R-TGN-8", "vertices " + std::to_string(twice[0]) + " and " + std::to_string(twice[1]));
+  return {};
+}
+
+tl::expected<void, SurfaceError> check_volume(const TriMesh& mesh, const FillOptions& options) {
+  const double volume = enclosed_volume(mesh);
+  if (!(volume > 0)) return broken(Errc::invalid, "R-TGN-4", "");
+  if (options.max_volume > 0 && volume / options.max_volume > static_cast<double>(kMaxTets))
+    return broken(Errc::limit_exceeded, "R-TGN-5", "");
+  return {};
+}
+
+/// p: a surface, Y: which stays as it is, z: numbers from 0, S: at most so many new points, q and a: quality and volume.
+std::string fill_switches(const FillOptions& options) {
+  std::array<char, 32> digits{};
+  const auto text = [&](double value) {
+    return std::string(digits.data(),
+                       std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::scientific).ptr);
+  };
+  std::string switches = std::string(options.boundary == Boundary::keep ? "-pYzS" : "-pzS") + std::to_string(kMaxMeshVertices);
+  if (options.quality > 0) switches += "q" + text(options.quality);
+  if (options.max_volume > 0) switches += "a" + text(options.max_volume);
+  return switches;
+}
+
+/// "Facet #3 intersects facet #5 at triangles:", counted from 1; empty when no facet is complained about.
+std::string first_two_facets(const std::string& words) {
+  std::array<std::string, 2> found;
+  std::size_t at = 0;
+  for (std::string& number : found) {
+    at = words.find("acet #", at);
+    if (at == std::string::npos) return {};
+    at += 6;
+    std::uint32_t facet = 0;
+    if (std::from_chars(words.data() + at, words.data() + words.size(), facet).ec != std::errc() || facet == 0) return {};
+    number = std::to_string(facet - 1);
+  }
+  return "triangles " + found[0] + " and " + found[1];
+}
+
+std::string last_line(const std::string& words) {
+  std::istringstream lines(words);
+  std::string line, last;
+  while (std::getline(lines, line))
+    if (!line.empty()) last = line;
+  return last;
+}
+
+/// A run of the program in its folder, until the time limit of the whole task.
+class TetGen {
+ public:
+  TetGen(const FillOptions& options, const fs::path& folder)
+      : options_(options),
+        folder_(folder),
+        deadline_(std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                                         std::chrono::duration<double>(std::min(options.time_limit, 1e6)))) {}
+
+  tl::expected<ProgramResult, SurfaceError> run(const std::string& switches) const {
+    auto result = run_program({options_.program, switches, "surface.smesh"}, folder_, deadline_);
+    if (result) return *result;
+    if (result.error() == ProgramFailure::not_there) return broken(Errc::unsupported, "R-TGN-1", options_.program);
+    if (result.error() == ProgramFailure::too_long) return broken(Errc::limit_exceeded, "R-TGN-5", "");
+    return broken(Errc::io, "R-TGN-6", "");
+  }
+
+  /// Why it gave up: it ends in the same way for every reason, but can be asked for facets that cut one another.
+  SurfaceError reason(const ProgramResult& failed) const {
+    const auto asked = run("-dz");
+    if (!asked) return asked.error();
+    if (const std::string facets = first_two_facets(asked->words); !facets.empty())
+      return broken(Errc::invalid, "R-TGN-3", facets).value();
+    const std::string words = last_line(failed.words);
+    return broken(Errc::io, "R-TGN-6", words.empty() ? options_.program : options_.program + " says '" + words + '\'').value();
+  }
+
+ private:
+  const FillOptions& options_;
+  const fs::path& folder_;
+  std::chrono::steady_clock::time_point deadline_;
+};
+
+/// Put the surface's vertices back to their own bits: TetGen writes 16 digits.
+void restore_vertices(const TriMesh& surface, TetMesh& mesh) {
+  const Bounds box = bounds(surface.vertices);
+  const double near = kSamePlace * norm(box.high - box.low);
+  for (std::size_t v = 0; v < std::min(surface.vertices.size(), mesh.vertices.size()); ++v)
+    if (norm(mesh.vertices[v] - surface.vertices[v]) <= near) mesh.vertices[v] = surface.vertices[v];
+}
+
+tl::expected<void, SurfaceError> check_filled(const TriMesh& surface, const TetMesh& mesh) {
+  if (const auto checked = check(mesh); !checked)
+    return broken(checked.error().error.code, "R-TGN-6", to_string(checked.error()));
+  double sum = 0;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) sum += volume(mesh, t);
+  const double wanted = enclosed_volume(surface);
+  if (std::abs(sum - wanted) <= kVolumeTolerance * wanted) return {};
+  std::ostringstream figures;
+  figures << sum << " m^3 filled, " << wanted << " m^3 enclosed";
+  return broken(Errc::invalid, "R-TGN-9", figures.str());
+}
+
+}  // namespace
+
+tl::expected<TetMesh, SurfaceError> fill(const TriMesh& surface, const FillOptions& options) {
+  if (const auto checked = check(surface); !checked)
+    return tl::unexpected(SurfaceError{checked.error().error, {}, checked.error().element, {}});
+  const auto ready = check_options(options)
+                         .and_then([&] { return check_closed(surface); })
+                         .and_then([&] { return check_places(surface); })
+                         .and_then([&] { return check_volume(surface, options); });
+  if (!ready) return tl::unexpected(ready.error());
+
+  const PrivateFolder folder;
+  std::ofstream out(folder.path() / "surface.smesh", std::ios::binary);
+  write_smesh(out, surface);
+  out.close();
+  if (!out) return broken(Errc::io, "R-TGN-6", "no room for temporary files");
+
+  const TetGen tetgen(options, folder.path());
+  const auto done = tetgen.run(fill_switches(options));
+  if (!done) return tl::unexpected(done.error());
+  if (done->status != 0) return tl::unexpected(tetgen.reason(*done));
+  auto file = read_tet_mesh(folder.path() / "surface.1.ele");
+  if (!file && file.error().error.code == Errc::limit_exceeded) return broken(Errc::limit_exceeded, "R-TGN-5", "");
+  if (!file) return tl::unexpected(tetgen.reason(*done));
+  restore_vertices(surface, file->mesh);
+  if (const auto sound = check_filled(surface, file->mesh); !sound) return tl::unexpected(sound.error());
+  return std::move(file->mesh);
+}
+
+}  // namespace tactus
