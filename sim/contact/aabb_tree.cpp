@@ -123,7 +123,8 @@ Triangle AabbTree::triangle(std::uint32_t number) const noexcept {
   return out;
 }
 
-SurfacePoint AabbTree::named(const Leaf& leaf, const std::array<double, 3>& weights, const Vec3& point, double distance) noexcept {
+SurfacePoint AabbTree::named(const Leaf& leaf, const std::array<double, 3>& weights, const Vec3& point,
+                             double distance) noexcept {
   SurfacePoint out{leaf.triangle, {}, point, distance};
   for (std::size_t k = 0; k < 3; ++k) out.weights[leaf.order[k]] = weights[k];
   return out;
@@ -175,7 +176,8 @@ bool AabbTree::near_segment(const Box& box, const Vec3& from, const Vec3& way, d
     return false;
   }
   const auto apart = [rounding](double m1, double h2, double m2, double h1, double e1, double a2, double e2, double a1) {
-    return std::abs(m1 * h2 - m2 * h1) > (e1 + rounding) * a2 + (e2 + rounding) * a1 + 1e-15 * (std::abs(m1) * a2 + std::abs(m2) * a1);
+    return std::abs(m1 * h2 - m2 * h1) >
+           (e1 + rounding) * a2 + (e2 + rounding) * a1 + 1e-15 * (std::abs(m1) * a2 + std::abs(m2) * a1);
   };
   return !apart(m.y, h.z, m.z, h.y, e.y, a.z, e.z, a.y) && !apart(m.z, h.x, m.x, h.z, e.z, a.x, e.x, a.z) &&
          !apart(m.x, h.y, m.y, h.x, e.x, a.y, e.y, a.x);

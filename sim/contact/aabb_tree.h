@@ -32,9 +32,7 @@ struct SurfacePoint {
   Vec3 point;                       ///< [m]
   double distance = 0;              ///< [m] from the point asked for
 
-  Feature feature() const noexcept {
-    return static_cast<Feature>((weights[0] != 0) + (weights[1] != 0) + (weights[2] != 0));
-  }
+  Feature feature() const noexcept { return static_cast<Feature>((weights[0] != 0) + (weights[1] != 0) + (weights[2] != 0)); }
 };
 
 /// Where a segment or a moving sphere first meets the mesh.

@@ -24,9 +24,9 @@ struct Halfspace {
 inline constexpr std::size_t kMaxHalfspaces = 6;
 
 struct Constrained {
-  Vec3 point;                                     ///< x
-  std::array<double, kMaxHalfspaces> lambda{};    ///< per half-space; at most three are not zero
-  double sum() const noexcept;                    ///< of lambda
+  Vec3 point;                                   ///< x
+  std::array<double, kMaxHalfspaces> lambda{};  ///< per half-space; at most three are not zero
+  double sum() const noexcept;                  ///< of lambda
 };
 
 /// Nearest point to the goal in the intersection, by trying which planes hold it.

@@ -10,6 +10,8 @@ namespace {
 constexpr std::uint32_t kNone = MeshTopology::kNone;
 constexpr int kMaxSweeps = 32;
 constexpr int kMaxPushes = 4;
+constexpr int kConfirmations = 2;  // searches without a way out, where several planes hold
+constexpr int kMaxIdle = 4;        // searches that move the proxy, but by rounding only
 
 Corners corners_of(const Triangle& triangle, std::span<const Vec3> vertices) {
   return {vertices[triangle[0]], vertices[triangle[1]], vertices[triangle[2]]};
@@ -47,8 +49,8 @@ MeshProxy::MeshProxy(const MeshProxyOptions& options, double extent) noexcept
 
 Sweep MeshProxy::towards(const Vec3& goal) const noexcept { return {centre_, goal - centre_, distance(), slack_}; }
 
-/// Less than a quarter of the slack is rounding: a proxy that is held does not creep.
-bool MeshProxy::lets_move(const SurfaceHit& hit, const Vec3& way) const noexcept { return hit.rest * norm(way) > slack_ / 4; }
+/// What is less than the slack is not worth a move: a proxy that is held does not creep.
+bool MeshProxy::lets_move(const SurfaceHit& hit, const Vec3& way) const noexcept { return hit.rest * norm(way) > slack_; }
 
 /// The triangles that held the proxy last are asked first: a face that does not let it move at all settles the matter.
 std::optional<SurfaceHit> MeshProxy::first_contact(const Vec3& goal, std::span<const Vec3> vertices,
@@ -104,6 +106,8 @@ std::optional<Vec3> MeshProxy::wanted(const Vec3& probe) noexcept {
 void MeshProxy::follow(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
   release();
   bool moved = false;  // since the planes were last forgotten
+  int idle = 0;        // how often they were forgotten without a gain
+  double reached = norm(probe - centre_);
   for (int sweeps = 0; sweeps < kMaxSweeps;) {
     const auto goal = wanted(probe);
     if (!goal) {  // two planes as good as parallel: the one met last decides
@@ -113,27 +117,27 @@ void MeshProxy::follow(const Vec3& probe, std::span<const Vec3> vertices, const 
       ++sweeps;
       continue;
     }
-    if (held_ > 0 && norm(*goal - centre_) <= slack_ / 4) {
-      if (!moved) return;
-      release();
-      moved = false;
-      continue;
-    }
-    const auto hit = first_contact(*goal, vertices, tree);
-    ++sweeps;
-    if (hit) {
+    const bool settled = held_ > 0 && norm(*goal - centre_) <= slack_;
+    if (!settled) {
       const Vec3 from = centre_, way = *goal - centre_;
-      if (lets_move(*hit, way)) {
-        centre_ = from + hit->rest * way;
-        moved = true;
+      const auto hit = first_contact(*goal, vertices, tree);
+      ++sweeps;
+      if (!hit) centre_ = *goal;
+      else if (lets_move(*hit, way)) centre_ = from + hit->rest * way;
+      moved = moved || centre_ != from;
+      if (hit) {
+        hold({hit->at, away_from(hit->at, from + hit->t * way, vertices, tree)});
+        continue;
       }
-      hold({hit->at, away_from(hit->at, from + hit->t * way, vertices, tree)});
-    } else {
-      centre_ = *goal;
       if (held_ == 0) return;
-      release();
-      moved = false;
     }
+    // One plane that does not let the proxy move is beyond doubt; among several, one touched at its edge may have hidden the way out.
+    const double remaining = norm(probe - centre_);
+    idle = remaining < reached - slack_ ? 0 : idle + 1;
+    if ((settled && !moved && (held_ == 1 || idle >= kConfirmations)) || idle > kMaxIdle) return;
+    reached = std::fmin(reached, remaining);
+    release();
+    moved = false;
   }
 }
 
@@ -200,7 +204,8 @@ MeshTouch MeshProxy::move(const Vec3& probe, std::span<const Vec3> vertices, con
   return settle(is_finite(probe) ? probe : probe_, vertices, tree);
 }
 
-MeshTouch MeshProxy::place(const Vec3& probe, const Inside& inside, std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
+MeshTouch MeshProxy::place(const Vec3& probe, const Inside& inside, std::span<const Vec3> vertices,
+                           const AabbTree& tree) noexcept {
   if (!is_finite(probe)) return move(probe_, vertices, tree);
   centre_ = probe;
   placed_ = true;

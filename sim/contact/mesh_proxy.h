@@ -91,7 +91,7 @@ class MeshProxy {
   std::array<Plane, kMaxHalfspaces> planes_;
   std::array<std::uint32_t, kMaxHalfspaces> held_by_{};  // triangles of planes_
   std::size_t held_ = 0;
-  std::array<double, kMaxHalfspaces> depth_{};            // below each plane
+  std::array<double, kMaxHalfspaces> depth_{};  // below each plane
   std::array<std::uint32_t, 4> recent_{MeshTopology::kNone, MeshTopology::kNone, MeshTopology::kNone, MeshTopology::kNone};
   Anchor anchor_;
 };

@@ -125,8 +125,9 @@ struct Sweep {
 
 /// Where a moving sphere first touches a triangle.
 struct TriangleTouch {
-  double t = 0;      ///< share of the way, 0..1, of the contact; up to there the distance is never below the radius
-  double rest = 0;   ///< share of the way, 0..t, up to which the distance is at least radius + slack (0: it is not even at the start)
+  double t = 0;  ///< share of the way, 0..1, of the contact; up to there the distance is never below the radius
+  double rest =
+      0;  ///< share of the way, 0..t, up to which the distance is at least radius + slack (0: it is not even at the start)
   TrianglePoint at;  ///< point touched
 };
 

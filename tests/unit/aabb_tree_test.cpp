@@ -131,9 +131,12 @@ TEST(Triangle, SegmentsInThePlaneOfTheTriangle) {
 struct AabbTreeTest : ::testing::TestWithParam<int> {
   static TriMesh mesh() {
     switch (GetParam()) {
-      case 0: return testing::bumpy_ball(0.1, 4, 0.2, 1);
-      case 1: return testing::box({0.1, 0.1, 0.1});
-      case 2: return testing::sheet(12, 0.01, [](double, double) { return 0.0; });
+      case 0:
+        return testing::bumpy_ball(0.1, 4, 0.2, 1);
+      case 1:
+        return testing::box({0.1, 0.1, 0.1});
+      case 2:
+        return testing::sheet(12, 0.01, [](double, double) { return 0.0; });
       case 3: {  // a thousand needles far from the origin, where coordinates are coarse
         TriMesh mesh = testing::sheet(23, 0.01, [](double x, double y) { return 0.01 * std::sin(300 * x) * std::cos(200 * y); });
         for (Vec3& v : mesh.vertices) v = {1000 + 1e-5 * v.x, v.y, v.z};

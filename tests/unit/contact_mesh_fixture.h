@@ -97,8 +97,8 @@ inline TriMesh box(const Vec3& half) {
   for (unsigned i = 0; i < 8; ++i) {
     mesh.vertices.push_back({i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z});
   }
-  for (const auto& [a, b, c, d] : {std::array{0u, 2u, 3u, 1u}, {4u, 5u, 7u, 6u}, {0u, 1u, 5u, 4u}, {2u, 6u, 7u, 3u}, {0u, 4u, 6u, 2u},
-                                   {1u, 3u, 7u, 5u}}) {
+  for (const auto& [a, b, c, d] :
+       {std::array{0u, 2u, 3u, 1u}, {4u, 5u, 7u, 6u}, {0u, 1u, 5u, 4u}, {2u, 6u, 7u, 3u}, {0u, 4u, 6u, 2u}, {1u, 3u, 7u, 5u}}) {
     mesh.triangles.push_back({a, b, c});
     mesh.triangles.push_back({a, c, d});
   }
