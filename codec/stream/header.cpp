@@ -8,6 +8,7 @@
 #include "codec/base/bytes.h"
 #include "codec/base/fixed.h"
 #include "codec/base/hash.h"
+#include "codec/mesh/mesh_header.h"
 
 namespace tactus {
 namespace {
@@ -15,7 +16,8 @@ namespace {
 constexpr std::array<std::uint8_t, 4> kMagic{0x89, 'T', 'C', 'T'};
 constexpr std::uint8_t kVersion = 1;
 constexpr std::uint8_t kRigid = 1;
-constexpr std::size_t kFixedSize = 12;  // magic, version, profile, flags, body_size
+constexpr std::uint16_t kHasMeshes = 1;  // flag
+constexpr std::size_t kFixedSize = 12;   // magic, version, profile, flags, body_size
 
 /// Well-formed UTF-8 without control characters (RFC 3629).
 bool is_plain_utf8(std::string_view text) noexcept {
@@ -37,6 +39,8 @@ bool is_plain_utf8(std::string_view text) noexcept {
   }
   return true;
 }
+
+bool is_name(std::string_view name) noexcept { return !name.empty() && name.size() <= 255 && is_plain_utf8(name); }
 
 bool is_dof(std::uint8_t dof) noexcept {
   const unsigned turns = static_cast<unsigned>(std::popcount(static_cast<unsigned>(dof >> 3)));
@@ -60,7 +64,7 @@ bool are_exponents(const GridExponents& g) noexcept {
 }
 
 const char* broken_object_rule(const RigidObject& object) noexcept {
-  if (object.name.empty() || object.name.size() > 255 || !is_plain_utf8(object.name)) return "R-STR-11";
+  if (!is_name(object.name)) return "R-STR-11";
   if (!is_dof(object.dof)) return "R-STR-12";
   if (!is_unit(object.initial.rotation)) return "R-STR-13";
   return nullptr;
@@ -102,7 +106,21 @@ Result<void> skip_extensions(ByteReader& body) {
   return {};
 }
 
-Result<StreamHeader> parse_body(ByteReader body, Profile profile, const DecodeLimits& limits) {
+Result<void> parse_meshes(ByteReader& body, const DecodeLimits& limits, StreamHeader& header) {
+  const std::uint64_t count = body.varint();
+  if (!body.ok()) return fail(class_of_overflow(body), "R-STR-5", body.bit_offset());
+  if (count < 1) return fail(Errc::malformed, "R-MES-1", body.bit_offset());
+  if (count > limits.objects - header.objects.size()) return fail(Errc::limit_exceeded, "R-STR-14", body.bit_offset());
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const std::uint64_t start = body.bit_offset();
+    TACTUS_TRY(auto mesh, parse_mesh(body, limits.vertices));
+    if (!is_name(mesh.name)) return fail(Errc::invalid, "R-STR-11", start);
+    header.meshes.push_back(std::move(mesh));
+  }
+  return {};
+}
+
+Result<StreamHeader> parse_body(ByteReader body, Profile profile, std::uint16_t flags, const DecodeLimits& limits) {
   StreamHeader header;
   header.profile = profile;
   const std::uint64_t start = body.bit_offset();
@@ -124,6 +142,7 @@ Result<StreamHeader> parse_body(ByteReader body, Profile profile, const DecodeLi
     TACTUS_TRY(auto object, parse_object(body));
     header.objects.push_back(std::move(object));
   }
+  if (flags & kHasMeshes) TACTUS_CHECK(parse_meshes(body, limits, header));
   TACTUS_CHECK(skip_extensions(body));
   return header;
 }
@@ -133,13 +152,18 @@ Result<StreamHeader> parse_body(ByteReader body, Profile profile, const DecodeLi
 Result<void> check_header(const StreamHeader& header, const DecodeLimits& limits) {
   if (header.profile != Profile::thesis) return fail(Errc::unsupported, "R-STR-3");
   if (const char* rule = broken_parameter_rule(header)) return fail(Errc::invalid, rule);
-  if (header.objects.size() > limits.objects) return fail(Errc::limit_exceeded, "R-STR-14");
+  if (header.objects.size() + header.meshes.size() > limits.objects) return fail(Errc::limit_exceeded, "R-STR-14");
   std::unordered_set<std::string_view> names;
   for (const RigidObject& object : header.objects) {
     if (const char* rule = broken_object_rule(object)) return fail(Errc::invalid, rule);
     if (!names.insert(object.name).second) return fail(Errc::invalid, "R-STR-11");
     const RigidState at_rest{0, object.initial.position, object.initial.rotation, {}, {}};
     if (object.initial != at_rest) return fail(Errc::invalid, "R-API-8");
+  }
+  for (const MeshObject& mesh : header.meshes) {
+    if (!is_name(mesh.name) || !names.insert(mesh.name).second) return fail(Errc::invalid, "R-STR-11");
+    if (const char* rule = broken_mesh_rule(mesh)) return fail(Errc::invalid, rule);
+    if (mesh.rest.size() > limits.vertices) return fail(Errc::limit_exceeded, "R-STR-14");
   }
   return {};
 }
@@ -164,13 +188,15 @@ Result<std::vector<std::uint8_t>> write_header(const StreamHeader& header) {
     for (const std::int32_t c : object.initial.position) b.i32(c);
     for (const std::int32_t c : object.initial.rotation) b.i32(c);
   }
+  if (!header.meshes.empty()) b.varint(header.meshes.size());
+  for (const MeshObject& mesh : header.meshes) write_mesh(b, mesh);
   std::vector<std::uint8_t> out;
   out.reserve(kFixedSize + body.size() + 4);
   ByteWriter w(out);
   for (const std::uint8_t byte : kMagic) w.u8(byte);
   w.u8(kVersion);
   w.u8(static_cast<std::uint8_t>(header.profile));
-  w.u16(0);
+  w.u16(header.meshes.empty() ? 0 : kHasMeshes);
   w.u32(static_cast<std::uint32_t>(body.size()));
   w.bytes(body);
   w.u32(crc32(out));
@@ -190,7 +216,7 @@ Result<ParsedHeader> parse_header(std::span<const std::uint8_t> bytes, const Dec
   if (version != kVersion) return fail(Errc::unsupported, "R-STR-2", 32);
   if (profile > static_cast<std::uint8_t>(Profile::main)) return fail(Errc::malformed, "R-STR-3", 40);
   if (profile != static_cast<std::uint8_t>(Profile::thesis)) return fail(Errc::unsupported, "R-STR-3", 40);
-  if (flags != 0) return fail(Errc::malformed, "R-STR-4", 48);
+  if (flags > kHasMeshes) return fail(Errc::malformed, "R-STR-4", 48);
   if (body_size > limits.header_bytes) return fail(Errc::limit_exceeded, "R-STR-14", 64);
   ByteReader body = in.sub(body_size);
   [[maybe_unused]] const std::uint32_t crc = in.u32();
@@ -198,7 +224,7 @@ Result<ParsedHeader> parse_header(std::span<const std::uint8_t> bytes, const Dec
 #ifndef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
   if (crc != crc32(bytes.first(kFixedSize + body_size))) return fail(Errc::checksum, "R-STR-15", in.bit_offset() - 32);
 #endif
-  TACTUS_TRY(auto header, parse_body(body, static_cast<Profile>(profile), limits));
+  TACTUS_TRY(auto header, parse_body(body, static_cast<Profile>(profile), flags, limits));
   if (auto checked = check_header(header, limits); !checked) return fail(checked.error().code, checked.error().rule, 96);
   return ParsedHeader{std::move(header), in.position()};
 }
@@ -209,6 +235,15 @@ std::size_t max_packet_size(const StreamHeader& header) noexcept {
   constexpr std::size_t kHead = 64;     // sequence, key, baseline, tick, count, tail
   constexpr std::size_t kUpdate = 192;  // gap, reason, level and 12 components at 15 bits per adaptive bit
   return kHead + kUpdate * moving;
+}
+
+std::size_t max_mesh_packet_size(const MeshObject& mesh) noexcept {
+  constexpr std::size_t kHead = 96;                       // fields, bounds, tails
+  constexpr std::size_t kCoefficient = 16;                // a signed value at 15 bits per adaptive bit
+  constexpr std::size_t kVertex = 40;                     // main: a flag and three signed values
+  const std::size_t listed = 17u + 6u * mesh.quant_bits;  // thesis: a gap and three symbols at 15 bits per adaptive bit
+  return kHead + kCoefficient * mesh.basis.steps.size() +
+         (mesh.profile == MeshProfile::main ? kVertex : listed) * mesh.rest.size();
 }
 
 }  // namespace tactus

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "codec/base/result.h"
+#include "codec/mesh/mesh_object.h"
 
 namespace tactus {
 
@@ -59,6 +60,7 @@ struct StreamHeader {
   std::uint16_t max_extrapolation = 2000;  ///< ticks; an object without updates stops moving after so long
   std::uint8_t baseline_span = 1;          ///< how many of the newest states a receiver keeps as baselines, 1..64
   std::vector<RigidObject> objects;        ///< order is the wire order
+  std::vector<MeshObject> meshes;          ///< deformable objects; a stream without them has no byte about them
 };
 
 /// What a decoder accepts before it allocates.
@@ -66,6 +68,7 @@ struct DecodeLimits {
   std::uint32_t objects = 4096;
   std::uint32_t header_bytes = 1u << 20;
   std::uint32_t packet_bytes = 1u << 20;
+  std::uint32_t vertices = 1u << 20;  ///< of one mesh
 };
 
 /// Serialise a header. Deterministic: equal headers give equal bytes.
@@ -82,10 +85,12 @@ struct ParsedHeader {
 };
 
 /// Parse a header from the front of `bytes`; unknown extension records are skipped.
-/// err  truncated, malformed, invalid, unsupported, limit_exceeded, checksum: R-STR-1 .. R-STR-16.
+/// err  truncated, malformed, invalid, unsupported, limit_exceeded, checksum: R-STR-1 .. R-STR-16, R-MES-1 .. R-MES-7.
 Result<ParsedHeader> parse_header(std::span<const std::uint8_t> bytes, const DecodeLimits& limits = {});
 
-/// Upper bound of the size of any packet of this stream, in bytes.
+/// Upper bound of the size of any packet of this stream's rigid objects, in bytes.
 std::size_t max_packet_size(const StreamHeader& header) noexcept;
+/// The same of one mesh.
+std::size_t max_mesh_packet_size(const MeshObject& mesh) noexcept;
 
 }  // namespace tactus

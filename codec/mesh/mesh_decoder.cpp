@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "codec/mesh/mesh_decoder.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "codec/base/bytes.h"
+#include "codec/mesh/mesh_main_reader.h"
+#include "codec/mesh/mesh_thesis.h"
+
+namespace tactus {
+namespace {
+
+constexpr std::int64_t kTickLimit = 0xffffffff;
+
+/// A state that packets may build on.
+struct Slot {
+  bool held = false;
+  std::uint16_t sequence = 0;
+  MeshState state;
+};
+
+struct ListedVertex {
+  std::uint32_t vertex = 0;
+  std::uint32_t symbol[3]{};
+};
+
+}  // namespace
+
+struct MeshDecoder::Impl {
+  Impl(StreamHeader stream, std::size_t index, const DecodeLimits& decode_limits)
+      : header(std::move(stream)), mesh(header.meshes[index]), limits(decode_limits), reader(mesh) {
+    initial.held = true;
+    initial.state = initial_mesh_state(mesh);
+    staging = initial;
+    slots.assign(header.baseline_span, initial);
+    for (Slot& slot : slots) slot.held = false;
+    if (mesh.profile == MeshProfile::thesis) {
+      listed.reserve(mesh.rest.size());
+      cold = cold_thesis_models(mesh);
+      models = cold;
+    }
+  }
+
+  StreamHeader header;
+  const MeshObject& mesh;
+  DecodeLimits limits;
+  MeshMainReader reader;    // main
+  Slot initial, staging;    // nothing reaches a slot before the whole packet has proved valid
+  std::vector<Slot> slots;  // baseline_span of them
+  std::size_t newest = 0;
+  std::vector<ListedVertex> listed;    // thesis
+  std::vector<BitModel> cold, models;  // thesis
+
+  const Slot& current() const noexcept { return slots[newest].held ? slots[newest] : initial; }
+  Result<const Slot*> baseline_of(bool key, std::uint32_t delta, std::uint16_t sequence) const noexcept;
+  Result<std::int64_t> tick_after(const Slot& baseline, std::uint32_t delta) const noexcept;
+  Result<DecodedMeshPacket> decode_main(std::span<const std::uint8_t> payload, std::uint16_t sequence) noexcept;
+  Result<DecodedMeshPacket> decode_thesis(std::span<const std::uint8_t> payload, std::uint16_t sequence) noexcept;
+  Result<ThesisHead> read_thesis_head(ByteReader& in) const noexcept;
+  Result<void> read_list(RangeDecoder& coder, std::uint32_t count) noexcept;
+  void commit(std::uint16_t sequence, std::int64_t tick) noexcept;
+};
+
+Result<const Slot*> MeshDecoder::Impl::baseline_of(bool key, std::uint32_t delta, std::uint16_t sequence) const noexcept {
+  if (key) return &initial;
+  if (delta < 1 || delta > header.baseline_span) return fail(Errc::invalid, "R-PKT-3");
+  const auto wanted = static_cast<std::uint16_t>(sequence - delta);
+  for (std::size_t back = 0; back < slots.size(); ++back) {
+    const Slot& slot = slots[(newest + slots.size() - back) % slots.size()];
+    if (slot.held && slot.sequence == wanted) return &slot;
+  }
+  return fail(Errc::state, "R-PKT-4");
+}
+
+Result<std::int64_t> MeshDecoder::Impl::tick_after(const Slot& baseline, std::uint32_t delta) const noexcept {
+  const std::int64_t tick = baseline.state.tick + delta;
+  const Slot& last = current();
+  if (tick >= kTickLimit || (&last != &initial && tick < last.state.tick)) return fail(Errc::invalid, "R-MES-8");
+  return tick;
+}
+
+void MeshDecoder::Impl::commit(std::uint16_t sequence, std::int64_t tick) noexcept {
+  staging.held = true;
+  staging.sequence = sequence;
+  staging.state.tick = tick;
+  newest = (newest + 1) % slots.size();
+  std::swap(slots[newest], staging);
+}
+
+Result<DecodedMeshPacket> MeshDecoder::Impl::decode_main(std::span<const std::uint8_t> payload, std::uint16_t sequence) noexcept {
+  RangeDecoder coder(payload);
+  const auto bit = [&] { return 16 + 8 * static_cast<std::uint64_t>(std::min(coder.position(), payload.size())); };
+  MeshModels start = mesh_start_models();
+  MeshHead head;
+  code_mesh_start(coder, start, mesh, header.baseline_span, head);
+  if (coder.too_wide()) return fail(Errc::malformed, "R-RNG-4", bit());
+  TACTUS_TRY(const Slot* baseline, baseline_of(head.key, head.baseline_delta, sequence));
+  TACTUS_TRY(const std::int64_t tick, tick_after(*baseline, head.tick_delta));
+  const auto updates = reader.read(coder, start, head, baseline->state, staging.state);
+  if (!updates) return fail(updates.error().code, updates.error().rule, bit());
+  if (const char* rule = coder.broken_rule()) return fail(Errc::malformed, rule, bit());
+  commit(sequence, tick);
+  return DecodedMeshPacket{sequence, head.key, tick, *updates, coder.range(), coder.code()};
+}
+
+Result<ThesisHead> MeshDecoder::Impl::read_thesis_head(ByteReader& in) const noexcept {
+  ThesisHead head;
+  const std::uint8_t flags = in.u8();
+  head.key = (flags & 1) != 0;
+  if (!head.key && header.baseline_span > 1) head.baseline_delta = in.u8();
+  const std::uint64_t tick_delta = in.varint(), count = in.varint(), list_bytes = in.varint(), lowest = in.varint(),
+                      range = in.varint();
+  if (in.overrun()) return fail(Errc::truncated, "R-MES-11", in.bit_offset());
+  if (!in.ok() || flags > 1) return fail(Errc::malformed, "R-MES-11", in.bit_offset());
+  constexpr std::uint64_t kSpan = std::uint64_t{4} * MeshObject::kMaxDisplacement;
+  if (tick_delta > 0xffffffff || count < 1 || count > mesh.rest.size() || lowest > kSpan || range > kSpan)
+    return fail(Errc::invalid, "R-MES-12", in.bit_offset());
+  if (list_bytes > in.remaining()) return fail(Errc::truncated, "R-MES-11", in.bit_offset());
+  head.tick_delta = static_cast<std::uint32_t>(tick_delta);
+  head.count = static_cast<std::uint32_t>(count);
+  head.list_bytes = static_cast<std::uint32_t>(list_bytes);
+  head.lowest = static_cast<std::int32_t>(lowest >> 1 ^ (~(lowest & 1) + 1));
+  head.range = static_cast<std::uint32_t>(range);
+  return head;
+}
+
+Result<void> MeshDecoder::Impl::read_list(RangeDecoder& coder, std::uint32_t count) noexcept {
+  listed.clear();
+  std::uint64_t next = 0;
+  const auto vertices = static_cast<std::uint32_t>(mesh.rest.size());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    next += code_gap(coder, models, 0xffffffff, vertices);
+    if (next >= vertices) return fail(Errc::invalid, "R-MES-13");
+    listed.push_back({static_cast<std::uint32_t>(next++), {}});
+  }
+  if (const char* rule = coder.broken_rule()) return fail(Errc::malformed, rule);
+  return {};
+}
+
+Result<DecodedMeshPacket> MeshDecoder::Impl::decode_thesis(std::span<const std::uint8_t> payload,
+                                                           std::uint16_t sequence) noexcept {
+  ByteReader in(payload, 2);
+  TACTUS_TRY(const ThesisHead head, read_thesis_head(in));
+  TACTUS_TRY(const Slot* baseline, baseline_of(head.key, head.baseline_delta, sequence));
+  TACTUS_TRY(const std::int64_t tick, tick_after(*baseline, head.tick_delta));
+  models = mesh.models_kept ? baseline->state.models : cold;
+  RangeDecoder list(in.bytes(head.list_bytes));
+  if (auto read = read_list(list, head.count); !read) return fail(read.error().code, read.error().rule, in.bit_offset());
+  RangeDecoder coder(in.bytes(in.remaining()));
+  const auto symbols = std::span<BitModel>(models).subspan(kIndexModels);
+  for (ListedVertex& l : listed)
+    for (std::uint32_t& s : l.symbol) s = code_symbol(coder, symbols, mesh.quant_bits, 0);
+  if (const char* rule = coder.broken_rule()) return fail(Errc::malformed, rule, in.bit_offset());
+
+  MeshState& next = staging.state;
+  next.displacement = baseline->state.displacement;
+  for (const ListedVertex& l : listed) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      auto& u = next.displacement[l.vertex][axis];
+      u = limited_displacement(std::int64_t{u} + restore_error(l.symbol[axis], head, mesh.quant_bits));
+    }
+  }
+  if (mesh.models_kept) next.models = models;
+  commit(sequence, tick);
+  return DecodedMeshPacket{sequence, head.key, tick, head.count, coder.range(), coder.code()};
+}
+
+MeshDecoder::MeshDecoder(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}
+MeshDecoder::MeshDecoder(MeshDecoder&&) noexcept = default;
+MeshDecoder& MeshDecoder::operator=(MeshDecoder&&) noexcept = default;
+MeshDecoder::~MeshDecoder() = default;
+
+Result<MeshDecoder> MeshDecoder::create(StreamHeader header, std::size_t mesh, const DecodeLimits& limits) {
+  TACTUS_CHECK(check_header(header, limits));
+  if (mesh >= header.meshes.size()) return fail(Errc::invalid_argument, "R-API-5");
+  return MeshDecoder(std::make_unique<Impl>(std::move(header), mesh, limits));
+}
+
+Result<DecodedMeshPacket> MeshDecoder::decode(std::span<const std::uint8_t> packet) noexcept {
+  Impl& d = *impl_;
+  if (packet.size() > d.limits.packet_bytes) return fail(Errc::limit_exceeded, "R-PKT-1");
+  if (packet.size() < 2) return fail(Errc::truncated, "R-PKT-2");
+  const auto sequence = static_cast<std::uint16_t>(packet[0] | packet[1] << 8);
+  const Slot& current = d.current();
+  if (&current != &d.initial && static_cast<std::int16_t>(sequence - current.sequence) <= 0) return fail(Errc::state, "R-PKT-5");
+  return d.mesh.profile == MeshProfile::main ? d.decode_main(packet.subspan(2), sequence)
+                                             : d.decode_thesis(packet.subspan(2), sequence);
+}
+
+std::span<const MeshDecoder::Displacement> MeshDecoder::displacements() const noexcept {
+  return impl_->current().state.displacement;
+}
+
+std::span<const MeshDecoder::Displacement> MeshDecoder::displacements_at(std::int64_t tick) noexcept {
+  Impl& d = *impl_;
+  const MeshState& state = d.current().state;
+  return d.reader.predict(state, mesh_steps(d.mesh, std::max<std::int64_t>(0, tick - state.tick)));
+}
+
+std::int64_t MeshDecoder::tick() const noexcept { return impl_->current().state.tick; }
+const StreamHeader& MeshDecoder::header() const noexcept { return impl_->header; }
+std::uint64_t MeshDecoder::state_hash() const noexcept { return mesh_state_hash(impl_->mesh, impl_->current().state); }
+
+}  // namespace tactus

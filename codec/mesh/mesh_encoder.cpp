@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "codec/mesh/mesh_encoder.h"
+
+#include <utility>
+#include <vector>
+
+#include "codec/mesh/mesh.h"
+#include "codec/mesh/mesh_encoder_side.h"
+
+namespace tactus {
+namespace {
+
+bool are_valid(const MeshEncoderOptions& o) noexcept {
+  const auto in = [](double v, double low, double high) { return v >= low && v <= high; };  // false for NaN
+  const MeshThresholds& t = o.thresholds;
+  return in(t.visual, 0, 1e6) && in(t.weber_fraction.value_or(0), 0, 1e3) && in(t.depth_floor, 0, 1e6) &&
+         in(o.key_interval, 0, 86400) && in(o.visual_share, 1e-3, 1) && in(o.haptic_share, 1e-3, 1);
+}
+
+}  // namespace
+
+struct MeshEncoder::Impl {
+  Impl(StreamHeader stream, std::size_t index, const MeshEncoderOptions& options)
+      : header(std::move(stream)),
+        mesh(header.meshes[index]),
+        truth(mesh.rest.size()),
+        side(mesh.profile == MeshProfile::main ? make_main_side(header, mesh, options)
+                                               : make_thesis_side(header, mesh, options)) {}
+
+  StreamHeader header;
+  const MeshObject& mesh;
+  std::vector<Vec3i> truth;  // this frame, on the grid
+  std::unique_ptr<MeshEncoderSide> side;
+  std::int64_t last_tick = -1;
+
+  Result<void> check_touch(const MeshTouch& touch) const noexcept {
+    if (!std::isfinite(touch.force) || !std::isfinite(touch.stiffness)) return fail(Errc::invalid_argument, "R-API-1");
+    if (touch.triangle >= mesh.triangles.size() || touch.force < 0 || !(touch.stiffness > 0))
+      return fail(Errc::invalid_argument, "R-API-5");
+    return {};
+  }
+};
+
+MeshEncoder::MeshEncoder(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}
+MeshEncoder::MeshEncoder(MeshEncoder&&) noexcept = default;
+MeshEncoder& MeshEncoder::operator=(MeshEncoder&&) noexcept = default;
+MeshEncoder::~MeshEncoder() = default;
+
+Result<MeshEncoder> MeshEncoder::create(StreamHeader header, std::size_t mesh, const MeshEncoderOptions& options) {
+  TACTUS_CHECK(check_header(header));
+  if (!are_valid(options)) return fail(Errc::invalid_argument, "R-API-4");
+  if (mesh >= header.meshes.size()) return fail(Errc::invalid_argument, "R-API-5");
+  return MeshEncoder(std::make_unique<Impl>(std::move(header), mesh, options));
+}
+
+Result<EncodedMeshPacket> MeshEncoder::encode(std::int64_t tick, std::span<const Vec3> displacement,
+                                              const std::optional<MeshTouch>& touch) noexcept {
+  Impl& e = *impl_;
+  if (tick <= e.last_tick || tick >= 0xffffffff) return fail(Errc::invalid_argument, "R-API-5");
+  if (touch) TACTUS_CHECK(e.check_touch(*touch));
+  TACTUS_CHECK(to_grid(displacement, e.header.grid.position, e.truth));
+  e.last_tick = tick;
+  return e.side->encode({tick, e.truth, touch});
+}
+
+const StreamHeader& MeshEncoder::header() const noexcept { return impl_->header; }
+std::uint64_t MeshEncoder::state_hash() const noexcept { return mesh_state_hash(impl_->mesh, impl_->side->held()); }
+
+}  // namespace tactus

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What the encoders of both profiles share: the state that the decoder holds, when a key packet is due. Internal to the library.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "codec/mesh/mesh_encoder.h"
+#include "codec/mesh/mesh_state.h"
+
+namespace tactus {
+
+struct MeshFrame {
+  std::int64_t tick = 0;
+  std::span<const Vec3i> truth;
+  const std::optional<MeshTouch>& touch;
+};
+
+/// h = p |f_s| / k_c [m], thesis eq. 3.12.   pre  there is a p
+inline double haptic_threshold(const MeshThresholds& t, const MeshTouch& touch) noexcept {
+  return *t.weber_fraction * std::max(touch.force / touch.stiffness, t.depth_floor);
+}
+
+inline std::int64_t squared_distance(const Vec3i& a, const Vec3i& b) noexcept {
+  std::int64_t sum = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::int64_t d = std::int64_t{a[i]} - b[i];
+    sum += d * d;
+  }
+  return sum;
+}
+
+class MeshEncoderSide {
+ public:
+  /// pre  header and mesh outlive the side
+  MeshEncoderSide(const StreamHeader& header, const MeshObject& mesh, const MeshEncoderOptions& options)
+      : header_(header),
+        mesh_(mesh),
+        options_(options),
+        rings_(mesh),
+        initial_(initial_mesh_state(mesh)),
+        held_(initial_),
+        next_(initial_),
+        expected_(mesh.rest.size()),
+        buffer_(max_mesh_packet_size(mesh)) {}
+  MeshEncoderSide(const MeshEncoderSide&) = delete;
+  MeshEncoderSide& operator=(const MeshEncoderSide&) = delete;
+  virtual ~MeshEncoderSide() = default;
+
+  virtual EncodedMeshPacket encode(const MeshFrame& frame) noexcept = 0;
+  const MeshState& held() const noexcept { return held_; }
+
+ protected:
+  /// The first packet, one per interval, and one after a pause so long that its length does not fit.
+  bool key_due(std::int64_t tick) const noexcept {
+    const auto interval = static_cast<std::int64_t>(std::ceil(options_.key_interval * header_.tick_rate));
+    return key_tick_ < 0 || (interval > 0 && tick - key_tick_ >= interval) || tick - held_.tick > 0x3fffffff;
+  }
+  const MeshState& base(bool key) const noexcept { return key ? initial_ : held_; }
+  std::span<const std::uint32_t> area(std::uint32_t triangle) noexcept {
+    rings_.triangles_around(triangle, mesh_.rings);
+    return rings_.vertices();
+  }
+  /// The packet in `buffer_` turns `base` into `next_`.
+  EncodedMeshPacket finish(std::size_t size, bool key, std::int64_t tick, std::uint32_t updates) noexcept {
+    ++sequence_;
+    buffer_[0] = static_cast<std::uint8_t>(sequence_);
+    buffer_[1] = static_cast<std::uint8_t>(sequence_ >> 8);
+    next_.tick = tick;
+    std::swap(held_, next_);
+    if (key) key_tick_ = tick;
+    return {std::span<const std::uint8_t>(buffer_).first(size), updates, key};
+  }
+
+  const StreamHeader& header_;
+  const MeshObject& mesh_;
+  const MeshEncoderOptions options_;
+  MeshRings rings_;
+  const MeshState initial_;  // what key packets build on
+  MeshState held_, next_;    // what the decoder holds, and will hold after the packet at hand
+  std::vector<Vec3i> expected_;
+  std::vector<std::uint8_t> buffer_;
+
+ private:
+  std::uint16_t sequence_ = 0;
+  std::int64_t key_tick_ = -1;  // of the last key packet; -1: none yet
+};
+
+std::unique_ptr<MeshEncoderSide> make_main_side(const StreamHeader& header, const MeshObject& mesh,
+                                                const MeshEncoderOptions& options);
+std::unique_ptr<MeshEncoderSide> make_thesis_side(const StreamHeader& header, const MeshObject& mesh,
+                                                  const MeshEncoderOptions& options);
+
+}  // namespace tactus

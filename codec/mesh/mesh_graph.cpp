@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "codec/mesh/mesh_graph.h"
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include "codec/base/fixed.h"
+
+namespace tactus {
+namespace {
+
+using Edge = std::uint64_t;  // two vertices, sorted by the first
+
+constexpr Edge edge(std::uint32_t a, std::uint32_t b) noexcept { return Edge{a} << 32 | b; }
+
+/// Neighbour lists, ascending and without repetition, from edges in both directions.
+MeshNeighbours lists_from(std::vector<Edge>& edges, std::size_t vertices) {
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  MeshNeighbours out;
+  out.first.reserve(vertices + 1);
+  out.items.reserve(edges.size());
+  std::size_t at = 0;
+  for (std::uint32_t v = 0; v < vertices; ++v) {
+    for (; at < edges.size() && edges[at] >> 32 == v; ++at) out.items.push_back(static_cast<std::uint32_t>(edges[at]));
+    out.close();
+  }
+  return out;
+}
+
+/// Squared distances of rest positions on a grid so coarse that they fit 42 bits.
+class Distances {
+ public:
+  explicit Distances(const MeshObject& mesh) : rest_(mesh.rest) {
+    std::uint64_t extent = 0;
+    for (std::size_t axis = 0; axis < 3 && !rest_.empty(); ++axis) {
+      const auto [low, high] =
+          std::minmax_element(rest_.begin(), rest_.end(), [axis](const Vec3i& a, const Vec3i& b) { return a[axis] < b[axis]; });
+      extent = std::max(extent, static_cast<std::uint64_t>(static_cast<std::int64_t>((*high)[axis]) - (*low)[axis]));
+    }
+    const auto width = static_cast<unsigned>(std::bit_width(extent));
+    shift_ = width > 20 ? width - 20 : 0;
+  }
+  std::uint64_t operator()(std::uint32_t a, std::uint32_t b) const noexcept {
+    std::uint64_t sum = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::int64_t d = (static_cast<std::int64_t>(rest_[a][axis]) - rest_[b][axis]) >> shift_;
+      sum += static_cast<std::uint64_t>(d * d);
+    }
+    return std::max<std::uint64_t>(sum, 1);
+  }
+
+ private:
+  std::span<const Vec3i> rest_;
+  unsigned shift_ = 0;
+};
+
+/// One graph of the hierarchy. Its vertices are numbered 0.. in the order of the mesh's; `vertex` gives the mesh's number.
+struct Graph {
+  std::vector<std::uint32_t> vertex;
+  MeshNeighbours neighbours;
+};
+
+/// Greedy maximal independent set in ascending order.
+std::vector<bool> independent_set(const Graph& g) {
+  std::vector<bool> kept(g.vertex.size(), false), dropped(g.vertex.size(), false);
+  for (std::size_t v = 0; v < g.vertex.size(); ++v) {
+    if (dropped[v]) continue;
+    kept[v] = true;
+    for (const std::uint32_t n : g.neighbours[v]) dropped[n] = true;
+  }
+  return kept;
+}
+
+struct Candidate {
+  std::uint64_t distance = 0;
+  std::uint32_t vertex = 0;
+  friend auto operator<=>(const Candidate&, const Candidate&) = default;
+};
+
+/// Builds the hierarchy level by level, finest first; the lists are turned round at the end.
+class HierarchyBuilder {
+ public:
+  explicit HierarchyBuilder(const MeshObject& mesh) : distance_(mesh), count_(mesh.rest.size()) {}
+
+  MeshHierarchy build(Graph graph) {
+    MeshHierarchy out;
+    out.level.assign(count_, 0);
+    parents_.resize(count_);
+    std::vector<std::vector<std::uint32_t>> levels;
+    for (;;) {
+      const auto kept = independent_set(graph);
+      const bool last = levels.size() + 1 == MeshHierarchy::kLevels || std::find(kept.begin(), kept.end(), false) == kept.end();
+      levels.emplace_back();
+      for (std::uint32_t v = 0; v < graph.vertex.size(); ++v) {
+        if (kept[v] && !last) continue;
+        levels.back().push_back(graph.vertex[v]);
+        out.level[graph.vertex[v]] = static_cast<std::uint8_t>(levels.size() - 1);
+        if (!last) find_parents(graph, kept, v);
+      }
+      if (last) break;
+      graph = coarser(graph, kept);
+    }
+    for (std::size_t l = levels.size(); l-- > 0;) {
+      for (const std::uint32_t v : levels[l]) {
+        out.order.push_back(v);
+        out.parents.items.insert(out.parents.items.end(), parents_[v].begin(), parents_[v].end());
+        out.parents.close();
+      }
+    }
+    return out;
+  }
+
+ private:
+  /// The nearest vertices among those that are kept, or dropped but earlier, within two edges. At most kVisits are looked at.
+  void find_parents(const Graph& g, const std::vector<bool>& kept, std::uint32_t v) {
+    constexpr std::size_t kVisits = 64;
+    near_.clear();
+    std::size_t visits = 0;
+    const auto visit = [&](std::uint32_t n) {
+      if (n != v && (kept[n] || n < v)) near_.push_back({distance_(g.vertex[v], g.vertex[n]), g.vertex[n]});
+      return ++visits < kVisits;
+    };
+    const auto ring = g.neighbours[v];
+    bool more = std::all_of(ring.begin(), ring.end(), visit);
+    for (std::size_t i = 0; more && i < ring.size(); ++i) {
+      const auto next = g.neighbours[ring[i]];
+      more = std::all_of(next.begin(), next.end(), visit);
+    }
+    std::sort(near_.begin(), near_.end());
+    near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
+    if (near_.size() > MeshHierarchy::kParents) near_.resize(MeshHierarchy::kParents);
+    weigh(parents_[g.vertex[v]]);
+  }
+
+  /// Inverse squared distance, the weights adding to about 2^15.
+  void weigh(std::vector<MeshParent>& out) const {
+    std::array<std::int64_t, MeshHierarchy::kParents> raw{};
+    std::int64_t sum = 0;
+    for (std::size_t i = 0; i < near_.size(); ++i) {
+      raw[i] = static_cast<std::int64_t>((near_[0].distance << 16) / near_[i].distance);
+      sum += raw[i];
+    }
+    for (std::size_t i = 0; i < near_.size(); ++i)
+      out.push_back({near_[i].vertex, static_cast<std::int32_t>(round_div(raw[i] << 15, sum))});
+  }
+
+  /// Every dropped vertex joins its nearest kept neighbour; groups with an edge between them are neighbours.
+  Graph coarser(const Graph& g, const std::vector<bool>& kept) const {
+    Graph out;
+    std::vector<std::uint32_t> number(g.vertex.size(), 0), group(g.vertex.size());
+    for (std::uint32_t v = 0; v < g.vertex.size(); ++v) {
+      if (!kept[v]) continue;
+      number[v] = static_cast<std::uint32_t>(out.vertex.size());
+      out.vertex.push_back(g.vertex[v]);
+    }
+    for (std::uint32_t v = 0; v < g.vertex.size(); ++v) {
+      Candidate nearest{~std::uint64_t{0}, v};
+      for (const std::uint32_t n : g.neighbours[v])
+        if (!kept[v] && kept[n]) nearest = std::min(nearest, Candidate{distance_(g.vertex[v], g.vertex[n]), n});
+      group[v] = number[nearest.vertex];
+    }
+    std::vector<Edge> edges;
+    for (std::uint32_t v = 0; v < g.vertex.size(); ++v)
+      for (const std::uint32_t n : g.neighbours[v])
+        if (group[v] != group[n]) edges.push_back(edge(group[v], group[n]));
+    out.neighbours = lists_from(edges, out.vertex.size());
+    return out;
+  }
+
+  Distances distance_;
+  std::size_t count_;
+  std::vector<Candidate> near_;
+  std::vector<std::vector<MeshParent>> parents_;
+};
+
+}  // namespace
+
+MeshNeighbours mesh_neighbours(const MeshObject& mesh) {
+  std::vector<Edge> edges;
+  edges.reserve(6 * mesh.triangles.size());
+  for (const Triangle& t : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      edges.push_back(edge(t[k], t[(k + 1) % 3]));
+      edges.push_back(edge(t[(k + 1) % 3], t[k]));
+    }
+  }
+  return lists_from(edges, mesh.rest.size());
+}
+
+MeshHierarchy mesh_hierarchy(const MeshObject& mesh) {
+  Graph graph;
+  for (std::uint32_t v = 0; v < mesh.rest.size(); ++v) graph.vertex.push_back(v);
+  graph.neighbours = mesh_neighbours(mesh);
+  return HierarchyBuilder(mesh).build(std::move(graph));
+}
+
+MeshRings::MeshRings(const MeshObject& mesh)
+    : corners_(mesh.triangles), triangle_mark_(mesh.triangles.size()), vertex_mark_(mesh.rest.size()) {
+  std::vector<Edge> pairs;
+  pairs.reserve(3 * mesh.triangles.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const std::uint32_t v : mesh.triangles[t]) pairs.push_back(edge(v, t));
+  triangles_of_ = lists_from(pairs, mesh.rest.size());
+  triangles_.reserve(mesh.triangles.size());
+  vertices_.reserve(mesh.rest.size());
+}
+
+void MeshRings::add_corners(std::uint32_t triangle) noexcept {
+  for (const std::uint32_t v : corners_[triangle]) {
+    if (vertex_mark_[v] == mark_) continue;
+    vertex_mark_[v] = mark_;
+    vertices_.push_back(v);
+  }
+}
+
+std::span<const std::uint32_t> MeshRings::triangles_around(std::uint32_t triangle, std::uint32_t rings) noexcept {
+  if (++mark_ == 0) {
+    std::fill(triangle_mark_.begin(), triangle_mark_.end(), 0u);
+    std::fill(vertex_mark_.begin(), vertex_mark_.end(), 0u);
+    mark_ = 1;
+  }
+  triangles_.clear();
+  vertices_.clear();
+  triangles_.push_back(triangle);
+  triangle_mark_[triangle] = mark_;
+  add_corners(triangle);
+  std::size_t grown = 0;  // vertices whose triangles are all in
+  for (std::uint32_t r = 0; r < rings; ++r) {
+    const std::size_t rim = vertices_.size(), inner = triangles_.size();
+    for (; grown < rim; ++grown) {
+      for (const std::uint32_t t : triangles_of_[vertices_[grown]]) {
+        if (triangle_mark_[t] == mark_) continue;
+        triangle_mark_[t] = mark_;
+        triangles_.push_back(t);
+      }
+    }
+    for (std::size_t i = inner; i < triangles_.size(); ++i) add_corners(triangles_[i]);
+  }
+  return triangles_;
+}
+
+}  // namespace tactus

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Meshes in a stream header. spec/60-mesh.md section 2. Internal to the library.
+#pragma once
+
+#include "codec/base/bytes.h"
+#include "codec/base/result.h"
+#include "codec/mesh/mesh_object.h"
+
+namespace tactus {
+
+/// The rule that a mesh breaks, or null; names are checked by the header.
+const char* broken_mesh_rule(const MeshObject& mesh) noexcept;
+
+/// pre  the mesh breaks no rule.
+void write_mesh(ByteWriter& out, const MeshObject& mesh);
+
+/// Allocates in proportion to the bytes that are there.
+/// err  truncated, malformed R-STR-5; unsupported R-MES-2; invalid R-MES-3..7; limit_exceeded R-STR-14: more than `vertex_limit`.
+Result<MeshObject> parse_mesh(ByteReader& in, std::uint32_t vertex_limit);
+
+}  // namespace tactus

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <memory>
+
+#include "codec/mesh/mesh_encoder_side.h"
+#include "codec/mesh/mesh_pass.h"
+#include "codec/mesh/mesh_projection.h"
+#include "codec/mesh/mesh_syntax.h"
+
+namespace tactus {
+namespace {
+
+constexpr double kRounding = 0.8660254038;  // grid units: farthest that a vertex lies from its nearest grid point
+constexpr float kDeadZone = 0.7F;           // coefficients below this many steps are not sent
+
+struct CodedVertex {
+  VertexContext context;
+  Vec3i residual{};
+};
+
+/// Nearest residual, its components then moved towards zero while the bound allows: short symbols are cheap.
+Vec3i quantise(const Vec3i& truth, const Vec3i& place, std::uint32_t bound, std::int64_t step) noexcept {
+  const std::int64_t limit = std::int64_t{bound} * bound;
+  std::array<std::int64_t, 3> error{};
+  std::int64_t sum = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    error[i] = std::int64_t{truth[i]} - place[i];
+    sum += error[i] * error[i];
+  }
+  if (sum <= limit) return {};
+  Vec3i out{};
+  sum = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    out[i] = saturate32(round_div(error[i], step));
+    error[i] -= out[i] * step;
+    sum += error[i] * error[i];
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (out[i] == 0) continue;
+    const std::int64_t sign = out[i] > 0 ? 1 : -1;
+    const std::int64_t moved = error[i] + sign * step;
+    const std::int64_t after = sum - error[i] * error[i] + moved * moved;
+    if (after > limit) continue;
+    out[i] -= static_cast<std::int32_t>(sign);
+    sum = after;
+  }
+  return out;
+}
+
+class MainSide : public MeshEncoderSide {
+ public:
+  MainSide(const StreamHeader& header, const MeshObject& mesh, const MeshEncoderOptions& options)
+      : MeshEncoderSide(header, mesh, options),
+        hierarchy_(mesh_hierarchy(mesh)),
+        predictor_(mesh, hierarchy_),
+        pass_(hierarchy_, mesh.rest.size()),
+        projection_(mesh.basis),
+        error_(mesh.rest.size()),
+        coefficients_(mesh.basis.steps.size()),
+        scaled_(mesh.basis.steps.size()),
+        projected_(mesh.basis.steps.size()) {
+    coded_.reserve(mesh.rest.size());
+  }
+  EncodedMeshPacket encode(const MeshFrame& frame) noexcept override;
+
+ private:
+  MeshHead head_for(const MeshFrame& frame) const noexcept;
+  bool bounds_hold(std::span<const Vec3i> truth) const noexcept;
+  void choose_coefficients(std::span<const Vec3i> truth, std::uint32_t visual) noexcept;
+  std::uint32_t choose_residuals(std::span<const Vec3i> truth) noexcept;
+  std::size_t write(MeshHead head) noexcept;
+
+  MeshHierarchy hierarchy_;
+  MeshPredictor predictor_;
+  MeshPass pass_;
+  MeshProjection projection_;
+  std::vector<Vec3i> error_;
+  std::vector<std::int32_t> coefficients_, scaled_;  // in steps; in grid units
+  std::vector<float> projected_;
+  std::vector<CodedVertex> coded_;
+};
+
+/// Bounds on the grid, smaller by the truth's own rounding, so that they hold for the unrounded truth.
+MeshHead MainSide::head_for(const MeshFrame& frame) const noexcept {
+  const double unit = std::ldexp(1.0, -header_.grid.position);
+  const auto units = [unit](double metres) {
+    return static_cast<std::uint32_t>(std::clamp(metres / unit - kRounding, 0.0, double{kMaxVisualBound}));
+  };
+  const MeshThresholds& t = options_.thresholds;
+  MeshHead head;
+  head.key = key_due(frame.tick);
+  head.tick_delta = static_cast<std::uint32_t>(frame.tick - base(head.key).tick);
+  head.visual = units(options_.visual_share * t.visual);
+  head.touched = frame.touch.has_value() && t.weber_fraction.has_value();
+  if (!head.touched) return head;
+  head.triangle = frame.touch->triangle;
+  const std::uint32_t haptic = units(options_.haptic_share * haptic_threshold(t, *frame.touch));
+  while (head.haptic < kMaxHapticLevel && haptic_bound(head.haptic + 1) <= haptic) ++head.haptic;
+  return head;
+}
+
+bool MainSide::bounds_hold(std::span<const Vec3i> truth) const noexcept {
+  for (std::uint32_t v = 0; v < truth.size(); ++v) {
+    const std::int64_t bound = pass_.bound_of(v);
+    if (squared_distance(truth[v], expected_[v]) > bound * bound) return false;
+  }
+  return true;
+}
+
+void MainSide::choose_coefficients(std::span<const Vec3i> truth, std::uint32_t visual) noexcept {
+  if (coefficients_.empty()) return;
+  for (std::size_t v = 0; v < truth.size(); ++v)
+    for (std::size_t axis = 0; axis < 3; ++axis) error_[v][axis] = truth[v][axis] - expected_[v][axis];
+  projection_.project(error_, projected_);
+  for (std::size_t k = 0; k < coefficients_.size(); ++k) {
+    const float steps = projected_[k] / static_cast<float>(coefficient_step(mesh_, visual, k));
+    const float size = std::min(std::abs(steps), 1e9F);
+    const auto rounded = size < kDeadZone ? 0 : static_cast<std::int32_t>(size + 0.5F);
+    coefficients_[k] = steps < 0 ? -rounded : rounded;
+  }
+}
+
+/// Quantise every vertex as the decoder will see it. Returns how many have a residual.
+std::uint32_t MainSide::choose_residuals(std::span<const Vec3i> truth) noexcept {
+  coded_.clear();
+  std::uint32_t updates = 0;
+  pass_.run(
+      expected_, next_.displacement,
+      [&](std::uint32_t v, const VertexContext& context, const Vec3i& place, std::uint32_t bound, std::int64_t step) noexcept {
+        const Vec3i residual = quantise(truth[v], place, bound, step);
+        coded_.push_back({context, residual});
+        updates += residual != Vec3i{} ? 1u : 0u;
+        return residual;
+      });
+  return updates;
+}
+
+std::size_t MainSide::write(MeshHead head) noexcept {
+  RangeEncoder coder(std::span<std::uint8_t>(buffer_).subspan(2));
+  MeshModels models = mesh_start_models();
+  code_mesh_start(coder, models, mesh_, header_.baseline_span, head);
+  code_mesh_bounds(coder, models, mesh_, rings_, base(head.key), head);
+  code_coefficients(coder, models, coefficients_);
+  for (CodedVertex& c : coded_) code_vertex(coder, models, head.density, c.context, c.residual);
+  return 2 + coder.finish();
+}
+
+EncodedMeshPacket MainSide::encode(const MeshFrame& frame) noexcept {
+  MeshHead head = head_for(frame);
+  pass_.set_bounds(head.visual, head.touched ? haptic_bound(head.haptic) : head.visual,
+                   head.touched ? area(head.triangle) : std::span<const std::uint32_t>{});
+  predictor_.predict(held_, mesh_steps(mesh_, frame.tick - held_.tick), expected_);
+  if (bounds_hold(frame.truth)) return {};
+  const MeshState& from = base(head.key);
+  const std::uint32_t steps = mesh_steps(mesh_, head.tick_delta);
+  if (head.key) predictor_.predict(from, steps, expected_);
+  choose_coefficients(frame.truth, head.visual);
+  std::copy(coefficients_.begin(), coefficients_.end(), scaled_.begin());
+  scale_coefficients(mesh_, head.visual, scaled_);
+  predictor_.add_modes(scaled_, expected_);
+  const std::uint32_t updates = choose_residuals(frame.truth);
+  const std::uint64_t share = (std::uint64_t{updates} << 8) / frame.truth.size();
+  head.density = share < 3 ? 0 : share < 15 ? 1 : share < 64 ? 2 : 3;
+  const std::size_t size = write(head);
+  next_.motion = from.motion;
+  predictor_.learn(from.displacement, steps, next_);
+  next_.triangle = head.touched ? head.triangle : from.triangle;
+  next_.haptic = head.touched ? head.haptic : from.haptic;
+  next_.visual = head.visual;
+  return finish(size, head.key, frame.tick, updates);
+}
+
+}  // namespace
+
+std::unique_ptr<MeshEncoderSide> make_main_side(const StreamHeader& header, const MeshObject& mesh,
+                                                const MeshEncoderOptions& options) {
+  return std::make_unique<MainSide>(header, mesh, options);
+}
+
+}  // namespace tactus

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Reads a packet of profile main from any symbol source: the decoder's range decoder, or one that counts (tests/tools). Internal to
+/// the library. spec/60-mesh.md sections 5 to 7.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "codec/base/result.h"
+#include "codec/mesh/mesh_pass.h"
+#include "codec/mesh/mesh_syntax.h"
+
+namespace tactus {
+
+class MeshMainReader {
+ public:
+  /// pre  `mesh` outlives the reader
+  explicit MeshMainReader(const MeshObject& mesh)
+      : mesh_(mesh),
+        hierarchy_(mesh_hierarchy(mesh)),
+        rings_(mesh),
+        predictor_(mesh, hierarchy_),
+        pass_(hierarchy_, mesh.rest.size()),
+        expected_(mesh.rest.size()),
+        coefficients_(mesh.basis.steps.size()) {}
+
+  /// Everything after key, baseline and tick.
+  /// out  next     the state after the packet, but for its tick; after an error undefined
+  ///      returns  vertices with a residual
+  template <class Coder>
+  Result<std::uint32_t> read(Coder& coder, MeshModels& models, MeshHead& head, const MeshState& base, MeshState& next) noexcept {
+    code_mesh_bounds(coder, models, mesh_, rings_, base, head);
+    if (coder.too_wide()) return fail(Errc::malformed, "R-RNG-4");
+    if (head.touched && head.triangle >= mesh_.triangles.size()) return fail(Errc::invalid, "R-MES-9");
+    if (head.haptic > kMaxHapticLevel || head.visual > kMaxVisualBound) return fail(Errc::invalid, "R-MES-10");
+    code_coefficients(coder, models, coefficients_);
+    if (coder.too_wide()) return fail(Errc::malformed, "R-RNG-4");
+    const std::uint32_t steps = mesh_steps(mesh_, head.tick_delta);
+    predictor_.predict(base, steps, expected_);
+    scale_coefficients(mesh_, head.visual, coefficients_);
+    predictor_.add_modes(coefficients_, expected_);
+    set_bounds(head);
+    const std::uint32_t updates = read_vertices(coder, models, head, next);
+    if (coder.too_wide()) return fail(Errc::malformed, "R-RNG-4");
+    next.motion = base.motion;
+    predictor_.learn(base.displacement, steps, next);
+    next.triangle = head.touched ? head.triangle : base.triangle;
+    next.haptic = head.touched ? head.haptic : base.haptic;
+    next.visual = head.visual;
+    return updates;
+  }
+
+  /// Displacement that a state leads to.   Valid until the next call.
+  std::span<const Vec3i> predict(const MeshState& state, std::uint32_t steps) noexcept {
+    predictor_.predict(state, steps, expected_);
+    return expected_;
+  }
+
+ private:
+  void set_bounds(const MeshHead& head) noexcept {
+    if (head.touched) rings_.triangles_around(head.triangle, mesh_.rings);
+    pass_.set_bounds(head.visual, head.touched ? haptic_bound(head.haptic) : head.visual, rings_.vertices());
+  }
+
+  /// After a residual that is too wide the walk goes on with zeros.
+  template <class Coder>
+  std::uint32_t read_vertices(Coder& coder, MeshModels& models, const MeshHead& head, MeshState& next) noexcept {
+    std::uint32_t updates = 0;
+    pass_.run(expected_, next.displacement,
+              [&](std::uint32_t, const VertexContext& context, const Vec3i&, std::uint32_t, std::int64_t) noexcept {
+                Vec3i residual{};
+                if (!coder.too_wide()) code_vertex(coder, models, head.density, context, residual);
+                updates += residual != Vec3i{} ? 1u : 0u;
+                return residual;
+              });
+    return updates;
+  }
+
+  const MeshObject& mesh_;
+  MeshHierarchy hierarchy_;
+  MeshRings rings_;
+  MeshPredictor predictor_;
+  MeshPass pass_;
+  std::vector<Vec3i> expected_;
+  std::vector<std::int32_t> coefficients_;
+};
+
+}  // namespace tactus

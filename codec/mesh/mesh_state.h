@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What packets of a mesh build on, and how it continues without packets. spec/60-mesh.md sections 3, 5 and 6. Integers only.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "codec/base/fixed.h"
+#include "codec/base/range_coder.h"
+#include "codec/mesh/mesh_graph.h"
+#include "codec/mesh/mesh_motion.h"
+#include "codec/mesh/mesh_object.h"
+
+namespace tactus {
+
+inline constexpr std::uint32_t kNoTriangle = 0xffffffff;
+
+struct MeshState {
+  std::int64_t tick = 0;
+  std::vector<Vec3i> displacement;       ///< by vertex, x 2^-position_exp m
+  MeshMotion motion;                     ///< main
+  std::uint32_t triangle = kNoTriangle;  ///< main: the last one touched
+  std::uint32_t visual = 0;              ///< main: visual bound, grid units
+  std::uint32_t haptic = 0;              ///< main: level of the last haptic bound
+  std::vector<BitModel> models;          ///< thesis with models_kept: index models, then displacement models
+};
+
+MeshState initial_mesh_state(const MeshObject& mesh);
+std::uint64_t mesh_state_hash(const MeshObject& mesh, const MeshState& state) noexcept;
+
+/// Frames between two ticks, rounded.
+std::uint32_t mesh_steps(const MeshObject& mesh, std::int64_t ticks) noexcept;
+
+/// floor(2^((level - 1) / 6)) for level >= 1, 0 for level 0.   pre  level <= kMaxHapticLevel
+std::uint32_t haptic_bound(std::uint32_t level) noexcept;
+inline constexpr std::uint32_t kMaxHapticLevel = 168;  ///< 2^27.8
+inline constexpr std::uint32_t kMaxVisualBound = 1u << 28;
+
+constexpr std::int32_t limited_displacement(std::int64_t v) noexcept {
+  return static_cast<std::int32_t>(std::clamp<std::int64_t>(v, -MeshObject::kMaxDisplacement, MeshObject::kMaxDisplacement));
+}
+
+inline std::int64_t coefficient_step(const MeshObject& mesh, std::uint32_t visual, std::size_t mode) noexcept {
+  return std::clamp<std::int64_t>((std::int64_t{mesh.basis.steps[mode]} * visual) >> 12, 1, kMaxVisualBound);
+}
+
+/// Coefficients from quantiser steps to grid units: step k is steps[k] * visual * 2^-12, at least 1.
+inline void scale_coefficients(const MeshObject& mesh, std::uint32_t visual, std::span<std::int32_t> coefficients) noexcept {
+  for (std::size_t k = 0; k < coefficients.size(); ++k)
+    coefficients[k] = limited_displacement(coefficients[k] * coefficient_step(mesh, visual, k));
+}
+
+/// Quantiser step for a bound: rounding each component moves a point by at most the bound.
+constexpr std::int64_t step_of(std::uint32_t bound) noexcept {
+  return std::max<std::int64_t>(1, (std::int64_t{bound} * 37837) >> 15);  // 2 / sqrt(3) * 2^15, rounded down
+}
+
+/// Adds motion and modes to displacements, and reads motion back out of them. Holds scratch space; allocates at creation only.
+class MeshPredictor {
+ public:
+  /// pre  both outlive the predictor
+  MeshPredictor(const MeshObject& mesh, const MeshHierarchy& hierarchy);
+
+  /// out = the displacement that `state` leads to `steps` frames later.
+  void predict(const MeshState& state, std::uint32_t steps, std::span<Vec3i> out) noexcept;
+  /// out += sum of modes times coefficients [grid units at a mode's entry of 1]; what predict() assumed is remembered for learn().
+  void add_modes(std::span<const std::int32_t> coefficients, std::span<Vec3i> out) noexcept;
+  /// Teach `state`, which now holds the packet's displacement, the increments since `before`.
+  void learn(std::span<const Vec3i> before, std::uint32_t steps, MeshState& state) noexcept;
+
+  static std::size_t channels(const MeshObject& mesh) noexcept;
+
+ private:
+  void spread_anchors(std::span<Vec3i> out) noexcept;
+  void gather_anchors(std::span<const Vec3i> before, std::span<const Vec3i> after) noexcept;
+  void combine(std::span<const std::int32_t> coefficients, std::span<Vec3i> out) noexcept;
+
+  const MeshObject& mesh_;
+  const MeshHierarchy& hierarchy_;
+  std::size_t anchors_ = 0;
+  std::vector<std::int64_t> share_;                 // by anchor: how much of the mesh it moves, x 2^-4
+  std::vector<std::int32_t> increments_;            // by channel, of the packet at hand
+  std::vector<std::array<std::int64_t, 3>> field_;  // by vertex
+  std::vector<std::int32_t> sum_;                   // modes: by component
+};
+
+}  // namespace tactus
