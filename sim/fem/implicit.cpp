@@ -26,6 +26,7 @@ double Implicit::stage_step(Scheme scheme, double h) noexcept {
 Implicit::Implicit(FemModel& model, const IntegratorOptions& options, Scheme scheme, std::unique_ptr<Direction> direction)
     : Guarded(model, options),
       scheme_(scheme),
+      extrapolate_(options.method == Method::projective || options.solver == LinearSolver::prefactored),
       newton_(model, options, std::move(direction)),
       u_(newton_.system().size()),
       v_(u_),
@@ -58,6 +59,7 @@ tl::expected<StepReport, FemError> Implicit::solve() {
 tl::expected<StepReport, FemError> Implicit::backward_euler() {
   stage_.a = u_;
   stage_.Mb.noalias() = model().mass_matrix() * v_;
+  if (extrapolate_) u_ += h() * v_;
   return solve();
 }
 
@@ -65,7 +67,8 @@ tl::expected<StepReport, FemError> Implicit::backward_euler() {
 tl::expected<StepReport, FemError> Implicit::trapezoidal(double duration) {
   const double c = stage_.c;
   stage_.Mb.noalias() = (1 - c * newton_.system().alpha()) * (model().mass_matrix() * v_);
-  newton_.system().forces(u_, v_, k_);
+  if (newton_.evaluated() && !edited()) newton_.system().last_forces(k_);
+  else newton_.system().forces(u_, v_, k_);
   stage_.Mb += c * (stage_.f - k_);
   stage_.a = u_ + c * v_;
   u_ += duration * v_;

@@ -24,6 +24,7 @@ class Implicit final : public Guarded {
   tl::expected<StepReport, FemError> solve();
 
   Scheme scheme_;
+  bool extrapolate_;  // where backward Euler starts
   Newton newton_;
   Stage stage_;
   Eigen::VectorXd u_, v_, u0_, v0_, k_;  // free: state at work, state at the start

@@ -14,6 +14,7 @@
 /// modal             exact  always                 K modes of the problem linearised at rest, whatever the elasticity; exact in
 ///                                                 time for constant forces; motion outside the modes is lost
 ///
+/// Backward Euler starts its iteration at u0, with `prefactored` and in the other methods at the displacement extrapolated with v0.
 /// A stage is a nonlinear system. Each iteration finds a direction with the linear solver, and takes a shorter step along it when
 /// the residual says that it went too far; `newton_iterations` 1 is the linearly implicit variant, without that check.
 ///
@@ -46,7 +47,9 @@ struct IntegratorOptions {
   LinearSolver solver = LinearSolver::conjugate_gradients;
   double solver_tolerance = 1e-6;  ///< of conjugate gradients: relative residual of the linear system
   int newton_iterations = 10;      ///< at most; 1: linearly implicit
-  double newton_tolerance = 1e-8;  ///< stop when the update's energy norm is below this share of the stage's first one
+  /// Stop when an update, or what the next one is estimated to be, is below this share of the larger of the stage's first update
+  /// and the motion at its start, in the energy norm of the system matrix.
+  double newton_tolerance = 1e-8;
   int modes = 0;                   ///< of `modal`, 1 .. free degrees of freedom
 };
 

@@ -9,7 +9,7 @@
 namespace tactus {
 
 StageSystem::StageSystem(FemModel& model)
-    : model_(model), ahead_(Eigen::VectorXd::Zero(model.size())), k_(ahead_), v_(Eigen::VectorXd::Zero(size())) {
+    : model_(model), ahead_(Eigen::VectorXd::Zero(model.size())), k_(ahead_), v_(Eigen::VectorXd::Zero(size())), Mv_(v_) {
   SparseMatrix K;
   model.stiffness(ahead_, K);
   double longest = 0;
@@ -44,6 +44,12 @@ void StageSystem::residual(const Stage& stage, const Eigen::VectorXd& u, Eigen::
   r.noalias() += model_.mass_matrix() * v_;
 }
 
+double StageSystem::motion(const Stage& stage, const Eigen::VectorXd& u) {
+  v_ = (u - stage.a) / stage.c;
+  Mv_.noalias() = model_.mass_matrix() * v_;
+  return v_.dot(Mv_);
+}
+
 Newton::Newton(FemModel& model, const IntegratorOptions& options, std::unique_ptr<Direction> direction)
     : system_(model),
       direction_(std::move(direction)),
@@ -55,8 +61,9 @@ Newton::Newton(FemModel& model, const IntegratorOptions& options, std::unique_pt
 
 tl::expected<StepReport, FemError> Newton::solve(const Stage& stage, Eigen::VectorXd& u) {
   StepReport report{0, 0, false};
-  double first = 0;
   system_.residual(stage, u, r_);
+  evaluated_ = true;
+  double scale = system_.motion(stage, u);
   while (report.newton_iterations < iterations_) {
     const double residual = r_.norm();
     if (!std::isfinite(residual)) return tl::unexpected(FemError{{Errc::internal, "R-FEM-6"}, -1, -1, {}});
@@ -67,16 +74,22 @@ tl::expected<StepReport, FemError> Newton::solve(const Stage& stage, Eigen::Vect
     const auto found = direction_->find(system_, stage, r_, d_);
     if (!found) return tl::unexpected(found.error());
     const double decrease = -d_.dot(r_);  // square of the update's energy norm
-    if (report.newton_iterations == 0) first = decrease;
+    if (report.newton_iterations == 0) scale = std::max(scale, decrease);
     ++report.newton_iterations;
     report.solver_iterations += *found;
     u += d_;
-    report.converged = decrease <= tolerance_ * tolerance_ * first;
+    evaluated_ = false;
+    report.converged = decrease <= tolerance_ * tolerance_ * scale;
     if (report.converged || report.newton_iterations == iterations_) break;
     search(stage, decrease, u);
+    evaluated_ = true;
+    // The next update would be smaller than this one about as the residual is.
+    const double shrinkage = next_r_.squaredNorm() / (residual * residual);
+    report.converged = shrinkage * decrease <= tolerance_ * tolerance_ * scale;
     next_r_.swap(r_);
     next_r_ = r_ - next_r_;
     direction_->moved(d_, next_r_);
+    if (report.converged) break;
   }
   return report;
 }

@@ -38,7 +38,11 @@ class StageSystem {
   void scatter(const Eigen::VectorXd& free, Eigen::VectorXd& full) const noexcept;
   /// k(u + beta v); the place of evaluation stays in ahead().
   void forces(const Eigen::VectorXd& u, const Eigen::VectorXd& v, Eigen::VectorXd& k);
+  /// What the last evaluation gave.
+  void last_forces(Eigen::VectorXd& k) const noexcept { gather(k_, k); }
   void residual(const Stage& stage, const Eigen::VectorXd& u, Eigen::VectorXd& r);
+  /// v^T M v [J], the square of the energy norm of moving on with v for c.
+  double motion(const Stage& stage, const Eigen::VectorXd& u);
   /// u + beta v of the last evaluation, 3N.
   const Eigen::VectorXd& ahead() const noexcept { return ahead_; }
   /// Norm of what rounding leaves of r when nothing moves [N].
@@ -46,7 +50,7 @@ class StageSystem {
 
  private:
   FemModel& model_;
-  Eigen::VectorXd ahead_, k_, v_;
+  Eigen::VectorXd ahead_, k_, v_, Mv_;
   double rounding_ = 0;
 };
 
@@ -70,6 +74,8 @@ class Newton {
   /// in, out  u  start, solution.   err  R-FEM-6 when the residual is not finite, R-FEM-7
   tl::expected<StepReport, FemError> solve(const Stage& stage, Eigen::VectorXd& u);
   StageSystem& system() noexcept { return system_; }
+  /// Whether the system's last evaluation was at the solution returned.
+  bool evaluated() const noexcept { return evaluated_; }
 
  private:
   void search(const Stage& stage, double decrease, Eigen::VectorXd& u);
@@ -78,6 +84,7 @@ class Newton {
   std::unique_ptr<Direction> direction_;
   int iterations_;
   double tolerance_;
+  bool evaluated_ = false;
   Eigen::VectorXd r_, next_r_, d_;
 };
 

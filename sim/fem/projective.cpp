@@ -109,12 +109,14 @@ tl::expected<int, FemError> PrefactoredDirection::find(StageSystem& system, cons
   d = -r;
   for (std::size_t i = 0; i < kMemory; ++i) {
     Pair& pair = pairs_[(newest_ + kMemory - i) % kMemory];
+    if (pair.inverse == 0) continue;
     pair.weight = pair.inverse * pair.s.dot(d);
     d -= pair.weight * pair.y;
   }
   solve(d);
   for (std::size_t i = 0; i < kMemory; ++i) {
     const Pair& pair = pairs_[(newest_ + 1 + i) % kMemory];
+    if (pair.inverse == 0) continue;
     d += (pair.weight - pair.inverse * pair.y.dot(d)) * pair.s;
   }
   return 1;

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+/// How wrong single steps are, by step doubling: one whole step beside two half ones from the same state, now and then, on a copy of
+/// the model. The simulation neither waits for it otherwise nor changes by it.
+///   error of the whole step = 2^p / (2^p - 1) |u_whole - u_halves|,  p the order        relative to |u_halves|
+/// Symplectic Euler is looked at as the leapfrog it is (p = 2 in u): the half steps start with the velocity of a quarter step
+/// before the state instead of half a step.
+#pragma once
+
+#include <vector>
+
+#include "sim/fem/integrator.h"
+
+namespace tactus {
+
+class ErrorEstimate {
+ public:
+  struct Result {
+    double p50 = 0, max = 0;  ///< relative error of one step; 0 without samples
+    std::int64_t samples = 0;
+  };
+
+  /// in  every  look at one step in so many   err  as make_integrator
+  static tl::expected<ErrorEstimate, FemError> create(const FemModel& model, const IntegratorOptions& options,
+                                                      std::int64_t every = 50);
+
+  /// Tell of a step about to be taken.   time three steps when it is looked at, else nothing; no allocation after the first look
+  void look(const Eigen::VectorXd& f, const FemState& state);
+  Result result() const;  ///< allocates
+
+ private:
+  struct Copy {  // stays where it is: the integrator refers to the model
+    FemModel model;
+    std::unique_ptr<Integrator> integrator;
+  };
+  ErrorEstimate(std::unique_ptr<Copy> whole, std::unique_ptr<Copy> half, std::int64_t every);
+  static tl::expected<std::unique_ptr<Copy>, FemError> copy(const FemModel& model, const IntegratorOptions& options);
+  double relative_error(const Eigen::VectorXd& f, const FemState& state);
+
+  std::unique_ptr<Copy> whole_, half_;
+  std::int64_t every_, calls_ = 0;
+  double order_factor_;
+  FemState coarse_, fine_;
+  std::vector<double> errors_;
+};
+
+}  // namespace tactus
