@@ -37,8 +37,7 @@ bool valid_damping(double d) { return d >= 0 && std::isfinite(d); }
 tl::expected<void, FemError> check(const TetMesh& mesh, const FemOptions& options) {
   if (const auto checked = tactus::check(mesh); !checked) return Failure(from_mesh(checked.error()));
   if (options.materials.size() != 1 && options.materials.size() != mesh.tets.size())
-    return refuse("R-FEM-2", static_cast<std::int64_t>(options.materials.size()),
-                  "give one material for all tetrahedra or one for each");
+    return refuse("R-FEM-2", -1, "give one material for all tetrahedra or one for each");
   for (std::size_t i = 0; i < options.materials.size(); ++i) {
     if (!valid(options.materials[i]))
       return refuse(

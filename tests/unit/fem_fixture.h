@@ -36,4 +36,30 @@ inline FemModel slab_model(FemOptions options = slab_options()) {
   return make_model(make_slab(kSlabX, kSlabY, 1, 0.01), std::move(options));
 }
 
+/// Symplectic Euler in its shortest form: v += h M^-1 (f - k(u)), u += h v.
+struct ExplicitRun {
+  ExplicitRun(FemModel& m, double step, Eigen::VectorXd load) : model(m), h(step), f(std::move(load)), state(m.rest()) {
+    inverse_mass = Eigen::VectorXd::Zero(m.size());
+    for (const int dof : m.free_dofs()) inverse_mass[dof] = 1 / m.lumped_mass()[dof];
+  }
+
+  void step() {
+    model.internal_forces(state.u, k);
+    state.v += h * inverse_mass.cwiseProduct(f - k);
+    state.u += h * state.v;
+  }
+
+  FemModel& model;
+  double h;
+  Eigen::VectorXd f, inverse_mass, k;
+  FemState state;
+};
+
+/// 1 N downwards in the middle of the top.
+inline Eigen::VectorXd slab_load(const FemModel& model) {
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(model.size());
+  f[3 * kSlabCentre + 2] = -1;
+  return f;
+}
+
 }  // namespace tactus::testing
