@@ -6,6 +6,8 @@
 #include <array>
 #include <vector>
 
+#include "sim/rigid/rest_watch.h"
+
 namespace tactus {
 namespace {
 
@@ -40,6 +42,11 @@ struct OdeThread {
 
 Vec3 vec(const dReal* v) { return {v[0], v[1], v[2]}; }
 
+Quat quaternion(dBodyID body) {
+  const dReal* q = dBodyGetQuaternion(body);
+  return {q[0], q[1], q[2], q[3]};
+}
+
 /// Components of v along the axes whose bits are set, starting at bit `first`.
 Vec3 along_free(const Vec3& v, std::uint8_t dof, int first) {
   return {dof >> first & 1 ? v.x : 0.0, dof >> (first + 1) & 1 ? v.y : 0.0, dof >> (first + 2) & 1 ? v.z : 0.0};
@@ -57,8 +64,9 @@ struct Box {
   dBodyID body = nullptr;  // null: static
   dGeomID geom = nullptr;
   double mu = 0;
-  Vec3 inverse_inertia;  // [1/(kg m^2)] about the box's own axes
-  Vec3 force, torque;    // of this step [N, N m], world frame
+  Vec3 inverse_inertia;   // [1/(kg m^2)] about the box's own axes
+  Vec3 force, torque;     // of this step [N, N m], world frame
+  std::size_t mover = 0;  // its number among those that move
 };
 
 }  // namespace
@@ -72,6 +80,9 @@ struct RigidWorld::Impl {
   Vec3 gravity;
   std::vector<Box> boxes;
   std::int64_t tick = 0;
+  RestWatch watch;
+  std::vector<Pose> moving;  // poses for it
+  std::size_t sleeping = 0;
 
   explicit Impl(const Scene& scene);
   ~Impl();
@@ -83,6 +94,9 @@ struct RigidWorld::Impl {
   Motion motion_without_contact(const Box& box) const;
   Vec3 velocity_without_contact(const Box* box, const Vec3& point) const;
   void project(Box& box) const;
+  bool ends_period() const noexcept { return tick % kRestTicks == kRestTicks - 1; }
+  void let_sleep();
+  void disturb(const Box& box);
   const Box* owner(dGeomID geom) const { return static_cast<const Box*>(dGeomGetData(geom)); }
 };
 
@@ -113,6 +127,9 @@ void RigidWorld::Impl::add(const SceneObject& spec) {
     box.inverse_inertia = {1 / mass.I[0], 1 / mass.I[5], 1 / mass.I[10]};
     box.body = dBodyCreate(world);
     dBodySetMass(box.body, &mass);
+    box.mover = moving.size();
+    moving.push_back(spec.pose);
+    watch.add(spec.pose, norm(spec.size) / 2);
     dGeomSetBody(box.geom, box.body);
   }
   const dQuaternion rotation{spec.pose.rotation.w, spec.pose.rotation.x, spec.pose.rotation.y, spec.pose.rotation.z};
@@ -122,8 +139,7 @@ void RigidWorld::Impl::add(const SceneObject& spec) {
 
 /// Velocities at the end of this step if nothing but gravity and pushes acted.
 Motion RigidWorld::Impl::motion_without_contact(const Box& box) const {
-  const dReal* q = dBodyGetQuaternion(box.body);
-  const Quat rotation{q[0], q[1], q[2], q[3]};
+  const Quat rotation = quaternion(box.body);
   const Vec3 torque = rotate(conjugate(rotation), box.torque);
   const Vec3& i = box.inverse_inertia;
   return {vec(dBodyGetLinearVel(box.body)) + kTick * (gravity + (1 / box.spec.mass) * box.force),
@@ -144,6 +160,7 @@ void RigidWorld::Impl::collide(dGeomID a, dGeomID b) {
 
   std::array<dContact, kMaxContacts> found{};
   const int count = dCollide(a, b, kMaxContacts, &found[0].geom, sizeof(dContact));
+  if (count > 0 && body_a && body_b && ends_period()) watch.touch(first->mover, second->mover);
   for (int i = 0; i < count; ++i) {
     dContact& contact = found[static_cast<std::size_t>(i)];
     contact.surface.mode = dContactApprox1;
@@ -176,13 +193,34 @@ void RigidWorld::Impl::project(Box& box) const {
   const unsigned turns = static_cast<unsigned>(dof) >> 3;
   if (turns == 7) return;
   const Quat& start = box.spec.pose.rotation;
-  const dReal* q = dBodyGetQuaternion(box.body);
-  const Quat turned = Quat{q[0], q[1], q[2], q[3]} * conjugate(start);
+  const Quat turned = quaternion(box.body) * conjugate(start);
   const Vec3 axis = along_free({turned.x, turned.y, turned.z}, dof, 3);
   const double length = std::sqrt(turned.w * turned.w + dot(axis, axis));
   const Quat kept = turns == 0 ? start : Quat{turned.w / length, axis.x / length, axis.y / length, axis.z / length} * start;
   const dQuaternion rotation{kept.w, kept.x, kept.y, kept.z};
   dBodySetQuaternion(box.body, rotation);
+}
+
+/// At the end of a period; whatever wakes a body, a push or one that hits it, wakes all that it touches.
+void RigidWorld::Impl::let_sleep() {
+  for (const Box& box : boxes)
+    if (box.body) moving[box.mover] = {vec(dBodyGetPosition(box.body)), quaternion(box.body)};
+  watch.end_period(moving);
+  sleeping = 0;
+  for (const Box& box : boxes) {
+    if (!box.body || !watch.rests(box.mover)) continue;
+    dBodySetLinearVel(box.body, 0, 0, 0);
+    dBodySetAngularVel(box.body, 0, 0, 0);
+    dBodyDisable(box.body);
+    ++sleeping;
+  }
+}
+
+void RigidWorld::Impl::disturb(const Box& box) {
+  watch.disturb(box.mover);
+  if (dBodyIsEnabled(box.body)) return;
+  dBodyEnable(box.body);
+  --sleeping;
 }
 
 RigidWorld::RigidWorld(const Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}
@@ -193,12 +231,17 @@ RigidWorld::~RigidWorld() = default;
 void RigidWorld::push(std::uint32_t object, const Vec3& force, const Vec3& point) noexcept {
   Box& box = impl_->boxes[object];
   if (!box.body) return;
+  if (force != Vec3{}) impl_->disturb(box);
   box.force = box.force + force;
   box.torque = box.torque + along_free(cross(point - vec(dBodyGetPosition(box.body)), force), box.spec.dof, 3);
 }
 
 tl::expected<void, StepError> RigidWorld::step() {
   Impl& in = *impl_;
+  if (in.sleeping > 0 && in.sleeping == in.moving.size()) {
+    ++in.tick;
+    return {};
+  }
   // QuickStep shuffles its constraints with the process's one random generator; seeded, a step depends on this world alone.
   dRandSetSeed(static_cast<unsigned long>(in.tick));
   const auto broken = [&](std::uint32_t i) { return tl::unexpected(StepError{Error{Errc::internal, "R-SIM-1", 0}, in.tick, i}); };
@@ -212,7 +255,6 @@ tl::expected<void, StepError> RigidWorld::step() {
   dJointGroupEmpty(in.contacts);
   dSpaceCollide(in.space, &in, [](void* self, dGeomID a, dGeomID b) { static_cast<Impl*>(self)->collide(a, b); });
   dWorldQuickStep(in.world, kTick);
-  ++in.tick;
   for (std::uint32_t i = 0; i < in.boxes.size(); ++i) {
     Box& box = in.boxes[i];
     box.force = box.torque = {};
@@ -222,14 +264,15 @@ tl::expected<void, StepError> RigidWorld::step() {
     if (!is_finite(s.pose.position) || !is_finite(s.pose.rotation) || !can_step({s.velocity, s.angular_velocity}))
       return broken(i);
   }
+  if (in.ends_period()) in.let_sleep();
+  ++in.tick;
   return {};
 }
 
 RigidSample RigidWorld::sample(std::uint32_t object) const noexcept {
   const Box& box = impl_->boxes[object];
   if (!box.body) return {.pose = box.spec.pose, .velocity = {}, .angular_velocity = {}};
-  const dReal* q = dBodyGetQuaternion(box.body);
-  return {.pose = {vec(dBodyGetPosition(box.body)), {q[0], q[1], q[2], q[3]}},
+  return {.pose = {vec(dBodyGetPosition(box.body)), quaternion(box.body)},
           .velocity = vec(dBodyGetLinearVel(box.body)),
           .angular_velocity = vec(dBodyGetAngularVel(box.body))};
 }

@@ -4,11 +4,13 @@
 /// Coulomb friction  ODE bounds friction per axis (a pyramid). One axis is laid along the velocity that the contact point would
 ///                   have without friction, so that the bound is mu N in every direction of sliding, not up to 41 % more.
 /// Damping           v and w are multiplied by the object's d after every step.
+/// Sleep             a pile of objects that rest together stands still until one of it is pushed or hit (rest_watch.h).
 /// Locked axes       an object keeps the exact bits of its first position along them, and of its first rotation.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include "codec/base/geometry.h"
 #include "codec/base/result.h"
@@ -22,6 +24,7 @@ struct StepError {
   Error error;
   std::int64_t tick = 0;
   std::uint32_t object = 0;
+  std::string remedy{};  ///< in words, of deformable objects; may be empty
 };
 
 class RigidWorld {
@@ -33,7 +36,8 @@ class RigidWorld {
   void push(std::uint32_t object, const Vec3& force, const Vec3& point) noexcept;
 
   /// Advance by one tick.
-  /// time O(contacts), about 15 us for one cube on the floor; no allocation once ODE's arenas fit the contacts, in the first step.
+  /// time O(contacts), about 15 us for one cube on the floor, nothing when all sleep; no allocation once ODE's arenas fit the
+  ///      contacts, in the first step.
   /// err  internal R-SIM-1: a pose is not finite, or an object got faster than 1e4 m/s or 1e5 rad/s; the world is then of no more use.
   tl::expected<void, StepError> step();
 

@@ -190,6 +190,59 @@ TEST(RigidWorld, WorldsDoNotDisturbEachOther) {
   EXPECT_NE(second.sample(0).pose.position, alone.sample(0).pose.position);
 }
 
+/// Two cubes, one on the other, and a third one 3 mm above them.
+Scene pile_scene() {
+  Scene scene = cube_scene();
+  for (const double height : {0.06, 0.103}) {
+    scene.objects.push_back(scene.objects[0]);
+    scene.objects.back().pose.position.z = height;
+  }
+  return scene;
+}
+
+bool rests(const RigidWorld& world, std::uint32_t object) {
+  const RigidSample s = world.sample(object);
+  return s.velocity == Vec3{} && s.angular_velocity == Vec3{};
+}
+
+TEST(RigidWorld, APileComesToRestAndStays) {
+  RigidWorld world(pile_scene());
+  run(world, 2000);
+  for (const std::uint32_t i : {0u, 1u, 2u}) EXPECT_TRUE(rests(world, i)) << i;
+  const Vec3 before = world.sample(2).pose.position;
+  EXPECT_NEAR(before.z, 0.1, 1e-4);
+  run(world, 10000);
+  EXPECT_EQ(world.sample(2).pose.position, before);
+  EXPECT_EQ(world.tick(), 12000);
+}
+
+TEST(RigidWorld, APushWakesAllOfAPile) {
+  RigidWorld world(pile_scene());
+  run(world, 2000);
+  const double before = world.sample(2).pose.position.x;
+  run(world, 200, {3.5 * kFriction, 0, 0});  // at the lowest; the upper ones ride on it
+  EXPECT_GT(world.sample(0).velocity.x, 0.01);
+  EXPECT_GT(world.sample(2).pose.position.x, before + 1e-3);
+}
+
+TEST(RigidWorld, ABodyThatFallsOnASleepingPileWakesIt) {
+  Scene scene = pile_scene();
+  scene.objects.push_back(scene.objects[0]);
+  scene.objects.back().pose.position = {0.015, 0, 8};  // falls for 1.27 s
+  RigidWorld world(scene);
+  run(world, 1200);
+  ASSERT_TRUE(rests(world, 2)) << "the pile must sleep before it is hit";
+  run(world, 100);
+  EXPECT_FALSE(rests(world, 2));
+}
+
+TEST(RigidWorld, ASingleCubeNeverSleeps) {
+  RigidWorld world(cube_scene());
+  run(world, 2000);
+  run(world, 1, {0.5 * kFriction, 0, 0});
+  EXPECT_NE(world.sample(0).velocity, Vec3{}) << "ODE leaves a rounding error, of which golden traces are made";
+}
+
 std::size_t ode_allocations = 0;
 
 TEST(RigidWorld, OdeAllocatesNothingAfterTheFirstStep) {
