@@ -8,7 +8,7 @@ namespace tactus {
 namespace {
 
 constexpr std::uint32_t kNone = MeshTopology::kNone;
-constexpr int kMaxSweeps = 32;
+constexpr int kMaxSweeps = 24;
 constexpr int kMaxPushes = 4;
 constexpr int kConfirmations = 2;  // searches without a way out, where several planes hold
 constexpr int kMaxIdle = 4;        // searches that move the proxy, but by rounding only
@@ -45,14 +45,18 @@ Vec3 away_from(const SurfacePoint& at, const Vec3& centre, std::span<const Vec3>
 }  // namespace
 
 MeshProxy::MeshProxy(const MeshProxyOptions& options, double extent) noexcept
-    : options_(options), skin_(0x1p-24 * std::fmax(extent, options.radius)), slack_(skin_ / 8) {}
+    : options_(options),
+      skin_(0x1p-24 * std::fmax(extent, options.radius)),
+      slack_(skin_ / 8),
+      settled_(std::fmax(slack_, 0x1p-14 * options.radius)) {}
 
 Sweep MeshProxy::towards(const Vec3& goal) const noexcept { return {centre_, goal - centre_, distance(), slack_}; }
 
 /// What is less than the slack is not worth a move: a proxy that is held does not creep.
 bool MeshProxy::lets_move(const SurfaceHit& hit, const Vec3& way) const noexcept { return hit.rest * norm(way) > slack_; }
 
-/// The triangles that held the proxy last are asked first: a face that does not let it move at all settles the matter.
+/// The triangles that held the proxy last are asked first: one that does not let it move at all settles the matter. The edge of a
+/// triangle may only seem to be in the way of a point, where the face beside it is what carries it.
 std::optional<SurfaceHit> MeshProxy::first_contact(const Vec3& goal, std::span<const Vec3> vertices,
                                                    const AabbTree& tree) const noexcept {
   const Sweep sweep = towards(goal);
@@ -60,7 +64,7 @@ std::optional<SurfaceHit> MeshProxy::first_contact(const Vec3& goal, std::span<c
   for (const std::uint32_t triangle : recent_) {
     if (!tree.contains(triangle) || std::find(held.begin(), held.end(), triangle) != held.end()) continue;
     const auto hit = tree.sweep(sweep, vertices, triangle);
-    if (hit && !lets_move(*hit, sweep.way) && hit->at.feature() == Feature::face) return hit;
+    if (hit && !lets_move(*hit, sweep.way) && (hit->at.feature() == Feature::face || options_.radius > 0)) return hit;
   }
   return tree.sweep(sweep, vertices, held);
 }
@@ -117,7 +121,7 @@ void MeshProxy::follow(const Vec3& probe, std::span<const Vec3> vertices, const 
       ++sweeps;
       continue;
     }
-    const bool settled = held_ > 0 && norm(*goal - centre_) <= slack_;
+    const bool settled = held_ > 0 && norm(*goal - centre_) <= settled_;
     if (!settled) {
       const Vec3 from = centre_, way = *goal - centre_;
       const auto hit = first_contact(*goal, vertices, tree);
@@ -141,7 +145,7 @@ void MeshProxy::follow(const Vec3& probe, std::span<const Vec3> vertices, const 
   }
 }
 
-/// Move along with the surface, as the triangle of the anchor turned and moved.
+/// As the triangle of the anchor turned and moved.
 void MeshProxy::carry(std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
   if (!tree.contains(anchor_.triangle)) return;
   const Corners now = corners_of(tree.triangle(anchor_.triangle), vertices);
@@ -153,6 +157,7 @@ void MeshProxy::carry(std::span<const Vec3> vertices, const AabbTree& tree) noex
     offset = local.x * (*new_axes)[0] + local.y * (*new_axes)[1] + local.z * (*new_axes)[2];
   }
   centre_ = blend(anchor_.weights, now) + offset;
+  anchor_.corners = now;
   keep_distance(vertices, tree);
 }
 

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Energy that a sampled environment gives away, and the damping that takes it back: passivity observer and controller
+/// (Hannaford and Ryu 2002). Thesis 2.2.2, eq. 2.2, figures 2.2b and 2.2c.
+///
+/// sign   f is the force on the hand, held from one tick to the next; the hand puts energy into the environment against it:
+///          E(n) = E(n-1) - f(n-1) . (x(n) - x(n-1))
+///        passive as long as E >= 0. A spring of stiffness k that is pressed to depth X and released at d metres per tick gives
+///        away k d X: the hold is one tick late, too weak on the way in and too strong on the way out.
+/// damping  before f(n) is shown the controller assumes that the hand moves on as in the last tick, and adds just so much of
+///          -alpha (x(n) - x(n-1)) / T, alpha <= max_damping, that E(n+1) would not be negative.
+/// tests    tests/unit/passivity_test.cpp
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+#include "codec/base/geometry.h"
+
+namespace tactus {
+
+/// Watches the energy at the port between device and environment.
+class PassivityObserver {
+ public:
+  /// in  tolerance  [J] rounding that is no violation
+  explicit PassivityObserver(double tolerance = 1e-12) noexcept : tolerance_(tolerance) {}
+
+  /// The device is here now.   time O(1), no allocation
+  void arrive(const Vec3& position) noexcept;
+  /// This force acts on the hand until it arrives next.
+  void hold(const Vec3& force) noexcept { force_ = force; }
+  /// Forget energy beyond this; 0 starts anew.
+  void cap(double energy) noexcept { energy_ = std::min(energy_, energy); }
+  void reset() noexcept { energy_ = 0; }
+
+  const Vec3& step() const noexcept { return step_; }                ///< [m] from the last position to this one
+  double energy() const noexcept { return energy_; }                 ///< [J] put in minus taken out
+  double lowest() const noexcept { return lowest_; }                 ///< [J] least energy so far, at most 0
+  std::uint64_t violations() const noexcept { return violations_; }  ///< ticks with energy below zero
+
+ private:
+  double tolerance_, energy_ = 0, lowest_ = 0;
+  Vec3 position_, step_, force_;
+  bool arrived_ = false;
+  std::uint64_t violations_ = 0;
+};
+
+struct PassivityOptions {
+  double tick = 1e-3;                                            ///< [s] T
+  double max_damping = std::numeric_limits<double>::infinity();  ///< [Ns/m] what the loop bears at this rate: about mass / T
+  double max_stored = std::numeric_limits<double>::infinity();   ///< [J] energy remembered: what is stored hides later activity
+  double reset_after = std::numeric_limits<double>::infinity();  ///< [s] without force, then the account starts anew
+};
+
+class PassivityController {
+ public:
+  explicit PassivityController(const PassivityOptions& options) noexcept : options_(options) {}
+
+  /// Force to show instead of what the environment asks for.
+  /// in   position  [m] of the device now
+  ///      force     [N] on the hand
+  /// time O(1), no allocation
+  Vec3 limit(const Vec3& position, const Vec3& force) noexcept;
+
+  const PassivityObserver& port() const noexcept { return port_; }  ///< with what the controller adds
+  double damping() const noexcept { return damping_; }              ///< [Ns/m] alpha in this tick
+
+ private:
+  PassivityOptions options_;
+  PassivityObserver port_;
+  double damping_ = 0;
+  double free_for_ = 0;  // [s]
+};
+
+}  // namespace tactus
