@@ -7,7 +7,6 @@
 namespace tactus {
 namespace {
 
-constexpr std::uint32_t kNone = MeshTopology::kNone;
 constexpr int kMaxSweeps = 24;
 constexpr int kMaxPushes = 4;
 constexpr int kConfirmations = 2;  // searches without a way out, where several planes hold
