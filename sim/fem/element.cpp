@@ -19,10 +19,10 @@ InstructionSet widest() noexcept {
 
 ElementKernels kernels([[maybe_unused]] InstructionSet set) noexcept {
 #ifdef TACTUS_FEM_X86
-  if (set == InstructionSet::avx2) return kAvx2Kernels;
-  if (set == InstructionSet::avx512) return kAvx512Kernels;
+  if (set == InstructionSet::avx2) return avx2_kernels();
+  if (set == InstructionSet::avx512) return avx512_kernels();
 #endif
-  return kPortableKernels;
+  return portable_kernels();
 }
 
 Elements::Elements(const TetMesh& mesh, std::span<const Lame> moduli, bool corotated)

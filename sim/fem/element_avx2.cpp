@@ -3,6 +3,6 @@
 
 namespace tactus {
 
-const ElementKernels kAvx2Kernels = Kernel<4>::kKernels;
+ElementKernels avx2_kernels() noexcept { return Kernel<4>::kKernels; }
 
 }  // namespace tactus

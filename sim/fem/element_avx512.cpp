@@ -3,6 +3,6 @@
 
 namespace tactus {
 
-const ElementKernels kAvx512Kernels = Kernel<8>::kKernels;
+ElementKernels avx512_kernels() noexcept { return Kernel<8>::kKernels; }
 
 }  // namespace tactus

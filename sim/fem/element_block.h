@@ -36,11 +36,12 @@ enum class InstructionSet : std::uint8_t { portable, avx2, avx512 };
 
 bool supported(InstructionSet set) noexcept;  ///< by this machine and this build
 InstructionSet widest() noexcept;             ///< of those supported
-ElementKernels kernels(InstructionSet set) noexcept;
+ElementKernels kernels(InstructionSet set) noexcept;  ///< pre  supported(set)
 
-extern const ElementKernels kPortableKernels;
+ElementKernels portable_kernels() noexcept;
 #ifdef TACTUS_FEM_X86
-extern const ElementKernels kAvx2Kernels, kAvx512Kernels;
+ElementKernels avx2_kernels() noexcept;
+ElementKernels avx512_kernels() noexcept;
 #endif
 
 }  // namespace tactus

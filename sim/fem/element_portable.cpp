@@ -3,6 +3,6 @@
 
 namespace tactus {
 
-const ElementKernels kPortableKernels = Kernel<2>::kKernels;
+ElementKernels portable_kernels() noexcept { return Kernel<2>::kKernels; }
 
 }  // namespace tactus
