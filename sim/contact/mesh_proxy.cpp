@@ -7,7 +7,7 @@
 namespace tactus {
 namespace {
 
-constexpr int kMaxSweeps = 24;
+constexpr int kMaxSweeps = 16;
 constexpr int kMaxPushes = 4;
 constexpr int kConfirmations = 2;  // searches without a way out, where several planes hold
 constexpr int kMaxIdle = 4;        // searches that move the proxy, but by rounding only
@@ -137,7 +137,7 @@ void MeshProxy::follow(const Vec3& probe, std::span<const Vec3> vertices, const 
     // One plane that does not let the proxy move is beyond doubt; among several, one touched at its edge may have hidden the way out.
     const double remaining = norm(probe - centre_);
     idle = remaining < reached - slack_ ? 0 : idle + 1;
-    if ((settled && !moved && (held_ == 1 || idle >= kConfirmations)) || idle > kMaxIdle) return;
+    if ((settled && !moved && (held_ == 1 || idle >= kConfirmations)) || idle > kMaxIdle || sweeps >= kMaxSweeps) return;
     reached = std::fmin(reached, remaining);
     release();
     moved = false;

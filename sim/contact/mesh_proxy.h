@@ -54,7 +54,8 @@ class MeshProxy {
   MeshTouch place(const Vec3& probe, const Inside& inside, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
   /// Move the probe there; the first time it is put there, on whichever side of the surface that is. A probe that is not a finite point stays where it was.
   /// in   vertices  where they are now; the tree is fitted to them. All in the frame of the mesh
-  /// time O(log n) per triangle crossed, about 1 us in the open and 3 us on a mesh of 100 000; no allocation
+  /// time O(log n) per triangle crossed, on a mesh of 100 000 about 0.1 us in the open and 1.5 us in contact (4 us for a sphere larger
+  ///      than the triangles); at most 16 sweeps, the rest waits for the next call; no allocation
   MeshTouch move(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
 
   /// Move along with the surface, but not towards the probe: what move() does first.   time O(1) if nothing moved

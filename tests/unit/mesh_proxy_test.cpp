@@ -389,6 +389,28 @@ TEST(MeshProxy, RandomWalksNeverCrossAClosedMesh) {
   }
 }
 
+/// A way that takes more sweeps than a call may spend is cut short: still touched and still outside.
+TEST(MeshProxy, WaysThatAreCutShortStayOutside) {
+  const Body body(testing::bumpy_ball(0.05, 5, 0.3, 3));
+  for (const double radius : {0.0, 0.002}) {
+    Random random(9);
+    for (int run = 0; run < 300; ++run) {
+      Hand hand(body, {.friction = 0.2, .radius = radius});
+      const Vec3 way = testing::random_point(random, 1), start = (0.1 / norm(way)) * way;
+      hand.place(start);
+      const Vec3 goal = testing::random_point(random, 0.02);  // deep inside
+      for (int i = 0; i < 20; ++i) {
+        const MeshTouch touch = hand.move(goal);
+        ASSERT_TRUE(touch.touched) << run;
+        ASSERT_NEAR(norm(touch.normal), 1, 1e-12);
+        const auto nearest = body.tree.closest(touch.proxy, body.mesh.vertices);
+        ASSERT_GE(nearest->distance, radius + 0.9 * hand.skin) << run;
+        ASSERT_FALSE(body.inside.contains(touch.proxy, *nearest, body.mesh.vertices)) << run;
+      }
+    }
+  }
+}
+
 /// A sheet that rises, tilts and waves; the hand stays at rest.
 TEST(MeshProxy, MovingSurfaceNeverPassesOver) {
   constexpr std::uint32_t kSquares = 30;
