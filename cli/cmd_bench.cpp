@@ -10,6 +10,9 @@
 #include <system_error>
 #include <thread>
 
+#ifdef TACTUS_HAS_FEM
+#include "cli/cmd_bench_precision.h"
+#endif
 #include "cli/cmd_bench_stability.h"
 
 namespace tactus::cli {
@@ -76,6 +79,9 @@ Outcome write_file(const std::string& path, const std::string& text, OutputFile:
 void setup_bench(CLI::App& app, Action& action) {
   CLI::App& bench =
       *app.add_subcommand("bench", "Study the simulation itself: error against run time, and where it stops being stable");
+#ifdef TACTUS_HAS_FEM
+  setup_bench_precision(bench, action);
+#endif
   setup_bench_stability(bench, action);
 }
 

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/cmd_bench_precision.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "cli/cmd_bench.h"
+#include "cli/options_codec.h"
+#include "cli/precision_report.h"
+#include "cli/progress.h"
+
+namespace tactus::cli {
+namespace {
+
+using study::Extent;
+
+/// Smaller steps of a method that is this many times slower than real time are left out.
+constexpr double kTooSlow = 10;
+
+struct PrecisionOptions {
+  std::vector<std::string> scenes;
+  std::string folder;
+  bool brief = false;
+  int runs = 5;
+  CommonOptions common;
+
+  Extent extent() const { return brief ? Extent::brief : Extent::full; }
+};
+
+Failure failure_of(const std::string& scene, const FemError& error) { return {scene + ": " + to_string(error), error.remedy}; }
+
+/// All points of the studies; those that are in the results already are not computed again.
+class Work {
+ public:
+  Work(const PrecisionOptions& options, PrecisionResults& results) : options_(options), results_(results) {
+    for (const std::string& name : options.scenes) {
+      scenes_.push_back(*study::precision_scene(name, options.extent()));
+      total_ += 1 + methods_.size() * scenes_.back().steps_per_sample.size() + space_jobs(name).size();
+    }
+    progress_.emplace("bench precision", total_, options.common.progress());
+  }
+
+  tl::expected<PrecisionReport, Failure> run();
+
+ private:
+  std::vector<study::SpaceJob> space_jobs(const std::string& scene) const {
+    // A stiffer material of the same shape has the same relative space error.
+    if (scene == "membrane-stiff") return {};
+    return study::space_jobs(scene, options_.extent());
+  }
+  tl::expected<TimeStudy, Failure> time_study(const study::PrecisionScene& scene);
+  Outcome space_studies(const std::string& scene, std::vector<SpaceStudy>& out);
+  tl::expected<study::PrecisionPoint, Failure> point(const study::PrecisionScene& scene, const study::PrecisionMethod& method,
+                                                     int steps);
+  tl::expected<study::Reference, Failure> reference(const study::PrecisionScene& scene);
+  void count() { progress_->update(++done_); }
+
+  const PrecisionOptions& options_;
+  PrecisionResults& results_;
+  std::vector<study::PrecisionScene> scenes_;
+  std::vector<study::PrecisionMethod> methods_ = study::precision_methods(options_.extent());
+  std::optional<study::Reference> reference_;  // of reference_scene_, made when a point needs it
+  std::string reference_scene_;
+  std::uint64_t total_ = 0, done_ = 0;
+  std::optional<Progress> progress_;
+};
+
+tl::expected<study::Reference, Failure> Work::reference(const study::PrecisionScene& scene) {
+  auto reference = study::make_reference(scene);
+  if (!reference) return tl::unexpected(failure_of(scene.name, reference.error()));
+  if (results_.find(scene.name, kReferenceMethod, scene.reference_steps_per_sample) == nullptr) {
+    study::PrecisionPoint point;
+    point.method = kReferenceMethod;
+    point.steps_per_sample = scene.reference_steps_per_sample;
+    point.step = reference->step;
+    point.errors = reference->floor;
+    point.seconds_per_second = reference->load.step_seconds / scene.duration;
+    point.runs = 1;
+    point.remark = fmt::format("observed order {:.2f}", reference->order);
+    if (const auto added = results_.add(TimeRow{scene.name, point}); !added) return tl::unexpected(added.error());
+  }
+  return *std::move(reference);
+}
+
+/// The point, computed if it is not known yet.
+tl::expected<study::PrecisionPoint, Failure> Work::point(const study::PrecisionScene& scene, const study::PrecisionMethod& method,
+                                                         int steps) {
+  if (const TimeRow* row = results_.find(scene.name, method.name, steps)) return row->point;
+  if (!reference_ || reference_scene_ != scene.name) {
+    auto made = reference(scene);
+    if (!made) return tl::unexpected(made.error());
+    reference_ = *std::move(made);
+    reference_scene_ = scene.name;
+  }
+  const auto point = study::measure(scene, method, steps, *reference_, {.runs = options_.runs});
+  if (const auto added = results_.add(TimeRow{scene.name, point}); !added) return tl::unexpected(added.error());
+  return results_.find(scene.name, method.name, steps)->point;
+}
+
+tl::expected<TimeStudy, Failure> Work::time_study(const study::PrecisionScene& scene) {
+  TimeStudy out{scene, {}, methods_, {}};
+  for (const study::PrecisionMethod& method : methods_) {
+    double cost = 0;
+    for (const int steps : scene.steps_per_sample) {
+      count();
+      if (cost > kTooSlow) continue;
+      const auto point = this->point(scene, method, steps);
+      if (!point) return tl::unexpected(point.error());
+      cost = point->seconds_per_second;
+      out.points.push_back(*point);
+    }
+  }
+  out.reference = results_.find(scene.name, kReferenceMethod, scene.reference_steps_per_sample)->point;
+  count();
+  return out;
+}
+
+Outcome Work::space_studies(const std::string& scene, std::vector<SpaceStudy>& out) {
+  for (const study::SpaceJob& job : space_jobs(scene)) {
+    const SpaceRow* row = results_.find(scene, job);
+    if (row == nullptr) {
+      const auto point = study::measure_space(scene, job);
+      if (!point) return tl::unexpected(failure_of(scene, point.error()));
+      if (auto added = results_.add(SpaceRow{scene, *point}); !added) return added;
+      row = results_.find(scene, job);
+    }
+    if (job.refinement == 1) out.push_back({scene, {}, {}});
+    out.back().points.push_back(row->point);
+    count();
+  }
+  for (SpaceStudy& space : out)
+    if (space.scene == scene) space.errors = study::space_errors(space.points);
+  return {};
+}
+
+tl::expected<PrecisionReport, Failure> Work::run() {
+  PrecisionReport report{results_.context(), {}, {}};
+  for (const study::PrecisionScene& scene : scenes_) {
+    auto time = time_study(scene);
+    if (!time) return tl::unexpected(time.error());
+    report.times.push_back(*std::move(time));
+    if (const auto done = space_studies(scene.name, report.spaces); !done) return tl::unexpected(done.error());
+  }
+  return report;
+}
+
+/// All files but the two that grew on the way.
+Outcome write_report(const PrecisionReport& report, const std::string& folder) {
+  constexpr auto kReplace = OutputFile::Existing::replace;
+  if (auto done = write_file(folder + "/precision.json", precision_json(report), kReplace); !done) return done;
+  if (auto done = write_file(folder + "/report.md", precision_markdown(report), kReplace); !done) return done;
+  for (const Plot& plot : precision_plots(report)) {
+    const auto drawn = draw(plot, folder, kReplace);
+    if (!drawn) return tl::unexpected(drawn.error());
+    if (*drawn == Drawn::no) {
+      fmt::print(stderr, "{}\n", kNoGnuplot);
+      break;
+    }
+  }
+  return {};
+}
+
+Outcome run(const PrecisionOptions& options) {
+  PrecisionOptions chosen = options;
+  if (chosen.scenes.empty()) chosen.scenes.assign(std::begin(study::kPrecisionScenes), std::end(study::kPrecisionScenes));
+  auto context = bench_context();
+  context["extent"] = options.brief ? "short" : "full";
+  context["runs"] = fmt::to_string(options.runs);
+  auto results = PrecisionResults::open(options.folder, std::move(context), options.common.existing());
+  if (!results) return tl::unexpected(results.error());
+  const auto report = Work(chosen, *results).run();
+  if (!report) return tl::unexpected(report.error());
+  if (auto done = write_report(*report, options.folder); !done) return done;
+  if (options.common.json) fmt::print("{}", precision_json(*report));
+  else if (!options.common.quiet) print_precision_tables(*report);
+  return {};
+}
+
+}  // namespace
+
+void setup_bench_precision(CLI::App& bench, Action& action) {
+  auto options = std::make_shared<PrecisionOptions>();
+  CLI::App& command = *bench.add_subcommand("precision", "Error against run time: methods, solvers and step sizes");
+  const std::vector<std::string> names(std::begin(study::kPrecisionScenes), std::end(study::kPrecisionScenes));
+  command.add_option("--scene", options->scenes, "membrane, membrane-stiff or cantilever; several times for several [all]")
+      ->check(one_of(names))
+      ->type_name("SCENE");
+  command.add_option("-o,--output", options->folder, "Folder for report, tables and plots; a run that was stopped goes on there")
+      ->required()
+      ->type_name("DIR");
+  command.add_flag("--short", options->brief, "Coarse meshes and few steps: seconds instead of an hour");
+  command.add_option("--runs", options->runs, "Runs that a time is the median of")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000).description(""))
+      ->type_name("N");
+  add_output_options(command, options->common);
+  command.footer("Example:\n  tactus bench precision --scene membrane -o out/precision");
+  on_chosen<PrecisionOptions>(command, action, options, run);
+}
+
+}  // namespace tactus::cli

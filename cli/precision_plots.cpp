@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/precision_report.h"
+
+namespace tactus::cli {
+namespace {
+
+using study::Errors;
+using study::PrecisionPoint;
+
+/// One colour per method, one dash and mark per variant of it.
+struct Style {
+  int colour = 1, dash = 1, mark = 7;
+};
+
+Style style_of(const study::PrecisionMethod& method, int variant) {
+  constexpr int kMarks[] = {7, 4, 9};  // gnuplot's disc, open square, triangle
+  const int colour = method.options.method == Method::symplectic_euler ? 7 : static_cast<int>(method.options.method);
+  return {colour, variant + 1, kMarks[variant % 3]};
+}
+
+std::string frame(const std::string& title, const std::string& x_label) {
+  return fmt::format(
+      "set logscale xy\nset format x '10^{{%L}}'\nset format y '10^{{%L}}'\nset mxtics 1\nset mytics 1\n"
+      "set title \"{}\" noenhanced\nset xlabel '{}'\nset ylabel 'seconds of one core per simulated second'\n"
+      "set yrange [*:3<*]\nset key outside right top Left reverse samplen 2.5\n"
+      "set arrow from graph 0, first 1 to graph 1, first 1 nohead linewidth 1.5 linecolor rgb '#222222'\n"
+      "set label 'real time (1 kHz: 1 ms per step)' at graph 0.985, first 1 right offset 0, 0.6 textcolor rgb '#222222'\n",
+      title, x_label);
+}
+
+void append(std::string& list, const std::string& item) { list += (list.empty() ? "plot " : ", \\\n  ") + item; }
+
+struct Quantity {
+  const char* name;
+  double Errors::*error;
+  const char* label;
+};
+constexpr Quantity kQuantities[] = {
+    {"displacement", &Errors::displacement, "relative error of displacements"},
+    {"force", &Errors::force, "relative error of the force at the probe"},
+    {"energy", &Errors::energy, "relative error of energy"},
+};
+
+Plot time_plot(const TimeStudy& time, const Quantity& quantity) {
+  Plot plot;
+  plot.name = time.scene.name + "-" + quantity.name;
+  plot.width = 1100;
+  plot.height = 680;
+  std::string lines;
+  int variant = 0;
+  const study::PrecisionMethod* before = nullptr;
+  for (std::size_t m = 0; m < time.methods.size(); ++m) {
+    const study::PrecisionMethod& method = time.methods[m];
+    variant = before != nullptr && before->options.method == method.options.method ? variant + 1 : 0;
+    before = &method;
+    PlotData data{fmt::format("m{}", m), {}};
+    for (const PrecisionPoint& p : time.points) {
+      const double error = p.errors.*quantity.error;
+      if (p.method == method.name && is_usable(error)) data.rows.push_back({error, p.seconds_per_second, 1e3 * p.step});
+    }
+    if (data.rows.empty()) continue;
+    const Style style = style_of(method, variant);
+    append(lines, fmt::format("${0} using 1:2 with linespoints linetype {1} dashtype {2} pointtype {3} pointsize 0.8 title '{4}'",
+                              data.name, style.colour, style.dash, style.mark, method.name));
+    append(lines, fmt::format("${0} using 1:2:(sprintf('%.3g', $3)) with labels left offset 0.6, 0.35 font ',8' textcolor "
+                              "linetype {1} notitle",
+                              data.name, style.colour));
+    append(lines, fmt::format("${0} using (abs($3 - 1) < 1e-6 ? $1 : NaN):2 with points pointtype 6 pointsize 1.8 linewidth 1.5 "
+                              "linecolor rgb '#222222' notitle",
+                              data.name));
+    plot.data.push_back(std::move(data));
+  }
+  const double floor = time.reference.errors.*quantity.error;
+  plot.script = frame(time.scene.title + "; marks: h in ms, ringed: 1 ms", quantity.label);
+  if (is_usable(floor)) {
+    plot.script += fmt::format(
+        "set arrow from first {0:.3g}, graph 0 to first {0:.3g}, graph 1 nohead linewidth 1.5 dashtype 3 linecolor rgb "
+        "'#888888'\n"
+        "set label \"the reference's own error\" at first {0:.3g}, graph 0.02 rotate by 90 offset 0.8, 0 textcolor rgb "
+        "'#666666'\n",
+        floor);
+  }
+  plot.script += lines + '\n';
+  return plot;
+}
+
+Plot space_plot(const std::string& scene, const std::vector<const SpaceStudy*>& studies) {
+  Plot plot;
+  plot.name = "space-" + scene;
+  std::string lines;
+  int colour = 0;
+  for (const SpaceStudy* study : studies) {
+    PlotData data{fmt::format("s{}", plot.data.size()), {}};
+    for (std::size_t i = 0; i < study->points.size(); ++i)
+      data.rows.push_back({static_cast<double>(study->points[i].tets), study->errors.at_rest_error[i],
+                           study->errors.quadratic_error[i], study->errors.transient_error[i]});
+    const double poisson = study->points.front().poisson;
+    append(lines,
+           fmt::format("${} using 1:2 with linespoints linetype {} title 'linear, nu {:.3g}'", data.name, ++colour, poisson));
+    append(lines, fmt::format("${} using 1:3 with points linetype {} pointtype 4 pointsize 1.2 title 'quadratic, nu {:.3g}'",
+                              data.name, colour, poisson));
+    if (std::isfinite(study->errors.transient_error.front())) {
+      append(lines,
+             fmt::format("${} using 1:4 with linespoints linetype {} dashtype 2 pointtype 9 title 'linear in time, nu {:.3g}, "
+                         "against the finest'",
+                         data.name, colour, poisson));
+    }
+    plot.data.push_back(std::move(data));
+  }
+  plot.script = fmt::format(
+      "set logscale xy\nset format x '10^{{%L}}'\nset title '{}: deflection under a static load against its limit'\n"
+      "set xlabel 'tetrahedra'\nset ylabel 'relative error of the deflection'\nset key bottom left Left reverse\n",
+      scene);
+  plot.script += lines + '\n';
+  return plot;
+}
+
+}  // namespace
+
+std::vector<Plot> precision_plots(const PrecisionReport& report) {
+  std::vector<Plot> plots;
+  for (const TimeStudy& time : report.times)
+    for (const Quantity& quantity : kQuantities) plots.push_back(time_plot(time, quantity));
+  std::vector<std::string> drawn;
+  for (const SpaceStudy& space : report.spaces) {
+    if (std::find(drawn.begin(), drawn.end(), space.scene) != drawn.end()) continue;
+    drawn.push_back(space.scene);
+    std::vector<const SpaceStudy*> same;
+    for (const SpaceStudy& other : report.spaces)
+      if (other.scene == space.scene) same.push_back(&other);
+    plots.push_back(space_plot(space.scene, same));
+  }
+  return plots;
+}
+
+}  // namespace tactus::cli

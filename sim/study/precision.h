@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Error against run time of one method at one step size: the time error. What the mesh itself gets wrong is in precision_space.h.
+///
+/// error             relative 2-norm over all sample times of
+/// displacement      u, all vertices; `displacement_end`: at the last sample time only
+/// force             the force of a probe that presses the patch down
+/// energy            elastic and kinetic energy
+///
+/// All against the same mesh under symplectic Euler with a tiny step. Half and a quarter as many steps yield that reference's own error
+/// (Richardson) and its order.
+/// External forces are held over a step, so each method is given them where that costs it no order: symplectic Euler at the
+/// beginning, the one-sided methods at the end, the others in the middle. The penetration of the probe there is predicted with the
+/// velocity at the beginning.
+#pragma once
+
+#include "sim/study/precision_scene.h"
+
+namespace tactus::study {
+
+/// Processor time of this thread [s]: other work on the machine does not count.
+double processor_seconds() noexcept;
+
+enum class Loading { force, probe };
+
+/// One simulation from rest, seen at the sample times.
+struct Trajectory {
+  std::vector<Eigen::VectorXd> u;  ///< [m] per sample time
+  Eigen::VectorXd energy;          ///< [J] per sample time
+  Eigen::VectorXd force;           ///< [N] per sample time, of the probe
+  double setup_seconds = 0;        ///< processor time of this thread: integrator made, factored, first step
+  double step_seconds = 0;         ///< the other steps, scaled to all of them
+  double newton_per_step = 0;      ///< iterations
+  double solver_per_step = 0;
+  int unconverged_steps = 0;  ///< Newton ran out of iterations
+};
+
+/// The error's step counts from 0 at rest.
+tl::expected<Trajectory, FemError> simulate(const PrecisionScene& scene, const PrecisionMethod& method, int steps_per_sample,
+                                            Loading loading);
+
+struct Errors {
+  double displacement_end = 0, displacement = 0, force = 0, energy = 0;  ///< relative; NaN: the run stopped
+};
+
+struct Reference {
+  Trajectory load, probe;
+  Errors floor;      ///< of the reference itself, estimated
+  double order = 0;  ///< observed, of the displacement
+  double step = 0;   ///< [s]
+};
+tl::expected<Reference, FemError> make_reference(const PrecisionScene& scene);
+
+struct PrecisionPoint {
+  std::string method;
+  int steps_per_sample = 0;
+  double step = 0;  ///< [s]
+  Errors errors;
+  double seconds_per_second = 0;  ///< processor time per simulated time, median
+  double setup_seconds = 0;
+  int runs = 0;  ///< that the median is of, after one to warm up
+  double newton_per_step = 0, solver_per_step = 0;
+  int unconverged_steps = 0;
+  std::string remark;  ///< why it stopped and there are no errors; "probe: ..." when only the force is missing
+
+  double seconds_per_step() const noexcept { return seconds_per_second * step; }
+};
+
+/// Time it `runs` times, fewer when that would take longer than `time_limit` [s] (but once at least).
+struct Timing {
+  int runs = 5;
+  double time_limit = 5;
+};
+PrecisionPoint measure(const PrecisionScene& scene, const PrecisionMethod& method, int steps_per_sample,
+                       const Reference& reference, const Timing& timing);
+
+}  // namespace tactus::study
