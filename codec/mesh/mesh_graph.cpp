@@ -29,7 +29,7 @@ MeshNeighbours lists_from(std::vector<Edge>& edges, std::size_t vertices) {
   return out;
 }
 
-/// Squared distances of rest positions on a grid so coarse that they fit 42 bits.
+/// Squared distances of rest positions on a grid so coarse that they fit 38 bits.
 class Distances {
  public:
   explicit Distances(const MeshObject& mesh) : rest_(mesh.rest) {
@@ -40,7 +40,7 @@ class Distances {
       extent = std::max(extent, static_cast<std::uint64_t>(static_cast<std::int64_t>((*high)[axis]) - (*low)[axis]));
     }
     const auto width = static_cast<unsigned>(std::bit_width(extent));
-    shift_ = width > 20 ? width - 20 : 0;
+    shift_ = width > 18 ? width - 18 : 0;
   }
   std::uint64_t operator()(std::uint32_t a, std::uint32_t b) const noexcept {
     std::uint64_t sum = 0;
@@ -134,16 +134,61 @@ class HierarchyBuilder {
     weigh(parents_[g.vertex[v]]);
   }
 
-  /// Inverse squared distance, the weights adding to about 2^15.
+  using Row = std::array<std::int64_t, MeshHierarchy::kParents>;
+
+  /// How alike two vertices move, x 2^-24: (1 - r)^4 (1 + 4 r) of r^2 = distance / reach, 0 beyond.
+  static std::int64_t likeness(std::uint64_t distance, std::uint64_t reach) noexcept {
+    if (distance >= reach) return 0;
+    const std::int64_t r = isqrt(((distance << 24) / reach) << 24);
+    const std::int64_t square = ((kOne - r) * (kOne - r)) >> 24;
+    return (((square * square) >> 24) * (4 * r + kOne)) >> 24;
+  }
+
+  /// Weights of best linear prediction whose sum is 1: C a = c and C b = 1, then a + b (1 - sum a) / sum b.
   void weigh(std::vector<MeshParent>& out) const {
-    std::array<std::int64_t, MeshHierarchy::kParents> raw{};
-    std::int64_t sum = 0;
-    for (std::size_t i = 0; i < near_.size(); ++i) {
-      raw[i] = static_cast<std::int64_t>((near_[0].distance << 16) / near_[i].distance);
-      sum += raw[i];
+    const std::size_t n = near_.size();
+    std::uint64_t sum = 0;
+    for (const Candidate& c : near_) sum += c.distance;
+    const std::uint64_t reach = kReach * sum / n;
+    std::array<Row, MeshHierarchy::kParents> matrix{};
+    Row a{}, b{};
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < i; ++j) matrix[i][j] = likeness(distance_(near_[i].vertex, near_[j].vertex), reach);
+      matrix[i][i] = kOne + kNoise;
+      a[i] = likeness(near_[i].distance, reach);
+      b[i] = kOne;
     }
-    for (std::size_t i = 0; i < near_.size(); ++i)
-      out.push_back({near_[i].vertex, static_cast<std::int32_t>(round_div(raw[i] << 15, sum))});
+    solve(matrix, n, a, b);
+    std::int64_t sum_a = 0, sum_b = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      sum_a += a[i];
+      sum_b += b[i];
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      const std::int64_t share = round_div(b[i] << 24, sum_b);
+      const std::int64_t weight = round_shift(a[i] + round_shift(share * (kOne - sum_a), 24), 9);
+      out.push_back({near_[i].vertex, static_cast<std::int32_t>(std::clamp<std::int64_t>(weight, -65536, 65536))});
+    }
+  }
+
+  /// Both right sides at once by L D L^T of the lower triangle. What is noise on the diagonal keeps every pivot at 2^18 or more.
+  static void solve(std::array<Row, MeshHierarchy::kParents>& m, std::size_t n, Row& a, Row& b) noexcept {
+    for (std::size_t j = 0; j < n; ++j) {
+      for (std::size_t i = j + 1; i < n; ++i) {
+        const std::int64_t factor = round_div(m[i][j] << 24, m[j][j]);
+        for (std::size_t k = j + 1; k <= i; ++k) m[i][k] -= round_shift(factor * m[k][j], 24);
+        a[i] -= round_shift(factor * a[j], 24);
+        b[i] -= round_shift(factor * b[j], 24);
+      }
+    }
+    for (std::size_t i = n; i-- > 0;) {
+      for (std::size_t k = i + 1; k < n; ++k) {
+        a[i] -= round_shift(m[k][i] * a[k], 24);
+        b[i] -= round_shift(m[k][i] * b[k], 24);
+      }
+      a[i] = round_div(a[i] << 24, m[i][i]);
+      b[i] = round_div(b[i] << 24, m[i][i]);
+    }
   }
 
   /// Every dropped vertex joins its nearest kept neighbour; groups with an edge between them are neighbours.
@@ -168,6 +213,10 @@ class HierarchyBuilder {
     out.neighbours = lists_from(edges, out.vertex.size());
     return out;
   }
+
+  static constexpr std::int64_t kOne = 1 << 24;
+  static constexpr std::int64_t kNoise = 335544;  // 0.02: how much of a parent's movement is its own
+  static constexpr std::uint64_t kReach = 94;     // squared, in mean squared distances of the parents
 
   Distances distance_;
   std::size_t count_;

@@ -34,7 +34,7 @@ using MeshNeighbours = ListOfLists<std::uint32_t>;
 
 /// Coding order from coarse to fine: vertices in ever finer maximal independent sets, each predicted from near ones before it.
 struct MeshHierarchy {
-  static constexpr std::size_t kParents = 6;
+  static constexpr std::size_t kParents = 8;
   static constexpr std::size_t kLevels = 24;
 
   std::vector<std::uint32_t> order;  ///< every vertex once

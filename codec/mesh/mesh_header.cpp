@@ -48,7 +48,6 @@ Result<void> parse_parameters(ByteReader& in, MeshObject& mesh) {
     if (in.ok() && kept > 1) return fail(Errc::malformed, "R-MES-3", in.bit_offset());
     mesh.models_kept = kept == 1;
   } else {
-    mesh.anchors = in.u8();
     mesh.frame_period = in.u32();
   }
   return {};
@@ -131,7 +130,6 @@ void write_mesh(ByteWriter& out, const MeshObject& mesh) {
     out.u8(mesh.quant_bits);
     out.u8(mesh.models_kept ? 1 : 0);
   } else {
-    out.u8(mesh.anchors);
     out.u32(mesh.frame_period);
   }
   out.varint(mesh.rest.size());

@@ -52,7 +52,7 @@ class MainSide : public MeshEncoderSide {
   MainSide(const StreamHeader& header, const MeshObject& mesh, const MeshEncoderOptions& options)
       : MeshEncoderSide(header, mesh, options),
         hierarchy_(mesh_hierarchy(mesh)),
-        predictor_(mesh, hierarchy_),
+        predictor_(mesh),
         pass_(hierarchy_, mesh.rest.size()),
         projection_(mesh.basis),
         error_(mesh.rest.size()),
@@ -163,10 +163,8 @@ EncodedMeshPacket MainSide::encode(const MeshFrame& frame) noexcept {
   head.density = share < 3 ? 0 : share < 15 ? 1 : share < 64 ? 2 : 3;
   const std::size_t size = write(head);
   next_.motion = from.motion;
-  predictor_.learn(from.displacement, steps, next_);
-  next_.triangle = head.touched ? head.triangle : from.triangle;
-  next_.haptic = head.touched ? head.haptic : from.haptic;
-  next_.visual = head.visual;
+  predictor_.learn(steps, next_);
+  keep_head(head, from, next_);
   return finish(size, head.key, frame.tick, updates);
 }
 

@@ -19,7 +19,7 @@ class MeshMainReader {
       : mesh_(mesh),
         hierarchy_(mesh_hierarchy(mesh)),
         rings_(mesh),
-        predictor_(mesh, hierarchy_),
+        predictor_(mesh),
         pass_(hierarchy_, mesh.rest.size()),
         expected_(mesh.rest.size()),
         coefficients_(mesh.basis.steps.size()) {}
@@ -43,10 +43,8 @@ class MeshMainReader {
     const std::uint32_t updates = read_vertices(coder, models, head, next);
     if (coder.too_wide()) return fail(Errc::malformed, "R-RNG-4");
     next.motion = base.motion;
-    predictor_.learn(base.displacement, steps, next);
-    next.triangle = head.touched ? head.triangle : base.triangle;
-    next.haptic = head.touched ? head.haptic : base.haptic;
-    next.visual = head.visual;
+    predictor_.learn(steps, next);
+    keep_head(head, base, next);
     return updates;
   }
 

@@ -33,11 +33,10 @@ struct MeshObject {
 
   std::string name;  ///< UTF-8, 1..255 bytes, unlike any other object's
   MeshProfile profile = MeshProfile::main;
-  std::uint8_t rings = 3;       ///< m: size of the area of interest around the touched triangle (thesis 3.3.1.1)
-  std::uint8_t quant_bits = 8;  ///< thesis: q, 1..12
-  bool models_kept = false;     ///< thesis: entropy models are part of the state and not restarted in every packet
-  std::uint8_t anchors = 16;    ///< main without a basis: first vertices of the coding order whose motion is predicted; 0: hold
-  std::uint32_t frame_period = 256;               ///< main: ticks between frames, x 2^-8; motion is predicted in steps of it
+  std::uint8_t rings = 3;            ///< m: size of the area of interest around the touched triangle (thesis 3.3.1.1)
+  std::uint8_t quant_bits = 8;       ///< thesis: q, 1..12
+  bool models_kept = false;          ///< thesis: entropy models are part of the state and not restarted in every packet
+  std::uint32_t frame_period = 256;  ///< main: ticks between frames, x 2^-8; with a basis motion is predicted in steps of it
   std::vector<std::array<std::int32_t, 3>> rest;  ///< vertices, x 2^-position_exp m
   std::vector<Triangle> triangles;
   ModeBasis basis;  ///< main

@@ -24,6 +24,8 @@ struct MeshState {
   std::uint32_t triangle = kNoTriangle;  ///< main: the last one touched
   std::uint32_t visual = 0;              ///< main: visual bound, grid units
   std::uint32_t haptic = 0;              ///< main: level of the last haptic bound
+  std::uint32_t density = 0;             ///< main: of the last packet, with touched: contexts of the next
+  bool touched = false;                  ///< main: the last packet had a triangle
   std::vector<BitModel> models;          ///< thesis with models_kept: index models, then displacement models
 };
 
@@ -57,33 +59,25 @@ constexpr std::int64_t step_of(std::uint32_t bound) noexcept {
   return std::max<std::int64_t>(1, (std::int64_t{bound} * 37837) >> 15);  // 2 / sqrt(3) * 2^15, rounded down
 }
 
-/// Adds motion and modes to displacements, and reads motion back out of them. Holds scratch space; allocates at creation only.
+/// Adds motion and modes to displacements. Holds scratch space; allocates at creation only.
 class MeshPredictor {
  public:
-  /// pre  both outlive the predictor
-  MeshPredictor(const MeshObject& mesh, const MeshHierarchy& hierarchy);
+  /// pre  `mesh` outlives the predictor
+  explicit MeshPredictor(const MeshObject& mesh);
 
-  /// out = the displacement that `state` leads to `steps` frames later.
+  /// out = the displacement that `state` leads to `steps` frames later. Without a basis: the same.
   void predict(const MeshState& state, std::uint32_t steps, std::span<Vec3i> out) noexcept;
-  /// out += sum of modes times coefficients [grid units at a mode's entry of 1]; what predict() assumed is remembered for learn().
+  /// out += sum of modes times coefficients [grid units at a mode's entry of 1].
   void add_modes(std::span<const std::int32_t> coefficients, std::span<Vec3i> out) noexcept;
-  /// Teach `state`, which now holds the packet's displacement, the increments since `before`.
-  void learn(std::span<const Vec3i> before, std::uint32_t steps, MeshState& state) noexcept;
-
-  static std::size_t channels(const MeshObject& mesh) noexcept;
+  /// Teach `state` the increments that the last predict() and add_modes() came to.
+  void learn(std::uint32_t steps, MeshState& state) const noexcept;
 
  private:
-  void spread_anchors(std::span<Vec3i> out) noexcept;
-  void gather_anchors(std::span<const Vec3i> before, std::span<const Vec3i> after) noexcept;
   void combine(std::span<const std::int32_t> coefficients, std::span<Vec3i> out) noexcept;
 
   const MeshObject& mesh_;
-  const MeshHierarchy& hierarchy_;
-  std::size_t anchors_ = 0;
-  std::vector<std::int64_t> share_;                 // by anchor: how much of the mesh it moves, x 2^-4
-  std::vector<std::int32_t> increments_;            // by channel, of the packet at hand
-  std::vector<std::array<std::int64_t, 3>> field_;  // by vertex
-  std::vector<std::int32_t> sum_;                   // modes: by component
+  std::vector<std::int32_t> increments_;  // by mode, of the packet at hand
+  std::vector<std::int32_t> sum_;         // by component
 };
 
 }  // namespace tactus

@@ -21,13 +21,13 @@ inline constexpr std::size_t kDensities = 4;
 struct MeshModels {
   BitModel key;
   MagnitudeModel baseline, tick, late;
-  std::array<BitModel, 2> touched;  // by: the baseline has a triangle
+  std::array<BitModel, 2> touched;  // by: the baseline's packet was
   BitModel same_triangle, near_triangle;
   TreeModel<6> near_place;
   MagnitudeModel haptic;
   BitModel same_visual;
   MagnitudeModel visual;
-  TreeModel<2> density;
+  std::array<TreeModel<2>, kDensities> density;              // by: the baseline's
   std::array<std::array<MagnitudeModel, 3>, 4> coefficient;  // by mode, size before
   std::array<std::array<std::array<std::array<BitModel, 3>, 3>, 4>, kDensities>
       significant;                                                        // density, tightness, parents, level
@@ -105,8 +105,7 @@ std::uint32_t code_triangle(Coder& coder, MeshModels& models, const MeshObject& 
 template <class Coder>
 void code_mesh_bounds(Coder& coder, MeshModels& models, const MeshObject& mesh, MeshRings& rings, const MeshState& base,
                       MeshHead& head) noexcept {
-  head.touched =
-      !mesh.triangles.empty() && coder.bit(models.touched[base.triangle == kNoTriangle ? 0 : 1], head.touched ? 1u : 0u);
+  head.touched = !mesh.triangles.empty() && coder.bit(models.touched[base.touched ? 1 : 0], head.touched ? 1u : 0u);
   if (head.touched) {
     head.triangle = code_triangle(coder, models, mesh, rings, base.triangle, head.triangle);
     const std::int64_t change = coder.signed_value(models.haptic, saturate32(std::int64_t{head.haptic} - base.haptic));
@@ -114,7 +113,16 @@ void code_mesh_bounds(Coder& coder, MeshModels& models, const MeshObject& mesh, 
   }
   const bool same = coder.bit(models.same_visual, head.visual == base.visual ? 1u : 0u);
   head.visual = same ? base.visual : coder.magnitude(models.visual, head.visual);
-  head.density = coder.template tree<2>(models.density, head.density);
+  head.density = coder.template tree<2>(models.density[base.density], head.density);
+}
+
+/// What the next packet's head is predicted from.
+inline void keep_head(const MeshHead& head, const MeshState& base, MeshState& next) noexcept {
+  next.triangle = head.touched ? head.triangle : base.triangle;
+  next.haptic = head.touched ? head.haptic : base.haptic;
+  next.visual = head.visual;
+  next.density = head.density;
+  next.touched = head.touched;
 }
 
 constexpr std::size_t size_class(std::uint32_t magnitude) noexcept { return magnitude == 0 ? 0 : magnitude == 1 ? 1 : 2; }

@@ -88,7 +88,7 @@ std::size_t print_table(const Counts& counts) {
   print_group("HAPTIC", 15, counts, at);
   print_group("SAME_VISUAL", 1, counts, at);
   print_group("VISUAL", 15, counts, at);
-  print_group("DENSITY", 3, counts, at);
+  for (std::size_t i = 0; i < kDensities; ++i) print_group(indexed("DENSITY", {i}), 3, counts, at);
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t j = 0; j < 3; ++j) print_group(indexed("COEFFICIENT", {i, j}), 15, counts, at);
   for (std::size_t i = 0; i < kDensities * 4 * 9; ++i)
