@@ -112,7 +112,8 @@ Assembly::Assembly(const Elements& elements, std::span<const int> free_vertex, i
     list.erase(std::unique(list.begin(), list.end()), list.end());
     row_sizes.segment<3>(3 * static_cast<Eigen::Index>(a)).setConstant(3 * static_cast<int>(list.size()));
   }
-  pattern_.resize(3 * free_count, 3 * free_count);
+  pattern_.resize(row_sizes.size(), row_sizes.size());
+  if (free_count == 0) return;  // Eigen 3.4 reads past the end when it compresses a matrix without rows
   pattern_.reserve(row_sizes);
   for (int row = 0; row < 3 * free_count; ++row)
     for (const int b : neighbours[static_cast<std::size_t>(row / 3)])
@@ -126,20 +127,21 @@ Assembly::Assembly(const Elements& elements, std::span<const int> free_vertex, i
       if (a < 0 || b < 0) continue;
       const auto& list = neighbours[static_cast<std::size_t>(a)];
       const auto column = std::lower_bound(list.begin(), list.end(), b) - list.begin();
-      slots_[e][i] = {pattern_.outerIndexPtr()[3 * a] + 3 * static_cast<std::int32_t>(column),
+      slots_[e][i] = {pattern_.outerIndexPtr()[3 * static_cast<Eigen::Index>(a)] + 3 * static_cast<std::int32_t>(column),
                       3 * static_cast<std::int32_t>(list.size())};
     }
   }
 }
 
-void Assembly::prepare(SparseMatrix& K) const {
-  if (K.rows() != pattern_.rows() || K.cols() != pattern_.cols() || K.nonZeros() != pattern_.nonZeros() || !K.isCompressed())
-    K = pattern_;
-  else K.coeffs().setZero();
+void Assembly::prepare(SparseMatrix& sum) const {
+  if (sum.rows() != pattern_.rows() || sum.cols() != pattern_.cols() || sum.nonZeros() != pattern_.nonZeros() ||
+      !sum.isCompressed())
+    sum = pattern_;
+  else sum.coeffs().setZero();
 }
 
-void Assembly::add(std::size_t element, const ElementMatrix& matrix, SparseMatrix& K) const noexcept {
-  double* values = K.valuePtr();
+void Assembly::add(std::size_t element, const ElementMatrix& matrix, SparseMatrix& sum) const noexcept {
+  double* values = sum.valuePtr();
   for (std::size_t i = 0; i < 16; ++i) {
     const Slot& slot = slots_[element][i];
     if (slot.first < 0) continue;

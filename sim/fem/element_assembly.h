@@ -29,10 +29,10 @@ class Assembly {
   /// free_vertex[v]: number of vertex v among the free ones, -1 when it is fixed.
   Assembly(const Elements& elements, std::span<const int> free_vertex, int free_count);
 
-  /// Give K the pattern, values zero. Allocates unless K has it already.
-  void prepare(SparseMatrix& K) const;
-  /// pre  prepare(K)
-  void add(std::size_t element, const ElementMatrix& matrix, SparseMatrix& K) const noexcept;
+  /// Give `sum` the pattern, values zero. Allocates unless it has the pattern already.
+  void prepare(SparseMatrix& sum) const;
+  /// pre  prepare(sum)
+  void add(std::size_t element, const ElementMatrix& matrix, SparseMatrix& sum) const noexcept;
 
  private:
   struct Slot {

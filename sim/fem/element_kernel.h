@@ -15,18 +15,18 @@ template <std::size_t W>
 struct Vectors;
 template <>
 struct Vectors<2> {
-  typedef double Double __attribute__((vector_size(16)));
-  typedef long long Mask __attribute__((vector_size(16)));
+  using Double [[gnu::vector_size(16)]] = double;
+  using Mask [[gnu::vector_size(16)]] = long long;
 };
 template <>
 struct Vectors<4> {
-  typedef double Double __attribute__((vector_size(32)));
-  typedef long long Mask __attribute__((vector_size(32)));
+  using Double [[gnu::vector_size(32)]] = double;
+  using Mask [[gnu::vector_size(32)]] = long long;
 };
 template <>
 struct Vectors<8> {
-  typedef double Double __attribute__((vector_size(64)));
-  typedef long long Mask __attribute__((vector_size(64)));
+  using Double [[gnu::vector_size(64)]] = double;
+  using Mask [[gnu::vector_size(64)]] = long long;
 };
 
 template <std::size_t W>

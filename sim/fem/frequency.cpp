@@ -27,28 +27,28 @@ Bound top(const std::vector<double>& diagonal, const std::vector<double>& off) {
 
 }  // namespace
 
-double largest_frequency(const SparseMatrix& K, const SparseMatrix& M) {
+double largest_frequency(const SparseMatrix& stiffness, const SparseMatrix& mass) {
   constexpr int kMostSteps = 400;
   constexpr double kAccuracy = 2e-3;  // of omega^2
-  const Eigen::Index n = K.rows();
+  const Eigen::Index n = stiffness.rows();
   if (n == 0) return 0;
-  const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> mass(M);
+  const Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor(mass);
   Random random(1);
   Eigen::VectorXd p(n), q, z, before = Eigen::VectorXd::Zero(n);  // p = M q, q of length one in M
   for (double& x : p) x = random.uniform(-1, 1);
-  q = mass.solve(p);
+  q = factor.solve(p);
   double beta = std::sqrt(p.dot(q));
   std::vector<double> diagonal, off;
   Bound bound;
   for (int step = 0; step < std::min<Eigen::Index>(kMostSteps, n); ++step) {
     q /= beta;
     p /= beta;
-    z = K * q - (step > 0 ? beta : 0) * before;
+    z = stiffness * q - (step > 0 ? beta : 0) * before;
     const double alpha = z.dot(q);
     z -= alpha * p;
     before = p;
     p = z;
-    q = mass.solve(z);
+    q = factor.solve(z);
     diagonal.push_back(alpha);
     beta = std::sqrt(std::max(p.dot(q), 0.0));
     off.push_back(beta);

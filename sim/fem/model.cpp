@@ -134,6 +134,7 @@ void FemModel::Impl::make_masses() {
   if (options.mass == MassMatrix::consistent) return;
   const auto n = static_cast<Eigen::Index>(free_dofs.size());
   mass.resize(n, n);
+  if (n == 0) return;  // as in Assembly
   mass.reserve(Eigen::VectorXi::Constant(n, 1));
   for (Eigen::Index i = 0; i < n; ++i) mass.insert(i, i) = lumped[free_dofs[static_cast<std::size_t>(i)]];
   mass.makeCompressed();
@@ -167,27 +168,27 @@ void FemModel::internal_forces(const Eigen::VectorXd& u, Eigen::VectorXd& k) noe
 
 double FemModel::energy(const Eigen::VectorXd& u) noexcept { return impl_->elements.energy(u.data()); }
 
-void FemModel::stiffness(const Eigen::VectorXd& u, SparseMatrix& K) {
-  impl_->assembly.prepare(K);
+void FemModel::stiffness(const Eigen::VectorXd& u, SparseMatrix& matrix) {
+  impl_->assembly.prepare(matrix);
   impl_->elements.energy(u.data());  // finds the rotations
   for (std::size_t e = 0; e < impl_->elements.size(); ++e)
-    impl_->assembly.add(e, rotated_stiffness(impl_->elements, e, impl_->corotated()), K);
+    impl_->assembly.add(e, rotated_stiffness(impl_->elements, e, impl_->corotated()), matrix);
 }
 
-void FemModel::tangent(const Eigen::VectorXd& u, SparseMatrix& K) {
-  if (!impl_->corotated()) return stiffness(u, K);
-  impl_->assembly.prepare(K);
+void FemModel::tangent(const Eigen::VectorXd& u, SparseMatrix& matrix) {
+  if (!impl_->corotated()) return stiffness(u, matrix);
+  impl_->assembly.prepare(matrix);
   impl_->elements.energy(u.data());
   for (std::size_t e = 0; e < impl_->elements.size(); ++e)
-    impl_->assembly.add(e, tactus::tangent(impl_->elements, e, u.data()), K);
+    impl_->assembly.add(e, tactus::tangent(impl_->elements, e, u.data()), matrix);
 }
 
 double FemModel::largest_frequency() const {
-  SparseMatrix K;
-  impl_->assembly.prepare(K);
+  SparseMatrix matrix;
+  impl_->assembly.prepare(matrix);
   for (std::size_t e = 0; e < impl_->elements.size(); ++e)
-    impl_->assembly.add(e, rotated_stiffness(impl_->elements, e, false), K);
-  return tactus::largest_frequency(K, impl_->mass);
+    impl_->assembly.add(e, rotated_stiffness(impl_->elements, e, false), matrix);
+  return tactus::largest_frequency(matrix, impl_->mass);
 }
 
 std::int64_t FemModel::broken_element(const Eigen::VectorXd& u) const noexcept {

@@ -98,13 +98,13 @@ class FemModel {
   void internal_forces(const Eigen::VectorXd& u, Eigen::VectorXd& k) noexcept;
   /// W(u) [J], fixed vertices' elements included.   time as internal_forces; no allocation.
   double energy(const Eigen::VectorXd& u) noexcept;
-  /// Sum over elements of R_e K_e R_e^T with the rotations at u [N/m], free x free. `K` gets the pattern once, later calls only
+  /// Sum over elements of R_e K_e R_e^T with the rotations at u [N/m], free x free. `matrix` gets the pattern once, later calls only
   /// rewrite its values; it is empty or one that this model has filled.
-  /// time O(tets), 0.2 us each; no allocation after the first call with this K.
-  void stiffness(const Eigen::VectorXd& u, SparseMatrix& K);
+  /// time O(tets), 0.2 us each; no allocation after the first call with this matrix.
+  void stiffness(const Eigen::VectorXd& u, SparseMatrix& matrix);
   /// The tangent dk/du with the derivative of the rotations, made positive semidefinite element by element where it is not.
-  /// time O(tets), 0.5 us each; no allocation after the first call with this K.
-  void tangent(const Eigen::VectorXd& u, SparseMatrix& K);
+  /// time O(tets), 0.5 us each; no allocation after the first call with this matrix.
+  void tangent(const Eigen::VectorXd& u, SparseMatrix& matrix);
   /// Largest angular frequency [rad/s] of K against M at rest, by Lanczos' refinement of power iteration; at most 1e-3 too large,
   /// not too small. 0 when nothing is free.   time 4 ms for 2000 tets; allocates.
   double largest_frequency() const;
