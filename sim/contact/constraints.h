@@ -33,7 +33,7 @@ struct Constrained {
 /// in   planes  at most kMaxHalfspaces
 ///      slack   [m] by so much a plane may be overstepped: rounding is no contact
 /// out  nothing when rounding hides the answer (planes that are parallel but for rounding)
-/// time 5 ns for one plane, 2 us at most; no allocation
+/// time O(1): at most 42 sets of planes are tried; no allocation
 std::optional<Constrained> nearest_within(std::span<const Halfspace> planes, const Vec3& goal, double slack) noexcept;
 
 }  // namespace tactus

@@ -21,7 +21,7 @@ struct Motion {
 };
 
 /// f_d = k_o (x_p - x_d) + b_o (x_p' - x_d'), shortened to the device's limit.
-/// out  [N] on the hand.   time about 5 ns, no allocation
+/// out  [N] on the hand.   time O(1), no allocation
 inline Vec3 coupling_force(const Coupling& coupling, const Motion& proxy, const Motion& device) noexcept {
   const Vec3 force =
       coupling.stiffness * (proxy.position - device.position) + coupling.damping * (proxy.velocity - device.velocity);

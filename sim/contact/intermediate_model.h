@@ -38,7 +38,7 @@ class IntermediateModel {
   /// in   vertices  of the whole mesh; the tree is fitted to them
   /// time O(n); no allocation
   void update(std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
-  /// One tick of haptic rendering.   pre  place()   time O(cut-out), about 3 us for three rings; no allocation
+  /// One tick of haptic rendering.   pre  place()   time O(cut-out), about 2 us for three rings; no allocation
   MeshTouch move(const Vec3& probe) noexcept;
 
   std::span<const std::uint32_t> triangles() const noexcept { return cut_; }  ///< of the cut-out, ring by ring
