@@ -10,7 +10,7 @@
 /// k_r     V R (2 mu e + lambda tr(e) I) g_r                          force of corner r [N] = dW/dx_r, also = R K_e (R^T x - X)
 ///
 /// The warped force is the exact gradient of W: R is a stationary point of trace(R^T F), so dR drops out of both terms of dW
-/// ((S - I) S is symmetric, dR^T R antisymmetric). Tests: fem_model_test, Gradient*.
+/// ((S - I) S is symmetric, dR^T R antisymmetric). fem_element_test holds it against differences.
 #pragma once
 
 #include <array>

@@ -34,8 +34,8 @@ struct ElementKernels {
 /// portable: two lanes, SSE2 on x86-64. All sets yield the same bits.
 enum class InstructionSet : std::uint8_t { portable, avx2, avx512 };
 
-bool supported(InstructionSet set) noexcept;  ///< by this machine and this build
-InstructionSet widest() noexcept;             ///< of those supported
+bool supported(InstructionSet set) noexcept;          ///< by this machine and this build
+InstructionSet widest() noexcept;                     ///< of those supported
 ElementKernels kernels(InstructionSet set) noexcept;  ///< pre  supported(set)
 
 ElementKernels portable_kernels() noexcept;

@@ -94,7 +94,7 @@ class FemModel {
   /// k(u) [N]; zero at fixed vertices. Rotations found are remembered as the next call's start, which saves time and changes
   /// k by 1e-13 of its size at most (except where the rotation is not unique). What is not finite in u comes out in k and is
   /// not remembered.
-  /// time O(tets), 28 ns each (AVX-512; AVX2 40, SSE2 66), linear 10; 1 us each where R is not unique; no allocation.
+  /// time O(tets), 28 ns each (AVX-512; AVX2 40, SSE2 66), linear 10; 0.5 us more each where R is not unique; no allocation.
   void internal_forces(const Eigen::VectorXd& u, Eigen::VectorXd& k) noexcept;
   /// W(u) [J], fixed vertices' elements included.   time as internal_forces; no allocation.
   double energy(const Eigen::VectorXd& u) noexcept;
