@@ -14,6 +14,9 @@
 #ifdef TACTUS_HAS_STUDY
 #include "cli/cmd_bench.h"
 #endif
+#ifdef TACTUS_HAS_MESH
+#include "cli/cmd_mesh.h"
+#endif
 #ifdef TACTUS_HAS_SIM
 #include "cli/cmd_reproduce.h"
 #include "cli/cmd_sim.h"
@@ -48,6 +51,9 @@ int main(int argc, char** argv) {
   Action action;
 #ifdef TACTUS_HAS_SIM
   setup_sim(app, action);
+#endif
+#ifdef TACTUS_HAS_MESH
+  setup_mesh(app, action);
 #endif
   setup_import(app, action);
   setup_encode(app, action);

@@ -18,7 +18,7 @@ struct PolygonSoup {
 };
 
 /// in   format  ".obj", ".ply", ".off", ".stl" to write, ".stla" (text) or ".stlb" (binary) to read
-/// err  what OpenMesh said, perhaps nothing
+/// err  why not, in a few words
 tl::expected<PolygonSoup, std::string> openmesh_read(const std::string& text, const std::string& format);
 tl::expected<std::string, std::string> openmesh_write(const TriMesh& mesh, const std::string& format);
 

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/cmd_mesh.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "cli/report.h"
+#include "cli/table.h"
+#include "sim/mesh/tet_files.h"
+#include "sim/mesh/tet_quality.h"
+#ifdef TACTUS_HAS_SURFACE
+#include "sim/surface/surface_file.h"
+#include "sim/surface/tetgen.h"
+#endif
+
+namespace tactus::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+struct MeshOptions {
+  std::string input, slab, output;
+  double cell = 0.01;      // [m]
+  double length_unit = 1;  // [m]
+  double edge = 0;         // [m], 0: as large as may be
+  double quality = 0;      // 0: any
+  double time_limit = 60;  // [s]
+  bool split_surface = false;
+  CommonOptions common;
+};
+
+/// What became of the input, and how long each part took.
+struct MeshReport {
+  TetMesh mesh;
+  std::vector<std::pair<std::string, std::string>> notes;
+  std::vector<std::pair<std::string, StepTimes>> times;
+
+  template <class Work>
+  auto measure(const std::string& step, Work&& work) {
+    return times.emplace_back(step, StepTimes{}).second.measure(std::forward<Work>(work));
+  }
+};
+
+bool is_tet_file(const std::string& path) { return path.ends_with(".msh") || path.ends_with(".node") || path.ends_with(".ele"); }
+
+void scale(std::vector<Vec3>& points, double unit) {
+  for (Vec3& p : points) p = unit * p;
+}
+
+Outcome make_slab(const MeshOptions& options, MeshReport& report) {
+  std::array<std::uint32_t, 3> cells{};
+  const char *at = options.slab.data(), *const end = at + options.slab.size();
+  bool good = true;
+  for (std::size_t i = 0; i < cells.size() && good; ++i) {
+    const auto parsed = std::from_chars(at, end, cells[i]);
+    at = parsed.ptr;
+    good = parsed.ec == std::errc() && cells[i] >= 1 && (i == 2 ? at == end : at != end && *at++ == 'x');
+  }
+  if (!good) return refuse("--slab " + options.slab + ": not three numbers of cells", "Write it like 16x20x1.");
+  const auto [x, y, z] = cells;
+  const double vertices = (x + 1.0) * (y + 1.0) * (z + 1.0), tets = 6.0 * x * y * z;
+  if (vertices > static_cast<double>(kMaxMeshVertices) || tets > static_cast<double>(kMaxTets))
+    return refuse("--slab " + options.slab + ": more than 2^20 vertices or 2^22 tetrahedra", "Take fewer and larger cells.");
+  if (!(options.cell > 0)) return refuse("--cell: not above 0", "Give an edge length, such as 10mm.");
+  report.mesh = report.measure("make", [&] { return tactus::make_slab(cells[0], cells[1], cells[2], options.cell); });
+  return {};
+}
+
+Outcome read_tets(const MeshOptions& options, MeshReport& report) {
+  auto file = report.measure("read", [&] { return read_tet_mesh(options.input); });
+  if (!file) return refuse(to_string(file.error()), "");
+  if (file->ignored_elements > 0)
+    report.notes.emplace_back("left out", counted(file->ignored_elements, "element") + " that are no tetrahedra");
+  report.mesh = std::move(file->mesh);
+  scale(report.mesh.vertices, options.length_unit);
+  return {};
+}
+
+#ifdef TACTUS_HAS_SURFACE
+/// Volume of a regular tetrahedron.
+double volume_of_edge(double edge) { return edge * edge * edge / (6 * std::numbers::sqrt2); }
+
+Outcome fill_surface(const MeshOptions& options, MeshReport& report) {
+  auto file = report.measure("read", [&] { return read_surface(options.input); });
+  if (!file) return refuse(to_string(file.error()), "");
+  if (file->polygons > 0) report.notes.emplace_back("cut", counted(file->polygons, "polygon") + " into triangles");
+  if (file->unused_vertices > 0)
+    report.notes.emplace_back("left out", counted(file->unused_vertices, "vertex") + " of no triangle");
+  scale(file->mesh.vertices, options.length_unit);
+  const FillOptions settings{.boundary = options.split_surface ? Boundary::split : Boundary::keep,
+                             .max_volume = volume_of_edge(options.edge),
+                             .quality = options.quality,
+                             .time_limit = options.time_limit};
+  auto filled = report.measure("fill", [&] { return fill(file->mesh, settings); });
+  if (!filled) {
+    SurfaceError error = filled.error();
+    error.file = options.input;
+    return refuse(to_string(error), "");
+  }
+  report.mesh = std::move(*filled);
+  return {};
+}
+#else
+Outcome fill_surface(const MeshOptions& options, MeshReport&) {
+  return refuse(options.input + ": this program was built without reading surfaces",
+                "Install libopenmesh-dev and build again, or give .node, .ele or .msh.");
+}
+#endif
+
+tl::expected<OutputFile, Failure> open_output(const std::string& path, const MeshOptions& options, const std::string& beside,
+                                              void (*write)(std::ostream&, const TetMesh&), const TetMesh& mesh) {
+  auto file = OutputFile::create(path, options.common.existing(), {options.input, beside});
+  if (!file) return file;
+  const auto out = file->open();
+  if (!out) return tl::unexpected(out.error());
+  write(**out, mesh);
+  return file;
+}
+
+/// Both files of a pair are complete before either takes its name.
+Outcome write_mesh(const MeshOptions& options, const TetMesh& mesh) {
+  if (options.output.ends_with(".msh")) {
+    auto file = open_output(options.output, options, "", write_msh, mesh);
+    return file ? file->keep() : tl::unexpected(file.error());
+  }
+  const std::string ele = options.output.substr(0, options.output.size() - 5) + ".ele";
+  auto node_file = open_output(options.output, options, ele, write_node, mesh);
+  if (!node_file) return tl::unexpected(node_file.error());
+  auto ele_file = open_output(ele, options, options.output, write_ele, mesh);
+  if (!ele_file) return tl::unexpected(ele_file.error());
+  if (auto kept = node_file->keep(); !kept) return kept;
+  return ele_file->keep();
+}
+
+Json to_json(const MeshOptions& options, const MeshReport& report) {
+  const TetQuality q = quality(report.mesh);
+  const TetSurface outside = surface(report.mesh);
+  const Bounds box = bounds(report.mesh.vertices);
+  double sum = 0;
+  for (std::size_t t = 0; t < report.mesh.tets.size(); ++t) sum += volume(report.mesh, t);
+  Json out{{"schema", "tactus.mesh/1"},
+           {"input", options.slab.empty() ? options.input : "slab " + options.slab},
+           {"output", options.output}};
+  for (const auto& [name, text] : report.notes) out["notes"][name] = text;
+  out["vertices"] = report.mesh.vertices.size();
+  out["tetrahedra"] = report.mesh.tets.size();
+  out["surface_vertices"] = outside.mesh.vertices.size();
+  out["surface_triangles"] = outside.mesh.triangles.size();
+  out["volume_m3"] = sum;
+  out["box_m"] = {{box.low.x, box.low.y, box.low.z}, {box.high.x, box.high.y, box.high.z}};
+  out["smallest_angle_rad"] = {{"value", q.smallest_angle.value}, {"tetrahedron", q.smallest_angle.tet}};
+  out["largest_angle_rad"] = {{"value", q.largest_angle.value}, {"tetrahedron", q.largest_angle.tet}};
+  out["shape"] = {{"worst", q.shape.value}, {"tetrahedron", q.shape.tet}, {"mean", q.mean_shape}};
+  for (const auto& [step, time] : report.times) out["time_s"][step] = time.total();
+  return out;
+}
+
+void print_text(const Json& r, const MeshReport& report) {
+  Table head;
+  head.heading({"mesh"});
+  head.row({fmt::format("  {:<8} {}", "from", r["input"].get<std::string>())});
+  head.row({fmt::format("  {:<8} {}", "to", r["output"].get<std::string>())});
+  for (const auto& [name, text] : report.notes) head.row({fmt::format("  {:<8} {}", name, text)});
+  head.print(stdout);
+  fmt::print("\n");
+
+  Table figures;
+  figures.heading({"size", "all", "on the surface"});
+  figures.row({"  vertices", r["vertices"].dump(), r["surface_vertices"].dump()});
+  figures.row({"  triangles", "", r["surface_triangles"].dump()});
+  figures.row({"  tetrahedra", r["tetrahedra"].dump()});
+  figures.row({"  volume [m3]", fmt::format("{:.6g}", r["volume_m3"].get<double>())});
+  figures.heading({"box [m]", "from", "to", "size"});
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double low = r["box_m"][0][i], high = r["box_m"][1][i];
+    figures.row({fmt::format("  {}", "xyz"[i]), fmt::format("{:.6g}", low), fmt::format("{:.6g}", high),
+                 fmt::format("{:.6g}", high - low)});
+  }
+  figures.heading({"quality", "worst", "tetrahedron", "mean"});
+  const auto angle = [&](const char* name, const Json& worst) {
+    figures.row({name, fmt::format("{:.4g}", worst["value"].get<double>() / kDegree), worst["tetrahedron"].dump()});
+  };
+  angle("  smallest angle between faces [deg]", r["smallest_angle_rad"]);
+  angle("  largest angle between faces [deg]", r["largest_angle_rad"]);
+  figures.row({"  shape, 1 is regular, 0 is flat", fmt::format("{:.4g}", r["shape"]["worst"].get<double>()),
+               r["shape"]["tetrahedron"].dump(), fmt::format("{:.4g}", r["shape"]["mean"].get<double>())});
+  figures.heading({"time", "ms"});
+  for (const auto& [step, time] : r["time_s"].items())
+    figures.row({"  " + step, fmt::format("{:.1f}", 1e3 * time.get<double>())});
+  figures.print(stdout);
+}
+
+Outcome run(const MeshOptions& options) {
+  if (!options.output.ends_with(".node") && !options.output.ends_with(".msh"))
+    return refuse(options.output + ": no name of a mesh", "Give -o NAME.node (with NAME.ele beside it) or -o NAME.msh.");
+  if (!(options.length_unit > 0) || !(options.edge >= 0))
+    return refuse("--length-unit or --edge: not above 0", "Give lengths, such as 1mm and 10mm.");
+  MeshReport report;
+  const Outcome made = !options.slab.empty()        ? make_slab(options, report)
+                       : is_tet_file(options.input) ? read_tets(options, report)
+                                                    : fill_surface(options, report);
+  if (!made) return made;
+  const auto checked = report.measure("check", [&] { return check(report.mesh); });
+  if (!checked) return refuse((options.slab.empty() ? options.input : options.slab) + ": " + to_string(checked.error()), "");
+  if (auto written = report.measure("write", [&] { return write_mesh(options, report.mesh); }); !written) return written;
+  if (options.common.quiet && !options.common.json) return {};
+  const Json figures = to_json(options, report);
+  if (options.common.json) fmt::print("{}\n", figures.dump(2));
+  else print_text(figures, report);
+  return {};
+}
+
+}  // namespace
+
+void setup_mesh(CLI::App& app, Action& action) {
+  auto options = std::make_shared<MeshOptions>();
+  CLI::App& command = *app.add_subcommand("mesh", "Fill a surface with tetrahedra, or make a slab of them");
+  CLI::Option* input =
+      command.add_option("FILE", options->input, "Surface (.obj, .ply, .stl, .off) or tetrahedra (.node, .ele, .msh)")
+          ->type_name("");
+  CLI::Option* slab = command.add_option("--slab", options->slab, "Cells along x, y, z, six tetrahedra each, such as 16x20x1")
+                          ->type_name("NxNxN");
+  slab->excludes(input);
+  command.add_option("-o,--output", options->output, "Mesh to write: NAME.node with NAME.ele beside it, or NAME.msh (Gmsh)")
+      ->required()
+      ->type_name("FILE");
+  add_quantity(command, "--cell", options->cell, Dimension::length, "Edge of the slab's cells [10mm]")->needs(slab);
+  add_quantity(command, "--length-unit", options->length_unit, Dimension::length, "Metres per unit of the file's lengths [1m]");
+  add_quantity(command, "--edge", options->edge, Dimension::length,
+               "Tetrahedra at most as large as a regular one with this edge");
+  command.add_option("--quality", options->quality, "Largest circumsphere radius by shortest edge, 1.1 or more")
+      ->type_name("RATIO");
+  command.add_flag("--split-surface", options->split_surface,
+                   "Add points on the surface too, so that --edge and --quality hold there");
+  add_quantity(command, "--time-limit", options->time_limit, Dimension::time, "Give up after this long [60s]");
+  add_output_options(command, options->common);
+  command.footer(
+      "Examples:\n"
+      "  tactus mesh bunny.stl --length-unit 1mm --edge 5mm --quality 1.4 -o bunny.node\n"
+      "  tactus mesh --slab 16x20x1 --cell 10mm -o membrane.msh");
+  command.callback([&action, options, input, slab] {
+    if (input->count() + slab->count() == 0) throw CLI::RequiredError("FILE or --slab");
+    action = [options] { return run(*options); };
+  });
+}
+
+}  // namespace tactus::cli

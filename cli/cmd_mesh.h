@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "cli/command.h"
+
+namespace tactus::cli {
+
+void setup_mesh(CLI::App& app, Action& action);
+
+}  // namespace tactus::cli
