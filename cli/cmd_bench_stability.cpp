@@ -12,6 +12,9 @@
 #include "cli/stability_plots.h"
 #include "cli/study_report.h"
 #include "sim/study/stability.h"
+#ifdef TACTUS_HAS_FEM
+#include "sim/study/stability_fem.h"
+#endif
 
 namespace tactus::cli {
 namespace {
@@ -30,7 +33,14 @@ struct Case {
   const char* name;
   Study (*run)(Extent, const study::Progress&);
 };
-constexpr Case kCases[] = {{"jury", study::study_jury}};
+constexpr Case kCases[] = {{"jury", study::study_jury},
+                           {"wall", study::study_wall},
+                           {"client", study::study_client},
+                           {"rigid", study::study_rigid},
+#ifdef TACTUS_HAS_FEM
+                           {"fem", study::study_fem}
+#endif
+};
 
 std::vector<std::string> case_names() {
   std::vector<std::string> out;

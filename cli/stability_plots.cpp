@@ -67,6 +67,109 @@ set xlabel 'time  [ms]'
 plot $figure_4_16_b using ($1*1e3):2 with steps linetype 1 notitle
 unset multiplot
 )"},
+      {"wall",
+       "device-damping",
+       "Largest wall stiffness over the damping of the device, eq. 2.3 (lines), with the passivity observer (points); crosses: "
+       "the "
+       "device alone against the wall, stable.",
+       {"damping-1khz", "damping-60hz"},
+       900,
+       560,
+       R"(set logscale xy
+set xlabel 'damping of the device b_d  [N s/m]'
+set ylabel 'largest wall stiffness k_o  [N/m]'
+set xrange [0.04:12]
+set yrange [3:50000]
+set format y '10^{%L}'
+set key top left reverse Left samplen 2
+plot $damping_1khz using 1:2 with lines linetype 1 title 'b_d = k_o T / 2 at 1 kHz', \
+     $damping_1khz using 1:3 with points linetype 1 title 'passivity observer, 1 kHz', \
+     $damping_1khz using 1:4 with points linetype 1 pointtype 2 pointsize 1 title 'device alone stable, 1 kHz', \
+     $damping_60hz using 1:2 with lines linetype 2 title 'b_d = k_o T / 2 at 60 Hz', \
+     $damping_60hz using 1:3 with points linetype 2 title 'passivity observer, 60 Hz', \
+     $damping_60hz using 1:4 with points linetype 2 pointtype 2 pointsize 1 title 'device alone stable, 60 Hz'
+)"},
+      {"wall",
+       "z-width",
+       "Which stiffness and damping a wall may have at 1 kHz with a device of 0.35 N s/m: measured (points), eqs. 2.3 and 2.4 "
+       "(lines).",
+       {"z-width"},
+       900,
+       560,
+       R"(set logscale y
+set xlabel 'damping of the wall b_o  [N s/m]'
+set ylabel 'stiffness of the wall k_o  [N/m]'
+set xrange [0:16]
+set yrange [100:300000]
+set format y '10^{%L}'
+set samples 1000
+set key bottom right reverse Left samplen 2
+T = 1e-3
+b_d = 0.35
+plot 2*(b_d+x)/T with lines linetype 1 title 'b_d + b_o = k_o T / 2  (slow motion, eq. 2.4)', \
+     $z_width using 1:($2 > 0 ? $2 : NaN) with points linetype 1 title 'passive in slow motion, observer', \
+     (x < b_d ? 2*(b_d-x)/T : NaN) with lines linetype 2 title 'b_d = k_o T / 2 + b_o  (every motion)', \
+     $z_width using 1:($3 > 0 ? $3 : NaN) with points linetype 2 title 'passive at 500 Hz, observer', \
+     $z_width using 1:($5 > 0 ? $5 : NaN) with linespoints linetype 3 dashtype 2 title 'stable in a loose grip', \
+     $z_width using 1:($4 > 0 ? $4 : NaN) with linespoints linetype 4 dashtype 2 title 'stable, device alone'
+)"},
+      {"client",
+       "figure-4.17",
+       "Thesis figure 4.17: force on the hand and energy at the client's port. (a) no delay; (b) 100 ms; (c) 100 ms, damped by "
+       "the "
+       "client; (d) 100 ms, normal grip; (e) 100 ms, stiffer object.",
+       {"a", "b", "c", "d", "e"},
+       1000,
+       1100,
+       R"(set multiplot layout 5,2 margins 0.075,0.985,0.055,0.965 spacing 0.085,0.045
+set xrange [0:4]
+unset key
+text = "'(a) barely held, no delay' '(b) barely held, 100 ms' '(c) barely held, 100 ms, b_c = 5 N s/m' \
+'(d) normal grip, 100 ms' '(e) barely held, 100 ms, k_o = 1000 N/m'"
+do for [i=1:5] {
+  name = word('a b c d e', i)
+  set title word(text, i) offset 0,-0.7
+  if (i == 5) { set xlabel 'time  [s]' }
+  set ylabel 'force  [N]'
+  set yrange [0:*]
+  eval 'plot $'.name.' using 1:2 with lines linewidth 1.3 linetype '.(i == 2 ? '2' : '1')
+  set title ' '
+  set ylabel 'energy  [mJ]'
+  set yrange [*:*]
+  set arrow 1 from 0,0 to 4,0 nohead linecolor rgb '#888888' back
+  eval 'plot $'.name.' using 1:3 with lines linewidth 1.3 linetype '.(i == 2 ? '2' : '1')
+  unset arrow 1
+}
+unset multiplot
+)"},
+      {"fem",
+       "map",
+       "Which step size each method gets through over 100 steps, as the material stiffens: a slab displaced by 2 mm and let go. "
+       "Blue: "
+       "stable; orange: stable with tetrahedra inside out; vermilion cross: stopped with an error. Line: h omega_max = 2.",
+       {"map-limit", "map-symplectic-euler", "map-backward-euler", "map-newmark", "map-tr-bdf2", "map-projective"},
+       1100,
+       720,
+       R"(set multiplot layout 2,3 margins 0.065,0.985,0.09,0.945 spacing 0.045,0.12
+set logscale xy
+set xrange [50:2e10]
+set yrange [5e-7:0.2]
+set format xy '10^{%L}'
+set xtics 100
+unset key
+names = 'map_symplectic_euler map_backward_euler map_newmark map_tr_bdf2 map_projective'
+titles = 'symplectic-euler backward-euler newmark tr-bdf2 projective'
+do for [i=1:5] {
+  set title word(titles, i) offset 0,-0.6
+  if (i > 2) { set xlabel "Young's modulus E  [Pa]" }
+  if (i == 1 || i == 4) { set ylabel 'step h  [s]' } else { unset ylabel }
+  eval 'plot $'.word(names, i).' using 1:($3 == 0 ? $2 : NaN) with points linetype 1 pointsize 0.6, \
+    $'.word(names, i).' using 1:($3 == 1 ? $2 : NaN) with points linetype 5 pointsize 0.6, \
+    $'.word(names, i).' using 1:($3 == 2 ? $2 : NaN) with points linetype 2 pointtype 2 pointsize 0.7, \
+    $map_limit using 1:2 with lines linetype 7 linewidth 1.6'
+}
+unset multiplot
+)"},
   };
   return all;
 }

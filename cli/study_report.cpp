@@ -44,6 +44,17 @@ std::string quoted(std::string text) {
 
 std::string exact(const std::optional<double>& value) { return value ? fmt::format("{:.9g}", *value) : ""; }
 
+std::string markdown(const study::Matrix& matrix) {
+  std::string out = "\n| " + matrix.corner, line = "\n|---";
+  for (const std::string& column : matrix.columns) {
+    out += " | " + column;
+    line += "|---";
+  }
+  out += " |" + line + "|\n";
+  for (const auto& [label, cells] : matrix.rows) out += fmt::format("| {} | {} |\n", label, fmt::join(cells, " | "));
+  return out;
+}
+
 std::array<std::size_t, 3> verdicts(const Study& study) {
   std::array<std::size_t, 3> out{};
   for (const Row& row : study.rows) ++out[static_cast<std::size_t>(row.verdict)];
@@ -57,10 +68,25 @@ void print_table(std::span<const Study> studies, std::FILE* out) {
   for (const Study& study : studies) {
     table.heading({study.title, "with", "measured", "", "theory", "off by", "verdict", "remark"});
     for (const Row& row : study.rows)
-      table.row({"  " + row.subject, parameters(row, ", "), row.quantity, figure(row.measured, row.unit),
-                 figure(row.analytic, row.unit), deviation(row), name(row.verdict), row.remark});
+      if (!row.detail)
+        table.row({"  " + row.subject, parameters(row, ", "), row.quantity, figure(row.measured, row.unit),
+                   figure(row.analytic, row.unit), deviation(row), name(row.verdict), row.remark});
   }
   table.print(out);
+  for (const Study& study : studies) {
+    if (study.matrix.rows.empty()) continue;
+    Table matrix;
+    std::vector<std::string> head{study.title + ", " + study.matrix.corner};
+    head.insert(head.end(), study.matrix.columns.begin(), study.matrix.columns.end());
+    matrix.heading(std::move(head));
+    for (const auto& [label, cells] : study.matrix.rows) {
+      std::vector<std::string> line{"  " + label};
+      line.insert(line.end(), cells.begin(), cells.end());
+      matrix.row(std::move(line));
+    }
+    fmt::print(out, "\n");
+    matrix.print(out);
+  }
 }
 
 std::string to_csv(std::span<const Study> studies) {
@@ -101,21 +127,24 @@ std::string to_markdown(std::span<const Study> studies, std::span<const Picture>
       "# Where the simulation stops being stable\n\n"
       "`tactus bench stability{}` on {} ({}, {} build). Every study is deterministic; no figure here is a time.\n\n"
       "*stable*: what was disturbed comes to rest, or stays within what the disturbance explains. *limit*: a limit was measured, "
-      "or the "
-      "motion goes on within bounds. *diverges*: it grows without bound, or the step was refused with an error and the state "
-      "before "
-      "it kept. The same rows stand in `stability.csv` and `stability.json`; every plot is a gnuplot script with its data.\n",
+      "or the motion goes on within bounds. *diverges*: it grows without bound, or the step was refused with an error and the "
+      "state before it kept. The same rows stand in `stability.csv` and `stability.json`; every plot is a gnuplot script with "
+      "its "
+      "data.\n",
       extent == study::Extent::full ? "" : " --short", context.at("machine"), context.at("compiler"), context.at("build"));
   for (const Study& study : studies) {
     out += fmt::format("\n## {}\n\n{}\n", study.title, study.text);
     for (const Picture& picture : pictures)
       if (picture.name.starts_with(study.name + "-"))
         out += fmt::format("\n[![{1}]({0}.png)]({0}.svg)\n\n*{1}*\n", picture.name, picture.caption);
+    if (!study.matrix.rows.empty()) out += markdown(study.matrix);
     out += "\n| what | with | quantity | measured | theory | off by | verdict | remark |\n|---|---|---|---:|---:|---:|---|---|\n";
-    for (const Row& row : study.rows)
+    for (const Row& row : study.rows) {
+      if (row.detail) continue;
       out += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} |\n", row.subject, parameters(row, ", "), row.quantity,
                          figure(row.measured, row.unit), figure(row.analytic, row.unit), deviation(row), name(row.verdict),
                          row.remark);
+    }
   }
   return out;
 }

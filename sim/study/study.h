@@ -34,6 +34,7 @@ struct Row {
   std::optional<double> measured{};  ///< none: the verdict is all there is
   std::optional<double> analytic{};  ///< limit that theory gives
   std::string remark{};
+  bool detail = false;  ///< for files only: a table sums it up
 
   /// measured / analytic - 1
   std::optional<double> deviation() const {
@@ -49,11 +50,19 @@ struct Series {
   std::vector<std::vector<double>> rows{};
 };
 
+/// Words in rows and columns.
+struct Matrix {
+  std::string corner;
+  std::vector<std::string> columns;
+  std::vector<std::pair<std::string, std::vector<std::string>>> rows;
+};
+
 struct Study {
   std::string name;    ///< "jury"
   std::string title;   ///< for people
   std::string text{};  ///< how it was measured, in whole sentences
   std::vector<Row> rows{};
+  Matrix matrix{};  ///< may be empty
   std::vector<Series> series{};
 };
 
