@@ -46,7 +46,7 @@ tl::expected<StepReport, FemError> Guarded::step(const Eigen::VectorXd& f, FemSt
   if (!usable(f) || !usable(state.u) || !usable(state.v))
     return tl::unexpected(
         FemError{{Errc::invalid_argument, "R-FEM-5"}, steps_, -1, "give finite numbers, three for each vertex"});
-  edited_ = steps_ == 0 || state.u != last_.u || state.v != last_.v;
+  edited_ = std::exchange(interrupted_, true) || state.u != last_.u || state.v != last_.v;
 
   auto report = advance(f, state, next_);
   if (!report) {
@@ -57,6 +57,7 @@ tl::expected<StepReport, FemError> Guarded::step(const Eigen::VectorXd& f, FemSt
   }
   if (diverged(f, state)) return tl::unexpected(divergence(model_.broken_element(next_.u)));
   ++steps_;
+  interrupted_ = false;
   last_ = next_;
   std::swap(state, next_);
   return report;

@@ -32,12 +32,12 @@ class Guarded : public Integrator {
   IntegratorOptions options_;
   FemState next_;
   std::int64_t steps_ = 0;
-  double far_ = 0;        // [m] movement that may have torn an element
-  double moved_ = 0;      // [m] since the last look at the elements
-  double work_ = 0;       // [J] of external forces since the reference
-  double reference_ = 0;  // [J]
-  double rounding_ = 0;   // [J] below which energy is noise
-  bool edited_ = true, referenced_ = false;
+  double far_ = 0;                                                // [m] movement that may have torn an element
+  double moved_ = 0;                                              // [m] since the last look at the elements
+  double work_ = 0;                                               // [J] of external forces since the reference
+  double reference_ = 0;                                          // [J]
+  double rounding_ = 0;                                           // [J] below which energy is noise
+  bool edited_ = true, interrupted_ = true, referenced_ = false;  // interrupted: the last step failed, or there was none
   FemState last_;
 };
 

@@ -80,8 +80,8 @@ tl::expected<StepReport, FemError> Newton::solve(const Stage& stage, Eigen::Vect
     u += d_;
     evaluated_ = false;
     report.converged = decrease <= tolerance_ * tolerance_ * scale;
-    if (report.converged || report.newton_iterations == iterations_) break;
-    search(stage, decrease, u);
+    if (report.converged || iterations_ == 1) break;
+    if (!search(stage, decrease, u)) direction_->forget();
     evaluated_ = true;
     // The next update would be smaller than this one about as the residual is.
     const double shrinkage = next_r_.squaredNorm() / (residual * residual);
@@ -95,13 +95,13 @@ tl::expected<StepReport, FemError> Newton::solve(const Stage& stage, Eigen::Vect
 }
 
 /// Shorten the step just taken while the residual along it says that it went beyond the lowest point by more than half.
-/// Afterwards d is the step as it is and next_r its residual.
-void Newton::search(const Stage& stage, double decrease, Eigen::VectorXd& u) {
+/// Afterwards d is the step as it is and next_r its residual.   ret  false when it had to be shortened
+bool Newton::search(const Stage& stage, double decrease, Eigen::VectorXd& u) {
   constexpr int kMost = 4;
   for (int i = 0;; ++i) {
     system_.residual(stage, u, next_r_);
     const double slope = d_.dot(next_r_);
-    if (i == kMost || !(slope > 0.5 * decrease)) return;
+    if (i == kMost || !(slope > 0.5 * decrease)) return i == 0;
     const double shorter = std::max(0.1, decrease / (decrease + slope));
     u -= (1 - shorter) * d_;
     d_ *= shorter;

@@ -63,6 +63,8 @@ class Direction {
                                            Eigen::VectorXd& d) = 0;
   /// What came of it: u moved by s, r changed by y.
   virtual void moved(const Eigen::VectorXd& s, const Eigen::VectorXd& y) = 0;
+  /// A direction turned out to reach too far: what it was built on is out of date.
+  virtual void forget() {}
   virtual ~Direction() = default;
 };
 
@@ -78,7 +80,7 @@ class Newton {
   bool evaluated() const noexcept { return evaluated_; }
 
  private:
-  void search(const Stage& stage, double decrease, Eigen::VectorXd& u);
+  bool search(const Stage& stage, double decrease, Eigen::VectorXd& u);
 
   StageSystem system_;
   std::unique_ptr<Direction> direction_;

@@ -131,4 +131,8 @@ void PrefactoredDirection::moved(const Eigen::VectorXd& s, const Eigen::VectorXd
   pairs_[newest_].inverse = 1 / along;
 }
 
+void PrefactoredDirection::forget() {
+  for (Pair& pair : pairs_) pair.inverse = 0;
+}
+
 }  // namespace tactus

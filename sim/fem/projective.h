@@ -46,6 +46,7 @@ class PrefactoredDirection final : public Direction {
   tl::expected<int, FemError> find(StageSystem& system, const Stage& stage, const Eigen::VectorXd& r,
                                    Eigen::VectorXd& d) override;
   void moved(const Eigen::VectorXd& s, const Eigen::VectorXd& y) override;
+  void forget() override;
 
  private:
   explicit PrefactoredDirection(const FemModel& model);

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+// Linear algebra under the integrators: the panel Cholesky, conjugate gradients, the modes.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "sim/fem/cholesky.h"
+#include "sim/fem/integrator.h"
+#include "sim/fem/linear_solver.h"
+#include "sim/fem/modal.h"
+#include "sim/fem/ordering.h"
+#include "sim/random.h"
+#include "tests/unit/fem_fixture.h"
+
+namespace tactus {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+VectorXd random_vector(Eigen::Index size) {
+  Random random(7);
+  VectorXd out(size);
+  for (double& x : out) x = random.uniform(-1, 1);
+  return out;
+}
+
+FemModel free_slab(std::uint32_t nx, std::uint32_t ny, std::uint32_t nz, Elasticity elasticity = Elasticity::linear) {
+  FemOptions options;
+  options.materials = {{1e4, 0.3, 1000}};
+  options.elasticity = elasticity;
+  return testing::make_model(make_slab(nx, ny, nz, 0.01), options);
+}
+
+TEST(Ordering, IsAPermutationOfAnyGraph) {
+  const auto is_permutation = [](std::vector<int> order, int size) {
+    std::sort(order.begin(), order.end());
+    if (static_cast<int>(order.size()) != size) return false;
+    for (int i = 0; i < size; ++i)
+      if (order[static_cast<std::size_t>(i)] != i) return false;
+    return true;
+  };
+  EXPECT_TRUE(is_permutation(nested_dissection({{0}, {}}), 0));
+  EXPECT_TRUE(is_permutation(nested_dissection({{0, 0, 0, 0}, {}}), 3)) << "nobody knows anybody";
+  Graph path{{0}, {}};
+  constexpr int kLength = 200;
+  for (int i = 0; i < 2 * kLength; ++i) {  // two paths, not connected
+    const int begin = i < kLength ? 0 : kLength;
+    if (i > begin) path.neighbours.push_back(i - 1);
+    if (i + 1 < begin + kLength) path.neighbours.push_back(i + 1);
+    path.begin.push_back(static_cast<int>(path.neighbours.size()));
+  }
+  EXPECT_TRUE(is_permutation(nested_dissection(path), 2 * kLength));
+}
+
+TEST(Cholesky, SolvesSheetsBodiesAndParts) {
+  for (const auto& [nx, ny, nz] : {std::array{1U, 1U, 1U}, {16U, 20U, 1U}, {5U, 5U, 5U}, {40U, 1U, 1U}}) {
+    FemModel model = free_slab(nx, ny, nz);
+    SystemMatrix matrix(model);
+    const SparseMatrix& A = matrix.assemble(VectorXd::Zero(model.size()), 1e6, 1);
+    Cholesky cholesky;
+    cholesky.analyse(A);
+    ASSERT_TRUE(cholesky.factor(A));
+    const VectorXd b = random_vector(A.rows());
+    VectorXd x(A.rows()), again = b;
+    cholesky.solve(b, x);
+    EXPECT_LT((A * x - b).norm(), 1e-12 * b.norm()) << nx << " " << ny << " " << nz;
+    cholesky.solve(again, again);
+    EXPECT_TRUE(again == x) << "in place";
+  }
+}
+
+TEST(Cholesky, RefusesWhatIsNotPositiveDefiniteAndWorksAgainAfterwards) {
+  FemModel model = free_slab(3, 3, 1);
+  SystemMatrix matrix(model);
+  Cholesky cholesky;
+  cholesky.analyse(matrix.matrix());
+  EXPECT_FALSE(cholesky.factor(matrix.assemble(VectorXd::Zero(model.size()), -1e6, 1)));
+  SparseMatrix broken = matrix.assemble(VectorXd::Zero(model.size()), 1e6, 1);
+  broken.valuePtr()[0] = std::nan("");
+  EXPECT_FALSE(cholesky.factor(broken));
+  const SparseMatrix& A = matrix.assemble(VectorXd::Zero(model.size()), 1e6, 1);
+  ASSERT_TRUE(cholesky.factor(A));
+  const VectorXd b = random_vector(A.rows());
+  VectorXd x(A.rows());
+  cholesky.solve(b, x);
+  EXPECT_LT((A * x - b).norm(), 1e-12 * b.norm());
+}
+
+// Eigen's simplicial factor with minimum degree has 143 121 numbers.
+TEST(Cholesky, FillOfTheMembraneIsThatOfAGoodOrdering) {
+  FemModel model = testing::slab_model();
+  SystemMatrix matrix(model);
+  Cholesky cholesky;
+  cholesky.analyse(matrix.matrix());
+  EXPECT_LT(cholesky.fill(), 175000);
+  EXPECT_GT(cholesky.fill(), matrix.matrix().nonZeros() / 2);
+}
+
+TEST(ConjugateGradients, MeetTheirToleranceAndStartWarm) {
+  FemModel model = free_slab(6, 5, 2);
+  SystemMatrix matrix(model);
+  const SparseMatrix& A = matrix.assemble(VectorXd::Zero(model.size()), 1e5, 1);
+  const VectorXd b = random_vector(A.rows());
+  for (const double tolerance : {1e-3, 1e-6, 1e-12}) {
+    ConjugateGradients gradients(A.rows(), tolerance);
+    gradients.prepare(A);
+    VectorXd x = VectorXd::Zero(A.rows());
+    const int cold = gradients.solve(A, b, x);
+    EXPECT_LE((A * x - b).norm(), 1.01 * tolerance * b.norm());
+    EXPECT_GT(cold, 1);
+    EXPECT_LE(gradients.solve(A, b, x), 1) << "from the solution";
+    x *= 1e6;
+    EXPECT_LE(gradients.solve(A, b, x), cold) << "a start worse than zero is dropped";
+  }
+}
+
+MatrixXd dense_eigenvalues(FemModel& model) {
+  SparseMatrix K;
+  model.stiffness(VectorXd::Zero(model.size()), K);
+  return Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd>(MatrixXd(K), MatrixXd(model.mass_matrix()), Eigen::EigenvaluesOnly)
+      .eigenvalues();
+}
+
+TEST(Modes, FrequenciesOfABeamAreThoseOfADenseSolve) {
+  for (const MassMatrix mass : {MassMatrix::lumped, MassMatrix::consistent}) {
+    FemOptions options;
+    options.materials = {{1e5, 0.3, 1000}};
+    options.mass = mass;
+    TetMesh mesh = make_slab(20, 2, 2, 0.01);
+    for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i)
+      if (mesh.vertices[i].x == 0) options.fixed.push_back(i);
+    FemModel model = testing::make_model(std::move(mesh), options);
+    const VectorXd expected = dense_eigenvalues(model);
+    const Modes modes = slowest_modes(model, 10).value();
+    ASSERT_EQ(modes.squares.size(), 10);
+    for (int i = 0; i < 10; ++i) EXPECT_NEAR(modes.squares[i] / expected[i], 1, 1e-8) << "mode " << i;
+    const MatrixXd unity = modes.shapes.transpose() * (model.mass_matrix() * modes.shapes);
+    EXPECT_LT((unity - MatrixXd::Identity(10, 10)).cwiseAbs().maxCoeff(), 1e-9);
+  }
+}
+
+TEST(Modes, AFreeBodyHasSixWithoutFrequency) {
+  FemModel model = free_slab(12, 4, 1);
+  const VectorXd expected = dense_eigenvalues(model);
+  const Modes modes = slowest_modes(model, 9).value();
+  for (int i = 0; i < 6; ++i) EXPECT_LT(modes.squares[i], 1e-8 * expected[6]) << i;
+  for (int i = 6; i < 9; ++i) EXPECT_NEAR(modes.squares[i] / expected[i], 1, 1e-8) << i;
+}
+
+/// A cantilever of few vertices, all modes counted.
+FemModel small_cantilever(double mass_damping, double stiffness_damping) {
+  FemOptions options;
+  options.materials = {{1e4, 0.3, 1000}};
+  options.elasticity = Elasticity::linear;
+  options.fixed = {0, 5, 10, 15, 20, 25};
+  options.mass_damping = mass_damping;
+  options.stiffness_damping = stiffness_damping;
+  return testing::make_model(make_slab(4, 2, 1, 0.01), options);
+}
+
+FemState after(FemModel& model, const IntegratorOptions& options, int steps) {
+  const auto integrator = std::move(make_integrator(model, options).value());
+  FemState state = model.rest();
+  VectorXd f = VectorXd::Zero(model.size());
+  for (int i = 0; i < steps; ++i) {
+    f[3 * 29 + 2] = i < steps / 2 ? -0.05 : 0.02;
+    static_cast<void>(integrator->step(f, state).value());
+  }
+  return state;
+}
+
+TEST(Modal, WithAllModesIsTheLinearProblemExactInTime) {
+  for (const auto& [alpha, beta] : {std::pair{0.0, 0.0}, {2.0, 1e-3}, {0.0, 0.5}}) {  // the last: overdamped
+    FemModel model = small_cantilever(alpha, beta);
+    IntegratorOptions modal;
+    modal.method = Method::modal;
+    modal.modes = static_cast<int>(model.free_dofs().size());
+    modal.step = 2e-3;
+    const FemState exact = after(model, modal, 20);
+    const auto error = [&](double h) {
+      IntegratorOptions o;
+      o.method = Method::tr_bdf2;
+      o.solver = LinearSolver::cholesky;
+      o.step = h;
+      return (after(model, o, static_cast<int>(std::lround(0.04 / h))).u - exact.u).norm() / exact.u.norm();
+    };
+    const double coarse = error(1e-4), fine = error(5e-5);
+    EXPECT_LT(fine, 1e-3);
+    EXPECT_NEAR(std::log2(coarse / fine), 2, 0.3) << "alpha " << alpha << " beta " << beta;
+  }
+}
+
+TEST(Modal, AModeReturnsAfterItsPeriod) {
+  FemModel model = small_cantilever(0, 0);
+  const Modes modes = slowest_modes(model, 3).value();
+  IntegratorOptions o;
+  o.method = Method::modal;
+  o.modes = 3;
+  constexpr int kSteps = 50;
+  o.step = 2 * std::numbers::pi / std::sqrt(modes.squares[1]) / kSteps;
+  FemState state = model.rest();
+  const auto dofs = model.free_dofs();
+  for (std::size_t i = 0; i < dofs.size(); ++i) state.u[dofs[i]] = 1e-3 * modes.shapes(static_cast<Eigen::Index>(i), 1);
+  const VectorXd start = state.u;
+  const auto integrator = std::move(make_integrator(model, o).value());
+  for (int i = 0; i < kSteps; ++i) {
+    static_cast<void>(integrator->step(VectorXd::Zero(model.size()), state).value());
+    if (i == kSteps / 2 - 1) {
+      EXPECT_LT((state.u + start).norm(), 1e-9 * start.norm());
+    }
+  }
+  EXPECT_LT((state.u - start).norm(), 1e-9 * start.norm());
+}
+
+}  // namespace
+}  // namespace tactus
