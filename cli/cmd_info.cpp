@@ -208,7 +208,7 @@ Outcome info_trace(const InfoOptions& options) {
     const auto more = reader->next(frame);
     if (!more) return refuse(options.input, more.error());
     if (!*more) break;
-    for (std::size_t i = 0; i < shapes.size(); ++i) shapes[i] += frame.meshes[i].updated ? 1 : 0;
+    for (std::size_t i = 0; i < shapes.size(); ++i) shapes[i] += frame.meshes[i].updated ? 1U : 0U;
     if (frames++ == 0) first = frame.tick;
   }
   Json info{{"schema", "tactus.info/1"},
@@ -252,6 +252,14 @@ Outcome info_scene(const InfoOptions& options) {
                                {"mass [kg]", o.mass},
                                {"friction", o.friction},
                                {"size [m]", fmt::format("{} {} {}", o.size.x, o.size.y, o.size.z)}});
+  }
+  for (const SceneDeformable& d : scene->deformables) {
+    info["deformables"].push_back({{"deformable", d.name},
+                                   {"vertices", d.mesh.vertices.size()},
+                                   {"tetrahedra", d.mesh.tets.size()},
+                                   {"fixed vertices", d.fixed.size()},
+                                   {"deformed", fmt::format("every {} ms", d.rate)},
+                                   {"coupling [N/m]", d.stiffness}});
   }
   for (const SceneUser& u : scene->users) info["users"].push_back({{"user", u.name}, {"phases of the path", u.path.size()}});
   return show(info, options.json, print_info);

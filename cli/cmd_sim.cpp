@@ -8,6 +8,7 @@
 
 #include "cli/report.h"
 #include "codec/trace/trace_file.h"
+#include "sim/deformable/stiffness_map.h"
 #include "sim/simulation.h"
 
 namespace tactus::cli {
@@ -15,6 +16,9 @@ namespace {
 
 struct SimOptions {
   std::string scene, output, stream, replay;
+  std::string stiffness_map;   // CSV to write
+  std::string method, solver;  // of deformable objects, empty: the scene's
+  std::uint32_t rate = 0;      // ticks between deformations, 0: the scene's
   std::uint64_t seed = 1;
   double duration = -1;  // [s], negative: the scene's
   std::optional<Grip> grip;
@@ -44,6 +48,8 @@ tl::expected<StreamOutput, Failure> open_stream(const SimOptions& options, const
   return StreamOutput{std::move(*file), std::move(*writer)};
 }
 
+constexpr std::uint32_t kEstimateEvery = 50;  // deformations between looks at their error
+
 struct Run {
   Simulation simulation;
   TraceWriter trace;
@@ -58,8 +64,10 @@ struct Run {
 tl::expected<EncodedPacket, Failure> step(Run& run, const SimOptions& options, StepTimes& times) {
   const auto stepped =
       times.measure([&] { return run.recording ? run.simulation.replay(run.recorded.users) : run.simulation.step(); });
-  if (!stepped) return refuse(options.scene, place_of_tick(stepped.error().tick), stepped.error().error);
-  return *stepped;
+  if (stepped) return *stepped;
+  const StepError& error = stepped.error();
+  if (error.remedy.empty()) return refuse(options.scene, place_of_tick(error.tick), error.error);
+  return refuse(fmt::format("{}, {}: {}", options.scene, place_of_tick(error.tick), error.remedy), "");
 }
 
 Outcome record(Run& run, const EncodedPacket& packet, const SimOptions& options, Report& report) {
@@ -78,12 +86,19 @@ Outcome record(Run& run, const EncodedPacket& packet, const SimOptions& options,
   }
   bool touched = false;
   for (const UserSample& user : frame.users) {
-    touched = touched || user.contact.kind != ContactKind::none;
+    touched = touched || user.contact.kind != ContactKind::none || user.mesh_contact;
     run.largest_force = std::max(run.largest_force, norm(user.force));
   }
   run.ticks_in_contact += touched ? 1 : 0;
   ++report.ticks;
   return {};
+}
+
+/// How long the deformations of this tick took, one time each.
+void add_deformations(const Run& run, StepTimes& times) {
+  const auto& meshes = run.simulation.frame().meshes;
+  for (std::size_t i = 0; i < meshes.size(); ++i)
+    if (meshes[i].updated) times.add(run.simulation.deformables()->seconds(i));
 }
 
 Outcome simulate(Run& run, std::int64_t ticks, const SimOptions& options, Report& report) {
@@ -96,6 +111,7 @@ Outcome simulate(Run& run, std::int64_t ticks, const SimOptions& options, Report
     }
     const auto packet = step(run, options, report.timings[0].times);
     if (!packet) return tl::unexpected(packet.error());
+    if (report.timings.size() > 1) add_deformations(run, report.timings[1].times);
     if (auto done = record(run, *packet, options, report); !done) return done;
     progress.update(report.ticks);
   }
@@ -120,20 +136,67 @@ Report make_report(const SimOptions& options, const TraceInfo& info) {
   return report;
 }
 
-tl::expected<Scene, Failure> read_scene(const std::string& name) {
-  const auto path = find_scene(name);
+tl::expected<Scene, Failure> read_scene(const SimOptions& options) {
+  const auto path = find_scene(options.scene);
   if (!path) return refuse(to_string(path.error()), "");
   auto scene = load_scene(*path);
   if (!scene) return refuse(to_string(scene.error()), "");
+  for (SceneDeformable& object : scene->deformables) {
+    if (!options.method.empty()) object.method = options.method;
+    if (!options.solver.empty()) object.solver = options.solver;
+    if (options.rate > 0) object.rate = options.rate;
+  }
   return *scene;
+}
+
+/// Place at rest and local stiffness of every vertex of the surfaces (thesis figure 4.23).
+Outcome write_stiffness_map(const Scene& scene, const SimOptions& options) {
+  auto file =
+      OutputFile::create(options.stiffness_map, options.common.existing(), {options.scene, options.output, options.stream});
+  if (!file) return tl::unexpected(file.error());
+  const auto out = file->open();
+  if (!out) return tl::unexpected(out.error());
+  **out << "deformable,vertex,x_m,y_m,z_m,stiffness_N_per_m\n";
+  for (const SceneDeformable& object : scene.deformables) {
+    const auto map = stiffness_map(object);
+    if (!map) return refuse(options.scene, object.name, map.error());
+    for (std::size_t v = 0; v < map->stiffness.size(); ++v) {
+      const Vec3& at = map->surface.vertices[v];
+      **out << fmt::format("{},{},{},{},{},{}\n", object.name, v, at.x, at.y, at.z, map->stiffness[v]);
+    }
+  }
+  return file->keep();
+}
+
+void describe_deformables(const Simulation& simulation, Report& report) {
+  if (simulation.deformables() == nullptr) return;
+  for (const DeformableInfo& object : simulation.deformables()->info()) {
+    report.notes.emplace_back(
+        object.name, fmt::format("{} vertices, deformed every {:g} ms by {}", object.vertices, 1e3 * object.step, object.method));
+    report.notes.emplace_back("because", object.reason);
+  }
+  report.timings.push_back({"deform, per step", {}});
+}
+
+void report_errors(const Simulation& simulation, Report& report) {
+  if (simulation.deformables() == nullptr) return;
+  const auto objects = simulation.deformables()->info();
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const auto error = simulation.deformables()->error(i);
+    if (error && error->samples > 0)
+      report.notes.emplace_back("error of one step", fmt::format("{}: {:.2g} relative (median of {}), at most {:.2g}",
+                                                                 objects[i].name, error->p50, error->samples, error->max));
+  }
 }
 
 Outcome run(const SimOptions& options) {
   if (options.duration >= 0 && options.duration < 0.5 / kTickRate)
     return refuse("--duration: shorter than a tick", "Give at least 1ms.");
-  const auto scene = read_scene(options.scene);
+  const auto scene = read_scene(options);
   if (!scene) return tl::unexpected(scene.error());
-  SimulationOptions settings{.seed = options.seed, .grip = options.grip, .channel = {}};
+  if (!options.stiffness_map.empty())
+    if (auto written = write_stiffness_map(*scene, options); !written) return written;
+  SimulationOptions settings{.seed = options.seed, .grip = options.grip, .channel = {}, .estimate_every = kEstimateEvery};
   if (options.has_channel()) settings.channel = ChannelOptions{options.triggers.encoder(), options.replica};
   auto simulation = Simulation::create(*scene, settings);
   if (!simulation) return refuse(options.scene, simulation.error());
@@ -159,6 +222,7 @@ Outcome run(const SimOptions& options) {
   if (!trace) return refuse(options.output, trace.error());
 
   Report report = make_report(options, info);
+  describe_deformables(*simulation, report);
   Run session{std::move(*simulation), std::move(*trace), std::move(stream), std::move(recording), {}};
   const auto ticks =
       options.duration < 0 ? session.simulation.ticks() : static_cast<std::int64_t>(std::llround(options.duration * kTickRate));
@@ -169,6 +233,7 @@ Outcome run(const SimOptions& options) {
                                100.0 * static_cast<double>(session.ticks_in_contact) / static_cast<double>(report.ticks),
                                session.largest_force));
   }
+  report_errors(session.simulation, report);
   print(report, options.common, beside(options.output));
   return {};
 }
@@ -178,7 +243,8 @@ Outcome run(const SimOptions& options) {
 void setup_sim(CLI::App& app, Action& action) {
   auto options = std::make_shared<SimOptions>();
   CLI::App& command = *app.add_subcommand("sim", "Simulate a touch into a trace");
-  command.add_option("SCENE", options->scene, "push-1dof, rotate-6dof, rotate-push-lift, or a TOML file")
+  command
+      .add_option("SCENE", options->scene, "push-1dof, rotate-6dof, rotate-push-lift, membrane, membrane-light, or a TOML file")
       ->type_name("")
       ->required();
   command.add_option("-o,--output", options->output, "Trace to write (MCAP), - is standard output")
@@ -194,6 +260,17 @@ void setup_sim(CLI::App& app, Action& action) {
       ->check(one_of({"loose", "normal", "firm"}))
       ->type_name("GRIP");
   command.add_option("--replay", options->replay, "Move the device as in this trace instead")->type_name("TRACE");
+  command.add_option("--method", options->method, "Time integration of deformable objects [the scene's]")
+      ->check(one_of({"auto", "symplectic-euler", "backward-euler", "newmark", "tr-bdf2", "projective"}))
+      ->type_name("NAME");
+  command.add_option("--solver", options->solver, "Linear solver of implicit methods [the scene's]")
+      ->check(one_of({"auto", "cg", "cholesky", "prefactored"}))
+      ->type_name("NAME");
+  command.add_option("--rate", options->rate, "Ticks from deformation to deformation, 1 to 1000 [the scene's]")
+      ->check(CLI::Range(1, 1000))
+      ->type_name("N");
+  command.add_option("--stiffness-map", options->stiffness_map, "Also write the local stiffness of deformable objects (CSV)")
+      ->type_name("FILE");
   command.add_flag("--codec", options->codec, "Close the loop through encoder, decoder and replica; so does every option below");
   command.add_option("--stream", options->stream, "Also write the packets")->type_name("FILE");
   add_interpolation(command, options->replica);
@@ -203,6 +280,7 @@ void setup_sim(CLI::App& app, Action& action) {
   command.footer(
       "Examples:\n"
       "  tactus sim push-1dof -o push.mcap --seed 7\n"
+      "  tactus sim membrane -o membrane.mcap --rate 1\n"
       "  tactus sim rotate-push-lift -o felt.mcap --stream felt.tct -p 4% --interpolate");
   on_chosen<SimOptions>(command, action, options, run);
 }

@@ -111,6 +111,11 @@ constexpr std::array kRules{
     RuleText{"R-CSV-7", "the rate of the recording is unknown", "Give --tick-rate HZ, or --time COLUMN."},
     RuleText{"R-CSV-8", "the mapping names some columns of a vector but not all, or nothing to record",
              "Give --preset NAME, or --map with every column of a quantity."},
+    RuleText{"R-SIM-2", "the scene has deformable objects, and this program was built without them",
+             "Install libeigen3-dev and build with TACTUS_WITH_FEM=ON."},
+    RuleText{"R-FEM-7", "a deformable object's system matrix cannot be factored",
+             "Fix at least three of its vertices that do not lie on a line, or give it less extreme materials."},
+    RuleText{"R-FEM-8", "the method cannot deform an object at this step", "Take another --method, or a --rate nearer to 1."},
     RuleText{"R-SIM-1", "the physics broke down: a state is no longer finite",
              "Soften the scene: a lower stiffness, or a heavier object."},
 };

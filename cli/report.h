@@ -28,6 +28,7 @@ class StepTimes {
     nanoseconds_.push_back(static_cast<std::uint32_t>(std::min<Clock::rep>((Clock::now() - start).count(), UINT32_MAX)));
     return result;
   }
+  void add(double seconds) { nanoseconds_.push_back(static_cast<std::uint32_t>(std::min(1e9 * seconds, double{UINT32_MAX}))); }
   bool empty() const noexcept { return nanoseconds_.empty(); }
   std::size_t count() const noexcept { return nanoseconds_.size(); }
   double quantile(double share) const;  ///< [s]; 1: the longest

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/simulation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -24,14 +25,27 @@ struct User {
   Probe client;
   double max_force;
   DeviceSample device;
-  Touch touch;    // at the server
-  Vec3 rendered;  // by the server, within the device's limit
-  Vec3 felt;      // by the client
+  Touch touch;            // at the server
+  DeformableTouch press;  // likewise, of deformables
+  double share;           // of both that the device can yield
+  Vec3 rendered;          // by the server, within the device's limit
+  Vec3 felt;              // by the client
 };
 
-Vec3 clipped(const Vec3& force, double limit) {
+/// How much of a force a device renders.
+double share_rendered(const Vec3& force, double limit) {
   const double magnitude = norm(force);
-  return magnitude > limit ? (limit / magnitude) * force : force;
+  return magnitude > limit ? limit / magnitude : 1;
+}
+
+/// Of the mesh's box [m].
+Vec3 centre(const TriMesh& mesh) {
+  Vec3 low = mesh.vertices[0], high = low;
+  for (const Vec3& v : mesh.vertices) {
+    low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+    high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+  }
+  return 0.5 * (low + high);
 }
 
 }  // namespace
@@ -46,6 +60,8 @@ struct Simulation::Impl {
   TraceFrame frame;
   std::vector<Contact> contacts;
   std::vector<Pose> true_poses, client_poses;
+  std::unique_ptr<DeformableWorld> deformables;  // none: the scene has none
+  std::vector<Pose> places;                      // of the deformables, for who looks at one
 
   Impl(Scene of, std::uint64_t from, StreamHeader stream)
       : scene(std::move(of)), seed(from), header(std::move(stream)), world(scene) {}
@@ -56,7 +72,12 @@ struct Simulation::Impl {
   void touch_client();
   tl::expected<void, StepError> act();
   tl::expected<EncodedPacket, StepError> tick();
+  const Pose& watched(const SceneUser& user) const;
 };
+
+const Pose& Simulation::Impl::watched(const SceneUser& user) const {
+  return user.object < client_poses.size() ? client_poses[user.object] : places[user.object - client_poses.size()];
+}
 
 /// Truth at this tick, as it is before any force of this tick acts.
 void Simulation::Impl::observe() {
@@ -65,13 +86,20 @@ void Simulation::Impl::observe() {
     frame.objects[i] = world.sample(i);
     true_poses[i] = frame.objects[i].pose;
   }
+  if (deformables) deformables->observe(frame.meshes);
 }
 
 void Simulation::Impl::touch_server() {
   for (std::size_t i = 0; i < users.size(); ++i) {
     User& user = users[i];
     user.touch = user.server.move(user.device.position, user.device.button, true_poses);
-    user.rendered = clipped(user.touch.force, user.max_force);
+    Vec3 force = user.touch.force;
+    if (deformables) {
+      user.press = deformables->touch_server(i, user.device.position);
+      force = force + user.press.force;
+    }
+    user.share = share_rendered(force, user.max_force);
+    user.rendered = user.share * force;
     contacts[i] = user.touch.contact;
   }
 }
@@ -94,14 +122,22 @@ tl::expected<EncodedPacket, Error> Simulation::Impl::transmit() {
 void Simulation::Impl::touch_client() {
   for (std::size_t i = 0; i < users.size(); ++i) {
     User& user = users[i];
-    user.felt = clipped(user.client.move(user.device.position, user.device.button, client_poses).force, user.max_force);
-    frame.users[i] = {.contact = user.touch.contact, .force = user.felt, .server_force = user.rendered};
+    Vec3 force = user.client.move(user.device.position, user.device.button, client_poses).force;
+    if (deformables) force = force + deformables->touch_client(i, user.device.position).force;
+    user.felt = share_rendered(force, user.max_force) * force;
+    frame.users[i] = {
+        .contact = user.touch.contact, .force = user.felt, .server_force = user.rendered, .mesh_contact = user.press.contact};
   }
 }
 
 tl::expected<void, StepError> Simulation::Impl::act() {
-  for (const User& user : users)
-    if (user.touch.contact.kind != ContactKind::none) world.push(user.touch.contact.object, -user.rendered, user.touch.proxy);
+  for (const User& user : users) {
+    const Contact& contact = user.touch.contact;
+    if (contact.kind != ContactKind::none) world.push(contact.object, -(user.share * user.touch.force), user.touch.proxy);
+    if (user.press.contact) deformables->push(*user.press.contact, -(user.share * user.press.force));
+  }
+  if (deformables)
+    if (auto deformed = deformables->step(); !deformed) return deformed;
   return world.step();
 }
 
@@ -132,8 +168,17 @@ Result<Simulation> Simulation::create(const Scene& scene, const SimulationOption
                                .max_force = user.device.max_force,
                                .device = {},
                                .touch = {},
+                               .press = {},
+                               .share = 1,
                                .rendered = {},
                                .felt = {}});
+  }
+  if (!scene.deformables.empty()) {
+    TACTUS_TRY(impl->deformables, make_deformable_world(scene, {scene.users.size(), options.estimate_every}));
+    for (const TraceMesh& mesh : impl->deformables->meshes()) {
+      impl->places.push_back({centre(mesh.rest), {}});
+      impl->frame.meshes.push_back({false, std::vector<float>(3 * mesh.rest.vertices.size())});
+    }
   }
   impl->frame.objects.resize(scene.objects.size());
   impl->frame.users.resize(scene.users.size());
@@ -148,7 +193,7 @@ tl::expected<EncodedPacket, StepError> Simulation::step() {
   in.observe();
   for (std::size_t i = 0; i < in.users.size(); ++i) {
     User& user = in.users[i];
-    user.device = user.hand.step(user.felt, in.client_poses[in.scene.users[i].object]);
+    user.device = user.hand.step(user.felt, in.watched(in.scene.users[i]));
   }
   return in.tick();
 }
@@ -169,6 +214,7 @@ tl::expected<EncodedPacket, StepError> Simulation::replay(std::span<const UserSa
 
 const TraceFrame& Simulation::frame() const noexcept { return impl_->frame; }
 std::span<const Pose> Simulation::client_poses() const noexcept { return impl_->client_poses; }
+const DeformableWorld* Simulation::deformables() const noexcept { return impl_->deformables.get(); }
 const StreamHeader& Simulation::header() const noexcept { return impl_->header; }
 
 std::int64_t Simulation::ticks() const noexcept { return std::llround(impl_->scene.duration / kTick); }
@@ -177,6 +223,7 @@ TraceInfo Simulation::info() const {
   TraceInfo info{.tick_rate = kTickRate, .objects = {}, .users = {}, .source = {}, .scene = impl_->scene.text};
   for (const SceneObject& object : impl_->scene.objects) info.objects.push_back({object.name, object.dof});
   for (const SceneUser& user : impl_->scene.users) info.users.push_back(user.name);
+  if (impl_->deformables) info.meshes.assign(impl_->deformables->meshes().begin(), impl_->deformables->meshes().end());
   info.source = "sim " + impl_->scene.name + " seed " + std::to_string(impl_->seed);
   return info;
 }

@@ -7,6 +7,9 @@
 ///   4 client   proxy on the replica's poses, same x_d: force f_c, which the hand will feel
 ///   5 physics  -f acts on the touched object at the proxy; poses of the next tick
 ///
+/// Deformable objects are touched in 2 and 4 and pushed in 5, too (sim/deformable/deformable_world.h); the client sees their true
+/// shape. What a user feels is the sum of both, clipped to what the device can yield.
+///
 /// The frame of a tick holds the poses of 2, the device sample of 1 and both forces: everything in it belongs to one instant, so
 /// whoever recomputes a force from contact and pose gets the encoder's own number.
 #pragma once
@@ -19,6 +22,7 @@
 #include "codec/client/replica.h"
 #include "codec/rigid/rigid_encoder.h"
 #include "codec/trace/frame.h"
+#include "sim/deformable/deformable_world.h"
 #include "sim/rigid/rigid_world.h"
 #include "sim/scene/scene.h"
 
@@ -33,18 +37,21 @@ struct SimulationOptions {
   std::uint64_t seed = 1;
   std::optional<Grip> grip;               ///< instead of the scene's, for every user
   std::optional<ChannelOptions> channel;  ///< none: the client sees the true poses
+  std::uint32_t estimate_every = 0;       ///< estimate the error of every so many deformations, 0: of none
 };
 
 class Simulation {
  public:
   /// pre  every call on the same thread (ODE keeps state per thread).
-  /// err  invalid_argument R-API-n, R-STR-n: the options do not suit the scene (see RigidEncoder::create, Replica::create)
+  /// err  invalid_argument R-API-n, R-STR-n: the options do not suit the scene (see RigidEncoder::create, Replica::create);
+  ///      unsupported R-SIM-2 and others of make_deformable_world()
   static Result<Simulation> create(const Scene& scene, const SimulationOptions& options = {});
 
   /// One tick with the scene's virtual hands. Afterwards frame() is this tick.
   /// out  the packet of this tick, without bytes if none was needed; valid until the next call
-  /// time about 16 us for one cube and user; no allocation after the first tick, in which ODE makes its arenas.
-  /// err  internal R-SIM-1: the physics broke down; errors of RigidEncoder::encode and RigidDecoder::decode
+  /// time about 16 us for one cube and user; no allocation after the first tick, in which ODE makes its arenas, and the first
+  ///      deformation.
+  /// err  internal R-SIM-1, R-FEM-6: the physics broke down; errors of RigidEncoder::encode and RigidDecoder::decode
   tl::expected<EncodedPacket, StepError> step();
 
   /// The same with recorded device positions instead of the hands (open loop). The button is down where a spring was recorded.
@@ -57,6 +64,7 @@ class Simulation {
   std::int64_t ticks() const noexcept;                  ///< length of the scene
   TraceInfo info() const;                               ///< for a TraceWriter of these frames
   const StreamHeader& header() const noexcept;          ///< of the packets
+  const DeformableWorld* deformables() const noexcept;  ///< null: the scene has none
 
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "codec/rigid/rigid.h"
+#include "sim/scene/deformable_reader.h"
 #include "sim/scene/toml_reader.h"
 
 namespace tactus {
@@ -83,17 +84,14 @@ SceneDevice read_device(TomlReader& in, const toml::table& table) {
   SceneDevice device;
   device.max_force = in.number(table, path, "max_force", {0.01, 1000}, device.max_force);
   device.resolution = in.number(table, path, "resolution", {1e-9, 0.1}, device.resolution);
-  const double filter = in.number(table, path, "filter", {1, 1000}, static_cast<double>(device.filter));
-  if (filter != std::floor(filter))
-    in.fail_at(table.get("filter")->source(), Errc::invalid, "R-SCN-5", path + ".filter", "write a whole number");
-  device.filter = static_cast<std::uint32_t>(filter);
+  device.filter = in.whole(table, path, "filter", {1, 1000}, device.filter);
   device.axes = read_axes(in, table, path, "axes", device.axes) & Dof::translation;
   return device;
 }
 
 PathPhase read_phase(TomlReader& in, const toml::table& table) {
   const std::string path = "user.path";
-  in.allow(table, path, {"name", "frame", "to", "duration", "button"});
+  in.allow(table, path, {"name", "frame", "to", "duration", "button", "turns", "centre"});
   PathPhase phase;
   phase.name = in.text(table, path, "name");
   phase.frame =
@@ -101,6 +99,10 @@ PathPhase read_phase(TomlReader& in, const toml::table& table) {
   phase.to = in.vector(table, path, "to", kPlace);
   phase.duration = in.number(table, path, "duration", {kTick, kLongest});
   phase.button = in.flag(table, path, "button", false);
+  phase.turns = in.number(table, path, "turns", {-1e4, 1e4}, 0.0);
+  if (phase.turns != 0) phase.centre = in.vector(table, path, "centre", kPlace);
+  else if (const toml::node* centre = table.get("centre"))
+    in.fail_at(centre->source(), Errc::invalid, "R-SCN-4", path + ".turns", "say how many turns round this centre");
   return phase;
 }
 
@@ -108,6 +110,8 @@ std::uint32_t read_watched(TomlReader& in, const toml::table& table, const Scene
   const std::string name = in.text(table, "user", "object");
   for (std::size_t i = 0; i < scene.objects.size(); ++i)
     if (scene.objects[i].name == name) return static_cast<std::uint32_t>(i);
+  for (std::size_t i = 0; i < scene.deformables.size(); ++i)
+    if (scene.deformables[i].name == name) return static_cast<std::uint32_t>(scene.objects.size() + i);
   in.fail_at(table.source(), Errc::invalid, "R-SCN-7", "user.object", "name an object of this scene");
   return 0;
 }
@@ -129,8 +133,8 @@ SceneUser read_user(TomlReader& in, const toml::table& table, const Scene& scene
   return user;
 }
 
-void read_scene(TomlReader& in, const toml::table& root, Scene& scene) {
-  in.allow(root, "", {"name", "gravity", "duration", "floor", "touch", "object", "user"});
+void read_scene(TomlReader& in, const toml::table& root, const std::filesystem::path& folder, Scene& scene) {
+  in.allow(root, "", {"name", "gravity", "duration", "floor", "touch", "object", "deformable", "user"});
   scene.name = in.text(root, "", "name");
   scene.gravity = in.vector(root, "", "gravity", {-1000, 1000});
   scene.duration = in.number(root, "", "duration", {kTick, kLongest});
@@ -143,12 +147,18 @@ void read_scene(TomlReader& in, const toml::table& root, Scene& scene) {
     if (!names.insert(scene.objects.back().name).second)
       in.fail_at(table->source(), Errc::invalid, "R-SCN-7", "object.name", "give every object a name of its own");
   }
+  for (const toml::table* table : in.tables(root, "", "deformable")) {
+    scene.deformables.push_back(read_deformable(in, *table, folder, scene.touch.value_or(SceneTouch{})));
+    if (!names.insert(scene.deformables.back().name).second)
+      in.fail_at(table->source(), Errc::invalid, "R-SCN-7", "deformable.name", "give every object a name of its own");
+  }
   for (const toml::table* table : in.tables(root, "", "user")) {
     scene.users.push_back(read_user(in, *table, scene));
     if (!names.insert(scene.users.back().name).second)
       in.fail_at(table->source(), Errc::invalid, "R-SCN-7", "user.name", "give every user a name of its own");
   }
-  if (scene.objects.empty()) in.fail_at(root.source(), Errc::invalid, "R-SCN-4", "object", "add at least one [[object]]");
+  if (scene.objects.empty() && scene.deformables.empty())
+    in.fail_at(root.source(), Errc::invalid, "R-SCN-4", "object", "add at least one [[object]] or [[deformable]]");
   if (!scene.users.empty() && !scene.touch)
     in.fail_at(root.source(), Errc::invalid, "R-SCN-4", "touch", "users need a [touch] table that says what they feel");
 }
@@ -167,7 +177,7 @@ tl::expected<Scene, SceneError> parse_scene(std::string_view text, std::string_v
   Scene scene;
   scene.text = text;
   try {
-    read_scene(in, toml::parse(text, file), scene);
+    read_scene(in, toml::parse(text, file), std::filesystem::path(file).parent_path(), scene);
   } catch (const toml::parse_error& error) {
     in.fail_at(error.source(), Errc::malformed, "R-SCN-2", "", std::string(error.description()));
   }

@@ -13,6 +13,7 @@
 #include "codec/base/geometry.h"
 #include "codec/base/result.h"
 #include "codec/stream/header.h"
+#include "sim/mesh/tet_mesh.h"
 
 namespace tactus {
 
@@ -28,6 +29,27 @@ struct SceneObject {
   double damping = 1;           ///< d: velocities are multiplied by it every millisecond; 1: none
   std::uint8_t dof = Dof::all;  ///< none: a static object
   Pose pose;                    ///< at tick 0, of the box's centre
+};
+
+struct SceneMaterial {
+  double young = 0;    ///< E [N/m^2]
+  double poisson = 0;  ///< nu
+  double density = 0;  ///< [kg/m^3]
+};
+
+/// An elastic body. It is touched by probes and pulled by gravity; it meets neither the floor nor other objects.
+struct SceneDeformable {
+  std::string name;
+  TetMesh mesh;                                  ///< at rest, world frame
+  std::vector<SceneMaterial> materials;          ///< one for all or one per tetrahedron
+  std::vector<std::uint32_t> fixed;              ///< vertices that never move
+  bool corotated = true;                         ///< else linear elasticity, for small rotations only
+  double mass_damping = 0;                       ///< [1/s]
+  double stiffness_damping = 0;                  ///< [s]
+  double stiffness = 0;                          ///< k_s = k_c [N/m] of the coupling with each probe
+  double friction = 0;                           ///< of the virtual proxies
+  std::string method = "auto", solver = "auto";  ///< of time integration; auto: chosen by the scene's stiffness
+  std::uint32_t rate = 1;                        ///< N: deformed every N ticks (thesis figure 4.14), 1..1000
 };
 
 /// How the probe feels every object of the scene (thesis 2.3.4.1, 3.2.4.1, 3.2.5.1).
@@ -55,13 +77,16 @@ enum class PathFrame : std::uint8_t {
   at_goal,      ///< origin at the goal, x as before
 };
 
-/// One minimum-jerk movement from where the last one ended.
+/// One minimum-jerk movement from where the last one ended; or, with turns, one round a vertical axis at an even speed, on which
+/// radius and height go evenly from those of the start to those of the end.
 struct PathPhase {
   std::string name;
   PathFrame frame = PathFrame::world;
   Vec3 to;              ///< [m]
   double duration = 0;  ///< [s]
   bool button = false;  ///< held down during the phase
+  double turns = 0;     ///< whole turns before `to`, counter-clockwise seen from above; 0: a movement straight ahead
+  Vec3 centre;          ///< [m] on the axis of the turns, in the same frame as `to`
 };
 
 struct SceneUser {
@@ -70,7 +95,7 @@ struct SceneUser {
   double tremor = 0;         ///< [m] RMS per axis of the free hand, 8-12 Hz
   double variation = 0;      ///< share by which hand, speed and targets vary with the seed
   double scatter = 0;        ///< [m] by which targets vary with the seed
-  std::uint32_t object = 0;  ///< the one the user looks at
+  std::uint32_t object = 0;  ///< the one the user looks at: its place among the objects, then the deformables
   Vec3 goal;                 ///< [m] where the user wants that object
   Vec3 start;                ///< [m] of the probe
   SceneDevice device;
@@ -85,12 +110,14 @@ struct Scene {
   std::optional<double> floor;       ///< [m] height of a plane that carries the objects
   std::optional<SceneTouch> touch;   ///< there whenever there are users
   std::vector<SceneObject> objects;  ///< order of trace and stream
+  std::vector<SceneDeformable> deformables;
   std::vector<SceneUser> users;
 };
 
 /// Where a scene file broke which rule, and what would mend it.
 ///   R-SCN-1 the file cannot be read    R-SCN-2 not TOML                  R-SCN-3 unknown key       R-SCN-4 key missing
 ///   R-SCN-5 wrong type                 R-SCN-6 value out of range        R-SCN-7 unknown or repeated name
+///   R-SCN-8 a file that the scene names cannot be used
 struct SceneError {
   Error error;
   std::string file;
@@ -100,7 +127,7 @@ struct SceneError {
 };
 std::string to_string(const SceneError& error);
 
-/// err  R-SCN-1..7; `file` only names the place in errors.
+/// err  R-SCN-1..8; `file` names the place in errors; other files are looked for beside it.
 tl::expected<Scene, SceneError> parse_scene(std::string_view text, std::string_view file);
 tl::expected<Scene, SceneError> load_scene(const std::string& path);
 

@@ -5,9 +5,11 @@
 #include <toml++/toml.h>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <initializer_list>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -46,6 +48,18 @@ class TomlReader {
                 std::optional<double> fallback = std::nullopt) {
     const toml::node* node = find(table, path, key, fallback.has_value());
     return node ? checked_number(*node, join(path, key), range) : fallback.value_or(range.low);
+  }
+
+  std::uint32_t whole(const toml::table& table, const std::string& path, std::string_view key, Range range,
+                      std::optional<std::uint32_t> fallback = std::nullopt) {
+    const toml::node* node = find(table, path, key, fallback.has_value());
+    return node ? checked_whole(*node, join(path, key), range) : fallback.value_or(static_cast<std::uint32_t>(range.low));
+  }
+
+  std::uint32_t checked_whole(const toml::node& node, const std::string& key, Range range) {
+    const double value = checked_number(node, key, range);
+    if (value != std::floor(value)) fail_at(node.source(), Errc::invalid, "R-SCN-5", key, "write a whole number");
+    return static_cast<std::uint32_t>(value);
   }
 
   Vec3 vector(const toml::table& table, const std::string& path, std::string_view key, Range range,
@@ -88,6 +102,10 @@ class TomlReader {
   /// A word of a fixed list, as its index.
   std::size_t word(const toml::table& table, const std::string& path, std::string_view key,
                    std::initializer_list<std::string_view> words, std::string fallback) {
+    return word(table, path, key, std::span(words.begin(), words.size()), std::move(fallback));
+  }
+  std::size_t word(const toml::table& table, const std::string& path, std::string_view key,
+                   std::span<const std::string_view> words, std::string fallback) {
     const std::string value = text(table, path, key, std::move(fallback));
     const auto found = std::find(words.begin(), words.end(), value);
     if (found != words.end()) return static_cast<std::size_t>(found - words.begin());

@@ -74,13 +74,30 @@ Vec3 DeviceFilter::read(const Vec3& position) noexcept {
   return (1.0 / static_cast<double>(window_.size())) * sum;
 }
 
-Vec3 waypoint(const PathPhase& phase, const Pose& object, const Vec3& goal, const Vec3& hand) noexcept {
-  if (phase.frame == PathFrame::world) return phase.to;
-  if (phase.frame == PathFrame::hand) return hand + phase.to;
-  const Vec3 x = horizontal(phase.frame == PathFrame::object ? facing_x(object.rotation) : goal - object.position);
+Vec3 waypoint(PathFrame frame, const Vec3& to, const Pose& object, const Vec3& goal, const Vec3& hand) noexcept {
+  if (frame == PathFrame::world) return to;
+  if (frame == PathFrame::hand) return hand + to;
+  const Vec3 x = horizontal(frame == PathFrame::object ? facing_x(object.rotation) : goal - object.position);
   const Vec3 y{-x.y, x.x, 0};
-  const Vec3& origin = phase.frame == PathFrame::at_goal ? goal : object.position;
-  return origin + phase.to.x * x + phase.to.y * y + Vec3{0, 0, phase.to.z};
+  const Vec3& origin = frame == PathFrame::at_goal ? goal : object.position;
+  return origin + to.x * x + to.y * y + Vec3{0, 0, to.z};
+}
+
+Spiral::Spiral(const Vec3& from, const Vec3& to, const Vec3& centre, double turns)
+    : centre_(centre), radius_(std::hypot(from.x - centre.x, from.y - centre.y)), height_(from.z) {
+  const double start = std::atan2(from.y - centre.y, from.x - centre.x), end = std::atan2(to.y - centre.y, to.x - centre.x);
+  constexpr double kTurn = 2 * std::numbers::pi;
+  angle_ = start;
+  sweep_ = kTurn * turns + std::remainder(end - start, kTurn);
+  growth_ = std::hypot(to.x - centre.x, to.y - centre.y) - radius_;
+  rise_ = to.z - from.z;
+}
+
+Aim Spiral::at(double share) const noexcept {
+  const double radius = radius_ + share * growth_, angle = angle_ + share * sweep_;
+  const Vec3 outward{std::cos(angle), std::sin(angle), 0}, onward{-outward.y, outward.x, 0};
+  return {Vec3{centre_.x, centre_.y, height_ + share * rise_} + radius * outward,
+          growth_ * outward + (radius * sweep_) * onward + Vec3{0, 0, rise_}};
 }
 
 Hand::Hand(const SceneUser& user, Grip grip, std::uint64_t seed)
@@ -102,7 +119,9 @@ void Hand::begin_phase(const Pose& object) noexcept {
   if (tick_ < end_ || next_ == user_.path.size()) return;
   const PathPhase& phase = user_.path[next_++];
   from_ = to_;
-  to_ = waypoint(phase, object, user_.goal, from_);
+  to_ = waypoint(phase.frame, phase.to, object, user_.goal, from_);
+  if (phase.turns != 0) spiral_.emplace(from_, to_, waypoint(phase.frame, phase.centre, object, user_.goal, from_), phase.turns);
+  else spiral_.reset();
   begin_ = tick_;
   end_ = begin_ + ticks(phase.duration);
 }
@@ -111,11 +130,15 @@ DeviceSample Hand::step(const Vec3& felt, const Pose& object) noexcept {
   begin_phase(object);
   const bool moving = tick_ < end_;
   const double duration = static_cast<double>(end_ - begin_) * kTick;
-  const MinimumJerk done = moving ? minimum_jerk(static_cast<double>(tick_ - begin_) * kTick / duration) : MinimumJerk{1, 0};
-  const Vec3 target = from_ + done.place * (to_ - from_);
-  const Vec3 target_velocity = moving ? (done.slope / duration) * (to_ - from_) : Vec3{};
+  const double share = moving ? static_cast<double>(tick_ - begin_) * kTick / duration : 1;
+  const MinimumJerk done = minimum_jerk(share);
+  Aim target{from_ + done.place * (to_ - from_), moving ? (done.slope / duration) * (to_ - from_) : Vec3{}};
+  if (moving && spiral_) {
+    target = spiral_->at(share);
+    target.velocity = (1 / duration) * target.velocity;
+  }
 
-  const Vec3 pull = impedance_.stiffness * (target - position_) + impedance_.damping * (target_velocity - velocity_);
+  const Vec3 pull = impedance_.stiffness * (target.place - position_) + impedance_.damping * (target.velocity - velocity_);
   const Vec3 force = only(pull + felt + tremor_.force(static_cast<double>(tick_) * kTick), user_.device.axes);
   velocity_ = velocity_ + (kTick / impedance_.mass) * force;
   position_ = position_ + kTick * velocity_;

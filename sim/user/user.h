@@ -75,8 +75,24 @@ struct DeviceSample {
   bool button = false;
 };
 
-/// Waypoint of a phase in the world, for an object seen like this and a last movement that ended at `hand`.
-Vec3 waypoint(const PathPhase& phase, const Pose& object, const Vec3& goal, const Vec3& hand) noexcept;
+/// A point of a phase in the world, for an object seen like this and a last movement that ended at `hand`.
+Vec3 waypoint(PathFrame frame, const Vec3& to, const Pose& object, const Vec3& goal, const Vec3& hand) noexcept;
+
+/// Where the hand wants to be, and how fast.
+struct Aim {
+  Vec3 place, velocity;  ///< [m], [m/s]
+};
+
+/// Round a vertical axis from one point to another; radius, angle and height change evenly.
+class Spiral {
+ public:
+  Spiral(const Vec3& from, const Vec3& to, const Vec3& centre, double turns);
+  Aim at(double share) const noexcept;  ///< share of the way; velocity per share, not per second
+
+ private:
+  Vec3 centre_;
+  double radius_, height_, angle_, sweep_, growth_, rise_;
+};
 
 class Hand {
  public:
@@ -101,7 +117,8 @@ class Hand {
   Tremor tremor_;
   DeviceFilter filter_;
   Vec3 position_, velocity_;
-  Vec3 from_, to_;        // of the phase that runs or ran last
+  Vec3 from_, to_;  // of the phase that runs or ran last
+  std::optional<Spiral> spiral_;
   std::size_t next_ = 0;  // phase; after the last one the hand stays where it is
   std::int64_t tick_ = 0, begin_ = 0, end_ = 0;
 };

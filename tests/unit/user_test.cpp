@@ -142,7 +142,7 @@ TEST(Hand, SeedsMakeDifferentHandsAndVariationBoundsThem) {
 
 TEST(Waypoint, IsGivenInTheFrameOfThePhase) {
   const auto at = [](PathFrame frame, const Pose& object) {
-    return waypoint({"p", frame, {-0.1, 0.02, 0.03}, 1, false}, object, {1, 3, 0}, {5, 5, 5});
+    return waypoint(frame, {-0.1, 0.02, 0.03}, object, {1, 3, 0}, {5, 5, 5});
   };
   const auto near = [](const Vec3& a, const Vec3& b) { return norm(a - b) < 1e-12; };
   const Pose straight{{1, 2, 0.5}, {}};
@@ -156,14 +156,50 @@ TEST(Waypoint, IsGivenInTheFrameOfThePhase) {
 TEST(Waypoint, SeesACubeTheSameFromEverySide) {
   // Quarter turns about any axis bring a cube onto itself: the aim must not change.
   const Pose straight{{}, {}};
-  const PathPhase phase{"p", PathFrame::object, {-0.1, 0.02, 0.03}, 1, false};
-  const Vec3 expected = waypoint(phase, straight, {}, {});
+  const Vec3 aim{-0.1, 0.02, 0.03};
+  const Vec3 expected = waypoint(PathFrame::object, aim, straight, {}, {});
   const double h = std::sqrt(0.5);
   for (const Quat& turn :
        {Quat{h, h, 0, 0}, Quat{h, 0, h, 0}, Quat{h, 0, 0, h}, Quat{0, 1, 0, 0}, Quat{0, 0, 0, 1}, Quat{h, 0, 0, -h}})
-    EXPECT_LT(norm(waypoint(phase, {{}, turn}, {}, {}) - expected), 1e-12);
+    EXPECT_LT(norm(waypoint(PathFrame::object, aim, {{}, turn}, {}, {}) - expected), 1e-12);
   const Quat yaw{std::cos(0.2), 0, 0, std::sin(0.2)};
-  EXPECT_LT(norm(waypoint(phase, {{}, yaw * Quat{h, h, 0, 0}}, {}, {}) - rotate(yaw, expected)), 1e-12);
+  EXPECT_LT(norm(waypoint(PathFrame::object, aim, {{}, yaw * Quat{h, h, 0, 0}}, {}, {}) - rotate(yaw, expected)), 1e-12);
+}
+
+TEST(Spiral, RadiusAngleAndHeightChangeEvenly) {
+  const Vec3 from{0.03, 0.01, 0.02}, to{-0.04, 0.01, -0.01}, centre{0.01, 0.01, 5};
+  const Spiral spiral(from, to, centre, -2);
+  EXPECT_LT(norm(spiral.at(0).place - from), 1e-15);
+  EXPECT_LT(norm(spiral.at(1).place - to), 1e-15);
+  double turned = 0;
+  constexpr int kSteps = 1000;
+  for (int i = 0; i < kSteps; ++i) {
+    const double share = (i + 0.5) / kSteps, half = 0.5 / kSteps;
+    const Vec3 before = spiral.at(share - half).place, after = spiral.at(share + half).place, now = spiral.at(share).place;
+    EXPECT_NEAR(std::hypot(now.x - centre.x, now.y - centre.y), 0.02 + 0.03 * share, 1e-15);
+    EXPECT_NEAR(now.z, 0.02 - 0.03 * share, 1e-15);
+    EXPECT_LT(norm(static_cast<double>(kSteps) * (after - before) - spiral.at(share).velocity), 1e-4) << "velocity is the slope";
+    const Vec3 a = before - centre, b = after - centre;
+    turned += std::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y);
+  }
+  EXPECT_NEAR(std::abs(turned), 2 * 2 * std::numbers::pi - std::numbers::pi, 1e-9) << "two turns back, half a one forward";
+}
+
+TEST(Spiral, HandFollowsIt) {
+  SceneUser user;
+  user.start = {0.05, 0, 0};
+  user.path = {{"round", PathFrame::world, {0.05, 0, 0}, 4, false, 1, {}}};
+  Hand hand(user, Grip::firm, 1);
+  double nearest = 1, farthest = 0;
+  for (int tick = 0; tick < 4000; ++tick) {
+    hand.step({}, {});
+    const double radius = norm(hand.position());
+    nearest = std::min(nearest, radius);
+    farthest = std::max(farthest, radius);
+  }
+  EXPECT_GT(nearest, 0.047);
+  EXPECT_LT(farthest, 0.053);
+  EXPECT_LT(norm(hand.position() - user.start), 0.005);
 }
 
 }  // namespace

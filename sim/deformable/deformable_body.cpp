@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/deformable/deformable_body.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+
+namespace tactus {
+namespace {
+
+constexpr std::array kMethods{Method::symplectic_euler, Method::backward_euler, Method::newmark, Method::tr_bdf2,
+                              Method::projective};
+constexpr std::array kSolvers{LinearSolver::conjugate_gradients, LinearSolver::cholesky, LinearSolver::prefactored};
+
+/// What suits the object when the scene names the method but no solver: one factorisation kept for all steps.
+void choose_solver(const FemModel& model, IntegratorOptions& options) {
+  const bool linear = model.options().elasticity == Elasticity::linear;
+  options.solver = linear ? LinearSolver::cholesky : LinearSolver::prefactored;
+  options.newton_iterations = linear ? 1 : IntegratorOptions().newton_iterations;
+}
+
+}  // namespace
+
+FemOptions fem_options(const SceneDeformable& object) {
+  FemOptions options;
+  for (const SceneMaterial& m : object.materials) options.materials.push_back({m.young, m.poisson, m.density});
+  options.fixed = object.fixed;
+  options.elasticity = object.corotated ? Elasticity::corotated : Elasticity::linear;
+  options.mass_damping = object.mass_damping;
+  options.stiffness_damping = object.stiffness_damping;
+  return options;
+}
+
+Choice chosen_method(const SceneDeformable& object, const FemModel& model) {
+  Choice choice = choose(model, object.rate * kTick);
+  for (const Method method : kMethods) {
+    if (object.method != name(method)) continue;
+    choice.options.method = method;
+    if (method != Method::symplectic_euler) choose_solver(model, choice.options);
+    choice.reason = "asked for; without, " + choice.reason;
+  }
+  for (const LinearSolver solver : kSolvers) {
+    if (object.solver != name(solver)) continue;
+    choice.options.solver = solver;
+    choice.options.newton_iterations = IntegratorOptions().newton_iterations;
+  }
+  return choice;
+}
+
+DeformableBody::DeformableBody(FemModel model, const SceneDeformable& object, const Vec3& gravity)
+    : model_(std::move(model)),
+      choice_(chosen_method(object, model_)),
+      state_(model_.rest()),
+      rate_(object.rate),
+      weight_(model_.size()),
+      pushed_(Eigen::VectorXd::Zero(model_.size())),
+      load_(model_.size()),
+      surface_(tactus::surface(object.mesh)),
+      topology_(surface_.mesh),
+      inside_(surface_.mesh, topology_),
+      vertices_(surface_.mesh.vertices),
+      tree_(surface_.mesh) {
+  const Eigen::VectorXd& mass = model_.lumped_mass();
+  for (Eigen::Index i = 0; i < mass.size(); i += 3)
+    weight_.segment<3>(i) = mass[i] * Eigen::Vector3d(gravity.x, gravity.y, gravity.z);
+}
+
+tl::expected<std::unique_ptr<DeformableBody>, FemError> DeformableBody::create(const SceneDeformable& object, const Vec3& gravity,
+                                                                               std::uint32_t estimate_every) {
+  auto model = FemModel::create(object.mesh, fem_options(object));
+  if (!model) return tl::unexpected(model.error());
+  std::unique_ptr<DeformableBody> body(new DeformableBody(std::move(*model), object, gravity));
+  auto integrator = make_integrator(body->model_, body->choice_.options);
+  if (!integrator) return tl::unexpected(integrator.error());
+  body->integrator_ = std::move(*integrator);
+  if (estimate_every > 0) {
+    auto estimate = ErrorEstimate::create(body->model_, body->choice_.options, estimate_every);
+    if (!estimate) return tl::unexpected(estimate.error());
+    body->estimate_.emplace(std::move(*estimate));
+  }
+  return body;
+}
+
+void DeformableBody::push(std::uint32_t triangle, std::span<const double, 3> weights, const Vec3& force) noexcept {
+  Triangle corners = surface_.mesh.triangles[triangle];
+  for (std::uint32_t& corner : corners) corner = surface_.vertex[corner];
+  add_force(corners, weights, force, pushed_);
+}
+
+tl::expected<bool, FemError> DeformableBody::tick() {
+  if (++phase_ < rate_) return false;
+  phase_ = 0;
+  load_ = weight_ + pushed_ / static_cast<double>(rate_);
+  pushed_.setZero();
+  if (estimate_) estimate_->look(load_, state_);
+  const auto start = std::chrono::steady_clock::now();
+  if (const auto stepped = integrator_->step(load_, state_); !stepped) return tl::unexpected(stepped.error());
+  move_surface();
+  seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return true;
+}
+
+void DeformableBody::move_surface() noexcept {
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+    const auto u = state_.u.segment<3>(3 * static_cast<Eigen::Index>(surface_.vertex[i]));
+    vertices_[i] = surface_.mesh.vertices[i] + Vec3{u[0], u[1], u[2]};
+  }
+  tree_.refit(vertices_);
+}
+
+}  // namespace tactus

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// In place of deformable_world.cpp and stiffness_map.cpp when the component FEM is left out.
+#include "sim/deformable/deformable_world.h"
+#include "sim/deformable/stiffness_map.h"
+
+namespace tactus {
+
+Result<std::unique_ptr<DeformableWorld>> make_deformable_world(const Scene&, const DeformableOptions&) {
+  return fail(Errc::unsupported, "R-SIM-2");
+}
+
+Result<StiffnessMap> stiffness_map(const SceneDeformable&) { return fail(Errc::unsupported, "R-SIM-2"); }
+
+}  // namespace tactus

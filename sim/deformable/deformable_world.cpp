@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/deformable/deformable_world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "sim/contact/intermediate_model.h"
+#include "sim/contact/mesh_proxy.h"
+#include "sim/deformable/deformable_body.h"
+
+namespace tactus {
+namespace {
+
+constexpr double kFastest = 2;  // [m/s] faster than the touched surface moves; a free proxy looks so far ahead
+
+constexpr unsigned kRings = 3;  // of the client's cut-out (thesis 3.3.1.1)
+
+/// A probe's proxy on one object: on its true surface, or on a cut-out that approaches it.
+struct Proxy {
+  MeshProxy direct;
+  std::unique_ptr<IntermediateModel> cut_out;  // none: direct
+};
+
+/// One probe at one end.
+struct Probe {
+  std::vector<Proxy> proxies;  // one per object
+  std::optional<std::uint32_t> touched;
+  bool placed = false;
+
+  MeshTouch move(std::uint32_t object, const DeformableBody& body, const Vec3& device) noexcept {
+    auto& [direct, cut_out] = proxies[object];
+    if (cut_out) return placed ? cut_out->move(device) : cut_out->place(device, body.vertices(), body.tree());
+    return placed ? direct.move(device, body.vertices(), body.tree())
+                  : direct.place(device, body.inside(), body.vertices(), body.tree());
+  }
+};
+
+class World final : public DeformableWorld {
+ public:
+  Result<void> add(const SceneDeformable& object, const Vec3& gravity, std::uint32_t estimate_every);
+  void add_user(const Scene& scene);
+
+  DeformableTouch touch_server(std::size_t user, const Vec3& device) noexcept override { return touch(server_[user], device); }
+  DeformableTouch touch_client(std::size_t user, const Vec3& device) noexcept override { return touch(client_[user], device); }
+  void push(const MeshContact& contact, const Vec3& force) noexcept override {
+    bodies_[contact.mesh]->push(contact.triangle, contact.weights, force);
+  }
+  tl::expected<void, StepError> step() override;
+  void observe(std::span<MeshSample> meshes) noexcept override;
+  std::span<const TraceMesh> meshes() const noexcept override { return meshes_; }
+  std::span<const DeformableInfo> info() const noexcept override { return info_; }
+  double seconds(std::size_t object) const noexcept override { return bodies_[object]->seconds(); }
+  std::optional<DeformableError> error(std::size_t object) const override;
+
+ private:
+  DeformableTouch touch(Probe& probe, const Vec3& device) noexcept;
+
+  std::vector<std::unique_ptr<DeformableBody>> bodies_;
+  std::vector<double> stiffness_;       // of each object's coupling [N/m]
+  std::vector<Probe> server_, client_;  // one per user
+  std::vector<TraceMesh> meshes_;
+  std::vector<DeformableInfo> info_;
+  std::vector<std::uint8_t> updated_;  // since the last observe()
+  std::int64_t tick_ = 0;
+};
+
+double extent(const TriMesh& mesh) {
+  double largest = 0;
+  for (const Vec3& v : mesh.vertices) largest = std::max({largest, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  return largest;
+}
+
+Result<void> World::add(const SceneDeformable& object, const Vec3& gravity, std::uint32_t estimate_every) {
+  auto body = DeformableBody::create(object, gravity, estimate_every);
+  if (!body) return tl::unexpected(body.error().error);
+  const Choice& choice = (*body)->choice();
+  std::string method = name(choice.options.method);
+  if (choice.options.method != Method::symplectic_euler) method += std::string(", ") + name(choice.options.solver);
+  info_.push_back({object.name, object.mesh.vertices.size(), std::move(method), choice.reason, choice.options.step});
+  meshes_.push_back({object.name, (*body)->surface().mesh});
+  stiffness_.push_back(object.stiffness);
+  updated_.push_back(0);
+  bodies_.push_back(std::move(*body));
+  return {};
+}
+
+void World::add_user(const Scene& scene) {
+  Probe server, client;
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    const SceneDeformable& object = scene.deformables[i];
+    const TriMesh& surface = bodies_[i]->surface().mesh;
+    const auto proxy = [&](std::uint32_t ticks) { return MeshProxyOptions{object.friction, 0, kFastest * kTick * ticks}; };
+    server.proxies.push_back({MeshProxy(proxy(object.rate), extent(surface)), nullptr});
+    client.proxies.push_back({MeshProxy(proxy(object.rate), extent(surface)), nullptr});
+    if (object.rate > 1)
+      client.proxies.back().cut_out = std::make_unique<IntermediateModel>(
+          surface, bodies_[i]->topology(), IntermediateModelOptions{kRings, object.rate, proxy(1)});
+  }
+  server_.push_back(std::move(server));
+  client_.push_back(std::move(client));
+}
+
+DeformableTouch World::touch(Probe& probe, const Vec3& device) noexcept {
+  std::optional<std::uint32_t> touched;
+  MeshTouch felt;
+  for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
+    const MeshTouch touch = probe.move(i, *bodies_[i], device);
+    if (!touch.touched || (touched && probe.touched != i)) continue;
+    touched = i;
+    felt = touch;
+  }
+  probe.placed = true;
+  probe.touched = touched;
+  if (!touched) return {};
+  const MeshContact contact{*touched, felt.triangle, felt.weights, felt.proxy, felt.normal, stiffness_[*touched]};
+  return {contact, contact.stiffness * (felt.proxy - device)};
+}
+
+tl::expected<void, StepError> World::step() {
+  for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
+    const auto moved = bodies_[i]->tick();
+    if (!moved) return tl::unexpected(StepError{moved.error().error, tick_, i, to_string(moved.error())});
+    if (!*moved) continue;
+    updated_[i] = 1;
+    for (Probe& client : client_)
+      if (auto& cut_out = client.proxies[i].cut_out) cut_out->update(bodies_[i]->vertices(), bodies_[i]->tree());
+  }
+  ++tick_;
+  return {};
+}
+
+std::optional<DeformableError> World::error(std::size_t object) const {
+  const auto& estimate = bodies_[object]->estimate();
+  if (!estimate) return std::nullopt;
+  const ErrorEstimate::Result result = estimate->result();
+  return DeformableError{result.p50, result.max, result.samples};
+}
+
+void World::observe(std::span<MeshSample> meshes) noexcept {
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    meshes[i].updated = std::exchange(updated_[i], 0) != 0;
+    if (!meshes[i].updated) continue;
+    const Eigen::VectorXd& u = bodies_[i]->state().u;
+    float* out = meshes[i].displacements.data();
+    for (const std::uint32_t vertex : bodies_[i]->surface().vertex)
+      for (Eigen::Index k = 0; k < 3; ++k) *out++ = static_cast<float>(u[3 * static_cast<Eigen::Index>(vertex) + k]);
+  }
+}
+
+}  // namespace
+
+Result<std::unique_ptr<DeformableWorld>> make_deformable_world(const Scene& scene, const DeformableOptions& options) {
+  auto world = std::make_unique<World>();
+  for (const SceneDeformable& object : scene.deformables) TACTUS_CHECK(world->add(object, scene.gravity, options.estimate_every));
+  for (std::size_t i = 0; i < options.users; ++i) world->add_user(scene);
+  return world;
+}
+
+}  // namespace tactus

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The scene's deformable objects: finite elements at a low rate, forces at the haptic rate. Thesis 2.3.4.2, 3.3.2, figure 4.14.
+///
+///   every tick         server   proxy on the surface x'_o as the last deformation left it: f_s = k_s (x_p - x_d)
+///                      client   proxy on the same surface, when N > 1 on a cut-out of it that approaches it linearly over one
+///                               period (sim/contact/intermediate_model.h): f_c, felt by the hand
+///   every N-th tick    D_o      one step of T_n = N T_s under the mean of the forces -f_s of its N ticks, each spread over the
+///                               corners of the triangle touched by its barycentric weights, and gravity
+///                      T_c      its result is x'_o of the next period: the one-step delay of the loop (eqs. 4.36, 4.38)
+///
+/// An interface, so that a scene without deformables makes no such object and a build without finite elements needs no part of it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "codec/trace/frame.h"
+#include "sim/rigid/rigid_world.h"
+#include "sim/scene/scene.h"
+
+namespace tactus {
+
+/// What a user's probe feels of the deformables. It touches one at a time: the first one met, until it lets go.
+struct DeformableTouch {
+  std::optional<MeshContact> contact;
+  Vec3 force;  ///< [N] k (x_p - x_d), on the hand; world frame
+};
+
+/// How an object is computed, for people.
+struct DeformableInfo {
+  std::string name;
+  std::size_t vertices = 0;
+  std::string method;  ///< "tr-bdf2, prefactored"
+  std::string reason;  ///< why
+  double step = 0;     ///< T_n [s]
+};
+
+/// Relative error of single deformation steps by step doubling (sim/fem/error_estimate.h).
+struct DeformableError {
+  double p50 = 0, max = 0;
+  std::int64_t samples = 0;
+};
+
+class DeformableWorld {
+ public:
+  /// Move one probe at one end.   time O(log triangles), about 3 us; no allocation.
+  virtual DeformableTouch touch_server(std::size_t user, const Vec3& device) noexcept = 0;
+  virtual DeformableTouch touch_client(std::size_t user, const Vec3& device) noexcept = 0;
+
+  /// Let a force [N] act on the touched triangle in this tick.
+  virtual void push(const MeshContact& contact, const Vec3& force) noexcept = 0;
+  /// Advance by one tick; `updated` tells for each object whether it got a new shape.   no allocation after the first deformation
+  /// err  internal R-FEM-6, R-FEM-7 with element and remedy; the shapes before the step are kept
+  virtual tl::expected<void, StepError> step() = 0;
+
+  /// Shapes as the server sees them now; `updated` when one is new since the last call.
+  virtual void observe(std::span<MeshSample> meshes) noexcept = 0;
+
+  virtual std::span<const TraceMesh> meshes() const noexcept = 0;  ///< surfaces at rest
+  virtual std::span<const DeformableInfo> info() const noexcept = 0;
+  virtual double seconds(std::size_t object) const noexcept = 0;  ///< wall clock of its last deformation, with surface and tree
+  virtual std::optional<DeformableError> error(std::size_t object) const = 0;  ///< when asked for in the options
+  virtual ~DeformableWorld() = default;
+};
+
+struct DeformableOptions {
+  std::size_t users = 0;
+  std::uint32_t estimate_every = 0;  ///< estimate the local error of every so many deformations, 0: of none
+};
+
+/// pre  the scene has deformables.
+/// err  unsupported R-SIM-2: this build has no finite elements; R-TET-n, R-FEM-1..4, 7, 8: what the scene asks for cannot be
+Result<std::unique_ptr<DeformableWorld>> make_deformable_world(const Scene& scene, const DeformableOptions& options);
+
+}  // namespace tactus

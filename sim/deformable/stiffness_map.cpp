@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/deformable/stiffness_map.h"
+
+#include <Eigen/SparseCholesky>
+
+#include <limits>
+
+#include "sim/deformable/deformable_body.h"
+
+namespace tactus {
+namespace {
+
+constexpr double kSingular = 1e-12;  // smallest pivot over largest; a body that can move without force has one of about 1e-16
+
+/// Where each degree of freedom stands among the free ones, -1: it is fixed.
+std::vector<int> numbers_of(const FemModel& model) {
+  std::vector<int> numbers(static_cast<std::size_t>(model.size()), -1);
+  int next = 0;
+  for (const int dof : model.free_dofs()) numbers[static_cast<std::size_t>(dof)] = next++;
+  return numbers;
+}
+
+/// Unit normals of a surface's vertices, triangles weighted by area; zero where they cancel out.
+std::vector<Vec3> vertex_normals(const TriMesh& mesh) {
+  std::vector<Vec3> normals(mesh.vertices.size());
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Vec3& origin = mesh.vertices[a];
+    const Vec3 area = cross(mesh.vertices[b] - origin, mesh.vertices[c] - origin);
+    for (const std::uint32_t v : {a, b, c}) normals[v] = normals[v] + area;
+  }
+  for (Vec3& normal : normals)
+    if (const double length = norm(normal); length > 0) normal = (1 / length) * normal;
+  return normals;
+}
+
+}  // namespace
+
+double StiffnessMap::at(std::uint32_t triangle, const std::array<double, 3>& weights) const noexcept {
+  double sum = 0;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (weights[k] != 0) sum += weights[k] * stiffness[surface.triangles[triangle][k]];
+  return sum;
+}
+
+Result<StiffnessMap> stiffness_map(const SceneDeformable& object) {
+  auto made = FemModel::create(object.mesh, fem_options(object));
+  if (!made) return tl::unexpected(made.error().error);
+  FemModel& model = *made;
+  TetSurface surface = tactus::surface(model.mesh());
+  StiffnessMap map{std::move(surface.mesh), {}};
+  map.stiffness.assign(map.surface.vertices.size(), std::numeric_limits<double>::infinity());
+  if (model.free_dofs().empty()) return map;
+  SparseMatrix K;
+  model.stiffness(model.rest().u, K);
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor{Eigen::SparseMatrix<double>(K)};
+  const Eigen::VectorXd pivots = factor.info() == Eigen::Success ? factor.vectorD() : Eigen::VectorXd::Zero(1);
+  if (!(pivots.minCoeff() > kSingular * pivots.maxCoeff()))
+    return fail(Errc::internal, "R-FEM-7");
+
+  const std::vector<int> numbers = numbers_of(model);
+  const std::vector<Vec3> normals = vertex_normals(map.surface);
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(K.rows());
+  for (std::size_t v = 0; v < normals.size(); ++v) {
+    const int first = numbers[3 * std::size_t{surface.vertex[v]}];
+    if (first < 0 || normals[v] == Vec3{}) continue;
+    f.segment<3>(first) = Eigen::Vector3d(normals[v].x, normals[v].y, normals[v].z);
+    map.stiffness[v] = 1 / factor.solve(f).segment<3>(first).norm();
+    f.segment<3>(first).setZero();
+  }
+  return map;
+}
+
+}  // namespace tactus
