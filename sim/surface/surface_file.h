@@ -7,8 +7,9 @@
 /// rule      class           broken when
 /// R-SRF-1   io              the file cannot be opened, read or written
 /// R-SRF-2   limit_exceeded  it is larger than 512 MiB, or announces more than 2^20 vertices or 2^21 faces
-/// R-SRF-3   unsupported     the name ends in none of .obj, .ply, .stl and .off; a binary OFF; a PLY whose lists count beyond 16 bits
-/// R-SRF-4   malformed       the header is not that of the format, a number in it does not fit the file's size, or OpenMesh refuses it
+/// R-SRF-3   unsupported     the name ends in none of .obj, .ply, .stl and .off; a binary OFF; a PLY that does not begin with vertices and
+///                           faces, or has other lists than the faces' corners, counted by one byte
+/// R-SRF-4   malformed       a line is not one of the format, the header announces more than the file's size allows, or OpenMesh refuses it
 /// R-SRF-5   malformed       it holds more faces or vertices than could be read
 /// R-SRF-6   invalid         a polygon has fewer than 3 or more than 1024 corners, or no corner from which all of it is seen
 /// R-SRF-7   invalid         it holds no face

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 namespace tactus {
@@ -46,11 +48,26 @@ std::optional<std::size_t> whole_number(std::string_view word) {
   return value;
 }
 
-bool is_finite_number(std::string_view word) {
+/// A number that single precision holds.
+bool is_real(std::string_view word) {
   double value = 0;
   if (word.starts_with('+')) word.remove_prefix(1);
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  return !word.empty() && error == std::errc() && end == word.data() + word.size() && std::isfinite(value);
+  constexpr double kMost = std::numeric_limits<float>::max();
+  return !word.empty() && error == std::errc() && end == word.data() + word.size() && std::abs(value) <= kMost;  // false for NaN
+}
+
+/// A number that an int holds.
+bool is_integer(std::string_view word) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return !word.empty() && error == std::errc() && end == word.data() + word.size();
+}
+
+std::vector<std::string_view> words_of(std::string_view line) {
+  std::vector<std::string_view> words;
+  for (auto word = take_word(line); !word.empty(); word = take_word(line)) words.push_back(word);
+  return words;
 }
 
 /// What a header announces must fit the limits and the bytes behind it.
@@ -76,7 +93,7 @@ Prepared prepare_obj(std::string_view text) {
     std::size_t words = 0;
     for (auto word = take_word(rest); !word.empty() && !(kind == "v" && words == 3); word = take_word(rest), ++words) {
       if (kind == "f") word = word.substr(0, word.find('/'));
-      if (!is_finite_number(word)) return malformed_line(number, line);
+      if (kind == "f" ? !is_integer(word) : !is_real(word)) return malformed_line(number, line);
       (out.text += ' ') += word;
     }
     if (words < 3) return malformed_line(number, line);
@@ -87,15 +104,21 @@ Prepared prepare_obj(std::string_view text) {
   return out;
 }
 
-/// Append the first words of a line, which must be numbers.   in  count  0: the first word tells how many follow it
-bool append_numbers(std::string_view line, std::size_t count, std::string& out) {
-  for (std::size_t i = 0; i < std::max<std::size_t>(count, 1); ++i) {
-    const std::string_view word = take_word(line);
-    if (!is_finite_number(word)) return false;
-    if (count == 0) count = 1 + whole_number(word).value_or(0);
-    (out += word) += ' ';
+/// Append the first three words of a line of OFF.   out  false: they are no coordinates
+bool append_vertex(const std::vector<std::string_view>& words, std::string& out) {
+  if (words.size() < 3 || !std::all_of(words.begin(), words.begin() + 3, is_real)) return false;
+  for (std::size_t i = 0; i < 3; ++i) (out += words[i]) += i < 2 ? ' ' : '\n';
+  return true;
+}
+
+/// Append the number of corners and these.   out  false: they are not there
+bool append_face(const std::vector<std::string_view>& words, std::string& out) {
+  const std::size_t corners = whole_number(words[0]).value_or(words.size());
+  if (corners >= words.size()) return false;
+  for (std::size_t i = 0; i <= corners; ++i) {
+    if (!is_integer(words[i])) return false;
+    (out += words[i]) += i < corners ? ' ' : '\n';
   }
-  out.back() = '\n';
   return true;
 }
 
@@ -120,81 +143,150 @@ Prepared prepare_off(std::string_view text) {
       out.text = "OFF\n" + std::to_string(*vertices) + ' ' + std::to_string(*faces) + " 0\n";
       continue;
     }
-    if (take_word(rest).empty() || done == *out.vertices + out.faces) continue;
-    if (!append_numbers(line, done < *out.vertices ? 3 : 0, out.text)) return malformed_line(number, line);
-    ++done;
+    const std::vector<std::string_view> words = words_of(line);
+    if (words.empty() || done == *out.vertices + out.faces) continue;
+    if (done++ < *out.vertices ? !append_vertex(words, out.text) : !append_face(words, out.text))
+      return malformed_line(number, line);
   }
   if (header.size() < 4) return malformed("header");
   if (done < *out.vertices + out.faces) return malformed("the file is shorter than its header says");
   return out;
 }
 
-/// Bytes of a PLY number; 0: no such type.
-std::size_t ply_size(std::string_view type) {
-  struct Type {
-    std::string_view name, other;
-    std::size_t bytes;
-  };
-  constexpr std::array kTypes{Type{"char", "int8", 1},     Type{"uchar", "uint8", 1},   Type{"short", "int16", 2},
-                              Type{"ushort", "uint16", 2}, Type{"int", "int32", 4},     Type{"uint", "uint32", 4},
-                              Type{"float", "float32", 4}, Type{"double", "float64", 8}};
+struct PlyType {
+  std::string_view name, other;
+  std::size_t bytes;
+};
+constexpr std::array kPlyTypes{PlyType{"char", "int8", 1},     PlyType{"uchar", "uint8", 1},   PlyType{"short", "int16", 2},
+                               PlyType{"ushort", "uint16", 2}, PlyType{"int", "int32", 4},     PlyType{"uint", "uint32", 4},
+                               PlyType{"float", "float32", 4}, PlyType{"double", "float64", 8}};
+
+const PlyType* ply_type(std::string_view word) {
   const auto* found =
-      std::find_if(kTypes.begin(), kTypes.end(), [&](const Type& t) { return type == t.name || type == t.other; });
-  return found == kTypes.end() ? 0 : found->bytes;
+      std::find_if(kPlyTypes.begin(), kPlyTypes.end(), [&](const PlyType& t) { return word == t.name || word == t.other; });
+  return found == kPlyTypes.end() ? nullptr : found;
 }
 
-/// An element of a PLY header and the least bytes that one of them takes.
-struct PlyElement {
-  std::string_view name;
-  std::size_t count = 0, bytes = 0;
+/// A property: a number, or the list of a face's corners, counted by one byte.
+struct PlyColumn {
+  const PlyType* type;
+  bool is_list;
 };
 
-tl::expected<void, SurfaceError> read_ply_property(std::string_view rest, bool binary, PlyElement& element) {
-  std::string_view type = take_word(rest);
-  const bool is_list = type == "list";
-  if (is_list) type = take_word(rest);
-  const std::size_t size = ply_size(type);
-  if (size == 0) return malformed(type);
-  if (is_list && (size > 2 || type == "char" || type == "int8" || type == "short" || type == "int16"))
-    return broken(Errc::unsupported, "R-SRF-3", "list counts of type " + std::string(type));
-  const std::size_t item = is_list ? ply_size(take_word(rest)) : 0;
-  if (is_list && item == 0) return malformed("property list");
-  const std::size_t corners = is_list && element.name == "face" ? 3 : 0;
-  element.bytes += binary ? size + corners * item : 2 * (1 + corners);
+/// Header of a PLY file: vertices, then faces; what follows them is not read.
+struct PlyHeader {
+  bool binary = false, ended = false;
+  std::size_t elements = 0;  ///< that the header names
+  std::array<std::size_t, 2> counts{};
+  std::array<std::vector<PlyColumn>, 2> columns;
+  std::string text = "ply\n";  ///< the same again without comments, in the words that OpenMesh knows
+};
+
+tl::expected<void, SurfaceError> read_ply_property(std::string_view rest, PlyHeader& header) {
+  const std::string_view line = rest, word = take_word(rest);
+  if (header.elements == 0) return malformed(line);
+  if (header.elements > 2) return {};
+  const bool is_list = word == "list";
+  const PlyType* count = ply_type(is_list ? take_word(rest) : "uchar");
+  const PlyType* type = ply_type(is_list ? take_word(rest) : word);
+  const std::string_view name = take_word(rest);
+  const bool plain =
+      !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
+  if (count == nullptr || type == nullptr || !plain) return malformed(line);
+  const bool corners = header.elements == 2 && (name == "vertex_indices" || name == "vertex_index");
+  if (is_list != corners || count->name != "uchar") return broken(Errc::unsupported, "R-SRF-3", line);
+  header.columns[header.elements - 1].push_back({type, is_list});
+  header.text += is_list ? "property list uchar " : "property ";
+  header.text.append(type->name) += ' ';
+  header.text.append(is_list ? "vertex_indices" : name) += '\n';
+  return {};
+}
+
+tl::expected<void, SurfaceError> read_ply_line(std::string_view line, PlyHeader& header) {
+  std::string_view rest = line;
+  const std::string_view word = take_word(rest);
+  if (word == "comment" || word == "obj_info") return {};
+  if (word == "property") return read_ply_property(rest, header);
+  if (word == "format") {
+    const std::string_view format = take_word(rest);
+    header.binary = format != "ascii";
+    const bool known = format == "ascii" || format == "binary_little_endian" || format == "binary_big_endian";
+    if (!known || take_word(rest) != "1.0" || header.text.size() > 4) return malformed(line);
+    header.text.append("format ").append(format) += " 1.0\n";
+    return {};
+  }
+  if (word == "element") {
+    constexpr std::array<std::string_view, 2> kNames{"vertex", "face"};
+    if (header.elements++ >= kNames.size()) return {};
+    const std::string_view name = take_word(rest);
+    const auto count = whole_number(take_word(rest));
+    if (name != kNames[header.elements - 1]) return broken(Errc::unsupported, "R-SRF-3", "element " + std::string(name));
+    if (!count) return malformed(line);
+    header.counts[header.elements - 1] = *count;
+    header.text.append("element ").append(name) += ' ' + std::to_string(*count) + '\n';
+    return {};
+  }
+  header.ended = word == "end_header";
+  header.text += "end_header\n";
+  return header.ended ? tl::expected<void, SurfaceError>() : malformed(line);
+}
+
+/// True when the words of a line are what the columns ask for.
+bool fits(const std::vector<std::string_view>& words, const std::vector<PlyColumn>& columns) {
+  std::size_t at = 0;
+  for (const PlyColumn& column : columns) {
+    std::size_t items = 1;
+    if (column.is_list) {
+      if (at == words.size() || whole_number(words[at]).value_or(words.size()) >= words.size() - at) return false;
+      items = *whole_number(words[at++]);
+    }
+    const bool real = column.type->name == "float" || column.type->name == "double";
+    for (; items > 0; --items, ++at)
+      if (at == words.size() || !(real ? is_real(words[at]) : is_integer(words[at]))) return false;
+  }
+  return at == words.size();
+}
+
+tl::expected<void, SurfaceError> copy_text_body(std::string_view body, const PlyHeader& header, std::size_t number,
+                                                SurfaceText& out) {
+  std::size_t done = 0;
+  for (; done < *out.vertices + out.faces && !body.empty(); ++number) {
+    const std::string_view line = take_line(body);
+    const std::vector<std::string_view> words = words_of(line);
+    if (words.empty()) continue;
+    if (!fits(words, header.columns[done++ < *out.vertices ? 0 : 1])) return malformed_line(number, line);
+    (out.text += line) += '\n';
+  }
+  if (done < *out.vertices + out.faces) return malformed("the file is shorter than its header says");
+  return {};
+}
+
+tl::expected<void, SurfaceError> copy_binary_body(std::string_view body, const PlyHeader& header, SurfaceText& out) {
+  std::size_t at = 0;
+  for (std::size_t e = 0; e < 2; ++e) {
+    for (std::size_t i = 0; i < header.counts[e]; ++i) {
+      for (const PlyColumn& column : header.columns[e]) {
+        const bool counted = column.is_list && at < body.size();
+        at += counted ? 1 + static_cast<std::uint8_t>(body[at]) * column.type->bytes : column.type->bytes;
+      }
+      if (at > body.size()) return malformed("the file is shorter than its header says");
+    }
+  }
+  out.text += body.substr(0, at);
   return {};
 }
 
 Prepared prepare_ply(std::string_view text) {
-  const std::string_view whole = text;
   if (take_line(text) != "ply") return malformed("no 'ply' in the first line");
-  std::vector<PlyElement> elements;
-  bool binary = false, ended = false;
-  while (!text.empty() && !ended) {
-    std::string_view rest = take_line(text);
-    const std::string_view line = rest, word = take_word(rest);
-    ended = word == "end_header";
-    if (word == "format") binary = take_word(rest) != "ascii";
-    if (word == "element") {
-      const std::string_view name = take_word(rest);
-      const auto count = whole_number(take_word(rest));
-      if (!count) return malformed(line);
-      elements.push_back({name, *count});
-    }
-    if (word == "property") {
-      if (elements.empty()) return malformed(line);
-      if (auto read = read_ply_property(rest, binary, elements.back()); !read) return tl::unexpected(read.error());
-    }
-  }
-  SurfaceText out{std::string(whole), ".ply", 0, std::nullopt};
-  std::size_t left = text.size() + 1;  // the last line of text may lack its end
-  for (const PlyElement& e : elements) {
-    if (e.name == "vertex") out.vertices = e.count;
-    if (e.name == "face") out.faces = e.count;
-    if (e.bytes == 0 || e.count > left / e.bytes) return malformed("the file is shorter than its header says");
-    left -= e.count * e.bytes;
-  }
-  if (!ended || !out.vertices) return malformed("header");
+  PlyHeader header;
+  std::size_t number = 2;
+  for (; !text.empty() && !header.ended; ++number)
+    if (auto read = read_ply_line(take_line(text), header); !read) return tl::unexpected(read.error());
+  if (!header.ended || header.elements < 2) return malformed("header");
+  SurfaceText out{header.text, ".ply", header.counts[1], header.counts[0]};
   if (auto counts = check_counts(out, text.size()); !counts) return tl::unexpected(counts.error());
+  auto copied = header.binary ? copy_binary_body(text, header, out) : copy_text_body(text, header, number, out);
+  if (!copied) return tl::unexpected(copied.error());
   return out;
 }
 
@@ -231,7 +323,7 @@ Prepared prepare_stl(std::string_view text) {
     if (word == "facet") ++out.faces;
     if (word != "vertex") continue;
     for (int i = 0; i < 3; ++i)
-      if (!is_finite_number(take_word(rest))) return malformed_line(number, line);
+      if (!is_real(take_word(rest))) return malformed_line(number, line);
   }
   if (out.faces > kMaxMeshTriangles) return broken(Errc::limit_exceeded, "R-SRF-2", std::to_string(out.faces) + " faces");
   return out;

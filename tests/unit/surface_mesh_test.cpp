@@ -141,15 +141,17 @@ TEST(SurfaceFile, WhatIsAnnouncedMustBeThere) {
   expect_broken(parse_surface(replaced(kOff, "1.25", "nan"), ".off"), "R-SRF-4", "line 7, '0 nan 0'");
   expect_broken(parse_surface(replaced(kPly, "vertex 4", "vertex 900000"), ".ply"), "R-SRF-4",
                 "the file is shorter than its header says");
-  expect_broken(parse_surface(replaced(kPly, "list uchar", "list uint"), ".ply"), "R-SRF-3", "list counts of type uint");
-  expect_broken(parse_surface(replaced(kPly, "double z", "real z"), ".ply"), "R-SRF-4", "real");
-  expect_broken(parse_surface(replaced(kPly, "end_header", "header_end"), ".ply"), "R-SRF-4",
-                "the file is shorter than its header says");
+  expect_broken(parse_surface(replaced(kPly, "list uchar", "list uint"), ".ply"), "R-SRF-3", " list uint int vertex_indices");
+  expect_broken(parse_surface(replaced(kPly, "double z", "real z"), ".ply"), "R-SRF-4", " real z");
+  expect_broken(parse_surface(replaced(kPly, "end_header", "header_end"), ".ply"), "R-SRF-4", "header_end");
   expect_broken(parse_surface(replaced(kObj, "1.25", "1,25"), ".obj"), "R-SRF-4", "line 5, 'v 0 1,25 0'");
   expect_broken(parse_surface(replaced(kObj, "f 1 4 3", "f 1 4"), ".obj"), "R-SRF-4", "line 14, 'f 1 4'");
   expect_broken(parse_surface("v 0 0 0\n", ".obj"), "R-SRF-7", "");
   expect_broken(parse_surface(replaced(ascii_stl(), "1.250000", "inf"), ".stl"), "R-SRF-4",
                 "line 5, 'vertex 0.000000 inf 0.000000'");
+  expect_broken(parse_surface(replaced(kOff, "3 0 1 3", "9 0 1 3"), ".off"), "R-SRF-4", "line 10, '9 0 1 3'");
+  expect_broken(parse_surface(replaced(kPly, "3 1 2 3", "4 1 2 3"), ".ply"), "R-SRF-4", "line 18, '4 1 2 3'");
+  expect_broken(parse_surface(replaced(kPly, "ascii 1.0", "ascii h1.0"), ".ply"), "R-SRF-4", "format ascii h1.0");
   std::string bits = binary_stl();
   std::memset(bits.data() + 84 + 50 + 12, 0xff, 4);
   expect_broken(parse_surface(bits, ".stl"), "R-SRF-4", "facet 1");
