@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Cost of one step of the thesis's membrane by method, as soft as it is and 1000 times stiffer, both under 1 N; price of the Cholesky
+/// factor; conjugate gradients by size. Counter z: displacement of the loaded vertex after 0.3 s [m].
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <string>
+
+#include "sim/fem/cholesky.h"
+#include "sim/fem/integrator.h"
+#include "sim/fem/linear_solver.h"
+#include "tests/unit/fem_fixture.h"
+
+namespace tactus {
+namespace {
+
+constexpr double kStep = 1e-3;
+constexpr int kRun = 300;
+
+void five(benchmark::internal::Benchmark* b) { b->Unit(benchmark::kMicrosecond)->Repetitions(5)->ReportAggregatesOnly(); }
+
+void step(benchmark::State& state, double young, const IntegratorOptions& options) {
+  FemModel model = testing::slab_model(testing::slab_options(young));
+  const Eigen::VectorXd f = testing::slab_load(model);
+  auto integrator = std::move(make_integrator(model, options).value());
+  FemState body = model.rest();
+  for (int i = 0; i < kRun; ++i) {
+    if (const auto report = integrator->step(f, body); !report) return state.SkipWithError(to_string(report.error()).c_str());
+  }
+  state.counters["z"] = body.u[3 * testing::kSlabCentre + 2];
+  for (auto _ : state) benchmark::DoNotOptimize(integrator->step(f, body));
+}
+
+/// A slab of `cells` x `cells` x 2 cubes as an implicit step at 1 kHz sees it.
+struct Matrix {
+  explicit Matrix(std::uint32_t cells)
+      : model(testing::make_model(make_slab(cells, cells, 2, 0.01),
+                                  {.materials = {{1e4, 0.45, 1e4}}, .fixed = testing::slab_corners(cells, cells, 2)})),
+        system(model) {
+    system.assemble(Eigen::VectorXd::Zero(model.size()), 4 / (kStep * kStep), 1);
+  }
+
+  FemModel model;
+  SystemMatrix system;
+};
+
+void factor(benchmark::State& state) {
+  const Matrix m(static_cast<std::uint32_t>(state.range(0)));
+  Cholesky cholesky;
+  cholesky.analyse(m.system.matrix());
+  for (auto _ : state) benchmark::DoNotOptimize(cholesky.factor(m.system.matrix()));
+  state.counters["tets"] = static_cast<double>(m.model.mesh().tets.size());
+  state.counters["fill"] = static_cast<double>(cholesky.fill());
+}
+
+void solve(benchmark::State& state) {
+  const Matrix m(static_cast<std::uint32_t>(state.range(0)));
+  Cholesky cholesky;
+  cholesky.analyse(m.system.matrix());
+  cholesky.factor(m.system.matrix());
+  Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(m.system.matrix().rows(), -1, 1);
+  const Eigen::VectorXd b = x;
+  for (auto _ : state) cholesky.solve(b, x);
+  state.counters["tets"] = static_cast<double>(m.model.mesh().tets.size());
+}
+
+void gradients(benchmark::State& state) {
+  const Matrix m(static_cast<std::uint32_t>(state.range(0)));
+  ConjugateGradients solver(m.system.matrix().rows(), 1e-6);
+  Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(m.system.matrix().rows(), -1, 1);
+  const Eigen::VectorXd b = x;
+  int iterations = 0;
+  for (auto _ : state) {
+    solver.prepare(m.system.matrix());
+    x.setZero();
+    iterations = solver.solve(m.system.matrix(), b, x);
+  }
+  const auto tets = static_cast<double>(m.model.mesh().tets.size());
+  state.counters["tets"] = tets;
+  state.counters["iterations"] = iterations;
+  state.counters["per_tet"] =
+      benchmark::Counter(tets, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void register_steps() {
+  for (const double young : {1e4, 1e7}) {
+    for (const Method method : {Method::symplectic_euler, Method::backward_euler, Method::newmark, Method::tr_bdf2, Method::modal,
+                                Method::projective}) {
+      for (const LinearSolver solver : {LinearSolver::conjugate_gradients, LinearSolver::cholesky, LinearSolver::prefactored}) {
+        const bool implicit = method == Method::backward_euler || method == Method::newmark || method == Method::tr_bdf2;
+        if (!implicit && solver != LinearSolver::conjugate_gradients) continue;
+        IntegratorOptions o;
+        o.method = method;
+        o.step = kStep;
+        o.solver = solver;
+        o.modes = 30;
+        if (solver != LinearSolver::prefactored && implicit) o.newton_iterations = 1;
+        else o.newton_tolerance = 1e-2;
+        const std::string label = std::string("step/") + name(method) + (implicit ? std::string("/") + name(solver) : "");
+        five(benchmark::RegisterBenchmark((label + (young > 1e5 ? "/stiff" : "/soft")).c_str(), step, young, o));
+      }
+    }
+  }
+}
+
+[[maybe_unused]] const bool registered = (register_steps(), true);
+
+BENCHMARK(factor)->Apply(five)->Arg(13)->Arg(40)->Arg(91);
+BENCHMARK(solve)->Apply(five)->Arg(13)->Arg(40)->Arg(91);
+BENCHMARK(gradients)->Apply(five)->Arg(13)->Arg(40)->Arg(129);
+
+}  // namespace
+}  // namespace tactus
