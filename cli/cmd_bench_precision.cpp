@@ -18,7 +18,7 @@ namespace {
 using study::Extent;
 
 /// Smaller steps of a method that is this many times slower than real time are left out.
-constexpr double kTooSlow = 10;
+constexpr double kTooSlow = 5;
 
 struct PrecisionOptions {
   std::vector<std::string> scenes;

@@ -136,7 +136,9 @@ double force_error(const Trajectory& probe, const Trajectory& reference) {
   return relative((probe.force - reference.force).norm(), reference.force.norm());
 }
 
-double median(std::vector<double> values) {
+double median(const std::vector<Trajectory>& runs, double Trajectory::*quantity) {
+  std::vector<double> values;
+  for (const Trajectory& run : runs) values.push_back(run.*quantity);
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -220,18 +222,16 @@ PrecisionPoint measure(const PrecisionScene& scene, const PrecisionMethod& metho
   if (probe) out.errors.force = force_error(*probe, reference.probe);
   else out.remark = "probe: " + to_string(probe.error());
 
-  std::vector<double> seconds, setup;
-  double spent = 0;
-  while (seconds.empty() || (static_cast<int>(seconds.size()) < timing.runs && spent < timing.time_limit)) {
-    run = simulate(scene, method, steps_per_sample, Loading::force);
-    if (!run) return out;  // never: it is the first run once more
-    seconds.push_back(run->step_seconds);
-    setup.push_back(run->setup_seconds);
-    spent += run->setup_seconds + run->step_seconds;
+  std::vector<Trajectory> runs;
+  if (run->step_seconds > timing.longest_repeated) runs.push_back(*std::move(run));
+  while (static_cast<int>(runs.size()) < timing.runs && (runs.empty() || runs.front().step_seconds <= timing.longest_repeated)) {
+    auto again = simulate(scene, method, steps_per_sample, Loading::force);
+    if (!again) return out;  // never: it is the first run once more
+    runs.push_back(*std::move(again));
   }
-  out.runs = static_cast<int>(seconds.size());
-  out.seconds_per_second = median(seconds) / scene.duration;
-  out.setup_seconds = median(setup);
+  out.runs = static_cast<int>(runs.size());
+  out.seconds_per_second = median(runs, &Trajectory::step_seconds) / scene.duration;
+  out.setup_seconds = median(runs, &Trajectory::setup_seconds);
   return out;
 }
 

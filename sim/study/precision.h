@@ -57,7 +57,7 @@ struct PrecisionPoint {
   Errors errors;
   double seconds_per_second = 0;  ///< processor time per simulated time, median
   double setup_seconds = 0;
-  int runs = 0;  ///< that the median is of, after one to warm up
+  int runs = 0;  ///< that the median is of
   double newton_per_step = 0, solver_per_step = 0;
   int unconverged_steps = 0;
   std::string remark;  ///< why it stopped and there are no errors; "probe: ..." when only the force is missing
@@ -65,10 +65,10 @@ struct PrecisionPoint {
   double seconds_per_step() const noexcept { return seconds_per_second * step; }
 };
 
-/// Time it `runs` times, fewer when that would take longer than `time_limit` [s] (but once at least).
+/// How often a run is timed after one to warm up; one that takes longer than `longest_repeated` [s] only that once.
 struct Timing {
   int runs = 5;
-  double time_limit = 5;
+  double longest_repeated = 1;
 };
 PrecisionPoint measure(const PrecisionScene& scene, const PrecisionMethod& method, int steps_per_sample,
                        const Reference& reference, const Timing& timing);

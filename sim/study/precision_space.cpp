@@ -131,16 +131,16 @@ tl::expected<StaticResult, FemError> static_deflection(const PrecisionScene& sce
 std::vector<SpaceJob> space_jobs(std::string_view name, Extent extent) {
   const bool full = extent == Extent::full, is_membrane = name == "membrane";
   if (!full && is_membrane) return {};  // its finer meshes take minutes
-  std::vector<double> ratios{0.3};
+  std::vector<double> ratios{is_membrane ? 0.45 : 0.3};
   std::vector<int> refinements{1, 2, 4};
-  if (full) {
-    ratios = is_membrane ? std::vector{0.3, 0.45} : std::vector{0.3, 0.45, 0.49, 0.499};
-    refinements = is_membrane ? std::vector{1, 2, 3, 4, 6} : std::vector{1, 2, 4, 8};
+  if (full && is_membrane) refinements = {1, 2, 3, 4};
+  if (full && !is_membrane) {
+    ratios = {0.3, 0.45, 0.49, 0.499};
+    refinements = {1, 2, 4, 8};
   }
-  const double in_time = is_membrane ? 0.45 : 0.3;
   std::vector<SpaceJob> jobs;
   for (const double poisson : ratios)
-    for (const int r : refinements) jobs.push_back({r, poisson, full && poisson == in_time, r == 1 || r == 2 || r == 4});
+    for (const int r : refinements) jobs.push_back({r, poisson, full && poisson == ratios.front(), r == 1 || r == 2 || r == 4});
   return jobs;
 }
 
