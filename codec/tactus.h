@@ -16,3 +16,4 @@
 #include "codec/rigid/trigger.h"
 #include "codec/stream/file.h"
 #include "codec/stream/header.h"
+#include "codec/stream/part.h"

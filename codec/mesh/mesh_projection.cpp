@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "codec/mesh/mesh_projection.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -9,7 +10,9 @@ namespace {
 
 constexpr std::size_t kLanes = 8;  // sums in a fixed order that a compiler can vectorise
 
-/// L L^T = gram, in place; tiny pivots are raised, so that dependent modes do no harm.
+constexpr double kRidge = 1e-3;  // dependent modes share what they have in common instead of cancelling each other
+
+/// L L^T = gram, in place. The pivot of a mode that is zero everywhere is raised.
 void factorise(std::vector<double>& gram, std::size_t n) {
   for (std::size_t j = 0; j < n; ++j) {
     for (std::size_t k = 0; k < j; ++k)
@@ -42,6 +45,7 @@ MeshProjection::MeshProjection(const ModeBasis& basis) {
   for (std::size_t a = 0; a < modes; ++a)
     for (std::size_t b = 0; b <= a; ++b)
       for (std::size_t i = 0; i < components; ++i) gram[a * modes + b] += entry(a, i) * entry(b, i);
+  for (std::size_t k = 0; k < modes; ++k) gram[k * modes + k] *= 1 + kRidge;
   factorise(gram, modes);
   const std::size_t padded = (components + kLanes - 1) / kLanes * kLanes;
   error_.assign(padded, 0.0F);

@@ -10,6 +10,7 @@
 
 #include "codec/base/hash.h"
 #include "codec/tactus.h"
+#include "tests/golden/golden.h"
 
 namespace {
 
@@ -131,6 +132,10 @@ int main() {
       std::fprintf(stderr, "%s: the codec refused its input\n", c.name);
       return 1;
     }
+  }
+  if (!golden::run_meshes()) {
+    std::fputs("meshes: the codec refused its input\n", stderr);
+    return 1;
   }
   return 0;
 }

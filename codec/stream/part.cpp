@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "codec/stream/part.h"
+
+#include <algorithm>
+
+namespace tactus {
+namespace {
+
+bool has_moving_objects(const StreamHeader& header) noexcept {
+  return std::ranges::any_of(header.objects, [](const RigidObject& o) { return o.dof != Dof::none; });
+}
+
+}  // namespace
+
+bool has_part_byte(const StreamHeader& header) noexcept {
+  return header.meshes.size() + (has_moving_objects(header) ? 1 : 0) > 1;
+}
+
+Result<PartPacket> split_part(const StreamHeader& header, std::span<const std::uint8_t> packet) noexcept {
+  if (!has_part_byte(header)) return PartPacket{header.meshes.size(), packet};  // none or one
+  if (packet.empty()) return fail(Errc::truncated, "R-PKT-6");
+  const std::size_t part = packet[0];
+  const bool exists = part == 0 ? has_moving_objects(header) : part <= header.meshes.size();
+  if (!exists) return fail(Errc::invalid, "R-PKT-6");
+  return PartPacket{part, packet.subspan(1)};
+}
+
+}  // namespace tactus

@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace tactus::golden {
+
+bool run_meshes();  ///< false: the codec refused its input
+
+}  // namespace tactus::golden

@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Bounds hold on what the decoder shows, for every vertex and every frame; both ends hold the same state after every packet.
+#include "codec/mesh/mesh_encoder.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/property/allocated.h"
+#include "tests/unit/mesh_stream_fixture.h"
+
+namespace tactus {
+namespace {
+
+using testing::BoundWatch;
+using testing::DentedSheet;
+using testing::SheetFrame;
+
+constexpr std::uint32_t kSquares = 12;
+
+struct Ends {
+  MeshEncoder encoder;
+  MeshDecoder decoder;
+};
+
+Ends make_ends(const StreamHeader& header, const MeshThresholds& thresholds, double key_interval = 5) {
+  MeshEncoderOptions options;
+  options.thresholds = thresholds;
+  options.key_interval = key_interval;
+  return {MeshEncoder::create(header, 0, options).value(), MeshDecoder::create(header, 0).value()};
+}
+
+struct Sent {
+  std::size_t packets = 0, bytes = 0, broken = 0;
+  double worst = 0;  // [m]
+};
+
+/// Send one frame; both ends must agree afterwards.
+void send(Ends& ends, std::int64_t tick, const SheetFrame& frame, Sent& run) {
+  const auto packet = ends.encoder.encode(tick, frame.displacement, frame.touch);
+  ASSERT_TRUE(packet) << packet.error().rule;
+  if (packet->bytes.empty()) return;
+  const auto decoded = ends.decoder.decode(packet->bytes);
+  ASSERT_TRUE(decoded) << decoded.error().rule << " at tick " << tick;
+  ASSERT_EQ(decoded->tick, tick);
+  ASSERT_EQ(decoded->updates, packet->updates);
+  ASSERT_EQ(ends.decoder.state_hash(), ends.encoder.state_hash()) << "at tick " << tick;
+  ++run.packets;
+  run.bytes += packet->bytes.size();
+}
+
+Sent run_sheet(const StreamHeader& header, const MeshThresholds& thresholds, std::int64_t frames, double noise = 0) {
+  const TriMesh mesh = testing::sheet(kSquares, kSquares);
+  DentedSheet sheet(mesh, kSquares, noise);
+  Ends ends = make_ends(header, thresholds);
+  BoundWatch watch(header, thresholds);
+  Sent run;
+  for (std::int64_t k = 0; k < frames; ++k) {
+    const SheetFrame frame = sheet.frame(k);
+    send(ends, k, frame, run);
+    if (::testing::Test::HasFatalFailure()) return run;
+    watch.look(frame, ends.decoder.displacements_at(k));
+  }
+  run.broken = watch.broken();
+  run.worst = watch.worst();
+  return run;
+}
+
+struct Setting {
+  double visual;
+  std::optional<double> weber_fraction;
+};
+
+class MainBounds : public ::testing::TestWithParam<std::tuple<Setting, std::size_t>> {};
+
+TEST_P(MainBounds, HoldForEveryVertexAndFrame) {
+  const auto& [setting, modes] = GetParam();
+  const TriMesh mesh = testing::sheet(kSquares, kSquares);
+  const ModeBasis basis = modes > 0 ? testing::wave_basis(mesh, kSquares, modes) : ModeBasis{};
+  const Sent run = run_sheet(testing::mesh_header(mesh, MeshProfile::main, basis), {setting.visual, setting.weber_fraction}, 400);
+  EXPECT_EQ(run.broken, 0U);
+  EXPECT_GT(run.packets, 50U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Settings, MainBounds,
+                         ::testing::Combine(::testing::Values(Setting{2.5e-4, 0.025}, Setting{5e-5, 0.1}, Setting{1e-3, {}},
+                                                              Setting{1e-3, 0.0}, Setting{0, 0.025}, Setting{0, {}},
+                                                              Setting{1e3, 0.05}),
+                                            ::testing::Values(0, 1, 12)));
+
+TEST(MeshMain, BoundsHoldWithNoiseFarBeyondThem) {
+  const StreamHeader header = testing::mesh_header(testing::sheet(kSquares, kSquares));
+  for (const double noise : {1e-5, 5e-5, 1.5e-4, 1e-3}) EXPECT_EQ(run_sheet(header, {2.5e-4, 0.025}, 120, noise).broken, 0U);
+}
+
+/// A sheet that waves in its own modes.
+std::size_t bytes_of_waves(const StreamHeader& header, const ModeBasis& basis) {
+  Ends ends = make_ends(header, {});
+  const std::size_t modes = basis.steps.size(), components = basis.entries.size() / modes;
+  Sent sent;
+  for (std::int64_t k = 0; k < 300; ++k) {
+    SheetFrame frame{std::vector<Vec3>(components / 3), {}};
+    for (std::size_t m = 0; m < modes; ++m) {
+      const double a = 0.01 / 2048 * std::sin((0.05 + 0.02 * static_cast<double>(m)) * static_cast<double>(k));
+      const std::int16_t* e = basis.entries.data() + m * components;
+      for (std::size_t v = 0; v < components / 3; ++v)
+        frame.displacement[v] = frame.displacement[v] + Vec3{a * e[3 * v], a * e[3 * v + 1], a * e[3 * v + 2]};
+    }
+    send(ends, k, frame, sent);
+  }
+  return sent.bytes;
+}
+
+TEST(MeshMain, MotionInTheBasisCostsAFractionOfWhatItCostsWithout) {
+  const TriMesh mesh = testing::sheet(kSquares, kSquares);
+  const ModeBasis basis = testing::wave_basis(mesh, kSquares, 6);
+  const std::size_t without = bytes_of_waves(testing::mesh_header(mesh), basis);
+  EXPECT_LT(2 * bytes_of_waves(testing::mesh_header(mesh, MeshProfile::main, basis), basis), without);
+}
+
+TEST(MeshMain, DependentModesDoNoHarm) {
+  const TriMesh mesh = testing::sheet(kSquares, kSquares);
+  ModeBasis basis = testing::wave_basis(mesh, kSquares, 4);
+  const auto copy = basis.entries;
+  basis.entries.insert(basis.entries.end(), copy.begin(), copy.end());
+  basis.steps.insert(basis.steps.end(), {1, 65535, 600, 600});
+  EXPECT_EQ(run_sheet(testing::mesh_header(mesh, MeshProfile::main, basis), {}, 200).broken, 0U);
+}
+
+TEST(MeshThesis, EndsAgreeAndErrorsStayWithinThresholdAndQuantiser) {
+  for (const bool kept : {false, true}) {
+    for (const std::uint8_t bits : {std::uint8_t{1}, std::uint8_t{8}, std::uint8_t{12}}) {
+      StreamHeader header = testing::mesh_header(testing::sheet(kSquares, kSquares), MeshProfile::thesis);
+      header.meshes[0].quant_bits = bits;
+      header.meshes[0].models_kept = kept;
+      const Sent run = run_sheet(header, {2.5e-4, 0.025}, 300);
+      EXPECT_GT(run.packets, 100U);
+      if (bits == 12) {  // one bit per component cannot
+        EXPECT_LT(run.worst, 2.5e-4 + 1e-6);
+      }
+    }
+  }
+}
+
+TEST(MeshThesis, ListsWhatReachesAThreshold) {
+  const StreamHeader header = testing::mesh_header(testing::sheet(4, 4), MeshProfile::thesis);
+  Ends ends = make_ends(header, {1e-3, 0.1, 0});
+  SheetFrame frame{std::vector<Vec3>(25), MeshTouch{0, 1.0, 1000}};  // h = 0.1 mm
+  const double unit = std::ldexp(1.0, -22);
+  frame.displacement[0] = {0, 0, 1e-4 + unit};      // in the area of interest, above h
+  frame.displacement[1] = {0, 0, 1e-4 - 2 * unit};  // and below
+  frame.displacement[24] = {0, 1e-3 + unit, 0};     // three rings away from triangle 0 there is no vertex 24
+  Sent run;
+  send(ends, 0, frame, run);
+  const auto shown = ends.decoder.displacements();
+  EXPECT_NE(shown[0], (MeshDecoder::Displacement{}));
+  EXPECT_EQ(shown[1], (MeshDecoder::Displacement{}));
+  EXPECT_NE(shown[24], (MeshDecoder::Displacement{}));
+  EXPECT_EQ(std::ranges::count(shown, MeshDecoder::Displacement{}), 23);
+}
+
+TEST(MeshExtremes, OneVertexWithoutTriangle) {
+  for (const MeshProfile profile : {MeshProfile::thesis, MeshProfile::main}) {
+    const StreamHeader header = testing::mesh_header({{{0, 0, 0}}, {}}, profile);
+    Ends ends = make_ends(header, {});
+    Sent run;
+    for (std::int64_t k = 0; k < 50; ++k) {
+      const SheetFrame frame{{Vec3{1e-3 * static_cast<double>(k), 0, 0}}, {}};
+      send(ends, k, frame, run);
+      EXPECT_LE(norm(to_metres(ends.decoder.displacements()[0], 22) - frame.displacement[0]), 2.5e-4);
+    }
+    EXPECT_EQ(run.packets, 49U);
+  }
+}
+
+TEST(MeshExtremes, AtRestNothingIsSentAndNothingDrifts) {
+  const TriMesh mesh = testing::sheet(2, 2);
+  Ends ends = make_ends(testing::mesh_header(mesh, MeshProfile::main, testing::wave_basis(mesh, 2, 2)), {});
+  DentedSheet sheet(mesh, 2);
+  Sent run;
+  for (std::int64_t k = 0; k < 30; ++k) send(ends, k, sheet.frame(k), run);
+  const SheetFrame rest{sheet.frame(29).displacement, {}};
+  for (std::int64_t k = 30; k < 130; ++k) send(ends, k, rest, run);  // motion comes to rest
+  const std::size_t packets = run.packets;
+  const std::uint64_t hash = ends.decoder.state_hash();
+  for (std::int64_t k = 130; k < 1000130; ++k) ASSERT_TRUE(ends.encoder.encode(k, rest.displacement)->bytes.empty());
+  EXPECT_EQ(run.packets, packets);
+  EXPECT_EQ(ends.decoder.state_hash(), hash);
+  EXPECT_EQ(ends.encoder.state_hash(), hash);
+}
+
+TEST(MeshExtremes, RangeLimitsAndJumps) {
+  const TriMesh mesh = testing::sheet(3, 3);
+  for (const MeshProfile profile : {MeshProfile::thesis, MeshProfile::main}) {
+    const ModeBasis basis = profile == MeshProfile::main ? testing::wave_basis(mesh, 3, 3) : ModeBasis{};
+    const MeshThresholds exact{0, {}};
+    const StreamHeader header = testing::mesh_header(mesh, profile, basis);
+    Ends ends = make_ends(header, exact);
+    BoundWatch watch(header, exact);
+    Sent run;
+    for (std::int64_t k = 0; k < 40; ++k) {
+      const double far = k % 2 == 0 ? 32.0 : -32.0;  // 2^27 units of 2^-22 m
+      SheetFrame frame{std::vector<Vec3>(16, Vec3{far, -far, far}), {}};
+      frame.displacement[5] = {0, 0, 0};
+      send(ends, k, frame, run);
+      watch.look(frame, ends.decoder.displacements());
+    }
+    EXPECT_EQ(run.packets, 40U);
+    if (profile == MeshProfile::main) {
+      EXPECT_EQ(watch.broken(), 0U);
+    }
+  }
+}
+
+TEST(MeshExtremes, VanishingForceAndVanishingStiffness) {
+  const StreamHeader header = testing::mesh_header(testing::sheet(4, 4));
+  for (const MeshTouch touch : {MeshTouch{3, 0, 500}, MeshTouch{3, 5, 1e-300}, MeshTouch{3, 1e300, 1}}) {
+    for (const double floor : {0.0, 2e-4}) {
+      const MeshThresholds thresholds{2.5e-4, 0.025, floor};
+      Ends ends = make_ends(header, thresholds);
+      BoundWatch watch(header, thresholds);
+      Sent run;
+      for (std::int64_t k = 0; k < 20; ++k) {
+        SheetFrame frame{std::vector<Vec3>(25, Vec3{1e-5 * static_cast<double>(k), 0, 3e-5}), touch};
+        send(ends, k, frame, run);
+        watch.look(frame, ends.decoder.displacements_at(k));
+      }
+      EXPECT_EQ(watch.broken(), 0U);
+    }
+  }
+}
+
+TEST(MeshExtremes, Slivers) {
+  TriMesh mesh;
+  for (int i = 0; i < 60; ++i) mesh.vertices.push_back({i * 1e-3, i % 2 * 1e-9, 0});
+  for (std::uint32_t i = 0; i + 2 < 60; ++i) mesh.triangles.push_back({i, i + 1, i + 2});
+  Ends ends = make_ends(testing::mesh_header(mesh), {1e-5, {}});
+  BoundWatch watch(ends.encoder.header(), {1e-5, {}});
+  Sent run;
+  for (std::int64_t k = 0; k < 50; ++k) {
+    SheetFrame frame{std::vector<Vec3>(60), {}};
+    for (std::size_t v = 0; v < 60; ++v)
+      frame.displacement[v].y = 1e-3 * std::sin(0.1 * static_cast<double>(v) + 0.3 * static_cast<double>(k));
+    send(ends, k, frame, run);
+    watch.look(frame, ends.decoder.displacements_at(k));
+  }
+  EXPECT_EQ(watch.broken(), 0U);
+}
+
+TEST(MeshEncoder, RefusesWhatIsNotFiniteOrOutOfRangeAndGoesOn) {
+  for (const MeshProfile profile : {MeshProfile::thesis, MeshProfile::main}) {
+    const TriMesh mesh = testing::sheet(kSquares, kSquares);
+    DentedSheet sheet(mesh, kSquares);
+    Ends ends = make_ends(testing::mesh_header(mesh, profile), {});
+    Sent run;
+    const SheetFrame good = sheet.frame(20);
+    send(ends, 0, good, run);
+    const std::uint64_t hash = ends.encoder.state_hash();
+    constexpr double kInf = std::numeric_limits<double>::infinity(), kNan = std::numeric_limits<double>::quiet_NaN();
+    const auto refused = [&](const SheetFrame& frame, std::int64_t tick, std::string_view rule) {
+      const auto packet = ends.encoder.encode(tick, frame.displacement, frame.touch);
+      ASSERT_FALSE(packet) << rule;
+      EXPECT_EQ(packet.error().code, Errc::invalid_argument);
+      EXPECT_EQ(packet.error().rule, rule);
+      EXPECT_EQ(ends.encoder.state_hash(), hash);
+    };
+    for (const double bad : {kNan, kInf, -kInf}) {
+      SheetFrame frame = good;
+      frame.displacement[77].y = bad;
+      refused(frame, 1, "R-API-1");
+      frame = good;
+      frame.touch = MeshTouch{0, bad, 500};
+      refused(frame, 1, "R-API-1");
+    }
+    SheetFrame frame = good;
+    frame.displacement[0].x = 32.1;
+    refused(frame, 1, "R-API-2");
+    frame.displacement[0].x = -1e300;
+    refused(frame, 1, "R-API-2");
+    refused(good, 0, "R-API-5");  // the tick was there
+    refused({std::vector<Vec3>(3), {}}, 1, "R-API-5");
+    for (const MeshTouch touch : {MeshTouch{1000000, 1, 500}, MeshTouch{0, -1, 500}, MeshTouch{0, 1, 0}, MeshTouch{0, 1, -3}})
+      refused({good.displacement, touch}, 1, "R-API-5");
+    send(ends, 1, sheet.frame(30), run);
+    EXPECT_EQ(run.packets, 2U);
+  }
+}
+
+TEST(MeshEncoder, RefusesOptions) {
+  const StreamHeader header = testing::mesh_header(testing::sheet(2, 2));
+  const auto rule = [&](const auto& change) {
+    MeshEncoderOptions options;
+    change(options);
+    const auto encoder = MeshEncoder::create(header, 0, options);
+    return encoder ? std::string("none") : std::string(encoder.error().rule);
+  };
+  EXPECT_EQ(rule([](MeshEncoderOptions&) {}), "none");
+  EXPECT_EQ(rule([](MeshEncoderOptions& o) { o.thresholds.visual = -1; }), "R-API-4");
+  EXPECT_EQ(rule([](MeshEncoderOptions& o) { o.thresholds.visual = std::nan(""); }), "R-API-4");
+  EXPECT_EQ(rule([](MeshEncoderOptions& o) { o.thresholds.weber_fraction = -0.1; }), "R-API-4");
+  EXPECT_EQ(rule([](MeshEncoderOptions& o) { o.thresholds.depth_floor = std::nan(""); }), "R-API-4");
+  EXPECT_EQ(rule([](MeshEncoderOptions& o) { o.haptic_share = 0; }), "R-API-4");
+  EXPECT_EQ(rule([](MeshEncoderOptions& o) { o.visual_share = 1.5; }), "R-API-4");
+  EXPECT_STREQ(MeshEncoder::create(header, 1).error().rule, "R-API-5");
+}
+
+TEST(MeshEncoder, KeyPacketsBuildOnTheInitialState) {
+  const TriMesh mesh = testing::sheet(kSquares, kSquares);
+  const StreamHeader header = testing::mesh_header(mesh, MeshProfile::main, testing::wave_basis(mesh, kSquares, 8));
+  DentedSheet sheet(mesh, kSquares);
+  Ends ends = make_ends(header, {}, 0.5);
+  std::size_t keys = 0;
+  for (std::int64_t k = 0; k < 240; ++k) {
+    const auto packet = ends.encoder.encode(k, sheet.frame(k).displacement);
+    ASSERT_TRUE(packet);
+    if (packet->bytes.empty()) continue;
+    ASSERT_TRUE(ends.decoder.decode(packet->bytes));
+    if (!packet->key) continue;
+    ++keys;
+    auto fresh = MeshDecoder::create(header, 0).value();
+    ASSERT_TRUE(fresh.decode(packet->bytes));
+    EXPECT_EQ(fresh.state_hash(), ends.decoder.state_hash());
+  }
+  EXPECT_GE(keys, 4U);
+}
+
+TEST(MeshEncoder, AllocatesNothingAfterSetUp) {
+  const TriMesh mesh = testing::sheet(kSquares, kSquares);
+  for (const MeshProfile profile : {MeshProfile::thesis, MeshProfile::main}) {
+    StreamHeader header =
+        testing::mesh_header(mesh, profile, profile == MeshProfile::main ? testing::wave_basis(mesh, kSquares, 8) : ModeBasis{});
+    header.meshes[0].models_kept = true;
+    header.baseline_span = 3;
+    DentedSheet sheet(mesh, kSquares);
+    Ends ends = make_ends(header, {}, 0.3);
+    std::vector<SheetFrame> frames;
+    for (std::int64_t k = 0; k < 120; ++k) frames.push_back(sheet.frame(k));
+    const std::uint64_t before = testing::allocated_bytes();
+    std::size_t decoded = 0;
+    for (std::int64_t k = 0; k < 120; ++k) {
+      const SheetFrame& frame = frames[static_cast<std::size_t>(k)];
+      const auto packet = ends.encoder.encode(k, frame.displacement, frame.touch);
+      if (packet && !packet->bytes.empty()) decoded += ends.decoder.decode(packet->bytes).has_value() ? 1U : 0U;
+      (void)ends.decoder.displacements_at(k);
+    }
+    EXPECT_EQ(testing::allocated_bytes(), before);
+    EXPECT_GT(decoded, 40U);
+  }
+}
+
+}  // namespace
+}  // namespace tactus

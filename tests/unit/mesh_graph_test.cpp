@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "codec/mesh/mesh_graph.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "tests/unit/mesh_stream_fixture.h"
+
+namespace tactus {
+namespace {
+
+MeshObject object_of(const TriMesh& mesh) { return make_mesh_object("m", mesh, 22).value(); }
+
+TEST(MeshHierarchy, OrderNamesEveryVertexOnceAndParentsComeFirst) {
+  for (const auto& [nx, ny] : {std::pair{1U, 1U}, {7U, 3U}, {20U, 31U}}) {
+    const MeshObject mesh = object_of(testing::sheet(nx, ny));
+    const MeshHierarchy h = mesh_hierarchy(mesh);
+    std::vector<std::size_t> place(mesh.rest.size(), mesh.rest.size());
+    ASSERT_EQ(h.order.size(), mesh.rest.size());
+    ASSERT_EQ(h.parents.size(), mesh.rest.size());
+    for (std::size_t i = 0; i < h.order.size(); ++i) place[h.order[i]] = i;
+    EXPECT_EQ(std::ranges::count(place, mesh.rest.size()), 0);
+    std::size_t roots = 0;
+    for (std::size_t i = 0; i < h.order.size(); ++i) {
+      std::int64_t sum = 0;
+      for (const MeshParent& p : h.parents[i]) {
+        EXPECT_LT(place[p.vertex], i);
+        sum += p.weight;
+      }
+      roots += h.parents[i].empty() ? 1U : 0U;
+      if (!h.parents[i].empty()) {
+        EXPECT_NEAR(static_cast<double>(sum), 32768, MeshHierarchy::kParents);
+      }
+      if (i > 0) {
+        EXPECT_LE(h.level[h.order[i]], h.level[h.order[i - 1]]);
+      }
+    }
+    EXPECT_EQ(roots, 1U);
+  }
+}
+
+TEST(MeshHierarchy, ComponentsAndLoneVerticesAreRoots) {
+  TriMesh mesh = testing::sheet(5, 5);
+  const auto shift = static_cast<std::uint32_t>(mesh.vertices.size());
+  const TriMesh second = testing::sheet(3, 3);
+  for (const Vec3& v : second.vertices) mesh.vertices.push_back(v + Vec3{1, 0, 0});
+  for (const Triangle& t : second.triangles) mesh.triangles.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
+  mesh.vertices.push_back({5, 5, 5});
+  const MeshHierarchy h = mesh_hierarchy(object_of(mesh));
+  std::size_t roots = 0;
+  for (std::size_t i = 0; i < h.order.size(); ++i) roots += h.parents[i].empty() ? 1U : 0U;
+  EXPECT_EQ(roots, 3U);
+}
+
+/// A plane is predicted well from coarser vertices: weights of linear prediction, not of mere distance.
+TEST(MeshHierarchy, PredictsASlopeInsideTheSheet) {
+  const MeshObject mesh = object_of(testing::sheet(30, 30));
+  const MeshHierarchy h = mesh_hierarchy(mesh);
+  for (std::size_t i = 0; i < h.order.size(); ++i) {
+    const std::uint32_t v = h.order[i];
+    const std::uint32_t column = v % 31, row = v / 31;
+    if (h.level[v] > 0 || column < 3 || column > 27 || row < 3 || row > 27) continue;
+    double predicted = 0;
+    for (const MeshParent& p : h.parents[i]) predicted += p.weight / 32768.0 * static_cast<double>(p.vertex % 31);
+    EXPECT_NEAR(predicted, static_cast<double>(column), 0.2);
+  }
+}
+
+/// One vertex amid 2^16 others: neither rings nor hierarchy may take the square of that.
+TEST(MeshHierarchy, FanWithManySpokes) {
+  constexpr std::uint32_t kSpokes = 1U << 16;
+  MeshObject mesh;
+  mesh.name = "fan";
+  for (std::uint32_t i = 0; i <= kSpokes; ++i)
+    mesh.rest.push_back({static_cast<std::int32_t>(i % 256), static_cast<std::int32_t>(i / 256), 0});
+  for (std::uint32_t i = 0; i < kSpokes; ++i) mesh.triangles.push_back({kSpokes, i, (i + 1) % kSpokes});
+  EXPECT_EQ(mesh_hierarchy(mesh).order.size(), mesh.rest.size());
+  MeshRings rings(mesh);
+  EXPECT_EQ(rings.triangles_around(7, 3).size(), mesh.triangles.size());
+}
+
+TEST(MeshRings, AgreeWithTheTopologyOfTriangleMeshes) {
+  const TriMesh mesh = testing::sheet(9, 8);
+  const MeshObject object = object_of(mesh);
+  MeshRings rings(object);
+  const MeshTopology topology(mesh);
+  for (const std::uint32_t triangle : {0U, 17U, 70U, 143U}) {
+    for (std::uint32_t r = 0; r < 5; ++r) {
+      const auto ours = rings.triangles_around(triangle, r);
+      std::vector<std::uint32_t> a(ours.begin(), ours.end()), b;
+      topology.rings_around(triangle, r, b);
+      std::ranges::sort(a);
+      std::ranges::sort(b);
+      EXPECT_EQ(a, b);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tactus
