@@ -99,8 +99,8 @@ plot $damping_1khz using 1:2 with lines linetype 1 title 'b_d = k_o T / 2 at 1 k
        R"(set logscale y
 set xlabel 'damping of the wall b_o  [N s/m]'
 set ylabel 'stiffness of the wall k_o  [N/m]'
-set xrange [0:16]
-set yrange [100:300000]
+set xrange [0:8]
+set yrange [100:200000]
 set format y '10^{%L}'
 set samples 1000
 set key bottom right reverse Left samplen 2
@@ -121,7 +121,7 @@ plot 2*(b_d+x)/T with lines linetype 1 title 'b_d + b_o = k_o T / 2  (slow motio
        {"a", "b", "c", "d", "e"},
        1000,
        1100,
-       R"(set multiplot layout 5,2 margins 0.075,0.985,0.055,0.965 spacing 0.085,0.045
+       R"(set multiplot layout 5,2 margins 0.075,0.985,0.055,0.97 spacing 0.085,0.04
 set xrange [0:4]
 unset key
 text = "'(a) barely held, no delay' '(b) barely held, 100 ms' '(c) barely held, 100 ms, b_c = 5 N s/m' \
@@ -129,7 +129,7 @@ text = "'(a) barely held, no delay' '(b) barely held, 100 ms' '(c) barely held, 
 do for [i=1:5] {
   name = word('a b c d e', i)
   set title word(text, i) offset 0,-0.7
-  if (i == 5) { set xlabel 'time  [s]' }
+  if (i == 5) { set xlabel 'time  [s]'; set format x '%g' } else { set format x '' }
   set ylabel 'force  [N]'
   set yrange [0:*]
   eval 'plot $'.name.' using 1:2 with lines linewidth 1.3 linetype '.(i == 2 ? '2' : '1')

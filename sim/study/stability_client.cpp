@@ -60,12 +60,17 @@ struct Outcome {
 
 /// The hand lets its force on the object grow to kPress and holds it.
 Outcome interact(const Setting& setting) {
-  MsdLoop loop(loop_of(setting));
+  const MsdLoopOptions options = loop_of(setting);
+  MsdLoop loop(options);
+  // Where the device comes to rest when the client's spring holds kPress.
+  const MsdUser& user = options.users[0];
+  const double yield = user.server_stiffness / (user.server_stiffness + setting.object_stiffness);
+  const double rest = kPress / (user.client_stiffness * (1 - yield));
   SampledMass hand(setting.hand, kTick);
   hand.place(kStart, 0);
   PassivityObserver port;
   Outcome out{.series = {.name = setting.panel, .columns = {"t [s]", "f [N]", "E [mJ]", "x_d [mm]"}}};
-  double early = 0, late = 0, slowest = 0;
+  double early = 0, late = 0, last = 0;  // speeds
   for (int tick = 0; tick * kTick < kDuration; ++tick) {
     const double time = tick * kTick, x = hand.position();
     port.arrive({x, 0, 0});
@@ -77,15 +82,15 @@ Outcome interact(const Setting& setting) {
       out.verdict = Verdict::diverges;
       break;
     }
-    const double press = kPress * minimum_jerk(std::min(1.0, time / kOnset)).place;
-    hand.step(felt + press + setting.hand.stiffness * kStart);
+    const double done = minimum_jerk(std::min(1.0, time / kOnset)).place;
+    hand.step(felt + done * kPress + setting.hand.stiffness * (kStart + done * (rest - kStart)));
     const double speed = std::abs(hand.velocity());
     if (time > 1 && time < 2) early = std::max(early, speed);
     if (time > 3) late = std::max(late, speed);
-    slowest = speed;
+    last = speed;
   }
   out.lowest_energy = port.lowest();
-  if (out.verdict == Verdict::stable && late > 0.5 * early && slowest > 1e-6) out.verdict = Verdict::limit;
+  if (out.verdict == Verdict::stable && late > 0.5 * early && last > 1e-6) out.verdict = Verdict::limit;
   return out;
 }
 

@@ -93,10 +93,10 @@ Series z_width(const Progress& progress) {
   Series out{
       .name = "z-width",
       .columns = {"B [N s/m]", "slow motion [N/m]", "fast motion [N/m]", "device alone stable [N/m]", "loose grip stable [N/m]"}};
-  constexpr int kPoints = 33;
+  constexpr int kFine = 7, kPoints = 38;  // closer together while the fast motion can be passive
   for (int i = 0; i < kPoints; ++i) {
     progress("wall, Z-width", static_cast<std::uint64_t>(i), kPoints);
-    const double damping = 0.5 * i;
+    const double damping = i < kFine ? 0.05 * i : 0.25 * (i - kFine + 2);
     out.rows.push_back(
         {damping, passive_limit(damping, 0.35, kHaptic, Motion::slow), passive_limit(damping, 0.35, kHaptic, Motion::fast),
          stable_limit(damping, held(0.35, std::nullopt), kHaptic), stable_limit(damping, held(0.35, Grip::loose), kHaptic)});
