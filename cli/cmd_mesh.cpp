@@ -203,9 +203,9 @@ Outcome run(const MeshOptions& options) {
   if (!(options.length_unit > 0) || !(options.edge >= 0))
     return refuse("--length-unit or --edge: not above 0", "Give lengths, such as 1mm and 10mm.");
   MeshReport report;
-  const Outcome made = !options.slab.empty()        ? make_slab(options, report)
-                       : is_tet_file(options.input) ? read_tets(options, report)
-                                                    : fill_surface(options, report);
+  Outcome made = !options.slab.empty()        ? make_slab(options, report)
+                 : is_tet_file(options.input) ? read_tets(options, report)
+                                              : fill_surface(options, report);
   if (!made) return made;
   const auto checked = report.measure("check", [&] { return check(report.mesh); });
   if (!checked) return refuse((options.slab.empty() ? options.input : options.slab) + ": " + to_string(checked.error()), "");

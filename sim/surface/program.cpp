@@ -72,6 +72,7 @@ tl::expected<ProgramResult, ProgramFailure> run_program(const std::vector<std::s
                                                         Clock::time_point deadline) {
   std::vector<std::string> kept = arguments;
   std::vector<char*> pointers;
+  pointers.reserve(kept.size() + 1);
   for (std::string& argument : kept) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
   const fs::path output = folder / "output.txt";

@@ -43,7 +43,7 @@ std::string to_string(const SurfaceError& error) {
   const std::string file = error.file.empty() ? "" : error.file + ": ";
   if (rule.starts_with("R-MSH-")) return file + to_string(MeshError{error.error, error.element});
   const auto* text = std::find_if(kRules.begin(), kRules.end(), [&](const RuleText& r) { return r.rule == rule; });
-  const std::string place = file + (error.detail.empty() ? "" : error.detail + ": ") + error.error.rule;
+  std::string place = file + (error.detail.empty() ? "" : error.detail + ": ") + error.error.rule;
   if (text == kRules.end()) return place;
   return place + ": " + text->broken + "; " + text->remedy;
 }
