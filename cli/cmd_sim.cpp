@@ -173,7 +173,7 @@ void describe_deformables(const Simulation& simulation, Report& report) {
   for (const DeformableInfo& object : simulation.deformables()->info()) {
     report.notes.emplace_back(
         object.name, fmt::format("{} vertices, deformed every {:g} ms by {}", object.vertices, 1e3 * object.step, object.method));
-    report.notes.emplace_back("because", object.reason);
+    report.notes.emplace_back(object.name + " because", object.reason);
   }
   report.timings.push_back({"deform, per step", {}});
 }
