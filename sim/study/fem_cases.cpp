@@ -188,7 +188,7 @@ std::size_t inverted(const TetMesh& mesh, const Eigen::VectorXd& u) {
     now.vertices[i] = now.vertices[i] + Vec3{u[at], u[at + 1], u[at + 2]};
   }
   std::size_t out = 0;
-  for (std::size_t i = 0; i < now.tets.size(); ++i) out += volume(now, i) <= 0 ? 1 : 0;
+  for (std::size_t i = 0; i < now.tets.size(); ++i) out += volume(now, i) <= 0 ? 1u : 0u;
   return out;
 }
 
@@ -245,7 +245,7 @@ FemOutcome run(const FemCase& fem_case, Method method) {
       out.kept_state = (state.u.array() == kept.u.array()).all() && (state.v.array() == kept.v.array()).all();
       return out;
     }
-    out.not_finite += state.u.allFinite() && state.v.allFinite() ? 0 : 1;
+    out.not_finite += state.u.allFinite() && state.v.allFinite() ? 0u : 1u;
   }
   const double after = energy(*model, state);
   out.energy = after / before;

@@ -230,7 +230,7 @@ Row repeat_row() {
   Row row{.subject = "heap of 12 falling cubes, twice", .quantity = "states that differ"};
   const auto first = heap(800), second = heap(800);
   std::size_t different = first.empty() ? 12 : 0;
-  for (std::size_t i = 0; i < first.size(); ++i) different += std::memcmp(&first[i], &second[i], sizeof first[i]) != 0 ? 1 : 0;
+  for (std::size_t i = 0; i < first.size(); ++i) different += std::memcmp(&first[i], &second[i], sizeof first[i]) != 0 ? 1u : 0u;
   row.measured = static_cast<double>(different);
   row.verdict = different == 0 ? Verdict::stable : Verdict::diverges;
   row.remark = "bit by bit, after 0.8 s";
