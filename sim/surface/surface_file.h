@@ -8,7 +8,8 @@
 /// R-SRF-1   io              the file cannot be opened, read or written
 /// R-SRF-2   limit_exceeded  it is larger than 512 MiB, or announces more than 2^20 vertices or 2^21 faces
 /// R-SRF-3   unsupported     the name ends in none of .obj, .ply, .stl and .off; a binary OFF; a PLY that does not begin with vertices and
-///                           faces, or has other lists than the faces' corners, counted by one byte
+///                           faces, whose coordinates are neither float nor double, or with other lists than the faces' corners,
+///                           counted by one byte
 /// R-SRF-4   malformed       a line is not one of the format, the header announces more than the file's size allows, or OpenMesh refuses it
 /// R-SRF-5   malformed       it holds more faces or vertices than could be read
 /// R-SRF-6   invalid         a polygon has fewer than 3 or more than 1024 corners, or no corner from which all of it is seen

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -190,15 +189,20 @@ tl::expected<void, SurfaceError> read_ply_property(std::string_view rest, PlyHea
   const PlyType* count = ply_type(is_list ? take_word(rest) : "uchar");
   const PlyType* type = ply_type(is_list ? take_word(rest) : word);
   const std::string_view name = take_word(rest);
-  const bool plain =
-      !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
-  if (count == nullptr || type == nullptr || !plain) return malformed(line);
+  if (count == nullptr || type == nullptr) return malformed(line);
   const bool corners = header.elements == 2 && (name == "vertex_indices" || name == "vertex_index");
   if (is_list != corners || count->name != "uchar") return broken(Errc::unsupported, "R-SRF-3", line);
-  header.columns[header.elements - 1].push_back({type, is_list});
+  const bool coordinate = header.elements == 1 && (name == "x" || name == "y" || name == "z");
+  if (coordinate && type->name != "float" && type->name != "double") return broken(Errc::unsupported, "R-SRF-3", line);
+  std::vector<PlyColumn>& columns = header.columns[header.elements - 1];
+  columns.push_back({type, is_list});
   header.text += is_list ? "property list uchar " : "property ";
   header.text.append(type->name) += ' ';
-  header.text.append(is_list ? "vertex_indices" : name) += '\n';
+  if (coordinate) header.text.append(name) += '\n';
+  else if (is_list) header.text += "vertex_indices\n";
+  else
+    header.text +=
+        "unused_" + std::to_string(columns.size()) + '\n';  // OpenMesh complains of colours and normals it cannot convert
   return {};
 }
 

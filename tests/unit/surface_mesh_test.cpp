@@ -111,9 +111,11 @@ TEST(SurfaceFile, OpenMeshKeepsQuiet) {
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
   const bool read = parse_surface(replaced(kObj, "f 1 4 3", "f 1 9 3"), ".obj").has_value();
+  const bool odd = parse_surface(replaced(kPly, "uchar red", "int nx"), ".ply").has_value();
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
   EXPECT_FALSE(read);
+  EXPECT_TRUE(odd);
 }
 
 TEST(SurfaceFile, PolygonsAreCutWhereTheyCanBe) {
@@ -152,6 +154,7 @@ TEST(SurfaceFile, WhatIsAnnouncedMustBeThere) {
   expect_broken(parse_surface(replaced(kOff, "3 0 1 3", "9 0 1 3"), ".off"), "R-SRF-4", "line 10, '9 0 1 3'");
   expect_broken(parse_surface(replaced(kPly, "3 1 2 3", "4 1 2 3"), ".ply"), "R-SRF-4", "line 18, '4 1 2 3'");
   expect_broken(parse_surface(replaced(kPly, "ascii 1.0", "ascii h1.0"), ".ply"), "R-SRF-4", "format ascii h1.0");
+  expect_broken(parse_surface(replaced(kPly, "double z", "int z"), ".ply"), "R-SRF-3", " int z");
   std::string bits = binary_stl();
   std::memset(bits.data() + 84 + 50 + 12, 0xff, 4);
   expect_broken(parse_surface(bits, ".stl"), "R-SRF-4", "facet 1");
