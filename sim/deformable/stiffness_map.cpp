@@ -50,16 +50,16 @@ Result<StiffnessMap> stiffness_map(const SceneDeformable& object) {
   StiffnessMap map{std::move(surface.mesh), {}};
   map.stiffness.assign(map.surface.vertices.size(), std::numeric_limits<double>::infinity());
   if (model.free_dofs().empty()) return map;
-  SparseMatrix K;
-  model.stiffness(model.rest().u, K);
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor{Eigen::SparseMatrix<double>(K)};
+  SparseMatrix matrix;
+  model.stiffness(model.rest().u, matrix);
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor{Eigen::SparseMatrix<double>(matrix)};
   const Eigen::VectorXd pivots = factor.info() == Eigen::Success ? factor.vectorD() : Eigen::VectorXd::Zero(1);
   if (!(pivots.minCoeff() > kSingular * pivots.maxCoeff()))
     return fail(Errc::internal, "R-FEM-7");
 
   const std::vector<int> numbers = numbers_of(model);
   const std::vector<Vec3> normals = vertex_normals(map.surface);
-  Eigen::VectorXd f = Eigen::VectorXd::Zero(K.rows());
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(matrix.rows());
   for (std::size_t v = 0; v < normals.size(); ++v) {
     const int first = numbers[3 * std::size_t{surface.vertex[v]}];
     if (first < 0 || normals[v] == Vec3{}) continue;
