@@ -54,8 +54,7 @@ Result<StiffnessMap> stiffness_map(const SceneDeformable& object) {
   model.stiffness(model.rest().u, matrix);
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor{Eigen::SparseMatrix<double>(matrix)};
   const Eigen::VectorXd pivots = factor.info() == Eigen::Success ? factor.vectorD() : Eigen::VectorXd::Zero(1);
-  if (!(pivots.minCoeff() > kSingular * pivots.maxCoeff()))
-    return fail(Errc::internal, "R-FEM-7");
+  if (!(pivots.minCoeff() > kSingular * pivots.maxCoeff())) return fail(Errc::internal, "R-FEM-7");
 
   const std::vector<int> numbers = numbers_of(model);
   const std::vector<Vec3> normals = vertex_normals(map.surface);

@@ -50,7 +50,7 @@ struct IntegratorOptions {
   /// Stop when an update, or what the next one is estimated to be, is below this share of the larger of the stage's first update
   /// and the motion at its start, in the energy norm of the system matrix.
   double newton_tolerance = 1e-8;
-  int modes = 0;                   ///< of `modal`, 1 .. free degrees of freedom
+  int modes = 0;  ///< of `modal`, 1 .. free degrees of freedom
 };
 
 /// What a step took.

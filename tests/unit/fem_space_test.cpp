@@ -202,8 +202,8 @@ TEST(FemSpace, QuadraticElementsReachTheLimitOfLinearOnes) {
     std::array<double, 3> shares{};
     for (std::size_t level = 0; level < 3; ++level) shares[level] = quadratic_share(1 << level, poisson);
     const auto limit = study::extrapolate(shares[0], shares[1], shares[2]);
-    std::printf("nu %.2f: %.4f %.4f %.4f of Timoshenko, limit %.4f +- %.4f\n", poisson, shares[0], shares[1], shares[2], limit.limit,
-                limit.uncertainty);
+    std::printf("nu %.2f: %.4f %.4f %.4f of Timoshenko, limit %.4f +- %.4f\n", poisson, shares[0], shares[1], shares[2],
+                limit.limit, limit.uncertainty);
     EXPECT_LT(limit.uncertainty, 2e-3);
     // The clamp keeps the end face from contracting sideways, so the solid is a little stiffer than the beam.
     EXPECT_LT(limit.limit, 1);
