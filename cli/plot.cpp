@@ -4,14 +4,13 @@
 #include <fmt/format.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <cmath>
 #include <ostream>
 #include <system_error>
-
-extern char** environ;
 
 namespace tactus::cli {
 namespace {
@@ -24,7 +23,7 @@ set grid linecolor rgb '#d9d9d9' linewidth 0.6 dashtype solid
 set key textcolor rgb '#222222' spacing 1.15
 )";
 
-std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.9g}", value) : "NaN"; }
+std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "NaN"; }
 
 std::string script_of(const Plot& plot) {
   std::string out = fmt::format(

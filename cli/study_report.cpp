@@ -26,7 +26,9 @@ std::string figure(const std::optional<double>& value, const std::string& unit) 
 
 std::string deviation(const Row& row) {
   const auto value = row.deviation();
-  return value ? fmt::format("{:+.2f} %", 100 * *value) : "-";
+  if (!value) return "-";
+  const std::string text = fmt::format("{:+.2f} %", 100 * *value);
+  return text == "-0.00 %" || text == "+0.00 %" ? "0.00 %" : text;
 }
 
 std::string parameters(const Row& row, const char* between) {

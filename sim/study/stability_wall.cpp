@@ -82,9 +82,11 @@ void stability_rows(Study& study) {
 /// Limits over the damping of the device, for eq. 2.3.
 Series over_device_damping(const std::string& name, double period) {
   Series out{.name = name, .columns = {"b_d [N s/m]", "eq. 2.3 [N/m]", "observer [N/m]", "device alone stable [N/m]"}};
-  for (double damping = 0.05; damping < 12; damping *= std::sqrt(2.0))
+  for (int i = 0; i < 16; ++i) {
+    const double damping = 0.05 * std::pow(2, 0.5 * i);
     out.rows.push_back({damping, 2 * damping / period, passive_limit(0, damping, period, Motion::slow),
                         stable_limit(0, held(damping, std::nullopt), period)});
+  }
   return out;
 }
 
