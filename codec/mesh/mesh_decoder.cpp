@@ -30,10 +30,12 @@ struct ListedVertex {
 
 struct MeshDecoder::Impl {
   Impl(StreamHeader stream, std::size_t index, const DecodeLimits& decode_limits)
-      : header(std::move(stream)), mesh(header.meshes[index]), limits(decode_limits), reader(mesh) {
-    initial.held = true;
-    initial.state = initial_mesh_state(mesh);
-    staging = initial;
+      : header(std::move(stream)),
+        mesh(header.meshes[index]),
+        limits(decode_limits),
+        reader(mesh),
+        initial{true, 0, initial_mesh_state(mesh)},
+        staging(initial) {
     slots.assign(header.baseline_span, initial);
     for (Slot& slot : slots) slot.held = false;
     if (mesh.profile == MeshProfile::thesis) {

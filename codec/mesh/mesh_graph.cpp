@@ -76,7 +76,10 @@ std::vector<bool> independent_set(const Graph& g) {
 struct Candidate {
   std::uint64_t distance = 0;
   std::uint32_t vertex = 0;
-  friend auto operator<=>(const Candidate&, const Candidate&) = default;
+  friend bool operator<(const Candidate& a, const Candidate& b) noexcept {
+    return a.distance != b.distance ? a.distance < b.distance : a.vertex < b.vertex;
+  }
+  friend bool operator==(const Candidate&, const Candidate&) = default;
 };
 
 /// Builds the hierarchy level by level, finest first; the lists are turned round at the end.

@@ -101,7 +101,7 @@ Result<void> parse_basis(ByteReader& in, MeshObject& mesh) {
     mesh.basis.steps.push_back(in.u16());
     for (std::size_t i = 0; i < components; ++i) {
       const std::uint64_t entry = in.varint();
-      if (entry > 2 * ModeBasis::kMaxEntry) return fail(Errc::invalid, "R-MES-7", in.bit_offset());
+      if (entry > std::uint64_t{2} * ModeBasis::kMaxEntry) return fail(Errc::invalid, "R-MES-7", in.bit_offset());
       mesh.basis.entries.push_back(static_cast<std::int16_t>(unzigzag(entry)));
     }
   }

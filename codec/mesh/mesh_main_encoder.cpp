@@ -115,7 +115,7 @@ void MainSide::choose_coefficients(std::span<const Vec3i> truth, std::uint32_t v
   for (std::size_t k = 0; k < coefficients_.size(); ++k) {
     const float steps = projected_[k] / static_cast<float>(coefficient_step(mesh_, visual, k));
     const float size = std::min(1e9F, std::abs(steps));
-    const auto rounded = size >= kDeadZone ? static_cast<std::int32_t>(size + 0.5F) : 0;
+    const auto rounded = size >= kDeadZone ? static_cast<std::int32_t>(std::floor(size + 0.5F)) : 0;
     coefficients_[k] = steps < 0 ? -rounded : rounded;
   }
 }
