@@ -86,7 +86,7 @@ struct PathPhase {
   double duration = 0;  ///< [s]
   bool button = false;  ///< held down during the phase
   double turns = 0;     ///< whole turns before `to`, counter-clockwise seen from above; 0: a movement straight ahead
-  Vec3 centre;          ///< [m] on the axis of the turns, in the same frame as `to`
+  Vec3 centre{};        ///< [m] on the axis of the turns, in the same frame as `to`
 };
 
 struct SceneUser {
