@@ -17,8 +17,8 @@ namespace {
 
 using study::Extent;
 
-/// Smaller steps of a method that is this many times slower than real time are left out.
-constexpr double kTooSlow = 5;
+/// Steps below 1 ms of a method that is this many times slower than real time are left out.
+constexpr double kTooSlow = 2, kAlwaysComputed = 1e-3 * (1 - 1e-9);
 
 struct PrecisionOptions {
   std::vector<std::string> scenes;
@@ -106,7 +106,7 @@ tl::expected<TimeStudy, Failure> Work::time_study(const study::PrecisionScene& s
     double cost = 0;
     for (const int steps : scene.steps_per_sample) {
       count();
-      if (cost > kTooSlow) continue;
+      if (cost > kTooSlow && scene.step(steps) < kAlwaysComputed) continue;
       const auto point = this->point(scene, method, steps);
       if (!point) return tl::unexpected(point.error());
       cost = point->seconds_per_second;

@@ -73,13 +73,19 @@ std::string reference_text(const TimeStudy& time) {
                      scientific(floor.energy));
 }
 
-/// What is not in the tables and why.
+/// What is not in the tables, or only in part, and why.
 std::vector<std::string> omissions(const TimeStudy& time) {
   std::vector<std::string> out;
-  for (const PrecisionPoint& p : time.points) {
+  const int smallest = time.scene.steps_per_sample.back();
+  for (std::size_t i = 0; i < time.points.size(); ++i) {
+    const PrecisionPoint& p = time.points[i];
     const std::string place = fmt::format("{}, h = {} ms: ", p.method, milliseconds(p.step));
     if (!p.remark.empty()) out.push_back(place + p.remark);
     else if (!is_usable(p.errors.displacement)) out.push_back(place + "finished, but as wrong as standing still");
+    const bool is_last = i + 1 == time.points.size() || time.points[i + 1].method != p.method;
+    if (is_last && p.steps_per_sample != smallest)
+      out.push_back(fmt::format("{}, h below {} ms: left out, {:.2g} times slower than real time there already", p.method,
+                                milliseconds(p.step), p.seconds_per_second));
   }
   return out;
 }

@@ -223,8 +223,9 @@ PrecisionPoint measure(const PrecisionScene& scene, const PrecisionMethod& metho
   else out.remark = "probe: " + to_string(probe.error());
 
   std::vector<Trajectory> runs;
-  if (run->step_seconds > timing.longest_repeated) runs.push_back(*std::move(run));
-  while (static_cast<int>(runs.size()) < timing.runs && (runs.empty() || runs.front().step_seconds <= timing.longest_repeated)) {
+  const bool once = run->setup_seconds + run->step_seconds > timing.longest_repeated;
+  if (once) runs.push_back(*std::move(run));
+  while (!once && static_cast<int>(runs.size()) < timing.runs) {
     auto again = simulate(scene, method, steps_per_sample, Loading::force);
     if (!again) return out;  // never: it is the first run once more
     runs.push_back(*std::move(again));
