@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 
 namespace tactus::cli {
 namespace {
@@ -18,7 +19,7 @@ namespace {
 /// Both ends of a pipe; none of them reaches a child unless it is put there.
 class Pipe {
  public:
-  Pipe() { open_ = pipe2(ends_.data(), O_CLOEXEC) == 0; }
+  Pipe() : open_(pipe2(ends_.data(), O_CLOEXEC) == 0) {}
   ~Pipe() {
     close_writer();
     if (open_) close(ends_[0]);
@@ -35,7 +36,7 @@ class Pipe {
 
  private:
   std::array<int, 2> ends_{-1, -1};
-  bool open_ = false;
+  bool open_;  // after ends_, which it fills
 };
 
 class SpawnActions {
@@ -73,6 +74,7 @@ void drain(const Pipe& first, std::string& into_first, const Pipe& second, std::
 
 tl::expected<ChildResult, Failure> run_child(const std::vector<std::string>& arguments) {
   std::vector<char*> words;
+  words.reserve(arguments.size() + 1);
   for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
   words.push_back(nullptr);
   Pipe out, error;

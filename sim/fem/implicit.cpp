@@ -85,7 +85,7 @@ tl::expected<StepReport, FemError> Implicit::tr_bdf2() {
   v0_ = kNew * v_ - kOld * v0_;
   stage_.Mb.noalias() = model().mass_matrix() * v0_;
   u_ += (1 - kGamma) * h() * v_;
-  const auto second = solve();
+  auto second = solve();
   if (!second) return second;
   return StepReport{report->newton_iterations + second->newton_iterations, report->solver_iterations + second->solver_iterations,
                     report->converged && second->converged};
