@@ -21,7 +21,7 @@ std::string milliseconds(double seconds) { return fmt::format("{:.3g}", 1e3 * se
 
 using Cells = std::vector<std::string>;
 
-const Cells kTimeColumns{"method", "h [ms]", "u", "u, end", "force", "energy", "ms/step", "s/s", "Newton", "solver"};
+Cells time_heading() { return {"method", "h [ms]", "u", "u, end", "force", "energy", "ms/step", "s/s", "Newton", "solver"}; }
 
 Cells cells_of(const PrecisionPoint& p) {
   if (!std::isfinite(p.errors.displacement)) return {p.method, milliseconds(p.step), "stopped"};
@@ -37,8 +37,9 @@ Cells cells_of(const PrecisionPoint& p) {
           significant(p.solver_per_step)};
 }
 
-const Cells kSpaceColumns{"edge",  "tets",           "static [mm/N]", "error", "quadratic [mm/N]",
-                          "error", "in time, error", "h [ms]",        "s/s"};
+Cells space_heading() {
+  return {"edge", "tets", "static [mm/N]", "error", "quadratic [mm/N]", "error", "in time, error", "h [ms]", "s/s"};
+}
 
 std::string percent(double value) { return std::isfinite(value) ? fmt::format("{:.2g} %", 100 * value) : "-"; }
 
@@ -109,8 +110,8 @@ std::string markdown_of(const TimeStudy& time) {
                   time.scene.mesh.vertices.size(), time.scene.mesh.tets.size(), time.scene.duration, reference_text(time));
   for (const char* quantity : {"displacement", "force", "energy"})
     out += fmt::format("![{0}: run time against error of {1}]({0}-{1}.svg)\n", name, quantity);
-  out += '\n' + markdown_heading(kTimeColumns);
-  for (const PrecisionPoint& p : time.points) out += markdown_row(cells_of(p), kTimeColumns.size());
+  out += '\n' + markdown_heading(time_heading());
+  for (const PrecisionPoint& p : time.points) out += markdown_row(cells_of(p), time_heading().size());
   const auto left_out = omissions(time);
   if (!left_out.empty()) out += "\n### Omissions\n\n";
   for (const std::string& text : left_out) out += "* " + text + '\n';
@@ -118,9 +119,10 @@ std::string markdown_of(const TimeStudy& time) {
 }
 
 std::string markdown_of(const SpaceStudy& space) {
-  std::string out = fmt::format("\n### {}\n\n{}.\n\n{}", space_title(space), limit_text(space), markdown_heading(kSpaceColumns));
+  std::string out =
+      fmt::format("\n### {}\n\n{}.\n\n{}", space_title(space), limit_text(space), markdown_heading(space_heading()));
   for (std::size_t i = 0; i < space.points.size(); ++i) {
-    out += markdown_row(cells_of(space, i), kSpaceColumns.size());
+    out += markdown_row(cells_of(space, i), space_heading().size());
   }
   return out;
 }
@@ -178,7 +180,7 @@ void print_precision_tables(const PrecisionReport& report) {
     const std::string* method = nullptr;
     for (const PrecisionPoint& p : time.points) {
       Cells cells = cells_of(p);
-      if (method == nullptr) table.heading(kTimeColumns);
+      if (method == nullptr) table.heading(time_heading());
       if (method != nullptr && *method == p.method) cells[0] = "";
       method = &p.method;
       table.row(std::move(cells));
@@ -190,7 +192,7 @@ void print_precision_tables(const PrecisionReport& report) {
   for (const SpaceStudy& space : report.spaces) {
     fmt::print("space error, {}: {}\n\n", space_title(space), limit_text(space));
     Table table;
-    table.heading(kSpaceColumns);
+    table.heading(space_heading());
     for (std::size_t i = 0; i < space.points.size(); ++i) table.row(cells_of(space, i));
     table.print(stdout);
     fmt::print("\n");

@@ -173,7 +173,7 @@ tl::expected<PrecisionResults, Failure> PrecisionResults::open(std::string folde
 }
 
 Outcome PrecisionResults::read() {
-  if (const auto done = read_rows(path(kTimeFile), kTimeHeading, times_, time_row); !done) return done;
+  if (auto done = read_rows(path(kTimeFile), kTimeHeading, times_, time_row); !done) return done;
   return read_rows(path(kSpaceFile), kSpaceHeading, spaces_, space_row);
 }
 

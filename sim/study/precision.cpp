@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/study/precision.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <limits>
 #include <numbers>
 
@@ -138,6 +137,7 @@ double force_error(const Trajectory& probe, const Trajectory& reference) {
 
 double median(const std::vector<Trajectory>& runs, double Trajectory::*quantity) {
   std::vector<double> values;
+  values.reserve(runs.size());
   for (const Trajectory& run : runs) values.push_back(run.*quantity);
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -152,14 +152,14 @@ double processor_seconds() noexcept {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-tl::expected<Trajectory, FemError> simulate(const PrecisionScene& scene, const PrecisionMethod& described, int steps_per_sample,
+tl::expected<Trajectory, FemError> simulate(const PrecisionScene& scene, const PrecisionMethod& method, int steps_per_sample,
                                             Loading loading) {
-  PrecisionMethod method = described;
-  method.options.step = scene.step(steps_per_sample);
-  auto run = start(scene, method, loading);
+  PrecisionMethod with_step = method;
+  with_step.options.step = scene.step(steps_per_sample);
+  auto run = start(scene, with_step, loading);
   if (!run) return tl::unexpected(run.error());
   const double begin = processor_seconds();
-  auto integrator = make_integrator(run->model, method.options);
+  auto integrator = make_integrator(run->model, with_step.options);
   if (!integrator) return tl::unexpected(integrator.error());
   run->integrator = *std::move(integrator);
 

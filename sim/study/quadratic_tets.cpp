@@ -95,8 +95,8 @@ Stiffness element_stiffness(const TetMesh& mesh, std::size_t tet, const Material
     shares[point] = 0.5854101966249685;
     const Gradients g = shape_gradients(of_shares, shares);
     const double weight = volume(mesh, tet) / 4;
-    for (int a = 0; a < kNodes; ++a) {
-      for (int b = 0; b < kNodes; ++b) {
+    for (Eigen::Index a = 0; a < kNodes; ++a) {
+      for (Eigen::Index b = 0; b < kNodes; ++b) {
         Eigen::Matrix3d block = lambda * g.row(a).transpose() * g.row(b) + mu * g.row(b).transpose() * g.row(a);
         block.diagonal().array() += mu * g.row(a).dot(g.row(b));
         out.block<3, 3>(3 * a, 3 * b) += weight * block;
@@ -122,7 +122,8 @@ SparseMatrix pattern(const Mesh& mesh, const TetMesh& tets) {
     list.erase(std::unique(list.begin(), list.end()), list.end());
     sizes.insert(sizes.end(), 3, 3 * static_cast<int>(list.size()));
   }
-  SparseMatrix out(3 * mesh.free_nodes(), 3 * mesh.free_nodes());
+  const Eigen::Index size = 3 * Eigen::Index{mesh.free_nodes()};
+  SparseMatrix out(size, size);
   out.reserve(sizes);
   for (int row = 0; row < out.rows(); ++row)
     for (const int node : neighbours[static_cast<std::size_t>(row / 3)])
@@ -141,7 +142,7 @@ SparseMatrix assemble(const Mesh& mesh, const PrecisionScene& scene) {
       if (row < 0) continue;
       for (int b = 0; b < 3 * kNodes; ++b) {
         const int column = mesh.number(element[static_cast<std::size_t>(b / 3)]);
-        if (column >= 0) out.coeffRef(3 * row + a % 3, 3 * column + b % 3) += local(a, b);
+        if (column >= 0) out.coeffRef(3 * Eigen::Index{row} + a % 3, 3 * Eigen::Index{column} + b % 3) += local(a, b);
       }
     }
   }
@@ -152,7 +153,7 @@ SparseMatrix assemble(const Mesh& mesh, const PrecisionScene& scene) {
 Eigen::VectorXd pressure(const Mesh& mesh, const PrecisionScene& scene) {
   const TetSurface skin = surface(scene.mesh);
   const std::vector<std::uint32_t>& patch = scene.patch.vertices;
-  Eigen::VectorXd out = Eigen::VectorXd::Zero(3 * mesh.free_nodes());
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(3 * Eigen::Index{mesh.free_nodes()});
   double total = 0;
   for (const Triangle& t : skin.mesh.triangles) {
     const Triangle corners{skin.vertex[t[0]], skin.vertex[t[1]], skin.vertex[t[2]]};
@@ -162,7 +163,7 @@ Eigen::VectorXd pressure(const Mesh& mesh, const PrecisionScene& scene) {
     const double area = norm(cross(points[t[1]] - points[t[0]], points[t[2]] - points[t[0]])) / 2;
     for (std::size_t i = 0; i < 3; ++i) {
       const int node = mesh.number(mesh.middle(corners[i], corners[(i + 1) % 3]));
-      if (node >= 0) out[3 * node + 2] += area / 3;
+      if (node >= 0) out[3 * Eigen::Index{node} + 2] += area / 3;
     }
     total += area;
   }
