@@ -247,13 +247,14 @@ void Cholesky::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) noexcept {
     const int* rows = rows_.data() + panel.index;
     for (int i = 0; i < panel.rows; ++i) y[rows[i]] -= gathered[i];
   }
-  for (auto panel = panels_.rbegin(); panel != panels_.rend(); ++panel) {
-    const double* triangle = values_.data() + panel->value;
-    const int* rows = rows_.data() + panel->index;
-    for (int i = 0; i < panel->rows; ++i) gathered[i] = y[rows[i]];
-    double* mine = y + panel->begin;
-    panel_transposed_times(triangle + at(panel->width * panel->width), panel->rows, panel->width, gathered, mine);
-    upper_solve(triangle, panel->width, mine);
+  for (std::size_t p = panels_.size(); p-- > 0;) {
+    const Panel& panel = panels_[p];
+    const double* triangle = values_.data() + panel.value;
+    const int* rows = rows_.data() + panel.index;
+    for (int i = 0; i < panel.rows; ++i) gathered[i] = y[rows[i]];
+    double* mine = y + panel.begin;
+    panel_transposed_times(triangle + at(panel.width * panel.width), panel.rows, panel.width, gathered, mine);
+    upper_solve(triangle, panel.width, mine);
   }
   for (std::size_t i = 0; i < position_.size(); ++i)
     for (std::size_t k = 0; k < 3; ++k) x[static_cast<Eigen::Index>(3 * i + k)] = y[3 * at(position_[i]) + k];

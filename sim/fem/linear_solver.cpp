@@ -6,6 +6,15 @@
 #include <algorithm>
 
 namespace tactus {
+namespace {
+
+SparseMatrix stiffness_at_rest(FemModel& model) {
+  SparseMatrix K;
+  model.stiffness(Eigen::VectorXd::Zero(model.size()), K);
+  return K;
+}
+
+}  // namespace
 
 FemError not_positive_definite() {
   return {{Errc::internal, "R-FEM-7"},
@@ -15,10 +24,8 @@ FemError not_positive_definite() {
           "than others"};
 }
 
-SystemMatrix::SystemMatrix(FemModel& model) : model_(model) {
-  model.stiffness(Eigen::VectorXd::Zero(model.size()), K_);
-  A_ = K_;
-  mass_ = Eigen::VectorXd::Zero(K_.nonZeros());
+SystemMatrix::SystemMatrix(FemModel& model)
+    : model_(model), K_(stiffness_at_rest(model)), A_(K_), mass_(Eigen::VectorXd::Zero(K_.nonZeros())) {
   const SparseMatrix& M = model.mass_matrix();
   for (int row = 0; row < M.outerSize(); ++row) {
     const int* begin = K_.innerIndexPtr() + K_.outerIndexPtr()[row];
