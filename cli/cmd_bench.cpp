@@ -36,9 +36,9 @@ std::string machine() {
   bool is_virtual = false;
   while (std::getline(in, line)) {
     const std::string_view text = line;
-    if (const auto colon = text.find(": "); text.starts_with("model name") && colon != text.npos)
+    if (const auto colon = text.find(": "); text.starts_with("model name") && colon != std::string_view::npos)
       model = short_name(text.substr(colon + 2));
-    if (text.starts_with("flags")) is_virtual = text.find(" hypervisor") != text.npos;
+    if (text.starts_with("flags")) is_virtual = text.find(" hypervisor") != std::string_view::npos;
   }
   const unsigned cores = std::thread::hardware_concurrency();
   return fmt::format("{} core{} of an {}{}", cores, cores == 1 ? "" : "s", model, is_virtual ? ", virtual machine" : "");
