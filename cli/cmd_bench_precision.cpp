@@ -191,7 +191,8 @@ void setup_bench_precision(CLI::App& bench, Action& action) {
   command.add_option("-o,--output", options->folder, "Folder for report, tables and plots; a run that was stopped goes on there")
       ->required()
       ->type_name("DIR");
-  command.add_flag("--short", options->brief, "Coarse meshes and few steps: seconds instead of an hour");
+  command.add_flag("--short", options->brief,
+                   "Coarse meshes, few steps, little memory: seconds instead of a quarter of an hour and 6 GB");
   command.add_option("--runs", options->runs, "Runs that a time is the median of")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000).description(""))
