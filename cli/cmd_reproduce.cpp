@@ -73,19 +73,20 @@ RigidTriggers triggers_of(const Setting& s, double length_unit) {
 /// What one run yields; small and flat, so that it passes through a pipe.
 struct Measured {
   bool failed = false;
-  char rule[16] = {};  ///< of the failure
+  Errc code = Errc::internal;  ///< of the failure, as are rule and tick
+  char rule[16] = {};
   std::int64_t tick = 0;
   double packets_per_s = 0, bytes_per_update = 0, bit_per_s = 0;
-  std::uint64_t rule_violations = 0;  ///< ticks in which the predicted state breaks the haptic rule
-  std::uint64_t visual_violations = 0;
-  double shown_over = 0;   ///< share of ticks in contact in which what is shown breaks it
-  double shown_worst = 0;  ///< how far: largest ratio of error and permitted error
-  double over_jnd = 0;     ///< share of ticks with a rendered force over the perceptual curve
-  double contact = 0;      ///< share of all ticks
+  std::uint64_t rule_violations = 0;    ///< ticks in which the predicted state breaks the haptic rule
+  std::uint64_t visual_violations = 0;  ///< the same for the visual thresholds
+  double shown_over = 0;                ///< share of ticks in contact in which what is shown breaks it
+  double shown_worst = 0;               ///< how far: largest ratio of error and permitted error
+  double over_jnd = 0;                  ///< share of ticks with a rendered force over the perceptual curve
+  double contact = 0;                   ///< share of all ticks
 };
 
 Measured failed_at(std::int64_t tick, const Error& error) {
-  Measured out{.failed = true, .tick = tick};
+  Measured out{.failed = true, .code = error.code, .tick = tick};
   std::copy_n(error.rule, std::min(std::string_view(error.rule).size(), sizeof out.rule - 1), out.rule);
   return out;
 }
@@ -116,14 +117,15 @@ Result<void> follow(Predictor& predictor, const EncodedPacket& packet, std::int6
   return {};
 }
 
-Measured summary(const Traffic& traffic, const Fidelity& predicted, const Fidelity& shown, std::uint64_t ticks) {
+Measured summary(const Traffic& traffic, const Fidelity& predicted, const Fidelity& shown, std::uint64_t ticks,
+                 std::uint64_t visual_violations) {
   const double seconds = static_cast<double>(ticks) * kTick;
   Measured out;
   out.packets_per_s = static_cast<double>(traffic.all_packets()) / seconds;
   out.bytes_per_update = share(traffic.bytes, traffic.updates);
   out.bit_per_s = 8 * static_cast<double>(traffic.bytes) / seconds;
   out.rule_violations = predicted.force().ticks_over();
-  out.visual_violations = predicted.position().ticks_over() + predicted.rotation().ticks_over();
+  out.visual_violations = visual_violations;
   out.shown_over = share(shown.force().ticks_over(), shown.force().ticks());
   out.shown_worst = shown.worst_haptic_ratio();
   out.over_jnd = share(shown.rendered().ticks_over(), ticks);
@@ -142,17 +144,21 @@ Measured measure(const Scene& scene, const Setting& setting, const RigidTriggers
   Traffic traffic;
   std::vector<Pose> poses(info.objects.size());
   const std::int64_t ticks = simulation->ticks();
+  std::uint64_t visual_violations = 0;
   for (std::int64_t tick = 0; tick < ticks; ++tick) {
     const auto packet = simulation->step();
     if (!packet) return failed_at(packet.error().tick, packet.error().error);
     if (!packet->bytes.empty()) traffic.add(packet->reason, packet->updates, packet->bytes.size(), packet->key);
     const TraceFrame& frame = simulation->frame();
     if (const auto done = follow(*predictor, *packet, frame.tick, poses); !done) return failed_at(frame.tick, done.error());
+    const auto over = [&] { return predicted.position().ticks_over() + predicted.rotation().ticks_over(); };
+    const std::uint64_t before = over();
     predicted.add(frame, poses);
+    visual_violations += over() > before ? 1 : 0;
     shown.add(frame, simulation->client_poses());
     shown.add_rendered(frame);
   }
-  return summary(traffic, predicted, shown, static_cast<std::uint64_t>(ticks));
+  return summary(traffic, predicted, shown, static_cast<std::uint64_t>(ticks), visual_violations);
 }
 
 /// All seeds of one setting.
@@ -276,7 +282,7 @@ Outcome run(const ReproduceOptions& options) {
   std::vector<Row> rows;
   for (std::size_t i = 0; i < jobs; ++i) {
     const Measured& m = (*results)[i];
-    if (m.failed) return refuse(kSettings[i / options.seeds].name, place_of_tick(m.tick), Error{Errc::internal, m.rule, 0});
+    if (m.failed) return refuse(kSettings[i / options.seeds].name, place_of_tick(m.tick), Error{m.code, m.rule, 0});
     if (i % options.seeds == 0)
       rows.push_back(summarise(kSettings[i / options.seeds], std::span(*results).subspan(i, options.seeds)));
   }
