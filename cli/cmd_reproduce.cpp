@@ -154,7 +154,7 @@ Measured measure(const Scene& scene, const Setting& setting, const RigidTriggers
     const auto over = [&] { return predicted.position().ticks_over() + predicted.rotation().ticks_over(); };
     const std::uint64_t before = over();
     predicted.add(frame, poses);
-    visual_violations += over() > before ? 1 : 0;
+    if (over() > before) ++visual_violations;
     shown.add(frame, simulation->client_poses());
     shown.add_rendered(frame);
   }
