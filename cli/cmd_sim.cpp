@@ -146,6 +146,8 @@ tl::expected<Scene, Failure> read_scene(const SimOptions& options) {
     if (!options.solver.empty()) object.solver = options.solver;
     if (options.rate > 0) object.rate = options.rate;
   }
+  for (SceneMsd& object : scene->msds)
+    if (options.rate > 0) object.rate = options.rate;
   return *scene;
 }
 
@@ -244,7 +246,8 @@ void setup_sim(CLI::App& app, Action& action) {
   auto options = std::make_shared<SimOptions>();
   CLI::App& command = *app.add_subcommand("sim", "Simulate a touch into a trace");
   command
-      .add_option("SCENE", options->scene, "push-1dof, rotate-6dof, rotate-push-lift, membrane, membrane-light, or a TOML file")
+      .add_option("SCENE", options->scene,
+                  "push-1dof, rotate-6dof, rotate-push-lift, membrane, membrane-light, msd-1d, or a TOML file")
       ->type_name("")
       ->required();
   command.add_option("-o,--output", options->output, "Trace to write (MCAP), - is standard output")

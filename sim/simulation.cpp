@@ -60,7 +60,8 @@ struct Simulation::Impl {
   TraceFrame frame;
   std::vector<Contact> contacts;
   std::vector<Pose> true_poses, client_poses;
-  std::unique_ptr<DeformableWorld> deformables;  // none: the scene has none
+  std::unique_ptr<MsdWorld> msds;                // none: the scene has none
+  std::unique_ptr<DeformableWorld> deformables;  // likewise
   std::vector<Pose> places;                      // of the deformables, for who looks at one
 
   Impl(Scene of, std::uint64_t from, StreamHeader stream)
@@ -82,10 +83,9 @@ const Pose& Simulation::Impl::watched(const SceneUser& user) const {
 /// Truth at this tick, as it is before any force of this tick acts.
 void Simulation::Impl::observe() {
   frame.tick = world.tick();
-  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
-    frame.objects[i] = world.sample(i);
-    true_poses[i] = frame.objects[i].pose;
-  }
+  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) frame.objects[i] = world.sample(i);
+  if (msds) msds->observe(std::span(frame.objects).subspan(scene.objects.size()));
+  for (std::size_t i = 0; i < true_poses.size(); ++i) true_poses[i] = frame.objects[i].pose;
   if (deformables) deformables->observe(frame.meshes);
 }
 
@@ -93,6 +93,11 @@ void Simulation::Impl::touch_server() {
   for (std::size_t i = 0; i < users.size(); ++i) {
     User& user = users[i];
     user.touch = user.server.move(user.device.position, user.device.button, true_poses);
+    if (msds) {
+      const bool held = user.touch.contact.kind != ContactKind::none;
+      const Touch touch = msds->touch_server(i, held ? std::nullopt : std::optional(user.device.position));
+      if (!held) user.touch = touch;
+    }
     Vec3 force = user.touch.force;
     if (deformables) {
       user.press = deformables->touch_server(i, user.device.position);
@@ -122,7 +127,13 @@ tl::expected<EncodedPacket, Error> Simulation::Impl::transmit() {
 void Simulation::Impl::touch_client() {
   for (std::size_t i = 0; i < users.size(); ++i) {
     User& user = users[i];
-    Vec3 force = user.client.move(user.device.position, user.device.button, client_poses).force;
+    const Touch touch = user.client.move(user.device.position, user.device.button, client_poses);
+    Vec3 force = touch.force;
+    if (msds) {
+      const bool held = touch.contact.kind != ContactKind::none;
+      force = force + msds->touch_client(i, held ? std::nullopt : std::optional(user.device.position),
+                                         std::span(client_poses).subspan(scene.objects.size()));
+    }
     if (deformables) force = force + deformables->touch_client(i, user.device.position).force;
     user.felt = share_rendered(force, user.max_force) * force;
     frame.users[i] = {
@@ -133,9 +144,14 @@ void Simulation::Impl::touch_client() {
 tl::expected<void, StepError> Simulation::Impl::act() {
   for (const User& user : users) {
     const Contact& contact = user.touch.contact;
-    if (contact.kind != ContactKind::none) world.push(contact.object, -(user.share * user.touch.force), user.touch.proxy);
+    const Vec3 pushed = -(user.share * user.touch.force);
+    if (contact.kind != ContactKind::none && contact.object < scene.objects.size())
+      world.push(contact.object, pushed, user.touch.proxy);
+    else if (contact.kind != ContactKind::none) msds->push(contact.object - scene.objects.size(), pushed);
     if (user.press.contact) deformables->push(*user.press.contact, -(user.share * user.press.force));
   }
+  if (msds)
+    if (auto deformed = msds->step(); !deformed) return deformed;
   if (deformables)
     if (auto deformed = deformables->step(); !deformed) return deformed;
   return world.step();
@@ -173,6 +189,9 @@ Result<Simulation> Simulation::create(const Scene& scene, const SimulationOption
                                .rendered = {},
                                .felt = {}});
   }
+  if (!scene.msds.empty()) {
+    TACTUS_TRY(impl->msds, MsdWorld::create(scene));
+  }
   if (!scene.deformables.empty()) {
     TACTUS_TRY(impl->deformables, make_deformable_world(scene, {scene.users.size(), options.estimate_every}));
     for (const TraceMesh& mesh : impl->deformables->meshes()) {
@@ -180,11 +199,12 @@ Result<Simulation> Simulation::create(const Scene& scene, const SimulationOption
       impl->frame.meshes.push_back({false, std::vector<float>(3 * mesh.rest.vertices.size())});
     }
   }
-  impl->frame.objects.resize(scene.objects.size());
+  impl->frame.objects.resize(header.objects.size());
   impl->frame.users.resize(scene.users.size());
   impl->contacts.resize(scene.users.size());
-  impl->true_poses.resize(scene.objects.size());
+  impl->true_poses.resize(header.objects.size());
   for (const SceneObject& object : scene.objects) impl->client_poses.push_back(object.pose);
+  for (const SceneMsd& msd : scene.msds) impl->client_poses.push_back({msd.position, {}});
   return Simulation(std::move(impl));
 }
 
@@ -222,6 +242,7 @@ std::int64_t Simulation::ticks() const noexcept { return std::llround(impl_->sce
 TraceInfo Simulation::info() const {
   TraceInfo info{.tick_rate = kTickRate, .objects = {}, .users = {}, .source = {}, .scene = impl_->scene.text};
   for (const SceneObject& object : impl_->scene.objects) info.objects.push_back({object.name, object.dof});
+  for (const SceneMsd& msd : impl_->scene.msds) info.objects.push_back({msd.name, msd.dof()});
   for (const SceneUser& user : impl_->scene.users) info.users.push_back(user.name);
   if (impl_->deformables) info.meshes.assign(impl_->deformables->meshes().begin(), impl_->deformables->meshes().end());
   info.source = "sim " + impl_->scene.name + " seed " + std::to_string(impl_->seed);

@@ -7,6 +7,7 @@
 ///   4 client   proxy on the replica's poses, same x_d: force f_c, which the hand will feel
 ///   5 physics  -f acts on the touched object at the proxy; poses of the next tick
 ///
+/// One-dimensional objects (sim/msd/msd_world.h) are touched in 2 and 4 by a probe that touches no box, deformed in 5, and sent in 3.
 /// Deformable objects are touched in 2 and 4 and pushed in 5, too (sim/deformable/deformable_world.h); the client sees their true
 /// shape. What a user feels is the sum of both, clipped to what the device can yield.
 ///
@@ -23,6 +24,7 @@
 #include "codec/rigid/rigid_encoder.h"
 #include "codec/trace/frame.h"
 #include "sim/deformable/deformable_world.h"
+#include "sim/msd/msd_world.h"
 #include "sim/rigid/rigid_world.h"
 #include "sim/scene/scene.h"
 
@@ -44,7 +46,7 @@ class Simulation {
  public:
   /// pre  every call on the same thread (ODE keeps state per thread).
   /// err  invalid_argument R-API-n, R-STR-n: the options do not suit the scene (see RigidEncoder::create, Replica::create);
-  ///      unsupported R-SIM-2 and others of make_deformable_world()
+  ///      invalid R-SIM-3 of MsdWorld; unsupported R-SIM-2 and others of make_deformable_world()
   static Result<Simulation> create(const Scene& scene, const SimulationOptions& options = {});
 
   /// One tick with the scene's virtual hands. Afterwards frame() is this tick.

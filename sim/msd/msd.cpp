@@ -42,31 +42,31 @@ MsdLoop::MsdLoop(const MsdLoopOptions& options)
     users_.push_back(User{user, Delay(user.to_server), Delay(user.from_server), Intermediate{.approach = options.client}});
 }
 
-double MsdLoop::server_force(const User& user, double device) const noexcept {
-  const double penetration = device - server_.value;
-  const bool free = device == kAway || (options_.coupling == Coupling::pressing && penetration <= 0);
-  return free ? 0 : user.spec.server_stiffness * penetration;
+void MsdLoop::begin_tick() noexcept {
+  server_.advance(options_.divider);
+  last_ = 0;
 }
 
-void MsdLoop::feel(User& user, double device) noexcept {
+double MsdLoop::press(std::size_t user, double device) const noexcept {
+  const double penetration = device - server_.value;
+  const bool free = device == kAway || (options_.coupling == Coupling::pressing && penetration <= 0);
+  return free ? 0 : -users_[user].spec.server_stiffness * penetration;
+}
+
+double MsdLoop::feel(std::size_t index, double device, double received) noexcept {
+  User& user = users_[index];
   // The packet that carries x'_o leaves whenever it changed; in between the network holds the last value.
-  if (const double received = user.backward.pass(user.sent); received != user.model.to) user.model.receive(received);
+  if (received != user.model.to) user.model.receive(received);
   user.model.advance(options_.divider);
   const double penetration = device == kAway ? 0 : device - user.model.value;
   const double rate = (penetration - user.penetration) / options_.tick;
   user.penetration = penetration;
   const double resistance = user.spec.client_stiffness * penetration + user.spec.client_damping * rate;
   const bool free = device == kAway || (options_.coupling == Coupling::pressing && (penetration <= 0 || resistance <= 0));
-  user.felt = free ? 0 : -resistance;
+  return user.felt = free ? 0 : -resistance;
 }
 
-void MsdLoop::step(std::span<const double> device) noexcept {
-  server_.advance(options_.divider);
-  last_ = 0;
-  for (std::size_t i = 0; i < users_.size(); ++i) {
-    last_ += server_force(users_[i], users_[i].forward.pass(device[i]));
-    feel(users_[i], device[i]);
-  }
+void MsdLoop::end_tick() noexcept {
   sum_ += last_;
   if (++phase_ < options_.divider) return;
   // T_c: what is computed from this period's forces is used from the next period on.
@@ -75,6 +75,15 @@ void MsdLoop::step(std::span<const double> device) noexcept {
   for (User& user : users_) user.sent = x;
   sum_ = 0;
   phase_ = 0;
+}
+
+void MsdLoop::step(std::span<const double> device) noexcept {
+  begin_tick();
+  for (std::size_t i = 0; i < users_.size(); ++i) {
+    load(-press(i, users_[i].forward.pass(device[i])));
+    feel(i, device[i], users_[i].backward.pass(users_[i].sent));
+  }
+  end_tick();
 }
 
 }  // namespace tactus

@@ -72,7 +72,7 @@ struct MsdLoopOptions {
   double period() const noexcept { return divider * tick; }  ///< T_n [s]
 };
 
-/// The loop of figure 4.14 without hands: device positions in, forces out.
+/// The loop of figure 4.14 without hands: device positions in, forces out.   time O(users) per tick; no allocation.
 class MsdLoop {
  public:
   /// pre  divider, mass and tick are positive
@@ -80,13 +80,23 @@ class MsdLoop {
 
   /// Advance by one tick.
   /// in   device  x_d of every user [m], or kAway
-  /// time O(users); no allocation.
   void step(std::span<const double> device) noexcept;
+
+  /// The same in parts, for those who have a network of their own: begin_tick(), any of the three, end_tick().
+  void begin_tick() noexcept;  ///< surface() is then that of this tick
+  /// G_s: force on the hand of a user [N], positive into the object.
+  double press(std::size_t user, double device) const noexcept;
+  /// G_c: likewise at the client, which received this surface x'_o [m].
+  double feel(std::size_t index, double device, double received) noexcept;
+  void load(double force) noexcept { last_ += force; }  ///< on the object in this tick [N]; forces add up
+  void end_tick() noexcept;
 
   /// Force on the hand of a user [N], positive into the object; after step().
   double felt(std::size_t user) const noexcept { return users_[user].felt; }
   /// Surface as the server's forces use it [m].
   double surface() const noexcept { return server_.value; }
+  /// Mean velocity of the surface over the last period [m/s].
+  double velocity() const noexcept { return (server_.to - server_.from) / options_.period(); }
 
  private:
   /// A signal some ticks ago; before the first sample it is 0.
@@ -114,9 +124,6 @@ class MsdLoop {
     Intermediate model;
     double penetration = 0, felt = 0, sent = 0;
   };
-
-  double server_force(const User& user, double device) const noexcept;
-  void feel(User& user, double device) noexcept;
 
   MsdLoopOptions options_;
   MsdModel model_;

@@ -70,6 +70,24 @@ SceneObject read_object(TomlReader& in, const toml::table& table) {
   return object;
 }
 
+SceneMsd read_msd(TomlReader& in, const toml::table& table) {
+  const std::string path = "msd";
+  in.allow(table, path, {"name", "stiffness", "damping", "mass", "position", "faces", "touch_damping", "rate"});
+  SceneMsd msd;
+  msd.name = in.text(table, path, "name");
+  msd.object.stiffness = in.number(table, path, "stiffness", {0, 1e9});
+  msd.object.damping = in.number(table, path, "damping", {0, 1e6});
+  msd.object.mass = in.number(table, path, "mass", {1e-6, 1e6});
+  msd.position = in.vector(table, path, "position", kPlace);
+  const std::size_t side = in.word(table, path, "faces", {"x", "-x", "y", "-y", "z", "-z"}, "z");
+  msd.axis = static_cast<unsigned>(side / 2);
+  const double sign = side % 2 == 0 ? 1 : -1;
+  msd.normal = sign * Vec3{msd.axis == 0 ? 1.0 : 0, msd.axis == 1 ? 1.0 : 0, msd.axis == 2 ? 1.0 : 0};
+  msd.touch_damping = in.number(table, path, "touch_damping", {0, 1e4}, 0.0);
+  msd.rate = in.whole(table, path, "rate", {1, 1000}, 1);
+  return msd;
+}
+
 SceneTouch read_touch(TomlReader& in, const toml::table& table) {
   const std::string path = "touch";
   in.allow(table, path, {"stiffness", "friction", "lift_stiffness"});
@@ -108,10 +126,15 @@ PathPhase read_phase(TomlReader& in, const toml::table& table) {
 
 std::uint32_t read_watched(TomlReader& in, const toml::table& table, const Scene& scene) {
   const std::string name = in.text(table, "user", "object");
-  for (std::size_t i = 0; i < scene.objects.size(); ++i)
-    if (scene.objects[i].name == name) return static_cast<std::uint32_t>(i);
-  for (std::size_t i = 0; i < scene.deformables.size(); ++i)
-    if (scene.deformables[i].name == name) return static_cast<std::uint32_t>(scene.objects.size() + i);
+  std::uint32_t place = 0;
+  const auto is_among = [&](const auto& objects) {
+    for (const auto& object : objects) {
+      if (object.name == name) return true;
+      ++place;
+    }
+    return false;
+  };
+  if (is_among(scene.objects) || is_among(scene.msds) || is_among(scene.deformables)) return place;
   in.fail_at(table.source(), Errc::invalid, "R-SCN-7", "user.object", "name an object of this scene");
   return 0;
 }
@@ -134,7 +157,7 @@ SceneUser read_user(TomlReader& in, const toml::table& table, const Scene& scene
 }
 
 void read_scene(TomlReader& in, const toml::table& root, const std::filesystem::path& folder, Scene& scene) {
-  in.allow(root, "", {"name", "gravity", "duration", "floor", "touch", "object", "deformable", "user"});
+  in.allow(root, "", {"name", "gravity", "duration", "floor", "touch", "object", "msd", "deformable", "user"});
   scene.name = in.text(root, "", "name");
   scene.gravity = in.vector(root, "", "gravity", {-1000, 1000});
   scene.duration = in.number(root, "", "duration", {kTick, kLongest});
@@ -147,6 +170,11 @@ void read_scene(TomlReader& in, const toml::table& root, const std::filesystem::
     if (!names.insert(scene.objects.back().name).second)
       in.fail_at(table->source(), Errc::invalid, "R-SCN-7", "object.name", "give every object a name of its own");
   }
+  for (const toml::table* table : in.tables(root, "", "msd")) {
+    scene.msds.push_back(read_msd(in, *table));
+    if (!names.insert(scene.msds.back().name).second)
+      in.fail_at(table->source(), Errc::invalid, "R-SCN-7", "msd.name", "give every object a name of its own");
+  }
   for (const toml::table* table : in.tables(root, "", "deformable")) {
     scene.deformables.push_back(read_deformable(in, *table, folder, scene.touch.value_or(SceneTouch{})));
     if (!names.insert(scene.deformables.back().name).second)
@@ -157,8 +185,8 @@ void read_scene(TomlReader& in, const toml::table& root, const std::filesystem::
     if (!names.insert(scene.users.back().name).second)
       in.fail_at(table->source(), Errc::invalid, "R-SCN-7", "user.name", "give every user a name of its own");
   }
-  if (scene.objects.empty() && scene.deformables.empty())
-    in.fail_at(root.source(), Errc::invalid, "R-SCN-4", "object", "add at least one [[object]] or [[deformable]]");
+  if (scene.objects.empty() && scene.msds.empty() && scene.deformables.empty())
+    in.fail_at(root.source(), Errc::invalid, "R-SCN-4", "object", "add at least one [[object]], [[msd]] or [[deformable]]");
   if (!scene.users.empty() && !scene.touch)
     in.fail_at(root.source(), Errc::invalid, "R-SCN-4", "touch", "users need a [touch] table that says what they feel");
 }
@@ -208,10 +236,13 @@ tl::expected<std::string, SceneError> find_scene(const std::string& name) {
 Result<StreamHeader> stream_header(const Scene& scene) {
   StreamHeader header;
   header.tick_rate = kTickRate;
-  for (const SceneObject& object : scene.objects) {
-    TACTUS_TRY(const RigidState initial, to_grid({.pose = object.pose, .velocity = {}, .angular_velocity = {}}, 0, header.grid));
-    header.objects.push_back({object.name, object.dof, initial});
-  }
+  const auto add = [&](const std::string& name, std::uint8_t dof, const Pose& pose) -> Result<void> {
+    TACTUS_TRY(const RigidState initial, to_grid({.pose = pose, .velocity = {}, .angular_velocity = {}}, 0, header.grid));
+    header.objects.push_back({name, dof, initial});
+    return {};
+  };
+  for (const SceneObject& object : scene.objects) TACTUS_CHECK(add(object.name, object.dof, object.pose));
+  for (const SceneMsd& msd : scene.msds) TACTUS_CHECK(add(msd.name, msd.dof(), {msd.position, {}}));
   return header;
 }
 

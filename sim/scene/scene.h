@@ -14,6 +14,7 @@
 #include "codec/base/result.h"
 #include "codec/stream/header.h"
 #include "sim/mesh/tet_mesh.h"
+#include "sim/msd/msd.h"
 
 namespace tactus {
 
@@ -50,6 +51,19 @@ struct SceneDeformable {
   double friction = 0;                           ///< of the virtual proxies
   std::string method = "auto", solver = "auto";  ///< of time integration; auto: chosen by the scene's stiffness
   std::uint32_t rate = 1;                        ///< N: deformed every N ticks (thesis figure 4.14), 1..1000
+};
+
+/// A mass on a spring and a damper that gives way along one axis (thesis 4.3.1): a plane without end, pressed from the side to which
+/// it looks. It meets neither gravity nor other objects.
+struct SceneMsd {
+  std::string name;
+  MsdObject object;
+  Vec3 position;             ///< [m] of the surface at rest
+  unsigned axis = 2;         ///< along which it moves: 0, 1, 2
+  Vec3 normal{0, 0, 1};      ///< to where the surface looks, along that axis
+  double touch_damping = 0;  ///< b_c [N s/m] of the coupling at the clients
+  std::uint32_t rate = 1;    ///< N: deformed every N ticks (thesis figure 4.14), 1..1000
+  std::uint8_t dof() const noexcept { return static_cast<std::uint8_t>(Dof::x << axis); }
 };
 
 /// How the probe feels every object of the scene (thesis 2.3.4.1, 3.2.4.1, 3.2.5.1).
@@ -95,7 +109,7 @@ struct SceneUser {
   double tremor = 0;         ///< [m] RMS per axis of the free hand, 8-12 Hz
   double variation = 0;      ///< share by which hand, speed and targets vary with the seed
   double scatter = 0;        ///< [m] by which targets vary with the seed
-  std::uint32_t object = 0;  ///< the one the user looks at: its place among the objects, then the deformables
+  std::uint32_t object = 0;  ///< the one the user looks at: its place among the objects, then the msds, then the deformables
   Vec3 goal;                 ///< [m] where the user wants that object
   Vec3 start;                ///< [m] of the probe
   SceneDevice device;
@@ -110,6 +124,7 @@ struct Scene {
   std::optional<double> floor;       ///< [m] height of a plane that carries the objects
   std::optional<SceneTouch> touch;   ///< there whenever there are users
   std::vector<SceneObject> objects;  ///< order of trace and stream
+  std::vector<SceneMsd> msds;        ///< there after the objects, as objects of one degree of freedom
   std::vector<SceneDeformable> deformables;
   std::vector<SceneUser> users;
 };
