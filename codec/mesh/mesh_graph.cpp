@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <numeric>
 #include <utility>
 
 #include "codec/base/fixed.h"
@@ -27,6 +28,20 @@ MeshNeighbours lists_from(std::vector<Edge>& edges, std::size_t vertices) {
     out.close();
   }
   return out;
+}
+
+/// Programs split a vertex where texture or normals jump. The copies have no triangle in common, but move together.
+void add_seams(const MeshObject& mesh, std::vector<Edge>& edges) {
+  std::vector<std::uint32_t> by_place(mesh.rest.size());
+  std::iota(by_place.begin(), by_place.end(), 0u);
+  std::sort(by_place.begin(), by_place.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return mesh.rest[a] != mesh.rest[b] ? mesh.rest[a] < mesh.rest[b] : a < b; });
+  for (std::size_t i = 1; i < by_place.size(); ++i) {
+    const std::uint32_t a = by_place[i - 1], b = by_place[i];
+    if (mesh.rest[a] != mesh.rest[b]) continue;
+    edges.push_back(edge(a, b));
+    edges.push_back(edge(b, a));
+  }
 }
 
 /// Squared distances of rest positions on a grid so coarse that they fit 38 bits.
@@ -85,12 +100,12 @@ struct Candidate {
 /// Builds the hierarchy level by level, finest first; the lists are turned round at the end.
 class HierarchyBuilder {
  public:
-  explicit HierarchyBuilder(const MeshObject& mesh) : distance_(mesh), count_(mesh.rest.size()) {}
+  explicit HierarchyBuilder(const MeshObject& mesh) : rest_(mesh.rest), distance_(mesh) {}
 
   MeshHierarchy build(Graph graph) {
     MeshHierarchy out;
-    out.level.assign(count_, 0);
-    parents_.resize(count_);
+    out.level.assign(rest_.size(), 0);
+    parents_.resize(rest_.size());
     std::vector<std::vector<std::uint32_t>> levels;
     for (;;) {
       const auto kept = independent_set(graph);
@@ -117,6 +132,7 @@ class HierarchyBuilder {
 
  private:
   /// The nearest vertices among those that are kept, or dropped but earlier, within two edges. At most kVisits are looked at.
+  /// A copy of the vertex needs no others beside it.
   void find_parents(const Graph& g, const std::vector<bool>& kept, std::uint32_t v) {
     constexpr std::size_t kVisits = 64;
     near_.clear();
@@ -133,8 +149,13 @@ class HierarchyBuilder {
     }
     std::sort(near_.begin(), near_.end());
     near_.erase(std::unique(near_.begin(), near_.end()), near_.end());
+    auto& parents = parents_[g.vertex[v]];
+    if (rest_[near_.front().vertex] == rest_[g.vertex[v]]) {
+      parents.push_back({near_.front().vertex, 1 << 15});
+      return;
+    }
     if (near_.size() > MeshHierarchy::kParents) near_.resize(MeshHierarchy::kParents);
-    weigh(parents_[g.vertex[v]]);
+    weigh(parents);
   }
 
   using Row = std::array<std::int64_t, MeshHierarchy::kParents>;
@@ -221,8 +242,8 @@ class HierarchyBuilder {
   static constexpr std::int64_t kNoise = 335544;  // 0.02: how much of a parent's movement is its own
   static constexpr std::uint64_t kReach = 94;     // squared, in mean squared distances of the parents
 
+  std::span<const Vec3i> rest_;
   Distances distance_;
-  std::size_t count_;
   std::vector<Candidate> near_;
   std::vector<std::vector<MeshParent>> parents_;
 };
@@ -232,6 +253,7 @@ class HierarchyBuilder {
 MeshNeighbours mesh_neighbours(const MeshObject& mesh) {
   std::vector<Edge> edges;
   edges.reserve(6 * mesh.triangles.size());
+  add_seams(mesh, edges);
   for (const Triangle& t : mesh.triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
       edges.push_back(edge(t[k], t[(k + 1) % 3]));

@@ -42,6 +42,7 @@ struct MeshHierarchy {
   ListOfLists<MeshParent> parents;   ///< by place in `order`; roots have none
 };
 
+/// Neighbours share an edge, or follow one another in number among the vertices at one rest position.
 /// pre  the triangles name existing vertices.   time O((vertices + triangles) log), allocates
 MeshNeighbours mesh_neighbours(const MeshObject& mesh);
 MeshHierarchy mesh_hierarchy(const MeshObject& mesh);

@@ -54,6 +54,30 @@ TEST(MeshHierarchy, ComponentsAndLoneVerticesAreRoots) {
   EXPECT_EQ(roots, 3U);
 }
 
+/// Two sheets that meet at a seam: copies of the vertices along it predict each other alone.
+TEST(MeshHierarchy, CopiesOfAVertexAreNeighbours) {
+  TriMesh mesh = testing::sheet(6, 6);
+  const auto shift = static_cast<std::uint32_t>(mesh.vertices.size());
+  const Vec3 across{mesh.vertices[6].x - mesh.vertices[0].x, 0, 0};
+  for (std::uint32_t v = 0; v < shift; ++v) mesh.vertices.push_back(mesh.vertices[v] + across);
+  for (std::size_t t = 0, count = mesh.triangles.size(); t < count; ++t) {
+    const Triangle& c = mesh.triangles[t];
+    mesh.triangles.push_back({c[0] + shift, c[1] + shift, c[2] + shift});
+  }
+  const MeshObject object = object_of(mesh);
+  const MeshHierarchy h = mesh_hierarchy(object);
+  std::size_t roots = 0, copies = 0;
+  for (std::size_t i = 0; i < h.order.size(); ++i) {
+    roots += h.parents[i].empty() ? 1U : 0U;
+    if (h.parents[i].empty() || object.rest[h.parents[i][0].vertex] != object.rest[h.order[i]]) continue;
+    EXPECT_EQ(h.parents[i].size(), 1U);
+    EXPECT_EQ(h.parents[i][0].weight, 32768);
+    ++copies;
+  }
+  EXPECT_EQ(roots, 1U);
+  EXPECT_EQ(copies, 7U);
+}
+
 /// A plane is predicted well from coarser vertices: weights of linear prediction, not of mere distance.
 TEST(MeshHierarchy, PredictsASlopeInsideTheSheet) {
   const MeshObject mesh = object_of(testing::sheet(30, 30));
@@ -79,6 +103,16 @@ TEST(MeshHierarchy, FanWithManySpokes) {
   EXPECT_EQ(mesh_hierarchy(mesh).order.size(), mesh.rest.size());
   MeshRings rings(mesh);
   EXPECT_EQ(rings.triangles_around(7, 3).size(), mesh.triangles.size());
+}
+
+TEST(MeshHierarchy, ManyVerticesInOnePlace) {
+  constexpr std::size_t kVertices = 1U << 16;
+  MeshObject mesh;
+  mesh.name = "heap";
+  mesh.rest.resize(kVertices);
+  const MeshHierarchy h = mesh_hierarchy(mesh);
+  EXPECT_EQ(h.order.size(), kVertices);
+  EXPECT_EQ(std::ranges::count_if(h.order, [&](std::uint32_t v) { return h.level[v] == h.level[h.order[0]]; }), 1);
 }
 
 TEST(MeshRings, AgreeWithTheTopologyOfTriangleMeshes) {
