@@ -247,11 +247,21 @@ Outcome info_scene(const InfoOptions& options) {
             {"floor", scene->floor ? fmt::format("at {} m", *scene->floor) : "none"}};
   if (scene->touch) info["touch stiffness"] = fmt::format("{} N/m", scene->touch->stiffness);
   for (const SceneObject& o : scene->objects) {
-    info["objects"].push_back({{"object", o.name},
-                               {"moves along", dof_text(o.dof)},
-                               {"mass [kg]", o.mass},
-                               {"friction", o.friction},
-                               {"size [m]", fmt::format("{} {} {}", o.size.x, o.size.y, o.size.z)}});
+    info["objects"].push_back(
+        {{"object", o.name},
+         {"moves along", dof_text(o.dof)},
+         {"mass [kg]", o.mass},
+         {"friction", o.friction},
+         {"shape", o.surface.triangles.empty() ? "box" : fmt::format("{} triangles", o.surface.triangles.size())},
+         {"size [m]", fmt::format("{:.6g} {:.6g} {:.6g}", o.size.x, o.size.y, o.size.z)}});
+  }
+  for (const SceneMsd& m : scene->msds) {
+    info["one-dimensional objects"].push_back({{"object", m.name},
+                                               {"moves along", dof_text(m.dof())},
+                                               {"stiffness [N/m]", m.object.stiffness},
+                                               {"damping [N s/m]", m.object.damping},
+                                               {"mass [kg]", m.object.mass},
+                                               {"deformed", fmt::format("every {} ms", m.rate)}});
   }
   for (const SceneDeformable& d : scene->deformables) {
     info["deformables"].push_back({{"deformable", d.name},

@@ -247,7 +247,8 @@ void setup_sim(CLI::App& app, Action& action) {
   CLI::App& command = *app.add_subcommand("sim", "Simulate a touch into a trace");
   command
       .add_option("SCENE", options->scene,
-                  "push-1dof, rotate-6dof, rotate-push-lift, membrane, membrane-light, msd-1d, or a TOML file")
+                  "push-1dof, rotate-6dof, rotate-push-lift, membrane, membrane-light, msd-1d, "
+                  "bracket-and-pad, or a TOML file")
       ->type_name("")
       ->required();
   command.add_option("-o,--output", options->output, "Trace to write (MCAP), - is standard output")

@@ -176,11 +176,12 @@ Result<Simulation> Simulation::create(const Scene& scene, const SimulationOption
     impl->channel.emplace(Channel{std::move(encoder), std::move(decoder), std::move(replica)});
   }
   Random seeds(options.seed);
+  std::optional<Probe> probe;  // where every probe begins
+  if (!scene.users.empty()) probe.emplace(scene.objects, *scene.touch);
   for (const SceneUser& user : scene.users) {
-    const Probe probe(scene.objects, *scene.touch);
     impl->users.push_back(User{.hand = Hand(user, options.grip.value_or(user.grip), seeds.next()),
-                               .server = probe,
-                               .client = probe,
+                               .server = *probe,
+                               .client = *probe,
                                .max_force = user.device.max_force,
                                .device = {},
                                .touch = {},

@@ -96,28 +96,43 @@ void BoxProxy::slide(const Vec3& probe) noexcept {
 
 Probe::Probe(std::span<const SceneObject> objects, const SceneTouch& touch) : touch_(touch) {
   proxies_.reserve(objects.size());
-  for (const SceneObject& object : objects) proxies_.emplace_back(0.5 * object.size, touch.friction);
+  for (const SceneObject& object : objects) {
+    if (object.surface.triangles.empty()) proxies_.emplace_back(BoxProxy(0.5 * object.size, touch.friction));
+    else proxies_.emplace_back(SurfaceProxy(std::make_shared<const TouchSurface>(object.surface), touch.friction));
+  }
+}
+
+void Probe::place_all(const Vec3& device, std::span<const Pose> poses) noexcept {
+  for (std::size_t i = 0; i < proxies_.size(); ++i)
+    std::visit([&](auto& proxy) { proxy.place(to_object(poses[i], device)); }, proxies_[i]);
+}
+
+/// Whether it touches afterwards.
+bool Probe::move_one(std::size_t object, const Vec3& device, std::span<const Pose> poses) noexcept {
+  return std::visit(
+      [&](auto& proxy) {
+        proxy.move(to_object(poses[object], device));
+        return proxy.touches();
+      },
+      proxies_[object]);
 }
 
 /// Move the proxies; while one object is touched the others do not feel the probe.
 void Probe::follow(const Vec3& device, std::span<const Pose> poses) noexcept {
   if (touched_) {
-    proxies_[*touched_].move(to_object(poses[*touched_], device));
-    if (proxies_[*touched_].face()) return;
+    if (move_one(*touched_, device, poses)) return;
     touched_.reset();
-    for (std::size_t i = 0; i < proxies_.size(); ++i) proxies_[i].place(to_object(poses[i], device));
+    place_all(device, poses);
   }
-  for (std::uint32_t i = 0; i < proxies_.size(); ++i) {
-    proxies_[i].move(to_object(poses[i], device));
-    if (proxies_[i].face() && !touched_) touched_ = i;
-  }
+  for (std::uint32_t i = 0; i < proxies_.size(); ++i)
+    if (move_one(i, device, poses) && !touched_) touched_ = i;
 }
 
 Touch Probe::move(const Vec3& device, bool button, std::span<const Pose> poses) noexcept {
   if (!placed_ || (anchor_ && !button)) {
     anchor_.reset();
     touched_.reset();
-    for (std::size_t i = 0; i < proxies_.size(); ++i) proxies_[i].place(to_object(poses[i], device));
+    place_all(device, poses);
     placed_ = true;
   }
   if (!anchor_) follow(device, poses);
@@ -125,14 +140,17 @@ Touch Probe::move(const Vec3& device, bool button, std::span<const Pose> poses) 
   Touch out{.contact = {}, .proxy = device, .force = {}};
   out.contact.device = device;
   if (!touched_) return out;
-  const BoxProxy& proxy = proxies_[*touched_];
-  if (button && !anchor_) anchor_ = proxy.position();
-  out.contact = {.kind = anchor_ ? ContactKind::spring : ContactKind::surface,
-                 .object = *touched_,
-                 .point = anchor_ ? *anchor_ : proxy.position(),
-                 .normal = proxy.normal(),
-                 .device = device,
-                 .stiffness = anchor_ ? touch_.lift_stiffness : touch_.stiffness};
+  std::visit(
+      [&](const auto& proxy) {
+        if (button && !anchor_) anchor_ = proxy.position();
+        out.contact = {.kind = anchor_ ? ContactKind::spring : ContactKind::surface,
+                       .object = *touched_,
+                       .point = anchor_ ? *anchor_ : proxy.position(),
+                       .normal = proxy.normal(),
+                       .device = device,
+                       .stiffness = anchor_ ? touch_.lift_stiffness : touch_.stiffness};
+      },
+      proxies_[*touched_]);
   out.proxy = to_world(poses[*touched_], out.contact.point);
   out.force = out.contact.stiffness * (out.proxy - device);
   return out;

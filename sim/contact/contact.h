@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Haptic rendering of boxes: virtual proxy (god object) with friction cone. Thesis 2.3.4.1, figure 2.6, eq. 2.6.
+/// Haptic rendering of rigid objects. Solids of any shape: surface_proxy.h. Boxes: virtual proxy (god object) with friction cone. Thesis 2.3.4.1, figure 2.6, eq. 2.6.
 ///
 /// The proxy remembers where the probe entered and stays on that face while the probe is inside, so that neither a thin box lets
 /// the probe through nor an edge turns the force. It is kept in the box's frame and so moves with the box.
@@ -12,10 +12,12 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <variant>
 #include <vector>
 
 #include "codec/base/geometry.h"
 #include "codec/rigid/contact.h"
+#include "sim/contact/surface_proxy.h"
 #include "sim/scene/scene.h"
 
 namespace tactus {
@@ -37,6 +39,7 @@ class BoxProxy {
   /// Move the probe there.
   void move(const Vec3& probe) noexcept;
 
+  bool touches() const noexcept { return face_.has_value(); }
   const std::optional<BoxFace>& face() const noexcept { return face_; }  ///< none: free
   const Vec3& position() const noexcept { return proxy_; }               ///< free: where the probe is
   Vec3 normal() const noexcept;                                          ///< of the face touched, outward
@@ -58,23 +61,28 @@ struct Touch {
   Vec3 force;       ///< [N] on the hand: k_o (x_p - x_d), or the lifting spring's; world frame
 };
 
-/// A probe among the scene's boxes. It touches one at a time: the first one met, until it lets go.
+/// A probe among the scene's rigid objects. It touches one at a time: the first one met, until it lets go.
 class Probe {
  public:
+  /// Copies share the surfaces.
   Probe(std::span<const SceneObject> objects, const SceneTouch& touch);
 
   /// Advance to a new device position and new poses.
   /// in   device  [m] x_d, world frame
   ///      button  down while an object is touched: a spring ties the probe to the touched point until the button comes up
   ///      poses   one per object
-  /// time O(objects), about 50 ns for one; no allocation.
+  /// time O(objects), about 50 ns for a box; no allocation.
   Touch move(const Vec3& device, bool button, std::span<const Pose> poses) noexcept;
 
  private:
+  using Proxy = std::variant<BoxProxy, SurfaceProxy>;
+
+  void place_all(const Vec3& device, std::span<const Pose> poses) noexcept;
+  bool move_one(std::size_t object, const Vec3& device, std::span<const Pose> poses) noexcept;
   void follow(const Vec3& device, std::span<const Pose> poses) noexcept;
 
   SceneTouch touch_;
-  std::vector<BoxProxy> proxies_;
+  std::vector<Proxy> proxies_;
   std::optional<std::uint32_t> touched_;  // index of the object
   std::optional<Vec3> anchor_;            // of the lifting spring, in the frame of object touched_
   bool placed_ = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Boxes on a floor, stepped by ODE at 1 kHz (thesis 3.2.4.1).
+/// Boxes and other solids (ode_mesh.h) on a floor, stepped by ODE at 1 kHz (thesis 3.2.4.1).
 ///
 /// Coulomb friction  ODE bounds friction per axis (a pyramid). One axis is laid along the velocity that the contact point would
 ///                   have without friction, so that the bound is mu N in every direction of sliding, not up to 41 % more.

@@ -9,6 +9,7 @@
 
 #include "codec/rigid/rigid.h"
 #include "sim/scene/deformable_reader.h"
+#include "sim/scene/object_surface.h"
 #include "sim/scene/toml_reader.h"
 
 namespace tactus {
@@ -55,18 +56,42 @@ Quat read_rotation(TomlReader& in, const toml::table& table, const std::string& 
   return {w / length, x / length, y / length, z / length};
 }
 
-SceneObject read_object(TomlReader& in, const toml::table& table) {
+/// Move the surface so that its centre of mass is the object's origin, which then stands where that centre was.
+void read_surface(TomlReader& in, const toml::table& table, const std::filesystem::path& folder, SceneObject& object) {
+  const toml::node& node = *table.get("surface");
+  if (const toml::node* size = table.get("size"))
+    in.fail_at(size->source(), Errc::invalid, "R-SCN-4", "object.size", "say either size (a box) or surface (a file)");
+  const std::string file = (folder / in.text(table, "object", "surface")).string();
+  if (in.failed()) return;
+  auto read = read_object_surface(file);
+  if (!read) return in.fail_at(node.source(), read.error().code, "R-SCN-8", "object.surface", read.error().text);
+  object.surface = std::move(read->mesh);
+  object.pose.position = to_world(object.pose, read->centre);
+  Vec3 low, high;
+  for (Vec3& v : object.surface.vertices) {
+    v = v - read->centre;
+    low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+    high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+  }
+  object.size = high - low;
+  if (!(norm(object.size) <= kFarthest))
+    in.fail_at(node.source(), Errc::invalid, "R-SCN-6", "object.surface",
+               "scale it: coordinates are metres, it is over 100 m long");
+}
+
+SceneObject read_object(TomlReader& in, const toml::table& table, const std::filesystem::path& folder) {
   const std::string path = "object";
-  in.allow(table, path, {"name", "size", "mass", "friction", "damping", "dof", "position", "rotation"});
+  in.allow(table, path, {"name", "size", "surface", "mass", "friction", "damping", "dof", "position", "rotation"});
   SceneObject object;
   object.name = in.text(table, path, "name");
-  object.size = in.vector(table, path, "size", {1e-4, kFarthest});
+  if (!table.contains("surface")) object.size = in.vector(table, path, "size", {1e-4, kFarthest});
   object.dof = read_axes(in, table, path, "dof", Dof::all);
   object.mass = in.number(table, path, "mass", {1e-6, 1e6});
   object.friction = in.number(table, path, "friction", {0, 100});
   object.damping = in.number(table, path, "damping", {0, 1}, 1.0);
   object.pose.position = in.vector(table, path, "position", kPlace);
   object.pose.rotation = read_rotation(in, table, path);
+  if (table.contains("surface")) read_surface(in, table, folder, object);
   return object;
 }
 
@@ -166,7 +191,7 @@ void read_scene(TomlReader& in, const toml::table& root, const std::filesystem::
 
   std::set<std::string> names;
   for (const toml::table* table : in.tables(root, "", "object")) {
-    scene.objects.push_back(read_object(in, *table));
+    scene.objects.push_back(read_object(in, *table, folder));
     if (!names.insert(scene.objects.back().name).second)
       in.fail_at(table->source(), Errc::invalid, "R-SCN-7", "object.name", "give every object a name of its own");
   }

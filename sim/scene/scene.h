@@ -21,15 +21,16 @@ namespace tactus {
 inline constexpr std::uint32_t kTickRate = 1000;  ///< [Hz] haptic rate of every scene
 inline constexpr double kTick = 1e-3;             ///< [s]
 
-/// A box.
+/// A rigid object: a box, or a solid of any shape.
 struct SceneObject {
   std::string name;
-  Vec3 size;                    ///< [m] edge lengths
+  Vec3 size;                    ///< [m] edge lengths; of a solid, its extent along each axis
+  TriMesh surface;              ///< [m] of a solid, closed, around its centre of mass; without triangles: a box
   double mass = 0;              ///< [kg]
   double friction = 0;          ///< Coulomb coefficient against the floor and other objects (the smaller of two counts)
   double damping = 1;           ///< d: velocities are multiplied by it every millisecond; 1: none
   std::uint8_t dof = Dof::all;  ///< none: a static object
-  Pose pose;                    ///< at tick 0, of the box's centre
+  Pose pose;                    ///< at tick 0, of the centre of box or mass
 };
 
 struct SceneMaterial {

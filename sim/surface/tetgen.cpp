@@ -15,6 +15,7 @@
 
 #include "sim/mesh/tet_files.h"
 #include "sim/surface/program.h"
+#include "sim/surface/solid.h"
 
 namespace tactus {
 namespace {
@@ -35,24 +36,6 @@ tl::expected<void, SurfaceError> check_options(const FillOptions& options) {
   return {};
 }
 
-double enclosed_volume(const TriMesh& mesh) {
-  const Vec3 origin = mesh.vertices.empty() ? Vec3{} : mesh.vertices[0];
-  double sum = 0;
-  for (const auto& [a, b, c] : mesh.triangles)
-    sum += dot(cross(mesh.vertices[a] - origin, mesh.vertices[b] - origin), mesh.vertices[c] - origin) / 6;
-  return sum;
-}
-
-tl::expected<void, SurfaceError> check_closed(const TriMesh& mesh) {
-  const MeshTopology topology(mesh);
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-    for (unsigned k = 0; k < 3; ++k)
-      if (topology.across(t, k) == MeshTopology::kNone) return broken(Errc::invalid, "R-TGN-2", "triangle " + std::to_string(t));
-  for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v)
-    if (topology.triangles_of(v).empty()) return broken(Errc::invalid, "R-TGN-8", "vertex " + std::to_string(v));
-  return {};
-}
-
 tl::expected<void, SurfaceError> check_places(const TriMesh& mesh) {
   std::vector<std::uint32_t> order(mesh.vertices.size());
   std::iota(order.begin(), order.end(), 0U);
@@ -69,9 +52,9 @@ tl::expected<void, SurfaceError> check_places(const TriMesh& mesh) {
 }
 
 tl::expected<void, SurfaceError> check_volume(const TriMesh& mesh, const FillOptions& options) {
-  const double volume = enclosed_volume(mesh);
-  if (!(volume > 0)) return broken(Errc::invalid, "R-TGN-4", "");
-  if (options.max_volume > 0 && volume / options.max_volume > static_cast<double>(kMaxTets))
+  const auto solid = solid_within(mesh);
+  if (!solid) return tl::unexpected(solid.error());
+  if (options.max_volume > 0 && solid->volume / options.max_volume > static_cast<double>(kMaxTets))
     return broken(Errc::limit_exceeded, "R-TGN-5", "");
   return {};
 }
@@ -158,7 +141,7 @@ tl::expected<void, SurfaceError> check_filled(const TriMesh& surface, const TetM
     return broken(checked.error().error.code, "R-TGN-6", to_string(checked.error()));
   double sum = 0;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) sum += volume(mesh, t);
-  const double wanted = enclosed_volume(surface);
+  const double wanted = solid_within(surface)->volume;
   if (std::abs(sum - wanted) <= kVolumeTolerance * wanted) return {};
   std::ostringstream figures;
   figures << sum << " m^3 filled, " << wanted << " m^3 enclosed";

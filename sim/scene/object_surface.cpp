@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/scene/object_surface.h"
+
+#include "sim/surface/solid.h"
+#include "sim/surface/surface_file.h"
+
+namespace tactus {
+
+tl::expected<ObjectSurface, ObjectSurfaceError> read_object_surface(const std::string& file) {
+  const auto refuse = [&](SurfaceError error) {
+    error.file = file;
+    return tl::unexpected(ObjectSurfaceError{error.error.code, to_string(error)});
+  };
+  auto read = read_surface(file);
+  if (!read) return refuse(read.error());
+  if (const auto closed = check_closed(read->mesh); !closed) return refuse(closed.error());
+  const auto solid = solid_within(read->mesh);
+  if (!solid) return refuse(solid.error());
+  return ObjectSurface{std::move(read->mesh), solid->centroid};
+}
+
+}  // namespace tactus

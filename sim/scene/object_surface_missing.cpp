@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// In place of object_surface.cpp when the component SURFACE is left out.
+#include "sim/scene/object_surface.h"
+
+namespace tactus {
+
+tl::expected<ObjectSurface, ObjectSurfaceError> read_object_surface(const std::string& file) {
+  return tl::unexpected(ObjectSurfaceError{
+      Errc::unsupported, file + ": this program was built without surface files; install libopenmesh-dev and build "
+                                "with TACTUS_WITH_SURFACE=ON, or give the object a size"});
+}
+
+}  // namespace tactus
