@@ -9,11 +9,15 @@ set(TACTUS_PACKAGES
   "CLI11           libcli11-dev            CLI11::CLI11"
   "nlohmann_json   nlohmann-json3-dev      nlohmann_json::nlohmann_json"
   "Eigen3          libeigen3-dev           Eigen3::Eigen"
+  "CHOLMOD         libsuitesparse-dev      SuiteSparse::CHOLMOD"
   "OpenMesh        libopenmesh-dev         OpenMeshCore"
   "fmt             libfmt-dev              fmt::fmt"
   "GTest           libgtest-dev            GTest::gtest_main"
   "benchmark       libbenchmark-dev        benchmark::benchmark"
   "Python3         python3                 Python3::Interpreter")
+
+# CHOLMOD comes without a CMake file: FindCHOLMOD.cmake, installed beside ours.
+list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})
 
 # The two packages whose ways differ from `find_package(NAME)`: ODE comes without a CMake file, Python needs its component named.
 # A macro, so that what a package's own CMake file sets reaches the caller.

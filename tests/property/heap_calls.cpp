@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/property/heap_calls.h"
 
+#include <SuiteSparse_config.h>
+
 #include <atomic>
 #include <cstddef>
+#include <cstdlib>
 
 namespace {
 
@@ -18,5 +21,23 @@ extern "C" void* __wrap_malloc(std::size_t size) {  // NOLINT(bugprone-reserved-
   ++calls;
   return __real_malloc(size);
 }
+
+namespace {
+
+// The library calls what this table names.
+[[maybe_unused]] const bool counted = [] {
+  SuiteSparse_config.malloc_func = __wrap_malloc;
+  SuiteSparse_config.calloc_func = [](std::size_t count, std::size_t size) {
+    ++calls;
+    return std::calloc(count, size);
+  };
+  SuiteSparse_config.realloc_func = [](void* block, std::size_t size) {
+    ++calls;
+    return std::realloc(block, size);
+  };
+  return true;
+}();
+
+}  // namespace
 
 std::uint64_t tactus::testing::heap_calls() noexcept { return calls; }

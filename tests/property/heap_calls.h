@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Counts calls of malloc in this program: Eigen's matrices do not come from operator new.   pre  linked with -Wl,--wrap=malloc
+/// Counts calls of malloc in this program (Eigen's matrices do not come from operator new) and in SuiteSparse.
+/// pre  linked with -Wl,--wrap=malloc
 #pragma once
 
 #include <cstdint>

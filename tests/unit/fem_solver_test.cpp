@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Linear algebra under the integrators: the panel Cholesky, conjugate gradients, the modes.
+// Linear algebra under the integrators: the Cholesky factor, conjugate gradients, the modes.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -11,7 +10,6 @@
 #include "sim/fem/integrator.h"
 #include "sim/fem/linear_solver.h"
 #include "sim/fem/modal.h"
-#include "sim/fem/ordering.h"
 #include "sim/random.h"
 #include "tests/unit/fem_fixture.h"
 
@@ -33,27 +31,6 @@ FemModel free_slab(std::uint32_t nx, std::uint32_t ny, std::uint32_t nz, Elastic
   options.materials = {{1e4, 0.3, 1000}};
   options.elasticity = elasticity;
   return testing::make_model(make_slab(nx, ny, nz, 0.01), options);
-}
-
-TEST(Ordering, IsAPermutationOfAnyGraph) {
-  const auto is_permutation = [](std::vector<int> order, int size) {
-    std::sort(order.begin(), order.end());
-    if (static_cast<int>(order.size()) != size) return false;
-    for (int i = 0; i < size; ++i)
-      if (order[static_cast<std::size_t>(i)] != i) return false;
-    return true;
-  };
-  EXPECT_TRUE(is_permutation(nested_dissection({{0}, {}}), 0));
-  EXPECT_TRUE(is_permutation(nested_dissection({{0, 0, 0, 0}, {}}), 3)) << "nobody knows anybody";
-  Graph path{{0}, {}};
-  constexpr int kLength = 200;
-  for (int i = 0; i < 2 * kLength; ++i) {  // two paths, not connected
-    const int begin = i < kLength ? 0 : kLength;
-    if (i > begin) path.neighbours.push_back(i - 1);
-    if (i + 1 < begin + kLength) path.neighbours.push_back(i + 1);
-    path.begin.push_back(static_cast<int>(path.neighbours.size()));
-  }
-  EXPECT_TRUE(is_permutation(nested_dissection(path), 2 * kLength));
 }
 
 TEST(Cholesky, SolvesSheetsBodiesAndParts) {
@@ -90,13 +67,12 @@ TEST(Cholesky, RefusesWhatIsNotPositiveDefiniteAndWorksAgainAfterwards) {
   EXPECT_LT((A * x - b).norm(), 1e-12 * b.norm());
 }
 
-// Eigen's simplicial factor with minimum degree has 143 121 numbers.
 TEST(Cholesky, FillOfTheMembraneIsThatOfAGoodOrdering) {
   FemModel model = testing::slab_model();
   SystemMatrix matrix(model);
   Cholesky cholesky;
   cholesky.analyse(matrix.matrix());
-  EXPECT_LT(cholesky.fill(), 175000);
+  EXPECT_LT(cholesky.fill(), 150000);
   EXPECT_GT(cholesky.fill(), matrix.matrix().nonZeros() / 2);
 }
 
