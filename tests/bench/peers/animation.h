@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What every peer codes: a mesh whose vertices move, on an integer grid.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "codec/base/fixed.h"
+#include "codec/base/tri_mesh.h"
+
+namespace tactus::peers {
+
+struct Animation {
+  std::string name;
+  std::vector<Triangle> triangles;
+  std::vector<Vec3i> rest;
+  std::vector<std::vector<Vec3i>> frames;  ///< positions, grid units
+};
+
+/// Grid: the diagonal of the rest shape's bounding box is 2^`bits` units.
+///   x.mcap            the first mesh of a trace, at the ticks at which its shape is new
+///   x.md3, x.md3:NAME all surfaces of an MD3 model, or one; its first frame is the rest shape
+/// At most `limit` frames are taken.   err  why not, for a person
+tl::expected<Animation, std::string> read_animation(const std::string& input, unsigned bits, std::size_t limit);
+
+/// The `count` vertices nearest to vertex 0 along edges, with the triangles between them; all of it if there are no more.
+Animation patch_of(const Animation& whole, std::size_t count);
+
+}  // namespace tactus::peers

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/bench/peers/link.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "codec/mesh/mesh.h"
+#include "codec/mesh/mesh_decoder.h"
+#include "codec/mesh/mesh_encoder.h"
+
+namespace tactus::peers {
+namespace {
+
+class PeerLink final : public Link {
+ public:
+  PeerLink(std::unique_ptr<VertexCoder> coder, bool predicted, std::size_t vertices)
+      : coder_(std::move(coder)), predicted_(predicted), before_(vertices), values_(vertices) {}
+
+  Bytes encode(std::size_t, std::span<const Vec3i> positions) override {
+    for (std::size_t v = 0; v < positions.size(); ++v)
+      for (std::size_t axis = 0; axis < 3; ++axis) values_[v][axis] = positions[v][axis] - before_[v][axis];
+    remember(positions);
+    return coder_->encode(values_);
+  }
+  bool decode(std::size_t, std::span<const std::uint8_t> packet, std::span<Vec3i> positions) override {
+    if (!coder_->decode(packet, values_)) return false;
+    for (std::size_t v = 0; v < positions.size(); ++v)
+      for (std::size_t axis = 0; axis < 3; ++axis) positions[v][axis] = values_[v][axis] + before_[v][axis];
+    remember(positions);
+    return true;
+  }
+
+ private:
+  void remember(std::span<const Vec3i> positions) {
+    if (predicted_) std::copy(positions.begin(), positions.end(), before_.begin());
+  }
+
+  std::unique_ptr<VertexCoder> coder_;
+  bool predicted_;
+  std::vector<Vec3i> before_, values_;
+};
+
+constexpr std::uint32_t kFrameRate = 60;
+
+struct OurSetting {
+  MeshProfile profile = MeshProfile::main;
+  bool models_kept = false;  ///< thesis
+  bool neighbours = true;    ///< false: main's coder with nothing but prediction in time
+  bool chained = true;       ///< false: every packet is a key packet
+};
+
+StreamHeader header_of(const Animation& animation, const OurSetting& setting) {
+  StreamHeader header;
+  header.tick_rate = kFrameRate;
+  MeshObject mesh;
+  mesh.name = "mesh";
+  mesh.profile = setting.profile;
+  mesh.models_kept = setting.models_kept;
+  mesh.rest = animation.rest;
+  if (setting.neighbours) {
+    mesh.triangles = animation.triangles;
+  } else {
+    for (std::size_t v = 0; v < mesh.rest.size(); ++v) mesh.rest[v] = {static_cast<std::int32_t>(v), 0, 0};
+  }
+  header.meshes.push_back(std::move(mesh));
+  return header;
+}
+
+MeshEncoderOptions options_of(const OurSetting& setting) {
+  MeshEncoderOptions options;
+  options.thresholds.visual = 0;
+  options.thresholds.weber_fraction = {};
+  options.key_interval = setting.chained ? 0 : 0.5 / kFrameRate;
+  return options;
+}
+
+class OurLink final : public Link {
+ public:
+  OurLink(const Animation& animation, const OurSetting& setting)
+      : rest_(animation.rest),
+        displacement_(rest_.size()),
+        encoder_(MeshEncoder::create(header_of(animation, setting), 0, options_of(setting)).value()),
+        decoder_(MeshDecoder::create(header_of(animation, setting), 0).value()) {}
+
+  Bytes encode(std::size_t frame, std::span<const Vec3i> positions) override {
+    const double unit = std::ldexp(1.0, -encoder_.header().grid.position);  // the grid stays, only its unit gets another name
+    for (std::size_t v = 0; v < rest_.size(); ++v) {
+      const auto part = [&](std::size_t axis) { return (positions[v][axis] - rest_[v][axis]) * unit; };
+      displacement_[v] = {part(0), part(1), part(2)};
+    }
+    const auto packet = encoder_.encode(static_cast<std::int64_t>(frame), displacement_).value();
+    return {packet.bytes.begin(), packet.bytes.end()};
+  }
+  bool decode(std::size_t frame, std::span<const std::uint8_t> packet, std::span<Vec3i> positions) override {
+    if (!packet.empty() && !decoder_.decode(packet)) return false;
+    const auto shown = decoder_.displacements_at(static_cast<std::int64_t>(frame));
+    for (std::size_t v = 0; v < rest_.size(); ++v)
+      for (std::size_t axis = 0; axis < 3; ++axis) positions[v][axis] = rest_[v][axis] + shown[v][axis];
+    return true;
+  }
+
+ private:
+  std::vector<Vec3i> rest_;
+  std::vector<Vec3> displacement_;
+  MeshEncoder encoder_;
+  MeshDecoder decoder_;
+};
+
+Scheme ours(const char* name, const char* text, const OurSetting& setting) {
+  return {name, text, setting.chained,
+          [setting](const Animation& a) -> std::unique_ptr<Link> { return std::make_unique<OurLink>(a, setting); }};
+}
+
+}  // namespace
+
+std::vector<Peer> peers() {
+  std::vector<Peer> out;
+  std::vector<std::string> absent;
+  add_general_peers(out, absent);
+#ifdef TACTUS_PEER_DRACO
+  add_draco(out);
+#endif
+#ifdef TACTUS_PEER_MESHOPTIMIZER
+  add_meshoptimizer(out);
+#endif
+#ifdef TACTUS_PEER_OPEN3DGC
+  add_open3dgc(out);
+#endif
+#ifdef TACTUS_PEER_ZFP
+  add_zfp(out);
+#endif
+  return out;
+}
+
+std::vector<std::string> absent_peers() {
+  std::vector<Peer> ignored;
+  std::vector<std::string> absent;
+  add_general_peers(ignored, absent);
+#ifndef TACTUS_PEER_DRACO
+  absent.emplace_back("Draco (apt-get install libdraco-dev)");
+#endif
+#ifndef TACTUS_PEER_MESHOPTIMIZER
+  absent.emplace_back("meshoptimizer (apt-get install libmeshoptimizer-dev)");
+#endif
+#ifndef TACTUS_PEER_OPEN3DGC
+  absent.emplace_back("Open3DGC (apt-get install libo3dgc-dev)");
+#endif
+#ifndef TACTUS_PEER_ZFP
+  absent.emplace_back("zfp (apt-get install libzfp-dev)");
+#endif
+  return absent;
+}
+
+std::vector<Scheme> all_schemes() {
+  std::vector<Scheme> out;
+  out.push_back(ours("tactus main", "key packets", {MeshProfile::main, false, true, false}));
+  out.push_back(ours("tactus main", "", {MeshProfile::main, false, true, true}));
+  out.push_back(ours("same coder, time prediction only", "", {MeshProfile::main, false, false, true}));
+  out.push_back(ours("tactus thesis (8 bits)", "key packets", {MeshProfile::thesis, false, true, false}));
+  out.push_back(ours("tactus thesis (8 bits)", "models restarted", {MeshProfile::thesis, false, true, true}));
+  out.push_back(ours("tactus thesis (8 bits)", "models kept", {MeshProfile::thesis, true, true, true}));
+  for (const Peer& peer : peers()) {
+    for (const bool predicted : {false, true}) {
+      const auto make = [peer, predicted](const Animation& a) -> std::unique_ptr<Link> {
+        return std::make_unique<PeerLink>(peer.make(a), predicted, a.rest.size());
+      };
+      out.push_back({peer.name, peer.setting, predicted, make});
+    }
+  }
+  return out;
+}
+
+}  // namespace tactus::peers

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What one scheme makes of one animation.
+#pragma once
+
+#include <optional>
+
+#include "tests/bench/peers/link.h"
+
+namespace tactus::peers {
+
+struct Measurement {
+  double bytes = 0;                     ///< per frame, mean over all but the first
+  double bits_per_vertex = 0;           ///< the same, per vertex
+  double encode_us = 0, decode_us = 0;  ///< CPU time per frame, median
+  std::int32_t error = 0;               ///< largest of all vertices, axes and frames, grid units
+  std::optional<bool> survives;         ///< after one packet was lost the next one decodes to the same; none: never two in a row
+};
+
+/// None: the scheme cannot carry this mesh.
+std::optional<Measurement> measure(const Animation& animation, const Scheme& scheme);
+
+}  // namespace tactus::peers
