@@ -9,7 +9,7 @@
 set -eu
 cd "$(dirname "$0")"
 
-build_packages='g++ cmake ninja-build pkgconf libexpected-dev libzstd-dev libode-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev libeigen3-dev libsuitesparse-dev libopenmesh-dev'
+build_packages='g++ cmake ninja-build pkgconf libexpected-dev libzstd-dev libode-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev libeigen3-dev libsuitesparse-dev libspectra-dev libopenmesh-dev'
 test_packages='clang libclang-rt-dev clang-tidy clang-format libgtest-dev python3 tetgen gnuplot-nox valgrind'
 bench_packages='libbenchmark-dev libgtest-dev python3 libbullet-dev gnuplot-nox'
 

@@ -12,6 +12,7 @@ namespace {
 struct CompareOptions {
   std::string truth, replica;
   TriggerArguments triggers;
+  MeshArguments meshes;
   CommonOptions common;
 };
 
@@ -30,7 +31,40 @@ Outcome check_same_scene(const CompareOptions& options, const TraceInfo& truth, 
       return differ(fmt::format("object {} is \"{}\", not \"{}\"", i, replica.objects[i].name, truth.objects[i].name));
     }
   }
+  if (truth.meshes.size() != replica.meshes.size())
+    return differ(fmt::format("there are {} meshes, not {}", replica.meshes.size(), truth.meshes.size()));
+  for (std::size_t i = 0; i < truth.meshes.size(); ++i) {
+    const TraceMesh &a = truth.meshes[i], &b = replica.meshes[i];
+    if (a.name != b.name) return differ(fmt::format("mesh {} is \"{}\", not \"{}\"", i, b.name, a.name));
+    if (a.rest.vertices.size() != b.rest.vertices.size() || a.rest.triangles != b.rest.triangles)
+      return differ(fmt::format("mesh \"{}\" does not have the same vertices and triangles", a.name));
+  }
   return {};
+}
+
+/// What the replica shows, of which every tick brings only what is new.
+struct Shown {
+  std::vector<Pose> poses;
+  std::vector<std::vector<Vec3>> shapes;  // displacements
+
+  explicit Shown(const TraceInfo& info) : poses(info.objects.size()) {
+    for (const TraceMesh& mesh : info.meshes) shapes.emplace_back(mesh.rest.vertices.size());
+  }
+  void take(const TraceFrame& frame) {
+    for (std::size_t i = 0; i < poses.size(); ++i) poses[i] = frame.objects[i].pose;
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      if (!frame.meshes[i].updated) continue;
+      const float* u = frame.meshes[i].displacements.data();
+      for (Vec3& vertex : shapes[i]) vertex = {u[0], u[1], u[2]}, u += 3;
+    }
+  }
+};
+
+void add(const TraceFrame& truth, const Shown& shown, Report& report) {
+  report.fidelity->add(truth, shown.poses);
+  for (std::size_t i = 0; i < shown.shapes.size(); ++i)
+    if (truth.meshes[i].updated)
+      report.meshes[i].fidelity->add(truth.meshes[i].displacements, shown.shapes[i], touch_of(truth, i));
 }
 
 /// Both traces side by side; ticks that only one of them has are passed over.
@@ -39,25 +73,25 @@ tl::expected<std::uint64_t, Failure> compare_all(TraceReader& truth, TraceReader
                                                  Report& report) {
   Progress progress("compare", truth.frame_count(), options.common.progress());
   std::uint64_t unmatched = 0;
-  TraceFrame frame, shown;
-  std::vector<Pose> poses(truth.info().objects.size());
+  TraceFrame frame, next_shown;
+  Shown shown(truth.info());
   bool more = true;
-  shown.tick = -1;
+  next_shown.tick = -1;
   while (true) {
     const auto next = truth.next(frame);
     if (!next) return refuse(options.truth, next.error());
     if (!*next) return unmatched;
-    while (more && shown.tick < frame.tick) {
-      const auto advanced = replica.next(shown);
+    while (more && next_shown.tick < frame.tick) {
+      const auto advanced = replica.next(next_shown);
       if (!advanced) return refuse(options.replica, advanced.error());
       more = *advanced;
+      if (more) shown.take(next_shown);
     }
-    if (!more || shown.tick != frame.tick) {
+    if (!more || next_shown.tick != frame.tick) {
       ++unmatched;
       continue;
     }
-    for (std::size_t i = 0; i < poses.size(); ++i) poses[i] = shown.objects[i].pose;
-    report.timings[0].times.measure([&] { return report.fidelity->add(frame, poses), true; });
+    report.timings[0].times.measure([&] { return add(frame, shown, report), true; });
     progress.update(++report.ticks);
   }
 }
@@ -71,10 +105,12 @@ Outcome run(const CompareOptions& options) {
 
   Report report{.command = "compare", .files = {{"truth", options.truth}, {"replica", options.replica}}};
   report.describe(truth->info());
-  if (!truth->info().meshes.empty())
-    report.notes.emplace_back("meshes",
-                              fmt::format("{} in the trace, not compared yet: rigid objects only", truth->info().meshes.size()));
   report.fidelity.emplace(truth->info(), options.triggers.triggers());
+  for (const TraceMesh& mesh : truth->info().meshes)
+    report.meshes.push_back({.name = mesh.name,
+                             .vertices = mesh.rest.vertices.size(),
+                             .fidelity = MeshFidelity(mesh.rest, options.meshes.thresholds(options.triggers),
+                                                      options.meshes.rings(), GridExponents{}.position)});
   report.timings = {{"compare, per tick", {}}};
   const auto unmatched = compare_all(*truth, *replica, options, report);
   if (!unmatched) return tl::unexpected(unmatched.error());
@@ -97,6 +133,7 @@ void setup_compare(CLI::App& app, Action& action) {
   command.add_option("TRUTH", options->truth, "What truly happened (MCAP)")->type_name("")->required();
   command.add_option("REPLICA", options->replica, "What a client showed (MCAP)")->type_name("")->required();
   options->triggers.add_to(command);
+  options->meshes.add_to(command);
   add_report_options(command, options->common);
   command.footer(
       "Ticks over a bound are counted; give the bounds that the stream was encoded with.\n"

@@ -2,6 +2,7 @@
 #include "cli/cmd_decode.h"
 
 #include "cli/report.h"
+#include "codec/mesh/mesh.h"
 #include "codec/trace/trace_file.h"
 
 namespace tactus::cli {
@@ -50,18 +51,45 @@ TraceInfo replica_info(const StreamHeader& header, const std::string& input) {
   info.tick_rate = header.tick_rate;
   info.source = "decode " + input;
   for (const RigidObject& object : header.objects) info.objects.push_back({object.name, object.dof});
+  for (const MeshObject& mesh : header.meshes) {
+    TraceMesh& out = info.meshes.emplace_back(TraceMesh{.name = mesh.name, .rest = {{}, mesh.triangles}});
+    for (const auto& vertex : mesh.rest) out.rest.vertices.push_back(to_metres(vertex, header.grid.position));
+    out.period = mesh.frame_period / 256.0;
+  }
   return info;
 }
 
-/// Bring the player to `tick` and take over what it shows there: poses only, a replica has no velocities of its own.
-Result<void> decode_tick(StreamPlayer& player, std::int64_t tick, TraceFrame& frame, Traffic& traffic) {
+/// The shape that the player shows at a tick; new if any vertex is elsewhere than in the one before.
+void show(StreamPlayer& player, std::size_t mesh, std::int64_t tick, MeshSample& sample) {
+  sample.updated = false;
+  auto out = sample.displacements.begin();
+  const auto put = [&](double metres) {
+    const auto value = static_cast<float>(metres);
+    sample.updated = sample.updated || *out != value;
+    *out++ = value;
+  };
+  for (const auto& displacement : player.displacements(mesh, tick)) {
+    const Vec3 u = to_metres(displacement, player.header().grid.position);
+    put(u.x), put(u.y), put(u.z);
+  }
+}
+
+void count(const StreamPlayer::Played& played, Report& report) {
+  if (played.part > 0) report.meshes[played.part - 1].traffic->add(played.bytes, played.mesh.updates, played.mesh.key);
+  else if (report.traffic)
+    report.traffic->add(strongest_reason(played.packet), played.packet.updates.size(), played.bytes, played.packet.key);
+}
+
+/// Bring the player to `tick` and take over what it shows there: poses and shapes, a replica has no velocities of its own.
+Result<void> decode_tick(StreamPlayer& player, std::int64_t tick, TraceFrame& frame, Report& report) {
   while (true) {
     TACTUS_TRY(const auto played, player.play(tick));
     if (!played) break;
-    traffic.add(strongest_reason(played->packet), played->packet.updates.size(), played->bytes, played->packet.key);
+    count(*played, report);
   }
   frame.tick = tick;
   for (std::uint32_t i = 0; i < frame.objects.size(); ++i) frame.objects[i].pose = player.pose(i, tick);
+  for (std::size_t i = 0; i < frame.meshes.size(); ++i) show(player, i, tick, frame.meshes[i]);
   return {};
 }
 
@@ -70,13 +98,14 @@ Outcome decode_all(StreamPlayer& player, TraceWriter& writer, const DecodeOption
   if (!ticks) return tl::unexpected(ticks.error());
   TraceFrame frame;
   frame.objects.resize(player.header().objects.size());
+  for (const MeshObject& mesh : player.header().meshes) frame.meshes.push_back({false, std::vector<float>(3 * mesh.rest.size())});
   const auto total = options.ticks ? std::optional(static_cast<std::uint64_t>(*options.ticks)) : std::nullopt;
   Progress progress("decode", total, options.common.progress());
   while (true) {
     const auto tick = ticks->next(player);
     if (!tick) return tl::unexpected(tick.error());
     if (!*tick) break;
-    const auto decoded = report.timings[0].times.measure([&] { return decode_tick(player, **tick, frame, *report.traffic); });
+    const auto decoded = report.timings[0].times.measure([&] { return decode_tick(player, **tick, frame, report); });
     if (!decoded) return refuse(options.input, decoded.error());
     if (const auto written = writer.write(frame); !written)
       return refuse(options.output, place_of_tick(frame.tick), written.error());
@@ -99,10 +128,12 @@ Outcome run(const DecodeOptions& options) {
 
   Report report{.command = "decode", .files = {{"stream", options.input}, {"replica", options.output}}};
   report.describe(info);
-  report.traffic.emplace();
+  if (report.moving > 0 || info.meshes.empty()) report.traffic.emplace();
+  for (const TraceMesh& mesh : info.meshes)
+    report.meshes.push_back({.name = mesh.name, .vertices = mesh.rest.vertices.size(), .traffic = MeshTraffic{}});
   report.timings = {{"decode and show, per tick", {}}};
   const bool smooth = options.replica.interpolation == Interpolation::linear;
-  report.notes.emplace_back("client", smooth ? "interpolates" : "applies updates at once");
+  if (report.traffic) report.notes.emplace_back("client", smooth ? "interpolates" : "applies updates at once");
   if (auto done = decode_all(*player, *writer, options, report); !done) return done;
   if (const auto rest = player->next_tick(); rest && !*rest && !player->complete()) {
     report.notes.emplace_back("warning", "the stream has no trailer: its writer did not finish");

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/cmd_encode.h"
 
-#include <fmt/format.h>
+#include <algorithm>
+#include <optional>
 
 #include "cli/report.h"
 #include "codec/trace/trace_file.h"
@@ -12,45 +13,77 @@ namespace {
 struct EncodeOptions {
   std::string input, output;
   TriggerArguments triggers;
+  MeshArguments meshes;
   CommonOptions common;
 };
 
-/// The stream being written and, beside it, the decoder that proves what a client sees.
-struct Session {
+/// Rigid objects on their way: encoder and, beside it, the decoder that proves what a client sees.
+struct RigidLink {
   RigidEncoder encoder;
   RigidDecoder decoder;
   Replica replica;
-  StreamFileWriter writer;
   std::vector<Contact> contacts;
   std::vector<Pose> shown;
 };
 
-Result<Session> start(const TraceInfo& info, const TraceFrame& first, const RigidEncoderOptions& options, std::ostream& out) {
-  TACTUS_TRY(const StreamHeader header, stream_header(info, first));
-  TACTUS_TRY(RigidEncoder encoder, RigidEncoder::create(header, options));
-  TACTUS_TRY(RigidDecoder decoder, RigidDecoder::create(header));
-  TACTUS_TRY(Replica replica, Replica::create(header));
+struct Session {
+  StreamFileWriter writer;
+  PartJoiner parts;
+  std::optional<RigidLink> rigid;  // none: nothing rigid can move
+  std::vector<MeshLink> meshes;
+};
+
+bool has_moving(const TraceInfo& info) {
+  return std::ranges::any_of(info.objects, [](const TraceObject& o) { return o.dof != Dof::none; });
+}
+
+Result<Session> start(const TraceInfo& info, const TraceFrame& first, const EncodeOptions& options, std::ostream& out) {
+  TACTUS_TRY(const StreamHeader header, stream_header(info, first, options.meshes.coding()));
   TACTUS_TRY(StreamFileWriter writer, StreamFileWriter::create(out, header));
-  return Session{std::move(encoder),
-                 std::move(decoder),
-                 std::move(replica),
-                 std::move(writer),
-                 std::vector<Contact>(info.users.size()),
-                 std::vector<Pose>(info.objects.size())};
+  Session session{std::move(writer), PartJoiner(header), std::nullopt, {}};
+  if (has_moving(info) || info.meshes.empty()) {
+    TACTUS_TRY(RigidEncoder encoder, RigidEncoder::create(header, options.triggers.encoder()));
+    TACTUS_TRY(RigidDecoder decoder, RigidDecoder::create(header));
+    TACTUS_TRY(Replica replica, Replica::create(header));
+    session.rigid.emplace(RigidLink{std::move(encoder), std::move(decoder), std::move(replica),
+                                    std::vector<Contact>(info.users.size()), std::vector<Pose>(info.objects.size())});
+  }
+  for (std::size_t i = 0; i < header.meshes.size(); ++i) {
+    TACTUS_TRY(MeshLink link, MeshLink::create(header, i, options.meshes.encoder(options.triggers)));
+    session.meshes.push_back(std::move(link));
+  }
+  return session;
+}
+
+Result<void> encode_rigid(Session& s, const TraceFrame& frame, Report& report) {
+  RigidLink& link = *s.rigid;
+  for (std::size_t i = 0; i < frame.users.size(); ++i) link.contacts[i] = frame.users[i].contact;
+  TACTUS_TRY(const EncodedPacket packet,
+             report.timings[0].times.measure([&] { return link.encoder.encode(frame.tick, frame.objects, link.contacts); }));
+  if (!packet.bytes.empty()) {
+    const auto bytes = s.parts.join(0, packet.bytes);
+    TACTUS_CHECK(s.writer.add(frame.tick, bytes, packet.key));
+    report.traffic->add(packet.reason, packet.updates, bytes.size(), packet.key);
+    TACTUS_TRY(const DecodedPacket decoded, report.timings[1].times.measure([&] { return link.decoder.decode(packet.bytes); }));
+    link.replica.apply(decoded, link.decoder.objects(), frame.tick);
+  }
+  for (std::uint32_t i = 0; i < link.shown.size(); ++i)
+    link.shown[i] = to_pose(link.replica.pose(i, frame.tick), link.decoder.header().grid);
+  report.fidelity->add(frame, link.shown);
+  return {};
 }
 
 Result<void> encode_frame(Session& s, const TraceFrame& frame, Report& report) {
-  for (std::size_t i = 0; i < frame.users.size(); ++i) s.contacts[i] = frame.users[i].contact;
-  TACTUS_TRY(const EncodedPacket packet,
-             report.timings[0].times.measure([&] { return s.encoder.encode(frame.tick, frame.objects, s.contacts); }));
-  if (!packet.bytes.empty()) {
-    TACTUS_CHECK(s.writer.add(frame.tick, packet.bytes, packet.key));
-    report.traffic->add(packet.reason, packet.updates, packet.bytes.size(), packet.key);
-    TACTUS_TRY(const DecodedPacket decoded, report.timings[1].times.measure([&] { return s.decoder.decode(packet.bytes); }));
-    s.replica.apply(decoded, s.decoder.objects(), frame.tick);
+  if (s.rigid) TACTUS_CHECK(encode_rigid(s, frame, report));
+  for (std::size_t i = 0; i < s.meshes.size(); ++i) {
+    if (!frame.meshes[i].updated) continue;
+    TACTUS_TRY(const EncodedMeshPacket packet, transmit(s.meshes[i], frame, i, report.meshes[i]));
+    ++report.meshes[i].traffic->frames;
+    if (packet.bytes.empty()) continue;
+    const auto bytes = s.parts.join(i + 1, packet.bytes);
+    TACTUS_CHECK(s.writer.add(frame.tick, bytes, packet.key));
+    report.meshes[i].traffic->add(bytes.size(), packet.updates, packet.key);
   }
-  for (std::uint32_t i = 0; i < s.shown.size(); ++i) s.shown[i] = to_pose(s.replica.pose(i, frame.tick), s.decoder.header().grid);
-  report.fidelity->add(frame, s.shown);
   ++report.ticks;
   return {};
 }
@@ -82,17 +115,16 @@ Outcome run(const EncodeOptions& options) {
   const auto stream = output->open();
   if (!stream) return tl::unexpected(stream.error());
 
-  const RigidEncoderOptions encoder = options.triggers.encoder();
-  auto session = start(reader->info(), frame, encoder, **stream);
+  auto session = start(reader->info(), frame, options, **stream);
   if (!session) return refuse(options.input, session.error());
   Report report{.command = "encode", .files = {{"trace", options.input}, {"stream", options.output}}};
   report.describe(reader->info());
-  if (!reader->info().meshes.empty())
-    report.notes.emplace_back("meshes",
-                              fmt::format("{} in the trace, not coded yet: rigid objects only", reader->info().meshes.size()));
-  report.traffic.emplace();
-  report.fidelity.emplace(reader->info(), encoder.triggers);
-  report.timings = {{"encode, per tick", {}}, {"decode, per packet", {}}};
+  if (session->rigid) {
+    report.traffic.emplace();
+    report.fidelity.emplace(reader->info(), options.triggers.triggers());
+    report.timings = {{"encode, per tick", {}}, {"decode, per packet", {}}};
+  }
+  add_meshes(reader->info(), options.meshes, options.triggers, report);
   if (auto done = encode_all(*reader, *session, frame, options, report); !done) return done;
   if (reader->cut_short())
     report.notes.emplace_back("warning", "the trace ends without its index; everything up to there was encoded");
@@ -110,11 +142,14 @@ void setup_encode(CLI::App& app, Action& action) {
   command.add_option("-o,--output", options->output, "Stream to write, - is standard output")->required()->type_name("FILE");
   options->triggers.add_to(command);
   options->triggers.add_encoder_to(command);
+  options->meshes.add_to(command);
+  options->meshes.add_encoder_to(command);
   add_output_options(command, options->common);
   command.footer(
       "Examples:\n"
       "  tactus encode push.mcap -o push.tct -p 4% --visual 6mm,2deg\n"
-      "  tactus encode tosses.mcap -o tosses.tct --visual 5mm,4deg --haptic off");
+      "  tactus encode tosses.mcap -o tosses.tct --visual 5mm,4deg --haptic off\n"
+      "  tactus encode membrane.mcap -o membrane.tct -p 2.5% --mesh-visual 0.25mm --basis 48");
   on_chosen<EncodeOptions>(command, action, options, run);
 }
 

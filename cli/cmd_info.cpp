@@ -85,48 +85,96 @@ void print_info(const Json& info) {
   }
 }
 
-Json packet_json(const StreamPlayer::Played& played) {
-  const DecodedPacket& p = played.packet;
-  Json out{
-      {"tick", p.tick},        {"byte", played.offset},      {"sequence", p.sequence},
-      {"bytes", played.bytes}, {"key", p.key ? "key" : "-"}, {"reason", kReasons[static_cast<std::size_t>(strongest_reason(p))]}};
-  std::string updates;
-  for (const RigidUpdate& u : p.updates) updates += fmt::format("{}{}:{}", updates.empty() ? "" : " ", u.object, u.level);
+std::string name_of_part(const StreamHeader& header, std::size_t part) {
+  return part == 0 ? "rigid objects" : header.meshes[part - 1].name;
+}
+
+Json packet_json(const StreamPlayer::Played& played, const StreamHeader& header) {
+  const bool is_rigid = played.part == 0;
+  Json out{{"tick", played.tick()},
+           {"byte", played.offset},
+           {"sequence", played.sequence()},
+           {"bytes", played.bytes},
+           {"key", played.key() ? "key" : "-"}};
+  if (!header.meshes.empty()) out["part"] = name_of_part(header, played.part);
+  out["reason"] = is_rigid ? kReasons[static_cast<std::size_t>(strongest_reason(played.packet))] : "-";
+  std::string updates = is_rigid ? "" : fmt::format("{} vertices", played.mesh.updates);
+  for (const RigidUpdate& u : played.packet.updates)
+    updates += fmt::format("{}{}:{}", updates.empty() ? "" : " ", u.object, u.level);
   out["object:level"] = updates;
   return out;
 }
 
+/// Sizes of packets.
+struct Sizes {
+  std::uint64_t packets = 0, bytes = 0;
+  std::size_t smallest = SIZE_MAX, largest = 0;
+
+  void add(std::size_t size) {
+    ++packets;
+    bytes += size;
+    smallest = std::min(smallest, size);
+    largest = std::max(largest, size);
+  }
+  std::string text() const {
+    if (packets == 0) return "-";
+    return fmt::format("{} to {}, mean {:.2f}", smallest, largest, static_cast<double>(bytes) / static_cast<double>(packets));
+  }
+};
+
 /// Totals over a stream's packets.
 struct StreamTotals {
+  explicit StreamTotals(const StreamHeader& header) : meshes(header.meshes.size()) {}
+
   Traffic traffic;
   std::array<std::uint64_t, 8> levels{};
   std::int64_t last_tick = 0;
-  std::size_t smallest = SIZE_MAX, largest = 0;
+  Sizes rigid;
+  std::vector<MeshTraffic> meshes;
 
   void add(const StreamPlayer::Played& p) {
+    last_tick = p.tick();
+    if (p.part > 0) return meshes[p.part - 1].add(p.bytes, p.mesh.updates, p.mesh.key);
     traffic.add(strongest_reason(p.packet), p.packet.updates.size(), p.bytes, p.packet.key);
     for (const RigidUpdate& u : p.packet.updates) ++levels[u.level % levels.size()];
-    last_tick = p.packet.tick;
-    smallest = std::min(smallest, p.bytes);
-    largest = std::max(largest, p.bytes);
+    rigid.add(p.bytes);
   }
   void write_to(Json& out) const {
+    if (traffic.all_packets() > 0 || meshes.empty()) write_rigid(out);
+    out["last tick"] = last_tick;
+  }
+  void write_rigid(Json& out) const {
     out["packets"] = traffic.all_packets();
     out["updates"] = traffic.updates;
     out["key packets"] = traffic.keys;
     if (traffic.all_packets() == 0) return;
     for (std::size_t i = kReasons.size(); i-- > 0;) out[fmt::format("for {}", kReasons[i])] = traffic.packets[i];
     out["bytes"] = traffic.bytes;
-    out["bytes per packet"] = fmt::format("{} to {}, mean {:.2f}", smallest, largest,
-                                          static_cast<double>(traffic.bytes) / static_cast<double>(traffic.all_packets()));
+    out["bytes per packet"] = rigid.text();
     std::string text;
     for (std::size_t i = 0; i < levels.size(); ++i) {
       if (levels[i] > 0) text += fmt::format("{}{} x level {}", text.empty() ? "" : ", ", levels[i], i);
     }
     out["grid levels"] = text;
-    out["last tick"] = last_tick;
   }
 };
+
+/// How a mesh is coded, and what of it the stream holds.
+Json mesh_json(const MeshObject& mesh, const StreamHeader& header, const MeshTraffic& t) {
+  const bool is_main = mesh.profile == MeshProfile::main;
+  return {{"mesh", mesh.name},
+          {"profile", is_main ? "main" : fmt::format("thesis, q {}{}", mesh.quant_bits, mesh.models_kept ? ", models kept" : "")},
+          {"vertices", mesh.rest.size()},
+          {"triangles", mesh.triangles.size()},
+          {"rings", mesh.rings},
+          {"modes", mesh.basis.steps.size()},
+          {"frame [ms]", is_main ? Json(1e3 / 256 * mesh.frame_period / header.tick_rate) : Json("-")},
+          {"packets", t.sizes.size()},
+          {"keys", t.keys},
+          {"bytes", t.bytes},
+          {"p99", t.quantile(0.99)},
+          {"largest", t.quantile(1)}};
+}
 
 Json header_json(const StreamHeader& h, std::size_t size) {
   const auto step = [](std::uint8_t exponent) { return 1.0 / static_cast<double>(std::uint64_t{1} << exponent); };
@@ -147,7 +195,7 @@ Outcome info_stream(const InfoOptions& options) {
   auto player = StreamPlayer::open({reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()});
   if (!player) return refuse(options.input, player.error());
   Json info = header_json(player->header(), bytes->size());
-  StreamTotals totals;
+  StreamTotals totals(player->header());
   Json packets = Json::array();
   std::optional<Error> error;
   while (true) {
@@ -155,7 +203,7 @@ Outcome info_stream(const InfoOptions& options) {
     if (!played) error = played.error();
     if (!played || !*played) break;
     totals.add(**played);
-    if (options.packets) packets.push_back(packet_json(**played));
+    if (options.packets) packets.push_back(packet_json(**played, player->header()));
   }
   totals.write_to(info);
   info["ending"] = error                ? fmt::format("broken at {} ({})", place_of_bit(error->bit_offset), error->rule)
@@ -168,6 +216,8 @@ Outcome info_stream(const InfoOptions& options) {
          {"moves along", dof_text(o.dof)},
          {"first position [m]", fmt::format("{:.4f} {:.4f} {:.4f}", pose.position.x, pose.position.y, pose.position.z)}});
   }
+  for (std::size_t i = 0; i < totals.meshes.size(); ++i)
+    info["meshes"].push_back(mesh_json(player->header().meshes[i], player->header(), totals.meshes[i]));
   if (options.packets) info["packet list"] = std::move(packets);
   if (auto shown = show(info, options.json, print_info); !shown || !error) return shown;
   return refuse(options.input, *error);
@@ -227,6 +277,8 @@ Outcome info_trace(const InfoOptions& options) {
     info["meshes"].push_back({{"mesh", trace.meshes[i].name},
                               {"vertices", rest.vertices.size()},
                               {"triangles", rest.triangles.size()},
+                              {"fixed", trace.meshes[i].fixed.size()},
+                              {"period [ticks]", trace.meshes[i].period},
                               {"new shapes", shapes[i]}});
   }
   for (const std::string& user : trace.users) info["users"].push_back({{"user", user}});

@@ -24,11 +24,12 @@ struct SimOptions {
   std::optional<Grip> grip;
   bool codec = false;
   TriggerArguments triggers;
+  MeshArguments meshes;
   ReplicaOptions replica;
   CommonOptions common;
 
   bool has_channel() const {
-    return codec || !stream.empty() || triggers.any_given() || replica.interpolation != Interpolation::none;
+    return codec || !stream.empty() || triggers.any_given() || meshes.any_given() || replica.interpolation != Interpolation::none;
   }
 };
 
@@ -36,6 +37,7 @@ struct SimOptions {
 struct StreamOutput {
   OutputFile file;
   StreamFileWriter writer;
+  PartJoiner parts;
 };
 
 tl::expected<StreamOutput, Failure> open_stream(const SimOptions& options, const StreamHeader& header) {
@@ -45,7 +47,7 @@ tl::expected<StreamOutput, Failure> open_stream(const SimOptions& options, const
   if (!out) return tl::unexpected(out.error());
   auto writer = StreamFileWriter::create(**out, header);
   if (!writer) return refuse(options.stream, writer.error());
-  return StreamOutput{std::move(*file), std::move(*writer)};
+  return StreamOutput{std::move(*file), std::move(*writer), PartJoiner(header)};
 }
 
 constexpr std::uint32_t kEstimateEvery = 50;  // deformations between looks at their error
@@ -56,6 +58,7 @@ struct Run {
   std::optional<StreamOutput> stream;
   std::optional<TraceReader> recording;
   TraceFrame recorded;
+  std::size_t part_bytes = 0;  // in front of every packet
   std::uint64_t ticks_in_contact = 0;
   double largest_force = 0;
 };
@@ -70,16 +73,35 @@ tl::expected<EncodedPacket, Failure> step(Run& run, const SimOptions& options, S
   return refuse(fmt::format("{}, {}: {}", options.scene, place_of_tick(error.tick), error.remedy), "");
 }
 
+/// What the channel did with meshes that are new in this tick.
+Outcome record_meshes(Run& run, const SimOptions& options, Report& report) {
+  const TraceFrame& frame = run.simulation.frame();
+  for (std::size_t i = 0; i < report.meshes.size(); ++i) {
+    if (!frame.meshes[i].updated) continue;
+    const MeshSent& sent = run.simulation.sent(i);
+    MeshTraffic& traffic = *report.meshes[i].traffic;
+    ++traffic.frames;
+    report.meshes[i].fidelity->add(frame.meshes[i].displacements, sent.shown, touch_of(frame, i));
+    if (sent.bytes.empty()) continue;
+    traffic.add(sent.bytes.size() + run.part_bytes, sent.updates, sent.key);
+    if (!run.stream) continue;
+    const auto added = run.stream->writer.add(frame.tick, run.stream->parts.join(i + 1, sent.bytes), sent.key);
+    if (!added) return refuse(options.stream, added.error());
+  }
+  return {};
+}
+
 Outcome record(Run& run, const EncodedPacket& packet, const SimOptions& options, Report& report) {
   const TraceFrame& frame = run.simulation.frame();
   if (const auto written = run.trace.write(frame); !written)
     return refuse(options.output, place_of_tick(frame.tick), written.error());
   if (report.traffic && !packet.bytes.empty())
-    report.traffic->add(packet.reason, packet.updates, packet.bytes.size(), packet.key);
+    report.traffic->add(packet.reason, packet.updates, packet.bytes.size() + run.part_bytes, packet.key);
   if (run.stream && !packet.bytes.empty()) {
-    const auto added = run.stream->writer.add(frame.tick, packet.bytes, packet.key);
+    const auto added = run.stream->writer.add(frame.tick, run.stream->parts.join(0, packet.bytes), packet.key);
     if (!added) return refuse(options.stream, added.error());
   }
+  if (auto done = record_meshes(run, options, report); !done) return done;
   if (report.fidelity) {
     report.fidelity->add(frame, run.simulation.client_poses());
     report.fidelity->add_rendered(frame);
@@ -129,8 +151,9 @@ Report make_report(const SimOptions& options, const TraceInfo& info) {
   if (options.replay.empty()) report.notes.emplace_back("seed", fmt::to_string(options.seed));
   else report.notes.emplace_back("replay", options.replay);
   if (!options.has_channel()) return report;
-  report.traffic.emplace();
+  if (report.moving > 0 || info.meshes.empty()) report.traffic.emplace();
   report.fidelity.emplace(info, options.triggers.triggers());
+  add_meshes(info, options.meshes, options.triggers, report);
   report.notes.emplace_back("client",
                             options.replica.interpolation == Interpolation::none ? "applies updates at once" : "interpolates");
   return report;
@@ -199,7 +222,9 @@ Outcome run(const SimOptions& options) {
   if (!options.stiffness_map.empty())
     if (auto written = write_stiffness_map(*scene, options); !written) return written;
   SimulationOptions settings{.seed = options.seed, .grip = options.grip, .channel = {}, .estimate_every = kEstimateEvery};
-  if (options.has_channel()) settings.channel = ChannelOptions{options.triggers.encoder(), options.replica};
+  if (options.has_channel())
+    settings.channel = ChannelOptions{options.triggers.encoder(), options.replica, options.meshes.encoder(options.triggers),
+                                      options.meshes.coding()};
   auto simulation = Simulation::create(*scene, settings);
   if (!simulation) return refuse(options.scene, simulation.error());
   std::optional<TraceReader> recording;
@@ -226,6 +251,7 @@ Outcome run(const SimOptions& options) {
   Report report = make_report(options, info);
   describe_deformables(*simulation, report);
   Run session{std::move(*simulation), std::move(*trace), std::move(stream), std::move(recording), {}};
+  session.part_bytes = has_part_byte(session.simulation.header()) ? 1 : 0;
   const auto ticks =
       options.duration < 0 ? session.simulation.ticks() : static_cast<std::int64_t>(std::llround(options.duration * kTickRate));
   if (auto done = simulate(session, ticks, options, report); !done) return done;
@@ -280,6 +306,8 @@ void setup_sim(CLI::App& app, Action& action) {
   add_interpolation(command, options->replica);
   options->triggers.add_to(command);
   options->triggers.add_encoder_to(command);
+  options->meshes.add_to(command);
+  options->meshes.add_encoder_to(command);
   add_output_options(command, options->common);
   command.footer(
       "Examples:\n"

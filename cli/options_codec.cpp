@@ -5,7 +5,24 @@
 #include <map>
 #include <string>
 
+#ifdef TACTUS_HAS_MODES
+#include "codec/mesh/mesh.h"
+#include "sim/modes/spring_modes.h"
+#endif
+
 namespace tactus::cli {
+namespace {
+
+#ifdef TACTUS_HAS_MODES
+Result<ModeBasis> spring_basis(const TraceMesh& mesh, std::size_t modes) {
+  TACTUS_TRY(const std::vector<double> vectors, spring_modes(mesh.rest, mesh.fixed, modes));
+  return make_mode_basis(vectors, modes);
+}
+#else
+Result<ModeBasis> spring_basis(const TraceMesh&, std::size_t) { return fail(Errc::unsupported, "R-SIM-4"); }
+#endif
+
+}  // namespace
 
 CLI::Validator one_of(const std::vector<std::string>& names) { return CLI::IsMember(names).description(""); }
 
@@ -24,9 +41,11 @@ void TriggerArguments::add_to(CLI::App& app) {
   const std::map<std::string, HapticRule> rules{
       {"isotropic", HapticRule::isotropic}, {"cone", HapticRule::cone}, {"fixed", HapticRule::fixed}, {"off", HapticRule::off}};
   const auto rule = [this, rules](const std::string& name) { triggers_.haptic = rules.at(name); };
+  CLI::Option* deadband = add_quantity(app, "-p,--deadband", triggers_.weber_fraction, Dimension::fraction,
+                                       "Permitted share of force error, Weber's law [8%, meshes 2.5%]");
+  deadband_ = deadband;
   options_ = {
-      add_quantity(app, "-p,--deadband", triggers_.weber_fraction, Dimension::fraction,
-                   "Permitted share of force error, Weber's law [8%]"),
+      deadband,
       add_pose_bound(app, "--visual", visual_, "Permitted error of pose to the eye [0.006,2deg]"),
       app.add_option_function<std::string>("--haptic", rule,
                                            "Permitted error of force: isotropic, cone, fixed or off [isotropic]")
@@ -47,8 +66,11 @@ void TriggerArguments::add_encoder_to(CLI::App& app) {
   options_.push_back(
       add_quantity(app, "--key-interval", key_interval_, Dimension::time, "Time between places to seek to, 0: first only [5s]"));
   options_.push_back(app.add_flag("--no-reduction", no_reduction_, "Send every object in every tick"));
-  options_.push_back(
-      app.add_option("--profile", "Set of coding tools: thesis [thesis]")->check(one_of({"thesis"}))->type_name("NAME"));
+}
+
+std::optional<double> TriggerArguments::weber_fraction(double otherwise) const {
+  if (triggers_.haptic == HapticRule::off) return std::nullopt;
+  return deadband_->count() > 0 ? triggers_.weber_fraction : otherwise;
 }
 
 bool TriggerArguments::any_given() const {
@@ -62,6 +84,57 @@ RigidTriggers TriggerArguments::triggers() const {
   out.visual_rotation = visual_.angle.value;
   out.fixed_position = scaled(fixed_.length);
   out.fixed_rotation = fixed_.angle.value;
+  return out;
+}
+
+void MeshArguments::add_to(CLI::App& app) {
+  options_ = {
+      add_quantity(app, "--mesh-visual", thresholds_.visual, Dimension::length,
+                   "Permitted error of a vertex to the eye, 0: none beyond the grid's [0.25mm]"),
+      app.add_option("--rings", coding_.rings, "Rings of triangles around the touched one that -p holds in [3]")
+          ->check(CLI::Range(0u, MeshObject::kMaxRings).description(""))
+          ->type_name("M"),
+  };
+}
+
+void MeshArguments::add_encoder_to(CLI::App& app) {
+  const std::map<std::string, MeshProfile> profiles{{"thesis", MeshProfile::thesis}, {"main", MeshProfile::main}};
+  const auto profile = [this, profiles](const std::string& name) { coding_.profile = profiles.at(name); };
+  CLI::Option* modes = app.add_option("--basis", modes_, "main: vibration modes that both ends know, 0: none [0]")
+                           ->check(CLI::Range(std::size_t{0}, ModeBasis::kMaxModes).description(""))
+                           ->type_name("K");
+  options_.insert(
+      options_.end(),
+      {app.add_option_function<std::string>("--profile", profile, "Coding tools of meshes: thesis or main [main]")
+           ->check(one_of({"thesis", "main"}))
+           ->type_name("NAME"),
+       modes,
+       add_quantity(app, "--visual-share", visual_share_, Dimension::fraction,
+                    "main: code to this share of --mesh-visual [100%]"),
+       add_quantity(app, "--haptic-share", haptic_share_, Dimension::fraction, "main: code to this share of -p's bound [100%]"),
+       app.add_option("--quant-bits", coding_.quant_bits, "thesis: bits of its quantiser, 1 to 12 [8]")
+           ->check(CLI::Range(1u, MeshObject::kMaxQuantBits).description(""))
+           ->type_name("Q"),
+       app.add_flag("--keep-models", coding_.models_kept, "thesis: entropy models live on from packet to packet")});
+}
+
+bool MeshArguments::any_given() const {
+  return std::any_of(options_.begin(), options_.end(), [](const CLI::Option* option) { return option->count() > 0; });
+}
+
+MeshThresholds MeshArguments::thresholds(const TriggerArguments& triggers) const {
+  MeshThresholds out = thresholds_;
+  out.weber_fraction = triggers.weber_fraction(*MeshThresholds{}.weber_fraction);
+  return out;
+}
+
+MeshEncoderOptions MeshArguments::encoder(const TriggerArguments& triggers) const {
+  return {thresholds(triggers), triggers.key_interval(), visual_share_, haptic_share_};
+}
+
+MeshCoding MeshArguments::coding() const {
+  MeshCoding out = coding_;
+  if (modes_ > 0) out.basis = [modes = modes_](const TraceMesh& mesh) { return spring_basis(mesh, modes); };
   return out;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "cli/units.h"
 #include "codec/client/replica.h"
 #include "codec/rigid/rigid_encoder.h"
+#include "codec/trace/mesh_link.h"
 
 namespace tactus::cli {
 
@@ -33,6 +35,9 @@ class TriggerArguments {
   bool any_given() const;
   RigidTriggers triggers() const;
   RigidEncoderOptions encoder() const { return {.triggers = triggers(), .key_interval = key_interval_}; }
+  /// For meshes: what -p says, `otherwise` if it was not given; none if --haptic is off.
+  std::optional<double> weber_fraction(double otherwise) const;
+  double key_interval() const { return key_interval_; }
 
  private:
   double scaled(const Quantity& length) const { return length.bare ? length.value * length_unit_ : length.value; }
@@ -43,6 +48,27 @@ class TriggerArguments {
   double length_unit_ = 1;
   double key_interval_ = RigidEncoderOptions{}.key_interval;
   bool no_reduction_ = false;
+  const CLI::Option* deadband_ = nullptr;
+  std::vector<const CLI::Option*> options_;
+};
+
+/// How deformable objects are coded and bounded, as typed. The deadband is that of TriggerArguments, its default another.
+class MeshArguments {
+ public:
+  void add_to(CLI::App& app);
+  /// Options of the encoder itself, beyond the bounds.
+  void add_encoder_to(CLI::App& app);
+  bool any_given() const;
+  MeshThresholds thresholds(const TriggerArguments& triggers) const;
+  MeshEncoderOptions encoder(const TriggerArguments& triggers) const;
+  std::uint8_t rings() const { return coding_.rings; }
+  MeshCoding coding() const;
+
+ private:
+  MeshThresholds thresholds_;
+  MeshCoding coding_;
+  std::uint32_t modes_ = 0;
+  double visual_share_ = 1, haptic_share_ = 1;
   std::vector<const CLI::Option*> options_;
 };
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "cli/figures.h"
 #include "cli/table.h"
 
 namespace tactus::cli {
@@ -16,21 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr std::uint64_t kUdpHeader = 28;                                                    // IPv4 20, UDP 8
 constexpr std::array<const char*, 4> kReasons{"request", "heartbeat", "visual", "haptic"};  // index: Reason
-
-std::string percent(double share) {
-  if (share == 0 || share == 1) return fmt::format("{:.0f} %", 100 * share);
-  return fmt::format("{:.{}f} %", 100 * share, share < 0.0995 || share > 0.995 ? 2 : 1);
-}
-std::string significant(double value, int digits = 3) { return value == 0 ? "0" : fmt::format("{:.{}g}", value, digits); }
-
-std::string duration(double seconds) {
-  if (seconds < 1e-3) return fmt::format("{:.2f} us", 1e6 * seconds);
-  return seconds < 1 ? fmt::format("{:.1f} ms", 1e3 * seconds) : fmt::format("{:.2f} s", seconds);
-}
-
-double per(double amount, double base) { return base > 0 ? amount / base : 0; }
 
 /// Rates of a stream at two sizes of what goes below a packet.
 struct Rates {
@@ -95,12 +82,16 @@ void error_row(Table& table, const Report& r, const std::string& name, const std
              fmt::format("{:.0f}", 1e3 * static_cast<double>(s.longest_run()) / r.tick_rate)});
 }
 
+bool has_errors(const Fidelity& f) { return f.position().ticks() > 0 || f.rendered().ticks() > 0; }
+
 void error_rows(Table& table, const Report& r) {
   const Fidelity& f = *r.fidelity;
   const RigidTriggers& b = f.bounds();
   table.heading({"error", "bound", "RMS", "max", "ticks over", "share", "longest [ms]"});
-  error_row(table, r, "  position [mm]", significant(1e3 * b.visual_position), f.position(), 1e-3);
-  error_row(table, r, "  rotation [deg]", significant(b.visual_rotation / kDegree), f.rotation(), kDegree);
+  if (f.position().ticks() > 0) {
+    error_row(table, r, "  position [mm]", significant(1e3 * b.visual_position), f.position(), 1e-3);
+    error_row(table, r, "  rotation [deg]", significant(b.visual_rotation / kDegree), f.rotation(), kDegree);
+  }
   if (f.force().ticks() > 0) {
     if (b.haptic != HapticRule::off) error_row(table, r, "  contact force [N]", rule_name(b), f.force(), 1);
     error_row(table, r, "  contact force, perception [N]", "10..22 %", f.perceived(), 1);
@@ -108,12 +99,18 @@ void error_rows(Table& table, const Report& r) {
   if (f.rendered().ticks() > 0) error_row(table, r, "  rendered force, perception [N]", "10..22 %", f.rendered(), 1);
 }
 
+void time_row(Table& table, const Report& r, const std::string& step, const StepTimes& times) {
+  if (times.empty()) return;
+  table.row({"  " + step, duration(times.quantile(0.5)), duration(times.quantile(0.99)), duration(times.quantile(1)),
+             fmt::format("{:.0f}", per(r.seconds(), times.total()))});
+}
+
 void time_rows(Table& table, const Report& r) {
   table.heading({"time", "p50", "p99", "max", "times real time"});
-  for (const Report::Timing& t : r.timings) {
-    if (t.times.empty()) continue;
-    table.row({"  " + t.step, duration(t.times.quantile(0.5)), duration(t.times.quantile(0.99)), duration(t.times.quantile(1)),
-               fmt::format("{:.0f}", per(r.seconds(), t.times.total()))});
+  for (const Report::Timing& t : r.timings) time_row(table, r, t.step, t.times);
+  for (const MeshReport& mesh : r.meshes) {
+    time_row(table, r, "encode " + mesh.name + ", per frame", mesh.encode);
+    time_row(table, r, "decode " + mesh.name + ", per packet", mesh.decode);
   }
 }
 
@@ -135,8 +132,9 @@ void print_text(const Report& r, std::FILE* out) {
   fmt::print(out, "\n");
   Table figures;
   if (r.traffic) traffic_rows(figures, r);
-  if (r.fidelity && r.fidelity->position().ticks() > 0) error_rows(figures, r);
-  if (!r.timings.empty()) time_rows(figures, r);
+  if (r.fidelity && has_errors(*r.fidelity)) error_rows(figures, r);
+  for (const MeshReport& mesh : r.meshes) mesh_rows(figures, mesh, r.seconds());
+  if (!r.timings.empty() || !r.meshes.empty()) time_rows(figures, r);
   figures.print(out);
 }
 
@@ -176,10 +174,12 @@ Json error_json(const Report& r, const ErrorSeries& s) {
 Json errors_json(const Report& r) {
   const Fidelity& f = *r.fidelity;
   Json out;
-  out["position_m"] = error_json(r, f.position());
-  out["position_m"]["bound"] = f.bounds().visual_position;
-  out["rotation_rad"] = error_json(r, f.rotation());
-  out["rotation_rad"]["bound"] = f.bounds().visual_rotation;
+  if (f.position().ticks() > 0) {
+    out["position_m"] = error_json(r, f.position());
+    out["position_m"]["bound"] = f.bounds().visual_position;
+    out["rotation_rad"] = error_json(r, f.rotation());
+    out["rotation_rad"]["bound"] = f.bounds().visual_rotation;
+  }
   if (f.force().ticks() > 0) {
     if (f.bounds().haptic != HapticRule::off) {
       out["contact_force_N"] = error_json(r, f.force());
@@ -202,7 +202,8 @@ Json to_json(const Report& r) {
   out["users"] = r.users;
   for (const auto& [name, text] : r.notes) out["notes"][name] = text;
   if (r.traffic) out["traffic"] = traffic_json(r);
-  if (r.fidelity && r.fidelity->position().ticks() > 0) out["error"] = errors_json(r);
+  if (r.fidelity && has_errors(*r.fidelity)) out["error"] = errors_json(r);
+  for (const MeshReport& mesh : r.meshes) out["meshes"].push_back(mesh_json(mesh, r.seconds()));
   for (const Report::Timing& t : r.timings) {
     if (t.times.empty()) continue;
     out["time"].push_back({{"step", t.step},
@@ -217,26 +218,20 @@ Json to_json(const Report& r) {
 
 }  // namespace
 
-double StepTimes::quantile(double share) const {
-  std::vector<std::uint32_t> sorted = nanoseconds_;
-  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
-  const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
-  std::nth_element(sorted.begin(), at, sorted.end());
-  return 1e-9 * *at;
-}
-
-double StepTimes::total() const noexcept {
-  std::uint64_t sum = 0;
-  for (const std::uint32_t t : nanoseconds_) sum += t;
-  return 1e-9 * static_cast<double>(sum);
-}
-
 void Report::describe(const TraceInfo& info) {
   tick_rate = info.tick_rate;
   objects = info.objects.size();
   users = info.users.size();
   moving = static_cast<std::uint64_t>(
       std::count_if(info.objects.begin(), info.objects.end(), [](const TraceObject& o) { return o.dof != Dof::none; }));
+}
+
+void add_meshes(const TraceInfo& info, const MeshArguments& meshes, const TriggerArguments& triggers, Report& report) {
+  for (const TraceMesh& mesh : info.meshes) {
+    report.meshes.push_back({.name = mesh.name, .vertices = mesh.rest.vertices.size()});
+    report.meshes.back().traffic.emplace();
+    report.meshes.back().fidelity.emplace(mesh.rest, meshes.thresholds(triggers), meshes.rings(), GridExponents{}.position);
+  }
 }
 
 void print(const Report& report, const CommonOptions& options, Destination destination) {

@@ -2,41 +2,17 @@
 /// The one table with which every computing command ends: what was sent, how far the replica was from the truth, what it cost.
 #pragma once
 
-#include <algorithm>
-#include <chrono>
 #include <cstdint>
-#include <iosfwd>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "cli/mesh_report.h"
 #include "cli/options_codec.h"
 #include "codec/trace/compare.h"
 
 namespace tactus::cli {
-
-/// Wall-clock times of one step that is done again and again.
-class StepTimes {
- public:
-  using Clock = std::chrono::steady_clock;
-  /// Run `work` and remember how long it took.
-  template <class Work>
-  auto measure(Work&& work) {
-    const auto start = Clock::now();
-    auto result = std::forward<Work>(work)();
-    nanoseconds_.push_back(static_cast<std::uint32_t>(std::min<Clock::rep>((Clock::now() - start).count(), UINT32_MAX)));
-    return result;
-  }
-  void add(double seconds) { nanoseconds_.push_back(static_cast<std::uint32_t>(std::min(1e9 * seconds, double{UINT32_MAX}))); }
-  bool empty() const noexcept { return nanoseconds_.empty(); }
-  std::size_t count() const noexcept { return nanoseconds_.size(); }
-  double quantile(double share) const;  ///< [s]; 1: the longest
-  double total() const noexcept;        ///< [s]
-
- private:
-  std::vector<std::uint32_t> nanoseconds_;
-};
 
 struct Report {
   struct Timing {
@@ -52,12 +28,16 @@ struct Report {
   std::vector<std::pair<std::string, std::string>> notes{};  ///< what else a reader must know
   std::optional<Traffic> traffic{};
   std::optional<Fidelity> fidelity{};
+  std::vector<MeshReport> meshes{};
   std::vector<Timing> timings{};
 
   /// Take over what a trace's description says.
   void describe(const TraceInfo& info);
   double seconds() const { return tick_rate == 0 ? 0 : static_cast<double>(ticks) / tick_rate; }
 };
+
+/// Make place for what is sent of a trace's meshes and how far it is off.
+void add_meshes(const TraceInfo& info, const MeshArguments& meshes, const TriggerArguments& triggers, Report& report);
 
 enum class Destination { standard_output, standard_error };
 /// Print as the options say: JSON ("tactus.report/1"), text, or nothing when quiet.

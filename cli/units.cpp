@@ -70,10 +70,10 @@ T or_usage_error(const std::string& option, tl::expected<T, std::string> parsed)
   return *parsed;
 }
 
-/// A share is above 0 and at most 1: a bare 4 is meant as 4 %, which it is not.
+/// A share is at most 1: a bare 4 is meant as 4 %, which it is not.
 tl::expected<Quantity, std::string> checked(std::string_view text, const Quantity& quantity, Dimension dimension) {
-  if (dimension != Dimension::fraction || (quantity.value > 0 && quantity.value <= 1)) return quantity;
-  return tl::unexpected(fmt::format("'{}': must be above 0 and at most 100 %; four percent is 4% or 0.04", text));
+  if (dimension != Dimension::fraction || quantity.value <= 1) return quantity;
+  return tl::unexpected(fmt::format("'{}': must be at most 100 %; four percent is 4% or 0.04", text));
 }
 
 /// "-p,--deadband" is called "--deadband" in messages.

@@ -10,6 +10,7 @@ set(TACTUS_PACKAGES
   "nlohmann_json   nlohmann-json3-dev      nlohmann_json::nlohmann_json"
   "Eigen3          libeigen3-dev           Eigen3::Eigen"
   "CHOLMOD         libsuitesparse-dev      SuiteSparse::CHOLMOD"
+  "Spectra         libspectra-dev          Spectra::Spectra"
   "OpenMesh        libopenmesh-dev         OpenMeshCore"
   "fmt             libfmt-dev              fmt::fmt"
   "GTest           libgtest-dev            GTest::gtest_main"

@@ -17,6 +17,8 @@ struct Channel {
   RigidEncoder encoder;
   RigidDecoder decoder;
   Replica replica;
+  std::vector<MeshLink> meshes;
+  std::vector<MeshSent> sent;  // one per mesh
 };
 
 struct User {
@@ -70,6 +72,9 @@ struct Simulation::Impl {
   void observe();
   void touch_server();
   tl::expected<EncodedPacket, Error> transmit();
+  Result<void> transmit_meshes();
+  Result<void> add_deformables(const SimulationOptions& options);
+  Result<void> add_channel(const ChannelOptions& options);
   void touch_client();
   tl::expected<void, StepError> act();
   tl::expected<EncodedPacket, StepError> tick();
@@ -106,6 +111,8 @@ void Simulation::Impl::touch_server() {
     user.share = share_rendered(force, user.max_force);
     user.rendered = user.share * force;
     contacts[i] = user.touch.contact;
+    frame.users[i] = {
+        .contact = user.touch.contact, .force = {}, .server_force = user.rendered, .mesh_contact = user.press.contact};
   }
 }
 
@@ -119,9 +126,22 @@ tl::expected<EncodedPacket, Error> Simulation::Impl::transmit() {
     TACTUS_TRY(const DecodedPacket decoded, channel->decoder.decode(packet.bytes));
     channel->replica.apply(decoded, channel->decoder.objects(), frame.tick);
   }
+  TACTUS_CHECK(transmit_meshes());
   for (std::uint32_t i = 0; i < client_poses.size(); ++i)
     client_poses[i] = to_pose(channel->replica.pose(i, frame.tick), header.grid);
   return packet;
+}
+
+Result<void> Simulation::Impl::transmit_meshes() {
+  for (std::size_t i = 0; i < channel->meshes.size(); ++i) {
+    if (!frame.meshes[i].updated) continue;
+    MeshLink& link = channel->meshes[i];
+    TACTUS_TRY(const EncodedMeshPacket packet, link.encode(frame.tick, frame.meshes[i].displacements, touch_of(frame, i)));
+    if (!packet.bytes.empty()) TACTUS_CHECK(link.decode(packet.bytes));
+    channel->sent[i] = {packet.bytes, packet.updates, packet.key, link.shown(frame.tick)};
+    deformables->show(i, channel->sent[i].shown);
+  }
+  return {};
 }
 
 void Simulation::Impl::touch_client() {
@@ -136,8 +156,7 @@ void Simulation::Impl::touch_client() {
     }
     if (deformables) force = force + deformables->touch_client(i, user.device.position).force;
     user.felt = share_rendered(force, user.max_force) * force;
-    frame.users[i] = {
-        .contact = user.touch.contact, .force = user.felt, .server_force = user.rendered, .mesh_contact = user.press.contact};
+    frame.users[i].force = user.felt;
   }
 }
 
@@ -166,15 +185,40 @@ tl::expected<EncodedPacket, StepError> Simulation::Impl::tick() {
   return *packet;
 }
 
+Result<void> Simulation::Impl::add_deformables(const SimulationOptions& options) {
+  const auto clients = options.channel ? DeformableClients::shown : DeformableClients::true_shape;
+  TACTUS_TRY(deformables, make_deformable_world(scene, {scene.users.size(), clients, options.estimate_every}));
+  for (const TraceMesh& mesh : deformables->meshes()) {
+    places.push_back({centre(mesh.rest), {}});
+    frame.meshes.push_back({false, std::vector<float>(3 * mesh.rest.vertices.size())});
+  }
+  return {};
+}
+
+Result<void> Simulation::Impl::add_channel(const ChannelOptions& options) {
+  if (deformables) {
+    for (const TraceMesh& mesh : deformables->meshes()) {
+      TACTUS_TRY(MeshObject object, mesh_object(mesh, options.mesh_coding, header.grid.position));
+      header.meshes.push_back(std::move(object));
+    }
+  }
+  TACTUS_TRY(RigidEncoder encoder, RigidEncoder::create(header, options.encoder));
+  TACTUS_TRY(RigidDecoder decoder, RigidDecoder::create(header));
+  TACTUS_TRY(Replica replica, Replica::create(header, options.replica));
+  channel.emplace(Channel{std::move(encoder), std::move(decoder), std::move(replica), {}, {}});
+  for (std::size_t i = 0; i < header.meshes.size(); ++i) {
+    TACTUS_TRY(MeshLink link, MeshLink::create(header, i, options.mesh));
+    channel->meshes.push_back(std::move(link));
+  }
+  channel->sent.resize(header.meshes.size());
+  return {};
+}
+
 Result<Simulation> Simulation::create(const Scene& scene, const SimulationOptions& options) {
   TACTUS_TRY(StreamHeader header, stream_header(scene));
-  auto impl = std::make_unique<Impl>(scene, options.seed, header);
-  if (options.channel) {
-    TACTUS_TRY(RigidEncoder encoder, RigidEncoder::create(header, options.channel->encoder));
-    TACTUS_TRY(RigidDecoder decoder, RigidDecoder::create(header));
-    TACTUS_TRY(Replica replica, Replica::create(header, options.channel->replica));
-    impl->channel.emplace(Channel{std::move(encoder), std::move(decoder), std::move(replica)});
-  }
+  auto impl = std::make_unique<Impl>(scene, options.seed, std::move(header));
+  if (!scene.deformables.empty()) TACTUS_CHECK(impl->add_deformables(options));
+  if (options.channel) TACTUS_CHECK(impl->add_channel(*options.channel));
   Random seeds(options.seed);
   std::optional<Probe> probe;  // where every probe begins
   if (!scene.users.empty()) probe.emplace(scene.objects, *scene.touch);
@@ -193,17 +237,10 @@ Result<Simulation> Simulation::create(const Scene& scene, const SimulationOption
   if (!scene.msds.empty()) {
     TACTUS_TRY(impl->msds, MsdWorld::create(scene));
   }
-  if (!scene.deformables.empty()) {
-    TACTUS_TRY(impl->deformables, make_deformable_world(scene, {scene.users.size(), options.estimate_every}));
-    for (const TraceMesh& mesh : impl->deformables->meshes()) {
-      impl->places.push_back({centre(mesh.rest), {}});
-      impl->frame.meshes.push_back({false, std::vector<float>(3 * mesh.rest.vertices.size())});
-    }
-  }
-  impl->frame.objects.resize(header.objects.size());
+  impl->frame.objects.resize(impl->header.objects.size());
   impl->frame.users.resize(scene.users.size());
   impl->contacts.resize(scene.users.size());
-  impl->true_poses.resize(header.objects.size());
+  impl->true_poses.resize(impl->header.objects.size());
   for (const SceneObject& object : scene.objects) impl->client_poses.push_back(object.pose);
   for (const SceneMsd& msd : scene.msds) impl->client_poses.push_back({msd.position, {}});
   return Simulation(std::move(impl));
@@ -236,6 +273,7 @@ tl::expected<EncodedPacket, StepError> Simulation::replay(std::span<const UserSa
 const TraceFrame& Simulation::frame() const noexcept { return impl_->frame; }
 std::span<const Pose> Simulation::client_poses() const noexcept { return impl_->client_poses; }
 const DeformableWorld* Simulation::deformables() const noexcept { return impl_->deformables.get(); }
+const MeshSent& Simulation::sent(std::size_t mesh) const noexcept { return impl_->channel->sent[mesh]; }
 const StreamHeader& Simulation::header() const noexcept { return impl_->header; }
 
 std::int64_t Simulation::ticks() const noexcept { return std::llround(impl_->scene.duration / kTick); }

@@ -8,8 +8,8 @@
 ///   5 physics  -f acts on the touched object at the proxy; poses of the next tick
 ///
 /// One-dimensional objects (sim/msd/msd_world.h) are touched in 2 and 4 by a probe that touches no box, deformed in 5, and sent in 3.
-/// Deformable objects are touched in 2 and 4 and pushed in 5, too (sim/deformable/deformable_world.h); the client sees their true
-/// shape. What a user feels is the sum of both, clipped to what the device can yield.
+/// Deformable objects are touched in 2 and 4 and pushed in 5, too (sim/deformable/deformable_world.h), and 3 sends a new shape of
+/// theirs through a MeshLink each. What a user feels is the sum of both, clipped to what the device can yield.
 ///
 /// The frame of a tick holds the poses of 2, the device sample of 1 and both forces: everything in it belongs to one instant, so
 /// whoever recomputes a force from contact and pose gets the encoder's own number.
@@ -23,6 +23,7 @@
 #include "codec/client/replica.h"
 #include "codec/rigid/rigid_encoder.h"
 #include "codec/trace/frame.h"
+#include "codec/trace/mesh_link.h"
 #include "sim/deformable/deformable_world.h"
 #include "sim/msd/msd_world.h"
 #include "sim/rigid/rigid_world.h"
@@ -33,6 +34,16 @@ namespace tactus {
 struct ChannelOptions {
   RigidEncoderOptions encoder;
   ReplicaOptions replica;
+  MeshEncoderOptions mesh{};
+  MeshCoding mesh_coding{};
+};
+
+/// What a channel did with a mesh in one tick.
+struct MeshSent {
+  std::span<const std::uint8_t> bytes;  ///< empty: nothing was sent
+  std::uint32_t updates = 0;
+  bool key = false;
+  std::span<const Vec3> shown;  ///< displacements [m] at the client
 };
 
 struct SimulationOptions {
@@ -63,6 +74,8 @@ class Simulation {
 
   const TraceFrame& frame() const noexcept;             ///< pre  step() or replay() was called
   std::span<const Pose> client_poses() const noexcept;  ///< as shown at the client in that tick, one per object
+  /// Of a mesh that is new in that tick.   pre  there is a channel
+  const MeshSent& sent(std::size_t mesh) const noexcept;
   std::int64_t ticks() const noexcept;                  ///< length of the scene
   TraceInfo info() const;                               ///< for a TraceWriter of these frames
   const StreamHeader& header() const noexcept;          ///< of the packets

@@ -16,6 +16,20 @@ bool has_part_byte(const StreamHeader& header) noexcept {
   return header.meshes.size() + (has_moving_objects(header) ? 1 : 0) > 1;
 }
 
+PartJoiner::PartJoiner(const StreamHeader& header) {
+  if (!has_part_byte(header)) return;
+  std::size_t largest = max_packet_size(header);
+  for (const MeshObject& mesh : header.meshes) largest = std::max(largest, max_mesh_packet_size(mesh));
+  joined_.resize(1 + largest);
+}
+
+std::span<const std::uint8_t> PartJoiner::join(std::size_t part, std::span<const std::uint8_t> packet) noexcept {
+  if (joined_.empty()) return packet;
+  joined_[0] = static_cast<std::uint8_t>(part);
+  std::ranges::copy(packet, joined_.begin() + 1);
+  return std::span<const std::uint8_t>(joined_).first(1 + packet.size());
+}
+
 Result<PartPacket> split_part(const StreamHeader& header, std::span<const std::uint8_t> packet) noexcept {
   if (!has_part_byte(header)) return PartPacket{header.meshes.size(), packet};  // none or one
   if (packet.empty()) return fail(Errc::truncated, "R-PKT-6");

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "codec/base/result.h"
 #include "codec/stream/header.h"
@@ -23,5 +24,16 @@ bool has_part_byte(const StreamHeader& header) noexcept;
 /// Split a packet of the stream. Without a part byte, and in a scene where nothing can move, all of it is returned.
 /// err  truncated R-PKT-6 the byte is missing; invalid R-PKT-6 there is no such part.
 Result<PartPacket> split_part(const StreamHeader& header, std::span<const std::uint8_t> packet) noexcept;
+
+/// Puts the number of its part in front of a packet, in streams that have such numbers.
+class PartJoiner {
+ public:
+  explicit PartJoiner(const StreamHeader& header);
+  /// in   packet  of RigidEncoder or MeshEncoder.   out  for the stream; valid until the next call.   no allocation
+  std::span<const std::uint8_t> join(std::size_t part, std::span<const std::uint8_t> packet) noexcept;
+
+ private:
+  std::vector<std::uint8_t> joined_;  // empty: packets stay as they are
+};
 
 }  // namespace tactus

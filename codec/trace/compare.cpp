@@ -6,7 +6,7 @@
 
 namespace tactus {
 
-Result<StreamHeader> stream_header(const TraceInfo& info, const TraceFrame& first) {
+Result<StreamHeader> stream_header(const TraceInfo& info, const TraceFrame& first, const MeshCoding& coding) {
   if (first.objects.size() != info.objects.size()) return fail(Errc::invalid_argument, "R-API-5");
   StreamHeader header;
   header.tick_rate = info.tick_rate;
@@ -15,6 +15,10 @@ Result<StreamHeader> stream_header(const TraceInfo& info, const TraceFrame& firs
   for (std::size_t i = 0; i < info.objects.size(); ++i) {
     TACTUS_TRY(const RigidState state, to_grid({first.objects[i].pose, {}, {}}, 0, header.grid));
     header.objects.push_back({info.objects[i].name, info.objects[i].dof, state});
+  }
+  for (const TraceMesh& mesh : info.meshes) {
+    TACTUS_TRY(MeshObject object, mesh_object(mesh, coding, header.grid.position));
+    header.meshes.push_back(std::move(object));
   }
   TACTUS_CHECK(check_header(header));
   return header;
@@ -28,7 +32,12 @@ Result<StreamPlayer> StreamPlayer::open(std::span<const std::uint8_t> file, cons
   TACTUS_TRY(StreamFileReader reader, StreamFileReader::open(file));
   TACTUS_TRY(RigidDecoder decoder, RigidDecoder::create(reader.header()));
   TACTUS_TRY(Replica replica, Replica::create(reader.header(), options));
-  return StreamPlayer(file, std::move(reader), std::move(decoder), std::move(replica));
+  StreamPlayer player(file, std::move(reader), std::move(decoder), std::move(replica));
+  for (std::size_t i = 0; i < player.header().meshes.size(); ++i) {
+    TACTUS_TRY(MeshDecoder mesh, MeshDecoder::create(player.header(), i));
+    player.meshes_.push_back(std::move(mesh));
+  }
+  return player;
 }
 
 Result<std::optional<std::int64_t>> StreamPlayer::next_tick() noexcept {
@@ -44,11 +53,29 @@ Result<std::optional<StreamPlayer::Played>> StreamPlayer::play(std::int64_t tick
   const std::span<const std::uint8_t> bytes = waiting_->bytes;
   const auto offset = static_cast<std::size_t>(bytes.data() - file_.data());
   waiting_.reset();
-  const auto packet = decoder_.decode(bytes);
-  if (!packet) return fail(packet.error().code, packet.error().rule, 8 * std::uint64_t{offset} + packet.error().bit_offset);
-  if (packet->tick != *due) return fail(Errc::invalid, "R-FIL-7", 8 * std::uint64_t{offset});
-  replica_.apply(*packet, decoder_.objects(), *due);
-  return Played{*packet, bytes.size(), offset};
+  const auto refuse = [offset](const Error& error, std::size_t skipped) {
+    return fail(error.code, error.rule, 8 * std::uint64_t{offset + skipped} + error.bit_offset);
+  };
+  const auto split = split_part(header(), bytes);
+  if (!split) return refuse(split.error(), 0);
+  auto played = decode(*split);
+  if (!played) return refuse(played.error(), bytes.size() - split->bytes.size());
+  if (played->tick() != *due) return fail(Errc::invalid, "R-FIL-7", 8 * std::uint64_t{offset});
+  if (played->part == 0) replica_.apply(played->packet, decoder_.objects(), *due);
+  played->bytes = bytes.size();
+  played->offset = offset;
+  return std::optional(*played);
+}
+
+Result<StreamPlayer::Played> StreamPlayer::decode(const PartPacket& packet) noexcept {
+  Played out;
+  out.part = packet.part;
+  if (packet.part == 0) {
+    TACTUS_TRY(out.packet, decoder_.decode(packet.bytes));
+  } else {
+    TACTUS_TRY(out.mesh, meshes_[packet.part - 1].decode(packet.bytes));
+  }
+  return out;
 }
 
 Pose StreamPlayer::pose(std::uint32_t object, std::int64_t tick) const noexcept {

@@ -14,13 +14,16 @@
 #include "codec/rigid/rigid_decoder.h"
 #include "codec/rigid/trigger.h"
 #include "codec/stream/file.h"
+#include "codec/stream/part.h"
 #include "codec/trace/frame.h"
+#include "codec/trace/mesh_link.h"
 
 namespace tactus {
 
-/// The stream that carries a trace: its objects in order, at rest in the poses of `first`; extrapolation for 2 s.
-/// err  invalid_argument R-API-1..3 a pose does not fit the grid, R-API-5 wrong count, R-STR-n the header would not be valid
-Result<StreamHeader> stream_header(const TraceInfo& info, const TraceFrame& first);
+/// The stream that carries a trace: its objects in order, at rest in the poses of `first`, and its meshes; extrapolation for 2 s.
+/// err  invalid_argument R-API-1..3 a pose or mesh does not fit the grid, R-API-5 wrong count, R-STR-n, R-MES-n the header would not
+///      be valid; those of a basis
+Result<StreamHeader> stream_header(const TraceInfo& info, const TraceFrame& first, const MeshCoding& coding = {});
 
 /// Plays a stream file into a replica, as if every packet arrived in the tick that sent it.
 class StreamPlayer {
@@ -29,28 +32,40 @@ class StreamPlayer {
   static Result<StreamPlayer> open(std::span<const std::uint8_t> file, const ReplicaOptions& options = {});
 
   struct Played {
-    DecodedPacket packet;
-    std::size_t bytes = 0;   ///< of the packet
+    std::size_t part = 0;    ///< 0: the rigid objects; i + 1: mesh i
+    DecodedPacket packet;    ///< of the rigid objects
+    DecodedMeshPacket mesh;  ///< of a mesh
+    std::size_t bytes = 0;   ///< of the packet with the number of its part
     std::size_t offset = 0;  ///< of the packet in the file
+
+    std::int64_t tick() const noexcept { return part == 0 ? packet.tick : mesh.tick; }
+    std::uint16_t sequence() const noexcept { return part == 0 ? packet.sequence : mesh.sequence; }
+    bool key() const noexcept { return part == 0 ? packet.key : mesh.key; }
   };
   /// Apply the next packet that is due at `tick`; nothing when none is.
-  /// err  as StreamFileReader::next and RigidDecoder::decode, places counted from the start of the file; invalid R-FIL-7: the file
-  ///      and the packet name different ticks.
+  /// err  as StreamFileReader::next, split_part, RigidDecoder::decode and MeshDecoder::decode, places counted from the start of the
+  ///      file; invalid R-FIL-7: the file and the packet name different ticks.
   Result<std::optional<Played>> play(std::int64_t tick) noexcept;
   /// Tick of the next packet; nothing at the end.   err  as play()
   Result<std::optional<std::int64_t>> next_tick() noexcept;
 
   Pose pose(std::uint32_t object, std::int64_t tick) const noexcept;
+  /// What the client shows of a mesh, on the grid. Valid until the next call.
+  std::span<const MeshDecoder::Displacement> displacements(std::size_t mesh, std::int64_t tick) noexcept {
+    return meshes_[mesh].displacements_at(tick);
+  }
   const StreamHeader& header() const noexcept { return reader_.header(); }
   bool complete() const noexcept { return reader_.complete(); }  ///< known at the end
 
  private:
   StreamPlayer(std::span<const std::uint8_t> file, StreamFileReader reader, RigidDecoder decoder, Replica replica) noexcept;
+  Result<Played> decode(const PartPacket& packet) noexcept;
 
   std::span<const std::uint8_t> file_;
   StreamFileReader reader_;
   RigidDecoder decoder_;
   Replica replica_;
+  std::vector<MeshDecoder> meshes_;
   std::optional<FilePacket> waiting_;
 };
 

@@ -23,7 +23,9 @@ struct TraceObject {
 /// A deformable object: its surface before anything acted on it.
 struct TraceMesh {
   std::string name;
-  TriMesh rest;  ///< [m] world frame
+  TriMesh rest;                        ///< [m] world frame
+  std::vector<std::uint32_t> fixed{};  ///< vertices that can never move, ascending
+  double period = 1;                   ///< ticks from shape to shape, as whoever made the recording meant it; > 0
 };
 
 struct TraceInfo {

@@ -25,6 +25,22 @@ std::string_view entry(const mcap::TextMap& map, const char* key) {
   return found == map.end() ? std::string_view() : found->second;
 }
 
+/// Fixed vertices and period; false when the text is none.
+bool read_metadata(const mcap::TextMap& metadata, TraceMesh& mesh) {
+  std::string_view fixed = entry(metadata, "fixed"), period = entry(metadata, "period");
+  while (!fixed.empty()) {
+    const std::size_t end = std::min(fixed.find(' '), fixed.size());
+    const auto vertex = parse_number<std::uint32_t>(fixed.substr(0, end));
+    if (!vertex) return false;
+    mesh.fixed.push_back(*vertex);
+    fixed.remove_prefix(std::min(end + 1, fixed.size()));
+  }
+  if (period.empty()) return true;
+  const auto ticks = parse_number<double>(period);
+  mesh.period = ticks.value_or(0);
+  return ticks.has_value();
+}
+
 class TactusAssembler final : public FrameAssembler {
  public:
   Result<void> start(mcap::Reader& mcap, const Preamble& preamble);
@@ -110,6 +126,11 @@ Result<void> TactusAssembler::find_channels(const mcap::Reader& mcap, Errc missi
     if (!dof || *dof > Dof::all) return refuse(mcap, Errc::invalid, "R-TRC-12");
     object.dof = *dof;
   }
+  for (TraceMesh& mesh : info_.meshes) {
+    const auto found = by_topic.find("/meshes/" + mesh.name + "/rest");
+    if (found == by_topic.end()) return refuse(mcap, missing, rule);
+    if (!read_metadata(found->second->metadata, mesh)) return refuse(mcap, Errc::invalid, "R-TRC-12");
+  }
   for (TraceChannel& wanted : trace_channels(info_)) {
     const auto found = by_topic.find(wanted.topic);
     if (found == by_topic.end()) return refuse(mcap, missing, rule);
@@ -191,6 +212,7 @@ Result<std::uint64_t> TactusAssembler::store(const mcap::Reader& mcap, const Tra
   if (channel.role == Role::rest) {
     TriMesh& rest = info_.meshes[channel.index].rest;
     TACTUS_TRY(rest, decode_mesh(data));
+    if (!is_valid(info_.meshes[channel.index])) return fail(Errc::invalid, "R-TRC-12");
     current_.meshes[channel.index].displacements.assign(3 * rest.vertices.size(), 0.0F);
     return mcap.message().log_time;  // it has no header
   }

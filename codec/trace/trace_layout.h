@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,13 @@ inline MessageType message_type(Role role) noexcept {
       break;
   }
   return MessageType::vector;
+}
+
+/// What a mesh's description adds to its rest shape is as it should be.
+inline bool is_valid(const TraceMesh& mesh) noexcept {
+  const bool ascends = std::ranges::adjacent_find(mesh.fixed, std::greater_equal<>()) == mesh.fixed.end();
+  const bool is_there = mesh.fixed.empty() || mesh.fixed.back() < mesh.rest.vertices.size();
+  return ascends && is_there && mesh.period > 0 && mesh.period <= 1e9;  // false for NaN
 }
 
 inline std::vector<TraceChannel> trace_channels(const TraceInfo& info) {

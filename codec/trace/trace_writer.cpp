@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <set>
 #include <string_view>
@@ -33,8 +35,10 @@ Result<void> check(const TraceInfo& info) {
   const bool has_rate = info.tick_rate >= 1 && info.tick_rate <= kMaxTickRate;
   if (!has_names || !has_dofs || is_empty || !has_rate) return fail(Errc::invalid_argument, "R-TRC-17");
   if (!is_utf8(info.source)) return fail(Errc::invalid_argument, "R-TRC-11");
-  for (const TraceMesh& mesh : info.meshes)
+  for (const TraceMesh& mesh : info.meshes) {
     if (const auto sound = check(mesh.rest); !sound) return fail(Errc::invalid_argument, sound.error().error.rule);
+    if (!is_valid(mesh)) return fail(Errc::invalid_argument, "R-TRC-17");
+  }
   return {};
 }
 
@@ -68,6 +72,17 @@ mcap::Metadata metadata_of(const TraceInfo& info) {
                            {"objects", lines(info.objects, [](const TraceObject& object) { return object.name; })},
                            {"users", lines(info.users, [](const std::string& user) { return user; })}}};
   if (!info.meshes.empty()) metadata.entries["meshes"] = lines(info.meshes, [](const TraceMesh& mesh) { return mesh.name; });
+  return metadata;
+}
+
+mcap::TextMap metadata_of(const TraceMesh& mesh) {
+  mcap::TextMap metadata;
+  std::string fixed;
+  for (const std::uint32_t vertex : mesh.fixed) fixed.append(fixed.empty() ? "" : " ").append(std::to_string(vertex));
+  if (!fixed.empty()) metadata["fixed"] = std::move(fixed);
+  std::array<char, 32> period{};
+  const auto end = std::to_chars(period.data(), period.data() + period.size(), mesh.period).ptr;
+  if (mesh.period != 1) metadata["period"] = std::string(period.data(), end);
   return metadata;
 }
 
@@ -113,6 +128,7 @@ Result<void> TraceWriter::Impl::declare() {
       TACTUS_CHECK(mcap.add(mcap::Schema{schema_id, std::string(schema_name(type)), "ros2msg", schema_text(type)}));
     mcap::TextMap metadata;
     if (channel.role == Role::pose) metadata["dof"] = std::to_string(info.objects[channel.index].dof);
+    if (channel.role == Role::rest) metadata = metadata_of(info.meshes[channel.index]);
     TACTUS_CHECK(mcap.add(mcap::Channel{static_cast<std::uint16_t>(i + 1), schema_id, channel.topic, "cdr", metadata}));
   }
   return {};

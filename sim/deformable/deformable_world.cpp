@@ -16,7 +16,13 @@ constexpr double kFastest = 2;  // [m/s] faster than the touched surface moves; 
 
 constexpr unsigned kRings = 3;  // of the client's cut-out (thesis 3.3.1.1)
 
-/// A probe's proxy on one object: on its true surface, or on a cut-out that approaches it.
+/// What clients see of one object, once they were told: otherwise its true surface.
+struct Seen {
+  std::vector<Vec3> vertices;
+  AabbTree tree;
+};
+
+/// A probe's proxy on one object: on the surface it sees, or on a cut-out that approaches it.
 struct Proxy {
   MeshProxy direct;
   std::unique_ptr<IntermediateModel> cut_out;  // none: direct
@@ -28,11 +34,12 @@ struct Probe {
   std::optional<std::uint32_t> touched;
   bool placed = false;
 
-  MeshTouch move(std::uint32_t object, const DeformableBody& body, const Vec3& device) noexcept {
+  MeshTouch move(std::uint32_t object, const DeformableBody& body, const Seen* seen, const Vec3& device) noexcept {
     auto& [direct, cut_out] = proxies[object];
-    if (cut_out) return placed ? cut_out->move(device) : cut_out->place(device, body.vertices(), body.tree());
-    return placed ? direct.move(device, body.vertices(), body.tree())
-                  : direct.place(device, body.inside(), body.vertices(), body.tree());
+    const auto vertices = seen ? std::span<const Vec3>(seen->vertices) : body.vertices();
+    const AabbTree& tree = seen ? seen->tree : body.tree();
+    if (cut_out) return placed ? cut_out->move(device) : cut_out->place(device, vertices, tree);
+    return placed ? direct.move(device, vertices, tree) : direct.place(device, body.inside(), vertices, tree);
   }
 };
 
@@ -40,9 +47,17 @@ class World final : public DeformableWorld {
  public:
   Result<void> add(const SceneDeformable& object, const Vec3& gravity, std::uint32_t estimate_every);
   void add_user(const Scene& scene);
+  void add_clients() {
+    for (const auto& body : bodies_) seen_.push_back({body->surface().mesh.vertices, AabbTree(body->surface().mesh)});
+  }
 
-  DeformableTouch touch_server(std::size_t user, const Vec3& device) noexcept override { return touch(server_[user], device); }
-  DeformableTouch touch_client(std::size_t user, const Vec3& device) noexcept override { return touch(client_[user], device); }
+  DeformableTouch touch_server(std::size_t user, const Vec3& device) noexcept override {
+    return touch(server_[user], {}, device);
+  }
+  DeformableTouch touch_client(std::size_t user, const Vec3& device) noexcept override {
+    return touch(client_[user], seen_, device);
+  }
+  void show(std::size_t object, std::span<const Vec3> displacements) noexcept override;
   void push(const MeshContact& contact, const Vec3& force) noexcept override {
     bodies_[contact.mesh]->push(contact.triangle, contact.weights, force);
   }
@@ -54,7 +69,8 @@ class World final : public DeformableWorld {
   std::optional<DeformableError> error(std::size_t object) const override;
 
  private:
-  DeformableTouch touch(Probe& probe, const Vec3& device) noexcept;
+  DeformableTouch touch(Probe& probe, std::span<const Seen> seen, const Vec3& device) noexcept;
+  void update_clients(std::uint32_t object, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
 
   std::vector<std::unique_ptr<DeformableBody>> bodies_;
   std::vector<double> stiffness_;       // of each object's coupling [N/m]
@@ -62,6 +78,7 @@ class World final : public DeformableWorld {
   std::vector<TraceMesh> meshes_;
   std::vector<DeformableInfo> info_;
   std::vector<std::uint8_t> updated_;  // since the last observe()
+  std::vector<Seen> seen_;             // by clients, one per object; none: they see the truth
   std::int64_t tick_ = 0;
 };
 
@@ -71,6 +88,14 @@ double extent(const TriMesh& mesh) {
   return largest;
 }
 
+/// Those vertices of a surface that are fixed.
+std::vector<std::uint32_t> fixed_of(const TetSurface& surface, std::span<const std::uint32_t> fixed) {
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t v = 0; v < surface.vertex.size(); ++v)
+    if (std::ranges::binary_search(fixed, surface.vertex[v])) out.push_back(v);
+  return out;
+}
+
 Result<void> World::add(const SceneDeformable& object, const Vec3& gravity, std::uint32_t estimate_every) {
   auto body = DeformableBody::create(object, gravity, estimate_every);
   if (!body) return tl::unexpected(body.error().error);
@@ -78,7 +103,8 @@ Result<void> World::add(const SceneDeformable& object, const Vec3& gravity, std:
   std::string method = name(choice.options.method);
   if (choice.options.method != Method::symplectic_euler) method += std::string(", ") + name(choice.options.solver);
   info_.push_back({object.name, object.mesh.vertices.size(), std::move(method), choice.reason, choice.options.step});
-  meshes_.push_back({object.name, (*body)->surface().mesh});
+  meshes_.push_back(
+      {object.name, (*body)->surface().mesh, fixed_of((*body)->surface(), object.fixed), static_cast<double>(object.rate)});
   stiffness_.push_back(object.stiffness);
   updated_.push_back(0);
   bodies_.push_back(std::move(*body));
@@ -101,11 +127,11 @@ void World::add_user(const Scene& scene) {
   client_.push_back(std::move(client));
 }
 
-DeformableTouch World::touch(Probe& probe, const Vec3& device) noexcept {
+DeformableTouch World::touch(Probe& probe, std::span<const Seen> seen, const Vec3& device) noexcept {
   std::optional<std::uint32_t> touched;
   MeshTouch felt;
   for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
-    const MeshTouch touch = probe.move(i, *bodies_[i], device);
+    const MeshTouch touch = probe.move(i, *bodies_[i], seen.empty() ? nullptr : &seen[i], device);
     if (!touch.touched || (touched && probe.touched != i)) continue;
     touched = i;
     felt = touch;
@@ -123,11 +149,23 @@ tl::expected<void, StepError> World::step() {
     if (!moved) return tl::unexpected(StepError{moved.error().error, tick_, i, to_string(moved.error())});
     if (!*moved) continue;
     updated_[i] = 1;
-    for (Probe& client : client_)
-      if (auto& cut_out = client.proxies[i].cut_out) cut_out->update(bodies_[i]->vertices(), bodies_[i]->tree());
+    if (seen_.empty()) update_clients(i, bodies_[i]->vertices(), bodies_[i]->tree());
   }
   ++tick_;
   return {};
+}
+
+void World::update_clients(std::uint32_t object, std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
+  for (Probe& client : client_)
+    if (auto& cut_out = client.proxies[object].cut_out) cut_out->update(vertices, tree);
+}
+
+void World::show(std::size_t object, std::span<const Vec3> displacements) noexcept {
+  Seen& seen = seen_[object];
+  const std::vector<Vec3>& rest = meshes_[object].rest.vertices;
+  for (std::size_t v = 0; v < rest.size(); ++v) seen.vertices[v] = rest[v] + displacements[v];
+  seen.tree.refit(seen.vertices);
+  update_clients(static_cast<std::uint32_t>(object), seen.vertices, seen.tree);
 }
 
 std::optional<DeformableError> World::error(std::size_t object) const {
@@ -154,6 +192,7 @@ Result<std::unique_ptr<DeformableWorld>> make_deformable_world(const Scene& scen
   auto world = std::make_unique<World>();
   for (const SceneDeformable& object : scene.deformables) TACTUS_CHECK(world->add(object, scene.gravity, options.estimate_every));
   for (std::size_t i = 0; i < options.users; ++i) world->add_user(scene);
+  if (options.clients == DeformableClients::shown) world->add_clients();
   return world;
 }
 

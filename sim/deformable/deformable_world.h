@@ -50,6 +50,10 @@ class DeformableWorld {
   virtual DeformableTouch touch_server(std::size_t user, const Vec3& device) noexcept = 0;
   virtual DeformableTouch touch_client(std::size_t user, const Vec3& device) noexcept = 0;
 
+  /// What clients see from now on, with DeformableClients::shown.   in  displacements  [m] one per vertex of the surface
+  /// no allocation
+  virtual void show(std::size_t object, std::span<const Vec3> displacements) noexcept = 0;
+
   /// Let a force [N] act on the touched triangle in this tick.
   virtual void push(const MeshContact& contact, const Vec3& force) noexcept = 0;
   /// Advance by one tick; `updated` tells for each object whether it got a new shape.   no allocation after the first deformation
@@ -66,8 +70,14 @@ class DeformableWorld {
   virtual ~DeformableWorld() = default;
 };
 
+enum class DeformableClients : std::uint8_t {
+  true_shape,  ///< see what the server computes
+  shown        ///< see what show() says, the rest shape before
+};
+
 struct DeformableOptions {
   std::size_t users = 0;
+  DeformableClients clients = DeformableClients::true_shape;
   std::uint32_t estimate_every = 0;  ///< estimate the local error of every so many deformations, 0: of none
 };
 

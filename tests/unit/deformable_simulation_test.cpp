@@ -247,5 +247,30 @@ TEST(DeformableSimulation, RigidScenesMakeNoDeformableWorld) {
   EXPECT_TRUE(simulation->info().meshes.empty());
 }
 
+/// Largest difference [N] between what client and server render over a second of pressing.
+double force_difference(double visual) {
+  Scene scene = shipped("membrane");
+  SimulationOptions options{.seed = 1, .grip = {}, .channel = ChannelOptions{}};
+  options.channel->mesh.thresholds = {.visual = visual, .weber_fraction = {}};
+  auto simulation = Simulation::create(scene, options);
+  EXPECT_TRUE(simulation);
+  EXPECT_EQ(simulation->header().meshes.size(), 1u);
+  double largest = 0;
+  std::uint64_t packets = 0;
+  for (int i = 0; i < 2500; ++i) {
+    if (!simulation->step()) break;
+    const TraceFrame& frame = simulation->frame();
+    if (frame.meshes[0].updated) packets += simulation->sent(0).bytes.empty() ? 0U : 1U;
+    largest = std::max(largest, norm(frame.users[0].force - frame.users[0].server_force));
+  }
+  EXPECT_GT(packets, 20u);
+  return largest;
+}
+
+TEST(DeformableSimulation, ClientFeelsTheDecodedShape) {
+  const double fine = force_difference(1e-6), coarse = force_difference(2e-3);
+  EXPECT_GT(coarse, 2 * fine) << "a coarser shape must be felt";
+}
+
 }  // namespace
 }  // namespace tactus

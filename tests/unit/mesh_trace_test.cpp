@@ -80,6 +80,20 @@ TEST(MeshTrace, MeshesAloneStillCarryTicks) {
   expect_equal(reading.frames, recording);
 }
 
+TEST(MeshTrace, FixedVerticesAndPeriodAreKept) {
+  Recording recording = make_mesh_recording(3);
+  recording.info.meshes[0].fixed = {0, 3};
+  recording.info.meshes[0].period = 50.0 / 3;
+  const TempFile file;
+  const Bytes bytes = write_recording(recording, file.path());
+  const auto reader = TraceReader::open_memory(bytes);
+  ASSERT_TRUE(reader) << reader.error().rule;
+  EXPECT_EQ(reader->info().meshes[0].fixed, recording.info.meshes[0].fixed);
+  EXPECT_EQ(reader->info().meshes[0].period, recording.info.meshes[0].period);
+  EXPECT_TRUE(reader->info().meshes[1].fixed.empty());
+  EXPECT_EQ(reader->info().meshes[1].period, 1);
+}
+
 TEST(MeshTrace, WriterRefusesWhatATraceCannotHold) {
   const TempFile file;
   const Recording recording = make_mesh_recording(4);
@@ -93,6 +107,10 @@ TEST(MeshTrace, WriterRefusesWhatATraceCannotHold) {
   EXPECT_EQ(rule([](TraceInfo& i) { i.meshes[0].name = "a/b"; }), "R-TRC-17");
   EXPECT_EQ(rule([](TraceInfo& i) { i.meshes[0].rest.vertices[0].x = HUGE_VAL; }), "R-MSH-1");
   EXPECT_EQ(rule([](TraceInfo& i) { i.meshes[0].rest.triangles[2][1] = 4; }), "R-MSH-2");
+  EXPECT_EQ(rule([](TraceInfo& i) { i.meshes[0].fixed = {4}; }), "R-TRC-17");
+  EXPECT_EQ(rule([](TraceInfo& i) { i.meshes[0].fixed = {1, 1}; }), "R-TRC-17");
+  EXPECT_EQ(rule([](TraceInfo& i) { i.meshes[0].period = static_cast<double>(kNan); }), "R-TRC-17");
+  EXPECT_EQ(rule([](TraceInfo& i) { i.meshes[0].period = 0; }), "R-TRC-17");
 
   auto writer = TraceWriter::create(file.path(), recording.info);
   ASSERT_TRUE(writer);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 
 #include "tests/unit/mesh_stream_fixture.h"
@@ -41,6 +42,20 @@ TEST(Part, SeveralPartsAreTold) {
   EXPECT_EQ(part_of(scene(2, Dof::none), 2), 2);
   EXPECT_STREQ(split_part(scene(2, Dof::none), {}).error().rule, "R-PKT-6");
   EXPECT_EQ(split_part(scene(2, Dof::none), {}).error().code, Errc::truncated);
+}
+
+TEST(Part, WhatWasJoinedIsSplitAgain) {
+  const std::array<std::uint8_t, 3> packet{7, 8, 9};
+  for (const auto& header : {scene(2, Dof::all), scene(1, Dof::none), scene(0, Dof::all)}) {
+    PartJoiner joiner(header);
+    const std::size_t part = header.meshes.size();
+    const auto joined = joiner.join(part, packet);
+    EXPECT_EQ(joined.size(), has_part_byte(header) ? 4u : 3u);
+    const auto split = split_part(header, joined);
+    ASSERT_TRUE(split);
+    EXPECT_EQ(split->part, part);
+    EXPECT_TRUE(std::ranges::equal(split->bytes, packet));
+  }
 }
 
 }  // namespace

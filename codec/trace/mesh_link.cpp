@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "codec/trace/mesh_link.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "codec/mesh/mesh.h"
+
+namespace tactus {
+
+Result<MeshObject> mesh_object(const TraceMesh& mesh, const MeshCoding& coding, unsigned position_exp) {
+  TACTUS_TRY(MeshObject object, make_mesh_object(mesh.name, mesh.rest, position_exp));
+  object.profile = coding.profile;
+  object.rings = coding.rings;
+  object.quant_bits = coding.quant_bits;
+  object.models_kept = coding.models_kept;
+  object.frame_period =
+      static_cast<std::uint32_t>(std::clamp(std::floor(256 * mesh.period + 0.5), 1.0, double{MeshObject::kMaxFramePeriod}));
+  if (coding.profile == MeshProfile::main && coding.basis) {
+    TACTUS_TRY(object.basis, coding.basis(mesh));
+  }
+  return object;
+}
+
+std::optional<MeshTouch> touch_of(const TraceFrame& frame, std::size_t mesh) noexcept {
+  std::optional<MeshTouch> lightest;
+  for (const UserSample& user : frame.users) {
+    if (!user.mesh_contact || user.mesh_contact->mesh != mesh) continue;
+    const MeshContact& contact = *user.mesh_contact;
+    const double depth = norm(contact.proxy - user.contact.device);
+    if (lightest && lightest->force / lightest->stiffness <= depth) continue;
+    lightest = MeshTouch{contact.triangle, contact.stiffness * depth, contact.stiffness};
+  }
+  return lightest;
+}
+
+Result<MeshLink> MeshLink::create(const StreamHeader& header, std::size_t mesh, const MeshEncoderOptions& options) {
+  TACTUS_TRY(MeshEncoder encoder, MeshEncoder::create(header, mesh, options));
+  TACTUS_TRY(MeshDecoder decoder, MeshDecoder::create(header, mesh));
+  return MeshLink(std::move(encoder), std::move(decoder), header.meshes[mesh].rest.size(), header.grid.position);
+}
+
+Result<EncodedMeshPacket> MeshLink::encode(std::int64_t tick, std::span<const float> displacements,
+                                           const std::optional<MeshTouch>& touch) noexcept {
+  if (displacements.size() != 3 * vectors_.size()) return fail(Errc::invalid_argument, "R-API-5");
+  for (std::size_t v = 0; v < vectors_.size(); ++v)
+    vectors_[v] = {displacements[3 * v], displacements[3 * v + 1], displacements[3 * v + 2]};
+  return encoder_.encode(tick, vectors_, touch);
+}
+
+std::span<const Vec3> MeshLink::shown(std::int64_t tick) noexcept {
+  const auto displacements = decoder_.displacements_at(tick);
+  for (std::size_t v = 0; v < vectors_.size(); ++v) vectors_[v] = to_metres(displacements[v], position_exp_);
+  return vectors_;
+}
+
+void MeshTraffic::add(std::size_t packet_bytes, std::uint64_t update_count, bool key) {
+  sizes.push_back(static_cast<std::uint32_t>(packet_bytes));
+  bytes += packet_bytes;
+  updates += update_count;
+  keys += key ? 1 : 0;
+}
+
+std::uint32_t MeshTraffic::quantile(double share) const {
+  if (sizes.empty()) return 0;
+  std::vector<std::uint32_t> sorted = sizes;
+  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
+  const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
+  std::nth_element(sorted.begin(), at, sorted.end());
+  return *at;
+}
+
+}  // namespace tactus

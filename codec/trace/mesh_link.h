@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Meshes from a trace to a stream: how they are coded, one mesh's way from server to client, and what it cost.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "codec/base/result.h"
+#include "codec/mesh/mesh_decoder.h"
+#include "codec/mesh/mesh_encoder.h"
+#include "codec/trace/frame.h"
+
+namespace tactus {
+
+/// What a stream's header says of how its meshes are coded. spec/60-mesh.md section 2.
+struct MeshCoding {
+  MeshProfile profile = MeshProfile::main;
+  std::uint8_t rings = MeshObject{}.rings;
+  std::uint8_t quant_bits = MeshObject{}.quant_bits;         ///< thesis
+  bool models_kept = MeshObject{}.models_kept;               ///< thesis
+  std::function<Result<ModeBasis>(const TraceMesh&)> basis;  ///< main: makes each mesh's basis; empty: without
+};
+
+/// A mesh for a stream header, its frame period that of the trace.
+/// err  invalid_argument R-API-1, R-API-2 as make_mesh_object(); those of the basis
+Result<MeshObject> mesh_object(const TraceMesh& mesh, const MeshCoding& coding, unsigned position_exp);
+
+/// Who touches this mesh: of several users the one who presses least, whose haptic threshold is the lowest.
+/// out  force is that of the coupling, k |x_p - x_d|
+std::optional<MeshTouch> touch_of(const TraceFrame& frame, std::size_t mesh) noexcept;
+
+/// One mesh from server to client: shapes in, packets through an encoder and a decoder, what the client shows out.
+class MeshLink {
+ public:
+  /// in   mesh  index into header.meshes
+  /// err  as MeshEncoder::create and MeshDecoder::create
+  static Result<MeshLink> create(const StreamHeader& header, std::size_t mesh, const MeshEncoderOptions& options);
+
+  /// Server: look at one shape.   in  displacements  [m] x y z of vertex 0 first
+  /// out  as MeshEncoder::encode; without the number of the part.   no allocation
+  Result<EncodedMeshPacket> encode(std::int64_t tick, std::span<const float> displacements,
+                                   const std::optional<MeshTouch>& touch) noexcept;
+  /// Client: decode the packet that encode() returned.   err  as MeshDecoder::decode; no allocation
+  Result<DecodedMeshPacket> decode(std::span<const std::uint8_t> packet) noexcept { return decoder_.decode(packet); }
+  /// Client: displacements [m] at a tick, one per vertex. Valid until the next call.   no allocation
+  std::span<const Vec3> shown(std::int64_t tick) noexcept;
+
+ private:
+  MeshLink(MeshEncoder encoder, MeshDecoder decoder, std::size_t vertices, unsigned position_exp)
+      : encoder_(std::move(encoder)), decoder_(std::move(decoder)), vectors_(vertices), position_exp_(position_exp) {}
+
+  MeshEncoder encoder_;
+  MeshDecoder decoder_;
+  std::vector<Vec3> vectors_;
+  unsigned position_exp_;
+};
+
+/// What was sent of one mesh.
+struct MeshTraffic {
+  std::uint64_t frames = 0;          ///< shapes looked at; 0: not known
+  std::uint64_t updates = 0;         ///< vertices with a residual of their own
+  std::uint64_t keys = 0;            ///< key packets
+  std::uint64_t bytes = 0;           ///< of packets, with their part numbers, without any header below them
+  std::vector<std::uint32_t> sizes;  ///< of every packet [bytes]
+
+  void add(std::size_t packet_bytes, std::uint64_t update_count, bool key);
+  std::uint32_t quantile(double share) const;  ///< of the packets' sizes [bytes]; 1: the largest, 0 without packets
+};
+
+}  // namespace tactus
