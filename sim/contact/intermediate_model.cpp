@@ -60,7 +60,7 @@ void IntermediateModel::cut_around(std::uint32_t triangle) noexcept {
   }
 }
 
-MeshTouch IntermediateModel::place(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
+ProxyTouch IntermediateModel::place(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
   std::copy(vertices.begin(), vertices.end(), shown_.begin());
   from_ = to_ = shown_;
   touch_ = proxy_.place(probe, inside_, vertices, tree);
@@ -85,14 +85,14 @@ void IntermediateModel::update(std::span<const Vec3> vertices, const AabbTree& t
 }
 
 /// Did the proxy lose the surface only because the cut-out ends there?
-bool IntermediateModel::falls_off(const MeshTouch& touch, const Vec3& probe) const noexcept {
+bool IntermediateModel::falls_off(const ProxyTouch& touch, const Vec3& probe) const noexcept {
   if (!touch_.touched || dot(probe - touch_.proxy, touch_.normal) >= 0) return false;
   if (touch.touched && dot(touch.normal, touch_.normal) >= 0) return false;
   const auto nearest = tree_.closest(touch.proxy, shown_);
   return nearest && is_rim_[nearest->triangle] != 0;
 }
 
-MeshTouch IntermediateModel::move(const Vec3& probe) noexcept {
+ProxyTouch IntermediateModel::move(const Vec3& probe) noexcept {
   tick_ = std::min(tick_ + 1, options_.ticks);
   const double share = static_cast<double>(tick_) / options_.ticks;
   for (const std::uint32_t v : moving_) shown_[v] = share < 1 ? from_[v] + share * (to_[v] - from_[v]) : to_[v];
@@ -100,7 +100,7 @@ MeshTouch IntermediateModel::move(const Vec3& probe) noexcept {
   const MeshProxy before = proxy_;
   const Vec3 below = touch_.proxy + dot(probe - touch_.proxy, touch_.normal) * touch_.normal;
   Vec3 goal = probe;
-  MeshTouch touch = proxy_.move(goal, shown_, tree_);
+  ProxyTouch touch = proxy_.move(goal, shown_, tree_);
   for (int halvings = 0; falls_off(touch, goal); ++halvings) {
     proxy_ = before;
     if (halvings == kMaxHalvings) {

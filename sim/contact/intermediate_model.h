@@ -32,21 +32,21 @@ class IntermediateModel {
   IntermediateModel(const TriMesh& mesh, const MeshTopology& topology, const IntermediateModelOptions& options);
 
   /// Put the probe there without history, on the mesh as it is now.   as update()
-  MeshTouch place(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
+  ProxyTouch place(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
   /// A deformation step is done: cut out around the proxy; what is shown does not change. A free proxy that is inside of the object
   /// by now, because it came to where nothing was cut out, is put on the surface.
   /// in   vertices  of the whole mesh; the tree is fitted to them
   /// time O(n); no allocation
   void update(std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
   /// One tick of haptic rendering.   pre  place()   time O(cut-out), about 2 us for three rings; no allocation
-  MeshTouch move(const Vec3& probe) noexcept;
+  ProxyTouch move(const Vec3& probe) noexcept;
 
   std::span<const std::uint32_t> triangles() const noexcept { return cut_; }  ///< of the cut-out, ring by ring
   /// Where vertices are shown; only those of the cut-out follow the deformation from tick to tick.
   std::span<const Vec3> vertices() const noexcept { return shown_; }
 
  private:
-  bool falls_off(const MeshTouch& touch, const Vec3& probe) const noexcept;
+  bool falls_off(const ProxyTouch& touch, const Vec3& probe) const noexcept;
   void cut_around(std::uint32_t triangle) noexcept;
 
   const TriMesh& mesh_;
@@ -55,7 +55,7 @@ class IntermediateModel {
   Inside inside_;
   MeshProxy proxy_;
   AabbTree tree_;
-  MeshTouch touch_;                      // of the last tick
+  ProxyTouch touch_;                     // of the last tick
   std::vector<std::uint32_t> cut_;       // triangles
   std::vector<std::uint32_t> moving_;    // vertices of them
   std::vector<std::uint8_t> is_moving_;  // by vertex

@@ -171,9 +171,9 @@ void MeshProxy::keep_distance(std::span<const Vec3> vertices, const AabbTree& tr
   }
 }
 
-MeshTouch MeshProxy::settle(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
+ProxyTouch MeshProxy::settle(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
   follow(probe, vertices, tree);
-  MeshTouch touch{.proxy = centre_};
+  ProxyTouch touch{.proxy = centre_};
   anchor_ = {};
   if (held_ > 0) {
     Vec3 normal;
@@ -197,7 +197,7 @@ MeshTouch MeshProxy::settle(const Vec3& probe, std::span<const Vec3> vertices, c
   return touch;
 }
 
-MeshTouch MeshProxy::move(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
+ProxyTouch MeshProxy::move(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
   if (placed_) {
     carry(vertices, tree);
   } else if (is_finite(probe)) {
@@ -208,8 +208,8 @@ MeshTouch MeshProxy::move(const Vec3& probe, std::span<const Vec3> vertices, con
   return settle(is_finite(probe) ? probe : probe_, vertices, tree);
 }
 
-MeshTouch MeshProxy::place(const Vec3& probe, const Inside& inside, std::span<const Vec3> vertices,
-                           const AabbTree& tree) noexcept {
+ProxyTouch MeshProxy::place(const Vec3& probe, const Inside& inside, std::span<const Vec3> vertices,
+                            const AabbTree& tree) noexcept {
   if (!is_finite(probe)) return move(probe_, vertices, tree);
   centre_ = probe;
   placed_ = true;

@@ -37,7 +37,7 @@ struct MeshProxyOptions {
 };
 
 /// What a probe touches.
-struct MeshTouch {
+struct ProxyTouch {
   bool touched = false;  ///< no: the proxy is where the probe is, and the rest is of no meaning
   std::uint32_t triangle = MeshTopology::kNone;
   std::array<double, 3> weights{};  ///< of its corners: the point touched
@@ -51,12 +51,12 @@ class MeshProxy {
   MeshProxy(const MeshProxyOptions& options, double extent) noexcept;
 
   /// Put the probe there without history: inside of the mesh or too close, the closest point of the surface holds it.
-  MeshTouch place(const Vec3& probe, const Inside& inside, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
+  ProxyTouch place(const Vec3& probe, const Inside& inside, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
   /// Move the probe there; the first time it is put there, on whichever side of the surface that is. A probe that is not a finite point stays where it was.
   /// in   vertices  where they are now; the tree is fitted to them. All in the frame of the mesh
   /// time O(log n) per triangle crossed, on a mesh of 100 000 about 0.1 us in the open and 1.5 us in contact (4 us for a sphere larger
   ///      than the triangles); at most 16 sweeps, the rest waits for the next call; no allocation
-  MeshTouch move(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
+  ProxyTouch move(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
 
   /// Move along with the surface, but not towards the probe: what move() does first.   time O(1) if nothing moved
   void carry(std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
@@ -85,7 +85,7 @@ class MeshProxy {
   void release() noexcept;
   void keep_distance(std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
   void follow(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
-  MeshTouch settle(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
+  ProxyTouch settle(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
 
   MeshProxyOptions options_;
   double skin_, slack_, settled_;

@@ -52,7 +52,7 @@ class SurfaceProxy {
  private:
   std::shared_ptr<const TouchSurface> surface_;
   MeshProxy proxy_;
-  MeshTouch touch_;
+  ProxyTouch touch_;
 };
 
 }  // namespace tactus

@@ -34,7 +34,7 @@ struct Probe {
   std::optional<std::uint32_t> touched;
   bool placed = false;
 
-  MeshTouch move(std::uint32_t object, const DeformableBody& body, const Seen* seen, const Vec3& device) noexcept {
+  ProxyTouch move(std::uint32_t object, const DeformableBody& body, const Seen* seen, const Vec3& device) noexcept {
     auto& [direct, cut_out] = proxies[object];
     const auto vertices = seen ? std::span<const Vec3>(seen->vertices) : body.vertices();
     const AabbTree& tree = seen ? seen->tree : body.tree();
@@ -129,9 +129,9 @@ void World::add_user(const Scene& scene) {
 
 DeformableTouch World::touch(Probe& probe, std::span<const Seen> seen, const Vec3& device) noexcept {
   std::optional<std::uint32_t> touched;
-  MeshTouch felt;
+  ProxyTouch felt;
   for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
-    const MeshTouch touch = probe.move(i, *bodies_[i], seen.empty() ? nullptr : &seen[i], device);
+    const ProxyTouch touch = probe.move(i, *bodies_[i], seen.empty() ? nullptr : &seen[i], device);
     if (!touch.touched || (touched && probe.touched != i)) continue;
     touched = i;
     felt = touch;

@@ -70,7 +70,7 @@ void stroke_terrain(benchmark::State& state, double depth, MeshProxyOptions opti
   std::int64_t tick = 0, touched = 0;
   for (auto _ : state) {
     samples.time(state, [&] {
-      const MeshTouch touch = proxy.move(stroke(tick, depth), body.mesh.vertices, body.tree);
+      const ProxyTouch touch = proxy.move(stroke(tick, depth), body.mesh.vertices, body.tree);
       touched += touch.touched ? 1 : 0;
     });
     ++tick;

@@ -33,7 +33,7 @@ struct Scene {
 TEST(IntermediateModel, IsTheMeshAroundTheTouchedTriangle) {
   Scene scene;
   scene.place({0.011, 0.012, 0.01});
-  const MeshTouch touch = scene.model.move({0.011, 0.012, -0.001});
+  const ProxyTouch touch = scene.model.move({0.011, 0.012, -0.001});
   ASSERT_TRUE(touch.touched);
   scene.update();
   std::vector<std::uint32_t> expected;
@@ -82,7 +82,7 @@ TEST(IntermediateModel, OnAMeshAtRestItIsTheMesh) {
     }
     probe = probe + testing::random_point(random, 4e-4);
     probe = {std::clamp(probe.x, -0.06, 0.06), std::clamp(probe.y, -0.06, 0.06), std::clamp(probe.z, -0.008, 0.001)};
-    const MeshTouch a = scene.model.move(probe), b = whole.move(probe, scene.body.mesh.vertices, scene.body.tree);
+    const ProxyTouch a = scene.model.move(probe), b = whole.move(probe, scene.body.mesh.vertices, scene.body.tree);
     ASSERT_EQ(a.touched, b.touched);
     ASSERT_LE(norm(a.proxy - b.proxy), 1e-7) << "tick " << tick;
     touching += a.touched ? 1 : 0;
@@ -105,7 +105,7 @@ TEST(IntermediateModel, NewCutOutsDoNotJump) {
       scene.deform(t);
       scene.update();
     }
-    const MeshTouch touch = scene.model.move(path(t));
+    const ProxyTouch touch = scene.model.move(path(t));
     if (tick > 100) {
       ASSERT_TRUE(touch.touched) << "tick " << tick;
       ++touching;
@@ -123,7 +123,7 @@ TEST(IntermediateModel, WaitsAtTheBorderForTheNextCutOut) {
   scene.place({-0.05, 0.001, 0.01});
   scene.model.move({-0.05, 0.001, -0.002});
   scene.update();
-  MeshTouch touch;
+  ProxyTouch touch;
   for (int i = 0; i < 60; ++i) {  // 60 mm without an update: far beyond three rings of 5 mm
     touch = scene.model.move({-0.05 + 0.001 * i, 0.001, -0.002});
     ASSERT_TRUE(touch.touched) << "tick " << i;
@@ -141,7 +141,7 @@ TEST(IntermediateModel, ProbeThatCameInBesideTheCutOutIsPutOnTheSurface) {
   const Body body(testing::ball(0.1, 5));
   IntermediateModel model(body.mesh, body.topology, {.rings = 2, .ticks = 16, .proxy = {}});
   model.place({0, 0, 0.12}, body.mesh.vertices, body.tree);
-  MeshTouch touch;
+  ProxyTouch touch;
   for (int i = 0; i <= 15; ++i) touch = model.move({0.004 * i, 0, 0.12 - 0.002 * i});  // over the border and then in
   for (int i = 0; i <= 10; ++i) touch = model.move({0.06, 0, 0.09 - 0.002 * i});
   EXPECT_FALSE(touch.touched) << "nothing was cut out here";

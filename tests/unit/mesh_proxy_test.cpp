@@ -18,10 +18,10 @@ struct Hand {
   double skin;
 
   Hand(const Body& b, const MeshProxyOptions& options) : body(b), proxy(options, b.extent()), skin(proxy.skin()) {}
-  MeshTouch place(const Vec3& probe) { return proxy.place(probe, body.inside, body.mesh.vertices, body.tree); }
-  MeshTouch move(const Vec3& probe) { return proxy.move(probe, body.mesh.vertices, body.tree); }
-  MeshTouch move_along(const Vec3& from, const Vec3& to, int ticks) {
-    MeshTouch out;
+  ProxyTouch place(const Vec3& probe) { return proxy.place(probe, body.inside, body.mesh.vertices, body.tree); }
+  ProxyTouch move(const Vec3& probe) { return proxy.move(probe, body.mesh.vertices, body.tree); }
+  ProxyTouch move_along(const Vec3& from, const Vec3& to, int ticks) {
+    ProxyTouch out;
     for (int i = 0; i <= ticks; ++i) out = move(from + (static_cast<double>(i) / ticks) * (to - from));
     return out;
   }
@@ -48,7 +48,7 @@ TEST(MeshProxy, FollowsTheProbeInFreeSpace) {
     if (norm(probe) < 0.12) continue;
     probe = (0.2 / norm(probe)) * probe;  // neighbours may lie on opposite sides of the ball, ...
     hand.place(probe);                    // ... so each is a start
-    const MeshTouch touch = hand.move(probe + testing::random_point(random, 0.05));
+    const ProxyTouch touch = hand.move(probe + testing::random_point(random, 0.05));
     ASSERT_FALSE(touch.touched);
     ASSERT_EQ(touch.proxy, hand.proxy.position());
   }
@@ -63,7 +63,7 @@ TEST(MeshProxy, OnAPlaneItIsTheFootOfTheProbe) {
   hand.move({0.003, 0.004, 0.05});
   for (const Vec3 probe :
        {Vec3{0.003, 0.004, -0.002}, Vec3{-0.01, 0.015, -0.001}, Vec3{0.0999, 0.02, -0.03}, Vec3{0, 0, -0.03}}) {
-    const MeshTouch touch = hand.move(probe);
+    const ProxyTouch touch = hand.move(probe);
     ASSERT_TRUE(touch.touched);
     expect_near(touch.proxy, {probe.x, probe.y, 0}, 2 * hand.skin);
     expect_near(touch.normal, {0, 0, 1}, 1e-8);  // on edges it is as exact as rounding over skin, 2^-29
@@ -101,7 +101,7 @@ TEST(MeshProxy, TrailsByMuDepthOutsideTheCone) {
   const Body body(flat());
   Hand hand(body, {.friction = 0.5});
   hand.move({-0.01, 0, 0.003});
-  MeshTouch touch;
+  ProxyTouch touch;
   Vec3 probe;
   for (int i = -20; i <= 25; ++i) touch = hand.move(probe = {0.0005 * i, 0.00025 * i, -0.003});
   const Vec3 lag = touch.proxy - probe;
@@ -115,11 +115,11 @@ TEST(MeshProxy, GrooveHoldsWithTwoPlanes) {
   const Body body(folded(1));  // 45 degrees on either side
   Hand hand(body, {});
   hand.move({0.03, 0.01, 0.06});
-  const MeshTouch touch = hand.move_along({0.03, 0.01, 0.02}, {0.002, 0.013, -0.008}, 40);
+  const ProxyTouch touch = hand.move_along({0.03, 0.01, 0.02}, {0.002, 0.013, -0.008}, 40);
   ASSERT_TRUE(touch.touched);
   expect_near(touch.proxy, {0, 0.013, 0}, 4 * hand.skin);
   // Probe beside the groove's axis: nearer to one slope's plane than to the bottom, so one slope alone holds it.
-  const MeshTouch slope = hand.move({0.004, 0.013, 0.001});
+  const ProxyTouch slope = hand.move({0.004, 0.013, 0.001});
   expect_near(slope.proxy, {0.0025, 0.013, 0.0025}, 4 * hand.skin);
   expect_near(slope.normal, {-std::sqrt(0.5), 0, std::sqrt(0.5)}, 1e-9);
 }
@@ -131,7 +131,7 @@ TEST(MeshProxy, FrictionInAGrooveAddsThatOfBothSides) {
   const Vec3 held = hand.move({0, 0, -0.01}).proxy;
   const double rim = 0.2 * std::sqrt(2.0) * 0.01;  // 10 mm below: 10/sqrt(2) mm below either side
   EXPECT_EQ(hand.move({0, 0.99 * rim, -0.01}).proxy, held);
-  const MeshTouch touch = hand.move({0, 0.005, -0.01});
+  const ProxyTouch touch = hand.move({0, 0.005, -0.01});
   EXPECT_NEAR(touch.proxy.y, 0.005 - rim, 4 * hand.skin);
 }
 
@@ -143,7 +143,7 @@ TEST(MeshProxy, RidgeTurnsTheForceOnlyWhenTheOtherSideIsNearer) {
   for (int i = -200; i <= 200; ++i) {
     const double along = 1e-4 * i;  // along the left slope, which goes on beyond the ridge as a plane
     const Vec3 foot{along * cosine, 0, along * sine}, probe = foot - depth * Vec3{-sine, 0, cosine};
-    const MeshTouch touch = hand.move(probe);
+    const ProxyTouch touch = hand.move(probe);
     if (along < -1e-6) {
       expect_near(touch.proxy, foot, 4 * hand.skin);
     } else if (along > 1e-6 && touch.touched) {
@@ -159,7 +159,7 @@ TEST(MeshProxy, SharpEdgeDoesNotTurnTheForce) {  // thesis figure 2.6 b, c
   hand.place({0.01, 0.001, 0.03});
   for (int i = 0; i < 100; ++i) {
     const Vec3 probe{0.01 + 0.0001 * i, 0.001, 0.01};  // 10 mm deep: soon far nearer to the side than to the top
-    const MeshTouch touch = hand.move(probe);
+    const ProxyTouch touch = hand.move(probe);
     ASSERT_TRUE(touch.touched);
     expect_near(touch.proxy, {probe.x, probe.y, 0.02}, 2 * hand.skin);
     expect_near(touch.normal, {0, 0, 1}, 1e-12);
@@ -173,14 +173,14 @@ TEST(MeshProxy, CornerHoldsWithThreePlanes) {
   for (const double friction : {0.0, 0.3}) {
     Hand hand(body, {.friction = friction});
     EXPECT_FALSE(hand.place({0, 0.01, 0.02}).touched);
-    const MeshTouch touch = hand.move_along({0, 0.01, 0.02}, {0.11, 0.12, 0.13}, 300);
+    const ProxyTouch touch = hand.move_along({0, 0.01, 0.02}, {0.11, 0.12, 0.13}, 300);
     ASSERT_TRUE(touch.touched);
     if (friction == 0) {
       expect_near(touch.proxy, {0.1, 0.1, 0.1}, 8 * hand.skin);
       const Vec3 depth{0.01, 0.02, 0.03};
       expect_near(touch.normal, (-1 / norm(depth)) * depth, 1e-5);
     }
-    const MeshTouch held = hand.move({0.12, 0.12, 0.12});
+    const ProxyTouch held = hand.move({0.12, 0.12, 0.12});
     expect_near(held.proxy, {0.1, 0.1, 0.1}, friction == 0 ? 8 * hand.skin : 0.02);
   }
 }
@@ -199,7 +199,7 @@ TEST(MeshProxy, FineBallIsASphere) {
     const Vec3 next = std::max(kRadius - 0.004, norm(probe) - 5e-4) * direction;
     const double step = norm(next - probe);
     probe = next;
-    const MeshTouch touch = hand.move(probe);
+    const ProxyTouch touch = hand.move(probe);
     if (norm(probe) > kRadius - 2e-5) continue;
     ASSERT_TRUE(touch.touched);
     const double depth = norm(touch.proxy - probe);
@@ -223,7 +223,7 @@ TEST(MeshProxy, ThinPlatesAtOneMetrePerSecond) {  // thesis figure 2.6 a
         hand.place(start);
         for (int tick = 1; tick <= 30; ++tick) {
           const Vec3 probe = start + (1e-3 * tick) * way;
-          const MeshTouch touch = hand.move(probe);
+          const ProxyTouch touch = hand.move(probe);
           ASSERT_GE(touch.proxy.z, 0.5 * thickness) << "popped through at tick " << tick;
           ASSERT_EQ(touch.touched, probe.z < 0.5 * thickness + hand.skin);
         }
@@ -238,7 +238,7 @@ TEST(MeshProxy, OpenSheetHoldsFromBothSides) {
   above.move({0.011, 0.012, 0.01});
   below.move({0.011, 0.012, -0.01});
   expect_near(above.move({0.011, 0.012, -0.005}).proxy, {0.011, 0.012, 0}, 2 * above.skin);
-  const MeshTouch touch = below.move({0.011, 0.012, 0.005});
+  const ProxyTouch touch = below.move({0.011, 0.012, 0.005});
   expect_near(touch.proxy, {0.011, 0.012, 0}, 2 * below.skin);
   expect_near(touch.normal, {0, 0, -1}, 1e-12);
 }
@@ -247,7 +247,7 @@ TEST(MeshProxy, SphereKeepsItsRadius) {
   const Body body(testing::ball(0.05, 5));
   Hand hand(body, {.radius = 0.01});
   hand.place({0, 0, 0.1});
-  MeshTouch touch = hand.move({0, 0, 0.055});
+  ProxyTouch touch = hand.move({0, 0, 0.055});
   EXPECT_NEAR(touch.proxy.z, 0.06, 2 * hand.skin) << "over the topmost vertex";
   Random random(4);
   Vec3 direction{0, 0, 1};
@@ -266,7 +266,7 @@ TEST(MeshProxy, SphereInAGrooveTouchesBothSides) {
   const Body body(folded(1));
   Hand hand(body, {.radius = 0.005});
   hand.move({0.02, 0, 0.06});
-  const MeshTouch touch = hand.move_along({0.02, 0, 0.03}, {0.001, 0.004, -0.01}, 30);
+  const ProxyTouch touch = hand.move_along({0.02, 0, 0.03}, {0.001, 0.004, -0.01}, 30);
   expect_near(touch.proxy, {0, 0.004, 0.005 * std::sqrt(2.0)}, 4 * hand.skin);
 }
 
@@ -275,7 +275,7 @@ TEST(MeshProxy, SphereDoesNotFallIntoAGapThatIsTooNarrow) {
   const Body body(testing::sheet(40, 0.003, [](double x, double) { return std::abs(x) < 0.0025 ? -0.05 : 0.0; }));
   Hand hand(body, {.radius = 0.004});
   hand.move({0.0005, 0, 0.02});
-  const MeshTouch touch = hand.move_along({0.0005, 0, 0.01}, {0.0002, 0, -0.003}, 50);
+  const ProxyTouch touch = hand.move_along({0.0005, 0, 0.01}, {0.0002, 0, -0.003}, 50);
   EXPECT_GT(touch.proxy.z, 0.002);
   EXPECT_LT(touch.proxy.z, 0.004);
 }
@@ -283,7 +283,7 @@ TEST(MeshProxy, SphereDoesNotFallIntoAGapThatIsTooNarrow) {
 TEST(MeshProxy, PlacedInsideTheNearestPointHoldsIt) {
   const Body body(testing::box({0.02, 0.02, 0.02}));
   Hand hand(body, {.friction = 0.5});
-  const MeshTouch touch = hand.place({0.001, -0.015, 0.01});
+  const ProxyTouch touch = hand.place({0.001, -0.015, 0.01});
   ASSERT_TRUE(touch.touched);
   expect_near(touch.proxy, {0.001, -0.02, 0.01}, 2 * hand.skin);
   expect_near(touch.normal, {0, -1, 0}, 1e-12);
@@ -298,7 +298,7 @@ TEST(MeshProxy, NotANumberIsIgnored) {
   Hand hand(body, {});
   hand.move({0.001, 0.002, 0.01});
   const Vec3 held = hand.move({0.001, 0.002, -0.004}).proxy;
-  const MeshTouch touch = hand.move({std::nan(""), 0, HUGE_VAL});
+  const ProxyTouch touch = hand.move({std::nan(""), 0, HUGE_VAL});
   EXPECT_TRUE(touch.touched);
   EXPECT_EQ(touch.proxy, held);
 }
@@ -356,7 +356,7 @@ TEST(MeshProxy, RandomWalksNeverCross) {
           return std::clamp(v + random.uniform(-0.001, 0.001), low, high);
         };
         probe = {step(probe.x, -0.035, 0.035), step(probe.y, -0.035, 0.035), step(probe.z, -0.012, 0.006)};
-        const MeshTouch touch = hand.move(probe);
+        const ProxyTouch touch = hand.move(probe);
         touching += touch.touched ? 1 : 0;
         const double ground = testing::sheet_height(body.mesh, kSquares, kCell, touch.proxy.x, touch.proxy.y);
         ASSERT_GT(touch.proxy.z, ground) << "step " << i << " roughness " << roughness;
@@ -379,7 +379,7 @@ TEST(MeshProxy, RandomWalksNeverCrossAClosedMesh) {
     for (int i = 0; i < 20'000; ++i) {
       probe = probe + testing::random_point(random, 0.0015);
       if (norm(probe) > 0.06) probe = (0.06 / norm(probe)) * probe;
-      const MeshTouch touch = hand.move(probe);
+      const ProxyTouch touch = hand.move(probe);
       touching += touch.touched ? 1 : 0;
       const auto nearest = body.tree.closest(touch.proxy, body.mesh.vertices);
       ASSERT_GE(nearest->distance, radius + 0.9 * hand.skin) << "step " << i;
@@ -400,7 +400,7 @@ TEST(MeshProxy, WaysThatAreCutShortStayOutside) {
       hand.place(start);
       const Vec3 goal = testing::random_point(random, 0.02);  // deep inside
       for (int i = 0; i < 20; ++i) {
-        const MeshTouch touch = hand.move(goal);
+        const ProxyTouch touch = hand.move(goal);
         ASSERT_TRUE(touch.touched) << run;
         ASSERT_NEAR(norm(touch.normal), 1, 1e-12);
         const auto nearest = body.tree.closest(touch.proxy, body.mesh.vertices);
@@ -425,7 +425,7 @@ TEST(MeshProxy, MovingSurfaceNeverPassesOver) {
       const double t = 1e-3 * tick;
       for (Vec3& v : body.mesh.vertices) v.z = 0.02 * std::sin(20 * t) + 0.3 * t * v.x + 0.004 * std::sin(40 * t + 60 * v.y);
       body.tree.refit(body.mesh.vertices);
-      const MeshTouch touch = hand.move(rest);
+      const ProxyTouch touch = hand.move(rest);
       const double ground = testing::sheet_height(body.mesh, kSquares, kCell, touch.proxy.x, touch.proxy.y);
       ASSERT_GT(touch.proxy.z, ground) << "tick " << tick;
       const double over_rest = testing::sheet_height(body.mesh, kSquares, kCell, rest.x, rest.y);
@@ -439,10 +439,10 @@ TEST(MeshProxy, FrictionCarriesTheProxyWithTheSurface) {
   Body body(flat());
   Hand hand(body, {.friction = 0.5, .reach = 0.001});
   hand.move({0.0011, 0.0017, 0.001});
-  const MeshTouch before = hand.move({0.0011, 0.0017, -0.002});
+  const ProxyTouch before = hand.move({0.0011, 0.0017, -0.002});
   for (Vec3& v : body.mesh.vertices) v = v + Vec3{0.0004, 0.0002, 0};
   body.tree.refit(body.mesh.vertices);
-  const MeshTouch after = hand.move({0.0011, 0.0017, -0.002});
+  const ProxyTouch after = hand.move({0.0011, 0.0017, -0.002});
   expect_near(after.proxy - before.proxy, {0.0004, 0.0002, 0}, 1e-12);
   EXPECT_EQ(after.triangle, before.triangle);
 }
