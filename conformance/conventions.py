@@ -44,6 +44,19 @@ class Cursor:
         raise StreamError(*overlong)
 
 
+STR_5 = ("truncated", "R-STR-5")
+STR_5_VARINT = ("malformed", "R-STR-5")
+
+
+def text(data: bytes) -> str:
+    try:
+        name = data.decode("utf-8")
+    except UnicodeDecodeError:
+        raise StreamError("invalid", "R-STR-11") from None
+    require(name != "" and all(ord(c) >= 32 and ord(c) != 127 for c in name), "invalid", "R-STR-11")
+    return name
+
+
 def clamp(v: int, lo: int, hi: int) -> int:
     return lo if v < lo else hi if v > hi else v
 

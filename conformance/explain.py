@@ -7,19 +7,36 @@
 import sys
 from pathlib import Path
 
-import decoder as tactus
+import mesh_main
+import mesh_thesis
+import rigid_decoder
+from decoder import File, SceneDecoder
 from range_decoder import RangeDecoder
+from start_models import Models
+
+NAMES: dict = {}                                            # by identity of a model: the model, its name
 
 
-class NamedModels(tactus.Models):
+def name_models(tree: str, models: list) -> None:
+    for node, model in enumerate(models[1:], start=1):
+        NAMES[id(model)] = (model, f"{tree}[{node}]")
+
+
+class NamedModels(Models):
     """The models of a packet, each of which knows its name in the specification."""
-    names: dict = {}
 
     def __missing__(self, name):
         models = super().__missing__(name)
-        for node, model in enumerate(models[1:], start=1):
-            self.names[id(model)] = (model, f"{name}[{node}]")
+        name_models(name, models)
         return models
+
+
+class NamedThesisModels(mesh_thesis.ThesisModels):
+    def copy(self):
+        copied = super().copy()
+        name_models("list", copied.list)
+        name_models("errors", copied.errors)
+        return copied
 
 
 class Narrator(RangeDecoder):
@@ -29,7 +46,7 @@ class Narrator(RangeDecoder):
     def bit(self, m):
         zero, before = m[0], (self.range, self.code)
         value = super().bit(m)
-        self.note(f"bit({NamedModels.names[id(m)][1]})", f"{zero}", f"{(before[0] >> 15) * zero:08x}", before, value)
+        self.note(f"bit({NAMES[id(m)][1]})", f"{zero}", f"{(before[0] >> 15) * zero:08x}", before, value)
         return value
 
     def raw(self, n):
@@ -42,28 +59,55 @@ class Narrator(RangeDecoder):
         self.steps.append(f"| {symbol} | {before[0]:08x} | {before[1]:08x} | {zero} | {bound} | **{value}** | {self.position} |")
 
 
-def explain(path, number):
-    file = tactus.File(Path(path).read_bytes())
-    rigid = tactus.RigidDecoder(file.header)
-    tactus.Models, tactus.RangeDecoder = NamedModels, Narrator
-    for count, (tick, data) in enumerate(file.packets()):
-        Narrator.steps.clear()
-        NamedModels.names.clear()
-        packet = rigid.decode(data, tick)
-        if count == number:
-            break
-    else:
-        sys.exit(f"{path}: there is no packet {number}")
-    print(f"Packet: `{data.hex(' ')}`: sequence {packet.sequence}, payload `{data[2:].hex(' ')}`.\n")
-    print("| symbol | range | code | zero | bound or step | value | bytes taken |\n|---|---|---|---|---|---|---|")
-    print("\n".join(Narrator.steps))
-    print(f"\nFinal state: range {packet.range:08x}, code {packet.code:08x}. Tick {packet.scene.tick}, key {packet.key}.\n")
+def narrate():
+    """From now on decoders tell what they do."""
+    rigid_decoder.Models = mesh_main.Models = NamedModels
+    mesh_thesis.ThesisModels = NamedThesisModels
+    rigid_decoder.RangeDecoder = mesh_main.RangeDecoder = mesh_thesis.RangeDecoder = Narrator
+
+
+def tell_rigid(packet):
     for update in packet.updates:
         state = packet.scene.states[update.object]
         print(f"Object {update.object}, reason {update.reason}, level {update.level}:")
         print(f"position {list(state.position)}, rotation {list(state.rotation)}, velocity {list(state.velocity)}, "
               f"spin {list(state.spin)}.")
-    print(f"\nState hash: {rigid.state_hash():016x}.")
+
+
+def tell_mesh(packet):
+    state = packet.state
+    if isinstance(state, mesh_main.MainState):
+        touch = f"triangle {state.triangle}, haptic level {state.haptic}" if state.touched else "no touch"
+        print(f"Visual bound {state.visual}, {touch}, density {state.density}.")
+        for k, motion in enumerate(state.motion):
+            print(f"Mode {k}: increment {motion.last}, before it {motion.before}.")
+    for v in packet.vertices:
+        print(f"Vertex {v}: displacement {state.u[3 * v:3 * v + 3]}.")
+
+
+def explain(path, number):
+    narrate()
+    file = File(Path(path).read_bytes())
+    scene = SceneDecoder(file.header)
+    for count, (tick, record) in enumerate(file.packets()):
+        Narrator.steps.clear()
+        NAMES.clear()
+        part, data = scene.split(record)
+        packet = scene.parts[part].decode(data, tick)
+        if count == number:
+            break
+    else:
+        sys.exit(f"{path}: there is no packet {number}")
+    of_part = f" of part {part}" if len(scene.parts) > 1 else ""
+    print(f"Packet{of_part}: `{data.hex(' ')}`: sequence {packet.sequence}, payload `{data[2:].hex(' ')}`.\n")
+    print("| symbol | range | code | zero | bound or step | value | bytes taken |\n|---|---|---|---|---|---|---|")
+    print("\n".join(Narrator.steps))
+    print(f"\nFinal state: range {packet.range:08x}, code {packet.code:08x}. Tick {packet.tick}, key {packet.key}.\n")
+    if isinstance(packet, rigid_decoder.Packet):
+        tell_rigid(packet)
+    else:
+        tell_mesh(packet)
+    print(f"\nState hash: {scene.parts[part].state_hash():016x}.")
 
 
 if __name__ == "__main__":

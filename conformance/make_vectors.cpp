@@ -22,6 +22,12 @@ int main(int argc, char** argv) {
   add_rigid_rules(catalogue);
   catalogue.begin("client");
   add_client(catalogue);
+  catalogue.begin("mesh");
+  add_mesh_header(catalogue);
+  add_mesh_main(catalogue);
+  add_mesh_thesis(catalogue);
+  add_mesh_parts(catalogue);
+  add_mesh_rules(catalogue);
   const bool written = catalogue.write(argv[1]);
   return catalogue.write_index(argv[2]) && written ? 0 : 1;
 }

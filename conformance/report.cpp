@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/report.h"
 
+#include <algorithm>
 #include <ostream>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "codec/base/hash.h"
+#include "codec/mesh/mesh_decoder.h"
 #include "codec/rigid/rigid_decoder.h"
 #include "codec/stream/file.h"
+#include "codec/stream/part.h"
 
 namespace tactus::conformance {
 namespace {
@@ -43,6 +49,18 @@ std::string quoted(std::string_view text) {
   return out + '"';
 }
 
+void write_meshes(const std::vector<MeshObject>& meshes, std::ostream& out) {
+  out << R"(,"meshes":[)";
+  const char* comma = "";
+  for (const MeshObject& mesh : meshes) {
+    out << comma << R"({"name":)" << quoted(mesh.name) << R"(,"profile":)" << int{static_cast<std::uint8_t>(mesh.profile)}
+        << R"(,"vertices":)" << mesh.rest.size() << R"(,"triangles":)" << mesh.triangles.size() << R"(,"modes":)"
+        << mesh.basis.steps.size() << '}';
+    comma = ",";
+  }
+  out << ']';
+}
+
 void write_header_line(const StreamHeader& h, std::ostream& out) {
   out << R"({"header":{"version":1,"profile":)" << int{static_cast<std::uint8_t>(h.profile)} << R"(,"tick_rate":)" << h.tick_rate
       << R"(,"grid":[)" << int{h.grid.position} << ',' << int{h.grid.velocity} << ',' << int{h.grid.rotation} << ','
@@ -53,42 +71,129 @@ void write_header_line(const StreamHeader& h, std::ostream& out) {
     out << comma << R"({"name":)" << quoted(object.name) << R"(,"dof":)" << int{object.dof} << '}';
     comma = ",";
   }
-  out << "]}}\n";
+  out << ']';
+  if (!h.meshes.empty()) write_meshes(h.meshes, out);
+  out << "}}\n";
 }
 
-void write_packet_line(std::uint64_t number, const DecodedPacket& packet, std::uint64_t state, std::ostream& out) {
-  out << R"({"packet":)" << number << R"(,"sequence":)" << packet.sequence << R"(,"key":)" << (packet.key ? "true" : "false")
-      << R"(,"tick":)" << packet.tick << R"(,"updates":[)";
+/// What packets of every part say.
+template <class Packet>
+void write_place(const Packet& packet, std::ostream& out) {
+  out << R"("sequence":)" << packet.sequence << R"(,"key":)" << (packet.key ? "true" : "false") << R"(,"tick":)" << packet.tick;
+}
+
+template <class Packet>
+void write_final(const Packet& packet, std::uint64_t state, std::ostream& out) {
+  out << R"(,"range":")" << hex(packet.final_range, 8) << R"(","code":")" << hex(packet.final_code, 8) << R"(","state":")"
+      << hex(state, 16) << '"';
+}
+
+void write_packet(const DecodedPacket& packet, std::uint64_t state, std::ostream& out) {
+  write_place(packet, out);
+  out << R"(,"updates":[)";
   const char* comma = "";
   for (const RigidUpdate& update : packet.updates) {
     out << comma << '[' << update.object << ',' << int{static_cast<std::uint8_t>(update.reason)} << ',' << int{update.level}
         << ']';
     comma = ",";
   }
-  out << R"(],"range":")" << hex(packet.final_range, 8) << R"(","code":")" << hex(packet.final_code, 8) << R"(","state":")"
-      << hex(state, 16) << '"';
+  out << ']';
+  write_final(packet, state, out);
+}
+
+void write_packet(const DecodedMeshPacket& packet, std::uint64_t state, std::ostream& out) {
+  write_place(packet, out);
+  out << R"(,"vertices":)" << packet.updates;
+  write_final(packet, state, out);
 }
 
 void write_shown(std::uint64_t hash, std::ostream& out) { out << R"(,"shown":")" << hex(hash, 16) << '"'; }
 
-/// A client that applies every packet at the packet's tick and looks at every tick.
-class Viewer {
+/// The decoders of all parts of a scene, and a client that applies every packet at its tick and looks at every tick.
+class Client {
  public:
-  explicit Viewer(Replica replica) : replica_(std::move(replica)) {}
-
-  std::uint64_t apply(const DecodedPacket& packet, std::span<const RigidState> objects) {
-    for (; tick_ < packet.tick; ++tick_) all_.add64(replica_.pose_hash(tick_));
-    replica_.apply(packet, objects, packet.tick);
-    return replica_.pose_hash(packet.tick);
+  static Result<Client> create(const StreamHeader& header, std::optional<Interpolation> interpolation) {
+    TACTUS_TRY(auto rigid, RigidDecoder::create(header));
+    Client client(std::move(rigid), has_part_byte(header));
+    for (std::size_t i = 0; i < header.meshes.size(); ++i) {
+      TACTUS_TRY(auto mesh, MeshDecoder::create(header, i));
+      client.meshes_.push_back(std::move(mesh));
+    }
+    client.has_rigid_ = std::ranges::any_of(header.objects, [](const RigidObject& o) { return o.dof != Dof::none; });
+    if (interpolation) {
+      TACTUS_TRY(auto shown, Replica::create(header, {.interpolation = *interpolation}));
+      client.replica_.emplace(std::move(shown));
+    }
+    return client;
   }
-  /// Over every tick up to the last packet's.
-  std::uint64_t finish() {
-    all_.add64(replica_.pose_hash(tick_));
-    return all_.value();
+
+  /// Decodes the packet of a record and writes its line.
+  Result<void> decode(std::uint64_t number, const FilePacket& record, std::ostream& out) {
+    TACTUS_TRY(const auto packet, split_part(rigid_.header(), record.bytes));
+    if (packet.part != 0) return decode(meshes_[packet.part - 1], packet, number, record.tick, out);
+    return decode(rigid_, packet, number, record.tick, out);
+  }
+
+  /// State of the only part, or of all.
+  void write_states(std::ostream& out) const {
+    if (has_part_byte_) out << '[';
+    const char* comma = "";
+    if (has_rigid_ || meshes_.empty()) {
+      out << '"' << hex(rigid_.state_hash(), 16) << '"';
+      comma = ",";
+    }
+    for (const MeshDecoder& mesh : meshes_) {
+      out << comma << '"' << hex(mesh.state_hash(), 16) << '"';
+      comma = ",";
+    }
+    if (has_part_byte_) out << ']';
+  }
+
+  /// What was shown at every tick up to the last packet's.
+  void write_all_shown(std::ostream& out) {
+    if (!replica_) return;
+    all_.add64(shown_at(tick_));
+    write_shown(all_.value(), out);
   }
 
  private:
-  Replica replica_;
+  Client(RigidDecoder rigid, bool part_byte) : rigid_(std::move(rigid)), has_part_byte_(part_byte) {}
+
+  template <class Decoder>
+  Result<void> decode(Decoder& decoder, const PartPacket& packet, std::uint64_t number, std::int64_t tick, std::ostream& out) {
+    if (replica_) look_until(tick);
+    TACTUS_TRY(const auto decoded, decoder.decode(packet.bytes));
+    if (decoded.tick != tick) return fail(Errc::invalid, "R-FIL-7");
+    out << R"({"packet":)" << number << ',';
+    if (has_part_byte_) out << R"("part":)" << packet.part << ',';
+    write_packet(decoded, decoder.state_hash(), out);
+    if (replica_) {
+      if constexpr (std::is_same_v<Decoder, RigidDecoder>) replica_->apply(decoded, decoder.objects(), tick);
+      write_shown(shown_at(tick), out);
+    }
+    out << "}\n";
+    return {};
+  }
+
+  void look_until(std::int64_t tick) {
+    for (; tick_ < tick; ++tick_) all_.add64(shown_at(tick_));
+  }
+
+  std::uint64_t shown_at(std::int64_t tick) {
+    if (meshes_.empty()) return replica_->pose_hash(tick);
+    Fnv1a hash;
+    hash.add64(replica_->pose_hash(tick));
+    for (MeshDecoder& mesh : meshes_)
+      for (const auto& displacement : mesh.displacements_at(tick))
+        for (const std::int32_t component : displacement) hash.add32(component);
+    return hash.value();
+  }
+
+  RigidDecoder rigid_;
+  std::vector<MeshDecoder> meshes_;
+  bool has_part_byte_;
+  bool has_rigid_ = false;
+  std::optional<Replica> replica_;
   std::int64_t tick_ = 0;
   Fnv1a all_;
 };
@@ -97,27 +202,19 @@ class Viewer {
 
 Result<void> report(std::span<const std::uint8_t> file, std::optional<Interpolation> replica, std::ostream& out) {
   TACTUS_TRY(auto reader, StreamFileReader::open(file));
-  TACTUS_TRY(auto decoder, RigidDecoder::create(reader.header()));
-  std::optional<Viewer> viewer;
-  if (replica) {
-    TACTUS_TRY(auto shown, Replica::create(reader.header(), {.interpolation = *replica}));
-    viewer.emplace(std::move(shown));
-  }
+  TACTUS_TRY(auto client, Client::create(reader.header(), replica));
   write_header_line(reader.header(), out);
   for (std::uint64_t number = 0;; ++number) {
     TACTUS_TRY(const auto record, reader.next());
-    if (!record) {
-      out << R"({"end":{"complete":)" << (reader.complete() ? "true" : "false") << R"(,"packets":)" << number << R"(,"state":")"
-          << hex(decoder.state_hash(), 16) << '"';
-      if (viewer) write_shown(viewer->finish(), out);
-      out << "}}\n";
-      return {};
+    if (record) {
+      TACTUS_CHECK(client.decode(number, *record, out));
+      continue;
     }
-    TACTUS_TRY(const auto packet, decoder.decode(record->bytes));
-    if (packet.tick != record->tick) return fail(Errc::invalid, "R-FIL-7");
-    write_packet_line(number, packet, decoder.state_hash(), out);
-    if (viewer) write_shown(viewer->apply(packet, decoder.objects()), out);
-    out << "}\n";
+    out << R"({"end":{"complete":)" << (reader.complete() ? "true" : "false") << R"(,"packets":)" << number << R"(,"state":)";
+    client.write_states(out);
+    client.write_all_shown(out);
+    out << "}}\n";
+    return {};
   }
 }
 

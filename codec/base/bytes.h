@@ -9,7 +9,8 @@
 
 namespace tactus {
 
-/// Reads from a span and distrusts it. Past the end it returns 0 and stays failed; a syntax function checks ok() once, at its end.
+/// Reads from a span and distrusts it. After its first fault, the end of the span or an overlong varint, it returns 0 and stays
+/// failed; a syntax function checks ok() once, at its end.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::uint8_t> bytes, std::size_t origin = 0) noexcept : bytes_(bytes), origin_(origin) {}
@@ -33,19 +34,19 @@ class ByteReader {
     std::uint64_t value = 0;
     for (unsigned shift = 0; shift < 64; shift += 7) {
       const std::uint8_t byte = u8();
-      if (overrun_) return 0;
+      if (!ok()) return 0;
       value |= static_cast<std::uint64_t>(byte & 0x7f) << shift;
       if (byte & 0x80) continue;
-      overlong_ = overlong_ || (byte == 0 && shift > 0) || (shift == 63 && byte > 1);
-      return value;
+      overlong_ = (byte == 0 && shift > 0) || (shift == 63 && byte > 1);
+      return overlong_ ? 0 : value;
     }
     overlong_ = true;
     return 0;
   }
 
   std::span<const std::uint8_t> bytes(std::uint64_t count) noexcept {
-    if (overrun_ || count > remaining()) {
-      overrun_ = true;
+    if (!ok() || count > remaining()) {
+      overrun_ = !overlong_;
       return {};
     }
     const auto out = bytes_.subspan(position_, static_cast<std::size_t>(count));
@@ -61,8 +62,8 @@ class ByteReader {
 
  private:
   std::uint64_t little_endian(std::size_t count) noexcept {
-    if (overrun_ || count > remaining()) {
-      overrun_ = true;
+    if (!ok() || count > remaining()) {
+      overrun_ = !overlong_;
       return 0;
     }
     std::uint64_t value = 0;

@@ -109,13 +109,14 @@ Result<DecodedMeshPacket> MeshDecoder::Impl::decode_main(std::span<const std::ui
 
 Result<ThesisHead> MeshDecoder::Impl::read_thesis_head(ByteReader& in) const noexcept {
   ThesisHead head;
-  const std::uint8_t flags = in.u8();
-  head.key = (flags & 1) != 0;
+  const std::uint8_t key = in.u8();
+  if (key > 1) return fail(Errc::malformed, "R-MES-11", in.bit_offset());
+  head.key = key == 1;
   if (!head.key && header.baseline_span > 1) head.baseline_delta = in.u8();
   const std::uint64_t tick_delta = in.varint(), count = in.varint(), list_bytes = in.varint(), lowest = in.varint(),
                       range = in.varint();
   if (in.overrun()) return fail(Errc::truncated, "R-MES-11", in.bit_offset());
-  if (!in.ok() || flags > 1) return fail(Errc::malformed, "R-MES-11", in.bit_offset());
+  if (!in.ok()) return fail(Errc::malformed, "R-MES-11", in.bit_offset());
   constexpr std::uint64_t kSpan = std::uint64_t{4} * MeshObject::kMaxDisplacement;
   if (tick_delta > 0xffffffff || count < 1 || count > mesh.rest.size() || lowest > kSpan || range > kSpan)
     return fail(Errc::invalid, "R-MES-12", in.bit_offset());

@@ -8,6 +8,8 @@
 namespace tactus {
 namespace {
 
+constexpr std::uint32_t kNoVertex = 0xffffffff;
+
 constexpr std::uint64_t zigzag(std::int64_t v) noexcept {
   return static_cast<std::uint64_t>(v) << 1 ^ static_cast<std::uint64_t>(v >> 63);
 }
@@ -77,10 +79,12 @@ Result<void> parse_triangles(ByteReader& in, std::uint64_t count, MeshObject& me
   std::uint32_t first = 0;
   for (std::uint64_t t = 0; t < count; ++t) {
     Triangle triangle{};
-    std::uint32_t last = first;
+    std::int64_t last = first;
     for (std::uint32_t& corner : triangle) {
-      const std::int64_t v = last + unzigzag(in.varint() & 0xffffffff);
-      corner = last = v < 0 || v > 0xfffffffe ? 0xffffffff : static_cast<std::uint32_t>(v);
+      constexpr std::uint64_t kFarthest =
+          4 * kMaxMeshVertices;  // a difference so large leads to no vertex, nor do those after it
+      last += unzigzag(std::min(in.varint(), kFarthest));
+      corner = last < 0 || last >= std::int64_t{kMaxMeshVertices} ? kNoVertex : static_cast<std::uint32_t>(last);
     }
     if (!in.ok()) return fail(class_of_overflow(in), "R-STR-5", in.bit_offset());
     if (!is_triangle(triangle, mesh.rest.size())) return fail(Errc::invalid, "R-MES-6", in.bit_offset());
@@ -98,7 +102,9 @@ Result<void> parse_basis(ByteReader& in, MeshObject& mesh) {
   if (modes * (components + 2) > in.remaining()) return fail(Errc::truncated, "R-STR-5", in.bit_offset());
   mesh.basis.entries.reserve(static_cast<std::size_t>(modes) * components);
   for (std::uint64_t k = 0; k < modes; ++k) {
-    mesh.basis.steps.push_back(in.u16());
+    const std::uint16_t step = in.u16();
+    if (in.ok() && step == 0) return fail(Errc::invalid, "R-MES-7", in.bit_offset());
+    mesh.basis.steps.push_back(step);
     for (std::size_t i = 0; i < components; ++i) {
       const std::uint64_t entry = in.varint();
       if (entry > std::uint64_t{2} * ModeBasis::kMaxEntry) return fail(Errc::invalid, "R-MES-7", in.bit_offset());

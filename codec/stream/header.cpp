@@ -17,6 +17,7 @@ constexpr std::array<std::uint8_t, 4> kMagic{0x89, 'T', 'C', 'T'};
 constexpr std::uint8_t kVersion = 1;
 constexpr std::uint8_t kRigid = 1;
 constexpr std::uint16_t kHasMeshes = 1;  // flag
+constexpr std::size_t kMaxMeshes = 255;  // packets name them by a byte
 constexpr std::size_t kFixedSize = 12;   // magic, version, profile, flags, body_size
 
 /// Well-formed UTF-8 without control characters (RFC 3629).
@@ -110,6 +111,7 @@ Result<void> parse_meshes(ByteReader& body, const DecodeLimits& limits, StreamHe
   const std::uint64_t count = body.varint();
   if (!body.ok()) return fail(class_of_overflow(body), "R-STR-5", body.bit_offset());
   if (count < 1) return fail(Errc::malformed, "R-MES-1", body.bit_offset());
+  if (count > kMaxMeshes) return fail(Errc::invalid, "R-MES-1", body.bit_offset());
   if (count > limits.objects - header.objects.size()) return fail(Errc::limit_exceeded, "R-STR-14", body.bit_offset());
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::uint64_t start = body.bit_offset();
@@ -152,6 +154,7 @@ Result<StreamHeader> parse_body(ByteReader body, Profile profile, std::uint16_t 
 Result<void> check_header(const StreamHeader& header, const DecodeLimits& limits) {
   if (header.profile != Profile::thesis) return fail(Errc::unsupported, "R-STR-3");
   if (const char* rule = broken_parameter_rule(header)) return fail(Errc::invalid, rule);
+  if (header.meshes.size() > kMaxMeshes) return fail(Errc::invalid, "R-MES-1");
   if (header.objects.size() + header.meshes.size() > limits.objects) return fail(Errc::limit_exceeded, "R-STR-14");
   std::unordered_set<std::string_view> names;
   for (const RigidObject& object : header.objects) {

@@ -46,6 +46,7 @@ struct RawHeader {
   GridExponents grid{22, 17, kRotationExp, 12};
   std::uint16_t max_extrapolation = 2000;
   std::uint8_t baseline_span = 1;
+  Bytes meshes{};  ///< mesh_count and all meshes, if flags say so
   Bytes extensions{};
   std::array<std::uint8_t, 4> magic{0x89, 0x54, 0x43, 0x54};
   std::uint8_t version = 1;
@@ -72,17 +73,29 @@ struct RawUpdate {
 /// A packet with any values in its head and its gaps.
 Bytes raw_packet(const StreamHeader& header, std::uint16_t sequence, PacketHead head, std::span<const RawUpdate> updates);
 
-/// A packet whose payload `code(coder, models)` writes symbol by symbol.
+/// The bytes that `code(coder)` writes symbol by symbol.
+template <class Code>
+Bytes payload(Code code) {
+  Bytes bytes(std::size_t{1} << 16);
+  RangeEncoder coder(bytes);
+  code(coder);
+  bytes.resize(coder.finish());
+  return bytes;
+}
+
+/// A packet of a sequence number and the payload that `code(coder)` writes.
+template <class Code>
+Bytes with_payload(std::uint16_t sequence, Code code) {
+  return Bytes{static_cast<std::uint8_t>(sequence), static_cast<std::uint8_t>(sequence >> 8)} + payload(code);
+}
+
+/// A packet of rigid objects whose payload `code(coder, models)` writes.
 template <class Code>
 Bytes coded_packet(std::uint16_t sequence, Code code) {
-  Bytes packet(std::size_t{1} << 16);
-  packet[0] = static_cast<std::uint8_t>(sequence);
-  packet[1] = static_cast<std::uint8_t>(sequence >> 8);
-  RangeEncoder coder(std::span<std::uint8_t>(packet).subspan(2));
-  RigidModels models = start_models();
-  code(coder, models);
-  packet.resize(2 + coder.finish());
-  return packet;
+  return with_payload(sequence, [&](RangeEncoder& coder) {
+    RigidModels models = start_models();
+    code(coder, models);
+  });
 }
 
 /// One object of a packet, by its index in the header.

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Meshes in the stream header: spec/60-mesh.md section 2.
+#include <utility>
+
+#include "conformance/make_vectors/catalogue.h"
+#include "conformance/make_vectors/mesh_build.h"
+
+namespace tactus::conformance {
+namespace {
+
+constexpr std::int64_t kTwo31 = std::int64_t{1} << 31;
+
+/// The header of one mesh, main or thesis, after one change.
+template <class Change>
+Bytes changed(std::uint8_t profile, Change change) {
+  RawMesh mesh{.shape = sheet(2, 2), .profile = profile};
+  if (profile == 1) mesh = with_modes(std::move(mesh), 2, 670);
+  change(mesh);
+  return only(mesh).bytes();
+}
+
+/// A header whose mesh part is these bytes.
+Bytes around(const Bytes& meshes) {
+  RawHeader header;
+  header.objects.clear();
+  header.flags = 1;
+  header.meshes = meshes;
+  return header.bytes();
+}
+
+/// A mesh of profile main up to `triangle_count`, and what follows.
+Bytes counted(std::uint64_t vertices, std::uint64_t triangles, const Bytes& rest) {
+  return around(Bytes{1, 1, 1, 'm', 2, 0, 1, 0, 0} + varint(vertices) + varint(triangles) + rest);
+}
+
+Bytes zeros(std::size_t count) { return Bytes(count, 0); }
+
+void add_valid(Catalogue& c) {
+  c.valid("lower-limits", "Thesis, main: every field at its lower limit.",
+          with_meshes({}, {{.shape = one_vertex(), .profile = 0, .name = "a", .rings = 0, .quant_bits = 1},
+                           {.shape = one_vertex(), .name = "b", .rings = 0, .frame_period = 1}})
+              .bytes(),
+          {"R-MES-1", "R-MES-3", "R-MES-4"});
+  RawMesh high{.shape = one_triangle(), .name = "\xc3\xa9lan", .rings = 32, .frame_period = 1 << 28, .mode_steps = {1, 65535}};
+  for (int i = 0; i < 18; ++i) high.entries.push_back(i % 2 == 0 ? 2047 : -2047);
+  high.shape.rest = {{-kTwo31, kTwo31 - 1, 0}, {kTwo31 - 1, -kTwo31, 0}, {-kTwo31, kTwo31 - 1, 1}};
+  c.valid("upper-limits", "Thesis, main: every field at its upper limit, rest positions at both ends of 32 bits.",
+          with_meshes({}, {{.profile = 0, .rings = 32, .quant_bits = 12, .models_kept = 1}, high}).bytes(),
+          {"R-MES-3", "R-MES-5", "R-MES-7"});
+}
+
+void add_counts(Catalogue& c) {
+  const Rejection cut{"truncated", "R-STR-5"}, overlong{"malformed", "R-STR-5"};
+  c.invalid("flag-1", "The second flag is set.", {"malformed", "R-STR-4"}, [] {
+    RawHeader header = only({});
+    header.flags = 2;
+    return header.bytes();
+  }());
+  c.invalid("no-mesh-count", "The flag is set and the body ends.", cut, around({}));
+  c.invalid("overlong-mesh-count", "mesh_count 1 is written in two bytes.", overlong, around({0x81, 0x00}));
+  c.invalid("mesh-count-0", "The flag is set and mesh_count is 0.", {"malformed", "R-MES-1"}, around({0}));
+  c.invalid("mesh-count-256", "One mesh more than parts have numbers; none follows.", {"invalid", "R-MES-1"},
+            around(varint(256)));
+  c.invalid("second-mesh-missing", "mesh_count is 2; one follows.", cut, around(varint(2) + RawMesh{}.bytes()));
+  c.invalid("cut-parameters", "The body ends inside frame_period.", cut, around({1, 1, 1, 'm', 2, 0, 1}));
+  c.invalid("overlong-vertex-count", "vertex_count 3 is written in two bytes.", overlong, changed(1, [](RawMesh& m) {
+              m.vertex_count = Bytes{0x83, 0x00};
+            }));
+  c.invalid("no-room", "One byte too few for 3 vertices and 1 triangle.", cut, counted(3, 1, zeros(11)));
+  c.invalid("no-room-for-2-20", "2^20 vertices announced; none follows.", cut, counted(1 << 20, 0, zeros(3)));
+  c.invalid("no-room-for-modes", "One byte too few for a mode of one vertex.", cut,
+            counted(1, 0, zeros(3) + Bytes{1} + zeros(4)));
+  c.invalid("cut-corner", "The body ends inside the last corner.", cut, counted(3, 1, zeros(9) + Bytes{0, 2, 0x82}));
+  c.invalid("overlong-rest", "A rest coordinate's difference 0 is written in two bytes.", overlong,
+            counted(1, 0, Bytes{0x80, 0x00} + zeros(3)));
+  c.invalid("overlong-then-cut", "A mesh's vertex_count is overlong, then the body ends: the first fault counts.", overlong,
+            around({1, 1, 1, 'm', 2, 0, 1, 0, 0, 0x83, 0x00}));
+}
+
+void add_rules(Catalogue& c) {
+  const Rejection parameter{"invalid", "R-MES-3"}, count{"invalid", "R-MES-4"}, range{"invalid", "R-MES-5"},
+      corner{"invalid", "R-MES-6"}, basis{"invalid", "R-MES-7"};
+  c.invalid("mesh-profile-2", "A mesh's profile is 2.", {"unsupported", "R-MES-2"}, around({1, 2}));
+  c.invalid("rings-33", "rings is 33.", parameter, changed(1, [](RawMesh& m) { m.rings = 33; }));
+  c.invalid("quant-bits-0", "quant_bits is 0.", parameter, changed(0, [](RawMesh& m) { m.quant_bits = 0; }));
+  c.invalid("quant-bits-13", "quant_bits is 13.", parameter, changed(0, [](RawMesh& m) { m.quant_bits = 13; }));
+  c.invalid("models-kept-2", "models_kept is 2.", {"malformed", "R-MES-3"}, changed(0, [](RawMesh& m) { m.models_kept = 2; }));
+  c.invalid("frame-period-0", "frame_period is 0.", parameter, changed(1, [](RawMesh& m) { m.frame_period = 0; }));
+  c.invalid("frame-period-too-long", "frame_period is 2^28 + 1.", parameter,
+            changed(1, [](RawMesh& m) { m.frame_period = (1 << 28) + 1; }));
+  c.invalid("no-vertices", "vertex_count is 0.", count, counted(0, 0, zeros(1)));
+  c.invalid("too-many-vertices", "vertex_count is 2^20 + 1.", count, counted((1 << 20) + 1, 0, zeros(1)));
+  c.invalid("too-many-triangles", "triangle_count is 2^21 + 1.", count, counted(3, (1 << 21) + 1, zeros(9)));
+  c.invalid("rest-beyond-32-bits", "The second vertex is one unit beyond 2^31 - 1.", range,
+            counted(2, 0, zigzag_varint(kTwo31 - 1) + zeros(2) + Bytes{2, 0, 0, 0}));
+  c.invalid("rest-of-64-bits", "A rest coordinate's difference has 64 bits.", range,
+            counted(1, 0, varint(~std::uint64_t{0}) + zeros(3)));
+  c.invalid("rest-before-cut", "x is beyond 32 bits, and the body ends inside y: the first fault counts.", range,
+            counted(1, 0, zigzag_varint(kTwo31) + Bytes{0x80}));
+  c.invalid("corner-of-no-vertex", "A corner is the number of vertices.", corner, counted(3, 1, zeros(9) + Bytes{0, 2, 4, 0}));
+  c.invalid("negative-corner", "A corner is -1.", corner, counted(3, 1, zeros(9) + Bytes{1, 2, 2, 0}));
+  c.invalid("equal-corners", "Two corners of a triangle are equal.", corner, counted(3, 1, zeros(9) + Bytes{0, 2, 0, 0}));
+  c.invalid("first-and-last-corner-equal", "The first and the last corner are equal.", corner,
+            counted(3, 1, zeros(9) + Bytes{0, 2, 1, 0}));
+  c.invalid("corner-of-33-bits", "A corner's difference is 2^32: in 32-bit arithmetic it would be 0.", corner,
+            counted(3, 1, zeros(9) + zigzag_varint(std::int64_t{1} << 32) + Bytes{2, 2, 0}));
+  c.invalid("65-modes", "mode_count is 65.", basis, counted(1, 0, zeros(3) + Bytes{65} + zeros(400)));
+  c.invalid("mode-step-0", "A mode's step is 0.", basis, changed(1, [](RawMesh& m) { m.mode_steps[1] = 0; }));
+  c.invalid("entry-2048", "An entry of a mode is 2048.", basis, changed(1, [](RawMesh& m) { m.entries.back() = 2048; }));
+  c.invalid("entry-minus-2048", "An entry of a mode is -2048.", basis, changed(1, [](RawMesh& m) { m.entries[0] = -2048; }));
+  c.invalid("mode-step-before-cut", "A mode's step is 0, and its last entry is cut: the first fault counts.", basis,
+            counted(1, 0, zeros(3) + Bytes{1, 0, 0, 0, 0, 0x80}));
+}
+
+void add_names(Catalogue& c) {
+  const Rejection name{"invalid", "R-STR-11"};
+  c.invalid("mesh-without-name", "A mesh's name is empty.", name, changed(0, [](RawMesh& m) { m.name.clear(); }));
+  c.invalid("mesh-name-control", "A mesh's name holds a line feed.", name, changed(1, [](RawMesh& m) { m.name = "a\nb"; }));
+  c.invalid("mesh-name-of-object", "A mesh has the name of an object.", name,
+            with_meshes({}, {{.shape = one_triangle(), .name = "cube"}}).bytes());
+  c.invalid("equal-mesh-names", "Two meshes have the same name.", name,
+            with_meshes({}, {{.shape = one_vertex()}, {.shape = one_triangle()}}).bytes());
+  RawHeader extended = only({});
+  extended.extensions = {1};
+  c.invalid("extension-after-mesh", "The body ends inside an extension after a mesh.", {"malformed", "R-STR-16"},
+            extended.bytes());
+}
+
+}  // namespace
+
+void add_mesh_header(Catalogue& c) {
+  add_valid(c);
+  add_counts(c);
+  add_rules(c);
+  add_names(c);
+}
+
+}  // namespace tactus::conformance

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Valid packets of profile main: spec/60-mesh.md sections 4 to 7.
+#include <algorithm>
+#include <limits>
+
+#include "conformance/make_vectors/catalogue.h"
+#include "conformance/make_vectors/mesh_build.h"
+
+namespace tactus::conformance {
+namespace {
+
+constexpr std::int32_t kWidest = std::numeric_limits<std::int32_t>::max();
+constexpr std::int32_t kFarthest = MeshObject::kMaxDisplacement;
+
+/// Random residuals, bounds and coefficients, touched now and then, at random intervals.
+Bytes walk(const RawMesh& mesh, std::uint64_t seed, int packets, std::uint8_t span = 1, std::int64_t frame = 1) {
+  MeshStream stream(only(mesh, span));
+  Random random(seed);
+  const auto triangles = static_cast<std::uint32_t>(mesh.shape.triangles.size());
+  std::int64_t tick = 0;
+  for (int i = 0; i < packets; ++i) {
+    MainStep step{.at = {.tick = tick, .key = i == 0}};
+    if (i > 0 && span > 1) step.at.baseline = 1 + random.below(static_cast<std::uint32_t>(std::min<int>(i, span)));
+    if (triangles > 0 && random.below(4) > 0) step.triangle = random.below(triangles);
+    step.haptic = random.below(60);
+    step.visual = random.below(3) == 0 ? random.below(1000) : 100;
+    step.density = random.below(4);
+    for (std::size_t k = 0; k < mesh.mode_steps.size(); ++k) step.coefficients.push_back(random.integer(6));
+    step.residuals = random_residuals(random, 6, 64 * (step.density + 1) - 1);
+    stream.add(step);
+    tick += frame * random.below(4);
+  }
+  return stream.finished();
+}
+
+void add_shapes(Catalogue& c) {
+  c.valid("one-vertex", "A mesh of one vertex and no triangle.", walk({.shape = one_vertex()}, 600, 20));
+  c.valid("one-triangle", "A mesh of one triangle: its number takes no bit.", walk({.shape = one_triangle()}, 601, 20));
+  c.valid("no-triangles", "Nine vertices without a triangle: all are roots.", walk({.shape = {sheet(2, 2).rest, {}}}, 602, 12));
+  c.valid("open", "An open sheet.", walk({.shape = sheet(6, 5)}, 603, 16));
+  c.valid("closed", "A closed box.", walk({.shape = box(4, 3, 2)}, 604, 16));
+  c.valid("components", "Two components and a vertex of its own.",
+          walk({.shape = both(both(sheet(3, 2), one_vertex()), moved(box(2, 2, 1), {0, 0, 50000}))}, 605, 16));
+  Shape mirror = sheet(4, 3);
+  for (Vec3i& p : mirror.rest) p[0] = -p[0];
+  mirror = both(both(sheet(4, 3), mirror), moved(one_vertex(), {-7, 8, -9}));
+  c.valid("seams", "Two sheets side by side: vertices in one place are copies of each other, three of them at a corner.",
+          walk({.shape = mirror}, 612, 16));
+  c.valid("slivers", "Triangles a thousand times longer than wide.", walk({.shape = slivers(60)}, 606, 12));
+  Shape one_place = sheet(4, 3);
+  for (Vec3i& p : one_place.rest) p = {5, 5, 5};
+  c.valid("one-place", "All vertices in one place: every distance is 1.", walk({.shape = one_place}, 607, 12));
+  Shape mirrored = sheet(5, 4, 200001);
+  for (Vec3i& p : mirrored.rest) p[0] = -p[0];
+  c.valid("shifted-distances", "So large that distances are shifted, with differences of both signs.",
+          walk({.shape = mirrored}, 608, 12));
+  Shape wide = sheet(3, 3, 1);
+  for (std::size_t i = 0; i < wide.rest.size(); ++i)
+    wide.rest[i] = {i % 2 == 0 ? kWidest : -kWidest - 1, static_cast<std::int32_t>(i), i % 3 == 0 ? -kWidest - 1 : kWidest};
+  c.valid("ends-of-the-grid", "Rest positions at both ends of 32 bits.", walk({.shape = wide}, 609, 8));
+  c.valid("fan", "A hundred triangles around one vertex: more than 64 visits in search of parents.",
+          walk({.shape = flat_fan(100)}, 610, 8));
+  Shape duplicates = sheet(3, 3);
+  duplicates.triangles.insert(duplicates.triangles.end(), {duplicates.triangles[0], {0, 4, 8}, {8, 4, 0}});
+  c.valid("not-a-surface", "A triangle twice, one both ways round, edges with four triangles.",
+          walk({.shape = duplicates}, 611, 12));
+}
+
+/// A press that moves over the membrane: displacement of vertex v at a tick.
+Vec3i pressed(const Shape& shape, std::uint32_t v, std::int64_t tick) {
+  const std::int64_t x = shape.rest[v][0] - (8000 + 300 * tick), y = shape.rest[v][1] - 34000;
+  const std::int64_t d = (x * x + y * y) >> 16;
+  return {0, 0, static_cast<std::int32_t>(-400000 / (40 + d))};
+}
+
+Bytes membrane() {
+  const RawMesh mesh{.shape = box(16, 18, 2), .rings = 3, .frame_period = 16 * 256 + 171};
+  MeshStream stream(only(mesh));
+  for (std::int64_t i = 0; i < 8; ++i) {
+    const std::int64_t tick = (50 * i + 1) / 3;
+    const auto target = [&](std::uint32_t v) { return pressed(mesh.shape, v, tick); };
+    stream.add(MainStep{.at = {.tick = tick, .key = i == 0},
+                        .triangle = static_cast<std::uint32_t>(4 * (200 + 9 * i) % 1424),
+                        .haptic = 34,
+                        .visual = 209,
+                        .density = 1,
+                        .residuals = towards(target)});
+  }
+  return stream.finished();
+}
+
+Bytes level_23() {
+  // In every graph only the middle of the fan joins a neighbour, so that each level holds one vertex and 24 levels do not suffice.
+  return walk({.shape = flat_fan(40)}, 613, 8);
+}
+
+void add_bounds(Catalogue& c) {
+  MeshStream still(only({.shape = sheet(3, 3)}));
+  for (std::int64_t i = 0; i < 3; ++i) still.add(MainStep{.at = {.tick = i, .key = i == 0}});
+  c.valid("all-still", "Packets without a residual.", still.finished());
+
+  Random random(614);
+  MeshStream exact(only({.shape = sheet(4, 4)}));
+  for (std::int64_t i = 0; i < 6; ++i)
+    exact.add(
+        MainStep{.at = {.tick = i, .key = i == 0}, .visual = 0, .density = 3, .residuals = random_residuals(random, 9, 250)});
+  c.valid("visual-0", "A visual bound of 0: steps of one grid unit.", exact.finished());
+
+  MeshStream forceless(only({.shape = sheet(4, 4)}));
+  for (std::int64_t i = 0; i < 6; ++i)
+    forceless.add(MainStep{.at = {.tick = i, .key = i == 0},
+                           .triangle = static_cast<std::uint32_t>(i),
+                           .haptic = 0,
+                           .visual = 50,
+                           .residuals = random_residuals(random, 7, 90)});
+  c.valid("haptic-0", "A haptic bound of 0 in the area of interest.", forceless.finished());
+
+  MeshStream levels(only({.shape = sheet(4, 4), .rings = 1}));
+  for (std::uint32_t level = 0; level <= 168; level += 4)
+    levels.add(MainStep{.at = {.tick = level, .key = level == 0},
+                        .triangle = level % 32,
+                        .haptic = level,
+                        .visual = 1u << std::min(28u, level / 6 + level % 3),
+                        .density = level % 4,
+                        .residuals = random_residuals(random, 3, 128)});
+  c.valid("haptic-levels", "Levels from 0 to 168 beside visual bounds of one to four times as much: every tightness.",
+          levels.finished());
+
+  MeshStream wide(only({.shape = sheet(3, 3)}));
+  const auto ends = [&](const VertexPlace& at) {
+    return Vec3i{at.vertex % 2 == 0 ? kWidest : -kWidest, 0, at.vertex % 3 == 0 ? -1 : 1};
+  };
+  for (std::int64_t i = 0; i < 4; ++i)
+    wide.add(MainStep{.at = {.tick = i, .key = i == 0}, .visual = i % 2 == 0 ? 1u << 28 : 0, .residuals = ends});
+  c.valid("saturated", "Displacements at +-2^27, by residuals of 31 bits and the largest step.", wide.finished());
+
+  MeshStream zeros(only({.shape = sheet(3, 3)}));
+  MeshComposer& composer = zeros.composer();
+  const MeshState rest = initial_mesh_state(composer.mesh());
+  zeros.add_packet(5, coded_main_packet(0, [&](RangeEncoder& coder, MeshModels& models) {
+                     MeshRings rings(composer.mesh());
+                     MeshHead head{.key = true, .tick_delta = 5, .visual = 9};
+                     code_mesh_start(coder, models, composer.mesh(), 1, head);
+                     code_mesh_bounds(coder, models, composer.mesh(), rings, rest, head);
+                     const MeshHierarchy order = mesh_hierarchy(composer.mesh());
+                     for (const std::uint32_t v : order.order) {
+                       const std::size_t level = std::min<std::size_t>(order.level[v], 2);
+                       coder.bit(models.significant[0][0][0][level], 1);
+                       for (int axis = 0; axis < 3; ++axis) coder.signed_value(models.component[0][level][0], 0);
+                     }
+                   }));
+  c.valid("significant-zeros", "Every vertex is said to have a residual, and all are 0: none counts as coded.", zeros.finished());
+}
+
+void add_touches(Catalogue& c) {
+  for (const std::uint8_t rings : {std::uint8_t{0}, std::uint8_t{32}}) {
+    c.valid("rings-" + std::to_string(rings), "An area of interest of " + std::to_string(rings) + " rings.",
+            walk({.shape = box(5, 4, 2), .rings = rings}, 620u + rings, 10));
+  }
+  MeshStream moves(only({.shape = sheet(8, 8)}));
+  std::int64_t tick = 0;
+  const auto touch = [&](std::optional<std::uint32_t> triangle) {
+    moves.add(MainStep{.at = {.tick = tick, .key = tick == 0}, .triangle = triangle, .haptic = 20, .visual = 300});
+    ++tick;
+  };
+  touch({});
+  for (const std::uint32_t triangle : {60u, 60u, 61u, 45u, 29u, 127u, 0u}) touch(triangle);
+  touch({});
+  touch({});
+  for (const std::uint32_t triangle : {0u, 1u, 2u}) touch(triangle);
+  c.valid("touches", "No touch, the same triangle, one near, one far, none, and again.", moves.finished());
+  MeshStream many(only({.shape = flat_fan(100)}));
+  for (const std::uint32_t triangle : {5u, 0u, 62u, 63u, 99u, 36u})
+    many.add(MainStep{.at = {.tick = triangle == 5 ? 0 : 9, .key = triangle == 5}, .triangle = triangle});
+  c.valid("near-places", "Triangles at the first and last place of a list of 63 of 99, and beyond it.", many.finished());
+}
+
+void add_time(Catalogue& c) {
+  MeshStream keys(only({.shape = sheet(4, 3)}));
+  Random random(630);
+  for (std::int64_t i = 0; i < 9; ++i)
+    keys.add(MainStep{.at = {.tick = 10 * i, .key = i % 4 == 0},
+                      .triangle = static_cast<std::uint32_t>(i),
+                      .haptic = 40,
+                      .residuals = random_residuals(random, 5, 100)});
+  c.valid("key-packets", "Key packets in the middle: everything returns to the initial state first.", keys.finished());
+
+  MeshStream losses(only(with_modes({.shape = sheet(4, 3)}, 3, 631), 4));
+  for (std::int64_t i = 0; i < 16; ++i) {
+    const bool lost = i % 5 == 3, after_loss = i % 5 == 4;
+    const MainStep step{.at = {.tick = i, .key = i == 0, .baseline = after_loss ? 2u : 1u},
+                        .coefficients = {random.integer(5), random.integer(5), 1},
+                        .residuals = random_residuals(random, 5, 60)};
+    if (lost) losses.lose(step);
+    else losses.add(step);
+  }
+  c.valid("older-baselines", "Every fifth packet is lost; the next one builds on the one before it.", losses.finished());
+  c.valid("random-baselines", "Packets that build on any of the 64 before.",
+          walk(with_modes({.shape = sheet(3, 2)}, 2, 632), 632, 90, 64));
+
+  MeshStream wrap(only({.shape = sheet(2, 2)}, 2));
+  for (std::int64_t i = 0; i < 6; ++i) {
+    MainStep step{.at = {.tick = i, .key = i == 0, .baseline = 1}, .residuals = random_residuals(random, 5, 100)};
+    if (i == 0) step.at.sequence = std::uint16_t{65533};
+    wrap.add(step);
+  }
+  c.valid("sequence-wrap", "The sequence passes 65535.", wrap.finished());
+
+  MeshStream ticks(only({.shape = one_triangle(), .frame_period = 4267}));
+  std::int64_t tick = 0;
+  for (const std::int64_t delta : {0ll, 17ll, 16ll, 0ll, 1ll, 33ll, 5000ll, 70000ll, 2000000000ll}) {
+    tick += delta;
+    ticks.add(MainStep{.at = {.tick = tick, .key = tick == 0}, .residuals = random_residuals(random, 4, 200)});
+  }
+  c.valid("late-and-early", "Packets at the same tick, early, in time and late by up to 31 bits.", ticks.finished());
+  MeshStream clamped(only({.shape = one_triangle(), .frame_period = 4267}));
+  clamped.add(MainStep{.at = {.tick = 50, .key = true}});
+  clamped.add_packet(50, coded_main_packet(1, [&](RangeEncoder& coder, MeshModels& models) {
+                       coder.bit(models.key, 0);
+                       coder.signed_value(models.late, -1000);
+                       coder.bit(models.touched[0], 0);
+                       coder.bit(models.same_visual, 1);
+                       coder.tree<2>(models.density[1], 0);
+                       for (int v = 0; v < 3; ++v) coder.bit(models.significant[0][0][0][v == 0 ? 1 : 0], 0);
+                     }));
+  c.valid("earlier-than-the-baseline", "late says 983 ticks before the baseline: the tick is the baseline's.",
+          clamped.finished());
+}
+
+void add_basis(Catalogue& c) {
+  c.valid("one-mode", "A basis of one mode.", walk(with_modes({.shape = sheet(4, 3)}, 1, 640), 640, 40));
+  c.valid("48-modes", "A basis of 48 modes: every group of coefficients.",
+          walk(with_modes({.shape = sheet(3, 3)}, 48, 641), 641, 24));
+  c.valid("64-modes", "The largest basis.", walk(with_modes({.shape = one_triangle()}, 64, 642), 642, 12));
+  c.valid("skipped-frames", "A basis and packets 0 to 42 frames apart: motion ends after 8.",
+          walk(with_modes({.shape = sheet(3, 2), .frame_period = 512}, 4, 643), 643, 60, 3, 28));
+  c.valid("short-frames", "The shortest frame: 256 in a tick.",
+          walk(with_modes({.shape = one_triangle(), .frame_period = 1}, 3, 644), 644, 12, 2, 3));
+  c.valid("long-frames", "The longest frame: 2^20 ticks.",
+          walk(with_modes({.shape = one_triangle(), .frame_period = 1 << 28}, 3, 645), 645, 12, 2, 700001));
+
+  RawMesh extreme{.shape = one_triangle(), .mode_steps = {65535, 1, 4096}};
+  for (int i = 0; i < 27; ++i) extreme.entries.push_back(i % 2 == 0 ? 2047 : -2047);
+  MeshStream large(only(extreme));
+  Random random(646);
+  for (std::int64_t i = 0; i < 40; ++i) {
+    const std::int32_t sign = i / 6 % 2 == 0 ? 1 : -1;
+    MainStep step{.at = {.tick = i + i / 7, .key = i == 0}, .visual = 1u << 28};
+    step.coefficients = {i % 3 == 0 ? sign * kWidest : sign, -sign * kWidest, random.integer(30)};
+    large.add(step);
+  }
+  c.valid("saturated-coefficients", "Coefficients of 31 bits, the largest and the smallest step, entries of +-2047.",
+          large.finished());
+
+  const RawMesh mesh = with_modes({.shape = sheet(5, 4)}, 6, 647);
+  MeshStream swing(only(mesh));
+  for (std::int64_t i = 0; i < 80; ++i) {
+    MainStep step{.at = {.tick = i, .key = i == 0}, .visual = 4096};
+    for (std::int64_t k = 0; k < 6; ++k)
+      step.coefficients.push_back(i < 4 ? static_cast<std::int32_t>(20 * (k + 1) * (i - 1)) : i % 9 == k ? 1 : 0);
+    swing.add(step);
+  }
+  c.valid("motion", "Eighty packets whose predictors learn: a basis moves by itself.", swing.finished());
+
+  MeshStream shown(only(with_modes({.shape = sheet(3, 3), .frame_period = 768}, 4, 648)));
+  for (const std::int64_t tick : {0ll, 3ll, 6ll, 9ll, 12ll, 60ll, 63ll, 66ll, 120ll})
+    shown.add(MainStep{.at = {.tick = tick, .key = tick == 0},
+                       .visual = 2000,
+                       .coefficients = {random.integer(6), random.integer(6), 3, -2},
+                       .residuals = random_residuals(random, 3, 20)});
+  c.valid("shown", "What a client shows at every tick: motion goes on for 8 frames.", shown.finished(), {}, "linear");
+}
+
+}  // namespace
+
+void add_mesh_main(Catalogue& c) {
+  add_shapes(c);
+  c.valid("level-23", "A fan whose coding order has all 24 levels; the last keeps not all.", level_23());
+  c.valid("membrane", "The membrane of the thesis, 714 vertices, under a press that moves.", membrane());
+  add_bounds(c);
+  add_touches(c);
+  add_time(c);
+  add_basis(c);
+}
+
+}  // namespace tactus::conformance

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Chapter 60 of the specification: decoder of one mesh, of either profile."""
+from __future__ import annotations
+
+from typing import NamedTuple, Optional, Union
+
+from conventions import fnv1a, require
+from mesh_header import MAIN, Mesh
+from mesh_main import MainCodec, MainState
+from mesh_thesis import ThesisCodec, ThesisState
+from packets import Receiver
+from stream import Header, Limits
+
+
+class MeshPacket(NamedTuple):
+    sequence: int
+    key: int
+    vertices: list[int]                                     # that have a residual of their own
+    range: int                                              # final state of the range decoder
+    code: int
+    state: Union[MainState, ThesisState]
+
+    @property
+    def tick(self) -> int:
+        return self.state.tick
+
+
+class MeshDecoder:
+    def __init__(self, header: Header, mesh: Mesh, limits: Limits = Limits()):
+        self.codec = MainCodec(mesh) if mesh.profile == MAIN else ThesisCodec(mesh)
+        self.receiver = Receiver(self.codec.initial, header.baseline_span, limits.packet_size)
+
+    def decode(self, data: bytes, record_tick: Optional[int] = None) -> MeshPacket:
+        """Decodes one packet, from a record at `record_tick` if from a file; an error leaves the decoder unchanged."""
+        sequence = self.receiver.open(data)
+        state, key, vertices, decoder = self.codec.decode(data[2:], self.receiver, sequence)
+        require(record_tick in (None, state.tick), "invalid", "R-FIL-7")
+        self.receiver.keep(sequence, state)
+        return MeshPacket(sequence, key, vertices, decoder.range, decoder.code, state)
+
+    def shown(self, tick: int) -> list[int]:
+        """Section 6: the displacements that a client shows at a tick not before the current state's."""
+        return self.codec.expected(self.receiver.current(), tick)
+
+    def state_hash(self) -> int:
+        return fnv1a(self.receiver.current().hashed())

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Chapter 50 of the specification: what a client shows of rigid objects."""
+from __future__ import annotations
+
+import struct
+from collections import deque
+from math import isqrt
+from typing import Optional
+
+from conventions import FNV_START, ONE, asin30, axis_turn, clamp, conj, fnv1a, mul, renorm, round_div, sat32
+from rigid_decoder import Packet, predict
+from stream import Header, State
+
+SHARE = 49152                                               # P = 75 %, x 2^-16
+AVERAGED_GAPS = 5                                           # M
+LONGEST_GAP = (1 << 31) - 1
+
+
+class ReplicaObject:
+    def __init__(self, state: State):
+        self.state = state
+        self.begin = self.end = 0
+        self.arrival: Optional[int] = None
+        self.gaps: deque[int] = deque(maxlen=AVERAGED_GAPS)
+        self.start = self.target = (state.position, state.rotation)    # `from` and `to` of the specification
+        self.half, self.u = 0, (0, 0, 0)
+
+
+class Replica:
+    """What a client shows that applies packets; mode is "none" or "linear"."""
+
+    def __init__(self, header: Header, mode: str):
+        self.header, self.mode = header, mode
+        self.shortest = round_div(5 * header.tick_rate, 1000)
+        self.longest = round_div(100 * header.tick_rate, 1000)
+        self.objects = [ReplicaObject(item.initial) for item in header.objects]
+        self.moving = header.moving()
+
+    def apply(self, packet: Packet, now: int) -> None:
+        """Section 3."""
+        for update in packet.updates:
+            self.apply_state(self.objects[update.object], packet.scene.states[update.object], now)
+
+    def apply_state(self, o: ReplicaObject, state: State, now: int) -> None:
+        shown = self.pose(o, now)
+        running = now < o.end
+        if o.arrival is not None:
+            o.gaps.append(min(now - o.arrival, LONGEST_GAP))
+        o.arrival, o.state = now, state
+        o.begin = o.end = now
+        if self.mode == "none" or running or not o.gaps:
+            return
+        o.end = now + clamp(round_div(sum(o.gaps) * SHARE, len(o.gaps) << 16), self.shortest, self.longest)
+        if o.end == now:
+            return
+        o.start, o.target = shown, predict(self.header, state, o.end)
+        d = mul(o.target[1], conj(o.start[1]))
+        if d[0] < 0:
+            d = tuple(-c for c in d)
+        s = isqrt(sum(c * c for c in d[1:]))
+        o.half = asin30(min(s, ONE)) if s != 0 else 0
+        o.u = tuple(round_div(c << 30, s) for c in d[1:]) if s != 0 else (0, 0, 0)
+
+    def pose(self, o: ReplicaObject, now: int) -> tuple[tuple, tuple]:
+        """Section 4."""
+        if now >= o.end:
+            return predict(self.header, o.state, now)
+        part, whole = now - o.begin, o.end - o.begin
+        position = tuple(sat32(a + round_div((b - a) * part, whole)) for a, b in zip(o.start[0], o.target[0]))
+        h = round_div(o.half * part, whole)
+        rotation = o.start[1] if h == 0 else renorm(mul(axis_turn(o.u, h), o.start[1]))
+        return position, rotation
+
+    def pose_hash(self, now: int) -> int:
+        """Section 5."""
+        h = FNV_START
+        for i in self.moving:
+            position, rotation = self.pose(self.objects[i], now)
+            h = fnv1a(struct.pack("<7i", *position, *rotation), h)
+        return h

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Chapter 40 of the specification: rigid packets."""
+from __future__ import annotations
+
+import struct
+from math import isqrt
+from typing import NamedTuple, Optional
+
+from conventions import (FNV_START, ONE, axis_turn, clamp, fnv1a, mul, renorm, require, round_div, round_shift,
+                         sat32)
+from packets import Receiver
+from range_decoder import RangeDecoder
+from start_models import Models
+from stream import Header, Limits, State
+
+
+# ---- Chapter 40, sections 3 to 5: residual, prediction, reconstruction ----------------------------------------------
+HAPTIC = 3
+LARGEST_SPIN = 1 << 25
+HALF_RADIAN = 341782638                                     # 2^32 / (4 pi), in turns
+
+
+def included(dof: int, q: int) -> list[int]:
+    """The axes of vector q (position, velocity, rotation, spin) that `dof` does not exclude."""
+    return [a for a in range(3) if dof >> (a if q < 2 else 3 + a) & 1]
+
+
+def residual(decoder: RangeDecoder, models: Models, dof: int, reason: int) -> list[list[int]]:
+    r = [[0, 0, 0] for _ in range(4)]
+    hint = reason
+    for q in range(4):
+        if q == 2 and included(dof, 2):
+            hint = reason
+        largest = 0
+        for a in included(dof, q):
+            r[q][a] = decoder.signed(models[f"RESIDUAL[{q}][{hint}]"])
+            largest = max(largest, abs(r[q][a]))
+            w = largest.bit_length()
+            hint = 4 if w == 0 else 5 if w <= 2 else 6 if w <= 5 else 7
+    return r
+
+
+def predict(h: Header, state: State, t: int) -> tuple[tuple, tuple]:
+    dt = min(t - state.tick, h.max_extrapolation)
+    if dt == 0:
+        return state.position, state.rotation
+    shift = h.position_exp - h.velocity_exp
+    x = tuple(sat32(p + round_div((v * dt) << shift, h.tick_rate)) for p, v in zip(state.position, state.velocity))
+    speed = isqrt(sum(c * c for c in state.spin) << 10)
+    if speed == 0:
+        return x, state.rotation
+    angle = round_div(speed * dt, h.tick_rate)
+    half = (((angle * HALF_RADIAN + (1 << (h.spin_exp + 4))) % (1 << 64)) >> (h.spin_exp + 5)) % (1 << 32)
+    if half == 0:
+        return x, state.rotation
+    u = tuple(round_div(c << 35, speed) for c in state.spin)
+    return x, renorm(mul(axis_turn(u, half), state.rotation))
+
+
+def reconstruct_pose(h: Header, base: State, t: int, r: list[list[int]], s: int) -> tuple[tuple, tuple]:
+    """Section 5.1."""
+    p, q = predict(h, base, t)
+    position = tuple(sat32(p[a] + (r[0][a] << s)) for a in range(3))
+    m = [c << s for c in r[2]]
+    n = sum(c * c for c in m)
+    length = 1 << h.rotation_exp
+    require(all(abs(c) <= length for c in m) and n <= length * length, "invalid", "R-RIG-6")
+    if n == 0:
+        return position, q
+    k = min(30, 60 - 2 * h.rotation_exp)
+    d = (length * length + n) >> (30 - k)
+    w = round_div((length * length - n) << k, d)
+    v = [round_div((2 * length * c) << k, d) for c in m]
+    return position, renorm(mul(tuple(clamp(c, -ONE, ONE) for c in (w, *v)), q))
+
+
+def reconstruct_motion(h: Header, base: State, t: int, r: list[list[int]], s: int, reason: int) -> tuple[tuple, tuple]:
+    """Section 5.2."""
+    v, o, dt = list(base.velocity), list(base.spin), t - base.tick
+    if reason == HAPTIC and dt > 0:
+        for a in range(3):
+            e, f = sat32(r[0][a] << s), sat32(r[2][a] << s)
+            if e != 0:
+                v[a] = sat32(v[a] + round_div(3 * e * h.tick_rate, (2 * dt) << (h.position_exp - h.velocity_exp)))
+            if f != 0:
+                o[a] = sat32(o[a] + round_div(6 * f * h.tick_rate, dt << (h.rotation_exp - h.spin_exp)))
+    velocity = tuple(sat32((round_shift(v[a], s) + r[1][a]) << s) for a in range(3))
+    spin = tuple(clamp((round_shift(o[a], s) + r[3][a]) << s, -LARGEST_SPIN, LARGEST_SPIN) for a in range(3))
+    return velocity, spin
+
+
+# ---- Chapter 40, sections 1, 2 and 6: packets -----------------------------------------------------------------------
+class Scene(NamedTuple):
+    tick: int
+    states: list[State]
+
+
+class Update(NamedTuple):
+    object: int                                             # index in the header
+    reason: int
+    level: int
+
+
+class Packet(NamedTuple):
+    sequence: int
+    key: int
+    updates: list[Update]
+    scene: Scene
+    range: int                                              # final state of the range decoder
+    code: int
+
+    @property
+    def tick(self) -> int:
+        return self.scene.tick
+
+
+class RigidDecoder:
+    """Keeps the initial state and the scene states after the newest `baseline_span` packets."""
+
+    def __init__(self, header: Header, limits: Limits = Limits()):
+        self.header = header
+        self.moving = header.moving()
+        initial = Scene(0, [item.initial for item in header.objects])
+        self.receiver = Receiver(initial, header.baseline_span, limits.packet_size)
+
+    def decode(self, data: bytes, record_tick: Optional[int] = None) -> Packet:
+        """Decodes one packet, from a record at `record_tick` if from a file; an error leaves the decoder unchanged."""
+        sequence = self.receiver.open(data)
+        decoder, models = RangeDecoder(data[2:]), Models("rigid-start-models.csv")
+        several = len(self.moving) > 1
+
+        key = decoder.bit(models["KEY"][1])
+        named = not key and self.header.baseline_span > 1
+        baseline_delta = decoder.magnitude(models["BASELINE"]) if named else 1
+        tick_delta = decoder.magnitude(models["TICK"])
+        count = decoder.magnitude(models["COUNT"]) if several else 1
+        baseline = self.receiver.baseline(sequence, key, baseline_delta)
+        tick = self.receiver.tick(baseline, tick_delta, "R-RIG-1")
+        require(1 <= count <= len(self.moving), "invalid", "R-RIG-3")
+
+        scene = Scene(tick, list(baseline.states))
+        updates = []
+        place = -1
+        for _ in range(count):
+            place += 1 + (decoder.magnitude(models["GAP"]) if several else 0)
+            require(place < len(self.moving), "invalid", "R-RIG-4")
+            updates.append(self.update(decoder, models, scene, self.moving[place]))
+        decoder.check_end()
+        require(record_tick in (None, tick), "invalid", "R-FIL-7")
+        self.receiver.keep(sequence, scene)
+        return Packet(sequence, key, updates, scene, decoder.range, decoder.code)
+
+    def update(self, decoder: RangeDecoder, models: Models, scene: Scene, index: int) -> Update:
+        """Replaces the baseline's state of an object in `scene` by its new state."""
+        reason = decoder.tree(models["REASON"], 2)
+        level = decoder.tree(models["LEVEL"], 3)
+        r = residual(decoder, models, self.header.objects[index].dof, reason)
+        base, s = scene.states[index], 2 * level
+        position, rotation = reconstruct_pose(self.header, base, scene.tick, r, s)
+        velocity, spin = reconstruct_motion(self.header, base, scene.tick, r, s, reason)
+        scene.states[index] = State(scene.tick, position, rotation, velocity, spin)
+        return Update(index, reason, level)
+
+    def state_hash(self) -> int:
+        states = self.receiver.current().states
+        h = FNV_START
+        for i in self.moving:
+            tick, *vectors = states[i]
+            h = fnv1a(struct.pack("<Q13i", tick, *(c for vector in vectors for c in vector)), h)
+        return h
