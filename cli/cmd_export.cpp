@@ -37,6 +37,9 @@ void setup_export(CLI::App& app, Action& action) {
   command.add_flag("-f,--force", options->force, "Replace an output file that is there already");
   command.footer("Example:\n  tactus export csv push.mcap -o push.csv");
   on_chosen<ExportOptions>(command, action, options, run);
+#ifdef TACTUS_HAS_SURFACE
+  setup_export_mesh(group, action);
+#endif
 }
 
 }  // namespace tactus::cli

@@ -6,5 +6,7 @@
 namespace tactus::cli {
 
 void setup_export(CLI::App& app, Action& action);
+/// `tactus export mesh`; only where surfaces can be written.
+void setup_export_mesh(CLI::App& group, Action& action);
 
 }  // namespace tactus::cli

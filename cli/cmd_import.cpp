@@ -151,6 +151,9 @@ void setup_import(CLI::App& app, Action& action) {
     if (list->count() == 0 && output->count() == 0) throw CLI::RequiredError("--output");
     action = [options] { return run(*options); };
   });
+#ifdef TACTUS_HAS_SURFACE
+  setup_import_mesh(group, action);
+#endif
 }
 
 }  // namespace tactus::cli

@@ -6,5 +6,7 @@
 namespace tactus::cli {
 
 void setup_import(CLI::App& app, Action& action);
+/// `tactus import mesh`; only where surfaces can be read.
+void setup_import_mesh(CLI::App& group, Action& action);
 
 }  // namespace tactus::cli

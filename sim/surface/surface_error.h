@@ -7,7 +7,7 @@
 
 namespace tactus {
 
-/// Why a surface cannot be read, written or filled. Rules: R-SRF-n (surface_file.h), R-TGN-n (tetgen.h), R-MSH-n (tri_mesh.h).
+/// Why a surface cannot be read, written or filled. Rules: R-SRF-n (surface_file.h), R-SEQ-n (surface_sequence.h), R-TGN-n (tetgen.h), R-MSH-n (tri_mesh.h).
 struct SurfaceError {
   Error error;
   std::string file;           ///< empty: no file has to do with it

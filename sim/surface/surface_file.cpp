@@ -2,46 +2,14 @@
 #include "sim/surface/surface_file.h"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
-#include <filesystem>
 #include <fstream>
 
-#include "sim/surface/openmesh_io.h"
-#include "sim/surface/surface_text.h"
+#include "sim/surface/polygon_file.h"
 
 namespace tactus {
 namespace {
 
-constexpr std::size_t kMaxFileBytes = std::size_t{512} << 20;
 constexpr std::size_t kMaxCorners = 1024;  // trying each as the fan's first is quadratic
-
-tl::unexpected<SurfaceError> broken(Errc code, const char* rule, std::string detail) {
-  return tl::unexpected(SurfaceError{fail(code, rule).value(), {}, 0, std::move(detail)});
-}
-
-/// The name's ending in small letters.
-std::string format_of(const std::string& path) {
-  std::string format = std::filesystem::path(path).extension().string();
-  std::transform(format.begin(), format.end(), format.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return format;
-}
-
-tl::expected<std::string, SurfaceError> read_text(const std::string& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) return broken(Errc::io, "R-SRF-1", "a folder");
-  std::ifstream in(path, std::ios::binary);
-  std::string text;
-  std::array<char, 1 << 16> piece{};
-  while (in) {
-    in.read(piece.data(), piece.size());
-    text.append(piece.data(), static_cast<std::size_t>(in.gcount()));
-    if (text.size() > kMaxFileBytes) return broken(Errc::limit_exceeded, "R-SRF-2", "");
-  }
-  if (!in.eof() || in.bad()) return broken(Errc::io, "R-SRF-1", "");
-  return text;
-}
 
 /// Twice the area, along the normal (Newell).
 Vec3 polygon_normal(const std::vector<Vec3>& vertices, const Polygon& polygon) {
@@ -102,26 +70,19 @@ void drop_unused_vertices(SurfaceFile& file) {
   mesh.vertices.resize(kept);
 }
 
-std::string of(std::size_t read, std::size_t announced, const char* noun) {
-  return std::to_string(read) + " of " + std::to_string(announced) + ' ' + noun;
-}
-
 }  // namespace
 
 tl::expected<SurfaceFile, SurfaceError> parse_surface(std::string_view text, std::string_view format) {
-  const auto prepared = prepare_surface(text, format);
-  if (!prepared) return tl::unexpected(prepared.error());
-  if (prepared->faces == 0) return broken(Errc::invalid, "R-SRF-7", "");
-  auto soup = openmesh_read(prepared->text, prepared->format);
-  if (!soup) return broken(Errc::malformed, "R-SRF-4", soup.error());
-  if (prepared->vertices && soup->vertices.size() != *prepared->vertices)
-    return broken(Errc::malformed, "R-SRF-5", of(soup->vertices.size(), *prepared->vertices, "vertices"));
-  if (soup->polygons.size() != prepared->faces)
-    return broken(Errc::malformed, "R-SRF-5", of(soup->polygons.size(), prepared->faces, "faces"));
+  auto soup = parse_polygons(text, format);
+  if (!soup) return tl::unexpected(soup.error());
+  return make_surface(std::move(*soup));
+}
+
+tl::expected<SurfaceFile, SurfaceError> make_surface(PolygonSoup&& soup) {
   SurfaceFile file;
-  file.mesh.vertices = std::move(soup->vertices);
-  for (std::size_t f = 0; f < soup->polygons.size(); ++f)
-    if (auto appended = append(soup->polygons[f], f, file); !appended) return tl::unexpected(appended.error());
+  file.mesh.vertices = std::move(soup.vertices);
+  for (std::size_t f = 0; f < soup.polygons.size(); ++f)
+    if (auto appended = append(soup.polygons[f], f, file); !appended) return tl::unexpected(appended.error());
   const auto checked = check(file.mesh);
   if (!checked) return tl::unexpected(SurfaceError{checked.error().error, {}, checked.error().element, {}});
   drop_unused_vertices(file);
@@ -129,17 +90,16 @@ tl::expected<SurfaceFile, SurfaceError> parse_surface(std::string_view text, std
 }
 
 tl::expected<SurfaceFile, SurfaceError> read_surface(const std::string& path) {
-  const auto named = [&](SurfaceError e) {
+  auto soup = read_polygons(path);
+  if (!soup) return tl::unexpected(soup.error());
+  return make_surface(std::move(*soup)).map_error([&](SurfaceError e) {
     e.file = path;
     return e;
-  };
-  const auto text = read_text(path);
-  if (!text) return tl::unexpected(named(text.error()));
-  return parse_surface(*text, format_of(path)).map_error(named);
+  });
 }
 
 tl::expected<void, SurfaceError> write_surface(const std::string& path, const TriMesh& mesh) {
-  const auto text = openmesh_write(mesh, format_of(path));
+  const auto text = openmesh_write(mesh, surface_format(path));
   if (!text) return tl::unexpected(SurfaceError{fail(Errc::unsupported, "R-SRF-3").value(), path, 0, {}});
   std::ofstream out(path, std::ios::binary);
   out << *text;

@@ -78,6 +78,18 @@ tl::expected<Animation, std::string> read_trace(const std::string& path, unsigne
   return make_animation(rest.triangles, rest.vertices, frames, bits);
 }
 
+/// Vertex with the longest path.
+std::uint32_t liveliest(const Animation& animation) {
+  std::vector<double> path(animation.rest.size(), 0);
+  for (std::size_t f = 1; f < animation.frames.size(); ++f) {
+    for (std::size_t v = 0; v < path.size(); ++v) {
+      const Vec3i &a = animation.frames[f - 1][v], &b = animation.frames[f][v];
+      path[v] += norm(Vec3{double(b[0] - a[0]), double(b[1] - a[1]), double(b[2] - a[2])});
+    }
+  }
+  return static_cast<std::uint32_t>(std::max_element(path.begin(), path.end()) - path.begin());
+}
+
 }  // namespace
 
 tl::expected<Animation, std::string> read_animation(const std::string& input, unsigned bits, std::size_t limit) {
@@ -98,8 +110,8 @@ Animation patch_of(const Animation& whole, std::size_t count) {
   mesh.triangles = whole.triangles;
   const MeshNeighbours neighbours = mesh_neighbours(mesh);
   constexpr std::uint32_t kOutside = 0xffffffff;
-  std::vector<std::uint32_t> taken{0}, number(whole.rest.size(), kOutside);
-  number[0] = 0;
+  std::vector<std::uint32_t> taken{liveliest(whole)}, number(whole.rest.size(), kOutside);
+  number[taken[0]] = 0;
   const auto take = [&](std::uint32_t v) {
     if (number[v] != kOutside || taken.size() >= count) return;
     number[v] = static_cast<std::uint32_t>(taken.size());

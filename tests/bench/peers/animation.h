@@ -23,7 +23,7 @@ struct Animation {
 /// At most `limit` frames are taken.   err  why not, for a person
 tl::expected<Animation, std::string> read_animation(const std::string& input, unsigned bits, std::size_t limit);
 
-/// The `count` vertices nearest to vertex 0 along edges, with the triangles between them; all of it if there are no more.
+/// The `count` vertices nearest along edges to the one that moves farthest, with the triangles between them; all of it if there are no more.
 Animation patch_of(const Animation& whole, std::size_t count);
 
 }  // namespace tactus::peers

@@ -13,7 +13,8 @@ struct Measurement {
   double bits_per_vertex = 0;           ///< the same, per vertex
   double encode_us = 0, decode_us = 0;  ///< CPU time per frame, median
   std::int32_t error = 0;               ///< largest of all vertices, axes and frames, grid units
-  std::optional<bool> survives;         ///< after one packet was lost the next one decodes to the same; none: never two in a row
+  std::optional<bool>
+      survives;  ///< after one packet was lost the next one decodes to the same; none: no two in a row that change something
 };
 
 /// None: the scheme cannot carry this mesh.

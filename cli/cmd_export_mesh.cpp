@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "cli/cmd_export.h"
+#include "cli/options_codec.h"
+#include "codec/trace/trace_file.h"
+#include "sim/surface/surface_file.h"
+
+namespace tactus::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ExportMeshOptions {
+  std::string input, output, mesh, format = "obj";
+};
+
+/// Files of a folder that appears under its name when all are written.
+class OutputFolder {
+ public:
+  explicit OutputFolder(const std::string& path) : path_(path), part_(path_.string() + ".part") {}
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+  ~OutputFolder() {
+    std::error_code ignored;
+    if (made_) fs::remove_all(part_, ignored);
+  }
+
+  Outcome create() {
+    std::error_code error;
+    if (fs::exists(path_, error) && !(fs::is_directory(path_, error) && fs::is_empty(path_, error)))
+      return refuse(path_.string() + ": is there already", "Name a folder that is empty or not there yet.");
+    made_ = fs::create_directories(part_, error);
+    if (!made_) return refuse(part_.string() + ": cannot be made", "Check that you may write there and remove an old one.");
+    return {};
+  }
+  std::string file(const std::string& name) const { return (part_ / name).string(); }
+  Outcome keep() {
+    std::error_code error;
+    fs::rename(part_, path_, error);
+    if (error) return refuse(path_.string() + ": cannot be written", "Check that you may write there.");
+    made_ = false;
+    return {};
+  }
+
+ private:
+  fs::path path_, part_;
+  bool made_ = false;
+};
+
+tl::expected<std::size_t, Failure> find_mesh(const ExportMeshOptions& options, const TraceInfo& info) {
+  const auto found = std::find_if(info.meshes.begin(), info.meshes.end(),
+                                  [&](const TraceMesh& m) { return options.mesh.empty() || m.name == options.mesh; });
+  if (info.meshes.empty()) return refuse(options.input + ": no mesh in it", "Give a trace of a deformable object.");
+  if (found == info.meshes.end()) return refuse("--mesh " + options.mesh + ": no such mesh", "`tactus info` names them.");
+  if (options.mesh.empty() && info.meshes.size() > 1)
+    return refuse(fmt::format("{}: {} meshes in it", options.input, info.meshes.size()), "Choose one with --mesh NAME.");
+  return static_cast<std::size_t>(found - info.meshes.begin());
+}
+
+Outcome run(const ExportMeshOptions& options) {
+  auto reader = TraceReader::open(options.input);
+  if (!reader) return refuse(options.input, reader.error());
+  const auto index = find_mesh(options, reader->info());
+  if (!index) return tl::unexpected(index.error());
+  OutputFolder folder(options.output);
+  if (auto created = folder.create(); !created) return created;
+  const TriMesh& rest = reader->info().meshes[*index].rest;
+  TriMesh shape = rest;
+  TraceFrame frame;
+  for (std::size_t count = 0;;) {
+    const auto more = reader->next(frame);
+    if (!more) return refuse(options.input, more.error());
+    if (!*more) break;
+    if (!frame.meshes[*index].updated) continue;
+    const std::vector<float>& u = frame.meshes[*index].displacements;
+    for (std::size_t v = 0; v < shape.vertices.size(); ++v)
+      shape.vertices[v] = rest.vertices[v] + Vec3{u[3 * v], u[3 * v + 1], u[3 * v + 2]};
+    const std::string file = folder.file(fmt::format("frame-{:06}.{}", count++, options.format));
+    if (const auto written = write_surface(file, shape); !written) return refuse(to_string(written.error()), "");
+  }
+  return folder.keep();
+}
+
+}  // namespace
+
+void setup_export_mesh(CLI::App& group, Action& action) {
+  auto options = std::make_shared<ExportMeshOptions>();
+  CLI::App& command =
+      *group.add_subcommand("mesh", "A folder with one OBJ or PLY file for every new shape of a mesh, frame-000000 and on");
+  command.add_option("TRACE", options->input, "Trace to export (MCAP), - is standard input")->type_name("")->required();
+  command.add_option("-o,--output", options->output, "Folder to make")->type_name("FOLDER")->required();
+  command.add_option("--mesh", options->mesh, "Name of the mesh [the only one]")->type_name("NAME");
+  command.add_option("--format", options->format, "Kind of files: obj or ply [obj]")
+      ->check(one_of({"obj", "ply"}))
+      ->type_name("");
+  command.footer("Example:\n  tactus export mesh replica.mcap --format ply -o shapes");
+  on_chosen<ExportMeshOptions>(command, action, options, run);
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A surface file's polygons as they stand in it, complete but not judged. Rules: surface_file.h. Internal to the library.
+#pragma once
+
+#include <string_view>
+
+#include "sim/surface/openmesh_io.h"
+#include "sim/surface/surface_file.h"
+
+namespace tactus {
+
+/// An error of this library, with its place.
+tl::unexpected<SurfaceError> broken(Errc code, const char* rule, std::string detail, std::string file = {});
+
+/// The name's ending in small letters.
+std::string surface_format(const std::string& path);
+
+/// err  R-SRF-1..5, 7
+tl::expected<PolygonSoup, SurfaceError> parse_polygons(std::string_view text, std::string_view format);
+tl::expected<PolygonSoup, SurfaceError> read_polygons(const std::string& path);
+
+/// Triangles of it, if they make a mesh.   err  R-SRF-5, R-SRF-6, R-MSH-n
+tl::expected<SurfaceFile, SurfaceError> make_surface(PolygonSoup&& soup);
+
+}  // namespace tactus
