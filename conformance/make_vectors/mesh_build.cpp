@@ -147,7 +147,7 @@ Bytes MeshComposer::packet(const MainStep& step) {
   head.density = step.density;
   std::vector<std::int32_t> coefficients = step.coefficients;
   coefficients.resize(mesh.basis.steps.size());
-  const Bytes packet = with_payload(sequence_, [&](RangeEncoder& coder) {
+  Bytes packet = with_payload(sequence_, [&](RangeEncoder& coder) {
     MeshModels models = mesh_start_models();
     code_mesh_start(coder, models, mesh, fixed_->span, head);
     code_mesh_bounds(coder, models, mesh, fixed_->rings, base, head);

@@ -15,12 +15,12 @@ RawHeader cubes() {
   return header;
 }
 
-const RawMesh kMain{.shape = sheet(3, 3), .name = "sheet"};
-const RawMesh kThesis{.shape = box(2, 1, 1), .profile = 0, .name = "box", .models_kept = 1};
+RawMesh sheet_mesh() { return {.shape = sheet(3, 3), .name = "sheet"}; }
+RawMesh box_mesh() { return {.shape = box(2, 1, 1), .profile = 0, .name = "box", .models_kept = 1}; }
 
 /// Packets of the rigid objects and of two meshes in turn; each part counts its own.
 Stream three_parts(int rounds) {
-  Stream stream(with_meshes(cubes(), {kThesis, kMain}));
+  Stream stream(with_meshes(cubes(), {box_mesh(), sheet_mesh()}));
   MeshComposer box_part(stream.header(), 0), sheet_part(stream.header(), 1);
   Random random(660);
   for (std::int64_t i = 0; i < rounds; ++i) {
@@ -46,7 +46,7 @@ Stream three_parts(int rounds) {
 Bytes two_meshes() {
   RawHeader header;
   header.objects = {{"table", Dof::none}};
-  Stream stream(with_meshes(header, {kMain, {.shape = one_vertex(), .name = "drop"}}));
+  Stream stream(with_meshes(header, {sheet_mesh(), {.shape = one_vertex(), .name = "drop"}}));
   MeshComposer sheet_part(stream.header(), 0), drop_part(stream.header(), 1);
   Random random(661);
   for (std::int64_t i = 0; i < 5; ++i) {
@@ -60,7 +60,7 @@ Bytes two_meshes() {
 Bytes beside_static_objects() {
   RawHeader header;
   header.objects = {{"table", Dof::none}, {"wall", Dof::none}};
-  header = with_meshes(header, {kMain});
+  header = with_meshes(header, {sheet_mesh()});
   header.extensions = varint(7) + varint(2) + Bytes{1, 2};
   MeshStream stream(header);
   Random random(662);
@@ -80,7 +80,7 @@ void add_mesh_parts(Catalogue& c) {
   c.valid("beside-static-objects", "A mesh beside static objects is the only part; an extension follows the mesh.",
           beside_static_objects());
   c.valid("parts-without-packets", "A stream of three parts and no packet: every initial state.",
-          with_meshes(cubes(), {kMain, kThesis}).bytes());
+          with_meshes(cubes(), {sheet_mesh(), box_mesh()}).bytes());
   const Rejection no_part{"invalid", "R-PKT-6"};
   c.invalid("no-part-byte", "A packet of no byte in a scene of three parts.", {"truncated", "R-PKT-6"}, then({}));
   c.invalid("part-3", "Part 3 of 0, 1 and 2.", no_part, then({3, 1, 0}));
@@ -88,7 +88,7 @@ void add_mesh_parts(Catalogue& c) {
   RawHeader still;
   still.objects = {{"table", Dof::none}};
   c.invalid("part-0-without-objects", "Part 0 where no object moves.", no_part,
-            Stream(with_meshes(still, {kMain, kThesis})).add_packet(0, {0, 0, 0}).bytes());
+            Stream(with_meshes(still, {sheet_mesh(), box_mesh()})).add_packet(0, {0, 0, 0}).bytes());
   c.invalid("part-and-half-a-sequence", "A part's number and one byte.", {"truncated", "R-PKT-2"}, then({2, 1}));
   c.invalid("part-stale", "A packet of part 2 with the sequence number of the one before; part 0 has none such.",
             {"state", "R-PKT-5"}, then({2, 0, 0}));

@@ -10,7 +10,7 @@ namespace tactus::conformance {
 namespace {
 
 constexpr std::uint32_t kLastTick = 0xfffffffe;
-const Rejection kTooWide{"malformed", "R-RNG-4"};
+Rejection wider() { return {"malformed", "R-RNG-4"}; }
 
 RawMesh main_mesh() { return with_modes({.shape = {sheet(2, 2).rest, {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}}}}, 2, 680); }
 RawMesh thesis_mesh() { return {.shape = sheet(2, 2), .profile = 0, .quant_bits = 4}; }
@@ -144,7 +144,7 @@ void add_head_rules(Catalogue& c) {
               coder.bit(models.same_visual, 0);
               coder.magnitude(models.visual, (1u << 28) + 1);
             }));
-  c.invalid("triangle-then-too-wide", "Triangle 3 of 3, then visual of 33 bits: the whole head is read first.", kTooWide,
+  c.invalid("triangle-then-too-wide", "Triangle 3 of 3, then visual of 33 bits: the whole head is read first.", wider(),
             then_coded([](RangeEncoder& coder, MeshModels& models) {
               coder.bit(models.touched[1], 1);
               coder.bit(models.same_triangle, 0);
@@ -166,33 +166,32 @@ void add_head_rules(Catalogue& c) {
 
 void add_widths(Catalogue& c) {
   const auto first_symbols = [](auto code) { return then_packet(two_packets(4), coded_main_packet(2, code)); };
-  c.invalid("tick-delta-33-bits", "tick_delta has 33 bits.", kTooWide, first_symbols([](RangeEncoder& coder, MeshModels& models) {
+  c.invalid("tick-delta-33-bits", "tick_delta has 33 bits.", wider(), first_symbols([](RangeEncoder& coder, MeshModels& models) {
               coder.bit(models.key, 1);
               too_wide(coder, models.tick);
             }));
-  c.invalid("baseline-delta-33-bits", "baseline_delta has 33 bits.", kTooWide,
+  c.invalid("baseline-delta-33-bits", "baseline_delta has 33 bits.", wider(),
             first_symbols([](RangeEncoder& coder, MeshModels& models) {
               coder.bit(models.key, 0);
               too_wide(coder, models.baseline);
             }));
-  c.invalid("late-32-bits", "late is 2^31.", kTooWide, first_symbols([](RangeEncoder& coder, MeshModels& models) {
+  c.invalid("late-32-bits", "late is 2^31.", wider(), first_symbols([](RangeEncoder& coder, MeshModels& models) {
               coder.bit(models.key, 0);
               coder.magnitude(models.baseline, 1);
               coder.magnitude(models.late, 1u << 31);
               coder.raw(1, 0);
             }));
-  c.invalid("haptic-33-bits", "haptic_change has 33 bits.", kTooWide, then_coded([](RangeEncoder& coder, MeshModels& models) {
+  c.invalid("haptic-33-bits", "haptic_change has 33 bits.", wider(), then_coded([](RangeEncoder& coder, MeshModels& models) {
               coder.bit(models.touched[1], 1);
               coder.bit(models.same_triangle, 1);
               too_wide(coder, models.haptic);
             }));
-  c.invalid("coefficient-33-bits", "A coefficient has 33 bits.", kTooWide,
-            then_coded([](RangeEncoder& coder, MeshModels& models) {
+  c.invalid("coefficient-33-bits", "A coefficient has 33 bits.", wider(), then_coded([](RangeEncoder& coder, MeshModels& models) {
               quiet_head(coder, models);
               coder.signed_value(models.coefficient[0][0], 0);
               too_wide(coder, models.coefficient[0][0]);
             }));
-  c.invalid("component-32-bits", "A component of a residual is -2^31.", kTooWide,
+  c.invalid("component-32-bits", "A component of a residual is -2^31.", wider(),
             then_coded([](RangeEncoder& coder, MeshModels& models) {
               quiet_head(coder, models);
               for (int k = 0; k < 2; ++k) coder.signed_value(models.coefficient[0][0], 0);
@@ -214,7 +213,7 @@ void add_ends(Catalogue& c) {
             {"malformed", "R-RNG-2"}, then_packet(two_packets(), good + Bytes{0, 0, 0, 0}));
   c.invalid("zero-at-end", "The payload's last byte is 0.", {"malformed", "R-RNG-3"},
             then_packet(two_packets(), good + Bytes{0}));
-  c.invalid("all-ones", "A payload of ff: the first symbols are too wide.", kTooWide,
+  c.invalid("all-ones", "A payload of ff: the first symbols are too wide.", wider(),
             then_packet(two_packets(), Bytes{2, 0} + Bytes(8, 0xff)));
 }
 

@@ -1,23 +1,56 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Make spec/tables/rigid-start-models.csv again: simulate touches, count what their packets hold, write the table.
-#   tests/tools/make_start_models.sh BUILD_DIR > spec/tables/rigid-start-models.csv
-# Seeds 101..104, so that the seeds 1.. of every evaluation are not among them. Lengths: 0.05 m per unit of the thesis, and 1 m.
+# Make a table of start models again: simulate touches, count what their packets hold, write the table.
+#   tests/tools/make_start_models.sh rigid BUILD_DIR > spec/tables/rigid-start-models.csv
+#   tests/tools/make_start_models.sh mesh BUILD_DIR > spec/tables/mesh-start-models.csv
+# Seeds 101.., so that the seeds 1.. of every evaluation are not among them. Lengths of rigid scenes: 0.05 m per unit of the thesis,
+# and 1 m.
 set -eu
-build=$1
+stem=$1
+build=$2
+tactus=$build/cli/tactus
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-for scene in push-1dof rotate-6dof rotate-push-lift; do
-  for seed in 101 102 103 104; do
-    stream() { # NAME OPTION...
-      name=$scene-$seed-$1
-      shift
-      "$build/cli/tactus" sim "$scene" --seed "$seed" -q -o "$scratch/$name.mcap" --stream "$scratch/$name.tct" "$@" >/dev/null
-    }
-    for p in 1 4 8 18 30; do stream "p$p" -p "$p%" --visual 0.3mm,2deg; done
-    stream visual --haptic off --visual 0.3mm,2deg
-    stream coarse -p 4% --visual 6mm,2deg
-    stream coarse-visual --haptic off --visual 6mm,2deg
+
+rigid_streams() {
+  stream() { # NAME OPTION...
+    name=$1
+    shift
+    "$tactus" sim "$scene" --seed "$seed" -q -o "$scratch/$scene-$seed-$name.mcap" --stream "$scratch/$scene-$seed-$name.tct" \
+      "$@" >/dev/null
+  }
+  for p in 1 4 8 18 30; do stream "p$p" -p "$p%" --visual 0.3mm,2deg; done
+  stream visual --haptic off --visual 0.3mm,2deg
+  stream coarse -p 4% --visual 6mm,2deg
+  stream coarse-visual --haptic off --visual 6mm,2deg
+}
+
+mesh_streams() {
+  trace=$scratch/$scene-$seed.mcap
+  "$tactus" sim "$scene" --seed "$seed" -q -o "$trace" >/dev/null
+  stream() { # NAME OPTION...
+    name=$1
+    shift
+    "$tactus" encode "$trace" -q -o "$scratch/$scene-$seed-$name.tct" "$@" >/dev/null
+  }
+  for basis in 0 48; do
+    for v in 0.05 0.125 0.25 0.5 1; do
+      for p in 2.5 10; do stream "v$v-p$p-k$basis" --mesh-visual "${v}mm" -p "$p%" --basis "$basis"; done
+      stream "v$v-k$basis" --mesh-visual "${v}mm" --haptic off --basis "$basis"
+    done
   done
+  stream fine --mesh-visual 0.01mm --haptic off
+}
+
+case $stem in
+  rigid) scenes="push-1dof rotate-6dof rotate-push-lift" seeds="101 102 103 104" ;;
+  mesh) scenes="membrane membrane-light" seeds="101 102" ;;
+  *)
+    echo "make_start_models.sh: $stem: neither rigid nor mesh" >&2
+    exit 2
+    ;;
+esac
+for scene in $scenes; do
+  for seed in $seeds; do "${stem}_streams"; done
 done
-"$build/tests/tools/train_start_models" "$scratch"/*.tct
+"$build/tests/tools/train_${stem}_start_models" "$scratch"/*.tct
