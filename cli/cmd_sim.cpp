@@ -20,7 +20,8 @@ struct SimOptions {
   std::string method, solver;  // of deformable objects, empty: the scene's
   std::uint32_t rate = 0;      // ticks between deformations, 0: the scene's
   std::uint64_t seed = 1;
-  double duration = -1;  // [s], negative: the scene's
+  double duration = -1;   // [s], negative: the scene's
+  double mesh_noise = 0;  // [m] RMS per axis
   std::optional<Grip> grip;
   bool codec = false;
   TriggerArguments triggers;
@@ -221,7 +222,11 @@ Outcome run(const SimOptions& options) {
   if (!scene) return tl::unexpected(scene.error());
   if (!options.stiffness_map.empty())
     if (auto written = write_stiffness_map(*scene, options); !written) return written;
-  SimulationOptions settings{.seed = options.seed, .grip = options.grip, .channel = {}, .estimate_every = kEstimateEvery};
+  SimulationOptions settings{.seed = options.seed,
+                             .grip = options.grip,
+                             .channel = {},
+                             .mesh_noise = options.mesh_noise,
+                             .estimate_every = kEstimateEvery};
   if (options.has_channel())
     settings.channel = ChannelOptions{options.triggers.encoder(), options.replica, options.meshes.encoder(options.triggers),
                                       options.meshes.coding()};
@@ -273,7 +278,7 @@ void setup_sim(CLI::App& app, Action& action) {
   CLI::App& command = *app.add_subcommand("sim", "Simulate a touch into a trace");
   command
       .add_option("SCENE", options->scene,
-                  "push-1dof, rotate-6dof, rotate-push-lift, membrane, membrane-light, msd-1d, "
+                  "push-1dof, rotate-6dof, rotate-push-lift, membrane, membrane-light, membrane-large, membrane-small, msd-1d, "
                   "bracket-and-pad, or a TOML file")
       ->type_name("")
       ->required();
@@ -282,6 +287,8 @@ void setup_sim(CLI::App& app, Action& action) {
       ->type_name("FILE");
   command.add_option("--seed", options->seed, "Every random number follows from it")->capture_default_str()->type_name("N");
   add_quantity(command, "--duration", options->duration, Dimension::time, "Length [the scene's]");
+  add_quantity(command, "--mesh-noise", options->mesh_noise, Dimension::length,
+               "White noise on the shapes that are recorded and sent, RMS per axis [0]");
   const std::map<std::string, Grip> grips{{"loose", Grip::loose}, {"normal", Grip::normal}, {"firm", Grip::firm}};
   command
       .add_option_function<std::string>(

@@ -2,6 +2,7 @@
 #include "cli/sweep_plan.h"
 
 #include <set>
+#include <sstream>
 
 #include "cli/output.h"
 #include "sim/scene/toml_reader.h"
@@ -91,12 +92,23 @@ class PlanReader {
     return measure;
   }
 
-  std::string column(const toml::table& table, const char* key, const SweepPlan& plan) {
-    std::string value = in_.text(table, "plot", key);
+  void check_column(const toml::table& table, const char* key, const std::string& value, const SweepPlan& plan) {
     const auto columns = plan.columns();
     if (std::find(columns.begin(), columns.end(), value) == columns.end())
       invalid(table, "R-SCN-7", TomlReader::join("plot", key), "name a parameter or a measure of this plan");
+  }
+
+  std::string column(const toml::table& table, const char* key, const SweepPlan& plan) {
+    std::string value = in_.text(table, "plot", key);
+    check_column(table, key, value, plan);
     return value;
+  }
+
+  /// A text or an array of texts.
+  std::vector<std::string> texts(const toml::table& table, const char* key) {
+    const toml::node* node = table.get(key);
+    if (node && node->is_array()) return strings(table, "plot", key);
+    return {in_.text(table, "plot", key)};
   }
 
   SweepPlot plot(const toml::table& table, const SweepPlan& plan) {
@@ -105,10 +117,12 @@ class PlanReader {
     plot.name = name(table, "plot", "name");
     plot.title = in_.text(table, "plot", "title", plot.name);
     plot.x = column(table, "x", plan);
-    plot.y = column(table, "y", plan);
+    plot.y = texts(table, "y");
+    for (const std::string& y : plot.y) check_column(table, "y", y, plan);
     plot.series = column(table, "series", plan);
     plot.x_label = in_.text(table, "plot", "x_label", plot.x);
-    plot.y_label = in_.text(table, "plot", "y_label", plot.y);
+    plot.y_label = table.contains("y_label") ? texts(table, "y_label") : plot.y;
+    if (plot.y_label.size() != plot.y.size()) invalid(table, "R-SCN-7", "plot.y_label", "give one for each y");
     const std::size_t axes = in_.word(table, "plot", "log", {"none", "x", "y", "xy"}, "none");
     plot.log_x = axes == 1 || axes == 3;
     plot.log_y = axes >= 2;
@@ -143,6 +157,14 @@ std::string replaced(std::string word, const std::string& what, const std::strin
   return word;
 }
 
+/// Words between blanks.
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> out;
+  std::istringstream in(text);
+  for (std::string word; in >> word;) out.push_back(word);
+  return out;
+}
+
 }  // namespace
 
 std::size_t SweepPlan::points() const {
@@ -162,13 +184,23 @@ std::vector<std::string> SweepPlan::values(std::size_t point) const {
 }
 
 std::vector<std::string> SweepPlan::words(std::size_t point, const std::string& folder) const {
-  std::vector<std::string> out = command;
   const auto chosen = values(point);
-  for (std::size_t i = 0; i < parameters.size(); ++i) {
-    std::string value = chosen[i];
-    for (const SweepInput& input : inputs)
-      if (input.name == value) value = folder + "/" + input.file;
-    for (std::string& word : out) word = replaced(std::move(word), "{" + parameters[i].name + "}", value);
+  std::vector<std::string> out;
+  for (std::string word : command) {
+    bool is_split = false;
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+      std::string value = chosen[i];
+      const std::string place = "{" + parameters[i].name + "}";
+      for (const SweepInput& input : inputs)
+        if (input.name == chosen[i]) value = folder + "/" + input.file;
+      is_split = word == place && value == chosen[i];
+      if (is_split) {
+        for (std::string& part : split(value)) out.push_back(std::move(part));
+        break;
+      }
+      word = replaced(std::move(word), place, value);
+    }
+    if (!is_split) out.push_back(std::move(word));
   }
   return out;
 }

@@ -18,11 +18,13 @@ struct SweepInput {
   std::vector<std::string> command;
 };
 
-/// One figure: y over x, one line for each value of a parameter.
+/// One figure: every y over x in a panel of its own, one below the other; one line for each value of a parameter.
 struct SweepPlot {
   std::string name, title;
-  std::string x, y, series;  ///< columns
-  std::string x_label, y_label;
+  std::string x, series;       ///< columns
+  std::vector<std::string> y;  ///< columns
+  std::string x_label;
+  std::vector<std::string> y_label;  ///< one for each y
   bool log_x = false, log_y = false;
   std::vector<std::pair<std::string, std::string>> where;  ///< only points whose parameter has this value
 };
@@ -47,7 +49,8 @@ struct SweepPlan {
 
   std::size_t points() const;                                ///< number of combinations
   std::vector<std::string> values(std::size_t point) const;  ///< one per parameter; the last one varies fastest
-  /// The words of a point's command. A value that names an input stands for its file in `folder`.
+  /// The words of a point's command. A value that names an input stands for its file in `folder`; where a parameter is a word of its
+  /// own, its value may be several words, or none.
   std::vector<std::string> words(std::size_t point, const std::string& folder) const;
   std::vector<std::string> columns() const;  ///< parameters, then measures
 };

@@ -41,7 +41,7 @@ struct Series {
 
 std::vector<Series> series_of(const SweepPlot& wanted, const SweepPlan& plan, const std::vector<SweepResults::Row>& rows) {
   const auto columns = plan.columns();
-  const std::size_t x = index_of(columns, wanted.x), y = index_of(columns, wanted.y), by = index_of(columns, wanted.series);
+  const std::size_t x = index_of(columns, wanted.x), by = index_of(columns, wanted.series);
   std::vector<Series> out;
   for (const SweepResults::Row& row : rows) {
     const bool shown = std::all_of(wanted.where.begin(), wanted.where.end(),
@@ -49,26 +49,35 @@ std::vector<Series> series_of(const SweepPlot& wanted, const SweepPlan& plan, co
     if (!shown) continue;
     auto found = std::find_if(out.begin(), out.end(), [&](const Series& s) { return s.value == row[by]; });
     if (found == out.end()) found = out.insert(out.end(), {row[by], {}});
-    found->points.push_back({leading_number(row[x]), leading_number(row[y])});
+    std::vector<double>& point = found->points.emplace_back(std::vector<double>{leading_number(row[x])});
+    for (const std::string& y : wanted.y) point.push_back(leading_number(row[index_of(columns, y)]));
   }
   for (Series& series : out) std::sort(series.points.begin(), series.points.end());
   return out;
 }
 
 Plot figure(const SweepPlot& wanted, const std::vector<Series>& series) {
+  const std::size_t panels = wanted.y.size();
   Plot plot{.name = wanted.name, .script = {}, .data = {}};
-  plot.script = fmt::format(
-      "set title {} noenhanced\nset xlabel {} noenhanced\nset ylabel {} noenhanced\n"
-      "set key outside right top title {} noenhanced\n",
-      quoted(wanted.title), quoted(wanted.x_label), quoted(wanted.y_label), quoted(wanted.series));
+  plot.height = static_cast<int>(panels == 1 ? 560 : 80 + 300 * panels);
+  for (std::size_t i = 0; i < series.size(); ++i) plot.data.push_back({"series" + std::to_string(i), series[i].points});
   if (wanted.log_x) plot.script += "set logscale x\nset format x '10^{%L}'\n";
   if (wanted.log_y) plot.script += "set logscale y\nset format y '10^{%L}'\n";
-  for (std::size_t i = 0; i < series.size(); ++i) {
-    plot.data.push_back({"series" + std::to_string(i), series[i].points});
-    plot.script += fmt::format("{}$series{} using 1:2 with linespoints linetype {} title {} noenhanced",
-                               i == 0 ? "plot " : ", \\\n     ", i, i + 1, quoted(series[i].value));
+  plot.script += fmt::format("set key outside {} title {} noenhanced\n", panels == 1 ? "right top" : "center top horizontal",
+                             quoted(wanted.series));
+  plot.script +=
+      panels == 1 ? fmt::format("set title {} noenhanced\n", quoted(wanted.title))
+                  : fmt::format("set lmargin 11\nset multiplot layout {},1 title {} noenhanced\n", panels, quoted(wanted.title));
+  for (std::size_t panel = 0; panel < panels; ++panel) {
+    if (panel == 1) plot.script += "unset key\n";
+    if (panel + 1 == panels) plot.script += fmt::format("set xlabel {} noenhanced\n", quoted(wanted.x_label));
+    plot.script += fmt::format("set ylabel {} noenhanced\n", quoted(wanted.y_label[panel]));
+    for (std::size_t i = 0; i < series.size(); ++i)
+      plot.script += fmt::format("{}$series{} using 1:{} with linespoints linetype {} title {} noenhanced",
+                                 i == 0 ? "plot " : ", \\\n     ", i, panel + 2, i + 1, quoted(series[i].value));
+    plot.script += series.empty() ? "plot NaN notitle\n" : "\n";
   }
-  plot.script += series.empty() ? "plot NaN notitle\n" : "\n";
+  if (panels > 1) plot.script += "unset multiplot\n";
   return plot;
 }
 

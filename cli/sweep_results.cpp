@@ -28,8 +28,9 @@ std::string quoted(const std::string& cell) {
 
 std::string line_of(const std::vector<std::string>& cells) {
   std::string out;
-  for (const std::string& cell : cells) out += (out.empty() ? "" : ",") + quoted(cell);
-  return out + '\n';
+  for (const std::string& cell : cells) out += quoted(cell) + ',';
+  out.back() = '\n';
+  return out;
 }
 
 /// Cells of one line (RFC 4180), `at` moves behind it; nothing when the line has no end.

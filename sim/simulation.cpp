@@ -55,6 +55,8 @@ Vec3 centre(const TriMesh& mesh) {
 struct Simulation::Impl {
   Scene scene;
   std::uint64_t seed;
+  Random noise;
+  double mesh_noise = 0;  // [m]
   StreamHeader header;
   RigidWorld world;
   std::optional<Channel> channel;
@@ -67,7 +69,7 @@ struct Simulation::Impl {
   std::vector<Pose> places;                      // of the deformables, for who looks at one
 
   Impl(Scene of, std::uint64_t from, StreamHeader stream)
-      : scene(std::move(of)), seed(from), header(std::move(stream)), world(scene) {}
+      : scene(std::move(of)), seed(from), noise(~from), header(std::move(stream)), world(scene) {}
 
   void observe();
   void touch_server();
@@ -91,7 +93,13 @@ void Simulation::Impl::observe() {
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) frame.objects[i] = world.sample(i);
   if (msds) msds->observe(std::span(frame.objects).subspan(scene.objects.size()));
   for (std::size_t i = 0; i < true_poses.size(); ++i) true_poses[i] = frame.objects[i].pose;
-  if (deformables) deformables->observe(frame.meshes);
+  if (!deformables) return;
+  deformables->observe(frame.meshes);
+  if (mesh_noise == 0) return;
+  const double reach = std::sqrt(3.0) * mesh_noise;  // of a uniform distribution with that RMS
+  for (MeshSample& mesh : frame.meshes)
+    if (mesh.updated)
+      for (float& u : mesh.displacements) u += static_cast<float>(noise.uniform(-reach, reach));
 }
 
 void Simulation::Impl::touch_server() {
@@ -217,6 +225,7 @@ Result<void> Simulation::Impl::add_channel(const ChannelOptions& options) {
 Result<Simulation> Simulation::create(const Scene& scene, const SimulationOptions& options) {
   TACTUS_TRY(StreamHeader header, stream_header(scene));
   auto impl = std::make_unique<Impl>(scene, options.seed, std::move(header));
+  impl->mesh_noise = options.mesh_noise;
   if (!scene.deformables.empty()) TACTUS_CHECK(impl->add_deformables(options));
   if (options.channel) TACTUS_CHECK(impl->add_channel(*options.channel));
   Random seeds(options.seed);

@@ -50,6 +50,7 @@ struct SimulationOptions {
   std::uint64_t seed = 1;
   std::optional<Grip> grip;               ///< instead of the scene's, for every user
   std::optional<ChannelOptions> channel;  ///< none: the client sees the true poses
+  double mesh_noise = 0;                  ///< [m] RMS per axis of white noise on every vertex that the server reports
   std::uint32_t estimate_every = 0;       ///< estimate the error of every so many deformations, 0: of none
 };
 
