@@ -198,10 +198,12 @@ class Client {
   Fnv1a all_;
 };
 
+constexpr DecodeLimits kLimits{.header_bytes = 1u << 20, .packet_bytes = 1u << 20};  // of every testee, README.md
+
 }  // namespace
 
 Result<void> report(std::span<const std::uint8_t> file, std::optional<Interpolation> replica, std::ostream& out) {
-  TACTUS_TRY(auto reader, StreamFileReader::open(file));
+  TACTUS_TRY(auto reader, StreamFileReader::open(file, kLimits));
   TACTUS_TRY(auto client, Client::create(reader.header(), replica));
   write_header_line(reader.header(), out);
   for (std::uint64_t number = 0;; ++number) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Cost of the mesh codec per frame: both profiles, with and without a basis, 10^2 to 10^6 vertices. A dent walks over a sheet.
 #include <benchmark/benchmark.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <chrono>
@@ -58,7 +59,9 @@ void report(benchmark::State& state, std::vector<double>& times) {
 void encode_frame(benchmark::State& state, Kind kind) {
   const auto squares = static_cast<std::uint32_t>(state.range(0));
   const Recording recording = record(squares, kind);
+  const std::size_t before = mallinfo2().uordblks + mallinfo2().hblkhd;
   MeshEncoder encoder = make_encoder(recording);
+  const std::size_t memory = mallinfo2().uordblks + mallinfo2().hblkhd - before;
   std::vector<double> times;
   times.reserve(1 << 20);
   std::uint64_t bytes = 0;
@@ -72,6 +75,7 @@ void encode_frame(benchmark::State& state, Kind kind) {
     bytes += packet->bytes.size();
   }
   report(state, times);
+  state.counters["bytes_per_vertex"] = static_cast<double>(memory) / static_cast<double>(recording.header.meshes[0].rest.size());
   state.counters["vertices"] = static_cast<double>(recording.header.meshes[0].rest.size());
   state.counters["bytes"] = benchmark::Counter(static_cast<double>(bytes), benchmark::Counter::kAvgIterations);
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(recording.header.meshes[0].rest.size()));
@@ -87,16 +91,16 @@ void decode_frame(benchmark::State& state, Kind kind) {
     const auto packet = encoder.encode(static_cast<std::int64_t>(k), frame.displacement, frame.touch).value();
     if (!packet.bytes.empty()) packets.emplace_back(packet.bytes.begin(), packet.bytes.end());
   }
-  DecodeLimits limits;
-  limits.packet_bytes = 1u << 28;
-  auto decoder = MeshDecoder::create(recording.header, 0, limits).value();
+  const std::size_t before = mallinfo2().uordblks + mallinfo2().hblkhd;
+  auto decoder = MeshDecoder::create(recording.header, 0).value();
+  const std::size_t memory = mallinfo2().uordblks + mallinfo2().hblkhd - before;
   std::vector<double> times;
   times.reserve(1 << 20);
   std::size_t next = 0;
   for (auto _ : state) {
     if (next == packets.size()) {
       state.PauseTiming();
-      decoder = MeshDecoder::create(recording.header, 0, limits).value();
+      decoder = MeshDecoder::create(recording.header, 0).value();
       next = 0;
       state.ResumeTiming();
     }
@@ -107,6 +111,7 @@ void decode_frame(benchmark::State& state, Kind kind) {
     if (!decoded) state.SkipWithError(decoded.error().rule);
   }
   report(state, times);
+  state.counters["bytes_per_vertex"] = static_cast<double>(memory) / static_cast<double>(recording.header.meshes[0].rest.size());
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(recording.header.meshes[0].rest.size()));
 }
 

@@ -212,6 +212,45 @@ TEST(MeshExtremes, RangeLimitsAndJumps) {
   }
 }
 
+TEST(MeshExtremes, OneVertexJumpsEveryFrameAndNobodyTouches) {
+  const TriMesh mesh = testing::sheet(kSquares, kSquares);
+  for (const double visual : {0.0, 2.5e-4}) {
+    const StreamHeader header = testing::mesh_header(mesh, MeshProfile::main, testing::wave_basis(mesh, kSquares, 4));
+    Ends ends = make_ends(header, {visual, 0.025});
+    BoundWatch watch(header, {visual, 0.025});
+    Sent run;
+    SheetFrame frame{std::vector<Vec3>(mesh.vertices.size()), {}};
+    for (std::int64_t k = 0; k < 3000; ++k) {
+      frame.displacement[70] = {0, 0, k % 2 == 0 ? 0.02 : -0.02};
+      send(ends, k, frame, run);
+      watch.look(frame, ends.decoder.displacements_at(k));
+    }
+    EXPECT_EQ(watch.broken(), 0U);
+    EXPECT_EQ(run.packets, 3000U);
+  }
+}
+
+/// As large as a mesh may be: header and packets pass with the limits that decoders have by default.
+TEST(MeshExtremes, AMillionVertices) {
+  const TriMesh mesh = testing::sheet(1023, 1023);
+  ASSERT_EQ(mesh.vertices.size(), kMaxMeshVertices);
+  const MeshThresholds exact{0, {}};
+  const StreamHeader header = parse_header(write_header(testing::mesh_header(mesh)).value()).value().header;
+  Ends ends = make_ends(header, exact);
+  SheetFrame frame{std::vector<Vec3>(mesh.vertices.size()), {}};
+  Sent run;
+  for (std::int64_t k = 0; k < 2; ++k) {
+    for (std::size_t v = 0; v < frame.displacement.size(); ++v)
+      frame.displacement[v] = {30 * std::sin(static_cast<double>(v * v)), -31.0 * static_cast<double>(k), 0.001};
+    send(ends, k, frame, run);
+    if (HasFatalFailure()) return;
+    const double unit = std::ldexp(1.0, -22);
+    for (std::size_t v = 0; v < frame.displacement.size(); v += 997)
+      EXPECT_LE(norm(to_metres(ends.decoder.displacements()[v], 22) - frame.displacement[v]), unit);
+  }
+  EXPECT_EQ(run.packets, 2U);
+}
+
 TEST(MeshExtremes, VanishingForceAndVanishingStiffness) {
   const StreamHeader header = testing::mesh_header(testing::sheet(4, 4));
   for (const MeshTouch touch : {MeshTouch{3, 0, 500}, MeshTouch{3, 5, 1e-300}, MeshTouch{3, 1e300, 1}}) {
