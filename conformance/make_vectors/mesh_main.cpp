@@ -10,7 +10,6 @@ namespace tactus::conformance {
 namespace {
 
 constexpr std::int32_t kWidest = std::numeric_limits<std::int32_t>::max();
-constexpr std::int32_t kFarthest = MeshObject::kMaxDisplacement;
 
 /// Random residuals, bounds and coefficients, touched now and then, at random intervals.
 Bytes walk(const RawMesh& mesh, std::uint64_t seed, int packets, std::uint8_t span = 1, std::int64_t frame = 1) {
