@@ -21,6 +21,28 @@ double shortest_edge(const TetMesh& mesh) {
   return shortest;
 }
 
+/// The tetrahedron with the edge that is stretched most.
+std::int64_t most_stretched(const TetMesh& mesh, const Eigen::VectorXd& u) {
+  const auto moved = [&](std::uint32_t v) {
+    const auto at = static_cast<Eigen::Index>(3 * v);
+    return mesh.vertices[v] + Vec3{u[at], u[at + 1], u[at + 2]};
+  };
+  double most = 0;
+  std::int64_t out = -1;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const Tet& tet = mesh.tets[t];
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const double stretch = norm(moved(tet[i]) - moved(tet[j])) / norm(mesh.vertices[tet[i]] - mesh.vertices[tet[j]]);
+        if (!(stretch > most)) continue;
+        most = stretch;
+        out = static_cast<std::int64_t>(t);
+      }
+    }
+  }
+  return out;
+}
+
 /// Elastic energy when everything is strained by the rounding of a double.
 double rounding_energy(const FemModel& model) {
   const auto& materials = model.options().materials;
@@ -52,10 +74,11 @@ tl::expected<StepReport, FemError> Guarded::step(const Eigen::VectorXd& f, FemSt
   if (!report) {
     FemError error = std::move(report.error());
     error.step = steps_;
+    if (error.element < 0) error.element = most_stretched(model_.mesh(), state.u);
     if (error.remedy.empty()) error.remedy = divergence_remedy(model_, options_);
     return tl::unexpected(std::move(error));
   }
-  if (diverged(f, state)) return tl::unexpected(divergence(model_.broken_element(next_.u)));
+  if (diverged(f, state)) return tl::unexpected(divergence());
   ++steps_;
   interrupted_ = false;
   last_ = next_;
@@ -96,7 +119,9 @@ bool Guarded::gained_energy() {
   return !(energy <= kEnergyFactor * (reference_ + work_) + rounding_);
 }
 
-FemError Guarded::divergence(std::int64_t element) const {
+FemError Guarded::divergence() const {
+  const std::int64_t broken = model_.broken_element(next_.u);
+  const std::int64_t element = broken >= 0 ? broken : most_stretched(model_.mesh(), next_.u);
   return {{Errc::internal, "R-FEM-6"}, steps_, element, divergence_remedy(model_, options_)};
 }
 

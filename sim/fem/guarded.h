@@ -25,7 +25,7 @@ class Guarded : public Integrator {
 
  private:
   bool diverged(const Eigen::VectorXd& f, const FemState& before);
-  FemError divergence(std::int64_t element) const;
+  FemError divergence() const;
   bool gained_energy();
 
   FemModel& model_;

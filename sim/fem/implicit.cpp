@@ -9,6 +9,10 @@ namespace {
 
 constexpr double kGamma = 2 - std::numbers::sqrt2;  ///< share of the trapezoidal stage: both stages have the same c
 
+StepReport operator+(const StepReport& a, const StepReport& b) {
+  return {a.newton_iterations + b.newton_iterations, a.solver_iterations + b.solver_iterations, a.converged && b.converged};
+}
+
 }  // namespace
 
 double Implicit::stage_step(Scheme scheme, double h) noexcept {
@@ -32,7 +36,9 @@ Implicit::Implicit(FemModel& model, const IntegratorOptions& options, Scheme sch
       v_(u_),
       u0_(u_),
       v0_(u_),
-      k_(u_) {
+      k_(u_),
+      start_u_(u_),
+      start_v_(u_) {
   stage_ = {stage_step(scheme, h()), u_, u_, u_};
 }
 
@@ -40,7 +46,7 @@ tl::expected<StepReport, FemError> Implicit::advance(const Eigen::VectorXd& f, c
   newton_.system().gather(f, stage_.f);
   newton_.system().gather(state.u, u_);
   newton_.system().gather(state.v, v_);
-  auto report = scheme_ == Scheme::backward_euler ? backward_euler() : scheme_ == Scheme::newmark ? trapezoidal(h()) : tr_bdf2();
+  auto report = scheme_ == Scheme::backward_euler ? backward_euler() : second_order();
   if (!report) return report;
   next.u = state.u;
   next.v.setZero();
@@ -49,10 +55,30 @@ tl::expected<StepReport, FemError> Implicit::advance(const Eigen::VectorXd& f, c
   return report;
 }
 
+tl::expected<StepReport, FemError> Implicit::second_order() {
+  StepReport report{0, 0, true};
+  start_u_ = u_;
+  start_v_ = v_;
+  if (!wild_) {
+    stage_.c = stage_step(scheme_, h());
+    const auto done = scheme_ == Scheme::newmark ? trapezoidal(h()) : tr_bdf2();
+    if (!done || !newton_.lost()) return done;
+    report = *done;
+    u_ = start_u_;
+    v_ = start_v_;
+  }
+  stage_.c = h();
+  const auto done = backward_euler();
+  wild_ = newton_.lost();
+  return done ? report + *done : done;
+}
+
 /// Solve the stage from the start in u, and take its velocity.
 tl::expected<StepReport, FemError> Implicit::solve() {
   auto report = newton_.solve(stage_, u_);
-  if (report) v_ = (u_ - stage_.a) / stage_.c;
+  if (!report) return report;
+  v_ = (u_ - stage_.a) / stage_.c;
+  newton_.system().balanced_forces(stage_, v_, k_);
   return report;
 }
 
@@ -67,8 +93,8 @@ tl::expected<StepReport, FemError> Implicit::backward_euler() {
 tl::expected<StepReport, FemError> Implicit::trapezoidal(double duration) {
   const double c = stage_.c;
   stage_.Mb.noalias() = (1 - c * newton_.system().alpha()) * (model().mass_matrix() * v_);
-  if (newton_.evaluated() && !edited()) newton_.system().last_forces(k_);
-  else newton_.system().forces(u_, v_, k_);
+  const bool balanced = options().newton_iterations > 1;  // one iteration leaves an error of order two there
+  if (edited() || !balanced) newton_.system().forces(u_, v_, k_);
   stage_.Mb += c * (stage_.f - k_);
   stage_.a = u_ + c * v_;
   u_ += duration * v_;
@@ -80,15 +106,13 @@ tl::expected<StepReport, FemError> Implicit::tr_bdf2() {
   u0_ = u_;
   v0_ = v_;
   auto report = trapezoidal(kGamma * h());
-  if (!report) return report;
+  if (!report || newton_.lost()) return report;
   stage_.a = kNew * u_ - kOld * u0_;
   v0_ = kNew * v_ - kOld * v0_;
   stage_.Mb.noalias() = model().mass_matrix() * v0_;
   u_ += (1 - kGamma) * h() * v_;
   auto second = solve();
-  if (!second) return second;
-  return StepReport{report->newton_iterations + second->newton_iterations, report->solver_iterations + second->solver_iterations,
-                    report->converged && second->converged};
+  return second ? *report + *second : second;
 }
 
 }  // namespace tactus

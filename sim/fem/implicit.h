@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Backward Euler, Newmark and TR-BDF2: which stages a step consists of (newton.h).
+/// Where the motion is so violent that a stage of the last two cannot be solved within the iterations allowed, the step is done
+/// again with backward Euler, and so are the next ones until one of them can be solved: what is not a solution would feed the
+/// stiff modes instead of damping them.
 #pragma once
 
 #include "sim/fem/guarded.h"
@@ -18,6 +21,7 @@ class Implicit final : public Guarded {
 
  private:
   tl::expected<StepReport, FemError> advance(const Eigen::VectorXd& f, const FemState& state, FemState& next) override;
+  tl::expected<StepReport, FemError> second_order();
   tl::expected<StepReport, FemError> backward_euler();
   tl::expected<StepReport, FemError> trapezoidal(double duration);
   tl::expected<StepReport, FemError> tr_bdf2();
@@ -27,7 +31,9 @@ class Implicit final : public Guarded {
   bool extrapolate_;  // where backward Euler starts
   Newton newton_;
   Stage stage_;
-  Eigen::VectorXd u_, v_, u0_, v0_, k_;  // free: state at work, state at the start
+  bool wild_ = false;                    // the last step's equations could not be solved
+  Eigen::VectorXd u_, v_, u0_, v0_, k_;  // free: state at work, state at the start, forces
+  Eigen::VectorXd start_u_, start_v_;    // of the step
 };
 
 }  // namespace tactus

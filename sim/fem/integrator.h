@@ -15,8 +15,10 @@
 ///                                                 time for constant forces; motion outside the modes is lost
 ///
 /// Backward Euler starts its iteration at u0, with `prefactored` and in the other methods at the displacement extrapolated with v0.
+/// Newmark and TR-BDF2 take steps of backward Euler where the motion is so violent that their stages cannot be solved.
 /// A stage is a nonlinear system. Each iteration finds a direction with the linear solver, and takes a shorter step along it when
-/// the residual says that it went too far; `newton_iterations` 1 is the linearly implicit variant, without that check.
+/// the residual says that it went too far; `newton_iterations` 1 is the linearly implicit variant, without that check. When a second
+/// update would be too small to matter, judging by how fast the stages before have converged, the check is saved too.
 ///
 /// solver               direction                                                    per iteration
 /// conjugate_gradients  (a M + b K(u))^-1, block Jacobi, warm start                  assembly, about 3 products at h omega = 0.6
@@ -67,6 +69,7 @@ class Integrator {
   /// A step diverged (R-FEM-6) when its result is not finite, when a tetrahedron is torn (FemModel::broken_element, looked for
   /// whenever vertices have moved far enough since the last look), or when kinetic and elastic energy, looked at every 64th step,
   /// exceed ten times what was there at the first look plus the work of f since. The state before the step is kept.
+  /// The error names the tetrahedron that is torn, or else the one that is stretched most.
   /// time see the tables; no allocation after the first step.
   /// err  R-FEM-5, R-FEM-6 (remedy named), R-FEM-7
   virtual tl::expected<StepReport, FemError> step(const Eigen::VectorXd& f, FemState& state) = 0;

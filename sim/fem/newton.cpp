@@ -7,6 +7,12 @@
 #include <utility>
 
 namespace tactus {
+namespace {
+
+constexpr double kAge = 0.8;    ///< exponent of a remembered shrinkage from use to use
+constexpr double kLost = 0.01;  ///< of the motion
+
+}  // namespace
 
 StageSystem::StageSystem(FemModel& model)
     : model_(model), ahead_(Eigen::VectorXd::Zero(model.size())), k_(ahead_), v_(Eigen::VectorXd::Zero(size())), Mv_(v_) {
@@ -44,6 +50,12 @@ void StageSystem::residual(const Stage& stage, const Eigen::VectorXd& u, Eigen::
   r.noalias() += model_.mass_matrix() * v_;
 }
 
+void StageSystem::balanced_forces(const Stage& stage, const Eigen::VectorXd& v, Eigen::VectorXd& k) {
+  v_ = (1 / stage.c + alpha()) * v;
+  k = stage.f + stage.Mb / stage.c;
+  k.noalias() -= model_.mass_matrix() * v_;
+}
+
 double StageSystem::motion(const Stage& stage, const Eigen::VectorXd& u) {
   v_ = (u - stage.a) / stage.c;
   Mv_.noalias() = model_.mass_matrix() * v_;
@@ -61,8 +73,8 @@ Newton::Newton(FemModel& model, const IntegratorOptions& options, std::unique_pt
 
 tl::expected<StepReport, FemError> Newton::solve(const Stage& stage, Eigen::VectorXd& u) {
   StepReport report{0, 0, false};
+  lost_ = false;
   system_.residual(stage, u, r_);
-  evaluated_ = true;
   double scale = system_.motion(stage, u);
   while (report.newton_iterations < iterations_) {
     const double residual = r_.norm();
@@ -78,14 +90,20 @@ tl::expected<StepReport, FemError> Newton::solve(const Stage& stage, Eigen::Vect
     ++report.newton_iterations;
     report.solver_iterations += *found;
     u += d_;
-    evaluated_ = false;
-    report.converged = decrease <= tolerance_ * tolerance_ * scale;
+    const double enough = tolerance_ * tolerance_ * scale;
+    report.converged = decrease <= enough;
+    if (report.newton_iterations == 1 && shrinkage_ * decrease <= enough) {
+      // What a second iteration would add can be told from the stages before (Hairer and Wanner 1996, IV.8).
+      report.converged = true;
+      shrinkage_ = std::pow(shrinkage_, kAge);
+    }
     if (report.converged || iterations_ == 1) break;
     if (!search(stage, decrease, u)) direction_->forget();
-    evaluated_ = true;
     // The next update would be smaller than this one about as the residual is.
     const double shrinkage = next_r_.squaredNorm() / (residual * residual);
-    report.converged = shrinkage * decrease <= tolerance_ * tolerance_ * scale;
+    if (report.newton_iterations == 1) shrinkage_ = std::min(shrinkage, 1.0);
+    report.converged = shrinkage * decrease <= enough;
+    lost_ = shrinkage * decrease > kLost * kLost * scale;
     next_r_.swap(r_);
     next_r_ = r_ - next_r_;
     direction_->moved(d_, next_r_);

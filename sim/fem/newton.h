@@ -38,8 +38,8 @@ class StageSystem {
   void scatter(const Eigen::VectorXd& free, Eigen::VectorXd& full) const noexcept;
   /// k(u + beta v); the place of evaluation stays in ahead().
   void forces(const Eigen::VectorXd& u, const Eigen::VectorXd& v, Eigen::VectorXd& k);
-  /// What the last evaluation gave.
-  void last_forces(Eigen::VectorXd& k) const noexcept { gather(k_, k); }
+  /// k as the stage's equation gives it for a solution with velocity v: free of the stiff error that is left in u.
+  void balanced_forces(const Stage& stage, const Eigen::VectorXd& v, Eigen::VectorXd& k);
   void residual(const Stage& stage, const Eigen::VectorXd& u, Eigen::VectorXd& r);
   /// v^T M v [J], the square of the energy norm of moving on with v for c.
   double motion(const Stage& stage, const Eigen::VectorXd& u);
@@ -76,8 +76,9 @@ class Newton {
   /// in, out  u  start, solution.   err  R-FEM-6 when the residual is not finite, R-FEM-7
   tl::expected<StepReport, FemError> solve(const Stage& stage, Eigen::VectorXd& u);
   StageSystem& system() noexcept { return system_; }
-  /// Whether the system's last evaluation was at the solution returned.
-  bool evaluated() const noexcept { return evaluated_; }
+  /// Whether the last solution is none: the update that would come next is estimated as more than a hundredth of what
+  /// `converged` compares with, after all the iterations that there may be. Linearly implicit steps are not looked at.
+  bool lost() const noexcept { return lost_; }
 
  private:
   bool search(const Stage& stage, double decrease, Eigen::VectorXd& u);
@@ -86,7 +87,8 @@ class Newton {
   std::unique_ptr<Direction> direction_;
   int iterations_;
   double tolerance_;
-  bool evaluated_ = false;
+  bool lost_ = false;
+  double shrinkage_ = 1;  // of the residual's square in a first iteration, as last seen; nearer to 1 the longer ago
   Eigen::VectorXd r_, next_r_, d_;
 };
 
