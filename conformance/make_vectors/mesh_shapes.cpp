@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The meshes of the vectors.
+#include <array>
 #include <map>
 
 #include "conformance/make_vectors/mesh_build.h"
@@ -17,9 +18,10 @@ class Lattice {
     if (added) shape.rest.push_back({x * size_, y * size_, z * size_});
     return at->second;
   }
-  void quad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
-    shape.triangles.push_back({a, b, c});
-    shape.triangles.push_back({a, c, d});
+  /// A braced list, because the order in which arguments are evaluated is the compiler's.
+  void quad(const std::array<std::uint32_t, 4>& c) {
+    shape.triangles.push_back({c[0], c[1], c[2]});
+    shape.triangles.push_back({c[0], c[2], c[3]});
   }
 
   Shape shape;
@@ -39,7 +41,7 @@ Shape sheet(int nx, int ny, std::int32_t size) {
   Lattice out(size);
   for (int x = 0; x < nx; ++x) {
     for (int y = 0; y < ny; ++y)
-      out.quad(out.vertex(x, y, 0), out.vertex(x + 1, y, 0), out.vertex(x + 1, y + 1, 0), out.vertex(x, y + 1, 0));
+      out.quad({out.vertex(x, y, 0), out.vertex(x + 1, y, 0), out.vertex(x + 1, y + 1, 0), out.vertex(x, y + 1, 0)});
   }
   for (std::size_t i = 0; i < out.shape.rest.size(); ++i)
     out.shape.rest[i][2] += static_cast<std::int32_t>(i * i % 7) * (size / 16);
@@ -50,18 +52,18 @@ Shape box(int nx, int ny, int nz, std::int32_t size) {
   Lattice out(size);
   for (int x = 0; x < nx; ++x) {
     for (int y = 0; y < ny; ++y) {
-      out.quad(out.vertex(x, y, 0), out.vertex(x, y + 1, 0), out.vertex(x + 1, y + 1, 0), out.vertex(x + 1, y, 0));
-      out.quad(out.vertex(x, y, nz), out.vertex(x + 1, y, nz), out.vertex(x + 1, y + 1, nz), out.vertex(x, y + 1, nz));
+      out.quad({out.vertex(x, y, 0), out.vertex(x, y + 1, 0), out.vertex(x + 1, y + 1, 0), out.vertex(x + 1, y, 0)});
+      out.quad({out.vertex(x, y, nz), out.vertex(x + 1, y, nz), out.vertex(x + 1, y + 1, nz), out.vertex(x, y + 1, nz)});
     }
   }
   for (int z = 0; z < nz; ++z) {
     for (int x = 0; x < nx; ++x) {
-      out.quad(out.vertex(x, 0, z), out.vertex(x + 1, 0, z), out.vertex(x + 1, 0, z + 1), out.vertex(x, 0, z + 1));
-      out.quad(out.vertex(x, ny, z), out.vertex(x, ny, z + 1), out.vertex(x + 1, ny, z + 1), out.vertex(x + 1, ny, z));
+      out.quad({out.vertex(x, 0, z), out.vertex(x + 1, 0, z), out.vertex(x + 1, 0, z + 1), out.vertex(x, 0, z + 1)});
+      out.quad({out.vertex(x, ny, z), out.vertex(x, ny, z + 1), out.vertex(x + 1, ny, z + 1), out.vertex(x + 1, ny, z)});
     }
     for (int y = 0; y < ny; ++y) {
-      out.quad(out.vertex(0, y, z), out.vertex(0, y, z + 1), out.vertex(0, y + 1, z + 1), out.vertex(0, y + 1, z));
-      out.quad(out.vertex(nx, y, z), out.vertex(nx, y + 1, z), out.vertex(nx, y + 1, z + 1), out.vertex(nx, y, z + 1));
+      out.quad({out.vertex(0, y, z), out.vertex(0, y, z + 1), out.vertex(0, y + 1, z + 1), out.vertex(0, y + 1, z)});
+      out.quad({out.vertex(nx, y, z), out.vertex(nx, y + 1, z), out.vertex(nx, y + 1, z + 1), out.vertex(nx, y, z + 1)});
     }
   }
   return out.shape;
