@@ -10,7 +10,6 @@
 #include <array>
 #include <cerrno>
 #include <filesystem>
-#include <system_error>
 #include <utility>
 
 namespace tactus::cli {
@@ -48,6 +47,7 @@ class SpawnActions {
 
   void read_nothing() { posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0); }
   void redirect(int stream, const Pipe& pipe) { posix_spawn_file_actions_adddup2(&actions_, pipe.writer(), stream); }
+  void work_in(const std::string& directory) { posix_spawn_file_actions_addchdir_np(&actions_, directory.c_str()); }
   const posix_spawn_file_actions_t* get() const { return &actions_; }
 
  private:
@@ -72,7 +72,7 @@ void drain(const Pipe& first, std::string& into_first, const Pipe& second, std::
 
 }  // namespace
 
-tl::expected<ChildResult, Failure> run_child(const std::vector<std::string>& arguments) {
+tl::expected<ChildResult, std::error_code> run_child(const std::vector<std::string>& arguments, const std::string& directory) {
   std::vector<char*> words;
   words.reserve(arguments.size() + 1);
   for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
@@ -82,13 +82,11 @@ tl::expected<ChildResult, Failure> run_child(const std::vector<std::string>& arg
   actions.read_nothing();
   actions.redirect(STDOUT_FILENO, out);
   actions.redirect(STDERR_FILENO, error);
+  if (!directory.empty()) actions.work_in(directory);
   pid_t child = 0;
   const int failed =
       !out.is_open() || !error.is_open() ? errno : posix_spawnp(&child, words[0], actions.get(), nullptr, words.data(), environ);
-  if (failed != 0) {
-    return refuse(arguments[0] + ": the program cannot be started: " + std::generic_category().message(failed),
-                  "Install it, or correct PATH.");
-  }
+  if (failed != 0) return tl::unexpected(std::error_code(failed, std::generic_category()));
   out.close_writer();
   error.close_writer();
   ChildResult result;

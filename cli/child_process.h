@@ -3,9 +3,9 @@
 #pragma once
 
 #include <string>
+#include <system_error>
+#include <tl/expected.hpp>
 #include <vector>
-
-#include "cli/messages.h"
 
 namespace tactus::cli {
 
@@ -16,8 +16,11 @@ struct ChildResult {
 };
 
 /// Run `arguments[0]`, looked up in PATH unless it holds a '/', without standard input, and wait for its end.
-/// May be called from several threads at once.   err  the program cannot be started
-tl::expected<ChildResult, Failure> run_child(const std::vector<std::string>& arguments);
+/// May be called from several threads at once.
+/// in   directory  where it runs; empty: here
+/// err  why the program cannot be started; no_such_file_or_directory: it is not there
+tl::expected<ChildResult, std::error_code> run_child(const std::vector<std::string>& arguments,
+                                                     const std::string& directory = {});
 
 /// The path of this program itself.
 std::string own_program();

@@ -7,8 +7,8 @@
 #include <map>
 
 #include "cli/report.h"
+#include "cli/stiffness_map.h"
 #include "codec/trace/trace_file.h"
-#include "sim/deformable/stiffness_map.h"
 #include "sim/simulation.h"
 
 namespace tactus::cli {
@@ -175,25 +175,6 @@ tl::expected<Scene, Failure> read_scene(const SimOptions& options) {
   return *scene;
 }
 
-/// Place at rest and local stiffness of every vertex of the surfaces (thesis figure 4.23).
-Outcome write_stiffness_map(const Scene& scene, const SimOptions& options) {
-  auto file =
-      OutputFile::create(options.stiffness_map, options.common.existing(), {options.scene, options.output, options.stream});
-  if (!file) return tl::unexpected(file.error());
-  const auto out = file->open();
-  if (!out) return tl::unexpected(out.error());
-  **out << "deformable,vertex,x_m,y_m,z_m,stiffness_N_per_m\n";
-  for (const SceneDeformable& object : scene.deformables) {
-    const auto map = stiffness_map(object);
-    if (!map) return refuse(options.scene, object.name, map.error());
-    for (std::size_t v = 0; v < map->stiffness.size(); ++v) {
-      const Vec3& at = map->surface.vertices[v];
-      **out << fmt::format("{},{},{},{},{},{}\n", object.name, v, at.x, at.y, at.z, map->stiffness[v]);
-    }
-  }
-  return file->keep();
-}
-
 void describe_deformables(const Simulation& simulation, Report& report) {
   if (simulation.deformables() == nullptr) return;
   for (const DeformableInfo& object : simulation.deformables()->info()) {
@@ -220,8 +201,12 @@ Outcome run(const SimOptions& options) {
     return refuse("--duration: shorter than a tick", "Give at least 1ms.");
   const auto scene = read_scene(options);
   if (!scene) return tl::unexpected(scene.error());
-  if (!options.stiffness_map.empty())
-    if (auto written = write_stiffness_map(*scene, options); !written) return written;
+  if (!options.stiffness_map.empty()) {
+    const auto drawn = write_stiffness_map(*scene, options.scene, options.stiffness_map, options.common.existing(),
+                                           {options.scene, options.output, options.stream});
+    if (!drawn) return tl::unexpected(drawn.error());
+    if (*drawn == Drawn::no) fmt::print(stderr, "note: {}\n", kNoGnuplot);
+  }
   SimulationOptions settings{.seed = options.seed,
                              .grip = options.grip,
                              .channel = {},
@@ -306,7 +291,9 @@ void setup_sim(CLI::App& app, Action& action) {
   command.add_option("--rate", options->rate, "Ticks from deformation to deformation, 1 to 1000 [the scene's]")
       ->check(CLI::Range(1, 1000))
       ->type_name("N");
-  command.add_option("--stiffness-map", options->stiffness_map, "Also write the local stiffness of deformable objects (CSV)")
+  command
+      .add_option("--stiffness-map", options->stiffness_map,
+                  "Also write the local stiffness of deformable objects (CSV, and a plot beside it)")
       ->type_name("FILE");
   command.add_flag("--codec", options->codec, "Close the loop through encoder, decoder and replica; so does every option below");
   command.add_option("--stream", options->stream, "Also write the packets")->type_name("FILE");

@@ -42,7 +42,8 @@ tl::expected<std::string, Failure> run_command(const std::vector<std::string>& w
   std::vector<std::string> arguments{own_program()};
   arguments.insert(arguments.end(), words.begin(), words.end());
   auto done = run_child(arguments);
-  if (!done) return tl::unexpected(done.error());
+  if (!done)
+    return refuse(arguments[0] + ": the program cannot be started: " + done.error().message(), "Check the installation.");
   if (done->status == 0) return std::move(done->out);
   while (!done->error.empty() && done->error.back() == '\n') done->error.pop_back();
   return refuse(as_typed(words) + "\n" + done->error, "");

@@ -2,15 +2,11 @@
 #include "cli/plot.h"
 
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <array>
-#include <cerrno>
 #include <cmath>
 #include <ostream>
-#include <system_error>
+
+#include "cli/child_process.h"
 
 namespace tactus::cli {
 namespace {
@@ -45,22 +41,6 @@ std::string script_of(const Plot& plot) {
   return out + plot.script;
 }
 
-/// Exit status of `gnuplot -c SCRIPT KIND` run in `directory`; errno when it could not be started.
-tl::expected<int, int> run_gnuplot(const std::string& directory, std::string script, std::string kind) {
-  std::string program = "gnuplot", option = "-c";
-  std::array<char*, 5> arguments{program.data(), option.data(), script.data(), kind.data(), nullptr};
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addchdir_np(&actions, directory.c_str());
-  pid_t child = 0;
-  const int failed = posix_spawnp(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0) return tl::unexpected(failed);
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128;
-}
-
 }  // namespace
 
 tl::expected<Drawn, Failure> draw(const Plot& plot, const std::string& directory, OutputFile::Existing existing) {
@@ -71,13 +51,13 @@ tl::expected<Drawn, Failure> draw(const Plot& plot, const std::string& directory
   **out << script_of(plot);
   if (const auto kept = file->keep(); !kept) return tl::unexpected(kept.error());
   for (const char* kind : {"svg", "png"}) {
-    const auto status = run_gnuplot(directory, plot.name + ".gp", kind);
-    if (!status && status.error() == ENOENT) return Drawn::no;
-    if (!status)
-      return refuse("gnuplot cannot be started: " + std::generic_category().message(status.error()), "Check the installation.");
-    if (*status != 0)
-      return refuse(fmt::format("{}: gnuplot ended with status {}", file->path(), *status),
-                    fmt::format("Run it by hand: cd {} && gnuplot -c {}.gp {}", directory, plot.name, kind));
+    const std::string script = plot.name + ".gp";
+    const auto done = run_child({"gnuplot", "-c", script, kind}, directory);
+    if (!done && done.error() == std::errc::no_such_file_or_directory) return Drawn::no;
+    if (!done) return refuse("gnuplot cannot be started: " + done.error().message(), "Check the installation.");
+    if (done->status != 0)
+      return refuse(fmt::format("{}: gnuplot ended with status {}: {}", file->path(), done->status, done->error),
+                    fmt::format("Run it by hand: cd {} && gnuplot -c {} {}", directory, script, kind));
   }
   return Drawn::yes;
 }

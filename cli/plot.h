@@ -29,7 +29,7 @@ enum class Drawn : bool { no, yes };
 
 /// Write DIR/NAME.gp, which holds script and data and can be run by itself, and let gnuplot make DIR/NAME.svg and DIR/NAME.png of it.
 /// out  Drawn::no: there is no gnuplot; the script is there all the same
-/// err  a file cannot be written; gnuplot refuses the script (its message goes to standard error)
+/// err  a file cannot be written; gnuplot refuses the script (its words are in the failure)
 tl::expected<Drawn, Failure> draw(const Plot& plot, const std::string& directory, OutputFile::Existing existing);
 
 /// What to tell when draw() said no.

@@ -2,14 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Run the command-line cases beside this file against a `tactus` program.
 
-  run.py PROGRAM [CASE...]   run all cases or those named
-  run.py --self-test         check that each kind of difference is found
+  run.py [--without PARTS] PROGRAM [CASE...]   run all cases or those named; PARTS that the program lacks: fem,surface
+  run.py --self-test                           check that each kind of difference is found
 
 A case is a folder NNN-name:
   cmd                          shell script (sh -eu), run in an empty folder; `tactus` is the program, $CASE the case's folder
   stdout.exact | stdout.glob   what must be printed; in a glob `*` stands for any text and nothing else is special
   stderr.exact | stderr.glob   the same for messages; without a file the stream must be empty
   exit                         exit status, 0 without the file
+  needs                        parts of the program without which there is nothing to see, one a line: the case is skipped
 """
 import os
 import pathlib
@@ -52,14 +53,23 @@ def run_case(program, case):
     return [d for d in differences if d]
 
 
-def run_cases(program, cases):
-    failed = 0
+def lacks(case, without):
+    needs = case / "needs"
+    return needs.is_file() and not without.isdisjoint(needs.read_text(encoding="utf-8").split())
+
+
+def run_cases(program, cases, without):
+    failed = skipped = 0
     for case in cases:
+        if lacks(case, without):
+            skipped += 1
+            print(f"skipped {case.name}")
+            continue
         differences = run_case(program, case)
         failed += bool(differences)
         print(f"{'FAILED' if differences else 'ok':7}{case.name}", *differences, sep="\n       " if differences else "")
-    print(f"{len(cases)} cases, {failed} failed")
-    return failed == 0 and len(cases) > 0
+    print(f"{len(cases)} cases, {failed} failed, {skipped} skipped")
+    return failed == 0 and len(cases) > skipped
 
 
 def self_test():
@@ -81,6 +91,9 @@ def self_test():
             if (run_case(program, case) == []) != passes:
                 print(f"self-test: {change}: expected to {'pass' if passes else 'fail'}")
                 wrong += 1
+            if number == 0:
+                (case / "needs").write_text("fem\nsurface\n", encoding="utf-8")
+                wrong += [lacks(case, set(parts)) for parts in ([], ["mesh"], ["fem"], ["mesh", "surface"])] != [False, False, True, True]
     print(f"self-test: {len(changes)} cases, {wrong} wrong")
     return wrong == 0
 
@@ -88,12 +101,16 @@ def self_test():
 def main(args):
     if args == ["--self-test"]:
         return 0 if self_test() else 1
+    without = set()
+    if args[:1] == ["--without"] and len(args) > 1:
+        without = set(args[1].split(","))
+        args = args[2:]
     if not args or args[0].startswith("-"):
         print(__doc__, file=sys.stderr)
         return 2
     here = pathlib.Path(__file__).resolve().parent
     cases = [here / name for name in args[1:]] or sorted(p.parent for p in here.glob("[0-9]*/cmd"))
-    return 0 if run_cases(pathlib.Path(args[0]), cases) else 1
+    return 0 if run_cases(pathlib.Path(args[0]), cases, without) else 1
 
 
 if __name__ == "__main__":

@@ -179,6 +179,34 @@ TEST(DeformableSimulation, TwoUsersAMembraneAndACubeInOneScene) {
   EXPECT_GT(simulation->frame().objects[0].pose.position.x, 0.1);
 }
 
+TEST(DeformableSimulation, StandsBesideABoxAndAOneDimensionalObject) {
+  Scene scene = shipped("push-1dof");
+  scene.deformables = shipped("membrane").deformables;
+  for (Vec3& v : scene.deformables[0].mesh.vertices) v.y += 0.5;
+  scene.msds = shipped("msd-1d").msds;
+  scene.msds[0].position.x = 0.13;  // behind the box's mid point
+  scene.msds[0].rate = 1;
+  auto simulation = Simulation::create(scene);
+  ASSERT_TRUE(simulation);
+  ASSERT_EQ(simulation->header().objects.size(), 2u);
+  EXPECT_EQ(simulation->header().objects[1].name, "surface");
+  auto place = [](double x, double z) {
+    std::vector<UserSample> samples(1);
+    samples[0].contact.device = {x, 0, z};
+    return samples;
+  };
+  ASSERT_TRUE(simulation->replay(place(-0.03, 0.02)));
+  ASSERT_TRUE(simulation->replay(place(-0.0195, 0.02)));
+  EXPECT_EQ(simulation->frame().users[0].contact.object, 0u) << "the box";
+  EXPECT_EQ(simulation->frame().objects[1].pose.position.x, 0.13);
+  ASSERT_TRUE(simulation->replay(place(-0.0195, 0.2)));
+  EXPECT_EQ(simulation->frame().users[0].contact.kind, ContactKind::none);
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(simulation->replay(place(0.132, 0.2)));
+  EXPECT_EQ(simulation->frame().users[0].contact.object, 1u);
+  EXPECT_GT(simulation->frame().objects[1].pose.position.x, 0.1301);
+  EXPECT_FALSE(simulation->frame().users[0].mesh_contact);
+}
+
 TEST(DeformableSimulation, GravityBendsWhatHangsAtItsCorners) {
   Scene scene = slab_scene(1, {0, 0, 0.5});
   scene.deformables[0].fixed = {0, 6, 42, 48, 49, 55, 91, 97};

@@ -171,34 +171,6 @@ TEST(MsdSimulation, TravelsThroughTheCodecAndAllocatesNothing) {
   EXPECT_GT(difference, 0) << "the client sees what was decoded";
 }
 
-TEST(MsdSimulation, StandsBesideABoxAndAMembrane) {
-  Scene scene = load_scene(find_scene("push-1dof").value()).value();
-  scene.deformables = load_scene(find_scene("membrane").value()).value().deformables;
-  for (Vec3& v : scene.deformables[0].mesh.vertices) v.y += 0.5;
-  scene.msds = shipped().msds;
-  scene.msds[0].position.x = 0.13;  // behind the box's mid point
-  scene.msds[0].rate = 1;
-  auto simulation = Simulation::create(scene);
-  ASSERT_TRUE(simulation);
-  ASSERT_EQ(simulation->header().objects.size(), 2u);
-  EXPECT_EQ(simulation->header().objects[1].name, "surface");
-  auto place = [](double x, double z) {
-    std::vector<UserSample> samples(1);
-    samples[0].contact.device = {x, 0, z};
-    return samples;
-  };
-  ASSERT_TRUE(simulation->replay(place(-0.03, 0.02)));
-  ASSERT_TRUE(simulation->replay(place(-0.0195, 0.02)));
-  EXPECT_EQ(simulation->frame().users[0].contact.object, 0u) << "the box";
-  EXPECT_EQ(simulation->frame().objects[1].pose.position.x, 0.13);
-  ASSERT_TRUE(simulation->replay(place(-0.0195, 0.2)));
-  EXPECT_EQ(simulation->frame().users[0].contact.kind, ContactKind::none);
-  for (int i = 0; i < 100; ++i) ASSERT_TRUE(simulation->replay(place(0.132, 0.2)));
-  EXPECT_EQ(simulation->frame().users[0].contact.object, 1u);
-  EXPECT_GT(simulation->frame().objects[1].pose.position.x, 0.1301);
-  EXPECT_FALSE(simulation->frame().users[0].mesh_contact);
-}
-
 TEST(MsdScene, KeysAndTheirErrors) {
   const std::string head = "name = \"t\"\nduration = 1.0\ngravity = [0, 0, 0]\n";
   const std::string body = head +

@@ -138,6 +138,21 @@ TEST(Scene, EveryPrefixOfAFileIsASceneOrAnError) {
   EXPECT_GT(refused, whole->text.size() / 2);
 }
 
+TEST(Scene, ASurfaceFileThatCannotBeReadSaysWhy) {
+  const auto scene = parse_scene(
+      "name = \"t\"\nduration = 1.0\ngravity = [0, 0, 0]\n[[object]]\nname = \"o\"\nmass = 1\nfriction = 0\nposition = [0, 0, "
+      "0]\n"
+      "surface = \"no-such.obj\"\n",
+      "t.toml");
+  ASSERT_FALSE(scene);
+  EXPECT_STREQ(scene.error().error.rule, "R-SCN-8");
+  EXPECT_EQ(scene.error().line, 9u);
+  const bool left_out = scene.error().error.code == Errc::unsupported;  // the component SURFACE
+  EXPECT_NE(scene.error().remedy.find(left_out ? "TACTUS_WITH_SURFACE=ON" : "R-SRF-1"), std::string::npos)
+      << scene.error().remedy;
+  EXPECT_NE(scene.error().remedy.find("no-such.obj"), std::string::npos);
+}
+
 TEST(Scene, EveryShippedSceneLoadsByItsName) {
   const auto first = find_scene("push-1dof");
   ASSERT_TRUE(first) << to_string(first.error());
