@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <string_view>
+#include <system_error>
 
 namespace tactus::cli {
 namespace {
@@ -160,10 +162,12 @@ std::string place_of_bit(std::uint64_t bit_offset) {
 }
 
 tl::unexpected<Failure> refuse(const std::string& file, const std::string& place, const Error& error) {
+  const int cause = error.rule == std::string_view("R-TRC-1") ? errno : 0;
   const auto* text = std::find_if(kRules.begin(), kRules.end(), [&](const RuleText& r) { return r.rule == error.rule; });
   const bool known = text != kRules.end();
-  return refuse(fmt::format("{}{}{}: {} ({}, {})", file, place.empty() ? "" : ", ", place,
-                            known ? text->broken : "breaks a rule of the specification", errc_name(error.code), error.rule),
+  return refuse(fmt::format("{}{}{}: {}{}{} ({}, {})", file, place.empty() ? "" : ", ", place,
+                            known ? text->broken : "breaks a rule of the specification", cause == 0 ? "" : ": ",
+                            cause == 0 ? "" : std::generic_category().message(cause), errc_name(error.code), error.rule),
                 known ? text->remedy : "");
 }
 

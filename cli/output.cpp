@@ -2,11 +2,16 @@
 #include "cli/output.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <array>
+#include <atomic>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <iterator>
+#include <mutex>
 #include <system_error>
 
 namespace tactus::cli {
@@ -18,7 +23,40 @@ tl::unexpected<Failure> refuse_io(const std::string& path, const std::string& wh
                 "Check that the path is right and that you may use it.");
 }
 
+// Read by a signal handler: lock-free, and each path outlives its entry. More files than entries are left behind, no more.
+std::array<std::atomic<const char*>, 16> unfinished;
+static_assert(std::atomic<const char*>::is_always_lock_free);
+
+extern "C" void remove_unfinished(int signal) {
+  for (const auto& file : unfinished)
+    if (const char* path = file.load()) unlink(path);
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+/// Not for signals that whoever started the program wants ignored.
+void catch_signals() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    if (std::signal(signal, remove_unfinished) == SIG_IGN) std::signal(signal, SIG_IGN);
+}
+
 }  // namespace
+
+RemovedOnSignal::RemovedOnSignal(std::string path) : path_(std::move(path)) {
+  static std::once_flag once;
+  std::call_once(once, catch_signals);
+  for (auto& entry : unfinished) {
+    const char* none = nullptr;
+    if (entry.compare_exchange_strong(none, path_.c_str())) return;
+  }
+}
+
+RemovedOnSignal::~RemovedOnSignal() {
+  for (auto& entry : unfinished) {
+    const char* own = path_.c_str();
+    if (entry.compare_exchange_strong(own, nullptr)) return;
+  }
+}
 
 Outcome OutputFile::check_free(const std::string& path, Existing existing, std::initializer_list<std::string> others) {
   std::error_code ignored;
@@ -37,11 +75,16 @@ tl::expected<OutputFile, Failure> OutputFile::create(const std::string& path, Ex
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
   const bool direct = path == "-" || (fs::exists(status) && !fs::is_regular_file(status));
-  return OutputFile(path, direct ? path : path + ".part");
+  OutputFile file(path, direct ? path : path + ".part");
+  if (!direct) file.unfinished_ = std::make_unique<RemovedOnSignal>(file.working_path_);
+  return file;
 }
 
 OutputFile::OutputFile(OutputFile&& other) noexcept
-    : path_(std::move(other.path_)), working_path_(std::move(other.working_path_)), stream_(std::move(other.stream_)) {
+    : path_(std::move(other.path_)),
+      working_path_(std::move(other.working_path_)),
+      unfinished_(std::move(other.unfinished_)),
+      stream_(std::move(other.stream_)) {
   other.path_.clear();
   other.working_path_.clear();
 }
@@ -62,6 +105,7 @@ Outcome OutputFile::keep() {
   if (error)
     return refuse(path_ + ": cannot be written: " + error.message(), "Check that the path is right and that you may use it.");
   working_path_ = path_;
+  unfinished_.reset();
   return {};
 }
 

@@ -12,6 +12,18 @@
 
 namespace tactus::cli {
 
+/// Removes a file when an interrupt, a hang-up or a request to end stops the program.
+class RemovedOnSignal {
+ public:
+  explicit RemovedOnSignal(std::string path);
+  ~RemovedOnSignal();
+  RemovedOnSignal(const RemovedOnSignal&) = delete;
+  RemovedOnSignal& operator=(const RemovedOnSignal&) = delete;
+
+ private:
+  const std::string path_;
+};
+
 /// Something to write to PATH: goes to PATH.part and takes the name PATH when keep() is called; otherwise it is removed. "-" is
 /// standard output; that and what is not a plain file (a pipe, a device) are written directly.
 class OutputFile {
@@ -37,7 +49,9 @@ class OutputFile {
   OutputFile(std::string path, std::string working_path) : path_(std::move(path)), working_path_(std::move(working_path)) {}
 
   std::string path_, working_path_;
-  std::unique_ptr<std::ofstream> stream_;  // stays where it is when the file is moved
+  // Both stay where they are when the file is moved.
+  std::unique_ptr<RemovedOnSignal> unfinished_;
+  std::unique_ptr<std::ofstream> stream_;
 };
 
 /// All bytes of a file, "-" is standard input.

@@ -19,7 +19,7 @@
 /// in between, ascending) and period (ticks); the scene is the attachment "scene.toml". Chunks end at whole ticks, after 1 MiB or 1 s.
 ///
 /// rule      class             broken when
-/// R-TRC-1   io                the operating system refuses to open, read or write the file
+/// R-TRC-1   io                the operating system refuses to open, read or write the file; errno tells why
 /// R-TRC-2   malformed         MCAP's magic bytes are not at the front, or not at the very end behind a footer
 /// R-TRC-3   truncated         the file ends before the header, the channels that its metadata announces, or any pose,
 ///                             or the first tick of a recording with meshes
