@@ -41,9 +41,13 @@ Scale scale_of(const StiffnessMap& map) {
 /// 1, 2 and 5 times the powers of ten in between, for gnuplot: automatic marks of a logarithmic scale stand at powers of ten only.
 std::string marks(const Span& span) {
   std::string list;
-  for (double power = std::pow(10, std::floor(std::log10(span.low))); power <= span.high; power *= 10)
-    for (const double mark : {power, 2 * power, 5 * power})
+  const int first = static_cast<int>(std::floor(std::log10(span.low))),
+            last = static_cast<int>(std::floor(std::log10(span.high)));
+  for (int exponent = first; exponent <= last; ++exponent)
+    for (const double digit : {1.0, 2.0, 5.0}) {
+      const double mark = digit * std::pow(10, exponent);
       if (mark >= span.low && mark <= span.high) list += fmt::format("{}{:g}", list.empty() ? "" : ", ", mark);
+    }
   return list;
 }
 
@@ -111,7 +115,7 @@ tl::expected<Drawn, Failure> write_stiffness_map(const Scene& scene, const std::
   if (auto kept = table->keep(); !kept) return tl::unexpected(kept.error());
   if (file == "-") return Drawn::yes;
   for (const Plot& plot : plots) {
-    const auto drawn = draw(plot, place.has_parent_path() ? place.parent_path().string() : ".", existing);
+    auto drawn = draw(plot, place.has_parent_path() ? place.parent_path().string() : ".", existing);
     if (!drawn || *drawn == Drawn::no) return drawn;
   }
   return Drawn::yes;
