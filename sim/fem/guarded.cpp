@@ -24,7 +24,7 @@ double shortest_edge(const TetMesh& mesh) {
 /// The tetrahedron with the edge that is stretched most.
 std::int64_t most_stretched(const TetMesh& mesh, const Eigen::VectorXd& u) {
   const auto moved = [&](std::uint32_t v) {
-    const auto at = static_cast<Eigen::Index>(3 * v);
+    const auto at = 3 * static_cast<Eigen::Index>(v);
     return mesh.vertices[v] + Vec3{u[at], u[at + 1], u[at + 2]};
   };
   double most = 0;

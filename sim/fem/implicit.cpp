@@ -61,7 +61,7 @@ tl::expected<StepReport, FemError> Implicit::second_order() {
   start_v_ = v_;
   if (!wild_) {
     stage_.c = stage_step(scheme_, h());
-    const auto done = scheme_ == Scheme::newmark ? trapezoidal(h()) : tr_bdf2();
+    auto done = scheme_ == Scheme::newmark ? trapezoidal(h()) : tr_bdf2();
     if (!done || !newton_.lost()) return done;
     report = *done;
     u_ = start_u_;
