@@ -37,7 +37,7 @@ void traffic_rows(Table& table, const MeshReport& mesh, double seconds) {
 void error_rows(Table& table, const MeshReport& mesh) {
   const MeshFidelity& f = *mesh.fidelity;
   const MeshThresholds& b = f.bounds();
-  table.heading({"error of " + mesh.name, "bound", "MSE", "max", "violations", "vertices"});
+  table.heading({"error of " + mesh.name, "bound", "MSE [mm2]", "max", "violations", "vertices"});
   const auto row = [&](const std::string& name, const std::string& bound, const VertexErrors& e) {
     table.row({name, bound, significant(1e6 * e.mse()), significant(1e3 * e.max, 5), fmt::to_string(e.violations),
                fmt::to_string(e.vertices)});
