@@ -84,13 +84,15 @@ Vec3 waypoint(PathFrame frame, const Vec3& to, const Pose& object, const Vec3& g
 }
 
 Spiral::Spiral(const Vec3& from, const Vec3& to, const Vec3& centre, double turns)
-    : centre_(centre), radius_(std::hypot(from.x - centre.x, from.y - centre.y)), height_(from.z) {
-  const double start = std::atan2(from.y - centre.y, from.x - centre.x), end = std::atan2(to.y - centre.y, to.x - centre.x);
+    : centre_(centre),
+      radius_(std::hypot(from.x - centre.x, from.y - centre.y)),
+      height_(from.z),
+      angle_(std::atan2(from.y - centre.y, from.x - centre.x)),
+      growth_(std::hypot(to.x - centre.x, to.y - centre.y) - radius_),
+      rise_(to.z - from.z) {
+  const double end = std::atan2(to.y - centre.y, to.x - centre.x);
   constexpr double kTurn = 2 * std::numbers::pi;
-  angle_ = start;
-  sweep_ = kTurn * turns + std::remainder(end - start, kTurn);
-  growth_ = std::hypot(to.x - centre.x, to.y - centre.y) - radius_;
-  rise_ = to.z - from.z;
+  sweep_ = kTurn * turns + std::remainder(end - angle_, kTurn);
 }
 
 Aim Spiral::at(double share) const noexcept {
