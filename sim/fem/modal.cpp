@@ -1,26 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/fem/modal.h"
 
-#include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "sim/fem/linear_solver.h"
-#include "sim/random.h"
 
 namespace tactus {
 namespace {
-
-constexpr Eigen::Index kDense = 300;  ///< problems this small are solved whole
-constexpr double kAccuracy = 1e-10;
-constexpr int kIterations = 300;
-
-Modes dense_modes(const SparseMatrix& K, const SparseMatrix& M, Eigen::Index count) {
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver{Eigen::MatrixXd(K), Eigen::MatrixXd(M)};
-  return {solver.eigenvalues().head(count).cwiseMax(0.0), solver.eigenvectors().leftCols(count)};
-}
 
 /// exp of the step's matrix, by scaling and squaring of its Taylor series; lambda and damping of any size, zero and critical too.
 Eigen::Matrix<double, 2, 3> exact_step(double lambda, double damping, double h) {
@@ -43,37 +31,9 @@ Eigen::Matrix<double, 2, 3> exact_step(double lambda, double damping, double h) 
 tl::expected<Modes, FemError> slowest_modes(FemModel& model, int count) {
   SparseMatrix K;
   model.stiffness(Eigen::VectorXd::Zero(model.size()), K);
-  const SparseMatrix& M = model.mass_matrix();
-  const Eigen::Index n = K.rows(), size = std::min<Eigen::Index>(n, std::max(2 * count, count + 8));
-  if (n <= kDense || 2 * size > n) return dense_modes(K, M, count);
-
-  const double fastest = model.largest_frequency(), shift = 1e-8 * fastest * fastest;
-  SystemMatrix matrix(model);
-  Cholesky cholesky;
-  cholesky.analyse(matrix.matrix());
-  if (!cholesky.factor(matrix.assemble(Eigen::VectorXd::Zero(model.size()), shift, 1)))
-    return tl::unexpected(not_positive_definite());
-
-  Random random(1);
-  Eigen::MatrixXd X(n, size), MX(n, size);
-  for (double& x : X.reshaped()) x = random.uniform(-1, 1);
-  Eigen::VectorXd column(n), before = Eigen::VectorXd::Zero(size), values(size);
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
-    for (Eigen::Index j = 0; j < size; ++j) {
-      column = M * X.col(j);
-      cholesky.solve(column, column);
-      X.col(j) = column;
-    }
-    MX.noalias() = M * X;
-    const Eigen::MatrixXd KX = K * X;
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz(X.transpose() * KX, X.transpose() * MX);
-    X = X * ritz.eigenvectors();
-    values = ritz.eigenvalues();
-    const auto change = ((values - before).head(count).array().abs() / (values.head(count).array().abs() + shift)).maxCoeff();
-    if (change < kAccuracy) break;
-    before = values;
-  }
-  return Modes{values.head(count).cwiseMax(0.0), X.leftCols(count)};
+  auto modes = slowest_modes<Cholesky>(K, model.mass_matrix(), count);
+  if (!modes) return tl::unexpected(not_positive_definite());
+  return *std::move(modes);
 }
 
 tl::expected<std::unique_ptr<Integrator>, FemError> Modal::create(FemModel& model, const IntegratorOptions& options) {

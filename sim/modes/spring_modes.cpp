@@ -1,22 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/modes/spring_modes.h"
 
-#include <Spectra/MatOp/SparseSymShiftSolve.h>
-#include <Spectra/SymEigsShiftSolver.h>
-#include <Eigen/Sparse>
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 
+#include "sim/slowest_modes.h"
+
 namespace tactus {
 namespace {
 
-using Matrix = Eigen::SparseMatrix<double>;
+using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-constexpr double kReach = 2.3;    // mean edges
-constexpr double kShift = -1e-3;  // below every eigenvalue: K itself may be singular
-constexpr int kMostRestarts = 1000;
+constexpr double kReach = 2.3;  // mean edges
+
+/// Eigen's factor, so that a basis needs no CHOLMOD.
+class Factor {
+ public:
+  void analyse(const Matrix& A) { solver_.analyzePattern(A); }
+  bool factor(const Matrix& A) {
+    solver_.factorize(A);
+    return solver_.info() == Eigen::Success;
+  }
+  void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) { x = solver_.solve(b); }
+
+ private:
+  Eigen::SimplicialLDLT<Matrix> solver_;
+};
 
 double mean_edge(const TriMesh& mesh) {
   double sum = 0;
@@ -97,20 +109,16 @@ Result<std::vector<double>> spring_modes(const TriMesh& rest, std::span<const st
   const auto count = static_cast<std::int32_t>(modes);
   if (count < 1 || count >= free) return fail(Errc::invalid_argument, "R-API-9");
 
-  const Matrix matrix = stiffness(rest, rows, free);
-  Spectra::SparseSymShiftSolve<double> operation(matrix);
-  Spectra::SymEigsShiftSolver<Spectra::SparseSymShiftSolve<double>> solver(operation, count, std::min(free, 2 * count + 8),
-                                                                           kShift);
-  solver.init();
-  solver.compute(Spectra::SortRule::LargestMagn, kMostRestarts, 1e-8, Spectra::SortRule::SmallestAlge);
-  if (solver.info() != Spectra::CompInfo::Successful) return fail(Errc::internal, "R-SIM-5");
+  Matrix masses(free, free);
+  masses.setIdentity();
+  const auto found = slowest_modes<Factor>(stiffness(rest, rows, free), masses, count);
+  if (!found) return fail(Errc::internal, "R-SIM-5");
 
-  const Eigen::MatrixXd shapes = solver.eigenvectors();
   std::vector<double> out;
   out.reserve(modes * 3 * rest.vertices.size());
   for (std::int32_t k = 0; k < count; ++k)
     for (const std::int32_t row : rows)
-      for (std::int32_t i = 0; i < 3; ++i) out.push_back(row == kFixed ? 0.0 : shapes(row + i, k));
+      for (std::int32_t i = 0; i < 3; ++i) out.push_back(row == kFixed ? 0.0 : found->shapes(row + i, k));
   return out;
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Linear algebra under the integrators: the Cholesky factor, conjugate gradients, the modes.
+// Linear algebra under the integrators: the Cholesky factor, conjugate gradients; modal reduction in time.
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <numbers>
 
@@ -16,7 +16,6 @@
 namespace tactus {
 namespace {
 
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 VectorXd random_vector(Eigen::Index size) {
@@ -92,39 +91,6 @@ TEST(ConjugateGradients, MeetTheirToleranceAndStartWarm) {
     x *= 1e6;
     EXPECT_LE(gradients.solve(A, b, x), cold) << "a start worse than zero is dropped";
   }
-}
-
-MatrixXd dense_eigenvalues(FemModel& model) {
-  SparseMatrix K;
-  model.stiffness(VectorXd::Zero(model.size()), K);
-  return Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd>(MatrixXd(K), MatrixXd(model.mass_matrix()), Eigen::EigenvaluesOnly)
-      .eigenvalues();
-}
-
-TEST(Modes, FrequenciesOfABeamAreThoseOfADenseSolve) {
-  for (const MassMatrix mass : {MassMatrix::lumped, MassMatrix::consistent}) {
-    FemOptions options;
-    options.materials = {{1e5, 0.3, 1000}};
-    options.mass = mass;
-    TetMesh mesh = make_slab(20, 2, 2, 0.01);
-    for (std::uint32_t i = 0; i < mesh.vertices.size(); ++i)
-      if (mesh.vertices[i].x == 0) options.fixed.push_back(i);
-    FemModel model = testing::make_model(std::move(mesh), options);
-    const VectorXd expected = dense_eigenvalues(model);
-    const Modes modes = slowest_modes(model, 10).value();
-    ASSERT_EQ(modes.squares.size(), 10);
-    for (int i = 0; i < 10; ++i) EXPECT_NEAR(modes.squares[i] / expected[i], 1, 1e-8) << "mode " << i;
-    const MatrixXd unity = modes.shapes.transpose() * (model.mass_matrix() * modes.shapes);
-    EXPECT_LT((unity - MatrixXd::Identity(10, 10)).cwiseAbs().maxCoeff(), 1e-9);
-  }
-}
-
-TEST(Modes, AFreeBodyHasSixWithoutFrequency) {
-  FemModel model = free_slab(12, 4, 1);
-  const VectorXd expected = dense_eigenvalues(model);
-  const Modes modes = slowest_modes(model, 9).value();
-  for (int i = 0; i < 6; ++i) EXPECT_LT(modes.squares[i], 1e-8 * expected[6]) << i;
-  for (int i = 6; i < 9; ++i) EXPECT_NEAR(modes.squares[i] / expected[i], 1, 1e-8) << i;
 }
 
 /// A cantilever of few vertices, all modes counted.

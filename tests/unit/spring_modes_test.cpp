@@ -38,7 +38,7 @@ TEST(SpringModes, AreOrthonormalAndRestWhereFixed) {
   ASSERT_EQ(modes->size(), 10 * size);
   const auto mode = [&](std::size_t k) { return std::span(*modes).subspan(k * size, size); };
   for (std::size_t a = 0; a < 10; ++a) {
-    for (std::size_t b = 0; b <= a; ++b) EXPECT_NEAR(product(mode(a), mode(b)), a == b ? 1 : 0, 1e-9) << a << " " << b;
+    for (std::size_t b = 0; b <= a; ++b) EXPECT_NEAR(product(mode(a), mode(b)), a == b ? 1 : 0, 1e-12) << a << " " << b;
     for (const std::uint32_t v : fixed)
       for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_EQ(mode(a)[3 * v + axis], 0);
   }
