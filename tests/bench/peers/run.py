@@ -5,8 +5,8 @@
     cmake --preset release && cmake --build --preset release --target peers_bench tactus
     tests/bench/peers/run.py build/release [--csv FILE] [INPUT...]
 
-Without INPUT (a .mcap trace, or a .md3 model as FILE or FILE:SURFACE): a membrane recording made on the spot, and the animated torso
-of Debian's package openarena-data if it is installed or --openarena names its unpacked folder.
+Without INPUT (a .mcap trace, or a .md3 model as FILE or FILE:SURFACE): a membrane recording made on the spot, and four animated torsos
+and legs of Debian's package openarena-data if it is installed or --openarena names its unpacked folder.
 """
 import argparse
 import pathlib
@@ -16,18 +16,25 @@ import tempfile
 import zipfile
 
 ARCHIVE = pathlib.Path("usr/share/games/openarena/baseoa/pak0.pk3")
-TORSO = "models/players/sorceress/upper.md3"
-SURFACE = "u_torso"
+PLAYERS = "sorceress", "sarge"
+PARTS = ("upper", "u_torso"), ("lower", "l_legs")
 
 
-def torso(root, folder):
-    """The model, taken out of the game's archive, or None with a word on how to get it."""
+def models(root, folder):
+    """The models, taken out of the game's archive, or nothing and a word on how to get them."""
     archive = root / ARCHIVE
     if not archive.exists():
-        print(f"no torso: {archive} is not there (apt-get install openarena-data, or --openarena FOLDER)", file=sys.stderr)
-        return None
+        print(f"no animated models: {archive} is not there (apt-get install openarena-data, or --openarena FOLDER)", file=sys.stderr)
+        return []
+    found = []
     with zipfile.ZipFile(archive) as pk3:
-        return f"{pk3.extract(TORSO, folder)}:{SURFACE}"
+        for player in PLAYERS:
+            for part, surface in PARTS:
+                file = pathlib.Path(folder) / f"{player}-{part}.md3"
+                file.write_bytes(pk3.read(f"models/players/{player}/{part}.md3"))
+                found.append(f"{file}:{surface}")
+    return found
+
 
 
 def main():
@@ -43,7 +50,7 @@ def main():
         if not inputs:
             trace = str(pathlib.Path(folder) / "membrane.mcap")
             subprocess.run([args.build / "cli/tactus", "sim", "membrane", "--seed", "1", "-o", trace, "-q"], check=True)
-            inputs = [name for name in (trace, torso(args.openarena, folder)) if name]
+            inputs = [trace, *models(args.openarena, folder)]
         command = [args.build / "tests/bench/peers/peers_bench", "--frames", args.frames]
         if args.csv:
             command += ["--csv", args.csv]
