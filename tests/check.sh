@@ -38,23 +38,41 @@ check_headers() { # INCLUDE_DIR
   done
 }
 
+# A program of each component that was built, given nothing but the installed files.
 consumer() { # BUILD_DIR
   scratch=$1/consumer
+  prefix=$scratch/prefix
+  scenes=$prefix/share/tactus/scenes
   rm -rf "$scratch"
-  cmake --install "$1" --prefix "$scratch/prefix" >/dev/null
-  check_headers "$scratch/prefix/include/tactus"
-  cmake -S tests/consumer/installed -B "$scratch/installed" -DCMAKE_PREFIX_PATH="$scratch/prefix"
-  cmake --build "$scratch/installed"
-  "$scratch/installed/consumer"
+  cmake --install "$1" --prefix "$prefix" >/dev/null
+  check_headers "$prefix/include/tactus"
+  for component in codec modes surface fem sim; do
+    installed "$component" || continue
+    cmake -S tests/consumer/installed -B "$scratch/$component" -DCOMPONENT="$component" -DCMAKE_PREFIX_PATH="$prefix"
+    cmake --build "$scratch/$component"
+    set --
+    case $component in
+      surface) set -- "$scratch/corner.obj" ;;
+      sim)
+        set -- "$scenes/push-1dof.toml"
+        if installed fem && installed surface; then set -- "$@" "$scenes/bracket-and-pad.toml"; fi
+        ;;
+    esac
+    "$scratch/$component/consumer" "$@"
+  done
   cmake -S tests/consumer/subproject -B "$scratch/subproject" -DTACTUS_SOURCE="$PWD"
   cmake --build "$scratch/subproject"
   "$scratch/subproject/consumer"
 }
 
+installed() { # COMPONENT
+  [ -n "$(find "$prefix" -path "*/cmake/tactus/$1.cmake")" ]
+}
+
 codec_only() {
   build codec-only
   consumer "$PWD/build/codec-only"
-  needed=$(readelf -d build/codec-only/consumer/installed/consumer | sed -n 's/.*NEEDED.*\[\(.*\)\]/\1/p' | sort | tr '\n' ' ')
+  needed=$(readelf -d build/codec-only/consumer/codec/consumer | sed -n 's/.*NEEDED.*\[\(.*\)\]/\1/p' | sort | tr '\n' ' ')
   echo "run-time libraries: $needed"
   for library in $needed; do
     case $library in

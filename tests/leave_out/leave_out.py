@@ -4,7 +4,7 @@
 
   leave_out.py RIGID_SCENE SOURCE_DIR BUILD_DIR [CMAKE_ARGUMENT...]
 
-RIGID_SCENE was built with the component FEM. It is built again in BUILD_DIR without, and both must
+RIGID_SCENE was built with the component FEM and the CMAKE_ARGUMENTs. It is built again in BUILD_DIR without FEM, and both must
   - yield the same hash for rigid scenes and need the same number of instructions for them, within 0.1 % (callgrind);
 the one without must load no library that the other does not, hold no symbol of the finite elements and not load their solver
 (the other must, or nothing was compared), and refuse a membrane.
