@@ -201,6 +201,14 @@ std::string describe(const FemError& error) {
 
 FemOutcome refused(const FemError& error) { return {.verdict = Verdict::diverges, .refused = true, .error = describe(error)}; }
 
+Eigen::VectorXd weight_of(const FemModel& model, double gravity) {
+  Eigen::VectorXd out = Eigen::VectorXd::Zero(model.size());
+  for (Eigen::Index z = 2; z < out.size(); z += 3) out[z] = -gravity * model.lumped_mass()[z];
+  return out;
+}
+
+double largest(const Eigen::VectorXd& u) { return u.size() > 0 ? u.cwiseAbs().maxCoeff() : 0; }
+
 }  // namespace
 
 FemCase shaken_slab(Extent extent, const Material& material, double amplitude) {
@@ -231,15 +239,16 @@ FemOutcome run(const FemCase& fem_case, Method method) {
     state.u[dof] = fem_case.start.u[dof];
     state.v[dof] = fem_case.start.v[dof];
   }
-  const Eigen::VectorXd no_force = Eigen::VectorXd::Zero(model->size());
+  const Eigen::VectorXd weight = weight_of(*model, fem_case.gravity);
   const double least = kRounding * fem_case.options.materials[0].young * size_of(fem_case.mesh);
   const double before = std::max(least, energy(*model, state));
   FemOutcome out;
-  FemState kept = state;
+  FemState kept = state, halfway = state;
   for (; out.steps < fem_case.steps; ++out.steps) {
     kept.u = state.u;
     kept.v = state.v;
-    if (const auto step = (*integrator)->step(no_force, state); !step) {
+    if (out.steps == fem_case.steps / 2) halfway.u = state.u;
+    if (const auto step = (*integrator)->step(weight, state); !step) {
       out.verdict = Verdict::diverges;
       out.error = describe(step.error());
       out.kept_state = (state.u.array() == kept.u.array()).all() && (state.v.array() == kept.v.array()).all();
@@ -250,7 +259,8 @@ FemOutcome run(const FemCase& fem_case, Method method) {
   const double after = energy(*model, state);
   out.energy = after / before;
   out.inverted = inverted(fem_case.mesh, state.u);
-  out.farthest = state.u.size() > 0 ? state.u.cwiseAbs().maxCoeff() : 0;
+  out.farthest = largest(state.u);
+  out.drift = largest(state.u - halfway.u);
   out.verdict = !(after <= kGrown * before) ? Verdict::diverges : out.inverted > 0 ? Verdict::limit : Verdict::stable;
   return out;
 }

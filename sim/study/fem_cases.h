@@ -15,9 +15,10 @@ struct FemCase {
   std::string name;
   TetMesh mesh;
   FemOptions options;
-  FemState start;  ///< of every vertex
-  double step = 1e-3;
+  FemState start;      ///< of every vertex
+  double step = 1e-3;  ///< [s]
   std::int64_t steps = 1000;
+  double gravity = 0;  ///< [m/s^2] along -z
 };
 
 struct FemOutcome {
@@ -30,9 +31,10 @@ struct FemOutcome {
   std::size_t not_finite = 0;  ///< states with NaN or infinity that left a step
   bool kept_state = true;      ///< after an error the state is that before the step, bit by bit
   double farthest = 0;         ///< [m] largest displacement at the end
+  double drift = 0;            ///< [m] largest change of a displacement over the second half of the steps
 };
 
-/// Run a case without forces.
+/// Run a case without forces but its weight.
 ///   stable    it went through all steps, energy did not grow, nothing is inside out
 ///   limit     the same, but tetrahedra stay inside out
 ///   diverges  an error, or energy is more than ten times what it was (that of symplectic Euler swings below its limit)
