@@ -75,7 +75,8 @@ void show(StreamPlayer& player, std::size_t mesh, std::int64_t tick, MeshSample&
 }
 
 void count(const StreamPlayer::Played& played, Report& report) {
-  if (played.part > 0) report.meshes[played.part - 1].traffic->add(played.bytes, played.mesh.updates, played.mesh.key);
+  if (played.part > 0)
+    report.meshes[played.part - 1].traffic->add(played.bytes, played.mesh.updates, played.mesh.key, played.mesh.half);
   else if (report.traffic)
     report.traffic->add(strongest_reason(played.packet), played.packet.updates.size(), played.bytes, played.packet.key);
 }

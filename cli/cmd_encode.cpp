@@ -77,12 +77,14 @@ Result<void> encode_frame(Session& s, const TraceFrame& frame, Report& report) {
   if (s.rigid) TACTUS_CHECK(encode_rigid(s, frame, report));
   for (std::size_t i = 0; i < s.meshes.size(); ++i) {
     if (!frame.meshes[i].updated) continue;
-    TACTUS_TRY(const EncodedMeshPacket packet, transmit(s.meshes[i], frame, i, report.meshes[i]));
+    TACTUS_TRY(const MeshPackets packets, transmit(s.meshes[i], frame, i, report.meshes[i]));
     ++report.meshes[i].traffic->frames;
-    if (packet.bytes.empty()) continue;
-    const auto bytes = s.parts.join(i + 1, packet.bytes);
-    TACTUS_CHECK(s.writer.add(frame.tick, bytes, packet.key));
-    report.meshes[i].traffic->add(bytes.size(), packet.updates, packet.key);
+    for (const EncodedMeshPacket& packet : packets) {
+      if (packet.bytes.empty()) continue;
+      const auto bytes = s.parts.join(i + 1, packet.bytes);
+      TACTUS_CHECK(s.writer.add(frame.tick, bytes, packet.key));
+      report.meshes[i].traffic->add(bytes.size(), packet.updates, packet.key, packet.half);
+    }
   }
   ++report.ticks;
   return {};

@@ -30,6 +30,8 @@ struct InfoOptions {
 
 constexpr std::array<const char*, 4> kReasons{"request", "heartbeat", "visual", "haptic"};  // index: Reason
 
+constexpr std::array<const char*, 3> kHalves{"haptic", "visual", "-"};  // index: MeshHalf
+
 std::string dof_text(std::uint8_t dof) {
   if (dof == Dof::none) return "static";
   if (dof == Dof::all) return "all";
@@ -97,7 +99,8 @@ Json packet_json(const StreamPlayer::Played& played, const StreamHeader& header)
            {"bytes", played.bytes},
            {"key", played.key() ? "key" : "-"}};
   if (!header.meshes.empty()) out["part"] = name_of_part(header, played.part);
-  out["reason"] = is_rigid ? kReasons[static_cast<std::size_t>(strongest_reason(played.packet))] : "-";
+  out["reason"] = is_rigid ? kReasons[static_cast<std::size_t>(strongest_reason(played.packet))]
+                           : kHalves[static_cast<std::size_t>(played.mesh.half)];
   std::string updates = is_rigid ? "" : fmt::format("{} vertices", played.mesh.updates);
   for (const RigidUpdate& u : played.packet.updates)
     updates += fmt::format("{}{}:{}", updates.empty() ? "" : " ", u.object, u.level);
@@ -134,7 +137,7 @@ struct StreamTotals {
 
   void add(const StreamPlayer::Played& p) {
     last_tick = p.tick();
-    if (p.part > 0) return meshes[p.part - 1].add(p.bytes, p.mesh.updates, p.mesh.key);
+    if (p.part > 0) return meshes[p.part - 1].add(p.bytes, p.mesh.updates, p.mesh.key, p.mesh.half);
     traffic.add(strongest_reason(p.packet), p.packet.updates.size(), p.bytes, p.packet.key);
     for (const RigidUpdate& u : p.packet.updates) ++levels[u.level % levels.size()];
     rigid.add(p.bytes);
@@ -163,7 +166,8 @@ struct StreamTotals {
 Json mesh_json(const MeshObject& mesh, const StreamHeader& header, const MeshTraffic& t) {
   const bool is_main = mesh.profile == MeshProfile::main;
   return {{"mesh", mesh.name},
-          {"profile", is_main ? "main" : fmt::format("thesis, q {}{}", mesh.quant_bits, mesh.models_kept ? ", models kept" : "")},
+          {"profile", is_main ? mesh.split ? "main, split" : "main"
+                              : fmt::format("thesis, q {}{}", mesh.quant_bits, mesh.models_kept ? ", models kept" : "")},
           {"vertices", mesh.rest.size()},
           {"triangles", mesh.triangles.size()},
           {"rings", mesh.rings},

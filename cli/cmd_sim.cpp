@@ -83,11 +83,13 @@ Outcome record_meshes(Run& run, const SimOptions& options, Report& report) {
     MeshTraffic& traffic = *report.meshes[i].traffic;
     ++traffic.frames;
     report.meshes[i].fidelity->add(frame.meshes[i].displacements, sent.shown, touch_of(frame, i));
-    if (sent.bytes.empty()) continue;
-    traffic.add(sent.bytes.size() + run.part_bytes, sent.updates, sent.key);
-    if (!run.stream) continue;
-    const auto added = run.stream->writer.add(frame.tick, run.stream->parts.join(i + 1, sent.bytes), sent.key);
-    if (!added) return refuse(options.stream, added.error());
+    for (const EncodedMeshPacket& packet : sent.packets) {
+      if (packet.bytes.empty()) continue;
+      traffic.add(packet.bytes.size() + run.part_bytes, packet.updates, packet.key, packet.half);
+      if (!run.stream) continue;
+      const auto added = run.stream->writer.add(frame.tick, run.stream->parts.join(i + 1, packet.bytes), packet.key);
+      if (!added) return refuse(options.stream, added.error());
+    }
   }
   return {};
 }

@@ -14,8 +14,21 @@ double packets_of(const MeshTraffic& t) { return static_cast<double>(t.sizes.siz
 double bytes_of(const MeshTraffic& t, std::uint64_t header) {
   return static_cast<double>(t.bytes) + packets_of(t) * static_cast<double>(header);
 }
+constexpr std::array<const char*, 2> kHalves{"haptic", "visual"};  // index: MeshHalf
+
+bool has_halves(const MeshTraffic& t) { return t.halves[0].packets + t.halves[1].packets > 0; }
+
 /// Every frame as three floats per vertex.
 double raw_bytes(const MeshReport& mesh) { return 12.0 * static_cast<double>(mesh.vertices * mesh.traffic->frames); }
+
+void half_rows(Table& table, const MeshTraffic& t, double seconds) {
+  for (std::size_t i = 0; i < kHalves.size(); ++i) {
+    const auto packets = static_cast<double>(t.halves[i].packets), bytes = static_cast<double>(t.halves[i].bytes);
+    table.row({fmt::format("  {} packets per second", kHalves[i]), fmt::format("{:.2f}", per(packets, seconds))});
+    table.row({fmt::format("  {} kbit/s", kHalves[i]), fmt::format("{:.2f}", 8e-3 * per(bytes, seconds)),
+               fmt::format("{:.2f}", 8e-3 * per(bytes + packets * static_cast<double>(kUdpHeader), seconds))});
+  }
+}
 
 void traffic_rows(Table& table, const MeshReport& mesh, double seconds) {
   const MeshTraffic& t = *mesh.traffic;
@@ -31,6 +44,7 @@ void traffic_rows(Table& table, const MeshReport& mesh, double seconds) {
   table.row({"  bytes per packet, max", fmt::to_string(t.quantile(1))});
   if (t.frames > 0) table.row({"  frames per second", fmt::format("{:.2f}", per(static_cast<double>(t.frames), seconds))});
   table.row({"  packets per second", fmt::format("{:.2f}", per(packets_of(t), seconds))});
+  if (has_halves(t)) half_rows(table, t, seconds);
   table.row({"  vertices coded per packet", fmt::format("{:.1f}", per(static_cast<double>(t.updates), packets_of(t)))});
 }
 
@@ -59,16 +73,20 @@ Json rates_json(double bytes, const MeshReport& mesh, double seconds) {
 
 Json traffic_json(const MeshReport& mesh, double seconds) {
   const MeshTraffic& t = *mesh.traffic;
-  return {{"frames", t.frames},
-          {"packets", t.sizes.size()},
-          {"packets_per_s", per(packets_of(t), seconds)},
-          {"key_packets", t.keys},
-          {"vertices_coded", t.updates},
-          {"bytes", t.bytes},
-          {"p99_bytes", t.quantile(0.99)},
-          {"max_bytes", t.quantile(1)},
-          {"payload", rates_json(bytes_of(t, 0), mesh, seconds)},
-          {"with_udp_ipv4", rates_json(bytes_of(t, kUdpHeader), mesh, seconds)}};
+  Json out{{"frames", t.frames},
+           {"packets", t.sizes.size()},
+           {"packets_per_s", per(packets_of(t), seconds)},
+           {"key_packets", t.keys},
+           {"vertices_coded", t.updates},
+           {"bytes", t.bytes},
+           {"p99_bytes", t.quantile(0.99)},
+           {"max_bytes", t.quantile(1)},
+           {"payload", rates_json(bytes_of(t, 0), mesh, seconds)},
+           {"with_udp_ipv4", rates_json(bytes_of(t, kUdpHeader), mesh, seconds)}};
+  if (!has_halves(t)) return out;
+  for (std::size_t i = 0; i < kHalves.size(); ++i)
+    out["halves"][kHalves[i]] = {{"packets", t.halves[i].packets}, {"bytes", t.halves[i].bytes}};
+  return out;
 }
 
 Json errors_json(const VertexErrors& e) {
@@ -81,16 +99,16 @@ Json times_json(const StepTimes& t) {
 
 }  // namespace
 
-Result<EncodedMeshPacket> transmit(MeshLink& link, const TraceFrame& frame, std::size_t index, MeshReport& report) {
+Result<MeshPackets> transmit(MeshLink& link, const TraceFrame& frame, std::size_t index, MeshReport& report) {
   const auto touch = touch_of(frame, index);
   const MeshSample& mesh = frame.meshes[index];
-  TACTUS_TRY(const EncodedMeshPacket packet,
+  TACTUS_TRY(const MeshPackets packets,
              report.encode.measure([&] { return link.encode(frame.tick, mesh.displacements, touch); }));
-  if (!packet.bytes.empty()) {
-    TACTUS_CHECK(report.decode.measure([&] { return link.decode(packet.bytes); }));
+  for (const EncodedMeshPacket& packet : packets) {
+    if (!packet.bytes.empty()) TACTUS_CHECK(report.decode.measure([&] { return link.decode(packet.bytes); }));
   }
   report.fidelity->add(mesh.displacements, link.shown(frame.tick), touch);
-  return packet;
+  return packets;
 }
 
 void mesh_rows(Table& table, const MeshReport& mesh, double seconds) {

@@ -24,8 +24,8 @@ struct MeshReport {
 
 /// Send one shape through the link and measure.
 /// in   frame  whose mesh `index` is new
-/// out  the packet, without bytes if none was needed; valid until the link's next call.   err  of encoder or decoder
-Result<EncodedMeshPacket> transmit(MeshLink& link, const TraceFrame& frame, std::size_t index, MeshReport& report);
+/// out  the packets, valid until the link's next encode().   err  of encoder or decoder
+Result<MeshPackets> transmit(MeshLink& link, const TraceFrame& frame, std::size_t index, MeshReport& report);
 
 void mesh_rows(Table& table, const MeshReport& mesh, double seconds);
 nlohmann::ordered_json mesh_json(const MeshReport& mesh, double seconds);

@@ -115,7 +115,8 @@ void MeshArguments::add_encoder_to(CLI::App& app) {
        app.add_option("--quant-bits", coding_.quant_bits, "thesis: bits of its quantiser, 1 to 12 [8]")
            ->check(CLI::Range(1u, MeshObject::kMaxQuantBits).description(""))
            ->type_name("Q"),
-       app.add_flag("--keep-models", coding_.models_kept, "thesis: entropy models live on from packet to packet")});
+       app.add_flag("--keep-models", coding_.models_kept, "thesis: entropy models live on from packet to packet"),
+       app.add_flag("--split", coding_.split, "Two packets where both are needed: what is felt, then the rest")});
 }
 
 bool MeshArguments::any_given() const {
@@ -129,7 +130,7 @@ MeshThresholds MeshArguments::thresholds(const TriggerArguments& triggers) const
 }
 
 MeshEncoderOptions MeshArguments::encoder(const TriggerArguments& triggers) const {
-  return {thresholds(triggers), triggers.key_interval(), visual_share_, haptic_share_};
+  return {thresholds(triggers), triggers.key_interval(), visual_share_, haptic_share_, coding_.split};
 }
 
 MeshCoding MeshArguments::coding() const {

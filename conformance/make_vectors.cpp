@@ -25,6 +25,7 @@ int main(int argc, char** argv) {
   catalogue.begin("mesh");
   add_mesh_header(catalogue);
   add_mesh_main(catalogue);
+  add_mesh_split(catalogue);
   add_mesh_thesis(catalogue);
   add_mesh_parts(catalogue);
   add_mesh_rules(catalogue);

@@ -26,6 +26,7 @@ class Mesh:
     quant_bits: int = 0                                     # thesis
     models_kept: int = 0                                    # thesis
     frame_period: int = 0                                   # main
+    split: int = 0                                          # main
     rest: list[tuple] = field(default_factory=list)
     triangles: list[tuple] = field(default_factory=list)
     modes: list[Mode] = field(default_factory=list)         # main
@@ -44,15 +45,17 @@ def read_mesh(body: Cursor, most_vertices: int) -> Mesh:
     require(profile in (THESIS, MAIN), "unsupported", "R-MES-2")
     name_bytes = body.take(body.take(1, STR_5)[0], STR_5)
     rings = body.take(1, STR_5)[0]
-    quant_bits = models_kept = frame_period = 0
+    quant_bits = models_kept = frame_period = split = 0
     if profile == THESIS:
         quant_bits, models_kept = body.take(2, STR_5)
         require(models_kept <= 1, "malformed", "R-MES-3")
     else:
         frame_period = struct.unpack("<I", body.take(4, STR_5))[0]
+        split = body.take(1, STR_5)[0]
+        require(split <= 1, "malformed", "R-MES-3")
     vertex_count = body.varint(STR_5, STR_5_VARINT)
     triangle_count = body.varint(STR_5, STR_5_VARINT)
-    mesh = Mesh(profile, "", rings, quant_bits, models_kept, frame_period)
+    mesh = Mesh(profile, "", rings, quant_bits, models_kept, frame_period, split)
     check_numbers(mesh)
     require(1 <= vertex_count <= MOST_VERTICES and triangle_count <= MOST_TRIANGLES, "invalid", "R-MES-4")
     require(vertex_count <= most_vertices, "limit_exceeded", "R-STR-14")

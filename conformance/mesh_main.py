@@ -14,6 +14,7 @@ from range_decoder import RangeDecoder
 from start_models import Models
 
 NONE = (1 << 32) - 1
+WHOLE, HAPTIC, VISUAL = "whole", "haptic", "visual"          # what of the shape a packet codes
 FINEST_HAPTIC = (32768, 36781, 41285, 46341, 52016, 58386)  # M
 
 
@@ -26,6 +27,8 @@ class MainState(NamedTuple):
     visual: int = 0
     density: int = 0
     touched: int = 0
+    motion_tick: int = 0
+    split: int = 0
 
     def hashed(self) -> bytes:
         """Section 3: what the state hash is taken of."""
@@ -33,7 +36,16 @@ class MainState(NamedTuple):
                            self.density + 4 * self.touched)
         for c in self.motion:
             data += struct.pack("<2i5Q", c.last, c.before, *(s % (1 << 64) for s in c[2:]))
-        return data
+        return data + (struct.pack("<Q", self.motion_tick) if self.split else b"")
+
+
+class Place(NamedTuple):
+    """The elements up to `late`."""
+    key: int
+    half: str
+    completes: int
+    base: MainState
+    tick: int
 
 
 def klass(number: int) -> int:
@@ -66,51 +78,74 @@ class MainCodec:
         self.mesh = mesh
         self.hierarchy = Hierarchy(mesh)
         self.triangles_of = triangles_of_vertices(mesh)
-        self.initial = MainState(0, [0] * (3 * len(mesh.rest)), [Motion()] * len(mesh.modes))
+        self.initial = MainState(0, [0] * (3 * len(mesh.rest)), [Motion()] * len(mesh.modes), split=mesh.split)
 
     def decode(self, payload: bytes, receiver: Receiver, sequence: int) -> tuple[MainState, int, list[int], RangeDecoder]:
         decoder, models = RangeDecoder(payload), Models("mesh-start-models.csv")
-        key, base, tick = self.read_place(decoder, models, receiver, sequence)
-        state = self.read_head(decoder, models, base)._replace(tick=tick)
-        coefficients = self.read_coefficients(decoder, models)
+        place = self.read_place(decoder, models, receiver, sequence)
+        base, tick = place.base, place.tick
+        state = self.read_head(decoder, models, place)._replace(tick=tick)
+        coefficients = self.read_coefficients(decoder, models) if place.half != HAPTIC else [0] * len(self.mesh.modes)
 
         steps = [clamp((mode.step * state.visual) >> 12, 1, 1 << 28) for mode in self.mesh.modes]
         q = [lim(c * s) for c, s in zip(coefficients, steps)]
+        area = area_of_interest(self.mesh, self.triangles_of, state.triangle) if state.touched else set()
         expected = self.expected(base, tick)
-        combine(self.mesh.modes, q, expected)
-        u, coded = self.read_vertices(decoder, models, state, expected)
+        moved_by_modes = list(expected)
+        combine(self.mesh.modes, q, moved_by_modes)
+        for v in range(len(self.mesh.rest)):
+            if place.half != VISUAL or v not in area:
+                expected[3 * v:3 * v + 3] = moved_by_modes[3 * v:3 * v + 3]
+        u, coded = self.read_vertices(decoder, models, state, place.half, area, expected)
         decoder.check_end()
-        n = self.frames(base, tick)
-        motion = [learn(c, n, lim(ahead(c, n) + x)) for c, x in zip(base.motion, q)]
-        return state._replace(u=u, motion=motion), key, coded, decoder
+        if place.half != HAPTIC:
+            n = self.frames(base, tick)
+            motion = [learn(c, n, lim(ahead(c, n) + x)) for c, x in zip(base.motion, q)]
+            state = state._replace(motion=motion, motion_tick=tick)
+        return state._replace(u=u), place.key, coded, decoder
 
     def frames(self, state: MainState, tick: int) -> int:
-        return round_div((tick - state.tick) << 8, self.mesh.frame_period)
+        return round_div((tick - state.motion_tick) << 8, self.mesh.frame_period)
 
     def expected(self, state: MainState, tick: int) -> list[int]:
         """Section 6: where the vertices are expected at a later tick."""
         x = list(state.u)
-        n = self.frames(state, tick)
-        combine(self.mesh.modes, [ahead(c, n) for c in state.motion], x)
+        n, m = self.frames(state, tick), self.frames(state, state.tick)
+        combine(self.mesh.modes, [lim(ahead(c, n) - ahead(c, m)) for c in state.motion], x)
         return x
 
     # ---- Section 5: head ----
 
-    def read_place(self, decoder: RangeDecoder, models: Models, receiver: Receiver,
-                   sequence: int) -> tuple[int, MainState, int]:
+    def read_place(self, decoder: RangeDecoder, models: Models, receiver: Receiver, sequence: int) -> Place:
         key = decoder.bit(models["KEY"][1])
         named = not key and receiver.span > 1
         baseline_delta = decoder.magnitude(models["BASELINE"]) if named else 1
-        if key:
+        half = VISUAL if self.mesh.split else WHOLE
+        if self.mesh.split and self.mesh.triangles and not decoder.bit(models["HALF"][1]):
+            half = HAPTIC
+        completes = int(half == VISUAL and not key and decoder.bit(models["COMPLETES"][1]))
+        if completes:
+            tick_delta = 0
+        elif key:
             tick_delta = decoder.magnitude(models["TICK"])
         else:
             tick_delta = max(0, round_shift(self.mesh.frame_period, 8) + decoder.signed(models["LATE"]))
         base = receiver.baseline(sequence, key, baseline_delta)
-        return key, base, receiver.tick(base, tick_delta, "R-MES-8")
+        return Place(key, half, completes, base, receiver.tick(base, tick_delta, "R-MES-8"))
 
-    def read_head(self, decoder: RangeDecoder, models: Models, base: MainState) -> MainState:
-        touched, triangle, haptic = 0, base.triangle, base.haptic
-        if self.mesh.triangles:
+    def read_head(self, decoder: RangeDecoder, models: Models, place: Place) -> MainState:
+        state = place.base if place.completes else self.read_bounds(decoder, models, place)
+        density = state.density
+        if place.half != HAPTIC:
+            density = decoder.tree(models[f"DENSITY[{state.density}]"], 2)
+        require(not state.touched or state.triangle < len(self.mesh.triangles), "invalid", "R-MES-9")
+        require(state.haptic <= 168 and state.visual <= 1 << 28, "invalid", "R-MES-10")
+        return state._replace(density=density)
+
+    def read_bounds(self, decoder: RangeDecoder, models: Models, place: Place) -> MainState:
+        base = place.base
+        touched, triangle, haptic = int(place.half == HAPTIC), base.triangle, base.haptic
+        if self.mesh.triangles and place.half != HAPTIC:
             touched = decoder.bit(models[f"TOUCHED[{base.touched}]"][1])
         if touched:
             triangle = self.read_triangle(decoder, models, base.triangle)
@@ -118,10 +153,7 @@ class MainCodec:
         visual = base.visual
         if not decoder.bit(models["SAME_VISUAL"][1]):
             visual = decoder.magnitude(models["VISUAL"])
-        density = decoder.tree(models[f"DENSITY[{base.density}]"], 2)
-        require(not touched or triangle < len(self.mesh.triangles), "invalid", "R-MES-9")
-        require(haptic <= 168 and visual <= 1 << 28, "invalid", "R-MES-10")
-        return base._replace(triangle=triangle, haptic=haptic, visual=visual, density=density, touched=touched)
+        return base._replace(triangle=triangle, haptic=haptic, visual=visual, touched=touched)
 
     def read_triangle(self, decoder: RangeDecoder, models: Models, before: int) -> int:
         if before != NONE:
@@ -143,13 +175,14 @@ class MainCodec:
 
     # ---- Section 7: vertices ----
 
-    def read_vertices(self, decoder: RangeDecoder, models: Models, state: MainState,
+    def read_vertices(self, decoder: RangeDecoder, models: Models, state: MainState, half: str, area: set[int],
                       expected: list[int]) -> tuple[list[int], list[int]]:
         """The new displacements, and the vertices with a residual other than 0."""
         h = haptic_bound(state.haptic)
-        area = area_of_interest(self.mesh, self.triangles_of, state.triangle) if state.touched else set()
         u, moved, coded = list(expected), [(0, 0, 0)] * len(self.mesh.rest), [0] * len(self.mesh.rest)
         for v in self.hierarchy.order:
+            if half == (VISUAL if v in area else HAPTIC):
+                continue
             haptic = v in area and h < state.visual
             bound = h if haptic else state.visual
             tightness = 0 if not haptic else 1 if 3 * h > 2 * state.visual else 2 if 4 * h > state.visual else 3

@@ -144,9 +144,10 @@ Result<void> Simulation::Impl::transmit_meshes() {
   for (std::size_t i = 0; i < channel->meshes.size(); ++i) {
     if (!frame.meshes[i].updated) continue;
     MeshLink& link = channel->meshes[i];
-    TACTUS_TRY(const EncodedMeshPacket packet, link.encode(frame.tick, frame.meshes[i].displacements, touch_of(frame, i)));
-    if (!packet.bytes.empty()) TACTUS_CHECK(link.decode(packet.bytes));
-    channel->sent[i] = {packet.bytes, packet.updates, packet.key, link.shown(frame.tick)};
+    TACTUS_TRY(const MeshPackets packets, link.encode(frame.tick, frame.meshes[i].displacements, touch_of(frame, i)));
+    for (const EncodedMeshPacket& packet : packets)
+      if (!packet.bytes.empty()) TACTUS_CHECK(link.decode(packet.bytes));
+    channel->sent[i] = {packets, link.shown(frame.tick)};
     deformables->show(i, channel->sent[i].shown);
   }
   return {};

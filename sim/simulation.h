@@ -40,9 +40,7 @@ struct ChannelOptions {
 
 /// What a channel did with a mesh in one tick.
 struct MeshSent {
-  std::span<const std::uint8_t> bytes;  ///< empty: nothing was sent
-  std::uint32_t updates = 0;
-  bool key = false;
+  MeshPackets packets;
   std::span<const Vec3> shown;  ///< displacements [m] at the client
 };
 

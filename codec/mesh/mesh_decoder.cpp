@@ -104,7 +104,7 @@ Result<DecodedMeshPacket> MeshDecoder::Impl::decode_main(std::span<const std::ui
   if (!updates) return fail(updates.error().code, updates.error().rule, bit());
   if (const char* rule = coder.broken_rule()) return fail(Errc::malformed, rule, bit());
   commit(sequence, tick);
-  return DecodedMeshPacket{sequence, head.key, tick, *updates, coder.range(), coder.code()};
+  return DecodedMeshPacket{sequence, head.key, head.half, tick, *updates, coder.range(), coder.code()};
 }
 
 Result<ThesisHead> MeshDecoder::Impl::read_thesis_head(ByteReader& in) const noexcept {
@@ -167,7 +167,7 @@ Result<DecodedMeshPacket> MeshDecoder::Impl::decode_thesis(std::span<const std::
   }
   if (mesh.models_kept) next.models = models;
   commit(sequence, tick);
-  return DecodedMeshPacket{sequence, head.key, tick, head.count, coder.range(), coder.code()};
+  return DecodedMeshPacket{sequence, head.key, MeshHalf::whole, tick, head.count, coder.range(), coder.code()};
 }
 
 MeshDecoder::MeshDecoder(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}
@@ -199,7 +199,7 @@ std::span<const MeshDecoder::Displacement> MeshDecoder::displacements() const no
 std::span<const MeshDecoder::Displacement> MeshDecoder::displacements_at(std::int64_t tick) noexcept {
   Impl& d = *impl_;
   const MeshState& state = d.current().state;
-  return d.reader.predict(state, mesh_steps(d.mesh, std::max<std::int64_t>(0, tick - state.tick)));
+  return d.reader.predict(state, std::max(tick, state.tick));
 }
 
 std::int64_t MeshDecoder::tick() const noexcept { return impl_->current().state.tick; }

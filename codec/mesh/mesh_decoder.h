@@ -13,7 +13,8 @@ namespace tactus {
 
 struct DecodedMeshPacket {
   std::uint16_t sequence = 0;
-  bool key = false;  ///< built on the initial state
+  bool key = false;                 ///< built on the initial state
+  MeshHalf half = MeshHalf::whole;  ///< main
   std::int64_t tick = 0;
   std::uint32_t updates = 0;      ///< vertices with a residual of their own
   std::uint32_t final_range = 0;  ///< range decoder's state after the last symbol (conformance); thesis: of the displacements

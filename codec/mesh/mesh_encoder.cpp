@@ -30,6 +30,8 @@ struct MeshEncoder::Impl {
   StreamHeader header;
   const MeshObject& mesh;
   std::vector<Vec3i> truth;  // this frame, on the grid
+  std::optional<MeshTouch> last_touch;
+  bool rest_is_due = false;  // encode() has seen a frame
   std::unique_ptr<MeshEncoderSide> side;
   std::int64_t last_tick = -1;
 
@@ -57,11 +59,22 @@ Result<EncodedMeshPacket> MeshEncoder::encode(std::int64_t tick, std::span<const
                                               const std::optional<MeshTouch>& touch) noexcept {
   Impl& e = *impl_;
   if (tick <= e.last_tick || tick >= 0xffffffff) return fail(Errc::invalid_argument, "R-API-5");
+  e.rest_is_due = false;
   if (touch) TACTUS_CHECK(e.check_touch(*touch));
   TACTUS_CHECK(to_grid(displacement, e.header.grid.position, e.truth));
   e.last_tick = tick;
-  return e.side->encode({tick, e.truth, touch});
+  e.last_touch = touch;
+  e.rest_is_due = true;
+  return e.side->encode({tick, e.truth, e.last_touch}, e.side->is_split() ? MeshHalf::haptic : MeshHalf::whole);
 }
+
+EncodedMeshPacket MeshEncoder::encode_rest() noexcept {
+  Impl& e = *impl_;
+  if (!std::exchange(e.rest_is_due, false) || !e.side->is_split()) return {};
+  return e.side->encode({e.last_tick, e.truth, e.last_touch}, MeshHalf::visual);
+}
+
+void MeshEncoder::forget_last() noexcept { impl_->side->forget_last(); }
 
 const StreamHeader& MeshEncoder::header() const noexcept { return impl_->header; }
 std::uint64_t MeshEncoder::state_hash() const noexcept { return mesh_state_hash(impl_->mesh, impl_->side->held()); }

@@ -31,20 +31,24 @@ struct MeshEncoderOptions {
   double key_interval = 5.0;  ///< [s] after this long the next packet builds on the initial state; 0: never
   double visual_share = 1;    ///< main: code to this share of v: less error for more bits. 0 < share <= 1
   double haptic_share = 1;    ///< main: the same of h
+  bool split = false;         ///< thesis: packets are haptic or visual halves; main: the header says so
 };
 
 struct EncodedMeshPacket {
   std::span<const std::uint8_t>
-      bytes;                  ///< empty: every bound holds on the prediction, nothing to send. Valid until the next call
+      bytes;                  ///< empty: every bound holds on the prediction, nothing to send. Valid until the next encode()
   std::uint32_t updates = 0;  ///< vertices with a residual of their own
   bool key = false;
+  MeshHalf half = MeshHalf::whole;
 };
 
-/// Server side of one mesh: true displacements in, at most one packet per frame out.
+/// Server side of one mesh: true displacements in, at most one packet per frame out. Split, at most two: what the hand feels can go
+/// first, and its packet need not wait for the other one, nor be lost with it.
 ///
-/// Profile main: after every call the decoder's prediction obeys, for every vertex,
+/// Profile main: after every frame the decoder's prediction obeys, for every vertex,
 ///   |u^ - u| <= v, and <= h = p |f_s| / k_c inside the area of interest,
-/// where a bound below the grid's rounding (0.87 units) means: the nearest grid point.
+/// where a bound below the grid's rounding (0.87 units) means: the nearest grid point. After the haptic half of a split frame it does so
+/// for the vertices inside the area of interest.
 /// Profile thesis sends what reaches its thresholds; its quantiser may leave errors above h (thesis 3.3.1.1).
 class MeshEncoder {
  public:
@@ -53,7 +57,7 @@ class MeshEncoder {
   ///      R-API-5: no such mesh.
   static Result<MeshEncoder> create(StreamHeader header, std::size_t mesh, const MeshEncoderOptions& options = {});
 
-  /// Look at one frame and decide.
+  /// Look at one frame and decide. If packets are halves: the haptic one.
   /// in   tick          strictly increasing
   ///      displacement  [m] one per vertex
   /// time O(vertices * (1 + modes)), 100 us for 714 vertices and 48 modes; no allocation, no exception.
@@ -61,6 +65,14 @@ class MeshEncoder {
   ///      R-API-5 wrong count, tick order, triangle, force or stiffness. State is unchanged after any error.
   Result<EncodedMeshPacket> encode(std::int64_t tick, std::span<const Vec3> displacement,
                                    const std::optional<MeshTouch>& touch = {}) noexcept;
+
+  /// The visual half of the frame that encode() saw last. Without bytes also if packets are not halves.
+  /// time as encode(), no allocation
+  EncodedMeshPacket encode_rest() noexcept;
+
+  /// The packet returned last will not arrive (it is dropped, or known to be lost): the next one builds on the state before it, which
+  /// the decoder holds, or on the initial state if the header's baseline_span does not reach so far. Only once after each packet.
+  void forget_last() noexcept;
 
   const StreamHeader& header() const noexcept;
   std::uint64_t state_hash() const noexcept;  ///< equals the decoder's after the same packets

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -47,34 +48,57 @@ class MeshEncoderSide {
         held_(initial_),
         next_(initial_),
         expected_(mesh.rest.size()),
-        buffer_(max_mesh_packet_size(mesh)) {}
+        split_(mesh.profile == MeshProfile::main ? mesh.split : options.split) {
+    for (std::size_t i = 0; i < (split_ ? 2 : 1); ++i) buffers_[i].resize(max_mesh_packet_size(mesh));
+  }
   MeshEncoderSide(const MeshEncoderSide&) = delete;
   MeshEncoderSide& operator=(const MeshEncoderSide&) = delete;
   virtual ~MeshEncoderSide() = default;
 
-  virtual EncodedMeshPacket encode(const MeshFrame& frame) noexcept = 0;
+  /// Of a split mesh the haptic half of a frame, then the visual one; else the whole.
+  virtual EncodedMeshPacket encode(const MeshFrame& frame, MeshHalf half) noexcept = 0;
+  bool is_split() const noexcept { return split_; }
   const MeshState& held() const noexcept { return held_; }
 
+  void forget_last() noexcept {
+    if (!std::exchange(can_forget_, false)) return;
+    std::swap(held_, next_);
+    key_tick_ = before_.key_tick;
+    behind_ = before_.behind + 1;
+  }
+
  protected:
-  /// The first packet, one per interval, and one after a pause so long that its length does not fit.
+  /// The first packet, one per interval, one after a pause so long that its length does not fit, and one where the decoder no longer
+  /// keeps what it should build on.
   bool key_due(std::int64_t tick) const noexcept {
     const auto interval = static_cast<std::int64_t>(std::ceil(options_.key_interval * header_.tick_rate));
-    return key_tick_ < 0 || (interval > 0 && tick - key_tick_ >= interval) || tick - held_.tick > 0x3fffffff;
+    return key_tick_ < 0 || behind_ > header_.baseline_span || (interval > 0 && tick - key_tick_ >= interval) ||
+           tick - held_.tick > 0x3fffffff;
   }
+  /// Packets back to `held_`.
+  std::uint32_t baseline_delta() const noexcept { return behind_; }
+  /// Somebody presses whose haptic threshold is to be kept.
+  bool is_felt(const MeshFrame& frame) const noexcept { return frame.touch && options_.thresholds.weber_fraction; }
   const MeshState& base(bool key) const noexcept { return key ? initial_ : held_; }
   std::span<const std::uint32_t> area(std::uint32_t triangle) noexcept {
     rings_.triangles_around(triangle, mesh_.rings);
     return rings_.vertices();
   }
-  /// The packet in `buffer_` turns `base` into `next_`.
-  EncodedMeshPacket finish(std::size_t size, bool key, std::int64_t tick, std::uint32_t updates) noexcept {
+  /// Where the packet is written: the visual half beside the haptic one.
+  std::span<std::uint8_t> buffer(MeshHalf half) noexcept { return buffers_[half == MeshHalf::visual ? 1 : 0]; }
+  /// The packet in its buffer turns `base` into `next_`.
+  EncodedMeshPacket finish(std::size_t size, bool key, MeshHalf half, std::int64_t tick, std::uint32_t updates) noexcept {
+    const std::span<std::uint8_t> packet = buffer(half).first(size);
     ++sequence_;
-    buffer_[0] = static_cast<std::uint8_t>(sequence_);
-    buffer_[1] = static_cast<std::uint8_t>(sequence_ >> 8);
+    packet[0] = static_cast<std::uint8_t>(sequence_);
+    packet[1] = static_cast<std::uint8_t>(sequence_ >> 8);
     next_.tick = tick;
     std::swap(held_, next_);
+    before_ = {key_tick_, behind_};
+    can_forget_ = true;
+    behind_ = 1;
     if (key) key_tick_ = tick;
-    return {std::span<const std::uint8_t>(buffer_).first(size), updates, key};
+    return {packet, updates, key, half};
   }
 
   const StreamHeader& header_;
@@ -82,13 +106,22 @@ class MeshEncoderSide {
   const MeshEncoderOptions options_;
   MeshRings rings_;
   const MeshState initial_;  // what key packets build on
-  MeshState held_, next_;    // what the decoder holds, and will hold after the packet at hand
+  MeshState held_, next_;  // what the decoder holds, and will hold after the packet at hand; between packets what it held before
   std::vector<Vec3i> expected_;
-  std::vector<std::uint8_t> buffer_;
 
  private:
+  struct Before {
+    std::int64_t key_tick = -1;
+    std::uint32_t behind = 1;
+  };
+
+  const bool split_;
+  std::array<std::vector<std::uint8_t>, 2> buffers_;
   std::uint16_t sequence_ = 0;
   std::int64_t key_tick_ = -1;  // of the last key packet; -1: none yet
+  std::uint32_t behind_ = 1;    // packets from `held_` to the next one; more than 1 after losses
+  Before before_;               // the last packet
+  bool can_forget_ = false;     // `next_` is the state before it
 };
 
 std::unique_ptr<MeshEncoderSide> make_main_side(const StreamHeader& header, const MeshObject& mesh,

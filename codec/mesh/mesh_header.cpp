@@ -51,6 +51,9 @@ Result<void> parse_parameters(ByteReader& in, MeshObject& mesh) {
     mesh.models_kept = kept == 1;
   } else {
     mesh.frame_period = in.u32();
+    const std::uint8_t split = in.u8();
+    if (in.ok() && split > 1) return fail(Errc::malformed, "R-MES-3", in.bit_offset());
+    mesh.split = split == 1;
   }
   return {};
 }
@@ -137,6 +140,7 @@ void write_mesh(ByteWriter& out, const MeshObject& mesh) {
     out.u8(mesh.models_kept ? 1 : 0);
   } else {
     out.u32(mesh.frame_period);
+    out.u8(mesh.split ? 1 : 0);
   }
   out.varint(mesh.rest.size());
   out.varint(mesh.triangles.size());

@@ -61,12 +61,14 @@ class MainSide : public MeshEncoderSide {
         projected_(mesh.basis.steps.size()) {
     coded_.reserve(mesh.rest.size());
   }
-  EncodedMeshPacket encode(const MeshFrame& frame) noexcept override;
+  EncodedMeshPacket encode(const MeshFrame& frame, MeshHalf half) noexcept override;
 
  private:
-  MeshHead head_for(const MeshFrame& frame) const noexcept;
-  bool bounds_hold(std::span<const Vec3i> truth) const noexcept;
-  void choose_coefficients(std::span<const Vec3i> truth, std::uint32_t visual) noexcept;
+  MeshHead head_for(const MeshFrame& frame, MeshHalf half) const noexcept;
+  bool bounds_hold(const MeshFrame& frame, bool key) noexcept;
+  void note_errors(std::span<const Vec3i> truth, const MeshHead& head) noexcept;
+  void choose_coefficients(std::uint32_t visual) noexcept;
+  void move_modes(const MeshHead& head) noexcept;
   std::uint32_t choose_residuals(std::span<const Vec3i> truth) noexcept;
   std::size_t write(MeshHead head) noexcept;
 
@@ -74,14 +76,14 @@ class MainSide : public MeshEncoderSide {
   MeshPredictor predictor_;
   MeshPass pass_;
   MeshProjection projection_;
-  std::vector<Vec3i> error_;
+  std::vector<Vec3i> error_;  // what prediction in time left, of all vertices also where halves code one after the other
   std::vector<std::int32_t> coefficients_, scaled_;  // in steps; in grid units
   std::vector<float> projected_;
   std::vector<CodedVertex> coded_;
 };
 
 /// Bounds on the grid, smaller by the truth's own rounding, so that they hold for the unrounded truth.
-MeshHead MainSide::head_for(const MeshFrame& frame) const noexcept {
+MeshHead MainSide::head_for(const MeshFrame& frame, MeshHalf half) const noexcept {
   const double unit = std::ldexp(1.0, -header_.grid.position);
   const auto units = [unit](double metres) {
     return static_cast<std::uint32_t>(std::clamp(metres / unit - kRounding, 0.0, double{kMaxVisualBound}));
@@ -89,9 +91,12 @@ MeshHead MainSide::head_for(const MeshFrame& frame) const noexcept {
   const MeshThresholds& t = options_.thresholds;
   MeshHead head;
   head.key = key_due(frame.tick);
+  head.baseline_delta = baseline_delta();
+  head.half = half;
+  head.completes = half == MeshHalf::visual && !head.key && held_.tick == frame.tick;
   head.tick_delta = static_cast<std::uint32_t>(frame.tick - base(head.key).tick);
   head.visual = units(options_.visual_share * t.visual);
-  head.touched = frame.touch.has_value() && t.weber_fraction.has_value();
+  head.touched = is_felt(frame);
   if (!head.touched) return head;
   head.triangle = frame.touch->triangle;
   const std::uint32_t haptic = units(options_.haptic_share * haptic_threshold(t, *frame.touch));
@@ -99,18 +104,27 @@ MeshHead MainSide::head_for(const MeshFrame& frame) const noexcept {
   return head;
 }
 
-bool MainSide::bounds_hold(std::span<const Vec3i> truth) const noexcept {
-  for (std::uint32_t v = 0; v < truth.size(); ++v) {
+/// A key packet forgets the whole shape, and so is due as soon as any bound is broken.
+bool MainSide::bounds_hold(const MeshFrame& frame, bool key) noexcept {
+  predictor_.predict(held_, frame.tick, expected_);
+  for (std::uint32_t v = 0; v < frame.truth.size(); ++v) {
+    if (!key && !pass_.codes(v)) continue;
     const std::int64_t bound = pass_.bound_of(v);
-    if (squared_distance(truth[v], expected_[v]) > bound * bound) return false;
+    if (squared_distance(frame.truth[v], expected_[v]) > bound * bound) return false;
   }
   return true;
 }
 
-void MainSide::choose_coefficients(std::span<const Vec3i> truth, std::uint32_t visual) noexcept {
+/// The modes fit the whole shape: of what a haptic half has corrected they are told the error that it found.
+void MainSide::note_errors(std::span<const Vec3i> truth, const MeshHead& head) noexcept {
   if (coefficients_.empty()) return;
-  for (std::size_t v = 0; v < truth.size(); ++v)
+  for (std::uint32_t v = 0; v < truth.size(); ++v) {
+    if (head.completes && !pass_.codes(v)) continue;
     for (std::size_t axis = 0; axis < 3; ++axis) error_[v][axis] = truth[v][axis] - expected_[v][axis];
+  }
+}
+
+void MainSide::choose_coefficients(std::uint32_t visual) noexcept {
   projection_.project(error_, projected_);
   for (std::size_t k = 0; k < coefficients_.size(); ++k) {
     const float steps = projected_[k] / static_cast<float>(coefficient_step(mesh_, visual, k));
@@ -118,6 +132,13 @@ void MainSide::choose_coefficients(std::span<const Vec3i> truth, std::uint32_t v
     const auto rounded = size >= kDeadZone ? static_cast<std::int32_t>(std::floor(size + 0.5F)) : 0;
     coefficients_[k] = steps < 0 ? -rounded : rounded;
   }
+}
+
+void MainSide::move_modes(const MeshHead& head) noexcept {
+  if (!coefficients_.empty()) choose_coefficients(head.visual);
+  std::copy(coefficients_.begin(), coefficients_.end(), scaled_.begin());
+  scale_coefficients(mesh_, head.visual, scaled_);
+  predictor_.add_modes(scaled_, pass_.fixed(), expected_);
 }
 
 /// Quantise every vertex as the decoder will see it. Returns how many have a residual.
@@ -136,36 +157,38 @@ std::uint32_t MainSide::choose_residuals(std::span<const Vec3i> truth) noexcept 
 }
 
 std::size_t MainSide::write(MeshHead head) noexcept {
-  RangeEncoder coder(std::span<std::uint8_t>(buffer_).subspan(2));
+  RangeEncoder coder(buffer(head.half).subspan(2));
   MeshModels models = mesh_start_models();
   code_mesh_start(coder, models, mesh_, header_.baseline_span, head);
-  code_mesh_bounds(coder, models, mesh_, rings_, base(head.key), head);
-  code_coefficients(coder, models, coefficients_);
+  code_mesh_head(coder, models, mesh_, rings_, base(head.key), head);
+  if (head.half != MeshHalf::haptic) code_coefficients(coder, models, coefficients_);
   for (CodedVertex& c : coded_) code_vertex(coder, models, head.density, c.context, c.residual);
   return 2 + coder.finish();
 }
 
-EncodedMeshPacket MainSide::encode(const MeshFrame& frame) noexcept {
-  MeshHead head = head_for(frame);
+EncodedMeshPacket MainSide::encode(const MeshFrame& frame, MeshHalf half) noexcept {
+  MeshHead head = head_for(frame, half);
+  if (half == MeshHalf::haptic && !head.touched) return {};
   pass_.set_bounds(head.visual, head.touched ? haptic_bound(head.haptic) : head.visual,
-                   head.touched ? area(head.triangle) : std::span<const std::uint32_t>{});
-  predictor_.predict(held_, mesh_steps(mesh_, frame.tick - held_.tick), expected_);
-  if (bounds_hold(frame.truth)) return {};
+                   head.touched ? area(head.triangle) : std::span<const std::uint32_t>{}, half);
+  if (bounds_hold(frame, head.key)) return {};
+  // What is felt goes first: a key packet of the rest alone would forget it.
+  if (half == MeshHalf::visual && head.key && head.touched) return {};
   const MeshState& from = base(head.key);
-  const std::uint32_t steps = mesh_steps(mesh_, head.tick_delta);
-  if (head.key) predictor_.predict(from, steps, expected_);
-  choose_coefficients(frame.truth, head.visual);
-  std::copy(coefficients_.begin(), coefficients_.end(), scaled_.begin());
-  scale_coefficients(mesh_, head.visual, scaled_);
-  predictor_.add_modes(scaled_, expected_);
+  if (head.key) predictor_.predict(from, frame.tick, expected_);
+  note_errors(frame.truth, head);
+  if (half == MeshHalf::haptic) {
+    keep_motion(from, next_);
+  } else {
+    move_modes(head);
+    predictor_.learn(from, frame.tick, next_);
+  }
   const std::uint32_t updates = choose_residuals(frame.truth);
-  const std::uint64_t share = (std::uint64_t{updates} << 8) / frame.truth.size();
-  head.density = share < 3 ? 0 : share < 15 ? 1 : share < 64 ? 2 : 3;
+  const std::uint64_t share = (std::uint64_t{updates} << 8) / coded_.size();
+  head.density = half == MeshHalf::haptic ? from.density : share < 3 ? 0 : share < 15 ? 1 : share < 64 ? 2 : 3;
   const std::size_t size = write(head);
-  next_.motion = from.motion;
-  predictor_.learn(steps, next_);
   keep_head(head, from, next_);
-  return finish(size, head.key, frame.tick, updates);
+  return finish(size, head.key, half, frame.tick, updates);
 }
 
 }  // namespace

@@ -25,39 +25,46 @@ class MeshMainReader {
         coefficients_(mesh.basis.steps.size()) {}
 
   /// Everything after key, baseline and tick.
-  /// out  next     the state after the packet, but for its tick; after an error undefined
+  /// out  next     the state after the packet; after an error undefined
   ///      returns  vertices with a residual
   template <class Coder>
   Result<std::uint32_t> read(Coder& coder, MeshModels& models, MeshHead& head, const MeshState& base, MeshState& next) noexcept {
-    code_mesh_bounds(coder, models, mesh_, rings_, base, head);
+    code_mesh_head(coder, models, mesh_, rings_, base, head);
     if (coder.too_wide()) return fail(Errc::malformed, "R-RNG-4");
     if (head.touched && head.triangle >= mesh_.triangles.size()) return fail(Errc::invalid, "R-MES-9");
     if (head.haptic > kMaxHapticLevel || head.visual > kMaxVisualBound) return fail(Errc::invalid, "R-MES-10");
-    code_coefficients(coder, models, coefficients_);
-    if (coder.too_wide()) return fail(Errc::malformed, "R-RNG-4");
-    const std::uint32_t steps = mesh_steps(mesh_, head.tick_delta);
-    predictor_.predict(base, steps, expected_);
-    scale_coefficients(mesh_, head.visual, coefficients_);
-    predictor_.add_modes(coefficients_, expected_);
+    next.tick = base.tick + head.tick_delta;
+    predictor_.predict(base, next.tick, expected_);
     set_bounds(head);
+    if (head.half == MeshHalf::haptic) {
+      keep_motion(base, next);
+    } else {
+      code_coefficients(coder, models, coefficients_);
+      if (coder.too_wide()) return fail(Errc::malformed, "R-RNG-4");
+      scale_coefficients(mesh_, head.visual, coefficients_);
+      predictor_.add_modes(coefficients_, pass_.fixed(), expected_);
+      predictor_.learn(base, next.tick, next);
+    }
     const std::uint32_t updates = read_vertices(coder, models, head, next);
     if (coder.too_wide()) return fail(Errc::malformed, "R-RNG-4");
-    next.motion = base.motion;
-    predictor_.learn(steps, next);
     keep_head(head, base, next);
     return updates;
   }
 
-  /// Displacement that a state leads to.   Valid until the next call.
-  std::span<const Vec3i> predict(const MeshState& state, std::uint32_t steps) noexcept {
-    predictor_.predict(state, steps, expected_);
+  /// Displacement that a state leads to at a tick.   Valid until the next call.
+  std::span<const Vec3i> predict(const MeshState& state, std::int64_t tick) noexcept {
+    predictor_.predict(state, tick, expected_);
     return expected_;
   }
 
  private:
   void set_bounds(const MeshHead& head) noexcept {
-    if (head.touched) rings_.triangles_around(head.triangle, mesh_.rings);
-    pass_.set_bounds(head.visual, head.touched ? haptic_bound(head.haptic) : head.visual, rings_.vertices());
+    std::span<const std::uint32_t> area;
+    if (head.touched) {
+      rings_.triangles_around(head.triangle, mesh_.rings);
+      area = rings_.vertices();
+    }
+    pass_.set_bounds(head.visual, head.touched ? haptic_bound(head.haptic) : head.visual, area, head.half);
   }
 
   /// After a residual that is too wide the walk goes on with zeros.

@@ -14,6 +14,9 @@ namespace tactus {
 
 enum class MeshProfile : std::uint8_t { thesis = 0, main = 1 };
 
+/// Of which vertices a packet speaks: of those in the area of interest, of the others, or of all.
+enum class MeshHalf : std::uint8_t { haptic = 0, visual = 1, whole = 2 };
+
 /// Vectors known to both ends that displacements are combined from (vibration modes, principal components).
 struct ModeBasis {
   static constexpr std::size_t kMaxModes = 64;
@@ -37,6 +40,7 @@ struct MeshObject {
   std::uint8_t quant_bits = 8;       ///< thesis: q, 1..12
   bool models_kept = false;          ///< thesis: entropy models are part of the state and not restarted in every packet
   std::uint32_t frame_period = 256;  ///< main: ticks between frames, x 2^-8; with a basis motion is predicted in steps of it
+  bool split = false;                ///< main: packets are haptic or visual halves
   std::vector<std::array<std::int32_t, 3>> rest;  ///< vertices, x 2^-position_exp m
   std::vector<Triangle> triangles;
   ModeBasis basis;  ///< main

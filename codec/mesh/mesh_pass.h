@@ -18,22 +18,30 @@ class MeshPass {
  public:
   /// pre  `hierarchy` outlives the pass
   MeshPass(const MeshHierarchy& hierarchy, std::size_t vertices)
-      : hierarchy_(hierarchy), innovation_(vertices), coded_(vertices), tight_(vertices) {
+      : hierarchy_(hierarchy), innovation_(vertices), coded_(vertices), inside_(vertices) {
     area_.reserve(vertices);
   }
 
   /// Bounds of the packet at hand: `haptic` for the vertices of the area of interest, where it is the tighter one.
-  void set_bounds(std::uint32_t visual, std::uint32_t haptic, std::span<const std::uint32_t> area) noexcept {
-    for (const std::uint32_t v : area_) tight_[v] = 0;
+  void set_bounds(std::uint32_t visual, std::uint32_t haptic, std::span<const std::uint32_t> area, MeshHalf half) noexcept {
+    for (const std::uint32_t v : area_) inside_[v] = 0;
+    area_.assign(area.begin(), area.end());
+    for (const std::uint32_t v : area_) inside_[v] = 1;
     bound_[0] = visual;
     bound_[1] = std::min(visual, haptic);
-    area_.clear();
-    if (haptic < visual) area_.assign(area.begin(), area.end());
     tightness_ = tightness_of(haptic, visual);
-    for (const std::uint32_t v : area_) tight_[v] = 1;
     for (std::size_t i = 0; i < 2; ++i) step_[i] = step_of(bound_[i]);
+    codes_[0] = half != MeshHalf::haptic;
+    codes_[1] = half != MeshHalf::visual;
   }
-  std::uint32_t bound_of(std::uint32_t vertex) const noexcept { return bound_[tight_[vertex]]; }
+  std::uint32_t bound_of(std::uint32_t vertex) const noexcept { return bound_[inside_[vertex]]; }
+  /// The packet says where the vertex is; the others follow the prediction in time.
+  bool codes(std::uint32_t vertex) const noexcept { return codes_[inside_[vertex]]; }
+  std::span<const std::uint32_t> area() const noexcept { return area_; }
+  /// Vertices that modes do not move: a visual half leaves alone what is felt.
+  std::span<const std::uint32_t> fixed() const noexcept {
+    return codes_[1] ? std::span<const std::uint32_t>{} : std::span<const std::uint32_t>(area_);
+  }
 
   /// in   expected  displacement by prediction in time
   /// out  decoded   displacement; may not alias `expected`
@@ -42,6 +50,12 @@ class MeshPass {
   void run(std::span<const Vec3i> expected, std::span<Vec3i> decoded, Residual&& residual) noexcept {
     for (std::size_t i = 0; i < hierarchy_.order.size(); ++i) {
       const std::uint32_t v = hierarchy_.order[i];
+      if (!codes(v)) {
+        decoded[v] = expected[v];
+        innovation_[v] = {};
+        coded_[v] = 0;
+        continue;
+      }
       std::array<std::int64_t, 3> sum{};
       unsigned parents = 0;
       for (const MeshParent& p : hierarchy_.parents[i]) {
@@ -52,14 +66,14 @@ class MeshPass {
       Vec3i place{};
       for (std::size_t axis = 0; axis < 3; ++axis)
         place[axis] = limited_displacement(expected[v][axis] + round_shift(sum[axis], 15));
-      const std::size_t tight = tight_[v];
-      const VertexContext context{static_cast<std::uint8_t>(tight ? tightness_ : 0),
+      const std::size_t inside = inside_[v];
+      const VertexContext context{static_cast<std::uint8_t>(inside ? tightness_ : 0),
                                   static_cast<std::uint8_t>(std::min(parents, 2u)),
                                   std::min<std::uint8_t>(hierarchy_.level[v], 2)};
-      const Vec3i r = residual(v, context, place, bound_[tight], step_[tight]);
+      const Vec3i r = residual(v, context, place, bound_[inside], step_[inside]);
       coded_[v] = r != Vec3i{} ? 1 : 0;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        decoded[v][axis] = limited_displacement(place[axis] + r[axis] * step_[tight]);
+        decoded[v][axis] = limited_displacement(place[axis] + r[axis] * step_[inside]);
         innovation_[v][axis] = decoded[v][axis] - expected[v][axis];
       }
     }
@@ -67,12 +81,13 @@ class MeshPass {
 
  private:
   const MeshHierarchy& hierarchy_;
-  std::vector<Vec3i> innovation_;    // decoded - expected
-  std::vector<std::uint8_t> coded_;  // had a residual
-  std::vector<std::uint8_t> tight_;
+  std::vector<Vec3i> innovation_;     // decoded - expected
+  std::vector<std::uint8_t> coded_;   // had a residual
+  std::vector<std::uint8_t> inside_;  // in the area of interest
   std::vector<std::uint32_t> area_;
-  std::uint32_t bound_[2]{};
+  std::uint32_t bound_[2]{};  // outside, inside
   std::int64_t step_[2]{1, 1};
+  bool codes_[2]{true, true};  // outside, inside
   std::uint8_t tightness_ = 0;
 };
 

@@ -29,6 +29,7 @@ std::uint64_t mesh_state_hash(const MeshObject& mesh, const MeshState& state) no
     hash.add32(state.haptic);
     hash.add32(state.density | (state.touched ? 4u : 0u));
     state.motion.add_to(hash);
+    if (mesh.split) hash.add64(static_cast<std::uint64_t>(state.motion_tick));
   }
   for (const BitModel& m : state.models) hash.add32(static_cast<std::uint32_t>(m.zero | m.rate << 16));
   return hash.value();
@@ -45,7 +46,12 @@ std::uint32_t haptic_bound(std::uint32_t level) noexcept {
 }
 
 MeshPredictor::MeshPredictor(const MeshObject& mesh)
-    : mesh_(mesh), increments_(mesh.basis.steps.size()), sum_(increments_.empty() ? 0 : 3 * mesh.rest.size()) {}
+    : mesh_(mesh),
+      increments_(mesh.basis.steps.size()),
+      ahead_(increments_.size()),
+      sum_(increments_.empty() ? 0 : 3 * mesh.rest.size()) {
+  if (mesh.split && !increments_.empty()) excepted_.reserve(mesh.rest.size());
+}
 
 /// out += modes * coefficients, all coefficients brought to 14 bits by one shift.
 void MeshPredictor::combine(std::span<const std::int32_t> coefficients, std::span<Vec3i> out) noexcept {
@@ -66,19 +72,31 @@ void MeshPredictor::combine(std::span<const std::int32_t> coefficients, std::spa
       out[v][axis] = limited_displacement(out[v][axis] + round_shift(static_cast<std::int64_t>(sum_[3 * v + axis]) << shift, 11));
 }
 
-void MeshPredictor::predict(const MeshState& state, std::uint32_t steps, std::span<Vec3i> out) noexcept {
+void MeshPredictor::predict(const MeshState& state, std::int64_t tick, std::span<Vec3i> out) noexcept {
   std::copy(state.displacement.begin(), state.displacement.end(), out.begin());
   if (state.motion.size() == 0) return;
-  state.motion.predict(steps, increments_);
-  combine(increments_, out);
+  state.motion.predict(mesh_steps(mesh_, tick - state.motion_tick), increments_);
+  if (state.tick == state.motion_tick) return combine(increments_, out);
+  state.motion.predict(mesh_steps(mesh_, state.tick - state.motion_tick), ahead_);  // where haptic halves have gone already
+  for (std::size_t k = 0; k < ahead_.size(); ++k) ahead_[k] = limited_displacement(std::int64_t{increments_[k]} - ahead_[k]);
+  combine(ahead_, out);
 }
 
-void MeshPredictor::add_modes(std::span<const std::int32_t> coefficients, std::span<Vec3i> out) noexcept {
+void MeshPredictor::add_modes(std::span<const std::int32_t> coefficients, std::span<const std::uint32_t> except,
+                              std::span<Vec3i> out) noexcept {
+  if (coefficients.empty()) return;
+  excepted_.clear();
+  for (const std::uint32_t v : except) excepted_.push_back(out[v]);
   combine(coefficients, out);
+  for (std::size_t i = 0; i < except.size(); ++i) out[except[i]] = excepted_[i];
   for (std::size_t k = 0; k < coefficients.size(); ++k)
     increments_[k] = limited_displacement(static_cast<std::int64_t>(increments_[k]) + coefficients[k]);
 }
 
-void MeshPredictor::learn(std::uint32_t steps, MeshState& state) const noexcept { state.motion.learn(steps, increments_); }
+void MeshPredictor::learn(const MeshState& base, std::int64_t tick, MeshState& next) const noexcept {
+  next.motion = base.motion;
+  next.motion.learn(mesh_steps(mesh_, tick - base.motion_tick), increments_);
+  next.motion_tick = tick;
+}
 
 }  // namespace tactus

@@ -20,6 +20,7 @@ inline constexpr std::size_t kDensities = 4;
 /// Every adaptive model of a packet. Restarted from mesh_start_models() for each packet.
 struct MeshModels {
   BitModel key;
+  BitModel half, completes;
   MagnitudeModel baseline, tick, late;
   std::array<BitModel, 2> touched;  // by: the baseline's packet was
   BitModel same_triangle, near_triangle;
@@ -40,6 +41,8 @@ const MeshModels& mesh_start_models() noexcept;
 struct MeshHead {
   bool key = false;
   std::uint32_t baseline_delta = 1;
+  MeshHalf half = MeshHalf::whole;
+  bool completes = false;  ///< visual half of the tick that the baseline's haptic half began
   std::uint32_t tick_delta = 0;
   bool touched = false;
   std::uint32_t triangle = kNoTriangle;
@@ -61,11 +64,25 @@ constexpr std::uint8_t tightness_of(std::uint32_t haptic, std::uint32_t visual) 
   return 3 * h > 2 * std::uint64_t{visual} ? 1 : 4 * h > visual ? 2 : 3;
 }
 
-/// key, baseline and tick: what must be known to find the baseline.
+/// Which half of a split mesh: without a triangle nothing can be felt.
+template <class Coder>
+MeshHalf code_half(Coder& coder, MeshModels& models, const MeshObject& mesh, MeshHalf half) noexcept {
+  if (!mesh.split) return MeshHalf::whole;
+  if (mesh.triangles.empty()) return MeshHalf::visual;
+  return coder.bit(models.half, half == MeshHalf::visual ? 1u : 0u) ? MeshHalf::visual : MeshHalf::haptic;
+}
+
+/// key, baseline, half and tick: what must be known to find the baseline.
 template <class Coder>
 void code_mesh_start(Coder& coder, MeshModels& models, const MeshObject& mesh, std::uint8_t span, MeshHead& head) noexcept {
   head.key = coder.bit(models.key, head.key ? 1u : 0u);
   if (!head.key && span > 1) head.baseline_delta = coder.magnitude(models.baseline, head.baseline_delta);
+  head.half = code_half(coder, models, mesh, head.half);
+  head.completes = head.half == MeshHalf::visual && !head.key && coder.bit(models.completes, head.completes ? 1u : 0u);
+  if (head.completes) {
+    head.tick_delta = 0;
+    return;
+  }
   if (head.key) {
     head.tick_delta = coder.magnitude(models.tick, head.tick_delta);
     return;
@@ -101,11 +118,12 @@ std::uint32_t code_triangle(Coder& coder, MeshModels& models, const MeshObject& 
   return out;
 }
 
-/// The rest of the head, given the baseline.
+/// What is touched, and the bounds.
 template <class Coder>
 void code_mesh_bounds(Coder& coder, MeshModels& models, const MeshObject& mesh, MeshRings& rings, const MeshState& base,
                       MeshHead& head) noexcept {
-  head.touched = !mesh.triangles.empty() && coder.bit(models.touched[base.touched ? 1 : 0], head.touched ? 1u : 0u);
+  head.touched = head.half == MeshHalf::haptic ||
+                 (!mesh.triangles.empty() && coder.bit(models.touched[base.touched ? 1 : 0], head.touched ? 1u : 0u));
   if (head.touched) {
     head.triangle = code_triangle(coder, models, mesh, rings, base.triangle, head.triangle);
     const std::int64_t change = coder.signed_value(models.haptic, saturate32(std::int64_t{head.haptic} - base.haptic));
@@ -113,7 +131,22 @@ void code_mesh_bounds(Coder& coder, MeshModels& models, const MeshObject& mesh, 
   }
   const bool same = coder.bit(models.same_visual, head.visual == base.visual ? 1u : 0u);
   head.visual = same ? base.visual : coder.magnitude(models.visual, head.visual);
-  head.density = coder.template tree<2>(models.density[base.density], head.density);
+}
+
+/// The rest of the head, given the baseline.
+template <class Coder>
+void code_mesh_head(Coder& coder, MeshModels& models, const MeshObject& mesh, MeshRings& rings, const MeshState& base,
+                    MeshHead& head) noexcept {
+  if (head.completes) {
+    head.touched = base.touched;
+    head.triangle = base.triangle;
+    head.haptic = base.haptic;
+    head.visual = base.visual;
+  } else {
+    code_mesh_bounds(coder, models, mesh, rings, base, head);
+  }
+  head.density =
+      head.half == MeshHalf::haptic ? base.density : coder.template tree<2>(models.density[base.density], head.density);
 }
 
 /// What the next packet's head is predicted from.
@@ -123,6 +156,12 @@ inline void keep_head(const MeshHead& head, const MeshState& base, MeshState& ne
   next.visual = head.visual;
   next.density = head.density;
   next.touched = head.touched;
+}
+
+/// Haptic halves leave motion to the next visual half.
+inline void keep_motion(const MeshState& base, MeshState& next) noexcept {
+  next.motion = base.motion;
+  next.motion_tick = base.motion_tick;
 }
 
 constexpr std::size_t size_class(std::uint32_t magnitude) noexcept { return magnitude == 0 ? 0 : magnitude == 1 ? 1 : 2; }

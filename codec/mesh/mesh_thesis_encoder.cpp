@@ -15,43 +15,51 @@ class ThesisSide : public MeshEncoderSide {
         models_(cold_),
         list_(max_mesh_packet_size(mesh)) {
     listed_.reserve(mesh.rest.size());
+    inside_.resize(mesh.rest.size());
   }
-  EncodedMeshPacket encode(const MeshFrame& frame) noexcept override;
+  EncodedMeshPacket encode(const MeshFrame& frame, MeshHalf half) noexcept override;
 
  private:
-  void list_vertices(const MeshFrame& frame) noexcept;
+  void list_vertices(const MeshFrame& frame, const MeshState& state, MeshHalf half) noexcept;
   ThesisHead head_for(const MeshFrame& frame, bool key) const noexcept;
-  std::size_t write_head(const ThesisHead& head) noexcept;
+  std::size_t write_head(const ThesisHead& head, std::span<std::uint8_t> packet) noexcept;
   std::size_t write_list() noexcept;
 
   std::vector<BitModel> cold_, models_;
   std::vector<std::uint8_t> list_;     // the coded index list
   std::vector<std::uint32_t> listed_;  // vertices of the packet at hand
+  std::vector<std::uint8_t> inside_;   // in the area of interest
 };
 
-/// Eqs. 3.10 and 3.11: an error that reaches a threshold includes the vertex. Ascending order.
-void ThesisSide::list_vertices(const MeshFrame& frame) noexcept {
+/// Eqs. 3.10 and 3.11: an error against `state` that reaches a threshold includes the vertex. Ascending order.
+void ThesisSide::list_vertices(const MeshFrame& frame, const MeshState& state, MeshHalf half) noexcept {
   const MeshThresholds& t = options_.thresholds;
   const auto squared_units = [this](double metres) {
     const double units = std::ldexp(metres, header_.grid.position);
     return units * units;
   };
   const double visual = squared_units(t.visual);
-  const auto error = [&](std::uint32_t v) { return static_cast<double>(squared_distance(frame.truth[v], expected_[v])); };
+  double haptic = visual;
+  std::span<const std::uint32_t> felt;
+  if (is_felt(frame)) {
+    haptic = std::min(visual, squared_units(haptic_threshold(t, *frame.touch)));
+    felt = area(frame.touch->triangle);
+  }
+  for (const std::uint32_t v : felt) inside_[v] = 1;
+  expected_ = state.displacement;
   listed_.clear();
-  for (std::uint32_t v = 0; v < frame.truth.size(); ++v)
-    if (error(v) >= visual) listed_.push_back(v);
-  if (!frame.touch || !t.weber_fraction) return;
-  const double haptic = squared_units(haptic_threshold(t, *frame.touch));
-  if (haptic >= visual) return;
-  for (const std::uint32_t v : area(frame.touch->triangle))
-    if (error(v) >= haptic && error(v) < visual) listed_.push_back(v);
-  std::sort(listed_.begin(), listed_.end());
+  for (std::uint32_t v = 0; v < frame.truth.size(); ++v) {
+    const bool inside = inside_[v] != 0;
+    if (half == (inside ? MeshHalf::visual : MeshHalf::haptic)) continue;
+    if (static_cast<double>(squared_distance(frame.truth[v], expected_[v])) >= (inside ? haptic : visual)) listed_.push_back(v);
+  }
+  for (const std::uint32_t v : felt) inside_[v] = 0;
 }
 
 ThesisHead ThesisSide::head_for(const MeshFrame& frame, bool key) const noexcept {
   ThesisHead head;
   head.key = key;
+  head.baseline_delta = static_cast<std::uint8_t>(baseline_delta());
   head.tick_delta = static_cast<std::uint32_t>(frame.tick - base(key).tick);
   head.count = static_cast<std::uint32_t>(listed_.size());
   std::int32_t low = MeshObject::kMaxDisplacement * 2, high = -low;
@@ -78,14 +86,14 @@ std::size_t ThesisSide::write_list() noexcept {
 }
 
 /// Everything before the index list; returns where the list begins.
-std::size_t ThesisSide::write_head(const ThesisHead& head) noexcept {
+std::size_t ThesisSide::write_head(const ThesisHead& head, std::span<std::uint8_t> packet) noexcept {
   std::size_t at = 2;
   const auto varint = [&](std::uint64_t value) {
-    for (; value >= 0x80; value >>= 7) buffer_[at++] = static_cast<std::uint8_t>(value | 0x80);
-    buffer_[at++] = static_cast<std::uint8_t>(value);
+    for (; value >= 0x80; value >>= 7) packet[at++] = static_cast<std::uint8_t>(value | 0x80);
+    packet[at++] = static_cast<std::uint8_t>(value);
   };
-  buffer_[at++] = head.key ? 1 : 0;
-  if (!head.key && header_.baseline_span > 1) buffer_[at++] = head.baseline_delta;
+  packet[at++] = head.key ? 1 : 0;
+  if (!head.key && header_.baseline_span > 1) packet[at++] = head.baseline_delta;
   varint(head.tick_delta);
   varint(head.count);
   varint(head.list_bytes);
@@ -94,24 +102,28 @@ std::size_t ThesisSide::write_head(const ThesisHead& head) noexcept {
   return at;
 }
 
-EncodedMeshPacket ThesisSide::encode(const MeshFrame& frame) noexcept {
-  expected_ = held_.displacement;
-  list_vertices(frame);
-  if (listed_.empty()) return {};
+EncodedMeshPacket ThesisSide::encode(const MeshFrame& frame, MeshHalf half) noexcept {
   const bool key = key_due(frame.tick);
+  if (half == MeshHalf::haptic && !is_felt(frame)) return {};
+  list_vertices(frame, held_, key ? MeshHalf::whole : half);  // a key packet forgets the whole shape
+  if (listed_.empty()) return {};
+  // What is felt goes first: a key packet of the rest alone would forget it.
+  if (half == MeshHalf::visual && key && is_felt(frame)) return {};
   if (key) {
-    expected_ = initial_.displacement;
-    list_vertices(frame);
+    list_vertices(frame, initial_, half);
+    if (listed_.empty())
+      listed_.push_back(is_felt(frame) ? mesh_.triangles[frame.touch->triangle][0] : 0);  // R-MES-12: at least one
   }
   const MeshState& from = base(key);
   models_ = mesh_.models_kept ? from.models : cold_;
   ThesisHead head = head_for(frame, key);
   head.list_bytes = static_cast<std::uint32_t>(write_list());
-  std::size_t at = write_head(head);
-  std::copy_n(list_.begin(), head.list_bytes, buffer_.begin() + static_cast<std::ptrdiff_t>(at));
+  const std::span<std::uint8_t> packet = buffer(half);
+  std::size_t at = write_head(head, packet);
+  std::copy_n(list_.begin(), head.list_bytes, packet.begin() + static_cast<std::ptrdiff_t>(at));
   at += head.list_bytes;
   next_.displacement = expected_;
-  RangeEncoder coder(std::span<std::uint8_t>(buffer_).subspan(at));
+  RangeEncoder coder(packet.subspan(at));
   const auto symbols = std::span<BitModel>(models_).subspan(kIndexModels);
   for (const std::uint32_t v : listed_) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -122,7 +134,7 @@ EncodedMeshPacket ThesisSide::encode(const MeshFrame& frame) noexcept {
     }
   }
   if (mesh_.models_kept) next_.models = models_;
-  return finish(at + coder.finish(), key, frame.tick, head.count);
+  return finish(at + coder.finish(), key, half, frame.tick, head.count);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@ Result<MeshObject> mesh_object(const TraceMesh& mesh, const MeshCoding& coding, 
   object.rings = coding.rings;
   object.quant_bits = coding.quant_bits;
   object.models_kept = coding.models_kept;
+  object.split = coding.profile == MeshProfile::main && coding.split;
   object.frame_period =
       static_cast<std::uint32_t>(std::clamp(std::floor(256 * mesh.period + 0.5), 1.0, double{MeshObject::kMaxFramePeriod}));
   if (coding.profile == MeshProfile::main && coding.basis) {
@@ -40,12 +41,13 @@ Result<MeshLink> MeshLink::create(const StreamHeader& header, std::size_t mesh, 
   return MeshLink(std::move(encoder), std::move(decoder), header.meshes[mesh].rest.size(), header.grid.position);
 }
 
-Result<EncodedMeshPacket> MeshLink::encode(std::int64_t tick, std::span<const float> displacements,
-                                           const std::optional<MeshTouch>& touch) noexcept {
+Result<MeshPackets> MeshLink::encode(std::int64_t tick, std::span<const float> displacements,
+                                     const std::optional<MeshTouch>& touch) noexcept {
   if (displacements.size() != 3 * vectors_.size()) return fail(Errc::invalid_argument, "R-API-5");
   for (std::size_t v = 0; v < vectors_.size(); ++v)
     vectors_[v] = {displacements[3 * v], displacements[3 * v + 1], displacements[3 * v + 2]};
-  return encoder_.encode(tick, vectors_, touch);
+  TACTUS_TRY(const EncodedMeshPacket first, encoder_.encode(tick, vectors_, touch));
+  return MeshPackets{first, encoder_.encode_rest()};
 }
 
 std::span<const Vec3> MeshLink::shown(std::int64_t tick) noexcept {
@@ -54,11 +56,15 @@ std::span<const Vec3> MeshLink::shown(std::int64_t tick) noexcept {
   return vectors_;
 }
 
-void MeshTraffic::add(std::size_t packet_bytes, std::uint64_t update_count, bool key) {
+void MeshTraffic::add(std::size_t packet_bytes, std::uint64_t update_count, bool key, MeshHalf half) {
   sizes.push_back(static_cast<std::uint32_t>(packet_bytes));
   bytes += packet_bytes;
   updates += update_count;
   keys += key ? 1 : 0;
+  if (half == MeshHalf::whole) return;
+  Half& of_half = halves[static_cast<std::size_t>(half)];
+  ++of_half.packets;
+  of_half.bytes += packet_bytes;
 }
 
 std::uint32_t MeshTraffic::quantile(double share) const {

@@ -2,6 +2,7 @@
 /// Meshes from a trace to a stream: how they are coded, one mesh's way from server to client, and what it cost.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -22,6 +23,7 @@ struct MeshCoding {
   std::uint8_t rings = MeshObject{}.rings;
   std::uint8_t quant_bits = MeshObject{}.quant_bits;         ///< thesis
   bool models_kept = MeshObject{}.models_kept;               ///< thesis
+  bool split = MeshObject{}.split;                           ///< main; of thesis the encoder alone knows
   std::function<Result<ModeBasis>(const TraceMesh&)> basis;  ///< main: makes each mesh's basis; empty: without
 };
 
@@ -33,6 +35,9 @@ Result<MeshObject> mesh_object(const TraceMesh& mesh, const MeshCoding& coding, 
 /// out  force is that of the coupling, k |x_p - x_d|
 std::optional<MeshTouch> touch_of(const TraceFrame& frame, std::size_t mesh) noexcept;
 
+/// What one shape takes, in the order of sending. Those without bytes are not needed; only split meshes have a second one.
+using MeshPackets = std::array<EncodedMeshPacket, 2>;
+
 /// One mesh from server to client: shapes in, packets through an encoder and a decoder, what the client shows out.
 class MeshLink {
  public:
@@ -41,10 +46,10 @@ class MeshLink {
   static Result<MeshLink> create(const StreamHeader& header, std::size_t mesh, const MeshEncoderOptions& options);
 
   /// Server: look at one shape.   in  displacements  [m] x y z of vertex 0 first
-  /// out  as MeshEncoder::encode; without the number of the part.   no allocation
-  Result<EncodedMeshPacket> encode(std::int64_t tick, std::span<const float> displacements,
-                                   const std::optional<MeshTouch>& touch) noexcept;
-  /// Client: decode the packet that encode() returned.   err  as MeshDecoder::decode; no allocation
+  /// out  as MeshEncoder::encode and encode_rest; without the number of the part.   no allocation
+  Result<MeshPackets> encode(std::int64_t tick, std::span<const float> displacements,
+                             const std::optional<MeshTouch>& touch) noexcept;
+  /// Client: decode a packet that encode() returned.   err  as MeshDecoder::decode; no allocation
   Result<DecodedMeshPacket> decode(std::span<const std::uint8_t> packet) noexcept { return decoder_.decode(packet); }
   /// Client: displacements [m] at a tick, one per vertex. Valid until the next call.   no allocation
   std::span<const Vec3> shown(std::int64_t tick) noexcept;
@@ -66,8 +71,12 @@ struct MeshTraffic {
   std::uint64_t keys = 0;            ///< key packets
   std::uint64_t bytes = 0;           ///< of packets, with their part numbers, without any header below them
   std::vector<std::uint32_t> sizes;  ///< of every packet [bytes]
+  struct Half {
+    std::uint64_t packets = 0, bytes = 0;
+  };
+  std::array<Half, 2> halves{};  ///< index: MeshHalf; of packets known to be halves
 
-  void add(std::size_t packet_bytes, std::uint64_t update_count, bool key);
+  void add(std::size_t packet_bytes, std::uint64_t update_count, bool key, MeshHalf half);
   std::uint32_t quantile(double share) const;  ///< of the packets' sizes [bytes]; 1: the largest, 0 without packets
 };
 

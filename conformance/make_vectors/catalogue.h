@@ -59,6 +59,7 @@ void add_rigid_rules(Catalogue& catalogue);
 void add_client(Catalogue& catalogue);
 void add_mesh_header(Catalogue& catalogue);
 void add_mesh_main(Catalogue& catalogue);
+void add_mesh_split(Catalogue& catalogue);
 void add_mesh_thesis(Catalogue& catalogue);
 void add_mesh_parts(Catalogue& catalogue);
 void add_mesh_rules(Catalogue& catalogue);

@@ -38,6 +38,7 @@ Bytes RawMesh::bytes() const {
     w.u8(models_kept);
   } else {
     w.u32(frame_period);
+    w.u8(split);
   }
   w.bytes(vertex_count.value_or(varint(shape.rest.size())));
   w.bytes(triangle_count.value_or(varint(shape.triangles.size())));
@@ -140,6 +141,8 @@ Bytes MeshComposer::packet(const MainStep& step) {
   const MeshState base = baseline(step.at);
   MeshState next = base;
   MeshHead head = head_of(step.at, base);
+  head.half = step.half;
+  head.completes = step.completes;
   head.touched = step.triangle.has_value();
   head.triangle = step.triangle.value_or(base.triangle);
   head.haptic = step.triangle ? step.haptic : base.haptic;
@@ -150,15 +153,23 @@ Bytes MeshComposer::packet(const MainStep& step) {
   Bytes packet = with_payload(sequence_, [&](RangeEncoder& coder) {
     MeshModels models = mesh_start_models();
     code_mesh_start(coder, models, mesh, fixed_->span, head);
-    code_mesh_bounds(coder, models, mesh, fixed_->rings, base, head);
-    code_coefficients(coder, models, coefficients);
-    const std::uint32_t frames = mesh_steps(mesh, head.tick_delta);
+    code_mesh_head(coder, models, mesh, fixed_->rings, base, head);
+    std::span<const std::uint32_t> area;
+    if (head.touched) {
+      fixed_->rings.triangles_around(head.triangle, mesh.rings);
+      area = fixed_->rings.vertices();
+    }
+    fixed_->pass.set_bounds(head.visual, head.touched ? haptic_bound(head.haptic) : head.visual, area, head.half);
     std::vector<Vec3i> expected(mesh.rest.size());
-    fixed_->predictor.predict(base, frames, expected);
-    scale_coefficients(mesh, head.visual, coefficients);
-    fixed_->predictor.add_modes(coefficients, expected);
-    if (head.touched) fixed_->rings.triangles_around(head.triangle, mesh.rings);
-    fixed_->pass.set_bounds(head.visual, head.touched ? haptic_bound(head.haptic) : head.visual, fixed_->rings.vertices());
+    fixed_->predictor.predict(base, step.at.tick, expected);
+    if (head.half == MeshHalf::haptic) {
+      keep_motion(base, next);
+    } else {
+      code_coefficients(coder, models, coefficients);
+      scale_coefficients(mesh, head.visual, coefficients);
+      fixed_->predictor.add_modes(coefficients, fixed_->pass.fixed(), expected);
+      fixed_->predictor.learn(base, step.at.tick, next);
+    }
     const auto residual = [&](std::uint32_t v, const VertexContext& context, const Vec3i& place, std::uint32_t bound,
                               std::int64_t size) {
       Vec3i r = step.residuals ? step.residuals({v, place, bound, size}) : Vec3i{};
@@ -166,7 +177,6 @@ Bytes MeshComposer::packet(const MainStep& step) {
       return r;
     };
     fixed_->pass.run(expected, next.displacement, residual);
-    fixed_->predictor.learn(frames, next);
     keep_head(head, base, next);
   });
   keep(step.at, std::move(next));

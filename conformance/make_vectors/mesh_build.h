@@ -45,6 +45,7 @@ struct RawMesh {
   std::uint8_t quant_bits = 8;       ///< thesis
   std::uint8_t models_kept = 0;      ///< thesis
   std::uint32_t frame_period = 256;  ///< main
+  std::uint8_t split = 0;            ///< main
   std::vector<std::uint16_t> mode_steps{};
   std::vector<std::int32_t> entries{};    ///< modes x vertices x 3
   std::optional<Bytes> vertex_count{};    ///< in place of the true number
@@ -81,6 +82,8 @@ struct MeshPlace {
 
 struct MainStep {
   MeshPlace at;
+  MeshHalf half = MeshHalf::whole;  ///< whole: of meshes that are not split
+  bool completes = false;
   std::optional<std::uint32_t> triangle{};  ///< touched
   std::uint32_t haptic = 0;                 ///< level
   std::uint32_t visual = 100;

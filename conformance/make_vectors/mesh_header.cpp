@@ -30,7 +30,7 @@ Bytes around(const Bytes& meshes) {
 
 /// A mesh of profile main up to `triangle_count`, and what follows.
 Bytes counted(std::uint64_t vertices, std::uint64_t triangles, const Bytes& rest) {
-  return around(Bytes{1, 1, 1, 'm', 2, 0, 1, 0, 0} + varint(vertices) + varint(triangles) + rest);
+  return around(Bytes{1, 1, 1, 'm', 2, 0, 1, 0, 0, 0} + varint(vertices) + varint(triangles) + rest);
 }
 
 Bytes zeros(std::size_t count) { return Bytes(count, 0); }
@@ -41,7 +41,8 @@ void add_valid(Catalogue& c) {
                            {.shape = one_vertex(), .name = "b", .rings = 0, .frame_period = 1}})
               .bytes(),
           {"R-MES-1", "R-MES-3", "R-MES-4"});
-  RawMesh high{.shape = one_triangle(), .name = "\xc3\xa9lan", .rings = 32, .frame_period = 1 << 28, .mode_steps = {1, 65535}};
+  RawMesh high{
+      .shape = one_triangle(), .name = "\xc3\xa9lan", .rings = 32, .frame_period = 1 << 28, .split = 1, .mode_steps = {1, 65535}};
   for (int i = 0; i < 18; ++i) high.entries.push_back(i % 2 == 0 ? 2047 : -2047);
   high.shape.rest = {{-kTwo31, kTwo31 - 1, 0}, {kTwo31 - 1, -kTwo31, 0}, {-kTwo31, kTwo31 - 1, 1}};
   c.valid("upper-limits", "Thesis, main: every field at its upper limit, rest positions at both ends of 32 bits.",
@@ -63,6 +64,7 @@ void add_counts(Catalogue& c) {
             around(varint(256)));
   c.invalid("second-mesh-missing", "mesh_count is 2; one follows.", cut, around(varint(2) + RawMesh{}.bytes()));
   c.invalid("cut-parameters", "The body ends inside frame_period.", cut, around({1, 1, 1, 'm', 2, 0, 1}));
+  c.invalid("cut-before-split", "The body ends before split.", cut, around({1, 1, 1, 'm', 2, 0, 1, 0, 0}));
   c.invalid("overlong-vertex-count", "vertex_count 3 is written in two bytes.", overlong, changed(1, [](RawMesh& m) {
               m.vertex_count = Bytes{0x83, 0x00};
             }));
@@ -74,7 +76,7 @@ void add_counts(Catalogue& c) {
   c.invalid("overlong-rest", "A rest coordinate's difference 0 is written in two bytes.", overlong,
             counted(1, 0, Bytes{0x80, 0x00} + zeros(3)));
   c.invalid("overlong-then-cut", "A mesh's vertex_count is overlong, then the body ends: the first fault counts.", overlong,
-            around({1, 1, 1, 'm', 2, 0, 1, 0, 0, 0x83, 0x00}));
+            around({1, 1, 1, 'm', 2, 0, 1, 0, 0, 0, 0x83, 0x00}));
 }
 
 void add_rules(Catalogue& c) {
@@ -88,6 +90,7 @@ void add_rules(Catalogue& c) {
   c.invalid("frame-period-0", "frame_period is 0.", parameter, changed(1, [](RawMesh& m) { m.frame_period = 0; }));
   c.invalid("frame-period-too-long", "frame_period is 2^28 + 1.", parameter,
             changed(1, [](RawMesh& m) { m.frame_period = (1 << 28) + 1; }));
+  c.invalid("split-2", "split is 2.", {"malformed", "R-MES-3"}, changed(1, [](RawMesh& m) { m.split = 2; }));
   c.invalid("no-vertices", "vertex_count is 0.", count, counted(0, 0, zeros(1)));
   c.invalid("too-many-vertices", "vertex_count is 2^20 + 1.", count, counted((1 << 20) + 1, 0, zeros(1)));
   c.invalid("too-many-triangles", "triangle_count is 2^21 + 1.", count, counted(3, (1 << 21) + 1, zeros(9)));

@@ -140,7 +140,7 @@ void add_bounds(Catalogue& c) {
                      MeshRings rings(composer.mesh());
                      MeshHead head{.key = true, .tick_delta = 5, .visual = 9};
                      code_mesh_start(coder, models, composer.mesh(), 1, head);
-                     code_mesh_bounds(coder, models, composer.mesh(), rings, rest, head);
+                     code_mesh_head(coder, models, composer.mesh(), rings, rest, head);
                      const MeshHierarchy order = mesh_hierarchy(composer.mesh());
                      for (const std::uint32_t v : order.order) {
                        const std::size_t level = std::min<std::size_t>(order.level[v], 2);

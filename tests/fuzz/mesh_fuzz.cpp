@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Any bytes as packets of four small meshes.
+/// Any bytes as packets of small meshes.
 #include <cstdlib>
 #include <vector>
 
@@ -27,6 +27,7 @@ StreamHeader scene(std::uint8_t choice) {
     mesh.basis = make_mode_basis(ramp, 1).value();
   }
   if (choice & 4) header.baseline_span = 5;
+  if (choice & 8 && !(choice & 1)) mesh.split = true;
   header.meshes.push_back(mesh);
   return header;
 }

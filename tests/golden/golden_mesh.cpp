@@ -43,13 +43,22 @@ std::vector<double> bumps(const TriMesh& mesh, std::size_t modes) {
   return out;
 }
 
-bool run(const char* name, MeshProfile profile, std::size_t modes, double visual, double noise) {
+struct Setting {
+  MeshProfile profile = MeshProfile::main;
+  std::size_t modes = 0;
+  double visual = 1e-3, noise = 1e-5;
+  bool split = false;
+};
+
+bool run(const char* name, const Setting& setting) {
+  const auto& [profile, modes, visual, noise, split] = setting;
   const TriMesh mesh = sheet();
   StreamHeader header;
   header.tick_rate = 60;
   header.baseline_span = 4;
   MeshObject object = make_mesh_object("sheet", mesh, header.grid.position).value();
   object.profile = profile;
+  object.split = split;
   if (modes > 0 && profile == MeshProfile::main) object.basis = make_mode_basis(bumps(mesh, modes), modes).value();
   header.meshes.push_back(object);
   MeshEncoderOptions options;
@@ -81,15 +90,18 @@ bool run(const char* name, MeshProfile profile, std::size_t modes, double visual
     }
     std::optional<MeshTouch> touch;
     if (tick % 100 > 30) touch = MeshTouch{static_cast<std::uint32_t>(tick / 3 % 300), 1 + uniform(random), 500};
-    const auto packet = encoder->encode(tick, displacement, touch);
-    if (!packet) return false;
-    if (packet->bytes.empty()) continue;
-    for (const std::uint8_t b : packet->bytes) stream.add_byte(b);
-    const auto decoded = decoder->decode(packet->bytes);
-    if (!decoded || decoder->state_hash() != encoder->state_hash()) return false;
-    stream.add32(decoded->final_range);
-    stream.add32(decoded->final_code);
-    states.add64(decoder->state_hash());
+    const auto first = encoder->encode(tick, displacement, touch);
+    if (!first) return false;
+    for (const EncodedMeshPacket& packet : {*first, encoder->encode_rest()}) {
+      if (packet.bytes.empty()) continue;
+      for (const std::uint8_t b : packet.bytes) stream.add_byte(b);
+      const auto decoded = decoder->decode(packet.bytes);
+      if (!decoded) return false;
+      stream.add32(decoded->final_range);
+      stream.add32(decoded->final_code);
+      states.add64(decoder->state_hash());
+    }
+    if (decoder->state_hash() != encoder->state_hash()) return false;
   }
   std::printf("%s stream %016" PRIx64 "\n%s states %016" PRIx64 "\n", name, stream.value(), name, states.value());
   return true;
@@ -98,9 +110,9 @@ bool run(const char* name, MeshProfile profile, std::size_t modes, double visual
 }  // namespace
 
 bool run_meshes() {
-  return run("mesh-thesis", MeshProfile::thesis, 0, 1e-3, 1e-5) && run("mesh-main", MeshProfile::main, 0, 1e-3, 1e-5) &&
-         run("mesh-noise", MeshProfile::main, 0, 2e-4, 1e-3) && run("mesh-basis", MeshProfile::main, 8, 1e-3, 1e-5) &&
-         run("mesh-exact", MeshProfile::main, 5, 0, 1e-5);
+  return run("mesh-thesis", {.profile = MeshProfile::thesis}) && run("mesh-main", {}) &&
+         run("mesh-noise", {.visual = 2e-4, .noise = 1e-3}) && run("mesh-basis", {.modes = 8}) &&
+         run("mesh-exact", {.modes = 5, .visual = 0}) && run("mesh-split", {.modes = 8, .split = true});
 }
 
 }  // namespace tactus::golden

@@ -32,6 +32,8 @@ bool count_file(const StreamHeader& header, const Packets& packets, Counts& coun
 bool print_table(const Counts& counts) {
   Table table(counts, 5);
   table.tree("KEY", 1);
+  table.tree("HALF", 1);
+  table.tree("COMPLETES", 1);
   for (const char* name : {"BASELINE", "TICK", "LATE"}) table.magnitude(name);
   for (std::size_t i = 0; i < 2; ++i) table.tree(indexed("TOUCHED", {i}), 1);
   table.tree("SAME_TRIANGLE", 1);

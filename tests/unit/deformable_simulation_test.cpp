@@ -288,7 +288,7 @@ double force_difference(double visual) {
   for (int i = 0; i < 2500; ++i) {
     if (!simulation->step()) break;
     const TraceFrame& frame = simulation->frame();
-    if (frame.meshes[0].updated) packets += simulation->sent(0).bytes.empty() ? 0U : 1U;
+    if (frame.meshes[0].updated) packets += simulation->sent(0).packets[0].bytes.empty() ? 0U : 1U;
     largest = std::max(largest, norm(frame.users[0].force - frame.users[0].server_force));
   }
   EXPECT_GT(packets, 20u);

@@ -22,18 +22,27 @@ struct Recorded {
   std::vector<Bytes> packets;
 };
 
-Recorded record(MeshProfile profile, std::uint8_t span = 1, std::size_t modes = 0) {
+struct Coding {
+  MeshProfile profile;
+  std::size_t modes = 0;
+  bool split = false;
+};
+
+Recorded record(const Coding& coding, std::uint8_t span = 1) {
+  const auto& [profile, modes, split] = coding;
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
   Recorded out;
   out.header = testing::mesh_header(mesh, profile, modes > 0 ? testing::wave_basis(mesh, kSquares, modes) : ModeBasis{});
   out.header.baseline_span = span;
   out.header.meshes[0].models_kept = profile == MeshProfile::thesis;
+  out.header.meshes[0].split = split;
   testing::DentedSheet sheet(mesh, kSquares);
   auto encoder = MeshEncoder::create(out.header, 0).value();
   for (std::int64_t k = 0; k < 40; ++k) {
     const auto frame = sheet.frame(k);
-    const auto packet = encoder.encode(k, frame.displacement, frame.touch).value();
-    if (!packet.bytes.empty()) out.packets.emplace_back(packet.bytes.begin(), packet.bytes.end());
+    const auto first = encoder.encode(k, frame.displacement, frame.touch).value();
+    for (const EncodedMeshPacket& packet : {first, encoder.encode_rest()})
+      if (!packet.bytes.empty()) out.packets.emplace_back(packet.bytes.begin(), packet.bytes.end());
   }
   return out;
 }
@@ -44,7 +53,7 @@ Result<DecodedMeshPacket> decode_exact(MeshDecoder& decoder, const Bytes& packet
   return decoder.decode({exact.get(), packet.size()});
 }
 
-class DamagedPackets : public ::testing::TestWithParam<std::tuple<MeshProfile, std::size_t>> {
+class DamagedPackets : public ::testing::TestWithParam<Coding> {
  protected:
   /// A decoder that has seen the first ten packets.
   MeshDecoder started() const {
@@ -66,7 +75,7 @@ class DamagedPackets : public ::testing::TestWithParam<std::tuple<MeshProfile, s
     EXPECT_EQ(decoder.state_hash(), hash);
   }
 
-  const Recorded recorded_ = record(std::get<0>(GetParam()), 2, std::get<1>(GetParam()));
+  const Recorded recorded_ = record(GetParam(), 2);
 };
 
 TEST_P(DamagedPackets, EveryPrefixEveryBitEveryByte) {
@@ -103,12 +112,11 @@ TEST_P(DamagedPackets, RandomBytes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Profiles, DamagedPackets,
-                         ::testing::Values(std::tuple{MeshProfile::thesis, std::size_t{0}},
-                                           std::tuple{MeshProfile::main, std::size_t{0}},
-                                           std::tuple{MeshProfile::main, std::size_t{6}}));
+                         ::testing::Values(Coding{MeshProfile::thesis}, Coding{MeshProfile::main}, Coding{MeshProfile::main, 6},
+                                           Coding{MeshProfile::main, 6, true}));
 
 TEST(MeshDecoder, LostPacketsAreNoticedAndKeysRepair) {
-  const Recorded recorded = record(MeshProfile::main);
+  const Recorded recorded = record({MeshProfile::main});
   auto decoder = MeshDecoder::create(recorded.header, 0).value();
   EXPECT_STREQ(decoder.decode(recorded.packets[1]).error().rule, "R-PKT-4");
   ASSERT_TRUE(decoder.decode(recorded.packets[0]));
@@ -118,7 +126,7 @@ TEST(MeshDecoder, LostPacketsAreNoticedAndKeysRepair) {
 }
 
 TEST(MeshDecoder, LimitsAndLengths) {
-  Recorded recorded = record(MeshProfile::main);
+  Recorded recorded = record({MeshProfile::main});
   DecodeLimits limits;
   limits.packet_bytes = 4;
   auto decoder = MeshDecoder::create(recorded.header, 0, limits).value();

@@ -18,6 +18,7 @@ StreamHeader two_meshes() {
   thesis.profile = MeshProfile::thesis;
   thesis.quant_bits = 10;
   thesis.models_kept = true;
+  header.meshes[0].split = true;
   thesis.rest[0] = {-2147483647 - 1, 2147483647, 0};
   header.meshes.push_back(thesis);
   header.objects.push_back({"box", Dof::all, {}});
@@ -98,20 +99,22 @@ TEST(MeshHeader, EachRuleOfTheReader) {
     const auto parsed = parse_mesh(reader, 1000);
     return parsed ? std::string_view("none") : std::string_view(parsed.error().rule);
   };
-  // profile, name (2), rings, frame_period (4), vertices, triangles, 9 coordinates, 3 corners, modes
+  // profile, name (2), rings, frame_period (4), split, vertices, triangles, 9 coordinates, 3 corners, modes
   EXPECT_EQ(rule(0, {1}), "none");
   EXPECT_EQ(rule(0, {2}), "R-MES-2");
   EXPECT_EQ(rule(3, {33}), "R-MES-3");
-  EXPECT_EQ(rule(8, {0}), "R-MES-4");
-  EXPECT_EQ(rule(8, {0x80, 0x80, 0x80, 1}), "R-MES-4");
-  EXPECT_EQ(rule(8, {0x80, 0x80, 2}), "R-STR-14");
-  EXPECT_EQ(rule(8, {0xff, 1}), "R-STR-5");
-  EXPECT_EQ(rule(10, {0x80, 0x80, 0x80, 0x80, 0x10}), "R-MES-5");
-  EXPECT_EQ(rule(19, {6}), "R-MES-6");
-  EXPECT_EQ(rule(19, {1}), "R-MES-6");
-  EXPECT_EQ(rule(22, {65}), "R-MES-7");
-  EXPECT_EQ(rule(22, {1}), "R-STR-5");
-  EXPECT_EQ(rule(22, {0x81, 0}), "R-STR-5");
+  EXPECT_EQ(rule(8, {1}), "none");
+  EXPECT_EQ(rule(8, {2}), "R-MES-3");
+  EXPECT_EQ(rule(9, {0}), "R-MES-4");
+  EXPECT_EQ(rule(9, {0x80, 0x80, 0x80, 1}), "R-MES-4");
+  EXPECT_EQ(rule(9, {0x80, 0x80, 2}), "R-STR-14");
+  EXPECT_EQ(rule(9, {0xff, 1}), "R-STR-5");
+  EXPECT_EQ(rule(11, {0x80, 0x80, 0x80, 0x80, 0x10}), "R-MES-5");
+  EXPECT_EQ(rule(20, {6}), "R-MES-6");
+  EXPECT_EQ(rule(20, {1}), "R-MES-6");
+  EXPECT_EQ(rule(23, {65}), "R-MES-7");
+  EXPECT_EQ(rule(23, {1}), "R-STR-5");
+  EXPECT_EQ(rule(23, {0x81, 0}), "R-STR-5");
 }
 
 }  // namespace

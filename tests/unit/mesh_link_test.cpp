@@ -63,18 +63,27 @@ TEST(MeshLink, LightestTouchCounts) {
   EXPECT_FALSE(touch_of(frame, 2));
 }
 
-TEST(MeshLink, BoundsHoldAndAPlayerShowsTheSame) {
+class LinkedMesh : public ::testing::TestWithParam<std::tuple<MeshProfile, bool>> {};
+
+TEST_P(LinkedMesh, BoundsHoldAndAPlayerShowsTheSame) {
+  const auto& [profile, split] = GetParam();
   SheetTrace trace;
   trace.move(0);
   MeshCoding coding;
+  coding.profile = profile;
+  coding.split = split;
   coding.basis = [](const TraceMesh& mesh) -> Result<ModeBasis> {
     return mesh.name == "sheet" ? testing::wave_basis(mesh.rest, kSquares, 6) : ModeBasis{};
   };
   const StreamHeader header = stream_header(trace.info, trace.frame, coding).value();
   ASSERT_EQ(header.meshes.size(), 2u);
-  EXPECT_EQ(header.meshes[0].frame_period, 512u);
-  EXPECT_EQ(header.meshes[0].basis.steps.size(), 6u);
+  if (profile == MeshProfile::main) {
+    EXPECT_EQ(header.meshes[0].frame_period, 512u);
+    EXPECT_EQ(header.meshes[0].basis.steps.size(), 6u);
+    EXPECT_EQ(header.meshes[0].split, split);
+  }
   MeshEncoderOptions options;
+  options.split = split;
   MeshLink link = MeshLink::create(header, 0, options).value();
   MeshFidelity fidelity(trace.info.meshes[0].rest, options.thresholds, coding.rings, header.grid.position);
   MeshTraffic traffic;
@@ -86,22 +95,27 @@ TEST(MeshLink, BoundsHoldAndAPlayerShowsTheSame) {
     trace.move(tick);
     if (!trace.frame.meshes[0].updated) continue;
     const auto touch = touch_of(trace.frame, 0);
-    const auto packet = link.encode(tick, trace.frame.meshes[0].displacements, touch).value();
-    if (!packet.bytes.empty()) {
+    const MeshPackets packets = link.encode(tick, trace.frame.meshes[0].displacements, touch).value();
+    for (const EncodedMeshPacket& packet : packets) {
+      if (packet.bytes.empty()) continue;
       ASSERT_TRUE(link.decode(packet.bytes));
       ASSERT_TRUE(writer.add(tick, parts.join(1, packet.bytes), packet.key));
-      traffic.add(packet.bytes.size(), packet.updates, packet.key);
+      traffic.add(packet.bytes.size(), packet.updates, packet.key, packet.half);
     }
     shown.emplace_back(link.shown(tick).begin(), link.shown(tick).end());
     fidelity.add(trace.frame.meshes[0].displacements, shown.back(), touch);
   }
   ASSERT_TRUE(writer.finish());
   EXPECT_EQ(fidelity.frames(), 200u);
-  EXPECT_EQ(fidelity.all().violations, 0u);
+  if (profile == MeshProfile::main) {
+    EXPECT_EQ(fidelity.all().violations, 0u);
+    EXPECT_LE(fidelity.worst_ratio(), 1);
+  }
   EXPECT_GT(fidelity.area().vertices, 100u) << "or nothing was touched";
   EXPECT_GT(fidelity.worst_ratio(), 0.9);
-  EXPECT_LE(fidelity.worst_ratio(), 1);
   EXPECT_GT(traffic.sizes.size(), 50u);
+  EXPECT_EQ(traffic.halves[0].packets + traffic.halves[1].packets, split ? traffic.sizes.size() : 0u);
+  EXPECT_EQ(traffic.halves[0].packets > 50, split);
 
   const std::string bytes = file.str();
   auto player = StreamPlayer::open({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}).value();
@@ -123,6 +137,9 @@ TEST(MeshLink, BoundsHoldAndAPlayerShowsTheSame) {
   EXPECT_EQ(packets, traffic.sizes.size());
 }
 
+INSTANTIATE_TEST_SUITE_P(Profiles, LinkedMesh,
+                         ::testing::Combine(::testing::Values(MeshProfile::thesis, MeshProfile::main), ::testing::Bool()));
+
 TEST(MeshLink, SendingAllocatesNothing) {
   SheetTrace trace;
   trace.move(0);
@@ -135,8 +152,9 @@ TEST(MeshLink, SendingAllocatesNothing) {
     trace.move(tick);
     const std::uint64_t before = testing::allocated_bytes();
     const auto touch = touch_of(trace.frame, 0);
-    const auto packet = link.encode(tick, trace.frame.meshes[0].displacements, touch);
-    if (packet && !packet->bytes.empty() && link.decode(packet->bytes)) parts.join(1, packet->bytes);
+    const auto packets = link.encode(tick, trace.frame.meshes[0].displacements, touch).value();
+    for (const EncodedMeshPacket& packet : packets)
+      if (!packet.bytes.empty() && link.decode(packet.bytes)) parts.join(1, packet.bytes);
     fidelity.add(trace.frame.meshes[0].displacements, link.shown(tick), touch);
     allocated += testing::allocated_bytes() - before;
   }
@@ -198,11 +216,15 @@ TEST(MeshFidelity, BoundsDoNotGoBelowTheGrid) {
 TEST(MeshTraffic, Quantiles) {
   MeshTraffic traffic;
   EXPECT_EQ(traffic.quantile(0.99), 0u);
-  for (std::size_t size = 1; size <= 200; ++size) traffic.add(size, 1, size == 1);
+  for (std::size_t size = 1; size <= 200; ++size)
+    traffic.add(size, 1, size == 1, size % 2 == 0 ? MeshHalf::haptic : MeshHalf::whole);
   EXPECT_EQ(traffic.quantile(0.99), 198u);
   EXPECT_EQ(traffic.quantile(1), 200u);
   EXPECT_EQ(traffic.keys, 1u);
   EXPECT_EQ(traffic.bytes, 20100u);
+  EXPECT_EQ(traffic.halves[0].packets, 100u);
+  EXPECT_EQ(traffic.halves[0].bytes, 10100u);
+  EXPECT_EQ(traffic.halves[1].packets, 0u);
 }
 
 }  // namespace

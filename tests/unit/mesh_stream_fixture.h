@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <random>
 #include <string>
@@ -99,13 +100,22 @@ class BoundWatch {
   BoundWatch(const StreamHeader& header, const MeshThresholds& thresholds)
       : mesh_(header.meshes[0]), position_(header.grid.position), thresholds_(thresholds), rings_(mesh_) {}
 
-  void look(const SheetFrame& frame, std::span<const MeshDecoder::Displacement> shown) {
-    std::vector<double> bound(shown.size(), thresholds_.visual);
+  void look(const SheetFrame& frame, std::span<const MeshDecoder::Displacement> shown) { look(frame, shown, thresholds_.visual); }
+  /// At the area of interest alone.
+  void look_at_area(const SheetFrame& frame, std::span<const MeshDecoder::Displacement> shown) {
+    look(frame, shown, std::numeric_limits<double>::infinity());
+  }
+  std::size_t broken() const { return broken_; }
+  double worst() const { return worst_; }  ///< [m]
+
+ private:
+  void look(const SheetFrame& frame, std::span<const MeshDecoder::Displacement> shown, double outside) {
+    std::vector<double> bound(shown.size(), outside);
     if (frame.touch && thresholds_.weber_fraction) {
       const double h =
           *thresholds_.weber_fraction * std::max(frame.touch->force / frame.touch->stiffness, thresholds_.depth_floor);
       rings_.triangles_around(frame.touch->triangle, mesh_.rings);
-      for (const std::uint32_t v : rings_.vertices()) bound[v] = std::min(bound[v], h);
+      for (const std::uint32_t v : rings_.vertices()) bound[v] = std::min(thresholds_.visual, h);
     }
     const double grid = 0.8660255 * std::ldexp(1.0, -static_cast<int>(position_));
     for (std::size_t v = 0; v < shown.size(); ++v) {
@@ -114,10 +124,7 @@ class BoundWatch {
       if (!(error <= std::max(bound[v], grid))) ++broken_;
     }
   }
-  std::size_t broken() const { return broken_; }
-  double worst() const { return worst_; }  ///< [m]
 
- private:
   MeshObject mesh_;
   unsigned position_;
   MeshThresholds thresholds_;

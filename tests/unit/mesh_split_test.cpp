@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Haptic and visual halves: each keeps the bounds it vouches for, and the loss of one does not stop the other.
+#include <gtest/gtest.h>
+
+#include "codec/mesh/mesh_encoder.h"
+#include "tests/property/allocated.h"
+#include "tests/unit/mesh_stream_fixture.h"
+
+namespace tactus {
+namespace {
+
+using testing::BoundWatch;
+using testing::DentedSheet;
+using testing::SheetFrame;
+
+constexpr std::uint32_t kSquares = 12;
+constexpr std::int64_t kFrames = 300;
+
+StreamHeader split_header(const TriMesh& mesh, std::size_t modes, std::uint8_t span = 1) {
+  StreamHeader header =
+      testing::mesh_header(mesh, MeshProfile::main, modes > 0 ? testing::wave_basis(mesh, kSquares, modes) : ModeBasis{});
+  header.meshes[0].split = true;
+  header.baseline_span = span;
+  return header;
+}
+
+/// Both ends of one mesh.
+class Ends {
+ public:
+  Ends(const StreamHeader& header, const MeshEncoderOptions& options)
+      : encoder(MeshEncoder::create(header, 0, options).value()), decoder(MeshDecoder::create(header, 0).value()) {}
+
+  /// Decode what is not empty. The ends must agree afterwards.
+  void deliver(const EncodedMeshPacket& packet, std::int64_t tick) {
+    if (packet.bytes.empty()) return;
+    const auto decoded = decoder.decode(packet.bytes);
+    ASSERT_TRUE(decoded) << decoded.error().rule << " at tick " << tick;
+    ASSERT_EQ(decoded->tick, tick);
+    ASSERT_EQ(decoded->updates, packet.updates);
+    ASSERT_EQ(decoder.state_hash(), encoder.state_hash()) << "at tick " << tick;
+    bytes += packet.bytes.size();
+    ++packets[static_cast<std::size_t>(packet.half)];
+  }
+
+  MeshEncoder encoder;
+  MeshDecoder decoder;
+  std::size_t bytes = 0;
+  std::array<std::size_t, 3> packets{};  // by half
+};
+
+class SplitBounds : public ::testing::TestWithParam<std::tuple<MeshThresholds, std::size_t, double>> {};
+
+TEST_P(SplitBounds, HoldAfterEachHalf) {
+  const auto& [thresholds, modes, noise] = GetParam();
+  const TriMesh mesh = testing::sheet(kSquares, kSquares);
+  const StreamHeader header = split_header(mesh, modes);
+  Ends ends(header, {.thresholds = thresholds, .key_interval = 1});
+  DentedSheet sheet(mesh, kSquares, noise);
+  BoundWatch felt(header, thresholds), seen(header, thresholds);
+  for (std::int64_t k = 0; k < kFrames; ++k) {
+    const SheetFrame frame = sheet.frame(k);
+    const auto first = ends.encoder.encode(k, frame.displacement, frame.touch);
+    ASSERT_TRUE(first);
+    EXPECT_EQ(first->half, first->bytes.empty() ? MeshHalf::whole : MeshHalf::haptic);
+    ends.deliver(*first, k);
+    felt.look_at_area(frame, ends.decoder.displacements_at(k));
+    ends.deliver(ends.encoder.encode_rest(), k);
+    if (HasFatalFailure()) return;
+    seen.look(frame, ends.decoder.displacements_at(k));
+    EXPECT_TRUE(ends.encoder.encode_rest().bytes.empty());
+  }
+  EXPECT_EQ(felt.broken(), 0U);
+  EXPECT_EQ(seen.broken(), 0U);
+  EXPECT_EQ(ends.packets[0] > 0, thresholds.weber_fraction.has_value());
+  EXPECT_GT(ends.packets[1], 20U);
+  EXPECT_EQ(ends.packets[2], 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Settings, SplitBounds,
+                         ::testing::Combine(::testing::Values(MeshThresholds{2.5e-4, 0.025}, MeshThresholds{1e-3, {}},
+                                                              MeshThresholds{5e-5, 0.1}, MeshThresholds{0, 0.025},
+                                                              MeshThresholds{1e-3, 0.0}),
+                                            ::testing::Values(0, 8), ::testing::Values(0.0, 1e-4)));
+
+TEST(MeshSplit, MotionIsPredictedAcrossHapticHalves) {
+  const TriMesh mesh = testing::sheet(kSquares, kSquares);
+  std::array<std::size_t, 2> bytes{};
+  for (const bool split : {false, true}) {
+    StreamHeader header = split_header(mesh, 8);
+    header.meshes[0].split = split;
+    Ends ends(header, {});
+    DentedSheet sheet(mesh, kSquares);
+    for (std::int64_t k = 0; k < kFrames; ++k) {
+      const SheetFrame frame = sheet.frame(k);
+      ends.deliver(ends.encoder.encode(k, frame.displacement, frame.touch).value(), k);
+      ends.deliver(ends.encoder.encode_rest(), k);
+    }
+    bytes[split ? 1 : 0] = ends.bytes;
+    EXPECT_EQ(ends.packets[2] > 0, !split);
+  }
+  EXPECT_LT(bytes[1], 2 * bytes[0]);
+}
+
+/// A sender that drops visual halves: what is felt stays within its bound, what is seen again as soon as one arrives.
+TEST(MeshSplit, VisualHalvesMayBeLost) {
+  const TriMesh mesh = testing::sheet(kSquares, kSquares);
+  const MeshThresholds thresholds;
+  for (const std::uint8_t span : {std::uint8_t{1}, std::uint8_t{2}, std::uint8_t{4}}) {
+    const StreamHeader header = split_header(mesh, 6, span);
+    Ends ends(header, {.thresholds = thresholds, .key_interval = 0});
+    DentedSheet sheet(mesh, kSquares);
+    BoundWatch felt(header, thresholds), seen(header, thresholds);
+    std::size_t lost = 0, keys = 0;
+    for (std::int64_t k = 0; k < kFrames; ++k) {
+      const SheetFrame frame = sheet.frame(k);
+      const auto first = ends.encoder.encode(k, frame.displacement, frame.touch).value();
+      keys += first.key ? 1U : 0U;
+      ends.deliver(first, k);
+      felt.look_at_area(frame, ends.decoder.displacements_at(k));
+      const EncodedMeshPacket rest = ends.encoder.encode_rest();
+      keys += rest.key ? 1U : 0U;
+      if (k % 3 == 1 && !rest.bytes.empty() && !rest.key) {
+        ends.encoder.forget_last();
+        ++lost;
+        EXPECT_EQ(ends.decoder.state_hash(), ends.encoder.state_hash());
+        continue;
+      }
+      ends.deliver(rest, k);
+      if (HasFatalFailure()) return;
+      seen.look(frame, ends.decoder.displacements_at(k));
+    }
+    EXPECT_GT(lost, 20U);
+    EXPECT_EQ(felt.broken(), 0U);
+    EXPECT_EQ(seen.broken(), 0U);
+    if (span > 1) {
+      EXPECT_EQ(keys, 1U) << "the baseline before the lost packet is kept";
+    } else {
+      EXPECT_GT(keys, lost / 2);
+    }
+  }
+}
+
+/// Losses of any packet, whole ones too, and of key packets; the encoder is told once per packet.
+TEST(MeshSplit, AnyPacketMayBeLost) {
+  const TriMesh mesh = testing::sheet(kSquares, kSquares);
+  for (const MeshProfile profile : {MeshProfile::thesis, MeshProfile::main}) {
+    for (const bool split : {false, true}) {
+      StreamHeader header = testing::mesh_header(mesh, profile);
+      header.meshes[0].split = profile == MeshProfile::main && split;
+      header.baseline_span = 3;
+      Ends ends(header, {.thresholds = {}, .key_interval = 0.5, .split = split});
+      DentedSheet sheet(mesh, kSquares);
+      BoundWatch seen(header, {});
+      std::mt19937_64 random(3);
+      for (std::int64_t k = 0; k < kFrames; ++k) {
+        const SheetFrame frame = sheet.frame(k);
+        bool lost = false;
+        const auto pass = [&](const EncodedMeshPacket& packet) {
+          if (!packet.bytes.empty() && random() % 3 == 0) {
+            ends.encoder.forget_last();
+            ends.encoder.forget_last();  // once is enough
+            lost = true;
+          } else {
+            ends.deliver(packet, k);
+          }
+        };
+        pass(ends.encoder.encode(k, frame.displacement, frame.touch).value());
+        pass(ends.encoder.encode_rest());
+        if (HasFatalFailure()) return;
+        ASSERT_EQ(ends.decoder.state_hash(), ends.encoder.state_hash());
+        if (!lost && profile == MeshProfile::main) seen.look(frame, ends.decoder.displacements_at(k));
+      }
+      EXPECT_EQ(seen.broken(), 0U);
+      EXPECT_GT(ends.packets[split ? 1 : 2], 50U);
+    }
+  }
+}
+
+TEST(MeshSplit, ThesisListsWhatIsFeltInAPacketOfItsOwn) {
+  const TriMesh mesh = testing::sheet(kSquares, kSquares);
+  StreamHeader header = testing::mesh_header(mesh, MeshProfile::thesis);
+  header.meshes[0].quant_bits = 12;
+  Ends ends(header, {.thresholds = {}, .key_interval = 1, .split = true});
+  DentedSheet sheet(mesh, kSquares);
+  BoundWatch watch(header, {});
+  MeshRings rings(header.meshes[0]);
+  std::vector<MeshDecoder::Displacement> before(mesh.vertices.size());
+  for (std::int64_t k = 0; k < kFrames; ++k) {
+    const SheetFrame frame = sheet.frame(k);
+    const auto first = ends.encoder.encode(k, frame.displacement, frame.touch).value();
+    ends.deliver(first, k);
+    if (!first.bytes.empty() && !first.key) {
+      rings.triangles_around(frame.touch->triangle, header.meshes[0].rings);
+      const auto shown = ends.decoder.displacements();
+      for (std::uint32_t v = 0; v < before.size(); ++v) {
+        if (std::ranges::count(rings.vertices(), v) > 0) continue;
+        ASSERT_EQ(shown[v], before[v]);
+      }
+    }
+    ends.deliver(ends.encoder.encode_rest(), k);
+    if (HasFatalFailure()) return;
+    const auto shown = ends.decoder.displacements();
+    before.assign(shown.begin(), shown.end());
+    watch.look(frame, shown);
+  }
+  EXPECT_LT(watch.worst(), 2.5e-4 + 1e-6);
+  EXPECT_GT(ends.packets[0], 100U);
+  EXPECT_GT(ends.packets[1], 100U);
+  EXPECT_EQ(ends.packets[2], 0U);
+}
+
+/// A key packet that would list nothing, because the mesh is back in the initial state.
+TEST(MeshSplit, ThesisKeyPacketsListAVertexAtLeast) {
+  const TriMesh mesh = testing::sheet(kSquares, kSquares);
+  for (const bool split : {false, true}) {
+    const StreamHeader header = testing::mesh_header(mesh, MeshProfile::thesis);
+    Ends ends(header, {.thresholds = {}, .key_interval = 0.1, .split = split});
+    const MeshTouch touch{5, 1, 500};
+    for (std::int64_t k = 0; k < 60; ++k) {
+      const std::vector<Vec3> shape(mesh.vertices.size(), Vec3{0, 0, k % 13 < 6 ? 0.01 : 0});
+      const auto first = ends.encoder.encode(k, shape, k % 2 == 0 ? std::optional(touch) : std::nullopt);
+      ASSERT_TRUE(first);
+      ends.deliver(*first, k);
+      ends.deliver(ends.encoder.encode_rest(), k);
+      if (HasFatalFailure()) return;
+      for (std::size_t v = 0; v < shape.size(); ++v)
+        ASSERT_LT(norm(to_metres(ends.decoder.displacements()[v], 22) - shape[v]), 3e-4) << k;
+    }
+  }
+}
+
+TEST(MeshSplit, AllocatesNothingAfterSetUp) {
+  const TriMesh mesh = testing::sheet(kSquares, kSquares);
+  for (const MeshProfile profile : {MeshProfile::thesis, MeshProfile::main}) {
+    StreamHeader header = profile == MeshProfile::main ? split_header(mesh, 8, 3) : testing::mesh_header(mesh, profile);
+    Ends ends(header, {.thresholds = {}, .key_interval = 0.3, .split = true});
+    DentedSheet sheet(mesh, kSquares);
+    std::vector<SheetFrame> frames;
+    for (std::int64_t k = 0; k < 120; ++k) frames.push_back(sheet.frame(k));
+    const std::uint64_t before = testing::allocated_bytes();
+    std::size_t decoded = 0;
+    for (std::int64_t k = 0; k < 120; ++k) {
+      const SheetFrame& frame = frames[static_cast<std::size_t>(k)];
+      const auto first = ends.encoder.encode(k, frame.displacement, frame.touch);
+      if (first && !first->bytes.empty()) decoded += ends.decoder.decode(first->bytes).has_value() ? 1U : 0U;
+      const auto rest = ends.encoder.encode_rest();
+      if (k % 7 == 0) ends.encoder.forget_last();
+      else if (!rest.bytes.empty()) decoded += ends.decoder.decode(rest.bytes).has_value() ? 1U : 0U;
+      (void)ends.decoder.displacements_at(k);
+    }
+    EXPECT_EQ(testing::allocated_bytes(), before);
+    EXPECT_GT(decoded, 60U);
+  }
+}
+
+}  // namespace
+}  // namespace tactus
