@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from typing import NamedTuple
+from typing import NamedTuple, Optional
 
 from conventions import clamp, require, round_div, round_shift
 from mesh_graph import Hierarchy, area_of_interest, ring_list, triangles_of_vertices
@@ -14,6 +14,7 @@ from range_decoder import RangeDecoder
 from start_models import Models
 
 NONE = (1 << 32) - 1
+STILL = (0, 0, 0)
 WHOLE, HAPTIC, VISUAL = "whole", "haptic", "visual"          # what of the shape a packet codes
 FINEST_HAPTIC = (32768, 36781, 41285, 46341, 52016, 58386)  # M
 
@@ -28,7 +29,7 @@ class MainState(NamedTuple):
     density: int = 0
     touched: int = 0
     motion_tick: int = 0
-    split: int = 0
+    felt: Optional[dict[int, tuple]] = None                 # with split; vertices that are not there have 0
 
     def hashed(self) -> bytes:
         """Section 3: what the state hash is taken of."""
@@ -36,7 +37,21 @@ class MainState(NamedTuple):
                            self.density + 4 * self.touched)
         for c in self.motion:
             data += struct.pack("<2i5Q", c.last, c.before, *(s % (1 << 64) for s in c[2:]))
-        return data + (struct.pack("<Q", self.motion_tick) if self.split else b"")
+        if self.felt is not None:
+            data += struct.pack("<Q", self.motion_tick)
+            for v in range(len(self.u) // 3):
+                data += struct.pack("<3i", *self.felt.get(v, STILL))
+        return data
+
+
+class Known(NamedTuple):
+    """What a half need not code."""
+    half: str
+    area: set[int]                                          # the area of interest
+    felt: dict[int, tuple]                                  # of the haptic half that it completes
+
+    def codes(self, v: int) -> bool:
+        return self.half != (VISUAL if v in self.area else HAPTIC)
 
 
 class Place(NamedTuple):
@@ -78,7 +93,7 @@ class MainCodec:
         self.mesh = mesh
         self.hierarchy = Hierarchy(mesh)
         self.triangles_of = triangles_of_vertices(mesh)
-        self.initial = MainState(0, [0] * (3 * len(mesh.rest)), [Motion()] * len(mesh.modes), split=mesh.split)
+        self.initial = MainState(0, [0] * (3 * len(mesh.rest)), [Motion()] * len(mesh.modes), felt={} if mesh.split else None)
 
     def decode(self, payload: bytes, receiver: Receiver, sequence: int) -> tuple[MainState, int, list[int], RangeDecoder]:
         decoder, models = RangeDecoder(payload), Models("mesh-start-models.csv")
@@ -91,13 +106,16 @@ class MainCodec:
         q = [lim(c * s) for c, s in zip(coefficients, steps)]
         area = area_of_interest(self.mesh, self.triangles_of, state.triangle) if state.touched else set()
         expected = self.expected(base, tick)
-        moved_by_modes = list(expected)
-        combine(self.mesh.modes, q, moved_by_modes)
-        for v in range(len(self.mesh.rest)):
-            if place.half != VISUAL or v not in area:
-                expected[3 * v:3 * v + 3] = moved_by_modes[3 * v:3 * v + 3]
-        u, coded = self.read_vertices(decoder, models, state, place.half, area, expected)
+        u = list(expected)
+        felt = base.felt if place.completes else {}
+        for v in area & felt.keys():
+            for axis in range(3):
+                expected[3 * v + axis] -= felt[v][axis]
+        combine(self.mesh.modes, q, expected)
+        moved, coded = self.read_vertices(decoder, models, state, Known(place.half, area, felt), expected, u)
         decoder.check_end()
+        if self.mesh.split:
+            state = state._replace(felt={v: moved[v] for v in area} if place.half == HAPTIC else {})
         if place.half != HAPTIC:
             n = self.frames(base, tick)
             motion = [learn(c, n, lim(ahead(c, n) + x)) for c, x in zip(base.motion, q)]
@@ -175,30 +193,32 @@ class MainCodec:
 
     # ---- Section 7: vertices ----
 
-    def read_vertices(self, decoder: RangeDecoder, models: Models, state: MainState, half: str, area: set[int],
-                      expected: list[int]) -> tuple[list[int], list[int]]:
-        """The new displacements, and the vertices with a residual other than 0."""
+    def read_vertices(self, decoder: RangeDecoder, models: Models, state: MainState, known: Known, expected: list[int],
+                      u: list[int]) -> tuple[list[tuple], list[int]]:
+        """How far every vertex is from where it is expected, and the vertices with a residual other than 0. Completes `u`."""
         h = haptic_bound(state.haptic)
-        u, moved, coded = list(expected), [(0, 0, 0)] * len(self.mesh.rest), [0] * len(self.mesh.rest)
+        moved, coded, residuals = [STILL] * len(self.mesh.rest), [0] * len(self.mesh.rest), []
         for v in self.hierarchy.order:
-            if half == (VISUAL if v in area else HAPTIC):
-                continue
-            haptic = v in area and h < state.visual
-            bound = h if haptic else state.visual
-            tightness = 0 if not haptic else 1 if 3 * h > 2 * state.visual else 2 if 4 * h > state.visual else 3
-            p, w = self.hierarchy.parents[v], self.hierarchy.weights[v]
-            level = min(2, self.hierarchy.level[v])
-            near = min(2, sum(coded[i] for i in p))
-            r = [0, 0, 0]
-            if decoder.bit(models[f"SIGNIFICANT[{state.density}][{tightness}][{near}][{level}]"][1]):
-                r = self.read_residual(decoder, models, int(tightness > 0), level)
-            for axis in range(3):
-                i = 3 * v + axis
-                place = lim(expected[i] + round_shift(sum(a * moved[b][axis] for a, b in zip(w, p)), 15))
-                u[i] = lim(place + r[axis] * step(bound))
+            if known.codes(v):
+                haptic = v in known.area and h < state.visual
+                bound = h if haptic else state.visual
+                tightness = 0 if not haptic else 1 if 3 * h > 2 * state.visual else 2 if 4 * h > state.visual else 3
+                p, w = self.hierarchy.parents[v], self.hierarchy.weights[v]
+                level = min(2, self.hierarchy.level[v])
+                near = min(2, sum(coded[i] for i in p))
+                r = [0, 0, 0]
+                if decoder.bit(models[f"SIGNIFICANT[{state.density}][{tightness}][{near}][{level}]"][1]):
+                    r = self.read_residual(decoder, models, int(tightness > 0), level)
+                for axis in range(3):
+                    i = 3 * v + axis
+                    place = lim(expected[i] + round_shift(sum(a * moved[b][axis] for a, b in zip(w, p)), 15))
+                    u[i] = lim(place + r[axis] * step(bound))
+                coded[v] = int(any(r))
+                residuals += [v] if coded[v] else []
+            else:
+                coded[v] = int(known.felt.get(v, STILL) != STILL)
             moved[v] = tuple(u[3 * v + axis] - expected[3 * v + axis] for axis in range(3))
-            coded[v] = int(any(r))
-        return u, [v for v in self.hierarchy.order if coded[v]]
+        return moved, residuals
 
     @staticmethod
     def read_residual(decoder: RangeDecoder, models: Models, tight: int, level: int) -> list[int]:

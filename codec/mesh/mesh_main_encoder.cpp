@@ -66,9 +66,8 @@ class MainSide : public MeshEncoderSide {
  private:
   MeshHead head_for(const MeshFrame& frame, MeshHalf half) const noexcept;
   bool bounds_hold(const MeshFrame& frame, bool key) noexcept;
-  void note_errors(std::span<const Vec3i> truth, const MeshHead& head) noexcept;
-  void choose_coefficients(std::uint32_t visual) noexcept;
-  void move_modes(const MeshHead& head) noexcept;
+  void choose_coefficients(std::span<const Vec3i> truth, std::uint32_t visual) noexcept;
+  void move_modes(std::span<const Vec3i> truth, std::uint32_t visual) noexcept;
   std::uint32_t choose_residuals(std::span<const Vec3i> truth) noexcept;
   std::size_t write(MeshHead head) noexcept;
 
@@ -76,7 +75,7 @@ class MainSide : public MeshEncoderSide {
   MeshPredictor predictor_;
   MeshPass pass_;
   MeshProjection projection_;
-  std::vector<Vec3i> error_;  // what prediction in time left, of all vertices also where halves code one after the other
+  std::vector<Vec3i> error_;
   std::vector<std::int32_t> coefficients_, scaled_;  // in steps; in grid units
   std::vector<float> projected_;
   std::vector<CodedVertex> coded_;
@@ -115,16 +114,10 @@ bool MainSide::bounds_hold(const MeshFrame& frame, bool key) noexcept {
   return true;
 }
 
-/// The modes fit the whole shape: of what a haptic half has corrected they are told the error that it found.
-void MainSide::note_errors(std::span<const Vec3i> truth, const MeshHead& head) noexcept {
+void MainSide::choose_coefficients(std::span<const Vec3i> truth, std::uint32_t visual) noexcept {
   if (coefficients_.empty()) return;
-  for (std::uint32_t v = 0; v < truth.size(); ++v) {
-    if (head.completes && !pass_.codes(v)) continue;
+  for (std::size_t v = 0; v < truth.size(); ++v)
     for (std::size_t axis = 0; axis < 3; ++axis) error_[v][axis] = truth[v][axis] - expected_[v][axis];
-  }
-}
-
-void MainSide::choose_coefficients(std::uint32_t visual) noexcept {
   projection_.project(error_, projected_);
   for (std::size_t k = 0; k < coefficients_.size(); ++k) {
     const float steps = projected_[k] / static_cast<float>(coefficient_step(mesh_, visual, k));
@@ -134,11 +127,11 @@ void MainSide::choose_coefficients(std::uint32_t visual) noexcept {
   }
 }
 
-void MainSide::move_modes(const MeshHead& head) noexcept {
-  if (!coefficients_.empty()) choose_coefficients(head.visual);
+void MainSide::move_modes(std::span<const Vec3i> truth, std::uint32_t visual) noexcept {
+  choose_coefficients(truth, visual);
   std::copy(coefficients_.begin(), coefficients_.end(), scaled_.begin());
-  scale_coefficients(mesh_, head.visual, scaled_);
-  predictor_.add_modes(scaled_, pass_.fixed(), expected_);
+  scale_coefficients(mesh_, visual, scaled_);
+  predictor_.add_modes(scaled_, expected_);
 }
 
 /// Quantise every vertex as the decoder will see it. Returns how many have a residual.
@@ -176,17 +169,18 @@ EncodedMeshPacket MainSide::encode(const MeshFrame& frame, MeshHalf half) noexce
   if (half == MeshHalf::visual && head.key && head.touched) return {};
   const MeshState& from = base(head.key);
   if (head.key) predictor_.predict(from, frame.tick, expected_);
-  note_errors(frame.truth, head);
+  if (mesh_.split) pass_.begin_half(from, head.completes, expected_, next_.displacement);
   if (half == MeshHalf::haptic) {
     keep_motion(from, next_);
   } else {
-    move_modes(head);
+    move_modes(frame.truth, head.visual);
     predictor_.learn(from, frame.tick, next_);
   }
   const std::uint32_t updates = choose_residuals(frame.truth);
   const std::uint64_t share = (std::uint64_t{updates} << 8) / coded_.size();
   head.density = half == MeshHalf::haptic ? from.density : share < 3 ? 0 : share < 15 ? 1 : share < 64 ? 2 : 3;
   const std::size_t size = write(head);
+  pass_.keep_felt(half, next_);
   keep_head(head, from, next_);
   return finish(size, head.key, half, frame.tick, updates);
 }

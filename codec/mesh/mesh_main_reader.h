@@ -36,17 +36,19 @@ class MeshMainReader {
     next.tick = base.tick + head.tick_delta;
     predictor_.predict(base, next.tick, expected_);
     set_bounds(head);
+    if (mesh_.split) pass_.begin_half(base, head.completes, expected_, next.displacement);
     if (head.half == MeshHalf::haptic) {
       keep_motion(base, next);
     } else {
       code_coefficients(coder, models, coefficients_);
       if (coder.too_wide()) return fail(Errc::malformed, "R-RNG-4");
       scale_coefficients(mesh_, head.visual, coefficients_);
-      predictor_.add_modes(coefficients_, pass_.fixed(), expected_);
+      predictor_.add_modes(coefficients_, expected_);
       predictor_.learn(base, next.tick, next);
     }
     const std::uint32_t updates = read_vertices(coder, models, head, next);
     if (coder.too_wide()) return fail(Errc::malformed, "R-RNG-4");
+    pass_.keep_felt(head.half, next);
     keep_head(head, base, next);
     return updates;
   }

@@ -37,23 +37,34 @@ class MeshPass {
   std::uint32_t bound_of(std::uint32_t vertex) const noexcept { return bound_[inside_[vertex]]; }
   /// The packet says where the vertex is; the others follow the prediction in time.
   bool codes(std::uint32_t vertex) const noexcept { return codes_[inside_[vertex]]; }
-  std::span<const std::uint32_t> area() const noexcept { return area_; }
-  /// Vertices that modes do not move: a visual half leaves alone what is felt.
-  std::span<const std::uint32_t> fixed() const noexcept {
-    return codes_[1] ? std::span<const std::uint32_t>{} : std::span<const std::uint32_t>(area_);
+
+  /// Before run() of a half: what it does not code is where prediction in time puts it. Where a haptic half was before it in this tick
+  /// that is known from there, and `expected` becomes again what that half expected.
+  void begin_half(const MeshState& base, bool completes, std::span<Vec3i> expected, std::span<Vec3i> decoded) noexcept {
+    std::copy(expected.begin(), expected.end(), decoded.begin());
+    std::fill(coded_.begin(), coded_.end(), std::uint8_t{0});
+    if (!completes) return;
+    for (const std::uint32_t v : area_) {
+      for (std::size_t axis = 0; axis < 3; ++axis) expected[v][axis] -= base.felt[v][axis];
+      coded_[v] = base.felt[v] != Vec3i{} ? 1 : 0;
+    }
+  }
+  /// What the visual half of the same tick must know of a haptic half.
+  void keep_felt(MeshHalf half, MeshState& next) const noexcept {
+    std::fill(next.felt.begin(), next.felt.end(), Vec3i{});
+    if (half != MeshHalf::haptic) return;
+    for (const std::uint32_t v : area_) next.felt[v] = innovation_[v];
   }
 
   /// in   expected  displacement by prediction in time
-  /// out  decoded   displacement; may not alias `expected`
+  /// out  decoded   displacement; may not alias `expected`; in halves only of vertices that the packet codes
   ///      residual(vertex, context, place, bound, step) returns the vertex's residual in steps
   template <class Residual>
   void run(std::span<const Vec3i> expected, std::span<Vec3i> decoded, Residual&& residual) noexcept {
     for (std::size_t i = 0; i < hierarchy_.order.size(); ++i) {
       const std::uint32_t v = hierarchy_.order[i];
       if (!codes(v)) {
-        decoded[v] = expected[v];
-        innovation_[v] = {};
-        coded_[v] = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis) innovation_[v][axis] = decoded[v][axis] - expected[v][axis];
         continue;
       }
       std::array<std::int64_t, 3> sum{};

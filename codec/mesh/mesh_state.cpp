@@ -14,6 +14,7 @@ MeshState initial_mesh_state(const MeshObject& mesh) {
   MeshState state;
   state.displacement.resize(mesh.rest.size());
   state.motion = MeshMotion(mesh.basis.steps.size());
+  if (mesh.split) state.felt.resize(mesh.rest.size());
   if (mesh.profile == MeshProfile::thesis && mesh.models_kept) state.models = cold_thesis_models(mesh);
   return state;
 }
@@ -30,6 +31,8 @@ std::uint64_t mesh_state_hash(const MeshObject& mesh, const MeshState& state) no
     hash.add32(state.density | (state.touched ? 4u : 0u));
     state.motion.add_to(hash);
     if (mesh.split) hash.add64(static_cast<std::uint64_t>(state.motion_tick));
+    for (const Vec3i& moved : state.felt)
+      for (const std::int32_t c : moved) hash.add32(c);
   }
   for (const BitModel& m : state.models) hash.add32(static_cast<std::uint32_t>(m.zero | m.rate << 16));
   return hash.value();
@@ -49,9 +52,7 @@ MeshPredictor::MeshPredictor(const MeshObject& mesh)
     : mesh_(mesh),
       increments_(mesh.basis.steps.size()),
       ahead_(increments_.size()),
-      sum_(increments_.empty() ? 0 : 3 * mesh.rest.size()) {
-  if (mesh.split && !increments_.empty()) excepted_.reserve(mesh.rest.size());
-}
+      sum_(increments_.empty() ? 0 : 3 * mesh.rest.size()) {}
 
 /// out += modes * coefficients, all coefficients brought to 14 bits by one shift.
 void MeshPredictor::combine(std::span<const std::int32_t> coefficients, std::span<Vec3i> out) noexcept {
@@ -82,13 +83,8 @@ void MeshPredictor::predict(const MeshState& state, std::int64_t tick, std::span
   combine(ahead_, out);
 }
 
-void MeshPredictor::add_modes(std::span<const std::int32_t> coefficients, std::span<const std::uint32_t> except,
-                              std::span<Vec3i> out) noexcept {
-  if (coefficients.empty()) return;
-  excepted_.clear();
-  for (const std::uint32_t v : except) excepted_.push_back(out[v]);
+void MeshPredictor::add_modes(std::span<const std::int32_t> coefficients, std::span<Vec3i> out) noexcept {
   combine(coefficients, out);
-  for (std::size_t i = 0; i < except.size(); ++i) out[except[i]] = excepted_[i];
   for (std::size_t k = 0; k < coefficients.size(); ++k)
     increments_[k] = limited_displacement(static_cast<std::int64_t>(increments_[k]) + coefficients[k]);
 }

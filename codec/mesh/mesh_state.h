@@ -22,6 +22,7 @@ struct MeshState {
   std::vector<Vec3i> displacement;       ///< by vertex, x 2^-position_exp m
   MeshMotion motion;                     ///< main
   std::int64_t motion_tick = 0;          ///< main: `motion` has learnt up to here; haptic halves leave it behind `tick`
+  std::vector<Vec3i> felt;               ///< main, split: by vertex, how far the haptic half moved it that was the last packet
   std::uint32_t triangle = kNoTriangle;  ///< main: the last one touched
   std::uint32_t visual = 0;              ///< main: visual bound, grid units
   std::uint32_t haptic = 0;              ///< main: level of the last haptic bound
@@ -68,9 +69,8 @@ class MeshPredictor {
 
   /// out = the displacement that `state` leads to at a tick not before its own. Without a basis: the same.
   void predict(const MeshState& state, std::int64_t tick, std::span<Vec3i> out) noexcept;
-  /// out += sum of modes times coefficients [grid units at a mode's entry of 1], but for the vertices `except`.
-  void add_modes(std::span<const std::int32_t> coefficients, std::span<const std::uint32_t> except,
-                 std::span<Vec3i> out) noexcept;
+  /// out += sum of modes times coefficients [grid units at a mode's entry of 1].
+  void add_modes(std::span<const std::int32_t> coefficients, std::span<Vec3i> out) noexcept;
   /// The motion of `next`, a packet at `tick` after `base`: what the last predict() and add_modes() came to is learnt.
   void learn(const MeshState& base, std::int64_t tick, MeshState& next) const noexcept;
 
@@ -81,7 +81,6 @@ class MeshPredictor {
   std::vector<std::int32_t> increments_;  // by mode, of the packet at hand, since motion_tick
   std::vector<std::int32_t> ahead_;       // by mode, since the state's tick where that is another
   std::vector<std::int32_t> sum_;         // by component
-  std::vector<Vec3i> excepted_;
 };
 
 }  // namespace tactus

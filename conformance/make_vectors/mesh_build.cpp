@@ -162,12 +162,13 @@ Bytes MeshComposer::packet(const MainStep& step) {
     fixed_->pass.set_bounds(head.visual, head.touched ? haptic_bound(head.haptic) : head.visual, area, head.half);
     std::vector<Vec3i> expected(mesh.rest.size());
     fixed_->predictor.predict(base, step.at.tick, expected);
+    if (mesh.split) fixed_->pass.begin_half(base, head.completes, expected, next.displacement);
     if (head.half == MeshHalf::haptic) {
       keep_motion(base, next);
     } else {
       code_coefficients(coder, models, coefficients);
       scale_coefficients(mesh, head.visual, coefficients);
-      fixed_->predictor.add_modes(coefficients, fixed_->pass.fixed(), expected);
+      fixed_->predictor.add_modes(coefficients, expected);
       fixed_->predictor.learn(base, step.at.tick, next);
     }
     const auto residual = [&](std::uint32_t v, const VertexContext& context, const Vec3i& place, std::uint32_t bound,
@@ -177,6 +178,7 @@ Bytes MeshComposer::packet(const MainStep& step) {
       return r;
     };
     fixed_->pass.run(expected, next.displacement, residual);
+    fixed_->pass.keep_felt(head.half, next);
     keep_head(head, base, next);
   });
   keep(step.at, std::move(next));

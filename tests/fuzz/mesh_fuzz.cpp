@@ -27,7 +27,7 @@ StreamHeader scene(std::uint8_t choice) {
     mesh.basis = make_mode_basis(ramp, 1).value();
   }
   if (choice & 4) header.baseline_span = 5;
-  if (choice & 8 && !(choice & 1)) mesh.split = true;
+  mesh.split = (choice & 129) == 128;
   header.meshes.push_back(mesh);
   return header;
 }
