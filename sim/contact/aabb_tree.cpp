@@ -19,10 +19,6 @@ bool better(double distance2, const Vec3& point, std::uint32_t triangle, double 
   return triangle < best.triangle;
 }
 
-bool earlier(double t, std::uint32_t triangle, const std::optional<SurfaceHit>& first) {
-  return !first || t < first->t || (t == first->t && triangle < first->at.triangle);
-}
-
 }  // namespace
 
 AabbTree::AabbTree(const TriMesh& mesh) {
@@ -212,8 +208,9 @@ std::optional<SurfaceHit> AabbTree::first_hit(const Vec3& from, const Vec3& to, 
   const Vec3 way = to - from;
   along(from, way, 0, [&](const Leaf& leaf) {
     const auto hit = segment_hits_triangle(from, way, corners(leaf, vertices));
-    if (hit && earlier(hit->t, leaf.triangle, first)) {
-      first = {hit->t, hit->t, named(leaf, hit->weights, from + hit->t * way, 0)};
+    if (hit) {
+      const SurfaceHit found{hit->t, hit->t, named(leaf, hit->weights, from + hit->t * way, 0)};
+      if (earlier(found, first)) first = found;
     }
     return first ? first->t : 1.0;
   });
@@ -227,9 +224,10 @@ std::optional<SurfaceHit> AabbTree::sweep(const Sweep& sphere, std::span<const V
     const double limit = first ? first->t : 1.0;
     if (std::find(left_out.begin(), left_out.end(), leaf.triangle) != left_out.end()) return limit;
     const auto hit = sphere_hits_triangle(sphere, corners(leaf, vertices), limit);
-    if (!hit || !earlier(hit->t, leaf.triangle, first)) return limit;
-    first = {hit->t, hit->rest, named(leaf, hit->at.weights, hit->at.point, std::sqrt(hit->at.distance2))};
-    return hit->t;
+    if (!hit) return limit;
+    const SurfaceHit found{hit->t, hit->rest, named(leaf, hit->at.weights, hit->at.point, std::sqrt(hit->at.distance2))};
+    if (earlier(found, first)) first = found;
+    return first->t;
   });
   return first;
 }

@@ -9,6 +9,7 @@
 /// The caller owns the vertices and hands in those that the boxes were fitted to.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -42,6 +43,11 @@ struct SurfaceHit {
   SurfacePoint at;  ///< point met; its distance is that of the sphere's centre then
 };
 
+/// Of two contacts the one that counts: if at the same time, that of the triangle with the lower number.
+inline bool earlier(const SurfaceHit& hit, const std::optional<SurfaceHit>& first) noexcept {
+  return !first || hit.t < first->t || (hit.t == first->t && hit.at.triangle < first->at.triangle);
+}
+
 class AabbTree {
  public:
   AabbTree() = default;
@@ -67,7 +73,7 @@ class AabbTree {
                                   std::span<const std::uint32_t> left_out = {}) const noexcept;
   /// The same with one triangle of the tree.
   std::optional<SurfaceHit> sweep(const Sweep& sphere, std::span<const Vec3> vertices, std::uint32_t triangle) const noexcept;
-  /// Call visit(triangle, corners, closest point) for every triangle that reaches into a sphere, in no particular order.
+  /// Call visit(triangle, corners) for every triangle whose box reaches into a sphere, in no particular order.
   template <class Visit>
   void visit_sphere(const Vec3& centre, double radius, std::span<const Vec3> vertices, Visit&& visit) const;
 
@@ -77,6 +83,8 @@ class AabbTree {
   Triangle triangle(std::uint32_t number) const noexcept;
 
  private:
+  friend class Surroundings;
+
   struct Box {
     std::array<float, 3> low, high;
   };
@@ -99,7 +107,11 @@ class AabbTree {
     return {vertices[leaf.vertices[0]], vertices[leaf.vertices[1]], vertices[leaf.vertices[2]]};
   }
   static SurfacePoint named(const Leaf& leaf, const std::array<double, 3>& weights, const Vec3& point, double distance) noexcept;
-  static double distance2(const Box& box, const Vec3& point) noexcept;
+  static Vec3 away(const Box& box, const Vec3& point) noexcept;
+  static double distance2(const Box& box, const Vec3& point) noexcept { return dot(away(box, point), away(box, point)); }
+  /// Call visit(node) for every one with triangles that reaches into a sphere, until it returns false: then so does this.
+  template <class Visit>
+  bool visit_boxes(const Vec3& centre, double radius, Visit&& visit) const;
   static bool near_segment(const Box& box, const Vec3& from, const Vec3& way, double radius) noexcept;
   template <class Test>
   void along(const Vec3& from, const Vec3& way, double radius, Test&& test) const noexcept;
@@ -109,16 +121,16 @@ class AabbTree {
   std::vector<std::uint32_t> leaf_of_;  // by number of the triangle
 };
 
-inline double AabbTree::distance2(const Box& box, const Vec3& point) noexcept {
-  const auto beyond = [](double low, double x, double high) { return std::fmax(std::fmax(low - x, x - high), 0.0); };
-  const double x = beyond(box.low[0], point.x, box.high[0]), y = beyond(box.low[1], point.y, box.high[1]),
-               z = beyond(box.low[2], point.z, box.high[2]);
-  return x * x + y * y + z * z;
+inline Vec3 AabbTree::away(const Box& box, const Vec3& point) noexcept {
+  const auto twice = [](double x) { return x + std::abs(x); };  // of x if positive: comparisons here would be mispredicted
+  const auto beyond = [&](double low, double x, double high) { return 0.5 * (twice(x - high) - twice(low - x)); };
+  return {beyond(box.low[0], point.x, box.high[0]), beyond(box.low[1], point.y, box.high[1]),
+          beyond(box.low[2], point.z, box.high[2])};
 }
 
 template <class Visit>
-void AabbTree::visit_sphere(const Vec3& centre, double radius, std::span<const Vec3> vertices, Visit&& visit) const {
-  if (nodes_.empty()) return;
+bool AabbTree::visit_boxes(const Vec3& centre, double radius, Visit&& visit) const {
+  if (nodes_.empty()) return true;
   const double radius2 = radius * radius;
   std::array<std::uint32_t, kMaxDepth> stack;
   std::size_t depth = 0;
@@ -130,14 +142,19 @@ void AabbTree::visit_sphere(const Vec3& centre, double radius, std::span<const V
     if (node.count == 0) {
       stack[depth++] = node.next;
       stack[depth++] = index + 1;
-      continue;
-    }
-    for (const Leaf& leaf : std::span(leaves_).subspan(node.next, node.count)) {
-      const Corners where = corners(leaf, vertices);
-      const TrianglePoint at = closest_on_triangle(centre, where);
-      if (at.distance2 <= radius2) visit(leaf.triangle, where, named(leaf, at.weights, at.point, std::sqrt(at.distance2)));
+    } else if (!visit(node)) {
+      return false;
     }
   }
+  return true;
+}
+
+template <class Visit>
+void AabbTree::visit_sphere(const Vec3& centre, double radius, std::span<const Vec3> vertices, Visit&& visit) const {
+  visit_boxes(centre, radius, [&](const Node& node) {
+    for (const Leaf& leaf : std::span(leaves_).subspan(node.next, node.count)) visit(leaf.triangle, corners(leaf, vertices));
+    return true;
+  });
 }
 
 }  // namespace tactus

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace tactus {
 namespace {
@@ -11,6 +12,7 @@ constexpr int kMaxSweeps = 16;
 constexpr int kMaxPushes = 4;
 constexpr int kConfirmations = 2;  // searches without a way out, where several planes hold
 constexpr int kMaxIdle = 4;        // searches that move the proxy, but by rounding only
+constexpr double kExpected = 0.6;  // of the distance kept: so far the proxy may well go in a call, even if the probe does not
 
 Corners corners_of(const Triangle& triangle, std::span<const Vec3> vertices) {
   return {vertices[triangle[0]], vertices[triangle[1]], vertices[triangle[2]]};
@@ -56,16 +58,22 @@ bool MeshProxy::lets_move(const SurfaceHit& hit, const Vec3& way) const noexcept
 
 /// The triangles that held the proxy last are asked first: one that does not let it move at all settles the matter. The edge of a
 /// triangle may only seem to be in the way of a point, where the face beside it is what carries it.
-std::optional<SurfaceHit> MeshProxy::first_contact(const Vec3& goal, std::span<const Vec3> vertices,
-                                                   const AabbTree& tree) const noexcept {
+std::optional<SurfaceHit> MeshProxy::first_contact(const Vec3& goal, const AabbTree& tree, Surroundings& around) const noexcept {
   const Sweep sweep = towards(goal);
-  const std::span<const std::uint32_t> held(held_by_.data(), held_);
+  std::array<std::uint32_t, kMaxHalfspaces + std::tuple_size_v<decltype(recent_)>> asked;
+  const auto held_end = std::copy_n(held_by_.begin(), held_, asked.begin());
+  auto asked_end = held_end;
+  std::optional<SurfaceHit> first;
   for (const std::uint32_t triangle : recent_) {
-    if (!tree.contains(triangle) || std::find(held.begin(), held.end(), triangle) != held.end()) continue;
-    const auto hit = tree.sweep(sweep, vertices, triangle);
-    if (hit && !lets_move(*hit, sweep.way) && (hit->at.feature() == Feature::face || options_.radius > 0)) return hit;
+    if (!tree.contains(triangle) || std::find(asked.begin(), held_end, triangle) != held_end) continue;
+    *asked_end++ = triangle;
+    const auto hit = around.sweep_one(sweep, triangle);
+    if (!hit) continue;
+    if (!lets_move(*hit, sweep.way) && (hit->at.feature() == Feature::face || options_.radius > 0)) return hit;
+    if (earlier(*hit, first)) first = hit;
   }
-  return tree.sweep(sweep, vertices, held);
+  const auto hit = around.sweep(sweep, std::span(asked.begin(), asked_end), first ? first->t : 1);
+  return hit && earlier(*hit, first) ? hit : first;
 }
 
 /// Make room by forgetting the planes that do not press, then those met first.
@@ -108,6 +116,7 @@ std::optional<Vec3> MeshProxy::wanted(const Vec3& probe) noexcept {
 
 void MeshProxy::follow(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
   release();
+  Surroundings around(tree, vertices, std::fmax(norm(probe - probe_), kExpected * distance()));
   bool moved = false;  // since the planes were last forgotten
   int idle = 0;        // how often they were forgotten without a gain
   double reached = norm(probe - centre_);
@@ -123,7 +132,7 @@ void MeshProxy::follow(const Vec3& probe, std::span<const Vec3> vertices, const 
     const bool settled = held_ > 0 && norm(*goal - centre_) <= settled_;
     if (!settled) {
       const Vec3 from = centre_, way = *goal - centre_;
-      const auto hit = first_contact(*goal, vertices, tree);
+      const auto hit = first_contact(*goal, tree, around);
       ++sweeps;
       if (!hit) centre_ = *goal;
       else if (lets_move(*hit, way)) centre_ = from + hit->rest * way;

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/contact/surroundings.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus {
+
+Surroundings::Plane Surroundings::plane_before(const Vec3& n, const Corners& v) noexcept {
+  return {n.x, n.y, n.z, std::max({dot(n, v[0]), dot(n, v[1]), dot(n, v[2])})};
+}
+
+/// Both ends of the way, and so all of it, are further from the triangle than contact. Without a branch between the two.
+bool Surroundings::clears(const Plane& plane, const Sweep& sphere, double limit) noexcept {
+  const double contact = sphere.radius + 0.5 * sphere.slack;
+  const double start = plane.x * sphere.from.x + plane.y * sphere.from.y + plane.z * sphere.from.z - plane.offset;
+  const double end = start + limit * (plane.x * sphere.way.x + plane.y * sphere.way.y + plane.z * sphere.way.z);
+  return std::min(start, end) > contact;
+}
+
+/// Compute the closest point, and remember the plane that it gives.
+std::optional<SurfaceHit> Surroundings::ask(std::uint32_t number, const Sweep& sphere, double limit) noexcept {
+  const AabbTree::Leaf& leaf = tree_.leaves_[number];
+  const TriangleShape triangle(AabbTree::corners(leaf, vertices_));
+  const TrianglePoint closest = closest_on_triangle(sphere.from, triangle);
+  if (closest.distance2 > 0) {
+    planes_[number % kKnown] = plane_before((1 / std::sqrt(closest.distance2)) * (sphere.from - closest.point), triangle.v);
+    known_[number % kKnown] = number;
+  }
+  const auto hit = sphere_hits_triangle(sphere, triangle, limit, closest);
+  if (!hit) return std::nullopt;
+  return SurfaceHit{hit->t, hit->rest, AabbTree::named(leaf, hit->at.weights, hit->at.point, std::sqrt(hit->at.distance2))};
+}
+
+std::optional<SurfaceHit> Surroundings::sweep_one(const Sweep& sphere, std::uint32_t triangle) noexcept {
+  const std::uint32_t leaf = tree_.leaf_of_[triangle];
+  if (knows(leaf) && clears(planes_[leaf % kKnown], sphere, 1)) return std::nullopt;
+  return ask(leaf, sphere, 1);
+}
+
+/// Gather what the sphere may meet while its centre is that close.
+/// out  false: there are too many
+bool Surroundings::collect(const Vec3& centre, double reach, const Sweep& sphere) noexcept {
+  centre_ = centre;
+  reach_ = reach;
+  count_ = 0;
+  return tree_.visit_boxes(centre, reach + sphere.radius + 2 * sphere.slack, [&](const AabbTree::Node& node) {
+    if (count_ + node.count > kRoom) return false;
+    const Vec3 away = AabbTree::away(node.box, centre);
+    const double distance = norm(away);
+    Plane before_box{0, 0, 0, HUGE_VAL};
+    if (distance > 0) {
+      const Vec3 n = (1 / distance) * away;
+      before_box = {n.x, n.y, n.z, dot(n, centre - away)};
+    }
+    for (std::uint32_t leaf = node.next; leaf < node.next + node.count; ++leaf)
+      candidates_[count_++] = {leaf, knows(leaf) ? planes_[leaf % kKnown] : before_box};
+    return true;
+  });
+}
+
+/// Share of the way that is known to lie around.
+double Surroundings::covered(const Sweep& sphere) const noexcept {
+  const double left = reach_ - norm(sphere.from - centre_);
+  if (left >= 0 && norm(sphere.from + sphere.way - centre_) <= reach_) return 1;
+  return std::min(left / norm(sphere.way), 1.0);
+}
+
+/// Collect anew if too little of the way lies around: a short one with room at both ends; of a long one, which most often is stopped
+/// soon, its beginning.
+/// out  share of the way that lies around, at most the limit
+double Surroundings::cover(const Sweep& sphere, double limit) noexcept {
+  const double share = reach_ < 0 ? -1 : std::min(covered(sphere), limit), length = limit * norm(sphere.way);
+  if (share == limit) return limit;
+  if (length < 2 * wanted_reach_) {
+    is_of_use_ = collect(sphere.from + (0.5 * limit) * sphere.way, 0.5 * (length + wanted_reach_), sphere);
+    return limit;
+  }
+  if (share * norm(sphere.way) > 0.25 * wanted_reach_) return share;
+  is_of_use_ = collect(sphere.from, wanted_reach_, sphere);
+  return std::min(covered(sphere), limit);
+}
+
+/// First the planes of all candidates, in a loop that predicts no branches; then closest points of the few that are left.
+std::optional<SurfaceHit> Surroundings::first_around(const Sweep& sphere, std::span<const std::uint32_t> left_out,
+                                                     double limit) noexcept {
+  std::array<std::uint32_t, kRoom> close;
+  std::size_t close_count = 0;
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    close[close_count] = i;
+    close_count += clears(candidates_[i].plane, sphere, limit) ? 0U : 1U;
+  }
+  std::optional<SurfaceHit> first;
+  for (const std::uint32_t i : std::span(close).first(close_count)) {
+    auto& [leaf, plane] = candidates_[i];
+    if (first && clears(plane, sphere, limit)) continue;
+    const std::uint32_t triangle = tree_.leaves_[leaf].triangle;
+    if (std::find(left_out.begin(), left_out.end(), triangle) != left_out.end()) continue;
+    if (!knows(leaf)) {  // the corners reach less far than the box
+      plane = plane_before({plane.x, plane.y, plane.z}, AabbTree::corners(tree_.leaves_[leaf], vertices_));
+      if (clears(plane, sphere, limit)) continue;
+    }
+    const auto hit = ask(leaf, sphere, limit);
+    if (knows(leaf)) plane = planes_[leaf % kKnown];
+    if (!hit || !earlier(*hit, first)) continue;
+    first = hit;
+    limit = hit->t;
+    std::swap(candidates_[i], candidates_[0]);
+  }
+  return first;
+}
+
+std::optional<SurfaceHit> Surroundings::sweep(const Sweep& sphere, std::span<const std::uint32_t> left_out,
+                                              double limit) noexcept {
+  const double share = is_of_use_ ? cover(sphere, limit) : 0;
+  if (is_of_use_) {
+    const auto first = first_around(sphere, left_out, share);
+    if (first || share == limit) return first;
+    is_of_use_ = false;
+  }
+  return tree_.sweep(sphere, vertices_, left_out);
+}
+
+}  // namespace tactus
