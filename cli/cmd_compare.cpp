@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/figures.h"
 #include "cli/report.h"
 #include "codec/trace/trace_file.h"
 
@@ -29,6 +30,10 @@ Outcome check_same_scene(const CompareOptions& options, const TraceInfo& truth, 
   for (std::size_t i = 0; i < truth.objects.size(); ++i) {
     if (truth.objects[i].name != replica.objects[i].name) {
       return differ(fmt::format("object {} is \"{}\", not \"{}\"", i, replica.objects[i].name, truth.objects[i].name));
+    }
+    if (truth.objects[i].dof != replica.objects[i].dof) {
+      return differ(fmt::format("the degrees of freedom of object \"{}\" are \"{}\", not \"{}\"", truth.objects[i].name,
+                                dof_text(replica.objects[i].dof), dof_text(truth.objects[i].dof)));
     }
   }
   if (truth.meshes.size() != replica.meshes.size())
@@ -67,60 +72,85 @@ void add(const TraceFrame& truth, const Shown& shown, Report& report) {
       report.meshes[i].fidelity->add(truth.meshes[i].displacements, shown.shapes[i], touch_of(truth, i));
 }
 
-/// Both traces side by side; ticks that only one of them has are passed over.
-/// out  number of the truth's ticks that the replica lacks
-tl::expected<std::uint64_t, Failure> compare_all(TraceReader& truth, TraceReader& replica, const CompareOptions& options,
-                                                 Report& report) {
-  Progress progress("compare", truth.frame_count(), options.common.progress());
-  std::uint64_t unmatched = 0;
-  TraceFrame frame, next_shown;
-  Shown shown(truth.info());
-  bool more = true;
-  next_shown.tick = -1;
-  while (true) {
-    const auto next = truth.next(frame);
-    if (!next) return refuse(options.truth, next.error());
-    if (!*next) return unmatched;
-    while (more && next_shown.tick < frame.tick) {
-      const auto advanced = replica.next(next_shown);
-      if (!advanced) return refuse(options.replica, advanced.error());
-      more = *advanced;
-      if (more) shown.take(next_shown);
-    }
-    if (!more || next_shown.tick != frame.tick) {
-      ++unmatched;
-      continue;
-    }
-    report.timings[0].times.measure([&] { return add(frame, shown, report), true; });
-    progress.update(++report.ticks);
+/// One of the two traces, at its next frame.
+struct Side {
+  const std::string& path;
+  TraceReader reader;
+  TraceFrame frame{};
+  bool more = false;            // the frame is one
+  std::uint64_t unmatched = 0;  // frames whose tick the other trace lacks
+
+  Outcome advance() {
+    const auto next = reader.next(frame);
+    if (!next) return refuse(path, next.error());
+    more = *next;
+    return {};
   }
+  bool is_before(const Side& other) const { return more && (!other.more || frame.tick < other.frame.tick); }
+};
+
+/// Both traces side by side; ticks that only one of them has are counted and passed over.
+Outcome compare_all(Side& truth, Side& replica, const CompareOptions& options, Report& report) {
+  Progress progress("compare", truth.reader.frame_count(), options.common.progress());
+  Shown shown(truth.reader.info());
+  if (auto begun = truth.advance(); !begun) return begun;
+  if (auto begun = replica.advance(); !begun) return begun;
+  while (truth.more || replica.more) {
+    const bool has_truth = !replica.is_before(truth), has_replica = !truth.is_before(replica);
+    if (has_replica) shown.take(replica.frame);
+    if (has_truth && has_replica) {
+      report.timings[0].times.measure([&] { return add(truth.frame, shown, report), true; });
+      progress.update(++report.ticks);
+    } else {
+      ++(has_truth ? truth : replica).unmatched;
+    }
+    if (has_truth)
+      if (auto advanced = truth.advance(); !advanced) return advanced;
+    if (has_replica)
+      if (auto advanced = replica.advance(); !advanced) return advanced;
+  }
+  return {};
+}
+
+/// Says which ticks were left out.
+void note_unmatched(const Side& truth, const Side& replica, Report& report) {
+  std::string text;
+  if (truth.unmatched > 0)
+    text = fmt::format("{} of {} ticks are not in the replica", truth.unmatched, truth.unmatched + report.ticks);
+  if (replica.unmatched > 0) {
+    text += fmt::format("{}{} of the replica's {} ticks are not in the truth", text.empty() ? "" : " and ", replica.unmatched,
+                        replica.unmatched + report.ticks);
+  }
+  if (!text.empty()) report.notes.emplace_back("warning", text + "; they were left out, decode with --like " + truth.path);
+}
+
+tl::expected<Side, Failure> open(const std::string& path) {
+  auto reader = TraceReader::open(path);
+  if (!reader) return refuse(path, reader.error());
+  return Side{path, std::move(*reader)};
 }
 
 Outcome run(const CompareOptions& options) {
-  auto truth = TraceReader::open(options.truth);
-  if (!truth) return refuse(options.truth, truth.error());
-  auto replica = TraceReader::open(options.replica);
-  if (!replica) return refuse(options.replica, replica.error());
-  if (auto same = check_same_scene(options, truth->info(), replica->info()); !same) return same;
+  auto truth = open(options.truth);
+  if (!truth) return tl::unexpected(truth.error());
+  auto replica = open(options.replica);
+  if (!replica) return tl::unexpected(replica.error());
+  const TraceInfo& info = truth->reader.info();
+  if (auto same = check_same_scene(options, info, replica->reader.info()); !same) return same;
 
   Report report{.command = "compare", .files = {{"truth", options.truth}, {"replica", options.replica}}};
-  report.describe(truth->info());
-  report.fidelity.emplace(truth->info(), options.triggers.triggers());
-  for (const TraceMesh& mesh : truth->info().meshes)
+  report.describe(info);
+  report.fidelity.emplace(info, options.triggers.triggers());
+  for (const TraceMesh& mesh : info.meshes)
     report.meshes.push_back({.name = mesh.name,
                              .vertices = mesh.rest.vertices.size(),
                              .fidelity = MeshFidelity(mesh.rest, options.meshes.thresholds(options.triggers),
                                                       options.meshes.rings(), GridExponents{}.position)});
   report.timings = {{"compare, per tick", {}}};
-  const auto unmatched = compare_all(*truth, *replica, options, report);
-  if (!unmatched) return tl::unexpected(unmatched.error());
+  if (auto compared = compare_all(*truth, *replica, options, report); !compared) return compared;
   if (report.ticks == 0)
     return refuse(options.replica + ": shares no tick with " + options.truth, "Decode with --like " + options.truth + ".");
-  if (*unmatched > 0) {
-    report.notes.emplace_back(
-        "warning", fmt::format("{} of {} ticks are not in the replica and were left out; decode with --like {}", *unmatched,
-                               *unmatched + report.ticks, options.truth));
-  }
+  note_unmatched(*truth, *replica, report);
   print(report, options.common, Destination::standard_output);
   return {};
 }
@@ -137,6 +167,7 @@ void setup_compare(CLI::App& app, Action& action) {
   add_report_options(command, options->common);
   command.footer(
       "Ticks over a bound are counted; give the bounds that the stream was encoded with.\n"
+      "Ticks that only one of the traces has are left out, and a warning says how many.\n"
       "Example:\n"
       "  tactus compare push.mcap replica.mcap -p 4% --visual 6mm,2deg");
   on_chosen<CompareOptions>(command, action, options, run);

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "cli/figures.h"
 #include "cli/output.h"
 #include "cli/table.h"
 #include "codec/trace/compare.h"
@@ -31,17 +32,6 @@ struct InfoOptions {
 constexpr std::array<const char*, 4> kReasons{"request", "heartbeat", "visual", "haptic"};  // index: Reason
 
 constexpr std::array<const char*, 3> kHalves{"haptic", "visual", "-"};  // index: MeshHalf
-
-std::string dof_text(std::uint8_t dof) {
-  if (dof == Dof::none) return "static";
-  if (dof == Dof::all) return "all";
-  constexpr std::array<const char*, 6> kNames{"x", "y", "z", "rx", "ry", "rz"};
-  std::string text;
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
-    if (dof >> i & 1u) text += (text.empty() ? "" : " ") + std::string(kNames[i]);
-  }
-  return text;
-}
 
 Outcome show(const Json& info, bool as_json, void (*print_text)(const Json&)) {
   if (as_json) {

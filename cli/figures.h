@@ -4,8 +4,11 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstdint>
 #include <string>
+
+#include "codec/rigid/rigid.h"
 
 namespace tactus::cli {
 
@@ -20,6 +23,18 @@ inline std::string significant(double value, int digits = 3) { return value == 0
 inline std::string duration(double seconds) {
   if (seconds < 1e-3) return fmt::format("{:.2f} us", 1e6 * seconds);
   return seconds < 1 ? fmt::format("{:.1f} ms", 1e3 * seconds) : fmt::format("{:.2f} s", seconds);
+}
+
+/// Along and about which axes an object can move.
+inline std::string dof_text(std::uint8_t dof) {
+  if (dof == Dof::none) return "static";
+  if (dof == Dof::all) return "all";
+  constexpr std::array<const char*, 6> kNames{"x", "y", "z", "rx", "ry", "rz"};
+  std::string text;
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    if (dof >> i & 1u) text += (text.empty() ? "" : " ") + std::string(kNames[i]);
+  }
+  return text;
 }
 
 inline double per(double amount, double base) { return base > 0 ? amount / base : 0; }
