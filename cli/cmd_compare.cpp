@@ -100,7 +100,8 @@ Outcome compare_all(Side& truth, Side& replica, const CompareOptions& options, R
     if (has_replica) shown.take(replica.frame);
     if (has_truth && has_replica) {
       report.timings[0].times.measure([&] { return add(truth.frame, shown, report), true; });
-      progress.update(++report.ticks);
+      report.ticks.add(truth.frame.tick);
+      progress.update(report.ticks.count());
     } else {
       ++(has_truth ? truth : replica).unmatched;
     }
@@ -116,10 +117,10 @@ Outcome compare_all(Side& truth, Side& replica, const CompareOptions& options, R
 void note_unmatched(const Side& truth, const Side& replica, Report& report) {
   std::string text;
   if (truth.unmatched > 0)
-    text = fmt::format("{} of {} ticks are not in the replica", truth.unmatched, truth.unmatched + report.ticks);
+    text = fmt::format("{} of {} ticks are not in the replica", truth.unmatched, truth.unmatched + report.ticks.count());
   if (replica.unmatched > 0) {
     text += fmt::format("{}{} of the replica's {} ticks are not in the truth", text.empty() ? "" : " and ", replica.unmatched,
-                        replica.unmatched + report.ticks);
+                        replica.unmatched + report.ticks.count());
   }
   if (!text.empty()) report.notes.emplace_back("warning", text + "; they were left out, decode with --like " + truth.path);
 }
@@ -148,7 +149,7 @@ Outcome run(const CompareOptions& options) {
                                                       options.meshes.rings(), GridExponents{}.position)});
   report.timings = {{"compare, per tick", {}}};
   if (auto compared = compare_all(*truth, *replica, options, report); !compared) return compared;
-  if (report.ticks == 0)
+  if (report.ticks.count() == 0)
     return refuse(options.replica + ": shares no tick with " + options.truth, "Decode with --like " + options.truth + ".");
   note_unmatched(*truth, *replica, report);
   print(report, options.common, Destination::standard_output);

@@ -110,7 +110,8 @@ Outcome decode_all(StreamPlayer& player, TraceWriter& writer, const DecodeOption
     if (!decoded) return refuse(options.input, decoded.error());
     if (const auto written = writer.write(frame); !written)
       return refuse(options.output, place_of_tick(frame.tick), written.error());
-    progress.update(++report.ticks);
+    report.ticks.add(**tick);
+    progress.update(report.ticks.count());
   }
   if (const auto done = writer.finish(); !done) return refuse(options.output, done.error());
   return {};

@@ -86,7 +86,7 @@ Result<void> encode_frame(Session& s, const TraceFrame& frame, Report& report) {
       report.meshes[i].traffic->add(bytes.size(), packet.updates, packet.key, packet.half);
     }
   }
-  ++report.ticks;
+  report.ticks.add(frame.tick);
   return {};
 }
 
@@ -96,7 +96,7 @@ Outcome encode_all(TraceReader& reader, Session& session, TraceFrame& frame, con
     if (const auto done = encode_frame(session, frame, report); !done) {
       return refuse(options.input, place_of_tick(frame.tick), done.error());
     }
-    progress.update(report.ticks);
+    progress.update(report.ticks.count());
     const auto more = reader.next(frame);
     if (!more) return refuse(options.input, more.error());
     if (!*more) break;

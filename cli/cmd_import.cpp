@@ -109,9 +109,9 @@ Outcome run(const ImportOptions& options) {
     if (!reader) return refuse(options.output, reader.error());
     report.describe(reader->info());
   }
-  report.ticks = imported->rows;
-  report.notes.emplace_back("content",
-                            fmt::format("{} in {}", counted(imported->rows, "row"), counted(imported->segments, "segment")));
+  report.ticks = imported->ticks;
+  report.notes.emplace_back(
+      "content", fmt::format("{} in {}", counted(imported->ticks.count(), "row"), counted(imported->segments, "segment")));
   if (auto kept = output->keep(); !kept) return kept;
   print(report, options.common, beside(options.output));
   return {};
@@ -145,7 +145,8 @@ void setup_import(CLI::App& app, Action& action) {
   command.footer(
       "Examples:\n"
       "  tactus import csv tosses.csv.zst --preset cube-tosses -o tosses.mcap\n"
-      "  tactus import csv arm.csv --time t --map position=x,y,z --map rotation=qw,qx,qy,qz -o arm.mcap");
+      "  tactus import csv arm.csv --time t --map position=x,y,z --map rotation=qw,qx,qy,qz -o arm.mcap\n"
+      "Segments follow one another without a gap. A pause inside a segment stays: its ticks are missing, its time counts.");
   command.callback([&action, options, list, input, output] {
     if (list->count() == 0 && input->count() == 0) throw CLI::RequiredError("FILE");
     if (list->count() == 0 && output->count() == 0) throw CLI::RequiredError("--output");

@@ -19,14 +19,14 @@ struct ImportMeshOptions {
 
 /// Every frame is one tick; what is kept is its distance from the first.
 Outcome write_frames(const SurfaceSequence& sequence, const TriMesh& rest, const ImportMeshOptions& options, TraceWriter& writer,
-                     StepTimes& times) {
+                     Report& report) {
   TraceFrame frame;
   frame.meshes.resize(1);
   frame.meshes[0].updated = true;
   frame.meshes[0].displacements.resize(3 * rest.vertices.size());
   Progress progress("import", sequence.size(), options.common.progress());
   for (std::size_t k = 0; k < sequence.size(); ++k) {
-    const auto positions = times.measure([&] { return sequence.positions(k); });
+    const auto positions = report.timings[0].times.measure([&] { return sequence.positions(k); });
     if (!positions) return refuse(to_string(positions.error()), "");
     frame.tick = static_cast<std::int64_t>(k);
     float* out = frame.meshes[0].displacements.data();
@@ -36,6 +36,7 @@ Outcome write_frames(const SurfaceSequence& sequence, const TriMesh& rest, const
     }
     if (const auto written = writer.write(frame); !written)
       return refuse(options.output, place_of_tick(frame.tick), written.error());
+    report.ticks.add(frame.tick);
     progress.update(k + 1);
   }
   return {};
@@ -58,10 +59,9 @@ Outcome run(const ImportMeshOptions& options) {
   if (!writer) return refuse(options.output, writer.error());
   Report report{.command = "import mesh", .files = {{"frames", options.input}, {"trace", options.output}}};
   report.timings = {{"read, per frame", {}}};
-  if (auto written = write_frames(*sequence, rest, options, *writer, report.timings[0].times); !written) return written;
+  if (auto written = write_frames(*sequence, rest, options, *writer, report); !written) return written;
   if (const auto finished = writer->finish(); !finished) return refuse(options.output, finished.error());
   report.describe(info);
-  report.ticks = sequence->size();
   report.notes.emplace_back("content", fmt::format("{}, {} vertices, {} triangles", counted(sequence->size(), "frame"),
                                                    rest.vertices.size(), rest.triangles.size()));
   if (auto kept = output->keep(); !kept) return kept;

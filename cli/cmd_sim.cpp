@@ -115,7 +115,7 @@ Outcome record(Run& run, const EncodedPacket& packet, const SimOptions& options,
     run.largest_force = std::max(run.largest_force, norm(user.force));
   }
   run.ticks_in_contact += touched ? 1 : 0;
-  ++report.ticks;
+  report.ticks.add(frame.tick);
   return {};
 }
 
@@ -138,7 +138,7 @@ Outcome simulate(Run& run, std::int64_t ticks, const SimOptions& options, Report
     if (!packet) return tl::unexpected(packet.error());
     if (report.timings.size() > 1) add_deformations(run, report.timings[1].times);
     if (auto done = record(run, *packet, options, report); !done) return done;
-    progress.update(report.ticks);
+    progress.update(report.ticks.count());
   }
   if (const auto done = run.trace.finish(); !done) return refuse(options.output, done.error());
   if (!run.stream) return {};
@@ -247,10 +247,10 @@ Outcome run(const SimOptions& options) {
   const auto ticks =
       options.duration < 0 ? session.simulation.ticks() : static_cast<std::int64_t>(std::llround(options.duration * kTickRate));
   if (auto done = simulate(session, ticks, options, report); !done) return done;
-  if (!info.users.empty() && report.ticks > 0) {
+  if (!info.users.empty() && report.ticks.count() > 0) {
     report.notes.emplace_back(
         "contact", fmt::format("{:.1f} % of the ticks, at most {:.2f} N",
-                               100.0 * static_cast<double>(session.ticks_in_contact) / static_cast<double>(report.ticks),
+                               100.0 * static_cast<double>(session.ticks_in_contact) / static_cast<double>(report.ticks.count()),
                                session.largest_force));
   }
   report_errors(session.simulation, report);

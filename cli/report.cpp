@@ -29,7 +29,7 @@ Rates rates(const Report& r, std::uint64_t header) {
   const auto packets = static_cast<double>(t.all_packets());
   const double bytes = static_cast<double>(t.bytes) + packets * static_cast<double>(header);
   // Without reduction: one packet per tick with every moving object's state, raw.
-  const auto raw = [&](std::uint64_t state) { return static_cast<double>(r.ticks * (r.moving * state + header)); };
+  const auto raw = [&](std::uint64_t state) { return static_cast<double>(r.ticks.count() * (r.moving * state + header)); };
   return {8 * per(bytes, r.seconds()), per(bytes, packets), per(bytes, static_cast<double>(t.updates)), 1 - per(bytes, raw(24)),
           1 - per(bytes, raw(48))};
 }
@@ -47,8 +47,10 @@ void traffic_rows(Table& table, const Report& r) {
   table.row({"  all", fmt::to_string(t.all_packets()), fmt::format("{:.2f}", per(all, r.seconds()))});
   table.row({"  object updates in them", fmt::to_string(t.updates),
              fmt::format("{:.2f}", per(static_cast<double>(t.updates), r.seconds()))});
-  table.row({fmt::format("  fewer than {} per second and object", r.tick_rate),
-             percent(1 - per(static_cast<double>(t.updates), static_cast<double>(r.ticks * r.moving)))});
+  // Every tick that the recording has is what would be sent without reduction.
+  const std::string all_updates = r.ticks.left_out() == 0 ? fmt::format("{} per second", r.tick_rate) : "one per tick recorded";
+  table.row({fmt::format("  fewer than {} and object", all_updates),
+             percent(1 - per(static_cast<double>(t.updates), static_cast<double>(r.ticks.count() * r.moving)))});
   const Rates payload = rates(r, 0), datagram = rates(r, kUdpHeader);
   table.heading({"size", "payload", "with UDP/IPv4"});
   table.row({"  bit/s", fmt::format("{:.0f}", payload.bits_per_s), fmt::format("{:.0f}", datagram.bits_per_s)});
@@ -119,10 +121,16 @@ Table summary(const Report& r) {
   table.heading({r.command});
   for (const auto& [role, path] : r.files) table.row({fmt::format("  {:<8} {}", role, path)});
   if (r.tick_rate == 0) return table;
-  std::string scope = fmt::format("  {:<8} {} at {} Hz ({:.3f} s), {}", "scope", counted(r.ticks, "tick"), r.tick_rate,
-                                  r.seconds(), counted(r.objects, "object"));
+  const std::uint64_t left_out = r.ticks.left_out();
+  const std::string some_of = left_out == 0 ? "" : fmt::format("{} of ", r.ticks.count());
+  std::string scope = fmt::format("  {:<8} {}{} at {} Hz ({:.3f} s), {}", "scope", some_of, counted(r.ticks.length(), "tick"),
+                                  r.tick_rate, r.seconds(), counted(r.objects, "object"));
   if (r.users > 0) scope += ", " + counted(r.users, "user");
   table.row({scope});
+  if (left_out > 0) {
+    table.row({fmt::format("  {:<8} no sample at {} between the first and the last; seconds and rates include their time", "gaps",
+                           counted(left_out, "tick"))});
+  }
   for (const auto& [name, text] : r.notes) table.row({fmt::format("  {:<8} {}", name, text)});
   return table;
 }
@@ -157,7 +165,7 @@ Json traffic_json(const Report& r) {
           {"key_packets", t.keys},
           {"updates", t.updates},
           {"bytes", t.bytes},
-          {"reduction_of_updates", 1 - per(static_cast<double>(t.updates), static_cast<double>(r.ticks * r.moving))},
+          {"reduction_of_updates", 1 - per(static_cast<double>(t.updates), static_cast<double>(r.ticks.count() * r.moving))},
           {"payload", rates_json(rates(r, 0))},
           {"with_udp_ipv4", rates_json(rates(r, kUdpHeader))}};
 }
@@ -196,7 +204,8 @@ Json to_json(const Report& r) {
   Json out{{"schema", "tactus.report/1"}, {"command", r.command}};
   for (const auto& [role, path] : r.files) out["files"][role] = path;
   out["tick_rate"] = r.tick_rate;
-  out["ticks"] = r.ticks;
+  out["ticks"] = r.ticks.count();
+  out["ticks_left_out"] = r.ticks.left_out();
   out["seconds"] = r.seconds();
   out["objects"] = r.objects;
   out["users"] = r.users;

@@ -22,7 +22,7 @@ struct Report {
   std::string command;
   std::vector<std::pair<std::string, std::string>> files{};  ///< role, path
   std::uint32_t tick_rate = 0;                               ///< 0: not known
-  std::uint64_t ticks = 0;                                   ///< looked at
+  TickSpan ticks{};                                          ///< looked at
   std::uint64_t moving = 0;                                  ///< objects that can move
   std::size_t objects = 0, users = 0;
   std::vector<std::pair<std::string, std::string>> notes{};  ///< what else a reader must know
@@ -33,7 +33,8 @@ struct Report {
 
   /// Take over what a trace's description says.
   void describe(const TraceInfo& info);
-  double seconds() const { return tick_rate == 0 ? 0 : static_cast<double>(ticks) / tick_rate; }
+  /// From the first tick to the last, with those that a recording leaves out: what rates are per.
+  double seconds() const { return tick_rate == 0 ? 0 : static_cast<double>(ticks.length()) / tick_rate; }
 };
 
 /// Make place for what is sent of a trace's meshes and how far it is off.

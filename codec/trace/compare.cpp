@@ -103,11 +103,12 @@ void ErrorSeries::add(double error, bool over) noexcept {
   over_ = over_ || over;
 }
 
-void ErrorSeries::end_tick() noexcept {
+void ErrorSeries::end_tick(std::int64_t tick) noexcept {
   ticks_ += sampled_ ? 1 : 0;
   ticks_over_ += over_ ? 1 : 0;
-  run_ = over_ ? run_ + 1 : 0;
-  longest_run_ = std::max(longest_run_, run_);
+  if (over_) run_.add(tick);
+  else run_ = {};
+  longest_run_ = std::max(longest_run_, run_.length());
   sampled_ = over_ = false;
 }
 
@@ -154,7 +155,7 @@ void Fidelity::add(const TraceFrame& truth, std::span<const Pose> shown) noexcep
     force_.add(error, breaks_rule(pose, shown[object], force, estimate));
     perceived_.add(error, is_perceptible(norm(force), error));
   }
-  for (ErrorSeries* series : {&position_, &rotation_, &force_, &perceived_}) series->end_tick();
+  for (ErrorSeries* series : {&position_, &rotation_, &force_, &perceived_}) series->end_tick(truth.tick);
 }
 
 void Fidelity::add_rendered(const TraceFrame& truth) noexcept {
@@ -164,7 +165,7 @@ void Fidelity::add_rendered(const TraceFrame& truth) noexcept {
     const double error = norm(user.force - user.server_force);
     rendered_.add(error, is_perceptible(force, error));
   }
-  rendered_.end_tick();
+  rendered_.end_tick(truth.tick);
 }
 
 }  // namespace tactus

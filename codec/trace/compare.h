@@ -87,16 +87,20 @@ Reason strongest_reason(const DecodedPacket& packet) noexcept;
 class ErrorSeries {
  public:
   void add(double error, bool over) noexcept;
-  void end_tick() noexcept;
+  /// pre  `tick` is larger than the last
+  void end_tick(std::int64_t tick) noexcept;
 
   std::uint64_t ticks() const noexcept { return ticks_; }  ///< that had a sample
   std::uint64_t ticks_over() const noexcept { return ticks_over_; }
-  std::uint64_t longest_run() const noexcept { return longest_run_; }  ///< [ticks] over without a break
+  std::uint64_t longest_run() const noexcept {
+    return longest_run_;
+  }  ///< [ticks] from first to last over, none between that was not
   double rms() const noexcept;
   double max() const noexcept { return max_; }
 
  private:
-  std::uint64_t samples_ = 0, ticks_ = 0, ticks_over_ = 0, run_ = 0, longest_run_ = 0;
+  std::uint64_t samples_ = 0, ticks_ = 0, ticks_over_ = 0, longest_run_ = 0;
+  TickSpan run_;
   double square_sum_ = 0, max_ = 0;
   bool sampled_ = false, over_ = false;  // in this tick
 };

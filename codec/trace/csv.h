@@ -63,7 +63,7 @@ struct CsvError {
 };
 
 struct CsvImport {
-  std::uint64_t rows = 0;
+  TickSpan ticks;  ///< one per row
   std::uint64_t segments = 0;
 };
 

@@ -163,7 +163,7 @@ Result<void> Importer::start() {
 
 Result<std::int64_t> Importer::tick_of(const Row& row, bool begins_segment) {
   if (plan_.tick) return row.frame.tick;
-  const std::int64_t next = done_.rows == 0 ? 0 : last_.frame.tick + 1;
+  const std::int64_t next = done_.ticks.count() == 0 ? 0 : last_.frame.tick + 1;
   if (begins_segment) {
     segment_tick_ = next;
     segment_time_ = row.time;
@@ -176,14 +176,14 @@ Result<std::int64_t> Importer::tick_of(const Row& row, bool begins_segment) {
 
 Result<void> Importer::write(Row& row) {
   line_ = row.line;
-  const bool begins_segment = done_.rows == 0 || row.segment != last_.segment;
+  const bool begins_segment = done_.ticks.count() == 0 || row.segment != last_.segment;
   TACTUS_TRY(const std::int64_t tick, tick_of(row, begins_segment));
-  const bool increases = done_.rows == 0 ? tick >= 0 : tick > last_.frame.tick;
+  const bool increases = done_.ticks.count() == 0 ? tick >= 0 : tick > last_.frame.tick;
   if (!increases || tick / plan_.info.tick_rate >= kMaxSeconds) return fail(Errc::invalid, "R-CSV-5");
   row.frame.tick = tick;
   if (!begins_segment) derive_motion(row.frame);
   TACTUS_CHECK(writer_->write(row.frame));
-  ++done_.rows;
+  done_.ticks.add(tick);
   if (begins_segment) ++done_.segments;
   last_ = std::move(row);
   return {};

@@ -68,4 +68,22 @@ struct TraceFrame {
   std::vector<MeshSample> meshes{};  ///< order of TraceInfo::meshes
 };
 
+/// Which ticks were seen. A recording leaves ticks out where its samples come less often than ticks, or pause; time goes on there.
+class TickSpan {
+ public:
+  /// pre  `tick` is larger than the last
+  void add(std::int64_t tick) noexcept {
+    if (count_++ == 0) first_ = tick;
+    last_ = tick;
+  }
+  std::uint64_t count() const noexcept { return count_; }
+  /// [ticks] from the first to the last, both included
+  std::uint64_t length() const noexcept { return count_ == 0 ? 0 : static_cast<std::uint64_t>(last_ - first_) + 1; }
+  std::uint64_t left_out() const noexcept { return length() - count_; }
+
+ private:
+  std::uint64_t count_ = 0;
+  std::int64_t first_ = 0, last_ = 0;
+};
+
 }  // namespace tactus

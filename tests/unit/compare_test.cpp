@@ -32,12 +32,13 @@ Pose moved(const TraceFrame& frame, const Vec3& by) { return {frame.objects[0].p
 
 TEST(ErrorSeries, CountsTicksAndRuns) {
   ErrorSeries series;
+  std::int64_t tick = 0;
   for (const double error : {1.0, 3.0, 3.0, 1.0, 3.0, 1.0}) {
     series.add(error, error > 2);
     series.add(0, false);
-    series.end_tick();
+    series.end_tick(tick++);
   }
-  series.end_tick();  // a tick without a sample
+  series.end_tick(tick++);  // a tick without a sample
   EXPECT_EQ(series.ticks(), 6u);
   EXPECT_EQ(series.ticks_over(), 3u);
   EXPECT_EQ(series.longest_run(), 2u);
@@ -45,10 +46,32 @@ TEST(ErrorSeries, CountsTicksAndRuns) {
   EXPECT_EQ(series.max(), 3.0);
 }
 
+TEST(ErrorSeries, RunsCoverTheTicksBetweenSamples) {
+  ErrorSeries series;
+  for (const std::int64_t tick : {10, 20, 30, 40, 50}) {
+    series.add(1, tick != 20);
+    series.end_tick(tick);
+  }
+  EXPECT_EQ(series.ticks_over(), 4u);
+  EXPECT_EQ(series.longest_run(), 21u);
+}
+
+TEST(TickSpan, CountsWhatIsLeftOut) {
+  TickSpan ticks;
+  EXPECT_EQ(ticks.length(), 0u);
+  for (const std::int64_t tick : {5, 6, 9}) ticks.add(tick);
+  EXPECT_EQ(ticks.count(), 3u);
+  EXPECT_EQ(ticks.length(), 5u);
+  EXPECT_EQ(ticks.left_out(), 2u);
+}
+
 TEST(Fidelity, MeasuresPoseAndContactForce) {
   Fidelity fidelity(one_cube(), {.visual_position = 0.006, .weber_fraction = 0.08});
-  const TraceFrame frame = pressed(0, 0.1);
-  const auto add = [&](const Vec3& by) { fidelity.add(frame, std::array{moved(frame, by), Pose{{9, 9, 9}, {}}}); };
+  TraceFrame frame = pressed(0, 0.1);
+  const auto add = [&](const Vec3& by) {
+    fidelity.add(frame, std::array{moved(frame, by), Pose{{9, 9, 9}, {}}});
+    ++frame.tick;
+  };
   add({0.007, 0, 0});    // beside the face's normal: seen, not felt
   add({0, 0, 0.00007});  // 7 % of 1 N
   add({0, 0, -0.0001});  // 10 %
@@ -68,6 +91,7 @@ TEST(Fidelity, FixedRuleCountsOnlyInContact) {
   TraceFrame frame = pressed(0, 0);
   const std::array shown{moved(frame, {0.002, 0, 0}), Pose{}};
   fidelity.add(frame, shown);
+  ++frame.tick;
   frame.users[0].contact.kind = ContactKind::none;
   fidelity.add(frame, shown);
   EXPECT_EQ(fidelity.force().ticks(), 1u);
@@ -79,9 +103,11 @@ TEST(Fidelity, RenderedForcesAgainstTheServers) {
   Fidelity fidelity(one_cube(), {});
   TraceFrame frame = pressed(0, 0);
   fidelity.add_rendered(frame);  // nobody feels anything
+  ++frame.tick;
   frame.users[0].server_force = {0, 0, 1};
   frame.users[0].force = {0, 0, 1.13};
   fidelity.add_rendered(frame);
+  ++frame.tick;
   frame.users[0].force = {0, 0, 1.15};
   fidelity.add_rendered(frame);
   EXPECT_EQ(fidelity.rendered().ticks(), 2u);
@@ -108,7 +134,8 @@ std::string jumping_stream(std::int64_t record_offset) {
   std::ostringstream out;
   auto writer = *StreamFileWriter::create(out, header);
   for (std::int64_t tick = 0; tick < 30; ++tick) {
-    const auto packet = encoder.encode(tick, pressed(tick, static_cast<double>(tick / 10)).objects, {});
+    const std::int64_t leap = tick / 10;
+    const auto packet = encoder.encode(tick, pressed(tick, static_cast<double>(leap)).objects, {});
     if (packet->bytes.empty()) continue;
     EXPECT_TRUE(writer.add(tick + record_offset, packet->bytes, packet->key));
   }

@@ -70,7 +70,7 @@ constexpr std::string_view kTosses =
 TEST(Csv, CubeTosses) {
   const Outcome outcome = import(kTosses, preset("cube-tosses"));
   ASSERT_EQ(outcome.rule, "");
-  EXPECT_EQ(outcome.done.rows, 3u);
+  EXPECT_EQ(outcome.done.ticks.count(), 3u);
   EXPECT_EQ(outcome.done.segments, 2u);
   EXPECT_EQ(outcome.info.tick_rate, 148u);
   ASSERT_EQ(outcome.info.objects.size(), 1u);
@@ -175,6 +175,8 @@ TEST(Csv, RateAndTicksFollowTheTimeColumn) {
   std::vector<std::int64_t> ticks;
   for (const TraceFrame& frame : outcome.frames) ticks.push_back(frame.tick);
   EXPECT_EQ(ticks, (std::vector<std::int64_t>{0, 1, 2, 5, 6, 7}));
+  EXPECT_EQ(outcome.done.ticks.count(), 6u);
+  EXPECT_EQ(outcome.done.ticks.length(), 8u);
   const Outcome back = import("t,s,x,y,z\n1.0,1,0,0,0\n1.002,1,0,0,0\n1.002,1,0,0,0\n1.004,1,0,0,0\n", mapping);
   EXPECT_EQ(back.rule, "R-CSV-5");
   EXPECT_EQ(back.error.line, 4u);
