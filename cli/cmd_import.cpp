@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <span>
+#include <string_view>
 
 #include "cli/report.h"
 #include "cli/table.h"
@@ -18,7 +20,7 @@ struct ImportOptions {
   std::string input, output, preset;
   std::vector<std::string> maps;
   std::string object, user, time, segment;
-  double length_scale = 0;
+  double length_scale = -1;  // [m] below 0: not given
   std::uint32_t tick_rate = 0;
   bool list_presets = false;
   CommonOptions common;
@@ -42,12 +44,12 @@ Outcome apply_map(const std::string& text, CsvMapping& mapping) {
   const std::size_t equals = text.find('=');
   const auto target = targets.find(text.substr(0, equals));
   if (equals == std::string::npos || target == targets.end()) {
-    return refuse("--map '" + text + "': not QUANTITY=COLUMNS",
-                  "Quantities are position, rotation (w,x,y,z), velocity, angular_velocity, device and force.");
+    return refuse_arguments("--map '" + text + "': not QUANTITY=COLUMNS",
+                            "Quantities are position, rotation (w,x,y,z), velocity, angular_velocity, device and force.");
   }
   const auto columns = split(text.substr(equals + 1));
   if (columns.size() != target->second.size()) {
-    return refuse(
+    return refuse_arguments(
         fmt::format("--map '{}': {} columns where {} needs {}", text, columns.size(), target->first, target->second.size()),
         "Name the columns as the first line of the file does, with commas between.");
   }
@@ -61,29 +63,44 @@ tl::expected<CsvMapping, Failure> make_mapping(const ImportOptions& options) {
     const auto& presets = csv_presets();
     const auto found = std::find_if(presets.begin(), presets.end(), [&](const CsvPreset& p) { return options.preset == p.name; });
     if (found == presets.end())
-      return refuse("--preset " + options.preset + ": no such preset", "`tactus import csv --list-presets` names them.");
+      return refuse_arguments("--preset " + options.preset + ": no such preset",
+                              "`tactus import csv --list-presets` names them.");
     mapping = found->mapping;
   }
+  std::set<std::string> mapped;
   for (const std::string& map : options.maps) {
+    const std::string quantity = map.substr(0, map.find('='));
+    if (!mapped.insert(quantity).second)
+      return refuse_arguments(fmt::format("--map '{}': {} has its columns already", map, quantity), "Give every quantity once.");
     if (auto applied = apply_map(map, mapping); !applied) return tl::unexpected(applied.error());
   }
   if (!options.object.empty()) mapping.object = options.object;
   if (!options.user.empty()) mapping.user = options.user;
   if (!options.time.empty()) mapping.time = options.time;
   if (!options.segment.empty()) mapping.segment = options.segment;
+  if (options.length_scale == 0) return refuse_arguments("--length-unit: not above 0", "Give a length, such as 1mm.");
   if (options.length_scale > 0) mapping.length_scale = options.length_scale;
   if (options.tick_rate > 0) mapping.tick_rate = options.tick_rate;
   if (options.preset.empty() && options.maps.empty()) {
-    return refuse("nothing says which columns to read", "Give --preset NAME or --map position=x,y,z.");
+    return refuse_arguments("nothing says which columns to read", "Give --preset NAME or --map position=x,y,z.");
   }
   return mapping;
 }
 
-tl::unexpected<Failure> refuse_csv(const std::string& file, const CsvError& e) {
-  std::string place = e.line > 0 ? fmt::format("line {}", e.line) : "";
+/// Whether a mapping cannot be right for any table. What layout `tactus` lacks is the table's fault.
+bool blames_arguments(const CsvMapping& mapping, std::string_view rule) {
+  if (mapping.layout != CsvLayout::named_columns) return false;
+  return rule == "R-CSV-8" || rule == "R-TRC-17" || (rule == "R-CSV-7" && mapping.time.empty());
+}
+
+tl::unexpected<Failure> refuse_csv(const std::string& file, const CsvMapping& mapping, const CsvError& e) {
+  const bool arguments = blames_arguments(mapping, e.error.rule);
+  std::string place = e.line > 0 && !arguments ? fmt::format("line {}", e.line) : "";
   if (!e.column.empty()) place += fmt::format("{}column {}", place.empty() ? "" : ", ", e.column);
   if (!e.text.empty()) place += fmt::format("{}'{}'", place.empty() ? "" : ", ", e.text);
-  return refuse(file, place, e.error);
+  auto refused = refuse(file, place, e.error);
+  if (arguments) refused.value().cause = Failure::Cause::arguments;
+  return refused;
 }
 
 void list_presets() {
@@ -103,7 +120,7 @@ Outcome run(const ImportOptions& options) {
   report.timings = {{"import, whole file", {}}};
   const auto imported =
       report.timings[0].times.measure([&] { return import_csv(options.input, *mapping, output->working_path()); });
-  if (!imported) return refuse_csv(options.input, imported.error());
+  if (!imported) return refuse_csv(options.input, *mapping, imported.error());
   if (output->is_temporary()) {
     const auto reader = TraceReader::open(output->working_path());
     if (!reader) return refuse(options.output, reader.error());

@@ -43,6 +43,7 @@ Outcome write_frames(const SurfaceSequence& sequence, const TriMesh& rest, const
 }
 
 Outcome run(const ImportMeshOptions& options) {
+  if (!(options.length_unit > 0)) return refuse_arguments("--length-unit: not above 0", "Give a length, such as 1mm.");
   auto output = OutputFile::create(options.output, options.common.existing());
   if (!output) return tl::unexpected(output.error());
   const auto sequence = SurfaceSequence::open(options.input);

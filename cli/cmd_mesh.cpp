@@ -63,12 +63,13 @@ Outcome make_slab(const MeshOptions& options, MeshReport& report) {
     at = parsed.ptr;
     good = parsed.ec == std::errc() && cells[i] >= 1 && (i == 2 ? at == end : at != end && *at++ == 'x');
   }
-  if (!good) return refuse("--slab " + options.slab + ": not three numbers of cells", "Write it like 16x20x1.");
+  if (!good) return refuse_arguments("--slab " + options.slab + ": not three numbers of cells", "Write it like 16x20x1.");
   const auto [x, y, z] = cells;
   const double vertices = (x + 1.0) * (y + 1.0) * (z + 1.0), tets = 6.0 * x * y * z;
   if (vertices > static_cast<double>(kMaxMeshVertices) || tets > static_cast<double>(kMaxTets))
-    return refuse("--slab " + options.slab + ": more than 2^20 vertices or 2^22 tetrahedra", "Take fewer and larger cells.");
-  if (!(options.cell > 0)) return refuse("--cell: not above 0", "Give an edge length, such as 10mm.");
+    return refuse_arguments("--slab " + options.slab + ": more than 2^20 vertices or 2^22 tetrahedra",
+                            "Take fewer and larger cells.");
+  if (!(options.cell > 0)) return refuse_arguments("--cell: not above 0", "Give an edge length, such as 10mm.");
   report.mesh = report.measure("make", [&] { return tactus::make_slab(cells[0], cells[1], cells[2], options.cell); });
   return {};
 }
@@ -199,9 +200,10 @@ void print_text(const Json& r, const MeshReport& report) {
 
 Outcome run(const MeshOptions& options) {
   if (!options.output.ends_with(".node") && !options.output.ends_with(".msh"))
-    return refuse(options.output + ": no name of a mesh", "Give -o NAME.node (with NAME.ele beside it) or -o NAME.msh.");
+    return refuse_arguments(options.output + ": no name of a mesh",
+                            "Give -o NAME.node (with NAME.ele beside it) or -o NAME.msh.");
   if (!(options.length_unit > 0) || !(options.edge >= 0))
-    return refuse("--length-unit or --edge: not above 0", "Give lengths, such as 1mm and 10mm.");
+    return refuse_arguments("--length-unit or --edge: not above 0", "Give lengths, such as 1mm and 10mm.");
   MeshReport report;
   Outcome made = !options.slab.empty()        ? make_slab(options, report)
                  : is_tet_file(options.input) ? read_tets(options, report)

@@ -200,7 +200,7 @@ void report_errors(const Simulation& simulation, Report& report) {
 
 Outcome run(const SimOptions& options) {
   if (options.duration >= 0 && options.duration < 0.5 / kTickRate)
-    return refuse("--duration: shorter than a tick", "Give at least 1ms.");
+    return refuse_arguments("--duration: shorter than a tick", "Give at least 1ms.");
   const auto scene = read_scene(options);
   if (!scene) return tl::unexpected(scene.error());
   if (!options.stiffness_map.empty()) {

@@ -28,10 +28,11 @@ namespace {
 constexpr int kOk = 0, kFailed = 1, kUsage = 2;
 
 int report_failure(const tactus::cli::Failure& failure) {
+  using tactus::cli::Failure;
   const bool coloured = tactus::cli::is_coloured(2);
   fmt::print(stderr, "{}error:{} {}\n", coloured ? "\x1b[1;31m" : "", coloured ? "\x1b[0m" : "", failure.text);
   if (!failure.remedy.empty()) fmt::print(stderr, "       {}\n", failure.remedy);
-  return kFailed;
+  return failure.cause == Failure::Cause::arguments ? kUsage : kFailed;
 }
 
 }  // namespace
@@ -47,7 +48,8 @@ int main(int argc, char** argv) {
       "  tactus encode push.mcap -o push.tct -p 4%                turn it into packets\n"
       "  tactus decode push.tct -o replica.mcap --like push.mcap  see it as a client does\n"
       "  tactus compare push.mcap replica.mcap -p 4%              how far is that from the truth\n"
-      "`tactus COMMAND --help` tells more. Quantities take units: 2deg, 5mm, 4%, 100ms, 0.05N.");
+      "`tactus COMMAND --help` tells more. Quantities take units: 2deg, 5mm, 4%, 100ms, 0.05N.\n"
+      "Exit status: 0 done, 1 an input was refused or the work failed, 2 the arguments are wrong.");
   Action action;
 #ifdef TACTUS_HAS_SIM
   setup_sim(app, action);

@@ -179,4 +179,8 @@ tl::unexpected<Failure> refuse(std::string text, std::string remedy) {
   return tl::unexpected(Failure{std::move(text), std::move(remedy)});
 }
 
+tl::unexpected<Failure> refuse_arguments(std::string text, std::string remedy) {
+  return tl::unexpected(Failure{std::move(text), std::move(remedy), Failure::Cause::arguments});
+}
+
 }  // namespace tactus::cli

@@ -12,8 +12,10 @@ namespace tactus::cli {
 
 /// Why a command failed. Ready to print.
 struct Failure {
+  enum class Cause { work, arguments };
   std::string text;    ///< "s.tct, byte 132: the check value of a record does not match (checksum, R-FIL-5)"
   std::string remedy;  ///< one sentence; may be empty
+  Cause cause = Cause::work;
 };
 using Outcome = tl::expected<void, Failure>;
 
@@ -27,5 +29,7 @@ tl::unexpected<Failure> refuse(const std::string& file, const std::string& place
 tl::unexpected<Failure> refuse(const std::string& file, const Error& error);
 /// A failure of the program's own, without a rule.
 tl::unexpected<Failure> refuse(std::string text, std::string remedy);
+/// Arguments that are wrong whatever the files hold: a mistake of usage, as those that are found while the line is parsed.
+tl::unexpected<Failure> refuse_arguments(std::string text, std::string remedy);
 
 }  // namespace tactus::cli
