@@ -39,8 +39,9 @@ class MeshDecoder:
         return MeshPacket(sequence, key, vertices, decoder.range, decoder.code, state)
 
     def shown(self, tick: int) -> list[int]:
-        """Section 6: the displacements that a client shows at a tick not before the current state's."""
-        return self.codec.expected(self.receiver.current(), tick)
+        """Section 6: the displacements that a client shows at a tick; one before the current state's counts as that."""
+        state = self.receiver.current()
+        return self.codec.expected(state, max(tick, state.tick))
 
     def state_hash(self) -> int:
         return fnv1a(self.receiver.current().hashed())

@@ -39,7 +39,9 @@ class Replica:
     def apply(self, packet: Packet, now: int) -> None:
         """Section 3."""
         for update in packet.updates:
-            self.apply_state(self.objects[update.object], packet.scene.states[update.object], now)
+            o = self.objects[update.object]
+            arrivals = (now, packet.tick) if o.arrival is None else (now, packet.tick, o.arrival)
+            self.apply_state(o, packet.scene.states[update.object], max(arrivals))
 
     def apply_state(self, o: ReplicaObject, state: State, now: int) -> None:
         shown = self.pose(o, now)
@@ -63,6 +65,7 @@ class Replica:
 
     def pose(self, o: ReplicaObject, now: int) -> tuple[tuple, tuple]:
         """Section 4."""
+        now = max(now, o.begin)
         if now >= o.end:
             return predict(self.header, o.state, now)
         part, whole = now - o.begin, o.end - o.begin

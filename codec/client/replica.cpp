@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "codec/client/replica.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "codec/base/fixed.h"
@@ -36,6 +37,7 @@ std::int64_t Replica::interval(const Track& track) const noexcept {
 void Replica::apply(const DecodedPacket& packet, std::span<const RigidState> objects, std::int64_t now) noexcept {
   for (const RigidUpdate& update : packet.updates) {
     Track& track = tracks_[update.object];
+    now = std::max({now, packet.tick, track.last_arrival});
     const RigidPose shown = pose(update.object, now);
     const bool running = now < track.end;
     if (track.last_arrival >= 0) {
@@ -69,6 +71,7 @@ void Replica::begin_interpolation(Track& track, const RigidPose& shown) const no
 
 RigidPose Replica::pose(std::uint32_t object, std::int64_t now) const noexcept {
   const Track& track = tracks_[object];
+  now = std::max(now, track.begin);
   if (now >= track.end) return predict(track.state, now, header_);
   const std::int64_t part = now - track.begin, whole = track.end - track.begin;
   RigidPose out = track.from;

@@ -30,15 +30,18 @@ struct ReplicaOptions {
 
 class Replica {
  public:
-  /// err  invalid_argument R-API-4: share outside (0, 1], or shortest > longest, or not finite.
+  /// err  R-STR-n, R-MES-n: the header is not valid, with the class that parse_header gives; invalid_argument R-API-4: not
+  ///      0 < share <= 1, or not 0 <= shortest <= longest <= 10 s.
   static Result<Replica> create(const StreamHeader& header, const ReplicaOptions& options = {});
 
-  /// Take over a decoded packet at tick `now` (>= packet tick; later when the network delayed it).
+  /// Take over a decoded packet at tick `now`: its own, or later when the network delayed it. An earlier one counts as the
+  /// packet's, or as that of the object's last update, if that is later.
   /// in  objects   the decoder's objects after that packet
   /// time O(updates), no allocation.
   void apply(const DecodedPacket& packet, std::span<const RigidState> objects, std::int64_t now) noexcept;
 
-  /// Pose of one object as shown at tick `now`.   time O(1), about 50 ns (100 ns while interpolating), no allocation.
+  /// Pose of one object as shown at tick `now`; before the object's newest update it is the pose shown when that was applied.
+  /// pre  object < header.objects.size().   time O(1), about 50 ns (100 ns while interpolating), no allocation.
   RigidPose pose(std::uint32_t object, std::int64_t now) const noexcept;
 
   std::uint64_t pose_hash(std::int64_t now) const noexcept;  ///< FNV-1a over every shown pose (conformance)

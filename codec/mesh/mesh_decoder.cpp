@@ -199,7 +199,7 @@ std::span<const MeshDecoder::Displacement> MeshDecoder::displacements() const no
 std::span<const MeshDecoder::Displacement> MeshDecoder::displacements_at(std::int64_t tick) noexcept {
   Impl& d = *impl_;
   const MeshState& state = d.current().state;
-  return d.reader.predict(state, std::max(tick, state.tick));
+  return d.reader.predict(state, std::clamp(tick, state.tick, kTickLimit));
 }
 
 std::int64_t MeshDecoder::tick() const noexcept { return impl_->current().state.tick; }

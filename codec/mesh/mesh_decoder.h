@@ -37,7 +37,7 @@ class MeshDecoder {
 
   /// Newest decoded displacement of every vertex.
   std::span<const Displacement> displacements() const noexcept;
-  /// Where prediction puts the vertices at a tick not before the newest packet's. Valid until the next call.
+  /// Where prediction puts the vertices at a tick; one before the newest packet's counts as that. Valid until the next call.
   std::span<const Displacement> displacements_at(std::int64_t tick) noexcept;
   std::int64_t tick() const noexcept;  ///< of the newest packet, 0 before the first
   const StreamHeader& header() const noexcept;

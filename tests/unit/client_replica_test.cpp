@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "tests/unit/rigid_fixture.h"
 
 namespace tactus {
@@ -16,12 +18,17 @@ class Feeder {
   explicit Feeder(Interpolation mode) : header_(scene_of(1)), replica_(make(header_, mode)) {}
 
   void update(std::int64_t tick, const Vec3& position, const Vec3& velocity, const Quat& rotation = {}, const Vec3& spin = {}) {
+    update_at(tick, tick, position, velocity, rotation, spin);
+  }
+  /// A packet of tick `tick`, applied at `now`.
+  void update_at(std::int64_t now, std::int64_t tick, const Vec3& position, const Vec3& velocity, const Quat& rotation = {},
+                 const Vec3& spin = {}) {
     const RigidState state = to_grid({{position, rotation}, velocity, spin}, tick, header_.grid).value();
     const RigidUpdate named{0, Reason::visual, 0};
     DecodedPacket packet;
     packet.tick = tick;
     packet.updates = {&named, 1};
-    replica_.apply(packet, {&state, 1}, tick);
+    replica_.apply(packet, {&state, 1}, now);
   }
   Pose shown(std::int64_t tick) const { return to_pose(replica_.pose(0, tick), header_.grid); }
 
@@ -82,6 +89,35 @@ TEST(ClientReplica, TheIntervalIsClippedAndAveragesFiveGaps) {
   EXPECT_EQ(arrives({400, 400, 20, 20, 20, 20, 20}), 15) << "gaps older than five do not count";
 }
 
+TEST(ClientReplica, TimesBeforeTheNewestUpdateCountAsThatUpdate) {
+  constexpr std::int64_t kLongAgo = std::numeric_limits<std::int64_t>::min();
+  for (const Interpolation mode : {Interpolation::none, Interpolation::linear}) {
+    Feeder f(mode);
+    f.update(960, {}, {0.1, 0, 0}, {}, {0, 1, 0});
+    f.update(1000, {0.03, 0, 0}, {0.5, 0, 0}, {}, {0, 1, 0});
+    f.update(1040, {0.1, 0, 0}, {0.5, 0, 0}, {}, {0, 1, 0});
+    const Pose first = f.shown(1040);
+    for (const std::int64_t tick : {std::int64_t{1039}, std::int64_t{999}, std::int64_t{-1}, kLongAgo}) {
+      EXPECT_EQ(f.shown(tick).position.x, first.position.x) << tick;
+      EXPECT_EQ(f.shown(tick).rotation.y, first.rotation.y) << tick;
+    }
+  }
+  Feeder unheard(Interpolation::linear);
+  EXPECT_EQ(unheard.shown(kLongAgo).position.x, 0);
+}
+
+TEST(ClientReplica, AnUpdateIsNotAppliedBeforeItsTickNorBeforeTheLastOne) {
+  Feeder f(Interpolation::linear), late(Interpolation::linear);
+  f.update(0, {}, {});
+  f.update_at(-7, 40, {}, {});
+  f.update_at(20, 80, {0.03, 0, 0}, {0.5, 0, 0});
+  EXPECT_NEAR(f.shown(95).position.x, 0.5 * (0.03 + 0.5 * 0.03), 1e-6) << "as if each had come at its own tick";
+  late.update_at(100, 40, {}, {});
+  late.update_at(99, 80, {0.03, 0, 0}, {0.5, 0, 0});
+  EXPECT_NEAR(late.shown(100).position.x, 0, 1e-6) << "a gap of 0 ticks, and so the shortest interpolation";
+  EXPECT_NEAR(late.shown(105).position.x, 0.03 + 0.5 * 0.025, 1e-6);
+}
+
 TEST(ClientReplica, RotationTurnsAtConstantRate) {
   Feeder f(Interpolation::linear);
   f.update(0, {}, {});
@@ -108,6 +144,7 @@ TEST(ClientReplica, OptionsOutsideTheirRangeAreRefused) {
   EXPECT_TRUE(refused({Interpolation::linear, 1.5, 0.005, 0.1}));
   EXPECT_TRUE(refused({Interpolation::linear, std::nan(""), 0.005, 0.1}));
   EXPECT_TRUE(refused({Interpolation::linear, 0.75, 0.2, 0.1}));
+  EXPECT_TRUE(refused({Interpolation::linear, 0.75, 0.005, 10.1}));
   EXPECT_FALSE(refused({}));
 }
 
