@@ -16,10 +16,10 @@ set linetype 5 linecolor rgb '#E69F00' linewidth 2 pointtype 7 pointsize 0.7
 set linetype 6 linecolor rgb '#56B4E9' linewidth 2 pointtype 7 pointsize 0.7
 set linetype 7 linecolor rgb '#000000' linewidth 2 pointtype 7 pointsize 0.7
 $s0 << EOD
-1920 0.85117218 0.0698513282 0.15730855
-15360 0.638907989 0.0183557871 0.0455557946
-51840 0.456167502 NaN 0.0181424164
-122880 0.328146905 0.00482360076 NaN
+1920 0.851172 0.0698513 0.157309
+15360 0.638908 0.0183558 0.0455558
+51840 0.456168 NaN 0.0181424
+122880 0.328147 0.0048236 NaN
 EOD
 set logscale xy
 set format x '10^{%L}'
