@@ -14,56 +14,28 @@ namespace {
 
 using testing::BoundWatch;
 using testing::DentedSheet;
+using testing::MeshEnds;
 using testing::SheetFrame;
 
 constexpr std::uint32_t kSquares = 12;
 
-struct Ends {
-  MeshEncoder encoder;
-  MeshDecoder decoder;
-};
-
-Ends make_ends(const StreamHeader& header, const MeshThresholds& thresholds, double key_interval = 5) {
-  MeshEncoderOptions options;
-  options.thresholds = thresholds;
-  options.key_interval = key_interval;
-  return {MeshEncoder::create(header, 0, options).value(), MeshDecoder::create(header, 0).value()};
-}
-
 struct Sent {
-  std::size_t packets = 0, bytes = 0, broken = 0;
+  std::size_t packets = 0, broken = 0;
   double worst = 0;  // [m]
 };
-
-/// Send one frame; both ends must agree afterwards.
-void send(Ends& ends, std::int64_t tick, const SheetFrame& frame, Sent& run) {
-  const auto packet = ends.encoder.encode(tick, frame.displacement, frame.touch);
-  ASSERT_TRUE(packet) << packet.error().rule;
-  if (packet->bytes.empty()) return;
-  const auto decoded = ends.decoder.decode(packet->bytes);
-  ASSERT_TRUE(decoded) << decoded.error().rule << " at tick " << tick;
-  ASSERT_EQ(decoded->tick, tick);
-  ASSERT_EQ(decoded->updates, packet->updates);
-  ASSERT_EQ(ends.decoder.state_hash(), ends.encoder.state_hash()) << "at tick " << tick;
-  ++run.packets;
-  run.bytes += packet->bytes.size();
-}
 
 Sent run_sheet(const StreamHeader& header, const MeshThresholds& thresholds, std::int64_t frames, double noise = 0) {
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
   DentedSheet sheet(mesh, kSquares, noise);
-  Ends ends = make_ends(header, thresholds);
+  MeshEnds ends(header, {.thresholds = thresholds});
   BoundWatch watch(header, thresholds);
-  Sent run;
   for (std::int64_t k = 0; k < frames; ++k) {
     const SheetFrame frame = sheet.frame(k);
-    send(ends, k, frame, run);
-    if (::testing::Test::HasFatalFailure()) return run;
+    ends.send(k, frame);
+    if (::testing::Test::HasFatalFailure()) return {};
     watch.look(frame, ends.decoder.displacements_at(k));
   }
-  run.broken = watch.broken();
-  run.worst = watch.worst();
-  return run;
+  return {ends.packets, watch.broken(), watch.worst()};
 }
 
 struct Setting {
@@ -95,9 +67,8 @@ TEST(MeshMain, BoundsHoldWithNoiseFarBeyondThem) {
 
 /// A sheet that waves in its own modes.
 std::size_t bytes_of_waves(const StreamHeader& header, const ModeBasis& basis) {
-  Ends ends = make_ends(header, {});
+  MeshEnds ends(header, {});
   const std::size_t modes = basis.steps.size(), components = basis.entries.size() / modes;
-  Sent sent;
   for (std::int64_t k = 0; k < 300; ++k) {
     SheetFrame frame{std::vector<Vec3>(components / 3), {}};
     for (std::size_t m = 0; m < modes; ++m) {
@@ -106,9 +77,9 @@ std::size_t bytes_of_waves(const StreamHeader& header, const ModeBasis& basis) {
       for (std::size_t v = 0; v < components / 3; ++v)
         frame.displacement[v] = frame.displacement[v] + Vec3{a * e[3 * v], a * e[3 * v + 1], a * e[3 * v + 2]};
     }
-    send(ends, k, frame, sent);
+    ends.send(k, frame);
   }
-  return sent.bytes;
+  return ends.bytes;
 }
 
 TEST(MeshMain, MotionInTheBasisCostsAFractionOfWhatItCostsWithout) {
@@ -144,14 +115,13 @@ TEST(MeshThesis, EndsAgreeAndErrorsStayWithinThresholdAndQuantiser) {
 
 TEST(MeshThesis, ListsWhatReachesAThreshold) {
   const StreamHeader header = testing::mesh_header(testing::sheet(4, 4), MeshProfile::thesis);
-  Ends ends = make_ends(header, {1e-3, 0.1, 0});
+  MeshEnds ends(header, {.thresholds = {1e-3, 0.1, 0}});
   SheetFrame frame{std::vector<Vec3>(25), MeshTouch{0, 1.0, 1000}};  // h = 0.1 mm
   const double unit = std::ldexp(1.0, -22);
   frame.displacement[0] = {0, 0, 1e-4 + unit};      // in the area of interest, above h
   frame.displacement[1] = {0, 0, 1e-4 - 2 * unit};  // and below
   frame.displacement[24] = {0, 1e-3 + unit, 0};     // three rings away from triangle 0 there is no vertex 24
-  Sent run;
-  send(ends, 0, frame, run);
+  ends.send(0, frame);
   const auto shown = ends.decoder.displacements();
   EXPECT_NE(shown[0], (MeshDecoder::Displacement{}));
   EXPECT_EQ(shown[1], (MeshDecoder::Displacement{}));
@@ -162,29 +132,25 @@ TEST(MeshThesis, ListsWhatReachesAThreshold) {
 TEST(MeshExtremes, OneVertexWithoutTriangle) {
   for (const MeshProfile profile : {MeshProfile::thesis, MeshProfile::main}) {
     const StreamHeader header = testing::mesh_header({{{0, 0, 0}}, {}}, profile);
-    Ends ends = make_ends(header, {});
-    Sent run;
+    MeshEnds ends(header, {});
     for (std::int64_t k = 0; k < 50; ++k) {
       const SheetFrame frame{{Vec3{1e-3 * static_cast<double>(k), 0, 0}}, {}};
-      send(ends, k, frame, run);
+      ends.send(k, frame);
       EXPECT_LE(norm(to_metres(ends.decoder.displacements()[0], 22) - frame.displacement[0]), 2.5e-4);
     }
-    EXPECT_EQ(run.packets, 49U);
+    EXPECT_EQ(ends.packets, 49U);
   }
 }
 
 TEST(MeshExtremes, AtRestNothingIsSentAndNothingDrifts) {
   const TriMesh mesh = testing::sheet(2, 2);
-  Ends ends = make_ends(testing::mesh_header(mesh, MeshProfile::main, testing::wave_basis(mesh, 2, 2)), {});
+  MeshEnds ends(testing::mesh_header(mesh, MeshProfile::main, testing::wave_basis(mesh, 2, 2)), {});
   DentedSheet sheet(mesh, 2);
-  Sent run;
-  for (std::int64_t k = 0; k < 30; ++k) send(ends, k, sheet.frame(k), run);
+  for (std::int64_t k = 0; k < 30; ++k) ends.send(k, sheet.frame(k));
   const SheetFrame rest{sheet.frame(29).displacement, {}};
-  for (std::int64_t k = 30; k < 130; ++k) send(ends, k, rest, run);  // motion comes to rest
-  const std::size_t packets = run.packets;
+  for (std::int64_t k = 30; k < 130; ++k) ends.send(k, rest);  // motion comes to rest
   const std::uint64_t hash = ends.decoder.state_hash();
   for (std::int64_t k = 130; k < 1000130; ++k) ASSERT_TRUE(ends.encoder.encode(k, rest.displacement)->bytes.empty());
-  EXPECT_EQ(run.packets, packets);
   EXPECT_EQ(ends.decoder.state_hash(), hash);
   EXPECT_EQ(ends.encoder.state_hash(), hash);
 }
@@ -195,17 +161,16 @@ TEST(MeshExtremes, RangeLimitsAndJumps) {
     const ModeBasis basis = profile == MeshProfile::main ? testing::wave_basis(mesh, 3, 3) : ModeBasis{};
     const MeshThresholds exact{0, {}};
     const StreamHeader header = testing::mesh_header(mesh, profile, basis);
-    Ends ends = make_ends(header, exact);
+    MeshEnds ends(header, {.thresholds = exact});
     BoundWatch watch(header, exact);
-    Sent run;
     for (std::int64_t k = 0; k < 40; ++k) {
       const double far = k % 2 == 0 ? 32.0 : -32.0;  // 2^27 units of 2^-22 m
       SheetFrame frame{std::vector<Vec3>(16, Vec3{far, -far, far}), {}};
       frame.displacement[5] = {0, 0, 0};
-      send(ends, k, frame, run);
+      ends.send(k, frame);
       watch.look(frame, ends.decoder.displacements());
     }
-    EXPECT_EQ(run.packets, 40U);
+    EXPECT_EQ(ends.packets, 40U);
     if (profile == MeshProfile::main) {
       EXPECT_EQ(watch.broken(), 0U);
     }
@@ -216,17 +181,16 @@ TEST(MeshExtremes, OneVertexJumpsEveryFrameAndNobodyTouches) {
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
   for (const double visual : {0.0, 2.5e-4}) {
     const StreamHeader header = testing::mesh_header(mesh, MeshProfile::main, testing::wave_basis(mesh, kSquares, 4));
-    Ends ends = make_ends(header, {visual, 0.025});
+    MeshEnds ends(header, {.thresholds = {visual, 0.025}});
     BoundWatch watch(header, {visual, 0.025});
-    Sent run;
     SheetFrame frame{std::vector<Vec3>(mesh.vertices.size()), {}};
     for (std::int64_t k = 0; k < 3000; ++k) {
       frame.displacement[70] = {0, 0, k % 2 == 0 ? 0.02 : -0.02};
-      send(ends, k, frame, run);
+      ends.send(k, frame);
       watch.look(frame, ends.decoder.displacements_at(k));
     }
     EXPECT_EQ(watch.broken(), 0U);
-    EXPECT_EQ(run.packets, 3000U);
+    EXPECT_EQ(ends.packets, 3000U);
   }
 }
 
@@ -236,19 +200,18 @@ TEST(MeshExtremes, AMillionVertices) {
   ASSERT_EQ(mesh.vertices.size(), kMaxMeshVertices);
   const MeshThresholds exact{0, {}};
   const StreamHeader header = parse_header(write_header(testing::mesh_header(mesh)).value()).value().header;
-  Ends ends = make_ends(header, exact);
+  MeshEnds ends(header, {.thresholds = exact});
   SheetFrame frame{std::vector<Vec3>(mesh.vertices.size()), {}};
-  Sent run;
   for (std::int64_t k = 0; k < 2; ++k) {
     for (std::size_t v = 0; v < frame.displacement.size(); ++v)
       frame.displacement[v] = {30 * std::sin(static_cast<double>(v * v)), -31.0 * static_cast<double>(k), 0.001};
-    send(ends, k, frame, run);
+    ends.send(k, frame);
     if (HasFatalFailure()) return;
     const double unit = std::ldexp(1.0, -22);
     for (std::size_t v = 0; v < frame.displacement.size(); v += 997)
       EXPECT_LE(norm(to_metres(ends.decoder.displacements()[v], 22) - frame.displacement[v]), unit);
   }
-  EXPECT_EQ(run.packets, 2U);
+  EXPECT_EQ(ends.packets, 2U);
 }
 
 TEST(MeshExtremes, VanishingForceAndVanishingStiffness) {
@@ -256,12 +219,11 @@ TEST(MeshExtremes, VanishingForceAndVanishingStiffness) {
   for (const MeshTouch touch : {MeshTouch{3, 0, 500}, MeshTouch{3, 5, 1e-300}, MeshTouch{3, 1e300, 1}}) {
     for (const double floor : {0.0, 2e-4}) {
       const MeshThresholds thresholds{2.5e-4, 0.025, floor};
-      Ends ends = make_ends(header, thresholds);
+      MeshEnds ends(header, {.thresholds = thresholds});
       BoundWatch watch(header, thresholds);
-      Sent run;
       for (std::int64_t k = 0; k < 20; ++k) {
         SheetFrame frame{std::vector<Vec3>(25, Vec3{1e-5 * static_cast<double>(k), 0, 3e-5}), touch};
-        send(ends, k, frame, run);
+        ends.send(k, frame);
         watch.look(frame, ends.decoder.displacements_at(k));
       }
       EXPECT_EQ(watch.broken(), 0U);
@@ -273,14 +235,13 @@ TEST(MeshExtremes, Slivers) {
   TriMesh mesh;
   for (int i = 0; i < 60; ++i) mesh.vertices.push_back({i * 1e-3, i % 2 * 1e-9, 0});
   for (std::uint32_t i = 0; i + 2 < 60; ++i) mesh.triangles.push_back({i, i + 1, i + 2});
-  Ends ends = make_ends(testing::mesh_header(mesh), {1e-5, {}});
+  MeshEnds ends(testing::mesh_header(mesh), {.thresholds = {1e-5, {}}});
   BoundWatch watch(ends.encoder.header(), {1e-5, {}});
-  Sent run;
   for (std::int64_t k = 0; k < 50; ++k) {
     SheetFrame frame{std::vector<Vec3>(60), {}};
     for (std::size_t v = 0; v < 60; ++v)
       frame.displacement[v].y = 1e-3 * std::sin(0.1 * static_cast<double>(v) + 0.3 * static_cast<double>(k));
-    send(ends, k, frame, run);
+    ends.send(k, frame);
     watch.look(frame, ends.decoder.displacements_at(k));
   }
   EXPECT_EQ(watch.broken(), 0U);
@@ -290,10 +251,9 @@ TEST(MeshEncoder, RefusesWhatIsNotFiniteOrOutOfRangeAndGoesOn) {
   for (const MeshProfile profile : {MeshProfile::thesis, MeshProfile::main}) {
     const TriMesh mesh = testing::sheet(kSquares, kSquares);
     DentedSheet sheet(mesh, kSquares);
-    Ends ends = make_ends(testing::mesh_header(mesh, profile), {});
-    Sent run;
+    MeshEnds ends(testing::mesh_header(mesh, profile), {});
     const SheetFrame good = sheet.frame(20);
-    send(ends, 0, good, run);
+    ends.send(0, good);
     const std::uint64_t hash = ends.encoder.state_hash();
     constexpr double kInf = std::numeric_limits<double>::infinity(), kNan = std::numeric_limits<double>::quiet_NaN();
     const auto refused = [&](const SheetFrame& frame, std::int64_t tick, std::string_view rule) {
@@ -320,8 +280,8 @@ TEST(MeshEncoder, RefusesWhatIsNotFiniteOrOutOfRangeAndGoesOn) {
     refused({std::vector<Vec3>(3), {}}, 1, "R-API-5");
     for (const MeshTouch touch : {MeshTouch{1000000, 1, 500}, MeshTouch{0, -1, 500}, MeshTouch{0, 1, 0}, MeshTouch{0, 1, -3}})
       refused({good.displacement, touch}, 1, "R-API-5");
-    send(ends, 1, sheet.frame(30), run);
-    EXPECT_EQ(run.packets, 2U);
+    ends.send(1, sheet.frame(30));
+    EXPECT_EQ(ends.packets, 2U);
   }
 }
 
@@ -347,7 +307,7 @@ TEST(MeshEncoder, KeyPacketsBuildOnTheInitialState) {
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
   const StreamHeader header = testing::mesh_header(mesh, MeshProfile::main, testing::wave_basis(mesh, kSquares, 8));
   DentedSheet sheet(mesh, kSquares);
-  Ends ends = make_ends(header, {}, 0.5);
+  MeshEnds ends(header, {.thresholds = {}, .key_interval = 0.5});
   std::size_t keys = 0;
   for (std::int64_t k = 0; k < 240; ++k) {
     const auto packet = ends.encoder.encode(k, sheet.frame(k).displacement);
@@ -371,7 +331,7 @@ TEST(MeshEncoder, AllocatesNothingAfterSetUp) {
     header.meshes[0].models_kept = true;
     header.baseline_span = 3;
     DentedSheet sheet(mesh, kSquares);
-    Ends ends = make_ends(header, {}, 0.3);
+    MeshEnds ends(header, {.thresholds = {}, .key_interval = 0.3});
     std::vector<SheetFrame> frames;
     for (std::int64_t k = 0; k < 120; ++k) frames.push_back(sheet.frame(k));
     const std::uint64_t before = testing::allocated_bytes();

@@ -11,6 +11,7 @@ namespace {
 
 using testing::BoundWatch;
 using testing::DentedSheet;
+using testing::MeshEnds;
 using testing::SheetFrame;
 
 constexpr std::uint32_t kSquares = 12;
@@ -24,37 +25,13 @@ StreamHeader split_header(const TriMesh& mesh, std::size_t modes, std::uint8_t s
   return header;
 }
 
-/// Both ends of one mesh.
-class Ends {
- public:
-  Ends(const StreamHeader& header, const MeshEncoderOptions& options)
-      : encoder(MeshEncoder::create(header, 0, options).value()), decoder(MeshDecoder::create(header, 0).value()) {}
-
-  /// Decode what is not empty. The ends must agree afterwards.
-  void deliver(const EncodedMeshPacket& packet, std::int64_t tick) {
-    if (packet.bytes.empty()) return;
-    const auto decoded = decoder.decode(packet.bytes);
-    ASSERT_TRUE(decoded) << decoded.error().rule << " at tick " << tick;
-    ASSERT_EQ(decoded->tick, tick);
-    ASSERT_EQ(decoded->updates, packet.updates);
-    ASSERT_EQ(decoder.state_hash(), encoder.state_hash()) << "at tick " << tick;
-    bytes += packet.bytes.size();
-    ++packets[static_cast<std::size_t>(packet.half)];
-  }
-
-  MeshEncoder encoder;
-  MeshDecoder decoder;
-  std::size_t bytes = 0;
-  std::array<std::size_t, 3> packets{};  // by half
-};
-
 class SplitBounds : public ::testing::TestWithParam<std::tuple<MeshThresholds, std::size_t, double>> {};
 
 TEST_P(SplitBounds, HoldAfterEachHalf) {
   const auto& [thresholds, modes, noise] = GetParam();
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
   const StreamHeader header = split_header(mesh, modes);
-  Ends ends(header, {.thresholds = thresholds, .key_interval = 1});
+  MeshEnds ends(header, {.thresholds = thresholds, .key_interval = 1});
   DentedSheet sheet(mesh, kSquares, noise);
   BoundWatch felt(header, thresholds), seen(header, thresholds);
   for (std::int64_t k = 0; k < kFrames; ++k) {
@@ -71,9 +48,9 @@ TEST_P(SplitBounds, HoldAfterEachHalf) {
   }
   EXPECT_EQ(felt.broken(), 0U);
   EXPECT_EQ(seen.broken(), 0U);
-  EXPECT_EQ(ends.packets[0] > 0, thresholds.weber_fraction.has_value());
-  EXPECT_GT(ends.packets[1], 20U);
-  EXPECT_EQ(ends.packets[2], 0U);
+  EXPECT_EQ(ends.halves[0] > 0, thresholds.weber_fraction.has_value());
+  EXPECT_GT(ends.halves[1], 20U);
+  EXPECT_EQ(ends.halves[2], 0U);
 }
 
 INSTANTIATE_TEST_SUITE_P(Settings, SplitBounds,
@@ -88,7 +65,7 @@ TEST(MeshSplit, MotionIsPredictedAcrossHapticHalves) {
   for (const bool split : {false, true}) {
     StreamHeader header = split_header(mesh, 8);
     header.meshes[0].split = split;
-    Ends ends(header, {});
+    MeshEnds ends(header, {});
     DentedSheet sheet(mesh, kSquares);
     for (std::int64_t k = 0; k < kFrames; ++k) {
       const SheetFrame frame = sheet.frame(k);
@@ -96,7 +73,7 @@ TEST(MeshSplit, MotionIsPredictedAcrossHapticHalves) {
       ends.deliver(ends.encoder.encode_rest(), k);
     }
     bytes[split ? 1 : 0] = ends.bytes;
-    EXPECT_EQ(ends.packets[2] > 0, !split);
+    EXPECT_EQ(ends.halves[2] > 0, !split);
   }
   EXPECT_LT(bytes[1], 2 * bytes[0]);
 }
@@ -107,7 +84,7 @@ TEST(MeshSplit, VisualHalvesMayBeLost) {
   const MeshThresholds thresholds;
   for (const std::uint8_t span : {std::uint8_t{1}, std::uint8_t{2}, std::uint8_t{4}}) {
     const StreamHeader header = split_header(mesh, 6, span);
-    Ends ends(header, {.thresholds = thresholds, .key_interval = 0});
+    MeshEnds ends(header, {.thresholds = thresholds, .key_interval = 0});
     DentedSheet sheet(mesh, kSquares);
     BoundWatch felt(header, thresholds), seen(header, thresholds);
     std::size_t lost = 0, keys = 0;
@@ -148,7 +125,7 @@ TEST(MeshSplit, AnyPacketMayBeLost) {
       StreamHeader header = testing::mesh_header(mesh, profile);
       header.meshes[0].split = profile == MeshProfile::main && split;
       header.baseline_span = 3;
-      Ends ends(header, {.thresholds = {}, .key_interval = 0.5, .split = split});
+      MeshEnds ends(header, {.thresholds = {}, .key_interval = 0.5, .split = split});
       DentedSheet sheet(mesh, kSquares);
       BoundWatch seen(header, {});
       std::mt19937_64 random(3);
@@ -171,7 +148,7 @@ TEST(MeshSplit, AnyPacketMayBeLost) {
         if (!lost && profile == MeshProfile::main) seen.look(frame, ends.decoder.displacements_at(k));
       }
       EXPECT_EQ(seen.broken(), 0U);
-      EXPECT_GT(ends.packets[split ? 1 : 2], 50U);
+      EXPECT_GT(ends.halves[split ? 1 : 2], 50U);
     }
   }
 }
@@ -180,7 +157,7 @@ TEST(MeshSplit, ThesisListsWhatIsFeltInAPacketOfItsOwn) {
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
   StreamHeader header = testing::mesh_header(mesh, MeshProfile::thesis);
   header.meshes[0].quant_bits = 12;
-  Ends ends(header, {.thresholds = {}, .key_interval = 1, .split = true});
+  MeshEnds ends(header, {.thresholds = {}, .key_interval = 1, .split = true});
   DentedSheet sheet(mesh, kSquares);
   BoundWatch watch(header, {});
   MeshRings rings(header.meshes[0]);
@@ -204,9 +181,9 @@ TEST(MeshSplit, ThesisListsWhatIsFeltInAPacketOfItsOwn) {
     watch.look(frame, shown);
   }
   EXPECT_LT(watch.worst(), 2.5e-4 + 1e-6);
-  EXPECT_GT(ends.packets[0], 100U);
-  EXPECT_GT(ends.packets[1], 100U);
-  EXPECT_EQ(ends.packets[2], 0U);
+  EXPECT_GT(ends.halves[0], 100U);
+  EXPECT_GT(ends.halves[1], 100U);
+  EXPECT_EQ(ends.halves[2], 0U);
 }
 
 /// A key packet that would list nothing, because the mesh is back in the initial state.
@@ -214,7 +191,7 @@ TEST(MeshSplit, ThesisKeyPacketsListAVertexAtLeast) {
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
   for (const bool split : {false, true}) {
     const StreamHeader header = testing::mesh_header(mesh, MeshProfile::thesis);
-    Ends ends(header, {.thresholds = {}, .key_interval = 0.1, .split = split});
+    MeshEnds ends(header, {.thresholds = {}, .key_interval = 0.1, .split = split});
     const MeshTouch touch{5, 1, 500};
     for (std::int64_t k = 0; k < 60; ++k) {
       const std::vector<Vec3> shape(mesh.vertices.size(), Vec3{0, 0, k % 13 < 6 ? 0.01 : 0});
@@ -233,7 +210,7 @@ TEST(MeshSplit, AllocatesNothingAfterSetUp) {
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
   for (const MeshProfile profile : {MeshProfile::thesis, MeshProfile::main}) {
     StreamHeader header = profile == MeshProfile::main ? split_header(mesh, 8, 3) : testing::mesh_header(mesh, profile);
-    Ends ends(header, {.thresholds = {}, .key_interval = 0.3, .split = true});
+    MeshEnds ends(header, {.thresholds = {}, .key_interval = 0.3, .split = true});
     DentedSheet sheet(mesh, kSquares);
     std::vector<SheetFrame> frames;
     for (std::int64_t k = 0; k < 120; ++k) frames.push_back(sheet.frame(k));

@@ -2,7 +2,10 @@
 /// A sheet of triangles that is pushed about, and what a client sees of it against the hard bounds.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -131,6 +134,35 @@ class BoundWatch {
   MeshRings rings_;
   std::size_t broken_ = 0;
   double worst_ = 0;
+};
+
+/// Both ends of a stream of one mesh. They must agree after every packet.
+class MeshEnds {
+ public:
+  MeshEnds(const StreamHeader& header, const MeshEncoderOptions& options)
+      : encoder(MeshEncoder::create(header, 0, options).value()), decoder(MeshDecoder::create(header, 0).value()) {}
+
+  void send(std::int64_t tick, const SheetFrame& frame) {
+    const auto packet = encoder.encode(tick, frame.displacement, frame.touch);
+    ASSERT_TRUE(packet) << packet.error().rule << " at tick " << tick;
+    deliver(*packet, tick);
+  }
+  void deliver(const EncodedMeshPacket& packet, std::int64_t tick) {
+    if (packet.bytes.empty()) return;
+    const auto decoded = decoder.decode(packet.bytes);
+    ASSERT_TRUE(decoded) << decoded.error().rule << " at tick " << tick;
+    ASSERT_EQ(decoded->tick, tick);
+    ASSERT_EQ(decoded->updates, packet.updates);
+    ASSERT_EQ(decoder.state_hash(), encoder.state_hash()) << "at tick " << tick;
+    bytes += packet.bytes.size();
+    ++packets;
+    ++halves[static_cast<std::size_t>(packet.half)];
+  }
+
+  MeshEncoder encoder;
+  MeshDecoder decoder;
+  std::size_t bytes = 0, packets = 0;
+  std::array<std::size_t, 3> halves{};  ///< packets by half
 };
 
 }  // namespace tactus::testing
