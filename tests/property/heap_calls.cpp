@@ -14,10 +14,10 @@ std::atomic<std::uint64_t> calls{0};
 }  // namespace
 
 // Names that the linker gives.
-extern "C" void* __real_malloc(std::size_t size);  // NOLINT(bugprone-reserved-identifier)
-extern "C" void* __wrap_malloc(std::size_t size);  // NOLINT(bugprone-reserved-identifier)
+extern "C" void* __real_malloc(std::size_t size);  // NOLINT(readability-identifier-naming)
+extern "C" void* __wrap_malloc(std::size_t size);  // NOLINT(readability-identifier-naming)
 
-extern "C" void* __wrap_malloc(std::size_t size) {  // NOLINT(bugprone-reserved-identifier)
+extern "C" void* __wrap_malloc(std::size_t size) {  // NOLINT(readability-identifier-naming)
   ++calls;
   return __real_malloc(size);
 }
