@@ -139,6 +139,8 @@ Outcome run(const CompareOptions& options) {
   const TraceInfo& info = truth->reader.info();
   if (auto same = check_same_scene(options, info, replica->reader.info()); !same) return same;
 
+  note_idle_options(*options.common.command, subjects_of(info), "truth");
+
   Report report{.command = "compare", .files = {{"truth", options.truth}, {"replica", options.replica}}};
   report.describe(info);
   report.fidelity.emplace(info, options.triggers.triggers());

@@ -125,6 +125,7 @@ Outcome run(const DecodeOptions& options) {
   auto output = OutputFile::create(options.output, options.common.existing(), {options.input, options.like});
   if (!output) return tl::unexpected(output.error());
   const TraceInfo info = replica_info(player->header(), options.input);
+  note_idle_options(*options.common.command, subjects_of(info), "stream");
   auto writer = TraceWriter::create(output->working_path(), info);
   if (!writer) return refuse(options.output, writer.error());
 

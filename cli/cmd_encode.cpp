@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "cli/option_needs.h"
 #include "cli/report.h"
 #include "codec/trace/trace_file.h"
 
@@ -112,6 +113,7 @@ Outcome run(const EncodeOptions& options) {
   const auto any = reader->next(frame);
   if (!any) return refuse(options.input, any.error());
   if (!*any) return refuse(options.input + ": the trace has no frames", "Record or simulate at least one tick.");
+  note_idle_options(*options.common.command, subjects_of(reader->info()), "trace");
   auto output = OutputFile::create(options.output, options.common.existing(), {options.input});
   if (!output) return tl::unexpected(output.error());
   const auto stream = output->open();

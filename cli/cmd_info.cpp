@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "cli/figures.h"
+#include "cli/option_needs.h"
 #include "cli/output.h"
 #include "cli/table.h"
 #include "codec/trace/compare.h"
@@ -27,6 +28,7 @@ using Json = nlohmann::ordered_json;
 struct InfoOptions {
   std::string input;
   bool packets = false, json = false;
+  const CLI::App* command = nullptr;
 };
 
 constexpr std::array<const char*, 4> kReasons{"request", "heartbeat", "visual", "haptic"};  // index: Reason
@@ -244,6 +246,7 @@ Outcome info_trace(const InfoOptions& options) {
   auto reader = TraceReader::open(options.input);
   if (!reader) return refuse(options.input, reader.error());
   const TraceInfo& trace = reader->info();
+  note_idle_options(*options.command, subjects_of(trace), "trace");
   TraceFrame frame;
   std::uint64_t frames = 0;
   std::int64_t first = 0;
@@ -286,6 +289,7 @@ Outcome info_trace(const InfoOptions& options) {
 Outcome info_scene(const InfoOptions& options) {
   const auto scene = load_scene(options.input);
   if (!scene) return refuse(to_string(scene.error()), "");
+  note_idle_options(*options.command, {}, "scene");
   Json info{{"schema", "tactus.info/1"},
             {"kind", "scene"},
             {"name", scene->name},
@@ -338,6 +342,7 @@ Outcome run(const InfoOptions& options) {
 void setup_info(CLI::App& app, Action& action) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App& command = *app.add_subcommand("info", "Tell what a stream, trace or scene holds");
+  options->command = &command;
   command.add_option("FILE", options->input, "Stream (.tct), trace (.mcap) or scene (.toml)")->type_name("")->required();
   command.add_flag("--packets", options->packets, "List every packet of a stream");
   command.add_flag("--json", options->json, "As JSON");

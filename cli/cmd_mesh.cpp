@@ -69,12 +69,12 @@ Outcome make_slab(const MeshOptions& options, MeshReport& report) {
   if (vertices > static_cast<double>(kMaxMeshVertices) || tets > static_cast<double>(kMaxTets))
     return refuse_arguments("--slab " + options.slab + ": more than 2^20 vertices or 2^22 tetrahedra",
                             "Take fewer and larger cells.");
-  if (!(options.cell > 0)) return refuse_arguments("--cell: not above 0", "Give an edge length, such as 10mm.");
   report.mesh = report.measure("make", [&] { return tactus::make_slab(cells[0], cells[1], cells[2], options.cell); });
   return {};
 }
 
 Outcome read_tets(const MeshOptions& options, MeshReport& report) {
+  note_idle_options(*options.common.command, {}, "file");
   auto file = report.measure("read", [&] { return read_tet_mesh(options.input); });
   if (!file) return refuse(to_string(file.error()), "");
   if (file->ignored_elements > 0)
@@ -202,8 +202,6 @@ Outcome run(const MeshOptions& options) {
   if (!options.output.ends_with(".node") && !options.output.ends_with(".msh"))
     return refuse_arguments(options.output + ": no name of a mesh",
                             "Give -o NAME.node (with NAME.ele beside it) or -o NAME.msh.");
-  if (!(options.length_unit > 0) || !(options.edge >= 0))
-    return refuse_arguments("--length-unit or --edge: not above 0", "Give lengths, such as 1mm and 10mm.");
   MeshReport report;
   Outcome made = !options.slab.empty()        ? make_slab(options, report)
                  : is_tet_file(options.input) ? read_tets(options, report)
@@ -233,15 +231,24 @@ void setup_mesh(CLI::App& app, Action& action) {
   command.add_option("-o,--output", options->output, "Mesh to write: NAME.node with NAME.ele beside it, or NAME.msh (Gmsh)")
       ->required()
       ->type_name("FILE");
-  add_quantity(command, "--cell", options->cell, Dimension::length, "Edge of the slab's cells [10mm]")->needs(slab);
-  add_quantity(command, "--length-unit", options->length_unit, Dimension::length, "Metres per unit of the file's lengths [1m]");
-  add_quantity(command, "--edge", options->edge, Dimension::length,
-               "Tetrahedra at most as large as a regular one with this edge");
+  add_quantity(command, "--cell", options->cell, Dimension::length, "Edge of the slab's cells [10mm]")
+      ->check(above_zero(Dimension::length))
+      ->needs(slab);
+  add_quantity(command, "--length-unit", options->length_unit, Dimension::length, "Metres per unit of the file's lengths [1m]")
+      ->check(above_zero(Dimension::length))
+      ->excludes(slab);
+  add_quantity(command, "--edge", options->edge, Dimension::length, "Tetrahedra at most as large as a regular one with this edge")
+      ->check(above_zero(Dimension::length))
+      ->excludes(slab);
   command.add_option("--quality", options->quality, "Largest circumsphere radius by shortest edge, 1.1 or more")
+      ->check(CLI::Range(1.1, 100.0).description(""))
+      ->excludes(slab)
       ->type_name("RATIO");
-  command.add_flag("--split-surface", options->split_surface,
-                   "Add points on the surface too, so that --edge and --quality hold there");
-  add_quantity(command, "--time-limit", options->time_limit, Dimension::time, "Give up after this long [60s]");
+  command
+      .add_flag("--split-surface", options->split_surface,
+                "Add points on the surface too, so that --edge and --quality hold there")
+      ->excludes(slab);
+  add_quantity(command, "--time-limit", options->time_limit, Dimension::time, "Give up after this long [60s]")->excludes(slab);
   add_output_options(command, options->common);
   command.footer(
       "Examples:\n"

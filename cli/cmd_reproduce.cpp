@@ -304,7 +304,8 @@ void setup_reproduce(CLI::App& app, Action& action) {
       ->check(CLI::Range(1, 1000).description(""))
       ->type_name("N");
   add_quantity(command, "--length-unit", options->length_unit, Dimension::length,
-               "Metres per virtual length unit of the thesis [0.05m]");
+               "Metres per virtual length unit of the thesis [0.05m]")
+      ->check(above_zero(Dimension::length));
   command.add_option("--grip", options->grip, "How firmly the device is held: loose, normal or firm [normal]")
       ->check(one_of({"loose", "normal", "firm"}))
       ->type_name("GRIP");

@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "cli/option_needs.h"
 #include "cli/report.h"
 #include "cli/stiffness_map.h"
 #include "codec/trace/trace_file.h"
@@ -198,12 +200,25 @@ void report_errors(const Simulation& simulation, Report& report) {
   }
 }
 
+std::set<Subject> subjects_of(const Scene& scene) {
+  std::set<Subject> held;
+  const bool moves =
+      std::any_of(scene.objects.begin(), scene.objects.end(), [](const SceneObject& o) { return o.dof != Dof::none; });
+  if (moves || !scene.msds.empty() || scene.deformables.empty()) held.insert(Subject::rigid);
+  if (!scene.users.empty()) held.insert(Subject::user);
+  if (!scene.deformables.empty()) held.insert({Subject::mesh, Subject::deformable, Subject::deformed});
+  if (!scene.deformables.empty() && !scene.users.empty()) held.insert(Subject::touched_mesh);
+  if (!scene.msds.empty()) held.insert(Subject::deformed);
+  return held;
+}
+
 Outcome run(const SimOptions& options) {
   if (options.duration >= 0 && options.duration < 0.5 / kTickRate)
     return refuse_arguments("--duration: shorter than a tick", "Give at least 1ms.");
   const auto scene = read_scene(options);
   if (!scene) return tl::unexpected(scene.error());
-  if (!options.stiffness_map.empty()) {
+  note_idle_options(*options.common.command, subjects_of(*scene), "scene");
+  if (!options.stiffness_map.empty() && !scene->deformables.empty()) {
     const auto drawn = write_stiffness_map(*scene, options.scene, options.stiffness_map, options.common.existing(),
                                            {options.scene, options.output, options.stream});
     if (!drawn) return tl::unexpected(drawn.error());
@@ -297,7 +312,8 @@ void setup_sim(CLI::App& app, Action& action) {
       .add_option("--stiffness-map", options->stiffness_map,
                   "Also write the local stiffness of deformable objects (CSV, and a plot beside it)")
       ->type_name("FILE");
-  command.add_flag("--codec", options->codec, "Close the loop through encoder, decoder and replica; so does every option below");
+  command.add_flag("--codec", options->codec,
+                   "Close the loop through encoder, decoder and replica; so does every option from --stream to --split");
   command.add_option("--stream", options->stream, "Also write the packets")->type_name("FILE");
   add_interpolation(command, options->replica);
   options->triggers.add_to(command);

@@ -6,16 +6,20 @@
 #include <memory>
 
 #include "cli/messages.h"
+#include "cli/option_needs.h"
 
 namespace tactus::cli {
 
 /// What a subcommand does once it was chosen on the command line.
 using Action = std::function<Outcome()>;
 
-/// When `command` is chosen, `action` becomes `run` with these options.
+/// When `command` is chosen and its options agree, `action` becomes `run` with them.
 template <class Options>
 void on_chosen(CLI::App& command, Action& action, std::shared_ptr<const Options> options, Outcome (*run)(const Options&)) {
-  command.callback([&action, options, run] { action = [options, run] { return run(*options); }; });
+  command.callback([&action, &command, options, run] {
+    check_options_agree(command);
+    action = [options, run] { return run(*options); };
+  });
 }
 
 }  // namespace tactus::cli

@@ -33,7 +33,7 @@ constexpr std::array kRules{
              "Check that the recording is in metres, seconds and radians (import takes --length-unit for other units)."},
     RuleText{"R-API-3", "a rotation is not a unit quaternion", "Check the order of its components: w, x, y, z."},
     RuleText{"R-API-4", "a threshold is zero, out of range or finer than the stream's grid",
-             "Give thresholds above 0: lengths of at least 2 um, angles of at least 0.001 deg and at most 180 deg."},
+             "Give -p above 0 (--haptic off for no bound of force), lengths of at least 2 um and angles of 0.002 to 180 deg."},
     RuleText{"R-API-5", "ticks do not increase, a count is wrong, or a contact is not valid",
              "Check that the inputs belong together and that the recording's times increase."},
     RuleText{"R-API-6", "an object moves along an axis that its degrees of freedom exclude",

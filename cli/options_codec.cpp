@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/options_codec.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
+#include <numbers>
 #include <string>
 
 #ifdef TACTUS_HAS_MODES
@@ -12,6 +15,10 @@
 
 namespace tactus::cli {
 namespace {
+
+// What the grid of every stream can hold (make_thresholds() of the rigid encoder): 8 steps of position and of rotation.
+constexpr double kLeastLength = 2e-6, kMostLength = 1e6;        // [m]
+constexpr double kLeastAngle = 0.002 * std::numbers::pi / 180;  // [rad]
 
 #ifdef TACTUS_HAS_MODES
 Result<ModeBasis> spring_basis(const TraceMesh& mesh, std::size_t modes) {
@@ -27,6 +34,7 @@ Result<ModeBasis> spring_basis(const TraceMesh&, std::size_t) { return fail(Errc
 CLI::Validator one_of(const std::vector<std::string>& names) { return CLI::IsMember(names).description(""); }
 
 void add_report_options(CLI::App& app, CommonOptions& options) {
+  options.command = &app;
   app.add_flag("--json", options.json, "Report as JSON, in SI units");
   app.add_flag("-q,--quiet", options.quiet, "No progress and no table; --json still reports");
   app.add_flag("--no-progress", options.no_progress, "No progress bar");
@@ -41,30 +49,55 @@ void TriggerArguments::add_to(CLI::App& app) {
   const std::map<std::string, HapticRule> rules{
       {"isotropic", HapticRule::isotropic}, {"cone", HapticRule::cone}, {"fixed", HapticRule::fixed}, {"off", HapticRule::off}};
   const auto rule = [this, rules](const std::string& name) { triggers_.haptic = rules.at(name); };
-  CLI::Option* deadband = add_quantity(app, "-p,--deadband", triggers_.weber_fraction, Dimension::fraction,
-                                       "Permitted share of force error, Weber's law [8%, meshes 2.5%]");
-  deadband_ = deadband;
+  deadband_ = add_quantity(app, "-p,--deadband", triggers_.weber_fraction, Dimension::fraction,
+                           "Permitted share of force error, Weber's law [8%, meshes 2.5%]");
+  visual_option_ = add_pose_bound(app, "--visual", visual_, "Permitted error of pose to the eye [6mm,2deg]");
+  fixed_option_ = add_pose_bound(app, "--fixed", fixed_, "Permitted pose error in contact of the rule fixed [1.5mm,2deg]");
+  length_unit_option_ = add_quantity(app, "--length-unit", length_unit_, Dimension::length,
+                                     "Metres per unit of lengths typed without a unit in --visual and --fixed [1m]")
+                            ->check(above_zero(Dimension::length));
   options_ = {
-      deadband,
-      add_pose_bound(app, "--visual", visual_, "Permitted error of pose to the eye [0.006,2deg]"),
+      deadband_,
+      visual_option_,
       app.add_option_function<std::string>("--haptic", rule,
                                            "Permitted error of force: isotropic, cone, fixed or off [isotropic]")
           ->check(one_of({"isotropic", "cone", "fixed", "off"}))
           ->type_name("RULE"),
       add_quantity(app, "--alpha", triggers_.cone_angle, Dimension::angle,
-                   "Permitted force direction error of the rule cone [2.1deg]"),
-      add_pose_bound(app, "--fixed", fixed_, "Permitted pose error in contact of the rule fixed [0.0015,2deg]"),
+                   "Permitted force direction error of the rule cone [2.1deg]")
+          ->check(within(Dimension::angle, "0.001deg", "180deg")),
+      fixed_option_,
       add_quantity(app, "--force-floor", triggers_.force_floor, Dimension::force,
-                   "Below this force the deadband is that of it [0.05N]"),
-      add_quantity(app, "--length-unit", length_unit_, Dimension::length, "Metres per unit of lengths typed without a unit [1m]"),
+                   "Below this force the deadband is that of it [0.05N]")
+          ->check(above_zero(Dimension::force)),
+      length_unit_option_,
   };
+  app.parse_complete_callback([this] { check_lengths(); });  // only now --length-unit is known
+}
+
+void TriggerArguments::check_lengths() const {
+  check_bound(*visual_option_, visual_);
+  check_bound(*fixed_option_, fixed_);
+  if (length_unit_option_->count() > 0 && !visual_.length.bare && !fixed_.length.bare)
+    throw CLI::ValidationError("--length-unit", "needs a length without a unit in --visual or --fixed");
+}
+
+void TriggerArguments::check_bound(const CLI::Option& option, const PoseBound& bound) const {
+  if (option.count() == 0) return;
+  if (const double length = scaled(bound.length); !(length >= kLeastLength && length < kMostLength))
+    throw CLI::ValidationError(option.get_name(),
+                               fmt::format("a length of {:.3g} mm: must be at least 2um and below 1000000m", 1e3 * length));
+  if (!(bound.angle.value >= kLeastAngle && bound.angle.value <= std::numbers::pi))
+    throw CLI::ValidationError(option.get_name(),
+                               fmt::format("an angle of {:.3g} rad: must be from 0.002deg to 180deg", bound.angle.value));
 }
 
 void TriggerArguments::add_encoder_to(CLI::App& app) {
+  options_.push_back(add_quantity(app, "--heartbeat", triggers_.heartbeat, Dimension::time, "Longest silence, 0: unlimited [1s]")
+                         ->check(within(Dimension::time, "0s", "3600s")));
   options_.push_back(
-      add_quantity(app, "--heartbeat", triggers_.heartbeat, Dimension::time, "Longest silence, 0: unlimited [1s]"));
-  options_.push_back(
-      add_quantity(app, "--key-interval", key_interval_, Dimension::time, "Time between places to seek to, 0: first only [5s]"));
+      add_quantity(app, "--key-interval", key_interval_, Dimension::time, "Time between places to seek to, 0: first only [5s]")
+          ->check(within(Dimension::time, "0s", "86400s")));
   options_.push_back(app.add_flag("--no-reduction", no_reduction_, "Send every object in every tick"));
 }
 
@@ -90,7 +123,8 @@ RigidTriggers TriggerArguments::triggers() const {
 void MeshArguments::add_to(CLI::App& app) {
   options_ = {
       add_quantity(app, "--mesh-visual", thresholds_.visual, Dimension::length,
-                   "Permitted error of a vertex to the eye, 0: none beyond the grid's [0.25mm]"),
+                   "Permitted error of a vertex to the eye, 0: none beyond the grid's [0.25mm]")
+          ->check(within(Dimension::length, "0m", "1000000m")),
       app.add_option("--rings", coding_.rings, "Rings of triangles around the touched one that -p holds in [3]")
           ->check(CLI::Range(0u, MeshObject::kMaxRings).description(""))
           ->type_name("M"),
@@ -103,20 +137,25 @@ void MeshArguments::add_encoder_to(CLI::App& app) {
   CLI::Option* modes = app.add_option("--basis", modes_, "main: vibration modes that both ends know, 0: none [0]")
                            ->check(CLI::Range(std::size_t{0}, ModeBasis::kMaxModes).description(""))
                            ->type_name("K");
-  options_.insert(
-      options_.end(),
-      {app.add_option_function<std::string>("--profile", profile, "Coding tools of meshes: thesis or main [main]")
-           ->check(one_of({"thesis", "main"}))
-           ->type_name("NAME"),
-       modes,
-       add_quantity(app, "--visual-share", visual_share_, Dimension::fraction,
-                    "main: code to this share of --mesh-visual [100%]"),
-       add_quantity(app, "--haptic-share", haptic_share_, Dimension::fraction, "main: code to this share of -p's bound [100%]"),
-       app.add_option("--quant-bits", coding_.quant_bits, "thesis: bits of its quantiser, 1 to 12 [8]")
-           ->check(CLI::Range(1u, MeshObject::kMaxQuantBits).description(""))
-           ->type_name("Q"),
-       app.add_flag("--keep-models", coding_.models_kept, "thesis: entropy models live on from packet to packet"),
-       app.add_flag("--split", coding_.split, "Two packets where both are needed: what is felt, then the rest")});
+  options_.insert(options_.end(),
+                  {app.add_option_function<std::string>("--profile", profile, "Coding tools of meshes: thesis or main [main]")
+                       ->check(one_of({"thesis", "main"}))
+                       ->type_name("NAME"),
+                   modes,
+                   add_quantity(app, "--visual-share", visual_share_, Dimension::fraction,
+                                "main: code to this share of --mesh-visual, 0.1% or more [100%]")
+                       ->check(within(Dimension::fraction, "0.1%", "100%")),
+                   add_quantity(app, "--haptic-share", haptic_share_, Dimension::fraction,
+                                "main: code to this share of -p's bound, 0.1% or more [100%]")
+                       ->check(within(Dimension::fraction, "0.1%", "100%")),
+                   app.add_option("--quant-bits", coding_.quant_bits, "thesis: bits of its quantiser, 1 to 12 [8]")
+                       ->check(CLI::Range(1u, MeshObject::kMaxQuantBits).description(""))
+                       ->type_name("Q"),
+                   app.add_flag("--keep-models", coding_.models_kept, "thesis: entropy models live on from packet to packet"),
+                   app.add_flag("--split", coding_.split,
+                                "Meshes that are touched: send what is felt in a packet of its own, before the rest. Costs a "
+                                "second header per update and "
+                                "3 to 30 % of the bits")});
 }
 
 bool MeshArguments::any_given() const {

@@ -18,6 +18,7 @@ namespace tactus::cli {
 
 /// What every command that writes or reports takes.
 struct CommonOptions {
+  const CLI::App* command = nullptr;  ///< knows which options were typed
   bool json = false, quiet = false, no_progress = false, force = false;
 
   Visibility progress() const { return quiet || no_progress ? Visibility::hidden : Visibility::shown; }
@@ -40,15 +41,18 @@ class TriggerArguments {
   double key_interval() const { return key_interval_; }
 
  private:
+  /// Bounds that no encoder can hold.   throws CLI::ValidationError
+  void check_lengths() const;
+  void check_bound(const CLI::Option& option, const PoseBound& bound) const;
   double scaled(const Quantity& length) const { return length.bare ? length.value * length_unit_ : length.value; }
 
   RigidTriggers triggers_;
-  PoseBound visual_{{triggers_.visual_position, true}, {triggers_.visual_rotation, false}};
-  PoseBound fixed_{{triggers_.fixed_position, true}, {triggers_.fixed_rotation, false}};
+  PoseBound visual_{{triggers_.visual_position, false}, {triggers_.visual_rotation, false}};
+  PoseBound fixed_{{triggers_.fixed_position, false}, {triggers_.fixed_rotation, false}};
   double length_unit_ = 1;
   double key_interval_ = RigidEncoderOptions{}.key_interval;
   bool no_reduction_ = false;
-  const CLI::Option* deadband_ = nullptr;
+  const CLI::Option *deadband_ = nullptr, *visual_option_ = nullptr, *fixed_option_ = nullptr, *length_unit_option_ = nullptr;
   std::vector<const CLI::Option*> options_;
 };
 

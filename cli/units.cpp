@@ -118,6 +118,27 @@ CLI::Option* add_quantity(CLI::App& app, const std::string& name, double& value,
   return app.add_option_function<std::string>(name, read, help)->type_name(type_name(dimension));
 }
 
+CLI::Validator within(Dimension dimension, const std::string& low, const std::string& high) {
+  const double least = parse_quantity(low, dimension)->value, most = parse_quantity(high, dimension)->value;
+  return CLI::Validator(
+      [=](const std::string& text) {
+        const auto typed = parse_quantity(text, dimension);
+        if (!typed) return typed.error();
+        return typed->value < least || typed->value > most ? fmt::format("'{}': must be from {} to {}", text, low, high) : "";
+      },
+      "");
+}
+
+CLI::Validator above_zero(Dimension dimension) {
+  return CLI::Validator(
+      [=](const std::string& text) {
+        const auto typed = parse_quantity(text, dimension);
+        if (!typed) return typed.error();
+        return typed->value > 0 ? std::string() : fmt::format("'{}': must be above 0", text);
+      },
+      "");
+}
+
 CLI::Option* add_pose_bound(CLI::App& app, const std::string& name, PoseBound& value, const std::string& help) {
   const auto read = [&value, name](const std::string& text) { value = or_usage_error(long_name(name), parse_pose_bound(text)); };
   return app.add_option_function<std::string>(name, read, help)->type_name("LENGTH,ANGLE");

@@ -20,7 +20,7 @@ struct Quantity {
 ///      meant in degrees.
 tl::expected<Quantity, std::string> parse_quantity(std::string_view text, Dimension dimension);
 
-/// A length and an angle, "0.006,2deg".
+/// A length and an angle, "6mm,2deg".
 struct PoseBound {
   Quantity length;
   Quantity angle;
@@ -29,6 +29,9 @@ tl::expected<PoseBound, std::string> parse_pose_bound(std::string_view text);
 
 /// Option that takes one quantity in SI units.
 CLI::Option* add_quantity(CLI::App& app, const std::string& name, double& value, Dimension dimension, const std::string& help);
+/// Checks for such options, both ends included. They name what was typed and the range.   in  low, high  as typed: "1ms"
+CLI::Validator within(Dimension dimension, const std::string& low, const std::string& high);
+CLI::Validator above_zero(Dimension dimension);
 /// Option that takes LENGTH,ANGLE.
 CLI::Option* add_pose_bound(CLI::App& app, const std::string& name, PoseBound& value, const std::string& help);
 

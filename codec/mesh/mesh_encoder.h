@@ -29,7 +29,7 @@ struct MeshThresholds {
 struct MeshEncoderOptions {
   MeshThresholds thresholds;
   double key_interval = 5.0;  ///< [s] after this long the next packet builds on the initial state; 0: never
-  double visual_share = 1;    ///< main: code to this share of v: less error for more bits. 0 < share <= 1
+  double visual_share = 1;    ///< main: code to this share of v: less error for more bits. 0.001 <= share <= 1
   double haptic_share = 1;    ///< main: the same of h
   bool split = false;         ///< thesis: packets are haptic or visual halves; main: the header says so
 };
