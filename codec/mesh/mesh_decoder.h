@@ -14,7 +14,7 @@ namespace tactus {
 struct DecodedMeshPacket {
   std::uint16_t sequence = 0;
   bool key = false;                 ///< built on the initial state
-  MeshHalf half = MeshHalf::whole;  ///< main
+  MeshHalf half = MeshHalf::whole;  ///< main; packets of profile thesis do not say it
   std::int64_t tick = 0;
   std::uint32_t updates = 0;      ///< vertices with a residual of their own
   std::uint32_t final_range = 0;  ///< range decoder's state after the last symbol (conformance); thesis: of the displacements
@@ -22,6 +22,9 @@ struct DecodedMeshPacket {
 };
 
 /// Client side of one mesh: packets in, integer displacements out. Keeps the newest `baseline_span` states.
+///
+/// After a haptic half that is a key packet, all vertices outside the area of interest are where the initial state has them. Show
+/// them as before until a visual half has arrived, or the whole shape falls flat for as long as that takes.
 class MeshDecoder {
  public:
   using Displacement = std::array<std::int32_t, 3>;  ///< x 2^-position_exp m
@@ -32,7 +35,9 @@ class MeshDecoder {
 
   /// Decode one packet. After an error the state is what it was before.
   /// time O(vertices * (1 + modes)), 60 us for 714 vertices and 48 modes; no allocation, no exception.
-  /// err  truncated, malformed, invalid: R-MES-n, R-RNG-n; state R-PKT-n (baseline not held, or stale); limit_exceeded R-PKT-1.
+  /// err  truncated, malformed, invalid: R-MES-n, R-RNG-n; limit_exceeded R-PKT-1; state: R-PKT-5 the packet is not newer than the
+  ///      newest one: drop it; R-PKT-4 what it builds on is not held, a packet before it is lost or late: ask the sender for a key
+  ///      packet (MeshEncoder::request_key), before which others may be refused.
   Result<DecodedMeshPacket> decode(std::span<const std::uint8_t> packet) noexcept;
 
   /// Newest decoded displacement of every vertex.

@@ -75,6 +75,7 @@ EncodedMeshPacket MeshEncoder::encode_rest() noexcept {
 }
 
 void MeshEncoder::forget_last() noexcept { impl_->side->forget_last(); }
+void MeshEncoder::request_key() noexcept { impl_->side->request_key(); }
 
 const StreamHeader& MeshEncoder::header() const noexcept { return impl_->header; }
 std::uint64_t MeshEncoder::state_hash() const noexcept { return mesh_state_hash(impl_->mesh, impl_->side->held()); }

@@ -31,24 +31,35 @@ struct MeshEncoderOptions {
   double key_interval = 5.0;  ///< [s] after this long the next packet builds on the initial state; 0: never
   double visual_share = 1;    ///< main: code to this share of v: less error for more bits. 0.001 <= share <= 1
   double haptic_share = 1;    ///< main: the same of h
-  bool split = false;         ///< thesis: packets are haptic or visual halves; main: the header says so
+  bool split = false;         ///< thesis: packets are haptic or visual halves. main: not looked at, the header's `split` decides
 };
 
 struct EncodedMeshPacket {
-  std::span<const std::uint8_t>
-      bytes;                  ///< empty: every bound holds on the prediction, nothing to send. Valid until the next encode()
+  /// Empty: nothing to send, since on the prediction every bound holds for which this half vouches. Valid until the next encode().
+  std::span<const std::uint8_t> bytes;
   std::uint32_t updates = 0;  ///< vertices with a residual of their own
   bool key = false;
   MeshHalf half = MeshHalf::whole;
 };
 
-/// Server side of one mesh: true displacements in, at most one packet per frame out. Split, at most two: what the hand feels can go
-/// first, and its packet need not wait for the other one, nor be lost with it.
+/// Server side of one mesh: true displacements in, at most one packet per frame out. Split, at most two: what the hand feels goes
+/// first, and need not wait until the rest is coded.
+///
+/// Each packet builds on the one made before it, a haptic half often on the visual half of the frame before. If one does not arrive,
+/// the decoder refuses all that follow (R-PKT-4) up to the next key packet. A sender that does without a visual half therefore
+///   * does not call encode_rest(), or
+///   * drops what that returned and calls forget_last() before the next packet is made, which then builds on the state before. The
+///     header's baseline_span must be greater than the number of packets dropped in a row, so at least 2; else each drop costs a key
+///     packet;
+/// and after a loss that it did not know of it calls request_key().
+///
+/// A key packet forgets the whole shape: after its haptic half the vertices outside the area of interest are back in the initial
+/// state until the visual half arrives (mesh_decoder.h). Where nobody joins or seeks, key_interval 0 saves that.
 ///
 /// Profile main: after every frame the decoder's prediction obeys, for every vertex,
 ///   |u^ - u| <= v, and <= h = p |f_s| / k_c inside the area of interest,
-/// where a bound below the grid's rounding (0.87 units) means: the nearest grid point. After the haptic half of a split frame it does so
-/// for the vertices inside the area of interest.
+/// where a bound below the grid's rounding (0.87 units) means: the nearest grid point. After the haptic half of a split frame it does
+/// so for the vertices inside the area of interest.
 /// Profile thesis sends what reaches its thresholds; its quantiser may leave errors above h (thesis 3.3.1.1).
 class MeshEncoder {
  public:
@@ -73,6 +84,9 @@ class MeshEncoder {
   /// The packet returned last will not arrive (it is dropped, or known to be lost): the next one builds on the state before it, which
   /// the decoder holds, or on the initial state if the header's baseline_span does not reach so far. Only once after each packet.
   void forget_last() noexcept;
+
+  /// The receiver refuses what it gets (R-PKT-4): the next frame brings a key packet, also where every bound holds.
+  void request_key() noexcept;
 
   const StreamHeader& header() const noexcept;
   std::uint64_t state_hash() const noexcept;  ///< equals the decoder's after the same packets

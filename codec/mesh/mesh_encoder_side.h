@@ -65,16 +65,20 @@ class MeshEncoderSide {
     std::swap(held_, next_);
     key_tick_ = before_.key_tick;
     behind_ = before_.behind + 1;
+    key_requested_ = key_requested_ || before_.key_requested;
   }
+  void request_key() noexcept { key_requested_ = true; }
 
  protected:
   /// The first packet, one per interval, one after a pause so long that its length does not fit, and one where the decoder no longer
-  /// keeps what it should build on.
+  /// keeps what it should build on, or is said not to hold it.
   bool key_due(std::int64_t tick) const noexcept {
     const auto interval = static_cast<std::int64_t>(std::ceil(options_.key_interval * header_.tick_rate));
-    return key_tick_ < 0 || behind_ > header_.baseline_span || (interval > 0 && tick - key_tick_ >= interval) ||
+    return key_requested_ || key_tick_ < 0 || behind_ > header_.baseline_span || (interval > 0 && tick - key_tick_ >= interval) ||
            tick - held_.tick > 0x3fffffff;
   }
+  /// The next packet is due although every bound may hold.
+  bool key_requested() const noexcept { return key_requested_; }
   /// Packets back to `held_`.
   std::uint32_t baseline_delta() const noexcept { return behind_; }
   /// Somebody presses whose haptic threshold is to be kept.
@@ -94,7 +98,8 @@ class MeshEncoderSide {
     packet[1] = static_cast<std::uint8_t>(sequence_ >> 8);
     next_.tick = tick;
     std::swap(held_, next_);
-    before_ = {key_tick_, behind_};
+    before_ = {key_tick_, behind_, key_requested_};
+    key_requested_ = false;
     can_forget_ = true;
     behind_ = 1;
     if (key) key_tick_ = tick;
@@ -113,6 +118,7 @@ class MeshEncoderSide {
   struct Before {
     std::int64_t key_tick = -1;
     std::uint32_t behind = 1;
+    bool key_requested = false;
   };
 
   const bool split_;
@@ -120,6 +126,7 @@ class MeshEncoderSide {
   std::uint16_t sequence_ = 0;
   std::int64_t key_tick_ = -1;  // of the last key packet; -1: none yet
   std::uint32_t behind_ = 1;    // packets from `held_` to the next one; more than 1 after losses
+  bool key_requested_ = false;  // by request_key(), since the last packet
   Before before_;               // the last packet
   bool can_forget_ = false;     // `next_` is the state before it
 };

@@ -164,7 +164,7 @@ EncodedMeshPacket MainSide::encode(const MeshFrame& frame, MeshHalf half) noexce
   if (half == MeshHalf::haptic && !head.touched) return {};
   pass_.set_bounds(head.visual, head.touched ? haptic_bound(head.haptic) : head.visual,
                    head.touched ? area(head.triangle) : std::span<const std::uint32_t>{}, half);
-  if (bounds_hold(frame, head.key)) return {};
+  if (!key_requested() && bounds_hold(frame, head.key)) return {};
   // What is felt goes first: a key packet of the rest alone would forget it.
   if (half == MeshHalf::visual && head.key && head.touched) return {};
   const MeshState& from = base(head.key);

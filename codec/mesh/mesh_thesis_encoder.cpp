@@ -106,7 +106,7 @@ EncodedMeshPacket ThesisSide::encode(const MeshFrame& frame, MeshHalf half) noex
   const bool key = key_due(frame.tick);
   if (half == MeshHalf::haptic && !is_felt(frame)) return {};
   list_vertices(frame, held_, key ? MeshHalf::whole : half);  // a key packet forgets the whole shape
-  if (listed_.empty()) return {};
+  if (listed_.empty() && !key_requested()) return {};
   // What is felt goes first: a key packet of the rest alone would forget it.
   if (half == MeshHalf::visual && key && is_felt(frame)) return {};
   if (key) {

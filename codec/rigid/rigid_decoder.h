@@ -35,7 +35,9 @@ class RigidDecoder {
 
   /// Decode one packet. After an error the state is what it was before.
   /// time O(updates + objects if baseline_span > 1), < 2 us for one update; no allocation, no exception.
-  /// err  truncated, malformed, invalid: R-RIG-n; state R-PKT-n (baseline not held, or stale); limit_exceeded R-PKT-1.
+  /// err  truncated, malformed, invalid: R-RIG-n; limit_exceeded R-PKT-1; state: R-PKT-5 the packet is not newer than the newest one:
+  ///      drop it; R-PKT-4 what it builds on is not held, a packet before it is lost or late: ask the sender for a key packet
+  ///      (RigidEncoder::request_key), before which others may be refused.
   Result<DecodedPacket> decode(std::span<const std::uint8_t> packet) noexcept;
 
   /// Newest state of every object, header order.

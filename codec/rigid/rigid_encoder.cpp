@@ -109,6 +109,7 @@ struct RigidEncoder::Impl {
   std::int64_t last_tick = -1;   // of the last call
   std::int64_t packet_tick = 0;  // of the last packet
   std::int64_t key_tick = -1;    // of the last key packet; -1: none yet
+  bool key_requested = false;    // by request_key(), since the last packet
 
   Result<void> read_truth(std::int64_t tick, std::span<const RigidSample> samples) noexcept;
   Reason reason_for(std::uint32_t object, const RigidPose& shown, const Pose& pose, std::span<const Contact> contacts,
@@ -153,11 +154,11 @@ Reason RigidEncoder::Impl::reason_for(std::uint32_t object, const RigidPose& sho
 }
 
 /// Everything that a trigger asks for and, in a key packet, everything that has left the initial state on which it builds.
-/// Nothing is pending without at least one trigger.
+/// Nothing is pending without at least one trigger or a request.
 void RigidEncoder::Impl::collect(std::int64_t tick, std::span<const RigidSample> samples, std::span<const Contact> contacts,
                                  bool key) noexcept {
   pending.clear();
-  bool triggered = false;
+  bool triggered = key_requested;
   for (const std::uint32_t i : moving) {
     const Reason reason = reason_for(i, predict(held[i], tick, header), samples[i].pose, contacts, tick);
     const bool fires = reason != Reason::request || triggers.reduction == Reduction::none;
@@ -257,7 +258,7 @@ Result<EncodedPacket> RigidEncoder::encode(std::int64_t tick, std::span<const Ri
   }
   TACTUS_CHECK(e.read_truth(tick, samples));
   PacketHead head;
-  head.key = e.key_tick < 0 || (e.key_interval > 0 && tick - e.key_tick >= e.key_interval);
+  head.key = e.key_requested || e.key_tick < 0 || (e.key_interval > 0 && tick - e.key_tick >= e.key_interval);
   e.collect(tick, samples, contacts, head.key);
   if (e.pending.empty()) {
     e.last_tick = tick;
@@ -272,9 +273,12 @@ Result<EncodedPacket> RigidEncoder::encode(std::int64_t tick, std::span<const Ri
   }
   e.last_tick = e.packet_tick = tick;
   if (head.key) e.key_tick = tick;
+  e.key_requested = false;
   return EncodedPacket{std::span<const std::uint8_t>(e.buffer).first(size), strongest,
                        static_cast<std::uint32_t>(e.pending.size()), head.key};
 }
+
+void RigidEncoder::request_key() noexcept { impl_->key_requested = true; }
 
 const StreamHeader& RigidEncoder::header() const noexcept { return impl_->header; }
 std::uint64_t RigidEncoder::state_hash() const noexcept { return tactus::state_hash(impl_->header, impl_->held); }

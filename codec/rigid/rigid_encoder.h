@@ -33,6 +33,9 @@ struct RigidEncoderOptions {
 ///   |x^ - x| <= visual_position,  angle(q^, q) <= visual_rotation,  haptic_ratio(f, f^) <= 1.
 /// The encoder holds the decoder's state (closed loop) and picks for every update the coarsest grid level that keeps the quantised
 /// state well inside these bounds.
+///
+/// Each packet builds on the one before it, whatever the header's baseline_span: the bounds hold for a receiver that gets all of
+/// them. One that lost a packet holds what it had until the next key packet: after key_interval, or after request_key().
 class RigidEncoder {
  public:
   /// err  R-STR-n: the header is not valid, with the class that parse_header gives; invalid_argument R-API-4: a threshold is negative,
@@ -49,6 +52,10 @@ class RigidEncoder {
   ///      stiffness at this p. State is unchanged after any error.
   Result<EncodedPacket> encode(std::int64_t tick, std::span<const RigidSample> samples,
                                std::span<const Contact> contacts) noexcept;
+
+  /// A packet was lost, and the receiver refuses all that build on it (R-PKT-4): the next call of encode() sends a key packet, also
+  /// where every trigger is silent. It names all objects that have left the initial state; while none has, there is nothing to send.
+  void request_key() noexcept;
 
   const StreamHeader& header() const noexcept;
   std::uint64_t state_hash() const noexcept;  ///< equals the decoder's after the same packets

@@ -39,6 +39,7 @@ TEST(Allocation, EncodeDecodeAndShowAllocateNothing) {
       for (std::size_t i = 0; i < kObjects; ++i) samples[i] = motions[i].step(1e-3);
       contacts[0] = testing::touch(3, samples[3].pose, 0.001);
       contacts[1] = testing::touch(7, samples[7].pose, 0.002);
+      if (tick % 97 == 0) encoder.request_key();
       const auto packet = encoder.encode(tick, samples, contacts);
       if (!packet) return;
       if (!packet->bytes.empty()) {

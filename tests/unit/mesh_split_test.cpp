@@ -117,6 +117,115 @@ TEST(MeshSplit, VisualHalvesMayBeLost) {
   }
 }
 
+/// What becomes of a stream whose visual halves never arrive.
+struct Starved {
+  std::size_t accepted = 0, refused = 0, keys = 0;
+};
+
+/// in  rest(encoder)     makes a visual half, or not, and loses it
+///     refused(encoder)  a haptic half was not accepted
+Starved starve(std::uint8_t span, const auto& rest, const auto& refused) {
+  const TriMesh mesh = testing::sheet(kSquares, kSquares);
+  Ends ends(split_header(mesh, 6, span), {.thresholds = {}, .key_interval = 0});
+  DentedSheet sheet(mesh, kSquares);
+  Starved out;
+  for (std::int64_t k = 0; k < kFrames; ++k) {
+    const SheetFrame frame = sheet.frame(k);
+    const auto felt = ends.encoder.encode(k, frame.displacement, frame.touch).value();
+    if (const auto decoded = ends.decoder.decode(felt.bytes); decoded) {
+      ++out.accepted;
+      out.keys += decoded->key ? 1U : 0U;
+    } else if (!felt.bytes.empty()) {
+      EXPECT_STREQ(decoded.error().rule, "R-PKT-4");
+      ++out.refused;
+      refused(ends.encoder);
+    }
+    rest(ends.encoder);
+  }
+  return out;
+}
+
+constexpr std::array<std::uint8_t, 3> kSpans{1, 2, 8};
+void lose(MeshEncoder& encoder) { (void)encoder.encode_rest(); }
+void ignore(MeshEncoder&) {}
+
+TEST(MeshSplit, VisualHalvesMayBeLeftOut) {
+  for (const std::uint8_t span : kSpans) {
+    const Starved out = starve(span, ignore, ignore);
+    EXPECT_GT(out.accepted, 50U);
+    EXPECT_EQ(out.refused, 0U);
+    EXPECT_EQ(out.keys, 1U);
+  }
+}
+
+TEST(MeshSplit, DroppedVisualHalvesCostKeysWhereNoOlderBaselineIsKept) {
+  const auto drop = [](MeshEncoder& encoder) {
+    if (!encoder.encode_rest().bytes.empty()) encoder.forget_last();
+  };
+  std::array<Starved, 3> out;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = starve(kSpans[i], drop, ignore);
+    EXPECT_GT(out[i].accepted, 50U);
+    EXPECT_EQ(out[i].refused, 0U);
+  }
+  EXPECT_GT(out[0].keys, out[0].accepted * 9 / 10);
+  EXPECT_LT(out[1].keys, out[1].accepted / 4);
+  EXPECT_LT(out[2].keys, out[2].accepted / 10);
+}
+
+TEST(MeshSplit, AnUnnoticedLossStopsTheStreamUntilAKeyPacket) {
+  for (const std::uint8_t span : kSpans) {
+    const Starved silent = starve(span, lose, ignore);
+    EXPECT_EQ(silent.accepted, 0U) << "nobody touches at first: the only key packet is a visual half, and lost";
+    EXPECT_GT(silent.refused, 50U);
+    const Starved asked = starve(span, lose, [](MeshEncoder& encoder) { encoder.request_key(); });
+    EXPECT_GT(asked.accepted, asked.refused * 9 / 10) << "a refusal brings a key packet, mostly a haptic half";
+  }
+}
+
+/// Keys come once for each request, also when every bound holds, and again when the key packet itself was lost.
+TEST(MeshSplit, RequestedKeyPackets) {
+  const TriMesh mesh = testing::sheet(kSquares, kSquares);
+  const std::vector<Vec3> shape(mesh.vertices.size(), Vec3{0, 0, 0.01});
+  for (const MeshProfile profile : {MeshProfile::thesis, MeshProfile::main}) {
+    for (const bool split : {false, true}) {
+      for (const bool touched : {false, true}) {
+        StreamHeader header = testing::mesh_header(mesh, profile);
+        header.meshes[0].split = profile == MeshProfile::main && split;
+        Ends ends(header, {.thresholds = {}, .key_interval = 0, .split = split});
+        const auto touch = touched ? std::optional(MeshTouch{5, 1, 500}) : std::nullopt;
+        std::int64_t tick = 0;
+        const auto frame = [&] {
+          const auto first = ends.encoder.encode(tick, shape, touch).value();
+          ends.deliver(first, tick);
+          const EncodedMeshPacket rest = ends.encoder.encode_rest();
+          ends.deliver(rest, tick++);
+          EXPECT_FALSE(first.key && rest.key);
+          return first.key || rest.key;
+        };
+        EXPECT_TRUE(frame());
+        EXPECT_FALSE(frame());
+        ends.encoder.request_key();
+        EXPECT_TRUE(frame());
+        EXPECT_FALSE(frame());
+        ends.encoder.request_key();
+        EXPECT_EQ(ends.encoder.encode(tick, shape, touch)->key, touched || !split);
+        if (touched) {
+          ends.encoder.forget_last();
+          EXPECT_TRUE(ends.encoder.encode_rest().bytes.empty()) << "what is felt goes first";
+        } else {
+          EXPECT_EQ(ends.encoder.encode_rest().key, split);
+          ends.encoder.forget_last();
+        }
+        ++tick;
+        EXPECT_TRUE(frame());
+        EXPECT_FALSE(frame());
+        if (HasFatalFailure()) return;
+      }
+    }
+  }
+}
+
 /// Losses of any packet, whole ones too, and of key packets; the encoder is told once per packet.
 TEST(MeshSplit, AnyPacketMayBeLost) {
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
@@ -221,6 +330,7 @@ TEST(MeshSplit, AllocatesNothingAfterSetUp) {
       const auto first = ends.encoder.encode(k, frame.displacement, frame.touch);
       if (first && !first->bytes.empty()) decoded += ends.decoder.decode(first->bytes).has_value() ? 1U : 0U;
       const auto rest = ends.encoder.encode_rest();
+      if (k % 31 == 0) ends.encoder.request_key();
       if (k % 7 == 0) ends.encoder.forget_last();
       else if (!rest.bytes.empty()) decoded += ends.decoder.decode(rest.bytes).has_value() ? 1U : 0U;
       (void)ends.decoder.displacements_at(k);

@@ -384,5 +384,58 @@ TEST(Rigid, LostAndStalePacketsChangeNothing) {
   EXPECT_TRUE(decoder.decode(packets[1])) << "what was lost may still come";
 }
 
+/// A packet is lost, and the receiver asks for a key packet as soon as it notices.
+TEST(Rigid, ARequestedKeyPacketMendsALoss) {
+  constexpr std::size_t kObjects = 3;
+  for (const std::uint8_t span : {std::uint8_t{1}, std::uint8_t{8}}) {
+    StreamHeader header = scene_of(kObjects);
+    header.baseline_span = span;
+    auto encoder = RigidEncoder::create(header, {.triggers = {}, .key_interval = 0}).value();
+    auto decoder = RigidDecoder::create(header).value();
+    std::vector<Motion> motions{Motion(1), Motion(2), Motion(3)};
+    std::vector<RigidSample> samples(kObjects);
+    std::size_t lost = 0, refused = 0, keys = 0;
+    for (std::int64_t tick = 0; tick < 2000; ++tick) {
+      for (std::size_t i = 0; i < kObjects; ++i) samples[i] = motions[i].step(kTick);
+      const auto packet = encoder.encode(tick, samples, {}).value();
+      if (packet.bytes.empty()) continue;
+      keys += packet.key ? 1U : 0U;
+      if (tick >= 200 && lost < 5 && lost == refused && !packet.key) {
+        ++lost;
+        continue;
+      }
+      if (const auto decoded = decoder.decode(packet.bytes); !decoded) {
+        ASSERT_STREQ(decoded.error().rule, "R-PKT-4") << tick;
+        ++refused;
+        encoder.request_key();
+        continue;
+      }
+      ASSERT_EQ(decoder.state_hash(), encoder.state_hash()) << tick;
+    }
+    EXPECT_EQ(lost, 5U);
+    EXPECT_EQ(refused, lost) << "the packet after each loss, and no other";
+    EXPECT_EQ(keys, 1 + lost);
+  }
+}
+
+TEST(Rigid, ARequestedKeyPacketComesWithoutATrigger) {
+  const StreamHeader header = scene_of(2);
+  auto encoder = RigidEncoder::create(header, {.triggers = {.heartbeat = 0}, .key_interval = 0}).value();
+  auto late = RigidDecoder::create(header).value();
+  std::vector<RigidSample> samples(2);
+  encoder.request_key();
+  EXPECT_TRUE(encoder.encode(0, samples, {})->bytes.empty()) << "nothing has left the initial state";
+  samples[1].pose.position = {1, 0, 0};
+  ASSERT_TRUE(encoder.encode(1, samples, {})->key);
+  EXPECT_TRUE(encoder.encode(2, samples, {})->bytes.empty());
+  encoder.request_key();
+  const auto packet = encoder.encode(3, samples, {});
+  ASSERT_TRUE(packet && packet->key);
+  EXPECT_EQ(packet->updates, 1U);
+  ASSERT_TRUE(late.decode(packet->bytes));
+  EXPECT_EQ(late.state_hash(), encoder.state_hash());
+  EXPECT_TRUE(encoder.encode(4, samples, {})->bytes.empty()) << "once for each request";
+}
+
 }  // namespace
 }  // namespace tactus
