@@ -231,6 +231,7 @@ class HierarchyBuilder {
       group[v] = number[nearest.vertex];
     }
     std::vector<Edge> edges;
+    edges.reserve(g.neighbours.items.size());
     for (std::uint32_t v = 0; v < g.vertex.size(); ++v)
       for (const std::uint32_t n : g.neighbours[v])
         if (group[v] != group[n]) edges.push_back(edge(group[v], group[n]));

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What a stream of meshes may make a decoder allocate (spec/60-mesh.md section 10): every conformance vector, and meshes made to get
+/// the most out of a byte of header.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <vector>
+
+#include "codec/tactus.h"
+#include "tests/property/allocated.h"
+
+namespace tactus {
+namespace {
+
+namespace fs = std::filesystem;
+using Bytes = std::vector<std::uint8_t>;
+
+std::uint64_t models_of(const MeshObject& mesh) {
+  return mesh.profile == MeshProfile::thesis ? 254 + (std::uint64_t{1} << mesh.quant_bits) : 0;
+}
+
+/// For a header of so many bytes, parsed, and the decoder of one of its meshes.
+std::uint64_t earned(std::size_t bytes, std::uint64_t span, const MeshObject& mesh) {
+  return 4096 + 256 * span + bytes * (640 + 10 * span) + 4 * (span + 4) * models_of(mesh);
+}
+
+/// Parses the header, makes a decoder of each mesh, hands each packet to its decoder. Returns how many there are.
+std::size_t watch(const Bytes& bytes) {
+  const std::uint64_t start = testing::allocated_bytes();
+  auto reader = StreamFileReader::open(bytes);
+  if (!reader) return 0;
+  const std::uint64_t parsing = testing::allocated_bytes() - start;
+  const StreamHeader& header = reader->header();
+  const std::size_t header_bytes = static_cast<std::size_t>(reader->position());
+  std::vector<MeshDecoder> decoders;
+  decoders.reserve(header.meshes.size());
+  for (std::size_t i = 0; i < header.meshes.size(); ++i) {
+    const std::uint64_t before = testing::allocated_bytes();
+    decoders.push_back(MeshDecoder::create(header, i).value());
+    EXPECT_LE(parsing + testing::allocated_bytes() - before, earned(header_bytes, header.baseline_span, header.meshes[i])) << i;
+  }
+  const std::uint64_t ready = testing::allocated_bytes();
+  for (auto packet = reader->next(); packet && *packet; packet = reader->next()) {
+    const auto part = split_part(header, (*packet)->bytes);
+    if (!part) continue;
+    const bool rigid = has_part_byte(header) ? part->part == 0 : header.meshes.empty();
+    if (!rigid) (void)decoders[has_part_byte(header) ? part->part - 1 : 0].decode(part->bytes);
+  }
+  EXPECT_EQ(testing::allocated_bytes(), ready) << "packets allocate";
+  return decoders.size();
+}
+
+TEST(MeshMemory, OfEveryVector) {
+  std::size_t decoders = 0;
+  for (const auto& entry : fs::directory_iterator(fs::path(TACTUS_VECTORS) / "mesh")) {
+    if (entry.path().extension() != ".tct") continue;
+    SCOPED_TRACE(entry.path());
+    std::ifstream in(entry.path(), std::ios::binary);
+    decoders += watch(Bytes{std::istreambuf_iterator<char>(in), {}});
+  }
+  EXPECT_GT(decoders, 100U);
+}
+
+MeshObject points(std::uint32_t vertices) {
+  MeshObject mesh;
+  mesh.name = "m";
+  for (std::uint32_t i = 0; i < vertices; ++i) mesh.rest.push_back({static_cast<std::int32_t>(i), 0, 0});
+  return mesh;
+}
+
+/// Books of 60 pages, triangles on one edge whose ends have the highest numbers: every level of the hierarchy has nearly all edges
+/// again. Three bytes each.
+MeshObject books(std::uint32_t number) {
+  constexpr std::uint32_t kPages = 60, kVertices = kPages + 2;
+  MeshObject mesh = points(number * kVertices);
+  for (std::uint32_t i = 0; i < number * kPages; ++i) {
+    const std::uint32_t first = i / kPages * kVertices, spine = first + kPages;
+    mesh.triangles.push_back({spine, spine + 1, first + i % kPages});
+  }
+  return mesh;
+}
+
+/// Each pair of 30 hubs has a triangle with each of 30 leaves.
+MeshObject bipartite() {
+  constexpr std::uint32_t kHalf = 30;
+  MeshObject mesh = points(2 * kHalf);
+  for (std::uint32_t hub = 0; hub < kHalf; hub += 2)
+    for (std::uint32_t leaf = 0; leaf < kHalf; ++leaf) mesh.triangles.push_back({kHalf + hub, kHalf + hub + 1, leaf});
+  return mesh;
+}
+
+TEST(MeshMemory, OfMeshesThatTakeMost) {
+  std::vector<MeshObject> meshes{points(1),    points(1),    points(1), points(3000),
+                                 points(3000), points(3000), books(50), bipartite()};
+  meshes[0].profile = MeshProfile::thesis;
+  meshes[0].quant_bits = 12;
+  meshes[0].models_kept = true;
+  meshes[1].basis.entries.assign(3 * ModeBasis::kMaxModes, 1);
+  meshes[1].basis.steps.assign(ModeBasis::kMaxModes, 1);
+  meshes[2].split = true;
+  for (auto& at : meshes[3].rest) at = {};  // copies of one vertex: each is a neighbour of the next
+  meshes[4].split = true;
+  for (std::uint32_t i = 0; i < 3000; ++i) meshes[5].triangles.push_back({0, 1, 2});
+  for (const MeshObject& mesh : meshes) {
+    for (const std::uint8_t span : {std::uint8_t{1}, std::uint8_t{64}}) {
+      SCOPED_TRACE(&mesh - meshes.data());
+      StreamHeader header;
+      header.baseline_span = span;
+      header.meshes.push_back(mesh);
+      EXPECT_EQ(watch(write_header(header).value()), 1U);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tactus
