@@ -126,7 +126,7 @@ struct Starved {
 ///     refused(encoder)  a haptic half was not accepted
 Starved starve(std::uint8_t span, const auto& rest, const auto& refused) {
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
-  Ends ends(split_header(mesh, 6, span), {.thresholds = {}, .key_interval = 0});
+  MeshEnds ends(split_header(mesh, 6, span), {.thresholds = {}, .key_interval = 0});
   DentedSheet sheet(mesh, kSquares);
   Starved out;
   for (std::int64_t k = 0; k < kFrames; ++k) {
@@ -192,7 +192,7 @@ TEST(MeshSplit, RequestedKeyPackets) {
       for (const bool touched : {false, true}) {
         StreamHeader header = testing::mesh_header(mesh, profile);
         header.meshes[0].split = profile == MeshProfile::main && split;
-        Ends ends(header, {.thresholds = {}, .key_interval = 0, .split = split});
+        MeshEnds ends(header, {.thresholds = {}, .key_interval = 0, .split = split});
         const auto touch = touched ? std::optional(MeshTouch{5, 1, 500}) : std::nullopt;
         std::int64_t tick = 0;
         const auto frame = [&] {
