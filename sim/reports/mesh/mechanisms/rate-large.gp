@@ -16,22 +16,22 @@ set linetype 5 linecolor rgb '#E69F00' linewidth 2 pointtype 7 pointsize 0.7
 set linetype 6 linecolor rgb '#56B4E9' linewidth 2 pointtype 7 pointsize 0.7
 set linetype 7 linecolor rgb '#000000' linewidth 2 pointtype 7 pointsize 0.7
 $series0 << EOD
-4 315404
-6 532757
-7 651381
-8 772199
-9 893522
-10 1.01422e+06
-12 1.25128e+06
+4 315169
+6 532666
+7 651317
+8 772102
+9 893428
+10 1.01414e+06
+12 1.25129e+06
 EOD
 $series1 << EOD
-4 171961
-6 256077
-7 301024
-8 346184
-9 391758
-10 437286
-12 528555
+4 171732
+6 255731
+7 300591
+8 345959
+9 391395
+10 436834
+12 528006
 EOD
 set logscale y
 set format y '10^{%L}'

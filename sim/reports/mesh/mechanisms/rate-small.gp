@@ -16,22 +16,22 @@ set linetype 5 linecolor rgb '#E69F00' linewidth 2 pointtype 7 pointsize 0.7
 set linetype 6 linecolor rgb '#56B4E9' linewidth 2 pointtype 7 pointsize 0.7
 set linetype 7 linecolor rgb '#000000' linewidth 2 pointtype 7 pointsize 0.7
 $series0 << EOD
-4 301976
-6 506631
-7 622362
-8 741066
-9 858805
-10 972667
-12 1.19277e+06
+4 302007
+6 506614
+7 622322
+8 740967
+9 858786
+10 972675
+12 1.19273e+06
 EOD
 $series1 << EOD
-4 111053
-6 162144
-7 190103
-8 218457
-9 246914
-10 275474
-12 332686
+4 110965
+6 162059
+7 189868
+8 218429
+9 246852
+10 275345
+12 332548
 EOD
 set logscale y
 set format y '10^{%L}'
