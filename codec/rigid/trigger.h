@@ -46,7 +46,7 @@ double force_budget(const RigidTriggers& triggers, double force) noexcept;
 double haptic_ratio(const RigidTriggers& triggers, const Vec3& truth, const Vec3& estimate) noexcept;
 
 /// Weber fraction of force magnitude, measured on people: 10 % from 2.5 N up, 14 % at 1 N, 17 % at 0.5 N, 22 % at 0.3 N and
-/// below, linear between. DESIGN 6.1.
+/// below, linear between.
 double perceptual_fraction(double force) noexcept;
 
 }  // namespace tactus

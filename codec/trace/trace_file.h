@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Trace files: MCAP with zstd chunks and ROS 2 CDR messages. DESIGN 7.
+/// Trace files: MCAP with zstd chunks and ROS 2 CDR messages.
 ///
 /// topic                        message (header.frame_id "world")   when
 /// /objects/<name>/pose         geometry_msgs/msg/PoseStamped       every tick; a static object: first tick only
