@@ -195,7 +195,7 @@ void setup_bench_precision(CLI::App& bench, Action& action) {
                    "Coarse meshes, few steps, little memory: seconds instead of a quarter of an hour and 6 GB");
   command.add_option("--runs", options->runs, "Runs that a time is the median of")
       ->capture_default_str()
-      ->check(CLI::Range(1, 1000).description(""))
+      ->check(whole_number(1, 1000))
       ->type_name("N");
   add_output_options(command, options->common);
   command.footer("Example:\n  tactus bench precision --scene membrane -o out/precision");

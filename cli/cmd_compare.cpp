@@ -5,6 +5,7 @@
 
 #include "cli/figures.h"
 #include "cli/report.h"
+#include "cli/trace_ending.h"
 #include "codec/trace/trace_file.h"
 
 namespace tactus::cli {
@@ -77,14 +78,16 @@ struct Side {
   const std::string& path;
   TraceReader reader;
   TraceFrame frame{};
-  bool more = false;            // the frame is one
-  std::uint64_t unmatched = 0;  // frames whose tick the other trace lacks
+  bool more = false;  // the frame is one
+  std::uint64_t frames = 0;
+  std::uint64_t unmatched = 0;  // of them, whose tick the other trace lacks
 
   Outcome advance() {
     const auto next = reader.next(frame);
     if (!next) return refuse(path, next.error());
     more = *next;
-    return {};
+    frames += more ? 1 : 0;
+    return more ? Outcome() : check_ending(path, reader, frames);
   }
   bool is_before(const Side& other) const { return more && (!other.more || frame.tick < other.frame.tick); }
 };

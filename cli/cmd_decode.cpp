@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/cmd_decode.h"
 
+#include <fmt/format.h>
+
 #include "cli/report.h"
+#include "cli/trace_ending.h"
 #include "codec/mesh/mesh.h"
 #include "codec/trace/trace_file.h"
 
@@ -30,7 +33,9 @@ class TickSource {
     if (like_) {
       const auto more = like_->next(frame_);
       if (!more) return refuse(options_->like, more.error());
-      return *more ? std::optional(frame_.tick) : std::nullopt;
+      if (*more) return ++frames_, std::optional(frame_.tick);
+      if (auto whole = check_ending(options_->like, *like_, frames_); !whole) return tl::unexpected(whole.error());
+      return std::nullopt;
     }
     if (options_->ticks) return tick_ < *options_->ticks ? std::optional(tick_++) : std::nullopt;
     const auto waiting = player.next_tick();
@@ -43,6 +48,7 @@ class TickSource {
   const DecodeOptions* options_;
   std::optional<TraceReader> like_;
   TraceFrame frame_;
+  std::uint64_t frames_ = 0;
   std::int64_t tick_ = 0;
 };
 
@@ -94,6 +100,13 @@ Result<void> decode_tick(StreamPlayer& player, std::int64_t tick, TraceFrame& fr
   return {};
 }
 
+/// A stream that is broken at a tick can be decoded up to there.
+tl::unexpected<Failure> refuse_at(std::int64_t tick, const Error& error, const DecodeOptions& options) {
+  auto refused = refuse(options.input, error);
+  if (tick > 0) refused.value().remedy += fmt::format(" What comes before can be decoded with --ticks {}.", tick);
+  return refused;
+}
+
 Outcome decode_all(StreamPlayer& player, TraceWriter& writer, const DecodeOptions& options, Report& report) {
   auto ticks = TickSource::create(options);
   if (!ticks) return tl::unexpected(ticks.error());
@@ -107,7 +120,7 @@ Outcome decode_all(StreamPlayer& player, TraceWriter& writer, const DecodeOption
     if (!tick) return tl::unexpected(tick.error());
     if (!*tick) break;
     const auto decoded = report.timings[0].times.measure([&] { return decode_tick(player, **tick, frame, report); });
-    if (!decoded) return refuse(options.input, decoded.error());
+    if (!decoded) return refuse_at(**tick, decoded.error(), options);
     if (const auto written = writer.write(frame); !written)
       return refuse(options.output, place_of_tick(frame.tick), written.error());
     report.ticks.add(**tick);
@@ -158,7 +171,7 @@ void setup_decode(CLI::App& app, Action& action) {
   add_interpolation(command, options->replica);
   CLI::Option* like = command.add_option("--like", options->like, "Write the ticks that this trace has")->type_name("TRACE");
   command.add_option("--ticks", options->ticks, "Write so many ticks [up to the last packet]")
-      ->check(CLI::Range(std::int64_t{1}, std::int64_t{0xffffffff}, "at least 1 and below 2^32"))
+      ->check(whole_number(1, 0xffffffff))
       ->excludes(like);
   add_output_options(command, options->common);
   command.footer(

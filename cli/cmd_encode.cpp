@@ -6,6 +6,7 @@
 
 #include "cli/option_needs.h"
 #include "cli/report.h"
+#include "cli/trace_ending.h"
 #include "codec/trace/trace_file.h"
 
 namespace tactus::cli {
@@ -91,11 +92,16 @@ Result<void> encode_frame(Session& s, const TraceFrame& frame, Report& report) {
   return {};
 }
 
+/// The trace is to blame for what its objects do, the output for bytes that it does not take.
+const std::string& to_blame(const Error& error, const EncodeOptions& options) {
+  return error.code == Errc::io ? options.output : options.input;
+}
+
 Outcome encode_all(TraceReader& reader, Session& session, TraceFrame& frame, const EncodeOptions& options, Report& report) {
   Progress progress("encode", reader.frame_count(), options.common.progress());
   while (true) {
     if (const auto done = encode_frame(session, frame, report); !done) {
-      return refuse(options.input, place_of_tick(frame.tick), done.error());
+      return refuse(to_blame(done.error(), options), place_of_tick(frame.tick), done.error());
     }
     progress.update(report.ticks.count());
     const auto more = reader.next(frame);
@@ -112,7 +118,10 @@ Outcome run(const EncodeOptions& options) {
   TraceFrame frame;
   const auto any = reader->next(frame);
   if (!any) return refuse(options.input, any.error());
-  if (!*any) return refuse(options.input + ": the trace has no frames", "Record or simulate at least one tick.");
+  if (!*any) {
+    if (auto whole = check_ending(options.input, *reader, 0); !whole) return whole;
+    return refuse(options.input + ": the trace has no frames", "Record or simulate at least one tick.");
+  }
   note_idle_options(*options.common.command, subjects_of(reader->info()), "trace");
   auto output = OutputFile::create(options.output, options.common.existing(), {options.input});
   if (!output) return tl::unexpected(output.error());
@@ -120,7 +129,7 @@ Outcome run(const EncodeOptions& options) {
   if (!stream) return tl::unexpected(stream.error());
 
   auto session = start(reader->info(), frame, options, **stream);
-  if (!session) return refuse(options.input, session.error());
+  if (!session) return refuse(to_blame(session.error(), options), session.error());
   Report report{.command = "encode", .files = {{"trace", options.input}, {"stream", options.output}}};
   report.describe(reader->info());
   if (session->rigid) {
@@ -130,6 +139,7 @@ Outcome run(const EncodeOptions& options) {
   }
   add_meshes(reader->info(), options.meshes, options.triggers, report);
   if (auto done = encode_all(*reader, *session, frame, options, report); !done) return done;
+  if (auto whole = check_ending(options.input, *reader, report.ticks.count()); !whole) return whole;
   if (reader->cut_short())
     report.notes.emplace_back("warning", "the trace ends without its index; everything up to there was encoded");
   if (auto kept = output->keep(); !kept) return kept;

@@ -2,6 +2,7 @@
 #include "cli/cmd_export.h"
 
 #include "cli/options_codec.h"
+#include "cli/trace_ending.h"
 #include "codec/trace/csv.h"
 #include "codec/trace/trace_file.h"
 
@@ -21,7 +22,9 @@ Outcome run(const ExportOptions& options) {
   if (!output) return tl::unexpected(output.error());
   const auto stream = output->open();
   if (!stream) return tl::unexpected(stream.error());
-  if (const auto rows = export_csv(*reader, **stream); !rows) return refuse(options.input, rows.error());
+  const auto rows = export_csv(*reader, **stream);
+  if (!rows) return refuse((*stream)->fail() ? options.output : options.input, rows.error());
+  if (auto whole = check_ending(options.input, *reader, *rows); !whole) return whole;
   return output->keep();
 }
 

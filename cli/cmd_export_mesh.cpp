@@ -6,6 +6,7 @@
 
 #include "cli/cmd_export.h"
 #include "cli/options_codec.h"
+#include "cli/trace_ending.h"
 #include "codec/trace/trace_file.h"
 #include "sim/surface/surface_file.h"
 
@@ -71,7 +72,8 @@ Outcome run(const ExportMeshOptions& options) {
   const TriMesh& rest = reader->info().meshes[*index].rest;
   TriMesh shape = rest;
   TraceFrame frame;
-  for (std::size_t count = 0;;) {
+  std::uint64_t ticks = 0;
+  for (std::size_t count = 0;; ++ticks) {
     const auto more = reader->next(frame);
     if (!more) return refuse(options.input, more.error());
     if (!*more) break;
@@ -82,6 +84,7 @@ Outcome run(const ExportMeshOptions& options) {
     const std::string file = folder.file(fmt::format("frame-{:06}.{}", count++, options.format));
     if (const auto written = write_surface(file, shape); !written) return refuse(to_string(written.error()), "");
   }
+  if (auto whole = check_ending(options.input, *reader, ticks); !whole) return whole;
   return folder.keep();
 }
 

@@ -156,7 +156,7 @@ void setup_import(CLI::App& app, Action& action) {
   command.add_option("--user", options->user, "Name of the user")->type_name("NAME");
   add_quantity(command, "--length-unit", options->length_scale, Dimension::length, "Metres per unit of the table's lengths [1m]");
   command.add_option("--tick-rate", options->tick_rate, "Samples per second [from the times]")
-      ->check(CLI::Range(1, 1000000).description(""))
+      ->check(whole_number(1, 1000000))
       ->type_name("HZ");
   add_output_options(command, options->common);
   command.footer(

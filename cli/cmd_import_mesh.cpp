@@ -81,9 +81,7 @@ void setup_import_mesh(CLI::App& group, Action& action) {
   command.add_option("-o,--output", options->output, "Trace to write (MCAP), - is standard output")
       ->type_name("FILE")
       ->required();
-  command.add_option("--rate", options->rate, "Frames per second [60]")
-      ->check(CLI::Range(1, 1000000).description(""))
-      ->type_name("HZ");
+  command.add_option("--rate", options->rate, "Frames per second [60]")->check(whole_number(1, 1000000))->type_name("HZ");
   add_quantity(command, "--length-unit", options->length_unit, Dimension::length, "Metres per unit of the files' lengths [1m]");
   command.add_option("--name", options->name, "Name of the mesh [mesh]")->type_name("NAME");
   add_output_options(command, options->common);

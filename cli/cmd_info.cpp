@@ -13,6 +13,7 @@
 #include "cli/option_needs.h"
 #include "cli/output.h"
 #include "cli/table.h"
+#include "cli/trace_ending.h"
 #include "codec/trace/compare.h"
 #include "codec/trace/mcap_reader.h"
 #include "codec/trace/trace_file.h"
@@ -282,7 +283,8 @@ Outcome info_trace(const InfoOptions& options) {
   auto channels = channels_json(options.input);
   if (!channels) return tl::unexpected(channels.error());
   info["channels"] = std::move(*channels);
-  return show(info, options.json, print_info);
+  if (auto shown = show(info, options.json, print_info); !shown) return shown;
+  return check_ending(options.input, *reader, frames);
 }
 
 #ifdef TACTUS_HAS_SIM

@@ -301,7 +301,7 @@ void setup_reproduce(CLI::App& app, Action& action) {
       ->type_name("");
   command.add_option("--seeds", options->seeds, "Runs per setting")
       ->capture_default_str()
-      ->check(CLI::Range(1, 1000).description(""))
+      ->check(whole_number(1, 1000))
       ->type_name("N");
   add_quantity(command, "--length-unit", options->length_unit, Dimension::length,
                "Metres per virtual length unit of the thesis [0.05m]")

@@ -10,6 +10,8 @@
 #include "cli/option_needs.h"
 #include "cli/report.h"
 #include "cli/stiffness_map.h"
+#include "cli/table.h"
+#include "cli/trace_ending.h"
 #include "codec/trace/trace_file.h"
 #include "sim/simulation.h"
 
@@ -53,10 +55,12 @@ tl::expected<StreamOutput, Failure> open_stream(const SimOptions& options, const
   return StreamOutput{std::move(*file), std::move(*writer), PartJoiner(header)};
 }
 
+constexpr double kMostTicks = 0xffffffff;     // of a stream: spec/20-stream.md
 constexpr std::uint32_t kEstimateEvery = 50;  // deformations between looks at their error
 
 struct Run {
   Simulation simulation;
+  OutputFile output;  // of the trace
   TraceWriter trace;
   std::optional<StreamOutput> stream;
   std::optional<TraceReader> recording;
@@ -128,24 +132,43 @@ void add_deformations(const Run& run, StepTimes& times) {
     if (meshes[i].updated) times.add(run.simulation.deformables()->seconds(i));
 }
 
+/// An error after some ticks: says that the trace holds them, if it does.
+tl::unexpected<Failure> refuse_after(Failure failure, const Run& run, const Report& report) {
+  const std::uint64_t ticks = report.ticks.count();
+  if (run.output.stays() && ticks > 0) {
+    failure.remedy += fmt::format("{}{} holds the {} before the error.", failure.remedy.empty() ? "" : " ", run.output.path(),
+                                  counted(ticks, "tick"));
+  }
+  return tl::unexpected(std::move(failure));
+}
+
+Outcome finish(Run& run, const SimOptions& options) {
+  if (const auto done = run.trace.finish(); !done) return refuse(options.output, done.error());
+  if (run.stream) {
+    if (const auto done = run.stream->writer.finish(); !done) return refuse(options.stream, done.error());
+    if (auto kept = run.stream->file.keep(); !kept) return kept;
+  }
+  return run.output.keep();
+}
+
 Outcome simulate(Run& run, std::int64_t ticks, const SimOptions& options, Report& report) {
   Progress progress("sim", static_cast<std::uint64_t>(ticks), options.common.progress());
   for (std::int64_t i = 0; i < ticks; ++i) {
     if (run.recording) {
       const auto more = run.recording->next(run.recorded);
-      if (!more) return refuse(options.replay, more.error());
-      if (!*more) break;
+      if (!more) return refuse_after(refuse(options.replay, more.error()).value(), run, report);
+      if (!*more) {
+        if (auto whole = check_ending(options.replay, *run.recording, report.ticks.count()); !whole) return whole;
+        break;
+      }
     }
     const auto packet = step(run, options, report.timings[0].times);
-    if (!packet) return tl::unexpected(packet.error());
+    if (!packet) return refuse_after(packet.error(), run, report);
     if (report.timings.size() > 1) add_deformations(run, report.timings[1].times);
     if (auto done = record(run, *packet, options, report); !done) return done;
     progress.update(report.ticks.count());
   }
-  if (const auto done = run.trace.finish(); !done) return refuse(options.output, done.error());
-  if (!run.stream) return {};
-  if (const auto done = run.stream->writer.finish(); !done) return refuse(options.stream, done.error());
-  return run.stream->file.keep();
+  return finish(run, options);
 }
 
 Report make_report(const SimOptions& options, const TraceInfo& info) {
@@ -212,18 +235,24 @@ std::set<Subject> subjects_of(const Scene& scene) {
   return held;
 }
 
+Outcome draw_stiffness(const Scene& scene, const SimOptions& options) {
+  if (options.stiffness_map.empty() || scene.deformables.empty()) return {};
+  const auto drawn = write_stiffness_map(scene, options.scene, options.stiffness_map, options.common.existing(),
+                                         {options.scene, options.output, options.stream, options.replay});
+  if (!drawn) return tl::unexpected(drawn.error());
+  if (*drawn == Drawn::no) fmt::print(stderr, "note: {}\n", kNoGnuplot);
+  return {};
+}
+
 Outcome run(const SimOptions& options) {
   if (options.duration >= 0 && options.duration < 0.5 / kTickRate)
     return refuse_arguments("--duration: shorter than a tick", "Give at least 1ms.");
+  if (options.duration * kTickRate > kMostTicks)
+    return refuse_arguments("--duration: more ticks than can be numbered",
+                            fmt::format("Give at most {:.0f}s.", std::floor(kMostTicks / kTickRate)));
   const auto scene = read_scene(options);
   if (!scene) return tl::unexpected(scene.error());
   note_idle_options(*options.common.command, subjects_of(*scene), "scene");
-  if (!options.stiffness_map.empty() && !scene->deformables.empty()) {
-    const auto drawn = write_stiffness_map(*scene, options.scene, options.stiffness_map, options.common.existing(),
-                                           {options.scene, options.output, options.stream});
-    if (!drawn) return tl::unexpected(drawn.error());
-    if (*drawn == Drawn::no) fmt::print(stderr, "note: {}\n", kNoGnuplot);
-  }
   SimulationOptions settings{.seed = options.seed,
                              .grip = options.grip,
                              .channel = {},
@@ -240,28 +269,30 @@ Outcome run(const SimOptions& options) {
     if (!reader) return refuse(options.replay, reader.error());
     recording.emplace(std::move(*reader));
   }
-  // The trace grows under its own name: what a crash leaves behind is readable.
-  if (auto free =
-          OutputFile::check_free(options.output, options.common.existing(), {options.stream, options.scene, options.replay});
-      !free)
-    return free;
+  auto output = OutputFile::create_growing(options.output, options.common.existing(),
+                                           {options.stream, options.stiffness_map, options.scene, options.replay});
+  if (!output) return tl::unexpected(output.error());
   std::optional<StreamOutput> stream;
   if (!options.stream.empty()) {
     auto opened = open_stream(options, simulation->header());
     if (!opened) return tl::unexpected(opened.error());
     stream.emplace(std::move(*opened));
   }
+  if (auto drawn = draw_stiffness(*scene, options); !drawn) return drawn;
   const TraceInfo info = simulation->info();
-  auto trace = TraceWriter::create(options.output, info);
+  auto trace = TraceWriter::create(output->working_path(), info);
   if (!trace) return refuse(options.output, trace.error());
 
   Report report = make_report(options, info);
   describe_deformables(*simulation, report);
-  Run session{std::move(*simulation), std::move(*trace), std::move(stream), std::move(recording), {}};
+  Run session{std::move(*simulation), std::move(*output), std::move(*trace), std::move(stream), std::move(recording), {}};
   session.part_bytes = has_part_byte(session.simulation.header()) ? 1 : 0;
   const auto ticks =
       options.duration < 0 ? session.simulation.ticks() : static_cast<std::int64_t>(std::llround(options.duration * kTickRate));
-  if (auto done = simulate(session, ticks, options, report); !done) return done;
+  if (auto done = simulate(session, ticks, options, report); !done) {
+    if (report.ticks.count() == 0) session.output.discard();
+    return done;
+  }
   if (!info.users.empty() && report.ticks.count() > 0) {
     report.notes.emplace_back(
         "contact", fmt::format("{:.1f} % of the ticks, at most {:.2f} N",
@@ -287,7 +318,10 @@ void setup_sim(CLI::App& app, Action& action) {
   command.add_option("-o,--output", options->output, "Trace to write (MCAP), - is standard output")
       ->required()
       ->type_name("FILE");
-  command.add_option("--seed", options->seed, "Every random number follows from it")->capture_default_str()->type_name("N");
+  command.add_option("--seed", options->seed, "Every random number follows from it")
+      ->check(whole_number(0, UINT64_MAX))
+      ->capture_default_str()
+      ->type_name("N");
   add_quantity(command, "--duration", options->duration, Dimension::time, "Length [the scene's]");
   add_quantity(command, "--mesh-noise", options->mesh_noise, Dimension::length,
                "White noise on the shapes that are recorded and sent, RMS per axis [0]");
@@ -306,7 +340,7 @@ void setup_sim(CLI::App& app, Action& action) {
       ->check(one_of({"auto", "cg", "cholesky", "prefactored"}))
       ->type_name("NAME");
   command.add_option("--rate", options->rate, "Ticks from deformation to deformation, 1 to 1000 [the scene's]")
-      ->check(CLI::Range(1, 1000))
+      ->check(whole_number(1, 1000))
       ->type_name("N");
   command
       .add_option("--stiffness-map", options->stiffness_map,

@@ -223,7 +223,7 @@ void setup_sweep(CLI::App& app, Action& action) {
       ->required();
   command.add_option("-o,--output", options->folder, "Folder to write or to go on with [out/NAME]")->type_name("DIR");
   command.add_option("-j,--jobs", options->jobs, "Points computed at once [one per core]; 1 where times matter")
-      ->check(CLI::Range(1, 1024).description(""))
+      ->check(whole_number(1, 1024))
       ->type_name("N");
   command.add_flag("--list", options->list, "Print the commands and run none");
   add_report_options(command, options->common);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 
 #include "cli/cmd_compare.h"
 #include "cli/cmd_decode.h"
@@ -30,6 +31,7 @@ constexpr int kOk = 0, kFailed = 1, kUsage = 2;
 int report_failure(const tactus::cli::Failure& failure) {
   using tactus::cli::Failure;
   const bool coloured = tactus::cli::is_coloured(2);
+  std::fflush(stdout);  // what was printed comes first where both streams end in one place
   fmt::print(stderr, "{}error:{} {}\n", coloured ? "\x1b[1;31m" : "", coloured ? "\x1b[0m" : "", failure.text);
   if (!failure.remedy.empty()) fmt::print(stderr, "       {}\n", failure.remedy);
   return failure.cause == Failure::Cause::arguments ? kUsage : kFailed;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <map>
 #include <numbers>
 #include <string>
@@ -30,6 +31,16 @@ Result<ModeBasis> spring_basis(const TraceMesh&, std::size_t) { return fail(Errc
 #endif
 
 }  // namespace
+
+CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
+  const auto check = [low, high](const std::string& text) {
+    std::uint64_t number = 0;
+    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), number);
+    const bool fits = status == std::errc() && end == text.data() + text.size() && number >= low && number <= high;
+    return fits ? std::string() : fmt::format("'{}': not a whole number from {} to {}", text, low, high);
+  };
+  return CLI::Validator(check, "");
+}
 
 CLI::Validator one_of(const std::vector<std::string>& names) { return CLI::IsMember(names).description(""); }
 
@@ -126,7 +137,7 @@ void MeshArguments::add_to(CLI::App& app) {
                    "Permitted error of a vertex to the eye, 0: none beyond the grid's [0.25mm]")
           ->check(within(Dimension::length, "0m", "1000000m")),
       app.add_option("--rings", coding_.rings, "Rings of triangles around the touched one that -p holds in [3]")
-          ->check(CLI::Range(0u, MeshObject::kMaxRings).description(""))
+          ->check(whole_number(0, MeshObject::kMaxRings))
           ->type_name("M"),
   };
 }
@@ -135,7 +146,7 @@ void MeshArguments::add_encoder_to(CLI::App& app) {
   const std::map<std::string, MeshProfile> profiles{{"thesis", MeshProfile::thesis}, {"main", MeshProfile::main}};
   const auto profile = [this, profiles](const std::string& name) { coding_.profile = profiles.at(name); };
   CLI::Option* modes = app.add_option("--basis", modes_, "main: vibration modes that both ends know, 0: none [0]")
-                           ->check(CLI::Range(std::size_t{0}, ModeBasis::kMaxModes).description(""))
+                           ->check(whole_number(0, ModeBasis::kMaxModes))
                            ->type_name("K");
   options_.insert(options_.end(),
                   {app.add_option_function<std::string>("--profile", profile, "Coding tools of meshes: thesis or main [main]")
@@ -149,7 +160,7 @@ void MeshArguments::add_encoder_to(CLI::App& app) {
                                 "main: code to this share of -p's bound, 0.1% or more [100%]")
                        ->check(within(Dimension::fraction, "0.1%", "100%")),
                    app.add_option("--quant-bits", coding_.quant_bits, "thesis: bits of its quantiser, 1 to 12 [8]")
-                       ->check(CLI::Range(1u, MeshObject::kMaxQuantBits).description(""))
+                       ->check(whole_number(1, MeshObject::kMaxQuantBits))
                        ->type_name("Q"),
                    app.add_flag("--keep-models", coding_.models_kept, "thesis: entropy models live on from packet to packet"),
                    app.add_flag("--split", coding_.split,

@@ -76,6 +76,8 @@ class MeshArguments {
   std::vector<const CLI::Option*> options_;
 };
 
+/// Accept whole numbers from `low` to `high` only.
+CLI::Validator whole_number(std::uint64_t low, std::uint64_t high);
 /// Accept these names only; the help text of the option lists them.
 CLI::Validator one_of(const std::vector<std::string>& names);
 

@@ -59,6 +59,7 @@ RemovedOnSignal::~RemovedOnSignal() {
 }
 
 Outcome OutputFile::check_free(const std::string& path, Existing existing, std::initializer_list<std::string> others) {
+  if (path.empty()) return refuse_arguments("the name of an output is empty", "Give a name, or - for standard output.");
   std::error_code ignored;
   for (const std::string& other : others) {
     if (path != "-" && (path == other || fs::equivalent(path, other, ignored))) {
@@ -75,15 +76,24 @@ tl::expected<OutputFile, Failure> OutputFile::create(const std::string& path, Ex
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
   const bool direct = path == "-" || (fs::exists(status) && !fs::is_regular_file(status));
-  OutputFile file(path, direct ? path : path + ".part");
-  if (!direct) file.unfinished_ = std::make_unique<RemovedOnSignal>(file.working_path_);
+  OutputFile file(path, direct ? path : path + ".part", Unfinished::goes);
+  if (!direct) file.removal_ = std::make_unique<RemovedOnSignal>(file.working_path_);
   return file;
+}
+
+tl::expected<OutputFile, Failure> OutputFile::create_growing(const std::string& path, Existing existing,
+                                                             std::initializer_list<std::string> others) {
+  std::error_code ignored;
+  if (path == "-" || fs::exists(path, ignored)) return create(path, existing, others);
+  if (auto free = check_free(path, existing, others); !free) return tl::unexpected(free.error());
+  return OutputFile(path, path, Unfinished::stays);
 }
 
 OutputFile::OutputFile(OutputFile&& other) noexcept
     : path_(std::move(other.path_)),
       working_path_(std::move(other.working_path_)),
-      unfinished_(std::move(other.unfinished_)),
+      unfinished_(other.unfinished_),
+      removal_(std::move(other.removal_)),
       stream_(std::move(other.stream_)) {
   other.path_.clear();
   other.working_path_.clear();
@@ -105,13 +115,18 @@ Outcome OutputFile::keep() {
   if (error)
     return refuse(path_ + ": cannot be written: " + error.message(), "Check that the path is right and that you may use it.");
   working_path_ = path_;
-  unfinished_.reset();
+  removal_.reset();
   return {};
 }
 
 OutputFile::~OutputFile() {
   std::error_code ignored;
   if (is_temporary()) fs::remove(working_path_, ignored);
+}
+
+void OutputFile::discard() noexcept {
+  std::error_code ignored;
+  if (stays()) fs::remove(working_path_, ignored);
 }
 
 tl::expected<std::string, Failure> read_file(const std::string& path) {

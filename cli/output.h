@@ -29,28 +29,38 @@ class RemovedOnSignal {
 class OutputFile {
  public:
   enum class Existing { keep, replace };
-  /// err  PATH exists and is to be kept, or is one of the files that the command reads or writes besides
+  /// err  PATH is empty, exists and is to be kept, or is one of the files that the command reads or writes besides
   static Outcome check_free(const std::string& path, Existing existing, std::initializer_list<std::string> others = {});
   static tl::expected<OutputFile, Failure> create(const std::string& path, Existing existing,
                                                   std::initializer_list<std::string> others = {});
+  /// The same, but where nothing is yet, the file grows under its own name and stays, finished or not: for what a crash leaves
+  /// readable.
+  static tl::expected<OutputFile, Failure> create_growing(const std::string& path, Existing existing,
+                                                          std::initializer_list<std::string> others = {});
 
   const std::string& path() const noexcept { return path_; }
   const std::string& working_path() const noexcept { return working_path_; }  ///< where to write; "-": standard output
   bool is_temporary() const noexcept { return path_ != working_path_; }       ///< a plain file that can be read back
+  bool stays() const noexcept { return unfinished_ == Unfinished::stays; }    ///< unfinished, too
   /// Open working_path() for writing; standard output if that is "-".   pre  called once
   tl::expected<std::ostream*, Failure> open();
   Outcome keep();
+  /// Remove what stays unfinished: it holds nothing yet.   pre  keep() was not called
+  void discard() noexcept;
 
   OutputFile(OutputFile&& other) noexcept;
   OutputFile& operator=(OutputFile&&) = delete;
   ~OutputFile();
 
  private:
-  OutputFile(std::string path, std::string working_path) : path_(std::move(path)), working_path_(std::move(working_path)) {}
+  enum class Unfinished { goes, stays };
+  OutputFile(std::string path, std::string working_path, Unfinished unfinished)
+      : path_(std::move(path)), working_path_(std::move(working_path)), unfinished_(unfinished) {}
 
   std::string path_, working_path_;
+  Unfinished unfinished_;
   // Both stay where they are when the file is moved.
-  std::unique_ptr<RemovedOnSignal> unfinished_;
+  std::unique_ptr<RemovedOnSignal> removal_;
   std::unique_ptr<std::ofstream> stream_;
 };
 

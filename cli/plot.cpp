@@ -21,6 +21,8 @@ set key textcolor rgb '#222222' spacing 1.15
 
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "NaN"; }
 
+std::string script_file(const Plot& plot, const std::string& directory) { return directory + "/" + plot.name + ".gp"; }
+
 std::string script_of(const Plot& plot) {
   std::string out = fmt::format(
       "# SPDX-License-Identifier: Apache-2.0\n"
@@ -43,8 +45,12 @@ std::string script_of(const Plot& plot) {
 
 }  // namespace
 
+Outcome check_plot(const Plot& plot, const std::string& directory, OutputFile::Existing existing) {
+  return OutputFile::check_free(script_file(plot, directory), existing);
+}
+
 tl::expected<Drawn, Failure> draw(const Plot& plot, const std::string& directory, OutputFile::Existing existing) {
-  auto file = OutputFile::create(directory + "/" + plot.name + ".gp", existing);
+  auto file = OutputFile::create(script_file(plot, directory), existing);
   if (!file) return tl::unexpected(file.error());
   const auto out = file->open();
   if (!out) return tl::unexpected(out.error());

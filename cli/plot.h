@@ -27,6 +27,9 @@ inline constexpr const char* kPlotColours[] = {"#0072B2", "#D55E00", "#009E73", 
 
 enum class Drawn : bool { no, yes };
 
+/// err  the script of draw() is there and to be kept
+Outcome check_plot(const Plot& plot, const std::string& directory, OutputFile::Existing existing);
+
 /// Write DIR/NAME.gp, which holds script and data and can be run by itself, and let gnuplot make DIR/NAME.svg and DIR/NAME.png of it.
 /// out  Drawn::no: there is no gnuplot; the script is there all the same
 /// err  a file cannot be written; gnuplot refuses the script (its words are in the failure)

@@ -38,8 +38,6 @@ void traffic_rows(Table& table, const Report& r) {
   const Traffic& t = *r.traffic;
   table.heading({"packets", "number", "per second"});
   for (std::size_t i = kReasons.size(); i-- > 0;) {
-    const bool untouched = static_cast<Reason>(i) == Reason::haptic && r.users == 0 && t.packets[i] == 0;
-    if (untouched) continue;
     table.row({fmt::format("  {}", kReasons[i]), fmt::to_string(t.packets[i]),
                fmt::format("{:.2f}", per(static_cast<double>(t.packets[i]), r.seconds()))});
   }

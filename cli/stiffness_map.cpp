@@ -112,10 +112,13 @@ tl::expected<Drawn, Failure> write_stiffness_map(const Scene& scene, const std::
     const std::string stem = place.stem().string();
     plots.push_back(stiffness_plot(plots.empty() ? stem : stem + "-" + object.name, object.name, *map));
   }
+  const std::string folder = place.has_parent_path() ? place.parent_path().string() : ".";
+  if (file == "-") plots.clear();
+  for (const Plot& plot : plots)
+    if (auto free = check_plot(plot, folder, existing); !free) return tl::unexpected(free.error());
   if (auto kept = table->keep(); !kept) return tl::unexpected(kept.error());
-  if (file == "-") return Drawn::yes;
   for (const Plot& plot : plots) {
-    auto drawn = draw(plot, place.has_parent_path() ? place.parent_path().string() : ".", existing);
+    auto drawn = draw(plot, folder, existing);
     if (!drawn || *drawn == Drawn::no) return drawn;
   }
   return Drawn::yes;

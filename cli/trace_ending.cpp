@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/trace_ending.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "cli/table.h"
+
+namespace tactus::cli {
+
+Outcome check_ending(const std::string& path, const TraceReader& reader, std::uint64_t frames) {
+  if (!reader.cut_short()) return {};
+  if (frames == 0) {
+    return refuse(path + ": the trace was cut before the end of its first chunk; no tick of it can be read",
+                  "Copy it again from its source, or record it again.");
+  }
+  std::fflush(stdout);
+  fmt::print(stderr, "warning: {}: the trace ends without its index; {} before the cut could be read\n", path,
+             counted(frames, "tick"));
+  return {};
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What is to be said about a trace whose writer did not finish.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "cli/messages.h"
+#include "codec/trace/trace_file.h"
+
+namespace tactus::cli {
+
+/// To be called when a trace was read to its end: warns on standard error, quiet or not, if it was cut.
+/// in   frames  so many were read
+/// err  it was cut before its first tick
+Outcome check_ending(const std::string& path, const TraceReader& reader, std::uint64_t frames);
+
+}  // namespace tactus::cli
