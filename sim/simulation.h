@@ -63,7 +63,7 @@ class Simulation {
   /// out  the packet of this tick, without bytes if none was needed; valid until the next call
   /// time about 16 us for one cube and user; no allocation after the first tick, in which ODE makes its arenas, and the first
   ///      deformation.
-  /// err  internal R-SIM-1, R-FEM-6: the physics broke down; errors of RigidEncoder::encode and RigidDecoder::decode
+  /// err  invalid_argument R-SIM-1, R-FEM-6: the physics broke down; errors of RigidEncoder::encode and RigidDecoder::decode
   tl::expected<EncodedPacket, StepError> step();
 
   /// The same with recorded device positions instead of the hands (open loop). The button is down where a spring was recorded.

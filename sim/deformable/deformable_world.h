@@ -57,7 +57,7 @@ class DeformableWorld {
   /// Let a force [N] act on the touched triangle in this tick.
   virtual void push(const MeshContact& contact, const Vec3& force) noexcept = 0;
   /// Advance by one tick; `updated` tells for each object whether it got a new shape.   no allocation after the first deformation
-  /// err  internal R-FEM-6, R-FEM-7 with element and remedy; the shapes before the step are kept
+  /// err  invalid_argument R-FEM-6, internal R-FEM-7 with element and remedy; the shapes before the step are kept
   virtual tl::expected<void, StepError> step() = 0;
 
   /// Shapes as the server sees them now; `updated` when one is new since the last call.

@@ -122,7 +122,7 @@ bool Guarded::gained_energy() {
 FemError Guarded::divergence() const {
   const std::int64_t broken = model_.broken_element(next_.u);
   const std::int64_t element = broken >= 0 ? broken : most_stretched(model_.mesh(), next_.u);
-  return {{Errc::internal, "R-FEM-6"}, steps_, element, divergence_remedy(model_, options_)};
+  return {{Errc::invalid_argument, "R-FEM-6"}, steps_, element, divergence_remedy(model_, options_)};
 }
 
 }  // namespace tactus

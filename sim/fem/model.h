@@ -23,7 +23,7 @@
 /// R-FEM-3   invalid          a fixed vertex that does not exist; all vertices fixed is allowed
 /// R-FEM-4   invalid          a damping that is negative or not finite
 /// R-FEM-5   invalid_argument a force, displacement or step that is not finite, or a vector of the wrong length; state unchanged
-/// R-FEM-6   internal         a step diverged: the state before it is kept
+/// R-FEM-6   invalid_argument a step diverged, being too long for the object or its forces: the state before it is kept
 /// R-FEM-7   internal         the system matrix cannot be factored (not positive definite), or its slowest modes are not found
 /// R-FEM-8   invalid_argument the method cannot do this: number of modes, tolerance, step outside [1e-9, 1] s
 #pragma once

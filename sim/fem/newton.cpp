@@ -78,7 +78,7 @@ tl::expected<StepReport, FemError> Newton::solve(const Stage& stage, Eigen::Vect
   double scale = system_.motion(stage, u);
   while (report.newton_iterations < iterations_) {
     const double residual = r_.norm();
-    if (!std::isfinite(residual)) return tl::unexpected(FemError{{Errc::internal, "R-FEM-6"}, -1, -1, {}});
+    if (!std::isfinite(residual)) return tl::unexpected(FemError{{Errc::invalid_argument, "R-FEM-6"}, -1, -1, {}});
     if (residual <= system_.rounding()) {
       report.converged = true;
       break;

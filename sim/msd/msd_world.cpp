@@ -101,7 +101,7 @@ tl::expected<void, StepError> MsdWorld::step() {
   for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
     bodies_[i].loop.end_tick();
     if (!(std::abs(bodies_[i].loop.surface()) < kFarthest))
-      return tl::unexpected(StepError{Error{Errc::internal, "R-SIM-1", 0}, tick_, first_ + i});
+      return tl::unexpected(StepError{Error{Errc::invalid_argument, "R-SIM-1", 0}, tick_, first_ + i});
   }
   ++tick_;
   return {};

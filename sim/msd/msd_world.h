@@ -36,7 +36,7 @@ class MsdWorld {
   Vec3 touch_client(std::size_t user, const std::optional<Vec3>& device, std::span<const Pose> poses) noexcept;
   /// Let a force [N] act in this tick.   in  object  counted from the first one here
   void push(std::size_t object, const Vec3& force) noexcept;
-  /// End the tick; every N-th one deforms.   err  internal R-SIM-1: a surface is beyond 1e4 m
+  /// End the tick; every N-th one deforms.   err  invalid_argument R-SIM-1: a surface is beyond 1e4 m
   tl::expected<void, StepError> step();
 
  private:

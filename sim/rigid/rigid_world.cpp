@@ -272,7 +272,9 @@ tl::expected<void, StepError> RigidWorld::step() {
   }
   // QuickStep shuffles its constraints with the process's one random generator; seeded, a step depends on this world alone.
   dRandSetSeed(static_cast<unsigned long>(in.tick));
-  const auto broken = [&](std::uint32_t i) { return tl::unexpected(StepError{Error{Errc::internal, "R-SIM-1", 0}, in.tick, i}); };
+  const auto broken = [&](std::uint32_t i) {
+    return tl::unexpected(StepError{Error{Errc::invalid_argument, "R-SIM-1", 0}, in.tick, i});
+  };
   for (std::uint32_t i = 0; i < in.bodies.size(); ++i) {
     const Body& body = in.bodies[i];
     if (!body.handle) continue;

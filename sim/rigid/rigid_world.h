@@ -38,7 +38,7 @@ class RigidWorld {
   /// Advance by one tick.
   /// time O(contacts), about 15 us for one cube on the floor, nothing when all sleep; no allocation once ODE's arenas fit the
   ///      contacts, in the first step.
-  /// err  internal R-SIM-1: a pose is not finite, or an object got faster than 1e4 m/s or 1e5 rad/s; the world is then of no more use.
+  /// err  invalid_argument R-SIM-1: a pose is not finite, or an object got faster than 1e4 m/s or 1e5 rad/s; the world is then of no more use.
   tl::expected<void, StepError> step();
 
   /// State of an object now.   time O(1), no allocation.

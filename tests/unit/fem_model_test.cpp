@@ -117,8 +117,8 @@ TEST(FemModel, RefusesABrokenMeshAndNamesTheTetrahedron) {
 }
 
 TEST(FemModel, ErrorsNameStepElementRuleAndRemedy) {
-  EXPECT_EQ(to_string(FemError{{Errc::internal, "R-FEM-6"}, 17, 3, "take a smaller step"}),
-            "step 17: element 3: R-FEM-6 (internal): take a smaller step");
+  EXPECT_EQ(to_string(FemError{{Errc::invalid_argument, "R-FEM-6"}, 17, 3, "take a smaller step"}),
+            "step 17: element 3: R-FEM-6 (invalid_argument): take a smaller step");
   EXPECT_EQ(to_string(FemError{{Errc::invalid, "R-FEM-4"}, -1, -1, ""}), "R-FEM-4 (invalid)");
 }
 

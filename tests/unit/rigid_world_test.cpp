@@ -171,6 +171,7 @@ TEST(RigidWorld, BrokenStateStopsWithTheObjectAndTheTick) {
     world.push(1, {force, 0, 0}, {1, 0.01, 0.03});
     const auto step = world.step();
     ASSERT_FALSE(step) << force;
+    EXPECT_EQ(step.error().error.code, Errc::invalid_argument);
     EXPECT_STREQ(step.error().error.rule, "R-SIM-1");
     EXPECT_EQ(step.error().object, 1u);
     EXPECT_EQ(step.error().tick, 3);
