@@ -83,6 +83,7 @@ void setup_bench(CLI::App& app, Action& action) {
   setup_bench_precision(bench, action);
 #endif
   setup_bench_stability(bench, action);
+  bench.footer("Example:\n  tactus bench stability --help");
 }
 
 }  // namespace tactus::cli

@@ -47,13 +47,14 @@ Outcome show(const Json& info, bool as_json, void (*print_text)(const Json&)) {
 
 std::string text_of(const Json& value) {
   if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
+  if (value.is_null()) return "-";
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
 /// Scalars of an object as "name value" lines.
 void print_scalars(const Json& object) {
   for (const auto& [name, value] : object.items()) {
-    if (value.is_primitive() && name != "schema") fmt::print("{:<18} {}\n", name, text_of(value));
+    if (value.is_primitive() && name != "schema") fmt::print("{:<30} {}\n", name, text_of(value));
   }
 }
 
@@ -92,12 +93,15 @@ Json packet_json(const StreamPlayer::Played& played, const StreamHeader& header)
            {"bytes", played.bytes},
            {"key", played.key() ? "key" : "-"}};
   if (!header.meshes.empty()) out["part"] = name_of_part(header, played.part);
-  out["reason"] = is_rigid ? kReasons[static_cast<std::size_t>(strongest_reason(played.packet))]
-                           : kHalves[static_cast<std::size_t>(played.mesh.half)];
-  std::string updates = is_rigid ? "" : fmt::format("{} vertices", played.mesh.updates);
+  out["reason"] = is_rigid ? kReasons[static_cast<std::size_t>(strongest_reason(played.packet))] : "-";
+  std::string updates;
   for (const RigidUpdate& u : played.packet.updates)
     updates += fmt::format("{}{}:{}", updates.empty() ? "" : " ", u.object, u.level);
-  out["object:level"] = updates;
+  out["object:level"] = updates.empty() ? "-" : updates;
+  if (!header.meshes.empty()) {
+    out["half"] = is_rigid ? "-" : kHalves[static_cast<std::size_t>(played.mesh.half)];
+    out["vertices"] = is_rigid ? Json() : Json(played.mesh.updates);
+  }
   return out;
 }
 
@@ -173,17 +177,27 @@ Json mesh_json(const MeshObject& mesh, const StreamHeader& header, const MeshTra
           {"largest", t.quantile(1)}};
 }
 
+/// What of a mesh went in which half.
+Json half_json(const MeshTraffic& t) {
+  Json out;
+  for (std::size_t i = 0; i < t.halves.size(); ++i) {
+    out[fmt::format("{} packets", kHalves[i])] = t.halves[i].packets;
+    out[fmt::format("{} bytes", kHalves[i])] = t.halves[i].bytes;
+  }
+  return out;
+}
+
 Json header_json(const StreamHeader& h, std::size_t size) {
   const auto step = [](std::uint8_t exponent) { return 1.0 / static_cast<double>(std::uint64_t{1} << exponent); };
-  return {{"schema", "tactus.info/1"},
-          {"kind", "stream"},
-          {"profile", h.profile == Profile::thesis ? "thesis" : "main"},
-          {"file bytes", size},
-          {"ticks per second", h.tick_rate},
-          {"position grid", fmt::format("{:.3g} um", 1e6 * step(h.grid.position))},
-          {"rotation grid", fmt::format("{:.3g} urad", 4e6 * step(h.grid.rotation))},
-          {"extrapolation", fmt::format("at most {} ticks", h.max_extrapolation)},
-          {"baselines kept", h.baseline_span}};
+  Json out{{"schema", "tactus.info/1"}, {"kind", "stream"}};
+  if (!h.objects.empty() || h.meshes.empty()) out["rigid profile"] = h.profile == Profile::thesis ? "thesis" : "main";
+  out["file bytes"] = size;
+  out["ticks per second"] = h.tick_rate;
+  out["position grid [um]"] = 1e6 * step(h.grid.position);
+  out["rotation grid [urad]"] = 4e6 * step(h.grid.rotation);
+  out["extrapolation at most [ticks]"] = h.max_extrapolation;
+  out["baselines kept"] = h.baseline_span;
+  return out;
 }
 
 Outcome info_stream(const InfoOptions& options) {
@@ -213,8 +227,13 @@ Outcome info_stream(const InfoOptions& options) {
          {"moves along", dof_text(o.dof)},
          {"first position [m]", fmt::format("{:.4f} {:.4f} {:.4f}", pose.position.x, pose.position.y, pose.position.z)}});
   }
-  for (std::size_t i = 0; i < totals.meshes.size(); ++i)
+  const bool is_split = std::ranges::any_of(totals.meshes, [](const MeshTraffic& t) {
+    return std::ranges::any_of(t.halves, [](const auto& h) { return h.packets > 0; });
+  });
+  for (std::size_t i = 0; i < totals.meshes.size(); ++i) {
     info["meshes"].push_back(mesh_json(player->header().meshes[i], player->header(), totals.meshes[i]));
+    if (is_split) info["meshes"].back().update(half_json(totals.meshes[i]));
+  }
   if (options.packets) info["packet list"] = std::move(packets);
   if (auto shown = show(info, options.json, print_info); !shown || !error) return shown;
   return refuse(options.input, *error);

@@ -49,6 +49,13 @@ tl::expected<std::string, Failure> run_command(const std::vector<std::string>& w
   return refuse(as_typed(words) + "\n" + done->error, "");
 }
 
+/// The command that makes an input, writing to `file`.
+std::vector<std::string> words_of(const SweepInput& input, const std::string& file) {
+  std::vector<std::string> words = input.command;
+  std::replace(words.begin(), words.end(), std::string("{file}"), file);
+  return words;
+}
+
 /// Inputs that are not there yet. Made aside and moved, so that a file with the right name is whole.
 Outcome make_inputs(const SweepPlan& plan, const std::string& folder, Visibility visibility) {
   const fs::path aside = fs::path(folder) / "unfinished";
@@ -61,10 +68,7 @@ Outcome make_inputs(const SweepPlan& plan, const std::string& folder, Visibility
     if (fs::exists(file)) continue;
     fs::remove_all(aside, failed);
     fs::create_directories(aside, failed);
-    std::vector<std::string> words = input.command;
-    for (std::string& word : words)
-      if (word == "{file}") word = (aside / input.file).string();
-    if (auto made = run_command(words); !made) return tl::unexpected(made.error());
+    if (auto made = run_command(words_of(input, (aside / input.file).string())); !made) return tl::unexpected(made.error());
     fs::rename(aside / input.file, file, failed);
     if (failed) {
       return refuse(fmt::format("input {}: the command left no file: {}", input.name, failed.message()),
@@ -141,7 +145,7 @@ class Workers {
 };
 
 void print_commands(const SweepPlan& plan, const std::string& folder) {
-  for (const SweepInput& input : plan.inputs) fmt::print("{}\n", as_typed(input.command));
+  for (const SweepInput& input : plan.inputs) fmt::print("{}\n", as_typed(words_of(input, folder + "/" + input.file)));
   for (std::size_t point = 0; point < plan.points(); ++point) fmt::print("{}\n", as_typed(plan.words(point, folder)));
 }
 
@@ -199,12 +203,12 @@ Outcome run(const SweepOptions& options) {
     summary.failed = failures.size();
     summary.computed = workers.missing() - failures.size();
   }
-  if (failures.empty()) {
+  if (failures.empty()) {  // plots are of whole tables
     if (auto sorted = results->sort(*plan); !sorted) return sorted;
+    auto drawn = draw_plots(*plan, *results);
+    if (!drawn) return tl::unexpected(drawn.error());
+    summary.files.insert(summary.files.end(), drawn->begin(), drawn->end());
   }
-  auto drawn = draw_plots(*plan, *results);
-  if (!drawn) return tl::unexpected(drawn.error());
-  summary.files.insert(summary.files.end(), drawn->begin(), drawn->end());
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   print_summary(options, *plan, summary);
   if (failures.empty()) return {};

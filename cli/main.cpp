@@ -79,7 +79,7 @@ int main(int argc, char** argv) {
   }
   if (!action) {
     const auto groups = app.get_subcommands();
-    fmt::print(stderr, "{}", (groups.empty() ? &app : groups.front())->help());
+    fmt::print(stderr, "{}", groups.empty() ? app.help() : groups.front()->help(app.get_name()));
     return kUsage;
   }
   Outcome outcome = action();

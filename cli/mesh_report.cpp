@@ -59,7 +59,7 @@ void error_rows(Table& table, const MeshReport& mesh) {
   row("  all vertices [mm]", significant(1e3 * b.visual), f.all());
   if (f.area().vertices > 0) {
     const std::string haptic =
-        b.weber_fraction ? fmt::format("{}: {:.3g}", percent(*b.weber_fraction), 1e3 * f.mean_haptic()) : "off";
+        b.weber_fraction ? fmt::format("{}: {:.3g} on average", percent(*b.weber_fraction), 1e3 * f.mean_haptic()) : "off";
     row(fmt::format("  area of {} rings [mm]", f.rings()), haptic, f.area());
   }
   table.row({"  largest error / bound", "1", "", fmt::format("{:.5g}", f.worst_ratio())});

@@ -142,6 +142,12 @@ void print_text(const Report& r, std::FILE* out) {
   for (const MeshReport& mesh : r.meshes) mesh_rows(figures, mesh, r.seconds());
   if (!r.timings.empty() || !r.meshes.empty()) time_rows(figures, r);
   figures.print(out);
+  if (r.fidelity && r.fidelity->rendered().ticks() > 0) {
+    fmt::print(
+        out,
+        "\nRendered force: what the hand felt beside the server's force. Its ticks over 10..22 % may be noticed; unlike the "
+        "bounds above,\nno rule of the codec limits it, as the hand moves on what it feels.\n");
+  }
 }
 
 Json rates_json(const Rates& x) {

@@ -17,6 +17,13 @@ bool is_simple(std::string_view name) {
   return !name.empty() && name.front() != '.' && std::all_of(name.begin(), name.end(), plain);
 }
 
+/// RFC 6901: begins with '/', and '~' stands in ~0 and ~1 only.
+bool is_json_pointer(std::string_view text) {
+  for (std::size_t at = text.find('~'); at != std::string_view::npos; at = text.find('~', at + 1))
+    if (at + 1 == text.size() || (text[at + 1] != '0' && text[at + 1] != '1')) return false;
+  return text.starts_with('/');
+}
+
 class PlanReader {
  public:
   explicit PlanReader(std::string_view file) : in_(file) {}
@@ -82,12 +89,14 @@ class PlanReader {
 
   SweepInput input(const toml::table& table) {
     in_.allow(table, "input", {"name", "file", "command"});
-    return {name(table, "input", "name"), name(table, "input", "file"), strings(table, "input", "command")};
+    SweepInput out{name(table, "input", "name"), name(table, "input", "file"), strings(table, "input", "command")};
+    check_places(table, "input.command", out.command, [](const std::string& place) { return place == "file"; });
+    return out;
   }
 
   SweepMeasure measured(const toml::table& table, std::string_view column) {
     SweepMeasure measure{std::string(column), in_.text(table, "measure", column)};
-    if (!measure.place.empty() && measure.place.front() != '/')
+    if (!measure.place.empty() && !is_json_pointer(measure.place))
       invalid(table, "R-SCN-6", TomlReader::join("measure", column), "write a JSON pointer, such as /traffic/payload/bit_per_s");
     return measure;
   }
@@ -131,15 +140,30 @@ class PlanReader {
     return plot;
   }
 
-  /// Every parameter is used in the command, and the sweep has a sane number of points.
+  /// Each {name} in a command stands for something.
+  template <class Known>
+  void check_places(const toml::node& at, const char* key, const std::vector<std::string>& words, Known known) {
+    for (const std::string& word : words) {
+      for (std::size_t open = word.find('{'); open != std::string::npos; open = word.find('{', open + 1)) {
+        const std::string place = word.substr(open + 1, word.find('}', open) - open - 1);
+        if (!known(place)) invalid(at, "R-SCN-7", key, "mend {" + place + "}: nothing here has this name");
+      }
+    }
+  }
+
+  /// Every parameter is used in the command and nothing else, and the sweep has a sane number of points.
   void check_uses(const toml::table& root, const SweepPlan& plan) {
     std::size_t points = 1;
+    check_places(root.contains("command") ? *root.get("command") : root, "command", plan.command, [&](const std::string& place) {
+      return std::ranges::any_of(plan.parameters, [&](const SweepParameter& p) { return p.name == place; });
+    });
     for (const SweepParameter& parameter : plan.parameters) {
       points = std::min(points * parameter.values.size(), kMostPoints + 1);
       const std::string word = "{" + parameter.name + "}";
       const auto uses = [&](const std::string& w) { return w.find(word) != std::string::npos; };
       if (std::none_of(plan.command.begin(), plan.command.end(), uses))
-        invalid(root, "R-SCN-7", "vary." + parameter.name, "use " + word + " in command, or leave the parameter out");
+        invalid(*root["vary"][parameter.name].node(), "R-SCN-7", "vary." + parameter.name,
+                "use " + word + " in command, or leave the parameter out");
     }
     if (points > kMostPoints) invalid(root, "R-SCN-6", "vary", "stay below 1000000 combinations");
     std::set<std::string> names;

@@ -16,6 +16,7 @@ std::size_t display_width(const std::string& text) {
 }
 
 std::string counted(unsigned long long number, const char* noun) {
+  if (number != 1 && std::string_view(noun) == "vertex") return fmt::format("{} vertices", number);
   return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
 }
 
