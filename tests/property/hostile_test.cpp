@@ -17,16 +17,20 @@
 #include "codec/base/hash.h"
 #include "codec/tactus.h"
 #include "tests/property/allocated.h"
+#include "tests/property/earned.h"
 
 namespace tactus {
 namespace {
 
 namespace fs = std::filesystem;
 using Bytes = std::vector<std::uint8_t>;
+using testing::earned;
 
-constexpr std::size_t kAllOf = 4096;                                         // files up to this size are damaged at every byte,
-constexpr std::size_t kSample = 400;                                         // larger ones at so many
-constexpr std::uint64_t kPerByte = 24, kPerByteAndState = 3, kFixed = 4096;  // allocation per byte of header, see earned()
+/// Files up to a size are damaged at every byte, larger ones at so many. Decoders of meshes take longer to set up.
+struct Places {
+  std::size_t every_byte_of = 4096, sample = 400;
+};
+constexpr Places kOfMesh{512, 40};
 
 Bytes read_file(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
@@ -42,25 +46,45 @@ std::vector<fs::path> vectors() {
   return out;
 }
 
-/// What a file may make a decoder allocate: names, objects and states, which all take bytes of the header (spec/20-stream.md 5).
-std::uint64_t earned(std::size_t bytes, std::uint64_t states) { return kFixed + bytes * (kPerByte + kPerByteAndState * states); }
-
 bool has_rule(const Error& error) { return error.code <= Errc::state && std::string_view(error.rule).starts_with("R-"); }
 
+/// Null, or what went wrong with this packet.
+template <class Decoder>
+const char* survive_packet(Decoder& decoder, std::span<const std::uint8_t> packet) {
+  const std::uint64_t before = decoder.state_hash();
+  const auto decoded = decoder.decode(packet);
+  if (decoded) return nullptr;
+  if (!has_rule(decoded.error())) return "a refused packet without a rule";
+  return decoder.state_hash() == before ? nullptr : "a refused packet changes the state";
+}
+
 /// Null, or what went wrong with this file. Fails are texts and not EXPECTs, which would take most of the time.
-const char* survive(std::span<const std::uint8_t> bytes) {
+const char* survive(std::span<const std::uint8_t> bytes, bool meshes) {
   const auto exact = std::make_unique_for_overwrite<std::uint8_t[]>(bytes.size());
   std::ranges::copy(bytes, exact.get());
   const std::uint64_t start = testing::allocated_bytes();
   auto reader = StreamFileReader::open({exact.get(), bytes.size()});
+  const std::uint64_t parsing = testing::allocated_bytes() - start;
   if (!reader) {
-    if (testing::allocated_bytes() - start > earned(bytes.size(), 1)) return "a refused header allocates too much";
+    if (parsing > (meshes ? earned(bytes.size(), 1, MeshObject{}) : earned(bytes.size(), 1)))
+      return "a refused header allocates too much";
     return has_rule(reader.error()) ? nullptr : "a refused header without a rule";
   }
-  auto decoder = RigidDecoder::create(reader->header());
-  if (!decoder) return "a header is accepted by the reader, not by the decoder";
-  if (testing::allocated_bytes() - start > earned(bytes.size(), reader->header().baseline_span))
+  const StreamHeader& header = reader->header();
+  auto rigid = RigidDecoder::create(header);
+  if (!rigid) return "a header is accepted by the reader, not by the decoder";
+  if (header.meshes.empty() && testing::allocated_bytes() - start > earned(bytes.size(), header.baseline_span))
     return "set-up allocates too much";
+  std::vector<MeshDecoder> decoders;
+  decoders.reserve(header.meshes.size());
+  for (std::size_t i = 0; i < header.meshes.size(); ++i) {
+    const std::uint64_t before = testing::allocated_bytes();
+    auto decoder = MeshDecoder::create(header, i);
+    if (!decoder) return "a header is accepted by the reader, not by the decoder of its mesh";
+    if (parsing + testing::allocated_bytes() - before > earned(bytes.size(), header.baseline_span, header.meshes[i]))
+      return "set-up of a mesh allocates too much";
+    decoders.push_back(std::move(*decoder));
+  }
   const std::uint64_t ready = testing::allocated_bytes();
   reader->seek(1000);
   reader->seek(0);
@@ -69,12 +93,14 @@ const char* survive(std::span<const std::uint8_t> bytes) {
     if (testing::allocated_bytes() != ready) return "reading allocates";
     if (!packet) return has_rule(packet.error()) ? nullptr : "a refused record without a rule";
     if (!*packet) return nullptr;
-    const std::uint64_t before = decoder->state_hash();
-    const auto decoded = decoder->decode((*packet)->bytes);
+    const auto part = split_part(header, (*packet)->bytes);
+    if (!part && !has_rule(part.error())) return "a packet of no part without a rule";
+    if (!part) continue;
+    const bool of_rigid = has_part_byte(header) ? part->part == 0 : decoders.empty();
+    const char* wrong = of_rigid ? survive_packet(*rigid, part->bytes)
+                                 : survive_packet(decoders[has_part_byte(header) ? part->part - 1 : 0], part->bytes);
     if (testing::allocated_bytes() != ready) return "decoding allocates";
-    if (decoded) continue;
-    if (!has_rule(decoded.error())) return "a refused packet without a rule";
-    if (decoder->state_hash() != before) return "a refused packet changes the state";
+    if (wrong) return wrong;
   }
 }
 
@@ -104,18 +130,20 @@ Bytes mended(Bytes file, const std::vector<std::size_t>& ends, std::size_t at) {
   return file;
 }
 
-std::vector<std::size_t> places(std::size_t size, std::uint64_t seed) {
+std::vector<std::size_t> places(std::size_t size, std::uint64_t seed, const Places& which) {
   std::vector<std::size_t> out(size);
   for (std::size_t i = 0; i < size; ++i) out[i] = i;
-  if (size <= kAllOf) return out;
+  if (size <= which.every_byte_of) return out;
   std::mt19937_64 random(seed);
-  for (std::size_t i = 0; i < kSample; ++i) std::swap(out[i], out[i + random() % (size - i)]);
-  out.resize(kSample);
+  for (std::size_t i = 0; i < which.sample; ++i) std::swap(out[i], out[i + random() % (size - i)]);
+  out.resize(which.sample);
   return out;
 }
 
 class EveryVector : public ::testing::TestWithParam<const char*> {
  protected:
+  const bool meshes = std::string_view(GetParam()) == "mesh";
+
   template <class Damage>
   void each_place(Damage damage) {
     std::size_t files = 0;
@@ -124,7 +152,7 @@ class EveryVector : public ::testing::TestWithParam<const char*> {
       ++files;
       const Bytes file = read_file(path);
       const std::vector<std::size_t> ends = section_ends(file);
-      for (const std::size_t at : places(file.size(), files)) {
+      for (const std::size_t at : places(file.size(), files, meshes ? kOfMesh : Places{})) {
         const char* wrong = damage(file, ends, at);
         ASSERT_EQ(wrong, nullptr) << path << " byte " << at << ": " << wrong;
       }
@@ -134,27 +162,27 @@ class EveryVector : public ::testing::TestWithParam<const char*> {
 };
 
 TEST_P(EveryVector, EveryPrefix) {
-  each_place([](const Bytes& file, const auto&, std::size_t at) { return survive(std::span(file).first(at)); });
+  each_place([this](const Bytes& file, const auto&, std::size_t at) { return survive(std::span(file).first(at), meshes); });
 }
 
 TEST_P(EveryVector, EveryBitFlipped) {
-  each_place([](const Bytes& file, const auto& ends, std::size_t at) -> const char* {
+  each_place([this](const Bytes& file, const auto& ends, std::size_t at) -> const char* {
     for (unsigned bit = 0; bit < 8; ++bit) {
       Bytes damaged = file;
       damaged[at] = static_cast<std::uint8_t>(damaged[at] ^ 1u << bit);
-      if (const char* wrong = survive(damaged)) return wrong;
-      if (const char* wrong = survive(mended(damaged, ends, at))) return wrong;
+      if (const char* wrong = survive(damaged, meshes)) return wrong;
+      if (const char* wrong = survive(mended(damaged, ends, at), meshes)) return wrong;
     }
     return nullptr;
   });
 }
 
 TEST_P(EveryVector, EveryByteZeroOrOnes) {
-  each_place([](const Bytes& file, const auto& ends, std::size_t at) -> const char* {
+  each_place([this](const Bytes& file, const auto& ends, std::size_t at) -> const char* {
     for (const std::uint8_t value : {std::uint8_t{0x00}, std::uint8_t{0xff}}) {
       Bytes damaged = file;
       damaged[at] = value;
-      if (const char* wrong = survive(mended(damaged, ends, at))) return wrong;
+      if (const char* wrong = survive(mended(damaged, ends, at), meshes)) return wrong;
     }
     return nullptr;
   });
@@ -166,13 +194,13 @@ TEST_P(EveryVector, OneByteMore) {
     for (const std::uint8_t value : {std::uint8_t{0x00}, std::uint8_t{0x01}, std::uint8_t{0xff}}) {
       Bytes longer = read_file(path);
       longer.push_back(value);
-      const char* wrong = survive(longer);
+      const char* wrong = survive(longer, meshes);
       EXPECT_EQ(wrong, nullptr) << path << ": " << wrong;
     }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Hostile, EveryVector, ::testing::Values("stream", "range", "rigid", "client"),
+INSTANTIATE_TEST_SUITE_P(Hostile, EveryVector, ::testing::Values("stream", "range", "rigid", "client", "mesh"),
                          [](const auto& stem) { return std::string(stem.param); });
 
 TEST(Hostile, TheCounterCounts) {

@@ -11,21 +11,14 @@
 
 #include "codec/tactus.h"
 #include "tests/property/allocated.h"
+#include "tests/property/earned.h"
 
 namespace tactus {
 namespace {
 
 namespace fs = std::filesystem;
 using Bytes = std::vector<std::uint8_t>;
-
-std::uint64_t models_of(const MeshObject& mesh) {
-  return mesh.profile == MeshProfile::thesis ? 254 + (std::uint64_t{1} << mesh.quant_bits) : 0;
-}
-
-/// For a header of so many bytes, parsed, and the decoder of one of its meshes.
-std::uint64_t earned(std::size_t bytes, std::uint64_t span, const MeshObject& mesh) {
-  return 4096 + 256 * span + bytes * (640 + 10 * span) + 4 * (span + 4) * models_of(mesh);
-}
+using testing::earned;
 
 /// Parses the header, makes a decoder of each mesh, hands each packet to its decoder. Returns how many there are.
 std::size_t watch(const Bytes& bytes) {
