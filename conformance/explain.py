@@ -1,15 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Decode one packet of a stream file and tell every step of the range decoder, as a Markdown table.
-
-    python3 explain.py stream.tct [NUMBER]        NUMBER counts packets from 0
-"""
+"""Decode one packet of a stream file and tell every step of the range decoder, as a Markdown table."""
+import argparse
 import sys
 from pathlib import Path
 
 import mesh_main
 import mesh_thesis
 import rigid_decoder
+from conventions import StreamError
 from decoder import File, SceneDecoder
 from range_decoder import RangeDecoder
 from start_models import Models
@@ -111,6 +110,13 @@ def explain(path, number):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) not in (2, 3):
-        sys.exit(__doc__)
-    explain(sys.argv[1], int(sys.argv[2]) if len(sys.argv) == 3 else 0)
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("stream", metavar="STREAM", help="stream file (.tct)")
+    parser.add_argument("number", metavar="NUMBER", type=int, nargs="?", default=0, help="of the packet, from 0 [0]")
+    arguments = parser.parse_args()
+    try:
+        explain(arguments.stream, arguments.number)
+    except OSError as error:
+        sys.exit(f"{arguments.stream}: {error.strerror}")
+    except StreamError as error:
+        sys.exit(f"{arguments.stream}: {error}")

@@ -45,6 +45,9 @@ def main():
     parser.add_argument("--openarena", type=pathlib.Path, default=pathlib.Path("/"), help="folder with usr/share/games/openarena")
     parser.add_argument("--frames", default="600", help="at most so many of each recording [600]")
     args = parser.parse_args()
+    for program in ("cli/tactus", "tests/bench/peers/peers_bench"):
+        if not (args.build / program).is_file():
+            parser.error(f"{args.build / program}: no such program; build it as said above")
     with tempfile.TemporaryDirectory() as folder:
         inputs = args.inputs
         if not inputs:
