@@ -30,7 +30,7 @@ using testing::earned;
 struct Places {
   std::size_t every_byte_of = 4096, sample = 400;
 };
-constexpr Places kOfMesh{512, 40};
+constexpr Places kOfMesh{256, 20};
 
 Bytes read_file(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
