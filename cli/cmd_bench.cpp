@@ -76,9 +76,9 @@ Outcome write_file(const std::string& path, const std::string& text, OutputFile:
   return file->keep();
 }
 
-void setup_bench(CLI::App& app, Action& action) {
-  CLI::App& bench =
-      *app.add_subcommand("bench", "Study the simulation itself: error against run time, and where it stops being stable");
+void setup_bench(Command& app, Action& action) {
+  Command& bench =
+      app.add_command("bench", "Study the simulation itself: error against run time, and where it stops being stable");
 #ifdef TACTUS_HAS_FEM
   setup_bench_precision(bench, action);
 #endif

@@ -10,7 +10,7 @@
 
 namespace tactus::cli {
 
-void setup_bench(CLI::App& app, Action& action);
+void setup_bench(Command& app, Action& action);
 
 /// Where and with what figures came about; without date and host name, so that a report changes when its figures do.
 ///   machine   "2 cores of an AMD EPYC, virtual machine"

@@ -181,9 +181,9 @@ Outcome run(const PrecisionOptions& options) {
 
 }  // namespace
 
-void setup_bench_precision(CLI::App& bench, Action& action) {
+void setup_bench_precision(Command& bench, Action& action) {
   auto options = std::make_shared<PrecisionOptions>();
-  CLI::App& command = *bench.add_subcommand("precision", "Error against run time: methods, solvers and step sizes");
+  Command& command = bench.add_command("precision", "Error against run time: methods, solvers and step sizes");
   const std::vector<std::string> names(std::begin(study::kPrecisionScenes), std::end(study::kPrecisionScenes));
   command.add_option("--scene", options->scenes, "membrane, membrane-stiff or cantilever; several times for several [all]")
       ->check(one_of(names))
@@ -194,7 +194,7 @@ void setup_bench_precision(CLI::App& bench, Action& action) {
   command.add_flag("--short", options->brief,
                    "Coarse meshes, few steps, little memory: seconds instead of a quarter of an hour and 6 GB");
   command.add_option("--runs", options->runs, "Runs that a time is the median of")
-      ->capture_default_str()
+      ->show_default()
       ->check(whole_number(1, 1000))
       ->type_name("N");
   add_output_options(command, options->common);

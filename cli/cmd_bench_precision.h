@@ -5,6 +5,6 @@
 
 namespace tactus::cli {
 
-void setup_bench_precision(CLI::App& bench, Action& action);
+void setup_bench_precision(Command& bench, Action& action);
 
 }  // namespace tactus::cli

@@ -99,9 +99,9 @@ Outcome run(const StabilityOptions& options) {
 
 }  // namespace
 
-void setup_bench_stability(CLI::App& bench, Action& action) {
+void setup_bench_stability(Command& bench, Action& action) {
   auto options = std::make_shared<StabilityOptions>();
-  CLI::App& command = *bench.add_subcommand("stability", "Where each part stops being stable, beside what theory says");
+  Command& command = bench.add_command("stability", "Where each part stops being stable, beside what theory says");
   command.add_option("--case", options->cases, "Only this: " + fmt::format("{}", fmt::join(case_names(), ", ")) + " [all]")
       ->check(one_of(case_names()))
       ->type_name("CASE");

@@ -5,6 +5,6 @@
 
 namespace tactus::cli {
 
-void setup_bench_stability(CLI::App& bench, Action& action);
+void setup_bench_stability(Command& bench, Action& action);
 
 }  // namespace tactus::cli

@@ -163,9 +163,9 @@ Outcome run(const CompareOptions& options) {
 
 }  // namespace
 
-void setup_compare(CLI::App& app, Action& action) {
+void setup_compare(Command& app, Action& action) {
   auto options = std::make_shared<CompareOptions>();
-  CLI::App& command = *app.add_subcommand("compare", "Hold a replica against the truth");
+  Command& command = app.add_command("compare", "Hold a replica against the truth");
   command.add_option("TRUTH", options->truth, "What truly happened (MCAP)")->type_name("")->required();
   command.add_option("REPLICA", options->replica, "What a client showed (MCAP)")->type_name("")->required();
   options->triggers.add_to(command);

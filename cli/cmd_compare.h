@@ -5,6 +5,6 @@
 
 namespace tactus::cli {
 
-void setup_compare(CLI::App& app, Action& action);
+void setup_compare(Command& app, Action& action);
 
 }  // namespace tactus::cli

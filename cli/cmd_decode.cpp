@@ -161,15 +161,15 @@ Outcome run(const DecodeOptions& options) {
 
 }  // namespace
 
-void setup_decode(CLI::App& app, Action& action) {
+void setup_decode(Command& app, Action& action) {
   auto options = std::make_shared<DecodeOptions>();
-  CLI::App& command = *app.add_subcommand("decode", "Reconstruct what a client shows from a stream");
+  Command& command = app.add_command("decode", "Reconstruct what a client shows from a stream");
   command.add_option("STREAM", options->input, "Stream to decode, - is standard input")->type_name("")->required();
   command.add_option("-o,--output", options->output, "Trace of the replica to write, - is standard output")
       ->required()
       ->type_name("FILE");
   add_interpolation(command, options->replica);
-  CLI::Option* like = command.add_option("--like", options->like, "Write the ticks that this trace has")->type_name("TRACE");
+  Option* like = command.add_option("--like", options->like, "Write the ticks that this trace has")->type_name("TRACE");
   command.add_option("--ticks", options->ticks, "Write so many ticks [up to the last packet]")
       ->check(whole_number(1, 0xffffffff))
       ->excludes(like);

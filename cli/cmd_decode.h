@@ -5,6 +5,6 @@
 
 namespace tactus::cli {
 
-void setup_decode(CLI::App& app, Action& action);
+void setup_decode(Command& app, Action& action);
 
 }  // namespace tactus::cli

@@ -149,9 +149,9 @@ Outcome run(const EncodeOptions& options) {
 
 }  // namespace
 
-void setup_encode(CLI::App& app, Action& action) {
+void setup_encode(Command& app, Action& action) {
   auto options = std::make_shared<EncodeOptions>();
-  CLI::App& command = *app.add_subcommand("encode", "Turn a trace into a stream of packets");
+  Command& command = app.add_command("encode", "Turn a trace into a stream of packets");
   command.add_option("TRACE", options->input, "Trace to encode (MCAP), - is standard input")->type_name("")->required();
   command.add_option("-o,--output", options->output, "Stream to write, - is standard output")->required()->type_name("FILE");
   options->triggers.add_to(command);

@@ -5,6 +5,6 @@
 
 namespace tactus::cli {
 
-void setup_encode(CLI::App& app, Action& action);
+void setup_encode(Command& app, Action& action);
 
 }  // namespace tactus::cli

@@ -30,11 +30,11 @@ Outcome run(const ExportOptions& options) {
 
 }  // namespace
 
-void setup_export(CLI::App& app, Action& action) {
+void setup_export(Command& app, Action& action) {
   auto options = std::make_shared<ExportOptions>();
-  CLI::App& group = *app.add_subcommand("export", "Write a trace in another format");
+  Command& group = app.add_command("export", "Write a trace in another format");
   group.footer("Example:\n  tactus export csv push.mcap -o push.csv");
-  CLI::App& command = *group.add_subcommand("csv", "One row per tick, 17 significant digits; rigid objects and users, no meshes");
+  Command& command = group.add_command("csv", "One row per tick, 17 significant digits; rigid objects and users, no meshes");
   command.add_option("TRACE", options->input, "Trace to export (MCAP), - is standard input")->type_name("")->required();
   command.add_option("-o,--output", options->output, "CSV to write [standard output]")->type_name("FILE");
   command.add_flag("-f,--force", options->force, "Replace an output file that is there already");

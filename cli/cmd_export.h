@@ -5,8 +5,8 @@
 
 namespace tactus::cli {
 
-void setup_export(CLI::App& app, Action& action);
+void setup_export(Command& app, Action& action);
 /// `tactus export mesh`; only where surfaces can be written.
-void setup_export_mesh(CLI::App& group, Action& action);
+void setup_export_mesh(Command& group, Action& action);
 
 }  // namespace tactus::cli

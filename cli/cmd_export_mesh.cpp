@@ -90,10 +90,10 @@ Outcome run(const ExportMeshOptions& options) {
 
 }  // namespace
 
-void setup_export_mesh(CLI::App& group, Action& action) {
+void setup_export_mesh(Command& group, Action& action) {
   auto options = std::make_shared<ExportMeshOptions>();
-  CLI::App& command =
-      *group.add_subcommand("mesh", "A folder with one OBJ or PLY file for every new shape of a mesh, frame-000000 and on");
+  Command& command =
+      group.add_command("mesh", "A folder with one OBJ or PLY file for every new shape of a mesh, frame-000000 and on");
   command.add_option("TRACE", options->input, "Trace to export (MCAP), - is standard input")->type_name("")->required();
   command.add_option("-o,--output", options->output, "Folder to make")->type_name("FOLDER")->required();
   command.add_option("--mesh", options->mesh, "Name of the mesh [the only one]")->type_name("NAME");

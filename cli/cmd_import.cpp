@@ -136,18 +136,18 @@ Outcome run(const ImportOptions& options) {
 
 }  // namespace
 
-void setup_import(CLI::App& app, Action& action) {
+void setup_import(Command& app, Action& action) {
   auto options = std::make_shared<ImportOptions>();
-  CLI::App& group = *app.add_subcommand("import", "Make a trace from a recording");
+  Command& group = app.add_command("import", "Make a trace from a recording");
   group.footer("Example:\n  tactus import csv tosses.csv.zst --preset cube-tosses -o tosses.mcap");
-  CLI::App& command = *group.add_subcommand("csv", "A table with one row per sample, plain or zstd");
-  CLI::Option* list = command.add_flag("--list-presets", options->list_presets, "Name the column mappings that are built in");
-  CLI::Option* input = command.add_option("FILE", options->input, "Table to read, - is standard input")->type_name("");
-  CLI::Option* output =
+  Command& command = group.add_command("csv", "A table with one row per sample, plain or zstd");
+  Option* list = command.add_flag("--list-presets", options->list_presets, "Name the column mappings that are built in");
+  Option* input = command.add_option("FILE", options->input, "Table to read, - is standard input")->type_name("");
+  Option* output =
       command.add_option("-o,--output", options->output, "Trace to write (MCAP), - is standard output")->type_name("FILE");
   command.add_option("--preset", options->preset, "Column mapping that is built in")->type_name("NAME");
   command.add_option("--map", options->maps, "Columns of one quantity, such as position=x,y,z; may be repeated")
-      ->allow_extra_args(false)
+      ->one_value()
       ->type_name("QUANTITY=COLUMNS");
   command.add_option("--time", options->time, "Column with the time in seconds")->type_name("COLUMN");
   command.add_option("--segment", options->segment, "Column that tells one recording in the table from the next")
@@ -164,9 +164,9 @@ void setup_import(CLI::App& app, Action& action) {
       "  tactus import csv tosses.csv.zst --preset cube-tosses -o tosses.mcap\n"
       "  tactus import csv arm.csv --time t --map position=x,y,z --map rotation=qw,qx,qy,qz -o arm.mcap\n"
       "Segments follow one another without a gap. A pause inside a segment stays: its ticks are missing, its time counts.");
-  command.callback([&action, options, list, input, output] {
-    if (list->count() == 0 && input->count() == 0) throw CLI::RequiredError("FILE");
-    if (list->count() == 0 && output->count() == 0) throw CLI::RequiredError("--output");
+  command.on_chosen([&action, options, list, input, output] {
+    if (list->count() == 0 && input->count() == 0) miss_option("FILE");
+    if (list->count() == 0 && output->count() == 0) miss_option("--output");
     action = [options] { return run(*options); };
   });
 #ifdef TACTUS_HAS_SURFACE

@@ -5,8 +5,8 @@
 
 namespace tactus::cli {
 
-void setup_import(CLI::App& app, Action& action);
+void setup_import(Command& app, Action& action);
 /// `tactus import mesh`; only where surfaces can be read.
-void setup_import_mesh(CLI::App& group, Action& action);
+void setup_import_mesh(Command& group, Action& action);
 
 }  // namespace tactus::cli

@@ -72,9 +72,9 @@ Outcome run(const ImportMeshOptions& options) {
 
 }  // namespace
 
-void setup_import_mesh(CLI::App& group, Action& action) {
+void setup_import_mesh(Command& group, Action& action) {
   auto options = std::make_shared<ImportMeshOptions>();
-  CLI::App& command = *group.add_subcommand("mesh", "A folder of OBJ, PLY or OFF files, one per frame of a mesh that moves");
+  Command& command = group.add_command("mesh", "A folder of OBJ, PLY or OFF files, one per frame of a mesh that moves");
   command.add_option("FOLDER", options->input, "Folder with the frames, in the order of the numbers in their names")
       ->type_name("")
       ->required();

@@ -29,7 +29,7 @@ using Json = nlohmann::ordered_json;
 struct InfoOptions {
   std::string input;
   bool packets = false, json = false;
-  const CLI::App* command = nullptr;
+  const Command* command = nullptr;
 };
 
 constexpr std::array<const char*, 4> kReasons{"request", "heartbeat", "visual", "haptic"};  // index: Reason
@@ -360,9 +360,9 @@ Outcome run(const InfoOptions& options) {
 
 }  // namespace
 
-void setup_info(CLI::App& app, Action& action) {
+void setup_info(Command& app, Action& action) {
   auto options = std::make_shared<InfoOptions>();
-  CLI::App& command = *app.add_subcommand("info", "Tell what a stream, trace or scene holds");
+  Command& command = app.add_command("info", "Tell what a stream, trace or scene holds");
   options->command = &command;
   command.add_option("FILE", options->input, "Stream (.tct), trace (.mcap) or scene (.toml)")->type_name("")->required();
   command.add_flag("--packets", options->packets, "List every packet of a stream");

@@ -5,6 +5,6 @@
 
 namespace tactus::cli {
 
-void setup_info(CLI::App& app, Action& action);
+void setup_info(Command& app, Action& action);
 
 }  // namespace tactus::cli

@@ -219,14 +219,14 @@ Outcome run(const MeshOptions& options) {
 
 }  // namespace
 
-void setup_mesh(CLI::App& app, Action& action) {
+void setup_mesh(Command& app, Action& action) {
   auto options = std::make_shared<MeshOptions>();
-  CLI::App& command = *app.add_subcommand("mesh", "Fill a surface with tetrahedra, or make a slab of them");
-  CLI::Option* input =
+  Command& command = app.add_command("mesh", "Fill a surface with tetrahedra, or make a slab of them");
+  Option* input =
       command.add_option("FILE", options->input, "Surface (.obj, .ply, .stl, .off) or tetrahedra (.node, .ele, .msh)")
           ->type_name("");
-  CLI::Option* slab = command.add_option("--slab", options->slab, "Cells along x, y, z, six tetrahedra each, such as 16x20x1")
-                          ->type_name("NxNxN");
+  Option* slab = command.add_option("--slab", options->slab, "Cells along x, y, z, six tetrahedra each, such as 16x20x1")
+                     ->type_name("NxNxN");
   slab->excludes(input);
   command.add_option("-o,--output", options->output, "Mesh to write: NAME.node with NAME.ele beside it, or NAME.msh (Gmsh)")
       ->required()
@@ -241,7 +241,7 @@ void setup_mesh(CLI::App& app, Action& action) {
       ->check(above_zero(Dimension::length))
       ->excludes(slab);
   command.add_option("--quality", options->quality, "Largest circumsphere radius by shortest edge, 1.1 or more")
-      ->check(CLI::Range(1.1, 100.0).description(""))
+      ->check(number(1.1, 100))
       ->excludes(slab)
       ->type_name("RATIO");
   command
@@ -254,8 +254,8 @@ void setup_mesh(CLI::App& app, Action& action) {
       "Examples:\n"
       "  tactus mesh bunny.stl --length-unit 1mm --edge 5mm --quality 1.4 -o bunny.node\n"
       "  tactus mesh --slab 16x20x1 --cell 10mm -o membrane.msh");
-  command.callback([&action, options, input, slab] {
-    if (input->count() + slab->count() == 0) throw CLI::RequiredError("FILE or --slab");
+  command.on_chosen([&action, options, input, slab] {
+    if (input->count() + slab->count() == 0) miss_option("FILE or --slab");
     action = [options] { return run(*options); };
   });
 }

@@ -5,6 +5,6 @@
 
 namespace tactus::cli {
 
-void setup_mesh(CLI::App& app, Action& action);
+void setup_mesh(Command& app, Action& action);
 
 }  // namespace tactus::cli

@@ -292,17 +292,14 @@ Outcome run(const ReproduceOptions& options) {
 
 }  // namespace
 
-void setup_reproduce(CLI::App& app, Action& action) {
+void setup_reproduce(Command& app, Action& action) {
   auto options = std::make_shared<ReproduceOptions>();
-  CLI::App& command = *app.add_subcommand("reproduce", "Set our figures beside those of the thesis");
+  Command& command = app.add_command("reproduce", "Set our figures beside those of the thesis");
   command.add_option("FIGURE", options->figure, "fig3.14, also called table3.3")
       ->required()
       ->check(one_of({"fig3.14", "table3.3"}))
       ->type_name("");
-  command.add_option("--seeds", options->seeds, "Runs per setting")
-      ->capture_default_str()
-      ->check(whole_number(1, 1000))
-      ->type_name("N");
+  command.add_option("--seeds", options->seeds, "Runs per setting")->show_default()->check(whole_number(1, 1000))->type_name("N");
   add_quantity(command, "--length-unit", options->length_unit, Dimension::length,
                "Metres per virtual length unit of the thesis [0.05m]")
       ->check(above_zero(Dimension::length));

@@ -5,6 +5,6 @@
 
 namespace tactus::cli {
 
-void setup_reproduce(CLI::App& app, Action& action);
+void setup_reproduce(Command& app, Action& action);
 
 }  // namespace tactus::cli

@@ -306,9 +306,9 @@ Outcome run(const SimOptions& options) {
 
 }  // namespace
 
-void setup_sim(CLI::App& app, Action& action) {
+void setup_sim(Command& app, Action& action) {
   auto options = std::make_shared<SimOptions>();
-  CLI::App& command = *app.add_subcommand("sim", "Simulate a touch into a trace");
+  Command& command = app.add_command("sim", "Simulate a touch into a trace");
   command
       .add_option("SCENE", options->scene,
                   "push-1dof, rotate-6dof, rotate-push-lift, membrane, membrane-light, membrane-large, membrane-small, msd-1d, "
@@ -320,14 +320,14 @@ void setup_sim(CLI::App& app, Action& action) {
       ->type_name("FILE");
   command.add_option("--seed", options->seed, "Every random number follows from it")
       ->check(whole_number(0, UINT64_MAX))
-      ->capture_default_str()
+      ->show_default()
       ->type_name("N");
   add_quantity(command, "--duration", options->duration, Dimension::time, "Length [the scene's]");
   add_quantity(command, "--mesh-noise", options->mesh_noise, Dimension::length,
                "White noise on the shapes that are recorded and sent, RMS per axis [0]");
   const std::map<std::string, Grip> grips{{"loose", Grip::loose}, {"normal", Grip::normal}, {"firm", Grip::firm}};
   command
-      .add_option_function<std::string>(
+      .add_option(
           "--grip", [&grip = options->grip, grips](const std::string& name) { grip = grips.at(name); },
           "How firmly the device is held: loose, normal or firm [the scene's]")
       ->check(one_of({"loose", "normal", "firm"}))

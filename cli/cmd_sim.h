@@ -5,6 +5,6 @@
 
 namespace tactus::cli {
 
-void setup_sim(CLI::App& app, Action& action);
+void setup_sim(Command& app, Action& action);
 
 }  // namespace tactus::cli

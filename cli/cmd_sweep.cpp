@@ -219,9 +219,9 @@ Outcome run(const SweepOptions& options) {
 
 }  // namespace
 
-void setup_sweep(CLI::App& app, Action& action) {
+void setup_sweep(Command& app, Action& action) {
   auto options = std::make_shared<SweepOptions>();
-  CLI::App& command = *app.add_subcommand("sweep", "Run a command over a grid of parameters into a table and figures");
+  Command& command = app.add_command("sweep", "Run a command over a grid of parameters into a table and figures");
   command.add_option("PLAN", options->plan, "TOML: the command, its parameters, what to measure and to draw")
       ->type_name("")
       ->required();

@@ -5,6 +5,6 @@
 
 namespace tactus::cli {
 
-void setup_sweep(CLI::App& app, Action& action);
+void setup_sweep(Command& app, Action& action);
 
 }  // namespace tactus::cli

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 
 #include "cli/cmd_compare.h"
@@ -41,9 +40,8 @@ int report_failure(const tactus::cli::Failure& failure) {
 
 int main(int argc, char** argv) {
   using namespace tactus::cli;
-  CLI::App app{"Codec for shared haptic virtual environments: which object states to send, and in how few bits", "tactus"};
-  app.set_version_flag("--version", "tactus " TACTUS_VERSION);
-  app.get_formatter()->column_width(34);
+  Program app("tactus", "Codec for shared haptic virtual environments: which object states to send, and in how few bits",
+              "tactus " TACTUS_VERSION);
   app.footer(
       "A first round:\n"
       "  tactus sim push-1dof -o push.mcap                        simulate a touch\n"
@@ -72,14 +70,10 @@ int main(int argc, char** argv) {
 #ifdef TACTUS_HAS_STUDY
   setup_bench(app, action);
 #endif
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? kOk : kUsage;
-  }
+  if (const auto parsed = app.parse(argc, argv); parsed != Program::Parsed::go_on)
+    return parsed == Program::Parsed::done ? kOk : kUsage;
   if (!action) {
-    const auto groups = app.get_subcommands();
-    fmt::print(stderr, "{}", groups.empty() ? app.help() : groups.front()->help(app.get_name()));
+    fmt::print(stderr, "{}", app.help_of_typed());
     return kUsage;
   }
   Outcome outcome = action();

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/command.h"
+
 namespace tactus::cli {
 namespace {
 
@@ -98,8 +100,8 @@ const char* lack_of(Subject subject) {
 }
 
 /// An option of the command that was typed.
-const CLI::Option* typed(const CLI::App& command, const char* name) {
-  const CLI::Option* option = command.get_option_no_throw(name);
+const Option* typed(const Command& command, const char* name) {
+  const Option* option = command.find(name);
   return option != nullptr && option->count() > 0 ? option : nullptr;
 }
 
@@ -122,20 +124,20 @@ std::set<Subject> subjects_of(const TraceInfo& info) {
   return held;
 }
 
-void check_options_agree(const CLI::App& command) {
+void check_options_agree(const Command& command) {
   for (const Agreement& a : kAgreements) {
     if (!typed(command, a.option)) continue;
-    const CLI::Option* other = typed(command, a.other);
-    const std::string value = other ? other->results().back() : a.otherwise;
+    const Option* other = typed(command, a.other);
+    const std::string value = other ? other->last() : a.otherwise;
     if (std::find(a.values.begin(), a.values.end(), value) == a.values.end())
-      throw CLI::ValidationError(a.option, fmt::format("needs {} {}", a.other, list(a.values)));
+      refuse_option(a.option, fmt::format("needs {} {}", a.other, list(a.values)));
   }
 }
 
-void note_idle_options(const CLI::App& command, const std::set<Subject>& held, const std::string& place) {
+void note_idle_options(const Command& command, const std::set<Subject>& held, const std::string& place) {
   for (const Need& need : kNeeds) {
-    const CLI::Option* option = typed(command, need.option);
-    if (!option || held.contains(need.subject) || (need.value && option->results().back() != need.value)) continue;
+    const Option* option = typed(command, need.option);
+    if (!option || held.contains(need.subject) || (need.value && option->last() != need.value)) continue;
     fmt::print(stderr, "note: {}{}{}: {} in this {}; without effect\n", need.option, need.value ? " " : "",
                need.value ? need.value : "", lack_of(need.subject), place);
   }

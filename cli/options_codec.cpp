@@ -32,31 +32,44 @@ Result<ModeBasis> spring_basis(const TraceMesh&, std::size_t) { return fail(Errc
 
 }  // namespace
 
-CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
-  const auto check = [low, high](const std::string& text) {
+Check whole_number(std::uint64_t low, std::uint64_t high) {
+  return [low, high](const std::string& text) {
     std::uint64_t number = 0;
     const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), number);
     const bool fits = status == std::errc() && end == text.data() + text.size() && number >= low && number <= high;
     return fits ? std::string() : fmt::format("'{}': not a whole number from {} to {}", text, low, high);
   };
-  return CLI::Validator(check, "");
 }
 
-CLI::Validator one_of(const std::vector<std::string>& names) { return CLI::IsMember(names).description(""); }
+Check number(double low, double high) {
+  return [low, high](const std::string& text) {
+    double value = 0;
+    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool fits = status == std::errc() && end == text.data() + text.size() && value >= low && value <= high;
+    return fits ? std::string() : fmt::format("'{}': not a number from {} to {}", text, low, high);
+  };
+}
 
-void add_report_options(CLI::App& app, CommonOptions& options) {
+Check one_of(const std::vector<std::string>& names) {
+  return [names](const std::string& text) {
+    const bool known = std::find(names.begin(), names.end(), text) != names.end();
+    return known ? std::string() : fmt::format("{} not in {{{}}}", text, fmt::join(names, ","));
+  };
+}
+
+void add_report_options(Command& app, CommonOptions& options) {
   options.command = &app;
   app.add_flag("--json", options.json, "Report as JSON, in SI units");
   app.add_flag("-q,--quiet", options.quiet, "No progress and no table; --json still reports");
   app.add_flag("--no-progress", options.no_progress, "No progress bar");
 }
 
-void add_output_options(CLI::App& app, CommonOptions& options) {
+void add_output_options(Command& app, CommonOptions& options) {
   add_report_options(app, options);
   app.add_flag("-f,--force", options.force, "Replace output files that are there already");
 }
 
-void TriggerArguments::add_to(CLI::App& app) {
+void TriggerArguments::add_to(Command& app) {
   const std::map<std::string, HapticRule> rules{
       {"isotropic", HapticRule::isotropic}, {"cone", HapticRule::cone}, {"fixed", HapticRule::fixed}, {"off", HapticRule::off}};
   const auto rule = [this, rules](const std::string& name) { triggers_.haptic = rules.at(name); };
@@ -70,8 +83,7 @@ void TriggerArguments::add_to(CLI::App& app) {
   options_ = {
       deadband_,
       visual_option_,
-      app.add_option_function<std::string>("--haptic", rule,
-                                           "Permitted error of force: isotropic, cone, fixed or off [isotropic]")
+      app.add_option("--haptic", rule, "Permitted error of force: isotropic, cone, fixed or off [isotropic]")
           ->check(one_of({"isotropic", "cone", "fixed", "off"}))
           ->type_name("RULE"),
       add_quantity(app, "--alpha", triggers_.cone_angle, Dimension::angle,
@@ -83,27 +95,25 @@ void TriggerArguments::add_to(CLI::App& app) {
           ->check(above_zero(Dimension::force)),
       length_unit_option_,
   };
-  app.parse_complete_callback([this] { check_lengths(); });  // only now --length-unit is known
+  app.on_parsed([this] { check_lengths(); });  // only now --length-unit is known
 }
 
 void TriggerArguments::check_lengths() const {
   check_bound(*visual_option_, visual_);
   check_bound(*fixed_option_, fixed_);
   if (length_unit_option_->count() > 0 && !visual_.length.bare && !fixed_.length.bare)
-    throw CLI::ValidationError("--length-unit", "needs a length without a unit in --visual or --fixed");
+    refuse_option("--length-unit", "needs a length without a unit in --visual or --fixed");
 }
 
-void TriggerArguments::check_bound(const CLI::Option& option, const PoseBound& bound) const {
+void TriggerArguments::check_bound(const Option& option, const PoseBound& bound) const {
   if (option.count() == 0) return;
   if (const double length = scaled(bound.length); !(length >= kLeastLength && length < kMostLength))
-    throw CLI::ValidationError(option.get_name(),
-                               fmt::format("a length of {:.3g} mm: must be at least 2um and below 1000000m", 1e3 * length));
+    refuse_option(option.name(), fmt::format("a length of {:.3g} mm: must be at least 2um and below 1000000m", 1e3 * length));
   if (!(bound.angle.value >= kLeastAngle && bound.angle.value <= std::numbers::pi))
-    throw CLI::ValidationError(option.get_name(),
-                               fmt::format("an angle of {:.3g} rad: must be from 0.002deg to 180deg", bound.angle.value));
+    refuse_option(option.name(), fmt::format("an angle of {:.3g} rad: must be from 0.002deg to 180deg", bound.angle.value));
 }
 
-void TriggerArguments::add_encoder_to(CLI::App& app) {
+void TriggerArguments::add_encoder_to(Command& app) {
   options_.push_back(add_quantity(app, "--heartbeat", triggers_.heartbeat, Dimension::time, "Longest silence, 0: unlimited [1s]")
                          ->check(within(Dimension::time, "0s", "3600s")));
   options_.push_back(
@@ -118,7 +128,7 @@ std::optional<double> TriggerArguments::weber_fraction(double otherwise) const {
 }
 
 bool TriggerArguments::any_given() const {
-  return std::any_of(options_.begin(), options_.end(), [](const CLI::Option* option) { return option->count() > 0; });
+  return std::any_of(options_.begin(), options_.end(), [](const Option* option) { return option->count() > 0; });
 }
 
 RigidTriggers TriggerArguments::triggers() const {
@@ -131,7 +141,7 @@ RigidTriggers TriggerArguments::triggers() const {
   return out;
 }
 
-void MeshArguments::add_to(CLI::App& app) {
+void MeshArguments::add_to(Command& app) {
   options_ = {
       add_quantity(app, "--mesh-visual", thresholds_.visual, Dimension::length,
                    "Permitted error of a vertex to the eye, 0: none beyond the grid's [0.25mm]")
@@ -142,14 +152,14 @@ void MeshArguments::add_to(CLI::App& app) {
   };
 }
 
-void MeshArguments::add_encoder_to(CLI::App& app) {
+void MeshArguments::add_encoder_to(Command& app) {
   const std::map<std::string, MeshProfile> profiles{{"thesis", MeshProfile::thesis}, {"main", MeshProfile::main}};
   const auto profile = [this, profiles](const std::string& name) { coding_.profile = profiles.at(name); };
-  CLI::Option* modes = app.add_option("--basis", modes_, "main: vibration modes that both ends know, 0: none [0]")
-                           ->check(whole_number(0, ModeBasis::kMaxModes))
-                           ->type_name("K");
+  Option* modes = app.add_option("--basis", modes_, "main: vibration modes that both ends know, 0: none [0]")
+                      ->check(whole_number(0, ModeBasis::kMaxModes))
+                      ->type_name("K");
   options_.insert(options_.end(),
-                  {app.add_option_function<std::string>("--profile", profile, "Coding tools of meshes: thesis or main [main]")
+                  {app.add_option("--profile", profile, "Coding tools of meshes: thesis or main [main]")
                        ->check(one_of({"thesis", "main"}))
                        ->type_name("NAME"),
                    modes,
@@ -170,7 +180,7 @@ void MeshArguments::add_encoder_to(CLI::App& app) {
 }
 
 bool MeshArguments::any_given() const {
-  return std::any_of(options_.begin(), options_.end(), [](const CLI::Option* option) { return option->count() > 0; });
+  return std::any_of(options_.begin(), options_.end(), [](const Option* option) { return option->count() > 0; });
 }
 
 MeshThresholds MeshArguments::thresholds(const TriggerArguments& triggers) const {
@@ -189,8 +199,8 @@ MeshCoding MeshArguments::coding() const {
   return out;
 }
 
-CLI::Option* add_interpolation(CLI::App& app, ReplicaOptions& options) {
-  return app.add_flag_callback(
+Option* add_interpolation(Command& app, ReplicaOptions& options) {
+  return app.add_flag(
       "--interpolate", [&options] { options.interpolation = Interpolation::linear; },
       "Smooth the replica: straight line and SLERP over 75 % of the usual gap, 5 to 100 ms");
 }

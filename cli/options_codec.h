@@ -2,7 +2,6 @@
 /// Options that several commands share.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,21 +17,21 @@ namespace tactus::cli {
 
 /// What every command that writes or reports takes.
 struct CommonOptions {
-  const CLI::App* command = nullptr;  ///< knows which options were typed
+  const Command* command = nullptr;  ///< knows which options were typed
   bool json = false, quiet = false, no_progress = false, force = false;
 
   Visibility progress() const { return quiet || no_progress ? Visibility::hidden : Visibility::shown; }
   OutputFile::Existing existing() const { return force ? OutputFile::Existing::replace : OutputFile::Existing::keep; }
 };
-void add_report_options(CLI::App& app, CommonOptions& options);
-void add_output_options(CLI::App& app, CommonOptions& options);  ///< those of add_report_options, and -f
+void add_report_options(Command& app, CommonOptions& options);
+void add_output_options(Command& app, CommonOptions& options);  ///< those of add_report_options, and -f
 
 /// When an update is worth sending, as typed.
 class TriggerArguments {
  public:
-  void add_to(CLI::App& app);
+  void add_to(Command& app);
   /// Options of the encoder itself, beyond the bounds.
-  void add_encoder_to(CLI::App& app);
+  void add_encoder_to(Command& app);
   bool any_given() const;
   RigidTriggers triggers() const;
   RigidEncoderOptions encoder() const { return {.triggers = triggers(), .key_interval = key_interval_}; }
@@ -41,9 +40,9 @@ class TriggerArguments {
   double key_interval() const { return key_interval_; }
 
  private:
-  /// Bounds that no encoder can hold.   throws CLI::ValidationError
+  /// Bounds that no encoder can hold end the parsing.
   void check_lengths() const;
-  void check_bound(const CLI::Option& option, const PoseBound& bound) const;
+  void check_bound(const Option& option, const PoseBound& bound) const;
   double scaled(const Quantity& length) const { return length.bare ? length.value * length_unit_ : length.value; }
 
   RigidTriggers triggers_;
@@ -52,16 +51,16 @@ class TriggerArguments {
   double length_unit_ = 1;
   double key_interval_ = RigidEncoderOptions{}.key_interval;
   bool no_reduction_ = false;
-  const CLI::Option *deadband_ = nullptr, *visual_option_ = nullptr, *fixed_option_ = nullptr, *length_unit_option_ = nullptr;
-  std::vector<const CLI::Option*> options_;
+  const Option *deadband_ = nullptr, *visual_option_ = nullptr, *fixed_option_ = nullptr, *length_unit_option_ = nullptr;
+  std::vector<const Option*> options_;
 };
 
 /// How deformable objects are coded and bounded, as typed. The deadband is that of TriggerArguments, its default another.
 class MeshArguments {
  public:
-  void add_to(CLI::App& app);
+  void add_to(Command& app);
   /// Options of the encoder itself, beyond the bounds.
-  void add_encoder_to(CLI::App& app);
+  void add_encoder_to(Command& app);
   bool any_given() const;
   MeshThresholds thresholds(const TriggerArguments& triggers) const;
   MeshEncoderOptions encoder(const TriggerArguments& triggers) const;
@@ -73,15 +72,17 @@ class MeshArguments {
   MeshCoding coding_;
   std::uint32_t modes_ = 0;
   double visual_share_ = 1, haptic_share_ = 1;
-  std::vector<const CLI::Option*> options_;
+  std::vector<const Option*> options_;
 };
 
 /// Accept whole numbers from `low` to `high` only.
-CLI::Validator whole_number(std::uint64_t low, std::uint64_t high);
+Check whole_number(std::uint64_t low, std::uint64_t high);
+/// Accept numbers from `low` to `high` only.
+Check number(double low, double high);
 /// Accept these names only; the help text of the option lists them.
-CLI::Validator one_of(const std::vector<std::string>& names);
+Check one_of(const std::vector<std::string>& names);
 
 /// --interpolate
-CLI::Option* add_interpolation(CLI::App& app, ReplicaOptions& options);
+Option* add_interpolation(Command& app, ReplicaOptions& options);
 
 }  // namespace tactus::cli

@@ -66,7 +66,7 @@ std::string list(std::span<const Unit> units) {
 
 template <class T>
 T or_usage_error(const std::string& option, tl::expected<T, std::string> parsed) {
-  if (!parsed) throw CLI::ValidationError(option, parsed.error());
+  if (!parsed) refuse_option(option, parsed.error());
   return *parsed;
 }
 
@@ -111,37 +111,33 @@ tl::expected<PoseBound, std::string> parse_pose_bound(std::string_view text) {
   return PoseBound{*length, *angle};
 }
 
-CLI::Option* add_quantity(CLI::App& app, const std::string& name, double& value, Dimension dimension, const std::string& help) {
+Option* add_quantity(Command& app, const std::string& name, double& value, Dimension dimension, const std::string& help) {
   const auto read = [&value, dimension, name](const std::string& text) {
     value = or_usage_error(long_name(name), parse_quantity(text, dimension)).value;
   };
-  return app.add_option_function<std::string>(name, read, help)->type_name(type_name(dimension));
+  return app.add_option(name, read, help)->type_name(type_name(dimension));
 }
 
-CLI::Validator within(Dimension dimension, const std::string& low, const std::string& high) {
+Check within(Dimension dimension, const std::string& low, const std::string& high) {
   const double least = parse_quantity(low, dimension)->value, most = parse_quantity(high, dimension)->value;
-  return CLI::Validator(
-      [=](const std::string& text) {
-        const auto typed = parse_quantity(text, dimension);
-        if (!typed) return typed.error();
-        return typed->value < least || typed->value > most ? fmt::format("'{}': must be from {} to {}", text, low, high) : "";
-      },
-      "");
+  return [=](const std::string& text) {
+    const auto typed = parse_quantity(text, dimension);
+    if (!typed) return typed.error();
+    return typed->value < least || typed->value > most ? fmt::format("'{}': must be from {} to {}", text, low, high) : "";
+  };
 }
 
-CLI::Validator above_zero(Dimension dimension) {
-  return CLI::Validator(
-      [=](const std::string& text) {
-        const auto typed = parse_quantity(text, dimension);
-        if (!typed) return typed.error();
-        return typed->value > 0 ? std::string() : fmt::format("'{}': must be above 0", text);
-      },
-      "");
+Check above_zero(Dimension dimension) {
+  return [=](const std::string& text) {
+    const auto typed = parse_quantity(text, dimension);
+    if (!typed) return typed.error();
+    return typed->value > 0 ? std::string() : fmt::format("'{}': must be above 0", text);
+  };
 }
 
-CLI::Option* add_pose_bound(CLI::App& app, const std::string& name, PoseBound& value, const std::string& help) {
+Option* add_pose_bound(Command& app, const std::string& name, PoseBound& value, const std::string& help) {
   const auto read = [&value, name](const std::string& text) { value = or_usage_error(long_name(name), parse_pose_bound(text)); };
-  return app.add_option_function<std::string>(name, read, help)->type_name("LENGTH,ANGLE");
+  return app.add_option(name, read, help)->type_name("LENGTH,ANGLE");
 }
 
 }  // namespace tactus::cli

@@ -2,10 +2,11 @@
 /// Quantities as people type them: 2deg, 5mm, 4%, 100ms, 0.05N. Results are in SI units.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
+
+#include "cli/command.h"
 
 namespace tactus::cli {
 
@@ -28,11 +29,11 @@ struct PoseBound {
 tl::expected<PoseBound, std::string> parse_pose_bound(std::string_view text);
 
 /// Option that takes one quantity in SI units.
-CLI::Option* add_quantity(CLI::App& app, const std::string& name, double& value, Dimension dimension, const std::string& help);
+Option* add_quantity(Command& app, const std::string& name, double& value, Dimension dimension, const std::string& help);
 /// Checks for such options, both ends included. They name what was typed and the range.   in  low, high  as typed: "1ms"
-CLI::Validator within(Dimension dimension, const std::string& low, const std::string& high);
-CLI::Validator above_zero(Dimension dimension);
+Check within(Dimension dimension, const std::string& low, const std::string& high);
+Check above_zero(Dimension dimension);
 /// Option that takes LENGTH,ANGLE.
-CLI::Option* add_pose_bound(CLI::App& app, const std::string& name, PoseBound& value, const std::string& help);
+Option* add_pose_bound(Command& app, const std::string& name, PoseBound& value, const std::string& help);
 
 }  // namespace tactus::cli
