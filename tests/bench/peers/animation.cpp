@@ -37,9 +37,10 @@ tl::expected<Animation, std::string> make_animation(std::vector<Triangle> triang
                                                     const std::vector<Shape>& frames, unsigned bits) {
   const double unit = diagonal(rest) / std::ldexp(1.0, static_cast<int>(bits));
   if (!(unit > 0)) return tl::unexpected<std::string>("the rest shape is a point");
-  Animation out{{}, std::move(triangles), on_grid(rest, unit), {}};
+  Animation out{{}, std::move(triangles), on_grid(rest, unit), {}, {}};
   for (const Shape& frame : frames) {
     out.frames.push_back(on_grid(frame, unit));
+    out.fine.push_back(on_grid(frame, unit / kFine));
     for (const Vec3i& p : out.frames.back())
       for (const std::int32_t c : p)
         if (std::abs(c) > 1 << 20) return tl::unexpected<std::string>("a vertex moves farther than 2^20 grid units");
@@ -134,6 +135,7 @@ Animation patch_of(const Animation& whole, std::size_t count) {
   };
   out.rest = pick(whole.rest);
   for (const auto& frame : whole.frames) out.frames.push_back(pick(frame));
+  for (const auto& frame : whole.fine) out.fine.push_back(pick(frame));
   return out;
 }
 

@@ -15,7 +15,12 @@ struct Animation {
   std::vector<Triangle> triangles;
   std::vector<Vec3i> rest;
   std::vector<std::vector<Vec3i>> frames;  ///< positions, grid units
+  std::vector<std::vector<Vec3i>> fine;    ///< what they were rounded from, in 1/kFine of a unit
 };
+
+inline constexpr int kFineBits = 6, kFine = 1 << kFineBits;
+/// What rounding to the grid may cost: half a diagonal of its cells [units].
+inline constexpr double kRounding = 0.8660254037844386;
 
 /// Grid: the diagonal of the rest shape's bounding box is 2^`bits` units.
 ///   x.mcap            the first mesh of a trace, at the ticks at which its shape is new

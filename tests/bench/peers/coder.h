@@ -37,6 +37,7 @@ std::vector<Peer> peers();
 std::vector<std::string> absent_peers();
 
 void add_general_peers(std::vector<Peer>& out, std::vector<std::string>& absent);
+void add_adaptive(std::vector<Peer>& out);
 void add_draco(std::vector<Peer>& out);
 void add_meshoptimizer(std::vector<Peer>& out);
 void add_open3dgc(std::vector<Peer>& out);

@@ -16,17 +16,21 @@ class PeerLink final : public Link {
   PeerLink(std::unique_ptr<VertexCoder> coder, bool predicted, std::size_t vertices)
       : coder_(std::move(coder)), predicted_(predicted), before_(vertices), values_(vertices) {}
 
-  Bytes encode(std::size_t, std::span<const Vec3i> positions) override {
+  Bytes encode(std::size_t, std::span<const Vec3i> positions, std::span<const Vec3i>) override {
     for (std::size_t v = 0; v < positions.size(); ++v)
       for (std::size_t axis = 0; axis < 3; ++axis) values_[v][axis] = positions[v][axis] - before_[v][axis];
     remember(positions);
     return coder_->encode(values_);
   }
-  bool decode(std::size_t, std::span<const std::uint8_t> packet, std::span<Vec3i> positions) override {
+  bool decode(std::size_t, std::span<const std::uint8_t> packet, std::span<Vec3i> shown) override {
     if (!coder_->decode(packet, values_)) return false;
-    for (std::size_t v = 0; v < positions.size(); ++v)
-      for (std::size_t axis = 0; axis < 3; ++axis) positions[v][axis] = values_[v][axis] + before_[v][axis];
-    remember(positions);
+    for (std::size_t v = 0; v < shown.size(); ++v) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        values_[v][axis] += before_[v][axis];
+        shown[v][axis] = values_[v][axis] * kFine;
+      }
+    }
+    remember(values_);
     return true;
   }
 
@@ -41,13 +45,18 @@ class PeerLink final : public Link {
 };
 
 constexpr std::uint32_t kFrameRate = 60;
+/// Of the stream's grid [m]: its unit gets another name, nothing else.
+const double kStep = std::ldexp(1.0, -StreamHeader{}.grid.position);
 
 struct OurSetting {
   MeshProfile profile = MeshProfile::main;
   bool models_kept = false;  ///< thesis
-  bool neighbours = true;    ///< false: main's coder with nothing but prediction in time
   bool chained = true;       ///< false: every packet is a key packet
+  bool lossy = false;        ///< main: given what the grid rounded, and allowed the error of that rounding
 };
+
+/// Steps of the stream's grid to a unit of the table's.
+std::int32_t units_of(const OurSetting& setting) { return setting.lossy ? kFine : 1; }
 
 StreamHeader header_of(const Animation& animation, const OurSetting& setting) {
   StreamHeader header;
@@ -57,18 +66,16 @@ StreamHeader header_of(const Animation& animation, const OurSetting& setting) {
   mesh.profile = setting.profile;
   mesh.models_kept = setting.models_kept;
   mesh.rest = animation.rest;
-  if (setting.neighbours) {
-    mesh.triangles = animation.triangles;
-  } else {
-    for (std::size_t v = 0; v < mesh.rest.size(); ++v) mesh.rest[v] = {static_cast<std::int32_t>(v), 0, 0};
-  }
+  for (Vec3i& v : mesh.rest)
+    for (std::int32_t& c : v) c *= units_of(setting);
+  mesh.triangles = animation.triangles;
   header.meshes.push_back(std::move(mesh));
   return header;
 }
 
 MeshEncoderOptions options_of(const OurSetting& setting) {
   MeshEncoderOptions options;
-  options.thresholds.visual = 0;
+  options.thresholds.visual = setting.lossy ? kRounding * kFine * kStep : 0;
   options.thresholds.weber_fraction = {};
   options.key_interval = setting.chained ? 0 : 0.5 / kFrameRate;
   return options;
@@ -77,29 +84,32 @@ MeshEncoderOptions options_of(const OurSetting& setting) {
 class OurLink final : public Link {
  public:
   OurLink(const Animation& animation, const OurSetting& setting)
-      : rest_(animation.rest),
+      : lossy_(setting.lossy),
+        rest_(header_of(animation, setting).meshes[0].rest),
         displacement_(rest_.size()),
         encoder_(MeshEncoder::create(header_of(animation, setting), 0, options_of(setting)).value()),
         decoder_(MeshDecoder::create(header_of(animation, setting), 0).value()) {}
 
-  Bytes encode(std::size_t frame, std::span<const Vec3i> positions) override {
-    const double unit = std::ldexp(1.0, -encoder_.header().grid.position);  // the grid stays, only its unit gets another name
+  Bytes encode(std::size_t frame, std::span<const Vec3i> positions, std::span<const Vec3i> fine) override {
+    const auto truth = lossy_ ? fine : positions;
     for (std::size_t v = 0; v < rest_.size(); ++v) {
-      const auto part = [&](std::size_t axis) { return (positions[v][axis] - rest_[v][axis]) * unit; };
+      const auto part = [&](std::size_t axis) { return (truth[v][axis] - rest_[v][axis]) * kStep; };
       displacement_[v] = {part(0), part(1), part(2)};
     }
     const auto packet = encoder_.encode(static_cast<std::int64_t>(frame), displacement_).value();
     return {packet.bytes.begin(), packet.bytes.end()};
   }
-  bool decode(std::size_t frame, std::span<const std::uint8_t> packet, std::span<Vec3i> positions) override {
+  bool decode(std::size_t frame, std::span<const std::uint8_t> packet, std::span<Vec3i> shown) override {
     if (!packet.empty() && !decoder_.decode(packet)) return false;
-    const auto shown = decoder_.displacements_at(static_cast<std::int64_t>(frame));
+    const auto displacement = decoder_.displacements_at(static_cast<std::int64_t>(frame));
     for (std::size_t v = 0; v < rest_.size(); ++v)
-      for (std::size_t axis = 0; axis < 3; ++axis) positions[v][axis] = rest_[v][axis] + shown[v][axis];
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        shown[v][axis] = (rest_[v][axis] + displacement[v][axis]) * (lossy_ ? 1 : kFine);
     return true;
   }
 
  private:
+  bool lossy_;
   std::vector<Vec3i> rest_;
   std::vector<Vec3> displacement_;
   MeshEncoder encoder_;
@@ -116,6 +126,7 @@ Scheme ours(const char* name, const char* text, const OurSetting& setting) {
 std::vector<Peer> peers() {
   std::vector<Peer> out;
   std::vector<std::string> absent;
+  add_adaptive(out);
   add_general_peers(out, absent);
 #ifdef TACTUS_PEER_DRACO
   add_draco(out);
@@ -153,12 +164,12 @@ std::vector<std::string> absent_peers() {
 
 std::vector<Scheme> all_schemes() {
   std::vector<Scheme> out;
-  out.push_back(ours("tactus main", "key packets", {MeshProfile::main, false, true, false}));
-  out.push_back(ours("tactus main", "", {MeshProfile::main, false, true, true}));
-  out.push_back(ours("same coder, time prediction only", "", {MeshProfile::main, false, false, true}));
-  out.push_back(ours("tactus thesis (8 bits)", "key packets", {MeshProfile::thesis, false, true, false}));
-  out.push_back(ours("tactus thesis (8 bits)", "models restarted", {MeshProfile::thesis, false, true, true}));
-  out.push_back(ours("tactus thesis (8 bits)", "models kept", {MeshProfile::thesis, true, true, true}));
+  out.push_back(ours("tactus main", "key packets", {.chained = false}));
+  out.push_back(ours("tactus main", "", {}));
+  out.push_back(ours("tactus main, same largest error", "lossy", {.lossy = true}));
+  out.push_back(ours("tactus thesis (8 bits)", "key packets", {.profile = MeshProfile::thesis, .chained = false}));
+  out.push_back(ours("tactus thesis (8 bits)", "models restarted", {.profile = MeshProfile::thesis}));
+  out.push_back(ours("tactus thesis (8 bits)", "models kept", {.profile = MeshProfile::thesis, .models_kept = true}));
   for (const Peer& peer : peers()) {
     for (const bool predicted : {false, true}) {
       const auto make = [peer, predicted](const Animation& a) -> std::unique_ptr<Link> {

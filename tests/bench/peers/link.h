@@ -18,10 +18,10 @@ class Link {
   Link& operator=(const Link&) = delete;
   virtual ~Link() = default;
 
-  /// Empty: nothing to send.
-  virtual Bytes encode(std::size_t frame, std::span<const Vec3i> positions) = 0;
-  /// False: the packet cannot be decoded.   in  packet  may be empty: no packet came in this frame
-  virtual bool decode(std::size_t frame, std::span<const std::uint8_t> packet, std::span<Vec3i> positions) = 0;
+  /// Empty: nothing to send.   in  positions  grid units;  fine  what they were rounded from, in 1/kFine of a unit
+  virtual Bytes encode(std::size_t frame, std::span<const Vec3i> positions, std::span<const Vec3i> fine) = 0;
+  /// False: the packet cannot be decoded.   in  packet  may be empty: no packet came in this frame   out  shown  as fine
+  virtual bool decode(std::size_t frame, std::span<const std::uint8_t> packet, std::span<Vec3i> shown) = 0;
 };
 
 /// `predicted`: packets hold differences to the frame before, otherwise positions.

@@ -4,7 +4,6 @@
 #include <time.h>
 
 #include <algorithm>
-#include <cstdlib>
 
 namespace tactus::peers {
 namespace {
@@ -21,10 +20,12 @@ double median(std::vector<double>& values) {
   return values[values.size() / 2];
 }
 
-std::int32_t largest_error(std::span<const Vec3i> truth, std::span<const Vec3i> shown) {
-  std::int32_t out = 0;
-  for (std::size_t v = 0; v < truth.size(); ++v)
-    for (std::size_t axis = 0; axis < 3; ++axis) out = std::max(out, std::abs(truth[v][axis] - shown[v][axis]));
+double largest_error(std::span<const Vec3i> truth, std::span<const Vec3i> shown) {
+  double out = 0;
+  for (std::size_t v = 0; v < truth.size(); ++v) {
+    const auto off = [&](std::size_t axis) { return static_cast<double>(truth[v][axis] - shown[v][axis]) / kFine; };
+    out = std::max(out, norm(Vec3{off(0), off(1), off(2)}));
+  }
   return out;
 }
 
@@ -58,13 +59,13 @@ std::optional<Measurement> measure(const Animation& animation, const Scheme& sch
   for (std::size_t f = 0; f < animation.frames.size(); ++f) {
     std::vector<Vec3i> shown(animation.rest.size());
     const double start = cpu_us();
-    Bytes packet = sender->encode(f, animation.frames[f]);
+    Bytes packet = sender->encode(f, animation.frames[f], animation.fine[f]);
     const double middle = cpu_us();
     if (!receiver->decode(f, packet, shown)) return {};
     decode_us.push_back(cpu_us() - middle);
     encode_us.push_back(middle - start);
     if (f > 0) out.bytes += static_cast<double>(packet.size());
-    out.error = std::max(out.error, largest_error(animation.frames[f], shown));
+    out.error = std::max(out.error, largest_error(animation.fine[f], shown));
     recording.packets.push_back(std::move(packet));
     recording.shown.push_back(std::move(shown));
   }

@@ -75,8 +75,8 @@ void print_table(const std::vector<Row>& rows) {
     std::printf("  %-33s %-10s %-17s ", s.name.c_str(), s.predicted ? "predicted" : "plain", s.setting.c_str());
     if (!row->result) std::puts("cannot carry this mesh");
     else
-      std::printf("%9.1f %9.3f %10.1f %10.1f %6d %9s\n", row->result->bytes, row->result->bits_per_vertex, row->result->encode_us,
-                  row->result->decode_us, row->result->error, survives(*row->result).c_str());
+      std::printf("%9.1f %9.3f %10.1f %10.1f %6.3f %9s\n", row->result->bytes, row->result->bits_per_vertex,
+                  row->result->encode_us, row->result->decode_us, row->result->error, survives(*row->result).c_str());
   }
 }
 
@@ -119,7 +119,8 @@ int main(int argc, char** argv) {
   }
   for (const std::string& absent : absent_peers()) std::printf("\nleft out: %s", absent.c_str());
   std::printf(
-      "\nCPU time of one thread, median; error in grid units; survives: a packet decodes though the one before was lost.\n");
+      "\nCPU time of one thread, median; error: largest distance from the position before\nrounding, grid units; survives: a "
+      "packet decodes though the one before was lost.\n");
   csv.flush();
   if (!options.csv.empty() && !csv) {
     std::fprintf(stderr, "error: %s cannot be written\n", options.csv.c_str());
