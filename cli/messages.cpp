@@ -135,8 +135,10 @@ constexpr std::array kRules{
              "Name the column that tells segments apart (--segment), or sort the rows."},
     RuleText{"R-CSV-6", "a line is longer than 1 MiB", "Give a table with one sample per line."},
     RuleText{"R-CSV-7", "the rate of the recording is unknown", "Give --tick-rate HZ, or --time COLUMN."},
-    RuleText{"R-CSV-8", "the mapping names some columns of a vector but not all, or nothing to record",
-             "Give --preset NAME, or --map with every column of a quantity."},
+    RuleText{
+        "R-CSV-8",
+        "the mapping names some columns of a vector but not all, nothing to record, or spins of the body frame without rotations",
+        "Give --preset NAME, or --map with every column of a quantity."},
     RuleText{"R-SIM-2", "the scene has deformable objects, and this program was built without them",
              "Install libeigen3-dev, libsuitesparse-dev and libspectra-dev, and build with TACTUS_WITH_FEM=ON."},
     RuleText{"R-SIM-3",

@@ -10,7 +10,8 @@
 /// R-CSV-5  invalid           time does not increase within a segment by a tick at least, or leaves 0 .. 2^31 s
 /// R-CSV-6  limit_exceeded    a line is longer than 1 MiB
 /// R-CSV-7  invalid_argument  the rate is unknown: no tick_rate in the mapping and no column of time with two rows
-/// R-CSV-8  invalid_argument  the mapping names some columns of a vector but not all, or nothing to record
+/// R-CSV-8  invalid_argument  the mapping names some columns of a vector but not all, or nothing to record, or angular velocities in the
+///                            body frame without rotations
 #pragma once
 
 #include <array>
@@ -30,6 +31,9 @@ enum class CsvLayout : std::uint8_t {
   tactus,         ///< columns of export_csv(): any objects and users; of the mapping only tick_rate counts
 };
 
+/// What angular velocities are given in. A gyroscope on the object measures in the body frame.
+enum class SpinFrame : std::uint8_t { world, body };
+
 /// Which column feeds which quantity; an empty name means "not there". Named groups: see csv_presets().
 struct CsvMapping {
   CsvLayout layout = CsvLayout::named_columns;
@@ -39,6 +43,7 @@ struct CsvMapping {
   std::array<std::string, 4> rotation;          ///< w, x, y, z, not normalised; empty: no rotation
   std::array<std::string, 3> velocity;          ///< [m/s]; empty: backward differences, 0 where a segment begins
   std::array<std::string, 3> angular_velocity;  ///< [rad/s]; empty: likewise
+  SpinFrame spin_frame = SpinFrame::world;      ///< of angular_velocity; body needs rotation
   std::array<std::string, 3> device;            ///< [m] probe of the user
   std::array<std::string, 3> force;             ///< [N] on the user; one recorded force stands for client and server
   std::string object = "object";                ///< name of the object in the trace
@@ -62,9 +67,21 @@ struct CsvError {
   std::string text;    ///< the offending field
 };
 
+/// Angular velocities as given, beside those of the rotations' differences. Means over all rows that have both and turn by less than
+/// a quarter turn.
+struct SpinCheck {
+  std::uint64_t rows = 0;
+  double given = 0;               ///< [rad/s] size
+  double off = 0, off_other = 0;  ///< [rad/s] from the differences: in the frame of the mapping, in the other one
+
+  /// They contradict the rotations: another frame, unit or order of columns.
+  bool is_off() const noexcept { return given > 0.1 && off > 0.5 * given; }
+};
+
 struct CsvImport {
   TickSpan ticks;  ///< one per row
   std::uint64_t segments = 0;
+  SpinCheck spin;
 };
 
 /// Read `path` (plain or zstd, told by its first bytes; "-" is standard input) into `out_path`.

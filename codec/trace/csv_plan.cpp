@@ -95,6 +95,8 @@ void Planner::plan_named() {
   }
   plan_.derive_velocity = !has_velocity;
   plan_.derive_spin = has_rotation && !has_spin;
+  plan_.check_spin = has_rotation && has_spin;
+  if (has_spin && !has_rotation && m.spin_frame == SpinFrame::body) note(Errc::invalid_argument, "R-CSV-8", "rotation");
   const bool has_device = has_group(m.device), has_force = has_group(m.force);
   if (!has_device && !has_force) return;
   plan_.info.users.push_back(m.user);

@@ -33,6 +33,7 @@ struct CsvPlan {
   std::vector<std::size_t> dof;             ///< per object, layout `tactus` only
   std::vector<CsvContactColumns> contacts;  ///< per user, likewise
   bool derive_velocity = false, derive_spin = false;
+  bool check_spin = false;  ///< given, and there are rotations to hold it against
 };
 
 /// err  R-CSV-2, R-CSV-8, with the column that is not as it should be.
