@@ -125,7 +125,7 @@ void note_unmatched(const Side& truth, const Side& replica, Report& report) {
     text += fmt::format("{}{} of the replica's {} ticks are not in the truth", text.empty() ? "" : " and ", replica.unmatched,
                         replica.unmatched + report.ticks.count());
   }
-  if (!text.empty()) report.notes.emplace_back("warning", text + "; they were left out, decode with --like " + truth.path);
+  if (!text.empty()) report.warnings.push_back(text + "; they were left out, decode with --like " + truth.path);
 }
 
 tl::expected<Side, Failure> open(const std::string& path) {
@@ -152,7 +152,7 @@ Outcome run(const CompareOptions& options) {
                              .vertices = mesh.rest.vertices.size(),
                              .fidelity = MeshFidelity(mesh.rest, options.meshes.thresholds(options.triggers),
                                                       options.meshes.rings(), GridExponents{}.position)});
-  report.timings = {{"compare, per tick", {}}};
+  report.timings = {{"compare", "compare, per tick"}};
   if (auto compared = compare_all(*truth, *replica, options, report); !compared) return compared;
   if (report.ticks.count() == 0)
     return refuse(options.replica + ": shares no tick with " + options.truth, "Decode with --like " + options.truth + ".");

@@ -147,12 +147,12 @@ Outcome run(const DecodeOptions& options) {
   if (report.moving > 0 || info.meshes.empty()) report.traffic.emplace();
   for (const TraceMesh& mesh : info.meshes)
     report.meshes.push_back({.name = mesh.name, .vertices = mesh.rest.vertices.size(), .traffic = MeshTraffic{}});
-  report.timings = {{"decode and show, per tick", {}}};
-  const bool smooth = options.replica.interpolation == Interpolation::linear;
-  if (report.traffic) report.notes.emplace_back("client", smooth ? "interpolates" : "applies updates at once");
+  report.timings = {{"decode", "decode and show, per tick"}};
+  report.stream = {player->header_bytes(), bytes->size()};
+  if (report.traffic) report.client = options.replica.interpolation;
   if (auto done = decode_all(*player, *writer, options, report); !done) return done;
   if (const auto rest = player->next_tick(); rest && !*rest && !player->complete()) {
-    report.notes.emplace_back("warning", "the stream has no trailer: its writer did not finish");
+    report.warnings.emplace_back("the stream has no trailer: its writer did not finish");
   }
   if (auto kept = output->keep(); !kept) return kept;
   print(report, options.common, beside(options.output));

@@ -135,14 +135,14 @@ Outcome run(const EncodeOptions& options) {
   if (session->rigid) {
     report.traffic.emplace();
     report.fidelity.emplace(reader->info(), options.triggers.triggers());
-    report.timings = {{"encode, per tick", {}}, {"decode, per packet", {}}};
+    report.timings = {{"encode", "encode, per tick"}, {"decode", "decode, per packet"}};
   }
   add_meshes(reader->info(), options.meshes, options.triggers, report);
   if (auto done = encode_all(*reader, *session, frame, options, report); !done) return done;
   if (auto whole = check_ending(options.input, *reader, report.ticks.count()); !whole) return whole;
-  if (reader->cut_short())
-    report.notes.emplace_back("warning", "the trace ends without its index; everything up to there was encoded");
+  if (reader->cut_short()) report.warnings.emplace_back("the trace ends without its index; everything up to there was encoded");
   if (auto kept = output->keep(); !kept) return kept;
+  report.stream = {session->writer.header_bytes(), session->writer.bytes()};
   print(report, options.common, beside(options.output));
   return {};
 }

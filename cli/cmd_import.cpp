@@ -20,6 +20,7 @@ struct ImportOptions {
   std::string input, output, preset;
   std::vector<std::string> maps;
   std::string object, user, time, segment;
+  std::optional<SpinFrame> spin_frame;
   double length_scale = -1;  // [m] below 0: not given
   std::uint32_t tick_rate = 0;
   bool list_presets = false;
@@ -81,9 +82,13 @@ tl::expected<CsvMapping, Failure> make_mapping(const ImportOptions& options) {
   if (options.length_scale == 0) return refuse_arguments("--length-unit: not above 0", "Give a length, such as 1mm.");
   if (options.length_scale > 0) mapping.length_scale = options.length_scale;
   if (options.tick_rate > 0) mapping.tick_rate = options.tick_rate;
-  if (options.preset.empty() && options.maps.empty()) {
-    return refuse_arguments("nothing says which columns to read", "Give --preset NAME or --map position=x,y,z.");
+  if (options.spin_frame) {
+    if (mapping.angular_velocity.front().empty())
+      return refuse_arguments("--angular-velocity-frame: no angular velocity is read",
+                              "Name its columns with --map angular_velocity=X,Y,Z, or leave the option out.");
+    mapping.spin_frame = *options.spin_frame;
   }
+  if (options.preset.empty() && options.maps.empty()) mapping.layout = CsvLayout::tactus;  // a table of `export csv` names itself
   return mapping;
 }
 
@@ -93,7 +98,11 @@ bool blames_arguments(const CsvMapping& mapping, std::string_view rule) {
   return rule == "R-CSV-8" || rule == "R-TRC-17" || (rule == "R-CSV-7" && mapping.time.empty());
 }
 
-tl::unexpected<Failure> refuse_csv(const std::string& file, const CsvMapping& mapping, const CsvError& e) {
+tl::unexpected<Failure> refuse_csv(const ImportOptions& options, const CsvMapping& mapping, const CsvError& e) {
+  const std::string& file = options.input;
+  if (options.preset.empty() && options.maps.empty() && e.line == 1 && e.error.rule == std::string_view("R-CSV-2"))
+    return refuse_arguments(file + ": nothing says which columns to read",
+                            "Give --preset NAME or --map position=x,y,z. Only tables of `tactus export csv` need neither.");
   const bool arguments = blames_arguments(mapping, e.error.rule);
   std::string place = e.line > 0 && !arguments ? fmt::format("line {}", e.line) : "";
   if (!e.column.empty()) place += fmt::format("{}column {}", place.empty() ? "" : ", ", e.column);
@@ -101,6 +110,20 @@ tl::unexpected<Failure> refuse_csv(const std::string& file, const CsvMapping& ma
   auto refused = refuse(file, place, e.error);
   if (arguments) refused.value().cause = Failure::Cause::arguments;
   return refused;
+}
+
+/// What speaks against the angular velocities of a table.
+std::string contradiction(const SpinCheck& spin, SpinFrame frame) {
+  const bool is_body = frame == SpinFrame::body;
+  std::string text = fmt::format(
+      "the angular velocities, taken as in the {} frame, do not fit the rotations: off by {:.3g} rad/s on average, of {:.3g} "
+      "rad/s",
+      is_body ? "body" : "world", spin.off, spin.given);
+  if (spin.off_other < 0.5 * spin.off) {
+    text += fmt::format("; in the {0} frame off by {1:.3g}: give --angular-velocity-frame {0}", is_body ? "world" : "body",
+                        spin.off_other);
+  }
+  return text;
 }
 
 void list_presets() {
@@ -117,18 +140,21 @@ Outcome run(const ImportOptions& options) {
   auto output = OutputFile::create(options.output, options.common.existing(), {options.input});
   if (!output) return tl::unexpected(output.error());
   Report report{.command = "import csv", .files = {{"table", options.input}, {"trace", options.output}}};
-  report.timings = {{"import, whole file", {}}};
+  report.timings = {{"import", "import, whole file"}};
   const auto imported =
       report.timings[0].times.measure([&] { return import_csv(options.input, *mapping, output->working_path()); });
-  if (!imported) return refuse_csv(options.input, *mapping, imported.error());
+  if (!imported) return refuse_csv(options, *mapping, imported.error());
   if (output->is_temporary()) {
     const auto reader = TraceReader::open(output->working_path());
     if (!reader) return refuse(options.output, reader.error());
     report.describe(reader->info());
   }
   report.ticks = imported->ticks;
-  report.notes.emplace_back(
-      "content", fmt::format("{} in {}", counted(imported->ticks.count(), "row"), counted(imported->segments, "segment")));
+  report.segments = imported->segments;
+  if (imported->spin.is_off()) {
+    report.warnings.push_back(contradiction(imported->spin, mapping->spin_frame));
+    fmt::print(stderr, "warning: {}: {}\n", options.input, report.warnings.back());
+  }
   if (auto kept = output->keep(); !kept) return kept;
   print(report, options.common, beside(options.output));
   return {};
@@ -158,6 +184,15 @@ void setup_import(Command& app, Action& action) {
   command.add_option("--tick-rate", options->tick_rate, "Samples per second [from the times]")
       ->check(whole_number(1, 1000000))
       ->type_name("HZ");
+  command
+      .add_option(
+          "--angular-velocity-frame",
+          [&frame = options->spin_frame](const std::string& name) {
+            frame = name == "body" ? SpinFrame::body : SpinFrame::world;
+          },
+          "Frame of the angular velocities: world or body [the preset's, or world]")
+      ->check(one_of({"world", "body"}))
+      ->type_name("FRAME");
   add_output_options(command, options->common);
   command.footer(
       "Examples:\n"

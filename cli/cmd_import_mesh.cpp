@@ -59,12 +59,11 @@ Outcome run(const ImportMeshOptions& options) {
   auto writer = TraceWriter::create(output->working_path(), info);
   if (!writer) return refuse(options.output, writer.error());
   Report report{.command = "import mesh", .files = {{"frames", options.input}, {"trace", options.output}}};
-  report.timings = {{"read, per frame", {}}};
+  report.timings = {{"read", "read, per frame"}};
   if (auto written = write_frames(*sequence, rest, options, *writer, report); !written) return written;
   if (const auto finished = writer->finish(); !finished) return refuse(options.output, finished.error());
   report.describe(info);
-  report.notes.emplace_back("content", fmt::format("{}, {} vertices, {} triangles", counted(sequence->size(), "frame"),
-                                                   rest.vertices.size(), rest.triangles.size()));
+  report.meshes.push_back({.name = options.name, .vertices = rest.vertices.size(), .triangles = rest.triangles.size()});
   if (auto kept = output->keep(); !kept) return kept;
   print(report, options.common, beside(options.output));
   return {};

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "cli/json_parts.h"
 #include "cli/report.h"
 #include "cli/table.h"
 #include "sim/mesh/tet_files.h"
@@ -159,7 +160,7 @@ Json to_json(const MeshOptions& options, const MeshReport& report) {
   out["smallest_angle_rad"] = {{"value", q.smallest_angle.value}, {"tetrahedron", q.smallest_angle.tet}};
   out["largest_angle_rad"] = {{"value", q.largest_angle.value}, {"tetrahedron", q.largest_angle.tet}};
   out["shape"] = {{"worst", q.shape.value}, {"tetrahedron", q.shape.tet}, {"mean", q.mean_shape}};
-  for (const auto& [step, time] : report.times) out["time_s"][step] = time.total();
+  for (const auto& [step, time] : report.times) out["time"][step] = time_json(time, 0);
   return out;
 }
 
@@ -192,9 +193,10 @@ void print_text(const Json& r, const MeshReport& report) {
   angle("  largest angle between faces [deg]", r["largest_angle_rad"]);
   figures.row({"  shape, 1 is regular, 0 is flat", fmt::format("{:.4g}", r["shape"]["worst"].get<double>()),
                r["shape"]["tetrahedron"].dump(), fmt::format("{:.4g}", r["shape"]["mean"].get<double>())});
-  figures.heading({"time", "ms"});
-  for (const auto& [step, time] : r["time_s"].items())
-    figures.row({"  " + step, fmt::format("{:.1f}", 1e3 * time.get<double>())});
+  figures.heading({"time", "ms", "CPU ms"});
+  for (const auto& [step, time] : report.times)
+    figures.row({"  " + step, fmt::format("{:.1f}", 1e3 * time.total(TimeOf::wall)),
+                 fmt::format("{:.1f}", 1e3 * time.total(TimeOf::cpu))});
   figures.print(stdout);
 }
 

@@ -125,11 +125,21 @@ Outcome record(Run& run, const EncodedPacket& packet, const SimOptions& options,
   return {};
 }
 
+/// Of what was sent, or would have been.
+StreamSize stream_size(const Run& run) {
+  if (run.stream) return {run.stream->writer.header_bytes(), run.stream->writer.bytes()};
+  const auto header = write_header(run.simulation.header());
+  return {header ? header->size() : 0, std::nullopt};
+}
+
 /// How long the deformations of this tick took, one time each.
 void add_deformations(const Run& run, StepTimes& times) {
   const auto& meshes = run.simulation.frame().meshes;
   for (std::size_t i = 0; i < meshes.size(); ++i)
-    if (meshes[i].updated) times.add(run.simulation.deformables()->seconds(i));
+    if (meshes[i].updated) {
+      const DeformationTime time = run.simulation.deformables()->time(i);
+      times.add({std::llround(1e9 * time.wall), std::llround(1e9 * time.cpu)});
+    }
 }
 
 /// An error after some ticks: says that the trace holds them, if it does.
@@ -175,15 +185,14 @@ Report make_report(const SimOptions& options, const TraceInfo& info) {
   Report report{.command = "sim", .files = {{"scene", options.scene}, {"trace", options.output}}};
   if (!options.stream.empty()) report.files.emplace_back("stream", options.stream);
   report.describe(info);
-  report.timings = {{options.has_channel() ? "simulate, encode, decode, per tick" : "simulate, per tick", {}}};
-  if (options.replay.empty()) report.notes.emplace_back("seed", fmt::to_string(options.seed));
-  else report.notes.emplace_back("replay", options.replay);
+  report.timings = {{"simulate", options.has_channel() ? "simulate, encode, decode, per tick" : "simulate, per tick"}};
+  if (options.replay.empty()) report.seed = options.seed;
+  else report.files.emplace_back("replay", options.replay);
   if (!options.has_channel()) return report;
   if (report.moving > 0 || info.meshes.empty()) report.traffic.emplace();
   report.fidelity.emplace(info, options.triggers.triggers());
   add_meshes(info, options.meshes, options.triggers, report);
-  report.notes.emplace_back("client",
-                            options.replica.interpolation == Interpolation::none ? "applies updates at once" : "interpolates");
+  report.client = options.replica.interpolation;
   return report;
 }
 
@@ -204,22 +213,23 @@ tl::expected<Scene, Failure> read_scene(const SimOptions& options) {
 
 void describe_deformables(const Simulation& simulation, Report& report) {
   if (simulation.deformables() == nullptr) return;
-  for (const DeformableInfo& object : simulation.deformables()->info()) {
-    report.notes.emplace_back(
-        object.name, fmt::format("{} vertices, deformed every {:g} ms by {}", object.vertices, 1e3 * object.step, object.method));
-    report.notes.emplace_back(object.name + " because", object.reason);
-  }
-  report.timings.push_back({"deform, per step", {}});
+  for (const DeformableInfo& object : simulation.deformables()->info())
+    report.deformables.push_back({.name = object.name,
+                                  .method = object.method,
+                                  .reason = object.reason,
+                                  .vertices = object.vertices,
+                                  .step = object.step});
+  report.timings.push_back({"deform", "deform, per step"});
 }
 
 void report_errors(const Simulation& simulation, Report& report) {
   if (simulation.deformables() == nullptr) return;
-  const auto objects = simulation.deformables()->info();
-  for (std::size_t i = 0; i < objects.size(); ++i) {
+  for (std::size_t i = 0; i < report.deformables.size(); ++i) {
     const auto error = simulation.deformables()->error(i);
-    if (error && error->samples > 0)
-      report.notes.emplace_back("error of one step", fmt::format("{}: {:.2g} relative (median of {}), at most {:.2g}",
-                                                                 objects[i].name, error->p50, error->samples, error->max));
+    if (!error || error->samples == 0) continue;
+    report.deformables[i].samples = static_cast<std::uint64_t>(error->samples);
+    report.deformables[i].error_p50 = error->p50;
+    report.deformables[i].error_max = error->max;
   }
 }
 
@@ -235,10 +245,12 @@ std::set<Subject> subjects_of(const Scene& scene) {
   return held;
 }
 
-Outcome draw_stiffness(const Scene& scene, const SimOptions& options) {
+Outcome draw_stiffness(const Scene& scene, const SimOptions& options, StepTimes& times) {
   if (options.stiffness_map.empty() || scene.deformables.empty()) return {};
-  const auto drawn = write_stiffness_map(scene, options.scene, options.stiffness_map, options.common.existing(),
-                                         {options.scene, options.output, options.stream, options.replay});
+  const auto drawn = times.measure([&] {
+    return write_stiffness_map(scene, options.scene, options.stiffness_map, options.common.existing(),
+                               {options.scene, options.output, options.stream, options.replay});
+  });
   if (!drawn) return tl::unexpected(drawn.error());
   if (*drawn == Drawn::no) fmt::print(stderr, "note: {}\n", kNoGnuplot);
   return {};
@@ -278,7 +290,8 @@ Outcome run(const SimOptions& options) {
     if (!opened) return tl::unexpected(opened.error());
     stream.emplace(std::move(*opened));
   }
-  if (auto drawn = draw_stiffness(*scene, options); !drawn) return drawn;
+  Timing map{"stiffness_map", "stiffness map, once"};
+  if (auto drawn = draw_stiffness(*scene, options, map.times); !drawn) return drawn;
   const TraceInfo info = simulation->info();
   auto trace = TraceWriter::create(output->working_path(), info);
   if (!trace) return refuse(options.output, trace.error());
@@ -294,12 +307,12 @@ Outcome run(const SimOptions& options) {
     return done;
   }
   if (!info.users.empty() && report.ticks.count() > 0) {
-    report.notes.emplace_back(
-        "contact", fmt::format("{:.1f} % of the ticks, at most {:.2f} N",
-                               100.0 * static_cast<double>(session.ticks_in_contact) / static_cast<double>(report.ticks.count()),
-                               session.largest_force));
+    report.contact = {static_cast<double>(session.ticks_in_contact) / static_cast<double>(report.ticks.count()),
+                      session.largest_force};
   }
+  if (options.has_channel()) report.stream = stream_size(session);
   report_errors(session.simulation, report);
+  report.timings.push_back(std::move(map));
   print(report, options.common, beside(options.output));
   return {};
 }

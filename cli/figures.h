@@ -12,6 +12,9 @@
 
 namespace tactus::cli {
 
+inline constexpr std::array<const char*, 4> kReasons{"request", "heartbeat", "visual", "haptic"};  // index: Reason
+inline constexpr std::array<const char*, 3> kHalves{"haptic", "visual", "whole"};                  // index: MeshHalf
+
 inline constexpr std::uint64_t kUdpHeader = 28;  // [bytes] IPv4 20, UDP 8
 
 inline std::string percent(double share) {

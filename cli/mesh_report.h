@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
@@ -16,7 +15,7 @@ namespace tactus::cli {
 
 struct MeshReport {
   std::string name;
-  std::size_t vertices = 0;
+  std::size_t vertices = 0, triangles = 0;  ///< triangles 0: not said
   std::optional<MeshTraffic> traffic{};
   std::optional<MeshFidelity> fidelity{};
   StepTimes encode{}, decode{};
@@ -28,6 +27,13 @@ struct MeshReport {
 Result<MeshPackets> transmit(MeshLink& link, const TraceFrame& frame, std::size_t index, MeshReport& report);
 
 void mesh_rows(Table& table, const MeshReport& mesh, double seconds);
-nlohmann::ordered_json mesh_json(const MeshReport& mesh, double seconds);
+
+/// With `header` bytes below each packet.
+inline double bytes_of(const MeshTraffic& t, std::uint64_t header) {
+  return static_cast<double>(t.bytes + t.sizes.size() * header);
+}
+/// Every frame as three floats per vertex.
+inline double raw_bytes(const MeshReport& mesh) { return 12.0 * static_cast<double>(mesh.vertices * mesh.traffic->frames); }
+inline bool has_halves(const MeshTraffic& t) { return t.halves[0].packets + t.halves[1].packets > 0; }
 
 }  // namespace tactus::cli

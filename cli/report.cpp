@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "cli/figures.h"
@@ -14,25 +13,7 @@
 namespace tactus::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr std::array<const char*, 4> kReasons{"request", "heartbeat", "visual", "haptic"};  // index: Reason
-
-/// Rates of a stream at two sizes of what goes below a packet.
-struct Rates {
-  double bits_per_s, bytes_per_packet, bytes_per_update, saved_24, saved_48;
-};
-
-Rates rates(const Report& r, std::uint64_t header) {
-  const Traffic& t = *r.traffic;
-  const auto packets = static_cast<double>(t.all_packets());
-  const double bytes = static_cast<double>(t.bytes) + packets * static_cast<double>(header);
-  // Without reduction: one packet per tick with every moving object's state, raw.
-  const auto raw = [&](std::uint64_t state) { return static_cast<double>(r.ticks.count() * (r.moving * state + header)); };
-  return {8 * per(bytes, r.seconds()), per(bytes, packets), per(bytes, static_cast<double>(t.updates)), 1 - per(bytes, raw(24)),
-          1 - per(bytes, raw(48))};
-}
 
 void traffic_rows(Table& table, const Report& r) {
   const Traffic& t = *r.traffic;
@@ -49,7 +30,7 @@ void traffic_rows(Table& table, const Report& r) {
   const std::string all_updates = r.ticks.left_out() == 0 ? fmt::format("{} per second", r.tick_rate) : "one per tick recorded";
   table.row({fmt::format("  fewer than {} and object", all_updates),
              percent(1 - per(static_cast<double>(t.updates), static_cast<double>(r.ticks.count() * r.moving)))});
-  const Rates payload = rates(r, 0), datagram = rates(r, kUdpHeader);
+  const RigidRates payload = rigid_rates(r, 0), datagram = rigid_rates(r, kUdpHeader);
   table.heading({"size", "payload", "with UDP/IPv4"});
   table.row({"  bit/s", fmt::format("{:.0f}", payload.bits_per_s), fmt::format("{:.0f}", datagram.bits_per_s)});
   table.row(
@@ -82,8 +63,6 @@ void error_row(Table& table, const Report& r, const std::string& name, const std
              fmt::format("{:.0f}", 1e3 * static_cast<double>(s.longest_run()) / r.tick_rate)});
 }
 
-bool has_errors(const Fidelity& f) { return f.position().ticks() > 0 || f.rendered().ticks() > 0; }
-
 void error_rows(Table& table, const Report& r) {
   const Fidelity& f = *r.fidelity;
   const RigidTriggers& b = f.bounds();
@@ -101,17 +80,57 @@ void error_rows(Table& table, const Report& r) {
 
 void time_row(Table& table, const Report& r, const std::string& step, const StepTimes& times) {
   if (times.empty()) return;
-  table.row({"  " + step, duration(times.quantile(0.5)), duration(times.quantile(0.99)), duration(times.quantile(1)),
-             fmt::format("{:.0f}", per(r.seconds(), times.total()))});
+  std::vector<std::string> cells{"  " + step};
+  for (const TimeOf which : {TimeOf::wall, TimeOf::cpu})
+    for (const double share : {0.5, 0.99, 1.0}) cells.push_back(duration(times.quantile(which, share)));
+  cells.push_back(fmt::format("{:.0f}", per(r.seconds(), times.total(TimeOf::wall))));
+  table.row(std::move(cells));
 }
 
 void time_rows(Table& table, const Report& r) {
-  table.heading({"time", "p50", "p99", "max", "times real time"});
-  for (const Report::Timing& t : r.timings) time_row(table, r, t.step, t.times);
+  table.heading({"time", "p50", "p99", "max", "CPU p50", "CPU p99", "CPU max", "times real time"});
+  for (const Timing& t : r.timings) time_row(table, r, t.label, t.times);
   for (const MeshReport& mesh : r.meshes) {
     time_row(table, r, "encode " + mesh.name + ", per frame", mesh.encode);
     time_row(table, r, "decode " + mesh.name + ", per packet", mesh.decode);
   }
+}
+
+/// The stream as a whole: its header is sent once.
+void stream_rows(Table& table, const Report& r) {
+  const auto [bytes, packets] = r.bytes_and_packets();
+  const std::uint64_t header = r.stream->header_bytes;
+  table.heading({"stream", "payload", "with UDP/IPv4"});
+  table.row({"  header bytes", fmt::to_string(header)});
+  if (r.stream->file_bytes) table.row({"  file bytes", fmt::to_string(*r.stream->file_bytes)});
+  const auto rate = [&](std::uint64_t all) { return fmt::format("{:.0f}", 8 * per(static_cast<double>(all), r.seconds())); };
+  table.row({"  bit/s with the header, over this length", rate(bytes + header), rate(bytes + header + packets * kUdpHeader)});
+}
+
+void note_row(Table& table, const std::string& name, const std::string& text) {
+  table.row({fmt::format("  {:<8} {}", name, text)});
+}
+
+void note_rows(Table& table, const Report& r) {
+  if (r.segments)
+    note_row(table, "content", fmt::format("{} in {}", counted(r.ticks.count(), "row"), counted(*r.segments, "segment")));
+  for (const MeshReport& mesh : r.meshes)
+    if (mesh.triangles > 0)
+      note_row(table, "content",
+               fmt::format("{}: {}, {}", mesh.name, counted(mesh.vertices, "vertex"), counted(mesh.triangles, "triangle")));
+  if (r.seed) note_row(table, "seed", fmt::to_string(*r.seed));
+  if (r.client) note_row(table, "client", *r.client == Interpolation::none ? "applies updates at once" : "interpolates");
+  for (const DeformableReport& d : r.deformables) {
+    note_row(table, "object", fmt::format("{}, {}, deformed every {:g} ms", d.name, counted(d.vertices, "vertex"), 1e3 * d.step));
+    note_row(table, "method", fmt::format("{}: {}", d.method, d.reason));
+    if (d.samples > 0)
+      note_row(table, "error",
+               fmt::format("{:.2g} of one step, relative (median of {}), at most {:.2g}", d.error_p50, d.samples, d.error_max));
+  }
+  if (r.contact)
+    note_row(table, "contact",
+             fmt::format("{:.1f} % of the ticks, at most {:.2f} N", 100 * r.contact->share, r.contact->largest_force));
+  for (const std::string& warning : r.warnings) note_row(table, "warning", warning);
 }
 
 Table summary(const Report& r) {
@@ -129,7 +148,7 @@ Table summary(const Report& r) {
     table.row({fmt::format("  {:<8} no sample at {} between the first and the last; seconds and rates include their time", "gaps",
                            counted(left_out, "tick"))});
   }
-  for (const auto& [name, text] : r.notes) table.row({fmt::format("  {:<8} {}", name, text)});
+  note_rows(table, r);
   return table;
 }
 
@@ -140,6 +159,7 @@ void print_text(const Report& r, std::FILE* out) {
   if (r.traffic) traffic_rows(figures, r);
   if (r.fidelity && has_errors(*r.fidelity)) error_rows(figures, r);
   for (const MeshReport& mesh : r.meshes) mesh_rows(figures, mesh, r.seconds());
+  if (r.stream) stream_rows(figures, r);
   if (!r.timings.empty() || !r.meshes.empty()) time_rows(figures, r);
   figures.print(out);
   if (r.fidelity && r.fidelity->rendered().ticks() > 0) {
@@ -150,86 +170,30 @@ void print_text(const Report& r, std::FILE* out) {
   }
 }
 
-Json rates_json(const Rates& x) {
-  return {{"bit_per_s", x.bits_per_s},
-          {"bytes_per_packet", x.bytes_per_packet},
-          {"bytes_per_update", x.bytes_per_update},
-          {"reduction_from_24_byte_states", x.saved_24},
-          {"reduction_from_48_byte_states", x.saved_48}};
-}
-
-Json traffic_json(const Report& r) {
-  const Traffic& t = *r.traffic;
-  Json packets;
-  for (std::size_t i = kReasons.size(); i-- > 0;) {
-    packets[kReasons[i]] = {{"number", t.packets[i]}, {"per_s", per(static_cast<double>(t.packets[i]), r.seconds())}};
-  }
-  packets["all"] = {{"number", t.all_packets()}, {"per_s", per(static_cast<double>(t.all_packets()), r.seconds())}};
-  return {{"packets", packets},
-          {"key_packets", t.keys},
-          {"updates", t.updates},
-          {"bytes", t.bytes},
-          {"reduction_of_updates", 1 - per(static_cast<double>(t.updates), static_cast<double>(r.ticks.count() * r.moving))},
-          {"payload", rates_json(rates(r, 0))},
-          {"with_udp_ipv4", rates_json(rates(r, kUdpHeader))}};
-}
-
-Json error_json(const Report& r, const ErrorSeries& s) {
-  return {{"rms", s.rms()},
-          {"max", s.max()},
-          {"ticks", s.ticks()},
-          {"ticks_over", s.ticks_over()},
-          {"share_over", per(static_cast<double>(s.ticks_over()), static_cast<double>(s.ticks()))},
-          {"longest_run_s", static_cast<double>(s.longest_run()) / r.tick_rate}};
-}
-
-Json errors_json(const Report& r) {
-  const Fidelity& f = *r.fidelity;
-  Json out;
-  if (f.position().ticks() > 0) {
-    out["position_m"] = error_json(r, f.position());
-    out["position_m"]["bound"] = f.bounds().visual_position;
-    out["rotation_rad"] = error_json(r, f.rotation());
-    out["rotation_rad"]["bound"] = f.bounds().visual_rotation;
-  }
-  if (f.force().ticks() > 0) {
-    if (f.bounds().haptic != HapticRule::off) {
-      out["contact_force_N"] = error_json(r, f.force());
-      out["contact_force_N"]["bound"] = rule_name(f.bounds());
-      out["contact_force_N"]["worst_ratio"] = f.worst_haptic_ratio();
-    }
-    out["contact_force_perception_N"] = error_json(r, f.perceived());
-  }
-  if (f.rendered().ticks() > 0) out["rendered_force_perception_N"] = error_json(r, f.rendered());
-  return out;
-}
-
-Json to_json(const Report& r) {
-  Json out{{"schema", "tactus.report/1"}, {"command", r.command}};
-  for (const auto& [role, path] : r.files) out["files"][role] = path;
-  out["tick_rate"] = r.tick_rate;
-  out["ticks"] = r.ticks.count();
-  out["ticks_left_out"] = r.ticks.left_out();
-  out["seconds"] = r.seconds();
-  out["objects"] = r.objects;
-  out["users"] = r.users;
-  for (const auto& [name, text] : r.notes) out["notes"][name] = text;
-  if (r.traffic) out["traffic"] = traffic_json(r);
-  if (r.fidelity && has_errors(*r.fidelity)) out["error"] = errors_json(r);
-  for (const MeshReport& mesh : r.meshes) out["meshes"].push_back(mesh_json(mesh, r.seconds()));
-  for (const Report::Timing& t : r.timings) {
-    if (t.times.empty()) continue;
-    out["time"].push_back({{"step", t.step},
-                           {"count", t.times.count()},
-                           {"p50_s", t.times.quantile(0.5)},
-                           {"p99_s", t.times.quantile(0.99)},
-                           {"max_s", t.times.quantile(1)},
-                           {"real_time_factor", per(r.seconds(), t.times.total())}});
-  }
-  return out;
-}
-
 }  // namespace
+
+RigidRates rigid_rates(const Report& r, std::uint64_t header) {
+  const Traffic& t = *r.traffic;
+  const auto packets = static_cast<double>(t.all_packets());
+  const double bytes = static_cast<double>(t.bytes) + packets * static_cast<double>(header);
+  // Without reduction: one packet per tick with every moving object's state, raw.
+  const auto raw = [&](std::uint64_t state) { return static_cast<double>(r.ticks.count() * (r.moving * state + header)); };
+  return {8 * per(bytes, r.seconds()), per(bytes, packets), per(bytes, static_cast<double>(t.updates)), 1 - per(bytes, raw(24)),
+          1 - per(bytes, raw(48))};
+}
+
+bool has_errors(const Fidelity& f) { return f.position().ticks() > 0 || f.rendered().ticks() > 0; }
+
+std::pair<std::uint64_t, std::uint64_t> Report::bytes_and_packets() const {
+  std::pair<std::uint64_t, std::uint64_t> all{};
+  if (traffic) all = {traffic->bytes, traffic->all_packets()};
+  for (const MeshReport& mesh : meshes) {
+    if (!mesh.traffic) continue;
+    all.first += mesh.traffic->bytes;
+    all.second += mesh.traffic->sizes.size();
+  }
+  return all;
+}
 
 void Report::describe(const TraceInfo& info) {
   tick_rate = info.tick_rate;
@@ -250,7 +214,7 @@ void add_meshes(const TraceInfo& info, const MeshArguments& meshes, const Trigge
 void print(const Report& report, const CommonOptions& options, Destination destination) {
   std::FILE* out = destination == Destination::standard_output ? stdout : stderr;
   if (options.json) {
-    fmt::print(out, "{}\n", to_json(report).dump(2));
+    fmt::print(out, "{}\n", to_json(report));
   } else if (!options.quiet) {
     print_text(report, out);
   }

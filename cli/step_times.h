@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -10,26 +9,46 @@
 
 namespace tactus::cli {
 
-/// Wall-clock times of one step that is done again and again.
+/// What a piece of work took. CPU time is that of all threads of the process: unlike wall-clock time it does not grow with what else
+/// the machine has to do.
+struct Cost {
+  std::int64_t wall_ns = 0, cpu_ns = 0;
+};
+
+class Stopwatch {
+ public:
+  Stopwatch() noexcept;
+  Cost elapsed() const noexcept;  ///< since construction, less what reading the CPU clock takes itself
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::int64_t cpu_;
+  Clock::time_point wall_;
+};
+
+enum class TimeOf : std::uint8_t { wall, cpu };
+
+/// Times of one step that is done again and again.
 class StepTimes {
  public:
-  using Clock = std::chrono::steady_clock;
   /// Run `work` and remember how long it took.
   template <class Work>
   auto measure(Work&& work) {
-    const auto start = Clock::now();
+    const Stopwatch watch;
     auto result = std::forward<Work>(work)();
-    nanoseconds_.push_back(static_cast<std::uint32_t>(std::min<Clock::rep>((Clock::now() - start).count(), UINT32_MAX)));
+    add(watch.elapsed());
     return result;
   }
-  void add(double seconds) { nanoseconds_.push_back(static_cast<std::uint32_t>(std::min(1e9 * seconds, double{UINT32_MAX}))); }
-  bool empty() const noexcept { return nanoseconds_.empty(); }
-  std::size_t count() const noexcept { return nanoseconds_.size(); }
-  double quantile(double share) const;  ///< [s]; 1: the longest
-  double total() const noexcept;        ///< [s]
+  void add(Cost cost);
+  bool empty() const noexcept { return wall_ns_.empty(); }
+  std::size_t count() const noexcept { return wall_ns_.size(); }
+  double quantile(TimeOf which, double share) const;  ///< [s]; 1: the longest.   pre  not empty
+  double total(TimeOf which) const noexcept;          ///< [s]
 
  private:
-  std::vector<std::uint32_t> nanoseconds_;
+  const std::vector<std::int64_t>& times(TimeOf which) const noexcept { return which == TimeOf::wall ? wall_ns_ : cpu_ns_; }
+
+  std::vector<std::int64_t> wall_ns_, cpu_ns_;
 };
 
 }  // namespace tactus::cli

@@ -25,7 +25,7 @@ Result<StreamFileWriter> StreamFileWriter::create(std::ostream& out, const Strea
   StreamFileWriter writer(out);
   out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   if (!out) return fail(Errc::io, "R-FIL-1");
-  writer.offset_ = bytes.size();
+  writer.header_bytes_ = writer.offset_ = bytes.size();
   return writer;
 }
 

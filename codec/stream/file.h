@@ -21,6 +21,8 @@ class StreamFileWriter {
   /// pre  ticks do not fall.   err  io R-FIL-1; invalid_argument R-API-5 (tick order).   allocates: a buffer that grows to the largest packet
   Result<void> add(std::int64_t tick, std::span<const std::uint8_t> packet, bool key);
   Result<void> finish();
+  std::uint64_t header_bytes() const noexcept { return header_bytes_; }
+  std::uint64_t bytes() const noexcept { return offset_; }  ///< written so far, header and records
 
  private:
   struct Entry {
@@ -31,7 +33,7 @@ class StreamFileWriter {
   Result<void> write_record(std::uint8_t type, std::span<const std::uint8_t> payload);
 
   std::ostream* out_;
-  std::uint64_t offset_ = 0;
+  std::uint64_t header_bytes_ = 0, offset_ = 0;
   std::int64_t tick_ = 0;
   std::vector<Entry> keys_;
   std::vector<std::uint8_t> payload_, record_;
@@ -49,6 +51,7 @@ class StreamFileReader {
   static Result<StreamFileReader> open(std::span<const std::uint8_t> file, const DecodeLimits& limits = {});
 
   const StreamHeader& header() const noexcept { return header_; }
+  std::uint64_t header_bytes() const noexcept { return first_; }
   /// Next packet; nothing at the end. Unknown extension records are skipped.
   /// err  truncated R-FIL-2; unsupported R-FIL-3; limit_exceeded R-FIL-4; checksum R-FIL-5; malformed R-FIL-6. The reader then stays where it is.
   Result<std::optional<FilePacket>> next() noexcept;

@@ -55,6 +55,7 @@ class StreamPlayer {
     return meshes_[mesh].displacements_at(tick);
   }
   const StreamHeader& header() const noexcept { return reader_.header(); }
+  std::uint64_t header_bytes() const noexcept { return reader_.header_bytes(); }
   bool complete() const noexcept { return reader_.complete(); }  ///< known at the end
 
  private:

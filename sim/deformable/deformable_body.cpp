@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <ctime>
 
 namespace tactus {
 namespace {
@@ -94,9 +95,11 @@ tl::expected<bool, FemError> DeformableBody::tick() {
   pushed_.setZero();
   if (estimate_) estimate_->look(load_, state_);
   const auto start = std::chrono::steady_clock::now();
+  const std::clock_t cpu = std::clock();
   if (const auto stepped = integrator_->step(load_, state_); !stepped) return tl::unexpected(stepped.error());
   move_surface();
-  seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  time_ = {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+           static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC};
   return true;
 }
 

@@ -39,7 +39,7 @@ class DeformableBody {
   const AabbTree& tree() const noexcept { return tree_; }                ///< fitted to them
   const Choice& choice() const noexcept { return choice_; }
   const FemState& state() const noexcept { return state_; }
-  double seconds() const noexcept { return seconds_; }
+  const DeformationTime& time() const noexcept { return time_; }
   const std::optional<ErrorEstimate>& estimate() const noexcept { return estimate_; }
 
  private:
@@ -59,7 +59,7 @@ class DeformableBody {
   Inside inside_;
   std::vector<Vec3> vertices_;
   AabbTree tree_;
-  double seconds_ = 0;
+  DeformationTime time_;
 };
 
 }  // namespace tactus

@@ -65,7 +65,7 @@ class World final : public DeformableWorld {
   void observe(std::span<MeshSample> meshes) noexcept override;
   std::span<const TraceMesh> meshes() const noexcept override { return meshes_; }
   std::span<const DeformableInfo> info() const noexcept override { return info_; }
-  double seconds(std::size_t object) const noexcept override { return bodies_[object]->seconds(); }
+  DeformationTime time(std::size_t object) const noexcept override { return bodies_[object]->time(); }
   std::optional<DeformableError> error(std::size_t object) const override;
 
  private:

@@ -38,6 +38,11 @@ struct DeformableInfo {
   double step = 0;     ///< T_n [s]
 };
 
+/// What a deformation took [s]: wall clock, and CPU time of all threads of the process.
+struct DeformationTime {
+  double wall = 0, cpu = 0;
+};
+
 /// Relative error of single deformation steps by step doubling (sim/fem/error_estimate.h).
 struct DeformableError {
   double p50 = 0, max = 0;
@@ -65,7 +70,7 @@ class DeformableWorld {
 
   virtual std::span<const TraceMesh> meshes() const noexcept = 0;  ///< surfaces at rest
   virtual std::span<const DeformableInfo> info() const noexcept = 0;
-  virtual double seconds(std::size_t object) const noexcept = 0;  ///< wall clock of its last deformation, with surface and tree
+  virtual DeformationTime time(std::size_t object) const noexcept = 0;         ///< of its last deformation, with surface and tree
   virtual std::optional<DeformableError> error(std::size_t object) const = 0;  ///< when asked for in the options
   virtual ~DeformableWorld() = default;
 };

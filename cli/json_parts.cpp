@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/json_parts.h"
+
+#include <nlohmann/json.hpp>
+
+#include "cli/figures.h"
+
+namespace tactus::cli {
+
+using Json = nlohmann::ordered_json;
+
+Json time_json(const StepTimes& t, double seconds) {
+  Json out{{"count", t.count()}};
+  const auto add = [&](const std::string& prefix, TimeOf which) {
+    out[prefix + "p50_s"] = t.quantile(which, 0.5);
+    out[prefix + "p99_s"] = t.quantile(which, 0.99);
+    out[prefix + "max_s"] = t.quantile(which, 1);
+    out[prefix + "total_s"] = t.total(which);
+    if (seconds > 0) out[prefix + "real_time_factor"] = per(seconds, t.total(which));
+  };
+  add("", TimeOf::wall);
+  add("cpu_", TimeOf::cpu);
+  return out;
+}
+
+std::string text_of_json(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace); }
+
+}  // namespace tactus::cli
