@@ -1,17 +1,18 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # From a bare Debian 12 to a result. Needs root or sudo only for packages that are not there yet.
-#   ./go demo     build, simulate a touch, send it through the codec; report in out/demo/
-#   ./go test     build with g++ and clang, run every test
+#   ./go demo     simulate a touch, send it through the codec, judge it; report and figure in out/demo/ (about 3 minutes, 300 MB)
+#   ./go test     build with g++ and clang, run every test (about 20 minutes, 4 GB)
 #   ./go bench    build and run the benchmarks; JSON in build/bench/
 #   ./go format   rewrite the sources with clang-format
 # shellcheck disable=SC2086 # lists of packages are words
 set -eu
 cd "$(dirname "$0")"
 
-build_packages='g++ cmake ninja-build pkgconf libexpected-dev libzstd-dev libode-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev libeigen3-dev libsuitesparse-dev libspectra-dev libopenmesh-dev'
-test_packages='clang libclang-rt-dev clang-tidy clang-format libgtest-dev python3 tetgen gnuplot-nox valgrind'
-bench_packages='libbenchmark-dev libgtest-dev python3 libbullet-dev gnuplot-nox'
+demo_packages='g++ cmake ninja-build pkgconf libexpected-dev libzstd-dev libode-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev gnuplot-nox'
+build_packages="$demo_packages libeigen3-dev libsuitesparse-dev libspectra-dev libopenmesh-dev"
+test_packages='ccache clang libclang-rt-dev clang-tidy clang-format libgtest-dev python3 tetgen valgrind'
+bench_packages='libbenchmark-dev libgtest-dev python3 libbullet-dev'
 
 as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi
@@ -30,7 +31,7 @@ apt_install() {
   as_root apt-get update && as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $missing
 }
 
-# Run a command quietly; when it fails show the end of its log and how to run it again.
+# Run a command quietly, on a terminal with what is built so far; when it fails show the end of its log and how to run it again.
 step() { # TITLE COMMAND...
   title=$1
   shift
@@ -38,7 +39,10 @@ step() { # TITLE COMMAND...
   log=build/log/$(echo "$title" | tr -c 'a-z0-9+\n' '-' | cut -c 1-40).log
   begin=$(date +%s)
   printf '%s ... ' "$title"
-  if "$@" >"$log" 2>&1; then
+  "$@" >"$log" 2>&1 &
+  running=$!
+  [ ! -t 1 ] || progress "$running" "$log"
+  if wait "$running"; then
     echo "ok ($(($(date +%s) - begin)) s)"
   else
     echo FAILED
@@ -48,10 +52,22 @@ step() { # TITLE COMMAND...
   fi
 }
 
+# While the process runs, the newest [3/286] of its log behind the cursor.
+progress() { # PID LOG
+  while kill -0 "$1" 2>/dev/null; do
+    at=$(tail -c 4000 "$2" 2>/dev/null | grep -o '^\[[0-9]*/[0-9]*\]' | tail -n 1)
+    printf '\033[s%-12s\033[u' "$at"
+    sleep 0.5
+  done
+  printf '\033[K'
+}
+
 run_test() {
   install $build_packages $test_packages
-  step 'g++: build without warnings, all tests' tests/check.sh gcc
-  step 'clang: build without warnings, all tests under AddressSanitizer and UndefinedBehaviorSanitizer' tests/check.sh asan
+  step 'g++: build without warnings' tests/check.sh build gcc
+  step 'g++: all tests' tests/check.sh test gcc
+  step 'clang: build without warnings, with AddressSanitizer and UndefinedBehaviorSanitizer' tests/check.sh build asan
+  step 'sanitizers: all tests' tests/check.sh test asan
   step 'codec alone: no package needed, nothing else linked' tests/check.sh codec-only
   step 'same bits from every compiler and optimisation level' tests/check.sh exact
   step 'clang-format' tests/check.sh format
@@ -59,14 +75,16 @@ run_test() {
   cat build/log/*.log | awk '/tests failed out of/ { failed += $4; all += $NF } END { printf "%d passed, %d failed\n", all - failed, failed }'
 }
 
-build_release() {
-  cmake -S . -B build/demo -G Ninja -DCMAKE_BUILD_TYPE=Release -DTACTUS_WITH_CLI=ON -DTACTUS_WITH_SIM=ON -DTACTUS_WITH_TESTS=OFF &&
+# Only what the demo shows: one rigid object.
+build_demo() {
+  cmake -S . -B build/demo -G Ninja -DCMAKE_BUILD_TYPE=Release -DTACTUS_WITH_CLI=ON -DTACTUS_WITH_SIM=ON -DTACTUS_WITH_STUDY=OFF \
+    -DTACTUS_WITH_FEM=OFF -DTACTUS_WITH_SURFACE=OFF -DTACTUS_WITH_MODES=OFF -DTACTUS_WITH_CONFORMANCE=OFF -DTACTUS_WITH_TESTS=OFF &&
     cmake --build build/demo
 }
 
 run_demo() {
-  install $build_packages
-  step 'build' build_release
+  install $demo_packages
+  step 'build the codec, the simulator and the program' build_demo
   out=out/demo
   tactus=build/demo/cli/tactus
   mkdir -p "$out"
@@ -74,11 +92,22 @@ run_demo() {
   step 'simulate a hand that turns, pushes and lifts a cube' "$tactus" sim rotate-push-lift -o "$out/truth.mcap" -f
   step 'encode what a client needs to see and feel' "$tactus" encode "$out/truth.mcap" -o "$out/stream.tct" -f $bounds
   step 'decode what the client sees' "$tactus" decode "$out/stream.tct" -o "$out/replica.mcap" --like "$out/truth.mcap" -f
-  "$tactus" compare "$out/truth.mcap" "$out/replica.mcap" $bounds --json >"$out/report.json"
-  "$tactus" encode "$out/truth.mcap" -o "$out/stream.tct" -f $bounds >"$out/report.txt"
-  "$tactus" compare "$out/truth.mcap" "$out/replica.mcap" $bounds >>"$out/report.txt"
-  cat "$out/report.txt"
-  echo "Everything is in $out/"
+  step 'draw what tighter and wider bounds cost' "$tactus" sweep plans/demo.toml -o "$out/sweep"
+  "$tactus" encode "$out/truth.mcap" -o "$out/stream.tct" -f $bounds | tee "$out/report.txt"
+  "$tactus" encode "$out/truth.mcap" -o "$out/stream.tct" -f $bounds --json >"$out/encode.json"
+  held='every bound held at every tick'
+  "$tactus" compare "$out/truth.mcap" "$out/replica.mcap" --json >"$out/compare.json" || held='a bound was BROKEN, see compare.json'
+  cat <<END
+
+Verdict, from what the decoder shows: $held.
+Look at   $out/sweep/deadband.png (and .svg): packets and error of force over the deadband
+          $out/truth.mcap, $out/replica.mcap in Foxglove or PlotJuggler
+Reports   $out/report.txt, encode.json, compare.json, sweep/points.csv
+Next      PATH=\$PWD/build/demo/cli:\$PATH; tactus --help
+          tactus sim push-1dof -o push.mcap; tactus encode push.mcap -o push.tct -p 8%
+          README.md shows objects that deform: build with all components, see "Use the library"
+END
+  [ "$held" = 'every bound held at every tick' ]
 }
 
 run_bench() {

@@ -3,6 +3,7 @@
 # One check of the project. `./go test` calls those that make up a full test; each builds below build/ and can be run alone.
 #   tests/check.sh CHECK
 #     debug release gcc clang asan tsan   build the preset with warnings as errors and run its tests
+#     build PRESET | test PRESET          one half of that
 #     codec-only      build the codec without any other package; what links it needs nothing but the C++ run-time library
 #     consumer [DIR]  install a build, then build and run projects that use it (DIR: a finished build; else codec-only)
 #     conformance     build and run the conformance suite
@@ -14,6 +15,10 @@ set -eu
 cd "$(dirname "$0")/.."
 jobs=${TACTUS_JOBS:-$(nproc)}
 if [ -z "${CMAKE_GENERATOR-}" ] && command -v ninja >/dev/null; then export CMAKE_GENERATOR=Ninja; fi
+# The same file is compiled for several checks: once is enough.
+if [ -z "${CMAKE_CXX_COMPILER_LAUNCHER-}" ] && command -v ccache >/dev/null; then
+  export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_DIR="${CCACHE_DIR:-$PWD/build/ccache}" CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=1
+fi
 
 die() { echo "tests/check.sh: $*" >&2; exit 1; }
 
@@ -22,8 +27,7 @@ build() { # PRESET
   cmake --build --preset "$1" -j "$jobs"
 }
 
-build_and_test() { # PRESET
-  build "$1"
+run_tests() { # PRESET
   ctest --preset "$1" -j "$jobs"
 }
 
@@ -128,8 +132,16 @@ bench() {
 }
 
 case ${1-} in
-  debug) build_and_test dev ;;
-  release | gcc | clang | asan | tsan) build_and_test "$1" ;;
+  debug)
+    build dev
+    run_tests dev
+    ;;
+  release | gcc | clang | asan | tsan)
+    build "$1"
+    run_tests "$1"
+    ;;
+  build) build "${2:?which preset?}" ;;
+  test) run_tests "${2:?which preset?}" ;;
   codec-only) codec_only ;;
   consumer)
     [ -n "${2-}" ] || build codec-only
@@ -143,7 +155,7 @@ case ${1-} in
   format) sources | xargs clang-format --dry-run --Werror ;;
   fuzz) fuzz "${2:?how many seconds?}" ;;
   *)
-    sed -n '3,13s/^# \{0,1\}//p' "$0" >&2
+    sed -n '3,14s/^# \{0,1\}//p' "$0" >&2
     exit 2
     ;;
 esac
