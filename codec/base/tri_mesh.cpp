@@ -7,6 +7,8 @@
 #include <string_view>
 #include <utility>
 
+#include "codec/base/out_of_memory.h"
+
 namespace tactus {
 namespace {
 
@@ -152,10 +154,12 @@ std::string to_string(const MeshError& error) {
   return place + ": " + error.error.rule + ": " + text->broken + "; " + text->remedy;
 }
 
-tl::expected<void, MeshError> check(const TriMesh& mesh) {
+tl::expected<void, MeshError> check(const TriMesh& mesh) try {
   if (mesh.vertices.size() > kMaxMeshVertices || mesh.triangles.size() > kMaxMeshTriangles)
     return broken(Errc::limit_exceeded, "R-MSH-7", 0);
   return check_elements(mesh).and_then([&] { return check_edges(mesh); }).and_then([&] { return check_fans(mesh); });
+} catch (const std::bad_alloc&) {
+  return tl::unexpected(MeshError{out_of_memory().value(), 0});
 }
 
 MeshTopology::MeshTopology(const TriMesh& mesh)

@@ -6,10 +6,11 @@
 
 #include "codec/base/fixed.h"
 #include "codec/base/hash.h"
+#include "codec/base/out_of_memory.h"
 
 namespace tactus {
 
-Result<Replica> Replica::create(const StreamHeader& header, const ReplicaOptions& options) {
+Result<Replica> Replica::create(const StreamHeader& header, const ReplicaOptions& options) try {
   TACTUS_CHECK(check_header(header));
   const bool valid = options.share > 0 && options.share <= 1 && options.shortest >= 0 && options.shortest <= options.longest &&
                      options.longest <= 10;
@@ -23,6 +24,8 @@ Result<Replica> Replica::create(const StreamHeader& header, const ReplicaOptions
   replica.tracks_.resize(header.objects.size());
   for (std::size_t i = 0; i < header.objects.size(); ++i) replica.tracks_[i].state = header.objects[i].initial;
   return replica;
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
 }
 
 /// t_N in ticks: share of the mean gap, clipped; 0 while no gap is known. spec 50-client 3

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "codec/base/out_of_memory.h"
+
 namespace tactus {
 namespace {
 
@@ -21,7 +23,7 @@ bool quantise(const Vec3& v, unsigned exp, double limit, std::array<std::int32_t
 
 }  // namespace
 
-Result<MeshObject> make_mesh_object(std::string name, const TriMesh& mesh, unsigned position_exp) {
+Result<MeshObject> make_mesh_object(std::string name, const TriMesh& mesh, unsigned position_exp) try {
   MeshObject out;
   out.name = std::move(name);
   out.triangles = mesh.triangles;
@@ -31,9 +33,11 @@ Result<MeshObject> make_mesh_object(std::string name, const TriMesh& mesh, unsig
     if (!quantise(mesh.vertices[v], position_exp, 2147483647.0, out.rest[v])) return fail(Errc::invalid_argument, "R-API-2");
   }
   return out;
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
 }
 
-Result<ModeBasis> make_mode_basis(std::span<const double> vectors, std::size_t modes, double coarseness) {
+Result<ModeBasis> make_mode_basis(std::span<const double> vectors, std::size_t modes, double coarseness) try {
   if (modes > ModeBasis::kMaxModes || modes == 0 || vectors.size() % (3 * modes) != 0)
     return fail(Errc::invalid_argument, "R-API-9");
   const std::size_t components = vectors.size() / modes;
@@ -55,6 +59,8 @@ Result<ModeBasis> make_mode_basis(std::span<const double> vectors, std::size_t m
     out.steps.push_back(static_cast<std::uint16_t>(std::clamp(std::floor(step + 0.5), 1.0, 65535.0)));
   }
   return out;
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
 }
 
 Result<void> to_grid(std::span<const Vec3> displacement, unsigned position_exp,

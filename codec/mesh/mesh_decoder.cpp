@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "codec/base/bytes.h"
+#include "codec/base/out_of_memory.h"
 #include "codec/mesh/mesh_main_reader.h"
 #include "codec/mesh/mesh_thesis.h"
 
@@ -175,10 +176,12 @@ MeshDecoder::MeshDecoder(MeshDecoder&&) noexcept = default;
 MeshDecoder& MeshDecoder::operator=(MeshDecoder&&) noexcept = default;
 MeshDecoder::~MeshDecoder() = default;
 
-Result<MeshDecoder> MeshDecoder::create(StreamHeader header, std::size_t mesh, const DecodeLimits& limits) {
+Result<MeshDecoder> MeshDecoder::create(StreamHeader header, std::size_t mesh, const DecodeLimits& limits) try {
   TACTUS_CHECK(check_header(header, limits));
   if (mesh >= header.meshes.size()) return fail(Errc::invalid_argument, "R-API-5");
   return MeshDecoder(std::make_unique<Impl>(std::move(header), mesh, limits));
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
 }
 
 Result<DecodedMeshPacket> MeshDecoder::decode(std::span<const std::uint8_t> packet) noexcept {

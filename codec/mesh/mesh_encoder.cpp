@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "codec/base/out_of_memory.h"
 #include "codec/mesh/mesh.h"
 #include "codec/mesh/mesh_encoder_side.h"
 
@@ -48,11 +49,13 @@ MeshEncoder::MeshEncoder(MeshEncoder&&) noexcept = default;
 MeshEncoder& MeshEncoder::operator=(MeshEncoder&&) noexcept = default;
 MeshEncoder::~MeshEncoder() = default;
 
-Result<MeshEncoder> MeshEncoder::create(StreamHeader header, std::size_t mesh, const MeshEncoderOptions& options) {
+Result<MeshEncoder> MeshEncoder::create(StreamHeader header, std::size_t mesh, const MeshEncoderOptions& options) try {
   TACTUS_CHECK(check_header(header));
   if (!are_valid(options)) return fail(Errc::invalid_argument, "R-API-4");
   if (mesh >= header.meshes.size()) return fail(Errc::invalid_argument, "R-API-5");
   return MeshEncoder(std::make_unique<Impl>(std::move(header), mesh, options));
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
 }
 
 Result<EncodedMeshPacket> MeshEncoder::encode(std::int64_t tick, std::span<const Vec3> displacement,

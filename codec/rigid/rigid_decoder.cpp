@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "codec/rigid/rigid_decoder.h"
 
+#include "codec/base/out_of_memory.h"
 #include "codec/rigid/rigid_syntax.h"
 
 namespace tactus {
@@ -88,7 +89,7 @@ RigidDecoder::RigidDecoder(RigidDecoder&&) noexcept = default;
 RigidDecoder& RigidDecoder::operator=(RigidDecoder&&) noexcept = default;
 RigidDecoder::~RigidDecoder() = default;
 
-Result<RigidDecoder> RigidDecoder::create(StreamHeader header, const DecodeLimits& limits) {
+Result<RigidDecoder> RigidDecoder::create(StreamHeader header, const DecodeLimits& limits) try {
   TACTUS_CHECK(check_header(header, limits));
   auto impl = std::make_unique<Impl>();
   impl->limits = limits;
@@ -101,6 +102,8 @@ Result<RigidDecoder> RigidDecoder::create(StreamHeader header, const DecodeLimit
   impl->states.reserve(impl->moving.size());
   impl->header = std::move(header);
   return RigidDecoder(std::move(impl));
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
 }
 
 Result<DecodedPacket> RigidDecoder::decode(std::span<const std::uint8_t> packet) noexcept {

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 
+#include "codec/base/out_of_memory.h"
 #include "codec/rigid/rigid_syntax.h"
 
 namespace tactus {
@@ -224,7 +225,7 @@ RigidEncoder::RigidEncoder(RigidEncoder&&) noexcept = default;
 RigidEncoder& RigidEncoder::operator=(RigidEncoder&&) noexcept = default;
 RigidEncoder::~RigidEncoder() = default;
 
-Result<RigidEncoder> RigidEncoder::create(StreamHeader header, const RigidEncoderOptions& options) {
+Result<RigidEncoder> RigidEncoder::create(StreamHeader header, const RigidEncoderOptions& options) try {
   TACTUS_CHECK(check_header(header));
   if (!are_valid(options.triggers) || !(options.key_interval >= 0 && options.key_interval <= 86400)) {
     return fail(Errc::invalid_argument, "R-API-4");
@@ -246,6 +247,8 @@ Result<RigidEncoder> RigidEncoder::create(StreamHeader header, const RigidEncode
   impl->buffer.resize(max_packet_size(header));
   impl->header = std::move(header);
   return RigidEncoder(std::move(impl));
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
 }
 
 Result<EncodedPacket> RigidEncoder::encode(std::int64_t tick, std::span<const RigidSample> samples,

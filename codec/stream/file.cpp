@@ -5,6 +5,7 @@
 
 #include "codec/base/bytes.h"
 #include "codec/base/hash.h"
+#include "codec/base/out_of_memory.h"
 
 namespace tactus {
 namespace {
@@ -16,17 +17,20 @@ constexpr std::uint8_t kTrailer = 3;
 constexpr std::uint8_t kFirstExtension = 128;
 constexpr std::uint64_t kTrailerPayload = 8;                       // offset of the index
 constexpr std::size_t kTrailerSize = 1 + 1 + kTrailerPayload + 4;  // type, size, payload, check value
+constexpr std::size_t kRecordExtra = 1 + 10 + 4;                   // at most, around a payload: type, size, check value
 constexpr std::int64_t kTickLimit = 0xffffffff;
 
 }  // namespace
 
-Result<StreamFileWriter> StreamFileWriter::create(std::ostream& out, const StreamHeader& header) {
+Result<StreamFileWriter> StreamFileWriter::create(std::ostream& out, const StreamHeader& header) try {
   TACTUS_TRY(const auto bytes, write_header(header));
   StreamFileWriter writer(out);
   out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   if (!out) return fail(Errc::io, "R-FIL-1");
   writer.header_bytes_ = writer.offset_ = bytes.size();
   return writer;
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
 }
 
 Result<void> StreamFileWriter::write_record(std::uint8_t type, std::span<const std::uint8_t> payload) {
@@ -42,20 +46,23 @@ Result<void> StreamFileWriter::write_record(std::uint8_t type, std::span<const s
   return {};
 }
 
-Result<void> StreamFileWriter::add(std::int64_t tick, std::span<const std::uint8_t> packet, bool key) {
+Result<void> StreamFileWriter::add(std::int64_t tick, std::span<const std::uint8_t> packet, bool key) try {
   if (tick < tick_ || tick >= kTickLimit) return fail(Errc::invalid_argument, "R-API-5");
   const Entry entry{tick, offset_};
   payload_.clear();
   ByteWriter w(payload_);
   w.varint(static_cast<std::uint64_t>(tick - tick_));
   w.bytes(packet);
-  TACTUS_CHECK(write_record(kPacket, payload_));
+  record_.reserve(payload_.size() + kRecordExtra);
   if (key) keys_.push_back(entry);
+  TACTUS_CHECK(write_record(kPacket, payload_));  // allocates nothing any more
   tick_ = tick;
   return {};
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
 }
 
-Result<void> StreamFileWriter::finish() {
+Result<void> StreamFileWriter::finish() try {
   const std::uint64_t index = offset_;
   payload_.clear();
   ByteWriter w(payload_);
@@ -73,9 +80,11 @@ Result<void> StreamFileWriter::finish() {
   out_->flush();
   if (!*out_) return fail(Errc::io, "R-FIL-1");
   return {};
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
 }
 
-Result<StreamFileReader> StreamFileReader::open(std::span<const std::uint8_t> file, const DecodeLimits& limits) {
+Result<StreamFileReader> StreamFileReader::open(std::span<const std::uint8_t> file, const DecodeLimits& limits) try {
   TACTUS_TRY(auto parsed, parse_header(file, limits));
   StreamFileReader reader;
   reader.file_ = file;
@@ -83,6 +92,8 @@ Result<StreamFileReader> StreamFileReader::open(std::span<const std::uint8_t> fi
   reader.limits_ = limits;
   reader.first_ = reader.position_ = parsed.size;
   return reader;
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
 }
 
 Result<StreamFileReader::Record> StreamFileReader::read_record(std::size_t at) const noexcept {
@@ -101,12 +112,10 @@ Result<StreamFileReader::Record> StreamFileReader::read_record(std::size_t at) c
   if (record.type == kTrailer && size != kTrailerPayload) return fail(Errc::malformed, "R-FIL-6", in.bit_offset());
   record.start = at + in.position();
   record.payload = in.bytes(size);
-  [[maybe_unused]] const std::size_t covered = in.position();
-  [[maybe_unused]] const std::uint32_t crc = in.u32();
+  const std::size_t covered = in.position();
+  const std::uint32_t crc = in.u32();
   if (!in.ok()) return fail(Errc::truncated, "R-FIL-2", in.bit_offset());
-#ifndef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
   if (crc != crc32(file_.subspan(at, covered))) return fail(Errc::checksum, "R-FIL-5", in.bit_offset() - 32);
-#endif
   record.end = at + in.position();
   return record;
 }

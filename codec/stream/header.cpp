@@ -8,6 +8,7 @@
 #include "codec/base/bytes.h"
 #include "codec/base/fixed.h"
 #include "codec/base/hash.h"
+#include "codec/base/out_of_memory.h"
 #include "codec/mesh/mesh_header.h"
 
 namespace tactus {
@@ -149,9 +150,7 @@ Result<StreamHeader> parse_body(ByteReader body, Profile profile, std::uint16_t 
   return header;
 }
 
-}  // namespace
-
-Result<void> check_header(const StreamHeader& header, const DecodeLimits& limits) {
+Result<void> find_broken_rule(const StreamHeader& header, const DecodeLimits& limits) {
   if (header.profile != Profile::thesis) return fail(Errc::unsupported, "R-STR-3");
   if (const char* rule = broken_parameter_rule(header)) return fail(Errc::invalid, rule);
   if (header.meshes.size() > kMaxMeshes) return fail(Errc::invalid, "R-MES-1");
@@ -171,8 +170,16 @@ Result<void> check_header(const StreamHeader& header, const DecodeLimits& limits
   return {};
 }
 
-Result<std::vector<std::uint8_t>> write_header(const StreamHeader& header) {
-  if (auto checked = check_header(header); !checked) return fail(Errc::invalid_argument, checked.error().rule);
+}  // namespace
+
+Result<void> check_header(const StreamHeader& header, const DecodeLimits& limits) try {
+  return find_broken_rule(header, limits);
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
+
+Result<std::vector<std::uint8_t>> write_header(const StreamHeader& header) try {
+  if (auto checked = find_broken_rule(header, {}); !checked) return fail(Errc::invalid_argument, checked.error().rule);
   std::vector<std::uint8_t> body;
   ByteWriter b(body);
   b.u32(header.tick_rate);
@@ -204,9 +211,11 @@ Result<std::vector<std::uint8_t>> write_header(const StreamHeader& header) {
   w.bytes(body);
   w.u32(crc32(out));
   return out;
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
 }
 
-Result<ParsedHeader> parse_header(std::span<const std::uint8_t> bytes, const DecodeLimits& limits) {
+Result<ParsedHeader> parse_header(std::span<const std::uint8_t> bytes, const DecodeLimits& limits) try {
   ByteReader in(bytes);
   const auto magic = in.bytes(kMagic.size());
   if (!in.ok()) return fail(Errc::truncated, "R-STR-1");
@@ -222,14 +231,14 @@ Result<ParsedHeader> parse_header(std::span<const std::uint8_t> bytes, const Dec
   if (flags > kHasMeshes) return fail(Errc::malformed, "R-STR-4", 48);
   if (body_size > limits.header_bytes) return fail(Errc::limit_exceeded, "R-STR-14", 64);
   ByteReader body = in.sub(body_size);
-  [[maybe_unused]] const std::uint32_t crc = in.u32();
+  const std::uint32_t crc = in.u32();
   if (!in.ok()) return fail(Errc::truncated, "R-STR-5", in.bit_offset());
-#ifndef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
   if (crc != crc32(bytes.first(kFixedSize + body_size))) return fail(Errc::checksum, "R-STR-15", in.bit_offset() - 32);
-#endif
   TACTUS_TRY(auto header, parse_body(body, static_cast<Profile>(profile), flags, limits));
   if (auto checked = check_header(header, limits); !checked) return fail(checked.error().code, checked.error().rule, 96);
   return ParsedHeader{std::move(header), in.position()};
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
 }
 
 std::size_t max_packet_size(const StreamHeader& header) noexcept {

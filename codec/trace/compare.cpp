@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "codec/base/out_of_memory.h"
+
 namespace tactus {
 
-Result<StreamHeader> stream_header(const TraceInfo& info, const TraceFrame& first, const MeshCoding& coding) {
+Result<StreamHeader> stream_header(const TraceInfo& info, const TraceFrame& first, const MeshCoding& coding) try {
   if (first.objects.size() != info.objects.size()) return fail(Errc::invalid_argument, "R-API-5");
   StreamHeader header;
   header.tick_rate = info.tick_rate;
@@ -22,13 +24,15 @@ Result<StreamHeader> stream_header(const TraceInfo& info, const TraceFrame& firs
   }
   TACTUS_CHECK(check_header(header));
   return header;
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
 }
 
 StreamPlayer::StreamPlayer(std::span<const std::uint8_t> file, StreamFileReader reader, RigidDecoder decoder,
                            Replica replica) noexcept
     : file_(file), reader_(std::move(reader)), decoder_(std::move(decoder)), replica_(std::move(replica)) {}
 
-Result<StreamPlayer> StreamPlayer::open(std::span<const std::uint8_t> file, const ReplicaOptions& options) {
+Result<StreamPlayer> StreamPlayer::open(std::span<const std::uint8_t> file, const ReplicaOptions& options) try {
   TACTUS_TRY(StreamFileReader reader, StreamFileReader::open(file));
   TACTUS_TRY(RigidDecoder decoder, RigidDecoder::create(reader.header()));
   TACTUS_TRY(Replica replica, Replica::create(reader.header(), options));
@@ -38,6 +42,8 @@ Result<StreamPlayer> StreamPlayer::open(std::span<const std::uint8_t> file, cons
     player.meshes_.push_back(std::move(mesh));
   }
   return player;
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
 }
 
 Result<std::optional<std::int64_t>> StreamPlayer::next_tick() noexcept {

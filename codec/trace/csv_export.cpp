@@ -2,6 +2,7 @@
 #include <charconv>
 #include <ostream>
 
+#include "codec/base/out_of_memory.h"
 #include "codec/trace/csv.h"
 #include "codec/trace/csv_columns.h"
 #include "codec/trace/csv_reader.h"
@@ -52,7 +53,7 @@ void write_row(std::string& row, const TraceInfo& info, TraceFrame& frame) {
 
 }  // namespace
 
-Result<std::uint64_t> export_csv(TraceReader& reader, std::ostream& out) {
+Result<std::uint64_t> export_csv(TraceReader& reader, std::ostream& out) try {
   out << header_row(reader.info());
   std::uint64_t rows = 0;
   TraceFrame frame;
@@ -65,6 +66,8 @@ Result<std::uint64_t> export_csv(TraceReader& reader, std::ostream& out) {
     ++rows;
   }
   return out.flush() ? Result<std::uint64_t>(rows) : fail(Errc::io, "R-TRC-1");
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
 }
 
 }  // namespace tactus

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 
+#include "codec/base/out_of_memory.h"
 #include "codec/trace/csv.h"
 #include "codec/trace/csv_plan.h"
 #include "codec/trace/csv_reader.h"
@@ -226,7 +227,8 @@ void Importer::settle_spin(TraceFrame& frame, bool begins_segment) {
 
 }  // namespace
 
-tl::expected<CsvImport, CsvError> import_csv(const std::string& path, const CsvMapping& mapping, const std::string& out_path) {
+tl::expected<CsvImport, CsvError> import_csv(const std::string& path, const CsvMapping& mapping,
+                                             const std::string& out_path) try {
   const auto refuse = [](CsvError error) { return tl::unexpected<CsvError>(std::move(error)); };
   auto reader = CsvReader::open(path);
   if (!reader) return refuse({reader.error(), 0, "", ""});
@@ -243,6 +245,8 @@ tl::expected<CsvImport, CsvError> import_csv(const std::string& path, const CsvM
   std::error_code ignored;  // what is not a plain file was there before us
   if (importer.has_output() && std::filesystem::is_regular_file(out_path, ignored)) std::filesystem::remove(out_path, ignored);
   return refuse(importer.place(done.error()));
+} catch (const std::bad_alloc&) {
+  return tl::unexpected(CsvError{out_of_memory().value(), 0, "", ""});
 }
 
 }  // namespace tactus

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "codec/base/out_of_memory.h"
 #include "codec/trace/frame_assembler.h"
 #include "codec/trace/trace_file.h"
 
@@ -40,16 +41,22 @@ struct TraceReader::Impl {
   std::unique_ptr<FrameAssembler> assembler;
 };
 
-Result<TraceReader> TraceReader::Impl::open(Result<ByteSource> source) {
+Result<TraceReader> TraceReader::Impl::open(Result<ByteSource> source) try {
   TACTUS_TRY(ByteSource bytes, std::move(source));
   TACTUS_TRY(auto mcap, mcap::Reader::open(std::move(bytes)));
   auto statistics = mcap.statistics();
   TACTUS_TRY(const Preamble preamble, read_preamble(mcap));
   TACTUS_TRY(auto assembler, preamble.tactus ? assemble_tactus(mcap, preamble) : assemble_ros(mcap, preamble));
   return TraceReader(std::make_unique<Impl>(Impl{std::move(mcap), std::move(statistics), std::move(assembler)}));
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
 }
 
-Result<TraceReader> TraceReader::open(const std::string& path) { return Impl::open(ByteSource::open_file(path)); }
+Result<TraceReader> TraceReader::open(const std::string& path) try {
+  return Impl::open(ByteSource::open_file(path));
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
 
 Result<TraceReader> TraceReader::open_memory(std::span<const std::uint8_t> bytes) {
   return Impl::open(ByteSource::over_memory(bytes));
@@ -65,7 +72,11 @@ std::optional<std::uint64_t> TraceReader::frame_count() const noexcept {
   return found == counts.end() ? std::nullopt : std::optional(found->second);
 }
 
-Result<bool> TraceReader::next(TraceFrame& frame) { return impl_->assembler->next(impl_->mcap, frame); }
+Result<bool> TraceReader::next(TraceFrame& frame) try {
+  return impl_->assembler->next(impl_->mcap, frame);
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
 
 bool TraceReader::cut_short() const noexcept { return impl_->mcap.cut_short(); }
 

@@ -6,6 +6,7 @@
 #include <set>
 #include <string_view>
 
+#include "codec/base/out_of_memory.h"
 #include "codec/trace/mcap_writer.h"
 #include "codec/trace/messages.h"
 #include "codec/trace/text.h"
@@ -96,7 +97,11 @@ struct TraceWriter::Impl {
   Impl(mcap::Writer writer, const TraceInfo& trace_info)
       : mcap(std::move(writer)), info(trace_info), channels(trace_channels(trace_info)) {}
   ~Impl() {
-    if (!finished) (void)mcap.end_chunk();
+    if (finished) return;
+    try {
+      (void)mcap.end_chunk();
+    } catch (const std::bad_alloc&) {  // the file ends with the chunk before
+    }
   }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
@@ -134,7 +139,7 @@ Result<void> TraceWriter::Impl::declare() {
   return {};
 }
 
-Result<TraceWriter> TraceWriter::create(const std::string& path, const TraceInfo& info) {
+Result<TraceWriter> TraceWriter::create(const std::string& path, const TraceInfo& info) try {
   TACTUS_CHECK(check(info));
   const std::size_t channel_count = trace_channels(info).size();
   if (channel_count > UINT16_MAX) return fail(Errc::invalid_argument, "R-TRC-17");
@@ -142,6 +147,8 @@ Result<TraceWriter> TraceWriter::create(const std::string& path, const TraceInfo
   auto impl = std::make_unique<Impl>(std::move(mcap), info);
   TACTUS_CHECK(impl->declare());
   return TraceWriter(std::move(impl));
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
 }
 
 /// Whether a user's contacts are valid and name what is there.
@@ -222,7 +229,7 @@ bool TraceWriter::Impl::is_due(const TraceChannel& channel, const TraceFrame& fr
   return channel.role == Role::mesh_contact ? user.mesh_contact.has_value() : user.contact.kind != ContactKind::none;
 }
 
-Result<void> TraceWriter::write(const TraceFrame& frame) {
+Result<void> TraceWriter::write(const TraceFrame& frame) try {
   TACTUS_CHECK(impl_->check(frame));
   const std::uint64_t time = time_of_tick(frame.tick, impl_->info.tick_rate);
   if (impl_->last_tick < 0) impl_->first_samples = frame.objects;
@@ -236,11 +243,16 @@ Result<void> TraceWriter::write(const TraceFrame& frame) {
   impl_->last_tick = frame.tick;
   const bool is_full = impl_->mcap.chunk_size() >= kChunkBytes || time - impl_->mcap.chunk_start_time() >= kChunkTime;
   return is_full ? impl_->mcap.end_chunk() : Result<void>();
+} catch (const std::bad_alloc&) {
+  impl_->finished = true;  // what it holds of this tick is not whole
+  return out_of_memory();
 }
 
-Result<void> TraceWriter::finish() {
+Result<void> TraceWriter::finish() try {
   impl_->finished = true;
   return impl_->mcap.finish();
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
 }
 
 TraceWriter::TraceWriter(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}

@@ -7,21 +7,36 @@
 
 namespace {
 
-std::atomic<std::uint64_t> total{0};
+std::atomic<std::uint64_t> total{0}, blocks{0}, until_failure{0};
 
 void* counted(std::size_t size) {
+  if (until_failure > 0 && --until_failure == 0) throw std::bad_alloc();
   total += size;
-  if (void* p = std::malloc(size)) return p;
-  throw std::bad_alloc();
+  void* p = std::malloc(size);
+  if (p == nullptr) throw std::bad_alloc();
+  ++blocks;
+  return p;
+}
+
+void release(void* p) noexcept {
+  if (p != nullptr) --blocks;
+  std::free(p);
 }
 
 }  // namespace
 
 void* operator new(std::size_t size) { return counted(size); }
 void* operator new[](std::size_t size) { return counted(size); }
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete[](void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
+void operator delete(void* p) noexcept { release(p); }
+void operator delete[](void* p) noexcept { release(p); }
+void operator delete(void* p, std::size_t) noexcept { release(p); }
+void operator delete[](void* p, std::size_t) noexcept { release(p); }
 
-std::uint64_t tactus::testing::allocated_bytes() noexcept { return total; }
+namespace tactus::testing {
+
+std::uint64_t allocated_bytes() noexcept { return total; }
+std::uint64_t live_blocks() noexcept { return blocks; }
+void fail_allocation(std::uint64_t number) noexcept { until_failure = number; }
+bool failure_is_due() noexcept { return until_failure > 0; }
+
+}  // namespace tactus::testing

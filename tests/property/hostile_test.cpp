@@ -13,9 +13,8 @@
 #include <string_view>
 #include <vector>
 
-#include "codec/base/bytes.h"
-#include "codec/base/hash.h"
 #include "codec/tactus.h"
+#include "tests/fuzz/sections.h"
 #include "tests/property/allocated.h"
 #include "tests/property/earned.h"
 
@@ -104,29 +103,8 @@ const char* survive(std::span<const std::uint8_t> bytes, bool meshes) {
   }
 }
 
-/// Ends of the header and of every record: each covers the bytes since the one before and closes with their CRC-32.
-std::vector<std::size_t> section_ends(const Bytes& file) {
-  std::vector<std::size_t> ends;
-  const auto header = parse_header(file);
-  if (!header) return ends;
-  ends.push_back(header->size);
-  for (;;) {
-    ByteReader in(std::span<const std::uint8_t>(file).subspan(ends.back()));
-    in.u8();
-    in.bytes(in.varint());
-    in.u32();
-    if (!in.ok() || in.position() == 0) return ends;
-    ends.push_back(ends.back() + in.position());
-  }
-}
-
-/// `file` with the check value of the section around `at` computed anew.
-Bytes mended(Bytes file, const std::vector<std::size_t>& ends, std::size_t at) {
-  const auto end = std::ranges::upper_bound(ends, at);
-  if (end == ends.end() || at + 4 >= *end) return file;
-  const std::size_t start = end == ends.begin() ? 0 : *(end - 1);
-  const std::uint32_t crc = crc32(std::span(file).subspan(start, *end - 4 - start));
-  for (std::size_t i = 0; i < 4; ++i) file[*end - 4 + i] = static_cast<std::uint8_t>(crc >> (8 * i));
+Bytes mended(Bytes file) {
+  testing::mend(file);
   return file;
 }
 
@@ -151,9 +129,8 @@ class EveryVector : public ::testing::TestWithParam<const char*> {
       if (path.parent_path().filename() != GetParam()) continue;
       ++files;
       const Bytes file = read_file(path);
-      const std::vector<std::size_t> ends = section_ends(file);
       for (const std::size_t at : places(file.size(), files, meshes ? kOfMesh : Places{})) {
-        const char* wrong = damage(file, ends, at);
+        const char* wrong = damage(file, at);
         ASSERT_EQ(wrong, nullptr) << path << " byte " << at << ": " << wrong;
       }
     }
@@ -162,27 +139,27 @@ class EveryVector : public ::testing::TestWithParam<const char*> {
 };
 
 TEST_P(EveryVector, EveryPrefix) {
-  each_place([this](const Bytes& file, const auto&, std::size_t at) { return survive(std::span(file).first(at), meshes); });
+  each_place([this](const Bytes& file, std::size_t at) { return survive(std::span(file).first(at), meshes); });
 }
 
 TEST_P(EveryVector, EveryBitFlipped) {
-  each_place([this](const Bytes& file, const auto& ends, std::size_t at) -> const char* {
+  each_place([this](const Bytes& file, std::size_t at) -> const char* {
     for (unsigned bit = 0; bit < 8; ++bit) {
       Bytes damaged = file;
       damaged[at] = static_cast<std::uint8_t>(damaged[at] ^ 1u << bit);
       if (const char* wrong = survive(damaged, meshes)) return wrong;
-      if (const char* wrong = survive(mended(damaged, ends, at), meshes)) return wrong;
+      if (const char* wrong = survive(mended(damaged), meshes)) return wrong;
     }
     return nullptr;
   });
 }
 
 TEST_P(EveryVector, EveryByteZeroOrOnes) {
-  each_place([this](const Bytes& file, const auto& ends, std::size_t at) -> const char* {
+  each_place([this](const Bytes& file, std::size_t at) -> const char* {
     for (const std::uint8_t value : {std::uint8_t{0x00}, std::uint8_t{0xff}}) {
       Bytes damaged = file;
       damaged[at] = value;
-      if (const char* wrong = survive(mended(damaged, ends, at), meshes)) return wrong;
+      if (const char* wrong = survive(mended(damaged), meshes)) return wrong;
     }
     return nullptr;
   });
