@@ -15,6 +15,7 @@ import zlib
 from pathlib import Path
 from unittest import mock
 
+import differential
 import run
 
 HERE = Path(__file__).resolve().parent
@@ -212,6 +213,33 @@ sys.exit(reply.returncode)""")
         self.assertEqual((status, report["passed"], report["failed"], report["skipped"]), (0, 1, 0, 0))
         self.assertEqual(report["cases"], [{"id": "stream/001-empty", "result": "pass", "detail": ""}])
         self.assertEqual(err, "1 passed, 0 failed, 0 skipped\n")
+
+
+class DifferentialTest(unittest.TestCase):
+    def compare(self, testee: str) -> tuple[int, str]:
+        out = io.StringIO()
+        with contextlib.redirect_stdout(out):
+            status = differential.main(["--testee", testee, "--cases", "12"], HERE)
+        return status, out.getvalue().splitlines()[-1]
+
+    def test_a_decoder_does_not_differ_from_itself(self) -> None:
+        status, counts = self.compare(shlex.join([sys.executable, str(HERE / "decoder.py")]))
+        self.assertEqual((status, counts.split(", ")[-1]), (0, "0 differences"))
+
+    def test_wrong_words_are_seen(self) -> None:
+        wrong = "import sys, decoder; write = sys.stdout.write; " \
+                "sys.stdout.write = lambda text: write(text.replace('R-', 'R_').replace('true', 'True')); sys.exit(decoder.main())"
+        status, counts = self.compare(f"env PYTHONPATH={shlex.quote(str(HERE))} {shlex.join([sys.executable, '-c', wrong])}")
+        self.assertEqual(status, 1)
+        self.assertNotEqual(counts.split(", ")[-1], "0 differences")
+
+    def test_mended_damage_passes_the_check_values(self) -> None:
+        damaged = bytearray(VALID)
+        damaged[13] ^= 1
+        self.assertEqual(len(differential.sections(VALID)), 1)
+        self.assertEqual(differential.mended(VALID), VALID)
+        self.assertEqual(differential.expected(bytes(damaged), None)[0], 1)
+        self.assertEqual(differential.expected(differential.mended(bytes(damaged)), None)[0], 0)
 
 
 if __name__ == "__main__":

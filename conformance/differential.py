@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Compare a decoder, the testee, with decoder.py on damaged vectors (README.md).
+
+Damage is seeded: the same seed and number give the same file. Check values are mended after most of it, so that it reaches the code
+behind them. Exit status: 0 no difference, 1 a difference, 2 wrong use. Python's standard library only; POSIX.
+"""
+from __future__ import annotations
+
+import argparse
+import json
+import random
+import shlex
+import struct
+import sys
+import tempfile
+import zlib
+from pathlib import Path
+from typing import Optional
+
+import decoder
+from conventions import StreamError
+from run import Crash, run_testee
+from stream import File
+
+FIXED = 12                                                  # bytes of a header before its body
+LATEST_TICK = 5000                                          # a client looks at every tick up to the last packet's
+BORDERS = [0, 1, 0x7f, 0x80, 0xff, 0x7fff, 0xffff, 0x7fffffff, 0x80000000, 0xffffffff]
+
+
+def varint(value: int) -> bytes:
+    out = bytearray()
+    while value >= 0x80:
+        out.append(value & 0x7f | 0x80)
+        value >>= 7
+    return bytes(out) + bytes([value])
+
+
+def sections(data: bytes) -> list[tuple[int, int, int]]:
+    """Beginning, payload and its end of the header and of each record, as far as lengths lead; a check value follows each."""
+    found, at = [], 0
+    while True:
+        payload = at + (FIXED if at == 0 else 1)
+        if len(data) < payload:
+            return found
+        if at == 0:
+            size = struct.unpack_from("<I", data, 8)[0]
+        else:
+            size, shift = 0, 0
+            while True:
+                if payload >= len(data) or shift > 63:
+                    return found
+                size |= (data[payload] & 0x7f) << shift
+                shift, payload = shift + 7, payload + 1
+                if data[payload - 1] < 0x80:
+                    break
+        if payload + size + 4 > len(data):
+            return found
+        found.append((at, payload, payload + size))
+        at = payload + size + 4
+
+
+def mended(data: bytes) -> bytes:
+    out = bytearray(data)
+    for begin, _, end in sections(data):
+        struct.pack_into("<I", out, end, zlib.crc32(out[begin:end]))
+    return bytes(out)
+
+
+def damaged_bytes(data: bytes, other: bytes, rng: random.Random) -> bytes:
+    at = rng.randrange(len(data) + 1)
+    length = min(rng.choice([1, 1, 2, 4, 8, 30]), len(data) - at)
+    kind = rng.randrange(7)
+    if kind == 0 and data:
+        at = rng.randrange(len(data))
+        return data[:at] + bytes([data[at] ^ 1 << rng.randrange(8)]) + data[at + 1:]
+    if kind == 1:
+        return data[:at] + data[at + length:]
+    if kind == 2:
+        return data[:at] + data[at:at + length] + data[at:]
+    if kind == 3:
+        return data[:at] + rng.randbytes(length) + data[at + length:]
+    if kind == 4:
+        value = rng.choice(BORDERS)
+        new = varint(value) if rng.randrange(2) else struct.pack("<I", value)
+        return data[:at] + new + data[at + len(new):]
+    if kind == 5:
+        place = rng.randrange(len(other) + 1)
+        return data[:at] + other[place:place + length] + data[at + length:]
+    return data[:at]
+
+
+def damaged_section(data: bytes, other: bytes, rng: random.Random) -> bytes:
+    """One payload is damaged, and the length in front of it is right again."""
+    found = sections(data)
+    if not found:
+        return damaged_bytes(data, other, rng)
+    begin, payload, end = rng.choice(found)
+    new = damaged_bytes(data[payload:end], other, rng)
+    length = struct.pack("<I", len(new)) if begin == 0 else varint(len(new))
+    head = data[begin:8] if begin == 0 else data[begin:begin + 1]
+    return data[:begin] + head + length + new + data[end:]
+
+
+class Vectors:
+    """Files to damage. Those with a fault are the smaller part: most damage hides behind it."""
+
+    def __init__(self, folder: Path):
+        self.every, self.valid = [], []
+        for path in sorted(folder.rglob("*.tct")):
+            self.every.append(path.read_bytes())
+            if json.loads(path.with_suffix(".json").read_text("utf-8"))["expect"]["class"] == "valid":
+                self.valid.append(self.every[-1])
+
+    def choose(self, rng: random.Random) -> bytes:
+        return rng.choice(self.valid if rng.randrange(4) else self.every)
+
+
+def make_case(vectors: Vectors, seed: int, number: int) -> tuple[bytes, Optional[str]]:
+    """A damaged file, and what client looks at it, if any."""
+    rng = random.Random(f"{seed} {number}")
+    data = vectors.choose(rng)
+    for _ in range(rng.choice([1, 1, 1, 1, 2, 4])):
+        other = vectors.choose(rng)
+        data = damaged_section(data, other, rng) if rng.randrange(4) else damaged_bytes(data, other, rng)
+    if rng.randrange(8):
+        data = mended(data)
+    mode = rng.choice([None, None, "none", "linear"])
+    return data, mode if last_tick(data) <= LATEST_TICK else None
+
+
+def last_tick(data: bytes) -> int:
+    tick = 0
+    try:
+        for tick, _ in File(data).packets():
+            pass
+    except StreamError:
+        pass
+    return tick
+
+
+def expected(data: bytes, mode: Optional[str]) -> tuple[int, list[str]]:
+    """Exit status and lines of decoder.py, without a process for each case."""
+    lines = []
+    try:
+        for line in decoder.lines(data, mode):
+            lines.append(json.dumps(line, separators=(",", ":")))
+    except StreamError as error:
+        return 1, lines + [json.dumps({"error": {"errc": error.errc, "rule": error.rule}}, separators=(",", ":"))]
+    return 0, lines
+
+
+def difference(command: list[str], data: bytes, mode: Optional[str], wanted: tuple[int, list[str]]) -> str:
+    """What the testee says that decoder.py does not; empty if they agree."""
+    with tempfile.NamedTemporaryFile(suffix=".tct") as file:
+        file.write(data)
+        file.flush()
+        try:
+            got = run_testee(command + (["--replica", mode] if mode else []), Path(file.name))
+        except Crash as crash:
+            return f"crash: {crash}"
+    if got == wanted:
+        return ""
+    for number, (line, right) in enumerate(zip(got[1], wanted[1]), 1):
+        if line != right:
+            return f"line {number}:\n  testee     {line}\n  decoder.py {right}"
+    return f"testee: exit status {got[0]}, {len(got[1])} lines; decoder.py: {wanted[0]}, {len(wanted[1])}"
+
+
+def compare(options: argparse.Namespace, vectors: Vectors) -> int:
+    command = shlex.split(options.testee)
+    accepted, rules, differences = 0, set(), 0
+    for number in range(options.first, options.first + options.cases):
+        data, mode = make_case(vectors, options.seed, number)
+        wanted = expected(data, mode)
+        accepted += wanted[0] == 0
+        if wanted[0] == 1:
+            rules.add(json.loads(wanted[1][-1])["error"]["rule"])
+        said = difference(command, data, mode, wanted)
+        if said:
+            differences += 1
+            print(f"case {number} of seed {options.seed}: {said}")
+            if options.keep:
+                (Path(options.keep) / f"{options.seed}-{number}.tct").write_bytes(data)
+    print(f"{options.cases} cases, {accepted} accepted, {len(rules)} rules broken, {differences} differences")
+    return 1 if differences else 0
+
+
+def main(arguments: list[str], root: Path) -> int:
+    parser = argparse.ArgumentParser(description="Compare a decoder with decoder.py on damaged vectors.")
+    parser.add_argument("--testee", metavar="CMD", required=True, help="command line of the decoder")
+    parser.add_argument("--cases", type=int, default=1000, help="how many files (default: 1000)")
+    parser.add_argument("--first", type=int, default=0, help="number of the first one (default: 0)")
+    parser.add_argument("--seed", type=int, default=1, help="another seed damages otherwise (default: 1)")
+    parser.add_argument("--keep", metavar="DIR", help="write files with differences there")
+    options = parser.parse_args(arguments)
+    try:
+        vectors = Vectors(root / "vectors")
+        if not vectors.valid or options.cases < 1:
+            raise ValueError("no vectors or no cases")
+        return compare(options, vectors)
+    except (OSError, ValueError, KeyError) as error:
+        print(f"differential.py: {error}", file=sys.stderr)
+        return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:], Path(__file__).resolve().parent))
