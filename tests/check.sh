@@ -10,6 +10,7 @@
 #     exact           same hashes from g++ and clang, at -O0 to -O3, with and without the machine's own instructions
 #     tidy | format   clang-tidy, clang-format
 #     fuzz SECONDS    every libFuzzer target for so long
+#     msan            MemorySanitizer: the codec over all its fuzz corpora, the vectors and the golden motions
 #     bench           run the benchmarks, JSON into build/bench/
 set -eu
 cd "$(dirname "$0")/.."
@@ -22,9 +23,11 @@ fi
 
 die() { echo "tests/check.sh: $*" >&2; exit 1; }
 
-build() { # PRESET
+build() { # PRESET [TARGET...]
   cmake --preset "$1"
-  cmake --build --preset "$1" -j "$jobs"
+  preset=$1
+  shift
+  cmake --build --preset "$preset" -j "$jobs" ${1:+--target "$@"}
 }
 
 run_tests() { # PRESET
@@ -109,16 +112,25 @@ tidy() {
 }
 
 fuzz() { # SECONDS
-  build fuzz
+  build fuzz fuzz_programs
   for program in build/fuzz/tests/fuzz/*_fuzz; do
     stem=$(basename "$program" _fuzz)
     mkdir -p "build/fuzz/corpus/$stem"
+    dict=tests/fuzz/$stem.dict
+    [ -f "$dict" ] || dict=
     echo "== $stem for $1 s"
-    "$program" -max_total_time="$1" -timeout=10 -rss_limit_mb=1024 -print_final_stats=1 -artifact_prefix="build/fuzz/$stem-" \
-      "build/fuzz/corpus/$stem" "tests/fuzz/corpus/$stem" >"build/fuzz/$stem.log" 2>&1 ||
+    # shellcheck disable=SC2046 # a list of folders
+    "$program" ${dict:+-dict="$dict"} -max_total_time="$1" -timeout=10 -rss_limit_mb=1024 -print_final_stats=1 -artifact_prefix="build/fuzz/$stem-" \
+      "build/fuzz/corpus/$stem" $(cat "build/fuzz/tests/fuzz/$stem.seeds") >"build/fuzz/$stem.log" 2>&1 ||
       { tail -40 "build/fuzz/$stem.log"; die "$stem: add the input to tests/fuzz/corpus/$stem/ once it is understood"; }
     grep -E '^stat::(number_of_executed_units|peak_rss_mb)' "build/fuzz/$stem.log"
   done
+}
+
+# The standard library is not instrumented: programs that only use its headers. The planted fault must be seen.
+msan() {
+  build msan fuzz_programs tactus_golden
+  ctest --preset msan -j "$jobs"
 }
 
 bench() {
@@ -151,7 +163,7 @@ case ${1-} in
     build gcc
     ctest --preset gcc -R '^conformance'
     ;;
-  exact | tidy | bench) "$1" ;;
+  exact | tidy | msan | bench) "$1" ;;
   format) sources | xargs clang-format --dry-run --Werror ;;
   fuzz) fuzz "${2:?how many seconds?}" ;;
   *)

@@ -3,19 +3,15 @@
 /// tetrahedra name vertices that are there, that reads back the same after writing.
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <sstream>
 #include <string_view>
 
 #include "sim/mesh/tet_files.h"
+#include "tests/fuzz/require.h"
 
 namespace {
 
 using Read = tl::expected<tactus::TetFile, tactus::MeshFileError>;
-
-void require(bool holds) {
-  if (!holds) std::abort();
-}
 
 void check(const Read& file, std::string_view text) {
   if (!file) {

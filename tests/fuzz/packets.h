@@ -4,14 +4,26 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <span>
 #include <vector>
 
+#include "tests/fuzz/require.h"
+
 namespace tactus {
 
-/// Feeds the packets to a decoder. Whatever they hold, refused ones must leave no trace, not even in baselines, and say which rule they
-/// break; `check(packet)` looks at what an accepted one decoded to.
+/// A refused packet says which rule it breaks, and leaves no trace, not even in baselines.
+template <class Decoder>
+auto decode_packet(Decoder& decoder, std::span<const std::uint8_t> packet) {
+  const std::uint64_t before = decoder.state_hash();
+  auto decoded = decoder.decode(packet);
+  if (!decoded) {
+    require(decoded.error().rule[0] == 'R' && decoded.error().bit_offset <= 8 * packet.size());
+    require(decoder.state_hash() == before);
+  }
+  return decoded;
+}
+
+/// Feeds the packets to a decoder; `check(packet)` looks at what an accepted one decoded to.
 ///   twin  made like `decoder`, sees accepted packets only
 template <class Decoder, class Check>
 void decode_packets(std::span<const std::uint8_t> data, Decoder& decoder, Decoder& twin, Check check) {
@@ -20,15 +32,10 @@ void decode_packets(std::span<const std::uint8_t> data, Decoder& decoder, Decode
     const auto bytes = data.subspan(at + 2, length);
     const std::vector<std::uint8_t> packet(bytes.begin(), bytes.end());  // of its exact size, for the sanitizer
     at += 2 + length;
-    const std::uint64_t before = decoder.state_hash();
-    const auto decoded = decoder.decode(packet);
-    if (!decoded) {
-      if (decoded.error().rule[0] != 'R' || decoded.error().bit_offset > 8 * packet.size()) std::abort();
-      if (decoder.state_hash() != before) std::abort();
-      continue;
-    }
+    const auto decoded = decode_packet(decoder, packet);
+    if (!decoded) continue;
     const auto same = twin.decode(packet);
-    if (!same || same->final_code != decoded->final_code || twin.state_hash() != decoder.state_hash()) std::abort();
+    require(same && same->final_code == decoded->final_code && twin.state_hash() == decoder.state_hash());
     check(*decoded);
   }
 }

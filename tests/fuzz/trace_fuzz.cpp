@@ -3,17 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 
 #include "codec/trace/trace_file.h"
+#include "tests/fuzz/require.h"
 
 namespace {
 
 constexpr int kMaxFrames = 10'000;  // a mutated chunk may hold many small ones
-
-void require(bool holds) {
-  if (!holds) std::abort();
-}
 
 void check(const tactus::TraceInfo& info, const tactus::TraceFrame& frame) {
   require(frame.objects.size() == info.objects.size() && frame.users.size() == info.users.size());

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Any bytes as motions, contacts and settings: what the encoder takes stays inside its bounds on the decoder's output, what it refuses
+/// changes nothing.
+#include <vector>
+
+#include "codec/tactus.h"
+#include "tests/fuzz/motions.h"
+#include "tests/fuzz/packets.h"
+
+namespace {
+
+using namespace tactus;
+
+void check_bounds(const RigidTriggers& t, const RigidDecoder& decoder, std::int64_t tick, const RigidSample& truth,
+                  std::span<const Contact> contacts) {
+  const StreamHeader& header = decoder.header();
+  const Pose shown = to_pose(predict(decoder.objects()[0], tick, header), header.grid);
+  const double error = norm(shown.position - truth.pose.position), angle = angle_between(shown.rotation, truth.pose.rotation);
+  require(error <= t.visual_position && angle <= t.visual_rotation);
+  for (const Contact& c : contacts) require(haptic_ratio(t, contact_force(c, truth.pose), contact_force(c, shown)) <= 1);
+  if (t.haptic == HapticRule::fixed && !contacts.empty() && contacts[0].kind != ContactKind::none)
+    require(error <= t.fixed_position && angle <= t.fixed_rotation);
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  ByteReader in({data, size});
+  StreamHeader header;
+  header.baseline_span = static_cast<std::uint8_t>(1 + in.u8() % 64);
+  header.objects.push_back({"o", Dof::all, {}});
+  RigidEncoderOptions options;
+  options.triggers.haptic = static_cast<HapticRule>(in.u8() % 4);
+  options.triggers.reduction = static_cast<Reduction>(in.u8() % 2);
+  options.triggers.weber_fraction = 0.001 * in.u8();
+  options.triggers.visual_position = 1e-5 * in.u16();
+  options.triggers.visual_rotation = 1e-4 * in.u16();
+  options.key_interval = 0.01 * in.u8();
+  auto encoder = RigidEncoder::create(header, options);
+  if (!encoder) return 0;
+  auto decoder = RigidDecoder::create(header).value();
+  RigidSample sample;
+  for (std::int64_t tick = 0; in.ok(); tick += 1 + in.u8() % 8) {
+    RigidSample next = sample;
+    move(in, next);
+    std::vector<Contact> contacts;
+    if (in.u8() & 1) contacts.push_back(contact(in, next.pose));
+    const std::uint64_t before = encoder->state_hash();
+    const auto packet = encoder->encode(tick, {&next, 1}, contacts);
+    if (!packet) {
+      require(packet.error().code == Errc::invalid_argument && encoder->state_hash() == before);
+      continue;
+    }
+    sample = next;
+    if (!packet->bytes.empty()) require(decoder.decode(packet->bytes).has_value());
+    require(decoder.state_hash() == encoder->state_hash());
+    check_bounds(options.triggers, decoder, tick, sample, contacts);
+  }
+  return 0;
+}
