@@ -72,6 +72,7 @@ T or_usage_error(const std::string& option, tl::expected<T, std::string> parsed)
 
 /// A share is at most 1: a bare 4 is meant as 4 %, which it is not.
 tl::expected<Quantity, std::string> checked(std::string_view text, const Quantity& quantity, Dimension dimension) {
+  if (!std::isfinite(quantity.value)) return tl::unexpected(fmt::format("'{}': too large", text));
   if (dimension != Dimension::fraction || quantity.value <= 1) return quantity;
   return tl::unexpected(fmt::format("'{}': must be at most 100 %; four percent is 4% or 0.04", text));
 }
