@@ -51,7 +51,7 @@ class Writer {
   };
   using SummaryGroups = std::vector<std::pair<Opcode, std::vector<std::uint8_t>>>;
 
-  explicit Writer(File file) noexcept : file_(std::move(file)) {}
+  explicit Writer(File file) : file_(std::move(file)) {}
   Result<void> write_record(Opcode opcode, std::span<const std::uint8_t> content);
   Result<void> write_bytes(std::span<const std::uint8_t> bytes);
   void reset_chunk() noexcept;

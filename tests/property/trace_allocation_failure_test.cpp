@@ -54,23 +54,28 @@ TEST(TraceAllocationFailure, Reading) {
   for (const Bytes& bytes : all) EXPECT_GT(fail_each(bytes, read_all), 5u);
 }
 
-Result<void> write_two_ticks(const TraceInfo& info) {
-  auto writer = TraceWriter::create("/dev/null", info);
-  if (!writer) return tl::unexpected(writer.error());
+struct Recording {
+  TraceInfo info;
   TraceFrame frame;
-  frame.objects.resize(info.objects.size());
-  frame.users.resize(info.users.size());
-  for (frame.tick = 0; frame.tick < 2; ++frame.tick)
-    if (const auto done = writer->write(frame); !done) return done;
+};
+
+Result<void> write_two_ticks(Recording&& recording) {
+  auto writer = TraceWriter::create("/dev/null", recording.info);
+  if (!writer) return tl::unexpected(writer.error());
+  for (recording.frame.tick = 0; recording.frame.tick < 2; ++recording.frame.tick)
+    if (const auto done = writer->write(recording.frame); !done) return done;
   return writer->finish();
 }
 
 TEST(TraceAllocationFailure, Writing) {
-  TraceInfo info;
+  Recording recording;
+  TraceInfo& info = recording.info;
   info.objects = {{"an object with a name too long for a small string", Dof::all}, {"wall", Dof::none}};
   info.users = {"somebody"};
   info.scene = "name = \"a scene with a text\"";
-  EXPECT_GT(fail_each(info, write_two_ticks), 20u);
+  recording.frame.objects.resize(info.objects.size());
+  recording.frame.users.resize(info.users.size());
+  EXPECT_GT(fail_each(recording, write_two_ticks), 20u);
 }
 
 TEST(TraceAllocationFailure, Import) {
