@@ -347,7 +347,7 @@ void setup_sim(Command& app, Action& action) {
       ->type_name("GRIP");
   command.add_option("--replay", options->replay, "Move the device as in this trace instead")->type_name("TRACE");
   command.add_option("--method", options->method, "Time integration of deformable objects [the scene's]")
-      ->check(one_of({"auto", "symplectic-euler", "backward-euler", "newmark", "tr-bdf2", "projective"}))
+      ->check(one_of({"auto", "velocity-verlet", "backward-euler", "newmark", "tr-bdf2", "projective"}))
       ->type_name("NAME");
   command.add_option("--solver", options->solver, "Linear solver of implicit methods [the scene's]")
       ->check(one_of({"auto", "cg", "cholesky", "prefactored"}))

@@ -19,7 +19,7 @@ struct Style {
 
 Style style_of(const study::PrecisionMethod& method, int variant) {
   constexpr int kMarks[] = {7, 4, 9};  // gnuplot's disc, open square, triangle
-  const int colour = method.options.method == Method::symplectic_euler ? 7 : static_cast<int>(method.options.method);
+  const int colour = method.options.method == Method::velocity_verlet ? 7 : static_cast<int>(method.options.method);
   return {colour, variant + 1, kMarks[variant % 3]};
 }
 

@@ -69,7 +69,7 @@ std::string space_title(const SpaceStudy& space) {
 
 std::string reference_text(const TimeStudy& time) {
   const study::Errors& floor = time.reference.errors;
-  return fmt::format("reference: symplectic Euler, h = {:.3g} us, {}; its own error: u {}, force {}, energy {}",
+  return fmt::format("reference: velocity Verlet, h = {:.3g} us, {}; its own error: u {}, force {}, energy {}",
                      1e6 * time.reference.step, time.reference.remark, scientific(floor.displacement), scientific(floor.force),
                      scientific(floor.energy));
 }

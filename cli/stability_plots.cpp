@@ -144,7 +144,7 @@ unset multiplot
     {"fem",
      "map",
      "Which step size each method gets through over 100 steps, as the material stiffens: a slab displaced by 2 mm and let go.",
-     {"map-limit", "map-symplectic-euler", "map-backward-euler", "map-newmark", "map-tr-bdf2", "map-projective"},
+     {"map-limit", "map-velocity-verlet", "map-backward-euler", "map-newmark", "map-tr-bdf2", "map-projective"},
      1100,
      720,
      R"(set multiplot layout 2,3 margins 0.085,0.985,0.09,0.945 spacing 0.055,0.12
@@ -154,8 +154,8 @@ set yrange [5e-7:0.2]
 set format xy '10^{%L}'
 set xtics 100
 set key off
-names = 'map_symplectic_euler map_backward_euler map_newmark map_tr_bdf2 map_projective'
-titles = 'symplectic-euler backward-euler newmark tr-bdf2 projective'
+names = 'map_velocity_verlet map_backward_euler map_newmark map_tr_bdf2 map_projective'
+titles = 'velocity-verlet backward-euler newmark tr-bdf2 projective'
 shape(v) = v == 2 ? 2 : 7
 colour(v) = v == 2 ? 2 : v == 1 ? 5 : 1
 do for [i=1:5] {

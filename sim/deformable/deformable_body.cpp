@@ -9,16 +9,9 @@
 namespace tactus {
 namespace {
 
-constexpr std::array kMethods{Method::symplectic_euler, Method::backward_euler, Method::newmark, Method::tr_bdf2,
+constexpr std::array kMethods{Method::velocity_verlet, Method::backward_euler, Method::newmark, Method::tr_bdf2,
                               Method::projective};
 constexpr std::array kSolvers{LinearSolver::conjugate_gradients, LinearSolver::cholesky, LinearSolver::prefactored};
-
-/// What suits the object when the scene names the method but no solver: one factorisation kept for all steps.
-void choose_solver(const FemModel& model, IntegratorOptions& options) {
-  const bool linear = model.options().elasticity == Elasticity::linear;
-  options.solver = linear ? LinearSolver::cholesky : LinearSolver::prefactored;
-  options.newton_iterations = linear ? 1 : IntegratorOptions().newton_iterations;
-}
 
 }  // namespace
 
@@ -36,8 +29,7 @@ Choice chosen_method(const SceneDeformable& object, const FemModel& model) {
   Choice choice = choose(model, object.rate * kTick);
   for (const Method method : kMethods) {
     if (object.method != name(method)) continue;
-    choice.options.method = method;
-    if (method != Method::symplectic_euler) choose_solver(model, choice.options);
+    choice.options = suited(model, method, choice.options.step);
     choice.reason = "asked for; without, " + choice.reason;
   }
   for (const LinearSolver solver : kSolvers) {

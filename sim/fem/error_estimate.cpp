@@ -57,7 +57,6 @@ double ErrorEstimate::relative_error(const Eigen::VectorXd& f, const FemState& s
   coarse_ = state;
   fine_ = state;
   if (!whole_->integrator->step(f, coarse_)) return std::numeric_limits<double>::infinity();
-  if (whole_->integrator->options().method == Method::symplectic_euler) fine_.v += 0.25 * (coarse_.v - state.v);
   for (int i = 0; i < 2; ++i)
     if (!half_->integrator->step(f, fine_)) return std::numeric_limits<double>::infinity();
   const double size = fine_.u.norm();

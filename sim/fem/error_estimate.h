@@ -2,8 +2,6 @@
 /// How wrong single steps are, by step doubling: one whole step beside two half ones from the same state, now and then, on a copy of
 /// the model. The simulation neither waits for it otherwise nor changes by it.
 ///   error of the whole step = 2^p / (2^p - 1) |u_whole - u_halves|,  p the order        relative to |u_halves|
-/// Symplectic Euler is looked at as the leapfrog it is (p = 2 in u): the half steps start with the velocity of a quarter step
-/// before the state instead of half a step.
 #pragma once
 
 #include <vector>

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Symplectic Euler:  v1 = (v0 + h M^-1 (f - k(u0 + beta v0))) / (1 + h alpha),  u1 = u0 + h v1.
-/// alpha is mass_damping, beta stiffness_damping. Mass damping, taken implicitly, never limits the step;
-/// stiffness damping does: h omega^2 (h + 2 beta) < 4.
+/// Velocity Verlet (leapfrog with velocities at the same instant as displacements), `substeps` times per step with h / substeps each:
+///   v' = e v0 + p M^-1 (f - k0),   u1 = u0 + h v',   k1 = k(u1 + beta v'),   v1 = e v' + p M^-1 (f - k1)
+///   e = exp(-alpha h / 2),   p = (1 - e) / alpha, h / 2 without mass damping
+/// alpha is mass_damping, beta stiffness_damping; k1 is the next step's k0. Mass damping, solved exactly, never limits the step;
+/// stiffness damping, whose velocity is half a step old, does: h omega^2 (h + 2 beta) < 4.
 #pragma once
 
 #include <optional>
@@ -11,16 +13,21 @@
 
 namespace tactus {
 
-class SymplecticEuler final : public Guarded {
+class VelocityVerlet final : public Guarded {
  public:
-  SymplecticEuler(FemModel& model, const IntegratorOptions& options);
+  VelocityVerlet(FemModel& model, const IntegratorOptions& options);
 
  private:
   tl::expected<StepReport, FemError> advance(const Eigen::VectorXd& f, const FemState& state, FemState& next) override;
+  double largest_swing() const noexcept override { return swing_; }
+  void forces(const Eigen::VectorXd& u, const Eigen::VectorXd& v);
+  void half_kick(const Eigen::VectorXd& f, Eigen::VectorXd& v);
 
-  Eigen::VectorXd k_, ahead_;
-  Eigen::VectorXd decay_;         // 1 / (1 + h alpha), 0 where fixed
-  Eigen::VectorXd kick_;          // h / (1 + h alpha) divided by the lumped mass, 0 where fixed
+  double part_;                   // [s] h / substeps
+  double swing_;                  // of the energy
+  Eigen::VectorXd decay_;         // e, 0 where fixed
+  Eigen::VectorXd kick_;          // p divided by the lumped mass, 0 where fixed
+  Eigen::VectorXd k_, scratch_;   // k_: at the end of the step before
   std::optional<Cholesky> mass_;  // consistent
   Eigen::VectorXd free_;
 };

@@ -116,7 +116,7 @@ bool Guarded::gained_energy() {
     work_ = 0;
     return false;
   }
-  return !(energy <= kEnergyFactor * (reference_ + work_) + rounding_);
+  return !(energy <= kEnergyFactor * largest_swing() * (reference_ + work_) + rounding_);
 }
 
 FemError Guarded::divergence() const {

@@ -18,6 +18,8 @@ class Guarded : public Integrator {
   virtual tl::expected<StepReport, FemError> advance(const Eigen::VectorXd& f, const FemState& state, FemState& next) = 0;
   /// False: the method cannot, and FemModel::energy() is not what it conserves.
   virtual bool may_gain_energy() const noexcept { return true; }
+  /// How many times its smallest value the energy of a stable motion without forces may reach, as the method sees it.
+  virtual double largest_swing() const noexcept { return 1; }
   FemModel& model() noexcept { return model_; }
   double h() const noexcept { return options_.step; }
   /// Whether the state given is not the one that the last step returned.

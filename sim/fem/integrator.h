@@ -5,10 +5,10 @@
 /// elasticity is linear, to first order else, and costs one evaluation.
 ///
 /// method            order  stable when            per step
-/// symplectic_euler  1      h omega_max < 2        one evaluation of k. Leapfrog with velocities half a step off: with v(0) moved by
-///                                                 half a step, displacements are of order 2
+/// velocity_verlet   2      h omega_max < 2        one evaluation of k per sub-step; stiffness damping, half a step late, is of order 1
 /// backward_euler    1      always, damps          one stage
-/// newmark           2      always, no damping     one stage; beta 1/4, gamma 1/2 (average acceleration)
+/// newmark           2      K constant, undamped   one stage; beta 1/4, gamma 1/2 (average acceleration). Where elements turn, energy
+///                                                 may grow until the step is refused, most at h omega_max of 3 to 10
 /// tr_bdf2           2      always, damps high w   two stages: trapezoidal rule over (2 - sqrt 2) h, then BDF2
 /// projective        1      always, damps          backward Euler whose stages are solved with `prefactored`
 /// modal             exact  always                 K modes of the problem linearised at rest, whatever the elasticity; exact in
@@ -26,7 +26,7 @@
 /// prefactored          quasi-Newton from (a M + b K(0))^-1, turned vertex by        one evaluation of k, one solve
 ///                      vertex into the deformed shape, with limited memory (L-BFGS)
 ///
-/// Mass: implicit methods take M as the model has it. Symplectic Euler with a consistent M factors it once and solves every step.
+/// Mass: implicit methods take M as the model has it. Velocity Verlet with a consistent M factors it once and solves every step.
 #pragma once
 
 #include <cstdint>
@@ -37,20 +37,21 @@
 
 namespace tactus {
 
-enum class Method : std::uint8_t { symplectic_euler, backward_euler, newmark, tr_bdf2, modal, projective };
+enum class Method : std::uint8_t { velocity_verlet, backward_euler, newmark, tr_bdf2, modal, projective };
 enum class LinearSolver : std::uint8_t { conjugate_gradients, cholesky, prefactored };
 
-const char* name(Method method) noexcept;  ///< "symplectic-euler"
+const char* name(Method method) noexcept;  ///< "velocity-verlet"
 const char* name(LinearSolver solver) noexcept;
 
 struct IntegratorOptions {
-  Method method = Method::symplectic_euler;
+  Method method = Method::velocity_verlet;
   double step = 1e-3;  ///< h [s]
+  int substeps = 1;    ///< of velocity_verlet: equal parts of h, each with its own evaluation; the table's h is one of them
   LinearSolver solver = LinearSolver::conjugate_gradients;
   double solver_tolerance = 1e-6;  ///< of conjugate gradients: relative residual of the linear system
   int newton_iterations = 10;      ///< at most; 1: linearly implicit
-  /// Stop when an update, or what the next one is estimated to be, is below this share of the larger of the stage's first update
-  /// and the motion at its start, in the energy norm of the system matrix.
+  /// Stop when an update, or what the next one is estimated to be, is below this share of the stage's first update, in the energy
+  /// norm of the system matrix: what is missing has a sign, and a share of the motion itself would be missed in every step.
   double newton_tolerance = 1e-8;
   int modes = 0;  ///< of `modal`, 1 .. free degrees of freedom
 };
@@ -80,11 +81,18 @@ class Integrator {
 /// pre  `model` outlives the integrator and is used by it alone.   err  R-FEM-7, R-FEM-8
 tl::expected<std::unique_ptr<Integrator>, FemError> make_integrator(FemModel& model, const IntegratorOptions& options);
 
-/// What suits the scene, and why, in one sentence with the numbers: explicit where it is safely stable, else TR-BDF2 with one
-/// factorisation at the start.
+/// Poisson's ratio beyond which quasi-Newton directions do not converge (R-FEM-8).
+inline constexpr double kNearlyIncompressible = 0.4999;
+double largest_poisson(const FemModel& model) noexcept;
+
+/// A method with the solver and tolerance that suit the object: one factorisation at the start, where that converges.
+IntegratorOptions suited(const FemModel& model, Method method, double step);
+
+/// What suits the scene, and why, in one sentence with the numbers: velocity Verlet, in sub-steps of h omega <= 1.8 where they cost
+/// no more than an implicit step, else TR-BDF2.
 struct Choice {
   IntegratorOptions options;
-  double largest_frequency = 0;  ///< [rad/s] as measured; 5 % safety are added before it is compared
+  double largest_frequency = 0;  ///< [rad/s]
   std::string reason;
 };
 /// time one power iteration, milliseconds for thousands of tetrahedra; allocates

@@ -9,8 +9,9 @@
 namespace tactus {
 namespace {
 
-constexpr double kAge = 0.8;    ///< exponent of a remembered shrinkage from use to use
-constexpr double kLost = 0.01;  ///< of the motion
+constexpr double kAge = 0.8;        ///< exponent of a remembered shrinkage from use to use
+constexpr double kLost = 0.01;      ///< of the motion
+constexpr double kNothing = 1e-10;  ///< of the motion: what rounding may leave, and what nobody sees in a thousand steps
 
 }  // namespace
 
@@ -75,7 +76,8 @@ tl::expected<StepReport, FemError> Newton::solve(const Stage& stage, Eigen::Vect
   StepReport report{0, 0, false};
   lost_ = false;
   system_.residual(stage, u, r_);
-  double scale = system_.motion(stage, u);
+  const double motion = system_.motion(stage, u);  // square of an energy norm, as the others here
+  double first = 0;
   while (report.newton_iterations < iterations_) {
     const double residual = r_.norm();
     if (!std::isfinite(residual)) return tl::unexpected(FemError{{Errc::invalid_argument, "R-FEM-6"}, -1, -1, {}});
@@ -86,11 +88,11 @@ tl::expected<StepReport, FemError> Newton::solve(const Stage& stage, Eigen::Vect
     const auto found = direction_->find(system_, stage, r_, d_);
     if (!found) return tl::unexpected(found.error());
     const double decrease = -d_.dot(r_);  // square of the update's energy norm
-    if (report.newton_iterations == 0) scale = std::max(scale, decrease);
+    if (report.newton_iterations == 0) first = decrease;
     ++report.newton_iterations;
     report.solver_iterations += *found;
     u += d_;
-    const double enough = tolerance_ * tolerance_ * scale;
+    const double enough = std::max(tolerance_ * tolerance_ * first, kNothing * kNothing * motion);
     report.converged = decrease <= enough;
     if (report.newton_iterations == 1 && shrinkage_ * decrease <= enough) {
       // What a second iteration would add can be told from the stages before (Hairer and Wanner 1996, IV.8).
@@ -103,7 +105,7 @@ tl::expected<StepReport, FemError> Newton::solve(const Stage& stage, Eigen::Vect
     const double shrinkage = next_r_.squaredNorm() / (residual * residual);
     if (report.newton_iterations == 1) shrinkage_ = std::min(shrinkage, 1.0);
     report.converged = shrinkage * decrease <= enough;
-    lost_ = shrinkage * decrease > kLost * kLost * scale;
+    lost_ = shrinkage * decrease > kLost * kLost * std::max(motion, first);
     next_r_.swap(r_);
     next_r_ = r_ - next_r_;
     direction_->moved(d_, next_r_);

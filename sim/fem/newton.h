@@ -76,8 +76,8 @@ class Newton {
   /// in, out  u  start, solution.   err  R-FEM-6 when the residual is not finite, R-FEM-7
   tl::expected<StepReport, FemError> solve(const Stage& stage, Eigen::VectorXd& u);
   StageSystem& system() noexcept { return system_; }
-  /// Whether the last solution is none: the update that would come next is estimated as more than a hundredth of what
-  /// `converged` compares with, after all the iterations that there may be. Linearly implicit steps are not looked at.
+  /// Whether the last solution is none: the update that would come next is estimated as more than a hundredth of the stage's first
+  /// one and of the motion at its start, after all the iterations that there may be. Linearly implicit steps are not looked at.
   bool lost() const noexcept { return lost_; }
 
  private:

@@ -34,9 +34,12 @@ VertexRotations::VertexRotations(const FemModel& model) {
     vertex_.push_back(static_cast<int>(i));
   }
   rotation_.assign(vertex_.size(), Eigen::Matrix3d::Identity());
+  for (const Eigen::Vector3d& x : rest_) middle_ += x / static_cast<double>(rest_.size());
+  for (const Eigen::Vector3d& x : rest_) size_ += (x - middle_).squaredNorm();
 }
 
 void VertexRotations::follow(const Eigen::VectorXd& u, std::size_t share) noexcept {
+  turn_all(u);
   const std::size_t count = (vertex_.size() + share - 1) / share;
   for (std::size_t i = 0; i < count; ++i) {
     turn(next_, u);
@@ -44,7 +47,35 @@ void VertexRotations::follow(const Eigen::VectorXd& u, std::size_t share) noexce
   }
 }
 
-/// Turn by omega = sum_i r_i x c_i / |sum_i r_i . c_i|, r_i and c_i the columns of the rotation and of the moments.
+/// What one step takes R nearer to the rotation in `moments` (Mueller et al. 2016): by omega = sum_i r_i x c_i / |sum_i r_i . c_i|,
+/// r_i and c_i the columns of R and of the moments.
+Eigen::Quaterniond VertexRotations::nearer(const Eigen::Matrix3d& R, const Eigen::Matrix3d& moments, double size) noexcept {
+  Eigen::Vector3d omega = Eigen::Vector3d::Zero();
+  double along = 0;
+  for (int i = 0; i < 3; ++i) {
+    omega += R.col(i).cross(moments.col(i));
+    along += R.col(i).dot(moments.col(i));
+  }
+  omega /= std::abs(along) + 1e-9 * size;
+  const double angle = omega.norm();
+  if (angle < 1e-9 || !std::isfinite(angle)) return Eigen::Quaterniond::Identity();
+  return Eigen::Quaterniond(Eigen::AngleAxisd(angle, omega / angle));
+}
+
+/// All at once, as the body turns as a whole.
+void VertexRotations::turn_all(const Eigen::VectorXd& u) noexcept {
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < rest_.size(); ++i) middle += rest_[i] + u.segment<3>(dof(i));
+  middle /= static_cast<double>(rest_.size());
+  for (std::size_t i = 0; i < rest_.size(); ++i)
+    moments.noalias() += (rest_[i] + u.segment<3>(dof(i)) - middle) * (rest_[i] - middle_).transpose();
+  const Eigen::Quaterniond turned = nearer(whole_, moments, size_);
+  const Eigen::Matrix3d step = turned.toRotationMatrix();
+  whole_ = (turned * Eigen::Quaterniond(whole_)).normalized().toRotationMatrix();
+  for (Eigen::Matrix3d& R : rotation_) R = step * R;
+}
+
 void VertexRotations::turn(std::size_t vertex, const Eigen::VectorXd& u) noexcept {
   const auto self = static_cast<std::size_t>(vertex_[vertex]);
   const auto own = u.segment<3>(dof(self));
@@ -57,26 +88,16 @@ void VertexRotations::turn(std::size_t vertex, const Eigen::VectorXd& u) noexcep
     size += edge.squaredNorm();
   }
   Eigen::Matrix3d& R = rotation_[vertex];
-  Eigen::Vector3d omega = Eigen::Vector3d::Zero();
-  double along = 0;
-  for (int i = 0; i < 3; ++i) {
-    omega += R.col(i).cross(moments.col(i));
-    along += R.col(i).dot(moments.col(i));
-  }
-  omega /= std::abs(along) + 1e-9 * size;
-  const double angle = omega.norm();
-  if (angle < 1e-9 || !std::isfinite(angle)) return;
-  const Eigen::Quaterniond turned(Eigen::AngleAxisd(angle, omega / angle) * Eigen::Quaterniond(R));
-  R = turned.normalized().toRotationMatrix();
+  R = (nearer(R, moments, size) * Eigen::Quaterniond(R)).normalized().toRotationMatrix();
 }
 
 void VertexRotations::to_rest(const Eigen::VectorXd& in, Eigen::VectorXd& out) const noexcept {
   for (std::size_t i = 0; i < rotation_.size(); ++i)
-    out.segment<3>(dof(i)).noalias() = rotation_[i].transpose() * in.segment<3>(dof(i));
+    out.segment<3>(dof(i)) = (rotation_[i].transpose() * in.segment<3>(dof(i))).eval();
 }
 
 void VertexRotations::to_shape(const Eigen::VectorXd& in, Eigen::VectorXd& out) const noexcept {
-  for (std::size_t i = 0; i < rotation_.size(); ++i) out.segment<3>(dof(i)).noalias() = rotation_[i] * in.segment<3>(dof(i));
+  for (std::size_t i = 0; i < rotation_.size(); ++i) out.segment<3>(dof(i)) = (rotation_[i] * in.segment<3>(dof(i))).eval();
 }
 
 PrefactoredDirection::PrefactoredDirection(const FemModel& model)
@@ -95,30 +116,26 @@ tl::expected<std::unique_ptr<Direction>, FemError> PrefactoredDirection::create(
   return made;
 }
 
-void PrefactoredDirection::solve(Eigen::VectorXd& x) {
-  if (!turning_) return cholesky_.solve(x, x);
-  rotations_.to_rest(x, turned_);
-  cholesky_.solve(turned_, turned_);
-  rotations_.to_shape(turned_, x);
-}
-
-/// The two loops of L-BFGS, newest pair first and last.
+/// The two loops of L-BFGS, newest pair first and last, seen from the shape at rest.
 tl::expected<int, FemError> PrefactoredDirection::find(StageSystem& system, const Stage& /*stage*/, const Eigen::VectorXd& r,
                                                        Eigen::VectorXd& d) {
   if (turning_) rotations_.follow(system.ahead(), kShare);
-  d = -r;
+  turned_ = -r;
+  to_rest(turned_);
   for (std::size_t i = 0; i < kMemory; ++i) {
     Pair& pair = pairs_[(newest_ + kMemory - i) % kMemory];
     if (pair.inverse == 0) continue;
-    pair.weight = pair.inverse * pair.s.dot(d);
-    d -= pair.weight * pair.y;
+    pair.weight = pair.inverse * pair.s.dot(turned_);
+    turned_ -= pair.weight * pair.y;
   }
-  solve(d);
+  cholesky_.solve(turned_, turned_);
   for (std::size_t i = 0; i < kMemory; ++i) {
     const Pair& pair = pairs_[(newest_ + 1 + i) % kMemory];
     if (pair.inverse == 0) continue;
-    d += (pair.weight - pair.inverse * pair.y.dot(d)) * pair.s;
+    turned_ += (pair.weight - pair.inverse * pair.y.dot(turned_)) * pair.s;
   }
+  if (turning_) rotations_.to_shape(turned_, d);
+  else d = turned_;
   return 1;
 }
 
@@ -126,9 +143,16 @@ void PrefactoredDirection::moved(const Eigen::VectorXd& s, const Eigen::VectorXd
   const double along = s.dot(y);
   if (!(along > 1e-8 * s.norm() * y.norm())) return;
   newest_ = (newest_ + 1) % kMemory;
-  pairs_[newest_].s = s;
-  pairs_[newest_].y = y;
-  pairs_[newest_].inverse = 1 / along;
+  Pair& pair = pairs_[newest_];
+  pair.s = s;
+  pair.y = y;
+  to_rest(pair.s);
+  to_rest(pair.y);
+  pair.inverse = 1 / along;
+}
+
+void PrefactoredDirection::to_rest(Eigen::VectorXd& x) const {
+  if (turning_) rotations_.to_rest(x, x);
 }
 
 void PrefactoredDirection::forget() {

@@ -7,6 +7,8 @@
 ///   memory    the last pairs (s, y) of steps and changes of r correct it along what was seen (L-BFGS, Nocedal and Wright 7.4)
 #pragma once
 
+#include <Eigen/Geometry>
+
 #include <array>
 #include <utility>
 
@@ -28,6 +30,8 @@ class VertexRotations {
   void to_shape(const Eigen::VectorXd& in, Eigen::VectorXd& out) const noexcept;
 
  private:
+  static Eigen::Quaterniond nearer(const Eigen::Matrix3d& R, const Eigen::Matrix3d& moments, double size) noexcept;
+  void turn_all(const Eigen::VectorXd& u) noexcept;
   void turn(std::size_t vertex, const Eigen::VectorXd& u) noexcept;
 
   std::vector<Eigen::Vector3d> rest_;  // all vertices
@@ -36,6 +40,9 @@ class VertexRotations {
   std::vector<int> neighbours_;
   std::vector<Eigen::Matrix3d> rotation_;  // of free ones
   std::size_t next_ = 0;
+  Eigen::Matrix3d whole_ = Eigen::Matrix3d::Identity();  // of the body
+  Eigen::Vector3d middle_ = Eigen::Vector3d::Zero();     // mean of rest_
+  double size_ = 0;                                      // sum of squares about it
 };
 
 class PrefactoredDirection final : public Direction {
@@ -50,7 +57,7 @@ class PrefactoredDirection final : public Direction {
 
  private:
   explicit PrefactoredDirection(const FemModel& model);
-  void solve(Eigen::VectorXd& x);
+  void to_rest(Eigen::VectorXd& x) const;
 
   struct Pair {
     Eigen::VectorXd s, y;

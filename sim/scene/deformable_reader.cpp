@@ -11,8 +11,8 @@ constexpr Range kPlace{-kFarthest, kFarthest};
 constexpr double kRounding = 1e-9;  // of the mesh's size: what a box or corner may miss a vertex by
 
 // As tactus::name(Method) and name(LinearSolver) spell them; modal is left out, because contact excites what its modes lack.
-constexpr std::array<std::string_view, 6> kMethods{"auto",    "symplectic-euler", "backward-euler",
-                                                   "newmark", "tr-bdf2",          "projective"};
+constexpr std::array<std::string_view, 6> kMethods{"auto",    "velocity-verlet", "backward-euler",
+                                                   "newmark", "tr-bdf2",         "projective"};
 constexpr std::array<std::string_view, 4> kSolvers{"auto", "cg", "cholesky", "prefactored"};
 
 struct Box {

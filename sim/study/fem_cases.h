@@ -37,7 +37,7 @@ struct FemOutcome {
 /// Run a case without forces but its weight.
 ///   stable    it went through all steps, energy did not grow, nothing is inside out
 ///   limit     the same, but tetrahedra stay inside out
-///   diverges  an error, or energy is more than ten times what it was (that of symplectic Euler swings below its limit)
+///   diverges  an error, or energy is more than ten times what it was (that of velocity Verlet swings below its limit)
 FemOutcome run(const FemCase& fem_case, Method method);
 
 /// The extremes, on a slab of 4 x 5 x 1 cells of 1 cm with fixed corners, E 10 kPa, nu 0.45, 10 000 kg/m^3, damped by mass (20/s).
@@ -47,7 +47,7 @@ std::vector<FemCase> fem_cases(Extent extent);
 /// That slab, displaced at random by up to `amplitude` [m] and let go.
 FemCase shaken_slab(Extent extent, const Material& material, double amplitude);
 
-/// Largest step [s] with which symplectic Euler stays bounded over 4000 steps, to a relative 1e-3.
+/// Largest step [s] with which velocity Verlet stays bounded over 4000 steps, to a relative 1e-3.
 /// pre  FemCase::options has no damping
 double largest_explicit_step(FemCase fem_case);
 

@@ -17,11 +17,10 @@ double square(double x) { return x * x; }
 /// Where in a step [0, 1] external forces are taken.
 double force_point(Method method) {
   switch (method) {
-    case Method::symplectic_euler:
-      return 0;
     case Method::backward_euler:
     case Method::projective:
       return 1;
+    case Method::velocity_verlet:
     case Method::newmark:
     case Method::tr_bdf2:
     case Method::modal:
@@ -48,18 +47,8 @@ tl::expected<FemModel, FemError> make_model(const PrecisionScene& scene, const P
   return FemModel::create(scene.mesh, std::move(options));
 }
 
-/// Elastic and kinetic energy at time t under the patch force `force`. Symplectic Euler's velocity belongs half a step before its
-/// displacement; half a kick brings it there.
-double total_energy(FemModel& model, const PrecisionMethod& method, const PrecisionScene& scene, const FemState& state,
-                    double force) {
-  Eigen::VectorXd v = state.v;
-  if (method.options.method == Method::symplectic_euler) {
-    Eigen::VectorXd f = Eigen::VectorXd::Zero(model.size()), k(model.size());
-    scene.patch.add_force(force, f);
-    model.internal_forces(state.u, k);
-    for (const int dof : model.free_dofs()) v[dof] += 0.5 * method.options.step * (f[dof] - k[dof]) / model.lumped_mass()[dof];
-  }
-  return model.energy(state.u) + 0.5 * v.dot(model.lumped_mass().cwiseProduct(v));
+double total_energy(FemModel& model, const FemState& state) {
+  return model.energy(state.u) + 0.5 * state.v.dot(model.lumped_mass().cwiseProduct(state.v));
 }
 
 /// A simulation under way.
@@ -95,7 +84,7 @@ void Run::sample(int number) {
   const double t = scene.duration * (number + 1) / scene.samples;
   const double deflection = scene.patch.deflection(state.u);
   out.u.push_back(state.u);
-  out.energy[number] = total_energy(observer, method, scene, state, external_force(scene, loading, deflection, t));
+  out.energy[number] = total_energy(observer, state);
   out.force[number] = probe_force(scene, deflection, t);
 }
 
@@ -181,7 +170,7 @@ tl::expected<Trajectory, FemError> simulate(const PrecisionScene& scene, const P
 }
 
 tl::expected<Reference, FemError> make_reference(const PrecisionScene& scene) {
-  const PrecisionMethod method{"reference", {.method = Method::symplectic_euler}};
+  const PrecisionMethod method{"reference", {.method = Method::velocity_verlet}};
   const int n = scene.reference_steps_per_sample;
   Reference out;
   out.step = scene.step(n);

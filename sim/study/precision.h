@@ -6,10 +6,10 @@
 /// force             the force of a probe that presses the patch down
 /// energy            elastic and kinetic energy
 ///
-/// All against the same mesh under symplectic Euler with a tiny step. Half and a quarter as many steps yield that reference's own error
+/// All against the same mesh under velocity Verlet with a tiny step. Half and a quarter as many steps yield that reference's own error
 /// (Richardson) and its order.
-/// External forces are held over a step, so each method is given them where that costs it no order: symplectic Euler at the
-/// beginning, the one-sided methods at the end, the others in the middle. The penetration of the probe there is predicted with the
+/// External forces are held over a step, so each method is given them where that costs it no order: the one-sided methods at the
+/// end, the others in the middle. The penetration of the probe there is predicted with the
 /// velocity at the beginning.
 #pragma once
 

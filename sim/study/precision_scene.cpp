@@ -117,8 +117,8 @@ std::vector<PrecisionMethod> precision_methods(Extent extent) {
     return options;
   };
   std::vector<PrecisionMethod> methods{
-      {"symplectic Euler", with(Method::symplectic_euler, kPcg, 1)},
-      {"symplectic Euler (linear)", with(Method::symplectic_euler, kPcg, 1), Elasticity::linear},
+      {"velocity Verlet", with(Method::velocity_verlet, kPcg, 1)},
+      {"velocity Verlet (linear)", with(Method::velocity_verlet, kPcg, 1), Elasticity::linear},
       {"backward Euler 1x PCG", with(Method::backward_euler, kPcg, 1)},
       {"Newmark 1x PCG", with(Method::newmark, kPcg, 1)},
       {"Newmark Newton PCG", with(Method::newmark, kPcg, 10)},

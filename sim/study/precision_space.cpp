@@ -164,7 +164,7 @@ tl::expected<SpacePoint, FemError> measure_space(std::string_view name, const Sp
   const auto model = make_model(scene);
   if (!model) return tl::unexpected(model.error());
   const int steps = static_cast<int>(std::ceil(scene.duration / scene.samples * model->largest_frequency()));
-  const auto run = simulate(scene, {"symplectic Euler", {.method = Method::symplectic_euler}}, steps, Loading::force);
+  const auto run = simulate(scene, {"velocity Verlet", {.method = Method::velocity_verlet}}, steps, Loading::force);
   if (!run) return tl::unexpected(run.error());
   out.step = scene.step(steps);
   out.seconds_per_second = run->step_seconds / scene.duration;

@@ -53,7 +53,7 @@ struct SpacePoint {
   double seconds_per_second = 0;    ///< processor time per simulated time
   std::vector<double> deflection;   ///< [m] at the sample times
 };
-/// In time by symplectic Euler, whose time error is far below the space error (precision.h).
+/// In time by velocity Verlet, whose time error is far below the space error (precision.h).
 tl::expected<SpacePoint, FemError> measure_space(std::string_view name, const SpaceJob& job);
 
 /// The meshes of one material against their common limit. NaN: not computed.

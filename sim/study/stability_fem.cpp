@@ -9,8 +9,8 @@
 namespace tactus::study {
 namespace {
 
-constexpr std::array kMethods{Method::symplectic_euler, Method::backward_euler, Method::newmark,
-                              Method::tr_bdf2,          Method::projective,     Method::modal};
+constexpr std::array kMethods{Method::velocity_verlet, Method::backward_euler, Method::newmark,
+                              Method::tr_bdf2,         Method::projective,     Method::modal};
 
 constexpr double kGravity = 9.81;  // [m/s^2]
 constexpr double kSettling = 200;  // [1/s] mass damping that ends every swing within seconds

@@ -92,8 +92,8 @@ void gradients(benchmark::State& state) {
 
 void register_steps() {
   for (const double young : {1e4, 1e7}) {
-    for (const Method method : {Method::symplectic_euler, Method::backward_euler, Method::newmark, Method::tr_bdf2, Method::modal,
-                                Method::projective}) {
+    for (const Method method :
+         {Method::velocity_verlet, Method::backward_euler, Method::newmark, Method::tr_bdf2, Method::modal, Method::projective}) {
       for (const LinearSolver solver : {LinearSolver::conjugate_gradients, LinearSolver::cholesky, LinearSolver::prefactored}) {
         const bool implicit = method == Method::backward_euler || method == Method::newmark || method == Method::tr_bdf2;
         if (!implicit && solver != LinearSolver::conjugate_gradients) continue;

@@ -35,7 +35,7 @@ TEST_F(Precision, TheReferenceIsOfOrderTwoAndFarBelowWhatItMeasures) {
   EXPECT_LT(reference_.floor.displacement, 1e-6);
   EXPECT_LT(reference_.floor.energy, 1e-6);
   // A step four times smaller, whose own error is a sixteenth, finds the reference as wrong as it says of itself.
-  const auto finer = simulate(scene_, {"symplectic Euler", {}}, 4 * scene_.reference_steps_per_sample, Loading::force);
+  const auto finer = simulate(scene_, {"velocity Verlet", {}}, 4 * scene_.reference_steps_per_sample, Loading::force);
   ASSERT_TRUE(finer);
   const double error = (reference_.load.u.back() - finer->u.back()).norm() / finer->u.back().norm();
   EXPECT_NEAR(error / reference_.floor.displacement_end, 15.0 / 16, 0.02);
@@ -58,7 +58,7 @@ TEST_F(Precision, ANonlinearObjectIsNotThatOfLinearElasticity) {
 }
 
 TEST_F(Precision, AStopIsToldAndHasNoErrors) {
-  const PrecisionPoint point = measure(brief("membrane-stiff"), {"symplectic Euler", {}}, 25, reference_, {.runs = 1});
+  const PrecisionPoint point = measure(brief("membrane-stiff"), {"velocity Verlet", {}}, 25, reference_, {.runs = 1});
   EXPECT_TRUE(std::isnan(point.errors.displacement));
   EXPECT_NE(point.remark.find("R-FEM-6"), std::string::npos) << point.remark;
   EXPECT_EQ(point.runs, 0);
