@@ -44,7 +44,7 @@ constexpr std::array kRules{
              "Start every object at rest; its first update brings the motion."},
     RuleText{"R-API-9", "a mesh cannot have so many modes",
              "Take a smaller --basis: less than three modes per vertex that can move."},
-    RuleText{"R-API-10", "the machine gives no more memory", "End other programs, or take a smaller input."},
+    RuleText{"R-API-11", "the machine gives no more memory", "End other programs, or take a smaller input."},
     RuleText{"R-STR-1", "this is not a Tactus stream", kNotAStream},
     RuleText{"R-STR-2", "the stream has a format version that this program does not know", kNewer},
     RuleText{"R-STR-3", "the stream has a profile that this program does not know", kNewer},

@@ -10,6 +10,6 @@
 
 namespace tactus {
 
-inline tl::unexpected<Error> out_of_memory() noexcept { return fail(Errc::limit_exceeded, "R-API-10"); }
+inline tl::unexpected<Error> out_of_memory() noexcept { return fail(Errc::limit_exceeded, "R-API-11"); }
 
 }  // namespace tactus

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Each call of operator new fails once, in everything that is set up: an error (limit_exceeded, R-API-10), no exception, no leak, and
+/// Each call of operator new fails once, in everything that is set up: an error (limit_exceeded, R-API-11), no exception, no leak, and
 /// what was there before works on.
 #include <gtest/gtest.h>
 
@@ -97,7 +97,7 @@ std::vector<char> written_file(std::uint64_t failing) {
     const Result<void> done = call();
     fail_allocation(0);
     if (done) return;
-    EXPECT_STREQ(done.error().rule, "R-API-10");
+    EXPECT_STREQ(done.error().rule, "R-API-11");
     EXPECT_TRUE(call());
   };
   for (std::int64_t tick = 0; tick < 20; ++tick) {

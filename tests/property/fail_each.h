@@ -24,7 +24,7 @@ bool gets_through(const Input& input, Action& action, std::uint64_t number) {
   EXPECT_EQ(result.has_value(), done) << "allocation " << number;
   if (!result) {
     EXPECT_EQ(result.error().code, Errc::limit_exceeded) << "allocation " << number;
-    EXPECT_STREQ(result.error().rule, "R-API-10") << "allocation " << number;
+    EXPECT_STREQ(result.error().rule, "R-API-11") << "allocation " << number;
   }
   return done;
 }
