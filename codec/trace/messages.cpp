@@ -10,11 +10,11 @@ namespace {
 constexpr std::uint64_t kNanoseconds = 1'000'000'000;
 constexpr std::string_view kFrame = "world";
 
-CdrWriter begin(std::vector<std::uint8_t>& message, std::uint64_t time) {
+CdrWriter begin(std::vector<std::uint8_t>& message, std::uint64_t time, std::string_view frame = kFrame) {
   CdrWriter out(message);
   out.u32(static_cast<std::uint32_t>(time / kNanoseconds));
   out.u32(static_cast<std::uint32_t>(time % kNanoseconds));
-  out.text(kFrame);
+  out.text(frame);
   return out;
 }
 
@@ -130,7 +130,7 @@ void encode_vector(std::vector<std::uint8_t>& message, std::uint64_t time, const
 }
 
 void encode_contact(std::vector<std::uint8_t>& message, std::uint64_t time, const Contact& contact, std::string_view object) {
-  CdrWriter out = begin(message, time);
+  CdrWriter out = begin(message, time, object);
   out.u8(static_cast<std::uint8_t>(contact.kind));
   out.u32(contact.object);
   out.text(object);

@@ -32,7 +32,8 @@ struct Twist {
   Vec3 angular;  ///< [rad/s]
 };
 
-/// `message` gets the CDR bytes of the message with header.stamp `time` and header.frame_id "world".
+/// `message` gets the CDR bytes of the message with header.stamp `time` and header.frame_id "world"; of a contact, whose point and
+/// normal are in the object's frame, the object's name.
 void encode_pose(std::vector<std::uint8_t>& message, std::uint64_t time, const Pose& pose);
 void encode_twist(std::vector<std::uint8_t>& message, std::uint64_t time, const Twist& twist);
 void encode_vector(std::vector<std::uint8_t>& message, std::uint64_t time, const Vec3& vector);  ///< point and vector alike

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Trace files: MCAP with zstd chunks and ROS 2 CDR messages.
 ///
-/// topic                        message (header.frame_id "world")   when
+/// topic                        message (header.frame_id "world", of contact the object's name)   when
 /// /objects/<name>/pose         geometry_msgs/msg/PoseStamped       every tick; a static object: first tick only
 /// /objects/<name>/twist        geometry_msgs/msg/TwistStamped      every tick, objects that can move
 /// /users/<name>/device         geometry_msgs/msg/PointStamped      every tick

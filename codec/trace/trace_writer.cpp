@@ -87,6 +87,16 @@ mcap::TextMap metadata_of(const TraceMesh& mesh) {
   return metadata;
 }
 
+/// How ROS 2 is to offer a channel, as rosbag2 writes it: profile "ros2" wants it of every channel. What is sent once must still reach
+/// who comes later.
+std::string quality_of_service(Occurs occurs) {
+  const bool once = occurs == Occurs::first_tick;
+  const std::string never = "    sec: 9223372036\n    nsec: 854775807\n";
+  return std::string("- history: 1\n  depth: ") + (once ? "1" : "10") +
+         "\n  reliability: 1\n  durability: " + (once ? "1" : "2") + "\n  deadline:\n" + never + "  lifespan:\n" + never +
+         "  liveliness: 1\n  liveliness_lease_duration:\n" + never + "  avoid_ros_namespace_conventions: false\n";
+}
+
 mcap::Attachment scene_of(const TraceInfo& info) {
   return {0, 0, "scene.toml", "application/toml", {reinterpret_cast<const std::uint8_t*>(info.scene.data()), info.scene.size()}};
 }
@@ -134,6 +144,7 @@ Result<void> TraceWriter::Impl::declare() {
     mcap::TextMap metadata;
     if (channel.role == Role::pose) metadata["dof"] = std::to_string(info.objects[channel.index].dof);
     if (channel.role == Role::rest) metadata = metadata_of(info.meshes[channel.index]);
+    metadata["offered_qos_profiles"] = quality_of_service(channel.occurs);
     TACTUS_CHECK(mcap.add(mcap::Channel{static_cast<std::uint16_t>(i + 1), schema_id, channel.topic, "cdr", metadata}));
   }
   return {};

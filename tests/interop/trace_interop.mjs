@@ -67,7 +67,7 @@ function checkMessage(topic, message, value) {
   assert.equal(message.publishTime, message.logTime);
   const { header, ...rest } = value;
   if (withoutHeader.has(topic)) assert.equal(header, undefined);
-  else assert.deepEqual(header, { stamp: { sec: Math.floor(tick / 1000), nanosec: (tick % 1000) * 1_000_000 }, frame_id: "world" });
+  else assert.deepEqual(header, { stamp: { sec: Math.floor(tick / 1000), nanosec: (tick % 1000) * 1_000_000 }, frame_id: topic.endsWith("/contact") ? "cube" : "world" });
   assert.deepEqual(rest, expected[topic](tick), `${topic} at tick ${tick}`);
 }
 
@@ -82,6 +82,8 @@ async function readIndexed(bytes) {
   const reader = await McapIndexedReader.Initialize({ readable, decompressHandlers });
   assert.equal(reader.header.profile, "ros2");
   const byChannel = decoders(reader.channelsById, reader.schemasById);
+  // what the registry of MCAP profiles asks of "ros2"
+  for (const channel of reader.channelsById.values()) assert.match(channel.metadata.get("offered_qos_profiles"), /^- history: 1\n  depth: \d+\n  reliability: 1\n/);
   assert.deepEqual([...byChannel.values()].map((c) => c.topic).sort(), Object.keys(expected).sort());
   const counts = new Map();
   for await (const message of reader.readMessages({ validateCrcs: true })) {

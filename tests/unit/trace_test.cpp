@@ -7,6 +7,7 @@
 
 #include "codec/base/bytes.h"
 #include "codec/base/hash.h"
+#include "codec/trace/cdr.h"
 #include "codec/trace/compression.h"
 #include "codec/trace/mcap_reader.h"
 #include "codec/trace/mcap_writer.h"
@@ -453,6 +454,36 @@ TEST(Mcap, StatisticsCountWhatIsThere) {
   EXPECT_EQ(statistics->message_end_time, time_of_tick(10, 1000));
   // 6 ticks: pose, twist, 2 x (device, force, server force); one static pose; 4 contacts
   EXPECT_EQ(messages, 6u * 8u + 1u + 4u);
+}
+
+TEST(Mcap, ChannelsAreOfferedAsTheProfileWantsIt) {
+  const TempFile file;
+  const Bytes bytes = write_recording(make_recording(6), file.path());
+  auto reader = mcap::Reader::open(ByteSource::over_memory(bytes));
+  ASSERT_TRUE(reader);
+  for (auto item = reader->next(); item && *item != mcap::Item::end; item = reader->next()) {
+  }
+  EXPECT_GT(reader->channels().size(), 4u);
+  std::size_t once = 0;
+  for (const auto& [id, channel] : reader->channels()) {
+    const auto offered = channel.metadata.find("offered_qos_profiles");
+    ASSERT_NE(offered, channel.metadata.end()) << channel.topic;
+    EXPECT_NE(offered->second.find("reliability: 1\n"), std::string::npos) << channel.topic;
+    once += offered->second.find("durability: 1\n") != std::string::npos;
+  }
+  EXPECT_EQ(once, 1u);  // the pose of what cannot move
+}
+
+TEST(Mcap, ContactsNameTheFrameOfTheirObject) {
+  std::vector<std::uint8_t> message;
+  encode_contact(message, 0, {ContactKind::surface, 1, {1, 2, 3}, {0, 0, 1}, {}, 630.0}, "the cube");
+  CdrReader contact(message);
+  contact.u32(), contact.u32();
+  EXPECT_EQ(contact.text(), "the cube");
+  encode_vector(message, 0, {1, 2, 3});
+  CdrReader vector(message);
+  vector.u32(), vector.u32();
+  EXPECT_EQ(vector.text(), "world");
 }
 
 }  // namespace
