@@ -18,6 +18,9 @@ struct DecodeOptions {
   CommonOptions common;
 };
 
+/// Like a trace that was cut, such a stream is decoded up to there.
+bool is_cut(const Error& error) { return error.rule == std::string_view("R-FIL-2"); }
+
 /// The ticks to write, one after the other: those of another trace, a number of them, or all up to the last packet's.
 class TickSource {
  public:
@@ -39,6 +42,7 @@ class TickSource {
     }
     if (options_->ticks) return tick_ < *options_->ticks ? std::optional(tick_++) : std::nullopt;
     const auto waiting = player.next_tick();
+    if (!waiting && is_cut(waiting.error()) && tick_ > 0) return std::nullopt;
     if (!waiting) return refuse(options_->input, waiting.error());
     return *waiting ? std::optional(tick_++) : std::nullopt;
   }
@@ -120,6 +124,7 @@ Outcome decode_all(StreamPlayer& player, TraceWriter& writer, const DecodeOption
     if (!tick) return tl::unexpected(tick.error());
     if (!*tick) break;
     const auto decoded = report.timings[0].times.measure([&] { return decode_tick(player, **tick, frame, report); });
+    if (!decoded && is_cut(decoded.error()) && report.ticks.count() > 0) break;
     if (!decoded) return refuse_at(**tick, decoded.error(), options);
     if (const auto written = writer.write(frame); !written)
       return refuse(options.output, place_of_tick(frame.tick), written.error());
@@ -131,6 +136,7 @@ Outcome decode_all(StreamPlayer& player, TraceWriter& writer, const DecodeOption
 }
 
 Outcome run(const DecodeOptions& options) {
+  if (auto fits = check_no_terminal(options.output); !fits) return fits;
   const auto bytes = read_file(options.input);
   if (!bytes) return tl::unexpected(bytes.error());
   auto player = StreamPlayer::open({reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()}, options.replica);
@@ -151,7 +157,12 @@ Outcome run(const DecodeOptions& options) {
   report.stream = {player->header_bytes(), bytes->size()};
   if (report.traffic) report.client = options.replica.interpolation;
   if (auto done = decode_all(*player, *writer, options, report); !done) return done;
-  if (const auto rest = player->next_tick(); rest && !*rest && !player->complete()) {
+  const auto rest = player->next_tick();
+  if (!rest && is_cut(rest.error())) {
+    warn_cut_stream(options.input, rest.error());
+    report.warnings.emplace_back("the stream ends inside a record; everything up to there was decoded");
+  }
+  if (rest && !*rest && !player->complete()) {
     report.warnings.emplace_back("the stream has no trailer: its writer did not finish");
   }
   if (auto kept = output->keep(); !kept) return kept;

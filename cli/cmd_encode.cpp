@@ -113,6 +113,7 @@ Outcome encode_all(TraceReader& reader, Session& session, TraceFrame& frame, con
 }
 
 Outcome run(const EncodeOptions& options) {
+  if (auto fits = check_no_terminal(options.output); !fits) return fits;
   auto reader = TraceReader::open(options.input);
   if (!reader) return refuse(options.input, reader.error());
   TraceFrame frame;
@@ -138,13 +139,15 @@ Outcome run(const EncodeOptions& options) {
     report.timings = {{"encode", "encode, per tick"}, {"decode", "decode, per packet"}};
   }
   add_meshes(reader->info(), options.meshes, options.triggers, report);
+  for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.coding().profile == MeshProfile::main;
   if (auto done = encode_all(*reader, *session, frame, options, report); !done) return done;
   if (auto whole = check_ending(options.input, *reader, report.ticks.count()); !whole) return whole;
   if (reader->cut_short()) report.warnings.emplace_back("the trace ends without its index; everything up to there was encoded");
   if (auto kept = output->keep(); !kept) return kept;
   report.stream = {session->writer.header_bytes(), session->writer.bytes()};
+  report.bounds_from = options.triggers.any_given() || options.meshes.any_given() ? "options" : "defaults";
   print(report, options.common, beside(options.output));
-  return {};
+  return verdict(report, options.output);
 }
 
 }  // namespace

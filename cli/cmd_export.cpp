@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/cmd_export.h"
 
-#include "cli/options_codec.h"
+#include "cli/report.h"
 #include "cli/trace_ending.h"
 #include "codec/trace/csv.h"
 #include "codec/trace/trace_file.h"
@@ -11,21 +11,26 @@ namespace {
 
 struct ExportOptions {
   std::string input, output = "-";
-  bool force = false;
+  CommonOptions common;
 };
 
 Outcome run(const ExportOptions& options) {
   auto reader = TraceReader::open(options.input);
   if (!reader) return refuse(options.input, reader.error());
-  auto output = OutputFile::create(options.output, options.force ? OutputFile::Existing::replace : OutputFile::Existing::keep,
-                                   {options.input});
+  auto output = OutputFile::create(options.output, options.common.existing(), {options.input});
   if (!output) return tl::unexpected(output.error());
   const auto stream = output->open();
   if (!stream) return tl::unexpected(stream.error());
-  const auto rows = export_csv(*reader, **stream);
+  Report report{.command = "export csv", .files = {{"trace", options.input}, {"table", options.output}}};
+  report.timings = {{"export", "export, whole file"}};
+  const auto rows = report.timings[0].times.measure([&] { return export_csv(*reader, **stream); });
   if (!rows) return refuse((*stream)->fail() ? options.output : options.input, rows.error());
-  if (auto whole = check_ending(options.input, *reader, *rows); !whole) return whole;
-  return output->keep();
+  if (auto whole = check_ending(options.input, *reader, rows->count()); !whole) return whole;
+  if (auto kept = output->keep(); !kept) return kept;
+  report.describe(reader->info());
+  report.ticks = *rows;
+  if (options.common.json || options.output != "-") print(report, options.common, beside(options.output));
+  return {};
 }
 
 }  // namespace
@@ -37,7 +42,7 @@ void setup_export(Command& app, Action& action) {
   Command& command = group.add_command("csv", "One row per tick, 17 significant digits; rigid objects and users, no meshes");
   command.add_option("TRACE", options->input, "Trace to export (MCAP), - is standard input")->type_name("")->required();
   command.add_option("-o,--output", options->output, "CSV to write [standard output]")->type_name("FILE");
-  command.add_flag("-f,--force", options->force, "Replace an output file that is there already");
+  add_output_options(command, options->common);
   command.footer("Example:\n  tactus export csv push.mcap -o push.csv");
   on_chosen<ExportOptions>(command, action, options, run);
 #ifdef TACTUS_HAS_SURFACE

@@ -2,10 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 
 #include "cli/cmd_export.h"
-#include "cli/options_codec.h"
+#include "cli/report.h"
 #include "cli/trace_ending.h"
 #include "codec/trace/trace_file.h"
 #include "sim/surface/surface_file.h"
@@ -17,6 +18,7 @@ namespace fs = std::filesystem;
 
 struct ExportMeshOptions {
   std::string input, output, mesh, format = "obj";
+  CommonOptions common;
 };
 
 /// Files of a folder that appears under its name when all are written.
@@ -72,20 +74,35 @@ Outcome run(const ExportMeshOptions& options) {
   const TriMesh& rest = reader->info().meshes[*index].rest;
   TriMesh shape = rest;
   TraceFrame frame;
-  std::uint64_t ticks = 0;
-  for (std::size_t count = 0;; ++ticks) {
+  Report report{.command = "export mesh", .files = {{"trace", options.input}, {"frames", options.output}}};
+  report.timings = {{"write", "write, per frame"}};
+  std::uint64_t count = 0;
+  while (true) {
     const auto more = reader->next(frame);
     if (!more) return refuse(options.input, more.error());
     if (!*more) break;
+    report.ticks.add(frame.tick);
     if (!frame.meshes[*index].updated) continue;
     const std::vector<float>& u = frame.meshes[*index].displacements;
     for (std::size_t v = 0; v < shape.vertices.size(); ++v)
       shape.vertices[v] = rest.vertices[v] + Vec3{u[3 * v], u[3 * v + 1], u[3 * v + 2]};
     const std::string file = folder.file(fmt::format("frame-{:06}.{}", count++, options.format));
-    if (const auto written = write_surface(file, shape); !written) return refuse(to_string(written.error()), "");
+    errno = 0;
+    const auto written = report.timings[0].times.measure([&] { return write_surface(file, shape); });
+    if (!written && written.error().error.code == Errc::io) return refuse_io(options.output, "cannot be written", errno);
+    if (!written) return refuse(to_string(written.error()), "");
   }
-  if (auto whole = check_ending(options.input, *reader, ticks); !whole) return whole;
-  return folder.keep();
+  if (auto whole = check_ending(options.input, *reader, report.ticks.count()); !whole) return whole;
+  if (auto kept = folder.keep(); !kept) return kept;
+  const TraceInfo& info = reader->info();
+  report.describe(info);
+  report.meshes.push_back({.name = info.meshes[*index].name,
+                           .vertices = rest.vertices.size(),
+                           .triangles = rest.triangles.size(),
+                           .frames = count,
+                           .frame_period = info.meshes[*index].period / info.tick_rate});
+  print(report, options.common, Destination::standard_output);
+  return {};
 }
 
 }  // namespace
@@ -100,6 +117,7 @@ void setup_export_mesh(Command& group, Action& action) {
   command.add_option("--format", options->format, "Kind of files: obj or ply [obj]")
       ->check(one_of({"obj", "ply"}))
       ->type_name("");
+  add_report_options(command, options->common);
   command.footer("Example:\n  tactus export mesh replica.mcap --format ply -o shapes");
   on_chosen<ExportMeshOptions>(command, action, options, run);
 }

@@ -131,6 +131,7 @@ void list_presets() {
 }
 
 Outcome run(const ImportOptions& options) {
+  if (auto fits = check_no_terminal(options.output); !fits) return fits;
   if (options.list_presets) {
     list_presets();
     return {};

@@ -10,8 +10,11 @@
 #include <optional>
 
 #include "cli/figures.h"
+#include "cli/info_json.h"
+#include "cli/json_parts.h"
 #include "cli/option_needs.h"
 #include "cli/output.h"
+#include "cli/rereadable_input.h"
 #include "cli/table.h"
 #include "cli/trace_ending.h"
 #include "codec/trace/compare.h"
@@ -28,22 +31,10 @@ using Json = nlohmann::ordered_json;
 
 struct InfoOptions {
   std::string input;
+  std::string readable;  // where to read it, again and again
   bool packets = false, json = false;
   const Command* command = nullptr;
 };
-
-constexpr std::array<const char*, 4> kReasons{"request", "heartbeat", "visual", "haptic"};  // index: Reason
-
-constexpr std::array<const char*, 3> kHalves{"haptic", "visual", "-"};  // index: MeshHalf
-
-Outcome show(const Json& info, bool as_json, void (*print_text)(const Json&)) {
-  if (as_json) {
-    fmt::print("{}\n", info.dump(2));
-  } else {
-    print_text(info);
-  }
-  return {};
-}
 
 std::string text_of(const Json& value) {
   if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
@@ -54,7 +45,7 @@ std::string text_of(const Json& value) {
 /// Scalars of an object as "name value" lines.
 void print_scalars(const Json& object) {
   for (const auto& [name, value] : object.items()) {
-    if (value.is_primitive() && name != "schema") fmt::print("{:<30} {}\n", name, text_of(value));
+    if (value.is_primitive()) fmt::print("{:<30} {}\n", name, text_of(value));
   }
 }
 
@@ -99,65 +90,34 @@ Json packet_json(const StreamPlayer::Played& played, const StreamHeader& header)
     updates += fmt::format("{}{}:{}", updates.empty() ? "" : " ", u.object, u.level);
   out["object:level"] = updates.empty() ? "-" : updates;
   if (!header.meshes.empty()) {
-    out["half"] = is_rigid ? "-" : kHalves[static_cast<std::size_t>(played.mesh.half)];
+    out["half"] = is_rigid || played.mesh.half == MeshHalf::whole ? "-" : kHalves[static_cast<std::size_t>(played.mesh.half)];
     out["vertices"] = is_rigid ? Json() : Json(played.mesh.updates);
   }
   return out;
 }
 
-/// Sizes of packets.
-struct Sizes {
-  std::uint64_t packets = 0, bytes = 0;
-  std::size_t smallest = SIZE_MAX, largest = 0;
+std::string text_of(const Sizes& sizes) {
+  if (sizes.packets == 0) return "-";
+  return fmt::format("{} to {}, mean {:.2f}", sizes.smallest, sizes.largest,
+                     static_cast<double>(sizes.bytes) / static_cast<double>(sizes.packets));
+}
 
-  void add(std::size_t size) {
-    ++packets;
-    bytes += size;
-    smallest = std::min(smallest, size);
-    largest = std::max(largest, size);
+/// What is said of rigid objects' packets.
+void show_rigid(const StreamTotals& totals, Json& out) {
+  const Traffic& traffic = totals.traffic;
+  out["packets"] = traffic.all_packets();
+  out["updates"] = traffic.updates;
+  out["key packets"] = traffic.keys;
+  if (traffic.all_packets() == 0) return;
+  for (std::size_t i = kReasons.size(); i-- > 0;) out[fmt::format("for {}", kReasons[i])] = traffic.packets[i];
+  out["bytes"] = traffic.bytes;
+  out["bytes per packet"] = text_of(totals.rigid);
+  std::string text;
+  for (std::size_t i = 0; i < totals.levels.size(); ++i) {
+    if (totals.levels[i] > 0) text += fmt::format("{}{} x level {}", text.empty() ? "" : ", ", totals.levels[i], i);
   }
-  std::string text() const {
-    if (packets == 0) return "-";
-    return fmt::format("{} to {}, mean {:.2f}", smallest, largest, static_cast<double>(bytes) / static_cast<double>(packets));
-  }
-};
-
-/// Totals over a stream's packets.
-struct StreamTotals {
-  explicit StreamTotals(const StreamHeader& header) : meshes(header.meshes.size()) {}
-
-  Traffic traffic;
-  std::array<std::uint64_t, 8> levels{};
-  std::int64_t last_tick = 0;
-  Sizes rigid;
-  std::vector<MeshTraffic> meshes;
-
-  void add(const StreamPlayer::Played& p) {
-    last_tick = p.tick();
-    if (p.part > 0) return meshes[p.part - 1].add(p.bytes, p.mesh.updates, p.mesh.key, p.mesh.half);
-    traffic.add(strongest_reason(p.packet), p.packet.updates.size(), p.bytes, p.packet.key);
-    for (const RigidUpdate& u : p.packet.updates) ++levels[u.level % levels.size()];
-    rigid.add(p.bytes);
-  }
-  void write_to(Json& out) const {
-    if (traffic.all_packets() > 0 || meshes.empty()) write_rigid(out);
-    out["last tick"] = last_tick;
-  }
-  void write_rigid(Json& out) const {
-    out["packets"] = traffic.all_packets();
-    out["updates"] = traffic.updates;
-    out["key packets"] = traffic.keys;
-    if (traffic.all_packets() == 0) return;
-    for (std::size_t i = kReasons.size(); i-- > 0;) out[fmt::format("for {}", kReasons[i])] = traffic.packets[i];
-    out["bytes"] = traffic.bytes;
-    out["bytes per packet"] = rigid.text();
-    std::string text;
-    for (std::size_t i = 0; i < levels.size(); ++i) {
-      if (levels[i] > 0) text += fmt::format("{}{} x level {}", text.empty() ? "" : ", ", levels[i], i);
-    }
-    out["grid levels"] = text;
-  }
-};
+  out["grid levels"] = text;
+}
 
 /// How a mesh is coded, and what of it the stream holds.
 Json mesh_json(const MeshObject& mesh, const StreamHeader& header, const MeshTraffic& t) {
@@ -187,11 +147,12 @@ Json half_json(const MeshTraffic& t) {
   return out;
 }
 
-Json header_json(const StreamHeader& h, std::size_t size) {
+Json header_json(const StreamHeader& h, std::uint64_t header_bytes, std::size_t size) {
   const auto step = [](std::uint8_t exponent) { return 1.0 / static_cast<double>(std::uint64_t{1} << exponent); };
-  Json out{{"schema", "tactus.info/1"}, {"kind", "stream"}};
+  Json out{{"kind", "stream"}};
   if (!h.objects.empty() || h.meshes.empty()) out["rigid profile"] = h.profile == Profile::thesis ? "thesis" : "main";
   out["file bytes"] = size;
+  out["header bytes"] = header_bytes;
   out["ticks per second"] = h.tick_rate;
   out["position grid [um]"] = 1e6 * step(h.grid.position);
   out["rotation grid [urad]"] = 4e6 * step(h.grid.rotation);
@@ -200,12 +161,21 @@ Json header_json(const StreamHeader& h, std::size_t size) {
   return out;
 }
 
+/// A stream that was cut is told of like a trace that was: everything before can be used.
+Outcome end_of(const InfoOptions& options, const std::optional<Error>& error) {
+  if (!error) return {};
+  if (error->rule != std::string_view("R-FIL-2")) return refuse(options.input, *error);
+  std::fflush(stdout);
+  warn_cut_stream(options.input, *error);
+  return {};
+}
+
 Outcome info_stream(const InfoOptions& options) {
-  const auto bytes = read_file(options.input);
+  const auto bytes = read_file(options.readable);
   if (!bytes) return tl::unexpected(bytes.error());
   auto player = StreamPlayer::open({reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()});
   if (!player) return refuse(options.input, player.error());
-  Json info = header_json(player->header(), bytes->size());
+  Json info = header_json(player->header(), player->header_bytes(), bytes->size());
   StreamTotals totals(player->header());
   Json packets = Json::array();
   std::optional<Error> error;
@@ -214,9 +184,16 @@ Outcome info_stream(const InfoOptions& options) {
     if (!played) error = played.error();
     if (!played || !*played) break;
     totals.add(**played);
-    if (options.packets) packets.push_back(packet_json(**played, player->header()));
+    if (options.packets) packets.push_back(options.json ? packet_info_json(**played) : packet_json(**played, player->header()));
   }
-  totals.write_to(info);
+  if (options.json) {
+    info = stream_info_json(*player, totals, bytes->size(), {error, player->complete()});
+    if (options.packets) info["packet_list"] = std::move(packets);
+    fmt::print("{}\n", text_of_json(info));
+    return end_of(options, error);
+  }
+  if (totals.traffic.all_packets() > 0 || totals.meshes.empty()) show_rigid(totals, info);
+  info["last tick"] = totals.last_tick;
   info["ending"] = error                ? fmt::format("broken at {} ({})", place_of_bit(error->bit_offset), error->rule)
                    : player->complete() ? "complete"
                                         : "no trailer: the writer did not finish";
@@ -235,13 +212,14 @@ Outcome info_stream(const InfoOptions& options) {
     if (is_split) info["meshes"].back().update(half_json(totals.meshes[i]));
   }
   if (options.packets) info["packet list"] = std::move(packets);
-  if (auto shown = show(info, options.json, print_info); !shown || !error) return shown;
-  return refuse(options.input, *error);
+  print_info(info);
+  return end_of(options, error);
 }
 
 /// Topics with their types and message counts, from the container alone.
-tl::expected<Json, Failure> channels_json(const std::string& path) {
-  auto source = ByteSource::open_file(path);
+tl::expected<Json, Failure> channels_json(const InfoOptions& options) {
+  const std::string& path = options.input;
+  auto source = ByteSource::open_file(options.readable);
   if (!source) return refuse(path, source.error());
   auto reader = mcap::Reader::open(std::move(*source));
   if (!reader) return refuse(path, reader.error());
@@ -263,7 +241,7 @@ tl::expected<Json, Failure> channels_json(const std::string& path) {
 }
 
 Outcome info_trace(const InfoOptions& options) {
-  auto reader = TraceReader::open(options.input);
+  auto reader = TraceReader::open(options.readable);
   if (!reader) return refuse(options.input, reader.error());
   const TraceInfo& trace = reader->info();
   note_idle_options(*options.command, subjects_of(trace), "trace");
@@ -278,8 +256,15 @@ Outcome info_trace(const InfoOptions& options) {
     for (std::size_t i = 0; i < shapes.size(); ++i) shapes[i] += frame.meshes[i].updated ? 1U : 0U;
     if (frames++ == 0) first = frame.tick;
   }
-  Json info{{"schema", "tactus.info/1"},
-            {"kind", "trace"},
+  auto channels = channels_json(options);
+  if (!channels) return tl::unexpected(channels.error());
+  if (options.json) {
+    Json info = trace_info_json(trace, {frames, first, frame.tick, !reader->cut_short(), shapes});
+    info["channels"] = std::move(*channels);
+    fmt::print("{}\n", text_of_json(info));
+    return check_ending(options.input, *reader, frames);
+  }
+  Json info{{"kind", "trace"},
             {"source", trace.source},
             {"ticks per second", trace.tick_rate},
             {"frames", frames},
@@ -299,10 +284,8 @@ Outcome info_trace(const InfoOptions& options) {
                               {"new shapes", shapes[i]}});
   }
   for (const std::string& user : trace.users) info["users"].push_back({{"user", user}});
-  auto channels = channels_json(options.input);
-  if (!channels) return tl::unexpected(channels.error());
   info["channels"] = std::move(*channels);
-  if (auto shown = show(info, options.json, print_info); !shown) return shown;
+  print_info(info);
   return check_ending(options.input, *reader, frames);
 }
 
@@ -311,8 +294,11 @@ Outcome info_scene(const InfoOptions& options) {
   const auto scene = load_scene(options.input);
   if (!scene) return refuse(to_string(scene.error()), "");
   note_idle_options(*options.command, {}, "scene");
-  Json info{{"schema", "tactus.info/1"},
-            {"kind", "scene"},
+  if (options.json) {
+    fmt::print("{}\n", text_of_json(scene_info_json(*scene)));
+    return {};
+  }
+  Json info{{"kind", "scene"},
             {"name", scene->name},
             {"seconds", scene->duration},
             {"floor", scene->floor ? fmt::format("at {} m", *scene->floor) : "none"}};
@@ -343,7 +329,8 @@ Outcome info_scene(const InfoOptions& options) {
                                    {"coupling [N/m]", d.stiffness}});
   }
   for (const SceneUser& u : scene->users) info["users"].push_back({{"user", u.name}, {"phases of the path", u.path.size()}});
-  return show(info, options.json, print_info);
+  print_info(info);
+  return {};
 }
 #endif
 
@@ -351,11 +338,15 @@ Outcome run(const InfoOptions& options) {
 #ifdef TACTUS_HAS_SIM
   if (options.input.ends_with(".toml")) return info_scene(options);
 #endif
-  std::ifstream file(options.input, std::ios::binary);
+  const auto input = RereadableInput::open(options.input);
+  if (!input) return tl::unexpected(input.error());
+  InfoOptions readable = options;
+  readable.readable = input->path();
+  std::ifstream file(readable.readable, std::ios::binary);
   std::string magic(mcap::kMagic.size(), '\0');
   file.read(magic.data(), static_cast<std::streamsize>(magic.size()));
-  if (magic.substr(0, 5) == "\x89MCAP") return info_trace(options);
-  return info_stream(options);
+  if (magic.substr(0, 5) == "\x89MCAP") return info_trace(readable);
+  return info_stream(readable);
 }
 
 }  // namespace
@@ -364,7 +355,11 @@ void setup_info(Command& app, Action& action) {
   auto options = std::make_shared<InfoOptions>();
   Command& command = app.add_command("info", "Tell what a stream, trace or scene holds");
   options->command = &command;
-  command.add_option("FILE", options->input, "Stream (.tct), trace (.mcap) or scene (.toml)")->type_name("")->required();
+  command
+      .add_option("FILE", options->input,
+                  "Stream (.tct), trace (.mcap) or scene (.toml); - is a stream or trace on standard input")
+      ->type_name("")
+      ->required();
   command.add_flag("--packets", options->packets, "List every packet of a stream");
   command.add_flag("--json", options->json, "As JSON");
   command.footer("Example:\n  tactus info push.tct --packets");

@@ -40,7 +40,11 @@ struct MeshOptions {
 /// What became of the input, and how long each part took.
 struct MeshReport {
   TetMesh mesh;
-  std::vector<std::pair<std::string, std::string>> notes;
+  struct Note {
+    std::string key, name, text;
+    std::uint64_t number;
+  };
+  std::vector<Note> notes;
   std::vector<std::pair<std::string, StepTimes>> times;
 
   template <class Work>
@@ -79,7 +83,8 @@ Outcome read_tets(const MeshOptions& options, MeshReport& report) {
   auto file = report.measure("read", [&] { return read_tet_mesh(options.input); });
   if (!file) return refuse(to_string(file.error()), "");
   if (file->ignored_elements > 0)
-    report.notes.emplace_back("left out", counted(file->ignored_elements, "element") + " that are no tetrahedra");
+    report.notes.push_back({"ignored_elements", "left out",
+                            counted(file->ignored_elements, "element") + " that are no tetrahedra", file->ignored_elements});
   report.mesh = std::move(file->mesh);
   scale(report.mesh.vertices, options.length_unit);
   return {};
@@ -92,9 +97,11 @@ double volume_of_edge(double edge) { return edge * edge * edge / (6 * std::numbe
 Outcome fill_surface(const MeshOptions& options, MeshReport& report) {
   auto file = report.measure("read", [&] { return read_surface(options.input); });
   if (!file) return refuse(to_string(file.error()), "");
-  if (file->polygons > 0) report.notes.emplace_back("cut", counted(file->polygons, "polygon") + " into triangles");
+  if (file->polygons > 0)
+    report.notes.push_back({"cut_polygons", "cut", counted(file->polygons, "polygon") + " into triangles", file->polygons});
   if (file->unused_vertices > 0)
-    report.notes.emplace_back("left out", counted(file->unused_vertices, "vertex") + " of no triangle");
+    report.notes.push_back(
+        {"unused_vertices", "left out", counted(file->unused_vertices, "vertex") + " of no triangle", file->unused_vertices});
   scale(file->mesh.vertices, options.length_unit);
   const FillOptions settings{.boundary = options.split_surface ? Boundary::split : Boundary::keep,
                              .max_volume = volume_of_edge(options.edge),
@@ -147,10 +154,10 @@ Json to_json(const MeshOptions& options, const MeshReport& report) {
   const Bounds box = bounds(report.mesh.vertices);
   double sum = 0;
   for (std::size_t t = 0; t < report.mesh.tets.size(); ++t) sum += volume(report.mesh, t);
-  Json out{{"schema", "tactus.mesh/1"},
-           {"input", options.slab.empty() ? options.input : "slab " + options.slab},
-           {"output", options.output}};
-  for (const auto& [name, text] : report.notes) out["notes"][name] = text;
+  Json out{{"schema", "tactus.mesh/2"}, {"files", {{"output", options.output}}}};
+  if (options.slab.empty()) out["files"]["input"] = options.input;
+  else out["slab"] = options.slab;
+  for (const MeshReport::Note& note : report.notes) out[note.key] = note.number;
   out["vertices"] = report.mesh.vertices.size();
   out["tetrahedra"] = report.mesh.tets.size();
   out["surface_vertices"] = outside.mesh.vertices.size();
@@ -164,12 +171,12 @@ Json to_json(const MeshOptions& options, const MeshReport& report) {
   return out;
 }
 
-void print_text(const Json& r, const MeshReport& report) {
+void print_text(const Json& r, const MeshReport& report, const MeshOptions& options) {
   Table head;
   head.heading({"mesh"});
-  head.row({fmt::format("  {:<8} {}", "from", r["input"].get<std::string>())});
-  head.row({fmt::format("  {:<8} {}", "to", r["output"].get<std::string>())});
-  for (const auto& [name, text] : report.notes) head.row({fmt::format("  {:<8} {}", name, text)});
+  head.row({fmt::format("  {:<8} {}", "from", options.slab.empty() ? options.input : "slab " + options.slab)});
+  head.row({fmt::format("  {:<8} {}", "to", options.output)});
+  for (const MeshReport::Note& note : report.notes) head.row({fmt::format("  {:<8} {}", note.name, note.text)});
   head.print(stdout);
   fmt::print("\n");
 
@@ -214,8 +221,8 @@ Outcome run(const MeshOptions& options) {
   if (auto written = report.measure("write", [&] { return write_mesh(options, report.mesh); }); !written) return written;
   if (options.common.quiet && !options.common.json) return {};
   const Json figures = to_json(options, report);
-  if (options.common.json) fmt::print("{}\n", figures.dump(2));
-  else print_text(figures, report);
+  if (options.common.json) fmt::print("{}\n", text_of_json(figures));
+  else print_text(figures, report, options);
   return {};
 }
 

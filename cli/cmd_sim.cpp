@@ -10,6 +10,7 @@
 #include "cli/option_needs.h"
 #include "cli/report.h"
 #include "cli/stiffness_map.h"
+#include "cli/stop.h"
 #include "cli/table.h"
 #include "cli/trace_ending.h"
 #include "codec/trace/trace_file.h"
@@ -163,7 +164,8 @@ Outcome finish(Run& run, const SimOptions& options) {
 
 Outcome simulate(Run& run, std::int64_t ticks, const SimOptions& options, Report& report) {
   Progress progress("sim", static_cast<std::uint64_t>(ticks), options.common.progress());
-  for (std::int64_t i = 0; i < ticks; ++i) {
+  const StopOnSignal stop;
+  for (std::int64_t i = 0; i < ticks && StopOnSignal::caught() == 0; ++i) {
     if (run.recording) {
       const auto more = run.recording->next(run.recorded);
       if (!more) return refuse_after(refuse(options.replay, more.error()).value(), run, report);
@@ -218,7 +220,8 @@ void describe_deformables(const Simulation& simulation, Report& report) {
                                   .method = object.method,
                                   .reason = object.reason,
                                   .vertices = object.vertices,
-                                  .step = object.step});
+                                  .step = object.step,
+                                  .h_omega = object.step * object.largest_frequency});
   report.timings.push_back({"deform", "deform, per step"});
 }
 
@@ -256,7 +259,18 @@ Outcome draw_stiffness(const Scene& scene, const SimOptions& options, StepTimes&
   return {};
 }
 
+/// All was closed in order, but not all was done.
+tl::unexpected<Failure> stopped(int signal, const Report& report, const SimOptions& options) {
+  Failure failure{fmt::format("stopped at {:.2f} s, {} is complete up to there", report.seconds(),
+                              options.output == "-" ? "the trace" : options.output),
+                  ""};
+  failure.cause = Failure::Cause::stopped;
+  failure.signal = signal;
+  return tl::unexpected(std::move(failure));
+}
+
 Outcome run(const SimOptions& options) {
+  if (auto fits = check_no_terminal(options.output); !fits) return fits;
   if (options.duration >= 0 && options.duration < 0.5 / kTickRate)
     return refuse_arguments("--duration: shorter than a tick", "Give at least 1ms.");
   if (options.duration * kTickRate > kMostTicks)
@@ -314,6 +328,7 @@ Outcome run(const SimOptions& options) {
   report_errors(session.simulation, report);
   report.timings.push_back(std::move(map));
   print(report, options.common, beside(options.output));
+  if (const int signal = StopOnSignal::caught(); signal != 0) return stopped(signal, report, options);
   return {};
 }
 

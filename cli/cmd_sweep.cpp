@@ -6,13 +6,16 @@
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
+#include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <system_error>
 #include <thread>
 
 #include "cli/child_process.h"
 #include "cli/options_codec.h"
+#include "cli/plot.h"
 #include "cli/sweep_plan.h"
 #include "cli/sweep_plots.h"
 #include "cli/sweep_results.h"
@@ -23,6 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
+
+constexpr int kBoundsBroken = 3;  // exit status
 
 struct SweepOptions {
   std::string plan, folder;
@@ -37,16 +42,28 @@ std::string as_typed(const std::vector<std::string>& words) {
   return out;
 }
 
-/// Run a command of this program.   err  it failed: the command and what it said
+/// What a command said on standard error, its error not as JSON.
+std::string in_words(std::string said) {
+  while (!said.empty() && said.back() == '\n') said.pop_back();
+  const std::size_t start = said.starts_with('{') ? 0 : said.find("\n{\n");
+  if (start == std::string::npos) return said;
+  const Json report = Json::parse(said.begin() + static_cast<std::ptrdiff_t>(start), said.end(), nullptr, false);
+  if (report.is_discarded() || !report.contains("error")) return said;
+  const Json& error = report["error"];
+  std::string out = said.substr(0, start) + (start > 0 ? "\n" : "") + "error: " + error.value("text", "");
+  if (error.contains("remedy")) out += "\n       " + error.value("remedy", "");
+  return out;
+}
+
+/// Run a command of this program. A report of broken bounds is one.   err  it failed: the command and what it said
 tl::expected<std::string, Failure> run_command(const std::vector<std::string>& words) {
   std::vector<std::string> arguments{own_program()};
   arguments.insert(arguments.end(), words.begin(), words.end());
   auto done = run_child(arguments);
   if (!done)
     return refuse(arguments[0] + ": the program cannot be started: " + done.error().message(), "Check the installation.");
-  if (done->status == 0) return std::move(done->out);
-  while (!done->error.empty() && done->error.back() == '\n') done->error.pop_back();
-  return refuse(as_typed(words) + "\n" + done->error, "");
+  if (done->status == 0 || done->status == kBoundsBroken) return std::move(done->out);
+  return refuse(as_typed(words) + "\n" + in_words(done->error), "");
 }
 
 /// The command that makes an input, writing to `file`.
@@ -108,7 +125,8 @@ class Workers {
   }
 
   std::size_t missing() const { return missing_.size(); }
-  const std::vector<Failure>& failures() const { return failures_; }
+  std::size_t failed() const { return failures_.size(); }
+  const Failure& first_failure() const { return failures_.begin()->second; }  ///< in the plan's order.   pre  failed() > 0
 
   void run(unsigned jobs) {
     std::vector<std::thread> threads;
@@ -124,9 +142,9 @@ class Workers {
       arguments.insert(arguments.end(), {"--json", "--quiet"});
       auto measured = run_command(arguments).and_then([&](const std::string& text) { return measure(plan_, words, text); });
       const std::lock_guard lock(mutex_);
-      if (!measured) failures_.push_back(measured.error());
+      if (!measured) failures_.emplace(missing_[i], measured.error());
       else if (auto kept = results_.add(plan_.values(missing_[i]), *measured); !kept) {
-        failures_.push_back(kept.error());
+        failures_.emplace(missing_[i], kept.error());
         stop_ = true;
       }
       progress_.update(++done_);
@@ -139,8 +157,8 @@ class Workers {
   std::vector<std::size_t> missing_;
   std::atomic<std::size_t> next_ = 0;
   std::atomic<bool> stop_ = false;
-  std::mutex mutex_;  // for what follows, and for results_ and progress_
-  std::vector<Failure> failures_;
+  std::mutex mutex_;                         // for what follows, and for results_ and progress_
+  std::map<std::size_t, Failure> failures_;  // point
   std::size_t done_ = 0;
 };
 
@@ -157,12 +175,12 @@ struct Summary {
 
 void print_summary(const SweepOptions& options, const SweepPlan& plan, const Summary& s) {
   if (options.common.json) {
-    fmt::print("{}\n", nlohmann::ordered_json{{"schema", "tactus.sweep-summary/1"},
+    fmt::print("{}\n", nlohmann::ordered_json{{"schema", "tactus.sweep-summary/2"},
                                               {"plan", plan.name},
                                               {"points", s.points},
                                               {"computed", s.computed},
                                               {"failed", s.failed},
-                                              {"seconds", s.seconds},
+                                              {"time_s", s.seconds},
                                               {"files", s.files}}
                            .dump(2));
     return;
@@ -193,28 +211,30 @@ Outcome run(const SweepOptions& options) {
   if (auto made = make_inputs(*plan, folder, options.common.progress()); !made) return made;
 
   Summary summary{.points = plan->points(), .files = {folder + "/points.csv", folder + "/context.json"}};
-  std::vector<Failure> failures;
+  std::optional<Failure> first;
   {
     const std::size_t before = results->rows(*plan).size();
     Progress progress("sweep " + plan->name, plan->points() - before, options.common.progress());
     Workers workers(*plan, *results, progress);
     workers.run(options.jobs > 0 ? options.jobs : std::max(1u, std::thread::hardware_concurrency()));
-    failures = workers.failures();
-    summary.failed = failures.size();
-    summary.computed = workers.missing() - failures.size();
+    summary.failed = workers.failed();
+    summary.computed = workers.missing() - summary.failed;
+    if (summary.failed > 0) first = workers.first_failure();
   }
-  if (failures.empty()) {  // plots are of whole tables
+  if (!first) {  // plots are of whole tables
     if (auto sorted = results->sort(*plan); !sorted) return sorted;
     auto drawn = draw_plots(*plan, *results);
     if (!drawn) return tl::unexpected(drawn.error());
     summary.files.insert(summary.files.end(), drawn->begin(), drawn->end());
+    const auto is_picture = [](const std::string& file) { return file.ends_with(".svg"); };
+    if (!plan->plots.empty() && std::none_of(drawn->begin(), drawn->end(), is_picture))
+      fmt::print(stderr, "note: {}\n", kNoGnuplot);
   }
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   print_summary(options, *plan, summary);
-  if (failures.empty()) return {};
-  return refuse(
-      fmt::format("{} of {} points failed, the first one:\n       {}", failures.size(), summary.points, failures[0].text),
-      failures[0].remedy.empty() ? "Run the sweep again once it is mended; finished points are kept." : failures[0].remedy);
+  if (!first) return {};
+  return refuse(fmt::format("{} of {} points failed, the first one:\n       {}", summary.failed, summary.points, first->text),
+                first->remedy.empty() ? "Run the sweep again once it is mended; finished points are kept." : first->remedy);
 }
 
 }  // namespace

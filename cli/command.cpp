@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/command.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <string>
+#include <string_view>
+
+#include "cli/json_parts.h"
 
 namespace tactus::cli {
 
@@ -127,9 +133,14 @@ Program::Program(std::unique_ptr<CLI::App> app) : Command(*app), owned_(std::mov
 Program::~Program() = default;
 
 Program::Parsed Program::parse(int argc, char** argv) {
+  wants_json_ = std::any_of(argv, argv + argc, [](std::string_view word) { return word == "--json"; });
   try {
     app_->parse(argc, argv);
   } catch (const CLI::ParseError& e) {
+    if (wants_json_ && e.get_exit_code() != 0) {
+      fmt::print(stderr, "{}\n", error_json({e.what(), "Run with --help for more information.", Failure::Cause::arguments}));
+      return Parsed::wrong;
+    }
     return app_->exit(e) == 0 ? Parsed::done : Parsed::wrong;
   }
   return Parsed::go_on;

@@ -92,12 +92,15 @@ class Program : public Command {
   Program(const std::string& name, const std::string& help, const std::string& version);
   ~Program();
   enum class Parsed { go_on, done, wrong };  ///< done: help or version was asked for and printed; wrong: said on standard error
+  /// Wrong use is told as JSON where --json stands among the arguments.
   Parsed parse(int argc, char** argv);
+  bool wants_json() const { return wants_json_; }
 
  private:
   explicit Program(std::unique_ptr<CLI::App> app);
 
   std::unique_ptr<CLI::App> owned_;
+  bool wants_json_ = false;
 };
 
 /// What a command does once it was chosen.

@@ -28,14 +28,14 @@ inline std::string duration(double seconds) {
   return seconds < 1 ? fmt::format("{:.1f} ms", 1e3 * seconds) : fmt::format("{:.2f} s", seconds);
 }
 
+inline constexpr std::array<const char*, 6> kDofNames{"x", "y", "z", "rx", "ry", "rz"};
 /// Along and about which axes an object can move.
 inline std::string dof_text(std::uint8_t dof) {
   if (dof == Dof::none) return "static";
   if (dof == Dof::all) return "all";
-  constexpr std::array<const char*, 6> kNames{"x", "y", "z", "rx", "ry", "rz"};
   std::string text;
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
-    if (dof >> i & 1u) text += (text.empty() ? "" : " ") + std::string(kNames[i]);
+  for (std::size_t i = 0; i < kDofNames.size(); ++i) {
+    if (dof >> i & 1u) text += (text.empty() ? "" : " ") + std::string(kDofNames[i]);
   }
   return text;
 }

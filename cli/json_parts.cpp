@@ -23,6 +23,15 @@ Json time_json(const StepTimes& t, double seconds) {
   return out;
 }
 
+std::string error_json(const Failure& failure) {
+  Json error{{"text", failure.text}};
+  for (const auto& [name, value] :
+       {std::pair("remedy", &Failure::remedy), std::pair("class", &Failure::error_class), std::pair("rule", &Failure::rule),
+        std::pair("file", &Failure::file), std::pair("place", &Failure::place)})
+    if (!(failure.*value).empty()) error[name] = failure.*value;
+  return text_of_json({{"schema", "tactus.error/1"}, {"error", std::move(error)}});
+}
+
 std::string text_of_json(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace); }
 
 }  // namespace tactus::cli

@@ -9,6 +9,7 @@
 #include "cli/cmd_export.h"
 #include "cli/cmd_import.h"
 #include "cli/cmd_info.h"
+#include "cli/json_parts.h"
 #include "cli/output.h"
 #include "cli/progress.h"
 #ifdef TACTUS_HAS_STUDY
@@ -25,15 +26,39 @@
 
 namespace {
 
-constexpr int kOk = 0, kFailed = 1, kUsage = 2;
+constexpr int kOk = 0, kFailed = 1, kUsage = 2, kBroken = 3, kSignal = 128;
 
-int report_failure(const tactus::cli::Failure& failure) {
+int status_of(const tactus::cli::Failure& failure) {
+  using Cause = tactus::cli::Failure::Cause;
+  switch (failure.cause) {
+    case Cause::work:
+      return kFailed;
+    case Cause::arguments:
+      return kUsage;
+    case Cause::bound:
+      return kBroken;
+    case Cause::stopped:
+      return kSignal + failure.signal;
+  }
+  return kFailed;
+}
+
+int report_failure(const tactus::cli::Failure& failure, bool as_json) {
   using tactus::cli::Failure;
   const bool coloured = tactus::cli::is_coloured(2);
+  if (as_json) {
+    std::fflush(stdout);
+    fmt::print(stderr, "{}\n", tactus::cli::error_json(failure));
+    return status_of(failure);
+  }
+  const char* label = failure.cause == Failure::Cause::bound     ? "broken:"
+                      : failure.cause == Failure::Cause::stopped ? ""
+                                                                 : "error:";
   std::fflush(stdout);  // what was printed comes first where both streams end in one place
-  fmt::print(stderr, "{}error:{} {}\n", coloured ? "\x1b[1;31m" : "", coloured ? "\x1b[0m" : "", failure.text);
+  const bool marked = coloured && *label != '\0';
+  fmt::print(stderr, "{}{}{}{}{}\n", marked ? "\x1b[1;31m" : "", label, marked ? "\x1b[0m" : "", *label ? " " : "", failure.text);
   if (!failure.remedy.empty()) fmt::print(stderr, "       {}\n", failure.remedy);
-  return failure.cause == Failure::Cause::arguments ? kUsage : kFailed;
+  return status_of(failure);
 }
 
 }  // namespace
@@ -49,7 +74,8 @@ int main(int argc, char** argv) {
       "  tactus decode push.tct -o replica.mcap --like push.mcap  see it as a client does\n"
       "  tactus compare push.mcap replica.mcap -p 4%              how far is that from the truth\n"
       "`tactus COMMAND --help` tells more. Quantities take units: 2deg, 5mm, 4%, 100ms, 0.05N.\n"
-      "Exit status: 0 done, 1 an input was refused or the work failed, 2 the arguments are wrong.");
+      "Exit status: 0 done, 1 an input was refused or the work failed, 2 the arguments are wrong,\n"
+      "3 done, but a bound that the stream promises or an option asks for is broken.");
   Action action;
 #ifdef TACTUS_HAS_SIM
   setup_sim(app, action);
@@ -78,5 +104,5 @@ int main(int argc, char** argv) {
   }
   Outcome outcome = action();
   if (outcome) outcome = check_standard_output();
-  return outcome ? kOk : report_failure(outcome.error());
+  return outcome ? kOk : report_failure(outcome.error(), app.wants_json());
 }

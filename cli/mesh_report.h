@@ -18,6 +18,9 @@ struct MeshReport {
   std::size_t vertices = 0, triangles = 0;  ///< triangles 0: not said
   std::optional<MeshTraffic> traffic{};
   std::optional<MeshFidelity> fidelity{};
+  std::uint64_t frames = 0;  ///< written or read; 0: not said
+  double frame_period = 0;   ///< [s] from one to the next, if frames
+  bool promised = true;      ///< the bounds are: false where they only decide what is sent
   StepTimes encode{}, decode{};
 };
 

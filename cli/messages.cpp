@@ -165,17 +165,48 @@ std::string place_of_bit(std::uint64_t bit_offset) {
 }
 
 tl::unexpected<Failure> refuse(const std::string& file, const std::string& place, const Error& error) {
-  const int cause = error.rule == std::string_view("R-TRC-1") ? errno : 0;
+  const int cause = error.code == Errc::io ? errno : 0;
   const auto* text = std::find_if(kRules.begin(), kRules.end(), [&](const RuleText& r) { return r.rule == error.rule; });
   const bool known = text != kRules.end();
-  return refuse(fmt::format("{}{}{}: {}{}{} ({}, {})", file, place.empty() ? "" : ", ", place,
-                            known ? text->broken : "breaks a rule of the specification", cause == 0 ? "" : ": ",
-                            cause == 0 ? "" : std::generic_category().message(cause), errc_name(error.code), error.rule),
-                known ? text->remedy : "");
+  auto refused = refuse(fmt::format("{}{}{}: {}{}{} ({}, {})", file, place.empty() ? "" : ", ", place,
+                                    known ? text->broken : "breaks a rule of the specification", cause == 0 ? "" : ": ",
+                                    cause == 0 ? "" : std::generic_category().message(cause), errc_name(error.code), error.rule),
+                        cause != 0 ? remedy_of(cause)
+                        : known    ? text->remedy
+                                   : "");
+  refused.value().file = file;
+  refused.value().place = place;
+  refused.value().error_class = errc_name(error.code);
+  refused.value().rule = error.rule;
+  return refused;
 }
 
 tl::unexpected<Failure> refuse(const std::string& file, const Error& error) {
   return refuse(file, place_of_bit(error.bit_offset), error);
+}
+
+std::string remedy_of(int cause) {
+  switch (cause) {
+    case ENOSPC:
+    case EDQUOT:
+      return "Make room on this disk, or write to another one.";
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return "Check that you may use this file and its folder.";
+    case ENOENT:
+    case ENOTDIR:
+      return "Check that the path is right.";
+    default:
+      return "Check that the path is right and that you may use it.";
+  }
+}
+
+tl::unexpected<Failure> refuse_io(const std::string& file, const std::string& what, int cause) {
+  auto refused = refuse(file + ": " + what + ": " + std::generic_category().message(cause), remedy_of(cause));
+  refused.value().file = file;
+  refused.value().error_class = errc_name(Errc::io);
+  return refused;
 }
 
 tl::unexpected<Failure> refuse(std::string text, std::string remedy) {

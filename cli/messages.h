@@ -12,10 +12,13 @@ namespace tactus::cli {
 
 /// Why a command failed. Ready to print.
 struct Failure {
-  enum class Cause { work, arguments };
+  enum class Cause { work, arguments, bound, stopped };
   std::string text;    ///< "s.tct, byte 132: the check value of a record does not match (checksum, R-FIL-5)"
   std::string remedy;  ///< one sentence; may be empty
   Cause cause = Cause::work;
+  int signal = 0;  ///< that stopped the work
+  /// Of what the text says, as far as it says them: for --json.
+  std::string file{}, place{}, error_class{}, rule{};
 };
 using Outcome = tl::expected<void, Failure>;
 
@@ -27,6 +30,10 @@ inline std::string place_of_tick(std::int64_t tick) { return "tick " + std::to_s
 tl::unexpected<Failure> refuse(const std::string& file, const std::string& place, const Error& error);
 /// The same with the place that the error itself carries.
 tl::unexpected<Failure> refuse(const std::string& file, const Error& error);
+/// What to do about an operation on a file that failed for this reason (errno).
+std::string remedy_of(int cause);
+/// A file cannot be read or written.   in  what  "cannot be written";  cause  errno
+tl::unexpected<Failure> refuse_io(const std::string& file, const std::string& what, int cause);
 /// A failure of the program's own, without a rule.
 tl::unexpected<Failure> refuse(std::string text, std::string remedy);
 /// Arguments that are wrong whatever the files hold: a mistake of usage, as those that are found while the line is parsed.

@@ -2,6 +2,7 @@
 #include "cli/options_codec.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
@@ -57,6 +58,12 @@ Check one_of(const std::vector<std::string>& names) {
   };
 }
 
+Outcome check_no_terminal(const std::string& output) {
+  if (output != "-" || isatty(STDOUT_FILENO) == 0) return {};
+  return refuse_arguments("-o -: standard output is a terminal, and what is written is no text",
+                          "Name a file, or lead the output into one or into another command.");
+}
+
 void add_report_options(Command& app, CommonOptions& options) {
   options.command = &app;
   app.add_flag("--json", options.json, "Report as JSON, in SI units");
@@ -80,27 +87,27 @@ void TriggerArguments::add_to(Command& app) {
   length_unit_option_ = add_quantity(app, "--length-unit", length_unit_, Dimension::length,
                                      "Metres per unit of lengths typed without a unit in --visual and --fixed [1m]")
                             ->check(above_zero(Dimension::length));
-  options_ = {
-      deadband_,
-      visual_option_,
-      app.add_option("--haptic", rule, "Permitted error of force: isotropic, cone, fixed or off [isotropic]")
-          ->check(one_of({"isotropic", "cone", "fixed", "off"}))
-          ->type_name("RULE"),
-      add_quantity(app, "--alpha", triggers_.cone_angle, Dimension::angle,
-                   "Permitted force direction error of the rule cone [2.1deg]")
-          ->check(within(Dimension::angle, "0.001deg", "180deg")),
-      fixed_option_,
-      add_quantity(app, "--force-floor", triggers_.force_floor, Dimension::force,
-                   "Below this force the deadband is that of it [0.05N]")
-          ->check(above_zero(Dimension::force)),
-      length_unit_option_,
-  };
+  haptic_ = app.add_option("--haptic", rule, "Permitted error of force: isotropic, cone, fixed or off [isotropic]")
+                ->check(one_of({"isotropic", "cone", "fixed", "off"}))
+                ->type_name("RULE");
+  alpha_ = add_quantity(app, "--alpha", triggers_.cone_angle, Dimension::angle,
+                        "Permitted force direction error of the rule cone [2.1deg]")
+               ->check(within(Dimension::angle, "0.001deg", "180deg"));
+  floor_ = add_quantity(app, "--force-floor", triggers_.force_floor, Dimension::force,
+                        "Below this force the deadband is that of it [0.05N]")
+               ->check(above_zero(Dimension::force));
+  options_ = {deadband_, visual_option_, haptic_, alpha_, fixed_option_, floor_, length_unit_option_};
   app.on_parsed([this] { check_lengths(); });  // only now --length-unit is known
 }
 
 void TriggerArguments::check_lengths() const {
   check_bound(*visual_option_, visual_);
   check_bound(*fixed_option_, fixed_);
+  if (length_unit_option_->count() == 0) {
+    for (const auto& [option, bound] : {std::pair(visual_option_, visual_), std::pair(fixed_option_, fixed_)})
+      if (bound.length.bare && bound.length.value != 0)
+        refuse_option(option->name(), needs_unit(option->last(), Dimension::length));
+  }
   if (length_unit_option_->count() > 0 && !visual_.length.bare && !fixed_.length.bare)
     refuse_option("--length-unit", "needs a length without a unit in --visual or --fixed");
 }
@@ -122,7 +129,7 @@ void TriggerArguments::add_encoder_to(Command& app) {
   options_.push_back(app.add_flag("--no-reduction", no_reduction_, "Send every object in every tick"));
 }
 
-std::optional<double> TriggerArguments::weber_fraction(double otherwise) const {
+std::optional<double> TriggerArguments::weber_fraction(std::optional<double> otherwise) const {
   if (triggers_.haptic == HapticRule::off) return std::nullopt;
   return deadband_->count() > 0 ? triggers_.weber_fraction : otherwise;
 }
@@ -131,25 +138,32 @@ bool TriggerArguments::any_given() const {
   return std::any_of(options_.begin(), options_.end(), [](const Option* option) { return option->count() > 0; });
 }
 
-RigidTriggers TriggerArguments::triggers() const {
-  RigidTriggers out = triggers_;
+RigidTriggers TriggerArguments::over(RigidTriggers out) const {
   out.reduction = no_reduction_ ? Reduction::none : Reduction::dead_reckoning;
-  out.visual_position = scaled(visual_.length);
-  out.visual_rotation = visual_.angle.value;
-  out.fixed_position = scaled(fixed_.length);
-  out.fixed_rotation = fixed_.angle.value;
+  out.heartbeat = triggers_.heartbeat;
+  if (haptic_->count() > 0) out.haptic = triggers_.haptic;
+  if (deadband_->count() > 0) out.weber_fraction = triggers_.weber_fraction;
+  if (alpha_->count() > 0) out.cone_angle = triggers_.cone_angle;
+  if (floor_->count() > 0) out.force_floor = triggers_.force_floor;
+  if (visual_option_->count() > 0) {
+    out.visual_position = scaled(visual_.length);
+    out.visual_rotation = visual_.angle.value;
+  }
+  if (fixed_option_->count() > 0) {
+    out.fixed_position = scaled(fixed_.length);
+    out.fixed_rotation = fixed_.angle.value;
+  }
   return out;
 }
 
 void MeshArguments::add_to(Command& app) {
-  options_ = {
-      add_quantity(app, "--mesh-visual", thresholds_.visual, Dimension::length,
-                   "Permitted error of a vertex to the eye, 0: none beyond the grid's [0.25mm]")
-          ->check(within(Dimension::length, "0m", "1000000m")),
-      app.add_option("--rings", coding_.rings, "Rings of triangles around the touched one that -p holds in [3]")
-          ->check(whole_number(0, MeshObject::kMaxRings))
-          ->type_name("M"),
-  };
+  visual_ = add_quantity(app, "--mesh-visual", thresholds_.visual, Dimension::length,
+                         "Permitted error of a vertex to the eye, 0: none beyond the grid's [0.25mm]")
+                ->check(within(Dimension::length, "0m", "1000000m"));
+  rings_ = app.add_option("--rings", coding_.rings, "Rings of triangles around the touched one that -p holds in [3]")
+               ->check(whole_number(0, MeshObject::kMaxRings))
+               ->type_name("M");
+  options_ = {visual_, rings_};
 }
 
 void MeshArguments::add_encoder_to(Command& app) {
@@ -183,9 +197,9 @@ bool MeshArguments::any_given() const {
   return std::any_of(options_.begin(), options_.end(), [](const Option* option) { return option->count() > 0; });
 }
 
-MeshThresholds MeshArguments::thresholds(const TriggerArguments& triggers) const {
-  MeshThresholds out = thresholds_;
-  out.weber_fraction = triggers.weber_fraction(*MeshThresholds{}.weber_fraction);
+MeshThresholds MeshArguments::over(MeshThresholds out, const TriggerArguments& triggers) const {
+  if (visual_->count() > 0) out.visual = thresholds_.visual;
+  out.weber_fraction = triggers.weber_fraction(out.weber_fraction);
   return out;
 }
 

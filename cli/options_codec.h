@@ -23,6 +23,8 @@ struct CommonOptions {
   Visibility progress() const { return quiet || no_progress ? Visibility::hidden : Visibility::shown; }
   OutputFile::Existing existing() const { return force ? OutputFile::Existing::replace : OutputFile::Existing::keep; }
 };
+/// err  `output` is standard output and that a terminal: what the command writes is no text
+Outcome check_no_terminal(const std::string& output);
 void add_report_options(Command& app, CommonOptions& options);
 void add_output_options(Command& app, CommonOptions& options);  ///< those of add_report_options, and -f
 
@@ -33,10 +35,12 @@ class TriggerArguments {
   /// Options of the encoder itself, beyond the bounds.
   void add_encoder_to(Command& app);
   bool any_given() const;
-  RigidTriggers triggers() const;
+  RigidTriggers triggers() const { return over({}); }
+  /// The bounds that were typed, for the others those of `base`.
+  RigidTriggers over(RigidTriggers base) const;
   RigidEncoderOptions encoder() const { return {.triggers = triggers(), .key_interval = key_interval_}; }
   /// For meshes: what -p says, `otherwise` if it was not given; none if --haptic is off.
-  std::optional<double> weber_fraction(double otherwise) const;
+  std::optional<double> weber_fraction(std::optional<double> otherwise) const;
   double key_interval() const { return key_interval_; }
 
  private:
@@ -51,7 +55,8 @@ class TriggerArguments {
   double length_unit_ = 1;
   double key_interval_ = RigidEncoderOptions{}.key_interval;
   bool no_reduction_ = false;
-  const Option *deadband_ = nullptr, *visual_option_ = nullptr, *fixed_option_ = nullptr, *length_unit_option_ = nullptr;
+  const Option *deadband_ = nullptr, *haptic_ = nullptr, *alpha_ = nullptr, *floor_ = nullptr, *visual_option_ = nullptr,
+               *fixed_option_ = nullptr, *length_unit_option_ = nullptr;
   std::vector<const Option*> options_;
 };
 
@@ -62,7 +67,10 @@ class MeshArguments {
   /// Options of the encoder itself, beyond the bounds.
   void add_encoder_to(Command& app);
   bool any_given() const;
-  MeshThresholds thresholds(const TriggerArguments& triggers) const;
+  MeshThresholds thresholds(const TriggerArguments& triggers) const { return over({}, triggers); }
+  /// The bounds that were typed, for the others those of `base`.
+  MeshThresholds over(MeshThresholds base, const TriggerArguments& triggers) const;
+  std::uint8_t rings(std::uint8_t otherwise) const { return rings_->count() > 0 ? coding_.rings : otherwise; }
   MeshEncoderOptions encoder(const TriggerArguments& triggers) const;
   std::uint8_t rings() const { return coding_.rings; }
   MeshCoding coding() const;
@@ -72,6 +80,7 @@ class MeshArguments {
   MeshCoding coding_;
   std::uint32_t modes_ = 0;
   double visual_share_ = 1, haptic_share_ = 1;
+  const Option *visual_ = nullptr, *rings_ = nullptr;
   std::vector<const Option*> options_;
 };
 

@@ -19,8 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 tl::unexpected<Failure> refuse_io(const std::string& path, const std::string& what) {
-  return refuse(path + ": " + what + ": " + std::generic_category().message(errno),
-                "Check that the path is right and that you may use it.");
+  return tactus::cli::refuse_io(path, what, errno);
 }
 
 // Read by a signal handler: lock-free, and each path outlives its entry. More files than entries are left behind, no more.

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -182,7 +183,7 @@ Outcome PrecisionResults::append(const std::string& file, const std::string& hea
   std::ofstream out(file, std::ios::app);
   if (is_new) out << heading << '\n';
   out << line << '\n' << std::flush;
-  if (!out) return refuse(file + ": cannot be written", "Look for space on the disk.");
+  if (!out) return refuse_io(file, "cannot be written", errno);
   return {};
 }
 

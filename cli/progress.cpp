@@ -2,6 +2,7 @@
 #include "cli/progress.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,8 +13,17 @@
 namespace tactus::cli {
 namespace {
 
-constexpr std::size_t kWidth = 30;
+constexpr std::size_t kWidth = 30, kLeastWidth = 5;
+constexpr std::size_t kBeside = 23;  // columns for figures and blanks beside label and bar
 constexpr std::chrono::milliseconds kPeriod{100};
+
+/// Cells of a bar that leaves room for the rest of its line: a line that wraps cannot be drawn over.
+std::size_t width_beside(const std::string& label) {
+  winsize size{};
+  const bool is_known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  const std::size_t columns = is_known ? size.ws_col : 80, taken = label.size() + kBeside;
+  return std::clamp(columns > taken ? columns - taken : 0, kLeastWidth, kWidth);
+}
 
 bool is_capable_terminal(int stream) {
   const char* term = std::getenv("TERM");
@@ -52,10 +62,11 @@ void Progress::draw(std::uint64_t done, Clock::time_point now) {
     fmt::print(stderr, "\r{} {} in {:.0f} s\x1b[K", label_, done, seconds);
   } else {
     const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(*total_));
-    const auto filled = static_cast<std::size_t>(share * kWidth);
+    const std::size_t width = width_beside(label_);
+    const auto filled = static_cast<std::size_t>(share * static_cast<double>(width));
     const double left = share > 0 ? seconds / share - seconds : 0;
     fmt::print(stderr, "\r{} {}{:━<{}}{}{:─<{}} {:3.0f} %  {:.0f} s left\x1b[K", label_, coloured_ ? "\x1b[36m" : "", "", filled,
-               coloured_ ? "\x1b[0m" : "", "", kWidth - filled, 100 * share, left);
+               coloured_ ? "\x1b[0m" : "", "", width - filled, 100 * share, left);
   }
   std::fflush(stderr);
 }

@@ -114,10 +114,13 @@ void note_row(Table& table, const std::string& name, const std::string& text) {
 void note_rows(Table& table, const Report& r) {
   if (r.segments)
     note_row(table, "content", fmt::format("{} in {}", counted(r.ticks.count(), "row"), counted(*r.segments, "segment")));
-  for (const MeshReport& mesh : r.meshes)
-    if (mesh.triangles > 0)
-      note_row(table, "content",
-               fmt::format("{}: {}, {}", mesh.name, counted(mesh.vertices, "vertex"), counted(mesh.triangles, "triangle")));
+  for (const MeshReport& mesh : r.meshes) {
+    if (mesh.triangles == 0) continue;
+    std::string text =
+        fmt::format("{}: {}, {}", mesh.name, counted(mesh.vertices, "vertex"), counted(mesh.triangles, "triangle"));
+    if (mesh.frames > 0) text += fmt::format(", {}, one every {:.6g} ms", counted(mesh.frames, "frame"), 1e3 * mesh.frame_period);
+    note_row(table, "content", text);
+  }
   if (r.seed) note_row(table, "seed", fmt::to_string(*r.seed));
   if (r.client) note_row(table, "client", *r.client == Interpolation::none ? "applies updates at once" : "interpolates");
   for (const DeformableReport& d : r.deformables) {
@@ -130,6 +133,11 @@ void note_rows(Table& table, const Report& r) {
   if (r.contact)
     note_row(table, "contact",
              fmt::format("{:.1f} % of the ticks, at most {:.2f} N", 100 * r.contact->share, r.contact->largest_force));
+  if (!r.bounds_from.empty())
+    note_row(table, "bounds",
+             r.bounds_from == "stream"    ? "those that the stream promises"
+             : r.bounds_from == "options" ? "as typed"
+                                          : "the defaults");
   for (const std::string& warning : r.warnings) note_row(table, "warning", warning);
 }
 
@@ -162,6 +170,10 @@ void print_text(const Report& r, std::FILE* out) {
   if (r.stream) stream_rows(figures, r);
   if (!r.timings.empty() || !r.meshes.empty()) time_rows(figures, r);
   figures.print(out);
+  if (!r.bounds_from.empty()) {
+    const std::string broken = broken_bounds(r);
+    fmt::print(out, "\n{}\n", broken.empty() ? "All bounds hold." : "Bounds are broken: " + broken + ".");
+  }
   if (r.fidelity && r.fidelity->rendered().ticks() > 0) {
     fmt::print(
         out,
@@ -171,6 +183,32 @@ void print_text(const Report& r, std::FILE* out) {
 }
 
 }  // namespace
+
+std::string broken_bounds(const Report& r) {
+  std::string text;
+  const auto look = [&](const std::string& name, std::uint64_t over, std::uint64_t all, const char* what) {
+    if (over > 0) text += fmt::format("{}{} {} of {}", text.empty() ? "" : "; ", name, over, counted(all, what));
+  };
+  if (r.fidelity) {
+    const Fidelity& f = *r.fidelity;
+    look("position in", f.position().ticks_over(), f.position().ticks(), "tick");
+    look("rotation in", f.rotation().ticks_over(), f.rotation().ticks(), "tick");
+    if (f.bounds().haptic != HapticRule::off) look("contact force in", f.force().ticks_over(), f.force().ticks(), "tick");
+  }
+  for (const MeshReport& mesh : r.meshes)
+    if (mesh.fidelity && mesh.promised)
+      look(mesh.name + " at", mesh.fidelity->all().violations, mesh.fidelity->all().vertices, "vertex");
+  return text;
+}
+
+Outcome verdict(const Report& r, const std::string& file) {
+  const std::string broken = broken_bounds(r);
+  if (broken.empty()) return {};
+  Failure failure{file + ": bounds are broken: " + broken, ""};
+  failure.cause = Failure::Cause::bound;
+  failure.file = file;
+  return tl::unexpected(std::move(failure));
+}
 
 RigidRates rigid_rates(const Report& r, std::uint64_t header) {
   const Traffic& t = *r.traffic;

@@ -31,6 +31,7 @@ struct DeformableReport {
   std::string name, method, reason;
   std::size_t vertices = 0;
   double step = 0;                      ///< [s]
+  double h_omega = 0;                   ///< step times the largest angular frequency; 0: not known
   std::uint64_t samples = 0;            ///< steps whose error was looked at
   double error_p50 = 0, error_max = 0;  ///< relative
 };
@@ -53,6 +54,7 @@ struct Report {
   std::vector<DeformableReport> deformables{};
   std::optional<ContactReport> contact{};
   std::vector<std::string> warnings{};
+  std::string bounds_from{};  ///< "stream", "options", "defaults"; empty: no verdict on them
   std::optional<StreamSize> stream{};
   std::optional<Traffic> traffic{};
   std::optional<Fidelity> fidelity{};
@@ -75,6 +77,11 @@ struct RigidRates {
   double bits_per_s, bytes_per_packet, bytes_per_update, saved_24, saved_48;
 };
 RigidRates rigid_rates(const Report& report, std::uint64_t header);
+
+/// Which bounds are broken, where and how often: "position in 12 of 1000 ticks"; empty when all hold.
+std::string broken_bounds(const Report& report);
+/// A failure that says so.   in  file  that was judged
+Outcome verdict(const Report& report, const std::string& file);
 
 bool has_errors(const Fidelity& fidelity);
 /// Schema report.json: numbers in SI units.

@@ -4,7 +4,7 @@
 
 #include "cli/figures.h"
 #include "cli/json_parts.h"
-#include "cli/report.h"
+#include "cli/report_json.h"
 
 namespace tactus::cli {
 namespace {
@@ -25,6 +25,8 @@ Json traffic_json(std::uint64_t packets, std::uint64_t keys, std::uint64_t updat
           {"updates", updates}, {"updates_per_s", rate(updates, seconds)}, {"bytes", bytes},
           {"payload", at(0)},   {"with_udp_ipv4", at(kUdpHeader)}};
 }
+
+}  // namespace
 
 Json rigid_traffic_json(const Report& r) {
   const Traffic& t = *r.traffic;
@@ -52,24 +54,28 @@ Json mesh_traffic_json(const MeshReport& mesh, double seconds) {
     out["with_udp_ipv4"]["ratio_to_float32"] = per(raw_bytes(mesh), bytes_of(t, kUdpHeader));
   }
   if (!has_halves(t)) return out;
-  for (std::size_t i = 0; i < t.halves.size(); ++i)
-    out["halves"][kHalves[i]] = traffic_json(t.halves[i].packets, 0, 0, t.halves[i].bytes, seconds);
+  for (std::size_t i = 0; i < t.halves.size(); ++i) {
+    const auto& [packets, bytes] = t.halves[i];
+    out["halves"][kHalves[i]] = {{"packets", packets},
+                                 {"packets_per_s", rate(packets, seconds)},
+                                 {"bytes", bytes},
+                                 {"payload", {{"bit_per_s", 8 * rate(bytes, seconds)}}},
+                                 {"with_udp_ipv4", {{"bit_per_s", 8 * rate(bytes + packets * kUdpHeader, seconds)}}}};
+  }
   return out;
 }
 
-/// Errors of one quantity: of ticks, or of vertices in all frames.
-Json series_json(std::uint64_t samples, std::uint64_t over, double mse, double max) {
-  return {{"samples", samples},    {"over", over}, {"share_over", per(static_cast<double>(over), static_cast<double>(samples))},
-          {"rms", std::sqrt(mse)}, {"mse", mse},   {"max", max}};
-}
-
-Json series_json(const Report& r, const ErrorSeries& s) {
-  Json out = series_json(s.ticks(), s.ticks_over(), s.rms() * s.rms(), s.max());
-  out["longest_run_s"] = static_cast<double>(s.longest_run()) / r.tick_rate;
+Json stream_json(const Report& r) {
+  const auto [bytes, packets] = r.bytes_and_packets();
+  const std::uint64_t header = r.stream->header_bytes;
+  Json out{{"header_bytes", header}, {"payload_bytes", bytes}, {"packets", packets}};
+  if (r.stream->file_bytes) out["file_bytes"] = *r.stream->file_bytes;
+  out["payload"] = {{"bit_per_s_with_header", 8 * rate(bytes + header, r.seconds())}};
+  out["with_udp_ipv4"] = {{"bit_per_s_with_header", 8 * rate(bytes + header + packets * kUdpHeader, r.seconds())}};
   return out;
 }
 
-Json series_json(const VertexErrors& e) { return series_json(e.vertices, e.violations, e.mse(), e.max); }
+namespace {
 
 const char* name_of(HapticRule rule) {
   switch (rule) {
@@ -85,6 +91,8 @@ const char* name_of(HapticRule rule) {
   return "";
 }
 
+}  // namespace
+
 Json bounds_json(const RigidTriggers& b) {
   Json out{{"position_m", b.visual_position}, {"rotation_rad", b.visual_rotation}, {"haptic_rule", name_of(b.haptic)}};
   if (b.haptic == HapticRule::isotropic || b.haptic == HapticRule::cone) {
@@ -99,9 +107,27 @@ Json bounds_json(const RigidTriggers& b) {
   return out;
 }
 
-Json bounds_json(const MeshFidelity& f) {
-  Json out{
-      {"position_m", f.bounds().visual}, {"haptic_rule", f.bounds().weber_fraction ? "isotropic" : "off"}, {"rings", f.rings()}};
+namespace {
+
+/// Errors of one quantity: of ticks, or of vertices in all frames.
+Json series_json(std::uint64_t samples, std::uint64_t over, double mse, double max) {
+  return {{"samples", samples},    {"over", over}, {"share_over", per(static_cast<double>(over), static_cast<double>(samples))},
+          {"rms", std::sqrt(mse)}, {"mse", mse},   {"max", max}};
+}
+
+Json series_json(const Report& r, const ErrorSeries& s) {
+  Json out = series_json(s.ticks(), s.ticks_over(), s.rms() * s.rms(), s.max());
+  out["longest_run_s"] = static_cast<double>(s.longest_run()) / r.tick_rate;
+  return out;
+}
+
+Json series_json(const VertexErrors& e) { return series_json(e.vertices, e.violations, e.mse(), e.max); }
+
+Json mesh_bounds_json(const MeshFidelity& f, bool promised) {
+  Json out{{"position_m", f.bounds().visual},
+           {"haptic_rule", f.bounds().weber_fraction ? "isotropic" : "off"},
+           {"rings", f.rings()},
+           {"promised", promised}};
   if (f.bounds().weber_fraction) {
     out["haptic_fraction"] = *f.bounds().weber_fraction;
     out["depth_floor_m"] = f.bounds().depth_floor;
@@ -137,9 +163,13 @@ Json mesh_errors_json(const MeshFidelity& f) {
 Json mesh_json(const MeshReport& mesh, double seconds) {
   Json out{{"name", mesh.name}, {"vertices", mesh.vertices}};
   if (mesh.triangles > 0) out["triangles"] = mesh.triangles;
+  if (mesh.frames > 0) {
+    out["frames"] = mesh.frames;
+    out["frame_period_s"] = mesh.frame_period;
+  }
   if (mesh.traffic) out["traffic"] = mesh_traffic_json(mesh, seconds);
   if (mesh.fidelity) {
-    out["bounds"] = bounds_json(*mesh.fidelity);
+    out["bounds"] = mesh_bounds_json(*mesh.fidelity, mesh.promised);
     out["error"] = mesh_errors_json(*mesh.fidelity);
   }
   if (!mesh.encode.empty()) out["time"]["encode"] = time_json(mesh.encode, seconds);
@@ -149,17 +179,8 @@ Json mesh_json(const MeshReport& mesh, double seconds) {
 
 Json deformable_json(const DeformableReport& d) {
   Json out{{"name", d.name}, {"vertices", d.vertices}, {"step_s", d.step}, {"method", d.method}, {"reason", d.reason}};
+  if (d.h_omega > 0) out["h_omega"] = d.h_omega;
   if (d.samples > 0) out["step_error"] = {{"samples", d.samples}, {"p50", d.error_p50}, {"max", d.error_max}};
-  return out;
-}
-
-Json stream_json(const Report& r) {
-  const auto [bytes, packets] = r.bytes_and_packets();
-  const std::uint64_t header = r.stream->header_bytes;
-  Json out{{"header_bytes", header}, {"payload_bytes", bytes}, {"packets", packets}};
-  if (r.stream->file_bytes) out["file_bytes"] = *r.stream->file_bytes;
-  out["payload"] = {{"bit_per_s_with_header", 8 * rate(bytes + header, r.seconds())}};
-  out["with_udp_ipv4"] = {{"bit_per_s_with_header", 8 * rate(bytes + header + packets * kUdpHeader, r.seconds())}};
   return out;
 }
 
@@ -183,8 +204,8 @@ std::string to_json(const Report& r) {
     out["ticks"] = r.ticks.count();
     out["ticks_left_out"] = r.ticks.left_out();
     out["seconds"] = r.seconds();
-    out["objects"] = r.objects;
-    out["users"] = r.users;
+    out["object_count"] = r.objects;
+    out["user_count"] = r.users;
   }
   add_particulars(out, r);
   if (r.stream) out["stream"] = stream_json(r);
@@ -192,6 +213,10 @@ std::string to_json(const Report& r) {
   if (r.fidelity && has_errors(*r.fidelity)) {
     out["bounds"] = bounds_json(r.fidelity->bounds());
     out["error"] = errors_json(r);
+  }
+  if (!r.bounds_from.empty()) {
+    out["bounds_from"] = r.bounds_from;
+    out["bounds_held"] = broken_bounds(r).empty();
   }
   for (const MeshReport& mesh : r.meshes) out["meshes"].push_back(mesh_json(mesh, r.seconds()));
   for (const Timing& t : r.timings)

@@ -109,7 +109,7 @@ std::string to_json(std::span<const Study> studies, study::Extent extent) {
     Json entry{{"study", study.name}, {"title", study.title}, {"stable", stable}, {"limit", limit}, {"diverges", diverges}};
     for (const Row& row : study.rows) {
       Json one{{"subject", row.subject}, {"parameters", Json::object()}, {"verdict", name(row.verdict)}};
-      for (const auto& p : row.parameters) one["parameters"][p.unit.empty() ? p.name : p.name + " [" + p.unit + "]"] = p.value;
+      for (const auto& p : row.parameters) one["parameters"][p.name] = {{"value", p.value}, {"unit", p.unit}};
       one["quantity"] = row.quantity;
       one["unit"] = row.unit;
       one["measured"] = optional(row.measured);

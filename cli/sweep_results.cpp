@@ -63,7 +63,7 @@ Outcome store(const std::string& path, const std::string& text, int how) {
   const int why = errno;
   if (file >= 0) ::close(file);
   if (stored) return {};
-  return refuse(path + ": cannot be written: " + std::generic_category().message(why), "Check the disk and your rights.");
+  return refuse_io(path, "cannot be written", why);
 }
 
 /// What must not change between two runs into one folder.

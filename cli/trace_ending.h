@@ -10,6 +10,9 @@
 
 namespace tactus::cli {
 
+/// A stream ends inside a record: warns on standard error, quiet or not.
+void warn_cut_stream(const std::string& path, const Error& error);
+
 /// To be called when a trace was read to its end: warns on standard error, quiet or not, if it was cut.
 /// in   frames  so many were read
 /// err  it was cut before its first tick

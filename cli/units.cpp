@@ -77,12 +77,42 @@ tl::expected<Quantity, std::string> checked(std::string_view text, const Quantit
   return tl::unexpected(fmt::format("'{}': must be at most 100 %; four percent is 4% or 0.04", text));
 }
 
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  return first == std::string_view::npos ? std::string_view() : text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
+
+const char* noun(Dimension dimension) {
+  switch (dimension) {
+    case Dimension::length:
+      return "a length";
+    case Dimension::angle:
+      return "an angle";
+    case Dimension::time:
+      return "a time";
+    case Dimension::force:
+      return "a force";
+    case Dimension::fraction:
+      return "a fraction";
+  }
+  return "";
+}
+
+bool is_clear_without_unit(double number, Dimension dimension) {
+  return number == 0 || dimension == Dimension::force || dimension == Dimension::fraction;
+}
+
 /// "-p,--deadband" is called "--deadband" in messages.
 std::string long_name(const std::string& names) { return names.substr(names.rfind(',') + 1); }
 
 }  // namespace
 
-tl::expected<Quantity, std::string> parse_quantity(std::string_view text, Dimension dimension) {
+std::string needs_unit(std::string_view text, Dimension dimension) {
+  return fmt::format("'{}': {} needs its unit: {}", text, noun(dimension), list(units_of(dimension)));
+}
+
+tl::expected<Quantity, std::string> parse_quantity(std::string_view typed, Dimension dimension, Bare bare) {
+  const std::string_view text = trimmed(typed);
   const auto units = units_of(dimension);
   double number = 0;
   const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -90,9 +120,9 @@ tl::expected<Quantity, std::string> parse_quantity(std::string_view text, Dimens
     return tl::unexpected(fmt::format("'{}': not a number with a unit ({})", text, list(units)));
   }
   if (number < 0) return tl::unexpected(fmt::format("'{}': must not be negative", text));
-  const std::string_view suffix(end, static_cast<std::size_t>(text.data() + text.size() - end));
+  const std::string_view suffix = trimmed({end, static_cast<std::size_t>(text.data() + text.size() - end)});
   if (suffix.empty()) {
-    if (dimension == Dimension::angle) return tl::unexpected(fmt::format("'{}': an angle needs its unit: {}", text, list(units)));
+    if (bare == Bare::refused && !is_clear_without_unit(number, dimension)) return tl::unexpected(needs_unit(text, dimension));
     return checked(text, {number, true}, dimension);
   }
   for (const Unit& unit : units) {
@@ -105,7 +135,7 @@ tl::expected<PoseBound, std::string> parse_pose_bound(std::string_view text) {
   const std::size_t comma = text.find(',');
   if (comma == std::string_view::npos)
     return tl::unexpected(fmt::format("'{}': give a length and an angle, such as 6mm,2deg", text));
-  const auto length = parse_quantity(text.substr(0, comma), Dimension::length);
+  const auto length = parse_quantity(text.substr(0, comma), Dimension::length, Bare::allowed);
   if (!length) return tl::unexpected(length.error());
   const auto angle = parse_quantity(text.substr(comma + 1), Dimension::angle);
   if (!angle) return tl::unexpected(angle.error());

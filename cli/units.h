@@ -13,20 +13,24 @@ namespace tactus::cli {
 enum class Dimension { length, angle, time, force, fraction };
 
 struct Quantity {
-  double value = 0;   ///< SI; a bare number is taken as SI already
+  double value = 0;   ///< SI; a bare number as it stands
   bool bare = false;  ///< typed without a unit
 };
 
-/// err  a sentence that names the text, what is wrong and what would be right. An angle needs its unit: a bare 2 is too easily
-///      meant in degrees.
-tl::expected<Quantity, std::string> parse_quantity(std::string_view text, Dimension dimension);
+enum class Bare { refused, allowed };
 
-/// A length and an angle, "6mm,2deg".
+/// err  a sentence that names the text, what is wrong and what would be right. A length, an angle and a time need their unit: a bare 6
+///      is too easily meant in millimetres, a 2 in degrees, a 500 in milliseconds. Only 0 needs none.
+tl::expected<Quantity, std::string> parse_quantity(std::string_view text, Dimension dimension, Bare bare = Bare::refused);
+
+/// A length and an angle, "6mm,2deg"; blanks may stand between. The length may be bare: needs_unit() refuses it where no option
+/// says its unit.
 struct PoseBound {
   Quantity length;
   Quantity angle;
 };
 tl::expected<PoseBound, std::string> parse_pose_bound(std::string_view text);
+std::string needs_unit(std::string_view text, Dimension dimension);  ///< the sentence that refuses a bare number
 
 /// Option that takes one quantity in SI units.
 Option* add_quantity(Command& app, const std::string& name, double& value, Dimension dimension, const std::string& help);

@@ -90,8 +90,8 @@ struct CsvImport {
 tl::expected<CsvImport, CsvError> import_csv(const std::string& path, const CsvMapping& mapping, const std::string& out_path);
 
 /// One row per tick: tick, time_s, then of each object and user the columns of csv_columns.h, named by their topics
-/// ("/objects/cube/qw"). Numbers are the shortest decimals that read back to the same bits. Returns the number of rows.
+/// ("/objects/cube/qw"). Numbers are the shortest decimals that read back to the same bits. Returns the ticks of the rows.
 /// err  io R-TRC-1: the stream refused; whatever TraceReader::next() reports.
-Result<std::uint64_t> export_csv(TraceReader& reader, std::ostream& out);
+Result<TickSpan> export_csv(TraceReader& reader, std::ostream& out);
 
 }  // namespace tactus

@@ -53,9 +53,9 @@ void write_row(std::string& row, const TraceInfo& info, TraceFrame& frame) {
 
 }  // namespace
 
-Result<std::uint64_t> export_csv(TraceReader& reader, std::ostream& out) try {
+Result<TickSpan> export_csv(TraceReader& reader, std::ostream& out) try {
   out << header_row(reader.info());
-  std::uint64_t rows = 0;
+  TickSpan rows;
   TraceFrame frame;
   std::string row;
   while (true) {
@@ -63,9 +63,9 @@ Result<std::uint64_t> export_csv(TraceReader& reader, std::ostream& out) try {
     if (!more) break;
     write_row(row, reader.info(), frame);
     out << row;
-    ++rows;
+    rows.add(frame.tick);
   }
-  return out.flush() ? Result<std::uint64_t>(rows) : fail(Errc::io, "R-TRC-1");
+  return out.flush() ? Result<TickSpan>(rows) : fail(Errc::io, "R-TRC-1");
 } catch (const std::bad_alloc&) {
   return out_of_memory();
 }

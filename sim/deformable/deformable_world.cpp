@@ -103,7 +103,8 @@ Result<void> World::add(const SceneDeformable& object, const Vec3& gravity, std:
   std::string method = name(choice.options.method);
   if (choice.options.substeps > 1) method += ", " + std::to_string(choice.options.substeps) + " sub-steps";
   if (choice.options.method != Method::velocity_verlet) method += std::string(", ") + name(choice.options.solver);
-  info_.push_back({object.name, object.mesh.vertices.size(), std::move(method), choice.reason, choice.options.step});
+  info_.push_back({object.name, object.mesh.vertices.size(), std::move(method), choice.reason, choice.options.step,
+                   choice.largest_frequency});
   meshes_.push_back(
       {object.name, (*body)->surface().mesh, fixed_of((*body)->surface(), object.fixed), static_cast<double>(object.rate)});
   stiffness_.push_back(object.stiffness);

@@ -33,9 +33,10 @@ struct DeformableTouch {
 struct DeformableInfo {
   std::string name;
   std::size_t vertices = 0;
-  std::string method;  ///< "tr-bdf2, prefactored"
-  std::string reason;  ///< why
-  double step = 0;     ///< T_n [s]
+  std::string method;            ///< "tr-bdf2, prefactored"
+  std::string reason;            ///< why
+  double step = 0;               ///< T_n [s]
+  double largest_frequency = 0;  ///< [rad/s] at rest; 0: not measured, as the scene names the method
 };
 
 /// What a deformation took [s]: wall clock, and CPU time of all threads of the process.

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "codec/trace/compare.h"
+
+namespace tactus::cli {
+
+/// Sizes of packets.
+struct Sizes {
+  std::uint64_t packets = 0, bytes = 0;
+  std::size_t smallest = SIZE_MAX, largest = 0;
+
+  void add(std::size_t size) {
+    ++packets;
+    bytes += size;
+    smallest = std::min(smallest, size);
+    largest = std::max(largest, size);
+  }
+};
+
+/// Totals over a stream's packets.
+struct StreamTotals {
+  explicit StreamTotals(const StreamHeader& header) : meshes(header.meshes.size()) {}
+
+  Traffic traffic;
+  std::array<std::uint64_t, 8> levels{};
+  std::int64_t last_tick = 0;
+  Sizes rigid;
+  std::vector<MeshTraffic> meshes;
+
+  void add(const StreamPlayer::Played& p) {
+    last_tick = p.tick();
+    if (p.part > 0) return meshes[p.part - 1].add(p.bytes, p.mesh.updates, p.mesh.key, p.mesh.half);
+    traffic.add(strongest_reason(p.packet), p.packet.updates.size(), p.bytes, p.packet.key);
+    for (const RigidUpdate& u : p.packet.updates) ++levels[u.level % levels.size()];
+    rigid.add(p.bytes);
+  }
+};
+
+}  // namespace tactus::cli
