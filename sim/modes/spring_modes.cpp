@@ -16,7 +16,7 @@ using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 constexpr double kReach = 2.3;  // mean edges
 
-/// Eigen's factor, so that a basis needs no CHOLMOD.
+/// Eigen's factor, so that a basis needs no finite elements.
 class Factor {
  public:
   void analyse(const Matrix& A) { solver_.analyzePattern(A); }

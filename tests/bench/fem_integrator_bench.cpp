@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Cost of one step of the thesis's membrane by method, as soft as it is and 1000 times stiffer, both under 1 N; set-up of modal reduction
-/// by number of modes; price of the Cholesky factor; conjugate gradients by size. Counter z: displacement of the loaded vertex after 0.3 s [m].
+/// by number of modes; price of the Cholesky factor (and of CHOLMOD's in a build with TACTUS_WITH_CHOLMOD); conjugate gradients by size.
+/// Counter z: displacement of the loaded vertex after 0.3 s [m].
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -52,18 +53,20 @@ struct Matrix {
   SystemMatrix system;
 };
 
+template <class Factor>
 void factor(benchmark::State& state) {
   const Matrix m(static_cast<std::uint32_t>(state.range(0)));
-  Cholesky cholesky;
+  Factor cholesky;
   cholesky.analyse(m.system.matrix());
   for (auto _ : state) benchmark::DoNotOptimize(cholesky.factor(m.system.matrix()));
   state.counters["tets"] = static_cast<double>(m.model.mesh().tets.size());
   state.counters["fill"] = static_cast<double>(cholesky.fill());
 }
 
+template <class Factor>
 void solve(benchmark::State& state) {
   const Matrix m(static_cast<std::uint32_t>(state.range(0)));
-  Cholesky cholesky;
+  Factor cholesky;
   cholesky.analyse(m.system.matrix());
   cholesky.factor(m.system.matrix());
   Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(m.system.matrix().rows(), -1, 1);
@@ -114,8 +117,12 @@ void register_steps() {
 [[maybe_unused]] const bool registered = (register_steps(), true);
 
 BENCHMARK(set_up_modal)->Apply(five)->Arg(10)->Arg(50)->Arg(200);
-BENCHMARK(factor)->Apply(five)->Arg(13)->Arg(40)->Arg(91);
-BENCHMARK(solve)->Apply(five)->Arg(13)->Arg(40)->Arg(91);
+BENCHMARK(factor<BlockCholesky>)->Apply(five)->Arg(13)->Arg(40)->Arg(91);
+BENCHMARK(solve<BlockCholesky>)->Apply(five)->Arg(13)->Arg(40)->Arg(91);
+#ifdef TACTUS_FEM_CHOLMOD
+BENCHMARK(factor<CholmodCholesky>)->Apply(five)->Arg(13)->Arg(40)->Arg(91);
+BENCHMARK(solve<CholmodCholesky>)->Apply(five)->Arg(13)->Arg(40)->Arg(91);
+#endif
 BENCHMARK(gradients)->Apply(five)->Arg(13)->Arg(40)->Arg(129);
 
 }  // namespace

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/property/heap_calls.h"
 
+#ifdef TACTUS_FEM_CHOLMOD
 #include <SuiteSparse_config.h>
+#endif
 
 #include <atomic>
 #include <cstddef>
@@ -22,6 +24,7 @@ extern "C" void* __wrap_malloc(std::size_t size) {  // NOLINT(readability-identi
   return __real_malloc(size);
 }
 
+#ifdef TACTUS_FEM_CHOLMOD
 namespace {
 
 // The library calls what this table names.
@@ -39,5 +42,6 @@ namespace {
 }();
 
 }  // namespace
+#endif
 
 std::uint64_t tactus::testing::heap_calls() noexcept { return calls; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Counts calls of malloc in this program (Eigen's matrices do not come from operator new) and in SuiteSparse.
+/// Counts calls of malloc in this program (Eigen's matrices do not come from operator new), and in SuiteSparse where that is used.
 /// pre  linked with -Wl,--wrap=malloc
 #pragma once
 

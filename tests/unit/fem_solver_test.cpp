@@ -49,6 +49,29 @@ TEST(Cholesky, SolvesSheetsBodiesAndParts) {
   }
 }
 
+TEST(Cholesky, TakesPatternsThatLeaveHolesInBlocksAndNothingAtAll) {
+  SparseMatrix A(9, 9);
+  for (int i = 0; i < 9; ++i) {
+    A.insert(i, i) = 2 + i;
+    if (i > 0) A.insert(i, i - 1) = A.insert(i - 1, i) = -0.3 * i;
+  }
+  A.makeCompressed();
+  Cholesky cholesky;
+  cholesky.analyse(A);
+  ASSERT_TRUE(cholesky.factor(A));
+  const VectorXd b = random_vector(9);
+  VectorXd x(9);
+  cholesky.solve(b, x);
+  EXPECT_LT((A * x - b).norm(), 1e-14 * b.norm());
+
+  const SparseMatrix none(0, 0);
+  VectorXd empty;
+  cholesky.analyse(none);
+  EXPECT_TRUE(cholesky.factor(none));
+  cholesky.solve(empty, empty);
+  EXPECT_EQ(cholesky.fill(), 0);
+}
+
 TEST(Cholesky, RefusesWhatIsNotPositiveDefiniteAndWorksAgainAfterwards) {
   FemModel model = free_slab(3, 3, 1);
   SystemMatrix matrix(model);
