@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/fem/element.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
 namespace tactus {
 
 bool supported(InstructionSet set) noexcept {
@@ -26,12 +30,16 @@ ElementKernels kernels([[maybe_unused]] InstructionSet set) noexcept {
 }
 
 Elements::Elements(const TetMesh& mesh, std::span<const Lame> moduli, bool corotated)
-    : blocks_((mesh.tets.size() + kBlockSize - 1) / kBlockSize), size_(mesh.tets.size()), corotated_(corotated) {
+    : blocks_((mesh.tets.size() + kBlockSize - 1) / kBlockSize),
+      u_(mesh.vertices.size()),
+      k_(mesh.vertices.size()),
+      size_(mesh.tets.size()),
+      corotated_(corotated) {
   for (ElementBlock& block : blocks_)
     for (double& w : block.rotation[0]) w = 1;
   for (std::size_t i = 0; i < size_; ++i) {
-    ElementBlock& block = blocks_[i / kBlockSize];
-    const std::size_t lane = i % kBlockSize;
+    ElementBlock& block = blocks_[i % blocks_.size()];
+    const std::size_t lane = this->lane(i);
     const auto& [a, b, c, d] = mesh.tets[i];
     const Vec3& origin = mesh.vertices[a];
     const Vec3 x = mesh.vertices[b] - origin, y = mesh.vertices[c] - origin, z = mesh.vertices[d] - origin;
@@ -44,28 +52,43 @@ Elements::Elements(const TetMesh& mesh, std::span<const Lame> moduli, bool corot
     }
     block.two_mu[lane] = six_volumes / 3 * moduli[i].mu;
     block.lambda[lane] = six_volumes / 6 * moduli[i].lambda;
-    for (std::size_t r = 0; r < 4; ++r) block.corner[r][lane] = 3 * mesh.tets[i][r];
+    for (std::size_t r = 0; r < 4; ++r) block.corner[r][lane] = 4 * mesh.tets[i][r];
   }
 }
 
+void Elements::spread(const double* u) noexcept {
+  for (std::size_t i = 0; i < u_.size(); ++i) std::memcpy(u_[i].xyz, u + 3 * i, sizeof u_[i].xyz);
+}
+
+void Elements::forces(const double* u, double* k) noexcept {
+  spread(u);
+  std::fill(k_.begin(), k_.end(), VertexVector{});
+  (corotated_ ? kernels_.forces : kernels_.linear_forces)({blocks_.data(), blocks_.size()}, u_.data()->xyz, k_.data()->xyz);
+  for (std::size_t i = 0; i < k_.size(); ++i) std::memcpy(k + 3 * i, k_[i].xyz, sizeof k_[i].xyz);
+}
+
+double Elements::energy(const double* u) noexcept {
+  spread(u);
+  return (corotated_ ? kernels_.energy : kernels_.linear_energy)({blocks_.data(), blocks_.size()}, u_.data()->xyz);
+}
+
 Quat Elements::rotation(std::size_t element) const noexcept {
-  const auto& q = blocks_[element / kBlockSize].rotation;
-  const std::size_t lane = element % kBlockSize;
+  const auto& q = block(element).rotation;
+  const std::size_t lane = this->lane(element);
   const Quat out{q[0][lane], q[1][lane], q[2][lane], q[3][lane]};
   const double scale = 1 / std::sqrt(out.w * out.w + out.x * out.x + out.y * out.y + out.z * out.z);
   return {scale * out.w, scale * out.x, scale * out.y, scale * out.z};
 }
 
 std::array<Vec3, 4> Elements::gradients(std::size_t element) const noexcept {
-  const auto& g = blocks_[element / kBlockSize].gradient;
-  const std::size_t lane = element % kBlockSize;
+  const auto& g = block(element).gradient;
+  const std::size_t lane = this->lane(element);
   const Vec3 x{g[0][lane], g[1][lane], g[2][lane]}, y{g[3][lane], g[4][lane], g[5][lane]}, z{g[6][lane], g[7][lane], g[8][lane]};
   return {-(x + y + z), x, y, z};
 }
 
 Lame Elements::moduli(std::size_t element) const noexcept {
-  const ElementBlock& block = blocks_[element / kBlockSize];
-  return {0.5 * block.two_mu[element % kBlockSize], block.lambda[element % kBlockSize]};
+  return {0.5 * block(element).two_mu[lane(element)], block(element).lambda[lane(element)]};
 }
 
 Matrix3 Elements::deformation(std::size_t element, const double* u) const noexcept {
@@ -82,9 +105,9 @@ Matrix3 Elements::deformation(std::size_t element, const double* u) const noexce
 }
 
 std::array<std::uint32_t, 4> Elements::corners(std::size_t element) const noexcept {
-  const auto& corner = blocks_[element / kBlockSize].corner;
-  const std::size_t lane = element % kBlockSize;
-  return {corner[0][lane], corner[1][lane], corner[2][lane], corner[3][lane]};
+  const auto& corner = block(element).corner;
+  const std::size_t lane = this->lane(element);
+  return {corner[0][lane] / 4 * 3, corner[1][lane] / 4 * 3, corner[2][lane] / 4 * 3, corner[3][lane] / 4 * 3};
 }
 
 }  // namespace tactus

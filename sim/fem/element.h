@@ -4,7 +4,7 @@
 /// symbol  meaning                                                    per element
 /// F       deformation gradient I + sum_r (u_r - u_0) g_r^T           u_r displacements of corners 0..3
 /// g_r     gradient of corner r's shape function [1/m]                rows of the inverse of the rest edges; g_0 = -g_1 -g_2 -g_3
-/// R       rotation nearest to F (rotation.h); I when linear          warm start: that of the call before
+/// R       rotation nearest to F (rotation.h); I when linear          sought from that of the call before
 /// e       sym(R^T F) - I                                             strain in the element's own frame
 /// W       V (mu |e|^2 + lambda/2 tr(e)^2)                            energy [J]
 /// k_r     V R (2 mu e + lambda tr(e) I) g_r                          force of corner r [N] = dW/dx_r, also = R K_e (R^T x - X)
@@ -34,12 +34,10 @@ class Elements {
   Elements(const TetMesh& mesh, std::span<const Lame> moduli, bool corotated);
 
   std::size_t size() const noexcept { return size_; }
-  /// k += forces at displacements u (both 3N); R remembered.   time O(tets), no allocation.
-  void add_forces(const double* u, double* k) noexcept {
-    (corotated_ ? kernels_.forces : kernels_.linear_forces)(blocks(), u, k);
-  }
-  /// Sum of W, in element order; R remembered.   time O(tets), no allocation.
-  double energy(const double* u) noexcept { return (corotated_ ? kernels_.energy : kernels_.linear_energy)(blocks(), u); }
+  /// k = forces at displacements u (both 3N); R remembered.   time O(tets), no allocation.
+  void forces(const double* u, double* k) noexcept;
+  /// Sum of W; R remembered.   time O(tets), no allocation.
+  double energy(const double* u) noexcept;
 
   /// R of the last call.
   Quat rotation(std::size_t element) const noexcept;
@@ -56,9 +54,14 @@ class Elements {
   void use(InstructionSet set) noexcept { kernels_ = kernels(set); }
 
  private:
-  BlockSpan blocks() noexcept { return {blocks_.data(), blocks_.size()}; }
+  /// Elements that follow each other share vertices. They go to blocks that follow each other, so that those of one block seldom
+  /// share any, and its sums do not wait for each other.
+  const ElementBlock& block(std::size_t element) const noexcept { return blocks_[element % blocks_.size()]; }
+  std::size_t lane(std::size_t element) const noexcept { return element / blocks_.size(); }
+  void spread(const double* u) noexcept;
 
   std::vector<ElementBlock> blocks_;
+  std::vector<VertexVector> u_, k_;
   std::size_t size_ = 0;
   bool corotated_ = true;
   ElementKernels kernels_ = kernels(widest());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Elements eight at a time, and the kernels that work on them, compiled once per instruction set from element_kernel.h.
+/// Elements sixteen at a time, and the kernels that work on them, compiled once per instruction set from element_kernel.h.
 /// Nothing here may be an inline function: a linker could keep the copy that was compiled for a machine other than this one.
 #pragma once
 
@@ -8,15 +8,21 @@
 
 namespace tactus {
 
-inline constexpr std::size_t kBlockSize = 8;  ///< elements: lanes of the widest vectors there are
+inline constexpr std::size_t kBlockSize = 16;  ///< elements: lanes of two of the widest vectors there are
 
-/// Structure of arrays, lane last. Lanes after the last element have no stiffness.
+/// Structure of arrays, lane last. Lanes without an element have no stiffness.
 struct alignas(64) ElementBlock {
   double gradient[9][kBlockSize];       ///< row r, column c of the inverse rest edges at 3 r + c: g_(r+1) [1/m]
   double two_mu[kBlockSize];            ///< 2 mu V [J]
   double lambda[kBlockSize];            ///< lambda V [J]
   double rotation[4][kBlockSize];       ///< w x y z, of about unit length: R(q) divides by |q|^2
-  std::uint32_t corner[4][kBlockSize];  ///< 3 x vertex
+  std::uint32_t corner[4][kBlockSize];  ///< 4 x vertex: where its vector begins
+};
+
+/// Vector of a vertex. The fourth makes it one load and one store.
+struct alignas(32) VertexVector {
+  double xyz[3];
+  double unused;
 };
 
 struct BlockSpan {
@@ -24,6 +30,7 @@ struct BlockSpan {
   std::size_t size;
 };
 
+/// u, k: doubles of VertexVectors. Forces are added to k.
 struct ElementKernels {
   void (*forces)(BlockSpan blocks, const double* u, double* k) noexcept;
   void (*linear_forces)(BlockSpan blocks, const double* u, double* k) noexcept;

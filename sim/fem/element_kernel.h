@@ -1,38 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The element kernel for vectors of W doubles, included by one source file per instruction set. Internal linkage throughout and
-/// no function of the standard library, so that no code for one instruction set can serve in place of another's.
-/// Symbols as in element.h; matrices are rows, element (i, j) at 3 i + j.
+/// The element kernel for pairs of vectors of W doubles, included by one source file per instruction set. Linkage as in
+/// element_vectors.h. Symbols as in element.h; matrices are rows, element (i, j) at 3 i + j.
 #pragma once
 
 #include "sim/fem/element_block.h"
+#include "sim/fem/element_vectors.h"
 #include "sim/fem/rotation.h"
 
 namespace tactus {
 namespace {
 
-// g++ ignores a vector size that depends on a template parameter.
-template <std::size_t W>
-struct Vectors;
-template <>
-struct Vectors<2> {
-  using Double [[gnu::vector_size(16)]] = double;
-  using Mask [[gnu::vector_size(16)]] = long long;
-};
-template <>
-struct Vectors<4> {
-  using Double [[gnu::vector_size(32)]] = double;
-  using Mask [[gnu::vector_size(32)]] = long long;
-};
-template <>
-struct Vectors<8> {
-  using Double [[gnu::vector_size(64)]] = double;
-  using Mask [[gnu::vector_size(64)]] = long long;
-};
-
 template <std::size_t W>
 struct Kernel {
-  using V = typename Vectors<W>::Double;
-  using Mask = typename Vectors<W>::Mask;  // -1: true
+  using V = Pair<W>;
+  using Half = typename V::Half;
+  using Mask = typename V::Mask;
+  static constexpr std::size_t kLanes = 2 * W;
 
   struct Matrix {
     V m[9];
@@ -41,50 +24,30 @@ struct Kernel {
     V q[4];  // w x y z
   };
 
-  static V load(const double* p) {
-    V v;
-    __builtin_memcpy(&v, p, sizeof v);
-    return v;
-  }
-  static void store(double* p, const V& v) { __builtin_memcpy(p, &v, sizeof v); }
-  static V all(double x) { return V{} + x; }
-
-  /// u[index[lane] + offset] for every lane; written out because a loop would pass through memory.
-  static V gather(const double* u, const std::uint32_t* index) {
-    if constexpr (W == 2) {
-      return V{u[index[0]], u[index[1]]};
-    } else if constexpr (W == 4) {
-      return V{u[index[0]], u[index[1]], u[index[2]], u[index[3]]};
-    } else {
-      return V{u[index[0]], u[index[1]], u[index[2]], u[index[3]], u[index[4]], u[index[5]], u[index[6]], u[index[7]]};
-    }
-  }
-
-  static bool any(const Mask& mask) {
-    long long bits = 0;
-    for (std::size_t i = 0; i < W; ++i) bits |= mask[i];
-    return bits != 0;
-  }
-
   /// F at u of the elements from `lane` on.
   static Matrix deformation(const ElementBlock& block, std::size_t lane, const double* u) {
-    V origin[3], g[9];
-    for (std::size_t c = 0; c < 3; ++c) origin[c] = gather(u + c, block.corner[0] + lane);
-    for (std::size_t i = 0; i < 9; ++i) g[i] = load(block.gradient[i] + lane);
-    Matrix f{};
-    for (std::size_t c = 0; c < 3; ++c) {
-      V edge[3];
-      for (std::size_t r = 0; r < 3; ++r) edge[r] = gather(u + c, block.corner[r + 1] + lane) - origin[c];
-      for (std::size_t j = 0; j < 3; ++j) f.m[3 * c + j] = edge[0] * g[j] + edge[1] * g[3 + j] + edge[2] * g[6 + j];
-      f.m[4 * c] += 1.0;
+    Matrix f;
+    for (std::size_t half = 0; half < 2; ++half) {
+      const std::size_t first = lane + half * W;
+      Half x[4][3], g[9];
+      for (std::size_t r = 0; r < 4; ++r) Vectors<W>::gather(u, block.corner[r] + first, x[r]);
+      for (std::size_t i = 0; i < 9; ++i) g[i] = load<Half>(block.gradient[i] + first);
+      for (std::size_t c = 0; c < 3; ++c) {
+        Half edge[3];
+        for (std::size_t r = 0; r < 3; ++r) edge[r] = x[r + 1][c] - x[0][c];
+        for (std::size_t j = 0; j < 3; ++j) f.m[3 * c + j].half[half] = edge[0] * g[j] + edge[1] * g[3 + j] + edge[2] * g[6 + j];
+      }
     }
+    for (std::size_t c = 0; c < 3; ++c) f.m[4 * c] = f.m[4 * c] + 1.0;
     return f;
   }
 
+  static V length2(const Rotation& r) { return r.q[0] * r.q[0] + r.q[1] * r.q[1] + r.q[2] * r.q[2] + r.q[3] * r.q[3]; }
+
   /// R(q), orthogonal for q of any length but zero.
-  static Matrix matrix(const Rotation& rotation) {
+  static Matrix matrix(const Rotation& rotation, const V& length2) {
     const V &w = rotation.q[0], &x = rotation.q[1], &y = rotation.q[2], &z = rotation.q[3];
-    const V s = 2.0 / (w * w + x * x + y * y + z * z);
+    const V s = 2.0 / length2;
     const V sx = s * x, sy = s * y, sz = s * z;
     const V xx = x * sx, xy = x * sy, xz = x * sz, yy = y * sy, yz = y * sz, zz = z * sz, wx = w * sx, wy = w * sy, wz = w * sz;
     return {{1.0 - (yy + zz), xy - wz, xz + wy, xy + wz, 1.0 - (xx + zz), yz - wx, xz - wy, yz + wx, 1.0 - (xx + yy)}};
@@ -98,76 +61,80 @@ struct Kernel {
     return out;
   }
 
-  /// Newton's step on SO(3) for trace(R^T F): (tr(S) I - S) omega = axial(M - M^T), M = R^T F, S = sym(M).
-  struct Step {
-    V omega[3];
-    Mask maximum;  // tr(S) I - S is positive definite: what Newton converges to is the best rotation, not a saddle
+  struct Turned {
+    Rotation to;          // of any length
+    Mask arrived, moved;  // moved: by more than rounding
   };
-  static Step newton_step(const Matrix& m) {
+  /// The rotation nearest to F, seen from `start`. With M = R(start)^T F, S = sym(M), G = tr(S) I - S and a = axial(M - M^T) / 2
+  /// the rotation from there by the Gibbs vector t (tangent of half the angle along the axis) makes (R^T F) symmetric when
+  ///   (G + s I) t = a,   s = a . t
+  /// and the best of all rotations when G + s I is positive definite (Davenport's and Shuster's equation). a . t(s) - s is convex
+  /// and falls for s >= 0, so that Newton's method from s = 0 cannot miss; its first step is written out, the second mostly only
+  /// finds that the first was exact.
+  static Turned nearest(const Matrix& f, const Rotation& start) {
     // Share of its size cubed that the determinant may fall to: below, the rotation hardly follows from F.
     constexpr double kRegular = 1e-9;
-    const V a = m.m[4] + m.m[8], b = m.m[0] + m.m[8], c = m.m[0] + m.m[4];
-    const V d = -0.5 * (m.m[1] + m.m[3]), e = -0.5 * (m.m[2] + m.m[6]), f = -0.5 * (m.m[5] + m.m[7]);
-    const V wx = m.m[7] - m.m[5], wy = m.m[2] - m.m[6], wz = m.m[3] - m.m[1];
-    const V aa = b * c - f * f, ad = e * f - d * c, ae = d * f - e * b;  // first row of the adjugate
-    const V bb = a * c - e * e, bf = d * e - a * f, cc = a * b - d * d;
-    const V det = a * aa + d * ad + e * ae, size = a + b + c, inverse = 1.0 / det;
-    return {{(aa * wx + ad * wy + ae * wz) * inverse, (ad * wx + bb * wy + bf * wz) * inverse,
-             (ae * wx + bf * wy + cc * wz) * inverse},
-            (a > 0.0) & (cc > 0.0) & (size > 0.0) & (det > kRegular * size * size * size)};
-  }
-
-  /// Turn R(q) towards the rotation nearest to F.   out  lanes that arrived there
-  static Mask refine(const Matrix& f, Rotation& rotation) {
+    constexpr double kArrived = 1e-26;  // square of the error of t
+    constexpr double kStill = 1e-24;    // square of t that is not worth remembering
     constexpr int kSteps = 8;
-    constexpr double kArrived = 1e-13;  // of |omega|^2: the error left is that times the strain, Newton being quadratic
-    Matrix m = transposed_product(matrix(rotation), f);
-    Mask open = ~Mask{}, arrived{};
-    for (int step = 0; step < kSteps; ++step) {
-      const Step newton = newton_step(m);
-      open &= newton.maximum;
-      // Cayley's map: the quaternion (1, omega / 2). Closed lanes get the identity, which changes no bit of theirs.
-      Rotation turn{{all(1.0), open ? 0.5 * newton.omega[0] : all(0.0), open ? 0.5 * newton.omega[1] : all(0.0),
-                     open ? 0.5 * newton.omega[2] : all(0.0)}};
-      const V *q = rotation.q, *t = turn.q;
-      const V square = t[1] * t[1] + t[2] * t[2] + t[3] * t[3];
-      rotation = {{q[0] - q[1] * t[1] - q[2] * t[2] - q[3] * t[3], q[1] + q[0] * t[1] + q[2] * t[3] - q[3] * t[2],
-                   q[2] + q[0] * t[2] + q[3] * t[1] - q[1] * t[3], q[3] + q[0] * t[3] + q[1] * t[2] - q[2] * t[1]}};
-      const Mask last = open & (4.0 * square < kArrived);
-      arrived |= last;
-      open &= ~last;
-      if (!any(open)) break;
-      m = transposed_product(matrix(turn), m);
+    const Matrix m = transposed_product(matrix(start, length2(start)), f);
+    const V a = 0.5 * (m.m[7] - m.m[5]), b = 0.5 * (m.m[2] - m.m[6]), c = 0.5 * (m.m[3] - m.m[1]);
+    const V xx = m.m[4] + m.m[8], yy = m.m[0] + m.m[8], zz = m.m[0] + m.m[4];  // G
+    const V xy = -0.5 * (m.m[1] + m.m[3]), xz = -0.5 * (m.m[2] + m.m[6]), yz = -0.5 * (m.m[5] + m.m[7]);
+    const V adj_xx = yy * zz - yz * yz, adj_xy = xz * yz - xy * zz, adj_xz = xy * yz - xz * yy;
+    const V adj_yy = xx * zz - xz * xz, adj_yz = xy * xz - xx * yz, adj_zz = xx * yy - xy * xy;
+    // det(G + s I) = det + minors s + trace s^2 + s^3,   adj(G + s I) a = p + q s + a s^2
+    const V det = xx * adj_xx + xy * adj_xy + xz * adj_xz, minors = adj_xx + adj_yy + adj_zz, trace = xx + yy + zz;
+    const Mask maximum = (xx > 0.0) & (adj_zz > 0.0) & (trace > 0.0) & (det > kRegular * trace * trace * trace);
+    const V p[3] = {adj_xx * a + adj_xy * b + adj_xz * c, adj_xy * a + adj_yy * b + adj_yz * c,
+                    adj_xz * a + adj_yz * b + adj_zz * c};
+    const V q[3] = {(yy + zz) * a - xy * b - xz * c, (xx + zz) * b - xy * a - yz * c, (xx + yy) * c - xz * a - yz * b};
+    V s = (a * p[0] + b * p[1] + c * p[2]) * det / (det * det + p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+    Turned out;
+    for (int step = 0;; ++step) {
+      const V inverse = 1.0 / (det + s * (minors + s * (trace + s)));
+      const V x = (p[0] + s * (q[0] + s * a)) * inverse, y = (p[1] + s * (q[1] + s * b)) * inverse,
+              z = (p[2] + s * (q[2] + s * c)) * inverse;
+      const V square = x * x + y * y + z * z, left = a * x + b * y + c * z - s;
+      const V error = left * minors;  // det times what bounds the error of t beside |t|
+      out.arrived = maximum & (error * error * square < kArrived * det * det);
+      if (step == kSteps || !(maximum & ~out.arrived).any()) {
+        const V* o = start.q;
+        out.to = {{o[0] - o[1] * x - o[2] * y - o[3] * z, o[1] + o[0] * x + o[2] * z - o[3] * y,
+                   o[2] + o[0] * y + o[3] * x - o[1] * z, o[3] + o[0] * z + o[1] * y - o[2] * x}};
+        out.moved = ~out.arrived | (square > kStill);
+        return out;
+      }
+      s = s + V::select(out.arrived, 0.0, left / (1.0 + square));  // what has arrived stays, whatever else is in the vector
     }
-    const V* q = rotation.q;
-    const V length2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-    const V scale = 2.0 / (1.0 + length2);  // Newton's step for the root: length 1 to second order
-    for (V& x : rotation.q) x *= scale;
-    return arrived;
   }
 
-  /// What Newton cannot do: inverted, flat and lost elements, one by one.
-  static void repair(const Matrix& f, const Rotation& start, const Mask& arrived, Rotation& rotation) {
-    for (std::size_t lane = 0; lane < W; ++lane) {
-      if (arrived[lane] != 0) continue;
+  /// What that equation cannot do: inverted, flat and lost elements, one by one.
+  [[gnu::noinline]] static void repair(const Matrix& f, const Rotation& start, Turned& turned) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      if (turned.arrived.lane(lane)) continue;
       Matrix3 one;
-      for (std::size_t i = 0; i < 9; ++i) one.m[i / 3][i % 3] = f.m[i][lane];
+      for (std::size_t i = 0; i < 9; ++i) one.m[i / 3][i % 3] = f.m[i].lane(lane);
       Quat from;
-      from.w = start.q[0][lane], from.x = start.q[1][lane], from.y = start.q[2][lane], from.z = start.q[3][lane];
+      from.w = start.q[0].lane(lane), from.x = start.q[1].lane(lane), from.y = start.q[2].lane(lane),
+      from.z = start.q[3].lane(lane);
       const Quat to = nearest_rotation(one, from);
-      rotation.q[0][lane] = to.w, rotation.q[1][lane] = to.x, rotation.q[2][lane] = to.y, rotation.q[3][lane] = to.z;
+      V* q = turned.to.q;
+      q[0].set_lane(lane, to.w), q[1].set_lane(lane, to.x), q[2].set_lane(lane, to.y), q[3].set_lane(lane, to.z);
     }
   }
 
-  /// R of the elements from `lane` on, remembered in the block.
+  /// R of the elements from `lane` on, remembered in the block unless it is the one remembered already: a second look at the same F
+  /// changes no bit.
   static Matrix rotate(ElementBlock& block, std::size_t lane, const Matrix& f) {
-    Rotation start, rotation;
-    for (std::size_t i = 0; i < 4; ++i) start.q[i] = load(block.rotation[i] + lane);
-    rotation = start;
-    const Mask arrived = refine(f, rotation);
-    if (any(~arrived)) repair(f, start, arrived, rotation);
-    for (std::size_t i = 0; i < 4; ++i) store(block.rotation[i] + lane, rotation.q[i]);
-    return matrix(rotation);
+    Rotation start;
+    for (std::size_t i = 0; i < 4; ++i) start.q[i] = V(block.rotation[i] + lane);
+    Turned turned = nearest(f, start);
+    if ((~turned.arrived).any()) repair(f, start, turned);
+    const V square = length2(turned.to), scale = 2.0 / (1.0 + square);  // Newton's step for the root: length 1 to second order
+    for (std::size_t i = 0; i < 4; ++i)
+      V::select(turned.moved, scale * turned.to.q[i], start.q[i]).store_to(block.rotation[i] + lane);
+    return matrix(turned.to, square);
   }
 
   /// Strain e = sym(M) - I.
@@ -180,33 +147,37 @@ struct Kernel {
 
   /// V (2 mu e + lambda tr(e) I)
   static Matrix stress(const ElementBlock& block, std::size_t lane, const Strain& e) {
-    const V two_mu = load(block.two_mu + lane), pressure = load(block.lambda + lane) * (e.xx + e.yy + e.zz);
+    const V two_mu(block.two_mu + lane), pressure = V(block.lambda + lane) * (e.xx + e.yy + e.zz);
     const V xy = two_mu * e.xy, xz = two_mu * e.xz, yz = two_mu * e.yz;
     return {{two_mu * e.xx + pressure, xy, xz, xy, two_mu * e.yy + pressure, yz, xz, yz, two_mu * e.zz + pressure}};
   }
 
   /// k_r = P g_r added to k, element after element.
-  static void scatter(const ElementBlock& block, std::size_t lane, const Matrix& p, double* k) {
-    alignas(64) double force[12][W];
-    V origin[3] = {};
+  [[gnu::always_inline]] static inline void scatter(const ElementBlock& block, std::size_t lane, const Matrix& p, double* k) {
+    V force[4][3];
     for (std::size_t r = 0; r < 3; ++r) {
-      V g[3];
-      for (std::size_t j = 0; j < 3; ++j) g[j] = load(block.gradient[3 * r + j] + lane);
-      for (std::size_t c = 0; c < 3; ++c) {
-        const V x = p.m[3 * c] * g[0] + p.m[3 * c + 1] * g[1] + p.m[3 * c + 2] * g[2];
-        store(force[3 * (r + 1) + c], x);
-        origin[c] -= x;
-      }
+      const V g[3] = {V(block.gradient[3 * r] + lane), V(block.gradient[3 * r + 1] + lane), V(block.gradient[3 * r + 2] + lane)};
+      for (std::size_t c = 0; c < 3; ++c) force[r + 1][c] = p.m[3 * c] * g[0] + p.m[3 * c + 1] * g[1] + p.m[3 * c + 2] * g[2];
     }
-    for (std::size_t c = 0; c < 3; ++c) store(force[c], origin[c]);
+    for (std::size_t c = 0; c < 3; ++c) force[0][c] = 0.0 - force[1][c] - force[2][c] - force[3][c];
+    scatter_half<0>(block, lane, force, k);
+    scatter_half<1>(block, lane + W, force, k);
+  }
+  template <std::size_t H>
+  [[gnu::always_inline]] static inline void scatter_half(const ElementBlock& block, std::size_t lane, const V (&force)[4][3],
+                                                         double* k) {
+    const auto rows = [&](std::size_t r) {
+      const Half vectors[3] = {force[r][0].half[H], force[r][1].half[H], force[r][2].half[H]};
+      return typename Vectors<W>::Rows(vectors);
+    };
+    const typename Vectors<W>::Rows corner[4] = {rows(0), rows(1), rows(2), rows(3)};
     for (std::size_t i = 0; i < W; ++i)
-      for (std::size_t r = 0; r < 4; ++r)
-        for (std::size_t c = 0; c < 3; ++c) k[block.corner[r][lane + i] + c] += force[3 * r + c][i];
+      for (std::size_t r = 0; r < 4; ++r) corner[r].add_to(k + block.corner[r][lane + i], i);
   }
 
   static void forces(BlockSpan blocks, const double* u, double* k) noexcept {
     for (ElementBlock* block = blocks.data; block != blocks.data + blocks.size; ++block) {
-      for (std::size_t lane = 0; lane < kBlockSize; lane += W) {
+      for (std::size_t lane = 0; lane < kBlockSize; lane += kLanes) {
         const Matrix f = deformation(*block, lane, u);
         const Matrix r = rotate(*block, lane, f);
         const Matrix s = stress(*block, lane, strain(transposed_product(r, f)));
@@ -221,7 +192,7 @@ struct Kernel {
 
   static void linear_forces(BlockSpan blocks, const double* u, double* k) noexcept {
     for (ElementBlock* block = blocks.data; block != blocks.data + blocks.size; ++block)
-      for (std::size_t lane = 0; lane < kBlockSize; lane += W)
+      for (std::size_t lane = 0; lane < kBlockSize; lane += kLanes)
         scatter(*block, lane, stress(*block, lane, strain(deformation(*block, lane, u))), k);
   }
 
@@ -229,15 +200,15 @@ struct Kernel {
   static double add_energy(const ElementBlock& block, std::size_t lane, const Strain& e, double sum) {
     const V trace = e.xx + e.yy + e.zz;
     const V square = e.xx * e.xx + e.yy * e.yy + e.zz * e.zz + 2.0 * (e.xy * e.xy + e.xz * e.xz + e.yz * e.yz);
-    const V energy = 0.5 * (load(block.two_mu + lane) * square + load(block.lambda + lane) * trace * trace);
-    for (std::size_t i = 0; i < W; ++i) sum += energy[i];
+    const V energy = 0.5 * (V(block.two_mu + lane) * square + V(block.lambda + lane) * trace * trace);
+    for (std::size_t i = 0; i < kLanes; ++i) sum += energy.lane(i);
     return sum;
   }
 
   static double energy(BlockSpan blocks, const double* u) noexcept {
     double sum = 0;
     for (ElementBlock* block = blocks.data; block != blocks.data + blocks.size; ++block) {
-      for (std::size_t lane = 0; lane < kBlockSize; lane += W) {
+      for (std::size_t lane = 0; lane < kBlockSize; lane += kLanes) {
         const Matrix f = deformation(*block, lane, u);
         sum = add_energy(*block, lane, strain(transposed_product(rotate(*block, lane, f), f)), sum);
       }
@@ -248,7 +219,7 @@ struct Kernel {
   static double linear_energy(BlockSpan blocks, const double* u) noexcept {
     double sum = 0;
     for (ElementBlock* block = blocks.data; block != blocks.data + blocks.size; ++block)
-      for (std::size_t lane = 0; lane < kBlockSize; lane += W)
+      for (std::size_t lane = 0; lane < kBlockSize; lane += kLanes)
         sum = add_energy(*block, lane, strain(deformation(*block, lane, u)), sum);
     return sum;
   }

@@ -161,8 +161,8 @@ const SparseMatrix& FemModel::mass_matrix() const noexcept { return impl_->mass;
 double FemModel::total_mass() const noexcept { return impl_->total_mass; }
 
 void FemModel::internal_forces(const Eigen::VectorXd& u, Eigen::VectorXd& k) noexcept {
-  k.setZero(size());
-  impl_->elements.add_forces(u.data(), k.data());
+  k.resize(size());
+  impl_->elements.forces(u.data(), k.data());
   for (const int i : impl_->fixed_dofs) k[i] = 0;
 }
 

@@ -192,7 +192,7 @@ TEST(ElementRotation, IsTheOneOfTheRobustMethodToTheLastDigits) {
     EXPECT_LT(angle_between(elements.rotation(i), nearest_rotation(matrix3(f[i]), {})), 2e-12);
 }
 
-// A half turn away everything is stationary: Newton sees no slope, and a curvature that rounding gives either sign.
+// A half turn away everything is stationary: no slope is seen, and a curvature that rounding gives either sign.
 TEST(ElementRotation, LeavesTheSaddlesOfHalfTurns) {
   Random random(6);
   std::vector<Matrix3d> f;
@@ -206,6 +206,21 @@ TEST(ElementRotation, LeavesTheSaddlesOfHalfTurns) {
   Elements elements(turned.mesh, std::vector<Lame>(f.size(), {1, 1}), true);
   elements.energy(turned.u.data());
   for (std::size_t i = 0; i < f.size(); ++i) expect_best_rotation(f[i], elements.rotation(i), 1e-14);
+}
+
+// What rests changes no bit: the sleep of bodies builds on it.
+TEST(ElementRotation, IsNotTouchedByASecondLookAtTheSameShape) {
+  std::vector<Matrix3d> f = matrices();
+  std::erase_if(f, [](const Matrix3d& m) { return best(m).sigma[1] + best(m).sigma[2] < 0.1 * best(m).sigma[0]; });
+  const Scattered shape = scatter(f);
+  Elements elements(shape.mesh, std::vector<Lame>(f.size(), {3e3, 3e4}), true);
+  Eigen::VectorXd first(shape.u.size()), again(first);
+  elements.forces(shape.u.data(), again.data());
+  elements.forces(shape.u.data(), first.data());
+  for (int i = 0; i < 100; ++i) {
+    elements.forces(shape.u.data(), again.data());
+    ASSERT_TRUE(again == first) << i;
+  }
 }
 
 // However often an element is turned, its remembered quaternion stays a rotation.
@@ -225,9 +240,33 @@ TEST(ElementRotation, DoesNotDriftInAMillionSteps) {
   expect_best_rotation(f.back(), elements.rotation(0), 1e-14);
 }
 
+TEST(ElementKernels, ForcesDoNotDependOnHowElementsFillBlocks) {
+  for (const std::uint32_t cells : {1U, 2U, 3U, 7U}) {  // 6, 12, 18 and 42 tetrahedra for blocks of 16
+    const TetMesh slab = make_slab(cells, 1, 1, 0.01);
+    Random random(8);
+    Eigen::VectorXd u = Eigen::VectorXd::NullaryExpr(3 * static_cast<Eigen::Index>(slab.vertices.size()),
+                                                     [&] { return random.uniform(-0.002, 0.002); });
+    Elements whole(slab, std::vector<Lame>(slab.tets.size(), {3e3, 3e4}), true);
+    Eigen::VectorXd k(u.size()), sum = Eigen::VectorXd::Zero(u.size()), part(u.size());
+    whole.forces(u.data(), k.data());
+    double energy = 0;
+    for (const Tet& tet : slab.tets) {
+      const TetMesh alone{slab.vertices, {tet}};
+      Elements one(alone, std::vector<Lame>(1, {3e3, 3e4}), true);
+      one.forces(u.data(), part.data());
+      sum += part;
+      energy += one.energy(u.data());
+      EXPECT_EQ(one.corners(0)[3], 3 * tet[3]);
+    }
+    EXPECT_LT((k - sum).norm(), 1e-14 * k.norm()) << cells;
+    EXPECT_NEAR(whole.energy(u.data()), energy, 1e-14 * energy);
+    for (std::size_t i = 0; i < slab.tets.size(); ++i) EXPECT_EQ(whole.corners(i)[2], 3 * slab.tets[i][2]);
+  }
+}
+
 TEST(ElementKernels, AllInstructionSetsYieldTheSameBits) {
   const Scattered strange = scatter(matrices());
-  const TetMesh slab = make_slab(5, 7, 3, 0.01);  // 630 tetrahedra: the last block is not full
+  const TetMesh slab = make_slab(5, 7, 3, 0.01);  // 630 tetrahedra: some blocks are not full
   Random random(4);
   const Eigen::VectorXd wild = Eigen::VectorXd::NullaryExpr(3 * static_cast<Eigen::Index>(slab.vertices.size()),
                                                             [&] { return random.uniform(-0.004, 0.004); });
@@ -244,8 +283,8 @@ TEST(ElementKernels, AllInstructionSetsYieldTheSameBits) {
         std::vector<double> out;
         for (const double part : {0.5, 0.51, 1.0}) {
           const Eigen::VectorXd u = part * c.u;
-          Eigen::VectorXd k = Eigen::VectorXd::Zero(u.size());
-          elements.add_forces(u.data(), k.data());
+          Eigen::VectorXd k(u.size());
+          elements.forces(u.data(), k.data());
           out.insert(out.end(), k.begin(), k.end());
           out.push_back(elements.energy(u.data()));
         }
