@@ -141,7 +141,7 @@ constexpr std::array kRules{
         "the mapping names some columns of a vector but not all, nothing to record, or spins of the body frame without rotations",
         "Give --preset NAME, or --map with every column of a quantity."},
     RuleText{"R-SIM-2", "the scene has deformable objects, and this program was built without them",
-             "Install libeigen3-dev and libspectra-dev, and build with TACTUS_WITH_FEM=ON."},
+             "Install libeigen3-dev, libsuitesparse-dev and libspectra-dev, and build with TACTUS_WITH_FEM=ON."},
     RuleText{"R-SIM-3",
              "the springs of all users together are too stiff for a one-dimensional object at its rate (thesis eq. 4.38)",
              "Lower touch.stiffness, or msd.rate (--rate), or give the object more mass or damping."},

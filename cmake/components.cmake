@@ -9,6 +9,7 @@ set(TACTUS_PACKAGES
   "CLI11           libcli11-dev            CLI11::CLI11"
   "nlohmann_json   nlohmann-json3-dev      nlohmann_json::nlohmann_json"
   "Eigen3          libeigen3-dev           Eigen3::Eigen"
+  "LDL             libsuitesparse-dev      SuiteSparse::LDL"
   "CHOLMOD         libsuitesparse-dev      SuiteSparse::CHOLMOD"
   "Spectra         libspectra-dev          Spectra::Spectra"
   "OpenMesh        libopenmesh-dev         OpenMeshCore"
@@ -17,7 +18,7 @@ set(TACTUS_PACKAGES
   "benchmark       libbenchmark-dev        benchmark::benchmark"
   "Python3         python3                 Python3::Interpreter")
 
-# CHOLMOD comes without a CMake file: FindCHOLMOD.cmake, installed beside ours.
+# LDL and CHOLMOD come without a CMake file: FindLDL.cmake and FindCHOLMOD.cmake, installed beside ours.
 list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})
 
 # The two packages whose ways differ from `find_package(NAME)`: ODE comes without a CMake file, Python needs its component named.

@@ -23,6 +23,7 @@ LICENCES = {
     "libccd": "BSD-3-Clause",
     "libfmt": "MIT",
     "libtomlplusplus": "MIT",
+    "libldl": "LGPL-2.1+, loaded as it is and replaceable",
     "libOpenMeshCore": "BSD-3-Clause",
 }
 LOADER = re.compile(r"linux-vdso|ld-linux")

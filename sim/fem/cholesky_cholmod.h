@@ -21,7 +21,7 @@ class CholmodCholesky {
   CholmodCholesky(CholmodCholesky&&) noexcept;
   CholmodCholesky& operator=(CholmodCholesky&&) noexcept;
 
-  // As those of BlockCholesky.
+  // As those of LdlCholesky.
   void analyse(const SparseMatrix& A);
   bool factor(const SparseMatrix& A) noexcept;
   void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) noexcept;

@@ -117,8 +117,8 @@ void register_steps() {
 [[maybe_unused]] const bool registered = (register_steps(), true);
 
 BENCHMARK(set_up_modal)->Apply(five)->Arg(10)->Arg(50)->Arg(200);
-BENCHMARK(factor<BlockCholesky>)->Apply(five)->Arg(13)->Arg(40)->Arg(91);
-BENCHMARK(solve<BlockCholesky>)->Apply(five)->Arg(13)->Arg(40)->Arg(91);
+BENCHMARK(factor<LdlCholesky>)->Apply(five)->Arg(13)->Arg(40)->Arg(91);
+BENCHMARK(solve<LdlCholesky>)->Apply(five)->Arg(13)->Arg(40)->Arg(91);
 #ifdef TACTUS_FEM_CHOLMOD
 BENCHMARK(factor<CholmodCholesky>)->Apply(five)->Arg(13)->Arg(40)->Arg(91);
 BENCHMARK(solve<CholmodCholesky>)->Apply(five)->Arg(13)->Arg(40)->Arg(91);
