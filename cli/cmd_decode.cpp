@@ -66,6 +66,10 @@ TraceInfo replica_info(const StreamHeader& header, const std::string& input) {
     for (const auto& vertex : mesh.rest) out.rest.vertices.push_back(to_metres(vertex, header.grid.position));
     out.period = mesh.frame_period / 256.0;
   }
+  if (header.bounds) {
+    info.bounds = TraceBounds{*header.bounds, header.grid.position, {}};
+    for (const MeshObject& mesh : header.meshes) info.bounds->rings.push_back(mesh.rings);
+  }
   return info;
 }
 

@@ -40,7 +40,8 @@ bool has_moving(const TraceInfo& info) {
 }
 
 Result<Session> start(const TraceInfo& info, const TraceFrame& first, const EncodeOptions& options, std::ostream& out) {
-  TACTUS_TRY(const StreamHeader header, stream_header(info, first, options.meshes.coding()));
+  TACTUS_TRY(StreamHeader header, stream_header(info, first, options.meshes.coding()));
+  header.bounds = bounds_of(header, options.triggers.triggers(), options.meshes.thresholds(options.triggers));
   TACTUS_TRY(StreamFileWriter writer, StreamFileWriter::create(out, header));
   Session session{std::move(writer), PartJoiner(header), std::nullopt, {}};
   if (has_moving(info) || info.meshes.empty()) {

@@ -46,7 +46,8 @@ struct StreamOutput {
   PartJoiner parts;
 };
 
-tl::expected<StreamOutput, Failure> open_stream(const SimOptions& options, const StreamHeader& header) {
+tl::expected<StreamOutput, Failure> open_stream(const SimOptions& options, StreamHeader header) {
+  header.bounds = bounds_of(header, options.triggers.triggers(), options.meshes.thresholds(options.triggers));
   auto file = OutputFile::create(options.stream, options.common.existing(), {options.scene, options.replay});
   if (!file) return tl::unexpected(file.error());
   const auto out = file->open();

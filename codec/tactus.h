@@ -14,6 +14,7 @@
 #include "codec/rigid/rigid_decoder.h"
 #include "codec/rigid/rigid_encoder.h"
 #include "codec/rigid/trigger.h"
+#include "codec/stream/bounds.h"
 #include "codec/stream/file.h"
 #include "codec/stream/header.h"
 #include "codec/stream/part.h"

@@ -48,6 +48,8 @@ def describe_header(h: Header) -> dict:
     if h.meshes:
         said["meshes"] = [{"name": m.name, "profile": m.profile, "vertices": len(m.rest), "triangles": len(m.triangles),
                            "modes": len(m.modes)} for m in h.meshes]
+    if h.bounds:
+        said["bounds"] = {**({"rigid": h.bounds.rigid} if h.bounds.rigid else {}), "meshes": h.bounds.meshes}
     return said
 
 

@@ -32,15 +32,21 @@ class Mesh:
     modes: list[Mode] = field(default_factory=list)         # main
 
 
-def read_meshes(body: Cursor, most_meshes: int, most_vertices: int) -> list[Mesh]:
+def read_meshes(body: Cursor, most_meshes: int, vertices_left: int, triangles_left: int) -> list[Mesh]:
     mesh_count = body.varint(STR_5, STR_5_VARINT)
     require(mesh_count >= 1, "malformed", "R-MES-1")
     require(mesh_count <= 255, "invalid", "R-MES-1")
     require(mesh_count <= most_meshes, "limit_exceeded", "R-STR-14")
-    return [read_mesh(body, most_vertices) for _ in range(mesh_count)]
+    meshes = []
+    for _ in range(mesh_count):
+        mesh = read_mesh(body, vertices_left, triangles_left)
+        vertices_left -= len(mesh.rest)
+        triangles_left -= len(mesh.triangles)
+        meshes.append(mesh)
+    return meshes
 
 
-def read_mesh(body: Cursor, most_vertices: int) -> Mesh:
+def read_mesh(body: Cursor, vertices_left: int, triangles_left: int) -> Mesh:
     profile = body.take(1, STR_5)[0]
     require(profile in (THESIS, MAIN), "unsupported", "R-MES-2")
     name_bytes = body.take(body.take(1, STR_5)[0], STR_5)
@@ -58,7 +64,7 @@ def read_mesh(body: Cursor, most_vertices: int) -> Mesh:
     mesh = Mesh(profile, "", rings, quant_bits, models_kept, frame_period, split)
     check_numbers(mesh)
     require(1 <= vertex_count <= MOST_VERTICES and triangle_count <= MOST_TRIANGLES, "invalid", "R-MES-4")
-    require(vertex_count <= most_vertices, "limit_exceeded", "R-STR-14")
+    require(vertex_count <= vertices_left and triangle_count <= triangles_left, "limit_exceeded", "R-STR-14")
     require(3 * (vertex_count + triangle_count) <= body.left(), *STR_5)
     mesh.rest = read_rest(body, vertex_count)
     mesh.triangles = read_triangles(body, vertex_count, triangle_count)

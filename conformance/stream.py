@@ -5,19 +5,21 @@ from __future__ import annotations
 import struct
 import zlib
 from dataclasses import dataclass, field
-from typing import Iterator, NamedTuple
+from typing import Iterator, NamedTuple, Optional
 
 from conventions import ONE, STR_5, STR_5_VARINT, Cursor, require, text
-from mesh_header import Mesh, read_meshes
+from mesh_header import THESIS, Mesh, read_meshes
 from packets import LARGEST_TICK
 
 
 class Limits(NamedTuple):
-    """What this decoder accepts at most (R-STR-14, R-FIL-4, R-PKT-1)."""
+    """What this decoder accepts at most (R-STR-14, R-STR-18, R-FIL-4, R-PKT-1)."""
     objects: int = 4096
     body_size: int = 1 << 20
     packet_size: int = 1 << 20
-    vertices: int = 1 << 20                                 # of one mesh
+    vertices: int = 1 << 20                                 # of all meshes
+    triangles: int = 1 << 21                                # of all meshes
+    state_bytes: int = 1 << 28                              # R-STR-18
 
 
 # ---- Chapter 20, section 3: header ----------------------------------------------------------------------------------
@@ -40,6 +42,12 @@ class Object(NamedTuple):
     initial: State
 
 
+class Bounds(NamedTuple):
+    """Section 3.1: elements in the order in which they are read, f64 as the hexadecimal digits of their bits."""
+    rigid: Optional[list]
+    meshes: list[list]
+
+
 @dataclass
 class Header:
     version: int
@@ -53,6 +61,7 @@ class Header:
     baseline_span: int
     objects: list[Object] = field(default_factory=list)
     meshes: list[Mesh] = field(default_factory=list)
+    bounds: Optional[Bounds] = None
 
     def moving(self) -> list[int]:
         """Chapter 40, section 2: the moving objects M, as indices into `objects`."""
@@ -60,6 +69,7 @@ class Header:
 
 
 STR_16 = ("malformed", "R-STR-16")
+BOUNDS = 2                                                  # type of an extension record
 
 
 def read_header(data: bytes, limits: Limits = Limits()) -> tuple[Header, int]:
@@ -85,12 +95,16 @@ def read_header(data: bytes, limits: Limits = Limits()) -> tuple[Header, int]:
     require(object_count * SMALLEST_OBJECT <= body.left(), *STR_5)
     header.objects = [read_object(body) for _ in range(object_count)]
     if flags & HAS_MESHES:
-        header.meshes = read_meshes(body, limits.objects - object_count, limits.vertices)
+        header.meshes = read_meshes(body, limits.objects - object_count, limits.vertices, limits.triangles)
     while body.left() > 0:
-        body.varint(STR_16, STR_16)
-        body.take(body.varint(STR_16, STR_16), STR_16)
+        kind = body.varint(STR_16, STR_16)
+        content = body.take(body.varint(STR_16, STR_16), STR_16)
+        if kind == BOUNDS:
+            require(header.bounds is None, "invalid", "R-STR-17")
+            header.bounds = read_bounds(Cursor(content, 0, len(content)), header)
     names = [item.name for item in (*header.objects, *header.meshes)]
     require(len(set(names)) == len(names), "invalid", "R-STR-11")
+    require(state_bytes(header) <= limits.state_bytes, "limit_exceeded", "R-STR-18")
     return header, end + 4
 
 
@@ -101,6 +115,17 @@ def check_numbers(h: Header) -> None:
             and h.spin_exp <= h.rotation_exp <= h.spin_exp + 12, "invalid", "R-STR-7")
     require(h.max_extrapolation >= 1, "invalid", "R-STR-8")
     require(1 <= h.baseline_span <= 64, "invalid", "R-STR-9")
+
+
+def state_bytes(h: Header) -> int:
+    """Section 5."""
+    states = h.baseline_span + 2
+    total = 64 * states * len(h.objects)
+    for mesh in h.meshes:
+        total += states * ((24 if mesh.split else 12) * len(mesh.rest) + 48 * len(mesh.modes))
+        if mesh.profile == THESIS:
+            total += (states + 2 if mesh.models_kept else 2) * 4 * (254 + (1 << mesh.quant_bits))
+    return total
 
 
 def read_object(body: Cursor) -> Object:
@@ -115,6 +140,33 @@ def read_object(body: Cursor) -> Object:
     require(all(-ONE <= c <= ONE for c in rotation)
             and abs(sum(c * c for c in rotation) - (1 << 60)) <= 1 << 41, "invalid", "R-STR-13")
     return Object(name, dof, State(0, position, rotation))
+
+
+def read_bounds(data: Cursor, header: Header) -> Bounds:
+    """Section 3.1."""
+    def f64s(count: int) -> list[str]:
+        return [f64() for _ in range(count)]
+
+    def f64() -> str:
+        bits = struct.unpack("<Q", data.take(8, ("truncated", "R-STR-17")))[0]
+        require(bits < 0x7FF0000000000000, "invalid", "R-STR-17")
+        return f"{bits:016x}"
+
+    def choice() -> int:
+        value = data.take(1, ("truncated", "R-STR-17"))[0]
+        require(value <= 3, "invalid", "R-STR-17")
+        return value
+
+    rigid = None
+    if header.moving():
+        rigid = f64s(3)
+        haptic = choice()
+        rigid += [haptic, *f64s((0, 2, 3, 2)[haptic])]
+    meshes = []
+    for _ in header.meshes:
+        promise = choice()
+        meshes.append([promise, *f64s(3 if promise & 2 else 1)])
+    return Bounds(rigid, meshes)
 
 
 # ---- Chapter 20, section 4: file ------------------------------------------------------------------------------------
@@ -150,7 +202,7 @@ class File:
         kind = rest.take(1, FIL_2)[0]
         size = rest.varint(FIL_2, FIL_6)
         require(kind in (PACKET, INDEX, TRAILER) or kind >= FIRST_EXTENSION, "unsupported", "R-FIL-3")
-        require(kind != PACKET or size <= self.limits.packet_size + 5, "limit_exceeded", "R-FIL-4")
+        require(kind != PACKET or size <= self.limits.packet_size + 6, "limit_exceeded", "R-FIL-4")
         require(kind != TRAILER or size == 8, *FIL_6)
         require(size + 4 <= rest.left(), *FIL_2)
         payload = rest.take(size, FIL_2)

@@ -19,19 +19,13 @@ struct MeshTouch {
   double stiffness = 500;      ///< [N/m] k_c of the client's rendering, > 0
 };
 
-/// When a vertex must be sent.
-struct MeshThresholds {
-  double visual = 2.5e-4;                        ///< v [m], thesis eq. 3.10; 0: every vertex, exact to the grid
-  std::optional<double> weber_fraction = 0.025;  ///< p, eq. 3.12: h = p |f_s| / k_c; none: no haptic threshold
-  double depth_floor = 2e-4;                     ///< [m] |f_s| / k_c counts as at least this: at first touch h would be 0
-};
-
 struct MeshEncoderOptions {
   MeshThresholds thresholds;
-  double key_interval = 5.0;  ///< [s] after this long the next packet builds on the initial state; 0: never
+  double key_interval = 5.0;  ///< [s] after this long the next packet builds on the initial state; 0: only after 8 s of silence
   double visual_share = 1;    ///< main: code to this share of v: less error for more bits. 0.001 <= share <= 1
   double haptic_share = 1;    ///< main: the same of h
   bool split = false;         ///< thesis: packets are haptic or visual halves. main: not looked at, the header's `split` decides
+  std::uint16_t first_sequence = 1;  ///< as RigidEncoderOptions
 };
 
 struct EncodedMeshPacket {

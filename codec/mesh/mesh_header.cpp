@@ -167,7 +167,7 @@ void write_mesh(ByteWriter& out, const MeshObject& mesh) {
   }
 }
 
-Result<MeshObject> parse_mesh(ByteReader& in, std::uint32_t vertex_limit) {
+Result<MeshObject> parse_mesh(ByteReader& in, const MeshRoom& room) {
   MeshObject mesh;
   TACTUS_CHECK(parse_parameters(in, mesh));
   const std::uint64_t vertices = in.varint(), triangles = in.varint();
@@ -175,7 +175,7 @@ Result<MeshObject> parse_mesh(ByteReader& in, std::uint32_t vertex_limit) {
   if (!are_parameters(mesh)) return fail(Errc::invalid, "R-MES-3", in.bit_offset());
   if (vertices < 1 || vertices > kMaxMeshVertices || triangles > kMaxMeshTriangles)
     return fail(Errc::invalid, "R-MES-4", in.bit_offset());
-  if (vertices > vertex_limit) return fail(Errc::limit_exceeded, "R-STR-14", in.bit_offset());
+  if (vertices > room.vertices || triangles > room.triangles) return fail(Errc::limit_exceeded, "R-STR-14", in.bit_offset());
   if (3 * (vertices + triangles) > in.remaining()) return fail(Errc::truncated, "R-STR-5", in.bit_offset());
   TACTUS_CHECK(parse_rest(in, vertices, mesh));
   TACTUS_CHECK(parse_triangles(in, triangles, mesh));

@@ -3,40 +3,10 @@
 /// encoder's choice, never needed to decode.
 #pragma once
 
-#include <cstdint>
-#include <numbers>
-#include <span>
-
-#include "codec/rigid/contact.h"
-#include "codec/rigid/rigid.h"
+#include "codec/base/geometry.h"
+#include "codec/stream/bounds.h"
 
 namespace tactus {
-
-enum class Reduction : std::uint8_t {
-  none,            ///< every object, every tick (reference setting S_R7)
-  dead_reckoning,  ///< only when a trigger fires
-};
-
-enum class HapticRule : std::uint8_t {
-  off,        ///< visual dead reckoning and heartbeat only (S_R1)
-  isotropic,  ///< |f^ - f| > p |f|                                                   thesis eq. 3.1
-  cone,       ///< | |f^| - |f| | > p |f| or angle(f^, f) > alpha_max                 thesis figure 3.12
-  fixed,      ///< position or rotation error over fixed thresholds while in contact  thesis table 3.3, S_DR
-};
-
-/// Defaults are the thesis's (3.2.4.1) with p = 8 %.
-struct RigidTriggers {
-  Reduction reduction = Reduction::dead_reckoning;
-  double heartbeat = 1.0;                                   ///< [s] 0 switches it off
-  double visual_position = 0.006;                           ///< [m]
-  double visual_rotation = 2.0 * std::numbers::pi / 180.0;  ///< [rad]
-  HapticRule haptic = HapticRule::isotropic;
-  double weber_fraction = 0.08;                            ///< p, traffic control parameter
-  double cone_angle = 2.1 * std::numbers::pi / 180.0;      ///< alpha_max [rad]
-  double fixed_position = 0.0015;                          ///< [m]
-  double fixed_rotation = 2.0 * std::numbers::pi / 180.0;  ///< [rad]
-  double force_floor = 0.05;                               ///< [N] below this force the threshold stays p * force_floor
-};
 
 /// Permitted force error at true force f: p * max(|f|, force_floor) [N].
 double force_budget(const RigidTriggers& triggers, double force) noexcept;

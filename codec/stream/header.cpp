@@ -10,6 +10,7 @@
 #include "codec/base/hash.h"
 #include "codec/base/out_of_memory.h"
 #include "codec/mesh/mesh_header.h"
+#include "codec/stream/bounds_record.h"
 
 namespace tactus {
 namespace {
@@ -98,12 +99,15 @@ Result<RigidObject> parse_object(ByteReader& body) {
   return object;
 }
 
-/// Records of unknown type are skipped; none is defined in this version.
-Result<void> skip_extensions(ByteReader& body) {
+/// Records of unknown type are skipped.
+Result<void> parse_extensions(ByteReader& body, StreamHeader& header) {
   while (body.remaining() > 0) {
-    body.varint();
-    body.bytes(body.varint());
+    const std::uint64_t type = body.varint();
+    ByteReader data = body.sub(body.varint());
     if (!body.ok()) return fail(Errc::malformed, "R-STR-16", body.bit_offset());
+    if (type != kBoundsRecord) continue;
+    if (header.bounds) return fail(Errc::invalid, "R-STR-17", data.bit_offset());
+    TACTUS_TRY(header.bounds, parse_bounds(data, header));
   }
   return {};
 }
@@ -114,10 +118,13 @@ Result<void> parse_meshes(ByteReader& body, const DecodeLimits& limits, StreamHe
   if (count < 1) return fail(Errc::malformed, "R-MES-1", body.bit_offset());
   if (count > kMaxMeshes) return fail(Errc::invalid, "R-MES-1", body.bit_offset());
   if (count > limits.objects - header.objects.size()) return fail(Errc::limit_exceeded, "R-STR-14", body.bit_offset());
+  MeshRoom room{limits.vertices, limits.triangles};
   for (std::uint64_t i = 0; i < count; ++i) {
     const std::uint64_t start = body.bit_offset();
-    TACTUS_TRY(auto mesh, parse_mesh(body, limits.vertices));
+    TACTUS_TRY(auto mesh, parse_mesh(body, room));
     if (!is_name(mesh.name)) return fail(Errc::invalid, "R-STR-11", start);
+    room.vertices -= mesh.rest.size();
+    room.triangles -= mesh.triangles.size();
     header.meshes.push_back(std::move(mesh));
   }
   return {};
@@ -146,7 +153,7 @@ Result<StreamHeader> parse_body(ByteReader body, Profile profile, std::uint16_t 
     header.objects.push_back(std::move(object));
   }
   if (flags & kHasMeshes) TACTUS_CHECK(parse_meshes(body, limits, header));
-  TACTUS_CHECK(skip_extensions(body));
+  TACTUS_CHECK(parse_extensions(body, header));
   return header;
 }
 
@@ -162,11 +169,16 @@ Result<void> find_broken_rule(const StreamHeader& header, const DecodeLimits& li
     const RigidState at_rest{0, object.initial.position, object.initial.rotation, {}, {}};
     if (object.initial != at_rest) return fail(Errc::invalid, "R-API-8");
   }
+  std::uint64_t vertices = 0, triangles = 0;
   for (const MeshObject& mesh : header.meshes) {
     if (!is_name(mesh.name) || !names.insert(mesh.name).second) return fail(Errc::invalid, "R-STR-11");
     if (const char* rule = broken_mesh_rule(mesh)) return fail(Errc::invalid, rule);
-    if (mesh.rest.size() > limits.vertices) return fail(Errc::limit_exceeded, "R-STR-14");
+    vertices += mesh.rest.size();
+    triangles += mesh.triangles.size();
+    if (vertices > limits.vertices || triangles > limits.triangles) return fail(Errc::limit_exceeded, "R-STR-14");
   }
+  if (header.bounds && !are_bounds(header)) return fail(Errc::invalid, "R-STR-17");
+  if (state_bytes(header) > limits.state_bytes) return fail(Errc::limit_exceeded, "R-STR-18");
   return {};
 }
 
@@ -200,6 +212,12 @@ Result<std::vector<std::uint8_t>> write_header(const StreamHeader& header) try {
   }
   if (!header.meshes.empty()) b.varint(header.meshes.size());
   for (const MeshObject& mesh : header.meshes) write_mesh(b, mesh);
+  if (header.bounds) {
+    const auto bounds = write_bounds(*header.bounds);
+    b.varint(kBoundsRecord);
+    b.varint(bounds.size());
+    b.bytes(bounds);
+  }
   std::vector<std::uint8_t> out;
   out.reserve(kFixedSize + body.size() + 4);
   ByteWriter w(out);
@@ -239,6 +257,28 @@ Result<ParsedHeader> parse_header(std::span<const std::uint8_t> bytes, const Dec
   return ParsedHeader{std::move(header), in.position()};
 } catch (const std::bad_alloc&) {
   return out_of_memory();
+}
+
+std::uint64_t state_bytes(const StreamHeader& header) noexcept {
+  const std::uint64_t states = header.baseline_span + 2u;  // the initial one and that of the packet at hand
+  std::uint64_t sum = 64 * states * header.objects.size();
+  for (const MeshObject& mesh : header.meshes) {
+    sum += states * ((mesh.split ? 24 : 12) * mesh.rest.size() + 48 * mesh.basis.steps.size());
+    if (mesh.profile == MeshProfile::thesis)
+      sum += (mesh.models_kept ? states + 2 : 2) * 4 * (254 + (std::uint64_t{1} << mesh.quant_bits));
+  }
+  return sum;
+}
+
+StreamHeader without_meshes(const StreamHeader& header) {
+  StreamHeader out;
+  out.profile = header.profile;
+  out.tick_rate = header.tick_rate;
+  out.grid = header.grid;
+  out.max_extrapolation = header.max_extrapolation;
+  out.baseline_span = header.baseline_span;
+  out.objects = header.objects;
+  return out;
 }
 
 std::size_t max_packet_size(const StreamHeader& header) noexcept {

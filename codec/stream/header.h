@@ -5,12 +5,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "codec/base/result.h"
 #include "codec/mesh/mesh_object.h"
+#include "codec/stream/bounds.h"
 
 namespace tactus {
 
@@ -61,20 +63,32 @@ struct StreamHeader {
   std::uint8_t baseline_span = 1;          ///< how many of the newest states a receiver keeps as baselines, 1..64
   std::vector<RigidObject> objects;        ///< order is the wire order
   std::vector<MeshObject> meshes;          ///< deformable objects; a stream without them has no byte about them
+  std::optional<StreamBounds> bounds;      ///< what the sender vouches for; none: not told
 };
 
-/// What a decoder accepts before it allocates. Any mesh of 2^20 vertices without a basis fits; its memory is then in proportion to
-/// bytes that are there, not to what is announced.
+/// What a decoder accepts before it allocates. What it takes is in proportion to the header's bytes that are there and to
+/// state_bytes(), never to what is announced. A mesh of 2^20 vertices without a basis fits with a baseline_span of up to 19.
 struct DecodeLimits {
   std::uint32_t objects = 4096;
   std::uint32_t header_bytes = 1u << 26;
   std::uint32_t packet_bytes = 1u << 26;
-  std::uint32_t vertices = 1u << 20;  ///< of one mesh
+  std::uint32_t vertices = 1u << 20;       ///< of all meshes
+  std::uint32_t triangles = 1u << 21;      ///< of all meshes
+  std::uint64_t state_bytes = 1ull << 28;  ///< of all states that the stream's decoders keep
 };
+
+/// What the states take that decoders of all parts of a stream keep [bytes]. spec/20-stream.md section 5
+std::uint64_t state_bytes(const StreamHeader& header) noexcept;
+
+/// Everything but the meshes, without copying them.
+StreamHeader without_meshes(const StreamHeader& header);
 
 /// Serialise a header. Deterministic: equal headers give equal bytes.
 /// err  invalid_argument with the R-STR rule that the header breaks.
 Result<std::vector<std::uint8_t>> write_header(const StreamHeader& header);
+
+/// What a stream promises whose encoders have these thresholds: meshes of profile thesis only aim at theirs.
+StreamBounds bounds_of(const StreamHeader& header, const RigidTriggers& rigid, const MeshThresholds& meshes);
 
 /// The rule that a header breaks, if any. Both write_header and every create() check it.
 Result<void> check_header(const StreamHeader& header, const DecodeLimits& limits = {});
@@ -86,7 +100,7 @@ struct ParsedHeader {
 };
 
 /// Parse a header from the front of `bytes`; unknown extension records are skipped.
-/// err  truncated, malformed, invalid, unsupported, limit_exceeded, checksum: R-STR-1 .. R-STR-16, R-MES-1 .. R-MES-7.
+/// err  truncated, malformed, invalid, unsupported, limit_exceeded, checksum: R-STR-1 .. R-STR-18, R-MES-1 .. R-MES-7.
 Result<ParsedHeader> parse_header(std::span<const std::uint8_t> bytes, const DecodeLimits& limits = {});
 
 /// Upper bound of the size of any packet of this stream's rigid objects, in bytes.

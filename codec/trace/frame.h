@@ -11,6 +11,7 @@
 #include "codec/base/tri_mesh.h"
 #include "codec/rigid/contact.h"
 #include "codec/rigid/rigid.h"
+#include "codec/stream/bounds.h"
 
 namespace tactus {
 
@@ -28,6 +29,13 @@ struct TraceMesh {
   double period = 1;                   ///< ticks from shape to shape, as whoever made the recording meant it; > 0
 };
 
+/// What the stream promises that a replica was decoded from, and what else says where its bounds hold.
+struct TraceBounds {
+  StreamBounds stream;
+  std::uint8_t position_exp = GridExponents{}.position;  ///< grid of positions: 2^-position_exp m
+  std::vector<std::uint8_t> rings{};                     ///< per mesh: size of the area of interest
+};
+
 struct TraceInfo {
   std::uint32_t tick_rate = 1000;  ///< ticks per second
   std::vector<TraceObject> objects;
@@ -35,6 +43,7 @@ struct TraceInfo {
   std::string source;              ///< "sim push-1dof seed 1", "import cube-tosses.csv"
   std::string scene;               ///< scene file (TOML) attached to the trace; may be empty
   std::vector<TraceMesh> meshes{};
+  std::optional<TraceBounds> bounds{};  ///< of a replica whose stream tells them
 };
 
 /// Contact of one user's probe with the surface of a deformable object.

@@ -25,6 +25,7 @@ class FrameAssembler {
 struct Preamble {
   mcap::Item item = mcap::Item::end;    ///< where the reader stands now: at a message, or at the end
   std::optional<mcap::TextMap> tactus;  ///< our metadata record
+  std::optional<mcap::TextMap> bounds;  ///< that of the bounds
   std::string scene;
 };
 

@@ -5,6 +5,7 @@
 #include "codec/trace/frame_assembler.h"
 #include "codec/trace/messages.h"
 #include "codec/trace/text.h"
+#include "codec/trace/trace_bounds.h"
 #include "codec/trace/trace_layout.h"
 
 namespace tactus {
@@ -96,6 +97,10 @@ Result<void> TactusAssembler::start(mcap::Reader& mcap, const Preamble& preamble
       std::all_of(info_.meshes.begin(), info_.meshes.end(), [](const auto& m) { return is_plain_name(m.name); });
   if (!has_names || (info_.objects.empty() && info_.users.empty() && info_.meshes.empty()))
     return refuse(mcap, Errc::invalid, "R-TRC-12");
+  if (preamble.bounds) {
+    info_.bounds = bounds_from(*preamble.bounds, info_);
+    if (!info_.bounds) return refuse(mcap, Errc::invalid, "R-TRC-12");
+  }
   item_ = preamble.item;
   const bool ended_early = item_ == mcap::Item::end && mcap.cut_short();
   TACTUS_CHECK(find_channels(mcap, ended_early ? Errc::truncated : Errc::invalid));

@@ -15,7 +15,7 @@
 ///
 /// log_time, publish_time and header.stamp are round(tick * 1e9 / tick_rate), sequence is tick mod 2^32. The metadata record
 /// "tactus" holds format_version ("1"), tick_rate, source, objects, users and, if there are any, meshes (names in order, one a
-/// line); a pose channel's metadata holds dof, a rest channel's, where they are not none and 1, fixed (numbers of vertices with a blank
+/// line); a replica's record "tactus_bounds" what its stream promises (trace_bounds.h); a pose channel's metadata holds dof, a rest channel's, where they are not none and 1, fixed (numbers of vertices with a blank
 /// in between, ascending) and period (ticks); the scene is the attachment "scene.toml". Chunks end at whole ticks, after 1 MiB or 1 s.
 ///
 /// rule      class             broken when
@@ -32,13 +32,13 @@
 ///           invalid           the footer points elsewhere than to the summary
 /// R-TRC-10  invalid           a schema or channel is used undeclared or declared twice with a difference
 /// R-TRC-11  invalid           text is not UTF-8, or a key stands twice in a map
-/// R-TRC-12  invalid           the "tactus" metadata or the channels lack something or contradict each other
+/// R-TRC-12  invalid           the "tactus" or "tactus_bounds" metadata or the channels lack something or contradict each other
 /// R-TRC-13  malformed         a message is not CDR of its channel's type
 /// R-TRC-14  invalid           a value is NaN or infinite, a contact or stamp is none, or a mesh has another number of vertices
 /// R-TRC-15  invalid           ticks do not increase, a message's times disagree, or a tick lacks a message or has one twice
 /// R-TRC-16  unsupported       a foreign file without PoseStamped channels, or with one that begins after the look-ahead
 /// R-TRC-17  invalid_argument  TraceInfo: nothing to record, over 65535 channels, tick rate not in 1..1000000, dof bits, fixed
-///                             vertices or the period of a mesh, or a name that is empty, repeated, over 255 bytes, not UTF-8 or has '/' or control characters
+///                             vertices or the period of a mesh, bounds of another number of meshes, or a name that is empty, repeated, over 255 bytes, not UTF-8 or has '/' or control characters
 /// R-MSH-n   as tri_mesh.h     a mesh's rest shape
 #pragma once
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "codec/base/out_of_memory.h"
 #include "codec/trace/frame_assembler.h"
+#include "codec/trace/trace_bounds.h"
 #include "codec/trace/trace_file.h"
 
 namespace tactus {
@@ -13,6 +14,7 @@ Result<Preamble> read_preamble(mcap::Reader& mcap) {
     switch (preamble.item) {
       case mcap::Item::metadata:
         if (mcap.metadata().name == "tactus") preamble.tactus = mcap.metadata().entries;
+        if (mcap.metadata().name == kBoundsMetadata) preamble.bounds = mcap.metadata().entries;
         break;
       case mcap::Item::attachment: {
         const mcap::Attachment& attachment = mcap.attachment();

@@ -10,6 +10,7 @@
 #include "codec/trace/mcap_writer.h"
 #include "codec/trace/messages.h"
 #include "codec/trace/text.h"
+#include "codec/trace/trace_bounds.h"
 #include "codec/trace/trace_file.h"
 #include "codec/trace/trace_layout.h"
 
@@ -40,6 +41,9 @@ Result<void> check(const TraceInfo& info) {
     if (const auto sound = check(mesh.rest); !sound) return fail(Errc::invalid_argument, sound.error().error.rule);
     if (!is_valid(mesh)) return fail(Errc::invalid_argument, "R-TRC-17");
   }
+  const bool bounds_fit = !info.bounds || (info.bounds->stream.meshes.size() == info.meshes.size() &&
+                                           info.bounds->rings.size() == info.meshes.size());
+  if (!bounds_fit) return fail(Errc::invalid_argument, "R-TRC-17");
   return {};
 }
 
@@ -133,6 +137,7 @@ struct TraceWriter::Impl {
 
 Result<void> TraceWriter::Impl::declare() {
   TACTUS_CHECK(mcap.add(metadata_of(info)));
+  if (info.bounds) TACTUS_CHECK(mcap.add(mcap::Metadata{kBoundsMetadata, entries_of(*info.bounds)}));
   if (!info.scene.empty()) TACTUS_CHECK(mcap.add(scene_of(info)));
   std::set<MessageType> types;
   for (std::size_t i = 0; i < channels.size(); ++i) {

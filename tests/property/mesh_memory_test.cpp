@@ -57,6 +57,19 @@ TEST(MeshMemory, OfEveryVector) {
   EXPECT_GT(decoders, 100U);
 }
 
+/// Everything that a stream makes its decoders allocate together, for a header of so many bytes: what the header earns, and its states.
+std::uint64_t watch_all(const StreamHeader& header, std::size_t bytes) {
+  const auto file = write_header(header).value();
+  EXPECT_EQ(file.size(), bytes);
+  const std::uint64_t start = testing::allocated_bytes();
+  auto reader = StreamFileReader::open(file);
+  auto rigid = RigidDecoder::create(reader->header());
+  std::vector<MeshDecoder> decoders;
+  decoders.reserve(header.meshes.size());
+  for (std::size_t i = 0; i < header.meshes.size(); ++i) decoders.push_back(MeshDecoder::create(reader->header(), i).value());
+  return testing::allocated_bytes() - start;
+}
+
 MeshObject points(std::uint32_t vertices) {
   MeshObject mesh;
   mesh.name = "m";
@@ -105,6 +118,25 @@ TEST(MeshMemory, OfMeshesThatTakeMost) {
       header.meshes.push_back(mesh);
       EXPECT_EQ(watch(write_header(header).value()), 1U);
     }
+  }
+}
+
+/// Meshes do not multiply one another's memory, and states are what state_bytes() counts.
+TEST(MeshMemory, OfAStreamOfManyMeshes) {
+  MeshObject with_models = points(1);
+  with_models.profile = MeshProfile::thesis;
+  with_models.quant_bits = 12;
+  with_models.models_kept = true;
+  for (const auto& [mesh, span] : {std::pair{with_models, std::uint8_t{16}}, {points(300), std::uint8_t{1}}}) {
+    StreamHeader header;
+    header.baseline_span = span;
+    for (int i = 0; i < 255; ++i) {
+      header.meshes.push_back(mesh);
+      header.meshes.back().name = std::to_string(i);
+    }
+    const std::size_t bytes = write_header(header)->size();
+    const std::uint64_t bound = 255 * 4096 + 640 * bytes + state_bytes(header);
+    EXPECT_LE(watch_all(header, bytes), bound) << int{span};
   }
 }
 

@@ -96,7 +96,7 @@ TEST(MeshHeader, EachRuleOfTheReader) {
     bad.erase(bad.begin() + static_cast<std::ptrdiff_t>(at));
     bad.insert(bad.begin() + static_cast<std::ptrdiff_t>(at), bytes.begin(), bytes.end());
     ByteReader reader(bad);
-    const auto parsed = parse_mesh(reader, 1000);
+    const auto parsed = parse_mesh(reader, {1000, 1000});
     return parsed ? std::string_view("none") : std::string_view(parsed.error().rule);
   };
   // profile, name (2), rings, frame_period (4), split, vertices, triangles, 9 coordinates, 3 corners, modes

@@ -110,6 +110,47 @@ TEST(StreamHeader, LimitsApplyBeforeAllocation) {
   EXPECT_STREQ(parse_header(bytes, limits).error().rule, "R-STR-14");
 }
 
+/// Meshes of one vertex whose states hold the largest models.
+StreamHeader with_models(int meshes) {
+  StreamHeader header;
+  header.baseline_span = 64;
+  for (int i = 0; i < meshes; ++i) {
+    MeshObject& mesh = header.meshes.emplace_back();
+    mesh.name = std::to_string(i);
+    mesh.profile = MeshProfile::thesis;
+    mesh.quant_bits = 12;
+    mesh.models_kept = true;
+    mesh.rest = {{0, 0, 0}};
+  }
+  return header;
+}
+
+TEST(StreamHeader, StatesAreLimitedBeforeAnythingIsBuilt) {
+  EXPECT_EQ(state_bytes(with_models(226)), 226u * 1183992);
+  EXPECT_TRUE(write_header(with_models(226)));
+  EXPECT_STREQ(write_header(with_models(227)).error().rule, "R-STR-18");
+  const auto bytes = write_header(with_models(10)).value();
+  EXPECT_TRUE(parse_header(bytes, {.state_bytes = 10 * 1183992}));
+  const auto refused = parse_header(bytes, {.state_bytes = 10 * 1183992 - 1});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Errc::limit_exceeded);
+  EXPECT_STREQ(refused.error().rule, "R-STR-18");
+}
+
+TEST(StreamHeader, VerticesAndTrianglesOfAllMeshesCount) {
+  StreamHeader header;
+  for (const char* name : {"a", "b"}) {
+    MeshObject& mesh = header.meshes.emplace_back();
+    mesh.name = name;
+    mesh.rest = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.triangles = {{0, 1, 2}};
+  }
+  const auto bytes = write_header(header).value();
+  EXPECT_TRUE(parse_header(bytes, {.vertices = 6, .triangles = 2}));
+  EXPECT_STREQ(parse_header(bytes, {.vertices = 5}).error().rule, "R-STR-14");
+  EXPECT_STREQ(parse_header(bytes, {.triangles = 1}).error().rule, "R-STR-14");
+}
+
 TEST(StreamHeader, EveryPrefixIsTruncated) {
   const auto bytes = write_header(two_objects()).value();
   for (std::size_t size = 0; size < bytes.size(); ++size) {
