@@ -28,15 +28,15 @@ class MeshPacket(NamedTuple):
 class MeshDecoder:
     def __init__(self, header: Header, mesh: Mesh, limits: Limits = Limits()):
         self.codec = MainCodec(mesh) if mesh.profile == MAIN else ThesisCodec(mesh)
-        self.receiver = Receiver(self.codec.initial, header.baseline_span, limits.packet_size)
+        self.receiver = Receiver(self.codec.initial, header.baseline_span, limits.packet_size, header.tick_rate)
 
-    def decode(self, data: bytes, record_tick: Optional[int] = None) -> MeshPacket:
-        """Decodes one packet, from a record at `record_tick` if from a file; an error leaves the decoder unchanged."""
-        sequence = self.receiver.open(data)
-        state, key, vertices, decoder = self.codec.decode(data[2:], self.receiver, sequence)
+    def decode(self, data: bytes, record_tick: Optional[int] = None, now: Optional[int] = None) -> MeshPacket:
+        """Decodes one packet, from a record at `record_tick` if from a file, else with `now`; an error leaves the decoder unchanged."""
+        number = self.receiver.open(data, now)
+        state, key, vertices, decoder = self.codec.decode(data[2:], self.receiver, number)
         require(record_tick in (None, state.tick), "invalid", "R-FIL-7")
-        self.receiver.keep(sequence, state)
-        return MeshPacket(sequence, key, vertices, decoder.range, decoder.code, state)
+        self.receiver.keep(number, key, state)
+        return MeshPacket(number % (1 << 16), key, vertices, decoder.range, decoder.code, state)
 
     def shown(self, tick: int) -> list[int]:
         """Section 6: the displacements that a client shows at a tick; one before the current state's counts as that."""

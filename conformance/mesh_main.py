@@ -95,9 +95,9 @@ class MainCodec:
         self.triangles_of = triangles_of_vertices(mesh)
         self.initial = MainState(0, [0] * (3 * len(mesh.rest)), [Motion()] * len(mesh.modes), felt={} if mesh.split else None)
 
-    def decode(self, payload: bytes, receiver: Receiver, sequence: int) -> tuple[MainState, int, list[int], RangeDecoder]:
+    def decode(self, payload: bytes, receiver: Receiver, number: int) -> tuple[MainState, int, list[int], RangeDecoder]:
         decoder, models = RangeDecoder(payload), Models("mesh-start-models.csv")
-        place = self.read_place(decoder, models, receiver, sequence)
+        place = self.read_place(decoder, models, receiver, number)
         base, tick = place.base, place.tick
         state = self.read_head(decoder, models, place)._replace(tick=tick)
         coefficients = self.read_coefficients(decoder, models) if place.half != HAPTIC else [0] * len(self.mesh.modes)
@@ -134,7 +134,7 @@ class MainCodec:
 
     # ---- Section 5: head ----
 
-    def read_place(self, decoder: RangeDecoder, models: Models, receiver: Receiver, sequence: int) -> Place:
+    def read_place(self, decoder: RangeDecoder, models: Models, receiver: Receiver, number: int) -> Place:
         key = decoder.bit(models["KEY"][1])
         named = not key and receiver.span > 1
         baseline_delta = decoder.magnitude(models["BASELINE"]) if named else 1
@@ -148,8 +148,8 @@ class MainCodec:
             tick_delta = decoder.magnitude(models["TICK"])
         else:
             tick_delta = max(0, round_shift(self.mesh.frame_period, 8) + decoder.signed(models["LATE"]))
-        base = receiver.baseline(sequence, key, baseline_delta)
-        return Place(key, half, completes, base, receiver.tick(base, tick_delta, "R-MES-8"))
+        base = receiver.baseline(number, key, baseline_delta)
+        return Place(key, half, completes, base, receiver.tick(base, key, tick_delta, "R-MES-8"))
 
     def read_head(self, decoder: RangeDecoder, models: Models, place: Place) -> MainState:
         state = place.base if place.completes else self.read_bounds(decoder, models, place)

@@ -60,10 +60,10 @@ class ThesisCodec:
         cold = ThesisModels([COLD] * (1 << LIST_BITS), [COLD] * (1 << mesh.quant_bits))
         self.initial = ThesisState(0, [0] * (3 * len(mesh.rest)), cold, mesh.models_kept)
 
-    def decode(self, payload: bytes, receiver: Receiver, sequence: int) -> tuple[ThesisState, int, list[int], RangeDecoder]:
+    def decode(self, payload: bytes, receiver: Receiver, number: int) -> tuple[ThesisState, int, list[int], RangeDecoder]:
         head = self.read_head(payload, receiver.span)
-        base = receiver.baseline(sequence, head.key, head.baseline_delta)
-        tick = receiver.tick(base, head.tick_delta, "R-MES-8")
+        base = receiver.baseline(number, head.key, head.baseline_delta)
+        tick = receiver.tick(base, head.key, head.tick_delta, "R-MES-8")
         models = (base if self.mesh.models_kept else self.initial).models.copy()
         listed = self.read_list(RangeDecoder(head.list), models.list, head.count)
 

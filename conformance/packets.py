@@ -3,46 +3,62 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import Any
+from typing import Any, Optional
 
 from conventions import StreamError, require
 
 LARGEST_TICK = (1 << 32) - 2
 
 
-class Receiver:
-    """Keeps the initial state and the states after the newest `span` packets. A state has a `tick`."""
+LATE = 128
+AHEAD = 32767
 
-    def __init__(self, initial: Any, span: int, largest_packet: int):
+
+class Receiver:
+    """Keeps the initial state and the states after the newest `span` packets, by number (section 2.1). A state has a `tick`."""
+
+    def __init__(self, initial: Any, span: int, largest_packet: int, tick_rate: int):
         self.initial, self.span, self.largest_packet = initial, span, largest_packet
         self.kept: deque[tuple[int, Any]] = deque(maxlen=span)
+        self.shown = initial                                # the current state, also where it is forgotten as a baseline
+        self.forget_after = max(1 << 14, 16 * tick_rate)
+        self.newest = 0                                     # number of the newest accepted packet
+        self.now: Optional[int] = None                      # when the packet at hand arrived
+        self.arrival: Optional[int] = None                  # when the newest accepted one did
 
     def current(self) -> Any:
-        return self.kept[-1][1] if self.kept else self.initial
+        return self.shown
 
-    def open(self, data: bytes) -> int:
-        """The sequence number of a packet that may be decoded."""
+    def open(self, data: bytes, now: Optional[int] = None) -> int:
+        """The number of a packet that may be decoded. It arrives at tick `now` of the receiver's clock, if that has one."""
         require(len(data) <= self.largest_packet, "limit_exceeded", "R-PKT-1")
         require(len(data) >= 2, "truncated", "R-PKT-2")
+        self.now = now
+        if now is not None and self.arrival is not None and now - self.arrival > self.forget_after:
+            self.kept.clear()
         sequence = data[0] | data[1] << 8
-        if self.kept:
-            require(1 <= (sequence - self.kept[-1][0]) % (1 << 16) <= 32767, "state", "R-PKT-5")
-        return sequence
+        require(not self.kept or (self.newest - sequence) % (1 << 16) >= LATE, "state", "R-PKT-5")
+        return self.newest + 1 + (sequence - self.newest - 1) % (1 << 16)
 
-    def baseline(self, sequence: int, key: int, baseline_delta: int) -> Any:
+    def baseline(self, number: int, key: int, baseline_delta: int) -> Any:
         require(1 <= baseline_delta <= self.span, "invalid", "R-PKT-3")
         if key:
             return self.initial
-        wanted = (sequence - baseline_delta) % (1 << 16)
-        for kept_sequence, state in reversed(self.kept):
-            if kept_sequence == wanted:
+        if self.kept and number - self.newest > AHEAD:
+            self.kept.clear()
+            raise StreamError("state", "R-PKT-7")
+        for kept_number, state in self.kept:
+            if kept_number == number - baseline_delta:
                 return state
         raise StreamError("state", "R-PKT-4")
 
-    def tick(self, baseline: Any, tick_delta: int, rule: str) -> int:
+    def tick(self, baseline: Any, key: int, tick_delta: int, rule: str) -> int:
         tick = baseline.tick + tick_delta
-        require(self.current().tick <= tick <= LARGEST_TICK, "invalid", rule)
+        require((key or tick >= self.shown.tick) and tick <= LARGEST_TICK, "invalid", rule)
         return tick
 
-    def keep(self, sequence: int, state: Any) -> None:
-        self.kept.append((sequence, state))
+    def keep(self, number: int, key: int, state: Any) -> None:
+        if key and (number - self.newest > AHEAD or state.tick < self.shown.tick):
+            self.kept.clear()
+        self.kept.append((number, state))
+        self.shown, self.newest, self.arrival = state, number, self.now

@@ -121,11 +121,11 @@ class RigidDecoder:
         self.header = header
         self.moving = header.moving()
         initial = Scene(0, [item.initial for item in header.objects])
-        self.receiver = Receiver(initial, header.baseline_span, limits.packet_size)
+        self.receiver = Receiver(initial, header.baseline_span, limits.packet_size, header.tick_rate)
 
-    def decode(self, data: bytes, record_tick: Optional[int] = None) -> Packet:
-        """Decodes one packet, from a record at `record_tick` if from a file; an error leaves the decoder unchanged."""
-        sequence = self.receiver.open(data)
+    def decode(self, data: bytes, record_tick: Optional[int] = None, now: Optional[int] = None) -> Packet:
+        """Decodes one packet, from a record at `record_tick` if from a file, else with `now`; an error leaves the decoder unchanged."""
+        number = self.receiver.open(data, now)
         decoder, models = RangeDecoder(data[2:]), Models("rigid-start-models.csv")
         several = len(self.moving) > 1
 
@@ -134,8 +134,8 @@ class RigidDecoder:
         baseline_delta = decoder.magnitude(models["BASELINE"]) if named else 1
         tick_delta = decoder.magnitude(models["TICK"])
         count = decoder.magnitude(models["COUNT"]) if several else 1
-        baseline = self.receiver.baseline(sequence, key, baseline_delta)
-        tick = self.receiver.tick(baseline, tick_delta, "R-RIG-1")
+        baseline = self.receiver.baseline(number, key, baseline_delta)
+        tick = self.receiver.tick(baseline, key, tick_delta, "R-RIG-1")
         require(1 <= count <= len(self.moving), "invalid", "R-RIG-3")
 
         scene = Scene(tick, list(baseline.states))
@@ -147,8 +147,8 @@ class RigidDecoder:
             updates.append(self.update(decoder, models, scene, self.moving[place]))
         decoder.check_end()
         require(record_tick in (None, tick), "invalid", "R-FIL-7")
-        self.receiver.keep(sequence, scene)
-        return Packet(sequence, key, updates, scene, decoder.range, decoder.code)
+        self.receiver.keep(number, key, scene)
+        return Packet(number % (1 << 16), key, updates, scene, decoder.range, decoder.code)
 
     def update(self, decoder: RangeDecoder, models: Models, scene: Scene, index: int) -> Update:
         """Replaces the baseline's state of an object in `scene` by its new state."""

@@ -9,6 +9,7 @@
 #include "codec/base/out_of_memory.h"
 #include "codec/mesh/mesh_main_reader.h"
 #include "codec/mesh/mesh_thesis.h"
+#include "codec/stream/sequence.h"
 
 namespace tactus {
 namespace {
@@ -18,7 +19,7 @@ constexpr std::int64_t kTickLimit = 0xffffffff;
 /// A state that packets may build on.
 struct Slot {
   bool held = false;
-  std::uint16_t sequence = 0;
+  std::uint64_t number = 0;
   MeshState state;
 };
 
@@ -30,14 +31,15 @@ struct ListedVertex {
 }  // namespace
 
 struct MeshDecoder::Impl {
-  Impl(StreamHeader stream, std::size_t index, const DecodeLimits& decode_limits)
-      : header(std::move(stream)),
-        mesh(header.meshes[index]),
+  Impl(const StreamHeader& stream, std::size_t index, const DecodeLimits& decode_limits)
+      : baseline_span(stream.baseline_span),
+        mesh(stream.meshes[index]),
         limits(decode_limits),
+        order(stream.tick_rate),
         reader(mesh),
         initial{true, 0, initial_mesh_state(mesh)},
         staging(initial) {
-    slots.assign(header.baseline_span, initial);
+    slots.assign(baseline_span, initial);
     for (Slot& slot : slots) slot.held = false;
     if (mesh.profile == MeshProfile::thesis) {
       listed.reserve(mesh.rest.size());
@@ -46,9 +48,10 @@ struct MeshDecoder::Impl {
     }
   }
 
-  StreamHeader header;
-  const MeshObject& mesh;
+  std::uint8_t baseline_span;
+  const MeshObject mesh;
   DecodeLimits limits;
+  PacketOrder order;
   MeshMainReader reader;    // main
   Slot initial, staging;    // nothing reaches a slot before the whole packet has proved valid
   std::vector<Slot> slots;  // baseline_span of them
@@ -57,55 +60,57 @@ struct MeshDecoder::Impl {
   std::vector<BitModel> cold, models;  // thesis
 
   const Slot& current() const noexcept { return slots[newest].held ? slots[newest] : initial; }
-  Result<const Slot*> baseline_of(bool key, std::uint32_t delta, std::uint16_t sequence) const noexcept;
-  Result<std::int64_t> tick_after(const Slot& baseline, std::uint32_t delta) const noexcept;
-  Result<DecodedMeshPacket> decode_main(std::span<const std::uint8_t> payload, std::uint16_t sequence) noexcept;
-  Result<DecodedMeshPacket> decode_thesis(std::span<const std::uint8_t> payload, std::uint16_t sequence) noexcept;
+  Result<const Slot*> baseline_of(bool key, std::uint32_t delta, std::uint64_t number) noexcept;
+  Result<std::int64_t> tick_after(const Slot& baseline, bool key, std::uint32_t delta) const noexcept;
+  Result<DecodedMeshPacket> decode_main(std::span<const std::uint8_t> payload, std::uint64_t number) noexcept;
+  Result<DecodedMeshPacket> decode_thesis(std::span<const std::uint8_t> payload, std::uint64_t number) noexcept;
   Result<ThesisHead> read_thesis_head(ByteReader& in) const noexcept;
   Result<void> read_list(RangeDecoder& coder, std::uint32_t count) noexcept;
-  void commit(std::uint16_t sequence, std::int64_t tick) noexcept;
+  void commit(std::uint64_t number, bool key, std::int64_t tick) noexcept;
 };
 
-Result<const Slot*> MeshDecoder::Impl::baseline_of(bool key, std::uint32_t delta, std::uint16_t sequence) const noexcept {
+Result<const Slot*> MeshDecoder::Impl::baseline_of(bool key, std::uint32_t delta, std::uint64_t number) noexcept {
   if (key) return &initial;
-  if (delta < 1 || delta > header.baseline_span) return fail(Errc::invalid, "R-PKT-3");
-  const auto wanted = static_cast<std::uint16_t>(sequence - delta);
-  for (std::size_t back = 0; back < slots.size(); ++back) {
-    const Slot& slot = slots[(newest + slots.size() - back) % slots.size()];
-    if (slot.held && slot.sequence == wanted) return &slot;
+  if (delta < 1 || delta > baseline_span) return fail(Errc::invalid, "R-PKT-3");
+  if (order.is_foreign(number)) {
+    order.forget();
+    return fail(Errc::state, "R-PKT-7");
   }
-  return fail(Errc::state, "R-PKT-4");
+  const std::uint64_t wanted = number - delta;
+  const auto slot = std::find_if(slots.begin(), slots.end(), [&](const Slot& s) { return s.held && s.number == wanted; });
+  if (!order.holds(wanted) || slot == slots.end()) return fail(Errc::state, "R-PKT-4");
+  return &*slot;
 }
 
-Result<std::int64_t> MeshDecoder::Impl::tick_after(const Slot& baseline, std::uint32_t delta) const noexcept {
+Result<std::int64_t> MeshDecoder::Impl::tick_after(const Slot& baseline, bool key, std::uint32_t delta) const noexcept {
   const std::int64_t tick = baseline.state.tick + delta;
-  const Slot& last = current();
-  if (tick >= kTickLimit || (&last != &initial && tick < last.state.tick)) return fail(Errc::invalid, "R-MES-8");
+  if (tick >= kTickLimit || !order.fits(key, tick)) return fail(Errc::invalid, "R-MES-8");
   return tick;
 }
 
-void MeshDecoder::Impl::commit(std::uint16_t sequence, std::int64_t tick) noexcept {
+void MeshDecoder::Impl::commit(std::uint64_t number, bool key, std::int64_t tick) noexcept {
   staging.held = true;
-  staging.sequence = sequence;
+  staging.number = number;
   staging.state.tick = tick;
   newest = (newest + 1) % slots.size();
   std::swap(slots[newest], staging);
+  order.accept(number, key, tick);
 }
 
-Result<DecodedMeshPacket> MeshDecoder::Impl::decode_main(std::span<const std::uint8_t> payload, std::uint16_t sequence) noexcept {
+Result<DecodedMeshPacket> MeshDecoder::Impl::decode_main(std::span<const std::uint8_t> payload, std::uint64_t number) noexcept {
   RangeDecoder coder(payload);
   const auto bit = [&] { return 16 + 8 * static_cast<std::uint64_t>(std::min(coder.position(), payload.size())); };
   MeshModels start = mesh_start_models();
   MeshHead head;
-  code_mesh_start(coder, start, mesh, header.baseline_span, head);
+  code_mesh_start(coder, start, mesh, baseline_span, head);
   if (coder.too_wide()) return fail(Errc::malformed, "R-RNG-4", bit());
-  TACTUS_TRY(const Slot* baseline, baseline_of(head.key, head.baseline_delta, sequence));
-  TACTUS_TRY(const std::int64_t tick, tick_after(*baseline, head.tick_delta));
+  TACTUS_TRY(const Slot* baseline, baseline_of(head.key, head.baseline_delta, number));
+  TACTUS_TRY(const std::int64_t tick, tick_after(*baseline, head.key, head.tick_delta));
   const auto updates = reader.read(coder, start, head, baseline->state, staging.state);
   if (!updates) return fail(updates.error().code, updates.error().rule, bit());
   if (const char* rule = coder.broken_rule()) return fail(Errc::malformed, rule, bit());
-  commit(sequence, tick);
-  return DecodedMeshPacket{sequence, head.key, head.half, tick, *updates, coder.range(), coder.code()};
+  commit(number, head.key, tick);
+  return DecodedMeshPacket{static_cast<std::uint16_t>(number), head.key, head.half, tick, *updates, coder.range(), coder.code()};
 }
 
 Result<ThesisHead> MeshDecoder::Impl::read_thesis_head(ByteReader& in) const noexcept {
@@ -113,7 +118,7 @@ Result<ThesisHead> MeshDecoder::Impl::read_thesis_head(ByteReader& in) const noe
   const std::uint8_t key = in.u8();
   if (key > 1) return fail(Errc::malformed, "R-MES-11", in.bit_offset());
   head.key = key == 1;
-  if (!head.key && header.baseline_span > 1) head.baseline_delta = in.u8();
+  if (!head.key && baseline_span > 1) head.baseline_delta = in.u8();
   const std::uint64_t tick_delta = in.varint(), count = in.varint(), list_bytes = in.varint(), lowest = in.varint(),
                       range = in.varint();
   if (in.overrun()) return fail(Errc::truncated, "R-MES-11", in.bit_offset());
@@ -143,12 +148,11 @@ Result<void> MeshDecoder::Impl::read_list(RangeDecoder& coder, std::uint32_t cou
   return {};
 }
 
-Result<DecodedMeshPacket> MeshDecoder::Impl::decode_thesis(std::span<const std::uint8_t> payload,
-                                                           std::uint16_t sequence) noexcept {
+Result<DecodedMeshPacket> MeshDecoder::Impl::decode_thesis(std::span<const std::uint8_t> payload, std::uint64_t number) noexcept {
   ByteReader in(payload, 2);
   TACTUS_TRY(const ThesisHead head, read_thesis_head(in));
-  TACTUS_TRY(const Slot* baseline, baseline_of(head.key, head.baseline_delta, sequence));
-  TACTUS_TRY(const std::int64_t tick, tick_after(*baseline, head.tick_delta));
+  TACTUS_TRY(const Slot* baseline, baseline_of(head.key, head.baseline_delta, number));
+  TACTUS_TRY(const std::int64_t tick, tick_after(*baseline, head.key, head.tick_delta));
   models = mesh.models_kept ? baseline->state.models : cold;
   RangeDecoder list(in.bytes(head.list_bytes));
   if (auto read = read_list(list, head.count); !read) return fail(read.error().code, read.error().rule, in.bit_offset());
@@ -167,8 +171,9 @@ Result<DecodedMeshPacket> MeshDecoder::Impl::decode_thesis(std::span<const std::
     }
   }
   if (mesh.models_kept) next.models = models;
-  commit(sequence, tick);
-  return DecodedMeshPacket{sequence, head.key, MeshHalf::whole, tick, head.count, coder.range(), coder.code()};
+  commit(number, head.key, tick);
+  return DecodedMeshPacket{
+      static_cast<std::uint16_t>(number), head.key, MeshHalf::whole, tick, head.count, coder.range(), coder.code()};
 }
 
 MeshDecoder::MeshDecoder(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}
@@ -176,23 +181,24 @@ MeshDecoder::MeshDecoder(MeshDecoder&&) noexcept = default;
 MeshDecoder& MeshDecoder::operator=(MeshDecoder&&) noexcept = default;
 MeshDecoder::~MeshDecoder() = default;
 
-Result<MeshDecoder> MeshDecoder::create(StreamHeader header, std::size_t mesh, const DecodeLimits& limits) try {
+Result<MeshDecoder> MeshDecoder::create(const StreamHeader& header, std::size_t mesh, const DecodeLimits& limits) try {
   TACTUS_CHECK(check_header(header, limits));
   if (mesh >= header.meshes.size()) return fail(Errc::invalid_argument, "R-API-5");
-  return MeshDecoder(std::make_unique<Impl>(std::move(header), mesh, limits));
+  return MeshDecoder(std::make_unique<Impl>(header, mesh, limits));
 } catch (const std::bad_alloc&) {
   return out_of_memory();
 }
 
-Result<DecodedMeshPacket> MeshDecoder::decode(std::span<const std::uint8_t> packet) noexcept {
+Result<DecodedMeshPacket> MeshDecoder::decode(std::span<const std::uint8_t> packet, std::optional<std::int64_t> now) noexcept {
   Impl& d = *impl_;
   if (packet.size() > d.limits.packet_bytes) return fail(Errc::limit_exceeded, "R-PKT-1");
   if (packet.size() < 2) return fail(Errc::truncated, "R-PKT-2");
   const auto sequence = static_cast<std::uint16_t>(packet[0] | packet[1] << 8);
-  const Slot& current = d.current();
-  if (&current != &d.initial && static_cast<std::int16_t>(sequence - current.sequence) <= 0) return fail(Errc::state, "R-PKT-5");
-  return d.mesh.profile == MeshProfile::main ? d.decode_main(packet.subspan(2), sequence)
-                                             : d.decode_thesis(packet.subspan(2), sequence);
+  d.order.arrive(now);
+  if (d.order.is_late(sequence)) return fail(Errc::state, "R-PKT-5");
+  const std::uint64_t number = d.order.number_of(sequence);
+  return d.mesh.profile == MeshProfile::main ? d.decode_main(packet.subspan(2), number)
+                                             : d.decode_thesis(packet.subspan(2), number);
 }
 
 std::span<const MeshDecoder::Displacement> MeshDecoder::displacements() const noexcept {
@@ -206,7 +212,6 @@ std::span<const MeshDecoder::Displacement> MeshDecoder::displacements_at(std::in
 }
 
 std::int64_t MeshDecoder::tick() const noexcept { return impl_->current().state.tick; }
-const StreamHeader& MeshDecoder::header() const noexcept { return impl_->header; }
 std::uint64_t MeshDecoder::state_hash() const noexcept { return mesh_state_hash(impl_->mesh, impl_->current().state); }
 
 }  // namespace tactus

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "codec/base/result.h"
@@ -21,7 +22,8 @@ struct DecodedMeshPacket {
   std::uint32_t final_code = 0;
 };
 
-/// Client side of one mesh: packets in, integer displacements out. Keeps the newest `baseline_span` states.
+/// Client side of one mesh: packets in, integer displacements out. Keeps the newest `baseline_span` states. What it makes of lost, late
+/// and foreign packets is told at RigidDecoder.
 ///
 /// After a haptic half that is a key packet, all vertices outside the area of interest are where the initial state has them. Show
 /// them as before until a visual half has arrived, or the whole shape falls flat for as long as that takes.
@@ -30,22 +32,22 @@ class MeshDecoder {
   using Displacement = std::array<std::int32_t, 3>;  ///< x 2^-position_exp m
 
   /// in   mesh  index into header.meshes
-  /// err  invalid R-STR-n, R-MES-n (the header breaks a rule), limit_exceeded R-STR-14; invalid_argument R-API-5: no such mesh.
-  static Result<MeshDecoder> create(StreamHeader header, std::size_t mesh, const DecodeLimits& limits = {});
+  /// err  invalid R-STR-n, R-MES-n (the header breaks a rule), limit_exceeded R-STR-14, R-STR-18; invalid_argument R-API-5: no such mesh.
+  static Result<MeshDecoder> create(const StreamHeader& header, std::size_t mesh, const DecodeLimits& limits = {});
 
   /// Decode one packet. After an error the state is what it was before.
+  /// in   now  [ticks] of the receiver's own clock when the packet arrived, as in RigidDecoder::decode
   /// time O(vertices * (1 + modes)), 60 us for 714 vertices and 48 modes; no allocation, no exception.
   /// err  truncated, malformed, invalid: R-MES-n, R-RNG-n; limit_exceeded R-PKT-1; state: R-PKT-5 the packet is not newer than the
-  ///      newest one: drop it; R-PKT-4 what it builds on is not held, a packet before it is lost or late: ask the sender for a key
-  ///      packet (MeshEncoder::request_key), before which others may be refused.
-  Result<DecodedMeshPacket> decode(std::span<const std::uint8_t> packet) noexcept;
+  ///      newest one: drop it; R-PKT-4, R-PKT-7 what it builds on is not held: ask the sender for a key packet
+  ///      (MeshEncoder::request_key), before which others may be refused.
+  Result<DecodedMeshPacket> decode(std::span<const std::uint8_t> packet, std::optional<std::int64_t> now = {}) noexcept;
 
   /// Newest decoded displacement of every vertex.
   std::span<const Displacement> displacements() const noexcept;
   /// Where prediction puts the vertices at a tick; one before the newest packet's counts as that. Valid until the next call.
   std::span<const Displacement> displacements_at(std::int64_t tick) noexcept;
   std::int64_t tick() const noexcept;  ///< of the newest packet, 0 before the first
-  const StreamHeader& header() const noexcept;
   std::uint64_t state_hash() const noexcept;
 
   MeshDecoder(MeshDecoder&&) noexcept;

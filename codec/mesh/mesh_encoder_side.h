@@ -13,6 +13,7 @@
 
 #include "codec/mesh/mesh_encoder.h"
 #include "codec/mesh/mesh_state.h"
+#include "codec/stream/sequence.h"
 
 namespace tactus {
 
@@ -48,7 +49,8 @@ class MeshEncoderSide {
         held_(initial_),
         next_(initial_),
         expected_(mesh.rest.size()),
-        split_(mesh.profile == MeshProfile::main ? mesh.split : options.split) {
+        split_(mesh.profile == MeshProfile::main ? mesh.split : options.split),
+        sequence_(static_cast<std::uint16_t>(options.first_sequence - 1)) {
     for (std::size_t i = 0; i < (split_ ? 2 : 1); ++i) buffers_[i].resize(max_mesh_packet_size(mesh));
   }
   MeshEncoderSide(const MeshEncoderSide&) = delete;
@@ -70,12 +72,12 @@ class MeshEncoderSide {
   void request_key() noexcept { key_requested_ = true; }
 
  protected:
-  /// The first packet, one per interval, one after a pause so long that its length does not fit, and one where the decoder no longer
-  /// keeps what it should build on, or is said not to hold it.
+  /// The first packet, one per interval, one after a pause so long that receivers may soon forget what there was, and one where the
+  /// decoder no longer keeps what it should build on, or is said not to hold it.
   bool key_due(std::int64_t tick) const noexcept {
     const auto interval = static_cast<std::int64_t>(std::ceil(options_.key_interval * header_.tick_rate));
     return key_requested_ || key_tick_ < 0 || behind_ > header_.baseline_span || (interval > 0 && tick - key_tick_ >= interval) ||
-           tick - held_.tick > 0x3fffffff;
+           2 * (tick - held_.tick) > forget_ticks(header_.tick_rate);
   }
   /// The next packet is due although every bound may hold.
   bool key_requested() const noexcept { return key_requested_; }
@@ -123,7 +125,7 @@ class MeshEncoderSide {
 
   const bool split_;
   std::array<std::vector<std::uint8_t>, 2> buffers_;
-  std::uint16_t sequence_ = 0;
+  std::uint16_t sequence_;
   std::int64_t key_tick_ = -1;  // of the last key packet; -1: none yet
   std::uint32_t behind_ = 1;    // packets from `held_` to the next one; more than 1 after losses
   bool key_requested_ = false;  // by request_key(), since the last packet

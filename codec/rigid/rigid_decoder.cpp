@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "codec/rigid/rigid_decoder.h"
 
+#include <algorithm>
+
 #include "codec/base/out_of_memory.h"
 #include "codec/rigid/rigid_syntax.h"
+#include "codec/stream/sequence.h"
 
 namespace tactus {
 namespace {
@@ -12,7 +15,7 @@ constexpr std::int64_t kTickLimit = 0xffffffff;
 /// A state that packets may build on.
 struct Slot {
   bool held = false;
-  std::uint16_t sequence = 0;
+  std::uint64_t number = 0;
   std::int64_t tick = 0;
   std::vector<RigidState> objects;
 };
@@ -20,36 +23,36 @@ struct Slot {
 }  // namespace
 
 struct RigidDecoder::Impl {
-  StreamHeader header;
+  explicit Impl(std::uint32_t tick_rate) noexcept : order(tick_rate) {}
+
+  StreamHeader header;  // without meshes
   DecodeLimits limits;
   std::vector<std::uint32_t> moving;
   Slot initial;
+  PacketOrder order;
   std::vector<Slot> slots;  // baseline_span of them
   std::size_t newest = 0;
   std::vector<RigidUpdate> updates;  // staging: nothing reaches a slot before the whole packet has proved valid
   std::vector<RigidState> states;
 
   const Slot& current() const noexcept { return slots[newest].held ? slots[newest] : initial; }
-  /// Newest first: a sequence may come again while its namesake is still kept.
-  const Slot* find(std::uint16_t sequence) const noexcept {
-    for (std::size_t back = 0; back < slots.size(); ++back) {
-      const Slot& slot = slots[(newest + slots.size() - back) % slots.size()];
-      if (slot.held && slot.sequence == sequence) return &slot;
-    }
-    return nullptr;
-  }
-  Result<const Slot*> baseline_of(const PacketHead& head, std::uint16_t sequence) const noexcept;
+  Result<const Slot*> baseline_of(const PacketHead& head, std::uint64_t number) noexcept;
   Result<void> read_updates(RangeDecoder& coder, RigidModels& models, const PacketHead& head, const Slot& baseline,
                             std::int64_t tick) noexcept;
-  void commit(const Slot& baseline, std::uint16_t sequence, std::int64_t tick) noexcept;
+  void commit(const Slot& baseline, std::uint64_t number, std::int64_t tick) noexcept;
 };
 
-Result<const Slot*> RigidDecoder::Impl::baseline_of(const PacketHead& head, std::uint16_t sequence) const noexcept {
+Result<const Slot*> RigidDecoder::Impl::baseline_of(const PacketHead& head, std::uint64_t number) noexcept {
   if (head.key) return &initial;
   if (head.baseline_delta < 1 || head.baseline_delta > header.baseline_span) return fail(Errc::invalid, "R-PKT-3");
-  const Slot* slot = find(static_cast<std::uint16_t>(sequence - head.baseline_delta));
-  if (slot == nullptr) return fail(Errc::state, "R-PKT-4");
-  return slot;
+  if (order.is_foreign(number)) {
+    order.forget();
+    return fail(Errc::state, "R-PKT-7");
+  }
+  const std::uint64_t wanted = number - head.baseline_delta;
+  const auto slot = std::find_if(slots.begin(), slots.end(), [&](const Slot& s) { return s.held && s.number == wanted; });
+  if (!order.holds(wanted) || slot == slots.end()) return fail(Errc::state, "R-PKT-4");
+  return &*slot;
 }
 
 Result<void> RigidDecoder::Impl::read_updates(RangeDecoder& coder, RigidModels& models, const PacketHead& head,
@@ -74,12 +77,12 @@ Result<void> RigidDecoder::Impl::read_updates(RangeDecoder& coder, RigidModels& 
   return {};
 }
 
-void RigidDecoder::Impl::commit(const Slot& baseline, std::uint16_t sequence, std::int64_t tick) noexcept {
+void RigidDecoder::Impl::commit(const Slot& baseline, std::uint64_t number, std::int64_t tick) noexcept {
   newest = (newest + 1) % slots.size();
   Slot& slot = slots[newest];
   if (&slot != &baseline) std::copy(baseline.objects.begin(), baseline.objects.end(), slot.objects.begin());
   slot.held = true;
-  slot.sequence = sequence;
+  slot.number = number;
   slot.tick = tick;
   for (std::size_t i = 0; i < updates.size(); ++i) slot.objects[updates[i].object] = states[i];
 }
@@ -89,9 +92,9 @@ RigidDecoder::RigidDecoder(RigidDecoder&&) noexcept = default;
 RigidDecoder& RigidDecoder::operator=(RigidDecoder&&) noexcept = default;
 RigidDecoder::~RigidDecoder() = default;
 
-Result<RigidDecoder> RigidDecoder::create(StreamHeader header, const DecodeLimits& limits) try {
+Result<RigidDecoder> RigidDecoder::create(const StreamHeader& header, const DecodeLimits& limits) try {
   TACTUS_CHECK(check_header(header, limits));
-  auto impl = std::make_unique<Impl>();
+  auto impl = std::make_unique<Impl>(header.tick_rate);
   impl->limits = limits;
   impl->moving = moving_objects(header);
   impl->initial.held = true;
@@ -100,20 +103,20 @@ Result<RigidDecoder> RigidDecoder::create(StreamHeader header, const DecodeLimit
   for (Slot& slot : impl->slots) slot.objects = impl->initial.objects;
   impl->updates.reserve(impl->moving.size());
   impl->states.reserve(impl->moving.size());
-  impl->header = std::move(header);
+  impl->header = without_meshes(header);
   return RigidDecoder(std::move(impl));
 } catch (const std::bad_alloc&) {
   return out_of_memory();
 }
 
-Result<DecodedPacket> RigidDecoder::decode(std::span<const std::uint8_t> packet) noexcept {
+Result<DecodedPacket> RigidDecoder::decode(std::span<const std::uint8_t> packet, std::optional<std::int64_t> now) noexcept {
   Impl& d = *impl_;
   if (packet.size() > d.limits.packet_bytes) return fail(Errc::limit_exceeded, "R-PKT-1");
   if (packet.size() < 2) return fail(Errc::truncated, "R-PKT-2");
   const auto sequence = static_cast<std::uint16_t>(packet[0] | packet[1] << 8);
-  const Slot& current = d.current();
-  const bool first = &current == &d.initial;
-  if (!first && static_cast<std::int16_t>(sequence - current.sequence) <= 0) return fail(Errc::state, "R-PKT-5");
+  d.order.arrive(now);
+  if (d.order.is_late(sequence)) return fail(Errc::state, "R-PKT-5");
+  const std::uint64_t number = d.order.number_of(sequence);
 
   RangeDecoder coder(packet.subspan(2));
   RigidModels models = start_models();
@@ -121,14 +124,15 @@ Result<DecodedPacket> RigidDecoder::decode(std::span<const std::uint8_t> packet)
   const auto bit = [&] { return 16 + 8 * static_cast<std::uint64_t>(std::min(coder.position(), packet.size() - 2)); };
   code_head(coder, models, d.header, d.moving.size(), head);
   if (coder.too_wide()) return fail(Errc::malformed, "R-RNG-4", bit());
-  TACTUS_TRY(const Slot* baseline, d.baseline_of(head, sequence));
+  TACTUS_TRY(const Slot* baseline, d.baseline_of(head, number));
   const std::int64_t tick = baseline->tick + head.tick_delta;
-  if (tick >= kTickLimit || (!first && tick < current.tick)) return fail(Errc::invalid, "R-RIG-1", bit());
+  if (tick >= kTickLimit || !d.order.fits(head.key, tick)) return fail(Errc::invalid, "R-RIG-1", bit());
   if (head.count < 1 || head.count > d.moving.size()) return fail(Errc::invalid, "R-RIG-3", bit());
   if (auto read = d.read_updates(coder, models, head, *baseline, tick); !read)
     return fail(read.error().code, read.error().rule, bit());
   if (const char* rule = coder.broken_rule()) return fail(Errc::malformed, rule, bit());
-  d.commit(*baseline, sequence, tick);
+  d.commit(*baseline, number, tick);
+  d.order.accept(number, head.key, tick);
   return DecodedPacket{sequence, head.key, tick, d.updates, coder.range(), coder.code()};
 }
 

@@ -73,6 +73,8 @@ class DamagedPackets : public ::testing::TestWithParam<Coding> {
     EXPECT_LE(decoded.error().code, Errc::state);
     EXPECT_LE(decoded.error().bit_offset, 8 * packet.size());
     EXPECT_EQ(decoder.state_hash(), hash);
+    if (std::string_view(decoded.error().rule) == "R-PKT-7")
+      decoder = started();  // it takes the baselines away, nothing else does
   }
 
   const Recorded recorded_ = record(GetParam(), 2);
