@@ -8,6 +8,7 @@
 
 #include "codec/base/out_of_memory.h"
 #include "codec/rigid/rigid_syntax.h"
+#include "codec/stream/sequence.h"
 
 namespace tactus {
 namespace {
@@ -115,6 +116,7 @@ struct RigidEncoder::Impl {
   Result<void> read_truth(std::int64_t tick, std::span<const RigidSample> samples) noexcept;
   Reason reason_for(std::uint32_t object, const RigidPose& shown, const Pose& pose, std::span<const Contact> contacts,
                     std::int64_t tick) const noexcept;
+  bool can_improve(std::uint32_t object, const RigidPose& shown) const noexcept;
   bool haptic_within(std::uint32_t object, const RigidPose& shown, const Pose& pose, std::span<const Contact> contacts,
                      double share) const noexcept;
   void collect(std::int64_t tick, std::span<const RigidSample> samples, std::span<const Contact> contacts, bool key) noexcept;
@@ -146,9 +148,15 @@ bool RigidEncoder::Impl::haptic_within(std::uint32_t object, const RigidPose& sh
   return true;
 }
 
+/// An update would bring the shown pose nearer to the truth: they are not at the same place of the grid.
+bool RigidEncoder::Impl::can_improve(std::uint32_t object, const RigidPose& shown) const noexcept {
+  const Residual rest = quantise_pose(shown, truth[object], header.objects[object].dof, 0, header.grid);
+  return rest.of != Residual{}.of;
+}
+
 Reason RigidEncoder::Impl::reason_for(std::uint32_t object, const RigidPose& shown, const Pose& pose,
                                       std::span<const Contact> contacts, std::int64_t tick) const noexcept {
-  if (!haptic_within(object, shown, pose, contacts, 1.0)) return Reason::haptic;
+  if (!haptic_within(object, shown, pose, contacts, 1.0) && can_improve(object, shown)) return Reason::haptic;
   if (!within(visual, shown, truth[object])) return Reason::visual;
   if (heartbeat > 0 && tick - held[object].tick >= heartbeat) return Reason::heartbeat;
   return Reason::request;
@@ -169,7 +177,8 @@ void RigidEncoder::Impl::collect(std::int64_t tick, std::span<const RigidSample>
   if (!triggered) pending.clear();
 }
 
-/// The coarsest level whose rounding leaves room inside every bound; without one, the finest that keeps them.
+/// The coarsest level whose rounding leaves room inside every bound; without one, the finest that keeps them; where the grid is too
+/// coarse for the permitted force error, the nearest place on it.
 Result<CodedUpdate> RigidEncoder::Impl::quantise(Pending& update, const Prediction& prediction, const Pose& pose,
                                                  std::span<const Contact> contacts) const noexcept {
   const std::uint32_t object = update.object;
@@ -187,7 +196,8 @@ Result<CodedUpdate> RigidEncoder::Impl::quantise(Pending& update, const Predicti
     const auto state = reconstruct(prediction, truth[object].tick, coded, header);
     if (!state) return fail(Errc::internal, "R-RIG-6");
     const RigidPose shown{state->position, state->rotation};
-    if (!within(visual, shown, truth[object]) || !haptic_within(object, shown, pose, contacts, 1.0)) continue;
+    if (!within(visual, shown, truth[object])) continue;
+    if ((level > 0 || finest) && !haptic_within(object, shown, pose, contacts, 1.0)) continue;
     update.state = *state;
     if (haptic_within(object, shown, pose, contacts, kHapticShare)) return coded;
     finest = coded;
@@ -243,6 +253,7 @@ Result<RigidEncoder> RigidEncoder::create(StreamHeader header, const RigidEncode
   impl->moving = moving_objects(header);
   for (const RigidObject& object : header.objects) impl->held.push_back(object.initial);
   impl->truth = impl->held;
+  impl->sequence = static_cast<std::uint16_t>(options.first_sequence - 1);
   impl->pending.reserve(impl->moving.size());
   impl->buffer.resize(max_packet_size(header));
   impl->header = std::move(header);
@@ -261,7 +272,8 @@ Result<EncodedPacket> RigidEncoder::encode(std::int64_t tick, std::span<const Ri
   }
   TACTUS_CHECK(e.read_truth(tick, samples));
   PacketHead head;
-  head.key = e.key_requested || e.key_tick < 0 || (e.key_interval > 0 && tick - e.key_tick >= e.key_interval);
+  head.key = e.key_requested || e.key_tick < 0 || (e.key_interval > 0 && tick - e.key_tick >= e.key_interval) ||
+             2 * (tick - e.packet_tick) > forget_ticks(e.header.tick_rate);
   e.collect(tick, samples, contacts, head.key);
   if (e.pending.empty()) {
     e.last_tick = tick;

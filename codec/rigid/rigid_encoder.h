@@ -24,13 +24,16 @@ struct EncodedPacket {
 
 struct RigidEncoderOptions {
   RigidTriggers triggers;
-  double key_interval = 5.0;  ///< [s] after this long the next packet builds on the initial state (a place to seek to); 0: never
+  double key_interval = 5.0;  ///< [s] after this long the next packet builds on the initial state (a place to seek to); 0: never,
+                              ///< but after 8 s of silence, when receivers may soon have forgotten what there was
+  std::uint16_t first_sequence = 1;  ///< a sender that begins anew towards the same receivers takes another number, at random
 };
 
 /// Server side: true states in, at most one packet per tick out.
 ///
 /// After every tick the decoder's prediction obeys, for every object and contact given,
 ///   |x^ - x| <= visual_position,  angle(q^, q) <= visual_rotation,  haptic_ratio(f, f^) <= 1.
+/// where a bound that is finer than the grid (a small force_floor, a stiff contact) means: the nearest place on the grid.
 /// The encoder holds the decoder's state (closed loop) and picks for every update the coarsest grid level that keeps the quantised
 /// state well inside these bounds.
 ///
@@ -48,8 +51,8 @@ class RigidEncoder {
   ///      contacts  any number, from any clients
   /// time O(objects), < 1 us per object; no allocation, no exception.
   /// err  invalid_argument R-API-1..3 a sample is not finite or out of range; R-API-5 wrong count, tick order or contact;
-  ///      R-API-6 an object moved along an axis that the header says it cannot; R-API-7 the grid is too coarse for the contact's
-  ///      stiffness at this p. State is unchanged after any error.
+  ///      R-API-6 an object moved along an axis that the header says it cannot; R-API-7 it is further from where it is expected than
+  ///      an update can tell. State is unchanged after any error.
   Result<EncodedPacket> encode(std::int64_t tick, std::span<const RigidSample> samples,
                                std::span<const Contact> contacts) noexcept;
 

@@ -8,8 +8,21 @@
 
 namespace tactus {
 
+namespace {
+
+/// No triangle is so small that it has no area on the grid: a trace of what the client shows could not hold it.
+bool keeps_its_areas(const MeshObject& object, unsigned position_exp) {
+  return std::ranges::all_of(object.triangles, [&](const Triangle& t) {
+    const auto corner = [&](std::size_t k) { return to_metres(object.rest[t[k]], position_exp); };
+    return norm(cross(corner(1) - corner(0), corner(2) - corner(0))) > 0;
+  });
+}
+
+}  // namespace
+
 Result<MeshObject> mesh_object(const TraceMesh& mesh, const MeshCoding& coding, unsigned position_exp) {
   TACTUS_TRY(MeshObject object, make_mesh_object(mesh.name, mesh.rest, position_exp));
+  if (!keeps_its_areas(object, position_exp)) return fail(Errc::invalid_argument, "R-API-10");
   object.profile = coding.profile;
   object.rings = coding.rings;
   object.quant_bits = coding.quant_bits;

@@ -28,7 +28,7 @@ struct MeshCoding {
 };
 
 /// A mesh for a stream header, its frame period that of the trace.
-/// err  invalid_argument R-API-1, R-API-2 as make_mesh_object(); those of the basis
+/// err  invalid_argument R-API-1, R-API-2 as make_mesh_object(), R-API-10 a triangle has no area on the grid; those of the basis
 Result<MeshObject> mesh_object(const TraceMesh& mesh, const MeshCoding& coding, unsigned position_exp);
 
 /// Who touches this mesh: of several users the one who presses least, whose haptic threshold is the lowest.

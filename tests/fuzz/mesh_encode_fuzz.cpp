@@ -14,9 +14,8 @@ namespace {
 
 using namespace tactus;
 
-void check_bounds(const MeshThresholds& thresholds, MeshDecoder& decoder, std::int64_t tick, std::span<const Vec3> truth,
-                  const std::optional<MeshTouch>& touch) {
-  const StreamHeader& header = decoder.header();
+void check_bounds(const StreamHeader& header, const MeshThresholds& thresholds, MeshDecoder& decoder, std::int64_t tick,
+                  std::span<const Vec3> truth, const std::optional<MeshTouch>& touch) {
   const std::vector<double> bound = strip_bounds(header, thresholds, touch);
   const auto shown = decoder.displacements_at(tick);
   for (std::size_t v = 0; v < truth.size(); ++v) require(norm(to_metres(shown[v], header.grid.position) - truth[v]) <= bound[v]);
@@ -52,7 +51,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     else if (!rest.bytes.empty()) require(decoder.decode(rest.bytes).has_value());
     require(lost || decoder.state_hash() == encoder.state_hash());
     if (header.meshes[0].profile == MeshProfile::main && !lost)
-      check_bounds(options.thresholds, decoder, tick, displacement, touch);
+      check_bounds(header, options.thresholds, decoder, tick, displacement, touch);
   }
   return 0;
 }

@@ -266,12 +266,45 @@ TEST(Rigid, BadCallsLeaveTheEncoderAsItWas) {
   contact.normal = {1, 0, 0};  // 0.3 m is no multiple of the grid step
   contact.point = {0.02, 0, 0};
   contact.device = {0.32 - 1e-10, 0, 0};
-  EXPECT_EQ(refuse(7, {&sample, 1}, {contact}), "R-API-7");
+  EXPECT_EQ(refuse(7, {&sample, 1}, {contact}), "") << "finer than the grid: the nearest place on it";
   sample.pose.position.x = std::numeric_limits<double>::infinity();
   EXPECT_EQ(refuse(8, {&sample, 1}, {}), "R-API-1");
   sample.pose.position.x = 0.2;
   EXPECT_TRUE(encoder.encode(8, {&sample, 1}, {}));
   EXPECT_NE(before, 0u);
+}
+
+/// 4 % of 1 mN at 630 N/m is a third of a grid step: what can be kept is the grid's rounding, in the middle of a run too.
+TEST(Rigid, AForceBoundFinerThanTheGridMeansTheNearestPlaceOnIt) {
+  const StreamHeader header = scene_of(1);
+  RigidEncoderOptions options;
+  options.triggers.weber_fraction = 0.04;
+  options.triggers.force_floor = 0.001;
+  options.triggers.heartbeat = 0;
+  auto encoder = RigidEncoder::create(header, options).value();
+  auto decoder = RigidDecoder::create(header).value();
+  Motion motion(3);
+  RigidSample sample;
+  const double step = std::ldexp(1.0, -header.grid.position);
+  const auto send = [&](std::int64_t tick) {
+    const Contact contact = touch(0, sample.pose, 1e-7, 630);
+    const auto packet = encoder.encode(tick, {&sample, 1}, {&contact, 1});
+    EXPECT_TRUE(packet) << tick;
+    if (!packet || packet->bytes.empty()) return false;
+    EXPECT_TRUE(decoder.decode(packet->bytes));
+    return true;
+  };
+  for (std::int64_t tick = 0; tick < 500; ++tick) {
+    sample = motion.step(kTick);
+    send(tick);
+    const Pose shown = to_pose(predict(decoder.objects()[0], tick, header), header.grid);
+    const Contact contact = touch(0, sample.pose, 1e-7, 630);
+    EXPECT_LT(norm(contact_force(contact, shown) - contact_force(contact, sample.pose)), 630 * 2 * step) << tick;
+  }
+  sample.velocity = sample.angular_velocity = {};
+  int sent = 0;
+  for (std::int64_t tick = 500; tick < 1000; ++tick) sent += send(tick) ? 1 : 0;
+  EXPECT_LT(sent, 5) << "at rest nothing can be told better";
 }
 
 TEST(Rigid, OptionsOutsideTheirRangeAreRefused) {
