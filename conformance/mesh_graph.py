@@ -89,6 +89,7 @@ class Hierarchy:
                 if not roots:
                     self.parents[v] = self.choose_parents(v, neighbours, kept)
                     self.weights[v] = self.weigh(v, self.parents[v])
+                    del self.parents[v][len(self.weights[v]):]
             levels.append(coded)
             if roots:
                 break
@@ -137,24 +138,31 @@ class Hierarchy:
         a = [like(self.distance(v, parent), reach) for parent in p]
         b = [Q] * n
         for j in range(n):
+            if m[j][j] < LEAST_PIVOT:
+                return [1 << 15]                            # of p[0], the only parent
             for i in range(j + 1, n):
-                f = round_div(m[i][j] << 24, m[j][j])
+                f = to(28, round_div(m[i][j] << 24, m[j][j]))
                 for k in range(j + 1, i + 1):
-                    m[i][k] -= round_shift(f * m[k][j], 24)
-                a[i] -= round_shift(f * a[j], 24)
-                b[i] -= round_shift(f * b[j], 24)
+                    m[i][k] = to(25, m[i][k] - round_shift(f * m[k][j], 24))
+                a[i] = to(34, a[i] - round_shift(f * a[j], 24))
+                b[i] = to(34, b[i] - round_shift(f * b[j], 24))
         for i in reversed(range(n)):
             for k in range(i + 1, n):
-                a[i] -= round_shift(m[k][i] * a[k], 24)
-                b[i] -= round_shift(m[k][i] * b[k], 24)
-            a[i] = round_div(a[i] << 24, m[i][i])
-            b[i] = round_div(b[i] << 24, m[i][i])
-        rest = Q - sum(a)
-        share = [round_div(x << 24, sum(b)) for x in b]
+                a[i] = to(34, a[i] - round_shift(m[k][i] * a[k], 24))
+                b[i] = to(34, b[i] - round_shift(m[k][i] * b[k], 24))
+            a[i] = to(34, round_div(a[i] << 24, m[i][i]))
+            b[i] = to(34, round_div(b[i] << 24, m[i][i]))
+        rest = to(26, Q - sum(a))
+        share = [to(34, round_div(x << 24, max(LEAST_PIVOT, sum(b)))) for x in b]
         return [clamp(round_shift(x + round_shift(s * rest, 24), 9), -65536, 65536) for x, s in zip(a, share)]
 
 
 Q = 1 << 24
+LEAST_PIVOT = 1 << 18
+
+
+def to(e: int, v: int) -> int:
+    return clamp(v, -1 << e, 1 << e)
 
 
 def like(d: int, reach: int) -> int:

@@ -182,37 +182,47 @@ class HierarchyBuilder {
       a[i] = likeness(near_[i].distance, reach);
       b[i] = kOne;
     }
-    solve(matrix, n, a, b);
+    if (!solve(matrix, n, a, b)) {
+      out.push_back({near_.front().vertex, 1 << 15});
+      return;
+    }
     std::int64_t sum_a = 0, sum_b = 0;
     for (std::size_t i = 0; i < n; ++i) {
       sum_a += a[i];
       sum_b += b[i];
     }
     for (std::size_t i = 0; i < n; ++i) {
-      const std::int64_t share = round_div(b[i] << 24, sum_b);
-      const std::int64_t weight = round_shift(a[i] + round_shift(share * (kOne - sum_a), 24), 9);
+      const std::int64_t share = bounded(round_div(b[i] << 24, std::max(sum_b, kLeastPivot)), kMostShare);
+      const std::int64_t rest = bounded(kOne - sum_a, 1 << 26);
+      const std::int64_t weight = round_shift(a[i] + round_shift(share * rest, 24), 9);
       out.push_back({near_[i].vertex, static_cast<std::int32_t>(std::clamp<std::int64_t>(weight, -65536, 65536))});
     }
   }
 
-  /// Both right sides at once by L D L^T of the lower triangle. What is noise on the diagonal keeps every pivot at 2^18 or more.
-  static void solve(std::array<Row, MeshHierarchy::kParents>& m, std::size_t n, Row& a, Row& b) noexcept {
+  static constexpr std::int64_t bounded(std::int64_t v, std::int64_t limit) noexcept { return std::clamp(v, -limit, limit); }
+
+  /// Both right sides at once by L D L^T of the lower triangle. False: the matrix is not definite, since copies count as a unit apart
+  /// or near vertices fall together; what is noise on the diagonal keeps the pivots of all others far above the least. No bound is
+  /// reached where the matrix is definite; with them every product fits 63 bits.
+  static bool solve(std::array<Row, MeshHierarchy::kParents>& m, std::size_t n, Row& a, Row& b) noexcept {
     for (std::size_t j = 0; j < n; ++j) {
+      if (m[j][j] < kLeastPivot) return false;
       for (std::size_t i = j + 1; i < n; ++i) {
-        const std::int64_t factor = round_div(m[i][j] << 24, m[j][j]);
-        for (std::size_t k = j + 1; k <= i; ++k) m[i][k] -= round_shift(factor * m[k][j], 24);
-        a[i] -= round_shift(factor * a[j], 24);
-        b[i] -= round_shift(factor * b[j], 24);
+        const std::int64_t factor = bounded(round_div(m[i][j] << 24, m[j][j]), 1 << 28);
+        for (std::size_t k = j + 1; k <= i; ++k) m[i][k] = bounded(m[i][k] - round_shift(factor * m[k][j], 24), 1 << 25);
+        a[i] = bounded(a[i] - round_shift(factor * a[j], 24), kMostShare);
+        b[i] = bounded(b[i] - round_shift(factor * b[j], 24), kMostShare);
       }
     }
     for (std::size_t i = n; i-- > 0;) {
       for (std::size_t k = i + 1; k < n; ++k) {
-        a[i] -= round_shift(m[k][i] * a[k], 24);
-        b[i] -= round_shift(m[k][i] * b[k], 24);
+        a[i] = bounded(a[i] - round_shift(m[k][i] * a[k], 24), kMostShare);
+        b[i] = bounded(b[i] - round_shift(m[k][i] * b[k], 24), kMostShare);
       }
-      a[i] = round_div(a[i] << 24, m[i][i]);
-      b[i] = round_div(b[i] << 24, m[i][i]);
+      a[i] = bounded(round_div(a[i] << 24, m[i][i]), kMostShare);
+      b[i] = bounded(round_div(b[i] << 24, m[i][i]), kMostShare);
     }
+    return true;
   }
 
   /// Every dropped vertex joins its nearest kept neighbour; groups with an edge between them are neighbours.
@@ -240,6 +250,8 @@ class HierarchyBuilder {
   }
 
   static constexpr std::int64_t kOne = 1 << 24;
+  static constexpr std::int64_t kLeastPivot = 1 << 18;
+  static constexpr std::int64_t kMostShare = std::int64_t{1} << 34;
   static constexpr std::int64_t kNoise = 335544;  // 0.02: how much of a parent's movement is its own
   static constexpr std::uint64_t kReach = 94;     // squared, in mean squared distances of the parents
 
