@@ -16,7 +16,7 @@ Result<Replica> Replica::create(const StreamHeader& header, const ReplicaOptions
                      options.longest <= 10;
   if (!valid) return fail(Errc::invalid_argument, "R-API-4");
   Replica replica;
-  replica.header_ = header;
+  replica.header_ = without_meshes(header);
   replica.interpolation_ = options.interpolation;
   replica.share_ = static_cast<std::uint32_t>(std::floor(options.share * 65536 + 0.5));
   replica.shortest_ = static_cast<std::int64_t>(std::floor(options.shortest * header.tick_rate + 0.5));
@@ -37,10 +37,10 @@ std::int64_t Replica::interval(const Track& track) const noexcept {
   return std::clamp(mean_share, shortest_, longest_);
 }
 
-void Replica::apply(const DecodedPacket& packet, std::span<const RigidState> objects, std::int64_t now) noexcept {
+void Replica::apply(const DecodedPacket& packet, std::span<const RigidState> objects, std::int64_t arrival) noexcept {
   for (const RigidUpdate& update : packet.updates) {
     Track& track = tracks_[update.object];
-    now = std::max({now, packet.tick, track.last_arrival});
+    const std::int64_t now = std::max({arrival, packet.tick, track.last_arrival});
     const RigidPose shown = pose(update.object, now);
     const bool running = now < track.end;
     if (track.last_arrival >= 0) {

@@ -34,11 +34,11 @@ class Replica {
   ///      0 < share <= 1, or not 0 <= shortest <= longest <= 10 s.
   static Result<Replica> create(const StreamHeader& header, const ReplicaOptions& options = {});
 
-  /// Take over a decoded packet at tick `now`: its own, or later when the network delayed it. An earlier one counts as the
+  /// Take over a decoded packet at tick `arrival`: its own, or later when the network delayed it. An earlier one counts as the
   /// packet's, or as that of the object's last update, if that is later.
   /// in  objects   the decoder's objects after that packet
   /// time O(updates), no allocation.
-  void apply(const DecodedPacket& packet, std::span<const RigidState> objects, std::int64_t now) noexcept;
+  void apply(const DecodedPacket& packet, std::span<const RigidState> objects, std::int64_t arrival) noexcept;
 
   /// Pose of one object as shown at tick `now`; before the object's newest update it is the pose shown when that was applied.
   /// pre  object < header.objects.size().   time O(1), about 50 ns (100 ns while interpolating), no allocation.

@@ -118,6 +118,23 @@ TEST(ClientReplica, AnUpdateIsNotAppliedBeforeItsTickNorBeforeTheLastOne) {
   EXPECT_NEAR(late.shown(105).position.x, 0.03 + 0.5 * 0.025, 1e-6);
 }
 
+TEST(ClientReplica, AnObjectIsNotHeldUpByAnotherOfTheSamePacket) {
+  const StreamHeader header = scene_of(2);
+  auto replica = Replica::create(header).value();
+  const auto state = [&](std::int64_t tick) { return to_grid({{{0.1, 0, 0}, {}}, {1, 0, 0}, {}}, tick, header.grid).value(); };
+  const RigidUpdate named[] = {{0, Reason::visual, 0}, {1, Reason::visual, 0}};
+  DecodedPacket packet;
+  packet.tick = 80;
+  packet.updates = std::span(named).first(1);
+  std::vector<RigidState> states{state(80), state(0)};
+  replica.apply(packet, states, 100);
+  packet.updates = named;
+  states[1] = state(80);
+  replica.apply(packet, states, 90);
+  EXPECT_EQ(replica.pose(1, 95), predict(states[1], 95, header));
+  EXPECT_EQ(replica.pose(0, 95), predict(states[0], 100, header)) << "this one was there at 100 already";
+}
+
 TEST(ClientReplica, RotationTurnsAtConstantRate) {
   Feeder f(Interpolation::linear);
   f.update(0, {}, {});
