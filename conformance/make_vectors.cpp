@@ -15,11 +15,15 @@ int main(int argc, char** argv) {
   catalogue.begin("stream");
   add_stream_header(catalogue);
   add_stream_file(catalogue);
+  add_stream_bounds(catalogue);
+  add_stream_orders(catalogue);
   catalogue.begin("range");
   add_range(catalogue);
   catalogue.begin("rigid");
   add_rigid(catalogue);
   add_rigid_rules(catalogue);
+  add_rigid_outages(catalogue);
+  add_rigid_orders(catalogue);
   catalogue.begin("client");
   add_client(catalogue);
   catalogue.begin("mesh");
@@ -29,6 +33,9 @@ int main(int argc, char** argv) {
   add_mesh_thesis(catalogue);
   add_mesh_parts(catalogue);
   add_mesh_rules(catalogue);
+  add_memory(catalogue);
+  add_mesh_outages(catalogue);
+  add_mesh_orders(catalogue);
   const bool written = catalogue.write(argv[1]);
   return catalogue.write_index(argv[2]) && written ? 0 : 1;
 }

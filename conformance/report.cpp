@@ -2,6 +2,7 @@
 #include "conformance/report.h"
 
 #include <algorithm>
+#include <bit>
 #include <ostream>
 #include <string>
 #include <string_view>
@@ -61,6 +62,31 @@ void write_meshes(const std::vector<MeshObject>& meshes, std::ostream& out) {
   out << ']';
 }
 
+std::string bits(double value) { return '"' + hex(std::bit_cast<std::uint64_t>(value), 16) + '"'; }
+
+void write_bounds(const StreamBounds& bounds, std::ostream& out) {
+  out << R"(,"bounds":{)";
+  if (bounds.rigid) {
+    const RigidTriggers& t = *bounds.rigid;
+    out << R"("rigid":[)" << bits(t.heartbeat) << ',' << bits(t.visual_position) << ',' << bits(t.visual_rotation) << ','
+        << int{static_cast<std::uint8_t>(t.haptic)};
+    const bool weber = t.haptic == HapticRule::isotropic || t.haptic == HapticRule::cone;
+    if (weber) out << ',' << bits(t.weber_fraction) << ',' << bits(t.force_floor);
+    if (t.haptic == HapticRule::cone) out << ',' << bits(t.cone_angle);
+    if (t.haptic == HapticRule::fixed) out << ',' << bits(t.fixed_position) << ',' << bits(t.fixed_rotation);
+    out << "],";
+  }
+  out << R"("meshes":[)";
+  const char* comma = "";
+  for (const auto& [thresholds, kept] : bounds.meshes) {
+    out << comma << '[' << (kept ? 1 : 0) + (thresholds.weber_fraction ? 2 : 0) << ',' << bits(thresholds.visual);
+    if (thresholds.weber_fraction) out << ',' << bits(*thresholds.weber_fraction) << ',' << bits(thresholds.depth_floor);
+    out << ']';
+    comma = ",";
+  }
+  out << "]}";
+}
+
 void write_header_line(const StreamHeader& h, std::ostream& out) {
   out << R"({"header":{"version":1,"profile":)" << int{static_cast<std::uint8_t>(h.profile)} << R"(,"tick_rate":)" << h.tick_rate
       << R"(,"grid":[)" << int{h.grid.position} << ',' << int{h.grid.velocity} << ',' << int{h.grid.rotation} << ','
@@ -73,6 +99,7 @@ void write_header_line(const StreamHeader& h, std::ostream& out) {
   }
   out << ']';
   if (!h.meshes.empty()) write_meshes(h.meshes, out);
+  if (h.bounds) write_bounds(*h.bounds, out);
   out << "}}\n";
 }
 
@@ -109,27 +136,30 @@ void write_packet(const DecodedMeshPacket& packet, std::uint64_t state, std::ost
 
 void write_shown(std::uint64_t hash, std::ostream& out) { out << R"(,"shown":")" << hex(hash, 16) << '"'; }
 
+constexpr DecodeLimits kLimits{.header_bytes = 1u << 20, .packet_bytes = 1u << 20};  // of every testee, README.md
+
 /// The decoders of all parts of a scene, and a client that applies every packet at its tick and looks at every tick.
 class Client {
  public:
+  /// pre  `header` outlives the client
   static Result<Client> create(const StreamHeader& header, std::optional<Interpolation> interpolation) {
-    TACTUS_TRY(auto rigid, RigidDecoder::create(header));
-    Client client(std::move(rigid), has_part_byte(header));
+    TACTUS_TRY(auto rigid, RigidDecoder::create(header, kLimits));
+    Client client(header, std::move(rigid));
     for (std::size_t i = 0; i < header.meshes.size(); ++i) {
-      TACTUS_TRY(auto mesh, MeshDecoder::create(header, i));
+      TACTUS_TRY(auto mesh, MeshDecoder::create(header, i, kLimits));
       client.meshes_.push_back(std::move(mesh));
     }
     client.has_rigid_ = std::ranges::any_of(header.objects, [](const RigidObject& o) { return o.dof != Dof::none; });
-    if (interpolation) {
-      TACTUS_TRY(auto shown, Replica::create(header, {.interpolation = *interpolation}));
-      client.replica_.emplace(std::move(shown));
-    }
-    return client;
+    if (!interpolation) return client;
+    return Replica::create(header, {.interpolation = *interpolation}).map([&](Replica shown) {
+      client.replica_ = std::move(shown);
+      return std::move(client);
+    });
   }
 
   /// Decodes the packet of a record and writes its line.
   Result<void> decode(std::uint64_t number, const FilePacket& record, std::ostream& out) {
-    TACTUS_TRY(const auto packet, split_part(rigid_.header(), record.bytes));
+    TACTUS_TRY(const auto packet, split_part(*header_, record.bytes));
     if (packet.part != 0) return decode(meshes_[packet.part - 1], packet, number, record.tick, out);
     return decode(rigid_, packet, number, record.tick, out);
   }
@@ -157,7 +187,8 @@ class Client {
   }
 
  private:
-  Client(RigidDecoder rigid, bool part_byte) : rigid_(std::move(rigid)), has_part_byte_(part_byte) {}
+  Client(const StreamHeader& header, RigidDecoder rigid)
+      : header_(&header), rigid_(std::move(rigid)), has_part_byte_(has_part_byte(header)) {}
 
   template <class Decoder>
   Result<void> decode(Decoder& decoder, const PartPacket& packet, std::uint64_t number, std::int64_t tick, std::ostream& out) {
@@ -189,6 +220,7 @@ class Client {
     return hash.value();
   }
 
+  const StreamHeader* header_;
   RigidDecoder rigid_;
   std::vector<MeshDecoder> meshes_;
   bool has_part_byte_;
@@ -197,8 +229,6 @@ class Client {
   std::int64_t tick_ = 0;
   Fnv1a all_;
 };
-
-constexpr DecodeLimits kLimits{.header_bytes = 1u << 20, .packet_bytes = 1u << 20};  // of every testee, README.md
 
 }  // namespace
 

@@ -18,6 +18,7 @@ constexpr std::uint8_t kFirstExtension = 128;
 constexpr std::uint64_t kTrailerPayload = 8;                       // offset of the index
 constexpr std::size_t kTrailerSize = 1 + 1 + kTrailerPayload + 4;  // type, size, payload, check value
 constexpr std::size_t kRecordExtra = 1 + 10 + 4;                   // at most, around a payload: type, size, check value
+constexpr std::uint64_t kMostBeforePacket = 6;                     // tick_delta, number of the part
 constexpr std::int64_t kTickLimit = 0xffffffff;
 
 }  // namespace
@@ -106,7 +107,7 @@ Result<StreamFileReader::Record> StreamFileReader::read_record(std::size_t at) c
   if (record.type < kFirstExtension && (record.type < kPacket || record.type > kTrailer)) {
     return fail(Errc::unsupported, "R-FIL-3", 8 * static_cast<std::uint64_t>(at));
   }
-  if (record.type == kPacket && size > std::uint64_t{limits_.packet_bytes} + 5) {
+  if (record.type == kPacket && size > std::uint64_t{limits_.packet_bytes} + kMostBeforePacket) {
     return fail(Errc::limit_exceeded, "R-FIL-4", in.bit_offset());
   }
   if (record.type == kTrailer && size != kTrailerPayload) return fail(Errc::malformed, "R-FIL-6", in.bit_offset());

@@ -53,9 +53,13 @@ class Catalogue {
 // One ladder per stem.
 void add_stream_header(Catalogue& catalogue);
 void add_stream_file(Catalogue& catalogue);
+void add_stream_bounds(Catalogue& catalogue);
+void add_stream_orders(Catalogue& catalogue);
 void add_range(Catalogue& catalogue);
 void add_rigid(Catalogue& catalogue);
 void add_rigid_rules(Catalogue& catalogue);
+void add_rigid_outages(Catalogue& catalogue);
+void add_rigid_orders(Catalogue& catalogue);
 void add_client(Catalogue& catalogue);
 void add_mesh_header(Catalogue& catalogue);
 void add_mesh_main(Catalogue& catalogue);
@@ -63,5 +67,8 @@ void add_mesh_split(Catalogue& catalogue);
 void add_mesh_thesis(Catalogue& catalogue);
 void add_mesh_parts(Catalogue& catalogue);
 void add_mesh_rules(Catalogue& catalogue);
+void add_memory(Catalogue& catalogue);
+void add_mesh_outages(Catalogue& catalogue);
+void add_mesh_orders(Catalogue& catalogue);
 
 }  // namespace tactus::conformance

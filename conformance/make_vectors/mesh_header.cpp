@@ -107,7 +107,7 @@ void add_rules(Catalogue& c) {
             counted(3, 1, zeros(9) + Bytes{0, 2, 1, 0}));
   c.invalid("corner-of-33-bits", "A corner's difference is 2^32: in 32-bit arithmetic it would be 0.", corner,
             counted(3, 1, zeros(9) + zigzag_varint(std::int64_t{1} << 32) + Bytes{2, 2, 0}));
-  c.invalid("65-modes", "mode_count is 65.", basis, counted(1, 0, zeros(3) + Bytes{65} + zeros(400)));
+  c.invalid("65-modes", "65 modes, each whole.", basis, changed(1, [](RawMesh& m) { m = with_modes({}, 65, 671); }));
   c.invalid("mode-step-0", "A mode's step is 0.", basis, changed(1, [](RawMesh& m) { m.mode_steps[1] = 0; }));
   c.invalid("entry-2048", "An entry of a mode is 2048.", basis, changed(1, [](RawMesh& m) { m.entries.back() = 2048; }));
   c.invalid("entry-minus-2048", "An entry of a mode is -2048.", basis, changed(1, [](RawMesh& m) { m.entries[0] = -2048; }));

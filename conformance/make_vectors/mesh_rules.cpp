@@ -74,13 +74,14 @@ void add_packet_rules(Catalogue& c) {
             then(two_packets(), MainStep{.at = {.tick = 31, .sequence = std::uint16_t{3}}}));
   c.invalid("repeated-packet", "A packet with the sequence number of the one before.", stale,
             then(two_packets(), MainStep{.at = {.tick = 31, .key = true, .sequence = std::uint16_t{1}}}));
-  c.invalid("half-the-circle", "A sequence number 32768 ahead counts as older.", stale,
-            then(two_packets(), MainStep{.at = {.tick = 31, .key = true, .sequence = std::uint16_t{32769}}}));
+  c.valid("half-the-circle", "A key packet 32768 ahead begins anew.",
+          then(two_packets(), MainStep{.at = {.tick = 31, .key = true, .sequence = std::uint16_t{32769}}}), {"R-PKT-5"});
   c.invalid("stale-before-all", "A stale packet whose payload breaks R-RNG-4: the sequence is checked first.", stale,
             then_packet(two_packets(), {1, 0, 0xff, 0xff, 0xff, 0xff}));
   c.invalid("tick-mismatch", "The record says tick 30, the packet 31.", {"invalid", "R-FIL-7"},
             then_packet(two_packets(), MeshStream(two_packets()).composer().packet(MainStep{.at = {.tick = 31}})));
-  c.invalid("key-in-the-past", "A key packet at tick 29, after tick 30; the record cannot say so.", tick,
+  c.invalid("key-in-the-past", "A key packet at tick 29, after tick 30, begins anew; the record cannot say so.",
+            {"invalid", "R-FIL-7"},
             then_packet(two_packets(), two_packets().composer().packet(MainStep{.at = {.tick = 29, .key = true}})));
   c.invalid("baseline-in-the-past", "A packet on an older baseline, at tick 29, after tick 30; the record cannot say so.", tick,
             then_packet(two_packets(4), two_packets(4).composer().packet(MainStep{.at = {.tick = 29, .baseline = 2}})));
@@ -263,8 +264,8 @@ void add_thesis_rules(Catalogue& c) {
   c.invalid(
       "thesis-stale", "A packet older than the current state.", {"state", "R-PKT-5"},
       then(two_thesis_packets(), ThesisStep{.at = {.tick = 31, .key = true, .sequence = std::uint16_t{0}}, .vertices = {{0}}}));
-  c.invalid("thesis-key-in-the-past", "A key packet at tick 0, after tick 30; the record cannot say so.", {"invalid", "R-MES-8"},
-            thesis([](RawThesis& r) { r.key = 1; }));
+  c.invalid("thesis-key-in-the-past", "A key packet at tick 0, after tick 30, begins anew; the record cannot say so.",
+            {"invalid", "R-FIL-7"}, thesis([](RawThesis& r) { r.key = 1; }));
   c.invalid("thesis-tick-over-limit", "A packet at tick 2^32 - 1; no record can say so.", {"invalid", "R-MES-8"},
             thesis([](RawThesis& r) { r.tick_delta = varint(kLastTick - 29); }));
   c.invalid("thesis-gap-beyond", "A gap of 9: there are 9 vertices.", {"invalid", "R-MES-13"},

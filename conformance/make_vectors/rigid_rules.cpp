@@ -57,9 +57,10 @@ void add_packet_rules(Catalogue& c) {
             then(two_packets(), {.tick = 30, .updates = moved(1), .key = true, .sequence = std::uint16_t{101}}));
   c.invalid("late-packet", "A packet one older than the current state.", stale,
             then(two_packets(), {.tick = 30, .updates = moved(1), .key = true, .sequence = std::uint16_t{100}}));
-  c.invalid(
-      "half-the-circle", "A sequence number 32768 ahead counts as older.", stale,
-      then(two_packets(), {.tick = 30, .updates = moved(1), .key = true, .sequence = static_cast<std::uint16_t>(101 + 32768)}));
+  c.valid(
+      "half-the-circle", "A key packet 32768 ahead begins anew.",
+      then(two_packets(), {.tick = 30, .updates = moved(1), .key = true, .sequence = static_cast<std::uint16_t>(101 + 32768)}),
+      {"R-PKT-5"});
 }
 
 void add_tick_rule(Catalogue& c) {
@@ -75,8 +76,8 @@ void add_tick_rule(Catalogue& c) {
   c.invalid("tick-runs-over-far", "tick_delta 2^32 - 1 leads from tick 2^32 - 2 beyond 32 bits.", tick,
             wrapped.add_packet(4294967294, raw_packet(late.header(), 1, {false, 1, 0xffffffffu, 1}, std::vector<RawUpdate>(1)))
                 .bytes());
-  c.invalid("key-in-the-past", "A key packet at tick 29, after tick 30; the record cannot say so.", tick,
-            then_raw({true, 1, 29, 1}, {{}}));
+  c.invalid("key-in-the-past", "A key packet at tick 29, after tick 30, begins anew; the record cannot say so.",
+            {"invalid", "R-FIL-7"}, then_raw({true, 1, 29, 1}, {{}}));
   Stream older = two_packets(4);
   const Bytes packet = older.packet({.tick = 29, .updates = moved(1), .baseline = 2});
   c.invalid("baseline-in-the-past", "A packet on an older baseline, at tick 29, after tick 30; the record cannot say so.", tick,

@@ -66,8 +66,8 @@ void add_record_faults(Catalogue& c) {
     c.invalid("record-type-" + std::to_string(type), "A record of unknown type that may not be skipped.",
               {"unsupported", "R-FIL-3"}, extended([&](Stream& s) { s.add_record(type, {0}); }));
   }
-  c.invalid("huge-packet", "A packet record announces 2^20 + 6 bytes; none follows.", {"limit_exceeded", "R-FIL-4"},
-            good + Bytes{1} + varint((1u << 20) + 6));
+  c.invalid("huge-packet", "A packet record announces 2^20 + 7 bytes; none follows.", {"limit_exceeded", "R-FIL-4"},
+            good + Bytes{1} + varint((1u << 20) + 7));
   c.invalid("huge-extension", "An extension record announces 2^63 bytes; none follows.", cut,
             good + Bytes{128} + varint(std::uint64_t{1} << 63));
   c.invalid("wrong-record-crc", "One bit of a record's check value is wrong.", {"checksum", "R-FIL-5"},
