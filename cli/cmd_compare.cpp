@@ -6,6 +6,7 @@
 #include "cli/figures.h"
 #include "cli/report.h"
 #include "cli/trace_ending.h"
+#include "codec/base/shown.h"
 #include "codec/trace/trace_file.h"
 
 namespace tactus::cli {
@@ -20,7 +21,7 @@ struct CompareOptions {
 
 Outcome check_same_scene(const CompareOptions& options, const TraceInfo& truth, const TraceInfo& replica) {
   const auto differ = [&](const std::string& what) {
-    return refuse(options.replica + ": " + what + " as in " + options.truth,
+    return refuse(shown_path(options.replica) + ": " + what + " as in " + shown_path(options.truth),
                   "Compare a trace with the replica that was decoded from its own stream.");
   };
   if (truth.tick_rate != replica.tick_rate)
@@ -161,7 +162,8 @@ Outcome run(const CompareOptions& options) {
   report.timings = {{"compare", "compare, per tick"}};
   if (auto compared = compare_all(*truth, *replica, options, report); !compared) return compared;
   if (report.ticks.count() == 0)
-    return refuse(options.replica + ": shares no tick with " + options.truth, "Decode with --like " + options.truth + ".");
+    return refuse(shown_path(options.replica) + ": shares no tick with " + shown_path(options.truth),
+                  "Decode with --like " + shown_path(options.truth) + ".");
   note_unmatched(*truth, *replica, report);
   print(report, options.common, Destination::standard_output);
   return report.bounds_from == "defaults" ? Outcome() : verdict(report, options.replica);  // nobody asked for those

@@ -7,6 +7,7 @@
 #include "cli/option_needs.h"
 #include "cli/report.h"
 #include "cli/trace_ending.h"
+#include "codec/base/shown.h"
 #include "codec/trace/trace_file.h"
 
 namespace tactus::cli {
@@ -122,7 +123,7 @@ Outcome run(const EncodeOptions& options) {
   if (!any) return refuse(options.input, any.error());
   if (!*any) {
     if (auto whole = check_ending(options.input, *reader, 0); !whole) return whole;
-    return refuse(options.input + ": the trace has no frames", "Record or simulate at least one tick.");
+    return refuse(shown_path(options.input) + ": the trace has no frames", "Record or simulate at least one tick.");
   }
   note_idle_options(*options.common.command, subjects_of(reader->info()), "trace");
   auto output = OutputFile::create(options.output, options.common.existing(), {options.input});

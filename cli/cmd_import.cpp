@@ -11,6 +11,7 @@
 
 #include "cli/report.h"
 #include "cli/table.h"
+#include "codec/base/shown.h"
 #include "codec/trace/csv.h"
 
 namespace tactus::cli {
@@ -105,8 +106,8 @@ tl::unexpected<Failure> refuse_csv(const ImportOptions& options, const CsvMappin
                             "Give --preset NAME or --map position=x,y,z. Only tables of `tactus export csv` need neither.");
   const bool arguments = blames_arguments(mapping, e.error.rule);
   std::string place = e.line > 0 && !arguments ? fmt::format("line {}", e.line) : "";
-  if (!e.column.empty()) place += fmt::format("{}column {}", place.empty() ? "" : ", ", e.column);
-  if (!e.text.empty()) place += fmt::format("{}'{}'", place.empty() ? "" : ", ", e.text);
+  if (!e.column.empty()) place += fmt::format("{}column {}", place.empty() ? "" : ", ", shown(e.column));
+  if (!e.text.empty()) place += fmt::format("{}'{}'", place.empty() ? "" : ", ", shown(e.text));
   auto refused = refuse(file, place, e.error);
   if (arguments) refused.value().cause = Failure::Cause::arguments;
   return refused;

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "codec/base/shown.h"
+
 namespace tactus::cli {
 namespace {
 
@@ -126,6 +128,8 @@ constexpr std::array kRules{
     RuleText{"R-TRC-16", "there is no PoseStamped channel to read objects from", kNotATrace},
     RuleText{"R-TRC-17", "the trace's description is not valid",
              "Give every object and user its own plain name, and a tick rate of 1 to 1000000."},
+    RuleText{"R-TRC-18", "the file unpacks to, or repeats, far more than its size has earned",
+             "Write the recording without compression, or only with the objects that move."},
     RuleText{"R-MSH-1", "a mesh has a vertex that is not finite or far beyond any scene", kDamaged},
     RuleText{"R-MSH-2", "a triangle of a mesh names a vertex that is not there", kDamaged},
     RuleText{"R-MSH-3", "a triangle of a mesh has no area", kDamaged},
@@ -146,6 +150,8 @@ constexpr std::array kRules{
         "R-CSV-8",
         "the mapping names some columns of a vector but not all, nothing to record, or spins of the body frame without rotations",
         "Give --preset NAME, or --map with every column of a quantity."},
+    RuleText{"R-CSV-9", "the zstd data unpacks to far more than its size has earned",
+             "Unpack it with zstd and give the table itself."},
     RuleText{"R-SIM-2", "the scene has deformable objects, and this program was built without them",
              "Install libeigen3-dev, libsuitesparse-dev and libspectra-dev, and build with TACTUS_WITH_FEM=ON."},
     RuleText{"R-SIM-3",
@@ -174,7 +180,7 @@ tl::unexpected<Failure> refuse(const std::string& file, const std::string& place
   const int cause = error.code == Errc::io ? errno : 0;
   const auto* text = std::find_if(kRules.begin(), kRules.end(), [&](const RuleText& r) { return r.rule == error.rule; });
   const bool known = text != kRules.end();
-  auto refused = refuse(fmt::format("{}{}{}: {}{}{} ({}, {})", file, place.empty() ? "" : ", ", place,
+  auto refused = refuse(fmt::format("{}{}{}: {}{}{} ({}, {})", shown_path(file), place.empty() ? "" : ", ", place,
                                     known ? text->broken : "breaks a rule of the specification", cause == 0 ? "" : ": ",
                                     cause == 0 ? "" : std::generic_category().message(cause), errc_name(error.code), error.rule),
                         cause != 0 ? remedy_of(cause)

@@ -7,6 +7,7 @@
 #include <cctype>
 
 #include "cli/progress.h"
+#include "codec/base/shown.h"
 
 namespace tactus::cli {
 
@@ -20,8 +21,14 @@ std::string counted(unsigned long long number, const char* noun) {
   return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
 }
 
-void Table::heading(std::vector<std::string> cells) { lines_.push_back({true, std::move(cells)}); }
-void Table::row(std::vector<std::string> cells) { lines_.push_back({false, std::move(cells)}); }
+void Table::heading(std::vector<std::string> cells) { add(true, std::move(cells)); }
+void Table::row(std::vector<std::string> cells) { add(false, std::move(cells)); }
+
+void Table::add(bool heading, std::vector<std::string> cells) {
+  constexpr std::size_t kWidestCell = 1000;
+  for (std::string& cell : cells) cell = shown(cell, kWidestCell);
+  lines_.push_back({heading, std::move(cells)});
+}
 
 void Table::print(std::FILE* out) const {
   std::vector<std::size_t> widths;

@@ -7,7 +7,8 @@
 
 namespace tactus::cli {
 
-/// Text in columns with widths common to the whole table: words to the left, figures to the right.
+/// Text in columns with widths common to the whole table: words to the left, figures to the right. Cells may hold foreign text, which
+/// is printed as shown() has it.
 class Table {
  public:
   void heading(std::vector<std::string> cells);  ///< starts a block; emphasised on a terminal
@@ -19,6 +20,8 @@ class Table {
     bool heading;
     std::vector<std::string> cells;
   };
+  void add(bool heading, std::vector<std::string> cells);
+
   std::vector<Line> lines_;
 };
 

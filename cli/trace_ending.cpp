@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "cli/table.h"
+#include "codec/base/shown.h"
 
 namespace tactus::cli {
 
@@ -17,11 +18,11 @@ void warn_cut_stream(const std::string& path, const Error& error) {
 Outcome check_ending(const std::string& path, const TraceReader& reader, std::uint64_t frames) {
   if (!reader.cut_short()) return {};
   if (frames == 0) {
-    return refuse(path + ": the trace was cut before the end of its first chunk; no tick of it can be read",
+    return refuse(shown_path(path) + ": the trace was cut before the end of its first chunk; no tick of it can be read",
                   "Copy it again from its source, or record it again.");
   }
   std::fflush(stdout);
-  fmt::print(stderr, "warning: {}: the trace ends without its index; {} before the cut could be read\n", path,
+  fmt::print(stderr, "warning: {}: the trace ends without its index; {} before the cut could be read\n", shown_path(path),
              counted(frames, "tick"));
   return {};
 }

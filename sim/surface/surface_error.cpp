@@ -5,6 +5,8 @@
 #include <array>
 #include <string_view>
 
+#include "codec/base/shown.h"
+
 namespace tactus {
 namespace {
 
@@ -44,11 +46,12 @@ constexpr std::array kRules{
 }  // namespace
 
 std::string to_string(const SurfaceError& error) {
+  constexpr std::size_t kMostOfDetail = 120;  // a place in our words and a piece of the file
   const std::string_view rule = error.error.rule;
-  const std::string file = error.file.empty() ? "" : error.file + ": ";
+  const std::string file = error.file.empty() ? "" : shown_path(error.file) + ": ";
   if (rule.starts_with("R-MSH-")) return file + to_string(MeshError{error.error, error.element});
   const auto* text = std::find_if(kRules.begin(), kRules.end(), [&](const RuleText& r) { return r.rule == rule; });
-  std::string place = file + (error.detail.empty() ? "" : error.detail + ": ") + error.error.rule;
+  std::string place = file + (error.detail.empty() ? "" : shown(error.detail, kMostOfDetail) + ": ") + error.error.rule;
   if (text == kRules.end()) return place;
   return place + ": " + text->broken + "; " + text->remedy;
 }
