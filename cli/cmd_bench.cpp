@@ -67,15 +67,6 @@ Outcome make_folder(const std::string& directory) {
   return {};
 }
 
-Outcome write_file(const std::string& path, const std::string& text, OutputFile::Existing existing) {
-  auto file = OutputFile::create(path, existing);
-  if (!file) return tl::unexpected(file.error());
-  const auto out = file->open();
-  if (!out) return tl::unexpected(out.error());
-  **out << text;
-  return file->keep();
-}
-
 void setup_bench(Command& app, Action& action) {
   Command& bench =
       app.add_command("bench", "Study the simulation itself: error against run time, and where it stops being stable");

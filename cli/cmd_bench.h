@@ -6,7 +6,6 @@
 #include <string>
 
 #include "cli/command.h"
-#include "cli/output.h"
 
 namespace tactus::cli {
 
@@ -20,7 +19,5 @@ std::map<std::string, std::string> bench_context();
 
 /// Make the folder of a report.   err  it cannot be made
 Outcome make_folder(const std::string& directory);
-/// A whole file in it.   err  it is there already and to be kept; it cannot be written
-Outcome write_file(const std::string& path, const std::string& text, OutputFile::Existing existing);
 
 }  // namespace tactus::cli

@@ -8,6 +8,7 @@
 #include "cli/cmd_export.h"
 #include "cli/report.h"
 #include "cli/trace_ending.h"
+#include "codec/base/shown.h"
 #include "codec/trace/trace_file.h"
 #include "sim/surface/surface_file.h"
 
@@ -21,46 +22,26 @@ struct ExportMeshOptions {
   CommonOptions common;
 };
 
-/// Files of a folder that appears under its name when all are written.
-class OutputFolder {
- public:
-  explicit OutputFolder(const std::string& path) : path_(path), part_(path_.string() + ".part") {}
-  OutputFolder(const OutputFolder&) = delete;
-  OutputFolder& operator=(const OutputFolder&) = delete;
-  ~OutputFolder() {
-    std::error_code ignored;
-    if (made_) fs::remove_all(part_, ignored);
-  }
-
-  Outcome create() {
-    std::error_code error;
-    if (fs::exists(path_, error) && !(fs::is_directory(path_, error) && fs::is_empty(path_, error)))
-      return refuse(path_.string() + ": is there already", "Name a folder that is empty or not there yet.");
-    made_ = fs::create_directories(part_, error);
-    if (!made_) return refuse(part_.string() + ": cannot be made", "Check that you may write there and remove an old one.");
-    return {};
-  }
-  std::string file(const std::string& name) const { return (part_ / name).string(); }
-  Outcome keep() {
-    std::error_code error;
-    fs::rename(part_, path_, error);
-    if (error) return refuse(path_.string() + ": cannot be written", "Check that you may write there.");
-    made_ = false;
-    return {};
-  }
-
- private:
-  fs::path path_, part_;
-  bool made_ = false;
-};
+/// The folder to make, without what a shell that completes names puts behind it.
+tl::expected<fs::path, Failure> target_of(const std::string& output) {
+  fs::path path = fs::path(output).lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();
+  std::error_code ignored;
+  const bool is_new = path.has_filename() && path != "." && path.filename() != "..";
+  if (!is_new) return refuse_arguments(shown_path(output) + ": no name of a new folder", "Name a folder that is not there yet.");
+  const fs::file_status status = fs::symlink_status(path, ignored);
+  if (!fs::exists(status) || (fs::is_directory(status) && fs::is_empty(path, ignored))) return path;
+  return refuse(shown_path(output) + ": is there already", "Name a folder that is empty or not there yet.");
+}
 
 tl::expected<std::size_t, Failure> find_mesh(const ExportMeshOptions& options, const TraceInfo& info) {
   const auto found = std::find_if(info.meshes.begin(), info.meshes.end(),
                                   [&](const TraceMesh& m) { return options.mesh.empty() || m.name == options.mesh; });
-  if (info.meshes.empty()) return refuse(options.input + ": no mesh in it", "Give a trace of a deformable object.");
-  if (found == info.meshes.end()) return refuse("--mesh " + options.mesh + ": no such mesh", "`tactus info` names them.");
+  if (info.meshes.empty()) return refuse(shown_path(options.input) + ": no mesh in it", "Give a trace of a deformable object.");
+  if (found == info.meshes.end()) return refuse("--mesh " + shown(options.mesh) + ": no such mesh", "`tactus info` names them.");
   if (options.mesh.empty() && info.meshes.size() > 1)
-    return refuse(fmt::format("{}: {} meshes in it", options.input, info.meshes.size()), "Choose one with --mesh NAME.");
+    return refuse(fmt::format("{}: {} meshes in it", shown_path(options.input), info.meshes.size()),
+                  "Choose one with --mesh NAME.");
   return static_cast<std::size_t>(found - info.meshes.begin());
 }
 
@@ -69,8 +50,13 @@ Outcome run(const ExportMeshOptions& options) {
   if (!reader) return refuse(options.input, reader.error());
   const auto index = find_mesh(options, reader->info());
   if (!index) return tl::unexpected(index.error());
-  OutputFolder folder(options.output);
-  if (auto created = folder.create(); !created) return created;
+  const auto target = target_of(options.output);
+  if (!target) return tl::unexpected(target.error());
+  const std::string parent = target->has_parent_path() ? target->parent_path().string() : ".";
+  std::error_code failed;
+  fs::create_directories(parent, failed);
+  auto folder = AsideFolder::create(parent, target->filename().string());
+  if (!folder) return tl::unexpected(folder.error());
   const TriMesh& rest = reader->info().meshes[*index].rest;
   TriMesh shape = rest;
   TraceFrame frame;
@@ -86,14 +72,14 @@ Outcome run(const ExportMeshOptions& options) {
     const std::vector<float>& u = frame.meshes[*index].displacements;
     for (std::size_t v = 0; v < shape.vertices.size(); ++v)
       shape.vertices[v] = rest.vertices[v] + Vec3{u[3 * v], u[3 * v + 1], u[3 * v + 2]};
-    const std::string file = folder.file(fmt::format("frame-{:06}.{}", count++, options.format));
+    const std::string file = fmt::format("{}/frame-{:06}.{}", folder->path(), count++, options.format);
     errno = 0;
     const auto written = report.timings[0].times.measure([&] { return write_surface(file, shape); });
     if (!written && written.error().error.code == Errc::io) return refuse_io(options.output, "cannot be written", errno);
     if (!written) return refuse(to_string(written.error()), "");
   }
   if (auto whole = check_ending(options.input, *reader, report.ticks.count()); !whole) return whole;
-  if (auto kept = folder.keep(); !kept) return kept;
+  if (auto kept = folder->keep_as(target->string()); !kept) return kept;
   const TraceInfo& info = reader->info();
   report.describe(info);
   report.meshes.push_back({.name = info.meshes[*index].name,

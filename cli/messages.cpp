@@ -215,7 +215,7 @@ std::string remedy_of(int cause) {
 }
 
 tl::unexpected<Failure> refuse_io(const std::string& file, const std::string& what, int cause) {
-  auto refused = refuse(file + ": " + what + ": " + std::generic_category().message(cause), remedy_of(cause));
+  auto refused = refuse(shown_path(file) + ": " + what + ": " + std::generic_category().message(cause), remedy_of(cause));
   refused.value().file = file;
   refused.value().error_class = errc_name(Errc::io);
   return refused;

@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "cli/cmd_bench.h"
+#include "cli/json_text.h"
 
 namespace tactus::cli {
 namespace fs = std::filesystem;
@@ -124,7 +125,8 @@ std::optional<SpaceRow> space_row(const std::string& line) {
 /// Rows behind the heading. A last line without its end was being written when the program was stopped: it is left out.
 template <class Row, class Parse>
 Outcome read_rows(const std::string& path, const std::string& heading, std::vector<Row>& rows, Parse&& parse) {
-  if (!fs::exists(path)) return {};
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) return {};
   auto text = read_file(path);
   if (!text) return tl::unexpected(text.error());
   const std::size_t whole = text->rfind('\n') + 1;
@@ -154,12 +156,13 @@ tl::expected<PrecisionResults, Failure> PrecisionResults::open(std::string folde
                                                                OutputFile::Existing existing) {
   if (const auto made = make_folder(folder); !made) return tl::unexpected(made.error());
   PrecisionResults out(std::move(folder), std::move(context));
-  const std::string wanted = nlohmann::ordered_json(out.context_).dump(2) + "\n", file = out.path(kContextFile);
+  const std::string wanted = json_text(nlohmann::ordered_json(out.context_)) + "\n", file = out.path(kContextFile);
   if (existing == OutputFile::Existing::replace) {
-    std::error_code ignored;
-    for (const char* name : {kTimeFile, kSpaceFile, kContextFile}) fs::remove(out.path(name), ignored);
+    std::error_code absent;
+    for (const char* name : {kTimeFile, kSpaceFile, kContextFile}) fs::remove(out.path(name), absent);
   }
-  if (!fs::exists(file)) {
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) {
     if (const auto done = write_file(file, wanted, OutputFile::Existing::keep); !done) return tl::unexpected(done.error());
     return out;
   }
@@ -179,7 +182,9 @@ Outcome PrecisionResults::read() {
 }
 
 Outcome PrecisionResults::append(const std::string& file, const std::string& heading, const std::string& line) const {
-  const bool is_new = !fs::exists(file);
+  std::error_code ignored;
+  if (fs::is_symlink(file, ignored)) return refuse(file + ": is a link", "Remove it: what it leads to would be written to.");
+  const bool is_new = !fs::exists(file, ignored);
   std::ofstream out(file, std::ios::app);
   if (is_new) out << heading << '\n';
   out << line << '\n' << std::flush;
