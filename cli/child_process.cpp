@@ -7,8 +7,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <filesystem>
 #include <utility>
 
@@ -54,13 +56,25 @@ class SpawnActions {
   posix_spawn_file_actions_t actions_{};
 };
 
-/// Read both until both are at their end, whichever has something first.
-void drain(const Pipe& first, std::string& into_first, const Pipe& second, std::string& into_second) {
+using Clock = std::chrono::steady_clock;
+
+/// [ms] for poll(); -1: for ever
+int time_left(Clock::time_point deadline) {
+  if (deadline == Clock::time_point::max()) return -1;
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now());
+  return static_cast<int>(std::max<std::chrono::milliseconds::rep>(left.count(), 0));
+}
+
+/// Read both until both are at their end, whichever has something first.   out  false: the deadline came first
+bool drain(const Pipe& first, std::string& into_first, const Pipe& second, std::string& into_second, Clock::time_point deadline) {
   std::array<pollfd, 2> watched{{{first.reader(), POLLIN, 0}, {second.reader(), POLLIN, 0}}};
   const std::array<std::string*, 2> into{&into_first, &into_second};
   std::array<char, 65536> buffer;
   while (watched[0].fd >= 0 || watched[1].fd >= 0) {
-    if (poll(watched.data(), watched.size(), -1) < 0 && errno != EINTR) return;
+    const int ready = poll(watched.data(), watched.size(), time_left(deadline));
+    if (ready == 0) return false;
+    if (ready < 0 && errno != EINTR) return true;
+    if (ready < 0) continue;
     for (std::size_t i = 0; i < watched.size(); ++i) {
       if (watched[i].fd < 0 || watched[i].revents == 0) continue;
       const ssize_t got = read(watched[i].fd, buffer.data(), buffer.size());
@@ -68,11 +82,14 @@ void drain(const Pipe& first, std::string& into_first, const Pipe& second, std::
       else if (got == 0 || errno != EINTR) watched[i].fd = -1;
     }
   }
+  return true;
 }
 
 }  // namespace
 
-tl::expected<ChildResult, std::error_code> run_child(const std::vector<std::string>& arguments, const std::string& directory) {
+tl::expected<ChildResult, std::error_code> run_child(const std::vector<std::string>& arguments, const std::string& directory,
+                                                     std::optional<std::chrono::seconds> limit) {
+  const auto deadline = limit ? Clock::now() + *limit : Clock::time_point::max();
   std::vector<char*> words;
   words.reserve(arguments.size() + 1);
   for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
@@ -90,10 +107,12 @@ tl::expected<ChildResult, std::error_code> run_child(const std::vector<std::stri
   out.close_writer();
   error.close_writer();
   ChildResult result;
-  drain(out, result.out, error, result.error);
+  const bool ended = drain(out, result.out, error, result.error, deadline);
+  if (!ended) kill(child, SIGKILL);
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
+  if (!ended) return tl::unexpected(std::make_error_code(std::errc::timed_out));
   result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return result;
 }

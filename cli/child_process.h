@@ -2,6 +2,8 @@
 /// Other programs, run with an argument vector and never through a shell.
 #pragma once
 
+#include <chrono>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <tl/expected.hpp>
@@ -18,9 +20,10 @@ struct ChildResult {
 /// Run `arguments[0]`, looked up in PATH unless it holds a '/', without standard input, and wait for its end.
 /// May be called from several threads at once.
 /// in   directory  where it runs; empty: here
-/// err  why the program cannot be started; no_such_file_or_directory: it is not there
-tl::expected<ChildResult, std::error_code> run_child(const std::vector<std::string>& arguments,
-                                                     const std::string& directory = {});
+///      limit      after which it is killed; none: never
+/// err  why the program cannot be started; no_such_file_or_directory: it is not there; timed_out: it was killed
+tl::expected<ChildResult, std::error_code> run_child(const std::vector<std::string>& arguments, const std::string& directory = {},
+                                                     std::optional<std::chrono::seconds> limit = std::nullopt);
 
 /// The path of this program itself.
 std::string own_program();

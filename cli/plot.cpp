@@ -7,6 +7,7 @@
 #include <ostream>
 
 #include "cli/child_process.h"
+#include "codec/base/shown.h"
 
 namespace tactus::cli {
 namespace {
@@ -19,6 +20,10 @@ set grid linecolor rgb '#d9d9d9' linewidth 0.6 dashtype solid
 set key textcolor rgb '#222222' spacing 1.15
 )";
 
+constexpr std::chrono::seconds kLongestRun{60};
+constexpr std::size_t kLongestText = 255;  // of a figure, as of a plan
+constexpr std::size_t kMostOfWords = 300;  // of gnuplot's own, in a message
+
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "NaN"; }
 
 std::string script_file(const Plot& plot, const std::string& directory) { return directory + "/" + plot.name + ".gp"; }
@@ -26,10 +31,11 @@ std::string script_file(const Plot& plot, const std::string& directory) { return
 std::string script_of(const Plot& plot) {
   std::string out = fmt::format(
       "# SPDX-License-Identifier: Apache-2.0\n"
-      "# gnuplot -c {0}.gp svg | png\n"
-      "if (ARG1 eq 'png') {{ set terminal pngcairo size {1},{2} font 'sans,11'; set output '{0}.png' }}\n"
-      "else {{ set terminal svg size {1},{2} font 'sans,13' background 'white'; set output '{0}.svg' }}\n{3}",
-      plot.name, plot.width, plot.height, kPreamble);
+      "# gnuplot -c {0}.gp svg | png    makes {0}.svg or .png; a third word `-`: to standard output\n"
+      "if (ARG1 eq 'png') {{ set terminal pngcairo size {1},{2} font 'sans,11' }}\n"
+      "else {{ set terminal svg size {1},{2} font 'sans,13' background 'white' }}\n"
+      "if (ARG2 ne '-') {{ set output {3}.'.'.ARG1 }}\n{4}",
+      shown(plot.name), plot.width, plot.height, gnuplot_text(plot.name), kPreamble);
   for (std::size_t i = 0; i < std::size(kPlotColours); ++i)
     out += fmt::format("set linetype {} linecolor rgb '{}' linewidth 2 pointtype 7 pointsize 0.7\n", i + 1, kPlotColours[i]);
   for (const PlotData& block : plot.data) {
@@ -45,25 +51,34 @@ std::string script_of(const Plot& plot) {
 
 }  // namespace
 
+std::string gnuplot_text(std::string_view text) {
+  std::string out = "'";
+  for (const char c : shown(text, kLongestText)) out.append(c == '\'' ? 2 : 1, c);
+  return out + '\'';
+}
+
 Outcome check_plot(const Plot& plot, const std::string& directory, OutputFile::Existing existing) {
   return OutputFile::check_free(script_file(plot, directory), existing);
 }
 
 tl::expected<Drawn, Failure> draw(const Plot& plot, const std::string& directory, OutputFile::Existing existing) {
-  auto file = OutputFile::create(script_file(plot, directory), existing);
-  if (!file) return tl::unexpected(file.error());
-  const auto out = file->open();
-  if (!out) return tl::unexpected(out.error());
-  **out << script_of(plot);
-  if (const auto kept = file->keep(); !kept) return tl::unexpected(kept.error());
+  const std::string stem = directory + "/" + plot.name, script = plot.name + ".gp";
+  if (auto written = write_file(script_file(plot, directory), script_of(plot), existing); !written)
+    return tl::unexpected(written.error());
   for (const char* kind : {"svg", "png"}) {
-    const std::string script = plot.name + ".gp";
-    const auto done = run_child({"gnuplot", "-c", script, kind}, directory);
+    const auto done = run_child({"gnuplot", "-d", "-c", script, kind, "-"}, directory, kLongestRun);
     if (!done && done.error() == std::errc::no_such_file_or_directory) return Drawn::no;
+    const std::string remedy =
+        fmt::format("Run it by hand: cd {} && gnuplot -c {} {}", shown_path(directory), shown(script), kind);
+    if (!done && done.error() == std::errc::timed_out)
+      return refuse(fmt::format("{}.gp: gnuplot did not end within {} s", shown_path(stem), kLongestRun.count()), remedy);
     if (!done) return refuse("gnuplot cannot be started: " + done.error().message(), "Check the installation.");
     if (done->status != 0)
-      return refuse(fmt::format("{}: gnuplot ended with status {}: {}", file->path(), done->status, done->error),
-                    fmt::format("Run it by hand: cd {} && gnuplot -c {} {}", directory, script, kind));
+      return refuse(fmt::format("{}.gp: gnuplot ended with status {}: {}", shown_path(stem), done->status,
+                                shown(done->error, kMostOfWords)),
+                    remedy);
+    if (auto written = write_file(stem + "." + kind, done->out, OutputFile::Existing::replace); !written)
+      return tl::unexpected(written.error());
   }
   return Drawn::yes;
 }

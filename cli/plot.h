@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/output.h"
@@ -14,6 +15,10 @@ struct PlotData {
   std::string name;
   std::vector<std::vector<double>> rows;
 };
+
+/// Any text as a string of a gnuplot script, which takes it as it is: in single quotes, where gnuplot substitutes nothing, and as
+/// shown() has it. To be drawn as it is it wants `noenhanced` behind it.
+std::string gnuplot_text(std::string_view text);
 
 struct Plot {
   std::string name;    ///< of the files
@@ -30,9 +35,10 @@ enum class Drawn : bool { no, yes };
 /// err  the script of draw() is there and to be kept
 Outcome check_plot(const Plot& plot, const std::string& directory, OutputFile::Existing existing);
 
-/// Write DIR/NAME.gp, which holds script and data and can be run by itself, and let gnuplot make DIR/NAME.svg and DIR/NAME.png of it.
+/// Write DIR/NAME.gp, which holds script and data and can be run by itself, and DIR/NAME.svg and DIR/NAME.png, which gnuplot makes
+/// of it on its standard output: no other program opens a file.
 /// out  Drawn::no: there is no gnuplot; the script is there all the same
-/// err  a file cannot be written; gnuplot refuses the script (its words are in the failure)
+/// err  a file cannot be written; gnuplot refuses the script (its words are in the failure) or takes over a minute
 tl::expected<Drawn, Failure> draw(const Plot& plot, const std::string& directory, OutputFile::Existing existing);
 
 /// What to tell when draw() said no.

@@ -26,9 +26,9 @@ Style style_of(const study::PrecisionMethod& method, int variant) {
 std::string frame(const std::string& title, const std::string& x_label) {
   return fmt::format(
       "set logscale xy\nset format x '10^{{%L}}'\nset format y '10^{{%L}}'\nset mxtics 1\nset mytics 1\n"
-      "set title \"{}\" noenhanced\nset xlabel '{}'\nset ylabel 'seconds of one core per simulated second'\n"
+      "set title {} noenhanced\nset xlabel {} noenhanced\nset ylabel 'seconds of one core per simulated second'\n"
       "set yrange [*:3<*]\nset key outside right top Left reverse samplen 2.5\n",
-      title, x_label);
+      gnuplot_text(title), gnuplot_text(x_label));
 }
 
 void append(std::string& list, const std::string& item) { list += (list.empty() ? "plot " : ", \\\n  ") + item; }
@@ -64,8 +64,10 @@ Plot time_plot(const TimeStudy& time, const Quantity& quantity) {
     }
     if (data.rows.empty()) continue;
     const Style style = style_of(method, variant);
-    append(lines, fmt::format("${0} using 1:2 with linespoints linetype {1} dashtype {2} pointtype {3} pointsize 0.8 title '{4}'",
-                              data.name, style.colour, style.dash, style.mark, method.name));
+    append(
+        lines,
+        fmt::format("${0} using 1:2 with linespoints linetype {1} dashtype {2} pointtype {3} pointsize 0.8 title {4} noenhanced",
+                    data.name, style.colour, style.dash, style.mark, gnuplot_text(method.name)));
     // Linear elasticity is off by the same whatever the step.
     if (method.elasticity == Elasticity::corotated) {
       append(lines, fmt::format("${0} using 1:2:(sprintf('%.3g', $3)) with labels left offset 0.6, 0.35 font ',8' textcolor "
@@ -112,9 +114,9 @@ Plot space_plot(const std::string& scene, const std::vector<const SpaceStudy*>& 
     plot.data.push_back(std::move(data));
   }
   plot.script = fmt::format(
-      "set logscale xy\nset format x '10^{{%L}}'\nset title '{}: deflection of the loaded patch'\n"
+      "set logscale xy\nset format x '10^{{%L}}'\nset title {} noenhanced\n"
       "set xlabel 'tetrahedra'\nset ylabel 'relative error of the deflection'\nset key outside right top Left reverse\n",
-      scene);
+      gnuplot_text(scene + ": deflection of the loaded patch"));
   plot.script += lines + '\n';
   return plot;
 }

@@ -79,11 +79,12 @@ Plot stiffness_plot(const std::string& file, const std::string& object, const St
       "set xlabel 'x [mm]' offset 0,-0.5\nset ylabel 'y [mm]' offset 1,-0.5\nset zlabel 'z [mm]' offset -1,0\n"
       "set ztics ({:g}, {:g})\nset cblabel 'local stiffness [N/m]' offset 1,0\nset cbtics ({})\n"
       "set colorbox user origin screen 0.88, 0.2 size screen 0.022, 0.6\n"
-      "set title \"Local stiffness of {}: {:.3g} to {:.3g} N/m\" noenhanced\n"
+      "set title {} noenhanced\n"
       "set key at screen 0.04, 0.08 left bottom Left reverse\n"
       "splot $faces using 1:2:3:4 with pm3d notitle",
       kPalette, scale.colours.low, scale.colours.high, 1 + 0.5 * flatness, low.z / kMillimetre, high.z / kMillimetre,
-      marks(scale.colours), object, scale.all.low, scale.all.high);
+      marks(scale.colours),
+      gnuplot_text(fmt::format("Local stiffness of {}: {:.3g} to {:.3g} N/m", object, scale.all.low, scale.all.high)));
   if (!fixed.rows.empty())
     plot.script += ", \\\n  $fixed using 1:2:3 with points pointtype 7 pointsize 1.1 linecolor rgb '#D55E00' title 'fixed'";
   plot.script += '\n';
@@ -110,7 +111,9 @@ tl::expected<Drawn, Failure> write_stiffness_map(const Scene& scene, const std::
       **out << fmt::format("{},{},{},{},{},{}\n", object.name, v, at.x, at.y, at.z, map->stiffness[v]);
     }
     const std::string stem = place.stem().string();
-    plots.push_back(stiffness_plot(plots.empty() ? stem : stem + "-" + object.name, object.name, *map));
+    std::string name = plots.empty() ? stem : stem + "-" + object.name;
+    std::replace(name.begin(), name.end(), '/', '_');
+    plots.push_back(stiffness_plot(name, object.name, *map));
   }
   const std::string folder = place.has_parent_path() ? place.parent_path().string() : ".";
   if (file == "-") plots.clear();

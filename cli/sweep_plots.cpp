@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 
 #include "cli/plot.h"
@@ -21,16 +22,6 @@ double leading_number(const std::string& cell) {
 
 std::size_t index_of(const std::vector<std::string>& columns, const std::string& name) {
   return static_cast<std::size_t>(std::find(columns.begin(), columns.end(), name) - columns.begin());
-}
-
-/// Text as gnuplot takes it in double quotes.
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    if (static_cast<unsigned char>(c) >= ' ') out += c;
-  }
-  return out + '"';
 }
 
 /// One data block for each value of the series, in the order in which they first appear.
@@ -56,6 +47,21 @@ std::vector<Series> series_of(const SweepPlot& wanted, const SweepPlan& plan, co
   return out;
 }
 
+/// gnuplot refuses an axis without a value that it can show, and a logarithmic one with a single value: the range to set for it.
+std::string range_of(const char* axis, bool is_log, std::size_t column, const std::vector<Series>& series) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Series& one : series)
+    for (const auto& point : one.points) {
+      if (!std::isfinite(point[column]) || (is_log && point[column] <= 0)) continue;
+      low = std::min(low, point[column]);
+      high = std::max(high, point[column]);
+    }
+  if (low < high) return fmt::format("set {}range [*:*]\n", axis);
+  if (low > high) return fmt::format("set {}range [1:10]\n", axis);
+  const double room = low == 0 ? 1 : 0.1 * std::abs(low);
+  return fmt::format("set {}range [{:.6g}:{:.6g}]\n", axis, low - room, low + room);
+}
+
 Plot figure(const SweepPlot& wanted, const std::vector<Series>& series) {
   const std::size_t panels = wanted.y.size();
   Plot plot{.name = wanted.name, .script = {}, .data = {}};
@@ -64,17 +70,19 @@ Plot figure(const SweepPlot& wanted, const std::vector<Series>& series) {
   if (wanted.log_x) plot.script += "set logscale x\nset format x '10^{%L}'\n";
   if (wanted.log_y) plot.script += "set logscale y\nset format y '10^{%L}'\n";
   plot.script += fmt::format("set key outside {} title {} noenhanced\n", panels == 1 ? "right top" : "center top horizontal",
-                             quoted(wanted.series));
-  plot.script +=
-      panels == 1 ? fmt::format("set title {} noenhanced\n", quoted(wanted.title))
-                  : fmt::format("set lmargin 11\nset multiplot layout {},1 title {} noenhanced\n", panels, quoted(wanted.title));
+                             gnuplot_text(wanted.series));
+  plot.script += panels == 1 ? fmt::format("set title {} noenhanced\n", gnuplot_text(wanted.title))
+                             : fmt::format("set lmargin 11\nset multiplot layout {},1 title {} noenhanced\n", panels,
+                                           gnuplot_text(wanted.title));
+  plot.script += range_of("x", wanted.log_x, 0, series);
   for (std::size_t panel = 0; panel < panels; ++panel) {
+    plot.script += range_of("y", wanted.log_y, panel + 1, series);
     if (panel == 1) plot.script += "unset key\n";
-    if (panel + 1 == panels) plot.script += fmt::format("set xlabel {} noenhanced\n", quoted(wanted.x_label));
-    plot.script += fmt::format("set ylabel {} noenhanced\n", quoted(wanted.y_label[panel]));
+    if (panel + 1 == panels) plot.script += fmt::format("set xlabel {} noenhanced\n", gnuplot_text(wanted.x_label));
+    plot.script += fmt::format("set ylabel {} noenhanced\n", gnuplot_text(wanted.y_label[panel]));
     for (std::size_t i = 0; i < series.size(); ++i)
       plot.script += fmt::format("{}$series{} using 1:{} with linespoints linetype {} title {} noenhanced",
-                                 i == 0 ? "plot " : ", \\\n     ", i, panel + 2, i + 1, quoted(series[i].value));
+                                 i == 0 ? "plot " : ", \\\n     ", i, panel + 2, i + 1, gnuplot_text(series[i].value));
     plot.script += series.empty() ? "plot NaN notitle\n" : "\n";
   }
   if (panels > 1) plot.script += "unset multiplot\n";
