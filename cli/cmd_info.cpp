@@ -17,6 +17,7 @@
 #include "cli/rereadable_input.h"
 #include "cli/table.h"
 #include "cli/trace_ending.h"
+#include "codec/base/shown.h"
 #include "codec/trace/compare.h"
 #include "codec/trace/mcap_reader.h"
 #include "codec/trace/trace_file.h"
@@ -42,10 +43,16 @@ std::string text_of(const Json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
+/// Foreign names are cut, lists that this program made are not.
+std::string cell_of(const std::string& name, const Json& value) {
+  const bool is_list = name == "object:level" || name == "grid levels";
+  return is_list ? text_of(value) : shown(text_of(value));
+}
+
 /// Scalars of an object as "name value" lines.
 void print_scalars(const Json& object) {
   for (const auto& [name, value] : object.items()) {
-    if (value.is_primitive()) fmt::print("{:<30} {}\n", name, text_of(value));
+    if (value.is_primitive()) fmt::print("{:<30} {}\n", name, cell_of(name, value));
   }
 }
 
@@ -58,7 +65,7 @@ void print_list(const Json& list) {
   table.heading(cells);
   for (const Json& entry : list) {
     cells.clear();
-    for (const auto& item : entry.items()) cells.push_back(text_of(item.value()));
+    for (const auto& item : entry.items()) cells.push_back(cell_of(item.key(), item.value()));
     table.row(cells);
   }
   fmt::print("\n");

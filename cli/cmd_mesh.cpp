@@ -12,6 +12,7 @@
 #include "cli/json_parts.h"
 #include "cli/report.h"
 #include "cli/table.h"
+#include "codec/base/shown.h"
 #include "sim/mesh/tet_files.h"
 #include "sim/mesh/tet_quality.h"
 #ifdef TACTUS_HAS_SURFACE
@@ -118,7 +119,7 @@ Outcome fill_surface(const MeshOptions& options, MeshReport& report) {
 }
 #else
 Outcome fill_surface(const MeshOptions& options, MeshReport&) {
-  return refuse(options.input + ": this program was built without reading surfaces",
+  return refuse(shown_path(options.input) + ": this program was built without reading surfaces",
                 "Install libopenmesh-dev and build again, or give .node, .ele or .msh.");
 }
 #endif
@@ -241,10 +242,10 @@ void setup_mesh(Command& app, Action& action) {
       ->required()
       ->type_name("FILE");
   add_quantity(command, "--cell", options->cell, Dimension::length, "Edge of the slab's cells [10mm]")
-      ->check(above_zero(Dimension::length))
+      ->check(within(Dimension::length, "1um", "1000000m"))
       ->needs(slab);
   add_quantity(command, "--length-unit", options->length_unit, Dimension::length, "Metres per unit of the file's lengths [1m]")
-      ->check(above_zero(Dimension::length))
+      ->check(within(Dimension::length, "1um", "1000000m"))
       ->excludes(slab);
   add_quantity(command, "--edge", options->edge, Dimension::length, "Tetrahedra at most as large as a regular one with this edge")
       ->check(above_zero(Dimension::length))
@@ -257,7 +258,9 @@ void setup_mesh(Command& app, Action& action) {
       .add_flag("--split-surface", options->split_surface,
                 "Add points on the surface too, so that --edge and --quality hold there")
       ->excludes(slab);
-  add_quantity(command, "--time-limit", options->time_limit, Dimension::time, "Give up after this long [60s]")->excludes(slab);
+  add_quantity(command, "--time-limit", options->time_limit, Dimension::time, "Give up after this long [60s]")
+      ->check(above_zero(Dimension::time))
+      ->excludes(slab);
   add_output_options(command, options->common);
   command.footer(
       "Examples:\n"

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "cli/json_parts.h"
 #include "cli/options_codec.h"
 #include "cli/table.h"
 #include "cli/workers.h"
@@ -266,7 +267,7 @@ void print_json(const std::vector<Row>& rows, const ReproduceOptions& options, c
   }
   out["ordered_without_interpolation"] = is_ordered(rows, kFirstWithout);
   out["ordered_with_interpolation"] = is_ordered(rows, kFirstWith);
-  fmt::print("{}\n", out.dump(2));
+  fmt::print("{}\n", text_of_json(out));
 }
 
 Outcome run(const ReproduceOptions& options) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -14,12 +15,14 @@
 #include <thread>
 
 #include "cli/child_process.h"
+#include "cli/json_parts.h"
 #include "cli/options_codec.h"
 #include "cli/plot.h"
 #include "cli/sweep_plan.h"
 #include "cli/sweep_plots.h"
 #include "cli/sweep_results.h"
 #include "cli/table.h"
+#include "codec/base/shown.h"
 
 namespace tactus::cli {
 namespace {
@@ -28,6 +31,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr int kBoundsBroken = 3;  // exit status
+constexpr const char* kInsideSweep = "TACTUS_INSIDE_SWEEP";  // variable of the environment that a sweep's commands see
 
 struct SweepOptions {
   std::string plan, folder;
@@ -38,7 +42,8 @@ struct SweepOptions {
 
 std::string as_typed(const std::vector<std::string>& words) {
   std::string out = "tactus";
-  for (const std::string& word : words) out += word.find(' ') == std::string::npos ? " " + word : " '" + word + "'";
+  for (const std::string& word : words)
+    out += word.find(' ') == std::string::npos ? " " + shown_path(word) : " '" + shown_path(word) + "'";
   return out;
 }
 
@@ -75,24 +80,23 @@ std::vector<std::string> words_of(const SweepInput& input, const std::string& fi
 
 /// Inputs that are not there yet. Made aside and moved, so that a file with the right name is whole.
 Outcome make_inputs(const SweepPlan& plan, const std::string& folder, Visibility visibility) {
-  const fs::path aside = fs::path(folder) / "unfinished";
   std::error_code failed;
   Progress progress("inputs", plan.inputs.size(), visibility);
   for (std::size_t i = 0; i < plan.inputs.size(); ++i) {
     const SweepInput& input = plan.inputs[i];
     const fs::path file = fs::path(folder) / input.file;
     progress.update(i);
-    if (fs::exists(file)) continue;
-    fs::remove_all(aside, failed);
-    fs::create_directories(aside, failed);
-    if (auto made = run_command(words_of(input, (aside / input.file).string())); !made) return tl::unexpected(made.error());
-    fs::rename(aside / input.file, file, failed);
+    if (fs::exists(file, failed)) continue;
+    const auto aside = AsideFolder::create(folder, "unfinished");
+    if (!aside) return tl::unexpected(aside.error());
+    const fs::path made = fs::path(aside->path()) / input.file;
+    if (auto done = run_command(words_of(input, made.string())); !done) return tl::unexpected(done.error());
+    fs::rename(made, file, failed);
     if (failed) {
       return refuse(fmt::format("input {}: the command left no file: {}", input.name, failed.message()),
                     "Let the command write to {file}.");
     }
   }
-  fs::remove_all(aside, failed);
   return {};
 }
 
@@ -140,7 +144,7 @@ class Workers {
       const auto words = plan_.words(missing_[i], results_.folder());
       auto arguments = words;
       arguments.insert(arguments.end(), {"--json", "--quiet"});
-      auto measured = run_command(arguments).and_then([&](const std::string& text) { return measure(plan_, words, text); });
+      auto measured = computed(words, arguments);
       const std::lock_guard lock(mutex_);
       if (!measured) failures_.emplace(missing_[i], measured.error());
       else if (auto kept = results_.add(plan_.values(missing_[i]), *measured); !kept) {
@@ -148,6 +152,16 @@ class Workers {
         stop_ = true;
       }
       progress_.update(++done_);
+    }
+  }
+
+  /// No exception leaves a thread: it would end the program.
+  tl::expected<std::vector<std::string>, Failure> computed(const std::vector<std::string>& words,
+                                                           const std::vector<std::string>& arguments) const {
+    try {
+      return run_command(arguments).and_then([&](const std::string& text) { return measure(plan_, words, text); });
+    } catch (const std::exception& e) {
+      return refuse(as_typed(words) + "\n       " + e.what(), "");
     }
   }
 
@@ -175,14 +189,13 @@ struct Summary {
 
 void print_summary(const SweepOptions& options, const SweepPlan& plan, const Summary& s) {
   if (options.common.json) {
-    fmt::print("{}\n", nlohmann::ordered_json{{"schema", "tactus.sweep-summary/2"},
-                                              {"plan", plan.name},
-                                              {"points", s.points},
-                                              {"computed", s.computed},
-                                              {"failed", s.failed},
-                                              {"time_s", s.seconds},
-                                              {"files", s.files}}
-                           .dump(2));
+    fmt::print("{}\n", text_of_json(nlohmann::ordered_json{{"schema", "tactus.sweep-summary/2"},
+                                                           {"plan", plan.name},
+                                                           {"points", s.points},
+                                                           {"computed", s.computed},
+                                                           {"failed", s.failed},
+                                                           {"time_s", s.seconds},
+                                                           {"files", s.files}}));
     return;
   }
   if (options.common.quiet) return;
@@ -198,6 +211,8 @@ void print_summary(const SweepOptions& options, const SweepPlan& plan, const Sum
 }
 
 Outcome run(const SweepOptions& options) {
+  if (std::getenv(kInsideSweep) != nullptr)
+    return refuse("a sweep cannot run within a sweep", "Let the plan's commands be others than sweep.");
   const auto plan = load_plan(options.plan);
   if (!plan) return tl::unexpected(plan.error());
   const std::string folder = options.folder.empty() ? "out/" + plan->name : options.folder;
@@ -206,6 +221,7 @@ Outcome run(const SweepOptions& options) {
     return {};
   }
   const auto begin = std::chrono::steady_clock::now();
+  setenv(kInsideSweep, "1", 1);  // for the commands of the plan; no thread is running yet
   auto results = SweepResults::open(folder, *plan);
   if (!results) return tl::unexpected(results.error());
   if (auto made = make_inputs(*plan, folder, options.common.progress()); !made) return made;
@@ -253,6 +269,7 @@ void setup_sweep(Command& app, Action& action) {
   add_report_options(command, options->common);
   command.footer(
       "A sweep that was stopped goes on where it was: finished points are neither lost nor computed again.\n"
+      "A plan is a program: its commands write wherever they name a file. Look at those of others with --list first.\n"
       "Examples:\n"
       "  tactus sweep plans/deadband.toml\n"
       "  tactus sweep plans/deadband.toml -o results/deadband -j 1");

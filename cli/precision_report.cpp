@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "cli/json_parts.h"
 #include "cli/table.h"
 
 namespace tactus::cli {
@@ -211,7 +212,7 @@ std::string precision_json(const PrecisionReport& report) {
     out["time"].push_back(std::move(entry));
   }
   for (const SpaceStudy& space : report.spaces) out["space"].push_back(json_of(space));
-  return out.dump(2) + '\n';
+  return text_of_json(out) + '\n';
 }
 
 std::string precision_markdown(const PrecisionReport& report) {

@@ -14,7 +14,7 @@
 #include <sstream>
 
 #include "cli/cmd_bench.h"
-#include "cli/json_text.h"
+#include "cli/json_parts.h"
 
 namespace tactus::cli {
 namespace fs = std::filesystem;
@@ -156,7 +156,7 @@ tl::expected<PrecisionResults, Failure> PrecisionResults::open(std::string folde
                                                                OutputFile::Existing existing) {
   if (const auto made = make_folder(folder); !made) return tl::unexpected(made.error());
   PrecisionResults out(std::move(folder), std::move(context));
-  const std::string wanted = json_text(nlohmann::ordered_json(out.context_)) + "\n", file = out.path(kContextFile);
+  const std::string wanted = text_of_json(nlohmann::ordered_json(out.context_)) + "\n", file = out.path(kContextFile);
   if (existing == OutputFile::Existing::replace) {
     std::error_code absent;
     for (const char* name : {kTimeFile, kSpaceFile, kContextFile}) fs::remove(out.path(name), absent);

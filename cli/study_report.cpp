@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/cmd_bench.h"
+#include "cli/json_parts.h"
 #include "cli/table.h"
 
 namespace tactus::cli {
@@ -120,7 +121,7 @@ std::string to_json(std::span<const Study> studies, study::Extent extent) {
     }
     out["studies"].push_back(std::move(entry));
   }
-  return out.dump(2) + "\n";
+  return text_of_json(out) + "\n";
 }
 
 std::string to_markdown(std::span<const Study> studies, std::span<const Picture> pictures, study::Extent extent) {

@@ -11,14 +11,21 @@ namespace tactus::cli {
 namespace {
 
 constexpr std::size_t kMostPoints = 1000000;
+constexpr std::size_t kMostEntries = 256;  // of each list but the values of a parameter
+constexpr std::size_t kMostPlanBytes = std::size_t{1} << 20;
 
 bool is_simple(std::string_view name) {
   const auto plain = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-' || c == '.'; };
   return !name.empty() && name.front() != '.' && std::all_of(name.begin(), name.end(), plain);
 }
 
-/// RFC 6901: begins with '/', and '~' stands in ~0 and ~1 only.
+/// RFC 6901: begins with '/', and '~' stands in ~0 and ~1 only. Numbers of elements have at most nine digits.
 bool is_json_pointer(std::string_view text) {
+  constexpr std::size_t kMostDigits = 9;
+  for (std::size_t at = text.find('/'); at != std::string_view::npos; at = text.find('/', at + 1)) {
+    const std::string_view token = text.substr(at + 1, text.find('/', at + 1) - at - 1);
+    if (token.size() > kMostDigits && token.find_first_not_of("0123456789") == std::string_view::npos) return false;
+  }
   for (std::size_t at = text.find('~'); at != std::string_view::npos; at = text.find('~', at + 1))
     if (at + 1 == text.size() || (text[at + 1] != '0' && text[at + 1] != '1')) return false;
   return text.starts_with('/');
@@ -34,20 +41,28 @@ class PlanReader {
     plan.name = name(root, "", "name");
     plan.command = strings(root, "", "command");
     for (const toml::table* table : in_.tables(root, "", "input")) plan.inputs.push_back(input(*table));
+    check_size(root, "input", plan.inputs.size());
+    check_size(root, "command", plan.command.size());
     if (const toml::table* vary = required_table(root, "vary")) {
+      check_size(*vary, "vary", vary->size());
       for (const auto& [key, node] : *vary)
         plan.parameters.push_back({std::string(key.str()), strings(*vary, "vary", key.str())});
     }
     if (const toml::table* measure = required_table(root, "measure")) {
+      check_size(*measure, "measure", measure->size());
       for (const auto& [key, node] : *measure) plan.measures.push_back(measured(*measure, key.str()));
     }
-    for (const toml::table* table : in_.tables(root, "", "plot")) plan.plots.push_back(plot(*table, plan));
+    const auto plots = in_.tables(root, "", "plot");
+    check_size(root, "plot", plots.size());
+    if (in_.failed()) return plan;  // what follows compares everything with everything
+    for (const toml::table* table : plots) plan.plots.push_back(plot(*table, plan));
     check_uses(root, plan);
+    check_files(root, plan);
     return plan;
   }
 
-  void refuse_syntax(const toml::parse_error& error) {
-    in_.fail_at(error.source(), Errc::malformed, "R-SCN-2", "", std::string(error.description()));
+  void parse(std::string_view text, SweepPlan& plan) {
+    in_.parse(text, kMostPlanBytes, [&](const toml::table& root) { plan = read(root); });
   }
   bool failed() const { return in_.failed(); }
   std::string error() const { return to_string(in_.error()); }
@@ -55,6 +70,10 @@ class PlanReader {
  private:
   void invalid(const toml::node& node, const char* rule, std::string key, std::string remedy) {
     in_.fail_at(node.source(), Errc::invalid, rule, std::move(key), std::move(remedy));
+  }
+
+  void check_size(const toml::node& node, const char* key, std::size_t count) {
+    if (count > kMostEntries) invalid(node, "R-SCN-6", key, "give at most " + std::to_string(kMostEntries));
   }
 
   const toml::table* required_table(const toml::table& root, const char* key) {
@@ -107,6 +126,14 @@ class PlanReader {
       invalid(table, "R-SCN-7", TomlReader::join("plot", key), "name a parameter or a measure of this plan");
   }
 
+  /// A rule of `where` names a column, and of a parameter a value that it takes.
+  void check_rule(const toml::table& where, const std::pair<std::string, std::string>& rule, const SweepPlan& plan) {
+    check_column(where, "where", rule.first, plan);
+    for (const SweepParameter& p : plan.parameters)
+      if (p.name == rule.first && std::find(p.values.begin(), p.values.end(), rule.second) == p.values.end())
+        invalid(where, "R-SCN-7", "plot.where." + rule.first, "give one of the values of this parameter in [vary]");
+  }
+
   std::string column(const toml::table& table, const char* key, const SweepPlan& plan) {
     std::string value = in_.text(table, "plot", key);
     check_column(table, key, value, plan);
@@ -136,7 +163,10 @@ class PlanReader {
     plot.log_x = axes == 1 || axes == 3;
     plot.log_y = axes >= 2;
     if (const toml::table* where = in_.table(table, "plot", "where"))
-      for (const auto& [key, node] : *where) plot.where.emplace_back(key.str(), in_.text(*where, "plot.where", key.str()));
+      for (const auto& [key, node] : *where) {
+        plot.where.emplace_back(key.str(), in_.text(*where, "plot.where", key.str()));
+        check_rule(*where, plot.where.back(), plan);
+      }
     return plot;
   }
 
@@ -166,10 +196,19 @@ class PlanReader {
                 "use " + word + " in command, or leave the parameter out");
     }
     if (points > kMostPoints) invalid(root, "R-SCN-6", "vary", "stay below 1000000 combinations");
-    std::set<std::string> names;
+  }
+
+  /// Names in the sweep's folder: its own, those of inputs, and three of every figure.
+  void check_files(const toml::table& root, const SweepPlan& plan) {
+    std::set<std::string> files{"points.csv", "context.json"}, names;
     for (const SweepInput& input : plan.inputs)
-      if (!names.insert(input.name).second || !names.insert(input.file).second)
-        invalid(root, "R-SCN-7", "input", "give every input a name and a file of its own");
+      if (!names.insert(input.name).second || !files.insert(input.file).second)
+        invalid(root, "R-SCN-7", "input", "give every input a name and a file of its own, and not points.csv or context.json");
+    for (const SweepPlot& plot : plan.plots)
+      for (const char* kind : {".gp", ".svg", ".png"})
+        if (!files.insert(plot.name + kind).second)
+          invalid(root, "R-SCN-7", "plot.name",
+                  "give every figure a name of its own, which with .gp, .svg or .png is no input's file");
   }
 
   TomlReader in_;
@@ -209,20 +248,24 @@ std::vector<std::string> SweepPlan::values(std::size_t point) const {
 
 std::vector<std::string> SweepPlan::words(std::size_t point, const std::string& folder) const {
   const auto chosen = values(point);
+  auto stands = chosen;
+  for (std::string& value : stands)
+    for (const SweepInput& input : inputs)
+      if (input.name == value) {
+        value = folder + "/" + input.file;
+        break;
+      }
   std::vector<std::string> out;
   for (std::string word : command) {
     bool is_split = false;
     for (std::size_t i = 0; i < parameters.size(); ++i) {
-      std::string value = chosen[i];
       const std::string place = "{" + parameters[i].name + "}";
-      for (const SweepInput& input : inputs)
-        if (input.name == chosen[i]) value = folder + "/" + input.file;
-      is_split = word == place && value == chosen[i];
+      is_split = word == place && stands[i] == chosen[i];
       if (is_split) {
-        for (std::string& part : split(value)) out.push_back(std::move(part));
+        for (std::string& part : split(chosen[i])) out.push_back(std::move(part));
         break;
       }
-      word = replaced(std::move(word), place, value);
+      word = replaced(std::move(word), place, stands[i]);
     }
     if (!is_split) out.push_back(std::move(word));
   }
@@ -237,15 +280,11 @@ std::vector<std::string> SweepPlan::columns() const {
 }
 
 tl::expected<SweepPlan, Failure> load_plan(const std::string& path) {
-  const auto text = read_file(path);
+  const auto text = read_file(path, kMostPlanBytes);
   if (!text) return tl::unexpected(text.error());
   PlanReader reader(path);
   SweepPlan plan;
-  try {
-    plan = reader.read(toml::parse(*text, path));
-  } catch (const toml::parse_error& error) {
-    reader.refuse_syntax(error);
-  }
+  reader.parse(*text, plan);
   if (reader.failed()) return refuse(reader.error(), "");
   plan.text = *text;
   return plan;

@@ -2,6 +2,7 @@
 #include "cli/sweep_results.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -11,7 +12,8 @@
 #include <system_error>
 #include <thread>
 
-#include "cli/output.h"
+#include "cli/json_parts.h"
+#include "codec/base/shown.h"
 
 namespace tactus::cli {
 namespace {
@@ -50,20 +52,38 @@ std::optional<std::vector<std::string>> read_line(const std::string& text, std::
   return std::nullopt;
 }
 
+/// The table of a sweep, open for writing. No link is followed, so that no other file is written to.
+Descriptor open_table(const std::string& path, int how) {
+  return Descriptor(::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW | how, 0644));
+}
+
+tl::unexpected<Failure> refuse_write(const std::string& path, int why) {
+  auto refused = refuse_io(path, "cannot be written", why);
+  if (why == ELOOP) refused.value().remedy = "It is a link: remove it, or give another folder with -o.";
+  return refused;
+}
+
 /// Write or append, and wait until the disk has it.
 Outcome store(const std::string& path, const std::string& text, int how) {
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | how, 0644);
-  bool stored = file >= 0;
+  const Descriptor file = open_table(path, how);
+  bool stored = file.is_open();
   for (std::size_t at = 0; stored && at < text.size();) {
-    const ssize_t wrote = ::write(file, text.data() + at, text.size() - at);
+    const ssize_t wrote = ::write(file.number(), text.data() + at, text.size() - at);
     stored = wrote > 0;
     at += stored ? static_cast<std::size_t>(wrote) : 0;
   }
-  stored = stored && fsync(file) == 0;
-  const int why = errno;
-  if (file >= 0) ::close(file);
-  if (stored) return {};
-  return refuse_io(path, "cannot be written", why);
+  stored = stored && fsync(file.number()) == 0;
+  return stored ? Outcome() : refuse_write(path, errno);
+}
+
+/// The folder, held by this sweep alone until it ends.
+tl::expected<Descriptor, Failure> hold(const std::string& folder) {
+  Descriptor lock(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!lock.is_open())
+    return refuse(shown_path(folder) + ": cannot be opened: " + std::generic_category().message(errno),
+                  "Give another folder with -o.");
+  if (flock(lock.number(), LOCK_EX | LOCK_NB) == 0) return lock;
+  return refuse(shown_path(folder) + ": another sweep is writing here", "Wait for its end, or give another folder with -o.");
 }
 
 /// What must not change between two runs into one folder.
@@ -90,14 +110,17 @@ Json context(const SweepPlan& plan) {
 tl::expected<SweepResults, Failure> SweepResults::open(const std::string& folder, const SweepPlan& plan) {
   std::error_code failed;
   fs::create_directories(folder, failed);
-  if (failed) return refuse(folder + ": cannot make this folder: " + failed.message(), "Give another one with -o.");
-  SweepResults results(folder);
-  if (fs::exists(folder + "/context.json")) {
+  if (failed) return refuse(shown_path(folder) + ": cannot make this folder: " + failed.message(), "Give another one with -o.");
+  auto lock = hold(folder);
+  if (!lock) return tl::unexpected(lock.error());
+  SweepResults results(folder, std::move(*lock));
+  if (fs::exists(folder + "/context.json", failed)) {
     if (auto same = results.check_context(plan); !same) return tl::unexpected(same.error());
-  } else if (fs::exists(results.table_path())) {
-    return refuse(results.table_path() + ": there without the context.json that says what it is", "Give another folder with -o.");
+  } else if (fs::exists(results.table_path(), failed)) {
+    return refuse(shown_path(results.table_path()) + ": there without the context.json that says what it is",
+                  "Give another folder with -o.");
   }
-  if (auto kept = store(folder + "/context.json", context(plan).dump(2) + "\n", O_TRUNC); !kept)
+  if (auto kept = write_file(folder + "/context.json", text_of_json(context(plan)) + "\n", OutputFile::Existing::replace); !kept)
     return tl::unexpected(kept.error());
   if (auto done = results.read(plan); !done) return tl::unexpected(done.error());
   return results;
@@ -109,7 +132,7 @@ Outcome SweepResults::check_context(const SweepPlan& plan) const {
   if (!text) return tl::unexpected(text.error());
   const Json before = Json::parse(*text, nullptr, false);
   if (before.is_discarded() || !before.is_object() || before.value("sweep", Json()) != identity(plan)) {
-    return refuse(path + ": this folder holds a sweep with another command, other inputs, parameters or measures",
+    return refuse(shown_path(path) + ": this folder holds a sweep with another command, other inputs, parameters or measures",
                   "Give another folder with -o, or remove this one.");
   }
   return {};
@@ -117,27 +140,28 @@ Outcome SweepResults::check_context(const SweepPlan& plan) const {
 
 Outcome SweepResults::read(const SweepPlan& plan) {
   const std::string heading = line_of(plan.columns());
-  if (!fs::exists(table_path())) return store(table_path(), heading, O_TRUNC);
+  std::error_code failed;
+  if (!fs::exists(table_path(), failed)) return store(table_path(), heading, O_TRUNC);
   const auto text = read_file(table_path());
   if (!text) return tl::unexpected(text.error());
   std::size_t at = 0;
   const auto first = read_line(*text, at);
   if (!first) return store(table_path(), heading, O_TRUNC);
   if (*first != plan.columns())
-    return refuse(table_path() + ": its columns are not those of the plan", "Give another folder with -o.");
+    return refuse(shown_path(table_path()) + ": its columns are not those of the plan", "Give another folder with -o.");
   const auto parameters = static_cast<std::ptrdiff_t>(plan.parameters.size());
   for (std::size_t line = 2;; ++line) {
     const auto cells = read_line(*text, at);
     if (!cells) break;
     if (cells->size() != first->size())
-      return refuse(table_path() + ", line " + std::to_string(line) + ": not as many cells as the heading has",
+      return refuse(shown_path(table_path()) + ", line " + std::to_string(line) + ": not as many cells as the heading has",
                     "Remove this line.");
     rows_[{cells->begin(), cells->begin() + parameters}] = {cells->begin() + parameters, cells->end()};
   }
   if (at == text->size()) return {};
-  std::error_code failed;
-  fs::resize_file(table_path(), at, failed);  // a row that was cut off
-  return failed ? Outcome(refuse(table_path() + ": " + failed.message(), "Check your rights.")) : Outcome();
+  const Descriptor table = open_table(table_path(), 0);
+  const bool cut = table.is_open() && ftruncate(table.number(), static_cast<off_t>(at)) == 0;  // a row that was cut off
+  return cut ? Outcome() : refuse_write(table_path(), errno);
 }
 
 Outcome SweepResults::add(const std::vector<std::string>& values, const std::vector<std::string>& measures) {
@@ -165,11 +189,7 @@ Outcome SweepResults::sort(const SweepPlan& plan) const {
   const auto wanted = rows(plan);
   if (wanted.size() != rows_.size()) return {};  // rows of values that the plan no longer names stay where they are
   for (const Row& row : wanted) text += line_of(row);
-  const std::string fresh = table_path() + ".part";
-  if (auto stored = store(fresh, text, O_TRUNC); !stored) return stored;
-  std::error_code failed;
-  fs::rename(fresh, table_path(), failed);
-  return failed ? Outcome(refuse(table_path() + ": " + failed.message(), "Check your rights.")) : Outcome();
+  return write_file(table_path(), text, OutputFile::Existing::replace);
 }
 
 }  // namespace tactus::cli

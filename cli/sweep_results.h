@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/messages.h"
+#include "cli/output.h"
 #include "cli/sweep_plan.h"
 
 namespace tactus::cli {
@@ -17,7 +17,7 @@ class SweepResults {
   using Row = std::vector<std::string>;  ///< parameters, then measures
 
   /// Make the folder, or take up one that an earlier run of the same plan left; a row that was cut off is dropped. The plan may have
-  /// got more values and other plots, not another command, inputs or measures.
+  /// got more values and other plots, not another command, inputs or measures. One sweep at a time holds a folder.
   static tl::expected<SweepResults, Failure> open(const std::string& folder, const SweepPlan& plan);
 
   bool has(const std::vector<std::string>& values) const { return rows_.contains(values); }
@@ -31,12 +31,13 @@ class SweepResults {
   const std::string& folder() const { return folder_; }
 
  private:
-  explicit SweepResults(std::string folder) : folder_(std::move(folder)) {}
+  SweepResults(std::string folder, Descriptor lock) : folder_(std::move(folder)), lock_(std::move(lock)) {}
   Outcome read(const SweepPlan& plan);
   Outcome check_context(const SweepPlan& plan) const;
   std::string table_path() const { return folder_ + "/points.csv"; }
 
   std::string folder_;
+  Descriptor lock_;
   std::map<std::vector<std::string>, std::vector<std::string>> rows_;  // parameters -> measures
 };
 

@@ -4,9 +4,9 @@
 #include <bit>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <set>
 
+#include "codec/base/shown.h"
 #include "codec/rigid/rigid.h"
 #include "sim/scene/deformable_reader.h"
 #include "sim/scene/object_surface.h"
@@ -15,6 +15,7 @@
 namespace tactus {
 namespace {
 
+constexpr std::size_t kMostSceneBytes = std::size_t{4} << 20;
 constexpr double kFarthest = 100;                                                  // [m] well inside the codec's default grid
 constexpr double kLongest = 24 * 3600.0;                                           // [s]
 constexpr std::array<std::string_view, 6> kAxes{"x", "y", "z", "rx", "ry", "rz"};  // order of the bits in Dof
@@ -219,29 +220,29 @@ void read_scene(TomlReader& in, const toml::table& root, const std::filesystem::
 }  // namespace
 
 std::string to_string(const SceneError& error) {
-  std::string out = error.file;
+  constexpr std::size_t kMostOfRemedy = 400;  // it may repeat what stands in the file
+  std::string out = shown_path(error.file);
   if (error.line > 0) out += ":" + std::to_string(error.line);
-  if (!error.key.empty()) out += ": " + error.key;
-  return out + ": " + error.error.rule + ": " + error.remedy;
+  if (!error.key.empty()) out += ": " + shown(error.key);
+  return out + ": " + error.error.rule + ": " + shown(error.remedy, kMostOfRemedy);
 }
 
 tl::expected<Scene, SceneError> parse_scene(std::string_view text, std::string_view file) {
   TomlReader in(file);
   Scene scene;
   scene.text = text;
-  try {
-    read_scene(in, toml::parse(text, file), std::filesystem::path(file).parent_path(), scene);
-  } catch (const toml::parse_error& error) {
-    in.fail_at(error.source(), Errc::malformed, "R-SCN-2", "", std::string(error.description()));
-  }
+  in.parse(text, kMostSceneBytes,
+           [&](const toml::table& root) { read_scene(in, root, std::filesystem::path(file).parent_path(), scene); });
   if (in.failed()) return tl::unexpected(in.error());
   return scene;
 }
 
 tl::expected<Scene, SceneError> load_scene(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (!file.good() && !file.eof())
+  std::string text(kMostSceneBytes + 1, '\0');  // one more: that it is too long is for parse_scene() to say
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (file.bad() || !(file.good() || file.eof()))
     return tl::unexpected(SceneError{Error{Errc::io, "R-SCN-1", 0}, path, 0, "", "name a file that can be read"});
   return parse_scene(text, path);
 }

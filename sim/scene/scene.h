@@ -133,7 +133,7 @@ struct Scene {
 /// Where a scene file broke which rule, and what would mend it.
 ///   R-SCN-1 the file cannot be read    R-SCN-2 not TOML                  R-SCN-3 unknown key       R-SCN-4 key missing
 ///   R-SCN-5 wrong type                 R-SCN-6 value out of range        R-SCN-7 unknown or repeated name
-///   R-SCN-8 a file that the scene names cannot be used
+///   R-SCN-8 a file that the scene names cannot be used               R-SCN-9 over 4 MiB, or nested over 32 deep
 struct SceneError {
   Error error;
   std::string file;
@@ -143,7 +143,7 @@ struct SceneError {
 };
 std::string to_string(const SceneError& error);
 
-/// err  R-SCN-1..8; `file` names the place in errors; other files are looked for beside it.
+/// err  R-SCN-1..9; `file` names the place in errors; other files are looked for beside it.
 tl::expected<Scene, SceneError> parse_scene(std::string_view text, std::string_view file);
 tl::expected<Scene, SceneError> load_scene(const std::string& path);
 

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "sim/scene/scene.h"
+#include "sim/scene/toml_text.h"
 
 namespace tactus {
 
@@ -32,6 +33,22 @@ class TomlReader {
 
   void fail_at(const toml::source_region& where, Errc code, const char* rule, std::string key, std::string remedy) {
     if (!error_) error_ = SceneError{Error{code, rule, 0}, file_, where.begin.line, std::move(key), std::move(remedy)};
+  }
+
+  /// Parse `text` and hand its root to `read`.   err  R-SCN-2, R-SCN-9
+  template <class Read>
+  void parse(std::string_view text, std::size_t most_bytes, Read read) {
+    const auto exceeds = [&](std::uint32_t line, std::string remedy) {
+      error_ = SceneError{Error{Errc::limit_exceeded, "R-SCN-9", 0}, file_, line, "", std::move(remedy)};
+    };
+    if (text.size() > most_bytes) return exceeds(0, "give a file of at most " + std::to_string(most_bytes >> 20) + " MiB");
+    if (const auto line = too_nested_line(text))
+      return exceeds(*line, "nest tables, arrays and dotted keys at most " + std::to_string(kMostTomlNesting) + " deep");
+    try {
+      read(toml::parse(text, file_));
+    } catch (const toml::parse_error& error) {
+      fail_at(error.source(), Errc::malformed, "R-SCN-2", "", std::string(error.description()));
+    }
   }
 
   /// Keys outside `known` are errors: a misspelt key must not turn into a default.
