@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <new>
+#include <string_view>
 
 #include "cli/cmd_compare.h"
 #include "cli/cmd_decode.h"
@@ -12,6 +15,7 @@
 #include "cli/json_parts.h"
 #include "cli/output.h"
 #include "cli/progress.h"
+#include "codec/base/shown.h"
 #ifdef TACTUS_HAS_STUDY
 #include "cli/cmd_bench.h"
 #endif
@@ -43,6 +47,19 @@ int status_of(const tactus::cli::Failure& failure) {
   return kFailed;
 }
 
+/// Every line of a message without power over a terminal. Whoever made it has done so for each foreign text; this is the last net.
+std::string printable(std::string_view message) {
+  constexpr std::size_t kLongestLine = 2000;
+  std::string out;
+  while (true) {
+    const std::size_t end = std::min(message.find('\n'), message.size());
+    out += tactus::shown(message.substr(0, end), kLongestLine);
+    if (end == message.size()) return out;
+    out += '\n';
+    message.remove_prefix(end + 1);
+  }
+}
+
 int report_failure(const tactus::cli::Failure& failure, bool as_json) {
   using tactus::cli::Failure;
   const bool coloured = tactus::cli::is_coloured(2);
@@ -56,9 +73,21 @@ int report_failure(const tactus::cli::Failure& failure, bool as_json) {
                                                                  : "error:";
   std::fflush(stdout);  // what was printed comes first where both streams end in one place
   const bool marked = coloured && *label != '\0';
-  fmt::print(stderr, "{}{}{}{}{}\n", marked ? "\x1b[1;31m" : "", label, marked ? "\x1b[0m" : "", *label ? " " : "", failure.text);
-  if (!failure.remedy.empty()) fmt::print(stderr, "       {}\n", failure.remedy);
+  fmt::print(stderr, "{}{}{}{}{}\n", marked ? "\x1b[1;31m" : "", label, marked ? "\x1b[0m" : "", *label ? " " : "", printable(failure.text));
+  if (!failure.remedy.empty()) fmt::print(stderr, "       {}\n", printable(failure.remedy));
   return status_of(failure);
+}
+
+/// Exceptions are for what nobody foresaw: what an input can cause is an error of its own where it is found.
+tactus::cli::Outcome run(const tactus::cli::Action& action) {
+  try {
+    return action();
+  } catch (const std::bad_alloc&) {
+    return tactus::cli::refuse("there is not enough memory for this", "Give smaller inputs, or run it on a larger machine.");
+  } catch (const std::exception& e) {
+    return tactus::cli::refuse(std::string("the program has a defect: ") + e.what(),
+                               "Report it with the command and its inputs.");
+  }
 }
 
 }  // namespace
@@ -102,7 +131,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "{}", app.help_of_typed());
     return kUsage;
   }
-  Outcome outcome = action();
+  Outcome outcome = run(action);
   if (outcome) outcome = check_standard_output();
   return outcome ? kOk : report_failure(outcome.error(), app.wants_json());
 }
