@@ -3,9 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <span>
+
 #include "cli/report.h"
 #include "cli/trace_ending.h"
+#include "codec/base/shown.h"
 #include "codec/mesh/mesh.h"
+#include "codec/stream/file.h"
 #include "codec/trace/trace_file.h"
 
 namespace tactus::cli {
@@ -55,6 +59,22 @@ class TickSource {
   std::uint64_t frames_ = 0;
   std::int64_t tick_ = 0;
 };
+
+/// Without a word about ticks they go on to the last packet's. A few bytes can name a tick that is hours away: ten minutes are free, and
+/// beyond that every byte earns half a second. A stream at rest takes ten bytes a second.
+Outcome check_length(std::span<const std::uint8_t> file, const DecodeOptions& options) {
+  constexpr std::uint64_t kFreeTicks = 600000, kTicksByByte = 512;
+  if (options.ticks || !options.like.empty()) return {};
+  auto reader = StreamFileReader::open(file);
+  if (!reader) return refuse(options.input, reader.error());
+  std::uint64_t last = 0;
+  while (const auto packet = reader->next().value_or(std::nullopt)) last = static_cast<std::uint64_t>(packet->tick);
+  const std::uint64_t most = kFreeTicks + kTicksByByte * file.size();
+  if (last < most) return {};
+  return refuse(fmt::format("{}: its last packet is at tick {}, far beyond what {} bytes of stream can fill",
+                            shown_path(options.input), last, file.size()),
+                "If that is right, say how many ticks to write: --ticks N.");
+}
 
 TraceInfo replica_info(const StreamHeader& header, const std::string& input) {
   TraceInfo info;
@@ -143,8 +163,10 @@ Outcome run(const DecodeOptions& options) {
   if (auto fits = check_no_terminal(options.output); !fits) return fits;
   const auto bytes = read_file(options.input);
   if (!bytes) return tl::unexpected(bytes.error());
-  auto player = StreamPlayer::open({reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()}, options.replica);
+  const std::span file(reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size());
+  auto player = StreamPlayer::open(file, options.replica);
   if (!player) return refuse(options.input, player.error());
+  if (auto checked = check_length(file, options); !checked) return checked;
   auto output = OutputFile::create(options.output, options.common.existing(), {options.input, options.like});
   if (!output) return tl::unexpected(output.error());
   const TraceInfo info = replica_info(player->header(), options.input);

@@ -26,9 +26,6 @@ class Compressor {
   std::unique_ptr<Context> context_;
 };
 
-/// Most that `compressed` bytes of zstd can expand to: a block takes at least 4 bytes and yields at most 128 KiB (RFC 8878).
-constexpr std::uint64_t max_zstd_content(std::uint64_t compressed) noexcept { return (compressed / 4 + 1) * (128u << 10); }
-
 /// Decompress whole frames that hold exactly `output.size()` bytes; false when they do not.
 bool decompress_exactly(std::span<const std::uint8_t> input, std::span<std::uint8_t> output) noexcept;
 

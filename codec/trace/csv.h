@@ -12,6 +12,7 @@
 /// R-CSV-7  invalid_argument  the rate is unknown: no tick_rate in the mapping and no column of time with two rows
 /// R-CSV-8  invalid_argument  the mapping names some columns of a vector but not all, or nothing to record, or angular velocities in the
 ///                            body frame without rotations
+/// R-CSV-9  limit_exceeded    the zstd data unpacks to more than its size has earned (input_budget.h)
 #pragma once
 
 #include <array>

@@ -2,6 +2,8 @@
 #include "codec/trace/csv_plan.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <map>
 #include <span>
 #include <string_view>
 
@@ -22,10 +24,14 @@ std::vector<std::string> all_columns(const std::string& path, const std::array<C
   return names;
 }
 
-/// Notes the first mistake and lets the caller go on, so that a plan reads as a list of what it wants.
+/// Notes the first mistake and lets the caller go on, so that a plan reads as a list of what it wants; lists of foreign length stop.
 class Planner {
  public:
-  Planner(const CsvMapping& mapping, const std::vector<std::string>& names) : mapping_(mapping) { plan_.names = names; }
+  Planner(const CsvMapping& mapping, const std::vector<std::string>& names) : mapping_(mapping) {
+    plan_.names = names;
+    for (std::size_t i = 0; i < plan_.names.size(); ++i)
+      if (const auto [there, is_new] = columns_.emplace(plan_.names[i], i); !is_new) there->second = kTwice;
+  }
 
   tl::expected<CsvPlan, CsvError> run() {
     mapping_.layout == CsvLayout::tactus ? plan_tactus() : plan_named();
@@ -44,17 +50,19 @@ class Planner {
   void bind_user(std::span<const std::string> columns, std::size_t first, double scale);
 
   std::size_t column(const std::string& name) {
-    const auto found = std::find(plan_.names.begin(), plan_.names.end(), name);
-    if (found == plan_.names.end() || std::find(found + 1, plan_.names.end(), name) != plan_.names.end())
-      note(Errc::malformed, "R-CSV-2", name);
-    return static_cast<std::size_t>(found - plan_.names.begin());
+    const auto found = columns_.find(name);
+    if (found != columns_.end() && found->second != kTwice) return found->second;
+    note(Errc::malformed, "R-CSV-2", name);
+    return 0;
   }
   void note(Errc code, const char* rule, const std::string& name) {
     if (!mistake_) mistake_ = CsvError{Error{code, rule}, 1, name, ""};
   }
 
   const CsvMapping& mapping_;
+  static constexpr std::size_t kTwice = SIZE_MAX;
   CsvPlan plan_;
+  std::map<std::string_view, std::size_t> columns_;  // by name
   std::optional<CsvError> mistake_;
 };
 
@@ -110,6 +118,7 @@ void Planner::plan_tactus() {
   plan_.tick = column("tick");
   plan_.time = column("time_s");
   for (const std::string& name : plan_.names) {
+    if (mistake_) return;
     const std::size_t slash = name.rfind('/');
     if (slash == std::string::npos) continue;
     const std::string path = name.substr(0, slash + 1);

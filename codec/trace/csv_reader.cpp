@@ -40,9 +40,7 @@ Result<CsvReader> CsvReader::open(const std::string& path) {
 }
 
 Result<void> CsvReader::start() {
-  raw_.resize(kPiece);
-  TACTUS_TRY(const std::size_t count, source_.read(raw_));
-  raw_.resize(count);
+  TACTUS_CHECK(read_raw());
   if (raw_.size() >= kZstdMagic.size() && std::equal(kZstdMagic.begin(), kZstdMagic.end(), raw_.begin())) {
     zstd_.emplace();
     TACTUS_CHECK(refill());
@@ -50,6 +48,14 @@ Result<void> CsvReader::start() {
     text_.assign(raw_.begin(), raw_.end());
   }
   if (text_.starts_with(kByteOrderMark)) line_start_ = scanned_ = kByteOrderMark.size();
+  return {};
+}
+
+Result<void> CsvReader::read_raw() {
+  raw_.resize(kPiece);
+  TACTUS_TRY(const std::size_t count, source_.read(raw_));
+  raw_.resize(count);
+  budget_.earn(count);
   return {};
 }
 
@@ -70,11 +76,10 @@ Result<void> CsvReader::refill() {
     TACTUS_TRY(const auto progress, zstd_->decompress(raw_, room));
     raw_.erase(raw_.begin(), raw_.begin() + static_cast<std::ptrdiff_t>(progress.consumed));
     produced = progress.produced;
+    if (!budget_.spend(produced)) return fail(Errc::limit_exceeded, "R-CSV-9");
     if (produced > 0 || !raw_.empty()) continue;
-    raw_.resize(kPiece);
-    TACTUS_TRY(const std::size_t count, source_.read(raw_));
-    raw_.resize(count);
-    ended_ = count == 0;
+    TACTUS_CHECK(read_raw());
+    ended_ = raw_.empty();
     if (ended_ && !zstd_->at_frame_end()) return fail(Errc::truncated, "R-CSV-1");
   }
   text_.resize(start + produced);

@@ -11,12 +11,13 @@
 #include "codec/base/result.h"
 #include "codec/trace/byte_source.h"
 #include "codec/trace/compression.h"
+#include "codec/trace/input_budget.h"
 
 namespace tactus {
 
 class CsvReader {
  public:
-  /// err  io R-TRC-1; truncated, malformed R-CSV-1: damaged zstd data; limit_exceeded R-CSV-6: a line over 1 MiB
+  /// err  io R-TRC-1; truncated, malformed R-CSV-1: damaged zstd data; limit_exceeded R-CSV-6: a line over 1 MiB, R-CSV-9
   static Result<CsvReader> open(const std::string& path);
   /// Move on to the next line that is not blank; false at the end.
   Result<bool> next();
@@ -26,12 +27,14 @@ class CsvReader {
  private:
   explicit CsvReader(ByteSource source) : source_(std::move(source)) {}
   Result<void> start();
+  Result<void> read_raw();
   Result<void> refill();
   Result<std::optional<std::string_view>> next_line();
   void split(std::string_view line);
 
   ByteSource source_;
   std::optional<StreamDecompressor> zstd_;
+  InputBudget budget_;
   std::vector<std::uint8_t> raw_;  // read but not yet decompressed
   std::string text_;
   std::size_t line_start_ = 0, scanned_ = 0;  // in text_

@@ -109,6 +109,7 @@ Result<bool> Reader::read_exactly(std::vector<std::uint8_t>& out, std::uint64_t 
     TACTUS_TRY(const std::size_t got, source_.read(piece));
     crc_ = crc32(piece.first(got), crc_);
     position_ += got;
+    budget_.earn(got);
     if (got < piece.size()) {
       out.resize(start + got);
       return false;
@@ -213,9 +214,9 @@ Result<void> Reader::open_chunk(ByteReader content) {
   if (!content.ok()) return refuse(Errc::malformed, "R-TRC-4");
   if (compression != "zstd" && !compression.empty()) return refuse(Errc::unsupported, "R-TRC-7");
   const bool zstd = !compression.empty();
-  if (size > limits_.chunk_bytes || (zstd && size > max_zstd_content(records.size())))
-    return refuse(Errc::limit_exceeded, "R-TRC-5");
+  if (size > limits_.chunk_bytes) return refuse(Errc::limit_exceeded, "R-TRC-5");
   if (!zstd && size != records.size()) return refuse(Errc::malformed, "R-TRC-8");
+  if (zstd) TACTUS_CHECK(spend(size));
   chunk_position_ = 0;
   chunk_.resize(static_cast<std::size_t>(size));
   if (zstd && !decompress_exactly(records, chunk_)) return refuse(Errc::malformed, "R-TRC-8");

@@ -9,6 +9,7 @@
 #include "codec/base/bytes.h"
 #include "codec/base/result.h"
 #include "codec/trace/byte_source.h"
+#include "codec/trace/input_budget.h"
 #include "codec/trace/mcap.h"
 
 namespace tactus::mcap {
@@ -25,7 +26,7 @@ enum class Item : std::uint8_t { end, message, attachment, metadata };
 
 /// Reads any MCAP file front to back and trusts nothing in it. Holds one record and one chunk at a time; a length in the file
 /// makes it allocate only what the bytes behind it have earned. Checks every CRC that is present. Unknown records are skipped.
-/// err (all)  R-TRC-1 .. R-TRC-11 as listed in trace_file.h; the offset is that of the record at top level.
+/// err (all)  R-TRC-1 .. R-TRC-11, R-TRC-18 as listed in trace_file.h; the offset is that of the record at top level.
 class Reader {
  public:
   static Result<Reader> open(ByteSource source, const ReadLimits& limits = {});
@@ -42,6 +43,11 @@ class Reader {
   /// Everything declared so far.
   const std::map<std::uint16_t, Schema>& schemas() const noexcept { return schemas_; }
   const std::map<std::uint16_t, Channel>& channels() const noexcept { return channels_; }
+
+  /// Account for so many bytes that are handed out without having been read.   err  R-TRC-18
+  Result<void> spend(std::uint64_t bytes) noexcept {
+    return budget_.spend(bytes) ? Result<void>() : refuse(Errc::limit_exceeded, "R-TRC-18");
+  }
 
   /// The input ended before the footer; known once next() has returned Item::end.
   bool cut_short() const noexcept { return cut_short_; }
@@ -71,6 +77,7 @@ class Reader {
 
   ByteSource source_;
   ReadLimits limits_;
+  InputBudget budget_;
   Section section_ = Section::data;
   bool cut_short_ = false;
   std::uint64_t position_ = 0, record_start_ = 0, summary_start_ = 0;

@@ -163,19 +163,25 @@ void Writer::add(const Message& message) {
   out.bytes(message.data);
 }
 
+Result<Writer::StoredChunk> Writer::stored_chunk() {
+  if (!budget_.spend(chunk_.size())) return StoredChunk{"", chunk_};
+  TACTUS_TRY(const auto compressed, compressor_.compress(chunk_));
+  return StoredChunk{"zstd", compressed};
+}
+
 Result<void> Writer::end_chunk() {
   if (chunk_.empty()) return {};
-  TACTUS_TRY(const auto compressed, compressor_.compress(chunk_));
+  TACTUS_TRY(const StoredChunk stored, stored_chunk());
   Bytes content;
-  content.reserve(compressed.size() + 64);
+  content.reserve(stored.records.size() + 64);
   ByteWriter out(content);
   out.u64(chunk_start_time_);
   out.u64(chunk_end_time_);
   out.u64(chunk_.size());
   out.u32(crc32(chunk_));
-  put_text(out, "zstd");
-  out.u64(compressed.size());
-  out.bytes(compressed);
+  put_text(out, stored.compression);
+  out.u64(stored.records.size());
+  out.bytes(stored.records);
   const std::uint64_t chunk_start = position_;
   TACTUS_CHECK(write_record(Opcode::chunk, content));
   const std::uint64_t chunk_end = position_;
@@ -193,13 +199,13 @@ Result<void> Writer::end_chunk() {
     }
     TACTUS_CHECK(write_record(Opcode::message_index, content));
   }
-  append_chunk_index(chunk_start, chunk_end - chunk_start, compressed.size(), index_offsets, position_ - chunk_end);
+  append_chunk_index(chunk_start, chunk_end - chunk_start, stored, index_offsets, position_ - chunk_end);
   reset_chunk();
   if (std::fflush(file_.get()) != 0) return fail(Errc::io, "R-TRC-1", 8 * position_);
   return {};
 }
 
-void Writer::append_chunk_index(std::uint64_t chunk_start, std::uint64_t chunk_length, std::uint64_t compressed_size,
+void Writer::append_chunk_index(std::uint64_t chunk_start, std::uint64_t chunk_length, const StoredChunk& stored,
                                 const std::map<std::uint16_t, std::uint64_t>& index_offsets, std::uint64_t index_length) {
   Bytes content;
   ByteWriter out(content);
@@ -209,8 +215,8 @@ void Writer::append_chunk_index(std::uint64_t chunk_start, std::uint64_t chunk_l
   out.u64(chunk_length);
   put_map(out, index_offsets);
   out.u64(index_length);
-  put_text(out, "zstd");
-  out.u64(compressed_size);
+  put_text(out, stored.compression);
+  out.u64(stored.records.size());
   out.u64(chunk_.size());
   ByteWriter indexes(chunk_indexes_);
   put_record(indexes, Opcode::chunk_index, content);
@@ -302,6 +308,7 @@ Result<void> Writer::write_record(Opcode opcode, std::span<const std::uint8_t> c
 Result<void> Writer::write_bytes(std::span<const std::uint8_t> bytes) {
   if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) return fail(Errc::io, "R-TRC-1", 8 * position_);
   position_ += bytes.size();
+  budget_.earn(bytes.size());
   crc_ = crc32(bytes, crc_);
   return {};
 }

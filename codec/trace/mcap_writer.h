@@ -11,12 +11,14 @@
 
 #include "codec/base/result.h"
 #include "codec/trace/compression.h"
+#include "codec/trace/input_budget.h"
 #include "codec/trace/mcap.h"
 
 namespace tactus::mcap {
 
 /// Writes an MCAP file front to back: messages in zstd chunks with message indexes, then a summary with all indexes and
-/// statistics, and every check value that the format offers. Equal calls give equal bytes.
+/// statistics, and every check value that the format offers. Equal calls give equal bytes. A chunk that would unpack to more than a
+/// reader's budget has left is stored as it is, so that no file of ours is refused.
 /// err (all)  io R-TRC-1: the operating system refused; the file is then unusable from that place on.
 class Writer {
  public:
@@ -55,7 +57,12 @@ class Writer {
   Result<void> write_record(Opcode opcode, std::span<const std::uint8_t> content);
   Result<void> write_bytes(std::span<const std::uint8_t> bytes);
   void reset_chunk() noexcept;
-  void append_chunk_index(std::uint64_t chunk_start, std::uint64_t chunk_length, std::uint64_t compressed_size,
+  struct StoredChunk {
+    std::string_view compression;
+    std::span<const std::uint8_t> records;
+  };
+  Result<StoredChunk> stored_chunk();
+  void append_chunk_index(std::uint64_t chunk_start, std::uint64_t chunk_length, const StoredChunk& stored,
                           const std::map<std::uint16_t, std::uint64_t>& index_offsets, std::uint64_t index_length);
   std::vector<std::uint8_t> statistics() const;
   SummaryGroups summary_groups() const;
@@ -64,6 +71,7 @@ class Writer {
   std::uint64_t position_ = 0;
   std::uint32_t crc_ = 0;  // of everything written so far
   Compressor compressor_;
+  InputBudget budget_;               // of whoever reads the file
   std::vector<std::uint8_t> chunk_;  // records of the open chunk
   std::uint64_t chunk_start_time_ = 0, chunk_end_time_ = 0;
   std::vector<Schema> schemas_;

@@ -70,6 +70,7 @@ class RosAssembler final : public FrameAssembler {
   std::map<std::uint16_t, std::size_t> objects_;  // channel of poses or twists -> object
   std::uint64_t start_ = 0;                       // [ns] log time of tick 0
   std::vector<Track> tracks_;
+  std::size_t known_ = 0;  // tracks that have had a pose
   TraceFrame current_;
   bool pending_ = false;  // current_ holds a tick that was not delivered
 };
@@ -169,10 +170,13 @@ Result<bool> RosAssembler::next(mcap::Reader& mcap, TraceFrame& frame) {
     const std::int64_t tick = tick_of_time(sample->time - start_, info_.tick_rate);
     if (tick < current_.tick || tick / info_.tick_rate >= kMaxSeconds) return refuse(mcap, Errc::invalid, "R-TRC-15");
     const bool is_due = pending_ && tick > current_.tick;
-    if (is_due) frame = current_;
+    if (is_due) {
+      TACTUS_CHECK(mcap.spend(current_.objects.size() * sizeof(RigidSample)));
+      frame = current_;
+    }
     current_.tick = tick;
     TACTUS_CHECK(apply(mcap, *sample));
-    pending_ = std::all_of(tracks_.begin(), tracks_.end(), [](const Track& track) { return track.known; });
+    pending_ = known_ == tracks_.size();
     if (is_due) return true;
   }
   if (!std::exchange(pending_, false)) return false;
@@ -198,6 +202,7 @@ Result<void> RosAssembler::apply(const mcap::Reader& mcap, const Sample& sample)
     object.angular_velocity = motion.angular;
   }
   object.pose = *pose;
+  known_ += track.known ? 0 : 1;
   track.known = true;
   track.time = sample.time;
   return {};

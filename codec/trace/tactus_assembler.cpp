@@ -11,6 +11,10 @@
 namespace tactus {
 namespace {
 
+// [bytes] of the budget for each object that is there at a tick though nothing tells of it. Less than it has: scenes of a thousand
+// static objects are read at the usual sizes of what moves among them.
+constexpr std::uint64_t kCostOfStatic = 32;
+
 std::vector<std::string> split_lines(std::string_view text) {
   std::vector<std::string> lines;
   while (!text.empty()) {
@@ -62,9 +66,11 @@ class TactusAssembler final : public FrameAssembler {
   Result<std::uint64_t> store(const mcap::Reader& mcap, const TraceChannel& channel);
   Result<std::uint64_t> store_user(std::span<const std::uint8_t> data, const TraceChannel& channel);
   bool is_complete(std::int64_t tick) const noexcept;
+  void deliver(TraceFrame& frame) const;
 
   TraceInfo info_;
   std::map<std::uint16_t, Route> routes_;  // by channel id
+  std::uint64_t static_objects_ = 0;
   std::optional<std::uint16_t> frame_channel_;
   mcap::Item item_ = mcap::Item::end;  // where the reader stands: at a message of a route, or at the end
   std::int64_t last_tick_ = -1;
@@ -130,6 +136,7 @@ Result<void> TactusAssembler::find_channels(const mcap::Reader& mcap, Errc missi
     const auto dof = parse_number<std::uint8_t>(entry(found->second->metadata, "dof"));
     if (!dof || *dof > Dof::all) return refuse(mcap, Errc::invalid, "R-TRC-12");
     object.dof = *dof;
+    static_objects_ += object.dof == Dof::none ? 1 : 0;
   }
   for (TraceMesh& mesh : info_.meshes) {
     const auto found = by_topic.find("/meshes/" + mesh.name + "/rest");
@@ -159,8 +166,22 @@ Result<bool> TactusAssembler::next(mcap::Reader& mcap, TraceFrame& frame) {
     TACTUS_TRY(const bool more, assemble(mcap));
     if (!more) return false;
   }
-  frame = current_;
+  deliver(frame);
   return true;
+}
+
+/// Shapes that are not new are in the frame since the call before, unless it is another frame.
+void TactusAssembler::deliver(TraceFrame& frame) const {
+  frame.tick = current_.tick;
+  frame.objects = current_.objects;
+  frame.users = current_.users;
+  frame.meshes.resize(current_.meshes.size());
+  for (std::size_t i = 0; i < current_.meshes.size(); ++i) {
+    const MeshSample& shape = current_.meshes[i];
+    frame.meshes[i].updated = shape.updated;
+    if (shape.updated || frame.meshes[i].displacements.size() != shape.displacements.size())
+      frame.meshes[i].displacements = shape.displacements;
+  }
 }
 
 /// Put the messages of the next tick into current_; false at the end.
@@ -169,6 +190,7 @@ Result<bool> TactusAssembler::assemble(mcap::Reader& mcap) {
   const std::uint64_t time = mcap.message().log_time;
   const std::int64_t tick = tick_of_time(time, info_.tick_rate);
   if (tick <= last_tick_ || tick / info_.tick_rate >= kMaxSeconds) return refuse(mcap, Errc::invalid, "R-TRC-15");
+  TACTUS_CHECK(mcap.spend(static_objects_ * kCostOfStatic));
   current_.tick = tick;
   for (MeshSample& mesh : current_.meshes) mesh.updated = false;
   for (UserSample& user : current_.users) {

@@ -24,7 +24,7 @@
 /// R-TRC-3   truncated         the file ends before the header, the channels that its metadata announces, or any pose,
 ///                             or the first tick of a recording with meshes
 /// R-TRC-4   malformed         a length inside a record reaches past the record's end
-/// R-TRC-5   limit_exceeded    a record, a chunk or all declarations are larger than accepted, or than zstd can yield
+/// R-TRC-5   limit_exceeded    a record, a chunk or all declarations are larger than accepted
 /// R-TRC-6   checksum          a CRC-32 does not match
 /// R-TRC-7   unsupported       compression, message encoding or format version that this reader does not know
 /// R-TRC-8   malformed         a chunk's records are no zstd data of exactly the announced size
@@ -39,6 +39,8 @@
 /// R-TRC-16  unsupported       a foreign file without PoseStamped channels, or with one that begins after the look-ahead
 /// R-TRC-17  invalid_argument  TraceInfo: nothing to record, over 65535 channels, tick rate not in 1..1000000, dof bits, fixed
 ///                             vertices or the period of a mesh, bounds of another number of meshes, or a name that is empty, repeated, over 255 bytes, not UTF-8 or has '/' or control characters
+/// R-TRC-18  limit_exceeded    chunks unpack to more, or objects of which nothing is said at a tick are more, than the file's size has
+///                             earned (input_budget.h)
 /// R-MSH-n   as tri_mesh.h     a mesh's rest shape
 #pragma once
 
@@ -90,7 +92,8 @@ class TraceReader {
   const TraceInfo& info() const noexcept;
   /// Number of frames if the file's summary tells it.
   std::optional<std::uint64_t> frame_count() const noexcept;
-  /// Next frame into `frame` (its vectors are reused); false at the end. After an error the reader must not be used further.
+  /// Next frame into `frame`; false at the end. Give every call the frame of the call before, whose vectors are reused: a shape that
+  /// is not new stays as it is there. After an error the reader must not be used further.
   Result<bool> next(TraceFrame& frame);
   /// The file had no whole ending (crash, cut): everything up to its last whole chunk was delivered. Known once next()
   /// has returned false.
