@@ -7,7 +7,9 @@
 #include "cli/cmd_import.h"
 #include "cli/report.h"
 #include "cli/table.h"
+#include "codec/base/shown.h"
 #include "codec/trace/messages.h"
+#include "codec/trace/text.h"
 #include "codec/trace/trace_file.h"
 #include "sim/surface/surface_sequence.h"
 
@@ -65,9 +67,13 @@ Outcome write_frames(const SurfaceSequence& sequence, const TriMesh& rest, const
   return {};
 }
 
+std::string name_mistake(const std::string& name) {
+  if (is_plain_name(name)) return "";
+  return fmt::format("'{}': a name has 1 to 255 bytes of UTF-8 without '/' and control characters", shown(name));
+}
+
 Outcome run(const ImportMeshOptions& options) {
   if (auto fits = check_no_terminal(options.output); !fits) return fits;
-  if (!(options.length_unit > 0)) return refuse_arguments("--length-unit: not above 0", "Give a length, such as 1mm.");
   auto output = OutputFile::create(options.output, options.common.existing());
   if (!output) return tl::unexpected(output.error());
   const auto sequence = SurfaceSequence::open(options.input);
@@ -121,8 +127,9 @@ void setup_import_mesh(Command& group, Action& action) {
   add_quantity(command, "--period", options->period, Dimension::time, "Time from frame to frame, instead of --rate")
       ->check(within(Dimension::time, "1us", "1000s"))
       ->excludes(rate);
-  add_quantity(command, "--length-unit", options->length_unit, Dimension::length, "Metres per unit of the files' lengths [1m]");
-  command.add_option("--name", options->name, "Name of the mesh [mesh]")->type_name("NAME");
+  add_quantity(command, "--length-unit", options->length_unit, Dimension::length, "Metres per unit of the files' lengths [1m]")
+      ->check(within(Dimension::length, "1um", "1000000m"));
+  command.add_option("--name", options->name, "Name of the mesh [mesh]")->check(name_mistake)->type_name("NAME");
   add_output_options(command, options->common);
   command.footer(
       "Examples:\n"
