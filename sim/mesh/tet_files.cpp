@@ -8,6 +8,7 @@
 #include <fstream>
 #include <ostream>
 
+#include "codec/base/shown.h"
 #include "sim/mesh/mesh_words.h"
 
 namespace tactus {
@@ -129,8 +130,9 @@ tl::expected<std::string, MeshFileError> read_text(const std::string& path) {
   std::array<char, 1 << 16> piece{};
   while (in) {
     in.read(piece.data(), piece.size());
-    text.append(piece.data(), static_cast<std::size_t>(in.gcount()));
-    if (text.size() > kMaxFileBytes) return refused(Errc::limit_exceeded, "R-MFL-2");
+    const auto count = static_cast<std::size_t>(in.gcount());
+    if (count > kMaxFileBytes - text.size()) return refused(Errc::limit_exceeded, "R-MFL-2");
+    text.append(piece.data(), count);
   }
   if (!in.eof() || in.bad()) return refused(Errc::io, "R-MFL-1");
   return text;
@@ -157,9 +159,9 @@ void append_vertices(std::string& text, const std::vector<Vec3>& vertices) {
 
 std::string to_string(const MeshFileError& error) {
   const auto* text = std::find_if(kRules.begin(), kRules.end(), [&](const RuleText& r) { return r.rule == error.error.rule; });
-  std::string place = error.file;
+  std::string place = shown_path(error.file);
   if (error.line > 0) place += ':' + std::to_string(error.line);
-  if (!error.word.empty()) place += ": '" + error.word + '\'';
+  if (!error.word.empty()) place += ": '" + shown(error.word) + '\'';
   if (text == kRules.end()) return place + ": " + error.error.rule;
   return place + ": " + error.error.rule + ": " + text->broken + "; " + text->remedy;
 }

@@ -22,8 +22,9 @@ tl::expected<std::string, SurfaceError> read_text(const std::string& path) {
   std::array<char, 1 << 16> piece{};
   while (in) {
     in.read(piece.data(), piece.size());
-    text.append(piece.data(), static_cast<std::size_t>(in.gcount()));
-    if (text.size() > kMaxFileBytes) return broken(Errc::limit_exceeded, "R-SRF-2", "");
+    const auto count = static_cast<std::size_t>(in.gcount());
+    if (count > kMaxFileBytes - text.size()) return broken(Errc::limit_exceeded, "R-SRF-2", "");
+    text.append(piece.data(), count);
   }
   if (!in.eof() || in.bad()) return broken(Errc::io, "R-SRF-1", "");
   return text;
