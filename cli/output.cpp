@@ -201,7 +201,9 @@ void OutputFile::remove_own() noexcept {
 }
 
 OutputFile::~OutputFile() {
-  if (is_temporary()) remove_own();
+  struct stat own {};
+  const bool is_empty = fstat(file_.number(), &own) == 0 && own.st_size == 0;
+  if (is_temporary() || (stays() && is_empty)) remove_own();
 }
 
 void OutputFile::discard() noexcept {

@@ -52,8 +52,13 @@ std::string script_of(const Plot& plot) {
 }  // namespace
 
 std::string gnuplot_text(std::string_view text) {
+  // Doubled, as gnuplot wants an apostrophe, it ends the string all the same where two stand together or one in front.
+  constexpr const char* kApostrophe = "\u2019";
   std::string out = "'";
-  for (const char c : shown(text, kLongestText)) out.append(c == '\'' ? 2 : 1, c);
+  for (const char c : shown(text, kLongestText)) {
+    if (c == '\'') out += kApostrophe;
+    else out += c;
+  }
   return out + '\'';
 }
 

@@ -16,8 +16,8 @@ struct PlotData {
   std::vector<std::vector<double>> rows;
 };
 
-/// Any text as a string of a gnuplot script, which takes it as it is: in single quotes, where gnuplot substitutes nothing, and as
-/// shown() has it. To be drawn as it is it wants `noenhanced` behind it.
+/// Any text as a string of a gnuplot script, which takes it as it is: in single quotes, where gnuplot substitutes nothing, as shown()
+/// has it and with U+2019 for every apostrophe. To be drawn as it is it wants `noenhanced` behind it.
 std::string gnuplot_text(std::string_view text);
 
 struct Plot {

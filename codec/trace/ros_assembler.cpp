@@ -18,6 +18,9 @@ namespace {
 constexpr std::size_t kPosesForRate = 64;
 constexpr std::size_t kLookAhead = 4096;
 
+// [bytes] of the budget for each object of a frame, whether it was heard of or not: about what it takes in a table.
+constexpr std::uint64_t kCostOfObject = 256;
+
 struct Sample {
   std::uint16_t channel = 0;
   std::uint64_t time = 0;  // [ns] log time
@@ -171,7 +174,7 @@ Result<bool> RosAssembler::next(mcap::Reader& mcap, TraceFrame& frame) {
     if (tick < current_.tick || tick / info_.tick_rate >= kMaxSeconds) return refuse(mcap, Errc::invalid, "R-TRC-15");
     const bool is_due = pending_ && tick > current_.tick;
     if (is_due) {
-      TACTUS_CHECK(mcap.spend(current_.objects.size() * sizeof(RigidSample)));
+      TACTUS_CHECK(mcap.spend(current_.objects.size() * kCostOfObject));
       frame = current_;
     }
     current_.tick = tick;
