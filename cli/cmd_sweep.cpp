@@ -30,7 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr int kBoundsBroken = 3;  // exit status
+constexpr int kBoundsBroken = 3;                             // exit status
 constexpr const char* kInsideSweep = "TACTUS_INSIDE_SWEEP";  // variable of the environment that a sweep's commands see
 
 struct SweepOptions {

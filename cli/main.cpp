@@ -73,7 +73,8 @@ int report_failure(const tactus::cli::Failure& failure, bool as_json) {
                                                                  : "error:";
   std::fflush(stdout);  // what was printed comes first where both streams end in one place
   const bool marked = coloured && *label != '\0';
-  fmt::print(stderr, "{}{}{}{}{}\n", marked ? "\x1b[1;31m" : "", label, marked ? "\x1b[0m" : "", *label ? " " : "", printable(failure.text));
+  fmt::print(stderr, "{}{}{}{}{}\n", marked ? "\x1b[1;31m" : "", label, marked ? "\x1b[0m" : "", *label ? " " : "",
+             printable(failure.text));
   if (!failure.remedy.empty()) fmt::print(stderr, "       {}\n", printable(failure.remedy));
   return status_of(failure);
 }

@@ -257,8 +257,8 @@ tl::expected<std::string, Failure> read_file(const std::string& path, std::uint6
     const auto count = source->read(piece);
     if (!count) return refuse_io(path, "cannot be read");
     if (*count == 0) return bytes;
-    bytes.append(piece.begin(), piece.begin() + *count);
-    if (bytes.size() > most) return refuse_size();
+    if (*count > most - bytes.size()) return refuse_size();
+    bytes.append(reinterpret_cast<const char*>(piece.data()), *count);
   }
 }
 
