@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <exception>
 #include <optional>
 #include <thread>
 #include <type_traits>
@@ -32,11 +33,15 @@ std::optional<std::vector<Value>> run_in_workers(std::size_t count, Job&& job, O
   for (std::size_t worker = 0; worker < workers; ++worker) {
     const pid_t child = fork();
     if (child == 0) {
-      for (std::size_t i = worker; i < count; i += workers) {
-        const Message message{i, job(i)};
-        if (write(pipe_ends[1], &message, sizeof message) != static_cast<ssize_t>(sizeof message)) _exit(1);
+      try {
+        for (std::size_t i = worker; i < count; i += workers) {
+          const Message message{i, job(i)};
+          if (write(pipe_ends[1], &message, sizeof message) != static_cast<ssize_t>(sizeof message)) _exit(1);
+        }
+        _exit(0);
+      } catch (const std::exception&) {  // nothing of the parent's is undone here
+        _exit(1);
       }
-      _exit(0);
     }
     if (child > 0) children.push_back(child);
   }
