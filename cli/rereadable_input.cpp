@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/rereadable_input.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cerrno>
 #include <filesystem>
 
+#include "cli/output.h"
+#include "codec/base/shown.h"
 #include "codec/trace/byte_source.h"
 
 namespace tactus::cli {
@@ -21,10 +25,15 @@ tl::expected<RereadableInput, Failure> RereadableInput::open(const std::string& 
   input.copy_.reset(std::tmpfile());
   if (!input.copy_) return refuse_io("a temporary file", "cannot be made", errno);
   std::array<std::uint8_t, 1 << 16> piece;
-  while (true) {
+  for (std::uint64_t copied = 0;;) {
     const auto count = source->read(piece);
     if (!count) return refuse(path, count.error());
     if (*count == 0) break;
+    copied += *count;
+    if (copied > kMostRead) {
+      return refuse(fmt::format("{}: larger than the {} MiB that are read of a pipe", shown_path(path), kMostRead >> 20),
+                    "Put it into a file first.");
+    }
     if (std::fwrite(piece.data(), 1, *count, input.copy_.get()) != *count)
       return refuse_io("a temporary file", "cannot be written", errno);
   }
