@@ -74,6 +74,7 @@ class TactusAssembler final : public FrameAssembler {
   std::optional<std::uint16_t> frame_channel_;
   mcap::Item item_ = mcap::Item::end;  // where the reader stands: at a message of a route, or at the end
   std::int64_t last_tick_ = -1;
+  bool poses_come_every_tick_ = false;
   TraceFrame current_;
   bool ahead_ = false;  // current_ was not delivered
 };
@@ -88,7 +89,9 @@ tl::unexpected<Error> refuse(const mcap::Reader& mcap, const Error& error) noexc
 
 Result<void> TactusAssembler::start(mcap::Reader& mcap, const Preamble& preamble) {
   const mcap::TextMap& tactus = *preamble.tactus;
-  if (entry(tactus, "format_version") != "1") return refuse(mcap, Errc::unsupported, "R-TRC-7");
+  const std::string_view version = entry(tactus, "format_version");
+  if (version != "1" && version != "2") return refuse(mcap, Errc::unsupported, "R-TRC-7");
+  poses_come_every_tick_ = version == "1";
   const auto tick_rate = parse_number<std::uint32_t>(entry(tactus, "tick_rate"));
   if (!tick_rate || *tick_rate < 1 || *tick_rate > kMaxTickRate) return refuse(mcap, Errc::invalid, "R-TRC-12");
   info_.tick_rate = *tick_rate;
@@ -148,6 +151,7 @@ Result<void> TactusAssembler::find_channels(const mcap::Reader& mcap, Errc missi
     if (found == by_topic.end()) return refuse(mcap, missing, rule);
     const mcap::Channel& channel = *found->second;
     if (!carries(mcap, channel, schema_name(message_type(wanted.role)))) return refuse(mcap, Errc::invalid, "R-TRC-12");
+    if (wanted.occurs == Occurs::when_changed && poses_come_every_tick_) wanted.occurs = Occurs::every_tick;
     if (wanted.occurs == Occurs::every_tick && !frame_channel_) frame_channel_ = channel.id;
     if (!routes_.emplace(channel.id, Route{std::move(wanted)}).second) return refuse(mcap, Errc::invalid, "R-TRC-12");
   }
@@ -278,8 +282,9 @@ Result<std::uint64_t> TactusAssembler::store_user(std::span<const std::uint8_t> 
 bool TactusAssembler::is_complete(std::int64_t tick) const noexcept {
   return std::all_of(routes_.begin(), routes_.end(), [&](const auto& entry) {
     const Route& route = entry.second;
+    const Occurs occurs = route.channel.occurs;
     const bool is_due =
-        route.channel.occurs == Occurs::every_tick || (route.channel.occurs == Occurs::first_tick && last_tick_ < 0);
+        occurs == Occurs::every_tick || (last_tick_ < 0 && (occurs == Occurs::first_tick || occurs == Occurs::when_changed));
     return !is_due || route.last_tick == tick;
   });
 }

@@ -14,7 +14,7 @@
 namespace tactus {
 
 enum class Role : std::uint8_t { pose, twist, device, force, server_force, contact, mesh_contact, rest, displacement };
-enum class Occurs : std::uint8_t { every_tick, first_tick, in_contact, when_updated };
+enum class Occurs : std::uint8_t { every_tick, first_tick, when_changed, in_contact, when_updated };
 
 struct TraceChannel {
   Role role = Role::pose;
@@ -58,8 +58,8 @@ inline std::vector<TraceChannel> trace_channels(const TraceInfo& info) {
   for (std::uint32_t i = 0; i < info.objects.size(); ++i) {
     const std::string path = "/objects/" + info.objects[i].name;
     const bool moves = info.objects[i].dof != Dof::none;
-    channels.push_back({Role::pose, moves ? Occurs::every_tick : Occurs::first_tick, i, path + "/pose"});
-    if (moves) channels.push_back({Role::twist, Occurs::every_tick, i, path + "/twist"});
+    channels.push_back({Role::pose, moves ? Occurs::when_changed : Occurs::first_tick, i, path + "/pose"});
+    if (moves) channels.push_back({Role::twist, Occurs::when_changed, i, path + "/twist"});
   }
   for (std::uint32_t i = 0; i < info.meshes.size(); ++i) {
     const std::string path = "/meshes/" + info.meshes[i].name;

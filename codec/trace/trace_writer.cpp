@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <set>
 #include <string_view>
 
@@ -60,6 +61,13 @@ bool is_finite(const MeshSample& mesh) noexcept {
   return std::all_of(mesh.displacements.begin(), mesh.displacements.end(), [](float value) { return std::isfinite(value); });
 }
 
+static_assert(sizeof(RigidSample) == 13 * sizeof(double), "compared as bytes");
+
+/// Bit for bit.
+bool are_same(std::span<const RigidSample> a, std::span<const RigidSample> b) noexcept {
+  return std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+}
+
 bool is_same_pose(const Pose& a, const Pose& b) noexcept { return a.position == b.position && a.rotation == b.rotation; }
 
 template <class Range, class Name>
@@ -71,7 +79,7 @@ std::string lines(const Range& range, Name name) {
 
 mcap::Metadata metadata_of(const TraceInfo& info) {
   mcap::Metadata metadata{"tactus",
-                          {{"format_version", "1"},
+                          {{"format_version", "2"},
                            {"tick_rate", std::to_string(info.tick_rate)},
                            {"source", info.source},
                            {"objects", lines(info.objects, [](const TraceObject& object) { return object.name; })},
@@ -109,7 +117,14 @@ mcap::Attachment scene_of(const TraceInfo& info) {
 
 struct TraceWriter::Impl {
   Impl(mcap::Writer writer, const TraceInfo& trace_info)
-      : mcap(std::move(writer)), info(trace_info), channels(trace_channels(trace_info)) {}
+      : mcap(std::move(writer)), info(trace_info), channels(trace_channels(trace_info)) {
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+      const Role role = channels[i].role;
+      if (role == Role::pose) of_object.push_back(i);
+      if (role == Role::pose || role == Role::twist) others = i + 1;
+    }
+    of_object.push_back(others);
+  }
   ~Impl() {
     if (finished) return;
     try {
@@ -121,7 +136,10 @@ struct TraceWriter::Impl {
   Impl& operator=(const Impl&) = delete;
 
   Result<void> declare();
+  void find_changed(const TraceFrame& frame);
   Result<void> check(const TraceFrame& frame) const;
+  void write(std::size_t channel, std::uint64_t time, const TraceFrame& frame);
+  bool only_meshes() const noexcept { return info.objects.empty() && info.users.empty(); }
   bool can_hold(const UserSample& user) const;
   bool is_due(const TraceChannel& channel, const TraceFrame& frame) const;
   void encode(const TraceChannel& channel, std::uint64_t time, const TraceFrame& frame);
@@ -131,7 +149,10 @@ struct TraceWriter::Impl {
   std::vector<TraceChannel> channels;  // channel i has id i + 1
   std::vector<std::uint8_t> message;
   std::int64_t last_tick = -1;
-  std::vector<RigidSample> first_samples;  // static objects keep these
+  std::vector<std::size_t> of_object;  // first channel of each object, and of what follows them
+  std::size_t others = 0;              // first channel of no object
+  std::vector<RigidSample> written;    // last
+  std::vector<std::uint32_t> changed;  // objects that are not as written
   bool finished = false;
 };
 
@@ -181,12 +202,12 @@ Result<void> TraceWriter::Impl::check(const TraceFrame& frame) const {
                           frame.meshes.size() == info.meshes.size();
   const bool has_tick = frame.tick > last_tick && frame.tick / info.tick_rate < kMaxSeconds;
   if (!has_counts || !has_tick) return fail(Errc::invalid_argument, "R-API-5");
-  for (std::size_t i = 0; i < frame.objects.size(); ++i) {
+  for (const std::uint32_t i : changed) {
     const RigidSample& sample = frame.objects[i];
     if (!is_finite(sample)) return fail(Errc::invalid_argument, "R-API-1");
     if (info.objects[i].dof != Dof::none) continue;
     const bool rests = sample.velocity == Vec3{} && sample.angular_velocity == Vec3{};
-    const bool stays = first_samples.empty() || is_same_pose(sample.pose, first_samples[i].pose);
+    const bool stays = written.empty() || is_same_pose(sample.pose, written[i].pose);
     if (!rests || !stays) return fail(Errc::invalid_argument, "R-API-6");
   }
   for (const UserSample& user : frame.users) {
@@ -196,7 +217,7 @@ Result<void> TraceWriter::Impl::check(const TraceFrame& frame) const {
   for (std::size_t i = 0; i < frame.meshes.size(); ++i) {
     if (frame.meshes[i].displacements.size() != 3 * info.meshes[i].rest.vertices.size())
       return fail(Errc::invalid_argument, "R-API-5");
-    if (!is_finite(frame.meshes[i])) return fail(Errc::invalid_argument, "R-API-1");
+    if ((frame.meshes[i].updated || only_meshes()) && !is_finite(frame.meshes[i])) return fail(Errc::invalid_argument, "R-API-1");
   }
   return {};
 }
@@ -233,6 +254,7 @@ void TraceWriter::Impl::encode(const TraceChannel& channel, std::uint64_t time, 
 bool TraceWriter::Impl::is_due(const TraceChannel& channel, const TraceFrame& frame) const {
   switch (channel.occurs) {
     case Occurs::every_tick:
+    case Occurs::when_changed:  // only channels of objects that have are asked
       return true;
     case Occurs::first_tick:
       return last_tick < 0;
@@ -245,17 +267,39 @@ bool TraceWriter::Impl::is_due(const TraceChannel& channel, const TraceFrame& fr
   return channel.role == Role::mesh_contact ? user.mesh_contact.has_value() : user.contact.kind != ContactKind::none;
 }
 
+/// Many at a time: most of the objects of a large scene rest.
+void TraceWriter::Impl::find_changed(const TraceFrame& frame) {
+  constexpr std::size_t kAtOnce = 16;
+  changed.clear();
+  const std::size_t count = std::min(frame.objects.size(), info.objects.size());
+  for (std::size_t block = 0; block < count; block += kAtOnce) {
+    const std::size_t end = std::min(block + kAtOnce, count);
+    const auto differ = [&](std::size_t i, std::size_t n) {
+      return written.empty() || !are_same(std::span(frame.objects).subspan(i, n), std::span(written).subspan(i, n));
+    };
+    if (!differ(block, end - block)) continue;
+    for (std::size_t i = block; i < end; ++i)
+      if (differ(i, 1)) changed.push_back(static_cast<std::uint32_t>(i));
+  }
+  const bool always = !channels.empty() && channels[0].role == Role::pose && channels[0].occurs == Occurs::every_tick;
+  if (always && (changed.empty() || changed[0] != 0)) changed.insert(changed.begin(), 0);
+}
+
+void TraceWriter::Impl::write(std::size_t channel, std::uint64_t time, const TraceFrame& frame) {
+  if (!is_due(channels[channel], frame)) return;
+  encode(channels[channel], time, frame);
+  mcap.add(mcap::Message{static_cast<std::uint16_t>(channel + 1), static_cast<std::uint32_t>(frame.tick), time, time, message});
+}
+
 Result<void> TraceWriter::write(const TraceFrame& frame) try {
+  impl_->find_changed(frame);
   TACTUS_CHECK(impl_->check(frame));
   const std::uint64_t time = time_of_tick(frame.tick, impl_->info.tick_rate);
-  if (impl_->last_tick < 0) impl_->first_samples = frame.objects;
-  for (std::size_t i = 0; i < impl_->channels.size(); ++i) {
-    const TraceChannel& channel = impl_->channels[i];
-    if (!impl_->is_due(channel, frame)) continue;
-    impl_->encode(channel, time, frame);
-    impl_->mcap.add(
-        mcap::Message{static_cast<std::uint16_t>(i + 1), static_cast<std::uint32_t>(frame.tick), time, time, impl_->message});
-  }
+  for (const std::uint32_t i : impl_->changed)
+    for (std::size_t k = impl_->of_object[i]; k < impl_->of_object[i + 1]; ++k) impl_->write(k, time, frame);
+  for (std::size_t k = impl_->others; k < impl_->channels.size(); ++k) impl_->write(k, time, frame);
+  if (impl_->written.empty()) impl_->written = frame.objects;
+  for (const std::uint32_t i : impl_->changed) impl_->written[i] = frame.objects[i];
   impl_->last_tick = frame.tick;
   const bool is_full = impl_->mcap.chunk_size() >= kChunkBytes || time - impl_->mcap.chunk_start_time() >= kChunkTime;
   return is_full ? impl_->mcap.end_chunk() : Result<void>();

@@ -411,7 +411,7 @@ TEST(Trace, OurMetadataMustAgreeWithTheChannels) {
     put_record(whole, mcap::Opcode::metadata, content);
     return record;
   };
-  EXPECT_EQ(rule_of({metadata({{"format_version", "2"}})}), "R-TRC-7");
+  EXPECT_EQ(rule_of({metadata({{"format_version", "3"}})}), "R-TRC-7");
   EXPECT_EQ(rule_of({metadata({{"format_version", "1"}})}), "R-TRC-12");
   EXPECT_EQ(rule_of({metadata({{"format_version", "1"}, {"tick_rate", "0"}, {"users", "a"}})}), "R-TRC-12");
   EXPECT_EQ(rule_of({metadata({{"format_version", "1"}, {"tick_rate", "1000x"}, {"users", "a"}})}), "R-TRC-12");
