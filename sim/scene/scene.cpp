@@ -17,6 +17,8 @@ namespace {
 
 constexpr std::size_t kMostSceneBytes = std::size_t{4} << 20;
 constexpr double kFarthest = 100;                                                  // [m] well inside the codec's default grid
+constexpr std::size_t kMostObjects = 4096, kMostDeformables = 255;  // as streams take
+constexpr std::size_t kMostUsers = 64;
 constexpr double kLongest = 24 * 3600.0;                                           // [s]
 constexpr std::array<std::string_view, 6> kAxes{"x", "y", "z", "rx", "ry", "rz"};  // order of the bits in Dof
 constexpr Range kPlace{-kFarthest, kFarthest};
@@ -64,6 +66,8 @@ void read_surface(TomlReader& in, const toml::table& table, const std::filesyste
     in.fail_at(size->source(), Errc::invalid, "R-SCN-4", "object.size", "say either size (a box) or surface (a file)");
   const std::string file = (folder / in.text(table, "object", "surface")).string();
   if (in.failed()) return;
+  if (is_special_file(file))
+    return in.fail_at(node.source(), Errc::invalid, "R-SCN-8", "object.surface", file + ": name a regular file");
   auto read = read_object_surface(file);
   if (!read) return in.fail_at(node.source(), read.error().code, "R-SCN-8", "object.surface", read.error().text);
   object.surface = std::move(read->mesh);
@@ -182,6 +186,14 @@ SceneUser read_user(TomlReader& in, const toml::table& table, const Scene& scene
   return user;
 }
 
+/// A scene of more would take memory and time that a few bytes of text have not earned.
+void limit(TomlReader& in, const toml::table& root, std::string_view key, std::size_t most) {
+  const std::size_t count = in.tables(root, "", key).size();
+  if (count > most)
+    in.fail_at(root.get(key)->source(), Errc::invalid, "R-SCN-6", std::string(key),
+               "a scene has at most " + std::to_string(most) + " of these, this one has " + std::to_string(count));
+}
+
 void read_scene(TomlReader& in, const toml::table& root, const std::filesystem::path& folder, Scene& scene) {
   in.allow(root, "", {"name", "gravity", "duration", "floor", "touch", "object", "msd", "deformable", "user"});
   scene.name = in.text(root, "", "name");
@@ -190,6 +202,11 @@ void read_scene(TomlReader& in, const toml::table& root, const std::filesystem::
   if (root.contains("floor")) scene.floor = in.number(root, "", "floor", kPlace);
   if (const toml::table* touch = in.table(root, "", "touch")) scene.touch = read_touch(in, *touch);
 
+  limit(in, root, "object", kMostObjects);
+  limit(in, root, "msd", kMostObjects);
+  limit(in, root, "deformable", kMostDeformables);
+  limit(in, root, "user", kMostUsers);
+  if (in.failed()) return;
   std::set<std::string> names;
   for (const toml::table* table : in.tables(root, "", "object")) {
     scene.objects.push_back(read_object(in, *table, folder));
@@ -201,8 +218,10 @@ void read_scene(TomlReader& in, const toml::table& root, const std::filesystem::
     if (!names.insert(scene.msds.back().name).second)
       in.fail_at(table->source(), Errc::invalid, "R-SCN-7", "msd.name", "give every object a name of its own");
   }
+  std::uint64_t tets = 0;
   for (const toml::table* table : in.tables(root, "", "deformable")) {
     scene.deformables.push_back(read_deformable(in, *table, folder, scene.touch.value_or(SceneTouch{})));
+    if (tets += scene.deformables.back().mesh.tets.size(); !affords_tets(in, *table, "deformable", tets)) return;
     if (!names.insert(scene.deformables.back().name).second)
       in.fail_at(table->source(), Errc::invalid, "R-SCN-7", "deformable.name", "give every object a name of its own");
   }

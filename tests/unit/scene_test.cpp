@@ -170,6 +170,55 @@ TEST(Scene, EveryShippedSceneLoadsByItsName) {
   for (const char* wanted : {"push-1dof", "rotate-6dof", "rotate-push-lift"}) EXPECT_TRUE(names.contains(wanted)) << wanted;
 }
 
+/// A few bytes of text must not cost memory that nobody has.
+TEST(Scene, WhatWouldTakeTooMuchIsRefusedBeforeItIsMade) {
+  const auto error_of = [](const std::string& text) {
+    const auto scene = parse_scene(text, "t.toml");
+    return scene ? SceneError{} : scene.error();
+  };
+  const std::string slab = "position = [0, 0, 0]\nyoung = 1e4\npoisson = 0.3\ndensity = 1000\n";
+  const auto cells = [&](const std::string& n) {
+    return "name = \"t\"\nduration = 1\ngravity = [0, 0, 0]\n[[deformable]]\nname = \"d\"\ncell = 0.01\ncells = " + n + "\n" +
+           slab;
+  };
+  EXPECT_STREQ(error_of(cells("[100, 100, 1]")).error.rule, Error{}.rule);
+  for (const char* n : {"[300, 300, 1]", "[800, 800, 1]", "[1000, 1000, 1000]"}) {
+    const SceneError error = error_of(cells(n));
+    ASSERT_STREQ(error.error.rule, "R-SCN-6") << n;
+    EXPECT_EQ(error.key, "deformable.cells");
+    EXPECT_NE(error.remedy.find("MB of memory"), std::string::npos) << error.remedy;
+  }
+  std::string several = cells("[140, 140, 1]");
+  several += "[[deformable]]\nname = \"e\"\ncell = 0.01\ncells = [100, 100, 1]\n" + slab;
+  EXPECT_STREQ(error_of(several).error.rule, "R-SCN-6") << "each alone is affordable";
+
+  std::string objects = "name = \"t\"\nduration = 1\ngravity = [0, 0, 0]\n";
+  for (int i = 0; i < 4097; ++i)
+    objects +=
+        "[[object]]\nname = \"o" + std::to_string(i) + "\"\nsize = [1, 1, 1]\nmass = 1\nfriction = 0\nposition = [0, 0, 0]\n";
+  const SceneError error = error_of(objects);
+  EXPECT_STREQ(error.error.rule, "R-SCN-6");
+  EXPECT_EQ(error.key, "object");
+  EXPECT_NE(error.remedy.find("4097"), std::string::npos) << error.remedy;
+}
+
+/// Reading from a pipe or a device would wait for ever, or never end.
+TEST(Scene, NamesOnlyRegularFiles) {
+  const auto scene = parse_scene(
+      "name = \"t\"\nduration = 1\ngravity = [0, 0, 0]\n[[object]]\nname = \"o\"\nsurface = \"/dev/zero\"\nmass = 1\n"
+      "friction = 0\nposition = [0, 0, 0]\n",
+      "t.toml");
+  ASSERT_FALSE(scene);
+  EXPECT_STREQ(scene.error().error.rule, "R-SCN-8");
+  EXPECT_NE(scene.error().remedy.find("regular file"), std::string::npos) << scene.error().remedy;
+  const auto mesh = parse_scene(
+      "name = \"t\"\nduration = 1\ngravity = [0, 0, 0]\n[[deformable]]\nname = \"o\"\nmesh = \"/dev/zero\"\nyoung = 1e4\n"
+      "poisson = 0.3\ndensity = 1000\nposition = [0, 0, 0]\n",
+      "t.toml");
+  ASSERT_FALSE(mesh);
+  EXPECT_NE(mesh.error().remedy.find("regular file"), std::string::npos) << mesh.error().remedy;
+}
+
 TEST(Scene, StreamHeaderStartsFromTheFirstPoses) {
   const auto scene = parse_scene(kHead + kCube + "dof = [\"x\", \"rz\"]\n", "t.toml");
   ASSERT_TRUE(scene);
