@@ -73,6 +73,7 @@ struct Simulation::Impl {
 
   void observe();
   void touch_server();
+  void report_touched(std::uint32_t mesh);
   tl::expected<EncodedPacket, Error> transmit();
   Result<void> transmit_meshes();
   Result<void> add_deformables(const SimulationOptions& options);
@@ -90,9 +91,16 @@ const Pose& Simulation::Impl::watched(const SceneUser& user) const {
 /// Truth at this tick, as it is before any force of this tick acts.
 void Simulation::Impl::observe() {
   frame.tick = world.tick();
-  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) frame.objects[i] = world.sample(i);
+  for (const std::uint32_t i : world.changed()) {
+    frame.objects[i] = world.sample(i);
+    for (User& user : users) {
+      user.server.attend(i, true_poses[i]);
+      user.client.attend(i, true_poses[i]);
+    }
+    true_poses[i] = frame.objects[i].pose;
+  }
   if (msds) msds->observe(std::span(frame.objects).subspan(scene.objects.size()));
-  for (std::size_t i = 0; i < true_poses.size(); ++i) true_poses[i] = frame.objects[i].pose;
+  for (std::size_t i = scene.objects.size(); i < true_poses.size(); ++i) true_poses[i] = frame.objects[i].pose;
   if (!deformables) return;
   deformables->observe(frame.meshes);
   if (mesh_noise == 0) return;
@@ -115,6 +123,7 @@ void Simulation::Impl::touch_server() {
     if (deformables) {
       user.press = deformables->touch_server(i, user.device.position);
       force = force + user.press.force;
+      if (user.press.contact) report_touched(user.press.contact->mesh);
     }
     user.share = share_rendered(force, user.max_force);
     user.rendered = user.share * force;
@@ -124,9 +133,15 @@ void Simulation::Impl::touch_server() {
   }
 }
 
+/// Who touches an object that sleeps needs its shape to what a hand feels, not to what an eye sees.
+void Simulation::Impl::report_touched(std::uint32_t mesh) {
+  frame.meshes[mesh].updated = frame.meshes[mesh].updated || deformables->is_due(mesh);
+}
+
 tl::expected<EncodedPacket, Error> Simulation::Impl::transmit() {
   if (!channel) {
-    client_poses = true_poses;
+    for (const std::uint32_t i : world.changed()) client_poses[i] = true_poses[i];
+    for (std::size_t i = scene.objects.size(); i < client_poses.size(); ++i) client_poses[i] = true_poses[i];
     return EncodedPacket{};
   }
   TACTUS_TRY(const EncodedPacket packet, channel->encoder.encode(frame.tick, frame.objects, contacts));
@@ -196,7 +211,10 @@ tl::expected<EncodedPacket, StepError> Simulation::Impl::tick() {
 
 Result<void> Simulation::Impl::add_deformables(const SimulationOptions& options) {
   const auto clients = options.channel ? DeformableClients::shown : DeformableClients::true_shape;
-  TACTUS_TRY(deformables, make_deformable_world(scene, {scene.users.size(), clients, options.estimate_every}));
+  TACTUS_TRY(deformables, make_deformable_world(scene, {.users = scene.users.size(),
+                                                        .clients = clients,
+                                                        .estimate_every = options.estimate_every,
+                                                        .report_at_rest = options.mesh_noise != 0}));
   for (const TraceMesh& mesh : deformables->meshes()) {
     places.push_back({centre(mesh.rest), {}});
     frame.meshes.push_back({false, std::vector<float>(3 * mesh.rest.vertices.size())});
@@ -232,6 +250,7 @@ Result<Simulation> Simulation::create(const Scene& scene, const SimulationOption
   Random seeds(options.seed);
   std::optional<Probe> probe;  // where every probe begins
   if (!scene.users.empty()) probe.emplace(scene.objects, *scene.touch);
+  if (probe && !options.channel) probe->expect_attend();
   for (const SceneUser& user : scene.users) {
     impl->users.push_back(User{.hand = Hand(user, options.grip.value_or(user.grip), seeds.next()),
                                .server = *probe,

@@ -77,6 +77,10 @@ class AabbTree {
   template <class Visit>
   void visit_sphere(const Vec3& centre, double radius, std::span<const Vec3> vertices, Visit&& visit) const;
 
+  /// A moving sphere stays outside of the box around all triangles.   time O(1)
+  bool is_far(const Sweep& sphere) const noexcept {
+    return nodes_.empty() || !near_segment(nodes_[0].box, sphere.from, sphere.way, sphere.radius + sphere.slack);
+  }
   bool contains(std::uint32_t triangle) const noexcept { return triangle < leaf_of_.size() && leaf_of_[triangle] != kAbsent; }
   std::size_t size() const noexcept { return leaves_.size(); }
   /// Vertices of a triangle of the tree, in the mesh's order.

@@ -5,9 +5,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace tactus {
 namespace {
+
+constexpr double kAround = 0.1;           // [m]
+constexpr std::uint64_t kLookAgain = 64;  // moves
 
 double& component(Vec3& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 double component(const Vec3& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
@@ -96,15 +100,52 @@ void BoxProxy::slide(const Vec3& probe) noexcept {
 
 Probe::Probe(std::span<const SceneObject> objects, const SceneTouch& touch) : touch_(touch) {
   proxies_.reserve(objects.size());
+  near_.resize(objects.size());
+  std::iota(near_.begin(), near_.end(), 0U);
   for (const SceneObject& object : objects) {
+    Seen& seen = seen_.emplace_back();
+    seen.reach = object.surface.triangles.empty() ? 0.5 * norm(object.size) : 0;
+    for (const Vec3& v : object.surface.vertices) seen.reach = std::max(seen.reach, norm(v));
     if (object.surface.triangles.empty()) proxies_.emplace_back(BoxProxy(0.5 * object.size, touch.friction));
     else proxies_.emplace_back(SurfaceProxy(std::make_shared<const TouchSurface>(object.surface), touch.friction));
   }
 }
 
+void Probe::place(std::uint32_t object, const Vec3& device, const Pose& pose) noexcept {
+  std::visit([&](auto& proxy) { proxy.place(to_object(pose, device)); }, proxies_[object]);
+}
+
 void Probe::place_all(const Vec3& device, std::span<const Pose> poses) noexcept {
-  for (std::size_t i = 0; i < proxies_.size(); ++i)
-    std::visit([&](auto& proxy) { proxy.place(to_object(poses[i], device)); }, proxies_[i]);
+  device_ = device;
+  if (attended_only_) look_around(device, poses);
+  for (const std::uint32_t i : near_) place(i, device, poses[i]);
+}
+
+void Probe::attend(std::uint32_t object, const Pose& pose) {
+  if (!placed_) return;
+  Seen& seen = seen_[object];
+  seen.attended_at = moves_ + 1;
+  if (seen.near) return;
+  seen.near = true;
+  place(object, device_, pose);
+  near_.insert(std::lower_bound(near_.begin(), near_.end(), object), object);
+}
+
+/// Find out which objects the probe may meet on its way to the device, and some way beyond.
+void Probe::look_around(const Vec3& device, std::span<const Pose> poses) noexcept {
+  looked_from_ = device;
+  const Vec3 middle = 0.5 * (device_ + device);
+  const double around = kAround + 0.5 * norm(device - device_);
+  near_.clear();
+  for (std::uint32_t i = 0; i < seen_.size(); ++i) {
+    Seen& seen = seen_[i];
+    const Vec3 away = poses[i].position - middle;
+    const double reach = around + seen.reach;
+    const bool is_near = seen.attended_at == moves_ || dot(away, away) <= reach * reach;
+    if (is_near && !seen.near) place(i, device_, poses[i]);
+    seen.near = is_near;
+    if (is_near) near_.push_back(i);
+  }
 }
 
 /// Whether it touches afterwards.
@@ -124,11 +165,15 @@ void Probe::follow(const Vec3& device, std::span<const Pose> poses) noexcept {
     touched_.reset();
     place_all(device, poses);
   }
-  for (std::uint32_t i = 0; i < proxies_.size(); ++i)
+  const bool looks =
+      norm(device - looked_from_) > 0.5 * kAround || moves_ % kLookAgain == 0;  // some of those near may rest by now
+  if (attended_only_ && looks) look_around(device, poses);
+  for (const std::uint32_t i : near_)
     if (move_one(i, device, poses) && !touched_) touched_ = i;
 }
 
 Touch Probe::move(const Vec3& device, bool button, std::span<const Pose> poses) noexcept {
+  ++moves_;
   if (!placed_ || (anchor_ && !button)) {
     anchor_.reset();
     touched_.reset();
@@ -136,6 +181,7 @@ Touch Probe::move(const Vec3& device, bool button, std::span<const Pose> poses) 
     placed_ = true;
   }
   if (!anchor_) follow(device, poses);
+  device_ = device;
 
   Touch out{.contact = {}, .proxy = device, .force = {}};
   out.contact.device = device;

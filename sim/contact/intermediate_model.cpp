@@ -27,7 +27,8 @@ IntermediateModel::IntermediateModel(const TriMesh& mesh, const MeshTopology& to
       is_rim_(mesh.triangles.size(), 0),
       from_(mesh.vertices),
       to_(mesh.vertices),
-      shown_(mesh.vertices) {
+      shown_(mesh.vertices),
+      next_(mesh.vertices) {
   std::size_t largest = 0;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     topology.rings_around(t, options.rings, cut_);
@@ -39,6 +40,8 @@ IntermediateModel::IntermediateModel(const TriMesh& mesh, const MeshTopology& to
 }
 
 void IntermediateModel::cut_around(std::uint32_t triangle) noexcept {
+  if (still_ > 1 && triangle == cut_around_triangle_) return;  // it would be the same one
+  cut_around_triangle_ = triangle;
   for (const std::uint32_t t : cut_) is_rim_[t] = 0;
   for (const std::uint32_t v : moving_) is_moving_[v] = 0;
   topology_.rings_around(triangle, options_.rings, cut_);
@@ -63,6 +66,8 @@ void IntermediateModel::cut_around(std::uint32_t triangle) noexcept {
 ProxyTouch IntermediateModel::place(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
   std::copy(vertices.begin(), vertices.end(), shown_.begin());
   from_ = to_ = shown_;
+  reach_ = 0;
+  still_ = 0;
   touch_ = proxy_.place(probe, inside_, vertices, tree);
   if (const auto nearest = tree.closest(proxy_.position(), vertices)) cut_around(nearest->triangle);
   tick_ = 0;
@@ -70,11 +75,24 @@ ProxyTouch IntermediateModel::place(const Vec3& probe, std::span<const Vec3> ver
 }
 
 void IntermediateModel::update(std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
+  bool moves = false;
   for (std::size_t v = 0; v < shown_.size(); ++v) {
     if (is_moving_[v] == 0) shown_[v] = to_[v];
+    moves = moves || shown_[v] != vertices[v];
     from_[v] = shown_[v];
     to_[v] = vertices[v];
   }
+  still_ = moves ? 0 : still_ + 1;
+  recut(vertices, tree);
+}
+
+void IntermediateModel::update_at_rest(std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
+  if (still_ == 0) return update(vertices, tree);
+  ++still_;
+  recut(vertices, tree);
+}
+
+void IntermediateModel::recut(std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
   tick_ = 0;
   if (touch_.touched) {
     cut_around(touch_.triangle);
@@ -82,6 +100,20 @@ void IntermediateModel::update(std::span<const Vec3> vertices, const AabbTree& t
     cut_around(nearest->triangle);
     touch_ = proxy_.place(proxy_.position(), inside_, shown_, tree_);
   }
+  double farthest2 = 0;
+  for (const std::uint32_t v : moving_) farthest2 = std::max(farthest2, dot(to_[v] - from_[v], to_[v] - from_[v]));
+  reach_ = std::sqrt(farthest2) / options_.ticks;
+}
+
+/// One tick nearer to where the deformation step put the vertices.
+void IntermediateModel::approach() noexcept {
+  tick_ = std::min(tick_ + 1, options_.ticks);
+  if (reach_ == 0) return;
+  const double share = static_cast<double>(tick_) / options_.ticks;
+  for (const std::uint32_t v : moving_) next_[v] = share < 1 ? from_[v] + share * (to_[v] - from_[v]) : to_[v];
+  proxy_.expect(reach_, shown_, next_, tree_);
+  for (const std::uint32_t v : moving_) shown_[v] = next_[v];
+  tree_.refit(shown_);
 }
 
 /// Did the proxy lose the surface only because the cut-out ends there?
@@ -93,10 +125,7 @@ bool IntermediateModel::falls_off(const ProxyTouch& touch, const Vec3& probe) co
 }
 
 ProxyTouch IntermediateModel::move(const Vec3& probe) noexcept {
-  tick_ = std::min(tick_ + 1, options_.ticks);
-  const double share = static_cast<double>(tick_) / options_.ticks;
-  for (const std::uint32_t v : moving_) shown_[v] = share < 1 ? from_[v] + share * (to_[v] - from_[v]) : to_[v];
-  tree_.refit(shown_);
+  approach();
   const MeshProxy before = proxy_;
   const Vec3 below = touch_.proxy + dot(probe - touch_.proxy, touch_.normal) * touch_.normal;
   Vec3 goal = probe;

@@ -22,7 +22,7 @@ namespace tactus {
 struct IntermediateModelOptions {
   unsigned rings = 3;       ///< m
   std::uint32_t ticks = 1;  ///< of haptic rendering per deformation step, N >= 1 (thesis figure 4.14)
-  MeshProxyOptions proxy;   ///< its reach: how far a vertex moves in a tick at most
+  MeshProxyOptions proxy;
 };
 
 class IntermediateModel {
@@ -38,6 +38,8 @@ class IntermediateModel {
   /// in   vertices  of the whole mesh; the tree is fitted to them
   /// time O(n); no allocation
   void update(std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
+  /// A deformation step is done and moved nothing: what update() does then.   time O(cut-out) where the proxy went on, else O(log n)
+  void update_at_rest(std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
   /// One tick of haptic rendering.   pre  place()   time O(cut-out), about 2 us for three rings; no allocation
   ProxyTouch move(const Vec3& probe) noexcept;
 
@@ -48,6 +50,8 @@ class IntermediateModel {
  private:
   bool falls_off(const ProxyTouch& touch, const Vec3& probe) const noexcept;
   void cut_around(std::uint32_t triangle) noexcept;
+  void recut(std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
+  void approach() noexcept;
 
   const TriMesh& mesh_;
   const MeshTopology& topology_;
@@ -61,8 +65,11 @@ class IntermediateModel {
   std::vector<std::uint8_t> is_moving_;  // by vertex
   std::vector<std::uint8_t> is_rim_;     // by triangle: around one of its corners the mesh goes on beyond the cut-out
   std::vector<Vec3> from_, to_;          // by vertex: start and end of this period
-  std::vector<Vec3> shown_;
-  std::uint32_t tick_ = 0;  // since the last deformation step
+  std::vector<Vec3> shown_, next_;       // next_: in this tick, of the cut-out
+  double reach_ = 0;                     // [m] at most so far does a vertex of the cut-out move in a tick of this period
+  std::uint32_t tick_ = 0;               // since the last deformation step
+  std::uint32_t still_ = 0;              // deformation steps in a row in which nothing moved
+  std::uint32_t cut_around_triangle_ = MeshTopology::kNone;  // in the middle of the cut-out
 };
 
 }  // namespace tactus

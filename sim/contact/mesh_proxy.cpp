@@ -164,9 +164,35 @@ void MeshProxy::carry(std::span<const Vec3> vertices, const AabbTree& tree) noex
     const Vec3 local{dot(offset, (*old_axes)[0]), dot(offset, (*old_axes)[1]), dot(offset, (*old_axes)[2])};
     offset = local.x * (*new_axes)[0] + local.y * (*new_axes)[1] + local.z * (*new_axes)[2];
   }
-  centre_ = blend(anchor_.weights, now) + offset;
+  const Vec3 foot = blend(anchor_.weights, now);
   anchor_.corners = now;
+  centre_ = foot + offset;
+  if (const double height = norm(offset), least = distance() + slack_; height > 2 * least) {  // other parts may have come between
+    centre_ = foot + (least / height) * offset;
+    const auto hit = tree.sweep(towards(foot + offset), vertices, {&anchor_.triangle, 1});
+    centre_ = hit ? centre_ + hit->rest * (foot + offset - centre_) : foot + offset;
+  }
   keep_distance(vertices, tree);
+}
+
+/// A triangle may pass over the proxy if its closest point comes nearer by half of the distance or more: the whole of it, but for
+/// how the triangle turns meanwhile.
+void MeshProxy::expect(double reach, std::span<const Vec3> vertices, std::span<const Vec3> next, const AabbTree& tree) noexcept {
+  if (!placed_ || held_ > 0) return;
+  double farthest = 0;
+  anchor_ = {};
+  tree.visit_sphere(centre_, 2 * reach + distance() + slack_, vertices, [&](std::uint32_t triangle, const Corners&) {
+    const Triangle corners = tree.triangle(triangle);
+    const Corners now = corners_of(corners, vertices);
+    const TrianglePoint at = closest_on_triangle(centre_, now);
+    const Vec3 away = centre_ - at.point, moves = blend(at.weights, corners_of(corners, next)) - at.point;
+    const double far = norm(away), nearer = far > 0 ? dot(moves, away) / far : norm(moves), past = nearer - far;
+    if (!(nearer > 0 && nearer >= 0.5 * far)) return;
+    const bool is_first = anchor_.triangle == MeshTopology::kNone;
+    if (!is_first && (past < farthest || (past == farthest && triangle > anchor_.triangle))) return;
+    farthest = past;
+    anchor_ = {triangle, at.weights, now};
+  });
 }
 
 /// Step back from triangles that came closer than they may.
@@ -197,16 +223,21 @@ ProxyTouch MeshProxy::settle(const Vec3& probe, std::span<const Vec3> vertices, 
     touch.weights = planes_[firmest].at.weights;
     touch.normal = length > 0 ? (1 / length) * normal : planes_[firmest].normal;
     anchor_ = {touch.triangle, touch.weights, corners_of(tree.triangle(touch.triangle), vertices)};
-  } else if (options_.reach > 0) {
-    if (const auto nearest = tree.closest(centre_, vertices, options_.reach)) {
-      anchor_ = {nearest->triangle, nearest->weights, corners_of(tree.triangle(nearest->triangle), vertices)};
-    }
   }
   probe_ = probe;
   return touch;
 }
 
+/// Free, and nothing is between it and the probe: what move() would find out in the end.
+bool MeshProxy::is_far(const Vec3& probe, const AabbTree& tree) const noexcept {
+  return placed_ && held_ == 0 && anchor_.triangle == MeshTopology::kNone && is_finite(probe) && tree.is_far(towards(probe));
+}
+
 ProxyTouch MeshProxy::move(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
+  if (is_far(probe, tree)) {
+    centre_ = probe_ = probe;
+    return {.proxy = probe};
+  }
   if (placed_) {
     carry(vertices, tree);
   } else if (is_finite(probe)) {

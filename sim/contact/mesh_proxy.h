@@ -15,8 +15,8 @@
 /// A point probe is a sphere, too: of radius `skin`, 2^-24 of the largest coordinate (6 nm at 0.1 m), a million times the rounding of
 /// positions. Every proxy keeps that distance on top of its radius. A sphere is settled to 2^-14 of its radius (0.3 um of 5 mm).
 ///
-/// Surfaces that move: the proxy first moves along with the point of the surface that holds it, or, if free, with the closest one
-/// within `reach`. A surface therefore never passes over the proxy, and friction carries it.
+/// Surfaces that move: the proxy first moves along with the point of the surface that holds it, or, if free, with the one that
+/// expect() found. A surface that was announced to expect() therefore never passes over the proxy, and friction carries it.
 #pragma once
 
 #include <array>
@@ -34,7 +34,6 @@ namespace tactus {
 struct MeshProxyOptions {
   double friction = 0;  ///< mu >= 0
   double radius = 0;    ///< [m] of the probe, 0: a point
-  double reach = 0;     ///< [m] at most so far does the surface move from call to call; 0: the mesh is rigid
 };
 
 /// What a probe touches.
@@ -59,6 +58,12 @@ class MeshProxy {
   ///      than the triangles, 20 us for 1 % of the calls); at most 16 sweeps, the rest waits for the next call; no allocation
   ProxyTouch move(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
 
+  /// The surface is about to move: a free proxy that it may pass over will go along with that triangle which comes farthest past it.
+  /// in   reach     [m] of the longest way of a vertex
+  ///      vertices  where they still are; the tree is fitted to them
+  ///      next      where they will be
+  /// time O(log n + triangles within reach), O(1) if far; no allocation
+  void expect(double reach, std::span<const Vec3> vertices, std::span<const Vec3> next, const AabbTree& tree) noexcept;
   /// Move along with the surface, but not towards the probe: what move() does first.   time O(1) if nothing moved
   void carry(std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
 
@@ -83,6 +88,7 @@ class MeshProxy {
   std::optional<SurfaceHit> first_contact(const Vec3& goal, const AabbTree& tree, Surroundings& around) const noexcept;
   std::optional<Vec3> wanted(const Vec3& probe) noexcept;
   void hold(const Plane& plane) noexcept;
+  bool is_far(const Vec3& probe, const AabbTree& tree) const noexcept;
   void release() noexcept;
   void keep_distance(std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
   void follow(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;

@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 #include <ctime>
+#include <utility>
 
 namespace tactus {
 namespace {
@@ -12,6 +13,12 @@ namespace {
 constexpr std::array kMethods{Method::velocity_verlet, Method::backward_euler, Method::newmark, Method::tr_bdf2,
                               Method::projective};
 constexpr std::array kSolvers{LinearSolver::conjugate_gradients, LinearSolver::cholesky, LinearSolver::prefactored};
+
+/// Diagonal of the mesh's box [m].
+double size_of(const TriMesh& mesh) {
+  const Bounds box = bounds(mesh.vertices);
+  return norm(box.high - box.low);
+}
 
 }  // namespace
 
@@ -52,10 +59,13 @@ DeformableBody::DeformableBody(FemModel model, const SceneDeformable& object, co
       topology_(surface_.mesh),
       inside_(surface_.mesh, topology_),
       vertices_(surface_.mesh.vertices),
-      tree_(surface_.mesh) {
+      next_vertices_(vertices_),
+      tree_(surface_.mesh),
+      rest_speed_(0x1p-44 * size_of(surface_.mesh) / choice_.options.step) {
   const Eigen::VectorXd& mass = model_.lumped_mass();
   for (Eigen::Index i = 0; i < mass.size(); i += 3)
     weight_.segment<3>(i) = mass[i] * Eigen::Vector3d(gravity.x, gravity.y, gravity.z);
+  if (gravity == Vec3{}) resting_ = kRestSteps;
 }
 
 tl::expected<std::unique_ptr<DeformableBody>, FemError> DeformableBody::create(const SceneDeformable& object, const Vec3& gravity,
@@ -78,29 +88,48 @@ void DeformableBody::push(std::uint32_t triangle, std::span<const double, 3> wei
   Triangle corners = surface_.mesh.triangles[triangle];
   for (std::uint32_t& corner : corners) corner = surface_.vertex[corner];
   add_force(corners, weights, force, pushed_);
+  pushed_any_ = pushed_any_ || force != Vec3{};
 }
 
-tl::expected<bool, FemError> DeformableBody::tick() {
-  if (++phase_ < rate_) return false;
+tl::expected<DeformableBody::Tick, FemError> DeformableBody::tick() {
+  if (++phase_ < rate_) return Tick::between;
   phase_ = 0;
+  time_ = {};
+  if (sleeps()) return Tick::slept;
   load_ = weight_ + pushed_ / static_cast<double>(rate_);
   pushed_.setZero();
   if (estimate_) estimate_->look(load_, state_);
   const auto start = std::chrono::steady_clock::now();
   const std::clock_t cpu = std::clock();
   if (const auto stepped = integrator_->step(load_, state_); !stepped) return tl::unexpected(stepped.error());
+  look_for_rest();
   move_surface();
   time_ = {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
            static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC};
-  return true;
+  return Tick::stepped;
+}
+
+void DeformableBody::look_for_rest() noexcept {
+  const bool moves = std::exchange(pushed_any_, false) || state_.v.cwiseAbs().maxCoeff() > rest_speed_;
+  resting_ = moves ? 0 : resting_ + 1;
 }
 
 void DeformableBody::move_surface() noexcept {
+  double farthest2 = 0;
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     const auto u = state_.u.segment<3>(3 * static_cast<Eigen::Index>(surface_.vertex[i]));
-    vertices_[i] = surface_.mesh.vertices[i] + Vec3{u[0], u[1], u[2]};
+    next_vertices_[i] = surface_.mesh.vertices[i] + Vec3{u[0], u[1], u[2]};
+    const Vec3 way = next_vertices_[i] - vertices_[i];
+    farthest2 = std::max(farthest2, dot(way, way));
   }
+  reach_ = std::sqrt(farthest2);
+}
+
+void DeformableBody::show() noexcept {
+  if (reach_ == 0) return;
+  std::swap(vertices_, next_vertices_);
   tree_.refit(vertices_);
+  reach_ = 0;
 }
 
 }  // namespace tactus

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// One deformable object: finite elements at the low rate, and its surface.
+///
+/// Sleep  after kRestSteps steps in a row without a push in which no vertex was faster than 2^-44 of the object's size per step, no
+///        more steps are taken until it is pushed. It keeps its last state, velocities included; what is left out is the trembling
+///        by the rounding of its forces. What comes after a push is what it would have been, but for the rounding that the elements'
+///        warm starts make (model.h). An object without a free vertex never takes a step, one without weight none before it is pushed.
 #pragma once
 
 #include <memory>
@@ -20,17 +25,29 @@ FemOptions fem_options(const SceneDeformable& object);
 /// The scene's method, or the one that suits it, and why.
 Choice chosen_method(const SceneDeformable& object, const FemModel& model);
 
+inline constexpr std::uint32_t kRestSteps = 32;  ///< more than a client goes on predicting motion for (codec/mesh/mesh_motion.h)
+
 class DeformableBody {
  public:
+  enum class Tick : std::uint8_t {
+    between,  ///< no step was due
+    slept,    ///< one was due and left out: nothing changes
+    stepped   ///< there is a new shape: call show()
+  };
+
   /// err  R-TET-n, R-FEM-1..4, 7, 8
   static tl::expected<std::unique_ptr<DeformableBody>, FemError> create(const SceneDeformable& object, const Vec3& gravity,
                                                                         std::uint32_t estimate_every);
 
   /// Let a force [N] act on a triangle of the surface in this tick.   in  weights  of its corners
   void push(std::uint32_t triangle, std::span<const double, 3> weights, const Vec3& force) noexcept;
-  /// End a tick; true when it was the last of a period, and the object has a new shape.
-  /// err  R-FEM-6, R-FEM-7; the shape before is kept
-  tl::expected<bool, FemError> tick();
+  /// End a tick. A new shape is not seen before show().   err  R-FEM-6, R-FEM-7; the shape before is kept
+  tl::expected<Tick, FemError> tick();
+  /// How far the vertex of the surface moves that moves farthest when the new shape is shown [m].
+  double reach() const noexcept { return reach_; }
+  std::span<const Vec3> next_vertices() const noexcept { return next_vertices_; }  ///< of the surface when it is shown
+  /// Let the surface have its new shape.
+  void show() noexcept;
 
   const TetSurface& surface() const noexcept { return surface_; }
   const MeshTopology& topology() const noexcept { return topology_; }
@@ -39,12 +56,14 @@ class DeformableBody {
   const AabbTree& tree() const noexcept { return tree_; }                ///< fitted to them
   const Choice& choice() const noexcept { return choice_; }
   const FemState& state() const noexcept { return state_; }
-  const DeformationTime& time() const noexcept { return time_; }
+  const DeformationTime& time() const noexcept { return time_; }  ///< of the step that was due last: 0 if left out
   const std::optional<ErrorEstimate>& estimate() const noexcept { return estimate_; }
 
  private:
   DeformableBody(FemModel model, const SceneDeformable& object, const Vec3& gravity);
+  bool sleeps() const noexcept { return model_.free_dofs().empty() || (resting_ >= kRestSteps && !pushed_any_); }
   void move_surface() noexcept;
+  void look_for_rest() noexcept;
 
   FemModel model_;
   Choice choice_;
@@ -57,9 +76,13 @@ class DeformableBody {
   TetSurface surface_;
   MeshTopology topology_;
   Inside inside_;
-  std::vector<Vec3> vertices_;
+  std::vector<Vec3> vertices_, next_vertices_;
   AabbTree tree_;
   DeformationTime time_;
+  double reach_ = 0;
+  double rest_speed_;          // [m/s] slower than this a vertex moves by rounding only
+  std::uint32_t resting_ = 0;  // steps in a row
+  bool pushed_any_ = false;    // in this period
 };
 
 }  // namespace tactus

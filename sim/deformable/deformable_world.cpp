@@ -12,13 +12,11 @@
 namespace tactus {
 namespace {
 
-constexpr double kFastest = 2;  // [m/s] faster than the touched surface moves; a free proxy looks so far ahead
-
 constexpr unsigned kRings = 3;  // of the client's cut-out (thesis 3.3.1.1)
 
 /// What clients see of one object, once they were told: otherwise its true surface.
 struct Seen {
-  std::vector<Vec3> vertices;
+  std::vector<Vec3> vertices, next;
   AabbTree tree;
 };
 
@@ -41,14 +39,27 @@ struct Probe {
     if (cut_out) return placed ? cut_out->move(device) : cut_out->place(device, vertices, tree);
     return placed ? direct.move(device, vertices, tree) : direct.place(device, body.inside(), vertices, tree);
   }
+  /// The surface it sees is about to move.
+  void expect(std::uint32_t object, double reach, std::span<const Vec3> vertices, std::span<const Vec3> next,
+              const AabbTree& tree) noexcept {
+    if (Proxy& proxy = proxies[object]; !proxy.cut_out) proxy.direct.expect(reach, vertices, next, tree);
+  }
 };
+
+/// The longest of the ways from one place to the other [m].
+double farthest(std::span<const Vec3> from, std::span<const Vec3> to) {
+  double square = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) square = std::max(square, dot(to[i] - from[i], to[i] - from[i]));
+  return std::sqrt(square);
+}
 
 class World final : public DeformableWorld {
  public:
-  Result<void> add(const SceneDeformable& object, const Vec3& gravity, std::uint32_t estimate_every);
+  Result<void> add(const SceneDeformable& object, const Vec3& gravity, const DeformableOptions& options);
   void add_user(const Scene& scene);
   void add_clients() {
-    for (const auto& body : bodies_) seen_.push_back({body->surface().mesh.vertices, AabbTree(body->surface().mesh)});
+    for (const auto& body : bodies_)
+      seen_.push_back({body->surface().mesh.vertices, body->surface().mesh.vertices, AabbTree(body->surface().mesh)});
   }
 
   DeformableTouch touch_server(std::size_t user, const Vec3& device) noexcept override {
@@ -63,6 +74,7 @@ class World final : public DeformableWorld {
   }
   tl::expected<void, StepError> step() override;
   void observe(std::span<MeshSample> meshes) noexcept override;
+  bool is_due(std::size_t object) const noexcept override { return last_[object] != DeformableBody::Tick::between; }
   std::span<const TraceMesh> meshes() const noexcept override { return meshes_; }
   std::span<const DeformableInfo> info() const noexcept override { return info_; }
   DeformationTime time(std::size_t object) const noexcept override { return bodies_[object]->time(); }
@@ -70,6 +82,7 @@ class World final : public DeformableWorld {
 
  private:
   DeformableTouch touch(Probe& probe, std::span<const Seen> seen, const Vec3& device) noexcept;
+  void deform(std::uint32_t object) noexcept;
   void update_clients(std::uint32_t object, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
 
   std::vector<std::unique_ptr<DeformableBody>> bodies_;
@@ -77,9 +90,10 @@ class World final : public DeformableWorld {
   std::vector<Probe> server_, client_;  // one per user
   std::vector<TraceMesh> meshes_;
   std::vector<DeformableInfo> info_;
-  std::vector<std::uint8_t> updated_;  // since the last observe()
-  std::vector<Seen> seen_;             // by clients, one per object; none: they see the truth
+  std::vector<DeformableBody::Tick> last_;  // what the last tick came to, one per object
+  std::vector<Seen> seen_;                  // by clients, one per object; none: they see the truth
   std::int64_t tick_ = 0;
+  bool report_at_rest_ = false;
 };
 
 double extent(const TriMesh& mesh) {
@@ -96,8 +110,9 @@ std::vector<std::uint32_t> fixed_of(const TetSurface& surface, std::span<const s
   return out;
 }
 
-Result<void> World::add(const SceneDeformable& object, const Vec3& gravity, std::uint32_t estimate_every) {
-  auto body = DeformableBody::create(object, gravity, estimate_every);
+Result<void> World::add(const SceneDeformable& object, const Vec3& gravity, const DeformableOptions& options) {
+  auto body = DeformableBody::create(object, gravity, options.estimate_every);
+  report_at_rest_ = options.report_at_rest;
   if (!body) return tl::unexpected(body.error().error);
   const Choice& choice = (*body)->choice();
   std::string method = name(choice.options.method);
@@ -108,7 +123,7 @@ Result<void> World::add(const SceneDeformable& object, const Vec3& gravity, std:
   meshes_.push_back(
       {object.name, (*body)->surface().mesh, fixed_of((*body)->surface(), object.fixed), static_cast<double>(object.rate)});
   stiffness_.push_back(object.stiffness);
-  updated_.push_back(0);
+  last_.push_back(DeformableBody::Tick::between);
   bodies_.push_back(std::move(*body));
   return {};
 }
@@ -118,12 +133,12 @@ void World::add_user(const Scene& scene) {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const SceneDeformable& object = scene.deformables[i];
     const TriMesh& surface = bodies_[i]->surface().mesh;
-    const auto proxy = [&](std::uint32_t ticks) { return MeshProxyOptions{object.friction, 0, kFastest * kTick * ticks}; };
-    server.proxies.push_back({MeshProxy(proxy(object.rate), extent(surface)), nullptr});
-    client.proxies.push_back({MeshProxy(proxy(object.rate), extent(surface)), nullptr});
+    const MeshProxyOptions proxy{.friction = object.friction};
+    server.proxies.push_back({MeshProxy(proxy, extent(surface)), nullptr});
+    client.proxies.push_back({MeshProxy(proxy, extent(surface)), nullptr});
     if (object.rate > 1)
-      client.proxies.back().cut_out = std::make_unique<IntermediateModel>(
-          surface, bodies_[i]->topology(), IntermediateModelOptions{kRings, object.rate, proxy(1)});
+      client.proxies.back().cut_out = std::make_unique<IntermediateModel>(surface, bodies_[i]->topology(),
+                                                                          IntermediateModelOptions{kRings, object.rate, proxy});
   }
   server_.push_back(std::move(server));
   client_.push_back(std::move(client));
@@ -149,12 +164,26 @@ tl::expected<void, StepError> World::step() {
   for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
     const auto moved = bodies_[i]->tick();
     if (!moved) return tl::unexpected(StepError{moved.error().error, tick_, i, to_string(moved.error())});
-    if (!*moved) continue;
-    updated_[i] = 1;
-    if (seen_.empty()) update_clients(i, bodies_[i]->vertices(), bodies_[i]->tree());
+    last_[i] = *moved;
+    if (*moved == DeformableBody::Tick::stepped) deform(i);
+    else if (*moved == DeformableBody::Tick::slept && seen_.empty())
+      for (Probe& client : client_)
+        if (auto& cut_out = client.proxies[i].cut_out) cut_out->update_at_rest(bodies_[i]->vertices(), bodies_[i]->tree());
   }
   ++tick_;
   return {};
+}
+
+/// A new shape is shown to those who see the truth.
+void World::deform(std::uint32_t object) noexcept {
+  DeformableBody& body = *bodies_[object];
+  if (body.reach() > 0) {
+    for (Probe& server : server_) server.expect(object, body.reach(), body.vertices(), body.next_vertices(), body.tree());
+    if (seen_.empty())
+      for (Probe& client : client_) client.expect(object, body.reach(), body.vertices(), body.next_vertices(), body.tree());
+    body.show();
+  }
+  if (seen_.empty()) update_clients(object, body.vertices(), body.tree());
 }
 
 void World::update_clients(std::uint32_t object, std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
@@ -165,8 +194,12 @@ void World::update_clients(std::uint32_t object, std::span<const Vec3> vertices,
 void World::show(std::size_t object, std::span<const Vec3> displacements) noexcept {
   Seen& seen = seen_[object];
   const std::vector<Vec3>& rest = meshes_[object].rest.vertices;
-  for (std::size_t v = 0; v < rest.size(); ++v) seen.vertices[v] = rest[v] + displacements[v];
-  seen.tree.refit(seen.vertices);
+  for (std::size_t v = 0; v < rest.size(); ++v) seen.next[v] = rest[v] + displacements[v];
+  if (const double reach = farthest(seen.vertices, seen.next); reach > 0) {
+    for (Probe& client : client_) client.expect(static_cast<std::uint32_t>(object), reach, seen.vertices, seen.next, seen.tree);
+    std::swap(seen.vertices, seen.next);
+    seen.tree.refit(seen.vertices);
+  }
   update_clients(static_cast<std::uint32_t>(object), seen.vertices, seen.tree);
 }
 
@@ -179,7 +212,7 @@ std::optional<DeformableError> World::error(std::size_t object) const {
 
 void World::observe(std::span<MeshSample> meshes) noexcept {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    meshes[i].updated = std::exchange(updated_[i], 0) != 0;
+    meshes[i].updated = last_[i] == DeformableBody::Tick::stepped || (report_at_rest_ && is_due(i));
     if (!meshes[i].updated) continue;
     const Eigen::VectorXd& u = bodies_[i]->state().u;
     float* out = meshes[i].displacements.data();
@@ -192,7 +225,7 @@ void World::observe(std::span<MeshSample> meshes) noexcept {
 
 Result<std::unique_ptr<DeformableWorld>> make_deformable_world(const Scene& scene, const DeformableOptions& options) {
   auto world = std::make_unique<World>();
-  for (const SceneDeformable& object : scene.deformables) TACTUS_CHECK(world->add(object, scene.gravity, options.estimate_every));
+  for (const SceneDeformable& object : scene.deformables) TACTUS_CHECK(world->add(object, scene.gravity, options));
   for (std::size_t i = 0; i < options.users; ++i) world->add_user(scene);
   if (options.clients == DeformableClients::shown) world->add_clients();
   return world;

@@ -62,12 +62,14 @@ class DeformableWorld {
 
   /// Let a force [N] act on the touched triangle in this tick.
   virtual void push(const MeshContact& contact, const Vec3& force) noexcept = 0;
-  /// Advance by one tick; `updated` tells for each object whether it got a new shape.   no allocation after the first deformation
+  /// Advance by one tick.   time of an object that rests and whose probes are far: O(users); no allocation after the first deformation
   /// err  invalid_argument R-FEM-6, internal R-FEM-7 with element and remedy; the shapes before the step are kept
   virtual tl::expected<void, StepError> step() = 0;
 
-  /// Shapes as the server sees them now; `updated` when one is new since the last call.
+  /// Shapes as the server sees them now; `updated` when the last tick computed one, which it does not while the object rests.
   virtual void observe(std::span<MeshSample> meshes) noexcept = 0;
+  /// A shape of this object is due now, computed or not.
+  virtual bool is_due(std::size_t object) const noexcept = 0;
 
   virtual std::span<const TraceMesh> meshes() const noexcept = 0;  ///< surfaces at rest
   virtual std::span<const DeformableInfo> info() const noexcept = 0;
@@ -85,6 +87,7 @@ struct DeformableOptions {
   std::size_t users = 0;
   DeformableClients clients = DeformableClients::true_shape;
   std::uint32_t estimate_every = 0;  ///< estimate the local error of every so many deformations, 0: of none
+  bool report_at_rest = false;       ///< observe() tells of every shape that is due, also of objects that sleep
 };
 
 /// pre  the scene has deformables.

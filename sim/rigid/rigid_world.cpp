@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/rigid/rigid_world.h"
 
-#include <ode/ode.h>
 #include <algorithm>
-#include <vector>
+#include <cstring>
+#include <numeric>
 
-#include "sim/rigid/ode_mesh.h"
-#include "sim/rigid/rest_watch.h"
+#include "sim/rigid/rigid_parts.h"
 
 namespace tactus {
 namespace {
 
-#ifndef dDOUBLE
-#error "ODE must be built with double precision"
-#endif
+using namespace rigid;
 
 // Resting boxes stay this deep in what carries them [m]: at depth 0 rounding would open and close the contact in turn. The floor
 // is raised by as much, so that a box on it rests at the height the scene gives.
@@ -21,50 +18,19 @@ constexpr double kSurfaceLayer = 1e-5;
 // dWorldStep loses friction for single ticks ("LCP internal error" on a pushed cube that sticks). QuickStep does not; for one
 // cube on the floor its error in the friction force falls from 3e-2 (20 iterations) over 1e-6 (50) to 1e-8 (100) of mu N.
 constexpr int kIterations = 100;
-constexpr int kMaxContacts = 8;       // per pair; box against box yields up to 8
-constexpr int kMostFound = 4096;      // on a mesh, of which the outermost are kept
-constexpr double kStandstill = 1e-9;  // [m/s] below this a contact point has no direction of sliding
+constexpr std::uint32_t kStillTicks = 16;
 
 // Beyond these a step no longer makes sense, and ODE ends the process when a rotation overflows.
 constexpr double kFastest = 1e4;      // [m/s]
 constexpr double kFastestTurn = 1e5;  // [rad/s]
-
-/// Keeps ODE initialised for the process and its collision code for this thread.
-struct OdeThread {
-  OdeThread() {
-    struct Library {
-      Library() { dInitODE2(0); }
-      ~Library() { dCloseODE(); }
-    };
-    static const Library library;
-    dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll));
-  }
-};
-
-Vec3 vec(const dReal* v) { return {v[0], v[1], v[2]}; }
-
-Quat quaternion(dBodyID body) {
-  const dReal* q = dBodyGetQuaternion(body);
-  return {q[0], q[1], q[2], q[3]};
-}
 
 /// Components of v along the axes whose bits are set, starting at bit `first`.
 Vec3 along_free(const Vec3& v, std::uint8_t dof, int first) {
   return {dof >> first & 1 ? v.x : 0.0, dof >> (first + 1) & 1 ? v.y : 0.0, dof >> (first + 2) & 1 ? v.z : 0.0};
 }
 
-struct Motion {
-  Vec3 velocity, spin;  // [m/s], [rad/s]
-};
-
 /// Neither NaN nor absurd.
 bool can_step(const Motion& motion) { return norm(motion.velocity) < kFastest && norm(motion.spin) < kFastestTurn; }
-
-/// Of a symmetric matrix.
-struct Rows {
-  Vec3 x, y, z;
-  Vec3 operator*(const Vec3& v) const { return {dot(x, v), dot(y, v), dot(z, v)}; }
-};
 
 Rows inverse_of(const dMass& mass) {
   const dReal* i = mass.I;
@@ -74,63 +40,40 @@ Rows inverse_of(const dMass& mass) {
   return {vec(inverse), vec(inverse + 4), vec(inverse + 8)};
 }
 
-struct Body {
-  SceneObject spec;
-  OdeMesh mesh;              // of spec.surface, if any
-  dBodyID handle = nullptr;  // null: static
-  dGeomID geom = nullptr;
-  double mu = 0;
-  Rows inverse_inertia;   // [1/(kg m^2)] about the object's own axes
-  Vec3 force, torque;     // of this step [N, N m], world frame
-  std::size_t mover = 0;  // its number among those that move
-};
+bool are_same(const RigidSample& a, const RigidSample& b) {
+  static_assert(sizeof(RigidSample) == 13 * sizeof(double));
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
 
 }  // namespace
-
-struct RigidWorld::Impl {
-  OdeThread ode;  // first: the others need it
-  dWorldID world = dWorldCreate();
-  dSpaceID space = dSimpleSpaceCreate(nullptr);
-  dGeomID floor = nullptr;
-  dJointGroupID contacts = dJointGroupCreate(0);
-  Vec3 gravity;
-  std::vector<Body> bodies;
-  std::int64_t tick = 0;
-  RestWatch watch;
-  std::vector<Pose> moving;  // poses for it
-  std::size_t sleeping = 0;
-  std::vector<dContact> found;  // of one pair
-
-  explicit Impl(const Scene& scene);
-  ~Impl();
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
-
-  void add(const SceneObject& spec);
-  void collide(dGeomID a, dGeomID b);
-  Motion motion_without_contact(const Body& body) const;
-  Vec3 velocity_without_contact(const Body* body, const Vec3& point) const;
-  void project(Body& body) const;
-  bool ends_period() const noexcept { return tick % kRestTicks == kRestTicks - 1; }
-  void let_sleep();
-  void disturb(const Body& body);
-  const Body* owner(dGeomID geom) const { return static_cast<const Body*>(dGeomGetData(geom)); }
-};
 
 RigidWorld::Impl::Impl(const Scene& scene) : gravity(scene.gravity) {
   dWorldSetGravity(world, gravity.x, gravity.y, gravity.z);
   dWorldSetContactSurfaceLayer(world, kSurfaceLayer);
   dWorldSetQuickStepNumIterations(world, kIterations);
-  if (scene.floor) floor = dCreatePlane(space, 0, 0, 1, *scene.floor + kSurfaceLayer);
-  bodies.reserve(scene.objects.size());  // geoms and meshes point into it
+  if (scene.floor) {
+    floor_height = *scene.floor + kSurfaceLayer;
+    floor = dCreatePlane(nullptr, 0, 0, 1, floor_height);
+  }
+  bodies.reserve(scene.objects.size());  // meshes point into it
   for (const SceneObject& object : scene.objects) add(object);
   const bool any_mesh = std::any_of(bodies.begin(), bodies.end(), [](const Body& body) { return body.mesh != nullptr; });
   found.resize(any_mesh ? kMostFound : kMaxContacts);
+  changed.resize(bodies.size());
+  std::iota(changed.begin(), changed.end(), 0U);
+  for (auto* numbers : {&awake, &groups}) numbers->reserve(moving.size());
+  order.reserve(moving.size());
+  resting.reserve(bodies.size());
+  pairs.reserve(8 * moving.size());
+  touching.reserve(2 * kMaxContacts * moving.size());
+  for (std::uint32_t i = 0; i < bodies.size(); ++i)
+    if (bodies[i].handle) awake.push_back(i);
 }
 
 RigidWorld::Impl::~Impl() {
   dJointGroupDestroy(contacts);
-  dSpaceDestroy(space);
+  for (const Body& body : bodies) dGeomDestroy(body.geom);
+  if (floor) dGeomDestroy(floor);
   dWorldDestroy(world);
 }
 
@@ -140,11 +83,10 @@ void RigidWorld::Impl::add(const SceneObject& spec) {
   body.mu = spec.friction;
   if (!spec.surface.triangles.empty()) {
     body.mesh = make_ode_mesh(body.spec.surface);
-    body.geom = dCreateTriMesh(space, body.mesh.get(), nullptr, nullptr, nullptr);
+    body.geom = dCreateTriMesh(nullptr, body.mesh.get(), nullptr, nullptr, nullptr);
   } else {
-    body.geom = dCreateBox(space, spec.size.x, spec.size.y, spec.size.z);
+    body.geom = dCreateBox(nullptr, spec.size.x, spec.size.y, spec.size.z);
   }
-  dGeomSetData(body.geom, &body);
   if (spec.dof != Dof::none) {
     dMass mass;
     if (body.mesh) mass = mass_of_mesh(body.geom, spec.mass);
@@ -154,9 +96,10 @@ void RigidWorld::Impl::add(const SceneObject& spec) {
     dBodySetMass(body.handle, &mass);
     body.mover = moving.size();
     moving.push_back(spec.pose);
-    double reach = body.mesh ? 0 : norm(spec.size) / 2;
-    for (const Vec3& v : spec.surface.vertices) reach = std::max(reach, norm(v));
-    watch.add(spec.pose, reach);
+    body.awake = true;
+    body.reach = body.mesh ? 0 : norm(spec.size) / 2;
+    for (const Vec3& v : spec.surface.vertices) body.reach = std::max(body.reach, norm(v));
+    watch.add(spec.pose, body.reach);
     dGeomSetBody(body.geom, body.handle);
   }
   const dQuaternion rotation{spec.pose.rotation.w, spec.pose.rotation.x, spec.pose.rotation.y, spec.pose.rotation.z};
@@ -165,7 +108,7 @@ void RigidWorld::Impl::add(const SceneObject& spec) {
 }
 
 /// Velocities at the end of this step if nothing but gravity and pushes acted.
-Motion RigidWorld::Impl::motion_without_contact(const Body& body) const {
+rigid::Motion RigidWorld::Impl::motion_without_contact(const Body& body) const {
   const Quat rotation = quaternion(body.handle);
   const Vec3 torque = rotate(conjugate(rotation), body.torque);
   return {vec(dBodyGetLinearVel(body.handle)) + kTick * (gravity + (1 / body.spec.mass) * body.force),
@@ -176,34 +119,6 @@ Vec3 RigidWorld::Impl::velocity_without_contact(const Body* body, const Vec3& po
   if (!body || !body->handle) return {};
   const Motion motion = motion_without_contact(*body);
   return motion.velocity + cross(motion.spin, point - vec(dBodyGetPosition(body->handle)));
-}
-
-void RigidWorld::Impl::collide(dGeomID a, dGeomID b) {
-  const Body* first = owner(a);
-  const Body* second = owner(b);
-  dBodyID body_a = dGeomGetBody(a), body_b = dGeomGetBody(b);
-  if (!body_a && !body_b) return;
-
-  const bool on_mesh = dGeomGetClass(a) == dTriMeshClass || dGeomGetClass(b) == dTriMeshClass;
-  int count = dCollide(a, b, on_mesh ? kMostFound : kMaxContacts, &found[0].geom, sizeof(dContact));
-  if (on_mesh) count = keep_outermost(std::span(found).first(static_cast<std::size_t>(count)), kMaxContacts);
-  if (count > 0 && body_a && body_b && ends_period()) watch.touch(first->mover, second->mover);
-  for (int i = 0; i < count; ++i) {
-    dContact& contact = found[static_cast<std::size_t>(i)];
-    contact.surface = {};
-    contact.surface.mode = dContactApprox1;
-    contact.surface.mu = !first ? second->mu : !second ? first->mu : std::min(first->mu, second->mu);
-    const Vec3 point = vec(contact.geom.pos), normal = vec(contact.geom.normal);
-    const Vec3 relative = velocity_without_contact(first, point) - velocity_without_contact(second, point);
-    const Vec3 sliding = relative - dot(relative, normal) * normal;
-    if (const double speed = norm(sliding); speed > kStandstill) {
-      contact.surface.mode |= dContactFDir1;
-      contact.fdir1[0] = sliding.x / speed;
-      contact.fdir1[1] = sliding.y / speed;
-      contact.fdir1[2] = sliding.z / speed;
-    }
-    dJointAttach(dJointCreateContact(world, contacts, &contact), body_a, body_b);
-  }
 }
 
 /// Damp, then put the object back onto its axes.
@@ -229,26 +144,73 @@ void RigidWorld::Impl::project(Body& body) const {
   dBodySetQuaternion(body.handle, rotation);
 }
 
-/// At the end of a period; whatever wakes a body, a push or one that hits it, wakes all that it touches.
-void RigidWorld::Impl::let_sleep() {
-  for (const Body& body : bodies)
-    if (body.handle) moving[body.mover] = {vec(dBodyGetPosition(body.handle)), quaternion(body.handle)};
-  watch.end_period(moving);
-  sleeping = 0;
-  for (const Body& body : bodies) {
-    if (!body.handle || !watch.rests(body.mover)) continue;
+/// What the solver leaves over is not a motion. Who stands still already goes on to stand up to a larger speed, so that no other shuffle
+/// of the constraints makes it go.
+void RigidWorld::Impl::stand_still(Body& body) const {
+  const bool is_pushed = body.force != Vec3{} || body.torque != Vec3{};
+  const double speed = norm(vec(dBodyGetLinearVel(body.handle))) + body.reach * norm(vec(dBodyGetAngularVel(body.handle)));
+  body.stands = body.touches && !is_pushed && speed < (body.stands ? 10 : 1) * kStandstill;
+  if (body.stands) {
+    const auto& [x, q] = body.before.pose;
+    const dQuaternion rotation{q.w, q.x, q.y, q.z};
+    dBodySetPosition(body.handle, x.x, x.y, x.z);
+    dBodySetQuaternion(body.handle, rotation);
+    std::copy_n(rotation, 4, const_cast<dReal*>(dBodyGetQuaternion(body.handle)));  // ODE made it one of unit length: other bits
     dBodySetLinearVel(body.handle, 0, 0, 0);
     dBodySetAngularVel(body.handle, 0, 0, 0);
-    dBodyDisable(body.handle);
-    ++sleeping;
+  }
+  body.still = !is_pushed && are_same(sample(body), body.before) ? body.still + 1 : 0;
+}
+
+RigidSample RigidWorld::Impl::sample(const Body& body) const {
+  if (!body.handle) return {.pose = body.spec.pose, .velocity = {}, .angular_velocity = {}};
+  return {.pose = {vec(dBodyGetPosition(body.handle)), quaternion(body.handle)},
+          .velocity = vec(dBodyGetLinearVel(body.handle)),
+          .angular_velocity = vec(dBodyGetAngularVel(body.handle))};
+}
+
+void RigidWorld::Impl::put_to_sleep(std::uint32_t number) {
+  Body& body = bodies[number];
+  dBodyDisable(body.handle);
+  body.awake = false;
+  std::erase(awake, number);
+  resting_is_old = true;
+}
+
+/// Whatever touches each other sleeps together, or not at all.
+void RigidWorld::Impl::let_still_sleep() {
+  for (auto first = groups.begin(); first != groups.end();) {
+    const std::uint32_t island = bodies[*first].island;
+    const auto is_still = [this](std::uint32_t i) { return bodies[i].still >= kStillTicks; };
+    const auto last = island == kFloor
+                          ? first + 1
+                          : std::find_if(first, groups.end(), [&](std::uint32_t i) { return bodies[i].island != island; });
+    if (std::all_of(first, last, is_still)) std::for_each(first, last, [this](std::uint32_t i) { put_to_sleep(i); });
+    first = last;
   }
 }
 
-void RigidWorld::Impl::disturb(const Body& body) {
-  watch.disturb(body.mover);
-  if (dBodyIsEnabled(body.handle)) return;
+/// At the end of a period; whatever wakes a body, a push or one that hits it, wakes all that it touches.
+void RigidWorld::Impl::let_piles_sleep() {
+  for (const Body& body : bodies)
+    if (body.handle) moving[body.mover] = {vec(dBodyGetPosition(body.handle)), quaternion(body.handle)};
+  watch.end_period(moving);
+  for (const std::uint32_t i : groups) {
+    const Body& body = bodies[i];
+    if (!body.awake || !watch.rests(body.mover)) continue;
+    dBodySetLinearVel(body.handle, 0, 0, 0);
+    dBodySetAngularVel(body.handle, 0, 0, 0);
+    put_to_sleep(i);
+  }
+}
+
+void RigidWorld::Impl::wake(std::uint32_t number) {
+  Body& body = bodies[number];
+  body.still = 0;
+  if (body.awake) return;
+  body.awake = true;
   dBodyEnable(body.handle);
-  --sleeping;
+  awake.insert(std::lower_bound(awake.begin(), awake.end(), number), number);
 }
 
 RigidWorld::RigidWorld(const Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}
@@ -258,54 +220,58 @@ RigidWorld::~RigidWorld() = default;
 
 void RigidWorld::push(std::uint32_t object, const Vec3& force, const Vec3& point) noexcept {
   Body& body = impl_->bodies[object];
-  if (!body.handle) return;
-  if (force != Vec3{}) impl_->disturb(body);
+  if (!body.handle || force == Vec3{}) return;
+  impl_->watch.disturb(body.mover);
+  impl_->wake(object);
   body.force = body.force + force;
   body.torque = body.torque + along_free(cross(point - vec(dBodyGetPosition(body.handle)), force), body.spec.dof, 3);
 }
 
+void RigidWorld::wake(std::uint32_t object) noexcept {
+  if (impl_->bodies[object].handle) impl_->wake(object);
+}
+
+std::span<const std::uint32_t> RigidWorld::changed() const noexcept { return impl_->changed; }
+
 tl::expected<void, StepError> RigidWorld::step() {
   Impl& in = *impl_;
-  if (in.sleeping > 0 && in.sleeping == in.moving.size()) {
+  in.changed.clear();
+  if (in.awake.empty()) {
     ++in.tick;
     return {};
   }
-  // QuickStep shuffles its constraints with the process's one random generator; seeded, a step depends on this world alone.
-  dRandSetSeed(static_cast<unsigned long>(in.tick));
   const auto broken = [&](std::uint32_t i) {
     return tl::unexpected(StepError{Error{Errc::invalid_argument, "R-SIM-1", 0}, in.tick, i});
   };
-  for (std::uint32_t i = 0; i < in.bodies.size(); ++i) {
+  for (const std::uint32_t i : in.awake) {
     const Body& body = in.bodies[i];
-    if (!body.handle) continue;
     if (!can_step(in.motion_without_contact(body))) return broken(i);
     dBodyAddForce(body.handle, body.force.x, body.force.y, body.force.z);
     dBodyAddTorque(body.handle, body.torque.x, body.torque.y, body.torque.z);
   }
-  dJointGroupEmpty(in.contacts);
-  dSpaceCollide(in.space, &in, [](void* self, dGeomID a, dGeomID b) { static_cast<Impl*>(self)->collide(a, b); });
-  dWorldQuickStep(in.world, kTick);
-  for (std::uint32_t i = 0; i < in.bodies.size(); ++i) {
+  if (in.resting_is_old) in.rebuild_resting();
+  in.find_pairs();
+  if (!in.find_contacts()) return tl::unexpected(StepError{Error{Errc::limit_exceeded, "R-SIM-6", 0}, in.tick, in.awake.front()});
+  in.make_groups();
+  in.changed = in.awake;
+  for (const std::uint32_t i : in.awake) in.bodies[i].before = in.sample(in.bodies[i]);
+  in.step_groups();
+  for (const std::uint32_t i : in.awake) {
     Body& body = in.bodies[i];
-    body.force = body.torque = {};
-    if (!body.handle) continue;
     in.project(body);
-    const RigidSample s = sample(i);
+    in.stand_still(body);
+    body.force = body.torque = {};
+    const RigidSample s = in.sample(body);
     if (!is_finite(s.pose.position) || !is_finite(s.pose.rotation) || !can_step({s.velocity, s.angular_velocity}))
       return broken(i);
   }
-  if (in.ends_period()) in.let_sleep();
+  in.let_still_sleep();
+  if (in.ends_period()) in.let_piles_sleep();
   ++in.tick;
   return {};
 }
 
-RigidSample RigidWorld::sample(std::uint32_t object) const noexcept {
-  const Body& body = impl_->bodies[object];
-  if (!body.handle) return {.pose = body.spec.pose, .velocity = {}, .angular_velocity = {}};
-  return {.pose = {vec(dBodyGetPosition(body.handle)), quaternion(body.handle)},
-          .velocity = vec(dBodyGetLinearVel(body.handle)),
-          .angular_velocity = vec(dBodyGetAngularVel(body.handle))};
-}
+RigidSample RigidWorld::sample(std::uint32_t object) const noexcept { return impl_->sample(impl_->bodies[object]); }
 
 std::int64_t RigidWorld::tick() const noexcept { return impl_->tick; }
 

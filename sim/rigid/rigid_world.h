@@ -4,12 +4,18 @@
 /// Coulomb friction  ODE bounds friction per axis (a pyramid). One axis is laid along the velocity that the contact point would
 ///                   have without friction, so that the bound is mu N in every direction of sliding, not up to 41 % more.
 /// Damping           v and w are multiplied by the object's d after every step.
-/// Sleep             a pile of objects that rest together stands still until one of it is pushed or hit (rest_watch.h).
+/// Standstill        what touches something, is not pushed and of which no point is faster than 1e-8 m/s after a step stands still:
+///                   it keeps its pose, and its velocity is zero. Else it would creep by what the solver leaves over.
+/// Sleep             objects that touch each other, or one alone, whose states no bit of which changed in 16 ticks are left out of
+///                   steps until one of them is pushed or hit. That changes no bit of anything: each group of objects that touch
+///                   each other is solved for itself, whatever others do. A pile that trembles sleeps, too (rest_watch.h), and
+///                   then loses its velocities.
 /// Locked axes       an object keeps the exact bits of its first position along them, and of its first rotation.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "codec/base/geometry.h"
@@ -36,10 +42,16 @@ class RigidWorld {
   void push(std::uint32_t object, const Vec3& force, const Vec3& point) noexcept;
 
   /// Advance by one tick.
-  /// time O(contacts), about 15 us for one cube on the floor, nothing when all sleep; no allocation once ODE's arenas fit the
-  ///      contacts, in the first step.
-  /// err  invalid_argument R-SIM-1: a pose is not finite, or an object got faster than 1e4 m/s or 1e5 rad/s; the world is then of no more use.
+  /// time O(contacts), about 15 us for one cube on the floor, and O(log objects) for each that is awake; nothing for those that sleep
+  ///      or are static; no allocation once ODE's arenas fit the contacts, in the first step.
+  /// err  limit_exceeded R-SIM-6: more than 65536 contacts in this step;
+  ///      invalid_argument R-SIM-1: a pose is not finite, or an object got faster than 1e4 m/s or 1e5 rad/s; the world is then of no more use.
   tl::expected<void, StepError> step();
+
+  /// Let an object be part of the next step, as a push without force would.
+  void wake(std::uint32_t object) noexcept;
+  /// Objects whose states the last step may have changed, ascending; before the first step all.
+  std::span<const std::uint32_t> changed() const noexcept;
 
   /// State of an object now.   time O(1), no allocation.
   RigidSample sample(std::uint32_t object) const noexcept;

@@ -213,5 +213,42 @@ TEST_F(ProbeTest, TurnedObjectTurnsTheForce) {
   expect_near(hit.force, 0.63 * normal, 1e-12);
 }
 
+/// Who tells the probe what moves pays less and feels the same, bit for bit.
+TEST(Probe, AttendedOnlyFeelsTheSame) {
+  Random random(3);
+  const auto any = [&random](double size) { return random.uniform(-size, size); };
+  std::vector<SceneObject> objects(60);
+  std::vector<Pose> poses;
+  for (SceneObject& object : objects) {
+    object.size = {0.05, 0.08, 0.1};
+    poses.push_back({{any(0.5), any(0.5), any(0.1)}, {}});
+  }
+  const SceneTouch touch{.stiffness = 500, .friction = 0.4, .lift_stiffness = 100};
+  Probe all(objects, touch), attended(objects, touch);
+  attended.expect_attend();
+  Vec3 device{1, 1, 1};
+  int touched = 0, lifted = 0;
+  for (int tick = 0; tick < 20000; ++tick) {
+    for (std::uint32_t i = 0; i < 5; ++i) {  // each moves for a while, then rests
+      if (tick / 50 % 5 != static_cast<int>(i)) continue;
+      attended.attend(i, poses[i]);
+      poses[i].position = poses[i].position + Vec3{any(0.004), any(0.004), any(0.004)};
+    }
+    device = device + Vec3{any(0.006), any(0.006), any(0.006)} - 0.002 * device;
+    if (tick % 1000 == 0) device = {any(0.6), any(0.6), any(0.2)};  // a jump
+    const bool button = tick / 300 % 3 == 0;
+    const Touch a = all.move(device, button, poses), b = attended.move(device, button, poses);
+    ASSERT_EQ(a.contact.kind, b.contact.kind) << tick;
+    ASSERT_EQ(a.force, b.force) << tick;
+    ASSERT_EQ(a.proxy, b.proxy) << tick;
+    const auto object = [](const Touch& t) { return t.contact.kind == ContactKind::none ? 999u : t.contact.object; };
+    ASSERT_EQ(object(a), object(b)) << tick;
+    touched += a.contact.kind == ContactKind::surface;
+    lifted += a.contact.kind == ContactKind::spring;
+  }
+  EXPECT_GT(touched, 500);
+  EXPECT_GT(lifted, 200);
+}
+
 }  // namespace
 }  // namespace tactus

@@ -20,7 +20,7 @@ constexpr int kTicks = 16;  // thesis: 60 Hz beside 1 kHz
 /// A sheet that dents and waves, deformed every kTicks ticks.
 struct Scene {
   Body body{testing::sheet(kSquares, kCell, [](double, double) { return 0.0; })};
-  IntermediateModel model{body.mesh, body.topology, {.rings = 3, .ticks = kTicks, .proxy = {.friction = 0.3, .reach = 0.002}}};
+  IntermediateModel model{body.mesh, body.topology, {.rings = 3, .ticks = kTicks, .proxy = {.friction = 0.3}}};
 
   void deform(double t) {
     for (Vec3& v : body.mesh.vertices) v.z = 0.004 * std::sin(15 * t + 40 * v.x) + 0.003 * std::sin(11 * t - 50 * v.y);
@@ -69,7 +69,7 @@ TEST(IntermediateModel, OnAMeshAtRestItIsTheMesh) {
   scene.deform(0.3);
   const Vec3 start{0.01, 0.003, 0.02};
   scene.place(start);
-  MeshProxy whole({.friction = 0.3, .reach = 0.002}, 0.075);
+  MeshProxy whole({.friction = 0.3}, 0.075);
   whole.place(start, scene.body.inside, scene.body.mesh.vertices, scene.body.tree);
   Random random(4);
   Vec3 probe{0.01, 0.003, 0.002};

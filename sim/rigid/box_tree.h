@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Which of many boxes that stand still overlap another one: a tree of boxes, halved at the median of the longest side.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "codec/base/geometry.h"
+
+namespace tactus {
+
+/// An axis-aligned box.
+struct Extent {
+  Vec3 low, high;  ///< [m]
+};
+
+inline bool overlap(const Extent& a, const Extent& b) noexcept {
+  return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y && a.low.z <= b.high.z &&
+         b.low.z <= a.high.z;
+}
+
+class BoxTree {
+ public:
+  struct Item {
+    std::uint32_t number = 0;
+    Extent bounds;
+  };
+
+  /// Room for so many: build() then allocates nothing.
+  void reserve(std::size_t count);
+  void clear() noexcept { items_.clear(); }
+  void add(const Item& item) { items_.push_back(item); }
+  /// Of what was added.   time O(n log n)
+  void build();
+  /// Call visit(number) for every item that overlaps a box, in no particular order.   time O(log n + visits), no allocation
+  template <class Visit>
+  void visit(const Extent& box, Visit&& visit) const {
+    for (std::size_t i = 0; i < nodes_.size();) {
+      const Node& node = nodes_[i];
+      const bool reaches = overlap(node.bounds, box);
+      if (reaches && node.count > 0)
+        for (std::uint32_t k = node.first; k < node.first + node.count; ++k)
+          if (overlap(items_[k].bounds, box)) visit(items_[k].number);
+      i = reaches ? i + 1 : node.skip;
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kLeafSize = 4;
+  struct Node {
+    Extent bounds;
+    std::uint32_t first = 0, count = 0;  // items of a leaf; count 0: inner node, its children follow
+    std::size_t skip = 0;                // node behind it and all below it
+  };
+  void split(std::uint32_t first, std::uint32_t last);
+
+  std::vector<Item> items_;
+  std::vector<Node> nodes_;  // in the order of a walk that goes down before it goes on
+};
+
+}  // namespace tactus

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What a RigidWorld consists of. Internal to rigid_world.cpp and rigid_contacts.cpp.
+#pragma once
+
+#include <ode/ode.h>
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "sim/rigid/box_tree.h"
+#include "sim/rigid/ode_mesh.h"
+#include "sim/rigid/rest_watch.h"
+#include "sim/rigid/rigid_world.h"
+
+namespace tactus {
+namespace rigid {
+
+#ifndef dDOUBLE
+#error "ODE must be built with double precision"
+#endif
+
+inline constexpr int kMaxContacts = 8;  // per pair; box against box yields up to 8
+inline constexpr std::size_t kMostTouching = 65536, kMostPairs = 8 * kMostTouching;
+inline constexpr int kMostFound = 4096;              // on a mesh, of which the outermost are kept
+inline constexpr double kSliding = 1e-9;             // [m/s] below this a contact point has no direction of sliding
+inline constexpr double kStandstill = 1e-8;          // [m/s] slower than this, what touches something stands still
+inline constexpr std::uint32_t kFloor = 0xffffffff;  // in place of a body's number
+
+/// Keeps ODE initialised for the process and its collision code for this thread.
+struct OdeThread {
+  OdeThread() {
+    struct Library {
+      Library() { dInitODE2(0); }
+      ~Library() { dCloseODE(); }
+    };
+    static const Library library;
+    dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll));
+  }
+};
+
+inline Vec3 vec(const dReal* v) { return {v[0], v[1], v[2]}; }
+
+inline Quat quaternion(dBodyID body) {
+  const dReal* q = dBodyGetQuaternion(body);
+  return {q[0], q[1], q[2], q[3]};
+}
+
+struct Motion {
+  Vec3 velocity, spin;  // [m/s], [rad/s]
+};
+
+/// Of a symmetric matrix.
+struct Rows {
+  Vec3 x, y, z;
+  Vec3 operator*(const Vec3& v) const { return {dot(x, v), dot(y, v), dot(z, v)}; }
+};
+
+struct Body {
+  SceneObject spec;
+  OdeMesh mesh;              // of spec.surface, if any
+  dBodyID handle = nullptr;  // null: static
+  dGeomID geom = nullptr;
+  double mu = 0;
+  Rows inverse_inertia;   // [1/(kg m^2)] about the object's own axes
+  Vec3 force, torque;     // of this step [N, N m], world frame
+  std::size_t mover = 0;  // its number among those that move
+  double reach = 0;       // [m] of its corners from its centre
+  bool awake = false;
+  bool touches = false;      // in this step
+  bool stands = false;       // did in the last step
+  std::uint32_t still = 0;   // ticks in which no bit of its state changed
+  std::uint32_t group = 0;   // another body that it touches, directly or by others; itself: it stands for them
+  std::uint32_t island = 0;  // the one that stands for those that it touches; kFloor: it touches nothing
+  RigidSample before;        // this step
+};
+
+/// Two bodies near each other, the first of which moves, and where they touch.
+struct Pair {
+  std::uint32_t a = 0, b = 0;
+  std::size_t first = 0, count = 0;  // contacts
+};
+
+}  // namespace rigid
+
+struct RigidWorld::Impl {
+  using Body = rigid::Body;
+  using Pair = rigid::Pair;
+
+  rigid::OdeThread ode;  // first: the others need it
+  dWorldID world = dWorldCreate();
+  dGeomID floor = nullptr;
+  double floor_height = 0;
+  dJointGroupID contacts = dJointGroupCreate(0);
+  Vec3 gravity;
+  std::vector<Body> bodies;
+  std::int64_t tick = 0;
+  RestWatch watch;
+  std::vector<Pose> moving;            // poses for it
+  std::vector<std::uint32_t> awake;    // bodies, ascending
+  std::vector<std::uint32_t> changed;  // by the last step, ascending
+  BoxTree resting;                     // what is static, or slept when it was built
+  bool resting_is_old = true;
+  // Of one step.
+  std::vector<Pair> pairs;
+  std::vector<dContact> touching;
+  std::vector<std::pair<double, std::uint32_t>> order;  // of those awake, along x
+  std::vector<std::uint32_t> groups;                    // those awake, group by group
+  std::vector<dContact> found;                          // of one pair
+
+  explicit Impl(const Scene& scene);
+  ~Impl();
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  void add(const SceneObject& spec);
+  dGeomID geom(std::uint32_t body) const { return body == rigid::kFloor ? floor : bodies[body].geom; }
+  const Body* body(std::uint32_t number) const { return number == rigid::kFloor ? nullptr : &bodies[number]; }
+  Extent bounds(std::uint32_t body) const;
+  void rebuild_resting();
+  int collide(dGeomID a, dGeomID b);
+  void find_pairs();
+  void find_pairs_among_awake();
+  bool find_contacts();
+  std::uint32_t group_of(std::uint32_t body);
+  void make_groups();
+  void step_groups();
+  void attach(const Pair& pair);
+  rigid::Motion motion_without_contact(const Body& body) const;
+  Vec3 velocity_without_contact(const Body* body, const Vec3& point) const;
+  void project(Body& body) const;
+  void stand_still(Body& body) const;
+  RigidSample sample(const Body& body) const;
+  bool ends_period() const noexcept { return tick % kRestTicks == kRestTicks - 1; }
+  void let_still_sleep();
+  void let_piles_sleep();
+  void put_to_sleep(std::uint32_t number);
+  void wake(std::uint32_t number);
+};
+
+}  // namespace tactus
