@@ -234,6 +234,7 @@ void report_errors(const Simulation& simulation, Report& report) {
     report.deformables[i].samples = static_cast<std::uint64_t>(error->samples);
     report.deformables[i].error_p50 = error->p50;
     report.deformables[i].error_max = error->max;
+    report.deformables[i].energy_gained = error->energy;
   }
 }
 

@@ -111,6 +111,12 @@ void note_row(Table& table, const std::string& name, const std::string& text) {
   table.row({fmt::format("  {:<8} {}", name, text)});
 }
 
+std::string step_error(const DeformableReport& d) {
+  constexpr std::uint64_t kFew = 10;
+  if (d.samples < kFew) return fmt::format("of one step: n = {} is too few to tell", d.samples);
+  return fmt::format("{:.2g} of one step, relative (median of {}), at most {:.2g}", d.error_p50, d.samples, d.error_max);
+}
+
 void note_rows(Table& table, const Report& r) {
   if (r.segments)
     note_row(table, "content", fmt::format("{} in {}", counted(r.ticks.count(), "row"), counted(*r.segments, "segment")));
@@ -126,9 +132,10 @@ void note_rows(Table& table, const Report& r) {
   for (const DeformableReport& d : r.deformables) {
     note_row(table, "object", fmt::format("{}, {}, deformed every {:g} ms", d.name, counted(d.vertices, "vertex"), 1e3 * d.step));
     note_row(table, "method", fmt::format("{}: {}", d.method, d.reason));
-    if (d.samples > 0)
-      note_row(table, "error",
-               fmt::format("{:.2g} of one step, relative (median of {}), at most {:.2g}", d.error_p50, d.samples, d.error_max));
+    if (d.samples == 0) continue;
+    note_row(table, "error", step_error(d));
+    note_row(table, "energy",
+             fmt::format("{:+.2g} % of the work of all forces gained without cause over the whole run", 100 * d.energy_gained));
   }
   if (r.contact)
     note_row(table, "contact",

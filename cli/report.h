@@ -34,6 +34,7 @@ struct DeformableReport {
   double h_omega = 0;                   ///< step times the largest angular frequency; 0: not known
   std::uint64_t samples = 0;            ///< steps whose error was looked at
   double error_p50 = 0, error_max = 0;  ///< relative
+  double energy_gained = 0;             ///< without cause, over the whole run; share of all the work of forces
 };
 
 /// What was felt.

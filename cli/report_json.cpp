@@ -180,7 +180,10 @@ Json mesh_json(const MeshReport& mesh, double seconds) {
 Json deformable_json(const DeformableReport& d) {
   Json out{{"name", d.name}, {"vertices", d.vertices}, {"step_s", d.step}, {"method", d.method}, {"reason", d.reason}};
   if (d.h_omega > 0) out["h_omega"] = d.h_omega;
-  if (d.samples > 0) out["step_error"] = {{"samples", d.samples}, {"p50", d.error_p50}, {"max", d.error_max}};
+  if (d.samples > 0) {
+    out["step_error"] = {{"samples", d.samples}, {"p50", d.error_p50}, {"max", d.error_max}};
+    out["energy_gained"] = d.energy_gained;
+  }
   return out;
 }
 

@@ -80,6 +80,9 @@ tl::expected<std::unique_ptr<DeformableBody>, FemError> DeformableBody::create(c
     auto estimate = ErrorEstimate::create(body->model_, body->choice_.options, estimate_every);
     if (!estimate) return tl::unexpected(estimate.error());
     body->estimate_.emplace(std::move(*estimate));
+    auto balance = EnergyBalance::create(body->model_);
+    if (!balance) return tl::unexpected(balance.error());
+    body->balance_.emplace(std::move(*balance));
   }
   return body;
 }
@@ -106,6 +109,7 @@ tl::expected<DeformableBody::Tick, FemError> DeformableBody::tick() {
   move_surface();
   time_ = {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
            static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC};
+  if (balance_) balance_->add(load_, choice_.options.step, state_);
   return Tick::stepped;
 }
 

@@ -15,6 +15,7 @@
 #include "sim/contact/aabb_tree.h"
 #include "sim/contact/inside.h"
 #include "sim/deformable/deformable_world.h"
+#include "sim/fem/energy_balance.h"
 #include "sim/fem/error_estimate.h"
 #include "sim/fem/integrator.h"
 
@@ -58,6 +59,7 @@ class DeformableBody {
   const FemState& state() const noexcept { return state_; }
   const DeformationTime& time() const noexcept { return time_; }  ///< of the step that was due last: 0 if left out
   const std::optional<ErrorEstimate>& estimate() const noexcept { return estimate_; }
+  std::optional<EnergyBalance>& balance() noexcept { return balance_; }  ///< there with the estimate
 
  private:
   DeformableBody(FemModel model, const SceneDeformable& object, const Vec3& gravity);
@@ -69,6 +71,7 @@ class DeformableBody {
   Choice choice_;
   std::unique_ptr<Integrator> integrator_;
   std::optional<ErrorEstimate> estimate_;
+  std::optional<EnergyBalance> balance_;
   FemState state_;
   std::uint32_t rate_, phase_ = 0;  // ticks of this period that are done
   Eigen::VectorXd weight_;          // 3N [N] gravity

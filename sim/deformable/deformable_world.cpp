@@ -115,10 +115,7 @@ Result<void> World::add(const SceneDeformable& object, const Vec3& gravity, cons
   report_at_rest_ = options.report_at_rest;
   if (!body) return tl::unexpected(body.error().error);
   const Choice& choice = (*body)->choice();
-  std::string method = name(choice.options.method);
-  if (choice.options.substeps > 1) method += ", " + std::to_string(choice.options.substeps) + " sub-steps";
-  if (choice.options.method != Method::velocity_verlet) method += std::string(", ") + name(choice.options.solver);
-  info_.push_back({object.name, object.mesh.vertices.size(), std::move(method), choice.reason, choice.options.step,
+  info_.push_back({object.name, object.mesh.vertices.size(), to_string(choice.options), choice.reason, choice.options.step,
                    choice.largest_frequency});
   meshes_.push_back(
       {object.name, (*body)->surface().mesh, fixed_of((*body)->surface(), object.fixed), static_cast<double>(object.rate)});
@@ -207,7 +204,8 @@ std::optional<DeformableError> World::error(std::size_t object) const {
   const auto& estimate = bodies_[object]->estimate();
   if (!estimate) return std::nullopt;
   const ErrorEstimate::Result result = estimate->result();
-  return DeformableError{result.p50, result.max, result.samples};
+  const EnergyBalance::Result balance = bodies_[object]->balance()->result();
+  return DeformableError{result.p50, result.max, result.samples, balance.moved > 0 ? balance.gained / balance.moved : 0};
 }
 
 void World::observe(std::span<MeshSample> meshes) noexcept {

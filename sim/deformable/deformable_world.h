@@ -44,10 +44,11 @@ struct DeformationTime {
   double wall = 0, cpu = 0;
 };
 
-/// Relative error of single deformation steps by step doubling (sim/fem/error_estimate.h).
+/// Relative error of single deformation steps by step doubling (sim/fem/error_estimate.h), and what they come to together.
 struct DeformableError {
   double p50 = 0, max = 0;
   std::int64_t samples = 0;
+  double energy = 0;  ///< gained without cause, as a share of all that moved (sim/fem/energy_balance.h); negative: lost
 };
 
 class DeformableWorld {

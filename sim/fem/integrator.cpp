@@ -68,6 +68,13 @@ const char* name(LinearSolver solver) noexcept {
   return "?";
 }
 
+std::string to_string(const IntegratorOptions& options) {
+  std::string out = name(options.method);
+  if (options.substeps > 1) out += ", " + std::to_string(options.substeps) + " sub-steps";
+  const bool solves = options.method != Method::velocity_verlet && options.method != Method::modal;
+  return solves ? out + ", " + name(options.solver) : out;
+}
+
 tl::expected<std::unique_ptr<Integrator>, FemError> make_integrator(FemModel& model, const IntegratorOptions& options) {
   if (const char* remedy = wrong(model, options))
     return tl::unexpected(FemError{{Errc::invalid_argument, "R-FEM-8"}, -1, -1, std::string("give ") + remedy});

@@ -56,6 +56,8 @@ struct IntegratorOptions {
   int modes = 0;  ///< of `modal`, 1 .. free degrees of freedom
 };
 
+std::string to_string(const IntegratorOptions& options);  ///< "velocity-verlet, 10 sub-steps", "tr-bdf2, prefactored"
+
 /// What a step took.
 struct StepReport {
   int newton_iterations = 0;

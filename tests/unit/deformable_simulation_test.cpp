@@ -257,6 +257,7 @@ TEST(DeformableSimulation, TellsMethodReasonAndError) {
   EXPECT_GE(error->samples, 5);
   EXPECT_GT(error->max, 0);
   EXPECT_LT(error->p50, 0.05);
+  EXPECT_LT(std::abs(error->energy), 0.05);
 
   auto plain = Simulation::create(scene);
   for (int i = 0; i < 2000; ++i) ASSERT_TRUE(plain->step());

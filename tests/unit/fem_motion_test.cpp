@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/fem/energy_balance.h"
 #include "sim/fem/integrator.h"
 #include "tests/unit/fem_fixture.h"
 
@@ -188,6 +189,39 @@ TEST(FemMotion, AtALowRateTheMembraneMovesAsWhenItIsSolvedTightly) {
   const VectorXd loose = membrane_at_end(implicit), solved = membrane_at_end(tight);
   EXPECT_LT((loose - solved).norm(), 0.005 * solved.norm());
   EXPECT_GT((solved - exact).norm(), error) << "sub-steps are said to err less";
+}
+
+/// What 400 steps of a clamped strip that its weight and a pull bend gain without cause, as a share of the work done.
+double gained(const IntegratorOptions& options, double mass_damping, double stiffness_damping) {
+  FemOptions object;
+  object.materials = {{1e4, 0.3, 1000}};
+  object.fixed = {0, 5, 10, 15, 20, 25};
+  object.mass_damping = mass_damping;
+  object.stiffness_damping = stiffness_damping;
+  FemModel model = testing::make_model(make_slab(4, 2, 1, 0.01), object);
+  const auto integrator = std::move(make_integrator(model, options).value());
+  auto balance = std::move(EnergyBalance::create(model).value());
+  FemState state = model.rest();
+  VectorXd f = weight_of(model, 9.81);
+  for (int i = 0; i < 400; ++i) {
+    f[3 * 29] = i < 200 ? 0.02 : 0;
+    EXPECT_TRUE(integrator->step(f, state));
+    balance.add(f, options.step, state);
+  }
+  const EnergyBalance::Result result = balance.result();
+  EXPECT_GT(result.moved, 0);
+  return result.gained / result.moved;
+}
+
+TEST(EnergyBalance, SeesWhatEveryStepLosesALittleOf) {
+  IntegratorOptions o;
+  EXPECT_NEAR(gained(o, 0, 0), 0, 0.005);
+  EXPECT_NEAR(gained(o, 5, 0), 0, 0.005);
+  EXPECT_NEAR(gained(o, 5, 1e-3), 0, 0.02);
+  o.method = Method::backward_euler;
+  EXPECT_LT(gained(o, 0, 0), -0.02) << "backward Euler damps";
+  o.method = Method::tr_bdf2;
+  EXPECT_NEAR(gained(o, 0, 0), 0, 0.02);
 }
 
 /// The fastest motion of an object of few vertices.
