@@ -19,6 +19,7 @@ struct Style {
 
 Style style_of(const study::PrecisionMethod& method, int variant) {
   constexpr int kMarks[] = {7, 4, 9};  // gnuplot's disc, open square, triangle
+  if (method.chosen) return {8, 1, 5};
   const int colour = method.options.method == Method::velocity_verlet ? 7 : static_cast<int>(method.options.method);
   return {colour, variant + 1, kMarks[variant % 3]};
 }
@@ -42,6 +43,7 @@ constexpr Quantity kQuantities[] = {
     {"displacement", &Errors::displacement, "relative error of displacements"},
     {"force", &Errors::force, "relative error of the force at the probe"},
     {"energy", &Errors::energy, "relative error of energy"},
+    {"weight", &Errors::weight, "relative error of displacements under a weight that is there at once"},
 };
 
 Plot time_plot(const TimeStudy& time, const Quantity& quantity) {
@@ -55,7 +57,7 @@ Plot time_plot(const TimeStudy& time, const Quantity& quantity) {
   const study::PrecisionMethod* before = nullptr;
   for (std::size_t m = 0; m < time.methods.size(); ++m) {
     const study::PrecisionMethod& method = time.methods[m];
-    variant = before != nullptr && before->options.method == method.options.method ? variant + 1 : 0;
+    variant = before != nullptr && !before->chosen && before->options.method == method.options.method ? variant + 1 : 0;
     before = &method;
     PlotData data{fmt::format("m{}", m), {}};
     for (const PrecisionPoint& p : time.points) {

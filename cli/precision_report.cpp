@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -22,18 +23,27 @@ std::string milliseconds(double seconds) { return fmt::format("{:.3g}", 1e3 * se
 
 using Cells = std::vector<std::string>;
 
-Cells time_heading() { return {"method", "h [ms]", "u", "u, end", "force", "energy", "ms/step", "s/s", "Newton", "solver"}; }
+Cells time_heading() {
+  return {"method", "h [ms]", "u",       "u, end", "v",          "force",  "energy",
+          "weight", "push",   "ms/step", "s/s",    "setup [ms]", "Newton", "solver"};
+}
+
+std::string method_of(const PrecisionPoint& p) { return p.taken.empty() ? p.method : p.method + ": " + p.taken; }
 
 Cells cells_of(const PrecisionPoint& p) {
-  if (!std::isfinite(p.errors.displacement)) return {p.method, milliseconds(p.step), "stopped"};
-  return {p.method,
+  if (!std::isfinite(p.errors.displacement)) return {method_of(p), milliseconds(p.step), "stopped"};
+  return {method_of(p),
           milliseconds(p.step),
           scientific(p.errors.displacement),
           scientific(p.errors.displacement_end),
+          scientific(p.errors.velocity),
           scientific(p.errors.force),
           scientific(p.errors.energy),
+          scientific(p.errors.weight),
+          scientific(p.errors.push),
           milliseconds(p.seconds_per_step()),
           significant(p.seconds_per_second),
+          milliseconds(p.setup_seconds),
           significant(p.newton_per_step),
           significant(p.solver_per_step)};
 }
@@ -70,9 +80,11 @@ std::string space_title(const SpaceStudy& space) {
 
 std::string reference_text(const TimeStudy& time) {
   const study::Errors& floor = time.reference.errors;
-  return fmt::format("reference: velocity Verlet, h = {:.3g} us, {}; its own error: u {}, force {}, energy {}",
-                     1e6 * time.reference.step, time.reference.remark, scientific(floor.displacement), scientific(floor.force),
-                     scientific(floor.energy));
+  return fmt::format(
+      "reference: Runge-Kutta of order 4, none of the methods compared, h = {:.3g} us, {}; its own error: u {}, v {}, force {}, "
+      "energy {}, weight {}, push {}",
+      1e6 * time.reference.step, time.reference.remark, scientific(floor.displacement), scientific(floor.velocity),
+      scientific(floor.force), scientific(floor.energy), scientific(floor.weight), scientific(floor.push));
 }
 
 /// What is not in the tables, or only in part, and why.
@@ -109,7 +121,7 @@ std::string markdown_of(const TimeStudy& time) {
   std::string out =
       fmt::format("\n## {}\n\n{}, {} vertices, {} tetrahedra, {} s.\n{}.\n\n", name, time.scene.title,
                   time.scene.mesh.vertices.size(), time.scene.mesh.tets.size(), time.scene.duration, reference_text(time));
-  for (const char* quantity : {"displacement", "force", "energy"})
+  for (const char* quantity : {"displacement", "force", "energy", "weight"})
     out += fmt::format("![{0}: run time against error of {1}]({0}-{1}.svg)\n", name, quantity);
   out += '\n' + markdown_heading(time_heading());
   for (const PrecisionPoint& p : time.points) out += markdown_row(cells_of(p), time_heading().size());
@@ -128,6 +140,33 @@ std::string markdown_of(const SpaceStudy& space) {
   return out;
 }
 
+/// The row of a method at 1 ms in every study: error of u under the smooth load, under weight, processor time.
+Cells at_one_millisecond(const PrecisionReport& report, const std::string& method) {
+  Cells out{method};
+  for (const TimeStudy& time : report.times) {
+    const auto point = std::find_if(time.points.begin(), time.points.end(), [&](const PrecisionPoint& p) {
+      return p.method == method && std::abs(p.step - 1e-3) < 1e-9;
+    });
+    const bool there = point != time.points.end() && std::isfinite(point->errors.displacement);
+    if (there)
+      out.insert(out.end(), {scientific(point->errors.displacement), scientific(point->errors.weight),
+                             milliseconds(point->seconds_per_step())});
+    else out.insert(out.end(), {"stopped", "", ""});
+  }
+  return out;
+}
+
+std::string markdown_at_one_millisecond(const PrecisionReport& report) {
+  Cells heading{"method"};
+  for (const TimeStudy& time : report.times)
+    for (const char* column : {"u", "weight", "ms/step"}) heading.push_back(time.scene.name + ": " + column);
+  std::string out = "\n## At 1 kHz\n\n" + markdown_heading(heading);
+  if (report.times.empty()) return out;
+  for (const study::PrecisionMethod& method : report.times.front().methods)
+    out += markdown_row(at_one_millisecond(report, method.name), heading.size());
+  return out;
+}
+
 Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json json_of(const PrecisionPoint& p) {
@@ -135,8 +174,11 @@ Json json_of(const PrecisionPoint& p) {
            {"step_s", p.step},
            {"displacement_error", finite(p.errors.displacement)},
            {"displacement_end_error", finite(p.errors.displacement_end)},
+           {"velocity_error", finite(p.errors.velocity)},
            {"force_error", finite(p.errors.force)},
            {"energy_error", finite(p.errors.energy)},
+           {"weight_error", finite(p.errors.weight)},
+           {"push_error", finite(p.errors.push)},
            {"seconds_per_second", p.seconds_per_second},
            {"seconds_per_step", p.seconds_per_step()},
            {"setup_s", p.setup_seconds},
@@ -144,6 +186,7 @@ Json json_of(const PrecisionPoint& p) {
            {"newton_per_step", p.newton_per_step},
            {"solver_iterations_per_step", p.solver_per_step},
            {"unconverged_steps", p.unconverged_steps}};
+  if (!p.taken.empty()) out["taken"] = p.taken;
   if (!p.remark.empty()) out["remark"] = p.remark;
   return out;
 }
@@ -182,7 +225,7 @@ void print_precision_tables(const PrecisionReport& report) {
     for (const PrecisionPoint& p : time.points) {
       Cells cells = cells_of(p);
       if (method == nullptr) table.heading(time_heading());
-      if (method != nullptr && *method == p.method) cells[0] = "";
+      if (method != nullptr && *method == p.method && p.taken.empty()) cells[0] = "";
       method = &p.method;
       table.row(std::move(cells));
     }
@@ -218,11 +261,15 @@ std::string precision_json(const PrecisionReport& report) {
 std::string precision_markdown(const PrecisionReport& report) {
   std::string out =
       "# Error against run time\n\n"
-      "Made by `tactus bench precision`. Columns: relative errors over all sample times (`u` displacement, `u, end` at the end "
-      "only,\nforce of the probe, energy), processor time per step, `s/s` seconds of one core per simulated second (below 1: "
-      "faster "
-      "than\nreal time), Newton and solver iterations per step. Times are medians.\n\n";
+      "Made by `tactus bench precision`. Columns: relative errors over all sample times under a load that grows from nothing "
+      "(`u` "
+      "displacement,\n`u, end` at the end only, `v` velocity, energy), of the force of a probe, and of the displacements under "
+      "`weight` and `push`, self weight and\nload that are there at once; processor time per step, `s/s` seconds of one core per "
+      "simulated second (below 1: faster than real time),\n`setup` before the second step, Newton and solver iterations per "
+      "step. "
+      "Times are medians. `chosen` is what `tactus sim` takes.\n\n";
   for (const auto& [key, value] : report.context) out += fmt::format("* {}: {}\n", key, value);
+  out += markdown_at_one_millisecond(report);
   for (const TimeStudy& time : report.times) out += markdown_of(time);
   if (report.spaces.empty()) return out;
   out +=

@@ -24,11 +24,16 @@ constexpr const char* kTimeFile = "time.csv";
 constexpr const char* kSpaceFile = "space.csv";
 constexpr const char* kContextFile = "context.json";
 constexpr const char* kTimeHeading =
-    "scene,method,steps_per_sample,step_s,displacement_end_error,displacement_error,force_error,energy_error,seconds_per_second,"
-    "setup_s,runs,newton_per_step,solver_per_step,unconverged_steps,remark";
+    "scene,method,steps_per_sample,step_s,displacement_end_error,displacement_error,velocity_error,force_error,energy_error,"
+    "weight_error,push_error,seconds_per_second,setup_s,runs,newton_per_step,solver_per_step,unconverged_steps,taken,remark";
 constexpr const char* kSpaceHeading =
     "scene,poisson,refinement,vertices,tets,deflection_m_per_n,solve_s,quadratic_m_per_n,step_s,seconds_per_second,"
     "transient_m";
+
+/// In the order of the heading.
+constexpr double study::Errors::*kErrors[] = {
+    &study::Errors::displacement_end, &study::Errors::displacement, &study::Errors::velocity, &study::Errors::force,
+    &study::Errors::energy,           &study::Errors::weight,       &study::Errors::push};
 
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.7g}", value) : ""; }
 
@@ -37,10 +42,11 @@ std::string quoted(const std::string& text) { return text.find(',') == std::stri
 
 std::string line_of(const TimeRow& row) {
   const study::PrecisionPoint& p = row.point;
-  return fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", row.scene, p.method, p.steps_per_sample, number(p.step),
-                     number(p.errors.displacement_end), number(p.errors.displacement), number(p.errors.force),
-                     number(p.errors.energy), number(p.seconds_per_second), number(p.setup_seconds), p.runs,
-                     number(p.newton_per_step), number(p.solver_per_step), p.unconverged_steps, quoted(p.remark));
+  std::string out = fmt::format("{},{},{},{}", row.scene, p.method, p.steps_per_sample, number(p.step));
+  for (const double study::Errors::*error : kErrors) out += ',' + number(p.errors.*error);
+  return out + fmt::format(",{},{},{},{},{},{},{},{}", number(p.seconds_per_second), number(p.setup_seconds), p.runs,
+                           number(p.newton_per_step), number(p.solver_per_step), p.unconverged_steps, quoted(p.taken),
+                           quoted(p.remark));
 }
 
 std::string line_of(const SpaceRow& row) {
@@ -91,14 +97,14 @@ std::optional<TimeRow> time_row(const std::string& line) {
   p.method = cells.text();
   p.steps_per_sample = cells.get<int>();
   p.step = cells.get<double>();
-  for (double* error : {&p.errors.displacement_end, &p.errors.displacement, &p.errors.force, &p.errors.energy})
-    *error = cells.get<double>();
+  for (double study::Errors::*error : kErrors) p.errors.*error = cells.get<double>();
   p.seconds_per_second = cells.get<double>();
   p.setup_seconds = cells.get<double>();
   p.runs = cells.get<int>();
   p.newton_per_step = cells.get<double>();
   p.solver_per_step = cells.get<double>();
   p.unconverged_steps = cells.get<int>();
+  p.taken = cells.text();
   p.remark = cells.text();
   return cells.is_good() ? std::optional(row) : std::nullopt;
 }

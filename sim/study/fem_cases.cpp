@@ -164,6 +164,17 @@ void add_motions(std::vector<FemCase>& out, Extent extent) {
   parts.start.v = parts.start.u;
   shake(parts, 1e-3);
   out.push_back(std::move(parts));
+  for (const auto& [name, young] : {std::pair{"free, 20 rad/s, E 1 MPa", 1e6}, {"free, 20 rad/s, E 100 MPa", 1e8}}) {
+    FemCase spinning = slab(name, extent, {young, 0.3, 1000});
+    spinning.options.fixed.clear();
+    spinning.options.mass_damping = 0;
+    const Vec3 middle{cells(extent).x * kCell / 2, cells(extent).y * kCell / 2, kCell / 2};
+    for (std::size_t i = 0; i < spinning.mesh.vertices.size(); ++i) {
+      const Vec3 speed = cross(Vec3{12, 0, 16}, spinning.mesh.vertices[i] - middle);
+      spinning.start.v.segment<3>(static_cast<Eigen::Index>(3 * i)) << speed.x, speed.y, speed.z;
+    }
+    out.push_back(std::move(spinning));
+  }
   // 1 Pa is 1 g / (mm s^2).
   FemCase small = slab("in mm and g", extent, {kSoft.young, kSoft.poisson, 1e-6 * kSoft.density});
   for (Vec3& x : small.mesh.vertices) x = 1000 * x;
@@ -199,7 +210,13 @@ std::string describe(const FemError& error) {
   return out + ": " + error.remedy;
 }
 
-FemOutcome refused(const FemError& error) { return {.verdict = Verdict::diverges, .refused = true, .error = describe(error)}; }
+FemOutcome refused(const FemError& error) {
+  FemOutcome out;
+  out.verdict = Verdict::diverges;
+  out.refused = true;
+  out.error = describe(error);
+  return out;
+}
 
 Eigen::VectorXd weight_of(const FemModel& model, double gravity) {
   Eigen::VectorXd out = Eigen::VectorXd::Zero(model.size());
@@ -226,10 +243,10 @@ std::vector<FemCase> fem_cases(Extent extent) {
   return out;
 }
 
-FemOutcome run(const FemCase& fem_case, Method method) {
+FemOutcome run(const FemCase& fem_case, std::optional<Method> method) {
   auto model = FemModel::create(fem_case.mesh, fem_case.options);
   if (!model) return refused(model.error());
-  IntegratorOptions options{.method = method, .step = fem_case.step};
+  IntegratorOptions options = method ? suited(*model, *method, fem_case.step) : choose(*model, fem_case.step).options;
   options.modes = std::min(kModes, static_cast<int>(model->free_dofs().size()));
   auto integrator = make_integrator(*model, options);
   if (!integrator) return refused(integrator.error());
@@ -243,6 +260,7 @@ FemOutcome run(const FemCase& fem_case, Method method) {
   const double least = kRounding * fem_case.options.materials[0].young * size_of(fem_case.mesh);
   const double before = std::max(least, energy(*model, state));
   FemOutcome out;
+  out.taken = to_string(options);
   FemState kept = state, halfway = state;
   for (; out.steps < fem_case.steps; ++out.steps) {
     kept.u = state.u;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,7 @@ struct FemOutcome {
   std::size_t not_finite = 0;  ///< states with NaN or infinity that left a step
   bool kept_state = true;      ///< after an error the state is that before the step, bit by bit
   double farthest = 0;         ///< [m] largest displacement at the end
+  std::string taken;           ///< method and solver
   double drift = 0;            ///< [m] largest change of a displacement over the second half of the steps
 };
 
@@ -38,7 +40,8 @@ struct FemOutcome {
 ///   stable    it went through all steps, energy did not grow, nothing is inside out
 ///   limit     the same, but tetrahedra stay inside out
 ///   diverges  an error, or energy is more than ten times what it was (that of velocity Verlet swings below its limit)
-FemOutcome run(const FemCase& fem_case, Method method);
+/// in   method  with the solver that a scene gets which names it (suited()); none: what choose() takes
+FemOutcome run(const FemCase& fem_case, std::optional<Method> method);
 
 /// The extremes, on a slab of 4 x 5 x 1 cells of 1 cm with fixed corners, E 10 kPa, nu 0.45, 10 000 kg/m^3, damped by mass (20/s).
 /// in   extent  brief: 2 x 2 x 1 cells and a fifth of the steps

@@ -34,9 +34,21 @@ double probe_force(const PrecisionScene& scene, double deflection, double t) {
   return -scene.probe.stiffness * std::max(0.0, deflection - path);
 }
 
-double external_force(const PrecisionScene& scene, Loading loading, double deflection, double t) {
-  if (loading == Loading::probe) return probe_force(scene, deflection, t);
-  return -scene.load * square(std::sin(2 * std::numbers::pi * t));
+/// External forces at time t with the patch at `deflection`.
+void external_forces(const PrecisionScene& scene, const FemModel& model, Loading loading, double deflection, double t,
+                     Eigen::VectorXd& f) {
+  f.setZero();
+  switch (loading) {
+    case Loading::force:
+      return scene.patch.add_force(-scene.load * square(std::sin(2 * std::numbers::pi * t)), f);
+    case Loading::probe:
+      return scene.patch.add_force(probe_force(scene, deflection, t), f);
+    case Loading::weight:
+      for (Eigen::Index z = 2; z < f.size(); z += 3) f[z] = -scene.load * model.lumped_mass()[z] / model.total_mass();
+      return;
+    case Loading::push:
+      return scene.patch.add_force(-scene.load, f);
+  }
 }
 
 tl::expected<FemModel, FemError> make_model(const PrecisionScene& scene, const PrecisionMethod& method) {
@@ -70,8 +82,7 @@ tl::expected<void, FemError> Run::step(std::int64_t number) {
   const double h = method.options.step, point = force_point(method.options.method);
   const double t = (static_cast<double>(number) + point) * h;
   const double deflection = scene.patch.deflection(state.u) + point * h * scene.patch.deflection(state.v);
-  f.setZero();
-  scene.patch.add_force(external_force(scene, loading, deflection, t), f);
+  external_forces(scene, model, loading, deflection, t, f);
   const auto report = integrator->step(f, state);
   if (!report) return tl::unexpected(report.error());
   out.newton_per_step += report->newton_iterations;
@@ -84,6 +95,7 @@ void Run::sample(int number) {
   const double t = scene.duration * (number + 1) / scene.samples;
   const double deflection = scene.patch.deflection(state.u);
   out.u.push_back(state.u);
+  out.v.push_back(state.v);
   out.energy[number] = total_energy(observer, state);
   out.force[number] = probe_force(scene, deflection, t);
 }
@@ -102,21 +114,23 @@ tl::expected<Run, FemError> start(const PrecisionScene& scene, const PrecisionMe
 
 double relative(double difference, double size) { return size > 0 ? difference / size : kNaN; }
 
-double displacement_error(const Trajectory& a, const Trajectory& b) {
+using States = std::vector<Eigen::VectorXd>;
+
+double state_error(const States& a, const States& b) {
   double difference = 0, size = 0;
-  for (std::size_t i = 0; i < b.u.size(); ++i) {
-    difference += (a.u[i] - b.u[i]).squaredNorm();
-    size += b.u[i].squaredNorm();
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    difference += (a[i] - b[i]).squaredNorm();
+    size += b[i].squaredNorm();
   }
   return relative(std::sqrt(difference), std::sqrt(size));
 }
 
 Errors difference(const Trajectory& load, const Trajectory& reference) {
-  Errors out;
+  Errors out{kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN};
   out.displacement_end = relative((load.u.back() - reference.u.back()).norm(), reference.u.back().norm());
-  out.displacement = displacement_error(load, reference);
+  out.displacement = state_error(load.u, reference.u);
+  out.velocity = state_error(load.v, reference.v);
   out.energy = relative((load.energy - reference.energy).norm(), reference.energy.norm());
-  out.force = kNaN;
   return out;
 }
 
@@ -148,6 +162,10 @@ tl::expected<Trajectory, FemError> simulate(const PrecisionScene& scene, const P
   auto run = start(scene, with_step, loading);
   if (!run) return tl::unexpected(run.error());
   const double begin = processor_seconds();
+  if (method.chosen) {
+    with_step.options = choose(run->model, with_step.options.step).options;
+    run->out.taken = to_string(with_step.options);
+  }
   auto integrator = make_integrator(run->model, with_step.options);
   if (!integrator) return tl::unexpected(integrator.error());
   run->integrator = *std::move(integrator);
@@ -169,25 +187,60 @@ tl::expected<Trajectory, FemError> simulate(const PrecisionScene& scene, const P
   return std::move(run->out);
 }
 
-tl::expected<Reference, FemError> make_reference(const PrecisionScene& scene) {
-  const PrecisionMethod method{"reference", {.method = Method::velocity_verlet}};
-  const int n = scene.reference_steps_per_sample;
-  Reference out;
-  out.step = scene.step(n);
-  std::vector<Trajectory> coarse;  // load at n/2, probe at n/2, load at n/4
-  for (const auto& [steps, loading] :
-       {std::pair{n, Loading::force}, std::pair{n, Loading::probe}, std::pair{n / 2, Loading::force},
-        std::pair{n / 2, Loading::probe}, std::pair{n / 4, Loading::force}}) {
-    auto trajectory = simulate(scene, method, steps, loading);
-    if (!trajectory) return tl::unexpected(trajectory.error());
-    if (steps < n) coarse.push_back(*std::move(trajectory));
-    else (loading == Loading::force ? out.load : out.probe) = *std::move(trajectory);
+tl::expected<Trajectory, FemError> runge_kutta(const PrecisionScene& scene, int steps_per_sample, Loading loading) {
+  const PrecisionMethod none;
+  auto run = start(scene, none, loading);
+  if (!run) return tl::unexpected(run.error());
+  FemModel& model = run->model;
+  Eigen::VectorXd inverse_mass = Eigen::VectorXd::Zero(model.size()), k(model.size());
+  for (const int i : model.free_dofs()) inverse_mass[i] = 1 / model.lumped_mass()[i];
+  const double h = scene.step(steps_per_sample), begin = processor_seconds();
+  const auto acceleration = [&](const Eigen::VectorXd& u, double t) -> Eigen::VectorXd {
+    external_forces(scene, model, loading, scene.patch.deflection(u), t, run->f);
+    model.internal_forces(u, k);
+    return inverse_mass.cwiseProduct(run->f - k);
+  };
+  auto& [u, v] = run->state;
+  for (std::int64_t i = 0; i < std::int64_t{steps_per_sample} * scene.samples; ++i) {
+    const double t = static_cast<double>(i) * h;
+    const Eigen::VectorXd a1 = acceleration(u, t), v2 = v + h / 2 * a1;
+    const Eigen::VectorXd a2 = acceleration(u + h / 2 * v, t + h / 2), v3 = v + h / 2 * a2;
+    const Eigen::VectorXd a3 = acceleration(u + h / 2 * v2, t + h / 2), v4 = v + h * a3;
+    const Eigen::VectorXd a4 = acceleration(u + h * v3, t + h);
+    u += h / 6 * (v + 2 * v2 + 2 * v3 + v4);
+    v += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
+    if ((i + 1) % steps_per_sample == 0) run->sample(static_cast<int>(i / steps_per_sample));
   }
-  out.floor = difference(coarse[0], out.load);
-  out.floor.force = force_error(coarse[1], out.probe);
-  out.order = std::log2(displacement_error(coarse[2], coarse[0]) / out.floor.displacement);
-  for (double* error : {&out.floor.displacement_end, &out.floor.displacement, &out.floor.force, &out.floor.energy})
-    *error /= 3;  // of two results of order 2, the finer one is off by a third of their difference
+  run->out.step_seconds = processor_seconds() - begin;
+  return std::move(run->out);
+}
+
+tl::expected<Reference, FemError> make_reference(const PrecisionScene& scene) {
+  const int n = scene.reference_steps_per_sample;
+  Reference out, half;
+  Trajectory quarter;
+  out.step = scene.step(n);
+  const auto fill = [&](int steps, Loading loading, Trajectory& to) -> tl::expected<void, FemError> {
+    auto made = runge_kutta(scene, steps, loading);
+    if (!made) return tl::unexpected(made.error());
+    to = *std::move(made);
+    return {};
+  };
+  for (Reference* one : {&out, &half}) {
+    const int steps = one == &out ? n : n / 2;
+    for (const auto& [loading, to] : {std::pair{Loading::force, &one->load}, std::pair{Loading::probe, &one->probe},
+                                      std::pair{Loading::weight, &one->weight}, std::pair{Loading::push, &one->push}})
+      if (const auto done = fill(steps, loading, *to); !done) return tl::unexpected(done.error());
+  }
+  if (const auto done = fill(n / 4, Loading::force, quarter); !done) return tl::unexpected(done.error());
+  out.floor = difference(half.load, out.load);
+  out.floor.force = force_error(half.probe, out.probe);
+  out.floor.weight = state_error(half.weight.u, out.weight.u);
+  out.floor.push = state_error(half.push.u, out.push.u);
+  out.order = std::log2(state_error(quarter.u, half.load.u) / out.floor.displacement);
+  for (double* error : {&out.floor.displacement_end, &out.floor.displacement, &out.floor.velocity, &out.floor.force,
+                        &out.floor.energy, &out.floor.weight, &out.floor.push})
+    *error /= 15;  // of two results of order 4, the finer one is off by a fifteenth of their difference
   return out;
 }
 
@@ -199,7 +252,7 @@ PrecisionPoint measure(const PrecisionScene& scene, const PrecisionMethod& metho
   out.step = scene.step(steps_per_sample);
   auto run = simulate(scene, method, steps_per_sample, Loading::force);
   if (!run) {
-    out.errors = {kNaN, kNaN, kNaN, kNaN};
+    out.errors = {kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN};
     out.remark = to_string(run.error());
     return out;
   }
@@ -207,9 +260,14 @@ PrecisionPoint measure(const PrecisionScene& scene, const PrecisionMethod& metho
   out.newton_per_step = run->newton_per_step;
   out.solver_per_step = run->solver_per_step;
   out.unconverged_steps = run->unconverged_steps;
+  out.taken = run->taken;
   const auto probe = simulate(scene, method, steps_per_sample, Loading::probe);
   if (probe) out.errors.force = force_error(*probe, reference.probe);
   else out.remark = "probe: " + to_string(probe.error());
+  if (const auto weight = simulate(scene, method, steps_per_sample, Loading::weight))
+    out.errors.weight = state_error(weight->u, reference.weight.u);
+  if (const auto push = simulate(scene, method, steps_per_sample, Loading::push))
+    out.errors.push = state_error(push->u, reference.push.u);
 
   std::vector<Trajectory> runs;
   const bool once = run->setup_seconds + run->step_seconds > timing.longest_repeated;

@@ -3,11 +3,14 @@
 ///
 /// error             relative 2-norm over all sample times of
 /// displacement      u, all vertices; `displacement_end`: at the last sample time only
+/// velocity          v, all vertices
+/// weight            u under self weight that is there at once, as much as the load in all
+/// push              u under the load when it is there at once: excites every motion the mesh has
 /// force             the force of a probe that presses the patch down
 /// energy            elastic and kinetic energy
 ///
-/// All against the same mesh under velocity Verlet with a tiny step. Half and a quarter as many steps yield that reference's own error
-/// (Richardson) and its order.
+/// All against the same mesh under the Runge-Kutta method of order 4, which is none of those compared, with forces that are not held
+/// over its steps. Half and a quarter as many steps yield that reference's own error (Richardson) and its order.
 /// External forces are held over a step, so each method is given them where that costs it no order: the one-sided methods at the
 /// end, the others in the middle. The penetration of the probe there is predicted with the
 /// velocity at the beginning.
@@ -20,11 +23,12 @@ namespace tactus::study {
 /// Processor time of this thread [s]: other work on the machine does not count.
 double processor_seconds() noexcept;
 
-enum class Loading { force, probe };
+enum class Loading { force, probe, weight, push };
 
 /// One simulation from rest, seen at the sample times.
 struct Trajectory {
   std::vector<Eigen::VectorXd> u;  ///< [m] per sample time
+  std::vector<Eigen::VectorXd> v;  ///< [m/s]
   Eigen::VectorXd energy;          ///< [J] per sample time
   Eigen::VectorXd force;           ///< [N] per sample time, of the probe
   double setup_seconds = 0;        ///< processor time of this thread: integrator made, factored, first step
@@ -32,18 +36,23 @@ struct Trajectory {
   double newton_per_step = 0;      ///< iterations
   double solver_per_step = 0;
   int unconverged_steps = 0;  ///< Newton ran out of iterations
+  std::string taken;          ///< of a method that is chosen: which
 };
 
 /// The error's step counts from 0 at rest.
 tl::expected<Trajectory, FemError> simulate(const PrecisionScene& scene, const PrecisionMethod& method, int steps_per_sample,
                                             Loading loading);
 
+/// The same under the Runge-Kutta method of order 4.
+tl::expected<Trajectory, FemError> runge_kutta(const PrecisionScene& scene, int steps_per_sample, Loading loading);
+
 struct Errors {
-  double displacement_end = 0, displacement = 0, force = 0, energy = 0;  ///< relative; NaN: the run stopped
+  double displacement_end = 0, displacement = 0, velocity = 0, force = 0, energy = 0, weight = 0, push = 0;  ///< relative; NaN:
+                                                                                                             ///< the run stopped
 };
 
 struct Reference {
-  Trajectory load, probe;
+  Trajectory load, probe, weight, push;
   Errors floor;      ///< of the reference itself, estimated
   double order = 0;  ///< observed, of the displacement
   double step = 0;   ///< [s]
@@ -60,6 +69,7 @@ struct PrecisionPoint {
   int runs = 0;  ///< that the median is of
   double newton_per_step = 0, solver_per_step = 0;
   int unconverged_steps = 0;
+  std::string taken;   ///< of a method that is chosen: which
   std::string remark;  ///< why it stopped and there are no errors; "probe: ..." when only the force is missing
 
   double seconds_per_step() const noexcept { return seconds_per_second * step; }

@@ -46,7 +46,7 @@ struct PrecisionScene {
   double duration = 0.5;
   int samples = 5;                     ///< errors are taken at so many evenly spaced times, the last one at the end
   std::vector<int> steps_per_sample;   ///< the step sizes: each meets every sample time exactly
-  int reference_steps_per_sample = 0;  ///< a multiple of 4
+  int reference_steps_per_sample = 0;  ///< of the Runge-Kutta reference; a multiple of 4
 
   double step(int per_sample) const noexcept { return duration / samples / per_sample; }
 };
@@ -60,6 +60,7 @@ struct PrecisionMethod {
   std::string name;  ///< "Newmark 2x prefactored": at most two iterations per stage; "Newton": until converged
   IntegratorOptions options;
   Elasticity elasticity = Elasticity::corotated;
+  bool chosen = false;  ///< what choose() takes for the object and the step; `options` are not used
 };
 std::vector<PrecisionMethod> precision_methods(Extent extent);
 

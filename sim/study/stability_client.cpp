@@ -94,6 +94,40 @@ Outcome interact(const Setting& setting) {
   return out;
 }
 
+bool comes_to_rest(const Setting& setting) { return interact(setting).verdict == Verdict::stable; }
+
+/// Where a barely held device that presses stops coming to rest: the longest delay, and the damping at the client that mends 100 ms.
+void limit_rows(Study& study, const Progress& progress) {
+  Setting setting{"", "barely held", "", kBarelyHeld, 350, 0, 0};
+  const auto add = [&](const char* quantity, const char* unit, double measured, const char* remark) {
+    Row row{.subject = "barely held, limit", .verdict = Verdict::limit, .quantity = quantity, .unit = unit};
+    row.parameters = {{"k_o", setting.object_stiffness, "N/m"}, {"b_c", setting.client_damping, "N s/m"}};
+    row.measured = measured;
+    row.remark = remark;
+    study.rows.push_back(std::move(row));
+  };
+  for (const double damping : {0.0, 1.0}) {
+    progress("client, limits", damping > 0 ? 1 : 0, 3);
+    setting.client_damping = damping;
+    const auto holds = [&](double delay) {
+      setting.delay = static_cast<std::uint32_t>(std::lround(delay));
+      return comes_to_rest(setting);
+    };
+    if (!holds(1) || holds(400)) continue;
+    add("longest delay", "ms", bisect(1, 400, 0.01, holds), "both ways together, to a tick");
+  }
+  progress("client, limits", 2, 3);
+  setting.delay = 100;
+  const auto holds = [&](double inverse) {
+    setting.client_damping = 1 / inverse;
+    return comes_to_rest(setting);
+  };
+  if (!holds(0.1) || holds(100)) return;
+  const double least = 1 / bisect(0.1, 100, 0.01, holds);
+  setting.client_damping = least;
+  add("least b_c", "N s/m", least, "for a delay of 100 ms");
+}
+
 }  // namespace
 
 Study study_client(Extent, const Progress& progress) {
@@ -127,6 +161,7 @@ Study study_client(Extent, const Progress& progress) {
     study.rows.push_back(std::move(row));
     study.series.push_back(std::move(outcome.series));
   }
+  limit_rows(study, progress);
   return study;
 }
 
