@@ -143,7 +143,7 @@ unset multiplot
 )"},
     {"fem",
      "map",
-     "Which step size each method gets through over 100 steps, as the material stiffens: a slab displaced by 2 mm and let go.",
+     "Which step size each method gets through over 1000 steps, as the material stiffens: a slab displaced by 2 mm and let go.",
      {"map-limit", "map-velocity-verlet", "map-backward-euler", "map-newmark", "map-tr-bdf2", "map-projective"},
      1100,
      720,

@@ -8,7 +8,8 @@
 /// velocity_verlet   2      h omega_max < 2        one evaluation of k per sub-step; stiffness damping, half a step late, is of order 1
 /// backward_euler    1      always, damps          one stage
 /// newmark           2      K constant, undamped   one stage; beta 1/4, gamma 1/2 (average acceleration). Where elements turn, energy
-///                                                 may grow until the step is refused, most at h omega_max of 3 to 10
+///                                                 may grow until the step is refused, at h omega_max of 4 to 16, with one
+///                                                 iteration from 2 on
 /// tr_bdf2           2      always, damps high w   two stages: trapezoidal rule over (2 - sqrt 2) h, then BDF2
 /// projective        1      always, damps          backward Euler whose stages are solved with `prefactored`
 /// modal             exact  always                 K modes of the problem linearised at rest, whatever the elasticity; exact in
