@@ -13,6 +13,7 @@
 /// ((S - I) S is symmetric, dR^T R antisymmetric). fem_element_test holds it against differences.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -55,11 +56,18 @@ class Elements {
 
  private:
   /// Elements that follow each other share vertices. They go to blocks that follow each other, so that those of one block seldom
-  /// share any, and its sums do not wait for each other.
-  const ElementBlock& block(std::size_t element) const noexcept { return blocks_[element % blocks_.size()]; }
-  std::size_t lane(std::size_t element) const noexcept { return element / blocks_.size(); }
+  /// share any and its sums do not wait for each other; `kDeal` blocks at a time, so that what is at work stays in the cache.
+  struct Place {
+    std::size_t block, lane;
+  };
+  Place place(std::size_t element) const noexcept {
+    const std::size_t first = element / (kDeal * kBlockSize) * kDeal, dealt = std::min(kDeal, blocks_.size() - first);
+    const std::size_t i = element - first * kBlockSize;
+    return {first + i % dealt, i / dealt};
+  }
   void spread(const double* u) noexcept;
 
+  static constexpr std::size_t kDeal = 16;
   std::vector<ElementBlock> blocks_;
   std::vector<VertexVector> u_, k_;
   std::size_t size_ = 0;
