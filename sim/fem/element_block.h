@@ -30,12 +30,23 @@ struct BlockSpan {
   std::size_t size;
 };
 
+/// What a step did to a state of n displacements and velocities, summed in the same order by every instruction set.
+struct Motion {
+  double work;      ///< sum of f (u1 - u0) [J]
+  double farthest;  ///< largest |u1 - u0| [m]
+  bool finite;      ///< u1 and v1
+};
+
 /// u, k: doubles of VertexVectors. Forces are added to k.
 struct ElementKernels {
   void (*forces)(BlockSpan blocks, const double* u, double* k) noexcept;
   void (*linear_forces)(BlockSpan blocks, const double* u, double* k) noexcept;
   double (*energy)(BlockSpan blocks, const double* u) noexcept;
   double (*linear_energy)(BlockSpan blocks, const double* u) noexcept;
+  /// Copies u1 and v1 to u and v too: what is loaded is the cost.
+  Motion (*motion)(const double* f, const double* u0, const double* u1, const double* v1, double* u, double* v,
+                   std::size_t n) noexcept;
+  bool (*finite)(const double* x, std::size_t n) noexcept;
 };
 
 /// portable: two lanes, SSE2 on x86-64. All sets yield the same bits.

@@ -224,7 +224,63 @@ struct Kernel {
     return sum;
   }
 
-  static constexpr ElementKernels kKernels{forces, linear_forces, energy, linear_energy};
+  static constexpr std::size_t kParts = 8 / W;  ///< vectors that hold eight sums, whatever W is
+
+  /// 0 x is no number where x is none or infinite.
+  static bool all_zero(const Half (&zero)[kParts]) {
+    for (std::size_t i = 0; i < 8; ++i)
+      if (zero[i / W][i % W] != 0.0) return false;
+    return true;
+  }
+
+  struct MotionSums {
+    Half work[kParts] = {}, farthest[kParts] = {}, zero[kParts] = {};
+
+    void add(const double* f, const double* u0, const double* u1, const double* v1, double* u, double* v) {
+      for (std::size_t part = 0; part < kParts; ++part) {
+        const std::size_t i = part * W;
+        const Half to = load<Half>(u1 + i), speed = load<Half>(v1 + i), du = to - load<Half>(u0 + i), size = du < 0.0 ? -du : du;
+        work[part] += load<Half>(f + i) * du;
+        farthest[part] = size > farthest[part] ? size : farthest[part];
+        zero[part] += 0.0 * (du + speed);
+        store(u + i, to);
+        store(v + i, speed);
+      }
+    }
+  };
+
+  static Motion motion(const double* f, const double* u0, const double* u1, const double* v1, double* u, double* v,
+                       std::size_t n) noexcept {
+    MotionSums sums;
+    std::size_t i = 0;
+    for (; i + 8 <= n; i += 8) sums.add(f + i, u0 + i, u1 + i, v1 + i, u + i, v + i);
+    double rest[6][8] = {};
+    for (std::size_t k = 0; i + k < n; ++k) {
+      rest[0][k] = f[i + k], rest[1][k] = u0[i + k];
+      rest[2][k] = u[i + k] = u1[i + k];
+      rest[3][k] = v[i + k] = v1[i + k];
+    }
+    sums.add(rest[0], rest[1], rest[2], rest[3], rest[4], rest[5]);
+    Motion out{0, 0, all_zero(sums.zero)};
+    for (std::size_t k = 0; k < 8; ++k) {
+      out.work += sums.work[k / W][k % W];
+      const double size = sums.farthest[k / W][k % W];
+      if (size > out.farthest) out.farthest = size;
+    }
+    return out;
+  }
+
+  static bool finite(const double* x, std::size_t n) noexcept {
+    Half zero[kParts] = {};
+    std::size_t i = 0;
+    for (; i + 8 <= n; i += 8)
+      for (std::size_t part = 0; part < kParts; ++part) zero[part] += 0.0 * load<Half>(x + i + part * W);
+    double rest = 0;
+    for (; i < n; ++i) rest += 0.0 * x[i];
+    return rest == 0 && all_zero(zero);
+  }
+
+  static constexpr ElementKernels kKernels{forces, linear_forces, energy, linear_energy, motion, finite};
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "sim/fem/element_block.h"
 #include "sim/fem/integrator.h"
 
 namespace tactus {
@@ -26,6 +27,8 @@ class Guarded : public Integrator {
   bool edited() const noexcept { return edited_; }
 
  private:
+  bool finite(const Eigen::VectorXd& x) const noexcept;
+  /// Whether next_ is no step from `before`; it is remembered in last_ before that is known.
   bool diverged(const Eigen::VectorXd& f, const FemState& before);
   FemError divergence() const;
   bool gained_energy();
@@ -41,6 +44,7 @@ class Guarded : public Integrator {
   double rounding_ = 0;                                           // [J] below which energy is noise
   bool edited_ = true, interrupted_ = true, referenced_ = false;  // interrupted: the last step failed, or there was none
   FemState last_;
+  ElementKernels kernels_ = kernels(widest());
 };
 
 }  // namespace tactus

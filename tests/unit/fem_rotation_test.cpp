@@ -300,5 +300,46 @@ TEST(ElementKernels, AllInstructionSetsYieldTheSameBits) {
   }
 }
 
+TEST(ElementKernels, WatchStatesOfAnyLengthAlikeAndMissNothing) {
+  Random random(3);
+  const auto numbers = [&](std::size_t n) {
+    std::vector<double> out(n);
+    for (double& x : out) x = random.uniform(-1, 1);
+    return out;
+  };
+  for (const std::size_t n : std::initializer_list<std::size_t>{0, 1, 3, 7, 8, 9, 15, 24, 30, 2142}) {
+    const std::vector<double> f = numbers(n), u0 = numbers(n), u1 = numbers(n), v1 = numbers(n);
+    const Motion expected = [&] {
+      std::vector<double> u(n), v(n);
+      return kernels(InstructionSet::portable).motion(f.data(), u0.data(), u1.data(), v1.data(), u.data(), v.data(), n);
+    }();
+    double work = 0, farthest = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      work += f[i] * (u1[i] - u0[i]);
+      farthest = std::max(farthest, std::abs(u1[i] - u0[i]));
+    }
+    EXPECT_NEAR(expected.work, work, 1e-12);
+    EXPECT_EQ(expected.farthest, farthest);
+    for (const InstructionSet set : {InstructionSet::portable, InstructionSet::avx2, InstructionSet::avx512}) {
+      if (!supported(set)) continue;
+      std::vector<double> u(n), v(n);
+      const Motion motion = kernels(set).motion(f.data(), u0.data(), u1.data(), v1.data(), u.data(), v.data(), n);
+      EXPECT_EQ(motion.work, expected.work);
+      EXPECT_EQ(motion.farthest, expected.farthest);
+      EXPECT_TRUE(motion.finite && u == u1 && v == v1);
+      EXPECT_TRUE(kernels(set).finite(f.data(), n));
+      for (std::size_t i = 0; i < std::min<std::size_t>(n, 40); ++i) {
+        for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+          std::vector<double> broken = u1;
+          broken[i] = bad;
+          EXPECT_FALSE(kernels(set).finite(broken.data(), n));
+          EXPECT_FALSE(kernels(set).motion(f.data(), u0.data(), broken.data(), v1.data(), u.data(), v.data(), n).finite);
+          EXPECT_FALSE(kernels(set).motion(f.data(), u0.data(), u1.data(), broken.data(), u.data(), v.data(), n).finite);
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace tactus
