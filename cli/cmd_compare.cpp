@@ -135,15 +135,23 @@ tl::expected<Side, Failure> open(const std::string& path) {
   return Side{path, std::move(*reader)};
 }
 
-/// What is typed goes before the defaults.
-void set_bounds(const CompareOptions& options, const TraceInfo& info, Report& report) {
-  report.bounds_from = options.triggers.any_given() || options.meshes.any_given() ? "options" : "defaults";
-  report.fidelity.emplace(info, options.triggers.triggers());
-  for (const TraceMesh& mesh : info.meshes)
-    report.meshes.push_back({.name = mesh.name,
-                             .vertices = mesh.rest.vertices.size(),
-                             .fidelity = MeshFidelity(mesh.rest, options.meshes.thresholds(options.triggers),
-                                                      options.meshes.rings(), GridExponents{}.position)});
+/// What is typed goes before what the stream of the replica promises, and that before the defaults.
+void set_bounds(const CompareOptions& options, const TraceInfo& info, const std::optional<TraceBounds>& promised,
+                Report& report) {
+  const bool is_typed = options.triggers.any_given() || options.meshes.any_given();
+  report.bounds_from = is_typed ? "options" : promised ? "stream" : "defaults";
+  const RigidTriggers rigid = promised && promised->stream.rigid ? *promised->stream.rigid : RigidTriggers{};
+  report.fidelity.emplace(info, options.triggers.over(rigid));
+  for (std::size_t i = 0; i < info.meshes.size(); ++i) {
+    const MeshBounds bounds = promised ? promised->stream.meshes[i] : MeshBounds{};
+    report.meshes.push_back(
+        {.name = info.meshes[i].name,
+         .vertices = info.meshes[i].rest.vertices.size(),
+         .fidelity = MeshFidelity(info.meshes[i].rest, options.meshes.over(bounds.thresholds, options.triggers),
+                                  options.meshes.rings(promised ? promised->rings[i] : MeshObject{}.rings),
+                                  promised ? promised->position_exp : GridExponents{}.position),
+         .promised = bounds.kept || is_typed});
+  }
 }
 
 Outcome run(const CompareOptions& options) {
@@ -158,7 +166,7 @@ Outcome run(const CompareOptions& options) {
 
   Report report{.command = "compare", .files = {{"truth", options.truth}, {"replica", options.replica}}};
   report.describe(info);
-  set_bounds(options, info, report);
+  set_bounds(options, info, replica->reader.info().bounds, report);
   report.timings = {{"compare", "compare, per tick"}};
   if (auto compared = compare_all(*truth, *replica, options, report); !compared) return compared;
   if (report.ticks.count() == 0)
@@ -180,7 +188,7 @@ void setup_compare(Command& app, Action& action) {
   options->meshes.add_to(command);
   add_report_options(command, options->common);
   command.footer(
-      "Ticks over a bound are counted; give the bounds that the stream was encoded with. Exit status 3: one is broken.\n"
+      "Bounds are those that the replica's stream promises; what is typed goes before. Exit status 3: one is broken.\n"
       "Ticks that only one of the traces has are left out, and a warning says how many.\n"
       "Example:\n"
       "  tactus compare push.mcap replica.mcap -p 4% --visual 6mm,2deg");

@@ -45,6 +45,19 @@ Json mesh_header_json(const MeshObject& mesh, std::uint32_t tick_rate) {
   return out;
 }
 
+Json promised_json(const MeshBounds& bounds, std::uint8_t rings) {
+  const MeshThresholds& b = bounds.thresholds;
+  Json out{{"position_m", b.visual},
+           {"haptic_rule", b.weber_fraction ? "isotropic" : "off"},
+           {"rings", rings},
+           {"promised", bounds.kept}};
+  if (b.weber_fraction) {
+    out["haptic_fraction"] = *b.weber_fraction;
+    out["depth_floor_m"] = b.depth_floor;
+  }
+  return out;
+}
+
 /// Shares of what would be sent without reduction need the trace.
 Json without_shares(Json traffic) {
   for (const char* name : {"payload", "with_udp_ipv4"})
@@ -99,6 +112,7 @@ Json stream_info_json(const StreamPlayer& player, const StreamTotals& totals, st
       out["traffic"]["max_bytes"] = totals.rigid.largest;
     }
   }
+  if (h.bounds && h.bounds->rigid) out["bounds"] = bounds_json(*h.bounds->rigid);
   out["objects"] = Json::array();
   for (const RigidObject& o : h.objects) {
     const Pose pose = to_pose({o.initial.position, o.initial.rotation}, h.grid);
@@ -111,6 +125,7 @@ Json stream_info_json(const StreamPlayer& player, const StreamTotals& totals, st
   out["meshes"] = Json::array();
   for (std::size_t i = 0; i < h.meshes.size(); ++i) {
     out["meshes"].push_back(mesh_header_json(h.meshes[i], h.tick_rate));
+    if (h.bounds) out["meshes"].back()["bounds"] = promised_json(h.bounds->meshes[i], h.meshes[i].rings);
     out["meshes"].back()["traffic"] = mesh_traffic_json(report.meshes[i], report.seconds());
   }
   return out;
