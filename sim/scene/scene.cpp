@@ -16,7 +16,7 @@ namespace tactus {
 namespace {
 
 constexpr std::size_t kMostSceneBytes = std::size_t{4} << 20;
-constexpr double kFarthest = 100;                                                  // [m] well inside the codec's default grid
+constexpr double kFarthest = 100;                                   // [m] well inside the codec's default grid
 constexpr std::size_t kMostObjects = 4096, kMostDeformables = 255;  // as streams take
 constexpr std::size_t kMostUsers = 64;
 constexpr double kLongest = 24 * 3600.0;                                           // [s]
