@@ -99,7 +99,7 @@ async function readIndexed(bytes) {
   assert.ok(reader.chunkIndexes.length > 1);
   for await (const { name, metadata } of reader.readMetadata()) {
     assert.equal(name, "tactus");
-    const entries = { format_version: "1", tick_rate: "1000", source: "interop", objects: "cube\nfloor", users: "hand", meshes: "blob" };
+    const entries = { format_version: "2", tick_rate: "1000", source: "interop", objects: "cube\nfloor", users: "hand", meshes: "blob" };
     assert.deepEqual(Object.fromEntries(metadata), entries);
   }
   const attachments = [];
