@@ -111,7 +111,7 @@ TEST(Stability, EveryLimitIsWithinAPercentOfTheory) {
 
 TEST(Stability, ClientOfFigure417) {
   const Study study = study_client(Extent::brief, none);
-  ASSERT_EQ(study.rows.size(), 9u);  // six panels, three limits by bisection
+  ASSERT_EQ(study.rows.size(), 9u);                                            // six panels, three limits by bisection
   const auto energy = [&](std::size_t i) { return *study.rows[i].measured; };  // lowest [mJ]
   EXPECT_EQ(study.rows[0].verdict, Verdict::stable);
   EXPECT_NE(study.rows[1].verdict, Verdict::stable);
