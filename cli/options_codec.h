@@ -36,8 +36,8 @@ class TriggerArguments {
   void add_encoder_to(Command& app);
   bool any_given() const;
   RigidTriggers triggers() const { return over({}); }
-  /// The bounds that were typed, for the others those of `base`.
-  RigidTriggers over(RigidTriggers base) const;
+  /// The bounds that were typed, for the others those of `out`.
+  RigidTriggers over(RigidTriggers out) const;
   RigidEncoderOptions encoder() const { return {.triggers = triggers(), .key_interval = key_interval_}; }
   /// For meshes: what -p says, `otherwise` if it was not given; none if --haptic is off.
   std::optional<double> weber_fraction(std::optional<double> otherwise) const;
@@ -68,8 +68,8 @@ class MeshArguments {
   void add_encoder_to(Command& app);
   bool any_given() const;
   MeshThresholds thresholds(const TriggerArguments& triggers) const { return over({}, triggers); }
-  /// The bounds that were typed, for the others those of `base`.
-  MeshThresholds over(MeshThresholds base, const TriggerArguments& triggers) const;
+  /// The bounds that were typed, for the others those of `out`.
+  MeshThresholds over(MeshThresholds out, const TriggerArguments& triggers) const;
   std::uint8_t rings(std::uint8_t otherwise) const { return rings_->count() > 0 ? coding_.rings : otherwise; }
   MeshEncoderOptions encoder(const TriggerArguments& triggers) const;
   std::uint8_t rings() const { return coding_.rings; }
