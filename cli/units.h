@@ -21,7 +21,7 @@ enum class Bare { refused, allowed };
 
 /// err  a sentence that names the text, what is wrong and what would be right. A length, an angle and a time need their unit: a bare 6
 ///      is too easily meant in millimetres, a 2 in degrees, a 500 in milliseconds. Only 0 needs none.
-tl::expected<Quantity, std::string> parse_quantity(std::string_view text, Dimension dimension, Bare bare = Bare::refused);
+tl::expected<Quantity, std::string> parse_quantity(std::string_view typed, Dimension dimension, Bare bare = Bare::refused);
 
 /// A length and an angle, "6mm,2deg"; blanks may stand between. The length may be bare: needs_unit() refuses it where no option
 /// says its unit.

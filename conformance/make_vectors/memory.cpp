@@ -12,6 +12,7 @@ Bytes with_models(int meshes) {
   header.objects.clear();
   header.baseline_span = 64;
   std::vector<RawMesh> list;
+  list.reserve(static_cast<std::size_t>(meshes));
   for (int i = 0; i < meshes; ++i)
     list.push_back({.shape = one_vertex(), .profile = 0, .name = std::to_string(i), .quant_bits = 12, .models_kept = 1});
   return with_meshes(header, list).bytes();

@@ -246,6 +246,7 @@ void add_mesh_orders(Catalogue& c) {
     RawHeader raw;
     raw.objects.clear();
     std::vector<RawMesh> meshes;
+    meshes.reserve(255);
     for (int i = 0; i < 255; ++i) meshes.push_back({.shape = one_vertex(), .name = std::to_string(i)});
     return with_meshes(raw, meshes).bytes();
   }());

@@ -8,7 +8,6 @@ namespace tactus {
 VelocityVerlet::VelocityVerlet(FemModel& model, const IntegratorOptions& options)
     : Guarded(model, options),
       part_(h() / options.substeps),
-      swing_(1),
       decay_(Eigen::VectorXd::Zero(model.size())),
       kick_(decay_),
       k_(kick_),

@@ -24,7 +24,7 @@ class VelocityVerlet final : public Guarded {
   void half_kick(const Eigen::VectorXd& f, Eigen::VectorXd& v);
 
   double part_;                   // [s] h / substeps
-  double swing_;                  // of the energy
+  double swing_ = 1;              // of the energy
   Eigen::VectorXd decay_;         // e, 0 where fixed
   Eigen::VectorXd kick_;          // p divided by the lumped mass, 0 where fixed
   Eigen::VectorXd k_, scratch_;   // k_: at the end of the step before

@@ -92,13 +92,14 @@ std::uint32_t RigidWorld::Impl::group_of(std::uint32_t body) {
 
 /// Contacts of a pair become joints.
 void RigidWorld::Impl::attach(const Pair& pair) {
-  const Body *const first = body(pair.a), *const second = body(pair.b);
+  const Body& first = bodies[pair.a];
+  const Body* const second = body(pair.b);
   for (dContact& contact : std::span(touching).subspan(pair.first, pair.count)) {
     contact.surface = {};
     contact.surface.mode = dContactApprox1;
-    contact.surface.mu = second ? std::min(first->mu, second->mu) : first->mu;
+    contact.surface.mu = second ? std::min(first.mu, second->mu) : first.mu;
     const Vec3 point = vec(contact.geom.pos), normal = vec(contact.geom.normal);
-    const Vec3 relative = velocity_without_contact(first, point) - velocity_without_contact(second, point);
+    const Vec3 relative = velocity_without_contact(&first, point) - velocity_without_contact(second, point);
     const Vec3 sliding = relative - dot(relative, normal) * normal;
     if (const double speed = norm(sliding); speed > kSliding) {
       contact.surface.mode |= dContactFDir1;
@@ -106,7 +107,7 @@ void RigidWorld::Impl::attach(const Pair& pair) {
       contact.fdir1[1] = sliding.y / speed;
       contact.fdir1[2] = sliding.z / speed;
     }
-    dJointAttach(dJointCreateContact(world, contacts, &contact), first->handle, second ? second->handle : nullptr);
+    dJointAttach(dJointCreateContact(world, contacts, &contact), first.handle, second ? second->handle : nullptr);
   }
 }
 

@@ -2,7 +2,9 @@
 #include "sim/rigid/rigid_world.h"
 
 #include <algorithm>
-#include <cstring>
+#include <array>
+#include <bit>
+#include <cstdint>
 #include <numeric>
 
 #include "sim/rigid/rigid_parts.h"
@@ -41,8 +43,8 @@ Rows inverse_of(const dMass& mass) {
 }
 
 bool are_same(const RigidSample& a, const RigidSample& b) {
-  static_assert(sizeof(RigidSample) == 13 * sizeof(double));
-  return std::memcmp(&a, &b, sizeof a) == 0;
+  using Bits = std::array<std::uint64_t, 13>;
+  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
 }
 
 }  // namespace
@@ -65,7 +67,7 @@ RigidWorld::Impl::Impl(const Scene& scene) : gravity(scene.gravity) {
   order.reserve(moving.size());
   resting.reserve(bodies.size());
   pairs.reserve(8 * moving.size());
-  touching.reserve(2 * kMaxContacts * moving.size());
+  touching.reserve(moving.size() * 2 * kMaxContacts);
   for (std::uint32_t i = 0; i < bodies.size(); ++i)
     if (bodies[i].handle) awake.push_back(i);
 }
