@@ -19,7 +19,7 @@ import subprocess
 import sys
 import tempfile
 
-TIMEOUT_S = 120
+TIMEOUT_S = 300  # against cases that hang: with sanitizers on a busy machine the longest takes two minutes
 
 
 def stream_difference(case, stream, text):
