@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
 """Seeded damage to files, and check values that are mended behind it, so that the damage reaches the code behind the check."""
-import shutil
 import struct
 import subprocess
 import zlib
