@@ -31,7 +31,7 @@ Eigen::Matrix<double, 2, 3> exact_step(double lambda, double damping, double h) 
 tl::expected<Modes, FemError> slowest_modes(FemModel& model, int count) {
   SparseMatrix K;
   model.stiffness(Eigen::VectorXd::Zero(model.size()), K);
-  auto modes = slowest_modes<Cholesky>(K, model.mass_matrix(), count);
+  auto modes = slowest_modes(K, model.mass_matrix(), count);
   if (!modes) return tl::unexpected(not_positive_definite());
   return *std::move(modes);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/modes/spring_modes.h"
 
-#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,23 +12,9 @@
 namespace tactus {
 namespace {
 
-using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+using Matrix = SymmetricMatrix;
 
 constexpr double kReach = 2.3;  // mean edges
-
-/// Eigen's factor, so that a basis needs no finite elements.
-class Factor {
- public:
-  void analyse(const Matrix& A) { solver_.analyzePattern(A); }
-  bool factor(const Matrix& A) {
-    solver_.factorize(A);
-    return solver_.info() == Eigen::Success;
-  }
-  void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) { x = solver_.solve(b); }
-
- private:
-  Eigen::SimplicialLDLT<Matrix> solver_;
-};
 
 double mean_edge(const TriMesh& mesh) {
   double sum = 0;
@@ -111,7 +97,7 @@ Result<std::vector<double>> spring_modes(const TriMesh& rest, std::span<const st
 
   Matrix masses(free, free);
   masses.setIdentity();
-  const auto found = slowest_modes<Factor>(stiffness(rest, rows, free), masses, count);
+  const auto found = slowest_modes(stiffness(rest, rows, free), masses, count);
   if (!found) return fail(Errc::internal, "R-SIM-5");
 
   std::vector<double> out;
