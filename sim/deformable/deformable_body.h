@@ -3,8 +3,8 @@
 ///
 /// Sleep  after kRestSteps steps in a row without a push in which no vertex was faster than 2^-44 of the object's size per step, no
 ///        more steps are taken until it is pushed. It keeps its last state, velocities included; what is left out is the trembling
-///        by the rounding of its forces. What comes after a push is what it would have been, but for the rounding that the elements'
-///        warm starts make (model.h). An object without a free vertex never takes a step, one without weight none before it is pushed.
+///        by the rounding of its forces. What has not moved since it was made comes out of sleep bit by bit as if it had never
+///        slept. An object without a free vertex never takes a step, one without weight none before it is pushed.
 #pragma once
 
 #include <memory>

@@ -72,6 +72,12 @@ double Elements::energy(const double* u) noexcept {
   return (corotated_ ? kernels_.energy : kernels_.linear_energy)({blocks_.data(), blocks_.size()}, u_.data()->xyz);
 }
 
+void Elements::turn(const double* u) noexcept {
+  if (!corotated_) return;
+  spread(u);
+  kernels_.turn({blocks_.data(), blocks_.size()}, u_.data()->xyz);
+}
+
 Quat Elements::rotation(std::size_t element) const noexcept {
   const auto [block, lane] = place(element);
   const auto& q = blocks_[block].rotation;

@@ -4,7 +4,7 @@
 /// symbol  meaning                                                    per element
 /// F       deformation gradient I + sum_r (u_r - u_0) g_r^T           u_r displacements of corners 0..3
 /// g_r     gradient of corner r's shape function [1/m]                rows of the inverse of the rest edges; g_0 = -g_1 -g_2 -g_3
-/// R       rotation nearest to F (rotation.h); I when linear          sought from that of the call before
+/// R       rotation nearest to F (rotation.h); I when linear          sought from the one remembered
 /// e       sym(R^T F) - I                                             strain in the element's own frame
 /// W       V (mu |e|^2 + lambda/2 tr(e)^2)                            energy [J]
 /// k_r     V R (2 mu e + lambda tr(e) I) g_r                          force of corner r [N] = dW/dx_r, also = R K_e (R^T x - X)
@@ -37,10 +37,12 @@ class Elements {
   std::size_t size() const noexcept { return size_; }
   /// k = forces at displacements u (both 3N); R remembered.   time O(tets), no allocation.
   void forces(const double* u, double* k) noexcept;
-  /// Sum of W; R remembered.   time O(tets), no allocation.
+  /// Sum of W; R is sought, but not remembered.   time O(tets), no allocation.
   double energy(const double* u) noexcept;
+  /// R at u remembered; nothing when linear.   time O(tets), no allocation.
+  void turn(const double* u) noexcept;
 
-  /// R of the last call.
+  /// R that is remembered.
   Quat rotation(std::size_t element) const noexcept;
   /// g_0..g_3 [1/m]
   std::array<Vec3, 4> gradients(std::size_t element) const noexcept;

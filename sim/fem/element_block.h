@@ -43,6 +43,7 @@ struct ElementKernels {
   void (*linear_forces)(BlockSpan blocks, const double* u, double* k) noexcept;
   double (*energy)(BlockSpan blocks, const double* u) noexcept;
   double (*linear_energy)(BlockSpan blocks, const double* u) noexcept;
+  void (*turn)(BlockSpan blocks, const double* u) noexcept;
   /// Copies u1 and v1 to u and v too: what is loaded is the cost.
   Motion (*motion)(const double* f, const double* u0, const double* u1, const double* v1, double* u, double* v,
                    std::size_t n) noexcept;

@@ -124,13 +124,18 @@ struct Kernel {
     }
   }
 
-  /// R of the elements from `lane` on, remembered in the block unless it is the one remembered already: a second look at the same F
-  /// changes no bit.
-  static Matrix rotate(ElementBlock& block, std::size_t lane, const Matrix& f) {
-    Rotation start;
+  /// R of the elements from `lane` on, sought from the one that their block remembers.
+  static Turned find(const ElementBlock& block, std::size_t lane, const Matrix& f, Rotation& start) {
     for (std::size_t i = 0; i < 4; ++i) start.q[i] = V(block.rotation[i] + lane);
     Turned turned = nearest(f, start);
     if ((~turned.arrived).any()) repair(f, start, turned);
+    return turned;
+  }
+
+  /// The same, remembered unless it is the one remembered already: a second look at the same F changes no bit.
+  static Matrix rotate(ElementBlock& block, std::size_t lane, const Matrix& f) {
+    Rotation start;
+    const Turned turned = find(block, lane, f, start);
     const V square = length2(turned.to), scale = 2.0 / (1.0 + square);  // Newton's step for the root: length 1 to second order
     for (std::size_t i = 0; i < 4; ++i)
       V::select(turned.moved, scale * turned.to.q[i], start.q[i]).store_to(block.rotation[i] + lane);
@@ -210,7 +215,9 @@ struct Kernel {
     for (ElementBlock* block = blocks.data; block != blocks.data + blocks.size; ++block) {
       for (std::size_t lane = 0; lane < kBlockSize; lane += kLanes) {
         const Matrix f = deformation(*block, lane, u);
-        sum = add_energy(*block, lane, strain(transposed_product(rotate(*block, lane, f), f)), sum);
+        Rotation start;
+        const Rotation r = find(*block, lane, f, start).to;
+        sum = add_energy(*block, lane, strain(transposed_product(matrix(r, length2(r)), f)), sum);
       }
     }
     return sum;
@@ -222,6 +229,11 @@ struct Kernel {
       for (std::size_t lane = 0; lane < kBlockSize; lane += kLanes)
         sum = add_energy(*block, lane, strain(deformation(*block, lane, u)), sum);
     return sum;
+  }
+
+  static void turn(BlockSpan blocks, const double* u) noexcept {
+    for (ElementBlock* block = blocks.data; block != blocks.data + blocks.size; ++block)
+      for (std::size_t lane = 0; lane < kBlockSize; lane += kLanes) rotate(*block, lane, deformation(*block, lane, u));
   }
 
   static constexpr std::size_t kParts = 8 / W;  ///< vectors that hold eight sums, whatever W is
@@ -280,7 +292,7 @@ struct Kernel {
     return rest == 0 && all_zero(zero);
   }
 
-  static constexpr ElementKernels kKernels{forces, linear_forces, energy, linear_energy, motion, finite};
+  static constexpr ElementKernels kKernels{forces, linear_forces, energy, linear_energy, turn, motion, finite};
 };
 
 }  // namespace

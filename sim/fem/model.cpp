@@ -170,7 +170,7 @@ double FemModel::energy(const Eigen::VectorXd& u) noexcept { return impl_->eleme
 
 void FemModel::stiffness(const Eigen::VectorXd& u, SparseMatrix& matrix) {
   impl_->assembly.prepare(matrix);
-  impl_->elements.energy(u.data());  // finds the rotations
+  impl_->elements.turn(u.data());
   for (std::size_t e = 0; e < impl_->elements.size(); ++e)
     impl_->assembly.add(e, rotated_stiffness(impl_->elements, e, impl_->corotated()), matrix);
 }
@@ -178,7 +178,7 @@ void FemModel::stiffness(const Eigen::VectorXd& u, SparseMatrix& matrix) {
 void FemModel::tangent(const Eigen::VectorXd& u, SparseMatrix& matrix) {
   if (!impl_->corotated()) return stiffness(u, matrix);
   impl_->assembly.prepare(matrix);
-  impl_->elements.energy(u.data());
+  impl_->elements.turn(u.data());
   for (std::size_t e = 0; e < impl_->elements.size(); ++e)
     impl_->assembly.add(e, tactus::tangent(impl_->elements, e, u.data()), matrix);
 }

@@ -96,7 +96,8 @@ class FemModel {
   /// the same. What is not finite in u comes out in k and is not remembered.
   /// time O(tets), 18 ns each (AVX-512; AVX2 21, SSE2 42), linear 8; 0.5 us more each where R is not unique; no allocation.
   void internal_forces(const Eigen::VectorXd& u, Eigen::VectorXd& k) noexcept;
-  /// W(u) [J], fixed vertices' elements included.   time as internal_forces; no allocation.
+  /// W(u) [J], fixed vertices' elements included. No rotation is remembered: forces stay the same whether or not someone looks.
+  /// time as internal_forces; no allocation.
   double energy(const Eigen::VectorXd& u) noexcept;
   /// Sum over elements of R_e K_e R_e^T with the rotations at u [N/m], free x free. `matrix` gets the pattern once, later calls only
   /// rewrite its values; it is empty or one that this model has filled.

@@ -168,12 +168,12 @@ TEST(ElementRotation, IsTheBestOneFromAColdAndFromAWarmStart) {
   std::vector<Matrix3d> f = matrices();
   const Scattered cold = scatter(f);
   Elements elements(cold.mesh, std::vector<Lame>(f.size(), {1, 1}), true);
-  elements.energy(cold.u.data());
+  elements.turn(cold.u.data());
   for (std::size_t i = 0; i < f.size(); ++i) expect_best_rotation(f[i], elements.rotation(i), 1e-13);
 
   Random random(9);
   for (Matrix3d& m : f) m += 1e-3 * random_matrix(random);
-  elements.energy(scatter(f).u.data());
+  elements.turn(scatter(f).u.data());
   for (std::size_t i = 0; i < f.size(); ++i) expect_best_rotation(f[i], elements.rotation(i), 1e-13);
 }
 
@@ -187,7 +187,7 @@ TEST(ElementRotation, IsTheOneOfTheRobustMethodToTheLastDigits) {
   EXPECT_GT(f.size(), kMatrices / 2);
   const Scattered end = scatter(f);
   Elements elements(end.mesh, std::vector<Lame>(f.size(), {1, 1}), true);
-  for (const double part : {0.0, 0.9, 0.99, 0.999, 1.0}) elements.energy((part * end.u).eval().data());
+  for (const double part : {0.0, 0.9, 0.99, 0.999, 1.0}) elements.turn((part * end.u).eval().data());
   for (std::size_t i = 0; i < f.size(); ++i)
     EXPECT_LT(angle_between(elements.rotation(i), nearest_rotation(matrix3(f[i]), {})), 2e-12);
 }
@@ -204,7 +204,7 @@ TEST(ElementRotation, LeavesTheSaddlesOfHalfTurns) {
   }
   const Scattered turned = scatter(f);
   Elements elements(turned.mesh, std::vector<Lame>(f.size(), {1, 1}), true);
-  elements.energy(turned.u.data());
+  elements.turn(turned.u.data());
   for (std::size_t i = 0; i < f.size(); ++i) expect_best_rotation(f[i], elements.rotation(i), 1e-14);
 }
 
@@ -236,7 +236,7 @@ TEST(ElementRotation, DoesNotDriftInAMillionSteps) {
   std::vector<Eigen::VectorXd> u;
   for (const Matrix3d& m : f) u.push_back(scatter({m}).u);
   for (int turn = 0; turn < 1000; ++turn)
-    for (const Eigen::VectorXd& x : u) elements.energy(x.data());
+    for (const Eigen::VectorXd& x : u) elements.turn(x.data());
   expect_best_rotation(f.back(), elements.rotation(0), 1e-14);
 }
 
