@@ -3,6 +3,7 @@
 """Run the command-line cases beside this file against a `tactus` program.
 
   run.py [--without PARTS] PROGRAM [CASE...]   run all cases or those named; PARTS that the program lacks: fem,surface
+                                               ends with 77 when all of them are skipped
   run.py --self-test                           check that each kind of difference is found
 
 A case is a folder NNN-name:
@@ -19,6 +20,7 @@ import subprocess
 import sys
 import tempfile
 
+FAILED, SKIPPED = 1, 77
 TIMEOUT_S = 300  # against cases that hang: with sanitizers on a busy machine the longest takes two minutes
 
 
@@ -69,7 +71,7 @@ def run_cases(program, cases, without):
         failed += bool(differences)
         print(f"{'FAILED' if differences else 'ok':7}{case.name}", *differences, sep="\n       " if differences else "")
     print(f"{len(cases)} cases, {failed} failed, {skipped} skipped")
-    return failed == 0 and len(cases) > skipped
+    return FAILED if failed else SKIPPED if skipped == len(cases) else 0
 
 
 def self_test():
@@ -110,7 +112,7 @@ def main(args):
         return 2
     here = pathlib.Path(__file__).resolve().parent
     cases = [here / name for name in args[1:]] or sorted(p.parent for p in here.glob("[0-9]*/cmd"))
-    return 0 if run_cases(pathlib.Path(args[0]), cases, without) else 1
+    return run_cases(pathlib.Path(args[0]), cases, without)
 
 
 if __name__ == "__main__":
