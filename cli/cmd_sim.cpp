@@ -68,8 +68,6 @@ struct Run {
   std::optional<TraceReader> recording;
   TraceFrame recorded;
   std::size_t part_bytes = 0;  // in front of every packet
-  std::uint64_t ticks_in_contact = 0;
-  double largest_force = 0;
 };
 
 /// One tick, by the scene's hands or by the recording.
@@ -117,12 +115,6 @@ Outcome record(Run& run, const EncodedPacket& packet, const SimOptions& options,
     report.fidelity->add(frame, run.simulation.client_poses());
     report.fidelity->add_rendered(frame);
   }
-  bool touched = false;
-  for (const UserSample& user : frame.users) {
-    touched = touched || user.contact.kind != ContactKind::none || user.mesh_contact;
-    run.largest_force = std::max(run.largest_force, norm(user.force));
-  }
-  run.ticks_in_contact += touched ? 1 : 0;
   report.ticks.add(frame.tick);
   return {};
 }
@@ -322,10 +314,7 @@ Outcome run(const SimOptions& options) {
     if (report.ticks.count() == 0) session.output.discard();
     return done;
   }
-  if (!info.users.empty() && report.ticks.count() > 0) {
-    report.contact = {static_cast<double>(session.ticks_in_contact) / static_cast<double>(report.ticks.count()),
-                      session.largest_force};
-  }
+  report_touches(*scene, session.simulation, report);
   if (options.has_channel()) report.stream = stream_size(session);
   report_errors(session.simulation, report);
   report.timings.push_back(std::move(map));

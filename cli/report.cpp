@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "cli/figures.h"
 #include "cli/table.h"
@@ -107,7 +108,15 @@ void stream_rows(Table& table, const Report& r) {
   table.row({"  bit/s with the header, over this length", rate(bytes + header), rate(bytes + header + packets * kUdpHeader)});
 }
 
-void note_row(Table& table, const std::string& name, const std::string& text) {
+/// Long texts go on below, between words.
+void note_row(Table& table, std::string name, std::string text) {
+  constexpr std::size_t kWidth = 120;
+  while (text.size() > kWidth) {
+    const std::size_t end = text.rfind(' ', kWidth);
+    if (end == std::string::npos || end == 0) break;
+    table.row({fmt::format("  {:<8} {}", std::exchange(name, ""), text.substr(0, end))});
+    text.erase(0, end + 1);
+  }
   table.row({fmt::format("  {:<8} {}", name, text)});
 }
 
@@ -137,9 +146,11 @@ void note_rows(Table& table, const Report& r) {
     note_row(table, "energy",
              fmt::format("{:+.2g} % of the work of all forces gained without cause over the whole run", 100 * d.energy_gained));
   }
-  if (r.contact)
-    note_row(table, "contact",
-             fmt::format("{:.1f} % of the ticks, at most {:.2f} N", 100 * r.contact->share, r.contact->largest_force));
+  for (const TouchReport& t : r.touches) {
+    note_row(table, "touch",
+             fmt::format("{}: {}, {:.1f} % of the ticks, at most {:.2f} N, least energy of a contact {:.2g} mJ", t.user,
+                         counted(t.contacts, "contact"), 100 * t.share, t.largest_force, 1e3 * t.lowest_energy));
+  }
   if (!r.bounds_from.empty())
     note_row(table, "bounds",
              r.bounds_from == "stream"    ? "those that the stream promises"

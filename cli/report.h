@@ -10,6 +10,7 @@
 
 #include "cli/mesh_report.h"
 #include "cli/options_codec.h"
+#include "cli/touch_report.h"
 #include "codec/trace/compare.h"
 
 namespace tactus::cli {
@@ -37,12 +38,6 @@ struct DeformableReport {
   double energy_gained = 0;             ///< without cause, over the whole run; share of all the work of forces
 };
 
-/// What was felt.
-struct ContactReport {
-  double share = 0;          ///< of the ticks
-  double largest_force = 0;  ///< [N]
-};
-
 struct Report {
   std::string command;
   std::vector<std::pair<std::string, std::string>> files{};  ///< role, path
@@ -53,7 +48,7 @@ struct Report {
   std::optional<std::uint64_t> seed{}, segments{};
   std::optional<Interpolation> client{};
   std::vector<DeformableReport> deformables{};
-  std::optional<ContactReport> contact{};
+  std::vector<TouchReport> touches{};  ///< one per user
   std::vector<std::string> warnings{};
   std::string bounds_from{};  ///< "stream", "options", "defaults"; empty: no verdict on them
   std::optional<StreamSize> stream{};

@@ -193,7 +193,14 @@ void add_particulars(Json& out, const Report& r) {
   if (r.segments) out["segments"] = *r.segments;
   if (r.client) out["client"] = *r.client == Interpolation::none ? "direct" : "interpolated";
   for (const DeformableReport& d : r.deformables) out["deformables"].push_back(deformable_json(d));
-  if (r.contact) out["contact"] = {{"share", r.contact->share}, {"largest_force_N", r.contact->largest_force}};
+  for (const TouchReport& t : r.touches) {
+    out["touches"].push_back({{"user", t.user},
+                              {"share", t.share},
+                              {"contacts", t.contacts},
+                              {"contacts_most_in_a_second", t.most_in_a_second},
+                              {"largest_force_N", t.largest_force},
+                              {"lowest_energy_J", t.lowest_energy}});
+  }
   for (const std::string& warning : r.warnings) out["warnings"].push_back(warning);
 }
 

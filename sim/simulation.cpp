@@ -8,6 +8,7 @@
 
 #include "codec/rigid/rigid_decoder.h"
 #include "sim/contact/contact.h"
+#include "sim/user/sampled_limit.h"
 #include "sim/user/user.h"
 
 namespace tactus {
@@ -32,6 +33,7 @@ struct User {
   double share;           // of both that the device can yield
   Vec3 rendered;          // by the server, within the device's limit
   Vec3 felt;              // by the client
+  TouchRecord record{};
 };
 
 /// How much of a force a device renders.
@@ -181,6 +183,7 @@ void Simulation::Impl::touch_client() {
     if (deformables) force = force + deformables->touch_client(i, user.device.position).force;
     user.felt = share_rendered(force, user.max_force) * force;
     frame.users[i].force = user.felt;
+    user.record.add(frame.users[i], user.device.position);
   }
 }
 
@@ -302,8 +305,13 @@ tl::expected<EncodedPacket, StepError> Simulation::replay(std::span<const UserSa
 const TraceFrame& Simulation::frame() const noexcept { return impl_->frame; }
 std::span<const Pose> Simulation::client_poses() const noexcept { return impl_->client_poses; }
 const DeformableWorld* Simulation::deformables() const noexcept { return impl_->deformables.get(); }
+const TouchSummary& Simulation::touched(std::size_t user) const noexcept { return impl_->users[user].record.summary(); }
 const MeshSent& Simulation::sent(std::size_t mesh) const noexcept { return impl_->channel->sent[mesh]; }
 const StreamHeader& Simulation::header() const noexcept { return impl_->header; }
+
+double Simulation::bears(std::size_t user) const noexcept {
+  return sampled_limit(impl_->users[user].hand.impedance(), impl_->scene.users[user].device);
+}
 
 std::int64_t Simulation::ticks() const noexcept { return std::llround(impl_->scene.duration / kTick); }
 

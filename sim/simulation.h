@@ -28,6 +28,7 @@
 #include "sim/msd/msd_world.h"
 #include "sim/rigid/rigid_world.h"
 #include "sim/scene/scene.h"
+#include "sim/user/touch_record.h"
 
 namespace tactus {
 
@@ -75,10 +76,13 @@ class Simulation {
   std::span<const Pose> client_poses() const noexcept;  ///< as shown at the client in that tick, one per object
   /// Of a mesh that is new in that tick.   pre  there is a channel
   const MeshSent& sent(std::size_t mesh) const noexcept;
-  std::int64_t ticks() const noexcept;                  ///< length of the scene
-  TraceInfo info() const;                               ///< for a TraceWriter of these frames
-  const StreamHeader& header() const noexcept;          ///< of the packets
-  const DeformableWorld* deformables() const noexcept;  ///< null: the scene has none
+  std::int64_t ticks() const noexcept;                           ///< length of the scene
+  TraceInfo info() const;                                        ///< for a TraceWriter of these frames
+  const StreamHeader& header() const noexcept;                   ///< of the packets
+  const DeformableWorld* deformables() const noexcept;           ///< null: the scene has none
+  const TouchSummary& touched(std::size_t user) const noexcept;  ///< all ticks so far
+  double bears(
+      std::size_t user) const noexcept;  ///< [N/m] largest stiffness of a coupling to what does not yield (sampled_limit.h)
 
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;

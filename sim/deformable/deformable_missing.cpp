@@ -11,4 +11,6 @@ Result<std::unique_ptr<DeformableWorld>> make_deformable_world(const Scene&, con
 
 Result<StiffnessMap> stiffness_map(const SceneDeformable&) { return fail(Errc::unsupported, "R-SIM-2"); }
 
+Result<double> critical_stiffness(const SceneDeformable&, const MeshContact&) { return fail(Errc::unsupported, "R-SIM-2"); }
+
 }  // namespace tactus

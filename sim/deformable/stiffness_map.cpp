@@ -3,9 +3,12 @@
 
 #include <Eigen/SparseCholesky>
 
+#include <cmath>
 #include <limits>
 
 #include "sim/deformable/deformable_body.h"
+#include "sim/fem/linear_solver.h"
+#include "sim/msd/msd.h"
 
 namespace tactus {
 namespace {
@@ -31,6 +34,25 @@ std::vector<Vec3> vertex_normals(const TriMesh& mesh) {
   for (Vec3& normal : normals)
     if (const double length = norm(normal); length > 0) normal = (1 / length) * normal;
   return normals;
+}
+
+/// |f| / |u . n| for a force on a triangle of the surface; 0 where too little is fixed to resist.
+double local_stiffness(FemModel& model, const TetSurface& surface, const MeshContact& contact) {
+  const std::vector<int> numbers = numbers_of(model);
+  SparseMatrix matrix;
+  model.stiffness(model.rest().u, matrix);
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(matrix.rows()), u = f;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int first = numbers[3 * std::size_t{surface.vertex[surface.mesh.triangles[contact.triangle][k]]}];
+    if (first >= 0)
+      f.segment<3>(first) = contact.weights[k] * Eigen::Vector3d(contact.normal.x, contact.normal.y, contact.normal.z);
+  }
+  if (f.squaredNorm() == 0) return std::numeric_limits<double>::infinity();
+  ConjugateGradients solver(matrix.rows(), 1e-3);
+  solver.prepare(matrix);
+  solver.solve(matrix, f, u);
+  const double yields = u.dot(f);
+  return std::isfinite(yields) && yields > 0 ? 1 / yields : 0;
 }
 
 }  // namespace
@@ -67,6 +89,22 @@ Result<StiffnessMap> stiffness_map(const SceneDeformable& object) {
     f.segment<3>(first).setZero();
   }
   return map;
+}
+
+Result<double> critical_stiffness(const SceneDeformable& object, const MeshContact& contact) {
+  auto model = FemModel::create(object.mesh, fem_options(object));
+  if (!model) return tl::unexpected(model.error().error);
+  const TetSurface surface = tactus::surface(model->mesh());
+  double inverse = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t vertex = surface.vertex[surface.mesh.triangles[contact.triangle][k]];
+    if (!model->is_fixed(vertex))
+      inverse += contact.weights[k] * contact.weights[k] / model->lumped_mass()[3 * Eigen::Index{vertex}];
+  }
+  if (inverse == 0) return std::numeric_limits<double>::infinity();
+  const double mass = 1 / inverse, stiffness = object.fixed.empty() ? 0 : local_stiffness(*model, surface, contact);
+  const MsdObject alike{stiffness, object.mass_damping * mass + object.stiffness_damping * stiffness, mass};
+  return critical_stiffness(alike, object.rate * kTick);
 }
 
 }  // namespace tactus

@@ -10,7 +10,7 @@ import pathlib
 import sys
 
 TYPES = {"object": dict, "array": list, "string": str, "boolean": bool, "null": type(None)}
-KNOWN = {"$schema", "$id", "$defs", "$ref", "title", "description", "type", "const", "enum", "minimum", "properties", "required",
+KNOWN = {"$schema", "$id", "$defs", "$ref", "title", "description", "type", "const", "enum", "minimum", "maximum", "properties", "required",
          "additionalProperties", "items", "minItems", "maxItems", "oneOf"}
 
 
@@ -41,6 +41,8 @@ def differences(value, schema, root, place="$"):
         out.append(f"{place}: {value!r} is none of {schema['enum']}")
     if "minimum" in schema and has_type(value, "number") and value < schema["minimum"]:
         out.append(f"{place}: {value} is below {schema['minimum']}")
+    if "maximum" in schema and has_type(value, "number") and value > schema["maximum"]:
+        out.append(f"{place}: {value} is above {schema['maximum']}")
     if isinstance(value, list):
         if not schema.get("minItems", 0) <= len(value) <= schema.get("maxItems", len(value)):
             out.append(f"{place}: {len(value)} items")
@@ -60,11 +62,11 @@ def differences(value, schema, root, place="$"):
 
 
 def self_test():
-    schema = {"$defs": {"n": {"type": "number", "minimum": 0}}, "type": "object", "required": ["a"], "additionalProperties": False,
+    schema = {"$defs": {"n": {"type": "number", "minimum": 0, "maximum": 9}}, "type": "object", "required": ["a"], "additionalProperties": False,
               "properties": {"a": {"$ref": "#/$defs/n"}, "b": {"type": "array", "maxItems": 2, "items": {"type": ["integer", "null"]}},
                              "c": {"enum": ["x", "y"]}, "d": {"oneOf": [{"const": 1}, {"type": "string"}]}}}
     good = [{"a": 0}, {"a": 1.5, "b": [1, None], "c": "x"}, {"a": 2, "d": 1}, {"a": 2, "d": "s"}]
-    bad = [{}, {"a": -1}, {"a": "1"}, {"a": True}, {"a": 1, "b": [1.5]}, {"a": 1, "b": [1, 2, 3]}, {"a": 1, "c": "z"}, {"a": 1, "d": 2},
+    bad = [{}, {"a": -1}, {"a": 9.5}, {"a": "1"}, {"a": True}, {"a": 1, "b": [1.5]}, {"a": 1, "b": [1, 2, 3]}, {"a": 1, "c": "z"}, {"a": 1, "d": 2},
            {"a": 1, "e": 0}, []]
     wrong = [v for v in good if differences(v, schema, schema)] + [v for v in bad if not differences(v, schema, schema)]
     wrong += [] if differences(1, {"pattern": "x"}, {}) else ["unknown keyword"]

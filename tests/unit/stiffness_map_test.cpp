@@ -90,5 +90,51 @@ TEST(StiffnessMap, WhatFloatsHasNone) {
   EXPECT_STREQ(map.error().rule, "R-FEM-7");
 }
 
+/// At a low rate an object bears little more than its own stiffness at that place; at a high one, four times the mass over T^2.
+TEST(CriticalStiffness, IsThatOfEquation438WhereTheObjectIsPressed) {
+  SceneDeformable object = slab(4, 3);
+  const StiffnessMap map = stiffness_map(object).value();
+  std::uint32_t triangle = 0;
+  while (std::ranges::any_of(map.surface.triangles[triangle], [&](std::uint32_t v) { return std::isinf(map.stiffness[v]); }))
+    ++triangle;
+  MeshContact contact;
+  contact.triangle = triangle;
+  contact.weights = {1.0 / 3, 1.0 / 3, 1.0 / 3};
+  object.rate = 1000;
+  const double slow = critical_stiffness(object, contact).value();
+  double lowest = 1e300, highest = 0;
+  for (const std::uint32_t v : map.surface.triangles[triangle]) {
+    lowest = std::min(lowest, map.stiffness[v]);
+    highest = std::max(highest, map.stiffness[v]);
+  }
+  EXPECT_GT(slow, lowest);
+  EXPECT_LT(slow, 4 * highest) << "spread over three vertices, which yield less than one alone";
+  object.rate = 1;
+  const double mass = (critical_stiffness(object, contact).value() - slow) * kTick * kTick / 4;
+  const double whole = 1e4 * 4 * 3 * 1e-6;  // [kg]
+  EXPECT_GT(mass, whole / 40) << "of three vertices out of 40";
+  EXPECT_LT(mass, whole / 5);
+  object.mass_damping = 10;
+  EXPECT_NEAR(critical_stiffness(object, contact).value() - slow, (4 / (kTick * kTick) + 2 * 10 / kTick) * mass,
+              1e-6 * mass / (kTick * kTick));
+}
+
+TEST(CriticalStiffness, OfAFreeObjectIsThatOfItsMass) {
+  SceneDeformable object = slab(4, 3);
+  object.fixed.clear();
+  object.rate = 17;
+  const double limit = critical_stiffness(object, {}).value();
+  const double period = 17 * kTick, whole = 1e4 * 4 * 3 * 1e-6;
+  EXPECT_GT(limit, 0);
+  EXPECT_LT(limit, 4 * whole / 10 / (period * period));
+}
+
+TEST(CriticalStiffness, OfAFixedPlaceIsInfinite) {
+  SceneDeformable object = slab(4, 3);
+  object.fixed.clear();
+  for (std::uint32_t v = 0; v < object.mesh.vertices.size(); ++v) object.fixed.push_back(v);
+  EXPECT_TRUE(std::isinf(critical_stiffness(object, {}).value()));
+}
+
 }  // namespace
 }  // namespace tactus

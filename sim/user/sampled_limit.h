@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+/// How stiff a coupling a virtual hand bears: sampling and smoothing of the device delay what it feels.
+#pragma once
+
+#include "sim/user/user.h"
+
+namespace tactus {
+
+/// Largest k [N/m] of a spring to a fixed point that hand and device do not swing up against. Of the loop as it is simulated,
+///   m (x+ - 2 x + x-) / T^2 = -k_h x - b (x - x-) / T - k F x,   F the device's mean of N samples,
+/// the least k with a pole on the unit circle. About b / ((N - 1) T / 2) where that is far above k_h. What gives way
+/// bears more.
+/// time 20 us
+double sampled_limit(const HandImpedance& hand, const SceneDevice& device) noexcept;
+
+}  // namespace tactus

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/user/touch_record.h"
+
+#include <algorithm>
+
+namespace tactus {
+
+void TouchRecord::add(const UserSample& sample, const Vec3& position) noexcept {
+  const bool touches = sample.contact.kind != ContactKind::none || sample.mesh_contact;
+  const bool begins = touches && !touching_;
+  touching_ = touches;
+  port_.arrive(position);
+  if (begins) port_.reset();
+  port_.hold(sample.force);
+  summary_.lowest_energy = port_.lowest();
+  summary_.largest_force = std::max(summary_.largest_force, norm(sample.force));
+  summary_.ticks += touches ? 1 : 0;
+  summary_.contacts += begins ? 1 : 0;
+  in_a_second_ += (begins ? 1U : 0U) - (began_[tick_] ? 1U : 0U);
+  began_[tick_] = begins;
+  tick_ = (tick_ + 1) % began_.size();
+  summary_.most_in_a_second = std::max(summary_.most_in_a_second, in_a_second_);
+
+  if (!sample.mesh_contact) return;
+  const double pressed = norm(sample.server_force);
+  if (summary_.hardest && pressed <= hardest_) return;
+  hardest_ = pressed;
+  summary_.hardest = sample.mesh_contact;
+}
+
+}  // namespace tactus

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What a run was like at one user's hand: contacts, forces, and the energy of the port between device and scene (thesis 2.2.2).
+#pragma once
+
+#include <bitset>
+#include <cstdint>
+#include <optional>
+
+#include "codec/trace/frame.h"
+#include "sim/contact/passivity.h"
+#include "sim/scene/scene.h"
+
+namespace tactus {
+
+struct TouchSummary {
+  std::uint64_t ticks = 0;     ///< in contact with anything, at the server
+  std::uint64_t contacts = 0;  ///< begun
+  std::uint32_t most_in_a_second =
+      0;                     ///< contacts begun within one second: more than about ten is no hand's doing but chattering
+  double largest_force = 0;  ///< [N] felt
+  /// [J] least energy that the hand had put into the scene minus what it got back since a contact began, at most 0. Below it the
+  /// scene gave away more than it had taken: sampling and delay make it do so (eq. 2.2), and so do weight and other users, who have
+  /// energy of their own. Each contact begins at 0, as what earlier ones took would hide what this one gives.
+  double lowest_energy = 0;
+  std::optional<MeshContact> hardest{};  ///< where a deformable object was pressed with most force
+};
+
+class TouchRecord {
+ public:
+  /// One tick.
+  /// in   sample    as in the trace
+  ///      position  [m] of the device
+  /// time O(1), no allocation
+  void add(const UserSample& sample, const Vec3& position) noexcept;
+
+  const TouchSummary& summary() const noexcept { return summary_; }
+
+ private:
+  TouchSummary summary_;
+  PassivityObserver port_;
+  bool touching_ = false;
+  double hardest_ = 0;            // [N]
+  std::bitset<kTickRate> began_;  // in each tick of the last second
+  std::size_t tick_ = 0;          // of that second
+  std::uint32_t in_a_second_ = 0;
+};
+
+}  // namespace tactus
