@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <csignal>
 #include <filesystem>
+#include <thread>
 #include <utility>
 
 namespace tactus::cli {
@@ -85,6 +86,19 @@ bool drain(const Pipe& first, std::string& into_first, const Pipe& second, std::
   return true;
 }
 
+/// Until the child has ended.   out  its status; none: the deadline came first
+std::optional<int> wait_for(pid_t child, Clock::time_point deadline) {
+  const bool for_ever = deadline == Clock::time_point::max();
+  int status = 0;
+  while (true) {
+    const pid_t ended = waitpid(child, &status, for_ever ? 0 : WNOHANG);
+    if (ended == child) return status;
+    if (ended < 0 && errno != EINTR) return status;
+    if (ended == 0 && Clock::now() >= deadline) return std::nullopt;
+    if (ended == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
 }  // namespace
 
 tl::expected<ChildResult, std::error_code> run_child(const std::vector<std::string>& arguments, const std::string& directory,
@@ -107,13 +121,14 @@ tl::expected<ChildResult, std::error_code> run_child(const std::vector<std::stri
   out.close_writer();
   error.close_writer();
   ChildResult result;
-  const bool ended = drain(out, result.out, error, result.error, deadline);
-  if (!ended) kill(child, SIGKILL);
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  std::optional<int> status;
+  if (drain(out, result.out, error, result.error, deadline)) status = wait_for(child, deadline);
+  if (!status) {
+    kill(child, SIGKILL);
+    wait_for(child, Clock::time_point::max());
+    return tl::unexpected(std::make_error_code(std::errc::timed_out));
   }
-  if (!ended) return tl::unexpected(std::make_error_code(std::errc::timed_out));
-  result.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  result.status = WIFEXITED(*status) ? WEXITSTATUS(*status) : 128 + WTERMSIG(*status);
   return result;
 }
 

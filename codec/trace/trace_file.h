@@ -65,7 +65,7 @@ class TraceWriter {
   ///             of a mesh that was not updated nothing
   /// time O(what is new) and about 15 instructions for each object that rests; of users and meshes what comes every tick
   /// err  invalid_argument R-API-1 not finite; R-API-5 wrong count, tick or contact; R-API-6 a static object moved; io R-TRC-1.
-  ///      Nothing was written after invalid_argument.
+  ///      Nothing was written after invalid_argument. After io and limit_exceeded R-API-11 (no memory) the writer is of no more use.
   Result<void> write(const TraceFrame& frame);
   /// Summary, index and footer. A writer destroyed without it leaves a readable but unindexed file.
   Result<void> finish();

@@ -4,36 +4,15 @@
 
 #include "sim/contact/mesh_proxy.h"
 #include "sim/mesh/tet_mesh.h"
-#include "tests/unit/contact_mesh_fixture.h"
+#include "tests/unit/mesh_proxy_fixture.h"
 
 namespace tactus {
 namespace {
 
 using testing::Body;
-
-/// A probe on a body; positions are exact to the skin (6 nm at 0.1 m), which every tolerance below names.
-struct Hand {
-  const Body& body;
-  MeshProxy proxy;
-  double skin;
-
-  Hand(const Body& b, const MeshProxyOptions& options) : body(b), proxy(options, b.extent()), skin(proxy.skin()) {}
-  ProxyTouch place(const Vec3& probe) { return proxy.place(probe, body.inside, body.mesh.vertices, body.tree); }
-  ProxyTouch move(const Vec3& probe) { return proxy.move(probe, body.mesh.vertices, body.tree); }
-  ProxyTouch move_along(const Vec3& from, const Vec3& to, int ticks) {
-    ProxyTouch out;
-    for (int i = 0; i <= ticks; ++i) out = move(from + (static_cast<double>(i) / ticks) * (to - from));
-    return out;
-  }
-};
-
-void expect_near(const Vec3& a, const Vec3& b, double tolerance) {
-  EXPECT_LE(norm(a - b), tolerance) << a.x << ' ' << a.y << ' ' << a.z;
-}
-
-TriMesh flat() {
-  return testing::sheet(20, 0.01, [](double, double) { return 0.0; });
-}
+using testing::expect_near;
+using testing::flat;
+using testing::Hand;
 
 /// Give the body another shape, which the hand is told of first.
 void deform(Body& body, Hand& hand, const std::vector<Vec3>& vertices) {

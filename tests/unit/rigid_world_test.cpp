@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <limits>
 #include <numbers>
+#include <string>
 
 #include "sim/random.h"
 
@@ -260,6 +261,22 @@ TEST(RigidWorld, OdeAllocatesNothingAfterTheFirstStep) {
   }
   dSetAllocHandler(alloc);
   dSetReallocHandler(realloc);
+}
+
+/// 200 boxes in one place touch each other 19 900 times, in several points each.
+TEST(RigidWorld, MoreContactsThanFitAreRefused) {
+  Scene scene = cube_scene();
+  const SceneObject cube = scene.objects[0];
+  for (int i = 1; i < 200; ++i) {
+    scene.objects.push_back(cube);
+    scene.objects.back().name += std::to_string(i);
+  }
+  RigidWorld world(scene);
+  const auto stepped = world.step();
+  ASSERT_FALSE(stepped);
+  EXPECT_STREQ(stepped.error().error.rule, "R-SIM-6");
+  EXPECT_EQ(stepped.error().error.code, Errc::limit_exceeded);
+  for (std::uint32_t i = 0; i < 200; ++i) EXPECT_EQ(world.sample(i).pose.position, cube.pose.position) << i;
 }
 
 }  // namespace
