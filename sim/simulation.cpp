@@ -102,7 +102,11 @@ void Simulation::Impl::observe() {
     true_poses[i] = frame.objects[i].pose;
   }
   if (msds) msds->observe(std::span(frame.objects).subspan(scene.objects.size()));
-  for (std::size_t i = scene.objects.size(); i < true_poses.size(); ++i) true_poses[i] = frame.objects[i].pose;
+  frame.changed->assign(world.changed().begin(), world.changed().end());
+  for (std::size_t i = scene.objects.size(); i < true_poses.size(); ++i) {
+    true_poses[i] = frame.objects[i].pose;
+    frame.changed->push_back(static_cast<std::uint32_t>(i));
+  }
   if (!deformables) return;
   deformables->observe(frame.meshes);
   if (mesh_noise == 0) return;
@@ -270,6 +274,7 @@ Result<Simulation> Simulation::create(const Scene& scene, const SimulationOption
     TACTUS_TRY(impl->msds, MsdWorld::create(scene));
   }
   impl->frame.objects.resize(impl->header.objects.size());
+  impl->frame.changed.emplace().reserve(impl->header.objects.size());
   impl->frame.users.resize(scene.users.size());
   impl->contacts.resize(scene.users.size());
   impl->true_poses.resize(impl->header.objects.size());

@@ -75,6 +75,8 @@ struct TraceFrame {
   std::vector<RigidSample> objects;  ///< order of TraceInfo::objects
   std::vector<UserSample> users;     ///< order of TraceInfo::users
   std::vector<MeshSample> meshes{};  ///< order of TraceInfo::meshes
+  /// Objects of which anything may differ from the tick before, ascending, from who knows; none: any of them.
+  std::optional<std::vector<std::uint32_t>> changed{};
 };
 
 /// Which ticks were seen. A recording leaves ticks out where its samples come less often than ticks, or pause; time goes on there.

@@ -137,6 +137,7 @@ struct TraceWriter::Impl {
 
   Result<void> declare();
   void find_changed(const TraceFrame& frame);
+  void keep_time();
   Result<void> check(const TraceFrame& frame) const;
   void write(std::size_t channel, std::uint64_t time, const TraceFrame& frame);
   bool only_meshes() const noexcept { return info.objects.empty() && info.users.empty(); }
@@ -272,15 +273,25 @@ void TraceWriter::Impl::find_changed(const TraceFrame& frame) {
   constexpr std::size_t kAtOnce = 16;
   changed.clear();
   const std::size_t count = std::min(frame.objects.size(), info.objects.size());
+  const auto differ = [&](std::size_t i, std::size_t n) {
+    return written.empty() || !are_same(std::span(frame.objects).subspan(i, n), std::span(written).subspan(i, n));
+  };
+  if (frame.changed && !written.empty() && frame.tick == last_tick + 1) {
+    for (const std::uint32_t i : *frame.changed)
+      if (i < count && differ(i, 1)) changed.push_back(i);
+    return keep_time();
+  }
   for (std::size_t block = 0; block < count; block += kAtOnce) {
     const std::size_t end = std::min(block + kAtOnce, count);
-    const auto differ = [&](std::size_t i, std::size_t n) {
-      return written.empty() || !are_same(std::span(frame.objects).subspan(i, n), std::span(written).subspan(i, n));
-    };
     if (!differ(block, end - block)) continue;
     for (std::size_t i = block; i < end; ++i)
       if (differ(i, 1)) changed.push_back(static_cast<std::uint32_t>(i));
   }
+  keep_time();
+}
+
+/// Some channel tells of every tick.
+void TraceWriter::Impl::keep_time() {
   const bool always = !channels.empty() && channels[0].role == Role::pose && channels[0].occurs == Occurs::every_tick;
   if (always && (changed.empty() || changed[0] != 0)) changed.insert(changed.begin(), 0);
 }
