@@ -187,7 +187,11 @@ Report make_report(const SimOptions& options, const TraceInfo& info) {
   if (report.moving > 0 || info.meshes.empty()) report.traffic.emplace();
   report.fidelity.emplace(info, options.triggers.triggers());
   add_meshes(info, options.meshes, options.triggers, report);
+  for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.coding().profile == MeshProfile::main;
   report.client = options.replica.interpolation;
+  // A client that smooths what it shows leaves the bounds that the encoder keeps.
+  if (report.client == Interpolation::none)
+    report.bounds_from = options.triggers.any_given() || options.meshes.any_given() ? "options" : "defaults";
   return report;
 }
 
@@ -320,7 +324,7 @@ Outcome run(const SimOptions& options) {
   report.timings.push_back(std::move(map));
   print(report, options.common, beside(options.output));
   if (const int signal = StopOnSignal::caught(); signal != 0) return stopped(signal, report, options);
-  return {};
+  return report.bounds_from.empty() ? Outcome() : verdict(report, options.output);
 }
 
 }  // namespace
