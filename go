@@ -69,6 +69,7 @@ run_test() {
   step 'clang: build without warnings, with AddressSanitizer and UndefinedBehaviorSanitizer' tests/check.sh build asan
   step 'sanitizers: all tests' tests/check.sh test asan
   step 'codec alone: no package needed, nothing else linked' tests/check.sh codec-only
+  step 'codec: MemorySanitizer over everything that fuzzing has kept' tests/check.sh msan
   step 'same bits from every compiler and optimisation level' tests/check.sh exact
   step 'clang-format' tests/check.sh format
   step 'clang-tidy' tests/check.sh tidy
