@@ -105,7 +105,7 @@ void setup_bench_stability(Command& bench, Action& action) {
   command.add_option("--case", options->cases, "Only this: " + fmt::format("{}", fmt::join(case_names(), ", ")) + " [all]")
       ->check(one_of(case_names()))
       ->type_name("CASE");
-  command.add_flag("--short", options->brief, "A selection: about 10 s of CPU time");
+  command.add_flag("--short", options->brief, "A selection: about 10 s of CPU time instead of 10 minutes");
   command.add_option("-o,--output", options->directory, "Folder for report.md, CSV, JSON and plots")->type_name("DIR");
   add_output_options(command, options->common);
   command.footer("Example:\n  tactus bench stability --short -o stability");

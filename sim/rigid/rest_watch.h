@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Finds piles that tremble, but have come to rest, so that they can sleep.
 ///
-/// Piles never quite rest under QuickStep: the blocks of a tower of 54 tremble with 0.5 mm/s and creep 65 um in ten seconds. Objects
+/// Piles never quite rest under QuickStep: the blocks of a tower of 54 tremble with 0.5 mm/s and creep 0.1 mm in ten seconds. Objects
 /// that touch each other and of which no point moved farther than kRestDistance in kRestTicks, unpushed, rest together. An object
 /// that touches no other moving one is not judged: its rest is exact (rigid_world.h).
 #pragma once

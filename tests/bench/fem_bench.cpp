@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Cost of finite elements: one step of the membrane, forces by instruction set and by size, assembly, rotations; and the same
 /// membrane in Bullet (double precision) when that is there. Counters:
-///   z           displacement of the loaded vertex after 0.3 s [m]; symplectic Euler with exact rotations gives -0.058463 at this step
+///   z           displacement of the loaded vertex after 0.3 s [m]; velocity Verlet with exact rotations gives -0.058422 at this step
 ///   over_ours   Bullet's time per step over ours, both in CPU time and in this run
 ///   over_limit  time of the forces over what their operations take at the machine's peak (peak.h), measured in this run
 #include <benchmark/benchmark.h>
