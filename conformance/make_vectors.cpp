@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
   add_rigid_rules(catalogue);
   add_rigid_outages(catalogue);
   add_rigid_orders(catalogue);
+  add_rigid_edges(catalogue);
   catalogue.begin("client");
   add_client(catalogue);
   catalogue.begin("mesh");
@@ -36,6 +37,8 @@ int main(int argc, char** argv) {
   add_memory(catalogue);
   add_mesh_outages(catalogue);
   add_mesh_orders(catalogue);
+  add_mesh_edges(catalogue);
+  add_mesh_start_rows(catalogue);
   const bool written = catalogue.write(argv[1]);
   return catalogue.write_index(argv[2]) && written ? 0 : 1;
 }

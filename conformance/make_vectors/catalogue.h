@@ -60,6 +60,7 @@ void add_rigid(Catalogue& catalogue);
 void add_rigid_rules(Catalogue& catalogue);
 void add_rigid_outages(Catalogue& catalogue);
 void add_rigid_orders(Catalogue& catalogue);
+void add_rigid_edges(Catalogue& catalogue);
 void add_client(Catalogue& catalogue);
 void add_mesh_header(Catalogue& catalogue);
 void add_mesh_main(Catalogue& catalogue);
@@ -70,5 +71,7 @@ void add_mesh_rules(Catalogue& catalogue);
 void add_memory(Catalogue& catalogue);
 void add_mesh_outages(Catalogue& catalogue);
 void add_mesh_orders(Catalogue& catalogue);
+void add_mesh_edges(Catalogue& catalogue);
+void add_mesh_start_rows(Catalogue& catalogue);
 
 }  // namespace tactus::conformance

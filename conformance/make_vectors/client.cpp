@@ -103,6 +103,39 @@ Bytes several_objects(std::uint64_t seed) {
   return stream.finish().bytes();
 }
 
+/// Two updates at the given ticks, the second one far away; then a third one `shown` ticks later.
+Bytes far_step(std::uint32_t tick_rate, std::int64_t gap, std::int64_t shown) {
+  RawHeader header = cube(tick_rate);
+  header.objects = {{"p", Dof::translation}};
+  Stream stream(header);
+  stream.add({.tick = 0, .key = true});
+  stream.add({.tick = gap, .updates = {{0, Reason::visual, 0, {{{1 << 30, -(1 << 29), 77777}, {3000, 0, -20}}}}}});
+  stream.add({.tick = gap + shown});
+  return stream.finish().bytes();
+}
+
+/// From the longest rotation there is by half a circle about no axis of the grid.
+Bytes longest_half_turn() {
+  RawHeader header = cube();
+  header.objects[0].rotation = {kOne30, 0, 1 << 20, -(1 << 20)};
+  Stream stream(header);
+  stream.add({.tick = 0, .key = true});
+  stream.add({.tick = 40, .updates = {{0, Reason::visual, 0, {{{}, {}, {605395, 605395, 605395}, {}}}}}});
+  stream.add({.tick = 80});
+  return stream.finish().bytes();
+}
+
+/// The residual turns by -48 x 2^-30, the spin by 49 until the interpolation ends.
+Bytes smallest_turn() {
+  RawHeader header = cube();
+  header.grid = {22, 17, 28, 20};
+  Stream stream(header);
+  stream.add({.tick = 0, .key = true});
+  stream.add({.tick = 40, .updates = {{0, Reason::visual, 0, {{{}, {}, {-6, 0, 0}, {3, 0, 0}}}}}});
+  stream.add({.tick = 80});
+  return stream.finish().bytes();
+}
+
 }  // namespace
 
 void add_client(Catalogue& c) {
@@ -133,6 +166,11 @@ void add_client(Catalogue& c) {
   none("unnamed-objects-none", "The same without interpolation.", unnamed_objects());
   linear("several-objects", "120 packets for four objects, some beyond the extrapolation limit.", several_objects(520));
   none("several-objects-none", "The same without interpolation.", several_objects(520));
+  linear("longest-rounded", "At 1005 ticks per second the longest t_N, 100.5 ticks, rounds up to 101.", far_step(1005, 400, 110));
+  linear("share-by-a-long-gap", "A gap of 16387 ticks, of which 75 % are 12290.25.", far_step(125000, 16387, 200));
+  linear("longest-half-turn", "Half a circle from a rotation longer than 1: the sine of half the angle is above 1.",
+         longest_half_turn());
+  linear("smallest-turn", "An interpolated turn whose sine is 2^-30.", smallest_turn());
 }
 
 }  // namespace tactus::conformance
