@@ -17,6 +17,7 @@ int main(int argc, char** argv) {
   add_stream_file(catalogue);
   add_stream_bounds(catalogue);
   add_stream_orders(catalogue);
+  add_stream_header_orders(catalogue);
   catalogue.begin("range");
   add_range(catalogue);
   catalogue.begin("rigid");
@@ -25,6 +26,7 @@ int main(int argc, char** argv) {
   add_rigid_outages(catalogue);
   add_rigid_orders(catalogue);
   add_rigid_edges(catalogue);
+  add_rigid_packet_orders(catalogue);
   catalogue.begin("client");
   add_client(catalogue);
   catalogue.begin("mesh");
@@ -39,6 +41,8 @@ int main(int argc, char** argv) {
   add_mesh_orders(catalogue);
   add_mesh_edges(catalogue);
   add_mesh_start_rows(catalogue);
+  add_mesh_header_orders(catalogue);
+  add_mesh_packet_orders(catalogue);
   const bool written = catalogue.write(argv[1]);
   return catalogue.write_index(argv[2]) && written ? 0 : 1;
 }

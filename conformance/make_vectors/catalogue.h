@@ -55,12 +55,14 @@ void add_stream_header(Catalogue& catalogue);
 void add_stream_file(Catalogue& catalogue);
 void add_stream_bounds(Catalogue& catalogue);
 void add_stream_orders(Catalogue& catalogue);
+void add_stream_header_orders(Catalogue& catalogue);
 void add_range(Catalogue& catalogue);
 void add_rigid(Catalogue& catalogue);
 void add_rigid_rules(Catalogue& catalogue);
 void add_rigid_outages(Catalogue& catalogue);
 void add_rigid_orders(Catalogue& catalogue);
 void add_rigid_edges(Catalogue& catalogue);
+void add_rigid_packet_orders(Catalogue& catalogue);
 void add_client(Catalogue& catalogue);
 void add_mesh_header(Catalogue& catalogue);
 void add_mesh_main(Catalogue& catalogue);
@@ -73,5 +75,7 @@ void add_mesh_outages(Catalogue& catalogue);
 void add_mesh_orders(Catalogue& catalogue);
 void add_mesh_edges(Catalogue& catalogue);
 void add_mesh_start_rows(Catalogue& catalogue);
+void add_mesh_header_orders(Catalogue& catalogue);
+void add_mesh_packet_orders(Catalogue& catalogue);
 
 }  // namespace tactus::conformance
