@@ -43,6 +43,7 @@ int main(int argc, char** argv) {
   add_mesh_start_rows(catalogue);
   add_mesh_header_orders(catalogue);
   add_mesh_packet_orders(catalogue);
+  add_mesh_repeats(catalogue);
   const bool written = catalogue.write(argv[1]);
   return catalogue.write_index(argv[2]) && written ? 0 : 1;
 }

@@ -77,5 +77,6 @@ void add_mesh_edges(Catalogue& catalogue);
 void add_mesh_start_rows(Catalogue& catalogue);
 void add_mesh_header_orders(Catalogue& catalogue);
 void add_mesh_packet_orders(Catalogue& catalogue);
+void add_mesh_repeats(Catalogue& catalogue);
 
 }  // namespace tactus::conformance

@@ -70,6 +70,19 @@ Bytes thesis_packets(const MeshPlace& third) {
                       ThesisStep{.at = {.tick = 30}, .vertices = vertices}, ThesisStep{.at = third, .vertices = vertices});
 }
 
+/// Sequences 5 to 10 come twice within the 64 states that are kept.
+Bytes mesh_sequence_repeats() {
+  MeshStream stream(only(sheet_of(1), 64));
+  Random random(740);
+  std::int64_t tick = 0;
+  for (const std::int32_t start : {5, 32772, 65539}) {
+    for (std::int32_t i = 0; i < 7; ++i)
+      stream.add(MainStep{.at = {.tick = ++tick, .key = i == 0, .sequence = number(start + i)},
+                          .residuals = random_residuals(random, 5, 200)});
+  }
+  return stream.finished();
+}
+
 }  // namespace
 
 void add_rigid_outages(Catalogue& c) {
@@ -100,6 +113,11 @@ void add_mesh_outages(Catalogue& c) {
           thesis_packets({.tick = 50, .key = true, .sequence = number(40001)}), {"R-PKT-5"});
   c.invalid("thesis-32768-ahead", "A packet 32768 ahead that is not key.", foreign(),
             thesis_packets({.tick = 50, .sequence = number(1 + 32768)}));
+}
+
+void add_mesh_repeats(Catalogue& c) {
+  c.valid("sequence-repeats", "Two kept states have the same sequence; the newest is the baseline.", mesh_sequence_repeats(),
+          {"R-PKT-4"});
 }
 
 }  // namespace tactus::conformance
