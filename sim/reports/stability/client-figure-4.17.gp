@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-# gnuplot -c client-figure-4.17.gp svg | png
-if (ARG1 eq 'png') { set terminal pngcairo size 1000,1100 font 'sans,11'; set output 'client-figure-4.17.png' }
-else { set terminal svg size 1000,1100 font 'sans,13' background 'white'; set output 'client-figure-4.17.svg' }
+# gnuplot -c client-figure-4.17.gp svg | png    makes client-figure-4.17.svg or .png; a third word `-`: to standard output
+if (ARG1 eq 'png') { set terminal pngcairo size 1000,1100 font 'sans,11' }
+else { set terminal svg size 1000,1100 font 'sans,13' background 'white' }
+if (ARG2 ne '-') { set output 'client-figure-4.17'.'.'.ARG1 }
 set encoding utf8
 set datafile missing 'NaN'
 set border 3 linecolor rgb '#444444'

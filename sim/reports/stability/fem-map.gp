@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-# gnuplot -c fem-map.gp svg | png
-if (ARG1 eq 'png') { set terminal pngcairo size 1100,720 font 'sans,11'; set output 'fem-map.png' }
-else { set terminal svg size 1100,720 font 'sans,13' background 'white'; set output 'fem-map.svg' }
+# gnuplot -c fem-map.gp svg | png    makes fem-map.svg or .png; a third word `-`: to standard output
+if (ARG1 eq 'png') { set terminal pngcairo size 1100,720 font 'sans,11' }
+else { set terminal svg size 1100,720 font 'sans,13' background 'white' }
+if (ARG2 ne '-') { set output 'fem-map'.'.'.ARG1 }
 set encoding utf8
 set datafile missing 'NaN'
 set border 3 linecolor rgb '#444444'
@@ -34,7 +35,7 @@ $map_limit << EOD
 3.16228e+09 6.21504e-06
 1e+10 3.49497e-06
 EOD
-$map_symplectic_euler << EOD
+$map_velocity_verlet << EOD
 100 1e-06 0
 100 3.16228e-06 0
 100 1e-05 0
@@ -423,7 +424,7 @@ $map_newmark << EOD
 100 0.00316228 0
 100 0.01 0
 100 0.0316228 0
-100 0.1 2
+100 0.1 0
 316.228 1e-06 0
 316.228 3.16228e-06 0
 316.228 1e-05 0
@@ -434,7 +435,7 @@ $map_newmark << EOD
 316.228 0.00316228 0
 316.228 0.01 0
 316.228 0.0316228 0
-316.228 0.1 0
+316.228 0.1 2
 1000 1e-06 0
 1000 3.16228e-06 0
 1000 1e-05 0
@@ -444,7 +445,7 @@ $map_newmark << EOD
 1000 0.001 0
 1000 0.00316228 0
 1000 0.01 0
-1000 0.0316228 2
+1000 0.0316228 0
 1000 0.1 0
 3162.28 1e-06 0
 3162.28 3.16228e-06 0
@@ -455,7 +456,7 @@ $map_newmark << EOD
 3162.28 0.001 0
 3162.28 0.00316228 0
 3162.28 0.01 0
-3162.28 0.0316228 0
+3162.28 0.0316228 2
 3162.28 0.1 0
 10000 1e-06 0
 10000 3.16228e-06 0
@@ -465,7 +466,7 @@ $map_newmark << EOD
 10000 0.000316228 0
 10000 0.001 0
 10000 0.00316228 0
-10000 0.01 2
+10000 0.01 0
 10000 0.0316228 0
 10000 0.1 0
 31622.8 1e-06 0
@@ -476,7 +477,7 @@ $map_newmark << EOD
 31622.8 0.000316228 0
 31622.8 0.001 0
 31622.8 0.00316228 0
-31622.8 0.01 0
+31622.8 0.01 2
 31622.8 0.0316228 0
 31622.8 0.1 0
 100000 1e-06 0
@@ -497,7 +498,7 @@ $map_newmark << EOD
 316228 0.0001 0
 316228 0.000316228 0
 316228 0.001 0
-316228 0.00316228 0
+316228 0.00316228 2
 316228 0.01 0
 316228 0.0316228 0
 316228 0.1 0
@@ -518,7 +519,7 @@ $map_newmark << EOD
 3.16228e+06 3.16228e-05 0
 3.16228e+06 0.0001 0
 3.16228e+06 0.000316228 0
-3.16228e+06 0.001 0
+3.16228e+06 0.001 2
 3.16228e+06 0.00316228 0
 3.16228e+06 0.01 0
 3.16228e+06 0.0316228 0
@@ -539,7 +540,7 @@ $map_newmark << EOD
 3.16228e+07 1e-05 0
 3.16228e+07 3.16228e-05 0
 3.16228e+07 0.0001 0
-3.16228e+07 0.000316228 0
+3.16228e+07 0.000316228 2
 3.16228e+07 0.001 0
 3.16228e+07 0.00316228 0
 3.16228e+07 0.01 0
@@ -560,7 +561,7 @@ $map_newmark << EOD
 3.16228e+08 3.16228e-06 0
 3.16228e+08 1e-05 0
 3.16228e+08 3.16228e-05 0
-3.16228e+08 0.0001 0
+3.16228e+08 0.0001 2
 3.16228e+08 0.000316228 0
 3.16228e+08 0.001 0
 3.16228e+08 0.00316228 0
@@ -570,7 +571,7 @@ $map_newmark << EOD
 1e+09 1e-06 0
 1e+09 3.16228e-06 0
 1e+09 1e-05 0
-1e+09 3.16228e-05 2
+1e+09 3.16228e-05 0
 1e+09 0.0001 0
 1e+09 0.000316228 0
 1e+09 0.001 0
@@ -581,7 +582,7 @@ $map_newmark << EOD
 3.16228e+09 1e-06 0
 3.16228e+09 3.16228e-06 0
 3.16228e+09 1e-05 0
-3.16228e+09 3.16228e-05 0
+3.16228e+09 3.16228e-05 2
 3.16228e+09 0.0001 0
 3.16228e+09 0.000316228 0
 3.16228e+09 0.001 0
@@ -591,7 +592,7 @@ $map_newmark << EOD
 3.16228e+09 0.1 0
 1e+10 1e-06 0
 1e+10 3.16228e-06 0
-1e+10 1e-05 2
+1e+10 1e-05 0
 1e+10 3.16228e-05 0
 1e+10 0.0001 0
 1e+10 0.000316228 0
@@ -986,8 +987,8 @@ set yrange [5e-7:0.2]
 set format xy '10^{%L}'
 set xtics 100
 set key off
-names = 'map_symplectic_euler map_backward_euler map_newmark map_tr_bdf2 map_projective'
-titles = 'symplectic-euler backward-euler newmark tr-bdf2 projective'
+names = 'map_velocity_verlet map_backward_euler map_newmark map_tr_bdf2 map_projective'
+titles = 'velocity-verlet backward-euler newmark tr-bdf2 projective'
 shape(v) = v == 2 ? 2 : 7
 colour(v) = v == 2 ? 2 : v == 1 ? 5 : 1
 do for [i=1:5] {

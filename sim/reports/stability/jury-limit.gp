@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-# gnuplot -c jury-limit.gp svg | png
-if (ARG1 eq 'png') { set terminal pngcairo size 900,560 font 'sans,11'; set output 'jury-limit.png' }
-else { set terminal svg size 900,560 font 'sans,13' background 'white'; set output 'jury-limit.svg' }
+# gnuplot -c jury-limit.gp svg | png    makes jury-limit.svg or .png; a third word `-`: to standard output
+if (ARG1 eq 'png') { set terminal pngcairo size 900,560 font 'sans,11' }
+else { set terminal svg size 900,560 font 'sans,13' background 'white' }
+if (ARG2 ne '-') { set output 'jury-limit'.'.'.ARG1 }
 set encoding utf8
 set datafile missing 'NaN'
 set border 3 linecolor rgb '#444444'

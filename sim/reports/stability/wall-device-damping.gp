@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-# gnuplot -c wall-device-damping.gp svg | png
-if (ARG1 eq 'png') { set terminal pngcairo size 900,560 font 'sans,11'; set output 'wall-device-damping.png' }
-else { set terminal svg size 900,560 font 'sans,13' background 'white'; set output 'wall-device-damping.svg' }
+# gnuplot -c wall-device-damping.gp svg | png    makes wall-device-damping.svg or .png; a third word `-`: to standard output
+if (ARG1 eq 'png') { set terminal pngcairo size 900,560 font 'sans,11' }
+else { set terminal svg size 900,560 font 'sans,13' background 'white' }
+if (ARG2 ne '-') { set output 'wall-device-damping'.'.'.ARG1 }
 set encoding utf8
 set datafile missing 'NaN'
 set border 3 linecolor rgb '#444444'

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-# gnuplot -c c-mse-large.gp svg | png
-if (ARG1 eq 'png') { set terminal pngcairo size 900,560 font 'sans,11'; set output 'c-mse-large.png' }
-else { set terminal svg size 900,560 font 'sans,13' background 'white'; set output 'c-mse-large.svg' }
+# gnuplot -c c-mse-large.gp svg | png    makes c-mse-large.svg or .png; a third word `-`: to standard output
+if (ARG1 eq 'png') { set terminal pngcairo size 900,560 font 'sans,11' }
+else { set terminal svg size 900,560 font 'sans,13' background 'white' }
+if (ARG2 ne '-') { set output 'c-mse-large'.'.'.ARG1 }
 set encoding utf8
 set datafile missing 'NaN'
 set border 3 linecolor rgb '#444444'
@@ -16,80 +17,82 @@ set linetype 5 linecolor rgb '#E69F00' linewidth 2 pointtype 7 pointsize 0.7
 set linetype 6 linecolor rgb '#56B4E9' linewidth 2 pointtype 7 pointsize 0.7
 set linetype 7 linecolor rgb '#000000' linewidth 2 pointtype 7 pointsize 0.7
 $series0 << EOD
-146288 2.5956e-07
-241204 6.38466e-08
-291691 3.41734e-08
-365126 1.39777e-08
-497859 2.78436e-09
-658617 2.48128e-10
-772102 1.68169e-12
+147078 2.68873e-07
+242047 6.63091e-08
+292794 3.53773e-08
+366348 1.44559e-08
+499048 2.87467e-09
+659256 2.56425e-10
+772304 1.75711e-12
 EOD
 $series1 << EOD
-131377 2.60859e-07
-223752 6.42613e-08
-273416 3.45895e-08
-345959 1.43077e-08
-481100 2.93304e-09
-652307 2.60381e-10
-772102 1.68169e-12
+132126 2.69908e-07
+224547 6.66463e-08
+274478 3.57991e-08
+347162 1.48109e-08
+482273 3.03314e-09
+652983 2.69337e-10
+772304 1.75711e-12
 EOD
 $series2 << EOD
-124379 2.62393e-07
-216301 6.55351e-08
-266087 3.55501e-08
-340696 1.47539e-08
-480579 2.94028e-09
-652268 2.60557e-10
-772102 1.68169e-12
+125242 2.71663e-07
+217138 6.80362e-08
+267258 3.68028e-08
+341935 1.52582e-08
+481769 3.04163e-09
+652946 2.69408e-10
+772304 1.75711e-12
 EOD
 $series3 << EOD
-120416 2.65183e-07
-212854 6.68817e-08
-263949 3.6075e-08
-340116 1.47795e-08
-480487 2.94258e-09
-652198 2.60688e-10
-772102 1.68169e-12
+121275 2.74511e-07
+213742 6.94751e-08
+264930 3.73908e-08
+341304 1.52965e-08
+481643 3.04338e-09
+652945 2.69484e-10
+772304 1.75711e-12
 EOD
 $series4 << EOD
-117963 2.68219e-07
-211691 6.74018e-08
-263408 3.61653e-08
-339814 1.47974e-08
-480397 2.943e-09
-652191 2.60703e-10
-772102 1.68169e-12
+118563 2.78327e-07
+212487 7.00502e-08
+264481 3.7455e-08
+341142 1.52893e-08
+481529 3.04493e-09
+652935 2.69501e-10
+772304 1.75711e-12
 EOD
 $series5 << EOD
-115144 2.74072e-07
-211004 6.75919e-08
-262867 3.62061e-08
-339657 1.48028e-08
-480323 2.94413e-09
-652192 2.60713e-10
-772102 1.68169e-12
+115987 2.83757e-07
+211875 7.01447e-08
+263987 3.7518e-08
+340896 1.52995e-08
+481492 3.04544e-09
+652928 2.69515e-10
+772304 1.75711e-12
 EOD
 $series6 << EOD
-112662 2.76764e-07
-209947 6.78232e-08
-262183 3.63212e-08
-339272 1.48227e-08
-480243 2.945e-09
-652191 2.60727e-10
-772102 1.68169e-12
+113357 2.8762e-07
+210706 7.04166e-08
+263275 3.7599e-08
+340567 1.5322e-08
+481444 3.0457e-09
+652926 2.6953e-10
+772304 1.75711e-12
 EOD
 set logscale x
 set format x '10^{%L}'
 set logscale y
 set format y '10^{%L}'
-set key outside right top title "p" noenhanced
-set title "Error of the whole mesh against rate, interaction 1, large" noenhanced
-set xlabel "payload [bit/s]" noenhanced
-set ylabel "MSE [m^2]" noenhanced
-plot $series0 using 1:2 with linespoints linetype 1 title "-p 0%" noenhanced, \
-     $series1 using 1:2 with linespoints linetype 2 title "-p 2.5%" noenhanced, \
-     $series2 using 1:2 with linespoints linetype 3 title "-p 5%" noenhanced, \
-     $series3 using 1:2 with linespoints linetype 4 title "-p 7.5%" noenhanced, \
-     $series4 using 1:2 with linespoints linetype 5 title "-p 10%" noenhanced, \
-     $series5 using 1:2 with linespoints linetype 6 title "-p 15%" noenhanced, \
-     $series6 using 1:2 with linespoints linetype 7 title "--haptic off" noenhanced
+set key outside right top title 'p' noenhanced
+set title 'Error of the whole mesh against rate, interaction 1, large' noenhanced
+set xrange [*:*]
+set yrange [*:*]
+set xlabel 'payload [bit/s]' noenhanced
+set ylabel 'MSE [m^2]' noenhanced
+plot $series0 using 1:2 with linespoints linetype 1 title '-p 0%' noenhanced, \
+     $series1 using 1:2 with linespoints linetype 2 title '-p 2.5%' noenhanced, \
+     $series2 using 1:2 with linespoints linetype 3 title '-p 5%' noenhanced, \
+     $series3 using 1:2 with linespoints linetype 4 title '-p 7.5%' noenhanced, \
+     $series4 using 1:2 with linespoints linetype 5 title '-p 10%' noenhanced, \
+     $series5 using 1:2 with linespoints linetype 6 title '-p 15%' noenhanced, \
+     $series6 using 1:2 with linespoints linetype 7 title '--haptic off' noenhanced
