@@ -272,9 +272,9 @@ void print_json(const std::vector<Row>& rows, const ReproduceOptions& options, c
 
 Outcome run(const ReproduceOptions& options) {
   const auto path = find_scene("rotate-push-lift");
-  if (!path) return refuse(to_string(path.error()), "");
+  if (!path) return refuse_located(path.error());
   const auto scene = load_scene(*path);
-  if (!scene) return refuse(to_string(scene.error()), "");
+  if (!scene) return refuse_located(scene.error());
   const std::map<std::string, Grip> grips{{"loose", Grip::loose}, {"normal", Grip::normal}, {"firm", Grip::firm}};
   const Grip grip = grips.at(options.grip);
   const std::size_t jobs = kSettings.size() * options.seeds;

@@ -197,9 +197,9 @@ Report make_report(const SimOptions& options, const TraceInfo& info) {
 
 tl::expected<Scene, Failure> read_scene(const SimOptions& options) {
   const auto path = find_scene(options.scene);
-  if (!path) return refuse(to_string(path.error()), "");
+  if (!path) return refuse_located(path.error());
   auto scene = load_scene(*path);
-  if (!scene) return refuse(to_string(scene.error()), "");
+  if (!scene) return refuse_located(scene.error());
   for (SceneDeformable& object : scene->deformables) {
     if (!options.method.empty()) object.method = options.method;
     if (!options.solver.empty()) object.solver = options.solver;

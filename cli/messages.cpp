@@ -199,12 +199,18 @@ tl::unexpected<Failure> refuse(const std::string& file, const std::string& place
   const int cause = error.code == Errc::io ? errno : 0;
   const auto* text = std::find_if(kRules.begin(), kRules.end(), [&](const RuleText& r) { return r.rule == error.rule; });
   const bool known = text != kRules.end();
-  auto refused = refuse(fmt::format("{}{}{}: {}{}{} ({}, {})", shown_path(file), place.empty() ? "" : ", ", place,
-                                    known ? text->broken : "breaks a rule of the specification", cause == 0 ? "" : ": ",
-                                    cause == 0 ? "" : std::generic_category().message(cause), errc_name(error.code), error.rule),
-                        cause != 0 ? remedy_of(cause)
-                        : known    ? text->remedy
-                                   : "");
+  auto refused =
+      refuse_told(fmt::format("{}{}{}: {}{}{} ({}, {})", shown_path(file), place.empty() ? "" : ", ", place,
+                              known ? text->broken : "breaks a rule of the specification", cause == 0 ? "" : ": ",
+                              cause == 0 ? "" : std::generic_category().message(cause), errc_name(error.code), error.rule),
+                  file, place, error);
+  if (cause != 0) refused.value().remedy = remedy_of(cause);
+  else if (known) refused.value().remedy = text->remedy;
+  return refused;
+}
+
+tl::unexpected<Failure> refuse_told(std::string text, const std::string& file, const std::string& place, const Error& error) {
+  auto refused = refuse(std::move(text), "");
   refused.value().file = file;
   refused.value().place = place;
   refused.value().error_class = errc_name(error.code);

@@ -65,7 +65,7 @@ class PlanReader {
     in_.parse(text, kMostPlanBytes, [&](const toml::table& root) { plan = read(root); });
   }
   bool failed() const { return in_.failed(); }
-  std::string error() const { return to_string(in_.error()); }
+  SceneError error() const { return in_.error(); }
 
  private:
   void invalid(const toml::node& node, const char* rule, std::string key, std::string remedy) {
@@ -285,7 +285,7 @@ tl::expected<SweepPlan, Failure> load_plan(const std::string& path) {
   PlanReader reader(path);
   SweepPlan plan;
   reader.parse(*text, plan);
-  if (reader.failed()) return refuse(reader.error(), "");
+  if (reader.failed()) return refuse_located(reader.error());
   plan.text = *text;
   return plan;
 }
