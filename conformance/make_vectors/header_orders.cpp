@@ -15,20 +15,6 @@ Bytes header(Change change) {
   return out.bytes();
 }
 
-/// A header whose mesh part is these bytes.
-Bytes around(const Bytes& meshes) {
-  RawHeader out;
-  out.objects.clear();
-  out.flags = 1;
-  out.meshes = meshes;
-  return out.bytes();
-}
-
-/// A mesh of profile main up to `triangle_count`, and what follows.
-Bytes counted(std::uint64_t vertices, std::uint64_t triangles, const Bytes& rest) {
-  return around(Bytes{1, 1, 1, 'm', 2, 0, 1, 0, 0, 0} + varint(vertices) + varint(triangles) + rest);
-}
-
 void add_frame(Catalogue& c) {
   const Rejection cut{"truncated", "R-STR-5"};
   c.invalid("magic-before-cut", "Five bytes, the first of which is not the magic's.", {"malformed", "R-STR-1"},

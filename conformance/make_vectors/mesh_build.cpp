@@ -75,6 +75,18 @@ RawHeader only(const RawMesh& mesh, std::uint8_t baseline_span) {
   return with_meshes(header, {mesh});
 }
 
+Bytes around(const Bytes& meshes) {
+  RawHeader header;
+  header.objects.clear();
+  header.flags = 1;
+  header.meshes = meshes;
+  return header.bytes();
+}
+
+Bytes counted(std::uint64_t vertices, std::uint64_t triangles, const Bytes& rest) {
+  return around(Bytes{1, 1, 1, 'm', 2, 0, 1, 0, 0, 0} + varint(vertices) + varint(triangles) + rest);
+}
+
 RawMesh with_modes(RawMesh mesh, std::size_t modes, std::uint64_t seed) {
   Random random(seed);
   for (std::size_t k = 0; k < modes; ++k) {

@@ -60,6 +60,10 @@ Bytes zigzag_varint(std::int64_t value);
 RawHeader with_meshes(RawHeader header, const std::vector<RawMesh>& meshes);
 /// A header of one mesh and no object.
 RawHeader only(const RawMesh& mesh, std::uint8_t baseline_span = 1);
+/// A header whose mesh part is these bytes.
+Bytes around(const Bytes& meshes);
+/// The same of a mesh of profile main up to `triangle_count`, and what follows.
+Bytes counted(std::uint64_t vertices, std::uint64_t triangles, const Bytes& rest);
 /// K smooth vectors over the shape, seeded.
 RawMesh with_modes(RawMesh mesh, std::size_t modes, std::uint64_t seed);
 

@@ -19,20 +19,6 @@ Bytes changed(std::uint8_t profile, Change change) {
   return only(mesh).bytes();
 }
 
-/// A header whose mesh part is these bytes.
-Bytes around(const Bytes& meshes) {
-  RawHeader header;
-  header.objects.clear();
-  header.flags = 1;
-  header.meshes = meshes;
-  return header.bytes();
-}
-
-/// A mesh of profile main up to `triangle_count`, and what follows.
-Bytes counted(std::uint64_t vertices, std::uint64_t triangles, const Bytes& rest) {
-  return around(Bytes{1, 1, 1, 'm', 2, 0, 1, 0, 0, 0} + varint(vertices) + varint(triangles) + rest);
-}
-
 Bytes zeros(std::size_t count) { return Bytes(count, 0); }
 
 void add_valid(Catalogue& c) {
