@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Give a `tactus` program damaged and malicious files and look how it ends.
 
-  run.py PROGRAM                 a seeded selection, half a minute
-  run.py PROGRAM --full          20 times as many damaged files and all bombs: about 15 minutes of a core
+  run.py PROGRAM                 a seeded selection, 5 s of CPU time
+  run.py PROGRAM --full          20 times as many damaged files and all bombs: about a minute of CPU time
   run.py PROGRAM --runs N --seed S --only KIND    N damaged files of one kind: streams, traces, tables, scenes, plans, meshes, folders
   run.py PROGRAM --keep DIR      put what failed into DIR
   run.py --self-test             each kind of bad ending is found
