@@ -14,7 +14,7 @@ constexpr int kWidths = 16;
 Bytes ticks_and_levels() {
   MeshStream stream(only({.shape = one_triangle()}));
   for (int width = 0; width < kWidths; ++width) {
-    const std::int64_t tick = 2 * of_width(width);
+    const std::int64_t tick = std::int64_t{2} * of_width(width);
     stream.add(MainStep{
         .at = {.tick = tick, .key = true, .sequence = static_cast<std::uint16_t>(2 * width)}, .triangle = 0u, .haptic = 5});
     stream.add_packet(tick + 1,
