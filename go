@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # From a bare Debian 12 to a result. Needs root or sudo only for packages that are not there yet.
-#   ./go demo     simulate a touch, send it through the codec, judge it; report and figure in out/demo/ (about 3 minutes, 300 MB)
-#   ./go test     build with g++ and clang, run every test (about 20 minutes, 4 GB)
+#   ./go demo     simulate a touch, send it through the codec, judge it; report and figure in out/demo/ (under 3 minutes on 2 cores, 300 MB)
+#   ./go test     build with g++ and clang, run every test (40 minutes on 2 cores, 4 GB)
 #   ./go bench    build and run the benchmarks; JSON in build/bench/
 #   ./go format   rewrite the sources with clang-format
 # shellcheck disable=SC2086 # lists of packages are words
