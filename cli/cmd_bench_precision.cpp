@@ -192,7 +192,7 @@ void setup_bench_precision(Command& bench, Action& action) {
       ->required()
       ->type_name("DIR");
   command.add_flag("--short", options->brief,
-                   "Coarse meshes and few steps: about 30 s of CPU time with --runs 1 instead of a quarter of an hour");
+                   "Coarse meshes and few steps: about 30 s of CPU time with --runs 1 instead of half an hour");
   command.add_option("--runs", options->runs, "Runs that a time is the median of")
       ->show_default()
       ->check(whole_number(1, 1000))

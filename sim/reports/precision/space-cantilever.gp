@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-# gnuplot -c space-cantilever.gp svg | png
-if (ARG1 eq 'png') { set terminal pngcairo size 1100,560 font 'sans,11'; set output 'space-cantilever.png' }
-else { set terminal svg size 1100,560 font 'sans,13' background 'white'; set output 'space-cantilever.svg' }
+# gnuplot -c space-cantilever.gp svg | png    makes space-cantilever.svg or .png; a third word `-`: to standard output
+if (ARG1 eq 'png') { set terminal pngcairo size 1100,560 font 'sans,11' }
+else { set terminal svg size 1100,560 font 'sans,13' background 'white' }
+if (ARG2 ne '-') { set output 'space-cantilever'.'.'.ARG1 }
 set encoding utf8
 set datafile missing 'NaN'
 set border 3 linecolor rgb '#444444'
@@ -16,9 +17,9 @@ set linetype 5 linecolor rgb '#E69F00' linewidth 2 pointtype 7 pointsize 0.7
 set linetype 6 linecolor rgb '#56B4E9' linewidth 2 pointtype 7 pointsize 0.7
 set linetype 7 linecolor rgb '#000000' linewidth 2 pointtype 7 pointsize 0.7
 $s0 << EOD
-30 0.763691 0.0350732 0.814976
-240 0.486066 0.00803167 0.383438
-1920 0.206847 0.00183923 0.0981454
+30 0.763691 0.0350732 0.814981
+240 0.486066 0.00803167 0.383441
+1920 0.206847 0.00183923 0.0981456
 15360 0.0645108 NaN NaN
 EOD
 $s1 << EOD
@@ -41,7 +42,7 @@ $s3 << EOD
 EOD
 set logscale xy
 set format x '10^{%L}'
-set title 'cantilever: deflection of the loaded patch'
+set title 'cantilever: deflection of the loaded patch' noenhanced
 set xlabel 'tetrahedra'
 set ylabel 'relative error of the deflection'
 set key outside right top Left reverse
