@@ -17,12 +17,10 @@ struct Response {
   std::complex<double> hand, filter;
 };
 
-Response at(double w, const HandImpedance& hand, std::uint32_t samples) {
-  const std::complex<double> back = std::polar(1.0, -w);
-  std::complex<double> filter, delayed = 1;
-  for (std::uint32_t i = 0; i < samples; ++i, delayed *= back) filter += delayed;
-  return {hand.mass * 2 * (std::cos(w) - 1) / (kTick * kTick) + hand.stiffness + hand.damping * (1.0 - back) / kTick,
-          filter / static_cast<double>(samples)};
+Response at(double w, const HandImpedance& hand, double samples) {
+  const std::complex<double> step = 1.0 - std::polar(1.0, -w);
+  return {hand.mass * 2 * (std::cos(w) - 1) / (kTick * kTick) + hand.stiffness + hand.damping * step / kTick,
+          (1.0 - std::polar(1.0, -w * samples)) / (samples * step)};
 }
 
 /// The k with which the imaginary part vanishes, and what is left of the real one.
@@ -30,7 +28,7 @@ struct Crossing {
   double stiffness, rest;
 };
 
-Crossing crossing(double w, const HandImpedance& hand, std::uint32_t samples) {
+Crossing crossing(double w, const HandImpedance& hand, double samples) {
   const Response r = at(w, hand, samples);
   const double k = -r.hand.imag() / r.filter.imag();
   return {k, r.hand.real() + k * r.filter.real()};
@@ -39,16 +37,15 @@ Crossing crossing(double w, const HandImpedance& hand, std::uint32_t samples) {
 }  // namespace
 
 double sampled_limit(const HandImpedance& hand, const SceneDevice& device) noexcept {
-  const std::uint32_t n = device.filter;
-  // z = -1
+  const double n = device.filter;
+  // z = -1, where no delay turns the phase
   const Response fastest = at(std::numbers::pi, hand, n);
-  double limit = n % 2 == 1 ? -fastest.hand.real() / fastest.filter.real() : kNone;
-  if (n == 1) return std::max(0.0, limit);  // the only way out: no delay turns the phase
-  constexpr int kSteps = 2000;
+  double limit = device.filter % 2 == 1 ? -fastest.hand.real() / fastest.filter.real() : kNone;
+  const int steps = 500 + 32 * static_cast<int>(device.filter);  // the mean's response has a zero at every 2 pi / N
   Crossing last{kNone, kNone};
   double from = 0;
-  for (int i = 1; i < kSteps; ++i) {
-    const double w = std::numbers::pi * i / kSteps;
+  for (int i = 1; i < steps && device.filter > 1; ++i) {
+    const double w = std::numbers::pi * i / steps;
     const Crossing now = crossing(w, hand, n);
     if (last.stiffness > 0 && now.stiffness > 0 && last.rest > 0 && now.rest <= 0) {
       double low = from, high = w;

@@ -10,7 +10,7 @@ namespace tactus {
 ///   m (x+ - 2 x + x-) / T^2 = -k_h x - b (x - x-) / T - k F x,   F the device's mean of N samples,
 /// the least k with a pole on the unit circle. About b / ((N - 1) T / 2) where that is far above k_h. What gives way
 /// bears more.
-/// time 20 us
+/// time 40 us for N = 8, 2 ms for 1000
 double sampled_limit(const HandImpedance& hand, const SceneDevice& device) noexcept;
 
 }  // namespace tactus
