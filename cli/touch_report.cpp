@@ -21,12 +21,8 @@ void warn_of_chatter(const TouchReport& touch, Report& report) {
                   touch.user, touch.most_in_a_second));
 }
 
-/// The stiffest coupling that a user holds: of the rigid objects, or of the deformable one that was touched.
 void warn_of_sampling(const Scene& scene, const Simulation& simulation, std::size_t user, Report& report) {
-  const TouchSummary& touched = simulation.touched(user);
-  if (touched.contacts == 0) return;
-  const double stiffness = touched.hardest ? touched.hardest->stiffness : scene.touch->stiffness;
-  const double bears = simulation.bears(user);
+  const double stiffness = simulation.touched(user).stiffest, bears = simulation.bears(user);
   if (stiffness <= bears) return;
   report.warnings.push_back(
       fmt::format("{}: a coupling of {:.4g} N/m is beyond the {:.4g} N/m that this hand and the smoothing of its device bear at "

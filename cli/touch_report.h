@@ -24,8 +24,8 @@ struct TouchReport {
   double lowest_energy = 0;            ///< [J] of a contact, at most 0
 };
 
-/// One TouchReport for each user, and a warning for each that chatters, presses a deformable object harder than eq. 4.38 allows, or
-/// holds a coupling that its device's smoothing makes swing.
+/// One TouchReport for each user, and a warning for each that chatters, presses a deformable object harder than eq. 4.38 allows at
+/// the place of the largest force, or was held by a coupling that its device's smoothing makes swing.
 void report_touches(const Scene& scene, const Simulation& simulation, Report& report);
 
 }  // namespace tactus::cli

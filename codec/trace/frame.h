@@ -75,7 +75,8 @@ struct TraceFrame {
   std::vector<RigidSample> objects;  ///< order of TraceInfo::objects
   std::vector<UserSample> users;     ///< order of TraceInfo::users
   std::vector<MeshSample> meshes{};  ///< order of TraceInfo::meshes
-  /// Objects of which anything may differ from the tick before, ascending, from who knows; none: any of them.
+  /// Objects of which anything may differ from the tick before, ascending, from who knows; none: any of them. It counts only where
+  /// the frame follows that of the tick before; who changes `objects` afterwards resets it.
   std::optional<std::vector<std::uint32_t>> changed{};
 };
 

@@ -178,6 +178,7 @@ Result<bool> TactusAssembler::next(mcap::Reader& mcap, TraceFrame& frame) {
 void TactusAssembler::deliver(TraceFrame& frame) const {
   frame.tick = current_.tick;
   frame.objects = current_.objects;
+  frame.changed.reset();
   frame.users = current_.users;
   frame.meshes.resize(current_.meshes.size());
   for (std::size_t i = 0; i < current_.meshes.size(); ++i) {

@@ -21,7 +21,9 @@ void TouchRecord::add(const UserSample& sample, const Vec3& position) noexcept {
   tick_ = (tick_ + 1) % began_.size();
   summary_.most_in_a_second = std::max(summary_.most_in_a_second, in_a_second_);
 
+  if (sample.contact.kind != ContactKind::none) summary_.stiffest = std::max(summary_.stiffest, sample.contact.stiffness);
   if (!sample.mesh_contact) return;
+  summary_.stiffest = std::max(summary_.stiffest, sample.mesh_contact->stiffness);
   const double pressed = norm(sample.server_force);
   if (summary_.hardest && pressed <= hardest_) return;
   hardest_ = pressed;

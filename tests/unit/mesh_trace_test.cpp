@@ -42,6 +42,20 @@ TEST(MeshTrace, RoundTripIsExactToTheBit) {
   expect_equal(reading.frames, recording);
 }
 
+/// A recording cannot tell what moved, whatever the frame said that it is read into.
+TEST(MeshTrace, WhatChangedIsNotInAFile) {
+  const TempFile file;
+  const Bytes bytes = write_recording(make_mesh_recording(3), file.path());
+  auto reader = TraceReader::open_memory(bytes);
+  ASSERT_TRUE(reader);
+  TraceFrame frame;
+  for (int i = 0; i < 3; ++i) {
+    frame.changed.emplace();
+    ASSERT_TRUE(reader->next(frame).value());
+    EXPECT_FALSE(frame.changed);
+  }
+}
+
 /// Everything that stands in a file, but not how it was compressed.
 std::uint64_t content_hash(std::span<const std::uint8_t> bytes) {
   Fnv1a hash;
