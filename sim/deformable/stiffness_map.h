@@ -33,7 +33,7 @@ Result<StiffnessMap> stiffness_map(const SceneDeformable& object);
 /// Largest sum of the couplings [N/m] that press this object at one place without swinging up: eq. 4.38 with the period of its
 /// deformation, k_o = |f| / |u . n| at that place, the mass that a force on that triangle meets, 1 / sum of w^2 / m, and the damping
 /// of both. In eq. 4.38 all else rests; here neighbours give way too, so that several times as much may hold.
-/// time one solve by conjugate gradients: 10 ms for 2000 tetrahedra
+/// time the model made again and one solve by conjugate gradients: 25 ms for 2000 tetrahedra
 /// err  R-FEM-1..4, R-TET-n: the object cannot be; unsupported R-SIM-2: this build has no finite elements
 Result<double> critical_stiffness(const SceneDeformable& object, const MeshContact& contact);
 
