@@ -62,6 +62,14 @@ struct RawHeader {
   StreamHeader parsed() const;
 };
 
+/// A header after one change.
+template <class Change>
+Bytes changed_header(Change change) {
+  RawHeader out;
+  change(out);
+  return out.bytes();
+}
+
 /// One record of a file: type, size, payload, crc.
 Bytes record(std::uint8_t type, const Bytes& payload);
 

@@ -9,50 +9,45 @@
 namespace tactus::conformance {
 namespace {
 
-template <class Change>
-Bytes header(Change change) {
-  RawHeader out;
-  change(out);
-  return out.bytes();
-}
-
 Bytes crc_flipped(Bytes record) { return with_last_bit_flipped(std::move(record)); }
 
 void add_frame(Catalogue& c) {
   c.invalid("wrong-first-byte", "The first byte is not the magic's.", {"malformed", "R-STR-1"},
-            header([](RawHeader& h) { h.magic[0] = 0x88; }));
-  c.invalid("profile-1", "profile is 1: reserved.", {"unsupported", "R-STR-3"}, header([](RawHeader& h) { h.profile = 1; }));
-  c.invalid("flags-4", "The third flag is set.", {"malformed", "R-STR-4"}, header([](RawHeader& h) { h.flags = 4; }));
+            changed_header([](RawHeader& h) { h.magic[0] = 0x88; }));
+  c.invalid("profile-1", "profile is 1: reserved.", {"unsupported", "R-STR-3"},
+            changed_header([](RawHeader& h) { h.profile = 1; }));
+  c.invalid("flags-4", "The third flag is set.", {"malformed", "R-STR-4"}, changed_header([](RawHeader& h) { h.flags = 4; }));
   c.invalid("cut-before-version", "Eleven bytes, of version 2.", {"truncated", "R-STR-5"},
-            first(header([](RawHeader& h) { h.version = 2; }), 11));
+            first(changed_header([](RawHeader& h) { h.version = 2; }), 11));
   c.invalid("version-before-profile", "version and profile are 2.", {"unsupported", "R-STR-2"},
-            header([](RawHeader& h) { h.version = h.profile = 2; }));
-  c.invalid("profile-before-flags", "profile is 2, flags are 4.", {"malformed", "R-STR-3"}, header([](RawHeader& h) {
+            changed_header([](RawHeader& h) { h.version = h.profile = 2; }));
+  c.invalid("profile-before-flags", "profile is 2, flags are 4.", {"malformed", "R-STR-3"}, changed_header([](RawHeader& h) {
               h.profile = 2;
               h.flags = 4;
             }));
   c.invalid("flags-before-size", "flags are 4, and the body is too large.", {"malformed", "R-STR-4"},
-            first(header([](RawHeader& h) { h.flags = 4; }), 8) + Bytes{0x01, 0x00, 0x10, 0x00});
+            first(changed_header([](RawHeader& h) { h.flags = 4; }), 8) + Bytes{0x01, 0x00, 0x10, 0x00});
 }
 
 void add_body(Catalogue& c) {
-  c.invalid("rate-before-grid", "tick_rate is 0, position_exp 31.", {"invalid", "R-STR-6"}, header([](RawHeader& h) {
+  c.invalid("rate-before-grid", "tick_rate is 0, position_exp 31.", {"invalid", "R-STR-6"}, changed_header([](RawHeader& h) {
               h.tick_rate = 0;
               h.grid.position = 31;
             }));
   c.invalid("grid-before-extrapolation", "position_exp is 31, max_extrapolation 0.", {"invalid", "R-STR-7"},
-            header([](RawHeader& h) {
+            changed_header([](RawHeader& h) {
               h.grid.position = 31;
               h.max_extrapolation = 0;
             }));
-  c.invalid("rate-before-count", "tick_rate is 0, object_count 4097.", {"invalid", "R-STR-6"}, header([](RawHeader& h) {
+  c.invalid("rate-before-count", "tick_rate is 0, object_count 4097.", {"invalid", "R-STR-6"}, changed_header([](RawHeader& h) {
               h.tick_rate = 0;
               h.object_count = varint(4097);
             }));
-  c.invalid("name-before-dof", "A name with a line feed, and dof 64.", {"invalid", "R-STR-11"}, header([](RawHeader& h) {
+  c.invalid("name-before-dof", "A name with a line feed, and dof 64.", {"invalid", "R-STR-11"}, changed_header([](RawHeader& h) {
               h.objects[0] = {"a\nb", 64};
             }));
-  c.invalid("dof-before-rotation", "dof 64, and a rotation of length 0.", {"invalid", "R-STR-12"}, header([](RawHeader& h) {
+  c.invalid("dof-before-rotation", "dof 64, and a rotation of length 0.", {"invalid", "R-STR-12"},
+            changed_header([](RawHeader& h) {
               h.objects[0] = {"a", 64, {}, {}};
             }));
   RawHeader cut;
@@ -60,31 +55,32 @@ void add_body(Catalogue& c) {
   c.invalid("cut-before-name", "A name with a line feed; the body ends inside the rotation.", {"truncated", "R-STR-5"},
             cut.around(without_last(cut.body(), 8)));
   c.invalid("extension-before-equal-names", "Two objects of one name, then an extension without a size.",
-            {"malformed", "R-STR-16"}, header([](RawHeader& h) {
+            {"malformed", "R-STR-16"}, changed_header([](RawHeader& h) {
               h.objects.push_back(h.objects[0]);
               h.extensions = {5};
             }));
   c.invalid("dof-before-equal-names", "Two objects of one name; the second one's dof is 64.", {"invalid", "R-STR-12"},
-            header([](RawHeader& h) {
+            changed_header([](RawHeader& h) {
               h.objects.push_back(h.objects[0]);
               h.objects[1].dof = 64;
             }));
   for (const char last : {'\x1f', '\0'}) {
     c.invalid(last == 0 ? "name-with-0" : "name-with-31", "A name with a code point below 32.", {"invalid", "R-STR-11"},
-              header([&](RawHeader& h) { h.objects[0].name = std::string("ab") + last; }));
+              changed_header([&](RawHeader& h) { h.objects[0].name = std::string("ab") + last; }));
   }
   c.invalid("extension-of-2-64", "An extension record announces 2^64 - 1 bytes.", {"malformed", "R-STR-16"},
-            header([](RawHeader& h) { h.extensions = Bytes{5} + varint(~std::uint64_t{0}); }));
-  c.valid("equal-exponents", "Grids of position and velocity, of rotation and spin are the same.", header([](RawHeader& h) {
+            changed_header([](RawHeader& h) { h.extensions = Bytes{5} + varint(~std::uint64_t{0}); }));
+  c.valid("equal-exponents", "Grids of position and velocity, of rotation and spin are the same.",
+          changed_header([](RawHeader& h) {
             h.grid = {20, 20, 12, 12};
           }),
           {"R-STR-7"});
   constexpr std::int32_t kUnit = 1 << 20;
-  c.valid("shortest-rotation", "The squares of a rotation add to exactly 2^60 - 2^41.", header([](RawHeader& h) {
+  c.valid("shortest-rotation", "The squares of a rotation add to exactly 2^60 - 2^41.", changed_header([](RawHeader& h) {
             h.objects[0].rotation = {1023 * kUnit, -45 * kUnit, 4 * kUnit, 2 * kUnit};
           }),
           {"R-STR-13"});
-  c.valid("longest-rotation", "The squares of a rotation add to exactly 2^60 + 2^41.", header([](RawHeader& h) {
+  c.valid("longest-rotation", "The squares of a rotation add to exactly 2^60 + 2^41.", changed_header([](RawHeader& h) {
             h.objects[0].rotation = {kOne30, 0, kUnit, -kUnit};
           }),
           {"R-STR-13"});

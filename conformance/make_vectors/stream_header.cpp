@@ -8,27 +8,19 @@
 namespace tactus::conformance {
 namespace {
 
-/// Default header after one change.
-template <class Change>
-Bytes changed(Change change) {
-  RawHeader header;
-  change(header);
-  return header.bytes();
-}
-
 Bytes with_name(std::string name) {
-  return changed([&](RawHeader& h) {
+  return changed_header([&](RawHeader& h) {
     h.objects[0].name = std::move(name);
     h.extensions = {0, 0};  // room for an object of the smallest size even when the name is empty
   });
 }
 
 Bytes with_grid(const GridExponents& grid) {
-  return changed([&](RawHeader& h) { h.grid = grid; });
+  return changed_header([&](RawHeader& h) { h.grid = grid; });
 }
 
 Bytes with_rotation(const Quat30& rotation) {
-  return changed([&](RawHeader& h) { h.objects[0].rotation = rotation; });
+  return changed_header([&](RawHeader& h) { h.objects[0].rotation = rotation; });
 }
 
 RawHeader every_dof() {
@@ -105,12 +97,13 @@ void add_frame_faults(Catalogue& c) {
   c.invalid("empty", "No bytes at all.", {"truncated", "R-STR-1"}, {});
   c.invalid("cut-magic", "Three bytes of the magic.", {"truncated", "R-STR-1"}, first(good, 3));
   c.invalid("wrong-magic", "The fourth byte is not the magic's.", {"malformed", "R-STR-1"},
-            changed([](RawHeader& h) { h.magic[3] = 'U'; }));
+            changed_header([](RawHeader& h) { h.magic[3] = 'U'; }));
   c.invalid("cut-fixed-part", "Eleven bytes: body_size is cut.", cut, first(good, 11));
-  c.invalid("version-0", "version is 0.", {"unsupported", "R-STR-2"}, changed([](RawHeader& h) { h.version = 0; }));
-  c.invalid("version-2", "version is 2.", {"unsupported", "R-STR-2"}, changed([](RawHeader& h) { h.version = 2; }));
-  c.invalid("profile-2", "profile is 2.", {"malformed", "R-STR-3"}, changed([](RawHeader& h) { h.profile = 2; }));
-  c.invalid("flags", "The highest flag is set.", {"malformed", "R-STR-4"}, changed([](RawHeader& h) { h.flags = 0x8000; }));
+  c.invalid("version-0", "version is 0.", {"unsupported", "R-STR-2"}, changed_header([](RawHeader& h) { h.version = 0; }));
+  c.invalid("version-2", "version is 2.", {"unsupported", "R-STR-2"}, changed_header([](RawHeader& h) { h.version = 2; }));
+  c.invalid("profile-2", "profile is 2.", {"malformed", "R-STR-3"}, changed_header([](RawHeader& h) { h.profile = 2; }));
+  c.invalid("flags", "The highest flag is set.", {"malformed", "R-STR-4"},
+            changed_header([](RawHeader& h) { h.flags = 0x8000; }));
   c.invalid("huge-body", "body_size is one over the limit of 2^20; no body follows.", {"limit_exceeded", "R-STR-14"},
             first(good, 8) + Bytes{0x01, 0x00, 0x10, 0x00});
   c.invalid("cut-body", "The file ends inside the body.", cut, first(good, 20));
@@ -122,14 +115,15 @@ void add_parameter_faults(Catalogue& c) {
   const RawHeader header;
   const Rejection cut{"truncated", "R-STR-5"};
   c.invalid("short-parameters", "The body ends before object_count.", cut, header.around(first(header.body(), 11)));
-  c.invalid("overlong-count", "object_count 1 is written in two bytes.", {"malformed", "R-STR-5"}, changed([](RawHeader& h) {
+  c.invalid("overlong-count", "object_count 1 is written in two bytes.", {"malformed", "R-STR-5"},
+            changed_header([](RawHeader& h) {
               h.object_count = Bytes{0x81, 0x00};
             }));
   c.invalid("count-over-64-bits", "object_count has ten bytes and a value of 2^64.", {"malformed", "R-STR-5"},
-            changed([](RawHeader& h) { h.object_count = Bytes(9, 0x80) + Bytes{0x02}; }));
+            changed_header([](RawHeader& h) { h.object_count = Bytes(9, 0x80) + Bytes{0x02}; }));
   for (const std::uint32_t rate : {0u, 1000001u}) {
     c.invalid("tick-rate-" + std::to_string(rate), "tick_rate is outside its range.", {"invalid", "R-STR-6"},
-              changed([&](RawHeader& h) { h.tick_rate = rate; }));
+              changed_header([&](RawHeader& h) { h.tick_rate = rate; }));
   }
   const Rejection grid{"invalid", "R-STR-7"};
   c.invalid("position-exp-7", "position_exp is too small.", grid, with_grid({7, 7, 19, 12}));
@@ -142,21 +136,21 @@ void add_parameter_faults(Catalogue& c) {
   c.invalid("spin-finer", "spin_exp is above rotation_exp.", grid, with_grid({22, 17, 12, 13}));
   c.invalid("spin-coarser", "spin_exp is 13 below rotation_exp.", grid, with_grid({22, 17, 20, 7}));
   c.invalid("no-extrapolation", "max_extrapolation is 0.", {"invalid", "R-STR-8"},
-            changed([](RawHeader& h) { h.max_extrapolation = 0; }));
+            changed_header([](RawHeader& h) { h.max_extrapolation = 0; }));
   for (const std::uint8_t span : {std::uint8_t{0}, std::uint8_t{65}}) {
     c.invalid("baseline-span-" + std::to_string(span), "baseline_span is outside its range.", {"invalid", "R-STR-9"},
-              changed([&](RawHeader& h) { h.baseline_span = span; }));
+              changed_header([&](RawHeader& h) { h.baseline_span = span; }));
   }
   c.invalid("too-many-objects", "object_count is 4097, one over the limit.", {"limit_exceeded", "R-STR-14"},
-            changed([](RawHeader& h) { h.object_count = varint(4097); }));
+            changed_header([](RawHeader& h) { h.object_count = varint(4097); }));
   c.invalid("no-room", "object_count is 2; the body has room for one object.", cut,
-            changed([](RawHeader& h) { h.object_count = varint(2); }));
+            changed_header([](RawHeader& h) { h.object_count = varint(2); }));
 }
 
 void add_object_faults(Catalogue& c) {
   for (const std::uint8_t kind : {std::uint8_t{0}, std::uint8_t{2}}) {
     c.invalid("kind-" + std::to_string(kind), "The object's kind is not known.", {"unsupported", "R-STR-10"},
-              changed([&](RawHeader& h) { h.objects[0].kind = kind; }));
+              changed_header([&](RawHeader& h) { h.objects[0].kind = kind; }));
   }
   RawHeader long_name;
   long_name.objects[0].name = std::string(10, 'n');
@@ -181,7 +175,7 @@ void add_object_faults(Catalogue& c) {
                                   {std::uint8_t{40}, "Rotation about x and z only."},
                                   {std::uint8_t{48}, "Rotation about y and z only."}}) {
     c.invalid("dof-" + std::to_string(dof), what, {"invalid", "R-STR-12"},
-              changed([dof = dof](RawHeader& h) { h.objects[0].dof = dof; }));
+              changed_header([dof = dof](RawHeader& h) { h.objects[0].dof = dof; }));
   }
   const Rejection rotation{"invalid", "R-STR-13"};
   c.invalid("rotation-component", "A component of the rotation is 2^30 + 1; the length is within the tolerance.", rotation,
@@ -194,7 +188,7 @@ void add_object_faults(Catalogue& c) {
 
 void add_extension_faults(Catalogue& c) {
   const Rejection broken{"malformed", "R-STR-16"};
-  const auto with = [](Bytes bytes) { return changed([&](RawHeader& h) { h.extensions = std::move(bytes); }); };
+  const auto with = [](Bytes bytes) { return changed_header([&](RawHeader& h) { h.extensions = std::move(bytes); }); };
   c.invalid("extension-without-size", "The body ends after an extension's type.", broken, with({5}));
   c.invalid("extension-too-long", "An extension's size is one more than what is left.", broken, with({5, 3, 1, 2}));
   c.invalid("extension-overlong-type", "An extension's type 5 is written in two bytes.", broken, with({0x85, 0x00, 0x00}));
