@@ -5,5 +5,6 @@ if(NOT TARGET tactus_slowest_modes)
   target_include_directories(tactus_slowest_modes PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(tactus_slowest_modes PRIVATE tactus_flags Eigen3::Eigen Spectra::Spectra)
   target_compile_definitions(tactus_slowest_modes PRIVATE EIGEN_MPL2_ONLY)
-  set_target_properties(tactus_slowest_modes PROPERTIES CXX_VISIBILITY_PRESET default)
+  set_target_properties(tactus_slowest_modes PROPERTIES CXX_VISIBILITY_PRESET default
+    POSITION_INDEPENDENT_CODE ON)
 endif()
