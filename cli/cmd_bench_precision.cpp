@@ -15,7 +15,7 @@
 namespace tactus::cli {
 namespace {
 
-using study::Extent;
+using sim::study::Extent;
 
 /// Steps below 1 ms of a method that is this many times slower than real time are left out.
 constexpr double kTooSlow = 2, kAlwaysComputed = 1e-3 * (1 - 1e-9);
@@ -27,17 +27,19 @@ struct PrecisionOptions {
   int runs = 5;
   CommonOptions common;
 
-  Extent extent() const { return brief ? Extent::brief : Extent::full; }
+  sim::study::Extent extent() const { return brief ? sim::study::Extent::brief : sim::study::Extent::full; }
 };
 
-Failure failure_of(const std::string& scene, const FemError& error) { return {scene + ": " + to_string(error), error.remedy}; }
+Failure failure_of(const std::string& scene, const sim::FemError& error) {
+  return {scene + ": " + to_string(error), error.remedy};
+}
 
 /// All points of the studies; those that are in the results already are not computed again.
 class Work {
  public:
   Work(const PrecisionOptions& options, PrecisionResults& results) : options_(options), results_(results) {
     for (const std::string& name : options.scenes) {
-      scenes_.push_back(*study::precision_scene(name, options.extent()));
+      scenes_.push_back(*sim::study::precision_scene(name, options.extent()));
       total_ += 1 + methods_.size() * scenes_.back().steps_per_sample.size() + space_jobs(name).size();
     }
     progress_.emplace("bench precision", total_, options.common.progress());
@@ -46,33 +48,33 @@ class Work {
   tl::expected<PrecisionReport, Failure> run();
 
  private:
-  std::vector<study::SpaceJob> space_jobs(const std::string& scene) const {
+  std::vector<sim::study::SpaceJob> space_jobs(const std::string& scene) const {
     // A stiffer material of the same shape has the same relative space error.
     if (scene == "membrane-stiff") return {};
-    return study::space_jobs(scene, options_.extent());
+    return sim::study::space_jobs(scene, options_.extent());
   }
-  tl::expected<TimeStudy, Failure> time_study(const study::PrecisionScene& scene);
+  tl::expected<TimeStudy, Failure> time_study(const sim::study::PrecisionScene& scene);
   Outcome space_studies(const std::string& scene, std::vector<SpaceStudy>& out);
-  tl::expected<study::PrecisionPoint, Failure> point(const study::PrecisionScene& scene, const study::PrecisionMethod& method,
-                                                     int steps);
-  tl::expected<study::Reference, Failure> reference(const study::PrecisionScene& scene);
+  tl::expected<sim::study::PrecisionPoint, Failure> point(const sim::study::PrecisionScene& scene,
+                                                          const sim::study::PrecisionMethod& method, int steps);
+  tl::expected<sim::study::Reference, Failure> reference(const sim::study::PrecisionScene& scene);
   void count() { progress_->update(++done_); }
 
   const PrecisionOptions& options_;
   PrecisionResults& results_;
-  std::vector<study::PrecisionScene> scenes_;
-  std::vector<study::PrecisionMethod> methods_ = study::precision_methods(options_.extent());
-  std::optional<study::Reference> reference_;  // of reference_scene_, made when a point needs it
+  std::vector<sim::study::PrecisionScene> scenes_;
+  std::vector<sim::study::PrecisionMethod> methods_ = sim::study::precision_methods(options_.extent());
+  std::optional<sim::study::Reference> reference_;  // of reference_scene_, made when a point needs it
   std::string reference_scene_;
   std::uint64_t total_ = 0, done_ = 0;
   std::optional<Progress> progress_;
 };
 
-tl::expected<study::Reference, Failure> Work::reference(const study::PrecisionScene& scene) {
-  auto reference = study::make_reference(scene);
+tl::expected<sim::study::Reference, Failure> Work::reference(const sim::study::PrecisionScene& scene) {
+  auto reference = sim::study::make_reference(scene);
   if (!reference) return tl::unexpected(failure_of(scene.name, reference.error()));
   if (results_.find(scene.name, kReferenceMethod, scene.reference_steps_per_sample) == nullptr) {
-    study::PrecisionPoint point;
+    sim::study::PrecisionPoint point;
     point.method = kReferenceMethod;
     point.steps_per_sample = scene.reference_steps_per_sample;
     point.step = reference->step;
@@ -86,8 +88,8 @@ tl::expected<study::Reference, Failure> Work::reference(const study::PrecisionSc
 }
 
 /// The point, computed if it is not known yet.
-tl::expected<study::PrecisionPoint, Failure> Work::point(const study::PrecisionScene& scene, const study::PrecisionMethod& method,
-                                                         int steps) {
+tl::expected<sim::study::PrecisionPoint, Failure> Work::point(const sim::study::PrecisionScene& scene,
+                                                              const sim::study::PrecisionMethod& method, int steps) {
   if (const TimeRow* row = results_.find(scene.name, method.name, steps)) return row->point;
   if (!reference_ || reference_scene_ != scene.name) {
     auto made = reference(scene);
@@ -95,14 +97,14 @@ tl::expected<study::PrecisionPoint, Failure> Work::point(const study::PrecisionS
     reference_ = *std::move(made);
     reference_scene_ = scene.name;
   }
-  const auto point = study::measure(scene, method, steps, *reference_, {.runs = options_.runs});
+  const auto point = sim::study::measure(scene, method, steps, *reference_, {.runs = options_.runs});
   if (const auto added = results_.add(TimeRow{scene.name, point}); !added) return tl::unexpected(added.error());
   return results_.find(scene.name, method.name, steps)->point;
 }
 
-tl::expected<TimeStudy, Failure> Work::time_study(const study::PrecisionScene& scene) {
+tl::expected<TimeStudy, Failure> Work::time_study(const sim::study::PrecisionScene& scene) {
   TimeStudy out{scene, {}, methods_, {}};
-  for (const study::PrecisionMethod& method : methods_) {
+  for (const sim::study::PrecisionMethod& method : methods_) {
     double cost = 0;
     for (const int steps : scene.steps_per_sample) {
       count();
@@ -119,10 +121,10 @@ tl::expected<TimeStudy, Failure> Work::time_study(const study::PrecisionScene& s
 }
 
 Outcome Work::space_studies(const std::string& scene, std::vector<SpaceStudy>& out) {
-  for (const study::SpaceJob& job : space_jobs(scene)) {
+  for (const sim::study::SpaceJob& job : space_jobs(scene)) {
     const SpaceRow* row = results_.find(scene, job);
     if (row == nullptr) {
-      const auto point = study::measure_space(scene, job);
+      const auto point = sim::study::measure_space(scene, job);
       if (!point) return tl::unexpected(failure_of(scene, point.error()));
       if (auto added = results_.add(SpaceRow{scene, *point}); !added) return added;
       row = results_.find(scene, job);
@@ -132,13 +134,13 @@ Outcome Work::space_studies(const std::string& scene, std::vector<SpaceStudy>& o
     count();
   }
   for (SpaceStudy& space : out)
-    if (space.scene == scene) space.errors = study::space_errors(space.points);
+    if (space.scene == scene) space.errors = sim::study::space_errors(space.points);
   return {};
 }
 
 tl::expected<PrecisionReport, Failure> Work::run() {
   PrecisionReport report{results_.context(), {}, {}};
-  for (const study::PrecisionScene& scene : scenes_) {
+  for (const sim::study::PrecisionScene& scene : scenes_) {
     auto time = time_study(scene);
     if (!time) return tl::unexpected(time.error());
     report.times.push_back(*std::move(time));
@@ -165,7 +167,8 @@ Outcome write_report(const PrecisionReport& report, const std::string& folder) {
 
 Outcome run(const PrecisionOptions& options) {
   PrecisionOptions chosen = options;
-  if (chosen.scenes.empty()) chosen.scenes.assign(std::begin(study::kPrecisionScenes), std::end(study::kPrecisionScenes));
+  if (chosen.scenes.empty())
+    chosen.scenes.assign(std::begin(sim::study::kPrecisionScenes), std::end(sim::study::kPrecisionScenes));
   auto context = bench_context();
   context["extent"] = options.brief ? "short" : "full";
   context["runs"] = fmt::to_string(options.runs);
@@ -184,7 +187,7 @@ Outcome run(const PrecisionOptions& options) {
 void setup_bench_precision(Command& bench, Action& action) {
   auto options = std::make_shared<PrecisionOptions>();
   Command& command = bench.add_command("precision", "Error against run time: methods, solvers and step sizes");
-  const std::vector<std::string> names(std::begin(study::kPrecisionScenes), std::end(study::kPrecisionScenes));
+  const std::vector<std::string> names(std::begin(sim::study::kPrecisionScenes), std::end(sim::study::kPrecisionScenes));
   command.add_option("--scene", options->scenes, "membrane, membrane-stiff or cantilever; several times for several [all]")
       ->check(one_of(names))
       ->type_name("SCENE");

@@ -19,8 +19,8 @@
 namespace tactus::cli {
 namespace {
 
-using study::Extent;
-using study::Study;
+using sim::study::Extent;
+using sim::study::Study;
 
 struct StabilityOptions {
   std::vector<std::string> cases;
@@ -31,14 +31,14 @@ struct StabilityOptions {
 
 struct Case {
   const char* name;
-  Study (*run)(Extent, const study::Progress&);
+  Study (*run)(sim::study::Extent, const sim::study::Progress&);
 };
-constexpr Case kCases[] = {{"jury", study::study_jury},
-                           {"wall", study::study_wall},
-                           {"client", study::study_client},
-                           {"rigid", study::study_rigid},
+constexpr Case kCases[] = {{"jury", sim::study::study_jury},
+                           {"wall", sim::study::study_wall},
+                           {"client", sim::study::study_client},
+                           {"rigid", sim::study::study_rigid},
 #ifdef TACTUS_HAS_FEM
-                           {"fem", study::study_fem}
+                           {"fem", sim::study::study_fem}
 #endif
 };
 
@@ -48,10 +48,10 @@ std::vector<std::string> case_names() {
   return out;
 }
 
-std::vector<Study> run_cases(const StabilityOptions& options, Extent extent) {
+std::vector<Study> run_cases(const StabilityOptions& options, sim::study::Extent extent) {
   std::string current;
   std::unique_ptr<Progress> bar;
-  const study::Progress progress = [&](const std::string& work, std::uint64_t done, std::uint64_t total) {
+  const sim::study::Progress progress = [&](const std::string& work, std::uint64_t done, std::uint64_t total) {
     if (work != current) {
       bar.reset();  // takes its line off the terminal before the next one is drawn
       bar = std::make_unique<Progress>(current = work, total, options.common.progress());
@@ -65,7 +65,7 @@ std::vector<Study> run_cases(const StabilityOptions& options, Extent extent) {
   return studies;
 }
 
-Outcome write_report(const StabilityOptions& options, Extent extent, const std::vector<Study>& studies) {
+Outcome write_report(const StabilityOptions& options, sim::study::Extent extent, const std::vector<Study>& studies) {
   const std::string& folder = options.directory;
   std::vector<Picture> pictures;
   bool all_drawn = true;
@@ -82,7 +82,7 @@ Outcome write_report(const StabilityOptions& options, Extent extent, const std::
 }
 
 Outcome run(const StabilityOptions& options) {
-  const Extent extent = options.brief ? Extent::brief : Extent::full;
+  const sim::study::Extent extent = options.brief ? sim::study::Extent::brief : sim::study::Extent::full;
   const bool writes = !options.directory.empty();
   if (writes) {
     if (auto made = make_folder(options.directory); !made) return made;

@@ -74,7 +74,7 @@ Outcome run(const ExportMeshOptions& options) {
       shape.vertices[v] = rest.vertices[v] + Vec3{u[3 * v], u[3 * v + 1], u[3 * v + 2]};
     const std::string file = fmt::format("{}/frame-{:06}.{}", folder->path(), count++, options.format);
     errno = 0;
-    const auto written = report.timings[0].times.measure([&] { return write_surface(file, shape); });
+    const auto written = report.timings[0].times.measure([&] { return sim::write_surface(file, shape); });
     if (!written && written.error().error.code == Errc::io) return refuse_io(options.output, "cannot be written", errno);
     if (!written) return refuse_located(written.error());
   }

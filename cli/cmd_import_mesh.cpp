@@ -43,8 +43,8 @@ Clock clock_of(const ImportMeshOptions& options) {
 }
 
 /// What is kept of a frame is its distance from the first.
-Outcome write_frames(const SurfaceSequence& sequence, const TriMesh& rest, const ImportMeshOptions& options, const Clock& clock,
-                     TraceWriter& writer, Report& report) {
+Outcome write_frames(const sim::SurfaceSequence& sequence, const TriMesh& rest, const ImportMeshOptions& options,
+                     const Clock& clock, TraceWriter& writer, Report& report) {
   TraceFrame frame;
   frame.meshes.resize(1);
   frame.meshes[0].updated = true;
@@ -76,7 +76,7 @@ Outcome run(const ImportMeshOptions& options) {
   if (auto fits = check_no_terminal(options.output); !fits) return fits;
   auto output = OutputFile::create(options.output, options.common.existing());
   if (!output) return tl::unexpected(output.error());
-  const auto sequence = SurfaceSequence::open(options.input);
+  const auto sequence = sim::SurfaceSequence::open(options.input);
   if (!sequence) return refuse_located(sequence.error());
   TriMesh rest = sequence->rest();
   for (Vec3& p : rest.vertices) p = options.length_unit * p;

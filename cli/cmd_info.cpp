@@ -298,7 +298,7 @@ Outcome info_trace(const InfoOptions& options) {
 
 #ifdef TACTUS_HAS_SIM
 Outcome info_scene(const InfoOptions& options) {
-  const auto scene = load_scene(options.input);
+  const auto scene = sim::load_scene(options.input);
   if (!scene) return refuse_located(scene.error());
   note_idle_options(*options.command, {}, "scene");
   if (options.json) {
@@ -310,7 +310,7 @@ Outcome info_scene(const InfoOptions& options) {
             {"seconds", scene->duration},
             {"floor", scene->floor ? fmt::format("at {} m", *scene->floor) : "none"}};
   if (scene->touch) info["touch stiffness"] = fmt::format("{} N/m", scene->touch->stiffness);
-  for (const SceneObject& o : scene->objects) {
+  for (const sim::SceneObject& o : scene->objects) {
     info["objects"].push_back(
         {{"object", o.name},
          {"moves along", dof_text(o.dof)},
@@ -319,7 +319,7 @@ Outcome info_scene(const InfoOptions& options) {
          {"shape", o.surface.triangles.empty() ? "box" : fmt::format("{} triangles", o.surface.triangles.size())},
          {"size [m]", fmt::format("{:.6g} {:.6g} {:.6g}", o.size.x, o.size.y, o.size.z)}});
   }
-  for (const SceneMsd& m : scene->msds) {
+  for (const sim::SceneMsd& m : scene->msds) {
     info["one-dimensional objects"].push_back({{"object", m.name},
                                                {"moves along", dof_text(m.dof())},
                                                {"stiffness [N/m]", m.object.stiffness},
@@ -327,7 +327,7 @@ Outcome info_scene(const InfoOptions& options) {
                                                {"mass [kg]", m.object.mass},
                                                {"deformed", fmt::format("every {} ms", m.rate)}});
   }
-  for (const SceneDeformable& d : scene->deformables) {
+  for (const sim::SceneDeformable& d : scene->deformables) {
     info["deformables"].push_back({{"deformable", d.name},
                                    {"vertices", d.mesh.vertices.size()},
                                    {"tetrahedra", d.mesh.tets.size()},
@@ -335,7 +335,7 @@ Outcome info_scene(const InfoOptions& options) {
                                    {"deformed", fmt::format("every {} ms", d.rate)},
                                    {"coupling [N/m]", d.stiffness}});
   }
-  for (const SceneUser& u : scene->users) info["users"].push_back({{"user", u.name}, {"phases of the path", u.path.size()}});
+  for (const sim::SceneUser& u : scene->users) info["users"].push_back({{"user", u.name}, {"phases of the path", u.path.size()}});
   print_info(info);
   return {};
 }

@@ -40,7 +40,7 @@ struct MeshOptions {
 
 /// What became of the input, and how long each part took.
 struct MeshReport {
-  TetMesh mesh;
+  sim::TetMesh mesh;
   struct Note {
     std::string key, name, text;
     std::uint64_t number;
@@ -72,16 +72,16 @@ Outcome make_slab(const MeshOptions& options, MeshReport& report) {
   if (!good) return refuse_arguments("--slab " + options.slab + ": not three numbers of cells", "Write it like 16x20x1.");
   const auto [x, y, z] = cells;
   const double vertices = (x + 1.0) * (y + 1.0) * (z + 1.0), tets = 6.0 * x * y * z;
-  if (vertices > static_cast<double>(kMaxMeshVertices) || tets > static_cast<double>(kMaxTets))
+  if (vertices > static_cast<double>(kMaxMeshVertices) || tets > static_cast<double>(sim::kMaxTets))
     return refuse_arguments("--slab " + options.slab + ": more than 2^20 vertices or 2^22 tetrahedra",
                             "Take fewer and larger cells.");
-  report.mesh = report.measure("make", [&] { return tactus::make_slab(cells[0], cells[1], cells[2], options.cell); });
+  report.mesh = report.measure("make", [&] { return tactus::sim::make_slab(cells[0], cells[1], cells[2], options.cell); });
   return {};
 }
 
 Outcome read_tets(const MeshOptions& options, MeshReport& report) {
   note_idle_options(*options.common.command, {}, "file");
-  auto file = report.measure("read", [&] { return read_tet_mesh(options.input); });
+  auto file = report.measure("read", [&] { return sim::read_tet_mesh(options.input); });
   if (!file) return refuse_located(file.error());
   if (file->ignored_elements > 0)
     report.notes.push_back({"ignored_elements", "left out",
@@ -96,7 +96,7 @@ Outcome read_tets(const MeshOptions& options, MeshReport& report) {
 double volume_of_edge(double edge) { return edge * edge * edge / (6 * std::numbers::sqrt2); }
 
 Outcome fill_surface(const MeshOptions& options, MeshReport& report) {
-  auto file = report.measure("read", [&] { return read_surface(options.input); });
+  auto file = report.measure("read", [&] { return sim::read_surface(options.input); });
   if (!file) return refuse_located(file.error());
   if (file->polygons > 0)
     report.notes.push_back({"cut_polygons", "cut", counted(file->polygons, "polygon") + " into triangles", file->polygons});
@@ -104,13 +104,13 @@ Outcome fill_surface(const MeshOptions& options, MeshReport& report) {
     report.notes.push_back(
         {"unused_vertices", "left out", counted(file->unused_vertices, "vertex") + " of no triangle", file->unused_vertices});
   scale(file->mesh.vertices, options.length_unit);
-  const FillOptions settings{.boundary = options.split_surface ? Boundary::split : Boundary::keep,
-                             .max_volume = volume_of_edge(options.edge),
-                             .quality = options.quality,
-                             .time_limit = options.time_limit};
+  const sim::FillOptions settings{.boundary = options.split_surface ? sim::Boundary::split : sim::Boundary::keep,
+                                  .max_volume = volume_of_edge(options.edge),
+                                  .quality = options.quality,
+                                  .time_limit = options.time_limit};
   auto filled = report.measure("fill", [&] { return fill(file->mesh, settings); });
   if (!filled) {
-    SurfaceError error = filled.error();
+    sim::SurfaceError error = filled.error();
     error.file = options.input;
     return refuse_located(error);
   }
@@ -125,7 +125,7 @@ Outcome fill_surface(const MeshOptions& options, MeshReport&) {
 #endif
 
 tl::expected<OutputFile, Failure> open_output(const std::string& path, const MeshOptions& options, const std::string& beside,
-                                              void (*write)(std::ostream&, const TetMesh&), const TetMesh& mesh) {
+                                              void (*write)(std::ostream&, const sim::TetMesh&), const sim::TetMesh& mesh) {
   auto file = OutputFile::create(path, options.common.existing(), {options.input, beside});
   if (!file) return file;
   const auto out = file->open();
@@ -135,24 +135,24 @@ tl::expected<OutputFile, Failure> open_output(const std::string& path, const Mes
 }
 
 /// Both files of a pair are complete before either takes its name.
-Outcome write_mesh(const MeshOptions& options, const TetMesh& mesh) {
+Outcome write_mesh(const MeshOptions& options, const sim::TetMesh& mesh) {
   if (options.output.ends_with(".msh")) {
-    auto file = open_output(options.output, options, "", write_msh, mesh);
+    auto file = open_output(options.output, options, "", sim::write_msh, mesh);
     return file ? file->keep() : tl::unexpected(file.error());
   }
   const std::string ele = options.output.substr(0, options.output.size() - 5) + ".ele";
-  auto node_file = open_output(options.output, options, ele, write_node, mesh);
+  auto node_file = open_output(options.output, options, ele, sim::write_node, mesh);
   if (!node_file) return tl::unexpected(node_file.error());
-  auto ele_file = open_output(ele, options, options.output, write_ele, mesh);
+  auto ele_file = open_output(ele, options, options.output, sim::write_ele, mesh);
   if (!ele_file) return tl::unexpected(ele_file.error());
   if (auto kept = node_file->keep(); !kept) return kept;
   return ele_file->keep();
 }
 
 Json to_json(const MeshOptions& options, const MeshReport& report) {
-  const TetQuality q = quality(report.mesh);
-  const TetSurface outside = surface(report.mesh);
-  const Bounds box = bounds(report.mesh.vertices);
+  const sim::TetQuality q = quality(report.mesh);
+  const sim::TetSurface outside = surface(report.mesh);
+  const sim::Bounds box = sim::bounds(report.mesh.vertices);
   double sum = 0;
   for (std::size_t t = 0; t < report.mesh.tets.size(); ++t) sum += volume(report.mesh, t);
   Json out{{"schema", "tactus.mesh/2"}, {"files", {{"output", options.output}}}};

@@ -121,7 +121,7 @@ Result<void> follow(Predictor& predictor, const EncodedPacket& packet, std::int6
 
 Measured summary(const Traffic& traffic, const Fidelity& predicted, const Fidelity& shown, std::uint64_t ticks,
                  std::uint64_t visual_violations) {
-  const double seconds = static_cast<double>(ticks) * kTick;
+  const double seconds = static_cast<double>(ticks) * sim::kTick;
   Measured out;
   out.packets_per_s = static_cast<double>(traffic.all_packets()) / seconds;
   out.bytes_per_update = share(traffic.bytes, traffic.updates);
@@ -135,9 +135,10 @@ Measured summary(const Traffic& traffic, const Fidelity& predicted, const Fideli
   return out;
 }
 
-Measured measure(const Scene& scene, const Setting& setting, const RigidTriggers& triggers, Grip grip, std::uint64_t seed) {
-  const ChannelOptions channel{{.triggers = triggers}, {.interpolation = setting.interpolation}};
-  auto simulation = Simulation::create(scene, {.seed = seed, .grip = grip, .channel = channel});
+Measured measure(const sim::Scene& scene, const Setting& setting, const RigidTriggers& triggers, sim::Grip grip,
+                 std::uint64_t seed) {
+  const sim::ChannelOptions channel{{.triggers = triggers}, {.interpolation = setting.interpolation}};
+  auto simulation = sim::Simulation::create(scene, {.seed = seed, .grip = grip, .channel = channel});
   if (!simulation) return failed_at(0, simulation.error());
   auto predictor = make_predictor(simulation->header());
   if (!predictor) return failed_at(0, predictor.error());
@@ -207,7 +208,7 @@ constexpr std::size_t kFirstWithout = 2, kFirstWith = 6;  // rows of S4_NI and S
 
 std::string percent(double value) { return value == 0 ? "0 %" : fmt::format("{:.2f} %", 100 * value); }
 
-void print_text(const std::vector<Row>& rows, const ReproduceOptions& options, const Scene& scene) {
+void print_text(const std::vector<Row>& rows, const ReproduceOptions& options, const sim::Scene& scene) {
   fmt::print("Thesis table 3.3 and figure 3.14: traffic control settings on {}, closed loop, {:.1f} s, seeds 1 to {}\n",
              scene.name, scene.duration, options.seeds);
   fmt::print(
@@ -239,7 +240,7 @@ void print_text(const std::vector<Row>& rows, const ReproduceOptions& options, c
   fmt::print("S4 > S8 > S18 > S30 with interpolation:    {}\n", order_of(rows, kFirstWith));
 }
 
-void print_json(const std::vector<Row>& rows, const ReproduceOptions& options, const Scene& scene) {
+void print_json(const std::vector<Row>& rows, const ReproduceOptions& options, const sim::Scene& scene) {
   Json out{{"schema", "tactus.reproduce/2"},
            {"figure", "fig3.14"},
            {"scene", scene.name},
@@ -271,12 +272,13 @@ void print_json(const std::vector<Row>& rows, const ReproduceOptions& options, c
 }
 
 Outcome run(const ReproduceOptions& options) {
-  const auto path = find_scene("rotate-push-lift");
+  const auto path = sim::find_scene("rotate-push-lift");
   if (!path) return refuse_located(path.error());
-  const auto scene = load_scene(*path);
+  const auto scene = sim::load_scene(*path);
   if (!scene) return refuse_located(scene.error());
-  const std::map<std::string, Grip> grips{{"loose", Grip::loose}, {"normal", Grip::normal}, {"firm", Grip::firm}};
-  const Grip grip = grips.at(options.grip);
+  const std::map<std::string, sim::Grip> grips{
+      {"loose", sim::Grip::loose}, {"normal", sim::Grip::normal}, {"firm", sim::Grip::firm}};
+  const sim::Grip grip = grips.at(options.grip);
   const std::size_t jobs = kSettings.size() * options.seeds;
   std::optional<std::vector<Measured>> results;
   {

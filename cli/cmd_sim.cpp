@@ -27,7 +27,7 @@ struct SimOptions {
   std::uint64_t seed = 1;
   double duration = -1;   // [s], negative: the scene's
   double mesh_noise = 0;  // [m] RMS per axis
-  std::optional<Grip> grip;
+  std::optional<sim::Grip> grip;
   bool codec = false;
   TriggerArguments triggers;
   MeshArguments meshes;
@@ -61,7 +61,7 @@ constexpr double kMostTicks = 0xffffffff;     // of a stream: spec/20-stream.md
 constexpr std::uint32_t kEstimateEvery = 50;  // deformations between looks at their error
 
 struct Run {
-  Simulation simulation;
+  sim::Simulation simulation;
   OutputFile output;  // of the trace
   TraceWriter trace;
   std::optional<StreamOutput> stream;
@@ -75,7 +75,7 @@ tl::expected<EncodedPacket, Failure> step(Run& run, const SimOptions& options, S
   const auto stepped =
       times.measure([&] { return run.recording ? run.simulation.replay(run.recorded.users) : run.simulation.step(); });
   if (stepped) return *stepped;
-  const StepError& error = stepped.error();
+  const sim::StepError& error = stepped.error();
   if (error.remedy.empty()) return refuse(options.scene, place_of_tick(error.tick), error.error);
   return refuse(fmt::format("{}, {}: {}", options.scene, place_of_tick(error.tick), error.remedy), "");
 }
@@ -85,7 +85,7 @@ Outcome record_meshes(Run& run, const SimOptions& options, Report& report) {
   const TraceFrame& frame = run.simulation.frame();
   for (std::size_t i = 0; i < report.meshes.size(); ++i) {
     if (!frame.meshes[i].updated) continue;
-    const MeshSent& sent = run.simulation.sent(i);
+    const sim::MeshSent& sent = run.simulation.sent(i);
     MeshTraffic& traffic = *report.meshes[i].traffic;
     ++traffic.frames;
     report.meshes[i].fidelity->add(frame.meshes[i].displacements, sent.shown, touch_of(frame, i));
@@ -131,7 +131,7 @@ void add_deformations(const Run& run, StepTimes& times) {
   const auto& meshes = run.simulation.frame().meshes;
   for (std::size_t i = 0; i < meshes.size(); ++i)
     if (meshes[i].updated) {
-      const DeformationTime time = run.simulation.deformables()->time(i);
+      const sim::DeformationTime time = run.simulation.deformables()->time(i);
       times.add({std::llround(1e9 * time.wall), std::llround(1e9 * time.cpu)});
     }
 }
@@ -195,24 +195,24 @@ Report make_report(const SimOptions& options, const TraceInfo& info) {
   return report;
 }
 
-tl::expected<Scene, Failure> read_scene(const SimOptions& options) {
-  const auto path = find_scene(options.scene);
+tl::expected<sim::Scene, Failure> read_scene(const SimOptions& options) {
+  const auto path = sim::find_scene(options.scene);
   if (!path) return refuse_located(path.error());
-  auto scene = load_scene(*path);
+  auto scene = sim::load_scene(*path);
   if (!scene) return refuse_located(scene.error());
-  for (SceneDeformable& object : scene->deformables) {
+  for (sim::SceneDeformable& object : scene->deformables) {
     if (!options.method.empty()) object.method = options.method;
     if (!options.solver.empty()) object.solver = options.solver;
     if (options.rate > 0) object.rate = options.rate;
   }
-  for (SceneMsd& object : scene->msds)
+  for (sim::SceneMsd& object : scene->msds)
     if (options.rate > 0) object.rate = options.rate;
   return *scene;
 }
 
-void describe_deformables(const Simulation& simulation, Report& report) {
+void describe_deformables(const sim::Simulation& simulation, Report& report) {
   if (simulation.deformables() == nullptr) return;
-  for (const DeformableInfo& object : simulation.deformables()->info())
+  for (const sim::DeformableInfo& object : simulation.deformables()->info())
     report.deformables.push_back({.name = object.name,
                                   .method = object.method,
                                   .reason = object.reason,
@@ -222,7 +222,7 @@ void describe_deformables(const Simulation& simulation, Report& report) {
   report.timings.push_back({"deform", "deform, per step"});
 }
 
-void report_errors(const Simulation& simulation, Report& report) {
+void report_errors(const sim::Simulation& simulation, Report& report) {
   if (simulation.deformables() == nullptr) return;
   for (std::size_t i = 0; i < report.deformables.size(); ++i) {
     const auto error = simulation.deformables()->error(i);
@@ -234,10 +234,10 @@ void report_errors(const Simulation& simulation, Report& report) {
   }
 }
 
-std::set<Subject> subjects_of(const Scene& scene) {
+std::set<Subject> subjects_of(const sim::Scene& scene) {
   std::set<Subject> held;
   const bool moves =
-      std::any_of(scene.objects.begin(), scene.objects.end(), [](const SceneObject& o) { return o.dof != Dof::none; });
+      std::any_of(scene.objects.begin(), scene.objects.end(), [](const sim::SceneObject& o) { return o.dof != Dof::none; });
   if (moves || !scene.msds.empty() || scene.deformables.empty()) held.insert(Subject::rigid);
   if (!scene.users.empty()) held.insert(Subject::user);
   if (!scene.deformables.empty()) held.insert({Subject::mesh, Subject::deformable, Subject::deformed});
@@ -246,7 +246,7 @@ std::set<Subject> subjects_of(const Scene& scene) {
   return held;
 }
 
-Outcome draw_stiffness(const Scene& scene, const SimOptions& options, StepTimes& times) {
+Outcome draw_stiffness(const sim::Scene& scene, const SimOptions& options, StepTimes& times) {
   if (options.stiffness_map.empty() || scene.deformables.empty()) return {};
   const auto drawn = times.measure([&] {
     return write_stiffness_map(scene, options.scene, options.stiffness_map, options.common.existing(),
@@ -269,23 +269,23 @@ tl::unexpected<Failure> stopped(int signal, const Report& report, const SimOptio
 
 Outcome run(const SimOptions& options) {
   if (auto fits = check_no_terminal(options.output); !fits) return fits;
-  if (options.duration >= 0 && options.duration < 0.5 / kTickRate)
+  if (options.duration >= 0 && options.duration < 0.5 / sim::kTickRate)
     return refuse_arguments("--duration: shorter than a tick", "Give at least 1ms.");
-  if (options.duration * kTickRate > kMostTicks)
+  if (options.duration * sim::kTickRate > kMostTicks)
     return refuse_arguments("--duration: more ticks than can be numbered",
-                            fmt::format("Give at most {:.0f}s.", std::floor(kMostTicks / kTickRate)));
+                            fmt::format("Give at most {:.0f}s.", std::floor(kMostTicks / sim::kTickRate)));
   const auto scene = read_scene(options);
   if (!scene) return tl::unexpected(scene.error());
   note_idle_options(*options.common.command, subjects_of(*scene), "scene");
-  SimulationOptions settings{.seed = options.seed,
-                             .grip = options.grip,
-                             .channel = {},
-                             .mesh_noise = options.mesh_noise,
-                             .estimate_every = kEstimateEvery};
+  sim::SimulationOptions settings{.seed = options.seed,
+                                  .grip = options.grip,
+                                  .channel = {},
+                                  .mesh_noise = options.mesh_noise,
+                                  .estimate_every = kEstimateEvery};
   if (options.has_channel())
-    settings.channel = ChannelOptions{options.triggers.encoder(), options.replica, options.meshes.encoder(options.triggers),
-                                      options.meshes.coding()};
-  auto simulation = Simulation::create(*scene, settings);
+    settings.channel = sim::ChannelOptions{options.triggers.encoder(), options.replica, options.meshes.encoder(options.triggers),
+                                           options.meshes.coding()};
+  auto simulation = sim::Simulation::create(*scene, settings);
   if (!simulation) return refuse(options.scene, simulation.error());
   std::optional<TraceReader> recording;
   if (!options.replay.empty()) {
@@ -312,8 +312,8 @@ Outcome run(const SimOptions& options) {
   describe_deformables(*simulation, report);
   Run session{std::move(*simulation), std::move(*output), std::move(*trace), std::move(stream), std::move(recording), {}};
   session.part_bytes = has_part_byte(session.simulation.header()) ? 1 : 0;
-  const auto ticks =
-      options.duration < 0 ? session.simulation.ticks() : static_cast<std::int64_t>(std::llround(options.duration * kTickRate));
+  const auto ticks = options.duration < 0 ? session.simulation.ticks()
+                                          : static_cast<std::int64_t>(std::llround(options.duration * sim::kTickRate));
   if (auto done = simulate(session, ticks, options, report); !done) {
     if (report.ticks.count() == 0) session.output.discard();
     return done;
@@ -348,7 +348,8 @@ void setup_sim(Command& app, Action& action) {
   add_quantity(command, "--duration", options->duration, Dimension::time, "Length [the scene's]");
   add_quantity(command, "--mesh-noise", options->mesh_noise, Dimension::length,
                "White noise on the shapes that are recorded and sent, RMS per axis [0]");
-  const std::map<std::string, Grip> grips{{"loose", Grip::loose}, {"normal", Grip::normal}, {"firm", Grip::firm}};
+  const std::map<std::string, sim::Grip> grips{
+      {"loose", sim::Grip::loose}, {"normal", sim::Grip::normal}, {"firm", sim::Grip::firm}};
   command
       .add_option(
           "--grip", [&grip = options->grip, grips](const std::string& name) { grip = grips.at(name); },

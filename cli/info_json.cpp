@@ -161,12 +161,12 @@ Json trace_info_json(const TraceInfo& trace, const TraceTotals& totals) {
 }
 
 #ifdef TACTUS_HAS_SIM
-Json scene_info_json(const Scene& scene) {
+Json scene_info_json(const sim::Scene& scene) {
   Json out{{"schema", kSchema}, {"kind", "scene"}, {"name", scene.name}, {"seconds", scene.duration}};
   if (scene.floor) out["floor_m"] = *scene.floor;
   if (scene.touch) out["touch_stiffness_N_per_m"] = scene.touch->stiffness;
   out["objects"] = Json::array();
-  for (const SceneObject& o : scene.objects)
+  for (const sim::SceneObject& o : scene.objects)
     out["objects"].push_back({{"name", o.name},
                               {"dof", dof_json(o.dof)},
                               {"mass_kg", o.mass},
@@ -174,7 +174,7 @@ Json scene_info_json(const Scene& scene) {
                               {"triangles", o.surface.triangles.size()},
                               {"size_m", vector_json(o.size)}});
   out["one_dimensional_objects"] = Json::array();
-  for (const SceneMsd& m : scene.msds)
+  for (const sim::SceneMsd& m : scene.msds)
     out["one_dimensional_objects"].push_back({{"name", m.name},
                                               {"dof", dof_json(m.dof())},
                                               {"stiffness_N_per_m", m.object.stiffness},
@@ -182,7 +182,7 @@ Json scene_info_json(const Scene& scene) {
                                               {"mass_kg", m.object.mass},
                                               {"step_s", 1e-3 * m.rate}});
   out["deformables"] = Json::array();
-  for (const SceneDeformable& d : scene.deformables)
+  for (const sim::SceneDeformable& d : scene.deformables)
     out["deformables"].push_back({{"name", d.name},
                                   {"vertices", d.mesh.vertices.size()},
                                   {"tetrahedra", d.mesh.tets.size()},
@@ -190,7 +190,7 @@ Json scene_info_json(const Scene& scene) {
                                   {"step_s", 1e-3 * d.rate},
                                   {"coupling_N_per_m", d.stiffness}});
   out["users"] = Json::array();
-  for (const SceneUser& u : scene.users) out["users"].push_back({{"name", u.name}, {"path_phases", u.path.size()}});
+  for (const sim::SceneUser& u : scene.users) out["users"].push_back({{"name", u.name}, {"path_phases", u.path.size()}});
   return out;
 }
 #endif

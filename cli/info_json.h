@@ -10,7 +10,7 @@
 #include "cli/stream_totals.h"
 #include "codec/trace/frame.h"
 
-namespace tactus {
+namespace tactus::sim {
 struct Scene;
 }
 
@@ -34,7 +34,7 @@ struct TraceTotals {
 nlohmann::ordered_json trace_info_json(const TraceInfo& trace, const TraceTotals& totals);
 
 #ifdef TACTUS_HAS_SIM
-nlohmann::ordered_json scene_info_json(const Scene& scene);
+nlohmann::ordered_json scene_info_json(const sim::Scene& scene);
 #endif
 
 }  // namespace tactus::cli

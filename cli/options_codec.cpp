@@ -24,7 +24,7 @@ constexpr double kLeastAngle = 0.002 * std::numbers::pi / 180;  // [rad]
 
 #ifdef TACTUS_HAS_MODES
 Result<ModeBasis> spring_basis(const TraceMesh& mesh, std::size_t modes) {
-  TACTUS_TRY(const std::vector<double> vectors, spring_modes(mesh.rest, mesh.fixed, modes));
+  TACTUS_TRY(const std::vector<double> vectors, sim::spring_modes(mesh.rest, mesh.fixed, modes));
   return make_mode_basis(vectors, modes);
 }
 #else

@@ -9,18 +9,18 @@
 namespace tactus::cli {
 namespace {
 
-using study::Errors;
-using study::PrecisionPoint;
+using sim::study::Errors;
+using sim::study::PrecisionPoint;
 
 /// One colour per method, one dash and mark per variant of it.
 struct Style {
   int colour = 1, dash = 1, mark = 7;
 };
 
-Style style_of(const study::PrecisionMethod& method, int variant) {
+Style style_of(const sim::study::PrecisionMethod& method, int variant) {
   constexpr int kMarks[] = {7, 4, 9};  // gnuplot's disc, open square, triangle
   if (method.chosen) return {8, 1, 5};
-  const int colour = method.options.method == Method::velocity_verlet ? 7 : static_cast<int>(method.options.method);
+  const int colour = method.options.method == sim::Method::velocity_verlet ? 7 : static_cast<int>(method.options.method);
   return {colour, variant + 1, kMarks[variant % 3]};
 }
 
@@ -54,9 +54,9 @@ Plot time_plot(const TimeStudy& time, const Quantity& quantity) {
   std::string lines;
   PlotData rings{"rings", {}};
   int variant = 0;
-  const study::PrecisionMethod* before = nullptr;
+  const sim::study::PrecisionMethod* before = nullptr;
   for (std::size_t m = 0; m < time.methods.size(); ++m) {
-    const study::PrecisionMethod& method = time.methods[m];
+    const sim::study::PrecisionMethod& method = time.methods[m];
     variant = before != nullptr && !before->chosen && before->options.method == method.options.method ? variant + 1 : 0;
     before = &method;
     PlotData data{fmt::format("m{}", m), {}};
@@ -71,7 +71,7 @@ Plot time_plot(const TimeStudy& time, const Quantity& quantity) {
         fmt::format("${0} using 1:2 with linespoints linetype {1} dashtype {2} pointtype {3} pointsize 0.8 title {4} noenhanced",
                     data.name, style.colour, style.dash, style.mark, gnuplot_text(method.name)));
     // Linear elasticity is off by the same whatever the step.
-    if (method.elasticity == Elasticity::corotated) {
+    if (method.elasticity == sim::Elasticity::corotated) {
       append(lines, fmt::format("${0} using 1:2:(sprintf('%.3g', $3)) with labels left offset 0.6, 0.35 font ',8' textcolor "
                                 "linetype {1} notitle",
                                 data.name, style.colour));

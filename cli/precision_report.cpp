@@ -14,8 +14,8 @@ namespace tactus::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using study::PrecisionPoint;
-using study::SpacePoint;
+using sim::study::PrecisionPoint;
+using sim::study::SpacePoint;
 
 std::string scientific(double value) { return std::isfinite(value) ? fmt::format("{:.1e}", value) : "-"; }
 std::string significant(double value) { return std::isfinite(value) ? fmt::format("{:.3g}", value) : "-"; }
@@ -79,7 +79,7 @@ std::string space_title(const SpaceStudy& space) {
 }
 
 std::string reference_text(const TimeStudy& time) {
-  const study::Errors& floor = time.reference.errors;
+  const sim::study::Errors& floor = time.reference.errors;
   return fmt::format(
       "reference: Runge-Kutta of order 4, none of the methods compared, h = {:.3g} us, {}; its own error: u {}, v {}, force {}, "
       "energy {}, weight {}, push {}",
@@ -162,7 +162,7 @@ std::string markdown_at_one_millisecond(const PrecisionReport& report) {
     for (const char* column : {"u", "weight", "ms/step"}) heading.push_back(time.scene.name + ": " + column);
   std::string out = "\n## At 1 kHz\n\n" + markdown_heading(heading);
   if (report.times.empty()) return out;
-  for (const study::PrecisionMethod& method : report.times.front().methods)
+  for (const sim::study::PrecisionMethod& method : report.times.front().methods)
     out += markdown_row(at_one_millisecond(report, method.name), heading.size());
   return out;
 }

@@ -11,16 +11,16 @@
 namespace tactus::cli {
 
 struct TimeStudy {
-  study::PrecisionScene scene;
-  study::PrecisionPoint reference;
-  std::vector<study::PrecisionMethod> methods;
-  std::vector<study::PrecisionPoint> points;  ///< method by method, largest step first
+  sim::study::PrecisionScene scene;
+  sim::study::PrecisionPoint reference;
+  std::vector<sim::study::PrecisionMethod> methods;
+  std::vector<sim::study::PrecisionPoint> points;  ///< method by method, largest step first
 };
 
 struct SpaceStudy {
   std::string scene;
-  std::vector<study::SpacePoint> points;  ///< of one Poisson's ratio, coarsest first
-  study::SpaceErrors errors;
+  std::vector<sim::study::SpacePoint> points;  ///< of one Poisson's ratio, coarsest first
+  sim::study::SpaceErrors errors;
 };
 
 struct PrecisionReport {

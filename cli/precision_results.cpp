@@ -31,9 +31,13 @@ constexpr const char* kSpaceHeading =
     "transient_m";
 
 /// In the order of the heading.
-constexpr double study::Errors::*kErrors[] = {
-    &study::Errors::displacement_end, &study::Errors::displacement, &study::Errors::velocity, &study::Errors::force,
-    &study::Errors::energy,           &study::Errors::weight,       &study::Errors::push};
+constexpr double sim::study::Errors::*kErrors[] = {&sim::study::Errors::displacement_end,
+                                                   &sim::study::Errors::displacement,
+                                                   &sim::study::Errors::velocity,
+                                                   &sim::study::Errors::force,
+                                                   &sim::study::Errors::energy,
+                                                   &sim::study::Errors::weight,
+                                                   &sim::study::Errors::push};
 
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.7g}", value) : ""; }
 
@@ -41,16 +45,16 @@ std::string number(double value) { return std::isfinite(value) ? fmt::format("{:
 std::string quoted(const std::string& text) { return text.find(',') == std::string::npos ? text : '"' + text + '"'; }
 
 std::string line_of(const TimeRow& row) {
-  const study::PrecisionPoint& p = row.point;
+  const sim::study::PrecisionPoint& p = row.point;
   std::string out = fmt::format("{},{},{},{}", row.scene, p.method, p.steps_per_sample, number(p.step));
-  for (const double study::Errors::*error : kErrors) out += ',' + number(p.errors.*error);
+  for (const double sim::study::Errors::*error : kErrors) out += ',' + number(p.errors.*error);
   return out + fmt::format(",{},{},{},{},{},{},{},{}", number(p.seconds_per_second), number(p.setup_seconds), p.runs,
                            number(p.newton_per_step), number(p.solver_per_step), p.unconverged_steps, quoted(p.taken),
                            quoted(p.remark));
 }
 
 std::string line_of(const SpaceRow& row) {
-  const study::SpacePoint& p = row.point;
+  const sim::study::SpacePoint& p = row.point;
   std::string transient;
   for (const double value : p.deflection) transient += (transient.empty() ? "" : " ") + number(value);
   return fmt::format("{},{},{},{},{},{},{},{},{},{},{}", row.scene, number(p.poisson), p.refinement, p.vertices, p.tets,
@@ -92,12 +96,12 @@ class Cells {
 std::optional<TimeRow> time_row(const std::string& line) {
   Cells cells(line);
   TimeRow row;
-  study::PrecisionPoint& p = row.point;
+  sim::study::PrecisionPoint& p = row.point;
   row.scene = cells.text();
   p.method = cells.text();
   p.steps_per_sample = cells.get<int>();
   p.step = cells.get<double>();
-  for (double study::Errors::*error : kErrors) p.errors.*error = cells.get<double>();
+  for (double sim::study::Errors::*error : kErrors) p.errors.*error = cells.get<double>();
   p.seconds_per_second = cells.get<double>();
   p.setup_seconds = cells.get<double>();
   p.runs = cells.get<int>();
@@ -112,7 +116,7 @@ std::optional<TimeRow> time_row(const std::string& line) {
 std::optional<SpaceRow> space_row(const std::string& line) {
   Cells cells(line);
   SpaceRow row;
-  study::SpacePoint& p = row.point;
+  sim::study::SpacePoint& p = row.point;
   row.scene = cells.text();
   p.poisson = cells.get<double>();
   p.refinement = cells.get<int>();
@@ -218,7 +222,7 @@ const TimeRow* PrecisionResults::find(const std::string& scene, const std::strin
   return row == times_.end() ? nullptr : &*row;
 }
 
-const SpaceRow* PrecisionResults::find(const std::string& scene, const study::SpaceJob& job) const {
+const SpaceRow* PrecisionResults::find(const std::string& scene, const sim::study::SpaceJob& job) const {
   const auto row = std::find_if(spaces_.begin(), spaces_.end(), [&](const SpaceRow& r) {
     return r.scene == scene && r.point.refinement == job.refinement && r.point.poisson == job.poisson;
   });

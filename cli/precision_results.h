@@ -17,13 +17,13 @@ namespace tactus::cli {
 /// One point of the time study. The reference is a row, too: its errors are those estimated of itself.
 struct TimeRow {
   std::string scene;
-  study::PrecisionPoint point;
+  sim::study::PrecisionPoint point;
 };
 inline constexpr const char* kReferenceMethod = "reference";
 
 struct SpaceRow {
   std::string scene;
-  study::SpacePoint point;
+  sim::study::SpacePoint point;
 };
 
 class PrecisionResults {
@@ -39,7 +39,7 @@ class PrecisionResults {
   Outcome add(SpaceRow row);
 
   const TimeRow* find(const std::string& scene, const std::string& method, int steps_per_sample) const;
-  const SpaceRow* find(const std::string& scene, const study::SpaceJob& job) const;
+  const SpaceRow* find(const std::string& scene, const sim::study::SpaceJob& job) const;
   const Context& context() const noexcept { return context_; }
   const std::string& folder() const noexcept { return folder_; }
 

@@ -7,8 +7,8 @@
 namespace tactus::cli {
 namespace {
 
-using study::Series;
-using study::Study;
+using sim::study::Series;
+using sim::study::Study;
 
 /// A plot of one study and the series that it needs; each becomes the data block of its name, with _ for - and dot.
 struct Recipe {

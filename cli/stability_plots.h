@@ -15,6 +15,6 @@ struct StabilityPlot {
 };
 
 /// Those for which the studies hold the data.
-std::vector<StabilityPlot> stability_plots(std::span<const study::Study> studies);
+std::vector<StabilityPlot> stability_plots(std::span<const sim::study::Study> studies);
 
 }  // namespace tactus::cli

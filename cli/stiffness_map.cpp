@@ -29,7 +29,7 @@ struct Span {
 struct Scale {
   Span colours, all;
 };
-Scale scale_of(const StiffnessMap& map) {
+Scale scale_of(const sim::StiffnessMap& map) {
   std::vector<double> finite;
   std::copy_if(map.stiffness.begin(), map.stiffness.end(), std::back_inserter(finite), [](double k) { return std::isfinite(k); });
   if (finite.empty()) return {{1, 10}, {1, 10}};
@@ -51,7 +51,7 @@ std::string marks(const Span& span) {
   return list;
 }
 
-Plot stiffness_plot(const std::string& file, const std::string& object, const StiffnessMap& map) {
+Plot stiffness_plot(const std::string& file, const std::string& object, const sim::StiffnessMap& map) {
   const Scale scale = scale_of(map);
   Plot plot;
   plot.name = file;
@@ -94,7 +94,7 @@ Plot stiffness_plot(const std::string& file, const std::string& object, const St
 
 }  // namespace
 
-tl::expected<Drawn, Failure> write_stiffness_map(const Scene& scene, const std::string& scene_file, const std::string& file,
+tl::expected<Drawn, Failure> write_stiffness_map(const sim::Scene& scene, const std::string& scene_file, const std::string& file,
                                                  OutputFile::Existing existing, std::initializer_list<std::string> others) {
   auto table = OutputFile::create(file, existing, others);
   if (!table) return tl::unexpected(table.error());
@@ -103,8 +103,8 @@ tl::expected<Drawn, Failure> write_stiffness_map(const Scene& scene, const std::
   **out << "deformable,vertex,x_m,y_m,z_m,stiffness_N_per_m\n";
   const std::filesystem::path place(file);
   std::vector<Plot> plots;
-  for (const SceneDeformable& object : scene.deformables) {
-    const auto map = stiffness_map(object);
+  for (const sim::SceneDeformable& object : scene.deformables) {
+    const auto map = sim::stiffness_map(object);
     if (!map) return refuse(scene_file, object.name, map.error());
     for (std::size_t v = 0; v < map->stiffness.size(); ++v) {
       const Vec3& at = map->surface.vertices[v];

@@ -13,7 +13,7 @@ namespace tactus::cli {
 /// in   others  files that the command needs besides
 /// out  Drawn::no: there is no gnuplot
 /// err  a file cannot be written, or is there and to be kept; errors of stiffness_map() with the object
-tl::expected<Drawn, Failure> write_stiffness_map(const Scene& scene, const std::string& scene_file, const std::string& file,
+tl::expected<Drawn, Failure> write_stiffness_map(const sim::Scene& scene, const std::string& scene_file, const std::string& file,
                                                  OutputFile::Existing existing, std::initializer_list<std::string> others);
 
 }  // namespace tactus::cli

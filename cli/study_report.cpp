@@ -15,10 +15,10 @@ namespace tactus::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using study::Row;
-using study::Study;
+using sim::study::Row;
+using sim::study::Study;
 
-const char* extent_name(study::Extent extent) { return extent == study::Extent::full ? "full" : "short"; }
+const char* extent_name(sim::study::Extent extent) { return extent == sim::study::Extent::full ? "full" : "short"; }
 
 std::string figure(const std::optional<double>& value, const std::string& unit) {
   if (!value) return "-";
@@ -47,7 +47,7 @@ std::string quoted(std::string text) {
 
 std::string exact(const std::optional<double>& value) { return value ? fmt::format("{:.9g}", *value) : ""; }
 
-std::string markdown(const study::Matrix& matrix) {
+std::string markdown(const sim::study::Matrix& matrix) {
   std::string out = "\n| " + matrix.corner, line = "\n|---";
   for (const std::string& column : matrix.columns) {
     out += " | " + column;
@@ -102,7 +102,7 @@ std::string to_csv(std::span<const Study> studies) {
   return out;
 }
 
-std::string to_json(std::span<const Study> studies, study::Extent extent) {
+std::string to_json(std::span<const Study> studies, sim::study::Extent extent) {
   Json out{{"schema", "tactus.stability/1"}, {"extent", extent_name(extent)}, {"context", bench_context()}};
   const auto optional = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
   for (const Study& study : studies) {
@@ -124,7 +124,7 @@ std::string to_json(std::span<const Study> studies, study::Extent extent) {
   return text_of_json(out) + "\n";
 }
 
-std::string to_markdown(std::span<const Study> studies, std::span<const Picture> pictures, study::Extent extent) {
+std::string to_markdown(std::span<const Study> studies, std::span<const Picture> pictures, sim::study::Extent extent) {
   const auto context = bench_context();
   std::string out = fmt::format(
       "# Where the simulation stops being stable\n\n"
@@ -134,7 +134,7 @@ std::string to_markdown(std::span<const Study> studies, std::span<const Picture>
       "state before it kept. The same rows stand in `stability.csv` and `stability.json`; every plot is a gnuplot script with "
       "its "
       "data.\n",
-      extent == study::Extent::full ? "" : " --short", context.at("machine"), context.at("compiler"), context.at("build"));
+      extent == sim::study::Extent::full ? "" : " --short", context.at("machine"), context.at("compiler"), context.at("build"));
   for (const Study& study : studies) {
     out += fmt::format("\n## {}\n\n{}\n", study.title, study.text);
     for (const Picture& picture : pictures)

@@ -11,17 +11,17 @@
 
 namespace tactus::cli {
 
-void print_table(std::span<const study::Study> studies, std::FILE* out);
+void print_table(std::span<const sim::study::Study> studies, std::FILE* out);
 /// One line per row: study, subject, parameters ("N=10; k_o=100 N/m"), verdict, quantity, measured, analytic, unit, deviation, remark.
-std::string to_csv(std::span<const study::Study> studies);
+std::string to_csv(std::span<const sim::study::Study> studies);
 /// Schema "tactus.stability/1".
-std::string to_json(std::span<const study::Study> studies, study::Extent extent);
+std::string to_json(std::span<const sim::study::Study> studies, sim::study::Extent extent);
 
 /// PNG and SVG files of this name, without their ends. Those of a study begin with its name.
 struct Picture {
   std::string name, caption;
 };
 /// A section per study: text, plots and table.
-std::string to_markdown(std::span<const study::Study> studies, std::span<const Picture> pictures, study::Extent extent);
+std::string to_markdown(std::span<const sim::study::Study> studies, std::span<const Picture> pictures, sim::study::Extent extent);
 
 }  // namespace tactus::cli

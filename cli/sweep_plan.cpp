@@ -65,7 +65,7 @@ class PlanReader {
     in_.parse(text, kMostPlanBytes, [&](const toml::table& root) { plan = read(root); });
   }
   bool failed() const { return in_.failed(); }
-  SceneError error() const { return in_.error(); }
+  sim::SceneError error() const { return in_.error(); }
 
  private:
   void invalid(const toml::node& node, const char* rule, std::string key, std::string remedy) {
@@ -85,7 +85,7 @@ class PlanReader {
   std::string name(const toml::table& table, const std::string& path, const char* key) {
     std::string value = in_.text(table, path, key);
     if (!value.empty() && !is_simple(value))
-      invalid(table, "R-SCN-6", TomlReader::join(path, key), "use letters, digits, '-', '_' and '.' only");
+      invalid(table, "R-SCN-6", sim::TomlReader::join(path, key), "use letters, digits, '-', '_' and '.' only");
     return value;
   }
 
@@ -93,7 +93,7 @@ class PlanReader {
     std::vector<std::string> out;
     const toml::node* node = table.get(key);
     const toml::array* array = node ? node->as_array() : nullptr;
-    const std::string place = TomlReader::join(path, key);
+    const std::string place = sim::TomlReader::join(path, key);
     if (!array || array->empty()) {
       invalid(node ? *node : table, node ? "R-SCN-5" : "R-SCN-4", place, "write an array of strings, at least one");
       return out;
@@ -116,14 +116,15 @@ class PlanReader {
   SweepMeasure measured(const toml::table& table, std::string_view column) {
     SweepMeasure measure{std::string(column), in_.text(table, "measure", column)};
     if (!measure.place.empty() && !is_json_pointer(measure.place))
-      invalid(table, "R-SCN-6", TomlReader::join("measure", column), "write a JSON pointer, such as /traffic/payload/bit_per_s");
+      invalid(table, "R-SCN-6", sim::TomlReader::join("measure", column),
+              "write a JSON pointer, such as /traffic/payload/bit_per_s");
     return measure;
   }
 
   void check_column(const toml::table& table, const char* key, const std::string& value, const SweepPlan& plan) {
     const auto columns = plan.columns();
     if (std::find(columns.begin(), columns.end(), value) == columns.end())
-      invalid(table, "R-SCN-7", TomlReader::join("plot", key), "name a parameter or a measure of this plan");
+      invalid(table, "R-SCN-7", sim::TomlReader::join("plot", key), "name a parameter or a measure of this plan");
   }
 
   /// A rule of `where` names a column, and of a parameter a value that it takes.
@@ -211,7 +212,7 @@ class PlanReader {
                   "give every figure a name of its own, which with .gp, .svg or .png is no input's file");
   }
 
-  TomlReader in_;
+  sim::TomlReader in_;
 };
 
 std::string replaced(std::string word, const std::string& what, const std::string& by) {

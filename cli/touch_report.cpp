@@ -21,34 +21,34 @@ void warn_of_chatter(const TouchReport& touch, Report& report) {
                   touch.user, touch.most_in_a_second));
 }
 
-void warn_of_sampling(const Scene& scene, const Simulation& simulation, std::size_t user, Report& report) {
+void warn_of_sampling(const sim::Scene& scene, const sim::Simulation& simulation, std::size_t user, Report& report) {
   const double stiffness = simulation.touched(user).stiffest, bears = simulation.bears(user);
   if (stiffness <= bears) return;
   report.warnings.push_back(
       fmt::format("{}: a coupling of {:.4g} N/m is beyond the {:.4g} N/m that this hand and the smoothing of its device bear at "
                   "{} Hz against what does not yield",
-                  scene.users[user].name, stiffness, bears, kTickRate));
+                  scene.users[user].name, stiffness, bears, sim::kTickRate));
 }
 
 /// All who may press an object at once count (eq. 4.38).
-void warn_of_deformation(const Scene& scene, const MeshContact& hardest, Report& report) {
-  const SceneDeformable& object = scene.deformables[hardest.mesh];
+void warn_of_deformation(const sim::Scene& scene, const MeshContact& hardest, Report& report) {
+  const sim::SceneDeformable& object = scene.deformables[hardest.mesh];
   const double sum = static_cast<double>(scene.users.size()) * object.stiffness;
-  const auto bears = critical_stiffness(object, hardest);
+  const auto bears = sim::critical_stiffness(object, hardest);
   if (!bears || sum <= *bears) return;
   report.warnings.push_back(fmt::format(
       "{}: pressed with {:.4g} N/m where thesis eq. 4.38 bears {:.4g} N/m, deformed every {:g} ms: it may swing up; give a "
       "smaller rate or stiffness",
-      object.name, sum, *bears, 1e3 * object.rate * kTick));
+      object.name, sum, *bears, 1e3 * object.rate * sim::kTick));
 }
 
 }  // namespace
 
-void report_touches(const Scene& scene, const Simulation& simulation, Report& report) {
+void report_touches(const sim::Scene& scene, const sim::Simulation& simulation, Report& report) {
   if (report.ticks.count() == 0) return;
   std::vector<bool> looked(scene.deformables.size());
   for (std::size_t i = 0; i < scene.users.size(); ++i) {
-    const TouchSummary& t = simulation.touched(i);
+    const sim::TouchSummary& t = simulation.touched(i);
     report.touches.push_back({.user = scene.users[i].name,
                               .share = static_cast<double>(t.ticks) / static_cast<double>(report.ticks.count()),
                               .contacts = t.contacts,

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <string>
 
-namespace tactus {
+namespace tactus::sim {
 struct Scene;
 class Simulation;
-}  // namespace tactus
+}  // namespace tactus::sim
 
 namespace tactus::cli {
 
@@ -26,6 +26,6 @@ struct TouchReport {
 
 /// One TouchReport for each user, and a warning for each that chatters, presses a deformable object harder than eq. 4.38 allows at
 /// the place of the largest force, or was held by a coupling that its device's smoothing makes swing.
-void report_touches(const Scene& scene, const Simulation& simulation, Report& report);
+void report_touches(const sim::Scene& scene, const sim::Simulation& simulation, Report& report);
 
 }  // namespace tactus::cli

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace tactus {
+namespace tactus::sim {
 
 /// SplitMix64 (Steele, Lea, Flood 2014): small, and unlike std:: distributions the same numbers with every standard library.
 class Random {
@@ -26,4 +26,4 @@ class Random {
   std::uint64_t state_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -11,7 +11,7 @@
 #include "sim/user/sampled_limit.h"
 #include "sim/user/user.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 struct Channel {
@@ -335,4 +335,4 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -30,7 +30,7 @@
 #include "sim/scene/scene.h"
 #include "sim/user/touch_record.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 struct ChannelOptions {
   RigidEncoderOptions encoder;
@@ -94,4 +94,4 @@ class Simulation {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -10,7 +10,7 @@
 
 #include "sim/random.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 using Factor = Eigen::SimplicialLDLT<SymmetricMatrix>;
@@ -89,4 +89,4 @@ std::optional<Modes> slowest_modes(const SymmetricMatrix& K, const SymmetricMatr
   return best_modes(K, M, lanczos.eigenvectors(), count);
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

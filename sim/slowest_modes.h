@@ -14,7 +14,7 @@
 #include <Eigen/SparseCore>
 #include <optional>
 
-namespace tactus {
+namespace tactus::sim {
 
 /// Slowest first.
 struct Modes {
@@ -31,4 +31,4 @@ using SymmetricMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;  ///<
 ///      else O(rows^3). Allocates.
 std::optional<Modes> slowest_modes(const SymmetricMatrix& K, const SymmetricMatrix& M, Eigen::Index count);
 
-}  // namespace tactus
+}  // namespace tactus::sim

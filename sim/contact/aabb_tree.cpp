@@ -5,7 +5,7 @@
 #include <numeric>
 #include <tuple>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 bool before(const Vec3& a, const Vec3& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
@@ -240,4 +240,4 @@ std::optional<SurfaceHit> AabbTree::sweep(const Sweep& sphere, std::span<const V
   return SurfaceHit{hit->t, hit->rest, named(leaf, hit->at.weights, hit->at.point, std::sqrt(hit->at.distance2))};
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

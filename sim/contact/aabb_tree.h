@@ -22,7 +22,7 @@
 #include "codec/base/tri_mesh.h"
 #include "sim/contact/triangle.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 enum class Feature : std::uint8_t { vertex = 1, edge = 2, face = 3 };
 
@@ -161,4 +161,4 @@ void AabbTree::visit_sphere(const Vec3& centre, double radius, std::span<const V
   });
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

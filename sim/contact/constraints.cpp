@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr double kParallel = 1e-14;  // squared sine, or squared volume, below which normals are as good as dependent
@@ -82,4 +82,4 @@ std::optional<Constrained> nearest_within(std::span<const Halfspace> planes, con
   return std::nullopt;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -13,7 +13,7 @@
 
 #include "codec/base/geometry.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 /// n . x >= offset, n of unit length
 struct Halfspace {
@@ -36,4 +36,4 @@ struct Constrained {
 /// time O(1): at most 42 sets of planes are tried; no allocation
 std::optional<Constrained> nearest_within(std::span<const Halfspace> planes, const Vec3& goal, double slack) noexcept;
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numeric>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr double kAround = 0.1;           // [m]
@@ -202,4 +202,4 @@ Touch Probe::move(const Vec3& device, bool button, std::span<const Pose> poses) 
   return out;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -20,7 +20,7 @@
 #include "sim/contact/surface_proxy.h"
 #include "sim/scene/scene.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 /// A face of a box: the one across +axis or -axis.
 struct BoxFace {
@@ -107,4 +107,4 @@ class Probe {
   std::uint64_t moves_ = 0;
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -6,7 +6,7 @@
 
 #include "codec/base/geometry.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 struct Coupling {
   double stiffness = 0;                                        ///< [N/m] k_o > 0
@@ -29,4 +29,4 @@ inline Vec3 coupling_force(const Coupling& coupling, const Motion& proxy, const 
   return size > coupling.max_force ? (coupling.max_force / size) * force : force;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr std::uint32_t kNone = MeshTopology::kNone;
@@ -66,4 +66,4 @@ bool Inside::contains(const Vec3& point, const SurfacePoint& closest, std::span<
   return closed_[closest.triangle] && dot(point - closest.point, normal(closest, vertices)) < 0;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -11,7 +11,7 @@
 
 #include "sim/contact/aabb_tree.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 class Inside {
  public:
@@ -29,4 +29,4 @@ class Inside {
   std::vector<bool> closed_;  // per triangle: no boundary anywhere in its component
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr int kMaxHalvings = 3;  // of a way that leads over the border
@@ -145,4 +145,4 @@ ProxyTouch IntermediateModel::move(const Vec3& probe) noexcept {
   return touch;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -17,7 +17,7 @@
 
 #include "sim/contact/mesh_proxy.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 struct IntermediateModelOptions {
   unsigned rings = 3;       ///< m
@@ -72,4 +72,4 @@ class IntermediateModel {
   std::uint32_t cut_around_triangle_ = MeshTopology::kNone;  // in the middle of the cut-out
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

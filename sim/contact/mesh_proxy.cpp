@@ -5,7 +5,7 @@
 #include <cmath>
 #include <tuple>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr int kMaxSweeps = 16;
@@ -261,4 +261,4 @@ ProxyTouch MeshProxy::place(const Vec3& probe, const Inside& inside, std::span<c
   return settle(probe, vertices, tree);
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

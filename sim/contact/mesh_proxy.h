@@ -29,7 +29,7 @@
 #include "sim/contact/inside.h"
 #include "sim/contact/surroundings.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 struct MeshProxyOptions {
   double friction = 0;  ///< mu >= 0
@@ -106,4 +106,4 @@ class MeshProxy {
   Anchor anchor_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

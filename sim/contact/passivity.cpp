@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/contact/passivity.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 void PassivityObserver::arrive(const Vec3& position) noexcept {
   step_ = arrived_ ? position - position_ : Vec3{};
@@ -26,4 +26,4 @@ Vec3 PassivityController::limit(const Vec3& position, const Vec3& force) noexcep
   return shown;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

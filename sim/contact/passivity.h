@@ -17,7 +17,7 @@
 
 #include "codec/base/geometry.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 /// Watches the energy at the port between device and environment.
 class PassivityObserver {
@@ -72,4 +72,4 @@ class PassivityController {
   double free_for_ = 0;  // [s]
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -8,7 +8,7 @@
 
 #include "sim/contact/mesh_proxy.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 /// A mesh that keeps its shape, ready to be touched.   pre  the mesh passed check()
 class TouchSurface {
@@ -55,4 +55,4 @@ class SurfaceProxy {
   ProxyTouch touch_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::sim {
 
 Surroundings::Plane Surroundings::plane_before(const Vec3& n, const Corners& v) noexcept {
   return {n.x, n.y, n.z, std::max({dot(n, v[0]), dot(n, v[1]), dot(n, v[2])})};
@@ -121,4 +121,4 @@ std::optional<SurfaceHit> Surroundings::sweep(const Sweep& sphere, std::span<con
   return tree_.sweep(sphere, vertices_, left_out);
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

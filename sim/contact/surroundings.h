@@ -17,7 +17,7 @@
 
 #include "sim/contact/aabb_tree.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 class Surroundings {
  public:
@@ -67,4 +67,4 @@ class Surroundings {
   std::array<Plane, kKnown> planes_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -13,7 +13,7 @@
 
 #include "codec/base/geometry.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 /// Corners of a triangle, in an order that whoever asks keeps the same: results have the same bits only for the same order.
 using Corners = std::array<Vec3, 3>;
@@ -172,4 +172,4 @@ inline std::optional<TriangleTouch> sphere_hits_triangle(const Sweep& sweep, con
   return sphere_hits_triangle(sweep, shape, limit, closest_on_triangle(sweep.from, shape));
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -7,7 +7,7 @@
 #include <ctime>
 #include <utility>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr std::array kMethods{Method::velocity_verlet, Method::backward_euler, Method::newmark, Method::tr_bdf2,
@@ -55,7 +55,7 @@ DeformableBody::DeformableBody(FemModel model, const SceneDeformable& object, co
       weight_(model_.size()),
       pushed_(Eigen::VectorXd::Zero(model_.size())),
       load_(model_.size()),
-      surface_(tactus::surface(object.mesh)),
+      surface_(tactus::sim::surface(object.mesh)),
       topology_(surface_.mesh),
       inside_(surface_.mesh, topology_),
       vertices_(surface_.mesh.vertices),
@@ -136,4 +136,4 @@ void DeformableBody::show() noexcept {
   reach_ = 0;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -19,7 +19,7 @@
 #include "sim/fem/error_estimate.h"
 #include "sim/fem/integrator.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 /// What a scene says about an object, as finite elements take it.
 FemOptions fem_options(const SceneDeformable& object);
@@ -88,4 +88,4 @@ class DeformableBody {
   bool pushed_any_ = false;    // in this period
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

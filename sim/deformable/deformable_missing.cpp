@@ -3,7 +3,7 @@
 #include "sim/deformable/deformable_world.h"
 #include "sim/deformable/stiffness_map.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 Result<std::unique_ptr<DeformableWorld>> make_deformable_world(const Scene&, const DeformableOptions&) {
   return fail(Errc::unsupported, "R-SIM-2");
@@ -13,4 +13,4 @@ Result<StiffnessMap> stiffness_map(const SceneDeformable&) { return fail(Errc::u
 
 Result<double> critical_stiffness(const SceneDeformable&, const MeshContact&) { return fail(Errc::unsupported, "R-SIM-2"); }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -9,7 +9,7 @@
 #include "sim/contact/mesh_proxy.h"
 #include "sim/deformable/deformable_body.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr unsigned kRings = 3;  // of the client's cut-out (thesis 3.3.1.1)
@@ -229,4 +229,4 @@ Result<std::unique_ptr<DeformableWorld>> make_deformable_world(const Scene& scen
   return world;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

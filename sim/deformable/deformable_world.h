@@ -21,7 +21,7 @@
 #include "sim/rigid/rigid_world.h"
 #include "sim/scene/scene.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 /// What a user's probe feels of the deformables. It touches one at a time: the first one met, until it lets go.
 struct DeformableTouch {
@@ -95,4 +95,4 @@ struct DeformableOptions {
 /// err  unsupported R-SIM-2: this build has no finite elements; R-TET-n, R-FEM-1..4, 7, 8: what the scene asks for cannot be
 Result<std::unique_ptr<DeformableWorld>> make_deformable_world(const Scene& scene, const DeformableOptions& options);
 
-}  // namespace tactus
+}  // namespace tactus::sim

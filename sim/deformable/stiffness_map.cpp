@@ -10,7 +10,7 @@
 #include "sim/fem/linear_solver.h"
 #include "sim/msd/msd.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr double kSingular = 1e-12;  // smallest pivot over largest; a body that can move without force has one of about 1e-16
@@ -68,7 +68,7 @@ Result<StiffnessMap> stiffness_map(const SceneDeformable& object) {
   auto made = FemModel::create(object.mesh, fem_options(object));
   if (!made) return tl::unexpected(made.error().error);
   FemModel& model = *made;
-  TetSurface surface = tactus::surface(model.mesh());
+  TetSurface surface = tactus::sim::surface(model.mesh());
   StiffnessMap map{std::move(surface.mesh), {}};
   map.stiffness.assign(map.surface.vertices.size(), std::numeric_limits<double>::infinity());
   if (model.free_dofs().empty()) return map;
@@ -94,7 +94,7 @@ Result<StiffnessMap> stiffness_map(const SceneDeformable& object) {
 Result<double> critical_stiffness(const SceneDeformable& object, const MeshContact& contact) {
   auto model = FemModel::create(object.mesh, fem_options(object));
   if (!model) return tl::unexpected(model.error().error);
-  const TetSurface surface = tactus::surface(model->mesh());
+  const TetSurface surface = tactus::sim::surface(model->mesh());
   double inverse = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t vertex = surface.vertex[surface.mesh.triangles[contact.triangle][k]];
@@ -107,4 +107,4 @@ Result<double> critical_stiffness(const SceneDeformable& object, const MeshConta
   return critical_stiffness(alike, object.rate * kTick);
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

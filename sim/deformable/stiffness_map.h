@@ -15,7 +15,7 @@
 #include "codec/trace/frame.h"
 #include "sim/scene/scene.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 struct StiffnessMap {
   TriMesh surface;                ///< at rest
@@ -37,4 +37,4 @@ Result<StiffnessMap> stiffness_map(const SceneDeformable& object);
 /// err  R-FEM-1..4, R-TET-n: the object cannot be; unsupported R-SIM-2: this build has no finite elements
 Result<double> critical_stiffness(const SceneDeformable& object, const MeshContact& contact);
 
-}  // namespace tactus
+}  // namespace tactus::sim

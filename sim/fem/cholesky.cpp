@@ -9,7 +9,7 @@ extern "C" {  // which its header does not say itself
 #include <algorithm>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 int size_of(const std::vector<int>& rows) { return static_cast<int>(rows.size()); }
@@ -71,4 +71,4 @@ void LdlCholesky::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) noexcept {
 
 std::int64_t LdlCholesky::fill() const noexcept { return static_cast<std::int64_t>(L_.size() + D_.size()); }
 
-}  // namespace tactus
+}  // namespace tactus::sim

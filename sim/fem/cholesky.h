@@ -16,7 +16,7 @@
 #include "sim/fem/cholesky_cholmod.h"
 #endif
 
-namespace tactus {
+namespace tactus::sim {
 
 class LdlCholesky {
  public:
@@ -47,4 +47,4 @@ using Cholesky = CholmodCholesky;
 using Cholesky = LdlCholesky;
 #endif
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -8,7 +8,7 @@
 #include <new>
 #include <vector>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr std::size_t kTogether = 4;  ///< right sides that CHOLMOD makes room for
@@ -127,4 +127,4 @@ std::int64_t CholmodCholesky::fill() const noexcept {
   return sum;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

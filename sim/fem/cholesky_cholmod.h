@@ -12,7 +12,7 @@
 
 #include "sim/fem/model.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 class CholmodCholesky {
  public:
@@ -32,4 +32,4 @@ class CholmodCholesky {
   std::unique_ptr<Impl> impl_;  // none: nothing to solve for
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -6,7 +6,7 @@
 
 #include "sim/fem/integrator.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr double kExplicitLimit = 1.8;  ///< of 2: deformation and contact stiffen what was measured at rest
@@ -114,4 +114,4 @@ std::string divergence_remedy(const FemModel& model, const IntegratorOptions& op
                                                  : ", backward-euler");
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace tactus {
+namespace tactus::sim {
 
 bool supported(InstructionSet set) noexcept {
 #ifdef TACTUS_FEM_X86
@@ -117,4 +117,4 @@ std::array<std::uint32_t, 4> Elements::corners(std::size_t element) const noexce
   return {corner[0][lane] / 4 * 3, corner[1][lane] / 4 * 3, corner[2][lane] / 4 * 3, corner[3][lane] / 4 * 3};
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

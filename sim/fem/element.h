@@ -23,7 +23,7 @@
 #include "sim/fem/rotation.h"
 #include "sim/mesh/tet_mesh.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 struct Lame {
   double mu = 0, lambda = 0;  ///< [N/m^2]
@@ -77,4 +77,4 @@ class Elements {
   ElementKernels kernels_ = kernels(widest());
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

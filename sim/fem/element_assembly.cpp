@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 using Eigen::Matrix3d;
@@ -150,4 +150,4 @@ void Assembly::add(std::size_t element, const ElementMatrix& matrix, SparseMatri
   }
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

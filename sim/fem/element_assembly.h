@@ -9,7 +9,7 @@
 #include "sim/fem/element.h"
 #include "sim/fem/model.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 /// Sixteen 3 x 3 blocks, (a, b) at 4 a + b, rows first.
 using ElementMatrix = std::array<Matrix3, 16>;
@@ -43,4 +43,4 @@ class Assembly {
   std::vector<std::array<Slot, 16>> slots_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

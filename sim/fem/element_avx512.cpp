@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/fem/element_kernel.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 ElementKernels avx512_kernels() noexcept { return Kernel<8>::kKernels; }
 
-}  // namespace tactus
+}  // namespace tactus::sim

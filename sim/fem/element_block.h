@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace tactus {
+namespace tactus::sim {
 
 inline constexpr std::size_t kBlockSize = 16;  ///< elements: lanes of two of the widest vectors there are
 
@@ -63,4 +63,4 @@ ElementKernels avx2_kernels() noexcept;
 ElementKernels avx512_kernels() noexcept;
 #endif
 
-}  // namespace tactus
+}  // namespace tactus::sim

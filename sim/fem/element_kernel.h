@@ -7,7 +7,7 @@
 #include "sim/fem/element_vectors.h"
 #include "sim/fem/rotation.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 template <std::size_t W>
@@ -296,4 +296,4 @@ struct Kernel {
 };
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

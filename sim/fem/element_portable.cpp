@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/fem/element_kernel.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 ElementKernels portable_kernels() noexcept { return Kernel<2>::kKernels; }
 
-}  // namespace tactus
+}  // namespace tactus::sim

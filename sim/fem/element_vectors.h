@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 using Double2 [[gnu::vector_size(16)]] = double;
@@ -172,4 +172,4 @@ struct Pair {
 };
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

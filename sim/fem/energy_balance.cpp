@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr int kEvery = 16;
@@ -48,4 +48,4 @@ EnergyBalance::Result EnergyBalance::result() noexcept {
   return {moved_, energy - work_ + damped_};
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -8,7 +8,7 @@
 
 #include "sim/fem/integrator.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 class EnergyBalance {
  public:
@@ -37,4 +37,4 @@ class EnergyBalance {
   int steps_ = 0;
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

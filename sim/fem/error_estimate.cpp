@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr std::size_t kMost = 4096;  ///< samples; when there are as many, every other one goes and looks become half as frequent
@@ -70,4 +70,4 @@ ErrorEstimate::Result ErrorEstimate::result() const {
   return {sorted[sorted.size() / 2], sorted.back(), static_cast<std::int64_t>(sorted.size())};
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

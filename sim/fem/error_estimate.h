@@ -8,7 +8,7 @@
 
 #include "sim/fem/integrator.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 class ErrorEstimate {
  public:
@@ -41,4 +41,4 @@ class ErrorEstimate {
   std::vector<double> errors_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

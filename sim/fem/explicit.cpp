@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace tactus {
+namespace tactus::sim {
 
 VelocityVerlet::VelocityVerlet(FemModel& model, const IntegratorOptions& options)
     : Guarded(model, options),
@@ -60,4 +60,4 @@ tl::expected<StepReport, FemError> VelocityVerlet::advance(const Eigen::VectorXd
   return StepReport{};
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -11,7 +11,7 @@
 #include "sim/fem/cholesky.h"
 #include "sim/fem/guarded.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 class VelocityVerlet final : public Guarded {
  public:
@@ -32,4 +32,4 @@ class VelocityVerlet final : public Guarded {
   Eigen::VectorXd free_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -9,7 +9,7 @@
 
 #include "sim/random.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 struct Bound {
@@ -59,4 +59,4 @@ double largest_frequency(const SparseMatrix& stiffness, const SparseMatrix& mass
   return std::sqrt(std::max(bound.value + bound.residual, 0.0));
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

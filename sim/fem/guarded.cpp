@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr std::int64_t kEnergyEvery = 64;  ///< steps
@@ -130,4 +130,4 @@ FemError Guarded::divergence() const {
   return {{Errc::invalid_argument, "R-FEM-6"}, steps_, element, divergence_remedy(model_, options_)};
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

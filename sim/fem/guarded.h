@@ -4,7 +4,7 @@
 #include "sim/fem/element_block.h"
 #include "sim/fem/integrator.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 /// What all integrators have in common: input is checked, and no diverged state leaves a step (integrator.h).
 class Guarded : public Integrator {
@@ -47,4 +47,4 @@ class Guarded : public Integrator {
   ElementKernels kernels_ = kernels(widest());
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

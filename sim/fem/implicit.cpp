@@ -4,7 +4,7 @@
 #include <numbers>
 #include <utility>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr double kGamma = 2 - std::numbers::sqrt2;  ///< share of the trapezoidal stage: both stages have the same c
@@ -115,4 +115,4 @@ tl::expected<StepReport, FemError> Implicit::tr_bdf2() {
   return second ? *report + *second : second;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -8,7 +8,7 @@
 #include "sim/fem/guarded.h"
 #include "sim/fem/newton.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 enum class Scheme : std::uint8_t { backward_euler, newmark, tr_bdf2 };
 
@@ -36,4 +36,4 @@ class Implicit final : public Guarded {
   Eigen::VectorXd start_u_, start_v_;    // of the step
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

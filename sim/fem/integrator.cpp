@@ -7,7 +7,7 @@
 #include "sim/fem/modal.h"
 #include "sim/fem/projective.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr int kMostSubsteps = 1000;
@@ -92,4 +92,4 @@ tl::expected<std::unique_ptr<Integrator>, FemError> make_integrator(FemModel& mo
   return std::make_unique<Implicit>(model, options, stages, std::move(direction));
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -36,7 +36,7 @@
 
 #include "sim/fem/model.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 enum class Method : std::uint8_t { velocity_verlet, backward_euler, newmark, tr_bdf2, modal, projective };
 enum class LinearSolver : std::uint8_t { conjugate_gradients, cholesky, prefactored };
@@ -104,4 +104,4 @@ Choice choose(const FemModel& model, double step);
 /// What would help against a divergence, with the numbers of this object.
 std::string divergence_remedy(const FemModel& model, const IntegratorOptions& options);
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 SparseMatrix stiffness_at_rest(FemModel& model) {
@@ -118,4 +118,4 @@ tl::expected<int, FemError> NewtonDirection::find(StageSystem& system, const Sta
   return iterations;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -5,7 +5,7 @@
 #include "sim/fem/cholesky.h"
 #include "sim/fem/newton.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 /// mass M + stiffness K(u) in one pattern.
 class SystemMatrix {
@@ -60,4 +60,4 @@ class NewtonDirection final : public Direction {
 
 FemError not_positive_definite();
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -7,7 +7,7 @@
 
 #include "sim/fem/linear_solver.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 /// exp of the step's matrix, by scaling and squaring of its Taylor series; lambda and damping of any size, zero and critical too.
@@ -84,4 +84,4 @@ tl::expected<StepReport, FemError> Modal::advance(const Eigen::VectorXd& f, cons
   return StepReport{};
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

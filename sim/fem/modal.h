@@ -9,7 +9,7 @@
 #include "sim/fem/guarded.h"
 #include "sim/slowest_modes.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 /// Of the free degrees of freedom, K at rest.   pre  1 <= count <= free degrees of freedom.   err  R-FEM-7
 /// time 0.04 s for 50 modes of the membrane (714 vertices)
@@ -32,4 +32,4 @@ class Modal final : public Guarded {
   Eigen::VectorXd q_, rate_, force_, free_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -10,7 +10,7 @@
 #include "sim/fem/element_assembly.h"
 #include "sim/fem/frequency.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 using Failure = tl::unexpected<FemError>;
@@ -35,7 +35,7 @@ bool valid(const Material& m) {
 bool valid_damping(double d) { return d >= 0 && std::isfinite(d); }
 
 tl::expected<void, FemError> check(const TetMesh& mesh, const FemOptions& options) {
-  if (const auto checked = tactus::check(mesh); !checked) return Failure(from_mesh(checked.error()));
+  if (const auto checked = tactus::sim::check(mesh); !checked) return Failure(from_mesh(checked.error()));
   if (options.materials.size() != 1 && options.materials.size() != mesh.tets.size())
     return refuse("R-FEM-2", -1, "give one material for all tetrahedra or one for each");
   for (std::size_t i = 0; i < options.materials.size(); ++i) {
@@ -180,7 +180,7 @@ void FemModel::tangent(const Eigen::VectorXd& u, SparseMatrix& matrix) {
   impl_->assembly.prepare(matrix);
   impl_->elements.turn(u.data());
   for (std::size_t e = 0; e < impl_->elements.size(); ++e)
-    impl_->assembly.add(e, tactus::tangent(impl_->elements, e, u.data()), matrix);
+    impl_->assembly.add(e, tactus::sim::tangent(impl_->elements, e, u.data()), matrix);
 }
 
 double FemModel::largest_frequency() const {
@@ -188,7 +188,7 @@ double FemModel::largest_frequency() const {
   impl_->assembly.prepare(matrix);
   for (std::size_t e = 0; e < impl_->elements.size(); ++e)
     impl_->assembly.add(e, rotated_stiffness(impl_->elements, e, false), matrix);
-  return tactus::largest_frequency(matrix, impl_->mass);
+  return tactus::sim::largest_frequency(matrix, impl_->mass);
 }
 
 std::int64_t FemModel::broken_element(const Eigen::VectorXd& u) const noexcept {
@@ -219,4 +219,4 @@ void add_force(std::span<const std::uint32_t> corners, std::span<const double> w
     f.segment<3>(3 * static_cast<Eigen::Index>(corners[i])) += weights[i] * Eigen::Vector3d(force.x, force.y, force.z);
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

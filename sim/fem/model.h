@@ -39,7 +39,7 @@
 
 #include "sim/mesh/tet_mesh.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 struct Material {
   double young = 1e4;     ///< E [N/m^2]
@@ -126,4 +126,4 @@ class FemModel {
 void add_force(std::span<const std::uint32_t> corners, std::span<const double> weights, const Vec3& force,
                Eigen::VectorXd& f) noexcept;
 
-}  // namespace tactus
+}  // namespace tactus::sim

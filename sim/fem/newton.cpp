@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr double kAge = 0.8;        ///< exponent of a remembered shrinkage from use to use
@@ -129,4 +129,4 @@ bool Newton::search(const Stage& stage, double decrease, Eigen::VectorXd& u) {
   }
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -13,7 +13,7 @@
 
 #include "sim/fem/integrator.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 struct Stage {
   double c = 0;        ///< [s]
@@ -92,4 +92,4 @@ class Newton {
   Eigen::VectorXd r_, next_r_, d_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -8,7 +8,7 @@
 
 #include "sim/fem/linear_solver.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr std::size_t kShare = 4;
@@ -159,4 +159,4 @@ void PrefactoredDirection::forget() {
   for (Pair& pair : pairs_) pair.inverse = 0;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

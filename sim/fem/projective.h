@@ -15,7 +15,7 @@
 #include "sim/fem/cholesky.h"
 #include "sim/fem/newton.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 /// How each vertex's surroundings are turned against the rest shape.
 class VertexRotations {
@@ -74,4 +74,4 @@ class PrefactoredDirection final : public Direction {
   Eigen::VectorXd turned_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 struct Eigen4 {
@@ -110,4 +110,4 @@ Matrix3 to_matrix(const Quat& q) noexcept {
   return {{{1 - (yy + zz), xy - wz, xz + wy}, {xy + wz, 1 - (xx + zz), yz - wx}, {xz - wy, yz + wx, 1 - (xx + yy)}}};
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

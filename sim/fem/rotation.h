@@ -4,7 +4,7 @@
 
 #include "codec/base/geometry.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 struct Matrix3 {
   double m[3][3] = {};  ///< rows
@@ -21,4 +21,4 @@ Quat nearest_rotation(const Matrix3& f, const Quat& start) noexcept;
 /// R(q) of a unit quaternion.
 Matrix3 to_matrix(const Quat& q) noexcept;
 
-}  // namespace tactus
+}  // namespace tactus::sim

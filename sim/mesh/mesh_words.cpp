@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr std::string_view kBlank = " \t\r\f\v";
@@ -64,4 +64,4 @@ tl::unexpected<MeshFileError> MeshWords::broken(Errc code, const char* rule, std
       MeshFileError{fail(code, rule).value(), std::string(file_), number_, std::string(word.substr(0, kLongestQuote))});
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

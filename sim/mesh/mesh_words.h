@@ -9,7 +9,7 @@
 
 #include "sim/mesh/tet_files.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 /// Make an error of a reader an error of the caller.
 #define TACTUS_MESH_CHECK(expr)                                                                 \
@@ -56,4 +56,4 @@ class MeshWords {
   Comments comments_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

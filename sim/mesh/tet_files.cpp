@@ -11,7 +11,7 @@
 #include "codec/base/shown.h"
 #include "sim/mesh/mesh_words.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 using Read = tl::expected<void, MeshFileError>;
@@ -253,4 +253,4 @@ void write_smesh(std::ostream& out, const TriMesh& mesh) {
   out << text << "0\n0\n";
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -22,7 +22,7 @@
 
 #include "sim/mesh/tet_mesh.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 struct MeshFileError {
   Error error;
@@ -58,4 +58,4 @@ void write_msh(std::ostream& out, const TetMesh& mesh);  ///< Gmsh 4.1 ASCII, on
 void write_poly(std::ostream& out, const TriMesh& mesh);
 void write_smesh(std::ostream& out, const TriMesh& mesh);
 
-}  // namespace tactus
+}  // namespace tactus::sim

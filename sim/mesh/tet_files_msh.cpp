@@ -7,7 +7,7 @@
 #include "sim/mesh/mesh_words.h"
 #include "sim/mesh/tet_files.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 using Read = tl::expected<void, MeshFileError>;
@@ -238,4 +238,4 @@ class MshReader {
 
 tl::expected<TetFile, MeshFileError> parse_msh(std::string_view text) { return MshReader(text).read(); }
 
-}  // namespace tactus
+}  // namespace tactus::sim

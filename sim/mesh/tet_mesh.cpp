@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 using Face = std::array<std::uint32_t, 3>;
@@ -217,4 +217,4 @@ TetMesh refined(const TetMesh& mesh, unsigned times) {
   return out;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -19,7 +19,7 @@
 #include "codec/base/geometry.h"
 #include "codec/base/tri_mesh.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 /// Corners a b c d with (b-a) x (c-a) . (d-a) > 0.
 using Tet = std::array<std::uint32_t, 4>;
@@ -61,4 +61,4 @@ TetMesh make_slab(std::uint32_t nx, std::uint32_t ny, std::uint32_t nz, double c
 /// pre  the mesh passed check().   time O(n log n) of the result
 TetMesh refined(const TetMesh& mesh, unsigned times);
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 /// Outward normals of the faces opposite to corners a, b, c, d; as long as twice the face's area.
@@ -44,4 +44,4 @@ TetQuality quality(const TetMesh& mesh) {
   return out;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

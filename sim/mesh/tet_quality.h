@@ -4,7 +4,7 @@
 
 #include "sim/mesh/tet_mesh.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 struct TetQuality {
   /// A figure and the tetrahedron it belongs to, the first of equals.
@@ -22,4 +22,4 @@ struct TetQuality {
 /// pre  the mesh passed check() and is not empty.   time O(n)
 TetQuality quality(const TetMesh& mesh);
 
-}  // namespace tactus
+}  // namespace tactus::sim

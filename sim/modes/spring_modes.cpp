@@ -9,7 +9,7 @@
 
 #include "sim/slowest_modes.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 using Matrix = SymmetricMatrix;
@@ -108,4 +108,4 @@ Result<std::vector<double>> spring_modes(const TriMesh& rest, std::span<const st
   return out;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

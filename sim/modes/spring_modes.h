@@ -15,7 +15,7 @@
 #include "codec/base/result.h"
 #include "codec/base/tri_mesh.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 /// out  modes x vertices x 3, each of unit length and orthogonal to the others, slowest first; 0 at fixed vertices.
 ///      Equal inputs give equal bits on one machine.
@@ -24,4 +24,4 @@ namespace tactus {
 /// err  invalid_argument R-API-9: no modes, or not less than free components; internal R-SIM-5: no convergence
 Result<std::vector<double>> spring_modes(const TriMesh& rest, std::span<const std::uint32_t> fixed, std::size_t modes);
 
-}  // namespace tactus
+}  // namespace tactus::sim

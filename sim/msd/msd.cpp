@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace tactus {
+namespace tactus::sim {
 
 MsdModel::MsdModel(const MsdObject& object, double period) noexcept
     : now_(object.mass / (period * period) + object.damping / period + object.stiffness),
@@ -86,4 +86,4 @@ void MsdLoop::step(std::span<const double> device) noexcept {
   end_tick();
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

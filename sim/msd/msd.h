@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-namespace tactus {
+namespace tactus::sim {
 
 struct MsdObject {
   double stiffness = 0;  ///< k_o [N/m]
@@ -133,4 +133,4 @@ class MsdLoop {
   std::uint32_t phase_ = 0;    // ticks of this period that are done
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr double kFarthest = 1e4;  // [m]
@@ -107,4 +107,4 @@ tl::expected<void, StepError> MsdWorld::step() {
   return {};
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

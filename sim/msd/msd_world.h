@@ -18,7 +18,7 @@
 #include "sim/rigid/rigid_world.h"
 #include "sim/scene/scene.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 class MsdWorld {
  public:
@@ -57,4 +57,4 @@ class MsdWorld {
   std::int64_t tick_ = 0;
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

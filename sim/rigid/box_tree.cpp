@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace tactus {
+namespace tactus::sim {
 
 void BoxTree::reserve(std::size_t count) {
   items_.reserve(count);
@@ -39,4 +39,4 @@ void BoxTree::split(std::uint32_t first, std::uint32_t last) {
   nodes_[node].skip = nodes_.size();
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

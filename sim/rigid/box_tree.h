@@ -7,7 +7,7 @@
 
 #include "codec/base/geometry.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 /// An axis-aligned box.
 struct Extent {
@@ -58,4 +58,4 @@ class BoxTree {
   std::vector<Node> nodes_;  // in the order of a walk that goes down before it goes on
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 double distance2(const dContact& a, const dContact& b) noexcept {
@@ -48,4 +48,4 @@ int keep_outermost(std::span<dContact> contacts, int most) noexcept {
   return static_cast<int>(count);
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

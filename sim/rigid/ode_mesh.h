@@ -13,7 +13,7 @@
 
 #include "codec/base/tri_mesh.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 struct TriMeshDataEnd {
   void operator()(dTriMeshDataID data) const noexcept { dGeomTriMeshDataDestroy(data); }
@@ -31,4 +31,4 @@ dMass mass_of_mesh(dGeomID geom, double mass);
 /// out  how many: at most `most`.   time O(contacts * most)
 int keep_outermost(std::span<dContact> contacts, int most) noexcept;
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/rigid/rest_watch.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 void RestWatch::add(const Pose& pose, double reach) {
   objects_.push_back({.before = pose, .reach = reach, .pile = objects_.size()});
@@ -34,4 +34,4 @@ void RestWatch::end_period(std::span<const Pose> poses) noexcept {
   }
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

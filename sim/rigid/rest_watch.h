@@ -12,7 +12,7 @@
 
 #include "codec/base/geometry.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 inline constexpr std::int64_t kRestTicks = 256;
 inline constexpr double kRestDistance = 20e-6;  ///< [m]
@@ -45,4 +45,4 @@ class RestWatch {
   std::vector<Watched> objects_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -5,7 +5,7 @@
 
 #include "sim/rigid/rigid_parts.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 using namespace rigid;
 
@@ -148,4 +148,4 @@ void RigidWorld::Impl::step_groups() {
   if (are_several) switch_all(dBodyEnable);
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

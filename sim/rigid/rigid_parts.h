@@ -14,7 +14,7 @@
 #include "sim/rigid/rest_watch.h"
 #include "sim/rigid/rigid_world.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace rigid {
 
 #ifndef dDOUBLE
@@ -139,4 +139,4 @@ struct RigidWorld::Impl {
   void wake(std::uint32_t number);
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -9,7 +9,7 @@
 
 #include "sim/rigid/rigid_parts.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 using namespace rigid;
@@ -277,4 +277,4 @@ RigidSample RigidWorld::sample(std::uint32_t object) const noexcept { return imp
 
 std::int64_t RigidWorld::tick() const noexcept { return impl_->tick; }
 
-}  // namespace tactus
+}  // namespace tactus::sim

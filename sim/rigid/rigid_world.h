@@ -23,7 +23,7 @@
 #include "codec/rigid/rigid.h"
 #include "sim/scene/scene.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 /// A simulation that cannot go on: which object broke which rule at which tick.
 struct StepError {
@@ -66,4 +66,4 @@ class RigidWorld {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -3,7 +3,7 @@
 
 #include "sim/mesh/tet_files.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr double kFarthest = 100;  // [m] as for other objects
@@ -12,7 +12,7 @@ constexpr double kTetBytes = 3000;            // as measured, without a factoris
 constexpr std::uint64_t kMostTets = 170'000;  // of a scene
 constexpr double kRounding = 1e-9;            // of the mesh's size: what a box or corner may miss a vertex by
 
-// As tactus::name(Method) and name(LinearSolver) spell them; modal is left out, because contact excites what its modes lack.
+// As tactus::sim::name(Method) and name(LinearSolver) spell them; modal is left out, because contact excites what its modes lack.
 constexpr std::array<std::string_view, 6> kMethods{"auto",    "velocity-verlet", "backward-euler",
                                                    "newmark", "tr-bdf2",         "projective"};
 constexpr std::array<std::string_view, 4> kSolvers{"auto", "cg", "cholesky", "prefactored"};
@@ -188,4 +188,4 @@ SceneDeformable read_deformable(TomlReader& in, const toml::table& table, const 
   return body;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

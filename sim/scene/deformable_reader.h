@@ -6,7 +6,7 @@
 
 #include "sim/scene/toml_reader.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 /// in  folder  mesh files are named relative to it
 ///     touch   stiffness and friction of deformables that name none
@@ -16,4 +16,4 @@ SceneDeformable read_deformable(TomlReader& in, const toml::table& table, const 
 /// Whether there is memory for so many tetrahedra in one scene; if not, the reader fails with the estimate.   err  R-SCN-6
 bool affords_tets(TomlReader& in, const toml::node& node, const std::string& key, std::uint64_t tets);
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -4,7 +4,7 @@
 #include "sim/surface/solid.h"
 #include "sim/surface/surface_file.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 tl::expected<ObjectSurface, ObjectSurfaceError> read_object_surface(const std::string& file) {
   const auto refuse = [&](SurfaceError error) {
@@ -19,4 +19,4 @@ tl::expected<ObjectSurface, ObjectSurfaceError> read_object_surface(const std::s
   return ObjectSurface{std::move(read->mesh), solid->centroid};
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -7,7 +7,7 @@
 #include "codec/base/result.h"
 #include "codec/base/tri_mesh.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 /// A closed surface and its centre of mass at constant density [m].
 struct ObjectSurface {
@@ -24,4 +24,4 @@ struct ObjectSurfaceError {
 /// err  R-SRF-n, R-MSH-n, R-TGN-2, 4, 8; unsupported: this build reads no surface files
 tl::expected<ObjectSurface, ObjectSurfaceError> read_object_surface(const std::string& file);
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -2,7 +2,7 @@
 // In place of object_surface.cpp when the component SURFACE is left out.
 #include "sim/scene/object_surface.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 tl::expected<ObjectSurface, ObjectSurfaceError> read_object_surface(const std::string& file) {
   return tl::unexpected(ObjectSurfaceError{
@@ -10,4 +10,4 @@ tl::expected<ObjectSurface, ObjectSurfaceError> read_object_surface(const std::s
                                 "with TACTUS_WITH_SURFACE=ON, or give the object a size"});
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -12,7 +12,7 @@
 #include "sim/scene/object_surface.h"
 #include "sim/scene/toml_reader.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr std::size_t kMostSceneBytes = std::size_t{4} << 20;
@@ -291,4 +291,4 @@ Result<StreamHeader> stream_header(const Scene& scene) {
   return header;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -16,7 +16,7 @@
 #include "sim/mesh/tet_mesh.h"
 #include "sim/msd/msd.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 inline constexpr std::uint32_t kTickRate = 1000;  ///< [Hz] haptic rate of every scene
 inline constexpr double kTick = 1e-3;             ///< [s]
@@ -153,4 +153,4 @@ tl::expected<std::string, SceneError> find_scene(const std::string& name);
 /// The stream that carries this scene: its objects in order, at rest in their first poses.   err  invalid_argument R-API-2
 Result<StreamHeader> stream_header(const Scene& scene);
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -20,7 +20,7 @@
 #include "sim/scene/scene.h"
 #include "sim/scene/toml_text.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 struct Range {
   double low, high;
@@ -200,4 +200,4 @@ class TomlReader {
   std::optional<SceneError> error_;
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 /// Bytes of the string at the front of `text`: to the end of its line at most, but for those in three quotes.
@@ -64,4 +64,4 @@ std::optional<std::uint32_t> too_nested_line(std::string_view text) noexcept {
   return std::nullopt;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

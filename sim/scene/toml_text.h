@@ -8,7 +8,7 @@
 #include <optional>
 #include <string_view>
 
-namespace tactus {
+namespace tactus::sim {
 
 inline constexpr std::size_t kMostTomlNesting = 32;  ///< parts of one dotted key; brackets within brackets
 
@@ -16,4 +16,4 @@ inline constexpr std::size_t kMostTomlNesting = 32;  ///< parts of one dotted ke
 /// writes them; of what is no TOML at all, up to its first mistake.   time O(size), no allocation
 std::optional<std::uint32_t> too_nested_line(std::string_view text) noexcept;
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -7,7 +7,7 @@
 
 #include "sim/random.h"
 
-namespace tactus::study {
+namespace tactus::sim::study {
 namespace {
 
 constexpr double kCell = 0.01;       // [m]
@@ -294,4 +294,4 @@ double largest_explicit_step(FemCase fem_case) {
   return bisect(high / 2, high, 1e-3, holds);
 }
 
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

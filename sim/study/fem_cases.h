@@ -10,7 +10,7 @@
 #include "sim/fem/integrator.h"
 #include "sim/study/study.h"
 
-namespace tactus::study {
+namespace tactus::sim::study {
 
 struct FemCase {
   std::string name;
@@ -54,4 +54,4 @@ FemCase shaken_slab(Extent extent, const Material& material, double amplitude);
 /// pre  FemCase::options has no damping
 double largest_explicit_step(FemCase fem_case);
 
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

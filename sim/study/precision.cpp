@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-namespace tactus::study {
+namespace tactus::sim::study {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -283,4 +283,4 @@ PrecisionPoint measure(const PrecisionScene& scene, const PrecisionMethod& metho
   return out;
 }
 
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

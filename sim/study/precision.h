@@ -18,7 +18,7 @@
 
 #include "sim/study/precision_scene.h"
 
-namespace tactus::study {
+namespace tactus::sim::study {
 
 /// Processor time of this thread [s]: other work on the machine does not count.
 double processor_seconds() noexcept;
@@ -83,4 +83,4 @@ struct Timing {
 PrecisionPoint measure(const PrecisionScene& scene, const PrecisionMethod& method, int steps_per_sample,
                        const Reference& reference, const Timing& timing);
 
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

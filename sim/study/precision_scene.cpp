@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace tactus::study {
+namespace tactus::sim::study {
 namespace {
 
 constexpr std::uint32_t kAcross = 16, kAlong = 20;  // cells of the membrane
@@ -138,4 +138,4 @@ std::vector<PrecisionMethod> precision_methods(Extent extent) {
   return methods;
 }
 
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

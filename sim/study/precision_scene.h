@@ -17,7 +17,7 @@
 #include "sim/fem/model.h"
 #include "sim/study/study.h"
 
-namespace tactus::study {
+namespace tactus::sim::study {
 
 /// Vertices that share a load, and their shares; the same shares average their displacement, so load and displacement do work on
 /// each other.
@@ -64,4 +64,4 @@ struct PrecisionMethod {
 };
 std::vector<PrecisionMethod> precision_methods(Extent extent);
 
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

@@ -9,7 +9,7 @@
 #include "sim/study/precision.h"
 #include "sim/study/quadratic_tets.h"
 
-namespace tactus::study {
+namespace tactus::sim::study {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -190,4 +190,4 @@ SpaceErrors space_errors(const std::vector<SpacePoint>& points) {
   return out;
 }
 
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

@@ -12,7 +12,7 @@
 
 #include "sim/study/precision_scene.h"
 
-namespace tactus::study {
+namespace tactus::sim::study {
 
 /// The object at refinement r with Poisson's ratio nu; nothing for an unknown name ("membrane" or "cantilever").
 std::optional<PrecisionScene> space_scene(std::string_view name, int refinement, double poisson);
@@ -66,4 +66,4 @@ struct SpaceErrors {
 /// pre  refinements 1, 2 and 4 come with quadratic elements
 SpaceErrors space_errors(const std::vector<SpacePoint>& points);
 
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

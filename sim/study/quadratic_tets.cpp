@@ -7,7 +7,7 @@
 #include <array>
 #include <utility>
 
-namespace tactus::study {
+namespace tactus::sim::study {
 namespace {
 
 constexpr int kNodes = 10;
@@ -186,4 +186,4 @@ tl::expected<double, FemError> quadratic_static_deflection(const PrecisionScene&
   return load.dot(u);
 }
 
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

@@ -5,7 +5,7 @@
 
 #include "sim/study/precision_scene.h"
 
-namespace tactus::study {
+namespace tactus::sim::study {
 
 /// The mesh of `scene` with a node in the middle of every edge; fixed where both ends are. The load is spread evenly over the surface
 /// triangles between the patch's vertices, the deflection averaged over them.
@@ -14,4 +14,4 @@ namespace tactus::study {
 /// err  R-FEM-7 when too little is fixed
 tl::expected<double, FemError> quadratic_static_deflection(const PrecisionScene& scene);
 
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

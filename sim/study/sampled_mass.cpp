@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace tactus::study {
+namespace tactus::sim::study {
 namespace {
 
 using Matrix = std::array<std::array<double, 3>, 3>;
@@ -59,4 +59,4 @@ void SampledMass::step(double force) noexcept {
   x_ = x;
 }
 
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

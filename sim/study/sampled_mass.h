@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace tactus::study {
+namespace tactus::sim::study {
 
 struct Impedance {
   double mass = 0, damping = 0, stiffness = 0;  ///< [kg], [N s/m], [N/m]
@@ -24,7 +24,8 @@ double largest_spring(const Transition& transition) noexcept;
 
 class SampledMass {
  public:
-  SampledMass(const Impedance& impedance, double period) noexcept : transition_(tactus::study::transition(impedance, period)) {}
+  SampledMass(const Impedance& impedance, double period) noexcept
+      : transition_(tactus::sim::study::transition(impedance, period)) {}
 
   void step(double force) noexcept;
   double position() const noexcept { return x_; }
@@ -36,4 +37,4 @@ class SampledMass {
   double x_ = 0, v_ = 0;
 };
 
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

@@ -6,7 +6,7 @@
 #include <complex>
 #include <vector>
 
-namespace tactus::study {
+namespace tactus::sim::study {
 namespace {
 
 constexpr double kPress = 1e-3;  // [m] step of every hand
@@ -67,4 +67,4 @@ double jury_limit(const ServerLoop& loop) noexcept {
   return std::min(other, all / (2 * newest - 1)) / loop.users;
 }
 
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

@@ -7,7 +7,7 @@
 #include "sim/msd/msd.h"
 #include "sim/study/study.h"
 
-namespace tactus::study {
+namespace tactus::sim::study {
 
 /// `users` hands that press with k_s each, the k-th one from the k-th second on.
 struct ServerLoop {
@@ -39,4 +39,4 @@ double spectral_radius(const ServerLoop& loop, double stiffness) noexcept;
 ///   min( (k_o + b_o/T_n) / (1-a),  N (k_o + 2 b_o/T_n + 4 m_o/T_n^2) )
 double jury_limit(const ServerLoop& loop) noexcept;
 
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

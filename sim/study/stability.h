@@ -11,11 +11,11 @@
 
 #include "sim/study/study.h"
 
-namespace tactus::study {
+namespace tactus::sim::study {
 
 Study study_jury(Extent extent, const Progress& progress);
 Study study_wall(Extent extent, const Progress& progress);
 Study study_client(Extent extent, const Progress& progress);
 Study study_rigid(Extent extent, const Progress& progress);
 
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

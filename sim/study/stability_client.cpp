@@ -9,7 +9,7 @@
 #include "sim/study/stability.h"
 #include "sim/user/user.h"
 
-namespace tactus::study {
+namespace tactus::sim::study {
 namespace {
 
 constexpr double kTick = 1e-3;  // [s] T_s
@@ -165,4 +165,4 @@ Study study_client(Extent, const Progress& progress) {
   return study;
 }
 
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

@@ -8,7 +8,7 @@
 
 #include "sim/study/fem_cases.h"
 
-namespace tactus::study {
+namespace tactus::sim::study {
 namespace {
 
 constexpr std::array kMethods{Method::velocity_verlet, Method::backward_euler, Method::newmark,
@@ -192,4 +192,4 @@ Study study_fem(Extent extent, const Progress& progress) {
   return study;
 }
 
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

@@ -3,9 +3,9 @@
 
 #include "sim/study/study.h"
 
-namespace tactus::study {
+namespace tactus::sim::study {
 
 /// Deformable objects: extremes for every method, the explicit limit against 2 / omega_max, a map over E and h.
 Study study_fem(Extent extent, const Progress& progress);
 
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

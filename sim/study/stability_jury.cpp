@@ -6,7 +6,7 @@
 #include "sim/study/server_loop.h"
 #include "sim/study/stability.h"
 
-namespace tactus::study {
+namespace tactus::sim::study {
 namespace {
 
 // Thesis figure 4.16.
@@ -153,4 +153,4 @@ Study study_jury(Extent extent, const Progress& progress) {
   return study;
 }
 
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

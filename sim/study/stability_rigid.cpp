@@ -11,7 +11,7 @@
 #include "sim/study/sampled_mass.h"
 #include "sim/study/stability.h"
 
-namespace tactus::study {
+namespace tactus::sim::study {
 namespace {
 
 constexpr double kGravity = 9.81, kFriction = 0.5;
@@ -295,4 +295,4 @@ Study study_rigid(Extent extent, const Progress& progress) {
   return study;
 }
 
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

@@ -6,7 +6,7 @@
 #include "sim/study/wall.h"
 #include "sim/user/user.h"
 
-namespace tactus::study {
+namespace tactus::sim::study {
 namespace {
 
 constexpr double kHaptic = 1e-3, kVisual = 1.0 / 60;  // [s]
@@ -130,4 +130,4 @@ Study study_wall(Extent extent, const Progress& progress) {
   return study;
 }
 
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

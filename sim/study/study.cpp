@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/study/study.h"
 
-namespace tactus::study {
+namespace tactus::sim::study {
 
 const char* name(Verdict verdict) noexcept {
   switch (verdict) {
@@ -15,4 +15,4 @@ const char* name(Verdict verdict) noexcept {
   return "";
 }
 
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace tactus::study {
+namespace tactus::sim::study {
 
 /// stable    what was disturbed comes to rest, or stays within what the disturbance explains
 /// limit     neither: it goes on within bounds
@@ -83,4 +83,4 @@ double bisect(double low, double high, double width, Holds&& holds) {
   return std::sqrt(low * high);
 }
 
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

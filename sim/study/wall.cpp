@@ -6,7 +6,7 @@
 
 #include "sim/contact/passivity.h"
 
-namespace tactus::study {
+namespace tactus::sim::study {
 namespace {
 
 constexpr double kStep = 1e-6;      // [m] per sample
@@ -54,4 +54,4 @@ bool is_stable(const Wall& wall, const Impedance& held, double period) {
   return late <= early;
 }
 
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

@@ -6,7 +6,7 @@
 
 #include "sim/study/sampled_mass.h"
 
-namespace tactus::study {
+namespace tactus::sim::study {
 
 struct Wall {
   double stiffness = 0;  ///< K [N/m]
@@ -26,4 +26,4 @@ bool is_passive(const Wall& wall, double device_damping, double period, Motion m
 /// A hand on the device, tied to the wall at 1 mm and let go: does it stay within bounds?
 bool is_stable(const Wall& wall, const Impedance& held, double period);
 
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

@@ -17,7 +17,7 @@
 #pragma GCC diagnostic pop
 #endif
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 namespace om = OpenMesh;
@@ -144,4 +144,4 @@ tl::expected<std::string, std::string> openmesh_write(const TriMesh& mesh, const
   }
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

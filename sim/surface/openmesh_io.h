@@ -7,7 +7,7 @@
 
 #include "codec/base/tri_mesh.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 using Polygon = std::vector<std::uint32_t>;
 
@@ -22,4 +22,4 @@ struct PolygonSoup {
 tl::expected<PolygonSoup, std::string> openmesh_read(const std::string& text, const std::string& format);
 tl::expected<std::string, std::string> openmesh_write(const TriMesh& mesh, const std::string& format);
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -9,7 +9,7 @@
 
 #include "sim/surface/surface_text.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr std::size_t kMaxFileBytes = std::size_t{512} << 20;
@@ -70,4 +70,4 @@ tl::expected<PolygonSoup, SurfaceError> read_polygons(const std::string& path) {
   return parse_polygons(*text, surface_format(path)).map_error(named);
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

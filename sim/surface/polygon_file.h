@@ -7,7 +7,7 @@
 #include "sim/surface/openmesh_io.h"
 #include "sim/surface/surface_file.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 /// An error of this library, with its place.
 tl::unexpected<SurfaceError> broken(Errc code, const char* rule, std::string detail, std::string file = {});
@@ -22,4 +22,4 @@ tl::expected<PolygonSoup, SurfaceError> read_polygons(const std::string& path);
 /// Triangles of it, if they make a mesh.   err  R-SRF-5, R-SRF-6, R-MSH-n
 tl::expected<SurfaceFile, SurfaceError> make_surface(PolygonSoup&& soup);
 
-}  // namespace tactus
+}  // namespace tactus::sim

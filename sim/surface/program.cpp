@@ -13,7 +13,7 @@
 #include <optional>
 #include <thread>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 namespace fs = std::filesystem;
@@ -94,4 +94,4 @@ tl::expected<ProgramResult, ProgramFailure> run_program(const std::vector<std::s
   return result;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

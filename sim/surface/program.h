@@ -8,7 +8,7 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-namespace tactus {
+namespace tactus::sim {
 
 /// A folder that nobody else can read, removed with all that is in it; an empty path when it cannot be made.
 class PrivateFolder {
@@ -35,4 +35,4 @@ tl::expected<ProgramResult, ProgramFailure> run_program(const std::vector<std::s
                                                         const std::filesystem::path& folder,
                                                         std::chrono::steady_clock::time_point deadline);
 
-}  // namespace tactus
+}  // namespace tactus::sim

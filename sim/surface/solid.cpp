@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/surface/solid.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 tl::unexpected<SurfaceError> broken(const char* rule, std::string place) {
@@ -35,4 +35,4 @@ tl::expected<Solid, SurfaceError> solid_within(const TriMesh& mesh) {
   return solid;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -4,7 +4,7 @@
 
 #include "sim/surface/surface_error.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 /// err  R-TGN-2: an edge of the triangle named has no neighbour; R-TGN-8: the vertex named belongs to no triangle
 /// pre  the mesh passed check()
@@ -19,4 +19,4 @@ struct Solid {
 /// err  R-TGN-4: it encloses no volume, or looks inward
 tl::expected<Solid, SurfaceError> solid_within(const TriMesh& mesh);
 
-}  // namespace tactus
+}  // namespace tactus::sim

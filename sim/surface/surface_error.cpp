@@ -7,7 +7,7 @@
 
 #include "codec/base/shown.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 struct RuleText {
@@ -56,4 +56,4 @@ std::string to_string(const SurfaceError& error) {
   return place + ": " + text->broken + "; " + text->remedy;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

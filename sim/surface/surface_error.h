@@ -5,7 +5,7 @@
 
 #include "codec/base/tri_mesh.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 /// Why a surface cannot be read, written or filled. Rules: R-SRF-n (surface_file.h), R-SEQ-n (surface_sequence.h), R-TGN-n (tetgen.h), R-MSH-n (tri_mesh.h).
 struct SurfaceError {
@@ -16,4 +16,4 @@ struct SurfaceError {
 };
 std::string to_string(const SurfaceError& error);  ///< "s.obj: 11 of 12 faces: R-SRF-5: ...; ..." with remedy
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -6,7 +6,7 @@
 
 #include "sim/surface/polygon_file.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr std::size_t kMaxCorners = 1024;  // trying each as the fan's first is quadratic
@@ -108,4 +108,4 @@ tl::expected<void, SurfaceError> write_surface(const std::string& path, const Tr
   return {};
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -21,7 +21,7 @@
 
 #include "sim/surface/surface_error.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 struct SurfaceFile {
   TriMesh mesh;                     ///< passed check(); STL: vertices with the same coordinates are one
@@ -38,4 +38,4 @@ tl::expected<SurfaceFile, SurfaceError> parse_surface(std::string_view text, std
 /// pre  the mesh passed check().   err  R-SRF-1, R-SRF-3
 tl::expected<void, SurfaceError> write_surface(const std::string& path, const TriMesh& mesh);
 
-}  // namespace tactus
+}  // namespace tactus::sim

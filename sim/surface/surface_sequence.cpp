@@ -10,7 +10,7 @@
 
 #include "sim/surface/polygon_file.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 namespace fs = std::filesystem;
@@ -116,4 +116,4 @@ tl::expected<std::vector<Vec3>, SurfaceError> SurfaceSequence::positions(std::si
   return out;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

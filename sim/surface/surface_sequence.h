@@ -16,7 +16,7 @@
 
 #include "sim/surface/surface_error.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 class SurfaceSequence {
  public:
@@ -39,4 +39,4 @@ class SurfaceSequence {
 /// Numbers in the names compare by value.
 bool natural_less(const std::string& a, const std::string& b) noexcept;
 
-}  // namespace tactus
+}  // namespace tactus::sim

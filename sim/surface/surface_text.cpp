@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 using Prepared = tl::expected<SurfaceText, SurfaceError>;
@@ -343,4 +343,4 @@ tl::expected<SurfaceText, SurfaceError> prepare_surface(std::string_view text, s
   return broken(Errc::unsupported, "R-SRF-3", format);
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -8,7 +8,7 @@
 
 #include "sim/surface/surface_error.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 struct SurfaceText {
   std::string text;       ///< what OpenMesh may read: comments, materials, textures and normals left out where they can be
@@ -20,4 +20,4 @@ struct SurfaceText {
 /// err  R-SRF-2, R-SRF-3, R-SRF-4
 tl::expected<SurfaceText, SurfaceError> prepare_surface(std::string_view text, std::string_view format);
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -17,7 +17,7 @@
 #include "sim/surface/program.h"
 #include "sim/surface/solid.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 namespace fs = std::filesystem;
@@ -177,4 +177,4 @@ tl::expected<TetMesh, SurfaceError> fill(const TriMesh& surface, const FillOptio
   return std::move(file->mesh);
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -18,7 +18,7 @@
 #include "sim/mesh/tet_mesh.h"
 #include "sim/surface/surface_error.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 /// What becomes of the surface's triangles.
 enum class Boundary {
@@ -38,4 +38,4 @@ struct FillOptions {
 /// err  R-TGN-1..9, R-MSH-1..7
 tl::expected<TetMesh, SurfaceError> fill(const TriMesh& surface, const FillOptions& options);
 
-}  // namespace tactus
+}  // namespace tactus::sim

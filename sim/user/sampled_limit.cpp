@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
@@ -58,4 +58,4 @@ double sampled_limit(const HandImpedance& hand, const SceneDevice& device) noexc
   return std::max(0.0, limit);
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -4,7 +4,7 @@
 
 #include "sim/user/user.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 /// Largest k [N/m] of a spring to a fixed point that hand and device do not swing up against. Of the loop as it is simulated,
 ///   m (x+ - 2 x + x-) / T^2 = -k_h x - b (x - x-) / T - k F x,   F the device's mean of N samples,
@@ -13,4 +13,4 @@ namespace tactus {
 /// time 40 us for N = 8, 2 ms for 1000
 double sampled_limit(const HandImpedance& hand, const SceneDevice& device) noexcept;
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace tactus {
+namespace tactus::sim {
 
 void TouchRecord::add(const UserSample& sample, const Vec3& position) noexcept {
   const bool touches = sample.contact.kind != ContactKind::none || sample.mesh_contact;
@@ -30,4 +30,4 @@ void TouchRecord::add(const UserSample& sample, const Vec3& position) noexcept {
   summary_.hardest = sample.mesh_contact;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

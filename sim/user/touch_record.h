@@ -10,7 +10,7 @@
 #include "sim/contact/passivity.h"
 #include "sim/scene/scene.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 struct TouchSummary {
   std::uint64_t ticks = 0;     ///< in contact with anything, at the server
@@ -46,4 +46,4 @@ class TouchRecord {
   std::uint32_t in_a_second_ = 0;
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

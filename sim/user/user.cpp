@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr double kTremorLow = 8, kTremorHigh = 12;  // [Hz]
@@ -149,4 +149,4 @@ DeviceSample Hand::step(const Vec3& felt, const Pose& object) noexcept {
   return {filter_.read(position_), held};
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -14,7 +14,7 @@
 #include "sim/random.h"
 #include "sim/scene/scene.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 struct HandImpedance {
   double mass, stiffness, damping;  ///< [kg], [N/m], [N s/m]
@@ -123,4 +123,4 @@ class Hand {
   std::int64_t tick_ = 0, begin_ = 0, end_ = 0;
 };
 
-}  // namespace tactus
+}  // namespace tactus::sim

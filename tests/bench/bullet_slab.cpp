@@ -17,7 +17,7 @@ namespace {
 
 btVector3 bullet(const Vec3& v) { return {v.x, v.y, v.z}; }
 
-btDeformableLinearElasticityForce force_of(const Material& m) {
+btDeformableLinearElasticityForce force_of(const sim::Material& m) {
   btDeformableLinearElasticityForce force(1, 1, 0, 0);
   force.setYoungsModulus(m.young);
   force.setPoissonRatio(m.poisson);
@@ -27,7 +27,7 @@ btDeformableLinearElasticityForce force_of(const Material& m) {
 }  // namespace
 
 struct BulletSlab::Impl {
-  explicit Impl(const Material& material) : elasticity(force_of(material)) {}
+  explicit Impl(const sim::Material& material) : elasticity(force_of(material)) {}
 
   btSoftBodyRigidBodyCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher{&configuration};
@@ -40,7 +40,7 @@ struct BulletSlab::Impl {
   std::vector<double> rest_z;
 };
 
-BulletSlab::BulletSlab(const FemModel& model, const Material& material) : impl_(std::make_unique<Impl>(material)) {
+BulletSlab::BulletSlab(const sim::FemModel& model, const sim::Material& material) : impl_(std::make_unique<Impl>(material)) {
   Impl& b = *impl_;
   b.constraints.setDeformableSolver(&b.solver);
   b.world.setGravity({0, 0, 0});
@@ -48,7 +48,7 @@ BulletSlab::BulletSlab(const FemModel& model, const Material& material) : impl_(
   b.world.getWorldInfo().air_density = 0;
   b.world.setImplicit(false);
 
-  const TetMesh& mesh = model.mesh();
+  const sim::TetMesh& mesh = model.mesh();
   std::vector<btVector3> positions;
   std::vector<double> masses;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
@@ -59,7 +59,7 @@ BulletSlab::BulletSlab(const FemModel& model, const Material& material) : impl_(
   }
   b.body =
       std::make_unique<btSoftBody>(&b.world.getWorldInfo(), static_cast<int>(positions.size()), positions.data(), masses.data());
-  for (const Tet& t : mesh.tets)
+  for (const sim::Tet& t : mesh.tets)
     b.body->appendTetra(static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2]), static_cast<int>(t[3]));
   b.body->m_tetraScratches.resize(b.body->m_tetras.size());
   b.body->m_tetraScratchesTn.resize(b.body->m_tetras.size());

@@ -12,7 +12,7 @@ namespace tactus::testing {
 class BulletSlab {
  public:
   /// All vertices of one material; `model` gives mesh, masses and fixed vertices.
-  BulletSlab(const FemModel& model, const Material& material);
+  BulletSlab(const sim::FemModel& model, const sim::Material& material);
   ~BulletSlab();
   BulletSlab(const BulletSlab&) = delete;
   BulletSlab& operator=(const BulletSlab&) = delete;

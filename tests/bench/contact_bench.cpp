@@ -44,7 +44,7 @@ class Samples {
 
 /// 100 352 triangles of 2 mm; bumps of 2 cm and 3 mm height, and roughness.
 const Body& terrain() {
-  static const Body body(testing::sheet(224, 0.002, [random = Random(1)](double x, double y) mutable {
+  static const Body body(testing::sheet(224, 0.002, [random = sim::Random(1)](double x, double y) mutable {
     return 0.003 * std::sin(300 * x) * std::cos(250 * y) + random.uniform(-2e-4, 2e-4);
   }));
   return body;
@@ -62,16 +62,16 @@ Vec3 stroke(std::int64_t tick, double depth) {
   return {0.15 * std::sin(3 * t), 0.15 * std::sin(5 * t + 0.5), -depth};
 }
 
-void stroke_terrain(benchmark::State& state, double depth, MeshProxyOptions options, double reach = 0) {
+void stroke_terrain(benchmark::State& state, double depth, sim::MeshProxyOptions options, double reach = 0) {
   const Body& body = terrain();
-  MeshProxy proxy(options, body.extent());
+  sim::MeshProxy proxy(options, body.extent());
   proxy.move(stroke(0, -0.01), body.mesh.vertices, body.tree);
   Samples samples;
   std::int64_t tick = 0, touched = 0;
   for (auto _ : state) {
     samples.time(state, [&] {
       if (reach > 0) proxy.expect(reach, body.mesh.vertices, body.mesh.vertices, body.tree);
-      const ProxyTouch touch = proxy.move(stroke(tick, depth), body.mesh.vertices, body.tree);
+      const sim::ProxyTouch touch = proxy.move(stroke(tick, depth), body.mesh.vertices, body.tree);
       touched += touch.touched ? 1 : 0;
     });
     ++tick;
@@ -81,9 +81,9 @@ void stroke_terrain(benchmark::State& state, double depth, MeshProxyOptions opti
 }
 
 /// Around the ball on a spiral, in and out.
-void stroke_ball(benchmark::State& state, MeshProxyOptions options) {
+void stroke_ball(benchmark::State& state, sim::MeshProxyOptions options) {
   const Body& body = ball();
-  MeshProxy proxy(options, body.extent());
+  sim::MeshProxy proxy(options, body.extent());
   Samples samples;
   std::int64_t tick = 0, touched = 0;
   const auto path = [](std::int64_t i) {
@@ -101,17 +101,17 @@ void stroke_ball(benchmark::State& state, MeshProxyOptions options) {
 
 // 16 000 ticks: twice along the curve.
 #define TICKS UseManualTime()->Iterations(16'000)->Unit(benchmark::kMicrosecond)
-BENCHMARK_CAPTURE(stroke_terrain, free_flight, -0.02, MeshProxyOptions{})->TICKS;
-BENCHMARK_CAPTURE(stroke_terrain, free_over_moving_surface, -0.006, MeshProxyOptions{}, 0.01)->TICKS;
-BENCHMARK_CAPTURE(stroke_terrain, frictionless, 0.002, MeshProxyOptions{})->TICKS;
-BENCHMARK_CAPTURE(stroke_terrain, friction, 0.002, MeshProxyOptions{.friction = 0.5})->TICKS;
-BENCHMARK_CAPTURE(stroke_terrain, deep, 0.01, MeshProxyOptions{.friction = 0.3})->TICKS;
-BENCHMARK_CAPTURE(stroke_terrain, sphere_3mm, 0.002, MeshProxyOptions{.friction = 0.3, .radius = 0.003})->TICKS;
-BENCHMARK_CAPTURE(stroke_ball, in_and_out, MeshProxyOptions{.friction = 0.3})->TICKS;
+BENCHMARK_CAPTURE(stroke_terrain, free_flight, -0.02, sim::MeshProxyOptions{})->TICKS;
+BENCHMARK_CAPTURE(stroke_terrain, free_over_moving_surface, -0.006, sim::MeshProxyOptions{}, 0.01)->TICKS;
+BENCHMARK_CAPTURE(stroke_terrain, frictionless, 0.002, sim::MeshProxyOptions{})->TICKS;
+BENCHMARK_CAPTURE(stroke_terrain, friction, 0.002, sim::MeshProxyOptions{.friction = 0.5})->TICKS;
+BENCHMARK_CAPTURE(stroke_terrain, deep, 0.01, sim::MeshProxyOptions{.friction = 0.3})->TICKS;
+BENCHMARK_CAPTURE(stroke_terrain, sphere_3mm, 0.002, sim::MeshProxyOptions{.friction = 0.3, .radius = 0.003})->TICKS;
+BENCHMARK_CAPTURE(stroke_ball, in_and_out, sim::MeshProxyOptions{.friction = 0.3})->TICKS;
 
 void closest_point(benchmark::State& state) {
   const Body& body = ball();
-  Random random(3);
+  sim::Random random(3);
   for (auto _ : state) {
     const Vec3 point = testing::random_point(random, 0.15);
     benchmark::DoNotOptimize(body.tree.closest(point, body.mesh.vertices));
@@ -121,7 +121,7 @@ BENCHMARK(closest_point)->Repetitions(5)->ReportAggregatesOnly();
 
 void first_hit_of_a_segment(benchmark::State& state) {
   const Body& body = ball();
-  Random random(3);
+  sim::Random random(3);
   for (auto _ : state) {
     benchmark::DoNotOptimize(
         body.tree.first_hit(testing::random_point(random, 0.15), testing::random_point(random, 0.15), body.mesh.vertices));
@@ -131,8 +131,8 @@ BENCHMARK(first_hit_of_a_segment)->Repetitions(5)->ReportAggregatesOnly();
 
 /// The thesis's membrane: 714 vertices, 1424 triangles.
 void refit_membrane(benchmark::State& state) {
-  const TriMesh mesh = surface(make_slab(16, 20, 1, 0.01)).mesh;
-  AabbTree tree(mesh);
+  const TriMesh mesh = surface(sim::make_slab(16, 20, 1, 0.01)).mesh;
+  sim::AabbTree tree(mesh);
   for (auto _ : state) {
     tree.refit(mesh.vertices);
     benchmark::ClobberMemory();
@@ -142,7 +142,7 @@ void refit_membrane(benchmark::State& state) {
 BENCHMARK(refit_membrane)->Unit(benchmark::kMicrosecond)->Repetitions(5)->ReportAggregatesOnly();
 
 void refit_100k(benchmark::State& state) {
-  AabbTree tree(terrain().mesh);
+  sim::AabbTree tree(terrain().mesh);
   for (auto _ : state) {
     tree.refit(terrain().mesh.vertices);
     benchmark::ClobberMemory();
@@ -151,15 +151,15 @@ void refit_100k(benchmark::State& state) {
 BENCHMARK(refit_100k)->Unit(benchmark::kMicrosecond)->Repetitions(5)->ReportAggregatesOnly();
 
 void build_100k(benchmark::State& state) {
-  for (auto _ : state) benchmark::DoNotOptimize(AabbTree(terrain().mesh));
+  for (auto _ : state) benchmark::DoNotOptimize(sim::AabbTree(terrain().mesh));
 }
 BENCHMARK(build_100k)->Unit(benchmark::kMillisecond);
 
 /// A wave under a hand that strokes the membrane; three rings are cut out every 16 ticks.
 void intermediate_model_tick(benchmark::State& state) {
-  Body body(surface(make_slab(16, 20, 1, 0.01)).mesh);
+  Body body(surface(sim::make_slab(16, 20, 1, 0.01)).mesh);
   const std::vector<Vec3> rest = body.mesh.vertices;
-  IntermediateModel model(body.mesh, body.topology, {.rings = 3, .ticks = 16, .proxy = {.friction = 0.3, .reach = 0.002}});
+  sim::IntermediateModel model(body.mesh, body.topology, {.rings = 3, .ticks = 16, .proxy = {.friction = 0.3, .reach = 0.002}});
   model.place({0.08, 0.1, 0.03}, body.mesh.vertices, body.tree);
   Samples samples;
   std::int64_t tick = 0;

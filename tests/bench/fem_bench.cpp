@@ -57,16 +57,16 @@ void repeat(benchmark::State& state, Start start, Step step, Deflection z) {
   }
 }
 
-void membrane(benchmark::State& state, Elasticity elasticity) {
-  FemOptions options = testing::slab_options();
+void membrane(benchmark::State& state, sim::Elasticity elasticity) {
+  sim::FemOptions options = testing::slab_options();
   options.elasticity = elasticity;
-  FemModel model = testing::slab_model(options);
+  sim::FemModel model = testing::slab_model(options);
   testing::ExplicitRun run(model, kStep, testing::slab_load(model));
   repeat(
       state, [&] { run.state = model.rest(); }, [&] { run.step(); }, [&] { return run.state.u[3 * testing::kSlabCentre + 2]; });
 }
-BENCHMARK_CAPTURE(membrane, corotated, Elasticity::corotated)->Apply(five);
-BENCHMARK_CAPTURE(membrane, linear, Elasticity::linear)->Apply(five);
+BENCHMARK_CAPTURE(membrane, corotated, sim::Elasticity::corotated)->Apply(five);
+BENCHMARK_CAPTURE(membrane, linear, sim::Elasticity::linear)->Apply(five);
 
 #ifdef TACTUS_BENCH_BULLET
 /// CPU time of a step, mean over the loaded motion, the best of five [s].
@@ -83,7 +83,7 @@ double mean_step(Start start, Step step) {
 }
 
 void membrane_bullet(benchmark::State& state) {
-  FemModel model = testing::slab_model();
+  sim::FemModel model = testing::slab_model();
   std::unique_ptr<testing::BulletSlab> slab;
   const auto start = [&] { slab = std::make_unique<testing::BulletSlab>(model, testing::slab_options().materials[0]); };
   const auto step = [&] { slab->step(kStep, testing::kSlabCentre, -1); };
@@ -96,9 +96,9 @@ BENCHMARK(membrane_bullet)->Apply(five);
 
 /// A slab bent over a cylinder and shaken, in frames that are a millisecond apart at 10 rad/s.
 struct Motion {
-  explicit Motion(std::uint32_t layers, std::uint32_t nx = testing::kSlabX, std::uint32_t ny = testing::kSlabY)
-      : mesh(make_slab(nx, ny, layers, 0.01)) {
-    Random random(1);
+  explicit sim::Motion(std::uint32_t layers, std::uint32_t nx = testing::kSlabX, std::uint32_t ny = testing::kSlabY)
+      : mesh(sim::make_slab(nx, ny, layers, 0.01)) {
+    sim::Random random(1);
     std::vector<double> noise(3 * mesh.vertices.size());
     for (double& x : noise) x = random.uniform(-5e-4, 5e-4);
     for (int i = 0; i < 8; ++i) {
@@ -114,13 +114,13 @@ struct Motion {
     }
   }
 
-  TetMesh mesh;
+  sim::TetMesh mesh;
   std::vector<std::vector<double>> frames;
 };
 
-void evaluate(benchmark::State& state, const Motion& motion, InstructionSet set, bool corotated) {
+void evaluate(benchmark::State& state, const sim::Motion& motion, sim::InstructionSet set, bool corotated) {
   if (!supported(set)) return state.SkipWithError("not on this machine");
-  Elements elements(motion.mesh, std::vector<Lame>(motion.mesh.tets.size(), {3448, 31034}), corotated);
+  sim::Elements elements(motion.mesh, std::vector<sim::Lame>(motion.mesh.tets.size(), {3448, 31034}), corotated);
   elements.use(set);
   std::vector<double> k(3 * motion.mesh.vertices.size());
   std::size_t i = 0;
@@ -136,18 +136,18 @@ void evaluate(benchmark::State& state, const Motion& motion, InstructionSet set,
   state.counters["over_limit"] = seconds / (tets * (corotated ? kFlops : kLinearFlops) / testing::peak(set));
 }
 
-void forces(benchmark::State& state, InstructionSet set, bool corotated) { evaluate(state, Motion(1), set, corotated); }
-BENCHMARK_CAPTURE(forces, portable, InstructionSet::portable, true)->Apply(five);
-BENCHMARK_CAPTURE(forces, avx2, InstructionSet::avx2, true)->Apply(five);
-BENCHMARK_CAPTURE(forces, avx512, InstructionSet::avx512, true)->Apply(five);
-BENCHMARK_CAPTURE(forces, portable_linear, InstructionSet::portable, false)->Apply(five);
-BENCHMARK_CAPTURE(forces, avx2_linear, InstructionSet::avx2, false)->Apply(five);
-BENCHMARK_CAPTURE(forces, avx512_linear, InstructionSet::avx512, false)->Apply(five);
+void forces(benchmark::State& state, sim::InstructionSet set, bool corotated) { evaluate(state, sim::Motion(1), set, corotated); }
+BENCHMARK_CAPTURE(forces, portable, sim::InstructionSet::portable, true)->Apply(five);
+BENCHMARK_CAPTURE(forces, avx2, sim::InstructionSet::avx2, true)->Apply(five);
+BENCHMARK_CAPTURE(forces, avx512, sim::InstructionSet::avx512, true)->Apply(five);
+BENCHMARK_CAPTURE(forces, portable_linear, sim::InstructionSet::portable, false)->Apply(five);
+BENCHMARK_CAPTURE(forces, avx2_linear, sim::InstructionSet::avx2, false)->Apply(five);
+BENCHMARK_CAPTURE(forces, avx512_linear, sim::InstructionSet::avx512, false)->Apply(five);
 
 /// 1 920, 19 200, 201 600 tetrahedra.
 void forces_by_size(benchmark::State& state) {
   const auto scale = static_cast<std::uint32_t>(state.range(0));
-  const Motion motion(scale == 1 ? 1 : scale == 2 ? 10 : 21, scale < 3 ? 16 : 40, scale < 3 ? 20 : 40);
+  const sim::Motion motion(scale == 1 ? 1 : scale == 2 ? 10 : 21, scale < 3 ? 16 : 40, scale < 3 ? 20 : 40);
   state.SetLabel(std::to_string(motion.mesh.tets.size()) + " tets");
   evaluate(state, motion, widest(), true);
 }
@@ -155,7 +155,7 @@ BENCHMARK(forces_by_size)->Arg(1)->Arg(2)->Arg(3)->Apply(five);
 
 /// Collapsed to a line, where every element needs the robust rotation: the worst case.
 void forces_on_a_line(benchmark::State& state) {
-  Motion motion(1);
+  sim::Motion motion(1);
   for (std::vector<double>& u : motion.frames) {
     for (std::size_t v = 0; v < motion.mesh.vertices.size(); ++v) {
       u[3 * v + 1] = -motion.mesh.vertices[v].y;
@@ -166,31 +166,31 @@ void forces_on_a_line(benchmark::State& state) {
 }
 BENCHMARK(forces_on_a_line)->Apply(five);
 
-void matrix(benchmark::State& state, void (FemModel::*assemble)(const Eigen::VectorXd&, SparseMatrix&)) {
-  FemModel model = testing::slab_model();
-  const Motion motion(1);
+void matrix(benchmark::State& state, void (sim::FemModel::*assemble)(const Eigen::VectorXd&, sim::SparseMatrix&)) {
+  sim::FemModel model = testing::slab_model();
+  const sim::Motion motion(1);
   const Eigen::VectorXd u = Eigen::Map<const Eigen::VectorXd>(motion.frames[0].data(), model.size());
-  SparseMatrix K;
+  sim::SparseMatrix K;
   (model.*assemble)(u, K);
   for (auto _ : state) (model.*assemble)(u, K);
 }
-BENCHMARK_CAPTURE(matrix, stiffness, &FemModel::stiffness)->Apply(five);
-BENCHMARK_CAPTURE(matrix, tangent, &FemModel::tangent)->Apply(five);
+BENCHMARK_CAPTURE(matrix, stiffness, &sim::FemModel::stiffness)->Apply(five);
+BENCHMARK_CAPTURE(matrix, tangent, &sim::FemModel::tangent)->Apply(five);
 
 void largest_frequency(benchmark::State& state) {
-  const FemModel model = testing::slab_model();
+  const sim::FemModel model = testing::slab_model();
   for (auto _ : state) benchmark::DoNotOptimize(model.largest_frequency());
 }
 BENCHMARK(largest_frequency)->Apply(five);
 
 void robust_rotation(benchmark::State& state) {
-  Random random(1);
-  std::vector<Matrix3> matrices(1024);
-  for (Matrix3& f : matrices)
+  sim::Random random(1);
+  std::vector<sim::Matrix3> matrices(1024);
+  for (sim::Matrix3& f : matrices)
     for (auto& row : f.m)
       for (double& x : row) x = random.uniform(-1, 1);
   std::size_t i = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(nearest_rotation(matrices[i++ % matrices.size()], {}));
+  for (auto _ : state) benchmark::DoNotOptimize(sim::nearest_rotation(matrices[i++ % matrices.size()], {}));
 }
 BENCHMARK(robust_rotation)->Unit(benchmark::kNanosecond)->Repetitions(5)->ReportAggregatesOnly();
 

@@ -20,11 +20,11 @@ constexpr int kRun = 300;
 
 void five(benchmark::internal::Benchmark* b) { b->Unit(benchmark::kMicrosecond)->Repetitions(5)->ReportAggregatesOnly(); }
 
-void step(benchmark::State& state, double young, const IntegratorOptions& options) {
-  FemModel model = testing::slab_model(testing::slab_options(young));
+void step(benchmark::State& state, double young, const sim::IntegratorOptions& options) {
+  sim::FemModel model = testing::slab_model(testing::slab_options(young));
   const Eigen::VectorXd f = testing::slab_load(model);
-  auto integrator = std::move(make_integrator(model, options).value());
-  FemState body = model.rest();
+  auto integrator = std::move(sim::make_integrator(model, options).value());
+  sim::FemState body = model.rest();
   for (int i = 0; i < kRun; ++i) {
     if (const auto report = integrator->step(f, body); !report) return state.SkipWithError(to_string(report.error()).c_str());
   }
@@ -33,24 +33,24 @@ void step(benchmark::State& state, double young, const IntegratorOptions& option
 }
 
 void set_up_modal(benchmark::State& state) {
-  FemModel model = testing::slab_model();
-  IntegratorOptions o;
-  o.method = Method::modal;
+  sim::FemModel model = testing::slab_model();
+  sim::IntegratorOptions o;
+  o.method = sim::Method::modal;
   o.modes = static_cast<int>(state.range(0));
-  for (auto _ : state) benchmark::DoNotOptimize(make_integrator(model, o));
+  for (auto _ : state) benchmark::DoNotOptimize(sim::make_integrator(model, o));
 }
 
 /// A slab of `cells` x `cells` x 2 cubes as an implicit step at 1 kHz sees it.
 struct Matrix {
   explicit Matrix(std::uint32_t cells)
-      : model(testing::make_model(make_slab(cells, cells, 2, 0.01),
+      : model(testing::make_model(sim::make_slab(cells, cells, 2, 0.01),
                                   {.materials = {{1e4, 0.45, 1e4}}, .fixed = testing::slab_corners(cells, cells, 2)})),
         system(model) {
     system.assemble(Eigen::VectorXd::Zero(model.size()), 4 / (kStep * kStep), 1);
   }
 
-  FemModel model;
-  SystemMatrix system;
+  sim::FemModel model;
+  sim::SystemMatrix system;
 };
 
 template <class Factor>
@@ -77,7 +77,7 @@ void solve(benchmark::State& state) {
 
 void gradients(benchmark::State& state) {
   const Matrix m(static_cast<std::uint32_t>(state.range(0)));
-  ConjugateGradients solver(m.system.matrix().rows(), 1e-6);
+  sim::ConjugateGradients solver(m.system.matrix().rows(), 1e-6);
   Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(m.system.matrix().rows(), -1, 1);
   const Eigen::VectorXd b = x;
   int iterations = 0;
@@ -95,17 +95,19 @@ void gradients(benchmark::State& state) {
 
 void register_steps() {
   for (const double young : {1e4, 1e7}) {
-    for (const Method method :
-         {Method::velocity_verlet, Method::backward_euler, Method::newmark, Method::tr_bdf2, Method::modal, Method::projective}) {
-      for (const LinearSolver solver : {LinearSolver::conjugate_gradients, LinearSolver::cholesky, LinearSolver::prefactored}) {
-        const bool implicit = method == Method::backward_euler || method == Method::newmark || method == Method::tr_bdf2;
-        if (!implicit && solver != LinearSolver::conjugate_gradients) continue;
-        IntegratorOptions o;
+    for (const sim::Method method : {sim::Method::velocity_verlet, sim::Method::backward_euler, sim::Method::newmark,
+                                     sim::Method::tr_bdf2, sim::Method::modal, sim::Method::projective}) {
+      for (const sim::LinearSolver solver :
+           {sim::LinearSolver::conjugate_gradients, sim::LinearSolver::cholesky, sim::LinearSolver::prefactored}) {
+        const bool implicit =
+            method == sim::Method::backward_euler || method == sim::Method::newmark || method == sim::Method::tr_bdf2;
+        if (!implicit && solver != sim::LinearSolver::conjugate_gradients) continue;
+        sim::IntegratorOptions o;
         o.method = method;
         o.step = kStep;
         o.solver = solver;
         o.modes = 30;
-        if (solver != LinearSolver::prefactored && implicit) o.newton_iterations = 1;
+        if (solver != sim::LinearSolver::prefactored && implicit) o.newton_iterations = 1;
         else o.newton_tolerance = 1e-2;
         const std::string label = std::string("step/") + name(method) + (implicit ? std::string("/") + name(solver) : "");
         five(benchmark::RegisterBenchmark((label + (young > 1e5 ? "/stiff" : "/soft")).c_str(), step, young, o));
@@ -117,11 +119,11 @@ void register_steps() {
 [[maybe_unused]] const bool registered = (register_steps(), true);
 
 BENCHMARK(set_up_modal)->Apply(five)->Arg(10)->Arg(50)->Arg(200);
-BENCHMARK(factor<LdlCholesky>)->Apply(five)->Arg(13)->Arg(40)->Arg(91);
-BENCHMARK(solve<LdlCholesky>)->Apply(five)->Arg(13)->Arg(40)->Arg(91);
+BENCHMARK(factor<sim::LdlCholesky>)->Apply(five)->Arg(13)->Arg(40)->Arg(91);
+BENCHMARK(solve<sim::LdlCholesky>)->Apply(five)->Arg(13)->Arg(40)->Arg(91);
 #ifdef TACTUS_FEM_CHOLMOD
-BENCHMARK(factor<CholmodCholesky>)->Apply(five)->Arg(13)->Arg(40)->Arg(91);
-BENCHMARK(solve<CholmodCholesky>)->Apply(five)->Arg(13)->Arg(40)->Arg(91);
+BENCHMARK(factor<sim::CholmodCholesky>)->Apply(five)->Arg(13)->Arg(40)->Arg(91);
+BENCHMARK(solve<sim::CholmodCholesky>)->Apply(five)->Arg(13)->Arg(40)->Arg(91);
 #endif
 BENCHMARK(gradients)->Apply(five)->Arg(13)->Arg(40)->Arg(129);
 

@@ -7,6 +7,6 @@
 namespace tactus::testing {
 
 /// [flop/s] of one thread in CPU time, the best of some short runs.   pre  supported(set)   time 0.1 s
-double peak(InstructionSet set);
+double peak(sim::InstructionSet set);
 
 }  // namespace tactus::testing

@@ -10,9 +10,9 @@ namespace tactus {
 namespace {
 
 void spring_modes_of_the_membrane(benchmark::State& state) {
-  const TriMesh mesh = surface(make_slab(testing::kSlabX, testing::kSlabY, 1, 0.01)).mesh;
+  const TriMesh mesh = surface(sim::make_slab(testing::kSlabX, testing::kSlabY, 1, 0.01)).mesh;
   const auto fixed = testing::slab_corners();
-  for (auto _ : state) benchmark::DoNotOptimize(spring_modes(mesh, fixed, static_cast<std::size_t>(state.range(0))));
+  for (auto _ : state) benchmark::DoNotOptimize(sim::spring_modes(mesh, fixed, static_cast<std::size_t>(state.range(0))));
 }
 
 BENCHMARK(spring_modes_of_the_membrane)

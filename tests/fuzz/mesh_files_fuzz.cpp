@@ -11,7 +11,7 @@
 
 namespace {
 
-using Read = tl::expected<tactus::TetFile, tactus::MeshFileError>;
+using Read = tl::expected<tactus::sim::TetFile, tactus::sim::MeshFileError>;
 
 void check(const Read& file, std::string_view text) {
   if (!file) {
@@ -19,12 +19,12 @@ void check(const Read& file, std::string_view text) {
     require(to_string(file.error()).find("R-MFL-") != std::string::npos);
     return;
   }
-  const tactus::TetMesh& mesh = file->mesh;
+  const tactus::sim::TetMesh& mesh = file->mesh;
   require(!mesh.tets.empty() && mesh.vertices.size() <= text.size() && mesh.tets.size() <= text.size());
   for (const tactus::Vec3& v : mesh.vertices) require(is_finite(v));
-  for (const tactus::Tet& tet : mesh.tets)
+  for (const tactus::sim::Tet& tet : mesh.tets)
     for (const std::uint32_t v : tet) require(v < mesh.vertices.size());
-  (void)tactus::check(mesh);
+  (void)check(mesh);
 }
 
 template <class Parse, class... Write>
@@ -44,13 +44,13 @@ void check_round_trip(const Read& file, Parse parse, Write... write) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   if (const std::size_t cut = text.find('\0'); cut != std::string_view::npos) {
-    const Read file = tactus::parse_node_ele(text.substr(0, cut), text.substr(cut + 1));
+    const Read file = tactus::sim::parse_node_ele(text.substr(0, cut), text.substr(cut + 1));
     check(file, text);
-    check_round_trip(file, tactus::parse_node_ele, tactus::write_node, tactus::write_ele);
+    check_round_trip(file, tactus::sim::parse_node_ele, tactus::sim::write_node, tactus::sim::write_ele);
     return 0;
   }
-  const Read file = tactus::parse_msh(text);
+  const Read file = tactus::sim::parse_msh(text);
   check(file, text);
-  check_round_trip(file, tactus::parse_msh, tactus::write_msh);
+  check_round_trip(file, tactus::sim::parse_msh, tactus::sim::write_msh);
   return 0;
 }

@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   constexpr std::array<std::string_view, 4> kFormats{".obj", ".off", ".ply", ".stl"};
   if (size == 0) return 0;
   const std::string_view text(reinterpret_cast<const char*>(data + 1), size - 1);
-  const auto file = tactus::parse_surface(text, kFormats[data[0] % kFormats.size()]);
+  const auto file = tactus::sim::parse_surface(text, kFormats[data[0] % kFormats.size()]);
   if (file && (file->mesh.triangles.empty() || !check(file->mesh))) std::abort();
   if (!file && to_string(file.error()).find("R-") == std::string::npos) std::abort();
   return 0;

@@ -7,14 +7,14 @@
 #include "sim/simulation.h"
 
 /// The name is what callgrind is told to count.
-extern "C" [[gnu::noinline]] bool counted_ticks(tactus::Simulation& simulation, tactus::TraceWriter& trace, int ticks) {
+extern "C" [[gnu::noinline]] bool counted_ticks(tactus::sim::Simulation& simulation, tactus::TraceWriter& trace, int ticks) {
   for (int i = 0; i < ticks; ++i)
     if (!simulation.step() || !trace.write(simulation.frame())) return false;
   return true;
 }
 
 /// The same, not counted.
-static bool first_ticks(tactus::Simulation& simulation, tactus::TraceWriter& trace, int ticks) {
+static bool first_ticks(tactus::sim::Simulation& simulation, tactus::TraceWriter& trace, int ticks) {
   for (int i = 0; i < ticks; ++i)
     if (!simulation.step() || !trace.write(simulation.frame())) return false;
   return true;
@@ -22,12 +22,12 @@ static bool first_ticks(tactus::Simulation& simulation, tactus::TraceWriter& tra
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
-  const auto scene = tactus::load_scene(argv[1]);
+  const auto scene = tactus::sim::load_scene(argv[1]);
   if (!scene) {
-    std::fprintf(stderr, "%s\n", tactus::to_string(scene.error()).c_str());
+    std::fprintf(stderr, "%s\n", to_string(scene.error()).c_str());
     return 1;
   }
-  auto simulation = tactus::Simulation::create(*scene);
+  auto simulation = tactus::sim::Simulation::create(*scene);
   if (!simulation) return 1;
   auto trace = tactus::TraceWriter::create("/dev/null", simulation->info());
   if (!trace || !first_ticks(*simulation, *trace, 100) || !counted_ticks(*simulation, *trace, 200)) return 1;

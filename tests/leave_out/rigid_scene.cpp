@@ -8,10 +8,10 @@
 #include "sim/simulation.h"
 
 /// From set-up to the last tick; the name is what callgrind is told to count.
-extern "C" [[gnu::noinline]] int run_scene(const tactus::Scene& scene, int ticks) {
-  tactus::SimulationOptions options;
+extern "C" [[gnu::noinline]] int run_scene(const tactus::sim::Scene& scene, int ticks) {
+  tactus::sim::SimulationOptions options;
   options.channel.emplace();
-  auto simulation = tactus::Simulation::create(scene, options);
+  auto simulation = tactus::sim::Simulation::create(scene, options);
   if (!simulation) {
     std::fprintf(stderr, "%s\n", simulation.error().rule);
     return 1;
@@ -29,9 +29,9 @@ extern "C" [[gnu::noinline]] int run_scene(const tactus::Scene& scene, int ticks
 
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
-  const auto scene = tactus::load_scene(argv[1]);
+  const auto scene = tactus::sim::load_scene(argv[1]);
   if (!scene) {
-    std::fprintf(stderr, "%s\n", tactus::to_string(scene.error()).c_str());
+    std::fprintf(stderr, "%s\n", to_string(scene.error()).c_str());
     return 1;
   }
   return run_scene(*scene, std::atoi(argv[2]));

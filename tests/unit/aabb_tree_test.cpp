@@ -8,7 +8,7 @@
 #include "tests/property/allocated.h"
 #include "tests/unit/contact_mesh_fixture.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 using testing::Body;
@@ -311,4 +311,4 @@ TEST(AabbTree, QueriesAndRefitAllocateNothing) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -21,8 +21,8 @@ namespace tactus::testing {
 struct Body {
   TriMesh mesh;
   MeshTopology topology{mesh};
-  AabbTree tree{mesh};
-  Inside inside{mesh, topology};
+  sim::AabbTree tree{mesh};
+  sim::Inside inside{mesh, topology};
 
   explicit Body(TriMesh made) : mesh(std::move(made)) {}
   Body(const Body&) = delete;
@@ -114,7 +114,7 @@ inline TriMesh inside_out(TriMesh mesh) {
 /// Bumps of all sizes on a sphere, up to `share` of its radius.
 inline TriMesh bumpy_ball(double radius, unsigned times, double share, std::uint64_t seed) {
   TriMesh mesh = ball(radius, times);
-  Random random(seed);
+  sim::Random random(seed);
   std::array<Vec3, 12> waves;
   for (Vec3& wave : waves) wave = {random.uniform(-30, 30), random.uniform(-30, 30), random.uniform(-30, 30)};
   for (Vec3& v : mesh.vertices) {
@@ -126,13 +126,13 @@ inline TriMesh bumpy_ball(double radius, unsigned times, double share, std::uint
 }
 
 template <class T>
-void shuffle(std::vector<T>& items, Random& random) {
+void shuffle(std::vector<T>& items, sim::Random& random) {
   for (std::size_t i = items.size(); i > 1; --i) std::swap(items[i - 1], items[random.next() % i]);
 }
 
 /// The same mesh with vertices, triangles and the first corners of triangles in another order.
 inline TriMesh renumbered(const TriMesh& mesh, std::uint64_t seed) {
-  Random random(seed);
+  sim::Random random(seed);
   std::vector<std::uint32_t> place(mesh.vertices.size());
   std::iota(place.begin(), place.end(), 0u);
   shuffle(place, random);
@@ -146,7 +146,7 @@ inline TriMesh renumbered(const TriMesh& mesh, std::uint64_t seed) {
   return out;
 }
 
-inline Vec3 random_point(Random& random, double reach) {
+inline Vec3 random_point(sim::Random& random, double reach) {
   return {random.uniform(-reach, reach), random.uniform(-reach, reach), random.uniform(-reach, reach)};
 }
 

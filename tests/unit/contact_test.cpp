@@ -10,7 +10,7 @@
 
 #include "sim/random.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr Vec3 kHalf{0.02, 0.02, 0.02};
@@ -251,4 +251,4 @@ TEST(Probe, AttendedOnlyFeelsTheSame) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -10,7 +10,7 @@
 #include "sim/deformable/deformable_body.h"
 #include "sim/simulation.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 using Tick = DeformableBody::Tick;
@@ -199,4 +199,4 @@ TEST(DeformableRest, AFastSlabIsFelt) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -11,7 +11,7 @@
 #include "sim/mesh/tet_files.h"
 #include "sim/scene/scene.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 const std::string kHead =
@@ -179,4 +179,4 @@ TEST(DeformableScene, EveryRuleNamesItsPlace) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -10,7 +10,7 @@
 #include "sim/simulation.h"
 #include "tests/property/allocated.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 Scene shipped(const std::string& name) { return load_scene(find_scene(name).value()).value(); }
@@ -302,4 +302,4 @@ TEST(DeformableSimulation, ClientFeelsTheDecodedShape) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

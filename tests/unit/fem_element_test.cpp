@@ -11,7 +11,7 @@
 #include "sim/random.h"
 #include "tests/unit/fem_fixture.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 using Eigen::Matrix3d;
@@ -306,4 +306,4 @@ TEST(FemElements, EachTetrahedronHasItsMaterial) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

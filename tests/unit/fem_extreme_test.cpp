@@ -10,7 +10,7 @@
 #include "sim/random.h"
 #include "tests/unit/fem_fixture.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 using Eigen::VectorXd;
@@ -365,4 +365,4 @@ TEST(Choose, TakesTheCheapestThatIsStableAndSaysWhy) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

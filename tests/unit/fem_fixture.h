@@ -21,24 +21,24 @@ inline std::vector<std::uint32_t> slab_corners(std::uint32_t nx = kSlabX, std::u
   return out;
 }
 
-inline FemOptions slab_options(double young = 1e4, double poisson = 0.45) {
-  FemOptions options;
+inline sim::FemOptions slab_options(double young = 1e4, double poisson = 0.45) {
+  sim::FemOptions options;
   options.materials = {{young, poisson, 1e4}};
   options.fixed = slab_corners();
   return options;
 }
 
-inline FemModel make_model(TetMesh mesh, FemOptions options) {
-  return FemModel::create(std::move(mesh), std::move(options)).value();
+inline sim::FemModel make_model(sim::TetMesh mesh, sim::FemOptions options) {
+  return sim::FemModel::create(std::move(mesh), std::move(options)).value();
 }
 
-inline FemModel slab_model(FemOptions options = slab_options()) {
-  return make_model(make_slab(kSlabX, kSlabY, 1, 0.01), std::move(options));
+inline sim::FemModel slab_model(sim::FemOptions options = slab_options()) {
+  return make_model(sim::make_slab(kSlabX, kSlabY, 1, 0.01), std::move(options));
 }
 
 /// Symplectic Euler in its shortest form: v += h M^-1 (f - k(u)), u += h v.
 struct ExplicitRun {
-  ExplicitRun(FemModel& m, double step, Eigen::VectorXd load) : model(m), h(step), f(std::move(load)), state(m.rest()) {
+  ExplicitRun(sim::FemModel& m, double step, Eigen::VectorXd load) : model(m), h(step), f(std::move(load)), state(m.rest()) {
     inverse_mass = Eigen::VectorXd::Zero(m.size());
     for (const int dof : m.free_dofs()) inverse_mass[dof] = 1 / m.lumped_mass()[dof];
   }
@@ -49,14 +49,14 @@ struct ExplicitRun {
     state.u += h * state.v;
   }
 
-  FemModel& model;
+  sim::FemModel& model;
   double h;
   Eigen::VectorXd f, inverse_mass, k;
-  FemState state;
+  sim::FemState state;
 };
 
 /// 1 N downwards in the middle of the top.
-inline Eigen::VectorXd slab_load(const FemModel& model) {
+inline Eigen::VectorXd slab_load(const sim::FemModel& model) {
   Eigen::VectorXd f = Eigen::VectorXd::Zero(model.size());
   f[3 * kSlabCentre + 2] = -1;
   return f;

@@ -15,7 +15,7 @@
 #include "tests/property/heap_calls.h"
 #include "tests/unit/fem_fixture.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 using Eigen::VectorXd;
@@ -380,4 +380,4 @@ TEST(ErrorEstimate, FollowsTheOrderAndLeavesTheSimulationAlone) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -12,7 +12,7 @@
 #include "tests/property/allocated.h"
 #include "tests/unit/fem_fixture.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 /// z of the loaded vertex after 0.3 s at 1 kHz under 1 N downwards.
@@ -301,4 +301,4 @@ TEST(FemModel, ForceAtAPointIsSharedByItsCorners) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

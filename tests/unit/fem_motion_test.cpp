@@ -12,7 +12,7 @@
 #include "sim/fem/integrator.h"
 #include "tests/unit/fem_fixture.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 using Eigen::Vector3d;
@@ -313,4 +313,4 @@ TEST(FemMotion, ARemedyThatNamesTwoFrequenciesNamesTheSmallerFirst) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

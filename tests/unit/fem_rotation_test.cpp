@@ -15,7 +15,7 @@
 #include "sim/random.h"
 #include "tests/unit/fem_fixture.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 using Eigen::Matrix3d;
@@ -342,4 +342,4 @@ TEST(ElementKernels, WatchStatesOfAnyLengthAlikeAndMissNothing) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

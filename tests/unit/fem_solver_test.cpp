@@ -13,7 +13,7 @@
 #include "sim/random.h"
 #include "tests/unit/fem_fixture.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 using Eigen::VectorXd;
@@ -182,4 +182,4 @@ TEST(Modal, AModeReturnsAfterItsPeriod) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

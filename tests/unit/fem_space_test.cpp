@@ -12,7 +12,7 @@
 #include "sim/study/precision_space.h"
 #include "sim/study/quadratic_tets.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -229,4 +229,4 @@ TEST(FemSpace, ExtrapolationFindsTheLimitOfAGeometricSequence) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

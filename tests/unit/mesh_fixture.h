@@ -13,7 +13,7 @@
 
 #include "sim/mesh/tet_mesh.h"
 
-namespace tactus {
+namespace tactus::sim {
 
 /// A folder of this test's own, removed afterwards.
 class TempFolder {
@@ -46,4 +46,4 @@ inline double total_volume(const TetMesh& mesh) {
   return sum;
 }
 
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -12,14 +12,14 @@ namespace tactus::testing {
 /// A probe on a body; positions are exact to the skin (6 nm at 0.1 m), which every tolerance below names.
 struct Hand {
   const Body& body;
-  MeshProxy proxy;
+  sim::MeshProxy proxy;
   double skin;
 
-  Hand(const Body& b, const MeshProxyOptions& options) : body(b), proxy(options, b.extent()), skin(proxy.skin()) {}
-  ProxyTouch place(const Vec3& probe) { return proxy.place(probe, body.inside, body.mesh.vertices, body.tree); }
-  ProxyTouch move(const Vec3& probe) { return proxy.move(probe, body.mesh.vertices, body.tree); }
-  ProxyTouch move_along(const Vec3& from, const Vec3& to, int ticks) {
-    ProxyTouch out;
+  Hand(const Body& b, const sim::MeshProxyOptions& options) : body(b), proxy(options, b.extent()), skin(proxy.skin()) {}
+  sim::ProxyTouch place(const Vec3& probe) { return proxy.place(probe, body.inside, body.mesh.vertices, body.tree); }
+  sim::ProxyTouch move(const Vec3& probe) { return proxy.move(probe, body.mesh.vertices, body.tree); }
+  sim::ProxyTouch move_along(const Vec3& from, const Vec3& to, int ticks) {
+    sim::ProxyTouch out;
     for (int i = 0; i <= ticks; ++i) out = move(from + (static_cast<double>(i) / ticks) * (to - from));
     return out;
   }

@@ -6,7 +6,7 @@
 #include "sim/mesh/tet_mesh.h"
 #include "tests/unit/mesh_proxy_fixture.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 using testing::Body;
@@ -101,4 +101,4 @@ TEST(MeshProxy, MovingSurfaceNeverPassesOver) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

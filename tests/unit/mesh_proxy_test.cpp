@@ -6,7 +6,7 @@
 #include "tests/property/allocated.h"
 #include "tests/unit/mesh_proxy_fixture.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 using testing::Body;
@@ -419,4 +419,4 @@ TEST(MeshProxy, AllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

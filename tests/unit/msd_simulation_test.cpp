@@ -11,7 +11,7 @@
 #include "sim/simulation.h"
 #include "tests/property/allocated.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr MsdObject kFigure{.stiffness = 100, .damping = 1, .mass = 0.01};  // thesis figure 4.16
@@ -210,4 +210,4 @@ TEST(MsdScene, KeysAndTheirErrors) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

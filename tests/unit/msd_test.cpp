@@ -8,7 +8,7 @@
 
 #include "tests/property/allocated.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr MsdObject kObject{.stiffness = 100, .damping = 1, .mass = 0.01};
@@ -131,4 +131,4 @@ TEST(MsdLoop, StepsAllocateNothing) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

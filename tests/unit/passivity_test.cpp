@@ -7,7 +7,7 @@
 
 #include "sim/contact/coupling.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr double kTick = 1e-3;
@@ -139,4 +139,4 @@ TEST(PassivityController, ForgetsWhatItIsToldToForget) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

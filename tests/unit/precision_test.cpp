@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace tactus::study {
+namespace tactus::sim::study {
 namespace {
 
 PrecisionScene brief(const char* name) { return *precision_scene(name, Extent::brief); }
@@ -98,4 +98,4 @@ TEST_F(Precision, StepsMeetTheSampleTimes) {
 }
 
 }  // namespace
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

@@ -9,7 +9,7 @@
 #include "sim/rigid/box_tree.h"
 #include "sim/rigid/rigid_world.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 SceneObject cube(const Vec3& position, std::uint8_t dof = Dof::all) {
@@ -157,4 +157,4 @@ TEST(BoxTree, FindsWhatOverlaps) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -12,7 +12,7 @@
 
 #include "sim/random.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr double kMass = 0.15, kMu = 0.7, kGravity = 9.81;
@@ -280,4 +280,4 @@ TEST(RigidWorld, MoreContactsThanFitAreRefused) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

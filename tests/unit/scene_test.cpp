@@ -7,7 +7,7 @@
 #include <set>
 #include <string>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 const std::string kHead =
@@ -232,4 +232,4 @@ TEST(Scene, StreamHeaderStartsFromTheFirstPoses) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -12,7 +12,7 @@
 
 #include "tests/property/allocated.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 Scene shipped(const std::string& name) {
@@ -309,4 +309,4 @@ TEST_P(Tasks, RotatePushLiftBringsTheCubeToTheGoalAndBack) {
 INSTANTIATE_TEST_SUITE_P(Seeds, Tasks, ::testing::Range<std::uint64_t>(1, 11));
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

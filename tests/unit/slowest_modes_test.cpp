@@ -10,7 +10,7 @@
 #include "sim/fem/cholesky.h"
 #include "tests/unit/fem_fixture.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 using Eigen::MatrixXd;
@@ -145,4 +145,4 @@ TEST(SlowestModes, AreNoneOfAnUnstableObject) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -13,7 +13,7 @@
 #include "tests/property/allocated.h"
 #include "tests/unit/contact_mesh_fixture.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr double kMass = 0.15, kMu = 0.7, kGravity = 9.81;
@@ -167,4 +167,4 @@ TEST(SolidObject, StepsAllocateNothingOnceOdeHasItsArenas) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

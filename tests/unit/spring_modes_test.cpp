@@ -7,7 +7,7 @@
 
 #include "tests/unit/mesh_stream_fixture.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 double product(std::span<const double> a, std::span<const double> b) {
@@ -76,4 +76,4 @@ TEST(SpringModes, RefusesMoreModesThanThereAre) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -8,7 +8,7 @@
 
 #include "sim/fem/model.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 SceneDeformable slab(std::uint32_t nx, std::uint32_t ny) {
@@ -98,7 +98,7 @@ std::pair<double, double> pressed(const SceneDeformable& object, const MeshConta
   auto model = FemModel::create(object.mesh, options).value();
   SparseMatrix K;
   model.stiffness(model.rest().u, K);
-  const TetSurface surface = tactus::surface(model.mesh());
+  const TetSurface surface = tactus::sim::surface(model.mesh());
   const auto& triangle = surface.mesh.triangles[contact.triangle];
   const auto corner = [&](std::size_t k) { return surface.mesh.vertices[triangle[k]]; };
   Vec3 normal = cross(corner(1) - corner(0), corner(2) - corner(0));
@@ -154,4 +154,4 @@ TEST(CriticalStiffness, OfAFixedPlaceIsInfinite) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

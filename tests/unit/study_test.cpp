@@ -11,7 +11,7 @@
 #include "sim/study/stability.h"
 #include "sim/study/wall.h"
 
-namespace tactus::study {
+namespace tactus::sim::study {
 namespace {
 
 constexpr ServerLoop kFigure{.object = {.stiffness = 100, .damping = 1, .mass = 0.01}, .users = 2};  // thesis figure 4.16
@@ -124,4 +124,4 @@ TEST(Stability, ClientOfFigure417) {
 }
 
 }  // namespace
-}  // namespace tactus::study
+}  // namespace tactus::sim::study

@@ -8,7 +8,7 @@
 
 #include "tests/unit/mesh_fixture.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr std::string_view kObj =
@@ -202,4 +202,4 @@ TEST(SurfaceFile, WrittenSurfacesReadBack) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -8,7 +8,7 @@
 #include "sim/simulation.h"
 #include "tests/unit/mesh_fixture.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr const char* kCorner =
@@ -101,4 +101,4 @@ TEST(SurfaceScene, TwoUsersTouchASolidAndADeformable) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

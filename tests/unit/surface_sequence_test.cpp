@@ -5,7 +5,7 @@
 
 #include "tests/unit/mesh_fixture.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr std::string_view kSquare = "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 2 3 4 5\n";  // the first vertex has no face
@@ -71,4 +71,4 @@ TEST(SurfaceSequence, EachRule) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -6,7 +6,7 @@
 #include "tests/property/allocated.h"
 #include "tests/unit/contact_mesh_fixture.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 using testing::Body;
@@ -113,4 +113,4 @@ TEST(Surroundings, AllocateNothing) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

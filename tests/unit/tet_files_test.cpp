@@ -9,7 +9,7 @@
 
 #include "tests/unit/mesh_fixture.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 constexpr std::string_view kNode =
@@ -186,4 +186,4 @@ TEST(TetFiles, FilesAreFoundBesideOneAnotherAndErrorsNameThem) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

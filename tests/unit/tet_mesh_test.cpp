@@ -8,7 +8,7 @@
 
 #include "tests/unit/mesh_fixture.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 void expect_broken(const TetMesh& mesh, std::string_view rule, std::uint32_t element) {
@@ -126,4 +126,4 @@ TEST(TetMesh, RefinedSlabHasTheVerticesOfAFinerSlab) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 TEST(TetQuality, RegularTetrahedronIsOneAtAnySize) {
@@ -41,4 +41,4 @@ TEST(TetQuality, WorstTetrahedronIsNamed) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -8,7 +8,7 @@
 
 #include "tests/unit/mesh_fixture.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 /// The program is a package of its own; without it these tests say that they are skipped.
@@ -150,4 +150,4 @@ TEST(TetGen, MissingFailingAndHangingProgramsAreTold) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -7,7 +7,7 @@
 
 #include "sim/scene/scene.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 std::string repeated(const std::string& text, std::size_t times) {
@@ -50,4 +50,4 @@ TEST(TomlText, ScenesAreRefusedBeforeTheyAreParsed) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -8,7 +8,7 @@
 
 #include "sim/user/sampled_limit.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 UserSample pressing(const Vec3& force) {
@@ -123,4 +123,4 @@ TEST(SampledLimit, IsAboutDampingOverDelay) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

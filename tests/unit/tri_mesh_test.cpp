@@ -10,7 +10,7 @@
 
 #include "sim/mesh/tet_mesh.h"
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 /// Rows x columns unit squares in the plane z = 0, cut along the same diagonal; counter-clockwise seen from +z.
@@ -195,4 +195,4 @@ TEST(MeshTopology, ALargeFanIsNoTrap) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <set>
 
-namespace tactus {
+namespace tactus::sim {
 namespace {
 
 SceneUser still_user() {
@@ -203,4 +203,4 @@ TEST(Spiral, HandFollowsIt) {
 }
 
 }  // namespace
-}  // namespace tactus
+}  // namespace tactus::sim
