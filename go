@@ -118,7 +118,7 @@ run_bench() {
 
 run_format() {
   install clang-format
-  find codec sim cli conformance tests \( -name '*.h' -o -name '*.cpp' \) -exec clang-format -i {} +
+  find codec io metrics sim cli conformance tests \( -name '*.h' -o -name '*.cpp' \) -exec clang-format -i {} +
 }
 
 case ${1-help} in

@@ -7,13 +7,13 @@
 #include <memory>
 #include <vector>
 
+#include <tactus/sim/study/stability.h>
 #include "cli/cmd_bench.h"
 #include "cli/options_codec.h"
 #include "cli/stability_plots.h"
 #include "cli/study_report.h"
-#include "sim/study/stability.h"
 #ifdef TACTUS_HAS_FEM
-#include "sim/study/stability_fem.h"
+#include <tactus/sim/study/stability_fem.h>
 #endif
 
 namespace tactus::cli {

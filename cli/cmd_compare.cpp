@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <tactus/base/shown.h>
+#include <tactus/trace/trace_file.h>
 #include "cli/figures.h"
 #include "cli/report.h"
 #include "cli/trace_ending.h"
-#include "codec/base/shown.h"
-#include "codec/trace/trace_file.h"
 
 namespace tactus::cli {
 namespace {
@@ -41,7 +41,7 @@ Outcome check_same_scene(const CompareOptions& options, const TraceInfo& truth, 
   if (truth.meshes.size() != replica.meshes.size())
     return differ(fmt::format("there are {} meshes, not {}", replica.meshes.size(), truth.meshes.size()));
   for (std::size_t i = 0; i < truth.meshes.size(); ++i) {
-    const TraceMesh &a = truth.meshes[i], &b = replica.meshes[i];
+    const TraceDeformable &a = truth.meshes[i], &b = replica.meshes[i];
     if (a.name != b.name) return differ(fmt::format("mesh {} is \"{}\", not \"{}\"", i, b.name, a.name));
     if (a.rest.vertices.size() != b.rest.vertices.size() || a.rest.triangles != b.rest.triangles)
       return differ(fmt::format("mesh \"{}\" does not have the same vertices and triangles", a.name));
@@ -55,7 +55,7 @@ struct Shown {
   std::vector<std::vector<Vec3>> shapes;  // displacements
 
   explicit Shown(const TraceInfo& info) : poses(info.objects.size()) {
-    for (const TraceMesh& mesh : info.meshes) shapes.emplace_back(mesh.rest.vertices.size());
+    for (const TraceDeformable& mesh : info.meshes) shapes.emplace_back(mesh.rest.vertices.size());
   }
   void take(const TraceFrame& frame) {
     for (std::size_t i = 0; i < poses.size(); ++i) poses[i] = frame.objects[i].pose;
@@ -143,13 +143,13 @@ void set_bounds(const CompareOptions& options, const TraceInfo& info, const std:
   const RigidTriggers rigid = promised && promised->stream.rigid ? *promised->stream.rigid : RigidTriggers{};
   report.fidelity.emplace(info, options.triggers.over(rigid));
   for (std::size_t i = 0; i < info.meshes.size(); ++i) {
-    const MeshBounds bounds = promised ? promised->stream.meshes[i] : MeshBounds{};
+    const DeformableBounds bounds = promised ? promised->stream.meshes[i] : DeformableBounds{};
     report.meshes.push_back(
         {.name = info.meshes[i].name,
          .vertices = info.meshes[i].rest.vertices.size(),
-         .fidelity = MeshFidelity(info.meshes[i].rest, options.meshes.over(bounds.thresholds, options.triggers),
-                                  options.meshes.rings(promised ? promised->rings[i] : MeshObject{}.rings),
-                                  promised ? promised->position_exp : GridExponents{}.position),
+         .fidelity = DeformableErrors(info.meshes[i].rest, options.meshes.over(bounds.thresholds, options.triggers),
+                                      options.meshes.rings(promised ? promised->rings[i] : DeformableObject{}.rings),
+                                      promised ? promised->position_exp : GridExponents{}.position),
          .promised = bounds.kept || is_typed});
   }
 }

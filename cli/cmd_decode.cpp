@@ -5,12 +5,12 @@
 
 #include <span>
 
+#include <tactus/base/shown.h>
+#include <tactus/deformable/displacement.h>
+#include <tactus/file/stream_file.h>
+#include <tactus/trace/trace_file.h>
 #include "cli/report.h"
 #include "cli/trace_ending.h"
-#include "codec/base/shown.h"
-#include "codec/mesh/mesh.h"
-#include "codec/stream/file.h"
-#include "codec/trace/trace_file.h"
 
 namespace tactus::cli {
 namespace {
@@ -81,20 +81,20 @@ TraceInfo replica_info(const StreamHeader& header, const std::string& input) {
   info.tick_rate = header.tick_rate;
   info.source = "decode " + input;
   for (const RigidObject& object : header.objects) info.objects.push_back({object.name, object.dof});
-  for (const MeshObject& mesh : header.meshes) {
-    TraceMesh& out = info.meshes.emplace_back(TraceMesh{.name = mesh.name, .rest = {{}, mesh.triangles}});
+  for (const DeformableObject& mesh : header.meshes) {
+    TraceDeformable& out = info.meshes.emplace_back(TraceDeformable{.name = mesh.name, .rest = {{}, mesh.triangles}});
     for (const auto& vertex : mesh.rest) out.rest.vertices.push_back(to_metres(vertex, header.grid.position));
     out.period = mesh.frame_period / 256.0;
   }
   if (header.bounds) {
     info.bounds = TraceBounds{*header.bounds, header.grid.position, {}};
-    for (const MeshObject& mesh : header.meshes) info.bounds->rings.push_back(mesh.rings);
+    for (const DeformableObject& mesh : header.meshes) info.bounds->rings.push_back(mesh.rings);
   }
   return info;
 }
 
 /// The shape that the player shows at a tick; new if any vertex is elsewhere than in the one before.
-void show(StreamPlayer& player, std::size_t mesh, std::int64_t tick, MeshSample& sample) {
+void show(StreamPlayer& player, std::size_t mesh, std::int64_t tick, DeformableSample& sample) {
   sample.updated = false;
   auto out = sample.displacements.begin();
   const auto put = [&](double metres) {
@@ -140,7 +140,8 @@ Outcome decode_all(StreamPlayer& player, TraceWriter& writer, const DecodeOption
   if (!ticks) return tl::unexpected(ticks.error());
   TraceFrame frame;
   frame.objects.resize(player.header().objects.size());
-  for (const MeshObject& mesh : player.header().meshes) frame.meshes.push_back({false, std::vector<float>(3 * mesh.rest.size())});
+  for (const DeformableObject& mesh : player.header().meshes)
+    frame.meshes.push_back({false, std::vector<float>(3 * mesh.rest.size())});
   const auto total = options.ticks ? std::optional(static_cast<std::uint64_t>(*options.ticks)) : std::nullopt;
   Progress progress("decode", total, options.common.progress());
   while (true) {
@@ -177,8 +178,8 @@ Outcome run(const DecodeOptions& options) {
   Report report{.command = "decode", .files = {{"stream", options.input}, {"replica", options.output}}};
   report.describe(info);
   if (report.moving > 0 || info.meshes.empty()) report.traffic.emplace();
-  for (const TraceMesh& mesh : info.meshes)
-    report.meshes.push_back({.name = mesh.name, .vertices = mesh.rest.vertices.size(), .traffic = MeshTraffic{}});
+  for (const TraceDeformable& mesh : info.meshes)
+    report.meshes.push_back({.name = mesh.name, .vertices = mesh.rest.vertices.size(), .traffic = DeformableRates{}});
   report.timings = {{"decode", "decode and show, per tick"}};
   report.stream = {player->header_bytes(), bytes->size()};
   if (report.traffic) report.client = options.replica.interpolation;

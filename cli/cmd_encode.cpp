@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <optional>
 
+#include <tactus/base/shown.h>
+#include <tactus/trace/trace_file.h>
 #include "cli/option_needs.h"
 #include "cli/report.h"
 #include "cli/trace_ending.h"
-#include "codec/base/shown.h"
-#include "codec/trace/trace_file.h"
 
 namespace tactus::cli {
 namespace {
@@ -33,7 +33,7 @@ struct Session {
   StreamFileWriter writer;
   PartJoiner parts;
   std::optional<RigidLink> rigid;  // none: nothing rigid can move
-  std::vector<MeshLink> meshes;
+  std::vector<DeformableLink> meshes;
 };
 
 bool has_moving(const TraceInfo& info) {
@@ -53,7 +53,7 @@ Result<Session> start(const TraceInfo& info, const TraceFrame& first, const Enco
                                     std::vector<Contact>(info.users.size()), std::vector<Pose>(info.objects.size())});
   }
   for (std::size_t i = 0; i < header.meshes.size(); ++i) {
-    TACTUS_TRY(MeshLink link, MeshLink::create(header, i, options.meshes.encoder(options.triggers)));
+    TACTUS_TRY(DeformableLink link, DeformableLink::create(header, i, options.meshes.encoder(options.triggers)));
     session.meshes.push_back(std::move(link));
   }
   return session;
@@ -81,9 +81,9 @@ Result<void> encode_frame(Session& s, const TraceFrame& frame, Report& report) {
   if (s.rigid) TACTUS_CHECK(encode_rigid(s, frame, report));
   for (std::size_t i = 0; i < s.meshes.size(); ++i) {
     if (!frame.meshes[i].updated) continue;
-    TACTUS_TRY(const MeshPackets packets, transmit(s.meshes[i], frame, i, report.meshes[i]));
+    TACTUS_TRY(const DeformablePackets packets, transmit(s.meshes[i], frame, i, report.meshes[i]));
     ++report.meshes[i].traffic->frames;
-    for (const EncodedMeshPacket& packet : packets) {
+    for (const EncodedDeformablePacket& packet : packets) {
       if (packet.bytes.empty()) continue;
       const auto bytes = s.parts.join(i + 1, packet.bytes);
       TACTUS_CHECK(s.writer.add(frame.tick, bytes, packet.key));
@@ -141,7 +141,7 @@ Outcome run(const EncodeOptions& options) {
     report.timings = {{"encode", "encode, per tick"}, {"decode", "decode, per packet"}};
   }
   add_meshes(reader->info(), options.meshes, options.triggers, report);
-  for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.coding().profile == MeshProfile::main;
+  for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.coding().profile == DeformableProfile::main;
   if (auto done = encode_all(*reader, *session, frame, options, report); !done) return done;
   if (auto whole = check_ending(options.input, *reader, report.ticks.count()); !whole) return whole;
   if (reader->cut_short()) report.warnings.emplace_back("the trace ends without its index; everything up to there was encoded");

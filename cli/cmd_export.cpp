@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/cmd_export.h"
 
+#include <tactus/trace/csv.h>
+#include <tactus/trace/trace_file.h>
 #include "cli/report.h"
 #include "cli/trace_ending.h"
-#include "codec/trace/csv.h"
-#include "codec/trace/trace_file.h"
 
 namespace tactus::cli {
 namespace {

@@ -5,12 +5,12 @@
 #include <cerrno>
 #include <filesystem>
 
+#include <tactus/base/shown.h>
+#include <tactus/sim/surface/surface_file.h>
+#include <tactus/trace/trace_file.h>
 #include "cli/cmd_export.h"
 #include "cli/report.h"
 #include "cli/trace_ending.h"
-#include "codec/base/shown.h"
-#include "codec/trace/trace_file.h"
-#include "sim/surface/surface_file.h"
 
 namespace tactus::cli {
 namespace {
@@ -36,7 +36,7 @@ tl::expected<fs::path, Failure> target_of(const std::string& output) {
 
 tl::expected<std::size_t, Failure> find_mesh(const ExportMeshOptions& options, const TraceInfo& info) {
   const auto found = std::find_if(info.meshes.begin(), info.meshes.end(),
-                                  [&](const TraceMesh& m) { return options.mesh.empty() || m.name == options.mesh; });
+                                  [&](const TraceDeformable& m) { return options.mesh.empty() || m.name == options.mesh; });
   if (info.meshes.empty()) return refuse(shown_path(options.input) + ": no mesh in it", "Give a trace of a deformable object.");
   if (found == info.meshes.end()) return refuse("--mesh " + shown(options.mesh) + ": no such mesh", "`tactus info` names them.");
   if (options.mesh.empty() && info.meshes.size() > 1)

@@ -9,10 +9,10 @@
 #include <span>
 #include <string_view>
 
+#include <tactus/base/shown.h>
+#include <tactus/trace/csv.h>
 #include "cli/report.h"
 #include "cli/table.h"
-#include "codec/base/shown.h"
-#include "codec/trace/csv.h"
 
 namespace tactus::cli {
 namespace {

@@ -4,14 +4,14 @@
 #include <charconv>
 #include <cmath>
 
+#include <tactus/base/shown.h>
+#include <tactus/sim/surface/surface_sequence.h>
+#include <tactus/trace/messages.h>
+#include <tactus/trace/text.h>
+#include <tactus/trace/trace_file.h>
 #include "cli/cmd_import.h"
 #include "cli/report.h"
 #include "cli/table.h"
-#include "codec/base/shown.h"
-#include "codec/trace/messages.h"
-#include "codec/trace/text.h"
-#include "codec/trace/trace_file.h"
-#include "sim/surface/surface_sequence.h"
 
 namespace tactus::cli {
 namespace {

@@ -9,6 +9,10 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include <tactus/base/shown.h>
+#include <tactus/metrics/compare.h>
+#include <tactus/trace/mcap_reader.h>
+#include <tactus/trace/trace_file.h>
 #include "cli/figures.h"
 #include "cli/info_json.h"
 #include "cli/json_parts.h"
@@ -17,12 +21,8 @@
 #include "cli/rereadable_input.h"
 #include "cli/table.h"
 #include "cli/trace_ending.h"
-#include "codec/base/shown.h"
-#include "codec/trace/compare.h"
-#include "codec/trace/mcap_reader.h"
-#include "codec/trace/trace_file.h"
 #ifdef TACTUS_HAS_SIM
-#include "sim/scene/scene.h"
+#include <tactus/sim/scene/scene.h>
 #endif
 
 namespace tactus::cli {
@@ -97,7 +97,7 @@ Json packet_json(const StreamPlayer::Played& played, const StreamHeader& header)
     updates += fmt::format("{}{}:{}", updates.empty() ? "" : " ", u.object, u.level);
   out["object:level"] = updates.empty() ? "-" : updates;
   if (!header.meshes.empty()) {
-    out["half"] = is_rigid || played.mesh.half == MeshHalf::whole ? "-" : kHalves[static_cast<std::size_t>(played.mesh.half)];
+    out["half"] = is_rigid || played.mesh.half == Layer::all ? "-" : kHalves[static_cast<std::size_t>(played.mesh.half)];
     out["vertices"] = is_rigid ? Json() : Json(played.mesh.updates);
   }
   return out;
@@ -111,7 +111,7 @@ std::string text_of(const Sizes& sizes) {
 
 /// What is said of rigid objects' packets.
 void show_rigid(const StreamTotals& totals, Json& out) {
-  const Traffic& traffic = totals.traffic;
+  const RateMetrics& traffic = totals.traffic;
   out["packets"] = traffic.all_packets();
   out["updates"] = traffic.updates;
   out["key packets"] = traffic.keys;
@@ -127,8 +127,8 @@ void show_rigid(const StreamTotals& totals, Json& out) {
 }
 
 /// How a mesh is coded, and what of it the stream holds.
-Json mesh_json(const MeshObject& mesh, const StreamHeader& header, const MeshTraffic& t) {
-  const bool is_main = mesh.profile == MeshProfile::main;
+Json mesh_json(const DeformableObject& mesh, const StreamHeader& header, const DeformableRates& t) {
+  const bool is_main = mesh.profile == DeformableProfile::main;
   return {{"mesh", mesh.name},
           {"profile", is_main ? mesh.split ? "main, split" : "main"
                               : fmt::format("thesis, q {}{}", mesh.quant_bits, mesh.models_kept ? ", models kept" : "")},
@@ -145,7 +145,7 @@ Json mesh_json(const MeshObject& mesh, const StreamHeader& header, const MeshTra
 }
 
 /// What of a mesh went in which half.
-Json half_json(const MeshTraffic& t) {
+Json half_json(const DeformableRates& t) {
   Json out;
   for (std::size_t i = 0; i < t.halves.size(); ++i) {
     out[fmt::format("{} packets", kHalves[i])] = t.halves[i].packets;
@@ -211,7 +211,7 @@ Outcome info_stream(const InfoOptions& options) {
          {"moves along", dof_text(o.dof)},
          {"first position [m]", fmt::format("{:.4f} {:.4f} {:.4f}", pose.position.x, pose.position.y, pose.position.z)}});
   }
-  const bool is_split = std::ranges::any_of(totals.meshes, [](const MeshTraffic& t) {
+  const bool is_split = std::ranges::any_of(totals.meshes, [](const DeformableRates& t) {
     return std::ranges::any_of(t.halves, [](const auto& h) { return h.packets > 0; });
   });
   for (std::size_t i = 0; i < totals.meshes.size(); ++i) {

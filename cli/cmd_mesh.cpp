@@ -9,15 +9,15 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include <tactus/base/shown.h>
+#include <tactus/sim/tets/tet_files.h>
+#include <tactus/sim/tets/tet_quality.h>
 #include "cli/json_parts.h"
 #include "cli/report.h"
 #include "cli/table.h"
-#include "codec/base/shown.h"
-#include "sim/mesh/tet_files.h"
-#include "sim/mesh/tet_quality.h"
 #ifdef TACTUS_HAS_SURFACE
-#include "sim/surface/surface_file.h"
-#include "sim/surface/tetgen.h"
+#include <tactus/sim/surface/surface_file.h>
+#include <tactus/sim/surface/tetgen.h>
 #endif
 
 namespace tactus::cli {

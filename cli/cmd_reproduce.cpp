@@ -11,12 +11,12 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include <tactus/metrics/compare.h>
+#include <tactus/sim/simulation.h>
 #include "cli/json_parts.h"
 #include "cli/options_codec.h"
 #include "cli/table.h"
 #include "cli/workers.h"
-#include "codec/trace/compare.h"
-#include "sim/simulation.h"
 
 namespace tactus::cli {
 namespace {
@@ -119,7 +119,7 @@ Result<void> follow(Predictor& predictor, const EncodedPacket& packet, std::int6
   return {};
 }
 
-Measured summary(const Traffic& traffic, const Fidelity& predicted, const Fidelity& shown, std::uint64_t ticks,
+Measured summary(const RateMetrics& traffic, const ErrorMetrics& predicted, const ErrorMetrics& shown, std::uint64_t ticks,
                  std::uint64_t visual_violations) {
   const double seconds = static_cast<double>(ticks) * sim::kTick;
   Measured out;
@@ -143,8 +143,8 @@ Measured measure(const sim::Scene& scene, const Setting& setting, const RigidTri
   auto predictor = make_predictor(simulation->header());
   if (!predictor) return failed_at(0, predictor.error());
   const TraceInfo info = simulation->info();
-  Fidelity predicted(info, triggers), shown(info, triggers);
-  Traffic traffic;
+  ErrorMetrics predicted(info, triggers), shown(info, triggers);
+  RateMetrics traffic;
   std::vector<Pose> poses(info.objects.size());
   const std::int64_t ticks = simulation->ticks();
   std::uint64_t visual_violations = 0;

@@ -7,14 +7,14 @@
 #include <cmath>
 #include <map>
 
+#include <tactus/sim/simulation.h>
+#include <tactus/trace/trace_file.h>
 #include "cli/option_needs.h"
 #include "cli/report.h"
 #include "cli/stiffness_map.h"
 #include "cli/stop.h"
 #include "cli/table.h"
 #include "cli/trace_ending.h"
-#include "codec/trace/trace_file.h"
-#include "sim/simulation.h"
 
 namespace tactus::cli {
 namespace {
@@ -85,11 +85,11 @@ Outcome record_meshes(Run& run, const SimOptions& options, Report& report) {
   const TraceFrame& frame = run.simulation.frame();
   for (std::size_t i = 0; i < report.meshes.size(); ++i) {
     if (!frame.meshes[i].updated) continue;
-    const sim::MeshSent& sent = run.simulation.sent(i);
-    MeshTraffic& traffic = *report.meshes[i].traffic;
+    const sim::DeformableSent& sent = run.simulation.sent(i);
+    DeformableRates& traffic = *report.meshes[i].traffic;
     ++traffic.frames;
     report.meshes[i].fidelity->add(frame.meshes[i].displacements, sent.shown, touch_of(frame, i));
-    for (const EncodedMeshPacket& packet : sent.packets) {
+    for (const EncodedDeformablePacket& packet : sent.packets) {
       if (packet.bytes.empty()) continue;
       traffic.add(packet.bytes.size() + run.part_bytes, packet.updates, packet.key, packet.half);
       if (!run.stream) continue;
@@ -187,7 +187,7 @@ Report make_report(const SimOptions& options, const TraceInfo& info) {
   if (report.moving > 0 || info.meshes.empty()) report.traffic.emplace();
   report.fidelity.emplace(info, options.triggers.triggers());
   add_meshes(info, options.meshes, options.triggers, report);
-  for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.coding().profile == MeshProfile::main;
+  for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.coding().profile == DeformableProfile::main;
   report.client = options.replica.interpolation;
   // A client that smooths what it shows leaves the bounds that the encoder keeps.
   if (report.client == Interpolation::none)

@@ -14,6 +14,7 @@
 #include <system_error>
 #include <thread>
 
+#include <tactus/base/shown.h>
 #include "cli/child_process.h"
 #include "cli/json_parts.h"
 #include "cli/options_codec.h"
@@ -22,7 +23,6 @@
 #include "cli/sweep_plots.h"
 #include "cli/sweep_results.h"
 #include "cli/table.h"
-#include "codec/base/shown.h"
 
 namespace tactus::cli {
 namespace {

@@ -6,7 +6,7 @@
 #include "cli/figures.h"
 #include "cli/report_json.h"
 #ifdef TACTUS_HAS_SIM
-#include "sim/scene/scene.h"
+#include <tactus/sim/scene/scene.h>
 #endif
 
 namespace tactus::cli {
@@ -27,8 +27,8 @@ Json dof_json(std::uint8_t dof) {
 
 double step_of(std::uint8_t exponent) { return 1.0 / static_cast<double>(std::uint64_t{1} << exponent); }
 
-Json mesh_header_json(const MeshObject& mesh, std::uint32_t tick_rate) {
-  const bool is_main = mesh.profile == MeshProfile::main;
+Json mesh_header_json(const DeformableObject& mesh, std::uint32_t tick_rate) {
+  const bool is_main = mesh.profile == DeformableProfile::main;
   Json out{{"name", mesh.name},
            {"profile", is_main ? "main" : "thesis"},
            {"vertices", mesh.rest.size()},
@@ -45,8 +45,8 @@ Json mesh_header_json(const MeshObject& mesh, std::uint32_t tick_rate) {
   return out;
 }
 
-Json promised_json(const MeshBounds& bounds, std::uint8_t rings) {
-  const MeshThresholds& b = bounds.thresholds;
+Json promised_json(const DeformableBounds& bounds, std::uint8_t rings) {
+  const DeformableThresholds& b = bounds.thresholds;
   Json out{{"position_m", b.visual},
            {"haptic_rule", b.weber_fraction ? "isotropic" : "off"},
            {"rings", rings},
@@ -147,7 +147,7 @@ Json trace_info_json(const TraceInfo& trace, const TraceTotals& totals) {
   for (const TraceObject& o : trace.objects) out["objects"].push_back({{"name", o.name}, {"dof", dof_json(o.dof)}});
   out["meshes"] = Json::array();
   for (std::size_t i = 0; i < trace.meshes.size(); ++i) {
-    const TraceMesh& mesh = trace.meshes[i];
+    const TraceDeformable& mesh = trace.meshes[i];
     out["meshes"].push_back({{"name", mesh.name},
                              {"vertices", mesh.rest.vertices.size()},
                              {"triangles", mesh.rest.triangles.size()},

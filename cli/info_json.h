@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
+#include <tactus/trace/frame.h>
 #include "cli/stream_totals.h"
-#include "codec/trace/frame.h"
 
 namespace tactus::sim {
 struct Scene;

@@ -6,6 +6,7 @@
 #include <new>
 #include <string_view>
 
+#include <tactus/base/shown.h>
 #include "cli/cmd_compare.h"
 #include "cli/cmd_decode.h"
 #include "cli/cmd_encode.h"
@@ -15,11 +16,10 @@
 #include "cli/json_parts.h"
 #include "cli/output.h"
 #include "cli/progress.h"
-#include "codec/base/shown.h"
 #ifdef TACTUS_HAS_STUDY
 #include "cli/cmd_bench.h"
 #endif
-#ifdef TACTUS_HAS_MESH
+#ifdef TACTUS_HAS_TETS
 #include "cli/cmd_mesh.h"
 #endif
 #ifdef TACTUS_HAS_SIM
@@ -110,7 +110,7 @@ int main(int argc, char** argv) {
 #ifdef TACTUS_HAS_SIM
   setup_sim(app, action);
 #endif
-#ifdef TACTUS_HAS_MESH
+#ifdef TACTUS_HAS_TETS
   setup_mesh(app, action);
 #endif
   setup_import(app, action);

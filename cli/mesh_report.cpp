@@ -6,9 +6,9 @@
 namespace tactus::cli {
 namespace {
 
-double packets_of(const MeshTraffic& t) { return static_cast<double>(t.sizes.size()); }
+double packets_of(const DeformableRates& t) { return static_cast<double>(t.sizes.size()); }
 
-void half_rows(Table& table, const MeshTraffic& t, double seconds) {
+void half_rows(Table& table, const DeformableRates& t, double seconds) {
   for (std::size_t i = 0; i < t.halves.size(); ++i) {
     const auto packets = static_cast<double>(t.halves[i].packets), bytes = static_cast<double>(t.halves[i].bytes);
     table.row({fmt::format("  {} packets per second", kHalves[i]), fmt::format("{:.2f}", per(packets, seconds))});
@@ -18,7 +18,7 @@ void half_rows(Table& table, const MeshTraffic& t, double seconds) {
 }
 
 void traffic_rows(Table& table, const MeshReport& mesh, double seconds) {
-  const MeshTraffic& t = *mesh.traffic;
+  const DeformableRates& t = *mesh.traffic;
   table.heading({mesh.name, "payload", "with UDP/IPv4"});
   const auto both = [&](const char* name, int digits, auto value) {
     table.row({name, fmt::format("{:.{}f}", value(bytes_of(t, 0)), digits),
@@ -36,8 +36,8 @@ void traffic_rows(Table& table, const MeshReport& mesh, double seconds) {
 }
 
 void error_rows(Table& table, const MeshReport& mesh) {
-  const MeshFidelity& f = *mesh.fidelity;
-  const MeshThresholds& b = f.bounds();
+  const DeformableErrors& f = *mesh.fidelity;
+  const DeformableThresholds& b = f.bounds();
   table.heading({"error of " + mesh.name, "bound", "MSE [mm2]", "max", "violations", "vertices"});
   const auto row = [&](const std::string& name, const std::string& bound, const VertexErrors& e) {
     table.row({name, bound, significant(1e6 * e.mse()), significant(1e3 * e.max, 5), fmt::to_string(e.violations),
@@ -54,12 +54,12 @@ void error_rows(Table& table, const MeshReport& mesh) {
 
 }  // namespace
 
-Result<MeshPackets> transmit(MeshLink& link, const TraceFrame& frame, std::size_t index, MeshReport& report) {
+Result<DeformablePackets> transmit(DeformableLink& link, const TraceFrame& frame, std::size_t index, MeshReport& report) {
   const auto touch = touch_of(frame, index);
-  const MeshSample& mesh = frame.meshes[index];
-  TACTUS_TRY(const MeshPackets packets,
+  const DeformableSample& mesh = frame.meshes[index];
+  TACTUS_TRY(const DeformablePackets packets,
              report.encode.measure([&] { return link.encode(frame.tick, mesh.displacements, touch); }));
-  for (const EncodedMeshPacket& packet : packets) {
+  for (const EncodedDeformablePacket& packet : packets) {
     if (!packet.bytes.empty()) TACTUS_CHECK(report.decode.measure([&] { return link.decode(packet.bytes); }));
   }
   report.fidelity->add(mesh.displacements, link.shown(frame.tick), touch);

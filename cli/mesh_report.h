@@ -6,18 +6,18 @@
 #include <optional>
 #include <string>
 
+#include <tactus/metrics/deformable_errors.h>
+#include <tactus/metrics/deformable_link.h>
 #include "cli/step_times.h"
 #include "cli/table.h"
-#include "codec/trace/mesh_fidelity.h"
-#include "codec/trace/mesh_link.h"
 
 namespace tactus::cli {
 
 struct MeshReport {
   std::string name;
   std::size_t vertices = 0, triangles = 0;  ///< triangles 0: not said
-  std::optional<MeshTraffic> traffic{};
-  std::optional<MeshFidelity> fidelity{};
+  std::optional<DeformableRates> traffic{};
+  std::optional<DeformableErrors> fidelity{};
   std::uint64_t frames = 0;  ///< written or read; 0: not said
   double frame_period = 0;   ///< [s] from one to the next, if frames
   bool promised = true;      ///< the bounds are: false where they only decide what is sent
@@ -27,16 +27,16 @@ struct MeshReport {
 /// Send one shape through the link and measure.
 /// in   frame  whose mesh `index` is new
 /// out  the packets, valid until the link's next encode().   err  of encoder or decoder
-Result<MeshPackets> transmit(MeshLink& link, const TraceFrame& frame, std::size_t index, MeshReport& report);
+Result<DeformablePackets> transmit(DeformableLink& link, const TraceFrame& frame, std::size_t index, MeshReport& report);
 
 void mesh_rows(Table& table, const MeshReport& mesh, double seconds);
 
 /// With `header` bytes below each packet.
-inline double bytes_of(const MeshTraffic& t, std::uint64_t header) {
+inline double bytes_of(const DeformableRates& t, std::uint64_t header) {
   return static_cast<double>(t.bytes + t.sizes.size() * header);
 }
 /// Every frame as three floats per vertex.
 inline double raw_bytes(const MeshReport& mesh) { return 12.0 * static_cast<double>(mesh.vertices * mesh.traffic->frames); }
-inline bool has_halves(const MeshTraffic& t) { return t.halves[0].packets + t.halves[1].packets > 0; }
+inline bool has_halves(const DeformableRates& t) { return t.halves[0].packets + t.halves[1].packets > 0; }
 
 }  // namespace tactus::cli

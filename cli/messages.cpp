@@ -9,7 +9,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "codec/base/shown.h"
+#include <tactus/base/shown.h>
 
 namespace tactus::cli {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <tl/expected.hpp>
 
-#include "codec/base/result.h"
+#include <tactus/base/result.h>
 
 namespace tactus::cli {
 

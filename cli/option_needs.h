@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-#include "codec/trace/trace_file.h"
+#include <tactus/trace/trace_file.h>
 
 namespace tactus::cli {
 

@@ -11,8 +11,8 @@
 #include <string>
 
 #ifdef TACTUS_HAS_MODES
-#include "codec/mesh/mesh.h"
-#include "sim/modes/spring_modes.h"
+#include <tactus/deformable/displacement.h>
+#include <tactus/sim/modes/spring_modes.h>
 #endif
 
 namespace tactus::cli {
@@ -23,12 +23,12 @@ constexpr double kLeastLength = 2e-6, kMostLength = 1e6;        // [m]
 constexpr double kLeastAngle = 0.002 * std::numbers::pi / 180;  // [rad]
 
 #ifdef TACTUS_HAS_MODES
-Result<ModeBasis> spring_basis(const TraceMesh& mesh, std::size_t modes) {
+Result<ModeBasis> spring_basis(const TraceDeformable& mesh, std::size_t modes) {
   TACTUS_TRY(const std::vector<double> vectors, sim::spring_modes(mesh.rest, mesh.fixed, modes));
   return make_mode_basis(vectors, modes);
 }
 #else
-Result<ModeBasis> spring_basis(const TraceMesh&, std::size_t) { return fail(Errc::unsupported, "R-SIM-4"); }
+Result<ModeBasis> spring_basis(const TraceDeformable&, std::size_t) { return fail(Errc::unsupported, "R-SIM-4"); }
 #endif
 
 }  // namespace
@@ -161,13 +161,14 @@ void MeshArguments::add_to(Command& app) {
                          "Permitted error of a vertex to the eye, 0: none beyond the grid's [0.25mm]")
                 ->check(within(Dimension::length, "0m", "1000000m"));
   rings_ = app.add_option("--rings", coding_.rings, "Rings of triangles around the touched one that -p holds in [3]")
-               ->check(whole_number(0, MeshObject::kMaxRings))
+               ->check(whole_number(0, DeformableObject::kMaxRings))
                ->type_name("M");
   options_ = {visual_, rings_};
 }
 
 void MeshArguments::add_encoder_to(Command& app) {
-  const std::map<std::string, MeshProfile> profiles{{"thesis", MeshProfile::thesis}, {"main", MeshProfile::main}};
+  const std::map<std::string, DeformableProfile> profiles{{"thesis", DeformableProfile::thesis},
+                                                          {"main", DeformableProfile::main}};
   const auto profile = [this, profiles](const std::string& name) { coding_.profile = profiles.at(name); };
   Option* modes = app.add_option("--basis", modes_, "main: vibration modes that both ends know, 0: none [0]")
                       ->check(whole_number(0, ModeBasis::kMaxModes))
@@ -184,7 +185,7 @@ void MeshArguments::add_encoder_to(Command& app) {
                                 "main: code to this share of -p's bound, 0.1% or more [100%]")
                        ->check(within(Dimension::fraction, "0.1%", "100%")),
                    app.add_option("--quant-bits", coding_.quant_bits, "thesis: bits of its quantiser, 1 to 12 [8]")
-                       ->check(whole_number(1, MeshObject::kMaxQuantBits))
+                       ->check(whole_number(1, DeformableObject::kMaxQuantBits))
                        ->type_name("Q"),
                    app.add_flag("--keep-models", coding_.models_kept, "thesis: entropy models live on from packet to packet"),
                    app.add_flag("--split", coding_.split,
@@ -197,19 +198,19 @@ bool MeshArguments::any_given() const {
   return std::any_of(options_.begin(), options_.end(), [](const Option* option) { return option->count() > 0; });
 }
 
-MeshThresholds MeshArguments::over(MeshThresholds out, const TriggerArguments& triggers) const {
+DeformableThresholds MeshArguments::over(DeformableThresholds out, const TriggerArguments& triggers) const {
   if (visual_->count() > 0) out.visual = thresholds_.visual;
   out.weber_fraction = triggers.weber_fraction(out.weber_fraction);
   return out;
 }
 
-MeshEncoderOptions MeshArguments::encoder(const TriggerArguments& triggers) const {
+DeformableEncoderOptions MeshArguments::encoder(const TriggerArguments& triggers) const {
   return {thresholds(triggers), triggers.key_interval(), visual_share_, haptic_share_, coding_.split};
 }
 
-MeshCoding MeshArguments::coding() const {
-  MeshCoding out = coding_;
-  if (modes_ > 0) out.basis = [modes = modes_](const TraceMesh& mesh) { return spring_basis(mesh, modes); };
+DeformableCoding MeshArguments::coding() const {
+  DeformableCoding out = coding_;
+  if (modes_ > 0) out.basis = [modes = modes_](const TraceDeformable& mesh) { return spring_basis(mesh, modes); };
   return out;
 }
 

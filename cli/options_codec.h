@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
+#include <tactus/client/replica.h>
+#include <tactus/metrics/deformable_link.h>
+#include <tactus/rigid/rigid_encoder.h>
 #include "cli/output.h"
 #include "cli/progress.h"
 #include "cli/units.h"
-#include "codec/client/replica.h"
-#include "codec/rigid/rigid_encoder.h"
-#include "codec/trace/mesh_link.h"
 
 namespace tactus::cli {
 
@@ -67,17 +67,17 @@ class MeshArguments {
   /// Options of the encoder itself, beyond the bounds.
   void add_encoder_to(Command& app);
   bool any_given() const;
-  MeshThresholds thresholds(const TriggerArguments& triggers) const { return over({}, triggers); }
+  DeformableThresholds thresholds(const TriggerArguments& triggers) const { return over({}, triggers); }
   /// The bounds that were typed, for the others those of `out`.
-  MeshThresholds over(MeshThresholds out, const TriggerArguments& triggers) const;
+  DeformableThresholds over(DeformableThresholds out, const TriggerArguments& triggers) const;
   std::uint8_t rings(std::uint8_t otherwise) const { return rings_->count() > 0 ? coding_.rings : otherwise; }
-  MeshEncoderOptions encoder(const TriggerArguments& triggers) const;
+  DeformableEncoderOptions encoder(const TriggerArguments& triggers) const;
   std::uint8_t rings() const { return coding_.rings; }
-  MeshCoding coding() const;
+  DeformableCoding coding() const;
 
  private:
-  MeshThresholds thresholds_;
-  MeshCoding coding_;
+  DeformableThresholds thresholds_;
+  DeformableCoding coding_;
   std::uint32_t modes_ = 0;
   double visual_share_ = 1, haptic_share_ = 1;
   const Option *visual_ = nullptr, *rings_ = nullptr;

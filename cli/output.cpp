@@ -16,8 +16,8 @@
 #include <random>
 #include <system_error>
 
-#include "codec/base/shown.h"
-#include "codec/trace/byte_source.h"
+#include <tactus/base/shown.h>
+#include <tactus/trace/byte_source.h>
 
 namespace tactus::cli {
 namespace fs = std::filesystem;

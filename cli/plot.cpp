@@ -6,8 +6,8 @@
 #include <cmath>
 #include <ostream>
 
+#include <tactus/base/shown.h>
 #include "cli/child_process.h"
-#include "codec/base/shown.h"
 
 namespace tactus::cli {
 namespace {

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include <tactus/sim/study/precision.h>
+#include <tactus/sim/study/precision_space.h>
 #include "cli/output.h"
-#include "sim/study/precision.h"
-#include "sim/study/precision_space.h"
 
 namespace tactus::cli {
 

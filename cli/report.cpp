@@ -17,7 +17,7 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 
 void traffic_rows(Table& table, const Report& r) {
-  const Traffic& t = *r.traffic;
+  const RateMetrics& t = *r.traffic;
   table.heading({"packets", "number", "per second"});
   for (std::size_t i = kReasons.size(); i-- > 0;) {
     table.row({fmt::format("  {}", kReasons[i]), fmt::to_string(t.packets[i]),
@@ -65,7 +65,7 @@ void error_row(Table& table, const Report& r, const std::string& name, const std
 }
 
 void error_rows(Table& table, const Report& r) {
-  const Fidelity& f = *r.fidelity;
+  const ErrorMetrics& f = *r.fidelity;
   const RigidTriggers& b = f.bounds();
   table.heading({"error", "bound", "RMS", "max", "ticks over", "share", "longest [ms]"});
   if (f.position().ticks() > 0) {
@@ -208,7 +208,7 @@ std::string broken_bounds(const Report& r) {
     if (over > 0) text += fmt::format("{}{} {} of {}", text.empty() ? "" : "; ", name, over, counted(all, what));
   };
   if (r.fidelity) {
-    const Fidelity& f = *r.fidelity;
+    const ErrorMetrics& f = *r.fidelity;
     look("position in", f.position().ticks_over(), f.position().ticks(), "tick");
     look("rotation in", f.rotation().ticks_over(), f.rotation().ticks(), "tick");
     if (f.bounds().haptic != HapticRule::off) look("contact force in", f.force().ticks_over(), f.force().ticks(), "tick");
@@ -229,7 +229,7 @@ Outcome verdict(const Report& r, const std::string& file) {
 }
 
 RigidRates rigid_rates(const Report& r, std::uint64_t header) {
-  const Traffic& t = *r.traffic;
+  const RateMetrics& t = *r.traffic;
   const auto packets = static_cast<double>(t.all_packets());
   const double bytes = static_cast<double>(t.bytes) + packets * static_cast<double>(header);
   // Without reduction: one packet per tick with every moving object's state, raw.
@@ -238,7 +238,7 @@ RigidRates rigid_rates(const Report& r, std::uint64_t header) {
           1 - per(bytes, raw(48))};
 }
 
-bool has_errors(const Fidelity& f) { return f.position().ticks() > 0 || f.rendered().ticks() > 0; }
+bool has_errors(const ErrorMetrics& f) { return f.position().ticks() > 0 || f.rendered().ticks() > 0; }
 
 std::pair<std::uint64_t, std::uint64_t> Report::bytes_and_packets() const {
   std::pair<std::uint64_t, std::uint64_t> all{};
@@ -260,7 +260,7 @@ void Report::describe(const TraceInfo& info) {
 }
 
 void add_meshes(const TraceInfo& info, const MeshArguments& meshes, const TriggerArguments& triggers, Report& report) {
-  for (const TraceMesh& mesh : info.meshes) {
+  for (const TraceDeformable& mesh : info.meshes) {
     report.meshes.push_back({.name = mesh.name, .vertices = mesh.rest.vertices.size()});
     report.meshes.back().traffic.emplace();
     report.meshes.back().fidelity.emplace(mesh.rest, meshes.thresholds(triggers), meshes.rings(), GridExponents{}.position);

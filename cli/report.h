@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include <tactus/metrics/compare.h>
 #include "cli/mesh_report.h"
 #include "cli/options_codec.h"
 #include "cli/touch_report.h"
-#include "codec/trace/compare.h"
 
 namespace tactus::cli {
 
@@ -52,8 +52,8 @@ struct Report {
   std::vector<std::string> warnings{};
   std::string bounds_from{};  ///< "stream", "options", "defaults"; empty: no verdict on them
   std::optional<StreamSize> stream{};
-  std::optional<Traffic> traffic{};
-  std::optional<Fidelity> fidelity{};
+  std::optional<RateMetrics> traffic{};
+  std::optional<ErrorMetrics> fidelity{};
   std::vector<MeshReport> meshes{};
   std::vector<Timing> timings{};
 
@@ -79,7 +79,7 @@ std::string broken_bounds(const Report& report);
 /// A failure that says so.   in  file  that was judged
 Outcome verdict(const Report& report, const std::string& file);
 
-bool has_errors(const Fidelity& fidelity);
+bool has_errors(const ErrorMetrics& fidelity);
 /// Schema report.json: numbers in SI units.
 std::string to_json(const Report& report);
 

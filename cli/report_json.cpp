@@ -29,7 +29,7 @@ Json traffic_json(std::uint64_t packets, std::uint64_t keys, std::uint64_t updat
 }  // namespace
 
 Json rigid_traffic_json(const Report& r) {
-  const Traffic& t = *r.traffic;
+  const RateMetrics& t = *r.traffic;
   Json out = traffic_json(t.all_packets(), t.keys, t.updates, t.bytes, r.seconds());
   for (const auto& [name, header] : {std::pair("payload", std::uint64_t{0}), std::pair("with_udp_ipv4", kUdpHeader)}) {
     const RigidRates rates = rigid_rates(r, header);
@@ -43,7 +43,7 @@ Json rigid_traffic_json(const Report& r) {
 }
 
 Json mesh_traffic_json(const MeshReport& mesh, double seconds) {
-  const MeshTraffic& t = *mesh.traffic;
+  const DeformableRates& t = *mesh.traffic;
   Json out = traffic_json(t.sizes.size(), t.keys, t.updates, t.bytes, seconds);
   out["p99_bytes"] = t.quantile(0.99);
   out["max_bytes"] = t.quantile(1);
@@ -123,7 +123,7 @@ Json series_json(const Report& r, const ErrorSeries& s) {
 
 Json series_json(const VertexErrors& e) { return series_json(e.vertices, e.violations, e.mse(), e.max); }
 
-Json mesh_bounds_json(const MeshFidelity& f, bool promised) {
+Json mesh_bounds_json(const DeformableErrors& f, bool promised) {
   Json out{{"position_m", f.bounds().visual},
            {"haptic_rule", f.bounds().weber_fraction ? "isotropic" : "off"},
            {"rings", f.rings()},
@@ -136,7 +136,7 @@ Json mesh_bounds_json(const MeshFidelity& f, bool promised) {
 }
 
 Json errors_json(const Report& r) {
-  const Fidelity& f = *r.fidelity;
+  const ErrorMetrics& f = *r.fidelity;
   Json out;
   if (f.position().ticks() > 0) {
     out["position_m"] = series_json(r, f.position());
@@ -153,7 +153,7 @@ Json errors_json(const Report& r) {
   return out;
 }
 
-Json mesh_errors_json(const MeshFidelity& f) {
+Json mesh_errors_json(const DeformableErrors& f) {
   Json out{{"frames", f.frames()}, {"worst_ratio", f.worst_ratio()}, {"position_m", series_json(f.all())}};
   out["haptic_area_m"] = series_json(f.area());
   out["haptic_area_m"]["mean_bound"] = f.mean_haptic();

@@ -7,9 +7,9 @@
 #include <cerrno>
 #include <filesystem>
 
+#include <tactus/base/shown.h>
+#include <tactus/trace/byte_source.h>
 #include "cli/output.h"
-#include "codec/base/shown.h"
-#include "codec/trace/byte_source.h"
 
 namespace tactus::cli {
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "sim/deformable/stiffness_map.h"
+#include <tactus/sim/deformable/stiffness_map.h>
 
 namespace tactus::cli {
 namespace {

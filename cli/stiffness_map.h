@@ -2,9 +2,9 @@
 /// The local stiffness of deformable objects as a table and a picture (thesis figure 4.23).
 #pragma once
 
+#include <tactus/sim/scene/scene.h>
 #include "cli/output.h"
 #include "cli/plot.h"
-#include "sim/scene/scene.h"
 
 namespace tactus::cli {
 

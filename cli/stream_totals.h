@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "codec/trace/compare.h"
+#include <tactus/metrics/compare.h>
 
 namespace tactus::cli {
 
@@ -27,11 +27,11 @@ struct Sizes {
 struct StreamTotals {
   explicit StreamTotals(const StreamHeader& header) : meshes(header.meshes.size()) {}
 
-  Traffic traffic;
+  RateMetrics traffic;
   std::array<std::uint64_t, 8> levels{};
   std::int64_t last_tick = 0;
   Sizes rigid;
-  std::vector<MeshTraffic> meshes;
+  std::vector<DeformableRates> meshes;
 
   void add(const StreamPlayer::Played& p) {
     last_tick = p.tick();

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/study/study.h"
+#include <tactus/sim/study/study.h>
 
 namespace tactus::cli {
 

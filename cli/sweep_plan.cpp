@@ -4,8 +4,8 @@
 #include <set>
 #include <sstream>
 
+#include <tactus/sim/scene/toml_reader.h>
 #include "cli/output.h"
-#include "sim/scene/toml_reader.h"
 
 namespace tactus::cli {
 namespace {

@@ -12,8 +12,8 @@
 #include <system_error>
 #include <thread>
 
+#include <tactus/base/shown.h>
 #include "cli/json_parts.h"
-#include "codec/base/shown.h"
 
 namespace tactus::cli {
 namespace {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include <tactus/base/shown.h>
 #include "cli/progress.h"
-#include "codec/base/shown.h"
 
 namespace tactus::cli {
 

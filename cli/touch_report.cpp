@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
+#include <tactus/sim/deformable/stiffness_map.h>
+#include <tactus/sim/simulation.h>
 #include "cli/report.h"
-#include "sim/deformable/stiffness_map.h"
-#include "sim/simulation.h"
 
 namespace tactus::cli {
 namespace {
@@ -31,7 +31,7 @@ void warn_of_sampling(const sim::Scene& scene, const sim::Simulation& simulation
 }
 
 /// All who may press an object at once count (eq. 4.38).
-void warn_of_deformation(const sim::Scene& scene, const MeshContact& hardest, Report& report) {
+void warn_of_deformation(const sim::Scene& scene, const SurfaceContact& hardest, Report& report) {
   const sim::SceneDeformable& object = scene.deformables[hardest.mesh];
   const double sum = static_cast<double>(scene.users.size()) * object.stiffness;
   const auto bears = sim::critical_stiffness(object, hardest);

@@ -5,8 +5,8 @@
 
 #include <cstdio>
 
+#include <tactus/base/shown.h>
 #include "cli/table.h"
-#include "codec/base/shown.h"
 
 namespace tactus::cli {
 

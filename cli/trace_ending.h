@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string>
 
+#include <tactus/trace/trace_file.h>
 #include "cli/messages.h"
-#include "codec/trace/trace_file.h"
 
 namespace tactus::cli {
 

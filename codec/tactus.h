@@ -2,19 +2,19 @@
 /// Everything of tactus::codec. Shapes, units and costs stand in the headers below.
 #pragma once
 
-#include "codec/base/geometry.h"
-#include "codec/base/result.h"
-#include "codec/client/replica.h"
-#include "codec/mesh/mesh.h"
-#include "codec/mesh/mesh_decoder.h"
-#include "codec/mesh/mesh_encoder.h"
-#include "codec/mesh/mesh_object.h"
-#include "codec/rigid/contact.h"
-#include "codec/rigid/rigid.h"
-#include "codec/rigid/rigid_decoder.h"
-#include "codec/rigid/rigid_encoder.h"
-#include "codec/rigid/trigger.h"
-#include "codec/stream/bounds.h"
-#include "codec/stream/file.h"
-#include "codec/stream/header.h"
-#include "codec/stream/part.h"
+#include <tactus/base/geometry.h>
+#include <tactus/base/result.h>
+#include <tactus/client/replica.h>
+#include <tactus/deformable/decoder.h>
+#include <tactus/deformable/displacement.h>
+#include <tactus/deformable/encoder.h>
+#include <tactus/file/stream_file.h>
+#include <tactus/packet/substream.h>
+#include <tactus/rigid/contact.h>
+#include <tactus/rigid/rigid.h>
+#include <tactus/rigid/rigid_decoder.h>
+#include <tactus/rigid/rigid_encoder.h>
+#include <tactus/rigid/trigger.h>
+#include <tactus/scene/bounds.h>
+#include <tactus/scene/deformable_object.h>
+#include <tactus/scene/scene_syntax.h>

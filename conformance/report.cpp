@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "codec/base/hash.h"
-#include "codec/mesh/mesh_decoder.h"
-#include "codec/rigid/rigid_decoder.h"
-#include "codec/stream/file.h"
-#include "codec/stream/part.h"
+#include <tactus/base/hash.h>
+#include <tactus/deformable/decoder.h>
+#include <tactus/file/stream_file.h>
+#include <tactus/packet/substream.h>
+#include <tactus/rigid/rigid_decoder.h>
 
 namespace tactus::conformance {
 namespace {
@@ -50,10 +50,10 @@ std::string quoted(std::string_view text) {
   return out + '"';
 }
 
-void write_meshes(const std::vector<MeshObject>& meshes, std::ostream& out) {
+void write_meshes(const std::vector<DeformableObject>& meshes, std::ostream& out) {
   out << R"(,"meshes":[)";
   const char* comma = "";
-  for (const MeshObject& mesh : meshes) {
+  for (const DeformableObject& mesh : meshes) {
     out << comma << R"({"name":)" << quoted(mesh.name) << R"(,"profile":)" << int{static_cast<std::uint8_t>(mesh.profile)}
         << R"(,"vertices":)" << mesh.rest.size() << R"(,"triangles":)" << mesh.triangles.size() << R"(,"modes":)"
         << mesh.basis.steps.size() << '}';
@@ -128,7 +128,7 @@ void write_packet(const DecodedPacket& packet, std::uint64_t state, std::ostream
   write_final(packet, state, out);
 }
 
-void write_packet(const DecodedMeshPacket& packet, std::uint64_t state, std::ostream& out) {
+void write_packet(const DecodedDeformablePacket& packet, std::uint64_t state, std::ostream& out) {
   write_place(packet, out);
   out << R"(,"vertices":)" << packet.updates;
   write_final(packet, state, out);
@@ -146,7 +146,7 @@ class Client {
     TACTUS_TRY(auto rigid, RigidDecoder::create(header, kLimits));
     Client client(header, std::move(rigid));
     for (std::size_t i = 0; i < header.meshes.size(); ++i) {
-      TACTUS_TRY(auto mesh, MeshDecoder::create(header, i, kLimits));
+      TACTUS_TRY(auto mesh, DeformableDecoder::create(header, i, kLimits));
       client.meshes_.push_back(std::move(mesh));
     }
     client.has_rigid_ = std::ranges::any_of(header.objects, [](const RigidObject& o) { return o.dof != Dof::none; });
@@ -172,7 +172,7 @@ class Client {
       out << '"' << hex(rigid_.state_hash(), 16) << '"';
       comma = ",";
     }
-    for (const MeshDecoder& mesh : meshes_) {
+    for (const DeformableDecoder& mesh : meshes_) {
       out << comma << '"' << hex(mesh.state_hash(), 16) << '"';
       comma = ",";
     }
@@ -214,7 +214,7 @@ class Client {
     if (meshes_.empty()) return replica_->pose_hash(tick);
     Fnv1a hash;
     hash.add64(replica_->pose_hash(tick));
-    for (MeshDecoder& mesh : meshes_)
+    for (DeformableDecoder& mesh : meshes_)
       for (const auto& displacement : mesh.displacements_at(tick))
         for (const std::int32_t component : displacement) hash.add32(component);
     return hash.value();
@@ -222,7 +222,7 @@ class Client {
 
   const StreamHeader* header_;
   RigidDecoder rigid_;
-  std::vector<MeshDecoder> meshes_;
+  std::vector<DeformableDecoder> meshes_;
   bool has_part_byte_;
   bool has_rigid_ = false;
   std::optional<Replica> replica_;

@@ -7,8 +7,8 @@
 #include <optional>
 #include <span>
 
-#include "codec/base/result.h"
-#include "codec/client/replica.h"
+#include <tactus/base/result.h>
+#include <tactus/client/replica.h>
 
 namespace tactus::conformance {
 

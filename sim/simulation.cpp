@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/simulation.h"
+#include <tactus/sim/simulation.h>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
-#include "codec/rigid/rigid_decoder.h"
-#include "sim/contact/contact.h"
-#include "sim/user/sampled_limit.h"
-#include "sim/user/user.h"
+#include <tactus/rigid/rigid_decoder.h>
+#include <tactus/sim/contact/contact.h>
+#include <tactus/sim/user/sampled_limit.h>
+#include <tactus/sim/user/user.h>
 
 namespace tactus::sim {
 namespace {
@@ -18,8 +18,8 @@ struct Channel {
   RigidEncoder encoder;
   RigidDecoder decoder;
   Replica replica;
-  std::vector<MeshLink> meshes;
-  std::vector<MeshSent> sent;  // one per mesh
+  std::vector<DeformableLink> meshes;
+  std::vector<DeformableSent> sent;  // one per mesh
 };
 
 struct User {
@@ -111,7 +111,7 @@ void Simulation::Impl::observe() {
   deformables->observe(frame.meshes);
   if (mesh_noise == 0) return;
   const double reach = std::sqrt(3.0) * mesh_noise;  // of a uniform distribution with that RMS
-  for (MeshSample& mesh : frame.meshes)
+  for (DeformableSample& mesh : frame.meshes)
     if (mesh.updated)
       for (float& u : mesh.displacements) u += static_cast<float>(noise.uniform(-reach, reach));
 }
@@ -135,7 +135,7 @@ void Simulation::Impl::touch_server() {
     user.rendered = user.share * force;
     contacts[i] = user.touch.contact;
     frame.users[i] = {
-        .contact = user.touch.contact, .force = {}, .server_force = user.rendered, .mesh_contact = user.press.contact};
+        .contact = user.touch.contact, .force = {}, .server_force = user.rendered, .surface_contact = user.press.contact};
   }
 }
 
@@ -164,9 +164,9 @@ tl::expected<EncodedPacket, Error> Simulation::Impl::transmit() {
 Result<void> Simulation::Impl::transmit_meshes() {
   for (std::size_t i = 0; i < channel->meshes.size(); ++i) {
     if (!frame.meshes[i].updated) continue;
-    MeshLink& link = channel->meshes[i];
-    TACTUS_TRY(const MeshPackets packets, link.encode(frame.tick, frame.meshes[i].displacements, touch_of(frame, i)));
-    for (const EncodedMeshPacket& packet : packets)
+    DeformableLink& link = channel->meshes[i];
+    TACTUS_TRY(const DeformablePackets packets, link.encode(frame.tick, frame.meshes[i].displacements, touch_of(frame, i)));
+    for (const EncodedDeformablePacket& packet : packets)
       if (!packet.bytes.empty()) TACTUS_CHECK(link.decode(packet.bytes));
     channel->sent[i] = {packets, link.shown(frame.tick)};
     deformables->show(i, channel->sent[i].shown);
@@ -222,7 +222,7 @@ Result<void> Simulation::Impl::add_deformables(const SimulationOptions& options)
                                                         .clients = clients,
                                                         .estimate_every = options.estimate_every,
                                                         .report_at_rest = options.mesh_noise != 0}));
-  for (const TraceMesh& mesh : deformables->meshes()) {
+  for (const TraceDeformable& mesh : deformables->meshes()) {
     places.push_back({centre(mesh.rest), {}});
     frame.meshes.push_back({false, std::vector<float>(3 * mesh.rest.vertices.size())});
   }
@@ -231,8 +231,8 @@ Result<void> Simulation::Impl::add_deformables(const SimulationOptions& options)
 
 Result<void> Simulation::Impl::add_channel(const ChannelOptions& options) {
   if (deformables) {
-    for (const TraceMesh& mesh : deformables->meshes()) {
-      TACTUS_TRY(MeshObject object, mesh_object(mesh, options.mesh_coding, header.grid.position));
+    for (const TraceDeformable& mesh : deformables->meshes()) {
+      TACTUS_TRY(DeformableObject object, deformable_object(mesh, options.mesh_coding, header.grid.position));
       header.meshes.push_back(std::move(object));
     }
   }
@@ -241,7 +241,7 @@ Result<void> Simulation::Impl::add_channel(const ChannelOptions& options) {
   TACTUS_TRY(Replica replica, Replica::create(header, options.replica));
   channel.emplace(Channel{std::move(encoder), std::move(decoder), std::move(replica), {}, {}});
   for (std::size_t i = 0; i < header.meshes.size(); ++i) {
-    TACTUS_TRY(MeshLink link, MeshLink::create(header, i, options.mesh));
+    TACTUS_TRY(DeformableLink link, DeformableLink::create(header, i, options.mesh));
     channel->meshes.push_back(std::move(link));
   }
   channel->sent.resize(header.meshes.size());
@@ -311,7 +311,7 @@ const TraceFrame& Simulation::frame() const noexcept { return impl_->frame; }
 std::span<const Pose> Simulation::client_poses() const noexcept { return impl_->client_poses; }
 const DeformableWorld* Simulation::deformables() const noexcept { return impl_->deformables.get(); }
 const TouchSummary& Simulation::touched(std::size_t user) const noexcept { return impl_->users[user].record.summary(); }
-const MeshSent& Simulation::sent(std::size_t mesh) const noexcept { return impl_->channel->sent[mesh]; }
+const DeformableSent& Simulation::sent(std::size_t mesh) const noexcept { return impl_->channel->sent[mesh]; }
 const StreamHeader& Simulation::header() const noexcept { return impl_->header; }
 
 double Simulation::bears(std::size_t user) const noexcept {

@@ -9,7 +9,7 @@
 ///
 /// One-dimensional objects (sim/msd/msd_world.h) are touched in 2 and 4 by a probe that touches no box, deformed in 5, and sent in 3.
 /// Deformable objects are touched in 2 and 4 and pushed in 5, too (sim/deformable/deformable_world.h), and 3 sends a new shape of
-/// theirs through a MeshLink each. What a user feels is the sum of both, clipped to what the device can yield.
+/// theirs through a DeformableLink each. What a user feels is the sum of both, clipped to what the device can yield.
 ///
 /// The frame of a tick holds the poses of 2, the device sample of 1 and both forces: everything in it belongs to one instant, so
 /// whoever recomputes a force from contact and pose gets the encoder's own number.
@@ -20,28 +20,28 @@
 #include <optional>
 #include <span>
 
-#include "codec/client/replica.h"
-#include "codec/rigid/rigid_encoder.h"
-#include "codec/trace/frame.h"
-#include "codec/trace/mesh_link.h"
-#include "sim/deformable/deformable_world.h"
-#include "sim/msd/msd_world.h"
-#include "sim/rigid/rigid_world.h"
-#include "sim/scene/scene.h"
-#include "sim/user/touch_record.h"
+#include <tactus/client/replica.h>
+#include <tactus/metrics/deformable_link.h>
+#include <tactus/rigid/rigid_encoder.h>
+#include <tactus/sim/deformable/deformable_world.h>
+#include <tactus/sim/msd/msd_world.h>
+#include <tactus/sim/rigid/rigid_world.h>
+#include <tactus/sim/scene/scene.h>
+#include <tactus/sim/user/touch_record.h>
+#include <tactus/trace/frame.h>
 
 namespace tactus::sim {
 
 struct ChannelOptions {
   RigidEncoderOptions encoder;
   ReplicaOptions replica;
-  MeshEncoderOptions mesh{};
-  MeshCoding mesh_coding{};
+  DeformableEncoderOptions mesh{};
+  DeformableCoding mesh_coding{};
 };
 
 /// What a channel did with a mesh in one tick.
-struct MeshSent {
-  MeshPackets packets;
+struct DeformableSent {
+  DeformablePackets packets;
   std::span<const Vec3> shown;  ///< displacements [m] at the client
 };
 
@@ -75,7 +75,7 @@ class Simulation {
   const TraceFrame& frame() const noexcept;             ///< pre  step() or replay() was called
   std::span<const Pose> client_poses() const noexcept;  ///< as shown at the client in that tick, one per object
   /// Of a mesh that is new in that tick.   pre  there is a channel
-  const MeshSent& sent(std::size_t mesh) const noexcept;
+  const DeformableSent& sent(std::size_t mesh) const noexcept;
   std::int64_t ticks() const noexcept;                           ///< length of the scene
   TraceInfo info() const;                                        ///< for a TraceWriter of these frames
   const StreamHeader& header() const noexcept;                   ///< of the packets

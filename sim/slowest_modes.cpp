@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/slowest_modes.h"
+#include <tactus/sim/slowest_modes.h>
 
 #include <Spectra/SymGEigsShiftSolver.h>
 #include <Eigen/Dense>
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "sim/random.h"
+#include <tactus/sim/random.h>
 
 namespace tactus::sim {
 namespace {

@@ -34,15 +34,18 @@ run_tests() { # PRESET
   ctest --preset "$1" -j "$jobs"
 }
 
-sources() { find codec sim cli conformance tests \( -name '*.h' -o -name '*.cpp' \) -print | LC_ALL=C sort; }
+sources() { find codec io metrics sim cli conformance tests \( -name '*.h' -o -name '*.cpp' \) -print | LC_ALL=C sort; }
 
 # Every installed header must stand alone: it includes what it needs, and only what is installed.
 check_headers() { # INCLUDE_DIR
   eigen=$(pkg-config --cflags-only-I eigen3 2>/dev/null) || eigen= # of the component FEM
   (cd "$1" && find . -name '*.h') | while read -r header; do
     # shellcheck disable=SC2086 # a list of words
-    echo "#include \"$header\"" | "${CXX:-c++}" -std=c++20 -fsyntax-only -I "$1" $eigen -x c++ - || die "$header does not stand alone"
+    echo "#include <tactus/$header>" | "${CXX:-c++}" -std=c++20 -fsyntax-only -I "$1/.." $eigen -x c++ - || die "$header does not stand alone"
   done
+  # shellcheck disable=SC2086
+  (cd "$1" && find . -name '*.h' | LC_ALL=C sort | sed 's,^\./\(.*\)$,#include <tactus/\1>,') |
+    "${CXX:-c++}" -std=c++20 -fsyntax-only -I "$1/.." $eigen -x c++ - || die 'the headers do not agree with one another'
 }
 
 # A program of each component that was built, given nothing but the installed files.
@@ -107,7 +110,7 @@ exact() {
 
 tidy() {
   cmake --preset clang >/dev/null
-  run-clang-tidy -quiet -p build/clang -j "$jobs" "^$PWD/(codec|sim|cli|conformance)/" >build/clang/tidy.txt 2>&1 ||
+  run-clang-tidy -quiet -p build/clang -j "$jobs" "^$PWD/(codec|io|metrics|sim|cli|conformance)/" >build/clang/tidy.txt 2>&1 ||
     { grep -E '(warning|error):' build/clang/tidy.txt | sort -u; die "clang-tidy has findings; the whole text is in build/clang/tidy.txt"; }
 }
 

@@ -6,7 +6,7 @@
 
 #include <new>
 
-#include "codec/base/result.h"
+#include <tactus/base/result.h>
 
 namespace tactus {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "codec/base/result.h"
+#include <tactus/base/result.h>
 
 namespace tactus {
 

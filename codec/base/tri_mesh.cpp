@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "codec/base/tri_mesh.h"
+#include <tactus/base/tri_mesh.h>
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "codec/base/out_of_memory.h"
+#include <tactus/base/out_of_memory.h>
 
 namespace tactus {
 namespace {

@@ -17,8 +17,8 @@
 #include <string>
 #include <vector>
 
-#include "codec/base/geometry.h"
-#include "codec/base/result.h"
+#include <tactus/base/geometry.h>
+#include <tactus/base/result.h>
 
 namespace tactus {
 

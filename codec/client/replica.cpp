@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "codec/client/replica.h"
+#include <tactus/client/replica.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "codec/base/fixed.h"
-#include "codec/base/hash.h"
-#include "codec/base/out_of_memory.h"
+#include <tactus/base/fixed.h>
+#include <tactus/base/hash.h>
+#include <tactus/base/out_of_memory.h>
 
 namespace tactus {
 

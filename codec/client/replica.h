@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "codec/rigid/rigid.h"
-#include "codec/rigid/rigid_decoder.h"
-#include "codec/stream/header.h"
+#include <tactus/rigid/rigid.h>
+#include <tactus/rigid/rigid_decoder.h>
+#include <tactus/scene/scene_syntax.h>
 
 namespace tactus {
 

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "codec/base/geometry.h"
+#include <tactus/base/geometry.h>
 
 namespace tactus {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "codec/rigid/rigid.h"
+#include <tactus/rigid/rigid.h>
 
 #include <cmath>
 
-#include "codec/base/fixed.h"
-#include "codec/base/hash.h"
+#include <tactus/base/fixed.h>
+#include <tactus/base/hash.h>
 
 namespace tactus {
 namespace {

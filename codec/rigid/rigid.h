@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <span>
 
-#include "codec/base/geometry.h"
-#include "codec/base/result.h"
-#include "codec/stream/header.h"
+#include <tactus/base/geometry.h>
+#include <tactus/base/result.h>
+#include <tactus/scene/scene_syntax.h>
 
 namespace tactus {
 

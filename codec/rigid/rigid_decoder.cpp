@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "codec/rigid/rigid_decoder.h"
+#include <tactus/rigid/rigid_decoder.h>
 
 #include <algorithm>
 
-#include "codec/base/out_of_memory.h"
-#include "codec/rigid/rigid_syntax.h"
-#include "codec/stream/sequence.h"
+#include <tactus/base/out_of_memory.h>
+#include <tactus/packet/packet_order.h>
+#include <tactus/rigid/rigid_syntax.h>
 
 namespace tactus {
 namespace {

@@ -6,9 +6,9 @@
 #include <optional>
 #include <span>
 
-#include "codec/base/result.h"
-#include "codec/rigid/rigid.h"
-#include "codec/stream/header.h"
+#include <tactus/base/result.h>
+#include <tactus/rigid/rigid.h>
+#include <tactus/scene/scene_syntax.h>
 
 namespace tactus {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "codec/rigid/rigid_encoder.h"
+#include <tactus/rigid/rigid_encoder.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
-#include "codec/base/out_of_memory.h"
-#include "codec/rigid/rigid_syntax.h"
-#include "codec/stream/sequence.h"
+#include <tactus/base/out_of_memory.h>
+#include <tactus/packet/packet_order.h>
+#include <tactus/rigid/rigid_syntax.h>
 
 namespace tactus {
 namespace {

@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "codec/base/result.h"
-#include "codec/rigid/contact.h"
-#include "codec/rigid/rigid.h"
-#include "codec/rigid/trigger.h"
-#include "codec/stream/header.h"
+#include <tactus/base/result.h>
+#include <tactus/rigid/contact.h>
+#include <tactus/rigid/rigid.h>
+#include <tactus/rigid/trigger.h>
+#include <tactus/scene/scene_syntax.h>
 
 namespace tactus {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "codec/rigid/rigid_syntax.h"
+#include <tactus/rigid/rigid_syntax.h>
 
 #include <cstdlib>
 

@@ -8,10 +8,10 @@
 #include <optional>
 #include <vector>
 
-#include "codec/base/fixed.h"
-#include "codec/base/range_coder.h"
-#include "codec/rigid/rigid.h"
-#include "codec/stream/header.h"
+#include <tactus/base/fixed.h>
+#include <tactus/base/range_coder.h>
+#include <tactus/rigid/rigid.h>
+#include <tactus/scene/scene_syntax.h>
 
 namespace tactus {
 

@@ -3,8 +3,8 @@
 /// encoder's choice, never needed to decode.
 #pragma once
 
-#include "codec/base/geometry.h"
-#include "codec/stream/bounds.h"
+#include <tactus/base/geometry.h>
+#include <tactus/scene/bounds.h>
 
 namespace tactus {
 

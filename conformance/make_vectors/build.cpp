@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "codec/base/hash.h"
+#include <tactus/base/hash.h>
 
 namespace tactus::conformance {
 

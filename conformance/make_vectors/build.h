@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "codec/base/bytes.h"
-#include "codec/rigid/rigid_syntax.h"
-#include "codec/stream/header.h"
+#include <tactus/base/bytes.h>
+#include <tactus/rigid/rigid_syntax.h>
+#include <tactus/scene/scene_syntax.h>
 
 namespace tactus::conformance {
 

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <utility>
 
-#include "codec/mesh/mesh_graph.h"
-#include "codec/mesh/mesh_pass.h"
+#include <tactus/deformable/graph.h>
+#include <tactus/deformable/vertex_coder.h>
 
 namespace tactus::conformance {
 namespace {
@@ -107,52 +107,52 @@ struct MeshComposer::Fixed {
   Fixed(const StreamHeader& header, std::size_t index)
       : mesh(header.meshes[index]),
         span(header.baseline_span),
-        initial(initial_mesh_state(mesh)),
-        hierarchy(mesh_hierarchy(mesh)),
+        initial(initial_state(mesh)),
+        hierarchy(vertex_hierarchy(mesh)),
         rings(mesh),
         predictor(mesh),
         pass(hierarchy, mesh.rest.size()) {}
 
-  const MeshObject mesh;
+  const DeformableObject mesh;
   const std::uint8_t span;
-  const MeshState initial;
-  const MeshHierarchy hierarchy;
-  MeshRings rings;
-  MeshPredictor predictor;
-  MeshPass pass;
+  const DeformableState initial;
+  const VertexHierarchy hierarchy;
+  Rings rings;
+  ShapePredictor predictor;
+  VertexCoder pass;
 };
 
 MeshComposer::MeshComposer(const StreamHeader& header, std::size_t mesh) : fixed_(std::make_unique<Fixed>(header, mesh)) {}
 MeshComposer::MeshComposer(MeshComposer&&) noexcept = default;
 MeshComposer::~MeshComposer() = default;
 
-const MeshObject& MeshComposer::mesh() const { return fixed_->mesh; }
+const DeformableObject& MeshComposer::mesh() const { return fixed_->mesh; }
 
-const MeshState& MeshComposer::baseline(const MeshPlace& at) {
+const DeformableState& MeshComposer::baseline(const MeshPlace& at) {
   sequence_ = at.sequence.value_or(next_sequence_);
   const auto found = states_.find(static_cast<std::uint16_t>(sequence_ - at.baseline));
   return at.key || found == states_.end() ? fixed_->initial : found->second;
 }
 
-MeshHead MeshComposer::head_of(const MeshPlace& at, const MeshState& base) const {
-  MeshHead head;
+MainHead MeshComposer::head_of(const MeshPlace& at, const DeformableState& base) const {
+  MainHead head;
   head.key = at.key;
   head.baseline_delta = at.baseline;
   head.tick_delta = static_cast<std::uint32_t>(at.tick - base.tick);
   return head;
 }
 
-void MeshComposer::keep(const MeshPlace& at, MeshState state) {
+void MeshComposer::keep(const MeshPlace& at, DeformableState state) {
   state.tick = at.tick;
   states_[sequence_] = std::move(state);
   next_sequence_ = static_cast<std::uint16_t>(sequence_ + 1);
 }
 
 Bytes MeshComposer::packet(const MainStep& step) {
-  const MeshObject& mesh = fixed_->mesh;
-  const MeshState base = baseline(step.at);
-  MeshState next = base;
-  MeshHead head = head_of(step.at, base);
+  const DeformableObject& mesh = fixed_->mesh;
+  const DeformableState base = baseline(step.at);
+  DeformableState next = base;
+  MainHead head = head_of(step.at, base);
   head.half = step.half;
   head.completes = step.completes;
   head.touched = step.triangle.has_value();
@@ -163,9 +163,9 @@ Bytes MeshComposer::packet(const MainStep& step) {
   std::vector<std::int32_t> coefficients = step.coefficients;
   coefficients.resize(mesh.basis.steps.size());
   Bytes packet = with_payload(sequence_, [&](RangeEncoder& coder) {
-    MeshModels models = mesh_start_models();
-    code_mesh_start(coder, models, mesh, fixed_->span, head);
-    code_mesh_head(coder, models, mesh, fixed_->rings, base, head);
+    MainModels models = main_start_models();
+    code_main_start(coder, models, mesh, fixed_->span, head);
+    code_main_head(coder, models, mesh, fixed_->rings, base, head);
     std::span<const std::uint32_t> area;
     if (head.touched) {
       fixed_->rings.triangles_around(head.triangle, mesh.rings);
@@ -175,7 +175,7 @@ Bytes MeshComposer::packet(const MainStep& step) {
     std::vector<Vec3i> expected(mesh.rest.size());
     fixed_->predictor.predict(base, step.at.tick, expected);
     if (mesh.split) fixed_->pass.begin_half(base, head.completes, expected, next.displacement);
-    if (head.half == MeshHalf::haptic) {
+    if (head.half == Layer::haptic) {
       keep_motion(base, next);
     } else {
       code_coefficients(coder, models, coefficients);
@@ -198,10 +198,10 @@ Bytes MeshComposer::packet(const MainStep& step) {
 }
 
 Bytes MeshComposer::packet(const ThesisStep& step) {
-  const MeshObject& mesh = fixed_->mesh;
-  const MeshState base = baseline(step.at);
-  MeshState next = base;
-  std::vector<BitModel> models = mesh.models_kept ? base.models : cold_thesis_models(mesh);
+  const DeformableObject& mesh = fixed_->mesh;
+  const DeformableState base = baseline(step.at);
+  DeformableState next = base;
+  std::vector<BitModel> models = mesh.models_kept ? base.models : initial_thesis_models(mesh);
   RawThesis raw;
   raw.sequence = sequence_;
   raw.key = step.at.key ? 1 : 0;

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "codec/mesh/mesh_state.h"
-#include "codec/mesh/mesh_syntax.h"
-#include "codec/mesh/mesh_thesis.h"
+#include <tactus/deformable/main_syntax.h>
+#include <tactus/deformable/state.h>
+#include <tactus/deformable/thesis_syntax.h>
 #include "conformance/make_vectors/build.h"
 
 namespace tactus::conformance {
@@ -86,7 +86,7 @@ struct MeshPlace {
 
 struct MainStep {
   MeshPlace at;
-  MeshHalf half = MeshHalf::whole;  ///< whole: of meshes that are not split
+  Layer half = Layer::all;  ///< whole: of meshes that are not split
   bool completes = false;
   std::optional<std::uint32_t> triangle{};  ///< touched
   std::uint32_t haptic = 0;                 ///< level
@@ -117,17 +117,17 @@ class MeshComposer {
 
   Bytes packet(const MainStep& step);
   Bytes packet(const ThesisStep& step);
-  const MeshObject& mesh() const;
+  const DeformableObject& mesh() const;
 
  private:
   struct Fixed;
 
-  const MeshState& baseline(const MeshPlace& at);
-  MeshHead head_of(const MeshPlace& at, const MeshState& base) const;
-  void keep(const MeshPlace& at, MeshState state);
+  const DeformableState& baseline(const MeshPlace& at);
+  MainHead head_of(const MeshPlace& at, const DeformableState& base) const;
+  void keep(const MeshPlace& at, DeformableState state);
 
-  std::unique_ptr<Fixed> fixed_;               // the mesh and what follows from it
-  std::map<std::uint16_t, MeshState> states_;  // by sequence
+  std::unique_ptr<Fixed> fixed_;                     // the mesh and what follows from it
+  std::map<std::uint16_t, DeformableState> states_;  // by sequence
   std::uint16_t next_sequence_ = 0;
   std::uint16_t sequence_ = 0;  // of the packet at hand
 };
@@ -165,7 +165,7 @@ class MeshStream {
 template <class Code>
 Bytes coded_main_packet(std::uint16_t sequence, Code code) {
   return with_payload(sequence, [&](RangeEncoder& coder) {
-    MeshModels models = mesh_start_models();
+    MainModels models = main_start_models();
     code(coder, models);
   });
 }

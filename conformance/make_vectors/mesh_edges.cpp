@@ -69,11 +69,11 @@ Bytes equal_tightness() {
 Bytes beyond_ring_2() {
   MeshStream stream(only({.shape = sheet(8, 8)}));
   stream.add(MainStep{.at = {.tick = 0, .key = true}, .triangle = 60u});
-  MeshRings rings(stream.composer().mesh());
+  Rings rings(stream.composer().mesh());
   const auto near = static_cast<std::uint32_t>(rings.triangles_around(60, 2).size()) - 1;
   return stream
       .add_packet(1, coded_main_packet(1,
-                                       [&](RangeEncoder& coder, MeshModels& models) {
+                                       [&](RangeEncoder& coder, MainModels& models) {
                                          coder.bit(models.key, 0);
                                          coder.signed_value(models.late, 0);
                                          coder.bit(models.touched[1], 1);
@@ -152,13 +152,13 @@ Bytes saturated_split() {
   std::int64_t tick = 0;
   const auto visual = [&](std::int64_t frames, std::int32_t by) {
     tick += frames;
-    stream.add(MainStep{
-        .at = {.tick = tick, .key = tick == 0}, .half = MeshHalf::visual, .visual = 1u << 28, .coefficients = {by, -by}});
+    stream.add(
+        MainStep{.at = {.tick = tick, .key = tick == 0}, .half = Layer::visual, .visual = 1u << 28, .coefficients = {by, -by}});
   };
   visual(0, 0);
   for (int i = 0; i < 13; ++i) visual(1, i % 4 < 2 ? 1 : -1);
   ++tick;
-  stream.add(MainStep{.at = {.tick = tick}, .half = MeshHalf::haptic, .triangle = 0u, .haptic = 9, .visual = 1u << 28});
+  stream.add(MainStep{.at = {.tick = tick}, .half = Layer::haptic, .triangle = 0u, .haptic = 9, .visual = 1u << 28});
   visual(2, 0);
   return stream.finished();
 }

@@ -135,13 +135,13 @@ void add_bounds(Catalogue& c) {
 
   MeshStream zeros(only({.shape = sheet(3, 3)}));
   MeshComposer& composer = zeros.composer();
-  const MeshState rest = initial_mesh_state(composer.mesh());
-  zeros.add_packet(5, coded_main_packet(0, [&](RangeEncoder& coder, MeshModels& models) {
-                     MeshRings rings(composer.mesh());
-                     MeshHead head{.key = true, .tick_delta = 5, .visual = 9};
-                     code_mesh_start(coder, models, composer.mesh(), 1, head);
-                     code_mesh_head(coder, models, composer.mesh(), rings, rest, head);
-                     const MeshHierarchy order = mesh_hierarchy(composer.mesh());
+  const DeformableState rest = initial_state(composer.mesh());
+  zeros.add_packet(5, coded_main_packet(0, [&](RangeEncoder& coder, MainModels& models) {
+                     Rings rings(composer.mesh());
+                     MainHead head{.key = true, .tick_delta = 5, .visual = 9};
+                     code_main_start(coder, models, composer.mesh(), 1, head);
+                     code_main_head(coder, models, composer.mesh(), rings, rest, head);
+                     const VertexHierarchy order = vertex_hierarchy(composer.mesh());
                      for (const std::uint32_t v : order.order) {
                        const std::size_t level = std::min<std::size_t>(order.level[v], 2);
                        coder.bit(models.significant[0][0][0][level], 1);
@@ -214,7 +214,7 @@ void add_time(Catalogue& c) {
   c.valid("late-and-early", "Packets at the same tick, early, in time and late by up to 31 bits.", ticks.finished());
   MeshStream clamped(only({.shape = one_triangle(), .frame_period = 4267}));
   clamped.add(MainStep{.at = {.tick = 50, .key = true}});
-  clamped.add_packet(50, coded_main_packet(1, [&](RangeEncoder& coder, MeshModels& models) {
+  clamped.add_packet(50, coded_main_packet(1, [&](RangeEncoder& coder, MainModels& models) {
                        coder.bit(models.key, 0);
                        coder.signed_value(models.late, -1000);
                        coder.bit(models.touched[0], 0);

@@ -40,7 +40,7 @@ Bytes then_packet(MeshStream stream, const Bytes& packet) { return stream.add_pa
 /// The two packets, then one at tick 31 whose symbols after `late` are written by `code`.
 template <class Code>
 Bytes then_coded(Code code) {
-  return then_packet(two_packets(), coded_main_packet(2, [&](RangeEncoder& coder, MeshModels& models) {
+  return then_packet(two_packets(), coded_main_packet(2, [&](RangeEncoder& coder, MainModels& models) {
                        coder.bit(models.key, 0);
                        coder.signed_value(models.late, 0);
                        code(coder, models);
@@ -48,7 +48,7 @@ Bytes then_coded(Code code) {
 }
 
 /// No touch, the same visual bound, density 1.
-void quiet_head(RangeEncoder& coder, MeshModels& models) {
+void quiet_head(RangeEncoder& coder, MainModels& models) {
   coder.bit(models.touched[1], 0);
   coder.bit(models.same_visual, 1);
   coder.tree<2>(models.density[1], 1);
@@ -90,7 +90,7 @@ void add_packet_rules(Catalogue& c) {
   c.invalid("tick-runs-over", "late leads from tick 30 to 2^32 - 1 and beyond; no record can say so.", tick, [] {
     MeshStream stream(only(main_mesh()));
     stream.add(MainStep{.at = {.tick = kLastTick, .key = true}});
-    stream.add_packet(kLastTick, coded_main_packet(1, [&](RangeEncoder& coder, MeshModels& models) {
+    stream.add_packet(kLastTick, coded_main_packet(1, [&](RangeEncoder& coder, MainModels& models) {
                         coder.bit(models.key, 0);
                         coder.signed_value(models.late, std::numeric_limits<std::int32_t>::max());
                       }));
@@ -101,14 +101,14 @@ void add_packet_rules(Catalogue& c) {
 void add_head_rules(Catalogue& c) {
   const Rejection triangle{"invalid", "R-MES-9"}, bound{"invalid", "R-MES-10"};
   c.invalid("triangle-3", "Triangle 3 of 3: its number has two bits.", triangle,
-            then_coded([](RangeEncoder& coder, MeshModels& models) {
+            then_coded([](RangeEncoder& coder, MainModels& models) {
               coder.bit(models.touched[1], 1);
               coder.bit(models.same_triangle, 0);
               coder.bit(models.near_triangle, 0);
               coder.raw(2, 3);
             }));
   c.invalid("near-place-1", "Place 1 in a list of one triangle.", triangle,
-            then_coded([](RangeEncoder& coder, MeshModels& models) {
+            then_coded([](RangeEncoder& coder, MainModels& models) {
               coder.bit(models.touched[1], 1);
               coder.bit(models.same_triangle, 0);
               coder.bit(models.near_triangle, 1);
@@ -117,7 +117,7 @@ void add_head_rules(Catalogue& c) {
   c.invalid("near-place-63", "Place 63: lists are shortened to 63.", triangle, [] {
     MeshStream stream(only({.shape = flat_fan(100)}));
     stream.add(MainStep{.at = {.tick = 0, .key = true}, .triangle = 5u});
-    stream.add_packet(1, coded_main_packet(1, [](RangeEncoder& coder, MeshModels& models) {
+    stream.add_packet(1, coded_main_packet(1, [](RangeEncoder& coder, MainModels& models) {
                         coder.bit(models.key, 0);
                         coder.signed_value(models.late, 0);
                         coder.bit(models.touched[1], 1);
@@ -127,26 +127,26 @@ void add_head_rules(Catalogue& c) {
                       }));
     return stream.bytes();
   }());
-  const auto touched = [](RangeEncoder& coder, MeshModels& models, std::int32_t change) {
+  const auto touched = [](RangeEncoder& coder, MainModels& models, std::int32_t change) {
     coder.bit(models.touched[1], 1);
     coder.bit(models.same_triangle, 1);
     coder.signed_value(models.haptic, change);
   };
-  c.invalid("haptic-169", "haptic is 169.", bound, then_coded([&](RangeEncoder& coder, MeshModels& models) {
+  c.invalid("haptic-169", "haptic is 169.", bound, then_coded([&](RangeEncoder& coder, MainModels& models) {
               touched(coder, models, 157);
               coder.bit(models.same_visual, 1);
             }));
-  c.invalid("haptic-far-beyond", "haptic_change is 2^31 - 1.", bound, then_coded([&](RangeEncoder& coder, MeshModels& models) {
+  c.invalid("haptic-far-beyond", "haptic_change is 2^31 - 1.", bound, then_coded([&](RangeEncoder& coder, MainModels& models) {
               touched(coder, models, std::numeric_limits<std::int32_t>::max());
               coder.bit(models.same_visual, 1);
             }));
-  c.invalid("visual-over-limit", "visual is 2^28 + 1.", bound, then_coded([](RangeEncoder& coder, MeshModels& models) {
+  c.invalid("visual-over-limit", "visual is 2^28 + 1.", bound, then_coded([](RangeEncoder& coder, MainModels& models) {
               coder.bit(models.touched[1], 0);
               coder.bit(models.same_visual, 0);
               coder.magnitude(models.visual, (1u << 28) + 1);
             }));
   c.invalid("triangle-then-too-wide", "Triangle 3 of 3, then visual of 33 bits: the whole head is read first.", wider(),
-            then_coded([](RangeEncoder& coder, MeshModels& models) {
+            then_coded([](RangeEncoder& coder, MainModels& models) {
               coder.bit(models.touched[1], 1);
               coder.bit(models.same_triangle, 0);
               coder.bit(models.near_triangle, 0);
@@ -156,7 +156,7 @@ void add_head_rules(Catalogue& c) {
               too_wide(coder, models.visual);
             }));
   c.invalid("visual-then-too-wide", "visual is 2^28 + 1, then a coefficient of 33 bits: the head is judged first.", bound,
-            then_coded([](RangeEncoder& coder, MeshModels& models) {
+            then_coded([](RangeEncoder& coder, MainModels& models) {
               coder.bit(models.touched[1], 0);
               coder.bit(models.same_visual, 0);
               coder.magnitude(models.visual, (1u << 28) + 1);
@@ -167,36 +167,36 @@ void add_head_rules(Catalogue& c) {
 
 void add_widths(Catalogue& c) {
   const auto first_symbols = [](auto code) { return then_packet(two_packets(4), coded_main_packet(2, code)); };
-  c.invalid("tick-delta-33-bits", "tick_delta has 33 bits.", wider(), first_symbols([](RangeEncoder& coder, MeshModels& models) {
+  c.invalid("tick-delta-33-bits", "tick_delta has 33 bits.", wider(), first_symbols([](RangeEncoder& coder, MainModels& models) {
               coder.bit(models.key, 1);
               too_wide(coder, models.tick);
             }));
   c.invalid("baseline-delta-33-bits", "baseline_delta has 33 bits.", wider(),
-            first_symbols([](RangeEncoder& coder, MeshModels& models) {
+            first_symbols([](RangeEncoder& coder, MainModels& models) {
               coder.bit(models.key, 0);
               too_wide(coder, models.baseline);
             }));
-  c.invalid("late-32-bits", "late is 2^31.", wider(), first_symbols([](RangeEncoder& coder, MeshModels& models) {
+  c.invalid("late-32-bits", "late is 2^31.", wider(), first_symbols([](RangeEncoder& coder, MainModels& models) {
               coder.bit(models.key, 0);
               coder.magnitude(models.baseline, 1);
               coder.magnitude(models.late, 1u << 31);
               coder.raw(1, 0);
             }));
-  c.invalid("haptic-33-bits", "haptic_change has 33 bits.", wider(), then_coded([](RangeEncoder& coder, MeshModels& models) {
+  c.invalid("haptic-33-bits", "haptic_change has 33 bits.", wider(), then_coded([](RangeEncoder& coder, MainModels& models) {
               coder.bit(models.touched[1], 1);
               coder.bit(models.same_triangle, 1);
               too_wide(coder, models.haptic);
             }));
-  c.invalid("coefficient-33-bits", "A coefficient has 33 bits.", wider(), then_coded([](RangeEncoder& coder, MeshModels& models) {
+  c.invalid("coefficient-33-bits", "A coefficient has 33 bits.", wider(), then_coded([](RangeEncoder& coder, MainModels& models) {
               quiet_head(coder, models);
               coder.signed_value(models.coefficient[0][0], 0);
               too_wide(coder, models.coefficient[0][0]);
             }));
   c.invalid("component-32-bits", "A component of a residual is -2^31.", wider(),
-            then_coded([](RangeEncoder& coder, MeshModels& models) {
+            then_coded([](RangeEncoder& coder, MainModels& models) {
               quiet_head(coder, models);
               for (int k = 0; k < 2; ++k) coder.signed_value(models.coefficient[0][0], 0);
-              const MeshHierarchy order = mesh_hierarchy(only(main_mesh()).parsed().meshes[0]);
+              const VertexHierarchy order = vertex_hierarchy(only(main_mesh()).parsed().meshes[0]);
               const std::size_t level = std::min<std::size_t>(order.level[order.order[0]], 2);
               coder.bit(models.significant[1][0][0][level], 1);
               coder.magnitude(models.component[0][level][0], 1u << 31);

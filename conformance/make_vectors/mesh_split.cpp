@@ -20,7 +20,7 @@ class Halves {
     triangle_ = random_.below(triangles_);
     level_ = random_.below(40);
     return {.at = at,
-            .half = MeshHalf::haptic,
+            .half = Layer::haptic,
             .triangle = triangle_,
             .haptic = level_,
             .visual = 200,
@@ -35,7 +35,7 @@ class Halves {
   }
   MainStep visual(const MeshPlace& at, std::optional<std::uint32_t> triangle = {}) {
     MainStep step{.at = at,
-                  .half = MeshHalf::visual,
+                  .half = Layer::visual,
                   .triangle = triangle,
                   .haptic = random_.below(40),
                   .visual = 200,
@@ -157,7 +157,7 @@ template <class Code>
 Bytes then_haptic(Code code) {
   return three_packets()
       .add_packet(30, coded_main_packet(3,
-                                        [&](RangeEncoder& coder, MeshModels& models) {
+                                        [&](RangeEncoder& coder, MainModels& models) {
                                           coder.bit(models.key, 0);
                                           coder.bit(models.half, 0);
                                           coder.signed_value(models.late, 0);
@@ -172,7 +172,7 @@ void add_invalid(Catalogue& c) {
             {"invalid", "R-MES-8"},
             three_packets(4)
                 .add_packet(30, coded_main_packet(3,
-                                                  [](RangeEncoder& coder, MeshModels& models) {
+                                                  [](RangeEncoder& coder, MainModels& models) {
                                                     coder.bit(models.key, 0);
                                                     coder.magnitude(models.baseline, 3);
                                                     coder.bit(models.half, 1);
@@ -182,14 +182,14 @@ void add_invalid(Catalogue& c) {
   c.invalid("split-lost-baseline", "A visual half completes a haptic half that is missing.", {"state", "R-PKT-4"},
             three_packets()
                 .add_packet(30, coded_main_packet(4,
-                                                  [](RangeEncoder& coder, MeshModels& models) {
+                                                  [](RangeEncoder& coder, MainModels& models) {
                                                     coder.bit(models.key, 0);
                                                     coder.bit(models.half, 1);
                                                     coder.bit(models.completes, 1);
                                                   }))
                 .bytes());
   c.invalid("split-triangle-3", "A haptic half touches triangle 3 of 3.", {"invalid", "R-MES-9"},
-            then_haptic([](RangeEncoder& coder, MeshModels& models) {
+            then_haptic([](RangeEncoder& coder, MainModels& models) {
               coder.bit(models.same_triangle, 0);
               coder.bit(models.near_triangle, 0);
               coder.raw(2, 3);
@@ -197,13 +197,13 @@ void add_invalid(Catalogue& c) {
               coder.bit(models.same_visual, 1);
             }));
   c.invalid("split-haptic-169", "haptic is 169 in a haptic half.", {"invalid", "R-MES-10"},
-            then_haptic([](RangeEncoder& coder, MeshModels& models) {
+            then_haptic([](RangeEncoder& coder, MainModels& models) {
               coder.bit(models.same_triangle, 1);
               coder.signed_value(models.haptic, 169);
               coder.bit(models.same_visual, 1);
             }));
   c.invalid("split-coefficients-in-haptic-half", "A haptic half goes on after its last vertex.", {"malformed", "R-RNG-2"},
-            then_haptic([](RangeEncoder& coder, MeshModels& models) {
+            then_haptic([](RangeEncoder& coder, MainModels& models) {
               coder.bit(models.same_triangle, 1);
               coder.signed_value(models.haptic, 0);
               coder.bit(models.same_visual, 1);

@@ -117,7 +117,7 @@ Bytes rigid_head(const PacketHead& head, std::uint8_t span = 4) {
 Bytes triangle_and_level() {
   MeshStream stream(only({.shape = {sheet(2, 2).rest, {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}}}}));
   stream.add(MainStep{.at = {.tick = 10, .key = true}, .triangle = 0u, .haptic = 168});
-  stream.add_packet(11, coded_main_packet(1, [](RangeEncoder& coder, MeshModels& models) {
+  stream.add_packet(11, coded_main_packet(1, [](RangeEncoder& coder, MainModels& models) {
                       coder.bit(models.key, 0);
                       coder.signed_value(models.late, 0);
                       coder.bit(models.touched[1], 1);
@@ -133,7 +133,7 @@ Bytes triangle_and_level() {
 Bytes haptic_below_0() {
   MeshStream stream(only({.shape = one_triangle()}));
   stream.add(MainStep{.at = {.tick = 10, .key = true}, .triangle = 0u, .haptic = 5});
-  stream.add_packet(11, coded_main_packet(1, [](RangeEncoder& coder, MeshModels& models) {
+  stream.add_packet(11, coded_main_packet(1, [](RangeEncoder& coder, MainModels& models) {
                       coder.bit(models.key, 0);
                       coder.signed_value(models.late, 0);
                       coder.bit(models.touched[1], 1);

@@ -94,20 +94,20 @@ Bytes main_mesh(const Bytes& packet, std::int64_t tick = 30) {
 
 void add_main(Catalogue& c) {
   c.invalid("late-before-baseline-delta", "baseline_delta is 0, and late 2^31.", wider(),
-            main_mesh(coded_main_packet(2, [](RangeEncoder& coder, MeshModels& models) {
+            main_mesh(coded_main_packet(2, [](RangeEncoder& coder, MainModels& models) {
               coder.bit(models.key, 0);
               coder.magnitude(models.baseline, 0);
               coder.magnitude(models.late, 1u << 31);
               coder.raw(1, 0);
             })));
   c.invalid("baseline-delta-before-ahead", "baseline_delta is 0, and the packet 32768 ahead.", no_such_baseline(),
-            main_mesh(coded_main_packet(32769, [](RangeEncoder& coder, MeshModels& models) {
+            main_mesh(coded_main_packet(32769, [](RangeEncoder& coder, MainModels& models) {
               coder.bit(models.key, 0);
               coder.magnitude(models.baseline, 0);
               coder.signed_value(models.late, 0);
             })));
   c.invalid("tick-before-head", "A packet on an older baseline, at tick 11, after tick 30; then visual of 33 bits.",
-            {"invalid", "R-MES-8"}, main_mesh(coded_main_packet(2, [](RangeEncoder& coder, MeshModels& models) {
+            {"invalid", "R-MES-8"}, main_mesh(coded_main_packet(2, [](RangeEncoder& coder, MainModels& models) {
               coder.bit(models.key, 0);
               coder.magnitude(models.baseline, 2);
               coder.signed_value(models.late, 0);

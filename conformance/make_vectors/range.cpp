@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "codec/rigid/rigid_decoder.h"
+#include <tactus/rigid/rigid_decoder.h>
 #include "conformance/make_vectors/catalogue.h"
 
 namespace tactus::conformance {

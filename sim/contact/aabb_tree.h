@@ -18,9 +18,9 @@
 #include <span>
 #include <vector>
 
-#include "codec/base/geometry.h"
-#include "codec/base/tri_mesh.h"
-#include "sim/contact/triangle.h"
+#include <tactus/base/geometry.h>
+#include <tactus/base/tri_mesh.h>
+#include <tactus/sim/contact/triangle.h>
 
 namespace tactus::sim {
 
@@ -87,7 +87,7 @@ class AabbTree {
   Triangle triangle(std::uint32_t number) const noexcept;
 
  private:
-  friend class Surroundings;
+  friend class TriangleCache;
 
   struct Box {
     std::array<float, 3> low, high;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/contact/constraints.h"
+#include <tactus/sim/contact/constraints.h>
 
 #include <algorithm>
 #include <numeric>

@@ -11,7 +11,7 @@
 #include <optional>
 #include <span>
 
-#include "codec/base/geometry.h"
+#include <tactus/base/geometry.h>
 
 namespace tactus::sim {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/contact/contact.h"
+#include <tactus/sim/contact/contact.h>
 
 #include <algorithm>
 #include <array>

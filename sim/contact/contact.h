@@ -15,10 +15,10 @@
 #include <variant>
 #include <vector>
 
-#include "codec/base/geometry.h"
-#include "codec/rigid/contact.h"
-#include "sim/contact/surface_proxy.h"
-#include "sim/scene/scene.h"
+#include <tactus/base/geometry.h>
+#include <tactus/rigid/contact.h>
+#include <tactus/sim/contact/surface_proxy.h>
+#include <tactus/sim/scene/scene.h>
 
 namespace tactus::sim {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/contact/inside.h"
+#include <tactus/sim/contact/inside.h>
 
 #include <cmath>
 
@@ -17,7 +17,7 @@ double angle(const Vec3& a, const Vec3& b) { return std::atan2(norm(cross(a, b))
 
 }  // namespace
 
-Inside::Inside(const TriMesh& mesh, const MeshTopology& topology)
+InsideTest::InsideTest(const TriMesh& mesh, const MeshTopology& topology)
     : mesh_(mesh), topology_(topology), closed_(mesh.triangles.size(), true) {
   std::vector<bool> seen(mesh.triangles.size(), false);
   std::vector<std::uint32_t> component;
@@ -39,7 +39,7 @@ Inside::Inside(const TriMesh& mesh, const MeshTopology& topology)
   }
 }
 
-Vec3 Inside::normal(const SurfacePoint& at, std::span<const Vec3> vertices) const noexcept {
+Vec3 InsideTest::normal(const SurfacePoint& at, std::span<const Vec3> vertices) const noexcept {
   const auto face = [&](std::uint32_t number) {
     const Triangle& t = mesh_.triangles[number];
     return unit(cross(vertices[t[1]] - vertices[t[0]], vertices[t[2]] - vertices[t[0]]));
@@ -62,7 +62,7 @@ Vec3 Inside::normal(const SurfacePoint& at, std::span<const Vec3> vertices) cons
   return unit(sum);
 }
 
-bool Inside::contains(const Vec3& point, const SurfacePoint& closest, std::span<const Vec3> vertices) const noexcept {
+bool InsideTest::contains(const Vec3& point, const SurfacePoint& closest, std::span<const Vec3> vertices) const noexcept {
   return closed_[closest.triangle] && dot(point - closest.point, normal(closest, vertices)) < 0;
 }
 

@@ -9,14 +9,14 @@
 #include <span>
 #include <vector>
 
-#include "sim/contact/aabb_tree.h"
+#include <tactus/sim/contact/aabb_tree.h>
 
 namespace tactus::sim {
 
-class Inside {
+class InsideTest {
  public:
   /// pre  both outlive this object.   time O(n); allocates
-  Inside(const TriMesh& mesh, const MeshTopology& topology);
+  InsideTest(const TriMesh& mesh, const MeshTopology& topology);
 
   /// Normal at a point of the mesh, of unit length, outward; zero where triangles have no area.   time O(triangles there)
   Vec3 normal(const SurfacePoint& at, std::span<const Vec3> vertices) const noexcept;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/contact/intermediate_model.h"
+#include <tactus/sim/contact/intermediate_model.h>
 
 #include <algorithm>
 #include <cmath>

@@ -15,7 +15,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/contact/mesh_proxy.h"
+#include <tactus/sim/contact/mesh_proxy.h>
 
 namespace tactus::sim {
 
@@ -56,7 +56,7 @@ class IntermediateModel {
   const TriMesh& mesh_;
   const MeshTopology& topology_;
   IntermediateModelOptions options_;
-  Inside inside_;
+  InsideTest inside_;
   MeshProxy proxy_;
   AabbTree tree_;
   ProxyTouch touch_;                     // of the last tick

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/contact/mesh_proxy.h"
+#include <tactus/sim/contact/mesh_proxy.h>
 
 #include <algorithm>
 #include <cmath>
@@ -58,7 +58,7 @@ bool MeshProxy::lets_move(const SurfaceHit& hit, const Vec3& way) const noexcept
 
 /// The triangles that held the proxy last are asked first: one that does not let it move at all settles the matter. The edge of a
 /// triangle may only seem to be in the way of a point, where the face beside it is what carries it.
-std::optional<SurfaceHit> MeshProxy::first_contact(const Vec3& goal, const AabbTree& tree, Surroundings& around) const noexcept {
+std::optional<SurfaceHit> MeshProxy::first_contact(const Vec3& goal, const AabbTree& tree, TriangleCache& around) const noexcept {
   const Sweep sweep = towards(goal);
   std::array<std::uint32_t, kMaxHalfspaces + std::tuple_size_v<decltype(recent_)>> asked;
   const auto held_end = std::copy_n(held_by_.begin(), held_, asked.begin());
@@ -116,7 +116,7 @@ std::optional<Vec3> MeshProxy::wanted(const Vec3& probe) noexcept {
 
 void MeshProxy::follow(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
   release();
-  Surroundings around(tree, vertices, std::fmax(norm(probe - probe_), kExpected * distance()));
+  TriangleCache around(tree, vertices, std::fmax(norm(probe - probe_), kExpected * distance()));
   bool moved = false;  // since the planes were last forgotten
   int idle = 0;        // how often they were forgotten without a gain
   double reached = norm(probe - centre_);
@@ -248,7 +248,7 @@ ProxyTouch MeshProxy::move(const Vec3& probe, std::span<const Vec3> vertices, co
   return settle(is_finite(probe) ? probe : probe_, vertices, tree);
 }
 
-ProxyTouch MeshProxy::place(const Vec3& probe, const Inside& inside, std::span<const Vec3> vertices,
+ProxyTouch MeshProxy::place(const Vec3& probe, const InsideTest& inside, std::span<const Vec3> vertices,
                             const AabbTree& tree) noexcept {
   if (!is_finite(probe)) return move(probe_, vertices, tree);
   centre_ = probe;

@@ -24,10 +24,10 @@
 #include <optional>
 #include <span>
 
-#include "sim/contact/aabb_tree.h"
-#include "sim/contact/constraints.h"
-#include "sim/contact/inside.h"
-#include "sim/contact/surroundings.h"
+#include <tactus/sim/contact/aabb_tree.h>
+#include <tactus/sim/contact/constraints.h>
+#include <tactus/sim/contact/inside.h>
+#include <tactus/sim/contact/surroundings.h>
 
 namespace tactus::sim {
 
@@ -51,7 +51,7 @@ class MeshProxy {
   MeshProxy(const MeshProxyOptions& options, double extent) noexcept;
 
   /// Put the probe there without history: inside of the mesh or too close, the closest point of the surface holds it.
-  ProxyTouch place(const Vec3& probe, const Inside& inside, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
+  ProxyTouch place(const Vec3& probe, const InsideTest& inside, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
   /// Move the probe there; the first time it is put there, on whichever side of the surface that is. A probe that is not a finite point stays where it was.
   /// in   vertices  where they are now; the tree is fitted to them. All in the frame of the mesh
   /// time O(log n) per triangle crossed, on a mesh of 100 000 about 0.1 us in the open and 1.5 us in contact (4 us for a sphere larger
@@ -85,7 +85,7 @@ class MeshProxy {
   double distance() const noexcept { return options_.radius + skin_; }
   Sweep towards(const Vec3& goal) const noexcept;
   bool lets_move(const SurfaceHit& hit, const Vec3& way) const noexcept;
-  std::optional<SurfaceHit> first_contact(const Vec3& goal, const AabbTree& tree, Surroundings& around) const noexcept;
+  std::optional<SurfaceHit> first_contact(const Vec3& goal, const AabbTree& tree, TriangleCache& around) const noexcept;
   std::optional<Vec3> wanted(const Vec3& probe) noexcept;
   void hold(const Plane& plane) noexcept;
   bool is_far(const Vec3& probe, const AabbTree& tree) const noexcept;

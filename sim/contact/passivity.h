@@ -15,7 +15,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "codec/base/geometry.h"
+#include <tactus/base/geometry.h>
 
 namespace tactus::sim {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <memory>
 
-#include "sim/contact/mesh_proxy.h"
+#include <tactus/sim/contact/mesh_proxy.h>
 
 namespace tactus::sim {
 
@@ -19,7 +19,7 @@ class TouchSurface {
   TouchSurface(const TouchSurface&) = delete;
   TouchSurface& operator=(const TouchSurface&) = delete;
 
-  const Inside& inside() const noexcept { return inside_; }
+  const InsideTest& inside() const noexcept { return inside_; }
   std::span<const Vec3> vertices() const noexcept { return mesh_.vertices; }
   const AabbTree& tree() const noexcept { return tree_; }
   double extent() const noexcept { return extent_; }  ///< [m] largest absolute coordinate
@@ -27,7 +27,7 @@ class TouchSurface {
  private:
   TriMesh mesh_;
   MeshTopology topology_;
-  Inside inside_;
+  InsideTest inside_;
   AabbTree tree_;
   double extent_ = 0;
 };

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/contact/surroundings.h"
+#include <tactus/sim/contact/surroundings.h>
 
 #include <algorithm>
 #include <cmath>
 
 namespace tactus::sim {
 
-Surroundings::Plane Surroundings::plane_before(const Vec3& n, const Corners& v) noexcept {
+TriangleCache::Plane TriangleCache::plane_before(const Vec3& n, const Corners& v) noexcept {
   return {n.x, n.y, n.z, std::max({dot(n, v[0]), dot(n, v[1]), dot(n, v[2])})};
 }
 
 /// Both ends of the way, and so all of it, are further from the triangle than contact. Without a branch between the two.
-bool Surroundings::clears(const Plane& plane, const Sweep& sphere, double limit) noexcept {
+bool TriangleCache::clears(const Plane& plane, const Sweep& sphere, double limit) noexcept {
   const double contact = sphere.radius + 0.5 * sphere.slack;
   const double start = plane.x * sphere.from.x + plane.y * sphere.from.y + plane.z * sphere.from.z - plane.offset;
   const double end = start + limit * (plane.x * sphere.way.x + plane.y * sphere.way.y + plane.z * sphere.way.z);
@@ -19,7 +19,7 @@ bool Surroundings::clears(const Plane& plane, const Sweep& sphere, double limit)
 }
 
 /// Compute the closest point, and remember the plane that it gives.
-std::optional<SurfaceHit> Surroundings::ask(std::uint32_t number, const Sweep& sphere, double limit) noexcept {
+std::optional<SurfaceHit> TriangleCache::ask(std::uint32_t number, const Sweep& sphere, double limit) noexcept {
   const AabbTree::Leaf& leaf = tree_.leaves_[number];
   const TriangleShape triangle(AabbTree::corners(leaf, vertices_));
   const TrianglePoint closest = closest_on_triangle(sphere.from, triangle);
@@ -32,7 +32,7 @@ std::optional<SurfaceHit> Surroundings::ask(std::uint32_t number, const Sweep& s
   return SurfaceHit{hit->t, hit->rest, AabbTree::named(leaf, hit->at.weights, hit->at.point, std::sqrt(hit->at.distance2))};
 }
 
-std::optional<SurfaceHit> Surroundings::sweep_one(const Sweep& sphere, std::uint32_t triangle) noexcept {
+std::optional<SurfaceHit> TriangleCache::sweep_one(const Sweep& sphere, std::uint32_t triangle) noexcept {
   const std::uint32_t leaf = tree_.leaf_of_[triangle];
   if (knows(leaf) && clears(planes_[leaf % kKnown], sphere, 1)) return std::nullopt;
   return ask(leaf, sphere, 1);
@@ -40,7 +40,7 @@ std::optional<SurfaceHit> Surroundings::sweep_one(const Sweep& sphere, std::uint
 
 /// Gather what the sphere may meet while its centre is that close.
 /// out  false: there are too many
-bool Surroundings::collect(const Vec3& centre, double reach, const Sweep& sphere) noexcept {
+bool TriangleCache::collect(const Vec3& centre, double reach, const Sweep& sphere) noexcept {
   centre_ = centre;
   reach_ = reach;
   count_ = 0;
@@ -60,7 +60,7 @@ bool Surroundings::collect(const Vec3& centre, double reach, const Sweep& sphere
 }
 
 /// Share of the way that is known to lie around.
-double Surroundings::covered(const Sweep& sphere) const noexcept {
+double TriangleCache::covered(const Sweep& sphere) const noexcept {
   const double left = reach_ - norm(sphere.from - centre_);
   if (left >= 0 && norm(sphere.from + sphere.way - centre_) <= reach_) return 1;
   return std::min(left / norm(sphere.way), 1.0);
@@ -69,7 +69,7 @@ double Surroundings::covered(const Sweep& sphere) const noexcept {
 /// Collect anew if too little of the way lies around: a short one with room at both ends; of a long one, which most often is stopped
 /// soon, its beginning.
 /// out  share of the way that lies around, at most the limit
-double Surroundings::cover(const Sweep& sphere, double limit) noexcept {
+double TriangleCache::cover(const Sweep& sphere, double limit) noexcept {
   const double share = reach_ < 0 ? -1 : std::min(covered(sphere), limit), length = limit * norm(sphere.way);
   if (share == limit) return limit;
   if (length < 2 * wanted_reach_) {
@@ -82,8 +82,8 @@ double Surroundings::cover(const Sweep& sphere, double limit) noexcept {
 }
 
 /// First the planes of all candidates, in a loop that predicts no branches; then closest points of the few that are left.
-std::optional<SurfaceHit> Surroundings::first_around(const Sweep& sphere, std::span<const std::uint32_t> left_out,
-                                                     double limit) noexcept {
+std::optional<SurfaceHit> TriangleCache::first_around(const Sweep& sphere, std::span<const std::uint32_t> left_out,
+                                                      double limit) noexcept {
   std::array<std::uint32_t, kRoom> close;
   std::size_t close_count = 0;
   for (std::uint32_t i = 0; i < count_; ++i) {
@@ -110,8 +110,8 @@ std::optional<SurfaceHit> Surroundings::first_around(const Sweep& sphere, std::s
   return first;
 }
 
-std::optional<SurfaceHit> Surroundings::sweep(const Sweep& sphere, std::span<const std::uint32_t> left_out,
-                                              double limit) noexcept {
+std::optional<SurfaceHit> TriangleCache::sweep(const Sweep& sphere, std::span<const std::uint32_t> left_out,
+                                               double limit) noexcept {
   const double share = is_of_use_ ? cover(sphere, limit) : 0;
   if (is_of_use_) {
     const auto first = first_around(sphere, left_out, share);

@@ -15,15 +15,15 @@
 #include <optional>
 #include <span>
 
-#include "sim/contact/aabb_tree.h"
+#include <tactus/sim/contact/aabb_tree.h>
 
 namespace tactus::sim {
 
-class Surroundings {
+class TriangleCache {
  public:
   /// in   reach  [m] how far the sphere's centre is expected to go
   /// pre  tree and vertices outlive this object and do not change meanwhile
-  Surroundings(const AabbTree& tree, std::span<const Vec3> vertices, double reach) noexcept
+  TriangleCache(const AabbTree& tree, std::span<const Vec3> vertices, double reach) noexcept
       : tree_(tree), vertices_(vertices), wanted_reach_(reach) {
     known_.fill(MeshTopology::kNone);
   }

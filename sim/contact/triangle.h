@@ -11,7 +11,7 @@
 #include <cmath>
 #include <optional>
 
-#include "codec/base/geometry.h"
+#include <tactus/base/geometry.h>
 
 namespace tactus::sim {
 

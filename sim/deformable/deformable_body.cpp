@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/deformable/deformable_body.h"
+#include <tactus/sim/deformable/deformable_body.h>
 
 #include <algorithm>
 #include <array>

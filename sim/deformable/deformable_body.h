@@ -12,12 +12,12 @@
 #include <span>
 #include <vector>
 
-#include "sim/contact/aabb_tree.h"
-#include "sim/contact/inside.h"
-#include "sim/deformable/deformable_world.h"
-#include "sim/fem/energy_balance.h"
-#include "sim/fem/error_estimate.h"
-#include "sim/fem/integrator.h"
+#include <tactus/sim/contact/aabb_tree.h>
+#include <tactus/sim/contact/inside.h>
+#include <tactus/sim/deformable/deformable_world.h>
+#include <tactus/sim/fem/energy_balance.h>
+#include <tactus/sim/fem/error_estimate.h>
+#include <tactus/sim/fem/integrator.h>
 
 namespace tactus::sim {
 
@@ -26,7 +26,7 @@ FemOptions fem_options(const SceneDeformable& object);
 /// The scene's method, or the one that suits it, and why.
 Choice chosen_method(const SceneDeformable& object, const FemModel& model);
 
-inline constexpr std::uint32_t kRestSteps = 32;  ///< more than a client goes on predicting motion for (codec/mesh/mesh_motion.h)
+inline constexpr std::uint32_t kRestSteps = 32;  ///< more than a client goes on predicting motion for (codec/deformable/motion.h)
 
 class DeformableBody {
  public:
@@ -52,7 +52,7 @@ class DeformableBody {
 
   const TetSurface& surface() const noexcept { return surface_; }
   const MeshTopology& topology() const noexcept { return topology_; }
-  const Inside& inside() const noexcept { return inside_; }
+  const InsideTest& inside() const noexcept { return inside_; }
   std::span<const Vec3> vertices() const noexcept { return vertices_; }  ///< of the surface now, world frame
   const AabbTree& tree() const noexcept { return tree_; }                ///< fitted to them
   const Choice& choice() const noexcept { return choice_; }
@@ -78,7 +78,7 @@ class DeformableBody {
   Eigen::VectorXd pushed_, load_;   // 3N [N] sum of this period's pushes; what acts in the step
   TetSurface surface_;
   MeshTopology topology_;
-  Inside inside_;
+  InsideTest inside_;
   std::vector<Vec3> vertices_, next_vertices_;
   AabbTree tree_;
   DeformationTime time_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // In place of deformable_world.cpp and stiffness_map.cpp when the component FEM is left out.
-#include "sim/deformable/deformable_world.h"
-#include "sim/deformable/stiffness_map.h"
+#include <tactus/sim/deformable/deformable_world.h>
+#include <tactus/sim/deformable/stiffness_map.h>
 
 namespace tactus::sim {
 
@@ -11,6 +11,6 @@ Result<std::unique_ptr<DeformableWorld>> make_deformable_world(const Scene&, con
 
 Result<StiffnessMap> stiffness_map(const SceneDeformable&) { return fail(Errc::unsupported, "R-SIM-2"); }
 
-Result<double> critical_stiffness(const SceneDeformable&, const MeshContact&) { return fail(Errc::unsupported, "R-SIM-2"); }
+Result<double> critical_stiffness(const SceneDeformable&, const SurfaceContact&) { return fail(Errc::unsupported, "R-SIM-2"); }
 
 }  // namespace tactus::sim

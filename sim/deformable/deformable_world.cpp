@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/deformable/deformable_world.h"
+#include <tactus/sim/deformable/deformable_world.h>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "sim/contact/intermediate_model.h"
-#include "sim/contact/mesh_proxy.h"
-#include "sim/deformable/deformable_body.h"
+#include <tactus/sim/contact/intermediate_model.h>
+#include <tactus/sim/contact/mesh_proxy.h>
+#include <tactus/sim/deformable/deformable_body.h>
 
 namespace tactus::sim {
 namespace {
@@ -15,7 +15,7 @@ namespace {
 constexpr unsigned kRings = 3;  // of the client's cut-out (thesis 3.3.1.1)
 
 /// What clients see of one object, once they were told: otherwise its true surface.
-struct Seen {
+struct ClientSurface {
   std::vector<Vec3> vertices, next;
   AabbTree tree;
 };
@@ -32,7 +32,7 @@ struct Probe {
   std::optional<std::uint32_t> touched;
   bool placed = false;
 
-  ProxyTouch move(std::uint32_t object, const DeformableBody& body, const Seen* seen, const Vec3& device) noexcept {
+  ProxyTouch move(std::uint32_t object, const DeformableBody& body, const ClientSurface* seen, const Vec3& device) noexcept {
     auto& [direct, cut_out] = proxies[object];
     const auto vertices = seen ? std::span<const Vec3>(seen->vertices) : body.vertices();
     const AabbTree& tree = seen ? seen->tree : body.tree();
@@ -69,29 +69,29 @@ class World final : public DeformableWorld {
     return touch(client_[user], seen_, device);
   }
   void show(std::size_t object, std::span<const Vec3> displacements) noexcept override;
-  void push(const MeshContact& contact, const Vec3& force) noexcept override {
+  void push(const SurfaceContact& contact, const Vec3& force) noexcept override {
     bodies_[contact.mesh]->push(contact.triangle, contact.weights, force);
   }
   tl::expected<void, StepError> step() override;
-  void observe(std::span<MeshSample> meshes) noexcept override;
+  void observe(std::span<DeformableSample> meshes) noexcept override;
   bool is_due(std::size_t object) const noexcept override { return last_[object] != DeformableBody::Tick::between; }
-  std::span<const TraceMesh> meshes() const noexcept override { return meshes_; }
+  std::span<const TraceDeformable> meshes() const noexcept override { return meshes_; }
   std::span<const DeformableInfo> info() const noexcept override { return info_; }
   DeformationTime time(std::size_t object) const noexcept override { return bodies_[object]->time(); }
   std::optional<DeformableError> error(std::size_t object) const override;
 
  private:
-  DeformableTouch touch(Probe& probe, std::span<const Seen> seen, const Vec3& device) noexcept;
+  DeformableTouch touch(Probe& probe, std::span<const ClientSurface> seen, const Vec3& device) noexcept;
   void deform(std::uint32_t object) noexcept;
   void update_clients(std::uint32_t object, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
 
   std::vector<std::unique_ptr<DeformableBody>> bodies_;
   std::vector<double> stiffness_;       // of each object's coupling [N/m]
   std::vector<Probe> server_, client_;  // one per user
-  std::vector<TraceMesh> meshes_;
+  std::vector<TraceDeformable> meshes_;
   std::vector<DeformableInfo> info_;
   std::vector<DeformableBody::Tick> last_;  // what the last tick came to, one per object
-  std::vector<Seen> seen_;                  // by clients, one per object; none: they see the truth
+  std::vector<ClientSurface> seen_;         // by clients, one per object; none: they see the truth
   std::int64_t tick_ = 0;
   bool report_at_rest_ = false;
 };
@@ -141,7 +141,7 @@ void World::add_user(const Scene& scene) {
   client_.push_back(std::move(client));
 }
 
-DeformableTouch World::touch(Probe& probe, std::span<const Seen> seen, const Vec3& device) noexcept {
+DeformableTouch World::touch(Probe& probe, std::span<const ClientSurface> seen, const Vec3& device) noexcept {
   std::optional<std::uint32_t> touched;
   ProxyTouch felt;
   for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
@@ -153,7 +153,7 @@ DeformableTouch World::touch(Probe& probe, std::span<const Seen> seen, const Vec
   probe.placed = true;
   probe.touched = touched;
   if (!touched) return {};
-  const MeshContact contact{*touched, felt.triangle, felt.weights, felt.proxy, felt.normal, stiffness_[*touched]};
+  const SurfaceContact contact{*touched, felt.triangle, felt.weights, felt.proxy, felt.normal, stiffness_[*touched]};
   return {contact, contact.stiffness * (felt.proxy - device)};
 }
 
@@ -189,7 +189,7 @@ void World::update_clients(std::uint32_t object, std::span<const Vec3> vertices,
 }
 
 void World::show(std::size_t object, std::span<const Vec3> displacements) noexcept {
-  Seen& seen = seen_[object];
+  ClientSurface& seen = seen_[object];
   const std::vector<Vec3>& rest = meshes_[object].rest.vertices;
   for (std::size_t v = 0; v < rest.size(); ++v) seen.next[v] = rest[v] + displacements[v];
   if (const double reach = farthest(seen.vertices, seen.next); reach > 0) {
@@ -208,7 +208,7 @@ std::optional<DeformableError> World::error(std::size_t object) const {
   return DeformableError{result.p50, result.max, result.samples, balance.moved > 0 ? balance.gained / balance.moved : 0};
 }
 
-void World::observe(std::span<MeshSample> meshes) noexcept {
+void World::observe(std::span<DeformableSample> meshes) noexcept {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     meshes[i].updated = last_[i] == DeformableBody::Tick::stepped || (report_at_rest_ && is_due(i));
     if (!meshes[i].updated) continue;

@@ -17,15 +17,15 @@
 #include <span>
 #include <string>
 
-#include "codec/trace/frame.h"
-#include "sim/rigid/rigid_world.h"
-#include "sim/scene/scene.h"
+#include <tactus/sim/rigid/rigid_world.h>
+#include <tactus/sim/scene/scene.h>
+#include <tactus/trace/frame.h>
 
 namespace tactus::sim {
 
 /// What a user's probe feels of the deformables. It touches one at a time: the first one met, until it lets go.
 struct DeformableTouch {
-  std::optional<MeshContact> contact;
+  std::optional<SurfaceContact> contact;
   Vec3 force;  ///< [N] k (x_p - x_d), on the hand; world frame
 };
 
@@ -62,17 +62,17 @@ class DeformableWorld {
   virtual void show(std::size_t object, std::span<const Vec3> displacements) noexcept = 0;
 
   /// Let a force [N] act on the touched triangle in this tick.
-  virtual void push(const MeshContact& contact, const Vec3& force) noexcept = 0;
+  virtual void push(const SurfaceContact& contact, const Vec3& force) noexcept = 0;
   /// Advance by one tick.   time of an object that rests and whose probes are far: O(users); no allocation after the first deformation
   /// err  invalid_argument R-FEM-6, internal R-FEM-7 with element and remedy; the shapes before the step are kept
   virtual tl::expected<void, StepError> step() = 0;
 
   /// Shapes as the server sees them now; `updated` when the last tick computed one, which it does not while the object rests.
-  virtual void observe(std::span<MeshSample> meshes) noexcept = 0;
+  virtual void observe(std::span<DeformableSample> meshes) noexcept = 0;
   /// A shape of this object is due now, computed or not.
   virtual bool is_due(std::size_t object) const noexcept = 0;
 
-  virtual std::span<const TraceMesh> meshes() const noexcept = 0;  ///< surfaces at rest
+  virtual std::span<const TraceDeformable> meshes() const noexcept = 0;  ///< surfaces at rest
   virtual std::span<const DeformableInfo> info() const noexcept = 0;
   virtual DeformationTime time(std::size_t object) const noexcept = 0;         ///< of its last deformation, with surface and tree
   virtual std::optional<DeformableError> error(std::size_t object) const = 0;  ///< when asked for in the options

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/deformable/stiffness_map.h"
+#include <tactus/sim/deformable/stiffness_map.h>
 
 #include <Eigen/SparseCholesky>
 
 #include <cmath>
 #include <limits>
 
-#include "sim/deformable/deformable_body.h"
-#include "sim/fem/linear_solver.h"
-#include "sim/msd/msd.h"
+#include <tactus/sim/deformable/deformable_body.h>
+#include <tactus/sim/fem/linear_solver.h>
+#include <tactus/sim/msd/msd.h>
 
 namespace tactus::sim {
 namespace {
@@ -37,7 +37,7 @@ std::vector<Vec3> vertex_normals(const TriMesh& mesh) {
 }
 
 /// |f| / |u . n| for a force on a triangle of the surface; 0 where too little is fixed to resist.
-double local_stiffness(FemModel& model, const TetSurface& surface, const MeshContact& contact) {
+double local_stiffness(FemModel& model, const TetSurface& surface, const SurfaceContact& contact) {
   const std::vector<int> numbers = numbers_of(model);
   SparseMatrix matrix;
   model.stiffness(model.rest().u, matrix);
@@ -91,7 +91,7 @@ Result<StiffnessMap> stiffness_map(const SceneDeformable& object) {
   return map;
 }
 
-Result<double> critical_stiffness(const SceneDeformable& object, const MeshContact& contact) {
+Result<double> critical_stiffness(const SceneDeformable& object, const SurfaceContact& contact) {
   auto model = FemModel::create(object.mesh, fem_options(object));
   if (!model) return tl::unexpected(model.error().error);
   const TetSurface surface = tactus::sim::surface(model->mesh());

@@ -10,10 +10,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "codec/base/result.h"
-#include "codec/base/tri_mesh.h"
-#include "codec/trace/frame.h"
-#include "sim/scene/scene.h"
+#include <tactus/base/result.h>
+#include <tactus/base/tri_mesh.h>
+#include <tactus/sim/scene/scene.h>
+#include <tactus/trace/frame.h>
 
 namespace tactus::sim {
 
@@ -35,6 +35,6 @@ Result<StiffnessMap> stiffness_map(const SceneDeformable& object);
 /// of both. In eq. 4.38 all else rests; here neighbours give way too, so that several times as much may hold.
 /// time the model made again and one solve by conjugate gradients: 25 ms for 2000 tetrahedra
 /// err  R-FEM-1..4, R-TET-n: the object cannot be; unsupported R-SIM-2: this build has no finite elements
-Result<double> critical_stiffness(const SceneDeformable& object, const MeshContact& contact);
+Result<double> critical_stiffness(const SceneDeformable& object, const SurfaceContact& contact);
 
 }  // namespace tactus::sim

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/fem/cholesky.h"
+#include <tactus/sim/fem/cholesky.h>
 
 extern "C" {  // which its header does not say itself
 #include <ldl.h>

@@ -11,9 +11,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/fem/model.h"
+#include <tactus/sim/fem/model.h>
 #ifdef TACTUS_FEM_CHOLMOD
-#include "sim/fem/cholesky_cholmod.h"
+#include <tactus/sim/fem/cholesky_cholmod.h>
 #endif
 
 namespace tactus::sim {

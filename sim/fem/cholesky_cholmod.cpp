@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/fem/cholesky_cholmod.h"
+#include <tactus/sim/fem/cholesky_cholmod.h>
 
 #include <cholmod.h>
 

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "sim/fem/model.h"
+#include <tactus/sim/fem/model.h>
 
 namespace tactus::sim {
 

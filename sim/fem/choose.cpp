@@ -4,7 +4,7 @@
 #include <cstdarg>
 #include <cstdio>
 
-#include "sim/fem/integrator.h"
+#include <tactus/sim/fem/integrator.h>
 
 namespace tactus::sim {
 namespace {

@@ -19,9 +19,9 @@
 #include <span>
 #include <vector>
 
-#include "sim/fem/element_block.h"
-#include "sim/fem/rotation.h"
-#include "sim/mesh/tet_mesh.h"
+#include <tactus/sim/fem/element_block.h>
+#include <tactus/sim/fem/rotation.h>
+#include <tactus/sim/tets/tet_mesh.h>
 
 namespace tactus::sim {
 

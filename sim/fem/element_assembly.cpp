@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/fem/element_assembly.h"
+#include <tactus/sim/fem/element_assembly.h>
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "sim/fem/element.h"
-#include "sim/fem/model.h"
+#include <tactus/sim/fem/element.h>
+#include <tactus/sim/fem/model.h>
 
 namespace tactus::sim {
 

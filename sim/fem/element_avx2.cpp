@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/fem/element_kernel.h"
+#include <tactus/sim/fem/element_kernel.h>
 
 namespace tactus::sim {
 

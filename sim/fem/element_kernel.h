@@ -3,9 +3,9 @@
 /// element_vectors.h. Symbols as in element.h; matrices are rows, element (i, j) at 3 i + j.
 #pragma once
 
-#include "sim/fem/element_block.h"
-#include "sim/fem/element_vectors.h"
-#include "sim/fem/rotation.h"
+#include <tactus/sim/fem/element_block.h>
+#include <tactus/sim/fem/element_vectors.h>
+#include <tactus/sim/fem/rotation.h>
 
 namespace tactus::sim {
 namespace {

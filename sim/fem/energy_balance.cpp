@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/fem/energy_balance.h"
+#include <tactus/sim/fem/energy_balance.h>
 
 #include <cmath>
 #include <utility>

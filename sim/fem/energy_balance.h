@@ -6,7 +6,7 @@
 /// vibrates with omega, and so does `gained`.
 #pragma once
 
-#include "sim/fem/integrator.h"
+#include <tactus/sim/fem/integrator.h>
 
 namespace tactus::sim {
 

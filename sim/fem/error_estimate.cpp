@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/fem/error_estimate.h"
+#include <tactus/sim/fem/error_estimate.h>
 
 #include <algorithm>
 #include <limits>

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "sim/fem/integrator.h"
+#include <tactus/sim/fem/integrator.h>
 
 namespace tactus::sim {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/fem/explicit.h"
+#include <tactus/sim/fem/explicit.h>
 
 #include <cmath>
 
 namespace tactus::sim {
 
 VelocityVerlet::VelocityVerlet(FemModel& model, const IntegratorOptions& options)
-    : Guarded(model, options),
+    : CheckedIntegrator(model, options),
       part_(h() / options.substeps),
       decay_(Eigen::VectorXd::Zero(model.size())),
       kick_(decay_),

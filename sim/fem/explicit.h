@@ -8,12 +8,12 @@
 
 #include <optional>
 
-#include "sim/fem/cholesky.h"
-#include "sim/fem/guarded.h"
+#include <tactus/sim/fem/cholesky.h>
+#include <tactus/sim/fem/guarded.h>
 
 namespace tactus::sim {
 
-class VelocityVerlet final : public Guarded {
+class VelocityVerlet final : public CheckedIntegrator {
  public:
   VelocityVerlet(FemModel& model, const IntegratorOptions& options);
 

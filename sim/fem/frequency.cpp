@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/fem/frequency.h"
+#include <tactus/sim/fem/frequency.h>
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "sim/random.h"
+#include <tactus/sim/random.h>
 
 namespace tactus::sim {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "sim/fem/model.h"
+#include <tactus/sim/fem/model.h>
 
 namespace tactus::sim {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/fem/guarded.h"
+#include <tactus/sim/fem/guarded.h>
 
 #include <algorithm>
 #include <cmath>
@@ -61,7 +61,7 @@ bool same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
 
 }  // namespace
 
-Guarded::Guarded(FemModel& model, const IntegratorOptions& options)
+CheckedIntegrator::CheckedIntegrator(FemModel& model, const IntegratorOptions& options)
     : model_(model),
       options_(options),
       next_(model.rest()),
@@ -69,7 +69,7 @@ Guarded::Guarded(FemModel& model, const IntegratorOptions& options)
       rounding_(rounding_energy(model)),
       last_(model.rest()) {}
 
-tl::expected<StepReport, FemError> Guarded::step(const Eigen::VectorXd& f, FemState& state) {
+tl::expected<StepReport, FemError> CheckedIntegrator::step(const Eigen::VectorXd& f, FemState& state) {
   const auto usable = [&](const Eigen::VectorXd& x) { return x.size() == model_.size() && finite(x); };
   const bool known = !interrupted_ && same(state.u, last_.u) && same(state.v, last_.v);  // and thus finite
   if (!usable(f) || (!known && !(usable(state.u) && usable(state.v))))
@@ -92,11 +92,11 @@ tl::expected<StepReport, FemError> Guarded::step(const Eigen::VectorXd& f, FemSt
   return report;
 }
 
-bool Guarded::finite(const Eigen::VectorXd& x) const noexcept {
+bool CheckedIntegrator::finite(const Eigen::VectorXd& x) const noexcept {
   return kernels_.finite(x.data(), static_cast<std::size_t>(x.size()));
 }
 
-bool Guarded::diverged(const Eigen::VectorXd& f, const FemState& before) {
+bool CheckedIntegrator::diverged(const Eigen::VectorXd& f, const FemState& before) {
   if (edited_) {
     referenced_ = false;
     moved_ = std::numeric_limits<double>::infinity();
@@ -113,7 +113,7 @@ bool Guarded::diverged(const Eigen::VectorXd& f, const FemState& before) {
   return may_gain_energy() && steps_ % kEnergyEvery == 0 && gained_energy();
 }
 
-bool Guarded::gained_energy() {
+bool CheckedIntegrator::gained_energy() {
   const double kinetic = 0.5 * next_.v.cwiseAbs2().dot(model_.lumped_mass());
   const double energy = kinetic + model_.energy(next_.u);
   if (!std::exchange(referenced_, true)) {
@@ -124,7 +124,7 @@ bool Guarded::gained_energy() {
   return !(energy <= kEnergyFactor * largest_swing() * (reference_ + work_) + rounding_);
 }
 
-FemError Guarded::divergence() const {
+FemError CheckedIntegrator::divergence() const {
   const std::int64_t broken = model_.broken_element(next_.u);
   const std::int64_t element = broken >= 0 ? broken : most_stretched(model_.mesh(), next_.u);
   return {{Errc::invalid_argument, "R-FEM-6"}, steps_, element, divergence_remedy(model_, options_)};

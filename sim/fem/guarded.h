@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "sim/fem/element_block.h"
-#include "sim/fem/integrator.h"
+#include <tactus/sim/fem/element_block.h>
+#include <tactus/sim/fem/integrator.h>
 
 namespace tactus::sim {
 
 /// What all integrators have in common: input is checked, and no diverged state leaves a step (integrator.h).
-class Guarded : public Integrator {
+class CheckedIntegrator : public Integrator {
  public:
-  Guarded(FemModel& model, const IntegratorOptions& options);
+  CheckedIntegrator(FemModel& model, const IntegratorOptions& options);
 
   tl::expected<StepReport, FemError> step(const Eigen::VectorXd& f, FemState& state) final;
   const IntegratorOptions& options() const noexcept final { return options_; }

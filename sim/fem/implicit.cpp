@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/fem/implicit.h"
+#include <tactus/sim/fem/implicit.h>
 
 #include <numbers>
 #include <utility>
@@ -28,7 +28,7 @@ double Implicit::stage_step(Scheme scheme, double h) noexcept {
 }
 
 Implicit::Implicit(FemModel& model, const IntegratorOptions& options, Scheme scheme, std::unique_ptr<Direction> direction)
-    : Guarded(model, options),
+    : CheckedIntegrator(model, options),
       scheme_(scheme),
       extrapolate_(options.method == Method::projective || options.solver == LinearSolver::prefactored),
       newton_(model, options, std::move(direction)),

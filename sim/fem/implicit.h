@@ -5,14 +5,14 @@
 /// stiff modes instead of damping them.
 #pragma once
 
-#include "sim/fem/guarded.h"
-#include "sim/fem/newton.h"
+#include <tactus/sim/fem/guarded.h>
+#include <tactus/sim/fem/newton.h>
 
 namespace tactus::sim {
 
 enum class Scheme : std::uint8_t { backward_euler, newmark, tr_bdf2 };
 
-class Implicit final : public Guarded {
+class Implicit final : public CheckedIntegrator {
  public:
   Implicit(FemModel& model, const IntegratorOptions& options, Scheme scheme, std::unique_ptr<Direction> direction);
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/fem/integrator.h"
+#include <tactus/sim/fem/integrator.h>
 
-#include "sim/fem/explicit.h"
-#include "sim/fem/implicit.h"
-#include "sim/fem/linear_solver.h"
-#include "sim/fem/modal.h"
-#include "sim/fem/projective.h"
+#include <tactus/sim/fem/explicit.h>
+#include <tactus/sim/fem/implicit.h>
+#include <tactus/sim/fem/linear_solver.h>
+#include <tactus/sim/fem/modal.h>
+#include <tactus/sim/fem/projective.h>
 
 namespace tactus::sim {
 namespace {

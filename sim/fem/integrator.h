@@ -34,7 +34,7 @@
 #include <memory>
 #include <string>
 
-#include "sim/fem/model.h"
+#include <tactus/sim/fem/model.h>
 
 namespace tactus::sim {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/fem/linear_solver.h"
+#include <tactus/sim/fem/linear_solver.h>
 
 #include <Eigen/LU>
 

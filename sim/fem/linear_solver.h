@@ -2,8 +2,8 @@
 /// Newton directions from the matrix at hand, assembled in every iteration (once when elasticity is linear).
 #pragma once
 
-#include "sim/fem/cholesky.h"
-#include "sim/fem/newton.h"
+#include <tactus/sim/fem/cholesky.h>
+#include <tactus/sim/fem/newton.h>
 
 namespace tactus::sim {
 

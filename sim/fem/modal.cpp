@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/fem/modal.h"
+#include <tactus/sim/fem/modal.h>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "sim/fem/linear_solver.h"
+#include <tactus/sim/fem/linear_solver.h>
 
 namespace tactus::sim {
 namespace {
@@ -43,7 +43,7 @@ tl::expected<std::unique_ptr<Integrator>, FemError> Modal::create(FemModel& mode
 }
 
 Modal::Modal(FemModel& model, const IntegratorOptions& options, Modes modes)
-    : Guarded(model, options),
+    : CheckedIntegrator(model, options),
       modes_(std::move(modes)),
       weighted_(model.mass_matrix() * modes_.shapes),
       q_(Eigen::VectorXd::Zero(modes_.squares.size())),

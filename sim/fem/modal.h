@@ -6,8 +6,8 @@
 
 #include <Eigen/Dense>
 
-#include "sim/fem/guarded.h"
-#include "sim/slowest_modes.h"
+#include <tactus/sim/fem/guarded.h>
+#include <tactus/sim/slowest_modes.h>
 
 namespace tactus::sim {
 
@@ -15,7 +15,7 @@ namespace tactus::sim {
 /// time 0.04 s for 50 modes of the membrane (714 vertices)
 tl::expected<Modes, FemError> slowest_modes(FemModel& model, int count);
 
-class Modal final : public Guarded {
+class Modal final : public CheckedIntegrator {
  public:
   static tl::expected<std::unique_ptr<Integrator>, FemError> create(FemModel& model, const IntegratorOptions& options);
 

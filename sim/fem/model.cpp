@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/fem/model.h"
+#include <tactus/sim/fem/model.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "sim/fem/element.h"
-#include "sim/fem/element_assembly.h"
-#include "sim/fem/frequency.h"
+#include <tactus/sim/fem/element.h>
+#include <tactus/sim/fem/element_assembly.h>
+#include <tactus/sim/fem/frequency.h>
 
 namespace tactus::sim {
 namespace {

@@ -37,7 +37,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/mesh/tet_mesh.h"
+#include <tactus/sim/tets/tet_mesh.h>
 
 namespace tactus::sim {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/fem/newton.h"
+#include <tactus/sim/fem/newton.h>
 
 #include <algorithm>
 #include <cmath>

@@ -11,7 +11,7 @@
 /// BDF2 after the trapezoid     gamma h/2   combination of the two states before
 #pragma once
 
-#include "sim/fem/integrator.h"
+#include <tactus/sim/fem/integrator.h>
 
 namespace tactus::sim {
 

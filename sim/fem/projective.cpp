@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/fem/projective.h"
+#include <tactus/sim/fem/projective.h>
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
 
-#include "sim/fem/linear_solver.h"
+#include <tactus/sim/fem/linear_solver.h>
 
 namespace tactus::sim {
 namespace {

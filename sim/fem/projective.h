@@ -12,8 +12,8 @@
 #include <array>
 #include <utility>
 
-#include "sim/fem/cholesky.h"
-#include "sim/fem/newton.h"
+#include <tactus/sim/fem/cholesky.h>
+#include <tactus/sim/fem/newton.h>
 
 namespace tactus::sim {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/fem/rotation.h"
+#include <tactus/sim/fem/rotation.h>
 
 #include <algorithm>
 #include <cmath>

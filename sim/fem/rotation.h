@@ -2,7 +2,7 @@
 /// The rotation nearest to a matrix, for any matrix: inside out, flat, a line, a point, zero.
 #pragma once
 
-#include "codec/base/geometry.h"
+#include <tactus/base/geometry.h>
 
 namespace tactus::sim {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/modes/spring_modes.h"
+#include <tactus/sim/modes/spring_modes.h>
 
 #include <Eigen/SparseCore>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "sim/slowest_modes.h"
+#include <tactus/sim/slowest_modes.h>
 
 namespace tactus::sim {
 namespace {

@@ -12,8 +12,8 @@
 #include <span>
 #include <vector>
 
-#include "codec/base/result.h"
-#include "codec/base/tri_mesh.h"
+#include <tactus/base/result.h>
+#include <tactus/base/tri_mesh.h>
 
 namespace tactus::sim {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/msd/msd_world.h"
+#include <tactus/sim/msd/msd_world.h>
 
 #include <cmath>
 

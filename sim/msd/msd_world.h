@@ -12,11 +12,11 @@
 #include <span>
 #include <vector>
 
-#include "codec/rigid/rigid.h"
-#include "sim/contact/contact.h"
-#include "sim/msd/msd.h"
-#include "sim/rigid/rigid_world.h"
-#include "sim/scene/scene.h"
+#include <tactus/rigid/rigid.h>
+#include <tactus/sim/contact/contact.h>
+#include <tactus/sim/msd/msd.h>
+#include <tactus/sim/rigid/rigid_world.h>
+#include <tactus/sim/scene/scene.h>
 
 namespace tactus::sim {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/rigid/box_tree.h"
+#include <tactus/sim/rigid/box_tree.h>
 
 #include <algorithm>
 #include <utility>

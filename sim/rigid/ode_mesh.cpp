@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/rigid/ode_mesh.h"
+#include <tactus/sim/rigid/ode_mesh.h>
 
 #include <algorithm>
 #include <limits>

@@ -11,7 +11,7 @@
 #include <memory>
 #include <span>
 
-#include "codec/base/tri_mesh.h"
+#include <tactus/base/tri_mesh.h>
 
 namespace tactus::sim {
 

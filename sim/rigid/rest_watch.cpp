@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/rigid/rest_watch.h"
+#include <tactus/sim/rigid/rest_watch.h>
 
 namespace tactus::sim {
 

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "codec/base/geometry.h"
+#include <tactus/base/geometry.h>
 
 namespace tactus::sim {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "sim/rigid/rigid_parts.h"
+#include <tactus/sim/rigid/rigid_parts.h>
 
 namespace tactus::sim {
 

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "sim/rigid/box_tree.h"
-#include "sim/rigid/ode_mesh.h"
-#include "sim/rigid/rest_watch.h"
-#include "sim/rigid/rigid_world.h"
+#include <tactus/sim/rigid/box_tree.h>
+#include <tactus/sim/rigid/ode_mesh.h>
+#include <tactus/sim/rigid/rest_watch.h>
+#include <tactus/sim/rigid/rigid_world.h>
 
 namespace tactus::sim {
 namespace rigid {

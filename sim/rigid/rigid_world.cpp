@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/rigid/rigid_world.h"
+#include <tactus/sim/rigid/rigid_world.h>
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <numeric>
 
-#include "sim/rigid/rigid_parts.h"
+#include <tactus/sim/rigid/rigid_parts.h>
 
 namespace tactus::sim {
 namespace {

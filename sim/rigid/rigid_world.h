@@ -18,10 +18,10 @@
 #include <span>
 #include <string>
 
-#include "codec/base/geometry.h"
-#include "codec/base/result.h"
-#include "codec/rigid/rigid.h"
-#include "sim/scene/scene.h"
+#include <tactus/base/geometry.h>
+#include <tactus/base/result.h>
+#include <tactus/rigid/rigid.h>
+#include <tactus/sim/scene/scene.h>
 
 namespace tactus::sim {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/scene/deformable_reader.h"
+#include <tactus/sim/scene/deformable_reader.h>
 
-#include "sim/mesh/tet_files.h"
+#include <tactus/sim/tets/tet_files.h>
 
 namespace tactus::sim {
 namespace {

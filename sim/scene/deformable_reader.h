@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "sim/scene/toml_reader.h"
+#include <tactus/sim/scene/toml_reader.h>
 
 namespace tactus::sim {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/scene/object_surface.h"
+#include <tactus/sim/scene/object_surface.h>
 
-#include "sim/surface/solid.h"
-#include "sim/surface/surface_file.h"
+#include <tactus/sim/surface/solid.h>
+#include <tactus/sim/surface/surface_file.h>
 
 namespace tactus::sim {
 

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "codec/base/result.h"
-#include "codec/base/tri_mesh.h"
+#include <tactus/base/result.h>
+#include <tactus/base/tri_mesh.h>
 
 namespace tactus::sim {
 

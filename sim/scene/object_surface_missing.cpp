@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // In place of object_surface.cpp when the component SURFACE is left out.
-#include "sim/scene/object_surface.h"
+#include <tactus/sim/scene/object_surface.h>
 
 namespace tactus::sim {
 

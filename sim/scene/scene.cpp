@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/scene/scene.h"
+#include <tactus/sim/scene/scene.h>
 
 #include <bit>
 #include <filesystem>
 #include <fstream>
 #include <set>
 
-#include "codec/base/shown.h"
-#include "codec/rigid/rigid.h"
-#include "sim/scene/deformable_reader.h"
-#include "sim/scene/object_surface.h"
-#include "sim/scene/toml_reader.h"
+#include <tactus/base/shown.h>
+#include <tactus/rigid/rigid.h>
+#include <tactus/sim/scene/deformable_reader.h>
+#include <tactus/sim/scene/object_surface.h>
+#include <tactus/sim/scene/toml_reader.h>
 
 namespace tactus::sim {
 namespace {

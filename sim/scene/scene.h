@@ -10,11 +10,11 @@
 #include <string_view>
 #include <vector>
 
-#include "codec/base/geometry.h"
-#include "codec/base/result.h"
-#include "codec/stream/header.h"
-#include "sim/mesh/tet_mesh.h"
-#include "sim/msd/msd.h"
+#include <tactus/base/geometry.h>
+#include <tactus/base/result.h>
+#include <tactus/scene/scene_syntax.h>
+#include <tactus/sim/msd/msd.h>
+#include <tactus/sim/tets/tet_mesh.h>
 
 namespace tactus::sim {
 

@@ -17,8 +17,8 @@
 #include <utility>
 #include <vector>
 
-#include "sim/scene/scene.h"
-#include "sim/scene/toml_text.h"
+#include <tactus/sim/scene/scene.h>
+#include <tactus/sim/scene/toml_text.h>
 
 namespace tactus::sim {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/study/fem_cases.h"
+#include <tactus/sim/study/fem_cases.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "sim/random.h"
+#include <tactus/sim/random.h>
 
 namespace tactus::sim::study {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/fem/integrator.h"
-#include "sim/study/study.h"
+#include <tactus/sim/fem/integrator.h>
+#include <tactus/sim/study/study.h>
 
 namespace tactus::sim::study {
 

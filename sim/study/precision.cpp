@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/study/precision.h"
+#include <tactus/sim/study/precision.h>
 
 #include <algorithm>
 #include <cmath>

@@ -16,7 +16,7 @@
 /// velocity at the beginning.
 #pragma once
 
-#include "sim/study/precision_scene.h"
+#include <tactus/sim/study/precision_scene.h>
 
 namespace tactus::sim::study {
 

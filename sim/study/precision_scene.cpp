@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/study/precision_scene.h"
+#include <tactus/sim/study/precision_scene.h>
 
 #include <cmath>
 

@@ -13,9 +13,9 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/fem/integrator.h"
-#include "sim/fem/model.h"
-#include "sim/study/study.h"
+#include <tactus/sim/fem/integrator.h>
+#include <tactus/sim/fem/model.h>
+#include <tactus/sim/study/study.h>
 
 namespace tactus::sim::study {
 

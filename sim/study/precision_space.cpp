@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/study/precision_space.h"
+#include <tactus/sim/study/precision_space.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "sim/fem/cholesky.h"
-#include "sim/study/precision.h"
-#include "sim/study/quadratic_tets.h"
+#include <tactus/sim/fem/cholesky.h>
+#include <tactus/sim/study/precision.h>
+#include <tactus/sim/study/quadratic_tets.h>
 
 namespace tactus::sim::study {
 namespace {

@@ -10,7 +10,7 @@
 /// comes from quadratic elements (quadratic_tets.h); in time, the finest mesh has to do.
 #pragma once
 
-#include "sim/study/precision_scene.h"
+#include <tactus/sim/study/precision_scene.h>
 
 namespace tactus::sim::study {
 

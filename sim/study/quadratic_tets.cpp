@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/study/quadratic_tets.h"
+#include <tactus/sim/study/quadratic_tets.h>
 
 #include <Eigen/Dense>
 #include <Eigen/IterativeLinearSolvers>

@@ -3,7 +3,7 @@
 /// not lock in bending, so a coarse mesh of them is closer to the truth than the finest one of linear elements.
 #pragma once
 
-#include "sim/study/precision_scene.h"
+#include <tactus/sim/study/precision_scene.h>
 
 namespace tactus::sim::study {
 

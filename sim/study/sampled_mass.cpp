@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/study/sampled_mass.h"
+#include <tactus/sim/study/sampled_mass.h>
 
 #include <cmath>
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/study/server_loop.h"
+#include <tactus/sim/study/server_loop.h>
 
 #include <algorithm>
 #include <cmath>

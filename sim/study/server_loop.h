@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "sim/msd/msd.h"
-#include "sim/study/study.h"
+#include <tactus/sim/msd/msd.h>
+#include <tactus/sim/study/study.h>
 
 namespace tactus::sim::study {
 

@@ -9,7 +9,7 @@
 /// Every study is deterministic.
 #pragma once
 
-#include "sim/study/study.h"
+#include <tactus/sim/study/study.h>
 
 namespace tactus::sim::study {
 

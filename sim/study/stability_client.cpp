@@ -3,11 +3,11 @@
 #include <array>
 #include <cmath>
 
-#include "sim/contact/passivity.h"
-#include "sim/msd/msd.h"
-#include "sim/study/sampled_mass.h"
-#include "sim/study/stability.h"
-#include "sim/user/user.h"
+#include <tactus/sim/contact/passivity.h>
+#include <tactus/sim/msd/msd.h>
+#include <tactus/sim/study/sampled_mass.h>
+#include <tactus/sim/study/stability.h>
+#include <tactus/sim/user/user.h>
 
 namespace tactus::sim::study {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/study/stability_fem.h"
+#include <tactus/sim/study/stability_fem.h>
 
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <optional>
 
-#include "sim/study/fem_cases.h"
+#include <tactus/sim/study/fem_cases.h>
 
 namespace tactus::sim::study {
 namespace {

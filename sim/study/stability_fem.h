@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "sim/study/study.h"
+#include <tactus/sim/study/study.h>
 
 namespace tactus::sim::study {
 

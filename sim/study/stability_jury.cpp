@@ -3,8 +3,8 @@
 #include <array>
 #include <cmath>
 
-#include "sim/study/server_loop.h"
-#include "sim/study/stability.h"
+#include <tactus/sim/study/server_loop.h>
+#include <tactus/sim/study/stability.h>
 
 namespace tactus::sim::study {
 namespace {

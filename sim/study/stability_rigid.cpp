@@ -6,10 +6,10 @@
 #include <numbers>
 #include <optional>
 
-#include "sim/random.h"
-#include "sim/rigid/rigid_world.h"
-#include "sim/study/sampled_mass.h"
-#include "sim/study/stability.h"
+#include <tactus/sim/random.h>
+#include <tactus/sim/rigid/rigid_world.h>
+#include <tactus/sim/study/sampled_mass.h>
+#include <tactus/sim/study/stability.h>
 
 namespace tactus::sim::study {
 namespace {

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/study/stability.h"
-#include "sim/study/wall.h"
-#include "sim/user/user.h"
+#include <tactus/sim/study/stability.h>
+#include <tactus/sim/study/wall.h>
+#include <tactus/sim/user/user.h>
 
 namespace tactus::sim::study {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/study/study.h"
+#include <tactus/sim/study/study.h>
 
 namespace tactus::sim::study {
 

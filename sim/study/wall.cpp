@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/study/wall.h"
+#include <tactus/sim/study/wall.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "sim/contact/passivity.h"
+#include <tactus/sim/contact/passivity.h>
 
 namespace tactus::sim::study {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "sim/study/sampled_mass.h"
+#include <tactus/sim/study/sampled_mass.h>
 
 namespace tactus::sim::study {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/surface/openmesh_io.h"
+#include <tactus/sim/surface/openmesh_io.h>
 
 #include <mutex>
 #include <sstream>

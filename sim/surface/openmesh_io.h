@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "codec/base/tri_mesh.h"
+#include <tactus/base/tri_mesh.h>
 
 namespace tactus::sim {
 

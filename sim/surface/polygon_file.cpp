@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/surface/polygon_file.h"
+#include <tactus/sim/surface/polygon_file.h>
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "sim/surface/surface_text.h"
+#include <tactus/sim/surface/surface_text.h>
 
 namespace tactus::sim {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <string_view>
 
-#include "sim/surface/openmesh_io.h"
-#include "sim/surface/surface_file.h"
+#include <tactus/sim/surface/openmesh_io.h>
+#include <tactus/sim/surface/surface_file.h>
 
 namespace tactus::sim {
 

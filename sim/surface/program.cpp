@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/surface/program.h"
+#include <tactus/sim/surface/program.h>
 
 #include <fcntl.h>
 #include <spawn.h>

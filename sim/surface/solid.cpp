@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/surface/solid.h"
+#include <tactus/sim/surface/solid.h>
 
 namespace tactus::sim {
 namespace {

@@ -2,7 +2,7 @@
 /// What a closed surface encloses.
 #pragma once
 
-#include "sim/surface/surface_error.h"
+#include <tactus/sim/surface/surface_error.h>
 
 namespace tactus::sim {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/surface/surface_error.h"
+#include <tactus/sim/surface/surface_error.h>
 
 #include <algorithm>
 #include <array>
 #include <string_view>
 
-#include "codec/base/shown.h"
+#include <tactus/base/shown.h>
 
 namespace tactus::sim {
 namespace {

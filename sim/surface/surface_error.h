@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "codec/base/tri_mesh.h"
+#include <tactus/base/tri_mesh.h>
 
 namespace tactus::sim {
 

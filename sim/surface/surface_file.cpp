@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/surface/surface_file.h"
+#include <tactus/sim/surface/surface_file.h>
 
 #include <algorithm>
 #include <fstream>
 
-#include "sim/surface/polygon_file.h"
+#include <tactus/sim/surface/polygon_file.h>
 
 namespace tactus::sim {
 namespace {

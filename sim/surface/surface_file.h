@@ -19,7 +19,7 @@
 
 #include <string_view>
 
-#include "sim/surface/surface_error.h"
+#include <tactus/sim/surface/surface_error.h>
 
 namespace tactus::sim {
 

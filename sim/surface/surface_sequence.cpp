@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/surface/surface_sequence.h"
+#include <tactus/sim/surface/surface_sequence.h>
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <set>
 #include <string_view>
 
-#include "sim/surface/polygon_file.h"
+#include <tactus/sim/surface/polygon_file.h>
 
 namespace tactus::sim {
 namespace {

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/surface/surface_error.h"
+#include <tactus/sim/surface/surface_error.h>
 
 namespace tactus::sim {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/surface/surface_text.h"
+#include <tactus/sim/surface/surface_text.h>
 
 #include <algorithm>
 #include <array>

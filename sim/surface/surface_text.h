@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "sim/surface/surface_error.h"
+#include <tactus/sim/surface/surface_error.h>
 
 namespace tactus::sim {
 

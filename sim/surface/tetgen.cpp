@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/surface/tetgen.h"
+#include <tactus/sim/surface/tetgen.h>
 
 #include <algorithm>
 #include <array>
@@ -13,9 +13,9 @@
 #include <optional>
 #include <sstream>
 
-#include "sim/mesh/tet_files.h"
-#include "sim/surface/program.h"
-#include "sim/surface/solid.h"
+#include <tactus/sim/surface/program.h>
+#include <tactus/sim/surface/solid.h>
+#include <tactus/sim/tets/tet_files.h>
 
 namespace tactus::sim {
 namespace {

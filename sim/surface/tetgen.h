@@ -15,8 +15,8 @@
 /// R-MSH-1..7                  the mesh is broken, see codec/base/tri_mesh.h
 #pragma once
 
-#include "sim/mesh/tet_mesh.h"
-#include "sim/surface/surface_error.h"
+#include <tactus/sim/surface/surface_error.h>
+#include <tactus/sim/tets/tet_mesh.h>
 
 namespace tactus::sim {
 

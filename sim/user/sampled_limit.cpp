@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/user/sampled_limit.h"
+#include <tactus/sim/user/sampled_limit.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/user/touch_record.h"
+#include <tactus/sim/user/touch_record.h>
 
 #include <algorithm>
 
 namespace tactus::sim {
 
 void TouchRecord::add(const UserSample& sample, const Vec3& position) noexcept {
-  const bool touches = sample.contact.kind != ContactKind::none || sample.mesh_contact;
+  const bool touches = sample.contact.kind != ContactKind::none || sample.surface_contact;
   const bool begins = touches && !touching_;
   touching_ = touches;
   port_.arrive(position);
@@ -22,12 +22,12 @@ void TouchRecord::add(const UserSample& sample, const Vec3& position) noexcept {
   summary_.most_in_a_second = std::max(summary_.most_in_a_second, in_a_second_);
 
   if (sample.contact.kind != ContactKind::none) summary_.stiffest = std::max(summary_.stiffest, sample.contact.stiffness);
-  if (!sample.mesh_contact) return;
-  summary_.stiffest = std::max(summary_.stiffest, sample.mesh_contact->stiffness);
+  if (!sample.surface_contact) return;
+  summary_.stiffest = std::max(summary_.stiffest, sample.surface_contact->stiffness);
   const double pressed = norm(sample.server_force);
   if (summary_.hardest && pressed <= hardest_) return;
   hardest_ = pressed;
-  summary_.hardest = sample.mesh_contact;
+  summary_.hardest = sample.surface_contact;
 }
 
 }  // namespace tactus::sim

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "codec/trace/frame.h"
-#include "sim/contact/passivity.h"
-#include "sim/scene/scene.h"
+#include <tactus/sim/contact/passivity.h>
+#include <tactus/sim/scene/scene.h>
+#include <tactus/trace/frame.h>
 
 namespace tactus::sim {
 
@@ -22,8 +22,8 @@ struct TouchSummary {
   /// scene gave away more than it had taken: sampling and delay make it do so (eq. 2.2), and so do weight and other users, who have
   /// energy of their own. Each contact begins at 0, as what earlier ones took would hide what this one gives.
   double lowest_energy = 0;
-  double stiffest = 0;                   ///< [N/m] of the couplings that held the hand, the largest
-  std::optional<MeshContact> hardest{};  ///< where a deformable object was pressed with most force
+  double stiffest = 0;                      ///< [N/m] of the couplings that held the hand, the largest
+  std::optional<SurfaceContact> hardest{};  ///< where a deformable object was pressed with most force
 };
 
 class TouchRecord {

@@ -10,9 +10,9 @@
 #include <optional>
 #include <vector>
 
-#include "codec/base/geometry.h"
-#include "sim/random.h"
-#include "sim/scene/scene.h"
+#include <tactus/base/geometry.h>
+#include <tactus/sim/random.h>
+#include <tactus/sim/scene/scene.h>
 
 namespace tactus::sim {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "sim/fem/model.h"
+#include <tactus/sim/fem/model.h>
 
 namespace tactus::testing {
 

@@ -2,7 +2,7 @@
 /// Cost of showing an object and of taking over an update.
 #include <benchmark/benchmark.h>
 
-#include "codec/client/replica.h"
+#include <tactus/client/replica.h>
 #include "tests/unit/rigid_fixture.h"
 
 namespace tactus {

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
-#include "sim/contact/intermediate_model.h"
-#include "sim/mesh/tet_mesh.h"
+#include <tactus/sim/contact/intermediate_model.h>
+#include <tactus/sim/tets/tet_mesh.h>
 #include "tests/unit/contact_mesh_fixture.h"
 
 namespace tactus {

@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/fem/element.h"
-#include "sim/random.h"
+#include <tactus/sim/fem/element.h>
+#include <tactus/sim/random.h>
 #include "tests/bench/peak.h"
 #include "tests/unit/fem_fixture.h"
 #ifdef TACTUS_BENCH_BULLET

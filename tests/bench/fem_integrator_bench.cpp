@@ -7,9 +7,9 @@
 #include <cmath>
 #include <string>
 
-#include "sim/fem/cholesky.h"
-#include "sim/fem/integrator.h"
-#include "sim/fem/linear_solver.h"
+#include <tactus/sim/fem/cholesky.h>
+#include <tactus/sim/fem/integrator.h>
+#include <tactus/sim/fem/linear_solver.h>
 #include "tests/unit/fem_fixture.h"
 
 namespace tactus {

@@ -2,7 +2,7 @@
 /// What this machine can compute: additions and multiplications of doubles, none waiting for another, without contraction.
 #pragma once
 
-#include "sim/fem/element_block.h"
+#include <tactus/sim/fem/element_block.h>
 
 namespace tactus::testing {
 

@@ -2,8 +2,8 @@
 /// Cost of the rigid codec: decision per object and tick, one encoded update, one decoded update, and a crowd at 1 kHz.
 #include <benchmark/benchmark.h>
 
-#include "codec/rigid/rigid_decoder.h"
-#include "codec/rigid/rigid_encoder.h"
+#include <tactus/rigid/rigid_decoder.h>
+#include <tactus/rigid/rigid_encoder.h>
 #include "tests/unit/rigid_fixture.h"
 
 namespace tactus {

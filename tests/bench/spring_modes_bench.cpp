@@ -2,8 +2,8 @@
 /// Set-up of a basis of vibration modes for the surface of the thesis's membrane, by number of modes.
 #include <benchmark/benchmark.h>
 
-#include "sim/mesh/tet_mesh.h"
-#include "sim/modes/spring_modes.h"
+#include <tactus/sim/modes/spring_modes.h>
+#include <tactus/sim/tets/tet_mesh.h>
 #include "tests/unit/fem_fixture.h"
 
 namespace tactus {

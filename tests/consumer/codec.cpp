@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// What a user of the installed library writes: one packet of an object, there and back; a mesh in halves, one of them dropped.
-#include <codec/rigid/rigid_encoder.h>
-#include <codec/tactus.h>
+#include <tactus/rigid/rigid_encoder.h>
+#include <tactus/tactus.h>
 
 #include <cstdio>
 #include <vector>
@@ -35,27 +35,28 @@ const char* mesh_in_halves() {
                               .triangles = {{0, 1, 3}, {0, 3, 2}, {2, 3, 5}, {2, 5, 4}}};
   tactus::StreamHeader header;
   header.baseline_span = 2;  // so that one packet may be dropped
-  auto mesh = tactus::make_mesh_object("strip", strip, header.grid.position);
+  auto mesh = tactus::make_deformable_object("strip", strip, header.grid.position);
   if (!mesh) return "the mesh is refused";
   mesh->split = true;
   mesh->rings = 0;
   header.meshes.push_back(*mesh);
 
-  auto encoder = tactus::MeshEncoder::create(header, 0);
-  auto decoder = tactus::MeshDecoder::create(header, 0);
+  auto encoder = tactus::DeformableEncoder::create(header, 0);
+  auto decoder = tactus::DeformableDecoder::create(header, 0);
   if (!encoder || !decoder) return "the header is refused";
 
-  const tactus::MeshTouch touch{.triangle = 0, .force = 1, .stiffness = 500};
+  const tactus::SurfaceTouch touch{.triangle = 0, .force = 1, .stiffness = 500};
   for (int frame = 1; frame <= 3; ++frame) {
     const std::vector<tactus::Vec3> truth(6, tactus::Vec3{0, 0, -0.001 * frame});
     const auto felt = encoder->encode(frame, truth, touch);
-    if (!felt || felt->half != tactus::MeshHalf::haptic) return "a push of a millimetre yields no haptic half";
+    if (!felt || felt->half != tactus::Layer::haptic) return "a push of a millimetre yields no haptic half";
     if (!decoder->decode(felt->bytes)) return "a haptic half is refused";
     const tactus::Vec3 seen = tactus::to_metres(decoder->displacements()[0], header.grid.position);
-    if (tactus::norm(seen - truth[0]) > tactus::MeshThresholds{}.visual) return "the client sees the touched vertex elsewhere";
+    if (tactus::norm(seen - truth[0]) > tactus::DeformableThresholds{}.visual)
+      return "the client sees the touched vertex elsewhere";
 
     const auto rest = encoder->encode_rest();
-    if (rest.half != tactus::MeshHalf::visual) return "a push of a millimetre yields no visual half";
+    if (rest.half != tactus::Layer::visual) return "a push of a millimetre yields no visual half";
     if (frame == 2) encoder->forget_last();  // the network is slow
     else if (!decoder->decode(rest.bytes)) return "a visual half is refused";
     if (decoder->state_hash() != encoder->state_hash()) return "the ends hold different states of the mesh";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A user of the component fem: a beam bends under its load, by a method that factors its matrix.
-#include <sim/fem/integrator.h>
+#include <tactus/sim/fem/integrator.h>
 
 #include <cstdio>
 

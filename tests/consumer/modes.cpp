@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A user of the component modes: a basis for a square of two triangles.
-#include <sim/modes/spring_modes.h>
+#include <tactus/sim/modes/spring_modes.h>
 
 #include <cstdio>
 

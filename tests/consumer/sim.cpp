@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A user of the component sim: the whole of each scene named, with the codec between server and client.
-#include <sim/simulation.h>
+#include <tactus/sim/simulation.h>
 
 #include <cstdint>
 #include <cstdio>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A user of the component surface: a tetrahedron written to the file named, read again and measured.
-#include <sim/surface/solid.h>
-#include <sim/surface/surface_file.h>
+#include <tactus/sim/surface/solid.h>
+#include <tactus/sim/surface/surface_file.h>
 
 #include <cmath>
 #include <cstdio>

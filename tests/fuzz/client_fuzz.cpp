@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "codec/client/replica.h"
+#include <tactus/client/replica.h>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tactus;

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "codec/trace/compression.h"
-#include "codec/trace/csv.h"
+#include <tactus/trace/compression.h>
+#include <tactus/trace/csv.h>
 #include "tests/fuzz/require.h"
 
 namespace {

@@ -7,9 +7,9 @@
 #include <cstring>
 #include <vector>
 
-#include "codec/base/bytes.h"
-#include "codec/rigid/contact.h"
-#include "codec/rigid/rigid.h"
+#include <tactus/base/bytes.h>
+#include <tactus/rigid/contact.h>
+#include <tactus/rigid/rigid.h>
 
 namespace tactus {
 

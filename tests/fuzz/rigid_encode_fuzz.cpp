@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "codec/tactus.h"
+#include <tactus/tactus.h>
 #include "tests/fuzz/motions.h"
 #include "tests/fuzz/packets.h"
 

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "codec/rigid/rigid_decoder.h"
+#include <tactus/rigid/rigid_decoder.h>
 #include "tests/fuzz/packets.h"
 
 namespace {

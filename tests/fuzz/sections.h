@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "codec/base/bytes.h"
-#include "codec/base/hash.h"
+#include <tactus/base/bytes.h>
+#include <tactus/base/hash.h>
 
 namespace tactus::testing {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "codec/base/shown.h"
+#include <tactus/base/shown.h>
 #include "tests/fuzz/require.h"
 
 namespace {

@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <vector>
 
-#include "codec/tactus.h"
+#include <tactus/client/replica.h>
+#include <tactus/deformable/decoder.h>
+#include <tactus/file/stream_file.h>
+#include <tactus/packet/substream.h>
+#include <tactus/rigid/rigid_decoder.h>
 #include "tests/fuzz/packets.h"
 
 namespace {
@@ -18,8 +22,8 @@ std::size_t play(StreamFileReader& reader) {
   auto rigid = RigidDecoder::create(header, kLimits).value();
   auto replica = Replica::create(header, {.interpolation = Interpolation::linear}).value();
   PartJoiner joiner(header);
-  std::vector<MeshDecoder> meshes;
-  for (std::size_t i = 0; i < header.meshes.size(); ++i) meshes.push_back(MeshDecoder::create(header, i, kLimits).value());
+  std::vector<DeformableDecoder> meshes;
+  for (std::size_t i = 0; i < header.meshes.size(); ++i) meshes.push_back(DeformableDecoder::create(header, i, kLimits).value());
   for (std::size_t packets = 0;; ++packets) {
     const std::uint64_t before = reader.position();
     const auto record = reader.next();
@@ -30,7 +34,7 @@ std::size_t play(StreamFileReader& reader) {
     if (part->bytes.size() <= max_packet_size(header))
       require(std::ranges::equal(joiner.join(part->part, part->bytes), (*record)->bytes));
     if (part->part > 0) {
-      MeshDecoder& mesh = meshes[part->part - 1];
+      DeformableDecoder& mesh = meshes[part->part - 1];
       if (const auto packet = decode_packet(mesh, part->bytes)) (void)mesh.displacements_at(packet->tick + 3);
     } else if (const auto packet = decode_packet(rigid, part->bytes)) {
       replica.apply(*packet, rigid.objects(), packet->tick + 2);

@@ -8,10 +8,10 @@
 #include <optional>
 #include <vector>
 
-#include "codec/mesh/mesh.h"
-#include "codec/mesh/mesh_encoder.h"
-#include "codec/mesh/mesh_graph.h"
-#include "codec/stream/header.h"
+#include <tactus/deformable/displacement.h>
+#include <tactus/deformable/encoder.h>
+#include <tactus/deformable/graph.h>
+#include <tactus/scene/scene_syntax.h>
 
 namespace tactus {
 
@@ -23,8 +23,8 @@ inline StreamHeader strip(std::uint8_t choice) {
     shape.triangles.push_back(i % 2 == 0 ? Triangle{i, i + 1, i + 2} : Triangle{i + 1, i, i + 2});
   StreamHeader header;
   header.tick_rate = 60;
-  MeshObject mesh = make_mesh_object("m", shape, header.grid.position).value();
-  if (choice & 1) mesh.profile = MeshProfile::thesis;
+  DeformableObject mesh = make_deformable_object("m", shape, header.grid.position).value();
+  if (choice & 1) mesh.profile = DeformableProfile::thesis;
   mesh.models_kept = (choice & 2) != 0;
   if ((choice & 3) == 2) {
     std::vector<double> ramp(72);
@@ -38,14 +38,14 @@ inline StreamHeader strip(std::uint8_t choice) {
 }
 
 /// What main promises for each vertex (mesh_encoder.h) [m].
-inline std::vector<double> strip_bounds(const StreamHeader& header, const MeshThresholds& t,
-                                        const std::optional<MeshTouch>& touch) {
-  const MeshObject& mesh = header.meshes[0];
+inline std::vector<double> strip_bounds(const StreamHeader& header, const DeformableThresholds& t,
+                                        const std::optional<SurfaceTouch>& touch) {
+  const DeformableObject& mesh = header.meshes[0];
   const double rounding = 0.8660255 * std::ldexp(1.0, -int{header.grid.position});
   std::vector<double> bound(mesh.rest.size(), std::max(t.visual, rounding));
   if (!touch || !t.weber_fraction) return bound;
   const double h = *t.weber_fraction * std::max(touch->force / touch->stiffness, t.depth_floor);
-  MeshRings rings(mesh);
+  Rings rings(mesh);
   rings.triangles_around(touch->triangle, mesh.rings);
   for (const std::uint32_t v : rings.vertices()) bound[v] = std::max(std::min(t.visual, h), rounding);
   return bound;

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "sim/surface/surface_file.h"
+#include <tactus/sim/surface/surface_file.h>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   constexpr std::array<std::string_view, 4> kFormats{".obj", ".off", ".ply", ".stl"};

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "codec/trace/trace_file.h"
+#include <tactus/trace/trace_file.h>
 #include "tests/fuzz/require.h"
 
 namespace {
@@ -21,9 +21,9 @@ void check(const tactus::TraceInfo& info, const tactus::TraceFrame& frame) {
   for (const auto& user : frame.users) {
     require(is_finite(user.contact.device) && is_finite(user.force) && is_finite(user.server_force));
     require(user.contact.kind == tactus::ContactKind::none || user.contact.object < info.objects.size());
-    if (!user.mesh_contact) continue;
-    require(user.mesh_contact->mesh < info.meshes.size());
-    require(user.mesh_contact->triangle < info.meshes[user.mesh_contact->mesh].rest.triangles.size());
+    if (!user.surface_contact) continue;
+    require(user.surface_contact->mesh < info.meshes.size());
+    require(user.surface_contact->triangle < info.meshes[user.surface_contact->mesh].rest.triangles.size());
   }
   for (std::size_t i = 0; i < info.meshes.size(); ++i) {
     const auto& displacements = frame.meshes[i].displacements;

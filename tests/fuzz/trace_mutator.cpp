@@ -2,9 +2,9 @@
 /// Mutations of MCAP files whose check values are then right again, or 0 ("not computed") where that takes unpacking.
 #include <algorithm>
 
-#include "codec/base/bytes.h"
-#include "codec/base/hash.h"
-#include "codec/trace/mcap.h"
+#include <tactus/base/bytes.h>
+#include <tactus/base/hash.h>
+#include <tactus/trace/mcap.h>
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <memory>
 
-#include "codec/rigid/rigid_decoder.h"
+#include <tactus/rigid/rigid_decoder.h>
 
 int main() {
   tactus::StreamHeader header;

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "codec/base/hash.h"
-#include "codec/tactus.h"
+#include <tactus/base/hash.h>
+#include <tactus/tactus.h>
 #include "tests/golden/golden.h"
 
 namespace {

@@ -5,8 +5,8 @@
 #include <random>
 #include <vector>
 
-#include "codec/base/hash.h"
-#include "codec/tactus.h"
+#include <tactus/base/hash.h>
+#include <tactus/tactus.h>
 #include "tests/golden/golden.h"
 
 namespace tactus::golden {
@@ -44,7 +44,7 @@ std::vector<double> bumps(const TriMesh& mesh, std::size_t modes) {
 }
 
 struct Setting {
-  MeshProfile profile = MeshProfile::main;
+  DeformableProfile profile = DeformableProfile::main;
   std::size_t modes = 0;
   double visual = 1e-3, noise = 1e-5;
   bool split = false;
@@ -56,16 +56,16 @@ bool run(const char* name, const Setting& setting) {
   StreamHeader header;
   header.tick_rate = 60;
   header.baseline_span = 4;
-  MeshObject object = make_mesh_object("sheet", mesh, header.grid.position).value();
+  DeformableObject object = make_deformable_object("sheet", mesh, header.grid.position).value();
   object.profile = profile;
   object.split = split;
-  if (modes > 0 && profile == MeshProfile::main) object.basis = make_mode_basis(bumps(mesh, modes), modes).value();
+  if (modes > 0 && profile == DeformableProfile::main) object.basis = make_mode_basis(bumps(mesh, modes), modes).value();
   header.meshes.push_back(object);
-  MeshEncoderOptions options;
+  DeformableEncoderOptions options;
   options.thresholds.visual = visual;
   options.key_interval = 1;
-  auto encoder = MeshEncoder::create(header, 0, options);
-  auto decoder = MeshDecoder::create(header, 0);
+  auto encoder = DeformableEncoder::create(header, 0, options);
+  auto decoder = DeformableDecoder::create(header, 0);
   const auto bytes = write_header(header);
   if (!encoder || !decoder || !bytes) return false;
   Fnv1a stream, states;
@@ -88,11 +88,11 @@ bool run(const char* name, const Setting& setting) {
       }
       displacement[v] = u;
     }
-    std::optional<MeshTouch> touch;
-    if (tick % 100 > 30) touch = MeshTouch{static_cast<std::uint32_t>(tick / 3 % 300), 1 + uniform(random), 500};
+    std::optional<SurfaceTouch> touch;
+    if (tick % 100 > 30) touch = SurfaceTouch{static_cast<std::uint32_t>(tick / 3 % 300), 1 + uniform(random), 500};
     const auto first = encoder->encode(tick, displacement, touch);
     if (!first) return false;
-    for (const EncodedMeshPacket& packet : {*first, encoder->encode_rest()}) {
+    for (const EncodedDeformablePacket& packet : {*first, encoder->encode_rest()}) {
       if (packet.bytes.empty()) continue;
       for (const std::uint8_t b : packet.bytes) stream.add_byte(b);
       const auto decoded = decoder->decode(packet.bytes);
@@ -110,7 +110,7 @@ bool run(const char* name, const Setting& setting) {
 }  // namespace
 
 bool run_meshes() {
-  return run("mesh-thesis", {.profile = MeshProfile::thesis}) && run("mesh-main", {}) &&
+  return run("mesh-thesis", {.profile = DeformableProfile::thesis}) && run("mesh-main", {}) &&
          run("mesh-noise", {.visual = 2e-4, .noise = 1e-3}) && run("mesh-basis", {.modes = 8}) &&
          run("mesh-exact", {.modes = 5, .visual = 0}) && run("mesh-split", {.modes = 8, .split = true});
 }

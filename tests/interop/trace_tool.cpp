@@ -6,9 +6,9 @@
 #include <iostream>
 #include <string_view>
 
-#include "codec/trace/csv.h"
-#include "codec/trace/csv_columns.h"
-#include "codec/trace/trace_file.h"
+#include <tactus/trace/csv.h>
+#include <tactus/trace/csv_columns.h>
+#include <tactus/trace/trace_file.h>
 
 namespace {
 
@@ -33,8 +33,8 @@ TraceFrame make_frame(std::int64_t tick) {
   frame.users[0].contact.kind = touches ? ContactKind::spring : ContactKind::none;
   if (touches) frame.users[0].contact.stiffness = 630;
   const auto at = [&](std::size_t slot) { return Vec3{number(tick, slot), number(tick, slot + 1), number(tick, slot + 2)}; };
-  if (tick % 4 == 2) frame.users[0].mesh_contact = {0, 3, {0.5, 0.375, 0.125}, at(300), at(303), 20};
-  MeshSample shape{tick % kDeformationTicks == 3, std::vector<float>(12)};
+  if (tick % 4 == 2) frame.users[0].surface_contact = {0, 3, {0.5, 0.375, 0.125}, at(300), at(303), 20};
+  DeformableSample shape{tick % kDeformationTicks == 3, std::vector<float>(12)};
   for (std::size_t k = 0; k < 12; ++k) shape.displacements[k] = static_cast<float>(number(tick, 400 + k));
   frame.meshes.push_back(std::move(shape));
   return frame;

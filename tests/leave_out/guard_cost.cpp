@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "sim/fem/integrator.h"
+#include <tactus/sim/fem/integrator.h>
 #include "tests/unit/fem_fixture.h"
 
 int main(int argc, char** argv) {

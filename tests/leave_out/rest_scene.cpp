@@ -3,8 +3,8 @@
 /// rest_scene SCENE
 #include <cstdio>
 
-#include "codec/trace/trace_file.h"
-#include "sim/simulation.h"
+#include <tactus/sim/simulation.h>
+#include <tactus/trace/trace_file.h>
 
 /// The name is what callgrind is told to count.
 extern "C" [[gnu::noinline]] bool counted_ticks(tactus::sim::Simulation& simulation, tactus::TraceWriter& trace, int ticks) {

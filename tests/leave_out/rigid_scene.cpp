@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "codec/base/hash.h"
-#include "sim/simulation.h"
+#include <tactus/base/hash.h>
+#include <tactus/sim/simulation.h>
 
 /// From set-up to the last tick; the name is what callgrind is told to count.
 extern "C" [[gnu::noinline]] int run_scene(const tactus::sim::Scene& scene, int ticks) {

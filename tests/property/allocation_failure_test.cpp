@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "codec/tactus.h"
+#include <tactus/tactus.h>
 #include "tests/fuzz/strip.h"
 #include "tests/property/allocated.h"
 #include "tests/property/fail_each.h"
@@ -50,20 +50,20 @@ TEST(AllocationFailure, DecodersAndReplica) {
   EXPECT_GT(fail_each(rigid_scene(), [](StreamHeader&& h) { return RigidDecoder::create(std::move(h)); }), 3u);
   EXPECT_GT(fail_each(rigid_scene(), [](const StreamHeader& h) { return Replica::create(h); }), 3u);
   for (const std::uint8_t choice : kChoices)
-    EXPECT_GT(fail_each(scene(choice), [](StreamHeader&& h) { return MeshDecoder::create(std::move(h), 0); }), 10u);
+    EXPECT_GT(fail_each(scene(choice), [](StreamHeader&& h) { return DeformableDecoder::create(std::move(h), 0); }), 10u);
 }
 
 TEST(AllocationFailure, Encoders) {
   EXPECT_GT(fail_each(rigid_scene(), [](StreamHeader&& h) { return RigidEncoder::create(std::move(h)); }), 3u);
   for (const std::uint8_t choice : kChoices)
-    EXPECT_GT(fail_each(scene(choice), [](StreamHeader&& h) { return MeshEncoder::create(std::move(h), 0); }), 10u);
+    EXPECT_GT(fail_each(scene(choice), [](StreamHeader&& h) { return DeformableEncoder::create(std::move(h), 0); }), 10u);
 }
 
 TEST(AllocationFailure, MeshesForHeaders) {
   TriMesh triangle;
   triangle.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   triangle.triangles = {{0, 1, 2}};
-  EXPECT_GT(fail_each(triangle, [](const TriMesh& m) { return make_mesh_object("m", m, 22); }), 1u);
+  EXPECT_GT(fail_each(triangle, [](const TriMesh& m) { return make_deformable_object("m", m, 22); }), 1u);
   EXPECT_GT(fail_each(std::vector<double>(9, 1.0), [](const std::vector<double>& v) { return make_mode_basis(v, 1); }), 1u);
   EXPECT_GT(fail_each(triangle,
                       [](const TriMesh& m) -> Result<void> {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <deque>
 
-#include "codec/rigid/rigid_decoder.h"
+#include <tactus/rigid/rigid_decoder.h>
 #include "conformance/make_vectors/build.h"
 
 namespace tactus {

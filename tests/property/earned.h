@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "codec/stream/header.h"
+#include <tactus/scene/scene_syntax.h>
 
 namespace tactus::testing {
 
@@ -13,8 +13,8 @@ namespace tactus::testing {
 inline std::uint64_t earned(std::size_t bytes, std::uint64_t states) { return 4096 + bytes * (24 + 3 * states); }
 
 /// A header of so many bytes, parsed, and the decoder of one of its meshes (spec/60-mesh.md 10).
-inline std::uint64_t earned(std::size_t bytes, std::uint64_t span, const MeshObject& mesh) {
-  const std::uint64_t models = mesh.profile == MeshProfile::thesis ? 254 + (std::uint64_t{1} << mesh.quant_bits) : 0;
+inline std::uint64_t earned(std::size_t bytes, std::uint64_t span, const DeformableObject& mesh) {
+  const std::uint64_t models = mesh.profile == DeformableProfile::thesis ? 254 + (std::uint64_t{1} << mesh.quant_bits) : 0;
   return 4096 + 256 * span + bytes * (640 + 10 * span) + 4 * (span + 4) * models;
 }
 

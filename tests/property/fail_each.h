@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "codec/base/result.h"
+#include <tactus/base/result.h>
 #include "tests/property/allocated.h"
 
 namespace tactus::testing {

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "codec/tactus.h"
+#include <tactus/tactus.h>
 #include "tests/fuzz/sections.h"
 #include "tests/property/allocated.h"
 #include "tests/property/earned.h"
@@ -65,7 +65,7 @@ const char* survive(std::span<const std::uint8_t> bytes, bool meshes) {
   auto reader = StreamFileReader::open({exact.get(), bytes.size()});
   const std::uint64_t parsing = testing::allocated_bytes() - start;
   if (!reader) {
-    if (parsing > (meshes ? earned(bytes.size(), 1, MeshObject{}) : earned(bytes.size(), 1)))
+    if (parsing > (meshes ? earned(bytes.size(), 1, DeformableObject{}) : earned(bytes.size(), 1)))
       return "a refused header allocates too much";
     return has_rule(reader.error()) ? nullptr : "a refused header without a rule";
   }
@@ -74,11 +74,11 @@ const char* survive(std::span<const std::uint8_t> bytes, bool meshes) {
   if (!rigid) return "a header is accepted by the reader, not by the decoder";
   if (header.meshes.empty() && testing::allocated_bytes() - start > earned(bytes.size(), header.baseline_span))
     return "set-up allocates too much";
-  std::vector<MeshDecoder> decoders;
+  std::vector<DeformableDecoder> decoders;
   decoders.reserve(header.meshes.size());
   for (std::size_t i = 0; i < header.meshes.size(); ++i) {
     const std::uint64_t before = testing::allocated_bytes();
-    auto decoder = MeshDecoder::create(header, i);
+    auto decoder = DeformableDecoder::create(header, i);
     if (!decoder) return "a header is accepted by the reader, not by the decoder of its mesh";
     if (parsing + testing::allocated_bytes() - before > earned(bytes.size(), header.baseline_span, header.meshes[i]))
       return "set-up of a mesh allocates too much";

@@ -9,7 +9,7 @@
 #include <iterator>
 #include <vector>
 
-#include "codec/tactus.h"
+#include <tactus/tactus.h>
 #include "tests/property/allocated.h"
 #include "tests/property/earned.h"
 
@@ -28,11 +28,11 @@ std::size_t watch(const Bytes& bytes) {
   const std::uint64_t parsing = testing::allocated_bytes() - start;
   const StreamHeader& header = reader->header();
   const std::size_t header_bytes = static_cast<std::size_t>(reader->position());
-  std::vector<MeshDecoder> decoders;
+  std::vector<DeformableDecoder> decoders;
   decoders.reserve(header.meshes.size());
   for (std::size_t i = 0; i < header.meshes.size(); ++i) {
     const std::uint64_t before = testing::allocated_bytes();
-    decoders.push_back(MeshDecoder::create(header, i).value());
+    decoders.push_back(DeformableDecoder::create(header, i).value());
     EXPECT_LE(parsing + testing::allocated_bytes() - before, earned(header_bytes, header.baseline_span, header.meshes[i])) << i;
   }
   const std::uint64_t ready = testing::allocated_bytes();
@@ -64,14 +64,15 @@ std::uint64_t watch_all(const StreamHeader& header, std::size_t bytes) {
   const std::uint64_t start = testing::allocated_bytes();
   auto reader = StreamFileReader::open(file);
   auto rigid = RigidDecoder::create(reader->header());
-  std::vector<MeshDecoder> decoders;
+  std::vector<DeformableDecoder> decoders;
   decoders.reserve(header.meshes.size());
-  for (std::size_t i = 0; i < header.meshes.size(); ++i) decoders.push_back(MeshDecoder::create(reader->header(), i).value());
+  for (std::size_t i = 0; i < header.meshes.size(); ++i)
+    decoders.push_back(DeformableDecoder::create(reader->header(), i).value());
   return testing::allocated_bytes() - start;
 }
 
-MeshObject points(std::uint32_t vertices) {
-  MeshObject mesh;
+DeformableObject points(std::uint32_t vertices) {
+  DeformableObject mesh;
   mesh.name = "m";
   for (std::uint32_t i = 0; i < vertices; ++i) mesh.rest.push_back({static_cast<std::int32_t>(i), 0, 0});
   return mesh;
@@ -79,9 +80,9 @@ MeshObject points(std::uint32_t vertices) {
 
 /// Books of 60 pages, triangles on one edge whose ends have the highest numbers: every level of the hierarchy has nearly all edges
 /// again. Three bytes each.
-MeshObject books(std::uint32_t number) {
+DeformableObject books(std::uint32_t number) {
   constexpr std::uint32_t kPages = 60, kVertices = kPages + 2;
-  MeshObject mesh = points(number * kVertices);
+  DeformableObject mesh = points(number * kVertices);
   for (std::uint32_t i = 0; i < number * kPages; ++i) {
     const std::uint32_t first = i / kPages * kVertices, spine = first + kPages;
     mesh.triangles.push_back({spine, spine + 1, first + i % kPages});
@@ -90,18 +91,18 @@ MeshObject books(std::uint32_t number) {
 }
 
 /// Each pair of 30 hubs has a triangle with each of 30 leaves.
-MeshObject bipartite() {
+DeformableObject bipartite() {
   constexpr std::uint32_t kHalf = 30;
-  MeshObject mesh = points(2 * kHalf);
+  DeformableObject mesh = points(2 * kHalf);
   for (std::uint32_t hub = 0; hub < kHalf; hub += 2)
     for (std::uint32_t leaf = 0; leaf < kHalf; ++leaf) mesh.triangles.push_back({kHalf + hub, kHalf + hub + 1, leaf});
   return mesh;
 }
 
 TEST(MeshMemory, OfMeshesThatTakeMost) {
-  std::vector<MeshObject> meshes{points(1),    points(1),    points(1), points(3000),
-                                 points(3000), points(3000), books(50), bipartite()};
-  meshes[0].profile = MeshProfile::thesis;
+  std::vector<DeformableObject> meshes{points(1),    points(1),    points(1), points(3000),
+                                       points(3000), points(3000), books(50), bipartite()};
+  meshes[0].profile = DeformableProfile::thesis;
   meshes[0].quant_bits = 12;
   meshes[0].models_kept = true;
   meshes[1].basis.entries.assign(3 * ModeBasis::kMaxModes, 1);
@@ -110,7 +111,7 @@ TEST(MeshMemory, OfMeshesThatTakeMost) {
   for (auto& at : meshes[3].rest) at = {};  // copies of one vertex: each is a neighbour of the next
   meshes[4].split = true;
   for (std::uint32_t i = 0; i < 3000; ++i) meshes[5].triangles.push_back({0, 1, 2});
-  for (const MeshObject& mesh : meshes) {
+  for (const DeformableObject& mesh : meshes) {
     for (const std::uint8_t span : {std::uint8_t{1}, std::uint8_t{64}}) {
       SCOPED_TRACE(&mesh - meshes.data());
       StreamHeader header;
@@ -123,8 +124,8 @@ TEST(MeshMemory, OfMeshesThatTakeMost) {
 
 /// Meshes do not multiply one another's memory, and states are what state_bytes() counts.
 TEST(MeshMemory, OfAStreamOfManyMeshes) {
-  MeshObject with_models = points(1);
-  with_models.profile = MeshProfile::thesis;
+  DeformableObject with_models = points(1);
+  with_models.profile = DeformableProfile::thesis;
   with_models.quant_bits = 12;
   with_models.models_kept = true;
   for (const auto& [mesh, span] : {std::pair{with_models, std::uint8_t{16}}, {points(300), std::uint8_t{1}}}) {

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "codec/mesh/mesh_decoder.h"
-#include "codec/mesh/mesh_encoder.h"
-#include "codec/rigid/rigid_decoder.h"
-#include "codec/rigid/rigid_encoder.h"
+#include <tactus/deformable/decoder.h>
+#include <tactus/deformable/encoder.h>
+#include <tactus/rigid/rigid_decoder.h>
+#include <tactus/rigid/rigid_encoder.h>
 
 namespace tactus {
 namespace {
@@ -189,10 +189,10 @@ TEST(Outage, OldStatesAreNoBaselines) {
 
 TEST(Outage, MeshesTheSame) {
   StreamHeader header;
-  MeshObject& mesh = header.meshes.emplace_back();
+  DeformableObject& mesh = header.meshes.emplace_back();
   mesh.name = "point";
   mesh.rest = {{0, 0, 0}};
-  auto encoder = MeshEncoder::create(header, 0, {.thresholds = {.visual = 0}, .key_interval = kKeyEvery / 1000.0}).value();
+  auto encoder = DeformableEncoder::create(header, 0, {.thresholds = {.visual = 0}, .key_interval = kKeyEvery / 1000.0}).value();
   std::vector<Packet> sent;
   for (std::size_t tick = 0; tick < kHeard + kRound + 2500; ++tick) {
     const Vec3 u{1e-3 * static_cast<double>(1 + 3 * tick % 7) + 1e-5 * std::sin(0.01 * static_cast<double>(tick)), 0, 0};
@@ -201,7 +201,7 @@ TEST(Outage, MeshesTheSame) {
     sent.push_back({Bytes(packet.bytes.begin(), packet.bytes.end()), packet.key, encoder.state_hash()});
   }
   for (const std::size_t outage : {std::size_t{10}, kRound / 2 - 1, kRound / 2, kRound - 200, kRound - 1, kRound, kRound + 1}) {
-    auto decoder = MeshDecoder::create(header, 0).value();
+    auto decoder = DeformableDecoder::create(header, 0).value();
     int accepted = 0;
     const auto listen = [&](std::size_t from, std::size_t to) {
       for (std::size_t i = from; i < to; ++i) {

@@ -12,8 +12,8 @@
 #include <string_view>
 #include <vector>
 
-#include "codec/trace/csv.h"
-#include "codec/trace/trace_file.h"
+#include <tactus/trace/csv.h>
+#include <tactus/trace/trace_file.h>
 #include "tests/property/fail_each.h"
 
 namespace tactus {

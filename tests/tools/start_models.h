@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "codec/base/range_coder.h"
-#include "codec/stream/file.h"
+#include <tactus/base/range_coder.h>
+#include <tactus/file/stream_file.h>
 
 namespace tactus {
 

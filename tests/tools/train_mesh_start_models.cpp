@@ -4,7 +4,7 @@
 /// Every packet has the same weight. Only streams whose packets build on the packet before or on the initial state.
 #include <utility>
 
-#include "codec/mesh/mesh_main_reader.h"
+#include <tactus/deformable/main_reader.h>
 #include "tests/tools/start_models.h"
 
 namespace {
@@ -13,16 +13,16 @@ using namespace tactus;
 
 template <class Packets>
 bool count_file(const StreamHeader& header, const Packets& packets, Counts& counts) {
-  if (header.meshes.size() != 1 || header.meshes[0].profile != MeshProfile::main) return false;
-  const MeshObject& mesh = header.meshes[0];
-  MeshMainReader reader(mesh);
-  const MeshState initial = initial_mesh_state(mesh);
-  MeshState state = initial, next = initial;
+  if (header.meshes.size() != 1 || header.meshes[0].profile != DeformableProfile::main) return false;
+  const DeformableObject& mesh = header.meshes[0];
+  MainReader reader(mesh);
+  const DeformableState initial = initial_state(mesh);
+  DeformableState state = initial, next = initial;
   for (const auto& packet : packets) {
-    MeshModels models = mesh_start_models();
+    MainModels models = main_start_models();
     CountingDecoder coder(packet.subspan(2), models, counts);
-    MeshHead head;
-    code_mesh_start(coder, models, mesh, header.baseline_span, head);
+    MainHead head;
+    code_main_start(coder, models, mesh, header.baseline_span, head);
     if (!reader.read(coder, models, head, head.key ? initial : state, next)) return false;
     std::swap(state, next);
   }
@@ -54,7 +54,7 @@ bool print_table(const Counts& counts) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Counts counts = no_counts<MeshModels>();
+  Counts counts = no_counts<MainModels>();
   const auto count = [&](const StreamHeader& header, const auto& packets) { return count_file(header, packets, counts); };
   if (!count_files(std::span(argv, static_cast<std::size_t>(argc)).subspan(1), count)) return 1;
   return print_table(counts) ? 0 : 1;

@@ -2,7 +2,7 @@
 /// Make spec/tables/rigid-start-models.csv from stream files of rigid objects.
 ///   train_rigid_start_models a.tct b.tct ... > rigid-start-models.csv
 /// Every file has the same weight.
-#include "codec/rigid/rigid_syntax.h"
+#include <tactus/rigid/rigid_syntax.h>
 #include "tests/tools/start_models.h"
 
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/contact/aabb_tree.h"
+#include <tactus/sim/contact/aabb_tree.h>
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "codec/base/bytes.h"
+#include <tactus/base/bytes.h>
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <string_view>
 
-#include "codec/base/hash.h"
+#include <tactus/base/hash.h>
 
 namespace tactus {
 namespace {

@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "codec/base/tri_mesh.h"
-#include "sim/contact/aabb_tree.h"
-#include "sim/contact/inside.h"
-#include "sim/random.h"
+#include <tactus/base/tri_mesh.h>
+#include <tactus/sim/contact/aabb_tree.h>
+#include <tactus/sim/contact/inside.h>
+#include <tactus/sim/random.h>
 
 namespace tactus::testing {
 
@@ -22,7 +22,7 @@ struct Body {
   TriMesh mesh;
   MeshTopology topology{mesh};
   sim::AabbTree tree{mesh};
-  sim::Inside inside{mesh, topology};
+  sim::InsideTest inside{mesh, topology};
 
   explicit Body(TriMesh made) : mesh(std::move(made)) {}
   Body(const Body&) = delete;

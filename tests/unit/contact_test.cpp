@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/contact/contact.h"
+#include <tactus/sim/contact/contact.h>
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "sim/random.h"
+#include <tactus/sim/random.h>
 
 namespace tactus::sim {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "codec/trace/csv.h"
+#include <tactus/trace/csv.h>
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "codec/trace/compression.h"
+#include <tactus/trace/compression.h>
 #include "tests/unit/trace_fixture.h"
 
 namespace tactus {

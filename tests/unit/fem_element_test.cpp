@@ -7,8 +7,8 @@
 #include <cmath>
 #include <vector>
 
-#include "sim/fem/model.h"
-#include "sim/random.h"
+#include <tactus/sim/fem/model.h>
+#include <tactus/sim/random.h>
 #include "tests/unit/fem_fixture.h"
 
 namespace tactus::sim {

@@ -6,8 +6,8 @@
 #include <limits>
 #include <string>
 
-#include "sim/fem/integrator.h"
-#include "sim/random.h"
+#include <tactus/sim/fem/integrator.h>
+#include <tactus/sim/random.h>
 #include "tests/unit/fem_fixture.h"
 
 namespace tactus::sim {

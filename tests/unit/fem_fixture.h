@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "sim/fem/model.h"
-#include "sim/mesh/tet_mesh.h"
+#include <tactus/sim/fem/model.h>
+#include <tactus/sim/tets/tet_mesh.h>
 
 namespace tactus::testing {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Integrators do in time what they say: exact recurrences, orders, what is conserved, and other programs' figures.
-#include "sim/fem/integrator.h"
+#include <tactus/sim/fem/integrator.h>
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/fem/error_estimate.h"
-#include "sim/random.h"
+#include <tactus/sim/fem/error_estimate.h>
+#include <tactus/sim/random.h>
 #include "tests/property/allocated.h"
 #include "tests/property/heap_calls.h"
 #include "tests/unit/fem_fixture.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/fem/model.h"
+#include <tactus/sim/fem/model.h>
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/random.h"
+#include <tactus/sim/random.h>
 #include "tests/property/allocated.h"
 #include "tests/unit/fem_fixture.h"
 

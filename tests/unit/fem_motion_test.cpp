@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/fem/energy_balance.h"
-#include "sim/fem/integrator.h"
+#include <tactus/sim/fem/energy_balance.h>
+#include <tactus/sim/fem/integrator.h>
 #include "tests/unit/fem_fixture.h"
 
 namespace tactus::sim {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The best rotation of any matrix, from the robust method and from the vector kernel, against Eigen's singular values.
-#include "sim/fem/rotation.h"
+#include <tactus/sim/fem/rotation.h>
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include <cmath>
 #include <vector>
 
-#include "sim/fem/element.h"
-#include "sim/random.h"
+#include <tactus/sim/fem/element.h>
+#include <tactus/sim/random.h>
 #include "tests/unit/fem_fixture.h"
 
 namespace tactus::sim {

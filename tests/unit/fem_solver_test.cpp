@@ -6,11 +6,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/fem/cholesky.h"
-#include "sim/fem/integrator.h"
-#include "sim/fem/linear_solver.h"
-#include "sim/fem/modal.h"
-#include "sim/random.h"
+#include <tactus/sim/fem/cholesky.h>
+#include <tactus/sim/fem/integrator.h>
+#include <tactus/sim/fem/linear_solver.h>
+#include <tactus/sim/fem/modal.h>
+#include <tactus/sim/random.h>
 #include "tests/unit/fem_fixture.h"
 
 namespace tactus::sim {

@@ -9,8 +9,8 @@
 #include <cstdio>
 #include <numbers>
 
-#include "sim/study/precision_space.h"
-#include "sim/study/quadratic_tets.h"
+#include <tactus/sim/study/precision_space.h>
+#include <tactus/sim/study/quadratic_tets.h>
 
 namespace tactus::sim {
 namespace {

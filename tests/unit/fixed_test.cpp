@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "codec/base/fixed.h"
+#include <tactus/base/fixed.h>
 
 #include <gtest/gtest.h>
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// What traces and tables may cost: codec/trace/input_budget.h and its users.
-#include "codec/trace/input_budget.h"
+// What traces and tables may cost: io/trace/input_budget.h and its users.
+#include <tactus/trace/input_budget.h>
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 
-#include "codec/trace/compression.h"
-#include "codec/trace/csv.h"
-#include "codec/trace/mcap_reader.h"
+#include <tactus/trace/compression.h>
+#include <tactus/trace/csv.h>
+#include <tactus/trace/mcap_reader.h>
 #include "tests/unit/trace_fixture.h"
 
 namespace tactus {
@@ -49,7 +49,7 @@ struct RestingMesh {
   TraceInfo info;
   TraceFrame frame;
   RestingMesh() {
-    TraceMesh& mesh = info.meshes.emplace_back(TraceMesh{.name = "sheet", .rest = {}});
+    TraceDeformable& mesh = info.meshes.emplace_back(TraceDeformable{.name = "sheet", .rest = {}});
     for (std::size_t i = 0; i < kVertices; ++i)
       mesh.rest.vertices.push_back({static_cast<double>(i / 2), i % 2 == 0 ? 0.0 : 1.0, 0});
     for (std::uint32_t i = 0; i + 2 < kVertices; ++i)

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/contact/mesh_proxy.h"
+#include <tactus/sim/contact/mesh_proxy.h>
 #include "tests/unit/contact_mesh_fixture.h"
 
 namespace tactus::testing {

@@ -2,8 +2,8 @@
 // Surfaces that move under a probe: sim/contact/mesh_proxy.h.
 #include <gtest/gtest.h>
 
-#include "sim/contact/mesh_proxy.h"
-#include "sim/mesh/tet_mesh.h"
+#include <tactus/sim/contact/mesh_proxy.h>
+#include <tactus/sim/tets/tet_mesh.h>
 #include "tests/unit/mesh_proxy_fixture.h"
 
 namespace tactus::sim {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/contact/mesh_proxy.h"
+#include <tactus/sim/contact/mesh_proxy.h>
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/simulation.h"
+#include <tactus/sim/simulation.h>
 #include "tests/property/allocated.h"
 
 namespace tactus::sim {

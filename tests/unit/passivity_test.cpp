@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/contact/passivity.h"
+#include <tactus/sim/contact/passivity.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-
-#include "sim/contact/coupling.h"
 
 namespace tactus::sim {
 namespace {
@@ -15,15 +13,6 @@ constexpr double kStiffness = 1000;
 
 /// A wall at x = 0 that pushes towards +x, without any loss.
 Vec3 wall(const Vec3& position) { return {position.x < 0 ? -kStiffness * position.x : 0, 0, 0}; }
-
-TEST(Coupling, SpringDamperAndLimit) {
-  const Motion proxy{{0.01, 0, 0}, {0, 0.1, 0}}, device{{0.01, 0, -0.002}, {0, 0.1, 0.5}};
-  EXPECT_EQ(coupling_force({.stiffness = 630}, proxy, device), (Vec3{0, 0, 630 * 0.002}));
-  EXPECT_NEAR(coupling_force({.stiffness = 630, .damping = 2}, proxy, device).z, 630 * 0.002 - 2 * 0.5, 1e-15);
-  const Vec3 limited = coupling_force({.stiffness = 630, .max_force = 1}, proxy, device);
-  EXPECT_NEAR(limited.z, 1, 1e-15);
-  EXPECT_EQ(limited.x, 0);
-}
 
 /// Thesis figure 2.2b: pressed and released at constant speed, the held force gives away k d X per stroke.
 TEST(PassivityObserver, SampledSpringGivesAwayStiffnessTimesStepTimesDepth) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "codec/base/range_coder.h"
+#include <tactus/base/range_coder.h>
 
 #include <gtest/gtest.h>
 

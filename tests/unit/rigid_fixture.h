@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "codec/tactus.h"
+#include <tactus/tactus.h>
 
 namespace tactus::testing {
 

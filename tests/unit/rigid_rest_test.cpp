@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstring>
 
-#include "sim/random.h"
-#include "sim/rigid/box_tree.h"
-#include "sim/rigid/rigid_world.h"
+#include <tactus/sim/random.h>
+#include <tactus/sim/rigid/box_tree.h>
+#include <tactus/sim/rigid/rigid_world.h>
 
 namespace tactus::sim {
 namespace {

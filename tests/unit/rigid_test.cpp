@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "codec/rigid/rigid.h"
+#include <tactus/rigid/rigid.h>
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <numbers>
 
-#include "codec/rigid/rigid_decoder.h"
-#include "codec/rigid/rigid_encoder.h"
+#include <tactus/rigid/rigid_decoder.h>
+#include <tactus/rigid/rigid_encoder.h>
 #include "tests/unit/rigid_fixture.h"
 
 namespace tactus {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "codec/rigid/trigger.h"
+#include <tactus/rigid/trigger.h>
 
 #include <gtest/gtest.h>
 

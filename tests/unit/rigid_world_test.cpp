@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/rigid/rigid_world.h"
+#include <tactus/sim/rigid/rigid_world.h>
 
 #include <gtest/gtest.h>
 #include <ode/ode.h>
@@ -10,7 +10,7 @@
 #include <numbers>
 #include <string>
 
-#include "sim/random.h"
+#include <tactus/sim/random.h>
 
 namespace tactus::sim {
 namespace {

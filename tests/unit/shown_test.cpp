@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "codec/base/shown.h"
+#include <tactus/base/shown.h>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/slowest_modes.h"
+#include <tactus/sim/slowest_modes.h>
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "sim/fem/cholesky.h"
+#include <tactus/sim/fem/cholesky.h>
 #include "tests/unit/fem_fixture.h"
 
 namespace tactus::sim {

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/contact/contact.h"
-#include "sim/mesh/tet_mesh.h"
-#include "sim/random.h"
-#include "sim/rigid/rigid_world.h"
+#include <tactus/sim/contact/contact.h>
+#include <tactus/sim/random.h>
+#include <tactus/sim/rigid/rigid_world.h>
+#include <tactus/sim/tets/tet_mesh.h>
 #include "tests/property/allocated.h"
 #include "tests/unit/contact_mesh_fixture.h"
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/modes/spring_modes.h"
+#include <tactus/sim/modes/spring_modes.h>
 
 #include <gtest/gtest.h>
 
 #include <array>
 
-#include "tests/unit/mesh_stream_fixture.h"
+#include "tests/unit/deformable_fixture.h"
 
 namespace tactus::sim {
 namespace {

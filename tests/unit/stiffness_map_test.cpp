@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/deformable/stiffness_map.h"
+#include <tactus/sim/deformable/stiffness_map.h>
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "sim/fem/model.h"
+#include <tactus/sim/fem/model.h>
 
 namespace tactus::sim {
 namespace {
@@ -91,7 +91,7 @@ TEST(StiffnessMap, WhatFloatsHasNone) {
 }
 
 /// Stiffness [N/m] and mass [kg] that a force along the normal meets at a contact, by a dense inverse.
-std::pair<double, double> pressed(const SceneDeformable& object, const MeshContact& contact) {
+std::pair<double, double> pressed(const SceneDeformable& object, const SurfaceContact& contact) {
   FemOptions options;
   options.materials = {{1e4, 0.45, 1e4}};  // those of slab()
   options.fixed = object.fixed;
@@ -120,7 +120,7 @@ std::pair<double, double> pressed(const SceneDeformable& object, const MeshConta
 TEST(CriticalStiffness, IsThatOfEquation438WhereTheObjectIsPressed) {
   SceneDeformable object = slab(4, 3);
   const StiffnessMap map = stiffness_map(object).value();
-  MeshContact contact;
+  SurfaceContact contact;
   while (
       std::ranges::any_of(map.surface.triangles[contact.triangle], [&](std::uint32_t v) { return std::isinf(map.stiffness[v]); }))
     ++contact.triangle;

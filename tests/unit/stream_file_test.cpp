@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "codec/stream/file.h"
+#include <tactus/file/stream_file.h>
 
 #include <gtest/gtest.h>
 

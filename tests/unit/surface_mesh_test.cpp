@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/surface/surface_file.h"
+#include <tactus/sim/surface/surface_file.h>
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cstring>
 
-#include "tests/unit/mesh_fixture.h"
+#include "tests/unit/tet_fixture.h"
 
 namespace tactus::sim {
 namespace {

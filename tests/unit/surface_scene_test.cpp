@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <string>
 
-#include "sim/simulation.h"
-#include "tests/unit/mesh_fixture.h"
+#include <tactus/sim/simulation.h>
+#include "tests/unit/tet_fixture.h"
 
 namespace tactus::sim {
 namespace {
@@ -82,13 +82,13 @@ TEST(SurfaceScene, TwoUsersTouchASolidAndADeformable) {
     for (const float value : frame.meshes.at(0).displacements) deepest = std::min(deepest, value);
     for (std::size_t u = 0; u < 2; ++u) {
       const UserSample& user = frame.users[u];
-      pad[u] += user.mesh_contact.has_value();
+      pad[u] += user.surface_contact.has_value();
       if (user.contact.kind == ContactKind::none) continue;
       ++bracket[u];
       const Vec3 normal = rotate(pose.rotation, user.contact.normal);
       ASSERT_LT(norm(dot(user.server_force, normal) * normal - contact_force(user.contact, pose)), 1e-9) << i;
     }
-    at_once += frame.users[0].mesh_contact && frame.users[1].contact.kind == ContactKind::surface;
+    at_once += frame.users[0].surface_contact && frame.users[1].contact.kind == ContactKind::surface;
   }
   for (std::size_t u = 0; u < 2; ++u) {
     EXPECT_GT(bracket[u], 500) << u;

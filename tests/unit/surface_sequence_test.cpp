@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/surface/surface_sequence.h"
+#include <tactus/sim/surface/surface_sequence.h>
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/mesh_fixture.h"
+#include "tests/unit/tet_fixture.h"
 
 namespace tactus::sim {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/contact/surroundings.h"
+#include <tactus/sim/contact/surroundings.h>
 
 #include <gtest/gtest.h>
 
@@ -58,7 +58,7 @@ TEST_P(SurroundingsTest, AnswerLikeTheTreeBitForBit) {
   int hits = 0;
   for (std::uint64_t run = 0; run < 60; ++run) {
     Walk walk(body, GetParam(), run);
-    Surroundings around(body.tree, body.mesh.vertices, 0.6 * GetParam());
+    TriangleCache around(body.tree, body.mesh.vertices, 0.6 * GetParam());
     std::vector<std::uint32_t> left_out;
     for (int step = 0; step < 40; ++step) {
       const Sweep sweep = walk.next();
@@ -77,14 +77,14 @@ TEST_P(SurroundingsTest, AnswerLikeTheTreeBitForBit) {
   EXPECT_GT(hits, 300);
 }
 
-TEST(Surroundings, NeedlesFarFromTheOriginAreMetLikeInTheTree) {
+TEST(TriangleCache, NeedlesFarFromTheOriginAreMetLikeInTheTree) {
   TriMesh mesh = testing::sheet(23, 0.01, [](double x, double y) { return 0.01 * std::sin(300 * x) * std::cos(200 * y); });
   for (Vec3& v : mesh.vertices) v = {1000 + 1e-5 * v.x, v.y, v.z};
   const Body body(mesh);
   Random random(2);
   int hits = 0;
   for (int run = 0; run < 1000; ++run) {
-    Surroundings around(body.tree, body.mesh.vertices, 0.01);
+    TriangleCache around(body.tree, body.mesh.vertices, 0.01);
     for (int step = 0; step < 10; ++step) {
       const Vec3 from = Vec3{1000, 0, 0} + random_point(random, 0.03);
       const Sweep sweep{from, random_point(random, 0.02), 0.003, 1e-5};
@@ -96,12 +96,12 @@ TEST(Surroundings, NeedlesFarFromTheOriginAreMetLikeInTheTree) {
   EXPECT_GT(hits, 500);
 }
 
-TEST(Surroundings, AllocateNothing) {
+TEST(TriangleCache, AllocateNothing) {
   const Body body(testing::bumpy_ball(0.1, 4, 0.2, 1));
   Walk walk(body, 0.005, 3);
   double sum = 0;
   const std::uint64_t before = testing::allocated_bytes();
-  Surroundings around(body.tree, body.mesh.vertices, 0.005);
+  TriangleCache around(body.tree, body.mesh.vertices, 0.005);
   for (int step = 0; step < 100; ++step) {
     const Sweep sweep = walk.next();
     const auto hit = around.sweep(sweep, {});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/mesh/tet_files.h"
+#include <tactus/sim/tets/tet_files.h>
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "tests/unit/mesh_fixture.h"
+#include "tests/unit/tet_fixture.h"
 
 namespace tactus::sim {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/mesh/tet_mesh.h"
+#include <tactus/sim/tets/tet_mesh.h>
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <utility>
 
-#include "tests/unit/mesh_fixture.h"
+#include "tests/unit/tet_fixture.h"
 
 namespace tactus::sim {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/surface/tetgen.h"
+#include <tactus/sim/surface/tetgen.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
 
-#include "tests/unit/mesh_fixture.h"
+#include "tests/unit/tet_fixture.h"
 
 namespace tactus::sim {
 namespace {

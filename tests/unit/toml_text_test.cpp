@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/scene/toml_text.h"
+#include <tactus/sim/scene/toml_text.h>
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "sim/scene/scene.h"
+#include <tactus/sim/scene/scene.h>
 
 namespace tactus::sim {
 namespace {

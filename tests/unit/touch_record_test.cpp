@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a run was like at a hand, and what a hand bears: sim/user/touch_record.h, sim/user/sampled_limit.h.
-#include "sim/user/touch_record.h"
+#include <tactus/sim/user/touch_record.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "sim/user/sampled_limit.h"
+#include <tactus/sim/user/sampled_limit.h>
 
 namespace tactus::sim {
 namespace {
@@ -57,7 +57,7 @@ TEST(TouchRecord, RemembersWhereADeformableWasPressedHardest) {
   for (const double force : {0.5, 2.0, 1.0}) {
     UserSample sample;
     sample.server_force = {0, 0, force};
-    sample.mesh_contact.emplace().triangle = static_cast<std::uint32_t>(10 * force);
+    sample.surface_contact.emplace().triangle = static_cast<std::uint32_t>(10 * force);
     record.add(sample, {});
   }
   ASSERT_TRUE(record.summary().hardest);
@@ -73,7 +73,7 @@ TEST(TouchRecord, RemembersTheStiffestCouplingThatWasTouched) {
   EXPECT_EQ(record.summary().stiffest, 0);
   UserSample rigid = pressing({0, 0, 1}), deformable;
   rigid.contact.stiffness = 500;
-  deformable.mesh_contact.emplace().stiffness = 300;
+  deformable.surface_contact.emplace().stiffness = 300;
   record.add(deformable, {});
   EXPECT_EQ(record.summary().stiffest, 300);
   record.add(rigid, {});

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "codec/trace/trace_file.h"
+#include <tactus/trace/trace_file.h>
 
 namespace tactus {
 
@@ -57,12 +57,12 @@ inline std::string image(const TraceFrame& frame) {
   for (const UserSample& u : frame.users) {
     put(u.contact.kind), put(u.contact.object), put(u.contact.stiffness);
     put_vec(u.contact.point), put_vec(u.contact.normal), put_vec(u.contact.device), put_vec(u.force), put_vec(u.server_force);
-    if (!u.mesh_contact) continue;
-    put(u.mesh_contact->mesh), put(u.mesh_contact->triangle), put(u.mesh_contact->stiffness);
-    for (const double weight : u.mesh_contact->weights) put(weight);
-    put_vec(u.mesh_contact->proxy), put_vec(u.mesh_contact->normal);
+    if (!u.surface_contact) continue;
+    put(u.surface_contact->mesh), put(u.surface_contact->triangle), put(u.surface_contact->stiffness);
+    for (const double weight : u.surface_contact->weights) put(weight);
+    put_vec(u.surface_contact->proxy), put_vec(u.surface_contact->normal);
   }
-  for (const MeshSample& m : frame.meshes) {
+  for (const DeformableSample& m : frame.meshes) {
     put(m.updated);
     for (const float value : m.displacements) put(value);
   }
@@ -112,7 +112,7 @@ inline Recording make_mesh_recording(std::size_t frame_count) {
       for (std::size_t k = 0; k < shape.size(); ++k) shape[k] = std::ldexp(static_cast<float>(k + i), -7);
     frame.meshes = {{updated, shape}, {false, std::vector<float>(12)}};
     if (i % 4 == 2)
-      frame.users[1].mesh_contact = {static_cast<std::uint32_t>(i / 4 % 2), 1, {0.25, 0.5, 0.25}, {1, 2, 3}, {0, 0, 1}, 20.0};
+      frame.users[1].surface_contact = {static_cast<std::uint32_t>(i / 4 % 2), 1, {0.25, 0.5, 0.25}, {1, 2, 3}, {0, 0, 1}, 20.0};
   }
   return recording;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Objects that rest in a trace: codec/trace/trace_file.h.
+// Objects that rest in a trace: io/trace/trace_file.h.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-#include "codec/trace/mcap_reader.h"
+#include <tactus/trace/mcap_reader.h>
 #include "tests/unit/trace_fixture.h"
 
 namespace tactus {

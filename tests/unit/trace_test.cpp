@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "codec/trace/trace_file.h"
+#include <tactus/trace/trace_file.h>
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "codec/base/bytes.h"
-#include "codec/base/hash.h"
-#include "codec/trace/cdr.h"
-#include "codec/trace/compression.h"
-#include "codec/trace/mcap_reader.h"
-#include "codec/trace/mcap_writer.h"
-#include "codec/trace/messages.h"
-#include "codec/trace/schemas.h"
+#include <tactus/base/bytes.h>
+#include <tactus/base/hash.h>
+#include <tactus/trace/cdr.h>
+#include <tactus/trace/compression.h>
+#include <tactus/trace/mcap_reader.h>
+#include <tactus/trace/mcap_writer.h>
+#include <tactus/trace/messages.h>
+#include <tactus/trace/schemas.h>
 #include "tests/unit/trace_fixture.h"
 
 namespace tactus {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "codec/base/tri_mesh.h"
+#include <tactus/base/tri_mesh.h>
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <set>
 
-#include "sim/mesh/tet_mesh.h"
+#include <tactus/sim/tets/tet_mesh.h>
 
 namespace tactus::sim {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/user/user.h"
+#include <tactus/sim/user/user.h>
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <bit>
 #include <cstdlib>
 
-#include "codec/base/range_coder.h"
+#include <tactus/base/range_coder.h>
 #include "tests/bench/peers/coder.h"
 
 namespace tactus::peers {

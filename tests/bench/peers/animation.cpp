@@ -7,8 +7,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "codec/mesh/mesh_graph.h"
-#include "codec/trace/trace_file.h"
+#include <tactus/deformable/graph.h>
+#include <tactus/trace/trace_file.h>
 #include "tests/bench/peers/md3.h"
 
 namespace tactus::peers {
@@ -106,10 +106,10 @@ tl::expected<Animation, std::string> read_animation(const std::string& input, un
 }
 
 Animation patch_of(const Animation& whole, std::size_t count) {
-  MeshObject mesh;
+  DeformableObject mesh;
   mesh.rest = whole.rest;
   mesh.triangles = whole.triangles;
-  const MeshNeighbours neighbours = mesh_neighbours(mesh);
+  const Neighbours neighbours = neighbours(mesh);
   constexpr std::uint32_t kOutside = 0xffffffff;
   std::vector<std::uint32_t> taken{liveliest(whole)}, number(whole.rest.size(), kOutside);
   number[taken[0]] = 0;

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "codec/base/fixed.h"
-#include "codec/base/tri_mesh.h"
+#include <tactus/base/fixed.h>
+#include <tactus/base/tri_mesh.h>
 
 namespace tactus::peers {
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "codec/mesh/mesh.h"
-#include "codec/mesh/mesh_decoder.h"
-#include "codec/mesh/mesh_encoder.h"
+#include <tactus/deformable/decoder.h>
+#include <tactus/deformable/displacement.h>
+#include <tactus/deformable/encoder.h>
 
 namespace tactus::peers {
 namespace {
@@ -49,7 +49,7 @@ constexpr std::uint32_t kFrameRate = 60;
 const double kStep = std::ldexp(1.0, -StreamHeader{}.grid.position);
 
 struct OurSetting {
-  MeshProfile profile = MeshProfile::main;
+  DeformableProfile profile = DeformableProfile::main;
   bool models_kept = false;  ///< thesis
   bool chained = true;       ///< false: every packet is a key packet
   bool lossy = false;        ///< main: given what the grid rounded, and allowed the error of that rounding
@@ -61,7 +61,7 @@ std::int32_t units_of(const OurSetting& setting) { return setting.lossy ? kFine 
 StreamHeader header_of(const Animation& animation, const OurSetting& setting) {
   StreamHeader header;
   header.tick_rate = kFrameRate;
-  MeshObject mesh;
+  DeformableObject mesh;
   mesh.name = "mesh";
   mesh.profile = setting.profile;
   mesh.models_kept = setting.models_kept;
@@ -73,8 +73,8 @@ StreamHeader header_of(const Animation& animation, const OurSetting& setting) {
   return header;
 }
 
-MeshEncoderOptions options_of(const OurSetting& setting) {
-  MeshEncoderOptions options;
+DeformableEncoderOptions options_of(const OurSetting& setting) {
+  DeformableEncoderOptions options;
   options.thresholds.visual = setting.lossy ? kRounding * kFine * kStep : 0;
   options.thresholds.weber_fraction = {};
   options.key_interval = setting.chained ? 0 : 0.5 / kFrameRate;
@@ -87,8 +87,8 @@ class OurLink final : public Link {
       : lossy_(setting.lossy),
         rest_(header_of(animation, setting).meshes[0].rest),
         displacement_(rest_.size()),
-        encoder_(MeshEncoder::create(header_of(animation, setting), 0, options_of(setting)).value()),
-        decoder_(MeshDecoder::create(header_of(animation, setting), 0).value()) {}
+        encoder_(DeformableEncoder::create(header_of(animation, setting), 0, options_of(setting)).value()),
+        decoder_(DeformableDecoder::create(header_of(animation, setting), 0).value()) {}
 
   Bytes encode(std::size_t frame, std::span<const Vec3i> positions, std::span<const Vec3i> fine) override {
     const auto truth = lossy_ ? fine : positions;
@@ -112,8 +112,8 @@ class OurLink final : public Link {
   bool lossy_;
   std::vector<Vec3i> rest_;
   std::vector<Vec3> displacement_;
-  MeshEncoder encoder_;
-  MeshDecoder decoder_;
+  DeformableEncoder encoder_;
+  DeformableDecoder decoder_;
 };
 
 Scheme ours(const char* name, const char* text, const OurSetting& setting) {
@@ -167,9 +167,9 @@ std::vector<Scheme> all_schemes() {
   out.push_back(ours("tactus main", "key packets", {.chained = false}));
   out.push_back(ours("tactus main", "", {}));
   out.push_back(ours("tactus main, same largest error", "lossy", {.lossy = true}));
-  out.push_back(ours("tactus thesis (8 bits)", "key packets", {.profile = MeshProfile::thesis, .chained = false}));
-  out.push_back(ours("tactus thesis (8 bits)", "models restarted", {.profile = MeshProfile::thesis}));
-  out.push_back(ours("tactus thesis (8 bits)", "models kept", {.profile = MeshProfile::thesis, .models_kept = true}));
+  out.push_back(ours("tactus thesis (8 bits)", "key packets", {.profile = DeformableProfile::thesis, .chained = false}));
+  out.push_back(ours("tactus thesis (8 bits)", "models restarted", {.profile = DeformableProfile::thesis}));
+  out.push_back(ours("tactus thesis (8 bits)", "models kept", {.profile = DeformableProfile::thesis, .models_kept = true}));
   for (const Peer& peer : peers()) {
     for (const bool predicted : {false, true}) {
       const auto make = [peer, predicted](const Animation& a) -> std::unique_ptr<Link> {

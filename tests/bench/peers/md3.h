@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "codec/base/tri_mesh.h"
+#include <tactus/base/tri_mesh.h>
 
 namespace tactus::peers {
 

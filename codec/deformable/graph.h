@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What both ends derive from a mesh before the first packet: neighbours, rings, coding order and parents. spec/60-mesh.md section 4.
+/// Integers only: encoder and decoder must agree on every weight.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <tactus/scene/deformable_object.h>
+
+namespace tactus {
+
+/// A vertex coded earlier, and its share in the prediction of a later one.
+struct VertexParent {
+  std::uint32_t vertex = 0;
+  std::int32_t weight = 0;  ///< x 2^-15
+};
+
+/// Lists of lists in one piece: item i of `first` is where list i starts in `items`.
+template <class T>
+struct ListOfLists {
+  std::vector<std::uint32_t> first{0};
+  std::vector<T> items;
+
+  std::span<const T> operator[](std::size_t i) const noexcept {
+    return std::span<const T>(items).subspan(first[i], first[i + 1] - first[i]);
+  }
+  std::size_t size() const noexcept { return first.size() - 1; }
+  void close() { first.push_back(static_cast<std::uint32_t>(items.size())); }
+};
+
+using Neighbours = ListOfLists<std::uint32_t>;
+
+/// Coding order from coarse to fine: vertices in ever finer maximal independent sets, each predicted from near ones before it.
+struct VertexHierarchy {
+  static constexpr std::size_t kParents = 8;
+  static constexpr std::size_t kLevels = 24;
+
+  std::vector<std::uint32_t> order;   ///< every vertex once
+  std::vector<std::uint8_t> level;    ///< by vertex: 0 finest; roots have the highest
+  ListOfLists<VertexParent> parents;  ///< by place in `order`; roots have none
+};
+
+/// Neighbours share an edge, or follow one another in number among the vertices at one rest position.
+/// pre  the triangles name existing vertices.   time O((vertices + triangles) log), allocates
+Neighbours neighbours(const DeformableObject& mesh);
+VertexHierarchy vertex_hierarchy(const DeformableObject& mesh);
+
+/// The area of interest. Holds its scratch space, so that asking allocates nothing.
+class Rings {
+ public:
+  explicit Rings(const DeformableObject& mesh);
+
+  /// Triangles within `rings` rings around `triangle`, itself first, then ring by ring.   time O(size of the rings)
+  /// Valid until the next call.
+  std::span<const std::uint32_t> triangles_around(std::uint32_t triangle, std::uint32_t rings) noexcept;
+  /// Corners of the triangles of the last call, each once.
+  std::span<const std::uint32_t> vertices() const noexcept { return vertices_; }
+
+ private:
+  void add_corners(std::uint32_t triangle) noexcept;
+
+  std::span<const Triangle> corners_;
+  ListOfLists<std::uint32_t> triangles_of_;
+  std::vector<std::uint32_t> triangle_mark_, vertex_mark_;
+  std::vector<std::uint32_t> triangles_, vertices_;
+  std::uint32_t mark_ = 0;
+};
+
+}  // namespace tactus

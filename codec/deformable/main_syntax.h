@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Syntax of a packet of profile main: shared by encoder and decoder, internal to the library. spec/60-mesh.md section 5.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <span>
+
+#include <tactus/base/fixed.h>
+#include <tactus/base/range_coder.h>
+#include <tactus/deformable/graph.h>
+#include <tactus/deformable/state.h>
+#include <tactus/scene/deformable_object.h>
+
+namespace tactus {
+
+inline constexpr std::size_t kDensities = 4;
+
+/// Every adaptive model of a packet. Restarted from main_start_models() for each packet.
+struct MainModels {
+  BitModel key;
+  BitModel half, completes;
+  MagnitudeModel baseline, tick, late;
+  std::array<BitModel, 2> touched;  // by: the baseline's packet was
+  BitModel same_triangle, near_triangle;
+  TreeModel<6> near_place;
+  MagnitudeModel haptic;
+  BitModel same_visual;
+  MagnitudeModel visual;
+  std::array<TreeModel<2>, kDensities> density;              // by: the baseline's
+  std::array<std::array<MagnitudeModel, 3>, 4> coefficient;  // by mode, size before
+  std::array<std::array<std::array<std::array<BitModel, 3>, 3>, 4>, kDensities>
+      significant;                                                        // density, tightness, parents, level
+  std::array<std::array<std::array<MagnitudeModel, 3>, 3>, 2> component;  // tight, level, size before
+};
+
+/// Start probabilities, spec/tables/mesh-start-models.csv.
+const MainModels& main_start_models() noexcept;
+
+struct MainHead {
+  bool key = false;
+  std::uint32_t baseline_delta = 1;
+  Layer half = Layer::all;
+  bool completes = false;  ///< visual half of the tick that the baseline's haptic half began
+  std::uint32_t tick_delta = 0;
+  bool touched = false;
+  std::uint32_t triangle = kNoTriangle;
+  std::uint32_t haptic = 0;  ///< level, see haptic_bound()
+  std::uint32_t visual = 0;  ///< grid units
+  std::uint32_t density = 0;
+};
+
+/// Which models a vertex's symbols use.
+struct VertexContext {
+  std::uint8_t tightness = 0;  ///< 0: visual bound only; 1, 2, 3: haptic bound above 2/3, above 1/4, below
+  std::uint8_t parents = 0;    ///< parents that carried a residual: 0, 1, more
+  std::uint8_t level = 0;      ///< in the hierarchy: 0 finest, 1, coarser
+};
+
+constexpr std::uint8_t tightness_of(std::uint32_t haptic, std::uint32_t visual) noexcept {
+  const std::uint64_t h = haptic;
+  if (h >= visual) return 0;
+  return 3 * h > 2 * std::uint64_t{visual} ? 1 : 4 * h > visual ? 2 : 3;
+}
+
+/// Which half of a split mesh: without a triangle nothing can be felt.
+template <class Coder>
+Layer code_half(Coder& coder, MainModels& models, const DeformableObject& mesh, Layer half) noexcept {
+  if (!mesh.split) return Layer::all;
+  if (mesh.triangles.empty()) return Layer::visual;
+  return coder.bit(models.half, half == Layer::visual ? 1u : 0u) ? Layer::visual : Layer::haptic;
+}
+
+/// key, baseline, half and tick: what must be known to find the baseline.
+template <class Coder>
+void code_main_start(Coder& coder, MainModels& models, const DeformableObject& mesh, std::uint8_t span, MainHead& head) noexcept {
+  head.key = coder.bit(models.key, head.key ? 1u : 0u);
+  if (!head.key && span > 1) head.baseline_delta = coder.magnitude(models.baseline, head.baseline_delta);
+  head.half = code_half(coder, models, mesh, head.half);
+  head.completes = head.half == Layer::visual && !head.key && coder.bit(models.completes, head.completes ? 1u : 0u);
+  if (head.completes) {
+    head.tick_delta = 0;
+    return;
+  }
+  if (head.key) {
+    head.tick_delta = coder.magnitude(models.tick, head.tick_delta);
+    return;
+  }
+  const std::int64_t period = round_shift(mesh.frame_period, 8);
+  const std::int64_t late = coder.signed_value(models.late, static_cast<std::int32_t>(head.tick_delta - period));
+  head.tick_delta = static_cast<std::uint32_t>(std::max<std::int64_t>(0, period + late));
+}
+
+/// The touched triangle: the same, a place in the rings around the last one, or its number. Numbers may come out too large.
+template <class Coder>
+std::uint32_t code_triangle(Coder& coder, MainModels& models, const DeformableObject& mesh, Rings& rings, std::uint32_t last,
+                            std::uint32_t triangle) noexcept {
+  constexpr std::uint32_t kNear = 63;
+  if (last != kNoTriangle) {
+    if (coder.bit(models.same_triangle, triangle == last ? 1u : 0u)) return last;
+    auto near = rings.triangles_around(last, 2).subspan(1);
+    near = near.first(std::min<std::size_t>(near.size(), kNear));
+    std::uint32_t place = 0;
+    while (place < near.size() && near[place] != triangle) ++place;
+    if (coder.bit(models.near_triangle, place < near.size() ? 1u : 0u)) {
+      place = coder.template tree<6>(models.near_place, place);
+      return place < near.size() ? near[place] : kNoTriangle;
+    }
+  }
+  const auto bits = static_cast<unsigned>(std::bit_width(mesh.triangles.size() - 1));
+  std::uint32_t out = 0;
+  for (unsigned left = bits; left > 0;) {
+    const unsigned count = std::min(left, 16u);
+    left -= count;
+    out = out << count | coder.raw(count, (triangle >> left) & ((1u << count) - 1));
+  }
+  return out;
+}
+
+/// What is touched, and the bounds.
+template <class Coder>
+void code_main_bounds(Coder& coder, MainModels& models, const DeformableObject& mesh, Rings& rings, const DeformableState& base,
+                      MainHead& head) noexcept {
+  head.touched = head.half == Layer::haptic ||
+                 (!mesh.triangles.empty() && coder.bit(models.touched[base.touched ? 1 : 0], head.touched ? 1u : 0u));
+  if (head.touched) {
+    head.triangle = code_triangle(coder, models, mesh, rings, base.triangle, head.triangle);
+    const std::int64_t change = coder.signed_value(models.haptic, saturate32(std::int64_t{head.haptic} - base.haptic));
+    head.haptic = static_cast<std::uint32_t>(std::clamp<std::int64_t>(base.haptic + change, 0, kMaxHapticLevel + 1));
+  }
+  const bool same = coder.bit(models.same_visual, head.visual == base.visual ? 1u : 0u);
+  head.visual = same ? base.visual : coder.magnitude(models.visual, head.visual);
+}
+
+/// The rest of the head, given the baseline.
+template <class Coder>
+void code_main_head(Coder& coder, MainModels& models, const DeformableObject& mesh, Rings& rings, const DeformableState& base,
+                    MainHead& head) noexcept {
+  if (head.completes) {
+    head.touched = base.touched;
+    head.triangle = base.triangle;
+    head.haptic = base.haptic;
+    head.visual = base.visual;
+  } else {
+    code_main_bounds(coder, models, mesh, rings, base, head);
+  }
+  head.density = head.half == Layer::haptic ? base.density : coder.template tree<2>(models.density[base.density], head.density);
+}
+
+/// What the next packet's head is predicted from.
+inline void keep_head(const MainHead& head, const DeformableState& base, DeformableState& next) noexcept {
+  next.triangle = head.touched ? head.triangle : base.triangle;
+  next.haptic = head.touched ? head.haptic : base.haptic;
+  next.visual = head.visual;
+  next.density = head.density;
+  next.touched = head.touched;
+}
+
+/// Haptic halves leave motion to the next visual half.
+inline void keep_motion(const DeformableState& base, DeformableState& next) noexcept {
+  next.motion = base.motion;
+  next.motion_tick = base.motion_tick;
+}
+
+constexpr std::size_t size_class(std::uint32_t magnitude) noexcept { return magnitude == 0 ? 0 : magnitude == 1 ? 1 : 2; }
+constexpr std::uint32_t magnitude_of(std::int32_t v) noexcept { return static_cast<std::uint32_t>(v < 0 ? -std::int64_t{v} : v); }
+
+/// One coefficient per mode, in units of its step.
+template <class Coder>
+void code_coefficients(Coder& coder, MainModels& models, std::span<std::int32_t> coefficients) noexcept {
+  std::size_t before = 0;
+  for (std::size_t k = 0; k < coefficients.size(); ++k) {
+    const std::size_t group = k < 4 ? 0 : k < 12 ? 1 : k < 24 ? 2 : 3;
+    coefficients[k] = coder.signed_value(models.coefficient[group][before], coefficients[k]);
+    before = size_class(magnitude_of(coefficients[k]));
+  }
+}
+
+/// A vertex's residual in quantiser steps; zero costs one flag.
+template <class Coder>
+void code_vertex(Coder& coder, MainModels& models, std::uint32_t density, const VertexContext& context,
+                 Vec3i& residual) noexcept {
+  const bool any = residual != Vec3i{};
+  if (!coder.bit(models.significant[density][context.tightness][context.parents][context.level], any ? 1u : 0u)) {
+    residual = {};
+    return;
+  }
+  auto& component = models.component[context.tightness == 0 ? 0 : 1][context.level];
+  std::uint32_t largest = 0;
+  for (std::int32_t& c : residual) {
+    c = coder.signed_value(component[size_class(largest)], c);
+    largest = std::max(largest, magnitude_of(c));
+  }
+}
+
+}  // namespace tactus

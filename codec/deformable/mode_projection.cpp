@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/deformable/mode_projection.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace tactus {
+namespace {
+
+constexpr std::size_t kLanes = 8;  // sums in a fixed order that a compiler can vectorise
+
+constexpr double kRidge = 1e-3;  // dependent modes share what they have in common instead of cancelling each other
+
+/// L L^T = gram, in place. The pivot of a mode that is zero everywhere is raised.
+void factorise(std::vector<double>& gram, std::size_t n) {
+  for (std::size_t j = 0; j < n; ++j) {
+    for (std::size_t k = 0; k < j; ++k)
+      for (std::size_t i = j; i < n; ++i) gram[i * n + j] -= gram[i * n + k] * gram[j * n + k];
+    const double pivot = std::sqrt(std::max(gram[j * n + j], 1e-9));
+    for (std::size_t i = j; i < n; ++i) gram[i * n + j] /= pivot;
+  }
+}
+
+void solve(const std::vector<double>& factor, std::vector<double>& x) {
+  const std::size_t n = x.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t k = 0; k < i; ++k) x[i] -= factor[i * n + k] * x[k];
+    x[i] /= factor[i * n + i];
+  }
+  for (std::size_t i = n; i-- > 0;) {
+    for (std::size_t k = i + 1; k < n; ++k) x[i] -= factor[k * n + i] * x[k];
+    x[i] /= factor[i * n + i];
+  }
+}
+
+}  // namespace
+
+ModeProjection::ModeProjection(const ModeBasis& basis) {
+  const std::size_t modes = basis.steps.size();
+  if (modes == 0) return;
+  const std::size_t components = basis.entries.size() / modes;
+  const auto entry = [&](std::size_t k, std::size_t i) { return basis.entries[k * components + i] / 2048.0; };
+  std::vector<double> gram(modes * modes, 0.0);
+  for (std::size_t a = 0; a < modes; ++a)
+    for (std::size_t b = 0; b <= a; ++b)
+      for (std::size_t i = 0; i < components; ++i) gram[a * modes + b] += entry(a, i) * entry(b, i);
+  for (std::size_t k = 0; k < modes; ++k) gram[k * modes + k] *= 1 + kRidge;
+  factorise(gram, modes);
+  const std::size_t padded = (components + kLanes - 1) / kLanes * kLanes;
+  error_.assign(padded, 0.0F);
+  dual_.assign(modes * padded, 0.0F);
+  std::vector<double> column(modes);
+  for (std::size_t i = 0; i < components; ++i) {
+    for (std::size_t k = 0; k < modes; ++k) column[k] = entry(k, i);
+    solve(gram, column);
+    for (std::size_t k = 0; k < modes; ++k) dual_[k * padded + i] = static_cast<float>(column[k]);
+  }
+}
+
+void ModeProjection::project(std::span<const Vec3i> error, std::span<float> coefficients) noexcept {
+  for (std::size_t v = 0; v < error.size(); ++v)
+    for (std::size_t axis = 0; axis < 3; ++axis) error_[3 * v + axis] = static_cast<float>(error[v][axis]);
+  for (std::size_t k = 0; k < coefficients.size(); ++k) {
+    const float* dual = dual_.data() + k * error_.size();
+    std::array<float, kLanes> sum{};
+    for (std::size_t i = 0; i < error_.size(); i += kLanes)
+      for (std::size_t lane = 0; lane < kLanes; ++lane) sum[lane] += dual[i + lane] * error_[i + lane];
+    coefficients[k] = ((sum[0] + sum[4]) + (sum[2] + sum[6])) + ((sum[1] + sum[5]) + (sum[3] + sum[7]));
+  }
+}
+
+}  // namespace tactus

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/file/stream_file.h>
+
+#include <ostream>
+
+#include <tactus/base/bytes.h>
+#include <tactus/base/hash.h>
+#include <tactus/base/out_of_memory.h>
+
+namespace tactus {
+namespace {
+
+// Record types. 128..255 are extensions that any reader may skip.
+constexpr std::uint8_t kPacket = 1;
+constexpr std::uint8_t kIndex = 2;
+constexpr std::uint8_t kTrailer = 3;
+constexpr std::uint8_t kFirstExtension = 128;
+constexpr std::uint64_t kTrailerPayload = 8;                       // offset of the index
+constexpr std::size_t kTrailerSize = 1 + 1 + kTrailerPayload + 4;  // type, size, payload, check value
+constexpr std::size_t kRecordExtra = 1 + 10 + 4;                   // at most, around a payload: type, size, check value
+constexpr std::uint64_t kMostBeforePacket = 6;                     // tick_delta, number of the part
+constexpr std::int64_t kTickLimit = 0xffffffff;
+
+}  // namespace
+
+Result<StreamFileWriter> StreamFileWriter::create(std::ostream& out, const StreamHeader& header) try {
+  TACTUS_TRY(const auto bytes, write_header(header));
+  StreamFileWriter writer(out);
+  out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  if (!out) return fail(Errc::io, "R-FIL-1");
+  writer.header_bytes_ = writer.offset_ = bytes.size();
+  return writer;
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
+
+Result<void> StreamFileWriter::write_record(std::uint8_t type, std::span<const std::uint8_t> payload) {
+  record_.clear();
+  ByteWriter w(record_);
+  w.u8(type);
+  w.varint(payload.size());
+  w.bytes(payload);
+  w.u32(crc32(record_));
+  out_->write(reinterpret_cast<const char*>(record_.data()), static_cast<std::streamsize>(record_.size()));
+  if (!*out_) return fail(Errc::io, "R-FIL-1");
+  offset_ += record_.size();
+  return {};
+}
+
+Result<void> StreamFileWriter::add(std::int64_t tick, std::span<const std::uint8_t> packet, bool key) try {
+  if (tick < tick_ || tick >= kTickLimit) return fail(Errc::invalid_argument, "R-API-5");
+  const Entry entry{tick, offset_};
+  payload_.clear();
+  ByteWriter w(payload_);
+  w.varint(static_cast<std::uint64_t>(tick - tick_));
+  w.bytes(packet);
+  record_.reserve(payload_.size() + kRecordExtra);
+  if (key) keys_.push_back(entry);
+  TACTUS_CHECK(write_record(kPacket, payload_));  // allocates nothing any more
+  tick_ = tick;
+  return {};
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
+
+Result<void> StreamFileWriter::finish() try {
+  const std::uint64_t index = offset_;
+  payload_.clear();
+  ByteWriter w(payload_);
+  w.varint(keys_.size());
+  Entry previous{0, 0};
+  for (const Entry& key : keys_) {
+    w.varint(static_cast<std::uint64_t>(key.tick - previous.tick));
+    w.varint(key.offset - previous.offset);
+    previous = key;
+  }
+  TACTUS_CHECK(write_record(kIndex, payload_));
+  payload_.clear();
+  w.u64(index);
+  TACTUS_CHECK(write_record(kTrailer, payload_));
+  out_->flush();
+  if (!*out_) return fail(Errc::io, "R-FIL-1");
+  return {};
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
+
+Result<StreamFileReader> StreamFileReader::open(std::span<const std::uint8_t> file, const DecodeLimits& limits) try {
+  TACTUS_TRY(auto parsed, parse_header(file, limits));
+  StreamFileReader reader;
+  reader.file_ = file;
+  reader.header_ = std::move(parsed.header);
+  reader.limits_ = limits;
+  reader.first_ = reader.position_ = parsed.size;
+  return reader;
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
+
+Result<StreamFileReader::Record> StreamFileReader::read_record(std::size_t at) const noexcept {
+  ByteReader in(file_.subspan(at), at);
+  Record record;
+  record.type = in.u8();
+  const std::uint64_t size = in.varint();
+  if (in.overlong()) return fail(Errc::malformed, "R-FIL-6", in.bit_offset());
+  if (!in.ok()) return fail(Errc::truncated, "R-FIL-2", in.bit_offset());
+  if (record.type < kFirstExtension && (record.type < kPacket || record.type > kTrailer)) {
+    return fail(Errc::unsupported, "R-FIL-3", 8 * static_cast<std::uint64_t>(at));
+  }
+  if (record.type == kPacket && size > std::uint64_t{limits_.packet_bytes} + kMostBeforePacket) {
+    return fail(Errc::limit_exceeded, "R-FIL-4", in.bit_offset());
+  }
+  if (record.type == kTrailer && size != kTrailerPayload) return fail(Errc::malformed, "R-FIL-6", in.bit_offset());
+  record.start = at + in.position();
+  record.payload = in.bytes(size);
+  const std::size_t covered = in.position();
+  const std::uint32_t crc = in.u32();
+  if (!in.ok()) return fail(Errc::truncated, "R-FIL-2", in.bit_offset());
+  if (crc != crc32(file_.subspan(at, covered))) return fail(Errc::checksum, "R-FIL-5", in.bit_offset() - 32);
+  record.end = at + in.position();
+  return record;
+}
+
+Result<std::optional<FilePacket>> StreamFileReader::next() noexcept {
+  while (position_ < file_.size()) {
+    const std::uint64_t here = 8 * static_cast<std::uint64_t>(position_);
+    if (complete_) return fail(Errc::malformed, "R-FIL-8", here);
+    TACTUS_TRY(const Record record, read_record(position_));
+    if (record.type == kPacket) {
+      ByteReader in(record.payload, record.start);
+      const std::uint64_t delta = in.varint();
+      if (!in.ok() || delta >= static_cast<std::uint64_t>(kTickLimit - tick_)) {
+        return fail(Errc::malformed, "R-FIL-6", in.bit_offset());
+      }
+      tick_ += static_cast<std::int64_t>(delta);
+      position_ = record.end;
+      return FilePacket{tick_, in.bytes(in.remaining())};
+    }
+    complete_ = record.type == kTrailer;
+    position_ = record.end;
+  }
+  return std::optional<FilePacket>{};
+}
+
+bool StreamFileReader::find_index(std::span<const std::uint8_t>& entries) const noexcept {
+  if (file_.size() < first_ + kTrailerSize) return false;
+  const auto trailer = read_record(file_.size() - kTrailerSize);
+  if (!trailer || trailer->type != kTrailer) return false;
+  const std::uint64_t offset = ByteReader(trailer->payload).u64();
+  if (offset < first_ || offset >= file_.size()) return false;
+  const auto index = read_record(static_cast<std::size_t>(offset));
+  if (!index || index->type != kIndex) return false;
+  entries = index->payload;
+  return true;
+}
+
+bool StreamFileReader::seek(std::int64_t tick) noexcept {
+  std::span<const std::uint8_t> entries;
+  if (tick < 0 || !find_index(entries)) return false;
+  ByteReader in(entries);
+  std::uint64_t key_tick = 0, key_offset = 0, best_tick = 0, best_offset = 0;
+  for (std::uint64_t left = in.varint(); left > 0 && in.ok(); --left) {
+    key_tick += in.varint();
+    key_offset += in.varint();
+    if (!in.ok() || key_tick >= static_cast<std::uint64_t>(kTickLimit) || key_tick > static_cast<std::uint64_t>(tick)) break;
+    best_tick = key_tick;
+    best_offset = key_offset;
+  }
+  if (best_offset < first_ || best_offset >= file_.size()) return false;
+  const auto record = read_record(static_cast<std::size_t>(best_offset));
+  if (!record || record->type != kPacket) return false;
+  const std::uint64_t delta = ByteReader(record->payload).varint();
+  if (delta > best_tick) return false;
+  position_ = static_cast<std::size_t>(best_offset);
+  tick_ = static_cast<std::int64_t>(best_tick - delta);
+  complete_ = false;
+  return true;
+}
+
+}  // namespace tactus

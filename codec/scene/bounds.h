@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What the sender of a stream vouches for: how far a client that gets every packet, and does not interpolate, may be from the truth.
+/// Nothing is decoded with it; whoever judges a replica needs it. spec/20-stream.md section 3.1.
+#pragma once
+
+#include <cstdint>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+namespace tactus {
+
+enum class Reduction : std::uint8_t {
+  none,            ///< every object, every tick (reference setting S_R7)
+  dead_reckoning,  ///< only when a trigger fires
+};
+
+/// Values are wire values.
+enum class HapticRule : std::uint8_t {
+  off = 0,        ///< visual dead reckoning and heartbeat only (S_R1)
+  isotropic = 1,  ///< |f^ - f| > p |f|                                                   thesis eq. 3.1
+  cone = 2,       ///< | |f^| - |f| | > p |f| or angle(f^, f) > alpha_max                 thesis figure 3.12
+  fixed = 3,      ///< position or rotation error over fixed thresholds while in contact  thesis table 3.3, S_DR
+};
+
+/// When a rigid object must be sent. Defaults are the thesis's (3.2.4.1) with p = 8 %.
+struct RigidTriggers {
+  Reduction reduction = Reduction::dead_reckoning;          ///< no bound: streams do not tell it
+  double heartbeat = 1.0;                                   ///< [s] 0 switches it off
+  double visual_position = 0.006;                           ///< [m]
+  double visual_rotation = 2.0 * std::numbers::pi / 180.0;  ///< [rad]
+  HapticRule haptic = HapticRule::isotropic;
+  double weber_fraction = 0.08;                            ///< p, traffic control parameter
+  double cone_angle = 2.1 * std::numbers::pi / 180.0;      ///< alpha_max [rad]
+  double fixed_position = 0.0015;                          ///< [m]
+  double fixed_rotation = 2.0 * std::numbers::pi / 180.0;  ///< [rad]
+  double force_floor = 0.05;                               ///< [N] below this force the threshold stays p * force_floor
+  friend bool operator==(const RigidTriggers&, const RigidTriggers&) = default;
+};
+
+/// When a vertex must be sent.
+struct DeformableThresholds {
+  double visual = 2.5e-4;                        ///< v [m], thesis eq. 3.10; 0: every vertex, exact to the grid
+  std::optional<double> weber_fraction = 0.025;  ///< p, eq. 3.12: h = p |f_s| / k_c; none: no haptic threshold
+  double depth_floor = 2e-4;                     ///< [m] |f_s| / k_c counts as at least this: at first touch h would be 0
+  friend bool operator==(const DeformableThresholds&, const DeformableThresholds&) = default;
+};
+
+struct DeformableBounds {
+  DeformableThresholds thresholds;
+  bool kept = true;  ///< false: they decide what is sent, but a vertex may be further off (profile thesis: its quantiser)
+  friend bool operator==(const DeformableBounds&, const DeformableBounds&) = default;
+};
+
+struct StreamBounds {
+  std::optional<RigidTriggers>
+      rigid;  ///< none: nothing rigid can move. What `haptic` does not use is not told and has its default
+  std::vector<DeformableBounds> meshes;  ///< one per mesh of the stream
+  friend bool operator==(const StreamBounds&, const StreamBounds&) = default;
+};
+
+}  // namespace tactus

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Columns of an object and of a user, in their order, and where their numbers live. Import and export share them.
+#pragma once
+
+#include <array>
+
+#include <tactus/trace/frame.h>
+
+namespace tactus {
+
+template <class T>
+struct CsvColumn {
+  const char* name;
+  double& (*field)(T&);
+};
+
+// position [m], rotation, velocity [m/s], angular velocity [rad/s]
+inline constexpr std::array<CsvColumn<RigidSample>, 13> kObjectColumns{{
+    {"x", [](RigidSample& s) -> double& { return s.pose.position.x; }},
+    {"y", [](RigidSample& s) -> double& { return s.pose.position.y; }},
+    {"z", [](RigidSample& s) -> double& { return s.pose.position.z; }},
+    {"qw", [](RigidSample& s) -> double& { return s.pose.rotation.w; }},
+    {"qx", [](RigidSample& s) -> double& { return s.pose.rotation.x; }},
+    {"qy", [](RigidSample& s) -> double& { return s.pose.rotation.y; }},
+    {"qz", [](RigidSample& s) -> double& { return s.pose.rotation.z; }},
+    {"vx", [](RigidSample& s) -> double& { return s.velocity.x; }},
+    {"vy", [](RigidSample& s) -> double& { return s.velocity.y; }},
+    {"vz", [](RigidSample& s) -> double& { return s.velocity.z; }},
+    {"wx", [](RigidSample& s) -> double& { return s.angular_velocity.x; }},
+    {"wy", [](RigidSample& s) -> double& { return s.angular_velocity.y; }},
+    {"wz", [](RigidSample& s) -> double& { return s.angular_velocity.z; }},
+}};
+
+// device [m], forces [N], then what holds in contact only: point [m] and normal (object frame), stiffness [N/m]
+inline constexpr std::array<CsvColumn<UserSample>, 16> kUserColumns{{
+    {"device_x", [](UserSample& u) -> double& { return u.contact.device.x; }},
+    {"device_y", [](UserSample& u) -> double& { return u.contact.device.y; }},
+    {"device_z", [](UserSample& u) -> double& { return u.contact.device.z; }},
+    {"force_x", [](UserSample& u) -> double& { return u.force.x; }},
+    {"force_y", [](UserSample& u) -> double& { return u.force.y; }},
+    {"force_z", [](UserSample& u) -> double& { return u.force.z; }},
+    {"server_force_x", [](UserSample& u) -> double& { return u.server_force.x; }},
+    {"server_force_y", [](UserSample& u) -> double& { return u.server_force.y; }},
+    {"server_force_z", [](UserSample& u) -> double& { return u.server_force.z; }},
+    {"point_x", [](UserSample& u) -> double& { return u.contact.point.x; }},
+    {"point_y", [](UserSample& u) -> double& { return u.contact.point.y; }},
+    {"point_z", [](UserSample& u) -> double& { return u.contact.point.z; }},
+    {"normal_x", [](UserSample& u) -> double& { return u.contact.normal.x; }},
+    {"normal_y", [](UserSample& u) -> double& { return u.contact.normal.y; }},
+    {"normal_z", [](UserSample& u) -> double& { return u.contact.normal.z; }},
+    {"stiffness", [](UserSample& u) -> double& { return u.contact.stiffness; }},
+}};
+
+// Whole numbers beside them: TraceObject::dof; the contact's kind (0: none) and object.
+inline constexpr const char* kDofColumn = "dof";
+inline constexpr const char* kContactColumn = "contact";
+inline constexpr const char* kContactObjectColumn = "contact_object";
+
+}  // namespace tactus

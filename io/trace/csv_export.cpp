@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <charconv>
+#include <ostream>
+
+#include <tactus/base/out_of_memory.h>
+#include <tactus/trace/csv.h>
+#include <tactus/trace/csv_columns.h>
+#include <tactus/trace/csv_reader.h>
+
+namespace tactus {
+namespace {
+
+std::string header_row(const TraceInfo& info) {
+  std::string row = "tick,time_s";
+  const auto add = [&row](const std::string& path, const char* name) { row.append(",").append(csv_field(path + name)); };
+  for (const TraceObject& object : info.objects) {
+    const std::string path = "/objects/" + object.name + "/";
+    add(path, kDofColumn);
+    for (const auto& column : kObjectColumns) add(path, column.name);
+  }
+  for (const std::string& user : info.users) {
+    const std::string path = "/users/" + user + "/";
+    add(path, kContactColumn);
+    add(path, kContactObjectColumn);
+    for (const auto& column : kUserColumns) add(path, column.name);
+  }
+  return row + '\n';
+}
+
+template <class T>
+void add_number(std::string& row, T value) {
+  char digits[32];
+  const auto result = std::to_chars(digits, digits + sizeof digits, value);
+  if (!row.empty()) row += ',';
+  row.append(digits, result.ptr);
+}
+
+void write_row(std::string& row, const TraceInfo& info, TraceFrame& frame) {
+  row.clear();
+  add_number(row, frame.tick);
+  add_number(row, static_cast<double>(frame.tick) / info.tick_rate);
+  for (std::size_t i = 0; i < frame.objects.size(); ++i) {
+    add_number(row, unsigned{info.objects[i].dof});
+    for (const auto& column : kObjectColumns) add_number(row, column.field(frame.objects[i]));
+  }
+  for (UserSample& user : frame.users) {
+    add_number(row, static_cast<unsigned>(user.contact.kind));
+    add_number(row, user.contact.object);
+    for (const auto& column : kUserColumns) add_number(row, column.field(user));
+  }
+  row += '\n';
+}
+
+}  // namespace
+
+Result<TickSpan> export_csv(TraceReader& reader, std::ostream& out) try {
+  out << header_row(reader.info());
+  TickSpan rows;
+  TraceFrame frame;
+  std::string row;
+  while (true) {
+    TACTUS_TRY(const bool more, reader.next(frame));
+    if (!more) break;
+    write_row(row, reader.info(), frame);
+    out << row;
+    rows.add(frame.tick);
+  }
+  return out.flush() ? Result<TickSpan>(rows) : fail(Errc::io, "R-TRC-1");
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
+
+}  // namespace tactus

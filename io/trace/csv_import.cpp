@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <numbers>
+#include <optional>
+
+#include <tactus/base/out_of_memory.h>
+#include <tactus/trace/csv.h>
+#include <tactus/trace/csv_plan.h>
+#include <tactus/trace/csv_reader.h>
+#include <tactus/trace/differences.h>
+#include <tactus/trace/text.h>
+
+namespace tactus {
+namespace {
+
+constexpr std::size_t kRowsForRate = 256;  // looked at before the tick rate is settled
+
+struct Row {
+  std::uint64_t line = 0;
+  double time = 0;
+  std::string segment;
+  TraceFrame frame;  // its tick is set for layout `tactus`
+};
+
+std::uint32_t median_rate(std::vector<double> gaps) {
+  if (gaps.empty()) return 0;
+  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
+  std::nth_element(gaps.begin(), middle, gaps.end());
+  const double rate = std::round(1.0 / *middle);
+  return rate >= 1 && rate <= kMaxTickRate ? static_cast<std::uint32_t>(rate) : 0;
+}
+
+class Importer {
+ public:
+  Importer(const CsvMapping& mapping, CsvPlan plan, std::string out_path)
+      : mapping_(mapping), plan_(std::move(plan)), out_path_(std::move(out_path)) {}
+
+  Result<CsvImport> run(CsvReader& reader);
+  CsvError place(const Error& error) const { return {error, line_, column_, text_}; }
+  bool has_output() const noexcept { return writer_.has_value(); }
+
+ private:
+  Result<Row> parse(const CsvReader& reader);
+  template <class T>
+  Result<T> number(const std::vector<std::string>& fields, std::size_t column);
+  Result<void> parse_whole_numbers(const std::vector<std::string>& fields, Row& row);
+  Result<void> start();
+  std::uint32_t find_rate() const;
+  Result<void> write(Row& row);
+  Result<std::int64_t> tick_of(const Row& row, bool begins_segment);
+  void derive_motion(TraceFrame& frame) const;
+  void settle_spin(TraceFrame& frame, bool begins_segment);
+
+  const CsvMapping& mapping_;
+  CsvPlan plan_;
+  std::string out_path_;
+  std::uint64_t line_ = 1;
+  std::string column_, text_;  // of the field that is being read
+  std::vector<Row> waiting_;   // until the tick rate is known
+  std::optional<TraceWriter> writer_;
+  Row last_;                       // written before
+  double segment_time_ = 0;        // [s] of the segment's first row
+  std::int64_t segment_tick_ = 0;  // its tick
+  CsvImport done_;
+};
+
+Result<CsvImport> Importer::run(CsvReader& reader) {
+  while (true) {
+    line_ = reader.line() + 1;
+    TACTUS_TRY(const bool more, reader.next());
+    if (!more) break;
+    line_ = reader.line();
+    TACTUS_TRY(Row row, parse(reader));
+    if (writer_) {
+      TACTUS_CHECK(write(row));
+      continue;
+    }
+    waiting_.push_back(std::move(row));
+    if (waiting_.size() == kRowsForRate) TACTUS_CHECK(start());
+  }
+  if (!writer_ && waiting_.empty()) return fail(Errc::truncated, "R-CSV-1");
+  if (!writer_) TACTUS_CHECK(start());
+  TACTUS_CHECK(writer_->finish());
+  return done_;
+}
+
+template <class T>
+Result<T> Importer::number(const std::vector<std::string>& fields, std::size_t column) {
+  column_ = plan_.names[column];
+  text_ = fields[column];
+  const auto value = parse_number<T>(text_);
+  if (!value || !std::isfinite(static_cast<double>(*value))) return fail(Errc::malformed, "R-CSV-4");
+  return *value;
+}
+
+Result<Row> Importer::parse(const CsvReader& reader) {
+  const auto& fields = reader.fields();
+  column_.clear();
+  text_.clear();
+  if (fields.size() != plan_.names.size()) return fail(Errc::malformed, "R-CSV-3");
+  Row row;
+  row.line = reader.line();
+  row.frame.objects.resize(plan_.info.objects.size());
+  row.frame.users.resize(plan_.info.users.size());
+  for (const CsvBinding& binding : plan_.bindings) {
+    TACTUS_TRY(const double value, number<double>(fields, binding.column));
+    double& field = binding.object_field != nullptr ? binding.object_field(row.frame.objects[binding.index])
+                                                    : binding.user_field(row.frame.users[binding.index]);
+    field = binding.scale * value;
+  }
+  TACTUS_CHECK(parse_whole_numbers(fields, row));
+  if (plan_.segment) row.segment = fields[*plan_.segment];
+  if (plan_.time) {
+    TACTUS_TRY(row.time, number<double>(fields, *plan_.time));
+  }
+  column_.clear();
+  text_.clear();
+  return row;
+}
+
+/// What only layout `tactus` has.
+Result<void> Importer::parse_whole_numbers(const std::vector<std::string>& fields, Row& row) {
+  if (plan_.tick) {
+    TACTUS_TRY(row.frame.tick, number<std::int64_t>(fields, *plan_.tick));
+  }
+  for (std::size_t i = 0; i < plan_.dof.size(); ++i) {
+    TACTUS_TRY(const auto dof, number<std::uint8_t>(fields, plan_.dof[i]));
+    const bool is_first = !writer_ && waiting_.empty();
+    if (is_first) plan_.info.objects[i].dof = dof;
+    if (dof > Dof::all || dof != plan_.info.objects[i].dof) return fail(Errc::malformed, "R-CSV-4");
+  }
+  for (std::size_t i = 0; i < plan_.contacts.size(); ++i) {
+    TACTUS_TRY(const auto kind, number<std::uint8_t>(fields, plan_.contacts[i].kind));
+    if (kind > static_cast<std::uint8_t>(ContactKind::spring)) return fail(Errc::malformed, "R-CSV-4");
+    row.frame.users[i].contact.kind = static_cast<ContactKind>(kind);
+    TACTUS_TRY(row.frame.users[i].contact.object, number<std::uint32_t>(fields, plan_.contacts[i].object));
+  }
+  return {};
+}
+
+/// Ticks per second, 0 when nothing tells.
+std::uint32_t Importer::find_rate() const {
+  if (mapping_.tick_rate > 0) return mapping_.tick_rate;
+  if (plan_.tick) {
+    const Row& row = waiting_.back();
+    const double rate = row.time > 0 ? std::round(static_cast<double>(row.frame.tick) / row.time) : TraceInfo().tick_rate;
+    return rate >= 1 && rate <= kMaxTickRate ? static_cast<std::uint32_t>(rate) : 0;
+  }
+  std::vector<double> gaps;
+  for (std::size_t i = 1; plan_.time && i < waiting_.size(); ++i)
+    if (waiting_[i].segment == waiting_[i - 1].segment) gaps.push_back(waiting_[i].time - waiting_[i - 1].time);
+  return median_rate(std::move(gaps));
+}
+
+Result<void> Importer::start() {
+  plan_.info.tick_rate = find_rate();
+  if (plan_.info.tick_rate == 0) return fail(Errc::invalid_argument, "R-CSV-7");
+  TACTUS_TRY(writer_, TraceWriter::create(out_path_, plan_.info));
+  for (Row& row : waiting_) TACTUS_CHECK(write(row));
+  waiting_.clear();
+  return {};
+}
+
+Result<std::int64_t> Importer::tick_of(const Row& row, bool begins_segment) {
+  if (plan_.tick) return row.frame.tick;
+  const std::int64_t next = done_.ticks.count() == 0 ? 0 : last_.frame.tick + 1;
+  if (begins_segment) {
+    segment_tick_ = next;
+    segment_time_ = row.time;
+  }
+  if (!plan_.time) return next;
+  const double ticks = std::round((row.time - segment_time_) * plan_.info.tick_rate);
+  if (!(ticks >= 0 && ticks < 0x1p53)) return fail(Errc::invalid, "R-CSV-5");
+  return segment_tick_ + static_cast<std::int64_t>(ticks);
+}
+
+Result<void> Importer::write(Row& row) {
+  line_ = row.line;
+  const bool begins_segment = done_.ticks.count() == 0 || row.segment != last_.segment;
+  TACTUS_TRY(const std::int64_t tick, tick_of(row, begins_segment));
+  const bool increases = done_.ticks.count() == 0 ? tick >= 0 : tick > last_.frame.tick;
+  if (!increases || tick / plan_.info.tick_rate >= kMaxSeconds) return fail(Errc::invalid, "R-CSV-5");
+  row.frame.tick = tick;
+  if (!begins_segment) derive_motion(row.frame);
+  if (plan_.check_spin) settle_spin(row.frame, begins_segment);
+  TACTUS_CHECK(writer_->write(row.frame));
+  done_.ticks.add(tick);
+  if (begins_segment) ++done_.segments;
+  last_ = std::move(row);
+  return {};
+}
+
+/// Backward differences: what a live system would know at that tick.
+void Importer::derive_motion(TraceFrame& frame) const {
+  if ((!plan_.derive_velocity && !plan_.derive_spin) || frame.objects.empty()) return;
+  const double seconds = static_cast<double>(frame.tick - last_.frame.tick) / plan_.info.tick_rate;
+  RigidSample& sample = frame.objects.front();
+  const Twist motion = motion_between(last_.frame.objects.front().pose, sample.pose, seconds);
+  if (plan_.derive_velocity) sample.velocity = motion.linear;
+  if (plan_.derive_spin) sample.angular_velocity = motion.angular;
+}
+
+/// Turn the spin that was read into the world frame, and hold it against the turn since the row before.
+void Importer::settle_spin(TraceFrame& frame, bool begins_segment) {
+  RigidSample& sample = frame.objects.front();
+  const Quat& q = sample.pose.rotation;
+  const double size = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+  if (!(size > 0)) return;  // the writer refuses it
+  const Vec3 given = sample.angular_velocity, turned = rotate(Quat{q.w / size, q.x / size, q.y / size, q.z / size}, given);
+  const bool is_body = mapping_.spin_frame == SpinFrame::body;
+  if (is_body) sample.angular_velocity = turned;
+  if (begins_segment) return;
+  const double seconds = static_cast<double>(frame.tick - last_.frame.tick) / plan_.info.tick_rate;
+  const Vec3 seen = motion_between(last_.frame.objects.front().pose, sample.pose, seconds).angular;
+  if (norm(seen) * seconds > std::numbers::pi / 2 || norm(given) * seconds > std::numbers::pi / 2) return;
+  SpinCheck& spin = done_.spin;
+  const auto take = [share = 1.0 / static_cast<double>(++spin.rows)](double& mean, double value) {
+    mean += share * (value - mean);
+  };
+  take(spin.given, norm(given));
+  take(spin.off, norm(seen - sample.angular_velocity));
+  take(spin.off_other, norm(seen - (is_body ? given : turned)));
+}
+
+}  // namespace
+
+tl::expected<CsvImport, CsvError> import_csv(const std::string& path, const CsvMapping& mapping,
+                                             const std::string& out_path) try {
+  const auto refuse = [](CsvError error) { return tl::unexpected<CsvError>(std::move(error)); };
+  auto reader = CsvReader::open(path);
+  if (!reader) return refuse({reader.error(), 0, "", ""});
+  const auto has_names = reader->next();
+  if (!has_names) return refuse({has_names.error(), 1, "", ""});
+  if (!*has_names) return refuse({Error{Errc::truncated, "R-CSV-1"}, 1, "", ""});
+  auto plan = plan_csv(mapping, reader->fields());
+  if (!plan) return refuse(plan.error());
+  plan->info.source = "import " + (path == "-" ? "standard input" : std::filesystem::path(path).filename().string());
+
+  Importer importer(mapping, *std::move(plan), out_path);
+  const auto done = importer.run(*reader);
+  if (done) return *done;
+  std::error_code ignored;  // what is not a plain file was there before us
+  if (importer.has_output() && std::filesystem::is_regular_file(out_path, ignored)) std::filesystem::remove(out_path, ignored);
+  return refuse(importer.place(done.error()));
+} catch (const std::bad_alloc&) {
+  return tl::unexpected(CsvError{out_of_memory().value(), 0, "", ""});
+}
+
+}  // namespace tactus

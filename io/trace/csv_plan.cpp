@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/trace/csv_plan.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string_view>
+
+#include <tactus/trace/csv_columns.h>
+
+namespace tactus {
+namespace {
+
+// First rows of a quantity in kObjectColumns and kUserColumns.
+constexpr std::size_t kPosition = 0, kRotation = 3, kVelocity = 7, kSpin = 10;
+constexpr std::size_t kDevice = 0, kForce = 3, kServerForce = 6;
+
+template <class T, std::size_t N>
+std::vector<std::string> all_columns(const std::string& path, const std::array<CsvColumn<T>, N>& columns) {
+  std::vector<std::string> names;
+  names.reserve(N);
+  for (const auto& column : columns) names.push_back(path + column.name);
+  return names;
+}
+
+/// Notes the first mistake and lets the caller go on, so that a plan reads as a list of what it wants; lists of foreign length stop.
+class Planner {
+ public:
+  Planner(const CsvMapping& mapping, const std::vector<std::string>& names) : mapping_(mapping) {
+    plan_.names = names;
+    for (std::size_t i = 0; i < plan_.names.size(); ++i)
+      if (const auto [there, is_new] = columns_.emplace(plan_.names[i], i); !is_new) there->second = kTwice;
+  }
+
+  tl::expected<CsvPlan, CsvError> run() {
+    mapping_.layout == CsvLayout::tactus ? plan_tactus() : plan_named();
+    if (plan_.info.objects.empty() && plan_.info.users.empty()) note(Errc::invalid_argument, "R-CSV-8", "");
+    if (mistake_) return tl::unexpected<CsvError>(*mistake_);
+    return std::move(plan_);
+  }
+
+ private:
+  void plan_named();
+  void plan_tactus();
+  void plan_tactus_object(const std::string& path);
+  void plan_tactus_user(const std::string& path);
+  bool has_group(std::span<const std::string> columns);
+  void bind_object(std::span<const std::string> columns, std::size_t first, double scale);
+  void bind_user(std::span<const std::string> columns, std::size_t first, double scale);
+
+  std::size_t column(const std::string& name) {
+    const auto found = columns_.find(name);
+    if (found != columns_.end() && found->second != kTwice) return found->second;
+    note(Errc::malformed, "R-CSV-2", name);
+    return 0;
+  }
+  void note(Errc code, const char* rule, const std::string& name) {
+    if (!mistake_) mistake_ = CsvError{Error{code, rule}, 1, name, ""};
+  }
+
+  const CsvMapping& mapping_;
+  static constexpr std::size_t kTwice = SIZE_MAX;
+  CsvPlan plan_;
+  std::map<std::string_view, std::size_t> columns_;  // by name
+  std::optional<CsvError> mistake_;
+};
+
+/// All columns of a vector are named, or none.
+bool Planner::has_group(std::span<const std::string> columns) {
+  const auto is_named = [](const std::string& name) { return !name.empty(); };
+  const bool has_any = std::any_of(columns.begin(), columns.end(), is_named);
+  if (has_any && !std::all_of(columns.begin(), columns.end(), is_named))
+    note(Errc::invalid_argument, "R-CSV-8", *std::find_if(columns.begin(), columns.end(), is_named));
+  return has_any;
+}
+
+void Planner::bind_object(std::span<const std::string> columns, std::size_t first, double scale) {
+  const auto object = static_cast<std::uint32_t>(plan_.info.objects.size() - 1);
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    plan_.bindings.push_back({column(columns[i]), object, scale, kObjectColumns[first + i].field, nullptr});
+}
+
+void Planner::bind_user(std::span<const std::string> columns, std::size_t first, double scale) {
+  const auto user = static_cast<std::uint32_t>(plan_.info.users.size() - 1);
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    plan_.bindings.push_back({column(columns[i]), user, scale, nullptr, kUserColumns[first + i].field});
+}
+
+void Planner::plan_named() {
+  const CsvMapping& m = mapping_;
+  if (!m.time.empty()) plan_.time = column(m.time);
+  if (!m.segment.empty()) plan_.segment = column(m.segment);
+  const bool has_rotation = has_group(m.rotation), has_velocity = has_group(m.velocity), has_spin = has_group(m.angular_velocity);
+  if (has_group(m.position)) {
+    plan_.info.objects.push_back({m.object, has_rotation || has_spin ? Dof::all : Dof::translation});
+    bind_object(m.position, kPosition, m.length_scale);
+    if (has_rotation) bind_object(m.rotation, kRotation, 1.0);
+    if (has_velocity) bind_object(m.velocity, kVelocity, m.length_scale);
+    if (has_spin) bind_object(m.angular_velocity, kSpin, 1.0);
+  } else if (has_rotation || has_velocity || has_spin) {
+    note(Errc::invalid_argument, "R-CSV-8", "position");
+  }
+  plan_.derive_velocity = !has_velocity;
+  plan_.derive_spin = has_rotation && !has_spin;
+  plan_.check_spin = has_rotation && has_spin;
+  if (has_spin && !has_rotation && m.spin_frame == SpinFrame::body) note(Errc::invalid_argument, "R-CSV-8", "rotation");
+  const bool has_device = has_group(m.device), has_force = has_group(m.force);
+  if (!has_device && !has_force) return;
+  plan_.info.users.push_back(m.user);
+  if (has_device) bind_user(m.device, kDevice, m.length_scale);
+  if (!has_force) return;
+  bind_user(m.force, kForce, 1.0);
+  bind_user(m.force, kServerForce, 1.0);
+}
+
+void Planner::plan_tactus() {
+  plan_.tick = column("tick");
+  plan_.time = column("time_s");
+  for (const std::string& name : plan_.names) {
+    if (mistake_) return;
+    const std::size_t slash = name.rfind('/');
+    if (slash == std::string::npos) continue;
+    const std::string path = name.substr(0, slash + 1);
+    const std::string_view last = std::string_view(name).substr(slash + 1);
+    if (path.starts_with("/objects/") && last == kDofColumn) plan_tactus_object(path);
+    if (path.starts_with("/users/") && last == kContactColumn) plan_tactus_user(path);
+  }
+}
+
+void Planner::plan_tactus_object(const std::string& path) {
+  constexpr std::size_t kRoot = std::string_view("/objects/").size();
+  plan_.info.objects.push_back({path.substr(kRoot, path.size() - kRoot - 1), Dof::all});
+  plan_.dof.push_back(column(path + kDofColumn));
+  bind_object(all_columns(path, kObjectColumns), 0, 1.0);
+}
+
+void Planner::plan_tactus_user(const std::string& path) {
+  constexpr std::size_t kRoot = std::string_view("/users/").size();
+  plan_.info.users.push_back(path.substr(kRoot, path.size() - kRoot - 1));
+  plan_.contacts.push_back({column(path + kContactColumn), column(path + kContactObjectColumn)});
+  bind_user(all_columns(path, kUserColumns), 0, 1.0);
+}
+
+}  // namespace
+
+tl::expected<CsvPlan, CsvError> plan_csv(const CsvMapping& mapping, const std::vector<std::string>& names) {
+  return Planner(mapping, names).run();
+}
+
+}  // namespace tactus

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+/// From a mapping and a line of names: which field of a row goes where.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tactus/trace/csv.h>
+#include <tactus/trace/frame.h>
+
+namespace tactus {
+
+/// One number of every row.
+struct CsvBinding {
+  std::size_t column = 0;
+  std::uint32_t index = 0;  ///< of the object or the user
+  double scale = 1.0;
+  double& (*object_field)(RigidSample&) = nullptr;  ///< this or the next
+  double& (*user_field)(UserSample&) = nullptr;
+};
+
+struct CsvContactColumns {
+  std::size_t kind = 0, object = 0;
+};
+
+struct CsvPlan {
+  std::vector<std::string> names;  ///< of all columns
+  TraceInfo info;                  ///< tick rate and degrees of freedom are settled by the rows
+  std::vector<CsvBinding> bindings;
+  std::optional<std::size_t> tick, time, segment;
+  std::vector<std::size_t> dof;             ///< per object, layout `tactus` only
+  std::vector<CsvContactColumns> contacts;  ///< per user, likewise
+  bool derive_velocity = false, derive_spin = false;
+  bool check_spin = false;  ///< given, and there are rotations to hold it against
+};
+
+/// err  R-CSV-2, R-CSV-8, with the column that is not as it should be.
+tl::expected<CsvPlan, CsvError> plan_csv(const CsvMapping& mapping, const std::vector<std::string>& names);
+
+}  // namespace tactus

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/trace/messages.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus {
+namespace {
+
+constexpr std::uint64_t kNanoseconds = 1'000'000'000;
+constexpr std::string_view kFrame = "world";
+
+CdrWriter begin(std::vector<std::uint8_t>& message, std::uint64_t time, std::string_view frame = kFrame) {
+  CdrWriter out(message);
+  out.u32(static_cast<std::uint32_t>(time / kNanoseconds));
+  out.u32(static_cast<std::uint32_t>(time % kNanoseconds));
+  out.text(frame);
+  return out;
+}
+
+/// std_msgs/Header; nothing when the stamp is no time.
+std::optional<std::uint64_t> read_header(CdrReader& in) noexcept {
+  const std::uint32_t seconds = in.u32();
+  const std::uint32_t nanoseconds = in.u32();
+  in.text();
+  if (seconds >= kMaxSeconds || nanoseconds >= kNanoseconds) return std::nullopt;
+  return seconds * kNanoseconds + nanoseconds;
+}
+
+bool is_finite(const Pose& pose) noexcept { return is_finite(pose.position) && is_finite(pose.rotation); }
+bool is_finite(const Twist& twist) noexcept { return is_finite(twist.linear) && is_finite(twist.angular); }
+bool is_finite(const Contact& contact) noexcept { return is_valid(contact); }
+bool is_finite(const SurfaceContact& contact) noexcept { return is_valid(contact); }
+
+Pose read_pose(CdrReader& in) noexcept {
+  Pose pose;
+  pose.position = in.vec3();
+  pose.rotation.x = in.f64();  // ROS writes x, y, z, w
+  pose.rotation.y = in.f64();
+  pose.rotation.z = in.f64();
+  pose.rotation.w = in.f64();
+  return pose;
+}
+
+Twist read_twist(CdrReader& in) noexcept {
+  const Vec3 linear = in.vec3();
+  return {linear, in.vec3()};
+}
+
+Vec3 read_vector(CdrReader& in) noexcept { return in.vec3(); }
+
+Contact read_contact(CdrReader& in) noexcept {
+  Contact contact;
+  contact.kind = static_cast<ContactKind>(in.u8());
+  contact.object = in.u32();
+  in.text();
+  contact.point = in.vec3();
+  contact.normal = in.vec3();
+  contact.stiffness = in.f64();
+  return contact;
+}
+
+SurfaceContact read_mesh_contact(CdrReader& in) noexcept {
+  SurfaceContact contact;
+  contact.mesh = in.u32();
+  in.text();
+  contact.triangle = in.u32();
+  for (double& weight : contact.weights) weight = in.f64();
+  contact.proxy = in.vec3();
+  contact.normal = in.vec3();
+  contact.stiffness = in.f64();
+  return contact;
+}
+
+template <class T>
+Result<Stamped<T>> decode(std::span<const std::uint8_t> message, T (*read)(CdrReader&) noexcept) noexcept {
+  CdrReader in(message);
+  if (!in.is_supported()) return fail(Errc::unsupported, "R-TRC-7");
+  const auto time = read_header(in);
+  const T value = read(in);
+  if (!in.done()) return fail(Errc::malformed, "R-TRC-13");
+  if (!time || !is_finite(value)) return fail(Errc::invalid, "R-TRC-14");
+  return Stamped<T>{*time, value};
+}
+
+}  // namespace
+
+std::uint64_t time_of_tick(std::int64_t tick, std::uint32_t tick_rate) noexcept {
+  const auto count = static_cast<std::uint64_t>(tick);
+  return count / tick_rate * kNanoseconds + (count % tick_rate * kNanoseconds + tick_rate / 2) / tick_rate;
+}
+
+std::int64_t tick_of_time(std::uint64_t time, std::uint32_t tick_rate) noexcept {
+  const std::uint64_t rest = (time % kNanoseconds * tick_rate + kNanoseconds / 2) / kNanoseconds;
+  return static_cast<std::int64_t>(time / kNanoseconds * tick_rate + rest);
+}
+
+bool is_valid(const Contact& contact) noexcept {
+  const bool known = contact.kind == ContactKind::surface || contact.kind == ContactKind::spring;
+  return known && is_finite(contact.point) && is_finite(contact.normal) && is_finite(contact.device) &&
+         std::isfinite(contact.stiffness) && contact.stiffness > 0;
+}
+
+bool is_valid(const SurfaceContact& contact) noexcept {
+  constexpr double kRounding = 1e-6;  // weights of another program may be single precision
+  const auto& [a, b, c] = contact.weights;
+  const bool has_weights = std::min({a, b, c}) >= -kRounding && std::abs(a + b + c - 1) <= kRounding;  // so no NaN either
+  return has_weights && is_finite(contact.proxy) && is_finite(contact.normal) && std::isfinite(contact.stiffness) &&
+         contact.stiffness > 0;
+}
+
+void encode_pose(std::vector<std::uint8_t>& message, std::uint64_t time, const Pose& pose) {
+  CdrWriter out = begin(message, time);
+  out.vec3(pose.position);
+  out.f64(pose.rotation.x);
+  out.f64(pose.rotation.y);
+  out.f64(pose.rotation.z);
+  out.f64(pose.rotation.w);
+}
+
+void encode_twist(std::vector<std::uint8_t>& message, std::uint64_t time, const Twist& twist) {
+  CdrWriter out = begin(message, time);
+  out.vec3(twist.linear);
+  out.vec3(twist.angular);
+}
+
+void encode_vector(std::vector<std::uint8_t>& message, std::uint64_t time, const Vec3& vector) {
+  CdrWriter out = begin(message, time);
+  out.vec3(vector);
+}
+
+void encode_contact(std::vector<std::uint8_t>& message, std::uint64_t time, const Contact& contact, std::string_view object) {
+  CdrWriter out = begin(message, time, object);
+  out.u8(static_cast<std::uint8_t>(contact.kind));
+  out.u32(contact.object);
+  out.text(object);
+  out.vec3(contact.point);
+  out.vec3(contact.normal);
+  out.f64(contact.stiffness);
+}
+
+Result<Stamped<Pose>> decode_pose(std::span<const std::uint8_t> message) noexcept { return decode(message, read_pose); }
+Result<Stamped<Twist>> decode_twist(std::span<const std::uint8_t> message) noexcept { return decode(message, read_twist); }
+Result<Stamped<Vec3>> decode_vector(std::span<const std::uint8_t> message) noexcept { return decode(message, read_vector); }
+Result<Stamped<Contact>> decode_contact(std::span<const std::uint8_t> message) noexcept { return decode(message, read_contact); }
+
+Result<Stamped<SurfaceContact>> decode_mesh_contact(std::span<const std::uint8_t> message) noexcept {
+  return decode(message, read_mesh_contact);
+}
+
+void encode_mesh(std::vector<std::uint8_t>& message, const TriMesh& mesh) {
+  CdrWriter out(message);
+  out.u32(static_cast<std::uint32_t>(mesh.triangles.size()));
+  for (const Triangle& triangle : mesh.triangles)
+    for (const std::uint32_t corner : triangle) out.u32(corner);
+  out.u32(static_cast<std::uint32_t>(mesh.vertices.size()));
+  for (const Vec3& vertex : mesh.vertices) out.vec3(vertex);
+}
+
+Result<TriMesh> decode_mesh(std::span<const std::uint8_t> message) {
+  CdrReader in(message);
+  if (!in.is_supported()) return fail(Errc::unsupported, "R-TRC-7");
+  TriMesh mesh;
+  mesh.triangles.resize(in.count(3 * sizeof(std::uint32_t)));
+  for (Triangle& triangle : mesh.triangles)
+    for (std::uint32_t& corner : triangle) corner = in.u32();
+  mesh.vertices.resize(in.count(3 * sizeof(double)));
+  for (Vec3& vertex : mesh.vertices) vertex = in.vec3();
+  if (!in.done()) return fail(Errc::malformed, "R-TRC-13");
+  if (const auto sound = check(mesh); !sound) return tl::unexpected(sound.error().error);
+  return mesh;
+}
+
+void encode_displacements(std::vector<std::uint8_t>& message, std::uint64_t time, std::span<const float> displacements) {
+  CdrWriter out = begin(message, time);
+  out.u32(static_cast<std::uint32_t>(displacements.size()));
+  for (const float value : displacements) out.f32(value);
+}
+
+Result<std::uint64_t> decode_displacements(std::span<const std::uint8_t> message, std::span<float> out) noexcept {
+  CdrReader in(message);
+  if (!in.is_supported()) return fail(Errc::unsupported, "R-TRC-7");
+  const auto time = read_header(in);
+  const std::uint32_t count = in.count(sizeof(float));
+  if (count == out.size())
+    for (float& value : out) value = in.f32();
+  else
+    for (std::uint32_t i = 0; i < count; ++i) in.f32();
+  if (!in.done()) return fail(Errc::malformed, "R-TRC-13");
+  const bool is_sound =
+      count == out.size() && std::all_of(out.begin(), out.end(), [](float value) { return std::isfinite(value); });
+  if (!time || !is_sound) return fail(Errc::invalid, "R-TRC-14");
+  return *time;
+}
+
+void encode_mesh_contact(std::vector<std::uint8_t>& message, std::uint64_t time, const SurfaceContact& contact,
+                         std::string_view mesh) {
+  CdrWriter out = begin(message, time);
+  out.u32(contact.mesh);
+  out.text(mesh);
+  out.u32(contact.triangle);
+  for (const double weight : contact.weights) out.f64(weight);
+  out.vec3(contact.proxy);
+  out.vec3(contact.normal);
+  out.f64(contact.stiffness);
+}
+
+}  // namespace tactus

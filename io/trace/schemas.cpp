@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/trace/schemas.h>
+
+#include <array>
+#include <vector>
+
+namespace tactus {
+namespace {
+
+struct Definition {
+  std::string_view name;
+  std::string_view fields;
+};
+
+// Without "/msg/", as recorders of ROS 2 write them and as fields refer to them.
+constexpr Definition kTime{"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"};
+constexpr Definition kHeader{"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"};
+constexpr Definition kPoint{"geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n"};
+constexpr Definition kVector3{"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"};
+constexpr Definition kQuaternion{"geometry_msgs/Quaternion", "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"};
+constexpr Definition kPose{"geometry_msgs/Pose", "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n"};
+constexpr Definition kMeshTriangle{"shape_msgs/MeshTriangle", "uint32[3] vertex_indices\n"};
+constexpr Definition kTwist{"geometry_msgs/Twist", "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n"};
+
+struct Message {
+  std::string_view fields;
+  std::vector<Definition> dependencies;
+};
+
+Message contact_message() {
+  return {
+      "# A user's probe touches one object. No message at a tick: no contact.\n"
+      "uint8 SURFACE=1\n"
+      "uint8 SPRING=2\n"
+      "std_msgs/Header header\n"
+      "# SURFACE: force along the face's normal only. SPRING: probe tied to a point, whole vector.\n"
+      "uint8 kind\n"
+      "# The object touched, by its place in the trace and by its name.\n"
+      "uint32 object_index\n"
+      "string object\n"
+      "# [m] in the object's frame: a point of the face, or the spring's anchor.\n"
+      "geometry_msgs/Point point\n"
+      "# In the object's frame, outward, unit length.\n"
+      "geometry_msgs/Vector3 normal\n"
+      "# [N/m]\n"
+      "float64 stiffness\n",
+      {kHeader, kTime, kPoint, kVector3}};
+}
+
+Message message_of(MessageType type) {
+  switch (type) {
+    case MessageType::pose:
+      return {"std_msgs/Header header\ngeometry_msgs/Pose pose\n", {kHeader, kTime, kPose, kPoint, kQuaternion}};
+    case MessageType::twist:
+      return {"std_msgs/Header header\ngeometry_msgs/Twist twist\n", {kHeader, kTime, kTwist, kVector3}};
+    case MessageType::point:
+      return {"std_msgs/Header header\ngeometry_msgs/Point point\n", {kHeader, kTime, kPoint}};
+    case MessageType::vector:
+      return {"std_msgs/Header header\ngeometry_msgs/Vector3 vector\n", {kHeader, kTime, kVector3}};
+    case MessageType::mesh:
+      return {"shape_msgs/MeshTriangle[] triangles\ngeometry_msgs/Point[] vertices\n", {kMeshTriangle, kPoint}};
+    case MessageType::displacements:
+      return {
+          "# How far every vertex of a mesh is from its place at rest. No message at a tick: as before.\n"
+          "std_msgs/Header header\n"
+          "# [m] x, y, z of the first vertex, then of the second\n"
+          "float32[] data\n",
+          {kHeader, kTime}};
+    case MessageType::contact:
+      return contact_message();
+    case MessageType::surface_contact:
+      break;
+  }
+  return {
+      "# A user's probe touches one mesh. No message at a tick: no contact.\n"
+      "std_msgs/Header header\n"
+      "# The mesh touched, by its place in the trace and by its name, and the triangle.\n"
+      "uint32 mesh_index\n"
+      "string mesh\n"
+      "uint32 triangle\n"
+      "# Of the triangle's corners at the touched point, sum 1.\n"
+      "float64[3] weights\n"
+      "# [m] where the probe is held on the surface, in the world.\n"
+      "geometry_msgs/Point proxy\n"
+      "# Of the surface there, in the world, outward, unit length.\n"
+      "geometry_msgs/Vector3 normal\n"
+      "# [N/m]\n"
+      "float64 stiffness\n",
+      {kHeader, kTime, kPoint, kVector3}};
+}
+
+}  // namespace
+
+std::string_view schema_name(MessageType type) noexcept {
+  constexpr std::array<std::string_view, 8> kNames{"geometry_msgs/msg/PoseStamped",  "geometry_msgs/msg/TwistStamped",
+                                                   "geometry_msgs/msg/PointStamped", "geometry_msgs/msg/Vector3Stamped",
+                                                   "tactus_msgs/msg/Contact",        "shape_msgs/msg/Mesh",
+                                                   "tactus_msgs/msg/Displacements",  "tactus_msgs/msg/MeshContact"};
+  return kNames[static_cast<std::size_t>(type)];
+}
+
+std::string schema_text(MessageType type) {
+  const Message message = message_of(type);
+  std::string text(message.fields);
+  for (const Definition& definition : message.dependencies) {
+    text.append(80, '=').append("\nMSG: ").append(definition.name).append("\n");
+    text.append(definition.fields);
+  }
+  return text;
+}
+
+}  // namespace tactus

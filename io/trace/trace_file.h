@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Trace files: MCAP with zstd chunks and ROS 2 CDR messages.
+///
+/// topic                        message (header.frame_id "world", of contact the object's name)   when
+/// /objects/<name>/pose         geometry_msgs/msg/PoseStamped       first tick, and ticks at which pose or twist is new
+/// /objects/<name>/twist        geometry_msgs/msg/TwistStamped      with the pose, objects that can move
+/// /users/<name>/device         geometry_msgs/msg/PointStamped      every tick
+/// /users/<name>/force          geometry_msgs/msg/Vector3Stamped    every tick
+/// /users/<name>/server_force   geometry_msgs/msg/Vector3Stamped    every tick
+/// /users/<name>/contact        tactus_msgs/msg/Contact             ticks with contact
+/// /users/<name>/surface_contact   tactus_msgs/msg/SurfaceContact         ticks with contact; only if there are meshes
+/// /meshes/<name>/rest          shape_msgs/msg/Mesh (no header)     first tick
+/// /meshes/<name>/displacement  tactus_msgs/msg/Displacements       ticks at which the shape is new; before the first, rest
+/// When nothing else comes every tick, the first object's pose does, or without objects the first mesh's displacement.
+///
+/// log_time, publish_time and header.stamp are round(tick * 1e9 / tick_rate), sequence is tick mod 2^32. The metadata record
+/// "tactus" holds format_version ("2"; in "1" poses and twists come every tick), tick_rate, source, objects, users and, if there are
+/// any, meshes (names in order, one a line); a replica's record "tactus_bounds" what its stream promises (trace_bounds.h); a pose
+/// channel's metadata holds dof, a rest channel's, where they are not none and 1, fixed (numbers of vertices with a blank
+/// in between, ascending) and period (ticks); the scene is the attachment "scene.toml". Chunks end at whole ticks, after 1 MiB or 1 s.
+///
+/// rule      class             broken when
+/// R-TRC-1   io                the operating system refuses to open, read or write the file; errno tells why
+/// R-TRC-2   malformed         MCAP's magic bytes are not at the front, or not at the very end behind a footer
+/// R-TRC-3   truncated         the file ends before the header, the channels that its metadata announces, or any pose,
+///                             or the first tick of a recording with meshes
+/// R-TRC-4   malformed         a length inside a record reaches past the record's end
+/// R-TRC-5   limit_exceeded    a record, a chunk or all declarations are larger than accepted
+/// R-TRC-6   checksum          a CRC-32 does not match
+/// R-TRC-7   unsupported       compression, message encoding or format version that this reader does not know
+/// R-TRC-8   malformed         a chunk's records are no zstd data of exactly the announced size
+/// R-TRC-9   malformed         a record or the summary stands where it must not
+///           invalid           the footer points elsewhere than to the summary
+/// R-TRC-10  invalid           a schema or channel is used undeclared or declared twice with a difference
+/// R-TRC-11  invalid           text is not UTF-8, or a key stands twice in a map
+/// R-TRC-12  invalid           the "tactus" or "tactus_bounds" metadata or the channels lack something or contradict each other
+/// R-TRC-13  malformed         a message is not CDR of its channel's type
+/// R-TRC-14  invalid           a value is NaN or infinite, a contact or stamp is none, or a mesh has another number of vertices
+/// R-TRC-15  invalid           ticks do not increase, a message's times disagree, or a tick lacks a message or has one twice
+/// R-TRC-16  unsupported       a foreign file without PoseStamped channels, or with one that begins after the look-ahead
+/// R-TRC-17  invalid_argument  TraceInfo: nothing to record, over 65535 channels, tick rate not in 1..1000000, dof bits, fixed
+///                             vertices or the period of a mesh, bounds of another number of meshes, or a name that is empty, repeated, over 255 bytes, not UTF-8 or has '/' or control characters
+/// R-TRC-18  limit_exceeded    chunks unpack to more, or objects of which nothing is said at a tick are more, than the file's size has
+///                             earned (input_budget.h)
+/// R-MSH-n   as tri_mesh.h     a mesh's rest shape
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include <tactus/base/result.h>
+#include <tactus/trace/frame.h>
+
+namespace tactus {
+
+/// Writes a trace as it happens. A process that dies leaves a file that reads up to its last whole chunk.
+class TraceWriter {
+ public:
+  /// path "-" is standard output.   err  io R-TRC-1; invalid_argument R-TRC-11 (source), R-TRC-17, R-MSH-n
+  static Result<TraceWriter> create(const std::string& path, const TraceInfo& info);
+  /// in   frame  tick >= 0 and larger than the last; of a user without contact only contact.device is kept,
+  ///             of a mesh that was not updated nothing
+  /// time O(what is new) and about 15 instructions for each object that rests; of users and meshes what comes every tick
+  /// err  invalid_argument R-API-1 not finite; R-API-5 wrong count, tick or contact; R-API-6 a static object moved; io R-TRC-1.
+  ///      Nothing was written after invalid_argument. After io and limit_exceeded R-API-11 (no memory) the writer is of no more use.
+  Result<void> write(const TraceFrame& frame);
+  /// Summary, index and footer. A writer destroyed without it leaves a readable but unindexed file.
+  Result<void> finish();
+
+  TraceWriter(TraceWriter&&) noexcept;
+  TraceWriter& operator=(TraceWriter&&) noexcept;
+  ~TraceWriter();
+
+ private:
+  struct Impl;
+  explicit TraceWriter(std::unique_ptr<Impl> impl) noexcept;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Reads a trace front to back, one frame at a time, in memory bounded by a chunk. ROS 2 recordings of other people are read too:
+/// each PoseStamped topic is an object, a TwistStamped topic beside it (same path but for the last part) its motion, otherwise
+/// backward differences are; ticks follow from log_time and the median spacing of the first poses. A topic holds its last value,
+/// and frames begin when every object has one.
+class TraceReader {
+ public:
+  /// path "-" is standard input.   err  io R-TRC-1; malformed, truncated, invalid, unsupported, checksum, limit_exceeded: R-TRC-n,
+  ///      R-MSH-n
+  static Result<TraceReader> open(const std::string& path);
+  /// The same from memory that outlives the reader.
+  static Result<TraceReader> open_memory(std::span<const std::uint8_t> bytes);
+  const TraceInfo& info() const noexcept;
+  /// Number of frames if the file's summary tells it.
+  std::optional<std::uint64_t> frame_count() const noexcept;
+  /// Next frame into `frame`; false at the end. Give every call the frame of the call before, whose vectors are reused: a shape that
+  /// is not new stays as it is there. After an error the reader must not be used further.
+  Result<bool> next(TraceFrame& frame);
+  /// The file had no whole ending (crash, cut): everything up to its last whole chunk was delivered. Known once next()
+  /// has returned false.
+  bool cut_short() const noexcept;
+
+  TraceReader(TraceReader&&) noexcept;
+  TraceReader& operator=(TraceReader&&) noexcept;
+  ~TraceReader();
+
+ private:
+  struct Impl;
+  explicit TraceReader(std::unique_ptr<Impl> impl) noexcept;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tactus

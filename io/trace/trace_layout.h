@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Which channels a trace has, in the order in which a tick's messages are written. Shared by writer and reader.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <tactus/trace/frame.h>
+#include <tactus/trace/schemas.h>
+
+namespace tactus {
+
+enum class Role : std::uint8_t { pose, twist, device, force, server_force, contact, surface_contact, rest, displacement };
+enum class Occurs : std::uint8_t { every_tick, first_tick, when_changed, in_contact, when_updated };
+
+struct TraceChannel {
+  Role role = Role::pose;
+  Occurs occurs = Occurs::every_tick;
+  std::uint32_t index = 0;  ///< of the object (pose, twist), the mesh (rest, displacement) or the user
+  std::string topic;
+};
+
+inline MessageType message_type(Role role) noexcept {
+  switch (role) {
+    case Role::pose:
+      return MessageType::pose;
+    case Role::twist:
+      return MessageType::twist;
+    case Role::device:
+      return MessageType::point;
+    case Role::contact:
+      return MessageType::contact;
+    case Role::surface_contact:
+      return MessageType::surface_contact;
+    case Role::rest:
+      return MessageType::mesh;
+    case Role::displacement:
+      return MessageType::displacements;
+    case Role::force:
+    case Role::server_force:
+      break;
+  }
+  return MessageType::vector;
+}
+
+/// What a mesh's description adds to its rest shape is as it should be.
+inline bool is_valid(const TraceDeformable& mesh) noexcept {
+  const bool ascends = std::ranges::adjacent_find(mesh.fixed, std::greater_equal<>()) == mesh.fixed.end();
+  const bool is_there = mesh.fixed.empty() || mesh.fixed.back() < mesh.rest.vertices.size();
+  return ascends && is_there && mesh.period > 0 && mesh.period <= 1e9;  // false for NaN
+}
+
+inline std::vector<TraceChannel> trace_channels(const TraceInfo& info) {
+  std::vector<TraceChannel> channels;
+  for (std::uint32_t i = 0; i < info.objects.size(); ++i) {
+    const std::string path = "/objects/" + info.objects[i].name;
+    const bool moves = info.objects[i].dof != Dof::none;
+    channels.push_back({Role::pose, moves ? Occurs::when_changed : Occurs::first_tick, i, path + "/pose"});
+    if (moves) channels.push_back({Role::twist, Occurs::when_changed, i, path + "/twist"});
+  }
+  for (std::uint32_t i = 0; i < info.meshes.size(); ++i) {
+    const std::string path = "/meshes/" + info.meshes[i].name;
+    channels.push_back({Role::rest, Occurs::first_tick, i, path + "/rest"});
+    channels.push_back({Role::displacement, Occurs::when_updated, i, path + "/displacement"});
+  }
+  for (std::uint32_t i = 0; i < info.users.size(); ++i) {
+    const std::string path = "/users/" + info.users[i];
+    channels.push_back({Role::device, Occurs::every_tick, i, path + "/device"});
+    channels.push_back({Role::force, Occurs::every_tick, i, path + "/force"});
+    channels.push_back({Role::server_force, Occurs::every_tick, i, path + "/server_force"});
+    channels.push_back({Role::contact, Occurs::in_contact, i, path + "/contact"});
+    if (!info.meshes.empty()) channels.push_back({Role::surface_contact, Occurs::in_contact, i, path + "/mesh_contact"});
+  }
+  const auto comes_every_tick = [](const TraceChannel& channel) { return channel.occurs == Occurs::every_tick; };
+  if (!channels.empty() && std::none_of(channels.begin(), channels.end(), comes_every_tick))
+    channels[info.objects.empty() ? 1 : 0].occurs = Occurs::every_tick;  // the ticks must show: pose, or displacement behind rest
+  return channels;
+}
+
+}  // namespace tactus

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/out_of_memory.h>
+#include <tactus/trace/frame_assembler.h>
+#include <tactus/trace/trace_bounds.h>
+#include <tactus/trace/trace_file.h>
+
+namespace tactus {
+namespace {
+
+Result<Preamble> read_preamble(mcap::Reader& mcap) {
+  Preamble preamble;
+  while (true) {
+    TACTUS_TRY(preamble.item, mcap.next());
+    switch (preamble.item) {
+      case mcap::Item::metadata:
+        if (mcap.metadata().name == "tactus") preamble.tactus = mcap.metadata().entries;
+        if (mcap.metadata().name == kBoundsMetadata) preamble.bounds = mcap.metadata().entries;
+        break;
+      case mcap::Item::attachment: {
+        const mcap::Attachment& attachment = mcap.attachment();
+        if (attachment.name == "scene.toml") preamble.scene.assign(attachment.data.begin(), attachment.data.end());
+        break;
+      }
+      case mcap::Item::message:
+      case mcap::Item::end:
+        return preamble;
+    }
+  }
+}
+
+}  // namespace
+
+bool carries(const mcap::Reader& mcap, const mcap::Channel& channel, std::string_view schema) {
+  const auto found = mcap.schemas().find(channel.schema_id);
+  return channel.message_encoding == "cdr" && found != mcap.schemas().end() && found->second.name == schema;
+}
+
+struct TraceReader::Impl {
+  static Result<TraceReader> open(Result<ByteSource> source);
+
+  mcap::Reader mcap;
+  std::optional<mcap::Statistics> statistics;
+  std::unique_ptr<FrameAssembler> assembler;
+};
+
+Result<TraceReader> TraceReader::Impl::open(Result<ByteSource> source) try {
+  TACTUS_TRY(ByteSource bytes, std::move(source));
+  TACTUS_TRY(auto mcap, mcap::Reader::open(std::move(bytes)));
+  auto statistics = mcap.statistics();
+  TACTUS_TRY(const Preamble preamble, read_preamble(mcap));
+  TACTUS_TRY(auto assembler, preamble.tactus ? assemble_tactus(mcap, preamble) : assemble_ros(mcap, preamble));
+  return TraceReader(std::make_unique<Impl>(Impl{std::move(mcap), std::move(statistics), std::move(assembler)}));
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
+
+Result<TraceReader> TraceReader::open(const std::string& path) try {
+  return Impl::open(ByteSource::open_file(path));
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
+
+Result<TraceReader> TraceReader::open_memory(std::span<const std::uint8_t> bytes) {
+  return Impl::open(ByteSource::over_memory(bytes));
+}
+
+const TraceInfo& TraceReader::info() const noexcept { return impl_->assembler->info(); }
+
+std::optional<std::uint64_t> TraceReader::frame_count() const noexcept {
+  const auto channel = impl_->assembler->frame_channel();
+  if (!channel || !impl_->statistics) return std::nullopt;
+  const auto& counts = impl_->statistics->channel_message_counts;
+  const auto found = counts.find(*channel);
+  return found == counts.end() ? std::nullopt : std::optional(found->second);
+}
+
+Result<bool> TraceReader::next(TraceFrame& frame) try {
+  return impl_->assembler->next(impl_->mcap, frame);
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
+
+bool TraceReader::cut_short() const noexcept { return impl_->mcap.cut_short(); }
+
+TraceReader::TraceReader(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}
+TraceReader::TraceReader(TraceReader&&) noexcept = default;
+TraceReader& TraceReader::operator=(TraceReader&&) noexcept = default;
+TraceReader::~TraceReader() = default;
+
+}  // namespace tactus

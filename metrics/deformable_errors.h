@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+/// How far what a client shows of a mesh is from the truth: every vertex, every frame.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include <tactus/deformable/encoder.h>
+#include <tactus/trace/frame.h>
+
+namespace tactus {
+
+/// Distances between true and shown vertices [m].
+struct VertexErrors {
+  std::uint64_t vertices = 0;    ///< looked at, over all frames
+  std::uint64_t violations = 0;  ///< of them farther off than their bound
+  double square_sum = 0;         ///< [m^2]
+  double max = 0;                ///< [m]
+
+  double mse() const noexcept { return vertices == 0 ? 0 : square_sum / static_cast<double>(vertices); }  ///< [m^2]
+};
+
+/// Bounds are those of DeformableEncoder: v everywhere (thesis eq. 3.10), min(v, h) inside the area of interest (eqs. 3.11, 3.12), and
+/// nothing below the grid's rounding.
+class DeformableErrors {
+ public:
+  /// in   rings         m: size of the area of interest
+  ///      position_exp  of the stream's grid
+  /// pre  the mesh passed check()
+  DeformableErrors(const TriMesh& rest, const DeformableThresholds& bounds, std::uint8_t rings, unsigned position_exp);
+  DeformableErrors(DeformableErrors&&) noexcept;
+  DeformableErrors& operator=(DeformableErrors&&) noexcept;
+  ~DeformableErrors();
+
+  /// in   truth  [m] x y z of vertex 0 first;  shown  [m] one per vertex
+  /// time O(vertices), no allocation.
+  void add(std::span<const float> truth, std::span<const Vec3> shown, const std::optional<SurfaceTouch>& touch) noexcept;
+
+  const DeformableThresholds& bounds() const noexcept { return bounds_; }
+  std::uint8_t rings() const noexcept { return rings_; }
+  std::uint64_t frames() const noexcept { return frames_; }
+  const VertexErrors& all() const noexcept { return all_; }
+  const VertexErrors& area() const noexcept { return area_; }   ///< inside the area of interest, in frames with touch
+  double worst_ratio() const noexcept { return worst_ratio_; }  ///< largest error in terms of its bound; <= 1: all bounds held
+  double mean_haptic() const noexcept;                          ///< [m] mean of h over the frames with touch, 0 without
+
+ private:
+  struct Area;
+
+  DeformableThresholds bounds_;
+  std::uint8_t rings_;
+  double rounding_;  // [m] farthest that a vertex lies from its nearest grid point
+  std::unique_ptr<Area> finder_;
+  std::uint64_t frames_ = 0, touched_ = 0;
+  VertexErrors all_, area_;
+  double worst_ratio_ = 0, haptic_sum_ = 0;
+};
+
+}  // namespace tactus

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Tetrahedral meshes in files: TetGen's .node with .ele, and Gmsh's .msh (ASCII, versions 2.2 and 4.1). Nothing in a file is
+/// believed: numbers are whole and finite, counts fit the bytes that are left before anything is reserved for them.
+///
+/// rule      class           broken when
+/// R-MFL-1   io              the file cannot be opened, read or written
+/// R-MFL-2   limit_exceeded  it is larger than 512 MiB, or announces more than 2^20 vertices or 2^22 tetrahedra
+/// R-MFL-3   truncated       it ends before everything announced was there
+/// R-MFL-4   malformed       a number is expected, and the word is none or does not fit its type
+/// R-MFL-5   invalid         a number is NaN or infinite
+/// R-MFL-6   malformed       a line has more or fewer words than its place asks for, or a section is missing or stands there twice
+/// R-MFL-7   unsupported     not three dimensions, not linear tetrahedra, a binary .msh, or another version than 2.2 and 4.1
+/// R-MFL-8   invalid         vertices or tetrahedra are not numbered one by one from 0 or 1 (.node, .ele), a vertex number stands there
+///                           twice, or a tetrahedron names a vertex that is not there
+/// R-MFL-9   invalid         it holds no tetrahedron
+/// R-MFL-10  unsupported     the name does not end in .node, .ele or .msh
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <string_view>
+
+#include <tactus/sim/tets/tet_mesh.h>
+
+namespace tactus::sim {
+
+struct MeshFileError {
+  Error error;
+  std::string file;
+  std::size_t line = 0;  ///< from 1; 0: the file as a whole
+  std::string word;      ///< what stands at the place, if that is the fault
+};
+std::string to_string(const MeshFileError& error);  ///< "m.node:12: 'oops': R-MFL-4: not a number; ..." with remedy
+
+/// A mesh as it stands in a file; whether it makes sense is for check() to say.
+struct TetFile {
+  TetMesh mesh;
+  std::vector<double> vertex_attributes;     ///< .node: those of vertex 0, of vertex 1, ...; as many for each
+  std::vector<double> tet_attributes;        ///< .ele: likewise
+  std::vector<std::int32_t> vertex_markers;  ///< .node: boundary marker of each vertex; empty when there are none
+  std::vector<std::int32_t> regions;         ///< .msh: tag of the volume that each tetrahedron belongs to
+  std::size_t ignored_elements = 0;          ///< .msh: points, lines, triangles, ...
+  std::size_t ignored_vertices = 0;          ///< .msh: vertices of no tetrahedron
+};
+
+/// Read .msh, or .node and .ele beside one another (either may be named).   err  R-MFL-1..10
+tl::expected<TetFile, MeshFileError> read_tet_mesh(const std::string& path);
+
+/// The same from memory; the error's file is empty, ".node" or ".ele".   err  R-MFL-2..9
+tl::expected<TetFile, MeshFileError> parse_node_ele(std::string_view node, std::string_view ele);
+tl::expected<TetFile, MeshFileError> parse_msh(std::string_view text);
+
+/// Numbered from 0, with the shortest digits that read back as the same bits.
+void write_node(std::ostream& out, const TetMesh& mesh);
+void write_ele(std::ostream& out, const TetMesh& mesh);
+void write_msh(std::ostream& out, const TetMesh& mesh);  ///< Gmsh 4.1 ASCII, one volume
+/// A closed surface for TetGen to fill; .poly lets facets have holes, .smesh is half as long.
+void write_poly(std::ostream& out, const TriMesh& mesh);
+void write_smesh(std::ostream& out, const TriMesh& mesh);
+
+}  // namespace tactus::sim

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/sim/tets/tet_mesh.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tactus::sim {
+namespace {
+
+using Face = std::array<std::uint32_t, 3>;
+
+/// Faces of a tetrahedron, counter-clockwise seen from outside.
+std::array<Face, 4> faces(const Tet& t) {
+  return {{{t[0], t[2], t[1]}, {t[0], t[1], t[3]}, {t[1], t[2], t[3]}, {t[0], t[3], t[2]}}};
+}
+
+constexpr double kMaxCoordinate = 1e6;     // [m]
+constexpr double kSmallestVolume = 1e-12;  // of the longest edge's cube
+
+tl::unexpected<MeshError> broken(Errc code, const char* rule, std::size_t element) {
+  return tl::unexpected(MeshError{fail(code, rule).value(), static_cast<std::uint32_t>(element)});
+}
+
+bool is_in_range(const Vec3& v) noexcept {  // false for NaN
+  return std::abs(v.x) <= kMaxCoordinate && std::abs(v.y) <= kMaxCoordinate && std::abs(v.z) <= kMaxCoordinate;
+}
+
+bool is_flat(const TetMesh& mesh, std::size_t tet) noexcept {  // also when a corner stands there twice
+  double longest = 0;
+  const Tet& corners = mesh.tets[tet];
+  for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t k = 0; k < i; ++k) longest = std::max(longest, norm(mesh.vertices[corners[i]] - mesh.vertices[corners[k]]));
+  return std::abs(volume(mesh, tet)) <= kSmallestVolume * longest * longest * longest;
+}
+
+tl::expected<void, MeshError> check_elements(const TetMesh& mesh) {
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    if (!is_in_range(mesh.vertices[v])) return broken(Errc::invalid, "R-TET-1", v);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    for (const std::uint32_t v : mesh.tets[t])
+      if (v >= mesh.vertices.size()) return broken(Errc::invalid, "R-TET-2", t);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    if (is_flat(mesh, t)) return broken(Errc::invalid, "R-TET-3", t);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    if (volume(mesh, t) < 0) return broken(Errc::invalid, "R-TET-4", t);
+  return {};
+}
+
+/// A face of a tetrahedron as a number: equal for equal corners, whichever way they go round.
+std::uint64_t face_key(Face face) noexcept {
+  std::sort(face.begin(), face.end());
+  return std::uint64_t{face[0]} << 40 | std::uint64_t{face[1]} << 20 | face[2];
+}
+static_assert(kMaxMeshVertices <= std::size_t{1} << 20);
+
+/// True when the corners' order is an even permutation of the ascending one.
+bool is_even(const Face& f) noexcept { return ((f[0] < f[1]) + (f[1] < f[2]) + (f[0] < f[2])) % 2 == 1; }
+
+tl::expected<void, MeshError> check_faces(const TetMesh& mesh) {
+  struct Side {
+    std::uint64_t key;
+    std::uint32_t tet;
+    bool even;
+  };
+  std::vector<Side> sides;
+  sides.reserve(4 * mesh.tets.size());
+  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t)
+    for (const Face& face : faces(mesh.tets[t])) sides.push_back({face_key(face), t, is_even(face)});
+  std::sort(sides.begin(), sides.end(),
+            [](const Side& a, const Side& b) { return a.key != b.key ? a.key < b.key : a.tet < b.tet; });
+  constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  std::uint32_t first = kNone;
+  for (std::size_t i = 1; i < sides.size(); ++i) {
+    if (sides[i].key != sides[i - 1].key) continue;
+    const bool third = i >= 2 && sides[i].key == sides[i - 2].key;
+    if (third || sides[i].even == sides[i - 1].even) first = std::min(first, sides[i].tet);
+  }
+  if (first != kNone) return broken(Errc::invalid, "R-TET-5", first);
+  return {};
+}
+
+tl::expected<void, MeshError> check_use(const TetMesh& mesh) {
+  std::vector<bool> used(mesh.vertices.size(), false);
+  for (const Tet& tet : mesh.tets)
+    for (const std::uint32_t v : tet) used[v] = true;
+  const auto unused = std::find(used.begin(), used.end(), false);
+  if (unused != used.end()) return broken(Errc::invalid, "R-TET-6", static_cast<std::size_t>(unused - used.begin()));
+  return {};
+}
+
+using Edge = std::array<std::uint32_t, 2>;
+
+Edge edge(std::uint32_t a, std::uint32_t b) noexcept { return {std::min(a, b), std::max(a, b)}; }
+
+/// Every edge once, ascending.
+std::vector<Edge> edges(const TetMesh& mesh) {
+  std::vector<Edge> out;
+  out.reserve(6 * mesh.tets.size());
+  for (const auto& [a, b, c, d] : mesh.tets)
+    for (const Edge& e : {edge(a, b), edge(a, c), edge(a, d), edge(b, c), edge(b, d), edge(c, d)}) out.push_back(e);
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+TetMesh halved(const TetMesh& mesh) {
+  const std::vector<Edge> all = edges(mesh);
+  TetMesh out{mesh.vertices, {}};
+  for (const Edge& e : all) out.vertices.push_back(0.5 * (mesh.vertices[e[0]] + mesh.vertices[e[1]]));
+  const auto middle = [&](std::uint32_t a, std::uint32_t b) {
+    const auto found = std::lower_bound(all.begin(), all.end(), edge(a, b));
+    return static_cast<std::uint32_t>(mesh.vertices.size() + static_cast<std::size_t>(found - all.begin()));
+  };
+  const auto length = [&](std::uint32_t a, std::uint32_t b) { return norm(out.vertices[a] - out.vertices[b]); };
+  out.tets.reserve(8 * mesh.tets.size());
+  for (const auto& [a, b, c, d] : mesh.tets) {
+    const std::uint32_t ab = middle(a, b), ac = middle(a, c), ad = middle(a, d);
+    const std::uint32_t bc = middle(b, c), bd = middle(b, d), cd = middle(c, d);
+    out.tets.insert(out.tets.end(), {{a, ab, ac, ad}, {ab, b, bc, bd}, {ac, bc, c, cd}, {ad, bd, cd, d}});
+    // The inner octahedron: its three diagonals, each followed by the ring around it, counter-clockwise seen from its end.
+    const std::array<std::array<std::uint32_t, 6>, 3> cuts{
+        {{ab, cd, ac, ad, bd, bc}, {ac, bd, ad, ab, bc, cd}, {ad, bc, ab, ac, cd, bd}}};
+    const auto& cut = *std::min_element(cuts.begin(), cuts.end(),
+                                        [&](const auto& p, const auto& q) { return length(p[0], p[1]) < length(q[0], q[1]); });
+    for (std::size_t k = 0; k < 4; ++k) out.tets.push_back({cut[0], cut[1], cut[2 + k], cut[2 + (k + 1) % 4]});
+  }
+  return out;
+}
+
+}  // namespace
+
+double volume(const TetMesh& mesh, std::size_t tet) noexcept {
+  const auto& [a, b, c, d] = mesh.tets[tet];
+  const Vec3& origin = mesh.vertices[a];
+  return dot(cross(mesh.vertices[b] - origin, mesh.vertices[c] - origin), mesh.vertices[d] - origin) / 6;
+}
+
+Bounds bounds(std::span<const Vec3> points) noexcept {
+  if (points.empty()) return {};
+  Bounds box{points[0], points[0]};
+  for (const Vec3& p : points) {
+    box.low = {std::min(box.low.x, p.x), std::min(box.low.y, p.y), std::min(box.low.z, p.z)};
+    box.high = {std::max(box.high.x, p.x), std::max(box.high.y, p.y), std::max(box.high.z, p.z)};
+  }
+  return box;
+}
+
+tl::expected<void, MeshError> check(const TetMesh& mesh) {
+  if (mesh.vertices.size() > kMaxMeshVertices || mesh.tets.size() > kMaxTets) return broken(Errc::limit_exceeded, "R-TET-7", 0);
+  return check_elements(mesh).and_then([&] { return check_faces(mesh); }).and_then([&] { return check_use(mesh); });
+}
+
+TetSurface surface(const TetMesh& mesh) {
+  struct Side {
+    Face key, face;  // sorted, as seen from outside
+  };
+  std::vector<Side> sides;
+  sides.reserve(4 * mesh.tets.size());
+  for (const Tet& tet : mesh.tets) {
+    for (const Face& face : faces(tet)) {
+      Face key = face;
+      std::sort(key.begin(), key.end());
+      sides.push_back({key, face});
+    }
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.key < b.key; });
+
+  TetSurface out;
+  std::vector<std::uint32_t> number(mesh.vertices.size(), 0);
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    if (i + 1 < sides.size() && sides[i].key == sides[i + 1].key) {
+      ++i;
+      continue;
+    }
+    out.mesh.triangles.push_back(sides[i].face);
+    for (const std::uint32_t v : sides[i].face) number[v] = 1;
+  }
+  for (std::uint32_t v = 0; v < number.size(); ++v) {
+    if (number[v] == 0) continue;
+    number[v] = static_cast<std::uint32_t>(out.vertex.size());
+    out.vertex.push_back(v);
+    out.mesh.vertices.push_back(mesh.vertices[v]);
+  }
+  for (Triangle& triangle : out.mesh.triangles)
+    for (std::uint32_t& v : triangle) v = number[v];
+  return out;
+}
+
+TetMesh make_slab(std::uint32_t nx, std::uint32_t ny, std::uint32_t nz, double cell) {
+  TetMesh mesh;
+  for (std::uint32_t k = 0; k <= nz; ++k)
+    for (std::uint32_t j = 0; j <= ny; ++j)
+      for (std::uint32_t i = 0; i <= nx; ++i) mesh.vertices.push_back({cell * i, cell * j, cell * k});
+
+  const std::uint32_t x = 1, y = nx + 1, z = (nx + 1) * (ny + 1);
+  for (std::uint32_t k = 0; k < nz; ++k) {
+    for (std::uint32_t j = 0; j < ny; ++j) {
+      for (std::uint32_t i = 0; i < nx; ++i) {
+        const std::uint32_t o = i * x + j * y + k * z, far = o + x + y + z;
+        // One tetrahedron for each order in which the diagonal can be walked along the axes; odd orders are mirrored.
+        mesh.tets.push_back({o, o + x, o + x + y, far});
+        mesh.tets.push_back({o, o + x, far, o + x + z});
+        mesh.tets.push_back({o, o + y, far, o + x + y});
+        mesh.tets.push_back({o, o + y, o + y + z, far});
+        mesh.tets.push_back({o, o + z, o + x + z, far});
+        mesh.tets.push_back({o, o + z, far, o + y + z});
+      }
+    }
+  }
+  return mesh;
+}
+
+TetMesh refined(const TetMesh& mesh, unsigned times) {
+  TetMesh out = mesh;
+  for (unsigned i = 0; i < times; ++i) out = halved(out);
+  return out;
+}
+
+}  // namespace tactus::sim

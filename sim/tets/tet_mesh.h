@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Tetrahedral meshes: what a deformable object is made of.
+///
+/// rule      class           element  broken when
+/// R-TET-1   invalid         vertex   a coordinate is NaN or infinite, or larger than 1e6 m
+/// R-TET-2   invalid         tet      an index is not that of a vertex
+/// R-TET-3   invalid         tet      two corners are the same vertex, or its volume is zero relative to its longest edge (1e-12 of its cube)
+/// R-TET-4   invalid         tet      inside out: negative volume
+/// R-TET-5   invalid         tet      a face belongs to a third tetrahedron, or two lie on the same side of it (as when one stands there twice)
+/// R-TET-6   invalid         vertex   belongs to no tetrahedron: it would have no mass
+/// R-TET-7   limit_exceeded  0        more than 2^20 vertices or 2^22 tetrahedra
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <tactus/base/geometry.h>
+#include <tactus/base/tri_mesh.h>
+
+namespace tactus::sim {
+
+/// Corners a b c d with (b-a) x (c-a) . (d-a) > 0.
+using Tet = std::array<std::uint32_t, 4>;
+
+inline constexpr std::size_t kMaxTets = std::size_t{1} << 22;
+
+struct TetMesh {
+  std::vector<Vec3> vertices;  ///< [m]
+  std::vector<Tet> tets;
+};
+
+/// (b-a) x (c-a) . (d-a) / 6 [m^3]
+double volume(const TetMesh& mesh, std::size_t tet) noexcept;
+
+/// The smallest box around points; both corners in the origin when there are none.
+struct Bounds {
+  Vec3 low, high;
+};
+Bounds bounds(std::span<const Vec3> points) noexcept;
+
+/// All rules above, the first broken one in element order.   time O(n log n); allocates.   err  R-TET-1..7
+tl::expected<void, MeshError> check(const TetMesh& mesh);
+
+/// The boundary faces, outward, and which vertex of the tetrahedral mesh each of its vertices is. Vertices keep their order, so a
+/// mesh whose vertices all lie on the surface keeps their numbers.
+struct TetSurface {
+  TriMesh mesh;
+  std::vector<std::uint32_t> vertex;  ///< surface vertex -> vertex of the tetrahedral mesh
+};
+TetSurface surface(const TetMesh& mesh);
+
+/// nx x ny x nz cubes of edge `cell` [m] with a corner in the origin, six tetrahedra each around the diagonal (Kuhn). Vertex
+/// (i, j, k) has number (k (ny+1) + j) (nx+1) + i. 16 x 20 x 1 is the thesis's membrane: 714 vertices, 1424 triangles, 1920 tets.
+/// pre  nx, ny, nz >= 1; cell > 0
+TetMesh make_slab(std::uint32_t nx, std::uint32_t ny, std::uint32_t nz, double cell);
+
+/// A tetrahedral mesh with every edge halved `times` times: space error is measured against such. Vertices keep their numbers, new
+/// ones follow; tetrahedron t becomes 8 t .. 8 t + 7, the four inner ones around the shortest diagonal.
+/// pre  the mesh passed check().   time O(n log n) of the result
+TetMesh refined(const TetMesh& mesh, unsigned times);
+
+}  // namespace tactus::sim

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/sim/tets/tokenizer.h>
+
+#include <algorithm>
+
+namespace tactus::sim {
+namespace {
+
+constexpr std::string_view kBlank = " \t\r\f\v";
+constexpr std::size_t kLongestQuote = 40;  // bytes of a word that an error repeats
+
+}  // namespace
+
+bool Tokenizer::next_line() noexcept {
+  while (!rest_.empty()) {
+    const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+    line_ = rest_.substr(0, end);
+    rest_.remove_prefix(std::min(end + 1, rest_.size()));
+    ++number_;
+    if (comments_ == Comments::hash) line_ = line_.substr(0, line_.find('#'));
+    if (has_word()) return true;
+  }
+  line_ = {};
+  return false;
+}
+
+tl::expected<void, MeshFileError> Tokenizer::line() {
+  if (next_line()) return {};
+  return broken(Errc::truncated, "R-MFL-3");
+}
+
+bool Tokenizer::has_word() noexcept {
+  line_.remove_prefix(std::min(line_.find_first_not_of(kBlank), line_.size()));
+  return !line_.empty();
+}
+
+std::string_view Tokenizer::word() noexcept {
+  if (!has_word()) return {};
+  const std::string_view found = line_.substr(0, line_.find_first_of(kBlank));
+  line_.remove_prefix(found.size());
+  return found;
+}
+
+tl::expected<void, MeshFileError> Tokenizer::count(std::size_t& value, std::size_t most, std::size_t bytes) {
+  TACTUS_MESH_CHECK(number(value));
+  if (value > most) return broken(Errc::limit_exceeded, "R-MFL-2", std::to_string(value));
+  if (value > (line_.size() + rest_.size() + 1) / bytes) return broken(Errc::truncated, "R-MFL-3", std::to_string(value));
+  return {};
+}
+
+tl::expected<void, MeshFileError> Tokenizer::coordinates(Vec3& value) {
+  TACTUS_MESH_CHECK(number(value.x));
+  TACTUS_MESH_CHECK(number(value.y));
+  return number(value.z);
+}
+
+tl::expected<void, MeshFileError> Tokenizer::end_of_line() {
+  if (const std::string_view left = word(); !left.empty()) return broken(Errc::malformed, "R-MFL-6", left);
+  return {};
+}
+
+tl::unexpected<MeshFileError> Tokenizer::broken(Errc code, const char* rule, std::string_view word) const {
+  return tl::unexpected(
+      MeshFileError{fail(code, rule).value(), std::string(file_), number_, std::string(word.substr(0, kLongestQuote))});
+}
+
+}  // namespace tactus::sim

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Words of an untrusted text file, line by line, for the readers of mesh files.
+#pragma once
+
+#include <charconv>
+#include <cmath>
+#include <concepts>
+#include <string_view>
+
+#include <tactus/sim/tets/tet_files.h>
+
+namespace tactus::sim {
+
+/// Make an error of a reader an error of the caller.
+#define TACTUS_MESH_CHECK(expr)                                                                 \
+  do {                                                                                          \
+    if (auto tactus_check = (expr); !tactus_check) return tl::unexpected(tactus_check.error()); \
+  } while (false)
+
+class Tokenizer {
+ public:
+  enum class Comments { none, hash };  ///< hash: from # to the end of the line
+  Tokenizer(std::string_view text, std::string_view file, Comments comments) : rest_(text), file_(file), comments_(comments) {}
+
+  /// Go to the next line that has words.   out  false: there is none
+  bool next_line() noexcept;
+  /// The same where there must be one.   err  R-MFL-3
+  tl::expected<void, MeshFileError> line();
+  bool has_word() noexcept;          ///< on this line
+  std::string_view word() noexcept;  ///< the next on this line; empty: none
+
+  /// The next word as a number.   err  R-MFL-4, R-MFL-5, R-MFL-6 (the line has no more words)
+  template <class T>
+  tl::expected<void, MeshFileError> number(T& value) {
+    const std::string_view text = word();
+    if (text.empty()) return broken(Errc::malformed, "R-MFL-6");
+    const std::string_view digits = text.starts_with('+') && !text.starts_with("+-") ? text.substr(1) : text;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error != std::errc() || end != digits.data() + digits.size()) return broken(Errc::malformed, "R-MFL-4", text);
+    if constexpr (std::floating_point<T>) {
+      if (!std::isfinite(value)) return broken(Errc::invalid, "R-MFL-5", text);
+    }
+    return {};
+  }
+  /// How many of something follow, each at least `bytes` long.   err  as number(), R-MFL-2 more than `most`, R-MFL-3 more than can be
+  tl::expected<void, MeshFileError> count(std::size_t& value, std::size_t most, std::size_t bytes);
+  tl::expected<void, MeshFileError> coordinates(Vec3& value);
+  /// No word is left on this line.   err  R-MFL-6
+  tl::expected<void, MeshFileError> end_of_line();
+
+  tl::unexpected<MeshFileError> broken(Errc code, const char* rule, std::string_view word = {}) const;
+
+ private:
+  std::string_view rest_, line_, file_;  // behind the line, what is left of it
+  std::size_t number_ = 0;
+  Comments comments_;
+};
+
+}  // namespace tactus::sim

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Cost of the mesh codec per frame: both profiles, with and without a basis, 10^2 to 10^6 vertices. A dent walks over a sheet.
+#include <benchmark/benchmark.h>
+#include <malloc.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include <tactus/deformable/decoder.h>
+#include <tactus/deformable/encoder.h>
+#include "tests/unit/deformable_fixture.h"
+
+namespace tactus {
+namespace {
+
+constexpr std::size_t kFrames = 64;  // of the recording, which is walked to and fro
+
+enum class Kind { thesis, main, basis };
+
+struct Recording {
+  StreamHeader header;
+  std::vector<testing::SheetFrame> frames;
+};
+
+Recording record(std::uint32_t squares, Kind kind) {
+  const TriMesh mesh = testing::sheet(squares, squares);
+  Recording out;
+  out.header = testing::mesh_header(mesh, kind == Kind::thesis ? DeformableProfile::thesis : DeformableProfile::main,
+                                    kind == Kind::basis ? testing::wave_basis(mesh, squares, 48) : ModeBasis{});
+  testing::DentedSheet sheet(mesh, squares);
+  const std::size_t frames = squares > 300 ? 8 : kFrames;
+  for (std::size_t k = 0; k < frames; ++k) out.frames.push_back(sheet.frame(static_cast<std::int64_t>(k)));
+  return out;
+}
+
+const testing::SheetFrame& frame_at(const Recording& r, std::int64_t tick) {
+  const auto period = static_cast<std::int64_t>(2 * r.frames.size() - 2);
+  const std::int64_t k = tick % period;
+  return r.frames[static_cast<std::size_t>(std::min(k, period - k))];
+}
+
+DeformableEncoder make_encoder(const Recording& r) {
+  DeformableEncoderOptions options;
+  options.key_interval = 0;
+  return DeformableEncoder::create(r.header, 0, options).value();
+}
+
+using Clock = std::chrono::steady_clock;
+
+double microseconds(Clock::duration d) { return std::chrono::duration<double, std::micro>(d).count(); }
+
+void report(benchmark::State& state, std::vector<double>& times) {
+  std::sort(times.begin(), times.end());
+  const auto at = [&](double share) { return times[static_cast<std::size_t>(share * static_cast<double>(times.size() - 1))]; };
+  state.counters["p50_us"] = at(0.5);
+  state.counters["p99_us"] = at(0.99);
+}
+
+void encode_frame(benchmark::State& state, Kind kind) {
+  const auto squares = static_cast<std::uint32_t>(state.range(0));
+  const Recording recording = record(squares, kind);
+  const std::size_t before = mallinfo2().uordblks + mallinfo2().hblkhd;
+  DeformableEncoder encoder = make_encoder(recording);
+  const std::size_t memory = mallinfo2().uordblks + mallinfo2().hblkhd - before;
+  std::vector<double> times;
+  times.reserve(1 << 20);
+  std::uint64_t bytes = 0;
+  std::int64_t tick = 0;
+  for (auto _ : state) {
+    const testing::SheetFrame& frame = frame_at(recording, tick);
+    const auto start = Clock::now();
+    const auto packet = encoder.encode(tick++, frame.displacement, frame.touch);
+    const auto end = Clock::now();
+    if (times.size() < times.capacity()) times.push_back(microseconds(end - start));
+    bytes += packet->bytes.size();
+  }
+  report(state, times);
+  state.counters["bytes_per_vertex"] = static_cast<double>(memory) / static_cast<double>(recording.header.meshes[0].rest.size());
+  state.counters["vertices"] = static_cast<double>(recording.header.meshes[0].rest.size());
+  state.counters["bytes"] = benchmark::Counter(static_cast<double>(bytes), benchmark::Counter::kAvgIterations);
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(recording.header.meshes[0].rest.size()));
+}
+
+void decode_frame(benchmark::State& state, Kind kind) {
+  const auto squares = static_cast<std::uint32_t>(state.range(0));
+  const Recording recording = record(squares, kind);
+  DeformableEncoder encoder = make_encoder(recording);
+  std::vector<std::vector<std::uint8_t>> packets;
+  for (std::size_t k = 0; k < recording.frames.size(); ++k) {
+    const testing::SheetFrame& frame = recording.frames[k];
+    const auto packet = encoder.encode(static_cast<std::int64_t>(k), frame.displacement, frame.touch).value();
+    if (!packet.bytes.empty()) packets.emplace_back(packet.bytes.begin(), packet.bytes.end());
+  }
+  const std::size_t before = mallinfo2().uordblks + mallinfo2().hblkhd;
+  auto decoder = DeformableDecoder::create(recording.header, 0).value();
+  const std::size_t memory = mallinfo2().uordblks + mallinfo2().hblkhd - before;
+  std::vector<double> times;
+  times.reserve(1 << 20);
+  std::size_t next = 0;
+  for (auto _ : state) {
+    if (next == packets.size()) {
+      state.PauseTiming();
+      decoder = DeformableDecoder::create(recording.header, 0).value();
+      next = 0;
+      state.ResumeTiming();
+    }
+    const auto start = Clock::now();
+    const auto decoded = decoder.decode(packets[next++]);
+    const auto end = Clock::now();
+    if (times.size() < times.capacity()) times.push_back(microseconds(end - start));
+    if (!decoded) state.SkipWithError(decoded.error().rule);
+  }
+  report(state, times);
+  state.counters["bytes_per_vertex"] = static_cast<double>(memory) / static_cast<double>(recording.header.meshes[0].rest.size());
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(recording.header.meshes[0].rest.size()));
+}
+
+BENCHMARK_CAPTURE(encode_frame, thesis, Kind::thesis)->Arg(26)->Arg(99)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(encode_frame, main, Kind::main)->Arg(9)->Arg(26)->Arg(99)->Arg(315)->Arg(1023)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(encode_frame, basis, Kind::basis)->Arg(26)->Arg(99)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(decode_frame, thesis, Kind::thesis)->Arg(26)->Arg(99)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(decode_frame, main, Kind::main)->Arg(9)->Arg(26)->Arg(99)->Arg(315)->Arg(1023)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(decode_frame, basis, Kind::basis)->Arg(26)->Arg(99)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace tactus

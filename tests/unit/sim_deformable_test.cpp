@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: Apache-2.0
+// Deformable objects in the loop: sim/deformable/deformable_world.h, sim/simulation.h.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <string>
+
+#include <tactus/base/hash.h>
+#include <tactus/sim/simulation.h>
+#include "tests/property/allocated.h"
+
+namespace tactus::sim {
+namespace {
+
+Scene shipped(const std::string& name) { return load_scene(find_scene(name).value()).value(); }
+
+/// A slab of 6 x 6 x 1 cm that hangs at its corners, its upper side at z = 0, and one probe that starts at `start`.
+Scene slab_scene(std::uint32_t rate, const Vec3& start) {
+  const auto number = [](double value) { return std::to_string(value); };
+  const std::string text =
+      "name = \"slab\"\nduration = 1.0\ngravity = [0, 0, 0]\n"
+      "[touch]\nstiffness = 20\nfriction = 0.2\nlift_stiffness = 20\n"
+      "[[deformable]]\nname = \"slab\"\ncells = [6, 6, 1]\ncell = 0.01\nposition = [-0.03, -0.03, -0.01]\n"
+      "young = 1e4\npoisson = 0.3\ndensity = 1e4\nrate = " +
+      std::to_string(rate) + "\n[[user]]\nname = \"hand\"\nobject = \"slab\"\nstart = [" + number(start.x) + ", " +
+      number(start.y) + ", " + number(start.z) + "]\n";
+  return parse_scene(text, "slab.toml").value();
+}
+
+std::vector<UserSample> device_at(const Vec3& place) {
+  std::vector<UserSample> samples(1);
+  samples[0].contact.device = place;
+  return samples;
+}
+
+std::uint64_t hash_of_run(const Scene& scene, std::uint64_t seed, int ticks) {
+  auto simulation = Simulation::create(scene, {.seed = seed, .grip = {}, .channel = {}});
+  EXPECT_TRUE(simulation);
+  Fnv1a hash;
+  const auto add = [&hash](const Vec3& v) {
+    for (const double part : {v.x, v.y, v.z}) hash.add64(std::bit_cast<std::uint64_t>(part));
+  };
+  for (int i = 0; i < ticks; ++i) {
+    EXPECT_TRUE(simulation->step());
+    const TraceFrame& frame = simulation->frame();
+    for (const UserSample& user : frame.users) add(user.contact.device), add(user.force), add(user.server_force);
+    for (const DeformableSample& mesh : frame.meshes)
+      for (const float value : mesh.displacements) hash.add32(std::bit_cast<std::uint32_t>(value));
+  }
+  return hash.value();
+}
+
+TEST(DeformableSimulation, SameSeedSameBitsOtherSeedOtherBits) {
+  const Scene scene = shipped("membrane");
+  const std::uint64_t first = hash_of_run(scene, 1, 2000);
+  EXPECT_EQ(first, hash_of_run(scene, 1, 2000));
+  EXPECT_NE(first, hash_of_run(scene, 2, 2000));
+}
+
+TEST(DeformableSimulation, StepsAllocateNothingAfterTheFirstDeformations) {
+  for (const std::uint32_t rate : {1u, 17u}) {
+    Scene scene = shipped("membrane");
+    scene.deformables[0].rate = rate;
+    auto simulation = Simulation::create(scene);
+    ASSERT_TRUE(simulation);
+    for (int i = 0; i < 100; ++i) ASSERT_TRUE(simulation->step());
+    const std::uint64_t before = testing::allocated_bytes();
+    int touched = 0;
+    for (int i = 0; i < 2500; ++i) {
+      if (!simulation->step()) break;
+      touched += simulation->frame().users[0].surface_contact.has_value();
+    }
+    EXPECT_EQ(testing::allocated_bytes() - before, 0u) << "rate " << rate;
+    EXPECT_GT(touched, 500) << "or contact was not tried";
+  }
+}
+
+TEST(DeformableSimulation, MeanForceOfAPeriodActsInItsStepAndShowsInTheNext) {
+  constexpr std::uint32_t kRate = 8;
+  Scene scene = slab_scene(kRate, {0.003, 0.004, -0.001});
+  scene.deformables[0].method = "velocity-verlet";
+  auto simulation = Simulation::create(scene);
+  ASSERT_TRUE(simulation);
+  Vec3 impulse;  // of the server's forces on the slab [N s]
+  for (std::uint32_t tick = 0; tick <= kRate; ++tick) {
+    ASSERT_TRUE(simulation->replay(device_at({0.003, 0.004, -0.001 - 1e-4 * tick})));
+    const TraceFrame& frame = simulation->frame();
+    EXPECT_EQ(frame.meshes[0].updated, tick == kRate) << "one step of delay (T_c)";
+    ASSERT_TRUE(frame.users[0].surface_contact);
+    EXPECT_EQ(frame.users[0].surface_contact->stiffness, 20);
+    if (tick < kRate) impulse = impulse - kTick * frame.users[0].server_force;
+  }
+  // Free and at rest, under a force that is held over the step: sum m u = h / 2 * impulse.
+  const SceneDeformable& slab = scene.deformables[0];
+  Vec3 moment;
+  const auto& u = simulation->frame().meshes[0].displacements;
+  for (std::size_t t = 0; t < slab.mesh.tets.size(); ++t)
+    for (const std::uint32_t v : slab.mesh.tets[t])
+      moment = moment + (volume(slab.mesh, t) * 1e4 / 4) * Vec3{double{u[3 * v]}, double{u[3 * v + 1]}, double{u[3 * v + 2]}};
+  const Vec3 expected = (0.5 * kRate * kTick) * impulse;
+  EXPECT_LT(expected.z, -1e-7);
+  EXPECT_LT(norm(moment - expected), 1e-6 * norm(expected));
+}
+
+TEST(DeformableSimulation, ClientApproachesANewShapeWithoutAJump) {
+  Scene scene = slab_scene(10, {0.001, 0.002, -0.004});
+  scene.deformables[0].fixed = {0, 6, 42, 48, 49, 55, 91, 97};
+  auto simulation = Simulation::create(scene);
+  ASSERT_TRUE(simulation);
+  double server_jump = 0, client_jump = 0;
+  Vec3 server, client;
+  for (int tick = 0; tick < 300; ++tick) {
+    ASSERT_TRUE(simulation->replay(device_at({0.001, 0.002, -0.004})));
+    const UserSample& user = simulation->frame().users[0];
+    if (tick > 0) {
+      server_jump = std::max(server_jump, norm(user.server_force - server));
+      client_jump = std::max(client_jump, norm(user.force - client));
+    }
+    server = user.server_force;
+    client = user.force;
+  }
+  EXPECT_GT(server_jump, 1e-3);
+  EXPECT_LT(client_jump, 0.15 * server_jump) << "a tenth of it every tick";
+}
+
+TEST(DeformableSimulation, AtTheHapticRateBothEndsFeelTheSame) {
+  Scene scene = shipped("membrane");
+  scene.deformables[0].rate = 1;
+  auto simulation = Simulation::create(scene);
+  ASSERT_TRUE(simulation);
+  double largest = 0;
+  for (int i = 0; i < 1800; ++i) {
+    ASSERT_TRUE(simulation->step());
+    const UserSample& user = simulation->frame().users[0];
+    ASSERT_EQ(user.force, user.server_force) << i;
+    largest = std::max(largest, norm(user.force));
+    if (!user.surface_contact) continue;
+    const SurfaceContact& contact = *user.surface_contact;
+    ASSERT_EQ(user.force, contact.stiffness * (contact.proxy - user.contact.device));
+  }
+  EXPECT_GT(largest, 0.05);
+}
+
+TEST(DeformableSimulation, TwoUsersAMembraneAndACubeInOneScene) {
+  Scene scene = shipped("push-1dof");
+  const Scene membrane = shipped("membrane");
+  scene.deformables = membrane.deformables;
+  for (Vec3& v : scene.deformables[0].mesh.vertices) v.y += 0.5;
+  scene.gravity = {};              // which would tear the membrane from the hand; the cube then slides freely,
+  scene.objects[0].damping = 0.9;  // as through honey
+  scene.deformables[0].rate = 2;
+  SceneUser second = membrane.users[0];
+  second.name = "second";
+  second.object = 1;  // behind the cube
+  second.start.y += 0.5;
+  for (PathPhase& phase : second.path) phase.to.y += 0.5, phase.centre.y += 0.5;
+  scene.users.push_back(second);
+  auto simulation = Simulation::create(scene);
+  ASSERT_TRUE(simulation);
+  const TraceInfo info = simulation->info();
+  ASSERT_EQ(info.meshes.size(), 1u);
+  EXPECT_EQ(info.meshes[0].name, "membrane");
+  EXPECT_EQ(info.meshes[0].rest.triangles.size(), 1424u);
+  int cube = 0, mesh = 0;
+  float deepest = 0;
+  for (int i = 0; i < 2500; ++i) {
+    ASSERT_TRUE(simulation->step());
+    const TraceFrame& frame = simulation->frame();
+    ASSERT_FALSE(frame.users[0].surface_contact);
+    ASSERT_EQ(frame.users[1].contact.kind, ContactKind::none);
+    cube += frame.users[0].contact.kind != ContactKind::none;
+    mesh += frame.users[1].surface_contact.has_value();
+    for (const float value : frame.meshes[0].displacements) deepest = std::min(deepest, value);
+  }
+  EXPECT_GT(cube, 1000);
+  EXPECT_GT(mesh, 1000);
+  EXPECT_LT(deepest, -0.005F);
+  EXPECT_GT(simulation->frame().objects[0].pose.position.x, 0.1);
+}
+
+TEST(DeformableSimulation, StandsBesideABoxAndAOneDimensionalObject) {
+  Scene scene = shipped("push-1dof");
+  scene.deformables = shipped("membrane").deformables;
+  for (Vec3& v : scene.deformables[0].mesh.vertices) v.y += 0.5;
+  scene.msds = shipped("msd-1d").msds;
+  scene.msds[0].position.x = 0.13;  // behind the box's mid point
+  scene.msds[0].rate = 1;
+  auto simulation = Simulation::create(scene);
+  ASSERT_TRUE(simulation);
+  ASSERT_EQ(simulation->header().objects.size(), 2u);
+  EXPECT_EQ(simulation->header().objects[1].name, "surface");
+  auto place = [](double x, double z) {
+    std::vector<UserSample> samples(1);
+    samples[0].contact.device = {x, 0, z};
+    return samples;
+  };
+  ASSERT_TRUE(simulation->replay(place(-0.03, 0.02)));
+  ASSERT_TRUE(simulation->replay(place(-0.0195, 0.02)));
+  EXPECT_EQ(simulation->frame().users[0].contact.object, 0u) << "the box";
+  EXPECT_EQ(simulation->frame().objects[1].pose.position.x, 0.13);
+  ASSERT_TRUE(simulation->replay(place(-0.0195, 0.2)));
+  EXPECT_EQ(simulation->frame().users[0].contact.kind, ContactKind::none);
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(simulation->replay(place(0.132, 0.2)));
+  EXPECT_EQ(simulation->frame().users[0].contact.object, 1u);
+  EXPECT_GT(simulation->frame().objects[1].pose.position.x, 0.1301);
+  EXPECT_FALSE(simulation->frame().users[0].surface_contact);
+}
+
+TEST(DeformableSimulation, GravityBendsWhatHangsAtItsCorners) {
+  Scene scene = slab_scene(1, {0, 0, 0.5});
+  scene.deformables[0].fixed = {0, 6, 42, 48, 49, 55, 91, 97};
+  scene.deformables[0].mass_damping = 20;
+  scene.gravity = {0, 0, -1};
+  auto simulation = Simulation::create(scene);
+  ASSERT_TRUE(simulation);
+  for (int i = 0; i < 1000; ++i) ASSERT_TRUE(simulation->replay(device_at({0, 0, 0.5})));
+  const auto& u = simulation->frame().meshes[0].displacements;
+  EXPECT_LT(u[3 * 24 + 2], -1e-3F) << "the middle";
+  EXPECT_EQ(u[2], 0.0F) << "a corner";
+}
+
+TEST(DeformableSimulation, DivergenceIsAnErrorWithARemedy) {
+  Scene scene = shipped("membrane");
+  scene.deformables[0].method = "velocity-verlet";  // 17 ms is far beyond its limit
+  auto simulation = Simulation::create(scene);
+  ASSERT_TRUE(simulation);
+  for (std::int64_t i = 0; i < simulation->ticks(); ++i) {
+    const auto stepped = simulation->step();
+    for (const float value : simulation->frame().meshes[0].displacements) ASSERT_TRUE(std::isfinite(value));
+    if (stepped) continue;
+    EXPECT_STREQ(stepped.error().error.rule, "R-FEM-6");
+    EXPECT_EQ(stepped.error().tick, i);
+    EXPECT_EQ(stepped.error().object, 0u);
+    EXPECT_NE(stepped.error().remedy.find("tr-bdf2"), std::string::npos) << stepped.error().remedy;
+    return;
+  }
+  FAIL() << "it did not diverge";
+}
+
+TEST(DeformableSimulation, TellsMethodReasonAndError) {
+  const Scene scene = shipped("membrane");
+  auto simulation = Simulation::create(scene, {.seed = 1, .grip = {}, .channel = {}, .estimate_every = 10});
+  ASSERT_TRUE(simulation);
+  const std::uint64_t with_estimate = [&] {
+    for (int i = 0; i < 2000; ++i) EXPECT_TRUE(simulation->step());
+    Fnv1a hash;
+    for (const float value : simulation->frame().meshes[0].displacements) hash.add32(std::bit_cast<std::uint32_t>(value));
+    return hash.value();
+  }();
+  const DeformableInfo& info = simulation->deformables()->info()[0];
+  EXPECT_EQ(info.method, "velocity-verlet, 10 sub-steps");
+  EXPECT_NE(info.reason.find("h omega"), std::string::npos);
+  EXPECT_DOUBLE_EQ(info.step, 0.017);
+  const auto error = simulation->deformables()->error(0);
+  ASSERT_TRUE(error);
+  EXPECT_GE(error->samples, 5);
+  EXPECT_GT(error->max, 0);
+  EXPECT_LT(error->p50, 0.05);
+  EXPECT_LT(std::abs(error->energy), 0.05);
+
+  auto plain = Simulation::create(scene);
+  for (int i = 0; i < 2000; ++i) ASSERT_TRUE(plain->step());
+  Fnv1a hash;
+  for (const float value : plain->frame().meshes[0].displacements) hash.add32(std::bit_cast<std::uint32_t>(value));
+  EXPECT_EQ(hash.value(), with_estimate) << "looking does not disturb";
+  EXPECT_FALSE(plain->deformables()->error(0));
+}
+
+TEST(DeformableSimulation, RigidScenesMakeNoDeformableWorld) {
+  auto simulation = Simulation::create(shipped("push-1dof"));
+  ASSERT_TRUE(simulation);
+  EXPECT_EQ(simulation->deformables(), nullptr);
+  ASSERT_TRUE(simulation->step());
+  EXPECT_TRUE(simulation->frame().meshes.empty());
+  EXPECT_TRUE(simulation->info().meshes.empty());
+}
+
+/// Largest difference [N] between what client and server render over a second of pressing.
+double force_difference(double visual) {
+  Scene scene = shipped("membrane");
+  SimulationOptions options{.seed = 1, .grip = {}, .channel = ChannelOptions{}};
+  options.channel->mesh.thresholds = {.visual = visual, .weber_fraction = {}};
+  auto simulation = Simulation::create(scene, options);
+  EXPECT_TRUE(simulation);
+  EXPECT_EQ(simulation->header().meshes.size(), 1u);
+  double largest = 0;
+  std::uint64_t packets = 0;
+  for (int i = 0; i < 2500; ++i) {
+    if (!simulation->step()) break;
+    const TraceFrame& frame = simulation->frame();
+    if (frame.meshes[0].updated) packets += simulation->sent(0).packets[0].bytes.empty() ? 0U : 1U;
+    largest = std::max(largest, norm(frame.users[0].force - frame.users[0].server_force));
+  }
+  EXPECT_GT(packets, 20u);
+  return largest;
+}
+
+TEST(DeformableSimulation, ClientFeelsTheDecodedShape) {
+  const double fine = force_difference(1e-6), coarse = force_difference(2e-3);
+  EXPECT_GT(coarse, 2 * fine) << "a coarser shape must be felt";
+}
+
+}  // namespace
+}  // namespace tactus::sim

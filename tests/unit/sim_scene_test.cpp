@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/sim/scene/scene.h>
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+#include <string>
+
+namespace tactus::sim {
+namespace {
+
+const std::string kHead =
+    "name = \"test\"\n"
+    "duration = 1.0\n"
+    "gravity = [0, 0, -9.81]\n";  // lines 1 to 3
+const std::string kCube =
+    "[[object]]\n"
+    "name = \"cube\"\n"
+    "size = [0.04, 0.05, 0.06]\n"
+    "mass = 0.15\n"
+    "friction = 0.7\n"
+    "position = [1, 2, 3]\n";  // lines 4 to 9
+
+TEST(Scene, DefaultsAreWhatTheHeaderSays) {
+  const auto scene = parse_scene(kHead + kCube, "t.toml");
+  ASSERT_TRUE(scene) << to_string(scene.error());
+  EXPECT_EQ(scene->name, "test");
+  EXPECT_EQ(scene->text, kHead + kCube);
+  EXPECT_FALSE(scene->floor);
+  EXPECT_FALSE(scene->touch);
+  EXPECT_TRUE(scene->users.empty());
+  ASSERT_EQ(scene->objects.size(), 1u);
+  const SceneObject& cube = scene->objects[0];
+  EXPECT_EQ(cube.size, (Vec3{0.04, 0.05, 0.06}));
+  EXPECT_EQ(cube.pose.position, (Vec3{1, 2, 3}));
+  EXPECT_EQ(cube.pose.rotation, Quat{});
+  EXPECT_EQ(cube.dof, Dof::all);
+  EXPECT_EQ(cube.damping, 1.0);
+}
+
+TEST(Scene, AxesBecomeBits) {
+  const auto axes = [](const std::string& list) {
+    const auto scene = parse_scene(kHead + kCube + "dof = " + list + "\n", "t.toml");
+    return scene ? scene->objects[0].dof : 0xFF;
+  };
+  EXPECT_EQ(axes("[]"), Dof::none);
+  EXPECT_EQ(axes("[\"x\"]"), Dof::x);
+  EXPECT_EQ(axes("[\"x\", \"y\", \"rz\"]"), Dof::x | Dof::y | Dof::rz);
+  EXPECT_EQ(axes("[\"rz\", \"ry\", \"rx\", \"z\", \"y\", \"x\"]"), Dof::all);
+}
+
+struct Broken {
+  const char* why;
+  std::string text;
+  const char* rule;
+  std::uint32_t line;
+  const char* key;
+};
+
+const std::string kUser =
+    "[[user]]\n"
+    "name = \"hand\"\n"
+    "object = \"cube\"\n"
+    "start = [0, 0, 0]\n";                                                // lines 13 to 16 after kTouch
+const std::string kTouch = "[touch]\nstiffness = 630\nfriction = 0.5\n";  // lines 10 to 12, incomplete
+
+const std::vector<Broken>& broken() {
+  static const std::vector<Broken> cases{
+      {"not TOML", kHead + "floor = = 1\n", "R-SCN-2", 4, ""},
+      {"unknown key", "colour = \"red\"\n" + kHead + kCube, "R-SCN-3", 1, "colour"},
+      {"unknown key of an object", kHead + kCube + "masss = 1\n", "R-SCN-3", 10, "object.masss"},
+      {"no name", kHead.substr(kHead.find('\n') + 1) + kCube, "R-SCN-4", 1, "name"},
+      {"no object", kHead, "R-SCN-4", 1, "object"},
+      {"object without mass", kHead + "[[object]]\nname = \"c\"\nsize = [1, 1, 1]\n", "R-SCN-4", 4, "object.mass"},
+      {"touch without lift", kHead + kCube + kTouch, "R-SCN-4", 10, "touch.lift_stiffness"},
+      {"users without touch", kHead + kCube + kUser, "R-SCN-4", 1, "touch"},
+      {"number as text", "floor = \"0\"\n" + kHead + kCube, "R-SCN-5", 1, "floor"},
+      {"vector of two", "floor = 0\nduration = 1\nname = \"x\"\ngravity = [0, 1]\n" + kCube, "R-SCN-5", 4, "gravity"},
+      {"axes as text", kHead + kCube + "dof = \"x\"\n", "R-SCN-5", 10, "object.dof"},
+      {"object as a table", kHead + "[object]\nname = \"c\"\n", "R-SCN-5", 4, "object"},
+      {"not a number", "floor = nan\n" + kHead + kCube, "R-SCN-6", 1, "floor"},
+      {"infinite", "floor = -inf\n" + kHead + kCube, "R-SCN-6", 1, "floor"},
+      {"negative damping", kHead + kCube + "damping = -0.1\n", "R-SCN-6", 10, "object.damping"},
+      {"turn about two axes", kHead + kCube + "dof = [\"rx\", \"rz\"]\n", "R-SCN-6", 10, "object.dof"},
+      {"long quaternion", kHead + kCube + "rotation = [1, 1, 0, 0]\n", "R-SCN-6", 10, "object.rotation"},
+      {"unknown axis", kHead + kCube + "dof = [\"w\"]\n", "R-SCN-7", 10, "object.dof"},
+      {"two of one name", kHead + kCube + kCube, "R-SCN-7", 10, "object.name"},
+      {"unknown watched object",
+       kHead + kCube + kTouch + "lift_stiffness = 68\n[[user]]\nname = \"u\"\nobject = \"ball\"\nstart = [0, 0, 0]\n", "R-SCN-7",
+       14, "user.object"},
+      {"unknown grip", kHead + kCube + kTouch + "lift_stiffness = 68\n" + kUser + "grip = \"iron\"\n", "R-SCN-7", 18,
+       "user.grip"},
+      {"half a filter step", kHead + kCube + kTouch + "lift_stiffness = 68\n" + kUser + "[user.device]\nfilter = 2.5\n",
+       "R-SCN-5", 19, "user.device.filter"},
+      {"instant movement",
+       kHead + kCube + kTouch + "lift_stiffness = 68\n" + kUser + "[[user.path]]\nname = \"a\"\nto = [0, 0, 0]\nduration = 0\n",
+       "R-SCN-6", 21, "user.path.duration"},
+  };
+  return cases;
+}
+
+TEST(Scene, EveryRuleNamesItsPlace) {
+  std::set<std::string> rules;
+  for (const Broken& c : broken()) {
+    const auto scene = parse_scene(c.text, "t.toml");
+    ASSERT_FALSE(scene) << c.why;
+    EXPECT_STREQ(scene.error().error.rule, c.rule) << c.why;
+    EXPECT_EQ(scene.error().line, c.line) << c.why;
+    EXPECT_EQ(scene.error().key, c.key) << c.why;
+    EXPECT_EQ(scene.error().file, "t.toml") << c.why;
+    EXPECT_FALSE(scene.error().remedy.empty()) << c.why;
+    rules.insert(c.rule);
+  }
+  EXPECT_EQ(rules.size(), 6u);  // R-SCN-2 to R-SCN-7
+}
+
+TEST(Scene, MissingFileIsAnError) {
+  const auto scene = load_scene("no/such/scene.toml");
+  ASSERT_FALSE(scene);
+  EXPECT_STREQ(scene.error().error.rule, "R-SCN-1");
+  EXPECT_EQ(scene.error().file, "no/such/scene.toml");
+  ASSERT_FALSE(find_scene("no-such-scene"));
+  EXPECT_STREQ(find_scene("no-such-scene").error().error.rule, "R-SCN-1");
+}
+
+TEST(Scene, EveryPrefixOfAFileIsASceneOrAnError) {
+  const auto whole = load_scene(*find_scene("push-1dof"));
+  ASSERT_TRUE(whole);
+  std::size_t refused = 0;
+  for (std::size_t n = 0; n < whole->text.size(); ++n) {
+    const auto scene = parse_scene(std::string_view(whole->text).substr(0, n), "t.toml");
+    if (!scene) {
+      EXPECT_EQ(std::string_view(scene.error().error.rule).substr(0, 6), "R-SCN-");
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, whole->text.size() / 2);
+}
+
+TEST(Scene, ASurfaceFileThatCannotBeReadSaysWhy) {
+  const auto scene = parse_scene(
+      "name = \"t\"\nduration = 1.0\ngravity = [0, 0, 0]\n[[object]]\nname = \"o\"\nmass = 1\nfriction = 0\nposition = [0, 0, "
+      "0]\n"
+      "surface = \"no-such.obj\"\n",
+      "t.toml");
+  ASSERT_FALSE(scene);
+  EXPECT_STREQ(scene.error().error.rule, "R-SCN-8");
+  EXPECT_EQ(scene.error().line, 9u);
+  const bool left_out = scene.error().error.code == Errc::unsupported;  // the component SURFACE
+  EXPECT_NE(scene.error().remedy.find(left_out ? "TACTUS_WITH_SURFACE=ON" : "R-SRF-1"), std::string::npos)
+      << scene.error().remedy;
+  EXPECT_NE(scene.error().remedy.find("no-such.obj"), std::string::npos);
+}
+
+TEST(Scene, EveryShippedSceneLoadsByItsName) {
+  const auto first = find_scene("push-1dof");
+  ASSERT_TRUE(first) << to_string(first.error());
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(*first).parent_path())) {
+    if (entry.path().extension() != ".toml") continue;
+    const auto path = find_scene(entry.path().stem().string());
+    ASSERT_TRUE(path);
+    const auto scene = load_scene(*path);
+    if (!scene && scene.error().error.code == Errc::unsupported) continue;  // a component is left out
+    ASSERT_TRUE(scene) << to_string(scene.error());
+    EXPECT_EQ(scene->name, entry.path().stem().string());
+    names.insert(scene->name);
+  }
+  for (const char* wanted : {"push-1dof", "rotate-6dof", "rotate-push-lift"}) EXPECT_TRUE(names.contains(wanted)) << wanted;
+}
+
+/// A few bytes of text must not cost memory that nobody has.
+TEST(Scene, WhatWouldTakeTooMuchIsRefusedBeforeItIsMade) {
+  const auto error_of = [](const std::string& text) {
+    const auto scene = parse_scene(text, "t.toml");
+    return scene ? SceneError{} : scene.error();
+  };
+  const std::string slab = "position = [0, 0, 0]\nyoung = 1e4\npoisson = 0.3\ndensity = 1000\n";
+  const auto cells = [&](const std::string& n) {
+    return "name = \"t\"\nduration = 1\ngravity = [0, 0, 0]\n[[deformable]]\nname = \"d\"\ncell = 0.01\ncells = " + n + "\n" +
+           slab;
+  };
+  EXPECT_STREQ(error_of(cells("[100, 100, 1]")).error.rule, Error{}.rule);
+  for (const char* n : {"[300, 300, 1]", "[800, 800, 1]", "[1000, 1000, 1000]"}) {
+    const SceneError error = error_of(cells(n));
+    ASSERT_STREQ(error.error.rule, "R-SCN-6") << n;
+    EXPECT_EQ(error.key, "deformable.cells");
+    EXPECT_NE(error.remedy.find("MB of memory"), std::string::npos) << error.remedy;
+  }
+  std::string several = cells("[140, 140, 1]");
+  several += "[[deformable]]\nname = \"e\"\ncell = 0.01\ncells = [100, 100, 1]\n" + slab;
+  EXPECT_STREQ(error_of(several).error.rule, "R-SCN-6") << "each alone is affordable";
+
+  std::string objects = "name = \"t\"\nduration = 1\ngravity = [0, 0, 0]\n";
+  for (int i = 0; i < 4097; ++i)
+    objects +=
+        "[[object]]\nname = \"o" + std::to_string(i) + "\"\nsize = [1, 1, 1]\nmass = 1\nfriction = 0\nposition = [0, 0, 0]\n";
+  const SceneError error = error_of(objects);
+  EXPECT_STREQ(error.error.rule, "R-SCN-6");
+  EXPECT_EQ(error.key, "object");
+  EXPECT_NE(error.remedy.find("4097"), std::string::npos) << error.remedy;
+}
+
+/// Reading from a pipe or a device would wait for ever, or never end.
+TEST(Scene, NamesOnlyRegularFiles) {
+  const auto scene = parse_scene(
+      "name = \"t\"\nduration = 1\ngravity = [0, 0, 0]\n[[object]]\nname = \"o\"\nsurface = \"/dev/zero\"\nmass = 1\n"
+      "friction = 0\nposition = [0, 0, 0]\n",
+      "t.toml");
+  ASSERT_FALSE(scene);
+  EXPECT_STREQ(scene.error().error.rule, "R-SCN-8");
+  EXPECT_NE(scene.error().remedy.find("regular file"), std::string::npos) << scene.error().remedy;
+  const auto mesh = parse_scene(
+      "name = \"t\"\nduration = 1\ngravity = [0, 0, 0]\n[[deformable]]\nname = \"o\"\nmesh = \"/dev/zero\"\nyoung = 1e4\n"
+      "poisson = 0.3\ndensity = 1000\nposition = [0, 0, 0]\n",
+      "t.toml");
+  ASSERT_FALSE(mesh);
+  EXPECT_NE(mesh.error().remedy.find("regular file"), std::string::npos) << mesh.error().remedy;
+}
+
+TEST(Scene, StreamHeaderStartsFromTheFirstPoses) {
+  const auto scene = parse_scene(kHead + kCube + "dof = [\"x\", \"rz\"]\n", "t.toml");
+  ASSERT_TRUE(scene);
+  const auto header = stream_header(*scene);
+  ASSERT_TRUE(header);
+  EXPECT_EQ(header->tick_rate, kTickRate);
+  ASSERT_EQ(header->objects.size(), 1u);
+  EXPECT_EQ(header->objects[0].name, "cube");
+  EXPECT_EQ(header->objects[0].dof, Dof::x | Dof::rz);
+  EXPECT_EQ(header->objects[0].initial.position, (std::array<std::int32_t, 3>{1 << 22, 2 << 22, 3 << 22}));
+}
+
+}  // namespace
+}  // namespace tactus::sim
