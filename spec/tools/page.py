@@ -34,7 +34,8 @@ th, td { border-bottom: 1px solid var(--line); padding: .3rem .9rem .3rem 0; tex
 th { border-bottom-width: 2px; }
 td:first-child { min-width: 5.5rem; }
 .rules td:nth-child(2) { min-width: 13rem; }
-td code { overflow-wrap: anywhere; }
+td code { overflow-wrap: normal; }
+td:last-child { min-width: 7rem; }
 sup { white-space: nowrap; line-height: 0; font-size: .8em; }
 tr:target, :target + tr { background: var(--tint); }
 nav { font-size: .92rem; border: 1px solid var(--line); border-radius: 4px; padding: .6rem 1rem; }
