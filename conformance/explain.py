@@ -1,24 +1,39 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Decode one packet of a stream file and tell every step of the range decoder, as a Markdown table."""
+"""Decode one packet of a stream file and tell every step as Markdown tables; or its scene declaration, or what losses do to it."""
 import argparse
+import struct
 import sys
 from pathlib import Path
 
 import mesh_main
 import mesh_thesis
+import packets
 import rigid_decoder
-from conventions import StreamError
+from conventions import Cursor, StreamError, clamp, round_shift
 from decoder import File, SceneDecoder
+from mesh_header import zigzag
+from mesh_motion import FARTHEST, combine, lim
 from range_decoder import RangeDecoder
 from start_models import Models
 
 NAMES: dict = {}                                            # by identity of a model: the model, its name
+ELEMENTS = {                                                # models, and the element of the specification that they code
+    "KEY": "key", "BASELINE": "baseline_delta", "TICK": "tick_delta", "COUNT": "count", "GAP": "gap", "REASON": "reason",
+    "LEVEL": "level", "LAYER": "layer", "HALF": "layer", "SAME_FRAME": "same_frame", "COMPLETES": "same_frame", "LATE": "late",
+    "TOUCHED": "touched", "SAME_TRIANGLE": "same triangle", "NEAR_TRIANGLE": "near triangle", "NEAR_PLACE": "entry of near",
+    "HAPTIC": "haptic_change", "SAME_VISUAL": "same_visual", "VISUAL": "visual", "DENSITY": "density",
+    "COEFFICIENT": "coefficient", "SIGNIFICANT": "significant", "COMPONENT": "component of r", "list": "gap", "errors": "symbol",
+}
 
 
 def name_models(tree: str, models: list) -> None:
     for node, model in enumerate(models[1:], start=1):
         NAMES[id(model)] = (model, f"{tree}[{node}]")
+
+
+def name_of(models: list) -> str:
+    return NAMES[id(models[1])][1].rpartition("[")[0]
 
 
 class NamedModels(Models):
@@ -39,23 +54,58 @@ class NamedThesisModels(mesh_thesis.ThesisModels):
 
 
 class Narrator(RangeDecoder):
-    """A range decoder that writes down what it does."""
+    """A range decoder that writes down what it does: `steps` bit by bit, `symbols` symbol by symbol."""
     steps: list = []
+    symbols: list = []
+    bits: list = []                                         # of the symbol at hand
+    inside = 0                                              # calls that are parts of one symbol
 
     def bit(self, m):
         zero, before = m[0], (self.range, self.code)
+        name = NAMES[id(m)][1]
         value = super().bit(m)
-        self.note(f"bit({NAMES[id(m)][1]})", f"{zero}", f"{(before[0] >> 15) * zero:08x}", before, value)
-        return value
+        self.steps.append(f"| bit({name}) | {before[0]:08x} | {before[1]:08x} | {zero} | {(before[0] >> 15) * zero:08x} | "
+                          f"**{value}** | {self.position} |")
+        self.bits.append(f"{value}")
+        return value if self.inside else self.symbol("bit", name.rpartition("[")[0], value)
 
     def raw(self, n):
         before = (self.range, self.code)
         value = super().raw(n)
-        self.note(f"raw({n})", "", f"{before[0] >> n:08x}", before, value)
+        self.steps.append(f"| raw({n}) | {before[0]:08x} | {before[1]:08x} |  | {before[0] >> n:08x} | **{value}** | "
+                          f"{self.position} |")
+        self.bits.append(f"raw {value}")
+        return value if self.inside else self.symbol("raw", f"{n}", value)
+
+    def tree(self, models, n):
+        return self.whole("tree", models, super().tree, n)
+
+    def magnitude(self, models):
+        return self.whole("magnitude", models, super().magnitude)
+
+    def signed(self, models):
+        return self.whole("signed", models, super().signed)
+
+    def whole(self, function, models, decode, *arguments):
+        self.inside += 1
+        value = decode(models, *arguments)
+        self.inside -= 1
+        return value if self.inside else self.symbol(function, name_of(models), value)
+
+    def symbol(self, function, name, value):
+        element = ELEMENTS.get(name.split("[")[0], "part of the triangle's number")
+        if name.startswith("RESIDUAL"):
+            element = f"component of r{name[8:11]}"
+        self.symbols.append(f"| {element} | {function}({name}) | {' '.join(self.bits)} | **{value}** |")
+        self.bits.clear()
         return value
 
-    def note(self, symbol, zero, bound, before, value):
-        self.steps.append(f"| {symbol} | {before[0]:08x} | {before[1]:08x} | {zero} | {bound} | **{value}** | {self.position} |")
+
+class Found:
+    """What the packet at hand builds on."""
+    base = None
+    number = delta = 0
+    coefficients: list = []
 
 
 def narrate():
@@ -63,59 +113,246 @@ def narrate():
     rigid_decoder.Models = mesh_main.Models = NamedModels
     mesh_thesis.ThesisModels = NamedThesisModels
     rigid_decoder.RangeDecoder = mesh_main.RangeDecoder = mesh_thesis.RangeDecoder = Narrator
+    baseline = packets.Receiver.baseline
+
+    def find(receiver, number, key, baseline_delta):
+        Found.number, Found.delta = number, 0 if key else baseline_delta
+        Found.base = baseline(receiver, number, key, baseline_delta)
+        return Found.base
+
+    read = mesh_main.MainCodec.read_coefficients
+
+    def keep(codec, decoder, models):
+        Found.coefficients = read(codec, decoder, models)
+        return Found.coefficients
+
+    packets.Receiver.baseline, mesh_main.MainCodec.read_coefficients = find, keep
 
 
-def tell_rigid(packet):
+# ---- A packet -------------------------------------------------------------------------------------------------------
+def table(head: str, rows: list) -> None:
+    columns = head.count("|") + 1
+    print(f"| {head} |\n|{'---|' * columns}")
+    print("\n".join(rows) + "\n")
+
+
+def vector(v) -> str:
+    return ", ".join(str(c) for c in v)
+
+
+def tell_rigid(packet, header):
     for update in packet.updates:
-        state = packet.scene.states[update.object]
-        print(f"Object {update.object}, reason {update.reason}, level {update.level}:")
-        print(f"position {list(state.position)}, rotation {list(state.rotation)}, velocity {list(state.velocity)}, "
-              f"spin {list(state.spin)}.")
+        base, state = Found.base.states[update.object], packet.scene.states[update.object]
+        position, rotation = rigid_decoder.predict(header, base, packet.tick)
+        rows = [f"| predicted from the baseline, of tick {base.tick} | {vector(position)} | {vector(rotation)} | | |",
+                f"| decoded | {vector(state.position)} | {vector(state.rotation)} | {vector(state.velocity)} | "
+                f"{vector(state[4])} |"]
+        print(f"Object {update.object}, reason {update.reason}, level {update.level}:\n")
+        table("| position | rotation | velocity | angular velocity", rows)
 
 
-def tell_mesh(packet):
-    state = packet.state
-    if isinstance(state, mesh_main.MainState):
-        touch = f"triangle {state.triangle}, haptic level {state.haptic}" if state.touched else "no touch"
-        print(f"Visual bound {state.visual}, {touch}, density {state.density}.")
-        for k, motion in enumerate(state.motion):
-            print(f"Mode {k}: increment {motion.last}, before it {motion.before}.")
-    for v in packet.vertices:
-        print(f"Vertex {v}: displacement {state.u[3 * v:3 * v + 3]}.")
+def tell_main(packet, codec):
+    state, base = packet.state, Found.base
+    index = state.haptic
+    touch = f"triangle {state.triangle}, haptic index {index}: h = {mesh_main.haptic_bound(index)}" if state.touched else "no touch"
+    print(f"Visual bound {state.visual}, {touch}. Density {state.density}.\n")
+    if state.motion:
+        table("mode | last | before", [f"| {k} | {m.last} | {m.before} |" for k, m in enumerate(state.motion)])
+    if codec.mesh.split:
+        table("vertex | u", [f"| {v} | {vector(state.u[3 * v:3 * v + 3])} |" for v in packet.vertices])
+    else:
+        tell_vertices(packet, codec, state, base)
 
 
-def explain(path, number):
+def tell_vertices(packet, codec, state, base):
+    """Every step of section 7, worked out again from the states before and after a packet without layers."""
+    mesh, tree = codec.mesh, codec.hierarchy
+    expected = codec.expected(base, state.tick)
+    steps = [clamp((mode.step * state.visual) >> 12, 1, 1 << 28) for mode in mesh.modes]
+    combine(mesh.modes, [lim(c * s) for c, s in zip(Found.coefficients, steps)], expected)
+    area = mesh_main.area_of_interest(mesh, codec.triangles_of, state.triangle) if state.touched else set()
+    correction, rows = {}, []
+    for v in tree.order:
+        axes = range(3 * v, 3 * v + 3)
+        parents = list(zip(tree.parents[v], tree.weights[v]))
+        predicted = [lim(expected[i] + round_shift(sum(w * correction[p][i % 3] for p, w in parents), 15)) for i in axes]
+        bound = min(state.visual, mesh_main.haptic_bound(state.haptic)) if v in area else state.visual
+        step = mesh_main.step(bound)
+        r = [(state.u[i] - p) // step if abs(state.u[i]) < FARTHEST else "to the limit" for i, p in zip(axes, predicted)]
+        correction[v] = [state.u[i] - expected[i] for i in axes]
+        rows.append(f"| {v} | {vector(expected[i] for i in axes)} | {vector(predicted)} | {bound} | {step} | {vector(r)} | "
+                    f"{vector(state.u[i] for i in axes)} | {vector(correction[v])} |")
+    table("vertex | expected | predicted | bound | step | r | u | correction", rows)
+
+
+def tell_thesis(packet, data, span):
+    rest = Cursor(data, 2, len(data))
+    sizes = [("key", 1)] + ([("baseline_delta", 1)] if not data[2] and span > 1 else [])
+    rows = [f"| {name} | `{data[rest.position:rest.position + size].hex(' ')}` | {rest.take(size, ('', ''))[0]} |"
+            for name, size in sizes]
+    for name in ("tick_delta", "count", "list_bytes", "lowest", "range"):
+        start = rest.position
+        value = rest.varint(("", ""), ("", ""))
+        rows.append(f"| {name} | `{data[start:rest.position].hex(' ')}` | {zigzag(value) if name == 'lowest' else value} |")
+        if name == "list_bytes":
+            list_bytes = value
+    rows.append(f"| list | `{rest.take(list_bytes, ('', '')).hex(' ')}` | |")
+    rows.append(f"| errors | `{rest.take(rest.left(), ('', '')).hex(' ')}` | |")
+    table("element | bytes | value", rows)
+
+
+def tell_packet(packet, data, decoder, header, every_bit):
+    thesis = not isinstance(packet, rigid_decoder.Packet) and not isinstance(packet.state, mesh_main.MainState)
+    if thesis:
+        tell_thesis(packet, data, header.baseline_span)
+    if every_bit:
+        table("symbol | range | code | zero | bound or step | value | bytes taken", Narrator.steps)
+    table("element | decoded by | bits | value", Narrator.symbols)
+    print(f"Final state: range {packet.range:08x}, code {packet.code:08x}. Tick {packet.tick}, key {packet.key}.\n")
+    if isinstance(packet, rigid_decoder.Packet):
+        tell_rigid(packet, header)
+    elif thesis:
+        table("vertex | u", [f"| {v} | {vector(packet.state.u[3 * v:3 * v + 3])} |" for v in packet.vertices])
+    else:
+        tell_main(packet, decoder.codec)
+
+
+def explain(file, number, every_bit):
     narrate()
-    file = File(Path(path).read_bytes())
     scene = SceneDecoder(file.header)
     for count, (tick, record) in enumerate(file.packets()):
         Narrator.steps.clear()
+        Narrator.symbols.clear()
         NAMES.clear()
         part, data = scene.split(record)
         packet = scene.parts[part].decode(data, tick)
         if count == number:
             break
     else:
-        sys.exit(f"{path}: there is no packet {number}")
-    of_part = f" of part {part}" if len(scene.parts) > 1 else ""
-    print(f"Packet{of_part}: `{data.hex(' ')}`: sequence {packet.sequence}, payload `{data[2:].hex(' ')}`.\n")
-    print("| symbol | range | code | zero | bound or step | value | bytes taken |\n|---|---|---|---|---|---|---|")
-    print("\n".join(Narrator.steps))
-    print(f"\nFinal state: range {packet.range:08x}, code {packet.code:08x}. Tick {packet.tick}, key {packet.key}.\n")
-    if isinstance(packet, rigid_decoder.Packet):
-        tell_rigid(packet)
-    else:
-        tell_mesh(packet)
-    print(f"\nState hash: {scene.parts[part].state_hash():016x}.")
+        sys.exit(f"there is no packet {number}")
+    substream = f" of substream {part}" if len(scene.parts) > 1 else ""
+    print(f"Packet{substream}: `{data.hex(' ')}`: sequence {packet.sequence}, payload `{data[2:].hex(' ')}`.\n")
+    tell_packet(packet, data, scene.parts[part], file.header, every_bit)
+    print(f"State hash: {scene.parts[part].state_hash():016x}.")
+
+
+# ---- A stream with losses -------------------------------------------------------------------------------------------
+def play(file, lost):
+    """Every packet in turn, without those that are lost."""
+    narrate()
+    scene = SceneDecoder(file.header)
+    rows = []
+    for count, (tick, record) in enumerate(file.packets()):
+        part, data = scene.split(record)
+        decoder, sequence = scene.parts[part], data[0] | data[1] << 8
+        if count in lost:
+            rows.append(f"| {count} | {sequence} | | | lost | | |")
+            continue
+        try:
+            packet = decoder.decode(data, tick)
+            builds_on = "initial state" if packet.key else f"{Found.number - Found.delta}"
+            result = f"tick {packet.tick}"
+        except StreamError as error:
+            builds_on, result = f"{Found.number - Found.delta}", f"refused: {error.rule}"
+        kept = ", ".join(str(number) for number, _ in decoder.receiver.kept)
+        rows.append(f"| {count} | {sequence} | {Found.number} | {builds_on} | {result} | {kept} | `{decoder.state_hash():016x}` |")
+    table("packet | sequence | number | baseline | result | kept numbers | state hash", rows)
+
+
+# ---- The scene declaration ------------------------------------------------------------------------------------------
+class Fields:
+    """Walks over a declaration that is known to be valid."""
+
+    def __init__(self, data):
+        self.cursor, self.rows = Cursor(data, 0, len(data)), []
+
+    def add(self, name, start, value):
+        self.rows.append(f"| {name} | `{self.cursor.data[start:self.cursor.position].hex(' ')}` | {value} |")
+        return value
+
+    def number(self, name, form):
+        start = self.cursor.position
+        values = struct.unpack("<" + form, self.cursor.take(struct.calcsize("<" + form), ("", "")))
+        return self.add(name, start, values[0] if len(values) == 1 else vector(values))
+
+    def take(self, name, size, text=False):
+        start = self.cursor.position
+        data = self.cursor.take(size, ("", ""))
+        return self.add(name, start, f'"{data.decode()}"' if text else "")
+
+    def varint(self, name):
+        start = self.cursor.position
+        return self.add(name, start, self.cursor.varint(("", ""), ("", "")))
+
+    def three(self, name, value):
+        start = self.cursor.position
+        differences = [zigzag(self.cursor.varint(("", ""), ("", ""))) for _ in range(3)]
+        self.add(name, start, f"differences {vector(differences)}: {vector(value)}")
+
+
+def tell_declaration(file, data):
+    f, end = Fields(data), file.first_record
+    f.take("magic", 4)
+    for name, form in (("version", "B"), ("profile", "B"), ("flags", "H"), ("body_size", "I"), ("tick_rate", "I"),
+                       ("position_exp", "B"), ("velocity_exp", "B"), ("rotation_exp", "B"), ("angular_exp", "B"),
+                       ("max_extrapolation", "H"), ("baseline_span", "B")):
+        f.number(name, form)
+    for _ in range(f.varint("object_count")):
+        f.number("kind", "B")
+        f.number("dof", "B")
+        f.take("name", f.number("name_size", "B"), True)
+        f.number("position", "3i")
+        f.number("rotation", "4i")
+    if file.header.meshes:
+        f.varint("deformable_count")
+        for mesh in file.header.meshes:
+            tell_deformable(f, mesh)
+    if f.cursor.position < end - 4:
+        f.take("extension records", end - 4 - f.cursor.position)
+    f.number("crc", "I")
+    table("element | bytes | value", f.rows)
+    for mesh in file.header.meshes:
+        tree = mesh_main.Hierarchy(mesh)
+        rows = [f"| {v} | {tree.level[v]} | {vector(tree.parents[v])} | {vector(tree.weights[v])} |" for v in tree.order]
+        print("Coding order, parents and weights:\n")
+        table("vertex | depth | parents | weights", rows)
+
+
+def tell_deformable(f, mesh):
+    f.number("profile", "B")
+    f.take("name", f.number("name_size", "B"), True)
+    f.number("rings", "B")
+    main = mesh.profile == 1
+    for name, form in (("frame_period", "I"), ("layered", "B")) if main else (("quant_bits", "B"), ("models_kept", "B")):
+        f.number(name, form)
+    f.varint("vertex_count")
+    f.varint("triangle_count")
+    for v, rest in enumerate(mesh.rest):
+        f.three(f"rest[{v}]", rest)
+    for t, corners in enumerate(mesh.triangles):
+        f.three(f"corners of triangle {t}", corners)
+    for k in range(f.varint("mode_count") if main else 0):
+        f.number(f"mode_step[{k}]", "H")
+        f.take(f"entries of mode {k}", sum(2 if abs(e) > 63 else 1 for e in mesh.modes[k].entries))
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("stream", metavar="STREAM", help="stream file (.tct)")
     parser.add_argument("number", metavar="NUMBER", type=int, nargs="?", default=0, help="of the packet, from 0 [0]")
+    parser.add_argument("--symbols", action="store_true", help="leave out the table of single bits")
+    parser.add_argument("--declaration", action="store_true", help="the scene declaration instead of a packet")
+    parser.add_argument("--lose", metavar="N", type=int, nargs="+", help="play all packets but these, and tell what is refused")
     arguments = parser.parse_args()
     try:
-        explain(arguments.stream, arguments.number)
+        content = Path(arguments.stream).read_bytes()
+        stream = File(content)
+        if arguments.declaration:
+            tell_declaration(stream, content)
+        elif arguments.lose:
+            play(stream, set(arguments.lose))
+        else:
+            explain(stream, arguments.number, not arguments.symbols)
     except OSError as error:
         sys.exit(f"{arguments.stream}: {error.strerror}")
     except StreamError as error:
