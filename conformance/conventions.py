@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Chapter 10 of the specification: bytes, rounding, turns and quaternions, hash; errors of the registry."""
+"""Chapter 10 of the specification: bytes, rounding, angles and quaternions, hash; errors of the registry."""
 from __future__ import annotations
 
 
@@ -73,7 +73,7 @@ def sat32(v: int) -> int:
     return clamp(v, -1 << 31, (1 << 31) - 1)
 
 
-# ---- Section 6: turns and quaternions -------------------------------------------------------------------
+# ---- Section 6: angles and quaternions -------------------------------------------------------------------
 
 ONE = 1 << 30
 
@@ -128,9 +128,9 @@ def renorm(q: tuple) -> tuple:
     return tuple(clamp(round_shift(c * f, 30), -ONE, ONE) for c in q)
 
 
-def axis_turn(u: tuple, h: int) -> tuple:
-    s = sin30(h)
-    return (cos30(h),) + tuple(round_shift(c * s, 30) for c in u)
+def axis_angle(u: tuple, half_angle: int) -> tuple:
+    s = sin30(half_angle)
+    return (cos30(half_angle),) + tuple(round_shift(c * s, 30) for c in u)
 
 
 # ---- Section 7: hash ------------------------------------------------------------------------------------

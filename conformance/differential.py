@@ -19,10 +19,10 @@ from typing import Optional
 
 import decoder
 from conventions import StreamError
+from file import File
 from run import Crash, run_testee
-from stream import File
 
-FIXED = 12                                                  # bytes of a header before its body
+FIXED = 12                                                  # bytes of the declaration before its body
 LATEST_TICK = 5000                                          # a client looks at every tick up to the last packet's
 BORDERS = [0, 1, 0x7f, 0x80, 0xff, 0x7fff, 0xffff, 0x7fffffff, 0x80000000, 0xffffffff]
 
@@ -36,7 +36,7 @@ def varint(value: int) -> bytes:
 
 
 def sections(data: bytes) -> list[tuple[int, int, int]]:
-    """Beginning, payload and its end of the header and of each record, as far as lengths lead; a check value follows each."""
+    """Beginning, payload and its end of the declaration and of each record, as far as lengths lead; a check value follows each."""
     found, at = [], 0
     while True:
         payload = at + (FIXED if at == 0 else 1)

@@ -5,12 +5,12 @@ import argparse
 import sys
 from pathlib import Path
 
-import mesh_main
-import mesh_thesis
-import rigid_decoder
+import deformable_main
+import deformable_thesis
+import rigid
 from conventions import StreamError
 from decoder import File, SceneDecoder
-from range_decoder import RangeDecoder
+from range_coder import RangeDecoder
 from start_models import Models
 
 NAMES: dict = {}                                            # by identity of a model: the model, its name
@@ -30,7 +30,7 @@ class NamedModels(Models):
         return models
 
 
-class NamedThesisModels(mesh_thesis.ThesisModels):
+class NamedThesisModels(deformable_thesis.ThesisModels):
     def copy(self):
         copied = super().copy()
         name_models("list", copied.list)
@@ -60,23 +60,23 @@ class Narrator(RangeDecoder):
 
 def narrate():
     """From now on decoders tell what they do."""
-    rigid_decoder.Models = mesh_main.Models = NamedModels
-    mesh_thesis.ThesisModels = NamedThesisModels
-    rigid_decoder.RangeDecoder = mesh_main.RangeDecoder = mesh_thesis.RangeDecoder = Narrator
+    rigid.Models = deformable_main.Models = NamedModels
+    deformable_thesis.ThesisModels = NamedThesisModels
+    rigid.RangeDecoder = deformable_main.RangeDecoder = deformable_thesis.RangeDecoder = Narrator
 
 
 def tell_rigid(packet):
     for update in packet.updates:
-        state = packet.scene.states[update.object]
+        state = packet.moment.states[update.object]
         print(f"Object {update.object}, reason {update.reason}, level {update.level}:")
         print(f"position {list(state.position)}, rotation {list(state.rotation)}, velocity {list(state.velocity)}, "
-              f"spin {list(state.spin)}.")
+              f"angular velocity {list(state.angular_velocity)}.")
 
 
-def tell_mesh(packet):
+def tell_deformable(packet):
     state = packet.state
-    if isinstance(state, mesh_main.MainState):
-        touch = f"triangle {state.triangle}, haptic level {state.haptic}" if state.touched else "no touch"
+    if isinstance(state, deformable_main.MainState):
+        touch = f"triangle {state.triangle}, haptic index {state.haptic}" if state.touched else "no touch"
         print(f"Visual bound {state.visual}, {touch}, density {state.density}.")
         for k, motion in enumerate(state.motion):
             print(f"Mode {k}: increment {motion.last}, before it {motion.before}.")
@@ -87,26 +87,26 @@ def tell_mesh(packet):
 def explain(path, number):
     narrate()
     file = File(Path(path).read_bytes())
-    scene = SceneDecoder(file.header)
+    scene = SceneDecoder(file.declaration)
     for count, (tick, record) in enumerate(file.packets()):
         Narrator.steps.clear()
         NAMES.clear()
-        part, data = scene.split(record)
-        packet = scene.parts[part].decode(data, tick)
+        substream, data = scene.split(record)
+        packet = scene.substreams[substream].decode(data, tick)
         if count == number:
             break
     else:
         sys.exit(f"{path}: there is no packet {number}")
-    of_part = f" of part {part}" if len(scene.parts) > 1 else ""
-    print(f"Packet{of_part}: `{data.hex(' ')}`: sequence {packet.sequence}, payload `{data[2:].hex(' ')}`.\n")
+    where = f" of substream {substream}" if len(scene.substreams) > 1 else ""
+    print(f"Packet{where}: `{data.hex(' ')}`: sequence {packet.sequence}, payload `{data[2:].hex(' ')}`.\n")
     print("| symbol | range | code | zero | bound or step | value | bytes taken |\n|---|---|---|---|---|---|---|")
     print("\n".join(Narrator.steps))
     print(f"\nFinal state: range {packet.range:08x}, code {packet.code:08x}. Tick {packet.tick}, key {packet.key}.\n")
-    if isinstance(packet, rigid_decoder.Packet):
+    if isinstance(packet, rigid.Packet):
         tell_rigid(packet)
     else:
-        tell_mesh(packet)
-    print(f"\nState hash: {scene.parts[part].state_hash():016x}.")
+        tell_deformable(packet)
+    print(f"\nState hash: {scene.substreams[substream].state_hash():016x}.")
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Chapter 60, section 2, of the specification: what the stream header says about meshes."""
+"""Chapter 50 of the specification: what the scene declaration says about deformable objects."""
 from __future__ import annotations
 
 import struct
@@ -19,67 +19,67 @@ class Mode(NamedTuple):
 
 
 @dataclass
-class Mesh:
+class DeformableObject:
     profile: int
     name: str
     rings: int
     quant_bits: int = 0                                     # thesis
     models_kept: int = 0                                    # thesis
     frame_period: int = 0                                   # main
-    split: int = 0                                          # main
+    layered: int = 0                                        # main
     rest: list[tuple] = field(default_factory=list)
     triangles: list[tuple] = field(default_factory=list)
     modes: list[Mode] = field(default_factory=list)         # main
 
 
-def read_meshes(body: Cursor, most_meshes: int, vertices_left: int, triangles_left: int) -> list[Mesh]:
-    mesh_count = body.varint(STR_5, STR_5_VARINT)
-    require(mesh_count >= 1, "malformed", "R-MES-1")
-    require(mesh_count <= 255, "invalid", "R-MES-1")
-    require(mesh_count <= most_meshes, "limit_exceeded", "R-STR-14")
-    meshes = []
-    for _ in range(mesh_count):
-        mesh = read_mesh(body, vertices_left, triangles_left)
-        vertices_left -= len(mesh.rest)
-        triangles_left -= len(mesh.triangles)
-        meshes.append(mesh)
-    return meshes
+def read_deformable_objects(body: Cursor, most: int, vertices_left: int, triangles_left: int) -> list[DeformableObject]:
+    count = body.varint(STR_5, STR_5_VARINT)
+    require(count >= 1, "malformed", "R-MES-1")
+    require(count <= 255, "invalid", "R-MES-1")
+    require(count <= most, "limit_exceeded", "R-STR-14")
+    items = []
+    for _ in range(count):
+        item = read_deformable_object(body, vertices_left, triangles_left)
+        vertices_left -= len(item.rest)
+        triangles_left -= len(item.triangles)
+        items.append(item)
+    return items
 
 
-def read_mesh(body: Cursor, vertices_left: int, triangles_left: int) -> Mesh:
+def read_deformable_object(body: Cursor, vertices_left: int, triangles_left: int) -> DeformableObject:
     profile = body.take(1, STR_5)[0]
     require(profile in (THESIS, MAIN), "unsupported", "R-MES-2")
     name_bytes = body.take(body.take(1, STR_5)[0], STR_5)
     rings = body.take(1, STR_5)[0]
-    quant_bits = models_kept = frame_period = split = 0
+    quant_bits = models_kept = frame_period = layered = 0
     if profile == THESIS:
         quant_bits, models_kept = body.take(2, STR_5)
         require(models_kept <= 1, "malformed", "R-MES-3")
     else:
         frame_period = struct.unpack("<I", body.take(4, STR_5))[0]
-        split = body.take(1, STR_5)[0]
-        require(split <= 1, "malformed", "R-MES-3")
+        layered = body.take(1, STR_5)[0]
+        require(layered <= 1, "malformed", "R-MES-3")
     vertex_count = body.varint(STR_5, STR_5_VARINT)
     triangle_count = body.varint(STR_5, STR_5_VARINT)
-    mesh = Mesh(profile, "", rings, quant_bits, models_kept, frame_period, split)
-    check_numbers(mesh)
+    item = DeformableObject(profile, "", rings, quant_bits, models_kept, frame_period, layered)
+    check_numbers(item)
     require(1 <= vertex_count <= MOST_VERTICES and triangle_count <= MOST_TRIANGLES, "invalid", "R-MES-4")
     require(vertex_count <= vertices_left and triangle_count <= triangles_left, "limit_exceeded", "R-STR-14")
     require(3 * (vertex_count + triangle_count) <= body.left(), *STR_5)
-    mesh.rest = read_rest(body, vertex_count)
-    mesh.triangles = read_triangles(body, vertex_count, triangle_count)
+    item.rest = read_rest(body, vertex_count)
+    item.triangles = read_triangles(body, vertex_count, triangle_count)
     if profile == MAIN:
-        mesh.modes = read_modes(body, vertex_count)
-    mesh.name = text(name_bytes)
-    return mesh
+        item.modes = read_modes(body, vertex_count)
+    item.name = text(name_bytes)
+    return item
 
 
-def check_numbers(mesh: Mesh) -> None:
-    require(mesh.rings <= 32, "invalid", "R-MES-3")
-    if mesh.profile == THESIS:
-        require(1 <= mesh.quant_bits <= 12, "invalid", "R-MES-3")
+def check_numbers(item: DeformableObject) -> None:
+    require(item.rings <= 32, "invalid", "R-MES-3")
+    if item.profile == THESIS:
+        require(1 <= item.quant_bits <= 12, "invalid", "R-MES-3")
     else:
-        require(1 <= mesh.frame_period <= 1 << 28, "invalid", "R-MES-3")
+        require(1 <= item.frame_period <= 1 << 28, "invalid", "R-MES-3")
 
 
 def zigzag(z: int) -> int:

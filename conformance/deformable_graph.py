@@ -1,30 +1,33 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Chapter 60, section 4, of the specification: rings, coding order and parents, which follow from the mesh."""
+"""Chapter 50 of the specification: rings, coding order and parents, which follow from the surface."""
 from __future__ import annotations
 
 from math import isqrt
-from typing import NamedTuple
 
 from conventions import clamp, round_div, round_shift
-from mesh_header import Mesh
+from deformable_header import DeformableObject
 
-# ---- Section 4.1: rings ---------------------------------------------------------------------------------------------
+GREATEST_DEPTH = 23
+Q = 1 << 24
+NUGGET = 335544                                             # 2 %
+LEAST_PIVOT = 1 << 18
 
 
-def triangles_of_vertices(mesh: Mesh) -> list[list[int]]:
+# ---- Rings ----------------------------------------------------------------------------------------------------------
+def triangles_of_vertices(item: DeformableObject) -> list[list[int]]:
     """For each vertex its triangles, ascending."""
-    of = [[] for _ in mesh.rest]
-    for number, corners in enumerate(mesh.triangles):
+    of = [[] for _ in item.rest]
+    for number, corners in enumerate(item.triangles):
         for vertex in corners:
             of[vertex].append(number)
     return of
 
 
-def ring_list(mesh: Mesh, triangles_of: list[list[int]], triangle: int, rings: int) -> list[int]:
+def ring_list(item: DeformableObject, triangles_of: list[list[int]], triangle: int, rings: int) -> list[int]:
     """The triangles within `rings` rings around one, in the order of the list."""
     listed = [triangle]
     seen = {triangle}
-    vertices = list(mesh.triangles[triangle])
+    vertices = list(item.triangles[triangle])
     known = set(vertices)
     next_vertex = 0
     for _ in range(rings):
@@ -35,31 +38,28 @@ def ring_list(mesh: Mesh, triangles_of: list[list[int]], triangle: int, rings: i
             seen.update(new)
             next_vertex += 1
         for t in listed[begin:]:
-            for vertex in mesh.triangles[t]:
+            for vertex in item.triangles[t]:
                 if vertex not in known:
                     known.add(vertex)
                     vertices.append(vertex)
     return listed
 
 
-def area_of_interest(mesh: Mesh, triangles_of: list[list[int]], triangle: int) -> set[int]:
-    return {vertex for t in ring_list(mesh, triangles_of, triangle, mesh.rings) for vertex in mesh.triangles[t]}
+def area_of_interest(item: DeformableObject, triangles_of: list[list[int]], triangle: int) -> set[int]:
+    return {vertex for t in ring_list(item, triangles_of, triangle, item.rings) for vertex in item.triangles[t]}
 
 
-# ---- Section 4.2: coding order --------------------------------------------------------------------------------------
-HIGHEST_LEVEL = 23
-
-
-def first_graph(mesh: Mesh) -> list[set]:
+# ---- Coding order ---------------------------------------------------------------------------------------------------
+def first_graph(item: DeformableObject) -> list[set]:
     """G_0: the neighbours of every vertex."""
-    neighbours: list[set] = [set() for _ in mesh.rest]
+    neighbours: list[set] = [set() for _ in item.rest]
     last_at: dict[tuple, int] = {}
-    for v, place in enumerate(mesh.rest):
-        if place in last_at:
-            neighbours[v].add(last_at[place])
-            neighbours[last_at[place]].add(v)
-        last_at[place] = v
-    for a, b, c in mesh.triangles:
+    for v, position in enumerate(item.rest):
+        if position in last_at:
+            neighbours[v].add(last_at[position])
+            neighbours[last_at[position]].add(v)
+        last_at[position] = v
+    for a, b, c in item.triangles:
         neighbours[a].update((b, c))
         neighbours[b].update((a, c))
         neighbours[c].update((a, b))
@@ -67,35 +67,35 @@ def first_graph(mesh: Mesh) -> list[set]:
 
 
 class Hierarchy:
-    """`order`, and for every vertex `level`, `parents` and `weights`."""
+    """`order`, and for every vertex `depth`, `parents` and `weights`."""
 
-    def __init__(self, mesh: Mesh):
-        self.rest = mesh.rest
-        extent = max(max(axis) - min(axis) for axis in zip(*mesh.rest))
+    def __init__(self, item: DeformableObject):
+        self.rest = item.rest
+        extent = max(max(axis) - min(axis) for axis in zip(*item.rest))
         self.shift = max(0, extent.bit_length() - 18)
-        size = len(mesh.rest)
-        self.level = [0] * size
+        size = len(item.rest)
+        self.depth = [0] * size
         self.parents: list[list[int]] = [[] for _ in range(size)]
         self.weights: list[list[int]] = [[] for _ in range(size)]
         vertices = list(range(size))
-        neighbours = first_graph(mesh)
-        levels = []
-        for level in range(HIGHEST_LEVEL + 1):
+        neighbours = first_graph(item)
+        coded_at = []
+        for depth in range(GREATEST_DEPTH + 1):
             kept = self.keep(vertices, neighbours)
-            roots = len(kept) == len(vertices) or level == HIGHEST_LEVEL
+            roots = len(kept) == len(vertices) or depth == GREATEST_DEPTH
             coded = vertices if roots else [v for v in vertices if v not in kept]
             for v in coded:
-                self.level[v] = level
+                self.depth[v] = depth
                 if not roots:
                     self.parents[v] = self.choose_parents(v, neighbours, kept)
                     self.weights[v] = self.weigh(v, self.parents[v])
                     del self.parents[v][len(self.weights[v]):]
-            levels.append(coded)
+            coded_at.append(coded)
             if roots:
                 break
             neighbours = self.join(vertices, neighbours, kept)
             vertices = [v for v in vertices if v in kept]
-        self.order = [v for coded in reversed(levels) for v in coded]
+        self.order = [v for coded in reversed(coded_at) for v in coded]
 
     def distance(self, a: int, b: int) -> int:
         return max(1, sum(((p - q) >> self.shift) ** 2 for p, q in zip(self.rest[a], self.rest[b])))
@@ -120,8 +120,7 @@ class Hierarchy:
                     after[joined[v]].add(joined[n])
         return after
 
-    # ---- Section 4.3: parents ----
-
+    # ---- Parents and their weights: simple kriging with the covariance of Wendland C2 ----
     def choose_parents(self, v: int, neighbours: list[set], kept: set[int]) -> list[int]:
         near = sorted(neighbours[v])
         visits = near + [w for n in near for w in sorted(neighbours[n])]
@@ -133,9 +132,9 @@ class Hierarchy:
         if self.rest[p[0]] == self.rest[v]:
             return [1 << 15]
         n = len(p)
-        reach = 94 * sum(self.distance(v, parent) for parent in p) // n
-        m = [[like(self.distance(p[i], p[j]), reach) for j in range(i)] + [Q + 335544] for i in range(n)]
-        a = [like(self.distance(v, parent), reach) for parent in p]
+        radius = 94 * sum(self.distance(v, parent) for parent in p) // n
+        m = [[covariance(self.distance(p[i], p[j]), radius) for j in range(i)] + [Q + NUGGET] for i in range(n)]
+        a = [covariance(self.distance(v, parent), radius) for parent in p]
         b = [Q] * n
         for j in range(n):
             if m[j][j] < LEAST_PIVOT:
@@ -157,17 +156,13 @@ class Hierarchy:
         return [clamp(round_shift(x + round_shift(s * rest, 24), 9), -65536, 65536) for x, s in zip(a, share)]
 
 
-Q = 1 << 24
-LEAST_PIVOT = 1 << 18
-
-
 def to(e: int, v: int) -> int:
     return clamp(v, -1 << e, 1 << e)
 
 
-def like(d: int, reach: int) -> int:
-    if d >= reach:
+def covariance(d: int, radius: int) -> int:
+    if d >= radius:
         return 0
-    r = isqrt(((d << 24) // reach) << 24)
+    r = isqrt(((d << 24) // radius) << 24)
     t = ((Q - r) * (Q - r)) >> 24
     return (((t * t) >> 24) * (4 * r + Q)) >> 24

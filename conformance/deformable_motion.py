@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Chapter 60, section 6, of the specification: prediction in time of the coefficients of a basis."""
+"""Chapter 50 of the specification: prediction in time of the coefficients of a basis, by recursive least squares."""
 from __future__ import annotations
 
 from typing import NamedTuple
 
 from conventions import clamp, round_div, round_shift, sat32
-from mesh_header import Mode
+from deformable_header import Mode
 
 FARTHEST = 1 << 27
 MOST_FRAMES = 8
@@ -16,6 +16,7 @@ def lim(x: int) -> int:
 
 
 class Motion(NamedTuple):
+    """The last two increments of a coefficient, and their correlations."""
     last: int = 0
     before: int = 0
     s11: int = 0
@@ -25,7 +26,7 @@ class Motion(NamedTuple):
     s02: int = 0
 
 
-def taps(c: Motion) -> tuple[int, int]:
+def predictor_coefficients(c: Motion) -> tuple[int, int]:
     z = max(0, max(abs(s) for s in c[2:]).bit_length() - 24)
     s11, s12, s22, s01, s02 = (s >> z for s in c[2:])
     s11 += (s11 >> 6) + 1
@@ -37,11 +38,11 @@ def taps(c: Motion) -> tuple[int, int]:
             clamp(round_div((s02 * s11 - s01 * s12) << 12, d), -8192, 8192))
 
 
-def ahead(c: Motion, frames: int) -> int:
+def extrapolate(c: Motion, frames: int) -> int:
     """The sum of the next increments."""
     if c.last == 0 and c.before == 0:
         return 0
-    t1, t2 = taps(c)
+    t1, t2 = predictor_coefficients(c)
     x, y, total = c.last, c.before, 0
     bound = min(FARTHEST, 2 * max(abs(x), abs(y)))
     for _ in range(min(frames, MOST_FRAMES)):
@@ -50,7 +51,7 @@ def ahead(c: Motion, frames: int) -> int:
     return lim(total)
 
 
-def learn(c: Motion, frames: int, x: int) -> Motion:
+def update(c: Motion, frames: int, x: int) -> Motion:
     if frames == 0:
         return c._replace(last=sat32(c.last + x))
     now = round_div(x, frames)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Chapter 40, sections 2 and 7: what packets of every kind have in common. R-PKT-1 to 5."""
+"""Chapter 25 of the specification: what packets of every kind have in common. R-PKT-1 to 5 and 7."""
 from __future__ import annotations
 
 from collections import deque
@@ -8,14 +8,12 @@ from typing import Any, Optional
 from conventions import StreamError, require
 
 LARGEST_TICK = (1 << 32) - 2
-
-
 LATE = 128
 AHEAD = 32767
 
 
 class Receiver:
-    """Keeps the initial state and the states after the newest `span` packets, by number (section 2.1). A state has a `tick`."""
+    """Keeps the initial state and the states after the newest `span` packets, by number. A state has a `tick`."""
 
     def __init__(self, initial: Any, span: int, largest_packet: int, tick_rate: int):
         self.initial, self.span, self.largest_packet = initial, span, largest_packet

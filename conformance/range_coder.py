@@ -78,6 +78,6 @@ class RangeDecoder:
         return -m if negative else m
 
     def check_end(self) -> None:
-        """Section 5, after the last symbol."""
+        """After the last symbol."""
         require(len(self.payload) <= self.position, "malformed", "R-RNG-2")
         require(self.payload[-1:] != b"\x00", "malformed", "R-RNG-3")

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Chapter 60 of the specification: decoder of one mesh, of either profile."""
+"""Chapter 50 of the specification: decoder of one deformable object, of either profile."""
 from __future__ import annotations
 
 from typing import NamedTuple, Optional, Union
 
 from conventions import fnv1a, require
-from mesh_header import MAIN, Mesh
-from mesh_main import MainCodec, MainState
-from mesh_thesis import ThesisCodec, ThesisState
-from packets import Receiver
-from stream import Header, Limits
+from deformable_header import MAIN, DeformableObject
+from deformable_main import MainCodec, MainState
+from deformable_thesis import ThesisCodec, ThesisState
+from packet import Receiver
+from scene import Declaration, Limits
 
 
-class MeshPacket(NamedTuple):
+class DeformablePacket(NamedTuple):
     sequence: int
     key: int
     vertices: list[int]                                     # that have a residual of their own
@@ -25,21 +25,21 @@ class MeshPacket(NamedTuple):
         return self.state.tick
 
 
-class MeshDecoder:
-    def __init__(self, header: Header, mesh: Mesh, limits: Limits = Limits()):
-        self.codec = MainCodec(mesh) if mesh.profile == MAIN else ThesisCodec(mesh)
-        self.receiver = Receiver(self.codec.initial, header.baseline_span, limits.packet_size, header.tick_rate)
+class DeformableDecoder:
+    def __init__(self, scene: Declaration, item: DeformableObject, limits: Limits = Limits()):
+        self.codec = MainCodec(item) if item.profile == MAIN else ThesisCodec(item)
+        self.receiver = Receiver(self.codec.initial, scene.baseline_span, limits.packet_size, scene.tick_rate)
 
-    def decode(self, data: bytes, record_tick: Optional[int] = None, now: Optional[int] = None) -> MeshPacket:
+    def decode(self, data: bytes, record_tick: Optional[int] = None, now: Optional[int] = None) -> DeformablePacket:
         """Decodes one packet, from a record at `record_tick` if from a file, else with `now`; an error leaves the decoder unchanged."""
         number = self.receiver.open(data, now)
         state, key, vertices, decoder = self.codec.decode(data[2:], self.receiver, number)
         require(record_tick in (None, state.tick), "invalid", "R-FIL-7")
         self.receiver.keep(number, key, state)
-        return MeshPacket(number % (1 << 16), key, vertices, decoder.range, decoder.code, state)
+        return DeformablePacket(number % (1 << 16), key, vertices, decoder.range, decoder.code, state)
 
     def shown(self, tick: int) -> list[int]:
-        """Section 6: the displacements that a client shows at a tick; one before the current state's counts as that."""
+        """The displacements that a client shows at a tick; one before the current state's counts as that."""
         state = self.receiver.current()
         return self.codec.expected(state, max(tick, state.tick))
 

@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Chapter 60, section 8, of the specification: packets of profile thesis."""
+"""Chapter 50 of the specification: packets of profile thesis."""
 from __future__ import annotations
 
 import struct
 from typing import NamedTuple
 
 from conventions import Cursor, require, round_div
-from mesh_header import Mesh, zigzag
-from mesh_motion import lim
-from packets import Receiver
-from range_decoder import RangeDecoder
+from deformable_header import DeformableObject, zigzag
+from deformable_motion import lim
+from packet import Receiver
+from range_coder import RangeDecoder
 
 MES_11 = ("truncated", "R-MES-11")
 MES_11_VALUE = ("malformed", "R-MES-11")
-COLD = (16384, 1)
+INITIAL = (16384, 1)
 LIST_BITS = 8
 
 
@@ -33,7 +33,7 @@ class ThesisState(NamedTuple):
     models_kept: int
 
     def hashed(self) -> bytes:
-        """Section 3: what the state hash is taken of."""
+        """What the state hash is taken of."""
         data = struct.pack(f"<Q{len(self.u)}i", self.tick, *self.u)
         if self.models_kept:
             for tree in self.models:
@@ -53,22 +53,22 @@ class Head(NamedTuple):
 
 
 class ThesisCodec:
-    """Decodes packets of one mesh."""
+    """Decodes packets of one deformable object."""
 
-    def __init__(self, mesh: Mesh):
-        self.mesh = mesh
-        cold = ThesisModels([COLD] * (1 << LIST_BITS), [COLD] * (1 << mesh.quant_bits))
-        self.initial = ThesisState(0, [0] * (3 * len(mesh.rest)), cold, mesh.models_kept)
+    def __init__(self, item: DeformableObject):
+        self.item = item
+        models = ThesisModels([INITIAL] * (1 << LIST_BITS), [INITIAL] * (1 << item.quant_bits))
+        self.initial = ThesisState(0, [0] * (3 * len(item.rest)), models, item.models_kept)
 
     def decode(self, payload: bytes, receiver: Receiver, number: int) -> tuple[ThesisState, int, list[int], RangeDecoder]:
         head = self.read_head(payload, receiver.span)
         base = receiver.baseline(number, head.key, head.baseline_delta)
         tick = receiver.tick(base, head.key, head.tick_delta, "R-MES-8")
-        models = (base if self.mesh.models_kept else self.initial).models.copy()
+        models = (base if self.item.models_kept else self.initial).models.copy()
         listed = self.read_list(RangeDecoder(head.list), models.list, head.count)
 
         decoder = RangeDecoder(head.errors)
-        q = self.mesh.quant_bits
+        q = self.item.quant_bits
         u = list(base.u)
         for v in listed:
             for i in range(3 * v, 3 * v + 3):
@@ -88,7 +88,7 @@ class ThesisCodec:
         baseline_delta = rest.take(1, MES_11)[0] if not key and span > 1 else 1
         tick_delta, count, list_bytes, lowest, extent = (rest.varint(MES_11, MES_11_VALUE) for _ in range(5))
         require(tick_delta < 1 << 32, "invalid", "R-MES-12")
-        require(1 <= count <= len(self.mesh.rest), "invalid", "R-MES-12")
+        require(1 <= count <= len(self.item.rest), "invalid", "R-MES-12")
         require(lowest <= 1 << 29 and extent <= 1 << 29, "invalid", "R-MES-12")
         return Head(key, baseline_delta, tick_delta, count, zigzag(lowest), extent,
                     rest.take(list_bytes, MES_11), rest.take(rest.left(), MES_11))
@@ -101,7 +101,7 @@ class ThesisCodec:
             while symbol == 255:
                 symbol = decoder.tree(models, LIST_BITS)
                 vertex += symbol
-                require(vertex < len(self.mesh.rest), "invalid", "R-MES-13")
+                require(vertex < len(self.item.rest), "invalid", "R-MES-13")
             listed.append(vertex)
         decoder.check_end()
         return listed
