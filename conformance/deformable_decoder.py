@@ -31,17 +31,17 @@ class DeformableDecoder:
         self.receiver = Receiver(self.codec.initial, scene.baseline_span, limits.packet_size, scene.tick_rate)
 
     def decode(self, data: bytes, record_tick: Optional[int] = None, now: Optional[int] = None) -> DeformablePacket:
-        """Decodes one packet, from a record at `record_tick` if from a file, else with `now`; an error leaves the decoder unchanged."""
+        """Decodes one packet, of a record at `record_tick` or that arrives at `now`; an error leaves the decoder unchanged."""
         number = self.receiver.open(data, now)
         state, key, vertices, decoder = self.codec.decode(data[2:], self.receiver, number)
         require(record_tick in (None, state.tick), "invalid", "R-FIL-7")
-        self.receiver.keep(number, key, state)
+        self.receiver.accept(number, key, state, now)
         return DeformablePacket(number % (1 << 16), key, vertices, decoder.range, decoder.code, state)
 
     def shown(self, tick: int) -> list[int]:
         """The displacements that a client shows at a tick; one before the current state's counts as that."""
-        state = self.receiver.current()
+        state = self.receiver.current
         return self.codec.expected(state, max(tick, state.tick))
 
     def state_hash(self) -> int:
-        return fnv1a(self.receiver.current().hashed())
+        return fnv1a(self.receiver.current.hashed())

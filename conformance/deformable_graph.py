@@ -2,6 +2,7 @@
 """Chapter 50 of the specification: rings, coding order and parents, which follow from the surface."""
 from __future__ import annotations
 
+from itertools import count
 from math import isqrt
 
 from conventions import clamp, round_div, round_shift
@@ -74,22 +75,22 @@ class Hierarchy:
         extent = max(max(axis) - min(axis) for axis in zip(*item.rest))
         self.shift = max(0, extent.bit_length() - 18)
         size = len(item.rest)
-        self.depth = [0] * size
+        self.depth: dict[int, int] = {}
         self.parents: list[list[int]] = [[] for _ in range(size)]
         self.weights: list[list[int]] = [[] for _ in range(size)]
         vertices = list(range(size))
         neighbours = first_graph(item)
         coded_at = []
-        for depth in range(GREATEST_DEPTH + 1):
+        for depth in count():
             kept = self.keep(vertices, neighbours)
             roots = len(kept) == len(vertices) or depth == GREATEST_DEPTH
             coded = vertices if roots else [v for v in vertices if v not in kept]
             for v in coded:
                 self.depth[v] = depth
                 if not roots:
-                    self.parents[v] = self.choose_parents(v, neighbours, kept)
-                    self.weights[v] = self.weigh(v, self.parents[v])
-                    del self.parents[v][len(self.weights[v]):]
+                    candidates = self.candidates(v, neighbours, kept)[:8]
+                    self.weights[v] = self.weigh(v, candidates)
+                    self.parents[v] = candidates[:len(self.weights[v])]
             coded_at.append(coded)
             if roots:
                 break
@@ -110,35 +111,35 @@ class Hierarchy:
 
     def join(self, vertices: list[int], neighbours: list[set], kept: set[int]) -> list[set]:
         """The neighbours in the next graph."""
-        joined = {}
+        join = {}
         for v in vertices:
-            joined[v] = v if v in kept else min(neighbours[v] & kept, key=lambda k: (self.distance(v, k), k))
+            join[v] = v if v in kept else min(neighbours[v] & kept, key=lambda k: (self.distance(v, k), k))
         after: list[set] = [set() for _ in neighbours]
         for v in vertices:
             for n in neighbours[v]:
-                if joined[v] != joined[n]:
-                    after[joined[v]].add(joined[n])
+                if join[v] != join[n]:
+                    after[join[v]].add(join[n])
         return after
 
     # ---- Parents and their weights: simple kriging with the covariance of Wendland C2 ----
-    def choose_parents(self, v: int, neighbours: list[set], kept: set[int]) -> list[int]:
+    def candidates(self, v: int, neighbours: list[set], kept: set[int]) -> list[int]:
+        """The nearest first. v itself is none: it is not kept."""
         near = sorted(neighbours[v])
         visits = near + [w for n in near for w in sorted(neighbours[n])]
-        candidates = {w for w in visits[:64] if w != v and (w in kept or w < v)}
-        nearest = sorted(candidates, key=lambda p: (self.distance(v, p), p))
-        return nearest[:1] if self.rest[nearest[0]] == self.rest[v] else nearest[:8]
+        return sorted({w for w in visits[:64] if w in kept or w < v}, key=lambda w: (self.distance(v, w), w))
 
     def weigh(self, v: int, p: list[int]) -> list[int]:
+        """The weights of the parents p of v; one weight if the first is the only parent."""
         if self.rest[p[0]] == self.rest[v]:
             return [1 << 15]
         n = len(p)
-        radius = 94 * sum(self.distance(v, parent) for parent in p) // n
-        m = [[covariance(self.distance(p[i], p[j]), radius) for j in range(i)] + [Q + NUGGET] for i in range(n)]
-        a = [covariance(self.distance(v, parent), radius) for parent in p]
+        support = 94 * sum(self.distance(v, parent) for parent in p) // n
+        m = [[covariance(self.distance(p[i], p[j]), support) for j in range(i)] + [Q + NUGGET] for i in range(n)]
+        a = [covariance(self.distance(v, parent), support) for parent in p]
         b = [Q] * n
         for j in range(n):
             if m[j][j] < LEAST_PIVOT:
-                return [1 << 15]                            # of p[0], the only parent
+                return [1 << 15]
             for i in range(j + 1, n):
                 f = to(28, round_div(m[i][j] << 24, m[j][j]))
                 for k in range(j + 1, i + 1):
@@ -160,9 +161,9 @@ def to(e: int, v: int) -> int:
     return clamp(v, -1 << e, 1 << e)
 
 
-def covariance(d: int, radius: int) -> int:
-    if d >= radius:
+def covariance(d: int, support: int) -> int:
+    if d >= support:
         return 0
-    r = isqrt(((d << 24) // radius) << 24)
+    r = isqrt(((d << 24) // support) << 24)
     t = ((Q - r) * (Q - r)) >> 24
     return (((t * t) >> 24) * (4 * r + Q)) >> 24

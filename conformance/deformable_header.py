@@ -2,9 +2,8 @@
 """Chapter 50 of the specification: what the scene declaration says about deformable objects."""
 from __future__ import annotations
 
-import struct
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import NamedTuple, Optional
 
 from conventions import STR_5, STR_5_VARINT, Cursor, require, text
 
@@ -23,10 +22,10 @@ class DeformableObject:
     profile: int
     name: str
     rings: int
-    quant_bits: int = 0                                     # thesis
-    models_kept: int = 0                                    # thesis
-    frame_period: int = 0                                   # main
-    layered: int = 0                                        # main
+    quant_bits: Optional[int] = None                        # thesis
+    models_kept: Optional[int] = None                       # thesis
+    frame_period: Optional[int] = None                      # main
+    layered: Optional[int] = None                           # main
     rest: list[tuple] = field(default_factory=list)
     triangles: list[tuple] = field(default_factory=list)
     modes: list[Mode] = field(default_factory=list)         # main
@@ -47,21 +46,18 @@ def read_deformable_objects(body: Cursor, most: int, vertices_left: int, triangl
 
 
 def read_deformable_object(body: Cursor, vertices_left: int, triangles_left: int) -> DeformableObject:
-    profile = body.take(1, STR_5)[0]
+    profile = body.number(1, STR_5)
     require(profile in (THESIS, MAIN), "unsupported", "R-MES-2")
-    name_bytes = body.take(body.take(1, STR_5)[0], STR_5)
-    rings = body.take(1, STR_5)[0]
-    quant_bits = models_kept = frame_period = layered = 0
+    name_bytes = body.take(body.number(1, STR_5), STR_5)
+    item = DeformableObject(profile, "", body.number(1, STR_5))
     if profile == THESIS:
-        quant_bits, models_kept = body.take(2, STR_5)
-        require(models_kept <= 1, "malformed", "R-MES-3")
+        item.quant_bits, item.models_kept = body.take(2, STR_5)
+        require(item.models_kept <= 1, "malformed", "R-MES-3")
     else:
-        frame_period = struct.unpack("<I", body.take(4, STR_5))[0]
-        layered = body.take(1, STR_5)[0]
-        require(layered <= 1, "malformed", "R-MES-3")
+        item.frame_period, item.layered = body.number(4, STR_5), body.number(1, STR_5)
+        require(item.layered <= 1, "malformed", "R-MES-3")
     vertex_count = body.varint(STR_5, STR_5_VARINT)
     triangle_count = body.varint(STR_5, STR_5_VARINT)
-    item = DeformableObject(profile, "", rings, quant_bits, models_kept, frame_period, layered)
     check_numbers(item)
     require(1 <= vertex_count <= MOST_VERTICES and triangle_count <= MOST_TRIANGLES, "invalid", "R-MES-4")
     require(vertex_count <= vertices_left and triangle_count <= triangles_left, "limit_exceeded", "R-STR-14")
@@ -120,7 +116,7 @@ def read_modes(body: Cursor, vertex_count: int) -> list[Mode]:
     require(mode_count * (3 * vertex_count + 2) <= body.left(), *STR_5)
     modes = []
     for _ in range(mode_count):
-        step = struct.unpack("<H", body.take(2, STR_5))[0]
+        step = body.number(2, STR_5)
         require(step >= 1, "invalid", "R-MES-7")
         modes.append(Mode(step, [read_entry(body) for _ in range(3 * vertex_count)]))
     return modes

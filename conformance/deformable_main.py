@@ -24,7 +24,7 @@ class MainState(NamedTuple):
     u: list[int]                                            # 3 for each vertex
     motion: list[Motion]
     triangle: int = NONE
-    haptic: int = 0
+    haptic_index: int = 0
     visual: int = 0
     density: int = 0
     touched: int = 0
@@ -33,7 +33,7 @@ class MainState(NamedTuple):
 
     def hashed(self) -> bytes:
         """What the state hash is taken of."""
-        data = struct.pack(f"<Q{len(self.u)}i4I", self.tick, *self.u, self.visual, self.triangle, self.haptic,
+        data = struct.pack(f"<Q{len(self.u)}i4I", self.tick, *self.u, self.visual, self.triangle, self.haptic_index,
                            self.density + 4 * self.touched)
         for c in self.motion:
             data += struct.pack("<2i5Q", c.last, c.before, *(s % (1 << 64) for s in c[2:]))
@@ -82,8 +82,8 @@ def step(bound: int) -> int:
     return max(1, (bound * 37837) >> 15)
 
 
-def haptic_bound(haptic: int) -> int:
-    return 0 if haptic == 0 else (FINEST_HAPTIC[(haptic - 1) % 6] << ((haptic - 1) // 6)) >> 15
+def haptic_bound(index: int) -> int:
+    return 0 if index == 0 else (FINEST_HAPTIC[(index - 1) % 6] << ((index - 1) // 6)) >> 15
 
 
 class MainCodec:
@@ -158,21 +158,21 @@ class MainCodec:
         if start.layer != HAPTIC:
             density = decoder.tree(models[f"DENSITY[{state.density}]"], 2)
         require(not state.touched or state.triangle < len(self.item.triangles), "invalid", "R-MES-9")
-        require(state.haptic <= 168 and state.visual <= 1 << 28, "invalid", "R-MES-10")
+        require(state.haptic_index <= 168 and state.visual <= 1 << 28, "invalid", "R-MES-10")
         return state._replace(density=density)
 
     def read_bounds(self, decoder: RangeDecoder, models: Models, start: Start) -> MainState:
         base = start.base
-        touched, triangle, haptic = int(start.layer == HAPTIC), base.triangle, base.haptic
+        touched, triangle, haptic_index = int(start.layer == HAPTIC), base.triangle, base.haptic_index
         if self.item.triangles and start.layer != HAPTIC:
             touched = decoder.bit(models[f"TOUCHED[{base.touched}]"][1])
         if touched:
             triangle = self.read_triangle(decoder, models, base.triangle)
-            haptic = clamp(base.haptic + decoder.signed(models["HAPTIC"]), 0, 169)
+            haptic_index = clamp(base.haptic_index + decoder.signed(models["HAPTIC"]), 0, 169)
         visual = base.visual
         if not decoder.bit(models["SAME_VISUAL"][1]):
             visual = decoder.magnitude(models["VISUAL"])
-        return base._replace(triangle=triangle, haptic=haptic, visual=visual, touched=touched)
+        return base._replace(triangle=triangle, haptic_index=haptic_index, visual=visual, touched=touched)
 
     def read_triangle(self, decoder: RangeDecoder, models: Models, before: int) -> int:
         if before != NONE:
@@ -195,10 +195,11 @@ class MainCodec:
     # ---- Vertices ----
 
     def read_vertices(self, decoder: RangeDecoder, models: Models, state: MainState, known: Known, expected: list[int],
-                      u: list[int]) -> tuple[list[tuple], list[int]]:
+                      u: list[int]) -> tuple[dict[int, tuple], list[int]]:
         """The correction of every vertex, and the vertices with a residual other than 0. Completes `u`."""
-        h = haptic_bound(state.haptic)
-        corrections, coded, residuals = [STILL] * len(self.item.rest), [0] * len(self.item.rest), []
+        h = haptic_bound(state.haptic_index)
+        corrections: dict[int, tuple] = {}
+        coded: dict[int, int] = {}
         for v in self.hierarchy.order:
             if known.codes(v):
                 haptic = v in known.area and h < state.visual
@@ -215,11 +216,10 @@ class MainCodec:
                     predicted = lim(expected[i] + round_shift(sum(a * corrections[b][axis] for a, b in zip(w, p)), 15))
                     u[i] = lim(predicted + r[axis] * step(bound))
                 coded[v] = int(any(r))
-                residuals += [v] if coded[v] else []
             else:
                 coded[v] = int(known.correction.get(v, STILL) != STILL)
             corrections[v] = tuple(u[3 * v + axis] - expected[3 * v + axis] for axis in range(3))
-        return corrections, residuals
+        return corrections, [v for v in coded if coded[v] and known.codes(v)]
 
     @staticmethod
     def read_residual(decoder: RangeDecoder, models: Models, tight: int, depth: int) -> list[int]:

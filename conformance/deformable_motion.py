@@ -26,7 +26,7 @@ class Motion(NamedTuple):
     s02: int = 0
 
 
-def predictor_coefficients(c: Motion) -> tuple[int, int]:
+def predictor(c: Motion) -> tuple[int, int]:
     z = max(0, max(abs(s) for s in c[2:]).bit_length() - 24)
     s11, s12, s22, s01, s02 = (s >> z for s in c[2:])
     s11 += (s11 >> 6) + 1
@@ -42,11 +42,11 @@ def extrapolate(c: Motion, frames: int) -> int:
     """The sum of the next increments."""
     if c.last == 0 and c.before == 0:
         return 0
-    t1, t2 = predictor_coefficients(c)
+    a1, a2 = predictor(c)
     x, y, total = c.last, c.before, 0
     bound = min(FARTHEST, 2 * max(abs(x), abs(y)))
     for _ in range(min(frames, MOST_FRAMES)):
-        x, y = clamp(round_shift(t1 * x + t2 * y, 12), -bound, bound), x
+        x, y = clamp(round_shift(a1 * x + a2 * y, 12), -bound, bound), x
         total += x
     return lim(total)
 

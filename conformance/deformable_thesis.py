@@ -83,13 +83,12 @@ class ThesisCodec:
 
     def read_head(self, payload: bytes, span: int) -> Head:
         rest = Cursor(payload, 0, len(payload))
-        key = rest.take(1, MES_11)[0]
+        key = rest.number(1, MES_11)
         require(key <= 1, *MES_11_VALUE)
-        baseline_delta = rest.take(1, MES_11)[0] if not key and span > 1 else 1
+        baseline_delta = rest.number(1, MES_11) if not key and span > 1 else 1
         tick_delta, count, list_bytes, lowest, extent = (rest.varint(MES_11, MES_11_VALUE) for _ in range(5))
-        require(tick_delta < 1 << 32, "invalid", "R-MES-12")
-        require(1 <= count <= len(self.item.rest), "invalid", "R-MES-12")
-        require(lowest <= 1 << 29 and extent <= 1 << 29, "invalid", "R-MES-12")
+        require(tick_delta < 1 << 32 and 1 <= count <= len(self.item.rest) and lowest <= 1 << 29 and extent <= 1 << 29,
+                "invalid", "R-MES-12")
         return Head(key, baseline_delta, tick_delta, count, zigzag(lowest), extent,
                     rest.take(list_bytes, MES_11), rest.take(rest.left(), MES_11))
 

@@ -76,7 +76,7 @@ def tell_rigid(packet):
 def tell_deformable(packet):
     state = packet.state
     if isinstance(state, deformable_main.MainState):
-        touch = f"triangle {state.triangle}, haptic index {state.haptic}" if state.touched else "no touch"
+        touch = f"triangle {state.triangle}, haptic index {state.haptic_index}" if state.touched else "no touch"
         print(f"Visual bound {state.visual}, {touch}, density {state.density}.")
         for k, motion in enumerate(state.motion):
             print(f"Mode {k}: increment {motion.last}, before it {motion.before}.")

@@ -2,7 +2,6 @@
 """Chapter 80 of the specification: stream file."""
 from __future__ import annotations
 
-import struct
 import zlib
 from typing import Iterator
 
@@ -39,13 +38,12 @@ class File:
 
     def record(self, rest: Cursor) -> tuple[int, bytes]:
         start = rest.position
-        kind = rest.take(1, FIL_2)[0]
+        kind = rest.number(1, FIL_2)
         size = rest.varint(FIL_2, FIL_6)
         require(kind in (PACKET, INDEX, TRAILER) or kind >= FIRST_EXTENSION, "unsupported", "R-FIL-3")
         require(kind != PACKET or size <= self.limits.packet_size + 6, "limit_exceeded", "R-FIL-4")
         require(kind != TRAILER or size == 8, *FIL_6)
-        require(size + 4 <= rest.left(), *FIL_2)
         payload = rest.take(size, FIL_2)
         expected = zlib.crc32(self.data[start:rest.position])
-        require(struct.unpack("<I", rest.take(4, FIL_2))[0] == expected, "checksum", "R-FIL-5")
+        require(rest.number(4, FIL_2) == expected, "checksum", "R-FIL-5")
         return kind, payload

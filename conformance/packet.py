@@ -13,26 +13,21 @@ AHEAD = 32767
 
 
 class Receiver:
-    """Keeps the initial state and the states after the newest `span` packets, by number. A state has a `tick`."""
+    """What is kept for a substream. A state has a `tick`."""
 
     def __init__(self, initial: Any, span: int, largest_packet: int, tick_rate: int):
         self.initial, self.span, self.largest_packet = initial, span, largest_packet
-        self.kept: deque[tuple[int, Any]] = deque(maxlen=span)
-        self.shown = initial                                # the current state, also where it is forgotten as a baseline
-        self.forget_after = max(1 << 14, 16 * tick_rate)
-        self.newest = 0                                     # number of the newest accepted packet
-        self.now: Optional[int] = None                      # when the packet at hand arrived
-        self.arrival: Optional[int] = None                  # when the newest accepted one did
-
-    def current(self) -> Any:
-        return self.shown
+        self.kept: deque[tuple[int, Any]] = deque(maxlen=span)    # states that may be baselines, by number
+        self.current = initial
+        self.newest = 0                                     # number of the packet accepted last
+        self.arrival: Optional[int] = None                  # tick of the receiver's clock when it arrived
+        self.discard_after = max(1 << 14, 16 * tick_rate)
 
     def open(self, data: bytes, now: Optional[int] = None) -> int:
         """The number of a packet that may be decoded. It arrives at tick `now` of the receiver's clock, if that has one."""
         require(len(data) <= self.largest_packet, "limit_exceeded", "R-PKT-1")
         require(len(data) >= 2, "truncated", "R-PKT-2")
-        self.now = now
-        if now is not None and self.arrival is not None and now - self.arrival > self.forget_after:
+        if now is not None and self.arrival is not None and now - self.arrival > self.discard_after:
             self.kept.clear()
         sequence = data[0] | data[1] << 8
         require(not self.kept or (self.newest - sequence) % (1 << 16) >= LATE, "state", "R-PKT-5")
@@ -52,11 +47,11 @@ class Receiver:
 
     def tick(self, baseline: Any, key: int, tick_delta: int, rule: str) -> int:
         tick = baseline.tick + tick_delta
-        require((key or tick >= self.shown.tick) and tick <= LARGEST_TICK, "invalid", rule)
+        require((key or tick >= self.current.tick) and tick <= LARGEST_TICK, "invalid", rule)
         return tick
 
-    def keep(self, number: int, key: int, state: Any) -> None:
-        if key and (number - self.newest > AHEAD or state.tick < self.shown.tick):
+    def accept(self, number: int, key: int, state: Any, now: Optional[int] = None) -> None:
+        if key and (number - self.newest > AHEAD or state.tick < self.current.tick):
             self.kept.clear()
         self.kept.append((number, state))
-        self.shown, self.newest, self.arrival = state, number, self.now
+        self.current, self.newest, self.arrival = state, number, now

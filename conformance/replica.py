@@ -12,18 +12,22 @@ from rigid import Packet, predict
 from scene import Declaration, State
 
 SHARE = 49152                                               # P = 75 %, x 2^-16
-AVERAGED_GAPS = 5                                           # M
+MOST_GAPS = 5
 LONGEST_GAP = (1 << 31) - 1
 
 
 class ReplicaObject:
+    """From `begin` to `end` an object is shown between two poses, `start` and `target` (`from` and `to` of the chapter)."""
+    start: tuple
+    target: tuple
+    half: int
+    u: tuple
+
     def __init__(self, state: State):
         self.state = state
         self.begin = self.end = 0
         self.arrival: Optional[int] = None
-        self.gaps: deque[int] = deque(maxlen=AVERAGED_GAPS)
-        self.start = self.target = (state.position, state.rotation)    # `from` and `to` of the chapter
-        self.half_angle, self.u = 0, (0, 0, 0)
+        self.gaps: deque[int] = deque(maxlen=MOST_GAPS)
 
 
 class Replica:
@@ -59,16 +63,18 @@ class Replica:
         if d[0] < 0:
             d = tuple(-c for c in d)
         s = isqrt(sum(c * c for c in d[1:]))
-        o.half_angle = asin30(min(s, ONE)) if s != 0 else 0
-        o.u = tuple(round_div(c << 30, s) for c in d[1:]) if s != 0 else (0, 0, 0)
+        if s == 0:
+            o.half, o.u = 0, (0, 0, 0)
+        else:
+            o.half, o.u = asin30(min(s, ONE)), tuple(round_div(c << 30, s) for c in d[1:])
 
     def pose(self, o: ReplicaObject, now: int) -> tuple[tuple, tuple]:
         now = max(now, o.begin)
         if now >= o.end:
             return predict(self.scene, o.state, now)
-        done, whole = now - o.begin, o.end - o.begin
-        position = tuple(sat32(a + round_div((b - a) * done, whole)) for a, b in zip(o.start[0], o.target[0]))
-        h = round_div(o.half_angle * done, whole)
+        part, whole = now - o.begin, o.end - o.begin
+        position = tuple(sat32(a + round_div((b - a) * part, whole)) for a, b in zip(o.start[0], o.target[0]))
+        h = round_div(o.half * part, whole)
         rotation = o.start[1] if h == 0 else renorm(mul(axis_angle(o.u, h), o.start[1]))
         return position, rotation
 

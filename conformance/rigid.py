@@ -26,9 +26,9 @@ def included(dof: int, q: int) -> list[int]:
 
 def residual(decoder: RangeDecoder, models: Models, dof: int, reason: int) -> list[list[int]]:
     r = [[0, 0, 0] for _ in range(4)]
-    context = reason                                        # of a magnitude
+    context = reason
     for q in range(4):
-        if q == 2 and included(dof, 2):
+        if q == 2:
             context = reason
         largest = 0
         for a in included(dof, q):
@@ -49,11 +49,11 @@ def predict(scene: Declaration, state: State, t: int) -> tuple[tuple, tuple]:
     if speed == 0:
         return x, state.rotation
     angle = round_div(speed * dt, scene.tick_rate)
-    half_angle = (((angle * HALF_RADIAN + (1 << (scene.angular_exp + 4))) % (1 << 64)) >> (scene.angular_exp + 5)) % (1 << 32)
-    if half_angle == 0:
+    half = (((angle * HALF_RADIAN + (1 << (scene.angular_exp + 4))) % (1 << 64)) >> (scene.angular_exp + 5)) % (1 << 32)
+    if half == 0:
         return x, state.rotation
     u = tuple(round_div(c << 35, speed) for c in state.angular_velocity)
-    return x, renorm(mul(axis_angle(u, half_angle), state.rotation))
+    return x, renorm(mul(axis_angle(u, half), state.rotation))
 
 
 def reconstruct_pose(scene: Declaration, base: State, t: int, r: list[list[int]], s: int) -> tuple[tuple, tuple]:
@@ -122,7 +122,7 @@ class RigidDecoder:
         self.receiver = Receiver(initial, scene.baseline_span, limits.packet_size, scene.tick_rate)
 
     def decode(self, data: bytes, record_tick: Optional[int] = None, now: Optional[int] = None) -> Packet:
-        """Decodes one packet, from a record at `record_tick` if from a file, else with `now`; an error leaves the decoder unchanged."""
+        """Decodes one packet, of a record at `record_tick` or that arrives at `now`; an error leaves the decoder unchanged."""
         number = self.receiver.open(data, now)
         decoder, models = RangeDecoder(data[2:]), Models("rigid-start-models.csv")
         several = len(self.moving) > 1
@@ -142,13 +142,13 @@ class RigidDecoder:
         for _ in range(count):
             index += 1 + (decoder.magnitude(models["GAP"]) if several else 0)
             require(index < len(self.moving), "invalid", "R-RIG-4")
-            updates.append(self.update(decoder, models, moment, self.moving[index]))
+            updates.append(self.read_update(decoder, models, moment, self.moving[index]))
         decoder.check_end()
         require(record_tick in (None, tick), "invalid", "R-FIL-7")
-        self.receiver.keep(number, key, moment)
+        self.receiver.accept(number, key, moment, now)
         return Packet(number % (1 << 16), key, updates, moment, decoder.range, decoder.code)
 
-    def update(self, decoder: RangeDecoder, models: Models, moment: Moment, index: int) -> Update:
+    def read_update(self, decoder: RangeDecoder, models: Models, moment: Moment, index: int) -> Update:
         """Replaces the baseline's state of an object in `moment` by its new state."""
         reason = decoder.tree(models["REASON"], 2)
         level = decoder.tree(models["LEVEL"], 3)
@@ -160,7 +160,7 @@ class RigidDecoder:
         return Update(index, reason, level)
 
     def state_hash(self) -> int:
-        states = self.receiver.current().states
+        states = self.receiver.current.states
         h = FNV_START
         for i in self.moving:
             tick, *vectors = states[i]

@@ -83,7 +83,7 @@ def read_declaration(data: bytes, limits: Limits = Limits()) -> tuple[Declaratio
     require(body_size <= limits.body_size, "limit_exceeded", "R-STR-14")
     end = 12 + body_size
     require(len(data) >= end + 4, *STR_5)
-    require(zlib.crc32(data[:end]) == struct.unpack_from("<I", data, end)[0], "checksum", "R-STR-15")
+    require(zlib.crc32(data[:end]) == int.from_bytes(data[end:end + 4], "little"), "checksum", "R-STR-15")
 
     body = Cursor(data, 12, end)
     scene = Declaration(version, profile, *struct.unpack("<IBBBBHB", body.take(11, STR_5)))
@@ -127,13 +127,13 @@ def state_bytes(scene: Declaration) -> int:
 
 
 def read_object(body: Cursor) -> Object:
-    kind = body.take(1, STR_5)[0]
+    kind = body.number(1, STR_5)
     require(kind == 1, "unsupported", "R-STR-10")
     dof, name_size = body.take(2, STR_5)
     name_bytes = body.take(name_size, STR_5)
     pose = struct.unpack("<7i", body.take(28, STR_5))
     name = text(name_bytes)
-    require(dof < 64 and (dof >> 3) in (0, 1, 2, 4, 7), "invalid", "R-STR-12")
+    require(dof >> 3 in (0, 1, 2, 4, 7), "invalid", "R-STR-12")
     position, rotation = pose[:3], pose[3:]
     require(all(-ONE <= c <= ONE for c in rotation)
             and abs(sum(c * c for c in rotation) - (1 << 60)) <= 1 << 41, "invalid", "R-STR-13")
@@ -145,12 +145,12 @@ def read_bounds(data: Cursor, scene: Declaration) -> Bounds:
         return [f64() for _ in range(count)]
 
     def f64() -> str:
-        bits = struct.unpack("<Q", data.take(8, ("truncated", "R-STR-17")))[0]
+        bits = data.number(8, ("truncated", "R-STR-17"))
         require(bits < 0x7FF0000000000000, "invalid", "R-STR-17")
         return f"{bits:016x}"
 
     def choice() -> int:
-        value = data.take(1, ("truncated", "R-STR-17"))[0]
+        value = data.number(1, ("truncated", "R-STR-17"))
         require(value <= 3, "invalid", "R-STR-17")
         return value
 
@@ -158,7 +158,7 @@ def read_bounds(data: Cursor, scene: Declaration) -> Bounds:
     if scene.moving():
         rigid = f64s(3)
         haptic = choice()
-        rigid += [haptic, *f64s((0, 2, 3, 2)[haptic])]
+        rigid += [haptic, *f64s({0: 0, 1: 2, 2: 3, 3: 2}[haptic])]
     deformables = []
     for _ in scene.deformables:
         promise = choice()
