@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Chapter 10 of the specification: bytes, rounding, turns and quaternions, hash; errors of the registry."""
+"""Chapter 10 of the specification: bytes, rounding, angles and quaternions, hash; errors of the registry."""
 from __future__ import annotations
 
 
@@ -33,10 +33,14 @@ class Cursor:
         self.position += size
         return self.data[self.position - size:self.position]
 
+    def number(self, size: int, cut: tuple[str, str]) -> int:
+        """u8, u16, u32 or u64."""
+        return int.from_bytes(self.take(size, cut), "little")
+
     def varint(self, cut: tuple[str, str], overlong: tuple[str, str]) -> int:
         value = 0
         for i in range(10):
-            byte = self.take(1, cut)[0]
+            byte = self.number(1, cut)
             value |= (byte & 0x7F) << (7 * i)
             if byte < 0x80:
                 require(value < 1 << 64 and (byte != 0 or i == 0), *overlong)
@@ -58,7 +62,7 @@ def text(data: bytes) -> str:
 
 
 def clamp(v: int, lo: int, hi: int) -> int:
-    return lo if v < lo else hi if v > hi else v
+    return max(lo, min(v, hi))
 
 
 def round_shift(v: int, n: int) -> int:
@@ -73,7 +77,7 @@ def sat32(v: int) -> int:
     return clamp(v, -1 << 31, (1 << 31) - 1)
 
 
-# ---- Section 6: turns and quaternions -------------------------------------------------------------------
+# ---- Section 6: angles and quaternions -------------------------------------------------------------------
 
 ONE = 1 << 30
 
@@ -107,6 +111,10 @@ def asin30(s: int) -> int:
     return low
 
 
+def unit30(c: int) -> int:
+    return clamp(round_shift(c, 30), -ONE, ONE)
+
+
 def mul(a: tuple, b: tuple) -> tuple:
     aw, ax, ay, az = a
     bw, bx, by, bz = b
@@ -114,7 +122,7 @@ def mul(a: tuple, b: tuple) -> tuple:
                aw * bx + ax * bw + ay * bz - az * by,
                aw * by - ax * bz + ay * bw + az * bx,
                aw * bz + ax * by - ay * bx + az * bw)
-    return tuple(clamp(round_shift(c, 30), -ONE, ONE) for c in product)
+    return tuple(unit30(c) for c in product)
 
 
 def conj(q: tuple) -> tuple:
@@ -125,10 +133,10 @@ def conj(q: tuple) -> tuple:
 def renorm(q: tuple) -> tuple:
     n = sum(c * c for c in q)
     f = (3 * ONE - round_shift(n, 30)) >> 1
-    return tuple(clamp(round_shift(c * f, 30), -ONE, ONE) for c in q)
+    return tuple(unit30(c * f) for c in q)
 
 
-def axis_turn(u: tuple, h: int) -> tuple:
+def axis_angle(u: tuple, h: int) -> tuple:
     s = sin30(h)
     return (cos30(h),) + tuple(round_shift(c * s, 30) for c in u)
 

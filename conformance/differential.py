@@ -12,17 +12,16 @@ import random
 import shlex
 import struct
 import sys
-import tempfile
 import zlib
 from pathlib import Path
 from typing import Optional
 
 import decoder
 from conventions import StreamError
+from file import File
 from run import Crash, run_testee
-from stream import File
 
-FIXED = 12                                                  # bytes of a header before its body
+FIXED = 12                                                  # bytes of the declaration before its body
 LATEST_TICK = 5000                                          # a client looks at every tick up to the last packet's
 BORDERS = [0, 1, 0x7f, 0x80, 0xff, 0x7fff, 0xffff, 0x7fffffff, 0x80000000, 0xffffffff]
 
@@ -36,7 +35,7 @@ def varint(value: int) -> bytes:
 
 
 def sections(data: bytes) -> list[tuple[int, int, int]]:
-    """Beginning, payload and its end of the header and of each record, as far as lengths lead; a check value follows each."""
+    """Beginning, payload and its end of the declaration and of each record, as far as lengths lead; a check value follows each."""
     found, at = [], 0
     while True:
         payload = at + (FIXED if at == 0 else 1)
@@ -106,10 +105,11 @@ class Vectors:
 
     def __init__(self, folder: Path):
         self.every, self.valid = [], []
-        for path in sorted(folder.rglob("*.tct")):
-            self.every.append(path.read_bytes())
-            if json.loads(path.with_suffix(".json").read_text("utf-8"))["expect"]["class"] == "valid":
-                self.valid.append(self.every[-1])
+        for stem in sorted(folder.glob("*.json")):
+            for case in json.loads(stem.read_text("utf-8"))["cases"]:
+                self.every.append((folder / stem.stem / f"{case['name']}.tct").read_bytes())
+                if case["result"] == "valid":
+                    self.valid.append(self.every[-1])
 
     def choose(self, rng: random.Random) -> bytes:
         return rng.choice(self.valid if rng.randrange(4) else self.every)
@@ -151,13 +151,10 @@ def expected(data: bytes, mode: Optional[str]) -> tuple[int, list[str]]:
 
 def difference(command: list[str], data: bytes, mode: Optional[str], wanted: tuple[int, list[str]]) -> str:
     """What the testee says that decoder.py does not; empty if they agree."""
-    with tempfile.NamedTemporaryFile(suffix=".tct") as file:
-        file.write(data)
-        file.flush()
-        try:
-            got = run_testee(command + (["--replica", mode] if mode else []), Path(file.name))
-        except Crash as crash:
-            return f"crash: {crash}"
+    try:
+        got = run_testee(command + (["--replica", mode] if mode else []), data)
+    except Crash as crash:
+        return f"crash: {crash}"
     if got == wanted:
         return ""
     for number, (line, right) in enumerate(zip(got[1], wanted[1]), 1):

@@ -5,45 +5,52 @@
 
 #include "conformance/make_vectors/catalogue.h"
 
+namespace tactus::conformance {
+namespace {
+
+Catalogue all() {
+  Catalogue catalogue;
+  catalogue.begin("scene", "Scene declarations, the headers of streams: objects, grids, bounds.");
+  add_scene(catalogue);
+  add_scene_bounds(catalogue);
+  add_scene_orders(catalogue);
+  catalogue.begin("file", "Stream files: records around packets.");
+  add_file(catalogue);
+  catalogue.begin("packet", "What packets of every kind have in common: sequence numbers, baselines, outages, substreams.");
+  add_packet_rigid(catalogue);
+  add_packet_deformable(catalogue);
+  add_packet_substreams(catalogue);
+  catalogue.begin("range", "Payloads of the range coder: symbols, carries, ends.");
+  add_range(catalogue);
+  catalogue.begin("rigid", "Packets of rigid objects.");
+  add_rigid(catalogue);
+  add_rigid_rules(catalogue);
+  add_rigid_edges(catalogue);
+  add_rigid_orders(catalogue);
+  catalogue.begin("client", "What a client shows of rigid objects, at every tick.");
+  add_client(catalogue);
+  catalogue.begin("deformable", "Deformable objects: their declaration, and packets of both profiles.");
+  add_deformable_header(catalogue);
+  add_deformable_limits(catalogue);
+  add_deformable_main(catalogue);
+  add_deformable_layers(catalogue);
+  add_deformable_thesis(catalogue);
+  add_deformable_rules(catalogue);
+  add_deformable_edges(catalogue);
+  add_deformable_start_rows(catalogue);
+  add_deformable_orders(catalogue);
+  return catalogue;
+}
+
+}  // namespace
+}  // namespace tactus::conformance
+
 int main(int argc, char** argv) {
-  using namespace tactus::conformance;
   if (argc != 3) {
     std::fputs("usage: make_vectors FOLDER INDEX\n", stderr);
     return 2;
   }
-  Catalogue catalogue;
-  catalogue.begin("stream");
-  add_stream_header(catalogue);
-  add_stream_file(catalogue);
-  add_stream_bounds(catalogue);
-  add_stream_orders(catalogue);
-  add_stream_header_orders(catalogue);
-  catalogue.begin("range");
-  add_range(catalogue);
-  catalogue.begin("rigid");
-  add_rigid(catalogue);
-  add_rigid_rules(catalogue);
-  add_rigid_outages(catalogue);
-  add_rigid_orders(catalogue);
-  add_rigid_edges(catalogue);
-  add_rigid_packet_orders(catalogue);
-  catalogue.begin("client");
-  add_client(catalogue);
-  catalogue.begin("mesh");
-  add_mesh_header(catalogue);
-  add_mesh_main(catalogue);
-  add_mesh_split(catalogue);
-  add_mesh_thesis(catalogue);
-  add_mesh_parts(catalogue);
-  add_mesh_rules(catalogue);
-  add_memory(catalogue);
-  add_mesh_outages(catalogue);
-  add_mesh_orders(catalogue);
-  add_mesh_edges(catalogue);
-  add_mesh_start_rows(catalogue);
-  add_mesh_header_orders(catalogue);
-  add_mesh_packet_orders(catalogue);
-  add_mesh_repeats(catalogue);
+  const auto catalogue = tactus::conformance::all();
   const bool written = catalogue.write(argv[1]);
   return catalogue.write_index(argv[2]) && written ? 0 : 1;
 }

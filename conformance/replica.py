@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Chapter 50 of the specification: what a client shows of rigid objects."""
+"""Chapter 60 of the specification: what a client shows of rigid objects."""
 from __future__ import annotations
 
 import struct
@@ -7,41 +7,44 @@ from collections import deque
 from math import isqrt
 from typing import Optional
 
-from conventions import FNV_START, ONE, asin30, axis_turn, clamp, conj, fnv1a, mul, renorm, round_div, sat32
-from rigid_decoder import Packet, predict
-from stream import Header, State
+from conventions import FNV_START, ONE, asin30, axis_angle, clamp, conj, fnv1a, mul, renorm, round_div, sat32
+from rigid import Packet, predict
+from scene import Declaration, State
 
 SHARE = 49152                                               # P = 75 %, x 2^-16
-AVERAGED_GAPS = 5                                           # M
+MOST_GAPS = 5
 LONGEST_GAP = (1 << 31) - 1
 
 
 class ReplicaObject:
+    """From `begin` to `end` an object is shown between two poses, `start` and `target` (`from` and `to` of the chapter)."""
+    start: tuple
+    target: tuple
+    half: int
+    u: tuple
+
     def __init__(self, state: State):
         self.state = state
         self.begin = self.end = 0
         self.arrival: Optional[int] = None
-        self.gaps: deque[int] = deque(maxlen=AVERAGED_GAPS)
-        self.start = self.target = (state.position, state.rotation)    # `from` and `to` of the specification
-        self.half, self.u = 0, (0, 0, 0)
+        self.gaps: deque[int] = deque(maxlen=MOST_GAPS)
 
 
 class Replica:
     """What a client shows that applies packets; mode is "none" or "linear"."""
 
-    def __init__(self, header: Header, mode: str):
-        self.header, self.mode = header, mode
-        self.shortest = round_div(5 * header.tick_rate, 1000)
-        self.longest = round_div(100 * header.tick_rate, 1000)
-        self.objects = [ReplicaObject(item.initial) for item in header.objects]
-        self.moving = header.moving()
+    def __init__(self, scene: Declaration, mode: str):
+        self.scene, self.mode = scene, mode
+        self.shortest = round_div(5 * scene.tick_rate, 1000)
+        self.longest = round_div(100 * scene.tick_rate, 1000)
+        self.objects = [ReplicaObject(item.initial) for item in scene.objects]
+        self.moving = scene.moving()
 
     def apply(self, packet: Packet, now: int) -> None:
-        """Section 3."""
         for update in packet.updates:
             o = self.objects[update.object]
             arrivals = (now, packet.tick) if o.arrival is None else (now, packet.tick, o.arrival)
-            self.apply_state(o, packet.scene.states[update.object], max(arrivals))
+            self.apply_state(o, packet.moment.states[update.object], max(arrivals))
 
     def apply_state(self, o: ReplicaObject, state: State, now: int) -> None:
         shown = self.pose(o, now)
@@ -55,27 +58,27 @@ class Replica:
         o.end = now + clamp(round_div(sum(o.gaps) * SHARE, len(o.gaps) << 16), self.shortest, self.longest)
         if o.end == now:
             return
-        o.start, o.target = shown, predict(self.header, state, o.end)
+        o.start, o.target = shown, predict(self.scene, state, o.end)
         d = mul(o.target[1], conj(o.start[1]))
         if d[0] < 0:
             d = tuple(-c for c in d)
         s = isqrt(sum(c * c for c in d[1:]))
-        o.half = asin30(min(s, ONE)) if s != 0 else 0
-        o.u = tuple(round_div(c << 30, s) for c in d[1:]) if s != 0 else (0, 0, 0)
+        if s == 0:
+            o.half, o.u = 0, (0, 0, 0)
+        else:
+            o.half, o.u = asin30(min(s, ONE)), tuple(round_div(c << 30, s) for c in d[1:])
 
     def pose(self, o: ReplicaObject, now: int) -> tuple[tuple, tuple]:
-        """Section 4."""
         now = max(now, o.begin)
         if now >= o.end:
-            return predict(self.header, o.state, now)
+            return predict(self.scene, o.state, now)
         part, whole = now - o.begin, o.end - o.begin
         position = tuple(sat32(a + round_div((b - a) * part, whole)) for a, b in zip(o.start[0], o.target[0]))
         h = round_div(o.half * part, whole)
-        rotation = o.start[1] if h == 0 else renorm(mul(axis_turn(o.u, h), o.start[1]))
+        rotation = o.start[1] if h == 0 else renorm(mul(axis_angle(o.u, h), o.start[1]))
         return position, rotation
 
     def pose_hash(self, now: int) -> int:
-        """Section 5."""
         h = FNV_START
         for i in self.moving:
             position, rotation = self.pose(self.objects[i], now)

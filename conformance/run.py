@@ -13,10 +13,11 @@ import shlex
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 from fnmatch import fnmatchcase
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, Optional
 
 TIMEOUT = 10.0                                              # seconds; per case, each case is a process of its own
 LARGEST_OUTPUT = 64 << 20                                   # bytes; a testee that writes more is stopped
@@ -30,16 +31,31 @@ class Mismatch(Exception):
     """The testee's reply, or the suite itself, is not as it should be."""
 
 
+class Case(NamedTuple):
+    """What a stem's list says of a case, and where its files are."""
+    id: str
+    input: Path
+    output: Path
+    sha256: str
+    repeat: Optional[dict]                                  # bytes of the input that are not in its file
+    args: list[str]
+    error: Optional[dict]                                   # class and rule; None: the input is valid
+    traits: set[str]                                        # profiles and flags
+
+
 class Result(NamedTuple):
     id: str
     result: str                                             # pass, fail, skip
     detail: str
 
 
-def run_testee(command: list[str], input_file: Path) -> tuple[int, list[str]]:
+# ---- Testee ---------------------------------------------------------------------------------------------------------
+def run_testee(command: list[str], data: bytes) -> tuple[int, list[str]]:
     """Returns the exit status, 0 or 1, and the lines of JSON on standard output."""
-    with open(input_file, "rb") as data:
-        process = subprocess.Popen(command, stdin=data, stdout=subprocess.PIPE, start_new_session=True)
+    with tempfile.TemporaryFile() as stdin:
+        stdin.write(data)
+        stdin.seek(0)
+        process = subprocess.Popen(command, stdin=stdin, stdout=subprocess.PIPE, start_new_session=True)
     late = threading.Event()
 
     def stop() -> None:
@@ -87,26 +103,35 @@ def json_lines(output: bytes) -> list[str]:
     return lines
 
 
-def expected_lines(case: dict, folder: Path) -> list[str]:
+# ---- Cases ----------------------------------------------------------------------------------------------------------
+def read_input(case: Case) -> bytes:
+    data = case.input.read_bytes()
+    if case.repeat:
+        at, more = case.repeat["at"], bytes.fromhex(case.repeat["bytes"]) * case.repeat["times"]
+        data = data[:at] + more + data[at:]
+    if hashlib.sha256(data).hexdigest() != case.sha256:
+        raise Mismatch(f"{case.input} is not the published file: the SHA-256 of the input differs")
+    return data
+
+
+def expected_lines(case: Case) -> list[str]:
     """The lines of a valid case, or those of an invalid one before its error."""
-    lines = (folder / case["expect"]["output"]).read_text("ascii").splitlines()
-    if case["expect"]["class"] == "invalid" and lines and "error" in json.loads(lines[-1]):
+    lines = case.output.read_text("ascii").splitlines()
+    if case.error and lines and "error" in json.loads(lines[-1]):
         lines.pop()
     return lines
 
 
-def check_reply(case: dict, folder: Path, status: int, lines: list[str]) -> None:
-    expect = case["expect"]
-    if expect["class"] == "invalid":
-        wanted = {"errc": expect["errc"], "rule": expect["rule"]}
+def check_reply(case: Case, status: int, lines: list[str]) -> None:
+    if case.error:
         if status != 1:
-            raise Mismatch(f"accepted; must be rejected with {wanted['errc']} {wanted['rule']}")
+            raise Mismatch(f"accepted; must be rejected with {case.error['errc']} {case.error['rule']}")
         error = json.loads(lines.pop()).get("error") if lines else None
-        if error != wanted:
-            raise Mismatch(f"rejected with {error}; must be {wanted}")
+        if error != case.error:
+            raise Mismatch(f"rejected with {error}; must be {case.error}")
     elif status != 0:
         raise Mismatch(f"rejected with {lines[-1] if lines else 'no line'}; must be accepted")
-    expected = expected_lines(case, folder)
+    expected = expected_lines(case)
     for number, (line, wanted) in enumerate(zip(lines, expected), 1):
         if line != wanted:
             raise Mismatch(f"line {number}:\n  is      {line}\n  must be {wanted}")
@@ -114,45 +139,55 @@ def check_reply(case: dict, folder: Path, status: int, lines: list[str]) -> None
         raise Mismatch(f"{len(lines)} lines; must be {len(expected)}")
 
 
-def run_case(case: dict, folder: Path, command: list[str]) -> None:
-    input_file = folder / case["input"]
-    if hashlib.sha256(input_file.read_bytes()).hexdigest() != case["sha256"]:
-        raise Mismatch(f"{input_file} is not the published file: its SHA-256 differs")
-    check_reply(case, folder, *run_testee(command + case["args"], input_file))
-
-
-def load_case(root: Path, path: str, unlisted: set[Path]) -> dict:
-    """Reads a case and takes its files off the list of files that no case names."""
-    file = root / path
-    case = json.loads(file.read_text("utf-8"))
-    if case["expect"]["class"] not in ("valid", "invalid"):
-        raise ValueError("expect.class is neither valid nor invalid")
-    if path != f"vectors/{case['id']}.json":
-        raise ValueError(f"its id {case['id']} is not its place")
-    own = [file, file.parent / case["input"], file.parent / case["expect"]["output"]]
-    unlisted.difference_update(own)
-    for part in own:
-        if not part.is_file():
-            raise FileNotFoundError(f"{part} is missing")
+def make_case(root: Path, stem: str, said: dict) -> Case:
+    if said["result"] not in ("valid", "invalid"):
+        raise ValueError("result is neither valid nor invalid")
+    base = root / "vectors" / stem / said["name"]
+    error = {"errc": said["errc"], "rule": said["rule"]} if said["result"] == "invalid" else None
+    case = Case(f"{stem}/{said['name']}", base.with_name(base.name + ".tct"), base.with_name(base.name + ".jsonl"), said["sha256"],
+                said.get("repeat"), said.get("args", []), error, {*said["profile"], *said["flags"]})
+    for file in (case.input, case.output):
+        if not file.is_file():
+            raise FileNotFoundError(f"{file} is missing")
     return case
 
 
-def load_cases(root: Path) -> tuple[list[dict], list[Result]]:
-    """The cases of the manifest and the faults of the suite itself, which count as failures."""
+def load_stem(root: Path, stem: str, manifest: dict) -> tuple[list[Case], list[Result]]:
+    content = (root / "vectors" / f"{stem}.json").read_bytes()
+    if hashlib.sha256(content).hexdigest() != manifest["sha256"]:
+        raise ValueError("its SHA-256 is not that of the manifest")
+    listed = json.loads(content)["cases"]
+    if len(listed) != manifest["cases"]:
+        raise ValueError(f"{len(listed)} cases; the manifest says {manifest['cases']}")
+    cases, faults = [], []
+    for said in listed:
+        try:
+            cases.append(make_case(root, stem, said))
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            faults.append(Result(f"{stem}/{said.get('name')}", "fail", f"cannot be read: {error!r}"))
+    return cases, faults
+
+
+def load_cases(root: Path) -> tuple[list[Case], list[Result]]:
+    """The cases of all stems and the faults of the suite itself, which count as failures."""
     cases, faults = [], []
     unlisted = {path for path in (root / "vectors").rglob("*") if path.is_file()}
     try:
-        paths = json.loads((root / "manifest.json").read_text("utf-8"))["cases"]
+        stems = dict(json.loads((root / "manifest.json").read_text("utf-8"))["stems"])
     except (OSError, ValueError, KeyError, TypeError) as error:
         return [], [Result("manifest.json", "fail", f"cannot be read: {error!r}")]
-    for path in paths:
+    for stem, manifest in stems.items():
+        unlisted.discard(root / "vectors" / f"{stem}.json")
         try:
-            cases.append(load_case(root, path, unlisted))
+            more, bad = load_stem(root, stem, manifest)
+            cases += more
+            faults += bad
         except (OSError, ValueError, KeyError, TypeError) as error:
-            faults.append(Result(str(path), "fail", f"cannot be read: {error!r}"))
-    ids = [case["id"] for case in cases]
+            faults.append(Result(f"vectors/{stem}.json", "fail", f"cannot be read: {error!r}"))
+    unlisted.difference_update(file for case in cases for file in (case.input, case.output))
+    ids = [case.id for case in cases]
     faults += [Result(i, "fail", "listed twice") for i in sorted(set(ids)) if ids.count(i) > 1]
-    faults += [Result(str(path.relative_to(root)), "fail", "in no case of the manifest") for path in sorted(unlisted)]
+    faults += [Result(str(path.relative_to(root)), "fail", "belongs to no case") for path in sorted(unlisted)]
     if not cases:
         faults.append(Result("manifest.json", "fail", "no case"))
     return cases, faults
@@ -164,41 +199,40 @@ def known_failures(root: Path) -> set[str]:
     return {line.strip() for line in lines if line.strip() and not line.startswith("#")}
 
 
-def judge(case: dict, folder: Path, command: list[str], known: bool) -> Result:
+def judge(case: Case, command: list[str], known: bool) -> Result:
     """A failure that is known is skipped, one that is known and does not happen is a failure."""
     try:
-        run_case(case, folder, command)
+        check_reply(case, *run_testee(command + case.args, read_input(case)))
     except (Crash, Mismatch) as error:
         kind = "crash: " if isinstance(error, Crash) else ""
-        return Result(case["id"], "skip" if known else "fail", kind + str(error))
-    return Result(case["id"], "fail", "passes; take it off known-failures.txt") if known else \
-        Result(case["id"], "pass", "")
+        return Result(case.id, "skip" if known else "fail", kind + str(error))
+    return Result(case.id, "fail", "passes; take it off known-failures.txt") if known else Result(case.id, "pass", "")
 
 
-def run_suite(root: Path, command: list[str], only: str) -> list[Result]:
+def run_suite(root: Path, command: list[str], only: str, without: set[str]) -> list[Result]:
     cases, results = load_cases(root)
     known = known_failures(root)
-    unknown = known - {case["id"] for case in cases}
-    results += [Result(i, "fail", "in known-failures.txt, but no case") for i in sorted(unknown)]
-    chosen = [case for case in cases if fnmatchcase(case["id"], only)]
+    results += [Result(i, "fail", "in known-failures.txt, but no case") for i in sorted(known - {case.id for case in cases})]
+    traits = {trait for case in cases for trait in case.traits}
+    results += [Result(trait, "fail", "is no profile or flag of any case") for trait in sorted(without - traits)]
+    chosen = [case for case in cases if fnmatchcase(case.id, only) and not case.traits & without]
     if cases and not chosen:
         results.append(Result(only, "fail", "matches no case"))
-    for case in chosen:
-        folder = (root / "vectors" / case["id"]).parent
-        results.append(judge(case, folder, command, case["id"] in known))
-    return results
+    return results + [judge(case, command, case.id in known) for case in chosen]
 
 
 def main(arguments: list[str], root: Path) -> int:
     parser = argparse.ArgumentParser(description="Run the Tactus conformance vectors against a decoder.")
     parser.add_argument("--testee", metavar="CMD", help="command line of the decoder (default: decoder.py, beside this file)")
     parser.add_argument("--only", metavar="GLOB", default="*", help="run the cases whose id matches, as 'rigid/*'")
+    parser.add_argument("--without", metavar="NAME", action="append", default=[],
+                        help="leave out the cases with this flag or profile, as 'layered' (may be repeated)")
     parser.add_argument("--json", action="store_true", help="print the results as one JSON object, the counts on standard error")
     options = parser.parse_args(arguments)
     here = Path(__file__).resolve().parent
     try:
         command = shlex.split(options.testee) if options.testee else [sys.executable, str(here / "decoder.py")]
-        results = run_suite(root, command, options.only)
+        results = run_suite(root, command, options.only, set(options.without))
     except (OSError, ValueError) as error:
         print(f"run.py: {error}", file=sys.stderr)
         return 2

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tables of start models: chapter 40, section 8, and chapter 60, section 9."""
+"""Tables of start models of chapters 40 and 50."""
 from __future__ import annotations
 
 import csv

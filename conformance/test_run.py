@@ -40,26 +40,27 @@ class RunnerTest(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.root = Path(folder.name)
-        (self.root / "vectors" / "stream").mkdir(parents=True)
-        self.write_case("stream/001-empty", VALID, VALID_REPLY)
-        self.write_case("stream/002-flag", WITH_FLAG, "", "malformed", "R-STR-4")
-        self.write_case("stream/003-record", WITH_UNKNOWN_RECORD, HEADER_LINE, "unsupported", "R-FIL-3")
-        self.write_manifest(["001-empty", "002-flag", "003-record"])
+        (self.root / "vectors" / "scene").mkdir(parents=True)
+        self.cases = [self.case("001-empty", VALID, VALID_REPLY), self.case("002-flag", WITH_FLAG, "", "malformed", "R-STR-4"),
+                      self.case("003-record", WITH_UNKNOWN_RECORD, HEADER_LINE, "unsupported", "R-FIL-3")]
+        self.write_lists(self.cases)
 
-    def write_case(self, identity: str, data: bytes, reply: str, errc: str = "", rule: str = "") -> None:
-        base = self.root / "vectors" / identity
-        expect = {"class": "invalid", "errc": errc, "rule": rule} if errc else {"class": "valid"}
+    def case(self, name: str, data: bytes, reply: str, errc: str = "", rule: str = "") -> dict:
+        """Writes the files of a case and returns what the stem's list says of it."""
+        base = self.root / "vectors" / "scene" / name
+        said = {"name": name, "result": "valid", "profile": [], "flags": [], "sha256": hashlib.sha256(data).hexdigest()}
         if errc:
             reply += json.dumps({"error": {"errc": errc, "rule": rule}}, separators=(",", ":")) + "\n"
-        case = {"id": identity, "input": base.name + ".tct", "sha256": hashlib.sha256(data).hexdigest(), "args": [],
-                "expect": {**expect, "output": base.name + ".jsonl"}}
+            said.update({"result": "invalid", "errc": errc, "rule": rule})
         base.with_suffix(".tct").write_bytes(data)
         base.with_suffix(".jsonl").write_text(reply, "ascii")
-        base.with_suffix(".json").write_text(json.dumps(case), "ascii")
+        return said
 
-    def write_manifest(self, names: list[str]) -> None:
-        paths = [f"vectors/stream/{name}.json" for name in names]
-        (self.root / "manifest.json").write_text(json.dumps({"cases": paths}), "ascii")
+    def write_lists(self, cases: list[dict]) -> None:
+        content = json.dumps({"cases": cases}).encode("ascii")
+        (self.root / "vectors" / "scene.json").write_bytes(content)
+        stems = {"scene": {"cases": len(cases), "sha256": hashlib.sha256(content).hexdigest()}} if cases else {}
+        (self.root / "manifest.json").write_text(json.dumps({"stems": stems}), "ascii")
 
     def run_main(self, *arguments: str) -> tuple[int, str, str]:
         out, err = io.StringIO(), io.StringIO()
@@ -162,9 +163,9 @@ sys.exit(reply.returncode)""")
     # ---- suites ----
 
     def test_missing_files(self) -> None:
-        for suffix in (".json", ".tct", ".jsonl"):
+        for suffix in (".tct", ".jsonl"):
             with self.subTest(suffix):
-                file = self.root / "vectors" / "stream" / ("002-flag" + suffix)
+                file = self.root / "vectors" / "scene" / ("002-flag" + suffix)
                 content = file.read_bytes()
                 file.unlink()
                 status, out, _ = self.run_main()
@@ -172,13 +173,24 @@ sys.exit(reply.returncode)""")
                 self.assertIn("2 passed", out)
                 file.write_bytes(content)
 
+    def test_missing_list(self) -> None:
+        (self.root / "vectors" / "scene.json").unlink()
+        out = self.expect(1, "0 passed, 8 failed, 0 skipped")
+        self.assertIn("vectors/scene.json: cannot be read", out)
+
+    def test_changed_list(self) -> None:
+        file = self.root / "vectors" / "scene.json"
+        file.write_bytes(file.read_bytes() + b"\n")
+        out = self.expect(1, "0 passed, 8 failed, 0 skipped")
+        self.assertIn("its SHA-256 is not that of the manifest", out)
+
     def test_file_that_no_case_names(self) -> None:
-        (self.root / "vectors" / "stream" / "004-more.tct").write_bytes(VALID)
+        (self.root / "vectors" / "scene" / "004-more.tct").write_bytes(VALID)
         out = self.expect(1, "3 passed, 1 failed, 0 skipped")
         self.assertIn("004-more.tct", out)
 
     def test_changed_input(self) -> None:
-        (self.root / "vectors" / "stream" / "001-empty.tct").write_bytes(VALID + b"\x04")
+        (self.root / "vectors" / "scene" / "001-empty.tct").write_bytes(VALID + b"\x04")
         self.expect(1, "2 passed, 1 failed, 0 skipped")
 
     def test_no_manifest(self) -> None:
@@ -186,32 +198,50 @@ sys.exit(reply.returncode)""")
         self.expect(1, "0 passed, 1 failed, 0 skipped")
 
     def test_case_listed_twice(self) -> None:
-        self.write_manifest(["001-empty", "002-flag", "003-record", "001-empty"])
+        self.write_lists([*self.cases, self.cases[0]])
         self.expect(1, "4 passed, 1 failed, 0 skipped")
 
-    def test_empty_manifest(self) -> None:
-        for path in (self.root / "vectors" / "stream").iterdir():
+    def test_no_stem(self) -> None:
+        for path in (self.root / "vectors").rglob("*.*"):
             path.unlink()
-        self.write_manifest([])
+        self.write_lists([])
+        (self.root / "vectors" / "scene.json").unlink()
         self.expect(1, "0 passed, 1 failed, 0 skipped")
+
+    def test_repeated_bytes(self) -> None:
+        record = b"\x80\xe8\x07" + bytes(1000)
+        whole = VALID + with_crc(record)
+        case = self.case("004-repeat", whole, VALID_REPLY)
+        (self.root / "vectors" / "scene" / "004-repeat.tct").write_bytes(VALID + with_crc(record)[:3] + whole[-4:])
+        case["repeat"] = {"at": len(VALID) + 3, "bytes": "0000", "times": 500}
+        self.write_lists([*self.cases, case])
+        self.expect(0, "4 passed, 0 failed, 0 skipped")
 
     def test_only_that_matches_nothing(self) -> None:
         self.expect(1, "0 passed, 1 failed, 0 skipped", "--only", "rigid/*")
 
+    def test_without_a_flag_or_a_profile(self) -> None:
+        self.cases[1]["flags"] = ["order"]
+        self.cases[2]["profile"] = ["main"]
+        self.write_lists(self.cases)
+        self.expect(0, "2 passed, 0 failed, 0 skipped", "--without", "order")
+        self.expect(0, "1 passed, 0 failed, 0 skipped", "--without", "order", "--without", "main")
+        self.expect(1, "3 passed, 1 failed, 0 skipped", "--without", "other")
+
     def test_known_failures(self) -> None:
         accept_all = self.command(f"print({VALID_REPLY!r}, end='')")
         known = self.root / "known-failures.txt"
-        known.write_text("stream/002-flag\nstream/003-record\n")
+        known.write_text("scene/002-flag\nscene/003-record\n")
         self.expect(0, "1 passed, 0 failed, 2 skipped", "--testee", accept_all)
         self.expect(1, "1 passed, 2 failed, 0 skipped")
-        known.write_text("stream/009-none\n")
+        known.write_text("scene/009-none\n")
         self.expect(1, "3 passed, 1 failed, 0 skipped")
 
     def test_json(self) -> None:
         status, out, err = self.run_main("--json", "--only", "*/001-*")
         report = json.loads(out)
         self.assertEqual((status, report["passed"], report["failed"], report["skipped"]), (0, 1, 0, 0))
-        self.assertEqual(report["cases"], [{"id": "stream/001-empty", "result": "pass", "detail": ""}])
+        self.assertEqual(report["cases"], [{"id": "scene/001-empty", "result": "pass", "detail": ""}])
         self.assertEqual(err, "1 passed, 0 failed, 0 skipped\n")
 
 

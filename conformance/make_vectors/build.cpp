@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <tactus/base/hash.h>
+#include "codec/base/hash.h"
 
 namespace tactus::conformance {
 
@@ -55,7 +55,7 @@ Bytes RawHeader::body() const {
     for (const std::int32_t c : object.position) w.i32(c);
     for (const std::int32_t c : object.rotation) w.i32(c);
   }
-  w.bytes(meshes);
+  w.bytes(deformables);
   w.bytes(extensions);
   return out;
 }

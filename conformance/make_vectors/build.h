@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include <tactus/base/bytes.h>
-#include <tactus/rigid/rigid_syntax.h>
-#include <tactus/scene/scene_syntax.h>
+#include "codec/base/bytes.h"
+#include "codec/rigid/rigid_syntax.h"
+#include "codec/stream/header.h"
 
 namespace tactus::conformance {
 
@@ -21,7 +21,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 // Vectors are to stay what they are: no default of the library enters them.
 inline constexpr std::uint8_t kRotationExp = 20;
-inline constexpr std::int32_t kHalfTurn = 1 << kRotationExp;  ///< the longest rotation residual
+inline constexpr std::int32_t kHalfCircle = 1 << kRotationExp;  ///< the longest rotation residual
 
 /// Extends `bytes` by the little-endian CRC-32 of all of it.
 Bytes with_crc(Bytes bytes);
@@ -46,7 +46,7 @@ struct RawHeader {
   GridExponents grid{22, 17, kRotationExp, 12};
   std::uint16_t max_extrapolation = 2000;
   std::uint8_t baseline_span = 1;
-  Bytes meshes{};  ///< mesh_count and all meshes, if flags say so
+  Bytes deformables{};  ///< all about deformable objects, if flags say so
   Bytes extensions{};
   std::array<std::uint8_t, 4> magic{0x89, 0x54, 0x43, 0x54};
   std::uint8_t version = 1;
@@ -111,7 +111,7 @@ struct Update {
   std::uint32_t object = 0;
   Reason reason = Reason::visual;
   std::uint8_t level = 0;
-  std::array<Vec3i, kQuantities> residual{};  ///< position, velocity, rotation, spin
+  std::array<Vec3i, kQuantities> residual{};  ///< position, velocity, rotation, angular velocity
 };
 
 struct Step {
@@ -167,7 +167,7 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-/// A random update that keeps every rule: residuals of any size that the object's axes allow, rotations up to half a turn.
+/// A random update that keeps every rule: residuals of any size that the object's axes allow, rotations up to half a circle.
 Update random_update(Random& random, const StreamHeader& header, std::uint32_t object);
 
 }  // namespace tactus::conformance

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <filesystem>
-#include <initializer_list>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "conformance/make_vectors/build.h"
@@ -16,28 +16,56 @@ namespace tactus::conformance {
 struct Rejection {
   std::string errc;
   std::string rule;
+  std::string later{};  ///< a rule that the file breaks further on: the order of the two checks is what the vector is for
+};
+
+/// What a testee reads. Where `times` copies of `pattern` stand in it at `at`, they are not written to the file but told in the list.
+struct Input {
+  struct Repeat {
+    std::size_t at;
+    Bytes pattern;
+    std::size_t times;
+  };
+
+  Input(Bytes all) : bytes(std::move(all)) {}
+  Input(Bytes all, Repeat told) : bytes(std::move(all)), repeat(std::move(told)) {}
+
+  /// The bytes that are written.
+  Bytes written() const;
+
+  Bytes bytes;
+  std::optional<Repeat> repeat{};
 };
 
 struct Case {
-  std::string stem;
-  std::string id;  ///< stem/NNN-name
+  std::string name;  ///< NNN-name
   std::string what;
-  std::vector<std::string> rules;
-  Bytes input;
+  std::string section;             ///< of the specification
+  std::vector<std::string> rules;  ///< what the vector is for, besides the section
+  Input input;
   std::string replica;                 ///< none, linear or empty
   std::optional<Rejection> rejection;  ///< nothing: the file is valid
+};
+
+/// A folder of vectors.
+struct Stem {
+  std::string name;
+  std::string what;
+  std::vector<Case> cases;
 };
 
 class Catalogue {
  public:
   /// Start a stem: its cases are numbered from 1 in the order in which they are added.
-  void begin(std::string stem);
-  void valid(const std::string& name, const std::string& what, Bytes input, std::vector<std::string> rules = {},
+  void begin(const std::string& stem, const std::string& what);
+  /// The section of the specification that the following valid cases are about: its chapter's number and its title.
+  void section(const std::string& section) { section_ = section; }
+  void valid(const std::string& name, const std::string& what, Input input, std::vector<std::string> rules = {},
              const std::string& replica = "");
-  void invalid(const std::string& name, const std::string& what, const Rejection& rejection, Bytes input);
+  void invalid(const std::string& name, const std::string& what, const Rejection& rejection, Input input);
 
-  /// Write manifest.json and vectors/<stem>/NNN-name.{tct,json,jsonl} below `folder`. False and a message on stderr when our own
-  /// decoder does not answer as a case expects; everything is written nevertheless.
+  /// Write manifest.json, vectors/<stem>.json and vectors/<stem>/NNN-name.{tct,jsonl} below `folder`. False and a message on stderr
+  /// when our own decoder does not answer as a case expects; everything is written nevertheless.
   bool write(const std::filesystem::path& folder) const;
   /// Replace the table between the two marks of the specification's index.
   bool write_index(const std::filesystem::path& file) const;
@@ -45,38 +73,32 @@ class Catalogue {
  private:
   void add(const std::string& name, Case entry);
 
-  std::vector<Case> cases_;
-  std::string stem_;
-  int number_ = 0;
+  std::vector<Stem> stems_;
+  std::string section_;
 };
 
 // One ladder per stem.
-void add_stream_header(Catalogue& catalogue);
-void add_stream_file(Catalogue& catalogue);
-void add_stream_bounds(Catalogue& catalogue);
-void add_stream_orders(Catalogue& catalogue);
-void add_stream_header_orders(Catalogue& catalogue);
+void add_scene(Catalogue& catalogue);
+void add_scene_bounds(Catalogue& catalogue);
+void add_scene_orders(Catalogue& catalogue);
+void add_file(Catalogue& catalogue);
+void add_packet_rigid(Catalogue& catalogue);
+void add_packet_deformable(Catalogue& catalogue);
+void add_packet_substreams(Catalogue& catalogue);
 void add_range(Catalogue& catalogue);
 void add_rigid(Catalogue& catalogue);
 void add_rigid_rules(Catalogue& catalogue);
-void add_rigid_outages(Catalogue& catalogue);
-void add_rigid_orders(Catalogue& catalogue);
 void add_rigid_edges(Catalogue& catalogue);
-void add_rigid_packet_orders(Catalogue& catalogue);
+void add_rigid_orders(Catalogue& catalogue);
 void add_client(Catalogue& catalogue);
-void add_mesh_header(Catalogue& catalogue);
-void add_mesh_main(Catalogue& catalogue);
-void add_mesh_split(Catalogue& catalogue);
-void add_mesh_thesis(Catalogue& catalogue);
-void add_mesh_parts(Catalogue& catalogue);
-void add_mesh_rules(Catalogue& catalogue);
-void add_memory(Catalogue& catalogue);
-void add_mesh_outages(Catalogue& catalogue);
-void add_mesh_orders(Catalogue& catalogue);
-void add_mesh_edges(Catalogue& catalogue);
-void add_mesh_start_rows(Catalogue& catalogue);
-void add_mesh_header_orders(Catalogue& catalogue);
-void add_mesh_packet_orders(Catalogue& catalogue);
-void add_mesh_repeats(Catalogue& catalogue);
+void add_deformable_header(Catalogue& catalogue);
+void add_deformable_limits(Catalogue& catalogue);
+void add_deformable_main(Catalogue& catalogue);
+void add_deformable_layers(Catalogue& catalogue);
+void add_deformable_thesis(Catalogue& catalogue);
+void add_deformable_rules(Catalogue& catalogue);
+void add_deformable_edges(Catalogue& catalogue);
+void add_deformable_start_rows(Catalogue& catalogue);
+void add_deformable_orders(Catalogue& catalogue);
 
 }  // namespace tactus::conformance

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a client shows: spec/50-client.md. Every tick from 0 to the last packet's is looked at.
+/// What a client shows. Every tick from 0 to the last packet's is looked at.
 #include <limits>
 
 #include "conformance/make_vectors/catalogue.h"
+#include "conformance/make_vectors/sections.h"
 
 namespace tactus::conformance {
 namespace {
@@ -40,12 +41,12 @@ Bytes still_object() {
   return stream.finish().bytes();
 }
 
-Bytes wide_turns() {
+Bytes wide_rotations() {
   Stream stream(cube());
   const auto turn = [](Vec3i residual) { return std::vector<Update>{{0, Reason::visual, 0, {{{}, {}, residual, {}}}}}; };
-  stream.add({.tick = 0, .updates = turn({kHalfTurn, 0, 0}), .key = true});
+  stream.add({.tick = 0, .updates = turn({kHalfCircle, 0, 0}), .key = true});
   std::int64_t tick = 0;
-  for (const Vec3i& half : {Vec3i{0, kHalfTurn, 0}, Vec3i{kHalfTurn - 1, 0, 0}, Vec3i{0, 0, -kHalfTurn},
+  for (const Vec3i& half : {Vec3i{0, kHalfCircle, 0}, Vec3i{kHalfCircle - 1, 0, 0}, Vec3i{0, 0, -kHalfCircle},
                             Vec3i{605395, 605395, -605395}, Vec3i{1, 0, 0}, Vec3i{}}) {
     stream.add({.tick = tick += 60, .updates = turn(half)});
   }
@@ -115,7 +116,7 @@ Bytes far_step(std::uint32_t tick_rate, std::int64_t gap, std::int64_t shown) {
 }
 
 /// From the longest rotation there is by half a circle about no axis of the grid.
-Bytes longest_half_turn() {
+Bytes longest_half_circle() {
   RawHeader header = cube();
   header.objects[0].rotation = {kOne30, 0, 1 << 20, -(1 << 20)};
   Stream stream(header);
@@ -125,8 +126,8 @@ Bytes longest_half_turn() {
   return stream.finish().bytes();
 }
 
-/// The residual turns by -48 x 2^-30, the spin by 49 until the interpolation ends.
-Bytes smallest_turn() {
+/// The residual rotates by -48 x 2^-30, the angular velocity by 49 until the interpolation ends.
+Bytes smallest_rotation() {
   RawHeader header = cube();
   header.grid = {22, 17, 28, 20};
   Stream stream(header);
@@ -141,6 +142,7 @@ Bytes smallest_turn() {
 void add_client(Catalogue& c) {
   const auto linear = [&](const char* name, const char* what, const Bytes& bytes) { c.valid(name, what, bytes, {}, "linear"); };
   const auto none = [&](const char* name, const char* what, const Bytes& bytes) { c.valid(name, what, bytes, {}, "none"); };
+  c.section(section::kClient);
   none("empty", "No packet: the initial state is shown at tick 0.", Stream(cube()).bytes());
   none("none", "Updates are applied at once.", updated_at(cube(), {3, 40, 90, 150, 151}));
   linear("linear", "Straight lines and slerps towards the predicted state.", updated_at(cube(), {3, 40, 90, 150, 260}));
@@ -160,17 +162,20 @@ void add_client(Catalogue& c) {
          updated_at(cube(100), {1, 1, 2, 3, 30, 90}));
   linear("heartbeat-only", "An object at rest that is only confirmed.", still_object());
   none("heartbeat-only-none", "The same without interpolation.", still_object());
-  linear("wide-turns", "Turns by half a circle and by next to nothing; quaternions of both signs.", wide_turns());
+  c.section(section::kShownPose);
+  linear("wide-rotations", "Rotations by half a circle and by next to nothing; quaternions of both signs.", wide_rotations());
   linear("ends-of-the-grid", "A line from one end of 32 bits to the other.", ends_of_the_grid());
+  c.section(section::kClient);
   linear("unnamed-objects", "Packets on older baselines: what they do not name is shown as before.", unnamed_objects());
   none("unnamed-objects-none", "The same without interpolation.", unnamed_objects());
   linear("several-objects", "120 packets for four objects, some beyond the extrapolation limit.", several_objects(520));
   none("several-objects-none", "The same without interpolation.", several_objects(520));
   linear("longest-rounded", "At 1005 ticks per second the longest t_N, 100.5 ticks, rounds up to 101.", far_step(1005, 400, 110));
   linear("share-by-a-long-gap", "A gap of 16387 ticks, of which 75 % are 12290.25.", far_step(125000, 16387, 200));
-  linear("longest-half-turn", "Half a circle from a rotation longer than 1: the sine of half the angle is above 1.",
-         longest_half_turn());
-  linear("smallest-turn", "An interpolated turn whose sine is 2^-30.", smallest_turn());
+  c.section(section::kShownPose);
+  linear("longest-half-circle", "Half a circle from a rotation longer than 1: the sine of half the angle is above 1.",
+         longest_half_circle());
+  linear("smallest-rotation", "An interpolated rotation whose sine is 2^-30.", smallest_rotation());
 }
 
 }  // namespace tactus::conformance

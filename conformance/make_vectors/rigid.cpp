@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Valid rigid packets: spec/40-rigid.md.
+/// Valid rigid packets.
 #include <algorithm>
 #include <limits>
 
 #include "conformance/make_vectors/catalogue.h"
+#include "conformance/make_vectors/sections.h"
 
 namespace tactus::conformance {
 namespace {
@@ -94,77 +95,6 @@ Bytes key_packets() {
   return stream.finish().bytes();
 }
 
-RawHeader chained(std::uint8_t span, std::vector<RawObject> objects) {
-  RawHeader header = with_objects(std::move(objects));
-  header.baseline_span = span;
-  return header;
-}
-
-/// Packets 3 and 7 never arrive; every packet builds on one that did.
-Bytes older_baselines() {
-  Stream stream(chained(4, {{"a"}, {"b"}}));
-  Random random(406);
-  const auto add = [&](std::uint16_t sequence, std::int64_t tick, std::uint32_t baseline, std::uint32_t object) {
-    stream.add(
-        {.tick = tick, .updates = {random_update(random, stream.header(), object)}, .baseline = baseline, .sequence = sequence});
-  };
-  stream.add({.tick = 5,
-              .updates = {random_update(random, stream.header(), 0), random_update(random, stream.header(), 1)},
-              .key = true});
-  add(1, 10, 1, 0);
-  add(2, 20, 2, 1);
-  add(4, 30, 2, 0);
-  add(5, 40, 4, 1);
-  add(6, 40, 4, 0);
-  add(8, 55, 4, 1);
-  add(9, 60, 1, 0);
-  return stream.finish().bytes();
-}
-
-Bytes random_baselines() {
-  RawHeader header =
-      chained(64, {{"a"}, {"fixed", Dof::none}, {"b", Dof::translation}, {"c", Dof::rz}, {"d", Dof::all, {7, 7, 7}}});
-  Stream stream(header);
-  Random random(407);
-  std::int64_t tick = 0;
-  for (std::uint32_t i = 0; i < 250; ++i) {
-    Step step{.tick = tick, .updates = {}, .key = i % 50 == 0, .baseline = 1 + random.below(std::min(i, 64u) + (i == 0 ? 1 : 0))};
-    for (const std::uint32_t object : {0u, 2u, 3u, 4u}) {
-      if (random.below(3) == 0) step.updates.push_back(random_update(random, stream.header(), object));
-    }
-    if (step.updates.empty()) step.updates.push_back(random_update(random, stream.header(), 2));
-    stream.add(step);
-    tick += random.below(30);
-  }
-  return stream.finish().bytes();
-}
-
-Bytes sequence_wrap() {
-  Stream stream(chained(2, {{"x", Dof::x}}));
-  const auto update = [](std::int32_t by) { return std::vector<Update>{{0, Reason::visual, 0, {{{by, 0, 0}, {by, 0, 0}}}}}; };
-  stream.add({.tick = 1, .updates = update(1), .key = true, .sequence = std::uint16_t{65533}});
-  for (int i = 2; i < 7; ++i) stream.add({.tick = i, .updates = update(i), .baseline = i == 2 ? 1u : 2u});
-  stream.add({.tick = 9, .updates = update(50), .key = true, .sequence = static_cast<std::uint16_t>(2 + 32767)});
-  stream.add({.tick = 10, .updates = update(51)});
-  return stream.finish().bytes();
-}
-
-/// Sequences 5 to 10 come twice within the 64 states that are kept.
-Bytes sequence_repeats() {
-  Stream stream(chained(64, {{"x", Dof::x}}));
-  std::int64_t tick = 0;
-  const auto add = [&](std::optional<std::uint16_t> sequence) {
-    const std::int32_t by = static_cast<std::int32_t>(++tick);
-    const std::vector<Update> updates{{0, Reason::visual, 0, {{{by, 0, 0}, {by, 0, 0}}}}};
-    stream.add({.tick = tick, .updates = updates, .key = sequence.has_value(), .sequence = sequence});
-  };
-  for (const int start : {5, 32772, 65539}) {
-    add(static_cast<std::uint16_t>(start));
-    for (int i = 0; i < 6; ++i) add(std::nullopt);
-  }
-  return stream.finish().bytes();
-}
-
 Bytes extrapolation_limit() {
   RawHeader header = with_objects({{"cube"}});
   header.max_extrapolation = 50;
@@ -206,23 +136,23 @@ Bytes saturated_motion() {
   return stream.finish().bytes();
 }
 
-Bytes half_turns() {
+Bytes half_circles() {
   Stream stream(with_objects({{"cube", Dof::all, {}, {759250125, 0, 759250125, 0}}}));
   const auto turn = [](Vec3i residual, std::uint8_t level) {
     return std::vector<Update>{{0, Reason::visual, level, {{{}, {}, residual, {}}}}};
   };
-  stream.add({.tick = 0, .updates = turn({kHalfTurn, 0, 0}, 0), .key = true});
-  stream.add({.tick = 1, .updates = turn({0, -kHalfTurn, 0}, 0)});
-  stream.add({.tick = 2, .updates = turn({0, 0, kHalfTurn >> 6}, 3)});
-  stream.add({.tick = 3, .updates = turn({kHalfTurn - 1, 1447, 0}, 0)});
+  stream.add({.tick = 0, .updates = turn({kHalfCircle, 0, 0}, 0), .key = true});
+  stream.add({.tick = 1, .updates = turn({0, -kHalfCircle, 0}, 0)});
+  stream.add({.tick = 2, .updates = turn({0, 0, kHalfCircle >> 6}, 3)});
+  stream.add({.tick = 3, .updates = turn({kHalfCircle - 1, 1447, 0}, 0)});
   stream.add({.tick = 4, .updates = turn({605395, -605395, 605395}, 0)});
-  stream.add({.tick = 5, .updates = turn({-(kHalfTurn >> 14), 0, 0}, 7)});
+  stream.add({.tick = 5, .updates = turn({-(kHalfCircle >> 14), 0, 0}, 7)});
   stream.add({.tick = 6, .updates = turn({1, 0, 0}, 0)});
   return stream.finish().bytes();
 }
 
-/// A fast spin, seen again after many intervals: every quadrant of the sine, angles beyond a whole turn.
-Bytes fast_spin() {
+/// A fast rotation, seen again after many intervals: every quadrant of the sine, angles beyond a full circle.
+Bytes fast_rotation() {
   RawHeader header = with_objects({{"top", Dof::all, {}, {0, 0, -kOne30, 0}}});
   header.max_extrapolation = 65535;
   Stream stream(header);
@@ -245,6 +175,7 @@ RawHeader with_grid(const GridExponents& grid, std::uint32_t tick_rate) {
 }  // namespace
 
 void add_rigid(Catalogue& c) {
+  c.section(section::kRigidPacket);
   c.valid("one-axis", "An object that slides along x.", walk(with_objects({{"slider", Dof::x}}), 401, 40));
   c.valid("free-object", "An object with all degrees of freedom.", walk(RawHeader{}, 402, 60));
   c.valid("single-axes", "Objects with one axis each among static ones, which no packet names.", single_axes(403));
@@ -252,22 +183,26 @@ void add_rigid(Catalogue& c) {
   c.valid("reasons-and-levels", "Every reason with every level.", reasons_and_levels());
   c.valid("key-packets", "Key packets in the middle: what they do not name returns to its initial state.", key_packets(),
           {"R-PKT-4"});
-  c.valid("older-baselines", "Packets 3 and 7 are lost; each packet builds on one that arrived, up to 4 back.", older_baselines(),
-          {"R-PKT-3", "R-PKT-4", "R-PKT-5"});
-  c.valid("random-baselines", "250 packets that build on any of the 64 before.", random_baselines(), {"R-PKT-3", "R-PKT-4"});
-  c.valid("sequence-wrap", "The sequence passes 65535, then jumps by 32767.", sequence_wrap(), {"R-PKT-5"});
-  c.valid("sequence-repeats", "Two kept states have the same sequence; the newest is the baseline.", sequence_repeats(),
-          {"R-PKT-4"});
+  c.section(section::kPrediction);
   c.valid("extrapolation-limit", "Predictions up to, at and beyond max_extrapolation.", extrapolation_limit());
+  c.section(section::kPose);
   c.valid("saturated-position", "Positions at both ends of 32 bits, by prediction and by residual.", saturated_position());
-  c.valid("saturated-motion", "Velocity at both ends of 32 bits, spin at +-2^25; motion predicted from haptic residuals.",
+  c.section(section::kMotion);
+  c.valid("saturated-motion",
+          "Velocity at both ends of 32 bits, angular velocity at +-2^25; motion predicted from haptic residuals.",
           saturated_motion());
-  c.valid("half-turns", "Rotation residuals of length 1 and just below.", half_turns(), {"R-RIG-6"});
-  c.valid("fast-spin", "Spins through many whole turns, up to the largest spin times the longest extrapolation.", fast_spin());
+  c.section(section::kPose);
+  c.valid("half-circles", "Rotation residuals of length 1 and just below.", half_circles(), {"R-RIG-6"});
+  c.section(section::kPrediction);
+  c.valid("fast-rotation",
+          "Rotation through many full circles, up to the largest angular velocity times the longest extrapolation.",
+          fast_rotation());
+  c.section(section::kPose);
   c.valid("coarsest-grid", "Every grid exponent at its lower limit.", walk(with_grid({8, 0, 8, 0}, 1000), 415, 40), {"R-STR-7"});
   c.valid("finest-grid", "Every grid exponent at its upper limit.", walk(with_grid({30, 30, 28, 20}, 1000), 416, 40),
           {"R-STR-7"});
-  c.valid("widest-grid-steps", "Velocity and spin twelve binary orders coarser than position and rotation, 60 ticks per second.",
+  c.valid("widest-grid-steps",
+          "Velocity and angular velocity twelve binary orders coarser than position and rotation, 60 ticks per second.",
           walk(with_grid({30, 18, 28, 16}, 60), 417, 40), {"R-STR-7"});
   c.valid("slowest-clock", "One tick per second.", walk(with_grid({22, 17, kRotationExp, 12}, 1), 418, 20), {"R-STR-6"});
   c.valid("fastest-clock", "A million ticks per second.", walk(with_grid({22, 17, kRotationExp, 12}, 1000000), 419, 20),

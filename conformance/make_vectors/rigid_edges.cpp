@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Edges of the arithmetic of spec/40-rigid.md, and every row of its start models that a packet can use.
+/// Edges of the arithmetic of rigid packets, and every row of its start models that a packet can use.
 #include <limits>
 
 #include "conformance/make_vectors/catalogue.h"
+#include "conformance/make_vectors/sections.h"
 
 namespace tactus::conformance {
 namespace {
@@ -10,7 +11,7 @@ namespace {
 constexpr std::int32_t kLargest = std::numeric_limits<std::int32_t>::max();
 constexpr std::int32_t kUnit = 1 << 20;  // (2^30, 0, 2^20, -2^20) is as long as a rotation may be
 
-Bytes longest_rotations_turned() {
+Bytes longest_rotations_multiplied() {
   RawHeader header;
   header.objects = {{"a", Dof::all, {}, {kOne30, 0, kUnit, -kUnit}}, {"b", Dof::all, {}, {-kOne30, 0, kUnit, -kUnit}}};
   Stream stream(header);
@@ -20,7 +21,7 @@ Bytes longest_rotations_turned() {
 }
 
 /// 1/32 of a step of angle in ten ticks.
-Bytes spin_without_an_angle() {
+Bytes slowest_rotation() {
   RawHeader header;
   header.grid.spin = 20;
   header.objects[0].rotation = {kOne30, 0, kUnit, -kUnit};
@@ -30,8 +31,9 @@ Bytes spin_without_an_angle() {
   return stream.finish().bytes();
 }
 
-/// A turn of most of a half circle in a millionth of a second, and a spin residual that takes back what 32 bits hold of it.
-Bytes saturated_spin() {
+/// A rotation by most of a half circle in a millionth of a second, and a residual of the angular velocity that takes back what 32
+/// bits hold of it.
+Bytes saturated_angular_velocity() {
   RawHeader header;
   header.tick_rate = 1000000;
   Stream stream(header);
@@ -87,12 +89,18 @@ Bytes wide_counts_and_gaps() {
 }  // namespace
 
 void add_rigid_edges(Catalogue& c) {
-  c.valid("longest-rotations-turned", "Products of the longest rotations there are: a component is beyond +-1.",
-          longest_rotations_turned());
-  c.valid("spin-without-an-angle", "A spin so slow that its angle is 0: a rotation that is not of length 1 stays as it is.",
-          spin_without_an_angle());
-  c.valid("saturated-spin", "A haptic update predicts a spin beyond 32 bits, and its residual is as large the other way.",
-          saturated_spin());
+  c.section(section::kPose);
+  c.valid("longest-rotations-multiplied", "Products of the longest rotations there are: a component is beyond +-1.",
+          longest_rotations_multiplied());
+  c.section(section::kPrediction);
+  c.valid("slowest-rotation",
+          "An angular velocity so low that its angle is 0: a rotation that is not of length 1 stays as it is.",
+          slowest_rotation());
+  c.section(section::kMotion);
+  c.valid("saturated-angular-velocity",
+          "A haptic update predicts an angular velocity beyond 32 bits, and its residual is as large the other way.",
+          saturated_angular_velocity());
+  c.section(section::kStartModels);
   c.valid("every-residual", "Residuals in every context, of every width up to 15: all rows of their start models.",
           every_residual());
   c.valid("wide-counts-and-gaps", "Packets of 1 to 521 of 524 objects; gaps of 0 to 523.", wide_counts_and_gaps());

@@ -48,7 +48,7 @@ std::size_t watch(const Bytes& bytes) {
 
 TEST(MeshMemory, OfEveryVector) {
   std::size_t decoders = 0;
-  for (const auto& entry : fs::directory_iterator(fs::path(TACTUS_VECTORS) / "mesh")) {
+  for (const auto& entry : fs::recursive_directory_iterator(TACTUS_VECTORS)) {
     if (entry.path().extension() != ".tct") continue;
     SCOPED_TRACE(entry.path());
     std::ifstream in(entry.path(), std::ios::binary);

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Chapter 50 of the specification: decoder of one deformable object, of either profile."""
+from __future__ import annotations
+
+from typing import NamedTuple, Optional, Union
+
+from conventions import fnv1a, require
+from deformable_header import MAIN, DeformableObject
+from deformable_main import MainCodec, MainState
+from deformable_thesis import ThesisCodec, ThesisState
+from packet import Receiver
+from scene import Declaration, Limits
+
+
+class DeformablePacket(NamedTuple):
+    sequence: int
+    key: int
+    vertices: list[int]                                     # that have a residual of their own
+    range: int                                              # final state of the range decoder
+    code: int
+    state: Union[MainState, ThesisState]
+
+    @property
+    def tick(self) -> int:
+        return self.state.tick
+
+
+class DeformableDecoder:
+    def __init__(self, scene: Declaration, item: DeformableObject, limits: Limits = Limits()):
+        self.codec = MainCodec(item) if item.profile == MAIN else ThesisCodec(item)
+        self.receiver = Receiver(self.codec.initial, scene.baseline_span, limits.packet_size, scene.tick_rate)
+
+    def decode(self, data: bytes, record_tick: Optional[int] = None, now: Optional[int] = None) -> DeformablePacket:
+        """Decodes one packet, of a record at `record_tick` or that arrives at `now`; an error leaves the decoder unchanged."""
+        number = self.receiver.open(data, now)
+        state, key, vertices, decoder = self.codec.decode(data[2:], self.receiver, number)
+        require(record_tick in (None, state.tick), "invalid", "R-FIL-7")
+        self.receiver.accept(number, key, state, now)
+        return DeformablePacket(number % (1 << 16), key, vertices, decoder.range, decoder.code, state)
+
+    def shown(self, tick: int) -> list[int]:
+        """The displacements that a client shows at a tick; one before the current state's counts as that."""
+        state = self.receiver.current
+        return self.codec.expected(state, max(tick, state.tick))
+
+    def state_hash(self) -> int:
+        return fnv1a(self.receiver.current.hashed())

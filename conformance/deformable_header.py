@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Chapter 50 of the specification: what the scene declaration says about deformable objects."""
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import NamedTuple, Optional
+
+from conventions import STR_5, STR_5_VARINT, Cursor, require, text
+
+THESIS, MAIN = 0, 1
+MOST_VERTICES, MOST_TRIANGLES = 1 << 20, 1 << 21
+LARGEST_ENTRY = 2047
+
+
+class Mode(NamedTuple):
+    step: int                                               # quantiser step, x 2^-12 of the visual bound
+    entries: list[int]                                      # 3 for each vertex
+
+
+@dataclass
+class DeformableObject:
+    profile: int
+    name: str
+    rings: int
+    quant_bits: Optional[int] = None                        # thesis
+    models_kept: Optional[int] = None                       # thesis
+    frame_period: Optional[int] = None                      # main
+    layered: Optional[int] = None                           # main
+    rest: list[tuple] = field(default_factory=list)
+    triangles: list[tuple] = field(default_factory=list)
+    modes: list[Mode] = field(default_factory=list)         # main
+
+
+def read_deformable_objects(body: Cursor, most: int, vertices_left: int, triangles_left: int) -> list[DeformableObject]:
+    count = body.varint(STR_5, STR_5_VARINT)
+    require(count >= 1, "malformed", "R-MES-1")
+    require(count <= 255, "invalid", "R-MES-1")
+    require(count <= most, "limit_exceeded", "R-STR-14")
+    items = []
+    for _ in range(count):
+        item = read_deformable_object(body, vertices_left, triangles_left)
+        vertices_left -= len(item.rest)
+        triangles_left -= len(item.triangles)
+        items.append(item)
+    return items
+
+
+def read_deformable_object(body: Cursor, vertices_left: int, triangles_left: int) -> DeformableObject:
+    profile = body.number(1, STR_5)
+    require(profile in (THESIS, MAIN), "unsupported", "R-MES-2")
+    name_bytes = body.take(body.number(1, STR_5), STR_5)
+    item = DeformableObject(profile, "", body.number(1, STR_5))
+    if profile == THESIS:
+        item.quant_bits, item.models_kept = body.take(2, STR_5)
+        require(item.models_kept <= 1, "malformed", "R-MES-3")
+    else:
+        item.frame_period, item.layered = body.number(4, STR_5), body.number(1, STR_5)
+        require(item.layered <= 1, "malformed", "R-MES-3")
+    vertex_count = body.varint(STR_5, STR_5_VARINT)
+    triangle_count = body.varint(STR_5, STR_5_VARINT)
+    check_numbers(item)
+    require(1 <= vertex_count <= MOST_VERTICES and triangle_count <= MOST_TRIANGLES, "invalid", "R-MES-4")
+    require(vertex_count <= vertices_left and triangle_count <= triangles_left, "limit_exceeded", "R-STR-14")
+    require(3 * (vertex_count + triangle_count) <= body.left(), *STR_5)
+    item.rest = read_rest(body, vertex_count)
+    item.triangles = read_triangles(body, vertex_count, triangle_count)
+    if profile == MAIN:
+        item.modes = read_modes(body, vertex_count)
+    item.name = text(name_bytes)
+    return item
+
+
+def check_numbers(item: DeformableObject) -> None:
+    require(item.rings <= 32, "invalid", "R-MES-3")
+    if item.profile == THESIS:
+        require(1 <= item.quant_bits <= 12, "invalid", "R-MES-3")
+    else:
+        require(1 <= item.frame_period <= 1 << 28, "invalid", "R-MES-3")
+
+
+def zigzag(z: int) -> int:
+    return z // 2 if z % 2 == 0 else -((z + 1) // 2)
+
+
+def read_zigzag(body: Cursor) -> int:
+    return zigzag(body.varint(STR_5, STR_5_VARINT))
+
+
+def read_rest(body: Cursor, count: int) -> list[tuple]:
+    rest = []
+    point = [0, 0, 0]
+    for _ in range(count):
+        for axis in range(3):
+            point[axis] += read_zigzag(body)
+            require(-1 << 31 <= point[axis] < 1 << 31, "invalid", "R-MES-5")
+        rest.append(tuple(point))
+    return rest
+
+
+def read_triangles(body: Cursor, vertex_count: int, count: int) -> list[tuple]:
+    triangles = []
+    first = 0
+    for _ in range(count):
+        first += read_zigzag(body)
+        second = first + read_zigzag(body)
+        third = second + read_zigzag(body)
+        corners = (first, second, third)
+        require(all(0 <= c < vertex_count for c in corners) and len(set(corners)) == 3, "invalid", "R-MES-6")
+        triangles.append(corners)
+    return triangles
+
+
+def read_modes(body: Cursor, vertex_count: int) -> list[Mode]:
+    mode_count = body.varint(STR_5, STR_5_VARINT)
+    require(mode_count <= 64, "invalid", "R-MES-7")
+    require(mode_count * (3 * vertex_count + 2) <= body.left(), *STR_5)
+    modes = []
+    for _ in range(mode_count):
+        step = body.number(2, STR_5)
+        require(step >= 1, "invalid", "R-MES-7")
+        modes.append(Mode(step, [read_entry(body) for _ in range(3 * vertex_count)]))
+    return modes
+
+
+def read_entry(body: Cursor) -> int:
+    entry = read_zigzag(body)
+    require(abs(entry) <= LARGEST_ENTRY, "invalid", "R-MES-7")
+    return entry

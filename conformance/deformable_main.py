@@ -1,0 +1,230 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Chapter 50 of the specification: packets of profile main."""
+from __future__ import annotations
+
+import struct
+from typing import NamedTuple, Optional
+
+from conventions import clamp, require, round_div, round_shift
+from deformable_graph import Hierarchy, area_of_interest, ring_list, triangles_of_vertices
+from deformable_header import DeformableObject
+from deformable_motion import Motion, combine, extrapolate, lim, update
+from packet import Receiver
+from range_coder import RangeDecoder
+from start_models import Models
+
+NONE = (1 << 32) - 1
+STILL = (0, 0, 0)
+ALL, HAPTIC, VISUAL = "all", "haptic", "visual"             # layers
+FINEST_HAPTIC = (32768, 36781, 41285, 46341, 52016, 58386)  # M
+
+
+class MainState(NamedTuple):
+    tick: int
+    u: list[int]                                            # 3 for each vertex
+    motion: list[Motion]
+    triangle: int = NONE
+    haptic_index: int = 0
+    visual: int = 0
+    density: int = 0
+    touched: int = 0
+    motion_tick: int = 0
+    haptic_correction: Optional[dict[int, tuple]] = None    # if layered; vertices that are not there have 0
+
+    def hashed(self) -> bytes:
+        """What the state hash is taken of."""
+        data = struct.pack(f"<Q{len(self.u)}i4I", self.tick, *self.u, self.visual, self.triangle, self.haptic_index,
+                           self.density + 4 * self.touched)
+        for c in self.motion:
+            data += struct.pack("<2i5Q", c.last, c.before, *(s % (1 << 64) for s in c[2:]))
+        if self.haptic_correction is not None:
+            data += struct.pack("<Q", self.motion_tick)
+            for v in range(len(self.u) // 3):
+                data += struct.pack("<3i", *self.haptic_correction.get(v, STILL))
+        return data
+
+
+class Known(NamedTuple):
+    """What a layer need not code."""
+    layer: str
+    area: set[int]                                          # the area of interest
+    correction: dict[int, tuple]                            # of the haptic layer of the same frame
+
+    def codes(self, v: int) -> bool:
+        return self.layer != (VISUAL if v in self.area else HAPTIC)
+
+
+class Start(NamedTuple):
+    """The elements up to `late`."""
+    key: int
+    layer: str
+    same_frame: int
+    base: MainState
+    tick: int
+
+
+def klass(number: int) -> int:
+    """The class of a number."""
+    return min(2, abs(number))
+
+
+def raw_number(decoder: RangeDecoder, bits: int) -> int:
+    """Upper bits first in groups of at most 16."""
+    value = 0
+    while bits > 0:
+        n = min(bits, 16)
+        bits -= n
+        value = value << n | decoder.raw(n)
+    return value
+
+
+def step(bound: int) -> int:
+    return max(1, (bound * 37837) >> 15)
+
+
+def haptic_bound(index: int) -> int:
+    return 0 if index == 0 else (FINEST_HAPTIC[(index - 1) % 6] << ((index - 1) // 6)) >> 15
+
+
+class MainCodec:
+    """Decodes packets of one deformable object; what follows from its surface is worked out once."""
+
+    def __init__(self, item: DeformableObject):
+        self.item = item
+        self.hierarchy = Hierarchy(item)
+        self.triangles_of = triangles_of_vertices(item)
+        self.initial = MainState(0, [0] * (3 * len(item.rest)), [Motion()] * len(item.modes),
+                                 haptic_correction={} if item.layered else None)
+
+    def decode(self, payload: bytes, receiver: Receiver, number: int) -> tuple[MainState, int, list[int], RangeDecoder]:
+        decoder, models = RangeDecoder(payload), Models("mesh-start-models.csv")
+        start = self.read_start(decoder, models, receiver, number)
+        base, tick = start.base, start.tick
+        state = self.read_head(decoder, models, start)._replace(tick=tick)
+        coefficients = self.read_coefficients(decoder, models) if start.layer != HAPTIC else [0] * len(self.item.modes)
+
+        steps = [clamp((mode.step * state.visual) >> 12, 1, 1 << 28) for mode in self.item.modes]
+        q = [lim(c * s) for c, s in zip(coefficients, steps)]
+        area = area_of_interest(self.item, self.triangles_of, state.triangle) if state.touched else set()
+        expected = self.expected(base, tick)
+        u = list(expected)
+        correction = base.haptic_correction if start.same_frame else {}
+        for v in area & correction.keys():
+            for axis in range(3):
+                expected[3 * v + axis] -= correction[v][axis]
+        combine(self.item.modes, q, expected)
+        corrections, coded = self.read_vertices(decoder, models, state, Known(start.layer, area, correction), expected, u)
+        decoder.check_end()
+        if self.item.layered:
+            state = state._replace(haptic_correction={v: corrections[v] for v in area} if start.layer == HAPTIC else {})
+        if start.layer != HAPTIC:
+            n = self.frames(base, tick)
+            motion = [update(c, n, lim(extrapolate(c, n) + x)) for c, x in zip(base.motion, q)]
+            state = state._replace(motion=motion, motion_tick=tick)
+        return state._replace(u=u), start.key, coded, decoder
+
+    def frames(self, state: MainState, tick: int) -> int:
+        return round_div((tick - state.motion_tick) << 8, self.item.frame_period)
+
+    def expected(self, state: MainState, tick: int) -> list[int]:
+        """Where the vertices are expected at a later tick."""
+        x = list(state.u)
+        n, m = self.frames(state, tick), self.frames(state, state.tick)
+        combine(self.item.modes, [lim(extrapolate(c, n) - extrapolate(c, m)) for c in state.motion], x)
+        return x
+
+    # ---- Head ----
+
+    def read_start(self, decoder: RangeDecoder, models: Models, receiver: Receiver, number: int) -> Start:
+        key = decoder.bit(models["KEY"][1])
+        named = not key and receiver.span > 1
+        baseline_delta = decoder.magnitude(models["BASELINE"]) if named else 1
+        layer = VISUAL if self.item.layered else ALL
+        if self.item.layered and self.item.triangles and not decoder.bit(models["HALF"][1]):
+            layer = HAPTIC
+        same_frame = int(layer == VISUAL and not key and decoder.bit(models["COMPLETES"][1]))
+        if same_frame:
+            tick_delta = 0
+        elif key:
+            tick_delta = decoder.magnitude(models["TICK"])
+        else:
+            tick_delta = max(0, round_shift(self.item.frame_period, 8) + decoder.signed(models["LATE"]))
+        base = receiver.baseline(number, key, baseline_delta)
+        return Start(key, layer, same_frame, base, receiver.tick(base, key, tick_delta, "R-MES-8"))
+
+    def read_head(self, decoder: RangeDecoder, models: Models, start: Start) -> MainState:
+        state = start.base if start.same_frame else self.read_bounds(decoder, models, start)
+        density = state.density
+        if start.layer != HAPTIC:
+            density = decoder.tree(models[f"DENSITY[{state.density}]"], 2)
+        require(not state.touched or state.triangle < len(self.item.triangles), "invalid", "R-MES-9")
+        require(state.haptic_index <= 168 and state.visual <= 1 << 28, "invalid", "R-MES-10")
+        return state._replace(density=density)
+
+    def read_bounds(self, decoder: RangeDecoder, models: Models, start: Start) -> MainState:
+        base = start.base
+        touched, triangle, haptic_index = int(start.layer == HAPTIC), base.triangle, base.haptic_index
+        if self.item.triangles and start.layer != HAPTIC:
+            touched = decoder.bit(models[f"TOUCHED[{base.touched}]"][1])
+        if touched:
+            triangle = self.read_triangle(decoder, models, base.triangle)
+            haptic_index = clamp(base.haptic_index + decoder.signed(models["HAPTIC"]), 0, 169)
+        visual = base.visual
+        if not decoder.bit(models["SAME_VISUAL"][1]):
+            visual = decoder.magnitude(models["VISUAL"])
+        return base._replace(triangle=triangle, haptic_index=haptic_index, visual=visual, touched=touched)
+
+    def read_triangle(self, decoder: RangeDecoder, models: Models, before: int) -> int:
+        if before != NONE:
+            if decoder.bit(models["SAME_TRIANGLE"][1]):
+                return before
+            if decoder.bit(models["NEAR_TRIANGLE"][1]):
+                number = decoder.tree(models["NEAR_PLACE"], 6)
+                near = ring_list(self.item, self.triangles_of, before, 2)[1:64]
+                return near[number] if number < len(near) else NONE
+        return raw_number(decoder, (len(self.item.triangles) - 1).bit_length())
+
+    def read_coefficients(self, decoder: RangeDecoder, models: Models) -> list[int]:
+        coefficients: list[int] = []
+        for k in range(len(self.item.modes)):
+            group = 0 if k < 4 else 1 if k < 12 else 2 if k < 24 else 3
+            before = klass(coefficients[-1]) if coefficients else 0
+            coefficients.append(decoder.signed(models[f"COEFFICIENT[{group}][{before}]"]))
+        return coefficients
+
+    # ---- Vertices ----
+
+    def read_vertices(self, decoder: RangeDecoder, models: Models, state: MainState, known: Known, expected: list[int],
+                      u: list[int]) -> tuple[dict[int, tuple], list[int]]:
+        """The correction of every vertex, and the vertices with a residual other than 0. Completes `u`."""
+        h = haptic_bound(state.haptic_index)
+        corrections: dict[int, tuple] = {}
+        coded: dict[int, int] = {}
+        for v in self.hierarchy.order:
+            if known.codes(v):
+                haptic = v in known.area and h < state.visual
+                bound = h if haptic else state.visual
+                bound_ratio = 0 if not haptic else 1 if 3 * h > 2 * state.visual else 2 if 4 * h > state.visual else 3
+                p, w = self.hierarchy.parents[v], self.hierarchy.weights[v]
+                depth = min(2, self.hierarchy.depth[v])
+                near = min(2, sum(coded[i] for i in p))
+                r = [0, 0, 0]
+                if decoder.bit(models[f"SIGNIFICANT[{state.density}][{bound_ratio}][{near}][{depth}]"][1]):
+                    r = self.read_residual(decoder, models, int(bound_ratio > 0), depth)
+                for axis in range(3):
+                    i = 3 * v + axis
+                    predicted = lim(expected[i] + round_shift(sum(a * corrections[b][axis] for a, b in zip(w, p)), 15))
+                    u[i] = lim(predicted + r[axis] * step(bound))
+                coded[v] = int(any(r))
+            else:
+                coded[v] = int(known.correction.get(v, STILL) != STILL)
+            corrections[v] = tuple(u[3 * v + axis] - expected[3 * v + axis] for axis in range(3))
+        return corrections, [v for v in coded if coded[v] and known.codes(v)]
+
+    @staticmethod
+    def read_residual(decoder: RangeDecoder, models: Models, tight: int, depth: int) -> list[int]:
+        r: list[int] = []
+        for _ in range(3):
+            before = klass(max((abs(c) for c in r), default=0))
+            r.append(decoder.signed(models[f"COMPONENT[{tight}][{depth}][{before}]"]))
+        return r

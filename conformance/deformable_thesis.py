@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Chapter 50 of the specification: packets of profile thesis."""
+from __future__ import annotations
+
+import struct
+from typing import NamedTuple
+
+from conventions import Cursor, require, round_div
+from deformable_header import DeformableObject, zigzag
+from deformable_motion import lim
+from packet import Receiver
+from range_coder import RangeDecoder
+
+MES_11 = ("truncated", "R-MES-11")
+MES_11_VALUE = ("malformed", "R-MES-11")
+INITIAL = (16384, 1)
+LIST_BITS = 8
+
+
+class ThesisModels(NamedTuple):
+    """Two trees: of gaps and of errors."""
+    list: list
+    errors: list
+
+    def copy(self) -> ThesisModels:
+        return ThesisModels(*([list(m) for m in tree] for tree in self))
+
+
+class ThesisState(NamedTuple):
+    tick: int
+    u: list[int]                                            # 3 for each vertex
+    models: ThesisModels
+    models_kept: int
+
+    def hashed(self) -> bytes:
+        """What the state hash is taken of."""
+        data = struct.pack(f"<Q{len(self.u)}i", self.tick, *self.u)
+        if self.models_kept:
+            for tree in self.models:
+                data += b"".join(struct.pack("<I", zero + (rate << 16)) for zero, rate in tree[1:])
+        return data
+
+
+class Head(NamedTuple):
+    key: int
+    baseline_delta: int
+    tick_delta: int
+    count: int
+    lowest: int
+    range: int
+    list: bytes
+    errors: bytes
+
+
+class ThesisCodec:
+    """Decodes packets of one deformable object."""
+
+    def __init__(self, item: DeformableObject):
+        self.item = item
+        models = ThesisModels([INITIAL] * (1 << LIST_BITS), [INITIAL] * (1 << item.quant_bits))
+        self.initial = ThesisState(0, [0] * (3 * len(item.rest)), models, item.models_kept)
+
+    def decode(self, payload: bytes, receiver: Receiver, number: int) -> tuple[ThesisState, int, list[int], RangeDecoder]:
+        head = self.read_head(payload, receiver.span)
+        base = receiver.baseline(number, head.key, head.baseline_delta)
+        tick = receiver.tick(base, head.key, head.tick_delta, "R-MES-8")
+        models = (base if self.item.models_kept else self.initial).models.copy()
+        listed = self.read_list(RangeDecoder(head.list), models.list, head.count)
+
+        decoder = RangeDecoder(head.errors)
+        q = self.item.quant_bits
+        u = list(base.u)
+        for v in listed:
+            for i in range(3 * v, 3 * v + 3):
+                symbol = decoder.tree(models.errors, q)
+                u[i] = lim(u[i] + head.lowest + round_div(symbol * head.range, (1 << q) - 1))
+        decoder.check_end()
+        return base._replace(tick=tick, u=u, models=models), head.key, listed, decoder
+
+    def expected(self, state: ThesisState, tick: int) -> list[int]:
+        """Prediction in time is to hold (thesis eq. 3.9)."""
+        return state.u
+
+    def read_head(self, payload: bytes, span: int) -> Head:
+        rest = Cursor(payload, 0, len(payload))
+        key = rest.number(1, MES_11)
+        require(key <= 1, *MES_11_VALUE)
+        baseline_delta = rest.number(1, MES_11) if not key and span > 1 else 1
+        tick_delta, count, list_bytes, lowest, extent = (rest.varint(MES_11, MES_11_VALUE) for _ in range(5))
+        require(tick_delta < 1 << 32 and 1 <= count <= len(self.item.rest) and lowest <= 1 << 29 and extent <= 1 << 29,
+                "invalid", "R-MES-12")
+        return Head(key, baseline_delta, tick_delta, count, zigzag(lowest), extent,
+                    rest.take(list_bytes, MES_11), rest.take(rest.left(), MES_11))
+
+    def read_list(self, decoder: RangeDecoder, models: list, count: int) -> list[int]:
+        listed: list[int] = []
+        for _ in range(count):
+            vertex = (listed[-1] if listed else -1) + 1
+            symbol = 255
+            while symbol == 255:
+                symbol = decoder.tree(models, LIST_BITS)
+                vertex += symbol
+                require(vertex < len(self.item.rest), "invalid", "R-MES-13")
+            listed.append(vertex)
+        decoder.check_end()
+        return listed

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Edges of the arithmetic of profile main.
+#include <utility>
+
+#include "conformance/make_vectors/catalogue.h"
+#include "conformance/make_vectors/deformable_build.h"
+#include "conformance/make_vectors/sections.h"
+
+namespace tactus::conformance {
+namespace {
+
+constexpr std::int32_t kFarthest = 1 << 27;
+
+/// Three packets of any residuals.
+Bytes shaken(const Shape& shape, std::uint64_t seed) {
+  DeformableStream stream(only({.shape = shape}));
+  Random random(seed);
+  for (std::int64_t i = 0; i < 3; ++i)
+    stream.add(MainStep{.at = {.tick = i, .key = i == 0}, .density = 3, .residuals = random_residuals(random, 9, 200)});
+  return stream.finished();
+}
+
+/// A vertex, the last one, that neighbours all others.
+Shape star(const std::vector<Vec3i>& rest) {
+  Shape out{rest, {}};
+  const auto centre = static_cast<std::uint32_t>(rest.size()) - 1;
+  for (std::uint32_t i = 0; i < centre; ++i) out.triangles.push_back({i, (i + 1) % centre, centre});
+  return out;
+}
+
+/// The centre's parents: a weight of more than 2, and a pivot that is above 0, but too small.
+Shape steep_and_flat() {
+  const Shape steep = star({{0, 2, 0}, {1, 0, 0}, {1, 2, 0}, {2, 1, 1}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 0, 2}, {1, 2, 0}});
+  const Shape flat = star({{0, 0, 0}, {2, 0, 1}, {0, 1, 0}, {0, 2, 0}, {1, 1, 1}, {1, 1, 1}, {0, 1, 0}, {0, 1, 0}, {2, 1, 1}});
+  return both(steep, moved(flat, {100, 0, 0}));
+}
+
+/// A haptic level that would fall below 0 stays there.
+Bytes haptic_below_0() {
+  DeformableStream stream(only({.shape = one_triangle()}));
+  stream.add(MainStep{.at = {.tick = 10, .key = true}, .triangle = 0u, .haptic = 5});
+  stream.add_packet(11, coded_main_packet(1, [](RangeEncoder& coder, MeshModels& models) {
+                      coder.bit(models.key, 0);
+                      coder.signed_value(models.late, 0);
+                      coder.bit(models.touched[1], 1);
+                      coder.bit(models.same_triangle, 1);
+                      coder.signed_value(models.haptic, -std::numeric_limits<std::int32_t>::max());
+                      coder.bit(models.same_visual, 1);
+                      coder.tree<2>(models.density[1], 3);
+                    }));
+  return stream.bytes();
+}
+
+/// Points of a lattice of 27 places, copies among them, and triangles between any three: where a unit is a step of the lattice, the
+/// matrix of some vertices' parents is not definite.
+Shape crowded(std::uint64_t seed, std::int32_t step) {
+  Random random(seed);
+  Shape shape;
+  for (int i = 0; i < 60; ++i) {
+    Vec3i place{};
+    for (auto& x : place) x = (static_cast<std::int32_t>(random.below(3)) - 1) * step;
+    shape.rest.push_back(place);
+  }
+  while (shape.triangles.size() < 150) {
+    const Triangle t{random.below(60), random.below(60), random.below(60)};
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) shape.triangles.push_back(t);
+  }
+  return shape;
+}
+
+Bytes crowded_stream(std::int32_t step) {
+  DeformableStream stream(only({.shape = crowded(77, step)}));
+  Random random(78);
+  for (int i = 0; i < 3; ++i)
+    stream.add(MainStep{.at = {.tick = i, .key = i == 0}, .density = 3, .residuals = random_residuals(random, 9, 200)});
+  return stream.finished();
+}
+
+/// Every touched vertex goes from the lower end of displacements up by one step of the bound of a level.
+Bytes coarsest_levels() {
+  DeformableStream stream(only({.shape = one_triangle()}));
+  for (std::uint32_t level = 163; level <= 168; ++level) {
+    const auto down = [](const VertexPrediction& at) {
+      return at.predicted[0] > 0 ? Vec3i{} : Vec3i{at.predicted[0] < 0 ? 0 : -1, 0, 0};
+    };
+    const auto up = [](const VertexPrediction& at) { return at.predicted[0] == -kFarthest ? Vec3i{1, 0, 0} : Vec3i{}; };
+    stream.add(MainStep{.at = {.tick = level, .key = true}, .visual = 1u << 28, .residuals = down});
+    stream.add(MainStep{.at = {.tick = level}, .triangle = 0u, .haptic = level, .visual = 1u << 28, .residuals = up});
+  }
+  return stream.finished();
+}
+
+/// Bounds h of 2 beside 3, 1 beside 3 and 4, and 4 beside 4.
+Bytes equal_tightness() {
+  struct Bound {
+    std::uint32_t haptic, visual;
+  };
+  DeformableStream stream(only({.shape = sheet(2, 2)}));
+  Random random(710);
+  std::int64_t tick = 0;
+  for (const auto& [haptic, visual] : {Bound{7, 3}, Bound{1, 3}, Bound{1, 4}, Bound{13, 4}}) {
+    stream.add(MainStep{.at = {.tick = tick, .key = tick == 0},
+                        .triangle = 0u,
+                        .haptic = haptic,
+                        .visual = visual,
+                        .residuals = random_residuals(random, 3, 128)});
+    ++tick;
+  }
+  return stream.finished();
+}
+
+/// Triangle 60 of a sheet, in whose rings 1 and 2 there are `near` triangles, then the triangle of that place.
+Bytes beyond_ring_2() {
+  DeformableStream stream(only({.shape = sheet(8, 8)}));
+  stream.add(MainStep{.at = {.tick = 0, .key = true}, .triangle = 60u});
+  MeshRings rings(stream.composer().item());
+  const auto near = static_cast<std::uint32_t>(rings.triangles_around(60, 2).size()) - 1;
+  return stream
+      .add_packet(1, coded_main_packet(1,
+                                       [&](RangeEncoder& coder, MeshModels& models) {
+                                         coder.bit(models.key, 0);
+                                         coder.signed_value(models.late, 0);
+                                         coder.bit(models.touched[1], 1);
+                                         coder.bit(models.same_triangle, 0);
+                                         coder.bit(models.near_triangle, 1);
+                                         coder.tree<6>(models.near_place, near);
+                                         coder.signed_value(models.haptic, 0);
+                                         coder.bit(models.same_visual, 1);
+                                         coder.tree<2>(models.density[1], 1);
+                                       }))
+      .bytes();
+}
+
+/// A basis whose steps are 1 where the visual bound is 0, and whose displacements stay small.
+RawDeformable quiet_basis(std::size_t modes) {
+  RawDeformable item{.shape = one_triangle(), .mode_steps = std::vector<std::uint16_t>(modes, 1)};
+  for (std::size_t i = 0; i < 9 * modes; ++i) item.entries.push_back(static_cast<std::int32_t>(i % 5) * 300 - 600);
+  return item;
+}
+
+/// Sums 11, 12 and 22 of 1, 8 and 31, and of 1, 10 and 31: d = 2 * 32 - 8^2 = 0 and 2 * 32 - 10^2 < 0.
+Bytes no_taps() {
+  DeformableStream stream(only(quiet_basis(2)));
+  std::int64_t tick = 0;
+  const auto add = [&](std::int64_t frames, std::int32_t first, std::int32_t second) {
+    tick += frames;
+    stream.add(MainStep{.at = {.tick = tick, .key = tick == 0}, .visual = 0, .coefficients = {first, second}});
+  };
+  add(0, 0, 0);
+  add(2, 16, 20);  // last and before are 8, and 10
+  add(0, -7, -9);  // last is 1
+  add(1, 0, 3);    // the sums are 1, 8 and 64, and 1, 10 and 100; the second mode's 01 and 02 are 3 and 30
+  add(2, 0, -1);   // last and before are 0
+  for (int i = 0; i < 64; ++i) add(1, 0, 0);
+  add(0, 5, 5);
+  add(1, 0, 0);
+  add(3, 1, -1);
+  return stream.finished();
+}
+
+/// A coefficient of 1 is as large as there may be.
+RawDeformable loud_basis(std::uint8_t layered) {
+  RawDeformable item = quiet_basis(2);
+  item.mode_steps = {65535, 65535};
+  item.layered = layered;
+  return item;
+}
+
+/// Twenty packets of one frame add up to more than 32 bits; then motion is predicted from that, up to 9 frames ahead. At last a steady
+/// motion: eight frames of it are more than a displacement can be, and a coefficient takes as much back.
+Bytes saturated_prediction() {
+  DeformableStream stream(only(loud_basis(0)));
+  Random random(711);
+  std::int64_t tick = 0;
+  bool first_packet = true;
+  const auto add = [&](std::int64_t frames, std::int32_t first, std::int32_t second) {
+    tick += frames;
+    stream.add(MainStep{
+        .at = {.tick = tick, .key = std::exchange(first_packet, false)}, .visual = 1u << 28, .coefficients = {first, second}});
+  };
+  add(0, 0, 0);
+  for (int i = 0; i < 20; ++i) add(0, 1, -1);
+  for (int i = 0; i < 40; ++i) {
+    const std::int64_t frames = random.below(3) == 0 ? random.below(10) : 1;
+    const auto first = static_cast<std::int32_t>(random.below(3)) - 1;
+    add(frames, first, static_cast<std::int32_t>(random.below(3)) - 1);
+  }
+  for (int i = 0; i < 20; ++i) add(1, 1, -1);
+  add(8, -1, 1);
+  return stream.finished();
+}
+
+/// Motion swings so that its increments' sums after one frame and after three are at the two ends. A haptic layer takes the first frame.
+Bytes saturated_split() {
+  DeformableStream stream(only(loud_basis(1)));
+  std::int64_t tick = 0;
+  const auto visual = [&](std::int64_t frames, std::int32_t by) {
+    tick += frames;
+    stream.add(MainStep{
+        .at = {.tick = tick, .key = tick == 0}, .layer = MeshHalf::visual, .visual = 1u << 28, .coefficients = {by, -by}});
+  };
+  visual(0, 0);
+  for (int i = 0; i < 13; ++i) visual(1, i % 4 < 2 ? 1 : -1);
+  ++tick;
+  stream.add(MainStep{.at = {.tick = tick}, .layer = MeshHalf::haptic, .triangle = 0u, .haptic = 9, .visual = 1u << 28});
+  visual(2, 0);
+  return stream.finished();
+}
+
+}  // namespace
+
+void add_deformable_edges(Catalogue& c) {
+  c.section(section::kHead);
+  c.valid("haptic-below-0", "haptic_change takes it far below 0: haptic is 0.", haptic_below_0(), {"R-MES-10"});
+  c.section(section::kParents);
+  c.valid("crowded", "Copies and near neighbours among parents, on a surface of two units: some matrices are not definite.",
+          crowded_stream(1));
+  c.valid("crowded-wide", "The same surface a thousand times as wide.", crowded_stream(1000));
+  c.section(section::kCodingOrder);
+  c.valid("join-distances", "Shifted distances differ in both directions: which kept neighbour a vertex joins depends on it.",
+          shaken(sheet(7, 6, 200001), 700));
+  c.section(section::kParents);
+  c.valid("steep-and-flat", "A parent's weight is limited to 2; a pivot is above 0, but below 2^18.",
+          shaken(steep_and_flat(), 701));
+  c.section(section::kVertexBounds);
+  c.valid("coarsest-indices", "Steps of the haptic indices 163 to 168.", coarsest_levels(), {"R-MES-10"});
+  c.valid("equal-bound-ratios",
+          "Bounds where 3 h is twice the visual bound, 4 h is that and one more, and h is the visual bound.", equal_tightness());
+  c.invalid("beyond-ring-2", "The first place beyond rings 1 and 2.", {"invalid", "R-MES-9"}, beyond_ring_2());
+  c.section(section::kTime);
+  c.valid("no-predictor", "Steps of modes of 1, where the visual bound is 0; correlations whose determinant is 0 and below.",
+          no_taps());
+  c.valid("saturated-prediction", "Coefficients that add up beyond 32 bits in one frame, and what is predicted from them.",
+          saturated_prediction());
+  c.valid("saturated-layers",
+          "A visual layer after a haptic layer: what motion adds between them goes from one end to the other.",
+          saturated_split());
+}
+
+}  // namespace tactus::conformance

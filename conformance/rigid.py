@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Chapter 40 of the specification: rigid packets."""
+from __future__ import annotations
+
+import struct
+from math import isqrt
+from typing import NamedTuple, Optional
+
+from conventions import (FNV_START, ONE, axis_angle, clamp, fnv1a, mul, renorm, require, round_div, round_shift,
+                         sat32)
+from packet import Receiver
+from range_coder import RangeDecoder
+from scene import Declaration, Limits, State
+from start_models import Models
+
+# ---- Residual, prediction, reconstruction ---------------------------------------------------------------------------
+HAPTIC = 3
+LARGEST_ANGULAR = 1 << 25
+HALF_RADIAN = 341782638                                     # 2^32 / (4 pi), a binary angle
+
+
+def included(dof: int, q: int) -> list[int]:
+    """The axes of vector q (position, velocity, rotation, angular velocity) that `dof` does not exclude."""
+    return [a for a in range(3) if dof >> (a if q < 2 else 3 + a) & 1]
+
+
+def residual(decoder: RangeDecoder, models: Models, dof: int, reason: int) -> list[list[int]]:
+    r = [[0, 0, 0] for _ in range(4)]
+    context = reason
+    for q in range(4):
+        if q == 2:
+            context = reason
+        largest = 0
+        for a in included(dof, q):
+            r[q][a] = decoder.signed(models[f"RESIDUAL[{q}][{context}]"])
+            largest = max(largest, abs(r[q][a]))
+            w = largest.bit_length()
+            context = 4 if w == 0 else 5 if w <= 2 else 6 if w <= 5 else 7
+    return r
+
+
+def predict(scene: Declaration, state: State, t: int) -> tuple[tuple, tuple]:
+    dt = min(t - state.tick, scene.max_extrapolation)
+    if dt == 0:
+        return state.position, state.rotation
+    shift = scene.position_exp - scene.velocity_exp
+    x = tuple(sat32(p + round_div((v * dt) << shift, scene.tick_rate)) for p, v in zip(state.position, state.velocity))
+    speed = isqrt(sum(c * c for c in state.angular_velocity) << 10)
+    if speed == 0:
+        return x, state.rotation
+    angle = round_div(speed * dt, scene.tick_rate)
+    half = (((angle * HALF_RADIAN + (1 << (scene.angular_exp + 4))) % (1 << 64)) >> (scene.angular_exp + 5)) % (1 << 32)
+    if half == 0:
+        return x, state.rotation
+    u = tuple(round_div(c << 35, speed) for c in state.angular_velocity)
+    return x, renorm(mul(axis_angle(u, half), state.rotation))
+
+
+def reconstruct_pose(scene: Declaration, base: State, t: int, r: list[list[int]], s: int) -> tuple[tuple, tuple]:
+    p, q = predict(scene, base, t)
+    position = tuple(sat32(p[a] + (r[0][a] << s)) for a in range(3))
+    m = [c << s for c in r[2]]
+    n = sum(c * c for c in m)
+    length = 1 << scene.rotation_exp
+    require(all(abs(c) <= length for c in m) and n <= length * length, "invalid", "R-RIG-6")
+    if n == 0:
+        return position, q
+    k = min(30, 60 - 2 * scene.rotation_exp)
+    d = (length * length + n) >> (30 - k)
+    w = round_div((length * length - n) << k, d)
+    v = [round_div((2 * length * c) << k, d) for c in m]
+    return position, renorm(mul(tuple(clamp(c, -ONE, ONE) for c in (w, *v)), q))
+
+
+def reconstruct_motion(scene: Declaration, base: State, t: int, r: list[list[int]], s: int, reason: int) -> tuple[tuple, tuple]:
+    v, o, dt = list(base.velocity), list(base.angular_velocity), t - base.tick
+    if reason == HAPTIC and dt > 0:
+        for a in range(3):
+            e, f = sat32(r[0][a] << s), sat32(r[2][a] << s)
+            if e != 0:
+                v[a] = sat32(v[a] + round_div(3 * e * scene.tick_rate, (2 * dt) << (scene.position_exp - scene.velocity_exp)))
+            if f != 0:
+                o[a] = sat32(o[a] + round_div(6 * f * scene.tick_rate, dt << (scene.rotation_exp - scene.angular_exp)))
+    velocity = tuple(sat32((round_shift(v[a], s) + r[1][a]) << s) for a in range(3))
+    angular = tuple(clamp((round_shift(o[a], s) + r[3][a]) << s, -LARGEST_ANGULAR, LARGEST_ANGULAR) for a in range(3))
+    return velocity, angular
+
+
+# ---- Packets --------------------------------------------------------------------------------------------------------
+class Moment(NamedTuple):
+    """The state of all objects."""
+    tick: int
+    states: list[State]
+
+
+class Update(NamedTuple):
+    object: int                                             # index in the declaration
+    reason: int
+    level: int
+
+
+class Packet(NamedTuple):
+    sequence: int
+    key: int
+    updates: list[Update]
+    moment: Moment
+    range: int                                              # final state of the range decoder
+    code: int
+
+    @property
+    def tick(self) -> int:
+        return self.moment.tick
+
+
+class RigidDecoder:
+    """Keeps the initial state and the scene states after the newest `baseline_span` packets."""
+
+    def __init__(self, scene: Declaration, limits: Limits = Limits()):
+        self.scene = scene
+        self.moving = scene.moving()
+        initial = Moment(0, [item.initial for item in scene.objects])
+        self.receiver = Receiver(initial, scene.baseline_span, limits.packet_size, scene.tick_rate)
+
+    def decode(self, data: bytes, record_tick: Optional[int] = None, now: Optional[int] = None) -> Packet:
+        """Decodes one packet, of a record at `record_tick` or that arrives at `now`; an error leaves the decoder unchanged."""
+        number = self.receiver.open(data, now)
+        decoder, models = RangeDecoder(data[2:]), Models("rigid-start-models.csv")
+        several = len(self.moving) > 1
+
+        key = decoder.bit(models["KEY"][1])
+        named = not key and self.scene.baseline_span > 1
+        baseline_delta = decoder.magnitude(models["BASELINE"]) if named else 1
+        tick_delta = decoder.magnitude(models["TICK"])
+        count = decoder.magnitude(models["COUNT"]) if several else 1
+        baseline = self.receiver.baseline(number, key, baseline_delta)
+        tick = self.receiver.tick(baseline, key, tick_delta, "R-RIG-1")
+        require(1 <= count <= len(self.moving), "invalid", "R-RIG-3")
+
+        moment = Moment(tick, list(baseline.states))
+        updates = []
+        index = -1
+        for _ in range(count):
+            index += 1 + (decoder.magnitude(models["GAP"]) if several else 0)
+            require(index < len(self.moving), "invalid", "R-RIG-4")
+            updates.append(self.read_update(decoder, models, moment, self.moving[index]))
+        decoder.check_end()
+        require(record_tick in (None, tick), "invalid", "R-FIL-7")
+        self.receiver.accept(number, key, moment, now)
+        return Packet(number % (1 << 16), key, updates, moment, decoder.range, decoder.code)
+
+    def read_update(self, decoder: RangeDecoder, models: Models, moment: Moment, index: int) -> Update:
+        """Replaces the baseline's state of an object in `moment` by its new state."""
+        reason = decoder.tree(models["REASON"], 2)
+        level = decoder.tree(models["LEVEL"], 3)
+        r = residual(decoder, models, self.scene.objects[index].dof, reason)
+        base, s = moment.states[index], 2 * level
+        position, rotation = reconstruct_pose(self.scene, base, moment.tick, r, s)
+        velocity, angular = reconstruct_motion(self.scene, base, moment.tick, r, s, reason)
+        moment.states[index] = State(moment.tick, position, rotation, velocity, angular)
+        return Update(index, reason, level)
+
+    def state_hash(self) -> int:
+        states = self.receiver.current.states
+        h = FNV_START
+        for i in self.moving:
+            tick, *vectors = states[i]
+            h = fnv1a(struct.pack("<Q13i", tick, *(c for vector in vectors for c in vector)), h)
+        return h

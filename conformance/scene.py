@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Chapter 20 of the specification: scene declaration, the header of a stream."""
+from __future__ import annotations
+
+import struct
+import zlib
+from dataclasses import dataclass, field
+from typing import NamedTuple, Optional
+
+from conventions import ONE, STR_5, STR_5_VARINT, Cursor, require, text
+from deformable_header import THESIS, DeformableObject, read_deformable_objects
+
+
+class Limits(NamedTuple):
+    """What this decoder accepts at most (R-STR-14, R-STR-18, R-FIL-4, R-PKT-1)."""
+    objects: int = 4096
+    body_size: int = 1 << 20
+    packet_size: int = 1 << 20
+    vertices: int = 1 << 20                                 # of all deformable objects
+    triangles: int = 1 << 21                                # the same
+    state_bytes: int = 1 << 28                              # R-STR-18
+
+
+MAGIC = b"\x89TCT"
+SMALLEST_OBJECT = 32
+HAS_DEFORMABLES = 1                                         # bit 0 of `flags`
+
+
+class State(NamedTuple):                                    # chapter 40
+    tick: int
+    position: tuple
+    rotation: tuple
+    velocity: tuple = (0, 0, 0)
+    angular_velocity: tuple = (0, 0, 0)
+
+
+class Object(NamedTuple):
+    name: str
+    dof: int
+    initial: State
+
+
+class Bounds(NamedTuple):
+    """Elements of the bounds record in the order in which they are read, f64 as the hexadecimal digits of their bits."""
+    rigid: Optional[list]
+    deformables: list[list]
+
+
+@dataclass
+class Declaration:
+    version: int
+    profile: int
+    tick_rate: int
+    position_exp: int
+    velocity_exp: int
+    rotation_exp: int
+    angular_exp: int
+    max_extrapolation: int
+    baseline_span: int
+    objects: list[Object] = field(default_factory=list)
+    deformables: list[DeformableObject] = field(default_factory=list)
+    bounds: Optional[Bounds] = None
+
+    def moving(self) -> list[int]:
+        """The moving objects M of chapter 40, as indices into `objects`."""
+        return [i for i, item in enumerate(self.objects) if item.dof != 0]
+
+
+STR_16 = ("malformed", "R-STR-16")
+BOUNDS = 2                                                  # type of an extension record
+
+
+def read_declaration(data: bytes, limits: Limits = Limits()) -> tuple[Declaration, int]:
+    """Returns the declaration and its size in bytes."""
+    require(len(data) >= 4, "truncated", "R-STR-1")
+    require(data[:4] == MAGIC, "malformed", "R-STR-1")
+    require(len(data) >= 12, *STR_5)
+    version, profile, flags, body_size = struct.unpack_from("<BBHI", data, 4)
+    require(version == 1, "unsupported", "R-STR-2")
+    require(profile <= 1, "malformed", "R-STR-3")
+    require(profile == 0, "unsupported", "R-STR-3")
+    require(flags <= HAS_DEFORMABLES, "malformed", "R-STR-4")
+    require(body_size <= limits.body_size, "limit_exceeded", "R-STR-14")
+    end = 12 + body_size
+    require(len(data) >= end + 4, *STR_5)
+    require(zlib.crc32(data[:end]) == int.from_bytes(data[end:end + 4], "little"), "checksum", "R-STR-15")
+
+    body = Cursor(data, 12, end)
+    scene = Declaration(version, profile, *struct.unpack("<IBBBBHB", body.take(11, STR_5)))
+    object_count = body.varint(STR_5, STR_5_VARINT)
+    check_numbers(scene)
+    require(object_count <= limits.objects, "limit_exceeded", "R-STR-14")
+    require(object_count * SMALLEST_OBJECT <= body.left(), *STR_5)
+    scene.objects = [read_object(body) for _ in range(object_count)]
+    if flags & HAS_DEFORMABLES:
+        scene.deformables = read_deformable_objects(body, limits.objects - object_count, limits.vertices, limits.triangles)
+    while body.left() > 0:
+        kind = body.varint(STR_16, STR_16)
+        content = body.take(body.varint(STR_16, STR_16), STR_16)
+        if kind == BOUNDS:
+            require(scene.bounds is None, "invalid", "R-STR-17")
+            scene.bounds = read_bounds(Cursor(content, 0, len(content)), scene)
+    names = [item.name for item in (*scene.objects, *scene.deformables)]
+    require(len(set(names)) == len(names), "invalid", "R-STR-11")
+    require(state_bytes(scene) <= limits.state_bytes, "limit_exceeded", "R-STR-18")
+    return scene, end + 4
+
+
+def check_numbers(scene: Declaration) -> None:
+    require(1 <= scene.tick_rate <= 1000000, "invalid", "R-STR-6")
+    require(8 <= scene.position_exp <= 30 and scene.velocity_exp <= scene.position_exp <= scene.velocity_exp + 12
+            and 8 <= scene.rotation_exp <= 28 and scene.angular_exp <= 20
+            and scene.angular_exp <= scene.rotation_exp <= scene.angular_exp + 12, "invalid", "R-STR-7")
+    require(scene.max_extrapolation >= 1, "invalid", "R-STR-8")
+    require(1 <= scene.baseline_span <= 64, "invalid", "R-STR-9")
+
+
+def state_bytes(scene: Declaration) -> int:
+    """What all states take, as the chapter counts it."""
+    states = scene.baseline_span + 2
+    total = 64 * states * len(scene.objects)
+    for item in scene.deformables:
+        total += states * ((24 if item.layered else 12) * len(item.rest) + 48 * len(item.modes))
+        if item.profile == THESIS:
+            total += (states + 2 if item.models_kept else 2) * 4 * (254 + (1 << item.quant_bits))
+    return total
+
+
+def read_object(body: Cursor) -> Object:
+    kind = body.number(1, STR_5)
+    require(kind == 1, "unsupported", "R-STR-10")
+    dof, name_size = body.take(2, STR_5)
+    name_bytes = body.take(name_size, STR_5)
+    pose = struct.unpack("<7i", body.take(28, STR_5))
+    name = text(name_bytes)
+    require(dof >> 3 in (0, 1, 2, 4, 7), "invalid", "R-STR-12")
+    position, rotation = pose[:3], pose[3:]
+    require(all(-ONE <= c <= ONE for c in rotation)
+            and abs(sum(c * c for c in rotation) - (1 << 60)) <= 1 << 41, "invalid", "R-STR-13")
+    return Object(name, dof, State(0, position, rotation))
+
+
+def read_bounds(data: Cursor, scene: Declaration) -> Bounds:
+    def f64s(count: int) -> list[str]:
+        return [f64() for _ in range(count)]
+
+    def f64() -> str:
+        bits = data.number(8, ("truncated", "R-STR-17"))
+        require(bits < 0x7FF0000000000000, "invalid", "R-STR-17")
+        return f"{bits:016x}"
+
+    def choice() -> int:
+        value = data.number(1, ("truncated", "R-STR-17"))
+        require(value <= 3, "invalid", "R-STR-17")
+        return value
+
+    rigid = None
+    if scene.moving():
+        rigid = f64s(3)
+        haptic = choice()
+        rigid += [haptic, *f64s({0: 0, 1: 2, 2: 3, 3: 2}[haptic])]
+    deformables = []
+    for _ in scene.deformables:
+        promise = choice()
+        deformables.append([promise, *f64s(3 if promise & 2 else 1)])
+    return Bounds(rigid, deformables)
