@@ -6,21 +6,21 @@ import struct
 import sys
 from pathlib import Path
 
-import mesh_main
-import mesh_thesis
-import packets
-import rigid_decoder
+import deformable_main
+import deformable_thesis
+import rigid
 from conventions import Cursor, StreamError, clamp, round_shift
 from decoder import File, SceneDecoder
-from mesh_header import zigzag
-from mesh_motion import FARTHEST, combine, lim
-from range_decoder import RangeDecoder
+from deformable_header import MAIN, zigzag
+from deformable_motion import FARTHEST, combine, lim
+from packet import Receiver
+from range_coder import RangeDecoder
 from start_models import Models
 
 NAMES: dict = {}                                            # by identity of a model: the model, its name
 ELEMENTS = {                                                # models, and the element of the specification that they code
     "KEY": "key", "BASELINE": "baseline_delta", "TICK": "tick_delta", "COUNT": "count", "GAP": "gap", "REASON": "reason",
-    "LEVEL": "level", "LAYER": "layer", "HALF": "layer", "SAME_FRAME": "same_frame", "COMPLETES": "same_frame", "LATE": "late",
+    "LEVEL": "level", "LAYER": "layer", "SAME_FRAME": "same_frame", "LATE": "late",
     "TOUCHED": "touched", "SAME_TRIANGLE": "same triangle", "NEAR_TRIANGLE": "near triangle", "NEAR_PLACE": "entry of near",
     "HAPTIC": "haptic_change", "SAME_VISUAL": "same_visual", "VISUAL": "visual", "DENSITY": "density",
     "COEFFICIENT": "coefficient", "SIGNIFICANT": "significant", "COMPONENT": "component of r", "list": "gap", "errors": "symbol",
@@ -45,7 +45,7 @@ class NamedModels(Models):
         return models
 
 
-class NamedThesisModels(mesh_thesis.ThesisModels):
+class NamedThesisModels(deformable_thesis.ThesisModels):
     def copy(self):
         copied = super().copy()
         name_models("list", copied.list)
@@ -110,23 +110,23 @@ class Found:
 
 def narrate():
     """From now on decoders tell what they do."""
-    rigid_decoder.Models = mesh_main.Models = NamedModels
-    mesh_thesis.ThesisModels = NamedThesisModels
-    rigid_decoder.RangeDecoder = mesh_main.RangeDecoder = mesh_thesis.RangeDecoder = Narrator
-    baseline = packets.Receiver.baseline
+    rigid.Models = deformable_main.Models = NamedModels
+    deformable_thesis.ThesisModels = NamedThesisModels
+    rigid.RangeDecoder = deformable_main.RangeDecoder = deformable_thesis.RangeDecoder = Narrator
+    baseline = Receiver.baseline
 
     def find(receiver, number, key, baseline_delta):
         Found.number, Found.delta = number, 0 if key else baseline_delta
         Found.base = baseline(receiver, number, key, baseline_delta)
         return Found.base
 
-    read = mesh_main.MainCodec.read_coefficients
+    read = deformable_main.MainCodec.read_coefficients
 
     def keep(codec, decoder, models):
         Found.coefficients = read(codec, decoder, models)
         return Found.coefficients
 
-    packets.Receiver.baseline, mesh_main.MainCodec.read_coefficients = find, keep
+    Receiver.baseline, deformable_main.MainCodec.read_coefficients = find, keep
 
 
 # ---- A packet -------------------------------------------------------------------------------------------------------
@@ -140,25 +140,25 @@ def vector(v) -> str:
     return ", ".join(str(c) for c in v)
 
 
-def tell_rigid(packet, header):
+def tell_rigid(packet, scene):
     for update in packet.updates:
-        base, state = Found.base.states[update.object], packet.scene.states[update.object]
-        position, rotation = rigid_decoder.predict(header, base, packet.tick)
+        base, state = Found.base.states[update.object], packet.moment.states[update.object]
+        position, rotation = rigid.predict(scene, base, packet.tick)
         rows = [f"| predicted from the baseline, of tick {base.tick} | {vector(position)} | {vector(rotation)} | | |",
                 f"| decoded | {vector(state.position)} | {vector(state.rotation)} | {vector(state.velocity)} | "
-                f"{vector(state[4])} |"]
+                f"{vector(state.angular_velocity)} |"]
         print(f"Object {update.object}, reason {update.reason}, level {update.level}:\n")
         table("| position | rotation | velocity | angular velocity", rows)
 
 
 def tell_main(packet, codec):
     state, base = packet.state, Found.base
-    index = state.haptic
-    touch = f"triangle {state.triangle}, haptic index {index}: h = {mesh_main.haptic_bound(index)}" if state.touched else "no touch"
+    h = deformable_main.haptic_bound(state.haptic_index)
+    touch = f"triangle {state.triangle}, haptic index {state.haptic_index}: h = {h}" if state.touched else "no touch"
     print(f"Visual bound {state.visual}, {touch}. Density {state.density}.\n")
     if state.motion:
         table("mode | last | before", [f"| {k} | {m.last} | {m.before} |" for k, m in enumerate(state.motion)])
-    if codec.mesh.split:
+    if codec.item.layered:
         table("vertex | u", [f"| {v} | {vector(state.u[3 * v:3 * v + 3])} |" for v in packet.vertices])
     else:
         tell_vertices(packet, codec, state, base)
@@ -166,18 +166,18 @@ def tell_main(packet, codec):
 
 def tell_vertices(packet, codec, state, base):
     """Every step of section 7, worked out again from the states before and after a packet without layers."""
-    mesh, tree = codec.mesh, codec.hierarchy
+    item, tree = codec.item, codec.hierarchy
     expected = codec.expected(base, state.tick)
-    steps = [clamp((mode.step * state.visual) >> 12, 1, 1 << 28) for mode in mesh.modes]
-    combine(mesh.modes, [lim(c * s) for c, s in zip(Found.coefficients, steps)], expected)
-    area = mesh_main.area_of_interest(mesh, codec.triangles_of, state.triangle) if state.touched else set()
+    steps = [clamp((mode.step * state.visual) >> 12, 1, 1 << 28) for mode in item.modes]
+    combine(item.modes, [lim(c * s) for c, s in zip(Found.coefficients, steps)], expected)
+    area = deformable_main.area_of_interest(item, codec.triangles_of, state.triangle) if state.touched else set()
     correction, rows = {}, []
     for v in tree.order:
         axes = range(3 * v, 3 * v + 3)
         parents = list(zip(tree.parents[v], tree.weights[v]))
         predicted = [lim(expected[i] + round_shift(sum(w * correction[p][i % 3] for p, w in parents), 15)) for i in axes]
-        bound = min(state.visual, mesh_main.haptic_bound(state.haptic)) if v in area else state.visual
-        step = mesh_main.step(bound)
+        bound = min(state.visual, deformable_main.haptic_bound(state.haptic_index)) if v in area else state.visual
+        step = deformable_main.step(bound)
         r = [(state.u[i] - p) // step if abs(state.u[i]) < FARTHEST else "to the limit" for i, p in zip(axes, predicted)]
         correction[v] = [state.u[i] - expected[i] for i in axes]
         rows.append(f"| {v} | {vector(expected[i] for i in axes)} | {vector(predicted)} | {bound} | {step} | {vector(r)} | "
@@ -201,16 +201,16 @@ def tell_thesis(packet, data, span):
     table("element | bytes | value", rows)
 
 
-def tell_packet(packet, data, decoder, header, every_bit):
-    thesis = not isinstance(packet, rigid_decoder.Packet) and not isinstance(packet.state, mesh_main.MainState)
+def tell_packet(packet, data, decoder, scene, every_bit):
+    thesis = not isinstance(packet, rigid.Packet) and not isinstance(packet.state, deformable_main.MainState)
     if thesis:
-        tell_thesis(packet, data, header.baseline_span)
+        tell_thesis(packet, data, scene.baseline_span)
     if every_bit:
         table("symbol | range | code | zero | bound or step | value | bytes taken", Narrator.steps)
     table("element | decoded by | bits | value", Narrator.symbols)
     print(f"Final state: range {packet.range:08x}, code {packet.code:08x}. Tick {packet.tick}, key {packet.key}.\n")
-    if isinstance(packet, rigid_decoder.Packet):
-        tell_rigid(packet, header)
+    if isinstance(packet, rigid.Packet):
+        tell_rigid(packet, scene)
     elif thesis:
         table("vertex | u", [f"| {v} | {vector(packet.state.u[3 * v:3 * v + 3])} |" for v in packet.vertices])
     else:
@@ -219,32 +219,32 @@ def tell_packet(packet, data, decoder, header, every_bit):
 
 def explain(file, number, every_bit):
     narrate()
-    scene = SceneDecoder(file.header)
+    decoders = SceneDecoder(file.declaration)
     for count, (tick, record) in enumerate(file.packets()):
         Narrator.steps.clear()
         Narrator.symbols.clear()
         NAMES.clear()
-        part, data = scene.split(record)
-        packet = scene.parts[part].decode(data, tick)
+        substream, data = decoders.split(record)
+        packet = decoders.substreams[substream].decode(data, tick)
         if count == number:
             break
     else:
         sys.exit(f"there is no packet {number}")
-    substream = f" of substream {part}" if len(scene.parts) > 1 else ""
-    print(f"Packet{substream}: `{data.hex(' ')}`: sequence {packet.sequence}, payload `{data[2:].hex(' ')}`.\n")
-    tell_packet(packet, data, scene.parts[part], file.header, every_bit)
-    print(f"State hash: {scene.parts[part].state_hash():016x}.")
+    where = f" of substream {substream}" if len(decoders.substreams) > 1 else ""
+    print(f"Packet{where}: `{data.hex(' ')}`: sequence {packet.sequence}, payload `{data[2:].hex(' ')}`.\n")
+    tell_packet(packet, data, decoders.substreams[substream], file.declaration, every_bit)
+    print(f"State hash: {decoders.substreams[substream].state_hash():016x}.")
 
 
 # ---- A stream with losses -------------------------------------------------------------------------------------------
 def play(file, lost):
     """Every packet in turn, without those that are lost."""
     narrate()
-    scene = SceneDecoder(file.header)
+    decoders = SceneDecoder(file.declaration)
     rows = []
     for count, (tick, record) in enumerate(file.packets()):
-        part, data = scene.split(record)
-        decoder, sequence = scene.parts[part], data[0] | data[1] << 8
+        substream, data = decoders.split(record)
+        decoder, sequence = decoders.substreams[substream], data[0] | data[1] << 8
         if count in lost:
             rows.append(f"| {count} | {sequence} | | | lost | | |")
             continue
@@ -303,37 +303,37 @@ def tell_declaration(file, data):
         f.take("name", f.number("name_size", "B"), True)
         f.number("position", "3i")
         f.number("rotation", "4i")
-    if file.header.meshes:
+    if file.declaration.deformables:
         f.varint("deformable_count")
-        for mesh in file.header.meshes:
-            tell_deformable(f, mesh)
+        for item in file.declaration.deformables:
+            tell_deformable(f, item)
     if f.cursor.position < end - 4:
         f.take("extension records", end - 4 - f.cursor.position)
     f.number("crc", "I")
     table("element | bytes | value", f.rows)
-    for mesh in file.header.meshes:
-        tree = mesh_main.Hierarchy(mesh)
-        rows = [f"| {v} | {tree.level[v]} | {vector(tree.parents[v])} | {vector(tree.weights[v])} |" for v in tree.order]
+    for item in file.declaration.deformables:
+        tree = deformable_main.Hierarchy(item)
+        rows = [f"| {v} | {tree.depth[v]} | {vector(tree.parents[v])} | {vector(tree.weights[v])} |" for v in tree.order]
         print("Coding order, parents and weights:\n")
         table("vertex | depth | parents | weights", rows)
 
 
-def tell_deformable(f, mesh):
+def tell_deformable(f, item):
     f.number("profile", "B")
     f.take("name", f.number("name_size", "B"), True)
     f.number("rings", "B")
-    main = mesh.profile == 1
+    main = item.profile == MAIN
     for name, form in (("frame_period", "I"), ("layered", "B")) if main else (("quant_bits", "B"), ("models_kept", "B")):
         f.number(name, form)
     f.varint("vertex_count")
     f.varint("triangle_count")
-    for v, rest in enumerate(mesh.rest):
+    for v, rest in enumerate(item.rest):
         f.three(f"rest[{v}]", rest)
-    for t, corners in enumerate(mesh.triangles):
+    for t, corners in enumerate(item.triangles):
         f.three(f"corners of triangle {t}", corners)
     for k in range(f.varint("mode_count") if main else 0):
         f.number(f"mode_step[{k}]", "H")
-        f.take(f"entries of mode {k}", sum(2 if abs(e) > 63 else 1 for e in mesh.modes[k].entries))
+        f.take(f"entries of mode {k}", sum(1 if -64 <= e < 64 else 2 for e in item.modes[k].entries))
 
 
 if __name__ == "__main__":
