@@ -33,8 +33,8 @@ class DeformableObject:
 
 def read_deformable_objects(body: Cursor, most: int, vertices_left: int, triangles_left: int) -> list[DeformableObject]:
     count = body.varint(STR_5, STR_5_VARINT)
-    require(count >= 1, "malformed", "R-MES-1")
-    require(count <= 255, "invalid", "R-MES-1")
+    require(count >= 1, "malformed", "R-DEF-1")
+    require(count <= 255, "invalid", "R-DEF-1")
     require(count <= most, "limit_exceeded", "R-STR-14")
     items = []
     for _ in range(count):
@@ -47,19 +47,19 @@ def read_deformable_objects(body: Cursor, most: int, vertices_left: int, triangl
 
 def read_deformable_object(body: Cursor, vertices_left: int, triangles_left: int) -> DeformableObject:
     profile = body.number(1, STR_5)
-    require(profile in (THESIS, MAIN), "unsupported", "R-MES-2")
+    require(profile in (THESIS, MAIN), "unsupported", "R-DEF-2")
     name_bytes = body.take(body.number(1, STR_5), STR_5)
     item = DeformableObject(profile, "", body.number(1, STR_5))
     if profile == THESIS:
         item.quant_bits, item.models_kept = body.take(2, STR_5)
-        require(item.models_kept <= 1, "malformed", "R-MES-3")
+        require(item.models_kept <= 1, "malformed", "R-DEF-3")
     else:
         item.frame_period, item.layered = body.number(4, STR_5), body.number(1, STR_5)
-        require(item.layered <= 1, "malformed", "R-MES-3")
+        require(item.layered <= 1, "malformed", "R-DEF-3")
     vertex_count = body.varint(STR_5, STR_5_VARINT)
     triangle_count = body.varint(STR_5, STR_5_VARINT)
     check_numbers(item)
-    require(1 <= vertex_count <= MOST_VERTICES and triangle_count <= MOST_TRIANGLES, "invalid", "R-MES-4")
+    require(1 <= vertex_count <= MOST_VERTICES and triangle_count <= MOST_TRIANGLES, "invalid", "R-DEF-4")
     require(vertex_count <= vertices_left and triangle_count <= triangles_left, "limit_exceeded", "R-STR-14")
     require(3 * (vertex_count + triangle_count) <= body.left(), *STR_5)
     item.rest = read_rest(body, vertex_count)
@@ -71,11 +71,11 @@ def read_deformable_object(body: Cursor, vertices_left: int, triangles_left: int
 
 
 def check_numbers(item: DeformableObject) -> None:
-    require(item.rings <= 32, "invalid", "R-MES-3")
+    require(item.rings <= 32, "invalid", "R-DEF-3")
     if item.profile == THESIS:
-        require(1 <= item.quant_bits <= 12, "invalid", "R-MES-3")
+        require(1 <= item.quant_bits <= 12, "invalid", "R-DEF-3")
     else:
-        require(1 <= item.frame_period <= 1 << 28, "invalid", "R-MES-3")
+        require(1 <= item.frame_period <= 1 << 28, "invalid", "R-DEF-3")
 
 
 def zigzag(z: int) -> int:
@@ -92,7 +92,7 @@ def read_rest(body: Cursor, count: int) -> list[tuple]:
     for _ in range(count):
         for axis in range(3):
             point[axis] += read_zigzag(body)
-            require(-1 << 31 <= point[axis] < 1 << 31, "invalid", "R-MES-5")
+            require(-1 << 31 <= point[axis] < 1 << 31, "invalid", "R-DEF-5")
         rest.append(tuple(point))
     return rest
 
@@ -105,24 +105,24 @@ def read_triangles(body: Cursor, vertex_count: int, count: int) -> list[tuple]:
         second = first + read_zigzag(body)
         third = second + read_zigzag(body)
         corners = (first, second, third)
-        require(all(0 <= c < vertex_count for c in corners) and len(set(corners)) == 3, "invalid", "R-MES-6")
+        require(all(0 <= c < vertex_count for c in corners) and len(set(corners)) == 3, "invalid", "R-DEF-6")
         triangles.append(corners)
     return triangles
 
 
 def read_modes(body: Cursor, vertex_count: int) -> list[Mode]:
     mode_count = body.varint(STR_5, STR_5_VARINT)
-    require(mode_count <= 64, "invalid", "R-MES-7")
+    require(mode_count <= 64, "invalid", "R-DEF-7")
     require(mode_count * (3 * vertex_count + 2) <= body.left(), *STR_5)
     modes = []
     for _ in range(mode_count):
         step = body.number(2, STR_5)
-        require(step >= 1, "invalid", "R-MES-7")
+        require(step >= 1, "invalid", "R-DEF-7")
         modes.append(Mode(step, [read_entry(body) for _ in range(3 * vertex_count)]))
     return modes
 
 
 def read_entry(body: Cursor) -> int:
     entry = read_zigzag(body)
-    require(abs(entry) <= LARGEST_ENTRY, "invalid", "R-MES-7")
+    require(abs(entry) <= LARGEST_ENTRY, "invalid", "R-DEF-7")
     return entry

@@ -150,15 +150,15 @@ class MainCodec:
         else:
             tick_delta = max(0, round_shift(self.item.frame_period, 8) + decoder.signed(models["LATE"]))
         base = receiver.baseline(number, key, baseline_delta)
-        return Start(key, layer, same_frame, base, receiver.tick(base, key, tick_delta, "R-MES-8"))
+        return Start(key, layer, same_frame, base, receiver.tick(base, key, tick_delta, "R-DEF-8"))
 
     def read_head(self, decoder: RangeDecoder, models: Models, start: Start) -> MainState:
         state = start.base if start.same_frame else self.read_bounds(decoder, models, start)
         density = state.density
         if start.layer != HAPTIC:
             density = decoder.tree(models[f"DENSITY[{state.density}]"], 2)
-        require(not state.touched or state.triangle < len(self.item.triangles), "invalid", "R-MES-9")
-        require(state.haptic_index <= 168 and state.visual <= 1 << 28, "invalid", "R-MES-10")
+        require(not state.touched or state.triangle < len(self.item.triangles), "invalid", "R-DEF-9")
+        require(state.haptic_index <= 168 and state.visual <= 1 << 28, "invalid", "R-DEF-10")
         return state._replace(density=density)
 
     def read_bounds(self, decoder: RangeDecoder, models: Models, start: Start) -> MainState:

@@ -11,8 +11,8 @@ from deformable_motion import lim
 from packet import Receiver
 from range_coder import RangeDecoder
 
-MES_11 = ("truncated", "R-MES-11")
-MES_11_VALUE = ("malformed", "R-MES-11")
+DEF_11 = ("truncated", "R-DEF-11")
+DEF_11_VALUE = ("malformed", "R-DEF-11")
 INITIAL = (16384, 1)
 LIST_BITS = 8
 
@@ -63,7 +63,7 @@ class ThesisCodec:
     def decode(self, payload: bytes, receiver: Receiver, number: int) -> tuple[ThesisState, int, list[int], RangeDecoder]:
         head = self.read_head(payload, receiver.span)
         base = receiver.baseline(number, head.key, head.baseline_delta)
-        tick = receiver.tick(base, head.key, head.tick_delta, "R-MES-8")
+        tick = receiver.tick(base, head.key, head.tick_delta, "R-DEF-8")
         models = (base if self.item.models_kept else self.initial).models.copy()
         listed = self.read_list(RangeDecoder(head.list), models.list, head.count)
 
@@ -83,14 +83,14 @@ class ThesisCodec:
 
     def read_head(self, payload: bytes, span: int) -> Head:
         rest = Cursor(payload, 0, len(payload))
-        key = rest.number(1, MES_11)
-        require(key <= 1, *MES_11_VALUE)
-        baseline_delta = rest.number(1, MES_11) if not key and span > 1 else 1
-        tick_delta, count, list_bytes, lowest, extent = (rest.varint(MES_11, MES_11_VALUE) for _ in range(5))
+        key = rest.number(1, DEF_11)
+        require(key <= 1, *DEF_11_VALUE)
+        baseline_delta = rest.number(1, DEF_11) if not key and span > 1 else 1
+        tick_delta, count, list_bytes, lowest, extent = (rest.varint(DEF_11, DEF_11_VALUE) for _ in range(5))
         require(tick_delta < 1 << 32 and 1 <= count <= len(self.item.rest) and lowest <= 1 << 29 and extent <= 1 << 29,
-                "invalid", "R-MES-12")
+                "invalid", "R-DEF-12")
         return Head(key, baseline_delta, tick_delta, count, zigzag(lowest), extent,
-                    rest.take(list_bytes, MES_11), rest.take(rest.left(), MES_11))
+                    rest.take(list_bytes, DEF_11), rest.take(rest.left(), DEF_11))
 
     def read_list(self, decoder: RangeDecoder, models: list, count: int) -> list[int]:
         listed: list[int] = []
@@ -100,7 +100,7 @@ class ThesisCodec:
             while symbol == 255:
                 symbol = decoder.tree(models, LIST_BITS)
                 vertex += symbol
-                require(vertex < len(self.item.rest), "invalid", "R-MES-13")
+                require(vertex < len(self.item.rest), "invalid", "R-DEF-13")
             listed.append(vertex)
         decoder.check_end()
         return listed
