@@ -97,7 +97,7 @@ class MainCodec:
                                  haptic_correction={} if item.layered else None)
 
     def decode(self, payload: bytes, receiver: Receiver, number: int) -> tuple[MainState, int, list[int], RangeDecoder]:
-        decoder, models = RangeDecoder(payload), Models("mesh-start-models.csv")
+        decoder, models = RangeDecoder(payload), Models("deformable-start-models.csv")
         start = self.read_start(decoder, models, receiver, number)
         base, tick = start.base, start.tick
         state = self.read_head(decoder, models, start)._replace(tick=tick)
@@ -140,9 +140,9 @@ class MainCodec:
         named = not key and receiver.span > 1
         baseline_delta = decoder.magnitude(models["BASELINE"]) if named else 1
         layer = VISUAL if self.item.layered else ALL
-        if self.item.layered and self.item.triangles and not decoder.bit(models["HALF"][1]):
+        if self.item.layered and self.item.triangles and not decoder.bit(models["LAYER"][1]):
             layer = HAPTIC
-        same_frame = int(layer == VISUAL and not key and decoder.bit(models["COMPLETES"][1]))
+        same_frame = int(layer == VISUAL and not key and decoder.bit(models["SAME_FRAME"][1]))
         if same_frame:
             tick_delta = 0
         elif key:
