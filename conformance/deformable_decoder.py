@@ -41,7 +41,7 @@ class DeformableDecoder:
     def shown(self, tick: int) -> list[int]:
         """The displacements that a client shows at a tick; one before the current state's counts as that."""
         state = self.receiver.current
-        return self.codec.expected(state, max(tick, state.tick))
+        return self.codec.expect(state, max(tick, state.tick))
 
     def state_hash(self) -> int:
         return fnv1a(self.receiver.current.hashed())

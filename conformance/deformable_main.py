@@ -16,7 +16,7 @@ from start_models import Models
 NONE = (1 << 32) - 1
 STILL = (0, 0, 0)
 ALL, HAPTIC, VISUAL = "all", "haptic", "visual"             # layers
-FINEST_HAPTIC = (32768, 36781, 41285, 46341, 52016, 58386)  # M
+FINEST_HAPTIC = (32768, 36781, 41285, 46341, 52016, 58386)  # H
 
 
 class MainState(NamedTuple):
@@ -106,7 +106,7 @@ class MainCodec:
         steps = [clamp((mode.step * state.visual) >> 12, 1, 1 << 28) for mode in self.item.modes]
         q = [lim(c * s) for c, s in zip(coefficients, steps)]
         area = area_of_interest(self.item, self.triangles_of, state.triangle) if state.touched else set()
-        expected = self.expected(base, tick)
+        expected = self.expect(base, tick)
         u = list(expected)
         correction = base.haptic_correction if start.same_frame else {}
         for v in area & correction.keys():
@@ -126,7 +126,7 @@ class MainCodec:
     def frames(self, state: MainState, tick: int) -> int:
         return round_div((tick - state.motion_tick) << 8, self.item.frame_period)
 
-    def expected(self, state: MainState, tick: int) -> list[int]:
+    def expect(self, state: MainState, tick: int) -> list[int]:
         """Where the vertices are expected at a later tick."""
         x = list(state.u)
         n, m = self.frames(state, tick), self.frames(state, state.tick)

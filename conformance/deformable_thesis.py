@@ -77,7 +77,7 @@ class ThesisCodec:
         decoder.check_end()
         return base._replace(tick=tick, u=u, models=models), head.key, listed, decoder
 
-    def expected(self, state: ThesisState, tick: int) -> list[int]:
+    def expect(self, state: ThesisState, tick: int) -> list[int]:
         """Prediction in time is to hold (thesis eq. 3.9)."""
         return state.u
 

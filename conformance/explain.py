@@ -23,7 +23,7 @@ ELEMENTS = {                                                # models, and the el
     "LEVEL": "level", "LAYER": "layer", "SAME_FRAME": "same_frame", "LATE": "late",
     "TOUCHED": "touched", "SAME_TRIANGLE": "same triangle", "NEAR_TRIANGLE": "near triangle", "NEAR_PLACE": "entry of near",
     "HAPTIC": "haptic_change", "SAME_VISUAL": "same_visual", "VISUAL": "visual", "DENSITY": "density",
-    "COEFFICIENT": "coefficient", "SIGNIFICANT": "significant", "COMPONENT": "component of r", "list": "gap", "errors": "symbol",
+    "COEFFICIENT": "coefficient", "SIGNIFICANT": "significant", "COMPONENT": "component of r", "ERROR": "symbol",
 }
 
 
@@ -48,8 +48,8 @@ class NamedModels(Models):
 class NamedThesisModels(deformable_thesis.ThesisModels):
     def copy(self):
         copied = super().copy()
-        name_models("list", copied.list)
-        name_models("errors", copied.errors)
+        name_models("GAP", copied.list)
+        name_models("ERROR", copied.errors)
         return copied
 
 
@@ -167,7 +167,7 @@ def tell_main(packet, codec):
 def tell_vertices(packet, codec, state, base):
     """Every step of section 7, worked out again from the states before and after a packet without layers."""
     item, tree = codec.item, codec.hierarchy
-    expected = codec.expected(base, state.tick)
+    expected = codec.expect(base, state.tick)
     steps = [clamp((mode.step * state.visual) >> 12, 1, 1 << 28) for mode in item.modes]
     combine(item.modes, [lim(c * s) for c, s in zip(Found.coefficients, steps)], expected)
     area = deformable_main.area_of_interest(item, codec.triangles_of, state.triangle) if state.touched else set()

@@ -62,7 +62,7 @@ class Declaration:
     bounds: Optional[Bounds] = None
 
     def moving(self) -> list[int]:
-        """The moving objects M of chapter 40, as indices into `objects`."""
+        """The moving objects M, as indices into `objects`."""
         return [i for i, item in enumerate(self.objects) if item.dof != 0]
 
 
