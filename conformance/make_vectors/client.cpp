@@ -137,6 +137,28 @@ Bytes smallest_rotation() {
   return stream.finish().bytes();
 }
 
+/// A line from a rotation longer than 1 to the same one.
+Bytes line_without_rotation() {
+  RawHeader header = cube();
+  header.objects[0].rotation = {kOne30, 0, 1 << 20, -(1 << 20)};
+  Stream stream(header);
+  stream.add({.tick = 0, .key = true});
+  stream.add({.tick = 40, .updates = {{0, Reason::visual, 0, {{{9000, 0, -70}}}}}});
+  stream.add({.tick = 80});
+  return stream.finish().bytes();
+}
+
+/// A little less than half a circle, and an angular velocity that goes on until the difference has w = -2^-30.
+Bytes beyond_half_circle() {
+  RawHeader header = cube();
+  header.grid = {22, 17, 28, 20};
+  Stream stream(header);
+  stream.add({.tick = 0, .key = true});
+  stream.add({.tick = 40, .updates = {{0, Reason::visual, 0, {{{}, {}, {(1 << 28) - 12, 0, 0}, {3, 0, 0}}}}}});
+  stream.add({.tick = 80});
+  return stream.finish().bytes();
+}
+
 }  // namespace
 
 void add_client(Catalogue& c) {
@@ -175,7 +197,13 @@ void add_client(Catalogue& c) {
   c.section(section::kShownPose);
   linear("longest-half-circle", "Half a circle from a rotation longer than 1: the sine of half the angle is above 1.",
          longest_half_circle());
+  linear("line-without-rotation", "A line without a rotation: one that is not of length 1 stays as it is.",
+         line_without_rotation());
+  linear("beyond-half-circle", "The way round is chosen by the sign of w, which is -2^-30.", beyond_half_circle());
   linear("smallest-rotation", "An interpolated rotation whose sine is 2^-30.", smallest_rotation());
+  c.section(section::kClient);
+  linear("shortest-of-fast-clock", "At 100000 ticks per second the shortest t_N is 500 ticks.", far_step(100000, 3, 510));
+  linear("longest-of-fast-clock", "At 6000 ticks per second the longest t_N is 600 ticks.", far_step(6000, 2000, 620));
 }
 
 }  // namespace tactus::conformance

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Edges of the arithmetic of profile main.
+#include <span>
 #include <utility>
 
+#include "codec/mesh/mesh_motion.h"
 #include "conformance/make_vectors/catalogue.h"
 #include "conformance/make_vectors/deformable_build.h"
 #include "conformance/make_vectors/sections.h"
@@ -158,6 +160,87 @@ Bytes no_taps() {
   return stream.finished();
 }
 
+/// A stream of one mode whose coefficient moves as told, whatever is predicted.
+class Driven {
+ public:
+  Driven() : stream_(only(quiet_basis(1))), motion_(1) { move(0, 0); }
+
+  /// A packet so many frames after the one before; by so much the coefficient has moved since.
+  Driven& move(std::uint32_t frames, std::int32_t by) {
+    std::int32_t predicted = 0;
+    motion_.predict(frames, {&predicted, 1});
+    motion_.learn(frames, {&by, 1});
+    tick_ += frames;
+    stream_.add(
+        MainStep{.at = {.tick = tick_, .key = std::exchange(first_, false)}, .visual = 0, .coefficients = {by - predicted}});
+    return *this;
+  }
+  /// The last increment and the one before it.
+  Driven& increments(std::int32_t last, std::int32_t before) { return move(2, 2 * before).move(0, last - before); }
+  Driven& rest(int packets) {
+    for (int i = 0; i < packets; ++i) move(1, 0);
+    return *this;
+  }
+  Bytes finished() { return stream_.finished(); }
+
+ private:
+  DeformableStream stream_;
+  MeshMotion motion_;
+  std::int64_t tick_ = 0;
+  bool first_ = true;
+};
+
+/// Increments of 3, 5 and 7, then two of 2^26.
+Bytes large_increments() { return Driven().move(1, 3).move(1, 5).move(1, 7).increments(1 << 26, 1 << 26).move(1, 0).finished(); }
+
+/// Correlations 11, 12 and 22 of 1, 10 and 31, whose determinant is below 0, and two increments of 20000.
+Bytes no_predictor_for_large() {
+  return Driven().increments(1, 10).move(1, 3).increments(0, 0).rest(64).increments(20000, 20000).move(1, 0).finished();
+}
+
+/// Correlations 11, 12 and 22 of 1, 9 and 40: d = 2 * 41 - 9^2 = 1.
+Bytes determinant_1() { return Driven().increments(1, 9).move(1, 3).increments(0, 0).rest(32).move(0, 5).move(1, 0).finished(); }
+
+/// Increments that double, then an increment of 1 or -1 after or before one of 0.
+Bytes single_units() {
+  Driven out;
+  for (std::int32_t by = 1; by <= 4096; by *= 2) out.move(1, by);
+  for (const std::int32_t unit : {1, -1}) out.increments(unit, 0).move(1, 0).increments(0, unit).move(1, 0);
+  return out.finished();
+}
+
+/// The last two triangles of 65538, all of the same corners.
+Input number_of_17_bits() {
+  const Shape shape{one_triangle().rest, std::vector<Triangle>(65538, {0, 1, 2})};
+  DeformableStream stream(only({.shape = shape, .rings = 0}));
+  const std::size_t end = stream.bytes().size() - 5;  // of the triangles, before mode_count and crc
+  stream.add(MainStep{.at = {.tick = 0, .key = true}, .triangle = 65537u, .haptic = 3});
+  stream.add(MainStep{.at = {.tick = 1}, .triangle = 65536u, .haptic = 3});
+  const std::size_t triangles = 65537;
+  return {stream.finished(), {end - 3 * triangles, {0, 2, 2}, triangles}};
+}
+
+/// A touch of either triangle of two.
+Bytes two_triangles() {
+  DeformableStream stream(only({.shape = sheet(1, 1)}));
+  for (std::uint32_t i = 0; i < 4; ++i)
+    stream.add(MainStep{.at = {.tick = i, .key = true}, .triangle = i % 2, .haptic = 20, .visual = 90});
+  return stream.finished();
+}
+
+/// No bound allows an error, neither the haptic nor the visual one.
+Bytes both_bounds_0() {
+  DeformableStream stream(only({.shape = sheet(3, 3), .rings = 1}));
+  Random random(712);
+  for (std::uint32_t i = 0; i < 4; ++i)
+    stream.add(MainStep{.at = {.tick = i, .key = i == 0},
+                        .triangle = 5u,
+                        .haptic = 0,
+                        .visual = 0,
+                        .residuals = random_residuals(random, 4, 128)});
+  return stream.finished();
+}
+
 /// A coefficient of 1 is as large as there may be.
 RawDeformable loud_basis(std::uint8_t layered) {
   RawDeformable item = quiet_basis(2);
@@ -227,6 +310,10 @@ void add_deformable_edges(Catalogue& c) {
   c.valid("equal-bound-ratios",
           "Bounds where 3 h is twice the visual bound, 4 h is that and one more, and h is the visual bound.", equal_tightness());
   c.invalid("beyond-ring-2", "The first place beyond rings 1 and 2.", {"invalid", "R-MES-9"}, beyond_ring_2());
+  c.valid("both-bounds-0", "Visual and haptic bounds of 0: neither is less than the other.", both_bounds_0());
+  c.section(section::kHead);
+  c.valid("two-triangles", "The number of a triangle of two takes a bit.", two_triangles());
+  c.valid("number-of-17-bits", "The number of a triangle of 65538 takes 17 bits, in two groups.", number_of_17_bits());
   c.section(section::kTime);
   c.valid("no-predictor", "Steps of modes of 1, where the visual bound is 0; correlations whose determinant is 0 and below.",
           no_taps());
@@ -235,6 +322,10 @@ void add_deformable_edges(Catalogue& c) {
   c.valid("saturated-layers",
           "A visual layer after a haptic layer: what motion adds between them goes from one end to the other.",
           saturated_split());
+  c.valid("large-increments", "Increments of 27 bits beside correlations of few bits.", large_increments());
+  c.valid("no-predictor-for-large", "Large increments, and correlations whose determinant is below 0.", no_predictor_for_large());
+  c.valid("determinant-1", "Correlations whose determinant is 1.", determinant_1());
+  c.valid("single-units", "An increment of 1 or -1, before or after one of 0.", single_units());
 }
 
 }  // namespace tactus::conformance

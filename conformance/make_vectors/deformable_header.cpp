@@ -72,6 +72,7 @@ void add_counts(Catalogue& c) {
             }));
   c.invalid("no-room", "One byte too few for 3 vertices and 1 triangle.", cut, counted(3, 1, zeros(11)));
   c.invalid("no-room-for-2-20", "2^20 vertices announced; none follows.", cut, counted(1 << 20, 0, zeros(3)));
+  c.invalid("no-room-for-2-21", "2^21 triangles announced; none follows.", cut, counted(3, 1 << 21, zeros(9)));
   c.invalid("no-room-for-modes", "One byte too few for a mode of one vertex.", cut,
             counted(1, 0, zeros(3) + Bytes{1} + zeros(4)));
   c.invalid("cut-corner", "The body ends inside the last corner.", cut, counted(3, 1, zeros(9) + Bytes{0, 2, 0x82}));
@@ -99,6 +100,8 @@ void add_rules(Catalogue& c) {
   c.invalid("too-many-triangles", "triangle_count is 2^21 + 1.", count, counted(3, (1 << 21) + 1, zeros(9)));
   c.invalid("rest-beyond-32-bits", "The second vertex is one unit beyond 2^31 - 1.", range,
             counted(2, 0, zigzag_varint(kTwo31 - 1) + zeros(2) + Bytes{2, 0, 0, 0}));
+  c.invalid("rest-below-32-bits", "A rest coordinate is one unit below -2^31.", range,
+            counted(1, 0, zigzag_varint(-kTwo31 - 1) + zeros(3)));
   c.invalid("rest-of-64-bits", "A rest coordinate's difference has 64 bits.", range,
             counted(1, 0, varint(~std::uint64_t{0}) + zeros(3)));
   c.invalid("rest-before-cut", "x is beyond 32 bits, and the body ends inside y.", {"invalid", "R-MES-5", "R-STR-5"},

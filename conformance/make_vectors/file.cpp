@@ -89,6 +89,8 @@ void add_tick_faults(Catalogue& c) {
   const Bytes good = three_packets().bytes();
   const Rejection malformed{"malformed", "R-FIL-6"};
   c.invalid("overlong-size", "A record's size 2 is written in two bytes.", malformed, good + with_crc({128, 0x82, 0x00, 1, 2}));
+  c.invalid("size-of-ten-bytes", "A record's size has ten bytes, none of them the last; the file ends.", malformed,
+            good + Bytes{128} + Bytes(10, 0x80));
   c.invalid("size-over-64-bits", "A record's size has eleven bytes.", malformed, good + Bytes{128} + Bytes(10, 0x80) + Bytes{1});
   c.invalid("no-tick-delta", "A packet record without a byte.", malformed, good + record(1, {}));
   c.invalid("cut-tick-delta", "A packet record ends inside tick_delta.", malformed, good + record(1, {0x80}));

@@ -151,6 +151,8 @@ void add_outages(Catalogue& c) {
           main_packets({.tick = 50, .key = true, .sequence = number(40001)}), {"R-PKT-5"});
   c.invalid("main-key-127-behind", "A key packet 127 behind is late.", late(),
             main_packets({.tick = 50, .key = true, .sequence = number(1 - 127)}));
+  c.invalid("main-32767-ahead", "A packet 32767 ahead that is not key: its baseline is missing.", no_baseline(),
+            main_packets({.tick = 50, .sequence = number(1 + 32767)}));
   c.invalid("main-32768-ahead", "A packet 32768 ahead that is not key.", far_ahead(),
             main_packets({.tick = 50, .sequence = number(1 + 32768)}));
   c.valid("thesis-key-after-outage", "40000 packets are missing before a key packet.",
@@ -163,6 +165,12 @@ void add_outages(Catalogue& c) {
 void add_orders(Catalogue& c) {
   DeformableStream stream(only({.shape = sheet(2, 2)}, 4));
   stream.add(MainStep{.at = {.tick = 10, .key = true}}).add(MainStep{.at = {.tick = 30}});
+  c.invalid("main-late-before-baseline-delta", "A late packet whose baseline_delta has 33 bits.", {"state", "R-PKT-5", "R-RNG-4"},
+            then_packet(two_main_packets(4), coded_main_packet(1, [](RangeEncoder& coder, MeshModels& models) {
+                          coder.bit(models.key, 0);
+                          coder.tree<4>(models.baseline, 15);
+                          coder.raw(5, 18);
+                        })));
   c.invalid("main-baseline-delta-before-ahead", "baseline_delta is 0, and the packet 32768 ahead.",
             {"invalid", "R-PKT-3", "R-PKT-7"},
             then_packet(std::move(stream), coded_main_packet(32769, [](RangeEncoder& coder, MeshModels& models) {

@@ -190,6 +190,8 @@ void add_outages(Catalogue& c) {
           with_key(101 + 40000), {"R-PKT-4", "R-PKT-5"});
   c.valid("rigid-key-128-behind", "A key packet 128 behind begins anew.", with_key(101 - 128), {"R-PKT-5"});
   c.invalid("rigid-key-127-behind", "A key packet 127 behind is late.", late(), with_key(101 - 127));
+  c.invalid("rigid-32767-ahead", "A packet 32767 ahead that is not key: its baseline is missing.", no_baseline(),
+            two_packets().add({.tick = 50, .updates = moved(1), .sequence = number(101 + 32767)}).bytes());
   c.invalid("rigid-32768-ahead", "A packet 32768 ahead that is not key.", far_ahead(),
             two_packets().add({.tick = 50, .updates = moved(1), .sequence = number(101 + 32768)}).bytes());
   c.invalid("rigid-128-behind", "A packet 128 behind that is not key.", far_ahead(),
@@ -213,9 +215,28 @@ Bytes of_two_objects(const Bytes& packet) {
 void add_orders(Catalogue& c) {
   c.invalid("rigid-late-before-all", "A late packet whose payload breaks R-RNG-4.", {"state", "R-PKT-5", "R-RNG-4"},
             of_two_objects({1, 0, 0xff, 0xff, 0xff, 0xff}));
+  c.invalid("rigid-late-before-baseline-delta", "A late packet whose baseline_delta has 33 bits.",
+            {"state", "R-PKT-5", "R-RNG-4"}, of_two_objects(coded_packet(1, [](RangeEncoder& coder, RigidModels& models) {
+              coder.bit(models.key, 0);
+              coder.tree<4>(models.baseline, 15);
+              coder.raw(5, 18);
+            })));
   c.invalid("rigid-baseline-delta-before-ahead", "baseline_delta is 0, and the packet 32768 ahead.",
             {"invalid", "R-PKT-3", "R-PKT-7"},
             of_two_objects(raw_packet(chained(4, {{"a"}, {"b"}}).parsed(), 32769, {false, 0, 0, 1}, std::vector<RawUpdate>(1))));
+}
+
+/// The packets 100 and 101, then a record of a packet: sequence, zeros and a last byte of 1.
+Input then_zeros(std::size_t packet_size) {
+  const Bytes head = two_packets().bytes();
+  const Bytes last = record(1, varint(0) + Bytes{102, 0} + Bytes(packet_size - 3, 0) + Bytes{1});
+  return {head + last, {head.size() + 20, {0}, packet_size - 40}};
+}
+
+void add_lengths(Catalogue& c) {
+  c.invalid("rigid-longest-packet", "A packet of 2^20 bytes, as many as a decoder must take: most are left over.",
+            {"malformed", "R-RNG-2"}, then_zeros(1 << 20));
+  c.invalid("rigid-packet-too-long", "A packet of 2^20 + 1 bytes.", {"limit_exceeded", "R-PKT-1"}, then_zeros((1 << 20) + 1));
 }
 
 }  // namespace
@@ -224,6 +245,7 @@ void add_packet_rigid(Catalogue& c) {
   add_baselines(c);
   add_rules(c);
   add_outages(c);
+  add_lengths(c);
   add_orders(c);
 }
 

@@ -72,6 +72,16 @@ Bytes beside_static_objects() {
 
 Bytes then(const Bytes& packet) { return three_substreams(1).add_packet(1, packet).bytes(); }
 
+/// A packet of 2^20 bytes in substream 0 at tick 2^28: the largest record that there may be.
+Input largest_record() {
+  Stream stream(with_deformables({}, {sheet_object()}));
+  stream.add_packet(0, of_substream(0, stream.packet({.key = true})), true);
+  const Bytes head = stream.bytes();
+  const std::size_t packet_size = std::size_t{1} << 20;
+  const Bytes last = record(1, varint(1 << 28) + of_substream(0, Bytes{1, 0} + Bytes(packet_size - 3, 0) + Bytes{1}));
+  return {head + last, {head.size() + 20, {0}, packet_size - 40}};
+}
+
 }  // namespace
 
 void add_packet_substreams(Catalogue& c) {
@@ -85,13 +95,15 @@ void add_packet_substreams(Catalogue& c) {
           beside_static_objects());
   c.valid("substreams-without-packets", "A stream of three substreams and no packet: every initial state.",
           with_deformables(cubes(), {sheet_object(), box_object()}).bytes());
-  const Rejection no_part{"invalid", "R-PKT-6"};
+  c.invalid("largest-record", "A packet record of 2^20 + 6 bytes, as many as there may be: most are left over.",
+            {"malformed", "R-RNG-2"}, largest_record());
+  const Rejection unknown{"invalid", "R-PKT-6"};
   c.invalid("no-substream-byte", "A packet of no byte in a scene of three substreams.", {"truncated", "R-PKT-6"}, then({}));
-  c.invalid("substream-3", "Substream 3 of 0, 1 and 2.", no_part, then({3, 1, 0}));
-  c.invalid("substream-255", "Substream 255, and nothing more.", no_part, then({255}));
+  c.invalid("substream-3", "Substream 3 of 0, 1 and 2.", unknown, then({3, 1, 0}));
+  c.invalid("substream-255", "Substream 255, and nothing more.", unknown, then({255}));
   RawHeader still;
   still.objects = {{"table", Dof::none}};
-  c.invalid("substream-0-without-objects", "Substream 0 where no object moves.", no_part,
+  c.invalid("substream-0-without-objects", "Substream 0 where no object moves.", unknown,
             Stream(with_deformables(still, {sheet_object(), box_object()})).add_packet(0, {0, 0, 0}).bytes());
   c.invalid("substream-and-half-a-sequence", "A substream's number and one byte.", {"truncated", "R-PKT-2"}, then({2, 1}));
   c.invalid("substream-late", "A packet of substream 2 with the sequence number of the one before; substream 0 has none such.",

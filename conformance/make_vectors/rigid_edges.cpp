@@ -43,6 +43,28 @@ Bytes saturated_angular_velocity() {
   return stream.finish().bytes();
 }
 
+/// In 401 ticks the object rotates by 2^32 binary angle units of half its angle, which is none.
+Bytes full_circles() {
+  RawHeader header;
+  header.grid = {22, 17, 28, 20};
+  header.objects[0].rotation = {kOne30, 0, kUnit, -kUnit};
+  Stream stream(header);
+  stream.add({.tick = 0, .updates = {{0, Reason::visual, 0, {{{}, {}, {}, {32859837, 0, 0}}}}}, .key = true});
+  stream.add({.tick = 401, .updates = {{0, Reason::heartbeat, 0, {}}}});
+  return stream.finish().bytes();
+}
+
+/// A position residual of 45 bits in a haptic update, so long after the one before that it changes the velocity by little.
+Bytes haptic_residual_of_45_bits() {
+  RawHeader header;
+  header.tick_rate = 1;
+  header.grid = {30, 18, kRotationExp, 12};
+  Stream stream(header);
+  stream.add({.tick = 0, .key = true});
+  stream.add({.tick = 1 << 16, .updates = {{0, Reason::haptic, 7, {{{kLargest, -kLargest, 1}}}}}});
+  return stream.finish().bytes();
+}
+
 /// Bits of 1 alone: in groups of raw bits the last interval, where no bit of the range is lost.
 constexpr std::int32_t of_width(int width) { return (1 << width) - 1; }
 
@@ -96,7 +118,10 @@ void add_rigid_edges(Catalogue& c) {
   c.valid("slowest-rotation",
           "An angular velocity so low that its angle is 0: a rotation that is not of length 1 stays as it is.",
           slowest_rotation());
+  c.valid("full-circles", "Rotation by a number of full circles: one that is not of length 1 stays as it is.", full_circles());
   c.section(section::kMotion);
+  c.valid("haptic-residual-of-45-bits", "A residual beyond 32 bits counts as one of 32 bits where it predicts motion.",
+          haptic_residual_of_45_bits());
   c.valid("saturated-angular-velocity",
           "A haptic update predicts an angular velocity beyond 32 bits, and its residual is as large the other way.",
           saturated_angular_velocity());

@@ -112,6 +112,7 @@ void add_frame_faults(Catalogue& c) {
   c.invalid("cut-magic", "Three bytes of the magic.", {"truncated", "R-STR-1"}, first(good, 3));
   c.invalid("wrong-magic", "The fourth byte is not the magic's.", {"malformed", "R-STR-1"},
             changed_header([](RawHeader& h) { h.magic[3] = 'U'; }));
+  c.invalid("magic-alone", "The magic, and nothing after it.", cut, first(good, 4));
   c.invalid("wrong-first-byte", "The first byte is not the magic's.", {"malformed", "R-STR-1"},
             changed_header([](RawHeader& h) { h.magic[0] = 0x88; }));
   c.invalid("cut-fixed-part", "Eleven bytes: body_size is cut.", cut, first(good, 11));
@@ -125,6 +126,8 @@ void add_frame_faults(Catalogue& c) {
             changed_header([](RawHeader& h) { h.flags = 0x8000; }));
   c.invalid("huge-body", "body_size is one over the limit of 2^20; no body follows.", {"limit_exceeded", "R-STR-14"},
             first(good, 8) + Bytes{0x01, 0x00, 0x10, 0x00});
+  c.invalid("largest-body-cut", "body_size is 2^20, as large as a decoder must take; no body follows.", cut,
+            first(good, 8) + Bytes{0x00, 0x00, 0x10, 0x00});
   c.invalid("cut-body", "The file ends inside the body.", cut, first(good, 20));
   c.invalid("cut-crc", "The last byte of the check value is missing.", cut, without_last(good, 1));
   c.invalid("wrong-crc", "One bit of the check value is wrong.", {"checksum", "R-STR-15"}, with_last_bit_flipped(good));
@@ -162,6 +165,8 @@ void add_parameter_faults(Catalogue& c) {
   }
   c.invalid("too-many-objects", "object_count is 4097, one over the limit.", {"limit_exceeded", "R-STR-14"},
             changed_header([](RawHeader& h) { h.object_count = varint(4097); }));
+  c.invalid("4096-objects-without-room", "object_count is 4096, as many as a decoder must take; the body has room for one.", cut,
+            changed_header([](RawHeader& h) { h.object_count = varint(4096); }));
   c.invalid("no-room", "object_count is 2; the body has room for one object.", cut,
             changed_header([](RawHeader& h) { h.object_count = varint(2); }));
 }

@@ -61,6 +61,10 @@ void add_scene_bounds(Catalogue& c) {
   c.valid("bounds-deformables",
           "Bounds of two deformable objects, one of them without a haptic bound and not kept; nothing rigid moves.",
           of_deformables.bytes(), {"R-STR-17"});
+  RawHeader promised = deformables();
+  promised.extensions = bounds_record(Bytes{1} + f64(0.00025) + Bytes{2} + f64s({0, 0.025, 0.0002}));
+  c.valid("bounds-promises", "Bounds of two deformable objects, one kept without a haptic bound, one not kept with it.",
+          promised.bytes(), {"R-STR-17"});
   RawHeader still;
   still.objects.clear();
   still.extensions = bounds_record({});

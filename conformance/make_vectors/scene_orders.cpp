@@ -15,12 +15,20 @@ void add_frame(Catalogue& c) {
               h.profile = 2;
               h.flags = 4;
             }));
+  c.invalid("profile-1-before-flags", "profile is 1, flags are 4.", {"unsupported", "R-STR-3", "R-STR-4"},
+            changed_header([](RawHeader& h) {
+              h.profile = 1;
+              h.flags = 4;
+            }));
   c.invalid("flags-before-size", "flags are 4, and the body is too large.", {"malformed", "R-STR-4", "R-STR-14"},
             first(changed_header([](RawHeader& h) { h.flags = 4; }), 8) + Bytes{0x01, 0x00, 0x10, 0x00});
   c.invalid("magic-before-cut", "Five bytes, the first of which is not the magic's.", {"malformed", "R-STR-1", "R-STR-5"},
             first(changed_header([](RawHeader& h) { h.magic[0] = 0x88; }), 5));
   c.invalid("crc-before-body", "tick_rate is 0, and the check value is wrong.", {"checksum", "R-STR-15", "R-STR-6"},
             with_last_bit_flipped(changed_header([](RawHeader& h) { h.tick_rate = 0; })));
+  const RawHeader short_body;
+  c.invalid("crc-before-cut", "The body ends before baseline_span, and the check value is wrong.",
+            {"checksum", "R-STR-15", "R-STR-5"}, with_last_bit_flipped(short_body.around(first(short_body.body(), 10))));
   RawHeader still;
   still.tick_rate = 0;
   c.invalid("cut-before-rate", "tick_rate is 0; the body ends before object_count.", {"truncated", "R-STR-5", "R-STR-6"},
@@ -88,6 +96,10 @@ void add_objects(Catalogue& c) {
   long_name.objects[0] = {.name = "ten bytes!", .kind = 2};
   c.invalid("kind-before-cut", "An object of kind 2; the body ends inside its rotation.", {"unsupported", "R-STR-10", "R-STR-5"},
             long_name.around(without_last(long_name.body(), 8)));
+  RawHeader second;
+  second.objects = {{.name = "a name that takes the room of another object"}, {.name = "", .kind = 2}};
+  c.invalid("kind-before-end", "The body ends after the kind of the second object, which is 2.",
+            {"unsupported", "R-STR-10", "R-STR-5"}, second.around(without_last(second.body(), 30)));
   c.invalid("rotation-before-next-kind", "An object's rotation has length 0, the next one's kind is 2.",
             {"invalid", "R-STR-13", "R-STR-10"}, changed_header([](RawHeader& h) {
               h.objects = {{.name = "a", .rotation = {}}, {.name = "b", .kind = 2}};

@@ -6,6 +6,7 @@ namespace tactus::conformance::section {
 
 inline constexpr const char* kDeclaration = "20 Scene declaration";
 inline constexpr const char* kBounds = "20 Bounds";
+inline constexpr const char* kLimits = "20 Limits";
 inline constexpr const char* kSubstreams = "25 Substreams";
 inline constexpr const char* kPackets = "25 Packets";
 inline constexpr const char* kNumbers = "25 Numbers, loss, restart";
