@@ -5,6 +5,7 @@
 
 #include <tactus/base/shown.h>
 #include <tactus/trace/trace_file.h>
+#include <tactus/trace/trace_scene.h>
 #include "cli/figures.h"
 #include "cli/report.h"
 #include "cli/trace_ending.h"
@@ -52,18 +53,15 @@ Outcome check_same_scene(const CompareOptions& options, const TraceInfo& truth, 
 /// What the replica shows, of which every tick brings only what is new.
 struct Shown {
   std::vector<Pose> poses;
-  std::vector<std::vector<Vec3>> shapes;  // displacements
+  std::vector<std::vector<float>> shapes;  // displacements, V x 3
 
   explicit Shown(const TraceInfo& info) : poses(info.objects.size()) {
-    for (const TraceDeformable& mesh : info.meshes) shapes.emplace_back(mesh.rest.vertices.size());
+    for (const TraceDeformable& mesh : info.meshes) shapes.emplace_back(3 * mesh.rest.vertices.size());
   }
   void take(const TraceFrame& frame) {
     for (std::size_t i = 0; i < poses.size(); ++i) poses[i] = frame.objects[i].pose;
-    for (std::size_t i = 0; i < shapes.size(); ++i) {
-      if (!frame.meshes[i].updated) continue;
-      const float* u = frame.meshes[i].displacements.data();
-      for (Vec3& vertex : shapes[i]) vertex = {u[0], u[1], u[2]}, u += 3;
-    }
+    for (std::size_t i = 0; i < shapes.size(); ++i)
+      if (frame.meshes[i].updated) shapes[i] = frame.meshes[i].displacements;
   }
 };
 
@@ -143,7 +141,7 @@ void set_bounds(const CompareOptions& options, const TraceInfo& info, const std:
   const RigidTriggers rigid = promised && promised->stream.rigid ? *promised->stream.rigid : RigidTriggers{};
   report.fidelity.emplace(info, options.triggers.over(rigid));
   for (std::size_t i = 0; i < info.meshes.size(); ++i) {
-    const DeformableBounds bounds = promised ? promised->stream.meshes[i] : DeformableBounds{};
+    const DeformableBounds bounds = promised ? promised->stream.deformables[i] : DeformableBounds{};
     report.meshes.push_back(
         {.name = info.meshes[i].name,
          .vertices = info.meshes[i].rest.vertices.size(),

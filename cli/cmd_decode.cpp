@@ -8,6 +8,7 @@
 #include <tactus/base/shown.h>
 #include <tactus/deformable/displacement.h>
 #include <tactus/file/stream_file.h>
+#include <tactus/player.h>
 #include <tactus/trace/trace_file.h>
 #include "cli/report.h"
 #include "cli/trace_ending.h"
@@ -36,7 +37,7 @@ class TickSource {
     source.like_.emplace(std::move(*like));
     return source;
   }
-  tl::expected<std::optional<std::int64_t>, Failure> next(StreamPlayer& player) {
+  tl::expected<std::optional<std::int64_t>, Failure> next(Player& player) {
     if (like_) {
       const auto more = like_->next(frame_);
       if (!more) return refuse(options_->like, more.error());
@@ -76,25 +77,25 @@ Outcome check_length(std::span<const std::uint8_t> file, const DecodeOptions& op
                 "If that is right, say how many ticks to write: --ticks N.");
 }
 
-TraceInfo replica_info(const StreamHeader& header, const std::string& input) {
+TraceInfo replica_info(const Scene& scene, const std::string& input) {
   TraceInfo info;
-  info.tick_rate = header.tick_rate;
+  info.tick_rate = scene.tick_rate;
   info.source = "decode " + input;
-  for (const RigidObject& object : header.objects) info.objects.push_back({object.name, object.dof});
-  for (const DeformableObject& mesh : header.meshes) {
-    TraceDeformable& out = info.meshes.emplace_back(TraceDeformable{.name = mesh.name, .rest = {{}, mesh.triangles}});
-    for (const auto& vertex : mesh.rest) out.rest.vertices.push_back(to_metres(vertex, header.grid.position));
-    out.period = mesh.frame_period / 256.0;
+  for (const RigidObject& object : scene.objects) info.objects.push_back({object.name, object.dof});
+  for (const DeformableObject& object : scene.deformables) {
+    TraceDeformable& out = info.meshes.emplace_back(TraceDeformable{.name = object.name, .rest = {{}, object.triangles}});
+    for (const auto& vertex : object.rest) out.rest.vertices.push_back(to_metres(vertex, scene.grid.position));
+    out.period = object.frame_period / 256.0;
   }
-  if (header.bounds) {
-    info.bounds = TraceBounds{*header.bounds, header.grid.position, {}};
-    for (const DeformableObject& mesh : header.meshes) info.bounds->rings.push_back(mesh.rings);
+  if (scene.bounds) {
+    info.bounds = TraceBounds{*scene.bounds, scene.grid.position, {}};
+    for (const DeformableObject& object : scene.deformables) info.bounds->rings.push_back(object.rings);
   }
   return info;
 }
 
 /// The shape that the player shows at a tick; new if any vertex is elsewhere than in the one before.
-void show(StreamPlayer& player, std::size_t mesh, std::int64_t tick, DeformableSample& sample) {
+void show(Player& player, std::size_t mesh, std::int64_t tick, DeformableSample& sample) {
   sample.updated = false;
   auto out = sample.displacements.begin();
   const auto put = [&](double metres) {
@@ -102,28 +103,28 @@ void show(StreamPlayer& player, std::size_t mesh, std::int64_t tick, DeformableS
     sample.updated = sample.updated || *out != value;
     *out++ = value;
   };
-  for (const auto& displacement : player.displacements(mesh, tick)) {
-    const Vec3 u = to_metres(displacement, player.header().grid.position);
+  for (const auto& displacement : player.replica().displacements(mesh, tick)) {
+    const Vec3 u = to_metres(displacement, player.scene().grid.position);
     put(u.x), put(u.y), put(u.z);
   }
 }
 
-void count(const StreamPlayer::Played& played, Report& report) {
-  if (played.part > 0)
-    report.meshes[played.part - 1].traffic->add(played.bytes, played.mesh.updates, played.mesh.key, played.mesh.half);
-  else if (report.traffic)
-    report.traffic->add(strongest_reason(played.packet), played.packet.updates.size(), played.bytes, played.packet.key);
+void count(const PlayedPacket& played, Report& report) {
+  if (played.substream > 0)
+    report.meshes[played.substream - 1].traffic->add(played.bytes, played.vertices, played.key, played.layer);
+  else if (report.traffic) report.traffic->add(strongest_reason(played), played.updates.size(), played.bytes, played.key);
 }
 
 /// Bring the player to `tick` and take over what it shows there: poses and shapes, a replica has no velocities of its own.
-Result<void> decode_tick(StreamPlayer& player, std::int64_t tick, TraceFrame& frame, Report& report) {
+Result<void> decode_tick(Player& player, std::int64_t tick, TraceFrame& frame, Report& report) {
   while (true) {
     TACTUS_TRY(const auto played, player.play(tick));
     if (!played) break;
     count(*played, report);
   }
   frame.tick = tick;
-  for (std::uint32_t i = 0; i < frame.objects.size(); ++i) frame.objects[i].pose = player.pose(i, tick);
+  for (std::uint32_t i = 0; i < frame.objects.size(); ++i)
+    frame.objects[i].pose = to_pose(player.replica().pose(i, tick), player.scene().grid.position);
   for (std::size_t i = 0; i < frame.meshes.size(); ++i) show(player, i, tick, frame.meshes[i]);
   return {};
 }
@@ -135,12 +136,12 @@ tl::unexpected<Failure> refuse_at(std::int64_t tick, const Error& error, const D
   return refused;
 }
 
-Outcome decode_all(StreamPlayer& player, TraceWriter& writer, const DecodeOptions& options, Report& report) {
+Outcome decode_all(Player& player, TraceWriter& writer, const DecodeOptions& options, Report& report) {
   auto ticks = TickSource::create(options);
   if (!ticks) return tl::unexpected(ticks.error());
   TraceFrame frame;
-  frame.objects.resize(player.header().objects.size());
-  for (const DeformableObject& mesh : player.header().meshes)
+  frame.objects.resize(player.scene().objects.size());
+  for (const DeformableObject& mesh : player.scene().deformables)
     frame.meshes.push_back({false, std::vector<float>(3 * mesh.rest.size())});
   const auto total = options.ticks ? std::optional(static_cast<std::uint64_t>(*options.ticks)) : std::nullopt;
   Progress progress("decode", total, options.common.progress());
@@ -165,12 +166,12 @@ Outcome run(const DecodeOptions& options) {
   const auto bytes = read_file(options.input);
   if (!bytes) return tl::unexpected(bytes.error());
   const std::span file(reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size());
-  auto player = StreamPlayer::open(file, options.replica);
+  auto player = Player::open(file, {.replica = options.replica, .limits = {}});
   if (!player) return refuse(options.input, player.error());
   if (auto checked = check_length(file, options); !checked) return checked;
   auto output = OutputFile::create(options.output, options.common.existing(), {options.input, options.like});
   if (!output) return tl::unexpected(output.error());
-  const TraceInfo info = replica_info(player->header(), options.input);
+  const TraceInfo info = replica_info(player->scene(), options.input);
   note_idle_options(*options.common.command, subjects_of(info), "stream");
   auto writer = TraceWriter::create(output->working_path(), info);
   if (!writer) return refuse(options.output, writer.error());

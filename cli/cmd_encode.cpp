@@ -2,10 +2,12 @@
 #include "cli/cmd_encode.h"
 
 #include <algorithm>
-#include <optional>
 
 #include <tactus/base/shown.h>
+#include <tactus/file/stream_file.h>
+#include <tactus/receiver.h>
 #include <tactus/trace/trace_file.h>
+#include <tactus/trace/trace_scene.h>
 #include "cli/option_needs.h"
 #include "cli/report.h"
 #include "cli/trace_ending.h"
@@ -20,20 +22,13 @@ struct EncodeOptions {
   CommonOptions common;
 };
 
-/// Rigid objects on their way: encoder and, beside it, the decoder that proves what a client sees.
-struct RigidLink {
-  RigidEncoder encoder;
-  RigidDecoder decoder;
-  Replica replica;
-  std::vector<Contact> contacts;
-  std::vector<Pose> shown;
-};
-
+/// A sender and, beside it, the receiver that proves what a client sees.
 struct Session {
   StreamFileWriter writer;
-  PartJoiner parts;
-  std::optional<RigidLink> rigid;  // none: nothing rigid can move
-  std::vector<DeformableLink> meshes;
+  Sender sender;
+  Receiver receiver;
+  FrameTruth truth;
+  std::vector<Pose> shown;
 };
 
 bool has_moving(const TraceInfo& info) {
@@ -41,55 +36,58 @@ bool has_moving(const TraceInfo& info) {
 }
 
 Result<Session> start(const TraceInfo& info, const TraceFrame& first, const EncodeOptions& options, std::ostream& out) {
-  TACTUS_TRY(StreamHeader header, stream_header(info, first, options.meshes.coding()));
-  header.bounds = bounds_of(header, options.triggers.triggers(), options.meshes.thresholds(options.triggers));
-  TACTUS_TRY(StreamFileWriter writer, StreamFileWriter::create(out, header));
-  Session session{std::move(writer), PartJoiner(header), std::nullopt, {}};
-  if (has_moving(info) || info.meshes.empty()) {
-    TACTUS_TRY(RigidEncoder encoder, RigidEncoder::create(header, options.triggers.encoder()));
-    TACTUS_TRY(RigidDecoder decoder, RigidDecoder::create(header));
-    TACTUS_TRY(Replica replica, Replica::create(header));
-    session.rigid.emplace(RigidLink{std::move(encoder), std::move(decoder), std::move(replica),
-                                    std::vector<Contact>(info.users.size()), std::vector<Pose>(info.objects.size())});
-  }
-  for (std::size_t i = 0; i < header.meshes.size(); ++i) {
-    TACTUS_TRY(DeformableLink link, DeformableLink::create(header, i, options.meshes.encoder(options.triggers)));
-    session.meshes.push_back(std::move(link));
-  }
-  return session;
+  TACTUS_TRY(SceneBuilder builder, scene_builder(info, first, options.meshes.coding()));
+  const SenderOptions wanted = options.meshes.sender(options.triggers);
+  TACTUS_TRY(const SharedScene scene, builder.promise(wanted.triggers, wanted.deformable.thresholds).build());
+  TACTUS_TRY(StreamFileWriter writer, StreamFileWriter::create(out, *scene));
+  TACTUS_TRY(Sender sender, Sender::create(scene, wanted));
+  TACTUS_TRY(Receiver receiver, Receiver::create(scene));
+  return Session{std::move(writer), std::move(sender), std::move(receiver), FrameTruth(info),
+                 std::vector<Pose>(info.objects.size())};
 }
 
-Result<void> encode_rigid(Session& s, const TraceFrame& frame, Report& report) {
-  RigidLink& link = *s.rigid;
-  for (std::size_t i = 0; i < frame.users.size(); ++i) link.contacts[i] = frame.users[i].contact;
-  TACTUS_TRY(const EncodedPacket packet,
-             report.timings[0].times.measure([&] { return link.encoder.encode(frame.tick, frame.objects, link.contacts); }));
-  if (!packet.bytes.empty()) {
-    const auto bytes = s.parts.join(0, packet.bytes);
-    TACTUS_CHECK(s.writer.add(frame.tick, bytes, packet.key));
-    report.traffic->add(packet.reason, packet.updates, bytes.size(), packet.key);
-    TACTUS_TRY(const DecodedPacket decoded, report.timings[1].times.measure([&] { return link.decoder.decode(packet.bytes); }));
-    link.replica.apply(decoded, link.decoder.objects(), frame.tick);
+Result<void> send(Session& s, const Packet& packet, std::int64_t tick, Report& report) {
+  TACTUS_CHECK(s.writer.add(tick, packet.bytes, packet.key));
+  const auto decode = [&] { return s.receiver.push(packet.bytes); };
+  if (packet.substream == 0) {
+    report.traffic->add(packet.reason, packet.updates, packet.bytes.size(), packet.key);
+    TACTUS_CHECK(report.timings[1].times.measure(decode));
+  } else {
+    MeshReport& mesh = report.meshes[packet.substream - 1];
+    mesh.traffic->add(packet.bytes.size(), packet.updates, packet.key, packet.layer);
+    TACTUS_CHECK(mesh.decode.measure(decode));
   }
-  for (std::uint32_t i = 0; i < link.shown.size(); ++i)
-    link.shown[i] = to_pose(link.replica.pose(i, frame.tick), link.decoder.header().grid);
-  report.fidelity->add(frame, link.shown);
   return {};
 }
 
-Result<void> encode_frame(Session& s, const TraceFrame& frame, Report& report) {
-  if (s.rigid) TACTUS_CHECK(encode_rigid(s, frame, report));
-  for (std::size_t i = 0; i < s.meshes.size(); ++i) {
+/// Holds what the client shows in this tick against the truth.
+void judge(Session& s, const TraceFrame& frame, Report& report) {
+  Replica& replica = s.receiver.replica();
+  for (std::uint32_t i = 0; i < s.shown.size(); ++i)
+    s.shown[i] = to_pose(replica.pose(i, frame.tick), s.receiver.scene()->grid.position);
+  if (report.fidelity) report.fidelity->add(frame, s.shown);
+  for (std::size_t i = 0; i < frame.meshes.size(); ++i) {
     if (!frame.meshes[i].updated) continue;
-    TACTUS_TRY(const DeformablePackets packets, transmit(s.meshes[i], frame, i, report.meshes[i]));
     ++report.meshes[i].traffic->frames;
-    for (const EncodedDeformablePacket& packet : packets) {
-      if (packet.bytes.empty()) continue;
-      const auto bytes = s.parts.join(i + 1, packet.bytes);
-      TACTUS_CHECK(s.writer.add(frame.tick, bytes, packet.key));
-      report.meshes[i].traffic->add(bytes.size(), packet.updates, packet.key, packet.half);
-    }
+    report.meshes[i].fidelity->add(frame.meshes[i].displacements, replica.displacements(i, frame.tick), touch_of(frame, i));
   }
+}
+
+/// The time of a tick with a new shape counts for that object, that of the others for the rigid ones; where there are none, a tick
+/// without a shape is not looked at.
+StepTimes* times_of(const TraceFrame& frame, Report& report) {
+  for (std::size_t i = 0; i < frame.meshes.size(); ++i)
+    if (frame.meshes[i].updated) return &report.meshes[i].encode;
+  return report.timings.empty() ? nullptr : &report.timings[0].times;
+}
+
+Result<void> encode_frame(Session& s, const TraceFrame& frame, Report& report) {
+  if (StepTimes* times = times_of(frame, report)) {
+    const Truth truth = s.truth.of(frame);
+    TACTUS_TRY(const auto packets, times->measure([&] { return s.sender.encode(frame.tick, truth); }));
+    for (const Packet& packet : packets) TACTUS_CHECK(send(s, packet, frame.tick, report));
+  }
+  judge(s, frame, report);
   report.ticks.add(frame.tick);
   return {};
 }
@@ -135,13 +133,13 @@ Outcome run(const EncodeOptions& options) {
   if (!session) return refuse(to_blame(session.error(), options), session.error());
   Report report{.command = "encode", .files = {{"trace", options.input}, {"stream", options.output}}};
   report.describe(reader->info());
-  if (session->rigid) {
+  if (has_moving(reader->info()) || reader->info().meshes.empty()) {
     report.traffic.emplace();
     report.fidelity.emplace(reader->info(), options.triggers.triggers());
     report.timings = {{"encode", "encode, per tick"}, {"decode", "decode, per packet"}};
   }
   add_meshes(reader->info(), options.meshes, options.triggers, report);
-  for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.coding().profile == DeformableProfile::main;
+  for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.coding().deformable.profile == DeformableProfile::main;
   if (auto done = encode_all(*reader, *session, frame, options, report); !done) return done;
   if (auto whole = check_ending(options.input, *reader, report.ticks.count()); !whole) return whole;
   if (reader->cut_short()) report.warnings.emplace_back("the trace ends without its index; everything up to there was encoded");

@@ -10,7 +10,8 @@
 #include <optional>
 
 #include <tactus/base/shown.h>
-#include <tactus/metrics/compare.h>
+#include <tactus/metrics/errors.h>
+#include <tactus/metrics/rates.h>
 #include <tactus/trace/mcap_reader.h>
 #include <tactus/trace/trace_file.h>
 #include "cli/figures.h"
@@ -79,26 +80,25 @@ void print_info(const Json& info) {
   }
 }
 
-std::string name_of_part(const StreamHeader& header, std::size_t part) {
-  return part == 0 ? "rigid objects" : header.meshes[part - 1].name;
+std::string name_of_substream(const Scene& scene, std::size_t substream) {
+  return substream == 0 ? "rigid objects" : scene.deformables[substream - 1].name;
 }
 
-Json packet_json(const StreamPlayer::Played& played, const StreamHeader& header) {
-  const bool is_rigid = played.part == 0;
-  Json out{{"tick", played.tick()},
+Json packet_json(const PlayedPacket& played, const Scene& scene) {
+  const bool is_rigid = played.substream == 0;
+  Json out{{"tick", played.tick},
            {"byte", played.offset},
-           {"sequence", played.sequence()},
+           {"sequence", played.sequence},
            {"bytes", played.bytes},
-           {"key", played.key() ? "key" : "-"}};
-  if (!header.meshes.empty()) out["part"] = name_of_part(header, played.part);
-  out["reason"] = is_rigid ? kReasons[static_cast<std::size_t>(strongest_reason(played.packet))] : "-";
+           {"key", played.key ? "key" : "-"}};
+  if (!scene.deformables.empty()) out["part"] = name_of_substream(scene, played.substream);
+  out["reason"] = is_rigid ? kReasons[static_cast<std::size_t>(strongest_reason(played))] : "-";
   std::string updates;
-  for (const RigidUpdate& u : played.packet.updates)
-    updates += fmt::format("{}{}:{}", updates.empty() ? "" : " ", u.object, u.level);
+  for (const RigidUpdate& u : played.updates) updates += fmt::format("{}{}:{}", updates.empty() ? "" : " ", u.object, u.level);
   out["object:level"] = updates.empty() ? "-" : updates;
-  if (!header.meshes.empty()) {
-    out["half"] = is_rigid || played.mesh.half == Layer::all ? "-" : kHalves[static_cast<std::size_t>(played.mesh.half)];
-    out["vertices"] = is_rigid ? Json() : Json(played.mesh.updates);
+  if (!scene.deformables.empty()) {
+    out["half"] = is_rigid || played.layer == Layer::all ? "-" : kLayers[static_cast<std::size_t>(played.layer)];
+    out["vertices"] = is_rigid ? Json() : Json(played.vertices);
   }
   return out;
 }
@@ -127,16 +127,16 @@ void show_rigid(const StreamTotals& totals, Json& out) {
 }
 
 /// How a mesh is coded, and what of it the stream holds.
-Json mesh_json(const DeformableObject& mesh, const StreamHeader& header, const DeformableRates& t) {
+Json mesh_json(const DeformableObject& mesh, const Scene& scene, const DeformableRates& t) {
   const bool is_main = mesh.profile == DeformableProfile::main;
   return {{"mesh", mesh.name},
-          {"profile", is_main ? mesh.split ? "main, split" : "main"
+          {"profile", is_main ? mesh.layered ? "main, split" : "main"
                               : fmt::format("thesis, q {}{}", mesh.quant_bits, mesh.models_kept ? ", models kept" : "")},
           {"vertices", mesh.rest.size()},
           {"triangles", mesh.triangles.size()},
           {"rings", mesh.rings},
           {"modes", mesh.basis.steps.size()},
-          {"frame [ms]", is_main ? Json(1e3 / 256 * mesh.frame_period / header.tick_rate) : Json("-")},
+          {"frame [ms]", is_main ? Json(1e3 / 256 * mesh.frame_period / scene.tick_rate) : Json("-")},
           {"packets", t.sizes.size()},
           {"keys", t.keys},
           {"bytes", t.bytes},
@@ -144,20 +144,20 @@ Json mesh_json(const DeformableObject& mesh, const StreamHeader& header, const D
           {"largest", t.quantile(1)}};
 }
 
-/// What of a mesh went in which half.
-Json half_json(const DeformableRates& t) {
+/// What of a mesh went in which layer.
+Json layers_json(const DeformableRates& t) {
   Json out;
-  for (std::size_t i = 0; i < t.halves.size(); ++i) {
-    out[fmt::format("{} packets", kHalves[i])] = t.halves[i].packets;
-    out[fmt::format("{} bytes", kHalves[i])] = t.halves[i].bytes;
+  for (std::size_t i = 0; i < t.layers.size(); ++i) {
+    out[fmt::format("{} packets", kLayers[i])] = t.layers[i].packets;
+    out[fmt::format("{} bytes", kLayers[i])] = t.layers[i].bytes;
   }
   return out;
 }
 
-Json header_json(const StreamHeader& h, std::uint64_t header_bytes, std::size_t size) {
+Json header_json(const Scene& h, std::uint64_t header_bytes, std::size_t size) {
   const auto step = [](std::uint8_t exponent) { return 1.0 / static_cast<double>(std::uint64_t{1} << exponent); };
   Json out{{"kind", "stream"}};
-  if (!h.objects.empty() || h.meshes.empty()) out["rigid profile"] = h.profile == Profile::thesis ? "thesis" : "main";
+  if (!h.objects.empty() || h.deformables.empty()) out["rigid profile"] = "thesis";
   out["file bytes"] = size;
   out["header bytes"] = header_bytes;
   out["ticks per second"] = h.tick_rate;
@@ -180,10 +180,10 @@ Outcome end_of(const InfoOptions& options, const std::optional<Error>& error) {
 Outcome info_stream(const InfoOptions& options) {
   const auto bytes = read_file(options.readable);
   if (!bytes) return tl::unexpected(bytes.error());
-  auto player = StreamPlayer::open({reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()});
+  auto player = Player::open({reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()});
   if (!player) return refuse(options.input, player.error());
-  Json info = header_json(player->header(), player->header_bytes(), bytes->size());
-  StreamTotals totals(player->header());
+  Json info = header_json(player->scene(), player->header_bytes(), bytes->size());
+  StreamTotals totals(player->scene());
   Json packets = Json::array();
   std::optional<Error> error;
   while (true) {
@@ -191,7 +191,7 @@ Outcome info_stream(const InfoOptions& options) {
     if (!played) error = played.error();
     if (!played || !*played) break;
     totals.add(**played);
-    if (options.packets) packets.push_back(options.json ? packet_info_json(**played) : packet_json(**played, player->header()));
+    if (options.packets) packets.push_back(options.json ? packet_info_json(**played) : packet_json(**played, player->scene()));
   }
   if (options.json) {
     info = stream_info_json(*player, totals, bytes->size(), {error, player->complete()});
@@ -204,19 +204,19 @@ Outcome info_stream(const InfoOptions& options) {
   info["ending"] = error                ? fmt::format("broken at {} ({})", place_of_bit(error->bit_offset), error->rule)
                    : player->complete() ? "complete"
                                         : "no trailer: the writer did not finish";
-  for (const RigidObject& o : player->header().objects) {
-    const Pose pose = to_pose({o.initial.position, o.initial.rotation}, player->header().grid);
+  for (const RigidObject& o : player->scene().objects) {
+    const Pose pose = to_pose(o.initial, player->scene().grid.position);
     info["objects"].push_back(
         {{"object", o.name},
          {"moves along", dof_text(o.dof)},
          {"first position [m]", fmt::format("{:.4f} {:.4f} {:.4f}", pose.position.x, pose.position.y, pose.position.z)}});
   }
-  const bool is_split = std::ranges::any_of(totals.meshes, [](const DeformableRates& t) {
-    return std::ranges::any_of(t.halves, [](const auto& h) { return h.packets > 0; });
+  const bool is_layered = std::ranges::any_of(totals.meshes, [](const DeformableRates& t) {
+    return std::ranges::any_of(t.layers, [](const auto& h) { return h.packets > 0; });
   });
   for (std::size_t i = 0; i < totals.meshes.size(); ++i) {
-    info["meshes"].push_back(mesh_json(player->header().meshes[i], player->header(), totals.meshes[i]));
-    if (is_split) info["meshes"].back().update(half_json(totals.meshes[i]));
+    info["meshes"].push_back(mesh_json(player->scene().deformables[i], player->scene(), totals.meshes[i]));
+    if (is_layered) info["meshes"].back().update(layers_json(totals.meshes[i]));
   }
   if (options.packets) info["packet list"] = std::move(packets);
   print_info(info);

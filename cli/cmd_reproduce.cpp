@@ -11,7 +11,9 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include <tactus/metrics/compare.h>
+#include <tactus/metrics/errors.h>
+#include <tactus/metrics/rates.h>
+#include <tactus/receiver.h>
 #include <tactus/sim/simulation.h>
 #include "cli/json_parts.h"
 #include "cli/options_codec.h"
@@ -98,24 +100,10 @@ double share(std::uint64_t part, std::uint64_t whole) {
 }
 
 /// The state as predicted, beside what the simulation's own client shows: a second client without smoothing.
-struct Predictor {
-  RigidDecoder decoder;
-  Replica replica;
-};
-
-Result<Predictor> make_predictor(const StreamHeader& header) {
-  TACTUS_TRY(RigidDecoder decoder, RigidDecoder::create(header));
-  TACTUS_TRY(Replica replica, Replica::create(header));
-  return Predictor{std::move(decoder), std::move(replica)};
-}
-
-Result<void> follow(Predictor& predictor, const EncodedPacket& packet, std::int64_t tick, std::span<Pose> poses) {
-  if (!packet.bytes.empty()) {
-    TACTUS_TRY(const DecodedPacket decoded, predictor.decoder.decode(packet.bytes));
-    predictor.replica.apply(decoded, predictor.decoder.objects(), tick);
-  }
+Result<void> follow(Receiver& receiver, std::span<const Packet> packets, std::int64_t tick, std::span<Pose> poses) {
+  for (const Packet& packet : packets) TACTUS_CHECK(receiver.push(packet.bytes));
   for (std::uint32_t i = 0; i < poses.size(); ++i)
-    poses[i] = to_pose(predictor.replica.pose(i, tick), predictor.decoder.header().grid);
+    poses[i] = to_pose(receiver.replica().pose(i, tick), receiver.scene()->grid.position);
   return {};
 }
 
@@ -137,11 +125,12 @@ Measured summary(const RateMetrics& traffic, const ErrorMetrics& predicted, cons
 
 Measured measure(const sim::Scene& scene, const Setting& setting, const RigidTriggers& triggers, sim::Grip grip,
                  std::uint64_t seed) {
-  const sim::ChannelOptions channel{{.triggers = triggers}, {.interpolation = setting.interpolation}};
+  const sim::ChannelOptions channel{.sender = {.triggers = triggers, .deformable = {}, .policy = {}},
+                                    .replica = {.interpolation = setting.interpolation}};
   auto simulation = sim::Simulation::create(scene, {.seed = seed, .grip = grip, .channel = channel});
   if (!simulation) return failed_at(0, simulation.error());
-  auto predictor = make_predictor(simulation->header());
-  if (!predictor) return failed_at(0, predictor.error());
+  auto predicting = Receiver::create(simulation->stream_scene());
+  if (!predicting) return failed_at(0, predicting.error());
   const TraceInfo info = simulation->info();
   ErrorMetrics predicted(info, triggers), shown(info, triggers);
   RateMetrics traffic;
@@ -149,11 +138,11 @@ Measured measure(const sim::Scene& scene, const Setting& setting, const RigidTri
   const std::int64_t ticks = simulation->ticks();
   std::uint64_t visual_violations = 0;
   for (std::int64_t tick = 0; tick < ticks; ++tick) {
-    const auto packet = simulation->step();
-    if (!packet) return failed_at(packet.error().tick, packet.error().error);
-    if (!packet->bytes.empty()) traffic.add(packet->reason, packet->updates, packet->bytes.size(), packet->key);
+    const auto packets = simulation->step();
+    if (!packets) return failed_at(packets.error().tick, packets.error().error);
+    for (const Packet& p : *packets) traffic.add(p.reason, p.updates, p.bytes.size(), p.key);
     const TraceFrame& frame = simulation->frame();
-    if (const auto done = follow(*predictor, *packet, frame.tick, poses); !done) return failed_at(frame.tick, done.error());
+    if (const auto done = follow(*predicting, *packets, frame.tick, poses); !done) return failed_at(frame.tick, done.error());
     const auto over = [&] { return predicted.position().ticks_over() + predicted.rotation().ticks_over(); };
     const std::uint64_t before = over();
     predicted.add(frame, poses);

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <map>
 
+#include <tactus/file/stream_file.h>
+#include <tactus/scene/scene_syntax.h>
 #include <tactus/sim/simulation.h>
 #include <tactus/trace/trace_file.h>
 #include "cli/option_needs.h"
@@ -43,21 +45,19 @@ struct SimOptions {
 struct StreamOutput {
   OutputFile file;
   StreamFileWriter writer;
-  PartJoiner parts;
 };
 
-tl::expected<StreamOutput, Failure> open_stream(const SimOptions& options, StreamHeader header) {
-  header.bounds = bounds_of(header, options.triggers.triggers(), options.meshes.thresholds(options.triggers));
+tl::expected<StreamOutput, Failure> open_stream(const SimOptions& options, const Scene& scene) {
   auto file = OutputFile::create(options.stream, options.common.existing(), {options.scene, options.replay});
   if (!file) return tl::unexpected(file.error());
   const auto out = file->open();
   if (!out) return tl::unexpected(out.error());
-  auto writer = StreamFileWriter::create(**out, header);
+  auto writer = StreamFileWriter::create(**out, scene);
   if (!writer) return refuse(options.stream, writer.error());
-  return StreamOutput{std::move(*file), std::move(*writer), PartJoiner(header)};
+  return StreamOutput{std::move(*file), std::move(*writer)};
 }
 
-constexpr double kMostTicks = 0xffffffff;     // of a stream: spec/20-stream.md
+constexpr double kMostTicks = 0xffffffff;     // of a stream: spec/20-scene.md
 constexpr std::uint32_t kEstimateEvery = 50;  // deformations between looks at their error
 
 struct Run {
@@ -67,11 +67,10 @@ struct Run {
   std::optional<StreamOutput> stream;
   std::optional<TraceReader> recording;
   TraceFrame recorded;
-  std::size_t part_bytes = 0;  // in front of every packet
 };
 
 /// One tick, by the scene's hands or by the recording.
-tl::expected<EncodedPacket, Failure> step(Run& run, const SimOptions& options, StepTimes& times) {
+tl::expected<std::span<const Packet>, Failure> step(Run& run, const SimOptions& options, StepTimes& times) {
   const auto stepped =
       times.measure([&] { return run.recording ? run.simulation.replay(run.recorded.users) : run.simulation.step(); });
   if (stepped) return *stepped;
@@ -80,37 +79,36 @@ tl::expected<EncodedPacket, Failure> step(Run& run, const SimOptions& options, S
   return refuse(fmt::format("{}, {}: {}", options.scene, place_of_tick(error.tick), error.remedy), "");
 }
 
-/// What the channel did with meshes that are new in this tick.
-Outcome record_meshes(Run& run, const SimOptions& options, Report& report) {
-  const TraceFrame& frame = run.simulation.frame();
-  for (std::size_t i = 0; i < report.meshes.size(); ++i) {
-    if (!frame.meshes[i].updated) continue;
-    const sim::DeformableSent& sent = run.simulation.sent(i);
-    DeformableRates& traffic = *report.meshes[i].traffic;
-    ++traffic.frames;
-    report.meshes[i].fidelity->add(frame.meshes[i].displacements, sent.shown, touch_of(frame, i));
-    for (const EncodedDeformablePacket& packet : sent.packets) {
-      if (packet.bytes.empty()) continue;
-      traffic.add(packet.bytes.size() + run.part_bytes, packet.updates, packet.key, packet.half);
-      if (!run.stream) continue;
-      const auto added = run.stream->writer.add(frame.tick, run.stream->parts.join(i + 1, packet.bytes), packet.key);
-      if (!added) return refuse(options.stream, added.error());
-    }
+/// What was sent in this tick.
+Outcome record_packets(Run& run, std::span<const Packet> packets, const SimOptions& options, Report& report) {
+  for (const Packet& packet : packets) {
+    if (packet.substream > 0)
+      report.meshes[packet.substream - 1].traffic->add(packet.bytes.size(), packet.updates, packet.key, packet.layer);
+    else if (report.traffic) report.traffic->add(packet.reason, packet.updates, packet.bytes.size(), packet.key);
+    if (!run.stream) continue;
+    const auto added = run.stream->writer.add(run.simulation.frame().tick, packet.bytes, packet.key);
+    if (!added) return refuse(options.stream, added.error());
   }
   return {};
 }
 
-Outcome record(Run& run, const EncodedPacket& packet, const SimOptions& options, Report& report) {
+/// What the client shows of deformable objects that are new in this tick.
+void judge_meshes(Run& run, Report& report) {
+  const TraceFrame& frame = run.simulation.frame();
+  for (std::size_t i = 0; i < report.meshes.size(); ++i) {
+    if (!frame.meshes[i].updated) continue;
+    ++report.meshes[i].traffic->frames;
+    report.meshes[i].fidelity->add(frame.meshes[i].displacements, run.simulation.replica().displacements(i, frame.tick),
+                                   touch_of(frame, i));
+  }
+}
+
+Outcome record(Run& run, std::span<const Packet> packets, const SimOptions& options, Report& report) {
   const TraceFrame& frame = run.simulation.frame();
   if (const auto written = run.trace.write(frame); !written)
     return refuse(options.output, place_of_tick(frame.tick), written.error());
-  if (report.traffic && !packet.bytes.empty())
-    report.traffic->add(packet.reason, packet.updates, packet.bytes.size() + run.part_bytes, packet.key);
-  if (run.stream && !packet.bytes.empty()) {
-    const auto added = run.stream->writer.add(frame.tick, run.stream->parts.join(0, packet.bytes), packet.key);
-    if (!added) return refuse(options.stream, added.error());
-  }
-  if (auto done = record_meshes(run, options, report); !done) return done;
+  if (auto done = record_packets(run, packets, options, report); !done) return done;
+  judge_meshes(run, report);
   if (report.fidelity) {
     report.fidelity->add(frame, run.simulation.client_poses());
     report.fidelity->add_rendered(frame);
@@ -122,8 +120,8 @@ Outcome record(Run& run, const EncodedPacket& packet, const SimOptions& options,
 /// Of what was sent, or would have been.
 StreamSize stream_size(const Run& run) {
   if (run.stream) return {run.stream->writer.header_bytes(), run.stream->writer.bytes()};
-  const auto header = write_header(run.simulation.header());
-  return {header ? header->size() : 0, std::nullopt};
+  const auto declaration = write_scene(*run.simulation.stream_scene());
+  return {declaration ? declaration->size() : 0, std::nullopt};
 }
 
 /// How long the deformations of this tick took, one time each.
@@ -187,7 +185,7 @@ Report make_report(const SimOptions& options, const TraceInfo& info) {
   if (report.moving > 0 || info.meshes.empty()) report.traffic.emplace();
   report.fidelity.emplace(info, options.triggers.triggers());
   add_meshes(info, options.meshes, options.triggers, report);
-  for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.coding().profile == DeformableProfile::main;
+  for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.coding().deformable.profile == DeformableProfile::main;
   report.client = options.replica.interpolation;
   // A client that smooths what it shows leaves the bounds that the encoder keeps.
   if (report.client == Interpolation::none)
@@ -283,8 +281,7 @@ Outcome run(const SimOptions& options) {
                                   .mesh_noise = options.mesh_noise,
                                   .estimate_every = kEstimateEvery};
   if (options.has_channel())
-    settings.channel = sim::ChannelOptions{options.triggers.encoder(), options.replica, options.meshes.encoder(options.triggers),
-                                           options.meshes.coding()};
+    settings.channel = sim::ChannelOptions{options.meshes.sender(options.triggers), options.replica, options.meshes.coding()};
   auto simulation = sim::Simulation::create(*scene, settings);
   if (!simulation) return refuse(options.scene, simulation.error());
   std::optional<TraceReader> recording;
@@ -298,7 +295,7 @@ Outcome run(const SimOptions& options) {
   if (!output) return tl::unexpected(output.error());
   std::optional<StreamOutput> stream;
   if (!options.stream.empty()) {
-    auto opened = open_stream(options, simulation->header());
+    auto opened = open_stream(options, *simulation->stream_scene());
     if (!opened) return tl::unexpected(opened.error());
     stream.emplace(std::move(*opened));
   }
@@ -311,7 +308,6 @@ Outcome run(const SimOptions& options) {
   Report report = make_report(options, info);
   describe_deformables(*simulation, report);
   Run session{std::move(*simulation), std::move(*output), std::move(*trace), std::move(stream), std::move(recording), {}};
-  session.part_bytes = has_part_byte(session.simulation.header()) ? 1 : 0;
   const auto ticks = options.duration < 0 ? session.simulation.ticks()
                                           : static_cast<std::int64_t>(std::llround(options.duration * sim::kTickRate));
   if (auto done = simulate(session, ticks, options, report); !done) {

@@ -8,12 +8,12 @@
 #include <cstdint>
 #include <string>
 
-#include <tactus/rigid/rigid.h>
+#include <tactus/rigid/rigid_state.h>
 
 namespace tactus::cli {
 
 inline constexpr std::array<const char*, 4> kReasons{"request", "heartbeat", "visual", "haptic"};  // index: Reason
-inline constexpr std::array<const char*, 3> kHalves{"haptic", "visual", "whole"};                  // index: Layer
+inline constexpr std::array<const char*, 3> kLayers{"haptic", "visual", "whole"};                  // index: Layer
 
 inline constexpr std::uint64_t kUdpHeader = 28;  // [bytes] IPv4 20, UDP 8
 

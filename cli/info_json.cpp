@@ -36,7 +36,7 @@ Json mesh_header_json(const DeformableObject& mesh, std::uint32_t tick_rate) {
            {"rings", mesh.rings},
            {"modes", mesh.basis.steps.size()}};
   if (is_main) {
-    out["split"] = mesh.split;
+    out["split"] = mesh.layered;
     out["frame_period_s"] = mesh.frame_period / 256.0 / tick_rate;
   } else {
     out["quant_bits"] = mesh.quant_bits;
@@ -68,28 +68,29 @@ Json without_shares(Json traffic) {
 
 }  // namespace
 
-Json packet_info_json(const StreamPlayer::Played& played) {
-  Json out{{"tick", played.tick()}, {"byte", played.offset}, {"sequence", played.sequence()},
-           {"bytes", played.bytes}, {"key", played.key()},   {"part", played.part}};
-  if (played.part > 0) {
-    out["half"] = kHalves[static_cast<std::size_t>(played.mesh.half)];
-    out["vertices"] = played.mesh.updates;
+Json packet_info_json(const PlayedPacket& played) {
+  Json out{{"tick", played.tick},   {"byte", played.offset}, {"sequence", played.sequence},
+           {"bytes", played.bytes}, {"key", played.key},     {"part", played.substream}};
+  if (played.substream > 0) {
+    out["half"] = kLayers[static_cast<std::size_t>(played.layer)];
+    out["vertices"] = played.vertices;
     return out;
   }
-  out["reason"] = kReasons[static_cast<std::size_t>(strongest_reason(played.packet))];
+  out["reason"] = kReasons[static_cast<std::size_t>(strongest_reason(played))];
   out["updates"] = Json::array();
-  for (const RigidUpdate& u : played.packet.updates) out["updates"].push_back({{"object", u.object}, {"level", u.level}});
+  for (const RigidUpdate& u : played.updates) out["updates"].push_back({{"object", u.object}, {"level", u.level}});
   return out;
 }
 
-Json stream_info_json(const StreamPlayer& player, const StreamTotals& totals, std::uint64_t file_bytes, const StreamEnd& end) {
-  const StreamHeader& h = player.header();
+Json stream_info_json(const Player& player, const StreamTotals& totals, std::uint64_t file_bytes, const StreamEnd& end) {
+  const Scene& h = player.scene();
   Report report{.command = "info", .tick_rate = h.tick_rate, .stream = StreamSize{player.header_bytes(), file_bytes}};
   report.ticks.add(0);
   if (totals.last_tick > 0) report.ticks.add(totals.last_tick);
-  if (totals.traffic.all_packets() > 0 || h.meshes.empty()) report.traffic = totals.traffic;
+  if (totals.traffic.all_packets() > 0 || h.deformables.empty()) report.traffic = totals.traffic;
   for (std::size_t i = 0; i < totals.meshes.size(); ++i)
-    report.meshes.push_back({.name = h.meshes[i].name, .vertices = h.meshes[i].rest.size(), .traffic = totals.meshes[i]});
+    report.meshes.push_back(
+        {.name = h.deformables[i].name, .vertices = h.deformables[i].rest.size(), .traffic = totals.meshes[i]});
 
   Json out{{"schema", kSchema},
            {"kind", "stream"},
@@ -104,7 +105,7 @@ Json stream_info_json(const StreamPlayer& player, const StreamTotals& totals, st
            {"stream", stream_json(report)}};
   if (end.error) out["broken"] = {{"byte", end.error->bit_offset / 8}, {"rule", end.error->rule}};
   if (report.traffic) {
-    out["profile"] = h.profile == Profile::thesis ? "thesis" : "main";
+    out["profile"] = "thesis";
     out["traffic"] = without_shares(rigid_traffic_json(report));
     out["grid_levels"] = totals.levels;
     if (totals.rigid.packets > 0) {
@@ -115,7 +116,7 @@ Json stream_info_json(const StreamPlayer& player, const StreamTotals& totals, st
   if (h.bounds && h.bounds->rigid) out["bounds"] = bounds_json(*h.bounds->rigid);
   out["objects"] = Json::array();
   for (const RigidObject& o : h.objects) {
-    const Pose pose = to_pose({o.initial.position, o.initial.rotation}, h.grid);
+    const Pose pose = to_pose(o.initial, h.grid.position);
     const Quat& q = pose.rotation;
     out["objects"].push_back({{"name", o.name},
                               {"dof", dof_json(o.dof)},
@@ -123,9 +124,9 @@ Json stream_info_json(const StreamPlayer& player, const StreamTotals& totals, st
                               {"rotation", Json::array({q.w, q.x, q.y, q.z})}});
   }
   out["meshes"] = Json::array();
-  for (std::size_t i = 0; i < h.meshes.size(); ++i) {
-    out["meshes"].push_back(mesh_header_json(h.meshes[i], h.tick_rate));
-    if (h.bounds) out["meshes"].back()["bounds"] = promised_json(h.bounds->meshes[i], h.meshes[i].rings);
+  for (std::size_t i = 0; i < h.deformables.size(); ++i) {
+    out["meshes"].push_back(mesh_header_json(h.deformables[i], h.tick_rate));
+    if (h.bounds) out["meshes"].back()["bounds"] = promised_json(h.bounds->deformables[i], h.deformables[i].rings);
     out["meshes"].back()["traffic"] = mesh_traffic_json(report.meshes[i], report.seconds());
   }
   return out;

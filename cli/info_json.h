@@ -20,9 +20,9 @@ struct StreamEnd {
   std::optional<Error> error{};  ///< that the reading ended with
   bool complete = false;         ///< the trailer is there
 };
-nlohmann::ordered_json stream_info_json(const StreamPlayer& player, const StreamTotals& totals, std::uint64_t file_bytes,
+nlohmann::ordered_json stream_info_json(const Player& player, const StreamTotals& totals, std::uint64_t file_bytes,
                                         const StreamEnd& end);
-nlohmann::ordered_json packet_info_json(const StreamPlayer::Played& played);
+nlohmann::ordered_json packet_info_json(const PlayedPacket& played);
 
 /// What reading a trace to its end told.
 struct TraceTotals {

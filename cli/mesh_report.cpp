@@ -8,11 +8,11 @@ namespace {
 
 double packets_of(const DeformableRates& t) { return static_cast<double>(t.sizes.size()); }
 
-void half_rows(Table& table, const DeformableRates& t, double seconds) {
-  for (std::size_t i = 0; i < t.halves.size(); ++i) {
-    const auto packets = static_cast<double>(t.halves[i].packets), bytes = static_cast<double>(t.halves[i].bytes);
-    table.row({fmt::format("  {} packets per second", kHalves[i]), fmt::format("{:.2f}", per(packets, seconds))});
-    table.row({fmt::format("  {} kbit/s", kHalves[i]), fmt::format("{:.2f}", 8e-3 * per(bytes, seconds)),
+void layer_rows(Table& table, const DeformableRates& t, double seconds) {
+  for (std::size_t i = 0; i < t.layers.size(); ++i) {
+    const auto packets = static_cast<double>(t.layers[i].packets), bytes = static_cast<double>(t.layers[i].bytes);
+    table.row({fmt::format("  {} packets per second", kLayers[i]), fmt::format("{:.2f}", per(packets, seconds))});
+    table.row({fmt::format("  {} kbit/s", kLayers[i]), fmt::format("{:.2f}", 8e-3 * per(bytes, seconds)),
                fmt::format("{:.2f}", 8e-3 * per(bytes + packets * static_cast<double>(kUdpHeader), seconds))});
   }
 }
@@ -31,7 +31,7 @@ void traffic_rows(Table& table, const MeshReport& mesh, double seconds) {
   table.row({"  bytes per packet, max", fmt::to_string(t.quantile(1))});
   if (t.frames > 0) table.row({"  frames per second", fmt::format("{:.2f}", per(static_cast<double>(t.frames), seconds))});
   table.row({"  packets per second", fmt::format("{:.2f}", per(packets_of(t), seconds))});
-  if (has_halves(t)) half_rows(table, t, seconds);
+  if (has_layers(t)) layer_rows(table, t, seconds);
   table.row({"  vertices coded per packet", fmt::format("{:.1f}", per(static_cast<double>(t.updates), packets_of(t)))});
 }
 
@@ -53,18 +53,6 @@ void error_rows(Table& table, const MeshReport& mesh) {
 }
 
 }  // namespace
-
-Result<DeformablePackets> transmit(DeformableLink& link, const TraceFrame& frame, std::size_t index, MeshReport& report) {
-  const auto touch = touch_of(frame, index);
-  const DeformableSample& mesh = frame.meshes[index];
-  TACTUS_TRY(const DeformablePackets packets,
-             report.encode.measure([&] { return link.encode(frame.tick, mesh.displacements, touch); }));
-  for (const EncodedDeformablePacket& packet : packets) {
-    if (!packet.bytes.empty()) TACTUS_CHECK(report.decode.measure([&] { return link.decode(packet.bytes); }));
-  }
-  report.fidelity->add(mesh.displacements, link.shown(frame.tick), touch);
-  return packets;
-}
 
 void mesh_rows(Table& table, const MeshReport& mesh, double seconds) {
   if (mesh.traffic) traffic_rows(table, mesh, seconds);

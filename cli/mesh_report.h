@@ -2,12 +2,11 @@
 /// What a report tells of one deformable object.
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <string>
 
 #include <tactus/metrics/deformable_errors.h>
-#include <tactus/metrics/deformable_link.h>
+#include <tactus/metrics/rates.h>
 #include "cli/step_times.h"
 #include "cli/table.h"
 
@@ -24,11 +23,6 @@ struct MeshReport {
   StepTimes encode{}, decode{};
 };
 
-/// Send one shape through the link and measure.
-/// in   frame  whose mesh `index` is new
-/// out  the packets, valid until the link's next encode().   err  of encoder or decoder
-Result<DeformablePackets> transmit(DeformableLink& link, const TraceFrame& frame, std::size_t index, MeshReport& report);
-
 void mesh_rows(Table& table, const MeshReport& mesh, double seconds);
 
 /// With `header` bytes below each packet.
@@ -37,6 +31,6 @@ inline double bytes_of(const DeformableRates& t, std::uint64_t header) {
 }
 /// Every frame as three floats per vertex.
 inline double raw_bytes(const MeshReport& mesh) { return 12.0 * static_cast<double>(mesh.vertices * mesh.traffic->frames); }
-inline bool has_halves(const DeformableRates& t) { return t.halves[0].packets + t.halves[1].packets > 0; }
+inline bool has_layers(const DeformableRates& t) { return t.layers[0].packets + t.layers[1].packets > 0; }
 
 }  // namespace tactus::cli

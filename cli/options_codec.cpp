@@ -188,7 +188,7 @@ void MeshArguments::add_encoder_to(Command& app) {
                        ->check(whole_number(1, DeformableObject::kMaxQuantBits))
                        ->type_name("Q"),
                    app.add_flag("--keep-models", coding_.models_kept, "thesis: entropy models live on from packet to packet"),
-                   app.add_flag("--split", coding_.split,
+                   app.add_flag("--split", coding_.layered,
                                 "Meshes that are touched: send what is felt in a packet of its own, before the rest. Costs a "
                                 "second header per update and "
                                 "3 to 30 % of the bits")});
@@ -204,12 +204,14 @@ DeformableThresholds MeshArguments::over(DeformableThresholds out, const Trigger
   return out;
 }
 
-DeformableEncoderOptions MeshArguments::encoder(const TriggerArguments& triggers) const {
-  return {thresholds(triggers), triggers.key_interval(), visual_share_, haptic_share_, coding_.split};
+SenderOptions MeshArguments::sender(const TriggerArguments& triggers) const {
+  return {.triggers = triggers.triggers(),
+          .deformable = {thresholds(triggers), visual_share_, haptic_share_, coding_.layered},
+          .policy = {.key_interval = triggers.key_interval()}};
 }
 
-DeformableCoding MeshArguments::coding() const {
-  DeformableCoding out = coding_;
+TraceCoding MeshArguments::coding() const {
+  TraceCoding out{coding_, {}};
   if (modes_ > 0) out.basis = [modes = modes_](const TraceDeformable& mesh) { return spring_basis(mesh, modes); };
   return out;
 }

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include <tactus/client/replica.h>
-#include <tactus/metrics/deformable_link.h>
-#include <tactus/rigid/rigid_encoder.h>
+#include <tactus/sender.h>
+#include <tactus/trace/trace_scene.h>
 #include "cli/output.h"
 #include "cli/progress.h"
 #include "cli/units.h"
@@ -38,7 +38,6 @@ class TriggerArguments {
   RigidTriggers triggers() const { return over({}); }
   /// The bounds that were typed, for the others those of `out`.
   RigidTriggers over(RigidTriggers out) const;
-  RigidEncoderOptions encoder() const { return {.triggers = triggers(), .key_interval = key_interval_}; }
   /// For meshes: what -p says, `otherwise` if it was not given; none if --haptic is off.
   std::optional<double> weber_fraction(std::optional<double> otherwise) const;
   double key_interval() const { return key_interval_; }
@@ -53,7 +52,7 @@ class TriggerArguments {
   PoseBound visual_{{triggers_.visual_position, false}, {triggers_.visual_rotation, false}};
   PoseBound fixed_{{triggers_.fixed_position, false}, {triggers_.fixed_rotation, false}};
   double length_unit_ = 1;
-  double key_interval_ = RigidEncoderOptions{}.key_interval;
+  double key_interval_ = SenderPolicy{}.key_interval;
   bool no_reduction_ = false;
   const Option *deadband_ = nullptr, *haptic_ = nullptr, *alpha_ = nullptr, *floor_ = nullptr, *visual_option_ = nullptr,
                *fixed_option_ = nullptr, *length_unit_option_ = nullptr;
@@ -71,9 +70,10 @@ class MeshArguments {
   /// The bounds that were typed, for the others those of `out`.
   DeformableThresholds over(DeformableThresholds out, const TriggerArguments& triggers) const;
   std::uint8_t rings(std::uint8_t otherwise) const { return rings_->count() > 0 ? coding_.rings : otherwise; }
-  DeformableEncoderOptions encoder(const TriggerArguments& triggers) const;
+  /// What a sender takes, with the triggers.
+  SenderOptions sender(const TriggerArguments& triggers) const;
   std::uint8_t rings() const { return coding_.rings; }
-  DeformableCoding coding() const;
+  TraceCoding coding() const;
 
  private:
   DeformableThresholds thresholds_;

@@ -8,7 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include <tactus/metrics/compare.h>
+#include <tactus/metrics/errors.h>
+#include <tactus/metrics/rates.h>
 #include "cli/mesh_report.h"
 #include "cli/options_codec.h"
 #include "cli/touch_report.h"

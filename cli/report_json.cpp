@@ -53,10 +53,10 @@ Json mesh_traffic_json(const MeshReport& mesh, double seconds) {
     out["payload"]["ratio_to_float32"] = per(raw_bytes(mesh), bytes_of(t, 0));
     out["with_udp_ipv4"]["ratio_to_float32"] = per(raw_bytes(mesh), bytes_of(t, kUdpHeader));
   }
-  if (!has_halves(t)) return out;
-  for (std::size_t i = 0; i < t.halves.size(); ++i) {
-    const auto& [packets, bytes] = t.halves[i];
-    out["halves"][kHalves[i]] = {{"packets", packets},
+  if (!has_layers(t)) return out;
+  for (std::size_t i = 0; i < t.layers.size(); ++i) {
+    const auto& [packets, bytes] = t.layers[i];
+    out["halves"][kLayers[i]] = {{"packets", packets},
                                  {"packets_per_s", rate(packets, seconds)},
                                  {"bytes", bytes},
                                  {"payload", {{"bit_per_s", 8 * rate(bytes, seconds)}}},

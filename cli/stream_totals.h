@@ -6,7 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include <tactus/metrics/compare.h>
+#include <tactus/metrics/rates.h>
+#include <tactus/player.h>
 
 namespace tactus::cli {
 
@@ -25,7 +26,7 @@ struct Sizes {
 
 /// Totals over a stream's packets.
 struct StreamTotals {
-  explicit StreamTotals(const StreamHeader& header) : meshes(header.meshes.size()) {}
+  explicit StreamTotals(const Scene& scene) : meshes(scene.deformables.size()) {}
 
   RateMetrics traffic;
   std::array<std::uint64_t, 8> levels{};
@@ -33,11 +34,11 @@ struct StreamTotals {
   Sizes rigid;
   std::vector<DeformableRates> meshes;
 
-  void add(const StreamPlayer::Played& p) {
-    last_tick = p.tick();
-    if (p.part > 0) return meshes[p.part - 1].add(p.bytes, p.mesh.updates, p.mesh.key, p.mesh.half);
-    traffic.add(strongest_reason(p.packet), p.packet.updates.size(), p.bytes, p.packet.key);
-    for (const RigidUpdate& u : p.packet.updates) ++levels[u.level % levels.size()];
+  void add(const PlayedPacket& p) {
+    last_tick = p.tick;
+    if (p.substream > 0) return meshes[p.substream - 1].add(p.bytes, p.vertices, p.key, p.layer);
+    traffic.add(strongest_reason(p), p.updates.size(), p.bytes, p.key);
+    for (const RigidUpdate& u : p.updates) ++levels[u.level % levels.size()];
     rigid.add(p.bytes);
   }
 };

@@ -1,20 +1,47 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Everything of tactus::codec. Shapes, units and costs stand in the headers below.
+/// Everything of tactus::codec. A scene goes in and packets come out (Sender); packets go in and a replica comes out (Receiver):
+///
+///   #include <cstdio>
+///   #include <tactus/tactus.h>
+///
+///   int main() {
+///     const auto scene = tactus::SceneBuilder().rigid("cube").build();  // both ends declare the same scene
+///     if (!scene) return 1;
+///     auto sender = tactus::Sender::create(*scene);
+///     auto receiver = tactus::Receiver::create(*scene);
+///     if (!sender || !receiver) return 1;
+///     for (int tick = 0; tick < 1000; ++tick) {  // a second at 1 kHz
+///       const tactus::RigidSample cube{.pose = {{1e-4 * tick, 0, 0}, {}}, .velocity = {0.1, 0, 0}, .angular_velocity = {}};
+///       const auto packets = sender->encode(tick, {.objects = {&cube, 1}});
+///       if (!packets) return 1;
+///       for (const tactus::Packet& packet : *packets)      // mostly none: the receiver predicts
+///         if (!receiver->push(packet.bytes)) return 1;     // this is where a network would be
+///     }
+///     const tactus::Pose shown = tactus::to_pose(receiver->replica().pose(0, 999), (*scene)->grid.position);
+///     std::printf("the client shows x = %.3f m\n", shown.position.x);
+///   }
+///
+/// examples/ goes on with losses, deformable objects and traces.
+///
+/// Errors are values: every function that can fail returns a Result, whose Error names a class and a rule of the specification; advice()
+/// says what a receiver does about it. Nothing throws. After create() nothing allocates.
+/// Threads: a Scene never changes and may be shared; any other object is used by one thread at a time. Spans are valid until the next
+/// call of the object that returned them, where its header does not say otherwise.
 #pragma once
 
 #include <tactus/base/geometry.h>
 #include <tactus/base/result.h>
 #include <tactus/client/replica.h>
-#include <tactus/deformable/decoder.h>
 #include <tactus/deformable/displacement.h>
-#include <tactus/deformable/encoder.h>
+#include <tactus/deformable/trigger.h>
 #include <tactus/file/stream_file.h>
-#include <tactus/packet/substream.h>
+#include <tactus/packet/packet.h>
+#include <tactus/player.h>
+#include <tactus/receiver.h>
 #include <tactus/rigid/contact.h>
-#include <tactus/rigid/rigid.h>
-#include <tactus/rigid/rigid_decoder.h>
-#include <tactus/rigid/rigid_encoder.h>
+#include <tactus/rigid/rigid_state.h>
 #include <tactus/rigid/trigger.h>
-#include <tactus/scene/bounds.h>
-#include <tactus/scene/deformable_object.h>
+#include <tactus/scene/scene.h>
+#include <tactus/scene/scene_builder.h>
 #include <tactus/scene/scene_syntax.h>
+#include <tactus/sender.h>

@@ -6,15 +6,13 @@
 #include <ostream>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include <tactus/base/hash.h>
-#include <tactus/deformable/decoder.h>
 #include <tactus/file/stream_file.h>
 #include <tactus/packet/substream.h>
-#include <tactus/rigid/rigid_decoder.h>
+#include <tactus/receiver.h>
 
 namespace tactus::conformance {
 namespace {
@@ -50,10 +48,10 @@ std::string quoted(std::string_view text) {
   return out + '"';
 }
 
-void write_meshes(const std::vector<DeformableObject>& meshes, std::ostream& out) {
+void write_deformables(const std::vector<DeformableObject>& deformables, std::ostream& out) {
   out << R"(,"meshes":[)";
   const char* comma = "";
-  for (const DeformableObject& mesh : meshes) {
+  for (const DeformableObject& mesh : deformables) {
     out << comma << R"({"name":)" << quoted(mesh.name) << R"(,"profile":)" << int{static_cast<std::uint8_t>(mesh.profile)}
         << R"(,"vertices":)" << mesh.rest.size() << R"(,"triangles":)" << mesh.triangles.size() << R"(,"modes":)"
         << mesh.basis.steps.size() << '}';
@@ -78,7 +76,7 @@ void write_bounds(const StreamBounds& bounds, std::ostream& out) {
   }
   out << R"("meshes":[)";
   const char* comma = "";
-  for (const auto& [thresholds, kept] : bounds.meshes) {
+  for (const auto& [thresholds, kept] : bounds.deformables) {
     out << comma << '[' << (kept ? 1 : 0) + (thresholds.weber_fraction ? 2 : 0) << ',' << bits(thresholds.visual);
     if (thresholds.weber_fraction) out << ',' << bits(*thresholds.weber_fraction) << ',' << bits(thresholds.depth_floor);
     out << ']';
@@ -87,145 +85,108 @@ void write_bounds(const StreamBounds& bounds, std::ostream& out) {
   out << "]}";
 }
 
-void write_header_line(const StreamHeader& h, std::ostream& out) {
-  out << R"({"header":{"version":1,"profile":)" << int{static_cast<std::uint8_t>(h.profile)} << R"(,"tick_rate":)" << h.tick_rate
-      << R"(,"grid":[)" << int{h.grid.position} << ',' << int{h.grid.velocity} << ',' << int{h.grid.rotation} << ','
-      << int{h.grid.spin} << R"(],"max_extrapolation":)" << h.max_extrapolation << R"(,"baseline_span":)" << int{h.baseline_span}
-      << R"(,"objects":[)";
+void write_header_line(const Scene& h, std::ostream& out) {
+  out << R"({"header":{"version":1,"profile":0,"tick_rate":)" << h.tick_rate << R"(,"grid":[)" << int{h.grid.position} << ','
+      << int{h.grid.velocity} << ',' << int{h.grid.rotation} << ',' << int{h.grid.angular_velocity} << R"(],"max_extrapolation":)"
+      << h.max_extrapolation << R"(,"baseline_span":)" << int{h.baseline_span} << R"(,"objects":[)";
   const char* comma = "";
   for (const RigidObject& object : h.objects) {
     out << comma << R"({"name":)" << quoted(object.name) << R"(,"dof":)" << int{object.dof} << '}';
     comma = ",";
   }
   out << ']';
-  if (!h.meshes.empty()) write_meshes(h.meshes, out);
+  if (!h.deformables.empty()) write_deformables(h.deformables, out);
   if (h.bounds) write_bounds(*h.bounds, out);
   out << "}}\n";
 }
 
-/// What packets of every part say.
-template <class Packet>
-void write_place(const Packet& packet, std::ostream& out) {
+void write_packet(const DecodedPacket& packet, std::uint64_t state, std::ostream& out) {
   out << R"("sequence":)" << packet.sequence << R"(,"key":)" << (packet.key ? "true" : "false") << R"(,"tick":)" << packet.tick;
-}
-
-template <class Packet>
-void write_final(const Packet& packet, std::uint64_t state, std::ostream& out) {
+  if (packet.substream == 0) {
+    out << R"(,"updates":[)";
+    const char* comma = "";
+    for (const RigidUpdate& update : packet.updates) {
+      out << comma << '[' << update.object << ',' << int{static_cast<std::uint8_t>(update.reason)} << ',' << int{update.level}
+          << ']';
+      comma = ",";
+    }
+    out << ']';
+  } else {
+    out << R"(,"vertices":)" << packet.vertices;
+  }
   out << R"(,"range":")" << hex(packet.final_range, 8) << R"(","code":")" << hex(packet.final_code, 8) << R"(","state":")"
       << hex(state, 16) << '"';
-}
-
-void write_packet(const DecodedPacket& packet, std::uint64_t state, std::ostream& out) {
-  write_place(packet, out);
-  out << R"(,"updates":[)";
-  const char* comma = "";
-  for (const RigidUpdate& update : packet.updates) {
-    out << comma << '[' << update.object << ',' << int{static_cast<std::uint8_t>(update.reason)} << ',' << int{update.level}
-        << ']';
-    comma = ",";
-  }
-  out << ']';
-  write_final(packet, state, out);
-}
-
-void write_packet(const DecodedDeformablePacket& packet, std::uint64_t state, std::ostream& out) {
-  write_place(packet, out);
-  out << R"(,"vertices":)" << packet.updates;
-  write_final(packet, state, out);
 }
 
 void write_shown(std::uint64_t hash, std::ostream& out) { out << R"(,"shown":")" << hex(hash, 16) << '"'; }
 
 constexpr DecodeLimits kLimits{.header_bytes = 1u << 20, .packet_bytes = 1u << 20};  // of every testee, README.md
 
-/// The decoders of all parts of a scene, and a client that applies every packet at its tick and looks at every tick.
+/// A receiver that gets every packet at its tick and looks at every tick.
 class Client {
  public:
-  /// pre  `header` outlives the client
-  static Result<Client> create(const StreamHeader& header, std::optional<Interpolation> interpolation) {
-    TACTUS_TRY(auto rigid, RigidDecoder::create(header, kLimits));
-    Client client(header, std::move(rigid));
-    for (std::size_t i = 0; i < header.meshes.size(); ++i) {
-      TACTUS_TRY(auto mesh, DeformableDecoder::create(header, i, kLimits));
-      client.meshes_.push_back(std::move(mesh));
-    }
-    client.has_rigid_ = std::ranges::any_of(header.objects, [](const RigidObject& o) { return o.dof != Dof::none; });
-    if (!interpolation) return client;
-    return Replica::create(header, {.interpolation = *interpolation}).map([&](Replica shown) {
-      client.replica_ = std::move(shown);
-      return std::move(client);
-    });
+  static Result<Client> create(const SharedScene& scene, std::optional<Interpolation> interpolation) {
+    TACTUS_TRY(
+        Receiver receiver,
+        Receiver::create(scene, {.replica = {.interpolation = interpolation.value_or(Interpolation::none)}, .limits = kLimits}));
+    return Client(scene, std::move(receiver), interpolation.has_value());
   }
 
   /// Decodes the packet of a record and writes its line.
   Result<void> decode(std::uint64_t number, const FilePacket& record, std::ostream& out) {
-    TACTUS_TRY(const auto packet, split_part(*header_, record.bytes));
-    if (packet.part != 0) return decode(meshes_[packet.part - 1], packet, number, record.tick, out);
-    return decode(rigid_, packet, number, record.tick, out);
+    if (looks_) look_until(record.tick);
+    TACTUS_TRY(const DecodedPacket packet, receiver_.push(record.bytes));
+    if (packet.tick != record.tick) return fail(Errc::invalid, "R-FIL-7");
+    out << R"({"packet":)" << number << ',';
+    if (has_substream_number(*scene_)) out << R"("part":)" << packet.substream << ',';
+    write_packet(packet, receiver_.state_hash(packet.substream), out);
+    if (looks_) write_shown(shown_at(record.tick), out);
+    out << "}\n";
+    return {};
   }
 
-  /// State of the only part, or of all.
+  /// State of the only substream, or of all.
   void write_states(std::ostream& out) const {
-    if (has_part_byte_) out << '[';
+    const bool several = has_substream_number(*scene_);
+    if (several) out << '[';
     const char* comma = "";
-    if (has_rigid_ || meshes_.empty()) {
-      out << '"' << hex(rigid_.state_hash(), 16) << '"';
+    const bool has_rigid = !scene_->moving().empty() || scene_->deformables.empty();
+    for (std::size_t i = has_rigid ? 0 : 1; i <= scene_->deformables.size(); ++i) {
+      out << comma << '"' << hex(receiver_.state_hash(i), 16) << '"';
       comma = ",";
     }
-    for (const DeformableDecoder& mesh : meshes_) {
-      out << comma << '"' << hex(mesh.state_hash(), 16) << '"';
-      comma = ",";
-    }
-    if (has_part_byte_) out << ']';
+    if (several) out << ']';
   }
 
   /// What was shown at every tick up to the last packet's.
   void write_all_shown(std::ostream& out) {
-    if (!replica_) return;
+    if (!looks_) return;
     all_.add64(shown_at(tick_));
     write_shown(all_.value(), out);
   }
 
  private:
-  Client(const StreamHeader& header, RigidDecoder rigid)
-      : header_(&header), rigid_(std::move(rigid)), has_part_byte_(has_part_byte(header)) {}
-
-  template <class Decoder>
-  Result<void> decode(Decoder& decoder, const PartPacket& packet, std::uint64_t number, std::int64_t tick, std::ostream& out) {
-    if (replica_) look_until(tick);
-    TACTUS_TRY(const auto decoded, decoder.decode(packet.bytes));
-    if (decoded.tick != tick) return fail(Errc::invalid, "R-FIL-7");
-    out << R"({"packet":)" << number << ',';
-    if (has_part_byte_) out << R"("part":)" << packet.part << ',';
-    write_packet(decoded, decoder.state_hash(), out);
-    if (replica_) {
-      if constexpr (std::is_same_v<Decoder, RigidDecoder>) replica_->apply(decoded, decoder.objects(), tick);
-      write_shown(shown_at(tick), out);
-    }
-    out << "}\n";
-    return {};
-  }
+  Client(SharedScene scene, Receiver receiver, bool looks)
+      : scene_(std::move(scene)), receiver_(std::move(receiver)), looks_(looks) {}
 
   void look_until(std::int64_t tick) {
     for (; tick_ < tick; ++tick_) all_.add64(shown_at(tick_));
   }
 
   std::uint64_t shown_at(std::int64_t tick) {
-    if (meshes_.empty()) return replica_->pose_hash(tick);
+    Replica& replica = receiver_.replica();
+    if (scene_->deformables.empty()) return replica.pose_hash(tick);
     Fnv1a hash;
-    hash.add64(replica_->pose_hash(tick));
-    for (DeformableDecoder& mesh : meshes_)
-      for (const auto& displacement : mesh.displacements_at(tick))
+    hash.add64(replica.pose_hash(tick));
+    for (std::size_t i = 0; i < scene_->deformables.size(); ++i)
+      for (const auto& displacement : replica.displacements(i, tick))
         for (const std::int32_t component : displacement) hash.add32(component);
     return hash.value();
   }
 
-  const StreamHeader* header_;
-  RigidDecoder rigid_;
-  std::vector<DeformableDecoder> meshes_;
-  bool has_part_byte_;
-  bool has_rigid_ = false;
-  std::optional<Replica> replica_;
+  SharedScene scene_;
+  Receiver receiver_;
+  bool looks_;
   std::int64_t tick_ = 0;
   Fnv1a all_;
 };
@@ -234,8 +195,8 @@ class Client {
 
 Result<void> report(std::span<const std::uint8_t> file, std::optional<Interpolation> replica, std::ostream& out) {
   TACTUS_TRY(auto reader, StreamFileReader::open(file, kLimits));
-  TACTUS_TRY(auto client, Client::create(reader.header(), replica));
-  write_header_line(reader.header(), out);
+  TACTUS_TRY(auto client, Client::create(reader.scene(), replica));
+  write_header_line(*reader.scene(), out);
   for (std::uint64_t number = 0;; ++number) {
     TACTUS_TRY(const auto record, reader.next());
     if (record) {

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How far what a client shows of a mesh is from the truth: every vertex, every frame.
+/// How far what a client shows of a deformable object is from the truth: every vertex, every frame.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
 
-#include <tactus/deformable/encoder.h>
+#include <tactus/deformable/trigger.h>
 #include <tactus/trace/frame.h>
 
 namespace tactus {
@@ -23,7 +24,7 @@ struct VertexErrors {
   double mse() const noexcept { return vertices == 0 ? 0 : square_sum / static_cast<double>(vertices); }  ///< [m^2]
 };
 
-/// Bounds are those of DeformableEncoder: v everywhere (thesis eq. 3.10), min(v, h) inside the area of interest (eqs. 3.11, 3.12), and
+/// Bounds are those of Sender: v everywhere (thesis eq. 3.10), min(v, h) inside the area of interest (eqs. 3.11, 3.12), and
 /// nothing below the grid's rounding.
 class DeformableErrors {
  public:
@@ -35,9 +36,11 @@ class DeformableErrors {
   DeformableErrors& operator=(DeformableErrors&&) noexcept;
   ~DeformableErrors();
 
-  /// in   truth  [m] x y z of vertex 0 first;  shown  [m] one per vertex
-  /// time O(vertices), no allocation.
-  void add(std::span<const float> truth, std::span<const Vec3> shown, const std::optional<SurfaceTouch>& touch) noexcept;
+  /// One frame.   in  truth  V x 3 [m];  shown  as Replica::displacements, or V x 3 [m] as a trace of a replica has it
+  /// time O(V), no allocation.
+  void add(std::span<const float> truth, std::span<const std::array<std::int32_t, 3>> shown,
+           const std::optional<SurfaceTouch>& touch) noexcept;
+  void add(std::span<const float> truth, std::span<const float> shown, const std::optional<SurfaceTouch>& touch) noexcept;
 
   const DeformableThresholds& bounds() const noexcept { return bounds_; }
   std::uint8_t rings() const noexcept { return rings_; }
@@ -49,9 +52,12 @@ class DeformableErrors {
 
  private:
   struct Area;
+  void begin(const std::optional<SurfaceTouch>& touch) noexcept;
+  void add(std::size_t vertex, const Vec3& error) noexcept;
 
   DeformableThresholds bounds_;
   std::uint8_t rings_;
+  unsigned position_exp_;
   double rounding_;  // [m] farthest that a vertex lies from its nearest grid point
   std::unique_ptr<Area> finder_;
   std::uint64_t frames_ = 0, touched_ = 0;

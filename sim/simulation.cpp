@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include <tactus/rigid/rigid_decoder.h>
 #include <tactus/sim/contact/contact.h>
 #include <tactus/sim/user/sampled_limit.h>
 #include <tactus/sim/user/user.h>
@@ -15,11 +14,9 @@ namespace tactus::sim {
 namespace {
 
 struct Channel {
-  RigidEncoder encoder;
-  RigidDecoder decoder;
-  Replica replica;
-  std::vector<DeformableLink> meshes;
-  std::vector<DeformableSent> sent;  // one per mesh
+  Sender sender;
+  Receiver receiver;
+  FrameTruth truth;
 };
 
 struct User {
@@ -59,30 +56,26 @@ struct Simulation::Impl {
   std::uint64_t seed;
   Random noise;
   double mesh_noise = 0;  // [m]
-  StreamHeader header;
   RigidWorld world;
   std::optional<Channel> channel;
   std::vector<User> users;
   TraceFrame frame;
-  std::vector<Contact> contacts;
   std::vector<Pose> true_poses, client_poses;
   std::unique_ptr<MsdWorld> msds;                // none: the scene has none
   std::unique_ptr<DeformableWorld> deformables;  // likewise
   std::vector<Pose> places;                      // of the deformables, for who looks at one
 
-  Impl(Scene of, std::uint64_t from, StreamHeader stream)
-      : scene(std::move(of)), seed(from), noise(~from), header(std::move(stream)), world(scene) {}
+  Impl(Scene of, std::uint64_t from) : scene(std::move(of)), seed(from), noise(~from), world(scene) {}
 
   void observe();
   void touch_server();
   void report_touched(std::uint32_t mesh);
-  tl::expected<EncodedPacket, Error> transmit();
-  Result<void> transmit_meshes();
+  Result<std::span<const Packet>> transmit();
   Result<void> add_deformables(const SimulationOptions& options);
   Result<void> add_channel(const ChannelOptions& options);
   void touch_client();
   tl::expected<void, StepError> act();
-  tl::expected<EncodedPacket, StepError> tick();
+  tl::expected<std::span<const Packet>, StepError> tick();
   const Pose& watched(const SceneUser& user) const;
 };
 
@@ -133,7 +126,6 @@ void Simulation::Impl::touch_server() {
     }
     user.share = share_rendered(force, user.max_force);
     user.rendered = user.share * force;
-    contacts[i] = user.touch.contact;
     frame.users[i] = {
         .contact = user.touch.contact, .force = {}, .server_force = user.rendered, .surface_contact = user.press.contact};
   }
@@ -144,34 +136,20 @@ void Simulation::Impl::report_touched(std::uint32_t mesh) {
   frame.meshes[mesh].updated = frame.meshes[mesh].updated || deformables->is_due(mesh);
 }
 
-tl::expected<EncodedPacket, Error> Simulation::Impl::transmit() {
+Result<std::span<const Packet>> Simulation::Impl::transmit() {
   if (!channel) {
     for (const std::uint32_t i : world.changed()) client_poses[i] = true_poses[i];
     for (std::size_t i = scene.objects.size(); i < client_poses.size(); ++i) client_poses[i] = true_poses[i];
-    return EncodedPacket{};
+    return std::span<const Packet>();
   }
-  TACTUS_TRY(const EncodedPacket packet, channel->encoder.encode(frame.tick, frame.objects, contacts));
-  if (!packet.bytes.empty()) {
-    TACTUS_TRY(const DecodedPacket decoded, channel->decoder.decode(packet.bytes));
-    channel->replica.apply(decoded, channel->decoder.objects(), frame.tick);
-  }
-  TACTUS_CHECK(transmit_meshes());
-  for (std::uint32_t i = 0; i < client_poses.size(); ++i)
-    client_poses[i] = to_pose(channel->replica.pose(i, frame.tick), header.grid);
-  return packet;
-}
-
-Result<void> Simulation::Impl::transmit_meshes() {
-  for (std::size_t i = 0; i < channel->meshes.size(); ++i) {
-    if (!frame.meshes[i].updated) continue;
-    DeformableLink& link = channel->meshes[i];
-    TACTUS_TRY(const DeformablePackets packets, link.encode(frame.tick, frame.meshes[i].displacements, touch_of(frame, i)));
-    for (const EncodedDeformablePacket& packet : packets)
-      if (!packet.bytes.empty()) TACTUS_CHECK(link.decode(packet.bytes));
-    channel->sent[i] = {packets, link.shown(frame.tick)};
-    deformables->show(i, channel->sent[i].shown);
-  }
-  return {};
+  TACTUS_TRY(const auto packets, channel->sender.encode(frame.tick, channel->truth.of(frame)));
+  for (const Packet& packet : packets) TACTUS_CHECK(channel->receiver.push(packet.bytes));
+  Replica& replica = channel->receiver.replica();
+  const unsigned position_exp = channel->receiver.scene()->grid.position;
+  for (std::size_t i = 0; i < frame.meshes.size(); ++i)
+    if (frame.meshes[i].updated) deformables->show(i, replica.displacements(i, frame.tick), position_exp);
+  for (std::uint32_t i = 0; i < client_poses.size(); ++i) client_poses[i] = to_pose(replica.pose(i, frame.tick), position_exp);
+  return packets;
 }
 
 void Simulation::Impl::touch_client() {
@@ -207,13 +185,13 @@ tl::expected<void, StepError> Simulation::Impl::act() {
   return world.step();
 }
 
-tl::expected<EncodedPacket, StepError> Simulation::Impl::tick() {
+tl::expected<std::span<const Packet>, StepError> Simulation::Impl::tick() {
   touch_server();
-  const auto packet = transmit();
-  if (!packet) return tl::unexpected(StepError{packet.error(), frame.tick, 0});
+  const auto packets = transmit();
+  if (!packets) return tl::unexpected(StepError{packets.error(), frame.tick, 0});
   touch_client();
   if (const auto moved = act(); !moved) return tl::unexpected(moved.error());
-  return *packet;
+  return *packets;
 }
 
 Result<void> Simulation::Impl::add_deformables(const SimulationOptions& options) {
@@ -230,27 +208,23 @@ Result<void> Simulation::Impl::add_deformables(const SimulationOptions& options)
 }
 
 Result<void> Simulation::Impl::add_channel(const ChannelOptions& options) {
-  if (deformables) {
-    for (const TraceDeformable& mesh : deformables->meshes()) {
-      TACTUS_TRY(DeformableObject object, deformable_object(mesh, options.mesh_coding, header.grid.position));
-      header.meshes.push_back(std::move(object));
-    }
-  }
-  TACTUS_TRY(RigidEncoder encoder, RigidEncoder::create(header, options.encoder));
-  TACTUS_TRY(RigidDecoder decoder, RigidDecoder::create(header));
-  TACTUS_TRY(Replica replica, Replica::create(header, options.replica));
-  channel.emplace(Channel{std::move(encoder), std::move(decoder), std::move(replica), {}, {}});
-  for (std::size_t i = 0; i < header.meshes.size(); ++i) {
-    TACTUS_TRY(DeformableLink link, DeformableLink::create(header, i, options.mesh));
-    channel->meshes.push_back(std::move(link));
-  }
-  channel->sent.resize(header.meshes.size());
+  SceneBuilder builder = scene_builder(scene);
+  if (deformables)
+    for (const TraceDeformable& mesh : deformables->meshes()) TACTUS_CHECK(add_deformable(builder, mesh, options.coding));
+  builder.promise(options.sender.triggers, options.sender.deformable.thresholds);
+  TACTUS_TRY(SharedScene declared, builder.build());
+  TACTUS_TRY(Sender sender, Sender::create(declared, options.sender));
+  TACTUS_TRY(Receiver receiver, Receiver::create(declared, {.replica = options.replica, .limits = {}}));
+  TraceInfo info;
+  info.users.resize(scene.users.size());
+  info.meshes.resize(frame.meshes.size());
+  channel.emplace(Channel{std::move(sender), std::move(receiver), FrameTruth(info)});
   return {};
 }
 
 Result<Simulation> Simulation::create(const Scene& scene, const SimulationOptions& options) {
-  TACTUS_TRY(StreamHeader header, stream_header(scene));
-  auto impl = std::make_unique<Impl>(scene, options.seed, std::move(header));
+  auto impl = std::make_unique<Impl>(scene, options.seed);
+  const std::size_t objects = scene.objects.size() + scene.msds.size();
   impl->mesh_noise = options.mesh_noise;
   if (!scene.deformables.empty()) TACTUS_CHECK(impl->add_deformables(options));
   if (options.channel) TACTUS_CHECK(impl->add_channel(*options.channel));
@@ -273,17 +247,16 @@ Result<Simulation> Simulation::create(const Scene& scene, const SimulationOption
   if (!scene.msds.empty()) {
     TACTUS_TRY(impl->msds, MsdWorld::create(scene));
   }
-  impl->frame.objects.resize(impl->header.objects.size());
-  impl->frame.changed.emplace().reserve(impl->header.objects.size());
+  impl->frame.objects.resize(objects);
+  impl->frame.changed.emplace().reserve(objects);
   impl->frame.users.resize(scene.users.size());
-  impl->contacts.resize(scene.users.size());
-  impl->true_poses.resize(impl->header.objects.size());
+  impl->true_poses.resize(objects);
   for (const SceneObject& object : scene.objects) impl->client_poses.push_back(object.pose);
   for (const SceneMsd& msd : scene.msds) impl->client_poses.push_back({msd.position, {}});
   return Simulation(std::move(impl));
 }
 
-tl::expected<EncodedPacket, StepError> Simulation::step() {
+tl::expected<std::span<const Packet>, StepError> Simulation::step() {
   Impl& in = *impl_;
   in.observe();
   for (std::size_t i = 0; i < in.users.size(); ++i) {
@@ -293,7 +266,7 @@ tl::expected<EncodedPacket, StepError> Simulation::step() {
   return in.tick();
 }
 
-tl::expected<EncodedPacket, StepError> Simulation::replay(std::span<const UserSample> recorded) {
+tl::expected<std::span<const Packet>, StepError> Simulation::replay(std::span<const UserSample> recorded) {
   Impl& in = *impl_;
   in.observe();
   const auto refuse = [&](const char* rule) {
@@ -311,8 +284,8 @@ const TraceFrame& Simulation::frame() const noexcept { return impl_->frame; }
 std::span<const Pose> Simulation::client_poses() const noexcept { return impl_->client_poses; }
 const DeformableWorld* Simulation::deformables() const noexcept { return impl_->deformables.get(); }
 const TouchSummary& Simulation::touched(std::size_t user) const noexcept { return impl_->users[user].record.summary(); }
-const DeformableSent& Simulation::sent(std::size_t mesh) const noexcept { return impl_->channel->sent[mesh]; }
-const StreamHeader& Simulation::header() const noexcept { return impl_->header; }
+Replica& Simulation::replica() noexcept { return impl_->channel->receiver.replica(); }
+const SharedScene& Simulation::stream_scene() const noexcept { return impl_->channel->receiver.scene(); }
 
 double Simulation::bears(std::size_t user) const noexcept {
   return sampled_limit(impl_->users[user].hand.impedance(), impl_->scene.users[user].device);

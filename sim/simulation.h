@@ -3,13 +3,13 @@
 ///
 ///   1 hand     feels the client's force of the last tick and moves; the device reports x_d
 ///   2 server   proxy on the true poses: contact, force f
-///   3 channel  true states + contact -> RigidEncoder -> packet -> RigidDecoder -> Replica          (left out without a codec)
+///   3 channel  truth -> Sender -> packets -> Receiver -> Replica                                   (left out without a codec)
 ///   4 client   proxy on the replica's poses, same x_d: force f_c, which the hand will feel
 ///   5 physics  -f acts on the touched object at the proxy; poses of the next tick
 ///
 /// One-dimensional objects (sim/msd/msd_world.h) are touched in 2 and 4 by a probe that touches no box, deformed in 5, and sent in 3.
 /// Deformable objects are touched in 2 and 4 and pushed in 5, too (sim/deformable/deformable_world.h), and 3 sends a new shape of
-/// theirs through a DeformableLink each. What a user feels is the sum of both, clipped to what the device can yield.
+/// theirs. What a user feels is the sum of both, clipped to what the device can yield.
 ///
 /// The frame of a tick holds the poses of 2, the device sample of 1 and both forces: everything in it belongs to one instant, so
 /// whoever recomputes a force from contact and pose gets the encoder's own number.
@@ -20,29 +20,22 @@
 #include <optional>
 #include <span>
 
-#include <tactus/client/replica.h>
-#include <tactus/metrics/deformable_link.h>
-#include <tactus/rigid/rigid_encoder.h>
+#include <tactus/receiver.h>
+#include <tactus/sender.h>
 #include <tactus/sim/deformable/deformable_world.h>
 #include <tactus/sim/msd/msd_world.h>
 #include <tactus/sim/rigid/rigid_world.h>
 #include <tactus/sim/scene/scene.h>
 #include <tactus/sim/user/touch_record.h>
 #include <tactus/trace/frame.h>
+#include <tactus/trace/trace_scene.h>
 
 namespace tactus::sim {
 
 struct ChannelOptions {
-  RigidEncoderOptions encoder;
+  SenderOptions sender;
   ReplicaOptions replica;
-  DeformableEncoderOptions mesh{};
-  DeformableCoding mesh_coding{};
-};
-
-/// What a channel did with a mesh in one tick.
-struct DeformableSent {
-  DeformablePackets packets;
-  std::span<const Vec3> shown;  ///< displacements [m] at the client
+  TraceCoding coding{};  ///< of deformable objects
 };
 
 struct SimulationOptions {
@@ -56,29 +49,28 @@ struct SimulationOptions {
 class Simulation {
  public:
   /// pre  every call on the same thread (ODE keeps state per thread).
-  /// err  invalid_argument R-API-n, R-STR-n: the options do not suit the scene (see RigidEncoder::create, Replica::create);
+  /// err  invalid_argument R-API-n, R-STR-n: the options do not suit the scene (see SceneBuilder::build, Sender::create, Receiver::create);
   ///      invalid R-SIM-3 of MsdWorld; unsupported R-SIM-2 and others of make_deformable_world()
   static Result<Simulation> create(const Scene& scene, const SimulationOptions& options = {});
 
   /// One tick with the scene's virtual hands. Afterwards frame() is this tick.
-  /// out  the packet of this tick, without bytes if none was needed; valid until the next call
+  /// out  the packets of this tick; valid until the next call
   /// time about 16 us for one cube and user; no allocation after the first tick, in which ODE makes its arenas, and the first
   ///      deformation.
-  /// err  invalid_argument R-SIM-1, R-FEM-6: the physics broke down; errors of RigidEncoder::encode and RigidDecoder::decode
-  tl::expected<EncodedPacket, StepError> step();
+  /// err  invalid_argument R-SIM-1, R-FEM-6: the physics broke down; errors of Sender::encode and Receiver::push
+  tl::expected<std::span<const Packet>, StepError> step();
 
   /// The same with recorded device positions instead of the hands (open loop). The button is down where a spring was recorded.
   /// in   recorded  one per user of the scene
   /// err  as step(); invalid_argument R-API-5: wrong count, R-API-1: not finite
-  tl::expected<EncodedPacket, StepError> replay(std::span<const UserSample> recorded);
+  tl::expected<std::span<const Packet>, StepError> replay(std::span<const UserSample> recorded);
 
-  const TraceFrame& frame() const noexcept;             ///< pre  step() or replay() was called
-  std::span<const Pose> client_poses() const noexcept;  ///< as shown at the client in that tick, one per object
-  /// Of a mesh that is new in that tick.   pre  there is a channel
-  const DeformableSent& sent(std::size_t mesh) const noexcept;
+  const TraceFrame& frame() const noexcept;                      ///< pre  step() or replay() was called
+  std::span<const Pose> client_poses() const noexcept;           ///< as shown at the client in that tick, one per object
+  Replica& replica() noexcept;                                   ///< the client's.   pre  there is a channel
   std::int64_t ticks() const noexcept;                           ///< length of the scene
   TraceInfo info() const;                                        ///< for a TraceWriter of these frames
-  const StreamHeader& header() const noexcept;                   ///< of the packets
+  const SharedScene& stream_scene() const noexcept;              ///< of the packets.   pre  there is a channel
   const DeformableWorld* deformables() const noexcept;           ///< null: the scene has none
   const TouchSummary& touched(std::size_t user) const noexcept;  ///< all ticks so far
   double bears(

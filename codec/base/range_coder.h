@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Adaptive binary range coder. spec/30-range-decoder.md. 32-bit range, carry resolved by the encoder, shortest tail: bytes past the
+/// Adaptive binary range coder. spec/30-range-coder.md. 32-bit range, carry resolved by the encoder, shortest tail: bytes past the
 /// end of a payload read as zero. Encoder and decoder share one interface, so that a packet's syntax is written once, as a template.
 /// Cost: about 5 ns per adaptive bit, 3 ns per call of raw bits; no allocation.
 #pragma once

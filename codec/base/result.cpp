@@ -1,7 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/base/result.h>
 
+#include <string_view>
+
 namespace tactus {
+
+Advice advice(const Error& error) noexcept {
+  const std::string_view rule = error.rule;
+  if (error.code == Errc::state) return rule == "R-PKT-5" ? Advice::drop : Advice::request_key;
+  const bool stops = error.code == Errc::unsupported || (error.code == Errc::limit_exceeded && rule != "R-PKT-1") ||
+                     error.code == Errc::internal;
+  return stops ? Advice::close : Advice::drop;
+}
 
 const char* errc_name(Errc code) noexcept {
   switch (code) {

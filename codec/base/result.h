@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <tl/expected.hpp>
+#include <utility>
 
 namespace tactus {
 
@@ -32,6 +33,14 @@ struct Error {
   std::uint64_t bit_offset = 0;  ///< position in the input where the rule was broken, in bits; 0 when there is none
 };
 
+/// What a receiver does about a packet that it cannot decode.
+enum class Advice : std::uint8_t {
+  drop,         ///< nothing: the packet is damaged, late, or a copy; what is held stays as it was
+  request_key,  ///< ask the sender for a key packet: what this one builds on is not held
+  close,        ///< it cannot be decoded here, nor can those that follow: a limit or a feature is missing
+};
+Advice advice(const Error& error) noexcept;
+
 template <class T>
 using Result = tl::expected<T, Error>;
 
@@ -51,14 +60,14 @@ inline tl::unexpected<Error> fail(Errc code, const char* rule, std::uint64_t bit
 
 #define TACTUS_CONCAT_(a, b) a##b
 #define TACTUS_CONCAT(a, b) TACTUS_CONCAT_(a, b)
-#define TACTUS_TRY_(tmp, lhs, expr)                                \
-  auto tmp = (expr);                                               \
-  if (!tmp) return ::tl::unexpected<::tactus::Error>(tmp.error()); \
+#define TACTUS_TRY_(tmp, lhs, expr)                               \
+  auto tmp = (expr);                                              \
+  if (!tmp) return ::tl::make_unexpected(std::move(tmp).error()); \
   lhs = *std::move(tmp)
-/// `TACTUS_TRY(auto x, f());` binds the value of f() or returns its error. The only error macro.
+/// `TACTUS_TRY(auto x, f());` binds the value of f() or returns its error, whatever its type. The only error macro.
 #define TACTUS_TRY(lhs, expr) TACTUS_TRY_(TACTUS_CONCAT(tactus_try_, __LINE__), lhs, expr)
 /// `TACTUS_CHECK(f());` for Result<void>.
-#define TACTUS_CHECK(expr)                                                                                         \
-  do {                                                                                                             \
-    if (auto tactus_check = (expr); !tactus_check) return ::tl::unexpected<::tactus::Error>(tactus_check.error()); \
+#define TACTUS_CHECK(expr)                                                                                        \
+  do {                                                                                                            \
+    if (auto tactus_check = (expr); !tactus_check) return ::tl::make_unexpected(std::move(tactus_check).error()); \
   } while (false)

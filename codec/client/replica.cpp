@@ -3,32 +3,37 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <tactus/base/fixed.h>
 #include <tactus/base/hash.h>
-#include <tactus/base/out_of_memory.h>
+#include <tactus/deformable/deformable_decoder.h>
 
 namespace tactus {
 
-Result<Replica> Replica::create(const StreamHeader& header, const ReplicaOptions& options) try {
-  TACTUS_CHECK(check_header(header));
+Result<void> Replica::check(const ReplicaOptions& options) noexcept {
   const bool valid = options.share > 0 && options.share <= 1 && options.shortest >= 0 && options.shortest <= options.longest &&
                      options.longest <= 10;
   if (!valid) return fail(Errc::invalid_argument, "R-API-4");
-  Replica replica;
-  replica.header_ = without_meshes(header);
-  replica.interpolation_ = options.interpolation;
-  replica.share_ = static_cast<std::uint32_t>(std::floor(options.share * 65536 + 0.5));
-  replica.shortest_ = static_cast<std::int64_t>(std::floor(options.shortest * header.tick_rate + 0.5));
-  replica.longest_ = static_cast<std::int64_t>(std::floor(options.longest * header.tick_rate + 0.5));
-  replica.tracks_.resize(header.objects.size());
-  for (std::size_t i = 0; i < header.objects.size(); ++i) replica.tracks_[i].state = header.objects[i].initial;
-  return replica;
-} catch (const std::bad_alloc&) {
-  return out_of_memory();
+  return {};
 }
 
-/// t_N in ticks: share of the mean gap, clipped; 0 while no gap is known. spec 50-client 3
+Replica::Replica(const Scene& scene, const ReplicaOptions& options, std::vector<DeformableDecoder*> shapes)
+    : scene_(scene),
+      predictor_(scene),
+      interpolation_(options.interpolation),
+      share_(static_cast<std::uint32_t>(std::floor(options.share * 65536 + 0.5))),
+      shortest_(static_cast<std::int64_t>(std::floor(options.shortest * scene.tick_rate + 0.5))),
+      longest_(static_cast<std::int64_t>(std::floor(options.longest * scene.tick_rate + 0.5))),
+      tracks_(scene.objects.size()),
+      shapes_(std::move(shapes)) {
+  for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    tracks_[i].state.position = scene.objects[i].initial.position;
+    tracks_[i].state.rotation = scene.objects[i].initial.rotation;
+  }
+}
+
+/// t_N in ticks: share of the mean gap, clipped; 0 while no gap is known. spec 60-client 3
 std::int64_t Replica::interval(const Track& track) const noexcept {
   if (track.gap_count == 0) return 0;
   std::int64_t sum = 0;
@@ -60,13 +65,13 @@ void Replica::apply(const DecodedPacket& packet, std::span<const RigidState> obj
 /// Remember both ends and the turn between them, so that pose() needs one sine pair per call.
 void Replica::begin_interpolation(Track& track, const RigidPose& shown) const noexcept {
   track.from = shown;
-  track.to = predict(track.state, track.end, header_);
+  track.to = predictor_.pose(track.state, track.end);
   Quat30 turn = multiply(track.to.rotation, conjugate(shown.rotation));
   if (turn[0] < 0) turn = {-turn[0], -turn[1], -turn[2], -turn[3]};
   std::int64_t square = 0;
   for (std::size_t i = 1; i < 4; ++i) square += static_cast<std::int64_t>(turn[i]) * turn[i];
   const std::int64_t sine = isqrt(static_cast<std::uint64_t>(square));
-  track.half_turn = sine == 0 ? 0 : asin30(static_cast<std::int32_t>(std::min<std::int64_t>(sine, kOne30)));
+  track.half_angle = sine == 0 ? 0 : asin30(static_cast<std::int32_t>(std::min<std::int64_t>(sine, kOne30)));
   for (std::size_t i = 0; i < 3; ++i) {
     track.axis[i] = sine == 0 ? 0 : static_cast<std::int32_t>(round_div(static_cast<std::int64_t>(turn[i + 1]) << 30, sine));
   }
@@ -75,22 +80,25 @@ void Replica::begin_interpolation(Track& track, const RigidPose& shown) const no
 RigidPose Replica::pose(std::uint32_t object, std::int64_t now) const noexcept {
   const Track& track = tracks_[object];
   now = std::max(now, track.begin);
-  if (now >= track.end) return predict(track.state, now, header_);
+  if (now >= track.end) return predictor_.pose(track.state, now);
   const std::int64_t part = now - track.begin, whole = track.end - track.begin;
   RigidPose out = track.from;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::int64_t way = static_cast<std::int64_t>(track.to.position[i]) - track.from.position[i];
     out.position[i] = saturate32(track.from.position[i] + round_div(way * part, whole));
   }
-  const auto half = static_cast<std::uint32_t>(round_div(track.half_turn * part, whole));
+  const auto half = static_cast<std::uint32_t>(round_div(track.half_angle * part, whole));
   if (half != 0) out.rotation = renormalise(multiply(axis_turn(track.axis, half), track.from.rotation));
   return out;
 }
 
+std::span<const Vec3i> Replica::displacements(std::size_t object, std::int64_t now) noexcept {
+  return shapes_[object]->displacements_at(now);
+}
+
 std::uint64_t Replica::pose_hash(std::int64_t now) const noexcept {
   Fnv1a hash;
-  for (std::uint32_t i = 0; i < tracks_.size(); ++i) {
-    if (header_.objects[i].dof == Dof::none) continue;
+  for (const std::uint32_t i : scene_.moving()) {
     const RigidPose shown = pose(i, now);
     for (const std::int32_t c : shown.position) hash.add32(c);
     for (const std::int32_t c : shown.rotation) hash.add32(c);

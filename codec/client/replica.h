@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The client's copy of the world: decoded states, extrapolated and, if asked, smoothed. spec/50-client.md; thesis 3.2.3.1.
-/// Integers only, so that every client shows the same pose bit for bit.
+/// The client's copy of the world: decoded states, extrapolated and, if asked, smoothed. spec/60-client.md; thesis 3.2.3.1.
+/// Integers only, so that every client shows the same pose and the same shape bit for bit. A Receiver keeps one up to date.
 #pragma once
 
 #include <array>
@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include <tactus/rigid/rigid.h>
-#include <tactus/rigid/rigid_decoder.h>
-#include <tactus/scene/scene_syntax.h>
+#include <tactus/packet/packet.h>
+#include <tactus/rigid/rigid_predictor.h>
+#include <tactus/scene/scene.h>
 
 namespace tactus {
 
@@ -28,21 +28,28 @@ struct ReplicaOptions {
   double longest = 0.100;   ///< [s]
 };
 
+class DeformableDecoder;
+
 class Replica {
  public:
-  /// err  R-STR-n, R-MES-n: the header is not valid, with the class that parse_header gives; invalid_argument R-API-4: not
-  ///      0 < share <= 1, or not 0 <= shortest <= longest <= 10 s.
-  static Result<Replica> create(const StreamHeader& header, const ReplicaOptions& options = {});
+  /// R-API-4: not 0 < share <= 1, or not 0 <= shortest <= longest <= 10 s.
+  static Result<void> check(const ReplicaOptions& options) noexcept;
+  /// pre  check(); scene and decoders outlive the replica.   in  shapes  one per deformable object
+  Replica(const Scene& scene, const ReplicaOptions& options, std::vector<DeformableDecoder*> shapes);
 
-  /// Take over a decoded packet at tick `arrival`: its own, or later when the network delayed it. An earlier one counts as the
-  /// packet's, or as that of the object's last update, if that is later.
-  /// in  objects   the decoder's objects after that packet
+  /// Take over a decoded packet of the rigid objects at tick `arrival`: its own, or later when the network delayed it. An earlier one
+  /// counts as the packet's, or as that of the object's last update, if that is later.
+  /// in  objects   the states after that packet
   /// time O(updates), no allocation.
   void apply(const DecodedPacket& packet, std::span<const RigidState> objects, std::int64_t arrival) noexcept;
 
   /// Pose of one object as shown at tick `now`; before the object's newest update it is the pose shown when that was applied.
-  /// pre  object < header.objects.size().   time O(1), about 50 ns (100 ns while interpolating), no allocation.
+  /// pre  object < scene.objects.size().   time O(1), about 50 ns (100 ns while interpolating), no allocation.
   RigidPose pose(std::uint32_t object, std::int64_t now) const noexcept;
+
+  /// Displacements of a deformable object's vertices as shown at tick `now`, V x 3, x 2^-position_exp m. Valid until the next call.
+  /// pre  object < scene.deformables.size().   time O(V * modes), no allocation.
+  std::span<const std::array<std::int32_t, 3>> displacements(std::size_t object, std::int64_t now) noexcept;
 
   std::uint64_t pose_hash(std::int64_t now) const noexcept;  ///< FNV-1a over every shown pose (conformance)
 
@@ -54,7 +61,7 @@ class Replica {
     RigidPose to;                        // predicted for its end
     std::int64_t begin = 0, end = 0;     // [begin, end); empty: none is running
     std::array<std::int32_t, 3> axis{};  // of the turn from `from` to `to`, x 2^-30
-    std::uint32_t half_turn = 0;         // half its angle, 2^32 to the full circle
+    std::uint32_t half_angle = 0;        // half its angle, 2^32 to the full circle
     std::int64_t last_arrival = -1;
     std::array<std::int32_t, kArrivals> gaps{};
     std::uint8_t gap_count = 0, gap_next = 0;
@@ -62,11 +69,13 @@ class Replica {
   std::int64_t interval(const Track& track) const noexcept;
   void begin_interpolation(Track& track, const RigidPose& shown) const noexcept;
 
-  StreamHeader header_;
+  const Scene& scene_;
+  RigidPredictor predictor_;
   Interpolation interpolation_ = Interpolation::none;
   std::uint32_t share_ = 0;  // x 2^-16
   std::int64_t shortest_ = 0, longest_ = 0;
   std::vector<Track> tracks_;
+  std::vector<DeformableDecoder*> shapes_;
 };
 
 }  // namespace tactus

@@ -31,14 +31,15 @@ Neighbours lists_from(std::vector<Edge>& edges, std::size_t vertices) {
 }
 
 /// Programs split a vertex where texture or normals jump. The copies have no triangle in common, but move together.
-void add_seams(const DeformableObject& mesh, std::vector<Edge>& edges) {
-  std::vector<std::uint32_t> by_place(mesh.rest.size());
+void add_seams(const DeformableObject& object, std::vector<Edge>& edges) {
+  std::vector<std::uint32_t> by_place(object.rest.size());
   std::iota(by_place.begin(), by_place.end(), 0u);
-  std::sort(by_place.begin(), by_place.end(),
-            [&](std::uint32_t a, std::uint32_t b) { return mesh.rest[a] != mesh.rest[b] ? mesh.rest[a] < mesh.rest[b] : a < b; });
+  std::sort(by_place.begin(), by_place.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return object.rest[a] != object.rest[b] ? object.rest[a] < object.rest[b] : a < b;
+  });
   for (std::size_t i = 1; i < by_place.size(); ++i) {
     const std::uint32_t a = by_place[i - 1], b = by_place[i];
-    if (mesh.rest[a] != mesh.rest[b]) continue;
+    if (object.rest[a] != object.rest[b]) continue;
     edges.push_back(edge(a, b));
     edges.push_back(edge(b, a));
   }
@@ -47,7 +48,7 @@ void add_seams(const DeformableObject& mesh, std::vector<Edge>& edges) {
 /// Squared distances of rest positions on a grid so coarse that they fit 38 bits.
 class Distances {
  public:
-  explicit Distances(const DeformableObject& mesh) : rest_(mesh.rest) {
+  explicit Distances(const DeformableObject& object) : rest_(object.rest) {
     std::uint64_t extent = 0;
     for (std::size_t axis = 0; axis < 3 && !rest_.empty(); ++axis) {
       const auto [low, high] =
@@ -97,31 +98,31 @@ struct Candidate {
   friend bool operator==(const Candidate&, const Candidate&) = default;
 };
 
-/// Builds the hierarchy level by level, finest first; the lists are turned round at the end.
+/// Builds the hierarchy depth by depth, finest first; the lists are turned round at the end.
 class HierarchyBuilder {
  public:
-  explicit HierarchyBuilder(const DeformableObject& mesh) : rest_(mesh.rest), distance_(mesh) {}
+  explicit HierarchyBuilder(const DeformableObject& object) : rest_(object.rest), distance_(object) {}
 
   VertexHierarchy build(Graph graph) {
     VertexHierarchy out;
-    out.level.assign(rest_.size(), 0);
+    out.depth.assign(rest_.size(), 0);
     parents_.resize(rest_.size());
-    std::vector<std::vector<std::uint32_t>> levels;
+    std::vector<std::vector<std::uint32_t>> depths;
     for (;;) {
       const auto kept = independent_set(graph);
-      const bool last = levels.size() + 1 == VertexHierarchy::kLevels || std::find(kept.begin(), kept.end(), false) == kept.end();
-      levels.emplace_back();
+      const bool last = depths.size() + 1 == VertexHierarchy::kDepths || std::find(kept.begin(), kept.end(), false) == kept.end();
+      depths.emplace_back();
       for (std::uint32_t v = 0; v < graph.vertex.size(); ++v) {
         if (kept[v] && !last) continue;
-        levels.back().push_back(graph.vertex[v]);
-        out.level[graph.vertex[v]] = static_cast<std::uint8_t>(levels.size() - 1);
+        depths.back().push_back(graph.vertex[v]);
+        out.depth[graph.vertex[v]] = static_cast<std::uint8_t>(depths.size() - 1);
         if (!last) find_parents(graph, kept, v);
       }
       if (last) break;
       graph = coarser(graph, kept);
     }
-    for (std::size_t l = levels.size(); l-- > 0;) {
-      for (const std::uint32_t v : levels[l]) {
+    for (std::size_t l = depths.size(); l-- > 0;) {
+      for (const std::uint32_t v : depths[l]) {
         out.order.push_back(v);
         out.parents.items.insert(out.parents.items.end(), parents_[v].begin(), parents_[v].end());
         out.parents.close();
@@ -160,10 +161,10 @@ class HierarchyBuilder {
 
   using Row = std::array<std::int64_t, VertexHierarchy::kParents>;
 
-  /// How alike two vertices move, x 2^-24: (1 - r)^4 (1 + 4 r) of r^2 = distance / reach, 0 beyond.
-  static std::int64_t likeness(std::uint64_t distance, std::uint64_t reach) noexcept {
-    if (distance >= reach) return 0;
-    const std::int64_t r = isqrt(((distance << 24) / reach) << 24);
+  /// How alike two vertices move, x 2^-24: (1 - r)^4 (1 + 4 r) of r^2 = distance / support_radius, 0 beyond.
+  static std::int64_t covariance(std::uint64_t distance, std::uint64_t support_radius) noexcept {
+    if (distance >= support_radius) return 0;
+    const std::int64_t r = isqrt(((distance << 24) / support_radius) << 24);
     const std::int64_t square = ((kOne - r) * (kOne - r)) >> 24;
     return (((square * square) >> 24) * (4 * r + kOne)) >> 24;
   }
@@ -173,13 +174,13 @@ class HierarchyBuilder {
     const std::size_t n = near_.size();
     std::uint64_t sum = 0;
     for (const Candidate& c : near_) sum += c.distance;
-    const std::uint64_t reach = kReach * sum / n;
+    const std::uint64_t support_radius = kSupportRadius * sum / n;
     std::array<Row, VertexHierarchy::kParents> matrix{};
     Row a{}, b{};
     for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t j = 0; j < i; ++j) matrix[i][j] = likeness(distance_(near_[i].vertex, near_[j].vertex), reach);
-      matrix[i][i] = kOne + kNoise;
-      a[i] = likeness(near_[i].distance, reach);
+      for (std::size_t j = 0; j < i; ++j) matrix[i][j] = covariance(distance_(near_[i].vertex, near_[j].vertex), support_radius);
+      matrix[i][i] = kOne + kNugget;
+      a[i] = covariance(near_[i].distance, support_radius);
       b[i] = kOne;
     }
     if (!solve(matrix, n, a, b)) {
@@ -252,8 +253,8 @@ class HierarchyBuilder {
   static constexpr std::int64_t kOne = 1 << 24;
   static constexpr std::int64_t kLeastPivot = 1 << 18;
   static constexpr std::int64_t kMostShare = std::int64_t{1} << 34;
-  static constexpr std::int64_t kNoise = 335544;  // 0.02: how much of a parent's movement is its own
-  static constexpr std::uint64_t kReach = 94;     // squared, in mean squared distances of the parents
+  static constexpr std::int64_t kNugget = 335544;      // 0.02: how much of a parent's movement is its own
+  static constexpr std::uint64_t kSupportRadius = 94;  // squared, in mean squared distances of the parents
 
   std::span<const Vec3i> rest_;
   Distances distance_;
@@ -263,35 +264,35 @@ class HierarchyBuilder {
 
 }  // namespace
 
-Neighbours neighbours(const DeformableObject& mesh) {
+Neighbours neighbours(const DeformableObject& object) {
   std::vector<Edge> edges;
-  edges.reserve(6 * mesh.triangles.size());
-  add_seams(mesh, edges);
-  for (const Triangle& t : mesh.triangles) {
+  edges.reserve(6 * object.triangles.size());
+  add_seams(object, edges);
+  for (const Triangle& t : object.triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
       edges.push_back(edge(t[k], t[(k + 1) % 3]));
       edges.push_back(edge(t[(k + 1) % 3], t[k]));
     }
   }
-  return lists_from(edges, mesh.rest.size());
+  return lists_from(edges, object.rest.size());
 }
 
-VertexHierarchy vertex_hierarchy(const DeformableObject& mesh) {
+VertexHierarchy vertex_hierarchy(const DeformableObject& object) {
   Graph graph;
-  for (std::uint32_t v = 0; v < mesh.rest.size(); ++v) graph.vertex.push_back(v);
-  graph.neighbours = neighbours(mesh);
-  return HierarchyBuilder(mesh).build(std::move(graph));
+  for (std::uint32_t v = 0; v < object.rest.size(); ++v) graph.vertex.push_back(v);
+  graph.neighbours = neighbours(object);
+  return HierarchyBuilder(object).build(std::move(graph));
 }
 
-Rings::Rings(const DeformableObject& mesh)
-    : corners_(mesh.triangles), triangle_mark_(mesh.triangles.size()), vertex_mark_(mesh.rest.size()) {
+Rings::Rings(const DeformableObject& object)
+    : corners_(object.triangles), triangle_mark_(object.triangles.size()), vertex_mark_(object.rest.size()) {
   std::vector<Edge> pairs;
-  pairs.reserve(3 * mesh.triangles.size());
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-    for (const std::uint32_t v : mesh.triangles[t]) pairs.push_back(edge(v, t));
-  triangles_of_ = lists_from(pairs, mesh.rest.size());
-  triangles_.reserve(mesh.triangles.size());
-  vertices_.reserve(mesh.rest.size());
+  pairs.reserve(3 * object.triangles.size());
+  for (std::uint32_t t = 0; t < object.triangles.size(); ++t)
+    for (const std::uint32_t v : object.triangles[t]) pairs.push_back(edge(v, t));
+  triangles_of_ = lists_from(pairs, object.rest.size());
+  triangles_.reserve(object.triangles.size());
+  vertices_.reserve(object.rest.size());
 }
 
 void Rings::add_corners(std::uint32_t triangle) noexcept {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What both ends derive from a mesh before the first packet: neighbours, rings, coding order and parents. spec/60-mesh.md section 4.
+/// What both ends derive from a mesh before the first packet: neighbours, rings, coding order and parents. spec/50-deformable.md section 4.
 /// Integers only: encoder and decoder must agree on every weight.
 #pragma once
 
@@ -35,22 +35,22 @@ using Neighbours = ListOfLists<std::uint32_t>;
 /// Coding order from coarse to fine: vertices in ever finer maximal independent sets, each predicted from near ones before it.
 struct VertexHierarchy {
   static constexpr std::size_t kParents = 8;
-  static constexpr std::size_t kLevels = 24;
+  static constexpr std::size_t kDepths = 24;
 
   std::vector<std::uint32_t> order;   ///< every vertex once
-  std::vector<std::uint8_t> level;    ///< by vertex: 0 finest; roots have the highest
+  std::vector<std::uint8_t> depth;    ///< by vertex: 0 finest; roots have the highest
   ListOfLists<VertexParent> parents;  ///< by place in `order`; roots have none
 };
 
 /// Neighbours share an edge, or follow one another in number among the vertices at one rest position.
 /// pre  the triangles name existing vertices.   time O((vertices + triangles) log), allocates
-Neighbours neighbours(const DeformableObject& mesh);
-VertexHierarchy vertex_hierarchy(const DeformableObject& mesh);
+Neighbours neighbours(const DeformableObject& object);
+VertexHierarchy vertex_hierarchy(const DeformableObject& object);
 
 /// The area of interest. Holds its scratch space, so that asking allocates nothing.
 class Rings {
  public:
-  explicit Rings(const DeformableObject& mesh);
+  explicit Rings(const DeformableObject& object);
 
   /// Triangles within `rings` rings around `triangle`, itself first, then ring by ring.   time O(size of the rings)
   /// Valid until the next call.

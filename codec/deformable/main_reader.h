@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Reads a packet of profile main from any symbol source: the decoder's range decoder, or one that counts (tests/tools). Internal to
-/// the library. spec/60-mesh.md sections 5 to 7.
+/// the library. spec/50-deformable.md sections 5 to 7.
 #pragma once
 
 #include <cstdint>
@@ -14,48 +14,47 @@ namespace tactus {
 
 class MainReader {
  public:
-  /// pre  `mesh` outlives the reader
-  explicit MainReader(const DeformableObject& mesh)
-      : mesh_(mesh),
-        hierarchy_(vertex_hierarchy(mesh)),
-        rings_(mesh),
-        predictor_(mesh),
-        pass_(hierarchy_, mesh.rest.size()),
-        expected_(mesh.rest.size()),
-        coefficients_(mesh.basis.steps.size()) {}
+  /// pre  `object` outlives the reader
+  explicit MainReader(const DeformableObject& object)
+      : object_(object),
+        hierarchy_(vertex_hierarchy(object)),
+        rings_(object),
+        predictor_(object),
+        coder_(hierarchy_, object.rest.size()),
+        expected_(object.rest.size()),
+        coefficients_(object.basis.steps.size()) {}
 
   /// Everything after key, baseline and tick.
   /// out  next     the state after the packet; after an error undefined
   ///      returns  vertices with a residual
   template <class Coder>
-  Result<std::uint32_t> read(Coder& coder, MainModels& models, MainHead& head, const DeformableState& base,
-                             DeformableState& next) noexcept {
-    code_main_head(coder, models, mesh_, rings_, base, head);
+  Result<std::uint32_t> read(Coder& coder, MainModels& models, MainHead& head, const MainState& base, MainState& next) noexcept {
+    code_main_head(coder, models, object_, rings_, base, head);
     if (coder.too_wide()) return fail(Errc::malformed, "R-RNG-4");
-    if (head.touched && head.triangle >= mesh_.triangles.size()) return fail(Errc::invalid, "R-MES-9");
-    if (head.haptic > kMaxHapticLevel || head.visual > kMaxVisualBound) return fail(Errc::invalid, "R-MES-10");
-    next.tick = base.tick + head.tick_delta;
-    predictor_.predict(base, next.tick, expected_);
+    if (head.touched && head.triangle >= object_.triangles.size()) return fail(Errc::invalid, "R-DEF-9");
+    if (head.haptic > kMaxHapticIndex || head.visual > kMaxVisualBound) return fail(Errc::invalid, "R-DEF-10");
+    const std::int64_t tick = base.tick + head.tick_delta;
+    predictor_.predict(base, tick, expected_);
     set_bounds(head);
-    if (mesh_.split) pass_.begin_half(base, head.completes, expected_, next.displacement);
-    if (head.half == Layer::haptic) {
+    if (object_.layered) coder_.begin_layer(base, head.same_frame, expected_, next.displacement);
+    if (head.layer == Layer::haptic) {
       keep_motion(base, next);
     } else {
       code_coefficients(coder, models, coefficients_);
       if (coder.too_wide()) return fail(Errc::malformed, "R-RNG-4");
-      scale_coefficients(mesh_, head.visual, coefficients_);
+      scale_coefficients(object_, head.visual, coefficients_);
       predictor_.add_modes(coefficients_, expected_);
-      predictor_.learn(base, next.tick, next);
+      predictor_.update(base, tick, next);
     }
     const std::uint32_t updates = read_vertices(coder, models, head, next);
     if (coder.too_wide()) return fail(Errc::malformed, "R-RNG-4");
-    pass_.keep_felt(head.half, next);
+    coder_.keep_haptic_correction(head.layer, next);
     keep_head(head, base, next);
     return updates;
   }
 
-  /// Displacement that a state leads to at a tick.   Valid until the next call.
-  std::span<const Vec3i> predict(const DeformableState& state, std::int64_t tick) noexcept {
+  /// Displacement that a state predicts for a tick.   Valid until the next call.
+  std::span<const Vec3i> predict(const MainState& state, std::int64_t tick) noexcept {
     predictor_.predict(state, tick, expected_);
     return expected_;
   }
@@ -64,31 +63,31 @@ class MainReader {
   void set_bounds(const MainHead& head) noexcept {
     std::span<const std::uint32_t> area;
     if (head.touched) {
-      rings_.triangles_around(head.triangle, mesh_.rings);
+      rings_.triangles_around(head.triangle, object_.rings);
       area = rings_.vertices();
     }
-    pass_.set_bounds(head.visual, head.touched ? haptic_bound(head.haptic) : head.visual, area, head.half);
+    coder_.set_bounds(head.visual, head.touched ? haptic_bound(head.haptic) : head.visual, area, head.layer);
   }
 
   /// After a residual that is too wide the walk goes on with zeros.
   template <class Coder>
-  std::uint32_t read_vertices(Coder& coder, MainModels& models, const MainHead& head, DeformableState& next) noexcept {
+  std::uint32_t read_vertices(Coder& coder, MainModels& models, const MainHead& head, MainState& next) noexcept {
     std::uint32_t updates = 0;
-    pass_.run(expected_, next.displacement,
-              [&](std::uint32_t, const VertexContext& context, const Vec3i&, std::uint32_t, std::int64_t) noexcept {
-                Vec3i residual{};
-                if (!coder.too_wide()) code_vertex(coder, models, head.density, context, residual);
-                updates += residual != Vec3i{} ? 1u : 0u;
-                return residual;
-              });
+    coder_.run(expected_, next.displacement,
+               [&](std::uint32_t, const VertexContext& context, const Vec3i&, std::uint32_t, std::int64_t) noexcept {
+                 Vec3i residual{};
+                 if (!coder.too_wide()) code_vertex(coder, models, head.density, context, residual);
+                 updates += residual != Vec3i{} ? 1u : 0u;
+                 return residual;
+               });
     return updates;
   }
 
-  const DeformableObject& mesh_;
+  const DeformableObject& object_;
   VertexHierarchy hierarchy_;
   Rings rings_;
   ShapePredictor predictor_;
-  VertexCoder pass_;
+  VertexCoder coder_;
   std::vector<Vec3i> expected_;
   std::vector<std::int32_t> coefficients_;
 };

@@ -6,9 +6,9 @@ namespace tactus {
 namespace {
 
 constexpr BitModel kRows[] = {
-#include "mesh_start_models.inc"
+#include "deformable_start_models.inc"
 };
-static_assert(sizeof kRows == sizeof(MainModels), "spec/tables/mesh-start-models.csv has one row per model");
+static_assert(sizeof kRows == sizeof(MainModels), "spec/tables/deformable-start-models.csv has one row per model");
 
 }  // namespace
 

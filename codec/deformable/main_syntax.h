@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Syntax of a packet of profile main: shared by encoder and decoder, internal to the library. spec/60-mesh.md section 5.
+/// Syntax of a packet of profile main: shared by encoder and decoder, internal to the library. spec/50-deformable.md section 5.
 #pragma once
 
 #include <array>
@@ -10,7 +10,8 @@
 #include <tactus/base/fixed.h>
 #include <tactus/base/range_coder.h>
 #include <tactus/deformable/graph.h>
-#include <tactus/deformable/state.h>
+#include <tactus/deformable/main_state.h>
+#include <tactus/packet/packet_head.h>
 #include <tactus/scene/deformable_object.h>
 
 namespace tactus {
@@ -20,7 +21,7 @@ inline constexpr std::size_t kDensities = 4;
 /// Every adaptive model of a packet. Restarted from main_start_models() for each packet.
 struct MainModels {
   BitModel key;
-  BitModel half, completes;
+  BitModel layer, same_frame;
   MagnitudeModel baseline, tick, late;
   std::array<BitModel, 2> touched;  // by: the baseline's packet was
   BitModel same_triangle, near_triangle;
@@ -31,55 +32,52 @@ struct MainModels {
   std::array<TreeModel<2>, kDensities> density;              // by: the baseline's
   std::array<std::array<MagnitudeModel, 3>, 4> coefficient;  // by mode, size before
   std::array<std::array<std::array<std::array<BitModel, 3>, 3>, 4>, kDensities>
-      significant;                                                        // density, tightness, parents, level
-  std::array<std::array<std::array<MagnitudeModel, 3>, 3>, 2> component;  // tight, level, size before
+      significant;                                                        // density, bound ratio, parents, depth
+  std::array<std::array<std::array<MagnitudeModel, 3>, 3>, 2> component;  // tight, depth, size before
 };
 
-/// Start probabilities, spec/tables/mesh-start-models.csv.
+/// Start probabilities, spec/tables/deformable-start-models.csv.
 const MainModels& main_start_models() noexcept;
 
-struct MainHead {
-  bool key = false;
-  std::uint32_t baseline_delta = 1;
-  Layer half = Layer::all;
-  bool completes = false;  ///< visual half of the tick that the baseline's haptic half began
-  std::uint32_t tick_delta = 0;
+struct MainHead : PacketHead {
+  Layer layer = Layer::all;
+  bool same_frame = false;  ///< visual packet of the tick that the baseline's haptic packet began
   bool touched = false;
   std::uint32_t triangle = kNoTriangle;
-  std::uint32_t haptic = 0;  ///< level, see haptic_bound()
+  std::uint32_t haptic = 0;  ///< index, see haptic_bound()
   std::uint32_t visual = 0;  ///< grid units
   std::uint32_t density = 0;
 };
 
 /// Which models a vertex's symbols use.
 struct VertexContext {
-  std::uint8_t tightness = 0;  ///< 0: visual bound only; 1, 2, 3: haptic bound above 2/3, above 1/4, below
-  std::uint8_t parents = 0;    ///< parents that carried a residual: 0, 1, more
-  std::uint8_t level = 0;      ///< in the hierarchy: 0 finest, 1, coarser
+  std::uint8_t bound_ratio = 0;  ///< 0: visual bound only; 1, 2, 3: haptic bound above 2/3, above 1/4, below
+  std::uint8_t parents = 0;      ///< parents that carried a residual: 0, 1, more
+  std::uint8_t depth = 0;        ///< in the hierarchy: 0 finest, 1, coarser
 };
 
-constexpr std::uint8_t tightness_of(std::uint32_t haptic, std::uint32_t visual) noexcept {
+constexpr std::uint8_t bound_ratio_of(std::uint32_t haptic, std::uint32_t visual) noexcept {
   const std::uint64_t h = haptic;
   if (h >= visual) return 0;
   return 3 * h > 2 * std::uint64_t{visual} ? 1 : 4 * h > visual ? 2 : 3;
 }
 
-/// Which half of a split mesh: without a triangle nothing can be felt.
+/// The layer of a layered object: without a triangle nothing can be felt.
 template <class Coder>
-Layer code_half(Coder& coder, MainModels& models, const DeformableObject& mesh, Layer half) noexcept {
-  if (!mesh.split) return Layer::all;
-  if (mesh.triangles.empty()) return Layer::visual;
-  return coder.bit(models.half, half == Layer::visual ? 1u : 0u) ? Layer::visual : Layer::haptic;
+Layer code_layer(Coder& coder, MainModels& models, const DeformableObject& object, Layer layer) noexcept {
+  if (!object.layered) return Layer::all;
+  if (object.triangles.empty()) return Layer::visual;
+  return coder.bit(models.layer, layer == Layer::visual ? 1u : 0u) ? Layer::visual : Layer::haptic;
 }
 
-/// key, baseline, half and tick: what must be known to find the baseline.
+/// Key, baseline, layer and tick: what must be known to find the baseline.
 template <class Coder>
-void code_main_start(Coder& coder, MainModels& models, const DeformableObject& mesh, std::uint8_t span, MainHead& head) noexcept {
-  head.key = coder.bit(models.key, head.key ? 1u : 0u);
-  if (!head.key && span > 1) head.baseline_delta = coder.magnitude(models.baseline, head.baseline_delta);
-  head.half = code_half(coder, models, mesh, head.half);
-  head.completes = head.half == Layer::visual && !head.key && coder.bit(models.completes, head.completes ? 1u : 0u);
-  if (head.completes) {
+void code_main_start(Coder& coder, MainModels& models, const DeformableObject& object, std::uint8_t span,
+                     MainHead& head) noexcept {
+  code_baseline(coder, models, span, head);
+  head.layer = code_layer(coder, models, object, head.layer);
+  head.same_frame = head.layer == Layer::visual && !head.key && coder.bit(models.same_frame, head.same_frame ? 1u : 0u);
+  if (head.same_frame) {
     head.tick_delta = 0;
     return;
   }
@@ -87,14 +85,14 @@ void code_main_start(Coder& coder, MainModels& models, const DeformableObject& m
     head.tick_delta = coder.magnitude(models.tick, head.tick_delta);
     return;
   }
-  const std::int64_t period = round_shift(mesh.frame_period, 8);
+  const std::int64_t period = round_shift(object.frame_period, 8);
   const std::int64_t late = coder.signed_value(models.late, static_cast<std::int32_t>(head.tick_delta - period));
   head.tick_delta = static_cast<std::uint32_t>(std::max<std::int64_t>(0, period + late));
 }
 
 /// The touched triangle: the same, a place in the rings around the last one, or its number. Numbers may come out too large.
 template <class Coder>
-std::uint32_t code_triangle(Coder& coder, MainModels& models, const DeformableObject& mesh, Rings& rings, std::uint32_t last,
+std::uint32_t code_triangle(Coder& coder, MainModels& models, const DeformableObject& object, Rings& rings, std::uint32_t last,
                             std::uint32_t triangle) noexcept {
   constexpr std::uint32_t kNear = 63;
   if (last != kNoTriangle) {
@@ -108,7 +106,7 @@ std::uint32_t code_triangle(Coder& coder, MainModels& models, const DeformableOb
       return place < near.size() ? near[place] : kNoTriangle;
     }
   }
-  const auto bits = static_cast<unsigned>(std::bit_width(mesh.triangles.size() - 1));
+  const auto bits = static_cast<unsigned>(std::bit_width(object.triangles.size() - 1));
   std::uint32_t out = 0;
   for (unsigned left = bits; left > 0;) {
     const unsigned count = std::min(left, 16u);
@@ -120,14 +118,14 @@ std::uint32_t code_triangle(Coder& coder, MainModels& models, const DeformableOb
 
 /// What is touched, and the bounds.
 template <class Coder>
-void code_main_bounds(Coder& coder, MainModels& models, const DeformableObject& mesh, Rings& rings, const DeformableState& base,
+void code_main_bounds(Coder& coder, MainModels& models, const DeformableObject& object, Rings& rings, const MainState& base,
                       MainHead& head) noexcept {
-  head.touched = head.half == Layer::haptic ||
-                 (!mesh.triangles.empty() && coder.bit(models.touched[base.touched ? 1 : 0], head.touched ? 1u : 0u));
+  head.touched = head.layer == Layer::haptic ||
+                 (!object.triangles.empty() && coder.bit(models.touched[base.touched ? 1 : 0], head.touched ? 1u : 0u));
   if (head.touched) {
-    head.triangle = code_triangle(coder, models, mesh, rings, base.triangle, head.triangle);
+    head.triangle = code_triangle(coder, models, object, rings, base.triangle, head.triangle);
     const std::int64_t change = coder.signed_value(models.haptic, saturate32(std::int64_t{head.haptic} - base.haptic));
-    head.haptic = static_cast<std::uint32_t>(std::clamp<std::int64_t>(base.haptic + change, 0, kMaxHapticLevel + 1));
+    head.haptic = static_cast<std::uint32_t>(std::clamp<std::int64_t>(base.haptic + change, 0, kMaxHapticIndex + 1));
   }
   const bool same = coder.bit(models.same_visual, head.visual == base.visual ? 1u : 0u);
   head.visual = same ? base.visual : coder.magnitude(models.visual, head.visual);
@@ -135,21 +133,21 @@ void code_main_bounds(Coder& coder, MainModels& models, const DeformableObject& 
 
 /// The rest of the head, given the baseline.
 template <class Coder>
-void code_main_head(Coder& coder, MainModels& models, const DeformableObject& mesh, Rings& rings, const DeformableState& base,
+void code_main_head(Coder& coder, MainModels& models, const DeformableObject& object, Rings& rings, const MainState& base,
                     MainHead& head) noexcept {
-  if (head.completes) {
+  if (head.same_frame) {
     head.touched = base.touched;
     head.triangle = base.triangle;
     head.haptic = base.haptic;
     head.visual = base.visual;
   } else {
-    code_main_bounds(coder, models, mesh, rings, base, head);
+    code_main_bounds(coder, models, object, rings, base, head);
   }
-  head.density = head.half == Layer::haptic ? base.density : coder.template tree<2>(models.density[base.density], head.density);
+  head.density = head.layer == Layer::haptic ? base.density : coder.template tree<2>(models.density[base.density], head.density);
 }
 
 /// What the next packet's head is predicted from.
-inline void keep_head(const MainHead& head, const DeformableState& base, DeformableState& next) noexcept {
+inline void keep_head(const MainHead& head, const MainState& base, MainState& next) noexcept {
   next.triangle = head.touched ? head.triangle : base.triangle;
   next.haptic = head.touched ? head.haptic : base.haptic;
   next.visual = head.visual;
@@ -157,8 +155,8 @@ inline void keep_head(const MainHead& head, const DeformableState& base, Deforma
   next.touched = head.touched;
 }
 
-/// Haptic halves leave motion to the next visual half.
-inline void keep_motion(const DeformableState& base, DeformableState& next) noexcept {
+/// Packets of the haptic layer leave motion to the next visual one.
+inline void keep_motion(const MainState& base, MainState& next) noexcept {
   next.motion = base.motion;
   next.motion_tick = base.motion_tick;
 }
@@ -182,16 +180,24 @@ template <class Coder>
 void code_vertex(Coder& coder, MainModels& models, std::uint32_t density, const VertexContext& context,
                  Vec3i& residual) noexcept {
   const bool any = residual != Vec3i{};
-  if (!coder.bit(models.significant[density][context.tightness][context.parents][context.level], any ? 1u : 0u)) {
+  if (!coder.bit(models.significant[density][context.bound_ratio][context.parents][context.depth], any ? 1u : 0u)) {
     residual = {};
     return;
   }
-  auto& component = models.component[context.tightness == 0 ? 0 : 1][context.level];
+  auto& component = models.component[context.bound_ratio == 0 ? 0 : 1][context.depth];
   std::uint32_t largest = 0;
   for (std::int32_t& c : residual) {
     c = coder.signed_value(component[size_class(largest)], c);
     largest = std::max(largest, magnitude_of(c));
   }
+}
+
+/// Upper bound of the size of any packet, without its substream's number [bytes].
+constexpr std::size_t max_main_packet(std::size_t vertices, std::size_t modes) noexcept {
+  constexpr std::size_t kHead = 96;         // sequence, fields, bounds, tail
+  constexpr std::size_t kCoefficient = 16;  // a signed value at 15 bits per adaptive bit
+  constexpr std::size_t kVertex = 40;       // a flag and three signed values
+  return kHead + kCoefficient * modes + kVertex * vertices;
 }
 
 }  // namespace tactus

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Prediction of a few numbers in time, each from its own past: a two-tap recursive least-squares predictor of their increments.
-/// spec/60-mesh.md section 6. Integers only; part of the state that packets build on.
+/// Prediction of a few numbers in time, each from its own past: a two-coefficient recursive least-squares predictor of their increments.
+/// spec/50-deformable.md section 6. Integers only; part of the state that packets build on.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ class ModeMotion {
   /// Sum of the next `steps` increments of every channel; beyond kMaxSteps there are none.   pre  out.size() == size()
   void predict(std::uint32_t steps, std::span<std::int32_t> out) const noexcept;
   /// Learn the increments of a packet that lies `steps` frames after its baseline.
-  void learn(std::uint32_t steps, std::span<const std::int32_t> increments) noexcept;
+  void update(std::uint32_t steps, std::span<const std::int32_t> increments) noexcept;
 
   /// Everything a later prediction depends on, for the state hash.
   template <class Hash>
@@ -30,14 +30,14 @@ class ModeMotion {
     for (const Channel& c : channels_) {
       hash.add32(c.last);
       hash.add32(c.before);
-      for (const std::int64_t s : c.sums) hash.add64(static_cast<std::uint64_t>(s));
+      for (const std::int64_t s : c.correlations) hash.add64(static_cast<std::uint64_t>(s));
     }
   }
 
  private:
   struct Channel {
-    std::int32_t last = 0, before = 0;   // increments per frame
-    std::array<std::int64_t, 5> sums{};  // fading sums of products: 11, 12, 22, 01, 02; 0 now, 1 last, 2 before
+    std::int32_t last = 0, before = 0;           // increments per frame
+    std::array<std::int64_t, 5> correlations{};  // fading correlations of products: 11, 12, 22, 01, 02; 0 now, 1 last, 2 before
   };
   std::vector<Channel> channels_;
 };

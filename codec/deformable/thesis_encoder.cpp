@@ -1,81 +1,71 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <memory>
+#include <tactus/deformable/thesis_encoder.h>
 
-#include <tactus/deformable/encoder_side.h>
-#include <tactus/deformable/thesis_syntax.h>
+#include <algorithm>
+#include <cmath>
+
+#include <tactus/deformable/displacement.h>
 
 namespace tactus {
-namespace {
 
-class ThesisSide : public DeformableEncoderSide {
- public:
-  ThesisSide(const StreamHeader& header, const DeformableObject& mesh, const DeformableEncoderOptions& options)
-      : DeformableEncoderSide(header, mesh, options),
-        cold_(initial_thesis_models(mesh)),
-        models_(cold_),
-        list_(max_deformable_packet_size(mesh)) {
-    listed_.reserve(mesh.rest.size());
-    inside_.resize(mesh.rest.size());
-  }
-  EncodedDeformablePacket encode(const DeformableTruth& frame, Layer half) noexcept override;
-
- private:
-  void list_vertices(const DeformableTruth& frame, const DeformableState& state, Layer half) noexcept;
-  ThesisHead head_for(const DeformableTruth& frame, bool key) const noexcept;
-  std::size_t write_head(const ThesisHead& head, std::span<std::uint8_t> packet) noexcept;
-  std::size_t write_list() noexcept;
-
-  std::vector<BitModel> cold_, models_;
-  std::vector<std::uint8_t> list_;     // the coded index list
-  std::vector<std::uint32_t> listed_;  // vertices of the packet at hand
-  std::vector<std::uint8_t> inside_;   // in the area of interest
-};
+ThesisEncoder::ThesisEncoder(const Scene& scene, const DeformableObject& object, const DeformableOptions& options)
+    : object_(object),
+      options_(options),
+      position_exp_(scene.grid.position),
+      baseline_span_(scene.baseline_span),
+      rings_(object),
+      next_(initial_thesis_state(object)),
+      start_(initial_thesis_models(object)),
+      models_(start_),
+      expected_(object.rest.size()),
+      list_(max_thesis_packet(object.rest.size(), object.quant_bits)),
+      inside_(object.rest.size()) {
+  listed_.reserve(object.rest.size());
+}
 
 /// Eqs. 3.10 and 3.11: an error against `state` that reaches a threshold includes the vertex. Ascending order.
-void ThesisSide::list_vertices(const DeformableTruth& frame, const DeformableState& state, Layer half) noexcept {
+void ThesisEncoder::list_vertices(const ThesisState& state, Layer layer) noexcept {
   const DeformableThresholds& t = options_.thresholds;
   const auto squared_units = [this](double metres) {
-    const double units = std::ldexp(metres, header_.grid.position);
+    const double units = std::ldexp(metres, position_exp_);
     return units * units;
   };
   const double visual = squared_units(t.visual);
   double haptic = visual;
   std::span<const std::uint32_t> felt;
-  if (is_felt(frame)) {
-    haptic = std::min(visual, squared_units(haptic_threshold(t, *frame.touch)));
-    felt = area(frame.touch->triangle);
+  if (is_felt()) {
+    haptic = std::min(visual, squared_units(haptic_threshold(t, *touch_)));
+    rings_.triangles_around(touch_->triangle, object_.rings);
+    felt = rings_.vertices();
   }
   for (const std::uint32_t v : felt) inside_[v] = 1;
   expected_ = state.displacement;
   listed_.clear();
-  for (std::uint32_t v = 0; v < frame.truth.size(); ++v) {
+  for (std::uint32_t v = 0; v < truth_.size(); ++v) {
     const bool inside = inside_[v] != 0;
-    if (half == (inside ? Layer::visual : Layer::haptic)) continue;
-    if (static_cast<double>(squared_distance(frame.truth[v], expected_[v])) >= (inside ? haptic : visual)) listed_.push_back(v);
+    if (layer == (inside ? Layer::visual : Layer::haptic)) continue;
+    if (static_cast<double>(squared_distance(truth_[v], expected_[v])) >= (inside ? haptic : visual)) listed_.push_back(v);
   }
   for (const std::uint32_t v : felt) inside_[v] = 0;
 }
 
-ThesisHead ThesisSide::head_for(const DeformableTruth& frame, bool key) const noexcept {
-  ThesisHead head;
-  head.key = key;
-  head.baseline_delta = static_cast<std::uint8_t>(baseline_delta());
-  head.tick_delta = static_cast<std::uint32_t>(frame.tick - base(key).tick);
-  head.count = static_cast<std::uint32_t>(listed_.size());
+ThesisHead ThesisEncoder::head_for(const PacketHead& head) const noexcept {
   std::int32_t low = DeformableObject::kMaxDisplacement * 2, high = -low;
   for (const std::uint32_t v : listed_) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::int32_t e = frame.truth[v][axis] - expected_[v][axis];
+      const std::int32_t e = truth_[v][axis] - expected_[v][axis];
       low = std::min(low, e);
       high = std::max(high, e);
     }
   }
-  head.lowest = low;
-  head.range = static_cast<std::uint32_t>(high - low);
-  return head;
+  ThesisHead out{head};
+  out.count = static_cast<std::uint32_t>(listed_.size());
+  out.lowest = low;
+  out.range = static_cast<std::uint32_t>(high - low);
+  return out;
 }
 
-std::size_t ThesisSide::write_list() noexcept {
+std::size_t ThesisEncoder::write_list() noexcept {
   RangeEncoder coder(list_);
   std::uint32_t at = 0;
   for (const std::uint32_t v : listed_) {
@@ -86,14 +76,14 @@ std::size_t ThesisSide::write_list() noexcept {
 }
 
 /// Everything before the index list; returns where the list begins.
-std::size_t ThesisSide::write_head(const ThesisHead& head, std::span<std::uint8_t> packet) noexcept {
-  std::size_t at = 2;
+std::size_t ThesisEncoder::write_head(const ThesisHead& head, std::span<std::uint8_t> out) const noexcept {
+  std::size_t at = 0;
   const auto varint = [&](std::uint64_t value) {
-    for (; value >= 0x80; value >>= 7) packet[at++] = static_cast<std::uint8_t>(value | 0x80);
-    packet[at++] = static_cast<std::uint8_t>(value);
+    for (; value >= 0x80; value >>= 7) out[at++] = static_cast<std::uint8_t>(value | 0x80);
+    out[at++] = static_cast<std::uint8_t>(value);
   };
-  packet[at++] = head.key ? 1 : 0;
-  if (!head.key && header_.baseline_span > 1) packet[at++] = head.baseline_delta;
+  out[at++] = head.key ? 1 : 0;
+  if (!head.key && baseline_span_ > 1) out[at++] = static_cast<std::uint8_t>(head.baseline_delta);
   varint(head.tick_delta);
   varint(head.count);
   varint(head.list_bytes);
@@ -102,46 +92,36 @@ std::size_t ThesisSide::write_head(const ThesisHead& head, std::span<std::uint8_
   return at;
 }
 
-EncodedDeformablePacket ThesisSide::encode(const DeformableTruth& frame, Layer half) noexcept {
-  const bool key = key_due(frame.tick);
-  if (half == Layer::haptic && !is_felt(frame)) return {};
-  list_vertices(frame, held_, key ? Layer::all : half);  // a key packet forgets the whole shape
-  if (listed_.empty() && !key_requested()) return {};
+Result<Payload> ThesisEncoder::encode(const EncodeRequest<ThesisState>& request, std::span<std::uint8_t> out) noexcept {
+  const bool key = request.head.key;
+  if (request.layer == Layer::haptic && !is_felt()) return Payload{};
+  list_vertices(request.shown, key ? Layer::all : request.layer);  // a key packet forgets the whole shape
+  if (listed_.empty() && !request.requested) return Payload{};
   // What is felt goes first: a key packet of the rest alone would forget it.
-  if (half == Layer::visual && key && is_felt(frame)) return {};
-  if (key) {
-    list_vertices(frame, initial_, half);
-    if (listed_.empty())
-      listed_.push_back(is_felt(frame) ? mesh_.triangles[frame.touch->triangle][0] : 0);  // R-MES-12: at least one
+  if (request.layer == Layer::visual && key && is_felt()) return Payload{};
+  if (key || &request.base != &request.shown) {
+    list_vertices(request.base, request.layer);
+    if (listed_.empty()) listed_.push_back(is_felt() ? object_.triangles[touch_->triangle][0] : 0);  // R-DEF-12: at least one
   }
-  const DeformableState& from = base(key);
-  models_ = mesh_.models_kept ? from.models : cold_;
-  ThesisHead head = head_for(frame, key);
+  models_ = object_.models_kept ? request.base.models : start_;
+  ThesisHead head = head_for(request.head);
   head.list_bytes = static_cast<std::uint32_t>(write_list());
-  const std::span<std::uint8_t> packet = buffer(half);
-  std::size_t at = write_head(head, packet);
-  std::copy_n(list_.begin(), head.list_bytes, packet.begin() + static_cast<std::ptrdiff_t>(at));
+  std::size_t at = write_head(head, out);
+  std::copy_n(list_.begin(), head.list_bytes, out.begin() + static_cast<std::ptrdiff_t>(at));
   at += head.list_bytes;
   next_.displacement = expected_;
-  RangeEncoder coder(packet.subspan(at));
+  RangeEncoder coder(out.subspan(at));
   const auto symbols = std::span<BitModel>(models_).subspan(kIndexModels);
   for (const std::uint32_t v : listed_) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::uint32_t symbol = quantise_error(frame.truth[v][axis] - expected_[v][axis], head, mesh_.quant_bits);
-      code_symbol(coder, symbols, mesh_.quant_bits, symbol);
+      const std::uint32_t symbol = quantise_error(truth_[v][axis] - expected_[v][axis], head, object_.quant_bits);
+      code_symbol(coder, symbols, object_.quant_bits, symbol);
       auto& u = next_.displacement[v][axis];
-      u = limited_displacement(std::int64_t{u} + restore_error(symbol, head, mesh_.quant_bits));
+      u = limited_displacement(std::int64_t{u} + restore_error(symbol, head, object_.quant_bits));
     }
   }
-  if (mesh_.models_kept) next_.models = models_;
-  return finish(at + coder.finish(), key, half, frame.tick, head.count);
-}
-
-}  // namespace
-
-std::unique_ptr<DeformableEncoderSide> make_thesis_side(const StreamHeader& header, const DeformableObject& mesh,
-                                                        const DeformableEncoderOptions& options) {
-  return std::make_unique<ThesisSide>(header, mesh, options);
+  if (object_.models_kept) next_.models = models_;
+  return Payload{.size = at + coder.finish(), .updates = head.count};
 }
 
 }  // namespace tactus

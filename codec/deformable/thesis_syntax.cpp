@@ -1,10 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/deformable/thesis_syntax.h>
 
+#include <tactus/base/hash.h>
+
 namespace tactus {
 
-std::vector<BitModel> initial_thesis_models(const DeformableObject& mesh) {
-  return std::vector<BitModel>(kIndexModels + (std::size_t{1} << mesh.quant_bits) - 1);
+std::vector<BitModel> initial_thesis_models(const DeformableObject& object) {
+  return std::vector<BitModel>(kIndexModels + (std::size_t{1} << object.quant_bits) - 1);
+}
+
+ThesisState initial_thesis_state(const DeformableObject& object) {
+  ThesisState state;
+  state.displacement.resize(object.rest.size());
+  if (object.models_kept) state.models = initial_thesis_models(object);
+  return state;
+}
+
+std::uint64_t state_hash(const ThesisState& state) noexcept {
+  Fnv1a hash;
+  hash.add64(static_cast<std::uint64_t>(state.tick));
+  for (const Vec3i& u : state.displacement)
+    for (const std::int32_t c : u) hash.add32(c);
+  for (const BitModel& m : state.models) hash.add32(static_cast<std::uint32_t>(m.zero | m.rate << 16));
+  return hash.value();
 }
 
 }  // namespace tactus

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Profile thesis: a list of vertices and their displacement errors, quantised over the packet's range (thesis 3.3.1, figure 3.17).
-/// spec/60-mesh.md section 8. Shared by encoder and decoder, internal to the library.
+/// spec/50-deformable.md section 8. Shared by encoder and decoder, internal to the library.
 #pragma once
 
 #include <array>
@@ -10,6 +10,7 @@
 
 #include <tactus/base/fixed.h>
 #include <tactus/base/range_coder.h>
+#include <tactus/packet/packet_head.h>
 #include <tactus/scene/deformable_object.h>
 
 namespace tactus {
@@ -17,13 +18,19 @@ namespace tactus {
 inline constexpr std::size_t kIndexModels = 255;  // an 8-bit symbol
 inline constexpr std::uint32_t kGapEscape = 255;
 
-/// Order-0 models: the index list's symbol, then the displacements' symbol of quant_bits bits.
-std::vector<BitModel> initial_thesis_models(const DeformableObject& mesh);
+struct ThesisState {
+  std::int64_t tick = 0;
+  std::vector<Vec3i> displacement;  ///< by vertex, x 2^-position_exp m
+  std::vector<BitModel> models;     ///< with models_kept: index models, then displacement models
+};
 
-struct ThesisHead {
-  bool key = false;
-  std::uint8_t baseline_delta = 1;
-  std::uint32_t tick_delta = 0;
+ThesisState initial_thesis_state(const DeformableObject& object);
+std::uint64_t state_hash(const ThesisState& state) noexcept;
+
+/// Order-0 models: the index list's symbol, then the displacements' symbol of quant_bits bits.
+std::vector<BitModel> initial_thesis_models(const DeformableObject& object);
+
+struct ThesisHead : PacketHead {
   std::uint32_t count = 0;       ///< vertices in the packet
   std::uint32_t list_bytes = 0;  ///< of the coded index list
   std::int32_t lowest = 0;       ///< quantiser range, grid units
@@ -58,6 +65,12 @@ constexpr std::uint32_t quantise_error(std::int32_t error, const ThesisHead& hea
 constexpr std::int32_t restore_error(std::uint32_t symbol, const ThesisHead& head, unsigned bits) noexcept {
   const std::int64_t levels = (std::int64_t{1} << bits) - 1;
   return static_cast<std::int32_t>(head.lowest + round_div(std::int64_t{symbol} * head.range, levels));
+}
+
+/// Upper bound of the size of any packet, without its substream's number [bytes].
+constexpr std::size_t max_thesis_packet(std::size_t vertices, unsigned quant_bits) noexcept {
+  constexpr std::size_t kHead = 96;                   // sequence, fields, tails
+  return kHead + (17u + 6u * quant_bits) * vertices;  // a gap and three symbols at 15 bits per adaptive bit
 }
 
 }  // namespace tactus

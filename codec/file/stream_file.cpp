@@ -6,6 +6,8 @@
 #include <tactus/base/bytes.h>
 #include <tactus/base/hash.h>
 #include <tactus/base/out_of_memory.h>
+#include <tactus/packet/packet_head.h>
+#include <tactus/scene/scene_syntax.h>
 
 namespace tactus {
 namespace {
@@ -18,13 +20,12 @@ constexpr std::uint8_t kFirstExtension = 128;
 constexpr std::uint64_t kTrailerPayload = 8;                       // offset of the index
 constexpr std::size_t kTrailerSize = 1 + 1 + kTrailerPayload + 4;  // type, size, payload, check value
 constexpr std::size_t kRecordExtra = 1 + 10 + 4;                   // at most, around a payload: type, size, check value
-constexpr std::uint64_t kMostBeforePacket = 6;                     // tick_delta, number of the part
-constexpr std::int64_t kTickLimit = 0xffffffff;
+constexpr std::uint64_t kMostBeforePacket = 6;                     // tick_delta, number of the substream
 
 }  // namespace
 
-Result<StreamFileWriter> StreamFileWriter::create(std::ostream& out, const StreamHeader& header) try {
-  TACTUS_TRY(const auto bytes, write_header(header));
+Result<StreamFileWriter> StreamFileWriter::create(std::ostream& out, const Scene& scene) try {
+  TACTUS_TRY(const auto bytes, write_scene(scene));
   StreamFileWriter writer(out);
   out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   if (!out) return fail(Errc::io, "R-FIL-1");
@@ -86,10 +87,10 @@ Result<void> StreamFileWriter::finish() try {
 }
 
 Result<StreamFileReader> StreamFileReader::open(std::span<const std::uint8_t> file, const DecodeLimits& limits) try {
-  TACTUS_TRY(auto parsed, parse_header(file, limits));
+  TACTUS_TRY(auto parsed, parse_scene(file, limits));
   StreamFileReader reader;
   reader.file_ = file;
-  reader.header_ = std::move(parsed.header);
+  reader.scene_ = std::move(parsed.scene);
   reader.limits_ = limits;
   reader.first_ = reader.position_ = parsed.size;
   return reader;

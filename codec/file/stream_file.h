@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Stream file (.tct): header, packets with tick and check value, an index to seek by. spec/20-stream.md section 4.
+/// Stream file (.tct): scene declaration, packets with tick and check value, an index to seek by. spec/80-file.md.
 #pragma once
 
 #include <cstdint>
@@ -9,15 +9,15 @@
 #include <vector>
 
 #include <tactus/base/result.h>
-#include <tactus/scene/scene_syntax.h>
+#include <tactus/scene/scene.h>
 
 namespace tactus {
 
 /// Writes as packets come; a file without finish() is readable, it only lacks the index.
 class StreamFileWriter {
  public:
-  /// err  invalid_argument R-STR-n the header is not valid; io R-FIL-1.   pre  `out` outlives the writer and is in binary mode.
-  static Result<StreamFileWriter> create(std::ostream& out, const StreamHeader& header);
+  /// err  io R-FIL-1.   pre  `out` outlives the writer and is in binary mode.
+  static Result<StreamFileWriter> create(std::ostream& out, const Scene& scene);
   /// pre  ticks do not fall.   err  io R-FIL-1; invalid_argument R-API-5 (tick order).   allocates: a buffer that grows to the largest packet
   Result<void> add(std::int64_t tick, std::span<const std::uint8_t> packet, bool key);
   Result<void> finish();
@@ -44,13 +44,13 @@ struct FilePacket {
   std::span<const std::uint8_t> bytes;  ///< into the file's bytes
 };
 
-/// Reads a file that is in memory, front to back or from a key packet. Allocates for the header only.
+/// Reads a file that is in memory, front to back or from a key packet. Allocates for the scene only.
 class StreamFileReader {
  public:
-  /// err  as parse_header
+  /// err  as parse_scene
   static Result<StreamFileReader> open(std::span<const std::uint8_t> file, const DecodeLimits& limits = {});
 
-  const StreamHeader& header() const noexcept { return header_; }
+  const SharedScene& scene() const noexcept { return scene_; }
   std::uint64_t header_bytes() const noexcept { return first_; }
   /// Next packet; nothing at the end. Unknown extension records are skipped.
   /// err  truncated R-FIL-2; unsupported R-FIL-3; limit_exceeded R-FIL-4; checksum R-FIL-5; malformed R-FIL-6. The reader then stays where it is.
@@ -73,7 +73,7 @@ class StreamFileReader {
   bool find_index(std::span<const std::uint8_t>& entries) const noexcept;
 
   std::span<const std::uint8_t> file_;
-  StreamHeader header_;
+  SharedScene scene_;
   DecodeLimits limits_;
   std::size_t first_ = 0;  // first record
   std::size_t position_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Which packets of a part a receiver may decode, by number, tick and clock. spec/40-rigid.md section 2.1. Internal to the library.
+/// Which packets of a part a receiver may decode, by number, tick and clock. spec/25-packet.md sections 4 and 5. Internal to the library.
 #pragma once
 
 #include <algorithm>

@@ -1,76 +1,72 @@
 // SPDX-License-Identifier: Apache-2.0
+/// True states of the rigid objects to payloads: a function of truth and baseline. Internal to the library; Sender is the way in.
+///
+/// After every tick a decoder's prediction obeys, for every object and contact given,
+///   |x^ - x| <= visual_position,  angle(q^, q) <= visual_rotation,  haptic_ratio(f, f^) <= 1.
+/// where a bound that is finer than the grid (a small force_floor, a stiff contact) means: the nearest place on the grid.
+/// The encoder picks for every update the coarsest grid level that keeps the quantised state well inside these bounds. What is felt is
+/// judged in floating point, as an encoder's choice may be; what a decoder does with the result is in integers.
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
 #include <tactus/base/result.h>
+#include <tactus/packet/substream_encoder.h>
 #include <tactus/rigid/contact.h>
-#include <tactus/rigid/rigid.h>
+#include <tactus/rigid/rigid_syntax.h>
 #include <tactus/rigid/trigger.h>
-#include <tactus/scene/scene_syntax.h>
 
 namespace tactus {
 
-/// What one call of RigidEncoder::encode produced.
-struct EncodedPacket {
-  std::span<const std::uint8_t> bytes;  ///< empty: every trigger is silent, nothing to send. Valid until the next call
-  Reason reason = Reason::request;      ///< strongest reason among the updates (haptic > visual > heartbeat > request)
-  std::uint32_t updates = 0;            ///< objects in the packet
-  bool key = false;                     ///< builds on the initial state: a place to seek to
+/// Thresholds of a pose in grid units, shrunk so that the bound also holds for the unrounded truth.
+struct PoseThresholds {
+  std::int64_t distance_squared = 0;
+  std::int64_t half_angle_squared = 0;  ///< (sin(angle / 2))^2 x 2^-60 of a quaternion of length 1
+  unsigned level = 0;                   ///< coarsest grid level whose rounding stays well within
 };
 
-struct RigidEncoderOptions {
-  RigidTriggers triggers;
-  double key_interval = 5.0;  ///< [s] after this long the next packet builds on the initial state (a place to seek to); 0: never,
-                              ///< but after 8 s of silence, when receivers may soon have forgotten what there was
-  std::uint16_t first_sequence = 1;  ///< a sender that begins anew towards the same receivers takes another number, at random
-};
-
-/// Server side: true states in, at most one packet per tick out.
-///
-/// After every tick the decoder's prediction obeys, for every object and contact given,
-///   |x^ - x| <= visual_position,  angle(q^, q) <= visual_rotation,  haptic_ratio(f, f^) <= 1.
-/// where a bound that is finer than the grid (a small force_floor, a stiff contact) means: the nearest place on the grid.
-/// The encoder holds the decoder's state (closed loop) and picks for every update the coarsest grid level that keeps the quantised
-/// state well inside these bounds.
-///
-/// Each packet builds on the one before it, whatever the header's baseline_span: the bounds hold for a receiver that gets all of
-/// them. One that lost a packet holds what it had until the next key packet: after key_interval, or after request_key().
+/// A codec of SubstreamEncoder.
 class RigidEncoder {
  public:
-  /// err  R-STR-n: the header is not valid, with the class that parse_header gives; invalid_argument R-API-4: a threshold is negative,
-  ///      NaN or finer than the grid.
-  static Result<RigidEncoder> create(StreamHeader header, const RigidEncoderOptions& options = {});
+  using State = RigidStates;
 
-  /// Look at one tick and decide.
-  /// in   tick      strictly increasing
-  ///      samples   one per object of the header, same order; those of static objects are not looked at
-  ///      contacts  any number, from any clients
-  /// time O(objects), < 1 us per object; no allocation, no exception.
-  /// err  invalid_argument R-API-1..3 a sample is not finite or out of range; R-API-5 wrong count, tick order or contact;
-  ///      R-API-6 an object moved along an axis that the header says it cannot; R-API-7 it is further from where it is expected than
-  ///      an update can tell. State is unchanged after any error.
-  Result<EncodedPacket> encode(std::int64_t tick, std::span<const RigidSample> samples,
-                               std::span<const Contact> contacts) noexcept;
+  /// R-API-4: a threshold is negative, NaN or finer than the grid.
+  static Result<void> check(const RigidTriggers& triggers, const GridExponents& grid) noexcept;
+  /// pre  check(), and `scene` outlives the encoder
+  RigidEncoder(const Scene& scene, const RigidTriggers& triggers);
 
-  /// A packet was lost, and the receiver refuses all that build on it (R-PKT-4): the next call of encode() sends a key packet, also
-  /// where every trigger is silent. It names all objects that have left the initial state; while none has, there is nothing to send.
-  void request_key() noexcept;
-
-  const StreamHeader& header() const noexcept;
-  std::uint64_t state_hash() const noexcept;  ///< equals the decoder's after the same packets
-
-  RigidEncoder(RigidEncoder&&) noexcept;
-  RigidEncoder& operator=(RigidEncoder&&) noexcept;
-  ~RigidEncoder();
+  /// The truth of one tick; nothing else changes.   in, err  Sender::encode
+  Result<void> read(std::int64_t tick, std::span<const RigidSample> samples, std::span<const Contact> contacts) noexcept;
+  /// pre  read() took the request's tick.   time O(objects), < 1 us per object; no allocation.
+  /// err  invalid_argument R-API-7 an object is further from where it is expected than an update can tell
+  Result<Payload> encode(const EncodeRequest<RigidStates>& request, std::span<std::uint8_t> out) noexcept;
+  void commit(const RigidStates& base, RigidStates& next) noexcept;
 
  private:
-  struct Impl;
-  explicit RigidEncoder(std::unique_ptr<Impl> impl) noexcept;
-  std::unique_ptr<Impl> impl_;
+  struct Pending {
+    std::uint32_t object = 0;  // index into the scene
+    Reason reason = Reason::request;
+    RigidState state;  // what the decoder will hold
+  };
+
+  Reason reason_for(std::uint32_t object, const RigidState& held) const noexcept;
+  bool can_improve(std::uint32_t object, const RigidPose& shown) const noexcept;
+  bool haptic_within(std::uint32_t object, const RigidPose& shown, double share) const noexcept;
+  bool is_touched(std::uint32_t object) const noexcept;
+  void collect(const EncodeRequest<RigidStates>& request) noexcept;
+  Result<CodedUpdate> quantise(Pending& update, const Prediction& prediction) const noexcept;
+
+  const Scene& scene_;
+  RigidTriggers triggers_;
+  RigidPredictor predictor_;
+  PoseThresholds visual_, fixed_;
+  std::int64_t heartbeat_ = 0;            // [ticks], 0: off
+  std::vector<RigidState> truth_;         // this tick, on the grid
+  std::span<const RigidSample> samples_;  // this tick, as given
+  std::span<const Contact> contacts_;
+  std::vector<Pending> pending_;
 };
 
 }  // namespace tactus

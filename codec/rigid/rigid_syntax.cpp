@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/rigid/rigid_syntax.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace tactus {
@@ -19,37 +20,18 @@ const RigidModels& start_models() noexcept {
   return models;
 }
 
-std::vector<std::uint32_t> moving_objects(const StreamHeader& header) {
-  std::vector<std::uint32_t> out;
-  for (std::uint32_t i = 0; i < header.objects.size(); ++i) {
-    if (header.objects[i].dof != Dof::none) out.push_back(i);
-  }
-  return out;
-}
-
 namespace {
 
-constexpr std::int64_t kSpinLimit = 1 << 25;
-
-struct Motion {
-  Vec3i velocity{};
-  Vec3i spin{};
-};
-
-Motion predict_motion(const RigidState& base, std::int64_t dt, const CodedUpdate& update, const StreamHeader& header) noexcept {
-  Motion out{base.velocity, base.spin};
-  if (dt == 0 || update.reason != Reason::haptic) return out;
-  const GridExponents& grid = header.grid;
-  const std::int64_t rate = header.tick_rate;
-  const std::int64_t moved = (2 * dt) << (grid.position - grid.velocity);
-  const std::int64_t turned = dt << (grid.rotation - grid.spin);  // the residual is a quarter of the angle
+/// What the pose residual tells of the velocities.
+RigidMotion expected_motion(const RigidPredictor& predictor, const RigidState& base, std::int64_t tick,
+                            const CodedUpdate& update) noexcept {
+  PoseError error;
+  if (update.reason != Reason::haptic) return predictor.motion(base, tick, error);
   for (std::size_t i = 0; i < 3; ++i) {
-    const std::int64_t x = saturate32(static_cast<std::int64_t>(update.residual.of[0][i]) << (2 * update.level));
-    const std::int64_t r = saturate32(static_cast<std::int64_t>(update.residual.of[2][i]) << (2 * update.level));
-    if (x != 0) out.velocity[i] = saturate32(out.velocity[i] + round_div(3 * x * rate, moved));
-    if (r != 0) out.spin[i] = saturate32(out.spin[i] + round_div(6 * r * rate, turned));
+    error.position[i] = saturate32(static_cast<std::int64_t>(update.residual.of[0][i]) << (2 * update.level));
+    error.rotation[i] = saturate32(static_cast<std::int64_t>(update.residual.of[2][i]) << (2 * update.level));
   }
-  return out;
+  return predictor.motion(base, tick, error);
 }
 
 /// The turn with quarter-angle vector m / 2^exponent: (1 - |m|^2, 2 m) / (1 + |m|^2), regular up to a half turn where |m| = 1.
@@ -116,32 +98,39 @@ Residual quantise_pose(const RigidPose& predicted, const RigidState& truth, std:
   return out;
 }
 
-void quantise_motion(const Prediction& prediction, const RigidState& truth, std::uint8_t dof, const StreamHeader& header,
+void quantise_motion(const RigidPredictor& predictor, const Prediction& prediction, const RigidState& truth, std::uint8_t dof,
                      CodedUpdate& update) noexcept {
-  const Motion expected = predict_motion(prediction.base, truth.tick - prediction.base.tick, update, header);
+  const RigidMotion expected = expected_motion(predictor, prediction.base, truth.tick, update);
   const auto steps = [shift = 2u * update.level](std::int32_t value, std::int32_t guess) {
     return codable(round_shift(value, shift) - round_shift(guess, shift));
   };
   Residual& residual = update.residual;
   for (std::size_t i = 0; i < 3; ++i) {
     residual.of[1][i] = dof >> i & 1u ? steps(truth.velocity[i], expected.velocity[i]) : 0;
-    residual.of[3][i] = dof >> (3 + i) & 1u ? steps(truth.spin[i], expected.spin[i]) : 0;
+    residual.of[3][i] = dof >> (3 + i) & 1u ? steps(truth.angular_velocity[i], expected.angular_velocity[i]) : 0;
   }
 }
 
-std::optional<RigidState> reconstruct(const Prediction& prediction, std::int64_t tick, const CodedUpdate& update,
-                                      const StreamHeader& header) noexcept {
-  const auto pose = add_pose(prediction.pose, update.residual, update.level, header.grid);
+std::optional<RigidState> reconstruct(const RigidPredictor& predictor, const Prediction& prediction, std::int64_t tick,
+                                      const CodedUpdate& update, const GridExponents& grid) noexcept {
+  const auto pose = add_pose(prediction.pose, update.residual, update.level, grid);
   if (!pose) return std::nullopt;
-  const Motion motion = predict_motion(prediction.base, tick - prediction.base.tick, update, header);
-  RigidState out{tick, pose->position, pose->rotation, motion.velocity, motion.spin};
+  const RigidMotion motion = expected_motion(predictor, prediction.base, tick, update);
+  RigidState out{tick, pose->position, pose->rotation, motion.velocity, motion.angular_velocity};
   const unsigned shift = 2u * update.level;
   for (std::size_t i = 0; i < 3; ++i) {
     out.velocity[i] = saturate32((round_shift(motion.velocity[i], shift) + update.residual.of[1][i]) << shift);
-    const std::int64_t spin = (round_shift(motion.spin[i], shift) + update.residual.of[3][i]) << shift;
-    out.spin[i] = static_cast<std::int32_t>(std::clamp(spin, -kSpinLimit, kSpinLimit));
+    const std::int64_t turning = (round_shift(motion.angular_velocity[i], shift) + update.residual.of[3][i]) << shift;
+    out.angular_velocity[i] =
+        static_cast<std::int32_t>(std::clamp<std::int64_t>(turning, -kAngularVelocityLimit, kAngularVelocityLimit));
   }
   return out;
+}
+
+std::size_t max_rigid_packet(const Scene& scene) noexcept {
+  constexpr std::size_t kHead = 64;     // sequence, key, baseline, tick, count, tail
+  constexpr std::size_t kUpdate = 192;  // gap, reason, level and 12 components at 15 bits per adaptive bit
+  return kHead + kUpdate * scene.moving().size();
 }
 
 }  // namespace tactus

@@ -6,17 +6,18 @@
 #include <bit>
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include <tactus/base/fixed.h>
 #include <tactus/base/range_coder.h>
-#include <tactus/rigid/rigid.h>
-#include <tactus/scene/scene_syntax.h>
+#include <tactus/packet/packet_head.h>
+#include <tactus/packet/reason.h>
+#include <tactus/rigid/rigid_predictor.h>
+#include <tactus/scene/scene.h>
 
 namespace tactus {
 
-inline constexpr std::size_t kQuantities = 4;  // position, velocity, rotation, spin
-inline constexpr std::size_t kHints = 8;       // 0..3: the reason, 4..7: how large the components before were
+inline constexpr std::size_t kQuantities = 4;  // position, velocity, rotation, angular velocity
+inline constexpr std::size_t kContexts = 8;    // 0..3: the reason, 4..7: how large the components before were
 
 /// Every adaptive model of a packet. Restarted from start_models() for each packet, so that a packet needs nothing but its baseline.
 struct RigidModels {
@@ -27,17 +28,14 @@ struct RigidModels {
   MagnitudeModel gap;
   TreeModel<2> reason;
   TreeModel<3> level;
-  std::array<std::array<MagnitudeModel, kHints>, kQuantities> residual;
+  std::array<std::array<MagnitudeModel, kContexts>, kQuantities> residual;
 };
 
 /// Start probabilities, spec/40-rigid.md table 2.
 const RigidModels& start_models() noexcept;
 
-struct PacketHead {
-  bool key = false;
-  std::uint32_t baseline_delta = 1;  ///< sequence numbers back, 1..baseline_span; unused by key packets
-  std::uint32_t tick_delta = 0;      ///< from the baseline's tick
-  std::uint32_t count = 1;           ///< updates
+struct RigidHead : PacketHead {
+  std::uint32_t count = 1;  ///< updates
 };
 
 /// Quantised differences from the prediction, in units of 4^level grid steps; components an object lacks stay 0.
@@ -51,23 +49,15 @@ struct CodedUpdate {
   Residual residual;
 };
 
-/// Indices of the objects that can move: the only ones a packet can name.
-std::vector<std::uint32_t> moving_objects(const StreamHeader& header);
-
 template <class Coder>
-void code_head(Coder& coder, RigidModels& models, const StreamHeader& header, std::size_t moving, PacketHead& head) noexcept {
-  head.key = coder.bit(models.key, head.key ? 1u : 0u);
-  if (!head.key && header.baseline_span > 1) {
-    head.baseline_delta = coder.magnitude(models.baseline, head.baseline_delta);
-  }
+void code_head(Coder& coder, RigidModels& models, const Scene& scene, RigidHead& head) noexcept {
+  code_baseline(coder, models, scene.baseline_span, head);
   head.tick_delta = coder.magnitude(models.tick_delta, head.tick_delta);
-  if (moving > 1) {
-    head.count = coder.magnitude(models.count, head.count);
-  }
+  if (scene.moving().size() > 1) head.count = coder.magnitude(models.count, head.count);
 }
 
-/// Hint for the next component: how large its predecessors were.
-constexpr std::size_t size_hint(std::uint32_t magnitude) noexcept {
+/// Magnitude context of the next component: how large its predecessors were.
+constexpr std::size_t size_context(std::uint32_t magnitude) noexcept {
   const auto width = static_cast<unsigned>(std::bit_width(magnitude));
   return width == 0 ? 4 : width < 3 ? 5 : width < 6 ? 6 : 7;
 }
@@ -76,26 +66,26 @@ template <class Coder>
 void code_update(Coder& coder, RigidModels& models, std::uint8_t dof, CodedUpdate& update) noexcept {
   update.reason = static_cast<Reason>(coder.template tree<2>(models.reason, static_cast<std::uint32_t>(update.reason)));
   update.level = static_cast<std::uint8_t>(coder.template tree<3>(models.level, update.level));
-  std::size_t hint = static_cast<std::size_t>(update.reason);
+  std::size_t context = static_cast<std::size_t>(update.reason);
   for (std::size_t quantity = 0; quantity < kQuantities; ++quantity) {
     const unsigned axes = quantity < 2 ? dof & 7u : static_cast<unsigned>(dof >> 3);
     if (axes == 0) continue;
-    if (quantity == 2) hint = static_cast<std::size_t>(update.reason);
+    if (quantity == 2) context = static_cast<std::size_t>(update.reason);
     std::uint32_t largest = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (!(axes >> axis & 1u)) continue;
       std::int32_t& value = update.residual.of[quantity][axis];
-      value = coder.signed_value(models.residual[quantity][hint], value);
+      value = coder.signed_value(models.residual[quantity][context], value);
       const std::uint32_t size = static_cast<std::uint32_t>(value < 0 ? -value : value);
       if (size > largest) largest = size;
-      hint = size_hint(largest);
+      context = size_context(largest);
     }
   }
 }
 
 /// State of one object before a packet, and where dead reckoning puts it at the packet's tick.
 struct Prediction {
-  RigidState base;
+  const RigidState& base;
   RigidPose pose;
 };
 
@@ -103,14 +93,17 @@ struct Prediction {
 Residual quantise_pose(const RigidPose& predicted, const RigidState& truth, std::uint8_t dof, unsigned level,
                        const GridExponents& grid) noexcept;
 
-/// The residual of velocity and spin, given that of the pose. An update that the haptic trigger asked for follows a steady change
-/// of speed: an error e of the pose after dt speaks for a change of 3 e / (2 dt), and what is coded is the difference from that.
-/// In whole steps from zero, so that rest stays rest at every level. spec 40-rigid 5.2
-void quantise_motion(const Prediction& prediction, const RigidState& truth, std::uint8_t dof, const StreamHeader& header,
+/// The residual of both velocities, given that of the pose. An update that the haptic trigger asked for follows a steady change of
+/// speed, and what is coded is the difference from that (RigidPredictor::motion). In whole steps from zero, so that rest stays rest at
+/// every level. spec 40-rigid 5.2
+void quantise_motion(const RigidPredictor& predictor, const Prediction& prediction, const RigidState& truth, std::uint8_t dof,
                      CodedUpdate& update) noexcept;
 
 /// What a decoder holds after the update: prediction plus residual. Nothing when the rotation residual is longer than 1 (R-RIG-6).
-std::optional<RigidState> reconstruct(const Prediction& prediction, std::int64_t tick, const CodedUpdate& update,
-                                      const StreamHeader& header) noexcept;
+std::optional<RigidState> reconstruct(const RigidPredictor& predictor, const Prediction& prediction, std::int64_t tick,
+                                      const CodedUpdate& update, const GridExponents& grid) noexcept;
+
+/// Upper bound of the size of any packet of a scene's rigid objects, without its substream's number [bytes].
+std::size_t max_rigid_packet(const Scene& scene) noexcept;
 
 }  // namespace tactus

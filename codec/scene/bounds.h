@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// What the sender of a stream vouches for: how far a client that gets every packet, and does not interpolate, may be from the truth.
-/// Nothing is decoded with it; whoever judges a replica needs it. spec/20-stream.md section 3.1.
+/// Nothing is decoded with it; whoever judges a replica needs it. spec/20-scene.md section 6.
 #pragma once
 
 #include <cstdint>
@@ -55,7 +55,7 @@ struct DeformableBounds {
 struct StreamBounds {
   std::optional<RigidTriggers>
       rigid;  ///< none: nothing rigid can move. What `haptic` does not use is not told and has its default
-  std::vector<DeformableBounds> meshes;  ///< one per mesh of the stream
+  std::vector<DeformableBounds> deformables;  ///< one per deformable object
   friend bool operator==(const StreamBounds&, const StreamBounds&) = default;
 };
 

@@ -32,7 +32,7 @@ void code_rigid(Coder& coder, RigidTriggers& t) {
 }
 
 template <class Coder>
-void code_mesh(Coder& coder, DeformableBounds& mesh) {
+void code_deformable(Coder& coder, DeformableBounds& mesh) {
   DeformableThresholds& t = mesh.thresholds;
   const unsigned promise = (mesh.kept ? kKept : 0u) | (t.weber_fraction ? kHaptic : 0u);
   const std::uint8_t told = coder.byte(static_cast<std::uint8_t>(promise), kKept | kHaptic);
@@ -49,7 +49,7 @@ void code_mesh(Coder& coder, DeformableBounds& mesh) {
 template <class Coder>
 void code_bounds(Coder& coder, StreamBounds& bounds) {
   if (bounds.rigid) code_rigid(coder, *bounds.rigid);
-  for (DeformableBounds& mesh : bounds.meshes) code_mesh(coder, mesh);
+  for (DeformableBounds& mesh : bounds.deformables) code_deformable(coder, mesh);
 }
 
 /// Finite and without a sign.
@@ -86,28 +86,29 @@ struct Reader {
   Checker check{};
 };
 
-bool has_moving(const StreamHeader& header) noexcept {
-  return std::ranges::any_of(header.objects, [](const RigidObject& o) { return o.dof != Dof::none; });
+bool has_moving(const SceneSpec& spec) noexcept {
+  return std::ranges::any_of(spec.objects, [](const RigidObject& o) { return o.dof != Dof::none; });
 }
 
 }  // namespace
 
-StreamBounds bounds_of(const StreamHeader& header, const RigidTriggers& rigid, const DeformableThresholds& meshes) {
+StreamBounds bounds_of(const SceneSpec& spec, const RigidTriggers& rigid, const DeformableThresholds& deformables) {
   StreamBounds bounds;
-  if (has_moving(header)) bounds.rigid = rigid;
-  for (const DeformableObject& mesh : header.meshes) bounds.meshes.push_back({meshes, mesh.profile == DeformableProfile::main});
+  if (has_moving(spec)) bounds.rigid = rigid;
+  for (const DeformableObject& object : spec.deformables)
+    bounds.deformables.push_back({deformables, object.profile == DeformableProfile::main});
   return bounds;
 }
 
-bool are_bounds(const StreamHeader& header) noexcept {
-  const StreamBounds& bounds = *header.bounds;
-  if (bounds.rigid.has_value() != has_moving(header) || bounds.meshes.size() != header.meshes.size()) return false;
+bool are_bounds(const SceneSpec& spec) noexcept {
+  const StreamBounds& bounds = *spec.bounds;
+  if (bounds.rigid.has_value() != has_moving(spec) || bounds.deformables.size() != spec.deformables.size()) return false;
   Checker checker;
   if (bounds.rigid) {
     RigidTriggers rigid = *bounds.rigid;
     code_rigid(checker, rigid);
   }
-  for (DeformableBounds mesh : bounds.meshes) code_mesh(checker, mesh);
+  for (DeformableBounds mesh : bounds.deformables) code_deformable(checker, mesh);
   return checker.sound;
 }
 
@@ -118,10 +119,10 @@ std::vector<std::uint8_t> write_bounds(StreamBounds bounds) {
   return out;
 }
 
-Result<StreamBounds> parse_bounds(ByteReader& in, const StreamHeader& header) {
+Result<StreamBounds> parse_bounds(ByteReader& in, const SceneSpec& spec) {
   StreamBounds bounds;
-  if (has_moving(header)) bounds.rigid.emplace();
-  bounds.meshes.resize(header.meshes.size());
+  if (has_moving(spec)) bounds.rigid.emplace();
+  bounds.deformables.resize(spec.deformables.size());
   Reader reader{in};
   code_bounds(reader, bounds);
   if (!reader.check.sound) return fail(Errc::invalid, "R-STR-17", in.bit_offset());

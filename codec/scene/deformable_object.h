@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A deformable object as a stream header declares it. spec/60-mesh.md section 2.
+/// A deformable object as a scene declares it. spec/20-scene.md section 4.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
+#include <tactus/base/result.h>
 #include <tactus/base/tri_mesh.h>
 
 namespace tactus {
 
 enum class DeformableProfile : std::uint8_t { thesis = 0, main = 1 };
 
-/// Of which vertices a packet speaks: of those in the area of interest, of the others, or of all.
+/// Which vertices a packet codes: those in the area of interest, the rest, or all.
 enum class Layer : std::uint8_t { haptic = 0, visual = 1, all = 2 };
 
 /// Vectors known to both ends that displacements are combined from (vibration modes, principal components).
@@ -26,6 +28,11 @@ struct ModeBasis {
   std::vector<std::uint16_t> steps;   ///< one per mode: quantiser step of its coefficient, x 2^-12 of the visual bound; >= 1
   friend bool operator==(const ModeBasis&, const ModeBasis&) = default;
 };
+
+/// Vectors (modes x vertices x 3, any scale) as a basis: entries scaled to the largest, quantiser steps so that a coefficient's
+/// rounding moves the mesh by the same root mean square, `coarseness` visual bounds in the norm of the whole mesh.
+/// err  invalid_argument R-API-1 an entry is not finite, or a vector is zero; R-API-9 more modes than ModeBasis::kMaxModes.
+Result<ModeBasis> make_mode_basis(std::span<const double> vectors, std::size_t modes, double coarseness = 1.5);
 
 /// Displacements are multiples of 2^-position_exp m like all positions of the stream, |component| <= kMaxDisplacement.
 struct DeformableObject {
@@ -40,11 +47,16 @@ struct DeformableObject {
   std::uint8_t quant_bits = 8;       ///< thesis: q, 1..12
   bool models_kept = false;          ///< thesis: entropy models are part of the state and not restarted in every packet
   std::uint32_t frame_period = 256;  ///< main: ticks between frames, x 2^-8; with a basis motion is predicted in steps of it
-  bool split = false;                ///< main: packets are haptic or visual halves
+  bool layered = false;              ///< main: packets are of the haptic or the visual layer
   std::vector<std::array<std::int32_t, 3>> rest;  ///< vertices, x 2^-position_exp m
   std::vector<Triangle> triangles;
   ModeBasis basis;  ///< main
   friend bool operator==(const DeformableObject&, const DeformableObject&) = default;
 };
+
+/// A surface on a scene's grid, all else at its default.
+/// err  invalid_argument R-API-1 a coordinate is not finite; R-API-2 it leaves the grid's range; R-API-10 a triangle has no area on the
+///      grid: a trace of what a client shows could not hold it
+Result<DeformableObject> make_deformable_object(std::string name, const TriMesh& surface, unsigned position_exp);
 
 }  // namespace tactus

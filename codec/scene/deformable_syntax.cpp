@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include <tactus/scene/scene_rules.h>
+
 namespace tactus {
 namespace {
 
@@ -36,49 +38,49 @@ bool is_basis(const DeformableObject& m) noexcept {
 
 Errc class_of_overflow(const ByteReader& in) noexcept { return in.overrun() ? Errc::truncated : Errc::malformed; }
 
-Result<void> parse_parameters(ByteReader& in, DeformableObject& mesh) {
+Result<void> parse_parameters(ByteReader& in, DeformableObject& object) {
   const std::uint8_t profile = in.u8();
   if (in.ok() && profile > static_cast<std::uint8_t>(DeformableProfile::main))
-    return fail(Errc::unsupported, "R-MES-2", in.bit_offset());
-  mesh.profile = static_cast<DeformableProfile>(profile);
+    return fail(Errc::unsupported, "R-DEF-2", in.bit_offset());
+  object.profile = static_cast<DeformableProfile>(profile);
   const auto name = in.bytes(in.u8());
-  mesh.name.assign(name.begin(), name.end());
-  mesh.rings = in.u8();
-  if (mesh.profile == DeformableProfile::thesis) {
-    mesh.quant_bits = in.u8();
+  object.name.assign(name.begin(), name.end());
+  object.rings = in.u8();
+  if (object.profile == DeformableProfile::thesis) {
+    object.quant_bits = in.u8();
     const std::uint8_t kept = in.u8();
-    if (in.ok() && kept > 1) return fail(Errc::malformed, "R-MES-3", in.bit_offset());
-    mesh.models_kept = kept == 1;
+    if (in.ok() && kept > 1) return fail(Errc::malformed, "R-DEF-3", in.bit_offset());
+    object.models_kept = kept == 1;
   } else {
-    mesh.frame_period = in.u32();
-    const std::uint8_t split = in.u8();
-    if (in.ok() && split > 1) return fail(Errc::malformed, "R-MES-3", in.bit_offset());
-    mesh.split = split == 1;
+    object.frame_period = in.u32();
+    const std::uint8_t layered = in.u8();
+    if (in.ok() && layered > 1) return fail(Errc::malformed, "R-DEF-3", in.bit_offset());
+    object.layered = layered == 1;
   }
   return {};
 }
 
-/// Differences from the vertex before.   err  invalid R-MES-5 a coordinate leaves 32 bits
-Result<void> parse_rest(ByteReader& in, std::uint64_t count, DeformableObject& mesh) {
-  mesh.rest.reserve(static_cast<std::size_t>(count));
+/// Differences from the vertex before.   err  invalid R-DEF-5 a coordinate leaves 32 bits
+Result<void> parse_rest(ByteReader& in, std::uint64_t count, DeformableObject& object) {
+  object.rest.reserve(static_cast<std::size_t>(count));
   std::array<std::int64_t, 3> at{};
   for (std::uint64_t v = 0; v < count; ++v) {
     for (std::int64_t& c : at) {
       const std::uint64_t step = in.varint();
-      if (step >= std::uint64_t{1} << 34) return fail(Errc::invalid, "R-MES-5", in.bit_offset());
+      if (step >= std::uint64_t{1} << 34) return fail(Errc::invalid, "R-DEF-5", in.bit_offset());
       c += unzigzag(step);
       if (c < std::numeric_limits<std::int32_t>::min() || c > std::numeric_limits<std::int32_t>::max())
-        return fail(Errc::invalid, "R-MES-5", in.bit_offset());
+        return fail(Errc::invalid, "R-DEF-5", in.bit_offset());
     }
     if (!in.ok()) return fail(class_of_overflow(in), "R-STR-5", in.bit_offset());
-    mesh.rest.push_back({static_cast<std::int32_t>(at[0]), static_cast<std::int32_t>(at[1]), static_cast<std::int32_t>(at[2])});
+    object.rest.push_back({static_cast<std::int32_t>(at[0]), static_cast<std::int32_t>(at[1]), static_cast<std::int32_t>(at[2])});
   }
   return {};
 }
 
 /// First corner as a difference from the first corner before, the others from the corner before.
-Result<void> parse_triangles(ByteReader& in, std::uint64_t count, DeformableObject& mesh) {
-  mesh.triangles.reserve(static_cast<std::size_t>(count));
+Result<void> parse_triangles(ByteReader& in, std::uint64_t count, DeformableObject& object) {
+  object.triangles.reserve(static_cast<std::size_t>(count));
   std::uint32_t first = 0;
   for (std::uint64_t t = 0; t < count; ++t) {
     Triangle triangle{};
@@ -90,28 +92,28 @@ Result<void> parse_triangles(ByteReader& in, std::uint64_t count, DeformableObje
       corner = last < 0 || last >= std::int64_t{kMaxMeshVertices} ? kNoVertex : static_cast<std::uint32_t>(last);
     }
     if (!in.ok()) return fail(class_of_overflow(in), "R-STR-5", in.bit_offset());
-    if (!is_triangle(triangle, mesh.rest.size())) return fail(Errc::invalid, "R-MES-6", in.bit_offset());
-    mesh.triangles.push_back(triangle);
+    if (!is_triangle(triangle, object.rest.size())) return fail(Errc::invalid, "R-DEF-6", in.bit_offset());
+    object.triangles.push_back(triangle);
     first = triangle[0];
   }
   return {};
 }
 
-Result<void> parse_basis(ByteReader& in, DeformableObject& mesh) {
+Result<void> parse_basis(ByteReader& in, DeformableObject& object) {
   const std::uint64_t modes = in.varint();
   if (!in.ok()) return fail(class_of_overflow(in), "R-STR-5", in.bit_offset());
-  if (modes > ModeBasis::kMaxModes) return fail(Errc::invalid, "R-MES-7", in.bit_offset());
-  const std::size_t components = 3 * mesh.rest.size();
+  if (modes > ModeBasis::kMaxModes) return fail(Errc::invalid, "R-DEF-7", in.bit_offset());
+  const std::size_t components = 3 * object.rest.size();
   if (modes * (components + 2) > in.remaining()) return fail(Errc::truncated, "R-STR-5", in.bit_offset());
-  mesh.basis.entries.reserve(static_cast<std::size_t>(modes) * components);
+  object.basis.entries.reserve(static_cast<std::size_t>(modes) * components);
   for (std::uint64_t k = 0; k < modes; ++k) {
     const std::uint16_t step = in.u16();
-    if (in.ok() && step == 0) return fail(Errc::invalid, "R-MES-7", in.bit_offset());
-    mesh.basis.steps.push_back(step);
+    if (in.ok() && step == 0) return fail(Errc::invalid, "R-DEF-7", in.bit_offset());
+    object.basis.steps.push_back(step);
     for (std::size_t i = 0; i < components; ++i) {
       const std::uint64_t entry = in.varint();
-      if (entry > std::uint64_t{2} * ModeBasis::kMaxEntry) return fail(Errc::invalid, "R-MES-7", in.bit_offset());
-      mesh.basis.entries.push_back(static_cast<std::int16_t>(unzigzag(entry)));
+      if (entry > std::uint64_t{2} * ModeBasis::kMaxEntry) return fail(Errc::invalid, "R-DEF-7", in.bit_offset());
+      object.basis.entries.push_back(static_cast<std::int16_t>(unzigzag(entry)));
     }
   }
   if (!in.ok()) return fail(class_of_overflow(in), "R-STR-5", in.bit_offset());
@@ -120,37 +122,38 @@ Result<void> parse_basis(ByteReader& in, DeformableObject& mesh) {
 
 }  // namespace
 
-const char* broken_deformable_rule(const DeformableObject& mesh) noexcept {
-  if (mesh.profile > DeformableProfile::main) return "R-MES-2";
-  if (!are_parameters(mesh)) return "R-MES-3";
-  if (mesh.rest.empty() || mesh.rest.size() > kMaxMeshVertices || mesh.triangles.size() > kMaxMeshTriangles) return "R-MES-4";
-  const bool triangles = std::all_of(mesh.triangles.begin(), mesh.triangles.end(),
-                                     [&](const Triangle& t) { return is_triangle(t, mesh.rest.size()); });
-  if (!triangles) return "R-MES-6";
-  return is_basis(mesh) ? nullptr : "R-MES-7";
+const char* broken_deformable_rule(const DeformableObject& object) noexcept {
+  if (object.profile > DeformableProfile::main) return "R-DEF-2";
+  if (!are_parameters(object)) return "R-DEF-3";
+  if (object.rest.empty() || object.rest.size() > kMaxMeshVertices || object.triangles.size() > kMaxMeshTriangles)
+    return "R-DEF-4";
+  const bool triangles = std::all_of(object.triangles.begin(), object.triangles.end(),
+                                     [&](const Triangle& t) { return is_triangle(t, object.rest.size()); });
+  if (!triangles) return "R-DEF-6";
+  return is_basis(object) ? nullptr : "R-DEF-7";
 }
 
-void write_deformable(ByteWriter& out, const DeformableObject& mesh) {
-  out.u8(static_cast<std::uint8_t>(mesh.profile));
-  out.u8(static_cast<std::uint8_t>(mesh.name.size()));
-  out.bytes({reinterpret_cast<const std::uint8_t*>(mesh.name.data()), mesh.name.size()});
-  out.u8(mesh.rings);
-  if (mesh.profile == DeformableProfile::thesis) {
-    out.u8(mesh.quant_bits);
-    out.u8(mesh.models_kept ? 1 : 0);
+void write_deformable(ByteWriter& out, const DeformableObject& object) {
+  out.u8(static_cast<std::uint8_t>(object.profile));
+  out.u8(static_cast<std::uint8_t>(object.name.size()));
+  out.bytes({reinterpret_cast<const std::uint8_t*>(object.name.data()), object.name.size()});
+  out.u8(object.rings);
+  if (object.profile == DeformableProfile::thesis) {
+    out.u8(object.quant_bits);
+    out.u8(object.models_kept ? 1 : 0);
   } else {
-    out.u32(mesh.frame_period);
-    out.u8(mesh.split ? 1 : 0);
+    out.u32(object.frame_period);
+    out.u8(object.layered ? 1 : 0);
   }
-  out.varint(mesh.rest.size());
-  out.varint(mesh.triangles.size());
+  out.varint(object.rest.size());
+  out.varint(object.triangles.size());
   std::array<std::int32_t, 3> before{};
-  for (const auto& p : mesh.rest) {
+  for (const auto& p : object.rest) {
     for (std::size_t axis = 0; axis < 3; ++axis) out.varint(zigzag(std::int64_t{p[axis]} - before[axis]));
     before = p;
   }
   std::uint32_t first = 0;
-  for (const Triangle& t : mesh.triangles) {
+  for (const Triangle& t : object.triangles) {
     std::uint32_t last = first;
     for (const std::uint32_t corner : t) {
       out.varint(zigzag(std::int64_t{corner} - last));
@@ -158,29 +161,29 @@ void write_deformable(ByteWriter& out, const DeformableObject& mesh) {
     }
     first = t[0];
   }
-  if (mesh.profile == DeformableProfile::thesis) return;
-  const std::size_t components = 3 * mesh.rest.size();
-  out.varint(mesh.basis.steps.size());
-  for (std::size_t k = 0; k < mesh.basis.steps.size(); ++k) {
-    out.u16(mesh.basis.steps[k]);
-    for (std::size_t i = 0; i < components; ++i) out.varint(zigzag(mesh.basis.entries[k * components + i]));
+  if (object.profile == DeformableProfile::thesis) return;
+  const std::size_t components = 3 * object.rest.size();
+  out.varint(object.basis.steps.size());
+  for (std::size_t k = 0; k < object.basis.steps.size(); ++k) {
+    out.u16(object.basis.steps[k]);
+    for (std::size_t i = 0; i < components; ++i) out.varint(zigzag(object.basis.entries[k * components + i]));
   }
 }
 
 Result<DeformableObject> parse_deformable(ByteReader& in, const DeformableRoom& room) {
-  DeformableObject mesh;
-  TACTUS_CHECK(parse_parameters(in, mesh));
+  DeformableObject object;
+  TACTUS_CHECK(parse_parameters(in, object));
   const std::uint64_t vertices = in.varint(), triangles = in.varint();
   if (!in.ok()) return fail(class_of_overflow(in), "R-STR-5", in.bit_offset());
-  if (!are_parameters(mesh)) return fail(Errc::invalid, "R-MES-3", in.bit_offset());
+  if (!are_parameters(object)) return fail(Errc::invalid, "R-DEF-3", in.bit_offset());
   if (vertices < 1 || vertices > kMaxMeshVertices || triangles > kMaxMeshTriangles)
-    return fail(Errc::invalid, "R-MES-4", in.bit_offset());
+    return fail(Errc::invalid, "R-DEF-4", in.bit_offset());
   if (vertices > room.vertices || triangles > room.triangles) return fail(Errc::limit_exceeded, "R-STR-14", in.bit_offset());
   if (3 * (vertices + triangles) > in.remaining()) return fail(Errc::truncated, "R-STR-5", in.bit_offset());
-  TACTUS_CHECK(parse_rest(in, vertices, mesh));
-  TACTUS_CHECK(parse_triangles(in, triangles, mesh));
-  if (mesh.profile == DeformableProfile::main) TACTUS_CHECK(parse_basis(in, mesh));
-  return mesh;
+  TACTUS_CHECK(parse_rest(in, vertices, object));
+  TACTUS_CHECK(parse_triangles(in, triangles, object));
+  if (object.profile == DeformableProfile::main) TACTUS_CHECK(parse_basis(in, object));
+  return object;
 }
 
 }  // namespace tactus

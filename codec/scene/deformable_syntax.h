@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Meshes in a stream header. spec/60-mesh.md section 2. Internal to the library.
+/// Deformable objects in a scene declaration. spec/60-object.md section 2. Internal to the library.
 #pragma once
 
 #include <tactus/base/bytes.h>
@@ -8,19 +8,16 @@
 
 namespace tactus {
 
-/// The rule that a mesh breaks, or null; names are checked by the header.
-const char* broken_deformable_rule(const DeformableObject& mesh) noexcept;
+/// pre  the object breaks no rule.
+void write_deformable(ByteWriter& out, const DeformableObject& object);
 
-/// pre  the mesh breaks no rule.
-void write_deformable(ByteWriter& out, const DeformableObject& mesh);
-
-/// How much of the limits the meshes before have left.
+/// How much of the limits the objects before have left.
 struct DeformableRoom {
   std::uint64_t vertices = 0, triangles = 0;
 };
 
 /// Allocates in proportion to the bytes that are there.
-/// err  truncated, malformed R-STR-5; unsupported R-MES-2; invalid R-MES-3..7; limit_exceeded R-STR-14: more than there is room for.
+/// err  truncated, malformed R-STR-5; unsupported R-DEF-2; invalid R-DEF-3..7; limit_exceeded R-STR-14: more than there is room for.
 Result<DeformableObject> parse_deformable(ByteReader& in, const DeformableRoom& room);
 
 }  // namespace tactus

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "codec/base/hash.h"
+#include <tactus/base/hash.h>
 
 namespace tactus::conformance {
 
@@ -43,7 +43,7 @@ Bytes RawHeader::body() const {
   w.u8(grid.position);
   w.u8(grid.velocity);
   w.u8(grid.rotation);
-  w.u8(grid.spin);
+  w.u8(grid.angular_velocity);
   w.u16(max_extrapolation);
   w.u8(baseline_span);
   w.bytes(object_count.value_or(varint(objects.size())));
@@ -72,14 +72,14 @@ Bytes RawHeader::around(const Bytes& body) const {
   return with_crc(std::move(out));
 }
 
-StreamHeader RawHeader::parsed() const { return parse_header(bytes()).value().header; }
+SharedScene RawHeader::parsed() const { return parse_scene(bytes()).value().scene; }
 
 Bytes record(std::uint8_t type, const Bytes& payload) { return with_crc(Bytes{type} + varint(payload.size()) + payload); }
 
-Bytes raw_packet(const StreamHeader& header, std::uint16_t sequence, PacketHead head, std::span<const RawUpdate> updates) {
-  const std::vector<std::uint32_t> moving = moving_objects(header);
+Bytes raw_packet(const Scene& header, std::uint16_t sequence, RigidHead head, std::span<const RawUpdate> updates) {
+  const auto moving = header.moving();
   return coded_packet(sequence, [&](RangeEncoder& coder, RigidModels& models) {
-    code_head(coder, models, header, moving.size(), head);
+    code_head(coder, models, header, head);
     std::size_t next = 0;
     for (RawUpdate update : updates) {
       if (moving.size() > 1) next += coder.magnitude(models.gap, update.gap);
@@ -89,24 +89,25 @@ Bytes raw_packet(const StreamHeader& header, std::uint16_t sequence, PacketHead 
   });
 }
 
-Stream::Stream(const RawHeader& header) : header_(header.parsed()), moving_(moving_objects(header_)), bytes_(header.bytes()) {}
+Stream::Stream(const RawHeader& header) : scene_(header.parsed()), bytes_(header.bytes()) {}
 
 Bytes Stream::packet(const Step& step) {
   const std::uint16_t sequence = step.sequence.value_or(next_sequence_);
   const auto baseline = ticks_.find(static_cast<std::uint16_t>(sequence - step.baseline));
   const std::int64_t from = step.key || baseline == ticks_.end() ? 0 : baseline->second;
-  const PacketHead head{step.key, step.baseline, static_cast<std::uint32_t>(step.tick - from),
-                        static_cast<std::uint32_t>(step.updates.size())};
+  const RigidHead head{{step.key, step.baseline, static_cast<std::uint32_t>(step.tick - from)},
+                       static_cast<std::uint32_t>(step.updates.size())};
+  const auto moving = scene_->moving();
   std::vector<RawUpdate> updates;
   std::size_t next = 0;
   for (const Update& update : step.updates) {
-    const auto at = static_cast<std::size_t>(std::ranges::find(moving_, update.object) - moving_.begin());
+    const auto at = static_cast<std::size_t>(std::ranges::find(moving, update.object) - moving.begin());
     updates.push_back({static_cast<std::uint32_t>(at - next), {update.reason, update.level, {update.residual}}});
     next = at + 1;
   }
   ticks_[sequence] = step.tick;
   next_sequence_ = static_cast<std::uint16_t>(sequence + 1);
-  return raw_packet(header_, sequence, head, updates);
+  return raw_packet(*scene_, sequence, head, updates);
 }
 
 Stream& Stream::add(const Step& step) { return add_packet(step.tick, packet(step), step.key); }
@@ -144,7 +145,7 @@ std::int32_t Random::integer(unsigned max_width) {
   return below(2) == 0 ? bits : -bits;
 }
 
-Update random_update(Random& random, const StreamHeader& header, std::uint32_t object) {
+Update random_update(Random& random, const Scene& header, std::uint32_t object) {
   const std::uint8_t dof = header.objects[object].dof;
   const auto level = static_cast<std::uint8_t>(random.below(4) == 0 ? random.below(8) : random.below(3));
   Update out{object, static_cast<Reason>(random.below(4)), level, {}};

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "codec/base/bytes.h"
-#include "codec/rigid/rigid_syntax.h"
-#include "codec/stream/header.h"
+#include <tactus/base/bytes.h>
+#include <tactus/rigid/rigid_syntax.h>
+#include <tactus/scene/scene_syntax.h>
 
 namespace tactus::conformance {
 
@@ -59,7 +59,7 @@ struct RawHeader {
   Bytes around(const Bytes& body) const;
   Bytes bytes() const { return around(body()); }
   /// pre  the header is valid
-  StreamHeader parsed() const;
+  SharedScene parsed() const;
 };
 
 /// A header after one change.
@@ -79,7 +79,7 @@ struct RawUpdate {
 };
 
 /// A packet with any values in its head and its gaps.
-Bytes raw_packet(const StreamHeader& header, std::uint16_t sequence, PacketHead head, std::span<const RawUpdate> updates);
+Bytes raw_packet(const Scene& header, std::uint16_t sequence, RigidHead head, std::span<const RawUpdate> updates);
 
 /// The bytes that `code(coder)` writes symbol by symbol.
 template <class Code>
@@ -136,7 +136,7 @@ class Stream {
   /// Append the index and the trailer.
   Stream& finish();
 
-  const StreamHeader& header() const { return header_; }
+  const Scene& header() const { return *scene_; }
   const Bytes& bytes() const { return bytes_; }
 
  private:
@@ -144,8 +144,7 @@ class Stream {
     std::int64_t tick;
     std::size_t offset;
   };
-  StreamHeader header_;
-  std::vector<std::uint32_t> moving_;
+  SharedScene scene_;
   Bytes bytes_;
   std::map<std::uint16_t, std::int64_t> ticks_;  // of packets, by sequence
   std::uint16_t next_sequence_ = 0;
@@ -168,6 +167,6 @@ class Random {
 };
 
 /// A random update that keeps every rule: residuals of any size that the object's axes allow, rotations up to half a circle.
-Update random_update(Random& random, const StreamHeader& header, std::uint32_t object);
+Update random_update(Random& random, const Scene& header, std::uint32_t object);
 
 }  // namespace tactus::conformance

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <utility>
 
-#include "codec/mesh/mesh_graph.h"
-#include "codec/mesh/mesh_pass.h"
+#include <tactus/deformable/graph.h>
+#include <tactus/deformable/vertex_coder.h>
 
 namespace tactus::conformance {
 namespace {
@@ -104,58 +104,54 @@ RawDeformable with_modes(RawDeformable item, std::size_t modes, std::uint64_t se
 }
 
 struct DeformableComposer::Fixed {
-  Fixed(const StreamHeader& header, std::size_t index)
-      : item(header.meshes[index]),
+  Fixed(const Scene& header, std::size_t index)
+      : item(header.deformables[index]),
         span(header.baseline_span),
-        initial(initial_mesh_state(item)),
-        hierarchy(mesh_hierarchy(item)),
+        initial(initial_main_state(item)),
+        initial_thesis(initial_thesis_state(item)),
+        hierarchy(vertex_hierarchy(item)),
         rings(item),
         predictor(item),
         pass(hierarchy, item.rest.size()) {}
 
-  const MeshObject item;
+  const DeformableObject item;
   const std::uint8_t span;
-  const MeshState initial;
-  const MeshHierarchy hierarchy;
-  MeshRings rings;
-  MeshPredictor predictor;
-  MeshPass pass;
+  const MainState initial;
+  const ThesisState initial_thesis;
+  const VertexHierarchy hierarchy;
+  Rings rings;
+  ShapePredictor predictor;
+  VertexCoder pass;
 };
 
-DeformableComposer::DeformableComposer(const StreamHeader& header, std::size_t item)
-    : fixed_(std::make_unique<Fixed>(header, item)) {}
+DeformableComposer::DeformableComposer(const Scene& header, std::size_t item) : fixed_(std::make_unique<Fixed>(header, item)) {}
 DeformableComposer::DeformableComposer(DeformableComposer&&) noexcept = default;
 DeformableComposer::~DeformableComposer() = default;
 
-const MeshObject& DeformableComposer::item() const { return fixed_->item; }
+const DeformableObject& DeformableComposer::item() const { return fixed_->item; }
 
-const MeshState& DeformableComposer::baseline(const PacketPlace& at) {
+template <class State>
+const State& DeformableComposer::baseline(const PacketPlace& at, const std::map<std::uint16_t, State>& states,
+                                          const State& initial) {
   sequence_ = at.sequence.value_or(next_sequence_);
-  const auto found = states_.find(static_cast<std::uint16_t>(sequence_ - at.baseline));
-  return at.key || found == states_.end() ? fixed_->initial : found->second;
+  const auto found = states.find(static_cast<std::uint16_t>(sequence_ - at.baseline));
+  return at.key || found == states.end() ? initial : found->second;
 }
 
-MeshHead DeformableComposer::head_of(const PacketPlace& at, const MeshState& base) const {
-  MeshHead head;
-  head.key = at.key;
-  head.baseline_delta = at.baseline;
-  head.tick_delta = static_cast<std::uint32_t>(at.tick - base.tick);
-  return head;
-}
-
-void DeformableComposer::keep(const PacketPlace& at, MeshState state) {
+template <class State>
+void DeformableComposer::keep(const PacketPlace& at, std::map<std::uint16_t, State>& states, State state) {
   state.tick = at.tick;
-  states_[sequence_] = std::move(state);
+  states[sequence_] = std::move(state);
   next_sequence_ = static_cast<std::uint16_t>(sequence_ + 1);
 }
 
 Bytes DeformableComposer::packet(const MainStep& step) {
-  const MeshObject& item = fixed_->item;
-  const MeshState base = baseline(step.at);
-  MeshState next = base;
-  MeshHead head = head_of(step.at, base);
-  head.half = step.layer;
-  head.completes = step.same_frame;
+  const DeformableObject& item = fixed_->item;
+  const MainState base = baseline(step.at, main_states_, fixed_->initial);
+  MainState next = base;
+  MainHead head{{step.at.key, step.at.baseline, static_cast<std::uint32_t>(step.at.tick - base.tick)}};
+  head.layer = step.layer;
+  head.same_frame = step.same_frame;
   head.touched = step.triangle.has_value();
   head.triangle = step.triangle.value_or(base.triangle);
   head.haptic = step.triangle ? step.haptic : base.haptic;
@@ -164,25 +160,25 @@ Bytes DeformableComposer::packet(const MainStep& step) {
   std::vector<std::int32_t> coefficients = step.coefficients;
   coefficients.resize(item.basis.steps.size());
   Bytes packet = with_payload(sequence_, [&](RangeEncoder& coder) {
-    MeshModels models = mesh_start_models();
-    code_mesh_start(coder, models, item, fixed_->span, head);
-    code_mesh_head(coder, models, item, fixed_->rings, base, head);
+    MainModels models = main_start_models();
+    code_main_start(coder, models, item, fixed_->span, head);
+    code_main_head(coder, models, item, fixed_->rings, base, head);
     std::span<const std::uint32_t> area;
     if (head.touched) {
       fixed_->rings.triangles_around(head.triangle, item.rings);
       area = fixed_->rings.vertices();
     }
-    fixed_->pass.set_bounds(head.visual, head.touched ? haptic_bound(head.haptic) : head.visual, area, head.half);
+    fixed_->pass.set_bounds(head.visual, head.touched ? haptic_bound(head.haptic) : head.visual, area, head.layer);
     std::vector<Vec3i> expected(item.rest.size());
     fixed_->predictor.predict(base, step.at.tick, expected);
-    if (item.split) fixed_->pass.begin_half(base, head.completes, expected, next.displacement);
-    if (head.half == MeshHalf::haptic) {
+    if (item.layered) fixed_->pass.begin_layer(base, head.same_frame, expected, next.displacement);
+    if (head.layer == Layer::haptic) {
       keep_motion(base, next);
     } else {
       code_coefficients(coder, models, coefficients);
       scale_coefficients(item, head.visual, coefficients);
       fixed_->predictor.add_modes(coefficients, expected);
-      fixed_->predictor.learn(base, step.at.tick, next);
+      fixed_->predictor.update(base, step.at.tick, next);
     }
     const auto residual = [&](std::uint32_t v, const VertexContext& context, const Vec3i& place, std::uint32_t bound,
                               std::int64_t size) {
@@ -191,18 +187,18 @@ Bytes DeformableComposer::packet(const MainStep& step) {
       return r;
     };
     fixed_->pass.run(expected, next.displacement, residual);
-    fixed_->pass.keep_felt(head.half, next);
+    fixed_->pass.keep_haptic_correction(head.layer, next);
     keep_head(head, base, next);
   });
-  keep(step.at, std::move(next));
+  keep(step.at, main_states_, std::move(next));
   return packet;
 }
 
 Bytes DeformableComposer::packet(const ThesisStep& step) {
-  const MeshObject& item = fixed_->item;
-  const MeshState base = baseline(step.at);
-  MeshState next = base;
-  std::vector<BitModel> models = item.models_kept ? base.models : cold_thesis_models(item);
+  const DeformableObject& item = fixed_->item;
+  const ThesisState base = baseline(step.at, thesis_states_, fixed_->initial_thesis);
+  ThesisState next = base;
+  std::vector<BitModel> models = item.models_kept ? base.models : initial_thesis_models(item);
   RawThesis raw;
   raw.sequence = sequence_;
   raw.key = step.at.key ? 1 : 0;
@@ -224,7 +220,7 @@ Bytes DeformableComposer::packet(const ThesisStep& step) {
         code_symbol(coder, std::span(models).subspan(kIndexModels), item.quant_bits, symbol);
   });
   if (item.models_kept) next.models = models;
-  keep(step.at, std::move(next));
+  keep(step.at, thesis_states_, std::move(next));
   return raw.bytes();
 }
 

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "codec/mesh/mesh_state.h"
-#include "codec/mesh/mesh_syntax.h"
-#include "codec/mesh/mesh_thesis.h"
+#include <tactus/deformable/main_state.h>
+#include <tactus/deformable/main_syntax.h>
+#include <tactus/deformable/thesis_syntax.h>
 #include "conformance/make_vectors/build.h"
 
 namespace tactus::conformance {
@@ -86,7 +86,7 @@ struct PacketPlace {
 
 struct MainStep {
   PacketPlace at;
-  MeshHalf layer = MeshHalf::whole;  ///< whole: of objects without layers
+  Layer layer = Layer::all;  ///< whole: of objects without layers
   bool same_frame = false;
   std::optional<std::uint32_t> triangle{};  ///< touched
   std::uint32_t haptic = 0;                 ///< level
@@ -111,23 +111,25 @@ struct ThesisStep {
 /// Composes the packets of one deformable object of a stream; keeps the states that they may build on.
 class DeformableComposer {
  public:
-  DeformableComposer(const StreamHeader& header, std::size_t item);
+  DeformableComposer(const Scene& header, std::size_t item);
   ~DeformableComposer();
   DeformableComposer(DeformableComposer&&) noexcept;
 
   Bytes packet(const MainStep& step);
   Bytes packet(const ThesisStep& step);
-  const MeshObject& item() const;
+  const DeformableObject& item() const;
 
  private:
   struct Fixed;
 
-  const MeshState& baseline(const PacketPlace& at);
-  MeshHead head_of(const PacketPlace& at, const MeshState& base) const;
-  void keep(const PacketPlace& at, MeshState state);
+  template <class State>
+  const State& baseline(const PacketPlace& at, const std::map<std::uint16_t, State>& states, const State& initial);
+  template <class State>
+  void keep(const PacketPlace& at, std::map<std::uint16_t, State>& states, State state);
 
-  std::unique_ptr<Fixed> fixed_;               // the item and what follows from it
-  std::map<std::uint16_t, MeshState> states_;  // by sequence
+  std::unique_ptr<Fixed> fixed_;                    // the item and what follows from it
+  std::map<std::uint16_t, MainState> main_states_;  // by sequence
+  std::map<std::uint16_t, ThesisState> thesis_states_;
   std::uint16_t next_sequence_ = 0;
   std::uint16_t sequence_ = 0;  // of the packet at hand
 };
@@ -165,7 +167,7 @@ class DeformableStream {
 template <class Code>
 Bytes coded_main_packet(std::uint16_t sequence, Code code) {
   return with_payload(sequence, [&](RangeEncoder& coder) {
-    MeshModels models = mesh_start_models();
+    MainModels models = main_start_models();
     code(coder, models);
   });
 }

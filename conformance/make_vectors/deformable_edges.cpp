@@ -3,7 +3,7 @@
 #include <span>
 #include <utility>
 
-#include "codec/mesh/mesh_motion.h"
+#include <tactus/deformable/motion.h>
 #include "conformance/make_vectors/catalogue.h"
 #include "conformance/make_vectors/deformable_build.h"
 #include "conformance/make_vectors/sections.h"
@@ -41,7 +41,7 @@ Shape steep_and_flat() {
 Bytes haptic_below_0() {
   DeformableStream stream(only({.shape = one_triangle()}));
   stream.add(MainStep{.at = {.tick = 10, .key = true}, .triangle = 0u, .haptic = 5});
-  stream.add_packet(11, coded_main_packet(1, [](RangeEncoder& coder, MeshModels& models) {
+  stream.add_packet(11, coded_main_packet(1, [](RangeEncoder& coder, MainModels& models) {
                       coder.bit(models.key, 0);
                       coder.signed_value(models.late, 0);
                       coder.bit(models.touched[1], 1);
@@ -115,11 +115,11 @@ Bytes equal_tightness() {
 Bytes beyond_ring_2() {
   DeformableStream stream(only({.shape = sheet(8, 8)}));
   stream.add(MainStep{.at = {.tick = 0, .key = true}, .triangle = 60u});
-  MeshRings rings(stream.composer().item());
+  Rings rings(stream.composer().item());
   const auto near = static_cast<std::uint32_t>(rings.triangles_around(60, 2).size()) - 1;
   return stream
       .add_packet(1, coded_main_packet(1,
-                                       [&](RangeEncoder& coder, MeshModels& models) {
+                                       [&](RangeEncoder& coder, MainModels& models) {
                                          coder.bit(models.key, 0);
                                          coder.signed_value(models.late, 0);
                                          coder.bit(models.touched[1], 1);
@@ -169,7 +169,7 @@ class Driven {
   Driven& move(std::uint32_t frames, std::int32_t by) {
     std::int32_t predicted = 0;
     motion_.predict(frames, {&predicted, 1});
-    motion_.learn(frames, {&by, 1});
+    motion_.update(frames, {&by, 1});
     tick_ += frames;
     stream_.add(
         MainStep{.at = {.tick = tick_, .key = std::exchange(first_, false)}, .visual = 0, .coefficients = {by - predicted}});
@@ -185,7 +185,7 @@ class Driven {
 
  private:
   DeformableStream stream_;
-  MeshMotion motion_;
+  ModeMotion motion_;
   std::int64_t tick_ = 0;
   bool first_ = true;
 };
@@ -279,13 +279,13 @@ Bytes saturated_split() {
   std::int64_t tick = 0;
   const auto visual = [&](std::int64_t frames, std::int32_t by) {
     tick += frames;
-    stream.add(MainStep{
-        .at = {.tick = tick, .key = tick == 0}, .layer = MeshHalf::visual, .visual = 1u << 28, .coefficients = {by, -by}});
+    stream.add(
+        MainStep{.at = {.tick = tick, .key = tick == 0}, .layer = Layer::visual, .visual = 1u << 28, .coefficients = {by, -by}});
   };
   visual(0, 0);
   for (int i = 0; i < 13; ++i) visual(1, i % 4 < 2 ? 1 : -1);
   ++tick;
-  stream.add(MainStep{.at = {.tick = tick}, .layer = MeshHalf::haptic, .triangle = 0u, .haptic = 9, .visual = 1u << 28});
+  stream.add(MainStep{.at = {.tick = tick}, .layer = Layer::haptic, .triangle = 0u, .haptic = 9, .visual = 1u << 28});
   visual(2, 0);
   return stream.finished();
 }
@@ -294,7 +294,7 @@ Bytes saturated_split() {
 
 void add_deformable_edges(Catalogue& c) {
   c.section(section::kHead);
-  c.valid("haptic-below-0", "haptic_change takes it far below 0: haptic is 0.", haptic_below_0(), {"R-MES-10"});
+  c.valid("haptic-below-0", "haptic_change takes it far below 0: haptic is 0.", haptic_below_0(), {"R-DEF-10"});
   c.section(section::kParents);
   c.valid("crowded", "Copies and near neighbours among parents, on a surface of two units: some matrices are not definite.",
           crowded_stream(1));
@@ -306,10 +306,10 @@ void add_deformable_edges(Catalogue& c) {
   c.valid("steep-and-flat", "A parent's weight is limited to 2; a pivot is above 0, but below 2^18.",
           shaken(steep_and_flat(), 701));
   c.section(section::kVertexBounds);
-  c.valid("coarsest-indices", "Steps of the haptic indices 163 to 168.", coarsest_levels(), {"R-MES-10"});
+  c.valid("coarsest-indices", "Steps of the haptic indices 163 to 168.", coarsest_levels(), {"R-DEF-10"});
   c.valid("equal-bound-ratios",
           "Bounds where 3 h is twice the visual bound, 4 h is that and one more, and h is the visual bound.", equal_tightness());
-  c.invalid("beyond-ring-2", "The first place beyond rings 1 and 2.", {"invalid", "R-MES-9"}, beyond_ring_2());
+  c.invalid("beyond-ring-2", "The first place beyond rings 1 and 2.", {"invalid", "R-DEF-9"}, beyond_ring_2());
   c.valid("both-bounds-0", "Visual and haptic bounds of 0: neither is less than the other.", both_bounds_0());
   c.section(section::kHead);
   c.valid("two-triangles", "The number of a triangle of two takes a bit.", two_triangles());

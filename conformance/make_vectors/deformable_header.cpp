@@ -28,7 +28,7 @@ void add_valid(Catalogue& c) {
           with_deformables({}, {{.shape = one_vertex(), .profile = 0, .name = "a", .rings = 0, .quant_bits = 1},
                                 {.shape = one_vertex(), .name = "b", .rings = 0, .frame_period = 1}})
               .bytes(),
-          {"R-MES-1", "R-MES-3", "R-MES-4"});
+          {"R-DEF-1", "R-DEF-3", "R-DEF-4"});
   RawDeformable high{.shape = one_triangle(),
                      .name = "\xc3\xa9lan",
                      .rings = 32,
@@ -39,7 +39,7 @@ void add_valid(Catalogue& c) {
   high.shape.rest = {{-kTwo31, kTwo31 - 1, 0}, {kTwo31 - 1, -kTwo31, 0}, {-kTwo31, kTwo31 - 1, 1}};
   c.valid("upper-limits", "Thesis, main: every field at its upper limit, rest positions at both ends of 32 bits.",
           with_deformables({}, {{.profile = 0, .rings = 32, .quant_bits = 12, .models_kept = 1}, high}).bytes(),
-          {"R-MES-3", "R-MES-5", "R-MES-7"});
+          {"R-DEF-3", "R-DEF-5", "R-DEF-7"});
   c.valid("255-objects", "As many deformable objects as substreams have numbers.",
           [] {
             RawHeader raw;
@@ -49,7 +49,7 @@ void add_valid(Catalogue& c) {
             for (int i = 0; i < 255; ++i) items.push_back({.shape = one_vertex(), .name = std::to_string(i)});
             return with_deformables(raw, items).bytes();
           }(),
-          {"R-MES-1"});
+          {"R-DEF-1"});
 }
 
 void add_counts(Catalogue& c) {
@@ -61,9 +61,9 @@ void add_counts(Catalogue& c) {
   }());
   c.invalid("no-deformable-count", "The flag is set and the body ends.", cut, around({}));
   c.invalid("overlong-deformable-count", "deformable_count 1 is written in two bytes.", overlong, around({0x81, 0x00}));
-  c.invalid("deformable-count-0", "The flag is set and deformable_count is 0.", {"malformed", "R-MES-1"}, around({0}));
+  c.invalid("deformable-count-0", "The flag is set and deformable_count is 0.", {"malformed", "R-DEF-1"}, around({0}));
   c.invalid("deformable-count-256", "One deformable object more than substreams have numbers; none follows.",
-            {"invalid", "R-MES-1"}, around(varint(256)));
+            {"invalid", "R-DEF-1"}, around(varint(256)));
   c.invalid("second-object-missing", "deformable_count is 2; one follows.", cut, around(varint(2) + RawDeformable{}.bytes()));
   c.invalid("cut-parameters", "The body ends inside frame_period.", cut, around({1, 1, 1, 'm', 2, 0, 1}));
   c.invalid("cut-before-layered", "The body ends before layered.", cut, around({1, 1, 1, 'm', 2, 0, 1, 0, 0}));
@@ -83,18 +83,18 @@ void add_counts(Catalogue& c) {
 }
 
 void add_rules(Catalogue& c) {
-  const Rejection parameter{"invalid", "R-MES-3"}, count{"invalid", "R-MES-4"}, range{"invalid", "R-MES-5"},
-      corner{"invalid", "R-MES-6"}, basis{"invalid", "R-MES-7"};
-  c.invalid("object-profile-2", "A deformable object's profile is 2.", {"unsupported", "R-MES-2"}, around({1, 2}));
+  const Rejection parameter{"invalid", "R-DEF-3"}, count{"invalid", "R-DEF-4"}, range{"invalid", "R-DEF-5"},
+      corner{"invalid", "R-DEF-6"}, basis{"invalid", "R-DEF-7"};
+  c.invalid("object-profile-2", "A deformable object's profile is 2.", {"unsupported", "R-DEF-2"}, around({1, 2}));
   c.invalid("rings-33", "rings is 33.", parameter, changed(1, [](RawDeformable& m) { m.rings = 33; }));
   c.invalid("quant-bits-0", "quant_bits is 0.", parameter, changed(0, [](RawDeformable& m) { m.quant_bits = 0; }));
   c.invalid("quant-bits-13", "quant_bits is 13.", parameter, changed(0, [](RawDeformable& m) { m.quant_bits = 13; }));
-  c.invalid("models-kept-2", "models_kept is 2.", {"malformed", "R-MES-3"},
+  c.invalid("models-kept-2", "models_kept is 2.", {"malformed", "R-DEF-3"},
             changed(0, [](RawDeformable& m) { m.models_kept = 2; }));
   c.invalid("frame-period-0", "frame_period is 0.", parameter, changed(1, [](RawDeformable& m) { m.frame_period = 0; }));
   c.invalid("frame-period-too-long", "frame_period is 2^28 + 1.", parameter,
             changed(1, [](RawDeformable& m) { m.frame_period = (1 << 28) + 1; }));
-  c.invalid("layered-2", "layered is 2.", {"malformed", "R-MES-3"}, changed(1, [](RawDeformable& m) { m.layered = 2; }));
+  c.invalid("layered-2", "layered is 2.", {"malformed", "R-DEF-3"}, changed(1, [](RawDeformable& m) { m.layered = 2; }));
   c.invalid("no-vertices", "vertex_count is 0.", count, counted(0, 0, zeros(1)));
   c.invalid("too-many-vertices", "vertex_count is 2^20 + 1.", count, counted((1 << 20) + 1, 0, zeros(1)));
   c.invalid("too-many-triangles", "triangle_count is 2^21 + 1.", count, counted(3, (1 << 21) + 1, zeros(9)));
@@ -104,7 +104,7 @@ void add_rules(Catalogue& c) {
             counted(1, 0, zigzag_varint(-kTwo31 - 1) + zeros(3)));
   c.invalid("rest-of-64-bits", "A rest coordinate's difference has 64 bits.", range,
             counted(1, 0, varint(~std::uint64_t{0}) + zeros(3)));
-  c.invalid("rest-before-cut", "x is beyond 32 bits, and the body ends inside y.", {"invalid", "R-MES-5", "R-STR-5"},
+  c.invalid("rest-before-cut", "x is beyond 32 bits, and the body ends inside y.", {"invalid", "R-DEF-5", "R-STR-5"},
             counted(1, 0, zigzag_varint(kTwo31) + Bytes{0x80}));
   c.invalid("corner-of-no-vertex", "A corner is the number of vertices.", corner, counted(3, 1, zeros(9) + Bytes{0, 2, 4, 0}));
   c.invalid("negative-corner", "A corner is -1.", corner, counted(3, 1, zeros(9) + Bytes{1, 2, 2, 0}));
@@ -120,7 +120,7 @@ void add_rules(Catalogue& c) {
   c.invalid("entry-2048", "An entry of a mode is 2048.", basis, changed(1, [](RawDeformable& m) { m.entries.back() = 2048; }));
   c.invalid("entry-minus-2048", "An entry of a mode is -2048.", basis,
             changed(1, [](RawDeformable& m) { m.entries[0] = -2048; }));
-  c.invalid("mode-step-before-cut", "A mode's step is 0, and its last entry is cut.", {"invalid", "R-MES-7", "R-STR-5"},
+  c.invalid("mode-step-before-cut", "A mode's step is 0, and its last entry is cut.", {"invalid", "R-DEF-7", "R-STR-5"},
             counted(1, 0, zeros(3) + Bytes{1, 0, 0, 0, 0, 0x80}));
 }
 

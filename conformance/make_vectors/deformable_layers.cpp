@@ -21,7 +21,7 @@ class Layers {
     triangle_ = random_.below(triangles_);
     level_ = random_.below(40);
     return {.at = at,
-            .layer = MeshHalf::haptic,
+            .layer = Layer::haptic,
             .triangle = triangle_,
             .haptic = level_,
             .visual = 200,
@@ -36,7 +36,7 @@ class Layers {
   }
   MainStep visual(const PacketPlace& at, std::optional<std::uint32_t> triangle = {}) {
     MainStep step{.at = at,
-                  .layer = MeshHalf::visual,
+                  .layer = Layer::visual,
                   .triangle = triangle,
                   .haptic = random_.below(40),
                   .visual = 200,
@@ -159,9 +159,9 @@ template <class Code>
 Bytes then_haptic(Code code) {
   return three_packets()
       .add_packet(30, coded_main_packet(3,
-                                        [&](RangeEncoder& coder, MeshModels& models) {
+                                        [&](RangeEncoder& coder, MainModels& models) {
                                           coder.bit(models.key, 0);
-                                          coder.bit(models.half, 0);
+                                          coder.bit(models.layer, 0);
                                           coder.signed_value(models.late, 0);
                                           code(coder, models);
                                         }))
@@ -171,41 +171,41 @@ Bytes then_haptic(Code code) {
 void add_invalid(Catalogue& c) {
   c.invalid("layers-before-its-tick",
             "A visual layer of the same frame as an older baseline, at tick 10, after tick 30; the record cannot say so.",
-            {"invalid", "R-MES-8"},
+            {"invalid", "R-DEF-8"},
             three_packets(4)
                 .add_packet(30, coded_main_packet(3,
-                                                  [](RangeEncoder& coder, MeshModels& models) {
+                                                  [](RangeEncoder& coder, MainModels& models) {
                                                     coder.bit(models.key, 0);
                                                     coder.magnitude(models.baseline, 3);
-                                                    coder.bit(models.half, 1);
-                                                    coder.bit(models.completes, 1);
+                                                    coder.bit(models.layer, 1);
+                                                    coder.bit(models.same_frame, 1);
                                                   }))
                 .bytes());
   c.invalid("layers-lost-baseline", "A visual layer of the same frame as a haptic layer that is missing.", {"state", "R-PKT-4"},
             three_packets()
                 .add_packet(30, coded_main_packet(4,
-                                                  [](RangeEncoder& coder, MeshModels& models) {
+                                                  [](RangeEncoder& coder, MainModels& models) {
                                                     coder.bit(models.key, 0);
-                                                    coder.bit(models.half, 1);
-                                                    coder.bit(models.completes, 1);
+                                                    coder.bit(models.layer, 1);
+                                                    coder.bit(models.same_frame, 1);
                                                   }))
                 .bytes());
-  c.invalid("layers-triangle-3", "A haptic layer touches triangle 3 of 3.", {"invalid", "R-MES-9"},
-            then_haptic([](RangeEncoder& coder, MeshModels& models) {
+  c.invalid("layers-triangle-3", "A haptic layer touches triangle 3 of 3.", {"invalid", "R-DEF-9"},
+            then_haptic([](RangeEncoder& coder, MainModels& models) {
               coder.bit(models.same_triangle, 0);
               coder.bit(models.near_triangle, 0);
               coder.raw(2, 3);
               coder.signed_value(models.haptic, 0);
               coder.bit(models.same_visual, 1);
             }));
-  c.invalid("layers-haptic-169", "haptic is 169 in a haptic layer.", {"invalid", "R-MES-10"},
-            then_haptic([](RangeEncoder& coder, MeshModels& models) {
+  c.invalid("layers-haptic-169", "haptic is 169 in a haptic layer.", {"invalid", "R-DEF-10"},
+            then_haptic([](RangeEncoder& coder, MainModels& models) {
               coder.bit(models.same_triangle, 1);
               coder.signed_value(models.haptic, 169);
               coder.bit(models.same_visual, 1);
             }));
   c.invalid("layers-coefficients-in-haptic", "A haptic layer goes on after its last vertex.", {"malformed", "R-RNG-2"},
-            then_haptic([](RangeEncoder& coder, MeshModels& models) {
+            then_haptic([](RangeEncoder& coder, MainModels& models) {
               coder.bit(models.same_triangle, 1);
               coder.signed_value(models.haptic, 0);
               coder.bit(models.same_visual, 1);

@@ -77,8 +77,8 @@ void add_deformable_limits(Catalogue& c) {
   c.invalid("4096-objects-of-both-kinds", "3841 rigid objects and 255 deformable ones, none of which follows.",
             {"truncated", "R-STR-5"}, after_objects(3841, varint(255)));
   c.invalid("4097-objects-of-both-kinds", "3842 rigid objects and 255 deformable ones, the first of which has profile 2.",
-            {"limit_exceeded", "R-STR-14", "R-MES-2"}, after_objects(3842, varint(255) + Bytes{2}));
-  c.invalid("count-before-limit", "3841 rigid objects and 256 deformable ones.", {"invalid", "R-MES-1", "R-STR-14"},
+            {"limit_exceeded", "R-STR-14", "R-DEF-2"}, after_objects(3842, varint(255) + Bytes{2}));
+  c.invalid("count-before-limit", "3841 rigid objects and 256 deformable ones.", {"invalid", "R-DEF-1", "R-STR-14"},
             after_objects(3841, varint(256)));
 }
 

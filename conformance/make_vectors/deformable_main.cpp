@@ -120,15 +120,16 @@ void add_bounds(Catalogue& c) {
 
   DeformableStream zeros(only({.shape = sheet(3, 3)}));
   DeformableComposer& composer = zeros.composer();
-  const MeshState rest = initial_mesh_state(composer.item());
-  zeros.add_packet(5, coded_main_packet(0, [&](RangeEncoder& coder, MeshModels& models) {
-                     MeshRings rings(composer.item());
-                     MeshHead head{.key = true, .tick_delta = 5, .visual = 9};
-                     code_mesh_start(coder, models, composer.item(), 1, head);
-                     code_mesh_head(coder, models, composer.item(), rings, rest, head);
-                     const MeshHierarchy order = mesh_hierarchy(composer.item());
+  const MainState rest = initial_main_state(composer.item());
+  zeros.add_packet(5, coded_main_packet(0, [&](RangeEncoder& coder, MainModels& models) {
+                     Rings rings(composer.item());
+                     MainHead head{{.key = true, .tick_delta = 5}};
+                     head.visual = 9;
+                     code_main_start(coder, models, composer.item(), 1, head);
+                     code_main_head(coder, models, composer.item(), rings, rest, head);
+                     const VertexHierarchy order = vertex_hierarchy(composer.item());
                      for (const std::uint32_t v : order.order) {
-                       const std::size_t level = std::min<std::size_t>(order.level[v], 2);
+                       const std::size_t level = std::min<std::size_t>(order.depth[v], 2);
                        coder.bit(models.significant[0][0][0][level], 1);
                        for (int axis = 0; axis < 3; ++axis) coder.signed_value(models.component[0][level][0], 0);
                      }

@@ -19,7 +19,7 @@ Bytes ticks_and_levels() {
     stream.add(MainStep{
         .at = {.tick = tick, .key = true, .sequence = static_cast<std::uint16_t>(2 * width)}, .triangle = 0u, .haptic = 5});
     stream.add_packet(tick + 1,
-                      coded_main_packet(static_cast<std::uint16_t>(2 * width + 1), [&](RangeEncoder& coder, MeshModels& models) {
+                      coded_main_packet(static_cast<std::uint16_t>(2 * width + 1), [&](RangeEncoder& coder, MainModels& models) {
                         coder.bit(models.key, 0);
                         coder.signed_value(models.late, 0);
                         coder.bit(models.touched[1], 1);

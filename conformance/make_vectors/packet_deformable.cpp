@@ -90,7 +90,7 @@ void add_baselines(Catalogue& c) {
   c.valid("main-late-and-early", "Packets at the same tick, early, in time and late by up to 31 bits.", ticks.finished());
   DeformableStream clamped(only({.shape = one_triangle(), .frame_period = 4267}));
   clamped.add(MainStep{.at = {.tick = 50, .key = true}});
-  clamped.add_packet(50, coded_main_packet(1, [&](RangeEncoder& coder, MeshModels& models) {
+  clamped.add_packet(50, coded_main_packet(1, [&](RangeEncoder& coder, MainModels& models) {
                        coder.bit(models.key, 0);
                        coder.signed_value(models.late, -1000);
                        coder.bit(models.touched[0], 0);
@@ -166,14 +166,14 @@ void add_orders(Catalogue& c) {
   DeformableStream stream(only({.shape = sheet(2, 2)}, 4));
   stream.add(MainStep{.at = {.tick = 10, .key = true}}).add(MainStep{.at = {.tick = 30}});
   c.invalid("main-late-before-baseline-delta", "A late packet whose baseline_delta has 33 bits.", {"state", "R-PKT-5", "R-RNG-4"},
-            then_packet(two_main_packets(4), coded_main_packet(1, [](RangeEncoder& coder, MeshModels& models) {
+            then_packet(two_main_packets(4), coded_main_packet(1, [](RangeEncoder& coder, MainModels& models) {
                           coder.bit(models.key, 0);
                           coder.tree<4>(models.baseline, 15);
                           coder.raw(5, 18);
                         })));
   c.invalid("main-baseline-delta-before-ahead", "baseline_delta is 0, and the packet 32768 ahead.",
             {"invalid", "R-PKT-3", "R-PKT-7"},
-            then_packet(std::move(stream), coded_main_packet(32769, [](RangeEncoder& coder, MeshModels& models) {
+            then_packet(std::move(stream), coded_main_packet(32769, [](RangeEncoder& coder, MainModels& models) {
                           coder.bit(models.key, 0);
                           coder.magnitude(models.baseline, 0);
                           coder.signed_value(models.late, 0);
@@ -181,7 +181,7 @@ void add_orders(Catalogue& c) {
   DeformableStream thesis(only({.shape = sheet(2, 2), .profile = 0, .quant_bits = 4}, 4));
   thesis.add(ThesisStep{.at = {.tick = 10, .key = true}, .vertices = {{0}}});
   thesis.add(ThesisStep{.at = {.tick = 30}, .vertices = {{8}}});
-  c.invalid("thesis-late-before-cut", "A late packet of a sequence number and nothing more.", {"state", "R-PKT-5", "R-MES-11"},
+  c.invalid("thesis-late-before-cut", "A late packet of a sequence number and nothing more.", {"state", "R-PKT-5", "R-DEF-11"},
             then_packet(std::move(thesis), {1, 0}));
 }
 

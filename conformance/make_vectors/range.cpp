@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "codec/rigid/rigid_decoder.h"
+#include <tactus/receiver.h>
 #include "conformance/make_vectors/catalogue.h"
 #include "conformance/make_vectors/sections.h"
 
@@ -78,8 +78,8 @@ Bytes payload_with_run(std::uint64_t seed, std::size_t lead, std::size_t count, 
     for (std::size_t i = 0; i < lead; ++i) packet.push_back(random.byte());
     packet.insert(packet.end(), count, fill);
     for (std::size_t i = 0; i < tail; ++i) packet.push_back(random.byte());
-    auto decoder = RigidDecoder::create(header.parsed()).value();
-    if (const auto decoded = decoder.decode(packet); decoded && decoded->key) return file_of(header, packet, decoded->tick);
+    auto receiver = Receiver::create(header.parsed()).value();
+    if (const auto decoded = receiver.push(packet); decoded && decoded->key) return file_of(header, packet, decoded->tick);
   }
 }
 
@@ -102,13 +102,13 @@ void add_valid_payloads(Catalogue& c) {
 /// The key packet that the faults below start from, padded with zeros to as many bytes as its decoder takes.
 Bytes padded_packet(const RawHeader& header) {
   const Bytes packet = Stream(header).packet({.updates = {{0, Reason::visual, 1, {{{1000, 0, 0}, {-20, 0, 0}}}}}, .key = true});
-  const StreamHeader parsed = header.parsed();
+  const SharedScene scene = header.parsed();
   RangeDecoder coder(std::span<const std::uint8_t>(packet).subspan(2));
   RigidModels models = start_models();
-  PacketHead head;
+  RigidHead head;
   CodedUpdate update;
-  code_head(coder, models, parsed, 1, head);
-  code_update(coder, models, parsed.objects[0].dof, update);
+  code_head(coder, models, *scene, head);
+  code_update(coder, models, scene->objects[0].dof, update);
   return packet + Bytes(coder.position() - (packet.size() - 2), 0);
 }
 

@@ -23,7 +23,7 @@ Bytes longest_rotations_multiplied() {
 /// 1/32 of a step of angle in ten ticks.
 Bytes slowest_rotation() {
   RawHeader header;
-  header.grid.spin = 20;
+  header.grid.angular_velocity = 20;
   header.objects[0].rotation = {kOne30, 0, kUnit, -kUnit};
   Stream stream(header);
   stream.add({.tick = 0, .updates = {{0, Reason::visual, 0, {{{}, {}, {}, {1, 0, 0}}}}}, .key = true});

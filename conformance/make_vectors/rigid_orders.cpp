@@ -6,7 +6,7 @@ namespace tactus::conformance {
 namespace {
 
 /// Packets 100 and 101 at ticks 10 and 30, then one with any head.
-Bytes rigid_head(const PacketHead& head, std::uint8_t span = 4) {
+Bytes rigid_head(const RigidHead& head, std::uint8_t span = 4) {
   RawHeader raw;
   raw.baseline_span = span;
   raw.objects = {{"a"}, {"b"}};
@@ -102,7 +102,7 @@ void add_rigid_orders(Catalogue& c) {
               coder.magnitude(models.gap, 1);
             }));
   c.invalid("end-before-record-tick", "Bytes left over, and a record of another tick.", {"malformed", "R-RNG-2", "R-FIL-7"},
-            then_packet(raw_packet(two.parsed(), 2, {false, 1, 0, 1}, std::vector<RawUpdate>(1)) + Bytes(8, 1), 40));
+            then_packet(raw_packet(*two.parsed(), 2, {false, 1, 0, 1}, std::vector<RawUpdate>(1)) + Bytes(8, 1), 40));
 }
 
 }  // namespace tactus::conformance

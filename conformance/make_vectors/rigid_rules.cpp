@@ -27,7 +27,7 @@ Stream two_packets(std::uint8_t span = 1) {
 }
 
 /// The two packets, then packet 102 with any head and any updates.
-Bytes then_raw(const PacketHead& head, const std::vector<RawUpdate>& updates) {
+Bytes then_raw(const RigidHead& head, const std::vector<RawUpdate>& updates) {
   Stream stream = two_packets();
   return stream.add_packet(30, raw_packet(stream.header(), 102, head, updates)).bytes();
 }
@@ -63,8 +63,8 @@ void add_update_rules(Catalogue& c) {
             nothing
                 .add_packet(0, coded_packet(0,
                                             [&](RangeEncoder& coder, RigidModels& models) {
-                                              PacketHead head{true, 1, 0, 1};
-                                              code_head(coder, models, nothing.header(), 0, head);
+                                              RigidHead head{true, 1, 0, 1};
+                                              code_head(coder, models, nothing.header(), head);
                                             }))
                 .bytes());
   c.invalid("first-gap-beyond", "The first gap goes past the last moving object.", object, then_raw({false, 1, 0, 1}, {{2, {}}}));

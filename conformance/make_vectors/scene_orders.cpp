@@ -104,7 +104,7 @@ void add_objects(Catalogue& c) {
             {"invalid", "R-STR-13", "R-STR-10"}, changed_header([](RawHeader& h) {
               h.objects = {{.name = "a", .rotation = {}}, {.name = "b", .kind = 2}};
             }));
-  c.invalid("objects-before-deformables", "An object's dof is 64, and deformable_count 0.", {"invalid", "R-STR-12", "R-MES-1"},
+  c.invalid("objects-before-deformables", "An object's dof is 64, and deformable_count 0.", {"invalid", "R-STR-12", "R-DEF-1"},
             changed_header([](RawHeader& h) {
               h.objects[0].dof = 64;
               h.flags = 1;

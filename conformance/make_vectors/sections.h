@@ -4,32 +4,32 @@
 
 namespace tactus::conformance::section {
 
-inline constexpr const char* kDeclaration = "20 Scene declaration";
+inline constexpr const char* kDeclaration = "20 Layout";
 inline constexpr const char* kBounds = "20 Bounds";
-inline constexpr const char* kLimits = "20 Limits";
+inline constexpr const char* kLimits = "20 Limits and memory";
 inline constexpr const char* kSubstreams = "25 Substreams";
-inline constexpr const char* kPackets = "25 Packets";
-inline constexpr const char* kNumbers = "25 Numbers, loss, restart";
-inline constexpr const char* kRangeCoder = "30 Range coder";
+inline constexpr const char* kPackets = "25 Receiving a packet";
+inline constexpr const char* kNumbers = "25 Sequence numbers";
+inline constexpr const char* kRangeCoder = "30 Payload";
 inline constexpr const char* kRigidPacket = "40 Packet";
 inline constexpr const char* kResidual = "40 Residual";
 inline constexpr const char* kPrediction = "40 Prediction";
 inline constexpr const char* kPose = "40 Pose";
 inline constexpr const char* kMotion = "40 Motion";
 inline constexpr const char* kStartModels = "40 Start models";
-inline constexpr const char* kDeformable = "50 Declaration";
-inline constexpr const char* kRings = "50 Rings";
+inline constexpr const char* kDeformable = "20 Deformable objects";
+inline constexpr const char* kRings = "50 Rings and area of interest";
 inline constexpr const char* kCodingOrder = "50 Coding order";
 inline constexpr const char* kParents = "50 Parents";
 inline constexpr const char* kHead = "50 Packet of profile main";
 inline constexpr const char* kLayers = "50 Layers";
-inline constexpr const char* kVertexBounds = "50 Bounds";
-inline constexpr const char* kTime = "50 Prediction in time";
+inline constexpr const char* kVertexBounds = "50 Bounds and steps";
+inline constexpr const char* kTime = "50 Temporal prediction";
 inline constexpr const char* kVertices = "50 Vertices";
 inline constexpr const char* kThesis = "50 Packet of profile thesis";
 inline constexpr const char* kDeformableStartModels = "50 Start models";
 inline constexpr const char* kClient = "60 Applying an update";
 inline constexpr const char* kShownPose = "60 Shown pose";
-inline constexpr const char* kFile = "80 File";
+inline constexpr const char* kFile = "80 Records";
 
 }  // namespace tactus::conformance::section

@@ -10,7 +10,7 @@
 
 #include <tactus/base/tri_mesh.h>
 #include <tactus/rigid/contact.h>
-#include <tactus/rigid/rigid.h>
+#include <tactus/rigid/rigid_state.h>
 #include <tactus/scene/bounds.h>
 
 namespace tactus {

@@ -97,8 +97,8 @@ void pass_mesh(Entries& entries, const std::string& path, DeformableBounds& mesh
 void pass(Entries& entries, TraceBounds& bounds) {
   entries.byte("position_exp", bounds.position_exp);
   if (bounds.stream.rigid) pass_rigid(entries, *bounds.stream.rigid);
-  for (std::size_t i = 0; i < bounds.stream.meshes.size(); ++i)
-    pass_mesh(entries, "meshes/" + std::to_string(i) + "/", bounds.stream.meshes[i], bounds.rings[i]);
+  for (std::size_t i = 0; i < bounds.stream.deformables.size(); ++i)
+    pass_mesh(entries, "meshes/" + std::to_string(i) + "/", bounds.stream.deformables[i], bounds.rings[i]);
 }
 
 }  // namespace
@@ -114,7 +114,7 @@ mcap::TextMap entries_of(const TraceBounds& bounds) {
 std::optional<TraceBounds> bounds_from(const mcap::TextMap& entries, const TraceInfo& info) {
   TraceBounds bounds;
   if (entries.contains("heartbeat")) bounds.stream.rigid.emplace();
-  bounds.stream.meshes.resize(info.meshes.size());
+  bounds.stream.deformables.resize(info.meshes.size());
   bounds.rings.resize(info.meshes.size());
   Entries in(entries);
   pass(in, bounds);

@@ -42,7 +42,7 @@ Result<void> check(const TraceInfo& info) {
     if (const auto sound = check(mesh.rest); !sound) return fail(Errc::invalid_argument, sound.error().error.rule);
     if (!is_valid(mesh)) return fail(Errc::invalid_argument, "R-TRC-17");
   }
-  const bool bounds_fit = !info.bounds || (info.bounds->stream.meshes.size() == info.meshes.size() &&
+  const bool bounds_fit = !info.bounds || (info.bounds->stream.deformables.size() == info.meshes.size() &&
                                            info.bounds->rings.size() == info.meshes.size());
   if (!bounds_fit) return fail(Errc::invalid_argument, "R-TRC-17");
   return {};

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include <tactus/deformable/displacement.h>
 #include <tactus/sim/contact/intermediate_model.h>
 #include <tactus/sim/contact/mesh_proxy.h>
 #include <tactus/sim/deformable/deformable_body.h>
@@ -68,7 +69,8 @@ class World final : public DeformableWorld {
   DeformableTouch touch_client(std::size_t user, const Vec3& device) noexcept override {
     return touch(client_[user], seen_, device);
   }
-  void show(std::size_t object, std::span<const Vec3> displacements) noexcept override;
+  void show(std::size_t object, std::span<const std::array<std::int32_t, 3>> displacements,
+            unsigned position_exp) noexcept override;
   void push(const SurfaceContact& contact, const Vec3& force) noexcept override {
     bodies_[contact.mesh]->push(contact.triangle, contact.weights, force);
   }
@@ -188,10 +190,10 @@ void World::update_clients(std::uint32_t object, std::span<const Vec3> vertices,
     if (auto& cut_out = client.proxies[object].cut_out) cut_out->update(vertices, tree);
 }
 
-void World::show(std::size_t object, std::span<const Vec3> displacements) noexcept {
+void World::show(std::size_t object, std::span<const std::array<std::int32_t, 3>> displacements, unsigned position_exp) noexcept {
   ClientSurface& seen = seen_[object];
   const std::vector<Vec3>& rest = meshes_[object].rest.vertices;
-  for (std::size_t v = 0; v < rest.size(); ++v) seen.next[v] = rest[v] + displacements[v];
+  for (std::size_t v = 0; v < rest.size(); ++v) seen.next[v] = rest[v] + to_metres(displacements[v], position_exp);
   if (const double reach = farthest(seen.vertices, seen.next); reach > 0) {
     for (Probe& client : client_) client.expect(static_cast<std::uint32_t>(object), reach, seen.vertices, seen.next, seen.tree);
     std::swap(seen.vertices, seen.next);

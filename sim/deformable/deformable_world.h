@@ -57,9 +57,10 @@ class DeformableWorld {
   virtual DeformableTouch touch_server(std::size_t user, const Vec3& device) noexcept = 0;
   virtual DeformableTouch touch_client(std::size_t user, const Vec3& device) noexcept = 0;
 
-  /// What clients see from now on, with DeformableClients::shown.   in  displacements  [m] one per vertex of the surface
+  /// What clients see from now on, with DeformableClients::shown.   in  displacements  as Replica::displacements
   /// no allocation
-  virtual void show(std::size_t object, std::span<const Vec3> displacements) noexcept = 0;
+  virtual void show(std::size_t object, std::span<const std::array<std::int32_t, 3>> displacements,
+                    unsigned position_exp) noexcept = 0;
 
   /// Let a force [N] act on the touched triangle in this tick.
   virtual void push(const SurfaceContact& contact, const Vec3& force) noexcept = 0;

@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include <tactus/rigid/rigid.h>
+#include <tactus/rigid/rigid_state.h>
 #include <tactus/sim/contact/contact.h>
 #include <tactus/sim/msd/msd.h>
 #include <tactus/sim/rigid/rigid_world.h>

@@ -20,7 +20,7 @@
 
 #include <tactus/base/geometry.h>
 #include <tactus/base/result.h>
-#include <tactus/rigid/rigid.h>
+#include <tactus/rigid/rigid_state.h>
 #include <tactus/sim/scene/scene.h>
 
 namespace tactus::sim {

@@ -7,7 +7,7 @@
 #include <set>
 
 #include <tactus/base/shown.h>
-#include <tactus/rigid/rigid.h>
+#include <tactus/rigid/rigid_state.h>
 #include <tactus/sim/scene/deformable_reader.h>
 #include <tactus/sim/scene/object_surface.h>
 #include <tactus/sim/scene/toml_reader.h>
@@ -278,17 +278,11 @@ tl::expected<std::string, SceneError> find_scene(const std::string& name) {
                                    "no such file, nor a scene of that name; name a file or one of the scenes in sim/scenes"});
 }
 
-Result<StreamHeader> stream_header(const Scene& scene) {
-  StreamHeader header;
-  header.tick_rate = kTickRate;
-  const auto add = [&](const std::string& name, std::uint8_t dof, const Pose& pose) -> Result<void> {
-    TACTUS_TRY(const RigidState initial, to_grid({.pose = pose, .velocity = {}, .angular_velocity = {}}, 0, header.grid));
-    header.objects.push_back({name, dof, initial});
-    return {};
-  };
-  for (const SceneObject& object : scene.objects) TACTUS_CHECK(add(object.name, object.dof, object.pose));
-  for (const SceneMsd& msd : scene.msds) TACTUS_CHECK(add(msd.name, msd.dof(), {msd.position, {}}));
-  return header;
+SceneBuilder scene_builder(const Scene& scene) {
+  SceneBuilder out(kTickRate);
+  for (const SceneObject& object : scene.objects) out.rigid(object.name, object.pose, object.dof);
+  for (const SceneMsd& msd : scene.msds) out.rigid(msd.name, {msd.position, {}}, msd.dof());
+  return out;
 }
 
 }  // namespace tactus::sim

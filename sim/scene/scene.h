@@ -12,7 +12,7 @@
 
 #include <tactus/base/geometry.h>
 #include <tactus/base/result.h>
-#include <tactus/scene/scene_syntax.h>
+#include <tactus/scene/scene_builder.h>
 #include <tactus/sim/msd/msd.h>
 #include <tactus/sim/tets/tet_mesh.h>
 
@@ -150,7 +150,7 @@ tl::expected<Scene, SceneError> load_scene(const std::string& path);
 /// Path of a scene: `name` itself if it is a file, else <name>.toml among the scenes that come with Tactus.   err  R-SCN-1
 tl::expected<std::string, SceneError> find_scene(const std::string& name);
 
-/// The stream that carries this scene: its objects in order, at rest in their first poses.   err  invalid_argument R-API-2
-Result<StreamHeader> stream_header(const Scene& scene);
+/// The rigid objects of this scene for a sender: in order, at rest in their first poses.
+SceneBuilder scene_builder(const Scene& scene);
 
 }  // namespace tactus::sim

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Cost of the mesh codec per frame: both profiles, with and without a basis, 10^2 to 10^6 vertices. A dent walks over a sheet.
+/// Cost of deformable objects per frame: both profiles, with and without a basis, 10^2 to 10^6 vertices. A dent walks over a sheet.
 #include <benchmark/benchmark.h>
 #include <malloc.h>
 
 #include <algorithm>
 #include <chrono>
 
-#include <tactus/deformable/decoder.h>
-#include <tactus/deformable/encoder.h>
 #include "tests/unit/deformable_fixture.h"
 
 namespace tactus {
@@ -18,15 +16,16 @@ constexpr std::size_t kFrames = 64;  // of the recording, which is walked to and
 enum class Kind { thesis, main, basis };
 
 struct Recording {
-  StreamHeader header;
+  SharedScene scene;
   std::vector<testing::SheetFrame> frames;
 };
 
 Recording record(std::uint32_t squares, Kind kind) {
   const TriMesh mesh = testing::sheet(squares, squares);
   Recording out;
-  out.header = testing::mesh_header(mesh, kind == Kind::thesis ? DeformableProfile::thesis : DeformableProfile::main,
-                                    kind == Kind::basis ? testing::wave_basis(mesh, squares, 48) : ModeBasis{});
+  out.scene =
+      testing::shared(testing::sheet_spec(mesh, kind == Kind::thesis ? DeformableProfile::thesis : DeformableProfile::main,
+                                          kind == Kind::basis ? testing::wave_basis(mesh, squares, 48) : ModeBasis{}));
   testing::DentedSheet sheet(mesh, squares);
   const std::size_t frames = squares > 300 ? 8 : kFrames;
   for (std::size_t k = 0; k < frames; ++k) out.frames.push_back(sheet.frame(static_cast<std::int64_t>(k)));
@@ -39,10 +38,12 @@ const testing::SheetFrame& frame_at(const Recording& r, std::int64_t tick) {
   return r.frames[static_cast<std::size_t>(std::min(k, period - k))];
 }
 
-DeformableEncoder make_encoder(const Recording& r) {
-  DeformableEncoderOptions options;
-  options.key_interval = 0;
-  return DeformableEncoder::create(r.header, 0, options).value();
+std::size_t vertices_of(const Recording& r) { return r.scene->deformables[0].rest.size(); }
+
+Sender make_sender(const Recording& r) {
+  SenderOptions options;
+  options.policy.key_interval = 0;
+  return Sender::create(r.scene, options).value();
 }
 
 using Clock = std::chrono::steady_clock;
@@ -60,7 +61,7 @@ void encode_frame(benchmark::State& state, Kind kind) {
   const auto squares = static_cast<std::uint32_t>(state.range(0));
   const Recording recording = record(squares, kind);
   const std::size_t before = mallinfo2().uordblks + mallinfo2().hblkhd;
-  DeformableEncoder encoder = make_encoder(recording);
+  Sender sender = make_sender(recording);
   const std::size_t memory = mallinfo2().uordblks + mallinfo2().hblkhd - before;
   std::vector<double> times;
   times.reserve(1 << 20);
@@ -68,31 +69,32 @@ void encode_frame(benchmark::State& state, Kind kind) {
   std::int64_t tick = 0;
   for (auto _ : state) {
     const testing::SheetFrame& frame = frame_at(recording, tick);
+    const DeformableTruth truth = frame.truth();
     const auto start = Clock::now();
-    const auto packet = encoder.encode(tick++, frame.displacement, frame.touch);
+    const auto packets = sender.encode(tick++, {.deformables = {&truth, 1}});
     const auto end = Clock::now();
     if (times.size() < times.capacity()) times.push_back(microseconds(end - start));
-    bytes += packet->bytes.size();
+    for (const Packet& packet : *packets) bytes += packet.bytes.size();
   }
   report(state, times);
-  state.counters["bytes_per_vertex"] = static_cast<double>(memory) / static_cast<double>(recording.header.meshes[0].rest.size());
-  state.counters["vertices"] = static_cast<double>(recording.header.meshes[0].rest.size());
+  state.counters["bytes_per_vertex"] = static_cast<double>(memory) / static_cast<double>(vertices_of(recording));
+  state.counters["vertices"] = static_cast<double>(vertices_of(recording));
   state.counters["bytes"] = benchmark::Counter(static_cast<double>(bytes), benchmark::Counter::kAvgIterations);
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(recording.header.meshes[0].rest.size()));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(vertices_of(recording)));
 }
 
 void decode_frame(benchmark::State& state, Kind kind) {
   const auto squares = static_cast<std::uint32_t>(state.range(0));
   const Recording recording = record(squares, kind);
-  DeformableEncoder encoder = make_encoder(recording);
+  Sender sender = make_sender(recording);
   std::vector<std::vector<std::uint8_t>> packets;
   for (std::size_t k = 0; k < recording.frames.size(); ++k) {
-    const testing::SheetFrame& frame = recording.frames[k];
-    const auto packet = encoder.encode(static_cast<std::int64_t>(k), frame.displacement, frame.touch).value();
+    const DeformableTruth truth = recording.frames[k].truth();
+    const Packet packet = testing::only(sender.encode(static_cast<std::int64_t>(k), {.deformables = {&truth, 1}}));
     if (!packet.bytes.empty()) packets.emplace_back(packet.bytes.begin(), packet.bytes.end());
   }
   const std::size_t before = mallinfo2().uordblks + mallinfo2().hblkhd;
-  auto decoder = DeformableDecoder::create(recording.header, 0).value();
+  auto receiver = Receiver::create(recording.scene).value();
   const std::size_t memory = mallinfo2().uordblks + mallinfo2().hblkhd - before;
   std::vector<double> times;
   times.reserve(1 << 20);
@@ -100,19 +102,19 @@ void decode_frame(benchmark::State& state, Kind kind) {
   for (auto _ : state) {
     if (next == packets.size()) {
       state.PauseTiming();
-      decoder = DeformableDecoder::create(recording.header, 0).value();
+      receiver = Receiver::create(recording.scene).value();
       next = 0;
       state.ResumeTiming();
     }
     const auto start = Clock::now();
-    const auto decoded = decoder.decode(packets[next++]);
+    const auto decoded = receiver.push(packets[next++]);
     const auto end = Clock::now();
     if (times.size() < times.capacity()) times.push_back(microseconds(end - start));
     if (!decoded) state.SkipWithError(decoded.error().rule);
   }
   report(state, times);
-  state.counters["bytes_per_vertex"] = static_cast<double>(memory) / static_cast<double>(recording.header.meshes[0].rest.size());
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(recording.header.meshes[0].rest.size()));
+  state.counters["bytes_per_vertex"] = static_cast<double>(memory) / static_cast<double>(vertices_of(recording));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(vertices_of(recording)));
 }
 
 BENCHMARK_CAPTURE(encode_frame, thesis, Kind::thesis)->Arg(26)->Arg(99)->Unit(benchmark::kMicrosecond);

@@ -2,8 +2,9 @@
 /// Cost of the rigid codec: decision per object and tick, one encoded update, one decoded update, and a crowd at 1 kHz.
 #include <benchmark/benchmark.h>
 
-#include <tactus/rigid/rigid_decoder.h>
-#include <tactus/rigid/rigid_encoder.h>
+#include <tactus/receiver.h>
+#include <tactus/rigid/rigid_predictor.h>
+#include <tactus/sender.h>
 #include "tests/unit/rigid_fixture.h"
 
 namespace tactus {
@@ -20,18 +21,20 @@ std::vector<RigidSample> record(std::size_t objects, std::size_t ticks) {
   return out;
 }
 
-RigidEncoderOptions every_tick() {
-  RigidEncoderOptions options;
+SenderOptions every_tick() {
+  SenderOptions options;
   options.triggers.reduction = Reduction::none;
-  options.key_interval = 0;
+  options.policy.key_interval = 0;
   return options;
 }
 
-/// Prediction and all triggers of one touched object, nothing to send: the encoder holds exactly this state.
+/// Prediction and all triggers of one touched object, nothing to send: the sender holds exactly this state.
 void decide(benchmark::State& state) {
-  RigidEncoderOptions options;
+  SenderOptions options;
   options.triggers.heartbeat = 0;
-  auto encoder = RigidEncoder::create(testing::scene_of(1), options).value();
+  const SharedScene scene = testing::scene_of(1);
+  const RigidPredictor predictor(*scene);
+  auto sender = Sender::create(scene, options).value();
   RigidSample sample;
   sample.velocity = {0.1, 0.02, 0};
   sample.angular_velocity = {0.5, 0.1, 1};
@@ -39,8 +42,7 @@ void decide(benchmark::State& state) {
   std::int64_t tick = 0;
   const auto moving = [&](const RigidSample& start, std::int64_t ticks) {
     RigidSample s = start;
-    const RigidState grid = to_grid(start, 0, GridExponents{}).value();
-    s.pose = to_pose(predict(grid, ticks, encoder.header()), GridExponents{});
+    s.pose = to_pose(predictor.pose(to_grid(start, 0, scene->grid).value(), ticks), scene->grid.position);
     return s;
   };
   std::vector<RigidSample> samples;
@@ -49,16 +51,15 @@ void decide(benchmark::State& state) {
   for (auto _ : state) {
     if (tick % 1000 == 0) {
       state.PauseTiming();
-      encoder = RigidEncoder::create(testing::scene_of(1), options).value();
+      sender = Sender::create(scene, options).value();
       tick = 0;
-      (void)encoder.encode(tick, {&samples[0], 1}, {});
+      (void)sender.encode(tick, {.objects = {&samples[0], 1}});
       state.ResumeTiming();
       ++tick;
     }
     const auto& s = samples[static_cast<std::size_t>(tick)];
     const Contact contact = testing::touch(0, s.pose, 0.002);
-    const auto packet = encoder.encode(tick++, {&s, 1}, {&contact, 1});
-    packets += packet->bytes.empty() ? 0 : 1;
+    packets += sender.encode(tick++, {.objects = {&s, 1}, .contacts = {&contact, 1}})->size();
   }
   state.counters["packets_share"] = benchmark::Counter(static_cast<double>(packets), benchmark::Counter::kAvgIterations);
 }
@@ -66,13 +67,13 @@ BENCHMARK(decide)->Iterations(900 * 1000)->Repetitions(5)->ReportAggregatesOnly(
 
 /// One update per tick, decision included.
 void encode_update(benchmark::State& state) {
-  auto encoder = RigidEncoder::create(testing::scene_of(1), every_tick()).value();
+  auto sender = Sender::create(testing::scene_of(1), every_tick()).value();
   const auto samples = record(1, 10000);
   std::int64_t tick = 0;
   std::uint64_t bytes = 0;
   for (auto _ : state) {
     const RigidSample& s = samples[static_cast<std::size_t>(tick) % samples.size()];
-    bytes += encoder.encode(tick++, {&s, 1}, {})->bytes.size();
+    bytes += testing::only(sender.encode(tick++, {.objects = {&s, 1}})).bytes.size();
   }
   state.counters["bytes"] = benchmark::Counter(static_cast<double>(bytes), benchmark::Counter::kAvgIterations);
 }
@@ -80,41 +81,41 @@ BENCHMARK(encode_update)->Repetitions(5)->ReportAggregatesOnly();
 
 /// One touched update per tick: the grid level is searched with the haptic rule.
 void encode_touched_update(benchmark::State& state) {
-  RigidEncoderOptions options = every_tick();
+  SenderOptions options = every_tick();
   options.triggers.reduction = Reduction::dead_reckoning;
   options.triggers.weber_fraction = 0.001;
-  auto encoder = RigidEncoder::create(testing::scene_of(1), options).value();
+  auto sender = Sender::create(testing::scene_of(1), options).value();
   const auto samples = record(1, 10000);
   std::int64_t tick = 0;
   std::uint64_t packets = 0;
   for (auto _ : state) {
     const RigidSample& s = samples[static_cast<std::size_t>(tick) % samples.size()];
     const Contact contact = testing::touch(0, s.pose, 0.002);
-    packets += encoder.encode(tick++, {&s, 1}, {&contact, 1})->bytes.empty() ? 0 : 1;
+    packets += sender.encode(tick++, {.objects = {&s, 1}, .contacts = {&contact, 1}})->size();
   }
   state.counters["packets_share"] = benchmark::Counter(static_cast<double>(packets), benchmark::Counter::kAvgIterations);
 }
 BENCHMARK(encode_touched_update)->Repetitions(5)->ReportAggregatesOnly();
 
 void decode_update(benchmark::State& state) {
-  const StreamHeader header = testing::scene_of(1);
-  auto encoder = RigidEncoder::create(header, every_tick()).value();
+  const SharedScene scene = testing::scene_of(1);
+  auto sender = Sender::create(scene, every_tick()).value();
   const auto samples = record(1, 10000);
   std::vector<std::vector<std::uint8_t>> packets;
   for (std::size_t tick = 0; tick < samples.size(); ++tick) {
-    const auto packet = encoder.encode(static_cast<std::int64_t>(tick), {&samples[tick], 1}, {}).value();
+    const Packet packet = testing::only(sender.encode(static_cast<std::int64_t>(tick), {.objects = {&samples[tick], 1}}));
     packets.emplace_back(packet.bytes.begin(), packet.bytes.end());
   }
-  auto decoder = RigidDecoder::create(header).value();
+  auto receiver = Receiver::create(scene).value();
   std::size_t next = 0;
   for (auto _ : state) {
     if (next == packets.size()) {
       state.PauseTiming();
-      decoder = RigidDecoder::create(header).value();
+      receiver = Receiver::create(scene).value();
       next = 0;
       state.ResumeTiming();
     }
-    auto decoded = decoder.decode(packets[next++]);
+    auto decoded = receiver.push(packets[next++]);
     if (!decoded) state.SkipWithError(decoded.error().rule);
     benchmark::DoNotOptimize(decoded);
   }
@@ -126,12 +127,13 @@ void crowd(benchmark::State& state) {
   const auto objects = static_cast<std::size_t>(state.range(0));
   constexpr std::size_t kTicks = 200;
   const auto samples = record(objects, kTicks);
-  auto encoder = RigidEncoder::create(testing::scene_of(objects)).value();
+  auto sender = Sender::create(testing::scene_of(objects)).value();
   std::int64_t tick = 0;
   std::uint64_t updates = 0;
   for (auto _ : state) {
     const auto at = static_cast<std::size_t>(tick) % kTicks * objects;
-    updates += encoder.encode(tick++, std::span(samples).subspan(at, objects), {})->updates;
+    const auto packets = sender.encode(tick++, {.objects = std::span(samples).subspan(at, objects)});
+    for (const Packet& packet : *packets) updates += packet.updates;
   }
   state.counters["updates_per_tick"] = benchmark::Counter(static_cast<double>(updates), benchmark::Counter::kAvgIterations);
   state.counters["real_time_factor"] =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Cost of headers and files, and of the range coder below every packet.
+/// Cost of scene declarations and files, and of the range coder below every packet.
 #include <benchmark/benchmark.h>
 
 #include <sstream>
@@ -13,15 +13,15 @@ namespace tactus {
 namespace {
 
 void header_parse(benchmark::State& state) {
-  const auto bytes = write_header(testing::scene_of(static_cast<std::size_t>(state.range(0)))).value();
-  for (auto _ : state) benchmark::DoNotOptimize(parse_header(bytes));
+  const auto bytes = write_scene(*testing::scene_of(static_cast<std::size_t>(state.range(0)))).value();
+  for (auto _ : state) benchmark::DoNotOptimize(parse_scene(bytes));
   state.SetBytesProcessed(static_cast<std::int64_t>(bytes.size()) * state.iterations());
 }
 BENCHMARK(header_parse)->Arg(1)->Arg(1000);
 
 void file_read(benchmark::State& state) {
   std::ostringstream out;
-  auto writer = StreamFileWriter::create(out, testing::scene_of(1)).value();
+  auto writer = StreamFileWriter::create(out, *testing::scene_of(1)).value();
   const std::vector<std::uint8_t> packet(12, 0x5a);
   for (std::int64_t tick = 0; tick < 10000; ++tick) (void)writer.add(tick, packet, tick == 0);
   (void)writer.finish();

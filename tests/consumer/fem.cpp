@@ -7,18 +7,18 @@
 namespace {
 
 const char* bend() {
-  tactus::FemOptions options;
+  tactus::sim::FemOptions options;
   options.materials = {{.young = 1e4, .poisson = 0.3, .density = 1000}};
   options.fixed = {0, 5, 10, 15};
-  auto model = tactus::FemModel::create(tactus::make_slab(4, 1, 1, 0.01), options);
+  auto model = tactus::sim::FemModel::create(tactus::sim::make_slab(4, 1, 1, 0.01), options);
   if (!model) return "the beam is refused";
-  tactus::IntegratorOptions method;
-  method.method = tactus::Method::backward_euler;
-  method.solver = tactus::LinearSolver::cholesky;
-  const auto integrator = tactus::make_integrator(*model, method);
+  tactus::sim::IntegratorOptions method;
+  method.method = tactus::sim::Method::backward_euler;
+  method.solver = tactus::sim::LinearSolver::cholesky;
+  const auto integrator = tactus::sim::make_integrator(*model, method);
   if (!integrator) return "the method is refused";
 
-  tactus::FemState state = model->rest();
+  tactus::sim::FemState state = model->rest();
   Eigen::VectorXd load = Eigen::VectorXd::Zero(model->size());
   constexpr Eigen::Index kTip = 3 * 4 + 2;
   load[kTip] = -0.01;

@@ -6,7 +6,7 @@
 
 int main() {
   const tactus::TriMesh square{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
-  const auto modes = tactus::spring_modes(square, {}, 3);
+  const auto modes = tactus::sim::spring_modes(square, {}, 3);
   if (!modes || modes->size() != 3 * 12) {
     std::puts("a square has no modes");
     return 1;

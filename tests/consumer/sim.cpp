@@ -9,17 +9,17 @@
 namespace {
 
 std::string run(const char* file) {
-  const auto scene = tactus::load_scene(file);
-  if (!scene) return tactus::to_string(scene.error());
-  tactus::SimulationOptions options;
+  const auto scene = tactus::sim::load_scene(file);
+  if (!scene) return tactus::sim::to_string(scene.error());
+  tactus::sim::SimulationOptions options;
   options.channel.emplace();
-  auto simulation = tactus::Simulation::create(*scene, options);
+  auto simulation = tactus::sim::Simulation::create(*scene, options);
   if (!simulation) return simulation.error().rule;
   std::size_t sent = 0;
   for (std::int64_t i = 0; i < simulation->ticks(); ++i) {
-    const auto packet = simulation->step();
-    if (!packet) return packet.error().error.rule;
-    sent += packet->bytes.size();
+    const auto packets = simulation->step();
+    if (!packets) return packets.error().error.rule;
+    for (const tactus::Packet& packet : *packets) sent += packet.bytes.size();
   }
   return sent > 0 ? "" : "nothing was sent";
 }

@@ -10,10 +10,10 @@ namespace {
 
 const char* there_and_back(const char* file) {
   const tactus::TriMesh corner{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
-  if (!tactus::write_surface(file, corner)) return "the file cannot be written";
-  const auto read = tactus::read_surface(file);
+  if (!tactus::sim::write_surface(file, corner)) return "the file cannot be written";
+  const auto read = tactus::sim::read_surface(file);
   if (!read || read->mesh.triangles != corner.triangles) return "other triangles came back";
-  const auto solid = tactus::solid_within(read->mesh);
+  const auto solid = tactus::sim::solid_within(read->mesh);
   if (!solid || !(std::abs(solid->volume - 1.0 / 6) < 1e-12)) return "it encloses another volume";
   return nullptr;
 }

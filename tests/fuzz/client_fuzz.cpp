@@ -7,12 +7,13 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tactus;
-  StreamHeader header;
-  header.objects.push_back({"o", Dof::all, {}});
+  SceneSpec spec;
+  spec.objects.push_back({"o", Dof::all, {}});
+  const SharedScene scene = Scene::create(std::move(spec)).value();
+  const RigidPredictor predictor(*scene);
   ReplicaOptions options;
   if (size > 0 && (data[0] & 1)) options.interpolation = Interpolation::linear;
-  auto replica = Replica::create(header, options);
-  if (!replica) std::abort();
+  Replica replica(*scene, options, {});
   constexpr std::size_t kStep = 40;
   std::int64_t now = 0;
   for (std::size_t at = 1; at + kStep <= size; at += kStep) {
@@ -23,20 +24,19 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     now += v[0] & 0x70000 ? 0 : 7;  // applied late
     state.position = {v[1], v[2], v[3]};
     state.velocity = {v[4], v[5], v[6]};
-    const std::int32_t limit = 1 << 25;
-    state.spin = {v[7] % limit, v[8] % limit, v[9] % limit};
+    state.angular_velocity = {v[7] % kAngularVelocityLimit, v[8] % kAngularVelocityLimit, v[9] % kAngularVelocityLimit};
     const RigidUpdate update{0, Reason::visual, 0};
     DecodedPacket packet;
     packet.tick = state.tick;
     packet.updates = {&update, 1};
-    replica->apply(packet, {&state, 1}, now);
+    replica.apply(packet, {&state, 1}, now);
     for (const std::int64_t later : {0, 1, 10, 99, 5000}) {
-      const RigidPose shown = replica->pose(0, now + later);
+      const RigidPose shown = replica.pose(0, now + later);
       double square = 0;
       for (const std::int32_t c : shown.rotation) square += static_cast<double>(c) * c;
       if (square < 0.999 * 1152921504606846976.0 || square > 1.001 * 1152921504606846976.0) std::abort();
     }
-    if (replica->pose(0, now + 5000) != predict(state, now + 5000, header)) std::abort();
+    if (replica.pose(0, now + 5000) != predictor.pose(state, now + 5000)) std::abort();
   }
   return 0;
 }

@@ -1,57 +1,92 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Any bytes as displacements of a small mesh, touches, lost packets and settings: what the encoder takes stays inside its bounds on the
-/// decoder's output (profile main), what it refuses changes nothing.
+/// Any bytes as displacements of a small deformable object, touches, lost packets and settings: what the sender takes stays inside its
+/// bounds at the receiver (profile main), what it refuses changes nothing, and a packet that builds on an acknowledged state decodes.
 #include <optional>
 #include <vector>
 
-#include <tactus/deformable/decoder.h>
-#include <tactus/deformable/encoder.h>
+#include <tactus/deformable/displacement.h>
+#include <tactus/receiver.h>
+#include <tactus/sender.h>
 #include "tests/fuzz/motions.h"
-#include "tests/fuzz/packets.h"
+#include "tests/fuzz/require.h"
 #include "tests/fuzz/strip.h"
 
 namespace {
 
 using namespace tactus;
 
-void check_bounds(const StreamHeader& header, const DeformableThresholds& thresholds, DeformableDecoder& decoder,
-                  std::int64_t tick, std::span<const Vec3> truth, const std::optional<SurfaceTouch>& touch) {
-  const std::vector<double> bound = strip_bounds(header, thresholds, touch);
-  const auto shown = decoder.displacements_at(tick);
-  for (std::size_t v = 0; v < truth.size(); ++v) require(norm(to_metres(shown[v], header.grid.position) - truth[v]) <= bound[v]);
+constexpr std::size_t kSubstream = 1;
+
+void check_bounds(const DeformableThresholds& thresholds, Receiver& receiver, std::int64_t tick, const DeformableTruth& truth) {
+  const Scene& scene = *receiver.scene();
+  const std::vector<double> bound = strip_bounds(scene, thresholds, truth.touch);
+  const auto shown = receiver.replica().displacements(0, tick);
+  const float* u = truth.displacements.data();
+  for (std::size_t v = 0; v < shown.size(); ++v, u += 3)
+    require(norm(to_metres(shown[v], scene.grid.position) - Vec3{u[0], u[1], u[2]}) <= bound[v]);
 }
+
+/// What happens to the packets of a tick.
+struct Fate {
+  bool drop_visual = false;  ///< which the sender knows
+  bool lose = false, acknowledge = false;
+};
+
+/// Both ends, which hold the same state unless the last packet was lost.
+struct Ends {
+  Sender sender;
+  Receiver receiver;
+  bool agree = true;
+
+  /// False: the visual packet was dropped, bounds need not hold.
+  bool deliver(std::span<const Packet> packets, const Fate& fate) {
+    for (const Packet& packet : packets) {
+      require(packet.substream == kSubstream);
+      if (packet.layer == Layer::visual && fate.drop_visual) {
+        sender.forget_last(kSubstream);
+        return false;
+      }
+      agree = !fate.lose;
+      if (fate.lose) continue;
+      require(receiver.push(packet.bytes).has_value());
+      if (fate.acknowledge) sender.acknowledge(packet.substream, packet.sequence);
+    }
+    return true;
+  }
+};
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   ByteReader in({data, size});
-  const StreamHeader header = strip(in.u8());
-  DeformableEncoderOptions options;
-  options.thresholds = {1e-6 * in.u16(), std::nullopt, 1e-6 * in.u16()};
-  if (const unsigned percent = in.u8()) options.thresholds.weber_fraction = 0.01 * percent;
-  options.key_interval = 0.1 * in.u8();
-  auto encoder = DeformableEncoder::create(header, 0, options).value();
-  auto decoder = DeformableDecoder::create(header, 0).value();
-  std::vector<Vec3> displacement(header.meshes[0].rest.size());
+  const std::uint8_t choice = in.u8();
+  const SharedScene scene = Scene::create(strip(choice)).value();
+  SenderOptions options;
+  const bool has_answers = (choice & 224) == 96;  // the receiver's: any packet may be lost, but not of a layered object
+  if (has_answers) options.policy.baseline = Baseline::acknowledged;
+  DeformableThresholds& thresholds = options.deformable.thresholds;
+  thresholds = {1e-6 * in.u16(), std::nullopt, 1e-6 * in.u16()};
+  if (const unsigned percent = in.u8()) thresholds.weber_fraction = 0.01 * percent;
+  options.policy.key_interval = 0.1 * in.u8();
+  Ends ends{Sender::create(scene, options).value(), Receiver::create(scene).value()};
+  std::vector<float> displacements(3 * scene->deformables[0].rest.size());
   for (std::int64_t tick = 0; in.ok(); tick += 1 + in.u8() % 4) {
-    std::vector<Vec3> next = displacement;
+    std::vector<float> next = displacements;
     move(in, next);
-    std::optional<SurfaceTouch> touch;
+    DeformableTruth truth{next, {}};
     const unsigned what = in.u8();
-    if (what & 1) touch = SurfaceTouch{in.u8() % 23u, step(in, 1e-3), 0.1 * in.u16()};
-    const std::uint64_t before = encoder.state_hash();
-    const auto packet = encoder.encode(tick, next, touch);
-    require(packet || (packet.error().code == Errc::invalid_argument && encoder.state_hash() == before));
-    if (!packet) continue;
-    displacement = next;
-    if (!packet->bytes.empty()) require(decoder.decode(packet->bytes).has_value());
-    const auto rest = encoder.encode_rest();
-    const bool lost = what & 2 && !rest.bytes.empty();
-    if (lost) encoder.forget_last();
-    else if (!rest.bytes.empty()) require(decoder.decode(rest.bytes).has_value());
-    require(lost || decoder.state_hash() == encoder.state_hash());
-    if (header.meshes[0].profile == DeformableProfile::main && !lost)
-      check_bounds(header, options.thresholds, decoder, tick, displacement, touch);
+    if (what & 1) truth.touch = SurfaceTouch{in.u8() % 23u, step(in, 1e-3), 0.1 * in.u16()};
+    const std::uint64_t before = ends.sender.state_hash(kSubstream);
+    const auto packets = ends.sender.encode(tick, {.deformables = {&truth, 1}});
+    require(packets || (packets.error().code == Errc::invalid_argument && ends.sender.state_hash(kSubstream) == before));
+    if (!packets) continue;
+    displacements = next;
+    const Fate fate{(what & 2) != 0, has_answers && (what & 4), has_answers && (what & 8)};
+    const bool complete = ends.deliver(*packets, fate);
+    if (!ends.agree) continue;
+    require(ends.receiver.state_hash(kSubstream) == ends.sender.state_hash(kSubstream));
+    if (complete && scene->deformables[0].profile == DeformableProfile::main)
+      check_bounds(thresholds, ends.receiver, tick, truth);
   }
   return 0;
 }

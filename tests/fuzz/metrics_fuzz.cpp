@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Any bytes as a trace, coded with its contacts and compared with what its client shows: what the encoders take stays inside their
+/// Any bytes as a trace, coded with its contacts and compared with what its client shows: what the sender takes stays inside its
 /// bounds, as `compare` measures them.
 #include <vector>
 
-#include <tactus/metrics/compare.h>
 #include <tactus/metrics/deformable_errors.h>
-#include <tactus/rigid/rigid_encoder.h>
+#include <tactus/metrics/errors.h>
+#include <tactus/receiver.h>
+#include <tactus/sender.h>
 #include <tactus/trace/trace_file.h>
-#include "tests/fuzz/packets.h"
+#include <tactus/trace/trace_scene.h>
+#include "tests/fuzz/require.h"
 
 namespace {
 
@@ -15,18 +17,30 @@ using namespace tactus;
 
 constexpr int kMaxFrames = 500;
 
-struct Mesh {
-  DeformableLink link;
-  DeformableErrors fidelity;
-
-  void look(std::size_t number, const TraceFrame& frame) {
-    const auto touch = touch_of(frame, number);
-    const auto packets = link.encode(frame.tick, frame.meshes[number].displacements, touch);
-    if (!packets) return;
-    for (const EncodedDeformablePacket& packet : *packets) require(packet.bytes.empty() || link.decode(packet.bytes));
-    fidelity.add(frame.meshes[number].displacements, link.shown(frame.tick), touch);
-    require(fidelity.worst_ratio() <= 1);
+/// What a client shows, held against the truth.
+class Watch {
+ public:
+  Watch(const TraceInfo& info, const Scene& scene) : scene_(scene), rigid_(info, RigidTriggers{}), shown_(scene.objects.size()) {
+    for (std::size_t i = 0; i < scene.deformables.size(); ++i)
+      deformables_.emplace_back(info.meshes[i].rest, DeformableThresholds{}, scene.deformables[i].rings, scene.grid.position);
   }
+
+  void look(const TraceFrame& frame, Replica& replica) {
+    for (std::uint32_t i = 0; i < shown_.size(); ++i) shown_[i] = to_pose(replica.pose(i, frame.tick), scene_.grid.position);
+    rigid_.add(frame, shown_);
+    require(rigid_.position().ticks_over() + rigid_.rotation().ticks_over() + rigid_.force().ticks_over() == 0);
+    for (std::size_t i = 0; i < deformables_.size(); ++i) {
+      if (!frame.meshes[i].updated) continue;
+      deformables_[i].add(frame.meshes[i].displacements, replica.displacements(i, frame.tick), touch_of(frame, i));
+      require(deformables_[i].worst_ratio() <= 1);
+    }
+  }
+
+ private:
+  const Scene& scene_;
+  ErrorMetrics rigid_;
+  std::vector<Pose> shown_;
+  std::vector<DeformableErrors> deformables_;
 };
 
 }  // namespace
@@ -35,26 +49,20 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   auto reader = TraceReader::open_memory({data, size});
   TraceFrame frame;
   if (!reader || !reader->next(frame).value_or(false)) return 0;
-  const auto header = stream_header(reader->info(), frame);
-  if (!header) return 0;
-  auto encoder = RigidEncoder::create(*header).value();
-  auto decoder = RigidDecoder::create(*header).value();
-  ErrorMetrics rigid(reader->info(), RigidTriggers{});
-  std::vector<Mesh> meshes;
-  for (std::size_t i = 0; i < header->meshes.size(); ++i)
-    meshes.push_back({DeformableLink::create(*header, i, {}).value(),
-                      {reader->info().meshes[i].rest, {}, header->meshes[i].rings, header->grid.position}});
-  std::vector<Pose> shown(header->objects.size());
+  auto builder = scene_builder(reader->info(), frame);
+  if (!builder) return 0;
+  const auto scene = std::move(*builder).build();
+  if (!scene) return 0;
+  auto sender = Sender::create(*scene).value();
+  auto receiver = Receiver::create(*scene).value();
+  FrameTruth truth(reader->info());
+  Watch watch(reader->info(), **scene);
   for (int i = 0; i < kMaxFrames; ++i) {
-    std::vector<Contact> contacts;
-    for (const UserSample& user : frame.users) contacts.push_back(user.contact);
-    const auto packet = encoder.encode(frame.tick, frame.objects, contacts);
-    if (packet && !packet->bytes.empty()) require(decoder.decode(packet->bytes).has_value());
-    for (std::size_t k = 0; k < shown.size(); ++k)
-      shown[k] = to_pose(predict(decoder.objects()[k], frame.tick, *header), header->grid);
-    if (packet) rigid.add(frame, shown);
-    require(rigid.position().ticks_over() + rigid.rotation().ticks_over() + rigid.force().ticks_over() == 0);
-    for (std::size_t m = 0; m < meshes.size(); ++m) meshes[m].look(m, frame);
+    const auto packets = sender.encode(frame.tick, truth.of(frame));
+    if (packets) {
+      for (const Packet& packet : *packets) require(receiver.push(packet.bytes).has_value());
+      watch.look(frame, receiver.replica());
+    }
     if (!reader->next(frame).value_or(false)) break;
   }
   return 0;

@@ -3,13 +3,14 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <vector>
 
 #include <tactus/base/bytes.h>
 #include <tactus/rigid/contact.h>
-#include <tactus/rigid/rigid.h>
+#include <tactus/rigid/rigid_state.h>
 
 namespace tactus {
 
@@ -38,13 +39,13 @@ inline Contact contact(ByteReader& in, const Pose& pose) {
 }
 
 /// Some vertices in a row; now and then one number that may be anything.
-inline void move(ByteReader& in, std::vector<Vec3>& u) {
+///   u  V x 3
+inline void move(ByteReader& in, std::vector<float>& u) {
   const unsigned what = in.u8();
-  const std::size_t first = in.u8() % u.size(), last = std::min(u.size(), first + in.u8() % 8);
-  for (std::size_t v = first; v < last; ++v) u[v] = u[v] + (what & 1 ? 1e-3 : 1e-6) * Vec3{step(in, 1), step(in, 1), step(in, 1)};
-  if (what != 255) return;
-  const std::uint64_t bits = in.u64();
-  std::memcpy(&u[first].x, &bits, sizeof bits);
+  const std::size_t vertices = u.size() / 3;
+  const std::size_t first = in.u8() % vertices, last = std::min(vertices, first + in.u8() % 8);
+  for (std::size_t i = 3 * first; i < 3 * last; ++i) u[i] += static_cast<float>(step(in, what & 1 ? 1e-3 : 1e-6));
+  if (what == 255) u[3 * first] = std::bit_cast<float>(static_cast<std::uint32_t>(in.u64() >> 32));
 }
 
 }  // namespace tactus

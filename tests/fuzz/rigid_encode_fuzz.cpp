@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Any bytes as motions, contacts and settings: what the encoder takes stays inside its bounds on the decoder's output, what it refuses
-/// changes nothing.
+/// Any bytes as motions, contacts and settings: what the sender takes stays inside its bounds at the receiver, what it refuses changes
+/// nothing.
 #include <cmath>
 #include <vector>
 
 #include <tactus/tactus.h>
 #include "tests/fuzz/motions.h"
-#include "tests/fuzz/packets.h"
+#include "tests/fuzz/require.h"
 
 namespace {
 
 using namespace tactus;
 
-void check_bounds(const RigidTriggers& t, const RigidDecoder& decoder, std::int64_t tick, const RigidSample& truth,
+void check_bounds(const RigidTriggers& t, Receiver& receiver, std::int64_t tick, const RigidSample& truth,
                   std::span<const Contact> contacts) {
-  const StreamHeader& header = decoder.header();
-  const Pose shown = to_pose(predict(decoder.objects()[0], tick, header), header.grid);
+  const GridExponents& grid = receiver.scene()->grid;
+  const Pose shown = to_pose(receiver.replica().pose(0, tick), grid.position);
   const double error = norm(shown.position - truth.pose.position), angle = angle_between(shown.rotation, truth.pose.rotation);
   require(error <= t.visual_position && angle <= t.visual_rotation);
   // A bound of force that is finer than the grid means the nearest place on it.
-  const bool is_nearest = error <= std::ldexp(1.0, -header.grid.position) && angle <= std::ldexp(8.0, -header.grid.rotation);
+  const bool is_nearest = error <= std::ldexp(1.0, -grid.position) && angle <= std::ldexp(8.0, -grid.rotation);
   for (const Contact& c : contacts)
     require(is_nearest || haptic_ratio(t, contact_force(c, truth.pose), contact_force(c, shown)) <= 1);
   if (t.haptic == HapticRule::fixed && !contacts.empty() && contacts[0].kind != ContactKind::none)
@@ -30,35 +30,36 @@ void check_bounds(const RigidTriggers& t, const RigidDecoder& decoder, std::int6
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   ByteReader in({data, size});
-  StreamHeader header;
-  header.baseline_span = static_cast<std::uint8_t>(1 + in.u8() % 64);
-  header.objects.push_back({"o", Dof::all, {}});
-  RigidEncoderOptions options;
+  SceneSpec spec;
+  spec.baseline_span = static_cast<std::uint8_t>(1 + in.u8() % 64);
+  spec.objects.push_back({"o", Dof::all, {}});
+  const SharedScene scene = Scene::create(std::move(spec)).value();
+  SenderOptions options;
   options.triggers.haptic = static_cast<HapticRule>(in.u8() % 4);
   options.triggers.reduction = static_cast<Reduction>(in.u8() % 2);
   options.triggers.weber_fraction = 0.001 * in.u8();
   options.triggers.visual_position = 1e-5 * in.u16();
   options.triggers.visual_rotation = 1e-4 * in.u16();
-  options.key_interval = 0.01 * in.u8();
-  auto encoder = RigidEncoder::create(header, options);
-  if (!encoder) return 0;
-  auto decoder = RigidDecoder::create(header).value();
+  options.policy.key_interval = 0.01 * in.u8();
+  auto sender = Sender::create(scene, options);
+  if (!sender) return 0;
+  auto receiver = Receiver::create(scene).value();
   RigidSample sample;
   for (std::int64_t tick = 0; in.ok(); tick += 1 + in.u8() % 8) {
     RigidSample next = sample;
     move(in, next);
     std::vector<Contact> contacts;
     if (in.u8() & 1) contacts.push_back(contact(in, next.pose));
-    const std::uint64_t before = encoder->state_hash();
-    const auto packet = encoder->encode(tick, {&next, 1}, contacts);
-    if (!packet) {
-      require(packet.error().code == Errc::invalid_argument && encoder->state_hash() == before);
+    const std::uint64_t before = sender->state_hash(0);
+    const auto packets = sender->encode(tick, {.objects = {&next, 1}, .contacts = contacts});
+    if (!packets) {
+      require(packets.error().code == Errc::invalid_argument && sender->state_hash(0) == before);
       continue;
     }
     sample = next;
-    if (!packet->bytes.empty()) require(decoder.decode(packet->bytes).has_value());
-    require(decoder.state_hash() == encoder->state_hash());
-    check_bounds(options.triggers, decoder, tick, sample, contacts);
+    for (const Packet& packet : *packets) require(receiver.push(packet.bytes).has_value());
+    require(receiver.state_hash(0) == sender->state_hash(0));
+    check_bounds(options.triggers, receiver, tick, sample, contacts);
   }
   return 0;
 }

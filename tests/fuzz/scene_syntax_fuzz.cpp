@@ -1,28 +1,48 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Any bytes as a stream header: an error with a rule, or a header that writes and parses to itself.
-#include <cstdlib>
+/// Any bytes as a scene declaration: an error with a rule, or a scene that writes and parses to itself, and that both ends take.
+#include <string_view>
 #include <vector>
 
-#include <tactus/rigid/rigid_decoder.h>
-#include <tactus/rigid/rigid_encoder.h>
+#include <tactus/receiver.h>
 #include <tactus/scene/scene_syntax.h>
+#include <tactus/sender.h>
+#include "tests/fuzz/require.h"
+
+namespace {
+
+using namespace tactus;
+
+constexpr DecodeLimits kLimits{.state_bytes = 1u << 24};  // few bytes can ask for many states, which take long to make
+
+void check_ends(const SharedScene& scene) {
+  const auto receiver = Receiver::create(scene, {.replica = {}, .limits = kLimits});
+  if (!receiver) {
+    require(state_bytes(*scene) > kLimits.state_bytes && std::string_view(receiver.error().rule) == "R-STR-18");
+    return;
+  }
+  require(receiver->objects().size() == scene->objects.size());
+  for (std::size_t i = 0; i < scene->deformables.size(); ++i)
+    require(receiver->displacements(i).size() == scene->deformables[i].rest.size());
+  const auto sender = Sender::create(scene);
+  require(sender || sender.error().code == Errc::invalid_argument);  // thresholds finer than the grid
+  for (std::size_t i = 0; sender && i <= scene->deformables.size(); ++i)
+    require(sender->state_hash(i) == receiver->state_hash(i));
+}
+
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace tactus;
   const std::vector<std::uint8_t> exact(data, data + size);  // an own block, so that one byte too far is seen
-  const auto parsed = parse_header(exact);
+  const auto parsed = parse_scene(exact);
   if (!parsed) {
-    if (parsed.error().rule[0] != 'R' || parsed.error().bit_offset > 8 * size) std::abort();
+    require(parsed.error().rule[0] == 'R' && parsed.error().bit_offset <= 8 * size);
     return 0;
   }
-  if (parsed->size > size) std::abort();
-  const auto written = write_header(parsed->header);
-  if (!written) std::abort();
-  const auto again = parse_header(*written);
-  if (!again || write_header(again->header).value() != *written) std::abort();
-  const auto decoder = RigidDecoder::create(parsed->header);
-  const auto encoder = RigidEncoder::create(parsed->header);
-  if (!decoder || decoder->objects().size() != parsed->header.objects.size()) std::abort();
-  if (!encoder && encoder.error().code != Errc::invalid_argument) std::abort();  // thresholds finer than the grid
+  require(parsed->size <= size);
+  const auto written = write_scene(*parsed->scene);
+  require(written.has_value());
+  const auto again = parse_scene(*written);
+  require(again && write_scene(*again->scene).value() == *written);
+  check_ends(parsed->scene);
   return 0;
 }

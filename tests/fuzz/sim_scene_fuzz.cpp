@@ -21,7 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   require(scene->text == text && scene->duration > 0 && (scene->users.empty() || scene->touch));
   for (const sim::SceneObject& object : scene->objects)
     require(is_finite(object.pose.position) && is_finite(object.pose.rotation) && object.mass >= 0);
-  const auto header = stream_header(*scene);
-  require(header || header.error().rule[0] == 'R');
+  const auto shared = scene_builder(*scene).build();
+  require(shared || shared.error().error.rule[0] == 'R');
   return 0;
 }

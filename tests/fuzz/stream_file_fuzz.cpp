@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Any bytes as a stream file: decoders of every part that its header declares and a client, fed to the end; seek, and again.
-#include <algorithm>
+/// Any bytes as a stream file: a receiver, fed to the end, without a clock and with one that runs late; a player; seek, and again.
+#include <limits>
 #include <vector>
 
-#include <tactus/client/replica.h>
-#include <tactus/deformable/decoder.h>
-#include <tactus/file/stream_file.h>
-#include <tactus/packet/substream.h>
-#include <tactus/rigid/rigid_decoder.h>
+#include <tactus/player.h>
 #include "tests/fuzz/packets.h"
 
 namespace {
@@ -15,31 +11,42 @@ namespace {
 using namespace tactus;
 
 constexpr DecodeLimits kLimits{.objects = 256, .vertices = 2048};  // decoding takes vertices x packets
+constexpr std::int64_t kDelay = 2;                                 // ticks
 
-/// Packets until the end or the first broken record.
-std::size_t play(StreamFileReader& reader) {
-  const StreamHeader& header = reader.header();
-  auto rigid = RigidDecoder::create(header, kLimits).value();
-  auto replica = Replica::create(header, {.interpolation = Interpolation::linear}).value();
-  PartJoiner joiner(header);
-  std::vector<DeformableDecoder> meshes;
-  for (std::size_t i = 0; i < header.meshes.size(); ++i) meshes.push_back(DeformableDecoder::create(header, i, kLimits).value());
-  for (std::size_t packets = 0;; ++packets) {
+struct Heard {
+  std::size_t records = 0;
+  std::size_t accepted = 0;  ///< packets, before the first that is refused or that comes in another tick than its own
+};
+
+/// Records until the end or the first broken one.
+Heard listen(StreamFileReader& reader, bool has_clock) {
+  const ReceiverOptions options{.replica = {.interpolation = Interpolation::linear}, .limits = kLimits};
+  auto receiver = Receiver::create(reader.scene(), options).value();
+  Heard out;
+  for (bool sound = true;; ++out.records) {
     const std::uint64_t before = reader.position();
     const auto record = reader.next();
     require(reader.position() >= before && (record || record.error().rule[0] == 'R'));
-    if (!record || !*record) return packets;
-    const auto part = split_part(header, (*record)->bytes);
-    if (!part) continue;
-    if (part->bytes.size() <= max_packet_size(header))
-      require(std::ranges::equal(joiner.join(part->part, part->bytes), (*record)->bytes));
-    if (part->part > 0) {
-      DeformableDecoder& mesh = meshes[part->part - 1];
-      if (const auto packet = decode_packet(mesh, part->bytes)) (void)mesh.displacements_at(packet->tick + 3);
-    } else if (const auto packet = decode_packet(rigid, part->bytes)) {
-      replica.apply(*packet, rigid.objects(), packet->tick + 2);
-      (void)replica.pose_hash(packet->tick + 5);
-    }
+    if (!record || !*record) return out;
+    const std::int64_t tick = (*record)->tick;
+    const auto now = has_clock ? std::optional(tick + kDelay) : std::nullopt;
+    const auto packet = push_packet(receiver, (*record)->bytes, now);
+    sound = sound && packet && packet->tick == tick;
+    if (sound) ++out.accepted;
+    if (!packet) continue;
+    if (packet->substream > 0) (void)receiver.replica().displacements(packet->substream - 1, packet->tick + 3);
+    else (void)receiver.replica().pose_hash(packet->tick + 5);
+  }
+}
+
+/// Packets played before the first that is refused.
+std::size_t play(std::span<const std::uint8_t> file) {
+  auto player = Player::open(file, {.replica = {}, .limits = kLimits}).value();
+  for (std::size_t packets = 0;; ++packets) {
+    const auto played = player.play(std::numeric_limits<std::int64_t>::max());
+    if (!played) require(played.error().rule[0] == 'R' && played.error().bit_offset <= 8 * file.size());
+    if (!played || !*played) return packets;
+    require((*played)->offset + (*played)->bytes <= file.size());
   }
 }
 
@@ -49,8 +56,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::vector<std::uint8_t> exact(data, data + size);
   auto reader = StreamFileReader::open(exact, kLimits);
   if (!reader) return 0;
-  const std::size_t packets = play(*reader);
+  const Heard heard = listen(*reader, false);
+  require(play(exact) == heard.accepted);
   for (const std::int64_t tick : {0, 1000, 1 << 30})
-    if (reader->seek(tick)) require(play(*reader) <= packets + size);
+    if (reader->seek(tick)) require(listen(*reader, true).records <= heard.records + size);
   return 0;
 }

@@ -70,24 +70,25 @@ struct Case {
   Reduction reduction = Reduction::dead_reckoning;
 };
 
-/// One line per case, or nothing and false when a codec call failed.
+/// Three lines per case, or nothing and false when a codec call failed.
 bool run(const Case& c) {
-  StreamHeader header;
+  SceneBuilder builder;
   std::vector<Body> bodies;
   for (std::size_t i = 0; i < c.dofs.size(); ++i) {
-    header.objects.push_back({"body " + std::to_string(i), c.dofs[i], {}});
+    builder.rigid("body " + std::to_string(i), {}, c.dofs[i]);
     bodies.emplace_back(1000 + i, c.dofs[i]);
   }
-  RigidEncoderOptions options;
+  const auto scene = std::move(builder).build();
+  if (!scene) return false;
+  SenderOptions options;
   options.triggers.haptic = c.rule;
   options.triggers.weber_fraction = c.p;
   options.triggers.reduction = c.reduction;
-  ReplicaOptions smooth;
-  smooth.interpolation = Interpolation::linear;
-  auto encoder = RigidEncoder::create(header, options);
-  auto decoder = RigidDecoder::create(header);
-  auto replica = Replica::create(header, smooth);
-  if (!encoder || !decoder || !replica) return false;
+  ReceiverOptions smooth;
+  smooth.replica.interpolation = Interpolation::linear;
+  auto sender = Sender::create(*scene, options);
+  auto receiver = Receiver::create(*scene, smooth);
+  if (!sender || !receiver) return false;
   Fnv1a stream, states, shown;
   std::vector<RigidSample> samples(bodies.size());
   std::mt19937_64 random(7);
@@ -96,18 +97,17 @@ bool run(const Case& c) {
     for (std::size_t i = 0; i < bodies.size(); ++i) samples[i] = bodies[i].step();
     depth = 0.99 * depth + 0.01 * (0.001 + 0.0009 * uniform(random));
     const Contact contact = press(0, samples[0].pose, depth);
-    const auto packet = encoder->encode(tick, samples, {&contact, tick % 1500 < 1000 ? 1u : 0u});
-    if (!packet) return false;
-    if (!packet->bytes.empty()) {
-      for (const std::uint8_t byte : packet->bytes) stream.add_byte(byte);
-      const auto decoded = decoder->decode(packet->bytes);
+    const auto packets = sender->encode(tick, {.objects = samples, .contacts = {&contact, tick % 1500 < 1000 ? 1u : 0u}});
+    if (!packets) return false;
+    for (const Packet& packet : *packets) {
+      for (const std::uint8_t byte : packet.bytes) stream.add_byte(byte);
+      const auto decoded = receiver->push(packet.bytes);
       if (!decoded) return false;
       stream.add32(decoded->final_range);
       stream.add32(decoded->final_code);
-      states.add64(decoder->state_hash());
-      replica->apply(*decoded, decoder->objects(), tick);
+      states.add64(receiver->state_hash(0));
     }
-    shown.add64(replica->pose_hash(tick));
+    shown.add64(receiver->replica().pose_hash(tick));
   }
   std::printf("%s stream %016" PRIx64 "\n%s states %016" PRIx64 "\n%s shown %016" PRIx64 "\n", c.name, stream.value(), c.name,
               states.value(), c.name, shown.value());

@@ -85,7 +85,7 @@ def mutated(data, rng, how):
     return data
 
 
-# ---- Stream files: spec/20-stream.md ----------------------------------------------------------------------------------
+# ---- Stream files: spec/20-scene.md ----------------------------------------------------------------------------------
 
 def varint(data, at):
     value = shift = 0

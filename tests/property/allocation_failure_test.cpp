@@ -20,46 +20,63 @@ namespace {
 using testing::fail_allocation;
 using testing::fail_each;
 
-StreamHeader rigid_scene() {
-  StreamHeader header;
-  header.baseline_span = 3;
-  header.objects = {{"a name too long for a small string", Dof::all, {}}, {"b", Dof::translation, {}}};
-  return header;
+SceneSpec rigid_scene() {
+  SceneSpec spec;
+  spec.baseline_span = 3;
+  spec.objects = {{"a name too long for a small string", Dof::all, {}}, {"b", Dof::translation, {}}};
+  return spec;
 }
 
-/// Rigid objects and a mesh.
-StreamHeader scene(std::uint8_t choice) {
-  StreamHeader header = strip(choice);
-  header.objects = rigid_scene().objects;
-  return header;
+/// Rigid objects and a deformable one.
+SceneSpec scene(std::uint8_t choice) {
+  SceneSpec spec = strip(choice);
+  spec.objects = rigid_scene().objects;
+  return spec;
 }
+
+SharedScene shared(SceneSpec&& spec) { return Scene::create(std::move(spec)).value(); }
 
 constexpr std::array<std::uint8_t, 5> kChoices{0, 1, 2, 3, 134};  // tests/fuzz/strip.h
 
-TEST(AllocationFailure, Headers) {
+TEST(AllocationFailure, Scenes) {
   for (const std::uint8_t choice : kChoices) {
-    const StreamHeader header = scene(choice);
-    const auto bytes = write_header(header).value();
-    EXPECT_GT(fail_each(bytes, [](const std::vector<std::uint8_t>& b) { return parse_header(b); }), 5u);
+    EXPECT_GT(fail_each(scene(choice), [](SceneSpec&& s) { return Scene::create(std::move(s)); }), 3u);
+    EXPECT_GT(fail_each(scene(choice), [](const SceneSpec& s) { return check_scene(s); }), 1u);
+    const SharedScene sound = shared(scene(choice));
+    const auto bytes = write_scene(*sound).value();
+    EXPECT_GT(fail_each(bytes, [](const std::vector<std::uint8_t>& b) { return parse_scene(b); }), 5u);
     EXPECT_GT(fail_each(bytes, [](const std::vector<std::uint8_t>& b) { return StreamFileReader::open(b); }), 5u);
-    EXPECT_GT(fail_each(header, [](const StreamHeader& h) { return write_header(h); }), 3u);
+    EXPECT_GT(fail_each(bytes, [](const std::vector<std::uint8_t>& b) { return Player::open(b); }), 10u);
+    EXPECT_GT(fail_each(sound, [](const SharedScene& s) { return write_scene(*s); }), 3u);
   }
 }
 
-TEST(AllocationFailure, DecodersAndReplica) {
-  EXPECT_GT(fail_each(rigid_scene(), [](StreamHeader&& h) { return RigidDecoder::create(std::move(h)); }), 3u);
-  EXPECT_GT(fail_each(rigid_scene(), [](const StreamHeader& h) { return Replica::create(h); }), 3u);
-  for (const std::uint8_t choice : kChoices)
-    EXPECT_GT(fail_each(scene(choice), [](StreamHeader&& h) { return DeformableDecoder::create(std::move(h), 0); }), 10u);
+TEST(AllocationFailure, ScenesFromSiUnits) {
+  SceneBuilder builder;
+  builder.rigid("a name too long for a small string").promise({}, {});
+  builder.deformable("another name too long for a small string", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}});
+  EXPECT_GT(fail_each(builder,
+                      [](SceneBuilder&& b) -> Result<SharedScene> {
+                        auto built = std::move(b).build();
+                        if (!built) return tl::unexpected<Error>(built.error());
+                        return *built;
+                      }),
+            5u);
 }
 
-TEST(AllocationFailure, Encoders) {
-  EXPECT_GT(fail_each(rigid_scene(), [](StreamHeader&& h) { return RigidEncoder::create(std::move(h)); }), 3u);
+TEST(AllocationFailure, Receivers) {
+  EXPECT_GT(fail_each(shared(rigid_scene()), [](const SharedScene& s) { return Receiver::create(s); }), 5u);
   for (const std::uint8_t choice : kChoices)
-    EXPECT_GT(fail_each(scene(choice), [](StreamHeader&& h) { return DeformableEncoder::create(std::move(h), 0); }), 10u);
+    EXPECT_GT(fail_each(shared(scene(choice)), [](const SharedScene& s) { return Receiver::create(s); }), 15u);
 }
 
-TEST(AllocationFailure, MeshesForHeaders) {
+TEST(AllocationFailure, Senders) {
+  EXPECT_GT(fail_each(shared(rigid_scene()), [](const SharedScene& s) { return Sender::create(s); }), 5u);
+  for (const std::uint8_t choice : kChoices)
+    EXPECT_GT(fail_each(shared(scene(choice)), [](const SharedScene& s) { return Sender::create(s); }), 15u);
+}
+
+TEST(AllocationFailure, SurfacesForScenes) {
   TriMesh triangle;
   triangle.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   triangle.triangles = {{0, 1, 2}};
@@ -91,7 +108,7 @@ class Sink : public std::streambuf {
 std::vector<char> written_file(std::uint64_t failing) {
   Sink sink;
   std::ostream out(&sink);
-  auto writer = StreamFileWriter::create(out, rigid_scene()).value();
+  auto writer = StreamFileWriter::create(out, *shared(rigid_scene())).value();
   const auto insist = [failing](auto call) {
     fail_allocation(failing);
     const Result<void> done = call();

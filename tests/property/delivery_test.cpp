@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <deque>
 
-#include <tactus/rigid/rigid_decoder.h>
+#include <tactus/receiver.h>
 #include "conformance/make_vectors/build.h"
 
 namespace tactus {
@@ -32,7 +32,7 @@ RawHeader scene(std::uint8_t span) {
 std::vector<Sent> send(const RawHeader& header, std::uint64_t seed) {
   conformance::Stream stream(header);
   conformance::Random random(seed);
-  auto receiver = RigidDecoder::create(header.parsed()).value();
+  auto receiver = Receiver::create(header.parsed()).value();
   std::vector<Sent> out;
   std::int64_t tick = 0;
   std::uint16_t sequence = 65000;  // wraps on the way
@@ -45,8 +45,8 @@ std::vector<Sent> send(const RawHeader& header, std::uint64_t seed) {
     }
     if (step.updates.empty()) step.updates.push_back(random_update(random, stream.header(), 0));
     Bytes bytes = stream.packet(step);
-    EXPECT_TRUE(receiver.decode(bytes));
-    out.push_back({std::move(bytes), sequence, baseline, tick, receiver.state_hash()});
+    EXPECT_TRUE(receiver.push(bytes));
+    out.push_back({std::move(bytes), sequence, baseline, tick, receiver.state_hash(0)});
     tick += random.below(20);
   }
   return out;
@@ -70,12 +70,12 @@ class Delivery : public ::testing::TestWithParam<int> {};
 TEST_P(Delivery, AcceptedPacketsGiveTheSendersState) {
   const RawHeader header = scene(static_cast<std::uint8_t>(GetParam()));
   const std::vector<Sent> sent = send(header, 601);
-  auto decoder = RigidDecoder::create(header.parsed()).value();
+  auto receiver = Receiver::create(header.parsed()).value();
   std::deque<std::size_t> held;  // packets that a receiver holds, newest in front
   int accepted = 0, stale = 0, without_baseline = 0;
   for (const std::size_t i : arrivals(sent.size(), 602)) {
-    const std::uint64_t before = decoder.state_hash();
-    const auto decoded = decoder.decode(sent[i].bytes);
+    const std::uint64_t before = receiver.state_hash(0);
+    const auto decoded = receiver.push(sent[i].bytes);
     if (!held.empty() && i <= held.front()) {
       ++stale;
       ASSERT_FALSE(decoded);
@@ -88,12 +88,12 @@ TEST_P(Delivery, AcceptedPacketsGiveTheSendersState) {
       ++accepted;
       ASSERT_TRUE(decoded) << decoded.error().rule;
       EXPECT_EQ(decoded->tick, sent[i].tick);
-      EXPECT_EQ(decoder.state_hash(), sent[i].hash);
+      EXPECT_EQ(receiver.state_hash(0), sent[i].hash);
       held.push_front(i);
       if (held.size() > header.baseline_span) held.pop_back();
       continue;
     }
-    EXPECT_EQ(decoder.state_hash(), before);
+    EXPECT_EQ(receiver.state_hash(0), before);
   }
   EXPECT_GT(accepted, 100);
   EXPECT_GT(stale, 10);

@@ -1,21 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a file may make a decoder allocate [bytes].
+/// What a stream may make a receiver allocate.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
-#include <tactus/scene/scene_syntax.h>
+#include <tactus/scene/scene.h>
 
 namespace tactus::testing {
 
-/// Names, objects and states, which all take bytes of the header (spec/20-stream.md 5).
-inline std::uint64_t earned(std::size_t bytes, std::uint64_t states) { return 4096 + bytes * (24 + 3 * states); }
+/// By a declaration of so many bytes, parsed, and the receiver of its scene [bytes]. Names, objects and states all take bytes of the
+/// declaration (spec/95-security.md section 3).
+inline std::uint64_t earned(std::size_t bytes, const SceneSpec& spec) {
+  const std::uint64_t span = spec.baseline_span;
+  if (spec.deformables.empty()) return 4096 + bytes * (24 + 3 * span);
+  std::uint64_t out = bytes * (640 + 10 * span);
+  for (const DeformableObject& object : spec.deformables) {
+    const bool has_models = object.profile == DeformableProfile::thesis;
+    const std::uint64_t models = has_models ? 254 + (std::uint64_t{1} << object.quant_bits) : 0;
+    out += 4096 + 256 * span + 4 * (span + 4) * models;
+  }
+  return out;
+}
 
-/// A header of so many bytes, parsed, and the decoder of one of its meshes (spec/60-mesh.md 10).
-inline std::uint64_t earned(std::size_t bytes, std::uint64_t span, const DeformableObject& mesh) {
-  const std::uint64_t models = mesh.profile == DeformableProfile::thesis ? 254 + (std::uint64_t{1} << mesh.quant_bits) : 0;
-  return 4096 + 256 * span + bytes * (640 + 10 * span) + 4 * (span + 4) * models;
+/// By one that is refused.
+inline std::uint64_t earned_by_refused(std::size_t bytes, bool deformables) {
+  SceneSpec spec;
+  if (deformables) spec.deformables.resize(1);
+  return earned(bytes, spec);
 }
 
 }  // namespace tactus::testing

@@ -11,8 +11,10 @@
 #include <random>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include <tactus/base/hash.h>
 #include <tactus/tactus.h>
 #include "tests/fuzz/sections.h"
 #include "tests/property/allocated.h"
@@ -23,13 +25,12 @@ namespace {
 
 namespace fs = std::filesystem;
 using Bytes = std::vector<std::uint8_t>;
-using testing::earned;
 
-/// Files up to a size are damaged at every byte, larger ones at so many. Decoders of meshes take longer to set up.
+/// Files up to a size are damaged at every byte, larger ones at so many. Receivers of deformable objects take longer to set up.
 struct Places {
   std::size_t every_byte_of = 4096, sample = 400;
 };
-constexpr Places kOfMesh{256, 20};
+constexpr Places kOfDeformables{256, 20};
 
 Bytes read_file(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
@@ -47,44 +48,43 @@ std::vector<fs::path> vectors() {
 
 bool has_rule(const Error& error) { return error.code <= Errc::state && std::string_view(error.rule).starts_with("R-"); }
 
+/// The declaration announces deformable objects.
+bool has_deformables(std::span<const std::uint8_t> file) {
+  constexpr std::size_t kFlags = 6;
+  return file.size() > kFlags && (file[kFlags] & 1) != 0;
+}
+
+/// Of all substreams.
+std::uint64_t state_hash(const Receiver& receiver) {
+  Fnv1a hash;
+  for (std::size_t i = 0; i <= receiver.scene()->deformables.size(); ++i) hash.add64(receiver.state_hash(i));
+  return hash.value();
+}
+
 /// Null, or what went wrong with this packet.
-template <class Decoder>
-const char* survive_packet(Decoder& decoder, std::span<const std::uint8_t> packet) {
-  const std::uint64_t before = decoder.state_hash();
-  const auto decoded = decoder.decode(packet);
+const char* survive_packet(Receiver& receiver, std::span<const std::uint8_t> packet) {
+  const std::uint64_t before = state_hash(receiver);
+  const auto decoded = receiver.push(packet);
   if (decoded) return nullptr;
   if (!has_rule(decoded.error())) return "a refused packet without a rule";
-  return decoder.state_hash() == before ? nullptr : "a refused packet changes the state";
+  return state_hash(receiver) == before ? nullptr : "a refused packet changes the state";
 }
 
 /// Null, or what went wrong with this file. Fails are texts and not EXPECTs, which would take most of the time.
-const char* survive(std::span<const std::uint8_t> bytes, bool meshes) {
+const char* survive(std::span<const std::uint8_t> bytes) {
   const auto exact = std::make_unique_for_overwrite<std::uint8_t[]>(bytes.size());
   std::ranges::copy(bytes, exact.get());
   const std::uint64_t start = testing::allocated_bytes();
   auto reader = StreamFileReader::open({exact.get(), bytes.size()});
-  const std::uint64_t parsing = testing::allocated_bytes() - start;
   if (!reader) {
-    if (parsing > (meshes ? earned(bytes.size(), 1, DeformableObject{}) : earned(bytes.size(), 1)))
-      return "a refused header allocates too much";
-    return has_rule(reader.error()) ? nullptr : "a refused header without a rule";
+    if (testing::allocated_bytes() - start > testing::earned_by_refused(bytes.size(), has_deformables(bytes)))
+      return "a refused declaration allocates too much";
+    return has_rule(reader.error()) ? nullptr : "a refused declaration without a rule";
   }
-  const StreamHeader& header = reader->header();
-  auto rigid = RigidDecoder::create(header);
-  if (!rigid) return "a header is accepted by the reader, not by the decoder";
-  if (header.meshes.empty() && testing::allocated_bytes() - start > earned(bytes.size(), header.baseline_span))
-    return "set-up allocates too much";
-  std::vector<DeformableDecoder> decoders;
-  decoders.reserve(header.meshes.size());
-  for (std::size_t i = 0; i < header.meshes.size(); ++i) {
-    const std::uint64_t before = testing::allocated_bytes();
-    auto decoder = DeformableDecoder::create(header, i);
-    if (!decoder) return "a header is accepted by the reader, not by the decoder of its mesh";
-    if (parsing + testing::allocated_bytes() - before > earned(bytes.size(), header.baseline_span, header.meshes[i]))
-      return "set-up of a mesh allocates too much";
-    decoders.push_back(std::move(*decoder));
-  }
+  auto receiver = Receiver::create(reader->scene());
+  if (!receiver) return "a declaration is accepted by the reader, not by the receiver";
   const std::uint64_t ready = testing::allocated_bytes();
+  if (ready - start > testing::earned(bytes.size(), *reader->scene())) return "set-up allocates too much";
   reader->seek(1000);
   reader->seek(0);
   for (;;) {
@@ -92,12 +92,7 @@ const char* survive(std::span<const std::uint8_t> bytes, bool meshes) {
     if (testing::allocated_bytes() != ready) return "reading allocates";
     if (!packet) return has_rule(packet.error()) ? nullptr : "a refused record without a rule";
     if (!*packet) return nullptr;
-    const auto part = split_part(header, (*packet)->bytes);
-    if (!part && !has_rule(part.error())) return "a packet of no part without a rule";
-    if (!part) continue;
-    const bool of_rigid = has_part_byte(header) ? part->part == 0 : decoders.empty();
-    const char* wrong = of_rigid ? survive_packet(*rigid, part->bytes)
-                                 : survive_packet(decoders[has_part_byte(header) ? part->part - 1 : 0], part->bytes);
+    const char* wrong = survive_packet(*receiver, (*packet)->bytes);
     if (testing::allocated_bytes() != ready) return "decoding allocates";
     if (wrong) return wrong;
   }
@@ -120,8 +115,6 @@ std::vector<std::size_t> places(std::size_t size, std::uint64_t seed, const Plac
 
 class EveryVector : public ::testing::TestWithParam<const char*> {
  protected:
-  const bool meshes = std::string_view(GetParam()) == "mesh";
-
   template <class Damage>
   void each_place(Damage damage) {
     std::size_t files = 0;
@@ -129,7 +122,7 @@ class EveryVector : public ::testing::TestWithParam<const char*> {
       if (path.parent_path().filename() != GetParam()) continue;
       ++files;
       const Bytes file = read_file(path);
-      for (const std::size_t at : places(file.size(), files, meshes ? kOfMesh : Places{})) {
+      for (const std::size_t at : places(file.size(), files, has_deformables(file) ? kOfDeformables : Places{})) {
         const char* wrong = damage(file, at);
         ASSERT_EQ(wrong, nullptr) << path << " byte " << at << ": " << wrong;
       }
@@ -139,27 +132,27 @@ class EveryVector : public ::testing::TestWithParam<const char*> {
 };
 
 TEST_P(EveryVector, EveryPrefix) {
-  each_place([this](const Bytes& file, std::size_t at) { return survive(std::span(file).first(at), meshes); });
+  each_place([](const Bytes& file, std::size_t at) { return survive(std::span(file).first(at)); });
 }
 
 TEST_P(EveryVector, EveryBitFlipped) {
-  each_place([this](const Bytes& file, std::size_t at) -> const char* {
+  each_place([](const Bytes& file, std::size_t at) -> const char* {
     for (unsigned bit = 0; bit < 8; ++bit) {
       Bytes damaged = file;
       damaged[at] = static_cast<std::uint8_t>(damaged[at] ^ 1u << bit);
-      if (const char* wrong = survive(damaged, meshes)) return wrong;
-      if (const char* wrong = survive(mended(damaged), meshes)) return wrong;
+      if (const char* wrong = survive(damaged)) return wrong;
+      if (const char* wrong = survive(mended(damaged))) return wrong;
     }
     return nullptr;
   });
 }
 
 TEST_P(EveryVector, EveryByteZeroOrOnes) {
-  each_place([this](const Bytes& file, std::size_t at) -> const char* {
+  each_place([](const Bytes& file, std::size_t at) -> const char* {
     for (const std::uint8_t value : {std::uint8_t{0x00}, std::uint8_t{0xff}}) {
       Bytes damaged = file;
       damaged[at] = value;
-      if (const char* wrong = survive(mended(damaged), meshes)) return wrong;
+      if (const char* wrong = survive(mended(damaged))) return wrong;
     }
     return nullptr;
   });
@@ -171,13 +164,14 @@ TEST_P(EveryVector, OneByteMore) {
     for (const std::uint8_t value : {std::uint8_t{0x00}, std::uint8_t{0x01}, std::uint8_t{0xff}}) {
       Bytes longer = read_file(path);
       longer.push_back(value);
-      const char* wrong = survive(longer, meshes);
+      const char* wrong = survive(longer);
       EXPECT_EQ(wrong, nullptr) << path << ": " << wrong;
     }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Hostile, EveryVector, ::testing::Values("stream", "range", "rigid", "client", "mesh"),
+INSTANTIATE_TEST_SUITE_P(Hostile, EveryVector,
+                         ::testing::Values("scene", "file", "packet", "range", "rigid", "client", "deformable"),
                          [](const auto& stem) { return std::string(stem.param); });
 
 TEST(Hostile, TheCounterCounts) {
@@ -187,13 +181,16 @@ TEST(Hostile, TheCounterCounts) {
 }
 
 TEST(Hostile, LimitsAreKept) {
-  StreamHeader header;
-  header.objects = {{"a", Dof::all, {}}, {"b", Dof::all, {}}};
-  const Bytes bytes = write_header(header).value();
-  EXPECT_STREQ(parse_header(bytes, {.objects = 1}).error().rule, "R-STR-14");
-  EXPECT_STREQ(parse_header(bytes, {.header_bytes = 20}).error().rule, "R-STR-14");
-  auto decoder = RigidDecoder::create(header, {.packet_bytes = 8}).value();
-  const auto too_long = decoder.decode(Bytes(9, 1));
+  SceneSpec spec;
+  spec.objects = {{"a", Dof::all, {}}, {"b", Dof::all, {}}};
+  const SharedScene scene = Scene::create(std::move(spec)).value();
+  const Bytes bytes = write_scene(*scene).value();
+  EXPECT_STREQ(parse_scene(bytes, {.objects = 1}).error().rule, "R-STR-14");
+  EXPECT_STREQ(parse_scene(bytes, {.header_bytes = 20}).error().rule, "R-STR-14");
+  EXPECT_STREQ(Receiver::create(scene, {.replica = {}, .limits = {.objects = 1}}).error().rule, "R-STR-14");
+  EXPECT_STREQ(Receiver::create(scene, {.replica = {}, .limits = {.state_bytes = 300}}).error().rule, "R-STR-18");
+  auto receiver = Receiver::create(scene, {.replica = {}, .limits = {.packet_bytes = 8}}).value();
+  const auto too_long = receiver.push(Bytes(9, 1));
   ASSERT_FALSE(too_long);
   EXPECT_EQ(too_long.error().code, Errc::limit_exceeded);
   EXPECT_STREQ(too_long.error().rule, "R-PKT-1");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Random walks with every trigger setting: no bound is broken on decoder output, and the same input gives the same bytes.
+/// Random walks with every trigger setting: no bound is broken on what a receiver shows, and the same input gives the same bytes.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -25,11 +25,11 @@ bool breaks_fixed(const RigidTriggers& t, const Pose& truth, const Pose& shown) 
          angle_between(shown.rotation, truth.rotation) > t.fixed_rotation;
 }
 
-Outcome walk(const RigidEncoderOptions& options, std::uint64_t seed) {
-  const StreamHeader header = testing::scene_of(kObjects);
+Outcome walk(const SenderOptions& options, std::uint64_t seed) {
+  const SharedScene scene = testing::scene_of(kObjects);
   const RigidTriggers& triggers = options.triggers;
-  auto encoder = RigidEncoder::create(header, options).value();
-  auto decoder = RigidDecoder::create(header).value();
+  auto sender = Sender::create(scene, options).value();
+  auto receiver = Receiver::create(scene).value();
   std::vector<testing::Motion> motions;
   for (std::size_t i = 0; i < kObjects; ++i) motions.emplace_back(seed + i);
   std::vector<RigidSample> samples(kObjects);
@@ -38,20 +38,20 @@ Outcome walk(const RigidEncoderOptions& options, std::uint64_t seed) {
     for (std::size_t i = 0; i < kObjects; ++i) samples[i] = motions[i].step(kTick);
     std::vector<Contact> contacts;
     if (tick % 500 < 350) contacts = {testing::touch(0, samples[0].pose, 0.002), testing::touch(1, samples[1].pose, 0.004)};
-    const auto packet = encoder.encode(tick, samples, contacts);
-    if (!packet) {
-      ADD_FAILURE() << "tick " << tick << ": " << packet.error().rule;
+    const auto packets = sender.encode(tick, {.objects = samples, .contacts = contacts});
+    if (!packets) {
+      ADD_FAILURE() << "tick " << tick << ": " << packets.error().rule;
       return out;
     }
-    if (!packet->bytes.empty()) {
-      out.bytes.insert(out.bytes.end(), packet->bytes.begin(), packet->bytes.end());
+    for (const Packet& packet : *packets) {
+      out.bytes.insert(out.bytes.end(), packet.bytes.begin(), packet.bytes.end());
       ++out.packets;
-      const std::vector<std::uint8_t> exact(packet->bytes.begin(), packet->bytes.end());
-      if (!decoder.decode(exact) || decoder.state_hash() != encoder.state_hash()) ++out.differing_states;
+      const std::vector<std::uint8_t> exact(packet.bytes.begin(), packet.bytes.end());
+      if (!receiver.push(exact) || receiver.state_hash(0) != sender.state_hash(0)) ++out.differing_states;
     }
     for (std::uint32_t i = 0; i < kObjects; ++i) {
       const Pose& truth = samples[i].pose;
-      const Pose shown = to_pose(predict(decoder.objects()[i], tick, header), header.grid);
+      const Pose shown = to_pose(receiver.replica().pose(i, tick), scene->grid.position);
       if (norm(shown.position - truth.position) > triggers.visual_position ||
           angle_between(shown.rotation, truth.rotation) > triggers.visual_rotation) {
         ++out.visual_violations;
@@ -70,13 +70,13 @@ Outcome walk(const RigidEncoderOptions& options, std::uint64_t seed) {
 
 class Walk : public ::testing::TestWithParam<std::tuple<Reduction, HapticRule, double>> {};
 
-TEST_P(Walk, KeepsEveryBoundOnDecoderOutput) {
-  RigidEncoderOptions options;
+TEST_P(Walk, KeepsEveryBoundOnReceiverOutput) {
+  SenderOptions options;
   std::tie(options.triggers.reduction, options.triggers.haptic, options.triggers.weber_fraction) = GetParam();
   for (const double heartbeat : kIntervals) {
     for (const double key_interval : kIntervals) {
       options.triggers.heartbeat = heartbeat;
-      options.key_interval = key_interval;
+      options.policy.key_interval = key_interval;
       const Outcome first = walk(options, 701), second = walk(options, 701);
       EXPECT_GT(first.packets, 5);
       EXPECT_EQ(first.differing_states, 0);

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Make a table of start models again: simulate touches, count what their packets hold, write the table.
 #   tests/tools/make_start_models.sh rigid BUILD_DIR > spec/tables/rigid-start-models.csv
-#   tests/tools/make_start_models.sh mesh BUILD_DIR > spec/tables/mesh-start-models.csv
+#   tests/tools/make_start_models.sh deformable BUILD_DIR > spec/tables/deformable-start-models.csv
 # Seeds 101.., so that the seeds 1.. of every evaluation are not among them. Lengths of rigid scenes: 0.05 m per unit of the thesis,
 # and 1 m.
 set -eu
@@ -44,9 +44,9 @@ mesh_streams() {
 
 case $stem in
   rigid) scenes="push-1dof rotate-6dof rotate-push-lift" seeds="101 102 103 104" ;;
-  mesh) scenes="membrane membrane-light" seeds="101 102" ;;
+  deformable) scenes="membrane membrane-light" seeds="101 102" ;;
   *)
-    echo "make_start_models.sh: $stem: neither rigid nor mesh" >&2
+    echo "make_start_models.sh: $stem: neither rigid nor deformable" >&2
     exit 2
     ;;
 esac

@@ -47,7 +47,7 @@ class CountingDecoder : public detail::SymbolCoder<CountingDecoder> {
   Counts& counts_;
 };
 
-/// Calls count(header, packets) for every file. False and a message on stderr when one cannot be read or count() returns false.
+/// Calls count(scene, packets) for every file. False and a message on stderr when one cannot be read or count() returns false.
 template <class Count>
 bool count_files(std::span<char*> paths, Count count) {
   for (const char* path : paths) {
@@ -62,7 +62,7 @@ bool count_files(std::span<char*> paths, Count count) {
       if (!good || !*packet) break;
       packets.push_back((*packet)->bytes);
     }
-    if (good && count(reader->header(), packets)) continue;
+    if (good && count(*reader->scene(), packets)) continue;
     std::fprintf(stderr, "%s: not a stream file that this tool can count\n", path);
     return false;
   }
@@ -72,7 +72,7 @@ bool count_files(std::span<char*> paths, Count count) {
 /// Prints one row per model, in the order of the specification's table.
 class Table {
  public:
-  /// `rate`: how firmly a packet believes the table, see spec/30-range-decoder.md section 2. Models without a count stay cold.
+  /// `rate`: how firmly a packet believes the table, see spec/30-range-coder.md section 2. Models without a count stay cold.
   Table(const Counts& counts, int rate) : counts_(counts), rate_(rate) { std::puts("model,zero,rate"); }
 
   /// The `size` models of one tree.

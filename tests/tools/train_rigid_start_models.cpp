@@ -9,32 +9,36 @@ namespace {
 
 using namespace tactus;
 
-void count_packet(std::span<const std::uint8_t> packet, const StreamHeader& header, const std::vector<std::uint32_t>& moving,
-                  Counts& counts) {
+/// False: the packet names an object that is not there.
+bool count_packet(std::span<const std::uint8_t> packet, const Scene& scene, Counts& counts) {
   RigidModels models = start_models();
   CountingDecoder coder(packet.subspan(2), models, counts);
-  PacketHead head;
-  code_head(coder, models, header, moving.size(), head);
+  RigidHead head;
+  code_head(coder, models, scene, head);
+  const auto moving = scene.moving();
   std::size_t next = 0;
   for (std::uint32_t i = 0; i < head.count; ++i) {
     if (moving.size() > 1) next += coder.magnitude(models.gap, 0);
+    if (next >= moving.size()) return false;
     CodedUpdate update;
-    code_update(coder, models, header.objects[moving.at(next++)].dof, update);
+    code_update(coder, models, scene.objects[moving[next++]].dof, update);
   }
+  return true;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   Counts total = no_counts<RigidModels>();
-  const auto count_file = [&](const StreamHeader& header, const auto& packets) {
-    const auto moving = moving_objects(header);
+  const auto count_file = [&](const Scene& scene, const auto& packets) {
+    if (!scene.deformables.empty()) return false;
     Counts counts = no_counts<RigidModels>();
-    for (const auto& packet : packets) count_packet(packet, header, moving, counts);
+    for (const auto& packet : packets)
+      if (packet.size() < 2 || !count_packet(packet, scene, counts)) return false;
     for (std::size_t m = 0; m < total.size(); ++m)
       for (std::size_t bit = 0; bit < 2; ++bit)
         total[m][bit] += packets.empty() ? 0 : 1000 * counts[m][bit] / static_cast<double>(packets.size());
-    return header.meshes.empty();
+    return true;
   };
   if (!count_files(std::span(argv, static_cast<std::size_t>(argc)).subspan(1), count_file)) return 1;
   Table table(total, 4);
@@ -43,6 +47,6 @@ int main(int argc, char** argv) {
   table.tree("REASON", 3);
   table.tree("LEVEL", 7);
   for (std::size_t q = 0; q < kQuantities; ++q)
-    for (std::size_t hint = 0; hint < kHints; ++hint) table.magnitude(indexed("RESIDUAL", {q, hint}));
+    for (std::size_t context = 0; context < kContexts; ++context) table.magnitude(indexed("RESIDUAL", {q, context}));
   return table.complete() ? 0 : 1;
 }

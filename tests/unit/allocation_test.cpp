@@ -2,8 +2,11 @@
 /// The hot paths allocate nothing after set-up: every operator new is counted.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+
 #include "tests/property/allocated.h"
-#include "tests/unit/rigid_fixture.h"
+#include "tests/unit/deformable_fixture.h"
 
 namespace tactus {
 namespace {
@@ -21,14 +24,9 @@ TEST(Allocation, TheCounterCounts) {
 
 TEST(Allocation, EncodeDecodeAndShowAllocateNothing) {
   constexpr std::size_t kObjects = 20;
-  const StreamHeader header = testing::scene_of(kObjects);
-  RigidEncoderOptions options;
-  options.key_interval = 0.2;
-  auto encoder = RigidEncoder::create(header, options).value();
-  auto decoder = RigidDecoder::create(header).value();
-  ReplicaOptions smooth;
-  smooth.interpolation = Interpolation::linear;
-  auto replica = Replica::create(header, smooth).value();
+  const SharedScene scene = testing::scene_of(kObjects);
+  auto sender = Sender::create(scene, {.triggers = {}, .deformable = {}, .policy = {.key_interval = 0.2}}).value();
+  auto receiver = Receiver::create(scene, {.replica = {.interpolation = Interpolation::linear}, .limits = {}}).value();
   std::vector<testing::Motion> motions;
   for (std::size_t i = 0; i < kObjects; ++i) motions.emplace_back(i);
   std::vector<RigidSample> samples(kObjects);
@@ -39,16 +37,14 @@ TEST(Allocation, EncodeDecodeAndShowAllocateNothing) {
       for (std::size_t i = 0; i < kObjects; ++i) samples[i] = motions[i].step(1e-3);
       contacts[0] = testing::touch(3, samples[3].pose, 0.001);
       contacts[1] = testing::touch(7, samples[7].pose, 0.002);
-      if (tick % 97 == 0) encoder.request_key();
-      const auto packet = encoder.encode(tick, samples, contacts);
-      if (!packet) return;
-      if (!packet->bytes.empty()) {
-        const auto decoded = decoder.decode(packet->bytes);
-        if (!decoded) return;
-        replica.apply(*decoded, decoder.objects(), tick);
+      if (tick % 97 == 0) sender.request_key();
+      const auto sent = sender.encode(tick, {samples, contacts});
+      if (!sent) return;
+      for (const Packet& packet : *sent) {
+        if (!receiver.push(packet.bytes, tick)) return;
         ++packets;
       }
-      hash ^= replica.pose_hash(tick);
+      hash ^= receiver.replica().pose_hash(tick);
     }
   });
   EXPECT_EQ(counted, 0u);
@@ -56,15 +52,60 @@ TEST(Allocation, EncodeDecodeAndShowAllocateNothing) {
   EXPECT_NE(hash, 0u);
 }
 
+/// Every substream at once, with acknowledgements, forgotten packets, wrong calls and damaged packets.
+TEST(Allocation, ASceneOfSeveralSubstreamsAllocatesNothing) {
+  const TriMesh mesh = testing::sheet(6, 6);
+  const SharedScene scene = SceneBuilder(60)
+                                .rigid("cube")
+                                .deformable("waves", mesh, {.basis = testing::wave_basis(mesh, 6, 3)})
+                                .deformable("thesis", mesh, {.profile = DeformableProfile::thesis, .models_kept = true})
+                                .baselines(4)
+                                .build()
+                                .value();
+  for (const Baseline baseline : {Baseline::previous, Baseline::acknowledged}) {
+    auto sender = Sender::create(scene, {.triggers = {}, .deformable = {}, .policy = {.baseline = baseline}}).value();
+    auto receiver = Receiver::create(scene).value();
+    testing::Motion motion(1);
+    testing::DentedSheet sheet(mesh, 6);
+    std::vector<testing::SheetFrame> frames;
+    for (std::int64_t tick = 0; tick < 300; ++tick) frames.push_back(sheet.frame(tick));
+    std::vector<std::uint8_t> damaged(4000);
+    std::array<DeformableTruth, 2> shapes;
+    std::uint64_t decoded = 0;
+    const std::uint64_t counted = count_of([&] {
+      for (std::int64_t tick = 0; tick < 300; ++tick) {
+        const RigidSample sample = motion.step(1.0 / 60);
+        shapes.fill(frames[static_cast<std::size_t>(tick)].truth());
+        if (sender.encode(tick - 1, {{&sample, 1}, {}, shapes})) return;
+        const auto sent = sender.encode(tick, {{&sample, 1}, {}, shapes});
+        if (!sent) return;
+        for (const Packet& packet : *sent) {
+          std::ranges::copy(packet.bytes, damaged.begin());
+          (void)receiver.push(std::span(damaged).first(packet.bytes.size() + 9), tick);
+          if (tick % 7 == 3) {
+            sender.forget_last(packet.substream);
+          } else if (receiver.push(packet.bytes, tick)) {
+            sender.acknowledge(packet.substream, packet.sequence);
+            ++decoded;
+          }
+        }
+        (void)receiver.replica().displacements(0, tick);
+      }
+    });
+    EXPECT_EQ(counted, 0u);
+    EXPECT_GT(decoded, 300u);
+  }
+}
+
 TEST(Allocation, RefusedInputAllocatesNothing) {
-  auto decoder = RigidDecoder::create(testing::scene_of(8)).value();
+  auto receiver = Receiver::create(testing::scene_of(8)).value();
   std::vector<std::uint8_t> noise(300);
   std::mt19937 random(9);
   std::uint64_t refused = 0;
   const std::uint64_t counted = count_of([&] {
     for (int run = 0; run < 2000; ++run) {
       for (auto& b : noise) b = static_cast<std::uint8_t>(random());
-      refused += decoder.decode(noise) ? 0u : 1u;
+      refused += receiver.push(noise) ? 0u : 1u;
     }
   });
   EXPECT_EQ(counted, 0u);

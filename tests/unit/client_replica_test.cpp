@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <string_view>
 
 #include "tests/unit/rigid_fixture.h"
 
@@ -15,7 +16,7 @@ using testing::scene_of;
 /// Hands a replica updates of one object without a bitstream.
 class Feeder {
  public:
-  explicit Feeder(Interpolation mode) : header_(scene_of(1)), replica_(make(header_, mode)) {}
+  explicit Feeder(Interpolation mode) : scene_(scene_of(1)), replica_(*scene_, {.interpolation = mode}, {}) {}
 
   void update(std::int64_t tick, const Vec3& position, const Vec3& velocity, const Quat& rotation = {}, const Vec3& spin = {}) {
     update_at(tick, tick, position, velocity, rotation, spin);
@@ -23,22 +24,17 @@ class Feeder {
   /// A packet of tick `tick`, applied at `now`.
   void update_at(std::int64_t now, std::int64_t tick, const Vec3& position, const Vec3& velocity, const Quat& rotation = {},
                  const Vec3& spin = {}) {
-    const RigidState state = to_grid({{position, rotation}, velocity, spin}, tick, header_.grid).value();
+    const RigidState state = to_grid({{position, rotation}, velocity, spin}, tick, scene_->grid).value();
     const RigidUpdate named{0, Reason::visual, 0};
     DecodedPacket packet;
     packet.tick = tick;
     packet.updates = {&named, 1};
     replica_.apply(packet, {&state, 1}, now);
   }
-  Pose shown(std::int64_t tick) const { return to_pose(replica_.pose(0, tick), header_.grid); }
+  Pose shown(std::int64_t tick) const { return to_pose(replica_.pose(0, tick), scene_->grid.position); }
 
  private:
-  static Replica make(const StreamHeader& header, Interpolation mode) {
-    ReplicaOptions options;
-    options.interpolation = mode;
-    return Replica::create(header, options).value();
-  }
-  StreamHeader header_;
+  SharedScene scene_;
   Replica replica_;
 };
 
@@ -119,9 +115,10 @@ TEST(ClientReplica, AnUpdateIsNotAppliedBeforeItsTickNorBeforeTheLastOne) {
 }
 
 TEST(ClientReplica, AnObjectIsNotHeldUpByAnotherOfTheSamePacket) {
-  const StreamHeader header = scene_of(2);
-  auto replica = Replica::create(header).value();
-  const auto state = [&](std::int64_t tick) { return to_grid({{{0.1, 0, 0}, {}}, {1, 0, 0}, {}}, tick, header.grid).value(); };
+  const SharedScene scene = scene_of(2);
+  Replica replica(*scene, {}, {});
+  const RigidPredictor predictor(*scene);
+  const auto state = [&](std::int64_t tick) { return to_grid({{{0.1, 0, 0}, {}}, {1, 0, 0}, {}}, tick, scene->grid).value(); };
   const RigidUpdate named[] = {{0, Reason::visual, 0}, {1, Reason::visual, 0}};
   DecodedPacket packet;
   packet.tick = 80;
@@ -131,8 +128,8 @@ TEST(ClientReplica, AnObjectIsNotHeldUpByAnotherOfTheSamePacket) {
   packet.updates = named;
   states[1] = state(80);
   replica.apply(packet, states, 90);
-  EXPECT_EQ(replica.pose(1, 95), predict(states[1], 95, header));
-  EXPECT_EQ(replica.pose(0, 95), predict(states[0], 100, header)) << "this one was there at 100 already";
+  EXPECT_EQ(replica.pose(1, 95), predictor.pose(states[1], 95));
+  EXPECT_EQ(replica.pose(0, 95), predictor.pose(states[0], 100)) << "this one was there at 100 already";
 }
 
 TEST(ClientReplica, RotationTurnsAtConstantRate) {
@@ -156,7 +153,11 @@ TEST(ClientReplica, RotationTakesTheShortWay) {
 }
 
 TEST(ClientReplica, OptionsOutsideTheirRangeAreRefused) {
-  const auto refused = [](ReplicaOptions options) { return !Replica::create(scene_of(1), options); };
+  const auto refused = [](ReplicaOptions options) {
+    const auto receiver = Receiver::create(scene_of(1), {.replica = options, .limits = {}});
+    EXPECT_EQ(receiver.has_value(), Replica::check(options).has_value());
+    return !receiver && std::string_view(receiver.error().rule) == "R-API-4";
+  };
   EXPECT_TRUE(refused({Interpolation::linear, 0, 0.005, 0.1}));
   EXPECT_TRUE(refused({Interpolation::linear, 1.5, 0.005, 0.1}));
   EXPECT_TRUE(refused({Interpolation::linear, std::nan(""), 0.005, 0.1}));

@@ -11,13 +11,15 @@
 #include <limits>
 #include <optional>
 #include <random>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include <tactus/deformable/decoder.h>
-#include <tactus/deformable/displacement.h>
-#include <tactus/deformable/encoder.h>
+#include <tactus/base/fixed.h>
 #include <tactus/deformable/graph.h>
+#include <tactus/tactus.h>
+#include "tests/unit/rigid_fixture.h"
 
 namespace tactus::testing {
 
@@ -38,9 +40,26 @@ inline TriMesh sheet(std::uint32_t nx, std::uint32_t ny) {
 }
 
 struct SheetFrame {
-  std::vector<Vec3> displacement;
+  std::vector<float> displacements;  ///< [m] x y z of vertex 0 first
   std::optional<SurfaceTouch> touch;
+
+  DeformableTruth truth() const { return {displacements, touch}; }
 };
+
+inline void set_vertex(std::vector<float>& displacements, std::size_t vertex, const Vec3& u) {
+  displacements[3 * vertex] = static_cast<float>(u.x);
+  displacements[3 * vertex + 1] = static_cast<float>(u.y);
+  displacements[3 * vertex + 2] = static_cast<float>(u.z);
+}
+inline Vec3 vertex_of(std::span<const float> displacements, std::size_t vertex) {
+  return {displacements[3 * vertex], displacements[3 * vertex + 1], displacements[3 * vertex + 2]};
+}
+/// The same displacement of every vertex.
+inline std::vector<float> moved_by(std::size_t vertices, const Vec3& u) {
+  std::vector<float> out(3 * vertices);
+  for (std::size_t v = 0; v < vertices; ++v) set_vertex(out, v, u);
+  return out;
+}
 
 /// A dent of 15 mm that walks over the sheet, rises and falls, and leaves it now and then.
 class DentedSheet {
@@ -51,12 +70,13 @@ class DentedSheet {
     const double t = static_cast<double>(k) / 60, width = squares_ * 0.004;
     const Vec3 at{width * (0.5 + 0.35 * std::cos(1.9 * t)), width * (0.5 + 0.35 * std::sin(1.4 * t)), 0};
     const double depth = 0.015 * std::sin(2.7 * t);
-    SheetFrame out;
-    for (const Vec3& x : mesh_.vertices) {
+    SheetFrame out{std::vector<float>(3 * mesh_.vertices.size()), {}};
+    for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
+      const Vec3& x = mesh_.vertices[v];
       const double d2 = ((x.x - at.x) * (x.x - at.x) + (x.y - at.y) * (x.y - at.y)) / (width * width);
       const double z = -std::max(depth, 0.0) * std::exp(-8 * d2);
-      out.displacement.push_back(Vec3{0.1 * z, 0.05 * z, z} +
-                                 noise_ * Vec3{normal_(random_), normal_(random_), normal_(random_)});
+      const Vec3 noise{normal_(random_), normal_(random_), normal_(random_)};
+      set_vertex(out.displacements, v, Vec3{0.1 * z, 0.05 * z, z} + noise_ * noise);
     }
     if (depth > 0.001) {
       const auto i = static_cast<std::uint32_t>(at.x / 0.004), j = static_cast<std::uint32_t>(at.y / 0.004);
@@ -87,51 +107,49 @@ inline ModeBasis wave_basis(const TriMesh& mesh, std::uint32_t squares, std::siz
   return make_mode_basis(vectors, modes).value();
 }
 
-inline StreamHeader mesh_header(const TriMesh& mesh, DeformableProfile profile = DeformableProfile::main,
-                                const ModeBasis& basis = {}) {
-  StreamHeader header;
-  header.tick_rate = 60;
-  DeformableObject object = make_deformable_object("sheet", mesh, header.grid.position).value();
+/// A scene of one deformable object at 60 ticks per second.
+inline SceneSpec sheet_spec(const TriMesh& mesh, DeformableProfile profile = DeformableProfile::main,
+                            const ModeBasis& basis = {}) {
+  SceneSpec spec;
+  spec.tick_rate = 60;
+  DeformableObject object = make_deformable_object("sheet", mesh, spec.grid.position).value();
   object.profile = profile;
   object.basis = basis;
-  header.meshes.push_back(object);
-  return header;
+  spec.deformables.push_back(std::move(object));
+  return spec;
 }
 
-/// Counts what breaks a bound on what the decoder shows.
+/// Counts what breaks a bound on what a receiver shows of a scene's first deformable object.
 class BoundWatch {
  public:
-  BoundWatch(const StreamHeader& header, const DeformableThresholds& thresholds)
-      : mesh_(header.meshes[0]), position_(header.grid.position), thresholds_(thresholds), rings_(mesh_) {}
+  BoundWatch(const Scene& scene, const DeformableThresholds& thresholds)
+      : object_(scene.deformables[0]), position_(scene.grid.position), thresholds_(thresholds), rings_(object_) {}
 
-  void look(const SheetFrame& frame, std::span<const DeformableDecoder::Displacement> shown) {
-    look(frame, shown, thresholds_.visual);
-  }
+  void look(const SheetFrame& frame, std::span<const Vec3i> shown) { look(frame, shown, thresholds_.visual); }
   /// At the area of interest alone.
-  void look_at_area(const SheetFrame& frame, std::span<const DeformableDecoder::Displacement> shown) {
+  void look_at_area(const SheetFrame& frame, std::span<const Vec3i> shown) {
     look(frame, shown, std::numeric_limits<double>::infinity());
   }
   std::size_t broken() const { return broken_; }
   double worst() const { return worst_; }  ///< [m]
 
  private:
-  void look(const SheetFrame& frame, std::span<const DeformableDecoder::Displacement> shown, double outside) {
+  void look(const SheetFrame& frame, std::span<const Vec3i> shown, double outside) {
     std::vector<double> bound(shown.size(), outside);
     if (frame.touch && thresholds_.weber_fraction) {
-      const double h =
-          *thresholds_.weber_fraction * std::max(frame.touch->force / frame.touch->stiffness, thresholds_.depth_floor);
-      rings_.triangles_around(frame.touch->triangle, mesh_.rings);
+      const double h = haptic_threshold(thresholds_, *frame.touch);
+      rings_.triangles_around(frame.touch->triangle, object_.rings);
       for (const std::uint32_t v : rings_.vertices()) bound[v] = std::min(thresholds_.visual, h);
     }
     const double grid = 0.8660255 * std::ldexp(1.0, -static_cast<int>(position_));
     for (std::size_t v = 0; v < shown.size(); ++v) {
-      const double error = norm(to_metres(shown[v], position_) - frame.displacement[v]);
+      const double error = norm(to_metres(shown[v], position_) - vertex_of(frame.displacements, v));
       worst_ = std::max(worst_, error);
       if (!(error <= std::max(bound[v], grid))) ++broken_;
     }
   }
 
-  DeformableObject mesh_;
+  DeformableObject object_;
   unsigned position_;
   DeformableThresholds thresholds_;
   Rings rings_;
@@ -139,33 +157,46 @@ class BoundWatch {
   double worst_ = 0;
 };
 
-/// Both ends of a stream of one mesh. They must agree after every packet.
-class MeshEnds {
+/// Both ends of a stream of one deformable object. They must agree after every frame.
+class SheetEnds {
  public:
-  MeshEnds(const StreamHeader& header, const DeformableEncoderOptions& options)
-      : encoder(DeformableEncoder::create(header, 0, options).value()), decoder(DeformableDecoder::create(header, 0).value()) {}
+  static constexpr std::size_t kSubstream = 1;
 
-  void send(std::int64_t tick, const SheetFrame& frame) {
-    const auto packet = encoder.encode(tick, frame.displacement, frame.touch);
-    ASSERT_TRUE(packet) << packet.error().rule << " at tick " << tick;
-    deliver(*packet, tick);
+  explicit SheetEnds(const SharedScene& scene, const SenderOptions& options = {})
+      : sender(Sender::create(scene, options).value()), receiver(Receiver::create(scene).value()) {}
+
+  /// Packets are valid until the next frame.
+  Result<std::span<const Packet>> encode(std::int64_t tick, const SheetFrame& frame) {
+    const DeformableTruth truth = frame.truth();
+    return sender.encode(tick, {.deformables = {&truth, 1}});
   }
-  void deliver(const EncodedDeformablePacket& packet, std::int64_t tick) {
-    if (packet.bytes.empty()) return;
-    const auto decoded = decoder.decode(packet.bytes);
+  void send(std::int64_t tick, const SheetFrame& frame) {
+    const auto sent = encode(tick, frame);
+    ASSERT_TRUE(sent) << sent.error().rule << " at tick " << tick;
+    for (const Packet& packet : *sent) deliver(packet, tick);
+    agree(tick);
+  }
+  void deliver(const Packet& packet, std::int64_t tick) {
+    const auto decoded = receiver.push(packet.bytes);
     ASSERT_TRUE(decoded) << decoded.error().rule << " at tick " << tick;
+    ASSERT_EQ(decoded->substream, packet.substream);
+    ASSERT_EQ(decoded->sequence, packet.sequence);
     ASSERT_EQ(decoded->tick, tick);
-    ASSERT_EQ(decoded->updates, packet.updates);
-    ASSERT_EQ(decoder.state_hash(), encoder.state_hash()) << "at tick " << tick;
+    ASSERT_EQ(decoded->key, packet.key);
+    ASSERT_EQ(decoded->vertices, packet.updates);
     bytes += packet.bytes.size();
     ++packets;
-    ++halves[static_cast<std::size_t>(packet.half)];
+    ++layers[static_cast<std::size_t>(packet.layer)];
   }
+  void agree(std::int64_t tick) const {
+    ASSERT_EQ(receiver.state_hash(kSubstream), sender.state_hash(kSubstream)) << "at tick " << tick;
+  }
+  std::span<const Vec3i> shown(std::int64_t tick) { return receiver.replica().displacements(0, tick); }
 
-  DeformableEncoder encoder;
-  DeformableDecoder decoder;
+  Sender sender;
+  Receiver receiver;
   std::size_t bytes = 0, packets = 0;
-  std::array<std::size_t, 3> halves{};  ///< packets by half
+  std::array<std::size_t, 3> layers{};  ///< packets by layer
 };
 
 }  // namespace tactus::testing

@@ -34,7 +34,7 @@ TEST(VertexHierarchy, OrderNamesEveryVertexOnceAndParentsComeFirst) {
         EXPECT_NEAR(static_cast<double>(sum), 32768, VertexHierarchy::kParents);
       }
       if (i > 0) {
-        EXPECT_LE(h.level[h.order[i]], h.level[h.order[i - 1]]);
+        EXPECT_LE(h.depth[h.order[i]], h.depth[h.order[i - 1]]);
       }
     }
     EXPECT_EQ(roots, 1U);
@@ -85,7 +85,7 @@ TEST(VertexHierarchy, PredictsASlopeInsideTheSheet) {
   for (std::size_t i = 0; i < h.order.size(); ++i) {
     const std::uint32_t v = h.order[i];
     const std::uint32_t column = v % 31, row = v / 31;
-    if (h.level[v] > 0 || column < 3 || column > 27 || row < 3 || row > 27) continue;
+    if (h.depth[v] > 0 || column < 3 || column > 27 || row < 3 || row > 27) continue;
     double predicted = 0;
     for (const VertexParent& p : h.parents[i]) predicted += p.weight / 32768.0 * static_cast<double>(p.vertex % 31);
     EXPECT_NEAR(predicted, static_cast<double>(column), 0.2);
@@ -112,7 +112,7 @@ TEST(VertexHierarchy, ManyVerticesInOnePlace) {
   mesh.rest.resize(kVertices);
   const VertexHierarchy h = vertex_hierarchy(mesh);
   EXPECT_EQ(h.order.size(), kVertices);
-  EXPECT_EQ(std::ranges::count_if(h.order, [&](std::uint32_t v) { return h.level[v] == h.level[h.order[0]]; }), 1);
+  EXPECT_EQ(std::ranges::count_if(h.order, [&](std::uint32_t v) { return h.depth[v] == h.depth[h.order[0]]; }), 1);
 }
 
 TEST(Rings, AgreeWithTheTopologyOfTriangleMeshes) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Haptic and visual halves: each keeps the bounds it vouches for, and the loss of one does not stop the other.
+/// Haptic and visual layers: each packet keeps the bounds it vouches for, and dropping visual ones does not stop the haptic ones.
 #include <gtest/gtest.h>
 
-#include <tactus/deformable/encoder.h>
+#include <tactus/tactus.h>
 #include "tests/property/allocated.h"
 #include "tests/unit/deformable_fixture.h"
 
@@ -11,100 +11,110 @@ namespace {
 
 using testing::BoundWatch;
 using testing::DentedSheet;
-using testing::MeshEnds;
+using testing::SheetEnds;
 using testing::SheetFrame;
 
 constexpr std::uint32_t kSquares = 12;
 constexpr std::int64_t kFrames = 300;
 
-StreamHeader split_header(const TriMesh& mesh, std::size_t modes, std::uint8_t span = 1) {
-  StreamHeader header =
-      testing::mesh_header(mesh, DeformableProfile::main, modes > 0 ? testing::wave_basis(mesh, kSquares, modes) : ModeBasis{});
-  header.meshes[0].split = true;
-  header.baseline_span = span;
-  return header;
+SharedScene layered_scene(const TriMesh& mesh, std::size_t modes, std::uint8_t span = 1, bool layered = true) {
+  SceneSpec spec =
+      testing::sheet_spec(mesh, DeformableProfile::main, modes > 0 ? testing::wave_basis(mesh, kSquares, modes) : ModeBasis{});
+  spec.deformables[0].layered = layered;
+  spec.baseline_span = span;
+  return testing::shared(std::move(spec));
 }
 
-class SplitBounds : public ::testing::TestWithParam<std::tuple<DeformableThresholds, std::size_t, double>> {};
+/// Either profile, in layers or not; of profile thesis the sender alone knows.
+SharedScene scene_of(const TriMesh& mesh, DeformableProfile profile, bool layered, std::uint8_t span = 1) {
+  SceneSpec spec = testing::sheet_spec(mesh, profile);
+  spec.deformables[0].layered = profile == DeformableProfile::main && layered;
+  spec.baseline_span = span;
+  return testing::shared(std::move(spec));
+}
 
-TEST_P(SplitBounds, HoldAfterEachHalf) {
+SenderOptions options(double key_interval, bool layered = true, const DeformableThresholds& thresholds = {}) {
+  return {.triggers = {}, .deformable = {.thresholds = thresholds, .layered = layered}, .policy = {.key_interval = key_interval}};
+}
+
+class LayeredBounds : public ::testing::TestWithParam<std::tuple<DeformableThresholds, std::size_t, double>> {};
+
+TEST_P(LayeredBounds, HoldAfterEachPacket) {
   const auto& [thresholds, modes, noise] = GetParam();
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
-  const StreamHeader header = split_header(mesh, modes);
-  MeshEnds ends(header, {.thresholds = thresholds, .key_interval = 1});
+  const SharedScene scene = layered_scene(mesh, modes);
+  SheetEnds ends(scene, options(1, true, thresholds));
   DentedSheet sheet(mesh, kSquares, noise);
-  BoundWatch felt(header, thresholds), seen(header, thresholds);
+  BoundWatch felt(*scene, thresholds), seen(*scene, thresholds);
   for (std::int64_t k = 0; k < kFrames; ++k) {
     const SheetFrame frame = sheet.frame(k);
-    const auto first = ends.encoder.encode(k, frame.displacement, frame.touch);
-    ASSERT_TRUE(first);
-    EXPECT_EQ(first->half, first->bytes.empty() ? Layer::all : Layer::haptic);
-    ends.deliver(*first, k);
-    felt.look_at_area(frame, ends.decoder.displacements_at(k));
-    ends.deliver(ends.encoder.encode_rest(), k);
+    const auto packets = ends.encode(k, frame);
+    ASSERT_TRUE(packets);
+    ASSERT_LE(packets->size(), 2U);
+    if (packets->size() == 2) {
+      EXPECT_EQ(packets->front().layer, Layer::haptic) << "what is felt goes first";
+      EXPECT_EQ(packets->back().layer, Layer::visual);
+      EXPECT_FALSE(packets->back().key);
+    }
+    const bool none_felt = packets->empty() || packets->front().layer == Layer::visual;
+    if (none_felt) felt.look_at_area(frame, ends.shown(k));
+    for (const Packet& packet : *packets) {
+      ends.deliver(packet, k);
+      if (packet.layer == Layer::haptic) felt.look_at_area(frame, ends.shown(k));
+    }
+    ends.agree(k);
     if (HasFatalFailure()) return;
-    seen.look(frame, ends.decoder.displacements_at(k));
-    EXPECT_TRUE(ends.encoder.encode_rest().bytes.empty());
+    seen.look(frame, ends.shown(k));
   }
   EXPECT_EQ(felt.broken(), 0U);
   EXPECT_EQ(seen.broken(), 0U);
-  EXPECT_EQ(ends.halves[0] > 0, thresholds.weber_fraction.has_value());
-  EXPECT_GT(ends.halves[1], 20U);
-  EXPECT_EQ(ends.halves[2], 0U);
+  EXPECT_EQ(ends.layers[0] > 0, thresholds.weber_fraction.has_value());
+  EXPECT_GT(ends.layers[1], 20U);
+  EXPECT_EQ(ends.layers[2], 0U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Settings, SplitBounds,
+INSTANTIATE_TEST_SUITE_P(Settings, LayeredBounds,
                          ::testing::Combine(::testing::Values(DeformableThresholds{2.5e-4, 0.025}, DeformableThresholds{1e-3, {}},
                                                               DeformableThresholds{5e-5, 0.1}, DeformableThresholds{0, 0.025},
                                                               DeformableThresholds{1e-3, 0.0}),
                                             ::testing::Values(0, 8), ::testing::Values(0.0, 1e-4)));
 
-TEST(MeshSplit, MotionIsPredictedAcrossHapticHalves) {
+TEST(DeformableLayers, MotionIsPredictedAcrossHapticPackets) {
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
   std::array<std::size_t, 2> bytes{};
-  for (const bool split : {false, true}) {
-    StreamHeader header = split_header(mesh, 8);
-    header.meshes[0].split = split;
-    MeshEnds ends(header, {});
+  for (const bool layered : {false, true}) {
+    SheetEnds ends(layered_scene(mesh, 8, 1, layered));
     DentedSheet sheet(mesh, kSquares);
-    for (std::int64_t k = 0; k < kFrames; ++k) {
-      const SheetFrame frame = sheet.frame(k);
-      ends.deliver(ends.encoder.encode(k, frame.displacement, frame.touch).value(), k);
-      ends.deliver(ends.encoder.encode_rest(), k);
-    }
-    bytes[split ? 1 : 0] = ends.bytes;
-    EXPECT_EQ(ends.halves[2] > 0, !split);
+    for (std::int64_t k = 0; k < kFrames; ++k) ends.send(k, sheet.frame(k));
+    bytes[layered ? 1 : 0] = ends.bytes;
+    EXPECT_EQ(ends.layers[2] > 0, !layered);
   }
   EXPECT_LT(bytes[1], 2 * bytes[0]);
 }
 
-/// A sender that drops visual halves: what is felt stays within its bound, what is seen again as soon as one arrives.
-TEST(MeshSplit, VisualHalvesMayBeLost) {
+/// A sender that drops visual packets: what is felt stays within its bound, what is seen again as soon as one arrives.
+TEST(DeformableLayers, VisualPacketsMayBeDropped) {
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
-  const DeformableThresholds thresholds;
   for (const std::uint8_t span : {std::uint8_t{1}, std::uint8_t{2}, std::uint8_t{4}}) {
-    const StreamHeader header = split_header(mesh, 6, span);
-    MeshEnds ends(header, {.thresholds = thresholds, .key_interval = 0});
+    const SharedScene scene = layered_scene(mesh, 6, span);
+    SheetEnds ends(scene, options(0));
     DentedSheet sheet(mesh, kSquares);
-    BoundWatch felt(header, thresholds), seen(header, thresholds);
+    BoundWatch felt(*scene, {}), seen(*scene, {});
     std::size_t lost = 0, keys = 0;
     for (std::int64_t k = 0; k < kFrames; ++k) {
       const SheetFrame frame = sheet.frame(k);
-      const auto first = ends.encoder.encode(k, frame.displacement, frame.touch).value();
-      keys += first.key ? 1U : 0U;
-      ends.deliver(first, k);
-      felt.look_at_area(frame, ends.decoder.displacements_at(k));
-      const EncodedDeformablePacket rest = ends.encoder.encode_rest();
-      keys += rest.key ? 1U : 0U;
-      if (k % 3 == 1 && !rest.bytes.empty() && !rest.key) {
-        ends.encoder.forget_last();
-        ++lost;
-        EXPECT_EQ(ends.decoder.state_hash(), ends.encoder.state_hash());
-        continue;
+      bool dropped = false;
+      for (const Packet& packet : testing::all(ends.encode(k, frame))) {
+        keys += packet.key ? 1U : 0U;
+        dropped = k % 3 == 1 && packet.layer == Layer::visual && !packet.key;
+        if (dropped) ends.sender.forget_last(1);
+        else ends.deliver(packet, k);
       }
-      ends.deliver(rest, k);
+      ends.agree(k);
       if (HasFatalFailure()) return;
-      seen.look(frame, ends.decoder.displacements_at(k));
+      lost += dropped ? 1U : 0U;
+      felt.look_at_area(frame, ends.shown(k));
+      if (!dropped) seen.look(frame, ends.shown(k));
     }
     EXPECT_GT(lost, 20U);
     EXPECT_EQ(felt.broken(), 0U);
@@ -117,54 +127,46 @@ TEST(MeshSplit, VisualHalvesMayBeLost) {
   }
 }
 
-/// What becomes of a stream whose visual halves never arrive.
+/// What becomes of a stream whose visual packets never arrive.
 struct Starved {
   std::size_t accepted = 0, refused = 0, keys = 0;
 };
 
-/// in  rest(encoder)     makes a visual half, or not, and loses it
-///     refused(encoder)  a haptic half was not accepted
-Starved starve(std::uint8_t span, const auto& rest, const auto& refused) {
+/// in  lose(sender)     a visual packet was made last, and is lost
+///     refused(sender)  a haptic packet was not accepted
+Starved starve(std::uint8_t span, const auto& lose, const auto& refused) {
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
-  MeshEnds ends(split_header(mesh, 6, span), {.thresholds = {}, .key_interval = 0});
+  SheetEnds ends(layered_scene(mesh, 6, span), options(0));
   DentedSheet sheet(mesh, kSquares);
   Starved out;
   for (std::int64_t k = 0; k < kFrames; ++k) {
-    const SheetFrame frame = sheet.frame(k);
-    const auto felt = ends.encoder.encode(k, frame.displacement, frame.touch).value();
-    if (const auto decoded = ends.decoder.decode(felt.bytes); decoded) {
-      ++out.accepted;
-      out.keys += decoded->key ? 1U : 0U;
-    } else if (!felt.bytes.empty()) {
-      EXPECT_STREQ(decoded.error().rule, "R-PKT-4");
-      ++out.refused;
-      refused(ends.encoder);
+    for (const Packet& packet : testing::all(ends.encode(k, sheet.frame(k)))) {
+      if (packet.layer == Layer::visual) {
+        lose(ends.sender);
+        continue;
+      }
+      const auto decoded = ends.receiver.push(packet.bytes);
+      if (decoded) {
+        ++out.accepted;
+        out.keys += decoded->key ? 1U : 0U;
+      } else {
+        EXPECT_STREQ(decoded.error().rule, "R-PKT-4");
+        ++out.refused;
+        refused(ends.sender);
+      }
     }
-    rest(ends.encoder);
   }
   return out;
 }
 
 constexpr std::array<std::uint8_t, 3> kSpans{1, 2, 8};
-void lose(DeformableEncoder& encoder) { (void)encoder.encode_rest(); }
-void ignore(DeformableEncoder&) {}
+void ignore(Sender&) {}
 
-TEST(MeshSplit, VisualHalvesMayBeLeftOut) {
-  for (const std::uint8_t span : kSpans) {
-    const Starved out = starve(span, ignore, ignore);
-    EXPECT_GT(out.accepted, 50U);
-    EXPECT_EQ(out.refused, 0U);
-    EXPECT_EQ(out.keys, 1U);
-  }
-}
-
-TEST(MeshSplit, DroppedVisualHalvesCostKeysWhereNoOlderBaselineIsKept) {
-  const auto drop = [](DeformableEncoder& encoder) {
-    if (!encoder.encode_rest().bytes.empty()) encoder.forget_last();
-  };
+TEST(DeformableLayers, DroppedVisualPacketsCostKeysWhereNoOlderBaselineIsKept) {
   std::array<Starved, 3> out;
   for (std::size_t i = 0; i < out.size(); ++i) {
-    out[i] = starve(kSpans[i], drop, ignore);
+    out[i] = starve(
+        kSpans[i], [](Sender& sender) { sender.forget_last(1); }, ignore);
     EXPECT_GT(out[i].accepted, 50U);
     EXPECT_EQ(out[i].refused, 0U);
   }
@@ -173,167 +175,202 @@ TEST(MeshSplit, DroppedVisualHalvesCostKeysWhereNoOlderBaselineIsKept) {
   EXPECT_LT(out[2].keys, out[2].accepted / 10);
 }
 
-TEST(MeshSplit, AnUnnoticedLossStopsTheStreamUntilAKeyPacket) {
+TEST(DeformableLayers, AnUnnoticedLossStopsTheStreamUntilAKeyPacket) {
   for (const std::uint8_t span : kSpans) {
-    const Starved silent = starve(span, lose, ignore);
-    EXPECT_EQ(silent.accepted, 0U) << "nobody touches at first: the only key packet is a visual half, and lost";
+    const Starved silent = starve(span, ignore, ignore);
+    EXPECT_EQ(silent.accepted, 0U) << "nobody touches at first: the only key packet is a visual one, and lost";
     EXPECT_GT(silent.refused, 50U);
-    const Starved asked = starve(span, lose, [](DeformableEncoder& encoder) { encoder.request_key(); });
-    EXPECT_GT(asked.accepted, asked.refused * 9 / 10) << "a refusal brings a key packet, mostly a haptic half";
+    const Starved asked = starve(span, ignore, [](Sender& sender) { sender.request_key(); });
+    EXPECT_GT(asked.accepted, asked.refused * 9 / 10) << "a refusal brings a key packet, mostly a haptic one";
   }
 }
 
 /// Keys come once for each request, also when every bound holds, and again when the key packet itself was lost.
-TEST(MeshSplit, RequestedKeyPackets) {
+TEST(DeformableLayers, RequestedKeyPackets) {
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
-  const std::vector<Vec3> shape(mesh.vertices.size(), Vec3{0, 0, 0.01});
   for (const DeformableProfile profile : {DeformableProfile::thesis, DeformableProfile::main}) {
-    for (const bool split : {false, true}) {
+    for (const bool layered : {false, true}) {
       for (const bool touched : {false, true}) {
-        StreamHeader header = testing::mesh_header(mesh, profile);
-        header.meshes[0].split = profile == DeformableProfile::main && split;
-        MeshEnds ends(header, {.thresholds = {}, .key_interval = 0, .split = split});
-        const auto touch = touched ? std::optional(SurfaceTouch{5, 1, 500}) : std::nullopt;
+        SheetEnds ends(scene_of(mesh, profile, layered), options(0, layered));
+        const SheetFrame frame{testing::moved_by(mesh.vertices.size(), {0, 0, 0.01}),
+                               touched ? std::optional(SurfaceTouch{5, 1, 500}) : std::nullopt};
         std::int64_t tick = 0;
-        const auto frame = [&] {
-          const auto first = ends.encoder.encode(tick, shape, touch).value();
-          ends.deliver(first, tick);
-          const EncodedDeformablePacket rest = ends.encoder.encode_rest();
-          ends.deliver(rest, tick++);
-          EXPECT_FALSE(first.key && rest.key);
-          return first.key || rest.key;
+        const auto keys = [&] {
+          std::size_t count = 0;
+          for (const Packet& packet : testing::all(ends.encode(tick, frame))) {
+            ends.deliver(packet, tick);
+            count += packet.key ? 1U : 0U;
+          }
+          ends.agree(tick++);
+          return count;
         };
-        EXPECT_TRUE(frame());
-        EXPECT_FALSE(frame());
-        ends.encoder.request_key();
-        EXPECT_TRUE(frame());
-        EXPECT_FALSE(frame());
-        ends.encoder.request_key();
-        EXPECT_EQ(ends.encoder.encode(tick, shape, touch)->key, touched || !split);
-        if (touched) {
-          ends.encoder.forget_last();
-          EXPECT_TRUE(ends.encoder.encode_rest().bytes.empty()) << "what is felt goes first";
+        EXPECT_EQ(keys(), 1U);
+        EXPECT_EQ(keys(), 0U);
+        ends.sender.request_key();
+        EXPECT_EQ(keys(), 1U);
+        EXPECT_EQ(keys(), 0U);
+        ends.sender.request_key();
+        const auto lost = ends.encode(tick++, frame).value();
+        ASSERT_FALSE(lost.empty());
+        EXPECT_TRUE(lost[0].key);
+        EXPECT_EQ(lost[0].layer == Layer::haptic, layered && touched) << "what is felt goes first";
+        if (lost.size() == 1) {
+          ends.sender.forget_last(1);
         } else {
-          EXPECT_EQ(ends.encoder.encode_rest().key, split);
-          ends.encoder.forget_last();
+          EXPECT_EQ(advice(ends.receiver.push(lost[1].bytes).error()), Advice::request_key) << "it builds on the lost one";
+          ends.sender.request_key();
         }
-        ++tick;
-        EXPECT_TRUE(frame());
-        EXPECT_FALSE(frame());
+        EXPECT_EQ(keys(), 1U);
+        EXPECT_EQ(keys(), 0U);
         if (HasFatalFailure()) return;
       }
     }
   }
 }
 
-/// Losses of any packet, whole ones too, and of key packets; the encoder is told once per packet.
-TEST(MeshSplit, AnyPacketMayBeLost) {
+/// Losses of any packet, of key packets, and of both packets of a frame. Whoever makes them is told once per packet, at once; where
+/// that comes too late, because the visual packet of the frame builds on a lost haptic one, the receiver asks for a key packet.
+TEST(DeformableLayers, AnyPacketMayBeLost) {
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
   for (const DeformableProfile profile : {DeformableProfile::thesis, DeformableProfile::main}) {
-    for (const bool split : {false, true}) {
-      StreamHeader header = testing::mesh_header(mesh, profile);
-      header.meshes[0].split = profile == DeformableProfile::main && split;
-      header.baseline_span = 3;
-      MeshEnds ends(header, {.thresholds = {}, .key_interval = 0.5, .split = split});
+    for (const bool layered : {false, true}) {
+      SheetEnds ends(scene_of(mesh, profile, layered, 3), options(0.5, layered));
       DentedSheet sheet(mesh, kSquares);
-      BoundWatch seen(header, {});
+      BoundWatch seen(*ends.sender.scene(), {});
       std::mt19937_64 random(3);
+      std::size_t requests = 0;
+      bool behind = false;
       for (std::int64_t k = 0; k < kFrames; ++k) {
         const SheetFrame frame = sheet.frame(k);
-        bool lost = false;
-        const auto pass = [&](const EncodedDeformablePacket& packet) {
-          if (!packet.bytes.empty() && random() % 3 == 0) {
-            ends.encoder.forget_last();
-            ends.encoder.forget_last();  // once is enough
-            lost = true;
+        const auto packets = ends.encode(k, frame).value();
+        std::size_t lost = 0;
+        bool refused = false;
+        for (std::size_t i = 0; i < packets.size(); ++i) {
+          const bool last = i + 1 == packets.size();
+          if (refused) {
+            const auto pushed = ends.receiver.push(packets[i].bytes);
+            ASSERT_FALSE(pushed);
+            EXPECT_EQ(advice(pushed.error()), Advice::request_key);
+          } else if (random() % 3 == 0) {
+            ++lost;
+            refused = !last;
+            if (!last) continue;
+            ends.sender.forget_last(1);
+            ends.sender.forget_last(1);  // once is enough
           } else {
-            ends.deliver(packet, k);
+            ends.deliver(packets[i], k);
           }
-        };
-        pass(ends.encoder.encode(k, frame.displacement, frame.touch).value());
-        pass(ends.encoder.encode_rest());
+        }
         if (HasFatalFailure()) return;
-        ASSERT_EQ(ends.decoder.state_hash(), ends.encoder.state_hash());
-        if (!lost && profile == DeformableProfile::main) seen.look(frame, ends.decoder.displacements_at(k));
+        if (refused) {
+          ends.sender.request_key();
+          ++requests;
+        }
+        behind = refused || (behind && (lost > 0 || packets.empty()));
+        if (behind) continue;  // the key packet is still to come
+        ASSERT_EQ(ends.receiver.state_hash(1), ends.sender.state_hash(1));
+        if (lost == 0 && profile == DeformableProfile::main) seen.look(frame, ends.shown(k));
       }
       EXPECT_EQ(seen.broken(), 0U);
-      EXPECT_GT(ends.halves[split ? 1 : 2], 50U);
+      EXPECT_GT(ends.layers[layered ? 1 : 2], 50U);
+      EXPECT_EQ(requests > 10, layered);
     }
   }
 }
 
-TEST(MeshSplit, ThesisListsWhatIsFeltInAPacketOfItsOwn) {
+/// A sender keeps its bounds whatever its packets build on, or refuses to be made.
+TEST(DeformableLayers, BoundsHoldWithAcknowledgedBaselinesToo) {
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
-  StreamHeader header = testing::mesh_header(mesh, DeformableProfile::thesis);
-  header.meshes[0].quant_bits = 12;
-  MeshEnds ends(header, {.thresholds = {}, .key_interval = 1, .split = true});
+  SceneSpec spec = testing::sheet_spec(mesh);
+  spec.deformables[0].layered = true;
+  spec.baseline_span = 8;
+  const SharedScene scene = testing::shared(std::move(spec));
+  SenderOptions acknowledged = options(0);
+  acknowledged.policy.baseline = Baseline::acknowledged;
+  if (!Sender::create(scene, acknowledged)) return;
+  SheetEnds ends(scene, acknowledged);
   DentedSheet sheet(mesh, kSquares);
-  BoundWatch watch(header, {});
-  Rings rings(header.meshes[0]);
-  std::vector<DeformableDecoder::Displacement> before(mesh.vertices.size());
+  BoundWatch seen(*scene, {});
   for (std::int64_t k = 0; k < kFrames; ++k) {
     const SheetFrame frame = sheet.frame(k);
-    const auto first = ends.encoder.encode(k, frame.displacement, frame.touch).value();
-    ends.deliver(first, k);
-    if (!first.bytes.empty() && !first.key) {
-      rings.triangles_around(frame.touch->triangle, header.meshes[0].rings);
-      const auto shown = ends.decoder.displacements();
+    for (const Packet& packet : testing::all(ends.encode(k, frame))) {
+      ends.deliver(packet, k);
+      if (HasFatalFailure()) return;
+      ends.sender.acknowledge(packet.substream, packet.sequence);
+    }
+    seen.look(frame, ends.shown(k));
+  }
+  EXPECT_EQ(seen.broken(), 0U) << "worst " << seen.worst() << " m";
+}
+
+TEST(DeformableLayers, ThesisListsWhatIsFeltInAPacketOfItsOwn) {
+  const TriMesh mesh = testing::sheet(kSquares, kSquares);
+  SceneSpec spec = testing::sheet_spec(mesh, DeformableProfile::thesis);
+  spec.deformables[0].quant_bits = 12;
+  const SharedScene scene = testing::shared(std::move(spec));
+  SheetEnds ends(scene, options(1));
+  DentedSheet sheet(mesh, kSquares);
+  BoundWatch watch(*scene, {});
+  Rings rings(scene->deformables[0]);
+  std::vector<Vec3i> before(mesh.vertices.size());
+  for (std::int64_t k = 0; k < kFrames; ++k) {
+    const SheetFrame frame = sheet.frame(k);
+    for (const Packet& packet : testing::all(ends.encode(k, frame))) {
+      ends.deliver(packet, k);
+      if (packet.layer != Layer::haptic || packet.key) continue;
+      rings.triangles_around(frame.touch->triangle, scene->deformables[0].rings);
+      const auto shown = ends.receiver.displacements(0);
       for (std::uint32_t v = 0; v < before.size(); ++v) {
         if (std::ranges::count(rings.vertices(), v) > 0) continue;
         ASSERT_EQ(shown[v], before[v]);
       }
     }
-    ends.deliver(ends.encoder.encode_rest(), k);
+    ends.agree(k);
     if (HasFatalFailure()) return;
-    const auto shown = ends.decoder.displacements();
+    const auto shown = ends.receiver.displacements(0);
     before.assign(shown.begin(), shown.end());
     watch.look(frame, shown);
   }
   EXPECT_LT(watch.worst(), 2.5e-4 + 1e-6);
-  EXPECT_GT(ends.halves[0], 100U);
-  EXPECT_GT(ends.halves[1], 100U);
-  EXPECT_EQ(ends.halves[2], 0U);
+  EXPECT_GT(ends.layers[0], 100U);
+  EXPECT_GT(ends.layers[1], 100U);
+  EXPECT_EQ(ends.layers[2], 0U);
 }
 
-/// A key packet that would list nothing, because the mesh is back in the initial state.
-TEST(MeshSplit, ThesisKeyPacketsListAVertexAtLeast) {
+/// A key packet that would list nothing, because the object is back in the initial state.
+TEST(DeformableLayers, ThesisKeyPacketsListAVertexAtLeast) {
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
-  for (const bool split : {false, true}) {
-    const StreamHeader header = testing::mesh_header(mesh, DeformableProfile::thesis);
-    MeshEnds ends(header, {.thresholds = {}, .key_interval = 0.1, .split = split});
-    const SurfaceTouch touch{5, 1, 500};
+  for (const bool layered : {false, true}) {
+    SheetEnds ends(scene_of(mesh, DeformableProfile::thesis, layered), options(0.1, layered));
     for (std::int64_t k = 0; k < 60; ++k) {
-      const std::vector<Vec3> shape(mesh.vertices.size(), Vec3{0, 0, k % 13 < 6 ? 0.01 : 0});
-      const auto first = ends.encoder.encode(k, shape, k % 2 == 0 ? std::optional(touch) : std::nullopt);
-      ASSERT_TRUE(first);
-      ends.deliver(*first, k);
-      ends.deliver(ends.encoder.encode_rest(), k);
+      const SheetFrame frame{testing::moved_by(mesh.vertices.size(), {0, 0, k % 13 < 6 ? 0.01 : 0}),
+                             k % 2 == 0 ? std::optional(SurfaceTouch{5, 1, 500}) : std::nullopt};
+      ends.send(k, frame);
       if (HasFatalFailure()) return;
-      for (std::size_t v = 0; v < shape.size(); ++v)
-        ASSERT_LT(norm(to_metres(ends.decoder.displacements()[v], 22) - shape[v]), 3e-4) << k;
+      for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+        ASSERT_LT(norm(to_metres(ends.receiver.displacements(0)[v], 22) - testing::vertex_of(frame.displacements, v)), 3e-4) << k;
     }
   }
 }
 
-TEST(MeshSplit, AllocatesNothingAfterSetUp) {
+TEST(DeformableLayers, AllocatesNothingAfterSetUp) {
   const TriMesh mesh = testing::sheet(kSquares, kSquares);
   for (const DeformableProfile profile : {DeformableProfile::thesis, DeformableProfile::main}) {
-    StreamHeader header = profile == DeformableProfile::main ? split_header(mesh, 8, 3) : testing::mesh_header(mesh, profile);
-    MeshEnds ends(header, {.thresholds = {}, .key_interval = 0.3, .split = true});
+    SheetEnds ends(profile == DeformableProfile::main ? layered_scene(mesh, 8, 3) : scene_of(mesh, profile, true), options(0.3));
     DentedSheet sheet(mesh, kSquares);
     std::vector<SheetFrame> frames;
     for (std::int64_t k = 0; k < 120; ++k) frames.push_back(sheet.frame(k));
     const std::uint64_t before = testing::allocated_bytes();
     std::size_t decoded = 0;
     for (std::int64_t k = 0; k < 120; ++k) {
-      const SheetFrame& frame = frames[static_cast<std::size_t>(k)];
-      const auto first = ends.encoder.encode(k, frame.displacement, frame.touch);
-      if (first && !first->bytes.empty()) decoded += ends.decoder.decode(first->bytes).has_value() ? 1U : 0U;
-      const auto rest = ends.encoder.encode_rest();
-      if (k % 31 == 0) ends.encoder.request_key();
-      if (k % 7 == 0) ends.encoder.forget_last();
-      else if (!rest.bytes.empty()) decoded += ends.decoder.decode(rest.bytes).has_value() ? 1U : 0U;
-      (void)ends.decoder.displacements_at(k);
+      const auto packets = ends.encode(k, frames[static_cast<std::size_t>(k)]);
+      if (!packets) break;
+      if (k % 31 == 0) ends.sender.request_key();
+      for (std::size_t i = 0; i < packets->size(); ++i) {
+        if (k % 7 == 0 && i + 1 == packets->size()) ends.sender.forget_last(1);
+        else decoded += ends.receiver.push((*packets)[i].bytes).has_value() ? 1U : 0U;
+      }
+      (void)ends.shown(k);
     }
     EXPECT_EQ(testing::allocated_bytes(), before);
     EXPECT_GT(decoded, 60U);

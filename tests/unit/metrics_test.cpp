@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/metrics/compare.h>
-
+// What a stream cost, and how far what a client shows is from the truth: metrics/*.h.
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <sstream>
 
-#include <tactus/rigid/rigid_encoder.h>
+#include <tactus/metrics/deformable_errors.h>
+#include <tactus/metrics/errors.h>
+#include <tactus/metrics/rates.h>
+#include "tests/unit/deformable_fixture.h"
 
 namespace tactus {
 namespace {
@@ -114,65 +115,78 @@ TEST(ErrorMetrics, RenderedForcesAgainstTheServers) {
   EXPECT_EQ(fidelity.rendered().ticks_over(), 1u);
 }
 
-TEST(StreamHeaderOfTrace, TakesFirstPosesAtRest) {
-  TraceFrame frame = pressed(7, 0.25);
-  frame.objects[0].velocity = {1, 0, 0};
-  const auto header = stream_header(one_cube(), frame);
-  ASSERT_TRUE(header);
-  EXPECT_EQ(header->max_extrapolation, 2000);
-  EXPECT_EQ(header->objects[0].initial.position[0], 1 << 20);
-  EXPECT_EQ(header->objects[0].initial.velocity[0], 0);
-  EXPECT_EQ(header->objects[1].dof, Dof::none);
-  frame.objects.pop_back();
-  EXPECT_STREQ(stream_header(one_cube(), frame).error().rule, "R-API-5");
+constexpr double kUnit = 0x1p-22;  // [m] of the grid
+std::int32_t units(double metres) { return static_cast<std::int32_t>(std::floor(metres / kUnit + 0.5)); }
+
+TEST(DeformableErrors, CountsByBound) {
+  const TriMesh sheet = testing::sheet(8, 8);
+  const DeformableThresholds bounds{.visual = 0.001, .weber_fraction = 0.1, .depth_floor = 1e-4};
+  DeformableErrors fidelity(sheet, bounds, 0, 22);
+  const std::vector<float> truth(3 * sheet.vertices.size());
+  std::vector<Vec3i> shown(sheet.vertices.size());
+  const Triangle& touched = sheet.triangles[20];
+  shown[touched[0]] = {0, 0, units(0.0003)};  // h = 0.1 * 2 mm
+  shown[touched[1]] = {0, units(0.0001), 0};
+  shown[80] = {units(0.0008), 0, 0};
+  fidelity.add(truth, shown, {});
+  EXPECT_EQ(fidelity.all().violations, 0u);
+  EXPECT_EQ(fidelity.area().vertices, 0u);
+  EXPECT_NEAR(fidelity.worst_ratio(), 0.8, kUnit / 0.001);
+  fidelity.add(truth, shown, SurfaceTouch{20, 0.2, 100});
+  EXPECT_EQ(fidelity.all().violations, 1u);
+  EXPECT_EQ(fidelity.area().vertices, 3u);
+  EXPECT_EQ(fidelity.area().violations, 1u);
+  EXPECT_NEAR(fidelity.area().max, 0.0003, kUnit);
+  EXPECT_NEAR(fidelity.area().mse(), (0.0003 * 0.0003 + 0.0001 * 0.0001) / 3, 0.0003 * kUnit);
+  EXPECT_NEAR(fidelity.worst_ratio(), 1.5, kUnit / 0.0002);
+  EXPECT_NEAR(fidelity.mean_haptic(), 0.0002, 1e-12);
+  shown[80] = {units(0.0011), 0, 0};
+  fidelity.add(truth, shown, {});
+  EXPECT_EQ(fidelity.all().violations, 2u);
+  EXPECT_EQ(fidelity.all().vertices, 3 * sheet.vertices.size());
 }
 
-/// Stream of a cube that jumps 1 m at tick 10 and again at 20; `record_offset` is added to the ticks of the file's records.
-std::string jumping_stream(std::int64_t record_offset) {
-  const StreamHeader header = *stream_header(one_cube(), pressed(0, 0));
-  auto encoder = *RigidEncoder::create(header, {.triggers = {.heartbeat = 0, .haptic = HapticRule::off}});
-  std::ostringstream out;
-  auto writer = *StreamFileWriter::create(out, header);
-  for (std::int64_t tick = 0; tick < 30; ++tick) {
-    const std::int64_t leap = tick / 10;
-    const auto packet = encoder.encode(tick, pressed(tick, static_cast<double>(leap)).objects, {});
-    if (packet->bytes.empty()) continue;
-    EXPECT_TRUE(writer.add(tick + record_offset, packet->bytes, packet->key));
-  }
-  EXPECT_TRUE(writer.finish());
-  return out.str();
+TEST(DeformableErrors, BoundsDoNotGoBelowTheGrid) {
+  const TriMesh sheet = testing::sheet(1, 1);
+  DeformableErrors fidelity(sheet, {.visual = 0, .weber_fraction = {}, .depth_floor = 0}, 3, 10);
+  const std::vector<Vec3i> shown(4, Vec3i{7, -3, 0});
+  const double unit = 1.0 / 1024, half = 0.5 * unit;
+  fidelity.add(testing::moved_by(4, {7 * unit + half, -3 * unit + half, half}), shown, {});
+  EXPECT_EQ(fidelity.all().violations, 0u);
+  fidelity.add(testing::moved_by(4, {7 * unit + half, -3 * unit + half, 1.01 * half}), shown, {});
+  EXPECT_EQ(fidelity.all().violations, 4u);
 }
 
-std::span<const std::uint8_t> bytes_of(const std::string& text) {
-  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+TEST(RateMetrics, CountsByStrongestReason) {
+  const RigidUpdate updates[] = {{0, Reason::visual, 0}, {1, Reason::haptic, 0}, {2, Reason::heartbeat, 0}};
+  DecodedPacket packet;
+  EXPECT_EQ(strongest_reason(packet), Reason::request);
+  packet.updates = std::span(updates).first(1);
+  EXPECT_EQ(strongest_reason(packet), Reason::visual);
+  packet.updates = updates;
+  EXPECT_EQ(strongest_reason(packet), Reason::haptic);
+  RateMetrics traffic;
+  traffic.add(strongest_reason(packet), 3, 40, true);
+  traffic.add(Reason::visual, 1, 9, false);
+  traffic.add(Reason::visual, 2, 11, false);
+  EXPECT_EQ(traffic.packets, (std::array<std::uint64_t, 4>{0, 0, 2, 1}));
+  EXPECT_EQ(traffic.all_packets(), 3u);
+  EXPECT_EQ(traffic.updates, 6u);
+  EXPECT_EQ(traffic.bytes, 60u);
+  EXPECT_EQ(traffic.keys, 1u);
 }
 
-TEST(StreamPlayer, AppliesPacketsWhenTheyAreDue) {
-  const std::string file = jumping_stream(0);
-  auto player = *StreamPlayer::open(bytes_of(file));
-  EXPECT_EQ(*player.next_tick(), 10);
-  EXPECT_FALSE(*player.play(9));
-  EXPECT_NEAR(player.pose(0, 9).position.x, 0, 1e-6);
-  const auto played = player.play(10);
-  ASSERT_TRUE(played && *played);
-  EXPECT_EQ(strongest_reason((*played)->packet), Reason::visual);
-  EXPECT_TRUE((*played)->packet.key);
-  EXPECT_NEAR(player.pose(0, 10).position.x, 1, 0.006);
-  EXPECT_EQ(*player.next_tick(), 20);
-  EXPECT_TRUE(*player.play(25));
-  EXPECT_FALSE(player.complete());
-  EXPECT_EQ(*player.next_tick(), std::nullopt);
-  EXPECT_TRUE(player.complete());
-}
-
-TEST(StreamPlayer, RefusesARecordWithAnotherTickThanItsPacket) {
-  const std::string file = jumping_stream(1);
-  auto player = *StreamPlayer::open(bytes_of(file));
-  const auto played = player.play(11);
-  ASSERT_FALSE(played);
-  EXPECT_EQ(played.error().code, Errc::invalid);
-  EXPECT_STREQ(played.error().rule, "R-FIL-7");
-  EXPECT_GT(played.error().bit_offset, 0u);
+TEST(DeformableRates, Quantiles) {
+  DeformableRates traffic;
+  EXPECT_EQ(traffic.quantile(0.99), 0u);
+  for (std::size_t size = 1; size <= 200; ++size) traffic.add(size, 1, size == 1, size % 2 == 0 ? Layer::haptic : Layer::all);
+  EXPECT_EQ(traffic.quantile(0.99), 198u);
+  EXPECT_EQ(traffic.quantile(1), 200u);
+  EXPECT_EQ(traffic.keys, 1u);
+  EXPECT_EQ(traffic.bytes, 20100u);
+  EXPECT_EQ(traffic.layers[0].packets, 100u);
+  EXPECT_EQ(traffic.layers[0].bytes, 10100u);
+  EXPECT_EQ(traffic.layers[1].packets, 0u);
 }
 
 }  // namespace

@@ -151,7 +151,7 @@ TEST(MsdSimulation, SameSeedSameBitsOtherSeedOtherBits) {
 
 TEST(MsdSimulation, TravelsThroughTheCodecAndAllocatesNothing) {
   SimulationOptions options{.seed = 1, .grip = {}, .channel = ChannelOptions{}};
-  options.channel->encoder.triggers.weber_fraction = 0.05;
+  options.channel->sender.triggers.weber_fraction = 0.05;
   auto simulation = Simulation::create(shipped(), options);
   ASSERT_TRUE(simulation);
   for (int i = 0; i < 10; ++i) ASSERT_TRUE(simulation->step());
@@ -161,7 +161,7 @@ TEST(MsdSimulation, TravelsThroughTheCodecAndAllocatesNothing) {
   for (int i = 0; i < 1500; ++i) {
     const auto packet = simulation->step();
     if (!packet) break;
-    packets += !packet->bytes.empty();
+    packets += static_cast<int>(packet->size());
     difference =
         std::max(difference, norm(simulation->client_poses()[0].position - simulation->frame().objects[0].pose.position));
   }

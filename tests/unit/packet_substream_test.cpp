@@ -3,58 +3,69 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
+#include <string>
+#include <tuple>
 
 #include "tests/unit/deformable_fixture.h"
 
 namespace tactus {
 namespace {
 
-StreamHeader scene(std::size_t meshes, std::uint8_t dof) {
-  StreamHeader header = testing::mesh_header(testing::sheet(1, 1));
-  header.meshes.resize(meshes, header.meshes[0]);
-  header.objects.push_back({"box", dof, {}});
-  return header;
+SharedScene scene(std::size_t deformables, std::uint8_t dof) {
+  SceneSpec spec = testing::sheet_spec(testing::sheet(1, 1));
+  spec.deformables.resize(deformables, spec.deformables[0]);
+  for (std::size_t i = 0; i < deformables; ++i) spec.deformables[i].name = "sheet " + std::to_string(i);
+  spec.objects.push_back({"box", dof, {}});
+  return testing::shared(std::move(spec));
 }
 
-TEST(Part, OnePartHasNoByte) {
+TEST(Substream, OneAloneHasNoNumber) {
   const std::array<std::uint8_t, 3> packet{7, 8, 9};
-  for (const auto& [meshes, dof, part] : {std::tuple{0U, Dof::all, 0U}, {1U, Dof::none, 1U}, {0U, Dof::none, 0U}}) {
-    const auto split = split_part(scene(meshes, dof), packet);
+  for (const auto& [deformables, dof, substream] : {std::tuple{0U, Dof::all, 0U}, {1U, Dof::none, 1U}, {0U, Dof::none, 0U}}) {
+    const auto split = split_substream(*scene(deformables, dof), packet);
     ASSERT_TRUE(split);
-    EXPECT_EQ(split->part, part);
+    EXPECT_EQ(split->substream, substream);
     EXPECT_EQ(split->bytes.size(), 3U);
   }
 }
 
-TEST(Part, SeveralPartsAreTold) {
-  const auto part_of = [](const StreamHeader& header, std::uint8_t byte) {
+TEST(Substream, OfSeveralEachIsTold) {
+  const auto substream_of = [](const SharedScene& of, std::uint8_t byte) {
     const std::array<std::uint8_t, 2> packet{byte, 5};
-    const auto split = split_part(header, packet);
+    const auto split = split_substream(*of, packet);
     EXPECT_EQ(split ? split->bytes.size() : 1, 1U);
-    return split ? static_cast<int>(split->part) : -1;
+    return split ? static_cast<int>(split->substream) : -1;
   };
-  EXPECT_EQ(part_of(scene(1, Dof::all), 0), 0);
-  EXPECT_EQ(part_of(scene(1, Dof::all), 1), 1);
-  EXPECT_EQ(part_of(scene(1, Dof::all), 2), -1);
-  EXPECT_EQ(part_of(scene(2, Dof::none), 0), -1);
-  EXPECT_EQ(part_of(scene(2, Dof::none), 2), 2);
-  EXPECT_STREQ(split_part(scene(2, Dof::none), {}).error().rule, "R-PKT-6");
-  EXPECT_EQ(split_part(scene(2, Dof::none), {}).error().code, Errc::truncated);
+  EXPECT_EQ(substream_of(scene(1, Dof::all), 0), 0);
+  EXPECT_EQ(substream_of(scene(1, Dof::all), 1), 1);
+  EXPECT_EQ(substream_of(scene(1, Dof::all), 2), -1);
+  EXPECT_EQ(substream_of(scene(2, Dof::none), 0), -1);
+  EXPECT_EQ(substream_of(scene(2, Dof::none), 2), 2);
+  EXPECT_STREQ(split_substream(*scene(2, Dof::none), {}).error().rule, "R-PKT-6");
+  EXPECT_EQ(split_substream(*scene(2, Dof::none), {}).error().code, Errc::truncated);
 }
 
-TEST(Part, WhatWasJoinedIsSplitAgain) {
-  const std::array<std::uint8_t, 3> packet{7, 8, 9};
-  for (const auto& header : {scene(2, Dof::all), scene(1, Dof::none), scene(0, Dof::all)}) {
-    PartJoiner joiner(header);
-    const std::size_t part = header.meshes.size();
-    const auto joined = joiner.join(part, packet);
-    EXPECT_EQ(joined.size(), has_part_byte(header) ? 4u : 3u);
-    const auto split = split_part(header, joined);
-    ASSERT_TRUE(split);
-    EXPECT_EQ(split->part, part);
-    EXPECT_TRUE(std::ranges::equal(split->bytes, packet));
+/// What a sender makes begins with its substream's number, if there are several, and then its sequence number.
+TEST(Substream, WhatWasSentIsSplitAgain) {
+  for (const SharedScene& of : {scene(2, Dof::all), scene(1, Dof::none), scene(0, Dof::all), scene(2, Dof::none)}) {
+    auto sender = Sender::create(of, {.triggers = {}, .deformable = {}, .policy = {.first_sequence = 0x1234}}).value();
+    RigidSample moved;
+    moved.pose.position.x = 0.1;
+    const std::vector<float> shape = testing::moved_by(4, {0, 0, 0.01});
+    const std::vector<DeformableTruth> shapes(of->deformables.size(), {shape, {}});
+    const auto packets = sender.encode(3, {.objects = {&moved, 1}, .deformables = shapes});
+    ASSERT_TRUE(packets) << packets.error().rule;
+    ASSERT_EQ(packets->size(), of->moving().size() + of->deformables.size());
+    for (const Packet& packet : *packets) {
+      const auto split = split_substream(*of, packet.bytes);
+      ASSERT_TRUE(split);
+      EXPECT_EQ(split->substream, packet.substream);
+      EXPECT_EQ(packet.bytes.size() - split->bytes.size(), has_substream_number(*of) ? 1u : 0u);
+      EXPECT_EQ(split->bytes[0], 0x34);
+      EXPECT_EQ(split->bytes[1], 0x12);
+    }
+    EXPECT_EQ(has_substream_number(*of), packets->size() > 1);
   }
 }
 

@@ -5,21 +5,38 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <span>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <tactus/tactus.h>
 
 namespace tactus::testing {
 
-inline StreamHeader scene_of(std::size_t objects, std::uint8_t dof = Dof::all) {
-  StreamHeader header;
-  header.objects.resize(objects);
+inline SceneSpec spec_of(std::size_t objects, std::uint8_t dof = Dof::all) {
+  SceneSpec spec;
+  spec.objects.resize(objects);
   for (std::size_t i = 0; i < objects; ++i) {
-    header.objects[i].name = "object " + std::to_string(i);
-    header.objects[i].dof = dof;
+    spec.objects[i].name = "object " + std::to_string(i);
+    spec.objects[i].dof = dof;
   }
-  return header;
+  return spec;
+}
+
+/// pre  the declaration breaks no rule
+inline SharedScene shared(SceneSpec spec) { return Scene::create(std::move(spec)).value(); }
+inline SharedScene scene_of(std::size_t objects, std::uint8_t dof = Dof::all) { return shared(spec_of(objects, dof)); }
+
+/// The packets of a call. A span of its own: `for (auto& p : sender.encode(..).value())` would walk in what is gone.
+inline std::span<const Packet> all(const Result<std::span<const Packet>>& packets) { return packets.value(); }
+
+/// The packet of a call that makes one at most; without bytes: none.
+inline Packet only(const Result<std::span<const Packet>>& packets) {
+  const std::span<const Packet> made = all(packets);
+  if (made.size() > 1) throw std::logic_error("more than one packet");
+  return made.empty() ? Packet{} : made.front();
 }
 
 /// Smooth but eventful motion of one object from a seed: drifting sines in place and angle, with sudden kicks.

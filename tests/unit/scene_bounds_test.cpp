@@ -11,27 +11,29 @@
 namespace tactus {
 namespace {
 
-/// One object that moves and two meshes, one of each profile.
-StreamHeader scene() {
-  StreamHeader header;
-  header.objects.resize(2);
-  header.objects[0].name = "cube";
-  header.objects[1].name = "wall";
-  header.objects[1].dof = Dof::none;
+/// One object that moves and two deformable ones, one of each profile.
+SceneSpec objects() {
+  SceneSpec spec;
+  spec.objects.resize(2);
+  spec.objects[0].name = "cube";
+  spec.objects[1].name = "wall";
+  spec.objects[1].dof = Dof::none;
   for (const DeformableProfile profile : {DeformableProfile::main, DeformableProfile::thesis}) {
-    DeformableObject& mesh = header.meshes.emplace_back();
-    mesh.name = profile == DeformableProfile::main ? "main" : "thesis";
-    mesh.profile = profile;
-    mesh.rest = {{0, 0, 0}};
+    DeformableObject& object = spec.deformables.emplace_back();
+    object.name = profile == DeformableProfile::main ? "main" : "thesis";
+    object.profile = profile;
+    object.rest = {{0, 0, 0}};
   }
-  return header;
+  return spec;
 }
 
-StreamHeader with_bounds(const RigidTriggers& rigid, const DeformableThresholds& meshes) {
-  StreamHeader header = scene();
-  header.bounds = bounds_of(header, rigid, meshes);
-  return header;
+SceneSpec with_bounds(const RigidTriggers& rigid, const DeformableThresholds& deformables) {
+  SceneSpec spec = objects();
+  spec.bounds = bounds_of(spec, rigid, deformables);
+  return spec;
 }
+
+std::vector<std::uint8_t> written(const SceneSpec& spec) { return write_scene(*Scene::create(spec).value()).value(); }
 
 RigidTriggers with_rule(HapticRule rule) {
   RigidTriggers out;
@@ -47,34 +49,33 @@ RigidTriggers with_rule(HapticRule rule) {
 TEST(StreamBounds, WhatTheSenderPromisesArrivesToTheBit) {
   for (const HapticRule rule : {HapticRule::off, HapticRule::isotropic, HapticRule::cone, HapticRule::fixed}) {
     for (const std::optional<double> weber : {std::optional<double>(), std::optional(0.1)}) {
-      DeformableThresholds meshes;
-      meshes.weber_fraction = weber;
-      if (weber) meshes.depth_floor = 1e-5;
-      const StreamHeader header = with_bounds(with_rule(rule), meshes);
-      const auto bytes = write_header(header).value();
-      const auto parsed = parse_header(bytes);
+      DeformableThresholds deformables;
+      deformables.weber_fraction = weber;
+      if (weber) deformables.depth_floor = 1e-5;
+      const SceneSpec spec = with_bounds(with_rule(rule), deformables);
+      const auto bytes = written(spec);
+      const auto parsed = parse_scene(bytes);
       ASSERT_TRUE(parsed);
-      EXPECT_EQ(parsed->header.bounds, header.bounds);
-      EXPECT_EQ(write_header(parsed->header).value(), bytes);
+      EXPECT_EQ(parsed->scene->bounds, spec.bounds);
+      EXPECT_EQ(write_scene(*parsed->scene).value(), bytes);
     }
   }
 }
 
-TEST(StreamBounds, ThesisMeshesOnlyAimAtThem) {
-  const StreamHeader header = with_bounds({}, {});
-  EXPECT_TRUE(header.bounds->meshes[0].kept);
-  EXPECT_FALSE(header.bounds->meshes[1].kept);
+TEST(StreamBounds, ObjectsOfProfileThesisOnlyAimAtThem) {
+  const SceneSpec spec = with_bounds({}, {});
+  EXPECT_TRUE(spec.bounds->deformables[0].kept);
+  EXPECT_FALSE(spec.bounds->deformables[1].kept);
 }
 
 TEST(StreamBounds, AStreamWithoutThemHasNoByteAboutThem) {
-  const auto without = write_header(scene()).value();
-  EXPECT_FALSE(parse_header(without)->header.bounds);
-  StreamHeader still = scene();
+  EXPECT_FALSE(parse_scene(written(objects()))->scene->bounds);
+  SceneSpec still = objects();
   still.objects.erase(still.objects.begin());
-  still.meshes.clear();
-  const std::size_t bare = write_header(still)->size();
+  still.deformables.clear();
+  const std::size_t bare = written(still).size();
   still.bounds = bounds_of(still, {}, {});
-  EXPECT_EQ(write_header(still)->size(), bare + 2) << "type and size";
+  EXPECT_EQ(written(still).size(), bare + 2) << "type and size";
 }
 
 TEST(StreamBounds, WhatIsNoBoundIsRefused) {
@@ -84,16 +85,17 @@ TEST(StreamBounds, WhatIsNoBoundIsRefused) {
       [](StreamBounds& b) { b.rigid->heartbeat = kInfinite; },
       [](StreamBounds& b) { b.rigid->force_floor = std::numeric_limits<double>::quiet_NaN(); },
       [](StreamBounds& b) { b.rigid.reset(); },
-      [](StreamBounds& b) { b.meshes[1].thresholds.depth_floor = -0.0; },
-      [](StreamBounds& b) { b.meshes.pop_back(); },
+      [](StreamBounds& b) { b.deformables[1].thresholds.depth_floor = -0.0; },
+      [](StreamBounds& b) { b.deformables.pop_back(); },
   };
   for (const auto& change : changes) {
-    StreamHeader header = with_bounds({}, {});
-    ASSERT_TRUE(write_header(header));
-    change(*header.bounds);
-    const auto bytes = write_header(header);
-    ASSERT_FALSE(bytes) << &change - changes;
-    EXPECT_STREQ(bytes.error().rule, "R-STR-17");
+    SceneSpec spec = with_bounds({}, {});
+    ASSERT_TRUE(check_scene(spec));
+    change(*spec.bounds);
+    const auto scene = Scene::create(spec);
+    ASSERT_FALSE(scene) << &change - changes;
+    EXPECT_EQ(scene.error().code, Errc::invalid);
+    EXPECT_STREQ(scene.error().rule, "R-STR-17");
   }
 }
 

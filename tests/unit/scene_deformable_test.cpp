@@ -11,79 +11,79 @@
 namespace tactus {
 namespace {
 
-StreamHeader two_meshes() {
-  StreamHeader header =
-      testing::mesh_header(testing::sheet(3, 2), DeformableProfile::main, testing::wave_basis(testing::sheet(3, 2), 3, 3));
+SceneSpec two_deformables() {
+  SceneSpec spec =
+      testing::sheet_spec(testing::sheet(3, 2), DeformableProfile::main, testing::wave_basis(testing::sheet(3, 2), 3, 3));
   DeformableObject thesis = make_deformable_object("other", testing::sheet(1, 1), 22).value();
   thesis.profile = DeformableProfile::thesis;
   thesis.quant_bits = 10;
   thesis.models_kept = true;
-  header.meshes[0].split = true;
+  spec.deformables[0].layered = true;
   thesis.rest[0] = {-2147483647 - 1, 2147483647, 0};
-  header.meshes.push_back(thesis);
-  header.objects.push_back({"box", Dof::all, {}});
-  return header;
+  spec.deformables.push_back(thesis);
+  spec.objects.push_back({"box", Dof::all, {}});
+  return spec;
 }
 
-TEST(MeshHeader, RoundTrip) {
-  const StreamHeader header = two_meshes();
-  const auto bytes = write_header(header).value();
-  const auto parsed = parse_header(bytes);
+TEST(SceneDeformables, RoundTrip) {
+  const SceneSpec spec = two_deformables();
+  const auto bytes = write_scene(*testing::shared(spec)).value();
+  const auto parsed = parse_scene(bytes);
   ASSERT_TRUE(parsed) << parsed.error().rule;
-  EXPECT_EQ(parsed->header.meshes, header.meshes);
+  EXPECT_EQ(parsed->scene->deformables, spec.deformables);
   EXPECT_EQ(parsed->size, bytes.size());
-  EXPECT_EQ(write_header(parsed->header).value(), bytes);
+  EXPECT_EQ(write_scene(*parsed->scene).value(), bytes);
 }
 
-TEST(MeshHeader, StreamWithoutMeshesHasNoByteAboutThem) {
-  StreamHeader header = two_meshes();
-  header.meshes.clear();
-  const auto bytes = write_header(header).value();
+TEST(SceneDeformables, ASceneWithoutThemHasNoByteAboutThem) {
+  SceneSpec spec = two_deformables();
+  spec.deformables.clear();
+  const auto bytes = write_scene(*testing::shared(spec)).value();
   EXPECT_EQ(bytes[6], 0);
   EXPECT_EQ(bytes.size(), 12U + 12U + (3U + 3U + 28U) + 4U);  // fixed part, parameters and count, one object, crc
 }
 
-TEST(MeshHeader, EveryTruncationIsRefused) {
-  const auto bytes = write_header(two_meshes()).value();
+TEST(SceneDeformables, EveryTruncationIsRefused) {
+  const auto bytes = write_scene(*testing::shared(two_deformables())).value();
   for (std::size_t size = 0; size < bytes.size(); ++size) {
-    const auto parsed = parse_header(std::span(bytes).first(size));
+    const auto parsed = parse_scene(std::span(bytes).first(size));
     ASSERT_FALSE(parsed);
     EXPECT_EQ(parsed.error().code, Errc::truncated) << size;
   }
 }
 
-TEST(MeshHeader, EachRule) {
+TEST(SceneDeformables, EachRule) {
   const auto rule = [](const auto& change) {
-    StreamHeader header = two_meshes();
-    change(header.meshes[0]);
-    const auto written = write_header(header);
-    return written ? std::string_view("none") : std::string_view(written.error().rule);
+    SceneSpec spec = two_deformables();
+    change(spec.deformables[0]);
+    const auto scene = Scene::create(std::move(spec));
+    return scene ? std::string_view("none") : std::string_view(scene.error().rule);
   };
   EXPECT_EQ(rule([](DeformableObject&) {}), "none");
   EXPECT_EQ(rule([](DeformableObject& m) { m.name.clear(); }), "R-STR-11");
   EXPECT_EQ(rule([](DeformableObject& m) { m.name = "box"; }), "R-STR-11");
   EXPECT_EQ(rule([](DeformableObject& m) { m.name = "other"; }), "R-STR-11");
-  EXPECT_EQ(rule([](DeformableObject& m) { m.profile = static_cast<DeformableProfile>(2); }), "R-MES-2");
-  EXPECT_EQ(rule([](DeformableObject& m) { m.rings = 33; }), "R-MES-3");
-  EXPECT_EQ(rule([](DeformableObject& m) { m.frame_period = 0; }), "R-MES-3");
-  EXPECT_EQ(rule([](DeformableObject& m) { m.frame_period = (1U << 28) + 1; }), "R-MES-3");
-  EXPECT_EQ(rule([](DeformableObject& m) { m.rest.clear(); }), "R-MES-4");
-  EXPECT_EQ(rule([](DeformableObject& m) { m.triangles[2][1] = 12; }), "R-MES-6");
-  EXPECT_EQ(rule([](DeformableObject& m) { m.triangles[2][1] = m.triangles[2][2]; }), "R-MES-6");
-  EXPECT_EQ(rule([](DeformableObject& m) { m.basis.steps[1] = 0; }), "R-MES-7");
-  EXPECT_EQ(rule([](DeformableObject& m) { m.basis.entries[5] = 2048; }), "R-MES-7");
-  EXPECT_EQ(rule([](DeformableObject& m) { m.basis.entries.pop_back(); }), "R-MES-7");
-  EXPECT_EQ(rule([](DeformableObject& m) { m.profile = DeformableProfile::thesis; }), "R-MES-7");
+  EXPECT_EQ(rule([](DeformableObject& m) { m.profile = static_cast<DeformableProfile>(2); }), "R-DEF-2");
+  EXPECT_EQ(rule([](DeformableObject& m) { m.rings = 33; }), "R-DEF-3");
+  EXPECT_EQ(rule([](DeformableObject& m) { m.frame_period = 0; }), "R-DEF-3");
+  EXPECT_EQ(rule([](DeformableObject& m) { m.frame_period = (1U << 28) + 1; }), "R-DEF-3");
+  EXPECT_EQ(rule([](DeformableObject& m) { m.rest.clear(); }), "R-DEF-4");
+  EXPECT_EQ(rule([](DeformableObject& m) { m.triangles[2][1] = 12; }), "R-DEF-6");
+  EXPECT_EQ(rule([](DeformableObject& m) { m.triangles[2][1] = m.triangles[2][2]; }), "R-DEF-6");
+  EXPECT_EQ(rule([](DeformableObject& m) { m.basis.steps[1] = 0; }), "R-DEF-7");
+  EXPECT_EQ(rule([](DeformableObject& m) { m.basis.entries[5] = 2048; }), "R-DEF-7");
+  EXPECT_EQ(rule([](DeformableObject& m) { m.basis.entries.pop_back(); }), "R-DEF-7");
+  EXPECT_EQ(rule([](DeformableObject& m) { m.profile = DeformableProfile::thesis; }), "R-DEF-7");
   EXPECT_EQ(rule([](DeformableObject& m) {
               m.profile = DeformableProfile::thesis;
               m.basis = {};
               m.quant_bits = 13;
             }),
-            "R-MES-3");
+            "R-DEF-3");
 }
 
 /// What a writer cannot write: bytes changed by hand.
-TEST(MeshHeader, EachRuleOfTheReader) {
+TEST(SceneDeformables, EachRuleOfTheReader) {
   DeformableObject mesh;
   mesh.name = "m";
   mesh.rest = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -99,20 +99,20 @@ TEST(MeshHeader, EachRuleOfTheReader) {
     const auto parsed = parse_deformable(reader, {1000, 1000});
     return parsed ? std::string_view("none") : std::string_view(parsed.error().rule);
   };
-  // profile, name (2), rings, frame_period (4), split, vertices, triangles, 9 coordinates, 3 corners, modes
+  // profile, name (2), rings, frame_period (4), layered, vertices, triangles, 9 coordinates, 3 corners, modes
   EXPECT_EQ(rule(0, {1}), "none");
-  EXPECT_EQ(rule(0, {2}), "R-MES-2");
-  EXPECT_EQ(rule(3, {33}), "R-MES-3");
+  EXPECT_EQ(rule(0, {2}), "R-DEF-2");
+  EXPECT_EQ(rule(3, {33}), "R-DEF-3");
   EXPECT_EQ(rule(8, {1}), "none");
-  EXPECT_EQ(rule(8, {2}), "R-MES-3");
-  EXPECT_EQ(rule(9, {0}), "R-MES-4");
-  EXPECT_EQ(rule(9, {0x80, 0x80, 0x80, 1}), "R-MES-4");
+  EXPECT_EQ(rule(8, {2}), "R-DEF-3");
+  EXPECT_EQ(rule(9, {0}), "R-DEF-4");
+  EXPECT_EQ(rule(9, {0x80, 0x80, 0x80, 1}), "R-DEF-4");
   EXPECT_EQ(rule(9, {0x80, 0x80, 2}), "R-STR-14");
   EXPECT_EQ(rule(9, {0xff, 1}), "R-STR-5");
-  EXPECT_EQ(rule(11, {0x80, 0x80, 0x80, 0x80, 0x10}), "R-MES-5");
-  EXPECT_EQ(rule(20, {6}), "R-MES-6");
-  EXPECT_EQ(rule(20, {1}), "R-MES-6");
-  EXPECT_EQ(rule(23, {65}), "R-MES-7");
+  EXPECT_EQ(rule(11, {0x80, 0x80, 0x80, 0x80, 0x10}), "R-DEF-5");
+  EXPECT_EQ(rule(20, {6}), "R-DEF-6");
+  EXPECT_EQ(rule(20, {1}), "R-DEF-6");
+  EXPECT_EQ(rule(23, {65}), "R-DEF-7");
   EXPECT_EQ(rule(23, {1}), "R-STR-5");
   EXPECT_EQ(rule(23, {0x81, 0}), "R-STR-5");
 }

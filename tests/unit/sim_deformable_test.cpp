@@ -188,8 +188,8 @@ TEST(DeformableSimulation, StandsBesideABoxAndAOneDimensionalObject) {
   scene.msds[0].rate = 1;
   auto simulation = Simulation::create(scene);
   ASSERT_TRUE(simulation);
-  ASSERT_EQ(simulation->header().objects.size(), 2u);
-  EXPECT_EQ(simulation->header().objects[1].name, "surface");
+  ASSERT_EQ(simulation->info().objects.size(), 2u);
+  EXPECT_EQ(simulation->info().objects[1].name, "surface");
   auto place = [](double x, double z) {
     std::vector<UserSample> samples(1);
     samples[0].contact.device = {x, 0, z};
@@ -280,16 +280,17 @@ TEST(DeformableSimulation, RigidScenesMakeNoDeformableWorld) {
 double force_difference(double visual) {
   Scene scene = shipped("membrane");
   SimulationOptions options{.seed = 1, .grip = {}, .channel = ChannelOptions{}};
-  options.channel->mesh.thresholds = {.visual = visual, .weber_fraction = {}};
+  options.channel->sender.deformable.thresholds = {.visual = visual, .weber_fraction = {}};
   auto simulation = Simulation::create(scene, options);
   EXPECT_TRUE(simulation);
-  EXPECT_EQ(simulation->header().meshes.size(), 1u);
+  EXPECT_EQ(simulation->stream_scene()->deformables.size(), 1u);
   double largest = 0;
   std::uint64_t packets = 0;
   for (int i = 0; i < 2500; ++i) {
-    if (!simulation->step()) break;
+    const auto sent = simulation->step();
+    if (!sent) break;
+    packets += sent->size();
     const TraceFrame& frame = simulation->frame();
-    if (frame.meshes[0].updated) packets += simulation->sent(0).packets[0].bytes.empty() ? 0U : 1U;
     largest = std::max(largest, norm(frame.users[0].force - frame.users[0].server_force));
   }
   EXPECT_GT(packets, 20u);

@@ -219,16 +219,17 @@ TEST(Scene, NamesOnlyRegularFiles) {
   EXPECT_NE(mesh.error().remedy.find("regular file"), std::string::npos) << mesh.error().remedy;
 }
 
-TEST(Scene, StreamHeaderStartsFromTheFirstPoses) {
+TEST(Scene, ItsStreamStartsFromTheFirstPoses) {
   const auto scene = parse_scene(kHead + kCube + "dof = [\"x\", \"rz\"]\n", "t.toml");
   ASSERT_TRUE(scene);
-  const auto header = stream_header(*scene);
-  ASSERT_TRUE(header);
-  EXPECT_EQ(header->tick_rate, kTickRate);
-  ASSERT_EQ(header->objects.size(), 1u);
-  EXPECT_EQ(header->objects[0].name, "cube");
-  EXPECT_EQ(header->objects[0].dof, Dof::x | Dof::rz);
-  EXPECT_EQ(header->objects[0].initial.position, (std::array<std::int32_t, 3>{1 << 22, 2 << 22, 3 << 22}));
+  const auto built = scene_builder(*scene).build();
+  ASSERT_TRUE(built);
+  const SharedScene& declared = *built;
+  EXPECT_EQ(declared->tick_rate, kTickRate);
+  ASSERT_EQ(declared->objects.size(), 1u);
+  EXPECT_EQ(declared->objects[0].name, "cube");
+  EXPECT_EQ(declared->objects[0].dof, Dof::x | Dof::rz);
+  EXPECT_EQ(declared->objects[0].initial.position, (std::array<std::int32_t, 3>{1 << 22, 2 << 22, 3 << 22}));
 }
 
 }  // namespace

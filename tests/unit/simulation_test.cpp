@@ -25,7 +25,7 @@ Scene shipped(const std::string& name) {
 
 SimulationOptions with_channel(std::uint64_t seed, double weber_fraction) {
   SimulationOptions options{.seed = seed, .grip = {}, .channel = ChannelOptions{}};
-  options.channel->encoder.triggers.weber_fraction = weber_fraction;
+  options.channel->sender.triggers.weber_fraction = weber_fraction;
   return options;
 }
 
@@ -104,7 +104,7 @@ TEST(Simulation, StepsAllocateNothingOnceOdeHasItsArenas) {
   for (int i = 0; i < 8000; ++i) {
     const auto packet = simulation->step();
     if (!packet) break;
-    packets += packet->bytes.empty() ? 0u : 1u;
+    packets += packet->size();
   }
   EXPECT_EQ(testing::allocated_bytes() - before, 0u) << "operator new, that is everything but what ODE takes from malloc";
   EXPECT_GT(packets, 50u);
@@ -157,14 +157,14 @@ TEST(Simulation, FrameHoldsOneInstant) {
 TEST(Simulation, WithoutInterpolationTheClientObeysTheHapticRule) {
   for (const char* name : {"push-1dof", "rotate-6dof", "rotate-push-lift"}) {
     const SimulationOptions options = with_channel(3, 0.04);
-    const RigidTriggers& triggers = options.channel->encoder.triggers;
+    const RigidTriggers& triggers = options.channel->sender.triggers;
     auto simulation = Simulation::create(shipped(name), options);
     ASSERT_TRUE(simulation);
     std::int64_t violations = 0, packets = 0, ticks_with_error = 0;
     for (std::int64_t i = 0; i < simulation->ticks(); ++i) {
       const auto packet = simulation->step();
       ASSERT_TRUE(packet) << packet.error().error.rule;
-      packets += !packet->bytes.empty();
+      packets += static_cast<std::int64_t>(packet->size());
       const TraceFrame& frame = simulation->frame();
       const Contact& contact = frame.users[0].contact;
       const Vec3 truth = contact_force(contact, frame.objects[0].pose);

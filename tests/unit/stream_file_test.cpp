@@ -10,17 +10,17 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-StreamHeader one_object() {
-  StreamHeader header;
-  header.objects.resize(1);
-  header.objects[0].name = "cube";
-  return header;
+SharedScene one_object() {
+  SceneSpec spec;
+  spec.objects.resize(1);
+  spec.objects[0].name = "cube";
+  return Scene::create(std::move(spec)).value();
 }
 
 /// Packets of i bytes of value i at tick 10 i; every third is a key packet.
 Bytes sample_file(std::size_t packets, bool finish = true) {
   std::ostringstream out;
-  auto writer = StreamFileWriter::create(out, one_object()).value();
+  auto writer = StreamFileWriter::create(out, *one_object()).value();
   for (std::size_t i = 1; i <= packets; ++i) {
     EXPECT_TRUE(writer.add(static_cast<std::int64_t>(10 * i), Bytes(i, static_cast<std::uint8_t>(i)), i % 3 == 1));
   }
@@ -110,7 +110,7 @@ TEST(StreamFile, EveryCutGivesAWholePrefixOrTruncated) {
 
 TEST(StreamFile, WriterRefusesFallingTicks) {
   std::ostringstream out;
-  auto writer = StreamFileWriter::create(out, one_object()).value();
+  auto writer = StreamFileWriter::create(out, *one_object()).value();
   EXPECT_TRUE(writer.add(5, Bytes{1}, false));
   EXPECT_TRUE(writer.add(5, Bytes{1}, false));
   const auto result = writer.add(4, Bytes{1}, false);
@@ -120,7 +120,7 @@ TEST(StreamFile, WriterRefusesFallingTicks) {
 
 TEST(StreamFile, AFullDiskIsAnError) {
   std::ostringstream out;
-  auto writer = StreamFileWriter::create(out, one_object()).value();
+  auto writer = StreamFileWriter::create(out, *one_object()).value();
   out.setstate(std::ios::badbit);
   EXPECT_EQ(writer.add(1, Bytes{1}, false).error().code, Errc::io);
 }

@@ -18,7 +18,7 @@ TraceBounds some_bounds(std::size_t meshes) {
   rigid.visual_position = 0.1;
   rigid.weber_fraction = 1.0 / 3;
   for (std::size_t i = 0; i < meshes; ++i) {
-    DeformableBounds& mesh = bounds.stream.meshes.emplace_back();
+    DeformableBounds& mesh = bounds.stream.deformables.emplace_back();
     mesh.kept = i == 0;
     if (i == 1) mesh.thresholds = {1.0 / 7, std::nullopt};
     bounds.rings.push_back(static_cast<std::uint8_t>(i + 4));

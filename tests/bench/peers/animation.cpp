@@ -109,7 +109,7 @@ Animation patch_of(const Animation& whole, std::size_t count) {
   DeformableObject mesh;
   mesh.rest = whole.rest;
   mesh.triangles = whole.triangles;
-  const Neighbours neighbours = neighbours(mesh);
+  const Neighbours near = neighbours(mesh);
   constexpr std::uint32_t kOutside = 0xffffffff;
   std::vector<std::uint32_t> taken{liveliest(whole)}, number(whole.rest.size(), kOutside);
   number[taken[0]] = 0;
@@ -119,7 +119,7 @@ Animation patch_of(const Animation& whole, std::size_t count) {
     taken.push_back(v);
   };
   for (std::size_t i = 0; i < taken.size(); ++i) {
-    for (const std::uint32_t n : neighbours[taken[i]]) take(n);
+    for (const std::uint32_t n : near[taken[i]]) take(n);
     for (std::uint32_t v = 0; i + 1 == taken.size() && taken.size() < count && v < number.size(); ++v)
       take(v);  // another component
   }

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include <tactus/deformable/decoder.h>
-#include <tactus/deformable/displacement.h>
-#include <tactus/deformable/encoder.h>
+#include <tactus/receiver.h>
+#include <tactus/sender.h>
 
 namespace tactus::peers {
 namespace {
@@ -46,7 +46,7 @@ class PeerLink final : public Link {
 
 constexpr std::uint32_t kFrameRate = 60;
 /// Of the stream's grid [m]: its unit gets another name, nothing else.
-const double kStep = std::ldexp(1.0, -StreamHeader{}.grid.position);
+const double kStep = std::ldexp(1.0, -GridExponents{}.position);
 
 struct OurSetting {
   DeformableProfile profile = DeformableProfile::main;
@@ -58,26 +58,26 @@ struct OurSetting {
 /// Steps of the stream's grid to a unit of the table's.
 std::int32_t units_of(const OurSetting& setting) { return setting.lossy ? kFine : 1; }
 
-StreamHeader header_of(const Animation& animation, const OurSetting& setting) {
-  StreamHeader header;
-  header.tick_rate = kFrameRate;
-  DeformableObject mesh;
-  mesh.name = "mesh";
-  mesh.profile = setting.profile;
-  mesh.models_kept = setting.models_kept;
-  mesh.rest = animation.rest;
-  for (Vec3i& v : mesh.rest)
+SharedScene scene_of(const Animation& animation, const OurSetting& setting) {
+  SceneSpec spec;
+  spec.tick_rate = kFrameRate;
+  DeformableObject object;
+  object.name = "mesh";
+  object.profile = setting.profile;
+  object.models_kept = setting.models_kept;
+  object.rest = animation.rest;
+  for (Vec3i& v : object.rest)
     for (std::int32_t& c : v) c *= units_of(setting);
-  mesh.triangles = animation.triangles;
-  header.meshes.push_back(std::move(mesh));
-  return header;
+  object.triangles = animation.triangles;
+  spec.deformables.push_back(std::move(object));
+  return Scene::create(std::move(spec)).value();
 }
 
-DeformableEncoderOptions options_of(const OurSetting& setting) {
-  DeformableEncoderOptions options;
-  options.thresholds.visual = setting.lossy ? kRounding * kFine * kStep : 0;
-  options.thresholds.weber_fraction = {};
-  options.key_interval = setting.chained ? 0 : 0.5 / kFrameRate;
+SenderOptions options_of(const OurSetting& setting) {
+  SenderOptions options;
+  options.deformable.thresholds.visual = setting.lossy ? kRounding * kFine * kStep : 0;
+  options.deformable.thresholds.weber_fraction = {};
+  options.policy.key_interval = setting.chained ? 0 : 0.5 / kFrameRate;
   return options;
 }
 
@@ -85,23 +85,24 @@ class OurLink final : public Link {
  public:
   OurLink(const Animation& animation, const OurSetting& setting)
       : lossy_(setting.lossy),
-        rest_(header_of(animation, setting).meshes[0].rest),
-        displacement_(rest_.size()),
-        encoder_(DeformableEncoder::create(header_of(animation, setting), 0, options_of(setting)).value()),
-        decoder_(DeformableDecoder::create(header_of(animation, setting), 0).value()) {}
+        sender_(Sender::create(scene_of(animation, setting), options_of(setting)).value()),
+        receiver_(Receiver::create(sender_.scene()).value()),
+        rest_(sender_.scene()->deformables[0].rest),
+        displacements_(3 * rest_.size()) {}
 
   Bytes encode(std::size_t frame, std::span<const Vec3i> positions, std::span<const Vec3i> fine) override {
     const auto truth = lossy_ ? fine : positions;
-    for (std::size_t v = 0; v < rest_.size(); ++v) {
-      const auto part = [&](std::size_t axis) { return (truth[v][axis] - rest_[v][axis]) * kStep; };
-      displacement_[v] = {part(0), part(1), part(2)};
-    }
-    const auto packet = encoder_.encode(static_cast<std::int64_t>(frame), displacement_).value();
-    return {packet.bytes.begin(), packet.bytes.end()};
+    for (std::size_t v = 0; v < rest_.size(); ++v)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        displacements_[3 * v + axis] = static_cast<float>((truth[v][axis] - rest_[v][axis]) * kStep);
+    const DeformableTruth shape{displacements_, {}};
+    const auto packets = sender_.encode(static_cast<std::int64_t>(frame), {.deformables = {&shape, 1}}).value();
+    if (packets.empty()) return {};
+    return {packets[0].bytes.begin(), packets[0].bytes.end()};
   }
   bool decode(std::size_t frame, std::span<const std::uint8_t> packet, std::span<Vec3i> shown) override {
-    if (!packet.empty() && !decoder_.decode(packet)) return false;
-    const auto displacement = decoder_.displacements_at(static_cast<std::int64_t>(frame));
+    if (!packet.empty() && !receiver_.push(packet)) return false;
+    const auto displacement = receiver_.replica().displacements(0, static_cast<std::int64_t>(frame));
     for (std::size_t v = 0; v < rest_.size(); ++v)
       for (std::size_t axis = 0; axis < 3; ++axis)
         shown[v][axis] = (rest_[v][axis] + displacement[v][axis]) * (lossy_ ? 1 : kFine);
@@ -110,10 +111,10 @@ class OurLink final : public Link {
 
  private:
   bool lossy_;
-  std::vector<Vec3i> rest_;
-  std::vector<Vec3> displacement_;
-  DeformableEncoder encoder_;
-  DeformableDecoder decoder_;
+  Sender sender_;
+  Receiver receiver_;
+  std::span<const Vec3i> rest_;       // of the sender's scene
+  std::vector<float> displacements_;  // [m] exact as far as a vertex moves by less than 2^24 steps
 };
 
 Scheme ours(const char* name, const char* text, const OurSetting& setting) {

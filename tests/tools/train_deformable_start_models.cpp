@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Make spec/tables/mesh-start-models.csv from stream files of one mesh each, profile main.
-///   train_mesh_start_models a.tct b.tct ... > mesh-start-models.csv
+/// Make spec/tables/deformable-start-models.csv from stream files of one deformable object each, profile main.
+///   train_mesh_start_models a.tct b.tct ... > deformable-start-models.csv
 /// Every packet has the same weight. Only streams whose packets build on the packet before or on the initial state.
 #include <utility>
 
@@ -12,18 +12,22 @@ namespace {
 using namespace tactus;
 
 template <class Packets>
-bool count_file(const StreamHeader& header, const Packets& packets, Counts& counts) {
-  if (header.meshes.size() != 1 || header.meshes[0].profile != DeformableProfile::main) return false;
-  const DeformableObject& mesh = header.meshes[0];
-  MainReader reader(mesh);
-  const DeformableState initial = initial_state(mesh);
-  DeformableState state = initial, next = initial;
+bool count_file(const Scene& scene, const Packets& packets, Counts& counts) {
+  const bool fits = scene.moving().empty() && scene.deformables.size() == 1;
+  if (!fits || scene.deformables[0].profile != DeformableProfile::main) return false;
+  const DeformableObject& object = scene.deformables[0];
+  MainReader reader(object);
+  const MainState initial = initial_main_state(object);
+  MainState state = initial, next = initial;
   for (const auto& packet : packets) {
+    if (packet.size() < 2) return false;
     MainModels models = main_start_models();
     CountingDecoder coder(packet.subspan(2), models, counts);
     MainHead head;
-    code_main_start(coder, models, mesh, header.baseline_span, head);
-    if (!reader.read(coder, models, head, head.key ? initial : state, next)) return false;
+    code_main_start(coder, models, object, scene.baseline_span, head);
+    const MainState& base = head.key ? initial : state;
+    if (!reader.read(coder, models, head, base, next)) return false;
+    next.tick = base.tick + head.tick_delta;
     std::swap(state, next);
   }
   return true;
@@ -32,8 +36,8 @@ bool count_file(const StreamHeader& header, const Packets& packets, Counts& coun
 bool print_table(const Counts& counts) {
   Table table(counts, 5);
   table.tree("KEY", 1);
-  table.tree("HALF", 1);
-  table.tree("COMPLETES", 1);
+  table.tree("LAYER", 1);
+  table.tree("SAME_FRAME", 1);
   for (const char* name : {"BASELINE", "TICK", "LATE"}) table.magnitude(name);
   for (std::size_t i = 0; i < 2; ++i) table.tree(indexed("TOUCHED", {i}), 1);
   table.tree("SAME_TRIANGLE", 1);
@@ -55,7 +59,7 @@ bool print_table(const Counts& counts) {
 
 int main(int argc, char** argv) {
   Counts counts = no_counts<MainModels>();
-  const auto count = [&](const StreamHeader& header, const auto& packets) { return count_file(header, packets, counts); };
+  const auto count = [&](const Scene& scene, const auto& packets) { return count_file(scene, packets, counts); };
   if (!count_files(std::span(argv, static_cast<std::size_t>(argc)).subspan(1), count)) return 1;
   return print_table(counts) ? 0 : 1;
 }

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/deformable/deformable_decoder.h>
+
+#include <algorithm>
+#include <utility>
+
+#include <tactus/deformable/main_decoder.h>
+#include <tactus/deformable/thesis_decoder.h>
+#include <tactus/packet/substream_decoder.h>
+
+namespace tactus {
+namespace {
+
+std::uint64_t hash_of(const DeformableObject& object, const MainState& state) noexcept { return state_hash(object, state); }
+std::uint64_t hash_of(const DeformableObject&, const ThesisState& state) noexcept { return state_hash(state); }
+
+template <class Codec>
+class Of final : public DeformableDecoder {
+ public:
+  Of(const Scene& scene, std::size_t index, const DecodeLimits& limits, typename Codec::State initial)
+      : object_(scene.deformables[index]), stream_(scene, limits, std::move(initial), scene, object_), number_(index + 1) {}
+
+  Result<DecodedPacket> decode(std::span<const std::uint8_t> packet, std::optional<std::int64_t> now) noexcept override {
+    TACTUS_TRY(DecodedPacket decoded, stream_.decode(packet, now));
+    decoded.substream = number_;
+    return decoded;
+  }
+  std::span<const Vec3i> displacements() const noexcept override { return stream_.newest().displacement; }
+  std::span<const Vec3i> displacements_at(std::int64_t tick) noexcept override {
+    const auto& state = stream_.newest();
+    return stream_.codec().predict(state, std::clamp(tick, state.tick, kTickLimit));
+  }
+  std::int64_t tick() const noexcept override { return stream_.newest().tick; }
+  std::uint64_t state_hash() const noexcept override { return hash_of(object_, stream_.newest()); }
+
+ private:
+  const DeformableObject& object_;
+  SubstreamDecoder<Codec> stream_;
+  std::size_t number_;
+};
+
+}  // namespace
+
+std::unique_ptr<DeformableDecoder> DeformableDecoder::create(const Scene& scene, std::size_t object, const DecodeLimits& limits) {
+  const DeformableObject& o = scene.deformables[object];
+  if (o.profile == DeformableProfile::thesis)
+    return std::make_unique<Of<ThesisDecoder>>(scene, object, limits, initial_thesis_state(o));
+  return std::make_unique<Of<MainDecoder>>(scene, object, limits, initial_main_state(o));
+}
+
+}  // namespace tactus

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The substream of one deformable object at a receiver, whatever its profile. Internal to the library; Receiver is the way in.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include <tactus/base/result.h>
+#include <tactus/packet/packet.h>
+#include <tactus/scene/scene.h>
+
+namespace tactus {
+
+class DeformableDecoder {
+ public:
+  /// The one place that chooses by profile.   pre  object < scene.deformables.size(), and `scene` outlives the decoder
+  static std::unique_ptr<DeformableDecoder> create(const Scene& scene, std::size_t object, const DecodeLimits& limits);
+  virtual ~DeformableDecoder() = default;
+
+  /// in, err  Receiver::push
+  virtual Result<DecodedPacket> decode(std::span<const std::uint8_t> packet, std::optional<std::int64_t> now) noexcept = 0;
+  /// Newest decoded displacement of every vertex, x 2^-position_exp m.
+  virtual std::span<const std::array<std::int32_t, 3>> displacements() const noexcept = 0;
+  /// Where prediction puts the vertices at a tick; one before the newest packet's counts as that. Valid until the next call.
+  virtual std::span<const std::array<std::int32_t, 3>> displacements_at(std::int64_t tick) noexcept = 0;
+  virtual std::int64_t tick() const noexcept = 0;  ///< of the newest packet, 0 before the first
+  virtual std::uint64_t state_hash() const noexcept = 0;
+};
+
+}  // namespace tactus

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/deformable/deformable_encoder.h>
+
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <tactus/deformable/displacement.h>
+#include <tactus/deformable/main_encoder.h>
+#include <tactus/deformable/thesis_encoder.h>
+
+namespace tactus {
+namespace {
+
+std::uint64_t hash_of(const DeformableObject& object, const MainState& state) noexcept { return state_hash(object, state); }
+std::uint64_t hash_of(const DeformableObject&, const ThesisState& state) noexcept { return state_hash(state); }
+
+template <class Codec>
+class Of final : public DeformableEncoder {
+ public:
+  Of(const Scene& scene, std::size_t index, const DeformableOptions& options, const SenderPolicy& policy, std::size_t largest,
+     bool layered, typename Codec::State initial)
+      : object_(scene.deformables[index]),
+        position_exp_(scene.grid.position),
+        layered_(layered),
+        truth_(object_.rest.size()),
+        stream_(scene, layered ? chained(policy) : policy, index + 1, largest, layered ? 2 : 1, initial, scene, object_,
+                options) {}
+
+  Result<void> read(const DeformableTruth& truth) noexcept override {
+    if (truth.touch) TACTUS_CHECK(check_touch(*truth.touch));
+    TACTUS_CHECK(to_grid(truth.displacements, position_exp_, truth_));
+    touch_ = truth.touch;
+    stream_.codec().read(truth_, touch_ ? &*touch_ : nullptr);
+    return {};
+  }
+  Packet encode(std::int64_t tick, Layer layer) noexcept override { return stream_.encode(tick, layer).value_or(Packet{}); }
+  bool is_layered() const noexcept override { return layered_; }
+  void request_key() noexcept override { stream_.request_key(); }
+  void forget_last() noexcept override { stream_.forget_last(); }
+  void acknowledge(std::uint16_t sequence) noexcept override { stream_.acknowledge(sequence); }
+  std::uint64_t state_hash() const noexcept override { return hash_of(object_, stream_.newest()); }
+
+ private:
+  /// The packets of a layer leave the others where their baseline has them, and so build on the newest.
+  static SenderPolicy chained(SenderPolicy policy) noexcept {
+    policy.baseline = Baseline::previous;
+    return policy;
+  }
+  Result<void> check_touch(const SurfaceTouch& touch) const noexcept {
+    if (!std::isfinite(touch.force) || !std::isfinite(touch.stiffness)) return fail(Errc::invalid_argument, "R-API-1");
+    if (touch.triangle >= object_.triangles.size() || touch.force < 0 || !(touch.stiffness > 0))
+      return fail(Errc::invalid_argument, "R-API-5");
+    return {};
+  }
+
+  const DeformableObject& object_;
+  std::uint8_t position_exp_;
+  bool layered_;
+  std::vector<Vec3i> truth_;  // this frame, on the grid
+  std::optional<SurfaceTouch> touch_;
+  SubstreamEncoder<Codec> stream_;
+};
+
+}  // namespace
+
+Result<void> DeformableEncoder::check(const DeformableOptions& options) noexcept {
+  const auto in = [](double v, double low, double high) { return v >= low && v <= high; };  // false for NaN
+  const DeformableThresholds& t = options.thresholds;
+  if (in(t.visual, 0, 1e6) && in(t.weber_fraction.value_or(0), 0, 1e3) && in(t.depth_floor, 0, 1e6) &&
+      in(options.visual_share, 1e-3, 1) && in(options.haptic_share, 1e-3, 1))
+    return {};
+  return fail(Errc::invalid_argument, "R-API-4");
+}
+
+std::unique_ptr<DeformableEncoder> DeformableEncoder::create(const Scene& scene, std::size_t object,
+                                                             const DeformableOptions& options, const SenderPolicy& policy) {
+  const DeformableObject& o = scene.deformables[object];
+  if (o.profile == DeformableProfile::thesis)
+    return std::make_unique<Of<ThesisEncoder>>(scene, object, options, policy, max_thesis_packet(o.rest.size(), o.quant_bits),
+                                               options.layered, initial_thesis_state(o));
+  return std::make_unique<Of<MainEncoder>>(scene, object, options, policy, max_main_packet(o.rest.size(), o.basis.steps.size()),
+                                           o.layered, initial_main_state(o));
+}
+
+}  // namespace tactus

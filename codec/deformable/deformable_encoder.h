@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The substream of one deformable object at a sender, whatever its profile. Internal to the library; Sender is the way in.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include <tactus/base/result.h>
+#include <tactus/deformable/trigger.h>
+#include <tactus/packet/packet.h>
+#include <tactus/packet/sender_policy.h>
+#include <tactus/scene/scene.h>
+
+namespace tactus {
+
+class DeformableEncoder {
+ public:
+  /// R-API-4: an option is negative, NaN or too large.
+  static Result<void> check(const DeformableOptions& options) noexcept;
+  /// The one place that chooses by profile.   pre  check(), object < scene.deformables.size(), and `scene` outlives the encoder
+  static std::unique_ptr<DeformableEncoder> create(const Scene& scene, std::size_t object, const DeformableOptions& options,
+                                                   const SenderPolicy& policy);
+  virtual ~DeformableEncoder() = default;
+
+  /// The truth of one frame; nothing else changes.   pre  there are displacements.   in, err  Sender::encode
+  virtual Result<void> read(const DeformableTruth& truth) noexcept = 0;
+  /// Of a layered object the haptic packet of a frame, then the visual one; else that of all. Without bytes: not needed.
+  virtual Packet encode(std::int64_t tick, Layer layer) noexcept = 0;
+  virtual bool is_layered() const noexcept = 0;
+  virtual void request_key() noexcept = 0;
+  virtual void forget_last() noexcept = 0;
+  virtual void acknowledge(std::uint16_t sequence) noexcept = 0;
+  virtual std::uint64_t state_hash() const noexcept = 0;
+};
+
+}  // namespace tactus

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/deformable/main_decoder.h>
+
+namespace tactus {
+
+Result<PacketHead> MainDecoder::read_head(std::span<const std::uint8_t> payload) noexcept {
+  coder_ = RangeDecoder(payload);
+  payload_ = payload.size();
+  models_ = main_start_models();
+  head_ = {};
+  code_main_start(coder_, models_, object_, baseline_span_, head_);
+  if (coder_.too_wide()) return fail(Errc::malformed, "R-RNG-4", bit());
+  return head_;
+}
+
+Result<void> MainDecoder::read_body(const MainState& base, std::int64_t, DecodedPacket& out) noexcept {
+  const auto updates = reader_.read(coder_, models_, head_, base, next_);
+  if (!updates) return fail(updates.error().code, updates.error().rule, bit());
+  if (const char* rule = coder_.broken_rule()) return fail(Errc::malformed, rule, bit());
+  out.layer = head_.layer;
+  out.vertices = *updates;
+  out.final_range = coder_.range();
+  out.final_code = coder_.code();
+  return {};
+}
+
+}  // namespace tactus

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Profile main: true displacements of one object to payloads, a function of truth and baseline. Internal to the library; Sender is the
+/// way in.
+///
+/// After every frame a decoder's prediction obeys, for every vertex,
+///   |u^ - u| <= v, and <= h = p |f_s| / k_c inside the area of interest,
+/// where a bound below the grid's rounding (0.87 units) means: the nearest grid point. After the haptic packet of a layered object it does
+/// so for the vertices inside the area of interest.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <tactus/deformable/main_syntax.h>
+#include <tactus/deformable/mode_projection.h>
+#include <tactus/deformable/trigger.h>
+#include <tactus/deformable/vertex_coder.h>
+#include <tactus/packet/substream_encoder.h>
+
+namespace tactus {
+
+/// A codec of SubstreamEncoder.
+class MainEncoder {
+ public:
+  using State = MainState;
+
+  /// pre  `scene` outlives the encoder
+  MainEncoder(const Scene& scene, const DeformableObject& object, const DeformableOptions& options);
+
+  /// The truth of one frame, on the grid.   pre  both live until the last encode() of the frame
+  void read(std::span<const Vec3i> truth, const SurfaceTouch* touch) noexcept {
+    truth_ = truth;
+    touch_ = touch;
+  }
+  /// time O(vertices * (1 + modes)), no allocation
+  Result<Payload> encode(const EncodeRequest<MainState>& request, std::span<std::uint8_t> out) noexcept;
+  void commit(const MainState&, MainState& next) noexcept { std::swap(next_, next); }
+
+ private:
+  struct CodedVertex {
+    VertexContext context;
+    Vec3i residual{};
+  };
+
+  MainHead head_for(const EncodeRequest<MainState>& request) const noexcept;
+  void set_bounds(const MainHead& head) noexcept;
+  bool bounds_hold(const EncodeRequest<MainState>& request) noexcept;
+  void choose_coefficients(std::uint32_t visual) noexcept;
+  void move_modes(std::uint32_t visual) noexcept;
+  std::uint32_t choose_residuals() noexcept;
+  std::size_t write(MainHead head, const MainState& base, std::span<std::uint8_t> out) noexcept;
+
+  const DeformableObject& object_;
+  const DeformableOptions options_;
+  double unit_;  // [m] of the grid
+  std::uint8_t baseline_span_;
+  std::span<const Vec3i> truth_;
+  const SurfaceTouch* touch_ = nullptr;
+  VertexHierarchy hierarchy_;
+  Rings rings_;
+  ShapePredictor predictor_;
+  VertexCoder coder_;
+  ModeProjection projection_;
+  MainState next_;               // kept aside until commit()
+  std::vector<Vec3i> expected_;  // by prediction in time
+  std::vector<Vec3i> error_;
+  std::vector<std::int32_t> coefficients_, scaled_;  // in steps; in grid units
+  std::vector<float> projected_;
+  std::vector<CodedVertex> coded_;
+};
+
+}  // namespace tactus

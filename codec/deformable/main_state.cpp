@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/deformable/main_state.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstdlib>
+
+#include <tactus/base/hash.h>
+
+namespace tactus {
+namespace {
+
+void add_to(Fnv1a& hash, std::span<const Vec3i> vectors) noexcept {
+  for (const Vec3i& v : vectors)
+    for (const std::int32_t c : v) hash.add32(c);
+}
+
+}  // namespace
+
+MainState initial_main_state(const DeformableObject& object) {
+  MainState state;
+  state.displacement.resize(object.rest.size());
+  state.motion = ModeMotion(object.basis.steps.size());
+  if (object.layered) state.haptic_correction.resize(object.rest.size());
+  return state;
+}
+
+std::uint64_t state_hash(const DeformableObject& object, const MainState& state) noexcept {
+  Fnv1a hash;
+  hash.add64(static_cast<std::uint64_t>(state.tick));
+  add_to(hash, state.displacement);
+  hash.add32(state.visual);
+  hash.add32(state.triangle);
+  hash.add32(state.haptic);
+  hash.add32(state.density | (state.touched ? 4u : 0u));
+  state.motion.add_to(hash);
+  if (object.layered) hash.add64(static_cast<std::uint64_t>(state.motion_tick));
+  add_to(hash, state.haptic_correction);
+  return hash.value();
+}
+
+std::uint32_t frame_steps(const DeformableObject& object, std::int64_t ticks) noexcept {
+  return static_cast<std::uint32_t>(std::min<std::int64_t>(round_div(ticks << 8, object.frame_period), 0xffffffff));
+}
+
+std::uint32_t haptic_bound(std::uint32_t index) noexcept {
+  constexpr std::array<std::uint64_t, 6> kMantissa{32768, 36781, 41285, 46341, 52016, 58386};  // 2^(15 + k / 6), rounded
+  if (index == 0) return 0;
+  return static_cast<std::uint32_t>((kMantissa[(index - 1) % 6] << ((index - 1) / 6)) >> 15);
+}
+
+ShapePredictor::ShapePredictor(const DeformableObject& object)
+    : object_(object),
+      increments_(object.basis.steps.size()),
+      extrapolated_(increments_.size()),
+      sum_(increments_.empty() ? 0 : 3 * object.rest.size()) {}
+
+/// out += modes * coefficients, all coefficients brought to 14 bits by one shift.
+void ShapePredictor::combine(std::span<const std::int32_t> coefficients, std::span<Vec3i> out) noexcept {
+  std::uint32_t largest = 0;
+  for (const std::int32_t g : coefficients) largest = std::max(largest, static_cast<std::uint32_t>(std::abs(g)));
+  if (largest == 0) return;
+  const auto width = static_cast<unsigned>(std::bit_width(largest));
+  const unsigned shift = width > 14 ? width - 14 : 0;
+  std::fill(sum_.begin(), sum_.end(), 0);
+  for (std::size_t k = 0; k < coefficients.size(); ++k) {
+    const auto g = static_cast<std::int16_t>(round_shift(coefficients[k], shift));
+    if (g == 0) continue;
+    const std::int16_t* mode = object_.basis.entries.data() + k * sum_.size();
+    for (std::size_t i = 0; i < sum_.size(); ++i) sum_[i] += mode[i] * g;
+  }
+  for (std::size_t v = 0; v < out.size(); ++v)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      out[v][axis] = limited_displacement(out[v][axis] + round_shift(static_cast<std::int64_t>(sum_[3 * v + axis]) << shift, 11));
+}
+
+void ShapePredictor::predict(const MainState& state, std::int64_t tick, std::span<Vec3i> out) noexcept {
+  std::copy(state.displacement.begin(), state.displacement.end(), out.begin());
+  if (state.motion.size() == 0) return;
+  state.motion.predict(frame_steps(object_, tick - state.motion_tick), increments_);
+  if (state.tick == state.motion_tick) return combine(increments_, out);
+  state.motion.predict(frame_steps(object_, state.tick - state.motion_tick),
+                       extrapolated_);  // where haptic halves have gone already
+  for (std::size_t k = 0; k < extrapolated_.size(); ++k)
+    extrapolated_[k] = limited_displacement(std::int64_t{increments_[k]} - extrapolated_[k]);
+  combine(extrapolated_, out);
+}
+
+void ShapePredictor::add_modes(std::span<const std::int32_t> coefficients, std::span<Vec3i> out) noexcept {
+  combine(coefficients, out);
+  for (std::size_t k = 0; k < coefficients.size(); ++k)
+    increments_[k] = limited_displacement(static_cast<std::int64_t>(increments_[k]) + coefficients[k]);
+}
+
+void ShapePredictor::update(const MainState& base, std::int64_t tick, MainState& next) const noexcept {
+  next.motion = base.motion;
+  next.motion.update(frame_steps(object_, tick - base.motion_tick), increments_);
+  next.motion_tick = tick;
+}
+
+}  // namespace tactus

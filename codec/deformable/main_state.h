@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Profile main: what packets build on, and where prediction puts a shape without packets. spec/50-deformable.md sections 3, 5 and 6. Integers only.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <tactus/base/fixed.h>
+#include <tactus/deformable/displacement.h>
+#include <tactus/deformable/graph.h>
+#include <tactus/deformable/motion.h>
+#include <tactus/scene/deformable_object.h>
+
+namespace tactus {
+
+inline constexpr std::uint32_t kNoTriangle = 0xffffffff;
+
+struct MainState {
+  std::int64_t tick = 0;
+  std::vector<Vec3i> displacement;  ///< by vertex, x 2^-position_exp m
+  ModeMotion motion;                ///< of the basis's coefficients
+  std::int64_t motion_tick = 0;     ///< `motion` is of this tick; packets of the haptic layer leave it behind `tick`
+  std::vector<Vec3i>
+      haptic_correction;  ///< layered: by vertex, correction of the last packet if that was of the haptic layer, else 0
+  std::uint32_t triangle = kNoTriangle;  ///< the last one touched
+  std::uint32_t visual = 0;              ///< visual bound, grid units
+  std::uint32_t haptic = 0;              ///< index of the last haptic bound
+  std::uint32_t density = 0;             ///< of significant vertices in the last packet: context of the next, as is `touched`
+  bool touched = false;                  ///< the last packet had a triangle
+};
+
+MainState initial_main_state(const DeformableObject& object);
+std::uint64_t state_hash(const DeformableObject& object, const MainState& state) noexcept;
+
+/// Frames between two ticks, rounded.
+std::uint32_t frame_steps(const DeformableObject& object, std::int64_t ticks) noexcept;
+
+/// floor(2^((index - 1) / 6)) for index >= 1, 0 for index 0.   pre  index <= kMaxHapticIndex
+std::uint32_t haptic_bound(std::uint32_t index) noexcept;
+inline constexpr std::uint32_t kMaxHapticIndex = 168;  ///< 2^27.8
+inline constexpr std::uint32_t kMaxVisualBound = 1u << 28;
+
+inline std::int64_t coefficient_step(const DeformableObject& object, std::uint32_t visual, std::size_t mode) noexcept {
+  return std::clamp<std::int64_t>((std::int64_t{object.basis.steps[mode]} * visual) >> 12, 1, kMaxVisualBound);
+}
+
+/// Coefficients from quantiser steps to grid units: step k is steps[k] * visual * 2^-12, at least 1.
+inline void scale_coefficients(const DeformableObject& object, std::uint32_t visual,
+                               std::span<std::int32_t> coefficients) noexcept {
+  for (std::size_t k = 0; k < coefficients.size(); ++k)
+    coefficients[k] = limited_displacement(coefficients[k] * coefficient_step(object, visual, k));
+}
+
+/// Quantiser step for a bound: rounding each component moves a point by at most the bound.
+constexpr std::int64_t step_of(std::uint32_t bound) noexcept {
+  return std::max<std::int64_t>(1, (std::int64_t{bound} * 37837) >> 15);  // 2 / sqrt(3) * 2^15, rounded down
+}
+
+/// Adds motion and modes to displacements. Holds scratch space; allocates at creation only.
+class ShapePredictor {
+ public:
+  /// pre  `mesh` outlives the predictor
+  explicit ShapePredictor(const DeformableObject& object);
+
+  /// out = the displacement that `state` predicts for a tick not before its own. Without a basis: its own.
+  void predict(const MainState& state, std::int64_t tick, std::span<Vec3i> out) noexcept;
+  /// out += sum of modes times coefficients [grid units at a mode's entry of 1].
+  void add_modes(std::span<const std::int32_t> coefficients, std::span<Vec3i> out) noexcept;
+  /// The motion of `next`, a packet at `tick` after `base`: its increments are those of the last predict() and add_modes().
+  void update(const MainState& base, std::int64_t tick, MainState& next) const noexcept;
+
+ private:
+  void combine(std::span<const std::int32_t> coefficients, std::span<Vec3i> out) noexcept;
+
+  const DeformableObject& object_;
+  std::vector<std::int32_t> increments_;    // by mode, of the packet at hand, since motion_tick
+  std::vector<std::int32_t> extrapolated_;  // by mode, since the state's tick where that is another
+  std::vector<std::int32_t> sum_;           // by component
+};
+
+}  // namespace tactus

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Profile thesis: true displacements of one object to payloads, a function of truth and baseline (thesis 3.3.1). It sends what reaches
+/// the thresholds; its quantiser may leave errors above h. Internal to the library; Sender is the way in.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <tactus/deformable/graph.h>
+#include <tactus/deformable/thesis_syntax.h>
+#include <tactus/deformable/trigger.h>
+#include <tactus/packet/substream_encoder.h>
+
+namespace tactus {
+
+/// A codec of SubstreamEncoder.
+class ThesisEncoder {
+ public:
+  using State = ThesisState;
+
+  /// pre  `scene` outlives the encoder
+  ThesisEncoder(const Scene& scene, const DeformableObject& object, const DeformableOptions& options);
+
+  /// The truth of one frame, on the grid.   pre  both live until the last encode() of the frame
+  void read(std::span<const Vec3i> truth, const SurfaceTouch* touch) noexcept {
+    truth_ = truth;
+    touch_ = touch;
+  }
+  /// time O(vertices), no allocation
+  Result<Payload> encode(const EncodeRequest<ThesisState>& request, std::span<std::uint8_t> out) noexcept;
+  void commit(const ThesisState&, ThesisState& next) noexcept { std::swap(next_, next); }
+
+ private:
+  bool is_felt() const noexcept { return touch_ != nullptr && options_.thresholds.weber_fraction; }
+  void list_vertices(const ThesisState& state, Layer layer) noexcept;
+  ThesisHead head_for(const PacketHead& head) const noexcept;
+  std::size_t write_head(const ThesisHead& head, std::span<std::uint8_t> out) const noexcept;
+  std::size_t write_list() noexcept;
+
+  const DeformableObject& object_;
+  const DeformableOptions options_;
+  std::uint8_t position_exp_, baseline_span_;
+  std::span<const Vec3i> truth_;
+  const SurfaceTouch* touch_ = nullptr;
+  Rings rings_;
+  ThesisState next_;  // kept aside until commit()
+  std::vector<BitModel> start_, models_;
+  std::vector<Vec3i> expected_;        // of the baseline
+  std::vector<std::uint8_t> list_;     // the coded index list
+  std::vector<std::uint32_t> listed_;  // vertices of the packet at hand
+  std::vector<std::uint8_t> inside_;   // in the area of interest
+};
+
+}  // namespace tactus

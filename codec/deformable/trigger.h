@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+/// When is a vertex worth sending? Visual and haptic thresholds (thesis eqs. 3.10 to 3.12). Informative: an encoder's choice.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include <tactus/scene/bounds.h>
+
+namespace tactus {
+
+/// Where and how hard a user touches a deformable object at one tick.
+struct SurfaceTouch {
+  std::uint32_t triangle = 0;  ///< nearest to the virtual proxy: the middle of the area of interest
+  double force = 0;            ///< [N] |f_s|, rendered at the server
+  double stiffness = 500;      ///< [N/m] k_c of the client's rendering, > 0
+};
+
+/// h = p |f_s| / k_c [m], thesis eq. 3.12.   pre  there is a p
+inline double haptic_threshold(const DeformableThresholds& t, const SurfaceTouch& touch) noexcept {
+  return *t.weber_fraction * std::max(touch.force / touch.stiffness, t.depth_floor);
+}
+
+/// A deformable object at one frame.
+struct DeformableTruth {
+  std::span<const float> displacements{};  ///< V x 3 [m] from the rest shape, x y z of vertex 0 first; empty: no new shape
+  std::optional<SurfaceTouch> touch{};
+};
+
+struct DeformableOptions {
+  DeformableThresholds thresholds{};
+  double visual_share = 1;  ///< main: code to this share of v: less error for more bits. 0.001 <= share <= 1
+  double haptic_share = 1;  ///< main: the same of h
+  bool layered = false;     ///< thesis: packets are of the haptic or the visual layer. main: the scene decides
+};
+
+}  // namespace tactus

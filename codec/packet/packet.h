@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Packets as a sender gives them and as a receiver reports them. spec/40-rigid.md section 2, spec/25-packet.md section 1.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <tactus/packet/reason.h>
+#include <tactus/scene/deformable_object.h>
+
+namespace tactus {
+
+/// One object in a packet of the rigid objects.
+struct RigidUpdate {
+  std::uint32_t object = 0;  ///< index into Scene::objects
+  Reason reason = Reason::request;
+  std::uint8_t level = 0;  ///< grid level: residuals were multiples of 4^level grid units
+};
+
+/// A packet to send.
+struct Packet {
+  std::span<const std::uint8_t> bytes;  ///< with the number of its substream; valid until the sender's next call of encode()
+  std::size_t substream = 0;            ///< 0: the rigid objects; i + 1: deformable object i
+  std::uint16_t sequence = 0;           ///< in its substream
+  bool key = false;                     ///< builds on the initial state: a place to seek to
+  Layer layer = Layer::all;             ///< deformable objects: which vertices it codes
+  Reason reason = Reason::request;      ///< rigid objects: strongest among the updates (haptic > visual > heartbeat > request)
+  std::uint32_t updates = 0;            ///< objects, or vertices with a residual of their own
+};
+
+/// A packet that was received and decoded.
+struct DecodedPacket {
+  std::size_t substream = 0;
+  std::uint16_t sequence = 0;
+  bool key = false;
+  std::int64_t tick = 0;
+  Layer layer = Layer::all;                ///< deformable objects, profile main; packets of profile thesis do not say it
+  std::span<const RigidUpdate> updates{};  ///< rigid objects; valid until the receiver's next push()
+  std::uint32_t vertices = 0;              ///< deformable objects: with a residual of their own
+  std::uint32_t final_range = 0;           ///< range decoder's state after the last symbol (conformance)
+  std::uint32_t final_code = 0;
+};
+
+}  // namespace tactus

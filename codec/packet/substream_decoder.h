@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+/// One substream at a receiver: which packets it takes, which states they build on. spec/40-rigid.md section 2. Internal to the library.
+///
+/// A `Codec` knows nothing of sequence numbers, loss or clocks:
+///   State                                        has a member tick
+///   Result<PacketHead> read_head(payload)        what the packet builds on
+///   Result<void> read_body(base, tick, out)      all else; kept aside
+///   void commit(base, next)                      writes what was kept aside; `next` may be `base`
+///   std::uint64_t bit()                          place of an error in the payload
+///   static const char* kTickRule                 that a tick breaks which is too large or runs backwards
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include <tactus/base/result.h>
+#include <tactus/packet/baseline_ring.h>
+#include <tactus/packet/packet.h>
+#include <tactus/packet/packet_head.h>
+#include <tactus/packet/packet_order.h>
+#include <tactus/scene/scene.h>
+
+namespace tactus {
+
+template <class Codec>
+class SubstreamDecoder {
+ public:
+  using State = typename Codec::State;
+
+  /// pre  `scene` outlives the decoder
+  template <class... Of>
+  SubstreamDecoder(const Scene& scene, const DecodeLimits& limits, State initial, Of&&... of)
+      : codec_(std::forward<Of>(of)...),
+        states_(std::move(initial), scene.baseline_span),
+        order_(scene.tick_rate),
+        span_(scene.baseline_span),
+        limit_(limits.packet_bytes) {}
+
+  /// After an error the states are what they were before.   err  Receiver::push
+  Result<DecodedPacket> decode(std::span<const std::uint8_t> packet, std::optional<std::int64_t> now) noexcept {
+    constexpr std::size_t kSequence = 2;
+    if (packet.size() > limit_) return fail(Errc::limit_exceeded, "R-PKT-1");
+    if (packet.size() < kSequence) return fail(Errc::truncated, "R-PKT-2");
+    DecodedPacket out;
+    out.sequence = static_cast<std::uint16_t>(packet[0] | packet[1] << 8);
+    order_.arrive(now);
+    if (order_.is_late(out.sequence)) return fail(Errc::state, "R-PKT-5");
+    const std::uint64_t number = order_.number_of(out.sequence);
+    const auto head = codec_.read_head(packet.subspan(kSequence));
+    if (!head) return placed(head.error());
+    TACTUS_TRY(const State* base, baseline_of(*head, number));
+    out.key = head->key;
+    out.tick = base->tick + head->tick_delta;
+    if (out.tick >= kTickLimit || !order_.fits(head->key, out.tick))
+      return placed({Errc::invalid, Codec::kTickRule, codec_.bit()});
+    if (const auto body = codec_.read_body(*base, out.tick, out); !body) return placed(body.error());
+    states_.push(number, [&](State& next) {
+      codec_.commit(*base, next);
+      next.tick = out.tick;
+    });
+    order_.accept(number, head->key, out.tick);
+    return out;
+  }
+
+  const State& newest() const noexcept { return states_.newest(); }
+  Codec& codec() noexcept { return codec_; }
+
+ private:
+  static tl::unexpected<Error> placed(const Error& error) noexcept { return fail(error.code, error.rule, 16 + error.bit_offset); }
+
+  Result<const State*> baseline_of(const PacketHead& head, std::uint64_t number) noexcept {
+    if (head.key) return &states_.initial();
+    if (head.baseline_delta < 1 || head.baseline_delta > span_) return fail(Errc::invalid, "R-PKT-3");
+    if (order_.is_foreign(number)) {
+      order_.forget();
+      return fail(Errc::state, "R-PKT-7");
+    }
+    const std::uint64_t wanted = number - head.baseline_delta;
+    const State* state = states_.find(wanted);
+    if (!order_.holds(wanted) || state == nullptr) return fail(Errc::state, "R-PKT-4");
+    return state;
+  }
+
+  Codec codec_;
+  BaselineRing<State> states_;
+  PacketOrder order_;
+  std::uint32_t span_, limit_;
+};
+
+}  // namespace tactus

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+/// One substream at a sender: numbers, key packets, and the state that each packet builds on. Internal to the library.
+///
+/// A `Codec` knows nothing of sequence numbers, loss or acknowledgements:
+///   State                                            has a member tick
+///   Result<Payload> encode(request, out)             the payload in `out`, if one is needed; the state after it is kept aside
+///   void commit(base, next)                          writes that state; `next` may be `base`
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <tactus/base/result.h>
+#include <tactus/packet/baseline_ring.h>
+#include <tactus/packet/key_policy.h>
+#include <tactus/packet/packet.h>
+#include <tactus/packet/packet_head.h>
+#include <tactus/packet/sender_policy.h>
+#include <tactus/packet/substream.h>
+
+namespace tactus {
+
+template <class State>
+struct EncodeRequest {
+  std::int64_t tick = 0;
+  PacketHead head;         ///< but for the tick
+  bool requested = false;  ///< a packet is wanted although every bound may hold
+  Layer layer = Layer::all;
+  const State& shown;  ///< what a receiver holds that got every packet: bounds are judged by it
+  const State& base;   ///< what the payload builds on
+};
+
+struct Payload {
+  std::size_t size = 0;  ///< 0: nothing to send
+  Reason reason = Reason::request;
+  std::uint32_t updates = 0;
+};
+
+template <class Codec>
+class SubstreamEncoder {
+ public:
+  using State = typename Codec::State;
+
+  /// in   substream  its number, which goes before each packet if there are several
+  ///      largest    packet without that number [bytes];  layers  packets that a tick may have
+  template <class... Of>
+  SubstreamEncoder(const Scene& scene, const SenderPolicy& policy, std::size_t substream, std::size_t largest, std::size_t layers,
+                   State initial, Of&&... of)
+      : codec_(std::forward<Of>(of)...),
+        states_(std::move(initial),
+                policy.baseline == Baseline::acknowledged ? std::max<std::size_t>(2, scene.baseline_span) : 2),
+        key_(policy.key_interval, scene.tick_rate),
+        baseline_(policy.baseline),
+        span_(scene.baseline_span),
+        substream_(substream),
+        start_(has_substream_number(scene) ? 1 : 0),
+        next_((std::uint64_t{1} << 16) + policy.first_sequence) {
+    buffers_.assign(layers, std::vector<std::uint8_t>(start_ + largest, static_cast<std::uint8_t>(substream)));
+  }
+
+  /// out  a packet without bytes: nothing to send
+  Result<Packet> encode(std::int64_t tick, Layer layer) noexcept {
+    const State* base = key_.is_due(tick, states_.newest().tick) ? nullptr : baseline();
+    PacketHead head{base == nullptr, static_cast<std::uint32_t>(next_ - base_), 0};
+    if (head.key) base = &states_.initial();
+    head.tick_delta = static_cast<std::uint32_t>(tick - base->tick);
+    std::vector<std::uint8_t>& buffer = buffers_[layer == Layer::visual ? 1 : 0];
+    const std::size_t start = start_ + 2;
+    TACTUS_TRY(const Payload payload, codec_.encode({tick, head, key_.is_requested(), layer, states_.newest(), *base},
+                                                    std::span(buffer).subspan(start)));
+    if (payload.size == 0) return Packet{};
+    const auto sequence = static_cast<std::uint16_t>(next_);
+    buffer[start - 2] = static_cast<std::uint8_t>(sequence);
+    buffer[start - 1] = static_cast<std::uint8_t>(sequence >> 8);
+    before_ = {key_, base_};
+    states_.push(next_, [&](State& next) {
+      codec_.commit(*base, next);
+      next.tick = tick;
+    });
+    key_.sent(tick, head.key);
+    if (baseline_ == Baseline::previous) base_ = next_;
+    ++next_;
+    can_forget_ = true;
+    return Packet{.bytes = std::span<const std::uint8_t>(buffer).first(start + payload.size),
+                  .substream = substream_,
+                  .sequence = sequence,
+                  .key = head.key,
+                  .layer = layer,
+                  .reason = payload.reason,
+                  .updates = payload.updates};
+  }
+
+  void request_key() noexcept {
+    key_.request();
+    if (baseline_ == Baseline::acknowledged) base_ = 0, oldest_ = next_;
+  }
+
+  /// The last packet will not be decoded. Only once after each.
+  void forget_last() noexcept {
+    if (!std::exchange(can_forget_, false)) return;
+    states_.pop();
+    const bool requested = key_.is_requested();
+    key_ = before_.key;
+    if (requested) key_.request();
+    base_ = before_.base;
+  }
+
+  /// The receiver holds the state after packet `sequence`.
+  void acknowledge(std::uint16_t sequence) noexcept {
+    if (baseline_ != Baseline::acknowledged) return;
+    const std::uint64_t number = next_ - static_cast<std::uint16_t>(next_ - sequence);
+    if (number > base_ && number >= oldest_ && number < next_ && states_.find(number) != nullptr) base_ = number;
+  }
+
+  const State& newest() const noexcept { return states_.newest(); }
+  Codec& codec() noexcept { return codec_; }
+
+ private:
+  /// What the next packet builds on; null: the initial state.
+  const State* baseline() const noexcept { return next_ - base_ > span_ ? nullptr : states_.find(base_); }
+
+  struct Before {
+    KeyPolicy key;
+    std::uint64_t base;
+  };
+
+  Codec codec_;
+  BaselineRing<State> states_;
+  KeyPolicy key_;
+  Baseline baseline_;
+  std::uint32_t span_;
+  std::size_t substream_, start_;                   // number, and where a packet begins that has it before it
+  std::vector<std::vector<std::uint8_t>> buffers_;  // of both layers, or of all
+  std::uint64_t next_;                              // number of the next packet, counted on without wrapping
+  std::uint64_t base_ = 0;                          // of the packet whose state the next one builds on
+  std::uint64_t oldest_ = 0;                        // that may become that: a receiver that asked for a key holds none before
+  Before before_{key_, 0};                          // the last packet
+  bool can_forget_ = false;
+};
+
+}  // namespace tactus

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/receiver.h>
+
+#include <utility>
+#include <vector>
+
+#include <tactus/base/out_of_memory.h>
+#include <tactus/deformable/deformable_decoder.h>
+#include <tactus/packet/substream.h>
+#include <tactus/packet/substream_decoder.h>
+#include <tactus/rigid/rigid_decoder.h>
+
+namespace tactus {
+
+struct Receiver::Impl {
+  Impl(SharedScene of, const ReceiverOptions& options)
+      : scene(std::move(of)),
+        rigid(*scene, options.limits, initial_states(*scene), *scene),
+        deformables(decoders(*scene, options.limits)),
+        replica(*scene, options.replica, shapes(deformables)) {}
+
+  using Decoders = std::vector<std::unique_ptr<DeformableDecoder>>;
+  static Decoders decoders(const Scene& scene, const DecodeLimits& limits) {
+    Decoders out;
+    for (std::size_t i = 0; i < scene.deformables.size(); ++i) out.push_back(DeformableDecoder::create(scene, i, limits));
+    return out;
+  }
+  static std::vector<DeformableDecoder*> shapes(const Decoders& decoders) {
+    std::vector<DeformableDecoder*> out;
+    for (const auto& decoder : decoders) out.push_back(decoder.get());
+    return out;
+  }
+
+  SharedScene scene;
+  SubstreamDecoder<RigidDecoder> rigid;
+  Decoders deformables;
+  Replica replica;
+};
+
+Receiver::Receiver(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}
+Receiver::Receiver(Receiver&&) noexcept = default;
+Receiver& Receiver::operator=(Receiver&&) noexcept = default;
+Receiver::~Receiver() = default;
+
+Result<Receiver> Receiver::create(SharedScene scene, const ReceiverOptions& options) try {
+  TACTUS_CHECK(check_scene(*scene, options.limits));
+  TACTUS_CHECK(Replica::check(options.replica));
+  return Receiver(std::make_unique<Impl>(std::move(scene), options));
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
+
+Result<DecodedPacket> Receiver::push(std::span<const std::uint8_t> packet, std::optional<std::int64_t> now) noexcept {
+  Impl& r = *impl_;
+  TACTUS_TRY(const SubstreamPacket part, split_substream(*r.scene, packet));
+  auto decoded =
+      part.substream == 0 ? r.rigid.decode(part.bytes, now) : r.deformables[part.substream - 1]->decode(part.bytes, now);
+  if (!decoded) {
+    const Error& error = decoded.error();
+    return fail(error.code, error.rule, error.bit_offset + 8 * (packet.size() - part.bytes.size()));
+  }
+  if (part.substream == 0) r.replica.apply(*decoded, r.rigid.newest().objects, now.value_or(decoded->tick));
+  return decoded;
+}
+
+Replica& Receiver::replica() noexcept { return impl_->replica; }
+const SharedScene& Receiver::scene() const noexcept { return impl_->scene; }
+std::span<const RigidState> Receiver::objects() const noexcept { return impl_->rigid.newest().objects; }
+
+std::span<const std::array<std::int32_t, 3>> Receiver::displacements(std::size_t object) const noexcept {
+  return impl_->deformables[object]->displacements();
+}
+
+std::int64_t Receiver::tick(std::size_t substream) const noexcept {
+  return substream == 0 ? impl_->rigid.newest().tick : impl_->deformables[substream - 1]->tick();
+}
+
+std::uint64_t Receiver::state_hash(std::size_t substream) const noexcept {
+  if (substream == 0) return tactus::state_hash(*impl_->scene, impl_->rigid.newest());
+  return impl_->deformables[substream - 1]->state_hash();
+}
+
+}  // namespace tactus

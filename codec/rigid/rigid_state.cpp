@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/rigid/rigid_state.h>
+
+#include <tactus/base/fixed.h>
+#include <tactus/base/hash.h>
+#include <tactus/base/quantise.h>
+
+namespace tactus {
+RigidStates initial_states(const Scene& scene) {
+  RigidStates out;
+  out.objects.reserve(scene.objects.size());
+  for (const RigidObject& object : scene.objects)
+    out.objects.push_back({.position = object.initial.position, .rotation = object.initial.rotation});
+  return out;
+}
+
+Result<RigidState> to_grid(const RigidSample& sample, std::int64_t tick, const GridExponents& grid) noexcept {
+  if (!is_finite(sample.pose.position) || !is_finite(sample.pose.rotation) || !is_finite(sample.velocity) ||
+      !is_finite(sample.angular_velocity)) {
+    return fail(Errc::invalid_argument, "R-API-1");
+  }
+  RigidState state;
+  state.tick = tick;
+  const auto vector = [](const Vec3& v, unsigned exp, double limit, Vec3i& out) {
+    return quantise(v.x, exp, limit, out[0]) && quantise(v.y, exp, limit, out[1]) && quantise(v.z, exp, limit, out[2]);
+  };
+  if (!vector(sample.velocity, grid.velocity, 2147483647.0, state.velocity) ||
+      !vector(sample.angular_velocity, grid.angular_velocity, kAngularVelocityLimit, state.angular_velocity)) {
+    return fail(Errc::invalid_argument, "R-API-2");
+  }
+  TACTUS_TRY(const RigidPose pose, to_grid(sample.pose, grid.position));
+  state.position = pose.position;
+  state.rotation = pose.rotation;
+  return state;
+}
+
+RigidSample to_sample(const RigidState& state, const GridExponents& grid) noexcept {
+  const double speed = 1.0 / static_cast<double>(std::uint64_t{1} << grid.velocity);
+  const double turn = 1.0 / static_cast<double>(std::uint64_t{1} << grid.angular_velocity);
+  return {to_pose({state.position, state.rotation}, grid.position),
+          {state.velocity[0] * speed, state.velocity[1] * speed, state.velocity[2] * speed},
+          {state.angular_velocity[0] * turn, state.angular_velocity[1] * turn, state.angular_velocity[2] * turn}};
+}
+
+std::uint64_t state_hash(const Scene& scene, const RigidStates& states) noexcept {
+  Fnv1a hash;
+  for (const std::uint32_t i : scene.moving()) {
+    const RigidState& s = states.objects[i];
+    hash.add64(static_cast<std::uint64_t>(s.tick));
+    for (const std::int32_t v : s.position) hash.add32(v);
+    for (const std::int32_t v : s.rotation) hash.add32(v);
+    for (const std::int32_t v : s.velocity) hash.add32(v);
+    for (const std::int32_t v : s.angular_velocity) hash.add32(v);
+  }
+  return hash.value();
+}
+
+}  // namespace tactus

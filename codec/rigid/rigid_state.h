@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What both ends keep of rigid objects, and the way to it from SI units and back. spec/40-rigid.md section 1.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <tactus/base/geometry.h>
+#include <tactus/base/result.h>
+#include <tactus/scene/scene.h>
+
+namespace tactus {
+
+/// Pose and motion of one rigid object in SI units, as a simulation or a recording gives it.
+struct RigidSample {
+  Pose pose;
+  Vec3 velocity;          ///< [m/s] world frame
+  Vec3 angular_velocity;  ///< [rad/s] world frame
+};
+
+/// Integer pose and motion of one rigid object at one tick. This is all that a decoder keeps per object.
+struct RigidState {
+  std::int64_t tick = 0;
+  std::array<std::int32_t, 3> position{};                  ///< x 2^-position m
+  std::array<std::int32_t, 4> rotation{1 << 30, 0, 0, 0};  ///< x 2^-30, Hamilton w, x, y, z
+  std::array<std::int32_t, 3> velocity{};                  ///< x 2^-velocity m/s
+  std::array<std::int32_t, 3> angular_velocity{};          ///< x 2^-angular_velocity rad/s, world frame
+  friend bool operator==(const RigidState&, const RigidState&) = default;
+};
+
+inline constexpr std::int32_t kAngularVelocityLimit = 1 << 25;
+
+/// The states of all objects of a scene after a packet.
+struct RigidStates {
+  std::int64_t tick = 0;            ///< of the packet
+  std::vector<RigidState> objects;  ///< order of Scene::objects
+};
+
+/// All objects at rest where the scene declares them.   allocates
+RigidStates initial_states(const Scene& scene);
+
+/// SI sample to grid.
+/// err  invalid_argument R-API-1 a component is NaN or infinite; R-API-2 the value leaves the grid's range;
+///      R-API-3 the quaternion's length differs from 1 by more than 1e-3.
+Result<RigidState> to_grid(const RigidSample& sample, std::int64_t tick, const GridExponents& grid) noexcept;
+
+/// Grid to SI units.
+RigidSample to_sample(const RigidState& state, const GridExponents& grid) noexcept;
+
+/// FNV-1a (64 bit) over tick, position, rotation, velocity and angular velocity of every object that can move. spec 40-rigid 6
+std::uint64_t state_hash(const Scene& scene, const RigidStates& states) noexcept;
+
+}  // namespace tactus

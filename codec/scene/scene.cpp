@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/scene/scene.h>
+
+#include <algorithm>
+#include <bit>
+#include <string_view>
+#include <unordered_set>
+#include <utility>
+
+#include <tactus/base/fixed.h>
+#include <tactus/base/out_of_memory.h>
+#include <tactus/scene/bounds_syntax.h>
+#include <tactus/scene/scene_rules.h>
+
+namespace tactus {
+namespace {
+
+/// Well-formed UTF-8 without control characters (RFC 3629).
+bool is_plain_utf8(std::string_view text) noexcept {
+  std::size_t i = 0;
+  while (i < text.size()) {
+    const auto lead = static_cast<std::uint8_t>(text[i++]);
+    if (lead < 0x20 || lead == 0x7f) return false;
+    if (lead < 0x80) continue;
+    const unsigned tail = lead >= 0xf0 ? 3 : lead >= 0xe0 ? 2 : 1;
+    if (lead < 0xc2 || lead > 0xf4 || text.size() - i < tail) return false;
+    std::uint32_t point = lead & (0x3fu >> tail);
+    for (unsigned k = 0; k < tail; ++k) {
+      const auto byte = static_cast<std::uint8_t>(text[i++]);
+      if ((byte & 0xc0) != 0x80) return false;
+      point = (point << 6) | (byte & 0x3fu);
+    }
+    constexpr std::uint32_t kFirst[] = {0, 0x80, 0x800, 0x10000};
+    if (point < kFirst[tail] || point > 0x10ffff || (point >= 0xd800 && point < 0xe000)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool is_name(std::string_view name) noexcept { return !name.empty() && name.size() <= 255 && is_plain_utf8(name); }
+
+namespace {
+
+bool is_dof(std::uint8_t dof) noexcept {
+  const unsigned turns = static_cast<unsigned>(std::popcount(static_cast<unsigned>(dof >> 3)));
+  return dof <= Dof::all && turns != 2;
+}
+
+/// Length within 2^-20 of 1: what a rounded unit quaternion and every product of them keep.
+bool is_unit(const Quat30& q) noexcept {
+  std::int64_t square = 0;
+  for (const std::int32_t c : q) {
+    if (c > kOne30 || c < -kOne30) return false;
+    square += static_cast<std::int64_t>(c) * c;
+  }
+  constexpr std::int64_t one = std::int64_t{1} << 60;
+  return square >= one - (one >> 19) && square <= one + (one >> 19);
+}
+
+bool are_exponents(const GridExponents& g) noexcept {
+  return g.position >= 8 && g.position <= 30 && g.velocity <= g.position && g.position - g.velocity <= 12 && g.rotation >= 8 &&
+         g.rotation <= 28 && g.angular_velocity <= g.rotation && g.angular_velocity <= 20 &&
+         g.rotation - g.angular_velocity <= 12;
+}
+
+}  // namespace
+
+const char* broken_object_rule(const RigidObject& object) noexcept {
+  if (!is_name(object.name)) return "R-STR-11";
+  if (!is_dof(object.dof)) return "R-STR-12";
+  if (!is_unit(object.initial.rotation)) return "R-STR-13";
+  return nullptr;
+}
+
+/// First rule that the stream parameters break; objects are checked one by one while they are read.
+const char* broken_parameter_rule(const SceneSpec& h) noexcept {
+  if (h.tick_rate < 1 || h.tick_rate > 1000000) return "R-STR-6";
+  if (!are_exponents(h.grid)) return "R-STR-7";
+  if (h.max_extrapolation < 1) return "R-STR-8";
+  if (h.baseline_span < 1 || h.baseline_span > 64) return "R-STR-9";
+  return nullptr;
+}
+
+namespace {
+
+Result<void> find_broken_rule(const SceneSpec& spec, const DecodeLimits& limits) {
+  if (const char* rule = broken_parameter_rule(spec)) return fail(Errc::invalid, rule);
+  if (spec.deformables.size() > kMaxDeformables) return fail(Errc::invalid, "R-DEF-1");
+  if (spec.objects.size() + spec.deformables.size() > limits.objects) return fail(Errc::limit_exceeded, "R-STR-14");
+  std::unordered_set<std::string_view> names;
+  for (const RigidObject& object : spec.objects) {
+    if (const char* rule = broken_object_rule(object)) return fail(Errc::invalid, rule);
+    if (!names.insert(object.name).second) return fail(Errc::invalid, "R-STR-11");
+  }
+  std::uint64_t vertices = 0, triangles = 0;
+  for (const DeformableObject& object : spec.deformables) {
+    if (!is_name(object.name) || !names.insert(object.name).second) return fail(Errc::invalid, "R-STR-11");
+    if (const char* rule = broken_deformable_rule(object)) return fail(Errc::invalid, rule);
+    vertices += object.rest.size();
+    triangles += object.triangles.size();
+    if (vertices > limits.vertices || triangles > limits.triangles) return fail(Errc::limit_exceeded, "R-STR-14");
+  }
+  if (spec.bounds && !are_bounds(spec)) return fail(Errc::invalid, "R-STR-17");
+  if (state_bytes(spec) > limits.state_bytes) return fail(Errc::limit_exceeded, "R-STR-18");
+  return {};
+}
+
+}  // namespace
+
+Result<void> check_scene(const SceneSpec& spec, const DecodeLimits& limits) try {
+  return find_broken_rule(spec, limits);
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
+
+Scene::Scene(SceneSpec&& spec) : SceneSpec(std::move(spec)) {
+  for (std::uint32_t i = 0; i < objects.size(); ++i)
+    if (objects[i].dof != Dof::none) moving_.push_back(i);
+}
+
+Result<SharedScene> Scene::create(SceneSpec spec, const DecodeLimits& limits) try {
+  TACTUS_CHECK(find_broken_rule(spec, limits));
+  return SharedScene(new Scene(std::move(spec)));
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
+
+std::uint64_t state_bytes(const SceneSpec& spec) noexcept {
+  const std::uint64_t states = spec.baseline_span + 2u;  // the initial one and that of the packet at hand
+  std::uint64_t sum = 64 * states * spec.objects.size();
+  for (const DeformableObject& object : spec.deformables) {
+    sum += states * ((object.layered ? 24 : 12) * object.rest.size() + 48 * object.basis.steps.size());
+    if (object.profile == DeformableProfile::thesis)
+      sum += (object.models_kept ? states + 2 : 2) * 4 * (254 + (std::uint64_t{1} << object.quant_bits));
+  }
+  return sum;
+}
+
+}  // namespace tactus

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The scene declaration: everything that both ends know before the first packet. spec/20-scene.md sections 2 to 7.
+///
+/// A SceneSpec is plain data that anybody may fill in; a Scene has been checked, does not change, and is shared by all who need it:
+/// sender, receiver, file, threads. SceneBuilder makes one from SI units (scene_builder.h), parse_scene() from bytes (scene_syntax.h).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <tactus/base/result.h>
+#include <tactus/scene/bounds.h>
+#include <tactus/scene/deformable_object.h>
+#include <tactus/scene/rigid_object.h>
+
+namespace tactus {
+
+/// Fixed-point grids: a value v [SI] is the integer round(v * 2^exp).
+///   field             quantity                unit        default   step at the default
+///   position          position                m           22        0.24 um, range +-512 m
+///   velocity          linear velocity         m/s         17        7.6 um/s
+///   rotation          quarter-angle vector    1           20        0.95e-6 (3.8e-6 rad); |v| = tan(angle / 4)
+///   angular_velocity  angular velocity        rad/s       12        0.24 mrad/s
+struct GridExponents {
+  std::uint8_t position = 22;
+  std::uint8_t velocity = 17;
+  std::uint8_t rotation = 20;
+  std::uint8_t angular_velocity = 12;
+  friend bool operator==(const GridExponents&, const GridExponents&) = default;
+};
+
+struct SceneSpec {
+  std::uint32_t tick_rate = 1000;  ///< ticks per second, 1 .. 1 000 000
+  GridExponents grid;
+  std::uint16_t max_extrapolation = 2000;     ///< ticks; an object without updates stops moving after so long
+  std::uint8_t baseline_span = 1;             ///< how many of the newest states a receiver keeps as baselines, 1..64
+  std::vector<RigidObject> objects;           ///< order is the wire order
+  std::vector<DeformableObject> deformables;  ///< a stream without them has no byte about them
+  std::optional<StreamBounds> bounds;         ///< what the sender vouches for; none: not told
+};
+
+/// What a decoder accepts before it allocates. What it takes is in proportion to the declaration's bytes that are there and to
+/// state_bytes(), never to what is announced. A mesh of 2^20 vertices without a basis fits with a baseline_span of up to 19.
+struct DecodeLimits {
+  std::uint32_t objects = 4096;
+  std::uint32_t header_bytes = 1u << 26;
+  std::uint32_t packet_bytes = 1u << 26;
+  std::uint32_t vertices = 1u << 20;       ///< of all deformable objects
+  std::uint32_t triangles = 1u << 21;      ///< of all deformable objects
+  std::uint64_t state_bytes = 1ull << 28;  ///< of all states that the stream's decoders keep
+};
+
+/// A checked scene. Never changes after it is made, so that threads may share it.
+class Scene : public SceneSpec {
+ public:
+  /// err  invalid, limit_exceeded, with the R-STR or R-DEF rule that the declaration breaks
+  static Result<std::shared_ptr<const Scene>> create(SceneSpec spec, const DecodeLimits& limits = {});
+
+  /// Rigid objects that can move, ascending: the only ones that packets name.
+  std::span<const std::uint32_t> moving() const noexcept { return moving_; }
+
+  Scene(const Scene&) = delete;
+  Scene& operator=(const Scene&) = delete;
+
+ private:
+  explicit Scene(SceneSpec&& spec);
+
+  std::vector<std::uint32_t> moving_;
+};
+
+using SharedScene = std::shared_ptr<const Scene>;
+
+/// The rule that a declaration breaks, if any.   err  as Scene::create
+Result<void> check_scene(const SceneSpec& spec, const DecodeLimits& limits = {});
+
+/// What the states take that the decoders of all substreams keep [bytes]. spec/20-scene.md section 8
+std::uint64_t state_bytes(const SceneSpec& spec) noexcept;
+
+/// What a stream promises whose sender has these thresholds: deformable objects of profile thesis only aim at theirs.
+StreamBounds bounds_of(const SceneSpec& spec, const RigidTriggers& rigid, const DeformableThresholds& deformables);
+
+}  // namespace tactus

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/scene/scene_builder.h>
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_set>
+#include <utility>
+
+#include <tactus/base/out_of_memory.h>
+#include <tactus/scene/scene_rules.h>
+
+namespace tactus {
+namespace {
+
+constexpr double kExtrapolation = 2;  // [s]
+
+void apply(DeformableCoding& coding, DeformableObject& object) {
+  object.profile = coding.profile;
+  object.rings = coding.rings;
+  object.quant_bits = coding.quant_bits;
+  object.models_kept = coding.models_kept;
+  object.layered = coding.profile == DeformableProfile::main && coding.layered;
+  object.frame_period = static_cast<std::uint32_t>(
+      std::clamp(std::floor(256 * coding.frame_period + 0.5), 1.0, double{DeformableObject::kMaxFramePeriod}));
+  if (coding.profile == DeformableProfile::main) object.basis = std::move(coding.basis);
+}
+
+}  // namespace
+
+SceneBuilder& SceneBuilder::rigid(std::string name, const Pose& initial, std::uint8_t dof) {
+  rigid_.push_back({std::move(name), initial, dof});
+  return *this;
+}
+
+SceneBuilder& SceneBuilder::deformable(std::string name, TriMesh surface, DeformableCoding coding) {
+  deformables_.push_back({std::move(name), std::move(surface), std::move(coding)});
+  return *this;
+}
+
+SceneBuilder& SceneBuilder::grid(const GridExponents& exponents) {
+  spec_.grid = exponents;
+  return *this;
+}
+
+SceneBuilder& SceneBuilder::extrapolate(double seconds) {
+  extrapolation_ = seconds;
+  return *this;
+}
+
+SceneBuilder& SceneBuilder::baselines(std::uint8_t count) {
+  spec_.baseline_span = count;
+  return *this;
+}
+
+SceneBuilder& SceneBuilder::promise(const RigidTriggers& rigid, const DeformableThresholds& deformables) {
+  promise_.emplace(rigid, deformables);
+  return *this;
+}
+
+tl::expected<SharedScene, SceneFinding> SceneBuilder::build() try {
+  const auto refuse = [](const Error& error, std::string object) {
+    return tl::make_unexpected(SceneFinding{error, std::move(object)});
+  };
+  SceneBuilder taken = std::exchange(*this, SceneBuilder(spec_.tick_rate));
+  SceneSpec& spec = taken.spec_;
+  const double ticks = std::floor(taken.extrapolation_.value_or(kExtrapolation) * spec.tick_rate + 0.5);
+  if (!(ticks >= 0)) return refuse({Errc::invalid_argument, "R-API-4", 0}, {});
+  spec.max_extrapolation = static_cast<std::uint16_t>(std::clamp(ticks, 1.0, 65535.0));
+  if (const char* rule = broken_parameter_rule(spec)) return refuse({Errc::invalid, rule, 0}, {});  // before the grid is used
+  std::unordered_set<std::string> names;
+  for (Rigid& object : taken.rigid_) {
+    const auto initial = to_grid(object.initial, spec.grid.position);
+    if (!initial) return refuse(initial.error(), object.name);
+    spec.objects.push_back({std::move(object.name), object.dof, *initial});
+    const RigidObject& made = spec.objects.back();
+    if (const char* rule = broken_object_rule(made)) return refuse({Errc::invalid, rule, 0}, made.name);
+    if (!names.insert(made.name).second) return refuse({Errc::invalid, "R-STR-11", 0}, made.name);
+  }
+  for (Deformable& of : taken.deformables_) {
+    auto object = make_deformable_object(of.name, of.surface, spec.grid.position);
+    if (!object) return refuse(object.error(), of.name);
+    apply(of.coding, *object);
+    if (!is_name(of.name) || !names.insert(of.name).second) return refuse({Errc::invalid, "R-STR-11", 0}, of.name);
+    if (const char* rule = broken_deformable_rule(*object)) return refuse({Errc::invalid, rule, 0}, of.name);
+    spec.deformables.push_back(std::move(*object));
+  }
+  if (taken.promise_) spec.bounds = bounds_of(spec, taken.promise_->first, taken.promise_->second);
+  auto scene = Scene::create(std::move(spec));
+  if (!scene) return refuse(scene.error(), {});
+  return *scene;
+} catch (const std::bad_alloc&) {
+  return tl::make_unexpected(SceneFinding{out_of_memory().value(), {}});
+}
+
+}  // namespace tactus

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Rules of a scene declaration that are checked while it is read, one element at a time. Internal to the library.
+#pragma once
+
+#include <string_view>
+
+#include <tactus/scene/scene.h>
+
+namespace tactus {
+
+inline constexpr std::size_t kMaxDeformables = 255;  ///< packets name them by a byte
+
+/// 1..255 bytes of UTF-8 without control characters.
+bool is_name(std::string_view name) noexcept;
+
+/// The first rule that an element breaks, or null. Names that occur twice are found by check_scene().
+const char* broken_object_rule(const RigidObject& object) noexcept;
+const char* broken_parameter_rule(const SceneSpec& spec) noexcept;
+const char* broken_deformable_rule(const DeformableObject& object) noexcept;
+
+}  // namespace tactus

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/sender.h>
+
+#include <utility>
+#include <vector>
+
+#include <tactus/base/out_of_memory.h>
+#include <tactus/deformable/deformable_encoder.h>
+#include <tactus/rigid/rigid_encoder.h>
+
+namespace tactus {
+
+struct Sender::Impl {
+  Impl(SharedScene of, const SenderOptions& options)
+      : scene(std::move(of)),
+        rigid(*scene, options.policy, 0, max_rigid_packet(*scene), 1, initial_states(*scene), *scene, options.triggers) {
+    for (std::size_t i = 0; i < scene->deformables.size(); ++i)
+      deformables.push_back(DeformableEncoder::create(*scene, i, options.deformable, options.policy));
+    packets.reserve(1 + 2 * deformables.size());
+  }
+
+  Result<void> read(std::int64_t tick, const Truth& truth) noexcept;
+  void add(const Packet& packet) noexcept {
+    if (!packet.bytes.empty()) packets.push_back(packet);
+  }
+
+  SharedScene scene;
+  SubstreamEncoder<RigidEncoder> rigid;
+  std::vector<std::unique_ptr<DeformableEncoder>> deformables;
+  std::vector<Packet> packets;  // of this tick
+  std::int64_t last_tick = -1;
+};
+
+/// Everything is looked at before anything changes.
+Result<void> Sender::Impl::read(std::int64_t tick, const Truth& truth) noexcept {
+  if (tick <= last_tick || tick >= kTickLimit) return fail(Errc::invalid_argument, "R-API-5");
+  if (!truth.deformables.empty() && truth.deformables.size() != deformables.size())
+    return fail(Errc::invalid_argument, "R-API-5");
+  if (!scene->moving().empty() || !truth.objects.empty() || !truth.contacts.empty())
+    TACTUS_CHECK(rigid.codec().read(tick, truth.objects, truth.contacts));
+  for (std::size_t i = 0; i < truth.deformables.size(); ++i)
+    if (!truth.deformables[i].displacements.empty()) TACTUS_CHECK(deformables[i]->read(truth.deformables[i]));
+  return {};
+}
+
+Sender::Sender(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}
+Sender::Sender(Sender&&) noexcept = default;
+Sender& Sender::operator=(Sender&&) noexcept = default;
+Sender::~Sender() = default;
+
+Result<Sender> Sender::create(SharedScene scene, const SenderOptions& options) try {
+  const double interval = options.policy.key_interval;
+  if (!(interval >= 0 && interval <= 86400)) return fail(Errc::invalid_argument, "R-API-4");
+  if (!scene->moving().empty()) TACTUS_CHECK(RigidEncoder::check(options.triggers, scene->grid));
+  if (!scene->deformables.empty()) TACTUS_CHECK(DeformableEncoder::check(options.deformable));
+  return Sender(std::make_unique<Impl>(std::move(scene), options));
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
+
+Result<std::span<const Packet>> Sender::encode(std::int64_t tick, const Truth& truth) noexcept {
+  Impl& s = *impl_;
+  TACTUS_CHECK(s.read(tick, truth));
+  s.packets.clear();
+  if (!s.scene->moving().empty()) {
+    TACTUS_TRY(const Packet packet, s.rigid.encode(tick, Layer::all));
+    s.add(packet);
+  }
+  for (std::size_t i = 0; i < truth.deformables.size(); ++i) {
+    if (truth.deformables[i].displacements.empty()) continue;
+    DeformableEncoder& object = *s.deformables[i];
+    s.add(object.encode(tick, object.is_layered() ? Layer::haptic : Layer::all));
+    if (object.is_layered()) s.add(object.encode(tick, Layer::visual));
+  }
+  s.last_tick = tick;
+  return std::span<const Packet>(s.packets);
+}
+
+void Sender::request_key() noexcept {
+  impl_->rigid.request_key();
+  for (auto& object : impl_->deformables) object->request_key();
+}
+
+void Sender::acknowledge(std::size_t substream, std::uint16_t sequence) noexcept {
+  if (substream == 0) impl_->rigid.acknowledge(sequence);
+  else if (substream <= impl_->deformables.size()) impl_->deformables[substream - 1]->acknowledge(sequence);
+}
+
+void Sender::forget_last(std::size_t substream) noexcept {
+  if (substream == 0) impl_->rigid.forget_last();
+  else if (substream <= impl_->deformables.size()) impl_->deformables[substream - 1]->forget_last();
+}
+
+const SharedScene& Sender::scene() const noexcept { return impl_->scene; }
+
+std::uint64_t Sender::state_hash(std::size_t substream) const noexcept {
+  if (substream == 0) return tactus::state_hash(*impl_->scene, impl_->rigid.newest());
+  return impl_->deformables[substream - 1]->state_hash();
+}
+
+}  // namespace tactus

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+/// From a trace to a scene and to what a sender is told.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include <tactus/base/result.h>
+#include <tactus/scene/scene_builder.h>
+#include <tactus/sender.h>
+#include <tactus/trace/frame.h>
+
+namespace tactus {
+
+/// How the deformable objects of a trace are coded; frame periods are the trace's.
+struct TraceCoding {
+  DeformableCoding deformable{};
+  std::function<Result<ModeBasis>(const TraceDeformable&)> basis{};  ///< main: makes each object's basis; empty: without
+};
+
+/// Declares a deformable object.   err  those of the basis
+Result<void> add_deformable(SceneBuilder& scene, const TraceDeformable& mesh, const TraceCoding& coding);
+
+/// The scene of a trace: its objects in order, at rest in the poses of `first`, and its deformable objects.
+/// err  invalid_argument R-API-5 wrong count; those of a basis
+Result<SceneBuilder> scene_builder(const TraceInfo& info, const TraceFrame& first, const TraceCoding& coding = {});
+
+/// Who touches this deformable object: of several users the one who presses least, whose haptic threshold is the lowest.
+/// out  force is that of the coupling, k |x_p - x_d|
+std::optional<SurfaceTouch> touch_of(const TraceFrame& frame, std::size_t deformable) noexcept;
+
+/// Frames as a sender takes them. Holds the lists that a Truth points to.
+class FrameTruth {
+ public:
+  explicit FrameTruth(const TraceInfo& info) : contacts_(info.users.size()), deformables_(info.meshes.size()) {}
+
+  /// Valid until the next call, and as long as the frame.   time O(users * deformable objects), no allocation
+  /// pre  the frame is of the same trace
+  Truth of(const TraceFrame& frame) noexcept;
+
+ private:
+  std::vector<Contact> contacts_;
+  std::vector<DeformableTruth> deformables_;
+};
+
+}  // namespace tactus

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/metrics/errors.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus {
+
+void ErrorSeries::add(double error, bool over) noexcept {
+  ++samples_;
+  square_sum_ += error * error;
+  max_ = std::max(max_, error);
+  sampled_ = true;
+  over_ = over_ || over;
+}
+
+void ErrorSeries::end_tick(std::int64_t tick) noexcept {
+  ticks_ += sampled_ ? 1 : 0;
+  ticks_over_ += over_ ? 1 : 0;
+  if (over_) run_.add(tick);
+  else run_ = {};
+  longest_run_ = std::max(longest_run_, run_.length());
+  sampled_ = over_ = false;
+}
+
+double ErrorSeries::rms() const noexcept { return samples_ == 0 ? 0 : std::sqrt(square_sum_ / static_cast<double>(samples_)); }
+
+ErrorMetrics::ErrorMetrics(const TraceInfo& info, const RigidTriggers& bounds) : bounds_(bounds) {
+  for (std::uint32_t i = 0; i < info.objects.size(); ++i) {
+    if (info.objects[i].dof != Dof::none) moving_.push_back(i);
+  }
+}
+
+bool ErrorMetrics::breaks_rule(const Pose& truth, const Pose& shown, const Vec3& force, const Vec3& estimate) noexcept {
+  if (bounds_.haptic == HapticRule::fixed) {
+    const double distance = norm(shown.position - truth.position) / bounds_.fixed_position;
+    const double angle = angle_between(truth.rotation, shown.rotation) / bounds_.fixed_rotation;
+    worst_ratio_ = std::max({worst_ratio_, distance, angle});
+    return std::max(distance, angle) > 1;
+  }
+  const double ratio = haptic_ratio(bounds_, force, estimate);
+  worst_ratio_ = std::max(worst_ratio_, ratio);
+  return ratio > 1;
+}
+
+/// Below the force floor the permitted error stays that of the floor, as in the haptic rule.
+bool ErrorMetrics::is_perceptible(double force, double error) const noexcept {
+  return error > perceptual_fraction(force) * std::max(force, bounds_.force_floor);
+}
+
+void ErrorMetrics::add(const TraceFrame& truth, std::span<const Pose> shown) noexcept {
+  for (const std::uint32_t i : moving_) {
+    const Pose& pose = truth.objects[i].pose;
+    const double distance = norm(shown[i].position - pose.position);
+    const double angle = angle_between(pose.rotation, shown[i].rotation);
+    position_.add(distance, distance > bounds_.visual_position);
+    rotation_.add(angle, angle > bounds_.visual_rotation);
+  }
+  for (const UserSample& user : truth.users) {
+    if (user.contact.kind == ContactKind::none) continue;
+    const std::uint32_t object = user.contact.object;
+    const Pose& pose = truth.objects[object].pose;
+    const Vec3 force = contact_force(user.contact, pose);
+    const Vec3 estimate = contact_force(user.contact, shown[object]);
+    const double error = norm(estimate - force);
+    force_.add(error, breaks_rule(pose, shown[object], force, estimate));
+    perceived_.add(error, is_perceptible(norm(force), error));
+  }
+  for (ErrorSeries* series : {&position_, &rotation_, &force_, &perceived_}) series->end_tick(truth.tick);
+}
+
+void ErrorMetrics::add_rendered(const TraceFrame& truth) noexcept {
+  for (const UserSample& user : truth.users) {
+    const double force = norm(user.server_force);
+    if (force == 0 && norm(user.force) == 0) continue;
+    const double error = norm(user.force - user.server_force);
+    rendered_.add(error, is_perceptible(force, error));
+  }
+  rendered_.end_tick(truth.tick);
+}
+
+}  // namespace tactus

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+/// How far what a client shows and feels of rigid objects is from the truth.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <tactus/rigid/trigger.h>
+#include <tactus/trace/frame.h>
+
+namespace tactus {
+
+/// One kind of error over time. Samples are added tick by tick; a tick counts as over when any of its samples is.
+class ErrorSeries {
+ public:
+  void add(double error, bool over) noexcept;
+  /// pre  `tick` is larger than the last
+  void end_tick(std::int64_t tick) noexcept;
+
+  std::uint64_t ticks() const noexcept { return ticks_; }  ///< that had a sample
+  std::uint64_t ticks_over() const noexcept { return ticks_over_; }
+  std::uint64_t longest_run() const noexcept {
+    return longest_run_;
+  }  ///< [ticks] from first to last over, none between that was not
+  double rms() const noexcept;
+  double max() const noexcept { return max_; }
+
+ private:
+  std::uint64_t samples_ = 0, ticks_ = 0, ticks_over_ = 0, longest_run_ = 0;
+  TickSpan run_;
+  double square_sum_ = 0, max_ = 0;
+  bool sampled_ = false, over_ = false;  // in this tick
+};
+
+/// Holds a replica against the truth. Objects that cannot move are left out, and so are forces where nobody touches.
+/// The force error is that of the contact itself: the force at the shown pose against the force at the true pose (contact_force).
+class ErrorMetrics {
+ public:
+  ErrorMetrics(const TraceInfo& info, const RigidTriggers& bounds);
+
+  /// in   shown  one pose per object
+  /// time O(objects + users), no allocation.
+  void add(const TraceFrame& truth, std::span<const Pose> shown) noexcept;
+  /// Also hold the force that the client rendered against the server's (closed loop only).
+  void add_rendered(const TraceFrame& truth) noexcept;
+
+  const RigidTriggers& bounds() const noexcept { return bounds_; }
+  const ErrorSeries& position() const noexcept { return position_; }    ///< [m] against visual_position
+  const ErrorSeries& rotation() const noexcept { return rotation_; }    ///< [rad] against visual_rotation
+  const ErrorSeries& force() const noexcept { return force_; }          ///< [N] against the haptic rule
+  const ErrorSeries& perceived() const noexcept { return perceived_; }  ///< the same errors against perceptual_fraction
+  const ErrorSeries& rendered() const noexcept { return rendered_; }    ///< [N] as felt, against perceptual_fraction
+  double worst_haptic_ratio() const noexcept { return worst_ratio_; }   ///< largest haptic_ratio; <= 1: the rule held
+
+ private:
+  bool breaks_rule(const Pose& truth, const Pose& shown, const Vec3& force, const Vec3& estimate) noexcept;
+  bool is_perceptible(double force, double error) const noexcept;
+
+  RigidTriggers bounds_;
+  std::vector<std::uint32_t> moving_;
+  ErrorSeries position_, rotation_, force_, perceived_, rendered_;
+  double worst_ratio_ = 0;
+};
+
+}  // namespace tactus

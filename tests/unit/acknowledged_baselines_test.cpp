@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Packets that build on what the receiver has acknowledged: no loss stops a stream, and all that arrives keeps its bounds.
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <functional>
+
+#include <tactus/rigid/rigid_predictor.h>
+#include <tactus/tactus.h>
+#include "tests/unit/deformable_fixture.h"
+
+namespace tactus {
+namespace {
+
+using testing::SheetFrame;
+using Bytes = std::vector<std::uint8_t>;
+
+/// A channel that loses packets, delays those that arrive and their acknowledgements, and loses some of these. Order is kept one
+/// way, not the other.
+struct Channel {
+  double loss = 0.3;
+  std::uint32_t delay = 0;      // [ticks] of packets, at most
+  std::uint32_t ack_delay = 0;  // [ticks] of acknowledgements, at most
+  double ack_loss = 0.2;
+};
+
+struct Delivered {
+  std::size_t sent = 0, keys = 0, lost = 0, decoded = 0, refused = 0;
+};
+
+/// Frames of a scene through the channel.
+/// in   look(receiver, decoded, tick)  called after each packet that was decoded; `tick` is its own
+Delivered deliver(const SharedScene& scene, const SenderOptions& options, const Channel& channel, std::int64_t ticks,
+                  const std::function<Truth(std::int64_t)>& truth,
+                  const std::function<void(Receiver&, const DecodedPacket&)>& look) {
+  struct InFlight {
+    std::int64_t arrives = 0;
+    Bytes bytes;
+    std::size_t substream = 0;
+    std::uint64_t hash = 0;  // of the sender's state after it
+  };
+  struct Ack {
+    std::int64_t arrives = 0;
+    std::size_t substream = 0;
+    std::uint16_t sequence = 0;
+  };
+  auto sender = Sender::create(scene, options).value();
+  auto receiver = Receiver::create(scene).value();
+  std::mt19937_64 random(11);
+  const auto chance = [&](double share) { return static_cast<double>(random() >> 11) * 0x1p-53 < share; };
+  std::deque<InFlight> packets;
+  std::vector<Ack> acks;
+  Delivered out;
+  for (std::int64_t tick = 0; tick < ticks; ++tick) {
+    for (const Packet& packet : testing::all(sender.encode(tick, truth(tick)))) {
+      ++out.sent;
+      out.keys += packet.key ? 1u : 0u;
+      if (chance(channel.loss)) {
+        ++out.lost;
+        continue;
+      }
+      const std::int64_t earliest = packets.empty() ? tick : packets.back().arrives;
+      packets.push_back({std::max(earliest, tick + static_cast<std::int64_t>(random() % (channel.delay + 1))),
+                         Bytes(packet.bytes.begin(), packet.bytes.end()), packet.substream, sender.state_hash(packet.substream)});
+    }
+    while (!packets.empty() && packets.front().arrives <= tick) {
+      const InFlight packet = std::move(packets.front());
+      packets.pop_front();
+      const auto decoded = receiver.push(packet.bytes, tick);
+      if (!decoded) {
+        EXPECT_STREQ(decoded.error().rule, "R-PKT-4");
+        ++out.refused;
+        continue;
+      }
+      ++out.decoded;
+      EXPECT_EQ(receiver.state_hash(packet.substream), packet.hash) << "as if nothing had been lost";
+      look(receiver, *decoded);
+      if (!chance(channel.ack_loss))
+        acks.push_back(
+            {tick + static_cast<std::int64_t>(random() % (channel.ack_delay + 1)), decoded->substream, decoded->sequence});
+    }
+    std::erase_if(acks, [&](const Ack& ack) {
+      if (ack.arrives > tick) return false;
+      sender.acknowledge(ack.substream, ack.sequence);
+      return true;
+    });
+  }
+  return out;
+}
+
+SenderOptions acknowledged(const DeformableThresholds& thresholds = {}) {
+  return {.triggers = {},
+          .deformable = {.thresholds = thresholds},
+          .policy = {.key_interval = 0, .baseline = Baseline::acknowledged}};
+}
+
+/// The same channel stops a stream whose packets build on the one before.
+SenderOptions previous() { return {.triggers = {}, .deformable = {}, .policy = {.key_interval = 0}}; }
+
+const Channel kChannels[] = {{0, 0, 0, 0}, {0.3, 0, 0, 0}, {0.3, 2, 3, 0.2}, {0.5, 3, 6, 0.3}};
+
+TEST(AcknowledgedBaselines, NoLossStopsRigidObjects) {
+  constexpr std::size_t kObjects = 3;
+  SceneSpec spec = testing::spec_of(kObjects);
+  spec.baseline_span = 8;
+  const SharedScene scene = testing::shared(std::move(spec));
+  for (const Channel& channel : kChannels) {
+    std::vector<testing::Motion> motions{testing::Motion(1), testing::Motion(2), testing::Motion(3)};
+    std::vector<std::vector<RigidSample>> samples;  // by tick
+    std::vector<Contact> contacts;
+    const auto truth = [&](std::int64_t tick) {
+      if (tick == 0) samples.clear();
+      samples.emplace_back();
+      for (testing::Motion& motion : motions) samples.back().push_back(motion.step(1e-3));
+      contacts = {testing::touch(1, samples.back()[1].pose, 0.002)};
+      return Truth{samples.back(), contacts};
+    };
+    const RigidPredictor predictor(*scene);
+    std::size_t broken = 0, updates = 0;
+    const auto look = [&](Receiver& receiver, const DecodedPacket& packet) {
+      const auto& truly = samples[static_cast<std::size_t>(packet.tick)];
+      updates += packet.updates.size();
+      for (std::size_t i = 0; i < kObjects; ++i) {  // those that the packet leaves out, too
+        const Pose shown = to_pose(predictor.pose(receiver.objects()[i], packet.tick), scene->grid.position);
+        const Pose& pose = truly[i].pose;
+        const bool seen = norm(shown.position - pose.position) <= RigidTriggers{}.visual_position &&
+                          angle_between(shown.rotation, pose.rotation) <= RigidTriggers{}.visual_rotation;
+        const Contact contact = testing::touch(1, pose, 0.002);
+        const bool felt = i != 1 || haptic_ratio({}, contact_force(contact, pose), contact_force(contact, shown)) <= 1;
+        broken += seen && felt ? 0u : 1u;
+      }
+    };
+    const Delivered out = deliver(scene, acknowledged(), channel, 20000, truth, look);
+    EXPECT_EQ(out.refused, 0u);
+    EXPECT_EQ(broken, 0u);
+    EXPECT_EQ(out.lost > 100, channel.loss > 0);
+    EXPECT_GT(out.decoded, 200u);
+    EXPECT_GT(updates, out.decoded);
+    EXPECT_LT(out.keys, out.sent / 4) << "most build on what was acknowledged";
+    if (channel.loss > 0) {
+      EXPECT_GT(deliver(scene, previous(), channel, 4000, truth, [](auto&, auto&) {}).refused, 20u);
+    }
+  }
+}
+
+class AcknowledgedShapes : public ::testing::TestWithParam<std::tuple<DeformableProfile, std::size_t, bool>> {};
+
+TEST_P(AcknowledgedShapes, NoLossStopsDeformableObjects) {
+  const auto& [profile, modes, kept] = GetParam();
+  constexpr std::uint32_t kWide = 12;
+  const TriMesh mesh = testing::sheet(kWide, kWide);
+  SceneSpec spec = testing::sheet_spec(mesh, profile, modes > 0 ? testing::wave_basis(mesh, kWide, modes) : ModeBasis{});
+  spec.baseline_span = 8;
+  spec.deformables[0].quant_bits = 12;
+  spec.deformables[0].models_kept = kept;
+  const SharedScene scene = testing::shared(std::move(spec));
+  const DeformableThresholds thresholds{2.5e-4, 0.025};
+  for (const Channel& channel : kChannels) {
+    testing::DentedSheet sheet(mesh, kWide);
+    std::vector<SheetFrame> frames;  // by tick
+    DeformableTruth shape;
+    const auto truth = [&](std::int64_t tick) {
+      if (tick == 0) frames.clear();
+      frames.push_back(sheet.frame(tick));
+      shape = frames.back().truth();
+      return Truth{.deformables = {&shape, 1}};
+    };
+    testing::BoundWatch watch(*scene, thresholds);
+    const auto look = [&](Receiver& receiver, const DecodedPacket& packet) {
+      watch.look(frames[static_cast<std::size_t>(packet.tick)], receiver.displacements(0));
+    };
+    const Delivered out = deliver(scene, acknowledged(thresholds), channel, 800, truth, look);
+    EXPECT_EQ(out.refused, 0u);
+    if (profile == DeformableProfile::main) {
+      EXPECT_EQ(watch.broken(), 0u);
+    } else {
+      EXPECT_LT(watch.worst(), thresholds.visual + 3e-6) << "what is not sent, and the quantiser's step";
+    }
+    EXPECT_EQ(out.lost > 50, channel.loss > 0);
+    EXPECT_GT(out.decoded, 100u);
+    EXPECT_LT(out.keys, out.sent / 3);
+    if (channel.loss > 0) {
+      EXPECT_GT(deliver(scene, previous(), channel, 300, truth, [](auto&, auto&) {}).refused, 20u);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Profiles, AcknowledgedShapes,
+                         ::testing::Values(std::tuple{DeformableProfile::main, 0, false},
+                                           std::tuple{DeformableProfile::main, 6, false},
+                                           std::tuple{DeformableProfile::thesis, 0, false},
+                                           std::tuple{DeformableProfile::thesis, 0, true}));
+
+/// Without any acknowledgement there is only the initial state to build on; with one, that state until it is too old.
+TEST(AcknowledgedBaselines, ReachAsFarBackAsTheScene) {
+  SceneSpec spec = testing::spec_of(1);
+  spec.baseline_span = 4;
+  const SharedScene scene = testing::shared(std::move(spec));
+  SenderOptions options = acknowledged();
+  options.triggers.reduction = Reduction::none;
+  auto sender = Sender::create(scene, options).value();
+  testing::Motion motion(1);
+  std::int64_t tick = 0;
+  const auto key = [&] {
+    const RigidSample sample = motion.step(1e-3);
+    return testing::only(sender.encode(tick++, {{&sample, 1}})).key;
+  };
+  for (int i = 1; i <= 6; ++i) EXPECT_TRUE(key()) << i;
+  sender.acknowledge(0, 5);
+  for (int i = 7; i <= 9; ++i) EXPECT_FALSE(key()) << i;
+  EXPECT_TRUE(key()) << "packet 10 is 5 after the one that is known";
+  sender.acknowledge(0, 5);
+  EXPECT_TRUE(key());
+  sender.acknowledge(0, 11);
+  EXPECT_FALSE(key());
+  sender.acknowledge(0, 12);
+  sender.forget_last(0);
+  EXPECT_FALSE(key()) << "what was forgotten is no baseline, what was known before it still is";
+  sender.acknowledge(0, 12);
+  for (int i = 14; i <= 15; ++i) EXPECT_FALSE(key()) << i;
+  EXPECT_TRUE(key()) << "packet 16 is 5 after 11: 12 is forgotten";
+}
+
+}  // namespace
+}  // namespace tactus

@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A scene of several substreams at its sender: what a tick brings, what an error leaves, and what packets build on.
+#include <tactus/sender.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "tests/unit/deformable_fixture.h"
+
+namespace tactus {
+namespace {
+
+using testing::all;
+using testing::SheetFrame;
+
+constexpr std::uint32_t kSquares = 4;
+constexpr std::size_t kSubstreams = 4;  // two cubes; main, in layers; main, with a basis; thesis
+constexpr double kTick = 1.0 / 60;
+
+SharedScene make_scene(std::uint8_t span = 1) {
+  const TriMesh mesh = testing::sheet(kSquares, kSquares);
+  return SceneBuilder(60)
+      .rigid("cube")
+      .rigid("wall", {}, Dof::none)
+      .rigid("slider", {}, Dof::x)
+      .deformable("layered", mesh, {.layered = true})
+      .deformable("waves", mesh, {.basis = testing::wave_basis(mesh, kSquares, 3)})
+      .deformable("thesis", mesh, {.profile = DeformableProfile::thesis, .models_kept = true})
+      .baselines(span)
+      .build()
+      .value();
+}
+
+/// What truly is at a tick, and can be made wrong.
+struct Frame {
+  std::vector<RigidSample> samples;
+  std::vector<Contact> contacts;
+  std::vector<SheetFrame> sheets;
+
+  /// Valid until the next call.
+  Truth truth() {
+    shapes.clear();
+    for (const SheetFrame& sheet : sheets) shapes.push_back(sheet.truth());
+    return {samples, contacts, shapes};
+  }
+
+ private:
+  std::vector<DeformableTruth> shapes;
+};
+
+class World {
+ public:
+  explicit World(std::uint64_t seed = 1, double noise = 0) : cube_(seed), sheet_(mesh_, kSquares, noise) {}
+
+  Frame step() {
+    Frame out;
+    out.samples.resize(3);
+    out.samples[0] = cube_.step(kTick);
+    out.samples[2].pose.position.x = 0.1 * std::sin(0.1 * static_cast<double>(tick_));
+    out.contacts = {testing::touch(0, out.samples[0].pose, 0.002)};
+    out.sheets.assign(kSubstreams - 1, sheet_.frame(tick_++));
+    return out;
+  }
+
+ private:
+  TriMesh mesh_ = testing::sheet(kSquares, kSquares);
+  testing::Motion cube_;
+  testing::DentedSheet sheet_;
+  std::int64_t tick_ = 0;
+};
+
+std::vector<std::uint64_t> hashes(const Sender& sender) {
+  std::vector<std::uint64_t> out;
+  for (std::size_t i = 0; i < kSubstreams; ++i) out.push_back(sender.state_hash(i));
+  return out;
+}
+
+using Bytes = std::vector<std::uint8_t>;
+std::vector<Bytes> bytes_of(std::span<const Packet> packets) {
+  std::vector<Bytes> out;
+  for (const Packet& packet : packets) out.emplace_back(packet.bytes.begin(), packet.bytes.end());
+  return out;
+}
+
+TEST(Sender, SubstreamsComeInOrderAndWhatIsFeltFirst) {
+  const SharedScene scene = make_scene();
+  auto sender = Sender::create(scene, {.triggers = {}, .deformable = {}, .policy = {.first_sequence = 65530}}).value();
+  World world;
+  std::array<std::uint16_t, kSubstreams> next;
+  next.fill(65530);
+  std::array<std::size_t, kSubstreams> count{};
+  for (std::int64_t tick = 0; tick < 300; ++tick) {
+    Frame frame = world.step();
+    const auto packets = all(sender.encode(tick, frame.truth()));
+    EXPECT_TRUE(std::ranges::is_sorted(packets, {}, &Packet::substream));
+    for (std::size_t i = 0; i < packets.size(); ++i) {
+      const Packet& packet = packets[i];
+      EXPECT_EQ(packet.bytes[0], packet.substream);
+      EXPECT_EQ(packet.sequence, next.at(packet.substream)++);
+      EXPECT_EQ(packet.layer == Layer::all, packet.substream != 1);
+      ++count.at(packet.substream);
+      if (i == 0 || packets[i - 1].substream != packet.substream) continue;
+      EXPECT_EQ(packet.substream, 1u) << "two packets are of an object in layers";
+      EXPECT_EQ(packets[i - 1].layer, Layer::haptic);
+      EXPECT_EQ(packet.layer, Layer::visual);
+    }
+  }
+  for (const std::size_t c : count) EXPECT_GT(c, 20u);
+}
+
+TEST(Sender, SaysNothingOfWhatHasNoNewShape) {
+  auto sender = Sender::create(make_scene()).value();
+  World world;
+  for (int i = 0; i < 20; ++i) world.step();
+  Frame frame = world.step();
+  for (RigidSample& sample : frame.samples) sample.velocity = sample.angular_velocity = {};
+  const Truth truth = frame.truth();
+  const auto substreams = [&](std::int64_t tick, const Truth& of) {
+    std::set<std::size_t> out;
+    for (const Packet& packet : all(sender.encode(tick, of))) out.insert(packet.substream);
+    return out;
+  };
+  std::vector<DeformableTruth> none(3), last(3);
+  last[2] = truth.deformables[2];
+  EXPECT_EQ(substreams(0, {frame.samples}), (std::set<std::size_t>{0}));
+  EXPECT_EQ(substreams(1, {.objects = frame.samples, .deformables = none}), (std::set<std::size_t>{}));
+  EXPECT_EQ(substreams(2, {.objects = frame.samples, .deformables = last}), (std::set<std::size_t>{3}));
+  EXPECT_EQ(substreams(3, {.objects = frame.samples, .deformables = truth.deformables}), (std::set<std::size_t>{1, 2}));
+  EXPECT_EQ(substreams(4, {.objects = frame.samples, .deformables = truth.deformables}), (std::set<std::size_t>{}));
+}
+
+TEST(Sender, ASceneWithoutMotionNeedsNoSamples) {
+  const SharedScene still = SceneBuilder().rigid("wall", {}, Dof::none).build().value();
+  auto sender = Sender::create(still).value();
+  const RigidSample sample;
+  sender.request_key();
+  EXPECT_TRUE(all(sender.encode(0, {})).empty());
+  EXPECT_TRUE(all(sender.encode(1, {{&sample, 1}})).empty());
+  EXPECT_STREQ(sender.encode(2, {std::vector<RigidSample>(2)}).error().rule, "R-API-5");
+  EXPECT_TRUE(sender.encode(2, {}));
+}
+
+/// Each wrong call beside a sender that never got it: nothing of any substream is another.
+TEST(Sender, NothingChangesAfterAnErrorInAnyObject) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  struct Wrong {
+    std::string_view rule;
+    std::function<void(Frame&)> change;
+  };
+  const Wrong wrongs[] = {
+      {"R-API-1", [](Frame& f) { f.samples[0].velocity.z = static_cast<double>(kNan); }},
+      {"R-API-2", [](Frame& f) { f.samples[2].pose.position.x = 1e9; }},
+      {"R-API-3", [](Frame& f) { f.samples[0].pose.rotation.w = 3; }},
+      {"R-API-6", [](Frame& f) { f.samples[2].pose.position.y = 0.1; }},
+      {"R-API-5", [](Frame& f) { f.samples.pop_back(); }},
+      {"R-API-5", [](Frame& f) { f.contacts[0].object = 3; }},
+      {"R-API-5", [](Frame& f) { f.contacts[0].stiffness = 0; }},
+      {"R-API-5", [](Frame& f) { f.sheets.pop_back(); }},
+      {"R-API-5", [](Frame& f) { f.sheets.resize(4); }},
+      {"R-API-1", [](Frame& f) { f.sheets[0].displacements[7] = kNan; }},
+      {"R-API-1", [](Frame& f) { f.sheets[1].displacements[74] = -std::numeric_limits<float>::infinity(); }},
+      {"R-API-2", [](Frame& f) { f.sheets[2].displacements[0] = 40; }},
+      {"R-API-5", [](Frame& f) { f.sheets[2].displacements.pop_back(); }},
+      {"R-API-5",
+       [](Frame& f) {
+         f.sheets[1].touch = SurfaceTouch{32, 1, 500};
+       }},
+      {"R-API-1",
+       [](Frame& f) {
+         f.sheets[2].touch = SurfaceTouch{0, static_cast<double>(kNan), 500};
+       }},
+      {"R-API-5",
+       [](Frame& f) {
+         f.sheets[0].touch = SurfaceTouch{0, 1, 0};
+       }},
+  };
+  const SharedScene scene = make_scene(2);
+  const SenderOptions options{.triggers = {}, .deformable = {}, .policy = {.key_interval = 0.7}};
+  auto sender = Sender::create(scene, options).value(), spared = Sender::create(scene, options).value();
+  World world;
+  std::int64_t tick = 0;
+  std::size_t packets = 0;
+  for (int round = 0; round < 4; ++round) {
+    for (const Wrong& wrong : wrongs) {
+      Frame frame = world.step(), bad = frame;
+      wrong.change(bad);
+      const auto before = hashes(sender);
+      const auto refused = sender.encode(tick, bad.truth());
+      ASSERT_FALSE(refused) << wrong.rule;
+      EXPECT_EQ(refused.error().code, Errc::invalid_argument);
+      EXPECT_EQ(refused.error().rule, wrong.rule);
+      EXPECT_EQ(hashes(sender), before) << wrong.rule;
+      for (const std::int64_t late : {tick - 1, std::int64_t{-5}, std::int64_t{0xffffffff}})
+        EXPECT_STREQ(sender.encode(late, frame.truth()).error().rule, "R-API-5") << late;
+      const auto sent = all(sender.encode(tick, frame.truth()));
+      ASSERT_EQ(bytes_of(sent), bytes_of(all(spared.encode(tick, frame.truth())))) << wrong.rule << " at tick " << tick;
+      EXPECT_EQ(hashes(sender), hashes(spared));
+      packets += sent.size();
+      ++tick;
+    }
+  }
+  EXPECT_GT(packets, 100u);
+}
+
+/// An object that an update cannot reach, found out after everything was read.
+TEST(Sender, NothingChangesWhereAnUpdateCannotReach) {
+  SceneSpec spec = *make_scene();
+  spec.objects[2].initial.position = {-2100000000, 0, 0};
+  const SharedScene scene = testing::shared(std::move(spec));
+  const SenderOptions options{.triggers = {.visual_position = 3e-6}, .deformable = {}, .policy = {}};
+  auto sender = Sender::create(scene, options).value(), spared = Sender::create(scene, options).value();
+  World world;
+  for (std::int64_t tick = 0; tick < 40; ++tick) {
+    Frame frame = world.step(), bad = frame;
+    frame.samples[2].pose.position.x = -500.6 + 1e-4 * static_cast<double>(tick);
+    bad.samples[2].pose.position.x = 500;
+    const auto before = hashes(sender);
+    const auto refused = sender.encode(tick, bad.truth());
+    ASSERT_FALSE(refused);
+    EXPECT_STREQ(refused.error().rule, "R-API-7");
+    EXPECT_EQ(hashes(sender), before);
+    ASSERT_EQ(bytes_of(all(sender.encode(tick, frame.truth()))), bytes_of(all(spared.encode(tick, frame.truth())))) << tick;
+  }
+}
+
+TEST(Sender, ARequestIsForEverySubstream) {
+  auto sender = Sender::create(make_scene(), {.triggers = {}, .deformable = {}, .policy = {.key_interval = 0}}).value();
+  World world;
+  for (int i = 0; i < 20; ++i) world.step();
+  Frame frame = world.step();
+  const auto keys = [&](std::int64_t tick) {
+    std::vector<std::size_t> out;
+    for (const Packet& packet : all(sender.encode(tick, frame.truth())))
+      if (packet.key) out.push_back(packet.substream);
+    return out;
+  };
+  const std::vector<std::size_t> every{0, 1, 2, 3};
+  EXPECT_EQ(keys(0), every);
+  EXPECT_EQ(keys(1), std::vector<std::size_t>{});
+  sender.request_key();
+  EXPECT_EQ(keys(2), every);
+  EXPECT_EQ(keys(3), std::vector<std::size_t>{});
+}
+
+/// A packet that is dropped at once: the next one builds on the state before it.
+TEST(Sender, ForgottenRigidPacketsStopNothing) {
+  for (const std::uint8_t span : {std::uint8_t{1}, std::uint8_t{2}, std::uint8_t{5}}) {
+    SceneSpec spec = testing::spec_of(3);
+    spec.baseline_span = span;
+    const SharedScene scene = testing::shared(std::move(spec));
+    auto sender = Sender::create(scene, {.triggers = {}, .deformable = {}, .policy = {.key_interval = 0}}).value();
+    auto receiver = Receiver::create(scene).value();
+    std::vector<testing::Motion> motions{testing::Motion(1), testing::Motion(2), testing::Motion(3)};
+    std::vector<RigidSample> samples(3);
+    std::size_t forgotten = 0, keys = 0, decoded = 0;
+    for (std::int64_t tick = 0; tick < 3000; ++tick) {
+      for (std::size_t i = 0; i < 3; ++i) samples[i] = motions[i].step(1e-3);
+      const Packet packet = testing::only(sender.encode(tick, {samples}));
+      if (packet.bytes.empty()) continue;
+      keys += packet.key ? 1u : 0u;
+      if (tick > 0 && tick % 3 == 0) {
+        sender.forget_last(0);
+        sender.forget_last(0);  // once is enough
+        sender.forget_last(7);  // there is none such
+        ++forgotten;
+      } else {
+        ASSERT_TRUE(receiver.push(packet.bytes)) << tick;
+        ++decoded;
+        for (std::uint32_t i = 0; i < 3; ++i) {
+          const Pose shown = to_pose(receiver.replica().pose(i, tick), scene->grid.position);
+          ASSERT_LE(norm(shown.position - samples[i].pose.position), RigidTriggers{}.visual_position);
+        }
+      }
+      ASSERT_EQ(receiver.state_hash(0), sender.state_hash(0)) << tick;
+    }
+    EXPECT_GT(forgotten, 20u);
+    EXPECT_GT(decoded, 2 * forgotten);
+    if (span > 1) {
+      EXPECT_EQ(keys, 1u) << "the baseline before the forgotten packet is held";
+    } else {
+      EXPECT_GE(keys, forgotten);
+    }
+  }
+}
+
+/// A forgotten key packet is due again, also where it was asked for meanwhile.
+TEST(Sender, AForgottenKeyPacketComesAgain) {
+  const SharedScene scene = testing::scene_of(1);
+  auto sender = Sender::create(scene, {.triggers = {.heartbeat = 0}, .deformable = {}, .policy = {.key_interval = 0}}).value();
+  auto receiver = Receiver::create(scene).value();
+  RigidSample sample;
+  sample.pose.position.x = 1;
+  std::int64_t tick = 0;
+  const auto next = [&] { return testing::only(sender.encode(tick++, {{&sample, 1}})); };
+  ASSERT_TRUE(next().key);
+  sender.forget_last(0);
+  Packet packet = next();
+  ASSERT_TRUE(packet.key);
+  ASSERT_TRUE(receiver.push(packet.bytes));
+  sender.request_key();
+  ASSERT_TRUE(next().key);
+  sender.forget_last(0);
+  ASSERT_TRUE(next().key) << "still asked for";
+  sample.pose.position.x = 2;
+  ASSERT_FALSE(next().key);
+  sender.request_key();
+  sender.forget_last(0);
+  packet = next();
+  ASSERT_TRUE(packet.key);
+  ASSERT_TRUE(receiver.push(packet.bytes));
+  EXPECT_EQ(receiver.state_hash(0), sender.state_hash(0));
+  EXPECT_TRUE(next().bytes.empty());
+}
+
+/// Beside a sender that is not told: of other substreams, of packets that never were, of old ones, of the same one again.
+TEST(Sender, UnknownAndOldAcknowledgementsChangeNothing) {
+  for (const Baseline baseline : {Baseline::previous, Baseline::acknowledged}) {
+    const SharedScene scene = make_scene(8);
+    const SenderOptions options{
+        .triggers = {}, .deformable = {}, .policy = {.key_interval = 0, .first_sequence = 65500, .baseline = baseline}};
+    auto told = Sender::create(scene, options).value(), spared = Sender::create(scene, options).value();
+    World world;
+    std::array<std::vector<std::uint16_t>, kSubstreams> sent;
+    std::size_t others = 0;
+    for (std::int64_t tick = 0; tick < 200; ++tick) {
+      Frame frame = world.step();
+      const auto packets = all(told.encode(tick, frame.truth()));
+      ASSERT_EQ(bytes_of(packets), bytes_of(all(spared.encode(tick, frame.truth())))) << tick;
+      for (const Packet& packet : packets) sent.at(packet.substream).push_back(packet.sequence);
+      told.acknowledge(kSubstreams, 65500);
+      told.acknowledge(1000, 1);
+      for (std::size_t i = 0; i < kSubstreams; ++i) {
+        if (sent[i].empty()) {
+          told.acknowledge(i, 65500);
+          continue;
+        }
+        const std::uint16_t newest = sent[i].back();
+        for (const unsigned ahead : {1u, 2u, 300u, 32768u, 60000u})
+          told.acknowledge(i, static_cast<std::uint16_t>(newest + ahead));
+        if (sent[i].size() > 12) told.acknowledge(i, sent[i][sent[i].size() - 10]);
+        if (baseline == Baseline::previous) {
+          told.acknowledge(i, newest);
+        } else if (tick % 3 == 0 && sent[i].size() > 2) {  // both are told of this one, and then of nothing older
+          const std::uint16_t known = sent[i][sent[i].size() - 2];
+          told.acknowledge(i, known);
+          spared.acknowledge(i, known);
+          for (std::size_t back = 2; back < std::min<std::size_t>(sent[i].size(), 20); ++back)
+            told.acknowledge(i, sent[i][sent[i].size() - back]);
+          ++others;
+        }
+      }
+    }
+    EXPECT_EQ(others > 50, baseline == Baseline::acknowledged);
+  }
+}
+
+}  // namespace
+}  // namespace tactus
