@@ -181,7 +181,7 @@ void add_rules(Catalogue& c) {
   c.invalid("rigid-key-in-the-past", "A key packet at tick 29, after tick 30, begins anew; the record cannot say so.",
             {"invalid", "R-FIL-7"},
             two_of_three_objects()
-                .add_packet(30, raw_packet(*three_objects().parsed(), 102, {true, 1, 29, 1}, std::vector<RawUpdate>(1)))
+                .add_packet(30, raw_packet(*three_objects().parsed(), 102, {{true, 1, 29}, 1}, std::vector<RawUpdate>(1)))
                 .bytes());
 }
 
@@ -221,9 +221,9 @@ void add_orders(Catalogue& c) {
               coder.tree<4>(models.baseline, 15);
               coder.raw(5, 18);
             })));
-  c.invalid("rigid-baseline-delta-before-ahead", "baseline_delta is 0, and the packet 32768 ahead.",
-            {"invalid", "R-PKT-3", "R-PKT-7"},
-            of_two_objects(raw_packet(*chained(4, {{"a"}, {"b"}}).parsed(), 32769, {false, 0, 0, 1}, std::vector<RawUpdate>(1))));
+  c.invalid(
+      "rigid-baseline-delta-before-ahead", "baseline_delta is 0, and the packet 32768 ahead.", {"invalid", "R-PKT-3", "R-PKT-7"},
+      of_two_objects(raw_packet(*chained(4, {{"a"}, {"b"}}).parsed(), 32769, {{false, 0, 0}, 1}, std::vector<RawUpdate>(1))));
 }
 
 /// The packets 100 and 101, then a record of a packet: sequence, zeros and a last byte of 1.

@@ -64,11 +64,11 @@ void add_rigid_orders(Catalogue& c) {
               return stream.bytes();
             }());
   c.invalid("baseline-before-count-0", "baseline_delta and count are 0.", {"invalid", "R-PKT-3", "R-RIG-3"},
-            rigid_head({false, 0, 0, 0}));
+            rigid_head({{false, 0, 0}, 0}));
   c.invalid("tick-before-count-0", "A tick in the past, and count 0.", {"invalid", "R-RIG-1", "R-RIG-3"},
-            rigid_head({false, 2, 0, 0}));
+            rigid_head({{false, 2, 0}, 0}));
   c.invalid("baseline-before-tick", "The baseline was never there, and the tick runs over.", {"state", "R-PKT-4", "R-RIG-1"},
-            rigid_head({false, 3, 0xffffffffu, 1}));
+            rigid_head({{false, 3, 0xffffffffu}, 1}));
   RawHeader two;
   two.baseline_span = 4;
   two.objects = {{"a"}, {"b"}};
@@ -102,7 +102,7 @@ void add_rigid_orders(Catalogue& c) {
               coder.magnitude(models.gap, 1);
             }));
   c.invalid("end-before-record-tick", "Bytes left over, and a record of another tick.", {"malformed", "R-RNG-2", "R-FIL-7"},
-            then_packet(raw_packet(*two.parsed(), 2, {false, 1, 0, 1}, std::vector<RawUpdate>(1)) + Bytes(8, 1), 40));
+            then_packet(raw_packet(*two.parsed(), 2, {{false, 1, 0}, 1}, std::vector<RawUpdate>(1)) + Bytes(8, 1), 40));
 }
 
 }  // namespace tactus::conformance

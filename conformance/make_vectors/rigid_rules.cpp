@@ -35,15 +35,15 @@ Bytes then_raw(const RigidHead& head, const std::vector<RawUpdate>& updates) {
 void add_tick_rule(Catalogue& c) {
   const Rejection tick{"invalid", "R-RIG-1"};
   c.invalid("tick-over-limit", "A key packet at tick 2^32 - 1; no record can say so.", tick,
-            then_raw({true, 1, 0xffffffffu, 1}, {{}}));
+            then_raw({{true, 1, 0xffffffffu}, 1}, {{}}));
   Stream late(two());
   late.add({.tick = 4294967294, .updates = moved(1), .key = true, .sequence = std::uint16_t{0}});
   c.invalid(
       "tick-runs-over", "tick_delta goes from tick 2^32 - 2 to 2^32 - 1; no record can say so.", tick,
-      Stream(late).add_packet(4294967294, raw_packet(late.header(), 1, {false, 1, 1, 1}, std::vector<RawUpdate>(1))).bytes());
+      Stream(late).add_packet(4294967294, raw_packet(late.header(), 1, {{false, 1, 1}, 1}, std::vector<RawUpdate>(1))).bytes());
   Stream wrapped(late);
   c.invalid("tick-runs-over-far", "tick_delta 2^32 - 1 goes from tick 2^32 - 2 beyond 32 bits.", tick,
-            wrapped.add_packet(4294967294, raw_packet(late.header(), 1, {false, 1, 0xffffffffu, 1}, std::vector<RawUpdate>(1)))
+            wrapped.add_packet(4294967294, raw_packet(late.header(), 1, {{false, 1, 0xffffffffu}, 1}, std::vector<RawUpdate>(1)))
                 .bytes());
   Stream older = two_packets(4);
   const Bytes packet = older.packet({.tick = 29, .updates = moved(1), .baseline = 2});
@@ -53,9 +53,9 @@ void add_tick_rule(Catalogue& c) {
 
 void add_update_rules(Catalogue& c) {
   const Rejection count{"invalid", "R-RIG-3"}, object{"invalid", "R-RIG-4"};
-  c.invalid("count-0", "A packet that names no object.", count, then_raw({false, 1, 0, 0}, {}));
-  c.invalid("count-3", "count is 3; two objects move.", count, then_raw({false, 1, 0, 3}, {}));
-  c.invalid("count-2-32", "count is 2^32 - 1.", count, then_raw({false, 1, 0, 0xffffffffu}, {}));
+  c.invalid("count-0", "A packet that names no object.", count, then_raw({{false, 1, 0}, 0}, {}));
+  c.invalid("count-3", "count is 3; two objects move.", count, then_raw({{false, 1, 0}, 3}, {}));
+  c.invalid("count-2-32", "count is 2^32 - 1.", count, then_raw({{false, 1, 0}, 0xffffffffu}, {}));
   RawHeader still;
   still.objects = {{"wall", Dof::none}};
   Stream nothing(still);
@@ -63,15 +63,16 @@ void add_update_rules(Catalogue& c) {
             nothing
                 .add_packet(0, coded_packet(0,
                                             [&](RangeEncoder& coder, RigidModels& models) {
-                                              RigidHead head{true, 1, 0, 1};
+                                              RigidHead head{{true, 1, 0}, 1};
                                               code_head(coder, models, nothing.header(), head);
                                             }))
                 .bytes());
-  c.invalid("first-gap-beyond", "The first gap goes past the last moving object.", object, then_raw({false, 1, 0, 1}, {{2, {}}}));
+  c.invalid("first-gap-beyond", "The first gap goes past the last moving object.", object,
+            then_raw({{false, 1, 0}, 1}, {{2, {}}}));
   c.invalid("second-gap-beyond", "The second gap goes past the last moving object.", object,
-            then_raw({false, 1, 0, 2}, {{0, {}}, {1, {}}}));
+            then_raw({{false, 1, 0}, 2}, {{0, {}}, {1, {}}}));
   c.invalid("gap-wraps", "A second gap of 2^32 - 1 would lead back to the first object in 32-bit arithmetic.", object,
-            then_raw({false, 1, 0, 2}, {{0, {}}, {0xffffffffu, {}}}));
+            then_raw({{false, 1, 0}, 2}, {{0, {}}, {0xffffffffu, {}}}));
 }
 
 Bytes turned(std::uint8_t dof, const Vec3i& residual, std::uint8_t level) {
