@@ -159,7 +159,7 @@ BENCHMARK(build_100k)->Unit(benchmark::kMillisecond);
 void intermediate_model_tick(benchmark::State& state) {
   Body body(surface(sim::make_slab(16, 20, 1, 0.01)).mesh);
   const std::vector<Vec3> rest = body.mesh.vertices;
-  sim::IntermediateModel model(body.mesh, body.topology, {.rings = 3, .ticks = 16, .proxy = {.friction = 0.3, .reach = 0.002}});
+  sim::IntermediateModel model(body.mesh, body.topology, {.rings = 3, .ticks = 16, .proxy = {.friction = 0.3}});
   model.place({0.08, 0.1, 0.03}, body.mesh.vertices, body.tree);
   Samples samples;
   std::int64_t tick = 0;

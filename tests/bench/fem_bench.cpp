@@ -96,7 +96,7 @@ BENCHMARK(membrane_bullet)->Apply(five);
 
 /// A slab bent over a cylinder and shaken, in frames that are a millisecond apart at 10 rad/s.
 struct Motion {
-  explicit sim::Motion(std::uint32_t layers, std::uint32_t nx = testing::kSlabX, std::uint32_t ny = testing::kSlabY)
+  explicit Motion(std::uint32_t layers, std::uint32_t nx = testing::kSlabX, std::uint32_t ny = testing::kSlabY)
       : mesh(sim::make_slab(nx, ny, layers, 0.01)) {
     sim::Random random(1);
     std::vector<double> noise(3 * mesh.vertices.size());
@@ -118,7 +118,7 @@ struct Motion {
   std::vector<std::vector<double>> frames;
 };
 
-void evaluate(benchmark::State& state, const sim::Motion& motion, sim::InstructionSet set, bool corotated) {
+void evaluate(benchmark::State& state, const Motion& motion, sim::InstructionSet set, bool corotated) {
   if (!supported(set)) return state.SkipWithError("not on this machine");
   sim::Elements elements(motion.mesh, std::vector<sim::Lame>(motion.mesh.tets.size(), {3448, 31034}), corotated);
   elements.use(set);
@@ -136,7 +136,7 @@ void evaluate(benchmark::State& state, const sim::Motion& motion, sim::Instructi
   state.counters["over_limit"] = seconds / (tets * (corotated ? kFlops : kLinearFlops) / testing::peak(set));
 }
 
-void forces(benchmark::State& state, sim::InstructionSet set, bool corotated) { evaluate(state, sim::Motion(1), set, corotated); }
+void forces(benchmark::State& state, sim::InstructionSet set, bool corotated) { evaluate(state, Motion(1), set, corotated); }
 BENCHMARK_CAPTURE(forces, portable, sim::InstructionSet::portable, true)->Apply(five);
 BENCHMARK_CAPTURE(forces, avx2, sim::InstructionSet::avx2, true)->Apply(five);
 BENCHMARK_CAPTURE(forces, avx512, sim::InstructionSet::avx512, true)->Apply(five);
@@ -147,28 +147,28 @@ BENCHMARK_CAPTURE(forces, avx512_linear, sim::InstructionSet::avx512, false)->Ap
 /// 1 920, 19 200, 201 600 tetrahedra.
 void forces_by_size(benchmark::State& state) {
   const auto scale = static_cast<std::uint32_t>(state.range(0));
-  const sim::Motion motion(scale == 1 ? 1 : scale == 2 ? 10 : 21, scale < 3 ? 16 : 40, scale < 3 ? 20 : 40);
+  const Motion motion(scale == 1 ? 1 : scale == 2 ? 10 : 21, scale < 3 ? 16 : 40, scale < 3 ? 20 : 40);
   state.SetLabel(std::to_string(motion.mesh.tets.size()) + " tets");
-  evaluate(state, motion, widest(), true);
+  evaluate(state, motion, sim::widest(), true);
 }
 BENCHMARK(forces_by_size)->Arg(1)->Arg(2)->Arg(3)->Apply(five);
 
 /// Collapsed to a line, where every element needs the robust rotation: the worst case.
 void forces_on_a_line(benchmark::State& state) {
-  sim::Motion motion(1);
+  Motion motion(1);
   for (std::vector<double>& u : motion.frames) {
     for (std::size_t v = 0; v < motion.mesh.vertices.size(); ++v) {
       u[3 * v + 1] = -motion.mesh.vertices[v].y;
       u[3 * v + 2] = -motion.mesh.vertices[v].z;
     }
   }
-  evaluate(state, motion, widest(), true);
+  evaluate(state, motion, sim::widest(), true);
 }
 BENCHMARK(forces_on_a_line)->Apply(five);
 
 void matrix(benchmark::State& state, void (sim::FemModel::*assemble)(const Eigen::VectorXd&, sim::SparseMatrix&)) {
   sim::FemModel model = testing::slab_model();
-  const sim::Motion motion(1);
+  const Motion motion(1);
   const Eigen::VectorXd u = Eigen::Map<const Eigen::VectorXd>(motion.frames[0].data(), model.size());
   sim::SparseMatrix K;
   (model.*assemble)(u, K);

@@ -14,7 +14,7 @@ import sys
 
 STEPS = 200
 MOST = 0.05
-PARTS = {"step": "tactus::Guarded::step*", "integrator": "tactus::VelocityVerlet::advance*", "forces": "tactus::FemModel::internal_forces*"}
+PARTS = {"step": "tactus::sim::CheckedIntegrator::step*", "integrator": "tactus::sim::VelocityVerlet::advance*", "forces": "tactus::sim::FemModel::internal_forces*"}
 
 
 def instructions(program, function):

@@ -18,7 +18,7 @@ import sys
 
 SCENES = {"push-1dof": 300, "rotate-push-lift": 300}  # ticks
 TOLERANCE = 1e-3
-FEM_SYMBOL = re.compile(r"Eigen::|tactus::(FemModel|Integrator|DeformableBody|ErrorEstimate)\b")
+FEM_SYMBOL = re.compile(r"Eigen::|tactus::sim::(FemModel|Integrator|DeformableBody|ErrorEstimate)\b")
 
 
 def output(*command):

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Make spec/tables/deformable-start-models.csv from stream files of one deformable object each, profile main.
-///   train_mesh_start_models a.tct b.tct ... > deformable-start-models.csv
+///   train_deformable_start_models a.tct b.tct ... > deformable-start-models.csv
 /// Every packet has the same weight. Only streams whose packets build on the packet before or on the initial state.
 #include <utility>
 
