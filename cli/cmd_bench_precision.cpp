@@ -15,8 +15,6 @@
 namespace tactus::cli {
 namespace {
 
-using sim::study::Extent;
-
 /// Steps below 1 ms of a method that is this many times slower than real time are left out.
 constexpr double kTooSlow = 2, kAlwaysComputed = 1e-3 * (1 - 1e-9);
 

@@ -19,7 +19,6 @@
 namespace tactus::cli {
 namespace {
 
-using sim::study::Extent;
 using sim::study::Study;
 
 struct StabilityOptions {

@@ -74,11 +74,11 @@ const char* broken_object_rule(const RigidObject& object) noexcept {
 }
 
 /// First rule that the stream parameters break; objects are checked one by one while they are read.
-const char* broken_parameter_rule(const SceneSpec& h) noexcept {
-  if (h.tick_rate < 1 || h.tick_rate > 1000000) return "R-STR-6";
-  if (!are_exponents(h.grid)) return "R-STR-7";
-  if (h.max_extrapolation < 1) return "R-STR-8";
-  if (h.baseline_span < 1 || h.baseline_span > 64) return "R-STR-9";
+const char* broken_parameter_rule(const SceneSpec& spec) noexcept {
+  if (spec.tick_rate < 1 || spec.tick_rate > 1000000) return "R-STR-6";
+  if (!are_exponents(spec.grid)) return "R-STR-7";
+  if (spec.max_extrapolation < 1) return "R-STR-8";
+  if (spec.baseline_span < 1 || spec.baseline_span > 64) return "R-STR-9";
   return nullptr;
 }
 

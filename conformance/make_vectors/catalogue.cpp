@@ -64,7 +64,7 @@ std::string case_json(const Case& c, std::string_view answer) {
   if (c.input.repeat) f.flags.insert("large");
   std::vector<std::string> flags;
   for (const Flag& flag : all_flags())
-    if (f.flags.contains(flag.name)) flags.push_back(flag.name);
+    if (f.flags.contains(flag.name)) flags.emplace_back(flag.name);
   const std::vector<std::string> rules = checked_rules(c);
 
   std::ostringstream out;

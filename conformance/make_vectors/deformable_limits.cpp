@@ -49,7 +49,7 @@ Input largest_states(std::uint8_t quant_bits) {
   RawHeader header;
   header.baseline_span = 64;
   RawDeformable basis{.name = "basis", .layered = 1, .mode_steps = std::vector<std::uint16_t>(12, 1)};
-  basis.entries.assign(12 * 9, 0);
+  basis.entries.assign(std::size_t{12} * 9, 0);
   const Shape large{std::vector<Vec3i>(338689), {}};
   header = with_deformables(header, {basis,
                                      {.name = "plain"},
