@@ -14,7 +14,7 @@ struct Turn {
   std::uint32_t half = 0;
 };
 
-Turn turn_of(const Vec3i& angular_velocity, std::int64_t dt, std::int64_t tick_rate, unsigned exponent) noexcept {
+Turn turn_of(const Vec3i& angular_velocity, std::int64_t dt, std::uint32_t tick_rate, unsigned exponent) noexcept {
   std::int64_t square = 0;
   for (const std::int32_t c : angular_velocity) square += static_cast<std::int64_t>(c) * c;
   const std::int64_t speed = isqrt(static_cast<std::uint64_t>(square) << 10);  // x 2^-(exponent + 5) rad/s
@@ -32,15 +32,15 @@ Turn turn_of(const Vec3i& angular_velocity, std::int64_t dt, std::int64_t tick_r
 }  // namespace
 
 RigidPose RigidPredictor::pose(const RigidState& state, std::int64_t tick) const noexcept {
-  const std::int64_t dt = std::min<std::int64_t>(tick - state.tick, max_extrapolation_);
+  const std::int64_t dt = std::min<std::int64_t>(tick - state.tick, scene_.max_extrapolation);
   RigidPose pose{state.position, state.rotation};
   if (dt == 0) return pose;
-  const unsigned shift = static_cast<unsigned>(grid_.position - grid_.velocity);
+  const unsigned shift = static_cast<unsigned>(scene_.grid.position - scene_.grid.velocity);
   for (std::size_t i = 0; i < 3; ++i) {
-    const std::int64_t moved = round_div((state.velocity[i] * dt) << shift, tick_rate_);
+    const std::int64_t moved = round_div((state.velocity[i] * dt) << shift, scene_.tick_rate);
     pose.position[i] = saturate32(state.position[i] + moved);
   }
-  const Turn turn = turn_of(state.angular_velocity, dt, tick_rate_, grid_.angular_velocity);
+  const Turn turn = turn_of(state.angular_velocity, dt, scene_.tick_rate, scene_.grid.angular_velocity);
   if (turn.half != 0) pose.rotation = renormalise(multiply(axis_turn(turn.axis, turn.half), state.rotation));
   return pose;
 }
@@ -49,12 +49,12 @@ RigidMotion RigidPredictor::motion(const RigidState& state, std::int64_t tick, c
   RigidMotion out{state.velocity, state.angular_velocity};
   const std::int64_t dt = tick - state.tick;
   if (dt == 0) return out;
-  const std::int64_t moved = (2 * dt) << (grid_.position - grid_.velocity);
-  const std::int64_t turned = dt << (grid_.rotation - grid_.angular_velocity);  // the error is a quarter of the angle
+  const std::int64_t moved = (2 * dt) << (scene_.grid.position - scene_.grid.velocity);
+  const std::int64_t turned = dt << (scene_.grid.rotation - scene_.grid.angular_velocity);  // the error is a quarter of the angle
   for (std::size_t i = 0; i < 3; ++i) {
     const std::int64_t x = error.position[i], r = error.rotation[i];
-    if (x != 0) out.velocity[i] = saturate32(out.velocity[i] + round_div(3 * x * tick_rate_, moved));
-    if (r != 0) out.angular_velocity[i] = saturate32(out.angular_velocity[i] + round_div(6 * r * tick_rate_, turned));
+    if (x != 0) out.velocity[i] = saturate32(out.velocity[i] + round_div(3 * x * scene_.tick_rate, moved));
+    if (r != 0) out.angular_velocity[i] = saturate32(out.angular_velocity[i] + round_div(6 * r * scene_.tick_rate, turned));
   }
   return out;
 }

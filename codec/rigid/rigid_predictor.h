@@ -25,8 +25,8 @@ struct PoseError {
 /// All that encoder, decoder and replica know of motion: a function of a state, a tick, and what the scene declares.
 class RigidPredictor {
  public:
-  explicit RigidPredictor(const Scene& scene) noexcept
-      : grid_(scene.grid), tick_rate_(scene.tick_rate), max_extrapolation_(scene.max_extrapolation) {}
+  /// pre  `scene` outlives the predictor
+  explicit RigidPredictor(const Scene& scene) noexcept : scene_(scene) {}
 
   /// The pose at `tick` of an object that keeps its velocities.
   ///   x(t) = x + v dt;  q(t) = exp(w dt / 2) q;  dt = min(t - state.tick, max_extrapolation)     spec 40-rigid 4
@@ -38,8 +38,7 @@ class RigidPredictor {
   RigidMotion motion(const RigidState& state, std::int64_t tick, const PoseError& error) const noexcept;
 
  private:
-  GridExponents grid_;
-  std::int64_t tick_rate_, max_extrapolation_;
+  const Scene& scene_;
 };
 
 }  // namespace tactus

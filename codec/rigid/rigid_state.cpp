@@ -15,22 +15,18 @@ RigidStates initial_states(const Scene& scene) {
 }
 
 Result<RigidState> to_grid(const RigidSample& sample, std::int64_t tick, const GridExponents& grid) noexcept {
-  if (!is_finite(sample.pose.position) || !is_finite(sample.pose.rotation) || !is_finite(sample.velocity) ||
-      !is_finite(sample.angular_velocity)) {
-    return fail(Errc::invalid_argument, "R-API-1");
-  }
-  RigidState state;
-  state.tick = tick;
+  if (!is_finite(sample.velocity) || !is_finite(sample.angular_velocity)) return fail(Errc::invalid_argument, "R-API-1");
+  Result<RigidState> state;  // filled in place
+  state->tick = tick;
+  if (const char* rule = quantise(sample.pose, grid.position, state->position, state->rotation))
+    return fail(Errc::invalid_argument, rule);
   const auto vector = [](const Vec3& v, unsigned exp, double limit, Vec3i& out) {
     return quantise(v.x, exp, limit, out[0]) && quantise(v.y, exp, limit, out[1]) && quantise(v.z, exp, limit, out[2]);
   };
-  if (!vector(sample.velocity, grid.velocity, 2147483647.0, state.velocity) ||
-      !vector(sample.angular_velocity, grid.angular_velocity, kAngularVelocityLimit, state.angular_velocity)) {
+  if (!vector(sample.velocity, grid.velocity, 2147483647.0, state->velocity) ||
+      !vector(sample.angular_velocity, grid.angular_velocity, kAngularVelocityLimit, state->angular_velocity)) {
     return fail(Errc::invalid_argument, "R-API-2");
   }
-  TACTUS_TRY(const RigidPose pose, to_grid(sample.pose, grid.position));
-  state.position = pose.position;
-  state.rotation = pose.rotation;
   return state;
 }
 

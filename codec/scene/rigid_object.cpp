@@ -10,19 +10,8 @@
 namespace tactus {
 
 Result<RigidPose> to_grid(const Pose& pose, unsigned position_exp) noexcept {
-  const Quat& q = pose.rotation;
-  if (!is_finite(pose.position) || !is_finite(q)) return fail(Errc::invalid_argument, "R-API-1");
-  RigidPose out;
-  constexpr double kLimit = 2147483647.0;
-  const double position[] = {pose.position.x, pose.position.y, pose.position.z};
-  for (std::size_t i = 0; i < 3; ++i)
-    if (!quantise(position[i], position_exp, kLimit, out.position[i])) return fail(Errc::invalid_argument, "R-API-2");
-  const double length = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
-  if (!(std::abs(length - 1) <= 1e-3)) return fail(Errc::invalid_argument, "R-API-3");
-  const double scale = static_cast<double>(kOne30) / length;
-  const double components[] = {q.w, q.x, q.y, q.z};
-  for (std::size_t i = 0; i < 4; ++i)
-    out.rotation[i] = static_cast<std::int32_t>(std::min(std::floor(components[i] * scale + 0.5), static_cast<double>(kOne30)));
+  Result<RigidPose> out;
+  if (const char* rule = quantise(pose, position_exp, out->position, out->rotation)) return fail(Errc::invalid_argument, rule);
   return out;
 }
 
