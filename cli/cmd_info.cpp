@@ -290,7 +290,7 @@ Outcome info_trace(const InfoOptions& options) {
                               {"period [ticks]", trace.meshes[i].period},
                               {"new shapes", shapes[i]}});
   }
-  for (const std::string& user : trace.users) info["users"].push_back({{"user", user}});
+  for (const TraceUser& user : trace.users) info["users"].push_back({{"user", user.name}});
   info["channels"] = std::move(*channels);
   print_info(info);
   return check_ending(options.input, *reader, frames);

@@ -67,12 +67,23 @@ struct Run {
   std::optional<StreamOutput> stream;
   std::optional<TraceReader> recording;
   TraceFrame recorded;
+  std::vector<DeviceSample> devices;  // of this tick, recorded
 };
+
+/// A recording that knows nothing of buttons has one down while something is lifted by a spring.
+std::vector<DeviceSample> recorded_devices(const TraceReader& recording, const TraceFrame& frame) {
+  std::vector<DeviceSample> devices;
+  for (std::size_t i = 0; i < frame.users.size(); ++i) {
+    DeviceSample& device = devices.emplace_back(frame.users[i].device);
+    if (!recording.info().users[i].senses.buttons) device.buttons = frame.users[i].contact.kind == ContactKind::spring ? 1 : 0;
+  }
+  return devices;
+}
 
 /// One tick, by the scene's hands or by the recording.
 tl::expected<std::span<const Packet>, Failure> step(Run& run, const SimOptions& options, StepTimes& times) {
-  const auto stepped =
-      times.measure([&] { return run.recording ? run.simulation.replay(run.recorded.users) : run.simulation.step(); });
+  if (run.recording) run.devices = recorded_devices(*run.recording, run.recorded);
+  const auto stepped = times.measure([&] { return run.recording ? run.simulation.step(run.devices) : run.simulation.step(); });
   if (stepped) return *stepped;
   const sim::StepError& error = stepped.error();
   if (error.remedy.empty()) return refuse(options.scene, place_of_tick(error.tick), error.error);
@@ -307,7 +318,7 @@ Outcome run(const SimOptions& options) {
 
   Report report = make_report(options, info);
   describe_deformables(*simulation, report);
-  Run session{std::move(*simulation), std::move(*output), std::move(*trace), std::move(stream), std::move(recording), {}};
+  Run session{std::move(*simulation), std::move(*output), std::move(*trace), std::move(stream), std::move(recording), {}, {}};
   const auto ticks = options.duration < 0 ? session.simulation.ticks()
                                           : static_cast<std::int64_t>(std::llround(options.duration * sim::kTickRate));
   if (auto done = simulate(session, ticks, options, report); !done) {

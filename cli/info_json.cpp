@@ -157,7 +157,7 @@ Json trace_info_json(const TraceInfo& trace, const TraceTotals& totals) {
                              {"shapes", totals.shapes[i]}});
   }
   out["users"] = Json::array();
-  for (const std::string& user : trace.users) out["users"].push_back({{"name", user}});
+  for (const TraceUser& user : trace.users) out["users"].push_back({{"name", user.name}});
   return out;
 }
 

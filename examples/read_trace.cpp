@@ -28,5 +28,6 @@ int main(int argc, char** argv) {
   }
   for (std::size_t i = 0; i < way.size(); ++i) std::printf("%s travelled %.3f m\n", info.objects[i].name.c_str(), way[i]);
   for (std::size_t i = 0; i < touched.size(); ++i)
-    std::printf("%s touched something for %.3f s\n", info.users[i].c_str(), touched[i] / static_cast<double>(info.tick_rate));
+    std::printf("%s touched something for %.3f s\n", info.users[i].name.c_str(),
+                touched[i] / static_cast<double>(info.tick_rate));
 }

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Hand, server, network-free channel and client, one tick at a time (thesis 2.4.2.4 and 3.2: client/server with object states).
+/// Hands, clients, a link and the server, one tick at a time (thesis 2.4.2.4 and 3.2: client/server with object states).
 ///
-///   1 hand     feels the client's force of the last tick and moves; the device reports x_d
-///   2 server   proxy on the true poses: contact, force f
-///   3 channel  truth -> Sender -> packets -> Receiver -> Replica                                   (left out without a codec)
-///   4 client   proxy on the replica's poses, same x_d: force f_c, which the hand will feel
-///   5 physics  -f acts on the touched object at the proxy; poses of the next tick
+///   1 hand     feels the client's force of the last tick and moves; the device reports x_d                sim/user/hand.h
+///   2 server   proxy on the true state: contact, force f                                                  sim/server.h
+///   3 link     truth -> Sender -> packets -> Receiver -> Replica         (left out without a codec)       sim/link.h
+///   4 client   proxy on what the replica shows, same x_d: force f_c, which the hand will feel             sim/client.h
+///   5 physics  -f acts on the touched object at the proxy; state of the next tick                         sim/server.h
 ///
-/// One-dimensional objects (sim/msd/msd_world.h) are touched in 2 and 4 by a probe that touches no box, deformed in 5, and sent in 3.
-/// Deformable objects are touched in 2 and 4 and pushed in 5, too (sim/deformable/deformable_world.h), and 3 sends a new shape of
-/// theirs. What a user feels is the sum of both, clipped to what the device can yield.
+/// Rigid, one-dimensional and deformable objects go through the same steps (sim/touchable.h); what a user feels is the sum of all,
+/// clipped to what the device can yield.
 ///
-/// The frame of a tick holds the poses of 2, the device sample of 1 and both forces: everything in it belongs to one instant, so
+/// The frame of a tick holds the states of 2, the device sample of 1 and both forces: everything in it belongs to one instant, so
 /// whoever recomputes a force from contact and pose gets the encoder's own number.
 #pragma once
 
@@ -22,10 +21,9 @@
 
 #include <tactus/receiver.h>
 #include <tactus/sender.h>
-#include <tactus/sim/deformable/deformable_world.h>
-#include <tactus/sim/msd/msd_world.h>
-#include <tactus/sim/rigid/rigid_world.h>
+#include <tactus/sim/deformable/deformable_objects.h>
 #include <tactus/sim/scene/scene.h>
+#include <tactus/sim/touchable.h>
 #include <tactus/sim/user/touch_record.h>
 #include <tactus/trace/frame.h>
 #include <tactus/trace/trace_scene.h>
@@ -50,7 +48,7 @@ class Simulation {
  public:
   /// pre  every call on the same thread (ODE keeps state per thread).
   /// err  invalid_argument R-API-n, R-STR-n: the options do not suit the scene (see SceneBuilder::build, Sender::create, Receiver::create);
-  ///      invalid R-SIM-3 of MsdWorld; unsupported R-SIM-2 and others of make_deformable_world()
+  ///      invalid R-SIM-3 of MsdObjects; unsupported R-SIM-2 and others of make_deformable_objects()
   static Result<Simulation> create(const Scene& scene, const SimulationOptions& options = {});
 
   /// One tick with the scene's virtual hands. Afterwards frame() is this tick.
@@ -60,21 +58,21 @@ class Simulation {
   /// err  invalid_argument R-SIM-1, R-FEM-6: the physics broke down; errors of Sender::encode and Receiver::push
   tl::expected<std::span<const Packet>, StepError> step();
 
-  /// The same with recorded device positions instead of the hands (open loop). The button is down where a spring was recorded.
-  /// in   recorded  one per user of the scene
+  /// The same with other devices in place of the hands: recorded ones (open loop), or real ones.
+  /// in   devices  one per user of the scene; button 0 lifts what is touched
   /// err  as step(); invalid_argument R-API-5: wrong count, R-API-1: not finite
-  tl::expected<std::span<const Packet>, StepError> replay(std::span<const UserSample> recorded);
+  tl::expected<std::span<const Packet>, StepError> step(std::span<const DeviceSample> devices);
 
-  const TraceFrame& frame() const noexcept;                      ///< pre  step() or replay() was called
+  const TraceFrame& frame() const noexcept;                      ///< pre  step() was called
   std::span<const Pose> client_poses() const noexcept;           ///< as shown at the client in that tick, one per object
   Replica& replica() noexcept;                                   ///< the client's.   pre  there is a channel
   std::int64_t ticks() const noexcept;                           ///< length of the scene
   TraceInfo info() const;                                        ///< for a TraceWriter of these frames
-  const SharedScene& stream_scene() const noexcept;              ///< of the packets.   pre  there is a channel
-  const DeformableWorld* deformables() const noexcept;           ///< null: the scene has none
+  SharedScene stream_scene() const noexcept;                     ///< of the packets.   pre  there is a channel
+  const DeformableObjects* deformables() const noexcept;         ///< null: the scene has none
   const TouchSummary& touched(std::size_t user) const noexcept;  ///< all ticks so far
-  double bears(
-      std::size_t user) const noexcept;  ///< [N/m] largest stiffness of a coupling to what does not yield (sampled_limit.h)
+  /// [N/m] largest stiffness of a coupling to what does not yield (sampled_limit.h)
+  double bears(std::size_t user) const noexcept;
 
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;

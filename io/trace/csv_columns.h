@@ -33,9 +33,9 @@ inline constexpr std::array<CsvColumn<RigidSample>, 13> kObjectColumns{{
 
 // device [m], forces [N], then what holds in contact only: point [m] and normal (object frame), stiffness [N/m]
 inline constexpr std::array<CsvColumn<UserSample>, 16> kUserColumns{{
-    {"device_x", [](UserSample& u) -> double& { return u.contact.device.x; }},
-    {"device_y", [](UserSample& u) -> double& { return u.contact.device.y; }},
-    {"device_z", [](UserSample& u) -> double& { return u.contact.device.z; }},
+    {"device_x", [](UserSample& u) -> double& { return u.device.position.x; }},
+    {"device_y", [](UserSample& u) -> double& { return u.device.position.y; }},
+    {"device_z", [](UserSample& u) -> double& { return u.device.position.z; }},
     {"force_x", [](UserSample& u) -> double& { return u.force.x; }},
     {"force_y", [](UserSample& u) -> double& { return u.force.y; }},
     {"force_z", [](UserSample& u) -> double& { return u.force.z; }},
@@ -51,7 +51,23 @@ inline constexpr std::array<CsvColumn<UserSample>, 16> kUserColumns{{
     {"stiffness", [](UserSample& u) -> double& { return u.contact.stiffness; }},
 }};
 
-// Whole numbers beside them: TraceObject::dof; the contact's kind (0: none) and object.
+// Of devices that sense more than their position: orientation, velocity [m/s].
+inline constexpr std::array<CsvColumn<UserSample>, 4> kOrientationColumns{{
+    {"device_qw", [](UserSample& u) -> double& { return u.device.orientation.w; }},
+    {"device_qx", [](UserSample& u) -> double& { return u.device.orientation.x; }},
+    {"device_qy", [](UserSample& u) -> double& { return u.device.orientation.y; }},
+    {"device_qz", [](UserSample& u) -> double& { return u.device.orientation.z; }},
+}};
+inline constexpr std::array<CsvColumn<UserSample>, 3> kDeviceVelocityColumns{{
+    {"device_vx", [](UserSample& u) -> double& { return u.device.velocity.x; }},
+    {"device_vy", [](UserSample& u) -> double& { return u.device.velocity.y; }},
+    {"device_vz", [](UserSample& u) -> double& { return u.device.velocity.z; }},
+}};
+
+// Whole numbers beside them: TraceObject::dof; the contact's kind (0: none) and object; of devices that have them, DeviceSample::buttons
+// and time.
+inline constexpr const char* kButtonsColumn = "device_buttons";
+inline constexpr const char* kDeviceTimeColumn = "device_time_ns";
 inline constexpr const char* kDofColumn = "dof";
 inline constexpr const char* kContactColumn = "contact";
 inline constexpr const char* kContactObjectColumn = "contact_object";

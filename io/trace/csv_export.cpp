@@ -18,11 +18,17 @@ std::string header_row(const TraceInfo& info) {
     add(path, kDofColumn);
     for (const auto& column : kObjectColumns) add(path, column.name);
   }
-  for (const std::string& user : info.users) {
-    const std::string path = "/users/" + user + "/";
+  for (const auto& [name, senses] : info.users) {
+    const std::string path = "/users/" + name + "/";
     add(path, kContactColumn);
     add(path, kContactObjectColumn);
     for (const auto& column : kUserColumns) add(path, column.name);
+    if (senses.orientation)
+      for (const auto& column : kOrientationColumns) add(path, column.name);
+    if (senses.velocity)
+      for (const auto& column : kDeviceVelocityColumns) add(path, column.name);
+    if (senses.buttons) add(path, kButtonsColumn);
+    if (senses.time) add(path, kDeviceTimeColumn);
   }
   return row + '\n';
 }
@@ -43,10 +49,18 @@ void write_row(std::string& row, const TraceInfo& info, TraceFrame& frame) {
     add_number(row, unsigned{info.objects[i].dof});
     for (const auto& column : kObjectColumns) add_number(row, column.field(frame.objects[i]));
   }
-  for (UserSample& user : frame.users) {
+  for (std::size_t i = 0; i < frame.users.size(); ++i) {
+    UserSample& user = frame.users[i];
+    const DeviceSenses& senses = info.users[i].senses;
     add_number(row, static_cast<unsigned>(user.contact.kind));
     add_number(row, user.contact.object);
     for (const auto& column : kUserColumns) add_number(row, column.field(user));
+    if (senses.orientation)
+      for (const auto& column : kOrientationColumns) add_number(row, column.field(user));
+    if (senses.velocity)
+      for (const auto& column : kDeviceVelocityColumns) add_number(row, column.field(user));
+    if (senses.buttons) add_number(row, user.device.buttons);
+    if (senses.time) add_number(row, user.device.time);
   }
   row += '\n';
 }

@@ -111,6 +111,7 @@ Result<Row> Importer::parse(const CsvReader& reader) {
                                                     : binding.user_field(row.frame.users[binding.index]);
     field = binding.scale * value;
   }
+  for (UserSample& user : row.frame.users) user.contact.device = user.device.position;
   TACTUS_CHECK(parse_whole_numbers(fields, row));
   if (plan_.segment) row.segment = fields[*plan_.segment];
   if (plan_.time) {
@@ -132,11 +133,19 @@ Result<void> Importer::parse_whole_numbers(const std::vector<std::string>& field
     if (is_first) plan_.info.objects[i].dof = dof;
     if (dof > Dof::all || dof != plan_.info.objects[i].dof) return fail(Errc::malformed, "R-CSV-4");
   }
-  for (std::size_t i = 0; i < plan_.contacts.size(); ++i) {
-    TACTUS_TRY(const auto kind, number<std::uint8_t>(fields, plan_.contacts[i].kind));
+  for (std::size_t i = 0; i < plan_.users.size(); ++i) {
+    const CsvUserColumns& columns = plan_.users[i];
+    UserSample& user = row.frame.users[i];
+    TACTUS_TRY(const auto kind, number<std::uint8_t>(fields, columns.kind));
     if (kind > static_cast<std::uint8_t>(ContactKind::spring)) return fail(Errc::malformed, "R-CSV-4");
-    row.frame.users[i].contact.kind = static_cast<ContactKind>(kind);
-    TACTUS_TRY(row.frame.users[i].contact.object, number<std::uint32_t>(fields, plan_.contacts[i].object));
+    user.contact.kind = static_cast<ContactKind>(kind);
+    TACTUS_TRY(user.contact.object, number<std::uint32_t>(fields, columns.object));
+    if (columns.buttons) {
+      TACTUS_TRY(user.device.buttons, number<std::uint32_t>(fields, *columns.buttons));
+    }
+    if (columns.time) {
+      TACTUS_TRY(user.device.time, number<std::int64_t>(fields, *columns.time));
+    }
   }
   return {};
 }

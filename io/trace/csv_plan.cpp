@@ -47,7 +47,8 @@ class Planner {
   void plan_tactus_user(const std::string& path);
   bool has_group(std::span<const std::string> columns);
   void bind_object(std::span<const std::string> columns, std::size_t first, double scale);
-  void bind_user(std::span<const std::string> columns, std::size_t first, double scale);
+  void bind_user(std::span<const std::string> columns, std::span<const CsvColumn<UserSample>> fields, std::size_t first,
+                 double scale);
 
   std::size_t column(const std::string& name) {
     const auto found = columns_.find(name);
@@ -81,10 +82,11 @@ void Planner::bind_object(std::span<const std::string> columns, std::size_t firs
     plan_.bindings.push_back({column(columns[i]), object, scale, kObjectColumns[first + i].field, nullptr});
 }
 
-void Planner::bind_user(std::span<const std::string> columns, std::size_t first, double scale) {
+void Planner::bind_user(std::span<const std::string> columns, std::span<const CsvColumn<UserSample>> fields, std::size_t first,
+                        double scale) {
   const auto user = static_cast<std::uint32_t>(plan_.info.users.size() - 1);
   for (std::size_t i = 0; i < columns.size(); ++i)
-    plan_.bindings.push_back({column(columns[i]), user, scale, nullptr, kUserColumns[first + i].field});
+    plan_.bindings.push_back({column(columns[i]), user, scale, nullptr, fields[first + i].field});
 }
 
 void Planner::plan_named() {
@@ -107,11 +109,11 @@ void Planner::plan_named() {
   if (has_spin && !has_rotation && m.spin_frame == SpinFrame::body) note(Errc::invalid_argument, "R-CSV-8", "rotation");
   const bool has_device = has_group(m.device), has_force = has_group(m.force);
   if (!has_device && !has_force) return;
-  plan_.info.users.push_back(m.user);
-  if (has_device) bind_user(m.device, kDevice, m.length_scale);
+  plan_.info.users.push_back({m.user});
+  if (has_device) bind_user(m.device, kUserColumns, kDevice, m.length_scale);
   if (!has_force) return;
-  bind_user(m.force, kForce, 1.0);
-  bind_user(m.force, kServerForce, 1.0);
+  bind_user(m.force, kUserColumns, kForce, 1.0);
+  bind_user(m.force, kUserColumns, kServerForce, 1.0);
 }
 
 void Planner::plan_tactus() {
@@ -137,9 +139,19 @@ void Planner::plan_tactus_object(const std::string& path) {
 
 void Planner::plan_tactus_user(const std::string& path) {
   constexpr std::size_t kRoot = std::string_view("/users/").size();
-  plan_.info.users.push_back(path.substr(kRoot, path.size() - kRoot - 1));
-  plan_.contacts.push_back({column(path + kContactColumn), column(path + kContactObjectColumn)});
-  bind_user(all_columns(path, kUserColumns), 0, 1.0);
+  plan_.info.users.push_back({path.substr(kRoot, path.size() - kRoot - 1)});
+  plan_.users.push_back({column(path + kContactColumn), column(path + kContactObjectColumn), {}, {}});
+  bind_user(all_columns(path, kUserColumns), kUserColumns, 0, 1.0);
+  const auto has = [&](const std::string& name) { return std::ranges::find(plan_.names, name) != plan_.names.end(); };
+  DeviceSenses& senses = plan_.info.users.back().senses;
+  senses.orientation = has(path + kOrientationColumns[0].name);
+  if (senses.orientation) bind_user(all_columns(path, kOrientationColumns), kOrientationColumns, 0, 1.0);
+  senses.velocity = has(path + kDeviceVelocityColumns[0].name);
+  if (senses.velocity) bind_user(all_columns(path, kDeviceVelocityColumns), kDeviceVelocityColumns, 0, 1.0);
+  senses.buttons = has(path + kButtonsColumn);
+  if (senses.buttons) plan_.users.back().buttons = column(path + kButtonsColumn);
+  senses.time = has(path + kDeviceTimeColumn);
+  if (senses.time) plan_.users.back().time = column(path + kDeviceTimeColumn);
 }
 
 }  // namespace

@@ -21,8 +21,10 @@ struct CsvBinding {
   double& (*user_field)(UserSample&) = nullptr;
 };
 
-struct CsvContactColumns {
-  std::size_t kind = 0, object = 0;
+/// Whole numbers of a user, layout `tactus` only.
+struct CsvUserColumns {
+  std::size_t kind = 0, object = 0;          ///< of the contact
+  std::optional<std::size_t> buttons, time;  ///< of the device
 };
 
 struct CsvPlan {
@@ -30,8 +32,8 @@ struct CsvPlan {
   TraceInfo info;                  ///< tick rate and degrees of freedom are settled by the rows
   std::vector<CsvBinding> bindings;
   std::optional<std::size_t> tick, time, segment;
-  std::vector<std::size_t> dof;             ///< per object, layout `tactus` only
-  std::vector<CsvContactColumns> contacts;  ///< per user, likewise
+  std::vector<std::size_t> dof;       ///< per object, layout `tactus` only
+  std::vector<CsvUserColumns> users;  ///< per user, likewise
   bool derive_velocity = false, derive_spin = false;
   bool check_spin = false;  ///< given, and there are rotations to hold it against
 };

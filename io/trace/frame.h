@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <tactus/base/device_sample.h>
 #include <tactus/base/tri_mesh.h>
 #include <tactus/rigid/contact.h>
 #include <tactus/rigid/rigid_state.h>
@@ -29,6 +30,12 @@ struct TraceDeformable {
   double period = 1;                   ///< ticks from shape to shape, as whoever made the recording meant it; > 0
 };
 
+struct TraceUser {
+  std::string name;
+  DeviceSenses senses{};  ///< of the user's device: what it does not sense has no channel
+  friend bool operator==(const TraceUser&, const TraceUser&) = default;
+};
+
 /// What the stream promises that a replica was decoded from, and what else says where its bounds hold.
 struct TraceBounds {
   StreamBounds stream;
@@ -39,9 +46,9 @@ struct TraceBounds {
 struct TraceInfo {
   std::uint32_t tick_rate = 1000;  ///< ticks per second
   std::vector<TraceObject> objects;
-  std::vector<std::string> users;  ///< empty: a recording without touch
-  std::string source;              ///< "sim push-1dof seed 1", "import cube-tosses.csv"
-  std::string scene;               ///< scene file (TOML) attached to the trace; may be empty
+  std::vector<TraceUser> users;  ///< empty: a recording without touch
+  std::string source;            ///< "sim push-1dof seed 1", "import cube-tosses.csv"
+  std::string scene;             ///< scene file (TOML) attached to the trace; may be empty
   std::vector<TraceDeformable> meshes{};
   std::optional<TraceBounds> bounds{};  ///< of a replica whose stream tells them
 };
@@ -58,7 +65,8 @@ struct SurfaceContact {
 
 /// One user at one tick.
 struct UserSample {
-  Contact contact;    ///< contact.device is always the probe's position, even without contact
+  DeviceSample device;
+  Contact contact;    ///< contact.device is device.position
   Vec3 force;         ///< [N] rendered at the client, what the hand felt
   Vec3 server_force;  ///< [N] rendered at the server from the true state, same device sample
   std::optional<SurfaceContact> surface_contact{};

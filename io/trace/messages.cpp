@@ -30,16 +30,39 @@ std::optional<std::uint64_t> read_header(CdrReader& in) noexcept {
 bool is_finite(const Pose& pose) noexcept { return is_finite(pose.position) && is_finite(pose.rotation); }
 bool is_finite(const Twist& twist) noexcept { return is_finite(twist.linear) && is_finite(twist.angular); }
 bool is_finite(const Contact& contact) noexcept { return is_valid(contact); }
+bool is_finite(std::uint32_t) noexcept { return true; }
+bool is_finite(std::int64_t time) noexcept { return time >= 0; }
 bool is_finite(const SurfaceContact& contact) noexcept { return is_valid(contact); }
 
+Quat read_quaternion(CdrReader& in) noexcept {
+  Quat q;
+  q.x = in.f64();  // ROS writes x, y, z, w
+  q.y = in.f64();
+  q.z = in.f64();
+  q.w = in.f64();
+  return q;
+}
+
+void write_quaternion(CdrWriter& out, const Quat& q) {
+  out.f64(q.x);
+  out.f64(q.y);
+  out.f64(q.z);
+  out.f64(q.w);
+}
+
 Pose read_pose(CdrReader& in) noexcept {
-  Pose pose;
-  pose.position = in.vec3();
-  pose.rotation.x = in.f64();  // ROS writes x, y, z, w
-  pose.rotation.y = in.f64();
-  pose.rotation.z = in.f64();
-  pose.rotation.w = in.f64();
-  return pose;
+  const Vec3 position = in.vec3();
+  return {position, read_quaternion(in)};
+}
+
+std::uint32_t read_buttons(CdrReader& in) noexcept { return in.u32(); }
+
+/// Negative: no time.
+std::int64_t read_time_reference(CdrReader& in) noexcept {
+  const std::uint32_t seconds = in.u32(), nanoseconds = in.u32();
+  in.text();  // source
+  return seconds >= kMaxSeconds || nanoseconds >= kNanoseconds ? -1
+                                                               : static_cast<std::int64_t>(seconds * kNanoseconds + nanoseconds);
 }
 
 Twist read_twist(CdrReader& in) noexcept {
@@ -112,10 +135,7 @@ bool is_valid(const SurfaceContact& contact) noexcept {
 void encode_pose(std::vector<std::uint8_t>& message, std::uint64_t time, const Pose& pose) {
   CdrWriter out = begin(message, time);
   out.vec3(pose.position);
-  out.f64(pose.rotation.x);
-  out.f64(pose.rotation.y);
-  out.f64(pose.rotation.z);
-  out.f64(pose.rotation.w);
+  write_quaternion(out, pose.rotation);
 }
 
 void encode_twist(std::vector<std::uint8_t>& message, std::uint64_t time, const Twist& twist) {
@@ -127,6 +147,24 @@ void encode_twist(std::vector<std::uint8_t>& message, std::uint64_t time, const 
 void encode_vector(std::vector<std::uint8_t>& message, std::uint64_t time, const Vec3& vector) {
   CdrWriter out = begin(message, time);
   out.vec3(vector);
+}
+
+void encode_quaternion(std::vector<std::uint8_t>& message, std::uint64_t time, const Quat& quaternion) {
+  CdrWriter out = begin(message, time);
+  write_quaternion(out, quaternion);
+}
+
+void encode_buttons(std::vector<std::uint8_t>& message, std::uint64_t time, std::uint32_t down) {
+  CdrWriter out = begin(message, time);
+  out.u32(down);
+}
+
+void encode_time_reference(std::vector<std::uint8_t>& message, std::uint64_t time, std::int64_t device) {
+  CdrWriter out = begin(message, time);
+  const auto ns = static_cast<std::uint64_t>(device);
+  out.u32(static_cast<std::uint32_t>(ns / kNanoseconds));
+  out.u32(static_cast<std::uint32_t>(ns % kNanoseconds));
+  out.text("device");
 }
 
 void encode_contact(std::vector<std::uint8_t>& message, std::uint64_t time, const Contact& contact, std::string_view object) {
@@ -142,6 +180,15 @@ void encode_contact(std::vector<std::uint8_t>& message, std::uint64_t time, cons
 Result<Stamped<Pose>> decode_pose(std::span<const std::uint8_t> message) noexcept { return decode(message, read_pose); }
 Result<Stamped<Twist>> decode_twist(std::span<const std::uint8_t> message) noexcept { return decode(message, read_twist); }
 Result<Stamped<Vec3>> decode_vector(std::span<const std::uint8_t> message) noexcept { return decode(message, read_vector); }
+Result<Stamped<Quat>> decode_quaternion(std::span<const std::uint8_t> message) noexcept {
+  return decode(message, read_quaternion);
+}
+Result<Stamped<std::uint32_t>> decode_buttons(std::span<const std::uint8_t> message) noexcept {
+  return decode(message, read_buttons);
+}
+Result<Stamped<std::int64_t>> decode_time_reference(std::span<const std::uint8_t> message) noexcept {
+  return decode(message, read_time_reference);
+}
 Result<Stamped<Contact>> decode_contact(std::span<const std::uint8_t> message) noexcept { return decode(message, read_contact); }
 
 Result<Stamped<SurfaceContact>> decode_mesh_contact(std::span<const std::uint8_t> message) noexcept {

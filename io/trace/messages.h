@@ -37,6 +37,10 @@ struct Twist {
 void encode_pose(std::vector<std::uint8_t>& message, std::uint64_t time, const Pose& pose);
 void encode_twist(std::vector<std::uint8_t>& message, std::uint64_t time, const Twist& twist);
 void encode_vector(std::vector<std::uint8_t>& message, std::uint64_t time, const Vec3& vector);  ///< point and vector alike
+void encode_quaternion(std::vector<std::uint8_t>& message, std::uint64_t time, const Quat& quaternion);
+void encode_buttons(std::vector<std::uint8_t>& message, std::uint64_t time, std::uint32_t down);
+/// in  device  [ns] on the clock of a user's device   pre  0 <= device < 1e9 kMaxSeconds
+void encode_time_reference(std::vector<std::uint8_t>& message, std::uint64_t time, std::int64_t device);
 /// `device` is not part of the message.
 void encode_contact(std::vector<std::uint8_t>& message, std::uint64_t time, const Contact& contact, std::string_view object);
 
@@ -58,6 +62,9 @@ struct Stamped {
 Result<Stamped<Pose>> decode_pose(std::span<const std::uint8_t> message) noexcept;
 Result<Stamped<Twist>> decode_twist(std::span<const std::uint8_t> message) noexcept;
 Result<Stamped<Vec3>> decode_vector(std::span<const std::uint8_t> message) noexcept;
+Result<Stamped<Quat>> decode_quaternion(std::span<const std::uint8_t> message) noexcept;
+Result<Stamped<std::uint32_t>> decode_buttons(std::span<const std::uint8_t> message) noexcept;
+Result<Stamped<std::int64_t>> decode_time_reference(std::span<const std::uint8_t> message) noexcept;
 Result<Stamped<Contact>> decode_contact(std::span<const std::uint8_t> message) noexcept;
 
 Result<Stamped<SurfaceContact>> decode_mesh_contact(std::span<const std::uint8_t> message) noexcept;

@@ -68,6 +68,17 @@ Message message_of(MessageType type) {
           {kHeader, kTime}};
     case MessageType::contact:
       return contact_message();
+    case MessageType::quaternion:
+      return {"std_msgs/Header header\ngeometry_msgs/Quaternion quaternion\n", {kHeader, kTime, kQuaternion}};
+    case MessageType::buttons:
+      return {
+          "# Buttons of a device. No message at a tick: as before.\n"
+          "std_msgs/Header header\n"
+          "# Bit i is set while button i is down.\n"
+          "uint32 down\n",
+          {kHeader, kTime}};
+    case MessageType::time_reference:
+      return {"std_msgs/Header header\nbuiltin_interfaces/Time time_ref\nstring source\n", {kHeader, kTime}};
     case MessageType::surface_contact:
       break;
   }
@@ -92,10 +103,11 @@ Message message_of(MessageType type) {
 }  // namespace
 
 std::string_view schema_name(MessageType type) noexcept {
-  constexpr std::array<std::string_view, 8> kNames{"geometry_msgs/msg/PoseStamped",  "geometry_msgs/msg/TwistStamped",
-                                                   "geometry_msgs/msg/PointStamped", "geometry_msgs/msg/Vector3Stamped",
-                                                   "tactus_msgs/msg/Contact",        "shape_msgs/msg/Mesh",
-                                                   "tactus_msgs/msg/Displacements",  "tactus_msgs/msg/MeshContact"};
+  constexpr std::array<std::string_view, 11> kNames{
+      "geometry_msgs/msg/PoseStamped",    "geometry_msgs/msg/TwistStamped", "geometry_msgs/msg/PointStamped",
+      "geometry_msgs/msg/Vector3Stamped", "tactus_msgs/msg/Contact",        "shape_msgs/msg/Mesh",
+      "tactus_msgs/msg/Displacements",    "tactus_msgs/msg/MeshContact",    "geometry_msgs/msg/QuaternionStamped",
+      "tactus_msgs/msg/Buttons",          "sensor_msgs/msg/TimeReference"};
   return kNames[static_cast<std::size_t>(type)];
 }
 

@@ -8,7 +8,19 @@
 
 namespace tactus {
 
-enum class MessageType : std::uint8_t { pose, twist, point, vector, contact, mesh, displacements, surface_contact };
+enum class MessageType : std::uint8_t {
+  pose,
+  twist,
+  point,
+  vector,
+  contact,
+  mesh,
+  displacements,
+  surface_contact,
+  quaternion,
+  buttons,
+  time_reference
+};
 
 /// "geometry_msgs/msg/PoseStamped"
 std::string_view schema_name(MessageType type) noexcept;

@@ -98,11 +98,11 @@ Result<void> TactusAssembler::start(mcap::Reader& mcap, const Preamble& preamble
   info_.source = entry(tactus, "source");
   info_.scene = preamble.scene;
   for (std::string& name : split_lines(entry(tactus, "objects"))) info_.objects.push_back({std::move(name), Dof::all});
-  info_.users = split_lines(entry(tactus, "users"));
+  for (std::string& name : split_lines(entry(tactus, "users"))) info_.users.push_back({std::move(name)});
   for (std::string& name : split_lines(entry(tactus, "meshes"))) info_.meshes.push_back({std::move(name), {}});
   const bool has_names =
       std::all_of(info_.objects.begin(), info_.objects.end(), [](const auto& o) { return is_plain_name(o.name); }) &&
-      std::all_of(info_.users.begin(), info_.users.end(), is_plain_name) &&
+      std::all_of(info_.users.begin(), info_.users.end(), [](const auto& u) { return is_plain_name(u.name); }) &&
       std::all_of(info_.meshes.begin(), info_.meshes.end(), [](const auto& m) { return is_plain_name(m.name); });
   if (!has_names || (info_.objects.empty() && info_.users.empty() && info_.meshes.empty()))
     return refuse(mcap, Errc::invalid, "R-TRC-12");
@@ -145,6 +145,10 @@ Result<void> TactusAssembler::find_channels(const mcap::Reader& mcap, Errc missi
     const auto found = by_topic.find("/meshes/" + mesh.name + "/rest");
     if (found == by_topic.end()) return refuse(mcap, missing, rule);
     if (!read_metadata(found->second->metadata, mesh)) return refuse(mcap, Errc::invalid, "R-TRC-12");
+  }
+  for (TraceUser& user : info_.users) {
+    const auto has = [&](const char* channel) { return by_topic.contains("/users/" + user.name + channel); };
+    user.senses = {has("/device_orientation"), has("/device_velocity"), has("/device_buttons"), has("/device_time")};
   }
   for (TraceChannel& wanted : trace_channels(info_)) {
     const auto found = by_topic.find(wanted.topic);
@@ -256,6 +260,14 @@ Result<std::uint64_t> TactusAssembler::store(const mcap::Reader& mcap, const Tra
   return store_user(data, channel);
 }
 
+/// The value into its place; the result is the time of its header.
+template <class T>
+Result<std::uint64_t> keep(const Result<Stamped<T>>& message, T& place) noexcept {
+  if (!message) return tl::unexpected(message.error());
+  place = message->value;
+  return message->time;
+}
+
 Result<std::uint64_t> TactusAssembler::store_user(std::span<const std::uint8_t> data, const TraceChannel& channel) {
   UserSample& user = current_.users[channel.index];
   if (channel.role == Role::surface_contact) {
@@ -269,12 +281,16 @@ Result<std::uint64_t> TactusAssembler::store_user(std::span<const std::uint8_t> 
   if (channel.role == Role::contact) {
     TACTUS_TRY(auto contact, decode_contact(data));
     if (contact.value.object >= info_.objects.size()) return fail(Errc::invalid, "R-TRC-14");
-    contact.value.device = user.contact.device;
+    contact.value.device = user.device.position;
     user.contact = contact.value;
     return contact.time;
   }
+  if (channel.role == Role::orientation) return keep(decode_quaternion(data), user.device.orientation);
+  if (channel.role == Role::buttons) return keep(decode_buttons(data), user.device.buttons);
+  if (channel.role == Role::device_time) return keep(decode_time_reference(data), user.device.time);
   TACTUS_TRY(const auto vector, decode_vector(data));
-  if (channel.role == Role::device) user.contact.device = vector.value;
+  if (channel.role == Role::device) user.device.position = vector.value;
+  if (channel.role == Role::velocity) user.device.velocity = vector.value;
   if (channel.role == Role::force) user.force = vector.value;
   if (channel.role == Role::server_force) user.server_force = vector.value;
   return vector.time;

@@ -5,10 +5,14 @@
 /// /objects/<name>/pose         geometry_msgs/msg/PoseStamped       first tick, and ticks at which pose or twist is new
 /// /objects/<name>/twist        geometry_msgs/msg/TwistStamped      with the pose, objects that can move
 /// /users/<name>/device         geometry_msgs/msg/PointStamped      every tick
+/// /users/<name>/device_orientation  geometry_msgs/msg/QuaternionStamped  every tick    these four only of a device that senses it
+/// /users/<name>/device_velocity     geometry_msgs/msg/Vector3Stamped     every tick
+/// /users/<name>/device_buttons      tactus_msgs/msg/Buttons              first tick, and when it is new
+/// /users/<name>/device_time         sensor_msgs/msg/TimeReference        every tick
 /// /users/<name>/force          geometry_msgs/msg/Vector3Stamped    every tick
 /// /users/<name>/server_force   geometry_msgs/msg/Vector3Stamped    every tick
 /// /users/<name>/contact        tactus_msgs/msg/Contact             ticks with contact
-/// /users/<name>/surface_contact   tactus_msgs/msg/SurfaceContact         ticks with contact; only if there are meshes
+/// /users/<name>/mesh_contact   tactus_msgs/msg/MeshContact         ticks with contact; only if there are meshes
 /// /meshes/<name>/rest          shape_msgs/msg/Mesh (no header)     first tick
 /// /meshes/<name>/displacement  tactus_msgs/msg/Displacements       ticks at which the shape is new; before the first, rest
 /// When nothing else comes every tick, the first object's pose does, or without objects the first mesh's displacement.

@@ -13,7 +13,21 @@
 
 namespace tactus {
 
-enum class Role : std::uint8_t { pose, twist, device, force, server_force, contact, surface_contact, rest, displacement };
+enum class Role : std::uint8_t {
+  pose,
+  twist,
+  device,
+  orientation,
+  velocity,
+  buttons,
+  device_time,
+  force,
+  server_force,
+  contact,
+  surface_contact,
+  rest,
+  displacement
+};
 enum class Occurs : std::uint8_t { every_tick, first_tick, when_changed, in_contact, when_updated };
 
 struct TraceChannel {
@@ -39,6 +53,13 @@ inline MessageType message_type(Role role) noexcept {
       return MessageType::mesh;
     case Role::displacement:
       return MessageType::displacements;
+    case Role::orientation:
+      return MessageType::quaternion;
+    case Role::buttons:
+      return MessageType::buttons;
+    case Role::device_time:
+      return MessageType::time_reference;
+    case Role::velocity:
     case Role::force:
     case Role::server_force:
       break;
@@ -67,8 +88,13 @@ inline std::vector<TraceChannel> trace_channels(const TraceInfo& info) {
     channels.push_back({Role::displacement, Occurs::when_updated, i, path + "/displacement"});
   }
   for (std::uint32_t i = 0; i < info.users.size(); ++i) {
-    const std::string path = "/users/" + info.users[i];
+    const std::string path = "/users/" + info.users[i].name;
+    const DeviceSenses& senses = info.users[i].senses;
     channels.push_back({Role::device, Occurs::every_tick, i, path + "/device"});
+    if (senses.orientation) channels.push_back({Role::orientation, Occurs::every_tick, i, path + "/device_orientation"});
+    if (senses.velocity) channels.push_back({Role::velocity, Occurs::every_tick, i, path + "/device_velocity"});
+    if (senses.buttons) channels.push_back({Role::buttons, Occurs::when_changed, i, path + "/device_buttons"});
+    if (senses.time) channels.push_back({Role::device_time, Occurs::every_tick, i, path + "/device_time"});
     channels.push_back({Role::force, Occurs::every_tick, i, path + "/force"});
     channels.push_back({Role::server_force, Occurs::every_tick, i, path + "/server_force"});
     channels.push_back({Role::contact, Occurs::in_contact, i, path + "/contact"});

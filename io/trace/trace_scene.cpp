@@ -33,7 +33,7 @@ std::optional<SurfaceTouch> touch_of(const TraceFrame& frame, std::size_t deform
   for (const UserSample& user : frame.users) {
     if (!user.surface_contact || user.surface_contact->mesh != deformable) continue;
     const SurfaceContact& contact = *user.surface_contact;
-    const double depth = norm(contact.proxy - user.contact.device);
+    const double depth = norm(contact.proxy - user.device.position);
     if (lightest && lightest->force / lightest->stiffness <= depth) continue;
     lightest = SurfaceTouch{contact.triangle, contact.stiffness * depth, contact.stiffness};
   }

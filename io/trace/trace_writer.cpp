@@ -31,7 +31,7 @@ bool are_names(const Range& range, Name name) {
 Result<void> check(const TraceInfo& info) {
   const auto mesh_name = [](const TraceDeformable& mesh) -> const std::string& { return mesh.name; };
   const bool has_names = are_names(info.objects, [](const TraceObject& object) -> const std::string& { return object.name; }) &&
-                         are_names(info.users, [](const std::string& user) -> const std::string& { return user; }) &&
+                         are_names(info.users, [](const TraceUser& user) -> const std::string& { return user.name; }) &&
                          are_names(info.meshes, mesh_name);
   const bool has_dofs = std::all_of(info.objects.begin(), info.objects.end(), [](const auto& o) { return o.dof <= Dof::all; });
   const bool is_empty = info.objects.empty() && info.users.empty() && info.meshes.empty();
@@ -54,7 +54,7 @@ bool is_finite(const RigidSample& sample) noexcept {
 }
 
 bool is_finite(const UserSample& user) noexcept {
-  return is_finite(user.contact.device) && is_finite(user.force) && is_finite(user.server_force);
+  return is_finite(user.device) && is_finite(user.force) && is_finite(user.server_force);
 }
 
 bool is_finite(const DeformableSample& mesh) noexcept {
@@ -83,7 +83,7 @@ mcap::Metadata metadata_of(const TraceInfo& info) {
                            {"tick_rate", std::to_string(info.tick_rate)},
                            {"source", info.source},
                            {"objects", lines(info.objects, [](const TraceObject& object) { return object.name; })},
-                           {"users", lines(info.users, [](const std::string& user) { return user; })}}};
+                           {"users", lines(info.users, [](const TraceUser& user) { return user.name; })}}};
   if (!info.meshes.empty())
     metadata.entries["meshes"] = lines(info.meshes, [](const TraceDeformable& mesh) { return mesh.name; });
   return metadata;
@@ -125,6 +125,7 @@ struct TraceWriter::Impl {
       if (role == Role::pose || role == Role::twist) others = i + 1;
     }
     of_object.push_back(others);
+    buttons.resize(info.users.size());
   }
   ~Impl() {
     if (finished) return;
@@ -155,6 +156,7 @@ struct TraceWriter::Impl {
   std::size_t others = 0;              // first channel of no object
   std::vector<RigidSample> written;    // last
   std::vector<std::uint32_t> changed;  // objects that are not as written
+  std::vector<std::uint32_t> buttons;  // of each user, as written last
   bool finished = false;
 };
 
@@ -190,10 +192,13 @@ Result<TraceWriter> TraceWriter::create(const std::string& path, const TraceInfo
   return out_of_memory();
 }
 
-/// Whether a user's contacts are valid and name what is there.
+/// Whether a user's contacts are valid, name what is there and belong to the device sample.
 bool TraceWriter::Impl::can_hold(const UserSample& user) const {
+  if (user.device.time < 0 || user.device.time / 1'000'000'000 >= kMaxSeconds) return false;
   const Contact& contact = user.contact;
-  if (contact.kind != ContactKind::none && (!is_valid(contact) || contact.object >= info.objects.size())) return false;
+  if (contact.kind != ContactKind::none &&
+      (!is_valid(contact) || contact.object >= info.objects.size() || contact.device != user.device.position))
+    return false;
   if (!user.surface_contact) return true;
   const SurfaceContact& touch = *user.surface_contact;
   return is_valid(touch) && touch.mesh < info.meshes.size() && touch.triangle < info.meshes[touch.mesh].rest.triangles.size();
@@ -233,7 +238,15 @@ void TraceWriter::Impl::encode(const TraceChannel& channel, std::uint64_t time, 
       return encode_twist(message, time, {sample.velocity, sample.angular_velocity});
     }
     case Role::device:
-      return encode_vector(message, time, frame.users[channel.index].contact.device);
+      return encode_vector(message, time, frame.users[channel.index].device.position);
+    case Role::orientation:
+      return encode_quaternion(message, time, frame.users[channel.index].device.orientation);
+    case Role::velocity:
+      return encode_vector(message, time, frame.users[channel.index].device.velocity);
+    case Role::buttons:
+      return encode_buttons(message, time, frame.users[channel.index].device.buttons);
+    case Role::device_time:
+      return encode_time_reference(message, time, frame.users[channel.index].device.time);
     case Role::force:
       return encode_vector(message, time, frame.users[channel.index].force);
     case Role::server_force:
@@ -256,8 +269,10 @@ void TraceWriter::Impl::encode(const TraceChannel& channel, std::uint64_t time, 
 bool TraceWriter::Impl::is_due(const TraceChannel& channel, const TraceFrame& frame) const {
   switch (channel.occurs) {
     case Occurs::every_tick:
-    case Occurs::when_changed:  // only channels of objects that have are asked
       return true;
+    case Occurs::when_changed:  // of objects only channels of those that have are asked
+      return channel.role != Role::buttons || last_tick < 0 ||
+             frame.users[channel.index].device.buttons != buttons[channel.index];
     case Occurs::first_tick:
       return last_tick < 0;
     case Occurs::when_updated:
@@ -312,6 +327,7 @@ Result<void> TraceWriter::write(const TraceFrame& frame) try {
   for (std::size_t k = impl_->others; k < impl_->channels.size(); ++k) impl_->write(k, time, frame);
   if (impl_->written.empty()) impl_->written = frame.objects;
   for (const std::uint32_t i : impl_->changed) impl_->written[i] = frame.objects[i];
+  for (std::size_t i = 0; i < frame.users.size(); ++i) impl_->buttons[i] = frame.users[i].device.buttons;
   impl_->last_tick = frame.tick;
   const bool is_full = impl_->mcap.chunk_size() >= kChunkBytes || time - impl_->mcap.chunk_start_time() >= kChunkTime;
   return is_full ? impl_->mcap.end_chunk() : Result<void>();

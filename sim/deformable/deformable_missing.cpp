@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// In place of deformable_world.cpp and stiffness_map.cpp when the component FEM is left out.
-#include <tactus/sim/deformable/deformable_world.h>
+// In place of deformable_objects.cpp and stiffness_map.cpp when the component FEM is left out.
+#include <tactus/sim/deformable/deformable_objects.h>
 #include <tactus/sim/deformable/stiffness_map.h>
 
 namespace tactus::sim {
 
-Result<std::unique_ptr<DeformableWorld>> make_deformable_world(const Scene&, const DeformableOptions&) {
+Result<std::unique_ptr<DeformableObjects>> make_deformable_objects(const Scene&, const DeformableOptions&) {
   return fail(Errc::unsupported, "R-SIM-2");
 }
 

@@ -7,7 +7,7 @@
 #include <Eigen/Dense>
 
 #include <tactus/sim/fem/guarded.h>
-#include <tactus/sim/slowest_modes.h>
+#include <tactus/sim/modes/slowest_modes.h>
 
 namespace tactus::sim {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include <tactus/sim/slowest_modes.h>
+#include <tactus/sim/modes/slowest_modes.h>
 
 namespace tactus::sim {
 namespace {

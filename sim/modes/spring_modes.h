@@ -20,7 +20,7 @@ namespace tactus::sim {
 /// out  modes x vertices x 3, each of unit length and orthogonal to the others, slowest first; 0 at fixed vertices.
 ///      Equal inputs give equal bits on one machine.
 /// pre  the mesh passed check(); `fixed` ascends and names vertices of it
-/// time 0.12 s for 714 vertices and 48 modes, half of it in one factorisation; sim/slowest_modes.h
+/// time 0.12 s for 714 vertices and 48 modes, half of it in one factorisation; sim/modes/slowest_modes.h
 /// err  invalid_argument R-API-9: no modes, or not less than free components; internal R-SIM-5: no convergence
 Result<std::vector<double>> spring_modes(const TriMesh& rest, std::span<const std::uint32_t> fixed, std::size_t modes);
 

@@ -16,22 +16,14 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <string>
 
 #include <tactus/base/geometry.h>
 #include <tactus/base/result.h>
 #include <tactus/rigid/rigid_state.h>
 #include <tactus/sim/scene/scene.h>
+#include <tactus/sim/touchable.h>
 
 namespace tactus::sim {
-
-/// A simulation that cannot go on: which object broke which rule at which tick.
-struct StepError {
-  Error error;
-  std::int64_t tick = 0;
-  std::uint32_t object = 0;
-  std::string remedy{};  ///< in words, of deformable objects; may be empty
-};
 
 class RigidWorld {
  public:

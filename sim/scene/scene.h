@@ -3,6 +3,7 @@
 /// A scene says what it lacks by not naming it: without users no contact is computed, without a floor nothing collides with one.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -10,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include <tactus/base/device_sample.h>
 #include <tactus/base/geometry.h>
 #include <tactus/base/result.h>
 #include <tactus/scene/scene_builder.h>
@@ -115,6 +117,11 @@ struct SceneUser {
   Vec3 start;                ///< [m] of the probe
   SceneDevice device;
   std::vector<PathPhase> path;
+
+  /// What the device tells of besides its position.
+  DeviceSenses senses() const noexcept {
+    return {.buttons = std::ranges::any_of(path, [](const PathPhase& phase) { return phase.button; })};
+  }
 };
 
 struct Scene {

@@ -3,11 +3,11 @@
 #include <array>
 #include <cmath>
 
-#include <tactus/sim/contact/passivity.h>
 #include <tactus/sim/msd/msd.h>
 #include <tactus/sim/study/sampled_mass.h>
 #include <tactus/sim/study/stability.h>
-#include <tactus/sim/user/user.h>
+#include <tactus/sim/user/hand.h>
+#include <tactus/sim/user/passivity.h>
 
 namespace tactus::sim::study {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <tactus/sim/study/stability.h>
 #include <tactus/sim/study/wall.h>
-#include <tactus/sim/user/user.h>
+#include <tactus/sim/user/hand.h>
 
 namespace tactus::sim::study {
 namespace {
@@ -113,7 +113,7 @@ Study study_wall(Extent extent, const Progress& progress) {
   study.text =
       "A spring of stiffness k_o and a damper b_o, computed once per sample from the device's position and held (thesis 2.2.2). "
       "*Passive*: a hand that yields to nothing drives the device (damping b_d) into the wall and out again, and the passivity "
-      "observer of `sim/contact/passivity.h` tells whether more energy came out than went in; theory is eq. 2.3, b_d > k_o T / "
+      "observer of `sim/user/passivity.h` tells whether more energy came out than went in; theory is eq. 2.3, b_d > k_o T / "
       "2, "
       "eq. 2.4, b_d + b_o > k_o T / 2, for slow motion, and b_d > k_o T / 2 + b_o (Colgate and Schenkel) for every motion. "
       "*Stable*: "

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <tactus/sim/contact/passivity.h>
+#include <tactus/sim/user/passivity.h>
 
 namespace tactus::sim::study {
 namespace {

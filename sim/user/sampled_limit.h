@@ -2,7 +2,7 @@
 /// How stiff a coupling a virtual hand bears: sampling and smoothing of the device delay what it feels.
 #pragma once
 
-#include <tactus/sim/user/user.h>
+#include <tactus/sim/user/hand.h>
 
 namespace tactus::sim {
 

@@ -5,11 +5,11 @@
 
 namespace tactus::sim {
 
-void TouchRecord::add(const UserSample& sample, const Vec3& position) noexcept {
+void TouchRecord::add(const UserSample& sample) noexcept {
   const bool touches = sample.contact.kind != ContactKind::none || sample.surface_contact;
   const bool begins = touches && !touching_;
   touching_ = touches;
-  port_.arrive(position);
+  port_.arrive(sample.device.position);
   if (begins) port_.reset();
   port_.hold(sample.force);
   summary_.lowest_energy = port_.lowest();

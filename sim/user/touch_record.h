@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <optional>
 
-#include <tactus/sim/contact/passivity.h>
 #include <tactus/sim/scene/scene.h>
+#include <tactus/sim/user/passivity.h>
 #include <tactus/trace/frame.h>
 
 namespace tactus::sim {
@@ -28,11 +28,8 @@ struct TouchSummary {
 
 class TouchRecord {
  public:
-  /// One tick.
-  /// in   sample    as in the trace
-  ///      position  [m] of the device
-  /// time O(1), no allocation
-  void add(const UserSample& sample, const Vec3& position) noexcept;
+  /// One tick, as in the trace.   time O(1), no allocation
+  void add(const UserSample& sample) noexcept;
 
   const TouchSummary& summary() const noexcept { return summary_; }
 

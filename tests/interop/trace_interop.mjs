@@ -27,6 +27,15 @@ const expected = {
   "/objects/cube/twist": (tick) => ({ twist: { linear: vector(tick, 7), angular: vector(tick, 10) } }),
   "/objects/floor/pose": (tick) => (tick === 0 ? { pose: pose(0, 100) } : undefined),
   "/users/hand/device": (tick) => ({ point: vector(tick, 200) }),
+  "/users/hand/device_orientation": (tick) => ({
+    quaternion: { w: number(tick, 220), x: number(tick, 221), y: number(tick, 222), z: number(tick, 223) },
+  }),
+  "/users/hand/device_velocity": (tick) => ({ vector: vector(tick, 230) }),
+  "/users/hand/device_buttons": (tick) => (tick % 4 === 0 ? { down: (tick / 4) % 4 } : undefined),
+  "/users/hand/device_time": (tick) => ({
+    time_ref: { sec: Math.floor((tick * 1_000_003) / 1e9), nanosec: (tick * 1_000_003) % 1e9 },
+    source: "device",
+  }),
   "/users/hand/force": (tick) => ({ vector: vector(tick, 203) }),
   "/users/hand/server_force": (tick) => ({ vector: vector(tick, 206) }),
   "/users/hand/contact": (tick) =>

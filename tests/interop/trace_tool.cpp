@@ -30,8 +30,13 @@ TraceFrame make_frame(std::int64_t tick) {
   const bool touches = tick % 3 == 1;
   for (std::size_t k = 0; k < (touches ? kUserColumns.size() : 9); ++k)
     kUserColumns[k].field(frame.users[0]) = number(tick, 200 + k);
+  frame.users[0].contact.device = frame.users[0].device.position;
   frame.users[0].contact.kind = touches ? ContactKind::spring : ContactKind::none;
   if (touches) frame.users[0].contact.stiffness = 630;
+  for (std::size_t k = 0; k < 4; ++k) kOrientationColumns[k].field(frame.users[0]) = number(tick, 220 + k);
+  for (std::size_t k = 0; k < 3; ++k) kDeviceVelocityColumns[k].field(frame.users[0]) = number(tick, 230 + k);
+  frame.users[0].device.buttons = static_cast<std::uint32_t>(tick / 4 % 4);
+  frame.users[0].device.time = 1'000'003 * tick;
   const auto at = [&](std::size_t slot) { return Vec3{number(tick, slot), number(tick, slot + 1), number(tick, slot + 2)}; };
   if (tick % 4 == 2) frame.users[0].surface_contact = {0, 3, {0.5, 0.375, 0.125}, at(300), at(303), 20};
   DeformableSample shape{tick % kDeformationTicks == 3, std::vector<float>(12)};
@@ -44,11 +49,12 @@ TraceFrame make_frame(std::int64_t tick) {
 TriMesh make_mesh() { return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}}; }
 
 Result<void> write(const char* path) {
-  TACTUS_TRY(
-      auto writer,
-      TraceWriter::create(
-          path,
-          {kTickRate, {{"cube", Dof::all}, {"floor", Dof::none}}, {"hand"}, "interop", "# scene\n", {{"blob", make_mesh()}}}));
+  TACTUS_TRY(auto writer, TraceWriter::create(path, {kTickRate,
+                                                     {{"cube", Dof::all}, {"floor", Dof::none}},
+                                                     {{"hand", {true, true, true, true}}},
+                                                     "interop",
+                                                     "# scene\n",
+                                                     {{"blob", make_mesh()}}}));
   for (std::int64_t tick = 0; tick < kTicks; ++tick) TACTUS_CHECK(writer.write(make_frame(tick)));
   return writer.finish();
 }

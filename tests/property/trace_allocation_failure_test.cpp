@@ -71,7 +71,7 @@ TEST(TraceAllocationFailure, Writing) {
   Recording recording;
   TraceInfo& info = recording.info;
   info.objects = {{"an object with a name too long for a small string", Dof::all}, {"wall", Dof::none}};
-  info.users = {"somebody"};
+  info.users = {{"somebody"}};
   info.scene = "name = \"a scene with a text\"";
   recording.frame.objects.resize(info.objects.size());
   recording.frame.users.resize(info.users.size());

@@ -185,7 +185,7 @@ TEST(Csv, KinaestheticLayout) {
   const TraceFrame& frame = outcome.frames[1];
   EXPECT_EQ(frame.objects[0].pose.position, (Vec3{1, 2, 3.5}));
   EXPECT_NEAR(frame.objects[0].velocity.z, 500, 1e-9);
-  EXPECT_EQ(frame.users[0].contact.device, (Vec3{0.1, 0.2, 0.4}));
+  EXPECT_EQ(frame.users[0].device.position, (Vec3{0.1, 0.2, 0.4}));
   EXPECT_EQ(frame.users[0].contact.kind, ContactKind::none);
   EXPECT_EQ(frame.users[0].force, (Vec3{-1, -2, -4}));
   EXPECT_EQ(frame.users[0].server_force, (Vec3{-1, -2, -4}));

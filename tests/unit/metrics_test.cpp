@@ -13,7 +13,8 @@ namespace tactus {
 namespace {
 
 TraceInfo one_cube() {
-  return {.tick_rate = 1000, .objects = {{"cube", Dof::all}, {"table", Dof::none}}, .users = {"hand"}, .source = {}, .scene = {}};
+  return {
+      .tick_rate = 1000, .objects = {{"cube", Dof::all}, {"table", Dof::none}}, .users = {{"hand"}}, .source = {}, .scene = {}};
 }
 
 /// A cube at x = `x`, pressed from above by 1 N: 1 mm deep at 1000 N/m.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One-dimensional objects in scenes and in the loop: sim/scene/scene.h, sim/msd/msd_world.h, sim/simulation.h.
+// One-dimensional objects in scenes and in the loop: sim/scene/scene.h, sim/msd/msd_objects.h, sim/simulation.h.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,10 +27,10 @@ Scene object_at_origin(const MsdObject& object, std::uint32_t rate, double stiff
 }
 
 /// Device positions of two users: the first this deep in the object of the scene, the second away.
-std::vector<UserSample> first_at(double depth) {
-  std::vector<UserSample> samples(2);
-  samples[0].contact.device = {depth, 0, 0};
-  samples[1].contact.device = {-1, 0, 0};
+std::vector<DeviceSample> first_at(double depth) {
+  std::vector<DeviceSample> samples(2);
+  samples[0].position = {depth, 0, 0};
+  samples[1].position = {-1, 0, 0};
   return samples;
 }
 
@@ -40,7 +40,7 @@ std::vector<double> step_response(const Scene& scene, double depth, int ticks) {
   EXPECT_TRUE(simulation);
   std::vector<double> out;
   for (int i = 0; i < ticks; ++i) {
-    EXPECT_TRUE(simulation->replay(first_at(depth)));
+    EXPECT_TRUE(simulation->step(first_at(depth)));
     out.push_back(simulation->frame().objects.at(0).pose.position.x);
   }
   return out;
@@ -140,7 +140,7 @@ TEST(MsdSimulation, SameSeedSameBitsOtherSeedOtherBits) {
       const TraceFrame& frame = simulation->frame();
       out.push_back(frame.objects[0].pose.position.x);
       for (const UserSample& user : frame.users)
-        out.insert(out.end(), {user.contact.device.x, user.force.x, user.server_force.x});
+        out.insert(out.end(), {user.device.position.x, user.force.x, user.server_force.x});
     }
     return out;
   };

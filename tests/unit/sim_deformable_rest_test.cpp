@@ -153,12 +153,12 @@ Scene touched_scene(std::uint32_t rate) {
 TEST(DeformableRest, ReportsShapesWhileItMovesOrIsTouched) {
   for (const std::uint32_t rate : {1u, 8u}) {
     auto simulation = Simulation::create(touched_scene(rate)).value();
-    std::vector<UserSample> device(1);
+    std::vector<DeviceSample> device(1);
     int before = 0, during = 0, at_last = 0;
     for (int tick = 0; tick < 12000; ++tick) {
       const bool down = tick >= 400 && tick < 600;
-      device[0].contact.device = {0.001, 0.002, down ? -0.001 : 0.02};
-      ASSERT_TRUE(simulation.replay(device));
+      device[0].position = {0.001, 0.002, down ? -0.001 : 0.02};
+      ASSERT_TRUE(simulation.step(device));
       const TraceFrame& frame = simulation.frame();
       EXPECT_EQ(frame.users[0].surface_contact.has_value(), down) << tick;
       const int updated = frame.meshes[0].updated ? 1 : 0;
@@ -186,12 +186,12 @@ TEST(DeformableRest, AFastSlabIsFelt) {
                      "drop.toml")
                      .value();
     auto simulation = Simulation::create(scene).value();
-    std::vector<UserSample> device(1);
-    device[0].contact.device = {0.003, 0.004, 0};
+    std::vector<DeviceSample> device(1);
+    device[0].position = {0.003, 0.004, 0};
     const double arrives = std::sqrt(2 * height / 9.81);
     int touched = 0;
     for (int tick = 0; tick * kTick < arrives + 0.02; ++tick) {
-      ASSERT_TRUE(simulation.replay(device));
+      ASSERT_TRUE(simulation.step(device));
       if (simulation.frame().users[0].surface_contact) ++touched;
     }
     EXPECT_GE(touched, 15) << height << " m";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Deformable objects in the loop: sim/deformable/deformable_world.h, sim/simulation.h.
+// Deformable objects in the loop: sim/deformable/deformable_objects.h, sim/simulation.h.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -28,9 +28,9 @@ Scene slab_scene(std::uint32_t rate, const Vec3& start) {
   return parse_scene(text, "slab.toml").value();
 }
 
-std::vector<UserSample> device_at(const Vec3& place) {
-  std::vector<UserSample> samples(1);
-  samples[0].contact.device = place;
+std::vector<DeviceSample> device_at(const Vec3& place) {
+  std::vector<DeviceSample> samples(1);
+  samples[0].position = place;
   return samples;
 }
 
@@ -44,7 +44,7 @@ std::uint64_t hash_of_run(const Scene& scene, std::uint64_t seed, int ticks) {
   for (int i = 0; i < ticks; ++i) {
     EXPECT_TRUE(simulation->step());
     const TraceFrame& frame = simulation->frame();
-    for (const UserSample& user : frame.users) add(user.contact.device), add(user.force), add(user.server_force);
+    for (const UserSample& user : frame.users) add(user.device.position), add(user.force), add(user.server_force);
     for (const DeformableSample& mesh : frame.meshes)
       for (const float value : mesh.displacements) hash.add32(std::bit_cast<std::uint32_t>(value));
   }
@@ -84,7 +84,7 @@ TEST(DeformableSimulation, MeanForceOfAPeriodActsInItsStepAndShowsInTheNext) {
   ASSERT_TRUE(simulation);
   Vec3 impulse;  // of the server's forces on the slab [N s]
   for (std::uint32_t tick = 0; tick <= kRate; ++tick) {
-    ASSERT_TRUE(simulation->replay(device_at({0.003, 0.004, -0.001 - 1e-4 * tick})));
+    ASSERT_TRUE(simulation->step(device_at({0.003, 0.004, -0.001 - 1e-4 * tick})));
     const TraceFrame& frame = simulation->frame();
     EXPECT_EQ(frame.meshes[0].updated, tick == kRate) << "one step of delay (T_c)";
     ASSERT_TRUE(frame.users[0].surface_contact);
@@ -111,7 +111,7 @@ TEST(DeformableSimulation, ClientApproachesANewShapeWithoutAJump) {
   double server_jump = 0, client_jump = 0;
   Vec3 server, client;
   for (int tick = 0; tick < 300; ++tick) {
-    ASSERT_TRUE(simulation->replay(device_at({0.001, 0.002, -0.004})));
+    ASSERT_TRUE(simulation->step(device_at({0.001, 0.002, -0.004})));
     const UserSample& user = simulation->frame().users[0];
     if (tick > 0) {
       server_jump = std::max(server_jump, norm(user.server_force - server));
@@ -137,7 +137,7 @@ TEST(DeformableSimulation, AtTheHapticRateBothEndsFeelTheSame) {
     largest = std::max(largest, norm(user.force));
     if (!user.surface_contact) continue;
     const SurfaceContact& contact = *user.surface_contact;
-    ASSERT_EQ(user.force, contact.stiffness * (contact.proxy - user.contact.device));
+    ASSERT_EQ(user.force, contact.stiffness * (contact.proxy - user.device.position));
   }
   EXPECT_GT(largest, 0.05);
 }
@@ -191,17 +191,17 @@ TEST(DeformableSimulation, StandsBesideABoxAndAOneDimensionalObject) {
   ASSERT_EQ(simulation->info().objects.size(), 2u);
   EXPECT_EQ(simulation->info().objects[1].name, "surface");
   auto place = [](double x, double z) {
-    std::vector<UserSample> samples(1);
-    samples[0].contact.device = {x, 0, z};
+    std::vector<DeviceSample> samples(1);
+    samples[0].position = {x, 0, z};
     return samples;
   };
-  ASSERT_TRUE(simulation->replay(place(-0.03, 0.02)));
-  ASSERT_TRUE(simulation->replay(place(-0.0195, 0.02)));
+  ASSERT_TRUE(simulation->step(place(-0.03, 0.02)));
+  ASSERT_TRUE(simulation->step(place(-0.0195, 0.02)));
   EXPECT_EQ(simulation->frame().users[0].contact.object, 0u) << "the box";
   EXPECT_EQ(simulation->frame().objects[1].pose.position.x, 0.13);
-  ASSERT_TRUE(simulation->replay(place(-0.0195, 0.2)));
+  ASSERT_TRUE(simulation->step(place(-0.0195, 0.2)));
   EXPECT_EQ(simulation->frame().users[0].contact.kind, ContactKind::none);
-  for (int i = 0; i < 100; ++i) ASSERT_TRUE(simulation->replay(place(0.132, 0.2)));
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(simulation->step(place(0.132, 0.2)));
   EXPECT_EQ(simulation->frame().users[0].contact.object, 1u);
   EXPECT_GT(simulation->frame().objects[1].pose.position.x, 0.1301);
   EXPECT_FALSE(simulation->frame().users[0].surface_contact);
@@ -214,7 +214,7 @@ TEST(DeformableSimulation, GravityBendsWhatHangsAtItsCorners) {
   scene.gravity = {0, 0, -1};
   auto simulation = Simulation::create(scene);
   ASSERT_TRUE(simulation);
-  for (int i = 0; i < 1000; ++i) ASSERT_TRUE(simulation->replay(device_at({0, 0, 0.5})));
+  for (int i = 0; i < 1000; ++i) ASSERT_TRUE(simulation->step(device_at({0, 0, 0.5})));
   const auto& u = simulation->frame().meshes[0].displacements;
   EXPECT_LT(u[3 * 24 + 2], -1e-3F) << "the middle";
   EXPECT_EQ(u[2], 0.0F) << "a corner";

@@ -41,7 +41,7 @@ class FrameHash {
     }
     for (const UserSample& u : frame.users) {
       add(static_cast<std::uint64_t>(u.contact.kind));
-      for (const Vec3& v : {u.contact.point, u.contact.normal, u.contact.device, u.force, u.server_force}) add(v);
+      for (const Vec3& v : {u.contact.point, u.contact.normal, u.device.position, u.force, u.server_force}) add(v);
     }
   }
   std::uint64_t value() const { return hash_; }
@@ -86,9 +86,11 @@ TEST(Simulation, OpenLoopRepeatsWhatItRecorded) {
   auto again = Simulation::create(scene, {.seed = 99, .grip = {}, .channel = {}});
   ASSERT_TRUE(again);
   FrameHash recorded, replayed;
+  std::vector<DeviceSample> devices(scene.users.size());
   for (std::int64_t i = 0; i < live->ticks(); ++i) {
     ASSERT_TRUE(live->step());
-    ASSERT_TRUE(again->replay(live->frame().users));
+    for (std::size_t user = 0; user < devices.size(); ++user) devices[user] = live->frame().users[user].device;
+    ASSERT_TRUE(again->step(devices));
     recorded.add(live->frame());
     replayed.add(again->frame());
   }
@@ -113,12 +115,12 @@ TEST(Simulation, StepsAllocateNothingOnceOdeHasItsArenas) {
 TEST(Simulation, ReplayRefusesWhatItCannotUse) {
   auto simulation = Simulation::create(shipped("push-1dof"));
   ASSERT_TRUE(simulation);
-  const auto none = simulation->replay({});
+  const auto none = simulation->step({});
   ASSERT_FALSE(none);
   EXPECT_STREQ(none.error().error.rule, "R-API-5");
-  std::vector<UserSample> samples(1);
-  samples[0].contact.device.y = std::nan("");
-  const auto broken = simulation->replay(samples);
+  std::vector<DeviceSample> samples(1);
+  samples[0].position.y = std::nan("");
+  const auto broken = simulation->step(samples);
   ASSERT_FALSE(broken);
   EXPECT_STREQ(broken.error().error.rule, "R-API-1");
 }
@@ -222,7 +224,7 @@ TEST(Simulation, InfoDescribesTheFrames) {
   EXPECT_EQ(info.tick_rate, 1000u);
   ASSERT_EQ(info.objects.size(), 1u);
   EXPECT_EQ(info.objects[0].dof, Dof::x);
-  EXPECT_EQ(info.users, std::vector<std::string>{"hand"});
+  EXPECT_EQ(info.users, std::vector<TraceUser>{{"hand"}});
   EXPECT_EQ(info.source, "sim push-1dof seed 12");
   EXPECT_EQ(info.scene, scene.text);
   EXPECT_EQ(simulation->ticks(), 3000);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/sim/slowest_modes.h>
+#include <tactus/sim/modes/slowest_modes.h>
 
 #include <gtest/gtest.h>
 

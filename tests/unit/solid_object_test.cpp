@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include <tactus/sim/contact/contact.h>
 #include <tactus/sim/random.h>
+#include <tactus/sim/rigid/rigid_probe.h>
 #include <tactus/sim/rigid/rigid_world.h>
 #include <tactus/sim/tets/tet_mesh.h>
 #include "tests/property/allocated.h"
@@ -51,7 +51,7 @@ TEST(SolidObject, ACubeOfTrianglesFeelsLikeABox) {
   SceneTouch touch = kTouch;
   touch.friction = 0.5;
   const std::vector<SceneObject> exact{box(0.04)}, meshed{cube_of_triangles(0.04, 5)};
-  Probe on_box(exact, touch), on_mesh(meshed, touch);
+  RigidProbe on_box(exact, touch), on_mesh(meshed, touch);
   int touched = 0;
   for (int i = 0; i < 4000; ++i) {
     const double t = 1e-3 * i;
@@ -79,7 +79,7 @@ TEST(SolidObject, ABallOfTrianglesFeelsLikeASphere) {
   for (int i = 0; i < 200; ++i) {
     Vec3 out{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
     out = (1 / norm(out)) * out;
-    Probe probe(objects, kTouch);
+    RigidProbe probe(objects, kTouch);
     probe.move(pose.position + 1.5 * kRadius * out, false, {&pose, 1});
     const double depth = random.uniform(0.001, 0.01);
     Touch touch;
@@ -150,7 +150,7 @@ TEST(SolidObject, StepsAllocateNothingOnceOdeHasItsArenas) {
   scene.objects.push_back(box(0.02));
   scene.objects.back().pose.position = {0, 0, 0.05};
   RigidWorld world(scene);
-  Probe probe(scene.objects, kTouch);
+  RigidProbe probe(scene.objects, kTouch);
   std::array<Pose, 2> poses;
   const auto tick = [&](int i) {
     poses = {world.sample(0).pose, world.sample(1).pose};

@@ -11,8 +11,10 @@
 namespace tactus::sim {
 namespace {
 
-UserSample pressing(const Vec3& force) {
-  UserSample sample;
+UserSample at(const Vec3& position) { return {.device = {.position = position}, .contact = {}, .force = {}, .server_force = {}}; }
+
+UserSample pressing(const Vec3& force, const Vec3& position = {}) {
+  UserSample sample = at(position);
   sample.contact.kind = ContactKind::surface;
   sample.force = force;
   return sample;
@@ -24,7 +26,7 @@ TEST(TouchRecord, CountsContactsAndThoseOfTheWorstSecond) {
   const auto touches = [](int tick) { return tick < 3000 ? tick % 200 < 50 : tick < 4000 && tick % 50 < 10; };
   std::uint64_t in_contact = 0;
   for (int tick = 0; tick < 6000; ++tick) {
-    record.add(touches(tick) ? pressing({0, 0, 1}) : UserSample{}, {});
+    record.add(touches(tick) ? pressing({0, 0, 1}) : UserSample{});
     in_contact += touches(tick) ? 1U : 0U;
   }
   const TouchSummary& all = record.summary();
@@ -40,7 +42,7 @@ TEST(TouchRecord, TheEnergyOfEachContactIsItsOwn) {
   constexpr double kStep = 1e-4, kStiffness = 1000;
   TouchRecord record;
   const auto go = [&](double depth, double force) {
-    record.add(depth > 0 ? pressing({0, 0, force}) : UserSample{}, {0, 0, -depth});
+    record.add(depth > 0 ? pressing({0, 0, force}, {0, 0, -depth}) : at({0, 0, -depth}));
   };
   for (int i = 0; i < 100; ++i) go(i * kStep, 5.0);  // as through honey: all is taken
   go(99 * kStep, 0);
@@ -58,7 +60,7 @@ TEST(TouchRecord, RemembersWhereADeformableWasPressedHardest) {
     UserSample sample;
     sample.server_force = {0, 0, force};
     sample.surface_contact.emplace().triangle = static_cast<std::uint32_t>(10 * force);
-    record.add(sample, {});
+    record.add(sample);
   }
   ASSERT_TRUE(record.summary().hardest);
   EXPECT_EQ(record.summary().hardest->triangle, 20U);
@@ -69,15 +71,15 @@ TEST(TouchRecord, RemembersTheStiffestCouplingThatWasTouched) {
   TouchRecord record;
   UserSample away;
   away.contact.stiffness = 9000;
-  record.add(away, {});
+  record.add(away);
   EXPECT_EQ(record.summary().stiffest, 0);
   UserSample rigid = pressing({0, 0, 1}), deformable;
   rigid.contact.stiffness = 500;
   deformable.surface_contact.emplace().stiffness = 300;
-  record.add(deformable, {});
+  record.add(deformable);
   EXPECT_EQ(record.summary().stiffest, 300);
-  record.add(rigid, {});
-  record.add(deformable, {});
+  record.add(rigid);
+  record.add(deformable);
   EXPECT_EQ(record.summary().stiffest, 500);
 }
 

@@ -76,10 +76,12 @@ std::uint64_t content_hash(std::span<const std::uint8_t> bytes) {
   return hash.value();
 }
 
-TEST(MeshTrace, WithoutMeshesNothingChanged) {
+TEST(MeshTrace, WithoutMeshesAndWithPlainDevicesNothingChanged) {
   const TempFile file;
-  // Computed without meshes in the program, but for the format version, which became 2.
-  EXPECT_EQ(content_hash(write_recording(make_recording(12), file.path())), 16285746879174618409u);
+  Recording recording = make_recording(12);
+  recording.info.users[0].senses = {};
+  // Computed with neither in the program, but for the format version, which became 2.
+  EXPECT_EQ(content_hash(write_recording(recording, file.path())), 16285746879174618409u);
 }
 
 TEST(MeshTrace, MeshesAloneStillCarryTicks) {

@@ -55,8 +55,10 @@ inline std::string image(const TraceFrame& frame) {
     put(s.pose.rotation.w), put(s.pose.rotation.x), put(s.pose.rotation.y), put(s.pose.rotation.z);
   }
   for (const UserSample& u : frame.users) {
+    put_vec(u.device.position), put_vec(u.device.velocity), put(u.device.buttons), put(u.device.time);
+    put(u.device.orientation.w), put(u.device.orientation.x), put(u.device.orientation.y), put(u.device.orientation.z);
     put(u.contact.kind), put(u.contact.object), put(u.contact.stiffness);
-    put_vec(u.contact.point), put_vec(u.contact.normal), put_vec(u.contact.device), put_vec(u.force), put_vec(u.server_force);
+    put_vec(u.contact.point), put_vec(u.contact.normal), put_vec(u.force), put_vec(u.server_force);
     if (!u.surface_contact) continue;
     put(u.surface_contact->mesh), put(u.surface_contact->triangle), put(u.surface_contact->stiffness);
     for (const double weight : u.surface_contact->weights) put(weight);
@@ -74,25 +76,36 @@ struct Recording {
   std::vector<TraceFrame> frames;
 };
 
-/// A cube that moves, a floor that does not, one user who touches now and then and one who never does.
+/// A cube that moves, a floor that does not, one user who touches now and then with a device that senses
+/// all there is, and one who never does.
 inline Recording make_recording(std::size_t frame_count, std::uint32_t tick_rate = 1000) {
   std::mt19937_64 random(7);
   const auto number = [&random] { return std::ldexp(static_cast<double>(random()), -60) - 8.0; };
   const auto vec = [&number] { return Vec3{number(), number(), number()}; };
+  std::mt19937_64 others(8);  // what only some devices sense leaves the rest as it is
+  const auto more = [&others] { return std::ldexp(static_cast<double>(others()), -60) - 8.0; };
   Recording recording;
-  recording.info = {
-      tick_rate, {{"cube", Dof::all}, {"floor \xC3\xA4", Dof::none}}, {"left", "right"}, "test", "[scene]\nname = \"x\"\n"};
+  recording.info = {tick_rate,
+                    {{"cube", Dof::all}, {"floor \xC3\xA4", Dof::none}},
+                    {{"left", {true, true, true, true}}, {"right"}},
+                    "test",
+                    "[scene]\nname = \"x\"\n"};
   const Pose floor{vec(), {0.6, 0, -0.8, -0.0}};
   for (std::size_t i = 0; i < frame_count; ++i) {
     TraceFrame frame;
     frame.tick = static_cast<std::int64_t>(i < 3 ? i : 2 * i);  // a gap
     frame.objects = {{{vec(), {number(), number(), number(), number()}}, vec(), {0.0, -0.0, 5e-324}}, {floor, {}, {}}};
-    UserSample touching{{}, vec(), vec()};
+    UserSample touching{.device = {}, .contact = {}, .force = vec(), .server_force = vec()};
     if (i % 3 == 1) touching.contact = {ContactKind::surface, 1, vec(), {0, 0, 1}, {}, 630.0};
     if (i % 3 == 2) touching.contact = {ContactKind::spring, 0, vec(), vec(), {}, 1e-3};
-    touching.contact.device = vec();
+    touching.device = {vec(),
+                       {more(), more(), more(), more()},
+                       {more(), more(), more()},
+                       static_cast<std::uint32_t>(i / 2 % 4),
+                       1'000'003 * frame.tick};
+    touching.contact.device = touching.device.position;
     UserSample apart;
-    apart.contact.device = vec();
+    apart.device.position = apart.contact.device = vec();
     frame.users = {touching, apart};
     recording.frames.push_back(frame);
   }

@@ -23,7 +23,7 @@ class SheetTrace {
   SheetTrace() : sheet_(testing::sheet(kSquares, kSquares)), dented_(sheet_, kSquares) {
     info.objects = {{"cube", Dof::all}, {"table", Dof::none}};
     info.meshes = {{"sheet", sheet_, {}, 2}, {"still", testing::sheet(1, 1), {}, 2}};
-    info.users = {"left", "right"};
+    info.users = {{"left"}, {"right"}};
     frame.objects.resize(2);
     frame.users.resize(2);
     frame.meshes = {{false, std::vector<float>(3 * sheet_.vertices.size())}, {false, std::vector<float>(12)}};
@@ -58,7 +58,7 @@ TEST(TraceScene, LightestTouchCounts) {
   frame.users.resize(3);
   frame.users[0].surface_contact = {0, 5, {1, 0, 0}, {0, 0, 0.003}, {0, 0, 1}, 100};
   frame.users[1].surface_contact = {0, 6, {1, 0, 0}, {0, 0, 0.002}, {0, 0, 1}, 100};
-  frame.users[1].contact.device = {0, 0, 0.001};
+  frame.users[1].device.position = {0, 0, 0.001};
   frame.users[2].surface_contact = {1, 7, {1, 0, 0}, {}, {0, 0, 1}, 100};
   const auto touch = touch_of(frame, 0);
   ASSERT_TRUE(touch);

@@ -75,7 +75,7 @@ TEST(Trace, OnlyStaticObjectsStillCarryTicks) {
 TEST(Trace, UserWithoutObjects) {
   const TempFile file;
   Recording recording;
-  recording.info.users = {"hand"};
+  recording.info.users = {{"hand"}};
   for (std::int64_t tick = 0; tick < 4; ++tick) {
     UserSample user;
     user.contact.device = {static_cast<double>(tick), 0.5, 0};
@@ -118,6 +118,10 @@ TEST(Trace, WriterRefusesWhatATraceCannotHold) {
   EXPECT_EQ(refused([](TraceFrame& f) { f.users.pop_back(); }), "R-API-5");
   EXPECT_EQ(refused([](TraceFrame& f) { f.users[0].contact.object = 2; }), "R-API-5");
   EXPECT_EQ(refused([](TraceFrame& f) { f.users[0].contact.stiffness = 0; }), "R-API-5");
+  EXPECT_EQ(refused([](TraceFrame& f) { f.users[0].device.position.x += 1; }), "R-API-5")
+      << "a contact with another device sample";
+  EXPECT_EQ(refused([](TraceFrame& f) { f.users[1].device.time = -1; }), "R-API-5");
+  EXPECT_EQ(refused([](TraceFrame& f) { f.users[1].device.orientation.w = kNan; }), "R-API-1");
   EXPECT_EQ(refused([](TraceFrame& f) { f.objects[0].pose.rotation.z = kNan; }), "R-API-1");
   EXPECT_EQ(refused([](TraceFrame& f) { f.users[1].force.y = -HUGE_VAL; }), "R-API-1");
   EXPECT_EQ(refused([](TraceFrame& f) { f.objects[1].pose.position.x += 1; }), "R-API-6");
@@ -452,8 +456,8 @@ TEST(Mcap, StatisticsCountWhatIsThere) {
   EXPECT_EQ(statistics->channel_count, reader->channels().size());
   EXPECT_EQ(statistics->schema_count, reader->schemas().size());
   EXPECT_EQ(statistics->message_end_time, time_of_tick(10, 1000));
-  // 6 ticks: pose, twist, 2 x (device, force, server force); one static pose; 4 contacts
-  EXPECT_EQ(messages, 6u * 8u + 1u + 4u);
+  // 6 ticks: pose, twist, 2 x (device, force, server force), orientation, velocity, time; one static pose; 4 contacts; buttons anew 3 times
+  EXPECT_EQ(messages, 6u * 11u + 1u + 4u + 3u);
 }
 
 TEST(Mcap, ChannelsAreOfferedAsTheProfileWantsIt) {

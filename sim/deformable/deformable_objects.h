@@ -17,19 +17,13 @@
 #include <span>
 #include <string>
 
-#include <tactus/sim/rigid/rigid_world.h>
 #include <tactus/sim/scene/scene.h>
+#include <tactus/sim/touchable.h>
 #include <tactus/trace/frame.h>
 
 namespace tactus::sim {
 
-/// What a user's probe feels of the deformables. It touches one at a time: the first one met, until it lets go.
-struct DeformableTouch {
-  std::optional<SurfaceContact> contact;
-  Vec3 force;  ///< [N] k (x_p - x_d), on the hand; world frame
-};
-
-/// How an object is computed, for people.
+/// How an object is computed, in words.
 struct DeformableInfo {
   std::string name;
   std::size_t vertices = 0;
@@ -51,49 +45,34 @@ struct DeformableError {
   double energy = 0;  ///< gained without cause, as a share of all that moved (sim/fem/energy_balance.h); negative: lost
 };
 
-class DeformableWorld {
+class DeformableObjects : public Simulated {
  public:
-  /// Move one probe at one end.   time O(log triangles), about 3 us; no allocation.
-  virtual DeformableTouch touch_server(std::size_t user, const Vec3& device) noexcept = 0;
-  virtual DeformableTouch touch_client(std::size_t user, const Vec3& device) noexcept = 0;
-
-  /// What clients see from now on, with DeformableClients::shown.   in  displacements  as Replica::displacements
-  /// no allocation
-  virtual void show(std::size_t object, std::span<const std::array<std::int32_t, 3>> displacements,
-                    unsigned position_exp) noexcept = 0;
-
-  /// Let a force [N] act on the touched triangle in this tick.
-  virtual void push(const SurfaceContact& contact, const Vec3& force) noexcept = 0;
+  /// Shapes as the server sees them now; `updated` when the last tick computed one, which it does not while the object rests, or when one
+  /// is due and report_at_rest is set.
+  void observe(TraceFrame& frame) noexcept override = 0;
   /// Advance by one tick.   time of an object that rests and whose probes are far: O(users); no allocation after the first deformation
   /// err  invalid_argument R-FEM-6, internal R-FEM-7 with element and remedy; the shapes before the step are kept
-  virtual tl::expected<void, StepError> step() = 0;
+  tl::expected<void, StepError> step() override = 0;
 
-  /// Shapes as the server sees them now; `updated` when the last tick computed one, which it does not while the object rests.
-  virtual void observe(std::span<DeformableSample> meshes) noexcept = 0;
   /// A shape of this object is due now, computed or not.
   virtual bool is_due(std::size_t object) const noexcept = 0;
+  /// The same objects at clients that see the truth at once.   pre  DeformableOptions::true_views
+  virtual Touchable& true_view() noexcept = 0;
 
   virtual std::span<const TraceDeformable> meshes() const noexcept = 0;  ///< surfaces at rest
   virtual std::span<const DeformableInfo> info() const noexcept = 0;
   virtual DeformationTime time(std::size_t object) const noexcept = 0;         ///< of its last deformation, with surface and tree
   virtual std::optional<DeformableError> error(std::size_t object) const = 0;  ///< when asked for in the options
-  virtual ~DeformableWorld() = default;
-};
-
-enum class DeformableClients : std::uint8_t {
-  true_shape,  ///< see what the server computes
-  shown        ///< see what show() says, the rest shape before
 };
 
 struct DeformableOptions {
-  std::size_t users = 0;
-  DeformableClients clients = DeformableClients::true_shape;
+  bool true_views = true;            ///< clients see what is computed; else they have a DeformableView
   std::uint32_t estimate_every = 0;  ///< estimate the local error of every so many deformations, 0: of none
   bool report_at_rest = false;       ///< observe() tells of every shape that is due, also of objects that sleep
 };
 
 /// pre  the scene has deformables.
 /// err  unsupported R-SIM-2: this build has no finite elements; R-TET-n, R-FEM-1..4, 7, 8: what the scene asks for cannot be
-Result<std::unique_ptr<DeformableWorld>> make_deformable_world(const Scene& scene, const DeformableOptions& options);
+Result<std::unique_ptr<DeformableObjects>> make_deformable_objects(const Scene& scene, const DeformableOptions& options);
 
 }  // namespace tactus::sim

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/sim/contact/contact.h>
+#include <tactus/sim/rigid/rigid_probe.h>
 
 #include <gtest/gtest.h>
 
@@ -153,7 +153,7 @@ struct ProbeTest : ::testing::Test {
 };
 
 TEST_F(ProbeTest, ForceIsTheSpringToTheProxyAndContactGivesItsNormalPart) {
-  Probe probe(objects, touch);
+  RigidProbe probe(objects, touch);
   probe.move({0, 0, 0.03}, false, poses);
   const Touch pressed = probe.move({0.0004, 0, 0.018}, false, poses);
   EXPECT_EQ(pressed.contact.kind, ContactKind::surface);
@@ -165,7 +165,7 @@ TEST_F(ProbeTest, ForceIsTheSpringToTheProxyAndContactGivesItsNormalPart) {
 }
 
 TEST_F(ProbeTest, ProxyMovesWithTheObject) {
-  Probe probe(objects, touch);
+  RigidProbe probe(objects, touch);
   probe.move({0, 0, 0.03}, false, poses);
   const Touch before = probe.move({0, 0, 0.018}, false, poses);
   poses[0].position = {0.0002, 0.0001, 0};  // inside the cone: the proxy is carried along
@@ -174,7 +174,7 @@ TEST_F(ProbeTest, ProxyMovesWithTheObject) {
 }
 
 TEST_F(ProbeTest, BoxThatRunsIntoARestingProbeIsFelt) {
-  Probe probe(objects, touch);
+  RigidProbe probe(objects, touch);
   poses[0].position = {-0.05, 0, 0};
   EXPECT_EQ(probe.move({0, 0, 0}, false, poses).contact.kind, ContactKind::none);
   poses[0].position = {-0.019, 0, 0};
@@ -184,7 +184,7 @@ TEST_F(ProbeTest, BoxThatRunsIntoARestingProbeIsFelt) {
 }
 
 TEST_F(ProbeTest, NamesTheObjectItTouches) {
-  Probe probe(objects, touch);
+  RigidProbe probe(objects, touch);
   probe.move({0.1, 0, 0.03}, false, poses);
   EXPECT_EQ(probe.move({0.1, 0, 0.019}, false, poses).contact.object, 1u);
   const Touch left = probe.move({0.05, 0, 0.05}, false, poses);
@@ -193,7 +193,7 @@ TEST_F(ProbeTest, NamesTheObjectItTouches) {
 }
 
 TEST_F(ProbeTest, ButtonTiesASpringToTheTouchedPoint) {
-  Probe probe(objects, touch);
+  RigidProbe probe(objects, touch);
   EXPECT_EQ(probe.move({0, 0, 0.03}, true, poses).contact.kind, ContactKind::none) << "nothing to hold";
   probe.move({0, 0, 0.019}, false, poses);
   probe.move({0, 0, 0.019}, true, poses);
@@ -207,14 +207,14 @@ TEST_F(ProbeTest, ButtonTiesASpringToTheTouchedPoint) {
 TEST_F(ProbeTest, TurnedObjectTurnsTheForce) {
   poses[0].rotation = {std::cos(0.25), 0, 0, std::sin(0.25)};
   const Vec3 normal = rotate(poses[0].rotation, {1, 0, 0});
-  Probe probe(objects, {.stiffness = 630, .friction = 0, .lift_stiffness = 68});
+  RigidProbe probe(objects, {.stiffness = 630, .friction = 0, .lift_stiffness = 68});
   probe.move(0.03 * normal, false, poses);
   const Touch hit = probe.move(0.019 * normal, false, poses);
   expect_near(hit.force, 0.63 * normal, 1e-12);
 }
 
 /// Who tells the probe what moves pays less and feels the same, bit for bit.
-TEST(Probe, AttendedOnlyFeelsTheSame) {
+TEST(RigidProbe, AttendedOnlyFeelsTheSame) {
   Random random(3);
   const auto any = [&random](double size) { return random.uniform(-size, size); };
   std::vector<SceneObject> objects(60);
@@ -224,7 +224,7 @@ TEST(Probe, AttendedOnlyFeelsTheSame) {
     poses.push_back({{any(0.5), any(0.5), any(0.1)}, {}});
   }
   const SceneTouch touch{.stiffness = 500, .friction = 0.4, .lift_stiffness = 100};
-  Probe all(objects, touch), attended(objects, touch);
+  RigidProbe all(objects, touch), attended(objects, touch);
   attended.expect_attend();
   Vec3 device{1, 1, 1};
   int touched = 0, lifted = 0;

@@ -19,6 +19,7 @@
 #include <tactus/rigid/contact.h>
 #include <tactus/sim/contact/surface_proxy.h>
 #include <tactus/sim/scene/scene.h>
+#include <tactus/sim/touchable.h>
 
 namespace tactus::sim {
 
@@ -54,22 +55,15 @@ class BoxProxy {
   std::optional<BoxFace> face_;
 };
 
-/// What one probe feels, and where.
-struct Touch {
-  Contact contact;  ///< contact.device is always set
-  Vec3 proxy;       ///< [m] x_p, world frame; the probe itself when free
-  Vec3 force;       ///< [N] on the hand: k_o (x_p - x_d), or the lifting spring's; world frame
-};
-
 /// A probe among the scene's rigid objects. It touches one at a time: the first one met, until it lets go.
 ///
 /// Who tells it of each object that moves (expect_attend(), attend()) pays only for those and for what is within reach: the others,
 /// which keep still more than 0.1 m away, are looked at again when the probe has gone a part of that way. What it feels is the
 /// same, bit for bit.
-class Probe {
+class RigidProbe {
  public:
   /// Copies share the surfaces.
-  Probe(std::span<const SceneObject> objects, const SceneTouch& touch);
+  RigidProbe(std::span<const SceneObject> objects, const SceneTouch& touch);
   /// From now on the caller calls attend() before each move() for every object whose pose is not what it was in the last move().
   void expect_attend() noexcept { attended_only_ = true; }
   /// This object is about to have another pose than in the last move().   in  pose  that one   time O(near objects)
@@ -79,6 +73,7 @@ class Probe {
   /// in   device  [m] x_d, world frame
   ///      button  down while an object is touched: a spring ties the probe to the touched point until the button comes up
   ///      poses   one per object
+  /// out  the force k_o (x_p - x_d), or the lifting spring's
   /// time O(objects), about 50 ns for a box; with attend() O(near objects), and now and then 3 ns for each of the others; no allocation
   Touch move(const Vec3& device, bool button, std::span<const Pose> poses) noexcept;
 

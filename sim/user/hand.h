@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include <tactus/base/device_sample.h>
 #include <tactus/base/geometry.h>
 #include <tactus/sim/random.h>
 #include <tactus/sim/scene/scene.h>
@@ -67,12 +68,6 @@ class DeviceFilter {
   double resolution_;
   std::vector<Vec3> window_;
   std::size_t next_ = 0;
-};
-
-/// What the device reports at one tick.
-struct DeviceSample {
-  Vec3 position;  ///< [m]
-  bool button = false;
 };
 
 /// A point of a phase in the world, for an object seen like this and a last movement that ended at `hand`.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/sim/contact/contact.h>
+#include <tactus/sim/rigid/rigid_probe.h>
 
 #include <algorithm>
 #include <array>
@@ -98,7 +98,7 @@ void BoxProxy::slide(const Vec3& probe) noexcept {
   }
 }
 
-Probe::Probe(std::span<const SceneObject> objects, const SceneTouch& touch) : touch_(touch) {
+RigidProbe::RigidProbe(std::span<const SceneObject> objects, const SceneTouch& touch) : touch_(touch) {
   proxies_.reserve(objects.size());
   near_.resize(objects.size());
   std::iota(near_.begin(), near_.end(), 0U);
@@ -111,17 +111,17 @@ Probe::Probe(std::span<const SceneObject> objects, const SceneTouch& touch) : to
   }
 }
 
-void Probe::place(std::uint32_t object, const Vec3& device, const Pose& pose) noexcept {
+void RigidProbe::place(std::uint32_t object, const Vec3& device, const Pose& pose) noexcept {
   std::visit([&](auto& proxy) { proxy.place(to_object(pose, device)); }, proxies_[object]);
 }
 
-void Probe::place_all(const Vec3& device, std::span<const Pose> poses) noexcept {
+void RigidProbe::place_all(const Vec3& device, std::span<const Pose> poses) noexcept {
   device_ = device;
   if (attended_only_) look_around(device, poses);
   for (const std::uint32_t i : near_) place(i, device, poses[i]);
 }
 
-void Probe::attend(std::uint32_t object, const Pose& pose) {
+void RigidProbe::attend(std::uint32_t object, const Pose& pose) {
   if (!placed_) return;
   Seen& seen = seen_[object];
   seen.attended_at = moves_ + 1;
@@ -132,7 +132,7 @@ void Probe::attend(std::uint32_t object, const Pose& pose) {
 }
 
 /// Find out which objects the probe may meet on its way to the device, and some way beyond.
-void Probe::look_around(const Vec3& device, std::span<const Pose> poses) noexcept {
+void RigidProbe::look_around(const Vec3& device, std::span<const Pose> poses) noexcept {
   looked_from_ = device;
   const Vec3 middle = 0.5 * (device_ + device);
   const double around = kAround + 0.5 * norm(device - device_);
@@ -149,7 +149,7 @@ void Probe::look_around(const Vec3& device, std::span<const Pose> poses) noexcep
 }
 
 /// Whether it touches afterwards.
-bool Probe::move_one(std::size_t object, const Vec3& device, std::span<const Pose> poses) noexcept {
+bool RigidProbe::move_one(std::size_t object, const Vec3& device, std::span<const Pose> poses) noexcept {
   return std::visit(
       [&](auto& proxy) {
         proxy.move(to_object(poses[object], device));
@@ -159,7 +159,7 @@ bool Probe::move_one(std::size_t object, const Vec3& device, std::span<const Pos
 }
 
 /// Move the proxies; while one object is touched the others do not feel the probe.
-void Probe::follow(const Vec3& device, std::span<const Pose> poses) noexcept {
+void RigidProbe::follow(const Vec3& device, std::span<const Pose> poses) noexcept {
   if (touched_) {
     if (move_one(*touched_, device, poses)) return;
     touched_.reset();
@@ -172,7 +172,7 @@ void Probe::follow(const Vec3& device, std::span<const Pose> poses) noexcept {
     if (move_one(i, device, poses) && !touched_) touched_ = i;
 }
 
-Touch Probe::move(const Vec3& device, bool button, std::span<const Pose> poses) noexcept {
+Touch RigidProbe::move(const Vec3& device, bool button, std::span<const Pose> poses) noexcept {
   ++moves_;
   if (!placed_ || (anchor_ && !button)) {
     anchor_.reset();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/sim/user/user.h>
+#include <tactus/sim/user/hand.h>
 
 #include <algorithm>
 #include <cmath>
@@ -146,7 +146,7 @@ DeviceSample Hand::step(const Vec3& felt, const Pose& object) noexcept {
   position_ = position_ + kTick * velocity_;
   const bool held = moving && user_.path[next_ - 1].button;
   ++tick_;
-  return {filter_.read(position_), held};
+  return {.position = filter_.read(position_), .buttons = held ? 1U : 0U};
 }
 
 }  // namespace tactus::sim

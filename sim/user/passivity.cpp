@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/sim/contact/passivity.h>
+#include <tactus/sim/user/passivity.h>
 
 namespace tactus::sim {
 

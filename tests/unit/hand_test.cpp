@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/sim/user/user.h>
+#include <tactus/sim/user/hand.h>
 
 #include <gtest/gtest.h>
 
@@ -97,10 +97,10 @@ TEST(Hand, FollowsItsPathAndStaysAtItsEnd) {
                {"back", PathFrame::hand, {0, 0.05, 0}, 0.5, false}};
   Hand hand(user, Grip::normal, 1);
   int pressed = 0;
-  for (int i = 0; i < 1300; ++i) pressed += hand.step({}, {}).button;
+  for (int i = 0; i < 1300; ++i) pressed += hand.step({}, {}).is_down(0);
   EXPECT_EQ(pressed, 500);
   EXPECT_LT(norm(hand.position() - Vec3{0.2, 0, 0.1}), 1e-4);
-  for (int i = 0; i < 1500; ++i) EXPECT_FALSE(hand.step({}, {}).button);
+  for (int i = 0; i < 1500; ++i) EXPECT_FALSE(hand.step({}, {}).is_down(0));
   EXPECT_LT(norm(hand.position() - Vec3{0.2, 0.05, 0.1}), 1e-9);
 }
 

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What a force-feedback device reports of itself at one instant. Hands, recordings and real devices deliver it; a device that does not
+/// sense something leaves it as it is here.
+#pragma once
+
+#include <cstdint>
+
+#include <tactus/base/geometry.h>
+
+namespace tactus {
+
+/// symbol       shape  unit  frame
+/// position     3      m     world: x_d
+/// orientation  4      1     world: of the handle, unit length
+/// velocity     3      m/s   world: as the device measures it
+/// buttons             1     bit i is set while button i is down
+/// time                ns    on the device's own clock, from any origin
+struct DeviceSample {
+  Vec3 position;
+  Quat orientation{};
+  Vec3 velocity{};
+  std::uint32_t buttons = 0;
+  std::int64_t time = 0;
+
+  bool is_down(unsigned button) const noexcept { return (buttons >> button & 1u) != 0; }
+};
+
+/// What a device senses besides its position.
+struct DeviceSenses {
+  bool orientation = false;
+  bool velocity = false;
+  bool buttons = false;
+  bool time = false;
+  friend bool operator==(const DeviceSenses&, const DeviceSenses&) = default;
+};
+
+inline bool is_finite(const DeviceSample& sample) noexcept {
+  return is_finite(sample.position) && is_finite(sample.orientation) && is_finite(sample.velocity);
+}
+
+}  // namespace tactus

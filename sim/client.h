@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A client: it receives what the server sends, shows it to its users and lets them feel it.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <tactus/receiver.h>
+#include <tactus/sim/deformable/deformable_view.h>
+#include <tactus/sim/msd/msd_objects.h>
+#include <tactus/sim/rigid/rigid_objects.h>
+#include <tactus/sim/server.h>
+
+namespace tactus::sim {
+
+/// Where the users of a scene sit.
+class Client {
+ public:
+  /// in   server    outlives the client; without a codec the client sees its truth
+  ///      replica   how the client shows what it received
+  /// err  errors of Receiver::create
+  static Result<std::unique_ptr<Client>> create(Server& server, const ReplicaOptions& replica);
+
+  /// err  errors of Receiver::push   no allocation
+  Result<void> receive(std::span<const Packet> packets) noexcept;
+  /// Let users see the tick of this frame: what was received up to it, or the truth.   no allocation
+  /// in   truth  which shapes are new; without a codec all that is seen
+  void show(const TraceFrame& truth) noexcept;
+  /// Move every user's probe on what is shown.   in  devices  one per user   no allocation
+  void touch(std::span<const DeviceSample> devices) noexcept;
+
+  const Vec3& felt(std::size_t user) const noexcept { return felt_[user]; }  ///< [N] rendered in the last touch()
+  std::span<const Pose> poses() const noexcept { return poses_; }            ///< as shown, one per object of the trace
+  const Pose& watched(std::size_t user) const noexcept;                      ///< of what this user looks at
+  Replica& replica() noexcept { return receiver_->replica(); }               ///< pre  there is a codec
+
+ private:
+  Client(Server& server, std::optional<Receiver> receiver);
+  void show_pose(std::uint32_t object, const Pose& pose) noexcept;
+
+  const Scene& scene_;
+  std::optional<Receiver> receiver_;  // none: the truth is seen
+  std::vector<Pose> poses_;
+  std::vector<Pose> places_;  // of deformable objects, for who looks at one
+  RigidView rigid_;
+  std::optional<MsdView> msds_;
+  std::optional<DeformableView> deformables_;
+  std::vector<Touchable*> objects_;  // these, and what the server lends of its own
+  std::vector<Vec3> felt_;           // [N] one per user
+};
+
+}  // namespace tactus::sim

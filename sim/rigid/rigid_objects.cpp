@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/sim/rigid/rigid_objects.h>
+
+#include <algorithm>
+
+namespace tactus::sim {
+namespace {
+
+constexpr unsigned kLiftButton = 0;
+
+/// One per user, all as if the first had been copied: copies share surfaces.
+std::vector<RigidProbe> make_probes(const Scene& scene, bool attended) {
+  if (scene.users.empty()) return {};
+  RigidProbe probe(scene.objects, *scene.touch);
+  if (attended) probe.expect_attend();
+  return {scene.users.size(), probe};
+}
+
+}  // namespace
+
+RigidObjects::RigidObjects(const Scene& scene)
+    : world_(scene), probes_(make_probes(scene, true)), touches_(scene.users.size()), poses_(scene.objects.size()) {}
+
+void RigidObjects::observe(TraceFrame& frame) noexcept {
+  frame.tick = world_.tick();
+  frame.changed->assign(world_.changed().begin(), world_.changed().end());
+  for (const std::uint32_t i : world_.changed()) {
+    frame.objects[i] = world_.sample(i);
+    for (RigidProbe& probe : probes_) probe.attend(i, poses_[i]);
+    poses_[i] = frame.objects[i].pose;
+  }
+}
+
+Touch RigidObjects::touch(std::size_t user, const DeviceSample& device, bool) noexcept {
+  return touches_[user] = probes_[user].move(device.position, device.is_down(kLiftButton), poses_);
+}
+
+void RigidObjects::push(std::size_t user, double share) noexcept {
+  const Touch& touch = touches_[user];
+  if (touch.contact.kind != ContactKind::none) world_.push(touch.contact.object, -(share * touch.force), touch.proxy);
+}
+
+RigidView::RigidView(const Scene& scene, News news) : news_(news), probes_(make_probes(scene, news == News::of_changed)) {
+  for (const SceneObject& object : scene.objects) poses_.push_back(object.pose);
+}
+
+void RigidView::show(std::uint32_t object, const Pose& pose) noexcept {
+  if (news_ == News::of_changed)
+    for (RigidProbe& probe : probes_) probe.attend(object, poses_[object]);
+  poses_[object] = pose;
+}
+
+Touch RigidView::touch(std::size_t user, const DeviceSample& device, bool) noexcept {
+  return probes_[user].move(device.position, device.is_down(kLiftButton), poses_);
+}
+
+}  // namespace tactus::sim

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The scene's rigid objects as probes touch them: at the server, where ODE moves them, and at a client, where they are seen.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <tactus/sim/rigid/rigid_probe.h>
+#include <tactus/sim/rigid/rigid_world.h>
+#include <tactus/sim/scene/scene.h>
+#include <tactus/sim/touchable.h>
+
+namespace tactus::sim {
+
+class RigidObjects final : public Simulated {
+ public:
+  /// pre  every call on the same thread (RigidWorld)
+  explicit RigidObjects(const Scene& scene);
+
+  /// time O(objects that moved): `frame` must be that of the tick before
+  void observe(TraceFrame& frame) noexcept override;
+  Touch touch(std::size_t user, const DeviceSample& device, bool held) noexcept override;
+  void push(std::size_t user, double share) noexcept override;
+  tl::expected<void, StepError> step() override { return world_.step(); }
+
+ private:
+  RigidWorld world_;
+  std::vector<RigidProbe> probes_;  // one per user
+  std::vector<Touch> touches_;      // likewise, of this tick
+  std::vector<Pose> poses_;         // one per object
+};
+
+/// At a client.
+class RigidView final : public Touchable {
+ public:
+  /// Whether the client is told which objects moved: it then looks at the others now and then only.
+  enum class News : std::uint8_t { of_all, of_changed };
+
+  RigidView(const Scene& scene, News news);
+
+  /// pre  an object that is not shown anew keeps its pose
+  void show(std::uint32_t object, const Pose& pose) noexcept;
+  Touch touch(std::size_t user, const DeviceSample& device, bool held) noexcept override;
+
+  std::span<const Pose> poses() const noexcept { return poses_; }
+
+ private:
+  News news_;
+  std::vector<RigidProbe> probes_;
+  std::vector<Pose> poses_;
+};
+
+}  // namespace tactus::sim

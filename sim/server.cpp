@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/sim/server.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <tactus/sim/msd/msd_objects.h>
+#include <tactus/sim/rigid/rigid_objects.h>
+
+namespace tactus::sim {
+
+Server::Server(const Scene& scene, const ServerOptions& options)
+    : scene_(scene), noise_(~options.seed), noise_reach_(std::sqrt(3.0) * options.mesh_noise), shares_(scene.users.size(), 1) {
+  const std::size_t objects = scene.objects.size() + scene.msds.size();
+  frame_.objects.resize(objects);
+  frame_.changed.emplace().reserve(objects);
+  frame_.users.resize(scene.users.size());
+}
+
+Result<std::unique_ptr<Server>> Server::create(const Scene& scene, const ServerOptions& options) {
+  std::unique_ptr<Server> server(new Server(scene, options));
+  TACTUS_CHECK(server->add_objects(options));
+  if (options.codec) TACTUS_CHECK(server->add_codec(*options.codec));
+  return server;
+}
+
+/// Only kinds that the scene has.
+Result<void> Server::add_objects(const ServerOptions& options) {
+  objects_.push_back(std::make_unique<RigidObjects>(scene_));
+  if (!scene_.msds.empty()) {
+    TACTUS_TRY(auto msds, MsdObjects::create(scene_));
+    objects_.push_back(std::move(msds));
+  }
+  if (scene_.deformables.empty()) return {};
+  TACTUS_TRY(auto deformables, make_deformable_objects(scene_, {.true_views = !options.codec,
+                                                                .estimate_every = options.estimate_every,
+                                                                .report_at_rest = options.mesh_noise != 0}));
+  for (const TraceDeformable& mesh : deformables->meshes())
+    frame_.meshes.push_back({false, std::vector<float>(3 * mesh.rest.vertices.size())});
+  deformables_ = deformables.get();
+  objects_.push_back(std::move(deformables));
+  return {};
+}
+
+Result<void> Server::add_codec(const ServerCodec& codec) {
+  SceneBuilder builder = scene_builder(scene_);
+  if (deformables_)
+    for (const TraceDeformable& mesh : deformables_->meshes()) TACTUS_CHECK(add_deformable(builder, mesh, codec.coding));
+  builder.promise(codec.sender.triggers, codec.sender.deformable.thresholds);
+  TACTUS_TRY(SharedScene declared, builder.build());
+  TACTUS_TRY(Sender sender, Sender::create(std::move(declared), codec.sender));
+  sender_.emplace(std::move(sender));
+  truth_.emplace(info());
+  return {};
+}
+
+void Server::observe() noexcept {
+  for (const auto& objects : objects_) objects->observe(frame_);
+  if (noise_reach_ > 0) add_noise();
+}
+
+void Server::add_noise() noexcept {
+  for (DeformableSample& mesh : frame_.meshes)
+    if (mesh.updated)
+      for (float& u : mesh.displacements) u += static_cast<float>(noise_.uniform(-noise_reach_, noise_reach_));
+}
+
+void Server::touch(std::span<const DeviceSample> devices) noexcept {
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    UserSample& user = frame_.users[i] = {.device = devices[i], .contact = {}, .force = {}, .server_force = {}};
+    user.contact.device = devices[i].position;
+    for (const auto& objects : objects_) {
+      const Touch touch = objects->touch(i, devices[i], user.contact.kind != ContactKind::none);
+      if (touch.contact.kind != ContactKind::none) user.contact = touch.contact;
+      if (touch.surface) user.surface_contact = touch.surface;
+      user.server_force = user.server_force + touch.force;
+    }
+    shares_[i] = share_rendered(user.server_force, scene_.users[i].device.max_force);
+    user.server_force = shares_[i] * user.server_force;
+    if (!user.surface_contact) continue;
+    // Who touches an object that sleeps needs its shape to what a hand feels, not to what an eye sees.
+    DeformableSample& mesh = frame_.meshes[user.surface_contact->mesh];
+    mesh.updated = mesh.updated || deformables_->is_due(user.surface_contact->mesh);
+  }
+}
+
+Result<std::span<const Packet>> Server::encode() noexcept {
+  if (!sender_) return std::span<const Packet>();
+  return sender_->encode(frame_.tick, truth_->of(frame_));
+}
+
+tl::expected<void, StepError> Server::step() {
+  for (std::size_t i = 0; i < shares_.size(); ++i)
+    for (const auto& objects : objects_) objects->push(i, shares_[i]);
+  for (const auto& objects : objects_)
+    if (auto moved = objects->step(); !moved) return moved;
+  return {};
+}
+
+TraceInfo Server::info() const {
+  TraceInfo info{.tick_rate = kTickRate, .objects = {}, .users = {}, .source = {}, .scene = scene_.text};
+  for (const SceneObject& object : scene_.objects) info.objects.push_back({object.name, object.dof});
+  for (const SceneMsd& msd : scene_.msds) info.objects.push_back({msd.name, msd.dof()});
+  for (const SceneUser& user : scene_.users) info.users.push_back({user.name, user.senses()});
+  if (deformables_) info.meshes.assign(deformables_->meshes().begin(), deformables_->meshes().end());
+  return info;
+}
+
+}  // namespace tactus::sim

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The server: it computes all objects, feels what every user's probe touches on their true state, and codes that state.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <tactus/sender.h>
+#include <tactus/sim/deformable/deformable_objects.h>
+#include <tactus/sim/random.h>
+#include <tactus/sim/scene/scene.h>
+#include <tactus/sim/touchable.h>
+#include <tactus/trace/frame.h>
+#include <tactus/trace/trace_scene.h>
+
+namespace tactus::sim {
+
+/// What is coded, and how.
+struct ServerCodec {
+  SenderOptions sender;
+  TraceCoding coding{};  ///< of deformable objects
+};
+
+struct ServerOptions {
+  std::uint64_t seed = 1;            ///< of the noise
+  std::optional<ServerCodec> codec;  ///< none: nothing is sent, clients see the truth
+  double mesh_noise = 0;             ///< [m] RMS per axis of white noise on every vertex of a shape that the server reports
+  std::uint32_t estimate_every = 0;  ///< estimate the error of every so many deformations, 0: of none
+};
+
+class Server {
+ public:
+  /// pre  every call on the same thread (RigidWorld).
+  /// err  R-API-n, R-STR-n of SceneBuilder::build and Sender::create; invalid R-SIM-3 of MsdObjects; unsupported R-SIM-2 and others of
+  ///      make_deformable_objects()
+  static Result<std::unique_ptr<Server>> create(const Scene& scene, const ServerOptions& options);
+
+  /// State of this tick, before any force of it acts, into frame().   no allocation
+  void observe() noexcept;
+  /// Move every user's probe; contacts and forces go into frame().   in  devices  one per user   no allocation
+  void touch(std::span<const DeviceSample> devices) noexcept;
+  /// Packets that tell clients of this tick; valid until the next call.   err  errors of Sender::encode   no allocation
+  Result<std::span<const Packet>> encode() noexcept;
+  /// Let the forces of this tick act, within what devices render, and advance by one tick.
+  tl::expected<void, StepError> step();
+
+  TraceFrame& frame() noexcept { return frame_; }
+  const TraceFrame& frame() const noexcept { return frame_; }
+  const Scene& scene() const noexcept { return scene_; }
+  TraceInfo info() const;  ///< of the frames
+  /// What is declared to clients; null without a codec.
+  SharedScene stream_scene() const noexcept { return sender_ ? sender_->scene() : nullptr; }
+  DeformableObjects* deformables() const noexcept { return deformables_; }  ///< null: the scene has none
+
+ private:
+  Server(const Scene& scene, const ServerOptions& options);
+  Result<void> add_objects(const ServerOptions& options);
+  Result<void> add_codec(const ServerCodec& codec);
+  void add_noise() noexcept;
+
+  Scene scene_;
+  Random noise_;
+  double noise_reach_;  // [m] of a uniform distribution
+  std::vector<std::unique_ptr<Simulated>> objects_;
+  DeformableObjects* deformables_ = nullptr;  // among objects_
+  std::optional<Sender> sender_;
+  std::optional<FrameTruth> truth_;
+  TraceFrame frame_;
+  std::vector<double> shares_;  // of each user's force that the device renders
+};
+
+}  // namespace tactus::sim

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What probes can touch: rigid, one-dimensional and deformable objects behind one interface, at the server and at a client.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <tactus/base/device_sample.h>
+#include <tactus/base/result.h>
+#include <tactus/rigid/contact.h>
+#include <tactus/trace/frame.h>
+
+namespace tactus::sim {
+
+/// What one probe feels, and where.
+struct Touch {
+  Contact contact;                          ///< with a rigid or one-dimensional object; contact.device is always set
+  std::optional<SurfaceContact> surface{};  ///< with a deformable object
+  Vec3 proxy;                               ///< [m] x_p of `contact`, world frame; the probe itself when free
+  Vec3 force;                               ///< [N] on the hand, world frame
+};
+
+/// A simulation that cannot go on: which object broke which rule at which tick.
+struct StepError {
+  Error error;
+  std::int64_t tick = 0;
+  std::uint32_t object = 0;
+  std::string remedy{};  ///< in words, of deformable objects; may be empty
+};
+
+/// The share of a force that a device renders which yields at most `limit` [N].
+inline double share_rendered(const Vec3& force, double limit) noexcept {
+  const double magnitude = norm(force);
+  return magnitude > limit ? limit / magnitude : 1;
+}
+
+/// All objects of one kind at one end, with a proxy for the probe of every user.
+class Touchable {
+ public:
+  /// Move a user's probe. It touches one object of a kind at a time: the first one met, until it lets go.
+  /// in   held  by a contact with an object of another kind: the probe then touches no rigid or one-dimensional object here
+  /// time O(objects); no allocation
+  virtual Touch touch(std::size_t user, const DeviceSample& device, bool held) noexcept = 0;
+  virtual ~Touchable() = default;
+};
+
+/// The objects where they are computed.
+class Simulated : public Touchable {
+ public:
+  /// Their part of the frame: the state of this tick, before any force of this tick acts.   no allocation
+  virtual void observe(TraceFrame& frame) noexcept = 0;
+  /// Let what the user's probe touched last bear `share` of the force that it yielded.   no allocation
+  virtual void push(std::size_t user, double share) noexcept = 0;
+  /// Advance by one tick.   err  a rule, the object that broke it, and the tick
+  virtual tl::expected<void, StepError> step() = 0;
+};
+
+}  // namespace tactus::sim
