@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Edges of the arithmetic of profile main.
+#include <array>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include <tactus/deformable/motion.h>
 #include "conformance/make_vectors/catalogue.h"
@@ -76,6 +78,21 @@ Bytes crowded_stream(std::int32_t step) {
   for (int i = 0; i < 3; ++i)
     stream.add(MainStep{.at = {.tick = i, .key = i == 0}, .density = 3, .residuals = random_residuals(random, 9, 200)});
   return stream.finished();
+}
+
+/// Centres whose parents' matrix is barely definite: sums and solutions beyond the limits that they are clamped to, a sum of solutions
+/// below 0, quotients that lie halfway. Found by search.
+Shape clamped() {
+  const std::vector<std::vector<Vec3i>> stars{
+      {{0, 2, -1}, {0, 2, 0}, {1, 1, 2}, {2, 4, 2}, {0, 2, 0}, {0, 2, 1}, {0, 2, 0}, {-1, 2, 0}, {0, 2, 0}},
+      {{0, 1, 0}, {0, 0, 3}, {3, -1, 0}, {3, 2, 2}, {1, 3, 3}, {1, 3, 2}, {1, 3, 2}, {0, 3, 2}, {1, 4, 1}, {1, 3, 2}, {1, 3, 2}},
+      {{3, 2, -1}, {3, -1, 0}, {3, 0, 0}, {3, 0, 0}, {3, 0, 0}, {3, -1, 0}, {3, 0, 0}, {2, 0, 3}, {2, 0, 0}},
+      {{1, 2, 5}, {1, 3, 4}, {1, 3, 5}, {1, 3, 5}, {2, 5, 5}, {1, 3, 5}, {-1, 4, 4}, {1, 2, 5}, {5, 2, 2}, {1, 3, 5}},
+      {{0, 4, 1}, {1, 2, 3}, {1, 2, 4}, {1, 4, 2}, {4, 3, 0}, {1, 2, 1}, {4, 2, 3}, {1, 4, 2}, {1, 2, 2}},
+      {{1, 3, 0}, {0, 2, 0}, {3, 3, 0}, {0, 3, 0}, {1, 2, 0}, {0, 0, 0}, {1, 3, 0}, {3, 2, 0}, {0, 3, 0}}};
+  Shape out;
+  for (const auto& rest : stars) out = both(out, moved(star(rest), {static_cast<std::int32_t>(20 * out.rest.size()), 0, 0}));
+  return out;
 }
 
 /// Every touched vertex goes from the lower end of displacements up by one step of the bound of a level.
@@ -209,15 +226,30 @@ Bytes single_units() {
   return out.finished();
 }
 
-/// The last two triangles of 65538, all of the same corners.
-Input number_of_17_bits() {
+/// Packets in a scene of 65538 triangles, all of the same corners.
+Input crowd_of_triangles(std::span<const MainStep> steps) {
   const Shape shape{one_triangle().rest, std::vector<Triangle>(65538, {0, 1, 2})};
   DeformableStream stream(only({.shape = shape, .rings = 0}));
   const std::size_t end = stream.bytes().size() - 5;  // of the triangles, before mode_count and crc
-  stream.add(MainStep{.at = {.tick = 0, .key = true}, .triangle = 65537u, .haptic = 3});
-  stream.add(MainStep{.at = {.tick = 1}, .triangle = 65536u, .haptic = 3});
+  for (const MainStep& step : steps) stream.add(step);
   const std::size_t triangles = 65537;
   return {stream.finished(), {end - 3 * triangles, {0, 2, 2}, triangles}};
+}
+
+/// The last two triangles.
+Input number_of_17_bits() {
+  return crowd_of_triangles(std::array{MainStep{.at = {.tick = 0, .key = true}, .triangle = 65537u, .haptic = 3},
+                                       MainStep{.at = {.tick = 1}, .triangle = 65536u, .haptic = 3}});
+}
+
+/// The last triangles, in key packets at several ticks.
+Input numbers_of_17_bits() {
+  std::vector<MainStep> steps;
+  for (const std::int64_t tick : {0, 1, 2, 9, 40, 700})
+    steps.push_back({.at = {.tick = tick, .key = tick != 2},
+                     .triangle = static_cast<std::uint32_t>(65537 - tick % 7),
+                     .haptic = static_cast<std::uint32_t>(tick % 5)});
+  return crowd_of_triangles(steps);
 }
 
 /// A touch of either triangle of two.
@@ -295,25 +327,28 @@ Bytes saturated_split() {
 void add_deformable_edges(Catalogue& c) {
   c.section(section::kHead);
   c.valid("haptic-below-0", "haptic_change takes it far below 0: haptic is 0.", haptic_below_0(), {"R-DEF-10"});
-  c.section(section::kParents);
+  c.section(section::kWeights);
   c.valid("crowded", "Copies and near neighbours among parents, on a surface of two units: some matrices are not definite.",
           crowded_stream(1));
   c.valid("crowded-wide", "The same surface a thousand times as wide.", crowded_stream(1000));
   c.section(section::kCodingOrder);
   c.valid("join-distances", "Shifted distances differ in both directions: which kept neighbour a vertex joins depends on it.",
           shaken(sheet(7, 6, 200001), 700));
-  c.section(section::kParents);
+  c.section(section::kWeights);
   c.valid("steep-and-flat", "A parent's weight is limited to 2; a pivot is above 0, but below 2^18.",
           shaken(steep_and_flat(), 701));
+  c.valid("clamped-weights", "Weights whose sums and solutions are beyond the limits that they are clamped to.",
+          shaken(clamped(), 713));
   c.section(section::kVertexBounds);
   c.valid("coarsest-indices", "Steps of the haptic indices 163 to 168.", coarsest_levels(), {"R-DEF-10"});
   c.valid("equal-bound-ratios",
           "Bounds where 3 h is twice the visual bound, 4 h is that and one more, and h is the visual bound.", equal_tightness());
   c.invalid("beyond-ring-2", "The first place beyond rings 1 and 2.", {"invalid", "R-DEF-9"}, beyond_ring_2());
   c.valid("both-bounds-0", "Visual and haptic bounds of 0: neither is less than the other.", both_bounds_0());
-  c.section(section::kHead);
+  c.section(section::kTriangle);
   c.valid("two-triangles", "The number of a triangle of two takes a bit.", two_triangles());
   c.valid("number-of-17-bits", "The number of a triangle of 65538 takes 17 bits, in two groups.", number_of_17_bits());
+  c.valid("numbers-of-17-bits", "The same in key packets, whose heads before and after the number differ.", numbers_of_17_bits());
   c.section(section::kTime);
   c.valid("no-predictor", "Steps of modes of 1, where the visual bound is 0; correlations whose determinant is 0 and below.",
           no_taps());

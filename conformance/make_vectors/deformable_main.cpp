@@ -39,10 +39,12 @@ void add_shapes(Catalogue& c) {
   for (std::size_t i = 0; i < wide.rest.size(); ++i)
     wide.rest[i] = {i % 2 == 0 ? kWidest : -kWidest - 1, static_cast<std::int32_t>(i), i % 3 == 0 ? -kWidest - 1 : kWidest};
   c.valid("ends-of-the-grid", "Rest positions at both ends of 32 bits.", random_walk({.shape = wide}, 609, 8));
+  c.section(section::kParents);
   c.valid("fan", "A hundred triangles around one vertex: more than 64 visits in search of parents.",
           random_walk({.shape = flat_fan(100)}, 610, 8));
   Shape duplicates = sheet(3, 3);
   duplicates.triangles.insert(duplicates.triangles.end(), {duplicates.triangles[0], {0, 4, 8}, {8, 4, 0}});
+  c.section(section::kCodingOrder);
   c.valid("not-a-surface", "A triangle twice, one both ways round, edges with four triangles.",
           random_walk({.shape = duplicates}, 611, 12));
 }
@@ -154,7 +156,7 @@ void add_touches(Catalogue& c) {
   touch({});
   touch({});
   for (const std::uint32_t triangle : {0u, 1u, 2u}) touch(triangle);
-  c.section(section::kHead);
+  c.section(section::kTriangle);
   c.valid("touches", "No touch, the same triangle, one near, one far, none, and again.", moves.finished());
   DeformableStream many(only({.shape = flat_fan(100)}));
   for (const std::uint32_t triangle : {5u, 0u, 62u, 63u, 99u, 36u})

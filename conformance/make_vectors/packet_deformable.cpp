@@ -55,7 +55,7 @@ void add_baselines(Catalogue& c) {
                       .triangle = static_cast<std::uint32_t>(i),
                       .haptic = 40,
                       .residuals = random_residuals(random, 5, 100)});
-  c.section(section::kPackets);
+  c.section(section::kBaselines);
   c.valid("main-key-packets", "Key packets in the middle: everything returns to the initial state first.", keys.finished());
 
   DeformableStream losses(only(with_modes({.shape = sheet(4, 3)}, 3, 631), 4));
@@ -86,7 +86,7 @@ void add_baselines(Catalogue& c) {
     tick += delta;
     ticks.add(MainStep{.at = {.tick = tick, .key = tick == 0}, .residuals = random_residuals(random, 4, 200)});
   }
-  c.section(section::kPackets);
+  c.section(section::kBaselines);
   c.valid("main-late-and-early", "Packets at the same tick, early, in time and late by up to 31 bits.", ticks.finished());
   DeformableStream clamped(only({.shape = one_triangle(), .frame_period = 4267}));
   clamped.add(MainStep{.at = {.tick = 50, .key = true}});
@@ -149,6 +149,15 @@ void add_thesis_rules(Catalogue& c) {
 void add_outages(Catalogue& c) {
   c.valid("main-key-after-outage", "40000 packets are missing before a key packet.",
           main_packets({.tick = 50, .key = true, .sequence = number(40001)}), {"R-PKT-5"});
+  DeformableStream key = two_main_packets(4);
+  key.add(MainStep{.at = {.tick = 30, .key = true}}).add(MainStep{.at = {.tick = 31, .baseline = 2}});
+  c.valid("main-key-at-the-same-tick",
+          "A key packet at the current tick does not begin anew: what was before it may be a baseline.", key.finished(),
+          {"R-PKT-4"});
+  DeformableStream thesis_key = two_thesis_packets(4);
+  thesis_key.add(ThesisStep{.at = {.tick = 30, .key = true}, .vertices = {{3}}});
+  thesis_key.add(ThesisStep{.at = {.tick = 31, .baseline = 2}, .vertices = {{5}}});
+  c.valid("thesis-key-at-the-same-tick", "The same of profile thesis.", thesis_key.finished(), {"R-PKT-4"});
   c.invalid("main-key-127-behind", "A key packet 127 behind is late.", late(),
             main_packets({.tick = 50, .key = true, .sequence = number(1 - 127)}));
   c.invalid("main-32767-ahead", "A packet 32767 ahead that is not key: its baseline is missing.", no_baseline(),

@@ -34,6 +34,14 @@ Bytes with_key(std::int32_t sequence) {
   return stream.finish().bytes();
 }
 
+/// A key packet at the tick of the one before it, then one that builds on that one.
+Bytes key_at_the_same_tick() {
+  Stream stream = two_packets(4);
+  stream.add({.tick = 30, .updates = moved(7), .key = true});
+  stream.add({.tick = 31, .updates = moved(8), .baseline = 2});
+  return stream.finish().bytes();
+}
+
 /// As far as 16 bits tell, the packet's baseline is a state that is 65536 packets old.
 Bytes round_the_numbers() {
   RawHeader header;
@@ -124,7 +132,7 @@ Bytes sequence_repeats() {
 }
 
 void add_baselines(Catalogue& c) {
-  c.section(section::kPackets);
+  c.section(section::kBaselines);
   c.valid("rigid-older-baselines", "Packets 3 and 7 are lost; each packet builds on one that arrived, up to 4 back.",
           older_baselines(), {"R-PKT-3", "R-PKT-4", "R-PKT-5"});
   c.valid("rigid-random-baselines", "250 packets that build on any of the 64 before.", random_baselines(),
@@ -188,6 +196,9 @@ void add_rules(Catalogue& c) {
 void add_outages(Catalogue& c) {
   c.valid("rigid-key-after-outage", "40000 packets are missing before a key packet; the next builds on it.",
           with_key(101 + 40000), {"R-PKT-4", "R-PKT-5"});
+  c.valid("rigid-key-at-the-same-tick",
+          "A key packet at the current tick does not begin anew: what was before it may be a baseline.", key_at_the_same_tick(),
+          {"R-PKT-4"});
   c.valid("rigid-key-128-behind", "A key packet 128 behind begins anew.", with_key(101 - 128), {"R-PKT-5"});
   c.invalid("rigid-key-127-behind", "A key packet 127 behind is late.", late(), with_key(101 - 127));
   c.invalid("rigid-32767-ahead", "A packet 32767 ahead that is not key: its baseline is missing.", no_baseline(),

@@ -84,7 +84,7 @@ Bytes payload_with_run(std::uint64_t seed, std::size_t lead, std::size_t count, 
 }
 
 void add_valid_payloads(Catalogue& c) {
-  c.section(section::kRangeCoder);
+  c.section(section::kSymbols);
   c.valid("empty-payload", "Packets of two bytes: an empty payload is a payload of zeros.", empty_payload(),
           {"R-RNG-3", "R-PKT-2"});
   c.valid("unsigned-widths", "tick_delta of every width from 0 to 32 bits, smallest and largest value.", unsigned_widths(),
