@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs decoder.py over the conformance vectors that have no deformable objects:  python3 test_decoder.py [FILE.tct]
+
+With a file it compares what decoder.py and the second decoder (conformance/) say to that file.
+"""
+import json
+import struct
+import subprocess
+import sys
+from pathlib import Path
+
+import decoder
+
+HERE = Path(__file__).resolve().parent
+CONFORMANCE = HERE.parent / "conformance"
+sys.path.insert(0, str(CONFORMANCE))
+from conventions import fnv1a  # noqa: E402  (the second decoder's)
+from run import load_cases, read_input  # noqa: E402
+
+LEFT_OUT = {"R-STR-11", "R-STR-14", "R-STR-16", "R-STR-17", "R-FIL-4", "R-PKT-1"}   # rules about names, limits, extensions
+
+
+def state_hash(one: decoder.Decoder) -> str:
+    """40, section 6."""
+    data = b""
+    for i in one.scene.moving:
+        tick, *vectors = one.states[i]
+        data += struct.pack("<Q13i", tick, *(c for vector in vectors for c in vector))
+    return f"{fnv1a(data):016x}"
+
+
+def answer(data: bytes) -> list:
+    """For each packet its tick, the objects that it updates and the state after it; then the rule that the file breaks, if any."""
+    said: list = []
+    try:
+        for one, named in decoder.updates(data):
+            said.append([one.tick, named, state_hash(one)])
+    except decoder.Refused as refused:
+        said.append(str(refused))
+    return said
+
+
+def expected(lines: list) -> list:
+    said: list = [[p["tick"], [update[0] for update in p["updates"]], p["state"]] for p in lines if "packet" in p]
+    return said + [line["error"]["rule"] for line in lines if "error" in line]
+
+
+def lines_of(text: str) -> list:
+    return [json.loads(line) for line in text.splitlines()]
+
+
+def check_vectors() -> None:
+    cases, faults = load_cases(CONFORMANCE)
+    assert not faults, faults
+    for case in cases:
+        data = read_input(case)
+        said = answer(data)
+        if said and "deformable objects" in said[-1]:
+            assert said[1:] == [] and data[6] & 1, case.id  # bit 0 of flags
+        elif not case.error or case.error["rule"] not in LEFT_OUT:
+            want = expected(lines_of(case.output.read_text("ascii")))
+            assert said == want, f"{case.id}: {said[-1:]}; must be {want[-1:]}"
+
+
+def check_file(file: Path) -> None:
+    second = subprocess.run([sys.executable, CONFORMANCE / "decoder.py"], stdin=file.open("rb"), capture_output=True, check=True)
+    said = answer(file.read_bytes())
+    assert len(said) > 1 and said == expected(lines_of(second.stdout.decode("ascii")))
+
+
+def check_program() -> None:
+    """Units are SI, and a refusal tells the rule."""
+    def run(name: str) -> subprocess.CompletedProcess:
+        file = next((CONFORMANCE / "vectors").glob(name))
+        return subprocess.run([sys.executable, HERE / "decoder.py", file], capture_output=True, text=True, check=False)
+
+    first = lines_of(run("rigid/*-one-axis.tct").stdout)[0]  # 91: residual -1326, level 5, position_exp 22
+    assert first["object"] == "slider" and first["position"] == [-1326 * 4 ** 5 / 2 ** 22, 0, 0], first
+    refused = run("deformable/*-one-triangle.tct")
+    assert refused.returncode == 1 and "deformable objects" in refused.stderr, refused
+
+
+if __name__ == "__main__":
+    check_program()
+    check_vectors()
+    for name in sys.argv[1:]:
+        check_file(Path(name))
