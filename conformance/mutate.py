@@ -13,7 +13,6 @@ import importlib.abc
 import importlib.util
 import json
 import os
-import random
 import resource
 import signal
 import sys
@@ -99,22 +98,20 @@ def try_mutant(module: Module, mutant: Mutant, vectors: list[Vector], pipe: Text
 
 
 def try_original(vectors: list[Vector], pipe: TextIO) -> None:
-    """Writes for every vector how long decoder.py takes [s], and which functions it calls, by module and first line."""
+    """Writes for every vector how long decoder.py takes under this trace [s], and which functions it calls, by module and first line."""
     modules = {str(HERE / f"{name}.py"): name for name in MODULES}
     called: set = set()
 
-    def note(frame, event, argument) -> None:
-        if event == "call":
-            called.add(frame.f_code)
+    def note(frame, event, argument) -> None:               # of calls only, as it returns None
+        called.add(frame.f_code)
 
     for vector in vectors:
-        begin = time.process_time()
-        right = answer(vector) == vector.lines
-        cost = time.process_time() - begin
         called.clear()
-        sys.setprofile(note)
-        answer(vector)
-        sys.setprofile(None)
+        begin = time.process_time()
+        sys.settrace(note)
+        right = answer(vector) == vector.lines
+        sys.settrace(None)
+        cost = time.process_time() - begin
         functions = sorted({(modules[c.co_filename], c.co_firstlineno) for c in called if c.co_filename in modules})
         print(json.dumps([right, cost, functions]), file=pipe)
 
@@ -158,13 +155,14 @@ class Trial:
 
 
 class Suite:
-    """The vectors, and in which order they are run against the mutants of a module."""
+    """The vectors of at most `largest` bytes, and in which order they are run against the mutants of a module."""
 
-    def __init__(self, root: Path):
+    def __init__(self, root: Path, largest: Optional[int]):
         cases, faults = load_cases(root)
         if faults:
             raise ValueError(f"{faults[0].id}: {faults[0].detail}")
-        self.vectors = [Vector(case, read_input(case), case.output.read_text("ascii").splitlines()) for case in cases]
+        everything = (Vector(case, read_input(case), case.output.read_text("ascii").splitlines()) for case in cases)
+        self.vectors = [vector for vector in everything if largest is None or len(vector.data) <= largest]
         self.digests = {case.id: case.sha256[:12] for case in cases}
         self.caught: dict[str, dict[str, int]] = {}         # by function: how many mutants a vector has caught there
 
@@ -281,8 +279,10 @@ def choose(everything: list[Mutant], options: argparse.Namespace) -> list[Mutant
     if not chosen:
         raise ValueError(f"no mutant of {options.only}")
     if options.sample and options.sample < len(chosen):
-        picked = set(random.Random(options.seed).sample(range(len(chosen)), options.sample))
-        chosen = [m for i, m in enumerate(chosen) if i in picked]
+        def place(mutant: Mutant) -> bytes:                 # does not depend on which other mutants there are
+            return hashlib.sha256(f"{options.seed} {mutant.id}".encode()).digest()
+        picked = set(sorted(map(place, chosen))[:options.sample])
+        chosen = [m for m in chosen if place(m) in picked]
     return chosen
 
 
@@ -291,6 +291,7 @@ def main(arguments: list[str], root: Path) -> int:
     parser.add_argument("--only", metavar="MODULE", help="mutants of this module, as 'rigid'")
     parser.add_argument("--sample", metavar="N", type=int, help="as many of them, chosen by --seed")
     parser.add_argument("--seed", type=int, default=1, help="of the sample (default: 1)")
+    parser.add_argument("--largest", metavar="BYTES", type=int, help="only vectors of at most so many bytes")
     parser.add_argument("--jobs", metavar="N", type=int, default=1, help="processes at a time (default: 1)")
     parser.add_argument("--results", metavar="FILE", type=Path, help="keep outcomes there and go on from them")
     parser.add_argument("--least", metavar="PERCENT", type=float, default=0, help="exit with 1 if fewer are caught")
@@ -304,7 +305,7 @@ def main(arguments: list[str], root: Path) -> int:
         if options.list:
             print("\n".join(f"{m.place()}: {m.mutation.kind}: {m.id}" for m in chosen))
             return 0
-        suite = Suite(root)
+        suite = Suite(root, options.largest)
         results = Results(options.results, suite)
         suite.measure()
         run_mutants(modules, chosen, suite, results, max(1, options.jobs))

@@ -80,19 +80,46 @@ Bytes crowded_stream(std::int32_t step) {
   return stream.finished();
 }
 
-/// Centres whose parents' matrix is barely definite: sums and solutions beyond the limits that they are clamped to, a sum of solutions
-/// below 0, quotients that lie halfway. Found by search.
-Shape clamped() {
-  const std::vector<std::vector<Vec3i>> stars{
-      {{0, 2, -1}, {0, 2, 0}, {1, 1, 2}, {2, 4, 2}, {0, 2, 0}, {0, 2, 1}, {0, 2, 0}, {-1, 2, 0}, {0, 2, 0}},
-      {{0, 1, 0}, {0, 0, 3}, {3, -1, 0}, {3, 2, 2}, {1, 3, 3}, {1, 3, 2}, {1, 3, 2}, {0, 3, 2}, {1, 4, 1}, {1, 3, 2}, {1, 3, 2}},
-      {{3, 2, -1}, {3, -1, 0}, {3, 0, 0}, {3, 0, 0}, {3, 0, 0}, {3, -1, 0}, {3, 0, 0}, {2, 0, 3}, {2, 0, 0}},
-      {{1, 2, 5}, {1, 3, 4}, {1, 3, 5}, {1, 3, 5}, {2, 5, 5}, {1, 3, 5}, {-1, 4, 4}, {1, 2, 5}, {5, 2, 2}, {1, 3, 5}},
-      {{0, 4, 1}, {1, 2, 3}, {1, 2, 4}, {1, 4, 2}, {4, 3, 0}, {1, 2, 1}, {4, 2, 3}, {1, 4, 2}, {1, 2, 2}},
-      {{1, 3, 0}, {0, 2, 0}, {3, 3, 0}, {0, 3, 0}, {1, 2, 0}, {0, 0, 0}, {1, 3, 0}, {3, 2, 0}, {0, 3, 0}}};
+/// One star after the other, each the corners and then the centre.
+Shape row_of(std::span<const std::vector<Vec3i>> stars) {
   Shape out;
   for (const auto& rest : stars) out = both(out, moved(star(rest), {static_cast<std::int32_t>(20 * out.rest.size()), 0, 0}));
   return out;
+}
+
+/// Centres whose parents' matrix is barely definite: sums and solutions beyond the limits that they are clamped to, a sum of solutions
+/// below 0, quotients that lie halfway. Found by search.
+Shape clamped() {
+  return row_of(std::array<std::vector<Vec3i>, 6>{
+      {{{0, 2, -1}, {0, 2, 0}, {1, 1, 2}, {2, 4, 2}, {0, 2, 0}, {0, 2, 1}, {0, 2, 0}, {-1, 2, 0}, {0, 2, 0}},
+       {{0, 1, 0}, {0, 0, 3}, {3, -1, 0}, {3, 2, 2}, {1, 3, 3}, {1, 3, 2}, {1, 3, 2}, {0, 3, 2}, {1, 4, 1}, {1, 3, 2}, {1, 3, 2}},
+       {{3, 2, -1}, {3, -1, 0}, {3, 0, 0}, {3, 0, 0}, {3, 0, 0}, {3, -1, 0}, {3, 0, 0}, {2, 0, 3}, {2, 0, 0}},
+       {{1, 2, 5}, {1, 3, 4}, {1, 3, 5}, {1, 3, 5}, {2, 5, 5}, {1, 3, 5}, {-1, 4, 4}, {1, 2, 5}, {5, 2, 2}, {1, 3, 5}},
+       {{0, 4, 1}, {1, 2, 3}, {1, 2, 4}, {1, 4, 2}, {4, 3, 0}, {1, 2, 1}, {4, 2, 3}, {1, 4, 2}, {1, 2, 2}},
+       {{1, 3, 0}, {0, 2, 0}, {3, 3, 0}, {0, 3, 0}, {1, 2, 0}, {0, 0, 0}, {1, 3, 0}, {3, 2, 0}, {0, 3, 0}}}});
+}
+
+/// The same of an object so wide that distances are of steps of four: rounding makes them differ more from those of points. One pivot
+/// is 2^18. Found by search.
+Shape clamped_wide() {
+  const Shape stars = row_of(std::array<std::vector<Vec3i>, 6>{
+      {{{13, 5, 11}, {11, 6, 2}, {7, 7, 9}, {4, 0, 12}, {5, 2, 7}, {4, 2, 10}, {0, 14, 13}, {5, 1, 7}, {0, 5, 0}},
+       {{13, 4, 11}, {12, 2, 4}, {15, 6, 3}, {2, 1, 5}, {10, 1, 3}, {4, 14, 2}, {4, 14, 2}, {11, 6, 5}},
+       {{0, 22, 10},
+        {13, 23, 16},
+        {18, 11, 5},
+        {25, 14, 9},
+        {8, 25, 23},
+        {6, 9, 4},
+        {12, 24, 16},
+        {10, 25, 16},
+        {11, 24, 16},
+        {8, 25, 23},
+        {11, 25, 16}},
+       {{3, 7, 11}, {1, 5, 2}, {11, 4, 2}, {11, 5, 2}, {10, -3, 1}, {1, 3, 3}, {2, 5, 5}, {1, 3, 5}, {5, 2, 11}, {3, 7, 8}},
+       {{3, 2, 14}, {11, 4, 0}, {6, 15, 9}, {3, 3, 11}, {12, 5, 0}, {2, 2, 12}, {1, 1, 11}, {10, 4, -1}, {8, 8, 13}, {4, 7, 6}},
+       {{16, 9, 14}, {8, 11, 5}, {17, 14, 3}, {18, 9, 13}, {16, 8, 14}, {13, 1, 17}, {18, 11, 14}, {18, 8, 13}}}});
+  return both(stars, moved(one_triangle(), {600000, 0, 0}));
 }
 
 /// Every touched vertex goes from the lower end of displacements up by one step of the bound of a level.
@@ -339,6 +366,7 @@ void add_deformable_edges(Catalogue& c) {
           shaken(steep_and_flat(), 701));
   c.valid("clamped-weights", "Weights whose sums and solutions are beyond the limits that they are clamped to.",
           shaken(clamped(), 713));
+  c.valid("clamped-weights-wide", "The same where distances are shifted; a pivot of 2^18.", shaken(clamped_wide(), 714));
   c.section(section::kVertexBounds);
   c.valid("coarsest-indices", "Steps of the haptic indices 163 to 168.", coarsest_levels(), {"R-DEF-10"});
   c.valid("equal-bound-ratios",

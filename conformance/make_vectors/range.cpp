@@ -83,6 +83,12 @@ Bytes payload_with_run(std::uint64_t seed, std::size_t lead, std::size_t count, 
   }
 }
 
+/// Widths found by search.
+Bytes least_range() {
+  const Update update{0, Reason::request, 0, {{{1 << 21, 1 << 24, 2}, {1 << 12, 1 << 9, 1 << 23}}}};
+  return Stream(one(Dof::translation)).add({.tick = 0, .updates = {update}, .key = true}).bytes();
+}
+
 void add_valid_payloads(Catalogue& c) {
   c.section(section::kSymbols);
   c.valid("empty-payload", "Packets of two bytes: an empty payload is a payload of zeros.", empty_payload(),
@@ -97,6 +103,7 @@ void add_valid_payloads(Catalogue& c) {
   c.valid("ones-8", "Eight bytes ff inside a payload.", payload_with_run(305, 5, 8, 0xff, 3));
   c.valid("implied-zeros", "Three bytes of payload; everything after them is read as zeros.", payload_with_run(306, 3, 0, 0, 0));
   c.valid("first-byte-255", "Three bytes of payload, the first ff.", payload_with_run(307, 0, 1, 0xff, 2));
+  c.valid("least-range", "The final range is 2^24, which takes no further byte.", least_range());
 }
 
 /// The key packet that the faults below start from, padded with zeros to as many bytes as its decoder takes.
