@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "cli/json_parts.h"
+#include "cli/report/json_parts.h"
 
 namespace tactus::cli {
 

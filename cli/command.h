@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/messages.h"
-#include "cli/option_needs.h"
+#include "cli/options/option_needs.h"
+#include "cli/report/messages.h"
 
 namespace CLI {
 class App;

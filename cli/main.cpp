@@ -7,25 +7,25 @@
 #include <string_view>
 
 #include <tactus/base/shown.h>
-#include "cli/cmd_compare.h"
-#include "cli/cmd_decode.h"
-#include "cli/cmd_encode.h"
-#include "cli/cmd_export.h"
-#include "cli/cmd_import.h"
-#include "cli/cmd_info.h"
-#include "cli/json_parts.h"
+#include "cli/commands/cmd_compare.h"
+#include "cli/commands/cmd_decode.h"
+#include "cli/commands/cmd_encode.h"
+#include "cli/commands/cmd_export.h"
+#include "cli/commands/cmd_import.h"
+#include "cli/commands/cmd_info.h"
 #include "cli/output.h"
 #include "cli/progress.h"
+#include "cli/report/json_parts.h"
 #ifdef TACTUS_HAS_STUDY
-#include "cli/cmd_bench.h"
+#include "cli/laboratory/cmd_bench.h"
 #endif
 #ifdef TACTUS_HAS_TETS
-#include "cli/cmd_mesh.h"
+#include "cli/commands/cmd_mesh.h"
 #endif
 #ifdef TACTUS_HAS_SIM
-#include "cli/cmd_reproduce.h"
-#include "cli/cmd_sim.h"
-#include "cli/cmd_sweep.h"
+#include "cli/commands/cmd_sim.h"
+#include "cli/laboratory/cmd_reproduce.h"
+#include "cli/laboratory/cmd_sweep.h"
 #endif
 
 namespace {
