@@ -58,6 +58,21 @@ Command& Command::add_command(const std::string& name, const std::string& help) 
   return commands_.emplace_back(*app_->add_subcommand(name, help));
 }
 
+Command& Command::command(std::string_view name) {
+  return *std::find_if(commands_.begin(), commands_.end(), [&](const Command& c) { return c.app_->get_name() == name; });
+}
+
+void Command::leave_out(const std::string& name, const std::string& needs, Action& action) {
+  Command& command = add_command(name, "");
+  command.app_->group("")->set_help_flag();
+  command.app_->prefix_command();  // whatever follows its name
+  command.on_chosen([&action, name, needs] {
+    action = [name, needs] {
+      return refuse_arguments("this program was built without " + name, "Build it with " + needs + "=ON.");
+    };
+  });
+}
+
 Option* Command::keep(CLI::Option* option) { return &options_.emplace_back(*option); }
 
 Option* Command::add_option(const std::string& names, std::string& value, const std::string& help) {

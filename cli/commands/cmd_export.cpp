@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/commands/cmd_export.h"
+#include "cli/commands/commands.h"
 
 #include <tactus/trace/csv.h>
 #include <tactus/trace/trace_file.h>
@@ -45,9 +45,6 @@ void setup_export(Command& app, Action& action) {
   add_output_options(command, options->common);
   command.footer("Example:\n  tactus export csv push.mcap -o push.csv");
   on_chosen<ExportOptions>(command, action, options, run);
-#ifdef TACTUS_HAS_SURFACE
-  setup_export_mesh(group, action);
-#endif
 }
 
 }  // namespace tactus::cli

@@ -8,7 +8,7 @@
 #include <tactus/base/shown.h>
 #include <tactus/sim/surface/surface_file.h>
 #include <tactus/trace/trace_file.h>
-#include "cli/commands/cmd_export.h"
+#include "cli/commands/commands.h"
 #include "cli/report/report.h"
 #include "cli/report/trace_ending.h"
 

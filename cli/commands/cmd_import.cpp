@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/commands/cmd_import.h"
+#include "cli/commands/commands.h"
 
 #include <fmt/format.h>
 
@@ -206,9 +206,6 @@ void setup_import(Command& app, Action& action) {
     if (list->count() == 0 && output->count() == 0) miss_option("--output");
     action = [options] { return run(*options); };
   });
-#ifdef TACTUS_HAS_SURFACE
-  setup_import_mesh(group, action);
-#endif
 }
 
 }  // namespace tactus::cli

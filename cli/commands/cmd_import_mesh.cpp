@@ -9,7 +9,7 @@
 #include <tactus/trace/messages.h>
 #include <tactus/trace/text.h>
 #include <tactus/trace/trace_file.h>
-#include "cli/commands/cmd_import.h"
+#include "cli/commands/commands.h"
 #include "cli/report/report.h"
 #include "cli/report/table.h"
 

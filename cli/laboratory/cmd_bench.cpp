@@ -10,10 +10,7 @@
 #include <system_error>
 #include <thread>
 
-#ifdef TACTUS_HAS_FEM
-#include "cli/laboratory/cmd_bench_precision.h"
-#endif
-#include "cli/laboratory/cmd_bench_stability.h"
+#include "cli/commands/commands.h"
 
 namespace tactus::cli {
 namespace {
@@ -67,13 +64,9 @@ Outcome make_folder(const std::string& directory) {
   return {};
 }
 
-void setup_bench(Command& app, Action& action) {
+void setup_bench(Command& app, Action&) {
   Command& bench =
       app.add_command("bench", "Study the simulation itself: error against run time, and where it stops being stable");
-#ifdef TACTUS_HAS_FEM
-  setup_bench_precision(bench, action);
-#endif
-  setup_bench_stability(bench, action);
   bench.footer("Example:\n  tactus bench stability --help");
 }
 

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-/// `tactus bench`: studies of the simulation itself, each a subcommand of its own.
+/// What the subcommands of `tactus bench` share: studies of the simulation itself.
 #pragma once
 
 #include <map>
 #include <string>
 
-#include "cli/command.h"
+#include "cli/report/messages.h"
 
 namespace tactus::cli {
-
-void setup_bench(Command& app, Action& action);
 
 /// Where and with what figures came about; without date and host name, so that a report changes when its figures do.
 ///   machine   "2 cores of an AMD EPYC, virtual machine"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/laboratory/cmd_sweep.h"
+#include "cli/commands/commands.h"
 
 #include <fmt/format.h>
 
