@@ -12,7 +12,7 @@ import tempfile
 
 SOURCE_DIRS = (".ci", "spec", "codec", "io", "metrics", "sim", "device", "cli", "conformance", "tests", "cmake")
 CODE = {".h", ".cpp"}
-SOURCES = CODE | {".py", ".sh", ".cmake", ".mjs", ".js"}
+SOURCES = CODE | {".py", ".sh", ".cmake", ".gp", ".mjs", ".js"}
 MAX_LINES = 500
 SHARED = {"base"}  # folders of codec/ that are not subjects of the specification
 

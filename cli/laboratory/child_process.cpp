@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -41,6 +42,32 @@ class Pipe {
   bool open_;  // after ends_, which it fills
 };
 
+/// A text that a child can read: a file without a name, in memory.
+class InputFile {
+ public:
+  explicit InputFile(const std::string& text) : file_(memfd_create("input", MFD_CLOEXEC)) {
+    for (std::size_t at = 0; file_ >= 0 && at < text.size();) {
+      const ssize_t written = write(file_, text.data() + at, text.size() - at);
+      if (written > 0) at += static_cast<std::size_t>(written);
+      else if (errno != EINTR) close_it();
+    }
+    if (file_ >= 0) lseek(file_, 0, SEEK_SET);
+  }
+  ~InputFile() { close_it(); }
+  InputFile(const InputFile&) = delete;
+  InputFile& operator=(const InputFile&) = delete;
+
+  bool is_open() const { return file_ >= 0; }
+  int reader() const { return file_; }
+
+ private:
+  void close_it() {
+    if (file_ >= 0) close(std::exchange(file_, -1));
+  }
+
+  int file_;
+};
+
 class SpawnActions {
  public:
   SpawnActions() { posix_spawn_file_actions_init(&actions_); }
@@ -48,9 +75,7 @@ class SpawnActions {
   SpawnActions(const SpawnActions&) = delete;
   SpawnActions& operator=(const SpawnActions&) = delete;
 
-  void read_nothing() { posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0); }
-  void redirect(int stream, const Pipe& pipe) { posix_spawn_file_actions_adddup2(&actions_, pipe.writer(), stream); }
-  void work_in(const std::string& directory) { posix_spawn_file_actions_addchdir_np(&actions_, directory.c_str()); }
+  void redirect(int stream, int from) { posix_spawn_file_actions_adddup2(&actions_, from, stream); }
   const posix_spawn_file_actions_t* get() const { return &actions_; }
 
  private:
@@ -101,22 +126,23 @@ std::optional<int> wait_for(pid_t child, Clock::time_point deadline) {
 
 }  // namespace
 
-tl::expected<ChildResult, std::error_code> run_child(const std::vector<std::string>& arguments, const std::string& directory,
+tl::expected<ChildResult, std::error_code> run_child(const std::vector<std::string>& arguments, const std::string& input,
                                                      std::optional<std::chrono::seconds> limit) {
   const auto deadline = limit ? Clock::now() + *limit : Clock::time_point::max();
   std::vector<char*> words;
   words.reserve(arguments.size() + 1);
   for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
   words.push_back(nullptr);
+  const InputFile in(input);
   Pipe out, error;
   SpawnActions actions;
-  actions.read_nothing();
-  actions.redirect(STDOUT_FILENO, out);
-  actions.redirect(STDERR_FILENO, error);
-  if (!directory.empty()) actions.work_in(directory);
+  actions.redirect(STDIN_FILENO, in.reader());
+  actions.redirect(STDOUT_FILENO, out.writer());
+  actions.redirect(STDERR_FILENO, error.writer());
   pid_t child = 0;
-  const int failed =
-      !out.is_open() || !error.is_open() ? errno : posix_spawnp(&child, words[0], actions.get(), nullptr, words.data(), environ);
+  const int failed = !in.is_open() || !out.is_open() || !error.is_open()
+                         ? errno
+                         : posix_spawnp(&child, words[0], actions.get(), nullptr, words.data(), environ);
   if (failed != 0) return tl::unexpected(std::error_code(failed, std::generic_category()));
   out.close_writer();
   error.close_writer();

@@ -17,12 +17,12 @@ struct ChildResult {
   std::string error;  ///< all of its standard error
 };
 
-/// Run `arguments[0]`, looked up in PATH unless it holds a '/', without standard input, and wait for its end.
+/// Run `arguments[0]`, looked up in PATH unless it holds a '/', and wait for its end.
 /// May be called from several threads at once.
-/// in   directory  where it runs; empty: here
-///      limit      after which it is killed; none: never
+/// in   input  its standard input
+///      limit  after which it is killed; none: never
 /// err  why the program cannot be started; no_such_file_or_directory: it is not there; timed_out: it was killed
-tl::expected<ChildResult, std::error_code> run_child(const std::vector<std::string>& arguments, const std::string& directory = {},
+tl::expected<ChildResult, std::error_code> run_child(const std::vector<std::string>& arguments, const std::string& input = {},
                                                      std::optional<std::chrono::seconds> limit = std::nullopt);
 
 /// The path of this program itself.

@@ -242,9 +242,7 @@ Outcome run(const SweepOptions& options) {
     auto drawn = draw_plots(*plan, *results);
     if (!drawn) return tl::unexpected(drawn.error());
     summary.files.insert(summary.files.end(), drawn->begin(), drawn->end());
-    const auto is_picture = [](const std::string& file) { return file.ends_with(".svg"); };
-    if (!plan->plots.empty() && std::none_of(drawn->begin(), drawn->end(), is_picture))
-      fmt::print(stderr, "note: {}\n", kNoGnuplot);
+    if (drawn->size() < plan->plots.size()) fmt::print(stderr, "note: {}\n", kNoGnuplot);
   }
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   print_summary(options, *plan, summary);

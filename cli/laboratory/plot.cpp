@@ -3,8 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <ostream>
+#include <iterator>
 
 #include <tactus/base/shown.h>
 #include "cli/laboratory/child_process.h"
@@ -12,46 +13,24 @@
 namespace tactus::cli {
 namespace {
 
-constexpr const char* kPreamble = R"(set encoding utf8
-set datafile missing 'NaN'
-set border 3 linecolor rgb '#444444'
-set tics nomirror out textcolor rgb '#222222'
-set grid linecolor rgb '#d9d9d9' linewidth 0.6 dashtype solid
-set key textcolor rgb '#222222' spacing 1.15
-)";
+struct Program {
+  std::string_view name, text;
+};
+constexpr Program kPrograms[] = {
+#include "plots.inc"
+};
 
 constexpr std::chrono::seconds kLongestRun{60};
 constexpr std::size_t kLongestText = 255;  // of a figure, as of a plan
 constexpr std::size_t kMostOfWords = 300;  // of gnuplot's own, in a message
 
-std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "NaN"; }
-
-std::string script_file(const Plot& plot, const std::string& directory) { return directory + "/" + plot.name + ".gp"; }
-
-std::string script_of(const Plot& plot) {
-  std::string out = fmt::format(
-      "# SPDX-License-Identifier: Apache-2.0\n"
-      "# gnuplot -c {0}.gp svg | png    makes {0}.svg or .png; a third word `-`: to standard output\n"
-      "if (ARG1 eq 'png') {{ set terminal pngcairo size {1},{2} font 'sans,11' }}\n"
-      "else {{ set terminal svg size {1},{2} font 'sans,13' background 'white' }}\n"
-      "if (ARG2 ne '-') {{ set output {3}.'.'.ARG1 }}\n{4}",
-      shown(plot.name), plot.width, plot.height, gnuplot_text(plot.name), kPreamble);
-  for (std::size_t i = 0; i < std::size(kPlotColours); ++i)
-    out += fmt::format("set linetype {} linecolor rgb '{}' linewidth 2 pointtype 7 pointsize 0.7\n", i + 1, kPlotColours[i]);
-  for (const PlotData& block : plot.data) {
-    out += fmt::format("${} << EOD\n", block.name);
-    for (const auto& row : block.rows) {
-      for (std::size_t i = 0; i < row.size(); ++i) out += (i == 0 ? "" : " ") + number(row[i]);
-      out += '\n';
-    }
-    out += "EOD\n";
-  }
-  return out + plot.script;
+std::string_view text_of_program(std::string_view name) {
+  return std::find_if(std::begin(kPrograms), std::end(kPrograms), [&](const Program& p) { return p.name == name; })->text;
 }
 
-}  // namespace
+std::string in_gnuplot(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "NaN"; }
 
-std::string gnuplot_text(std::string_view text) {
+std::string in_gnuplot(std::string_view text) {
   // Doubled, as gnuplot wants an apostrophe, it ends the string all the same where two stand together or one in front.
   constexpr const char* kApostrophe = "\u2019";
   std::string out = "'";
@@ -62,29 +41,52 @@ std::string gnuplot_text(std::string_view text) {
   return out + '\'';
 }
 
+template <class Value>
+std::string array(const std::string& name, const std::vector<Value>& values) {
+  if (values.empty()) return {};
+  std::string list;
+  for (const Value& value : values) list += (list.empty() ? "" : ", ") + in_gnuplot(value);
+  return fmt::format("array {}[{}] = [{}]\n", name, values.size(), list);
+}
+
+std::string file_of(const Plot& plot, const std::string& directory) { return directory + "/" + plot.name + ".svg"; }
+
+}  // namespace
+
+void Plot::set(const std::string& variable, double value) { settings += variable + " = " + in_gnuplot(value) + '\n'; }
+void Plot::set(const std::string& variable, std::string_view text) { settings += variable + " = " + in_gnuplot(text) + '\n'; }
+void Plot::set(const std::string& variable, const std::vector<double>& values) { settings += array(variable, values); }
+void Plot::set(const std::string& variable, const std::vector<std::string>& texts) { settings += array(variable, texts); }
+
+std::string Plot::script() const {
+  std::string out = fmt::format("width = {}\nheight = {}\n{}", width, height, settings);
+  for (const PlotData& block : data) {
+    out += fmt::format("${} << EOD\n", block.name);
+    for (const auto& row : block.rows) {
+      for (std::size_t i = 0; i < row.size(); ++i) out += (i == 0 ? "" : " ") + in_gnuplot(row[i]);
+      out += '\n';
+    }
+    out += "EOD\n";
+  }
+  return out.append(text_of_program("style")).append(text_of_program(program));
+}
+
 Outcome check_plot(const Plot& plot, const std::string& directory, OutputFile::Existing existing) {
-  return OutputFile::check_free(script_file(plot, directory), existing);
+  return OutputFile::check_free(file_of(plot, directory), existing);
 }
 
 tl::expected<Drawn, Failure> draw(const Plot& plot, const std::string& directory, OutputFile::Existing existing) {
-  const std::string stem = directory + "/" + plot.name, script = plot.name + ".gp";
-  if (auto written = write_file(script_file(plot, directory), script_of(plot), existing); !written)
-    return tl::unexpected(written.error());
-  for (const char* kind : {"svg", "png"}) {
-    const auto done = run_child({"gnuplot", "-d", "-c", script, kind, "-"}, directory, kLongestRun);
-    if (!done && done.error() == std::errc::no_such_file_or_directory) return Drawn::no;
-    const std::string remedy =
-        fmt::format("Run it by hand: cd {} && gnuplot -c {} {}", shown_path(directory), shown(script), kind);
-    if (!done && done.error() == std::errc::timed_out)
-      return refuse(fmt::format("{}.gp: gnuplot did not end within {} s", shown_path(stem), kLongestRun.count()), remedy);
-    if (!done) return refuse("gnuplot cannot be started: " + done.error().message(), "Check the installation.");
-    if (done->status != 0)
-      return refuse(fmt::format("{}.gp: gnuplot ended with status {}: {}", shown_path(stem), done->status,
-                                shown(done->error, kMostOfWords)),
-                    remedy);
-    if (auto written = write_file(stem + "." + kind, done->out, OutputFile::Existing::replace); !written)
-      return tl::unexpected(written.error());
-  }
+  if (auto free = check_plot(plot, directory, existing); !free) return tl::unexpected(free.error());
+  const std::string figure = shown_path(file_of(plot, directory)), remedy = "Check the installation of gnuplot.";
+  const auto done = run_child({"gnuplot", "-d", "/dev/stdin"}, plot.script(), kLongestRun);
+  if (!done && done.error() == std::errc::no_such_file_or_directory) return Drawn::no;
+  if (!done && done.error() == std::errc::timed_out)
+    return refuse(fmt::format("{}: gnuplot did not end within {} s", figure, kLongestRun.count()), remedy);
+  if (!done) return refuse("gnuplot cannot be started: " + done.error().message(), remedy);
+  if (done->status != 0)
+    return refuse(fmt::format("{}: gnuplot ended with status {}: {}", figure, done->status, shown(done->error, kMostOfWords)),
+                  remedy);
+  if (auto written = write_file(file_of(plot, directory), done->out, existing); !written) return tl::unexpected(written.error());
   return Drawn::yes;
 }
 

@@ -24,16 +24,6 @@ Style style_of(const sim::study::PrecisionMethod& method, int variant) {
   return {colour, variant + 1, kMarks[variant % 3]};
 }
 
-std::string frame(const std::string& title, const std::string& x_label) {
-  return fmt::format(
-      "set logscale xy\nset format x '10^{{%L}}'\nset format y '10^{{%L}}'\nset mxtics 1\nset mytics 1\n"
-      "set title {} noenhanced\nset xlabel {} noenhanced\nset ylabel 'seconds of one core per simulated second'\n"
-      "set yrange [*:3<*]\nset key outside right top Left reverse samplen 2.5\n",
-      gnuplot_text(title), gnuplot_text(x_label));
-}
-
-void append(std::string& list, const std::string& item) { list += (list.empty() ? "plot " : ", \\\n  ") + item; }
-
 struct Quantity {
   const char* name;
   double Errors::*error;
@@ -47,79 +37,60 @@ constexpr Quantity kQuantities[] = {
 };
 
 Plot time_plot(const TimeStudy& time, const Quantity& quantity) {
-  Plot plot;
-  plot.name = time.scene.name + "-" + quantity.name;
-  plot.width = 1100;
-  plot.height = 680;
-  std::string lines;
-  PlotData rings{"rings", {}};
+  Plot plot{.name = time.scene.name + "-" + quantity.name, .program = "precision-time", .width = 1100, .height = 680};
+  PlotData data{"data", {}};
+  std::vector<std::string> names;
+  std::vector<double> colours, dashes, marks, labels;
   int variant = 0;
   const sim::study::PrecisionMethod* before = nullptr;
-  for (std::size_t m = 0; m < time.methods.size(); ++m) {
-    const sim::study::PrecisionMethod& method = time.methods[m];
+  for (const sim::study::PrecisionMethod& method : time.methods) {
     variant = before != nullptr && !before->chosen && before->options.method == method.options.method ? variant + 1 : 0;
     before = &method;
-    PlotData data{fmt::format("m{}", m), {}};
+    std::vector<std::vector<double>> rows;
     for (const PrecisionPoint& p : time.points) {
       const double error = p.errors.*quantity.error;
-      if (p.method == method.name && is_usable(error)) data.rows.push_back({error, p.seconds_per_second, 1e3 * p.step});
+      if (p.method == method.name && is_usable(error)) rows.push_back({error, p.seconds_per_second, 1e3 * p.step});
     }
-    if (data.rows.empty()) continue;
+    if (rows.empty()) continue;
+    if (!names.empty()) data.rows.insert(data.rows.end(), 2, {});
+    data.rows.insert(data.rows.end(), rows.begin(), rows.end());
     const Style style = style_of(method, variant);
-    append(
-        lines,
-        fmt::format("${0} using 1:2 with linespoints linetype {1} dashtype {2} pointtype {3} pointsize 0.8 title {4} noenhanced",
-                    data.name, style.colour, style.dash, style.mark, gnuplot_text(method.name)));
-    // Linear elasticity is off by the same whatever the step.
-    if (method.elasticity == sim::Elasticity::corotated) {
-      append(lines, fmt::format("${0} using 1:2:(sprintf('%.3g', $3)) with labels left offset 0.6, 0.35 font ',8' textcolor "
-                                "linetype {1} notitle",
-                                data.name, style.colour));
-    }
-    for (const auto& row : data.rows)
-      if (std::abs(row[2] - 1) < 1e-6) rings.rows.push_back({row[0], row[1]});
-    plot.data.push_back(std::move(data));
+    names.push_back(method.name);
+    colours.push_back(style.colour);
+    dashes.push_back(style.dash);
+    marks.push_back(style.mark);
+    labels.push_back(method.elasticity == sim::Elasticity::corotated ? 1
+                                                                     : 0);  // linear elasticity is off by the same at every step
   }
-  if (!rings.rows.empty()) {
-    append(lines, "$rings using 1:2 with points pointtype 6 pointsize 1.8 linewidth 1.5 linecolor rgb '#222222' notitle");
-    plot.data.push_back(std::move(rings));
-  }
-  append(lines, "1 with lines linewidth 1.5 linecolor rgb '#222222' title 'real time; at 1 kHz, 1 ms per step'");
-  plot.script = frame(time.scene.title + "; marks: h in ms, ringed: 1 ms",
-                      fmt::format("{} (the reference is off by {:.1e})", quantity.label, time.reference.errors.*quantity.error));
-  plot.script += lines + '\n';
+  plot.data.push_back(std::move(data));
+  plot.set("heading", time.scene.title + "; marks: h in ms, ringed: 1 ms");
+  plot.set("x_label", fmt::format("{} (the reference is off by {:.1e})", quantity.label, time.reference.errors.*quantity.error));
+  plot.set("methods", static_cast<double>(names.size()));
+  plot.set("name", names);
+  plot.set("colour", colours);
+  plot.set("dash", dashes);
+  plot.set("mark", marks);
+  plot.set("label", labels);
   return plot;
 }
 
 Plot space_plot(const std::string& scene, const std::vector<const SpaceStudy*>& studies) {
-  Plot plot;
-  plot.name = "space-" + scene;
-  plot.width = 1100;
-  std::string lines;
-  int colour = 0;
+  Plot plot{.name = "space-" + scene, .program = "precision-space", .width = 1100};
+  PlotData data{"data", {}};
+  std::vector<double> poisson, transient;
   for (const SpaceStudy* study : studies) {
-    PlotData data{fmt::format("s{}", plot.data.size()), {}};
+    if (!poisson.empty()) data.rows.insert(data.rows.end(), 2, {});
     for (std::size_t i = 0; i < study->points.size(); ++i)
       data.rows.push_back({static_cast<double>(study->points[i].tets), study->errors.at_rest_error[i],
                            study->errors.quadratic_error[i], study->errors.transient_error[i]});
-    const double poisson = study->points.front().poisson;
-    append(lines,
-           fmt::format("${} using 1:2 with linespoints linetype {} title 'linear, nu {:.3g}'", data.name, ++colour, poisson));
-    append(lines, fmt::format("${} using 1:3 with points linetype {} pointtype 4 pointsize 1.2 title 'quadratic, nu {:.3g}'",
-                              data.name, colour, poisson));
-    if (std::isfinite(study->errors.transient_error.front())) {
-      append(lines,
-             fmt::format("${} using 1:4 with linespoints linetype {} dashtype 2 pointtype 9 title 'linear in time, nu {:.3g}, "
-                         "against the finest'",
-                         data.name, colour, poisson));
-    }
-    plot.data.push_back(std::move(data));
+    poisson.push_back(study->points.front().poisson);
+    transient.push_back(std::isfinite(study->errors.transient_error.front()) ? 1 : 0);
   }
-  plot.script = fmt::format(
-      "set logscale xy\nset format x '10^{{%L}}'\nset title {} noenhanced\n"
-      "set xlabel 'tetrahedra'\nset ylabel 'relative error of the deflection'\nset key outside right top Left reverse\n",
-      gnuplot_text(scene + ": deflection of the loaded patch"));
-  plot.script += lines + '\n';
+  plot.data.push_back(std::move(data));
+  plot.set("heading", scene + ": deflection of the loaded patch");
+  plot.set("studies", static_cast<double>(poisson.size()));
+  plot.set("poisson", poisson);
+  plot.set("transient", transient);
   return plot;
 }
 

@@ -15,12 +15,6 @@ namespace {
 
 constexpr double kMillimetre = 1e-3;  // [m]
 
-// Viridis: even steps to the eye, readable in grey.
-constexpr const char* kPalette =
-    "set palette defined (0 '#440154', 1 '#472d7b', 2 '#3b528b', 3 '#2c728e', 4 '#21918c', 5 '#28ae80', 6 '#5ec962', 7 "
-    "'#addc30', "
-    "8 '#fde725')\n";
-
 struct Span {
   double low, high;
 };
@@ -53,11 +47,8 @@ std::string marks(const Span& span) {
 
 Plot stiffness_plot(const std::string& file, const std::string& object, const sim::StiffnessMap& map) {
   const Scale scale = scale_of(map);
-  Plot plot;
-  plot.name = file;
-  plot.width = 1000;
-  plot.height = 640;
-  PlotData faces{"faces", {}}, fixed{"fixed", {}};
+  Plot plot{.name = file, .program = "stiffness-map", .width = 1000, .height = 640};
+  PlotData faces{"faces", {}}, held{"held", {}};
   const auto row = [&](std::uint32_t v) -> std::vector<double> {
     const Vec3& p = map.surface.vertices[v];
     return {p.x / kMillimetre, p.y / kMillimetre, p.z / kMillimetre, std::min(map.stiffness[v], scale.colours.high)};
@@ -66,29 +57,22 @@ Plot stiffness_plot(const std::string& file, const std::string& object, const si
   for (const auto& [a, b, c] : map.surface.triangles)
     for (const auto& line : {row(a), row(b), {}, row(c), row(c), {}, {}}) faces.rows.push_back(line);
   for (std::uint32_t v = 0; v < map.stiffness.size(); ++v)
-    if (!std::isfinite(map.stiffness[v])) fixed.rows.push_back(row(v));
+    if (!std::isfinite(map.stiffness[v])) held.rows.push_back(row(v));
   Vec3 low = map.surface.vertices[0], high = low;
   for (const Vec3& v : map.surface.vertices) {
     low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
     high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
   }
   const double flatness = 1 - (high.z - low.z) / std::max({high.x - low.x, high.y - low.y, high.z - low.z});
-  plot.script = fmt::format(
-      "{}set pm3d depthorder interpolate 2,2\nset logscale cb\nset cbrange [{:.4g}:{:.4g}]\nset view 50, 30, {:.3g}\n"
-      "set view equal xyz\nset xyplane relative 0\nunset grid\nunset border\nset lmargin 4\nset rmargin 16\n"
-      "set xlabel 'x [mm]' offset 0,-0.5\nset ylabel 'y [mm]' offset 1,-0.5\nset zlabel 'z [mm]' offset -1,0\n"
-      "set ztics ({:g}, {:g})\nset cblabel 'local stiffness [N/m]' offset 1,0\nset cbtics ({})\n"
-      "set colorbox user origin screen 0.88, 0.2 size screen 0.022, 0.6\n"
-      "set title {} noenhanced\n"
-      "set key at screen 0.04, 0.08 left bottom Left reverse\n"
-      "splot $faces using 1:2:3:4 with pm3d notitle",
-      kPalette, scale.colours.low, scale.colours.high, 1 + 0.5 * flatness, low.z / kMillimetre, high.z / kMillimetre,
-      marks(scale.colours),
-      gnuplot_text(fmt::format("Local stiffness of {}: {:.3g} to {:.3g} N/m", object, scale.all.low, scale.all.high)));
-  if (!fixed.rows.empty())
-    plot.script += ", \\\n  $fixed using 1:2:3 with points pointtype 7 pointsize 1.1 linecolor rgb '#D55E00' title 'fixed'";
-  plot.script += '\n';
-  plot.data = {std::move(faces), std::move(fixed)};
+  plot.set("heading", fmt::format("Local stiffness of {}: {:.3g} to {:.3g} N/m", object, scale.all.low, scale.all.high));
+  plot.set("low", scale.colours.low);
+  plot.set("high", scale.colours.high);
+  plot.set("marks", marks(scale.colours));
+  plot.set("bottom", low.z / kMillimetre);
+  plot.set("top", high.z / kMillimetre);
+  plot.set("zoom", 1 + 0.5 * flatness);
+  plot.set("fixed", static_cast<double>(held.rows.size()));
+  plot.data = {std::move(faces), std::move(held)};
   return plot;
 }
 

@@ -131,15 +131,13 @@ std::string to_markdown(std::span<const Study> studies, std::span<const Picture>
       "`tactus bench stability{}` on {} ({}, {} build). Every study is deterministic; no figure here is a time.\n\n"
       "*stable*: what was disturbed comes to rest, or stays within what the disturbance explains. *limit*: a limit was measured, "
       "or the motion goes on within bounds. *diverges*: it grows without bound, or the step was refused with an error and the "
-      "state before it kept. The same rows stand in `stability.csv` and `stability.json`; every plot is a gnuplot script with "
-      "its "
-      "data.\n",
+      "state before it kept. The same rows stand in `stability.csv` and `stability.json`.\n",
       extent == sim::study::Extent::full ? "" : " --short", context.at("machine"), context.at("compiler"), context.at("build"));
   for (const Study& study : studies) {
     out += fmt::format("\n## {}\n\n{}\n", study.title, study.text);
     for (const Picture& picture : pictures)
       if (picture.name.starts_with(study.name + "-"))
-        out += fmt::format("\n[![{1}]({0}.png)]({0}.svg)\n\n*{1}*\n", picture.name, picture.caption);
+        out += fmt::format("\n![{1}]({0}.svg)\n\n*{1}*\n", picture.name, picture.caption);
     if (!study.matrix.rows.empty()) out += markdown(study.matrix);
     out += "\n| what | with | quantity | measured | theory | off by | verdict | remark |\n|---|---|---|---:|---:|---:|---|---|\n";
     for (const Row& row : study.rows) {

@@ -17,7 +17,7 @@ std::string to_csv(std::span<const sim::study::Study> studies);
 /// Schema "tactus.stability/1".
 std::string to_json(std::span<const sim::study::Study> studies, sim::study::Extent extent);
 
-/// PNG and SVG files of this name, without their ends. Those of a study begin with its name.
+/// SVG files of this name, without their ends. Those of a study begin with its name.
 struct Picture {
   std::string name, caption;
 };

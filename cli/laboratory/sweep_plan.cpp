@@ -199,17 +199,15 @@ class PlanReader {
     if (points > kMostPoints) invalid(root, "R-SCN-6", "vary", "stay below 1000000 combinations");
   }
 
-  /// Names in the sweep's folder: its own, those of inputs, and three of every figure.
+  /// Names in the sweep's folder: its own, those of inputs and of figures.
   void check_files(const toml::table& root, const SweepPlan& plan) {
     std::set<std::string> files{"points.csv", "context.json"}, names;
     for (const SweepInput& input : plan.inputs)
       if (!names.insert(input.name).second || !files.insert(input.file).second)
         invalid(root, "R-SCN-7", "input", "give every input a name and a file of its own, and not points.csv or context.json");
     for (const SweepPlot& plot : plan.plots)
-      for (const char* kind : {".gp", ".svg", ".png"})
-        if (!files.insert(plot.name + kind).second)
-          invalid(root, "R-SCN-7", "plot.name",
-                  "give every figure a name of its own, which with .gp, .svg or .png is no input's file");
+      if (!files.insert(plot.name + ".svg").second)
+        invalid(root, "R-SCN-7", "plot.name", "give every figure a name of its own, which with .svg is no input's file");
   }
 
   sim::TomlReader in_;

@@ -47,8 +47,8 @@ std::vector<Series> series_of(const SweepPlot& wanted, const SweepPlan& plan, co
   return out;
 }
 
-/// gnuplot refuses an axis without a value that it can show, and a logarithmic one with a single value: the range to set for it.
-std::string range_of(const char* axis, bool is_log, std::size_t column, const std::vector<Series>& series) {
+/// gnuplot refuses an axis without a value that it can show, and a logarithmic one with a single value: the range to set for it, "[low:high]".
+std::string range_of(bool is_log, std::size_t column, const std::vector<Series>& series) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const Series& one : series)
     for (const auto& point : one.points) {
@@ -56,36 +56,35 @@ std::string range_of(const char* axis, bool is_log, std::size_t column, const st
       low = std::min(low, point[column]);
       high = std::max(high, point[column]);
     }
-  if (low < high) return fmt::format("set {}range [*:*]\n", axis);
-  if (low > high) return fmt::format("set {}range [1:10]\n", axis);
+  if (low < high) return "[*:*]";
+  if (low > high) return "[1:10]";
   const double room = low == 0 ? 1 : 0.1 * std::abs(low);
-  return fmt::format("set {}range [{:.6g}:{:.6g}]\n", axis, low - room, low + room);
+  return fmt::format("[{:.6g}:{:.6g}]", low - room, low + room);
 }
 
 Plot figure(const SweepPlot& wanted, const std::vector<Series>& series) {
   const std::size_t panels = wanted.y.size();
-  Plot plot{.name = wanted.name, .script = {}, .data = {}};
-  plot.height = static_cast<int>(panels == 1 ? 560 : 80 + 300 * panels);
-  for (std::size_t i = 0; i < series.size(); ++i) plot.data.push_back({"series" + std::to_string(i), series[i].points});
-  if (wanted.log_x) plot.script += "set logscale x\nset format x '10^{%L}'\n";
-  if (wanted.log_y) plot.script += "set logscale y\nset format y '10^{%L}'\n";
-  plot.script += fmt::format("set key outside {} title {} noenhanced\n", panels == 1 ? "right top" : "center top horizontal",
-                             gnuplot_text(wanted.series));
-  plot.script += panels == 1 ? fmt::format("set title {} noenhanced\n", gnuplot_text(wanted.title))
-                             : fmt::format("set lmargin 11\nset multiplot layout {},1 title {} noenhanced\n", panels,
-                                           gnuplot_text(wanted.title));
-  plot.script += range_of("x", wanted.log_x, 0, series);
-  for (std::size_t panel = 0; panel < panels; ++panel) {
-    plot.script += range_of("y", wanted.log_y, panel + 1, series);
-    if (panel == 1) plot.script += "unset key\n";
-    if (panel + 1 == panels) plot.script += fmt::format("set xlabel {} noenhanced\n", gnuplot_text(wanted.x_label));
-    plot.script += fmt::format("set ylabel {} noenhanced\n", gnuplot_text(wanted.y_label[panel]));
-    for (std::size_t i = 0; i < series.size(); ++i)
-      plot.script += fmt::format("{}$series{} using 1:{} with linespoints linetype {} title {} noenhanced",
-                                 i == 0 ? "plot " : ", \\\n     ", i, panel + 2, i + 1, gnuplot_text(series[i].value));
-    plot.script += series.empty() ? "plot NaN notitle\n" : "\n";
+  Plot plot{.name = wanted.name, .program = "sweep", .height = static_cast<int>(panels == 1 ? 560 : 80 + 300 * panels)};
+  PlotData data{"data", {}};
+  std::vector<std::string> names, ranges;
+  for (const Series& one : series) {
+    if (!names.empty()) data.rows.insert(data.rows.end(), 2, {});
+    data.rows.insert(data.rows.end(), one.points.begin(), one.points.end());
+    names.push_back(one.value);
   }
-  if (panels > 1) plot.script += "unset multiplot\n";
+  for (std::size_t panel = 0; panel < panels; ++panel) ranges.push_back(range_of(wanted.log_y, panel + 1, series));
+  plot.data.push_back(std::move(data));
+  plot.set("heading", wanted.title);
+  plot.set("series_label", wanted.series);
+  plot.set("x_label", wanted.x_label);
+  plot.set("x_range", range_of(wanted.log_x, 0, series));
+  plot.set("log_x", wanted.log_x ? 1 : 0);
+  plot.set("log_y", wanted.log_y ? 1 : 0);
+  plot.set("panels", static_cast<double>(panels));
+  plot.set("y_label", wanted.y_label);
+  plot.set("y_range", ranges);
+  plot.set("series", static_cast<double>(series.size()));
+  plot.set("name", names);
   return plot;
 }
 
@@ -97,9 +96,7 @@ tl::expected<std::vector<std::string>, Failure> draw_plots(const SweepPlan& plan
   for (const SweepPlot& wanted : plan.plots) {
     const auto drawn = draw(figure(wanted, series_of(wanted, plan, rows)), results.folder(), OutputFile::Existing::replace);
     if (!drawn) return tl::unexpected(drawn.error());
-    const std::string stem = results.folder() + "/" + wanted.name;
-    files.push_back(stem + ".gp");
-    if (*drawn == Drawn::yes) files.insert(files.end(), {stem + ".svg", stem + ".png"});
+    if (*drawn == Drawn::yes) files.push_back(results.folder() + "/" + wanted.name + ".svg");
   }
   return files;
 }

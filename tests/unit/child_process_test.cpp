@@ -20,6 +20,17 @@ TEST(ChildProcess, ArgumentsAreNoProgram) {
   EXPECT_EQ(ended->out, "$(touch here) `id` 'a' \"b\"; exit 1\n");
 }
 
+TEST(ChildProcess, ReadsItsInput) {
+  std::string text(300000, 'x');  // more than a pipe holds
+  text += '\n';
+  const auto ended = run_child({"cat"}, text);
+  ASSERT_TRUE(ended);
+  EXPECT_EQ(ended->out, text);
+  const auto nothing = run_child({"cat"});
+  ASSERT_TRUE(nothing);
+  EXPECT_EQ(nothing->out, "");
+}
+
 /// So does a gnuplot that a figure makes wait for ever.
 TEST(ChildProcess, IsKilledAfterItsLimit) {
   for (const char* command :
