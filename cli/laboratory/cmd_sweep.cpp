@@ -269,8 +269,8 @@ void setup_sweep(Command& app, Action& action) {
       "A sweep that was stopped goes on where it was: finished points are neither lost nor computed again.\n"
       "A plan is a program: its commands write wherever they name a file. Look at those of others with --list first.\n"
       "Examples:\n"
-      "  tactus sweep plans/deadband.toml\n"
-      "  tactus sweep plans/deadband.toml -o results/deadband -j 1");
+      "  tactus sweep reports/plans/deadband.toml\n"
+      "  tactus sweep reports/plans/deadband.toml -o results/deadband -j 1");
   on_chosen<SweepOptions>(command, action, options, run);
 }
 

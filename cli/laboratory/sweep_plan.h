@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Plans of sweeps: a command of this program, run once for every combination of parameters. plans/README.md lists every key.
+/// Plans of sweeps: a command of this program, run once for every combination of parameters. reports/plans/README.md lists every key.
 #pragma once
 
 #include <cstddef>
