@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include <tactus/trace/csv_reader.h>
 #include "cli/laboratory/cmd_bench.h"
 #include "cli/report/json_parts.h"
 
@@ -41,16 +42,13 @@ constexpr double sim::study::Errors::*kErrors[] = {&sim::study::Errors::displace
 
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.7g}", value) : ""; }
 
-/// As RFC 4180 wants text with commas; the text holds no quotes itself.
-std::string quoted(const std::string& text) { return text.find(',') == std::string::npos ? text : '"' + text + '"'; }
-
 std::string line_of(const TimeRow& row) {
   const sim::study::PrecisionPoint& p = row.point;
   std::string out = fmt::format("{},{},{},{}", row.scene, p.method, p.steps_per_sample, number(p.step));
   for (const double sim::study::Errors::*error : kErrors) out += ',' + number(p.errors.*error);
   return out + fmt::format(",{},{},{},{},{},{},{},{}", number(p.seconds_per_second), number(p.setup_seconds), p.runs,
-                           number(p.newton_per_step), number(p.solver_per_step), p.unconverged_steps, quoted(p.taken),
-                           quoted(p.remark));
+                           number(p.newton_per_step), number(p.solver_per_step), p.unconverged_steps, csv_field(p.taken),
+                           csv_field(p.remark));
 }
 
 std::string line_of(const SpaceRow& row) {

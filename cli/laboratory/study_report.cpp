@@ -7,6 +7,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
+#include <tactus/trace/csv_reader.h>
 #include "cli/laboratory/cmd_bench.h"
 #include "cli/report/json_parts.h"
 #include "cli/report/table.h"
@@ -37,12 +38,6 @@ std::string parameters(const Row& row, const char* between) {
   for (const auto& p : row.parameters)
     out += fmt::format("{}{} {:.4g}{}{}", out.empty() ? "" : between, p.name, p.value, p.unit.empty() ? "" : " ", p.unit);
   return out;
-}
-
-std::string quoted(std::string text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  for (std::size_t at = 0; (at = text.find('"', at)) != std::string::npos; at += 2) text.insert(at, 1, '"');
-  return '"' + text + '"';
 }
 
 std::string exact(const std::optional<double>& value) { return value ? fmt::format("{:.9g}", *value) : ""; }
@@ -96,9 +91,9 @@ std::string to_csv(std::span<const Study> studies) {
   std::string out = "study,subject,parameters,verdict,quantity,measured,analytic,unit,deviation,remark\n";
   for (const Study& study : studies)
     for (const Row& row : study.rows)
-      out += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", study.name, quoted(row.subject), quoted(parameters(row, "; ")),
-                         name(row.verdict), quoted(row.quantity), exact(row.measured), exact(row.analytic), row.unit,
-                         exact(row.deviation()), quoted(row.remark));
+      out += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", study.name, csv_field(row.subject), csv_field(parameters(row, "; ")),
+                         name(row.verdict), csv_field(row.quantity), exact(row.measured), exact(row.analytic), row.unit,
+                         exact(row.deviation()), csv_field(row.remark));
   return out;
 }
 

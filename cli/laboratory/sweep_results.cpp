@@ -13,6 +13,7 @@
 #include <thread>
 
 #include <tactus/base/shown.h>
+#include <tactus/trace/csv_reader.h>
 #include "cli/report/json_parts.h"
 
 namespace tactus::cli {
@@ -21,16 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-std::string quoted(const std::string& cell) {
-  if (cell.find_first_of(",\"\n\r") == std::string::npos) return cell;
-  std::string out = "\"";
-  for (const char c : cell) out.append(c == '"' ? 2 : 1, c);
-  return out + '"';
-}
-
 std::string line_of(const std::vector<std::string>& cells) {
   std::string out;
-  for (const std::string& cell : cells) out += quoted(cell) + ',';
+  for (const std::string& cell : cells) out += csv_field(cell) + ',';
   out.back() = '\n';
   return out;
 }
