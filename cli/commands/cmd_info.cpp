@@ -91,13 +91,13 @@ Json packet_json(const PlayedPacket& played, const Scene& scene) {
            {"sequence", played.sequence},
            {"bytes", played.bytes},
            {"key", played.key ? "key" : "-"}};
-  if (!scene.deformables.empty()) out["part"] = name_of_substream(scene, played.substream);
+  if (!scene.deformables.empty()) out["substream"] = name_of_substream(scene, played.substream);
   out["reason"] = is_rigid ? kReasons[static_cast<std::size_t>(strongest_reason(played))] : "-";
   std::string updates;
   for (const RigidUpdate& u : played.updates) updates += fmt::format("{}{}:{}", updates.empty() ? "" : " ", u.object, u.level);
   out["object:level"] = updates.empty() ? "-" : updates;
   if (!scene.deformables.empty()) {
-    out["half"] = is_rigid || played.layer == Layer::all ? "-" : kLayers[static_cast<std::size_t>(played.layer)];
+    out["layer"] = is_rigid || played.layer == Layer::all ? "-" : kLayers[static_cast<std::size_t>(played.layer)];
     out["vertices"] = is_rigid ? Json() : Json(played.vertices);
   }
   return out;
@@ -129,8 +129,8 @@ void show_rigid(const StreamTotals& totals, Json& out) {
 /// How a mesh is coded, and what of it the stream holds.
 Json mesh_json(const DeformableObject& mesh, const Scene& scene, const DeformableRates& t) {
   const bool is_main = mesh.profile == DeformableProfile::main;
-  return {{"mesh", mesh.name},
-          {"profile", is_main ? mesh.layered ? "main, split" : "main"
+  return {{"deformable", mesh.name},
+          {"profile", is_main ? mesh.layered ? "main, layered" : "main"
                               : fmt::format("thesis, q {}{}", mesh.quant_bits, mesh.models_kept ? ", models kept" : "")},
           {"vertices", mesh.rest.size()},
           {"triangles", mesh.triangles.size()},
@@ -215,8 +215,8 @@ Outcome info_stream(const InfoOptions& options) {
     return std::ranges::any_of(t.layers, [](const auto& h) { return h.packets > 0; });
   });
   for (std::size_t i = 0; i < totals.meshes.size(); ++i) {
-    info["meshes"].push_back(mesh_json(player->scene().deformables[i], player->scene(), totals.meshes[i]));
-    if (is_layered) info["meshes"].back().update(layers_json(totals.meshes[i]));
+    info["deformables"].push_back(mesh_json(player->scene().deformables[i], player->scene(), totals.meshes[i]));
+    if (is_layered) info["deformables"].back().update(layers_json(totals.meshes[i]));
   }
   if (options.packets) info["packet list"] = std::move(packets);
   print_info(info);
@@ -283,12 +283,12 @@ Outcome info_trace(const InfoOptions& options) {
   for (const TraceObject& o : trace.objects) info["objects"].push_back({{"object", o.name}, {"moves along", dof_text(o.dof)}});
   for (std::size_t i = 0; i < trace.meshes.size(); ++i) {
     const TriMesh& rest = trace.meshes[i].rest;
-    info["meshes"].push_back({{"mesh", trace.meshes[i].name},
-                              {"vertices", rest.vertices.size()},
-                              {"triangles", rest.triangles.size()},
-                              {"fixed", trace.meshes[i].fixed.size()},
-                              {"period [ticks]", trace.meshes[i].period},
-                              {"new shapes", shapes[i]}});
+    info["deformables"].push_back({{"deformable", trace.meshes[i].name},
+                                   {"vertices", rest.vertices.size()},
+                                   {"triangles", rest.triangles.size()},
+                                   {"fixed", trace.meshes[i].fixed.size()},
+                                   {"period [ticks]", trace.meshes[i].period},
+                                   {"new shapes", shapes[i]}});
   }
   for (const TraceUser& user : trace.users) info["users"].push_back({{"user", user.name}});
   info["channels"] = std::move(*channels);

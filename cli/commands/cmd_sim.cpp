@@ -353,7 +353,7 @@ void setup_sim(Command& app, Action& action) {
       ->show_default()
       ->type_name("N");
   add_quantity(command, "--duration", options->duration, Dimension::time, "Length [the scene's]");
-  add_quantity(command, "--mesh-noise", options->mesh_noise, Dimension::length,
+  add_quantity(command, "--deformable-noise", options->mesh_noise, Dimension::length,
                "White noise on the shapes that are recorded and sent, RMS per axis [0]");
   const std::map<std::string, sim::Grip> grips{
       {"loose", sim::Grip::loose}, {"normal", sim::Grip::normal}, {"firm", sim::Grip::firm}};
@@ -378,7 +378,7 @@ void setup_sim(Command& app, Action& action) {
                   "Also write the local stiffness of deformable objects (CSV, and a plot beside it)")
       ->type_name("FILE");
   command.add_flag("--codec", options->codec,
-                   "Close the loop through encoder, decoder and replica; so does every option from --stream to --split");
+                   "Close the loop through encoder, decoder and replica; so does every option from --stream to --layered");
   command.add_option("--stream", options->stream, "Also write the packets")->type_name("FILE");
   add_interpolation(command, options->replica);
   options->triggers.add_to(command);

@@ -25,7 +25,7 @@ constexpr std::array kAgreements{
     Agreement{"--alpha", "--haptic", "isotropic", {"cone"}},
     Agreement{"--fixed", "--haptic", "isotropic", {"fixed"}},
     Agreement{"--force-floor", "--haptic", "isotropic", {"isotropic", "cone"}},
-    Agreement{"--split", "--haptic", "isotropic", {"isotropic", "cone", "fixed"}},
+    Agreement{"--layered", "--haptic", "isotropic", {"isotropic", "cone", "fixed"}},
     Agreement{"--rings", "--haptic", "isotropic", {"isotropic", "cone", "fixed"}},
     Agreement{"--haptic-share", "--haptic", "isotropic", {"isotropic", "cone", "fixed"}},
     Agreement{"--haptic-share", "--profile", "main", {"main"}},
@@ -53,7 +53,7 @@ constexpr std::array kNeeds{
     Need{"--heartbeat", Subject::rigid},
     Need{"--no-reduction", Subject::rigid},
     Need{"--interpolate", Subject::rigid},
-    Need{"--mesh-visual", Subject::mesh},
+    Need{"--deformable-visual", Subject::mesh},
     Need{"--profile", Subject::mesh},
     Need{"--basis", Subject::mesh},
     Need{"--visual-share", Subject::mesh},
@@ -61,12 +61,12 @@ constexpr std::array kNeeds{
     Need{"--keep-models", Subject::mesh},
     Need{"--rings", Subject::touched_mesh},
     Need{"--haptic-share", Subject::touched_mesh},
-    Need{"--split", Subject::touched_mesh},
+    Need{"--layered", Subject::touched_mesh},
     // simulation
     Need{"--rate", Subject::deformed},
     Need{"--method", Subject::deformable},
     Need{"--solver", Subject::deformable},
-    Need{"--mesh-noise", Subject::deformable},
+    Need{"--deformable-noise", Subject::deformable},
     Need{"--stiffness-map", Subject::deformable},
     // info
     Need{"--packets", Subject::packets},
@@ -84,9 +84,9 @@ const char* lack_of(Subject subject) {
     case Subject::user:
       return "no user is";
     case Subject::mesh:
-      return "no mesh is";
+      return "no deformable object is";
     case Subject::touched_mesh:
-      return "no mesh with a user to touch it is";
+      return "no deformable object with a user to touch it is";
     case Subject::deformable:
       return "no deformable object is";
     case Subject::deformed:

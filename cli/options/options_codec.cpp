@@ -81,7 +81,7 @@ void TriggerArguments::add_to(Command& app) {
       {"isotropic", HapticRule::isotropic}, {"cone", HapticRule::cone}, {"fixed", HapticRule::fixed}, {"off", HapticRule::off}};
   const auto rule = [this, rules](const std::string& name) { triggers_.haptic = rules.at(name); };
   deadband_ = add_quantity(app, "-p,--deadband", triggers_.weber_fraction, Dimension::fraction,
-                           "Permitted share of force error, Weber's law [8%, meshes 2.5%]");
+                           "Permitted share of force error, Weber's law [8%, deformable objects 2.5%]");
   visual_option_ = add_pose_bound(app, "--visual", visual_, "Permitted error of pose to the eye [6mm,2deg]");
   fixed_option_ = add_pose_bound(app, "--fixed", fixed_, "Permitted pose error in contact of the rule fixed [1.5mm,2deg]");
   length_unit_option_ = add_quantity(app, "--length-unit", length_unit_, Dimension::length,
@@ -157,7 +157,7 @@ RigidTriggers TriggerArguments::over(RigidTriggers out) const {
 }
 
 void MeshArguments::add_to(Command& app) {
-  visual_ = add_quantity(app, "--mesh-visual", thresholds_.visual, Dimension::length,
+  visual_ = add_quantity(app, "--deformable-visual", thresholds_.visual, Dimension::length,
                          "Permitted error of a vertex to the eye, 0: none beyond the grid's [0.25mm]")
                 ->check(within(Dimension::length, "0m", "1000000m"));
   rings_ = app.add_option("--rings", coding_.rings, "Rings of triangles around the touched one that -p holds in [3]")
@@ -173,25 +173,25 @@ void MeshArguments::add_encoder_to(Command& app) {
   Option* modes = app.add_option("--basis", modes_, "main: vibration modes that both ends know, 0: none [0]")
                       ->check(whole_number(0, ModeBasis::kMaxModes))
                       ->type_name("K");
-  options_.insert(options_.end(),
-                  {app.add_option("--profile", profile, "Coding tools of meshes: thesis or main [main]")
-                       ->check(one_of({"thesis", "main"}))
-                       ->type_name("NAME"),
-                   modes,
-                   add_quantity(app, "--visual-share", visual_share_, Dimension::fraction,
-                                "main: code to this share of --mesh-visual, 0.1% or more [100%]")
-                       ->check(within(Dimension::fraction, "0.1%", "100%")),
-                   add_quantity(app, "--haptic-share", haptic_share_, Dimension::fraction,
-                                "main: code to this share of -p's bound, 0.1% or more [100%]")
-                       ->check(within(Dimension::fraction, "0.1%", "100%")),
-                   app.add_option("--quant-bits", coding_.quant_bits, "thesis: bits of its quantiser, 1 to 12 [8]")
-                       ->check(whole_number(1, DeformableObject::kMaxQuantBits))
-                       ->type_name("Q"),
-                   app.add_flag("--keep-models", coding_.models_kept, "thesis: entropy models live on from packet to packet"),
-                   app.add_flag("--split", coding_.layered,
-                                "Meshes that are touched: send what is felt in a packet of its own, before the rest. Costs a "
-                                "second header per update and "
-                                "3 to 30 % of the bits")});
+  options_.insert(
+      options_.end(),
+      {app.add_option("--profile", profile, "Coding tools of deformable objects: thesis or main [main]")
+           ->check(one_of({"thesis", "main"}))
+           ->type_name("NAME"),
+       modes,
+       add_quantity(app, "--visual-share", visual_share_, Dimension::fraction,
+                    "main: code to this share of --deformable-visual, 0.1% or more [100%]")
+           ->check(within(Dimension::fraction, "0.1%", "100%")),
+       add_quantity(app, "--haptic-share", haptic_share_, Dimension::fraction,
+                    "main: code to this share of -p's bound, 0.1% or more [100%]")
+           ->check(within(Dimension::fraction, "0.1%", "100%")),
+       app.add_option("--quant-bits", coding_.quant_bits, "thesis: bits of its quantiser, 1 to 12 [8]")
+           ->check(whole_number(1, DeformableObject::kMaxQuantBits))
+           ->type_name("Q"),
+       app.add_flag("--keep-models", coding_.models_kept, "thesis: entropy models live on from packet to packet"),
+       app.add_flag("--layered", coding_.layered,
+                    "Deformable objects that are touched: a haptic layer in a packet of its own before the visual one. Costs "
+                    "a second header per update and 3 to 30 % of the bits")});
 }
 
 bool MeshArguments::any_given() const {

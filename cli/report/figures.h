@@ -13,7 +13,7 @@
 namespace tactus::cli {
 
 inline constexpr std::array<const char*, 4> kReasons{"request", "heartbeat", "visual", "haptic"};  // index: Reason
-inline constexpr std::array<const char*, 3> kLayers{"haptic", "visual", "whole"};                  // index: Layer
+inline constexpr std::array<const char*, 3> kLayers{"haptic", "visual", "all"};                    // index: Layer
 
 inline constexpr std::uint64_t kUdpHeader = 28;  // [bytes] IPv4 20, UDP 8
 

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kSchema = "tactus.info/2";
+constexpr const char* kSchema = "tactus.info/3";
 
 Json vector_json(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
 
@@ -36,7 +36,7 @@ Json mesh_header_json(const DeformableObject& mesh, std::uint32_t tick_rate) {
            {"rings", mesh.rings},
            {"modes", mesh.basis.steps.size()}};
   if (is_main) {
-    out["split"] = mesh.layered;
+    out["layered"] = mesh.layered;
     out["frame_period_s"] = mesh.frame_period / 256.0 / tick_rate;
   } else {
     out["quant_bits"] = mesh.quant_bits;
@@ -70,9 +70,9 @@ Json without_shares(Json traffic) {
 
 Json packet_info_json(const PlayedPacket& played) {
   Json out{{"tick", played.tick},   {"byte", played.offset}, {"sequence", played.sequence},
-           {"bytes", played.bytes}, {"key", played.key},     {"part", played.substream}};
+           {"bytes", played.bytes}, {"key", played.key},     {"substream", played.substream}};
   if (played.substream > 0) {
-    out["half"] = kLayers[static_cast<std::size_t>(played.layer)];
+    out["layer"] = kLayers[static_cast<std::size_t>(played.layer)];
     out["vertices"] = played.vertices;
     return out;
   }
@@ -123,11 +123,11 @@ Json stream_info_json(const Player& player, const StreamTotals& totals, std::uin
                               {"position_m", vector_json(pose.position)},
                               {"rotation", Json::array({q.w, q.x, q.y, q.z})}});
   }
-  out["meshes"] = Json::array();
+  out["deformables"] = Json::array();
   for (std::size_t i = 0; i < h.deformables.size(); ++i) {
-    out["meshes"].push_back(mesh_header_json(h.deformables[i], h.tick_rate));
-    if (h.bounds) out["meshes"].back()["bounds"] = promised_json(h.bounds->deformables[i], h.deformables[i].rings);
-    out["meshes"].back()["traffic"] = mesh_traffic_json(report.meshes[i], report.seconds());
+    out["deformables"].push_back(mesh_header_json(h.deformables[i], h.tick_rate));
+    if (h.bounds) out["deformables"].back()["bounds"] = promised_json(h.bounds->deformables[i], h.deformables[i].rings);
+    out["deformables"].back()["traffic"] = mesh_traffic_json(report.meshes[i], report.seconds());
   }
   return out;
 }
@@ -146,15 +146,15 @@ Json trace_info_json(const TraceInfo& trace, const TraceTotals& totals) {
            {"complete", totals.complete}};
   out["objects"] = Json::array();
   for (const TraceObject& o : trace.objects) out["objects"].push_back({{"name", o.name}, {"dof", dof_json(o.dof)}});
-  out["meshes"] = Json::array();
+  out["deformables"] = Json::array();
   for (std::size_t i = 0; i < trace.meshes.size(); ++i) {
     const TraceDeformable& mesh = trace.meshes[i];
-    out["meshes"].push_back({{"name", mesh.name},
-                             {"vertices", mesh.rest.vertices.size()},
-                             {"triangles", mesh.rest.triangles.size()},
-                             {"fixed_vertices", mesh.fixed.size()},
-                             {"frame_period_s", mesh.period / trace.tick_rate},
-                             {"shapes", totals.shapes[i]}});
+    out["deformables"].push_back({{"name", mesh.name},
+                                  {"vertices", mesh.rest.vertices.size()},
+                                  {"triangles", mesh.rest.triangles.size()},
+                                  {"fixed_vertices", mesh.fixed.size()},
+                                  {"frame_period_s", mesh.period / trace.tick_rate},
+                                  {"shapes", totals.shapes[i]}});
   }
   out["users"] = Json::array();
   for (const TraceUser& user : trace.users) out["users"].push_back({{"name", user.name}});

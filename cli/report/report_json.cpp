@@ -56,7 +56,7 @@ Json mesh_traffic_json(const MeshReport& mesh, double seconds) {
   if (!has_layers(t)) return out;
   for (std::size_t i = 0; i < t.layers.size(); ++i) {
     const auto& [packets, bytes] = t.layers[i];
-    out["halves"][kLayers[i]] = {{"packets", packets},
+    out["layers"][kLayers[i]] = {{"packets", packets},
                                  {"packets_per_s", rate(packets, seconds)},
                                  {"bytes", bytes},
                                  {"payload", {{"bit_per_s", 8 * rate(bytes, seconds)}}},
@@ -192,7 +192,7 @@ void add_particulars(Json& out, const Report& r) {
   if (r.seed) out["seed"] = *r.seed;
   if (r.segments) out["segments"] = *r.segments;
   if (r.client) out["client"] = *r.client == Interpolation::none ? "direct" : "interpolated";
-  for (const DeformableReport& d : r.deformables) out["deformables"].push_back(deformable_json(d));
+  for (const DeformableReport& d : r.deformables) out["solvers"].push_back(deformable_json(d));
   for (const TouchReport& t : r.touches) {
     out["touches"].push_back({{"user", t.user},
                               {"share", t.share},
@@ -207,7 +207,7 @@ void add_particulars(Json& out, const Report& r) {
 }  // namespace
 
 std::string to_json(const Report& r) {
-  Json out{{"schema", "tactus.report/2"}, {"command", r.command}};
+  Json out{{"schema", "tactus.report/3"}, {"command", r.command}};
   for (const auto& [role, path] : r.files) out["files"][role] = path;
   if (r.tick_rate > 0) {
     out["tick_rate"] = r.tick_rate;
@@ -228,7 +228,7 @@ std::string to_json(const Report& r) {
     out["bounds_from"] = r.bounds_from;
     out["bounds_held"] = broken_bounds(r).empty();
   }
-  for (const MeshReport& mesh : r.meshes) out["meshes"].push_back(mesh_json(mesh, r.seconds()));
+  for (const MeshReport& mesh : r.meshes) out["deformables"].push_back(mesh_json(mesh, r.seconds()));
   for (const Timing& t : r.timings)
     if (!t.times.empty()) out["time"][t.key] = time_json(t.times, r.seconds());
   return text_of_json(out);
