@@ -4,16 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include <tactus/trace/csv_reader.h>
 #include "cli/laboratory/cmd_bench.h"
 #include "cli/report/json_parts.h"
 
@@ -24,14 +21,39 @@ namespace {
 constexpr const char* kTimeFile = "time.csv";
 constexpr const char* kSpaceFile = "space.csv";
 constexpr const char* kContextFile = "context.json";
-constexpr const char* kTimeHeading =
-    "scene,method,steps_per_sample,step_s,displacement_end_error,displacement_error,velocity_error,force_error,energy_error,"
-    "weight_error,push_error,seconds_per_second,setup_s,runs,newton_per_step,solver_per_step,unconverged_steps,taken,remark";
-constexpr const char* kSpaceHeading =
-    "scene,poisson,refinement,vertices,tets,deflection_m_per_n,solve_s,quadratic_m_per_n,step_s,seconds_per_second,"
-    "transient_m";
+using Row = GrowingTable::Row;
 
-/// In the order of the heading.
+const Row& time_columns() {
+  static const Row kColumns{"scene",
+                            "method",
+                            "steps_per_sample",
+                            "step_s",
+                            "displacement_end_error",
+                            "displacement_error",
+                            "velocity_error",
+                            "force_error",
+                            "energy_error",
+                            "weight_error",
+                            "push_error",
+                            "seconds_per_second",
+                            "setup_s",
+                            "runs",
+                            "newton_per_step",
+                            "solver_per_step",
+                            "unconverged_steps",
+                            "taken",
+                            "remark"};
+  return kColumns;
+}
+
+const Row& space_columns() {
+  static const Row kColumns{
+      "scene",   "poisson",           "refinement", "vertices",           "tets",       "deflection_m_per_n",
+      "solve_s", "quadratic_m_per_n", "step_s",     "seconds_per_second", "transient_m"};
+  return kColumns;
+}
+
+/// In the order of the columns.
 constexpr double sim::study::Errors::*kErrors[] = {&sim::study::Errors::displacement_end,
                                                    &sim::study::Errors::displacement,
                                                    &sim::study::Errors::velocity,
@@ -42,43 +64,42 @@ constexpr double sim::study::Errors::*kErrors[] = {&sim::study::Errors::displace
 
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.7g}", value) : ""; }
 
-std::string line_of(const TimeRow& row) {
+Row cells_of(const TimeRow& row) {
   const sim::study::PrecisionPoint& p = row.point;
-  std::string out = fmt::format("{},{},{},{}", row.scene, p.method, p.steps_per_sample, number(p.step));
-  for (const double sim::study::Errors::*error : kErrors) out += ',' + number(p.errors.*error);
-  return out + fmt::format(",{},{},{},{},{},{},{},{}", number(p.seconds_per_second), number(p.setup_seconds), p.runs,
-                           number(p.newton_per_step), number(p.solver_per_step), p.unconverged_steps, csv_field(p.taken),
-                           csv_field(p.remark));
+  Row out{row.scene, p.method, fmt::to_string(p.steps_per_sample), number(p.step)};
+  for (const double sim::study::Errors::*error : kErrors) out.push_back(number(p.errors.*error));
+  out.insert(out.end(), {number(p.seconds_per_second), number(p.setup_seconds), fmt::to_string(p.runs), number(p.newton_per_step),
+                         number(p.solver_per_step), fmt::to_string(p.unconverged_steps), p.taken, p.remark});
+  return out;
 }
 
-std::string line_of(const SpaceRow& row) {
+Row cells_of(const SpaceRow& row) {
   const sim::study::SpacePoint& p = row.point;
   std::string transient;
   for (const double value : p.deflection) transient += (transient.empty() ? "" : " ") + number(value);
-  return fmt::format("{},{},{},{},{},{},{},{},{},{},{}", row.scene, number(p.poisson), p.refinement, p.vertices, p.tets,
-                     number(p.at_rest.deflection), number(p.at_rest.seconds), number(p.quadratic_deflection), number(p.step),
-                     number(p.seconds_per_second), transient);
+  return {row.scene,
+          number(p.poisson),
+          fmt::to_string(p.refinement),
+          fmt::to_string(p.vertices),
+          fmt::to_string(p.tets),
+          number(p.at_rest.deflection),
+          number(p.at_rest.seconds),
+          number(p.quadratic_deflection),
+          number(p.step),
+          number(p.seconds_per_second),
+          transient};
 }
 
-/// The cells of a line one after the other; what is no number makes the whole line bad.
+/// The cells of a row one after the other; what is no number makes the whole row bad.
 class Cells {
  public:
-  explicit Cells(const std::string& line) : in_(line) {}
+  explicit Cells(const Row& row) : next_(row.begin()) {}
 
-  std::string text() {
-    std::string cell;
-    if (in_.peek() == '"') {
-      in_.get();
-      if (!std::getline(in_, cell, '"') || (in_.get() != ',' && !in_.eof())) good_ = false;
-    } else if (!std::getline(in_, cell, ',') && !in_.eof()) {
-      good_ = false;
-    }
-    return cell;
-  }
+  const std::string& text() { return *next_++; }
   template <class Number>
   Number get() {
     Number value{};
-    const std::string cell = text();
+    const std::string& cell = text();
     if (cell.empty() && std::is_floating_point_v<Number>) return std::numeric_limits<Number>::quiet_NaN();
     const auto result = std::from_chars(cell.data(), cell.data() + cell.size(), value);
     if (result.ec != std::errc{} || result.ptr != cell.data() + cell.size()) good_ = false;
@@ -87,12 +108,12 @@ class Cells {
   bool is_good() const { return good_; }
 
  private:
-  std::istringstream in_;
+  Row::const_iterator next_;
   bool good_ = true;
 };
 
-std::optional<TimeRow> time_row(const std::string& line) {
-  Cells cells(line);
+std::optional<TimeRow> time_row(const Row& in) {
+  Cells cells(in);
   TimeRow row;
   sim::study::PrecisionPoint& p = row.point;
   row.scene = cells.text();
@@ -111,8 +132,8 @@ std::optional<TimeRow> time_row(const std::string& line) {
   return cells.is_good() ? std::optional(row) : std::nullopt;
 }
 
-std::optional<SpaceRow> space_row(const std::string& line) {
-  Cells cells(line);
+std::optional<SpaceRow> space_row(const Row& in) {
+  Cells cells(in);
   SpaceRow row;
   sim::study::SpacePoint& p = row.point;
   row.scene = cells.text();
@@ -130,29 +151,15 @@ std::optional<SpaceRow> space_row(const std::string& line) {
   return cells.is_good() ? std::optional(row) : std::nullopt;
 }
 
-/// Rows behind the heading. A last line without its end was being written when the program was stopped: it is left out.
-template <class Row, class Parse>
-Outcome read_rows(const std::string& path, const std::string& heading, std::vector<Row>& rows, Parse&& parse) {
-  std::error_code ignored;
-  if (!fs::exists(path, ignored)) return {};
-  auto text = read_file(path);
-  if (!text) return tl::unexpected(text.error());
-  const std::size_t whole = text->rfind('\n') + 1;
-  if (whole != text->size()) {
-    std::error_code error;
-    fs::resize_file(path, whole, error);
-    if (error) return refuse(path + ": " + error.message(), "Check that you may write it.");
-    text->resize(whole);
-  }
-  std::istringstream in(*text);
-  std::string line;
-  for (int number_of_line = 1; std::getline(in, line); ++number_of_line) {
-    if (number_of_line == 1 && line == heading) continue;
-    auto row = parse(line);
-    if (number_of_line == 1 || !row) {
-      return refuse(fmt::format("{}, line {}: not a row of this report", path, number_of_line),
-                    "Remove the line, or give -f to start afresh.");
-    }
+template <class Found>
+Outcome take_up(const std::string& path, const Row& columns, std::optional<GrowingTable>& table, std::vector<Found>& rows,
+                std::optional<Found> (*parse)(const Row&)) {
+  auto opened = GrowingTable::open(path, columns);
+  if (!opened) return tl::unexpected(opened.error());
+  table.emplace(*std::move(opened));
+  for (const Row& cells : table->rows()) {
+    auto row = parse(cells);
+    if (!row) return table->refuse_row(rows.size());
     rows.push_back(*std::move(row));
   }
   return {};
@@ -172,45 +179,34 @@ tl::expected<PrecisionResults, Failure> PrecisionResults::open(std::string folde
   std::error_code ignored;
   if (!fs::exists(file, ignored)) {
     if (const auto done = write_file(file, wanted, OutputFile::Existing::keep); !done) return tl::unexpected(done.error());
-    return out;
-  }
-  const auto found = read_file(file);
-  if (!found) return tl::unexpected(found.error());
-  if (*found != wanted) {
-    return refuse(file + ": this folder holds figures of another machine, build or extent",
-                  "Give another folder, or -f to start afresh in this one.");
+  } else {
+    const auto found = read_file(file);
+    if (!found) return tl::unexpected(found.error());
+    if (*found != wanted) {
+      return refuse(file + ": this folder holds figures of another machine, build or extent",
+                    "Give another folder, or -f to start afresh in this one.");
+    }
   }
   if (const auto done = out.read(); !done) return tl::unexpected(done.error());
   return out;
 }
 
 Outcome PrecisionResults::read() {
-  if (auto done = read_rows(path(kTimeFile), kTimeHeading, times_, time_row); !done) return done;
-  return read_rows(path(kSpaceFile), kSpaceHeading, spaces_, space_row);
+  if (auto done = take_up(path(kTimeFile), time_columns(), time_table_, times_, time_row); !done) return done;
+  return take_up(path(kSpaceFile), space_columns(), space_table_, spaces_, space_row);
 }
 
-Outcome PrecisionResults::append(const std::string& file, const std::string& heading, const std::string& line) const {
-  std::error_code ignored;
-  if (fs::is_symlink(file, ignored)) return refuse(file + ": is a link", "Remove it: what it leads to would be written to.");
-  const bool is_new = !fs::exists(file, ignored);
-  std::ofstream out(file, std::ios::app);
-  if (is_new) out << heading << '\n';
-  out << line << '\n' << std::flush;
-  if (!out) return refuse_io(file, "cannot be written", errno);
-  return {};
+// Rows are kept as they are read back, so that a report made now and one made later from the file are the same.
+Outcome PrecisionResults::add(const TimeRow& row) {
+  Row cells = cells_of(row);
+  times_.push_back(*time_row(cells));
+  return time_table_->add(std::move(cells));
 }
 
-Outcome PrecisionResults::add(TimeRow row) {
-  // As read back, so that a report made now and one made later from the file are the same.
-  const std::string line = line_of(row);
-  times_.push_back(*time_row(line));
-  return append(path(kTimeFile), kTimeHeading, line);
-}
-
-Outcome PrecisionResults::add(SpaceRow row) {
-  const std::string line = line_of(row);
-  spaces_.push_back(*space_row(line));
-  return append(path(kSpaceFile), kSpaceHeading, line);
+Outcome PrecisionResults::add(const SpaceRow& row) {
+  Row cells = cells_of(row);
+  spaces_.push_back(*space_row(cells));
+  return space_table_->add(std::move(cells));
 }
 
 const TimeRow* PrecisionResults::find(const std::string& scene, const std::string& method, int steps_per_sample) const {

@@ -10,6 +10,7 @@
 
 #include <tactus/sim/study/precision.h>
 #include <tactus/sim/study/precision_space.h>
+#include "cli/laboratory/growing_table.h"
 #include "cli/output.h"
 
 namespace tactus::cli {
@@ -35,8 +36,8 @@ class PrecisionResults {
   static tl::expected<PrecisionResults, Failure> open(std::string folder, Context context, OutputFile::Existing existing);
 
   /// Written through to the disk.
-  Outcome add(TimeRow row);
-  Outcome add(SpaceRow row);
+  Outcome add(const TimeRow& row);
+  Outcome add(const SpaceRow& row);
 
   const TimeRow* find(const std::string& scene, const std::string& method, int steps_per_sample) const;
   const SpaceRow* find(const std::string& scene, const sim::study::SpaceJob& job) const;
@@ -46,11 +47,11 @@ class PrecisionResults {
  private:
   PrecisionResults(std::string folder, Context context) : folder_(std::move(folder)), context_(std::move(context)) {}
   Outcome read();
-  Outcome append(const std::string& file, const std::string& heading, const std::string& line) const;
   std::string path(const char* file) const { return folder_ + "/" + file; }
 
   std::string folder_;
   Context context_;
+  std::optional<GrowingTable> time_table_, space_table_;  // none until read()
   std::vector<TimeRow> times_;
   std::vector<SpaceRow> spaces_;
 };

@@ -8,12 +8,10 @@
 #include <cerrno>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <system_error>
 #include <thread>
 
 #include <tactus/base/shown.h>
-#include <tactus/trace/csv_reader.h>
 #include "cli/report/json_parts.h"
 
 namespace tactus::cli {
@@ -21,54 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-std::string line_of(const std::vector<std::string>& cells) {
-  std::string out;
-  for (const std::string& cell : cells) out += csv_field(cell) + ',';
-  out.back() = '\n';
-  return out;
-}
-
-/// Cells of one line (RFC 4180), `at` moves behind it; nothing when the line has no end.
-std::optional<std::vector<std::string>> read_line(const std::string& text, std::size_t& at) {
-  std::vector<std::string> cells(1);
-  bool in_quotes = false;
-  for (std::size_t i = at; i < text.size(); ++i) {
-    const char c = text[i];
-    if (c == '"' && in_quotes && i + 1 < text.size() && text[i + 1] == '"') cells.back() += text[++i];
-    else if (c == '"') in_quotes = !in_quotes;
-    else if (c == ',' && !in_quotes) cells.emplace_back();
-    else if (c == '\n' && !in_quotes) {
-      at = i + 1;
-      return cells;
-    } else cells.back() += c;
-  }
-  return std::nullopt;
-}
-
-/// The table of a sweep, open for writing. No link is followed, so that no other file is written to.
-Descriptor open_table(const std::string& path, int how) {
-  return Descriptor(::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW | how, 0644));
-}
-
-tl::unexpected<Failure> refuse_write(const std::string& path, int why) {
-  auto refused = refuse_io(path, "cannot be written", why);
-  if (why == ELOOP) refused.value().remedy = "It is a link: remove it, or give another folder with -o.";
-  return refused;
-}
-
-/// Write or append, and wait until the disk has it.
-Outcome store(const std::string& path, const std::string& text, int how) {
-  const Descriptor file = open_table(path, how);
-  bool stored = file.is_open();
-  for (std::size_t at = 0; stored && at < text.size();) {
-    const ssize_t wrote = ::write(file.number(), text.data() + at, text.size() - at);
-    stored = wrote > 0;
-    at += stored ? static_cast<std::size_t>(wrote) : 0;
-  }
-  stored = stored && fsync(file.number()) == 0;
-  return stored ? Outcome() : refuse_write(path, errno);
-}
 
 /// The folder, held by this sweep alone until it ends.
 tl::expected<Descriptor, Failure> hold(const std::string& folder) {
@@ -133,35 +83,18 @@ Outcome SweepResults::check_context(const SweepPlan& plan) const {
 }
 
 Outcome SweepResults::read(const SweepPlan& plan) {
-  const std::string heading = line_of(plan.columns());
-  std::error_code failed;
-  if (!fs::exists(table_path(), failed)) return store(table_path(), heading, O_TRUNC);
-  const auto text = read_file(table_path());
-  if (!text) return tl::unexpected(text.error());
-  std::size_t at = 0;
-  const auto first = read_line(*text, at);
-  if (!first) return store(table_path(), heading, O_TRUNC);
-  if (*first != plan.columns())
-    return refuse(shown_path(table_path()) + ": its columns are not those of the plan", "Give another folder with -o.");
+  auto table = GrowingTable::open(table_path(), plan.columns());
+  if (!table) return tl::unexpected(table.error());
+  table_.emplace(*std::move(table));
   const auto parameters = static_cast<std::ptrdiff_t>(plan.parameters.size());
-  for (std::size_t line = 2;; ++line) {
-    const auto cells = read_line(*text, at);
-    if (!cells) break;
-    if (cells->size() != first->size())
-      return refuse(shown_path(table_path()) + ", line " + std::to_string(line) + ": not as many cells as the heading has",
-                    "Remove this line.");
-    rows_[{cells->begin(), cells->begin() + parameters}] = {cells->begin() + parameters, cells->end()};
-  }
-  if (at == text->size()) return {};
-  const Descriptor table = open_table(table_path(), 0);
-  const bool cut = table.is_open() && ftruncate(table.number(), static_cast<off_t>(at)) == 0;  // a row that was cut off
-  return cut ? Outcome() : refuse_write(table_path(), errno);
+  for (const Row& row : table_->rows()) rows_[{row.begin(), row.begin() + parameters}] = {row.begin() + parameters, row.end()};
+  return {};
 }
 
 Outcome SweepResults::add(const std::vector<std::string>& values, const std::vector<std::string>& measures) {
   std::vector<std::string> cells = values;
   cells.insert(cells.end(), measures.begin(), measures.end());
-  if (auto stored = store(table_path(), line_of(cells), O_APPEND); !stored) return stored;
+  if (auto stored = table_->add(std::move(cells)); !stored) return stored;
   rows_[values] = measures;
   return {};
 }
@@ -178,12 +111,10 @@ std::vector<SweepResults::Row> SweepResults::rows(const SweepPlan& plan) const {
   return out;
 }
 
-Outcome SweepResults::sort(const SweepPlan& plan) const {
-  std::string text = line_of(plan.columns());
-  const auto wanted = rows(plan);
+Outcome SweepResults::sort(const SweepPlan& plan) {
+  auto wanted = rows(plan);
   if (wanted.size() != rows_.size()) return {};  // rows of values that the plan no longer names stay where they are
-  for (const Row& row : wanted) text += line_of(row);
-  return write_file(table_path(), text, OutputFile::Existing::replace);
+  return table_->replace(std::move(wanted));
 }
 
 }  // namespace tactus::cli

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/laboratory/growing_table.h"
 #include "cli/laboratory/sweep_plan.h"
 #include "cli/output.h"
 
@@ -14,7 +16,7 @@ namespace tactus::cli {
 
 class SweepResults {
  public:
-  using Row = std::vector<std::string>;  ///< parameters, then measures
+  using Row = GrowingTable::Row;  ///< parameters, then measures
 
   /// Make the folder, or take up one that an earlier run of the same plan left; a row that was cut off is dropped. The plan may have
   /// got more values and other plots, not another command, inputs or measures. One sweep at a time holds a folder.
@@ -27,7 +29,7 @@ class SweepResults {
   /// Rows of the plan's points in its order; unfinished points are left out.
   std::vector<Row> rows(const SweepPlan& plan) const;
   /// Put the rows in the plan's order, once all are there.
-  Outcome sort(const SweepPlan& plan) const;
+  Outcome sort(const SweepPlan& plan);
   const std::string& folder() const { return folder_; }
 
  private:
@@ -38,6 +40,7 @@ class SweepResults {
 
   std::string folder_;
   Descriptor lock_;
+  std::optional<GrowingTable> table_;                                  // none until read()
   std::map<std::vector<std::string>, std::vector<std::string>> rows_;  // parameters -> measures
 };
 
