@@ -24,33 +24,32 @@ constexpr const char* kContextFile = "context.json";
 using Row = GrowingTable::Row;
 
 const Row& time_columns() {
-  static const Row kColumns{"scene",
-                            "method",
-                            "steps_per_sample",
-                            "step_s",
-                            "displacement_end_error",
-                            "displacement_error",
-                            "velocity_error",
-                            "force_error",
-                            "energy_error",
-                            "weight_error",
-                            "push_error",
-                            "seconds_per_second",
-                            "setup_s",
-                            "runs",
-                            "newton_per_step",
-                            "solver_per_step",
-                            "unconverged_steps",
-                            "taken",
-                            "remark"};
-  return kColumns;
+  static const Row columns{"scene",
+                           "method",
+                           "steps_per_sample",
+                           "step_s",
+                           "displacement_end_error",
+                           "displacement_error",
+                           "velocity_error",
+                           "force_error",
+                           "energy_error",
+                           "weight_error",
+                           "push_error",
+                           "seconds_per_second",
+                           "setup_s",
+                           "runs",
+                           "newton_per_step",
+                           "solver_per_step",
+                           "unconverged_steps",
+                           "taken",
+                           "remark"};
+  return columns;
 }
 
 const Row& space_columns() {
-  static const Row kColumns{
-      "scene",   "poisson",           "refinement", "vertices",           "tets",       "deflection_m_per_n",
-      "solve_s", "quadratic_m_per_n", "step_s",     "seconds_per_second", "transient_m"};
-  return kColumns;
+  static const Row columns{"scene",   "poisson",           "refinement", "vertices",           "tets",       "deflection_m_per_n",
+                           "solve_s", "quadratic_m_per_n", "step_s",     "seconds_per_second", "transient_m"};
+  return columns;
 }
 
 /// In the order of the columns.
