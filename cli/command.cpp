@@ -66,9 +66,10 @@ void Command::leave_out(const std::string& name, const std::string& needs, Actio
   Command& command = add_command(name, "");
   command.app_->group("")->set_help_flag();
   command.app_->prefix_command();  // whatever follows its name
-  command.on_chosen([&action, name, needs] {
-    action = [name, needs] {
-      return refuse_arguments("this program was built without " + name, "Build it with " + needs + "=ON.");
+  const std::string whole = (app_->get_parent() != nullptr ? app_->get_name() + " " : "") + name;
+  command.on_chosen([&action, whole, needs] {
+    action = [whole, needs] {
+      return refuse_arguments("this program was built without " + whole, "Build it with " + needs + "=ON.");
     };
   });
 }
