@@ -93,7 +93,7 @@ run_demo() {
   step 'simulate a hand that turns, pushes and lifts a cube' "$tactus" sim rotate-push-lift -o "$out/truth.mcap" -f
   step 'encode what a client needs to see and feel' "$tactus" encode "$out/truth.mcap" -o "$out/stream.tct" -f $bounds
   step 'decode what the client sees' "$tactus" decode "$out/stream.tct" -o "$out/replica.mcap" --like "$out/truth.mcap" -f
-  step 'draw what tighter and wider bounds cost' "$tactus" sweep plans/demo.toml -o "$out/sweep"
+  step 'draw what tighter and wider bounds cost' "$tactus" sweep reports/plans/demo.toml -o "$out/sweep"
   "$tactus" encode "$out/truth.mcap" -o "$out/stream.tct" -f $bounds | tee "$out/report.txt"
   "$tactus" encode "$out/truth.mcap" -o "$out/stream.tct" -f $bounds --json >"$out/encode.json"
   held='every bound held at every tick'
@@ -101,7 +101,7 @@ run_demo() {
   cat <<END
 
 Verdict, from what the decoder shows: $held.
-Look at   $out/sweep/deadband.png (and .svg): packets and error of force over the deadband
+Look at   $out/sweep/deadband.svg: packets and error of force over the deadband
           $out/truth.mcap, $out/replica.mcap in Foxglove or PlotJuggler
 Reports   $out/report.txt, encode.json, compare.json, sweep/points.csv
 Next      PATH=\$PWD/build/demo/cli:\$PATH; tactus --help

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "cli/json_parts.h"
+#include "cli/report/json_parts.h"
 
 namespace tactus::cli {
 
@@ -56,6 +56,22 @@ std::string Option::name() const { return option_->get_name(); }
 
 Command& Command::add_command(const std::string& name, const std::string& help) {
   return commands_.emplace_back(*app_->add_subcommand(name, help));
+}
+
+Command& Command::command(std::string_view name) {
+  return *std::find_if(commands_.begin(), commands_.end(), [&](const Command& c) { return c.app_->get_name() == name; });
+}
+
+void Command::leave_out(const std::string& name, const std::string& needs, Action& action) {
+  Command& command = add_command(name, "");
+  command.app_->group("")->set_help_flag();
+  command.app_->prefix_command();  // whatever follows its name
+  const std::string whole = (app_->get_parent() != nullptr ? app_->get_name() + " " : "") + name;
+  command.on_chosen([&action, whole, needs] {
+    action = [whole, needs] {
+      return refuse_arguments("this program was built without " + whole, "Build it with " + needs + "=ON.");
+    };
+  });
 }
 
 Option* Command::keep(CLI::Option* option) { return &options_.emplace_back(*option); }

@@ -10,10 +10,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "cli/messages.h"
-#include "cli/option_needs.h"
+#include "cli/options/option_needs.h"
+#include "cli/report/messages.h"
 
 namespace CLI {
 class App;
@@ -49,6 +50,9 @@ class Option {
   CLI::Option* option_;
 };
 
+/// What a command does once it was chosen.
+using Action = std::function<Outcome()>;
+
 /// A command or a group of commands. What it and its options are given by reference must outlive the parsing.
 class Command {
  public:
@@ -57,6 +61,9 @@ class Command {
   Command& operator=(const Command&) = delete;
 
   Command& add_command(const std::string& name, const std::string& help);
+  Command& command(std::string_view name);  ///< pre  it was added
+  /// A command that this program was built without: it is in no help, and says that it wants TACTUS_WITH_...=ON.
+  void leave_out(const std::string& name, const std::string& needs, Action& action);
   Option* add_option(const std::string& names, std::string& value, const std::string& help);
   Option* add_option(const std::string& names, std::vector<std::string>& values, const std::string& help);
   Option* add_option(const std::string& names, std::uint8_t& value, const std::string& help);
@@ -102,9 +109,6 @@ class Program : public Command {
   std::unique_ptr<CLI::App> owned_;
   bool wants_json_ = false;
 };
-
-/// What a command does once it was chosen.
-using Action = std::function<Outcome()>;
 
 /// When `command` is chosen and its options agree, `action` becomes `run` with them.
 template <class Options>

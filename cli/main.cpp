@@ -7,33 +7,28 @@
 #include <string_view>
 
 #include <tactus/base/shown.h>
-#include "cli/cmd_compare.h"
-#include "cli/cmd_decode.h"
-#include "cli/cmd_encode.h"
-#include "cli/cmd_export.h"
-#include "cli/cmd_import.h"
-#include "cli/cmd_info.h"
-#include "cli/json_parts.h"
+#include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "cli/progress.h"
-#ifdef TACTUS_HAS_STUDY
-#include "cli/cmd_bench.h"
-#endif
-#ifdef TACTUS_HAS_TETS
-#include "cli/cmd_mesh.h"
-#endif
-#ifdef TACTUS_HAS_SIM
-#include "cli/cmd_reproduce.h"
-#include "cli/cmd_sim.h"
-#include "cli/cmd_sweep.h"
-#endif
+#include "cli/report/json_parts.h"
 
+namespace tactus::cli {
 namespace {
+
+/// A command, "import_mesh" one of the group "import".
+struct Entry {
+  std::string_view name;
+  void (*setup)(Command& group, Action& action);  ///< nullptr: not built
+  const char* needs;                              ///< the option of CMake that brings it then
+};
+constexpr Entry kCommands[] = {
+#include "commands.inc"
+};
 
 constexpr int kOk = 0, kFailed = 1, kUsage = 2, kBroken = 3, kSignal = 128;
 
-int status_of(const tactus::cli::Failure& failure) {
-  using Cause = tactus::cli::Failure::Cause;
+int status_of(const Failure& failure) {
+  using Cause = Failure::Cause;
   switch (failure.cause) {
     case Cause::work:
       return kFailed;
@@ -60,12 +55,11 @@ std::string printable(std::string_view message) {
   }
 }
 
-int report_failure(const tactus::cli::Failure& failure, bool as_json) {
-  using tactus::cli::Failure;
-  const bool coloured = tactus::cli::is_coloured(2);
+int report_failure(const Failure& failure, bool as_json) {
+  const bool coloured = is_coloured(2);
   if (as_json) {
     std::fflush(stdout);
-    fmt::print(stderr, "{}\n", tactus::cli::error_json(failure));
+    fmt::print(stderr, "{}\n", error_json(failure));
     return status_of(failure);
   }
   const char* label = failure.cause == Failure::Cause::bound     ? "broken:"
@@ -80,18 +74,18 @@ int report_failure(const tactus::cli::Failure& failure, bool as_json) {
 }
 
 /// Exceptions are for what nobody foresaw: what an input can cause is an error of its own where it is found.
-tactus::cli::Outcome run(const tactus::cli::Action& action) {
+Outcome run(const Action& action) {
   try {
     return action();
   } catch (const std::bad_alloc&) {
-    return tactus::cli::refuse("there is not enough memory for this", "Give smaller inputs, or run it on a larger machine.");
+    return refuse("there is not enough memory for this", "Give smaller inputs, or run it on a larger machine.");
   } catch (const std::exception& e) {
-    return tactus::cli::refuse(std::string("the program has a defect: ") + e.what(),
-                               "Report it with the command and its inputs.");
+    return refuse(std::string("the program has a defect: ") + e.what(), "Report it with the command and its inputs.");
   }
 }
 
 }  // namespace
+}  // namespace tactus::cli
 
 int main(int argc, char** argv) {
   using namespace tactus::cli;
@@ -107,25 +101,12 @@ int main(int argc, char** argv) {
       "Exit status: 0 done, 1 an input was refused or the work failed, 2 the arguments are wrong,\n"
       "3 done, but a bound that the stream promises or an option asks for is broken.");
   Action action;
-#ifdef TACTUS_HAS_SIM
-  setup_sim(app, action);
-#endif
-#ifdef TACTUS_HAS_TETS
-  setup_mesh(app, action);
-#endif
-  setup_import(app, action);
-  setup_encode(app, action);
-  setup_decode(app, action);
-  setup_compare(app, action);
-  setup_info(app, action);
-  setup_export(app, action);
-#ifdef TACTUS_HAS_SIM
-  setup_sweep(app, action);
-  setup_reproduce(app, action);
-#endif
-#ifdef TACTUS_HAS_STUDY
-  setup_bench(app, action);
-#endif
+  for (const Entry& entry : kCommands) {
+    const std::size_t split = entry.name.find('_');
+    Command& group = split == std::string_view::npos ? app : app.command(entry.name.substr(0, split));
+    if (entry.setup != nullptr) entry.setup(group, action);
+    else group.leave_out(std::string(entry.name.substr(split + 1)), entry.needs, action);
+  }
   if (const auto parsed = app.parse(argc, argv); parsed != Program::Parsed::go_on)
     return parsed == Program::Parsed::done ? kOk : kUsage;
   if (!action) {

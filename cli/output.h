@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "cli/messages.h"
+#include "cli/report/messages.h"
 
 namespace tactus::cli {
 

@@ -116,16 +116,18 @@ tidy() {
 
 fuzz() { # SECONDS
   build fuzz fuzz_programs
+  for pack in tests/fuzz/corpus/*.pack; do
+    python3 tests/fuzz/pack.py unpack "$pack" "build/fuzz/corpus/$(basename "$pack" .pack)"
+  done
   for program in build/fuzz/tests/fuzz/*_fuzz; do
     stem=$(basename "$program" _fuzz)
-    mkdir -p "build/fuzz/corpus/$stem"
     dict=tests/fuzz/$stem.dict
     [ -f "$dict" ] || dict=
     echo "== $stem for $1 s"
     # shellcheck disable=SC2046 # a list of folders
     "$program" ${dict:+-dict="$dict"} -max_total_time="$1" -timeout=10 -rss_limit_mb=1024 -print_final_stats=1 -artifact_prefix="build/fuzz/$stem-" \
-      "build/fuzz/corpus/$stem" $(cat "build/fuzz/tests/fuzz/$stem.seeds") >"build/fuzz/$stem.log" 2>&1 ||
-      { tail -40 "build/fuzz/$stem.log"; die "$stem: add the input to tests/fuzz/corpus/$stem/ once it is understood"; }
+      "build/fuzz/corpus/$stem" $(sed 's,.*/\(.*\)\.pack$,build/fuzz/corpus/\1,' "build/fuzz/tests/fuzz/$stem.seeds") >"build/fuzz/$stem.log" 2>&1 ||
+      { tail -40 "build/fuzz/$stem.log"; die "$stem: add the input to tests/fuzz/corpus/$stem.pack once it is understood"; }
     grep -E '^stat::(number_of_executed_units|peak_rss_mb)' "build/fuzz/$stem.log"
   done
 }

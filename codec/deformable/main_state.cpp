@@ -80,7 +80,7 @@ void ShapePredictor::predict(const MainState& state, std::int64_t tick, std::spa
   state.motion.predict(frame_steps(object_, tick - state.motion_tick), increments_);
   if (state.tick == state.motion_tick) return combine(increments_, out);
   state.motion.predict(frame_steps(object_, state.tick - state.motion_tick),
-                       extrapolated_);  // where haptic halves have gone already
+                       extrapolated_);  // where haptic layers have gone already
   for (std::size_t k = 0; k < extrapolated_.size(); ++k)
     extrapolated_[k] = limited_displacement(std::int64_t{increments_[k]} - extrapolated_[k]);
   combine(extrapolated_, out);

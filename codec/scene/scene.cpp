@@ -9,6 +9,7 @@
 
 #include <tactus/base/fixed.h>
 #include <tactus/base/out_of_memory.h>
+#include <tactus/base/shown.h>
 #include <tactus/scene/bounds_syntax.h>
 #include <tactus/scene/scene_rules.h>
 
@@ -17,21 +18,11 @@ namespace {
 
 /// Well-formed UTF-8 without control characters (RFC 3629).
 bool is_plain_utf8(std::string_view text) noexcept {
-  std::size_t i = 0;
-  while (i < text.size()) {
-    const auto lead = static_cast<std::uint8_t>(text[i++]);
-    if (lead < 0x20 || lead == 0x7f) return false;
-    if (lead < 0x80) continue;
-    const unsigned tail = lead >= 0xf0 ? 3 : lead >= 0xe0 ? 2 : 1;
-    if (lead < 0xc2 || lead > 0xf4 || text.size() - i < tail) return false;
-    std::uint32_t point = lead & (0x3fu >> tail);
-    for (unsigned k = 0; k < tail; ++k) {
-      const auto byte = static_cast<std::uint8_t>(text[i++]);
-      if ((byte & 0xc0) != 0x80) return false;
-      point = (point << 6) | (byte & 0x3fu);
-    }
-    constexpr std::uint32_t kFirst[] = {0, 0x80, 0x800, 0x10000};
-    if (point < kFirst[tail] || point > 0x10ffff || (point >= 0xd800 && point < 0xe000)) return false;
+  while (!text.empty()) {
+    const auto lead = static_cast<std::uint8_t>(text[0]);
+    const std::size_t length = utf8_length(text);
+    if (length == 0 || lead < 0x20 || lead == 0x7f) return false;
+    text.remove_prefix(length);
   }
   return true;
 }

@@ -128,10 +128,10 @@ void CsvReader::split(std::string_view line) {
   fields_.resize(count);
 }
 
-std::string csv_field(std::string_view name) {
-  if (name.find_first_of(",\"") == std::string_view::npos && trim(name) == name) return std::string(name);
+std::string csv_field(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos && trim(text) == text) return std::string(text);
   std::string quoted = "\"";
-  for (const char c : name) quoted.append(c == '"' ? 2 : 1, c);
+  for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
   return quoted + '"';
 }
 

@@ -43,7 +43,7 @@ class CsvReader {
   std::vector<std::string> fields_;
 };
 
-/// A name as a field: in quotes when it needs them.
-std::string csv_field(std::string_view name);
+/// A text as a field: in quotes when it needs them.
+std::string csv_field(std::string_view text);
 
 }  // namespace tactus

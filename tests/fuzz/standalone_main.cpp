@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Runs a fuzz target over files, for compilers without libFuzzer: `<stem>_fuzz FILE|FOLDER...`, folders in the order of their names.
+/// Runs a fuzz target over files, for compilers without libFuzzer: `<stem>_fuzz FILE|FOLDER|PACK.pack...`, folders in the order of their
+/// names.
 /// The C library alone, since MemorySanitizer knows it and not what the C++ library's streams do.
 #include <dirent.h>
 
@@ -8,8 +9,12 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
+#include <span>
 #include <string>
+
+#include "tests/fuzz/pack.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
@@ -17,7 +22,12 @@ namespace {
 
 std::size_t replayed = 0;
 
-/// A heap block of exactly the input's size, so that AddressSanitizer sees the first byte read past it.
+void replay_input(std::span<const std::uint8_t> input) {
+  LLVMFuzzerTestOneInput(input.data(), input.size());
+  ++replayed;
+}
+
+/// Every input in a heap block of exactly its size, so that AddressSanitizer sees the first byte read past it.
 bool replay_file(const std::string& path) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
   if (!file || std::fseek(file.get(), 0, SEEK_END) != 0) return false;
@@ -27,9 +37,15 @@ bool replay_file(const std::string& path) {
   std::rewind(file.get());
   const std::unique_ptr<std::uint8_t[]> bytes(new std::uint8_t[size]);
   if (std::fread(bytes.get(), 1, size, file.get()) != size) return false;
-  LLVMFuzzerTestOneInput(bytes.get(), size);
-  ++replayed;
-  return true;
+  if (!path.ends_with(".pack")) {
+    replay_input({bytes.get(), size});
+    return true;
+  }
+  return for_each_packed({bytes.get(), size}, [](std::span<const std::uint8_t> packed) {
+    const std::unique_ptr<std::uint8_t[]> input(new std::uint8_t[packed.size()]);
+    if (!packed.empty()) std::memcpy(input.get(), packed.data(), packed.size());
+    replay_input({input.get(), packed.size()});
+  });
 }
 
 bool replay(const std::string& path) {

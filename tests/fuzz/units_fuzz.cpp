@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "cli/units.h"
+#include "cli/options/units.h"
 #include "tests/fuzz/require.h"
 
 namespace {

@@ -145,7 +145,7 @@ def commands(kind, name, rng):
         "streams": [["info", name], ["info", name, "--packets", "--json"], ["decode", name, "-o", "o.mcap", "--interpolate", "--ticks", "200"],
                     ["decode", name, "-o", "o.mcap"]],
         "traces": [["info", name], ["encode", name, "-o", "o.tct"], ["encode", name, "-o", "o.tct", "--profile", "thesis"],
-                   ["encode", name, "-o", "o.tct", "--basis", "4"], ["encode", name, "-o", "o.tct", "--split"],
+                   ["encode", name, "-o", "o.tct", "--basis", "4"], ["encode", name, "-o", "o.tct", "--layered"],
                    ["export", "csv", name, "-o", "o.csv"], ["export", "mesh", name, "-o", "o"], ["compare", name, name],
                    ["decode", "seed.tct", "-o", "o.mcap", "--like", name], ["sim", "push-1dof", "-o", "o.mcap", "--replay", name]],
         "tables": [["import", "csv", name, "-o", "o.mcap", "--preset", "tactus"],

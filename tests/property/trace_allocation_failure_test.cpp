@@ -4,22 +4,21 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <tactus/trace/csv.h>
 #include <tactus/trace/trace_file.h>
+#include "tests/fuzz/pack.h"
 #include "tests/property/fail_each.h"
 
 namespace tactus {
 namespace {
 
-namespace fs = std::filesystem;
 using Bytes = std::vector<std::uint8_t>;
 using testing::fail_each;
 
@@ -36,15 +35,13 @@ Result<void> read_all(const Bytes& bytes) {
 /// Small recordings, ours and those of others, that are read to their end.
 std::vector<Bytes> recordings() {
   constexpr std::size_t kMost = 40, kLargest = 6000;
-  std::vector<fs::path> paths;
-  for (const auto& entry : fs::directory_iterator(TACTUS_TRACES)) paths.push_back(entry.path());
-  std::ranges::sort(paths);
+  std::ifstream in(TACTUS_TRACES, std::ios::binary);
+  const Bytes pack{std::istreambuf_iterator<char>(in), {}};
   std::vector<Bytes> out;
-  for (const fs::path& path : paths) {
-    std::ifstream in(path, std::ios::binary);
-    Bytes bytes{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_TRUE(for_each_packed(pack, [&](std::span<const std::uint8_t> packed) {
+    Bytes bytes(packed.begin(), packed.end());
     if (out.size() < kMost && bytes.size() <= kLargest && read_all(bytes)) out.push_back(std::move(bytes));
-  }
+  }));
   return out;
 }
 

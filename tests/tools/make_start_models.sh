@@ -35,11 +35,11 @@ mesh_streams() {
   }
   for basis in 0 48; do
     for v in 0.05 0.125 0.25 0.5 1; do
-      for p in 2.5 10; do stream "v$v-p$p-k$basis" --mesh-visual "${v}mm" -p "$p%" --basis "$basis"; done
-      stream "v$v-k$basis" --mesh-visual "${v}mm" --haptic off --basis "$basis"
+      for p in 2.5 10; do stream "v$v-p$p-k$basis" --deformable-visual "${v}mm" -p "$p%" --basis "$basis"; done
+      stream "v$v-k$basis" --deformable-visual "${v}mm" --haptic off --basis "$basis"
     done
   done
-  stream fine --mesh-visual 0.01mm --haptic off
+  stream fine --deformable-visual 0.01mm --haptic off
 }
 
 case $stem in

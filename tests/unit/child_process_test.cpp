@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/child_process.h"
+#include "cli/laboratory/child_process.h"
 
 #include <gtest/gtest.h>
 
@@ -18,6 +18,17 @@ TEST(ChildProcess, ArgumentsAreNoProgram) {
   const auto ended = run_child({"echo", "$(touch here) `id` 'a' \"b\"; exit 1"});
   ASSERT_TRUE(ended);
   EXPECT_EQ(ended->out, "$(touch here) `id` 'a' \"b\"; exit 1\n");
+}
+
+TEST(ChildProcess, ReadsItsInput) {
+  std::string text(300000, 'x');  // more than a pipe holds
+  text += '\n';
+  const auto ended = run_child({"cat"}, text);
+  ASSERT_TRUE(ended);
+  EXPECT_EQ(ended->out, text);
+  const auto nothing = run_child({"cat"});
+  ASSERT_TRUE(nothing);
+  EXPECT_EQ(nothing->out, "");
 }
 
 /// So does a gnuplot that a figure makes wait for ever.

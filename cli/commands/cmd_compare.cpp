@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/commands/commands.h"
+
+#include <fmt/format.h>
+
+#include <tactus/base/shown.h>
+#include <tactus/trace/trace_file.h>
+#include <tactus/trace/trace_scene.h>
+#include "cli/report/figures.h"
+#include "cli/report/report.h"
+#include "cli/report/trace_ending.h"
+
+namespace tactus::cli {
+namespace {
+
+struct CompareOptions {
+  std::string truth, replica;
+  TriggerArguments triggers;
+  MeshArguments meshes;
+  CommonOptions common;
+};
+
+Outcome check_same_scene(const CompareOptions& options, const TraceInfo& truth, const TraceInfo& replica) {
+  const auto differ = [&](const std::string& what) {
+    return refuse(shown_path(options.replica) + ": " + what + " as in " + shown_path(options.truth),
+                  "Compare a trace with the replica that was decoded from its own stream.");
+  };
+  if (truth.tick_rate != replica.tick_rate)
+    return differ(fmt::format("the tick rate is {} Hz, not {} Hz", replica.tick_rate, truth.tick_rate));
+  if (truth.objects.size() != replica.objects.size()) {
+    return differ(fmt::format("there are {} objects, not {}", replica.objects.size(), truth.objects.size()));
+  }
+  for (std::size_t i = 0; i < truth.objects.size(); ++i) {
+    if (truth.objects[i].name != replica.objects[i].name) {
+      return differ(fmt::format("object {} is \"{}\", not \"{}\"", i, replica.objects[i].name, truth.objects[i].name));
+    }
+    if (truth.objects[i].dof != replica.objects[i].dof) {
+      return differ(fmt::format("the degrees of freedom of object \"{}\" are \"{}\", not \"{}\"", truth.objects[i].name,
+                                dof_text(replica.objects[i].dof), dof_text(truth.objects[i].dof)));
+    }
+  }
+  if (truth.meshes.size() != replica.meshes.size())
+    return differ(fmt::format("there are {} meshes, not {}", replica.meshes.size(), truth.meshes.size()));
+  for (std::size_t i = 0; i < truth.meshes.size(); ++i) {
+    const TraceDeformable &a = truth.meshes[i], &b = replica.meshes[i];
+    if (a.name != b.name) return differ(fmt::format("mesh {} is \"{}\", not \"{}\"", i, b.name, a.name));
+    if (a.rest.vertices.size() != b.rest.vertices.size() || a.rest.triangles != b.rest.triangles)
+      return differ(fmt::format("mesh \"{}\" does not have the same vertices and triangles", a.name));
+  }
+  return {};
+}
+
+/// What the replica shows, of which every tick brings only what is new.
+struct Shown {
+  std::vector<Pose> poses;
+  std::vector<std::vector<float>> shapes;  // displacements, V x 3
+
+  explicit Shown(const TraceInfo& info) : poses(info.objects.size()) {
+    for (const TraceDeformable& mesh : info.meshes) shapes.emplace_back(3 * mesh.rest.vertices.size());
+  }
+  void take(const TraceFrame& frame) {
+    for (std::size_t i = 0; i < poses.size(); ++i) poses[i] = frame.objects[i].pose;
+    for (std::size_t i = 0; i < shapes.size(); ++i)
+      if (frame.meshes[i].updated) shapes[i] = frame.meshes[i].displacements;
+  }
+};
+
+void add(const TraceFrame& truth, const Shown& shown, Report& report) {
+  report.fidelity->add(truth, shown.poses);
+  for (std::size_t i = 0; i < shown.shapes.size(); ++i)
+    if (truth.meshes[i].updated)
+      report.meshes[i].fidelity->add(truth.meshes[i].displacements, shown.shapes[i], touch_of(truth, i));
+}
+
+/// One of the two traces, at its next frame.
+struct Side {
+  const std::string& path;
+  TraceReader reader;
+  TraceFrame frame{};
+  bool more = false;  // the frame is one
+  std::uint64_t frames = 0;
+  std::uint64_t unmatched = 0;  // of them, whose tick the other trace lacks
+
+  Outcome advance() {
+    const auto next = reader.next(frame);
+    if (!next) return refuse(path, next.error());
+    more = *next;
+    frames += more ? 1 : 0;
+    return more ? Outcome() : check_ending(path, reader, frames);
+  }
+  bool is_before(const Side& other) const { return more && (!other.more || frame.tick < other.frame.tick); }
+};
+
+/// Both traces side by side; ticks that only one of them has are counted and passed over.
+Outcome compare_all(Side& truth, Side& replica, const CompareOptions& options, Report& report) {
+  Progress progress("compare", truth.reader.frame_count(), options.common.progress());
+  Shown shown(truth.reader.info());
+  if (auto begun = truth.advance(); !begun) return begun;
+  if (auto begun = replica.advance(); !begun) return begun;
+  while (truth.more || replica.more) {
+    const bool has_truth = !replica.is_before(truth), has_replica = !truth.is_before(replica);
+    if (has_replica) shown.take(replica.frame);
+    if (has_truth && has_replica) {
+      report.timings[0].times.measure([&] { return add(truth.frame, shown, report), true; });
+      report.ticks.add(truth.frame.tick);
+      progress.update(report.ticks.count());
+    } else {
+      ++(has_truth ? truth : replica).unmatched;
+    }
+    if (has_truth)
+      if (auto advanced = truth.advance(); !advanced) return advanced;
+    if (has_replica)
+      if (auto advanced = replica.advance(); !advanced) return advanced;
+  }
+  return {};
+}
+
+/// Says which ticks were left out.
+void note_unmatched(const Side& truth, const Side& replica, Report& report) {
+  std::string text;
+  if (truth.unmatched > 0)
+    text = fmt::format("{} of {} ticks are not in the replica", truth.unmatched, truth.unmatched + report.ticks.count());
+  if (replica.unmatched > 0) {
+    text += fmt::format("{}{} of the replica's {} ticks are not in the truth", text.empty() ? "" : " and ", replica.unmatched,
+                        replica.unmatched + report.ticks.count());
+  }
+  if (!text.empty()) report.warnings.push_back(text + "; they were left out, decode with --like " + truth.path);
+}
+
+tl::expected<Side, Failure> open(const std::string& path) {
+  auto reader = TraceReader::open(path);
+  if (!reader) return refuse(path, reader.error());
+  return Side{path, std::move(*reader)};
+}
+
+/// What is typed goes before what the stream of the replica promises, and that before the defaults.
+void set_bounds(const CompareOptions& options, const TraceInfo& info, const std::optional<TraceBounds>& promised,
+                Report& report) {
+  const bool is_typed = options.triggers.any_given() || options.meshes.any_given();
+  report.bounds_from = is_typed ? "options" : promised ? "stream" : "defaults";
+  const RigidTriggers rigid = promised && promised->stream.rigid ? *promised->stream.rigid : RigidTriggers{};
+  report.fidelity.emplace(info, options.triggers.over(rigid));
+  for (std::size_t i = 0; i < info.meshes.size(); ++i) {
+    const DeformableBounds bounds = promised ? promised->stream.deformables[i] : DeformableBounds{};
+    report.meshes.push_back(
+        {.name = info.meshes[i].name,
+         .vertices = info.meshes[i].rest.vertices.size(),
+         .fidelity = DeformableErrors(info.meshes[i].rest, options.meshes.over(bounds.thresholds, options.triggers),
+                                      options.meshes.rings(promised ? promised->rings[i] : DeformableObject{}.rings),
+                                      promised ? promised->position_exp : GridExponents{}.position),
+         .promised = bounds.kept || is_typed});
+  }
+}
+
+Outcome run(const CompareOptions& options) {
+  auto truth = open(options.truth);
+  if (!truth) return tl::unexpected(truth.error());
+  auto replica = open(options.replica);
+  if (!replica) return tl::unexpected(replica.error());
+  const TraceInfo& info = truth->reader.info();
+  if (auto same = check_same_scene(options, info, replica->reader.info()); !same) return same;
+
+  note_idle_options(*options.common.command, subjects_of(info), "truth");
+
+  Report report{.command = "compare", .files = {{"truth", options.truth}, {"replica", options.replica}}};
+  report.describe(info);
+  set_bounds(options, info, replica->reader.info().bounds, report);
+  report.timings = {{"compare", "compare, per tick"}};
+  if (auto compared = compare_all(*truth, *replica, options, report); !compared) return compared;
+  if (report.ticks.count() == 0)
+    return refuse(shown_path(options.replica) + ": shares no tick with " + shown_path(options.truth),
+                  "Decode with --like " + shown_path(options.truth) + ".");
+  note_unmatched(*truth, *replica, report);
+  print(report, options.common, Destination::standard_output);
+  return report.bounds_from == "defaults" ? Outcome() : verdict(report, options.replica);  // nobody asked for those
+}
+
+}  // namespace
+
+void setup_compare(Command& app, Action& action) {
+  auto options = std::make_shared<CompareOptions>();
+  Command& command = app.add_command("compare", "Hold a replica against the truth");
+  command.add_option("TRUTH", options->truth, "What truly happened (MCAP)")->type_name("")->required();
+  command.add_option("REPLICA", options->replica, "What a client showed (MCAP)")->type_name("")->required();
+  options->triggers.add_to(command);
+  options->meshes.add_to(command);
+  add_report_options(command, options->common);
+  command.footer(
+      "Bounds are those that the replica's stream promises; what is typed goes before. Exit status 3: one is broken.\n"
+      "Ticks that only one of the traces has are left out, and a warning says how many.\n"
+      "Example:\n"
+      "  tactus compare push.mcap replica.mcap -p 4% --visual 6mm,2deg");
+  on_chosen<CompareOptions>(command, action, options, run);
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/commands/commands.h"
+
+#include <fmt/format.h>
+
+#include <span>
+
+#include <tactus/base/shown.h>
+#include <tactus/deformable/displacement.h>
+#include <tactus/file/stream_file.h>
+#include <tactus/player.h>
+#include <tactus/trace/trace_file.h>
+#include "cli/report/report.h"
+#include "cli/report/trace_ending.h"
+
+namespace tactus::cli {
+namespace {
+
+struct DecodeOptions {
+  std::string input, output, like;
+  std::optional<std::int64_t> ticks;
+  ReplicaOptions replica;
+  CommonOptions common;
+};
+
+/// Like a trace that was cut, such a stream is decoded up to there.
+bool is_cut(const Error& error) { return error.rule == std::string_view("R-FIL-2"); }
+
+/// The ticks to write, one after the other: those of another trace, a number of them, or all up to the last packet's.
+class TickSource {
+ public:
+  static tl::expected<TickSource, Failure> create(const DecodeOptions& options) {
+    TickSource source(options);
+    if (options.like.empty()) return source;
+    auto like = TraceReader::open(options.like);
+    if (!like) return refuse(options.like, like.error());
+    source.like_.emplace(std::move(*like));
+    return source;
+  }
+  tl::expected<std::optional<std::int64_t>, Failure> next(Player& player) {
+    if (like_) {
+      const auto more = like_->next(frame_);
+      if (!more) return refuse(options_->like, more.error());
+      if (*more) return ++frames_, std::optional(frame_.tick);
+      if (auto whole = check_ending(options_->like, *like_, frames_); !whole) return tl::unexpected(whole.error());
+      return std::nullopt;
+    }
+    if (options_->ticks) return tick_ < *options_->ticks ? std::optional(tick_++) : std::nullopt;
+    const auto waiting = player.next_tick();
+    if (!waiting && is_cut(waiting.error()) && tick_ > 0) return std::nullopt;
+    if (!waiting) return refuse(options_->input, waiting.error());
+    return *waiting ? std::optional(tick_++) : std::nullopt;
+  }
+
+ private:
+  explicit TickSource(const DecodeOptions& options) : options_(&options) {}
+  const DecodeOptions* options_;
+  std::optional<TraceReader> like_;
+  TraceFrame frame_;
+  std::uint64_t frames_ = 0;
+  std::int64_t tick_ = 0;
+};
+
+/// Without a word about ticks they go on to the last packet's. A few bytes can name a tick that is hours away: ten minutes are free, and
+/// beyond that every byte earns half a second. A stream at rest takes ten bytes a second.
+Outcome check_length(std::span<const std::uint8_t> file, const DecodeOptions& options) {
+  constexpr std::uint64_t kFreeTicks = 600000, kTicksByByte = 512;
+  if (options.ticks || !options.like.empty()) return {};
+  auto reader = StreamFileReader::open(file);
+  if (!reader) return refuse(options.input, reader.error());
+  std::uint64_t last = 0;
+  while (const auto packet = reader->next().value_or(std::nullopt)) last = static_cast<std::uint64_t>(packet->tick);
+  const std::uint64_t most = kFreeTicks + kTicksByByte * file.size();
+  if (last < most) return {};
+  return refuse(fmt::format("{}: its last packet is at tick {}, far beyond what {} bytes of stream can fill",
+                            shown_path(options.input), last, file.size()),
+                "If that is right, say how many ticks to write: --ticks N.");
+}
+
+TraceInfo replica_info(const Scene& scene, const std::string& input) {
+  TraceInfo info;
+  info.tick_rate = scene.tick_rate;
+  info.source = "decode " + input;
+  for (const RigidObject& object : scene.objects) info.objects.push_back({object.name, object.dof});
+  for (const DeformableObject& object : scene.deformables) {
+    TraceDeformable& out = info.meshes.emplace_back(TraceDeformable{.name = object.name, .rest = {{}, object.triangles}});
+    for (const auto& vertex : object.rest) out.rest.vertices.push_back(to_metres(vertex, scene.grid.position));
+    out.period = object.frame_period / 256.0;
+  }
+  if (scene.bounds) {
+    info.bounds = TraceBounds{*scene.bounds, scene.grid.position, {}};
+    for (const DeformableObject& object : scene.deformables) info.bounds->rings.push_back(object.rings);
+  }
+  return info;
+}
+
+/// The shape that the player shows at a tick; new if any vertex is elsewhere than in the one before.
+void show(Player& player, std::size_t mesh, std::int64_t tick, DeformableSample& sample) {
+  sample.updated = false;
+  auto out = sample.displacements.begin();
+  const auto put = [&](double metres) {
+    const auto value = static_cast<float>(metres);
+    sample.updated = sample.updated || *out != value;
+    *out++ = value;
+  };
+  for (const auto& displacement : player.replica().displacements(mesh, tick)) {
+    const Vec3 u = to_metres(displacement, player.scene().grid.position);
+    put(u.x), put(u.y), put(u.z);
+  }
+}
+
+void count(const PlayedPacket& played, Report& report) {
+  if (played.substream > 0)
+    report.meshes[played.substream - 1].traffic->add(played.bytes, played.vertices, played.key, played.layer);
+  else if (report.traffic) report.traffic->add(strongest_reason(played), played.updates.size(), played.bytes, played.key);
+}
+
+/// Bring the player to `tick` and take over what it shows there: poses and shapes, a replica has no velocities of its own.
+Result<void> decode_tick(Player& player, std::int64_t tick, TraceFrame& frame, Report& report) {
+  while (true) {
+    TACTUS_TRY(const auto played, player.play(tick));
+    if (!played) break;
+    count(*played, report);
+  }
+  frame.tick = tick;
+  for (std::uint32_t i = 0; i < frame.objects.size(); ++i)
+    frame.objects[i].pose = to_pose(player.replica().pose(i, tick), player.scene().grid.position);
+  for (std::size_t i = 0; i < frame.meshes.size(); ++i) show(player, i, tick, frame.meshes[i]);
+  return {};
+}
+
+/// A stream that is broken at a tick can be decoded up to there.
+tl::unexpected<Failure> refuse_at(std::int64_t tick, const Error& error, const DecodeOptions& options) {
+  auto refused = refuse(options.input, error);
+  if (tick > 0) refused.value().remedy += fmt::format(" What comes before can be decoded with --ticks {}.", tick);
+  return refused;
+}
+
+Outcome decode_all(Player& player, TraceWriter& writer, const DecodeOptions& options, Report& report) {
+  auto ticks = TickSource::create(options);
+  if (!ticks) return tl::unexpected(ticks.error());
+  TraceFrame frame;
+  frame.objects.resize(player.scene().objects.size());
+  for (const DeformableObject& mesh : player.scene().deformables)
+    frame.meshes.push_back({false, std::vector<float>(3 * mesh.rest.size())});
+  const auto total = options.ticks ? std::optional(static_cast<std::uint64_t>(*options.ticks)) : std::nullopt;
+  Progress progress("decode", total, options.common.progress());
+  while (true) {
+    const auto tick = ticks->next(player);
+    if (!tick) return tl::unexpected(tick.error());
+    if (!*tick) break;
+    const auto decoded = report.timings[0].times.measure([&] { return decode_tick(player, **tick, frame, report); });
+    if (!decoded && is_cut(decoded.error()) && report.ticks.count() > 0) break;
+    if (!decoded) return refuse_at(**tick, decoded.error(), options);
+    if (const auto written = writer.write(frame); !written)
+      return refuse(options.output, place_of_tick(frame.tick), written.error());
+    report.ticks.add(**tick);
+    progress.update(report.ticks.count());
+  }
+  if (const auto done = writer.finish(); !done) return refuse(options.output, done.error());
+  return {};
+}
+
+Outcome run(const DecodeOptions& options) {
+  if (auto fits = check_no_terminal(options.output); !fits) return fits;
+  const auto bytes = read_file(options.input);
+  if (!bytes) return tl::unexpected(bytes.error());
+  const std::span file(reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size());
+  auto player = Player::open(file, {.replica = options.replica, .limits = {}});
+  if (!player) return refuse(options.input, player.error());
+  if (auto checked = check_length(file, options); !checked) return checked;
+  auto output = OutputFile::create(options.output, options.common.existing(), {options.input, options.like});
+  if (!output) return tl::unexpected(output.error());
+  const TraceInfo info = replica_info(player->scene(), options.input);
+  note_idle_options(*options.common.command, subjects_of(info), "stream");
+  auto writer = TraceWriter::create(output->working_path(), info);
+  if (!writer) return refuse(options.output, writer.error());
+
+  Report report{.command = "decode", .files = {{"stream", options.input}, {"replica", options.output}}};
+  report.describe(info);
+  if (report.moving > 0 || info.meshes.empty()) report.traffic.emplace();
+  for (const TraceDeformable& mesh : info.meshes)
+    report.meshes.push_back({.name = mesh.name, .vertices = mesh.rest.vertices.size(), .traffic = DeformableRates{}});
+  report.timings = {{"decode", "decode and show, per tick"}};
+  report.stream = {player->header_bytes(), bytes->size()};
+  if (report.traffic) report.client = options.replica.interpolation;
+  if (auto done = decode_all(*player, *writer, options, report); !done) return done;
+  const auto rest = player->next_tick();
+  if (!rest && is_cut(rest.error())) {
+    warn_cut_stream(options.input, rest.error());
+    report.warnings.emplace_back("the stream ends inside a record; everything up to there was decoded");
+  }
+  if (rest && !*rest && !player->complete()) {
+    report.warnings.emplace_back("the stream has no trailer: its writer did not finish");
+  }
+  if (auto kept = output->keep(); !kept) return kept;
+  print(report, options.common, beside(options.output));
+  return {};
+}
+
+}  // namespace
+
+void setup_decode(Command& app, Action& action) {
+  auto options = std::make_shared<DecodeOptions>();
+  Command& command = app.add_command("decode", "Reconstruct what a client shows from a stream");
+  command.add_option("STREAM", options->input, "Stream to decode, - is standard input")->type_name("")->required();
+  command.add_option("-o,--output", options->output, "Trace of the replica to write, - is standard output")
+      ->required()
+      ->type_name("FILE");
+  add_interpolation(command, options->replica);
+  Option* like = command.add_option("--like", options->like, "Write the ticks that this trace has")->type_name("TRACE");
+  command.add_option("--ticks", options->ticks, "Write so many ticks [up to the last packet]")
+      ->check(whole_number(1, 0xffffffff))
+      ->excludes(like);
+  add_output_options(command, options->common);
+  command.footer(
+      "Examples:\n"
+      "  tactus decode push.tct -o replica.mcap --like push.mcap\n"
+      "  tactus decode push.tct -o smooth.mcap --interpolate");
+  on_chosen<DecodeOptions>(command, action, options, run);
+}
+
+}  // namespace tactus::cli

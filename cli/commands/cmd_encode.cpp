@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/commands/commands.h"
+
+#include <algorithm>
+
+#include <tactus/base/shown.h>
+#include <tactus/file/stream_file.h>
+#include <tactus/receiver.h>
+#include <tactus/trace/trace_file.h>
+#include <tactus/trace/trace_scene.h>
+#include "cli/options/option_needs.h"
+#include "cli/report/report.h"
+#include "cli/report/trace_ending.h"
+
+namespace tactus::cli {
+namespace {
+
+struct EncodeOptions {
+  std::string input, output;
+  TriggerArguments triggers;
+  MeshArguments meshes;
+  CommonOptions common;
+};
+
+/// A sender and, beside it, the receiver that proves what a client sees.
+struct Session {
+  StreamFileWriter writer;
+  Sender sender;
+  Receiver receiver;
+  FrameTruth truth;
+  std::vector<Pose> shown;
+};
+
+bool has_moving(const TraceInfo& info) {
+  return std::ranges::any_of(info.objects, [](const TraceObject& o) { return o.dof != Dof::none; });
+}
+
+Result<Session> start(const TraceInfo& info, const TraceFrame& first, const EncodeOptions& options, std::ostream& out) {
+  TACTUS_TRY(SceneBuilder builder, scene_builder(info, first, options.meshes.coding()));
+  const SenderOptions wanted = options.meshes.sender(options.triggers);
+  TACTUS_TRY(const SharedScene scene, builder.promise(wanted.triggers, wanted.deformable.thresholds).build());
+  TACTUS_TRY(StreamFileWriter writer, StreamFileWriter::create(out, *scene));
+  TACTUS_TRY(Sender sender, Sender::create(scene, wanted));
+  TACTUS_TRY(Receiver receiver, Receiver::create(scene));
+  return Session{std::move(writer), std::move(sender), std::move(receiver), FrameTruth(info),
+                 std::vector<Pose>(info.objects.size())};
+}
+
+Result<void> send(Session& s, const Packet& packet, std::int64_t tick, Report& report) {
+  TACTUS_CHECK(s.writer.add(tick, packet.bytes, packet.key));
+  const auto decode = [&] { return s.receiver.push(packet.bytes); };
+  if (packet.substream == 0) {
+    report.traffic->add(packet.reason, packet.updates, packet.bytes.size(), packet.key);
+    TACTUS_CHECK(report.timings[1].times.measure(decode));
+  } else {
+    MeshReport& mesh = report.meshes[packet.substream - 1];
+    mesh.traffic->add(packet.bytes.size(), packet.updates, packet.key, packet.layer);
+    TACTUS_CHECK(mesh.decode.measure(decode));
+  }
+  return {};
+}
+
+/// Holds what the client shows in this tick against the truth.
+void judge(Session& s, const TraceFrame& frame, Report& report) {
+  Replica& replica = s.receiver.replica();
+  for (std::uint32_t i = 0; i < s.shown.size(); ++i)
+    s.shown[i] = to_pose(replica.pose(i, frame.tick), s.receiver.scene()->grid.position);
+  if (report.fidelity) report.fidelity->add(frame, s.shown);
+  for (std::size_t i = 0; i < frame.meshes.size(); ++i) {
+    if (!frame.meshes[i].updated) continue;
+    ++report.meshes[i].traffic->frames;
+    report.meshes[i].fidelity->add(frame.meshes[i].displacements, replica.displacements(i, frame.tick), touch_of(frame, i));
+  }
+}
+
+/// The time of a tick with a new shape counts for that object, that of the others for the rigid ones; where there are none, a tick
+/// without a shape is not looked at.
+StepTimes* times_of(const TraceFrame& frame, Report& report) {
+  for (std::size_t i = 0; i < frame.meshes.size(); ++i)
+    if (frame.meshes[i].updated) return &report.meshes[i].encode;
+  return report.timings.empty() ? nullptr : &report.timings[0].times;
+}
+
+Result<void> encode_frame(Session& s, const TraceFrame& frame, Report& report) {
+  if (StepTimes* times = times_of(frame, report)) {
+    const Truth truth = s.truth.of(frame);
+    TACTUS_TRY(const auto packets, times->measure([&] { return s.sender.encode(frame.tick, truth); }));
+    for (const Packet& packet : packets) TACTUS_CHECK(send(s, packet, frame.tick, report));
+  }
+  judge(s, frame, report);
+  report.ticks.add(frame.tick);
+  return {};
+}
+
+/// The trace is to blame for what its objects do, the output for bytes that it does not take.
+const std::string& to_blame(const Error& error, const EncodeOptions& options) {
+  return error.code == Errc::io ? options.output : options.input;
+}
+
+Outcome encode_all(TraceReader& reader, Session& session, TraceFrame& frame, const EncodeOptions& options, Report& report) {
+  Progress progress("encode", reader.frame_count(), options.common.progress());
+  while (true) {
+    if (const auto done = encode_frame(session, frame, report); !done) {
+      return refuse(to_blame(done.error(), options), place_of_tick(frame.tick), done.error());
+    }
+    progress.update(report.ticks.count());
+    const auto more = reader.next(frame);
+    if (!more) return refuse(options.input, more.error());
+    if (!*more) break;
+  }
+  if (const auto done = session.writer.finish(); !done) return refuse(options.output, done.error());
+  return {};
+}
+
+Outcome run(const EncodeOptions& options) {
+  if (auto fits = check_no_terminal(options.output); !fits) return fits;
+  auto reader = TraceReader::open(options.input);
+  if (!reader) return refuse(options.input, reader.error());
+  TraceFrame frame;
+  const auto any = reader->next(frame);
+  if (!any) return refuse(options.input, any.error());
+  if (!*any) {
+    if (auto whole = check_ending(options.input, *reader, 0); !whole) return whole;
+    return refuse(shown_path(options.input) + ": the trace has no frames", "Record or simulate at least one tick.");
+  }
+  note_idle_options(*options.common.command, subjects_of(reader->info()), "trace");
+  auto output = OutputFile::create(options.output, options.common.existing(), {options.input});
+  if (!output) return tl::unexpected(output.error());
+  const auto stream = output->open();
+  if (!stream) return tl::unexpected(stream.error());
+
+  auto session = start(reader->info(), frame, options, **stream);
+  if (!session) return refuse(to_blame(session.error(), options), session.error());
+  Report report{.command = "encode", .files = {{"trace", options.input}, {"stream", options.output}}};
+  report.describe(reader->info());
+  if (has_moving(reader->info()) || reader->info().meshes.empty()) {
+    report.traffic.emplace();
+    report.fidelity.emplace(reader->info(), options.triggers.triggers());
+    report.timings = {{"encode", "encode, per tick"}, {"decode", "decode, per packet"}};
+  }
+  add_meshes(reader->info(), options.meshes, options.triggers, report);
+  for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.coding().deformable.profile == DeformableProfile::main;
+  if (auto done = encode_all(*reader, *session, frame, options, report); !done) return done;
+  if (auto whole = check_ending(options.input, *reader, report.ticks.count()); !whole) return whole;
+  if (reader->cut_short()) report.warnings.emplace_back("the trace ends without its index; everything up to there was encoded");
+  if (auto kept = output->keep(); !kept) return kept;
+  report.stream = {session->writer.header_bytes(), session->writer.bytes()};
+  report.bounds_from = options.triggers.any_given() || options.meshes.any_given() ? "options" : "defaults";
+  print(report, options.common, beside(options.output));
+  return verdict(report, options.output);
+}
+
+}  // namespace
+
+void setup_encode(Command& app, Action& action) {
+  auto options = std::make_shared<EncodeOptions>();
+  Command& command = app.add_command("encode", "Turn a trace into a stream of packets");
+  command.add_option("TRACE", options->input, "Trace to encode (MCAP), - is standard input")->type_name("")->required();
+  command.add_option("-o,--output", options->output, "Stream to write, - is standard output")->required()->type_name("FILE");
+  options->triggers.add_to(command);
+  options->triggers.add_encoder_to(command);
+  options->meshes.add_to(command);
+  options->meshes.add_encoder_to(command);
+  add_output_options(command, options->common);
+  command.footer(
+      "Examples:\n"
+      "  tactus encode push.mcap -o push.tct -p 4% --visual 6mm,2deg\n"
+      "  tactus encode tosses.mcap -o tosses.tct --visual 5mm,4deg --haptic off\n"
+      "  tactus encode membrane.mcap -o membrane.tct -p 2.5% --deformable-visual 0.25mm --basis 48");
+  on_chosen<EncodeOptions>(command, action, options, run);
+}
+
+}  // namespace tactus::cli

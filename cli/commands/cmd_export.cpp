@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/commands/commands.h"
+
+#include <tactus/trace/csv.h>
+#include <tactus/trace/trace_file.h>
+#include "cli/report/report.h"
+#include "cli/report/trace_ending.h"
+
+namespace tactus::cli {
+namespace {
+
+struct ExportOptions {
+  std::string input, output = "-";
+  CommonOptions common;
+};
+
+Outcome run(const ExportOptions& options) {
+  auto reader = TraceReader::open(options.input);
+  if (!reader) return refuse(options.input, reader.error());
+  auto output = OutputFile::create(options.output, options.common.existing(), {options.input});
+  if (!output) return tl::unexpected(output.error());
+  const auto stream = output->open();
+  if (!stream) return tl::unexpected(stream.error());
+  Report report{.command = "export csv", .files = {{"trace", options.input}, {"table", options.output}}};
+  report.timings = {{"export", "export, whole file"}};
+  const auto rows = report.timings[0].times.measure([&] { return export_csv(*reader, **stream); });
+  if (!rows) return refuse((*stream)->fail() ? options.output : options.input, rows.error());
+  if (auto whole = check_ending(options.input, *reader, rows->count()); !whole) return whole;
+  if (auto kept = output->keep(); !kept) return kept;
+  report.describe(reader->info());
+  report.ticks = *rows;
+  if (options.common.json || options.output != "-") print(report, options.common, beside(options.output));
+  return {};
+}
+
+}  // namespace
+
+void setup_export(Command& app, Action& action) {
+  auto options = std::make_shared<ExportOptions>();
+  Command& group = app.add_command("export", "Write a trace in another format");
+  group.footer("Example:\n  tactus export csv push.mcap -o push.csv");
+  Command& command = group.add_command("csv", "One row per tick, 17 significant digits; rigid objects and users, no meshes");
+  command.add_option("TRACE", options->input, "Trace to export (MCAP), - is standard input")->type_name("")->required();
+  command.add_option("-o,--output", options->output, "CSV to write [standard output]")->type_name("FILE");
+  add_output_options(command, options->common);
+  command.footer("Example:\n  tactus export csv push.mcap -o push.csv");
+  on_chosen<ExportOptions>(command, action, options, run);
+}
+
+}  // namespace tactus::cli

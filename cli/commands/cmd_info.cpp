@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/commands/commands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include <tactus/base/shown.h>
+#include <tactus/metrics/errors.h>
+#include <tactus/metrics/rates.h>
+#include <tactus/trace/mcap_reader.h>
+#include <tactus/trace/trace_file.h>
+#include "cli/commands/rereadable_input.h"
+#include "cli/options/option_needs.h"
+#include "cli/output.h"
+#include "cli/report/figures.h"
+#include "cli/report/info_json.h"
+#include "cli/report/json_parts.h"
+#include "cli/report/table.h"
+#include "cli/report/trace_ending.h"
+#ifdef TACTUS_HAS_SIM
+#include <tactus/sim/scene/scene.h>
+#endif
+
+namespace tactus::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct InfoOptions {
+  std::string input;
+  std::string readable;  // where to read it, again and again
+  bool packets = false, json = false;
+  const Command* command = nullptr;
+};
+
+std::string text_of(const Json& value) {
+  if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
+  if (value.is_null()) return "-";
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+/// Foreign names are cut, lists that this program made are not.
+std::string cell_of(const std::string& name, const Json& value) {
+  const bool is_list = name == "object:level" || name == "grid levels";
+  return is_list ? text_of(value) : shown(text_of(value));
+}
+
+/// Scalars of an object as "name value" lines.
+void print_scalars(const Json& object) {
+  for (const auto& [name, value] : object.items()) {
+    if (value.is_primitive()) fmt::print("{:<30} {}\n", name, cell_of(name, value));
+  }
+}
+
+/// A list of equal objects as a table.
+void print_list(const Json& list) {
+  if (list.empty()) return;
+  Table table;
+  std::vector<std::string> cells;
+  for (const auto& item : list.front().items()) cells.push_back(item.key());
+  table.heading(cells);
+  for (const Json& entry : list) {
+    cells.clear();
+    for (const auto& item : entry.items()) cells.push_back(cell_of(item.key(), item.value()));
+    table.row(cells);
+  }
+  fmt::print("\n");
+  table.print(stdout);
+}
+
+void print_info(const Json& info) {
+  print_scalars(info);
+  for (const auto& [name, value] : info.items()) {
+    if (value.is_array()) print_list(value);
+  }
+}
+
+std::string name_of_substream(const Scene& scene, std::size_t substream) {
+  return substream == 0 ? "rigid objects" : scene.deformables[substream - 1].name;
+}
+
+Json packet_json(const PlayedPacket& played, const Scene& scene) {
+  const bool is_rigid = played.substream == 0;
+  Json out{{"tick", played.tick},
+           {"byte", played.offset},
+           {"sequence", played.sequence},
+           {"bytes", played.bytes},
+           {"key", played.key ? "key" : "-"}};
+  if (!scene.deformables.empty()) out["substream"] = name_of_substream(scene, played.substream);
+  out["reason"] = is_rigid ? kReasons[static_cast<std::size_t>(strongest_reason(played))] : "-";
+  std::string updates;
+  for (const RigidUpdate& u : played.updates) updates += fmt::format("{}{}:{}", updates.empty() ? "" : " ", u.object, u.level);
+  out["object:level"] = updates.empty() ? "-" : updates;
+  if (!scene.deformables.empty()) {
+    out["layer"] = is_rigid || played.layer == Layer::all ? "-" : kLayers[static_cast<std::size_t>(played.layer)];
+    out["vertices"] = is_rigid ? Json() : Json(played.vertices);
+  }
+  return out;
+}
+
+std::string text_of(const Sizes& sizes) {
+  if (sizes.packets == 0) return "-";
+  return fmt::format("{} to {}, mean {:.2f}", sizes.smallest, sizes.largest,
+                     static_cast<double>(sizes.bytes) / static_cast<double>(sizes.packets));
+}
+
+/// What is said of rigid objects' packets.
+void show_rigid(const StreamTotals& totals, Json& out) {
+  const RateMetrics& traffic = totals.traffic;
+  out["packets"] = traffic.all_packets();
+  out["updates"] = traffic.updates;
+  out["key packets"] = traffic.keys;
+  if (traffic.all_packets() == 0) return;
+  for (std::size_t i = kReasons.size(); i-- > 0;) out[fmt::format("for {}", kReasons[i])] = traffic.packets[i];
+  out["bytes"] = traffic.bytes;
+  out["bytes per packet"] = text_of(totals.rigid);
+  std::string text;
+  for (std::size_t i = 0; i < totals.levels.size(); ++i) {
+    if (totals.levels[i] > 0) text += fmt::format("{}{} x level {}", text.empty() ? "" : ", ", totals.levels[i], i);
+  }
+  out["grid levels"] = text;
+}
+
+/// How a mesh is coded, and what of it the stream holds.
+Json mesh_json(const DeformableObject& mesh, const Scene& scene, const DeformableRates& t) {
+  const bool is_main = mesh.profile == DeformableProfile::main;
+  return {{"deformable", mesh.name},
+          {"profile", is_main ? mesh.layered ? "main, layered" : "main"
+                              : fmt::format("thesis, q {}{}", mesh.quant_bits, mesh.models_kept ? ", models kept" : "")},
+          {"vertices", mesh.rest.size()},
+          {"triangles", mesh.triangles.size()},
+          {"rings", mesh.rings},
+          {"modes", mesh.basis.steps.size()},
+          {"frame [ms]", is_main ? Json(1e3 / 256 * mesh.frame_period / scene.tick_rate) : Json("-")},
+          {"packets", t.sizes.size()},
+          {"keys", t.keys},
+          {"bytes", t.bytes},
+          {"p99", t.quantile(0.99)},
+          {"largest", t.quantile(1)}};
+}
+
+/// What of a mesh went in which layer.
+Json layers_json(const DeformableRates& t) {
+  Json out;
+  for (std::size_t i = 0; i < t.layers.size(); ++i) {
+    out[fmt::format("{} packets", kLayers[i])] = t.layers[i].packets;
+    out[fmt::format("{} bytes", kLayers[i])] = t.layers[i].bytes;
+  }
+  return out;
+}
+
+Json header_json(const Scene& h, std::uint64_t header_bytes, std::size_t size) {
+  const auto step = [](std::uint8_t exponent) { return 1.0 / static_cast<double>(std::uint64_t{1} << exponent); };
+  Json out{{"kind", "stream"}};
+  if (!h.objects.empty() || h.deformables.empty()) out["rigid profile"] = "thesis";
+  out["file bytes"] = size;
+  out["header bytes"] = header_bytes;
+  out["ticks per second"] = h.tick_rate;
+  out["position grid [um]"] = 1e6 * step(h.grid.position);
+  out["rotation grid [urad]"] = 4e6 * step(h.grid.rotation);
+  out["extrapolation at most [ticks]"] = h.max_extrapolation;
+  out["baselines kept"] = h.baseline_span;
+  return out;
+}
+
+/// A stream that was cut is told of like a trace that was: everything before can be used.
+Outcome end_of(const InfoOptions& options, const std::optional<Error>& error) {
+  if (!error) return {};
+  if (error->rule != std::string_view("R-FIL-2")) return refuse(options.input, *error);
+  std::fflush(stdout);
+  warn_cut_stream(options.input, *error);
+  return {};
+}
+
+Outcome info_stream(const InfoOptions& options) {
+  const auto bytes = read_file(options.readable);
+  if (!bytes) return tl::unexpected(bytes.error());
+  auto player = Player::open({reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()});
+  if (!player) return refuse(options.input, player.error());
+  Json info = header_json(player->scene(), player->header_bytes(), bytes->size());
+  StreamTotals totals(player->scene());
+  Json packets = Json::array();
+  std::optional<Error> error;
+  while (true) {
+    const auto played = player->play(INT64_MAX);
+    if (!played) error = played.error();
+    if (!played || !*played) break;
+    totals.add(**played);
+    if (options.packets) packets.push_back(options.json ? packet_info_json(**played) : packet_json(**played, player->scene()));
+  }
+  if (options.json) {
+    info = stream_info_json(*player, totals, bytes->size(), {error, player->complete()});
+    if (options.packets) info["packet_list"] = std::move(packets);
+    fmt::print("{}\n", text_of_json(info));
+    return end_of(options, error);
+  }
+  if (totals.traffic.all_packets() > 0 || totals.meshes.empty()) show_rigid(totals, info);
+  info["last tick"] = totals.last_tick;
+  info["ending"] = error                ? fmt::format("broken at {} ({})", place_of_bit(error->bit_offset), error->rule)
+                   : player->complete() ? "complete"
+                                        : "no trailer: the writer did not finish";
+  for (const RigidObject& o : player->scene().objects) {
+    const Pose pose = to_pose(o.initial, player->scene().grid.position);
+    info["objects"].push_back(
+        {{"object", o.name},
+         {"moves along", dof_text(o.dof)},
+         {"first position [m]", fmt::format("{:.4f} {:.4f} {:.4f}", pose.position.x, pose.position.y, pose.position.z)}});
+  }
+  const bool is_layered = std::ranges::any_of(totals.meshes, [](const DeformableRates& t) {
+    return std::ranges::any_of(t.layers, [](const auto& h) { return h.packets > 0; });
+  });
+  for (std::size_t i = 0; i < totals.meshes.size(); ++i) {
+    info["deformables"].push_back(mesh_json(player->scene().deformables[i], player->scene(), totals.meshes[i]));
+    if (is_layered) info["deformables"].back().update(layers_json(totals.meshes[i]));
+  }
+  if (options.packets) info["packet list"] = std::move(packets);
+  print_info(info);
+  return end_of(options, error);
+}
+
+/// Topics with their types and message counts, from the container alone.
+tl::expected<Json, Failure> channels_json(const InfoOptions& options) {
+  const std::string& path = options.input;
+  auto source = ByteSource::open_file(options.readable);
+  if (!source) return refuse(path, source.error());
+  auto reader = mcap::Reader::open(std::move(*source));
+  if (!reader) return refuse(path, reader.error());
+  std::map<std::uint16_t, std::uint64_t> counts;
+  while (true) {
+    const auto item = reader->next();
+    if (!item) return refuse(path, item.error());
+    if (*item == mcap::Item::end) break;
+    if (*item == mcap::Item::message) ++counts[reader->message().channel_id];
+  }
+  Json list = Json::array();
+  for (const auto& [id, channel] : reader->channels()) {
+    const auto schema = reader->schemas().find(channel.schema_id);
+    list.push_back({{"topic", channel.topic},
+                    {"type", schema == reader->schemas().end() ? "-" : schema->second.name},
+                    {"messages", counts[id]}});
+  }
+  return list;
+}
+
+Outcome info_trace(const InfoOptions& options) {
+  auto reader = TraceReader::open(options.readable);
+  if (!reader) return refuse(options.input, reader.error());
+  const TraceInfo& trace = reader->info();
+  note_idle_options(*options.command, subjects_of(trace), "trace");
+  TraceFrame frame;
+  std::uint64_t frames = 0;
+  std::int64_t first = 0;
+  std::vector<std::uint64_t> shapes(trace.meshes.size());
+  while (true) {
+    const auto more = reader->next(frame);
+    if (!more) return refuse(options.input, more.error());
+    if (!*more) break;
+    for (std::size_t i = 0; i < shapes.size(); ++i) shapes[i] += frame.meshes[i].updated ? 1U : 0U;
+    if (frames++ == 0) first = frame.tick;
+  }
+  auto channels = channels_json(options);
+  if (!channels) return tl::unexpected(channels.error());
+  if (options.json) {
+    Json info = trace_info_json(trace, {frames, first, frame.tick, !reader->cut_short(), shapes});
+    info["channels"] = std::move(*channels);
+    fmt::print("{}\n", text_of_json(info));
+    return check_ending(options.input, *reader, frames);
+  }
+  Json info{{"kind", "trace"},
+            {"source", trace.source},
+            {"ticks per second", trace.tick_rate},
+            {"frames", frames},
+            {"first tick", first},
+            {"last tick", frame.tick},
+            {"seconds", static_cast<double>(frame.tick - first + (frames > 0 ? 1 : 0)) / trace.tick_rate},
+            {"scene", trace.scene.empty() ? "none" : fmt::format("{} bytes of TOML", trace.scene.size())},
+            {"ending", reader->cut_short() ? "cut short; everything up to there was read" : "complete"}};
+  for (const TraceObject& o : trace.objects) info["objects"].push_back({{"object", o.name}, {"moves along", dof_text(o.dof)}});
+  for (std::size_t i = 0; i < trace.meshes.size(); ++i) {
+    const TriMesh& rest = trace.meshes[i].rest;
+    info["deformables"].push_back({{"deformable", trace.meshes[i].name},
+                                   {"vertices", rest.vertices.size()},
+                                   {"triangles", rest.triangles.size()},
+                                   {"fixed", trace.meshes[i].fixed.size()},
+                                   {"period [ticks]", trace.meshes[i].period},
+                                   {"new shapes", shapes[i]}});
+  }
+  for (const TraceUser& user : trace.users) info["users"].push_back({{"user", user.name}});
+  info["channels"] = std::move(*channels);
+  print_info(info);
+  return check_ending(options.input, *reader, frames);
+}
+
+#ifdef TACTUS_HAS_SIM
+Outcome info_scene(const InfoOptions& options) {
+  const auto scene = sim::load_scene(options.input);
+  if (!scene) return refuse_located(scene.error());
+  note_idle_options(*options.command, {}, "scene");
+  if (options.json) {
+    fmt::print("{}\n", text_of_json(scene_info_json(*scene)));
+    return {};
+  }
+  Json info{{"kind", "scene"},
+            {"name", scene->name},
+            {"seconds", scene->duration},
+            {"floor", scene->floor ? fmt::format("at {} m", *scene->floor) : "none"}};
+  if (scene->touch) info["touch stiffness"] = fmt::format("{} N/m", scene->touch->stiffness);
+  for (const sim::SceneObject& o : scene->objects) {
+    info["objects"].push_back(
+        {{"object", o.name},
+         {"moves along", dof_text(o.dof)},
+         {"mass [kg]", o.mass},
+         {"friction", o.friction},
+         {"shape", o.surface.triangles.empty() ? "box" : fmt::format("{} triangles", o.surface.triangles.size())},
+         {"size [m]", fmt::format("{:.6g} {:.6g} {:.6g}", o.size.x, o.size.y, o.size.z)}});
+  }
+  for (const sim::SceneMsd& m : scene->msds) {
+    info["one-dimensional objects"].push_back({{"object", m.name},
+                                               {"moves along", dof_text(m.dof())},
+                                               {"stiffness [N/m]", m.object.stiffness},
+                                               {"damping [N s/m]", m.object.damping},
+                                               {"mass [kg]", m.object.mass},
+                                               {"deformed", fmt::format("every {} ms", m.rate)}});
+  }
+  for (const sim::SceneDeformable& d : scene->deformables) {
+    info["deformables"].push_back({{"deformable", d.name},
+                                   {"vertices", d.mesh.vertices.size()},
+                                   {"tetrahedra", d.mesh.tets.size()},
+                                   {"fixed vertices", d.fixed.size()},
+                                   {"deformed", fmt::format("every {} ms", d.rate)},
+                                   {"coupling [N/m]", d.stiffness}});
+  }
+  for (const sim::SceneUser& u : scene->users) info["users"].push_back({{"user", u.name}, {"phases of the path", u.path.size()}});
+  print_info(info);
+  return {};
+}
+#endif
+
+Outcome run(const InfoOptions& options) {
+#ifdef TACTUS_HAS_SIM
+  if (options.input.ends_with(".toml")) return info_scene(options);
+#endif
+  const auto input = RereadableInput::open(options.input);
+  if (!input) return tl::unexpected(input.error());
+  InfoOptions readable = options;
+  readable.readable = input->path();
+  std::ifstream file(readable.readable, std::ios::binary);
+  std::string magic(mcap::kMagic.size(), '\0');
+  file.read(magic.data(), static_cast<std::streamsize>(magic.size()));
+  if (magic.substr(0, 5) == "\x89MCAP") return info_trace(readable);
+  return info_stream(readable);
+}
+
+}  // namespace
+
+void setup_info(Command& app, Action& action) {
+  auto options = std::make_shared<InfoOptions>();
+  Command& command = app.add_command("info", "Tell what a stream, trace or scene holds");
+  options->command = &command;
+  command
+      .add_option("FILE", options->input,
+                  "Stream (.tct), trace (.mcap) or scene (.toml); - is a stream or trace on standard input")
+      ->type_name("")
+      ->required();
+  command.add_flag("--packets", options->packets, "List every packet of a stream");
+  command.add_flag("--json", options->json, "As JSON");
+  command.footer("Example:\n  tactus info push.tct --packets");
+  on_chosen<InfoOptions>(command, action, options, run);
+}
+
+}  // namespace tactus::cli

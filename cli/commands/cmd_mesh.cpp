@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/commands/commands.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include <tactus/base/shown.h>
+#include <tactus/sim/tets/tet_files.h>
+#include <tactus/sim/tets/tet_quality.h>
+#include "cli/report/json_parts.h"
+#include "cli/report/report.h"
+#include "cli/report/table.h"
+#ifdef TACTUS_HAS_SURFACE
+#include <tactus/sim/surface/surface_file.h>
+#include <tactus/sim/surface/tetgen.h>
+#endif
+
+namespace tactus::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+struct MeshOptions {
+  std::string input, slab, output;
+  double cell = 0.01;      // [m]
+  double length_unit = 1;  // [m]
+  double edge = 0;         // [m], 0: as large as may be
+  double quality = 0;      // 0: any
+  double time_limit = 60;  // [s]
+  bool split_surface = false;
+  CommonOptions common;
+};
+
+/// What became of the input, and how long each part took.
+struct MeshReport {
+  sim::TetMesh mesh;
+  struct Note {
+    std::string key, name, text;
+    std::uint64_t number;
+  };
+  std::vector<Note> notes;
+  std::vector<std::pair<std::string, StepTimes>> times;
+
+  template <class Work>
+  auto measure(const std::string& step, Work&& work) {
+    return times.emplace_back(step, StepTimes{}).second.measure(std::forward<Work>(work));
+  }
+};
+
+bool is_tet_file(const std::string& path) { return path.ends_with(".msh") || path.ends_with(".node") || path.ends_with(".ele"); }
+
+void scale(std::vector<Vec3>& points, double unit) {
+  for (Vec3& p : points) p = unit * p;
+}
+
+Outcome make_slab(const MeshOptions& options, MeshReport& report) {
+  std::array<std::uint32_t, 3> cells{};
+  const char *at = options.slab.data(), *const end = at + options.slab.size();
+  bool good = true;
+  for (std::size_t i = 0; i < cells.size() && good; ++i) {
+    const auto parsed = std::from_chars(at, end, cells[i]);
+    at = parsed.ptr;
+    good = parsed.ec == std::errc() && cells[i] >= 1 && (i == 2 ? at == end : at != end && *at++ == 'x');
+  }
+  if (!good) return refuse_arguments("--slab " + options.slab + ": not three numbers of cells", "Write it like 16x20x1.");
+  const auto [x, y, z] = cells;
+  const double vertices = (x + 1.0) * (y + 1.0) * (z + 1.0), tets = 6.0 * x * y * z;
+  if (vertices > static_cast<double>(kMaxMeshVertices) || tets > static_cast<double>(sim::kMaxTets))
+    return refuse_arguments("--slab " + options.slab + ": more than 2^20 vertices or 2^22 tetrahedra",
+                            "Take fewer and larger cells.");
+  report.mesh = report.measure("make", [&] { return tactus::sim::make_slab(cells[0], cells[1], cells[2], options.cell); });
+  return {};
+}
+
+Outcome read_tets(const MeshOptions& options, MeshReport& report) {
+  note_idle_options(*options.common.command, {}, "file");
+  auto file = report.measure("read", [&] { return sim::read_tet_mesh(options.input); });
+  if (!file) return refuse_located(file.error());
+  if (file->ignored_elements > 0)
+    report.notes.push_back({"ignored_elements", "left out",
+                            counted(file->ignored_elements, "element") + " that are no tetrahedra", file->ignored_elements});
+  report.mesh = std::move(file->mesh);
+  scale(report.mesh.vertices, options.length_unit);
+  return {};
+}
+
+#ifdef TACTUS_HAS_SURFACE
+/// Volume of a regular tetrahedron.
+double volume_of_edge(double edge) { return edge * edge * edge / (6 * std::numbers::sqrt2); }
+
+Outcome fill_surface(const MeshOptions& options, MeshReport& report) {
+  auto file = report.measure("read", [&] { return sim::read_surface(options.input); });
+  if (!file) return refuse_located(file.error());
+  if (file->polygons > 0)
+    report.notes.push_back({"cut_polygons", "cut", counted(file->polygons, "polygon") + " into triangles", file->polygons});
+  if (file->unused_vertices > 0)
+    report.notes.push_back(
+        {"unused_vertices", "left out", counted(file->unused_vertices, "vertex") + " of no triangle", file->unused_vertices});
+  scale(file->mesh.vertices, options.length_unit);
+  const sim::FillOptions settings{.boundary = options.split_surface ? sim::Boundary::split : sim::Boundary::keep,
+                                  .max_volume = volume_of_edge(options.edge),
+                                  .quality = options.quality,
+                                  .time_limit = options.time_limit};
+  auto filled = report.measure("fill", [&] { return fill(file->mesh, settings); });
+  if (!filled) {
+    sim::SurfaceError error = filled.error();
+    error.file = options.input;
+    return refuse_located(error);
+  }
+  report.mesh = std::move(*filled);
+  return {};
+}
+#else
+Outcome fill_surface(const MeshOptions& options, MeshReport&) {
+  return refuse(shown_path(options.input) + ": this program was built without reading surfaces",
+                "Install libopenmesh-dev and build again, or give .node, .ele or .msh.");
+}
+#endif
+
+tl::expected<OutputFile, Failure> open_output(const std::string& path, const MeshOptions& options, const std::string& beside,
+                                              void (*write)(std::ostream&, const sim::TetMesh&), const sim::TetMesh& mesh) {
+  auto file = OutputFile::create(path, options.common.existing(), {options.input, beside});
+  if (!file) return file;
+  const auto out = file->open();
+  if (!out) return tl::unexpected(out.error());
+  write(**out, mesh);
+  return file;
+}
+
+/// Both files of a pair are complete before either takes its name.
+Outcome write_mesh(const MeshOptions& options, const sim::TetMesh& mesh) {
+  if (options.output.ends_with(".msh")) {
+    auto file = open_output(options.output, options, "", sim::write_msh, mesh);
+    return file ? file->keep() : tl::unexpected(file.error());
+  }
+  const std::string ele = options.output.substr(0, options.output.size() - 5) + ".ele";
+  auto node_file = open_output(options.output, options, ele, sim::write_node, mesh);
+  if (!node_file) return tl::unexpected(node_file.error());
+  auto ele_file = open_output(ele, options, options.output, sim::write_ele, mesh);
+  if (!ele_file) return tl::unexpected(ele_file.error());
+  if (auto kept = node_file->keep(); !kept) return kept;
+  return ele_file->keep();
+}
+
+Json to_json(const MeshOptions& options, const MeshReport& report) {
+  const sim::TetQuality q = quality(report.mesh);
+  const sim::TetSurface outside = surface(report.mesh);
+  const sim::Bounds box = sim::bounds(report.mesh.vertices);
+  double sum = 0;
+  for (std::size_t t = 0; t < report.mesh.tets.size(); ++t) sum += volume(report.mesh, t);
+  Json out{{"schema", "tactus.mesh/2"}, {"files", {{"output", options.output}}}};
+  if (options.slab.empty()) out["files"]["input"] = options.input;
+  else out["slab"] = options.slab;
+  for (const MeshReport::Note& note : report.notes) out[note.key] = note.number;
+  out["vertices"] = report.mesh.vertices.size();
+  out["tetrahedra"] = report.mesh.tets.size();
+  out["surface_vertices"] = outside.mesh.vertices.size();
+  out["surface_triangles"] = outside.mesh.triangles.size();
+  out["volume_m3"] = sum;
+  out["box_m"] = {{box.low.x, box.low.y, box.low.z}, {box.high.x, box.high.y, box.high.z}};
+  out["smallest_angle_rad"] = {{"value", q.smallest_angle.value}, {"tetrahedron", q.smallest_angle.tet}};
+  out["largest_angle_rad"] = {{"value", q.largest_angle.value}, {"tetrahedron", q.largest_angle.tet}};
+  out["shape"] = {{"worst", q.shape.value}, {"tetrahedron", q.shape.tet}, {"mean", q.mean_shape}};
+  for (const auto& [step, time] : report.times) out["time"][step] = time_json(time, 0);
+  return out;
+}
+
+void print_text(const Json& r, const MeshReport& report, const MeshOptions& options) {
+  Table head;
+  head.heading({"mesh"});
+  head.row({fmt::format("  {:<8} {}", "from", options.slab.empty() ? options.input : "slab " + options.slab)});
+  head.row({fmt::format("  {:<8} {}", "to", options.output)});
+  for (const MeshReport::Note& note : report.notes) head.row({fmt::format("  {:<8} {}", note.name, note.text)});
+  head.print(stdout);
+  fmt::print("\n");
+
+  Table figures;
+  figures.heading({"size", "all", "on the surface"});
+  figures.row({"  vertices", r["vertices"].dump(), r["surface_vertices"].dump()});
+  figures.row({"  triangles", "", r["surface_triangles"].dump()});
+  figures.row({"  tetrahedra", r["tetrahedra"].dump()});
+  figures.row({"  volume [m3]", fmt::format("{:.6g}", r["volume_m3"].get<double>())});
+  figures.heading({"box [m]", "from", "to", "size"});
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double low = r["box_m"][0][i], high = r["box_m"][1][i];
+    figures.row({fmt::format("  {}", "xyz"[i]), fmt::format("{:.6g}", low), fmt::format("{:.6g}", high),
+                 fmt::format("{:.6g}", high - low)});
+  }
+  figures.heading({"quality", "worst", "tetrahedron", "mean"});
+  const auto angle = [&](const char* name, const Json& worst) {
+    figures.row({name, fmt::format("{:.4g}", worst["value"].get<double>() / kDegree), worst["tetrahedron"].dump()});
+  };
+  angle("  smallest angle between faces [deg]", r["smallest_angle_rad"]);
+  angle("  largest angle between faces [deg]", r["largest_angle_rad"]);
+  figures.row({"  shape, 1 is regular, 0 is flat", fmt::format("{:.4g}", r["shape"]["worst"].get<double>()),
+               r["shape"]["tetrahedron"].dump(), fmt::format("{:.4g}", r["shape"]["mean"].get<double>())});
+  figures.heading({"time", "ms", "CPU ms"});
+  for (const auto& [step, time] : report.times)
+    figures.row({"  " + step, fmt::format("{:.1f}", 1e3 * time.total(TimeOf::wall)),
+                 fmt::format("{:.1f}", 1e3 * time.total(TimeOf::cpu))});
+  figures.print(stdout);
+}
+
+Outcome run(const MeshOptions& options) {
+  if (!options.output.ends_with(".node") && !options.output.ends_with(".msh"))
+    return refuse_arguments(options.output + ": no name of a mesh",
+                            "Give -o NAME.node (with NAME.ele beside it) or -o NAME.msh.");
+  MeshReport report;
+  Outcome made = !options.slab.empty()        ? make_slab(options, report)
+                 : is_tet_file(options.input) ? read_tets(options, report)
+                                              : fill_surface(options, report);
+  if (!made) return made;
+  const auto checked = report.measure("check", [&] { return check(report.mesh); });
+  if (!checked) return refuse((options.slab.empty() ? options.input : options.slab) + ": " + to_string(checked.error()), "");
+  if (auto written = report.measure("write", [&] { return write_mesh(options, report.mesh); }); !written) return written;
+  if (options.common.quiet && !options.common.json) return {};
+  const Json figures = to_json(options, report);
+  if (options.common.json) fmt::print("{}\n", text_of_json(figures));
+  else print_text(figures, report, options);
+  return {};
+}
+
+}  // namespace
+
+void setup_mesh(Command& app, Action& action) {
+  auto options = std::make_shared<MeshOptions>();
+  Command& command = app.add_command("mesh", "Fill a surface with tetrahedra, or make a slab of them");
+  Option* input =
+      command.add_option("FILE", options->input, "Surface (.obj, .ply, .stl, .off) or tetrahedra (.node, .ele, .msh)")
+          ->type_name("");
+  Option* slab = command.add_option("--slab", options->slab, "Cells along x, y, z, six tetrahedra each, such as 16x20x1")
+                     ->type_name("NxNxN");
+  slab->excludes(input);
+  command.add_option("-o,--output", options->output, "Mesh to write: NAME.node with NAME.ele beside it, or NAME.msh (Gmsh)")
+      ->required()
+      ->type_name("FILE");
+  add_quantity(command, "--cell", options->cell, Dimension::length, "Edge of the slab's cells [10mm]")
+      ->check(within(Dimension::length, "1um", "1000000m"))
+      ->needs(slab);
+  add_quantity(command, "--length-unit", options->length_unit, Dimension::length, "Metres per unit of the file's lengths [1m]")
+      ->check(within(Dimension::length, "1um", "1000000m"))
+      ->excludes(slab);
+  add_quantity(command, "--edge", options->edge, Dimension::length, "Tetrahedra at most as large as a regular one with this edge")
+      ->check(above_zero(Dimension::length))
+      ->excludes(slab);
+  command.add_option("--quality", options->quality, "Largest circumsphere radius by shortest edge, 1.1 or more")
+      ->check(number(1.1, 100))
+      ->excludes(slab)
+      ->type_name("RATIO");
+  command
+      .add_flag("--split-surface", options->split_surface,
+                "Add points on the surface too, so that --edge and --quality hold there")
+      ->excludes(slab);
+  add_quantity(command, "--time-limit", options->time_limit, Dimension::time, "Give up after this long [60s]")
+      ->check(above_zero(Dimension::time))
+      ->excludes(slab);
+  add_output_options(command, options->common);
+  command.footer(
+      "Examples:\n"
+      "  tactus mesh bunny.stl --length-unit 1mm --edge 5mm --quality 1.4 -o bunny.node\n"
+      "  tactus mesh --slab 16x20x1 --cell 10mm -o membrane.msh");
+  command.on_chosen([&action, options, input, slab] {
+    if (input->count() + slab->count() == 0) miss_option("FILE or --slab");
+    action = [options] { return run(*options); };
+  });
+}
+
+}  // namespace tactus::cli

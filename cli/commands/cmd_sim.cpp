@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/commands/commands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include <tactus/file/stream_file.h>
+#include <tactus/scene/scene_syntax.h>
+#include <tactus/sim/simulation.h>
+#include <tactus/trace/trace_file.h>
+#include "cli/commands/stop.h"
+#include "cli/laboratory/stiffness_map.h"
+#include "cli/options/option_needs.h"
+#include "cli/report/report.h"
+#include "cli/report/table.h"
+#include "cli/report/trace_ending.h"
+
+namespace tactus::cli {
+namespace {
+
+struct SimOptions {
+  std::string scene, output, stream, replay;
+  std::string stiffness_map;   // CSV to write
+  std::string method, solver;  // of deformable objects, empty: the scene's
+  std::uint32_t rate = 0;      // ticks between deformations, 0: the scene's
+  std::uint64_t seed = 1;
+  double duration = -1;   // [s], negative: the scene's
+  double mesh_noise = 0;  // [m] RMS per axis
+  std::optional<sim::Grip> grip;
+  bool codec = false;
+  TriggerArguments triggers;
+  MeshArguments meshes;
+  ReplicaOptions replica;
+  CommonOptions common;
+
+  bool has_channel() const {
+    return codec || !stream.empty() || triggers.any_given() || meshes.any_given() || replica.interpolation != Interpolation::none;
+  }
+};
+
+/// Where packets go, if anywhere.
+struct StreamOutput {
+  OutputFile file;
+  StreamFileWriter writer;
+};
+
+tl::expected<StreamOutput, Failure> open_stream(const SimOptions& options, const Scene& scene) {
+  auto file = OutputFile::create(options.stream, options.common.existing(), {options.scene, options.replay});
+  if (!file) return tl::unexpected(file.error());
+  const auto out = file->open();
+  if (!out) return tl::unexpected(out.error());
+  auto writer = StreamFileWriter::create(**out, scene);
+  if (!writer) return refuse(options.stream, writer.error());
+  return StreamOutput{std::move(*file), std::move(*writer)};
+}
+
+constexpr double kMostTicks = 0xffffffff;     // of a stream: spec/20-scene.md
+constexpr std::uint32_t kEstimateEvery = 50;  // deformations between looks at their error
+
+struct Run {
+  sim::Simulation simulation;
+  OutputFile output;  // of the trace
+  TraceWriter trace;
+  std::optional<StreamOutput> stream;
+  std::optional<TraceReader> recording;
+  TraceFrame recorded;
+  std::vector<DeviceSample> devices;  // of this tick, recorded
+};
+
+/// A recording that knows nothing of buttons has one down while something is lifted by a spring.
+std::vector<DeviceSample> recorded_devices(const TraceReader& recording, const TraceFrame& frame) {
+  std::vector<DeviceSample> devices;
+  for (std::size_t i = 0; i < frame.users.size(); ++i) {
+    DeviceSample& device = devices.emplace_back(frame.users[i].device);
+    if (!recording.info().users[i].senses.buttons) device.buttons = frame.users[i].contact.kind == ContactKind::spring ? 1 : 0;
+  }
+  return devices;
+}
+
+/// One tick, by the scene's hands or by the recording.
+tl::expected<std::span<const Packet>, Failure> step(Run& run, const SimOptions& options, StepTimes& times) {
+  if (run.recording) run.devices = recorded_devices(*run.recording, run.recorded);
+  const auto stepped = times.measure([&] { return run.recording ? run.simulation.step(run.devices) : run.simulation.step(); });
+  if (stepped) return *stepped;
+  const sim::StepError& error = stepped.error();
+  if (error.remedy.empty()) return refuse(options.scene, place_of_tick(error.tick), error.error);
+  return refuse(fmt::format("{}, {}: {}", options.scene, place_of_tick(error.tick), error.remedy), "");
+}
+
+/// What was sent in this tick.
+Outcome record_packets(Run& run, std::span<const Packet> packets, const SimOptions& options, Report& report) {
+  for (const Packet& packet : packets) {
+    if (packet.substream > 0)
+      report.meshes[packet.substream - 1].traffic->add(packet.bytes.size(), packet.updates, packet.key, packet.layer);
+    else if (report.traffic) report.traffic->add(packet.reason, packet.updates, packet.bytes.size(), packet.key);
+    if (!run.stream) continue;
+    const auto added = run.stream->writer.add(run.simulation.frame().tick, packet.bytes, packet.key);
+    if (!added) return refuse(options.stream, added.error());
+  }
+  return {};
+}
+
+/// What the client shows of deformable objects that are new in this tick.
+void judge_meshes(Run& run, Report& report) {
+  const TraceFrame& frame = run.simulation.frame();
+  for (std::size_t i = 0; i < report.meshes.size(); ++i) {
+    if (!frame.meshes[i].updated) continue;
+    ++report.meshes[i].traffic->frames;
+    report.meshes[i].fidelity->add(frame.meshes[i].displacements, run.simulation.replica().displacements(i, frame.tick),
+                                   touch_of(frame, i));
+  }
+}
+
+Outcome record(Run& run, std::span<const Packet> packets, const SimOptions& options, Report& report) {
+  const TraceFrame& frame = run.simulation.frame();
+  if (const auto written = run.trace.write(frame); !written)
+    return refuse(options.output, place_of_tick(frame.tick), written.error());
+  if (auto done = record_packets(run, packets, options, report); !done) return done;
+  judge_meshes(run, report);
+  if (report.fidelity) {
+    report.fidelity->add(frame, run.simulation.client_poses());
+    report.fidelity->add_rendered(frame);
+  }
+  report.ticks.add(frame.tick);
+  return {};
+}
+
+/// Of what was sent, or would have been.
+StreamSize stream_size(const Run& run) {
+  if (run.stream) return {run.stream->writer.header_bytes(), run.stream->writer.bytes()};
+  const auto declaration = write_scene(*run.simulation.stream_scene());
+  return {declaration ? declaration->size() : 0, std::nullopt};
+}
+
+/// How long the deformations of this tick took, one time each.
+void add_deformations(const Run& run, StepTimes& times) {
+  const auto& meshes = run.simulation.frame().meshes;
+  for (std::size_t i = 0; i < meshes.size(); ++i)
+    if (meshes[i].updated) {
+      const sim::DeformationTime time = run.simulation.deformables()->time(i);
+      times.add({std::llround(1e9 * time.wall), std::llround(1e9 * time.cpu)});
+    }
+}
+
+/// An error after some ticks: says that the trace holds them, if it does.
+tl::unexpected<Failure> refuse_after(Failure failure, const Run& run, const Report& report) {
+  const std::uint64_t ticks = report.ticks.count();
+  if (run.output.stays() && ticks > 0) {
+    failure.remedy += fmt::format("{}{} holds the {} before the error.", failure.remedy.empty() ? "" : " ", run.output.path(),
+                                  counted(ticks, "tick"));
+  }
+  return tl::unexpected(std::move(failure));
+}
+
+Outcome finish(Run& run, const SimOptions& options) {
+  if (const auto done = run.trace.finish(); !done) return refuse(options.output, done.error());
+  if (run.stream) {
+    if (const auto done = run.stream->writer.finish(); !done) return refuse(options.stream, done.error());
+    if (auto kept = run.stream->file.keep(); !kept) return kept;
+  }
+  return run.output.keep();
+}
+
+Outcome simulate(Run& run, std::int64_t ticks, const SimOptions& options, Report& report) {
+  Progress progress("sim", static_cast<std::uint64_t>(ticks), options.common.progress());
+  const StopOnSignal stop;
+  for (std::int64_t i = 0; i < ticks && StopOnSignal::caught() == 0; ++i) {
+    if (run.recording) {
+      const auto more = run.recording->next(run.recorded);
+      if (!more) return refuse_after(refuse(options.replay, more.error()).value(), run, report);
+      if (!*more) {
+        if (auto whole = check_ending(options.replay, *run.recording, report.ticks.count()); !whole) return whole;
+        break;
+      }
+    }
+    const auto packet = step(run, options, report.timings[0].times);
+    if (!packet) return refuse_after(packet.error(), run, report);
+    if (report.timings.size() > 1) add_deformations(run, report.timings[1].times);
+    if (auto done = record(run, *packet, options, report); !done) return done;
+    progress.update(report.ticks.count());
+  }
+  return finish(run, options);
+}
+
+Report make_report(const SimOptions& options, const TraceInfo& info) {
+  Report report{.command = "sim", .files = {{"scene", options.scene}, {"trace", options.output}}};
+  if (!options.stream.empty()) report.files.emplace_back("stream", options.stream);
+  report.describe(info);
+  report.timings = {{"simulate", options.has_channel() ? "simulate, encode, decode, per tick" : "simulate, per tick"}};
+  if (options.replay.empty()) report.seed = options.seed;
+  else report.files.emplace_back("replay", options.replay);
+  if (!options.has_channel()) return report;
+  if (report.moving > 0 || info.meshes.empty()) report.traffic.emplace();
+  report.fidelity.emplace(info, options.triggers.triggers());
+  add_meshes(info, options.meshes, options.triggers, report);
+  for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.coding().deformable.profile == DeformableProfile::main;
+  report.client = options.replica.interpolation;
+  // A client that smooths what it shows leaves the bounds that the encoder keeps.
+  if (report.client == Interpolation::none)
+    report.bounds_from = options.triggers.any_given() || options.meshes.any_given() ? "options" : "defaults";
+  return report;
+}
+
+tl::expected<sim::Scene, Failure> read_scene(const SimOptions& options) {
+  const auto path = sim::find_scene(options.scene);
+  if (!path) return refuse_located(path.error());
+  auto scene = sim::load_scene(*path);
+  if (!scene) return refuse_located(scene.error());
+  for (sim::SceneDeformable& object : scene->deformables) {
+    if (!options.method.empty()) object.method = options.method;
+    if (!options.solver.empty()) object.solver = options.solver;
+    if (options.rate > 0) object.rate = options.rate;
+  }
+  for (sim::SceneMsd& object : scene->msds)
+    if (options.rate > 0) object.rate = options.rate;
+  return *scene;
+}
+
+void describe_deformables(const sim::Simulation& simulation, Report& report) {
+  if (simulation.deformables() == nullptr) return;
+  for (const sim::DeformableInfo& object : simulation.deformables()->info())
+    report.deformables.push_back({.name = object.name,
+                                  .method = object.method,
+                                  .reason = object.reason,
+                                  .vertices = object.vertices,
+                                  .step = object.step,
+                                  .h_omega = object.step * object.largest_frequency});
+  report.timings.push_back({"deform", "deform, per step"});
+}
+
+void report_errors(const sim::Simulation& simulation, Report& report) {
+  if (simulation.deformables() == nullptr) return;
+  for (std::size_t i = 0; i < report.deformables.size(); ++i) {
+    const auto error = simulation.deformables()->error(i);
+    if (!error || error->samples == 0) continue;
+    report.deformables[i].samples = static_cast<std::uint64_t>(error->samples);
+    report.deformables[i].error_p50 = error->p50;
+    report.deformables[i].error_max = error->max;
+    report.deformables[i].energy_gained = error->energy;
+  }
+}
+
+std::set<Subject> subjects_of(const sim::Scene& scene) {
+  std::set<Subject> held;
+  const bool moves =
+      std::any_of(scene.objects.begin(), scene.objects.end(), [](const sim::SceneObject& o) { return o.dof != Dof::none; });
+  if (moves || !scene.msds.empty() || scene.deformables.empty()) held.insert(Subject::rigid);
+  if (!scene.users.empty()) held.insert(Subject::user);
+  if (!scene.deformables.empty()) held.insert({Subject::mesh, Subject::deformable, Subject::deformed});
+  if (!scene.deformables.empty() && !scene.users.empty()) held.insert(Subject::touched_mesh);
+  if (!scene.msds.empty()) held.insert(Subject::deformed);
+  return held;
+}
+
+Outcome draw_stiffness(const sim::Scene& scene, const SimOptions& options, StepTimes& times) {
+  if (options.stiffness_map.empty() || scene.deformables.empty()) return {};
+  const auto drawn = times.measure([&] {
+    return write_stiffness_map(scene, options.scene, options.stiffness_map, options.common.existing(),
+                               {options.scene, options.output, options.stream, options.replay});
+  });
+  if (!drawn) return tl::unexpected(drawn.error());
+  if (*drawn == Drawn::no) fmt::print(stderr, "note: {}\n", kNoGnuplot);
+  return {};
+}
+
+/// All was closed in order, but not all was done.
+tl::unexpected<Failure> stopped(int signal, const Report& report, const SimOptions& options) {
+  Failure failure{fmt::format("stopped at {:.2f} s, {} is complete up to there", report.seconds(),
+                              options.output == "-" ? "the trace" : options.output),
+                  ""};
+  failure.cause = Failure::Cause::stopped;
+  failure.signal = signal;
+  return tl::unexpected(std::move(failure));
+}
+
+Outcome run(const SimOptions& options) {
+  if (auto fits = check_no_terminal(options.output); !fits) return fits;
+  if (options.duration >= 0 && options.duration < 0.5 / sim::kTickRate)
+    return refuse_arguments("--duration: shorter than a tick", "Give at least 1ms.");
+  if (options.duration * sim::kTickRate > kMostTicks)
+    return refuse_arguments("--duration: more ticks than can be numbered",
+                            fmt::format("Give at most {:.0f}s.", std::floor(kMostTicks / sim::kTickRate)));
+  const auto scene = read_scene(options);
+  if (!scene) return tl::unexpected(scene.error());
+  note_idle_options(*options.common.command, subjects_of(*scene), "scene");
+  sim::SimulationOptions settings{.seed = options.seed,
+                                  .grip = options.grip,
+                                  .channel = {},
+                                  .mesh_noise = options.mesh_noise,
+                                  .estimate_every = kEstimateEvery};
+  if (options.has_channel())
+    settings.channel = sim::ChannelOptions{options.meshes.sender(options.triggers), options.replica, options.meshes.coding()};
+  auto simulation = sim::Simulation::create(*scene, settings);
+  if (!simulation) return refuse(options.scene, simulation.error());
+  std::optional<TraceReader> recording;
+  if (!options.replay.empty()) {
+    auto reader = TraceReader::open(options.replay);
+    if (!reader) return refuse(options.replay, reader.error());
+    recording.emplace(std::move(*reader));
+  }
+  auto output = OutputFile::create_growing(options.output, options.common.existing(),
+                                           {options.stream, options.stiffness_map, options.scene, options.replay});
+  if (!output) return tl::unexpected(output.error());
+  std::optional<StreamOutput> stream;
+  if (!options.stream.empty()) {
+    auto opened = open_stream(options, *simulation->stream_scene());
+    if (!opened) return tl::unexpected(opened.error());
+    stream.emplace(std::move(*opened));
+  }
+  Timing map{"stiffness_map", "stiffness map, once"};
+  if (auto drawn = draw_stiffness(*scene, options, map.times); !drawn) return drawn;
+  const TraceInfo info = simulation->info();
+  auto trace = TraceWriter::create(output->working_path(), info);
+  if (!trace) return refuse(options.output, trace.error());
+
+  Report report = make_report(options, info);
+  describe_deformables(*simulation, report);
+  Run session{std::move(*simulation), std::move(*output), std::move(*trace), std::move(stream), std::move(recording), {}, {}};
+  const auto ticks = options.duration < 0 ? session.simulation.ticks()
+                                          : static_cast<std::int64_t>(std::llround(options.duration * sim::kTickRate));
+  if (auto done = simulate(session, ticks, options, report); !done) {
+    if (report.ticks.count() == 0) session.output.discard();
+    return done;
+  }
+  report_touches(*scene, session.simulation, report);
+  if (options.has_channel()) report.stream = stream_size(session);
+  report_errors(session.simulation, report);
+  report.timings.push_back(std::move(map));
+  print(report, options.common, beside(options.output));
+  if (const int signal = StopOnSignal::caught(); signal != 0) return stopped(signal, report, options);
+  return report.bounds_from.empty() ? Outcome() : verdict(report, options.output);
+}
+
+}  // namespace
+
+void setup_sim(Command& app, Action& action) {
+  auto options = std::make_shared<SimOptions>();
+  Command& command = app.add_command("sim", "Simulate a touch into a trace");
+  command
+      .add_option("SCENE", options->scene,
+                  "push-1dof, rotate-6dof, rotate-push-lift, membrane, membrane-light, membrane-large, membrane-small, msd-1d, "
+                  "bracket-and-pad, or a TOML file")
+      ->type_name("")
+      ->required();
+  command.add_option("-o,--output", options->output, "Trace to write (MCAP), - is standard output")
+      ->required()
+      ->type_name("FILE");
+  command.add_option("--seed", options->seed, "Every random number follows from it")
+      ->check(whole_number(0, UINT64_MAX))
+      ->show_default()
+      ->type_name("N");
+  add_quantity(command, "--duration", options->duration, Dimension::time, "Length [the scene's]");
+  add_quantity(command, "--deformable-noise", options->mesh_noise, Dimension::length,
+               "White noise on the shapes that are recorded and sent, RMS per axis [0]");
+  const std::map<std::string, sim::Grip> grips{
+      {"loose", sim::Grip::loose}, {"normal", sim::Grip::normal}, {"firm", sim::Grip::firm}};
+  command
+      .add_option(
+          "--grip", [&grip = options->grip, grips](const std::string& name) { grip = grips.at(name); },
+          "How firmly the device is held: loose, normal or firm [the scene's]")
+      ->check(one_of({"loose", "normal", "firm"}))
+      ->type_name("GRIP");
+  command.add_option("--replay", options->replay, "Move the device as in this trace instead")->type_name("TRACE");
+  command.add_option("--method", options->method, "Time integration of deformable objects [the scene's]")
+      ->check(one_of({"auto", "velocity-verlet", "backward-euler", "newmark", "tr-bdf2", "projective"}))
+      ->type_name("NAME");
+  command.add_option("--solver", options->solver, "Linear solver of implicit methods [the scene's]")
+      ->check(one_of({"auto", "cg", "cholesky", "prefactored"}))
+      ->type_name("NAME");
+  command.add_option("--rate", options->rate, "Ticks from deformation to deformation, 1 to 1000 [the scene's]")
+      ->check(whole_number(1, 1000))
+      ->type_name("N");
+  command
+      .add_option("--stiffness-map", options->stiffness_map,
+                  "Also write the local stiffness of deformable objects (CSV, and a plot beside it)")
+      ->type_name("FILE");
+  command.add_flag("--codec", options->codec,
+                   "Close the loop through encoder, decoder and replica; so does every option from --stream to --layered");
+  command.add_option("--stream", options->stream, "Also write the packets")->type_name("FILE");
+  add_interpolation(command, options->replica);
+  options->triggers.add_to(command);
+  options->triggers.add_encoder_to(command);
+  options->meshes.add_to(command);
+  options->meshes.add_encoder_to(command);
+  add_output_options(command, options->common);
+  command.footer(
+      "Examples:\n"
+      "  tactus sim push-1dof -o push.mcap --seed 7\n"
+      "  tactus sim membrane -o membrane.mcap --rate 1\n"
+      "  tactus sim rotate-push-lift -o felt.mcap --stream felt.tct -p 4% --interpolate");
+  on_chosen<SimOptions>(command, action, options, run);
+}
+
+}  // namespace tactus::cli

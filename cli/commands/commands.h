@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Every command adds itself to the program, or to its group: `setup_import_mesh` is `tactus import mesh`. CMakeLists.txt says which of
+/// them a program has.
+#pragma once
+
+#include "cli/command.h"
+
+namespace tactus::cli {
+
+void setup_sim(Command& app, Action& action);
+void setup_mesh(Command& app, Action& action);
+void setup_import(Command& app, Action& action);
+void setup_import_mesh(Command& group, Action& action);
+void setup_encode(Command& app, Action& action);
+void setup_decode(Command& app, Action& action);
+void setup_compare(Command& app, Action& action);
+void setup_info(Command& app, Action& action);
+void setup_export(Command& app, Action& action);
+void setup_export_mesh(Command& group, Action& action);
+void setup_sweep(Command& app, Action& action);
+void setup_reproduce(Command& app, Action& action);
+void setup_bench(Command& app, Action& action);
+void setup_bench_precision(Command& group, Action& action);
+void setup_bench_stability(Command& group, Action& action);
+
+}  // namespace tactus::cli

@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/commands/commands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include <tactus/metrics/errors.h>
+#include <tactus/metrics/rates.h>
+#include <tactus/receiver.h>
+#include <tactus/sim/simulation.h>
+#include "cli/laboratory/workers.h"
+#include "cli/options/options_codec.h"
+#include "cli/report/json_parts.h"
+#include "cli/report/table.h"
+
+namespace tactus::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct ReproduceOptions {
+  std::string figure = "fig3.14";
+  std::uint32_t seeds = 5;
+  double length_unit = 0.05;
+  std::string grip = "normal";
+  CommonOptions common;
+};
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+/// A row of thesis table 3.3. Lengths are in the thesis's virtual units.
+struct Setting {
+  const char* name;
+  Reduction reduction;
+  HapticRule rule;
+  double p;
+  double visual_length, visual_angle_deg;
+  Interpolation interpolation;
+  const char* thesis_rate;  ///< packets/s as the text of thesis 3.2.5.2 gives it; figure 3.14 itself has no numbers
+};
+
+constexpr auto kNone = Interpolation::none;
+constexpr auto kLinear = Interpolation::linear;
+constexpr std::array<Setting, 12> kSettings{{
+    {"S_R7", Reduction::none, HapticRule::off, 0.08, 0.006, 2, kNone, "1000"},
+    {"S_R1", Reduction::dead_reckoning, HapticRule::off, 0.08, 0.006, 2, kNone, "-"},
+    {"S4_NI", Reduction::dead_reckoning, HapticRule::isotropic, 0.04, 0.006, 2, kNone, "42.6"},
+    {"S8_NI", Reduction::dead_reckoning, HapticRule::isotropic, 0.08, 0.006, 2, kNone, "-"},
+    {"S18_NI", Reduction::dead_reckoning, HapticRule::isotropic, 0.18, 0.006, 2, kNone, "-"},
+    {"S30_NI", Reduction::dead_reckoning, HapticRule::isotropic, 0.30, 0.006, 2, kNone, "~25"},
+    {"S4_WI", Reduction::dead_reckoning, HapticRule::isotropic, 0.04, 0.010, 4, kLinear, "28.6"},
+    {"S8_WI", Reduction::dead_reckoning, HapticRule::isotropic, 0.08, 0.010, 4, kLinear, "-"},
+    {"S18_WI", Reduction::dead_reckoning, HapticRule::isotropic, 0.18, 0.010, 4, kLinear, "-"},
+    {"S30_WI", Reduction::dead_reckoning, HapticRule::isotropic, 0.30, 0.010, 4, kLinear, "12.3"},
+    {"S_NIso", Reduction::dead_reckoning, HapticRule::cone, 0.18, 0.010, 4, kLinear, "18.2"},
+    {"S_DR", Reduction::dead_reckoning, HapticRule::fixed, 0.08, 0.010, 4, kLinear, "33.6"},
+}};
+
+RigidTriggers triggers_of(const Setting& s, double length_unit) {
+  RigidTriggers t;
+  t.reduction = s.reduction;
+  t.haptic = s.rule;
+  t.weber_fraction = s.p;
+  t.visual_position = s.visual_length * length_unit;
+  t.visual_rotation = s.visual_angle_deg * kDegree;
+  t.fixed_position *= length_unit;
+  return t;
+}
+
+/// What one run yields; small and flat, so that it passes through a pipe.
+struct Measured {
+  bool failed = false;
+  Errc code = Errc::internal;  ///< of the failure, as are rule and tick
+  char rule[16] = {};
+  std::int64_t tick = 0;
+  double packets_per_s = 0, bytes_per_update = 0, bit_per_s = 0;
+  std::uint64_t rule_violations = 0;    ///< ticks in which the predicted state breaks the haptic rule
+  std::uint64_t visual_violations = 0;  ///< the same for the visual thresholds
+  double shown_over = 0;                ///< share of ticks in contact in which what is shown breaks it
+  double shown_worst = 0;               ///< how far: largest ratio of error and permitted error
+  double over_jnd = 0;                  ///< share of ticks with a rendered force over the perceptual curve
+  double contact = 0;                   ///< share of all ticks
+};
+
+Measured failed_at(std::int64_t tick, const Error& error) {
+  Measured out{.failed = true, .code = error.code, .tick = tick};
+  std::copy_n(error.rule, std::min(std::string_view(error.rule).size(), sizeof out.rule - 1), out.rule);
+  return out;
+}
+
+double share(std::uint64_t part, std::uint64_t whole) {
+  return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+/// The state as predicted, beside what the simulation's own client shows: a second client without smoothing.
+Result<void> follow(Receiver& receiver, std::span<const Packet> packets, std::int64_t tick, std::span<Pose> poses) {
+  for (const Packet& packet : packets) TACTUS_CHECK(receiver.push(packet.bytes));
+  for (std::uint32_t i = 0; i < poses.size(); ++i)
+    poses[i] = to_pose(receiver.replica().pose(i, tick), receiver.scene()->grid.position);
+  return {};
+}
+
+Measured summary(const RateMetrics& traffic, const ErrorMetrics& predicted, const ErrorMetrics& shown, std::uint64_t ticks,
+                 std::uint64_t visual_violations) {
+  const double seconds = static_cast<double>(ticks) * sim::kTick;
+  Measured out;
+  out.packets_per_s = static_cast<double>(traffic.all_packets()) / seconds;
+  out.bytes_per_update = share(traffic.bytes, traffic.updates);
+  out.bit_per_s = 8 * static_cast<double>(traffic.bytes) / seconds;
+  out.rule_violations = predicted.force().ticks_over();
+  out.visual_violations = visual_violations;
+  out.shown_over = share(shown.force().ticks_over(), shown.force().ticks());
+  out.shown_worst = shown.worst_haptic_ratio();
+  out.over_jnd = share(shown.rendered().ticks_over(), ticks);
+  out.contact = share(shown.force().ticks(), ticks);
+  return out;
+}
+
+Measured measure(const sim::Scene& scene, const Setting& setting, const RigidTriggers& triggers, sim::Grip grip,
+                 std::uint64_t seed) {
+  const sim::ChannelOptions channel{.sender = {.triggers = triggers, .deformable = {}, .policy = {}},
+                                    .replica = {.interpolation = setting.interpolation}};
+  auto simulation = sim::Simulation::create(scene, {.seed = seed, .grip = grip, .channel = channel});
+  if (!simulation) return failed_at(0, simulation.error());
+  auto predicting = Receiver::create(simulation->stream_scene());
+  if (!predicting) return failed_at(0, predicting.error());
+  const TraceInfo info = simulation->info();
+  ErrorMetrics predicted(info, triggers), shown(info, triggers);
+  RateMetrics traffic;
+  std::vector<Pose> poses(info.objects.size());
+  const std::int64_t ticks = simulation->ticks();
+  std::uint64_t visual_violations = 0;
+  for (std::int64_t tick = 0; tick < ticks; ++tick) {
+    const auto packets = simulation->step();
+    if (!packets) return failed_at(packets.error().tick, packets.error().error);
+    for (const Packet& p : *packets) traffic.add(p.reason, p.updates, p.bytes.size(), p.key);
+    const TraceFrame& frame = simulation->frame();
+    if (const auto done = follow(*predicting, *packets, frame.tick, poses); !done) return failed_at(frame.tick, done.error());
+    const auto over = [&] { return predicted.position().ticks_over() + predicted.rotation().ticks_over(); };
+    const std::uint64_t before = over();
+    predicted.add(frame, poses);
+    if (over() > before) ++visual_violations;
+    shown.add(frame, simulation->client_poses());
+    shown.add_rendered(frame);
+  }
+  return summary(traffic, predicted, shown, static_cast<std::uint64_t>(ticks), visual_violations);
+}
+
+/// All seeds of one setting.
+struct Row {
+  const Setting* setting;
+  double mean = 0, deviation = 0;  ///< packets/s
+  Measured average;                ///< means; violations are sums, shown_worst the largest
+};
+
+Row summarise(const Setting& setting, std::span<const Measured> runs) {
+  Row row{.setting = &setting, .average = {}};
+  const auto n = static_cast<double>(runs.size());
+  for (const Measured& run : runs) {
+    row.mean += run.packets_per_s / n;
+    row.average.bytes_per_update += run.bytes_per_update / n;
+    row.average.bit_per_s += run.bit_per_s / n;
+    row.average.rule_violations += run.rule_violations;
+    row.average.visual_violations += run.visual_violations;
+    row.average.shown_over += run.shown_over / n;
+    row.average.shown_worst = std::max(row.average.shown_worst, run.shown_worst);
+    row.average.over_jnd += run.over_jnd / n;
+    row.average.contact += run.contact / n;
+  }
+  double square = 0;
+  for (const Measured& run : runs) square += (run.packets_per_s - row.mean) * (run.packets_per_s - row.mean);
+  row.deviation = runs.size() > 1 ? std::sqrt(square / (n - 1)) : 0;
+  row.average.packets_per_s = row.mean;
+  return row;
+}
+
+/// Does a larger deadband cost fewer packets, with and without interpolation?
+bool is_ordered(std::span<const Row> rows, std::size_t first) {
+  return rows[first].mean > rows[first + 1].mean && rows[first + 1].mean > rows[first + 2].mean &&
+         rows[first + 2].mean > rows[first + 3].mean;
+}
+/// The same with the spread of the runs in mind.
+const char* order_of(std::span<const Row> rows, std::size_t first) {
+  if (is_ordered(rows, first)) return "holds";
+  for (std::size_t i = first; i < first + 3; ++i)
+    if (rows[i].mean + rows[i].deviation < rows[i + 1].mean - rows[i + 1].deviation) return "does not hold";
+  return rows[first].deviation > 0 ? "holds within the spread of the runs" : "does not hold; one seed tells no spread";
+}
+constexpr std::size_t kFirstWithout = 2, kFirstWith = 6;  // rows of S4_NI and S4_WI
+
+std::string percent(double value) { return value == 0 ? "0 %" : fmt::format("{:.2f} %", 100 * value); }
+
+void print_text(const std::vector<Row>& rows, const ReproduceOptions& options, const sim::Scene& scene) {
+  fmt::print("Thesis table 3.3 and figure 3.14: traffic control settings on {}, closed loop, {:.1f} s, seeds 1 to {}\n",
+             scene.name, scene.duration, options.seeds);
+  fmt::print(
+      "Chosen here: 1 virtual length unit = {} m, grip {}, the scene's hand and path; nothing is fitted to the thesis's "
+      "rates.\n\n",
+      options.length_unit, options.grip);
+  Table table;
+  table.heading({"setting", "packets/s", "+-", "thesis", "bit/s", "bytes/update", "rule broken", "visual broken", "shown over",
+                 "shown worst", "felt over JND"});
+  for (const Row& row : rows) {
+    const Measured& m = row.average;
+    const bool has_rule = row.setting->rule != HapticRule::off;
+    table.row({row.setting->name, fmt::format("{:.1f}", row.mean), fmt::format("{:.1f}", row.deviation), row.setting->thesis_rate,
+               fmt::format("{:.0f}", m.bit_per_s), fmt::format("{:.2f}", m.bytes_per_update),
+               has_rule ? fmt::to_string(m.rule_violations) : "-", fmt::to_string(m.visual_violations),
+               has_rule ? percent(m.shown_over) : "-", has_rule ? fmt::format("{:.2f}", m.shown_worst) : "-",
+               percent(m.over_jnd)});
+  }
+  table.print(stdout);
+  fmt::print(
+      "\nrule broken     ticks in which the predicted state breaks the setting's haptic rule, all seeds together\n"
+      "visual broken   the same for its visual thresholds\n"
+      "shown over      share of ticks in contact in which what the client shows, smoothed or not, breaks the haptic rule\n"
+      "shown worst     largest error there, as a multiple of the permitted one\n"
+      "felt over JND   share of ticks whose rendered force is off by more than people notice (10 to 22 %)\n"
+      "contact         {:.0f} % of the ticks\n\n",
+      100 * rows.front().average.contact);
+  fmt::print("S4 > S8 > S18 > S30 without interpolation: {}\n", order_of(rows, kFirstWithout));
+  fmt::print("S4 > S8 > S18 > S30 with interpolation:    {}\n", order_of(rows, kFirstWith));
+}
+
+void print_json(const std::vector<Row>& rows, const ReproduceOptions& options, const sim::Scene& scene) {
+  Json out{{"schema", "tactus.reproduce/2"},
+           {"figure", "fig3.14"},
+           {"scene", scene.name},
+           {"seconds", scene.duration},
+           {"seeds", options.seeds},
+           {"length_unit_m", options.length_unit},
+           {"grip", options.grip}};
+  for (const Row& row : rows) {
+    const Measured& m = row.average;
+    Json entry{{"setting", row.setting->name},           {"packets_per_s", row.mean},
+               {"standard_deviation", row.deviation},    {"payload_bit_per_s", m.bit_per_s},
+               {"bytes_per_update", m.bytes_per_update}, {"visual_violations", m.visual_violations},
+               {"share_felt_over_jnd", m.over_jnd},      {"share_in_contact", m.contact}};
+    const std::string_view thesis = row.setting->thesis_rate;  // "42.6", "~25", "-"
+    const std::size_t digits = thesis.starts_with('~') ? 1 : 0;
+    double rate = 0;
+    if (std::from_chars(thesis.data() + digits, thesis.data() + thesis.size(), rate).ec == std::errc())
+      entry["thesis"] = {{"packets_per_s", rate}, {"is_approximate", digits > 0}};
+    if (row.setting->rule != HapticRule::off) {
+      entry["haptic_violations"] = m.rule_violations;
+      entry["share_shown_over"] = m.shown_over;
+      entry["worst_shown_ratio"] = m.shown_worst;
+    }
+    out["settings"].push_back(std::move(entry));
+  }
+  out["ordered_without_interpolation"] = is_ordered(rows, kFirstWithout);
+  out["ordered_with_interpolation"] = is_ordered(rows, kFirstWith);
+  fmt::print("{}\n", text_of_json(out));
+}
+
+Outcome run(const ReproduceOptions& options) {
+  const auto path = sim::find_scene("rotate-push-lift");
+  if (!path) return refuse_located(path.error());
+  const auto scene = sim::load_scene(*path);
+  if (!scene) return refuse_located(scene.error());
+  const std::map<std::string, sim::Grip> grips{
+      {"loose", sim::Grip::loose}, {"normal", sim::Grip::normal}, {"firm", sim::Grip::firm}};
+  const sim::Grip grip = grips.at(options.grip);
+  const std::size_t jobs = kSettings.size() * options.seeds;
+  std::optional<std::vector<Measured>> results;
+  {
+    Progress progress("reproduce", jobs, options.common.progress());
+    const auto job = [&](std::size_t i) {
+      const Setting& setting = kSettings[i / options.seeds];
+      return measure(*scene, setting, triggers_of(setting, options.length_unit), grip, 1 + i % options.seeds);
+    };
+    results = run_in_workers<Measured>(jobs, job, [&](std::size_t done) { progress.update(done); });
+  }
+  if (!results) return refuse("a worker process ended early", "Look for a lack of memory.");
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < jobs; ++i) {
+    const Measured& m = (*results)[i];
+    if (m.failed) return refuse(kSettings[i / options.seeds].name, place_of_tick(m.tick), Error{m.code, m.rule, 0});
+    if (i % options.seeds == 0)
+      rows.push_back(summarise(kSettings[i / options.seeds], std::span(*results).subspan(i, options.seeds)));
+  }
+  options.common.json ? print_json(rows, options, *scene) : print_text(rows, options, *scene);
+  return {};
+}
+
+}  // namespace
+
+void setup_reproduce(Command& app, Action& action) {
+  auto options = std::make_shared<ReproduceOptions>();
+  Command& command = app.add_command("reproduce", "Set our figures beside those of the thesis");
+  command.add_option("FIGURE", options->figure, "fig3.14, also called table3.3")
+      ->required()
+      ->check(one_of({"fig3.14", "table3.3"}))
+      ->type_name("");
+  command.add_option("--seeds", options->seeds, "Runs per setting")->show_default()->check(whole_number(1, 1000))->type_name("N");
+  add_quantity(command, "--length-unit", options->length_unit, Dimension::length,
+               "Metres per virtual length unit of the thesis [0.05m]")
+      ->check(above_zero(Dimension::length));
+  command.add_option("--grip", options->grip, "How firmly the device is held: loose, normal or firm [normal]")
+      ->check(one_of({"loose", "normal", "firm"}))
+      ->type_name("GRIP");
+  add_report_options(command, options->common);
+  command.footer("Example:\n  tactus reproduce fig3.14 --seeds 5");
+  on_chosen<ReproduceOptions>(command, action, options, run);
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/laboratory/plot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include <tactus/base/shown.h>
+#include "cli/laboratory/child_process.h"
+
+namespace tactus::cli {
+namespace {
+
+struct Program {
+  std::string_view name, text;
+};
+constexpr Program kPrograms[] = {
+#include "plots.inc"
+};
+
+constexpr std::chrono::seconds kLongestRun{60};
+constexpr std::size_t kLongestText = 255;  // of a figure, as of a plan
+constexpr std::size_t kMostOfWords = 300;  // of gnuplot's own, in a message
+
+std::string_view text_of_program(std::string_view name) {
+  return std::find_if(std::begin(kPrograms), std::end(kPrograms), [&](const Program& p) { return p.name == name; })->text;
+}
+
+std::string in_gnuplot(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "NaN"; }
+
+std::string in_gnuplot(std::string_view text) {
+  // Doubled, as gnuplot wants an apostrophe, it ends the string all the same where two stand together or one in front.
+  constexpr const char* kApostrophe = "\u2019";
+  std::string out = "'";
+  for (const char c : shown(text, kLongestText)) {
+    if (c == '\'') out += kApostrophe;
+    else out += c;
+  }
+  return out + '\'';
+}
+
+template <class Value>
+std::string array(const std::string& name, const std::vector<Value>& values) {
+  if (values.empty()) return {};
+  std::string list;
+  for (const Value& value : values) list += (list.empty() ? "" : ", ") + in_gnuplot(value);
+  return fmt::format("array {}[{}] = [{}]\n", name, values.size(), list);
+}
+
+std::string file_of(const Plot& plot, const std::string& directory) { return directory + "/" + plot.name + ".svg"; }
+
+}  // namespace
+
+void Plot::set(const std::string& variable, double value) { settings += variable + " = " + in_gnuplot(value) + '\n'; }
+void Plot::set(const std::string& variable, std::string_view text) { settings += variable + " = " + in_gnuplot(text) + '\n'; }
+void Plot::set(const std::string& variable, const std::vector<double>& values) { settings += array(variable, values); }
+void Plot::set(const std::string& variable, const std::vector<std::string>& texts) { settings += array(variable, texts); }
+
+std::string Plot::script() const {
+  std::string out = fmt::format("width = {}\nheight = {}\n{}", width, height, settings);
+  for (const PlotData& block : data) {
+    out += fmt::format("${} << EOD\n", block.name);
+    for (const auto& row : block.rows) {
+      for (std::size_t i = 0; i < row.size(); ++i) out += (i == 0 ? "" : " ") + in_gnuplot(row[i]);
+      out += '\n';
+    }
+    out += "EOD\n";
+  }
+  return out.append(text_of_program("style")).append(text_of_program(program));
+}
+
+Outcome check_plot(const Plot& plot, const std::string& directory, OutputFile::Existing existing) {
+  return OutputFile::check_free(file_of(plot, directory), existing);
+}
+
+tl::expected<Drawn, Failure> draw(const Plot& plot, const std::string& directory, OutputFile::Existing existing) {
+  if (auto free = check_plot(plot, directory, existing); !free) return tl::unexpected(free.error());
+  const std::string figure = shown_path(file_of(plot, directory)), remedy = "Check the installation of gnuplot.";
+  const auto done = run_child({"gnuplot", "-d", "/dev/stdin"}, plot.script(), kLongestRun);
+  if (!done && done.error() == std::errc::no_such_file_or_directory) return Drawn::no;
+  if (!done && done.error() == std::errc::timed_out)
+    return refuse(fmt::format("{}: gnuplot did not end within {} s", figure, kLongestRun.count()), remedy);
+  if (!done) return refuse("gnuplot cannot be started: " + done.error().message(), remedy);
+  if (done->status != 0)
+    return refuse(fmt::format("{}: gnuplot ended with status {}: {}", figure, done->status, shown(done->error, kMostOfWords)),
+                  remedy);
+  if (auto written = write_file(file_of(plot, directory), done->out, existing); !written) return tl::unexpected(written.error());
+  return Drawn::yes;
+}
+
+}  // namespace tactus::cli

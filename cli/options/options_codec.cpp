@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/options/options_codec.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <numbers>
+#include <string>
+
+#ifdef TACTUS_HAS_MODES
+#include <tactus/deformable/displacement.h>
+#include <tactus/sim/modes/spring_modes.h>
+#endif
+
+namespace tactus::cli {
+namespace {
+
+// What the grid of every stream can hold (make_thresholds() of the rigid encoder): 8 steps of position and of rotation.
+constexpr double kLeastLength = 2e-6, kMostLength = 1e6;        // [m]
+constexpr double kLeastAngle = 0.002 * std::numbers::pi / 180;  // [rad]
+
+#ifdef TACTUS_HAS_MODES
+Result<ModeBasis> spring_basis(const TraceDeformable& mesh, std::size_t modes) {
+  TACTUS_TRY(const std::vector<double> vectors, sim::spring_modes(mesh.rest, mesh.fixed, modes));
+  return make_mode_basis(vectors, modes);
+}
+#else
+Result<ModeBasis> spring_basis(const TraceDeformable&, std::size_t) { return fail(Errc::unsupported, "R-SIM-4"); }
+#endif
+
+}  // namespace
+
+Check whole_number(std::uint64_t low, std::uint64_t high) {
+  return [low, high](const std::string& text) {
+    std::uint64_t number = 0;
+    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), number);
+    const bool fits = status == std::errc() && end == text.data() + text.size() && number >= low && number <= high;
+    return fits ? std::string() : fmt::format("'{}': not a whole number from {} to {}", text, low, high);
+  };
+}
+
+Check number(double low, double high) {
+  return [low, high](const std::string& text) {
+    double value = 0;
+    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+    const bool fits = status == std::errc() && end == text.data() + text.size() && value >= low && value <= high;
+    return fits ? std::string() : fmt::format("'{}': not a number from {} to {}", text, low, high);
+  };
+}
+
+Check one_of(const std::vector<std::string>& names) {
+  return [names](const std::string& text) {
+    const bool known = std::find(names.begin(), names.end(), text) != names.end();
+    return known ? std::string() : fmt::format("{} not in {{{}}}", text, fmt::join(names, ","));
+  };
+}
+
+Outcome check_no_terminal(const std::string& output) {
+  if (output != "-" || isatty(STDOUT_FILENO) == 0) return {};
+  return refuse_arguments("-o -: standard output is a terminal, and what is written is no text",
+                          "Name a file, or lead the output into one or into another command.");
+}
+
+void add_report_options(Command& app, CommonOptions& options) {
+  options.command = &app;
+  app.add_flag("--json", options.json, "Report as JSON, in SI units");
+  app.add_flag("-q,--quiet", options.quiet, "No progress and no table; --json still reports");
+  app.add_flag("--no-progress", options.no_progress, "No progress bar");
+}
+
+void add_output_options(Command& app, CommonOptions& options) {
+  add_report_options(app, options);
+  app.add_flag("-f,--force", options.force, "Replace output files that are there already");
+}
+
+void TriggerArguments::add_to(Command& app) {
+  const std::map<std::string, HapticRule> rules{
+      {"isotropic", HapticRule::isotropic}, {"cone", HapticRule::cone}, {"fixed", HapticRule::fixed}, {"off", HapticRule::off}};
+  const auto rule = [this, rules](const std::string& name) { triggers_.haptic = rules.at(name); };
+  deadband_ = add_quantity(app, "-p,--deadband", triggers_.weber_fraction, Dimension::fraction,
+                           "Permitted share of force error, Weber's law [8%, deformable objects 2.5%]");
+  visual_option_ = add_pose_bound(app, "--visual", visual_, "Permitted error of pose to the eye [6mm,2deg]");
+  fixed_option_ = add_pose_bound(app, "--fixed", fixed_, "Permitted pose error in contact of the rule fixed [1.5mm,2deg]");
+  length_unit_option_ = add_quantity(app, "--length-unit", length_unit_, Dimension::length,
+                                     "Metres per unit of lengths typed without a unit in --visual and --fixed [1m]")
+                            ->check(above_zero(Dimension::length));
+  haptic_ = app.add_option("--haptic", rule, "Permitted error of force: isotropic, cone, fixed or off [isotropic]")
+                ->check(one_of({"isotropic", "cone", "fixed", "off"}))
+                ->type_name("RULE");
+  alpha_ = add_quantity(app, "--alpha", triggers_.cone_angle, Dimension::angle,
+                        "Permitted force direction error of the rule cone [2.1deg]")
+               ->check(within(Dimension::angle, "0.001deg", "180deg"));
+  floor_ = add_quantity(app, "--force-floor", triggers_.force_floor, Dimension::force,
+                        "Below this force the deadband is that of it [0.05N]")
+               ->check(above_zero(Dimension::force));
+  options_ = {deadband_, visual_option_, haptic_, alpha_, fixed_option_, floor_, length_unit_option_};
+  app.on_parsed([this] { check_lengths(); });  // only now --length-unit is known
+}
+
+void TriggerArguments::check_lengths() const {
+  check_bound(*visual_option_, visual_);
+  check_bound(*fixed_option_, fixed_);
+  if (length_unit_option_->count() == 0) {
+    for (const auto& [option, bound] : {std::pair(visual_option_, visual_), std::pair(fixed_option_, fixed_)})
+      if (bound.length.bare && bound.length.value != 0)
+        refuse_option(option->name(), needs_unit(option->last(), Dimension::length));
+  }
+  if (length_unit_option_->count() > 0 && !visual_.length.bare && !fixed_.length.bare)
+    refuse_option("--length-unit", "needs a length without a unit in --visual or --fixed");
+}
+
+void TriggerArguments::check_bound(const Option& option, const PoseBound& bound) const {
+  if (option.count() == 0) return;
+  if (const double length = scaled(bound.length); !(length >= kLeastLength && length < kMostLength))
+    refuse_option(option.name(), fmt::format("a length of {:.3g} mm: must be at least 2um and below 1000000m", 1e3 * length));
+  if (!(bound.angle.value >= kLeastAngle && bound.angle.value <= std::numbers::pi))
+    refuse_option(option.name(), fmt::format("an angle of {:.3g} rad: must be from 0.002deg to 180deg", bound.angle.value));
+}
+
+void TriggerArguments::add_encoder_to(Command& app) {
+  options_.push_back(add_quantity(app, "--heartbeat", triggers_.heartbeat, Dimension::time, "Longest silence, 0: unlimited [1s]")
+                         ->check(within(Dimension::time, "0s", "3600s")));
+  options_.push_back(
+      add_quantity(app, "--key-interval", key_interval_, Dimension::time, "Time between places to seek to, 0: first only [5s]")
+          ->check(within(Dimension::time, "0s", "86400s")));
+  options_.push_back(app.add_flag("--no-reduction", no_reduction_, "Send every object in every tick"));
+}
+
+std::optional<double> TriggerArguments::weber_fraction(std::optional<double> otherwise) const {
+  if (triggers_.haptic == HapticRule::off) return std::nullopt;
+  return deadband_->count() > 0 ? triggers_.weber_fraction : otherwise;
+}
+
+bool TriggerArguments::any_given() const {
+  return std::any_of(options_.begin(), options_.end(), [](const Option* option) { return option->count() > 0; });
+}
+
+RigidTriggers TriggerArguments::over(RigidTriggers out) const {
+  out.reduction = no_reduction_ ? Reduction::none : Reduction::dead_reckoning;
+  out.heartbeat = triggers_.heartbeat;
+  if (haptic_->count() > 0) out.haptic = triggers_.haptic;
+  if (deadband_->count() > 0) out.weber_fraction = triggers_.weber_fraction;
+  if (alpha_->count() > 0) out.cone_angle = triggers_.cone_angle;
+  if (floor_->count() > 0) out.force_floor = triggers_.force_floor;
+  if (visual_option_->count() > 0) {
+    out.visual_position = scaled(visual_.length);
+    out.visual_rotation = visual_.angle.value;
+  }
+  if (fixed_option_->count() > 0) {
+    out.fixed_position = scaled(fixed_.length);
+    out.fixed_rotation = fixed_.angle.value;
+  }
+  return out;
+}
+
+void MeshArguments::add_to(Command& app) {
+  visual_ = add_quantity(app, "--deformable-visual", thresholds_.visual, Dimension::length,
+                         "Permitted error of a vertex to the eye, 0: none beyond the grid's [0.25mm]")
+                ->check(within(Dimension::length, "0m", "1000000m"));
+  rings_ = app.add_option("--rings", coding_.rings, "Rings of triangles around the touched one that -p holds in [3]")
+               ->check(whole_number(0, DeformableObject::kMaxRings))
+               ->type_name("M");
+  options_ = {visual_, rings_};
+}
+
+void MeshArguments::add_encoder_to(Command& app) {
+  const std::map<std::string, DeformableProfile> profiles{{"thesis", DeformableProfile::thesis},
+                                                          {"main", DeformableProfile::main}};
+  const auto profile = [this, profiles](const std::string& name) { coding_.profile = profiles.at(name); };
+  Option* modes = app.add_option("--basis", modes_, "main: vibration modes that both ends know, 0: none [0]")
+                      ->check(whole_number(0, ModeBasis::kMaxModes))
+                      ->type_name("K");
+  options_.insert(
+      options_.end(),
+      {app.add_option("--profile", profile, "Coding tools of deformable objects: thesis or main [main]")
+           ->check(one_of({"thesis", "main"}))
+           ->type_name("NAME"),
+       modes,
+       add_quantity(app, "--visual-share", visual_share_, Dimension::fraction,
+                    "main: code to this share of --deformable-visual, 0.1% or more [100%]")
+           ->check(within(Dimension::fraction, "0.1%", "100%")),
+       add_quantity(app, "--haptic-share", haptic_share_, Dimension::fraction,
+                    "main: code to this share of -p's bound, 0.1% or more [100%]")
+           ->check(within(Dimension::fraction, "0.1%", "100%")),
+       app.add_option("--quant-bits", coding_.quant_bits, "thesis: bits of its quantiser, 1 to 12 [8]")
+           ->check(whole_number(1, DeformableObject::kMaxQuantBits))
+           ->type_name("Q"),
+       app.add_flag("--keep-models", coding_.models_kept, "thesis: entropy models live on from packet to packet"),
+       app.add_flag("--layered", coding_.layered,
+                    "Deformable objects that are touched: a haptic layer in a packet of its own before the visual one. Costs "
+                    "a second header per update and 3 to 30 % of the bits")});
+}
+
+bool MeshArguments::any_given() const {
+  return std::any_of(options_.begin(), options_.end(), [](const Option* option) { return option->count() > 0; });
+}
+
+DeformableThresholds MeshArguments::over(DeformableThresholds out, const TriggerArguments& triggers) const {
+  if (visual_->count() > 0) out.visual = thresholds_.visual;
+  out.weber_fraction = triggers.weber_fraction(out.weber_fraction);
+  return out;
+}
+
+SenderOptions MeshArguments::sender(const TriggerArguments& triggers) const {
+  return {.triggers = triggers.triggers(),
+          .deformable = {thresholds(triggers), visual_share_, haptic_share_, coding_.layered},
+          .policy = {.key_interval = triggers.key_interval()}};
+}
+
+TraceCoding MeshArguments::coding() const {
+  TraceCoding out{coding_, {}};
+  if (modes_ > 0) out.basis = [modes = modes_](const TraceDeformable& mesh) { return spring_basis(mesh, modes); };
+  return out;
+}
+
+Option* add_interpolation(Command& app, ReplicaOptions& options) {
+  return app.add_flag(
+      "--interpolate", [&options] { options.interpolation = Interpolation::linear; },
+      "Smooth the replica: straight line and SLERP over 75 % of the usual gap, 5 to 100 ms");
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/report/trace_ending.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include <tactus/base/shown.h>
+#include "cli/report/table.h"
+
+namespace tactus::cli {
+
+void warn_cut_stream(const std::string& path, const Error& error) {
+  fmt::print(stderr, "warning: {}: the stream ends inside a record at {}; everything before the cut could be read\n", path,
+             place_of_bit(error.bit_offset));
+}
+
+Outcome check_ending(const std::string& path, const TraceReader& reader, std::uint64_t frames) {
+  if (!reader.cut_short()) return {};
+  if (frames == 0) {
+    return refuse(shown_path(path) + ": the trace was cut before the end of its first chunk; no tick of it can be read",
+                  "Copy it again from its source, or record it again.");
+  }
+  std::fflush(stdout);
+  fmt::print(stderr, "warning: {}: the trace ends without its index; {} before the cut could be read\n", shown_path(path),
+             counted(frames, "tick"));
+  return {};
+}
+
+}  // namespace tactus::cli

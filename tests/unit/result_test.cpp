@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/result.h>
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+namespace tactus {
+namespace {
+
+TEST(Result, EveryErrorClassHasANameOfItsOwn) {
+  std::set<std::string> names;
+  for (int value = 1; value <= 12; ++value) names.insert(errc_name(static_cast<Errc>(value)));
+  EXPECT_EQ(names.size(), 12u);
+  EXPECT_TRUE(names.contains("malformed") && names.contains("limit_exceeded"));
+}
+
+TEST(Result, AdviceFollowsFromClassAndRule) {
+  EXPECT_EQ(advice({Errc::malformed, "R-RIG-1"}), Advice::drop);
+  EXPECT_EQ(advice({Errc::state, "R-PKT-4"}), Advice::request_key);
+  EXPECT_EQ(advice({Errc::state, "R-PKT-5"}), Advice::drop);
+  EXPECT_EQ(advice({Errc::unsupported, "R-DEF-2"}), Advice::close);
+  EXPECT_EQ(advice({Errc::limit_exceeded, "R-PKT-1"}), Advice::drop);
+  EXPECT_EQ(advice({Errc::limit_exceeded, "R-DEF-4"}), Advice::close);
+}
+
+}  // namespace
+}  // namespace tactus
