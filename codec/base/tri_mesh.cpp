@@ -48,16 +48,16 @@ bool is_in_range(const Vec3& v) noexcept {  // false for NaN
 
 tl::expected<void, MeshError> check_elements(const TriMesh& mesh) {
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-    if (!is_in_range(mesh.vertices[v])) return broken(Errc::invalid, "R-MSH-1", v);
+    if (!is_in_range(mesh.vertices[v])) return broken(Errc::invalid, "R-SRF-8", v);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (const std::uint32_t v : mesh.triangles[t])
-      if (v >= mesh.vertices.size()) return broken(Errc::invalid, "R-MSH-2", t);
+      if (v >= mesh.vertices.size()) return broken(Errc::invalid, "R-SRF-9", t);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto [a, b, c] = mesh.triangles[t];
     const Vec3& origin = mesh.vertices[a];
     const bool repeated = a == b || b == c || c == a;
     if (repeated || cross(mesh.vertices[b] - origin, mesh.vertices[c] - origin) == Vec3{})
-      return broken(Errc::invalid, "R-MSH-3", t);
+      return broken(Errc::invalid, "R-SRF-10", t);
   }
   return {};
 }
@@ -76,8 +76,8 @@ tl::expected<void, MeshError> check_edges(const TriMesh& mesh) {
     if (i >= 2 && edge_of(sides[i]) == edge_of(sides[i - 2])) third = std::min(third, triangle);
     if (is_upward(mesh, sides[i]) == is_upward(mesh, sides[i - 1])) turned = std::min(turned, triangle);
   }
-  if (third != MeshTopology::kNone) return broken(Errc::invalid, "R-MSH-4", third);
-  if (turned != MeshTopology::kNone) return broken(Errc::invalid, "R-MSH-5", turned);
+  if (third != MeshTopology::kNone) return broken(Errc::invalid, "R-SRF-11", third);
+  if (turned != MeshTopology::kNone) return broken(Errc::invalid, "R-SRF-12", turned);
   return {};
 }
 
@@ -106,7 +106,7 @@ tl::expected<void, MeshError> check_fans(const TriMesh& mesh) {
   for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
     const auto triangles = topology.triangles_of(v);
     if (!triangles.empty() && fan_size(mesh, topology, v, triangles[0]) != triangles.size())
-      return broken(Errc::invalid, "R-MSH-6", v);
+      return broken(Errc::invalid, "R-SRF-13", v);
   }
   return {};
 }
@@ -124,15 +124,15 @@ struct RuleText {
 constexpr const char* kManifold = "remove the surplus element or take the mesh apart there";
 
 constexpr std::array kRules{
-    RuleText{"R-MSH-1", "vertex", "a coordinate is not a finite number or larger than 1e6 m",
+    RuleText{"R-SRF-8", "vertex", "a coordinate is not a finite number or larger than 1e6 m",
              "look for gaps in the file, or scale it to metres"},
-    RuleText{"R-MSH-2", "triangle", "a corner is no vertex of the mesh", "the file was cut or its numbers start elsewhere"},
-    RuleText{"R-MSH-3", "triangle", "two corners are the same, or its area is zero", "remove it or merge its vertices"},
-    RuleText{"R-MSH-4", "triangle", "an edge belongs to a third triangle", kManifold},
-    RuleText{"R-MSH-5", "triangle", "a neighbour is oriented the other way round, or it stands there twice",
+    RuleText{"R-SRF-9", "triangle", "a corner is no vertex of the mesh", "the file was cut or its numbers start elsewhere"},
+    RuleText{"R-SRF-10", "triangle", "two corners are the same, or its area is zero", "remove it or merge its vertices"},
+    RuleText{"R-SRF-11", "triangle", "an edge belongs to a third triangle", kManifold},
+    RuleText{"R-SRF-12", "triangle", "a neighbour is oriented the other way round, or it stands there twice",
              "turn one of the two round or remove it"},
-    RuleText{"R-MSH-6", "vertex", "its triangles form more than one fan", "give each fan a vertex of its own"},
-    RuleText{"R-MSH-7", nullptr, "more than 2^20 vertices or 2^21 triangles", "simplify it or cut it into several objects"},
+    RuleText{"R-SRF-13", "vertex", "its triangles form more than one fan", "give each fan a vertex of its own"},
+    RuleText{"R-SRF-14", nullptr, "more than 2^20 vertices or 2^21 triangles", "simplify it or cut it into several objects"},
     RuleText{"R-TET-1", "vertex", "a coordinate is not a finite number or larger than 1e6 m",
              "look for gaps in the file, or scale it to metres"},
     RuleText{"R-TET-2", "tetrahedron", "a corner is no vertex of the mesh", "the file was cut or its numbers start elsewhere"},
@@ -156,7 +156,7 @@ std::string to_string(const MeshError& error) {
 
 tl::expected<void, MeshError> check(const TriMesh& mesh) try {
   if (mesh.vertices.size() > kMaxMeshVertices || mesh.triangles.size() > kMaxMeshTriangles)
-    return broken(Errc::limit_exceeded, "R-MSH-7", 0);
+    return broken(Errc::limit_exceeded, "R-SRF-14", 0);
   return check_elements(mesh).and_then([&] { return check_edges(mesh); }).and_then([&] { return check_fans(mesh); });
 } catch (const std::bad_alloc&) {
   return tl::unexpected(MeshError{out_of_memory().value(), 0});

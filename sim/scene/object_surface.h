@@ -21,7 +21,7 @@ struct ObjectSurfaceError {
   std::string text;
 };
 
-/// err  R-SRF-n, R-MSH-n, R-TGN-2, 4, 8; unsupported: this build reads no surface files
+/// err  R-SRF-n, R-TGN-2, 4, 8; unsupported: this build reads no surface files
 tl::expected<ObjectSurface, ObjectSurfaceError> read_object_surface(const std::string& file);
 
 }  // namespace tactus::sim

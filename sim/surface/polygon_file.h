@@ -19,7 +19,7 @@ std::string surface_format(const std::string& path);
 tl::expected<PolygonSoup, SurfaceError> parse_polygons(std::string_view text, std::string_view format);
 tl::expected<PolygonSoup, SurfaceError> read_polygons(const std::string& path);
 
-/// Triangles of it, if they make a mesh.   err  R-SRF-5, R-SRF-6, R-MSH-n
+/// Triangles of it, if they make a mesh.   err  R-SRF-5, R-SRF-6, R-SRF-8..14
 tl::expected<SurfaceFile, SurfaceError> make_surface(PolygonSoup&& soup);
 
 }  // namespace tactus::sim

@@ -49,10 +49,9 @@ std::string to_string(const SurfaceError& error) {
   constexpr std::size_t kMostOfDetail = 120;  // a place in our words and a piece of the file
   const std::string_view rule = error.error.rule;
   const std::string file = error.file.empty() ? "" : shown_path(error.file) + ": ";
-  if (rule.starts_with("R-MSH-")) return file + to_string(MeshError{error.error, error.element});
   const auto* text = std::find_if(kRules.begin(), kRules.end(), [&](const RuleText& r) { return r.rule == rule; });
-  std::string place = file + (error.detail.empty() ? "" : shown(error.detail, kMostOfDetail) + ": ") + error.error.rule;
-  if (text == kRules.end()) return place;
+  if (text == kRules.end()) return file + to_string(MeshError{error.error, error.element});
+  const std::string place = file + (error.detail.empty() ? "" : shown(error.detail, kMostOfDetail) + ": ") + error.error.rule;
   return place + ": " + text->broken + "; " + text->remedy;
 }
 

@@ -110,7 +110,7 @@ tl::expected<std::vector<Vec3>, SurfaceError> SurfaceSequence::positions(std::si
   for (const std::uint32_t v : used_) {
     const Vec3& p = soup->vertices[v];
     if (!(std::abs(p.x) <= 1e6 && std::abs(p.y) <= 1e6 && std::abs(p.z) <= 1e6))
-      return tl::unexpected(SurfaceError{fail(Errc::invalid, "R-MSH-1").value(), file, v, {}});
+      return tl::unexpected(SurfaceError{fail(Errc::invalid, "R-SRF-8").value(), file, v, {}});
     out.push_back(p);
   }
   return out;

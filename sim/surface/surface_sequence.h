@@ -7,7 +7,7 @@
 /// R-SEQ-2   invalid      it holds no surface file, or such of more than one format
 /// R-SEQ-3   unsupported  the files are STL, which does not say which vertex is which
 /// R-SEQ-4   invalid      a frame has another number of vertices than the first, or other faces
-/// R-SRF-n, R-MSH-n       a file is broken, see surface_file.h; triangles without area are refused in the first frame only
+/// R-SRF-n                a file is broken, see surface_file.h; triangles without area are refused in the first frame only
 #pragma once
 
 #include <span>
@@ -20,12 +20,12 @@ namespace tactus::sim {
 
 class SurfaceSequence {
  public:
-  /// Find the files and read the first.   err  R-SEQ-1..3, R-SRF-n, R-MSH-n
+  /// Find the files and read the first.   err  R-SEQ-1..3, R-SRF-n
   static tl::expected<SurfaceSequence, SurfaceError> open(const std::string& folder);
 
   std::size_t size() const noexcept { return files_.size(); }
   const TriMesh& rest() const noexcept { return rest_; }
-  /// Positions of the vertices of rest(), [file's unit].   pre  frame < size().   err  R-SEQ-4, R-SRF-n, R-MSH-1
+  /// Positions of the vertices of rest(), [file's unit].   pre  frame < size().   err  R-SEQ-4, R-SRF-n
   tl::expected<std::vector<Vec3>, SurfaceError> positions(std::size_t frame) const;
 
  private:

@@ -29,17 +29,18 @@ struct RuleText {
 constexpr const char* kDamaged = "the file was cut or changed after it was written; copy it again from its source";
 
 constexpr std::array kRules{
-    RuleText{"R-MFL-1", "the file cannot be opened, read or written", "check that the path is right and that you may use it"},
-    RuleText{"R-MFL-2", "more than 512 MiB, 2^20 vertices or 2^22 tetrahedra", "make the mesh coarser"},
-    RuleText{"R-MFL-3", "the file ends before everything that it announces", kDamaged},
-    RuleText{"R-MFL-4", "not a number, or one that is too large", "mend the line"},
-    RuleText{"R-MFL-5", "not a finite number", "look for what went wrong when the mesh was made"},
-    RuleText{"R-MFL-6", "the line has more or fewer words than its place asks for, or a section is missing or doubled", kDamaged},
-    RuleText{"R-MFL-7", "not a mesh of linear tetrahedra in three dimensions as text in a known version",
+    RuleText{"R-TET-8", "the file cannot be opened, read or written", "check that the path is right and that you may use it"},
+    RuleText{"R-TET-9", "more than 512 MiB, 2^20 vertices or 2^22 tetrahedra", "make the mesh coarser"},
+    RuleText{"R-TET-10", "the file ends before everything that it announces", kDamaged},
+    RuleText{"R-TET-11", "not a number, or one that is too large", "mend the line"},
+    RuleText{"R-TET-12", "not a finite number", "look for what went wrong when the mesh was made"},
+    RuleText{"R-TET-13", "the line has more or fewer words than its place asks for, or a section is missing or doubled",
+             kDamaged},
+    RuleText{"R-TET-14", "not a mesh of linear tetrahedra in three dimensions as text in a known version",
              "write it as .node and .ele, or with gmsh -3 -order 1 -format msh41 (or msh22), not binary"},
-    RuleText{"R-MFL-8", "numbers do not run on from 0 or 1, stand there twice, or name a vertex that is not there", kDamaged},
-    RuleText{"R-MFL-9", "there is no tetrahedron in it", "fill the surface first: `tactus mesh`, or gmsh -3"},
-    RuleText{"R-MFL-10", "the name ends in none of .node, .ele and .msh", "name it after what it holds"},
+    RuleText{"R-TET-15", "numbers do not run on from 0 or 1, stand there twice, or name a vertex that is not there", kDamaged},
+    RuleText{"R-TET-16", "there is no tetrahedron in it", "fill the surface first: `tactus mesh`, or gmsh -3"},
+    RuleText{"R-TET-17", "the name ends in none of .node, .ele and .msh", "name it after what it holds"},
 };
 
 /// "<number> <dimension> <attributes> <markers 0|1>", all but the first may be missing.
@@ -52,7 +53,7 @@ tl::expected<NodeHeader, MeshFileError> read_node_header(Tokenizer& words) {
   TACTUS_MESH_CHECK(words.line());
   TACTUS_MESH_CHECK(words.count(header.vertices, kMaxMeshVertices, kNodeLine));
   if (words.has_word()) TACTUS_MESH_CHECK(words.number(header.dimension));
-  if (header.dimension != 3) return words.broken(Errc::unsupported, "R-MFL-7", std::to_string(header.dimension));
+  if (header.dimension != 3) return words.broken(Errc::unsupported, "R-TET-14", std::to_string(header.dimension));
   if (words.has_word()) TACTUS_MESH_CHECK(words.count(header.attributes, kMaxAttributes, 1));
   if (words.has_word()) TACTUS_MESH_CHECK(words.count(header.markers, 1, 1));
   TACTUS_MESH_CHECK(words.end_of_line());
@@ -64,7 +65,7 @@ Read expect_number(Tokenizer& words, std::size_t index, std::size_t& base) {
   std::size_t number = 0;
   TACTUS_MESH_CHECK(words.number(number));
   if (index == 0 && number <= 1) base = number;
-  if (number != base + index) return words.broken(Errc::invalid, "R-MFL-8", std::to_string(number));
+  if (number != base + index) return words.broken(Errc::invalid, "R-TET-15", std::to_string(number));
   return {};
 }
 
@@ -87,7 +88,7 @@ tl::expected<std::size_t, MeshFileError> read_node(Tokenizer& words, TetFile& fi
     if (header->markers == 1) TACTUS_MESH_CHECK(words.number(file.vertex_markers.emplace_back()));
     TACTUS_MESH_CHECK(words.end_of_line());
   }
-  if (words.next_line()) return words.broken(Errc::malformed, "R-MFL-6", words.word());
+  if (words.next_line()) return words.broken(Errc::malformed, "R-TET-13", words.word());
   return base;
 }
 
@@ -97,10 +98,10 @@ Read read_ele(Tokenizer& words, std::size_t base, TetFile& file) {
   TACTUS_MESH_CHECK(words.line());
   TACTUS_MESH_CHECK(words.count(tets, kMaxTets, kEleLine));
   if (words.has_word()) TACTUS_MESH_CHECK(words.number(corners));
-  if (corners != 4) return words.broken(Errc::unsupported, "R-MFL-7", std::to_string(corners));
+  if (corners != 4) return words.broken(Errc::unsupported, "R-TET-14", std::to_string(corners));
   if (words.has_word()) TACTUS_MESH_CHECK(words.count(attributes, kMaxAttributes, 1));
   TACTUS_MESH_CHECK(words.end_of_line());
-  if (tets == 0) return words.broken(Errc::invalid, "R-MFL-9");
+  if (tets == 0) return words.broken(Errc::invalid, "R-TET-16");
   file.mesh.tets.reserve(tets);
   for (std::size_t i = 0; i < tets; ++i) {
     TACTUS_MESH_CHECK(words.line());
@@ -109,13 +110,13 @@ Read read_ele(Tokenizer& words, std::size_t base, TetFile& file) {
       std::size_t number = 0;
       TACTUS_MESH_CHECK(words.number(number));
       if (number < base || number - base >= file.mesh.vertices.size())
-        return words.broken(Errc::invalid, "R-MFL-8", std::to_string(number));
+        return words.broken(Errc::invalid, "R-TET-15", std::to_string(number));
       corner = static_cast<std::uint32_t>(number - base);
     }
     TACTUS_MESH_CHECK(read_attributes(words, attributes, file.tet_attributes));
     TACTUS_MESH_CHECK(words.end_of_line());
   }
-  if (words.next_line()) return words.broken(Errc::malformed, "R-MFL-6", words.word());
+  if (words.next_line()) return words.broken(Errc::malformed, "R-TET-13", words.word());
   return {};
 }
 
@@ -124,17 +125,17 @@ tl::expected<std::string, MeshFileError> read_text(const std::string& path) {
     return tl::unexpected(MeshFileError{fail(code, rule).value(), path, 0, {}});
   };
   std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) return refused(Errc::io, "R-MFL-1");
+  if (std::filesystem::is_directory(path, ignored)) return refused(Errc::io, "R-TET-8");
   std::ifstream in(path, std::ios::binary);
   std::string text;
   std::array<char, 1 << 16> piece{};
   while (in) {
     in.read(piece.data(), piece.size());
     const auto count = static_cast<std::size_t>(in.gcount());
-    if (count > kMaxFileBytes - text.size()) return refused(Errc::limit_exceeded, "R-MFL-2");
+    if (count > kMaxFileBytes - text.size()) return refused(Errc::limit_exceeded, "R-TET-9");
     text.append(piece.data(), count);
   }
-  if (!in.eof() || in.bad()) return refused(Errc::io, "R-MFL-1");
+  if (!in.eof() || in.bad()) return refused(Errc::io, "R-TET-8");
   return text;
 }
 
@@ -186,7 +187,7 @@ tl::expected<TetFile, MeshFileError> read_tet_mesh(const std::string& path) {
     });
   }
   if (name.extension() != ".node" && name.extension() != ".ele")
-    return tl::unexpected(MeshFileError{fail(Errc::unsupported, "R-MFL-10").value(), path, 0, {}});
+    return tl::unexpected(MeshFileError{fail(Errc::unsupported, "R-TET-17").value(), path, 0, {}});
   const std::string stem = path.substr(0, path.size() - name.extension().string().size());
   const auto node = read_text(stem + ".node");
   if (!node) return tl::unexpected(node.error());

@@ -24,8 +24,8 @@ class MshReader {
   tl::expected<TetFile, MeshFileError> read() {
     TACTUS_MESH_CHECK(read_format());
     while (words_.next_line()) TACTUS_MESH_CHECK(read_section(words_.word()));
-    if (!has_nodes_ || !has_elements_) return words_.broken(Errc::truncated, "R-MFL-3");
-    if (file_.mesh.tets.empty()) return words_.broken(Errc::invalid, "R-MFL-9");
+    if (!has_nodes_ || !has_elements_) return words_.broken(Errc::truncated, "R-TET-10");
+    if (file_.mesh.tets.empty()) return words_.broken(Errc::invalid, "R-TET-16");
     drop_unused_vertices();
     return std::move(file_);
   }
@@ -38,8 +38,8 @@ class MshReader {
     std::size_t binary = 0, real_bytes = 0;
     TACTUS_MESH_CHECK(words_.number(binary));
     TACTUS_MESH_CHECK(words_.number(real_bytes));
-    if (binary != 0) return words_.broken(Errc::unsupported, "R-MFL-7", "binary");
-    if (version != "4.1" && version != "2.2") return words_.broken(Errc::unsupported, "R-MFL-7", version);
+    if (binary != 0) return words_.broken(Errc::unsupported, "R-TET-14", "binary");
+    if (version != "4.1" && version != "2.2") return words_.broken(Errc::unsupported, "R-TET-14", version);
     legacy_ = version == "2.2";
     TACTUS_MESH_CHECK(words_.end_of_line());
     return expect("$EndMeshFormat");
@@ -47,23 +47,23 @@ class MshReader {
 
   Read expect(std::string_view wanted) {
     TACTUS_MESH_CHECK(words_.line());
-    if (const std::string_view found = words_.word(); found != wanted) return words_.broken(Errc::malformed, "R-MFL-6", found);
+    if (const std::string_view found = words_.word(); found != wanted) return words_.broken(Errc::malformed, "R-TET-13", found);
     return words_.end_of_line();
   }
 
   Read read_section(std::string_view name) {
     if (name == "$Nodes") {
-      if (std::exchange(has_nodes_, true)) return words_.broken(Errc::malformed, "R-MFL-6", name);
+      if (std::exchange(has_nodes_, true)) return words_.broken(Errc::malformed, "R-TET-13", name);
       TACTUS_MESH_CHECK(legacy_ ? read_nodes_2() : read_nodes_4());
       return expect("$EndNodes");
     }
     if (name == "$Elements") {
-      if (std::exchange(has_elements_, true) || !has_nodes_) return words_.broken(Errc::malformed, "R-MFL-6", name);
+      if (std::exchange(has_elements_, true) || !has_nodes_) return words_.broken(Errc::malformed, "R-TET-13", name);
       TACTUS_MESH_CHECK(sort_tags());
       TACTUS_MESH_CHECK(legacy_ ? read_elements_2() : read_elements_4());
       return expect("$EndElements");
     }
-    if (!name.starts_with('$')) return words_.broken(Errc::malformed, "R-MFL-6", name);
+    if (!name.starts_with('$')) return words_.broken(Errc::malformed, "R-TET-13", name);
     const std::string end = "$End" + std::string(name.substr(1));
     do TACTUS_MESH_CHECK(words_.line());
     while (words_.word() != end);
@@ -109,7 +109,7 @@ class MshReader {
         if (entity[2] == 0) TACTUS_MESH_CHECK(words_.end_of_line());  // else coordinates on the curve or surface follow
       }
     }
-    if (file_.mesh.vertices.size() != count) return words_.broken(Errc::malformed, "R-MFL-6");
+    if (file_.mesh.vertices.size() != count) return words_.broken(Errc::malformed, "R-TET-13");
     return {};
   }
 
@@ -139,7 +139,7 @@ class MshReader {
     std::sort(tags_.begin(), tags_.end());
     const auto twice =
         std::adjacent_find(tags_.begin(), tags_.end(), [](const auto& a, const auto& b) { return a.first == b.first; });
-    if (twice != tags_.end()) return words_.broken(Errc::invalid, "R-MFL-8", std::to_string(twice->first));
+    if (twice != tags_.end()) return words_.broken(Errc::invalid, "R-TET-15", std::to_string(twice->first));
     return {};
   }
 
@@ -187,24 +187,24 @@ class MshReader {
       }
       done += elements;
     }
-    if (done != count) return words_.broken(Errc::malformed, "R-MFL-6");
+    if (done != count) return words_.broken(Errc::malformed, "R-TET-13");
     return {};
   }
 
   /// The nodes of an element, up to the end of the line.
   Read read_element(std::size_t type, std::int32_t region) {
     if (std::find(kCurvedTetTypes.begin(), kCurvedTetTypes.end(), type) != kCurvedTetTypes.end())
-      return words_.broken(Errc::unsupported, "R-MFL-7", std::to_string(type));
+      return words_.broken(Errc::unsupported, "R-TET-14", std::to_string(type));
     if (type != kTetType) {
       ++file_.ignored_elements;
       return {};
     }
-    if (file_.mesh.tets.size() == kMaxTets) return words_.broken(Errc::limit_exceeded, "R-MFL-2");
+    if (file_.mesh.tets.size() == kMaxTets) return words_.broken(Errc::limit_exceeded, "R-TET-9");
     for (std::uint32_t& corner : file_.mesh.tets.emplace_back()) {
       std::size_t tag = 0;
       TACTUS_MESH_CHECK(words_.number(tag));
       const auto found = std::lower_bound(tags_.begin(), tags_.end(), std::pair{tag, std::uint32_t{0}});
-      if (found == tags_.end() || found->first != tag) return words_.broken(Errc::invalid, "R-MFL-8", std::to_string(tag));
+      if (found == tags_.end() || found->first != tag) return words_.broken(Errc::invalid, "R-TET-15", std::to_string(tag));
       corner = found->second;
     }
     file_.regions.push_back(region);

@@ -26,7 +26,7 @@ bool Tokenizer::next_line() noexcept {
 
 tl::expected<void, MeshFileError> Tokenizer::line() {
   if (next_line()) return {};
-  return broken(Errc::truncated, "R-MFL-3");
+  return broken(Errc::truncated, "R-TET-10");
 }
 
 bool Tokenizer::has_word() noexcept {
@@ -43,8 +43,8 @@ std::string_view Tokenizer::word() noexcept {
 
 tl::expected<void, MeshFileError> Tokenizer::count(std::size_t& value, std::size_t most, std::size_t bytes) {
   TACTUS_MESH_CHECK(number(value));
-  if (value > most) return broken(Errc::limit_exceeded, "R-MFL-2", std::to_string(value));
-  if (value > (line_.size() + rest_.size() + 1) / bytes) return broken(Errc::truncated, "R-MFL-3", std::to_string(value));
+  if (value > most) return broken(Errc::limit_exceeded, "R-TET-9", std::to_string(value));
+  if (value > (line_.size() + rest_.size() + 1) / bytes) return broken(Errc::truncated, "R-TET-10", std::to_string(value));
   return {};
 }
 
@@ -55,7 +55,7 @@ tl::expected<void, MeshFileError> Tokenizer::coordinates(Vec3& value) {
 }
 
 tl::expected<void, MeshFileError> Tokenizer::end_of_line() {
-  if (const std::string_view left = word(); !left.empty()) return broken(Errc::malformed, "R-MFL-6", left);
+  if (const std::string_view left = word(); !left.empty()) return broken(Errc::malformed, "R-TET-13", left);
   return {};
 }
 

@@ -115,7 +115,7 @@ TEST(DeformableScene, MeshFilesLieBesideTheScene) {
   ASSERT_TRUE(good) << to_string(good.error());
   EXPECT_EQ(good->deformables.at(0).mesh.tets.size(), 12u);
   EXPECT_EQ(good->deformables.at(0).mesh.vertices.at(0), (Vec3{1, 2, 3}));
-  for (const auto& [file, rule] : {std::pair{"no-such.msh", "R-MFL-1"}, {"block.stl", "R-MFL-10"}, {"flat.msh", "R-TET-3"}}) {
+  for (const auto& [file, rule] : {std::pair{"no-such.msh", "R-TET-8"}, {"block.stl", "R-TET-17"}, {"flat.msh", "R-TET-3"}}) {
     const auto scene = with(file);
     ASSERT_FALSE(scene) << file;
     EXPECT_STREQ(scene.error().error.rule, "R-SCN-8");

@@ -52,7 +52,7 @@ TEST(SurfaceScene, BadFilesNameFilePlaceRuleAndRemedy) {
                                   {"surface = \"words.obj\"", "R-SCN-8", "object.surface", "R-SRF-"},
                                   {"surface = \"open.obj\"", "R-SCN-8", "object.surface", "triangle 0: R-TGN-2"},
                                   {"surface = \"inward.obj\"", "R-SCN-8", "object.surface", "R-TGN-4"},
-                                  {"surface = \"fan.obj\"", "R-SCN-8", "object.surface", "R-MSH-4"},
+                                  {"surface = \"fan.obj\"", "R-SCN-8", "object.surface", "R-SRF-11"},
                                   {"surface = \"giant.obj\"", "R-SCN-6", "object.surface", "metres"},
                                   {"size = [1, 1, 1]\nsurface = \"corner.obj\"", "R-SCN-4", "object.size", "either"},
                                   {"", "R-SCN-4", "object.size", ""}};

@@ -124,7 +124,7 @@ TEST(TetGen, BrokenMeshesAndOptionsAreRefused) {
     expect_broken(fill(mesh, options), "R-TGN-7", "");
   expect_broken(fill(mesh, {.max_volume = 1e-9}), "R-TGN-5", "");
   mesh.vertices[3].x = kNan;
-  expect_broken(fill(mesh, {}), "R-MSH-1", "");
+  expect_broken(fill(mesh, {}), "R-SRF-8", "");
 }
 
 TEST(TetGen, MissingFailingAndHangingProgramsAreTold) {
