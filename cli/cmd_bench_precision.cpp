@@ -28,9 +28,7 @@ struct PrecisionOptions {
   sim::study::Extent extent() const { return brief ? sim::study::Extent::brief : sim::study::Extent::full; }
 };
 
-Failure failure_of(const std::string& scene, const sim::FemError& error) {
-  return {scene + ": " + to_string(error), error.remedy};
-}
+Failure failure_of(const std::string& scene, const Diagnostic& error) { return {scene + ": " + to_string(error), ""}; }
 
 /// All points of the studies; those that are in the results already are not computed again.
 class Work {

@@ -76,7 +76,7 @@ Outcome run(const ExportMeshOptions& options) {
     errno = 0;
     const auto written = report.timings[0].times.measure([&] { return sim::write_surface(file, shape); });
     if (!written && written.error().error.code == Errc::io) return refuse_io(options.output, "cannot be written", errno);
-    if (!written) return refuse_located(written.error());
+    if (!written) return refuse(written.error());
   }
   if (auto whole = check_ending(options.input, *reader, report.ticks.count()); !whole) return whole;
   if (auto kept = folder->keep_as(target->string()); !kept) return kept;

@@ -9,7 +9,6 @@
 #include <span>
 #include <string_view>
 
-#include <tactus/base/shown.h>
 #include <tactus/trace/csv.h>
 #include "cli/report.h"
 #include "cli/table.h"
@@ -99,16 +98,13 @@ bool blames_arguments(const CsvMapping& mapping, std::string_view rule) {
   return rule == "R-CSV-8" || rule == "R-TRC-17" || (rule == "R-CSV-7" && mapping.time.empty());
 }
 
-tl::unexpected<Failure> refuse_csv(const ImportOptions& options, const CsvMapping& mapping, const CsvError& e) {
+tl::unexpected<Failure> refuse_csv(const ImportOptions& options, const CsvMapping& mapping, const Diagnostic& e) {
   const std::string& file = options.input;
   if (options.preset.empty() && options.maps.empty() && e.line == 1 && e.error.rule == std::string_view("R-CSV-2"))
     return refuse_arguments(file + ": nothing says which columns to read",
                             "Give --preset NAME or --map position=x,y,z. Only tables of `tactus export csv` need neither.");
   const bool arguments = blames_arguments(mapping, e.error.rule);
-  std::string place = e.line > 0 && !arguments ? fmt::format("line {}", e.line) : "";
-  if (!e.column.empty()) place += fmt::format("{}column {}", place.empty() ? "" : ", ", shown(e.column));
-  if (!e.text.empty()) place += fmt::format("{}'{}'", place.empty() ? "" : ", ", shown(e.text));
-  auto refused = refuse(file, place, e.error);
+  auto refused = refuse(file, arguments ? e.detail : place_of(e), e.error);
   if (arguments) refused.value().cause = Failure::Cause::arguments;
   return refused;
 }

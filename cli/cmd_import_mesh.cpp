@@ -52,7 +52,7 @@ Outcome write_frames(const sim::SurfaceSequence& sequence, const TriMesh& rest, 
   Progress progress("import", sequence.size(), options.common.progress());
   for (std::size_t k = 0; k < sequence.size(); ++k) {
     const auto positions = report.timings[0].times.measure([&] { return sequence.positions(k); });
-    if (!positions) return refuse_located(positions.error());
+    if (!positions) return refuse(positions.error());
     frame.tick = std::llround(static_cast<double>(k) * clock.period);
     float* out = frame.meshes[0].displacements.data();
     for (std::size_t v = 0; v < positions->size(); ++v) {
@@ -77,7 +77,7 @@ Outcome run(const ImportMeshOptions& options) {
   auto output = OutputFile::create(options.output, options.common.existing());
   if (!output) return tl::unexpected(output.error());
   const auto sequence = sim::SurfaceSequence::open(options.input);
-  if (!sequence) return refuse_located(sequence.error());
+  if (!sequence) return refuse(sequence.error());
   TriMesh rest = sequence->rest();
   for (Vec3& p : rest.vertices) p = options.length_unit * p;
   const Clock clock = clock_of(options);

@@ -299,7 +299,7 @@ Outcome info_trace(const InfoOptions& options) {
 #ifdef TACTUS_HAS_SIM
 Outcome info_scene(const InfoOptions& options) {
   const auto scene = sim::load_scene(options.input);
-  if (!scene) return refuse_located(scene.error());
+  if (!scene) return refuse(scene.error());
   note_idle_options(*options.command, {}, "scene");
   if (options.json) {
     fmt::print("{}\n", text_of_json(scene_info_json(*scene)));

@@ -82,7 +82,7 @@ Outcome make_slab(const MeshOptions& options, MeshReport& report) {
 Outcome read_tets(const MeshOptions& options, MeshReport& report) {
   note_idle_options(*options.common.command, {}, "file");
   auto file = report.measure("read", [&] { return sim::read_tet_mesh(options.input); });
-  if (!file) return refuse_located(file.error());
+  if (!file) return refuse(file.error());
   if (file->ignored_elements > 0)
     report.notes.push_back({"ignored_elements", "left out",
                             counted(file->ignored_elements, "element") + " that are no tetrahedra", file->ignored_elements});
@@ -97,7 +97,7 @@ double volume_of_edge(double edge) { return edge * edge * edge / (6 * std::numbe
 
 Outcome fill_surface(const MeshOptions& options, MeshReport& report) {
   auto file = report.measure("read", [&] { return sim::read_surface(options.input); });
-  if (!file) return refuse_located(file.error());
+  if (!file) return refuse(file.error());
   if (file->polygons > 0)
     report.notes.push_back({"cut_polygons", "cut", counted(file->polygons, "polygon") + " into triangles", file->polygons});
   if (file->unused_vertices > 0)
@@ -110,9 +110,9 @@ Outcome fill_surface(const MeshOptions& options, MeshReport& report) {
                                   .time_limit = options.time_limit};
   auto filled = report.measure("fill", [&] { return fill(file->mesh, settings); });
   if (!filled) {
-    sim::SurfaceError error = filled.error();
+    Diagnostic error = filled.error();
     error.file = options.input;
-    return refuse_located(error);
+    return refuse(error);
   }
   report.mesh = std::move(*filled);
   return {};

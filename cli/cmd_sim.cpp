@@ -85,9 +85,11 @@ tl::expected<std::span<const Packet>, Failure> step(Run& run, const SimOptions& 
   if (run.recording) run.devices = recorded_devices(*run.recording, run.recorded);
   const auto stepped = times.measure([&] { return run.recording ? run.simulation.step(run.devices) : run.simulation.step(); });
   if (stepped) return *stepped;
-  const sim::StepError& error = stepped.error();
-  if (error.remedy.empty()) return refuse(options.scene, place_of_tick(error.tick), error.error);
-  return refuse(fmt::format("{}, {}: {}", options.scene, place_of_tick(error.tick), error.remedy), "");
+  const Diagnostic& error = stepped.error();
+  const std::string place = place_of_tick(error.step) + (error.detail.empty() ? "" : ", " + error.detail);
+  auto refused = refuse(options.scene, place, error.error);
+  if (!error.remedy.empty()) refused.value().remedy = error.remedy + '.';
+  return refused;
 }
 
 /// What was sent in this tick.
@@ -206,9 +208,9 @@ Report make_report(const SimOptions& options, const TraceInfo& info) {
 
 tl::expected<sim::Scene, Failure> read_scene(const SimOptions& options) {
   const auto path = sim::find_scene(options.scene);
-  if (!path) return refuse_located(path.error());
+  if (!path) return refuse(path.error());
   auto scene = sim::load_scene(*path);
-  if (!scene) return refuse_located(scene.error());
+  if (!scene) return refuse(scene.error());
   for (sim::SceneDeformable& object : scene->deformables) {
     if (!options.method.empty()) object.method = options.method;
     if (!options.solver.empty()) object.solver = options.solver;

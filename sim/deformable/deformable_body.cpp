@@ -68,8 +68,9 @@ DeformableBody::DeformableBody(FemModel model, const SceneDeformable& object, co
   if (gravity == Vec3{}) resting_ = kRestSteps;
 }
 
-tl::expected<std::unique_ptr<DeformableBody>, FemError> DeformableBody::create(const SceneDeformable& object, const Vec3& gravity,
-                                                                               std::uint32_t estimate_every) {
+tl::expected<std::unique_ptr<DeformableBody>, Diagnostic> DeformableBody::create(const SceneDeformable& object,
+                                                                                 const Vec3& gravity,
+                                                                                 std::uint32_t estimate_every) {
   auto model = FemModel::create(object.mesh, fem_options(object));
   if (!model) return tl::unexpected(model.error());
   std::unique_ptr<DeformableBody> body(new DeformableBody(std::move(*model), object, gravity));
@@ -94,7 +95,7 @@ void DeformableBody::push(std::uint32_t triangle, std::span<const double, 3> wei
   pushed_any_ = pushed_any_ || force != Vec3{};
 }
 
-tl::expected<DeformableBody::Tick, FemError> DeformableBody::tick() {
+tl::expected<DeformableBody::Tick, Diagnostic> DeformableBody::tick() {
   if (++phase_ < rate_) return Tick::between;
   phase_ = 0;
   time_ = {};

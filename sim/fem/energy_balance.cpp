@@ -13,7 +13,7 @@ double twice_kinetic(const FemModel& model, const Eigen::VectorXd& v) noexcept {
 
 }  // namespace
 
-tl::expected<EnergyBalance, FemError> EnergyBalance::create(const FemModel& model) {
+tl::expected<EnergyBalance, Diagnostic> EnergyBalance::create(const FemModel& model) {
   auto again = FemModel::create(model.mesh(), model.options());
   if (!again) return tl::unexpected(again.error());
   return EnergyBalance(*std::move(again));

@@ -14,8 +14,8 @@ int order(Method method) { return method == Method::backward_euler || method == 
 
 }  // namespace
 
-tl::expected<std::unique_ptr<ErrorEstimate::Copy>, FemError> ErrorEstimate::copy(const FemModel& model,
-                                                                                 const IntegratorOptions& options) {
+tl::expected<std::unique_ptr<ErrorEstimate::Copy>, Diagnostic> ErrorEstimate::copy(const FemModel& model,
+                                                                                   const IntegratorOptions& options) {
   auto again = FemModel::create(model.mesh(), model.options());
   if (!again) return tl::unexpected(again.error());
   auto made = std::make_unique<Copy>(Copy{std::move(*again), nullptr});
@@ -25,8 +25,8 @@ tl::expected<std::unique_ptr<ErrorEstimate::Copy>, FemError> ErrorEstimate::copy
   return made;
 }
 
-tl::expected<ErrorEstimate, FemError> ErrorEstimate::create(const FemModel& model, const IntegratorOptions& options,
-                                                            std::int64_t every) {
+tl::expected<ErrorEstimate, Diagnostic> ErrorEstimate::create(const FemModel& model, const IntegratorOptions& options,
+                                                              std::int64_t every) {
   auto whole = copy(model, options);
   if (!whole) return tl::unexpected(whole.error());
   IntegratorOptions halved = options;

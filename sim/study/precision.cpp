@@ -51,7 +51,7 @@ void external_forces(const PrecisionScene& scene, const FemModel& model, Loading
   }
 }
 
-tl::expected<FemModel, FemError> make_model(const PrecisionScene& scene, const PrecisionMethod& method) {
+tl::expected<FemModel, Diagnostic> make_model(const PrecisionScene& scene, const PrecisionMethod& method) {
   FemOptions options;
   options.materials = {scene.material};
   options.fixed = scene.fixed;
@@ -74,11 +74,11 @@ struct Run {
   Eigen::VectorXd f;
   Trajectory out;
 
-  tl::expected<void, FemError> step(std::int64_t number);
+  tl::expected<void, Diagnostic> step(std::int64_t number);
   void sample(int number);
 };
 
-tl::expected<void, FemError> Run::step(std::int64_t number) {
+tl::expected<void, Diagnostic> Run::step(std::int64_t number) {
   const double h = method.options.step, point = force_point(method.options.method);
   const double t = (static_cast<double>(number) + point) * h;
   const double deflection = scene.patch.deflection(state.u) + point * h * scene.patch.deflection(state.v);
@@ -100,7 +100,7 @@ void Run::sample(int number) {
   out.force[number] = probe_force(scene, deflection, t);
 }
 
-tl::expected<Run, FemError> start(const PrecisionScene& scene, const PrecisionMethod& method, Loading loading) {
+tl::expected<Run, Diagnostic> start(const PrecisionScene& scene, const PrecisionMethod& method, Loading loading) {
   auto model = make_model(scene, method);
   if (!model) return tl::unexpected(model.error());
   auto observer = make_model(scene, method);
@@ -155,8 +155,8 @@ double processor_seconds() noexcept {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-tl::expected<Trajectory, FemError> simulate(const PrecisionScene& scene, const PrecisionMethod& method, int steps_per_sample,
-                                            Loading loading) {
+tl::expected<Trajectory, Diagnostic> simulate(const PrecisionScene& scene, const PrecisionMethod& method, int steps_per_sample,
+                                              Loading loading) {
   PrecisionMethod with_step = method;
   with_step.options.step = scene.step(steps_per_sample);
   auto run = start(scene, with_step, loading);
@@ -187,7 +187,7 @@ tl::expected<Trajectory, FemError> simulate(const PrecisionScene& scene, const P
   return std::move(run->out);
 }
 
-tl::expected<Trajectory, FemError> runge_kutta(const PrecisionScene& scene, int steps_per_sample, Loading loading) {
+tl::expected<Trajectory, Diagnostic> runge_kutta(const PrecisionScene& scene, int steps_per_sample, Loading loading) {
   const PrecisionMethod none;
   auto run = start(scene, none, loading);
   if (!run) return tl::unexpected(run.error());
@@ -215,12 +215,12 @@ tl::expected<Trajectory, FemError> runge_kutta(const PrecisionScene& scene, int 
   return std::move(run->out);
 }
 
-tl::expected<Reference, FemError> make_reference(const PrecisionScene& scene) {
+tl::expected<Reference, Diagnostic> make_reference(const PrecisionScene& scene) {
   const int n = scene.reference_steps_per_sample;
   Reference out, half;
   Trajectory quarter;
   out.step = scene.step(n);
-  const auto fill = [&](int steps, Loading loading, Trajectory& to) -> tl::expected<void, FemError> {
+  const auto fill = [&](int steps, Loading loading, Trajectory& to) -> tl::expected<void, Diagnostic> {
     auto made = runge_kutta(scene, steps, loading);
     if (!made) return tl::unexpected(made.error());
     to = *std::move(made);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include <tactus/base/rule.h>
 #include <tactus/sim/fem/cholesky.h>
 #include <tactus/sim/study/precision.h>
 #include <tactus/sim/study/quadratic_tets.h>
@@ -69,7 +70,7 @@ PrecisionScene cantilever(std::uint32_t r, double poisson) {
   return scene;
 }
 
-tl::expected<FemModel, FemError> make_model(const PrecisionScene& scene) {
+tl::expected<FemModel, Diagnostic> make_model(const PrecisionScene& scene) {
   FemOptions options;
   options.materials = {scene.material};
   options.fixed = scene.fixed;
@@ -106,7 +107,7 @@ double timoshenko_deflection(double length, double width, double height, const M
   return length * length * length / (3 * material.young * moment) + length / (5.0 / 6 * shear * width * height);
 }
 
-tl::expected<StaticResult, FemError> static_deflection(const PrecisionScene& scene) {
+tl::expected<StaticResult, Diagnostic> static_deflection(const PrecisionScene& scene) {
   const double begin = processor_seconds();
   auto model = make_model(scene);
   if (!model) return tl::unexpected(model.error());
@@ -121,7 +122,7 @@ tl::expected<StaticResult, FemError> static_deflection(const PrecisionScene& sce
   Cholesky cholesky;
   cholesky.analyse(stiffness);
   if (!cholesky.factor(stiffness))
-    return tl::unexpected(FemError{.error = {Errc::internal, "R-FEM-7"}, .remedy = "Fix more vertices."});
+    return tl::unexpected(Diagnostic{.error = fail(Errc::internal, "R-FEM-7").value(), .remedy = "Fix more vertices."});
   Eigen::VectorXd solution(right.size());
   cholesky.solve(right, solution);
   for (std::size_t i = 0; i < free.size(); ++i) u[free[i]] = solution[static_cast<Eigen::Index>(i)];
@@ -144,7 +145,7 @@ std::vector<SpaceJob> space_jobs(std::string_view name, Extent extent) {
   return jobs;
 }
 
-tl::expected<SpacePoint, FemError> measure_space(std::string_view name, const SpaceJob& job) {
+tl::expected<SpacePoint, Diagnostic> measure_space(std::string_view name, const SpaceJob& job) {
   const PrecisionScene scene = *space_scene(name, job.refinement, job.poisson);
   SpacePoint out;
   out.refinement = job.refinement;

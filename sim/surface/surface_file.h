@@ -19,7 +19,7 @@
 
 #include <string_view>
 
-#include <tactus/sim/surface/surface_error.h>
+#include <tactus/base/tri_mesh.h>
 
 namespace tactus::sim {
 
@@ -30,12 +30,12 @@ struct SurfaceFile {
 };
 
 /// err  R-SRF-1..14
-tl::expected<SurfaceFile, SurfaceError> read_surface(const std::string& path);
+tl::expected<SurfaceFile, Diagnostic> read_surface(const std::string& path);
 /// The same from memory; format is the name's ending, ".obj". The error names no file.
-tl::expected<SurfaceFile, SurfaceError> parse_surface(std::string_view text, std::string_view format);
+tl::expected<SurfaceFile, Diagnostic> parse_surface(std::string_view text, std::string_view format);
 
 /// The format follows from the name: OBJ, PLY and OFF as text, STL binary.
 /// pre  the mesh passed check().   err  R-SRF-1, R-SRF-3
-tl::expected<void, SurfaceError> write_surface(const std::string& path, const TriMesh& mesh);
+tl::expected<void, Diagnostic> write_surface(const std::string& path, const TriMesh& mesh);
 
 }  // namespace tactus::sim

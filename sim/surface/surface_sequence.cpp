@@ -8,6 +8,7 @@
 #include <set>
 #include <string_view>
 
+#include <tactus/base/rule.h>
 #include <tactus/sim/surface/polygon_file.h>
 
 namespace tactus::sim {
@@ -32,7 +33,7 @@ bool is_surface(const std::string& format) noexcept {
   return std::find(kFormats.begin(), kFormats.end(), format) != kFormats.end();
 }
 
-tl::expected<std::vector<std::string>, SurfaceError> surfaces_in(const std::string& folder) {
+tl::expected<std::vector<std::string>, Diagnostic> surfaces_in(const std::string& folder) {
   std::vector<std::string> files;
   std::set<std::string> formats;
   std::error_code error;
@@ -70,7 +71,7 @@ bool natural_less(const std::string& a, const std::string& b) noexcept {
   return a < b;  // "f1" and "f01": any fixed order
 }
 
-tl::expected<SurfaceSequence, SurfaceError> SurfaceSequence::open(const std::string& folder) {
+tl::expected<SurfaceSequence, Diagnostic> SurfaceSequence::open(const std::string& folder) {
   auto files = surfaces_in(folder);
   if (!files) return tl::unexpected(files.error());
   SurfaceSequence out;
@@ -91,7 +92,7 @@ tl::expected<SurfaceSequence, SurfaceError> SurfaceSequence::open(const std::str
   return out;
 }
 
-tl::expected<std::vector<Vec3>, SurfaceError> SurfaceSequence::positions(std::size_t frame) const {
+tl::expected<std::vector<Vec3>, Diagnostic> SurfaceSequence::positions(std::size_t frame) const {
   const std::string& file = files_[frame];
   const auto soup = read_polygons(file);
   if (!soup) return tl::unexpected(soup.error());
@@ -110,7 +111,8 @@ tl::expected<std::vector<Vec3>, SurfaceError> SurfaceSequence::positions(std::si
   for (const std::uint32_t v : used_) {
     const Vec3& p = soup->vertices[v];
     if (!(std::abs(p.x) <= 1e6 && std::abs(p.y) <= 1e6 && std::abs(p.z) <= 1e6))
-      return tl::unexpected(SurfaceError{fail(Errc::invalid, "R-SRF-8").value(), file, v, {}});
+      return tl::unexpected(
+          Diagnostic{.error = fail(Errc::invalid, "R-SRF-8").value(), .file = file, .kind = "vertex", .element = v});
     out.push_back(p);
   }
   return out;

@@ -14,19 +14,19 @@
 #include <string>
 #include <vector>
 
-#include <tactus/sim/surface/surface_error.h>
+#include <tactus/base/tri_mesh.h>
 
 namespace tactus::sim {
 
 class SurfaceSequence {
  public:
   /// Find the files and read the first.   err  R-SEQ-1..3, R-SRF-n
-  static tl::expected<SurfaceSequence, SurfaceError> open(const std::string& folder);
+  static tl::expected<SurfaceSequence, Diagnostic> open(const std::string& folder);
 
   std::size_t size() const noexcept { return files_.size(); }
   const TriMesh& rest() const noexcept { return rest_; }
   /// Positions of the vertices of rest(), [file's unit].   pre  frame < size().   err  R-SEQ-4, R-SRF-n
-  tl::expected<std::vector<Vec3>, SurfaceError> positions(std::size_t frame) const;
+  tl::expected<std::vector<Vec3>, Diagnostic> positions(std::size_t frame) const;
 
  private:
   std::vector<std::string> files_;

@@ -15,7 +15,7 @@
 /// R-SRF-8..14                  the mesh is broken, see codec/base/tri_mesh.h
 #pragma once
 
-#include <tactus/sim/surface/surface_error.h>
+#include <tactus/base/tri_mesh.h>
 #include <tactus/sim/tets/tet_mesh.h>
 
 namespace tactus::sim {
@@ -36,6 +36,6 @@ struct FillOptions {
 
 /// out  passed check(); the surface's vertices first, with the same bits
 /// err  R-TGN-1..9, R-SRF-8..14
-tl::expected<TetMesh, SurfaceError> fill(const TriMesh& surface, const FillOptions& options);
+tl::expected<TetMesh, Diagnostic> fill(const TriMesh& surface, const FillOptions& options);
 
 }  // namespace tactus::sim

@@ -24,14 +24,6 @@
 
 namespace tactus::sim {
 
-struct MeshFileError {
-  Error error;
-  std::string file;
-  std::size_t line = 0;  ///< from 1; 0: the file as a whole
-  std::string word;      ///< what stands at the place, if that is the fault
-};
-std::string to_string(const MeshFileError& error);  ///< "m.node:12: 'oops': R-TET-11: not a number; ..." with remedy
-
 /// A mesh as it stands in a file; whether it makes sense is for check() to say.
 struct TetFile {
   TetMesh mesh;
@@ -44,11 +36,11 @@ struct TetFile {
 };
 
 /// Read .msh, or .node and .ele beside one another (either may be named).   err  R-TET-8..17
-tl::expected<TetFile, MeshFileError> read_tet_mesh(const std::string& path);
+tl::expected<TetFile, Diagnostic> read_tet_mesh(const std::string& path);
 
 /// The same from memory; the error's file is empty, ".node" or ".ele".   err  R-TET-9..16
-tl::expected<TetFile, MeshFileError> parse_node_ele(std::string_view node, std::string_view ele);
-tl::expected<TetFile, MeshFileError> parse_msh(std::string_view text);
+tl::expected<TetFile, Diagnostic> parse_node_ele(std::string_view node, std::string_view ele);
+tl::expected<TetFile, Diagnostic> parse_msh(std::string_view text);
 
 /// Numbered from 0, with the shortest digits that read back as the same bits.
 void write_node(std::ostream& out, const TetMesh& mesh);

@@ -11,7 +11,7 @@
 
 namespace {
 
-using Read = tl::expected<tactus::sim::TetFile, tactus::sim::MeshFileError>;
+using Read = tl::expected<tactus::sim::TetFile, tactus::Diagnostic>;
 
 void check(const Read& file, std::string_view text) {
   if (!file) {

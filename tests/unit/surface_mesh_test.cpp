@@ -63,7 +63,7 @@ double enclosed(const TriMesh& mesh) {
   return sum;
 }
 
-void expect_broken(const tl::expected<SurfaceFile, SurfaceError>& file, std::string_view rule, std::string_view detail) {
+void expect_broken(const tl::expected<SurfaceFile, Diagnostic>& file, std::string_view rule, std::string_view detail) {
   ASSERT_FALSE(file) << rule;
   EXPECT_EQ(file.error().error.rule, rule) << to_string(file.error());
   EXPECT_EQ(file.error().detail, detail);

@@ -60,7 +60,7 @@ TEST(SurfaceScene, BadFilesNameFilePlaceRuleAndRemedy) {
     const auto scene = load_scene(folder.write("t.toml", scene_text(c.surface)));
     ASSERT_FALSE(scene) << c.surface;
     EXPECT_STREQ(scene.error().error.rule, c.rule) << to_string(scene.error());
-    EXPECT_EQ(scene.error().key, c.key) << c.surface;
+    EXPECT_EQ(scene.error().detail, c.key) << c.surface;
     EXPECT_EQ(scene.error().line, c.surface.empty() ? 4u : 6u) << c.surface;
     EXPECT_NE(scene.error().remedy.find(c.says), std::string::npos) << scene.error().remedy;
   }

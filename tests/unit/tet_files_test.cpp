@@ -34,7 +34,7 @@ void expect_broken(const Read& read, std::string_view rule, std::size_t line, st
   ASSERT_FALSE(read) << rule;
   EXPECT_EQ(read.error().error.rule, rule);
   EXPECT_EQ(read.error().line, line) << rule;
-  EXPECT_EQ(read.error().word, word) << rule;
+  EXPECT_EQ(read.error().detail, word.empty() ? "" : '\'' + std::string(word) + '\'') << rule;
 }
 
 TEST(TetFiles, NodeAndEleBringAttributesAndMarkers) {
