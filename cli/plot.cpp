@@ -68,8 +68,7 @@ Outcome check_plot(const Plot& plot, const std::string& directory, OutputFile::E
 
 tl::expected<Drawn, Failure> draw(const Plot& plot, const std::string& directory, OutputFile::Existing existing) {
   const std::string stem = directory + "/" + plot.name, script = plot.name + ".gp";
-  if (auto written = write_file(script_file(plot, directory), script_of(plot), existing); !written)
-    return tl::unexpected(written.error());
+  TACTUS_CHECK(write_file(script_file(plot, directory), script_of(plot), existing));
   for (const char* kind : {"svg", "png"}) {
     const auto done = run_child({"gnuplot", "-d", "-c", script, kind, "-"}, directory, kLongestRun);
     if (!done && done.error() == std::errc::no_such_file_or_directory) return Drawn::no;
@@ -82,8 +81,7 @@ tl::expected<Drawn, Failure> draw(const Plot& plot, const std::string& directory
       return refuse(fmt::format("{}.gp: gnuplot ended with status {}: {}", shown_path(stem), done->status,
                                 shown(done->error, kMostOfWords)),
                     remedy);
-    if (auto written = write_file(stem + "." + kind, done->out, OutputFile::Existing::replace); !written)
-      return tl::unexpected(written.error());
+    TACTUS_CHECK(write_file(stem + "." + kind, done->out, OutputFile::Existing::replace));
   }
   return Drawn::yes;
 }

@@ -137,16 +137,15 @@ template <class Row, class Parse>
 Outcome read_rows(const std::string& path, const std::string& heading, std::vector<Row>& rows, Parse&& parse) {
   std::error_code ignored;
   if (!fs::exists(path, ignored)) return {};
-  auto text = read_file(path);
-  if (!text) return tl::unexpected(text.error());
-  const std::size_t whole = text->rfind('\n') + 1;
-  if (whole != text->size()) {
+  TACTUS_TRY(auto text, read_file(path));
+  const std::size_t whole = text.rfind('\n') + 1;
+  if (whole != text.size()) {
     std::error_code error;
     fs::resize_file(path, whole, error);
     if (error) return refuse(path + ": " + error.message(), "Check that you may write it.");
-    text->resize(whole);
+    text.resize(whole);
   }
-  std::istringstream in(*text);
+  std::istringstream in(text);
   std::string line;
   for (int number_of_line = 1; std::getline(in, line); ++number_of_line) {
     if (number_of_line == 1 && line == heading) continue;
@@ -164,7 +163,7 @@ Outcome read_rows(const std::string& path, const std::string& heading, std::vect
 
 tl::expected<PrecisionResults, Failure> PrecisionResults::open(std::string folder, Context context,
                                                                OutputFile::Existing existing) {
-  if (const auto made = make_folder(folder); !made) return tl::unexpected(made.error());
+  TACTUS_CHECK(make_folder(folder));
   PrecisionResults out(std::move(folder), std::move(context));
   const std::string wanted = text_of_json(nlohmann::ordered_json(out.context_)) + "\n", file = out.path(kContextFile);
   if (existing == OutputFile::Existing::replace) {
@@ -173,21 +172,20 @@ tl::expected<PrecisionResults, Failure> PrecisionResults::open(std::string folde
   }
   std::error_code ignored;
   if (!fs::exists(file, ignored)) {
-    if (const auto done = write_file(file, wanted, OutputFile::Existing::keep); !done) return tl::unexpected(done.error());
+    TACTUS_CHECK(write_file(file, wanted, OutputFile::Existing::keep));
     return out;
   }
-  const auto found = read_file(file);
-  if (!found) return tl::unexpected(found.error());
-  if (*found != wanted) {
+  TACTUS_TRY(const auto found, read_file(file));
+  if (found != wanted) {
     return refuse(file + ": this folder holds figures of another machine, build or extent",
                   "Give another folder, or -f to start afresh in this one.");
   }
-  if (const auto done = out.read(); !done) return tl::unexpected(done.error());
+  TACTUS_CHECK(out.read());
   return out;
 }
 
 Outcome PrecisionResults::read() {
-  if (auto done = read_rows(path(kTimeFile), kTimeHeading, times_, time_row); !done) return done;
+  TACTUS_CHECK(read_rows(path(kTimeFile), kTimeHeading, times_, time_row));
   return read_rows(path(kSpaceFile), kSpaceHeading, spaces_, space_row);
 }
 

@@ -282,13 +282,12 @@ std::vector<std::string> SweepPlan::columns() const {
 }
 
 tl::expected<SweepPlan, Failure> load_plan(const std::string& path) {
-  const auto text = read_file(path, kMostPlanBytes);
-  if (!text) return tl::unexpected(text.error());
+  TACTUS_TRY(const auto text, read_file(path, kMostPlanBytes));
   PlanReader reader(path);
   SweepPlan plan;
-  reader.parse(*text, plan);
+  reader.parse(text, plan);
   if (reader.failed()) return refuse(reader.error());
-  plan.text = *text;
+  plan.text = text;
   return plan;
 }
 

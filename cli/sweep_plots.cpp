@@ -95,11 +95,11 @@ tl::expected<std::vector<std::string>, Failure> draw_plots(const SweepPlan& plan
   const auto rows = results.rows(plan);
   std::vector<std::string> files;
   for (const SweepPlot& wanted : plan.plots) {
-    const auto drawn = draw(figure(wanted, series_of(wanted, plan, rows)), results.folder(), OutputFile::Existing::replace);
-    if (!drawn) return tl::unexpected(drawn.error());
+    TACTUS_TRY(const auto drawn,
+               draw(figure(wanted, series_of(wanted, plan, rows)), results.folder(), OutputFile::Existing::replace));
     const std::string stem = results.folder() + "/" + wanted.name;
     files.push_back(stem + ".gp");
-    if (*drawn == Drawn::yes) files.insert(files.end(), {stem + ".svg", stem + ".png"});
+    if (drawn == Drawn::yes) files.insert(files.end(), {stem + ".svg", stem + ".png"});
   }
   return files;
 }

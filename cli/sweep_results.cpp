@@ -111,26 +111,23 @@ tl::expected<SweepResults, Failure> SweepResults::open(const std::string& folder
   std::error_code failed;
   fs::create_directories(folder, failed);
   if (failed) return refuse(shown_path(folder) + ": cannot make this folder: " + failed.message(), "Give another one with -o.");
-  auto lock = hold(folder);
-  if (!lock) return tl::unexpected(lock.error());
-  SweepResults results(folder, std::move(*lock));
+  TACTUS_TRY(auto lock, hold(folder));
+  SweepResults results(folder, std::move(lock));
   if (fs::exists(folder + "/context.json", failed)) {
-    if (auto same = results.check_context(plan); !same) return tl::unexpected(same.error());
+    TACTUS_CHECK(results.check_context(plan));
   } else if (fs::exists(results.table_path(), failed)) {
     return refuse(shown_path(results.table_path()) + ": there without the context.json that says what it is",
                   "Give another folder with -o.");
   }
-  if (auto kept = write_file(folder + "/context.json", text_of_json(context(plan)) + "\n", OutputFile::Existing::replace); !kept)
-    return tl::unexpected(kept.error());
-  if (auto done = results.read(plan); !done) return tl::unexpected(done.error());
+  TACTUS_CHECK(write_file(folder + "/context.json", text_of_json(context(plan)) + "\n", OutputFile::Existing::replace));
+  TACTUS_CHECK(results.read(plan));
   return results;
 }
 
 Outcome SweepResults::check_context(const SweepPlan& plan) const {
   const std::string path = folder_ + "/context.json";
-  const auto text = read_file(path);
-  if (!text) return tl::unexpected(text.error());
-  const Json before = Json::parse(*text, nullptr, false);
+  TACTUS_TRY(const auto text, read_file(path));
+  const Json before = Json::parse(text, nullptr, false);
   if (before.is_discarded() || !before.is_object() || before.value("sweep", Json()) != identity(plan)) {
     return refuse(shown_path(path) + ": this folder holds a sweep with another command, other inputs, parameters or measures",
                   "Give another folder with -o, or remove this one.");
@@ -142,23 +139,22 @@ Outcome SweepResults::read(const SweepPlan& plan) {
   const std::string heading = line_of(plan.columns());
   std::error_code failed;
   if (!fs::exists(table_path(), failed)) return store(table_path(), heading, O_TRUNC);
-  const auto text = read_file(table_path());
-  if (!text) return tl::unexpected(text.error());
+  TACTUS_TRY(const auto text, read_file(table_path()));
   std::size_t at = 0;
-  const auto first = read_line(*text, at);
+  const auto first = read_line(text, at);
   if (!first) return store(table_path(), heading, O_TRUNC);
   if (*first != plan.columns())
     return refuse(shown_path(table_path()) + ": its columns are not those of the plan", "Give another folder with -o.");
   const auto parameters = static_cast<std::ptrdiff_t>(plan.parameters.size());
   for (std::size_t line = 2;; ++line) {
-    const auto cells = read_line(*text, at);
+    const auto cells = read_line(text, at);
     if (!cells) break;
     if (cells->size() != first->size())
       return refuse(shown_path(table_path()) + ", line " + std::to_string(line) + ": not as many cells as the heading has",
                     "Remove this line.");
     rows_[{cells->begin(), cells->begin() + parameters}] = {cells->begin() + parameters, cells->end()};
   }
-  if (at == text->size()) return {};
+  if (at == text.size()) return {};
   const Descriptor table = open_table(table_path(), 0);
   const bool cut = table.is_open() && ftruncate(table.number(), static_cast<off_t>(at)) == 0;  // a row that was cut off
   return cut ? Outcome() : refuse_write(table_path(), errno);
@@ -167,7 +163,7 @@ Outcome SweepResults::read(const SweepPlan& plan) {
 Outcome SweepResults::add(const std::vector<std::string>& values, const std::vector<std::string>& measures) {
   std::vector<std::string> cells = values;
   cells.insert(cells.end(), measures.begin(), measures.end());
-  if (auto stored = store(table_path(), line_of(cells), O_APPEND); !stored) return stored;
+  TACTUS_CHECK(store(table_path(), line_of(cells), O_APPEND));
   rows_[values] = measures;
   return {};
 }

@@ -58,14 +58,14 @@ using Result = tl::expected<T, Error>;
 
 #define TACTUS_CONCAT_(a, b) a##b
 #define TACTUS_CONCAT(a, b) TACTUS_CONCAT_(a, b)
-#define TACTUS_TRY_(tmp, lhs, expr)                               \
-  auto tmp = (expr);                                              \
+#define TACTUS_TRY_(tmp, lhs, ...)                                \
+  auto tmp = (__VA_ARGS__);                                       \
   if (!tmp) return ::tl::make_unexpected(std::move(tmp).error()); \
   lhs = *std::move(tmp)
 /// `TACTUS_TRY(auto x, f());` binds the value of f() or returns its error, whatever its type. With the next the only error macro.
-#define TACTUS_TRY(lhs, expr) TACTUS_TRY_(TACTUS_CONCAT(tactus_try_, __LINE__), lhs, expr)
-/// `TACTUS_CHECK(f());` for one without a value.
-#define TACTUS_CHECK(expr)                                                                                        \
-  do {                                                                                                            \
-    if (auto tactus_check = (expr); !tactus_check) return ::tl::make_unexpected(std::move(tactus_check).error()); \
+#define TACTUS_TRY(lhs, ...) TACTUS_TRY_(TACTUS_CONCAT(tactus_try_, __LINE__), lhs, __VA_ARGS__)
+/// `TACTUS_CHECK(f());` for one without a value, or whose value is not wanted.
+#define TACTUS_CHECK(...)                                                                                                \
+  do {                                                                                                                   \
+    if (auto tactus_check = (__VA_ARGS__); !tactus_check) return ::tl::make_unexpected(std::move(tactus_check).error()); \
   } while (false)

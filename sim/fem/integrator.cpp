@@ -85,9 +85,8 @@ tl::expected<std::unique_ptr<Integrator>, Diagnostic> make_integrator(FemModel& 
   const Scheme stages = scheme(options.method);
   std::unique_ptr<Direction> direction;
   if (quasi_newton(options)) {
-    auto made = PrefactoredDirection::create(model, Implicit::stage_step(stages, options.step));
-    if (!made) return tl::unexpected(made.error());
-    direction = std::move(*made);
+    TACTUS_TRY(auto made, PrefactoredDirection::create(model, Implicit::stage_step(stages, options.step)));
+    direction = std::move(made);
   } else {
     direction = std::make_unique<NewtonDirection>(model, options);
   }

@@ -37,9 +37,8 @@ tl::expected<Modes, Diagnostic> slowest_modes(FemModel& model, int count) {
 }
 
 tl::expected<std::unique_ptr<Integrator>, Diagnostic> Modal::create(FemModel& model, const IntegratorOptions& options) {
-  auto modes = slowest_modes(model, options.modes);
-  if (!modes) return tl::unexpected(modes.error());
-  return std::unique_ptr<Integrator>(new Modal(model, options, std::move(*modes)));
+  TACTUS_TRY(auto modes, slowest_modes(model, options.modes));
+  return std::unique_ptr<Integrator>(new Modal(model, options, std::move(modes)));
 }
 
 Modal::Modal(FemModel& model, const IntegratorOptions& options, Modes modes)

@@ -86,12 +86,11 @@ tl::expected<StepReport, Diagnostic> Newton::solve(const Stage& stage, Eigen::Ve
       report.converged = true;
       break;
     }
-    const auto found = direction_->find(system_, stage, r_, d_);
-    if (!found) return tl::unexpected(found.error());
+    TACTUS_TRY(const auto found, direction_->find(system_, stage, r_, d_));
     const double decrease = -d_.dot(r_);  // square of the update's energy norm
     if (report.newton_iterations == 0) first = decrease;
     ++report.newton_iterations;
-    report.solver_iterations += *found;
+    report.solver_iterations += found;
     u += d_;
     const double enough = std::max(tolerance_ * tolerance_ * first, kNothing * kNothing * motion);
     report.converged = decrease <= enough;

@@ -83,11 +83,10 @@ tl::expected<void, Diagnostic> Run::step(std::int64_t number) {
   const double t = (static_cast<double>(number) + point) * h;
   const double deflection = scene.patch.deflection(state.u) + point * h * scene.patch.deflection(state.v);
   external_forces(scene, model, loading, deflection, t, f);
-  const auto report = integrator->step(f, state);
-  if (!report) return tl::unexpected(report.error());
-  out.newton_per_step += report->newton_iterations;
-  out.solver_per_step += report->solver_iterations;
-  if (!report->converged) ++out.unconverged_steps;
+  TACTUS_TRY(const auto report, integrator->step(f, state));
+  out.newton_per_step += report.newton_iterations;
+  out.solver_per_step += report.solver_iterations;
+  if (!report.converged) ++out.unconverged_steps;
   return {};
 }
 
@@ -101,12 +100,10 @@ void Run::sample(int number) {
 }
 
 tl::expected<Run, Diagnostic> start(const PrecisionScene& scene, const PrecisionMethod& method, Loading loading) {
-  auto model = make_model(scene, method);
-  if (!model) return tl::unexpected(model.error());
-  auto observer = make_model(scene, method);
-  if (!observer) return tl::unexpected(observer.error());
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(model->size());
-  Run run{scene, method, loading, *std::move(model), *std::move(observer), nullptr, {zero, zero}, zero, {}};
+  TACTUS_TRY(auto model, make_model(scene, method));
+  TACTUS_TRY(auto observer, make_model(scene, method));
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(model.size());
+  Run run{scene, method, loading, std::move(model), std::move(observer), nullptr, {zero, zero}, zero, {}};
   run.out.energy.resize(scene.samples);
   run.out.force.resize(scene.samples);
   return run;
@@ -159,48 +156,45 @@ tl::expected<Trajectory, Diagnostic> simulate(const PrecisionScene& scene, const
                                               Loading loading) {
   PrecisionMethod with_step = method;
   with_step.options.step = scene.step(steps_per_sample);
-  auto run = start(scene, with_step, loading);
-  if (!run) return tl::unexpected(run.error());
+  TACTUS_TRY(auto run, start(scene, with_step, loading));
   const double begin = processor_seconds();
   if (method.chosen) {
-    with_step.options = choose(run->model, with_step.options.step).options;
-    run->out.taken = to_string(with_step.options);
+    with_step.options = choose(run.model, with_step.options.step).options;
+    run.out.taken = to_string(with_step.options);
   }
-  auto integrator = make_integrator(run->model, with_step.options);
-  if (!integrator) return tl::unexpected(integrator.error());
-  run->integrator = *std::move(integrator);
+  TACTUS_TRY(auto integrator, make_integrator(run.model, with_step.options));
+  run.integrator = std::move(integrator);
 
   double since = begin;
   const std::int64_t steps = std::int64_t{steps_per_sample} * scene.samples;
   for (std::int64_t i = 0; i < steps; ++i) {
-    if (const auto done = run->step(i); !done) return tl::unexpected(done.error());
+    TACTUS_CHECK(run.step(i));
     if (i > 0 && (i + 1) % steps_per_sample != 0) continue;
     const double now = processor_seconds();
-    (i == 0 ? run->out.setup_seconds : run->out.step_seconds) += now - since;
-    if ((i + 1) % steps_per_sample == 0) run->sample(static_cast<int>(i / steps_per_sample));
+    (i == 0 ? run.out.setup_seconds : run.out.step_seconds) += now - since;
+    if ((i + 1) % steps_per_sample == 0) run.sample(static_cast<int>(i / steps_per_sample));
     since = processor_seconds();
   }
   const auto count = static_cast<double>(steps);
-  run->out.step_seconds *= count / (count - 1);
-  run->out.newton_per_step /= count;
-  run->out.solver_per_step /= count;
-  return std::move(run->out);
+  run.out.step_seconds *= count / (count - 1);
+  run.out.newton_per_step /= count;
+  run.out.solver_per_step /= count;
+  return std::move(run.out);
 }
 
 tl::expected<Trajectory, Diagnostic> runge_kutta(const PrecisionScene& scene, int steps_per_sample, Loading loading) {
   const PrecisionMethod none;
-  auto run = start(scene, none, loading);
-  if (!run) return tl::unexpected(run.error());
-  FemModel& model = run->model;
+  TACTUS_TRY(auto run, start(scene, none, loading));
+  FemModel& model = run.model;
   Eigen::VectorXd inverse_mass = Eigen::VectorXd::Zero(model.size()), k(model.size());
   for (const int i : model.free_dofs()) inverse_mass[i] = 1 / model.lumped_mass()[i];
   const double h = scene.step(steps_per_sample), begin = processor_seconds();
   const auto acceleration = [&](const Eigen::VectorXd& u, double t) -> Eigen::VectorXd {
-    external_forces(scene, model, loading, scene.patch.deflection(u), t, run->f);
+    external_forces(scene, model, loading, scene.patch.deflection(u), t, run.f);
     model.internal_forces(u, k);
-    return inverse_mass.cwiseProduct(run->f - k);
+    return inverse_mass.cwiseProduct(run.f - k);
   };
-  auto& [u, v] = run->state;
+  auto& [u, v] = run.state;
   for (std::int64_t i = 0; i < std::int64_t{steps_per_sample} * scene.samples; ++i) {
     const double t = static_cast<double>(i) * h;
     const Eigen::VectorXd a1 = acceleration(u, t), v2 = v + h / 2 * a1;
@@ -209,10 +203,10 @@ tl::expected<Trajectory, Diagnostic> runge_kutta(const PrecisionScene& scene, in
     const Eigen::VectorXd a4 = acceleration(u + h * v3, t + h);
     u += h / 6 * (v + 2 * v2 + 2 * v3 + v4);
     v += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
-    if ((i + 1) % steps_per_sample == 0) run->sample(static_cast<int>(i / steps_per_sample));
+    if ((i + 1) % steps_per_sample == 0) run.sample(static_cast<int>(i / steps_per_sample));
   }
-  run->out.step_seconds = processor_seconds() - begin;
-  return std::move(run->out);
+  run.out.step_seconds = processor_seconds() - begin;
+  return std::move(run.out);
 }
 
 tl::expected<Reference, Diagnostic> make_reference(const PrecisionScene& scene) {
@@ -221,18 +215,17 @@ tl::expected<Reference, Diagnostic> make_reference(const PrecisionScene& scene) 
   Trajectory quarter;
   out.step = scene.step(n);
   const auto fill = [&](int steps, Loading loading, Trajectory& to) -> tl::expected<void, Diagnostic> {
-    auto made = runge_kutta(scene, steps, loading);
-    if (!made) return tl::unexpected(made.error());
-    to = *std::move(made);
+    TACTUS_TRY(auto made, runge_kutta(scene, steps, loading));
+    to = std::move(made);
     return {};
   };
   for (Reference* one : {&out, &half}) {
     const int steps = one == &out ? n : n / 2;
     for (const auto& [loading, to] : {std::pair{Loading::force, &one->load}, std::pair{Loading::probe, &one->probe},
                                       std::pair{Loading::weight, &one->weight}, std::pair{Loading::push, &one->push}})
-      if (const auto done = fill(steps, loading, *to); !done) return tl::unexpected(done.error());
+      TACTUS_CHECK(fill(steps, loading, *to));
   }
-  if (const auto done = fill(n / 4, Loading::force, quarter); !done) return tl::unexpected(done.error());
+  TACTUS_CHECK(fill(n / 4, Loading::force, quarter));
   out.floor = difference(half.load, out.load);
   out.floor.force = force_error(half.probe, out.probe);
   out.floor.weight = state_error(half.weight.u, out.weight.u);

@@ -49,15 +49,14 @@ std::string surface_format(const std::string& path) {
 }
 
 tl::expected<PolygonSoup, Diagnostic> parse_polygons(std::string_view text, std::string_view format) {
-  const auto prepared = prepare_surface(text, format);
-  if (!prepared) return tl::unexpected(prepared.error());
-  if (prepared->faces == 0) return broken(Errc::invalid, "R-SRF-7", "");
-  auto soup = openmesh_read(prepared->text, prepared->format);
+  TACTUS_TRY(const auto prepared, prepare_surface(text, format));
+  if (prepared.faces == 0) return broken(Errc::invalid, "R-SRF-7", "");
+  auto soup = openmesh_read(prepared.text, prepared.format);
   if (!soup) return broken(Errc::malformed, "R-SRF-4", soup.error());
-  if (prepared->vertices && soup->vertices.size() != *prepared->vertices)
-    return broken(Errc::malformed, "R-SRF-5", of(soup->vertices.size(), *prepared->vertices, "vertices"));
-  if (soup->polygons.size() != prepared->faces)
-    return broken(Errc::malformed, "R-SRF-5", of(soup->polygons.size(), prepared->faces, "faces"));
+  if (prepared.vertices && soup->vertices.size() != *prepared.vertices)
+    return broken(Errc::malformed, "R-SRF-5", of(soup->vertices.size(), *prepared.vertices, "vertices"));
+  if (soup->polygons.size() != prepared.faces)
+    return broken(Errc::malformed, "R-SRF-5", of(soup->polygons.size(), prepared.faces, "faces"));
   return std::move(*soup);
 }
 

@@ -74,26 +74,22 @@ void drop_unused_vertices(SurfaceFile& file) {
 }  // namespace
 
 tl::expected<SurfaceFile, Diagnostic> parse_surface(std::string_view text, std::string_view format) {
-  auto soup = parse_polygons(text, format);
-  if (!soup) return tl::unexpected(soup.error());
-  return make_surface(std::move(*soup));
+  TACTUS_TRY(auto soup, parse_polygons(text, format));
+  return make_surface(std::move(soup));
 }
 
 tl::expected<SurfaceFile, Diagnostic> make_surface(PolygonSoup&& soup) {
   SurfaceFile file;
   file.mesh.vertices = std::move(soup.vertices);
-  for (std::size_t f = 0; f < soup.polygons.size(); ++f)
-    if (auto appended = append(soup.polygons[f], f, file); !appended) return tl::unexpected(appended.error());
-  const auto checked = check(file.mesh);
-  if (!checked) return tl::unexpected(checked.error());
+  for (std::size_t f = 0; f < soup.polygons.size(); ++f) TACTUS_CHECK(append(soup.polygons[f], f, file));
+  TACTUS_CHECK(check(file.mesh));
   drop_unused_vertices(file);
   return file;
 }
 
 tl::expected<SurfaceFile, Diagnostic> read_surface(const std::string& path) {
-  auto soup = read_polygons(path);
-  if (!soup) return tl::unexpected(soup.error());
-  return make_surface(std::move(*soup)).map_error([&](Diagnostic e) {
+  TACTUS_TRY(auto soup, read_polygons(path));
+  return make_surface(std::move(soup)).map_error([&](Diagnostic e) {
     e.file = path;
     return e;
   });

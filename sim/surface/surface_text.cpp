@@ -100,7 +100,7 @@ Prepared prepare_obj(std::string_view text) {
     out.text += '\n';
     ++(kind == "v" ? *out.vertices : out.faces);
   }
-  if (auto counts = check_counts(out, out.text.size()); !counts) return tl::unexpected(counts.error());
+  TACTUS_CHECK(check_counts(out, out.text.size()));
   return out;
 }
 
@@ -139,7 +139,7 @@ Prepared prepare_off(std::string_view text) {
       if (header.size() != 4 || header[0] != "OFF" || !vertices || !faces) return malformed(line);
       out.vertices = *vertices;
       out.faces = *faces;
-      if (auto counts = check_counts(out, text.size()); !counts) return tl::unexpected(counts.error());
+      TACTUS_CHECK(check_counts(out, text.size()));
       out.text = "OFF\n" + std::to_string(*vertices) + ' ' + std::to_string(*faces) + " 0\n";
       continue;
     }
@@ -285,13 +285,11 @@ Prepared prepare_ply(std::string_view text) {
   if (take_line(text) != "ply") return malformed("no 'ply' in the first line");
   PlyHeader header;
   std::size_t number = 2;
-  for (; !text.empty() && !header.ended; ++number)
-    if (auto read = read_ply_line(take_line(text), header); !read) return tl::unexpected(read.error());
+  for (; !text.empty() && !header.ended; ++number) TACTUS_CHECK(read_ply_line(take_line(text), header));
   if (!header.ended || header.elements < 2) return malformed("header");
   SurfaceText out{header.text, ".ply", header.counts[1], header.counts[0]};
-  if (auto counts = check_counts(out, text.size()); !counts) return tl::unexpected(counts.error());
-  auto copied = header.binary ? copy_binary_body(text, header, out) : copy_text_body(text, header, number, out);
-  if (!copied) return tl::unexpected(copied.error());
+  TACTUS_CHECK(check_counts(out, text.size()));
+  TACTUS_CHECK(header.binary ? copy_binary_body(text, header, out) : copy_text_body(text, header, number, out));
   return out;
 }
 

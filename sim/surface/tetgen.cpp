@@ -53,9 +53,8 @@ tl::expected<void, Diagnostic> check_places(const TriMesh& mesh) {
 }
 
 tl::expected<void, Diagnostic> check_volume(const TriMesh& mesh, const FillOptions& options) {
-  const auto solid = solid_within(mesh);
-  if (!solid) return tl::unexpected(solid.error());
-  if (options.max_volume > 0 && solid->volume / options.max_volume > static_cast<double>(kMaxTets))
+  TACTUS_TRY(const auto solid, solid_within(mesh));
+  if (options.max_volume > 0 && solid.volume / options.max_volume > static_cast<double>(kMaxTets))
     return broken(Errc::limit_exceeded, "R-TGN-5", "");
   return {};
 }
@@ -153,11 +152,10 @@ tl::expected<void, Diagnostic> check_filled(const TriMesh& surface, const TetMes
 
 tl::expected<TetMesh, Diagnostic> fill(const TriMesh& surface, const FillOptions& options) {
   TACTUS_CHECK(check(surface));
-  const auto ready = check_options(options)
-                         .and_then([&] { return check_closed(surface); })
-                         .and_then([&] { return check_places(surface); })
-                         .and_then([&] { return check_volume(surface, options); });
-  if (!ready) return tl::unexpected(ready.error());
+  TACTUS_CHECK(check_options(options)
+                   .and_then([&] { return check_closed(surface); })
+                   .and_then([&] { return check_places(surface); })
+                   .and_then([&] { return check_volume(surface, options); }));
 
   const PrivateFolder folder;
   std::ofstream out(folder.path() / "surface.smesh", std::ios::binary);
@@ -166,14 +164,13 @@ tl::expected<TetMesh, Diagnostic> fill(const TriMesh& surface, const FillOptions
   if (!out) return broken(Errc::io, "R-TGN-6", "no room for temporary files");
 
   const TetGen tetgen(options, folder.path());
-  const auto done = tetgen.run(fill_switches(options));
-  if (!done) return tl::unexpected(done.error());
-  if (done->status != 0) return tl::unexpected(tetgen.reason(*done));
+  TACTUS_TRY(const auto done, tetgen.run(fill_switches(options)));
+  if (done.status != 0) return tl::unexpected(tetgen.reason(done));
   auto file = read_tet_mesh(folder.path() / "surface.1.ele");
   if (!file && file.error().error.code == Errc::limit_exceeded) return broken(Errc::limit_exceeded, "R-TGN-5", "");
-  if (!file) return tl::unexpected(tetgen.reason(*done));
+  if (!file) return tl::unexpected(tetgen.reason(done));
   restore_vertices(surface, file->mesh);
-  if (const auto sound = check_filled(surface, file->mesh); !sound) return tl::unexpected(sound.error());
+  TACTUS_CHECK(check_filled(surface, file->mesh));
   return std::move(file->mesh);
 }
 

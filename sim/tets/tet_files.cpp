@@ -52,16 +52,15 @@ Read read_attributes(Tokenizer& words, std::size_t count, std::vector<double>& a
 
 /// out  the first vertex's number
 tl::expected<std::size_t, Diagnostic> read_node(Tokenizer& words, TetFile& file) {
-  const auto header = read_node_header(words);
-  if (!header) return tl::unexpected(header.error());
-  file.mesh.vertices.reserve(header->vertices);
+  TACTUS_TRY(const auto header, read_node_header(words));
+  file.mesh.vertices.reserve(header.vertices);
   std::size_t base = 0;
-  for (std::size_t i = 0; i < header->vertices; ++i) {
+  for (std::size_t i = 0; i < header.vertices; ++i) {
     TACTUS_CHECK(words.line());
     TACTUS_CHECK(expect_number(words, i, base));
     TACTUS_CHECK(words.coordinates(file.mesh.vertices.emplace_back()));
-    TACTUS_CHECK(read_attributes(words, header->attributes, file.vertex_attributes));
-    if (header->markers == 1) TACTUS_CHECK(words.number(file.vertex_markers.emplace_back()));
+    TACTUS_CHECK(read_attributes(words, header.attributes, file.vertex_attributes));
+    if (header.markers == 1) TACTUS_CHECK(words.number(file.vertex_markers.emplace_back()));
     TACTUS_CHECK(words.end_of_line());
   }
   if (words.next_line()) return words.broken(Errc::malformed, "R-TET-13", words.word());
@@ -137,18 +136,16 @@ void append_vertices(std::string& text, const std::vector<Vec3>& vertices) {
 tl::expected<TetFile, Diagnostic> parse_node_ele(std::string_view node, std::string_view ele) {
   TetFile file;
   Tokenizer nodes(node, ".node", Tokenizer::Comments::hash), elements(ele, ".ele", Tokenizer::Comments::hash);
-  const auto base = read_node(nodes, file);
-  if (!base) return tl::unexpected(base.error());
-  TACTUS_CHECK(read_ele(elements, *base, file));
+  TACTUS_TRY(const auto base, read_node(nodes, file));
+  TACTUS_CHECK(read_ele(elements, base, file));
   return file;
 }
 
 tl::expected<TetFile, Diagnostic> read_tet_mesh(const std::string& path) {
   const std::filesystem::path name(path);
   if (name.extension() == ".msh") {
-    const auto text = read_text(path);
-    if (!text) return tl::unexpected(text.error());
-    return parse_msh(*text).map_error([&](Diagnostic e) {
+    TACTUS_TRY(const auto text, read_text(path));
+    return parse_msh(text).map_error([&](Diagnostic e) {
       e.file = path;
       return e;
     });
@@ -156,11 +153,9 @@ tl::expected<TetFile, Diagnostic> read_tet_mesh(const std::string& path) {
   if (name.extension() != ".node" && name.extension() != ".ele")
     return tl::unexpected(Diagnostic{.error = fail(Errc::unsupported, "R-TET-17").value(), .file = path});
   const std::string stem = path.substr(0, path.size() - name.extension().string().size());
-  const auto node = read_text(stem + ".node");
-  if (!node) return tl::unexpected(node.error());
-  const auto ele = read_text(stem + ".ele");
-  if (!ele) return tl::unexpected(ele.error());
-  return parse_node_ele(*node, *ele).map_error([&](Diagnostic e) {
+  TACTUS_TRY(const auto node, read_text(stem + ".node"));
+  TACTUS_TRY(const auto ele, read_text(stem + ".ele"));
+  return parse_node_ele(node, ele).map_error([&](Diagnostic e) {
     e.file = stem + e.file;
     return e;
   });
