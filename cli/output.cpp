@@ -114,18 +114,18 @@ Outcome OutputFile::check_free(const std::string& path, Existing existing, std::
 
 tl::expected<OutputFile, Failure> OutputFile::create(const std::string& path, Existing existing,
                                                      std::initializer_list<std::string> others) {
-  if (auto free = check_free(path, existing, others); !free) return tl::unexpected(free.error());
+  TACTUS_CHECK(check_free(path, existing, others));
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
   const bool direct = path == "-" || (fs::exists(status) && !fs::is_regular_file(status));
   OutputFile file(path, existing, direct ? Kind::direct : Kind::temporary);
-  if (auto opened = direct ? file.open_directly() : file.open_temporary(); !opened) return tl::unexpected(opened.error());
+  TACTUS_CHECK(direct ? file.open_directly() : file.open_temporary());
   return file;
 }
 
 tl::expected<OutputFile, Failure> OutputFile::create_growing(const std::string& path, Existing existing,
                                                              std::initializer_list<std::string> others) {
-  if (auto free = check_free(path, existing, others); !free) return tl::unexpected(free.error());
+  TACTUS_CHECK(check_free(path, existing, others));
   std::error_code ignored;
   if (path == "-" || fs::exists(path, ignored)) return create(path, existing, others);
   OutputFile file(path, existing, Kind::growing);
@@ -232,12 +232,10 @@ AsideFolder::~AsideFolder() {
 }
 
 Outcome write_file(const std::string& path, const std::string& bytes, OutputFile::Existing existing) {
-  auto file = OutputFile::create(path, existing);
-  if (!file) return tl::unexpected(file.error());
-  const auto out = file->open();
-  if (!out) return tl::unexpected(out.error());
-  **out << bytes;
-  return file->keep();
+  TACTUS_TRY(auto file, OutputFile::create(path, existing));
+  TACTUS_TRY(const auto out, file.open());
+  *out << bytes;
+  return file.keep();
 }
 
 tl::expected<std::string, Failure> read_file(const std::string& path, std::uint64_t most) {

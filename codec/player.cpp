@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/rule.h>
 #include <tactus/player.h>
 
 #include <utility>
@@ -25,7 +26,7 @@ Result<std::optional<PlayedPacket>> Player::play(std::int64_t tick) noexcept {
   const auto offset = static_cast<std::size_t>(bytes.data() - file_.data());
   waiting_.reset();
   const auto decoded = receiver_.push(bytes);
-  if (!decoded) return fail(decoded.error().code, decoded.error().rule, 8 * std::uint64_t{offset} + decoded.error().bit_offset);
+  if (!decoded) return fail_at(decoded.error(), 8 * std::uint64_t{offset} + decoded.error().bit_offset);
   if (decoded->tick != *due) return fail(Errc::invalid, "R-FIL-7", 8 * std::uint64_t{offset});
   return std::optional(PlayedPacket{*decoded, bytes.size(), offset});
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <tactus/base/out_of_memory.h>
+#include <tactus/base/rule.h>
 #include <tactus/deformable/deformable_decoder.h>
 #include <tactus/packet/substream.h>
 #include <tactus/packet/substream_decoder.h>
@@ -57,7 +58,7 @@ Result<DecodedPacket> Receiver::push(std::span<const std::uint8_t> packet, std::
       part.substream == 0 ? r.rigid.decode(part.bytes, now) : r.deformables[part.substream - 1]->decode(part.bytes, now);
   if (!decoded) {
     const Error& error = decoded.error();
-    return fail(error.code, error.rule, error.bit_offset + 8 * (packet.size() - part.bytes.size()));
+    return fail_at(error, error.bit_offset + 8 * (packet.size() - part.bytes.size()));
   }
   if (part.substream == 0) r.replica.apply(*decoded, r.rigid.newest().objects, now.value_or(decoded->tick));
   return decoded;

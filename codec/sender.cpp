@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <tactus/base/out_of_memory.h>
+#include <tactus/base/rule.h>
 #include <tactus/deformable/deformable_encoder.h>
 #include <tactus/rigid/rigid_encoder.h>
 

@@ -23,8 +23,8 @@
 ///
 /// examples/ goes on with losses, deformable objects and traces.
 ///
-/// Errors are values: every function that can fail returns a Result, whose Error names a class and a rule of the specification; advice()
-/// says what a receiver does about it. Nothing throws. After create() nothing allocates.
+/// Errors are values: every function that can fail returns a Result, whose Error names a class and a rule of the specification.
+/// describe() puts it in words, remedy() what would mend it, advice() what a receiver does about it. Nothing throws. After create() nothing allocates.
 /// Threads: a Scene never changes and may be shared; any other object is used by one thread at a time. Spans are valid until the next
 /// call of the object that returned them, where its header does not say otherwise.
 #pragma once

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <tactus/base/hash.h>
+#include <tactus/base/rule.h>
 #include <tactus/file/stream_file.h>
 #include <tactus/packet/substream.h>
 #include <tactus/receiver.h>

@@ -90,11 +90,10 @@ Result<std::span<const Packet>> Server::encode() noexcept {
   return sender_->encode(frame_.tick, truth_->of(frame_));
 }
 
-tl::expected<void, StepError> Server::step() {
+tl::expected<void, Diagnostic> Server::step() {
   for (std::size_t i = 0; i < shares_.size(); ++i)
     for (const auto& objects : objects_) objects->push(i, shares_[i]);
-  for (const auto& objects : objects_)
-    if (auto moved = objects->step(); !moved) return moved;
+  for (const auto& objects : objects_) TACTUS_CHECK(objects->step());
   return {};
 }
 

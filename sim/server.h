@@ -45,7 +45,7 @@ class Server {
   /// Packets that tell clients of this tick; valid until the next call.   err  errors of Sender::encode   no allocation
   Result<std::span<const Packet>> encode() noexcept;
   /// Let the forces of this tick act, within what devices render, and advance by one tick.
-  tl::expected<void, StepError> step();
+  tl::expected<void, Diagnostic> step();
 
   TraceFrame& frame() noexcept { return frame_; }
   const TraceFrame& frame() const noexcept { return frame_; }

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include <tactus/base/rule.h>
 #include <tactus/sim/client.h>
 #include <tactus/sim/link.h>
 #include <tactus/sim/server.h>
@@ -23,8 +24,8 @@ struct Simulation::Impl {
   std::vector<DeviceSample> devices;  // of the hands
   std::vector<TouchRecord> records;
 
-  tl::expected<std::span<const Packet>, StepError> refuse(const Error& error) const {
-    return tl::unexpected(StepError{error, server->frame().tick, 0});
+  tl::expected<std::span<const Packet>, Diagnostic> refuse(const Error& error) const {
+    return tl::unexpected(Diagnostic{.error = error, .step = server->frame().tick});
   }
 };
 
@@ -42,18 +43,18 @@ Result<Simulation> Simulation::create(const Scene& scene, const SimulationOption
   return Simulation(std::move(impl));
 }
 
-tl::expected<std::span<const Packet>, StepError> Simulation::step() {
+tl::expected<std::span<const Packet>, Diagnostic> Simulation::step() {
   Impl& in = *impl_;
   for (std::size_t i = 0; i < in.hands.size(); ++i)  // 1
     in.devices[i] = in.hands[i].step(in.client->felt(i), in.client->watched(i));
   return step(in.devices);
 }
 
-tl::expected<std::span<const Packet>, StepError> Simulation::step(std::span<const DeviceSample> devices) {
+tl::expected<std::span<const Packet>, Diagnostic> Simulation::step(std::span<const DeviceSample> devices) {
   auto& [seed, server, client, link, hands, own_devices, records] = *impl_;
-  if (devices.size() != records.size()) return impl_->refuse({Errc::invalid_argument, "R-API-5", 0});
+  if (devices.size() != records.size()) return impl_->refuse(fail(Errc::invalid_argument, "R-API-5").value());
   if (!std::ranges::all_of(devices, [](const DeviceSample& device) { return is_finite(device); }))
-    return impl_->refuse({Errc::invalid_argument, "R-API-1", 0});
+    return impl_->refuse(fail(Errc::invalid_argument, "R-API-1").value());
 
   server->observe();
   server->touch(link.to_server(devices));  // 2
@@ -67,7 +68,7 @@ tl::expected<std::span<const Packet>, StepError> Simulation::step(std::span<cons
     user.force = client->felt(i);
     records[i].add(user);
   }
-  if (const auto moved = server->step(); !moved) return tl::unexpected(moved.error());  // 5
+  TACTUS_CHECK(server->step());  // 5
   return *packets;
 }
 

@@ -56,12 +56,12 @@ class Simulation {
   /// time about 16 us for one cube and user; no allocation after the first tick, in which ODE makes its arenas, and the first
   ///      deformation.
   /// err  invalid_argument R-SIM-1, R-FEM-6: the physics broke down; errors of Sender::encode and Receiver::push
-  tl::expected<std::span<const Packet>, StepError> step();
+  tl::expected<std::span<const Packet>, Diagnostic> step();
 
   /// The same with other devices in place of the hands: recorded ones (open loop), or real ones.
   /// in   devices  one per user of the scene; button 0 lifts what is touched
   /// err  as step(); invalid_argument R-API-5: wrong count, R-API-1: not finite
-  tl::expected<std::span<const Packet>, StepError> step(std::span<const DeviceSample> devices);
+  tl::expected<std::span<const Packet>, Diagnostic> step(std::span<const DeviceSample> devices);
 
   const TraceFrame& frame() const noexcept;                      ///< pre  step() was called
   std::span<const Pose> client_poses() const noexcept;           ///< as shown at the client in that tick, one per object

@@ -3,12 +3,10 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
-#include <string>
 
 #include <tactus/base/device_sample.h>
-#include <tactus/base/result.h>
+#include <tactus/base/diagnostic.h>
 #include <tactus/rigid/contact.h>
 #include <tactus/trace/frame.h>
 
@@ -20,14 +18,6 @@ struct Touch {
   std::optional<SurfaceContact> surface{};  ///< with a deformable object
   Vec3 proxy;                               ///< [m] x_p of `contact`, world frame; the probe itself when free
   Vec3 force;                               ///< [N] on the hand, world frame
-};
-
-/// A simulation that cannot go on: which object broke which rule at which tick.
-struct StepError {
-  Error error;
-  std::int64_t tick = 0;
-  std::uint32_t object = 0;
-  std::string remedy{};  ///< in words, of deformable objects; may be empty
 };
 
 /// The share of a force that a device renders which yields at most `limit` [N].
@@ -53,8 +43,8 @@ class Simulated : public Touchable {
   virtual void observe(TraceFrame& frame) noexcept = 0;
   /// Let what the user's probe touched last bear `share` of the force that it yielded.   no allocation
   virtual void push(std::size_t user, double share) noexcept = 0;
-  /// Advance by one tick.   err  a rule, the object that broke it, and the tick
-  virtual tl::expected<void, StepError> step() = 0;
+  /// Advance by one tick.   err  a rule, the tick as the step, and the object that broke it as the element
+  virtual tl::expected<void, Diagnostic> step() = 0;
 };
 
 }  // namespace tactus::sim

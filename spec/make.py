@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Check the specification and make what is made from it. Python 3 and its standard library are enough.
 
-  make.py check              links, section references, rules, examples, index, page; exit 1 when anything is wrong
+  make.py check              links, section references, rules (here and in the sources), examples, index, page; exit 1 when anything is wrong
   make.py index              write rules.md from rules.csv
   make.py examples           write the tables of 91-worked-examples.md by the commands beside them
   make.py html OUT           all chapters as one HTML page
@@ -18,6 +18,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 from tools.book import ROOT, SPEC, Book, rule_key
+from tools import sources
 from tools.page import dead_links, html_page, markdown_page
 
 TITLE = "Tactus: specification"
@@ -77,6 +78,7 @@ def table_findings(book: Book):
 def findings(book: Book):
     yield from book.findings()
     yield from table_findings(book)
+    yield from sources.findings(ROOT, book.rules, book.classes)
     if index_of_rules(book) != book.by_short["rules"].text:
         yield "rules.md is not what rules.csv says: run spec/make.py index"
     if with_examples(book.by_short["91"].text) != book.by_short["91"].text:

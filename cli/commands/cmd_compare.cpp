@@ -95,8 +95,8 @@ struct Side {
 Outcome compare_all(Side& truth, Side& replica, const CompareOptions& options, Report& report) {
   Progress progress("compare", truth.reader.frame_count(), options.common.progress());
   Shown shown(truth.reader.info());
-  if (auto begun = truth.advance(); !begun) return begun;
-  if (auto begun = replica.advance(); !begun) return begun;
+  TACTUS_CHECK(truth.advance());
+  TACTUS_CHECK(replica.advance());
   while (truth.more || replica.more) {
     const bool has_truth = !replica.is_before(truth), has_replica = !truth.is_before(replica);
     if (has_replica) shown.take(replica.frame);
@@ -107,10 +107,8 @@ Outcome compare_all(Side& truth, Side& replica, const CompareOptions& options, R
     } else {
       ++(has_truth ? truth : replica).unmatched;
     }
-    if (has_truth)
-      if (auto advanced = truth.advance(); !advanced) return advanced;
-    if (has_replica)
-      if (auto advanced = replica.advance(); !advanced) return advanced;
+    if (has_truth) TACTUS_CHECK(truth.advance());
+    if (has_replica) TACTUS_CHECK(replica.advance());
   }
   return {};
 }
@@ -153,24 +151,22 @@ void set_bounds(const CompareOptions& options, const TraceInfo& info, const std:
 }
 
 Outcome run(const CompareOptions& options) {
-  auto truth = open(options.truth);
-  if (!truth) return tl::unexpected(truth.error());
-  auto replica = open(options.replica);
-  if (!replica) return tl::unexpected(replica.error());
-  const TraceInfo& info = truth->reader.info();
-  if (auto same = check_same_scene(options, info, replica->reader.info()); !same) return same;
+  TACTUS_TRY(auto truth, open(options.truth));
+  TACTUS_TRY(auto replica, open(options.replica));
+  const TraceInfo& info = truth.reader.info();
+  TACTUS_CHECK(check_same_scene(options, info, replica.reader.info()));
 
   note_idle_options(*options.common.command, subjects_of(info), "truth");
 
   Report report{.command = "compare", .files = {{"truth", options.truth}, {"replica", options.replica}}};
   report.describe(info);
-  set_bounds(options, info, replica->reader.info().bounds, report);
+  set_bounds(options, info, replica.reader.info().bounds, report);
   report.timings = {{"compare", "compare, per tick"}};
-  if (auto compared = compare_all(*truth, *replica, options, report); !compared) return compared;
+  TACTUS_CHECK(compare_all(truth, replica, options, report));
   if (report.ticks.count() == 0)
     return refuse(shown_path(options.replica) + ": shares no tick with " + shown_path(options.truth),
                   "Decode with --like " + shown_path(options.truth) + ".");
-  note_unmatched(*truth, *replica, report);
+  note_unmatched(truth, replica, report);
   print(report, options.common, Destination::standard_output);
   return report.bounds_from == "defaults" ? Outcome() : verdict(report, options.replica);  // nobody asked for those
 }

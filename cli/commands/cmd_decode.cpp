@@ -42,7 +42,7 @@ class TickSource {
       const auto more = like_->next(frame_);
       if (!more) return refuse(options_->like, more.error());
       if (*more) return ++frames_, std::optional(frame_.tick);
-      if (auto whole = check_ending(options_->like, *like_, frames_); !whole) return tl::unexpected(whole.error());
+      TACTUS_CHECK(check_ending(options_->like, *like_, frames_));
       return std::nullopt;
     }
     if (options_->ticks) return tick_ < *options_->ticks ? std::optional(tick_++) : std::nullopt;
@@ -137,8 +137,7 @@ tl::unexpected<Failure> refuse_at(std::int64_t tick, const Error& error, const D
 }
 
 Outcome decode_all(Player& player, TraceWriter& writer, const DecodeOptions& options, Report& report) {
-  auto ticks = TickSource::create(options);
-  if (!ticks) return tl::unexpected(ticks.error());
+  TACTUS_TRY(auto ticks, TickSource::create(options));
   TraceFrame frame;
   frame.objects.resize(player.scene().objects.size());
   for (const DeformableObject& mesh : player.scene().deformables)
@@ -146,15 +145,14 @@ Outcome decode_all(Player& player, TraceWriter& writer, const DecodeOptions& opt
   const auto total = options.ticks ? std::optional(static_cast<std::uint64_t>(*options.ticks)) : std::nullopt;
   Progress progress("decode", total, options.common.progress());
   while (true) {
-    const auto tick = ticks->next(player);
-    if (!tick) return tl::unexpected(tick.error());
-    if (!*tick) break;
-    const auto decoded = report.timings[0].times.measure([&] { return decode_tick(player, **tick, frame, report); });
+    TACTUS_TRY(const auto tick, ticks.next(player));
+    if (!tick) break;
+    const auto decoded = report.timings[0].times.measure([&] { return decode_tick(player, *tick, frame, report); });
     if (!decoded && is_cut(decoded.error()) && report.ticks.count() > 0) break;
-    if (!decoded) return refuse_at(**tick, decoded.error(), options);
+    if (!decoded) return refuse_at(*tick, decoded.error(), options);
     if (const auto written = writer.write(frame); !written)
       return refuse(options.output, place_of_tick(frame.tick), written.error());
-    report.ticks.add(**tick);
+    report.ticks.add(*tick);
     progress.update(report.ticks.count());
   }
   if (const auto done = writer.finish(); !done) return refuse(options.output, done.error());
@@ -162,18 +160,16 @@ Outcome decode_all(Player& player, TraceWriter& writer, const DecodeOptions& opt
 }
 
 Outcome run(const DecodeOptions& options) {
-  if (auto fits = check_no_terminal(options.output); !fits) return fits;
-  const auto bytes = read_file(options.input);
-  if (!bytes) return tl::unexpected(bytes.error());
-  const std::span file(reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size());
+  TACTUS_CHECK(check_no_terminal(options.output));
+  TACTUS_TRY(const auto bytes, read_file(options.input));
+  const std::span file(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
   auto player = Player::open(file, {.replica = options.replica, .limits = {}});
   if (!player) return refuse(options.input, player.error());
-  if (auto checked = check_length(file, options); !checked) return checked;
-  auto output = OutputFile::create(options.output, options.common.existing(), {options.input, options.like});
-  if (!output) return tl::unexpected(output.error());
+  TACTUS_CHECK(check_length(file, options));
+  TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing(), {options.input, options.like}));
   const TraceInfo info = replica_info(player->scene(), options.input);
   note_idle_options(*options.common.command, subjects_of(info), "stream");
-  auto writer = TraceWriter::create(output->working_path(), info);
+  auto writer = TraceWriter::create(output.working_path(), info);
   if (!writer) return refuse(options.output, writer.error());
 
   Report report{.command = "decode", .files = {{"stream", options.input}, {"replica", options.output}}};
@@ -182,9 +178,9 @@ Outcome run(const DecodeOptions& options) {
   for (const TraceDeformable& mesh : info.meshes)
     report.meshes.push_back({.name = mesh.name, .vertices = mesh.rest.vertices.size(), .traffic = DeformableRates{}});
   report.timings = {{"decode", "decode and show, per tick"}};
-  report.stream = {player->header_bytes(), bytes->size()};
+  report.stream = {player->header_bytes(), bytes.size()};
   if (report.traffic) report.client = options.replica.interpolation;
-  if (auto done = decode_all(*player, *writer, options, report); !done) return done;
+  TACTUS_CHECK(decode_all(*player, *writer, options, report));
   const auto rest = player->next_tick();
   if (!rest && is_cut(rest.error())) {
     warn_cut_stream(options.input, rest.error());
@@ -193,7 +189,7 @@ Outcome run(const DecodeOptions& options) {
   if (rest && !*rest && !player->complete()) {
     report.warnings.emplace_back("the stream has no trailer: its writer did not finish");
   }
-  if (auto kept = output->keep(); !kept) return kept;
+  TACTUS_CHECK(output.keep());
   print(report, options.common, beside(options.output));
   return {};
 }

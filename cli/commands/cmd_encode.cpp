@@ -113,23 +113,21 @@ Outcome encode_all(TraceReader& reader, Session& session, TraceFrame& frame, con
 }
 
 Outcome run(const EncodeOptions& options) {
-  if (auto fits = check_no_terminal(options.output); !fits) return fits;
+  TACTUS_CHECK(check_no_terminal(options.output));
   auto reader = TraceReader::open(options.input);
   if (!reader) return refuse(options.input, reader.error());
   TraceFrame frame;
   const auto any = reader->next(frame);
   if (!any) return refuse(options.input, any.error());
   if (!*any) {
-    if (auto whole = check_ending(options.input, *reader, 0); !whole) return whole;
+    TACTUS_CHECK(check_ending(options.input, *reader, 0));
     return refuse(shown_path(options.input) + ": the trace has no frames", "Record or simulate at least one tick.");
   }
   note_idle_options(*options.common.command, subjects_of(reader->info()), "trace");
-  auto output = OutputFile::create(options.output, options.common.existing(), {options.input});
-  if (!output) return tl::unexpected(output.error());
-  const auto stream = output->open();
-  if (!stream) return tl::unexpected(stream.error());
+  TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing(), {options.input}));
+  TACTUS_TRY(const auto stream, output.open());
 
-  auto session = start(reader->info(), frame, options, **stream);
+  auto session = start(reader->info(), frame, options, *stream);
   if (!session) return refuse(to_blame(session.error(), options), session.error());
   Report report{.command = "encode", .files = {{"trace", options.input}, {"stream", options.output}}};
   report.describe(reader->info());
@@ -140,10 +138,10 @@ Outcome run(const EncodeOptions& options) {
   }
   add_meshes(reader->info(), options.meshes, options.triggers, report);
   for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.coding().deformable.profile == DeformableProfile::main;
-  if (auto done = encode_all(*reader, *session, frame, options, report); !done) return done;
-  if (auto whole = check_ending(options.input, *reader, report.ticks.count()); !whole) return whole;
+  TACTUS_CHECK(encode_all(*reader, *session, frame, options, report));
+  TACTUS_CHECK(check_ending(options.input, *reader, report.ticks.count()));
   if (reader->cut_short()) report.warnings.emplace_back("the trace ends without its index; everything up to there was encoded");
-  if (auto kept = output->keep(); !kept) return kept;
+  TACTUS_CHECK(output.keep());
   report.stream = {session->writer.header_bytes(), session->writer.bytes()};
   report.bounds_from = options.triggers.any_given() || options.meshes.any_given() ? "options" : "defaults";
   print(report, options.common, beside(options.output));

@@ -17,16 +17,14 @@ struct ExportOptions {
 Outcome run(const ExportOptions& options) {
   auto reader = TraceReader::open(options.input);
   if (!reader) return refuse(options.input, reader.error());
-  auto output = OutputFile::create(options.output, options.common.existing(), {options.input});
-  if (!output) return tl::unexpected(output.error());
-  const auto stream = output->open();
-  if (!stream) return tl::unexpected(stream.error());
+  TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing(), {options.input}));
+  TACTUS_TRY(const auto stream, output.open());
   Report report{.command = "export csv", .files = {{"trace", options.input}, {"table", options.output}}};
   report.timings = {{"export", "export, whole file"}};
-  const auto rows = report.timings[0].times.measure([&] { return export_csv(*reader, **stream); });
-  if (!rows) return refuse((*stream)->fail() ? options.output : options.input, rows.error());
-  if (auto whole = check_ending(options.input, *reader, rows->count()); !whole) return whole;
-  if (auto kept = output->keep(); !kept) return kept;
+  const auto rows = report.timings[0].times.measure([&] { return export_csv(*reader, *stream); });
+  if (!rows) return refuse(stream->fail() ? options.output : options.input, rows.error());
+  TACTUS_CHECK(check_ending(options.input, *reader, rows->count()));
+  TACTUS_CHECK(output.keep());
   report.describe(reader->info());
   report.ticks = *rows;
   if (options.common.json || options.output != "-") print(report, options.common, beside(options.output));

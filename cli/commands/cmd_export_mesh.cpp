@@ -48,16 +48,13 @@ tl::expected<std::size_t, Failure> find_mesh(const ExportMeshOptions& options, c
 Outcome run(const ExportMeshOptions& options) {
   auto reader = TraceReader::open(options.input);
   if (!reader) return refuse(options.input, reader.error());
-  const auto index = find_mesh(options, reader->info());
-  if (!index) return tl::unexpected(index.error());
-  const auto target = target_of(options.output);
-  if (!target) return tl::unexpected(target.error());
-  const std::string parent = target->has_parent_path() ? target->parent_path().string() : ".";
+  TACTUS_TRY(const auto index, find_mesh(options, reader->info()));
+  TACTUS_TRY(const auto target, target_of(options.output));
+  const std::string parent = target.has_parent_path() ? target.parent_path().string() : ".";
   std::error_code failed;
   fs::create_directories(parent, failed);
-  auto folder = AsideFolder::create(parent, target->filename().string());
-  if (!folder) return tl::unexpected(folder.error());
-  const TriMesh& rest = reader->info().meshes[*index].rest;
+  TACTUS_TRY(auto folder, AsideFolder::create(parent, target.filename().string()));
+  const TriMesh& rest = reader->info().meshes[index].rest;
   TriMesh shape = rest;
   TraceFrame frame;
   Report report{.command = "export mesh", .files = {{"trace", options.input}, {"frames", options.output}}};
@@ -68,25 +65,25 @@ Outcome run(const ExportMeshOptions& options) {
     if (!more) return refuse(options.input, more.error());
     if (!*more) break;
     report.ticks.add(frame.tick);
-    if (!frame.meshes[*index].updated) continue;
-    const std::vector<float>& u = frame.meshes[*index].displacements;
+    if (!frame.meshes[index].updated) continue;
+    const std::vector<float>& u = frame.meshes[index].displacements;
     for (std::size_t v = 0; v < shape.vertices.size(); ++v)
       shape.vertices[v] = rest.vertices[v] + Vec3{u[3 * v], u[3 * v + 1], u[3 * v + 2]};
-    const std::string file = fmt::format("{}/frame-{:06}.{}", folder->path(), count++, options.format);
+    const std::string file = fmt::format("{}/frame-{:06}.{}", folder.path(), count++, options.format);
     errno = 0;
     const auto written = report.timings[0].times.measure([&] { return sim::write_surface(file, shape); });
     if (!written && written.error().error.code == Errc::io) return refuse_io(options.output, "cannot be written", errno);
-    if (!written) return refuse_located(written.error());
+    if (!written) return refuse(written.error());
   }
-  if (auto whole = check_ending(options.input, *reader, report.ticks.count()); !whole) return whole;
-  if (auto kept = folder->keep_as(target->string()); !kept) return kept;
+  TACTUS_CHECK(check_ending(options.input, *reader, report.ticks.count()));
+  TACTUS_CHECK(folder.keep_as(target.string()));
   const TraceInfo& info = reader->info();
   report.describe(info);
-  report.meshes.push_back({.name = info.meshes[*index].name,
+  report.meshes.push_back({.name = info.meshes[index].name,
                            .vertices = rest.vertices.size(),
                            .triangles = rest.triangles.size(),
                            .frames = count,
-                           .frame_period = info.meshes[*index].period / info.tick_rate});
+                           .frame_period = info.meshes[index].period / info.tick_rate});
   print(report, options.common, Destination::standard_output);
   return {};
 }

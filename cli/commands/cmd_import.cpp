@@ -9,7 +9,6 @@
 #include <span>
 #include <string_view>
 
-#include <tactus/base/shown.h>
 #include <tactus/trace/csv.h>
 #include "cli/report/report.h"
 #include "cli/report/table.h"
@@ -74,7 +73,7 @@ tl::expected<CsvMapping, Failure> make_mapping(const ImportOptions& options) {
     const std::string quantity = map.substr(0, map.find('='));
     if (!mapped.insert(quantity).second)
       return refuse_arguments(fmt::format("--map '{}': {} has its columns already", map, quantity), "Give every quantity once.");
-    if (auto applied = apply_map(map, mapping); !applied) return tl::unexpected(applied.error());
+    TACTUS_CHECK(apply_map(map, mapping));
   }
   if (!options.object.empty()) mapping.object = options.object;
   if (!options.user.empty()) mapping.user = options.user;
@@ -99,16 +98,13 @@ bool blames_arguments(const CsvMapping& mapping, std::string_view rule) {
   return rule == "R-CSV-8" || rule == "R-TRC-17" || (rule == "R-CSV-7" && mapping.time.empty());
 }
 
-tl::unexpected<Failure> refuse_csv(const ImportOptions& options, const CsvMapping& mapping, const CsvError& e) {
+tl::unexpected<Failure> refuse_csv(const ImportOptions& options, const CsvMapping& mapping, const Diagnostic& e) {
   const std::string& file = options.input;
   if (options.preset.empty() && options.maps.empty() && e.line == 1 && e.error.rule == std::string_view("R-CSV-2"))
     return refuse_arguments(file + ": nothing says which columns to read",
                             "Give --preset NAME or --map position=x,y,z. Only tables of `tactus export csv` need neither.");
   const bool arguments = blames_arguments(mapping, e.error.rule);
-  std::string place = e.line > 0 && !arguments ? fmt::format("line {}", e.line) : "";
-  if (!e.column.empty()) place += fmt::format("{}column {}", place.empty() ? "" : ", ", shown(e.column));
-  if (!e.text.empty()) place += fmt::format("{}'{}'", place.empty() ? "" : ", ", shown(e.text));
-  auto refused = refuse(file, place, e.error);
+  auto refused = refuse(file, arguments ? e.detail : place_of(e), e.error);
   if (arguments) refused.value().cause = Failure::Cause::arguments;
   return refused;
 }
@@ -132,32 +128,30 @@ void list_presets() {
 }
 
 Outcome run(const ImportOptions& options) {
-  if (auto fits = check_no_terminal(options.output); !fits) return fits;
+  TACTUS_CHECK(check_no_terminal(options.output));
   if (options.list_presets) {
     list_presets();
     return {};
   }
-  const auto mapping = make_mapping(options);
-  if (!mapping) return tl::unexpected(mapping.error());
-  auto output = OutputFile::create(options.output, options.common.existing(), {options.input});
-  if (!output) return tl::unexpected(output.error());
+  TACTUS_TRY(const auto mapping, make_mapping(options));
+  TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing(), {options.input}));
   Report report{.command = "import csv", .files = {{"table", options.input}, {"trace", options.output}}};
   report.timings = {{"import", "import, whole file"}};
   const auto imported =
-      report.timings[0].times.measure([&] { return import_csv(options.input, *mapping, output->working_path()); });
-  if (!imported) return refuse_csv(options, *mapping, imported.error());
-  if (output->is_temporary()) {
-    const auto reader = TraceReader::open(output->working_path());
+      report.timings[0].times.measure([&] { return import_csv(options.input, mapping, output.working_path()); });
+  if (!imported) return refuse_csv(options, mapping, imported.error());
+  if (output.is_temporary()) {
+    const auto reader = TraceReader::open(output.working_path());
     if (!reader) return refuse(options.output, reader.error());
     report.describe(reader->info());
   }
   report.ticks = imported->ticks;
   report.segments = imported->segments;
   if (imported->spin.is_off()) {
-    report.warnings.push_back(contradiction(imported->spin, mapping->spin_frame));
+    report.warnings.push_back(contradiction(imported->spin, mapping.spin_frame));
     fmt::print(stderr, "warning: {}: {}\n", options.input, report.warnings.back());
   }
-  if (auto kept = output->keep(); !kept) return kept;
+  TACTUS_CHECK(output.keep());
   print(report, options.common, beside(options.output));
   return {};
 }

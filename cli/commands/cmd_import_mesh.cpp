@@ -52,7 +52,7 @@ Outcome write_frames(const sim::SurfaceSequence& sequence, const TriMesh& rest, 
   Progress progress("import", sequence.size(), options.common.progress());
   for (std::size_t k = 0; k < sequence.size(); ++k) {
     const auto positions = report.timings[0].times.measure([&] { return sequence.positions(k); });
-    if (!positions) return refuse_located(positions.error());
+    if (!positions) return refuse(positions.error());
     frame.tick = std::llround(static_cast<double>(k) * clock.period);
     float* out = frame.meshes[0].displacements.data();
     for (std::size_t v = 0; v < positions->size(); ++v) {
@@ -73,11 +73,10 @@ std::string name_mistake(const std::string& name) {
 }
 
 Outcome run(const ImportMeshOptions& options) {
-  if (auto fits = check_no_terminal(options.output); !fits) return fits;
-  auto output = OutputFile::create(options.output, options.common.existing());
-  if (!output) return tl::unexpected(output.error());
+  TACTUS_CHECK(check_no_terminal(options.output));
+  TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing()));
   const auto sequence = sim::SurfaceSequence::open(options.input);
-  if (!sequence) return refuse_located(sequence.error());
+  if (!sequence) return refuse(sequence.error());
   TriMesh rest = sequence->rest();
   for (Vec3& p : rest.vertices) p = options.length_unit * p;
   const Clock clock = clock_of(options);
@@ -87,11 +86,11 @@ Outcome run(const ImportMeshOptions& options) {
                        .source = "import " + options.input,
                        .scene = {},
                        .meshes = {{.name = options.name, .rest = rest, .period = clock.period}}};
-  auto writer = TraceWriter::create(output->working_path(), info);
+  auto writer = TraceWriter::create(output.working_path(), info);
   if (!writer) return refuse(options.output, writer.error());
   Report report{.command = "import mesh", .files = {{"frames", options.input}, {"trace", options.output}}};
   report.timings = {{"read", "read, per frame"}};
-  if (auto written = write_frames(*sequence, rest, options, clock, *writer, report); !written) return written;
+  TACTUS_CHECK(write_frames(*sequence, rest, options, clock, *writer, report));
   if (const auto finished = writer->finish(); !finished) return refuse(options.output, finished.error());
   report.describe(info);
   report.meshes.push_back({.name = options.name,
@@ -99,7 +98,7 @@ Outcome run(const ImportMeshOptions& options) {
                            .triangles = rest.triangles.size(),
                            .frames = sequence->size(),
                            .frame_period = clock.period / clock.tick_rate});
-  if (auto kept = output->keep(); !kept) return kept;
+  TACTUS_CHECK(output.keep());
   print(report, options.common, beside(options.output));
   return {};
 }

@@ -178,11 +178,10 @@ Outcome end_of(const InfoOptions& options, const std::optional<Error>& error) {
 }
 
 Outcome info_stream(const InfoOptions& options) {
-  const auto bytes = read_file(options.readable);
-  if (!bytes) return tl::unexpected(bytes.error());
-  auto player = Player::open({reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()});
+  TACTUS_TRY(const auto bytes, read_file(options.readable));
+  auto player = Player::open({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
   if (!player) return refuse(options.input, player.error());
-  Json info = header_json(player->scene(), player->header_bytes(), bytes->size());
+  Json info = header_json(player->scene(), player->header_bytes(), bytes.size());
   StreamTotals totals(player->scene());
   Json packets = Json::array();
   std::optional<Error> error;
@@ -194,7 +193,7 @@ Outcome info_stream(const InfoOptions& options) {
     if (options.packets) packets.push_back(options.json ? packet_info_json(**played) : packet_json(**played, player->scene()));
   }
   if (options.json) {
-    info = stream_info_json(*player, totals, bytes->size(), {error, player->complete()});
+    info = stream_info_json(*player, totals, bytes.size(), {error, player->complete()});
     if (options.packets) info["packet_list"] = std::move(packets);
     fmt::print("{}\n", text_of_json(info));
     return end_of(options, error);
@@ -263,11 +262,10 @@ Outcome info_trace(const InfoOptions& options) {
     for (std::size_t i = 0; i < shapes.size(); ++i) shapes[i] += frame.meshes[i].updated ? 1U : 0U;
     if (frames++ == 0) first = frame.tick;
   }
-  auto channels = channels_json(options);
-  if (!channels) return tl::unexpected(channels.error());
+  TACTUS_TRY(auto channels, channels_json(options));
   if (options.json) {
     Json info = trace_info_json(trace, {frames, first, frame.tick, !reader->cut_short(), shapes});
-    info["channels"] = std::move(*channels);
+    info["channels"] = std::move(channels);
     fmt::print("{}\n", text_of_json(info));
     return check_ending(options.input, *reader, frames);
   }
@@ -291,7 +289,7 @@ Outcome info_trace(const InfoOptions& options) {
                                    {"new shapes", shapes[i]}});
   }
   for (const TraceUser& user : trace.users) info["users"].push_back({{"user", user.name}});
-  info["channels"] = std::move(*channels);
+  info["channels"] = std::move(channels);
   print_info(info);
   return check_ending(options.input, *reader, frames);
 }
@@ -299,7 +297,7 @@ Outcome info_trace(const InfoOptions& options) {
 #ifdef TACTUS_HAS_SIM
 Outcome info_scene(const InfoOptions& options) {
   const auto scene = sim::load_scene(options.input);
-  if (!scene) return refuse_located(scene.error());
+  if (!scene) return refuse(scene.error());
   note_idle_options(*options.command, {}, "scene");
   if (options.json) {
     fmt::print("{}\n", text_of_json(scene_info_json(*scene)));
@@ -345,10 +343,9 @@ Outcome run(const InfoOptions& options) {
 #ifdef TACTUS_HAS_SIM
   if (options.input.ends_with(".toml")) return info_scene(options);
 #endif
-  const auto input = RereadableInput::open(options.input);
-  if (!input) return tl::unexpected(input.error());
+  TACTUS_TRY(const auto input, RereadableInput::open(options.input));
   InfoOptions readable = options;
-  readable.readable = input->path();
+  readable.readable = input.path();
   std::ifstream file(readable.readable, std::ios::binary);
   std::string magic(mcap::kMagic.size(), '\0');
   file.read(magic.data(), static_cast<std::streamsize>(magic.size()));

@@ -82,7 +82,7 @@ Outcome make_slab(const MeshOptions& options, MeshReport& report) {
 Outcome read_tets(const MeshOptions& options, MeshReport& report) {
   note_idle_options(*options.common.command, {}, "file");
   auto file = report.measure("read", [&] { return sim::read_tet_mesh(options.input); });
-  if (!file) return refuse_located(file.error());
+  if (!file) return refuse(file.error());
   if (file->ignored_elements > 0)
     report.notes.push_back({"ignored_elements", "left out",
                             counted(file->ignored_elements, "element") + " that are no tetrahedra", file->ignored_elements});
@@ -97,7 +97,7 @@ double volume_of_edge(double edge) { return edge * edge * edge / (6 * std::numbe
 
 Outcome fill_surface(const MeshOptions& options, MeshReport& report) {
   auto file = report.measure("read", [&] { return sim::read_surface(options.input); });
-  if (!file) return refuse_located(file.error());
+  if (!file) return refuse(file.error());
   if (file->polygons > 0)
     report.notes.push_back({"cut_polygons", "cut", counted(file->polygons, "polygon") + " into triangles", file->polygons});
   if (file->unused_vertices > 0)
@@ -110,9 +110,9 @@ Outcome fill_surface(const MeshOptions& options, MeshReport& report) {
                                   .time_limit = options.time_limit};
   auto filled = report.measure("fill", [&] { return fill(file->mesh, settings); });
   if (!filled) {
-    sim::SurfaceError error = filled.error();
+    Diagnostic error = filled.error();
     error.file = options.input;
-    return refuse_located(error);
+    return refuse(error);
   }
   report.mesh = std::move(*filled);
   return {};
@@ -126,11 +126,9 @@ Outcome fill_surface(const MeshOptions& options, MeshReport&) {
 
 tl::expected<OutputFile, Failure> open_output(const std::string& path, const MeshOptions& options, const std::string& beside,
                                               void (*write)(std::ostream&, const sim::TetMesh&), const sim::TetMesh& mesh) {
-  auto file = OutputFile::create(path, options.common.existing(), {options.input, beside});
-  if (!file) return file;
-  const auto out = file->open();
-  if (!out) return tl::unexpected(out.error());
-  write(**out, mesh);
+  TACTUS_TRY(auto file, OutputFile::create(path, options.common.existing(), {options.input, beside}));
+  TACTUS_TRY(const auto out, file.open());
+  write(*out, mesh);
   return file;
 }
 
@@ -141,12 +139,10 @@ Outcome write_mesh(const MeshOptions& options, const sim::TetMesh& mesh) {
     return file ? file->keep() : tl::unexpected(file.error());
   }
   const std::string ele = options.output.substr(0, options.output.size() - 5) + ".ele";
-  auto node_file = open_output(options.output, options, ele, sim::write_node, mesh);
-  if (!node_file) return tl::unexpected(node_file.error());
-  auto ele_file = open_output(ele, options, options.output, sim::write_ele, mesh);
-  if (!ele_file) return tl::unexpected(ele_file.error());
-  if (auto kept = node_file->keep(); !kept) return kept;
-  return ele_file->keep();
+  TACTUS_TRY(auto node_file, open_output(options.output, options, ele, sim::write_node, mesh));
+  TACTUS_TRY(auto ele_file, open_output(ele, options, options.output, sim::write_ele, mesh));
+  TACTUS_CHECK(node_file.keep());
+  return ele_file.keep();
 }
 
 Json to_json(const MeshOptions& options, const MeshReport& report) {
@@ -213,13 +209,14 @@ Outcome run(const MeshOptions& options) {
     return refuse_arguments(options.output + ": no name of a mesh",
                             "Give -o NAME.node (with NAME.ele beside it) or -o NAME.msh.");
   MeshReport report;
-  Outcome made = !options.slab.empty()        ? make_slab(options, report)
-                 : is_tet_file(options.input) ? read_tets(options, report)
-                                              : fill_surface(options, report);
-  if (!made) return made;
-  const auto checked = report.measure("check", [&] { return check(report.mesh); });
-  if (!checked) return refuse((options.slab.empty() ? options.input : options.slab) + ": " + to_string(checked.error()), "");
-  if (auto written = report.measure("write", [&] { return write_mesh(options, report.mesh); }); !written) return written;
+  TACTUS_CHECK(!options.slab.empty()        ? make_slab(options, report)
+               : is_tet_file(options.input) ? read_tets(options, report)
+                                            : fill_surface(options, report));
+  if (auto checked = report.measure("check", [&] { return check(report.mesh); }); !checked) {
+    checked.error().file = options.slab.empty() ? options.input : options.slab;
+    return refuse(checked.error());
+  }
+  TACTUS_CHECK(report.measure("write", [&] { return write_mesh(options, report.mesh); }));
   if (options.common.quiet && !options.common.json) return {};
   const Json figures = to_json(options, report);
   if (options.common.json) fmt::print("{}\n", text_of_json(figures));

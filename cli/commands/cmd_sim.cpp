@@ -48,13 +48,11 @@ struct StreamOutput {
 };
 
 tl::expected<StreamOutput, Failure> open_stream(const SimOptions& options, const Scene& scene) {
-  auto file = OutputFile::create(options.stream, options.common.existing(), {options.scene, options.replay});
-  if (!file) return tl::unexpected(file.error());
-  const auto out = file->open();
-  if (!out) return tl::unexpected(out.error());
-  auto writer = StreamFileWriter::create(**out, scene);
+  TACTUS_TRY(auto file, OutputFile::create(options.stream, options.common.existing(), {options.scene, options.replay}));
+  TACTUS_TRY(const auto out, file.open());
+  auto writer = StreamFileWriter::create(*out, scene);
   if (!writer) return refuse(options.stream, writer.error());
-  return StreamOutput{std::move(*file), std::move(*writer)};
+  return StreamOutput{std::move(file), std::move(*writer)};
 }
 
 constexpr double kMostTicks = 0xffffffff;     // of a stream: spec/20-scene.md
@@ -85,9 +83,11 @@ tl::expected<std::span<const Packet>, Failure> step(Run& run, const SimOptions& 
   if (run.recording) run.devices = recorded_devices(*run.recording, run.recorded);
   const auto stepped = times.measure([&] { return run.recording ? run.simulation.step(run.devices) : run.simulation.step(); });
   if (stepped) return *stepped;
-  const sim::StepError& error = stepped.error();
-  if (error.remedy.empty()) return refuse(options.scene, place_of_tick(error.tick), error.error);
-  return refuse(fmt::format("{}, {}: {}", options.scene, place_of_tick(error.tick), error.remedy), "");
+  const Diagnostic& error = stepped.error();
+  const std::string place = place_of_tick(error.step) + (error.detail.empty() ? "" : ", " + error.detail);
+  auto refused = refuse(options.scene, place, error.error);
+  if (!error.remedy.empty()) refused.value().remedy = error.remedy + '.';
+  return refused;
 }
 
 /// What was sent in this tick.
@@ -118,7 +118,7 @@ Outcome record(Run& run, std::span<const Packet> packets, const SimOptions& opti
   const TraceFrame& frame = run.simulation.frame();
   if (const auto written = run.trace.write(frame); !written)
     return refuse(options.output, place_of_tick(frame.tick), written.error());
-  if (auto done = record_packets(run, packets, options, report); !done) return done;
+  TACTUS_CHECK(record_packets(run, packets, options, report));
   judge_meshes(run, report);
   if (report.fidelity) {
     report.fidelity->add(frame, run.simulation.client_poses());
@@ -159,7 +159,7 @@ Outcome finish(Run& run, const SimOptions& options) {
   if (const auto done = run.trace.finish(); !done) return refuse(options.output, done.error());
   if (run.stream) {
     if (const auto done = run.stream->writer.finish(); !done) return refuse(options.stream, done.error());
-    if (auto kept = run.stream->file.keep(); !kept) return kept;
+    TACTUS_CHECK(run.stream->file.keep());
   }
   return run.output.keep();
 }
@@ -172,14 +172,14 @@ Outcome simulate(Run& run, std::int64_t ticks, const SimOptions& options, Report
       const auto more = run.recording->next(run.recorded);
       if (!more) return refuse_after(refuse(options.replay, more.error()).value(), run, report);
       if (!*more) {
-        if (auto whole = check_ending(options.replay, *run.recording, report.ticks.count()); !whole) return whole;
+        TACTUS_CHECK(check_ending(options.replay, *run.recording, report.ticks.count()));
         break;
       }
     }
     const auto packet = step(run, options, report.timings[0].times);
     if (!packet) return refuse_after(packet.error(), run, report);
     if (report.timings.size() > 1) add_deformations(run, report.timings[1].times);
-    if (auto done = record(run, *packet, options, report); !done) return done;
+    TACTUS_CHECK(record(run, *packet, options, report));
     progress.update(report.ticks.count());
   }
   return finish(run, options);
@@ -206,9 +206,9 @@ Report make_report(const SimOptions& options, const TraceInfo& info) {
 
 tl::expected<sim::Scene, Failure> read_scene(const SimOptions& options) {
   const auto path = sim::find_scene(options.scene);
-  if (!path) return refuse_located(path.error());
+  if (!path) return refuse(path.error());
   auto scene = sim::load_scene(*path);
-  if (!scene) return refuse_located(scene.error());
+  if (!scene) return refuse(scene.error());
   for (sim::SceneDeformable& object : scene->deformables) {
     if (!options.method.empty()) object.method = options.method;
     if (!options.solver.empty()) object.solver = options.solver;
@@ -257,12 +257,11 @@ std::set<Subject> subjects_of(const sim::Scene& scene) {
 
 Outcome draw_stiffness(const sim::Scene& scene, const SimOptions& options, StepTimes& times) {
   if (options.stiffness_map.empty() || scene.deformables.empty()) return {};
-  const auto drawn = times.measure([&] {
+  TACTUS_TRY(const auto drawn, times.measure([&] {
     return write_stiffness_map(scene, options.scene, options.stiffness_map, options.common.existing(),
                                {options.scene, options.output, options.stream, options.replay});
-  });
-  if (!drawn) return tl::unexpected(drawn.error());
-  if (*drawn == Drawn::no) fmt::print(stderr, "note: {}\n", kNoGnuplot);
+  }));
+  if (drawn == Drawn::no) fmt::print(stderr, "note: {}\n", kNoGnuplot);
   return {};
 }
 
@@ -277,15 +276,14 @@ tl::unexpected<Failure> stopped(int signal, const Report& report, const SimOptio
 }
 
 Outcome run(const SimOptions& options) {
-  if (auto fits = check_no_terminal(options.output); !fits) return fits;
+  TACTUS_CHECK(check_no_terminal(options.output));
   if (options.duration >= 0 && options.duration < 0.5 / sim::kTickRate)
     return refuse_arguments("--duration: shorter than a tick", "Give at least 1ms.");
   if (options.duration * sim::kTickRate > kMostTicks)
     return refuse_arguments("--duration: more ticks than can be numbered",
                             fmt::format("Give at most {:.0f}s.", std::floor(kMostTicks / sim::kTickRate)));
-  const auto scene = read_scene(options);
-  if (!scene) return tl::unexpected(scene.error());
-  note_idle_options(*options.common.command, subjects_of(*scene), "scene");
+  TACTUS_TRY(const auto scene, read_scene(options));
+  note_idle_options(*options.common.command, subjects_of(scene), "scene");
   sim::SimulationOptions settings{.seed = options.seed,
                                   .grip = options.grip,
                                   .channel = {},
@@ -293,7 +291,7 @@ Outcome run(const SimOptions& options) {
                                   .estimate_every = kEstimateEvery};
   if (options.has_channel())
     settings.channel = sim::ChannelOptions{options.meshes.sender(options.triggers), options.replica, options.meshes.coding()};
-  auto simulation = sim::Simulation::create(*scene, settings);
+  auto simulation = sim::Simulation::create(scene, settings);
   if (!simulation) return refuse(options.scene, simulation.error());
   std::optional<TraceReader> recording;
   if (!options.replay.empty()) {
@@ -301,31 +299,29 @@ Outcome run(const SimOptions& options) {
     if (!reader) return refuse(options.replay, reader.error());
     recording.emplace(std::move(*reader));
   }
-  auto output = OutputFile::create_growing(options.output, options.common.existing(),
-                                           {options.stream, options.stiffness_map, options.scene, options.replay});
-  if (!output) return tl::unexpected(output.error());
+  TACTUS_TRY(auto output, OutputFile::create_growing(options.output, options.common.existing(),
+                                                     {options.stream, options.stiffness_map, options.scene, options.replay}));
   std::optional<StreamOutput> stream;
   if (!options.stream.empty()) {
-    auto opened = open_stream(options, *simulation->stream_scene());
-    if (!opened) return tl::unexpected(opened.error());
-    stream.emplace(std::move(*opened));
+    TACTUS_TRY(auto opened, open_stream(options, *simulation->stream_scene()));
+    stream.emplace(std::move(opened));
   }
   Timing map{"stiffness_map", "stiffness map, once"};
-  if (auto drawn = draw_stiffness(*scene, options, map.times); !drawn) return drawn;
+  TACTUS_CHECK(draw_stiffness(scene, options, map.times));
   const TraceInfo info = simulation->info();
-  auto trace = TraceWriter::create(output->working_path(), info);
+  auto trace = TraceWriter::create(output.working_path(), info);
   if (!trace) return refuse(options.output, trace.error());
 
   Report report = make_report(options, info);
   describe_deformables(*simulation, report);
-  Run session{std::move(*simulation), std::move(*output), std::move(*trace), std::move(stream), std::move(recording), {}, {}};
+  Run session{std::move(*simulation), std::move(output), std::move(*trace), std::move(stream), std::move(recording), {}, {}};
   const auto ticks = options.duration < 0 ? session.simulation.ticks()
                                           : static_cast<std::int64_t>(std::llround(options.duration * sim::kTickRate));
   if (auto done = simulate(session, ticks, options, report); !done) {
     if (report.ticks.count() == 0) session.output.discard();
     return done;
   }
-  report_touches(*scene, session.simulation, report);
+  report_touches(scene, session.simulation, report);
   if (options.has_channel()) report.stream = stream_size(session);
   report_errors(session.simulation, report);
   report.timings.push_back(std::move(map));

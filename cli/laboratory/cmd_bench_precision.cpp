@@ -28,9 +28,7 @@ struct PrecisionOptions {
   sim::study::Extent extent() const { return brief ? sim::study::Extent::brief : sim::study::Extent::full; }
 };
 
-Failure failure_of(const std::string& scene, const sim::FemError& error) {
-  return {scene + ": " + to_string(error), error.remedy};
-}
+Failure failure_of(const std::string& scene, const Diagnostic& error) { return {scene + ": " + to_string(error), ""}; }
 
 /// All points of the studies; those that are in the results already are not computed again.
 class Work {
@@ -80,7 +78,7 @@ tl::expected<sim::study::Reference, Failure> Work::reference(const sim::study::P
     point.seconds_per_second = reference->load.step_seconds / scene.duration;
     point.runs = 1;
     point.remark = fmt::format("observed order {:.2f}", reference->order);
-    if (const auto added = results_.add(TimeRow{scene.name, point}); !added) return tl::unexpected(added.error());
+    TACTUS_CHECK(results_.add(TimeRow{scene.name, point}));
   }
   return *std::move(reference);
 }
@@ -90,13 +88,12 @@ tl::expected<sim::study::PrecisionPoint, Failure> Work::point(const sim::study::
                                                               const sim::study::PrecisionMethod& method, int steps) {
   if (const TimeRow* row = results_.find(scene.name, method.name, steps)) return row->point;
   if (!reference_ || reference_scene_ != scene.name) {
-    auto made = reference(scene);
-    if (!made) return tl::unexpected(made.error());
-    reference_ = *std::move(made);
+    TACTUS_TRY(auto made, reference(scene));
+    reference_ = std::move(made);
     reference_scene_ = scene.name;
   }
   const auto point = sim::study::measure(scene, method, steps, *reference_, {.runs = options_.runs});
-  if (const auto added = results_.add(TimeRow{scene.name, point}); !added) return tl::unexpected(added.error());
+  TACTUS_CHECK(results_.add(TimeRow{scene.name, point}));
   return results_.find(scene.name, method.name, steps)->point;
 }
 
@@ -107,10 +104,9 @@ tl::expected<TimeStudy, Failure> Work::time_study(const sim::study::PrecisionSce
     for (const int steps : scene.steps_per_sample) {
       count();
       if (cost > kTooSlow && scene.step(steps) < kAlwaysComputed) continue;
-      const auto point = this->point(scene, method, steps);
-      if (!point) return tl::unexpected(point.error());
-      cost = point->seconds_per_second;
-      out.points.push_back(*point);
+      TACTUS_TRY(const auto point, this->point(scene, method, steps));
+      cost = point.seconds_per_second;
+      out.points.push_back(point);
     }
   }
   out.reference = results_.find(scene.name, kReferenceMethod, scene.reference_steps_per_sample)->point;
@@ -124,7 +120,7 @@ Outcome Work::space_studies(const std::string& scene, std::vector<SpaceStudy>& o
     if (row == nullptr) {
       const auto point = sim::study::measure_space(scene, job);
       if (!point) return tl::unexpected(failure_of(scene, point.error()));
-      if (auto added = results_.add(SpaceRow{scene, *point}); !added) return added;
+      TACTUS_CHECK(results_.add(SpaceRow{scene, *point}));
       row = results_.find(scene, job);
     }
     if (job.refinement == 1) out.push_back({scene, {}, {}});
@@ -139,10 +135,9 @@ Outcome Work::space_studies(const std::string& scene, std::vector<SpaceStudy>& o
 tl::expected<PrecisionReport, Failure> Work::run() {
   PrecisionReport report{results_.context(), {}, {}};
   for (const sim::study::PrecisionScene& scene : scenes_) {
-    auto time = time_study(scene);
-    if (!time) return tl::unexpected(time.error());
-    report.times.push_back(*std::move(time));
-    if (const auto done = space_studies(scene.name, report.spaces); !done) return tl::unexpected(done.error());
+    TACTUS_TRY(auto time, time_study(scene));
+    report.times.push_back(std::move(time));
+    TACTUS_CHECK(space_studies(scene.name, report.spaces));
   }
   return report;
 }
@@ -150,12 +145,11 @@ tl::expected<PrecisionReport, Failure> Work::run() {
 /// All files but the two that grew on the way.
 Outcome write_report(const PrecisionReport& report, const std::string& folder) {
   constexpr auto kReplace = OutputFile::Existing::replace;
-  if (auto done = write_file(folder + "/precision.json", precision_json(report), kReplace); !done) return done;
-  if (auto done = write_file(folder + "/report.md", precision_markdown(report), kReplace); !done) return done;
+  TACTUS_CHECK(write_file(folder + "/precision.json", precision_json(report), kReplace));
+  TACTUS_CHECK(write_file(folder + "/report.md", precision_markdown(report), kReplace));
   for (const Plot& plot : precision_plots(report)) {
-    const auto drawn = draw(plot, folder, kReplace);
-    if (!drawn) return tl::unexpected(drawn.error());
-    if (*drawn == Drawn::no) {
+    TACTUS_TRY(const auto drawn, draw(plot, folder, kReplace));
+    if (drawn == Drawn::no) {
       fmt::print(stderr, "{}\n", kNoGnuplot);
       break;
     }
@@ -170,13 +164,11 @@ Outcome run(const PrecisionOptions& options) {
   auto context = bench_context();
   context["extent"] = options.brief ? "short" : "full";
   context["runs"] = fmt::to_string(options.runs);
-  auto results = PrecisionResults::open(options.folder, std::move(context), options.common.existing());
-  if (!results) return tl::unexpected(results.error());
-  const auto report = Work(chosen, *results).run();
-  if (!report) return tl::unexpected(report.error());
-  if (auto done = write_report(*report, options.folder); !done) return done;
-  if (options.common.json) fmt::print("{}", precision_json(*report));
-  else if (!options.common.quiet) print_precision_tables(*report);
+  TACTUS_TRY(auto results, PrecisionResults::open(options.folder, std::move(context), options.common.existing()));
+  TACTUS_TRY(const auto report, Work(chosen, results).run());
+  TACTUS_CHECK(write_report(report, options.folder));
+  if (options.common.json) fmt::print("{}", precision_json(report));
+  else if (!options.common.quiet) print_precision_tables(report);
   return {};
 }
 

@@ -69,14 +69,13 @@ Outcome write_report(const StabilityOptions& options, sim::study::Extent extent,
   std::vector<Picture> pictures;
   bool all_drawn = true;
   for (const StabilityPlot& made : stability_plots(studies)) {
-    const auto drawn = draw(made.plot, folder, options.common.existing());
-    if (!drawn) return tl::unexpected(drawn.error());
-    if (*drawn == Drawn::yes) pictures.push_back({made.plot.name, made.caption});
+    TACTUS_TRY(const auto drawn, draw(made.plot, folder, options.common.existing()));
+    if (drawn == Drawn::yes) pictures.push_back({made.plot.name, made.caption});
     else all_drawn = false;
   }
   if (!all_drawn) fmt::print(stderr, "note: {}\n", kNoGnuplot);
-  if (auto done = write_file(folder + "/stability.csv", to_csv(studies), options.common.existing()); !done) return done;
-  if (auto done = write_file(folder + "/stability.json", to_json(studies, extent), options.common.existing()); !done) return done;
+  TACTUS_CHECK(write_file(folder + "/stability.csv", to_csv(studies), options.common.existing()));
+  TACTUS_CHECK(write_file(folder + "/stability.json", to_json(studies, extent), options.common.existing()));
   return write_file(folder + "/report.md", to_markdown(studies, pictures, extent), options.common.existing());
 }
 
@@ -84,13 +83,12 @@ Outcome run(const StabilityOptions& options) {
   const sim::study::Extent extent = options.brief ? sim::study::Extent::brief : sim::study::Extent::full;
   const bool writes = !options.directory.empty();
   if (writes) {
-    if (auto made = make_folder(options.directory); !made) return made;
+    TACTUS_CHECK(make_folder(options.directory));
     for (const char* file : {"/report.md", "/stability.csv", "/stability.json"})
-      if (auto free = OutputFile::check_free(options.directory + file, options.common.existing()); !free) return free;
+      TACTUS_CHECK(OutputFile::check_free(options.directory + file, options.common.existing()));
   }
   const std::vector<Study> studies = run_cases(options, extent);
-  if (writes)
-    if (auto done = write_report(options, extent, studies); !done) return done;
+  if (writes) TACTUS_CHECK(write_report(options, extent, studies));
   if (options.common.json) fmt::print("{}", to_json(studies, extent));
   else if (!options.common.quiet) print_table(studies, stdout);
   return {};

@@ -139,7 +139,7 @@ Measured measure(const sim::Scene& scene, const Setting& setting, const RigidTri
   std::uint64_t visual_violations = 0;
   for (std::int64_t tick = 0; tick < ticks; ++tick) {
     const auto packets = simulation->step();
-    if (!packets) return failed_at(packets.error().tick, packets.error().error);
+    if (!packets) return failed_at(packets.error().step, packets.error().error);
     for (const Packet& p : *packets) traffic.add(p.reason, p.updates, p.bytes.size(), p.key);
     const TraceFrame& frame = simulation->frame();
     if (const auto done = follow(*predicting, *packets, frame.tick, poses); !done) return failed_at(frame.tick, done.error());
@@ -262,9 +262,9 @@ void print_json(const std::vector<Row>& rows, const ReproduceOptions& options, c
 
 Outcome run(const ReproduceOptions& options) {
   const auto path = sim::find_scene("rotate-push-lift");
-  if (!path) return refuse_located(path.error());
+  if (!path) return refuse(path.error());
   const auto scene = sim::load_scene(*path);
-  if (!scene) return refuse_located(scene.error());
+  if (!scene) return refuse(scene.error());
   const std::map<std::string, sim::Grip> grips{
       {"loose", sim::Grip::loose}, {"normal", sim::Grip::normal}, {"firm", sim::Grip::firm}};
   const sim::Grip grip = grips.at(options.grip);

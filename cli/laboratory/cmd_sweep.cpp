@@ -87,10 +87,9 @@ Outcome make_inputs(const SweepPlan& plan, const std::string& folder, Visibility
     const fs::path file = fs::path(folder) / input.file;
     progress.update(i);
     if (fs::exists(file, failed)) continue;
-    const auto aside = AsideFolder::create(folder, "unfinished");
-    if (!aside) return tl::unexpected(aside.error());
-    const fs::path made = fs::path(aside->path()) / input.file;
-    if (auto done = run_command(words_of(input, made.string())); !done) return tl::unexpected(done.error());
+    TACTUS_TRY(const auto aside, AsideFolder::create(folder, "unfinished"));
+    const fs::path made = fs::path(aside.path()) / input.file;
+    TACTUS_CHECK(run_command(words_of(input, made.string())));
     fs::rename(made, file, failed);
     if (failed) {
       return refuse(fmt::format("input {}: the command left no file: {}", input.name, failed.message()),
@@ -213,39 +212,36 @@ void print_summary(const SweepOptions& options, const SweepPlan& plan, const Sum
 Outcome run(const SweepOptions& options) {
   if (std::getenv(kInsideSweep) != nullptr)
     return refuse("a sweep cannot run within a sweep", "Let the plan's commands be others than sweep.");
-  const auto plan = load_plan(options.plan);
-  if (!plan) return tl::unexpected(plan.error());
-  const std::string folder = options.folder.empty() ? "out/" + plan->name : options.folder;
+  TACTUS_TRY(const auto plan, load_plan(options.plan));
+  const std::string folder = options.folder.empty() ? "out/" + plan.name : options.folder;
   if (options.list) {
-    print_commands(*plan, folder);
+    print_commands(plan, folder);
     return {};
   }
   const auto begin = std::chrono::steady_clock::now();
   setenv(kInsideSweep, "1", 1);  // for the commands of the plan; no thread is running yet
-  auto results = SweepResults::open(folder, *plan);
-  if (!results) return tl::unexpected(results.error());
-  if (auto made = make_inputs(*plan, folder, options.common.progress()); !made) return made;
+  TACTUS_TRY(auto results, SweepResults::open(folder, plan));
+  TACTUS_CHECK(make_inputs(plan, folder, options.common.progress()));
 
-  Summary summary{.points = plan->points(), .files = {folder + "/points.csv", folder + "/context.json"}};
+  Summary summary{.points = plan.points(), .files = {folder + "/points.csv", folder + "/context.json"}};
   std::optional<Failure> first;
   {
-    const std::size_t before = results->rows(*plan).size();
-    Progress progress("sweep " + plan->name, plan->points() - before, options.common.progress());
-    Workers workers(*plan, *results, progress);
+    const std::size_t before = results.rows(plan).size();
+    Progress progress("sweep " + plan.name, plan.points() - before, options.common.progress());
+    Workers workers(plan, results, progress);
     workers.run(options.jobs > 0 ? options.jobs : std::max(1u, std::thread::hardware_concurrency()));
     summary.failed = workers.failed();
     summary.computed = workers.missing() - summary.failed;
     if (summary.failed > 0) first = workers.first_failure();
   }
   if (!first) {  // plots are of whole tables
-    if (auto sorted = results->sort(*plan); !sorted) return sorted;
-    auto drawn = draw_plots(*plan, *results);
-    if (!drawn) return tl::unexpected(drawn.error());
-    summary.files.insert(summary.files.end(), drawn->begin(), drawn->end());
-    if (drawn->size() < plan->plots.size()) fmt::print(stderr, "note: {}\n", kNoGnuplot);
+    TACTUS_CHECK(results.sort(plan));
+    TACTUS_TRY(auto drawn, draw_plots(plan, results));
+    summary.files.insert(summary.files.end(), drawn.begin(), drawn.end());
+    if (drawn.size() < plan.plots.size()) fmt::print(stderr, "note: {}\n", kNoGnuplot);
   }
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  print_summary(options, *plan, summary);
+  print_summary(options, plan, summary);
   if (!first) return {};
   return refuse(fmt::format("{} of {} points failed, the first one:\n       {}", summary.failed, summary.points, first->text),
                 first->remedy.empty() ? "Run the sweep again once it is mended; finished points are kept." : first->remedy);

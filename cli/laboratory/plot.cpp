@@ -76,7 +76,7 @@ Outcome check_plot(const Plot& plot, const std::string& directory, OutputFile::E
 }
 
 tl::expected<Drawn, Failure> draw(const Plot& plot, const std::string& directory, OutputFile::Existing existing) {
-  if (auto free = check_plot(plot, directory, existing); !free) return tl::unexpected(free.error());
+  TACTUS_CHECK(check_plot(plot, directory, existing));
   const std::string figure = shown_path(file_of(plot, directory)), remedy = "Check the installation of gnuplot.";
   const auto done = run_child({"gnuplot", "-d", "/dev/stdin"}, plot.script(), kLongestRun);
   if (!done && done.error() == std::errc::no_such_file_or_directory) return Drawn::no;
@@ -86,7 +86,7 @@ tl::expected<Drawn, Failure> draw(const Plot& plot, const std::string& directory
   if (done->status != 0)
     return refuse(fmt::format("{}: gnuplot ended with status {}: {}", figure, done->status, shown(done->error, kMostOfWords)),
                   remedy);
-  if (auto written = write_file(file_of(plot, directory), done->out, existing); !written) return tl::unexpected(written.error());
+  TACTUS_CHECK(write_file(file_of(plot, directory), done->out, existing));
   return Drawn::yes;
 }
 

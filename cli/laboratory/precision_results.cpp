@@ -153,9 +153,7 @@ std::optional<SpaceRow> space_row(const Row& in) {
 template <class Found>
 Outcome take_up(const std::string& path, const Row& columns, std::optional<GrowingTable>& table, std::vector<Found>& rows,
                 std::optional<Found> (*parse)(const Row&)) {
-  auto opened = GrowingTable::open(path, columns);
-  if (!opened) return tl::unexpected(opened.error());
-  table.emplace(*std::move(opened));
+  TACTUS_TRY(table, GrowingTable::open(path, columns));
   for (const Row& cells : table->rows()) {
     auto row = parse(cells);
     if (!row) return table->refuse_row(rows.size());
@@ -168,7 +166,7 @@ Outcome take_up(const std::string& path, const Row& columns, std::optional<Growi
 
 tl::expected<PrecisionResults, Failure> PrecisionResults::open(std::string folder, Context context,
                                                                OutputFile::Existing existing) {
-  if (const auto made = make_folder(folder); !made) return tl::unexpected(made.error());
+  TACTUS_CHECK(make_folder(folder));
   PrecisionResults out(std::move(folder), std::move(context));
   const std::string wanted = text_of_json(nlohmann::ordered_json(out.context_)) + "\n", file = out.path(kContextFile);
   if (existing == OutputFile::Existing::replace) {
@@ -177,21 +175,20 @@ tl::expected<PrecisionResults, Failure> PrecisionResults::open(std::string folde
   }
   std::error_code ignored;
   if (!fs::exists(file, ignored)) {
-    if (const auto done = write_file(file, wanted, OutputFile::Existing::keep); !done) return tl::unexpected(done.error());
+    TACTUS_CHECK(write_file(file, wanted, OutputFile::Existing::keep));
   } else {
-    const auto found = read_file(file);
-    if (!found) return tl::unexpected(found.error());
-    if (*found != wanted) {
+    TACTUS_TRY(const auto found, read_file(file));
+    if (found != wanted) {
       return refuse(file + ": this folder holds figures of another machine, build or extent",
                     "Give another folder, or -f to start afresh in this one.");
     }
   }
-  if (const auto done = out.read(); !done) return tl::unexpected(done.error());
+  TACTUS_CHECK(out.read());
   return out;
 }
 
 Outcome PrecisionResults::read() {
-  if (auto done = take_up(path(kTimeFile), time_columns(), time_table_, times_, time_row); !done) return done;
+  TACTUS_CHECK(take_up(path(kTimeFile), time_columns(), time_table_, times_, time_row));
   return take_up(path(kSpaceFile), space_columns(), space_table_, spaces_, space_row);
 }
 

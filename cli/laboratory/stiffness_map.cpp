@@ -80,11 +80,9 @@ Plot stiffness_plot(const std::string& file, const std::string& object, const si
 
 tl::expected<Drawn, Failure> write_stiffness_map(const sim::Scene& scene, const std::string& scene_file, const std::string& file,
                                                  OutputFile::Existing existing, std::initializer_list<std::string> others) {
-  auto table = OutputFile::create(file, existing, others);
-  if (!table) return tl::unexpected(table.error());
-  const auto out = table->open();
-  if (!out) return tl::unexpected(out.error());
-  **out << "deformable,vertex,x_m,y_m,z_m,stiffness_N_per_m\n";
+  TACTUS_TRY(auto table, OutputFile::create(file, existing, others));
+  TACTUS_TRY(const auto out, table.open());
+  *out << "deformable,vertex,x_m,y_m,z_m,stiffness_N_per_m\n";
   const std::filesystem::path place(file);
   std::vector<Plot> plots;
   for (const sim::SceneDeformable& object : scene.deformables) {
@@ -92,7 +90,7 @@ tl::expected<Drawn, Failure> write_stiffness_map(const sim::Scene& scene, const 
     if (!map) return refuse(scene_file, object.name, map.error());
     for (std::size_t v = 0; v < map->stiffness.size(); ++v) {
       const Vec3& at = map->surface.vertices[v];
-      **out << fmt::format("{},{},{},{},{},{}\n", object.name, v, at.x, at.y, at.z, map->stiffness[v]);
+      *out << fmt::format("{},{},{},{},{},{}\n", object.name, v, at.x, at.y, at.z, map->stiffness[v]);
     }
     const std::string stem = place.stem().string();
     std::string name = plots.empty() ? stem : stem + "-" + object.name;
@@ -101,9 +99,8 @@ tl::expected<Drawn, Failure> write_stiffness_map(const sim::Scene& scene, const 
   }
   const std::string folder = place.has_parent_path() ? place.parent_path().string() : ".";
   if (file == "-") plots.clear();
-  for (const Plot& plot : plots)
-    if (auto free = check_plot(plot, folder, existing); !free) return tl::unexpected(free.error());
-  if (auto kept = table->keep(); !kept) return tl::unexpected(kept.error());
+  for (const Plot& plot : plots) TACTUS_CHECK(check_plot(plot, folder, existing));
+  TACTUS_CHECK(table.keep());
   for (const Plot& plot : plots) {
     auto drawn = draw(plot, folder, existing);
     if (!drawn || *drawn == Drawn::no) return drawn;

@@ -65,10 +65,10 @@ class PlanReader {
     in_.parse(text, kMostPlanBytes, [&](const toml::table& root) { plan = read(root); });
   }
   bool failed() const { return in_.failed(); }
-  sim::SceneError error() const { return in_.error(); }
+  Diagnostic error() const { return in_.error(); }
 
  private:
-  void invalid(const toml::node& node, const char* rule, std::string key, std::string remedy) {
+  void invalid(const toml::node& node, RuleName rule, std::string key, std::string remedy) {
     in_.fail_at(node.source(), Errc::invalid, rule, std::move(key), std::move(remedy));
   }
 
@@ -95,7 +95,8 @@ class PlanReader {
     const toml::array* array = node ? node->as_array() : nullptr;
     const std::string place = sim::TomlReader::join(path, key);
     if (!array || array->empty()) {
-      invalid(node ? *node : table, node ? "R-SCN-5" : "R-SCN-4", place, "write an array of strings, at least one");
+      invalid(node ? *node : table, node ? RuleName("R-SCN-5") : RuleName("R-SCN-4"), place,
+              "write an array of strings, at least one");
       return out;
     }
     for (const auto& element : *array) {
@@ -279,13 +280,12 @@ std::vector<std::string> SweepPlan::columns() const {
 }
 
 tl::expected<SweepPlan, Failure> load_plan(const std::string& path) {
-  const auto text = read_file(path, kMostPlanBytes);
-  if (!text) return tl::unexpected(text.error());
+  TACTUS_TRY(const auto text, read_file(path, kMostPlanBytes));
   PlanReader reader(path);
   SweepPlan plan;
-  reader.parse(*text, plan);
-  if (reader.failed()) return refuse_located(reader.error());
-  plan.text = *text;
+  reader.parse(text, plan);
+  if (reader.failed()) return refuse(reader.error());
+  plan.text = text;
   return plan;
 }
 

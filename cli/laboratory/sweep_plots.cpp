@@ -94,9 +94,9 @@ tl::expected<std::vector<std::string>, Failure> draw_plots(const SweepPlan& plan
   const auto rows = results.rows(plan);
   std::vector<std::string> files;
   for (const SweepPlot& wanted : plan.plots) {
-    const auto drawn = draw(figure(wanted, series_of(wanted, plan, rows)), results.folder(), OutputFile::Existing::replace);
-    if (!drawn) return tl::unexpected(drawn.error());
-    if (*drawn == Drawn::yes) files.push_back(results.folder() + "/" + wanted.name + ".svg");
+    TACTUS_TRY(const auto drawn,
+               draw(figure(wanted, series_of(wanted, plan, rows)), results.folder(), OutputFile::Existing::replace));
+    if (drawn == Drawn::yes) files.push_back(results.folder() + "/" + wanted.name + ".svg");
   }
   return files;
 }

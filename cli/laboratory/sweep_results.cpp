@@ -55,26 +55,23 @@ tl::expected<SweepResults, Failure> SweepResults::open(const std::string& folder
   std::error_code failed;
   fs::create_directories(folder, failed);
   if (failed) return refuse(shown_path(folder) + ": cannot make this folder: " + failed.message(), "Give another one with -o.");
-  auto lock = hold(folder);
-  if (!lock) return tl::unexpected(lock.error());
-  SweepResults results(folder, std::move(*lock));
+  TACTUS_TRY(auto lock, hold(folder));
+  SweepResults results(folder, std::move(lock));
   if (fs::exists(folder + "/context.json", failed)) {
-    if (auto same = results.check_context(plan); !same) return tl::unexpected(same.error());
+    TACTUS_CHECK(results.check_context(plan));
   } else if (fs::exists(results.table_path(), failed)) {
     return refuse(shown_path(results.table_path()) + ": there without the context.json that says what it is",
                   "Give another folder with -o.");
   }
-  if (auto kept = write_file(folder + "/context.json", text_of_json(context(plan)) + "\n", OutputFile::Existing::replace); !kept)
-    return tl::unexpected(kept.error());
-  if (auto done = results.read(plan); !done) return tl::unexpected(done.error());
+  TACTUS_CHECK(write_file(folder + "/context.json", text_of_json(context(plan)) + "\n", OutputFile::Existing::replace));
+  TACTUS_CHECK(results.read(plan));
   return results;
 }
 
 Outcome SweepResults::check_context(const SweepPlan& plan) const {
   const std::string path = folder_ + "/context.json";
-  const auto text = read_file(path);
-  if (!text) return tl::unexpected(text.error());
-  const Json before = Json::parse(*text, nullptr, false);
+  TACTUS_TRY(const auto text, read_file(path));
+  const Json before = Json::parse(text, nullptr, false);
   if (before.is_discarded() || !before.is_object() || before.value("sweep", Json()) != identity(plan)) {
     return refuse(shown_path(path) + ": this folder holds a sweep with another command, other inputs, parameters or measures",
                   "Give another folder with -o, or remove this one.");
@@ -83,9 +80,7 @@ Outcome SweepResults::check_context(const SweepPlan& plan) const {
 }
 
 Outcome SweepResults::read(const SweepPlan& plan) {
-  auto table = GrowingTable::open(table_path(), plan.columns());
-  if (!table) return tl::unexpected(table.error());
-  table_.emplace(*std::move(table));
+  TACTUS_TRY(table_, GrowingTable::open(table_path(), plan.columns()));
   const auto parameters = static_cast<std::ptrdiff_t>(plan.parameters.size());
   for (const Row& row : table_->rows()) rows_[{row.begin(), row.begin() + parameters}] = {row.begin() + parameters, row.end()};
   return {};
@@ -94,7 +89,7 @@ Outcome SweepResults::read(const SweepPlan& plan) {
 Outcome SweepResults::add(const std::vector<std::string>& values, const std::vector<std::string>& measures) {
   std::vector<std::string> cells = values;
   cells.insert(cells.end(), measures.begin(), measures.end());
-  if (auto stored = table_->add(std::move(cells)); !stored) return stored;
+  TACTUS_CHECK(table_->add(std::move(cells)));
   rows_[values] = measures;
   return {};
 }

@@ -11,6 +11,7 @@
 #include <string>
 
 #ifdef TACTUS_HAS_MODES
+#include <tactus/base/rule.h>
 #include <tactus/deformable/displacement.h>
 #include <tactus/sim/modes/spring_modes.h>
 #endif

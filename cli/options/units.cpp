@@ -135,11 +135,9 @@ tl::expected<PoseBound, std::string> parse_pose_bound(std::string_view text) {
   const std::size_t comma = text.find(',');
   if (comma == std::string_view::npos)
     return tl::unexpected(fmt::format("'{}': give a length and an angle, such as 6mm,2deg", text));
-  const auto length = parse_quantity(text.substr(0, comma), Dimension::length, Bare::allowed);
-  if (!length) return tl::unexpected(length.error());
-  const auto angle = parse_quantity(text.substr(comma + 1), Dimension::angle);
-  if (!angle) return tl::unexpected(angle.error());
-  return PoseBound{*length, *angle};
+  TACTUS_TRY(const auto length, parse_quantity(text.substr(0, comma), Dimension::length, Bare::allowed));
+  TACTUS_TRY(const auto angle, parse_quantity(text.substr(comma + 1), Dimension::angle));
+  return PoseBound{length, angle};
 }
 
 Option* add_quantity(Command& app, const std::string& name, double& value, Dimension dimension, const std::string& help) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What went wrong, in words: file, place, rule and what would mend it. The libraries return rules; sentences are made here only.
+/// What went wrong, in words: file, place, rule and what would mend it. The sentences of rules are those of spec/rules.csv.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <tl/expected.hpp>
 
-#include <tactus/base/result.h>
+#include <tactus/base/diagnostic.h>
 
 namespace tactus::cli {
 
@@ -30,16 +30,8 @@ inline std::string place_of_tick(std::int64_t tick) { return "tick " + std::to_s
 tl::unexpected<Failure> refuse(const std::string& file, const std::string& place, const Error& error);
 /// The same with the place that the error itself carries.
 tl::unexpected<Failure> refuse(const std::string& file, const Error& error);
-/// An error of a library's own reader, whose to_string() is a whole line.   in  place  as it stands in that line, for --json
-tl::unexpected<Failure> refuse_told(std::string text, const std::string& file, const std::string& place, const Error& error);
-/// The same of one with `error`, `file` and a `line` or a `detail`.
-template <class Located>
-tl::unexpected<Failure> refuse_located(const Located& error) {
-  std::string place;
-  if constexpr (requires { error.line; }) place = error.line > 0 ? "line " + std::to_string(error.line) : "";
-  if constexpr (requires { error.detail; }) place = error.detail;
-  return refuse_told(to_string(error), error.file, place, error.error);
-}
+/// An error with its place: one line, the remedy included.
+tl::unexpected<Failure> refuse(const Diagnostic& error);
 /// What to do about an operation on a file that failed for this reason (errno).
 std::string remedy_of(int cause);
 /// A file cannot be read or written.   in  what  "cannot be written";  cause  errno

@@ -6,7 +6,7 @@
 
 #include <new>
 
-#include <tactus/base/result.h>
+#include <tactus/base/rule.h>
 
 namespace tactus {
 

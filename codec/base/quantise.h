@@ -9,6 +9,7 @@
 
 #include <tactus/base/fixed.h>
 #include <tactus/base/geometry.h>
+#include <tactus/base/rule.h>
 
 namespace tactus {
 
@@ -27,8 +28,8 @@ inline bool quantise(double v, unsigned exp, double limit, std::int32_t& out) no
 }
 
 /// A pose on the grid, or the rule that it breaks: R-API-1, R-API-2 or R-API-3 as of to_grid().
-inline const char* quantise(const Pose& pose, unsigned exp, std::array<std::int32_t, 3>& position,
-                            std::array<std::int32_t, 4>& rotation) noexcept {
+inline RuleName quantise(const Pose& pose, unsigned exp, std::array<std::int32_t, 3>& position,
+                         std::array<std::int32_t, 4>& rotation) noexcept {
   const Vec3& p = pose.position;
   const Quat& q = pose.rotation;
   if (!is_finite(p) || !is_finite(q)) return "R-API-1";
@@ -41,7 +42,7 @@ inline const char* quantise(const Pose& pose, unsigned exp, std::array<std::int3
   const double scale = static_cast<double>(kOne30) / length;
   const double components[] = {q.w, q.x, q.y, q.z};
   for (std::size_t i = 0; i < 4; ++i) rotation[i] = std::min(floor32(components[i] * scale + 0.5), kOne30);
-  return nullptr;
+  return {};
 }
 
 }  // namespace tactus

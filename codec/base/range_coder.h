@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <span>
 
+#include <tactus/base/rule.h>
+
 namespace tactus {
 
 /// Probability that the next bit is 0, x 2^-15, always in 1..32767, and the shift of its next adaptation.
@@ -193,12 +195,12 @@ class RangeDecoder : public detail::SymbolCoder<RangeDecoder> {
   std::uint32_t code() const noexcept { return code_; }
   /// Bytes taken so far, implied zeros included.
   std::size_t position() const noexcept { return position_; }
-  /// After the last symbol: the first rule that the payload breaks, or null.
+  /// After the last symbol: the first rule that the payload breaks, or none.
   ///   R-RNG-2 no byte is left over;  R-RNG-3 the last byte is not zero
-  const char* broken_rule() const noexcept {
+  RuleName broken_rule() const noexcept {
     if (in_.size() > position_) return "R-RNG-2";
     if (!in_.empty() && in_.back() == 0) return "R-RNG-3";
-    return nullptr;
+    return {};
   }
 
  private:

@@ -5,12 +5,25 @@
 
 namespace tactus {
 
+namespace {
+
+struct Action {
+  std::string_view rule;
+  Advice advice;
+};
+
+#define TACTUS_RULE(name, action, fault, remedy) {name, Advice::action},
+constexpr Action kActions[] = {
+#include <tactus_rules.inc>
+};
+#undef TACTUS_RULE
+
+}  // namespace
+
 Advice advice(const Error& error) noexcept {
-  const std::string_view rule = error.rule;
-  if (error.code == Errc::state) return rule == "R-PKT-5" ? Advice::drop : Advice::request_key;
-  const bool stops = error.code == Errc::unsupported || (error.code == Errc::limit_exceeded && rule != "R-PKT-1") ||
-                     error.code == Errc::internal;
-  return stops ? Advice::close : Advice::drop;
+  for (const Action& action : kActions)
+    if (action.rule == error.rule) return action.advice;
+  return Advice::none;
 }
 
 const char* errc_name(Errc code) noexcept {

@@ -29,15 +29,21 @@ const char* errc_name(Errc code) noexcept;
 /// What went wrong, where, and which rule of the specification says so. No allocation; `rule` points to static text.
 struct Error {
   Errc code = Errc::internal;
-  const char* rule = "";         ///< label in spec/, such as "R-STR-4"; API rules are "R-API-n"
+  const char* rule = "";         ///< name in spec/rules.csv, such as "R-STR-4"
   std::uint64_t bit_offset = 0;  ///< position in the input where the rule was broken, in bits; 0 when there is none
 };
 
-/// What a receiver does about a packet that it cannot decode.
+/// The error in words: "the check value of a record does not match". In static memory, as all of spec/rules.csv.
+const char* describe(const Error& error) noexcept;
+/// What would mend it, a sentence. Empty for a rule that is not in spec/rules.csv.
+const char* remedy(const Error& error) noexcept;
+
+/// What a receiver does about a packet or a scene declaration that it cannot decode (spec/95-security.md, section 5).
 enum class Advice : std::uint8_t {
+  none,         ///< the rule is about calls or files, not about what a sender sent
   drop,         ///< nothing: the packet is damaged, late, or a copy; what is held stays as it was
   request_key,  ///< ask the sender for a key packet: what this one builds on is not held
-  close,        ///< it cannot be decoded here, nor can those that follow: a limit or a feature is missing
+  close,        ///< the scene declaration cannot be used, nor can the packets that follow it
 };
 Advice advice(const Error& error) noexcept;
 
@@ -48,26 +54,18 @@ using Result = tl::expected<T, Error>;
 [[gnu::noinline]] void break_on_error() noexcept;  ///< set a debugger breakpoint here to stop where an error is born
 #endif
 
-/// Make the unexpected value of any Result.
-inline tl::unexpected<Error> fail(Errc code, const char* rule, std::uint64_t bit_offset = 0) noexcept {
-#ifdef TACTUS_BREAK_ON_ERROR
-  break_on_error();
-#endif
-  return tl::unexpected<Error>(Error{code, rule, bit_offset});
-}
-
 }  // namespace tactus
 
 #define TACTUS_CONCAT_(a, b) a##b
 #define TACTUS_CONCAT(a, b) TACTUS_CONCAT_(a, b)
-#define TACTUS_TRY_(tmp, lhs, expr)                               \
-  auto tmp = (expr);                                              \
+#define TACTUS_TRY_(tmp, lhs, ...)                                \
+  auto tmp = (__VA_ARGS__);                                       \
   if (!tmp) return ::tl::make_unexpected(std::move(tmp).error()); \
   lhs = *std::move(tmp)
-/// `TACTUS_TRY(auto x, f());` binds the value of f() or returns its error, whatever its type. The only error macro.
-#define TACTUS_TRY(lhs, expr) TACTUS_TRY_(TACTUS_CONCAT(tactus_try_, __LINE__), lhs, expr)
-/// `TACTUS_CHECK(f());` for Result<void>.
-#define TACTUS_CHECK(expr)                                                                                        \
-  do {                                                                                                            \
-    if (auto tactus_check = (expr); !tactus_check) return ::tl::make_unexpected(std::move(tactus_check).error()); \
+/// `TACTUS_TRY(auto x, f());` binds the value of f() or returns its error, whatever its type. With the next the only error macro.
+#define TACTUS_TRY(lhs, ...) TACTUS_TRY_(TACTUS_CONCAT(tactus_try_, __LINE__), lhs, __VA_ARGS__)
+/// `TACTUS_CHECK(f());` for one without a value, or whose value is not wanted.
+#define TACTUS_CHECK(...)                                                                                                \
+  do {                                                                                                                   \
+    if (auto tactus_check = (__VA_ARGS__); !tactus_check) return ::tl::make_unexpected(std::move(tactus_check).error()); \
   } while (false)

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <string_view>
 #include <utility>
 
 #include <tactus/base/out_of_memory.h>
+#include <tactus/base/rule.h>
 
 namespace tactus {
 namespace {
@@ -38,26 +38,26 @@ std::vector<EdgeSide> sorted_sides(const TriMesh& mesh) {
   return sides;
 }
 
-tl::unexpected<MeshError> broken(Errc code, const char* rule, std::size_t element) {
-  return tl::unexpected(MeshError{fail(code, rule).value(), static_cast<std::uint32_t>(element)});
+tl::unexpected<Diagnostic> broken(RuleName rule, const char* kind, std::size_t element) {
+  return tl::unexpected(Diagnostic{.error = fail(Errc::invalid, rule).value(), .kind = kind, .element = element});
 }
 
 bool is_in_range(const Vec3& v) noexcept {  // false for NaN
   return std::abs(v.x) <= kMaxCoordinate && std::abs(v.y) <= kMaxCoordinate && std::abs(v.z) <= kMaxCoordinate;
 }
 
-tl::expected<void, MeshError> check_elements(const TriMesh& mesh) {
+tl::expected<void, Diagnostic> check_elements(const TriMesh& mesh) {
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-    if (!is_in_range(mesh.vertices[v])) return broken(Errc::invalid, "R-MSH-1", v);
+    if (!is_in_range(mesh.vertices[v])) return broken("R-SRF-8", "vertex", v);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (const std::uint32_t v : mesh.triangles[t])
-      if (v >= mesh.vertices.size()) return broken(Errc::invalid, "R-MSH-2", t);
+      if (v >= mesh.vertices.size()) return broken("R-SRF-9", "triangle", t);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto [a, b, c] = mesh.triangles[t];
     const Vec3& origin = mesh.vertices[a];
     const bool repeated = a == b || b == c || c == a;
     if (repeated || cross(mesh.vertices[b] - origin, mesh.vertices[c] - origin) == Vec3{})
-      return broken(Errc::invalid, "R-MSH-3", t);
+      return broken("R-SRF-10", "triangle", t);
   }
   return {};
 }
@@ -67,7 +67,7 @@ bool is_upward(const TriMesh& mesh, EdgeSide side) noexcept {
   return mesh.triangles[corner_of(side) / 3][corner_of(side) % 3] == low_vertex(side);
 }
 
-tl::expected<void, MeshError> check_edges(const TriMesh& mesh) {
+tl::expected<void, Diagnostic> check_edges(const TriMesh& mesh) {
   const std::vector<EdgeSide> sides = sorted_sides(mesh);
   std::uint32_t third = MeshTopology::kNone, turned = MeshTopology::kNone;
   for (std::size_t i = 1; i < sides.size(); ++i) {
@@ -76,8 +76,8 @@ tl::expected<void, MeshError> check_edges(const TriMesh& mesh) {
     if (i >= 2 && edge_of(sides[i]) == edge_of(sides[i - 2])) third = std::min(third, triangle);
     if (is_upward(mesh, sides[i]) == is_upward(mesh, sides[i - 1])) turned = std::min(turned, triangle);
   }
-  if (third != MeshTopology::kNone) return broken(Errc::invalid, "R-MSH-4", third);
-  if (turned != MeshTopology::kNone) return broken(Errc::invalid, "R-MSH-5", turned);
+  if (third != MeshTopology::kNone) return broken("R-SRF-11", "triangle", third);
+  if (turned != MeshTopology::kNone) return broken("R-SRF-12", "triangle", turned);
   return {};
 }
 
@@ -101,12 +101,12 @@ std::size_t fan_size(const TriMesh& mesh, const MeshTopology& topology, std::uin
   return count;
 }
 
-tl::expected<void, MeshError> check_fans(const TriMesh& mesh) {
+tl::expected<void, Diagnostic> check_fans(const TriMesh& mesh) {
   const MeshTopology topology(mesh);
   for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
     const auto triangles = topology.triangles_of(v);
     if (!triangles.empty() && fan_size(mesh, topology, v, triangles[0]) != triangles.size())
-      return broken(Errc::invalid, "R-MSH-6", v);
+      return broken("R-SRF-13", "vertex", v);
   }
   return {};
 }
@@ -114,52 +114,14 @@ tl::expected<void, MeshError> check_fans(const TriMesh& mesh) {
 /// Turn counts per vertex into where each vertex's part of a common list starts; the last entry is the list's length.
 void accumulate(std::vector<std::uint32_t>& first) { std::exclusive_scan(first.begin(), first.end(), first.begin(), 0U); }
 
-struct RuleText {
-  std::string_view rule;
-  const char* element;  ///< what is counted; nullptr: the mesh as a whole
-  const char* broken;
-  const char* remedy;
-};
-
-constexpr const char* kManifold = "remove the surplus element or take the mesh apart there";
-
-constexpr std::array kRules{
-    RuleText{"R-MSH-1", "vertex", "a coordinate is not a finite number or larger than 1e6 m",
-             "look for gaps in the file, or scale it to metres"},
-    RuleText{"R-MSH-2", "triangle", "a corner is no vertex of the mesh", "the file was cut or its numbers start elsewhere"},
-    RuleText{"R-MSH-3", "triangle", "two corners are the same, or its area is zero", "remove it or merge its vertices"},
-    RuleText{"R-MSH-4", "triangle", "an edge belongs to a third triangle", kManifold},
-    RuleText{"R-MSH-5", "triangle", "a neighbour is oriented the other way round, or it stands there twice",
-             "turn one of the two round or remove it"},
-    RuleText{"R-MSH-6", "vertex", "its triangles form more than one fan", "give each fan a vertex of its own"},
-    RuleText{"R-MSH-7", nullptr, "more than 2^20 vertices or 2^21 triangles", "simplify it or cut it into several objects"},
-    RuleText{"R-TET-1", "vertex", "a coordinate is not a finite number or larger than 1e6 m",
-             "look for gaps in the file, or scale it to metres"},
-    RuleText{"R-TET-2", "tetrahedron", "a corner is no vertex of the mesh", "the file was cut or its numbers start elsewhere"},
-    RuleText{"R-TET-3", "tetrahedron", "two corners are the same, or its volume is zero",
-             "fill the surface again with a better quality, or remove it"},
-    RuleText{"R-TET-4", "tetrahedron", "inside out", "swap two of its corners"},
-    RuleText{"R-TET-5", "tetrahedron", "a face belongs to a third tetrahedron, or to one on the same side", kManifold},
-    RuleText{"R-TET-6", "vertex", "belongs to no tetrahedron", "remove it: it would have no mass"},
-    RuleText{"R-TET-7", nullptr, "more than 2^20 vertices or 2^22 tetrahedra", "fill it with larger tetrahedra"},
-};
-
 }  // namespace
 
-std::string to_string(const MeshError& error) {
-  const std::string_view rule = error.error.rule;
-  const auto* text = std::find_if(kRules.begin(), kRules.end(), [&](const RuleText& r) { return r.rule == rule; });
-  if (text == kRules.end()) return "element " + std::to_string(error.element) + ": " + error.error.rule;
-  const std::string place = text->element == nullptr ? "mesh" : text->element + (' ' + std::to_string(error.element));
-  return place + ": " + error.error.rule + ": " + text->broken + "; " + text->remedy;
-}
-
-tl::expected<void, MeshError> check(const TriMesh& mesh) try {
+tl::expected<void, Diagnostic> check(const TriMesh& mesh) try {
   if (mesh.vertices.size() > kMaxMeshVertices || mesh.triangles.size() > kMaxMeshTriangles)
-    return broken(Errc::limit_exceeded, "R-MSH-7", 0);
+    return tl::unexpected(Diagnostic{fail(Errc::limit_exceeded, "R-SRF-14").value()});
   return check_elements(mesh).and_then([&] { return check_edges(mesh); }).and_then([&] { return check_fans(mesh); });
 } catch (const std::bad_alloc&) {
-  return tl::unexpected(MeshError{out_of_memory().value(), 0});
+  return tl::unexpected(Diagnostic{out_of_memory().value()});
 }
 
 MeshTopology::MeshTopology(const TriMesh& mesh)

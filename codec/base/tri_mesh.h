@@ -2,23 +2,22 @@
 /// Triangle meshes: what is seen and touched of an object. Open or closed, several components, boundary allowed.
 ///
 /// rule      class           element   broken when
-/// R-MSH-1   invalid         vertex    a coordinate is NaN or infinite, or larger than 1e6 m
-/// R-MSH-2   invalid         triangle  an index is not that of a vertex
-/// R-MSH-3   invalid         triangle  two of its corners are the same vertex, or its area is zero in double precision
-/// R-MSH-4   invalid         triangle  an edge belongs to a third triangle
-/// R-MSH-5   invalid         triangle  a neighbour across an edge is oriented the other way round (or the triangle stands there twice)
-/// R-MSH-6   invalid         vertex    its triangles form more than one fan
-/// R-MSH-7   limit_exceeded  0         more than 2^20 vertices or 2^21 triangles
+/// R-SRF-8   invalid         vertex    a coordinate is NaN or infinite, or larger than 1e6 m
+/// R-SRF-9   invalid         triangle  an index is not that of a vertex
+/// R-SRF-10  invalid         triangle  two of its corners are the same vertex, or its area is zero in double precision
+/// R-SRF-11  invalid         triangle  an edge belongs to a third triangle
+/// R-SRF-12  invalid         triangle  a neighbour across an edge is oriented the other way round (or the triangle stands there twice)
+/// R-SRF-13  invalid         vertex    its triangles form more than one fan
+/// R-SRF-14  limit_exceeded  0         more than 2^20 vertices or 2^21 triangles
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
+#include <tactus/base/diagnostic.h>
 #include <tactus/base/geometry.h>
-#include <tactus/base/result.h>
 
 namespace tactus {
 
@@ -32,15 +31,8 @@ struct TriMesh {
 inline constexpr std::size_t kMaxMeshVertices = std::size_t{1} << 20;
 inline constexpr std::size_t kMaxMeshTriangles = std::size_t{1} << 21;
 
-/// A mesh that broke a rule, and where.
-struct MeshError {
-  Error error;
-  std::uint32_t element = 0;  ///< vertex, triangle or tetrahedron, as the rule's table says
-};
-std::string to_string(const MeshError& error);  ///< "triangle 17: R-MSH-4: an edge belongs to a third triangle; ..." with remedy
-
-/// All rules above, the first broken one in element order.   time O(n log n); allocates.   err  R-MSH-1..7
-tl::expected<void, MeshError> check(const TriMesh& mesh);
+/// All rules above, the first broken one in element order.   time O(n log n); allocates.   err  R-SRF-8..14
+tl::expected<void, Diagnostic> check(const TriMesh& mesh);
 
 /// Triangles around vertices and across edges; made once from connectivity alone.
 /// pre  the mesh passed check()

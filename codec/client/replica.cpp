@@ -7,6 +7,7 @@
 
 #include <tactus/base/fixed.h>
 #include <tactus/base/hash.h>
+#include <tactus/base/rule.h>
 #include <tactus/deformable/deformable_decoder.h>
 
 namespace tactus {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include <tactus/base/rule.h>
 #include <tactus/deformable/displacement.h>
 #include <tactus/deformable/main_encoder.h>
 #include <tactus/deformable/thesis_encoder.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/rule.h>
 #include <tactus/deformable/displacement.h>
 
 #include <cmath>
@@ -15,7 +16,7 @@ Result<void> to_grid(std::span<const float> displacements, unsigned position_exp
     for (std::int32_t& component : vertex) {
       const double scaled = std::floor(static_cast<double>(*u) * scale + 0.5);
       if (!(scaled >= -kLimit && scaled <= kLimit))
-        return fail(Errc::invalid_argument, std::isfinite(*u) ? "R-API-2" : "R-API-1");
+        return fail(Errc::invalid_argument, std::isfinite(*u) ? RuleName("R-API-2") : RuleName("R-API-1"));
       component = static_cast<std::int32_t>(scaled);
       ++u;
     }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/rule.h>
 #include <tactus/deformable/main_decoder.h>
 
 namespace tactus {
@@ -15,8 +16,8 @@ Result<PacketHead> MainDecoder::read_head(std::span<const std::uint8_t> payload)
 
 Result<void> MainDecoder::read_body(const MainState& base, std::int64_t, DecodedPacket& out) noexcept {
   const auto updates = reader_.read(coder_, models_, head_, base, next_);
-  if (!updates) return fail(updates.error().code, updates.error().rule, bit());
-  if (const char* rule = coder_.broken_rule()) return fail(Errc::malformed, rule, bit());
+  if (!updates) return fail_at(updates.error(), bit());
+  if (const RuleName rule = coder_.broken_rule()) return fail(Errc::malformed, rule, bit());
   out.layer = head_.layer;
   out.vertices = *updates;
   out.final_range = coder_.range();

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <tactus/base/range_coder.h>
+#include <tactus/base/rule.h>
 #include <tactus/deformable/main_reader.h>
 #include <tactus/packet/packet.h>
 #include <tactus/scene/scene.h>
@@ -19,7 +20,7 @@ namespace tactus {
 class MainDecoder {
  public:
   using State = MainState;
-  static constexpr const char* kTickRule = "R-DEF-8";
+  static constexpr RuleName kTickRule = "R-DEF-8";
 
   /// pre  `scene` outlives the decoder
   MainDecoder(const Scene& scene, const DeformableObject& object)

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <tactus/base/result.h>
+#include <tactus/base/rule.h>
 #include <tactus/deformable/main_syntax.h>
 #include <tactus/deformable/vertex_coder.h>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/deformable/thesis_decoder.h>
 
+#include <tactus/base/rule.h>
 #include <tactus/deformable/displacement.h>
 
 namespace tactus {
@@ -46,7 +47,7 @@ Result<void> ThesisDecoder::read_list(RangeDecoder coder) noexcept {
     if (next >= vertices) return fail(Errc::invalid, "R-DEF-13", bit());
     listed_.push_back({static_cast<std::uint32_t>(next++), {}});
   }
-  if (const char* rule = coder.broken_rule()) return fail(Errc::malformed, rule, bit());
+  if (const RuleName rule = coder.broken_rule()) return fail(Errc::malformed, rule, bit());
   return {};
 }
 
@@ -57,7 +58,7 @@ Result<void> ThesisDecoder::read_body(const ThesisState& base, std::int64_t, Dec
   const auto symbols = std::span<BitModel>(models_).subspan(kIndexModels);
   for (ListedVertex& l : listed_)
     for (std::uint32_t& s : l.symbol) s = code_symbol(coder, symbols, object_.quant_bits, 0);
-  if (const char* rule = coder.broken_rule()) return fail(Errc::malformed, rule, bit());
+  if (const RuleName rule = coder.broken_rule()) return fail(Errc::malformed, rule, bit());
 
   next_.displacement = base.displacement;
   for (const ListedVertex& l : listed_) {

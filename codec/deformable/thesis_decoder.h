@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <tactus/base/bytes.h>
-#include <tactus/base/result.h>
+#include <tactus/base/rule.h>
 #include <tactus/deformable/thesis_syntax.h>
 #include <tactus/packet/packet.h>
 #include <tactus/scene/scene.h>
@@ -21,7 +21,7 @@ namespace tactus {
 class ThesisDecoder {
  public:
   using State = ThesisState;
-  static constexpr const char* kTickRule = "R-DEF-8";
+  static constexpr RuleName kTickRule = "R-DEF-8";
 
   /// pre  `scene` outlives the decoder
   ThesisDecoder(const Scene& scene, const DeformableObject& object);

@@ -7,7 +7,7 @@
 ///   Result<void> read_body(base, tick, out)      all else; kept aside
 ///   void commit(base, next)                      writes what was kept aside; `next` may be `base`
 ///   std::uint64_t bit()                          place of an error in the payload
-///   static const char* kTickRule                 that a tick breaks which is too large or runs backwards
+///   static RuleName kTickRule                    that a tick breaks which is too large or runs backwards
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 #include <span>
 #include <utility>
 
-#include <tactus/base/result.h>
+#include <tactus/base/rule.h>
 #include <tactus/packet/baseline_ring.h>
 #include <tactus/packet/packet.h>
 #include <tactus/packet/packet_head.h>
@@ -68,7 +68,7 @@ class SubstreamDecoder {
   Codec& codec() noexcept { return codec_; }
 
  private:
-  static tl::unexpected<Error> placed(const Error& error) noexcept { return fail(error.code, error.rule, 16 + error.bit_offset); }
+  static tl::unexpected<Error> placed(const Error& error) noexcept { return fail_at(error, 16 + error.bit_offset); }
 
   Result<const State*> baseline_of(const PacketHead& head, std::uint64_t number) noexcept {
     if (head.key) return &states_.initial();

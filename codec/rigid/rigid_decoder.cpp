@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/rule.h>
 #include <tactus/rigid/rigid_decoder.h>
 
 namespace tactus {
@@ -43,7 +44,7 @@ Result<void> RigidDecoder::read_body(const RigidStates& base, std::int64_t tick,
   states_.clear();
   if (head_.count < 1 || head_.count > scene_.moving().size()) return fail(Errc::invalid, "R-RIG-3", bit());
   TACTUS_CHECK(read_updates(base, tick));
-  if (const char* rule = coder_.broken_rule()) return fail(Errc::malformed, rule, bit());
+  if (const RuleName rule = coder_.broken_rule()) return fail(Errc::malformed, rule, bit());
   out.updates = updates_;
   out.final_range = coder_.range();
   out.final_code = coder_.code();

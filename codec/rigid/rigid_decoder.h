@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include <tactus/base/result.h>
+#include <tactus/base/rule.h>
 #include <tactus/packet/packet.h>
 #include <tactus/rigid/rigid_syntax.h>
 
@@ -17,7 +17,7 @@ namespace tactus {
 class RigidDecoder {
  public:
   using State = RigidStates;
-  static constexpr const char* kTickRule = "R-RIG-1";
+  static constexpr RuleName kTickRule = "R-RIG-1";
 
   /// pre  `scene` outlives the decoder
   explicit RigidDecoder(const Scene& scene);

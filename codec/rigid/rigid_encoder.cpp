@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/rule.h>
 #include <tactus/rigid/rigid_encoder.h>
 
 #include <algorithm>

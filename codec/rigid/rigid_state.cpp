@@ -4,6 +4,7 @@
 #include <tactus/base/fixed.h>
 #include <tactus/base/hash.h>
 #include <tactus/base/quantise.h>
+#include <tactus/base/rule.h>
 
 namespace tactus {
 RigidStates initial_states(const Scene& scene) {
@@ -18,7 +19,7 @@ Result<RigidState> to_grid(const RigidSample& sample, std::int64_t tick, const G
   if (!is_finite(sample.velocity) || !is_finite(sample.angular_velocity)) return fail(Errc::invalid_argument, "R-API-1");
   Result<RigidState> state;  // filled in place
   state->tick = tick;
-  if (const char* rule = quantise(sample.pose, grid.position, state->position, state->rotation))
+  if (const RuleName rule = quantise(sample.pose, grid.position, state->position, state->rotation))
     return fail(Errc::invalid_argument, rule);
   const auto vector = [](const Vec3& v, unsigned exp, double limit, Vec3i& out) {
     return quantise(v.x, exp, limit, out[0]) && quantise(v.y, exp, limit, out[1]) && quantise(v.z, exp, limit, out[2]);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 
+#include <tactus/base/rule.h>
 #include <tactus/scene/bounds_syntax.h>
 
 namespace tactus {

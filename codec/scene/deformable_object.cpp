@@ -7,6 +7,7 @@
 
 #include <tactus/base/out_of_memory.h>
 #include <tactus/base/quantise.h>
+#include <tactus/base/rule.h>
 
 namespace tactus {
 namespace {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include <tactus/base/rule.h>
 #include <tactus/scene/scene_rules.h>
 
 namespace tactus {
@@ -122,7 +123,7 @@ Result<void> parse_basis(ByteReader& in, DeformableObject& object) {
 
 }  // namespace
 
-const char* broken_deformable_rule(const DeformableObject& object) noexcept {
+RuleName broken_deformable_rule(const DeformableObject& object) noexcept {
   if (object.profile > DeformableProfile::main) return "R-DEF-2";
   if (!are_parameters(object)) return "R-DEF-3";
   if (object.rest.empty() || object.rest.size() > kMaxMeshVertices || object.triangles.size() > kMaxMeshTriangles)
@@ -130,7 +131,7 @@ const char* broken_deformable_rule(const DeformableObject& object) noexcept {
   const bool triangles = std::all_of(object.triangles.begin(), object.triangles.end(),
                                      [&](const Triangle& t) { return is_triangle(t, object.rest.size()); });
   if (!triangles) return "R-DEF-6";
-  return is_basis(object) ? nullptr : "R-DEF-7";
+  return is_basis(object) ? RuleName() : RuleName("R-DEF-7");
 }
 
 void write_deformable(ByteWriter& out, const DeformableObject& object) {

@@ -6,12 +6,13 @@
 
 #include <tactus/base/fixed.h>
 #include <tactus/base/quantise.h>
+#include <tactus/base/rule.h>
 
 namespace tactus {
 
 Result<RigidPose> to_grid(const Pose& pose, unsigned position_exp) noexcept {
   Result<RigidPose> out;
-  if (const char* rule = quantise(pose, position_exp, out->position, out->rotation)) return fail(Errc::invalid_argument, rule);
+  if (const RuleName rule = quantise(pose, position_exp, out->position, out->rotation)) return fail(Errc::invalid_argument, rule);
   return out;
 }
 

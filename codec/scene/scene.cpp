@@ -9,6 +9,7 @@
 
 #include <tactus/base/fixed.h>
 #include <tactus/base/out_of_memory.h>
+#include <tactus/base/rule.h>
 #include <tactus/base/shown.h>
 #include <tactus/scene/bounds_syntax.h>
 #include <tactus/scene/scene_rules.h>
@@ -57,37 +58,37 @@ bool are_exponents(const GridExponents& g) noexcept {
 
 }  // namespace
 
-const char* broken_object_rule(const RigidObject& object) noexcept {
+RuleName broken_object_rule(const RigidObject& object) noexcept {
   if (!is_name(object.name)) return "R-STR-11";
   if (!is_dof(object.dof)) return "R-STR-12";
   if (!is_unit(object.initial.rotation)) return "R-STR-13";
-  return nullptr;
+  return {};
 }
 
 /// First rule that the stream parameters break; objects are checked one by one while they are read.
-const char* broken_parameter_rule(const SceneSpec& spec) noexcept {
+RuleName broken_parameter_rule(const SceneSpec& spec) noexcept {
   if (spec.tick_rate < 1 || spec.tick_rate > 1000000) return "R-STR-6";
   if (!are_exponents(spec.grid)) return "R-STR-7";
   if (spec.max_extrapolation < 1) return "R-STR-8";
   if (spec.baseline_span < 1 || spec.baseline_span > 64) return "R-STR-9";
-  return nullptr;
+  return {};
 }
 
 namespace {
 
 Result<void> find_broken_rule(const SceneSpec& spec, const DecodeLimits& limits) {
-  if (const char* rule = broken_parameter_rule(spec)) return fail(Errc::invalid, rule);
+  if (const RuleName rule = broken_parameter_rule(spec)) return fail(Errc::invalid, rule);
   if (spec.deformables.size() > kMaxDeformables) return fail(Errc::invalid, "R-DEF-1");
   if (spec.objects.size() + spec.deformables.size() > limits.objects) return fail(Errc::limit_exceeded, "R-STR-14");
   std::unordered_set<std::string_view> names;
   for (const RigidObject& object : spec.objects) {
-    if (const char* rule = broken_object_rule(object)) return fail(Errc::invalid, rule);
+    if (const RuleName rule = broken_object_rule(object)) return fail(Errc::invalid, rule);
     if (!names.insert(object.name).second) return fail(Errc::invalid, "R-STR-11");
   }
   std::uint64_t vertices = 0, triangles = 0;
   for (const DeformableObject& object : spec.deformables) {
     if (!is_name(object.name) || !names.insert(object.name).second) return fail(Errc::invalid, "R-STR-11");
-    if (const char* rule = broken_deformable_rule(object)) return fail(Errc::invalid, rule);
+    if (const RuleName rule = broken_deformable_rule(object)) return fail(Errc::invalid, rule);
     vertices += object.rest.size();
     triangles += object.triangles.size();
     if (vertices > limits.vertices || triangles > limits.triangles) return fail(Errc::limit_exceeded, "R-STR-14");

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <tactus/base/out_of_memory.h>
+#include <tactus/base/rule.h>
 #include <tactus/scene/scene_rules.h>
 
 namespace tactus {
@@ -64,24 +65,24 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build() try {
   SceneBuilder taken = std::exchange(*this, SceneBuilder(spec_.tick_rate));
   SceneSpec& spec = taken.spec_;
   const double ticks = std::floor(taken.extrapolation_.value_or(kExtrapolation) * spec.tick_rate + 0.5);
-  if (!(ticks >= 0)) return refuse({Errc::invalid_argument, "R-API-4", 0}, {});
+  if (!(ticks >= 0)) return refuse({Errc::invalid_argument, RuleName("R-API-4"), 0}, {});
   spec.max_extrapolation = static_cast<std::uint16_t>(std::clamp(ticks, 1.0, 65535.0));
-  if (const char* rule = broken_parameter_rule(spec)) return refuse({Errc::invalid, rule, 0}, {});  // before the grid is used
+  if (const RuleName rule = broken_parameter_rule(spec)) return refuse({Errc::invalid, rule, 0}, {});  // before the grid is used
   std::unordered_set<std::string> names;
   for (Rigid& object : taken.rigid_) {
     const auto initial = to_grid(object.initial, spec.grid.position);
     if (!initial) return refuse(initial.error(), object.name);
     spec.objects.push_back({std::move(object.name), object.dof, *initial});
     const RigidObject& made = spec.objects.back();
-    if (const char* rule = broken_object_rule(made)) return refuse({Errc::invalid, rule, 0}, made.name);
-    if (!names.insert(made.name).second) return refuse({Errc::invalid, "R-STR-11", 0}, made.name);
+    if (const RuleName rule = broken_object_rule(made)) return refuse({Errc::invalid, rule, 0}, made.name);
+    if (!names.insert(made.name).second) return refuse({Errc::invalid, RuleName("R-STR-11"), 0}, made.name);
   }
   for (Deformable& of : taken.deformables_) {
     auto object = make_deformable_object(of.name, of.surface, spec.grid.position);
     if (!object) return refuse(object.error(), of.name);
     apply(of.coding, *object);
-    if (!is_name(of.name) || !names.insert(of.name).second) return refuse({Errc::invalid, "R-STR-11", 0}, of.name);
-    if (const char* rule = broken_deformable_rule(*object)) return refuse({Errc::invalid, rule, 0}, of.name);
+    if (!is_name(of.name) || !names.insert(of.name).second) return refuse({Errc::invalid, RuleName("R-STR-11"), 0}, of.name);
+    if (const RuleName rule = broken_deformable_rule(*object)) return refuse({Errc::invalid, rule, 0}, of.name);
     spec.deformables.push_back(std::move(*object));
   }
   if (taken.promise_) spec.bounds = bounds_of(spec, taken.promise_->first, taken.promise_->second);

@@ -4,6 +4,7 @@
 
 #include <string_view>
 
+#include <tactus/base/rule.h>
 #include <tactus/scene/scene.h>
 
 namespace tactus {
@@ -13,9 +14,9 @@ inline constexpr std::size_t kMaxDeformables = 255;  ///< packets name them by a
 /// 1..255 bytes of UTF-8 without control characters.
 bool is_name(std::string_view name) noexcept;
 
-/// The first rule that an element breaks, or null. Names that occur twice are found by check_scene().
-const char* broken_object_rule(const RigidObject& object) noexcept;
-const char* broken_parameter_rule(const SceneSpec& spec) noexcept;
-const char* broken_deformable_rule(const DeformableObject& object) noexcept;
+/// The first rule that an element breaks, or none. Names that occur twice are found by check_scene().
+RuleName broken_object_rule(const RigidObject& object) noexcept;
+RuleName broken_parameter_rule(const SceneSpec& spec) noexcept;
+RuleName broken_deformable_rule(const DeformableObject& object) noexcept;
 
 }  // namespace tactus

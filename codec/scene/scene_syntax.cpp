@@ -9,6 +9,7 @@
 #include <tactus/base/fixed.h>
 #include <tactus/base/hash.h>
 #include <tactus/base/out_of_memory.h>
+#include <tactus/base/rule.h>
 #include <tactus/scene/bounds_syntax.h>
 #include <tactus/scene/deformable_syntax.h>
 #include <tactus/scene/scene_rules.h>
@@ -36,7 +37,7 @@ Result<RigidObject> parse_object(ByteReader& body) {
   for (auto& c : object.initial.position) c = body.i32();
   for (auto& c : object.initial.rotation) c = body.i32();
   if (!body.ok()) return fail(class_of_overflow(body), "R-STR-5", body.bit_offset());
-  if (const char* rule = broken_object_rule(object)) return fail(Errc::invalid, rule, start);
+  if (const RuleName rule = broken_object_rule(object)) return fail(Errc::invalid, rule, start);
   return object;
 }
 
@@ -83,7 +84,7 @@ Result<SceneSpec> parse_body(ByteReader body, std::uint16_t flags, const DecodeL
   spec.baseline_span = body.u8();
   const std::uint64_t count = body.varint();
   if (!body.ok()) return fail(class_of_overflow(body), "R-STR-5", body.bit_offset());
-  if (const char* rule = broken_parameter_rule(spec)) return fail(Errc::invalid, rule, start);
+  if (const RuleName rule = broken_parameter_rule(spec)) return fail(Errc::invalid, rule, start);
   if (count > limits.objects) return fail(Errc::limit_exceeded, "R-STR-14", body.bit_offset());
   constexpr std::size_t kSmallestObject = 3 + 1 + 7 * 4;
   if (count > body.remaining() / kSmallestObject) return fail(Errc::truncated, "R-STR-5", body.bit_offset());
@@ -162,7 +163,7 @@ Result<ParsedScene> parse_scene(std::span<const std::uint8_t> bytes, const Decod
   if (crc != crc32(bytes.first(kFixedSize + body_size))) return fail(Errc::checksum, "R-STR-15", in.bit_offset() - 32);
   TACTUS_TRY(SceneSpec spec, parse_body(body, flags, limits));
   auto scene = Scene::create(std::move(spec), limits);
-  if (!scene) return fail(scene.error().code, scene.error().rule, 96);
+  if (!scene) return fail_at(scene.error(), 96);
   return ParsedScene{std::move(*scene), in.position()};
 } catch (const std::bad_alloc&) {
   return out_of_memory();

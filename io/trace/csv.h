@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-#include <tactus/base/result.h>
+#include <tactus/base/diagnostic.h>
 #include <tactus/trace/frame.h>
 #include <tactus/trace/trace_file.h>
 
@@ -60,14 +60,6 @@ struct CsvPreset {
 };
 const std::vector<CsvPreset>& csv_presets();
 
-/// Where a text file broke which rule; lines count from 1, 0 when unknown.
-struct CsvError {
-  Error error;
-  std::uint64_t line = 0;
-  std::string column;  ///< name of the column in the mapping's words, may be empty
-  std::string text;    ///< the offending field
-};
-
 /// Angular velocities as given, beside those of the rotations' differences. Means over all rows that have both and turn by less than
 /// a quarter turn.
 struct SpinCheck {
@@ -88,7 +80,7 @@ struct CsvImport {
 /// Read `path` (plain or zstd, told by its first bytes; "-" is standard input) into `out_path`.
 /// err  io R-TRC-1; R-CSV-n; invalid_argument R-TRC-17, R-API-n when the trace cannot hold a value; with the place. A partly
 ///      written file is removed.
-tl::expected<CsvImport, CsvError> import_csv(const std::string& path, const CsvMapping& mapping, const std::string& out_path);
+tl::expected<CsvImport, Diagnostic> import_csv(const std::string& path, const CsvMapping& mapping, const std::string& out_path);
 
 /// One row per tick: tick, time_s, then of each object and user the columns of csv_columns.h, named by their topics
 /// ("/objects/cube/qw"). Numbers are the shortest decimals that read back to the same bits. Returns the ticks of the rows.

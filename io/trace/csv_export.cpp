@@ -3,6 +3,7 @@
 #include <ostream>
 
 #include <tactus/base/out_of_memory.h>
+#include <tactus/base/rule.h>
 #include <tactus/trace/csv.h>
 #include <tactus/trace/csv_columns.h>
 #include <tactus/trace/csv_reader.h>

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include <tactus/base/out_of_memory.h>
+#include <tactus/base/rule.h>
 #include <tactus/trace/csv.h>
 #include <tactus/trace/csv_plan.h>
 #include <tactus/trace/csv_reader.h>
@@ -39,7 +40,7 @@ class Importer {
       : mapping_(mapping), plan_(std::move(plan)), out_path_(std::move(out_path)) {}
 
   Result<CsvImport> run(CsvReader& reader);
-  CsvError place(const Error& error) const { return {error, line_, column_, text_}; }
+  Diagnostic place(const Error& error) const { return {.error = error, .line = line_, .detail = place_of_field(column_, text_)}; }
   bool has_output() const noexcept { return writer_.has_value(); }
 
  private:
@@ -236,14 +237,14 @@ void Importer::settle_spin(TraceFrame& frame, bool begins_segment) {
 
 }  // namespace
 
-tl::expected<CsvImport, CsvError> import_csv(const std::string& path, const CsvMapping& mapping,
-                                             const std::string& out_path) try {
-  const auto refuse = [](CsvError error) { return tl::unexpected<CsvError>(std::move(error)); };
+tl::expected<CsvImport, Diagnostic> import_csv(const std::string& path, const CsvMapping& mapping,
+                                               const std::string& out_path) try {
+  const auto refuse = [](Diagnostic error) { return tl::unexpected<Diagnostic>(std::move(error)); };
   auto reader = CsvReader::open(path);
-  if (!reader) return refuse({reader.error(), 0, "", ""});
+  if (!reader) return refuse({.error = reader.error()});
   const auto has_names = reader->next();
-  if (!has_names) return refuse({has_names.error(), 1, "", ""});
-  if (!*has_names) return refuse({Error{Errc::truncated, "R-CSV-1"}, 1, "", ""});
+  if (!has_names) return refuse({.error = has_names.error(), .line = 1});
+  if (!*has_names) return refuse({.error = fail(Errc::truncated, "R-CSV-1").value(), .line = 1});
   auto plan = plan_csv(mapping, reader->fields());
   if (!plan) return refuse(plan.error());
   plan->info.source = "import " + (path == "-" ? "standard input" : std::filesystem::path(path).filename().string());
@@ -255,7 +256,7 @@ tl::expected<CsvImport, CsvError> import_csv(const std::string& path, const CsvM
   if (importer.has_output() && std::filesystem::is_regular_file(out_path, ignored)) std::filesystem::remove(out_path, ignored);
   return refuse(importer.place(done.error()));
 } catch (const std::bad_alloc&) {
-  return tl::unexpected(CsvError{out_of_memory().value(), 0, "", ""});
+  return tl::unexpected(Diagnostic{out_of_memory().value()});
 }
 
 }  // namespace tactus

@@ -7,6 +7,8 @@
 #include <span>
 #include <string_view>
 
+#include <tactus/base/rule.h>
+#include <tactus/base/shown.h>
 #include <tactus/trace/csv_columns.h>
 
 namespace tactus {
@@ -33,10 +35,10 @@ class Planner {
       if (const auto [there, is_new] = columns_.emplace(plan_.names[i], i); !is_new) there->second = kTwice;
   }
 
-  tl::expected<CsvPlan, CsvError> run() {
+  tl::expected<CsvPlan, Diagnostic> run() {
     mapping_.layout == CsvLayout::tactus ? plan_tactus() : plan_named();
     if (plan_.info.objects.empty() && plan_.info.users.empty()) note(Errc::invalid_argument, "R-CSV-8", "");
-    if (mistake_) return tl::unexpected<CsvError>(*mistake_);
+    if (mistake_) return tl::unexpected<Diagnostic>(*mistake_);
     return std::move(plan_);
   }
 
@@ -56,15 +58,15 @@ class Planner {
     note(Errc::malformed, "R-CSV-2", name);
     return 0;
   }
-  void note(Errc code, const char* rule, const std::string& name) {
-    if (!mistake_) mistake_ = CsvError{Error{code, rule}, 1, name, ""};
+  void note(Errc code, RuleName rule, const std::string& name) {
+    if (!mistake_) mistake_ = Diagnostic{.error = fail(code, rule).value(), .line = 1, .detail = place_of_field(name, "")};
   }
 
   const CsvMapping& mapping_;
   static constexpr std::size_t kTwice = SIZE_MAX;
   CsvPlan plan_;
   std::map<std::string_view, std::size_t> columns_;  // by name
-  std::optional<CsvError> mistake_;
+  std::optional<Diagnostic> mistake_;
 };
 
 /// All columns of a vector are named, or none.
@@ -156,7 +158,13 @@ void Planner::plan_tactus_user(const std::string& path) {
 
 }  // namespace
 
-tl::expected<CsvPlan, CsvError> plan_csv(const CsvMapping& mapping, const std::vector<std::string>& names) {
+std::string place_of_field(const std::string& column, const std::string& text) {
+  std::string place = column.empty() ? "" : "column " + shown(column);
+  if (!text.empty()) place += (place.empty() ? "'" : ", '") + shown(text) + '\'';
+  return place;
+}
+
+tl::expected<CsvPlan, Diagnostic> plan_csv(const CsvMapping& mapping, const std::vector<std::string>& names) {
   return Planner(mapping, names).run();
 }
 

@@ -38,7 +38,10 @@ struct CsvPlan {
   bool check_spin = false;  ///< given, and there are rotations to hold it against
 };
 
+/// Place of a field within its line: "column x, 'oops'".   in  either may be empty
+std::string place_of_field(const std::string& column, const std::string& text);
+
 /// err  R-CSV-2, R-CSV-8, with the column that is not as it should be.
-tl::expected<CsvPlan, CsvError> plan_csv(const CsvMapping& mapping, const std::vector<std::string>& names);
+tl::expected<CsvPlan, Diagnostic> plan_csv(const CsvMapping& mapping, const std::vector<std::string>& names);
 
 }  // namespace tactus

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/rule.h>
 #include <tactus/trace/csv_reader.h>
 
 #include <algorithm>

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <tactus/base/bytes.h>
-#include <tactus/base/result.h>
+#include <tactus/base/rule.h>
 #include <tactus/trace/byte_source.h>
 #include <tactus/trace/input_budget.h>
 #include <tactus/trace/mcap.h>
@@ -73,7 +73,7 @@ class Reader {
   Result<Item> take_metadata(ByteReader content);
   Result<void> end_data(ByteReader content, std::uint32_t crc_before);
   Result<void> end_file(ByteReader content, std::uint32_t crc_before);
-  tl::unexpected<Error> refuse(Errc code, const char* rule) const noexcept { return fail(code, rule, 8 * record_start_); }
+  tl::unexpected<Error> refuse(Errc code, RuleName rule) const noexcept { return fail(code, rule, 8 * record_start_); }
 
   ByteSource source_;
   ReadLimits limits_;

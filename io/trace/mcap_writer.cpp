@@ -5,6 +5,7 @@
 
 #include <tactus/base/bytes.h>
 #include <tactus/base/hash.h>
+#include <tactus/base/rule.h>
 
 namespace tactus::mcap {
 namespace {

@@ -70,7 +70,7 @@ Result<Stamped<Contact>> decode_contact(std::span<const std::uint8_t> message) n
 Result<Stamped<SurfaceContact>> decode_mesh_contact(std::span<const std::uint8_t> message) noexcept;
 /// out  `out` gets the displacements; the result is the time of the header
 Result<std::uint64_t> decode_displacements(std::span<const std::uint8_t> message, std::span<float> out) noexcept;
-/// err  also R-MSH-n: the mesh breaks a rule of tri_mesh.h
+/// err  also R-SRF-n: the mesh breaks a rule of tri_mesh.h
 Result<TriMesh> decode_mesh(std::span<const std::uint8_t> message);
 
 /// Whether a contact can be recorded: kind and numbers are what contact.h says.

@@ -5,6 +5,7 @@
 #include <utility>
 #include <variant>
 
+#include <tactus/base/rule.h>
 #include <tactus/trace/differences.h>
 #include <tactus/trace/frame_assembler.h>
 #include <tactus/trace/messages.h>
@@ -78,7 +79,7 @@ class RosAssembler final : public FrameAssembler {
   bool pending_ = false;  // current_ holds a tick that was not delivered
 };
 
-tl::unexpected<Error> refuse(const mcap::Reader& mcap, Errc code, const char* rule) noexcept {
+tl::unexpected<Error> refuse(const mcap::Reader& mcap, Errc code, RuleName rule) noexcept {
   return fail(code, rule, 8 * mcap.offset());
 }
 
@@ -144,11 +145,11 @@ Result<std::optional<Sample>> RosAssembler::read(mcap::Reader& mcap) {
       const mcap::Channel& channel = mcap.channels().at(message.channel_id);
       if (carries(mcap, channel, schema_name(MessageType::pose))) {
         const auto pose = decode_pose(message.data);
-        if (!pose) return refuse(mcap, pose.error().code, pose.error().rule);
+        if (!pose) return fail_at(pose.error(), 8 * mcap.offset());
         sample = Sample{channel.id, message.log_time, pose->value};
       } else if (carries(mcap, channel, schema_name(MessageType::twist))) {
         const auto twist = decode_twist(message.data);
-        if (!twist) return refuse(mcap, twist.error().code, twist.error().rule);
+        if (!twist) return fail_at(twist.error(), 8 * mcap.offset());
         sample = Sample{channel.id, message.log_time, twist->value};
       }
     }

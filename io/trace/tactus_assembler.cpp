@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include <tactus/base/rule.h>
 #include <tactus/trace/frame_assembler.h>
 #include <tactus/trace/messages.h>
 #include <tactus/trace/text.h>
@@ -79,13 +80,11 @@ class TactusAssembler final : public FrameAssembler {
   bool ahead_ = false;  // current_ was not delivered
 };
 
-tl::unexpected<Error> refuse(const mcap::Reader& mcap, Errc code, const char* rule) noexcept {
+tl::unexpected<Error> refuse(const mcap::Reader& mcap, Errc code, RuleName rule) noexcept {
   return fail(code, rule, 8 * mcap.offset());
 }
 
-tl::unexpected<Error> refuse(const mcap::Reader& mcap, const Error& error) noexcept {
-  return refuse(mcap, error.code, error.rule);
-}
+tl::unexpected<Error> refuse(const mcap::Reader& mcap, const Error& error) noexcept { return fail_at(error, 8 * mcap.offset()); }
 
 Result<void> TactusAssembler::start(mcap::Reader& mcap, const Preamble& preamble) {
   const mcap::TextMap& tactus = *preamble.tactus;
@@ -129,7 +128,7 @@ Result<void> TactusAssembler::read_rest(mcap::Reader& mcap) {
 
 /// Channels are found by topic: ids may change when other tools rewrite a file.
 Result<void> TactusAssembler::find_channels(const mcap::Reader& mcap, Errc missing) {
-  const char* const rule = missing == Errc::truncated ? "R-TRC-3" : "R-TRC-12";
+  const RuleName rule = missing == Errc::truncated ? RuleName("R-TRC-3") : RuleName("R-TRC-12");
   std::map<std::string_view, const mcap::Channel*> by_topic;
   for (const auto& [id, channel] : mcap.channels())
     if (!by_topic.emplace(channel.topic, &channel).second) return refuse(mcap, Errc::invalid, "R-TRC-12");

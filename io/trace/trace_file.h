@@ -46,7 +46,7 @@
 ///                             vertices or the period of a mesh, bounds of another number of meshes, or a name that is empty, repeated, over 255 bytes, not UTF-8 or has '/' or control characters
 /// R-TRC-18  limit_exceeded    chunks unpack to more, or objects of which nothing is said at a tick are more, than the file's size has
 ///                             earned (input_budget.h)
-/// R-MSH-n   as tri_mesh.h     a mesh's rest shape
+/// R-SRF-n   as tri_mesh.h     a mesh's rest shape
 #pragma once
 
 #include <cstdint>
@@ -63,7 +63,7 @@ namespace tactus {
 /// Writes a trace as it happens. A process that dies leaves a file that reads up to its last whole chunk.
 class TraceWriter {
  public:
-  /// path "-" is standard output.   err  io R-TRC-1; invalid_argument R-TRC-11 (source), R-TRC-17, R-MSH-n
+  /// path "-" is standard output.   err  io R-TRC-1; invalid_argument R-TRC-11 (source), R-TRC-17, R-SRF-n
   static Result<TraceWriter> create(const std::string& path, const TraceInfo& info);
   /// in   frame  tick >= 0 and larger than the last; of a user without contact only contact.device is kept,
   ///             of a mesh that was not updated nothing
@@ -91,7 +91,7 @@ class TraceWriter {
 class TraceReader {
  public:
   /// path "-" is standard input.   err  io R-TRC-1; malformed, truncated, invalid, unsupported, checksum, limit_exceeded: R-TRC-n,
-  ///      R-MSH-n
+  ///      R-SRF-n
   static Result<TraceReader> open(const std::string& path);
   /// The same from memory that outlives the reader.
   static Result<TraceReader> open_memory(std::span<const std::uint8_t> bytes);

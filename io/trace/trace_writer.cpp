@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include <tactus/base/out_of_memory.h>
+#include <tactus/base/rule.h>
 #include <tactus/trace/mcap_writer.h>
 #include <tactus/trace/messages.h>
 #include <tactus/trace/text.h>
@@ -39,7 +40,8 @@ Result<void> check(const TraceInfo& info) {
   if (!has_names || !has_dofs || is_empty || !has_rate) return fail(Errc::invalid_argument, "R-TRC-17");
   if (!is_utf8(info.source)) return fail(Errc::invalid_argument, "R-TRC-11");
   for (const TraceDeformable& mesh : info.meshes) {
-    if (const auto sound = check(mesh.rest); !sound) return fail(Errc::invalid_argument, sound.error().error.rule);
+    if (const auto sound = check(mesh.rest); !sound)
+      return tl::unexpected(Error{Errc::invalid_argument, sound.error().error.rule, 0});
     if (!is_valid(mesh)) return fail(Errc::invalid_argument, "R-TRC-17");
   }
   const bool bounds_fit = !info.bounds || (info.bounds->stream.deformables.size() == info.meshes.size() &&

@@ -68,21 +68,18 @@ DeformableBody::DeformableBody(FemModel model, const SceneDeformable& object, co
   if (gravity == Vec3{}) resting_ = kRestSteps;
 }
 
-tl::expected<std::unique_ptr<DeformableBody>, FemError> DeformableBody::create(const SceneDeformable& object, const Vec3& gravity,
-                                                                               std::uint32_t estimate_every) {
-  auto model = FemModel::create(object.mesh, fem_options(object));
-  if (!model) return tl::unexpected(model.error());
-  std::unique_ptr<DeformableBody> body(new DeformableBody(std::move(*model), object, gravity));
-  auto integrator = make_integrator(body->model_, body->choice_.options);
-  if (!integrator) return tl::unexpected(integrator.error());
-  body->integrator_ = std::move(*integrator);
+tl::expected<std::unique_ptr<DeformableBody>, Diagnostic> DeformableBody::create(const SceneDeformable& object,
+                                                                                 const Vec3& gravity,
+                                                                                 std::uint32_t estimate_every) {
+  TACTUS_TRY(auto model, FemModel::create(object.mesh, fem_options(object)));
+  std::unique_ptr<DeformableBody> body(new DeformableBody(std::move(model), object, gravity));
+  TACTUS_TRY(auto integrator, make_integrator(body->model_, body->choice_.options));
+  body->integrator_ = std::move(integrator);
   if (estimate_every > 0) {
-    auto estimate = ErrorEstimate::create(body->model_, body->choice_.options, estimate_every);
-    if (!estimate) return tl::unexpected(estimate.error());
-    body->estimate_.emplace(std::move(*estimate));
-    auto balance = EnergyBalance::create(body->model_);
-    if (!balance) return tl::unexpected(balance.error());
-    body->balance_.emplace(std::move(*balance));
+    TACTUS_TRY(auto estimate, ErrorEstimate::create(body->model_, body->choice_.options, estimate_every));
+    body->estimate_.emplace(std::move(estimate));
+    TACTUS_TRY(auto balance, EnergyBalance::create(body->model_));
+    body->balance_.emplace(std::move(balance));
   }
   return body;
 }
@@ -94,7 +91,7 @@ void DeformableBody::push(std::uint32_t triangle, std::span<const double, 3> wei
   pushed_any_ = pushed_any_ || force != Vec3{};
 }
 
-tl::expected<DeformableBody::Tick, FemError> DeformableBody::tick() {
+tl::expected<DeformableBody::Tick, Diagnostic> DeformableBody::tick() {
   if (++phase_ < rate_) return Tick::between;
   phase_ = 0;
   time_ = {};
@@ -104,7 +101,7 @@ tl::expected<DeformableBody::Tick, FemError> DeformableBody::tick() {
   if (estimate_) estimate_->look(load_, state_);
   const auto start = std::chrono::steady_clock::now();
   const std::clock_t cpu = std::clock();
-  if (const auto stepped = integrator_->step(load_, state_); !stepped) return tl::unexpected(stepped.error());
+  TACTUS_CHECK(integrator_->step(load_, state_));
   look_for_rest();
   move_surface();
   time_ = {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),

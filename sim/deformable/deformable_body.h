@@ -37,13 +37,13 @@ class DeformableBody {
   };
 
   /// err  R-TET-n, R-FEM-1..4, 7, 8
-  static tl::expected<std::unique_ptr<DeformableBody>, FemError> create(const SceneDeformable& object, const Vec3& gravity,
-                                                                        std::uint32_t estimate_every);
+  static tl::expected<std::unique_ptr<DeformableBody>, Diagnostic> create(const SceneDeformable& object, const Vec3& gravity,
+                                                                          std::uint32_t estimate_every);
 
   /// Let a force [N] act on a triangle of the surface in this tick.   in  weights  of its corners
   void push(std::uint32_t triangle, std::span<const double, 3> weights, const Vec3& force) noexcept;
   /// End a tick. A new shape is not seen before show().   err  R-FEM-6, R-FEM-7; the shape before is kept
-  tl::expected<Tick, FemError> tick();
+  tl::expected<Tick, Diagnostic> tick();
   /// How far the vertex of the surface moves that moves farthest when the new shape is shown [m].
   double reach() const noexcept { return reach_; }
   std::span<const Vec3> next_vertices() const noexcept { return next_vertices_; }  ///< of the surface when it is shown

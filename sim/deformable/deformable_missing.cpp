@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // In place of deformable_objects.cpp and stiffness_map.cpp when the component FEM is left out.
+#include <tactus/base/rule.h>
 #include <tactus/sim/deformable/deformable_objects.h>
 #include <tactus/sim/deformable/stiffness_map.h>
 

@@ -50,7 +50,7 @@ class Objects final : public DeformableObjects {
     const auto& [contact, surface, proxy, force] = touches_[user];
     if (surface) bodies_[surface->mesh]->push(surface->triangle, surface->weights, -(share * force));
   }
-  tl::expected<void, StepError> step() override;
+  tl::expected<void, Diagnostic> step() override;
   void observe(TraceFrame& frame) noexcept override;
   bool is_due(std::size_t object) const noexcept override { return last_[object] != DeformableBody::Tick::between; }
   Touchable& true_view() noexcept override { return *true_view_; }
@@ -98,10 +98,16 @@ Objects::Objects(Bodies bodies, const Scene& scene, const DeformableOptions& opt
   }
 }
 
-tl::expected<void, StepError> Objects::step() {
+tl::expected<void, Diagnostic> Objects::step() {
   for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
     const auto moved = bodies_[i]->tick();
-    if (!moved) return tl::unexpected(StepError{moved.error().error, tick_, i, to_string(moved.error())});
+    if (!moved)
+      return tl::unexpected(Diagnostic{.error = moved.error().error,
+                                       .step = tick_,
+                                       .kind = "object",
+                                       .element = i,
+                                       .detail = place_of(moved.error()),
+                                       .remedy = moved.error().remedy});
     last_[i] = *moved;
     if (*moved == DeformableBody::Tick::stepped) deform(i);
     else if (*moved == DeformableBody::Tick::slept && true_view_)

@@ -52,7 +52,7 @@ class DeformableObjects : public Simulated {
   void observe(TraceFrame& frame) noexcept override = 0;
   /// Advance by one tick.   time of an object that rests and whose probes are far: O(users); no allocation after the first deformation
   /// err  invalid_argument R-FEM-6, internal R-FEM-7 with element and remedy; the shapes before the step are kept
-  tl::expected<void, StepError> step() override = 0;
+  tl::expected<void, Diagnostic> step() override = 0;
 
   /// A shape of this object is due now, computed or not.
   virtual bool is_due(std::size_t object) const noexcept = 0;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include <tactus/base/rule.h>
 #include <tactus/sim/deformable/deformable_body.h>
 #include <tactus/sim/fem/linear_solver.h>
 #include <tactus/sim/msd/msd.h>

@@ -13,10 +13,9 @@ double twice_kinetic(const FemModel& model, const Eigen::VectorXd& v) noexcept {
 
 }  // namespace
 
-tl::expected<EnergyBalance, FemError> EnergyBalance::create(const FemModel& model) {
-  auto again = FemModel::create(model.mesh(), model.options());
-  if (!again) return tl::unexpected(again.error());
-  return EnergyBalance(*std::move(again));
+tl::expected<EnergyBalance, Diagnostic> EnergyBalance::create(const FemModel& model) {
+  TACTUS_TRY(auto again, FemModel::create(model.mesh(), model.options()));
+  return EnergyBalance(std::move(again));
 }
 
 EnergyBalance::EnergyBalance(FemModel model)

@@ -18,7 +18,7 @@ class EnergyBalance {
   };
 
   /// From rest, on a copy of the model.   err  as FemModel::create
-  static tl::expected<EnergyBalance, FemError> create(const FemModel& model);
+  static tl::expected<EnergyBalance, Diagnostic> create(const FemModel& model);
 
   /// Tell of a step that was taken.   in  f [N] held over it, h [s], the state after it
   /// time O(vertices), and two evaluations of k in every 16th step with stiffness damping; no allocation

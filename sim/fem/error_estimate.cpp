@@ -14,26 +14,22 @@ int order(Method method) { return method == Method::backward_euler || method == 
 
 }  // namespace
 
-tl::expected<std::unique_ptr<ErrorEstimate::Copy>, FemError> ErrorEstimate::copy(const FemModel& model,
-                                                                                 const IntegratorOptions& options) {
-  auto again = FemModel::create(model.mesh(), model.options());
-  if (!again) return tl::unexpected(again.error());
-  auto made = std::make_unique<Copy>(Copy{std::move(*again), nullptr});
-  auto integrator = make_integrator(made->model, options);
-  if (!integrator) return tl::unexpected(integrator.error());
-  made->integrator = std::move(*integrator);
+tl::expected<std::unique_ptr<ErrorEstimate::Copy>, Diagnostic> ErrorEstimate::copy(const FemModel& model,
+                                                                                   const IntegratorOptions& options) {
+  TACTUS_TRY(auto again, FemModel::create(model.mesh(), model.options()));
+  auto made = std::make_unique<Copy>(Copy{std::move(again), nullptr});
+  TACTUS_TRY(auto integrator, make_integrator(made->model, options));
+  made->integrator = std::move(integrator);
   return made;
 }
 
-tl::expected<ErrorEstimate, FemError> ErrorEstimate::create(const FemModel& model, const IntegratorOptions& options,
-                                                            std::int64_t every) {
-  auto whole = copy(model, options);
-  if (!whole) return tl::unexpected(whole.error());
+tl::expected<ErrorEstimate, Diagnostic> ErrorEstimate::create(const FemModel& model, const IntegratorOptions& options,
+                                                              std::int64_t every) {
+  TACTUS_TRY(auto whole, copy(model, options));
   IntegratorOptions halved = options;
   halved.step /= 2;
-  auto half = copy(model, halved);
-  if (!half) return tl::unexpected(half.error());
-  return ErrorEstimate(std::move(*whole), std::move(*half), std::max<std::int64_t>(every, 1));
+  TACTUS_TRY(auto half, copy(model, halved));
+  return ErrorEstimate(std::move(whole), std::move(half), std::max<std::int64_t>(every, 1));
 }
 
 ErrorEstimate::ErrorEstimate(std::unique_ptr<Copy> whole, std::unique_ptr<Copy> half, std::int64_t every)

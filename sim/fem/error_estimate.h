@@ -18,8 +18,8 @@ class ErrorEstimate {
   };
 
   /// in  every  look at one step in so many   err  as make_integrator
-  static tl::expected<ErrorEstimate, FemError> create(const FemModel& model, const IntegratorOptions& options,
-                                                      std::int64_t every = 50);
+  static tl::expected<ErrorEstimate, Diagnostic> create(const FemModel& model, const IntegratorOptions& options,
+                                                        std::int64_t every = 50);
 
   /// Tell of a step about to be taken.   time three steps when it is looked at, else nothing; no allocation after the first look
   void look(const Eigen::VectorXd& f, const FemState& state);
@@ -31,7 +31,7 @@ class ErrorEstimate {
     std::unique_ptr<Integrator> integrator;
   };
   ErrorEstimate(std::unique_ptr<Copy> whole, std::unique_ptr<Copy> half, std::int64_t every);
-  static tl::expected<std::unique_ptr<Copy>, FemError> copy(const FemModel& model, const IntegratorOptions& options);
+  static tl::expected<std::unique_ptr<Copy>, Diagnostic> copy(const FemModel& model, const IntegratorOptions& options);
   double relative_error(const Eigen::VectorXd& f, const FemState& state);
 
   std::unique_ptr<Copy> whole_, half_;

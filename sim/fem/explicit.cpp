@@ -47,7 +47,7 @@ void VelocityVerlet::half_kick(const Eigen::VectorXd& f, Eigen::VectorXd& v) {
   for (std::size_t i = 0; i < dofs.size(); ++i) v[dofs[i]] += kick_[dofs[i]] * free_[static_cast<Eigen::Index>(i)];
 }
 
-tl::expected<StepReport, FemError> VelocityVerlet::advance(const Eigen::VectorXd& f, const FemState& state, FemState& next) {
+tl::expected<StepReport, Diagnostic> VelocityVerlet::advance(const Eigen::VectorXd& f, const FemState& state, FemState& next) {
   if (edited()) forces(state.u, state.v);
   next.u = state.u;
   next.v = state.v;

@@ -18,7 +18,7 @@ class VelocityVerlet final : public CheckedIntegrator {
   VelocityVerlet(FemModel& model, const IntegratorOptions& options);
 
  private:
-  tl::expected<StepReport, FemError> advance(const Eigen::VectorXd& f, const FemState& state, FemState& next) override;
+  tl::expected<StepReport, Diagnostic> advance(const Eigen::VectorXd& f, const FemState& state, FemState& next) override;
   double largest_swing() const noexcept override { return swing_; }
   void forces(const Eigen::VectorXd& u, const Eigen::VectorXd& v);
   void half_kick(const Eigen::VectorXd& f, Eigen::VectorXd& v);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/rule.h>
 #include <tactus/sim/fem/guarded.h>
 
 #include <algorithm>
@@ -22,7 +23,14 @@ double shortest_edge(const TetMesh& mesh) {
   return shortest;
 }
 
-/// The tetrahedron with the edge that is stretched most.
+/// Name the tetrahedron that is at fault, -1: none.
+void blame(Diagnostic& error, std::int64_t tetrahedron) {
+  if (tetrahedron < 0) return;
+  error.kind = "tetrahedron";
+  error.element = static_cast<std::uint64_t>(tetrahedron);
+}
+
+/// The tetrahedron with the edge that is stretched most, or -1.
 std::int64_t most_stretched(const TetMesh& mesh, const Eigen::VectorXd& u) {
   const auto moved = [&](std::uint32_t v) {
     const auto at = 3 * static_cast<Eigen::Index>(v);
@@ -69,19 +77,20 @@ CheckedIntegrator::CheckedIntegrator(FemModel& model, const IntegratorOptions& o
       rounding_(rounding_energy(model)),
       last_(model.rest()) {}
 
-tl::expected<StepReport, FemError> CheckedIntegrator::step(const Eigen::VectorXd& f, FemState& state) {
+tl::expected<StepReport, Diagnostic> CheckedIntegrator::step(const Eigen::VectorXd& f, FemState& state) {
   const auto usable = [&](const Eigen::VectorXd& x) { return x.size() == model_.size() && finite(x); };
   const bool known = !interrupted_ && same(state.u, last_.u) && same(state.v, last_.v);  // and thus finite
   if (!usable(f) || (!known && !(usable(state.u) && usable(state.v))))
-    return tl::unexpected(
-        FemError{{Errc::invalid_argument, "R-FEM-5"}, steps_, -1, "give finite numbers, three for each vertex"});
+    return tl::unexpected(Diagnostic{.error = fail(Errc::invalid_argument, "R-FEM-5").value(),
+                                     .step = steps_,
+                                     .remedy = "give finite numbers, three for each vertex"});
   edited_ = std::exchange(interrupted_, true) || !known;
 
   auto report = advance(f, state, next_);
   if (!report) {
-    FemError error = std::move(report.error());
+    Diagnostic error = std::move(report.error());
     error.step = steps_;
-    if (error.element < 0) error.element = most_stretched(model_.mesh(), state.u);
+    if (error.kind == nullptr) blame(error, most_stretched(model_.mesh(), state.u));
     if (error.remedy.empty()) error.remedy = divergence_remedy(model_, options_);
     return tl::unexpected(std::move(error));
   }
@@ -124,10 +133,12 @@ bool CheckedIntegrator::gained_energy() {
   return !(energy <= kEnergyFactor * largest_swing() * (reference_ + work_) + rounding_);
 }
 
-FemError CheckedIntegrator::divergence() const {
+Diagnostic CheckedIntegrator::divergence() const {
   const std::int64_t broken = model_.broken_element(next_.u);
-  const std::int64_t element = broken >= 0 ? broken : most_stretched(model_.mesh(), next_.u);
-  return {{Errc::invalid_argument, "R-FEM-6"}, steps_, element, divergence_remedy(model_, options_)};
+  Diagnostic out{
+      .error = fail(Errc::invalid_argument, "R-FEM-6").value(), .step = steps_, .remedy = divergence_remedy(model_, options_)};
+  blame(out, broken >= 0 ? broken : most_stretched(model_.mesh(), next_.u));
+  return out;
 }
 
 }  // namespace tactus::sim

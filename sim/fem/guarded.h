@@ -11,12 +11,12 @@ class CheckedIntegrator : public Integrator {
  public:
   CheckedIntegrator(FemModel& model, const IntegratorOptions& options);
 
-  tl::expected<StepReport, FemError> step(const Eigen::VectorXd& f, FemState& state) final;
+  tl::expected<StepReport, Diagnostic> step(const Eigen::VectorXd& f, FemState& state) final;
   const IntegratorOptions& options() const noexcept final { return options_; }
 
  protected:
   /// Compute `next` from `state`.   err  R-FEM-6, R-FEM-7; step and remedy are filled in here
-  virtual tl::expected<StepReport, FemError> advance(const Eigen::VectorXd& f, const FemState& state, FemState& next) = 0;
+  virtual tl::expected<StepReport, Diagnostic> advance(const Eigen::VectorXd& f, const FemState& state, FemState& next) = 0;
   /// False: the method cannot, and FemModel::energy() is not what it conserves.
   virtual bool may_gain_energy() const noexcept { return true; }
   /// How many times its smallest value the energy of a stable motion without forces may reach, as the method sees it.
@@ -30,7 +30,7 @@ class CheckedIntegrator : public Integrator {
   bool finite(const Eigen::VectorXd& x) const noexcept;
   /// Whether next_ is no step from `before`; it is remembered in last_ before that is known.
   bool diverged(const Eigen::VectorXd& f, const FemState& before);
-  FemError divergence() const;
+  Diagnostic divergence() const;
   bool gained_energy();
 
   FemModel& model_;

@@ -42,7 +42,7 @@ Implicit::Implicit(FemModel& model, const IntegratorOptions& options, Scheme sch
   stage_ = {stage_step(scheme, h()), u_, u_, u_};
 }
 
-tl::expected<StepReport, FemError> Implicit::advance(const Eigen::VectorXd& f, const FemState& state, FemState& next) {
+tl::expected<StepReport, Diagnostic> Implicit::advance(const Eigen::VectorXd& f, const FemState& state, FemState& next) {
   newton_.system().gather(f, stage_.f);
   newton_.system().gather(state.u, u_);
   newton_.system().gather(state.v, v_);
@@ -55,7 +55,7 @@ tl::expected<StepReport, FemError> Implicit::advance(const Eigen::VectorXd& f, c
   return report;
 }
 
-tl::expected<StepReport, FemError> Implicit::second_order() {
+tl::expected<StepReport, Diagnostic> Implicit::second_order() {
   StepReport report{0, 0, true};
   start_u_ = u_;
   start_v_ = v_;
@@ -74,7 +74,7 @@ tl::expected<StepReport, FemError> Implicit::second_order() {
 }
 
 /// Solve the stage from the start in u, and take its velocity.
-tl::expected<StepReport, FemError> Implicit::solve() {
+tl::expected<StepReport, Diagnostic> Implicit::solve() {
   auto report = newton_.solve(stage_, u_);
   if (!report) return report;
   v_ = (u_ - stage_.a) / stage_.c;
@@ -82,7 +82,7 @@ tl::expected<StepReport, FemError> Implicit::solve() {
   return report;
 }
 
-tl::expected<StepReport, FemError> Implicit::backward_euler() {
+tl::expected<StepReport, Diagnostic> Implicit::backward_euler() {
   stage_.a = u_;
   stage_.Mb.noalias() = model().mass_matrix() * v_;
   if (extrapolate_) u_ += h() * v_;
@@ -90,7 +90,7 @@ tl::expected<StepReport, FemError> Implicit::backward_euler() {
 }
 
 /// Starting from u0 + duration v0 makes one iteration second-order: what the update has to correct is small by then.
-tl::expected<StepReport, FemError> Implicit::trapezoidal(double duration) {
+tl::expected<StepReport, Diagnostic> Implicit::trapezoidal(double duration) {
   const double c = stage_.c;
   stage_.Mb.noalias() = (1 - c * newton_.system().alpha()) * (model().mass_matrix() * v_);
   const bool balanced = options().newton_iterations > 1;  // one iteration leaves an error of order two there
@@ -101,7 +101,7 @@ tl::expected<StepReport, FemError> Implicit::trapezoidal(double duration) {
   return solve();
 }
 
-tl::expected<StepReport, FemError> Implicit::tr_bdf2() {
+tl::expected<StepReport, Diagnostic> Implicit::tr_bdf2() {
   constexpr double kOld = (1 - kGamma) * (1 - kGamma) / (kGamma * (2 - kGamma)), kNew = 1 + kOld;
   u0_ = u_;
   v0_ = v_;

@@ -20,12 +20,12 @@ class Implicit final : public CheckedIntegrator {
   static double stage_step(Scheme scheme, double h) noexcept;
 
  private:
-  tl::expected<StepReport, FemError> advance(const Eigen::VectorXd& f, const FemState& state, FemState& next) override;
-  tl::expected<StepReport, FemError> second_order();
-  tl::expected<StepReport, FemError> backward_euler();
-  tl::expected<StepReport, FemError> trapezoidal(double duration);
-  tl::expected<StepReport, FemError> tr_bdf2();
-  tl::expected<StepReport, FemError> solve();
+  tl::expected<StepReport, Diagnostic> advance(const Eigen::VectorXd& f, const FemState& state, FemState& next) override;
+  tl::expected<StepReport, Diagnostic> second_order();
+  tl::expected<StepReport, Diagnostic> backward_euler();
+  tl::expected<StepReport, Diagnostic> trapezoidal(double duration);
+  tl::expected<StepReport, Diagnostic> tr_bdf2();
+  tl::expected<StepReport, Diagnostic> solve();
 
   Scheme scheme_;
   bool extrapolate_;  // where backward Euler starts

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/sim/fem/integrator.h>
 
+#include <tactus/base/rule.h>
 #include <tactus/sim/fem/explicit.h>
 #include <tactus/sim/fem/implicit.h>
 #include <tactus/sim/fem/linear_solver.h>
@@ -75,17 +76,17 @@ std::string to_string(const IntegratorOptions& options) {
   return solves ? out + ", " + name(options.solver) : out;
 }
 
-tl::expected<std::unique_ptr<Integrator>, FemError> make_integrator(FemModel& model, const IntegratorOptions& options) {
+tl::expected<std::unique_ptr<Integrator>, Diagnostic> make_integrator(FemModel& model, const IntegratorOptions& options) {
   if (const char* remedy = wrong(model, options))
-    return tl::unexpected(FemError{{Errc::invalid_argument, "R-FEM-8"}, -1, -1, std::string("give ") + remedy});
+    return tl::unexpected(
+        Diagnostic{.error = fail(Errc::invalid_argument, "R-FEM-8").value(), .remedy = std::string("give ") + remedy});
   if (options.method == Method::velocity_verlet) return std::make_unique<VelocityVerlet>(model, options);
   if (options.method == Method::modal) return Modal::create(model, options);
   const Scheme stages = scheme(options.method);
   std::unique_ptr<Direction> direction;
   if (quasi_newton(options)) {
-    auto made = PrefactoredDirection::create(model, Implicit::stage_step(stages, options.step));
-    if (!made) return tl::unexpected(made.error());
-    direction = std::move(*made);
+    TACTUS_TRY(auto made, PrefactoredDirection::create(model, Implicit::stage_step(stages, options.step)));
+    direction = std::move(made);
   } else {
     direction = std::make_unique<NewtonDirection>(model, options);
   }

@@ -76,13 +76,13 @@ class Integrator {
   /// The error names the tetrahedron that is torn, or else the one that is stretched most.
   /// time see the tables; no allocation after the first step.
   /// err  R-FEM-5, R-FEM-6 (remedy named), R-FEM-7
-  virtual tl::expected<StepReport, FemError> step(const Eigen::VectorXd& f, FemState& state) = 0;
+  virtual tl::expected<StepReport, Diagnostic> step(const Eigen::VectorXd& f, FemState& state) = 0;
   virtual const IntegratorOptions& options() const noexcept = 0;
   virtual ~Integrator() = default;
 };
 
 /// pre  `model` outlives the integrator and is used by it alone.   err  R-FEM-7, R-FEM-8
-tl::expected<std::unique_ptr<Integrator>, FemError> make_integrator(FemModel& model, const IntegratorOptions& options);
+tl::expected<std::unique_ptr<Integrator>, Diagnostic> make_integrator(FemModel& model, const IntegratorOptions& options);
 
 /// Poisson's ratio beyond which quasi-Newton directions do not converge (R-FEM-8).
 inline constexpr double kNearlyIncompressible = 0.4999;

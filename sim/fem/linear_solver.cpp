@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/rule.h>
 #include <tactus/sim/fem/linear_solver.h>
 
 #include <Eigen/LU>
@@ -16,10 +17,10 @@ SparseMatrix stiffness_at_rest(FemModel& model) {
 
 }  // namespace
 
-FemError not_positive_definite() {
-  return {{Errc::internal, "R-FEM-7"},
-          -1,
-          -1,
+Diagnostic not_positive_definite() {
+  return {
+      .error = fail(Errc::internal, "R-FEM-7").value(),
+      .remedy =
           "the numbers of this object span more than a double can hold: look for slivers and for materials 1e12 times stiffer "
           "than others"};
 }
@@ -99,8 +100,8 @@ NewtonDirection::NewtonDirection(FemModel& model, const IntegratorOptions& optio
   if (direct_) cholesky_.analyse(matrix_.matrix());
 }
 
-tl::expected<int, FemError> NewtonDirection::find(StageSystem& system, const Stage& stage, const Eigen::VectorXd& r,
-                                                  Eigen::VectorXd& d) {
+tl::expected<int, Diagnostic> NewtonDirection::find(StageSystem& system, const Stage& stage, const Eigen::VectorXd& r,
+                                                    Eigen::VectorXd& d) {
   const SparseMatrix& A = matrix_.matrix();
   if (!constant_ || prepared_ != stage.c) {
     matrix_.assemble(system.ahead(), system.mass_factor(stage.c), system.stiffness_factor(stage.c));

@@ -45,8 +45,8 @@ class NewtonDirection final : public Direction {
  public:
   NewtonDirection(FemModel& model, const IntegratorOptions& options);
 
-  tl::expected<int, FemError> find(StageSystem& system, const Stage& stage, const Eigen::VectorXd& r,
-                                   Eigen::VectorXd& d) override;
+  tl::expected<int, Diagnostic> find(StageSystem& system, const Stage& stage, const Eigen::VectorXd& r,
+                                     Eigen::VectorXd& d) override;
   void moved(const Eigen::VectorXd& /*s*/, const Eigen::VectorXd& /*y*/) override {}
 
  private:
@@ -58,6 +58,6 @@ class NewtonDirection final : public Direction {
   Eigen::VectorXd b_, guess_;
 };
 
-FemError not_positive_definite();
+Diagnostic not_positive_definite();
 
 }  // namespace tactus::sim

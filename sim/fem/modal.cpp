@@ -28,7 +28,7 @@ Eigen::Matrix<double, 2, 3> exact_step(double lambda, double damping, double h) 
 
 }  // namespace
 
-tl::expected<Modes, FemError> slowest_modes(FemModel& model, int count) {
+tl::expected<Modes, Diagnostic> slowest_modes(FemModel& model, int count) {
   SparseMatrix K;
   model.stiffness(Eigen::VectorXd::Zero(model.size()), K);
   auto modes = slowest_modes(K, model.mass_matrix(), count);
@@ -36,10 +36,9 @@ tl::expected<Modes, FemError> slowest_modes(FemModel& model, int count) {
   return *std::move(modes);
 }
 
-tl::expected<std::unique_ptr<Integrator>, FemError> Modal::create(FemModel& model, const IntegratorOptions& options) {
-  auto modes = slowest_modes(model, options.modes);
-  if (!modes) return tl::unexpected(modes.error());
-  return std::unique_ptr<Integrator>(new Modal(model, options, std::move(*modes)));
+tl::expected<std::unique_ptr<Integrator>, Diagnostic> Modal::create(FemModel& model, const IntegratorOptions& options) {
+  TACTUS_TRY(auto modes, slowest_modes(model, options.modes));
+  return std::unique_ptr<Integrator>(new Modal(model, options, std::move(modes)));
 }
 
 Modal::Modal(FemModel& model, const IntegratorOptions& options, Modes modes)
@@ -55,7 +54,7 @@ Modal::Modal(FemModel& model, const IntegratorOptions& options, Modes modes)
         exact_step(lambda, model.options().mass_damping + model.options().stiffness_damping * lambda, options.step));
 }
 
-tl::expected<StepReport, FemError> Modal::advance(const Eigen::VectorXd& f, const FemState& state, FemState& next) {
+tl::expected<StepReport, Diagnostic> Modal::advance(const Eigen::VectorXd& f, const FemState& state, FemState& next) {
   const auto dofs = model().free_dofs();
   const auto gather = [&](const Eigen::VectorXd& full) {
     for (std::size_t i = 0; i < dofs.size(); ++i) free_[static_cast<Eigen::Index>(i)] = full[dofs[i]];

@@ -13,15 +13,15 @@ namespace tactus::sim {
 
 /// Of the free degrees of freedom, K at rest.   pre  1 <= count <= free degrees of freedom.   err  R-FEM-7
 /// time 0.04 s for 50 modes of the membrane (714 vertices)
-tl::expected<Modes, FemError> slowest_modes(FemModel& model, int count);
+tl::expected<Modes, Diagnostic> slowest_modes(FemModel& model, int count);
 
 class Modal final : public CheckedIntegrator {
  public:
-  static tl::expected<std::unique_ptr<Integrator>, FemError> create(FemModel& model, const IntegratorOptions& options);
+  static tl::expected<std::unique_ptr<Integrator>, Diagnostic> create(FemModel& model, const IntegratorOptions& options);
 
  private:
   Modal(FemModel& model, const IntegratorOptions& options, Modes modes);
-  tl::expected<StepReport, FemError> advance(const Eigen::VectorXd& f, const FemState& state, FemState& next) override;
+  tl::expected<StepReport, Diagnostic> advance(const Eigen::VectorXd& f, const FemState& state, FemState& next) override;
   bool may_gain_energy() const noexcept override { return false; }
 
   /// (q, h q') after a step from q, h q', h^2 p under a constant force p.

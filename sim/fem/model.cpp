@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include <tactus/base/rule.h>
 #include <tactus/sim/fem/element.h>
 #include <tactus/sim/fem/element_assembly.h>
 #include <tactus/sim/fem/frequency.h>
@@ -13,18 +14,9 @@
 namespace tactus::sim {
 namespace {
 
-using Failure = tl::unexpected<FemError>;
-
-Failure refuse(const char* rule, std::int64_t element, const char* remedy) {
-  return Failure(FemError{{Errc::invalid, rule}, -1, element, remedy});
-}
-
-/// The mesh's own sentence without place and rule, which FemError has already.
-FemError from_mesh(const MeshError& error) {
-  std::string text = to_string(error);
-  const std::string rule = std::string(error.error.rule) + ": ";
-  if (const std::size_t at = text.find(rule); at != std::string::npos) text.erase(0, at + rule.size());
-  return {error.error, -1, error.element, std::move(text)};
+tl::unexpected<Diagnostic> refuse(RuleName rule, const char* kind, std::size_t element, const char* remedy = "") {
+  return tl::unexpected(
+      Diagnostic{.error = fail(Errc::invalid, rule).value(), .kind = kind, .element = element, .remedy = remedy});
 }
 
 bool valid(const Material& m) {
@@ -34,21 +26,19 @@ bool valid(const Material& m) {
 
 bool valid_damping(double d) { return d >= 0 && std::isfinite(d); }
 
-tl::expected<void, FemError> check(const TetMesh& mesh, const FemOptions& options) {
-  if (const auto checked = tactus::sim::check(mesh); !checked) return Failure(from_mesh(checked.error()));
-  if (options.materials.size() != 1 && options.materials.size() != mesh.tets.size())
-    return refuse("R-FEM-2", -1, "give one material for all tetrahedra or one for each");
+tl::expected<void, Diagnostic> check(const TetMesh& mesh, const FemOptions& options) {
+  TACTUS_CHECK(tactus::sim::check(mesh));
+  if (options.materials.size() != 1 && options.materials.size() != mesh.tets.size()) return refuse("R-FEM-2", nullptr, 0);
   for (std::size_t i = 0; i < options.materials.size(); ++i) {
     if (!valid(options.materials[i]))
       return refuse(
-          "R-FEM-1", static_cast<std::int64_t>(i),
+          "R-FEM-1", "material", i,
           "Young's modulus and density in (0, 1e15], Poisson's ratio above -1 and below 0.5; incompressible material needs "
           "0.499 or less");
   }
   for (const std::uint32_t v : options.fixed)
-    if (v >= mesh.vertices.size()) return refuse("R-FEM-3", v, "fix vertices that the mesh has");
-  if (!valid_damping(options.mass_damping) || !valid_damping(options.stiffness_damping))
-    return refuse("R-FEM-4", -1, "damping must be finite and not negative");
+    if (v >= mesh.vertices.size()) return refuse("R-FEM-3", "vertex", v);
+  if (!valid_damping(options.mass_damping) || !valid_damping(options.stiffness_damping)) return refuse("R-FEM-4", nullptr, 0);
   return {};
 }
 
@@ -76,14 +66,6 @@ double shortest_edge(const TetMesh& mesh) {
 constexpr double kTorn = 1e3;  // times the rest distance: farther apart than this nothing deformable comes back
 
 }  // namespace
-
-std::string to_string(const FemError& error) {
-  std::string out;
-  if (error.step >= 0) out += "step " + std::to_string(error.step) + ": ";
-  if (error.element >= 0) out += "element " + std::to_string(error.element) + ": ";
-  out += std::string(error.error.rule) + " (" + errc_name(error.error.code) + ")";
-  return error.remedy.empty() ? out : out + ": " + error.remedy;
-}
 
 struct FemModel::Impl {
   Impl(TetMesh m, FemOptions o)
@@ -140,8 +122,8 @@ void FemModel::Impl::make_masses() {
   mass.makeCompressed();
 }
 
-tl::expected<FemModel, FemError> FemModel::create(TetMesh mesh, FemOptions options) {
-  if (auto checked = check(mesh, options); !checked) return Failure(std::move(checked).error());
+tl::expected<FemModel, Diagnostic> FemModel::create(TetMesh mesh, FemOptions options) {
+  TACTUS_CHECK(check(mesh, options));
   return FemModel(std::make_unique<Impl>(std::move(mesh), std::move(options)));
 }
 

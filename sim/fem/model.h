@@ -59,15 +59,6 @@ struct FemOptions {
   double stiffness_damping = 0;  ///< [s]
 };
 
-/// What stopped a deformable object, where, and what would help.
-struct FemError {
-  Error error;
-  std::int64_t step = -1;     ///< number of the step, -1: none
-  std::int64_t element = -1;  ///< tetrahedron, vertex or material that broke the rule, -1: none
-  std::string remedy;
-};
-std::string to_string(const FemError& error);
-
 struct FemState {
   Eigen::VectorXd u;  ///< 3N [m]
   Eigen::VectorXd v;  ///< 3N [m/s]
@@ -79,7 +70,7 @@ using SparseMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
 class FemModel {
  public:
   /// err  R-TET-n, R-FEM-1..4
-  static tl::expected<FemModel, FemError> create(TetMesh mesh, FemOptions options);
+  static tl::expected<FemModel, Diagnostic> create(TetMesh mesh, FemOptions options);
 
   const TetMesh& mesh() const noexcept;
   const FemOptions& options() const noexcept;

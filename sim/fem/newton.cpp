@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/rule.h>
 #include <tactus/sim/fem/newton.h>
 
 #include <algorithm>
@@ -72,7 +73,7 @@ Newton::Newton(FemModel& model, const IntegratorOptions& options, std::unique_pt
       next_r_(system_.size()),
       d_(Eigen::VectorXd::Zero(system_.size())) {}
 
-tl::expected<StepReport, FemError> Newton::solve(const Stage& stage, Eigen::VectorXd& u) {
+tl::expected<StepReport, Diagnostic> Newton::solve(const Stage& stage, Eigen::VectorXd& u) {
   StepReport report{0, 0, false};
   lost_ = false;
   system_.residual(stage, u, r_);
@@ -80,17 +81,16 @@ tl::expected<StepReport, FemError> Newton::solve(const Stage& stage, Eigen::Vect
   double first = 0;
   while (report.newton_iterations < iterations_) {
     const double residual = r_.norm();
-    if (!std::isfinite(residual)) return tl::unexpected(FemError{{Errc::invalid_argument, "R-FEM-6"}, -1, -1, {}});
+    if (!std::isfinite(residual)) return tl::unexpected(Diagnostic{fail(Errc::invalid_argument, "R-FEM-6").value()});
     if (residual <= system_.rounding()) {
       report.converged = true;
       break;
     }
-    const auto found = direction_->find(system_, stage, r_, d_);
-    if (!found) return tl::unexpected(found.error());
+    TACTUS_TRY(const auto found, direction_->find(system_, stage, r_, d_));
     const double decrease = -d_.dot(r_);  // square of the update's energy norm
     if (report.newton_iterations == 0) first = decrease;
     ++report.newton_iterations;
-    report.solver_iterations += *found;
+    report.solver_iterations += found;
     u += d_;
     const double enough = std::max(tolerance_ * tolerance_ * first, kNothing * kNothing * motion);
     report.converged = decrease <= enough;

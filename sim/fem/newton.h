@@ -59,8 +59,8 @@ class Direction {
  public:
   /// d, about -A^-1 r, with d . r < 0.
   /// pre  system.ahead() belongs to r.   ret  iterations of the linear solver.   err  R-FEM-7
-  virtual tl::expected<int, FemError> find(StageSystem& system, const Stage& stage, const Eigen::VectorXd& r,
-                                           Eigen::VectorXd& d) = 0;
+  virtual tl::expected<int, Diagnostic> find(StageSystem& system, const Stage& stage, const Eigen::VectorXd& r,
+                                             Eigen::VectorXd& d) = 0;
   /// What came of it: u moved by s, r changed by y.
   virtual void moved(const Eigen::VectorXd& s, const Eigen::VectorXd& y) = 0;
   /// A direction turned out to reach too far: what it was built on is out of date.
@@ -74,7 +74,7 @@ class Newton {
   Newton(FemModel& model, const IntegratorOptions& options, std::unique_ptr<Direction> direction);
 
   /// in, out  u  start, solution.   err  R-FEM-6 when the residual is not finite, R-FEM-7
-  tl::expected<StepReport, FemError> solve(const Stage& stage, Eigen::VectorXd& u);
+  tl::expected<StepReport, Diagnostic> solve(const Stage& stage, Eigen::VectorXd& u);
   StageSystem& system() noexcept { return system_; }
   /// Whether the last solution is none: the update that would come next is estimated as more than a hundredth of the stage's first
   /// one and of the motion at its start, after all the iterations that there may be. Linearly implicit steps are not looked at.

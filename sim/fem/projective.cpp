@@ -106,7 +106,7 @@ PrefactoredDirection::PrefactoredDirection(const FemModel& model)
   for (Pair& pair : pairs_) pair.s = pair.y = turned_;
 }
 
-tl::expected<std::unique_ptr<Direction>, FemError> PrefactoredDirection::create(FemModel& model, double c) {
+tl::expected<std::unique_ptr<Direction>, Diagnostic> PrefactoredDirection::create(FemModel& model, double c) {
   std::unique_ptr<PrefactoredDirection> made(new PrefactoredDirection(model));
   SystemMatrix matrix(model);
   const double alpha = model.options().mass_damping, beta = model.options().stiffness_damping;
@@ -117,8 +117,8 @@ tl::expected<std::unique_ptr<Direction>, FemError> PrefactoredDirection::create(
 }
 
 /// The two loops of L-BFGS, newest pair first and last, seen from the shape at rest.
-tl::expected<int, FemError> PrefactoredDirection::find(StageSystem& system, const Stage& /*stage*/, const Eigen::VectorXd& r,
-                                                       Eigen::VectorXd& d) {
+tl::expected<int, Diagnostic> PrefactoredDirection::find(StageSystem& system, const Stage& /*stage*/, const Eigen::VectorXd& r,
+                                                         Eigen::VectorXd& d) {
   if (turning_) rotations_.follow(system.ahead(), kShare);
   turned_ = -r;
   to_rest(turned_);

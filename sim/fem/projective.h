@@ -48,10 +48,10 @@ class VertexRotations {
 class PrefactoredDirection final : public Direction {
  public:
   /// pre  stages have this c.   err  R-FEM-7
-  static tl::expected<std::unique_ptr<Direction>, FemError> create(FemModel& model, double c);
+  static tl::expected<std::unique_ptr<Direction>, Diagnostic> create(FemModel& model, double c);
 
-  tl::expected<int, FemError> find(StageSystem& system, const Stage& stage, const Eigen::VectorXd& r,
-                                   Eigen::VectorXd& d) override;
+  tl::expected<int, Diagnostic> find(StageSystem& system, const Stage& stage, const Eigen::VectorXd& r,
+                                     Eigen::VectorXd& d) override;
   void moved(const Eigen::VectorXd& s, const Eigen::VectorXd& y) override;
   void forget() override;
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include <tactus/base/rule.h>
 #include <tactus/sim/modes/slowest_modes.h>
 
 namespace tactus::sim {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/sim/msd/msd_objects.h>
 
+#include <tactus/base/rule.h>
+
 #include <cmath>
 
 namespace tactus::sim {
@@ -94,11 +96,12 @@ void MsdObjects::push(std::size_t user, double share) noexcept {
   loop.load(dot(share * forces_[user], spec.normal));
 }
 
-tl::expected<void, StepError> MsdObjects::step() {
+tl::expected<void, Diagnostic> MsdObjects::step() {
   for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
     bodies_[i].loop.end_tick();
     if (!(std::abs(bodies_[i].loop.surface()) < kFarthest))
-      return tl::unexpected(StepError{Error{Errc::invalid_argument, "R-SIM-1", 0}, tick_, first_ + i});
+      return tl::unexpected(Diagnostic{
+          .error = fail(Errc::invalid_argument, "R-SIM-1").value(), .step = tick_, .kind = "object", .element = first_ + i});
   }
   ++tick_;
   return {};

@@ -38,7 +38,7 @@ class MsdObjects final : public Simulated {
   Touch touch(std::size_t user, const DeviceSample& device, bool held) noexcept override;
   void push(std::size_t user, double share) noexcept override;
   /// Every N-th call deforms.   err  invalid_argument R-SIM-1: a surface is beyond 1e4 m
-  tl::expected<void, StepError> step() override;
+  tl::expected<void, Diagnostic> step() override;
 
  private:
   explicit MsdObjects(const Scene& scene);

@@ -21,7 +21,7 @@ class RigidObjects final : public Simulated {
   void observe(TraceFrame& frame) noexcept override;
   Touch touch(std::size_t user, const DeviceSample& device, bool held) noexcept override;
   void push(std::size_t user, double share) noexcept override;
-  tl::expected<void, StepError> step() override { return world_.step(); }
+  tl::expected<void, Diagnostic> step() override { return world_.step(); }
 
  private:
   RigidWorld world_;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <numeric>
 
+#include <tactus/base/rule.h>
 #include <tactus/sim/rigid/rigid_parts.h>
 
 namespace tactus::sim {
@@ -235,7 +236,7 @@ void RigidWorld::wake(std::uint32_t object) noexcept {
 
 std::span<const std::uint32_t> RigidWorld::changed() const noexcept { return impl_->changed; }
 
-tl::expected<void, StepError> RigidWorld::step() {
+tl::expected<void, Diagnostic> RigidWorld::step() {
   Impl& in = *impl_;
   in.changed.clear();
   if (in.awake.empty()) {
@@ -243,7 +244,8 @@ tl::expected<void, StepError> RigidWorld::step() {
     return {};
   }
   const auto broken = [&](std::uint32_t i) {
-    return tl::unexpected(StepError{Error{Errc::invalid_argument, "R-SIM-1", 0}, in.tick, i});
+    return tl::unexpected(
+        Diagnostic{.error = fail(Errc::invalid_argument, "R-SIM-1").value(), .step = in.tick, .kind = "object", .element = i});
   };
   for (const std::uint32_t i : in.awake) {
     const Body& body = in.bodies[i];
@@ -253,7 +255,9 @@ tl::expected<void, StepError> RigidWorld::step() {
   }
   if (in.resting_is_old) in.rebuild_resting();
   in.find_pairs();
-  if (!in.find_contacts()) return tl::unexpected(StepError{Error{Errc::limit_exceeded, "R-SIM-6", 0}, in.tick, in.awake.front()});
+  if (!in.find_contacts())
+    return tl::unexpected(Diagnostic{
+        .error = fail(Errc::limit_exceeded, "R-SIM-6").value(), .step = in.tick, .kind = "object", .element = in.awake.front()});
   in.make_groups();
   in.changed = in.awake;
   for (const std::uint32_t i : in.awake) in.bodies[i].before = in.sample(in.bodies[i]);

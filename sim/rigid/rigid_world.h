@@ -17,8 +17,8 @@
 #include <memory>
 #include <span>
 
+#include <tactus/base/diagnostic.h>
 #include <tactus/base/geometry.h>
-#include <tactus/base/result.h>
 #include <tactus/rigid/rigid_state.h>
 #include <tactus/sim/scene/scene.h>
 #include <tactus/sim/touchable.h>
@@ -38,7 +38,7 @@ class RigidWorld {
   ///      or are static; no allocation once ODE's arenas fit the contacts, in the first step.
   /// err  limit_exceeded R-SIM-6: more than 65536 contacts in this step;
   ///      invalid_argument R-SIM-1: a pose is not finite, or an object got faster than 1e4 m/s or 1e5 rad/s; the world is then of no more use.
-  tl::expected<void, StepError> step();
+  tl::expected<void, Diagnostic> step();
 
   /// Let an object be part of the next step, as a push without force would.
   void wake(std::uint32_t object) noexcept;

@@ -6,10 +6,10 @@
 
 namespace tactus::sim {
 
-tl::expected<ObjectSurface, ObjectSurfaceError> read_object_surface(const std::string& file) {
-  const auto refuse = [&](SurfaceError error) {
+tl::expected<ObjectSurface, Diagnostic> read_object_surface(const std::string& file) {
+  const auto refuse = [&](Diagnostic error) {
     error.file = file;
-    return tl::unexpected(ObjectSurfaceError{error.error.code, to_string(error)});
+    return tl::unexpected(std::move(error));
   };
   auto read = read_surface(file);
   if (!read) return refuse(read.error());

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include <tactus/base/result.h>
+#include <tactus/base/diagnostic.h>
 #include <tactus/base/tri_mesh.h>
 
 namespace tactus::sim {
@@ -15,13 +15,7 @@ struct ObjectSurface {
   Vec3 centre;
 };
 
-/// Why it cannot be used, in words with file, place, rule and remedy.
-struct ObjectSurfaceError {
-  Errc code;
-  std::string text;
-};
-
-/// err  R-SRF-n, R-MSH-n, R-TGN-2, 4, 8; unsupported: this build reads no surface files
-tl::expected<ObjectSurface, ObjectSurfaceError> read_object_surface(const std::string& file);
+/// err  R-SRF-n, R-TGN-2, 4, 8; unsupported R-SRF-3: this build reads no surface files
+tl::expected<ObjectSurface, Diagnostic> read_object_surface(const std::string& file);
 
 }  // namespace tactus::sim

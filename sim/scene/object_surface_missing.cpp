@@ -2,12 +2,15 @@
 // In place of object_surface.cpp when the component SURFACE is left out.
 #include <tactus/sim/scene/object_surface.h>
 
+#include <tactus/base/rule.h>
+
 namespace tactus::sim {
 
-tl::expected<ObjectSurface, ObjectSurfaceError> read_object_surface(const std::string& file) {
-  return tl::unexpected(ObjectSurfaceError{
-      Errc::unsupported, file + ": this program was built without surface files; install libopenmesh-dev and build "
-                                "with TACTUS_WITH_SURFACE=ON, or give the object a size"});
+tl::expected<ObjectSurface, Diagnostic> read_object_surface(const std::string& file) {
+  return tl::unexpected(Diagnostic{.error = fail(Errc::unsupported, "R-SRF-3").value(),
+                                   .file = file,
+                                   .remedy = "this program was built without surface files; install libopenmesh-dev and build "
+                                             "with TACTUS_WITH_SURFACE=ON, or give the object a size"});
 }
 
 }  // namespace tactus::sim

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <set>
 
-#include <tactus/base/shown.h>
+#include <tactus/base/rule.h>
 #include <tactus/rigid/rigid_state.h>
 #include <tactus/sim/scene/deformable_reader.h>
 #include <tactus/sim/scene/object_surface.h>
@@ -69,7 +69,7 @@ void read_surface(TomlReader& in, const toml::table& table, const std::filesyste
   if (is_special_file(file))
     return in.fail_at(node.source(), Errc::invalid, "R-SCN-8", "object.surface", file + ": name a regular file");
   auto read = read_object_surface(file);
-  if (!read) return in.fail_at(node.source(), read.error().code, "R-SCN-8", "object.surface", read.error().text);
+  if (!read) return in.fail_at(node.source(), read.error().error.code, "R-SCN-8", "object.surface", to_string(read.error()));
   object.surface = std::move(read->mesh);
   object.pose.position = to_world(object.pose, read->centre);
   Vec3 low, high;
@@ -238,15 +238,7 @@ void read_scene(TomlReader& in, const toml::table& root, const std::filesystem::
 
 }  // namespace
 
-std::string to_string(const SceneError& error) {
-  constexpr std::size_t kMostOfRemedy = 400;  // it may repeat what stands in the file
-  std::string out = shown_path(error.file);
-  if (error.line > 0) out += ":" + std::to_string(error.line);
-  if (!error.key.empty()) out += ": " + shown(error.key);
-  return out + ": " + error.error.rule + ": " + shown(error.remedy, kMostOfRemedy);
-}
-
-tl::expected<Scene, SceneError> parse_scene(std::string_view text, std::string_view file) {
+tl::expected<Scene, Diagnostic> parse_scene(std::string_view text, std::string_view file) {
   TomlReader in(file);
   Scene scene;
   scene.text = text;
@@ -256,17 +248,17 @@ tl::expected<Scene, SceneError> parse_scene(std::string_view text, std::string_v
   return scene;
 }
 
-tl::expected<Scene, SceneError> load_scene(const std::string& path) {
+tl::expected<Scene, Diagnostic> load_scene(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::string text(kMostSceneBytes + 1, '\0');  // one more: that it is too long is for parse_scene() to say
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(file.gcount()));
   if (file.bad() || !(file.good() || file.eof()))
-    return tl::unexpected(SceneError{Error{Errc::io, "R-SCN-1", 0}, path, 0, "", "name a file that can be read"});
+    return tl::unexpected(Diagnostic{.error = fail(Errc::io, "R-SCN-1").value(), .file = path});
   return parse_scene(text, path);
 }
 
-tl::expected<std::string, SceneError> find_scene(const std::string& name) {
+tl::expected<std::string, Diagnostic> find_scene(const std::string& name) {
   namespace fs = std::filesystem;
   std::error_code ignored;
   if (fs::is_regular_file(name, ignored)) return name;
@@ -274,8 +266,10 @@ tl::expected<std::string, SceneError> find_scene(const std::string& name) {
     const fs::path path = fs::path(folder) / (name + ".toml");
     if (name.find('/') == std::string::npos && fs::is_regular_file(path, ignored)) return path.string();
   }
-  return tl::unexpected(SceneError{Error{Errc::io, "R-SCN-1", 0}, name, 0, "",
-                                   "no such file, nor a scene of that name; name a file or one of the scenes in sim/scenes"});
+  return tl::unexpected(
+      Diagnostic{.error = fail(Errc::io, "R-SCN-1").value(),
+                 .file = name,
+                 .remedy = "no such file, nor a scene of that name; name a file or one of the scenes in sim/scenes"});
 }
 
 SceneBuilder scene_builder(const Scene& scene) {

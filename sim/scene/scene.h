@@ -12,8 +12,8 @@
 #include <vector>
 
 #include <tactus/base/device_sample.h>
+#include <tactus/base/diagnostic.h>
 #include <tactus/base/geometry.h>
-#include <tactus/base/result.h>
 #include <tactus/scene/scene_builder.h>
 #include <tactus/sim/msd/msd.h>
 #include <tactus/sim/tets/tet_mesh.h>
@@ -141,21 +141,13 @@ struct Scene {
 ///   R-SCN-1 the file cannot be read    R-SCN-2 not TOML                  R-SCN-3 unknown key       R-SCN-4 key missing
 ///   R-SCN-5 wrong type                 R-SCN-6 value out of range        R-SCN-7 unknown or repeated name
 ///   R-SCN-8 a file that the scene names cannot be used               R-SCN-9 over 4 MiB, or nested over 32 deep
-struct SceneError {
-  Error error;
-  std::string file;
-  std::uint32_t line = 0;  ///< from 1; 0: none
-  std::string key;         ///< "object.mass"
-  std::string remedy;
-};
-std::string to_string(const SceneError& error);
 
 /// err  R-SCN-1..9; `file` names the place in errors; other files are looked for beside it.
-tl::expected<Scene, SceneError> parse_scene(std::string_view text, std::string_view file);
-tl::expected<Scene, SceneError> load_scene(const std::string& path);
+tl::expected<Scene, Diagnostic> parse_scene(std::string_view text, std::string_view file);
+tl::expected<Scene, Diagnostic> load_scene(const std::string& path);
 
 /// Path of a scene: `name` itself if it is a file, else <name>.toml among the scenes that come with Tactus.   err  R-SCN-1
-tl::expected<std::string, SceneError> find_scene(const std::string& name);
+tl::expected<std::string, Diagnostic> find_scene(const std::string& name);
 
 /// The rigid objects of this scene for a sender: in order, at rest in their first poses.
 SceneBuilder scene_builder(const Scene& scene);

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include <tactus/base/rule.h>
 #include <tactus/sim/scene/scene.h>
 #include <tactus/sim/scene/toml_text.h>
 
@@ -38,17 +39,25 @@ class TomlReader {
   explicit TomlReader(std::string_view file) : file_(file) {}
 
   bool failed() const { return error_.has_value(); }
-  SceneError error() const { return *error_; }
+  Diagnostic error() const { return *error_; }
 
-  void fail_at(const toml::source_region& where, Errc code, const char* rule, std::string key, std::string remedy) {
-    if (!error_) error_ = SceneError{Error{code, rule, 0}, file_, where.begin.line, std::move(key), std::move(remedy)};
+  void fail_at(const toml::source_region& where, Errc code, RuleName rule, std::string key, std::string remedy) {
+    if (!error_)
+      error_ = Diagnostic{.error = tactus::fail(code, rule).value(),
+                          .file = file_,
+                          .line = where.begin.line,
+                          .detail = std::move(key),
+                          .remedy = std::move(remedy)};
   }
 
   /// Parse `text` and hand its root to `read`.   err  R-SCN-2, R-SCN-9
   template <class Read>
   void parse(std::string_view text, std::size_t most_bytes, Read read) {
     const auto exceeds = [&](std::uint32_t line, std::string remedy) {
-      error_ = SceneError{Error{Errc::limit_exceeded, "R-SCN-9", 0}, file_, line, "", std::move(remedy)};
+      error_ = Diagnostic{.error = tactus::fail(Errc::limit_exceeded, "R-SCN-9").value(),
+                          .file = file_,
+                          .line = line,
+                          .remedy = std::move(remedy)};
     };
     if (text.size() > most_bytes) return exceeds(0, "give a file of at most " + std::to_string(most_bytes >> 20) + " MiB");
     if (const auto line = too_nested_line(text))
@@ -197,7 +206,7 @@ class TomlReader {
   }
 
   std::string file_;
-  std::optional<SceneError> error_;
+  std::optional<Diagnostic> error_;
 };
 
 }  // namespace tactus::sim

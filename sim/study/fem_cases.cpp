@@ -203,18 +203,17 @@ std::size_t inverted(const TetMesh& mesh, const Eigen::VectorXd& u) {
   return out;
 }
 
-std::string describe(const FemError& error) {
-  std::string out = error.error.rule;
-  if (error.step >= 0) out += ", step " + std::to_string(error.step);
-  if (error.element >= 0) out += ", element " + std::to_string(error.element);
-  return out + ": " + error.remedy;
+std::string remark_of(const Diagnostic& error) {
+  const std::string place = place_of(error);
+  return std::string(error.error.rule) + (place.empty() ? "" : ", ") + place + ": " +
+         (error.remedy.empty() ? remedy(error.error) : error.remedy);
 }
 
-FemOutcome refused(const FemError& error) {
+FemOutcome refused(const Diagnostic& error) {
   FemOutcome out;
   out.verdict = Verdict::diverges;
   out.refused = true;
-  out.error = describe(error);
+  out.error = remark_of(error);
   return out;
 }
 
@@ -268,7 +267,7 @@ FemOutcome run(const FemCase& fem_case, std::optional<Method> method) {
     if (out.steps == fem_case.steps / 2) halfway.u = state.u;
     if (const auto step = (*integrator)->step(weight, state); !step) {
       out.verdict = Verdict::diverges;
-      out.error = describe(step.error());
+      out.error = remark_of(step.error());
       out.kept_state = (state.u.array() == kept.u.array()).all() && (state.v.array() == kept.v.array()).all();
       return out;
     }

@@ -51,7 +51,7 @@ void external_forces(const PrecisionScene& scene, const FemModel& model, Loading
   }
 }
 
-tl::expected<FemModel, FemError> make_model(const PrecisionScene& scene, const PrecisionMethod& method) {
+tl::expected<FemModel, Diagnostic> make_model(const PrecisionScene& scene, const PrecisionMethod& method) {
   FemOptions options;
   options.materials = {scene.material};
   options.fixed = scene.fixed;
@@ -74,20 +74,19 @@ struct Run {
   Eigen::VectorXd f;
   Trajectory out;
 
-  tl::expected<void, FemError> step(std::int64_t number);
+  tl::expected<void, Diagnostic> step(std::int64_t number);
   void sample(int number);
 };
 
-tl::expected<void, FemError> Run::step(std::int64_t number) {
+tl::expected<void, Diagnostic> Run::step(std::int64_t number) {
   const double h = method.options.step, point = force_point(method.options.method);
   const double t = (static_cast<double>(number) + point) * h;
   const double deflection = scene.patch.deflection(state.u) + point * h * scene.patch.deflection(state.v);
   external_forces(scene, model, loading, deflection, t, f);
-  const auto report = integrator->step(f, state);
-  if (!report) return tl::unexpected(report.error());
-  out.newton_per_step += report->newton_iterations;
-  out.solver_per_step += report->solver_iterations;
-  if (!report->converged) ++out.unconverged_steps;
+  TACTUS_TRY(const auto report, integrator->step(f, state));
+  out.newton_per_step += report.newton_iterations;
+  out.solver_per_step += report.solver_iterations;
+  if (!report.converged) ++out.unconverged_steps;
   return {};
 }
 
@@ -100,13 +99,11 @@ void Run::sample(int number) {
   out.force[number] = probe_force(scene, deflection, t);
 }
 
-tl::expected<Run, FemError> start(const PrecisionScene& scene, const PrecisionMethod& method, Loading loading) {
-  auto model = make_model(scene, method);
-  if (!model) return tl::unexpected(model.error());
-  auto observer = make_model(scene, method);
-  if (!observer) return tl::unexpected(observer.error());
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(model->size());
-  Run run{scene, method, loading, *std::move(model), *std::move(observer), nullptr, {zero, zero}, zero, {}};
+tl::expected<Run, Diagnostic> start(const PrecisionScene& scene, const PrecisionMethod& method, Loading loading) {
+  TACTUS_TRY(auto model, make_model(scene, method));
+  TACTUS_TRY(auto observer, make_model(scene, method));
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(model.size());
+  Run run{scene, method, loading, std::move(model), std::move(observer), nullptr, {zero, zero}, zero, {}};
   run.out.energy.resize(scene.samples);
   run.out.force.resize(scene.samples);
   return run;
@@ -155,52 +152,49 @@ double processor_seconds() noexcept {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-tl::expected<Trajectory, FemError> simulate(const PrecisionScene& scene, const PrecisionMethod& method, int steps_per_sample,
-                                            Loading loading) {
+tl::expected<Trajectory, Diagnostic> simulate(const PrecisionScene& scene, const PrecisionMethod& method, int steps_per_sample,
+                                              Loading loading) {
   PrecisionMethod with_step = method;
   with_step.options.step = scene.step(steps_per_sample);
-  auto run = start(scene, with_step, loading);
-  if (!run) return tl::unexpected(run.error());
+  TACTUS_TRY(auto run, start(scene, with_step, loading));
   const double begin = processor_seconds();
   if (method.chosen) {
-    with_step.options = choose(run->model, with_step.options.step).options;
-    run->out.taken = to_string(with_step.options);
+    with_step.options = choose(run.model, with_step.options.step).options;
+    run.out.taken = to_string(with_step.options);
   }
-  auto integrator = make_integrator(run->model, with_step.options);
-  if (!integrator) return tl::unexpected(integrator.error());
-  run->integrator = *std::move(integrator);
+  TACTUS_TRY(auto integrator, make_integrator(run.model, with_step.options));
+  run.integrator = std::move(integrator);
 
   double since = begin;
   const std::int64_t steps = std::int64_t{steps_per_sample} * scene.samples;
   for (std::int64_t i = 0; i < steps; ++i) {
-    if (const auto done = run->step(i); !done) return tl::unexpected(done.error());
+    TACTUS_CHECK(run.step(i));
     if (i > 0 && (i + 1) % steps_per_sample != 0) continue;
     const double now = processor_seconds();
-    (i == 0 ? run->out.setup_seconds : run->out.step_seconds) += now - since;
-    if ((i + 1) % steps_per_sample == 0) run->sample(static_cast<int>(i / steps_per_sample));
+    (i == 0 ? run.out.setup_seconds : run.out.step_seconds) += now - since;
+    if ((i + 1) % steps_per_sample == 0) run.sample(static_cast<int>(i / steps_per_sample));
     since = processor_seconds();
   }
   const auto count = static_cast<double>(steps);
-  run->out.step_seconds *= count / (count - 1);
-  run->out.newton_per_step /= count;
-  run->out.solver_per_step /= count;
-  return std::move(run->out);
+  run.out.step_seconds *= count / (count - 1);
+  run.out.newton_per_step /= count;
+  run.out.solver_per_step /= count;
+  return std::move(run.out);
 }
 
-tl::expected<Trajectory, FemError> runge_kutta(const PrecisionScene& scene, int steps_per_sample, Loading loading) {
+tl::expected<Trajectory, Diagnostic> runge_kutta(const PrecisionScene& scene, int steps_per_sample, Loading loading) {
   const PrecisionMethod none;
-  auto run = start(scene, none, loading);
-  if (!run) return tl::unexpected(run.error());
-  FemModel& model = run->model;
+  TACTUS_TRY(auto run, start(scene, none, loading));
+  FemModel& model = run.model;
   Eigen::VectorXd inverse_mass = Eigen::VectorXd::Zero(model.size()), k(model.size());
   for (const int i : model.free_dofs()) inverse_mass[i] = 1 / model.lumped_mass()[i];
   const double h = scene.step(steps_per_sample), begin = processor_seconds();
   const auto acceleration = [&](const Eigen::VectorXd& u, double t) -> Eigen::VectorXd {
-    external_forces(scene, model, loading, scene.patch.deflection(u), t, run->f);
+    external_forces(scene, model, loading, scene.patch.deflection(u), t, run.f);
     model.internal_forces(u, k);
-    return inverse_mass.cwiseProduct(run->f - k);
+    return inverse_mass.cwiseProduct(run.f - k);
   };
-  auto& [u, v] = run->state;
+  auto& [u, v] = run.state;
   for (std::int64_t i = 0; i < std::int64_t{steps_per_sample} * scene.samples; ++i) {
     const double t = static_cast<double>(i) * h;
     const Eigen::VectorXd a1 = acceleration(u, t), v2 = v + h / 2 * a1;
@@ -209,30 +203,29 @@ tl::expected<Trajectory, FemError> runge_kutta(const PrecisionScene& scene, int 
     const Eigen::VectorXd a4 = acceleration(u + h * v3, t + h);
     u += h / 6 * (v + 2 * v2 + 2 * v3 + v4);
     v += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
-    if ((i + 1) % steps_per_sample == 0) run->sample(static_cast<int>(i / steps_per_sample));
+    if ((i + 1) % steps_per_sample == 0) run.sample(static_cast<int>(i / steps_per_sample));
   }
-  run->out.step_seconds = processor_seconds() - begin;
-  return std::move(run->out);
+  run.out.step_seconds = processor_seconds() - begin;
+  return std::move(run.out);
 }
 
-tl::expected<Reference, FemError> make_reference(const PrecisionScene& scene) {
+tl::expected<Reference, Diagnostic> make_reference(const PrecisionScene& scene) {
   const int n = scene.reference_steps_per_sample;
   Reference out, half;
   Trajectory quarter;
   out.step = scene.step(n);
-  const auto fill = [&](int steps, Loading loading, Trajectory& to) -> tl::expected<void, FemError> {
-    auto made = runge_kutta(scene, steps, loading);
-    if (!made) return tl::unexpected(made.error());
-    to = *std::move(made);
+  const auto fill = [&](int steps, Loading loading, Trajectory& to) -> tl::expected<void, Diagnostic> {
+    TACTUS_TRY(auto made, runge_kutta(scene, steps, loading));
+    to = std::move(made);
     return {};
   };
   for (Reference* one : {&out, &half}) {
     const int steps = one == &out ? n : n / 2;
     for (const auto& [loading, to] : {std::pair{Loading::force, &one->load}, std::pair{Loading::probe, &one->probe},
                                       std::pair{Loading::weight, &one->weight}, std::pair{Loading::push, &one->push}})
-      if (const auto done = fill(steps, loading, *to); !done) return tl::unexpected(done.error());
+      TACTUS_CHECK(fill(steps, loading, *to));
   }
-  if (const auto done = fill(n / 4, Loading::force, quarter); !done) return tl::unexpected(done.error());
+  TACTUS_CHECK(fill(n / 4, Loading::force, quarter));
   out.floor = difference(half.load, out.load);
   out.floor.force = force_error(half.probe, out.probe);
   out.floor.weight = state_error(half.weight.u, out.weight.u);

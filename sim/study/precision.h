@@ -40,11 +40,11 @@ struct Trajectory {
 };
 
 /// The error's step counts from 0 at rest.
-tl::expected<Trajectory, FemError> simulate(const PrecisionScene& scene, const PrecisionMethod& method, int steps_per_sample,
-                                            Loading loading);
+tl::expected<Trajectory, Diagnostic> simulate(const PrecisionScene& scene, const PrecisionMethod& method, int steps_per_sample,
+                                              Loading loading);
 
 /// The same under the Runge-Kutta method of order 4.
-tl::expected<Trajectory, FemError> runge_kutta(const PrecisionScene& scene, int steps_per_sample, Loading loading);
+tl::expected<Trajectory, Diagnostic> runge_kutta(const PrecisionScene& scene, int steps_per_sample, Loading loading);
 
 struct Errors {
   double displacement_end = 0, displacement = 0, velocity = 0, force = 0, energy = 0, weight = 0, push = 0;  ///< relative; NaN:
@@ -57,7 +57,7 @@ struct Reference {
   double order = 0;  ///< observed, of the displacement
   double step = 0;   ///< [s]
 };
-tl::expected<Reference, FemError> make_reference(const PrecisionScene& scene);
+tl::expected<Reference, Diagnostic> make_reference(const PrecisionScene& scene);
 
 struct PrecisionPoint {
   std::string method;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include <tactus/base/rule.h>
 #include <tactus/sim/fem/cholesky.h>
 #include <tactus/sim/study/precision.h>
 #include <tactus/sim/study/quadratic_tets.h>
@@ -69,7 +70,7 @@ PrecisionScene cantilever(std::uint32_t r, double poisson) {
   return scene;
 }
 
-tl::expected<FemModel, FemError> make_model(const PrecisionScene& scene) {
+tl::expected<FemModel, Diagnostic> make_model(const PrecisionScene& scene) {
   FemOptions options;
   options.materials = {scene.material};
   options.fixed = scene.fixed;
@@ -106,22 +107,21 @@ double timoshenko_deflection(double length, double width, double height, const M
   return length * length * length / (3 * material.young * moment) + length / (5.0 / 6 * shear * width * height);
 }
 
-tl::expected<StaticResult, FemError> static_deflection(const PrecisionScene& scene) {
+tl::expected<StaticResult, Diagnostic> static_deflection(const PrecisionScene& scene) {
   const double begin = processor_seconds();
-  auto model = make_model(scene);
-  if (!model) return tl::unexpected(model.error());
+  TACTUS_TRY(auto model, make_model(scene));
   SparseMatrix stiffness;
-  model->stiffness(Eigen::VectorXd::Zero(model->size()), stiffness);
-  Eigen::VectorXd f = Eigen::VectorXd::Zero(model->size()), u = f;
+  model.stiffness(Eigen::VectorXd::Zero(model.size()), stiffness);
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(model.size()), u = f;
   scene.patch.add_force(1, f);
 
-  const auto free = model->free_dofs();
+  const auto free = model.free_dofs();
   Eigen::VectorXd right(static_cast<Eigen::Index>(free.size()));
   for (std::size_t i = 0; i < free.size(); ++i) right[static_cast<Eigen::Index>(i)] = f[free[i]];
   Cholesky cholesky;
   cholesky.analyse(stiffness);
   if (!cholesky.factor(stiffness))
-    return tl::unexpected(FemError{.error = {Errc::internal, "R-FEM-7"}, .remedy = "Fix more vertices."});
+    return tl::unexpected(Diagnostic{.error = fail(Errc::internal, "R-FEM-7").value(), .remedy = "Fix more vertices."});
   Eigen::VectorXd solution(right.size());
   cholesky.solve(right, solution);
   for (std::size_t i = 0; i < free.size(); ++i) u[free[i]] = solution[static_cast<Eigen::Index>(i)];
@@ -144,31 +144,27 @@ std::vector<SpaceJob> space_jobs(std::string_view name, Extent extent) {
   return jobs;
 }
 
-tl::expected<SpacePoint, FemError> measure_space(std::string_view name, const SpaceJob& job) {
+tl::expected<SpacePoint, Diagnostic> measure_space(std::string_view name, const SpaceJob& job) {
   const PrecisionScene scene = *space_scene(name, job.refinement, job.poisson);
   SpacePoint out;
   out.refinement = job.refinement;
   out.poisson = job.poisson;
   out.vertices = scene.mesh.vertices.size();
   out.tets = scene.mesh.tets.size();
-  const auto at_rest = static_deflection(scene);
-  if (!at_rest) return tl::unexpected(at_rest.error());
-  out.at_rest = *at_rest;
+  TACTUS_TRY(const auto at_rest, static_deflection(scene));
+  out.at_rest = at_rest;
   if (job.quadratic) {
-    const auto quadratic = quadratic_static_deflection(scene);
-    if (!quadratic) return tl::unexpected(quadratic.error());
-    out.quadratic_deflection = *quadratic;
+    TACTUS_TRY(const auto quadratic, quadratic_static_deflection(scene));
+    out.quadratic_deflection = quadratic;
   }
   if (!job.transient) return out;
 
-  const auto model = make_model(scene);
-  if (!model) return tl::unexpected(model.error());
-  const int steps = static_cast<int>(std::ceil(scene.duration / scene.samples * model->largest_frequency()));
-  const auto run = simulate(scene, {"velocity Verlet", {.method = Method::velocity_verlet}}, steps, Loading::force);
-  if (!run) return tl::unexpected(run.error());
+  TACTUS_TRY(const auto model, make_model(scene));
+  const int steps = static_cast<int>(std::ceil(scene.duration / scene.samples * model.largest_frequency()));
+  TACTUS_TRY(const auto run, simulate(scene, {"velocity Verlet", {.method = Method::velocity_verlet}}, steps, Loading::force));
   out.step = scene.step(steps);
-  out.seconds_per_second = run->step_seconds / scene.duration;
-  for (const Eigen::VectorXd& u : run->u) out.deflection.push_back(scene.patch.deflection(u));
+  out.seconds_per_second = run.step_seconds / scene.duration;
+  for (const Eigen::VectorXd& u : run.u) out.deflection.push_back(scene.patch.deflection(u));
   return out;
 }
 

@@ -32,7 +32,7 @@ struct StaticResult {
   double seconds = 0;     ///< processor time, assembly, factorisation and solution
 };
 /// err  as FemModel::create; R-FEM-7 when too little is fixed
-tl::expected<StaticResult, FemError> static_deflection(const PrecisionScene& scene);
+tl::expected<StaticResult, Diagnostic> static_deflection(const PrecisionScene& scene);
 
 /// One mesh to compute.
 struct SpaceJob {
@@ -54,7 +54,7 @@ struct SpacePoint {
   std::vector<double> deflection;   ///< [m] at the sample times
 };
 /// In time by velocity Verlet, whose time error is far below the space error (precision.h).
-tl::expected<SpacePoint, FemError> measure_space(std::string_view name, const SpaceJob& job);
+tl::expected<SpacePoint, Diagnostic> measure_space(std::string_view name, const SpaceJob& job);
 
 /// The meshes of one material against their common limit. NaN: not computed.
 struct SpaceErrors {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/rule.h>
 #include <tactus/sim/study/quadratic_tets.h>
 
 #include <Eigen/Dense>
@@ -172,7 +173,7 @@ Eigen::VectorXd pressure(const Mesh& mesh, const PrecisionScene& scene) {
 
 }  // namespace
 
-tl::expected<double, FemError> quadratic_static_deflection(const PrecisionScene& scene) {
+tl::expected<double, Diagnostic> quadratic_static_deflection(const PrecisionScene& scene) {
   const Mesh mesh(scene);
   const SparseMatrix stiffness = assemble(mesh, scene);
   const Eigen::VectorXd load = pressure(mesh, scene);
@@ -182,7 +183,7 @@ tl::expected<double, FemError> quadratic_static_deflection(const PrecisionScene&
   gradients.compute(stiffness);
   const Eigen::VectorXd u = gradients.solve(load);
   if (gradients.info() != Eigen::Success)
-    return tl::unexpected(FemError{.error = {Errc::internal, "R-FEM-7"}, .remedy = "Fix more vertices."});
+    return tl::unexpected(Diagnostic{.error = fail(Errc::internal, "R-FEM-7").value(), .remedy = "Fix more vertices."});
   return load.dot(u);
 }
 

@@ -12,6 +12,6 @@ namespace tactus::sim::study {
 /// time one factorisation; about eight times as many nodes as vertices
 /// out  mean z displacement of the patch per newton [m/N]
 /// err  R-FEM-7 when too little is fixed
-tl::expected<double, FemError> quadratic_static_deflection(const PrecisionScene& scene);
+tl::expected<double, Diagnostic> quadratic_static_deflection(const PrecisionScene& scene);
 
 }  // namespace tactus::sim::study

@@ -56,7 +56,7 @@ struct Totals {
     if (!has_error || outcome.refused) return;
     ++stopped;
     explained += outcome.error.find("step") != std::string::npos && !outcome.error.ends_with(": ") ? 1 : 0;
-    located += outcome.error.find("element") != std::string::npos ? 1 : 0;
+    located += outcome.error.find("tetrahedron") != std::string::npos ? 1 : 0;
     kept += outcome.kept_state ? 1 : 0;
   }
 };
@@ -175,7 +175,7 @@ Study study_fem(Extent extent, const Progress& progress) {
       "steps unless said otherwise; the short form has 2 x 2 x 1 cells and 200 steps) starts in an extreme state and is left "
       "alone. *Stable*: "
       "all steps done, energy did not grow, nothing is inside out. *N inverted*: the same, but N tetrahedra stay inside out. "
-      "*Stopped*: the step was refused with an error that names step, element and remedy (in stability.csv), and the state "
+      "*Stopped*: the step was refused with an error that names step, tetrahedron and remedy (in stability.csv), and the state "
       "before it "
       "kept. *Refused*: not begun at all. The modal method keeps 12 modes of the linear problem and loses what they do not hold. "
       "Each method is run with the solver and the tolerance that a scene gets which names it; *chosen* is what a scene gets that "

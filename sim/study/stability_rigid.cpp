@@ -74,10 +74,6 @@ bool stands_still(const RigidWorld& world, std::size_t objects) {
   return true;
 }
 
-std::string text(const StepError& error) {
-  return "tick " + std::to_string(error.tick) + ": object " + std::to_string(error.object) + " broke " + error.error.rule;
-}
-
 enum class Sleep : std::uint8_t { allowed, prevented };
 
 /// How far a block moves after the first second, in which the tower settles.
@@ -95,7 +91,7 @@ Row tower_row(double seconds, Sleep sleep, const Progress& progress) {
     if (sleep == Sleep::prevented) world.push(0, {0, 0, -1e-12}, scene.objects[0].pose.position);
     if (const auto step = world.step(); !step) {
       row.verdict = Verdict::diverges;
-      row.remark = text(step.error());
+      row.remark = to_string(step.error());
       return row;
     }
     if (!asleep && stands_still(world, scene.objects.size())) asleep = static_cast<double>(world.tick()) * kTick;
@@ -115,7 +111,7 @@ Row stack_row(double ratio, double seconds) {
   for (std::int64_t tick = 0; tick < std::llround(seconds / kTick); ++tick) {
     if (const auto step = world.step(); !step) {
       row.verdict = Verdict::diverges;
-      row.remark = text(step.error());
+      row.remark = to_string(step.error());
       return row;
     }
   }
@@ -261,7 +257,7 @@ Row refusal_row() {
     world.push(0, {force, 0, 0}, {0, 0, kCube.z});
     if (const auto step = world.step(); !step) {
       ++refused;
-      row.remark = text(step.error());
+      row.remark = to_string(step.error());
     }
   }
   row.measured = refused;

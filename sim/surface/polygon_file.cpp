@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include <tactus/base/rule.h>
 #include <tactus/sim/surface/surface_text.h>
 
 namespace tactus::sim {
@@ -14,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxFileBytes = std::size_t{512} << 20;
 
-tl::expected<std::string, SurfaceError> read_text(const std::string& path) {
+tl::expected<std::string, Diagnostic> read_text(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) return broken(Errc::io, "R-SRF-1", "a folder");
   std::ifstream in(path, std::ios::binary);
@@ -36,8 +37,8 @@ std::string of(std::size_t read, std::size_t announced, const char* noun) {
 
 }  // namespace
 
-tl::unexpected<SurfaceError> broken(Errc code, const char* rule, std::string detail, std::string file) {
-  return tl::unexpected(SurfaceError{fail(code, rule).value(), std::move(file), 0, std::move(detail)});
+tl::unexpected<Diagnostic> broken(Errc code, RuleName rule, std::string detail, std::string file) {
+  return tl::unexpected(Diagnostic{.error = fail(code, rule).value(), .file = std::move(file), .detail = std::move(detail)});
 }
 
 std::string surface_format(const std::string& path) {
@@ -47,21 +48,20 @@ std::string surface_format(const std::string& path) {
   return format;
 }
 
-tl::expected<PolygonSoup, SurfaceError> parse_polygons(std::string_view text, std::string_view format) {
-  const auto prepared = prepare_surface(text, format);
-  if (!prepared) return tl::unexpected(prepared.error());
-  if (prepared->faces == 0) return broken(Errc::invalid, "R-SRF-7", "");
-  auto soup = openmesh_read(prepared->text, prepared->format);
+tl::expected<PolygonSoup, Diagnostic> parse_polygons(std::string_view text, std::string_view format) {
+  TACTUS_TRY(const auto prepared, prepare_surface(text, format));
+  if (prepared.faces == 0) return broken(Errc::invalid, "R-SRF-7", "");
+  auto soup = openmesh_read(prepared.text, prepared.format);
   if (!soup) return broken(Errc::malformed, "R-SRF-4", soup.error());
-  if (prepared->vertices && soup->vertices.size() != *prepared->vertices)
-    return broken(Errc::malformed, "R-SRF-5", of(soup->vertices.size(), *prepared->vertices, "vertices"));
-  if (soup->polygons.size() != prepared->faces)
-    return broken(Errc::malformed, "R-SRF-5", of(soup->polygons.size(), prepared->faces, "faces"));
+  if (prepared.vertices && soup->vertices.size() != *prepared.vertices)
+    return broken(Errc::malformed, "R-SRF-5", of(soup->vertices.size(), *prepared.vertices, "vertices"));
+  if (soup->polygons.size() != prepared.faces)
+    return broken(Errc::malformed, "R-SRF-5", of(soup->polygons.size(), prepared.faces, "faces"));
   return std::move(*soup);
 }
 
-tl::expected<PolygonSoup, SurfaceError> read_polygons(const std::string& path) {
-  const auto named = [&](SurfaceError e) {
+tl::expected<PolygonSoup, Diagnostic> read_polygons(const std::string& path) {
+  const auto named = [&](Diagnostic e) {
     e.file = path;
     return e;
   };

@@ -4,22 +4,23 @@
 
 #include <string_view>
 
+#include <tactus/base/rule.h>
 #include <tactus/sim/surface/openmesh_io.h>
 #include <tactus/sim/surface/surface_file.h>
 
 namespace tactus::sim {
 
 /// An error of this library, with its place.
-tl::unexpected<SurfaceError> broken(Errc code, const char* rule, std::string detail, std::string file = {});
+tl::unexpected<Diagnostic> broken(Errc code, RuleName rule, std::string detail, std::string file = {});
 
 /// The name's ending in small letters.
 std::string surface_format(const std::string& path);
 
 /// err  R-SRF-1..5, 7
-tl::expected<PolygonSoup, SurfaceError> parse_polygons(std::string_view text, std::string_view format);
-tl::expected<PolygonSoup, SurfaceError> read_polygons(const std::string& path);
+tl::expected<PolygonSoup, Diagnostic> parse_polygons(std::string_view text, std::string_view format);
+tl::expected<PolygonSoup, Diagnostic> read_polygons(const std::string& path);
 
-/// Triangles of it, if they make a mesh.   err  R-SRF-5, R-SRF-6, R-MSH-n
-tl::expected<SurfaceFile, SurfaceError> make_surface(PolygonSoup&& soup);
+/// Triangles of it, if they make a mesh.   err  R-SRF-5, R-SRF-6, R-SRF-8..14
+tl::expected<SurfaceFile, Diagnostic> make_surface(PolygonSoup&& soup);
 
 }  // namespace tactus::sim

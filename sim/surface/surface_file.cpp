@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include <tactus/base/rule.h>
 #include <tactus/sim/surface/polygon_file.h>
 
 namespace tactus::sim {
@@ -38,7 +39,7 @@ bool append_fan(const Polygon& polygon, TriMesh& mesh) {
   return false;
 }
 
-tl::expected<void, SurfaceError> append(const Polygon& polygon, std::size_t face, SurfaceFile& file) {
+tl::expected<void, Diagnostic> append(const Polygon& polygon, std::size_t face, SurfaceFile& file) {
   if (polygon.size() == 3) {
     file.mesh.triangles.push_back({polygon[0], polygon[1], polygon[2]});
     return {};
@@ -72,39 +73,35 @@ void drop_unused_vertices(SurfaceFile& file) {
 
 }  // namespace
 
-tl::expected<SurfaceFile, SurfaceError> parse_surface(std::string_view text, std::string_view format) {
-  auto soup = parse_polygons(text, format);
-  if (!soup) return tl::unexpected(soup.error());
-  return make_surface(std::move(*soup));
+tl::expected<SurfaceFile, Diagnostic> parse_surface(std::string_view text, std::string_view format) {
+  TACTUS_TRY(auto soup, parse_polygons(text, format));
+  return make_surface(std::move(soup));
 }
 
-tl::expected<SurfaceFile, SurfaceError> make_surface(PolygonSoup&& soup) {
+tl::expected<SurfaceFile, Diagnostic> make_surface(PolygonSoup&& soup) {
   SurfaceFile file;
   file.mesh.vertices = std::move(soup.vertices);
-  for (std::size_t f = 0; f < soup.polygons.size(); ++f)
-    if (auto appended = append(soup.polygons[f], f, file); !appended) return tl::unexpected(appended.error());
-  const auto checked = check(file.mesh);
-  if (!checked) return tl::unexpected(SurfaceError{checked.error().error, {}, checked.error().element, {}});
+  for (std::size_t f = 0; f < soup.polygons.size(); ++f) TACTUS_CHECK(append(soup.polygons[f], f, file));
+  TACTUS_CHECK(check(file.mesh));
   drop_unused_vertices(file);
   return file;
 }
 
-tl::expected<SurfaceFile, SurfaceError> read_surface(const std::string& path) {
-  auto soup = read_polygons(path);
-  if (!soup) return tl::unexpected(soup.error());
-  return make_surface(std::move(*soup)).map_error([&](SurfaceError e) {
+tl::expected<SurfaceFile, Diagnostic> read_surface(const std::string& path) {
+  TACTUS_TRY(auto soup, read_polygons(path));
+  return make_surface(std::move(soup)).map_error([&](Diagnostic e) {
     e.file = path;
     return e;
   });
 }
 
-tl::expected<void, SurfaceError> write_surface(const std::string& path, const TriMesh& mesh) {
+tl::expected<void, Diagnostic> write_surface(const std::string& path, const TriMesh& mesh) {
   const auto text = openmesh_write(mesh, surface_format(path));
-  if (!text) return tl::unexpected(SurfaceError{fail(Errc::unsupported, "R-SRF-3").value(), path, 0, {}});
+  if (!text) return broken(Errc::unsupported, "R-SRF-3", "", path);
   std::ofstream out(path, std::ios::binary);
   out << *text;
   out.close();
-  if (!out) return tl::unexpected(SurfaceError{fail(Errc::io, "R-SRF-1").value(), path, 0, {}});
+  if (!out) return broken(Errc::io, "R-SRF-1", "", path);
   return {};
 }
 

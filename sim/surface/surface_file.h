@@ -14,12 +14,12 @@
 /// R-SRF-5   malformed       it holds more faces or vertices than could be read
 /// R-SRF-6   invalid         a polygon has fewer than 3 or more than 1024 corners, or no corner from which all of it is seen
 /// R-SRF-7   invalid         it holds no face
-/// R-MSH-1..7                the mesh is broken, see codec/base/tri_mesh.h
+/// R-SRF-8..14                the mesh is broken, see codec/base/tri_mesh.h
 #pragma once
 
 #include <string_view>
 
-#include <tactus/sim/surface/surface_error.h>
+#include <tactus/base/tri_mesh.h>
 
 namespace tactus::sim {
 
@@ -29,13 +29,13 @@ struct SurfaceFile {
   std::size_t unused_vertices = 0;  ///< of no face, left out
 };
 
-/// err  R-SRF-1..7, R-MSH-1..7
-tl::expected<SurfaceFile, SurfaceError> read_surface(const std::string& path);
+/// err  R-SRF-1..14
+tl::expected<SurfaceFile, Diagnostic> read_surface(const std::string& path);
 /// The same from memory; format is the name's ending, ".obj". The error names no file.
-tl::expected<SurfaceFile, SurfaceError> parse_surface(std::string_view text, std::string_view format);
+tl::expected<SurfaceFile, Diagnostic> parse_surface(std::string_view text, std::string_view format);
 
 /// The format follows from the name: OBJ, PLY and OFF as text, STL binary.
 /// pre  the mesh passed check().   err  R-SRF-1, R-SRF-3
-tl::expected<void, SurfaceError> write_surface(const std::string& path, const TriMesh& mesh);
+tl::expected<void, Diagnostic> write_surface(const std::string& path, const TriMesh& mesh);
 
 }  // namespace tactus::sim

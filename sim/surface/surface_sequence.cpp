@@ -8,6 +8,7 @@
 #include <set>
 #include <string_view>
 
+#include <tactus/base/rule.h>
 #include <tactus/sim/surface/polygon_file.h>
 
 namespace tactus::sim {
@@ -32,7 +33,7 @@ bool is_surface(const std::string& format) noexcept {
   return std::find(kFormats.begin(), kFormats.end(), format) != kFormats.end();
 }
 
-tl::expected<std::vector<std::string>, SurfaceError> surfaces_in(const std::string& folder) {
+tl::expected<std::vector<std::string>, Diagnostic> surfaces_in(const std::string& folder) {
   std::vector<std::string> files;
   std::set<std::string> formats;
   std::error_code error;
@@ -70,19 +71,17 @@ bool natural_less(const std::string& a, const std::string& b) noexcept {
   return a < b;  // "f1" and "f01": any fixed order
 }
 
-tl::expected<SurfaceSequence, SurfaceError> SurfaceSequence::open(const std::string& folder) {
-  auto files = surfaces_in(folder);
-  if (!files) return tl::unexpected(files.error());
+tl::expected<SurfaceSequence, Diagnostic> SurfaceSequence::open(const std::string& folder) {
+  TACTUS_TRY(auto files, surfaces_in(folder));
   SurfaceSequence out;
-  out.files_ = std::move(*files);
-  auto soup = read_polygons(out.files_[0]);
-  if (!soup) return tl::unexpected(soup.error());
-  out.polygons_ = soup->polygons;
-  out.vertices_ = soup->vertices.size();
+  out.files_ = std::move(files);
+  TACTUS_TRY(auto soup, read_polygons(out.files_[0]));
+  out.polygons_ = soup.polygons;
+  out.vertices_ = soup.vertices.size();
   std::set<std::uint32_t> used;
   for (const Polygon& polygon : out.polygons_) used.insert(polygon.begin(), polygon.end());
   out.used_.assign(used.begin(), used.end());
-  auto surface = make_surface(std::move(*soup));
+  auto surface = make_surface(std::move(soup));
   if (!surface) {
     surface.error().file = out.files_[0];
     return tl::unexpected(surface.error());
@@ -91,26 +90,25 @@ tl::expected<SurfaceSequence, SurfaceError> SurfaceSequence::open(const std::str
   return out;
 }
 
-tl::expected<std::vector<Vec3>, SurfaceError> SurfaceSequence::positions(std::size_t frame) const {
+tl::expected<std::vector<Vec3>, Diagnostic> SurfaceSequence::positions(std::size_t frame) const {
   const std::string& file = files_[frame];
-  const auto soup = read_polygons(file);
-  if (!soup) return tl::unexpected(soup.error());
-  if (soup->vertices.size() != vertices_)
+  TACTUS_TRY(const auto soup, read_polygons(file));
+  if (soup.vertices.size() != vertices_)
     return broken(Errc::invalid, "R-SEQ-4",
-                  std::to_string(soup->vertices.size()) + " vertices, the first frame has " + std::to_string(vertices_), file);
-  if (soup->polygons.size() != polygons_.size())
+                  std::to_string(soup.vertices.size()) + " vertices, the first frame has " + std::to_string(vertices_), file);
+  if (soup.polygons.size() != polygons_.size())
     return broken(Errc::invalid, "R-SEQ-4",
-                  std::to_string(soup->polygons.size()) + " faces, the first frame has " + std::to_string(polygons_.size()),
-                  file);
-  const auto differs = std::mismatch(polygons_.begin(), polygons_.end(), soup->polygons.begin());
+                  std::to_string(soup.polygons.size()) + " faces, the first frame has " + std::to_string(polygons_.size()), file);
+  const auto differs = std::mismatch(polygons_.begin(), polygons_.end(), soup.polygons.begin());
   if (differs.first != polygons_.end())
     return broken(Errc::invalid, "R-SEQ-4", "face " + std::to_string(differs.first - polygons_.begin()), file);
   std::vector<Vec3> out;
   out.reserve(used_.size());
   for (const std::uint32_t v : used_) {
-    const Vec3& p = soup->vertices[v];
+    const Vec3& p = soup.vertices[v];
     if (!(std::abs(p.x) <= 1e6 && std::abs(p.y) <= 1e6 && std::abs(p.z) <= 1e6))
-      return tl::unexpected(SurfaceError{fail(Errc::invalid, "R-MSH-1").value(), file, v, {}});
+      return tl::unexpected(
+          Diagnostic{.error = fail(Errc::invalid, "R-SRF-8").value(), .file = file, .kind = "vertex", .element = v});
     out.push_back(p);
   }
   return out;

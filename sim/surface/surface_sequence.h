@@ -7,26 +7,26 @@
 /// R-SEQ-2   invalid      it holds no surface file, or such of more than one format
 /// R-SEQ-3   unsupported  the files are STL, which does not say which vertex is which
 /// R-SEQ-4   invalid      a frame has another number of vertices than the first, or other faces
-/// R-SRF-n, R-MSH-n       a file is broken, see surface_file.h; triangles without area are refused in the first frame only
+/// R-SRF-n                a file is broken, see surface_file.h; triangles without area are refused in the first frame only
 #pragma once
 
 #include <span>
 #include <string>
 #include <vector>
 
-#include <tactus/sim/surface/surface_error.h>
+#include <tactus/base/tri_mesh.h>
 
 namespace tactus::sim {
 
 class SurfaceSequence {
  public:
-  /// Find the files and read the first.   err  R-SEQ-1..3, R-SRF-n, R-MSH-n
-  static tl::expected<SurfaceSequence, SurfaceError> open(const std::string& folder);
+  /// Find the files and read the first.   err  R-SEQ-1..3, R-SRF-n
+  static tl::expected<SurfaceSequence, Diagnostic> open(const std::string& folder);
 
   std::size_t size() const noexcept { return files_.size(); }
   const TriMesh& rest() const noexcept { return rest_; }
-  /// Positions of the vertices of rest(), [file's unit].   pre  frame < size().   err  R-SEQ-4, R-SRF-n, R-MSH-1
-  tl::expected<std::vector<Vec3>, SurfaceError> positions(std::size_t frame) const;
+  /// Positions of the vertices of rest(), [file's unit].   pre  frame < size().   err  R-SEQ-4, R-SRF-n
+  tl::expected<std::vector<Vec3>, Diagnostic> positions(std::size_t frame) const;
 
  private:
   std::vector<std::string> files_;

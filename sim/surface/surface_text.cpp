@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/rule.h>
 #include <tactus/sim/surface/surface_text.h>
 
 #include <algorithm>
@@ -13,14 +14,14 @@
 namespace tactus::sim {
 namespace {
 
-using Prepared = tl::expected<SurfaceText, SurfaceError>;
+using Prepared = tl::expected<SurfaceText, Diagnostic>;
 
-tl::unexpected<SurfaceError> broken(Errc code, const char* rule, std::string_view detail) {
+tl::unexpected<Diagnostic> broken(Errc code, RuleName rule, std::string_view detail) {
   constexpr std::size_t kLongest = 60;
-  return tl::unexpected(SurfaceError{fail(code, rule).value(), {}, 0, std::string(detail.substr(0, kLongest))});
+  return tl::unexpected(Diagnostic{.error = fail(code, rule).value(), .detail = std::string(detail.substr(0, kLongest))});
 }
-tl::unexpected<SurfaceError> malformed(std::string_view detail) { return broken(Errc::malformed, "R-SRF-4", detail); }
-tl::unexpected<SurfaceError> malformed_line(std::size_t number, std::string_view line) {
+tl::unexpected<Diagnostic> malformed(std::string_view detail) { return broken(Errc::malformed, "R-SRF-4", detail); }
+tl::unexpected<Diagnostic> malformed_line(std::size_t number, std::string_view line) {
   return malformed("line " + std::to_string(number) + ", '" + std::string(line.substr(0, 40)) + '\'');
 }
 
@@ -70,7 +71,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
 }
 
 /// What a header announces must fit the limits and the bytes behind it.
-tl::expected<void, SurfaceError> check_counts(const SurfaceText& announced, std::size_t bytes) {
+tl::expected<void, Diagnostic> check_counts(const SurfaceText& announced, std::size_t bytes) {
   if (*announced.vertices > kMaxMeshVertices || announced.faces > kMaxMeshTriangles)
     return broken(Errc::limit_exceeded, "R-SRF-2",
                   std::to_string(*announced.vertices) + " vertices, " + std::to_string(announced.faces) + " faces");
@@ -99,7 +100,7 @@ Prepared prepare_obj(std::string_view text) {
     out.text += '\n';
     ++(kind == "v" ? *out.vertices : out.faces);
   }
-  if (auto counts = check_counts(out, out.text.size()); !counts) return tl::unexpected(counts.error());
+  TACTUS_CHECK(check_counts(out, out.text.size()));
   return out;
 }
 
@@ -138,7 +139,7 @@ Prepared prepare_off(std::string_view text) {
       if (header.size() != 4 || header[0] != "OFF" || !vertices || !faces) return malformed(line);
       out.vertices = *vertices;
       out.faces = *faces;
-      if (auto counts = check_counts(out, text.size()); !counts) return tl::unexpected(counts.error());
+      TACTUS_CHECK(check_counts(out, text.size()));
       out.text = "OFF\n" + std::to_string(*vertices) + ' ' + std::to_string(*faces) + " 0\n";
       continue;
     }
@@ -181,7 +182,7 @@ struct PlyHeader {
   std::string text = "ply\n";  ///< the same again without comments, in the words that OpenMesh knows
 };
 
-tl::expected<void, SurfaceError> read_ply_property(std::string_view rest, PlyHeader& header) {
+tl::expected<void, Diagnostic> read_ply_property(std::string_view rest, PlyHeader& header) {
   const std::string_view line = rest, word = take_word(rest);
   if (header.elements == 0) return malformed(line);
   if (header.elements > 2) return {};
@@ -206,7 +207,7 @@ tl::expected<void, SurfaceError> read_ply_property(std::string_view rest, PlyHea
   return {};
 }
 
-tl::expected<void, SurfaceError> read_ply_line(std::string_view line, PlyHeader& header) {
+tl::expected<void, Diagnostic> read_ply_line(std::string_view line, PlyHeader& header) {
   std::string_view rest = line;
   const std::string_view word = take_word(rest);
   if (word == "comment" || word == "obj_info") return {};
@@ -232,7 +233,7 @@ tl::expected<void, SurfaceError> read_ply_line(std::string_view line, PlyHeader&
   }
   header.ended = word == "end_header";
   header.text += "end_header\n";
-  return header.ended ? tl::expected<void, SurfaceError>() : malformed(line);
+  return header.ended ? tl::expected<void, Diagnostic>() : malformed(line);
 }
 
 /// True when the words of a line are what the columns ask for.
@@ -251,8 +252,8 @@ bool fits(const std::vector<std::string_view>& words, const std::vector<PlyColum
   return at == words.size();
 }
 
-tl::expected<void, SurfaceError> copy_text_body(std::string_view body, const PlyHeader& header, std::size_t number,
-                                                SurfaceText& out) {
+tl::expected<void, Diagnostic> copy_text_body(std::string_view body, const PlyHeader& header, std::size_t number,
+                                              SurfaceText& out) {
   std::size_t done = 0;
   for (; done < *out.vertices + out.faces && !body.empty(); ++number) {
     const std::string_view line = take_line(body);
@@ -265,7 +266,7 @@ tl::expected<void, SurfaceError> copy_text_body(std::string_view body, const Ply
   return {};
 }
 
-tl::expected<void, SurfaceError> copy_binary_body(std::string_view body, const PlyHeader& header, SurfaceText& out) {
+tl::expected<void, Diagnostic> copy_binary_body(std::string_view body, const PlyHeader& header, SurfaceText& out) {
   std::size_t at = 0;
   for (std::size_t e = 0; e < 2; ++e) {
     for (std::size_t i = 0; i < header.counts[e]; ++i) {
@@ -284,13 +285,11 @@ Prepared prepare_ply(std::string_view text) {
   if (take_line(text) != "ply") return malformed("no 'ply' in the first line");
   PlyHeader header;
   std::size_t number = 2;
-  for (; !text.empty() && !header.ended; ++number)
-    if (auto read = read_ply_line(take_line(text), header); !read) return tl::unexpected(read.error());
+  for (; !text.empty() && !header.ended; ++number) TACTUS_CHECK(read_ply_line(take_line(text), header));
   if (!header.ended || header.elements < 2) return malformed("header");
   SurfaceText out{header.text, ".ply", header.counts[1], header.counts[0]};
-  if (auto counts = check_counts(out, text.size()); !counts) return tl::unexpected(counts.error());
-  auto copied = header.binary ? copy_binary_body(text, header, out) : copy_text_body(text, header, number, out);
-  if (!copied) return tl::unexpected(copied.error());
+  TACTUS_CHECK(check_counts(out, text.size()));
+  TACTUS_CHECK(header.binary ? copy_binary_body(text, header, out) : copy_text_body(text, header, number, out));
   return out;
 }
 
@@ -335,7 +334,7 @@ Prepared prepare_stl(std::string_view text) {
 
 }  // namespace
 
-tl::expected<SurfaceText, SurfaceError> prepare_surface(std::string_view text, std::string_view format) {
+tl::expected<SurfaceText, Diagnostic> prepare_surface(std::string_view text, std::string_view format) {
   if (format == ".obj") return prepare_obj(text);
   if (format == ".off") return prepare_off(text);
   if (format == ".ply") return prepare_ply(text);

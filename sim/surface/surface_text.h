@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include <tactus/sim/surface/surface_error.h>
+#include <tactus/base/tri_mesh.h>
 
 namespace tactus::sim {
 
@@ -18,6 +18,6 @@ struct SurfaceText {
 };
 
 /// err  R-SRF-2, R-SRF-3, R-SRF-4
-tl::expected<SurfaceText, SurfaceError> prepare_surface(std::string_view text, std::string_view format);
+tl::expected<SurfaceText, Diagnostic> prepare_surface(std::string_view text, std::string_view format);
 
 }  // namespace tactus::sim

@@ -13,6 +13,7 @@
 #include <optional>
 #include <sstream>
 
+#include <tactus/base/rule.h>
 #include <tactus/sim/surface/program.h>
 #include <tactus/sim/surface/solid.h>
 #include <tactus/sim/tets/tet_files.h>
@@ -25,18 +26,18 @@ namespace fs = std::filesystem;
 constexpr double kVolumeTolerance = 1e-9;  // relative; TetGen writes 16 digits
 constexpr double kSamePlace = 1e-12;       // of the surface's size; likewise
 
-tl::unexpected<SurfaceError> broken(Errc code, const char* rule, std::string detail) {
-  return tl::unexpected(SurfaceError{fail(code, rule).value(), {}, 0, std::move(detail)});
+tl::unexpected<Diagnostic> broken(Errc code, RuleName rule, std::string detail) {
+  return tl::unexpected(Diagnostic{.error = fail(code, rule).value(), .detail = std::move(detail)});
 }
 
-tl::expected<void, SurfaceError> check_options(const FillOptions& options) {
+tl::expected<void, Diagnostic> check_options(const FillOptions& options) {
   const bool volume = options.max_volume == 0 || (std::isfinite(options.max_volume) && options.max_volume > 0);
   const bool quality = options.quality == 0 || (std::isfinite(options.quality) && options.quality >= 1.1);
   if (!volume || !quality || !(options.time_limit > 0)) return broken(Errc::invalid_argument, "R-TGN-7", "");
   return {};
 }
 
-tl::expected<void, SurfaceError> check_places(const TriMesh& mesh) {
+tl::expected<void, Diagnostic> check_places(const TriMesh& mesh) {
   std::vector<std::uint32_t> order(mesh.vertices.size());
   std::iota(order.begin(), order.end(), 0U);
   const auto key = [&](std::uint32_t v) {
@@ -51,10 +52,9 @@ tl::expected<void, SurfaceError> check_places(const TriMesh& mesh) {
   return {};
 }
 
-tl::expected<void, SurfaceError> check_volume(const TriMesh& mesh, const FillOptions& options) {
-  const auto solid = solid_within(mesh);
-  if (!solid) return tl::unexpected(solid.error());
-  if (options.max_volume > 0 && solid->volume / options.max_volume > static_cast<double>(kMaxTets))
+tl::expected<void, Diagnostic> check_volume(const TriMesh& mesh, const FillOptions& options) {
+  TACTUS_TRY(const auto solid, solid_within(mesh));
+  if (options.max_volume > 0 && solid.volume / options.max_volume > static_cast<double>(kMaxTets))
     return broken(Errc::limit_exceeded, "R-TGN-5", "");
   return {};
 }
@@ -104,7 +104,7 @@ class TetGen {
         deadline_(std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::nanoseconds>(
                                                          std::chrono::duration<double>(std::min(options.time_limit, 1e6)))) {}
 
-  tl::expected<ProgramResult, SurfaceError> run(const std::string& switches) const {
+  tl::expected<ProgramResult, Diagnostic> run(const std::string& switches) const {
     auto result = run_program({options_.program, switches, "surface.smesh"}, folder_, deadline_);
     if (result) return *result;
     if (result.error() == ProgramFailure::not_there) return broken(Errc::unsupported, "R-TGN-1", options_.program);
@@ -113,7 +113,7 @@ class TetGen {
   }
 
   /// Why it gave up: it ends in the same way for every reason, but can be asked for facets that cut one another.
-  SurfaceError reason(const ProgramResult& failed) const {
+  Diagnostic reason(const ProgramResult& failed) const {
     const auto asked = run("-dz");
     if (!asked) return asked.error();
     if (const std::string facets = first_two_facets(asked->words); !facets.empty())
@@ -136,7 +136,7 @@ void restore_vertices(const TriMesh& surface, TetMesh& mesh) {
     if (norm(mesh.vertices[v] - surface.vertices[v]) <= near) mesh.vertices[v] = surface.vertices[v];
 }
 
-tl::expected<void, SurfaceError> check_filled(const TriMesh& surface, const TetMesh& mesh) {
+tl::expected<void, Diagnostic> check_filled(const TriMesh& surface, const TetMesh& mesh) {
   if (const auto checked = check(mesh); !checked)
     return broken(checked.error().error.code, "R-TGN-6", to_string(checked.error()));
   double sum = 0;
@@ -150,14 +150,12 @@ tl::expected<void, SurfaceError> check_filled(const TriMesh& surface, const TetM
 
 }  // namespace
 
-tl::expected<TetMesh, SurfaceError> fill(const TriMesh& surface, const FillOptions& options) {
-  if (const auto checked = check(surface); !checked)
-    return tl::unexpected(SurfaceError{checked.error().error, {}, checked.error().element, {}});
-  const auto ready = check_options(options)
-                         .and_then([&] { return check_closed(surface); })
-                         .and_then([&] { return check_places(surface); })
-                         .and_then([&] { return check_volume(surface, options); });
-  if (!ready) return tl::unexpected(ready.error());
+tl::expected<TetMesh, Diagnostic> fill(const TriMesh& surface, const FillOptions& options) {
+  TACTUS_CHECK(check(surface));
+  TACTUS_CHECK(check_options(options)
+                   .and_then([&] { return check_closed(surface); })
+                   .and_then([&] { return check_places(surface); })
+                   .and_then([&] { return check_volume(surface, options); }));
 
   const PrivateFolder folder;
   std::ofstream out(folder.path() / "surface.smesh", std::ios::binary);
@@ -166,14 +164,13 @@ tl::expected<TetMesh, SurfaceError> fill(const TriMesh& surface, const FillOptio
   if (!out) return broken(Errc::io, "R-TGN-6", "no room for temporary files");
 
   const TetGen tetgen(options, folder.path());
-  const auto done = tetgen.run(fill_switches(options));
-  if (!done) return tl::unexpected(done.error());
-  if (done->status != 0) return tl::unexpected(tetgen.reason(*done));
+  TACTUS_TRY(const auto done, tetgen.run(fill_switches(options)));
+  if (done.status != 0) return tl::unexpected(tetgen.reason(done));
   auto file = read_tet_mesh(folder.path() / "surface.1.ele");
   if (!file && file.error().error.code == Errc::limit_exceeded) return broken(Errc::limit_exceeded, "R-TGN-5", "");
-  if (!file) return tl::unexpected(tetgen.reason(*done));
+  if (!file) return tl::unexpected(tetgen.reason(done));
   restore_vertices(surface, file->mesh);
-  if (const auto sound = check_filled(surface, file->mesh); !sound) return tl::unexpected(sound.error());
+  TACTUS_CHECK(check_filled(surface, file->mesh));
   return std::move(file->mesh);
 }
 

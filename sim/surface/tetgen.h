@@ -12,10 +12,10 @@
 /// R-TGN-7   invalid_argument  an option is not finite or out of range
 /// R-TGN-8   invalid           the vertex named belongs to no triangle, or stands where another one does
 /// R-TGN-9   invalid           the tetrahedra's volume is not what the surface encloses (a cavity, or one part inside another)
-/// R-MSH-1..7                  the mesh is broken, see codec/base/tri_mesh.h
+/// R-SRF-8..14                  the mesh is broken, see codec/base/tri_mesh.h
 #pragma once
 
-#include <tactus/sim/surface/surface_error.h>
+#include <tactus/base/tri_mesh.h>
 #include <tactus/sim/tets/tet_mesh.h>
 
 namespace tactus::sim {
@@ -35,7 +35,7 @@ struct FillOptions {
 };
 
 /// out  passed check(); the surface's vertices first, with the same bits
-/// err  R-TGN-1..9, R-MSH-1..7
-tl::expected<TetMesh, SurfaceError> fill(const TriMesh& surface, const FillOptions& options);
+/// err  R-TGN-1..9, R-SRF-8..14
+tl::expected<TetMesh, Diagnostic> fill(const TriMesh& surface, const FillOptions& options);
 
 }  // namespace tactus::sim

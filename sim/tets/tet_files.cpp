@@ -1,140 +1,116 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/sim/tets/tet_files.h>
 
-#include <algorithm>
 #include <array>
 #include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <ostream>
 
-#include <tactus/base/shown.h>
+#include <tactus/base/rule.h>
 #include <tactus/sim/tets/tokenizer.h>
 
 namespace tactus::sim {
 namespace {
 
-using Read = tl::expected<void, MeshFileError>;
+using Read = tl::expected<void, Diagnostic>;
 
 constexpr std::size_t kMaxFileBytes = std::size_t{512} << 20;
 constexpr std::size_t kMaxAttributes = 64;
 constexpr std::size_t kNodeLine = 8, kEleLine = 10;  // bytes of the shortest: "0 0 0 0\n", "0 1 2 3 4\n"
-
-struct RuleText {
-  std::string_view rule;
-  const char* broken;
-  const char* remedy;
-};
-
-constexpr const char* kDamaged = "the file was cut or changed after it was written; copy it again from its source";
-
-constexpr std::array kRules{
-    RuleText{"R-MFL-1", "the file cannot be opened, read or written", "check that the path is right and that you may use it"},
-    RuleText{"R-MFL-2", "more than 512 MiB, 2^20 vertices or 2^22 tetrahedra", "make the mesh coarser"},
-    RuleText{"R-MFL-3", "the file ends before everything that it announces", kDamaged},
-    RuleText{"R-MFL-4", "not a number, or one that is too large", "mend the line"},
-    RuleText{"R-MFL-5", "not a finite number", "look for what went wrong when the mesh was made"},
-    RuleText{"R-MFL-6", "the line has more or fewer words than its place asks for, or a section is missing or doubled", kDamaged},
-    RuleText{"R-MFL-7", "not a mesh of linear tetrahedra in three dimensions as text in a known version",
-             "write it as .node and .ele, or with gmsh -3 -order 1 -format msh41 (or msh22), not binary"},
-    RuleText{"R-MFL-8", "numbers do not run on from 0 or 1, stand there twice, or name a vertex that is not there", kDamaged},
-    RuleText{"R-MFL-9", "there is no tetrahedron in it", "fill the surface first: `tactus mesh`, or gmsh -3"},
-    RuleText{"R-MFL-10", "the name ends in none of .node, .ele and .msh", "name it after what it holds"},
-};
 
 /// "<number> <dimension> <attributes> <markers 0|1>", all but the first may be missing.
 struct NodeHeader {
   std::size_t vertices = 0, dimension = 3, attributes = 0, markers = 0;
 };
 
-tl::expected<NodeHeader, MeshFileError> read_node_header(Tokenizer& words) {
+tl::expected<NodeHeader, Diagnostic> read_node_header(Tokenizer& words) {
   NodeHeader header;
-  TACTUS_MESH_CHECK(words.line());
-  TACTUS_MESH_CHECK(words.count(header.vertices, kMaxMeshVertices, kNodeLine));
-  if (words.has_word()) TACTUS_MESH_CHECK(words.number(header.dimension));
-  if (header.dimension != 3) return words.broken(Errc::unsupported, "R-MFL-7", std::to_string(header.dimension));
-  if (words.has_word()) TACTUS_MESH_CHECK(words.count(header.attributes, kMaxAttributes, 1));
-  if (words.has_word()) TACTUS_MESH_CHECK(words.count(header.markers, 1, 1));
-  TACTUS_MESH_CHECK(words.end_of_line());
+  TACTUS_CHECK(words.line());
+  TACTUS_CHECK(words.count(header.vertices, kMaxMeshVertices, kNodeLine));
+  if (words.has_word()) TACTUS_CHECK(words.number(header.dimension));
+  if (header.dimension != 3) return words.broken(Errc::unsupported, "R-TET-14", std::to_string(header.dimension));
+  if (words.has_word()) TACTUS_CHECK(words.count(header.attributes, kMaxAttributes, 1));
+  if (words.has_word()) TACTUS_CHECK(words.count(header.markers, 1, 1));
+  TACTUS_CHECK(words.end_of_line());
   return header;
 }
 
 /// The number at the front of a line; the first line's tells whether they run from 0 or from 1.
 Read expect_number(Tokenizer& words, std::size_t index, std::size_t& base) {
   std::size_t number = 0;
-  TACTUS_MESH_CHECK(words.number(number));
+  TACTUS_CHECK(words.number(number));
   if (index == 0 && number <= 1) base = number;
-  if (number != base + index) return words.broken(Errc::invalid, "R-MFL-8", std::to_string(number));
+  if (number != base + index) return words.broken(Errc::invalid, "R-TET-15", std::to_string(number));
   return {};
 }
 
 Read read_attributes(Tokenizer& words, std::size_t count, std::vector<double>& attributes) {
-  for (std::size_t i = 0; i < count; ++i) TACTUS_MESH_CHECK(words.number(attributes.emplace_back()));
+  for (std::size_t i = 0; i < count; ++i) TACTUS_CHECK(words.number(attributes.emplace_back()));
   return {};
 }
 
 /// out  the first vertex's number
-tl::expected<std::size_t, MeshFileError> read_node(Tokenizer& words, TetFile& file) {
-  const auto header = read_node_header(words);
-  if (!header) return tl::unexpected(header.error());
-  file.mesh.vertices.reserve(header->vertices);
+tl::expected<std::size_t, Diagnostic> read_node(Tokenizer& words, TetFile& file) {
+  TACTUS_TRY(const auto header, read_node_header(words));
+  file.mesh.vertices.reserve(header.vertices);
   std::size_t base = 0;
-  for (std::size_t i = 0; i < header->vertices; ++i) {
-    TACTUS_MESH_CHECK(words.line());
-    TACTUS_MESH_CHECK(expect_number(words, i, base));
-    TACTUS_MESH_CHECK(words.coordinates(file.mesh.vertices.emplace_back()));
-    TACTUS_MESH_CHECK(read_attributes(words, header->attributes, file.vertex_attributes));
-    if (header->markers == 1) TACTUS_MESH_CHECK(words.number(file.vertex_markers.emplace_back()));
-    TACTUS_MESH_CHECK(words.end_of_line());
+  for (std::size_t i = 0; i < header.vertices; ++i) {
+    TACTUS_CHECK(words.line());
+    TACTUS_CHECK(expect_number(words, i, base));
+    TACTUS_CHECK(words.coordinates(file.mesh.vertices.emplace_back()));
+    TACTUS_CHECK(read_attributes(words, header.attributes, file.vertex_attributes));
+    if (header.markers == 1) TACTUS_CHECK(words.number(file.vertex_markers.emplace_back()));
+    TACTUS_CHECK(words.end_of_line());
   }
-  if (words.next_line()) return words.broken(Errc::malformed, "R-MFL-6", words.word());
+  if (words.next_line()) return words.broken(Errc::malformed, "R-TET-13", words.word());
   return base;
 }
 
 /// "<number> <corners each> <attributes>", all but the first may be missing.
 Read read_ele(Tokenizer& words, std::size_t base, TetFile& file) {
   std::size_t tets = 0, corners = 4, attributes = 0;
-  TACTUS_MESH_CHECK(words.line());
-  TACTUS_MESH_CHECK(words.count(tets, kMaxTets, kEleLine));
-  if (words.has_word()) TACTUS_MESH_CHECK(words.number(corners));
-  if (corners != 4) return words.broken(Errc::unsupported, "R-MFL-7", std::to_string(corners));
-  if (words.has_word()) TACTUS_MESH_CHECK(words.count(attributes, kMaxAttributes, 1));
-  TACTUS_MESH_CHECK(words.end_of_line());
-  if (tets == 0) return words.broken(Errc::invalid, "R-MFL-9");
+  TACTUS_CHECK(words.line());
+  TACTUS_CHECK(words.count(tets, kMaxTets, kEleLine));
+  if (words.has_word()) TACTUS_CHECK(words.number(corners));
+  if (corners != 4) return words.broken(Errc::unsupported, "R-TET-14", std::to_string(corners));
+  if (words.has_word()) TACTUS_CHECK(words.count(attributes, kMaxAttributes, 1));
+  TACTUS_CHECK(words.end_of_line());
+  if (tets == 0) return words.broken(Errc::invalid, "R-TET-16");
   file.mesh.tets.reserve(tets);
   for (std::size_t i = 0; i < tets; ++i) {
-    TACTUS_MESH_CHECK(words.line());
-    TACTUS_MESH_CHECK(expect_number(words, i, base));
+    TACTUS_CHECK(words.line());
+    TACTUS_CHECK(expect_number(words, i, base));
     for (std::uint32_t& corner : file.mesh.tets.emplace_back()) {
       std::size_t number = 0;
-      TACTUS_MESH_CHECK(words.number(number));
+      TACTUS_CHECK(words.number(number));
       if (number < base || number - base >= file.mesh.vertices.size())
-        return words.broken(Errc::invalid, "R-MFL-8", std::to_string(number));
+        return words.broken(Errc::invalid, "R-TET-15", std::to_string(number));
       corner = static_cast<std::uint32_t>(number - base);
     }
-    TACTUS_MESH_CHECK(read_attributes(words, attributes, file.tet_attributes));
-    TACTUS_MESH_CHECK(words.end_of_line());
+    TACTUS_CHECK(read_attributes(words, attributes, file.tet_attributes));
+    TACTUS_CHECK(words.end_of_line());
   }
-  if (words.next_line()) return words.broken(Errc::malformed, "R-MFL-6", words.word());
+  if (words.next_line()) return words.broken(Errc::malformed, "R-TET-13", words.word());
   return {};
 }
 
-tl::expected<std::string, MeshFileError> read_text(const std::string& path) {
-  const auto refused = [&](Errc code, const char* rule) {
-    return tl::unexpected(MeshFileError{fail(code, rule).value(), path, 0, {}});
+tl::expected<std::string, Diagnostic> read_text(const std::string& path) {
+  const auto refused = [&](Errc code, RuleName rule) {
+    return tl::unexpected(Diagnostic{.error = fail(code, rule).value(), .file = path});
   };
   std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) return refused(Errc::io, "R-MFL-1");
+  if (std::filesystem::is_directory(path, ignored)) return refused(Errc::io, "R-TET-8");
   std::ifstream in(path, std::ios::binary);
   std::string text;
   std::array<char, 1 << 16> piece{};
   while (in) {
     in.read(piece.data(), piece.size());
     const auto count = static_cast<std::size_t>(in.gcount());
-    if (count > kMaxFileBytes - text.size()) return refused(Errc::limit_exceeded, "R-MFL-2");
+    if (count > kMaxFileBytes - text.size()) return refused(Errc::limit_exceeded, "R-TET-9");
     text.append(piece.data(), count);
   }
-  if (!in.eof() || in.bad()) return refused(Errc::io, "R-MFL-1");
+  if (!in.eof() || in.bad()) return refused(Errc::io, "R-TET-8");
   return text;
 }
 
@@ -157,42 +133,29 @@ void append_vertices(std::string& text, const std::vector<Vec3>& vertices) {
 
 }  // namespace
 
-std::string to_string(const MeshFileError& error) {
-  const auto* text = std::find_if(kRules.begin(), kRules.end(), [&](const RuleText& r) { return r.rule == error.error.rule; });
-  std::string place = shown_path(error.file);
-  if (error.line > 0) place += ':' + std::to_string(error.line);
-  if (!error.word.empty()) place += ": '" + shown(error.word) + '\'';
-  if (text == kRules.end()) return place + ": " + error.error.rule;
-  return place + ": " + error.error.rule + ": " + text->broken + "; " + text->remedy;
-}
-
-tl::expected<TetFile, MeshFileError> parse_node_ele(std::string_view node, std::string_view ele) {
+tl::expected<TetFile, Diagnostic> parse_node_ele(std::string_view node, std::string_view ele) {
   TetFile file;
   Tokenizer nodes(node, ".node", Tokenizer::Comments::hash), elements(ele, ".ele", Tokenizer::Comments::hash);
-  const auto base = read_node(nodes, file);
-  if (!base) return tl::unexpected(base.error());
-  TACTUS_MESH_CHECK(read_ele(elements, *base, file));
+  TACTUS_TRY(const auto base, read_node(nodes, file));
+  TACTUS_CHECK(read_ele(elements, base, file));
   return file;
 }
 
-tl::expected<TetFile, MeshFileError> read_tet_mesh(const std::string& path) {
+tl::expected<TetFile, Diagnostic> read_tet_mesh(const std::string& path) {
   const std::filesystem::path name(path);
   if (name.extension() == ".msh") {
-    const auto text = read_text(path);
-    if (!text) return tl::unexpected(text.error());
-    return parse_msh(*text).map_error([&](MeshFileError e) {
+    TACTUS_TRY(const auto text, read_text(path));
+    return parse_msh(text).map_error([&](Diagnostic e) {
       e.file = path;
       return e;
     });
   }
   if (name.extension() != ".node" && name.extension() != ".ele")
-    return tl::unexpected(MeshFileError{fail(Errc::unsupported, "R-MFL-10").value(), path, 0, {}});
+    return tl::unexpected(Diagnostic{.error = fail(Errc::unsupported, "R-TET-17").value(), .file = path});
   const std::string stem = path.substr(0, path.size() - name.extension().string().size());
-  const auto node = read_text(stem + ".node");
-  if (!node) return tl::unexpected(node.error());
-  const auto ele = read_text(stem + ".ele");
-  if (!ele) return tl::unexpected(ele.error());
-  return parse_node_ele(*node, *ele).map_error([&](MeshFileError e) {
+  TACTUS_TRY(const auto node, read_text(stem + ".node"));
+  TACTUS_TRY(const auto ele, read_text(stem + ".ele"));
+  return parse_node_ele(node, ele).map_error([&](Diagnostic e) {
     e.file = stem + e.file;
     return e;
   });

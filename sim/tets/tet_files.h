@@ -3,17 +3,17 @@
 /// believed: numbers are whole and finite, counts fit the bytes that are left before anything is reserved for them.
 ///
 /// rule      class           broken when
-/// R-MFL-1   io              the file cannot be opened, read or written
-/// R-MFL-2   limit_exceeded  it is larger than 512 MiB, or announces more than 2^20 vertices or 2^22 tetrahedra
-/// R-MFL-3   truncated       it ends before everything announced was there
-/// R-MFL-4   malformed       a number is expected, and the word is none or does not fit its type
-/// R-MFL-5   invalid         a number is NaN or infinite
-/// R-MFL-6   malformed       a line has more or fewer words than its place asks for, or a section is missing or stands there twice
-/// R-MFL-7   unsupported     not three dimensions, not linear tetrahedra, a binary .msh, or another version than 2.2 and 4.1
-/// R-MFL-8   invalid         vertices or tetrahedra are not numbered one by one from 0 or 1 (.node, .ele), a vertex number stands there
+/// R-TET-8   io              the file cannot be opened, read or written
+/// R-TET-9   limit_exceeded  it is larger than 512 MiB, or announces more than 2^20 vertices or 2^22 tetrahedra
+/// R-TET-10   truncated       it ends before everything announced was there
+/// R-TET-11   malformed       a number is expected, and the word is none or does not fit its type
+/// R-TET-12   invalid         a number is NaN or infinite
+/// R-TET-13   malformed       a line has more or fewer words than its place asks for, or a section is missing or stands there twice
+/// R-TET-14   unsupported     not three dimensions, not linear tetrahedra, a binary .msh, or another version than 2.2 and 4.1
+/// R-TET-15   invalid         vertices or tetrahedra are not numbered one by one from 0 or 1 (.node, .ele), a vertex number stands there
 ///                           twice, or a tetrahedron names a vertex that is not there
-/// R-MFL-9   invalid         it holds no tetrahedron
-/// R-MFL-10  unsupported     the name does not end in .node, .ele or .msh
+/// R-TET-16   invalid         it holds no tetrahedron
+/// R-TET-17  unsupported     the name does not end in .node, .ele or .msh
 #pragma once
 
 #include <iosfwd>
@@ -23,14 +23,6 @@
 #include <tactus/sim/tets/tet_mesh.h>
 
 namespace tactus::sim {
-
-struct MeshFileError {
-  Error error;
-  std::string file;
-  std::size_t line = 0;  ///< from 1; 0: the file as a whole
-  std::string word;      ///< what stands at the place, if that is the fault
-};
-std::string to_string(const MeshFileError& error);  ///< "m.node:12: 'oops': R-MFL-4: not a number; ..." with remedy
 
 /// A mesh as it stands in a file; whether it makes sense is for check() to say.
 struct TetFile {
@@ -43,12 +35,12 @@ struct TetFile {
   std::size_t ignored_vertices = 0;          ///< .msh: vertices of no tetrahedron
 };
 
-/// Read .msh, or .node and .ele beside one another (either may be named).   err  R-MFL-1..10
-tl::expected<TetFile, MeshFileError> read_tet_mesh(const std::string& path);
+/// Read .msh, or .node and .ele beside one another (either may be named).   err  R-TET-8..17
+tl::expected<TetFile, Diagnostic> read_tet_mesh(const std::string& path);
 
-/// The same from memory; the error's file is empty, ".node" or ".ele".   err  R-MFL-2..9
-tl::expected<TetFile, MeshFileError> parse_node_ele(std::string_view node, std::string_view ele);
-tl::expected<TetFile, MeshFileError> parse_msh(std::string_view text);
+/// The same from memory; the error's file is empty, ".node" or ".ele".   err  R-TET-9..16
+tl::expected<TetFile, Diagnostic> parse_node_ele(std::string_view node, std::string_view ele);
+tl::expected<TetFile, Diagnostic> parse_msh(std::string_view text);
 
 /// Numbered from 0, with the shortest digits that read back as the same bits.
 void write_node(std::ostream& out, const TetMesh& mesh);

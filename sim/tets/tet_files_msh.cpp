@@ -10,7 +10,7 @@
 namespace tactus::sim {
 namespace {
 
-using Read = tl::expected<void, MeshFileError>;
+using Read = tl::expected<void, Diagnostic>;
 
 constexpr std::size_t kTetType = 4;
 constexpr std::array<std::size_t, 4> kCurvedTetTypes{11, 29, 30, 31};
@@ -21,51 +21,51 @@ class MshReader {
  public:
   explicit MshReader(std::string_view text) : words_(text, "", Tokenizer::Comments::none) {}
 
-  tl::expected<TetFile, MeshFileError> read() {
-    TACTUS_MESH_CHECK(read_format());
-    while (words_.next_line()) TACTUS_MESH_CHECK(read_section(words_.word()));
-    if (!has_nodes_ || !has_elements_) return words_.broken(Errc::truncated, "R-MFL-3");
-    if (file_.mesh.tets.empty()) return words_.broken(Errc::invalid, "R-MFL-9");
+  tl::expected<TetFile, Diagnostic> read() {
+    TACTUS_CHECK(read_format());
+    while (words_.next_line()) TACTUS_CHECK(read_section(words_.word()));
+    if (!has_nodes_ || !has_elements_) return words_.broken(Errc::truncated, "R-TET-10");
+    if (file_.mesh.tets.empty()) return words_.broken(Errc::invalid, "R-TET-16");
     drop_unused_vertices();
     return std::move(file_);
   }
 
  private:
   Read read_format() {
-    TACTUS_MESH_CHECK(expect("$MeshFormat"));
-    TACTUS_MESH_CHECK(words_.line());
+    TACTUS_CHECK(expect("$MeshFormat"));
+    TACTUS_CHECK(words_.line());
     const std::string_view version = words_.word();
     std::size_t binary = 0, real_bytes = 0;
-    TACTUS_MESH_CHECK(words_.number(binary));
-    TACTUS_MESH_CHECK(words_.number(real_bytes));
-    if (binary != 0) return words_.broken(Errc::unsupported, "R-MFL-7", "binary");
-    if (version != "4.1" && version != "2.2") return words_.broken(Errc::unsupported, "R-MFL-7", version);
+    TACTUS_CHECK(words_.number(binary));
+    TACTUS_CHECK(words_.number(real_bytes));
+    if (binary != 0) return words_.broken(Errc::unsupported, "R-TET-14", "binary");
+    if (version != "4.1" && version != "2.2") return words_.broken(Errc::unsupported, "R-TET-14", version);
     legacy_ = version == "2.2";
-    TACTUS_MESH_CHECK(words_.end_of_line());
+    TACTUS_CHECK(words_.end_of_line());
     return expect("$EndMeshFormat");
   }
 
   Read expect(std::string_view wanted) {
-    TACTUS_MESH_CHECK(words_.line());
-    if (const std::string_view found = words_.word(); found != wanted) return words_.broken(Errc::malformed, "R-MFL-6", found);
+    TACTUS_CHECK(words_.line());
+    if (const std::string_view found = words_.word(); found != wanted) return words_.broken(Errc::malformed, "R-TET-13", found);
     return words_.end_of_line();
   }
 
   Read read_section(std::string_view name) {
     if (name == "$Nodes") {
-      if (std::exchange(has_nodes_, true)) return words_.broken(Errc::malformed, "R-MFL-6", name);
-      TACTUS_MESH_CHECK(legacy_ ? read_nodes_2() : read_nodes_4());
+      if (std::exchange(has_nodes_, true)) return words_.broken(Errc::malformed, "R-TET-13", name);
+      TACTUS_CHECK(legacy_ ? read_nodes_2() : read_nodes_4());
       return expect("$EndNodes");
     }
     if (name == "$Elements") {
-      if (std::exchange(has_elements_, true) || !has_nodes_) return words_.broken(Errc::malformed, "R-MFL-6", name);
-      TACTUS_MESH_CHECK(sort_tags());
-      TACTUS_MESH_CHECK(legacy_ ? read_elements_2() : read_elements_4());
+      if (std::exchange(has_elements_, true) || !has_nodes_) return words_.broken(Errc::malformed, "R-TET-13", name);
+      TACTUS_CHECK(sort_tags());
+      TACTUS_CHECK(legacy_ ? read_elements_2() : read_elements_4());
       return expect("$EndElements");
     }
-    if (!name.starts_with('$')) return words_.broken(Errc::malformed, "R-MFL-6", name);
+    if (!name.starts_with('$')) return words_.broken(Errc::malformed, "R-TET-13", name);
     const std::string end = "$End" + std::string(name.substr(1));
-    do TACTUS_MESH_CHECK(words_.line());
+    do TACTUS_CHECK(words_.line());
     while (words_.word() != end);
     return {};
   }
@@ -73,15 +73,15 @@ class MshReader {
   /// number, then "tag x y z" each
   Read read_nodes_2() {
     std::size_t count = 0;
-    TACTUS_MESH_CHECK(words_.line());
-    TACTUS_MESH_CHECK(words_.count(count, kMaxMeshVertices, kNodeBytes));
-    TACTUS_MESH_CHECK(words_.end_of_line());
+    TACTUS_CHECK(words_.line());
+    TACTUS_CHECK(words_.count(count, kMaxMeshVertices, kNodeBytes));
+    TACTUS_CHECK(words_.end_of_line());
     reserve_vertices(count);
     for (std::size_t i = 0; i < count; ++i) {
-      TACTUS_MESH_CHECK(words_.line());
-      TACTUS_MESH_CHECK(read_tag());
-      TACTUS_MESH_CHECK(words_.coordinates(file_.mesh.vertices.emplace_back()));
-      TACTUS_MESH_CHECK(words_.end_of_line());
+      TACTUS_CHECK(words_.line());
+      TACTUS_CHECK(read_tag());
+      TACTUS_CHECK(words_.coordinates(file_.mesh.vertices.emplace_back()));
+      TACTUS_CHECK(words_.end_of_line());
     }
     return {};
   }
@@ -89,37 +89,37 @@ class MshReader {
   /// "blocks nodes lowest highest", then blocks of "dimension entity parametric nodes", tags, coordinates
   Read read_nodes_4() {
     std::size_t blocks = 0, count = 0;
-    TACTUS_MESH_CHECK(read_totals(blocks, count, kMaxMeshVertices, kNodeBytes));
+    TACTUS_CHECK(read_totals(blocks, count, kMaxMeshVertices, kNodeBytes));
     reserve_vertices(count);
     for (std::size_t b = 0; b < blocks; ++b) {
       std::array<std::int64_t, 3> entity{};  // dimension, tag, parametric
       std::size_t nodes = 0;
-      TACTUS_MESH_CHECK(words_.line());
-      for (std::int64_t& value : entity) TACTUS_MESH_CHECK(words_.number(value));
-      TACTUS_MESH_CHECK(words_.count(nodes, count - file_.mesh.vertices.size(), kNodeBytes));
-      TACTUS_MESH_CHECK(words_.end_of_line());
+      TACTUS_CHECK(words_.line());
+      for (std::int64_t& value : entity) TACTUS_CHECK(words_.number(value));
+      TACTUS_CHECK(words_.count(nodes, count - file_.mesh.vertices.size(), kNodeBytes));
+      TACTUS_CHECK(words_.end_of_line());
       for (std::size_t i = 0; i < nodes; ++i) {
-        TACTUS_MESH_CHECK(words_.line());
-        TACTUS_MESH_CHECK(read_tag());
-        TACTUS_MESH_CHECK(words_.end_of_line());
+        TACTUS_CHECK(words_.line());
+        TACTUS_CHECK(read_tag());
+        TACTUS_CHECK(words_.end_of_line());
       }
       for (std::size_t i = 0; i < nodes; ++i) {
-        TACTUS_MESH_CHECK(words_.line());
-        TACTUS_MESH_CHECK(words_.coordinates(file_.mesh.vertices.emplace_back()));
-        if (entity[2] == 0) TACTUS_MESH_CHECK(words_.end_of_line());  // else coordinates on the curve or surface follow
+        TACTUS_CHECK(words_.line());
+        TACTUS_CHECK(words_.coordinates(file_.mesh.vertices.emplace_back()));
+        if (entity[2] == 0) TACTUS_CHECK(words_.end_of_line());  // else coordinates on the curve or surface follow
       }
     }
-    if (file_.mesh.vertices.size() != count) return words_.broken(Errc::malformed, "R-MFL-6");
+    if (file_.mesh.vertices.size() != count) return words_.broken(Errc::malformed, "R-TET-13");
     return {};
   }
 
   Read read_totals(std::size_t& blocks, std::size_t& count, std::size_t most, std::size_t bytes) {
     std::size_t lowest = 0, highest = 0;
-    TACTUS_MESH_CHECK(words_.line());
-    TACTUS_MESH_CHECK(words_.count(blocks, kAnyNumber, kNodeBytes));
-    TACTUS_MESH_CHECK(words_.count(count, most, bytes));
-    TACTUS_MESH_CHECK(words_.number(lowest));
-    TACTUS_MESH_CHECK(words_.number(highest));
+    TACTUS_CHECK(words_.line());
+    TACTUS_CHECK(words_.count(blocks, kAnyNumber, kNodeBytes));
+    TACTUS_CHECK(words_.count(count, most, bytes));
+    TACTUS_CHECK(words_.number(lowest));
+    TACTUS_CHECK(words_.number(highest));
     return words_.end_of_line();
   }
 
@@ -130,7 +130,7 @@ class MshReader {
 
   Read read_tag() {
     std::size_t tag = 0;
-    TACTUS_MESH_CHECK(words_.number(tag));
+    TACTUS_CHECK(words_.number(tag));
     tags_.emplace_back(tag, static_cast<std::uint32_t>(tags_.size()));
     return {};
   }
@@ -139,29 +139,29 @@ class MshReader {
     std::sort(tags_.begin(), tags_.end());
     const auto twice =
         std::adjacent_find(tags_.begin(), tags_.end(), [](const auto& a, const auto& b) { return a.first == b.first; });
-    if (twice != tags_.end()) return words_.broken(Errc::invalid, "R-MFL-8", std::to_string(twice->first));
+    if (twice != tags_.end()) return words_.broken(Errc::invalid, "R-TET-15", std::to_string(twice->first));
     return {};
   }
 
   /// number, then "tag type tags... nodes..." each; the second tag is the volume
   Read read_elements_2() {
     std::size_t count = 0;
-    TACTUS_MESH_CHECK(words_.line());
-    TACTUS_MESH_CHECK(words_.count(count, kAnyNumber, kElementBytes));
-    TACTUS_MESH_CHECK(words_.end_of_line());
+    TACTUS_CHECK(words_.line());
+    TACTUS_CHECK(words_.count(count, kAnyNumber, kElementBytes));
+    TACTUS_CHECK(words_.end_of_line());
     for (std::size_t i = 0; i < count; ++i) {
       std::size_t number = 0, type = 0, tags = 0;
-      TACTUS_MESH_CHECK(words_.line());
-      TACTUS_MESH_CHECK(words_.number(number));
-      TACTUS_MESH_CHECK(words_.number(type));
-      TACTUS_MESH_CHECK(words_.number(tags));
+      TACTUS_CHECK(words_.line());
+      TACTUS_CHECK(words_.number(number));
+      TACTUS_CHECK(words_.number(type));
+      TACTUS_CHECK(words_.number(tags));
       std::int32_t region = 0;
       for (std::size_t t = 0; t < tags; ++t) {
         std::int32_t tag = 0;
-        TACTUS_MESH_CHECK(words_.number(tag));
+        TACTUS_CHECK(words_.number(tag));
         if (t == 1) region = tag;
       }
-      TACTUS_MESH_CHECK(read_element(type, region));
+      TACTUS_CHECK(read_element(type, region));
     }
     return {};
   }
@@ -169,42 +169,42 @@ class MshReader {
   /// "blocks elements lowest highest", then blocks of "dimension entity type elements" and "tag nodes..." each
   Read read_elements_4() {
     std::size_t blocks = 0, count = 0, done = 0;
-    TACTUS_MESH_CHECK(read_totals(blocks, count, kAnyNumber, kElementBytes));
+    TACTUS_CHECK(read_totals(blocks, count, kAnyNumber, kElementBytes));
     for (std::size_t b = 0; b < blocks; ++b) {
       std::size_t dimension = 0, type = 0, elements = 0;
       std::int32_t region = 0;
-      TACTUS_MESH_CHECK(words_.line());
-      TACTUS_MESH_CHECK(words_.number(dimension));
-      TACTUS_MESH_CHECK(words_.number(region));
-      TACTUS_MESH_CHECK(words_.number(type));
-      TACTUS_MESH_CHECK(words_.count(elements, count - done, kElementBytes));
-      TACTUS_MESH_CHECK(words_.end_of_line());
+      TACTUS_CHECK(words_.line());
+      TACTUS_CHECK(words_.number(dimension));
+      TACTUS_CHECK(words_.number(region));
+      TACTUS_CHECK(words_.number(type));
+      TACTUS_CHECK(words_.count(elements, count - done, kElementBytes));
+      TACTUS_CHECK(words_.end_of_line());
       for (std::size_t i = 0; i < elements; ++i) {
         std::size_t number = 0;
-        TACTUS_MESH_CHECK(words_.line());
-        TACTUS_MESH_CHECK(words_.number(number));
-        TACTUS_MESH_CHECK(read_element(type, region));
+        TACTUS_CHECK(words_.line());
+        TACTUS_CHECK(words_.number(number));
+        TACTUS_CHECK(read_element(type, region));
       }
       done += elements;
     }
-    if (done != count) return words_.broken(Errc::malformed, "R-MFL-6");
+    if (done != count) return words_.broken(Errc::malformed, "R-TET-13");
     return {};
   }
 
   /// The nodes of an element, up to the end of the line.
   Read read_element(std::size_t type, std::int32_t region) {
     if (std::find(kCurvedTetTypes.begin(), kCurvedTetTypes.end(), type) != kCurvedTetTypes.end())
-      return words_.broken(Errc::unsupported, "R-MFL-7", std::to_string(type));
+      return words_.broken(Errc::unsupported, "R-TET-14", std::to_string(type));
     if (type != kTetType) {
       ++file_.ignored_elements;
       return {};
     }
-    if (file_.mesh.tets.size() == kMaxTets) return words_.broken(Errc::limit_exceeded, "R-MFL-2");
+    if (file_.mesh.tets.size() == kMaxTets) return words_.broken(Errc::limit_exceeded, "R-TET-9");
     for (std::uint32_t& corner : file_.mesh.tets.emplace_back()) {
       std::size_t tag = 0;
-      TACTUS_MESH_CHECK(words_.number(tag));
+      TACTUS_CHECK(words_.number(tag));
       const auto found = std::lower_bound(tags_.begin(), tags_.end(), std::pair{tag, std::uint32_t{0}});
-      if (found == tags_.end() || found->first != tag) return words_.broken(Errc::invalid, "R-MFL-8", std::to_string(tag));
+      if (found == tags_.end() || found->first != tag) return words_.broken(Errc::invalid, "R-TET-15", std::to_string(tag));
       corner = found->second;
     }
     file_.regions.push_back(region);
@@ -236,6 +236,6 @@ class MshReader {
 
 }  // namespace
 
-tl::expected<TetFile, MeshFileError> parse_msh(std::string_view text) { return MshReader(text).read(); }
+tl::expected<TetFile, Diagnostic> parse_msh(std::string_view text) { return MshReader(text).read(); }
 
 }  // namespace tactus::sim

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/rule.h>
 #include <tactus/sim/tets/tet_mesh.h>
 
 #include <algorithm>
@@ -18,8 +19,8 @@ std::array<Face, 4> faces(const Tet& t) {
 constexpr double kMaxCoordinate = 1e6;     // [m]
 constexpr double kSmallestVolume = 1e-12;  // of the longest edge's cube
 
-tl::unexpected<MeshError> broken(Errc code, const char* rule, std::size_t element) {
-  return tl::unexpected(MeshError{fail(code, rule).value(), static_cast<std::uint32_t>(element)});
+tl::unexpected<Diagnostic> broken(RuleName rule, const char* kind, std::size_t element) {
+  return tl::unexpected(Diagnostic{.error = fail(Errc::invalid, rule).value(), .kind = kind, .element = element});
 }
 
 bool is_in_range(const Vec3& v) noexcept {  // false for NaN
@@ -34,16 +35,16 @@ bool is_flat(const TetMesh& mesh, std::size_t tet) noexcept {  // also when a co
   return std::abs(volume(mesh, tet)) <= kSmallestVolume * longest * longest * longest;
 }
 
-tl::expected<void, MeshError> check_elements(const TetMesh& mesh) {
+tl::expected<void, Diagnostic> check_elements(const TetMesh& mesh) {
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-    if (!is_in_range(mesh.vertices[v])) return broken(Errc::invalid, "R-TET-1", v);
+    if (!is_in_range(mesh.vertices[v])) return broken("R-TET-1", "vertex", v);
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
     for (const std::uint32_t v : mesh.tets[t])
-      if (v >= mesh.vertices.size()) return broken(Errc::invalid, "R-TET-2", t);
+      if (v >= mesh.vertices.size()) return broken("R-TET-2", "tetrahedron", t);
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-    if (is_flat(mesh, t)) return broken(Errc::invalid, "R-TET-3", t);
+    if (is_flat(mesh, t)) return broken("R-TET-3", "tetrahedron", t);
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-    if (volume(mesh, t) < 0) return broken(Errc::invalid, "R-TET-4", t);
+    if (volume(mesh, t) < 0) return broken("R-TET-4", "tetrahedron", t);
   return {};
 }
 
@@ -57,7 +58,7 @@ static_assert(kMaxMeshVertices <= std::size_t{1} << 20);
 /// True when the corners' order is an even permutation of the ascending one.
 bool is_even(const Face& f) noexcept { return ((f[0] < f[1]) + (f[1] < f[2]) + (f[0] < f[2])) % 2 == 1; }
 
-tl::expected<void, MeshError> check_faces(const TetMesh& mesh) {
+tl::expected<void, Diagnostic> check_faces(const TetMesh& mesh) {
   struct Side {
     std::uint64_t key;
     std::uint32_t tet;
@@ -76,16 +77,16 @@ tl::expected<void, MeshError> check_faces(const TetMesh& mesh) {
     const bool third = i >= 2 && sides[i].key == sides[i - 2].key;
     if (third || sides[i].even == sides[i - 1].even) first = std::min(first, sides[i].tet);
   }
-  if (first != kNone) return broken(Errc::invalid, "R-TET-5", first);
+  if (first != kNone) return broken("R-TET-5", "tetrahedron", first);
   return {};
 }
 
-tl::expected<void, MeshError> check_use(const TetMesh& mesh) {
+tl::expected<void, Diagnostic> check_use(const TetMesh& mesh) {
   std::vector<bool> used(mesh.vertices.size(), false);
   for (const Tet& tet : mesh.tets)
     for (const std::uint32_t v : tet) used[v] = true;
   const auto unused = std::find(used.begin(), used.end(), false);
-  if (unused != used.end()) return broken(Errc::invalid, "R-TET-6", static_cast<std::size_t>(unused - used.begin()));
+  if (unused != used.end()) return broken("R-TET-6", "vertex", static_cast<std::size_t>(unused - used.begin()));
   return {};
 }
 
@@ -146,8 +147,9 @@ Bounds bounds(std::span<const Vec3> points) noexcept {
   return box;
 }
 
-tl::expected<void, MeshError> check(const TetMesh& mesh) {
-  if (mesh.vertices.size() > kMaxMeshVertices || mesh.tets.size() > kMaxTets) return broken(Errc::limit_exceeded, "R-TET-7", 0);
+tl::expected<void, Diagnostic> check(const TetMesh& mesh) {
+  if (mesh.vertices.size() > kMaxMeshVertices || mesh.tets.size() > kMaxTets)
+    return tl::unexpected(Diagnostic{fail(Errc::limit_exceeded, "R-TET-7").value()});
   return check_elements(mesh).and_then([&] { return check_faces(mesh); }).and_then([&] { return check_use(mesh); });
 }
 

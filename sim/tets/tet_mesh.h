@@ -41,7 +41,7 @@ struct Bounds {
 Bounds bounds(std::span<const Vec3> points) noexcept;
 
 /// All rules above, the first broken one in element order.   time O(n log n); allocates.   err  R-TET-1..7
-tl::expected<void, MeshError> check(const TetMesh& mesh);
+tl::expected<void, Diagnostic> check(const TetMesh& mesh);
 
 /// The boundary faces, outward, and which vertex of the tetrahedral mesh each of its vertices is. Vertices keep their order, so a
 /// mesh whose vertices all lie on the surface keeps their numbers.

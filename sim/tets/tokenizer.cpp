@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/rule.h>
 #include <tactus/sim/tets/tokenizer.h>
 
 #include <algorithm>
@@ -8,6 +9,8 @@ namespace {
 
 constexpr std::string_view kBlank = " \t\r\f\v";
 constexpr std::size_t kLongestQuote = 40;  // bytes of a word that an error repeats
+
+std::string quoted(std::string_view word) { return word.empty() ? "" : '\'' + std::string(word.substr(0, kLongestQuote)) + '\''; }
 
 }  // namespace
 
@@ -24,9 +27,9 @@ bool Tokenizer::next_line() noexcept {
   return false;
 }
 
-tl::expected<void, MeshFileError> Tokenizer::line() {
+tl::expected<void, Diagnostic> Tokenizer::line() {
   if (next_line()) return {};
-  return broken(Errc::truncated, "R-MFL-3");
+  return broken(Errc::truncated, "R-TET-10");
 }
 
 bool Tokenizer::has_word() noexcept {
@@ -41,27 +44,27 @@ std::string_view Tokenizer::word() noexcept {
   return found;
 }
 
-tl::expected<void, MeshFileError> Tokenizer::count(std::size_t& value, std::size_t most, std::size_t bytes) {
-  TACTUS_MESH_CHECK(number(value));
-  if (value > most) return broken(Errc::limit_exceeded, "R-MFL-2", std::to_string(value));
-  if (value > (line_.size() + rest_.size() + 1) / bytes) return broken(Errc::truncated, "R-MFL-3", std::to_string(value));
+tl::expected<void, Diagnostic> Tokenizer::count(std::size_t& value, std::size_t most, std::size_t bytes) {
+  TACTUS_CHECK(number(value));
+  if (value > most) return broken(Errc::limit_exceeded, "R-TET-9", std::to_string(value));
+  if (value > (line_.size() + rest_.size() + 1) / bytes) return broken(Errc::truncated, "R-TET-10", std::to_string(value));
   return {};
 }
 
-tl::expected<void, MeshFileError> Tokenizer::coordinates(Vec3& value) {
-  TACTUS_MESH_CHECK(number(value.x));
-  TACTUS_MESH_CHECK(number(value.y));
+tl::expected<void, Diagnostic> Tokenizer::coordinates(Vec3& value) {
+  TACTUS_CHECK(number(value.x));
+  TACTUS_CHECK(number(value.y));
   return number(value.z);
 }
 
-tl::expected<void, MeshFileError> Tokenizer::end_of_line() {
-  if (const std::string_view left = word(); !left.empty()) return broken(Errc::malformed, "R-MFL-6", left);
+tl::expected<void, Diagnostic> Tokenizer::end_of_line() {
+  if (const std::string_view left = word(); !left.empty()) return broken(Errc::malformed, "R-TET-13", left);
   return {};
 }
 
-tl::unexpected<MeshFileError> Tokenizer::broken(Errc code, const char* rule, std::string_view word) const {
+tl::unexpected<Diagnostic> Tokenizer::broken(Errc code, RuleName rule, std::string_view word) const {
   return tl::unexpected(
-      MeshFileError{fail(code, rule).value(), std::string(file_), number_, std::string(word.substr(0, kLongestQuote))});
+      Diagnostic{.error = fail(code, rule).value(), .file = std::string(file_), .line = number_, .detail = quoted(word)});
 }
 
 }  // namespace tactus::sim

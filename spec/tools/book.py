@@ -116,8 +116,10 @@ class Book:
                 yield f"rules.csv: {rule} has a class that is not registered: {row['class']}"
             if row["chapter"] != "-" and rule not in self.defined:
                 yield f"rules.csv: {rule} is defined in no table of chapter {row['chapter']}"
-            if row["action"] not in ACTIONS or not row["text"].endswith(".") or not row["remedy"]:
+            if row["action"] not in ACTIONS or not row["text"].endswith(".") or not row["remedy"].endswith("."):
                 yield f"rules.csv: {rule} lacks an action, a sentence or a remedy"
+            if not row["fault"] or row["fault"].endswith("."):
+                yield f"rules.csv: the fault of {rule} is not the middle of a sentence"
         if list(self.rules) != sorted(self.rules, key=lambda r: (self.rules[r]["chapter"] == "-", self.rules[r]["chapter"],
                                                                  list(self.rules).index(r))):
             yield "rules.csv: rules of the format come first, by chapter"

@@ -18,6 +18,8 @@ FAULTS = [  # file, text, what it becomes, a word of the finding
     ("rules.csv", "R-API-3,invalid_argument", "R-API-3,wrong", "not registered"),
     ("rules.csv", "R-RIG-4,", "R-RIG-14,", "R-RIG-14 is defined in no table"),
     ("rules.csv", "R-RIG-4,invalid,40", "R-RIG-4,invalid,50", "names chapter 50"),
+    ("rules.csv", "R-RIG-3,invalid", "R-RIG-3,state", "rigid.py: R-RIG-3 is never invalid"),
+    ("rules.csv", '"this is not a Tactus stream"', '""', "the fault of R-STR-1"),
     ("rules.csv", ",drop", ",throw", "lacks an action"),
     ("rules.md", "R-RIG-4", "R-RIG-3", "make.py index"),
     ("00-overview.md", "(40-rigid.md)", "(41-rigid.md)", "no file 41-rigid.md"),

@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   const auto scene = sim::parse_scene(text, "/nowhere/scene.toml");
   if (!scene) {
-    const sim::SceneError& error = scene.error();
+    const Diagnostic& error = scene.error();
     require(std::string_view(error.error.rule).starts_with("R-") && !error.remedy.empty());
     require(error.line <= static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1);
     require(to_string(error).find(error.error.rule) != std::string::npos);

@@ -11,12 +11,12 @@
 
 namespace {
 
-using Read = tl::expected<tactus::sim::TetFile, tactus::sim::MeshFileError>;
+using Read = tl::expected<tactus::sim::TetFile, tactus::Diagnostic>;
 
 void check(const Read& file, std::string_view text) {
   if (!file) {
     require(file.error().line <= static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1);
-    require(to_string(file.error()).find("R-MFL-") != std::string::npos);
+    require(to_string(file.error()).find("R-TET-") != std::string::npos);
     return;
   }
   const tactus::sim::TetMesh& mesh = file->mesh;

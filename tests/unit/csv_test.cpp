@@ -27,7 +27,7 @@ struct Outcome {
   std::vector<TraceFrame> frames;
   CsvImport done;
   std::string rule;  // of the error, if there was one
-  CsvError error;
+  Diagnostic error;
 };
 
 Outcome import(std::string_view text, const CsvMapping& mapping) {
@@ -163,7 +163,7 @@ TEST(Csv, ExportReadsBackToTheSameBits) {
   ASSERT_TRUE(rows);
   EXPECT_EQ(rows->count(), 300u);
   const Outcome outcome = import(text.str(), preset("tactus"));
-  ASSERT_EQ(outcome.rule, "") << outcome.error.line << " " << outcome.error.column << " " << outcome.error.text;
+  ASSERT_EQ(outcome.rule, "") << to_string(outcome.error);
   EXPECT_EQ(outcome.info.tick_rate, 148u);
   EXPECT_EQ(outcome.info.users, recording.info.users);
   ASSERT_EQ(outcome.info.objects.size(), 2u);
@@ -242,24 +242,22 @@ TEST(Csv, LineEndsQuotesBlanksAndByteOrderMark) {
 }
 
 TEST(Csv, MistakesAreNamedWithTheirPlace) {
-  const auto check = [](std::string_view text, std::string_view rule, std::uint64_t line, std::string_view column,
-                        std::string_view field) {
+  const auto check = [](std::string_view text, std::string_view rule, std::string_view place) {
     const Outcome outcome = import(text, xyz());
     EXPECT_EQ(outcome.rule, rule) << text;
-    EXPECT_EQ(outcome.error.line, line) << text;
-    EXPECT_EQ(outcome.error.column, column) << text;
-    EXPECT_EQ(outcome.error.text, field) << text;
+    EXPECT_EQ(place_of(outcome.error), place) << text;
   };
-  check("", "R-CSV-1", 1, "", "");
-  check("x,y,z\n", "R-CSV-1", 2, "", "");
-  check("x,y\n1,2\n", "R-CSV-2", 1, "z", "");
-  check("x,y,z,x\n1,2,3,4\n", "R-CSV-2", 1, "x", "");
-  check("x,y,z\n1,2,3\n\n1,2\n", "R-CSV-3", 4, "", "");
-  check("x,y,z\n1,2,3,4\n", "R-CSV-3", 2, "", "");
+  check("", "R-CSV-1", "line 1");
+  check("x,y,z\n", "R-CSV-1", "line 2");
+  check("x,y\n1,2\n", "R-CSV-2", "line 1, column z");
+  check("x,y,z,x\n1,2,3,4\n", "R-CSV-2", "line 1, column x");
+  check("x,y,z\n1,2,3\n\n1,2\n", "R-CSV-3", "line 4");
+  check("x,y,z\n1,2,3,4\n", "R-CSV-3", "line 2");
   for (const char* bad : {"nan", "inf", "-inf", "1e999", "1.5x", "", "0x10", "1 2", "--1", "+1"})
-    check(std::string("x,y,z\n1,2,3\n4,") + bad + ",6\n", "R-CSV-4", 3, "y", bad);
-  check("x,y,z\n1,\"2\"3,4\n1,\"2\"x,3\n", "R-CSV-4", 3, "y", "2x");
-  check("x,y,z\n" + std::string((1u << 20) + (1u << 17), '1'), "R-CSV-6", 2, "", "");
+    check(std::string("x,y,z\n1,2,3\n4,") + bad + ",6\n", "R-CSV-4",
+          std::string("line 3, column y") + (*bad == 0 ? "" : std::string(", '") + bad + '\''));
+  check("x,y,z\n1,\"2\"3,4\n1,\"2\"x,3\n", "R-CSV-4", "line 3, column y, '2x'");
+  check("x,y,z\n" + std::string((1u << 20) + (1u << 17), '1'), "R-CSV-6", "line 2");
 }
 
 TEST(Csv, MappingsThatMakeNoSense) {

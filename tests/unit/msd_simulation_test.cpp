@@ -205,7 +205,7 @@ TEST(MsdScene, KeysAndTheirErrors) {
     ASSERT_FALSE(scene) << c.key;
     EXPECT_STREQ(scene.error().error.rule, c.rule) << c.key;
     EXPECT_EQ(scene.error().line, c.line) << c.key;
-    EXPECT_EQ(scene.error().key, c.key);
+    EXPECT_EQ(scene.error().detail, c.key);
   }
 }
 

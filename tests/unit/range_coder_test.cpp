@@ -55,7 +55,7 @@ void expect_round_trip(const std::vector<Symbol>& symbols) {
   Models models;
   for (std::size_t i = 0; i < symbols.size(); ++i)
     ASSERT_EQ(code(decoder, models, symbols[i]), symbols[i].value) << "symbol " << i;
-  EXPECT_EQ(decoder.broken_rule(), nullptr);
+  EXPECT_FALSE(decoder.broken_rule());
   EXPECT_FALSE(decoder.too_wide());
 }
 
@@ -145,7 +145,8 @@ TEST(RangeCoder, BrokenPayloadsAreNamed) {
     RangeDecoder decoder(payload);
     BitModel m;
     decoder.bit(m);
-    return std::string_view(decoder.broken_rule() ? decoder.broken_rule() : "");
+    const char* rule = decoder.broken_rule();
+    return std::string_view(rule != nullptr ? rule : "");
   };
   EXPECT_EQ(rule_after_one_bit({1, 2, 3, 4, 5}), "R-RNG-2");
   EXPECT_EQ(rule_after_one_bit({1, 0}), "R-RNG-3");

@@ -11,6 +11,9 @@
 #include <string>
 
 #include <tactus/sim/random.h>
+#include <tactus/sim/rigid/rigid_parts.h>
+
+#include "tests/unit/rule_fixture.h"
 
 namespace tactus::sim {
 namespace {
@@ -174,8 +177,9 @@ TEST(RigidWorld, BrokenStateStopsWithTheObjectAndTheTick) {
     ASSERT_FALSE(step) << force;
     EXPECT_EQ(step.error().error.code, Errc::invalid_argument);
     EXPECT_STREQ(step.error().error.rule, "R-SIM-1");
-    EXPECT_EQ(step.error().object, 1u);
-    EXPECT_EQ(step.error().tick, 3);
+    EXPECT_STREQ(step.error().kind, "object");
+    EXPECT_EQ(step.error().element, 1u);
+    EXPECT_EQ(step.error().step, 3);
   }
 }
 
@@ -277,6 +281,10 @@ TEST(RigidWorld, MoreContactsThanFitAreRefused) {
   EXPECT_STREQ(stepped.error().error.rule, "R-SIM-6");
   EXPECT_EQ(stepped.error().error.code, Errc::limit_exceeded);
   for (std::uint32_t i = 0; i < 200; ++i) EXPECT_EQ(world.sample(i).pose.position, cube.pose.position) << i;
+}
+
+TEST(RigidWorld, TheTableOfRulesNamesItsLimit) {
+  tactus::testing::expect_limits("R-SIM-6", {std::to_string(rigid::kMostTouching) + " contacts"});
 }
 
 }  // namespace

@@ -230,8 +230,9 @@ TEST(DeformableSimulation, DivergenceIsAnErrorWithARemedy) {
     for (const float value : simulation->frame().meshes[0].displacements) ASSERT_TRUE(std::isfinite(value));
     if (stepped) continue;
     EXPECT_STREQ(stepped.error().error.rule, "R-FEM-6");
-    EXPECT_EQ(stepped.error().tick, i);
-    EXPECT_EQ(stepped.error().object, 0u);
+    EXPECT_EQ(stepped.error().step, i);
+    EXPECT_STREQ(stepped.error().kind, "object");
+    EXPECT_EQ(stepped.error().element, 0u);
     EXPECT_NE(stepped.error().remedy.find("tr-bdf2"), std::string::npos) << stepped.error().remedy;
     return;
   }

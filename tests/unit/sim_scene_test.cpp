@@ -107,7 +107,7 @@ TEST(Scene, EveryRuleNamesItsPlace) {
     ASSERT_FALSE(scene) << c.why;
     EXPECT_STREQ(scene.error().error.rule, c.rule) << c.why;
     EXPECT_EQ(scene.error().line, c.line) << c.why;
-    EXPECT_EQ(scene.error().key, c.key) << c.why;
+    EXPECT_EQ(scene.error().detail, c.key) << c.why;
     EXPECT_EQ(scene.error().file, "t.toml") << c.why;
     EXPECT_FALSE(scene.error().remedy.empty()) << c.why;
     rules.insert(c.rule);
@@ -174,7 +174,7 @@ TEST(Scene, EveryShippedSceneLoadsByItsName) {
 TEST(Scene, WhatWouldTakeTooMuchIsRefusedBeforeItIsMade) {
   const auto error_of = [](const std::string& text) {
     const auto scene = parse_scene(text, "t.toml");
-    return scene ? SceneError{} : scene.error();
+    return scene ? Diagnostic{} : scene.error();
   };
   const std::string slab = "position = [0, 0, 0]\nyoung = 1e4\npoisson = 0.3\ndensity = 1000\n";
   const auto cells = [&](const std::string& n) {
@@ -183,9 +183,9 @@ TEST(Scene, WhatWouldTakeTooMuchIsRefusedBeforeItIsMade) {
   };
   EXPECT_STREQ(error_of(cells("[100, 100, 1]")).error.rule, Error{}.rule);
   for (const char* n : {"[300, 300, 1]", "[800, 800, 1]", "[1000, 1000, 1000]"}) {
-    const SceneError error = error_of(cells(n));
+    const Diagnostic error = error_of(cells(n));
     ASSERT_STREQ(error.error.rule, "R-SCN-6") << n;
-    EXPECT_EQ(error.key, "deformable.cells");
+    EXPECT_EQ(error.detail, "deformable.cells");
     EXPECT_NE(error.remedy.find("MB of memory"), std::string::npos) << error.remedy;
   }
   std::string several = cells("[140, 140, 1]");
@@ -196,9 +196,9 @@ TEST(Scene, WhatWouldTakeTooMuchIsRefusedBeforeItIsMade) {
   for (int i = 0; i < 4097; ++i)
     objects +=
         "[[object]]\nname = \"o" + std::to_string(i) + "\"\nsize = [1, 1, 1]\nmass = 1\nfriction = 0\nposition = [0, 0, 0]\n";
-  const SceneError error = error_of(objects);
+  const Diagnostic error = error_of(objects);
   EXPECT_STREQ(error.error.rule, "R-SCN-6");
-  EXPECT_EQ(error.key, "object");
+  EXPECT_EQ(error.detail, "object");
   EXPECT_NE(error.remedy.find("4097"), std::string::npos) << error.remedy;
 }
 

@@ -63,7 +63,7 @@ double enclosed(const TriMesh& mesh) {
   return sum;
 }
 
-void expect_broken(const tl::expected<SurfaceFile, SurfaceError>& file, std::string_view rule, std::string_view detail) {
+void expect_broken(const tl::expected<SurfaceFile, Diagnostic>& file, std::string_view rule, std::string_view detail) {
   ASSERT_FALSE(file) << rule;
   EXPECT_EQ(file.error().error.rule, rule) << to_string(file.error());
   EXPECT_EQ(file.error().detail, detail);
@@ -167,13 +167,13 @@ TEST(SurfaceFile, WhatOpenMeshDropsIsNoticed) {
   expect_broken(parse_surface(flat, ".stl"), "R-SRF-5", "3 of 4 faces");
   const auto index = parse_surface(replaced(kPly, "3 0 3 2", "3 0 3 9"), ".ply");
   ASSERT_FALSE(index);
-  EXPECT_EQ(to_string(index.error()).find("triangle 3: R-MSH-2: "), 0U);
+  EXPECT_EQ(to_string(index.error()).find("triangle 3: R-SRF-9: "), 0U);
 }
 
 TEST(SurfaceFile, BrokenMeshesNameTheirTriangle) {
   const auto turned = parse_surface(replaced(kOff, "3 0 3 2", "3 0 2 3"), ".off");
   ASSERT_FALSE(turned);
-  EXPECT_EQ(to_string(turned.error()).find("triangle 3: R-MSH-5: "), 0U) << to_string(turned.error());
+  EXPECT_EQ(to_string(turned.error()).find("triangle 3: R-SRF-12: "), 0U) << to_string(turned.error());
 }
 
 TEST(SurfaceFile, EveryPrefixIsRefused) {

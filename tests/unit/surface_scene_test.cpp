@@ -52,7 +52,7 @@ TEST(SurfaceScene, BadFilesNameFilePlaceRuleAndRemedy) {
                                   {"surface = \"words.obj\"", "R-SCN-8", "object.surface", "R-SRF-"},
                                   {"surface = \"open.obj\"", "R-SCN-8", "object.surface", "triangle 0: R-TGN-2"},
                                   {"surface = \"inward.obj\"", "R-SCN-8", "object.surface", "R-TGN-4"},
-                                  {"surface = \"fan.obj\"", "R-SCN-8", "object.surface", "R-MSH-4"},
+                                  {"surface = \"fan.obj\"", "R-SCN-8", "object.surface", "R-SRF-11"},
                                   {"surface = \"giant.obj\"", "R-SCN-6", "object.surface", "metres"},
                                   {"size = [1, 1, 1]\nsurface = \"corner.obj\"", "R-SCN-4", "object.size", "either"},
                                   {"", "R-SCN-4", "object.size", ""}};
@@ -60,7 +60,7 @@ TEST(SurfaceScene, BadFilesNameFilePlaceRuleAndRemedy) {
     const auto scene = load_scene(folder.write("t.toml", scene_text(c.surface)));
     ASSERT_FALSE(scene) << c.surface;
     EXPECT_STREQ(scene.error().error.rule, c.rule) << to_string(scene.error());
-    EXPECT_EQ(scene.error().key, c.key) << c.surface;
+    EXPECT_EQ(scene.error().detail, c.key) << c.surface;
     EXPECT_EQ(scene.error().line, c.surface.empty() ? 4u : 6u) << c.surface;
     EXPECT_NE(scene.error().remedy.find(c.says), std::string::npos) << scene.error().remedy;
   }

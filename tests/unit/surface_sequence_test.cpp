@@ -66,7 +66,7 @@ TEST(SurfaceSequence, EachRule) {
   EXPECT_EQ(rule_of_second("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"), "R-SEQ-4");
   EXPECT_EQ(rule_of_second("v 9 9 9\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 2 3 4\nf 2 4 5\n"), "R-SEQ-4");
   EXPECT_EQ(rule_of_second("v 9 9 9\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 2 3 5 4\n"), "R-SEQ-4");
-  EXPECT_EQ(rule_of_second("v 9 9 9\nv 0 0 0\nv 1 0 0\nv 1 1 2e6\nv 0 1 0\nf 2 3 4 5\n"), "R-MSH-1");
+  EXPECT_EQ(rule_of_second("v 9 9 9\nv 0 0 0\nv 1 0 0\nv 1 1 2e6\nv 0 1 0\nf 2 3 4 5\n"), "R-SRF-8");
   EXPECT_EQ(rule_of_second("v 0 0 0\n"), "R-SRF-7");
 }
 

@@ -7,6 +7,8 @@
 
 #include <tactus/sim/scene/scene.h>
 
+#include "tests/unit/rule_fixture.h"
+
 namespace tactus::sim {
 namespace {
 
@@ -47,6 +49,10 @@ TEST(TomlText, ScenesAreRefusedBeforeTheyAreParsed) {
   EXPECT_EQ(rule_of("[" + repeated("a.", 31000) + "a]"), "R-SCN-9");
   EXPECT_EQ(rule_of("#" + std::string(std::size_t{4} << 20, 'x')), "R-SCN-9");
   EXPECT_EQ(rule_of("a = "), "R-SCN-2");
+}
+
+TEST(TomlText, TheTableOfRulesNamesItsLimit) {
+  tactus::testing::expect_limits("R-SCN-9", {std::to_string(kMostTomlNesting) + " deep"});
 }
 
 }  // namespace

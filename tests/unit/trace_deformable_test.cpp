@@ -121,8 +121,8 @@ TEST(MeshTrace, WriterRefusesWhatATraceCannotHold) {
   };
   EXPECT_EQ(rule([](TraceInfo& i) { i.meshes[1].name = "blob"; }), "R-TRC-17");
   EXPECT_EQ(rule([](TraceInfo& i) { i.meshes[0].name = "a/b"; }), "R-TRC-17");
-  EXPECT_EQ(rule([](TraceInfo& i) { i.meshes[0].rest.vertices[0].x = HUGE_VAL; }), "R-MSH-1");
-  EXPECT_EQ(rule([](TraceInfo& i) { i.meshes[0].rest.triangles[2][1] = 4; }), "R-MSH-2");
+  EXPECT_EQ(rule([](TraceInfo& i) { i.meshes[0].rest.vertices[0].x = HUGE_VAL; }), "R-SRF-8");
+  EXPECT_EQ(rule([](TraceInfo& i) { i.meshes[0].rest.triangles[2][1] = 4; }), "R-SRF-9");
   EXPECT_EQ(rule([](TraceInfo& i) { i.meshes[0].fixed = {4}; }), "R-TRC-17");
   EXPECT_EQ(rule([](TraceInfo& i) { i.meshes[0].fixed = {1, 1}; }), "R-TRC-17");
   EXPECT_EQ(rule([](TraceInfo& i) { i.meshes[0].period = static_cast<double>(kNan); }), "R-TRC-17");
@@ -247,9 +247,9 @@ TEST(MeshTrace, ReaderTellsEachKindOfWrongMessage) {
   EXPECT_EQ(rule([](Forgery& f) { f.rest_.resize(f.rest_.size() + 8); }), "R-TRC-13");
   EXPECT_EQ(rule([](Forgery& f) { put_word(f.rest_, 0, 0xFFFFFFFF); }), "R-TRC-13") << "more triangles than bytes";
   EXPECT_EQ(rule([](Forgery& f) { put_word(f.rest_, 7, 0x0FFFFFFF); }), "R-TRC-13") << "more vertices than bytes";
-  EXPECT_EQ(rule([](Forgery& f) { put_word(f.rest_, 1, 4); }), "R-MSH-2");
-  EXPECT_EQ(rule([](Forgery& f) { put_word(f.rest_, 1, 1); }), "R-MSH-3");
-  EXPECT_EQ(rule([](Forgery& f) { put_word(f.rest_, 9, 0x7FF00000); }), "R-MSH-1") << "infinite";
+  EXPECT_EQ(rule([](Forgery& f) { put_word(f.rest_, 1, 4); }), "R-SRF-9");
+  EXPECT_EQ(rule([](Forgery& f) { put_word(f.rest_, 1, 1); }), "R-SRF-10");
+  EXPECT_EQ(rule([](Forgery& f) { put_word(f.rest_, 9, 0x7FF00000); }), "R-SRF-8") << "infinite";
   EXPECT_EQ(rule([](Forgery& f) { encode_mesh(f.rest_, {}); }), "R-TRC-14") << "displacements of another mesh";
   EXPECT_EQ(rule([](Forgery& f) { f.displacement_.pop_back(); }), "R-TRC-13");
   EXPECT_EQ(rule([](Forgery& f) { encode_displacements(f.displacement_, 0, std::vector<float>(11)); }), "R-TRC-14");

@@ -7,6 +7,7 @@
 #include <limits>
 #include <sstream>
 
+#include <tactus/base/rule.h>
 #include <tactus/metrics/deformable_errors.h>
 #include <tactus/metrics/rates.h>
 #include "tests/property/allocated.h"

@@ -13,6 +13,7 @@
 #include <tactus/trace/mcap_writer.h>
 #include <tactus/trace/messages.h>
 #include <tactus/trace/schemas.h>
+#include "tests/unit/rule_fixture.h"
 #include "tests/unit/trace_fixture.h"
 
 namespace tactus {
@@ -488,6 +489,12 @@ TEST(Mcap, ContactsNameTheFrameOfTheirObject) {
   CdrReader vector(message);
   vector.u32(), vector.u32();
   EXPECT_EQ(vector.text(), "world");
+}
+
+TEST(Trace, TheTableOfRulesNamesItsLimits) {
+  const mcap::ReadLimits limits;
+  testing::expect_limits("R-TRC-5", {testing::mib(limits.record_bytes), testing::mib(limits.declaration_bytes)});
+  EXPECT_EQ(limits.record_bytes, limits.chunk_bytes);
 }
 
 }  // namespace

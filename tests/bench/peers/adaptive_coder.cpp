@@ -58,7 +58,7 @@ class AdaptiveCoder final : public VertexCoder {
     std::array<std::uint32_t, 3> before{};
     for (Vec3i& v : values)
       for (std::size_t axis = 0; axis < 3; ++axis) v[axis] = code(coder, models_, axis, before[axis], 0);
-    return coder.broken_rule() == nullptr;
+    return !coder.broken_rule();
   }
 
  private:

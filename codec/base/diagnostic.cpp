@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/base/diagnostic.h>
+
+#include <array>
+#include <string_view>
+
+#include <tactus/base/shown.h>
+
+namespace tactus {
+namespace {
+
+constexpr std::size_t kMostOfDetail = 160;  // a place in our words and pieces of the file
+constexpr std::size_t kMostOfRemedy = 400;  // it may repeat what is in the file
+
+/// From the large to the small, without the line; some are empty.
+std::array<std::string, 3> parts_of(const Diagnostic& d) {
+  return {d.step < 0 ? "" : "step " + std::to_string(d.step), d.kind == nullptr ? "" : d.kind + (' ' + std::to_string(d.element)),
+          shown(d.detail, kMostOfDetail)};
+}
+
+/// A sentence as the end of a line: "Mend the line." is "mend the line".
+std::string as_clause(std::string_view sentence) {
+  if (sentence.ends_with('.')) sentence.remove_suffix(1);
+  std::string out = shown(sentence, kMostOfRemedy);
+  if (!out.empty() && out[0] >= 'A' && out[0] <= 'Z') out[0] = static_cast<char>(out[0] - 'A' + 'a');
+  return out;
+}
+
+}  // namespace
+
+std::string place_of(const Diagnostic& diagnostic) {
+  std::string out = diagnostic.line > 0 ? "line " + std::to_string(diagnostic.line) : "";
+  for (const std::string& part : parts_of(diagnostic))
+    if (!part.empty()) out += (out.empty() ? "" : ", ") + part;
+  return out;
+}
+
+std::string to_string(const Diagnostic& diagnostic) {
+  std::string file = shown_path(diagnostic.file);
+  if (diagnostic.line > 0) file += ':' + std::to_string(diagnostic.line);
+  std::string out = file.empty() ? "" : file + ": ";
+  for (const std::string& part : parts_of(diagnostic))
+    if (!part.empty()) out += part + ": ";
+  out += diagnostic.error.rule + std::string(": ") + describe(diagnostic.error);
+  const std::string mend = as_clause(diagnostic.remedy.empty() ? remedy(diagnostic.error) : diagnostic.remedy);
+  return mend.empty() ? out : out + "; " + mend;
+}
+
+}  // namespace tactus

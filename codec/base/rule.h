@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Errors are born here: a rule that is not in spec/rules.csv does not compile. Internal to the libraries.
+#pragma once
+
+#include <string_view>
+
+#include <tactus/base/result.h>
+
+namespace tactus {
+namespace detail {
+
+#define TACTUS_RULE(name, action, fault, remedy) name,
+inline constexpr std::string_view kRuleNames[] = {
+#include <tactus_rules.inc>
+};
+#undef TACTUS_RULE
+
+void not_in_rules_csv();  // not constexpr: calling it stops the compiler
+
+}  // namespace detail
+
+/// Name of a rule, such as "R-STR-4", or none (false).
+class RuleName {
+ public:
+  constexpr RuleName() = default;
+  consteval RuleName(const char* name) : name_(name) {  // not explicit: a literal is a rule
+    for (const std::string_view known : detail::kRuleNames)
+      if (known == name) return;
+    detail::not_in_rules_csv();
+  }
+  constexpr operator const char*() const noexcept { return name_; }  // as Error::rule
+
+ private:
+  const char* name_ = nullptr;
+};
+
+/// Make the unexpected value of any Result.   pre  `rule` is not none
+inline tl::unexpected<Error> fail(Errc code, RuleName rule, std::uint64_t bit_offset = 0) noexcept {
+#ifdef TACTUS_BREAK_ON_ERROR
+  break_on_error();
+#endif
+  return tl::unexpected<Error>(Error{code, rule, bit_offset});
+}
+
+/// The same error at another place of the input.
+inline tl::unexpected<Error> fail_at(const Error& error, std::uint64_t bit_offset) noexcept {
+  return tl::unexpected<Error>(Error{error.code, error.rule, bit_offset});
+}
+
+}  // namespace tactus
