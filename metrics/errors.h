@@ -20,9 +20,7 @@ class ErrorSeries {
 
   std::uint64_t ticks() const noexcept { return ticks_; }  ///< that had a sample
   std::uint64_t ticks_over() const noexcept { return ticks_over_; }
-  std::uint64_t longest_run() const noexcept {
-    return longest_run_;
-  }  ///< [ticks] from first to last over, none between that was not
+  std::uint64_t longest_run() const noexcept { return longest_run_; }  ///< [ticks] longest run of consecutive violating samples
   double rms() const noexcept;
   double max() const noexcept { return max_; }
 

@@ -204,8 +204,8 @@ void setup_decode(Command& app, Action& action) {
       ->required()
       ->type_name("FILE");
   add_interpolation(command, options->replica);
-  Option* like = command.add_option("--like", options->like, "Write the ticks that this trace has")->type_name("TRACE");
-  command.add_option("--ticks", options->ticks, "Write so many ticks [up to the last packet]")
+  Option* like = command.add_option("--like", options->like, "Write the ticks of this trace")->type_name("TRACE");
+  command.add_option("--ticks", options->ticks, "Number of ticks to write [up to the last packet]")
       ->check(whole_number(1, 0xffffffff))
       ->excludes(like);
   add_output_options(command, options->common);

@@ -93,9 +93,9 @@ Outcome run(const ExportMeshOptions& options) {
 void setup_export_mesh(Command& group, Action& action) {
   auto options = std::make_shared<ExportMeshOptions>();
   Command& command =
-      group.add_command("mesh", "A folder with one OBJ or PLY file for every new shape of a mesh, frame-000000 and on");
+      group.add_command("mesh", "A folder of OBJ or PLY files, frame-000000 and on, one for every new shape of a mesh");
   command.add_option("TRACE", options->input, "Trace to export (MCAP), - is standard input")->type_name("")->required();
-  command.add_option("-o,--output", options->output, "Folder to make")->type_name("FOLDER")->required();
+  command.add_option("-o,--output", options->output, "Folder to create")->type_name("FOLDER")->required();
   command.add_option("--mesh", options->mesh, "Name of the mesh [the only one]")->type_name("NAME");
   command.add_option("--format", options->format, "Kind of files: obj or ply [obj]")
       ->check(one_of({"obj", "ply"}))

@@ -163,17 +163,16 @@ void setup_import(Command& app, Action& action) {
   Command& group = app.add_command("import", "Make a trace from a recording");
   group.footer("Example:\n  tactus import csv tosses.csv.zst --preset cube-tosses -o tosses.mcap");
   Command& command = group.add_command("csv", "A table with one row per sample, plain or zstd");
-  Option* list = command.add_flag("--list-presets", options->list_presets, "Name the column mappings that are built in");
+  Option* list = command.add_flag("--list-presets", options->list_presets, "List the built-in column mappings");
   Option* input = command.add_option("FILE", options->input, "Table to read, - is standard input")->type_name("");
   Option* output =
       command.add_option("-o,--output", options->output, "Trace to write (MCAP), - is standard output")->type_name("FILE");
-  command.add_option("--preset", options->preset, "Column mapping that is built in")->type_name("NAME");
+  command.add_option("--preset", options->preset, "Built-in column mapping")->type_name("NAME");
   command.add_option("--map", options->maps, "Columns of one quantity, such as position=x,y,z; may be repeated")
       ->one_value()
       ->type_name("QUANTITY=COLUMNS");
   command.add_option("--time", options->time, "Column with the time in seconds")->type_name("COLUMN");
-  command.add_option("--segment", options->segment, "Column that tells one recording in the table from the next")
-      ->type_name("COLUMN");
+  command.add_option("--segment", options->segment, "Column that separates the recordings of a table")->type_name("COLUMN");
   command.add_option("--object", options->object, "Name of the object")->type_name("NAME");
   command.add_option("--user", options->user, "Name of the user")->type_name("NAME");
   add_quantity(command, "--length-unit", options->length_scale, Dimension::length, "Metres per unit of the table's lengths [1m]");

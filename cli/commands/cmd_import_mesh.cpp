@@ -123,7 +123,7 @@ void setup_import_mesh(Command& group, Action& action) {
       ->type_name("FILE")
       ->required();
   Option* rate = command.add_option("--rate", options->rate, "Frames per second [60]")->check(frame_rate)->type_name("HZ");
-  add_quantity(command, "--period", options->period, Dimension::time, "Time from frame to frame, instead of --rate")
+  add_quantity(command, "--period", options->period, Dimension::time, "Frame period, instead of --rate")
       ->check(within(Dimension::time, "1us", "1000s"))
       ->excludes(rate);
   add_quantity(command, "--length-unit", options->length_unit, Dimension::length, "Metres per unit of the files' lengths [1m]")

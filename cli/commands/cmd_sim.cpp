@@ -344,29 +344,30 @@ void setup_sim(Command& app, Action& action) {
   command.add_option("-o,--output", options->output, "Trace to write (MCAP), - is standard output")
       ->required()
       ->type_name("FILE");
-  command.add_option("--seed", options->seed, "Every random number follows from it")
+  command.add_option("--seed", options->seed, "Seed of the random number generator")
       ->check(whole_number(0, UINT64_MAX))
       ->show_default()
       ->type_name("N");
   add_quantity(command, "--duration", options->duration, Dimension::time, "Length [the scene's]");
   add_quantity(command, "--deformable-noise", options->mesh_noise, Dimension::length,
-               "White noise on the shapes that are recorded and sent, RMS per axis [0]");
+               "White noise added to recorded and sent shapes, RMS per axis [0]");
   const std::map<std::string, sim::Grip> grips{
       {"loose", sim::Grip::loose}, {"normal", sim::Grip::normal}, {"firm", sim::Grip::firm}};
   command
       .add_option(
           "--grip", [&grip = options->grip, grips](const std::string& name) { grip = grips.at(name); },
-          "How firmly the device is held: loose, normal or firm [the scene's]")
+          "Grip of the hand on the device: loose, normal or firm [the scene's]")
       ->check(one_of({"loose", "normal", "firm"}))
       ->type_name("GRIP");
-  command.add_option("--replay", options->replay, "Move the device as in this trace instead")->type_name("TRACE");
+  command.add_option("--replay", options->replay, "Replay the device samples of this trace instead of virtual hands")
+      ->type_name("TRACE");
   command.add_option("--method", options->method, "Time integration of deformable objects [the scene's]")
       ->check(one_of({"auto", "velocity-verlet", "backward-euler", "newmark", "tr-bdf2", "projective"}))
       ->type_name("NAME");
   command.add_option("--solver", options->solver, "Linear solver of implicit methods [the scene's]")
       ->check(one_of({"auto", "cg", "cholesky", "prefactored"}))
       ->type_name("NAME");
-  command.add_option("--rate", options->rate, "Ticks from deformation to deformation, 1 to 1000 [the scene's]")
+  command.add_option("--rate", options->rate, "Ticks between deformation steps, 1 to 1000 [the scene's]")
       ->check(whole_number(1, 1000))
       ->type_name("N");
   command
@@ -374,7 +375,7 @@ void setup_sim(Command& app, Action& action) {
                   "Also write the local stiffness of deformable objects (CSV, and a plot beside it)")
       ->type_name("FILE");
   command.add_flag("--codec", options->codec,
-                   "Close the loop through encoder, decoder and replica; so does every option from --stream to --layered");
+                   "Close the loop through encoder, decoder and replica; implied by every option from --stream to --layered");
   command.add_option("--stream", options->stream, "Also write the packets")->type_name("FILE");
   add_interpolation(command, options->replica);
   options->triggers.add_to(command);

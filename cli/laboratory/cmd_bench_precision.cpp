@@ -178,15 +178,15 @@ void setup_bench_precision(Command& bench, Action& action) {
   auto options = std::make_shared<PrecisionOptions>();
   Command& command = bench.add_command("precision", "Error against run time: methods, solvers and step sizes");
   const std::vector<std::string> names(std::begin(sim::study::kPrecisionScenes), std::end(sim::study::kPrecisionScenes));
-  command.add_option("--scene", options->scenes, "membrane, membrane-stiff or cantilever; several times for several [all]")
+  command.add_option("--scene", options->scenes, "membrane, membrane-stiff or cantilever; may be repeated [all]")
       ->check(one_of(names))
       ->type_name("SCENE");
-  command.add_option("-o,--output", options->folder, "Folder for report, tables and plots; a run that was stopped goes on there")
+  command.add_option("-o,--output", options->folder, "Folder for report, tables and plots; a stopped run is resumed")
       ->required()
       ->type_name("DIR");
   command.add_flag("--short", options->brief,
                    "Coarse meshes and few steps: about 30 s of CPU time with --runs 1 instead of half an hour");
-  command.add_option("--runs", options->runs, "Runs that a time is the median of")
+  command.add_option("--runs", options->runs, "Runs per measured time; the median is reported")
       ->show_default()
       ->check(whole_number(1, 1000))
       ->type_name("N");

@@ -98,11 +98,11 @@ Outcome run(const StabilityOptions& options) {
 
 void setup_bench_stability(Command& bench, Action& action) {
   auto options = std::make_shared<StabilityOptions>();
-  Command& command = bench.add_command("stability", "Where each part stops being stable, beside what theory says");
+  Command& command = bench.add_command("stability", "Stability limits of each part beside theory");
   command.add_option("--case", options->cases, "Only this: " + fmt::format("{}", fmt::join(case_names(), ", ")) + " [all]")
       ->check(one_of(case_names()))
       ->type_name("CASE");
-  command.add_flag("--short", options->brief, "A selection: about 10 s of CPU time instead of 10 minutes");
+  command.add_flag("--short", options->brief, "Run a selection: about 10 s of CPU time instead of 10 minutes");
   command.add_option("-o,--output", options->directory, "Folder for report.md, CSV, JSON and plots")->type_name("DIR");
   add_output_options(command, options->common);
   command.footer("Example:\n  tactus bench stability --short -o stability");

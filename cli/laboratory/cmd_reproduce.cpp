@@ -303,7 +303,7 @@ void setup_reproduce(Command& app, Action& action) {
   add_quantity(command, "--length-unit", options->length_unit, Dimension::length,
                "Metres per virtual length unit of the thesis [0.05m]")
       ->check(above_zero(Dimension::length));
-  command.add_option("--grip", options->grip, "How firmly the device is held: loose, normal or firm [normal]")
+  command.add_option("--grip", options->grip, "Grip of the hand on the device: loose, normal or firm [normal]")
       ->check(one_of({"loose", "normal", "firm"}))
       ->type_name("GRIP");
   add_report_options(command, options->common);

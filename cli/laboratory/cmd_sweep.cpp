@@ -255,11 +255,12 @@ void setup_sweep(Command& app, Action& action) {
   command.add_option("PLAN", options->plan, "TOML: the command, its parameters, what to measure and to draw")
       ->type_name("")
       ->required();
-  command.add_option("-o,--output", options->folder, "Folder to write or to go on with [out/NAME]")->type_name("DIR");
-  command.add_option("-j,--jobs", options->jobs, "Points computed at once [one per core]; 1 where times matter")
+  command.add_option("-o,--output", options->folder, "Folder of the results; an existing one is resumed [out/NAME]")
+      ->type_name("DIR");
+  command.add_option("-j,--jobs", options->jobs, "Points computed in parallel [one per core]; give 1 where times matter")
       ->check(whole_number(1, 1024))
       ->type_name("N");
-  command.add_flag("--list", options->list, "Print the commands and run none");
+  command.add_flag("--list", options->list, "Print the commands without running them");
   add_report_options(command, options->common);
   command.footer(
       "A sweep that was stopped goes on where it was: finished points are neither lost nor computed again.\n"

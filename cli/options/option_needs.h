@@ -11,7 +11,7 @@ namespace tactus::cli {
 
 class Command;
 
-/// What options are about. The sentences that miss it stand beside the tables.
+/// What an option applies to; messages for a missing subject are in option_needs.cpp.
 enum class Subject { rigid, user, mesh, touched_mesh, deformable, deformed, packets, surface };
 
 /// What a trace holds.

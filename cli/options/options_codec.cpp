@@ -68,13 +68,13 @@ Outcome check_no_terminal(const std::string& output) {
 void add_report_options(Command& app, CommonOptions& options) {
   options.command = &app;
   app.add_flag("--json", options.json, "Report as JSON, in SI units");
-  app.add_flag("-q,--quiet", options.quiet, "No progress and no table; --json still reports");
+  app.add_flag("-q,--quiet", options.quiet, "Print no progress and no table; --json still reports");
   app.add_flag("--no-progress", options.no_progress, "No progress bar");
 }
 
 void add_output_options(Command& app, CommonOptions& options) {
   add_report_options(app, options);
-  app.add_flag("-f,--force", options.force, "Replace output files that are there already");
+  app.add_flag("-f,--force", options.force, "Replace existing output files");
 }
 
 void TriggerArguments::add_to(Command& app) {
@@ -82,20 +82,21 @@ void TriggerArguments::add_to(Command& app) {
       {"isotropic", HapticRule::isotropic}, {"cone", HapticRule::cone}, {"fixed", HapticRule::fixed}, {"off", HapticRule::off}};
   const auto rule = [this, rules](const std::string& name) { triggers_.haptic = rules.at(name); };
   deadband_ = add_quantity(app, "-p,--deadband", triggers_.weber_fraction, Dimension::fraction,
-                           "Permitted share of force error, Weber's law [8%, deformable objects 2.5%]");
-  visual_option_ = add_pose_bound(app, "--visual", visual_, "Permitted error of pose to the eye [6mm,2deg]");
-  fixed_option_ = add_pose_bound(app, "--fixed", fixed_, "Permitted pose error in contact of the rule fixed [1.5mm,2deg]");
+                           "Weber fraction: largest relative error of the contact force [8%, deformable objects 2.5%]");
+  visual_option_ =
+      add_pose_bound(app, "--visual", visual_, "Visual threshold: largest shown error of position and rotation [6mm,2deg]");
+  fixed_option_ = add_pose_bound(app, "--fixed", fixed_, "Largest pose error in contact with --haptic fixed [1.5mm,2deg]");
   length_unit_option_ = add_quantity(app, "--length-unit", length_unit_, Dimension::length,
-                                     "Metres per unit of lengths typed without a unit in --visual and --fixed [1m]")
+                                     "Unit of lengths given without one in --visual and --fixed [1m]")
                             ->check(above_zero(Dimension::length));
-  haptic_ = app.add_option("--haptic", rule, "Permitted error of force: isotropic, cone, fixed or off [isotropic]")
+  haptic_ = app.add_option("--haptic", rule, "Haptic threshold: isotropic, cone, fixed or off [isotropic]")
                 ->check(one_of({"isotropic", "cone", "fixed", "off"}))
                 ->type_name("RULE");
   alpha_ = add_quantity(app, "--alpha", triggers_.cone_angle, Dimension::angle,
-                        "Permitted force direction error of the rule cone [2.1deg]")
+                        "Largest error of the force's direction with --haptic cone [2.1deg]")
                ->check(within(Dimension::angle, "0.001deg", "180deg"));
   floor_ = add_quantity(app, "--force-floor", triggers_.force_floor, Dimension::force,
-                        "Below this force the deadband is that of it [0.05N]")
+                        "Forces below this use the deadband at this force [0.05N]")
                ->check(above_zero(Dimension::force));
   options_ = {deadband_, visual_option_, haptic_, alpha_, fixed_option_, floor_, length_unit_option_};
   app.on_parsed([this] { check_lengths(); });  // only now --length-unit is known
@@ -122,12 +123,13 @@ void TriggerArguments::check_bound(const Option& option, const PoseBound& bound)
 }
 
 void TriggerArguments::add_encoder_to(Command& app) {
-  options_.push_back(add_quantity(app, "--heartbeat", triggers_.heartbeat, Dimension::time, "Longest silence, 0: unlimited [1s]")
-                         ->check(within(Dimension::time, "0s", "3600s")));
   options_.push_back(
-      add_quantity(app, "--key-interval", key_interval_, Dimension::time, "Time between places to seek to, 0: first only [5s]")
-          ->check(within(Dimension::time, "0s", "86400s")));
-  options_.push_back(app.add_flag("--no-reduction", no_reduction_, "Send every object in every tick"));
+      add_quantity(app, "--heartbeat", triggers_.heartbeat, Dimension::time, "Longest time without an update, 0: unlimited [1s]")
+          ->check(within(Dimension::time, "0s", "3600s")));
+  options_.push_back(add_quantity(app, "--key-interval", key_interval_, Dimension::time,
+                                  "Time between key packets, at which decoding can start; 0: the first only [5s]")
+                         ->check(within(Dimension::time, "0s", "86400s")));
+  options_.push_back(app.add_flag("--no-reduction", no_reduction_, "Send every object at every tick"));
 }
 
 std::optional<double> TriggerArguments::weber_fraction(std::optional<double> otherwise) const {
@@ -159,9 +161,10 @@ RigidTriggers TriggerArguments::over(RigidTriggers out) const {
 
 void MeshArguments::add_to(Command& app) {
   visual_ = add_quantity(app, "--deformable-visual", thresholds_.visual, Dimension::length,
-                         "Permitted error of a vertex to the eye, 0: none beyond the grid's [0.25mm]")
+                         "Visual threshold of a vertex of a deformable object, 0: exact to the grid [0.25mm]")
                 ->check(within(Dimension::length, "0m", "1000000m"));
-  rings_ = app.add_option("--rings", coding_.rings, "Rings of triangles around the touched one that -p holds in [3]")
+  rings_ = app.add_option("--rings", coding_.rings,
+                          "Area of interest: rings of triangles around the touched one in which -p holds [3]")
                ->check(whole_number(0, DeformableObject::kMaxRings))
                ->type_name("M");
   options_ = {visual_, rings_};
@@ -171,7 +174,7 @@ void MeshArguments::add_encoder_to(Command& app) {
   const std::map<std::string, DeformableProfile> profiles{{"thesis", DeformableProfile::thesis},
                                                           {"main", DeformableProfile::main}};
   const auto profile = [this, profiles](const std::string& name) { coding_.profile = profiles.at(name); };
-  Option* modes = app.add_option("--basis", modes_, "main: vibration modes that both ends know, 0: none [0]")
+  Option* modes = app.add_option("--basis", modes_, "main: vibration modes declared to both ends, 0: none [0]")
                       ->check(whole_number(0, ModeBasis::kMaxModes))
                       ->type_name("K");
   options_.insert(
@@ -189,7 +192,7 @@ void MeshArguments::add_encoder_to(Command& app) {
        app.add_option("--quant-bits", coding_.quant_bits, "thesis: bits of its quantiser, 1 to 12 [8]")
            ->check(whole_number(1, DeformableObject::kMaxQuantBits))
            ->type_name("Q"),
-       app.add_flag("--keep-models", coding_.models_kept, "thesis: entropy models live on from packet to packet"),
+       app.add_flag("--keep-models", coding_.models_kept, "thesis: keep adapting the entropy models from packet to packet"),
        app.add_flag("--layered", coding_.layered,
                     "Deformable objects that are touched: a haptic layer in a packet of its own before the visual one. Costs "
                     "a second header per update and 3 to 30 % of the bits")});
@@ -220,7 +223,7 @@ TraceCoding MeshArguments::coding() const {
 Option* add_interpolation(Command& app, ReplicaOptions& options) {
   return app.add_flag(
       "--interpolate", [&options] { options.interpolation = Interpolation::linear; },
-      "Smooth the replica: straight line and SLERP over 75 % of the usual gap, 5 to 100 ms");
+      "Smooth the replica: linear interpolation and SLERP over 75 % of the mean inter-arrival time, 5 to 100 ms");
 }
 
 }  // namespace tactus::cli

@@ -28,8 +28,8 @@ void traffic_rows(Table& table, const Report& r) {
   table.row({"  object updates in them", fmt::to_string(t.updates),
              fmt::format("{:.2f}", per(static_cast<double>(t.updates), r.seconds()))});
   // Every tick that the recording has is what would be sent without reduction.
-  const std::string all_updates = r.ticks.left_out() == 0 ? fmt::format("{} per second", r.tick_rate) : "one per tick recorded";
-  table.row({fmt::format("  fewer than {} and object", all_updates),
+  const std::string all_updates = r.ticks.left_out() == 0 ? fmt::format("{} /s", r.tick_rate) : "recorded ticks";
+  table.row({fmt::format("  update reduction vs {}", all_updates),
              percent(1 - per(static_cast<double>(t.updates), static_cast<double>(r.ticks.count() * r.moving)))});
   const RigidRates payload = rigid_rates(r, 0), datagram = rigid_rates(r, kUdpHeader);
   table.heading({"size", "payload", "with UDP/IPv4"});
@@ -38,8 +38,8 @@ void traffic_rows(Table& table, const Report& r) {
       {"  bytes per packet", fmt::format("{:.2f}", payload.bytes_per_packet), fmt::format("{:.2f}", datagram.bytes_per_packet)});
   table.row(
       {"  bytes per update", fmt::format("{:.2f}", payload.bytes_per_update), fmt::format("{:.2f}", datagram.bytes_per_update)});
-  table.row({"  smaller than raw 24-byte states", percent(payload.saved_24), percent(datagram.saved_24)});
-  table.row({"  smaller than raw 48-byte states", percent(payload.saved_48), percent(datagram.saved_48)});
+  table.row({"  compression vs 24-byte states", percent(payload.saved_24), percent(datagram.saved_24)});
+  table.row({"  compression vs 48-byte states", percent(payload.saved_48), percent(datagram.saved_48)});
 }
 
 std::string rule_name(const RigidTriggers& b) {

@@ -27,7 +27,7 @@ struct TraceDeformable {
   std::string name;
   TriMesh rest;                        ///< [m] world frame
   std::vector<std::uint32_t> fixed{};  ///< vertices that can never move, ascending
-  double period = 1;                   ///< ticks from shape to shape, as whoever made the recording meant it; > 0
+  double period = 1;                   ///< nominal frame period [ticks], > 0
 };
 
 struct TraceUser {

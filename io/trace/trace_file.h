@@ -39,7 +39,7 @@
 /// R-TRC-11  invalid           text is not UTF-8, or a key stands twice in a map
 /// R-TRC-12  invalid           the "tactus" or "tactus_bounds" metadata or the channels lack something or contradict each other
 /// R-TRC-13  malformed         a message is not CDR of its channel's type
-/// R-TRC-14  invalid           a value is NaN or infinite, a contact or stamp is none, or a mesh has another number of vertices
+/// R-TRC-14  invalid           a value is NaN or infinite, a contact or time stamp is invalid, or a mesh has another number of vertices
 /// R-TRC-15  invalid           ticks do not increase, a message's times disagree, or a tick lacks a message or has one twice
 /// R-TRC-16  unsupported       a foreign file without PoseStamped channels, or with one that begins after the look-ahead
 /// R-TRC-17  invalid_argument  TraceInfo: nothing to record, over 65535 channels, tick rate not in 1..1000000, dof bits, fixed

@@ -8,8 +8,8 @@
 
 #include <optional>
 
+#include <tactus/sim/fem/checked_integrator.h>
 #include <tactus/sim/fem/cholesky.h>
-#include <tactus/sim/fem/guarded.h>
 
 namespace tactus::sim {
 

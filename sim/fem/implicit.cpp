@@ -27,7 +27,7 @@ double Implicit::stage_step(Scheme scheme, double h) noexcept {
   return h;
 }
 
-Implicit::Implicit(FemModel& model, const IntegratorOptions& options, Scheme scheme, std::unique_ptr<Direction> direction)
+Implicit::Implicit(FemModel& model, const IntegratorOptions& options, Scheme scheme, std::unique_ptr<DescentDirection> direction)
     : CheckedIntegrator(model, options),
       scheme_(scheme),
       extrapolate_(options.method == Method::projective || options.solver == LinearSolver::prefactored),
@@ -59,17 +59,17 @@ tl::expected<StepReport, Diagnostic> Implicit::second_order() {
   StepReport report{0, 0, true};
   start_u_ = u_;
   start_v_ = v_;
-  if (!wild_) {
+  if (!fallback_) {
     stage_.c = stage_step(scheme_, h());
     auto done = scheme_ == Scheme::newmark ? trapezoidal(h()) : tr_bdf2();
-    if (!done || !newton_.lost()) return done;
+    if (!done || !newton_.diverged()) return done;
     report = *done;
     u_ = start_u_;
     v_ = start_v_;
   }
   stage_.c = h();
   const auto done = backward_euler();
-  wild_ = newton_.lost();
+  fallback_ = newton_.diverged();
   return done ? report + *done : done;
 }
 
@@ -106,7 +106,7 @@ tl::expected<StepReport, Diagnostic> Implicit::tr_bdf2() {
   u0_ = u_;
   v0_ = v_;
   auto report = trapezoidal(kGamma * h());
-  if (!report || newton_.lost()) return report;
+  if (!report || newton_.diverged()) return report;
   stage_.a = kNew * u_ - kOld * u0_;
   v0_ = kNew * v_ - kOld * v0_;
   stage_.Mb.noalias() = model().mass_matrix() * v0_;

@@ -5,7 +5,7 @@
 /// stiff modes instead of damping them.
 #pragma once
 
-#include <tactus/sim/fem/guarded.h>
+#include <tactus/sim/fem/checked_integrator.h>
 #include <tactus/sim/fem/newton.h>
 
 namespace tactus::sim {
@@ -14,7 +14,7 @@ enum class Scheme : std::uint8_t { backward_euler, newmark, tr_bdf2 };
 
 class Implicit final : public CheckedIntegrator {
  public:
-  Implicit(FemModel& model, const IntegratorOptions& options, Scheme scheme, std::unique_ptr<Direction> direction);
+  Implicit(FemModel& model, const IntegratorOptions& options, Scheme scheme, std::unique_ptr<DescentDirection> direction);
 
   /// c of the stages: what a matrix factored at the start is made for.
   static double stage_step(Scheme scheme, double h) noexcept;
@@ -31,7 +31,7 @@ class Implicit final : public CheckedIntegrator {
   bool extrapolate_;  // where backward Euler starts
   Newton newton_;
   Stage stage_;
-  bool wild_ = false;                    // the last step's equations could not be solved
+  bool fallback_ = false;                // the last solve of the stages diverged: steps of backward Euler
   Eigen::VectorXd u_, v_, u0_, v0_, k_;  // free: state at work, state at the start, forces
   Eigen::VectorXd start_u_, start_v_;    // of the step
 };

@@ -6,7 +6,7 @@
 #include <tactus/sim/fem/implicit.h>
 #include <tactus/sim/fem/linear_solver.h>
 #include <tactus/sim/fem/modal.h>
-#include <tactus/sim/fem/projective.h>
+#include <tactus/sim/fem/prefactored.h>
 
 namespace tactus::sim {
 namespace {
@@ -83,7 +83,7 @@ tl::expected<std::unique_ptr<Integrator>, Diagnostic> make_integrator(FemModel& 
   if (options.method == Method::velocity_verlet) return std::make_unique<VelocityVerlet>(model, options);
   if (options.method == Method::modal) return Modal::create(model, options);
   const Scheme stages = scheme(options.method);
-  std::unique_ptr<Direction> direction;
+  std::unique_ptr<DescentDirection> direction;
   if (quasi_newton(options)) {
     TACTUS_TRY(auto made, PrefactoredDirection::create(model, Implicit::stage_step(stages, options.step)));
     direction = std::move(made);

@@ -18,8 +18,8 @@
 /// Backward Euler starts its iteration at u0, with `prefactored` and in the other methods at the displacement extrapolated with v0.
 /// Newmark and TR-BDF2 take steps of backward Euler where the motion is so violent that their stages cannot be solved.
 /// A stage is a nonlinear system. Each iteration finds a direction with the linear solver, and takes a shorter step along it when
-/// the residual says that it went too far; `newton_iterations` 1 is the linearly implicit variant, without that check. When a second
-/// update would be too small to matter, judging by how fast the stages before have converged, the check is saved too.
+/// the residual says that it went too far; `newton_iterations` 1 is the linearly implicit variant, without that check. If the
+/// convergence rate of earlier stages predicts a negligible second update, the residual check is skipped.
 ///
 /// solver               direction                                                    per iteration
 /// conjugate_gradients  (a M + b K(u))^-1, block Jacobi, warm start                  assembly, about 3 products at h omega = 0.6

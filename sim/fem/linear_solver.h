@@ -41,7 +41,7 @@ class ConjugateGradients {
   Eigen::VectorXd r_, z_, p_, q_;
 };
 
-class NewtonDirection final : public Direction {
+class NewtonDirection final : public DescentDirection {
  public:
   NewtonDirection(FemModel& model, const IntegratorOptions& options);
 

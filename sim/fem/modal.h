@@ -6,7 +6,7 @@
 
 #include <Eigen/Dense>
 
-#include <tactus/sim/fem/guarded.h>
+#include <tactus/sim/fem/checked_integrator.h>
 #include <tactus/sim/modes/slowest_modes.h>
 
 namespace tactus::sim {

@@ -11,7 +11,7 @@ namespace tactus::sim {
 namespace {
 
 constexpr double kAge = 0.8;        ///< exponent of a remembered shrinkage from use to use
-constexpr double kLost = 0.01;      ///< of the motion
+constexpr double kDiverged = 0.01;  ///< of the motion
 constexpr double kNothing = 1e-10;  ///< of the motion: what rounding may leave, and what nobody sees in a thousand steps
 
 }  // namespace
@@ -64,7 +64,7 @@ double StageSystem::motion(const Stage& stage, const Eigen::VectorXd& u) {
   return v_.dot(Mv_);
 }
 
-Newton::Newton(FemModel& model, const IntegratorOptions& options, std::unique_ptr<Direction> direction)
+Newton::Newton(FemModel& model, const IntegratorOptions& options, std::unique_ptr<DescentDirection> direction)
     : system_(model),
       direction_(std::move(direction)),
       iterations_(options.newton_iterations),
@@ -75,7 +75,7 @@ Newton::Newton(FemModel& model, const IntegratorOptions& options, std::unique_pt
 
 tl::expected<StepReport, Diagnostic> Newton::solve(const Stage& stage, Eigen::VectorXd& u) {
   StepReport report{0, 0, false};
-  lost_ = false;
+  diverged_ = false;
   system_.residual(stage, u, r_);
   const double motion = system_.motion(stage, u);  // square of an energy norm, as the others here
   double first = 0;
@@ -105,7 +105,7 @@ tl::expected<StepReport, Diagnostic> Newton::solve(const Stage& stage, Eigen::Ve
     const double shrinkage = next_r_.squaredNorm() / (residual * residual);
     if (report.newton_iterations == 1) shrinkage_ = std::min(shrinkage, 1.0);
     report.converged = shrinkage * decrease <= enough;
-    lost_ = shrinkage * decrease > kLost * kLost * std::max(motion, first);
+    diverged_ = shrinkage * decrease > kDiverged * kDiverged * std::max(motion, first);
     next_r_.swap(r_);
     next_r_ = r_ - next_r_;
     direction_->moved(d_, next_r_);

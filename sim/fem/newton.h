@@ -55,7 +55,7 @@ class StageSystem {
 };
 
 /// Finds the next update of a stage.
-class Direction {
+class DescentDirection {
  public:
   /// d, about -A^-1 r, with d . r < 0.
   /// pre  system.ahead() belongs to r.   ret  iterations of the linear solver.   err  R-FEM-7
@@ -65,29 +65,29 @@ class Direction {
   virtual void moved(const Eigen::VectorXd& s, const Eigen::VectorXd& y) = 0;
   /// A direction turned out to reach too far: what it was built on is out of date.
   virtual void forget() {}
-  virtual ~Direction() = default;
+  virtual ~DescentDirection() = default;
 };
 
 /// Newton's method, exact or not, with a line search on the residual.
 class Newton {
  public:
-  Newton(FemModel& model, const IntegratorOptions& options, std::unique_ptr<Direction> direction);
+  Newton(FemModel& model, const IntegratorOptions& options, std::unique_ptr<DescentDirection> direction);
 
   /// in, out  u  start, solution.   err  R-FEM-6 when the residual is not finite, R-FEM-7
   tl::expected<StepReport, Diagnostic> solve(const Stage& stage, Eigen::VectorXd& u);
   StageSystem& system() noexcept { return system_; }
-  /// Whether the last solution is none: the update that would come next is estimated as more than a hundredth of the stage's first
-  /// one and of the motion at its start, after all the iterations that there may be. Linearly implicit steps are not looked at.
-  bool lost() const noexcept { return lost_; }
+  /// True if the last solve failed: after the allowed iterations the estimated next update is still above 1 % of the stage's first
+  /// update and of the motion at its start. Always false for linearly implicit steps.
+  bool diverged() const noexcept { return diverged_; }
 
  private:
   bool search(const Stage& stage, double decrease, Eigen::VectorXd& u);
 
   StageSystem system_;
-  std::unique_ptr<Direction> direction_;
+  std::unique_ptr<DescentDirection> direction_;
   int iterations_;
   double tolerance_;
-  bool lost_ = false;
+  bool diverged_ = false;
   double shrinkage_ = 1;  // of the residual's square in a first iteration, as last seen; nearer to 1 the longer ago
   Eigen::VectorXd r_, next_r_, d_;
 };

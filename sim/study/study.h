@@ -59,7 +59,7 @@ struct Matrix {
 
 struct Study {
   std::string name;    ///< "jury"
-  std::string title;   ///< for people
+  std::string title;   ///< of the figure and its section
   std::string text{};  ///< how it was measured, in whole sentences
   std::vector<Row> rows{};
   Matrix matrix{};  ///< may be empty

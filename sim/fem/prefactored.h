@@ -45,10 +45,10 @@ class VertexRotations {
   double size_ = 0;                                      // sum of squares about it
 };
 
-class PrefactoredDirection final : public Direction {
+class PrefactoredDirection final : public DescentDirection {
  public:
   /// pre  stages have this c.   err  R-FEM-7
-  static tl::expected<std::unique_ptr<Direction>, Diagnostic> create(FemModel& model, double c);
+  static tl::expected<std::unique_ptr<DescentDirection>, Diagnostic> create(FemModel& model, double c);
 
   tl::expected<int, Diagnostic> find(StageSystem& system, const Stage& stage, const Eigen::VectorXd& r,
                                      Eigen::VectorXd& d) override;

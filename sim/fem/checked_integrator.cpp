@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/base/rule.h>
-#include <tactus/sim/fem/guarded.h>
+#include <tactus/sim/fem/checked_integrator.h>
 
 #include <algorithm>
 #include <cmath>

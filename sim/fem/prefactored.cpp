@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/sim/fem/projective.h>
+#include <tactus/sim/fem/prefactored.h>
 
 #include <Eigen/Geometry>
 
@@ -106,7 +106,7 @@ PrefactoredDirection::PrefactoredDirection(const FemModel& model)
   for (Pair& pair : pairs_) pair.s = pair.y = turned_;
 }
 
-tl::expected<std::unique_ptr<Direction>, Diagnostic> PrefactoredDirection::create(FemModel& model, double c) {
+tl::expected<std::unique_ptr<DescentDirection>, Diagnostic> PrefactoredDirection::create(FemModel& model, double c) {
   std::unique_ptr<PrefactoredDirection> made(new PrefactoredDirection(model));
   SystemMatrix matrix(model);
   const double alpha = model.options().mass_damping, beta = model.options().stiffness_damping;
