@@ -174,9 +174,9 @@ Outcome run(const PrecisionOptions& options) {
 
 }  // namespace
 
-void setup_bench_precision(Command& bench, Action& action) {
+void setup_bench_precision(Command& group, Action& action) {
   auto options = std::make_shared<PrecisionOptions>();
-  Command& command = bench.add_command("precision", "Error against run time: methods, solvers and step sizes");
+  Command& command = group.add_command("precision", "Error against run time: methods, solvers and step sizes");
   const std::vector<std::string> names(std::begin(sim::study::kPrecisionScenes), std::end(sim::study::kPrecisionScenes));
   command.add_option("--scene", options->scenes, "membrane, membrane-stiff or cantilever; may be repeated [all]")
       ->check(one_of(names))

@@ -96,9 +96,9 @@ Outcome run(const StabilityOptions& options) {
 
 }  // namespace
 
-void setup_bench_stability(Command& bench, Action& action) {
+void setup_bench_stability(Command& group, Action& action) {
   auto options = std::make_shared<StabilityOptions>();
-  Command& command = bench.add_command("stability", "Stability limits of each part beside theory");
+  Command& command = group.add_command("stability", "Stability limits of each part beside theory");
   command.add_option("--case", options->cases, "Only this: " + fmt::format("{}", fmt::join(case_names(), ", ")) + " [all]")
       ->check(one_of(case_names()))
       ->type_name("CASE");
