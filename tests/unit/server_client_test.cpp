@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Server, link, client and hands taken apart: sim/server.h, sim/client.h, sim/link.h, sim/deformable/deformable_view.h.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <tactus/sim/client.h>
+#include <tactus/sim/link.h>
+#include <tactus/sim/server.h>
+#include <tactus/sim/simulation.h>
+#include <tactus/sim/user/hand.h>
+
+namespace tactus::sim {
+namespace {
+
+Scene shipped(const std::string& name) { return load_scene(find_scene(name).value()).value(); }
+
+/// Whoever joins the parts by hand gets what Simulation gives, bit for bit: with a codec and without one.
+void expect_the_same(const Scene& scene, int ticks) {
+  for (const bool coded : {false, true}) {
+    SimulationOptions options;
+    ServerOptions of_server;
+    if (coded) options.channel.emplace(), of_server.codec.emplace();
+    auto whole = Simulation::create(scene, options).value();
+    const auto server = Server::create(scene, of_server).value();
+    const auto client = Client::create(*server, {}).value();
+    const PerfectLink link;
+    Random seeds(options.seed);
+    Hand hand(scene.users[0], scene.users[0].grip, seeds.next());
+    int touched = 0;
+    for (int tick = 0; tick < ticks; ++tick) {
+      const std::vector<DeviceSample> devices{hand.step(client->felt(0), client->watched(0))};
+      server->observe();
+      server->touch(link.to_server(devices));
+      const auto packets = server->encode().value();
+      ASSERT_TRUE(coded || packets.empty());
+      ASSERT_TRUE(client->receive(link.to_client(packets)));
+      client->show(server->frame());
+      client->touch(devices);
+      ASSERT_TRUE(server->step());
+      ASSERT_EQ(whole.step().value().size(), packets.size());
+      const UserSample& user = whole.frame().users[0];
+      ASSERT_EQ(user.device.position, devices[0].position) << "tick " << tick;
+      ASSERT_EQ(user.force, client->felt(0)) << "tick " << tick;
+      ASSERT_EQ(user.server_force, server->frame().users[0].server_force) << "tick " << tick;
+      touched += norm(user.force) > 0 ? 1 : 0;
+    }
+    EXPECT_GT(touched, 100);
+  }
+}
+
+TEST(ServerAndClient, TakenApartDoWhatTheSimulationDoes) { expect_the_same(shipped("push-1dof"), 3000); }
+TEST(ServerAndClient, WithOneDimensionalObjectsToo) {
+  Scene scene = shipped("msd-1d");
+  scene.users.resize(1);
+  expect_the_same(scene, 3000);
+}
+
+/// What a client shows and lets feel needs nothing of the physics: a square, then the same square 2 mm lower.
+TEST(DeformableView, ShowsAndIsFeltWithoutFiniteElements) {
+  Scene scene;
+  scene.users.resize(1);
+  scene.deformables.resize(1);
+  scene.deformables[0].stiffness = 100;
+  const std::vector<TraceDeformable> objects{
+      {"square", {{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}}}};
+  DeformableView view(scene, objects);
+  const auto force_at = [&](double z) { return view.touch(0, {.position = {0.1, 0.2, z}}, false).force.z; };
+  EXPECT_EQ(force_at(0.01), 0);
+  constexpr double kSkin = 100 * 1e-7;  // [N] the proxy is a sphere that lies on the surface
+  EXPECT_NEAR(force_at(-0.003), 0.3, kSkin);
+  const std::vector<std::array<std::int32_t, 3>> lower(4, {0, 0, -2});  // x 2^-10 m
+  view.show(0, lower, 10);
+  EXPECT_NEAR(force_at(-0.003), 0.3 - 100 * 2.0 / 1024, kSkin);
+  EXPECT_EQ(view.touch(0, {.position = {0.1, 0.2, -0.003}}, false).surface->mesh, 0U);
+}
+
+}  // namespace
+}  // namespace tactus::sim
