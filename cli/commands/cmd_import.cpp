@@ -20,7 +20,7 @@ struct ImportOptions {
   std::string input, output, preset;
   std::vector<std::string> maps;
   std::string object, user, time, segment;
-  std::optional<SpinFrame> spin_frame;
+  std::optional<AngularVelocityFrame> angular_velocity_frame;
   double length_scale = -1;  // [m] below 0: not given
   std::uint32_t tick_rate = 0;
   bool list_presets = false;
@@ -82,11 +82,11 @@ tl::expected<CsvMapping, Failure> make_mapping(const ImportOptions& options) {
   if (options.length_scale == 0) return refuse_arguments("--length-unit: not above 0", "Give a length, such as 1mm.");
   if (options.length_scale > 0) mapping.length_scale = options.length_scale;
   if (options.tick_rate > 0) mapping.tick_rate = options.tick_rate;
-  if (options.spin_frame) {
+  if (options.angular_velocity_frame) {
     if (mapping.angular_velocity.front().empty())
       return refuse_arguments("--angular-velocity-frame: no angular velocity is read",
                               "Name its columns with --map angular_velocity=X,Y,Z, or leave the option out.");
-    mapping.spin_frame = *options.spin_frame;
+    mapping.angular_velocity_frame = *options.angular_velocity_frame;
   }
   if (options.preset.empty() && options.maps.empty()) mapping.layout = CsvLayout::tactus;  // a table of `export csv` names itself
   return mapping;
@@ -110,15 +110,15 @@ tl::unexpected<Failure> refuse_csv(const ImportOptions& options, const CsvMappin
 }
 
 /// What speaks against the angular velocities of a table.
-std::string contradiction(const SpinCheck& spin, SpinFrame frame) {
-  const bool is_body = frame == SpinFrame::body;
+std::string contradiction(const AngularVelocityCheck& angular_velocity, AngularVelocityFrame frame) {
+  const bool is_body = frame == AngularVelocityFrame::body;
   std::string text = fmt::format(
       "the angular velocities, taken as in the {} frame, do not fit the rotations: off by {:.3g} rad/s on average, of {:.3g} "
       "rad/s",
-      is_body ? "body" : "world", spin.off, spin.given);
-  if (spin.off_other < 0.5 * spin.off) {
+      is_body ? "body" : "world", angular_velocity.off, angular_velocity.given);
+  if (angular_velocity.off_other < 0.5 * angular_velocity.off) {
     text += fmt::format("; in the {0} frame off by {1:.3g}: give --angular-velocity-frame {0}", is_body ? "world" : "body",
-                        spin.off_other);
+                        angular_velocity.off_other);
   }
   return text;
 }
@@ -147,8 +147,8 @@ Outcome run(const ImportOptions& options) {
   }
   report.ticks = imported->ticks;
   report.segments = imported->segments;
-  if (imported->spin.is_off()) {
-    report.warnings.push_back(contradiction(imported->spin, mapping.spin_frame));
+  if (imported->angular_velocity.is_off()) {
+    report.warnings.push_back(contradiction(imported->angular_velocity, mapping.angular_velocity_frame));
     fmt::print(stderr, "warning: {}: {}\n", options.input, report.warnings.back());
   }
   TACTUS_CHECK(output.keep());
@@ -182,8 +182,8 @@ void setup_import(Command& app, Action& action) {
   command
       .add_option(
           "--angular-velocity-frame",
-          [&frame = options->spin_frame](const std::string& name) {
-            frame = name == "body" ? SpinFrame::body : SpinFrame::world;
+          [&frame = options->angular_velocity_frame](const std::string& name) {
+            frame = name == "body" ? AngularVelocityFrame::body : AngularVelocityFrame::world;
           },
           "Frame of the angular velocities: world or body [the preset's, or world]")
       ->check(one_of({"world", "body"}))

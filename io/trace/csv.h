@@ -33,7 +33,7 @@ enum class CsvLayout : std::uint8_t {
 };
 
 /// What angular velocities are given in. A gyroscope on the object measures in the body frame.
-enum class SpinFrame : std::uint8_t { world, body };
+enum class AngularVelocityFrame : std::uint8_t { world, body };
 
 /// Which column feeds which quantity; an empty name means "not there". Named groups: see csv_presets().
 struct CsvMapping {
@@ -44,13 +44,13 @@ struct CsvMapping {
   std::array<std::string, 4> rotation;          ///< w, x, y, z, not normalised; empty: no rotation
   std::array<std::string, 3> velocity;          ///< [m/s]; empty: backward differences, 0 where a segment begins
   std::array<std::string, 3> angular_velocity;  ///< [rad/s]; empty: likewise
-  SpinFrame spin_frame = SpinFrame::world;      ///< of angular_velocity; body needs rotation
-  std::array<std::string, 3> device;            ///< [m] probe of the user
-  std::array<std::string, 3> force;             ///< [N] on the user; one recorded force stands for client and server
-  std::string object = "object";                ///< name of the object in the trace
-  std::string user = "user";                    ///< name of the user in the trace, if there is a device or a force
-  double length_scale = 1.0;                    ///< metres per unit of the file's lengths
-  std::uint32_t tick_rate = 0;                  ///< 0: from the median spacing of the time column
+  AngularVelocityFrame angular_velocity_frame = AngularVelocityFrame::world;  ///< of angular_velocity; body needs rotation
+  std::array<std::string, 3> device;                                          ///< [m] probe of the user
+  std::array<std::string, 3> force;  ///< [N] on the user; one recorded force stands for client and server
+  std::string object = "object";     ///< name of the object in the trace
+  std::string user = "user";         ///< name of the user in the trace, if there is a device or a force
+  double length_scale = 1.0;         ///< metres per unit of the file's lengths
+  std::uint32_t tick_rate = 0;       ///< 0: from the median spacing of the time column
 };
 
 struct CsvPreset {
@@ -62,7 +62,7 @@ const std::vector<CsvPreset>& csv_presets();
 
 /// Angular velocities as given, beside those of the rotations' differences. Means over all rows that have both and turn by less than
 /// a quarter turn.
-struct SpinCheck {
+struct AngularVelocityCheck {
   std::uint64_t rows = 0;
   double given = 0;               ///< [rad/s] size
   double off = 0, off_other = 0;  ///< [rad/s] from the differences: in the frame of the mapping, in the other one
@@ -74,7 +74,7 @@ struct SpinCheck {
 struct CsvImport {
   TickSpan ticks;  ///< one per row
   std::uint64_t segments = 0;
-  SpinCheck spin;
+  AngularVelocityCheck angular_velocity;
 };
 
 /// Read `path` (plain or zstd, told by its first bytes; "-" is standard input) into `out_path`.

@@ -53,7 +53,7 @@ class Importer {
   Result<void> write(Row& row);
   Result<std::int64_t> tick_of(const Row& row, bool begins_segment);
   void derive_motion(TraceFrame& frame) const;
-  void settle_spin(TraceFrame& frame, bool begins_segment);
+  void settle_angular_velocity(TraceFrame& frame, bool begins_segment);
 
   const CsvMapping& mapping_;
   CsvPlan plan_;
@@ -195,7 +195,7 @@ Result<void> Importer::write(Row& row) {
   if (!increases || tick / plan_.info.tick_rate >= kMaxSeconds) return fail(Errc::invalid, "R-CSV-5");
   row.frame.tick = tick;
   if (!begins_segment) derive_motion(row.frame);
-  if (plan_.check_spin) settle_spin(row.frame, begins_segment);
+  if (plan_.check_angular_velocity) settle_angular_velocity(row.frame, begins_segment);
   TACTUS_CHECK(writer_->write(row.frame));
   done_.ticks.add(tick);
   if (begins_segment) ++done_.segments;
@@ -205,34 +205,34 @@ Result<void> Importer::write(Row& row) {
 
 /// Backward differences: what a live system would know at that tick.
 void Importer::derive_motion(TraceFrame& frame) const {
-  if ((!plan_.derive_velocity && !plan_.derive_spin) || frame.objects.empty()) return;
+  if ((!plan_.derive_velocity && !plan_.derive_angular_velocity) || frame.objects.empty()) return;
   const double seconds = static_cast<double>(frame.tick - last_.frame.tick) / plan_.info.tick_rate;
   RigidSample& sample = frame.objects.front();
   const Twist motion = motion_between(last_.frame.objects.front().pose, sample.pose, seconds);
   if (plan_.derive_velocity) sample.velocity = motion.linear;
-  if (plan_.derive_spin) sample.angular_velocity = motion.angular;
+  if (plan_.derive_angular_velocity) sample.angular_velocity = motion.angular;
 }
 
-/// Turn the spin that was read into the world frame, and hold it against the turn since the row before.
-void Importer::settle_spin(TraceFrame& frame, bool begins_segment) {
+/// Turn the angular velocity that was read into the world frame, and hold it against the turn since the row before.
+void Importer::settle_angular_velocity(TraceFrame& frame, bool begins_segment) {
   RigidSample& sample = frame.objects.front();
   const Quat& q = sample.pose.rotation;
   const double size = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
   if (!(size > 0)) return;  // the writer refuses it
   const Vec3 given = sample.angular_velocity, turned = rotate(Quat{q.w / size, q.x / size, q.y / size, q.z / size}, given);
-  const bool is_body = mapping_.spin_frame == SpinFrame::body;
+  const bool is_body = mapping_.angular_velocity_frame == AngularVelocityFrame::body;
   if (is_body) sample.angular_velocity = turned;
   if (begins_segment) return;
   const double seconds = static_cast<double>(frame.tick - last_.frame.tick) / plan_.info.tick_rate;
   const Vec3 seen = motion_between(last_.frame.objects.front().pose, sample.pose, seconds).angular;
   if (norm(seen) * seconds > std::numbers::pi / 2 || norm(given) * seconds > std::numbers::pi / 2) return;
-  SpinCheck& spin = done_.spin;
-  const auto take = [share = 1.0 / static_cast<double>(++spin.rows)](double& mean, double value) {
+  AngularVelocityCheck& angular_velocity = done_.angular_velocity;
+  const auto take = [share = 1.0 / static_cast<double>(++angular_velocity.rows)](double& mean, double value) {
     mean += share * (value - mean);
   };
-  take(spin.given, norm(given));
-  take(spin.off, norm(seen - sample.angular_velocity));
-  take(spin.off_other, norm(seen - (is_body ? given : turned)));
+  take(angular_velocity.given, norm(given));
+  take(angular_velocity.off, norm(seen - sample.angular_velocity));
+  take(angular_velocity.off_other, norm(seen - (is_body ? given : turned)));
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace tactus {
 namespace {
 
 // First rows of a quantity in kObjectColumns and kUserColumns.
-constexpr std::size_t kPosition = 0, kRotation = 3, kVelocity = 7, kSpin = 10;
+constexpr std::size_t kPosition = 0, kRotation = 3, kVelocity = 7, kAngularVelocity = 10;
 constexpr std::size_t kDevice = 0, kForce = 3, kServerForce = 6;
 
 template <class T, std::size_t N>
@@ -95,20 +95,22 @@ void Planner::plan_named() {
   const CsvMapping& m = mapping_;
   if (!m.time.empty()) plan_.time = column(m.time);
   if (!m.segment.empty()) plan_.segment = column(m.segment);
-  const bool has_rotation = has_group(m.rotation), has_velocity = has_group(m.velocity), has_spin = has_group(m.angular_velocity);
+  const bool has_rotation = has_group(m.rotation), has_velocity = has_group(m.velocity),
+             has_angular_velocity = has_group(m.angular_velocity);
   if (has_group(m.position)) {
-    plan_.info.objects.push_back({m.object, has_rotation || has_spin ? Dof::all : Dof::translation});
+    plan_.info.objects.push_back({m.object, has_rotation || has_angular_velocity ? Dof::all : Dof::translation});
     bind_object(m.position, kPosition, m.length_scale);
     if (has_rotation) bind_object(m.rotation, kRotation, 1.0);
     if (has_velocity) bind_object(m.velocity, kVelocity, m.length_scale);
-    if (has_spin) bind_object(m.angular_velocity, kSpin, 1.0);
-  } else if (has_rotation || has_velocity || has_spin) {
+    if (has_angular_velocity) bind_object(m.angular_velocity, kAngularVelocity, 1.0);
+  } else if (has_rotation || has_velocity || has_angular_velocity) {
     note(Errc::invalid_argument, "R-CSV-8", "position");
   }
   plan_.derive_velocity = !has_velocity;
-  plan_.derive_spin = has_rotation && !has_spin;
-  plan_.check_spin = has_rotation && has_spin;
-  if (has_spin && !has_rotation && m.spin_frame == SpinFrame::body) note(Errc::invalid_argument, "R-CSV-8", "rotation");
+  plan_.derive_angular_velocity = has_rotation && !has_angular_velocity;
+  plan_.check_angular_velocity = has_rotation && has_angular_velocity;
+  if (has_angular_velocity && !has_rotation && m.angular_velocity_frame == AngularVelocityFrame::body)
+    note(Errc::invalid_argument, "R-CSV-8", "rotation");
   const bool has_device = has_group(m.device), has_force = has_group(m.force);
   if (!has_device && !has_force) return;
   plan_.info.users.push_back({m.user});

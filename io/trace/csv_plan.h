@@ -34,8 +34,8 @@ struct CsvPlan {
   std::optional<std::size_t> tick, time, segment;
   std::vector<std::size_t> dof;       ///< per object, layout `tactus` only
   std::vector<CsvUserColumns> users;  ///< per user, likewise
-  bool derive_velocity = false, derive_spin = false;
-  bool check_spin = false;  ///< given, and there are rotations to hold it against
+  bool derive_velocity = false, derive_angular_velocity = false;
+  bool check_angular_velocity = false;  ///< given, and there are rotations to hold it against
 };
 
 /// Place of a field within its line: "column x, 'oops'".   in  either may be empty

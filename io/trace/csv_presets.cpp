@@ -17,7 +17,7 @@ CsvPreset cube_tosses_preset() {
   mapping.rotation = {"qw", "qx", "qy", "qz"};
   mapping.velocity = {"vx", "vy", "vz"};
   mapping.angular_velocity = {"wx", "wy", "wz"};
-  mapping.spin_frame = SpinFrame::body;
+  mapping.angular_velocity_frame = AngularVelocityFrame::body;
   mapping.object = "cube";
   mapping.tick_rate = 148;
   return {"cube-tosses", "tosses of a cube (ContactNets, 148 Hz), lengths in metres", mapping};

@@ -48,7 +48,7 @@ inline Quat quaternion(dBodyID body) {
 }
 
 struct Motion {
-  Vec3 velocity, spin;  // [m/s], [rad/s]
+  Vec3 velocity, angular_velocity;  // [m/s], [rad/s]
 };
 
 /// Of a symmetric matrix.

@@ -33,7 +33,7 @@ Vec3 along_free(const Vec3& v, std::uint8_t dof, int first) {
 }
 
 /// Neither NaN nor absurd.
-bool can_step(const Motion& motion) { return norm(motion.velocity) < kFastest && norm(motion.spin) < kFastestTurn; }
+bool can_step(const Motion& motion) { return norm(motion.velocity) < kFastest && norm(motion.angular_velocity) < kFastestTurn; }
 
 Rows inverse_of(const dMass& mass) {
   const dReal* i = mass.I;
@@ -121,7 +121,7 @@ rigid::Motion RigidWorld::Impl::motion_without_contact(const Body& body) const {
 Vec3 RigidWorld::Impl::velocity_without_contact(const Body* body, const Vec3& point) const {
   if (!body || !body->handle) return {};
   const Motion motion = motion_without_contact(*body);
-  return motion.velocity + cross(motion.spin, point - vec(dBodyGetPosition(body->handle)));
+  return motion.velocity + cross(motion.angular_velocity, point - vec(dBodyGetPosition(body->handle)));
 }
 
 /// Damp, then put the object back onto its axes.

@@ -18,13 +18,14 @@ class Feeder {
  public:
   explicit Feeder(Interpolation mode) : scene_(scene_of(1)), replica_(*scene_, {.interpolation = mode}, {}) {}
 
-  void update(std::int64_t tick, const Vec3& position, const Vec3& velocity, const Quat& rotation = {}, const Vec3& spin = {}) {
-    update_at(tick, tick, position, velocity, rotation, spin);
+  void update(std::int64_t tick, const Vec3& position, const Vec3& velocity, const Quat& rotation = {},
+              const Vec3& angular_velocity = {}) {
+    update_at(tick, tick, position, velocity, rotation, angular_velocity);
   }
   /// A packet of tick `tick`, applied at `now`.
   void update_at(std::int64_t now, std::int64_t tick, const Vec3& position, const Vec3& velocity, const Quat& rotation = {},
-                 const Vec3& spin = {}) {
-    const RigidState state = to_grid({{position, rotation}, velocity, spin}, tick, scene_->grid).value();
+                 const Vec3& angular_velocity = {}) {
+    const RigidState state = to_grid({{position, rotation}, velocity, angular_velocity}, tick, scene_->grid).value();
     const RigidUpdate named{0, Reason::visual, 0};
     DecodedPacket packet;
     packet.tick = tick;

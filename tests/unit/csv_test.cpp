@@ -82,7 +82,7 @@ TEST(Csv, CubeTosses) {
   EXPECT_EQ(outcome.frames[2].objects[0].velocity, (Vec3{-0.818671, -0.7315462, -0.1418329}));
   const Vec3 body{-3.356067, -0.7965873, 3.893714};  // recorded so; a trace has it in the world frame
   EXPECT_LT(norm(outcome.frames[0].objects[0].angular_velocity - rotate(outcome.frames[0].objects[0].pose.rotation, body)), 1e-6);
-  EXPECT_FALSE(outcome.done.spin.is_off());
+  EXPECT_FALSE(outcome.done.angular_velocity.is_off());
 }
 
 /// A top that lies on its side, x up to y, and spins about its own z axis with 3 rad/s.
@@ -99,35 +99,35 @@ std::string lying_top() {
   return text;
 }
 
-CsvMapping top(SpinFrame frame) {
+CsvMapping top(AngularVelocityFrame frame) {
   CsvMapping mapping = xyz();
   mapping.rotation = {"qw", "qx", "qy", "qz"};
   mapping.angular_velocity = {"wx", "wy", "wz"};
-  mapping.spin_frame = frame;
+  mapping.angular_velocity_frame = frame;
   return mapping;
 }
 
 TEST(Csv, AngularVelocityOfTheBodyFrameIsTurnedIntoTheWorldFrame) {
-  const Outcome outcome = import(lying_top(), top(SpinFrame::body));
+  const Outcome outcome = import(lying_top(), top(AngularVelocityFrame::body));
   ASSERT_EQ(outcome.rule, "");
   for (const TraceFrame& frame : outcome.frames) EXPECT_LT(norm(frame.objects[0].angular_velocity - Vec3{0, -3, 0}), 1e-9);
-  EXPECT_EQ(outcome.done.spin.rows, 19u);
-  EXPECT_NEAR(outcome.done.spin.given, 3, 1e-9);
-  EXPECT_LT(outcome.done.spin.off, 1e-6);
-  EXPECT_NEAR(outcome.done.spin.off_other, std::sqrt(18), 1e-6);
-  EXPECT_FALSE(outcome.done.spin.is_off());
+  EXPECT_EQ(outcome.done.angular_velocity.rows, 19u);
+  EXPECT_NEAR(outcome.done.angular_velocity.given, 3, 1e-9);
+  EXPECT_LT(outcome.done.angular_velocity.off, 1e-6);
+  EXPECT_NEAR(outcome.done.angular_velocity.off_other, std::sqrt(18), 1e-6);
+  EXPECT_FALSE(outcome.done.angular_velocity.is_off());
 }
 
 TEST(Csv, AngularVelocityInAnotherFrameContradictsTheRotations) {
-  const Outcome outcome = import(lying_top(), top(SpinFrame::world));
+  const Outcome outcome = import(lying_top(), top(AngularVelocityFrame::world));
   ASSERT_EQ(outcome.rule, "");
   EXPECT_EQ(outcome.frames[3].objects[0].angular_velocity, (Vec3{0, 0, 3}));
-  EXPECT_TRUE(outcome.done.spin.is_off());
-  EXPECT_LT(outcome.done.spin.off_other, 1e-6);
+  EXPECT_TRUE(outcome.done.angular_velocity.is_off());
+  EXPECT_LT(outcome.done.angular_velocity.off_other, 1e-6);
 }
 
 TEST(Csv, AngularVelocityOfTheBodyFrameNeedsRotations) {
-  CsvMapping mapping = top(SpinFrame::body);
+  CsvMapping mapping = top(AngularVelocityFrame::body);
   mapping.rotation = {};
   EXPECT_EQ(import(lying_top(), mapping).rule, "R-CSV-8");
 }
