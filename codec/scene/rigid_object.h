@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <string>
 
@@ -16,6 +17,11 @@ namespace tactus {
 struct Dof {
   static constexpr std::uint8_t x = 1, y = 2, z = 4, rx = 8, ry = 16, rz = 32;
   static constexpr std::uint8_t none = 0, translation = 7, all = 63;
+
+  /// R-STR-12: any axes of translation; of rotation none, one or all.
+  static constexpr bool is_valid(std::uint8_t dof) noexcept {
+    return dof <= all && std::popcount(static_cast<unsigned>(dof >> 3)) != 2;
+  }
 };
 
 /// Integer pose, position x 2^-position m, rotation x 2^-30, Hamilton w, x, y, z.

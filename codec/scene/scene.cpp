@@ -2,7 +2,6 @@
 #include <tactus/scene/scene.h>
 
 #include <algorithm>
-#include <bit>
 #include <string_view>
 #include <unordered_set>
 #include <utility>
@@ -34,11 +33,6 @@ bool is_name(std::string_view name) noexcept { return !name.empty() && name.size
 
 namespace {
 
-bool is_dof(std::uint8_t dof) noexcept {
-  const unsigned turns = static_cast<unsigned>(std::popcount(static_cast<unsigned>(dof >> 3)));
-  return dof <= Dof::all && turns != 2;
-}
-
 /// Length within 2^-20 of 1: what a rounded unit quaternion and every product of them keep.
 bool is_unit(const Quat30& q) noexcept {
   std::int64_t square = 0;
@@ -60,7 +54,7 @@ bool are_exponents(const GridExponents& g) noexcept {
 
 RuleName broken_object_rule(const RigidObject& object) noexcept {
   if (!is_name(object.name)) return "R-STR-11";
-  if (!is_dof(object.dof)) return "R-STR-12";
+  if (!Dof::is_valid(object.dof)) return "R-STR-12";
   if (!is_unit(object.initial.rotation)) return "R-STR-13";
   return {};
 }
