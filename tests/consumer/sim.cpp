@@ -10,7 +10,7 @@ namespace {
 
 std::string run(const char* file) {
   const auto scene = tactus::sim::load_scene(file);
-  if (!scene) return tactus::sim::to_string(scene.error());
+  if (!scene) return tactus::to_string(scene.error());
   tactus::sim::SimulationOptions options;
   options.channel.emplace();
   auto simulation = tactus::sim::Simulation::create(*scene, options);
