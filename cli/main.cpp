@@ -78,7 +78,7 @@ Outcome run(const Action& action) {
   try {
     return action();
   } catch (const std::bad_alloc&) {
-    return refuse("there is not enough memory for this", "Give smaller inputs, or run it on a larger machine.");
+    return refuse("there is not enough memory", "Give smaller inputs, or run it on a larger machine.");
   } catch (const std::exception& e) {
     return refuse(std::string("the program has a defect: ") + e.what(), "Report it with the command and its inputs.");
   }
@@ -92,14 +92,14 @@ int main(int argc, char** argv) {
   Program app("tactus", "Codec for shared haptic virtual environments: which object states to send, and in how few bits",
               "tactus " TACTUS_VERSION);
   app.footer(
-      "A first round:\n"
-      "  tactus sim push-1dof -o push.mcap                        simulate a touch\n"
-      "  tactus encode push.mcap -o push.tct -p 4%                turn it into packets\n"
-      "  tactus decode push.tct -o replica.mcap --like push.mcap  see it as a client does\n"
-      "  tactus compare push.mcap replica.mcap -p 4%              how far is that from the truth\n"
-      "`tactus COMMAND --help` tells more. Quantities take units: 2deg, 5mm, 4%, 100ms, 0.05N.\n"
+      "First steps:\n"
+      "  tactus sim push-1dof -o push.mcap                        simulate a touch and record it\n"
+      "  tactus encode push.mcap -o push.tct -p 4%                encode it into packets\n"
+      "  tactus decode push.tct -o replica.mcap --like push.mcap  decode what a client shows\n"
+      "  tactus compare push.mcap replica.mcap -p 4%              measure the error\n"
+      "`tactus COMMAND --help` lists all options. Quantities take units: 2deg, 5mm, 4%, 100ms, 0.05N.\n"
       "Exit status: 0 done, 1 an input was refused or the work failed, 2 the arguments are wrong,\n"
-      "3 done, but a bound that the stream promises or an option asks for is broken.");
+      "3 done, but a bound that the stream declares or an option sets is broken.");
   Action action;
   for (const Entry& entry : kCommands) {
     const std::size_t split = entry.name.find('_');

@@ -45,7 +45,7 @@ void catch_signals() {
 }
 
 tl::unexpected<Failure> refuse_existing(const std::string& path) {
-  return refuse(shown_path(path) + ": the file is there already", "Give -f to replace it, or another name.");
+  return refuse(shown_path(path) + ": the file already exists", "Give -f to replace it, or another name.");
 }
 
 /// A hidden name beside `path` or in a folder, which nobody can foresee.
@@ -103,7 +103,7 @@ Outcome OutputFile::check_free(const std::string& path, Existing existing, std::
   for (const std::string& other : others) {
     if (path != "-" && (path == other || fs::equivalent(path, other, ignored))) {
       return refuse_arguments(
-          fmt::format("{}: the output is also {}, which the command needs", shown_path(path), shown_path(other)),
+          fmt::format("{}: the output is also {}, an input of the command", shown_path(path), shown_path(other)),
           "Give another name.");
     }
   }
@@ -240,7 +240,7 @@ Outcome write_file(const std::string& path, const std::string& bytes, OutputFile
 
 tl::expected<std::string, Failure> read_file(const std::string& path, std::uint64_t most) {
   const auto refuse_size = [&] {
-    return refuse(fmt::format("{}: larger than the {} MiB that are read", shown_path(path), most >> 20), "Give a smaller file.");
+    return refuse(fmt::format("{}: larger than {} MiB", shown_path(path), most >> 20), "Give a smaller file.");
   };
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) return refuse(shown_path(path) + ": this is a folder", "Give a file.");

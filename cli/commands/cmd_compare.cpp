@@ -122,7 +122,7 @@ void note_unmatched(const Side& truth, const Side& replica, Report& report) {
     text += fmt::format("{}{} of the replica's {} ticks are not in the truth", text.empty() ? "" : " and ", replica.unmatched,
                         replica.unmatched + report.ticks.count());
   }
-  if (!text.empty()) report.warnings.push_back(text + "; they were left out, decode with --like " + truth.path);
+  if (!text.empty()) report.warnings.push_back(text + ". They were left out; decode with --like " + truth.path);
 }
 
 tl::expected<Side, Failure> open(const std::string& path) {
@@ -175,15 +175,15 @@ Outcome run(const CompareOptions& options) {
 
 void setup_compare(Command& app, Action& action) {
   auto options = std::make_shared<CompareOptions>();
-  Command& command = app.add_command("compare", "Hold a replica against the truth");
-  command.add_option("TRUTH", options->truth, "What truly happened (MCAP)")->type_name("")->required();
-  command.add_option("REPLICA", options->replica, "What a client showed (MCAP)")->type_name("")->required();
+  Command& command = app.add_command("compare", "Measure the error of a replica");
+  command.add_option("TRUTH", options->truth, "Trace of the server (MCAP)")->type_name("")->required();
+  command.add_option("REPLICA", options->replica, "Trace of the client, from `tactus decode` (MCAP)")->type_name("")->required();
   options->triggers.add_to(command);
   options->meshes.add_to(command);
   add_report_options(command, options->common);
   command.footer(
-      "Bounds are those that the replica's stream promises; what is typed goes before. Exit status 3: one is broken.\n"
-      "Ticks that only one of the traces has are left out, and a warning says how many.\n"
+      "The bounds are those that the stream of the replica declares; options override them. Exit status 3: a bound is broken.\n"
+      "Ticks that only one of the traces has are left out; a warning gives their number.\n"
       "Example:\n"
       "  tactus compare push.mcap replica.mcap -p 4% --visual 6mm,2deg");
   on_chosen<CompareOptions>(command, action, options, run);

@@ -72,9 +72,9 @@ Outcome check_length(std::span<const std::uint8_t> file, const DecodeOptions& op
   while (const auto packet = reader->next().value_or(std::nullopt)) last = static_cast<std::uint64_t>(packet->tick);
   const std::uint64_t most = kFreeTicks + kTicksByByte * file.size();
   if (last < most) return {};
-  return refuse(fmt::format("{}: its last packet is at tick {}, far beyond what {} bytes of stream can fill",
+  return refuse(fmt::format("{}: its last packet is at tick {}, implausibly far for a stream of {} bytes",
                             shown_path(options.input), last, file.size()),
-                "If that is right, say how many ticks to write: --ticks N.");
+                "If that is right, give the number of ticks to write with --ticks N.");
 }
 
 TraceInfo replica_info(const Scene& scene, const std::string& input) {
@@ -132,7 +132,7 @@ Result<void> decode_tick(Player& player, std::int64_t tick, TraceFrame& frame, R
 /// A stream that is broken at a tick can be decoded up to there.
 tl::unexpected<Failure> refuse_at(std::int64_t tick, const Error& error, const DecodeOptions& options) {
   auto refused = refuse(options.input, error);
-  if (tick > 0) refused.value().remedy += fmt::format(" What comes before can be decoded with --ticks {}.", tick);
+  if (tick > 0) refused.value().remedy += fmt::format(" The part before it can be decoded with --ticks {}.", tick);
   return refused;
 }
 
@@ -184,7 +184,7 @@ Outcome run(const DecodeOptions& options) {
   const auto rest = player->next_tick();
   if (!rest && is_cut(rest.error())) {
     warn_cut_stream(options.input, rest.error());
-    report.warnings.emplace_back("the stream ends inside a record; everything up to there was decoded");
+    report.warnings.emplace_back("the stream ends inside a record; everything before the cut was decoded");
   }
   if (rest && !*rest && !player->complete()) {
     report.warnings.emplace_back("the stream has no trailer: its writer did not finish");
@@ -198,7 +198,7 @@ Outcome run(const DecodeOptions& options) {
 
 void setup_decode(Command& app, Action& action) {
   auto options = std::make_shared<DecodeOptions>();
-  Command& command = app.add_command("decode", "Reconstruct what a client shows from a stream");
+  Command& command = app.add_command("decode", "Decode a stream into the trace that a client shows");
   command.add_option("STREAM", options->input, "Stream to decode, - is standard input")->type_name("")->required();
   command.add_option("-o,--output", options->output, "Trace of the replica to write, - is standard output")
       ->required()

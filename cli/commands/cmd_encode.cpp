@@ -140,7 +140,8 @@ Outcome run(const EncodeOptions& options) {
   for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.coding().deformable.profile == DeformableProfile::main;
   TACTUS_CHECK(encode_all(*reader, *session, frame, options, report));
   TACTUS_CHECK(check_ending(options.input, *reader, report.ticks.count()));
-  if (reader->cut_short()) report.warnings.emplace_back("the trace ends without its index; everything up to there was encoded");
+  if (reader->cut_short())
+    report.warnings.emplace_back("the trace ends without its index; everything before the cut was encoded");
   TACTUS_CHECK(output.keep());
   report.stream = {session->writer.header_bytes(), session->writer.bytes()};
   report.bounds_from = options.triggers.any_given() || options.meshes.any_given() ? "options" : "defaults";
@@ -152,7 +153,7 @@ Outcome run(const EncodeOptions& options) {
 
 void setup_encode(Command& app, Action& action) {
   auto options = std::make_shared<EncodeOptions>();
-  Command& command = app.add_command("encode", "Turn a trace into a stream of packets");
+  Command& command = app.add_command("encode", "Encode a trace into a stream of packets");
   command.add_option("TRACE", options->input, "Trace to encode (MCAP), - is standard input")->type_name("")->required();
   command.add_option("-o,--output", options->output, "Stream to write, - is standard output")->required()->type_name("FILE");
   options->triggers.add_to(command);

@@ -28,10 +28,11 @@ tl::expected<fs::path, Failure> target_of(const std::string& output) {
   if (!path.has_filename()) path = path.parent_path();
   std::error_code ignored;
   const bool is_new = path.has_filename() && path != "." && path.filename() != "..";
-  if (!is_new) return refuse_arguments(shown_path(output) + ": no name of a new folder", "Name a folder that is not there yet.");
+  if (!is_new)
+    return refuse_arguments(shown_path(output) + ": not the name of a new folder", "Name a folder that does not exist yet.");
   const fs::file_status status = fs::symlink_status(path, ignored);
   if (!fs::exists(status) || (fs::is_directory(status) && fs::is_empty(path, ignored))) return path;
-  return refuse(shown_path(output) + ": is there already", "Name a folder that is empty or not there yet.");
+  return refuse(shown_path(output) + ": already exists", "Name a folder that is empty or does not exist yet.");
 }
 
 tl::expected<std::size_t, Failure> find_mesh(const ExportMeshOptions& options, const TraceInfo& info) {

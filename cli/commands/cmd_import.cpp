@@ -72,7 +72,7 @@ tl::expected<CsvMapping, Failure> make_mapping(const ImportOptions& options) {
   for (const std::string& map : options.maps) {
     const std::string quantity = map.substr(0, map.find('='));
     if (!mapped.insert(quantity).second)
-      return refuse_arguments(fmt::format("--map '{}': {} has its columns already", map, quantity), "Give every quantity once.");
+      return refuse_arguments(fmt::format("--map '{}': {} is mapped twice", map, quantity), "Give every quantity once.");
     TACTUS_CHECK(apply_map(map, mapping));
   }
   if (!options.object.empty()) mapping.object = options.object;
@@ -101,7 +101,7 @@ bool blames_arguments(const CsvMapping& mapping, std::string_view rule) {
 tl::unexpected<Failure> refuse_csv(const ImportOptions& options, const CsvMapping& mapping, const Diagnostic& e) {
   const std::string& file = options.input;
   if (options.preset.empty() && options.maps.empty() && e.line == 1 && e.error.rule == std::string_view("R-CSV-2"))
-    return refuse_arguments(file + ": nothing says which columns to read",
+    return refuse_arguments(file + ": no columns are given",
                             "Give --preset NAME or --map position=x,y,z. Only tables of `tactus export csv` need neither.");
   const bool arguments = blames_arguments(mapping, e.error.rule);
   auto refused = refuse(file, arguments ? e.detail : place_of(e), e.error);
@@ -112,12 +112,11 @@ tl::unexpected<Failure> refuse_csv(const ImportOptions& options, const CsvMappin
 /// What speaks against the angular velocities of a table.
 std::string contradiction(const AngularVelocityCheck& angular_velocity, AngularVelocityFrame frame) {
   const bool is_body = frame == AngularVelocityFrame::body;
-  std::string text = fmt::format(
-      "the angular velocities, taken as in the {} frame, do not fit the rotations: off by {:.3g} rad/s on average, of {:.3g} "
-      "rad/s",
-      is_body ? "body" : "world", angular_velocity.off, angular_velocity.given);
+  std::string text =
+      fmt::format("in the {} frame, the angular velocities do not match the rotations: mean error {:.3g} rad/s of {:.3g} rad/s",
+                  is_body ? "body" : "world", angular_velocity.off, angular_velocity.given);
   if (angular_velocity.off_other < 0.5 * angular_velocity.off) {
-    text += fmt::format("; in the {0} frame off by {1:.3g}: give --angular-velocity-frame {0}", is_body ? "world" : "body",
+    text += fmt::format("; in the {0} frame it is {1:.3g} rad/s: give --angular-velocity-frame {0}", is_body ? "world" : "body",
                         angular_velocity.off_other);
   }
   return text;
@@ -160,7 +159,7 @@ Outcome run(const ImportOptions& options) {
 
 void setup_import(Command& app, Action& action) {
   auto options = std::make_shared<ImportOptions>();
-  Command& group = app.add_command("import", "Make a trace from a recording");
+  Command& group = app.add_command("import", "Convert a recording to a trace");
   group.footer("Example:\n  tactus import csv tosses.csv.zst --preset cube-tosses -o tosses.mcap");
   Command& command = group.add_command("csv", "A table with one row per sample, plain or zstd");
   Option* list = command.add_flag("--list-presets", options->list_presets, "List the built-in column mappings");
@@ -193,7 +192,7 @@ void setup_import(Command& app, Action& action) {
       "Examples:\n"
       "  tactus import csv tosses.csv.zst --preset cube-tosses -o tosses.mcap\n"
       "  tactus import csv arm.csv --time t --map position=x,y,z --map rotation=qw,qx,qy,qz -o arm.mcap\n"
-      "Segments follow one another without a gap. A pause inside a segment stays: its ticks are missing, its time counts.");
+      "Segments are joined without a gap. A pause inside a segment is kept: its ticks are missing, but its time counts.");
   command.on_chosen([&action, options, list, input, output] {
     if (list->count() == 0 && input->count() == 0) miss_option("FILE");
     if (list->count() == 0 && output->count() == 0) miss_option("--output");

@@ -277,7 +277,7 @@ Outcome info_trace(const InfoOptions& options) {
             {"last tick", frame.tick},
             {"seconds", static_cast<double>(frame.tick - first + (frames > 0 ? 1 : 0)) / trace.tick_rate},
             {"scene", trace.scene.empty() ? "none" : fmt::format("{} bytes of TOML", trace.scene.size())},
-            {"ending", reader->cut_short() ? "cut short; everything up to there was read" : "complete"}};
+            {"ending", reader->cut_short() ? "truncated; everything before the cut was read" : "complete"}};
   for (const TraceObject& o : trace.objects) info["objects"].push_back({{"object", o.name}, {"moves along", dof_text(o.dof)}});
   for (std::size_t i = 0; i < trace.meshes.size(); ++i) {
     const TriMesh& rest = trace.meshes[i].rest;
@@ -357,7 +357,7 @@ Outcome run(const InfoOptions& options) {
 
 void setup_info(Command& app, Action& action) {
   auto options = std::make_shared<InfoOptions>();
-  Command& command = app.add_command("info", "Tell what a stream, trace or scene holds");
+  Command& command = app.add_command("info", "Show the contents of a stream, trace or scene");
   options->command = &command;
   command
       .add_option("FILE", options->input,

@@ -84,8 +84,8 @@ Outcome read_tets(const MeshOptions& options, MeshReport& report) {
   auto file = report.measure("read", [&] { return sim::read_tet_mesh(options.input); });
   if (!file) return refuse(file.error());
   if (file->ignored_elements > 0)
-    report.notes.push_back({"ignored_elements", "left out",
-                            counted(file->ignored_elements, "element") + " that are no tetrahedra", file->ignored_elements});
+    report.notes.push_back({"ignored_elements", "left out", counted(file->ignored_elements, "element") + " other than tetrahedra",
+                            file->ignored_elements});
   report.mesh = std::move(file->mesh);
   scale(report.mesh.vertices, options.length_unit);
   return {};
@@ -206,7 +206,7 @@ void print_text(const Json& r, const MeshReport& report, const MeshOptions& opti
 
 Outcome run(const MeshOptions& options) {
   if (!options.output.ends_with(".node") && !options.output.ends_with(".msh"))
-    return refuse_arguments(options.output + ": no name of a mesh",
+    return refuse_arguments(options.output + ": not the name of a mesh",
                             "Give -o NAME.node (with NAME.ele beside it) or -o NAME.msh.");
   MeshReport report;
   TACTUS_CHECK(!options.slab.empty()        ? make_slab(options, report)

@@ -334,7 +334,7 @@ Outcome run(const SimOptions& options) {
 
 void setup_sim(Command& app, Action& action) {
   auto options = std::make_shared<SimOptions>();
-  Command& command = app.add_command("sim", "Simulate a touch into a trace");
+  Command& command = app.add_command("sim", "Simulate a touch and record a trace");
   command
       .add_option("SCENE", options->scene,
                   "push-1dof, rotate-6dof, rotate-push-lift, membrane, membrane-light, membrane-large, membrane-small, msd-1d, "
@@ -375,7 +375,7 @@ void setup_sim(Command& app, Action& action) {
                   "Also write the local stiffness of deformable objects (CSV, and a plot beside it)")
       ->type_name("FILE");
   command.add_flag("--codec", options->codec,
-                   "Close the loop through encoder, decoder and replica; implied by every option from --stream to --layered");
+                   "Close the loop through encoder, decoder and replica; every option from --stream to --layered implies it");
   command.add_option("--stream", options->stream, "Also write the packets")->type_name("FILE");
   add_interpolation(command, options->replica);
   options->triggers.add_to(command);

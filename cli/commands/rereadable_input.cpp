@@ -31,8 +31,8 @@ tl::expected<RereadableInput, Failure> RereadableInput::open(const std::string& 
     if (*count == 0) break;
     copied += *count;
     if (copied > kMostRead) {
-      return refuse(fmt::format("{}: larger than the {} MiB that are read of a pipe", shown_path(path), kMostRead >> 20),
-                    "Put it into a file first.");
+      return refuse(fmt::format("{}: more than {} MiB from a pipe", shown_path(path), kMostRead >> 20),
+                    "Write it to a file first.");
     }
     if (std::fwrite(piece.data(), 1, *count, input.copy_.get()) != *count)
       return refuse_io("a temporary file", "cannot be written", errno);

@@ -58,15 +58,12 @@ std::map<std::string, std::string> bench_context() {
 Outcome make_folder(const std::string& directory) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
-  if (error)
-    return refuse(directory + ": the folder cannot be made: " + error.message(),
-                  "Check that the path is right and that you may use it.");
+  if (error) return refuse(directory + ": the folder cannot be made: " + error.message(), "Check the path and your permissions.");
   return {};
 }
 
 void setup_bench(Command& app, Action&) {
-  Command& bench =
-      app.add_command("bench", "Study the simulation itself: error against run time, and where it stops being stable");
+  Command& bench = app.add_command("bench", "Measure the simulation itself: error against run time, and stability limits");
   bench.footer("Example:\n  tactus bench stability --help");
 }
 

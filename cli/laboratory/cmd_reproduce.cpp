@@ -191,7 +191,7 @@ const char* order_of(std::span<const Row> rows, std::size_t first) {
   if (is_ordered(rows, first)) return "holds";
   for (std::size_t i = first; i < first + 3; ++i)
     if (rows[i].mean + rows[i].deviation < rows[i + 1].mean - rows[i + 1].deviation) return "does not hold";
-  return rows[first].deviation > 0 ? "holds within the spread of the runs" : "does not hold; one seed tells no spread";
+  return rows[first].deviation > 0 ? "holds within the spread of the runs" : "does not hold; the spread needs more than one seed";
 }
 constexpr std::size_t kFirstWithout = 2, kFirstWith = 6;  // rows of S4_NI and S4_WI
 
@@ -201,7 +201,7 @@ void print_text(const std::vector<Row>& rows, const ReproduceOptions& options, c
   fmt::print("Thesis table 3.3 and figure 3.14: traffic control settings on {}, closed loop, {:.1f} s, seeds 1 to {}\n",
              scene.name, scene.duration, options.seeds);
   fmt::print(
-      "Chosen here: 1 virtual length unit = {} m, grip {}, the scene's hand and path; nothing is fitted to the thesis's "
+      "Chosen here: 1 virtual length unit = {} m, grip {}, the scene's hand and path; no parameter is fitted to the thesis's "
       "rates.\n\n",
       options.length_unit, options.grip);
   Table table;
@@ -219,10 +219,10 @@ void print_text(const std::vector<Row>& rows, const ReproduceOptions& options, c
   table.print(stdout);
   fmt::print(
       "\nrule broken     ticks in which the predicted state breaks the setting's haptic rule, all seeds together\n"
-      "visual broken   the same for its visual thresholds\n"
-      "shown over      share of ticks in contact in which what the client shows, smoothed or not, breaks the haptic rule\n"
-      "shown worst     largest error there, as a multiple of the permitted one\n"
-      "felt over JND   share of ticks whose rendered force is off by more than people notice (10 to 22 %)\n"
+      "visual broken   ticks in which it breaks the visual thresholds, all seeds together\n"
+      "shown over      share of the ticks in contact in which the shown state, smoothed or not, breaks the haptic rule\n"
+      "shown worst     largest error in these ticks, as a multiple of the permitted error\n"
+      "felt over JND   share of ticks in which the error of the rendered force is perceptible (more than 10 to 22 %)\n"
       "contact         {:.0f} % of the ticks\n\n",
       100 * rows.front().average.contact);
   fmt::print("S4 > S8 > S18 > S30 without interpolation: {}\n", order_of(rows, kFirstWithout));
@@ -278,7 +278,7 @@ Outcome run(const ReproduceOptions& options) {
     };
     results = run_in_workers<Measured>(jobs, job, [&](std::size_t done) { progress.update(done); });
   }
-  if (!results) return refuse("a worker process ended early", "Look for a lack of memory.");
+  if (!results) return refuse("a worker process ended early", "Check whether memory ran out.");
   std::vector<Row> rows;
   for (std::size_t i = 0; i < jobs; ++i) {
     const Measured& m = (*results)[i];
@@ -294,7 +294,7 @@ Outcome run(const ReproduceOptions& options) {
 
 void setup_reproduce(Command& app, Action& action) {
   auto options = std::make_shared<ReproduceOptions>();
-  Command& command = app.add_command("reproduce", "Set our figures beside those of the thesis");
+  Command& command = app.add_command("reproduce", "Run an experiment of the thesis and compare the figures");
   command.add_option("FIGURE", options->figure, "fig3.14, also called table3.3")
       ->required()
       ->check(one_of({"fig3.14", "table3.3"}))

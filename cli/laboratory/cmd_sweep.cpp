@@ -211,7 +211,7 @@ void print_summary(const SweepOptions& options, const SweepPlan& plan, const Sum
 
 Outcome run(const SweepOptions& options) {
   if (std::getenv(kInsideSweep) != nullptr)
-    return refuse("a sweep cannot run within a sweep", "Let the plan's commands be others than sweep.");
+    return refuse("a sweep cannot run within a sweep", "Use other commands than sweep in the plan.");
   TACTUS_TRY(const auto plan, load_plan(options.plan));
   const std::string folder = options.folder.empty() ? "out/" + plan.name : options.folder;
   if (options.list) {
@@ -244,7 +244,7 @@ Outcome run(const SweepOptions& options) {
   print_summary(options, plan, summary);
   if (!first) return {};
   return refuse(fmt::format("{} of {} points failed, the first one:\n       {}", summary.failed, summary.points, first->text),
-                first->remedy.empty() ? "Run the sweep again once it is mended; finished points are kept." : first->remedy);
+                first->remedy.empty() ? "Correct the cause and run the sweep again; finished points are kept." : first->remedy);
 }
 
 }  // namespace
@@ -252,9 +252,7 @@ Outcome run(const SweepOptions& options) {
 void setup_sweep(Command& app, Action& action) {
   auto options = std::make_shared<SweepOptions>();
   Command& command = app.add_command("sweep", "Run a command over a grid of parameters into a table and figures");
-  command.add_option("PLAN", options->plan, "TOML: the command, its parameters, what to measure and to draw")
-      ->type_name("")
-      ->required();
+  command.add_option("PLAN", options->plan, "TOML file: command, parameters, measures and figures")->type_name("")->required();
   command.add_option("-o,--output", options->folder, "Folder of the results; an existing one is resumed [out/NAME]")
       ->type_name("DIR");
   command.add_option("-j,--jobs", options->jobs, "Points computed in parallel [one per core]; give 1 where times matter")
@@ -263,8 +261,8 @@ void setup_sweep(Command& app, Action& action) {
   command.add_flag("--list", options->list, "Print the commands without running them");
   add_report_options(command, options->common);
   command.footer(
-      "A sweep that was stopped goes on where it was: finished points are neither lost nor computed again.\n"
-      "A plan is a program: its commands write wherever they name a file. Look at those of others with --list first.\n"
+      "A stopped sweep resumes when it is started again; finished points are kept.\n"
+      "A plan is a program: its commands may write any file. Check a plan that you did not write with --list first.\n"
       "Examples:\n"
       "  tactus sweep reports/plans/deadband.toml\n"
       "  tactus sweep reports/plans/deadband.toml -o results/deadband -j 1");

@@ -81,7 +81,7 @@ tl::expected<GrowingTable, Failure> GrowingTable::open(std::string path, Row col
     return out;
   }
   if (*first != out.columns_)
-    return refuse(shown_path(out.path_) + ": its columns are not those that belong here", "Give another folder with -o.");
+    return refuse(shown_path(out.path_) + ": its columns differ from those of this table", "Give another folder with -o.");
   while (auto cells = read_line(text, at)) {
     out.rows_.push_back(*std::move(cells));
     if (out.rows_.back().size() != out.columns_.size()) return out.refuse_row(out.rows_.size() - 1);

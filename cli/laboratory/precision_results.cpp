@@ -179,8 +179,8 @@ tl::expected<PrecisionResults, Failure> PrecisionResults::open(std::string folde
   } else {
     TACTUS_TRY(const auto found, read_file(file));
     if (found != wanted) {
-      return refuse(file + ": this folder holds figures of another machine, build or extent",
-                    "Give another folder, or -f to start afresh in this one.");
+      return refuse(file + ": this folder holds results of another machine, build or extent",
+                    "Give another folder, or -f to replace the results in this one.");
     }
   }
   TACTUS_CHECK(out.read());

@@ -178,7 +178,7 @@ class PlanReader {
     for (const std::string& word : words) {
       for (std::size_t open = word.find('{'); open != std::string::npos; open = word.find('{', open + 1)) {
         const std::string place = word.substr(open + 1, word.find('}', open) - open - 1);
-        if (!known(place)) invalid(at, "R-SCN-7", key, "mend {" + place + "}: nothing here has this name");
+        if (!known(place)) invalid(at, "R-SCN-7", key, "correct {" + place + "}: nothing here has this name");
       }
     }
   }

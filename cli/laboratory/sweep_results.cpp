@@ -27,7 +27,7 @@ tl::expected<Descriptor, Failure> hold(const std::string& folder) {
     return refuse(shown_path(folder) + ": cannot be opened: " + std::generic_category().message(errno),
                   "Give another folder with -o.");
   if (flock(lock.number(), LOCK_EX | LOCK_NB) == 0) return lock;
-  return refuse(shown_path(folder) + ": another sweep is writing here", "Wait for its end, or give another folder with -o.");
+  return refuse(shown_path(folder) + ": another sweep is writing here", "Wait until it ends, or give another folder with -o.");
 }
 
 /// What must not change between two runs into one folder.
@@ -60,7 +60,7 @@ tl::expected<SweepResults, Failure> SweepResults::open(const std::string& folder
   if (fs::exists(folder + "/context.json", failed)) {
     TACTUS_CHECK(results.check_context(plan));
   } else if (fs::exists(results.table_path(), failed)) {
-    return refuse(shown_path(results.table_path()) + ": there without the context.json that says what it is",
+    return refuse(shown_path(results.table_path()) + ": exists without the context.json that describes it",
                   "Give another folder with -o.");
   }
   TACTUS_CHECK(write_file(folder + "/context.json", text_of_json(context(plan)) + "\n", OutputFile::Existing::replace));

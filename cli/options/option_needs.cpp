@@ -80,21 +80,21 @@ constexpr std::array kNeeds{
 const char* lack_of(Subject subject) {
   switch (subject) {
     case Subject::rigid:
-      return "no rigid object moves";
+      return "no moving rigid object";
     case Subject::user:
-      return "no user is";
+      return "no user";
     case Subject::mesh:
-      return "no deformable object is";
+      return "no deformable object";
     case Subject::touched_mesh:
-      return "no deformable object with a user to touch it is";
+      return "no deformable object with a user to touch it";
     case Subject::deformable:
-      return "no deformable object is";
+      return "no deformable object";
     case Subject::deformed:
-      return "no deformable and no one-dimensional object is";
+      return "neither a deformable nor a one-dimensional object";
     case Subject::packets:
-      return "no packet is";
+      return "no packets";
     case Subject::surface:
-      return "no surface to fill is";
+      return "no surface to fill";
   }
   return "";
 }
@@ -138,8 +138,8 @@ void note_idle_options(const Command& command, const std::set<Subject>& held, co
   for (const Need& need : kNeeds) {
     const Option* option = typed(command, need.option);
     if (!option || held.contains(need.subject) || (need.value && option->last() != need.value)) continue;
-    fmt::print(stderr, "note: {}{}{}: {} in this {}; without effect\n", need.option, need.value ? " " : "",
-               need.value ? need.value : "", lack_of(need.subject), place);
+    fmt::print(stderr, "note: {}{}{} has no effect: this {} has {}\n", need.option, need.value ? " " : "",
+               need.value ? need.value : "", place, lack_of(need.subject));
   }
 }
 

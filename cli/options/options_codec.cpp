@@ -61,8 +61,8 @@ Check one_of(const std::vector<std::string>& names) {
 
 Outcome check_no_terminal(const std::string& output) {
   if (output != "-" || isatty(STDOUT_FILENO) == 0) return {};
-  return refuse_arguments("-o -: standard output is a terminal, and what is written is no text",
-                          "Name a file, or lead the output into one or into another command.");
+  return refuse_arguments("-o -: standard output is a terminal, and the output is binary",
+                          "Name a file, or redirect the output to a file or to another command.");
 }
 
 void add_report_options(Command& app, CommonOptions& options) {
@@ -194,7 +194,7 @@ void MeshArguments::add_encoder_to(Command& app) {
            ->type_name("Q"),
        app.add_flag("--keep-models", coding_.models_kept, "thesis: keep adapting the entropy models from packet to packet"),
        app.add_flag("--layered", coding_.layered,
-                    "Deformable objects that are touched: a haptic layer in a packet of its own before the visual one. Costs "
+                    "Touched deformable objects: send the haptic layer in its own packet before the visual layer. Costs "
                     "a second header per update and 3 to 30 % of the bits")});
 }
 

@@ -26,7 +26,7 @@ void traffic_rows(Table& table, const MeshReport& mesh, double seconds) {
   };
   both("  kbit/s", 2, [&](double bytes) { return 8e-3 * per(bytes, seconds); });
   both("  bytes per packet, mean", 1, [&](double bytes) { return per(bytes, packets_of(t)); });
-  if (t.frames > 0) both("  smaller than float32, times", 1, [&](double bytes) { return per(raw_bytes(mesh), bytes); });
+  if (t.frames > 0) both("  compression vs float32, times", 1, [&](double bytes) { return per(raw_bytes(mesh), bytes); });
   table.row({"  bytes per packet, p99", fmt::to_string(t.quantile(0.99))});
   table.row({"  bytes per packet, max", fmt::to_string(t.quantile(1))});
   if (t.frames > 0) table.row({"  frames per second", fmt::format("{:.2f}", per(static_cast<double>(t.frames), seconds))});

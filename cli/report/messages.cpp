@@ -51,16 +51,16 @@ std::string remedy_of(int cause) {
   switch (cause) {
     case ENOSPC:
     case EDQUOT:
-      return "Make room on this disk, or write to another one.";
+      return "Free space on this disk, or write to another one.";
     case EACCES:
     case EPERM:
     case EROFS:
-      return "Check that you may use this file and its folder.";
+      return "Check your permissions for this file and its folder.";
     case ENOENT:
     case ENOTDIR:
       return "Check that the path is right.";
     default:
-      return "Check that the path is right and that you may use it.";
+      return "Check the path and your permissions.";
   }
 }
 

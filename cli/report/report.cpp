@@ -144,7 +144,7 @@ void note_rows(Table& table, const Report& r) {
     if (d.samples == 0) continue;
     note_row(table, "error", step_error(d));
     note_row(table, "energy",
-             fmt::format("{:+.2g} % of the work of all forces gained without cause over the whole run", 100 * d.energy_gained));
+             fmt::format("spurious gain over the whole run: {:+.2g} % of the work of all forces", 100 * d.energy_gained));
   }
   for (const TouchReport& t : r.touches) {
     note_row(table, "touch",
@@ -153,7 +153,7 @@ void note_rows(Table& table, const Report& r) {
   }
   if (!r.bounds_from.empty())
     note_row(table, "bounds",
-             r.bounds_from == "stream"    ? "those that the stream promises"
+             r.bounds_from == "stream"    ? "declared by the stream"
              : r.bounds_from == "options" ? "as typed"
                                           : "the defaults");
   for (const std::string& warning : r.warnings) note_row(table, "warning", warning);
@@ -193,10 +193,9 @@ void print_text(const Report& r, std::FILE* out) {
     fmt::print(out, "\n{}\n", broken.empty() ? "All bounds hold." : "Bounds are broken: " + broken + ".");
   }
   if (r.fidelity && r.fidelity->rendered().ticks() > 0) {
-    fmt::print(
-        out,
-        "\nRendered force: what the hand felt beside the server's force. Its ticks over 10..22 % may be noticed; unlike the "
-        "bounds above,\nno rule of the codec limits it, as the hand moves on what it feels.\n");
+    fmt::print(out,
+               "\nRendered force: the force at the hand compared with the server's force. Errors of more than 10..22 % may be "
+               "perceptible.\nNo rule of the codec limits this error, because the hand moves under the force that it feels.\n");
   }
 }
 

@@ -17,17 +17,17 @@ constexpr std::uint32_t kByHand = 10;  // contacts that a hand makes in a second
 void warn_of_chatter(const TouchReport& touch, Report& report) {
   if (touch.most_in_a_second <= kByHand) return;
   report.warnings.push_back(
-      fmt::format("{}: the contact chatters, it began {} times within a second; what is felt and sent is that of the sampling",
+      fmt::format("{}: the contact chatters: it began {} times within a second. Forces and updates are artefacts of the sampling",
                   touch.user, touch.most_in_a_second));
 }
 
 void warn_of_sampling(const sim::Scene& scene, const sim::Simulation& simulation, std::size_t user, Report& report) {
   const double stiffness = simulation.touched(user).stiffest, bears = simulation.bears(user);
   if (stiffness <= bears) return;
-  report.warnings.push_back(
-      fmt::format("{}: a coupling of {:.4g} N/m is beyond the {:.4g} N/m that this hand and the smoothing of its device bear at "
-                  "{} Hz against what does not yield",
-                  scene.users[user].name, stiffness, bears, sim::kTickRate));
+  report.warnings.push_back(fmt::format(
+      "{}: a coupling of {:.4g} N/m exceeds {:.4g} N/m, the stability limit of this hand with its device's filter at {} Hz "
+      "on a rigid surface",
+      scene.users[user].name, stiffness, bears, sim::kTickRate));
 }
 
 /// All who may press an object at once count (eq. 4.38).
@@ -37,8 +37,8 @@ void warn_of_deformation(const sim::Scene& scene, const SurfaceContact& hardest,
   const auto bears = sim::critical_stiffness(object, hardest);
   if (!bears || sum <= *bears) return;
   report.warnings.push_back(fmt::format(
-      "{}: pressed with {:.4g} N/m where thesis eq. 4.38 bears {:.4g} N/m, deformed every {:g} ms: it may swing up; give a "
-      "smaller rate or stiffness",
+      "{}: a total coupling of {:.4g} N/m exceeds {:.4g} N/m, the limit of thesis eq. 4.38 at one deformation every {:g} ms. The "
+      "contact may become unstable: give a smaller rate or stiffness",
       object.name, sum, *bears, 1e3 * object.rate * sim::kTick));
 }
 
