@@ -1,10 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# From a bare Debian 12 to a result. Needs root or sudo only for packages that are not there yet.
-#   ./go demo     simulate a touch, send it through the codec, judge it; report and figure in out/demo/ (under 3 minutes on 2 cores, 300 MB)
+# Installs missing packages, builds and runs Tactus on Debian 12. Needs root or sudo only to install packages.
+#   ./go demo     simulate a touch, encode, decode and compare; report and figure in out/demo/ (under 3 minutes on 2 cores, 300 MB)
 #   ./go test     build with g++ and clang, run every test (40 minutes on 2 cores, 4 GB)
 #   ./go bench    build and run the benchmarks; JSON in build/bench/
-#   ./go format   rewrite the sources with clang-format
+#   ./go format   format the sources with clang-format
 # shellcheck disable=SC2086 # lists of packages are words
 set -eu
 cd "$(dirname "$0")"
@@ -31,7 +31,7 @@ apt_install() {
   as_root apt-get update && as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $missing
 }
 
-# Run a command quietly, on a terminal with what is built so far; when it fails show the end of its log and how to run it again.
+# Run a command quietly and show its progress on a terminal. If it fails, show the end of its log and how to run it again.
 step() { # TITLE COMMAND...
   title=$1
   shift
@@ -47,12 +47,12 @@ step() { # TITLE COMMAND...
   else
     echo FAILED
     tail -n 40 "$log"
-    printf '\nThis step failed: %s\nIts whole output: %s\nRun it again with: %s\n' "$title" "$log" "$*"
+    printf '\nThis step failed: %s\nFull log: %s\nRun it again with: %s\n' "$title" "$log" "$*"
     exit 1
   fi
 }
 
-# While the process runs, the newest [3/286] of its log behind the cursor.
+# While the process runs, show the newest [3/286] of its log after the cursor.
 progress() { # PID LOG
   while kill -0 "$1" 2>/dev/null; do
     at=$(tail -c 4000 "$2" 2>/dev/null | grep -o '^\[[0-9]*/[0-9]*\]' | tail -n 1)
@@ -69,14 +69,14 @@ run_test() {
   step 'clang: build without warnings, with AddressSanitizer and UndefinedBehaviorSanitizer' tests/check.sh build asan
   step 'sanitizers: all tests' tests/check.sh test asan
   step 'codec alone: no package needed, nothing else linked' tests/check.sh codec-only
-  step 'codec: MemorySanitizer over everything that fuzzing has kept' tests/check.sh msan
+  step 'codec: MemorySanitizer over all fuzz corpora' tests/check.sh msan
   step 'same bits from every compiler and optimisation level' tests/check.sh exact
   step 'clang-format' tests/check.sh format
   step 'clang-tidy' tests/check.sh tidy
   cat build/log/*.log | awk '/tests failed out of/ { failed += $4; all += $NF } END { printf "%d passed, %d failed\n", all - failed, failed }'
 }
 
-# Only what the demo shows: one rigid object.
+# Only the components that the demo needs: rigid objects.
 build_demo() {
   cmake -S . -B build/demo -G Ninja -DCMAKE_BUILD_TYPE=Release -DTACTUS_WITH_CLI=ON -DTACTUS_WITH_SIM=ON -DTACTUS_WITH_STUDY=OFF \
     -DTACTUS_WITH_FEM=OFF -DTACTUS_WITH_SURFACE=OFF -DTACTUS_WITH_MODES=OFF -DTACTUS_WITH_CONFORMANCE=OFF -DTACTUS_WITH_TESTS=OFF &&
@@ -91,22 +91,22 @@ run_demo() {
   mkdir -p "$out"
   bounds='-p 4% --visual 0.3mm,2deg'
   step 'simulate a hand that turns, pushes and lifts a cube' "$tactus" sim rotate-push-lift -o "$out/truth.mcap" -f
-  step 'encode what a client needs to see and feel' "$tactus" encode "$out/truth.mcap" -o "$out/stream.tct" -f $bounds
-  step 'decode what the client sees' "$tactus" decode "$out/stream.tct" -o "$out/replica.mcap" --like "$out/truth.mcap" -f
-  step 'draw what tighter and wider bounds cost' "$tactus" sweep reports/plans/demo.toml -o "$out/sweep"
+  step 'encode the trace into a stream' "$tactus" encode "$out/truth.mcap" -o "$out/stream.tct" -f $bounds
+  step 'decode the stream as a client does' "$tactus" decode "$out/stream.tct" -o "$out/replica.mcap" --like "$out/truth.mcap" -f
+  step 'draw packet rate and error over the deadband' "$tactus" sweep reports/plans/demo.toml -o "$out/sweep"
   "$tactus" encode "$out/truth.mcap" -o "$out/stream.tct" -f $bounds | tee "$out/report.txt"
   "$tactus" encode "$out/truth.mcap" -o "$out/stream.tct" -f $bounds --json >"$out/encode.json"
   held='every bound held at every tick'
   "$tactus" compare "$out/truth.mcap" "$out/replica.mcap" --json >"$out/compare.json" || held='a bound was BROKEN, see compare.json'
   cat <<END
 
-Verdict, from what the decoder shows: $held.
-Look at   $out/sweep/deadband.svg: packets and error of force over the deadband
+Result at the decoder: $held.
+Look at   $out/sweep/deadband.svg: packet rate and error of the force over the deadband
           $out/truth.mcap, $out/replica.mcap in Foxglove or PlotJuggler
 Reports   $out/report.txt, encode.json, compare.json, sweep/points.csv
 Next      PATH=\$PWD/build/demo/cli:\$PATH; tactus --help
           tactus sim push-1dof -o push.mcap; tactus encode push.mcap -o push.tct -p 8%
-          README.md shows objects that deform: build with all components, see "Use the library"
+          For deformable objects build all components; see "Use the library" in README.md
 END
   [ "$held" = 'every bound held at every tick' ]
 }

@@ -3,9 +3,9 @@
 """A decoder of Tactus files with rigid objects, to show how little it takes:  python3 decoder.py FILE.tct
 
 Prints a line of JSON for every update of an object: tick, object, position [m], rotation (w, x, y, z), velocity [m/s] and angular
-velocity [rad/s], all in the world frame. It is to be read beside the specification in spec/: "40, 3" is section 3 of chapter 40.
-What it cannot decode is refused with the rule that it breaks. Deformable objects (chapter 50) are left out, as are the rules about
-names, limits and extension records: decoding does not need them. conformance/decoder.py has all of it.
+velocity [rad/s], all in the world frame. Read it beside the specification in spec/: "40, 3" is section 3 of chapter 40.
+Input that breaks a rule is refused with the name of the rule. Deformable objects (chapter 50) are left out, and so are the rules about
+names, limits and extension records, which decoding does not need. conformance/decoder.py is complete.
 """
 import csv, json, struct, sys, zlib
 from math import isqrt

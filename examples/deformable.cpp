@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A sheet that is pressed in the middle: one shape every 17 ms, exact to 0.25 mm everywhere and to what a finger feels near the probe.
+/// A sheet is pressed in the middle. One shape every 17 ms; the error is at most 0.25 mm everywhere, and below the haptic threshold near
+/// the probe.
 #include <cmath>
 #include <cstdio>
 #include <vector>

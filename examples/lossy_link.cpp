@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The same over a link that loses one packet in five and takes 20 ms each way: packets build on states that the client acknowledged, so
-/// that no loss stops the stream, and the client says what to do about a packet that it cannot take.
+/// Server and client over a link that loses one packet in five and takes 20 ms each way. Packets build on states that the client has
+/// acknowledged, so no loss stops the stream. If the client cannot decode a packet,
+/// advice() tells whether to request a key packet.
 #include <cmath>
 #include <cstdio>
 #include <deque>

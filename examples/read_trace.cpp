@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How far each object of a trace travelled, and how long its users touched something.   usage: read_trace TRACE.mcap
+/// Print how far each object of a trace travelled and how long its users touched something.   usage: read_trace TRACE.mcap
 #include <cstdio>
 #include <vector>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A cube and a table, from server to client: what is sent, why, and how far off the client is.
+/// A cube and a table, from server to client. Prints what is sent, why, and the error at the client.
 #include <cstdio>
 
 #include <tactus/tactus.h>

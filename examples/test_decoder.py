@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs decoder.py over the conformance vectors that have no deformable objects:  python3 test_decoder.py [FILE.tct]
 
-With a file it compares what decoder.py and the second decoder (conformance/) say to that file.
+With a file it compares the output of decoder.py with that of the second decoder (conformance/).
 """
 import json
 import struct
