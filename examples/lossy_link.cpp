@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Server and client over a link that loses one packet in five and takes 20 ms each way. Packets build on states that the client has
-/// acknowledged, so no loss stops the stream. If the client cannot decode a packet,
-/// advice() tells whether to request a key packet.
+/// acknowledged, so no loss stops the stream. If the client cannot decode a packet, advice() tells whether to request a key packet.
 #include <cmath>
 #include <cstdio>
 #include <deque>
