@@ -9,7 +9,7 @@ namespace tactus {
 enum class Baseline : std::uint8_t {
   previous,      ///< the state of the packet before: fewest bits; after a loss receivers wait for a key packet
   acknowledged,  ///< the newest acknowledged state, at most Scene::baseline_span packets ago: a loss interrupts nothing.
-                 /// Layered objects use `previous` in any case: each layer takes the other one from the packet before
+                 ///< Layered objects use `previous` in any case: each layer takes the other one from the packet before
 };
 
 struct SenderPolicy {
