@@ -26,8 +26,8 @@ class Player {
   static Result<Player> open(std::span<const std::uint8_t> file, const ReceiverOptions& options = {});
 
   /// Apply the next packet that is due at `tick`; nothing when none is.
-  /// err  as StreamFileReader::next and Receiver::push, places counted from the start of the file; invalid R-FIL-7: the file and the
-  ///      packet name different ticks.
+  /// err  as StreamFileReader::next and Receiver::push, with offsets counted from the start of the file; invalid R-FIL-7: the
+  ///      file and the packet name different ticks.
   Result<std::optional<PlayedPacket>> play(std::int64_t tick) noexcept;
   /// Tick of the next packet; nothing at the end.   err  as play()
   Result<std::optional<std::int64_t>> next_tick() noexcept;
@@ -36,7 +36,7 @@ class Player {
   Replica& replica() noexcept { return receiver_.replica(); }
   const Scene& scene() const noexcept { return *reader_.scene(); }
   std::uint64_t header_bytes() const noexcept { return reader_.header_bytes(); }
-  bool complete() const noexcept { return reader_.complete(); }  ///< known at the end
+  bool complete() const noexcept { return reader_.complete(); }  ///< valid after the last packet
 
  private:
   Player(std::span<const std::uint8_t> file, StreamFileReader reader, Receiver receiver) noexcept

@@ -24,54 +24,59 @@ struct SenderOptions {
   SenderPolicy policy{};
 };
 
-/// What truly is at one tick. All spans need to live until encode() returns.
+/// True state of the scene at one tick. All spans must stay valid until encode() returns.
 struct Truth {
-  std::span<const RigidSample> objects{};  ///< one per rigid object of the scene; those of static objects are not looked at
-  std::span<const Contact> contacts{};     ///< of rigid objects: any number, from any clients
+  std::span<const RigidSample> objects{};          ///< one per rigid object of the scene; entries of static objects are ignored
+  std::span<const Contact> contacts{};             ///< of rigid objects: any number, from any clients
   std::span<const DeformableTruth> deformables{};  ///< one per deformable object; empty: none has a new shape
 };
 
-/// Decides at every tick what must be sent, and codes it.
+/// Decides at every tick which states must be sent, and codes them.
 ///
-/// Bounds. After every tick a receiver that got all packets shows, without interpolation, for every object, contact and vertex given,
-///   |x^ - x| <= visual_position,  angle(q^, q) <= visual_rotation,  haptic_ratio(f, f^) <= 1,  |u^ - u| <= v, and <= h where it is felt;
-/// where a bound is finer than the grid, the nearest place on the grid. Deformable objects of profile thesis only aim at theirs.
+/// Bounds. After every tick, a receiver that got all packets and does not interpolate satisfies, for every
+/// object, contact and vertex given,
+///   |x^ - x| <= visual_position,  angle(q^, q) <= visual_rotation,  haptic_ratio(f, f^) <= 1,
+///   |u^ - u| <= v, and <= h inside the area of interest.
+/// A bound finer than the grid means the nearest grid point. Profile thesis only aims at its bounds.
 ///
-/// Loss. With Baseline::previous each packet builds on the one before it in its substream: a receiver that misses one refuses those
-/// that follow (R-PKT-4) until a key packet, after key_interval or request_key(). With Baseline::acknowledged it builds on the newest
-/// state that acknowledge() named. A key packet of a layered object forgets its shape outside the area of interest until the visual
-/// packet arrives; where nobody joins or seeks, key_interval 0 saves that.
+/// Loss. With Baseline::previous each packet builds on the one before it in its substream. A receiver that misses a packet
+/// refuses the following ones (R-PKT-4) until a key packet, sent after key_interval or request_key(). With Baseline::acknowledged
+/// a packet builds on the newest state that acknowledge() named. A key packet of a layered object drops the shape outside the
+/// area of interest until the visual packet arrives. If no client joins or seeks, key_interval 0 avoids that.
 ///
 /// Threads: one at a time. The scene is shared. No allocation and no exception after create().
 class Sender {
  public:
-  /// err  invalid_argument R-API-4: an option of what the scene has is negative, NaN, too large or finer than the grid;
+  /// err  invalid_argument R-API-4: an option that this scene uses is negative, NaN, too large or finer than the grid;
   ///      limit_exceeded R-API-11 memory
   static Result<Sender> create(SharedScene scene, const SenderOptions& options = {});
 
-  /// Look at one tick and decide.
+  /// Evaluate one tick and code the packets that it needs.
   /// in   tick  strictly increasing, below 2^32 - 1
-  /// out  at most one packet per substream, two of a layered object; what is felt goes first. Valid until the next call: bind the Result
-  ///      to a name before you walk over it
+  /// out  at most one packet per substream, two for a layered object, its haptic layer first. Valid until the next call: bind the
+  ///      Result to a name before iterating over it
   /// time < 1 us per rigid object; O(V * (1 + modes)) per new shape, 100 us for 714 vertices and 48 modes.
-  /// err  invalid_argument R-API-1, 2, 3 a sample, displacement or force is not finite or out of range; R-API-5 wrong count, order of
-  ///      ticks, contact, triangle, force or stiffness; R-API-6 an object moved along an axis that it does not have; R-API-7 it is
-  ///      further from where it is expected than an update can tell. Nothing has changed after an error.
+  /// err  invalid_argument R-API-1, 2, 3 a sample, displacement or force is not finite or out of range; R-API-5 wrong count,
+  ///      order of ticks, contact, triangle, force or stiffness; R-API-6 an object moved along a locked axis; R-API-7 the
+  ///      residual from the predicted pose exceeds what an update can code. An error leaves the sender unchanged.
   Result<std::span<const Packet>> encode(std::int64_t tick, const Truth& truth) noexcept;
 
-  /// A receiver refuses what it gets (Advice::request_key): the next packet of every substream is a key packet, also where every bound
-  /// holds. One of the rigid objects names all that have left the initial state; while none has, there is nothing to send.
+  /// Call when a receiver refuses packets (Advice::request_key). The next packet of every substream is then a key packet, sent
+  /// even if every bound holds. The rigid key packet names the objects that have left their initial state; if none has, it is
+  /// not sent.
   void request_key() noexcept;
 
-  /// The receiver has decoded this packet.   in  substream, sequence  as in Packet.   Unknown and old ones change nothing.
+  /// Report that the receiver has decoded a packet. Unknown and old numbers are ignored.
+  /// in  substream, sequence  as in Packet
   void acknowledge(std::size_t substream, std::uint16_t sequence) noexcept;
 
-  /// The packet of this substream that was made last will not be decoded (it is dropped, or known to be lost): the next one builds on the
-  /// state before it, or on the initial one if the scene's baseline_span does not reach so far. Only once after each packet.
+  /// Report that the newest packet of this substream will not be decoded (it is dropped, or known to be lost). The next one
+  /// builds on the state before it, or on the initial state if the scene's baseline_span does not reach that far. At most once
+  /// per packet.
   void forget_last(std::size_t substream) noexcept;
 
   const SharedScene& scene() const noexcept;
-  /// Of a substream: equals the receiver's after the same packets.   pre  the substream exists
+  /// Hash of a substream's state; equals the receiver's after the same packets.   pre  the substream exists
   std::uint64_t state_hash(std::size_t substream) const noexcept;
 
   Sender(Sender&&) noexcept;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Everything of tactus::codec. A scene goes in and packets come out (Sender); packets go in and a replica comes out (Receiver):
+/// All of tactus::codec. A Sender turns true states into packets; a Receiver turns packets into a replica:
 ///
 ///   #include <cstdio>
 ///   #include <tactus/tactus.h>
@@ -21,12 +21,12 @@
 ///     std::printf("the client shows x = %.3f m\n", shown.position.x);
 ///   }
 ///
-/// examples/ goes on with losses, deformable objects and traces.
+/// examples/ continues with losses, deformable objects and traces.
 ///
 /// Errors are values: every function that can fail returns a Result, whose Error names a class and a rule of the specification.
-/// describe() puts it in words, remedy() what would mend it, advice() what a receiver does about it. Nothing throws. After create() nothing allocates.
-/// Threads: a Scene never changes and may be shared; any other object is used by one thread at a time. Spans are valid until the next
-/// call of the object that returned them, where its header does not say otherwise.
+/// describe() explains it, remedy() suggests a fix, advice() tells a receiver how to react. Nothing throws. After create()
+/// nothing allocates. Threads: a Scene never changes and may be shared; any other object is used by one thread at a time. Spans
+/// are valid until the next call of the object that returned them, unless its header says otherwise.
 #pragma once
 
 #include <tactus/base/geometry.h>

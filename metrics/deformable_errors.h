@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How far what a client shows of a deformable object is from the truth: every vertex, every frame.
+/// Error of a client's view of a deformable object: every vertex, every frame.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@ namespace tactus {
 
 /// Distances between true and shown vertices [m].
 struct VertexErrors {
-  std::uint64_t vertices = 0;    ///< looked at, over all frames
-  std::uint64_t violations = 0;  ///< of them farther off than their bound
+  std::uint64_t vertices = 0;    ///< evaluated, over all frames
+  std::uint64_t violations = 0;  ///< those beyond their bound
   double square_sum = 0;         ///< [m^2]
   double max = 0;                ///< [m]
 
@@ -47,7 +47,7 @@ class DeformableErrors {
   std::uint64_t frames() const noexcept { return frames_; }
   const VertexErrors& all() const noexcept { return all_; }
   const VertexErrors& area() const noexcept { return area_; }   ///< inside the area of interest, in frames with touch
-  double worst_ratio() const noexcept { return worst_ratio_; }  ///< largest error in terms of its bound; <= 1: all bounds held
+  double worst_ratio() const noexcept { return worst_ratio_; }  ///< largest ratio of error to bound; <= 1: all bounds held
   double mean_haptic() const noexcept;                          ///< [m] mean of h over the frames with touch, 0 without
 
  private:
@@ -58,7 +58,7 @@ class DeformableErrors {
   DeformableThresholds bounds_;
   std::uint8_t rings_;
   unsigned position_exp_;
-  double rounding_;  // [m] farthest that a vertex lies from its nearest grid point
+  double rounding_;  // [m] largest distance of a vertex from its nearest grid point
   std::unique_ptr<Area> finder_;
   std::uint64_t frames_ = 0, touched_ = 0;
   VertexErrors all_, area_;

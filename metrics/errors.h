@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How far what a client shows and feels of rigid objects is from the truth.
+/// Errors of the rigid objects and forces at a client.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@
 
 namespace tactus {
 
-/// One kind of error over time. Samples are added tick by tick; a tick counts as over when any of its samples is.
+/// One kind of error over time. Samples are added tick by tick; a tick counts as over if any of its samples exceeds its bound.
 class ErrorSeries {
  public:
   void add(double error, bool over) noexcept;
   /// pre  `tick` is larger than the last
   void end_tick(std::int64_t tick) noexcept;
 
-  std::uint64_t ticks() const noexcept { return ticks_; }  ///< that had a sample
+  std::uint64_t ticks() const noexcept { return ticks_; }  ///< with at least one sample
   std::uint64_t ticks_over() const noexcept { return ticks_over_; }
   std::uint64_t longest_run() const noexcept { return longest_run_; }  ///< [ticks] longest run of consecutive violating samples
   double rms() const noexcept;
@@ -31,7 +31,7 @@ class ErrorSeries {
   bool sampled_ = false, over_ = false;  // in this tick
 };
 
-/// Holds a replica against the truth. Objects that cannot move are left out, and so are forces where nobody touches.
+/// Compares a replica with the truth. Objects that cannot move and forces without contact are left out.
 /// The force error is that of the contact itself: the force at the shown pose against the force at the true pose (contact_force).
 class ErrorMetrics {
  public:
@@ -40,7 +40,7 @@ class ErrorMetrics {
   /// in   shown  one pose per object
   /// time O(objects + users), no allocation.
   void add(const TraceFrame& truth, std::span<const Pose> shown) noexcept;
-  /// Also hold the force that the client rendered against the server's (closed loop only).
+  /// Also compare the force rendered at the client with the server's (closed loop only).
   void add_rendered(const TraceFrame& truth) noexcept;
 
   const RigidTriggers& bounds() const noexcept { return bounds_; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a stream cost.
+/// Data rates of a stream.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace tactus {
 
-/// What was sent of the rigid objects.
+/// Packets of the rigid objects.
 struct RateMetrics {
   std::array<std::uint64_t, 4> packets{};  ///< by strongest reason; index: Reason
   std::uint64_t updates = 0;
@@ -25,9 +25,9 @@ struct RateMetrics {
 /// Strongest reason among the updates of a packet.
 Reason strongest_reason(const DecodedPacket& packet) noexcept;
 
-/// What was sent of one deformable object.
+/// Packets of one deformable object.
 struct DeformableRates {
-  std::uint64_t frames = 0;          ///< shapes looked at; 0: not known
+  std::uint64_t frames = 0;          ///< shapes evaluated; 0: unknown
   std::uint64_t updates = 0;         ///< vertices with a residual of their own
   std::uint64_t keys = 0;            ///< key packets
   std::uint64_t bytes = 0;           ///< of packets, with their substreams' numbers, without any header below them

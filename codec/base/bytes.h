@@ -9,8 +9,8 @@
 
 namespace tactus {
 
-/// Reads from a span and distrusts it. After its first fault, the end of the span or an overlong varint, it returns 0 and stays
-/// failed; a syntax function checks ok() once, at its end.
+/// Reads an untrusted span. After the first fault (end of the span or overlong varint) every read returns 0 and the reader stays
+/// failed. A syntax function checks ok() once, at its end.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::uint8_t> bytes, std::size_t origin = 0) noexcept : bytes_(bytes), origin_(origin) {}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a force-feedback device reports of itself at one instant. Hands, recordings and real devices deliver it; a device that does not
-/// sense something leaves it as it is here.
+/// One sample of a force-feedback device. Virtual hands, recordings and real devices deliver it. Quantities that a device does
+/// not sense keep their defaults.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct DeviceSample {
   bool is_down(unsigned button) const noexcept { return (buttons >> button & 1u) != 0; }
 };
 
-/// What a device senses besides its position.
+/// Which quantities a device senses besides its position.
 struct DeviceSenses {
   bool orientation = false;
   bool velocity = false;

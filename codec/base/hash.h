@@ -40,7 +40,7 @@ constexpr std::array<std::uint32_t, 256> make_crc_table() noexcept {
 inline constexpr std::array<std::uint32_t, 256> kCrcTable = make_crc_table();
 }  // namespace detail
 
-/// CRC-32 of `data`; pass the previous result as `crc` to go on.
+/// CRC-32 of `data`; pass the previous result as `crc` to continue.
 constexpr std::uint32_t crc32(std::span<const std::uint8_t> data, std::uint32_t crc = 0) noexcept {
   crc = ~crc;
   for (const std::uint8_t byte : data) crc = (crc >> 8) ^ detail::kCrcTable[(crc ^ byte) & 0xffu];

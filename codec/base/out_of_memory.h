@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Memory that cannot be had, as an error. Functions that return a Result let no exception out: those that allocate catch
-/// std::bad_alloc and return this. Nothing has leaked then, and an object that was there before is as it was. Constructors, copies
-/// and functions that return anything else throw. Internal to the libraries.
+/// Allocation failure as an error. Functions that return a Result never throw: those that allocate catch std::bad_alloc and
+/// return this error. They leak nothing and leave existing objects unchanged. Constructors, copies and functions with any other
+/// return type throw. Internal to the libraries.
 #pragma once
 
 #include <new>

@@ -33,17 +33,17 @@ struct Error {
   std::uint64_t bit_offset = 0;  ///< position in the input where the rule was broken, in bits; 0 when there is none
 };
 
-/// The error in words: "the check value of a record does not match". In static memory, as all of spec/rules.csv.
+/// The error in words: "the check value of a record does not match". Static text, like all of spec/rules.csv.
 const char* describe(const Error& error) noexcept;
-/// What would mend it, a sentence. Empty for a rule that is not in spec/rules.csv.
+/// A sentence on how to fix it. Empty for a rule that is not in spec/rules.csv.
 const char* remedy(const Error& error) noexcept;
 
-/// What a receiver does about a packet or a scene declaration that it cannot decode (spec/95-security.md, section 5).
+/// How a receiver reacts to a packet or a scene declaration that it cannot decode (spec/95-security.md, section 5).
 enum class Advice : std::uint8_t {
-  none,         ///< the rule is about calls or files, not about what a sender sent
-  drop,         ///< nothing: the packet is damaged, late, or a copy; what is held stays as it was
-  request_key,  ///< ask the sender for a key packet: what this one builds on is not held
-  close,        ///< the scene declaration cannot be used, nor can the packets that follow it
+  none,         ///< the rule concerns calls or files, not received data
+  drop,         ///< ignore the packet: it is damaged, late, or a copy; the receiver's state is unchanged
+  request_key,  ///< ask the sender for a key packet: the baseline is not held
+  close,        ///< neither the scene declaration nor the packets after it can be used
 };
 Advice advice(const Error& error) noexcept;
 
@@ -51,7 +51,7 @@ template <class T>
 using Result = tl::expected<T, Error>;
 
 #ifdef TACTUS_BREAK_ON_ERROR
-[[gnu::noinline]] void break_on_error() noexcept;  ///< set a debugger breakpoint here to stop where an error is born
+[[gnu::noinline]] void break_on_error() noexcept;  ///< set a debugger breakpoint here to stop where an error is created
 #endif
 
 }  // namespace tactus
@@ -62,9 +62,9 @@ using Result = tl::expected<T, Error>;
   auto tmp = (__VA_ARGS__);                                       \
   if (!tmp) return ::tl::make_unexpected(std::move(tmp).error()); \
   lhs = *std::move(tmp)
-/// `TACTUS_TRY(auto x, f());` binds the value of f() or returns its error, whatever its type. With the next the only error macro.
+/// `TACTUS_TRY(auto x, f());` binds the value of f() or returns its error, whatever its type. The only other error macro:
 #define TACTUS_TRY(lhs, ...) TACTUS_TRY_(TACTUS_CONCAT(tactus_try_, __LINE__), lhs, __VA_ARGS__)
-/// `TACTUS_CHECK(f());` for one without a value, or whose value is not wanted.
+/// `TACTUS_CHECK(f());` returns the error of f(); its value, if any, is discarded.
 #define TACTUS_CHECK(...)                                                                                                \
   do {                                                                                                                   \
     if (auto tactus_check = (__VA_ARGS__); !tactus_check) return ::tl::make_unexpected(std::move(tactus_check).error()); \

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Errors are born here: a rule that is not in spec/rules.csv does not compile. Internal to the libraries.
+/// Creates errors. A rule name that is not in spec/rules.csv does not compile. Internal to the libraries.
 #pragma once
 
 #include <string_view>

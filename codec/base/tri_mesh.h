@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Triangle meshes: what is seen and touched of an object. Open or closed, several components, boundary allowed.
+/// Triangle meshes: the visible and touchable surface of an object. Open or closed, several components, boundary allowed.
 ///
 /// rule      class           element   broken when
 /// R-SRF-8   invalid         vertex    a coordinate is NaN or infinite, or larger than 1e6 m
@@ -31,10 +31,10 @@ struct TriMesh {
 inline constexpr std::size_t kMaxMeshVertices = std::size_t{1} << 20;
 inline constexpr std::size_t kMaxMeshTriangles = std::size_t{1} << 21;
 
-/// All rules above, the first broken one in element order.   time O(n log n); allocates.   err  R-SRF-8..14
+/// Checks all rules above; reports the first broken one in element order.   time O(n log n); allocates.   err  R-SRF-8..14
 tl::expected<void, Diagnostic> check(const TriMesh& mesh);
 
-/// Triangles around vertices and across edges; made once from connectivity alone.
+/// Adjacency: triangles around vertices and across edges. Built once from connectivity alone.
 /// pre  the mesh passed check()
 class MeshTopology {
  public:

@@ -37,13 +37,13 @@ class Replica {
   /// pre  check(); scene and decoders outlive the replica.   in  shapes  one per deformable object
   Replica(const Scene& scene, const ReplicaOptions& options, std::vector<DeformableDecoder*> shapes);
 
-  /// Take over a decoded packet of the rigid objects at tick `arrival`: its own, or later when the network delayed it. An earlier one
-  /// counts as the packet's, or as that of the object's last update, if that is later.
+  /// Apply a decoded packet of the rigid objects at tick `arrival`: its own, or later when the network delayed it. An earlier
+  /// arrival counts as the packet's tick, or as that of the object's last update, if that is later.
   /// in  objects   the states after that packet
   /// time O(updates), no allocation.
   void apply(const DecodedPacket& packet, std::span<const RigidState> objects, std::int64_t arrival) noexcept;
 
-  /// Pose of one object as shown at tick `now`; before the object's newest update it is the pose shown when that was applied.
+  /// Pose of one object as shown at tick `now`. Before the object's newest update, the pose shown when that was applied.
   /// pre  object < scene.objects.size().   time O(1), about 50 ns (100 ns while interpolating), no allocation.
   RigidPose pose(std::uint32_t object, std::int64_t now) const noexcept;
 

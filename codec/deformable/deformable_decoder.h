@@ -25,7 +25,7 @@ class DeformableDecoder {
   virtual Result<DecodedPacket> decode(std::span<const std::uint8_t> packet, std::optional<std::int64_t> now) noexcept = 0;
   /// Newest decoded displacement of every vertex, x 2^-position_exp m.
   virtual std::span<const std::array<std::int32_t, 3>> displacements() const noexcept = 0;
-  /// Where prediction puts the vertices at a tick; one before the newest packet's counts as that. Valid until the next call.
+  /// Predicted displacements at a tick; a tick before the newest packet counts as that packet's. Valid until the next call.
   virtual std::span<const std::array<std::int32_t, 3>> displacements_at(std::int64_t tick) noexcept = 0;
   virtual std::int64_t tick() const noexcept = 0;  ///< of the newest packet, 0 before the first
   virtual std::uint64_t state_hash() const noexcept = 0;

@@ -23,9 +23,10 @@ class DeformableEncoder {
                                                    const SenderPolicy& policy);
   virtual ~DeformableEncoder() = default;
 
-  /// The truth of one frame; nothing else changes.   pre  there are displacements.   in, err  Sender::encode
+  /// Take the truth of one frame; changes nothing else.   pre  there are displacements.   in, err  Sender::encode
   virtual Result<void> read(const DeformableTruth& truth) noexcept = 0;
-  /// Of a layered object the haptic packet of a frame, then the visual one; else that of all. Without bytes: not needed.
+  /// Code one packet of the frame. A layered object takes its haptic layer first, then the visual one; others take Layer::all.
+  /// Returns a packet without bytes if none is needed.
   virtual Packet encode(std::int64_t tick, Layer layer) noexcept = 0;
   virtual bool is_layered() const noexcept = 0;
   virtual void request_key() noexcept = 0;

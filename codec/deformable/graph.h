@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What both ends derive from a mesh before the first packet: neighbours, rings, coding order and parents. spec/50-deformable.md section 4.
+/// Data that both ends derive from a mesh: neighbours, rings, coding order and parents. spec/50-deformable.md section 4.
 /// Integers only: encoder and decoder must agree on every weight.
 #pragma once
 
@@ -17,7 +17,7 @@ struct VertexParent {
   std::int32_t weight = 0;  ///< x 2^-15
 };
 
-/// Lists of lists in one piece: item i of `first` is where list i starts in `items`.
+/// Lists of lists in one array: list i begins at items[first[i]].
 template <class T>
 struct ListOfLists {
   std::vector<std::uint32_t> first{0};
@@ -42,12 +42,12 @@ struct VertexHierarchy {
   ListOfLists<VertexParent> parents;  ///< by place in `order`; roots have none
 };
 
-/// Neighbours share an edge, or follow one another in number among the vertices at one rest position.
+/// Two vertices are neighbours if they share an edge, or if they are consecutive among the vertices at one rest position.
 /// pre  the triangles name existing vertices.   time O((vertices + triangles) log), allocates
 Neighbours neighbours(const DeformableObject& object);
 VertexHierarchy vertex_hierarchy(const DeformableObject& object);
 
-/// The area of interest. Holds its scratch space, so that asking allocates nothing.
+/// The area of interest. Holds scratch space, so that queries allocate nothing.
 class Rings {
  public:
   explicit Rings(const DeformableObject& object);

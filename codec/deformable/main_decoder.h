@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Profile main: payloads to states, a function of payload and baseline. spec/50-deformable.md sections 5 to 7. Internal to the library;
-/// Receiver is the way in.
+/// Profile main: decodes payloads into states, a function of payload and baseline. spec/50-deformable.md sections 5 to 7.
+/// Internal to the library; Receiver is the way in.
 #pragma once
 
 #include <algorithm>
@@ -33,7 +33,7 @@ class MainDecoder {
   void commit(const MainState&, MainState& next) noexcept { std::swap(next_, next); }
   std::uint64_t bit() const noexcept { return 8 * std::min<std::uint64_t>(coder_.position(), payload_); }
 
-  /// Where prediction puts the vertices at a tick not before the state's. Valid until the next call.
+  /// Predicted displacements at a tick not before the state's. Valid until the next call.
   std::span<const Vec3i> predict(const MainState& state, std::int64_t tick) noexcept { return reader_.predict(state, tick); }
 
  private:
@@ -44,7 +44,7 @@ class MainDecoder {
   std::uint64_t payload_ = 0;  // [bytes]
   MainModels models_;
   MainHead head_;
-  MainState next_;  // kept aside: nothing reaches a state before the whole packet has proved valid
+  MainState next_;  // pending: no state changes before the whole packet has proved valid
 };
 
 }  // namespace tactus

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Profile main: true displacements of one object to payloads, a function of truth and baseline. Internal to the library; Sender is the
-/// way in.
+/// Profile main: codes true displacements of one object into payloads, a function of truth and baseline. Internal to the library;
+/// Sender is the way in.
 ///
 /// After every frame a decoder's prediction obeys, for every vertex,
 ///   |u^ - u| <= v, and <= h = p |f_s| / k_c inside the area of interest,
-/// where a bound below the grid's rounding (0.87 units) means: the nearest grid point. After the haptic packet of a layered object it does
-/// so for the vertices inside the area of interest.
+/// A bound below the grid's rounding (0.87 units) means the nearest grid point. After the haptic packet of a layered object this
+/// holds for the vertices inside the area of interest.
 #pragma once
 
 #include <cstdint>
@@ -62,8 +62,8 @@ class MainEncoder {
   ShapePredictor predictor_;
   VertexCoder coder_;
   ModeProjection projection_;
-  MainState next_;               // kept aside until commit()
-  std::vector<Vec3i> expected_;  // by prediction in time
+  MainState next_;               // pending until commit()
+  std::vector<Vec3i> expected_;  // temporal prediction
   std::vector<Vec3i> error_;
   std::vector<std::int32_t> coefficients_, scaled_;  // in steps; in grid units
   std::vector<float> projected_;

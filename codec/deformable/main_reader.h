@@ -69,7 +69,7 @@ class MainReader {
     coder_.set_bounds(head.visual, head.touched ? haptic_bound(head.haptic) : head.visual, area, head.layer);
   }
 
-  /// After a residual that is too wide the walk goes on with zeros.
+  /// After a residual that is too wide, the loop continues with zeros.
   template <class Coder>
   std::uint32_t read_vertices(Coder& coder, MainModels& models, const MainHead& head, MainState& next) noexcept {
     std::uint32_t updates = 0;

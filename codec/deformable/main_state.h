@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Profile main: what packets build on, and where prediction puts a shape without packets. spec/50-deformable.md sections 3, 5 and 6. Integers only.
+/// Profile main: the baseline of packets and the prediction between packets. spec/50-deformable.md sections 3, 5 and 6. Integers
+/// only.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +22,7 @@ struct MainState {
   std::int64_t tick = 0;
   std::vector<Vec3i> displacement;  ///< by vertex, x 2^-position_exp m
   ModeMotion motion;                ///< of the basis's coefficients
-  std::int64_t motion_tick = 0;     ///< `motion` is of this tick; packets of the haptic layer leave it behind `tick`
+  std::int64_t motion_tick = 0;     ///< tick of `motion`; packets of the haptic layer do not advance it
   std::vector<Vec3i>
       haptic_correction;  ///< layered: by vertex, correction of the last packet if that was of the haptic layer, else 0
   std::uint32_t triangle = kNoTriangle;  ///< the last one touched
@@ -64,19 +65,19 @@ class ShapePredictor {
   /// pre  `mesh` outlives the predictor
   explicit ShapePredictor(const DeformableObject& object);
 
-  /// out = the displacement that `state` predicts for a tick not before its own. Without a basis: its own.
+  /// out = the displacement that `state` predicts for a tick not before its own. Without a basis it is the state's displacement.
   void predict(const MainState& state, std::int64_t tick, std::span<Vec3i> out) noexcept;
   /// out += sum of modes times coefficients [grid units at a mode's entry of 1].
   void add_modes(std::span<const std::int32_t> coefficients, std::span<Vec3i> out) noexcept;
-  /// The motion of `next`, a packet at `tick` after `base`: its increments are those of the last predict() and add_modes().
+  /// Update the motion of `next`, a packet at `tick` after `base`, with the increments of the last predict() and add_modes().
   void update(const MainState& base, std::int64_t tick, MainState& next) const noexcept;
 
  private:
   void combine(std::span<const std::int32_t> coefficients, std::span<Vec3i> out) noexcept;
 
   const DeformableObject& object_;
-  std::vector<std::int32_t> increments_;    // by mode, of the packet at hand, since motion_tick
-  std::vector<std::int32_t> extrapolated_;  // by mode, since the state's tick where that is another
+  std::vector<std::int32_t> increments_;    // by mode, of the current packet, since motion_tick
+  std::vector<std::int32_t> extrapolated_;  // by mode, since the state's tick if that differs from motion_tick
   std::vector<std::int32_t> sum_;           // by component
 };
 

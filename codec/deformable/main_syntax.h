@@ -23,13 +23,13 @@ struct MainModels {
   BitModel key;
   BitModel layer, same_frame;
   MagnitudeModel baseline, tick, late;
-  std::array<BitModel, 2> touched;  // by: the baseline's packet was
+  std::array<BitModel, 2> touched;  // context: the baseline's packet was touched
   BitModel same_triangle, near_triangle;
   TreeModel<6> near_place;
   MagnitudeModel haptic;
   BitModel same_visual;
   MagnitudeModel visual;
-  std::array<TreeModel<2>, kDensities> density;              // by: the baseline's
+  std::array<TreeModel<2>, kDensities> density;              // context: the baseline's density
   std::array<std::array<MagnitudeModel, 3>, 4> coefficient;  // by mode, size before
   std::array<std::array<std::array<std::array<BitModel, 3>, 3>, 4>, kDensities>
       significant;                                                        // density, bound ratio, parents, depth
@@ -41,7 +41,7 @@ const MainModels& main_start_models() noexcept;
 
 struct MainHead : PacketHead {
   Layer layer = Layer::all;
-  bool same_frame = false;  ///< visual packet of the tick that the baseline's haptic packet began
+  bool same_frame = false;  ///< visual packet of the same tick as the baseline's haptic packet
   bool touched = false;
   std::uint32_t triangle = kNoTriangle;
   std::uint32_t haptic = 0;  ///< index, see haptic_bound()
@@ -62,7 +62,7 @@ constexpr std::uint8_t bound_ratio_of(std::uint32_t haptic, std::uint32_t visual
   return 3 * h > 2 * std::uint64_t{visual} ? 1 : 4 * h > visual ? 2 : 3;
 }
 
-/// The layer of a layered object: without a triangle nothing can be felt.
+/// The layer of a layered object. A mesh without triangles has only the visual layer.
 template <class Coder>
 Layer code_layer(Coder& coder, MainModels& models, const DeformableObject& object, Layer layer) noexcept {
   if (!object.layered) return Layer::all;
@@ -90,7 +90,7 @@ void code_main_start(Coder& coder, MainModels& models, const DeformableObject& o
   head.tick_delta = static_cast<std::uint32_t>(std::max<std::int64_t>(0, period + late));
 }
 
-/// The touched triangle: the same, a place in the rings around the last one, or its number. Numbers may come out too large.
+/// The touched triangle: the same, a place in the rings around the last one, or its number. The number may be out of range.
 template <class Coder>
 std::uint32_t code_triangle(Coder& coder, MainModels& models, const DeformableObject& object, Rings& rings, std::uint32_t last,
                             std::uint32_t triangle) noexcept {
@@ -116,7 +116,7 @@ std::uint32_t code_triangle(Coder& coder, MainModels& models, const DeformableOb
   return out;
 }
 
-/// What is touched, and the bounds.
+/// The touched triangle and the bounds.
 template <class Coder>
 void code_main_bounds(Coder& coder, MainModels& models, const DeformableObject& object, Rings& rings, const MainState& base,
                       MainHead& head) noexcept {
@@ -146,7 +146,7 @@ void code_main_head(Coder& coder, MainModels& models, const DeformableObject& ob
   head.density = head.layer == Layer::haptic ? base.density : coder.template tree<2>(models.density[base.density], head.density);
 }
 
-/// What the next packet's head is predicted from.
+/// Store the fields that predict the next packet's head.
 inline void keep_head(const MainHead& head, const MainState& base, MainState& next) noexcept {
   next.triangle = head.touched ? head.triangle : base.triangle;
   next.haptic = head.touched ? head.haptic : base.haptic;
@@ -155,7 +155,7 @@ inline void keep_head(const MainHead& head, const MainState& base, MainState& ne
   next.touched = head.touched;
 }
 
-/// Packets of the haptic layer leave motion to the next visual one.
+/// Keep the baseline's motion: only visual packets advance it.
 inline void keep_motion(const MainState& base, MainState& next) noexcept {
   next.motion = base.motion;
   next.motion_tick = base.motion_tick;

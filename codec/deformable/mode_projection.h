@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Encoder side: which combination of modes comes nearest to an error field. Informative; floating point in a fixed order.
+/// Encoder side: the combination of modes nearest to an error field. Informative; floating point in a fixed order.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ class ModeProjection {
   /// Inverts the modes' Gram matrix, so that they need not be orthogonal.   time O(modes^2 vertices)
   explicit ModeProjection(const ModeBasis& basis);
 
-  /// Coefficients [grid units at a mode's entry of 1] that leave the least squared error.   time O(modes * vertices)
+  /// Coefficients of least squared error [grid units at a mode's entry of 1].   time O(modes * vertices)
   void project(std::span<const Vec3i> error, std::span<float> coefficients) noexcept;
 
  private:

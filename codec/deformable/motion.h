@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Prediction of a few numbers in time, each from its own past: a two-coefficient recursive least-squares predictor of their increments.
+/// Temporal prediction of a few channels, each from its own past: recursive least squares with two coefficients on their
+/// increments.
 /// spec/50-deformable.md section 6. Integers only; part of the state that packets build on.
 #pragma once
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Profile thesis: payloads to states, a function of payload and baseline. spec/50-deformable.md section 8. Internal to the library; Receiver is
-/// the way in.
+/// Profile thesis: decodes payloads into states, a function of payload and baseline. spec/50-deformable.md section 8. Internal to
+/// the library; Receiver is the way in.
 #pragma once
 
 #include <array>
@@ -49,7 +49,7 @@ class ThesisDecoder {
   ThesisHead head_;
   std::vector<BitModel> start_, models_;
   std::vector<ListedVertex> listed_;
-  ThesisState next_;  // kept aside: nothing reaches a state before the whole packet has proved valid
+  ThesisState next_;  // pending: no state changes before the whole packet has proved valid
 };
 
 }  // namespace tactus

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Profile thesis: true displacements of one object to payloads, a function of truth and baseline (thesis 3.3.1). It sends what reaches
-/// the thresholds; its quantiser may leave errors above h. Internal to the library; Sender is the way in.
+/// Profile thesis: codes true displacements of one object into payloads, a function of truth and baseline (thesis 3.3.1). It
+/// codes the errors that reach the thresholds; its quantiser may leave errors above h. Internal to the library; Sender is the way
+/// in.
 #pragma once
 
 #include <cstdint>
@@ -44,7 +45,7 @@ class ThesisEncoder {
   std::span<const Vec3i> truth_;
   const SurfaceTouch* touch_ = nullptr;
   Rings rings_;
-  ThesisState next_;  // kept aside until commit()
+  ThesisState next_;  // pending until commit()
   std::vector<BitModel> start_, models_;
   std::vector<Vec3i> expected_;        // of the baseline
   std::vector<std::uint8_t> list_;     // the coded index list

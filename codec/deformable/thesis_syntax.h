@@ -44,7 +44,7 @@ std::uint32_t code_symbol(Coder& coder, std::span<BitModel> models, unsigned bit
   return node - (1u << bits);
 }
 
-/// Vertices skipped: 255 means 255 and more to come.   Stops above `limit`.
+/// Run of skipped vertices: symbol 255 adds 255 and continues the run. Stops above `limit`.
 template <class Coder>
 std::uint32_t code_gap(Coder& coder, std::span<BitModel> models, std::uint32_t gap, std::uint32_t limit) noexcept {
   std::uint32_t out = 0;

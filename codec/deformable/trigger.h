@@ -18,7 +18,7 @@ struct SurfaceTouch {
   double stiffness = 500;      ///< [N/m] k_c of the client's rendering, > 0
 };
 
-/// h = p |f_s| / k_c [m], thesis eq. 3.12.   pre  there is a p
+/// h = p |f_s| / k_c [m], thesis eq. 3.12.   pre  t.weber_fraction is set
 inline double haptic_threshold(const DeformableThresholds& t, const SurfaceTouch& touch) noexcept {
   return *t.weber_fraction * std::max(touch.force / touch.stiffness, t.depth_floor);
 }
@@ -31,9 +31,9 @@ struct DeformableTruth {
 
 struct DeformableOptions {
   DeformableThresholds thresholds{};
-  double visual_share = 1;  ///< main: code to this share of v: less error for more bits. 0.001 <= share <= 1
+  double visual_share = 1;  ///< main: code to this share of v, for less error and more bits. 0.001 <= share <= 1
   double haptic_share = 1;  ///< main: the same of h
-  bool layered = false;     ///< thesis: packets are of the haptic or the visual layer. main: the scene decides
+  bool layered = false;     ///< thesis: separate packets for the haptic and the visual layer. main: the scene declares it
 };
 
 }  // namespace tactus

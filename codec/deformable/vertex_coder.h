@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The walk over the vertices that encoder and decoder share: the prediction, context and correction of each. spec/50-deformable.md section 7.
+/// The loop over vertices, shared by encoder and decoder: prediction, context and correction of each. spec/50-deformable.md
+/// section 7.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +22,7 @@ class VertexCoder {
     area_.reserve(vertices);
   }
 
-  /// Bounds of the packet at hand: `haptic` for the vertices of the area of interest, where it is the tighter one.
+  /// Set the bounds of the packet: min(visual, haptic) inside the area of interest, `visual` elsewhere.
   void set_bounds(std::uint32_t visual, std::uint32_t haptic, std::span<const std::uint32_t> area, Layer layer) noexcept {
     for (const std::uint32_t v : area_) inside_[v] = 0;
     area_.assign(area.begin(), area.end());
@@ -34,7 +35,7 @@ class VertexCoder {
     codes_[1] = layer != Layer::visual;
   }
   std::uint32_t bound_of(std::uint32_t vertex) const noexcept { return bound_[inside_[vertex]]; }
-  /// The packet says where the vertex is; the others follow the prediction in time.
+  /// Whether the packet codes this vertex; the others keep the temporal prediction.
   bool codes(std::uint32_t vertex) const noexcept { return codes_[inside_[vertex]]; }
 
   /// Before run() of a layered object: vertices that the packet does not code keep the temporal prediction. If the baseline is the
@@ -48,14 +49,14 @@ class VertexCoder {
       coded_[v] = base.haptic_correction[v] != Vec3i{} ? 1 : 0;
     }
   }
-  /// What the visual packet of the same tick must know of a haptic one.
+  /// Store the haptic correction for the visual packet of the same tick.
   void keep_haptic_correction(Layer layer, MainState& next) const noexcept {
     std::fill(next.haptic_correction.begin(), next.haptic_correction.end(), Vec3i{});
     if (layer != Layer::haptic) return;
     for (const std::uint32_t v : area_) next.haptic_correction[v] = correction_[v];
   }
 
-  /// in   expected  displacement by prediction in time
+  /// in   expected  displacement by temporal prediction
   /// out  decoded   displacement; may not alias `expected`; of layered objects only of vertices that the packet codes
   ///      residual(vertex, context, predicted, bound, step) returns the vertex's residual in steps
   template <class Residual>

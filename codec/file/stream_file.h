@@ -13,7 +13,7 @@
 
 namespace tactus {
 
-/// Writes as packets come; a file without finish() is readable, it only lacks the index.
+/// Writes packets as they come. A file without finish() is readable but has no index.
 class StreamFileWriter {
  public:
   /// err  io R-FIL-1.   pre  `out` outlives the writer and is in binary mode.
@@ -55,10 +55,10 @@ class StreamFileReader {
   /// Next packet; nothing at the end. Unknown extension records are skipped.
   /// err  truncated R-FIL-2; unsupported R-FIL-3; limit_exceeded R-FIL-4; checksum R-FIL-5; malformed R-FIL-6. The reader then stays where it is.
   Result<std::optional<FilePacket>> next() noexcept;
-  /// Go to the last key packet at or before `tick`, by the index. False, and nothing changes, if the file has no valid index or no
-  /// key packet so early.
+  /// Seek to the last key packet at or before `tick`, by the index. Returns false and changes nothing if the file has no valid
+  /// index or no key packet that early.
   bool seek(std::int64_t tick) noexcept;
-  /// The file's trailer has been read: nothing was cut off.
+  /// True once the file's trailer was read: the file is complete.
   bool complete() const noexcept { return complete_; }
   std::uint64_t position() const noexcept { return position_; }  ///< bytes from the start of the file
 

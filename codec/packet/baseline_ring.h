@@ -18,7 +18,7 @@ class BaselineRing {
   }
 
   const State& initial() const noexcept { return initial_; }
-  /// After the last packet; the initial state before the first.
+  /// State after the last packet; before the first, the initial state.
   const State& newest() const noexcept { return slots_[newest_].held ? slots_[newest_].state : initial_; }
   const State* find(std::uint64_t number) const noexcept {
     for (const Slot& slot : slots_)
@@ -26,7 +26,7 @@ class BaselineRing {
     return nullptr;
   }
 
-  /// A new state takes the place of the oldest.   in  fill(State&)  writes it; what is there may be the state that it builds on
+  /// Replace the oldest state by a new one.   in  fill(State&)  writes it; the argument may be the baseline itself
   template <class Fill>
   void push(std::uint64_t number, Fill&& fill) noexcept {
     newest_ = (newest_ + 1) % slots_.size();
@@ -35,7 +35,7 @@ class BaselineRing {
     slot.held = true;
     slot.number = number;
   }
-  /// The newest state never was.   pre  one was pushed since the last pop, and there are two slots
+  /// Discard the newest state.   pre  one was pushed since the last pop, and there are two slots
   void pop() noexcept {
     slots_[newest_].held = false;
     newest_ = (newest_ + slots_.size() - 1) % slots_.size();

@@ -35,9 +35,9 @@ struct DecodedPacket {
   std::uint16_t sequence = 0;
   bool key = false;
   std::int64_t tick = 0;
-  Layer layer = Layer::all;                ///< deformable objects, profile main; packets of profile thesis do not say it
+  Layer layer = Layer::all;                ///< deformable objects, profile main; not coded in profile thesis
   std::span<const RigidUpdate> updates{};  ///< rigid objects; valid until the receiver's next push()
-  std::uint32_t vertices = 0;              ///< deformable objects: with a residual of their own
+  std::uint32_t vertices = 0;              ///< deformable objects: vertices with a residual of their own
   std::uint32_t final_range = 0;           ///< range decoder's state after the last symbol (conformance)
   std::uint32_t final_code = 0;
 };

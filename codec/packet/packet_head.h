@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What every payload begins with: which state it builds on, and its tick. spec/40-rigid.md section 2. Internal to the library.
+/// The head of every payload: its baseline and its tick. spec/40-rigid.md section 2. Internal to the library.
 #pragma once
 
 #include <cstdint>

@@ -5,18 +5,18 @@
 
 namespace tactus {
 
-/// Which state a packet builds on, if not the initial one.
+/// The baseline of packets other than key packets.
 enum class Baseline : std::uint8_t {
-  previous,      ///< that of the packet before: the fewest bits; after a loss receivers wait for a key packet
-  acknowledged,  ///< the newest that the receiver has acknowledged, at most Scene::baseline_span packets ago: no loss stops it.
-                 ///< A layered object builds on its packet before all the same: each layer leaves the other as it is there
+  previous,      ///< the state of the packet before: fewest bits; after a loss receivers wait for a key packet
+  acknowledged,  ///< the newest acknowledged state, at most Scene::baseline_span packets ago: a loss interrupts nothing.
+                 ///< Layered objects use `previous` in any case: each layer takes the other one from the packet before
 };
 
 struct SenderPolicy {
   double key_interval =
       5.0;  ///< [s] after this long the next packet builds on the initial state (a place to seek to); 0: never, but
             ///< after 8 s of silence, when receivers may soon have forgotten what there was
-  std::uint16_t first_sequence = 1;  ///< a sender that begins anew towards the same receivers takes another number, at random
+  std::uint16_t first_sequence = 1;  ///< a sender restarted for the same receivers takes another number, at random
   Baseline baseline = Baseline::previous;
 };
 

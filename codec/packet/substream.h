@@ -14,13 +14,13 @@ namespace tactus {
 /// A packet of one substream: 0 is that of the rigid objects together, i + 1 that of deformable object i.
 struct SubstreamPacket {
   std::size_t substream = 0;
-  std::span<const std::uint8_t> bytes;  ///< behind the number
+  std::span<const std::uint8_t> bytes;  ///< after the substream number
 };
 
-/// Packets of this scene begin with the number of their substream: there is more than one.
+/// True if packets of this scene begin with their substream number, that is, if there are several substreams.
 bool has_substream_number(const Scene& scene) noexcept;
 
-/// Substream and packet. Without a number, and in a scene where nothing can move, all of it is the packet.
+/// Split off the substream number. Without a number, and in a scene where nothing can move, all bytes are the packet.
 /// err  truncated R-PKT-6 the number is missing; invalid R-PKT-6 there is no such substream.
 Result<SubstreamPacket> split_substream(const Scene& scene, std::span<const std::uint8_t> packet) noexcept;
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-/// One substream at a receiver: which packets it takes, which states they build on. spec/40-rigid.md section 2. Internal to the library.
+/// One substream at a receiver: accepts packets and finds their baselines. spec/40-rigid.md section 2. Internal to the library.
 ///
 /// A `Codec` knows nothing of sequence numbers, loss or clocks:
 ///   State                                        has a member tick
-///   Result<PacketHead> read_head(payload)        what the packet builds on
-///   Result<void> read_body(base, tick, out)      all else; kept aside
-///   void commit(base, next)                      writes what was kept aside; `next` may be `base`
-///   std::uint64_t bit()                          place of an error in the payload
-///   static RuleName kTickRule                    that a tick breaks which is too large or runs backwards
+///   Result<PacketHead> read_head(payload)        the baseline and the tick
+///   Result<void> read_body(base, tick, out)      the rest, into a pending state
+///   void commit(base, next)                      writes the pending state to `next`, which may be `base`
+///   std::uint64_t bit()                          bit offset of an error in the payload
+///   static RuleName kTickRule                    rule broken by a tick that is too large or decreases
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,7 @@ class SubstreamDecoder {
         span_(scene.baseline_span),
         limit_(limits.packet_bytes) {}
 
-  /// After an error the states are what they were before.   err  Receiver::push
+  /// An error leaves the states unchanged.   err  Receiver::push
   Result<DecodedPacket> decode(std::span<const std::uint8_t> packet, std::optional<std::int64_t> now) noexcept {
     constexpr std::size_t kSequence = 2;
     if (packet.size() > limit_) return fail(Errc::limit_exceeded, "R-PKT-1");

@@ -3,8 +3,8 @@
 ///
 /// A `Codec` knows nothing of sequence numbers, loss or acknowledgements:
 ///   State                                            has a member tick
-///   Result<Payload> encode(request, out)             the payload in `out`, if one is needed; the state after it is kept aside
-///   void commit(base, next)                          writes that state; `next` may be `base`
+///   Result<Payload> encode(request, out)             a payload in `out` if one is needed, and the pending state after it
+///   void commit(base, next)                          writes the pending state to `next`, which may be `base`
 #pragma once
 
 #include <algorithm>
@@ -27,11 +27,11 @@ namespace tactus {
 template <class State>
 struct EncodeRequest {
   std::int64_t tick = 0;
-  PacketHead head;         ///< but for the tick
-  bool requested = false;  ///< a packet is wanted although every bound may hold
+  PacketHead head;         ///< without the tick
+  bool requested = false;  ///< a packet is required even if every bound holds
   Layer layer = Layer::all;
-  const State& shown;  ///< what a receiver holds that got every packet: bounds are judged by it
-  const State& base;   ///< what the payload builds on
+  const State& shown;  ///< state of a receiver that got every packet; bounds are checked against it
+  const State& base;   ///< baseline of the payload
 };
 
 struct Payload {
@@ -45,8 +45,8 @@ class SubstreamEncoder {
  public:
   using State = typename Codec::State;
 
-  /// in   substream  its number, which goes before each packet if there are several
-  ///      largest    packet without that number [bytes];  layers  packets that a tick may have
+  /// in   substream  its number, written before each packet if there are several
+  ///      largest    packet without that number [bytes];  layers  packets per tick
   template <class... Of>
   SubstreamEncoder(const Scene& scene, const SenderPolicy& policy, std::size_t substream, std::size_t largest, std::size_t layers,
                    State initial, Of&&... of)
@@ -62,7 +62,7 @@ class SubstreamEncoder {
     buffers_.assign(layers, std::vector<std::uint8_t>(start_ + largest, static_cast<std::uint8_t>(substream)));
   }
 
-  /// out  a packet without bytes: nothing to send
+  /// out  a packet without bytes: no packet is needed
   Result<Packet> encode(std::int64_t tick, Layer layer) noexcept {
     const State* base = key_.is_due(tick, states_.newest().tick) ? nullptr : baseline();
     PacketHead head{base == nullptr, static_cast<std::uint32_t>(next_ - base_), 0};
@@ -99,7 +99,7 @@ class SubstreamEncoder {
     if (baseline_ == Baseline::acknowledged) base_ = 0, oldest_ = next_;
   }
 
-  /// The last packet will not be decoded. Only once after each.
+  /// Report that the last packet will not be decoded. At most once per packet.
   void forget_last() noexcept {
     if (!std::exchange(can_forget_, false)) return;
     states_.pop();
@@ -109,7 +109,7 @@ class SubstreamEncoder {
     base_ = before_.base;
   }
 
-  /// The receiver holds the state after packet `sequence`.
+  /// Report that the receiver holds the state after packet `sequence`.
   void acknowledge(std::uint16_t sequence) noexcept {
     if (baseline_ != Baseline::acknowledged) return;
     const std::uint64_t number = next_ - static_cast<std::uint16_t>(next_ - sequence);
@@ -120,7 +120,7 @@ class SubstreamEncoder {
   Codec& codec() noexcept { return codec_; }
 
  private:
-  /// What the next packet builds on; null: the initial state.
+  /// Baseline of the next packet; null: the initial state.
   const State* baseline() const noexcept { return next_ - base_ > span_ ? nullptr : states_.find(base_); }
 
   struct Before {
@@ -133,11 +133,11 @@ class SubstreamEncoder {
   KeyPolicy key_;
   Baseline baseline_;
   std::uint32_t span_;
-  std::size_t substream_, start_;                   // number, and where a packet begins that has it before it
-  std::vector<std::vector<std::uint8_t>> buffers_;  // of both layers, or of all
-  std::uint64_t next_;                              // number of the next packet, counted on without wrapping
-  std::uint64_t base_ = 0;                          // of the packet whose state the next one builds on
-  std::uint64_t oldest_ = 0;                        // that may become that: a receiver that asked for a key holds none before
+  std::size_t substream_, start_;                   // its number; where a packet begins behind that number
+  std::vector<std::vector<std::uint8_t>> buffers_;  // one per layer
+  std::uint64_t next_;                              // number of the next packet, unwrapped
+  std::uint64_t base_ = 0;                          // number of the baseline of the next packet
+  std::uint64_t oldest_ = 0;                        // lowest base_ allowed: a receiver that asked for a key holds none before
   Before before_{key_, 0};                          // the last packet
   bool can_forget_ = false;
 };

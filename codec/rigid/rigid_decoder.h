@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Payloads of the rigid objects to states: a function of payload and baseline. spec/40-rigid.md sections 3 and 5. Internal to the
-/// library; Receiver is the way in.
+/// Decodes payloads of the rigid objects into states: a function of payload and baseline. spec/40-rigid.md sections 3 and 5.
+/// Internal to the library; Receiver is the way in.
 #pragma once
 
 #include <cstdint>
@@ -39,7 +39,7 @@ class RigidDecoder {
   std::uint64_t payload_ = 0;  // [bytes]
   RigidModels models_;
   RigidHead head_;
-  std::vector<RigidUpdate> updates_;  // kept aside: nothing reaches a state before the whole packet has proved valid
+  std::vector<RigidUpdate> updates_;  // pending: no state changes before the whole packet has proved valid
   std::vector<RigidState> states_;
 };
 

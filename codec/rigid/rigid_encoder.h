@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/// True states of the rigid objects to payloads: a function of truth and baseline. Internal to the library; Sender is the way in.
+/// Codes true states of the rigid objects into payloads: a function of truth and baseline. Internal to the library; Sender is the
+/// way in.
 ///
 /// After every tick a decoder's prediction obeys, for every object and contact given,
 ///   |x^ - x| <= visual_position,  angle(q^, q) <= visual_rotation,  haptic_ratio(f, f^) <= 1.
-/// where a bound that is finer than the grid (a small force_floor, a stiff contact) means: the nearest place on the grid.
-/// The encoder picks for every update the coarsest grid level that keeps the quantised state well inside these bounds. What is felt is
-/// judged in floating point, as an encoder's choice may be; what a decoder does with the result is in integers.
+/// A bound finer than the grid (a small force_floor, a stiff contact) means the nearest grid point.
+/// The encoder picks for every update the coarsest grid level that keeps the quantised state well inside these bounds. It
+/// evaluates the haptic error in floating point, which is an encoder's choice; decoding is in integers.
 #pragma once
 
 #include <cstdint>
@@ -37,10 +38,10 @@ class RigidEncoder {
   /// pre  check(), and `scene` outlives the encoder
   RigidEncoder(const Scene& scene, const RigidTriggers& triggers);
 
-  /// The truth of one tick; nothing else changes.   in, err  Sender::encode
+  /// Take the truth of one tick; changes nothing else.   in, err  Sender::encode
   Result<void> read(std::int64_t tick, std::span<const RigidSample> samples, std::span<const Contact> contacts) noexcept;
   /// pre  read() took the request's tick.   time O(objects), < 1 us per object; no allocation.
-  /// err  invalid_argument R-API-7 an object is further from where it is expected than an update can tell
+  /// err  invalid_argument R-API-7 the residual from the predicted pose exceeds what an update can code
   Result<Payload> encode(const EncodeRequest<RigidStates>& request, std::span<std::uint8_t> out) noexcept;
   void commit(const RigidStates& base, RigidStates& next) noexcept;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What both ends keep of rigid objects, and the way to it from SI units and back. spec/40-rigid.md section 1.
+/// The state of rigid objects at both ends, and its conversion from and to SI units. spec/40-rigid.md section 1.
 #pragma once
 
 #include <array>

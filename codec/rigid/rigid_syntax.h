@@ -19,7 +19,8 @@ namespace tactus {
 inline constexpr std::size_t kQuantities = 4;  // position, velocity, rotation, angular velocity
 inline constexpr std::size_t kContexts = 8;    // 0..3: the reason, 4..7: how large the components before were
 
-/// Every adaptive model of a packet. Restarted from start_models() for each packet, so that a packet needs nothing but its baseline.
+/// Every adaptive model of a packet. Restarted from start_models() for each packet, so that a packet depends on its baseline
+/// only.
 struct RigidModels {
   BitModel key;
   MagnitudeModel baseline;
@@ -83,7 +84,7 @@ void code_update(Coder& coder, RigidModels& models, std::uint8_t dof, CodedUpdat
   }
 }
 
-/// State of one object before a packet, and where dead reckoning puts it at the packet's tick.
+/// State of one object before a packet, and its predicted pose at the packet's tick.
 struct Prediction {
   const RigidState& base;
   RigidPose pose;
@@ -93,13 +94,13 @@ struct Prediction {
 Residual quantise_pose(const RigidPose& predicted, const RigidState& truth, std::uint8_t dof, unsigned level,
                        const GridExponents& grid) noexcept;
 
-/// The residual of both velocities, given that of the pose. An update that the haptic trigger asked for follows a steady change of
-/// speed, and what is coded is the difference from that (RigidPredictor::motion). In whole steps from zero, so that rest stays rest at
-/// every level. spec 40-rigid 5.2
+/// The residual of both velocities, given that of the pose. For an update of the haptic trigger it is the difference from
+/// RigidPredictor::motion(), which assumes a steady change of velocity. Steps count from zero, so that an object at rest stays at
+/// rest at every level. spec 40-rigid 5.2
 void quantise_motion(const RigidPredictor& predictor, const Prediction& prediction, const RigidState& truth, std::uint8_t dof,
                      CodedUpdate& update) noexcept;
 
-/// What a decoder holds after the update: prediction plus residual. Nothing when the rotation residual is longer than 1 (R-RIG-6).
+/// The decoder's state after the update: prediction plus residual. Nothing when the rotation residual is longer than 1 (R-RIG-6).
 std::optional<RigidState> reconstruct(const RigidPredictor& predictor, const Prediction& prediction, std::int64_t tick,
                                       const CodedUpdate& update, const GridExponents& grid) noexcept;
 

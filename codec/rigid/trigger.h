@@ -11,12 +11,12 @@ namespace tactus {
 /// Permitted force error at true force f: p * max(|f|, force_floor) [N].
 double force_budget(const RigidTriggers& triggers, double force) noexcept;
 
-/// How far `estimate` is outside the haptic rule around `truth`: <= 1 inside, > 1 outside; the ratio of error and permitted error.
-/// For `fixed` and `off` 0 is returned.    time O(1), no allocation.
+/// Force error of `estimate` over the error that the haptic rule permits around `truth`: <= 1 inside, > 1 outside.
+/// Returns 0 for `fixed` and `off`.    time O(1), no allocation.
 double haptic_ratio(const RigidTriggers& triggers, const Vec3& truth, const Vec3& estimate) noexcept;
 
-/// Weber fraction of force magnitude, measured on people: 10 % from 2.5 N up, 14 % at 1 N, 17 % at 0.5 N, 22 % at 0.3 N and
-/// below, linear between.
+/// Weber fraction of force magnitude, measured in human subjects: 10 % from 2.5 N up, 14 % at 1 N, 17 % at 0.5 N, 22 % at 0.3 N
+/// and below, linear between.
 double perceptual_fraction(double force) noexcept;
 
 }  // namespace tactus

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the sender of a stream vouches for: how far a client that gets every packet, and does not interpolate, may be from the truth.
-/// Nothing is decoded with it; whoever judges a replica needs it. spec/20-scene.md section 6.
+/// Error bounds that a sender guarantees to a client that gets every packet and does not interpolate. Decoding does not use them;
+/// evaluating a replica does. spec/20-scene.md section 6.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ enum class HapticRule : std::uint8_t {
 
 /// When a rigid object must be sent. Defaults are the thesis's (3.2.4.1) with p = 8 %.
 struct RigidTriggers {
-  Reduction reduction = Reduction::dead_reckoning;          ///< no bound: streams do not tell it
+  Reduction reduction = Reduction::dead_reckoning;          ///< not a bound, never transmitted
   double heartbeat = 1.0;                                   ///< [s] 0 switches it off
   double visual_position = 0.006;                           ///< [m]
   double visual_rotation = 2.0 * std::numbers::pi / 180.0;  ///< [rad]
@@ -42,19 +42,19 @@ struct RigidTriggers {
 struct DeformableThresholds {
   double visual = 2.5e-4;                        ///< v [m], thesis eq. 3.10; 0: every vertex, exact to the grid
   std::optional<double> weber_fraction = 0.025;  ///< p, eq. 3.12: h = p |f_s| / k_c; none: no haptic threshold
-  double depth_floor = 2e-4;                     ///< [m] |f_s| / k_c counts as at least this: at first touch h would be 0
+  double depth_floor = 2e-4;                     ///< [m] lower limit of |f_s| / k_c: at first touch h would be 0
   friend bool operator==(const DeformableThresholds&, const DeformableThresholds&) = default;
 };
 
 struct DeformableBounds {
   DeformableThresholds thresholds;
-  bool kept = true;  ///< false: they decide what is sent, but a vertex may be further off (profile thesis: its quantiser)
+  bool kept = true;  ///< false: the bounds only decide what is sent; errors may exceed them (profile thesis: its quantiser)
   friend bool operator==(const DeformableBounds&, const DeformableBounds&) = default;
 };
 
 struct StreamBounds {
   std::optional<RigidTriggers>
-      rigid;  ///< none: nothing rigid can move. What `haptic` does not use is not told and has its default
+      rigid;  ///< none: no rigid object can move. Fields that `haptic` does not use are not transmitted and keep their defaults
   std::vector<DeformableBounds> deformables;  ///< one per deformable object
   friend bool operator==(const StreamBounds&, const StreamBounds&) = default;
 };

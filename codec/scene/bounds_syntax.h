@@ -13,13 +13,13 @@ namespace tactus {
 
 inline constexpr std::uint64_t kBoundsRecord = 2;  ///< type of the record
 
-/// R-STR-17: the bounds are those of the scene's objects, their numbers finite and without a sign.   pre  there are bounds
+/// R-STR-17: the bounds match the scene's objects, their numbers are finite and carry no sign.   pre  there are bounds
 bool are_bounds(const SceneSpec& spec) noexcept;
 
 /// Data of the record.   pre  are_bounds()
 std::vector<std::uint8_t> write_bounds(StreamBounds bounds);
 
-/// in   in      the record's data; what follows the elements that are known is skipped
+/// in   in      the record's data; bytes after the known elements are skipped
 ///      spec  with its objects
 /// err  truncated, invalid R-STR-17
 Result<StreamBounds> parse_bounds(ByteReader& in, const SceneSpec& spec);

@@ -19,7 +19,7 @@ enum class DeformableProfile : std::uint8_t { thesis = 0, main = 1 };
 /// Which vertices a packet codes: those in the area of interest, the rest, or all.
 enum class Layer : std::uint8_t { haptic = 0, visual = 1, all = 2 };
 
-/// Vectors known to both ends that displacements are combined from (vibration modes, principal components).
+/// Basis vectors of displacements, known to both ends (vibration modes, principal components).
 struct ModeBasis {
   static constexpr std::size_t kMaxModes = 64;
   static constexpr std::int32_t kMaxEntry = 2047;  ///< so that a sum of 64 products with 15-bit factors fits 32 bits
@@ -29,8 +29,9 @@ struct ModeBasis {
   friend bool operator==(const ModeBasis&, const ModeBasis&) = default;
 };
 
-/// Vectors (modes x vertices x 3, any scale) as a basis: entries scaled to the largest, quantiser steps so that a coefficient's
-/// rounding moves the mesh by the same root mean square, `coarseness` visual bounds in the norm of the whole mesh.
+/// Makes a basis from vectors (modes x vertices x 3, any scale). Entries are scaled to the largest one. Quantiser steps are
+/// chosen so that rounding any coefficient moves the mesh by the same root mean square: `coarseness` visual bounds in the norm of
+/// the whole mesh.
 /// err  invalid_argument R-API-1 an entry is not finite, or a vector is zero; R-API-9 more modes than ModeBasis::kMaxModes.
 Result<ModeBasis> make_mode_basis(std::span<const double> vectors, std::size_t modes, double coarseness = 1.5);
 
@@ -46,17 +47,17 @@ struct DeformableObject {
   std::uint8_t rings = 3;            ///< m: size of the area of interest around the touched triangle (thesis 3.3.1.1)
   std::uint8_t quant_bits = 8;       ///< thesis: q, 1..12
   bool models_kept = false;          ///< thesis: entropy models are part of the state and not restarted in every packet
-  std::uint32_t frame_period = 256;  ///< main: ticks between frames, x 2^-8; with a basis motion is predicted in steps of it
-  bool layered = false;              ///< main: packets are of the haptic or the visual layer
+  std::uint32_t frame_period = 256;  ///< main: ticks between frames, x 2^-8; with a basis also the step of motion prediction
+  bool layered = false;              ///< main: each packet belongs to the haptic or the visual layer
   std::vector<std::array<std::int32_t, 3>> rest;  ///< vertices, x 2^-position_exp m
   std::vector<Triangle> triangles;
   ModeBasis basis;  ///< main
   friend bool operator==(const DeformableObject&, const DeformableObject&) = default;
 };
 
-/// A surface on a scene's grid, all else at its default.
-/// err  invalid_argument R-API-1 a coordinate is not finite; R-API-2 it leaves the grid's range; R-API-10 a triangle has no area on the
-///      grid: a trace of what a client shows could not hold it
+/// A surface on a scene's grid; all other fields keep their defaults.
+/// err  invalid_argument R-API-1 a coordinate is not finite; R-API-2 it leaves the grid's range; R-API-10 a triangle has no area
+///      on the grid: a replica's trace could not hold it
 Result<DeformableObject> make_deformable_object(std::string name, const TriMesh& surface, unsigned position_exp);
 
 }  // namespace tactus

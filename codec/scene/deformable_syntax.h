@@ -11,13 +11,14 @@ namespace tactus {
 /// pre  the object breaks no rule.
 void write_deformable(ByteWriter& out, const DeformableObject& object);
 
-/// How much of the limits the objects before have left.
+/// What the preceding objects have left of the limits.
 struct DeformableRoom {
   std::uint64_t vertices = 0, triangles = 0;
 };
 
-/// Allocates in proportion to the bytes that are there.
-/// err  truncated, malformed R-STR-5; unsupported R-DEF-2; invalid R-DEF-3..7; limit_exceeded R-STR-14: more than there is room for.
+/// Allocates in proportion to the bytes received.
+/// err  truncated, malformed R-STR-5; unsupported R-DEF-2; invalid R-DEF-3..7; limit_exceeded R-STR-14: more than the limits
+///      leave.
 Result<DeformableObject> parse_deformable(ByteReader& in, const DeformableRoom& room);
 
 }  // namespace tactus

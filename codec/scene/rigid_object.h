@@ -34,7 +34,7 @@ struct RigidPose {
 struct RigidObject {
   std::string name;  ///< UTF-8, 1..255 bytes, unlike any other object's
   std::uint8_t dof = Dof::all;
-  RigidPose initial;  ///< at rest there at tick 0: what key packets build on
+  RigidPose initial;  ///< pose at tick 0, at rest; the baseline of key packets
 };
 
 /// A pose on a scene's grid.   in  position_exp  GridExponents::position

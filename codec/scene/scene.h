@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The scene declaration: everything that both ends know before the first packet. spec/20-scene.md sections 2 to 7.
 ///
-/// A SceneSpec is plain data that anybody may fill in; a Scene has been checked, does not change, and is shared by all who need it:
-/// sender, receiver, file, threads. SceneBuilder makes one from SI units (scene_builder.h), parse_scene() from bytes (scene_syntax.h).
+/// A SceneSpec is plain data that the caller fills in. A Scene is checked, immutable, and shared by sender, receiver, file and
+/// threads. SceneBuilder makes one from SI units (scene_builder.h), parse_scene() from bytes (scene_syntax.h).
 #pragma once
 
 #include <cstddef>
@@ -39,12 +39,12 @@ struct SceneSpec {
   std::uint16_t max_extrapolation = 2000;     ///< ticks; an object without updates stops moving after so long
   std::uint8_t baseline_span = 1;             ///< how many of the newest states a receiver keeps as baselines, 1..64
   std::vector<RigidObject> objects;           ///< order is the wire order
-  std::vector<DeformableObject> deformables;  ///< a stream without them has no byte about them
-  std::optional<StreamBounds> bounds;         ///< what the sender vouches for; none: not told
+  std::vector<DeformableObject> deformables;  ///< a stream without any spends no byte on them
+  std::optional<StreamBounds> bounds;         ///< error bounds that the sender guarantees; none: not declared
 };
 
-/// What a decoder accepts before it allocates. What it takes is in proportion to the declaration's bytes that are there and to
-/// state_bytes(), never to what is announced. A mesh of 2^20 vertices without a basis fits with a baseline_span of up to 19.
+/// Limits checked by a decoder before it allocates. Memory grows with the bytes received of the declaration and with
+/// state_bytes(), never with announced counts. A mesh of 2^20 vertices without a basis fits with a baseline_span of up to 19.
 struct DecodeLimits {
   std::uint32_t objects = 4096;
   std::uint32_t header_bytes = 1u << 26;
@@ -77,10 +77,10 @@ using SharedScene = std::shared_ptr<const Scene>;
 /// The rule that a declaration breaks, if any.   err  as Scene::create
 Result<void> check_scene(const SceneSpec& spec, const DecodeLimits& limits = {});
 
-/// What the states take that the decoders of all substreams keep [bytes]. spec/20-scene.md section 8
+/// Memory of the states that the decoders of all substreams keep [bytes]. spec/20-scene.md section 8
 std::uint64_t state_bytes(const SceneSpec& spec) noexcept;
 
-/// What a stream promises whose sender has these thresholds: deformable objects of profile thesis only aim at theirs.
+/// Bounds of a stream whose sender uses these thresholds. Deformable objects of profile thesis only aim at theirs.
 StreamBounds bounds_of(const SceneSpec& spec, const RigidTriggers& rigid, const DeformableThresholds& deformables);
 
 }  // namespace tactus

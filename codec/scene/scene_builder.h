@@ -20,33 +20,33 @@ struct DeformableCoding {
   std::uint8_t quant_bits = 8;  ///< thesis: q
   bool models_kept = false;     ///< thesis: entropy models are part of the state
   double frame_period = 1;      ///< main: [ticks] from shape to shape, > 0
-  bool layered = false;         ///< main: what is felt goes in packets of its own
+  bool layered = false;         ///< main: separate packets for the haptic and the visual layer
   ModeBasis basis{};            ///< main
 };
 
 /// What went wrong, and with which object.
 struct SceneFinding {
   Error error;
-  std::string object;  ///< empty: not with one of them
+  std::string object;  ///< empty: no particular object
   operator Error() const noexcept { return error; }
 };
 
-/// Collects a scene's objects; build() takes them, and leaves an empty builder. Nothing is checked before.
+/// Collects a scene's objects without checking them. build() checks and takes them, and leaves the builder empty.
 ///   auto scene = SceneBuilder().rigid("cube", {{0, 0, 0.05}, {}}).baselines(8).build();
 class SceneBuilder {
  public:
   explicit SceneBuilder(std::uint32_t tick_rate = 1000) { spec_.tick_rate = tick_rate; }
 
-  /// in   initial  at rest there until the first update;  dof  what it may do (struct Dof)
+  /// in   initial  pose at rest until the first update;  dof  degrees of freedom (struct Dof)
   SceneBuilder& rigid(std::string name, const Pose& initial = {}, std::uint8_t dof = Dof::all);
   /// in   surface  V vertices [m] at rest, world frame
   SceneBuilder& deformable(std::string name, TriMesh surface, DeformableCoding coding = {});
   SceneBuilder& grid(const GridExponents& exponents);
   /// An object without updates stops moving after so long [s].
   SceneBuilder& extrapolate(double seconds);
-  /// How many states a receiver keeps for later packets to build on, 1..64: losses of fewer packets in a row stop nothing.
+  /// How many states a receiver keeps as baselines, 1..64. Losing fewer packets than that in a row interrupts nothing.
   SceneBuilder& baselines(std::uint8_t count);
-  /// The stream says which bounds hold at a client that gets every packet.
+  /// Declare the bounds that hold at a client that gets every packet.
   SceneBuilder& promise(const RigidTriggers& rigid, const DeformableThresholds& deformables);
 
   /// err  invalid_argument R-API-1..3, R-API-10 a pose or surface does not fit the grid; those of Scene::create

@@ -41,12 +41,12 @@ class CdrReader {
   std::uint32_t u32() noexcept;
   float f32() noexcept { return std::bit_cast<float>(u32()); }
   double f64() noexcept;
-  /// Length of a sequence whose items take `item_size` bytes each. What cannot fit into the rest of the message fails and is 0, so
-  /// that memory for the items may be taken.
+  /// Length of a sequence whose items take `item_size` bytes each. A length that cannot fit into the rest of the message fails
+  /// and yields 0, so that the caller may allocate the items.
   std::uint32_t count(std::size_t item_size) noexcept;
   std::string_view text() noexcept;
   Vec3 vec3() noexcept;
-  /// All of the message was read and nothing was missing; up to 3 bytes of padding may follow.
+  /// True if the whole message was read without overrun; up to 3 bytes of padding may follow.
   bool done() const noexcept { return body_.ok() && !malformed_ && body_.remaining() < 4; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// zstd, the only place that calls it.
+/// zstd; no other file calls it.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@
 
 namespace tactus {
 
-/// Compresses blocks that are independent of each other; one context serves them all.
+/// Compresses independent blocks with one context.
 class Compressor {
  public:
   Compressor();
   Compressor(Compressor&&) noexcept;
   Compressor& operator=(Compressor&&) noexcept;
   ~Compressor();
-  /// The result stays valid until the next call.   err  internal R-TRC-8: zstd refused, which it does only without memory.
+  /// The result stays valid until the next call.   err  internal R-TRC-8: zstd failed, which happens only without memory.
   Result<std::span<const std::uint8_t>> compress(std::span<const std::uint8_t> input);
 
  private:

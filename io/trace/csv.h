@@ -29,24 +29,24 @@ namespace tactus {
 
 enum class CsvLayout : std::uint8_t {
   named_columns,  ///< one object, one user, columns as the mapping names them
-  tactus,         ///< columns of export_csv(): any objects and users; of the mapping only tick_rate counts
+  tactus,         ///< columns of export_csv(): any objects and users; only tick_rate of the mapping is used
 };
 
-/// What angular velocities are given in. A gyroscope on the object measures in the body frame.
+/// Frame of the recorded angular velocities. A gyroscope on the object measures in the body frame.
 enum class AngularVelocityFrame : std::uint8_t { world, body };
 
 /// Which column feeds which quantity; an empty name means "not there". Named groups: see csv_presets().
 struct CsvMapping {
   CsvLayout layout = CsvLayout::named_columns;
   std::string time;     ///< [s]; empty: one row per tick
-  std::string segment;  ///< rows of one value belong together (a toss, a trial); segments follow without a gap, the object jumps
+  std::string segment;  ///< rows of equal value form a segment (a toss, a trial); segments follow without a gap, the object jumps
   std::array<std::string, 3> position;          ///< [m]; empty: no object, a user alone
   std::array<std::string, 4> rotation;          ///< w, x, y, z, not normalised; empty: no rotation
   std::array<std::string, 3> velocity;          ///< [m/s]; empty: backward differences, 0 where a segment begins
   std::array<std::string, 3> angular_velocity;  ///< [rad/s]; empty: likewise
   AngularVelocityFrame angular_velocity_frame = AngularVelocityFrame::world;  ///< of angular_velocity; body needs rotation
   std::array<std::string, 3> device;                                          ///< [m] probe of the user
-  std::array<std::string, 3> force;  ///< [N] on the user; one recorded force stands for client and server
+  std::array<std::string, 3> force;  ///< [N] on the user; one recorded force serves for client and server
   std::string object = "object";     ///< name of the object in the trace
   std::string user = "user";         ///< name of the user in the trace, if there is a device or a force
   double length_scale = 1.0;         ///< metres per unit of the file's lengths
@@ -60,14 +60,14 @@ struct CsvPreset {
 };
 const std::vector<CsvPreset>& csv_presets();
 
-/// Angular velocities as given, beside those of the rotations' differences. Means over all rows that have both and turn by less than
-/// a quarter turn.
+/// Compares recorded angular velocities with differences of the rotations. Means over all rows that have both and turn by less
+/// than a quarter turn.
 struct AngularVelocityCheck {
   std::uint64_t rows = 0;
-  double given = 0;               ///< [rad/s] size
-  double off = 0, off_other = 0;  ///< [rad/s] from the differences: in the frame of the mapping, in the other one
+  double given = 0;               ///< [rad/s] magnitude
+  double off = 0, off_other = 0;  ///< [rad/s] deviation from the differences: in the frame of the mapping, in the other one
 
-  /// They contradict the rotations: another frame, unit or order of columns.
+  /// True if they contradict the rotations: another frame, unit or order of columns.
   bool is_off() const noexcept { return given > 0.1 && off > 0.5 * given; }
 };
 
@@ -77,8 +77,8 @@ struct CsvImport {
   AngularVelocityCheck angular_velocity;
 };
 
-/// Read `path` (plain or zstd, told by its first bytes; "-" is standard input) into `out_path`.
-/// err  io R-TRC-1; R-CSV-n; invalid_argument R-TRC-17, R-API-n when the trace cannot hold a value; with the place. A partly
+/// Read `path` (plain or zstd, detected by its first bytes; "-" is standard input) into `out_path`.
+/// err  io R-TRC-1; R-CSV-n; invalid_argument R-TRC-17, R-API-n when the trace cannot hold a value; with the location. A partly
 ///      written file is removed.
 tl::expected<CsvImport, Diagnostic> import_csv(const std::string& path, const CsvMapping& mapping, const std::string& out_path);
 

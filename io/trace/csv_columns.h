@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Columns of an object and of a user, in their order, and where their numbers live. Import and export share them.
+/// Columns of an object and of a user, in order, and the fields that they fill. Shared by import and export.
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ inline constexpr std::array<CsvColumn<RigidSample>, 13> kObjectColumns{{
     {"wz", [](RigidSample& s) -> double& { return s.angular_velocity.z; }},
 }};
 
-// device [m], forces [N], then what holds in contact only: point [m] and normal (object frame), stiffness [N/m]
+// device [m], forces [N], then fields that are valid in contact only: point [m] and normal (object frame), stiffness [N/m]
 inline constexpr std::array<CsvColumn<UserSample>, 16> kUserColumns{{
     {"device_x", [](UserSample& u) -> double& { return u.device.position.x; }},
     {"device_y", [](UserSample& u) -> double& { return u.device.position.y; }},
@@ -51,7 +51,7 @@ inline constexpr std::array<CsvColumn<UserSample>, 16> kUserColumns{{
     {"stiffness", [](UserSample& u) -> double& { return u.contact.stiffness; }},
 }};
 
-// Of devices that sense more than their position: orientation, velocity [m/s].
+// Devices that sense more than their position: orientation, velocity [m/s].
 inline constexpr std::array<CsvColumn<UserSample>, 4> kOrientationColumns{{
     {"device_qw", [](UserSample& u) -> double& { return u.device.orientation.w; }},
     {"device_qx", [](UserSample& u) -> double& { return u.device.orientation.x; }},
@@ -64,8 +64,8 @@ inline constexpr std::array<CsvColumn<UserSample>, 3> kDeviceVelocityColumns{{
     {"device_vz", [](UserSample& u) -> double& { return u.device.velocity.z; }},
 }};
 
-// Whole numbers beside them: TraceObject::dof; the contact's kind (0: none) and object; of devices that have them, DeviceSample::buttons
-// and time.
+// Integer columns: TraceObject::dof; the contact's kind (0: none) and object; DeviceSample::buttons and time where the device has
+// them.
 inline constexpr const char* kButtonsColumn = "device_buttons";
 inline constexpr const char* kDeviceTimeColumn = "device_time_ns";
 inline constexpr const char* kDofColumn = "dof";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// From a mapping and a line of names: which field of a row goes where.
+/// Maps the fields of a row to quantities, from a column mapping and a line of names.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ struct CsvBinding {
   std::size_t column = 0;
   std::uint32_t index = 0;  ///< of the object or the user
   double scale = 1.0;
-  double& (*object_field)(RigidSample&) = nullptr;  ///< this or the next
+  double& (*object_field)(RigidSample&) = nullptr;  ///< either this or the next is set
   double& (*user_field)(UserSample&) = nullptr;
 };
 
@@ -29,19 +29,19 @@ struct CsvUserColumns {
 
 struct CsvPlan {
   std::vector<std::string> names;  ///< of all columns
-  TraceInfo info;                  ///< tick rate and degrees of freedom are settled by the rows
+  TraceInfo info;                  ///< the rows determine tick rate and degrees of freedom
   std::vector<CsvBinding> bindings;
   std::optional<std::size_t> tick, time, segment;
   std::vector<std::size_t> dof;       ///< per object, layout `tactus` only
   std::vector<CsvUserColumns> users;  ///< per user, likewise
   bool derive_velocity = false, derive_angular_velocity = false;
-  bool check_angular_velocity = false;  ///< given, and there are rotations to hold it against
+  bool check_angular_velocity = false;  ///< recorded, with rotations to compare it with
 };
 
-/// Place of a field within its line: "column x, 'oops'".   in  either may be empty
+/// Location of a field within its line: "column x, 'oops'".   in  either may be empty
 std::string place_of_field(const std::string& column, const std::string& text);
 
-/// err  R-CSV-2, R-CSV-8, with the column that is not as it should be.
+/// err  R-CSV-2, R-CSV-8, with the offending column.
 tl::expected<CsvPlan, Diagnostic> plan_csv(const CsvMapping& mapping, const std::vector<std::string>& names);
 
 }  // namespace tactus

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What truly happened at one tick, in SI units. Uncompressed; the unit of a trace.
+/// The true state at one tick, in SI units, uncompressed. A trace is a sequence of frames.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace tactus {
 
-/// What a trace's channels describe. Everything a scene lacks has no channel.
+/// What a trace's channels describe. A quantity that the scene lacks has no channel.
 struct TraceObject {
   std::string name;
   std::uint8_t dof = Dof::all;
@@ -32,11 +32,11 @@ struct TraceDeformable {
 
 struct TraceUser {
   std::string name;
-  DeviceSenses senses{};  ///< of the user's device: what it does not sense has no channel
+  DeviceSenses senses{};  ///< of the user's device; a quantity that it does not sense has no channel
   friend bool operator==(const TraceUser&, const TraceUser&) = default;
 };
 
-/// What the stream promises that a replica was decoded from, and what else says where its bounds hold.
+/// Error bounds of the stream that a replica was decoded from, and the data that tell where they hold.
 struct TraceBounds {
   StreamBounds stream;
   std::uint8_t position_exp = GridExponents{}.position;  ///< grid of positions: 2^-position_exp m
@@ -83,12 +83,12 @@ struct TraceFrame {
   std::vector<RigidSample> objects;        ///< order of TraceInfo::objects
   std::vector<UserSample> users;           ///< order of TraceInfo::users
   std::vector<DeformableSample> meshes{};  ///< order of TraceInfo::meshes
-  /// Objects of which anything may differ from the tick before, ascending, from who knows; none: any of them. It counts only where
-  /// the frame follows that of the tick before; who changes `objects` afterwards resets it.
+  /// Objects that may differ from the tick before, ascending; none: any of them may. Set by sources that know. Valid only if the
+  /// frame directly follows that of the tick before. Code that changes `objects` afterwards resets it.
   std::optional<std::vector<std::uint32_t>> changed{};
 };
 
-/// Which ticks were seen. A recording leaves ticks out where its samples come less often than ticks, or pause; time goes on there.
+/// Which ticks were seen. A recording skips ticks where its samples are sparser than ticks, or pause; time continues there.
 class TickSpan {
  public:
   /// pre  `tick` is larger than the last

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// From messages to frames: one way for our own files, one for other people's.
+/// Assembles messages into frames: one assembler for our own files, one for foreign ones.
 #pragma once
 
 #include <memory>
@@ -23,9 +23,9 @@ class FrameAssembler {
 
 /// What a file tells ahead of its first message.
 struct Preamble {
-  mcap::Item item = mcap::Item::end;    ///< where the reader stands now: at a message, or at the end
+  mcap::Item item = mcap::Item::end;    ///< current item of the reader: a message, or the end
   std::optional<mcap::TextMap> tactus;  ///< our metadata record
-  std::optional<mcap::TextMap> bounds;  ///< that of the bounds
+  std::optional<mcap::TextMap> bounds;  ///< metadata record of the bounds
   std::string scene;
 };
 

@@ -24,8 +24,8 @@ struct ReadLimits {
 /// What next() found.
 enum class Item : std::uint8_t { end, message, attachment, metadata };
 
-/// Reads any MCAP file front to back and trusts nothing in it. Holds one record and one chunk at a time; a length in the file
-/// makes it allocate only what the bytes behind it have earned. Checks every CRC that is present. Unknown records are skipped.
+/// Reads any MCAP file front to back and trusts nothing in it. Holds one record and one chunk at a time. Memory grows with the
+/// bytes that follow a length, never with the length itself. Checks every CRC that is present. Unknown records are skipped.
 /// err (all)  R-TRC-1 .. R-TRC-11, R-TRC-18 as listed in trace_file.h; the offset is that of the record at top level.
 class Reader {
  public:
@@ -44,16 +44,16 @@ class Reader {
   const std::map<std::uint16_t, Schema>& schemas() const noexcept { return schemas_; }
   const std::map<std::uint16_t, Channel>& channels() const noexcept { return channels_; }
 
-  /// Account for so many bytes that are handed out without having been read.   err  R-TRC-18
+  /// Charge bytes that are handed out without having been read.   err  R-TRC-18
   Result<void> spend(std::uint64_t bytes) noexcept {
     return budget_.spend(bytes) ? Result<void>() : refuse(Errc::limit_exceeded, "R-TRC-18");
   }
 
-  /// The input ended before the footer; known once next() has returned Item::end.
+  /// True if the input ended before the footer. Valid once next() has returned Item::end.
   bool cut_short() const noexcept { return cut_short_; }
-  /// Position in the file of the record that next() stands in, in bytes.
+  /// File position of the current record [bytes].
   std::uint64_t offset() const noexcept { return record_start_; }
-  /// Statistics of a whole file that is not a pipe; a look ahead that leaves the reading place alone.
+  /// Statistics of a complete file that is not a pipe. Looks ahead without moving the read position.
   std::optional<Statistics> statistics();
 
  private:

@@ -17,8 +17,8 @@
 namespace tactus::mcap {
 
 /// Writes an MCAP file front to back: messages in zstd chunks with message indexes, then a summary with all indexes and
-/// statistics, and every check value that the format offers. Equal calls give equal bytes. A chunk that would unpack to more than a
-/// reader's budget has left is stored as it is, so that no file of ours is refused.
+/// statistics, and every check value that the format offers. Equal calls give equal bytes. A chunk that would exceed a reader's
+/// remaining budget when unpacked is stored uncompressed, so that no file of ours is refused.
 /// err (all)  io R-TRC-1: the operating system refused; the file is then unusable from that place on.
 class Writer {
  public:
@@ -38,7 +38,7 @@ class Writer {
   /// Compress the open chunk, hand it to the operating system and start the next; nothing to do when it is empty.
   Result<void> end_chunk();
 
-  /// Last chunk, summary, footer. The writer takes no more calls afterwards.
+  /// Write the last chunk, summary and footer. No calls are allowed afterwards.
   Result<void> finish();
 
  private:
@@ -71,7 +71,7 @@ class Writer {
   std::uint64_t position_ = 0;
   std::uint32_t crc_ = 0;  // of everything written so far
   Compressor compressor_;
-  InputBudget budget_;               // of whoever reads the file
+  InputBudget budget_;               // what a reader of the file has left
   std::vector<std::uint8_t> chunk_;  // records of the open chunk
   std::uint64_t chunk_start_time_ = 0, chunk_end_time_ = 0;
   std::vector<Schema> schemas_;

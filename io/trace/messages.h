@@ -32,8 +32,8 @@ struct Twist {
   Vec3 angular;  ///< [rad/s]
 };
 
-/// `message` gets the CDR bytes of the message with header.stamp `time` and header.frame_id "world"; of a contact, whose point and
-/// normal are in the object's frame, the object's name.
+/// Write the CDR bytes of a message with header.stamp `time` to `message`. header.frame_id is "world"; of a contact, whose point
+/// and normal are in the object's frame, it is the object's name.
 void encode_pose(std::vector<std::uint8_t>& message, std::uint64_t time, const Pose& pose);
 void encode_twist(std::vector<std::uint8_t>& message, std::uint64_t time, const Twist& twist);
 void encode_vector(std::vector<std::uint8_t>& message, std::uint64_t time, const Vec3& vector);  ///< point and vector alike
@@ -58,7 +58,7 @@ struct Stamped {
 
 /// err  unsupported R-TRC-7: not plain little-endian CDR; malformed R-TRC-13: size or text does not fit the type;
 ///      invalid R-TRC-14: a number is NaN or infinite, a time is negative or has 1e9 ns or more, a contact's kind, normal or
-///      stiffness is none, there are not as many displacements as `out` takes.
+///      stiffness is invalid, there are not as many displacements as `out` takes.
 Result<Stamped<Pose>> decode_pose(std::span<const std::uint8_t> message) noexcept;
 Result<Stamped<Twist>> decode_twist(std::span<const std::uint8_t> message) noexcept;
 Result<Stamped<Vec3>> decode_vector(std::span<const std::uint8_t> message) noexcept;
@@ -73,7 +73,7 @@ Result<std::uint64_t> decode_displacements(std::span<const std::uint8_t> message
 /// err  also R-SRF-n: the mesh breaks a rule of tri_mesh.h
 Result<TriMesh> decode_mesh(std::span<const std::uint8_t> message);
 
-/// Whether a contact can be recorded: kind and numbers are what contact.h says.
+/// Whether a contact can be recorded: its kind and numbers satisfy contact.h.
 bool is_valid(const Contact& contact) noexcept;
 bool is_valid(const SurfaceContact& contact) noexcept;
 

@@ -14,7 +14,7 @@ bool is_utf8(std::string_view text) noexcept;
 /// Fit for a name that becomes part of a topic and of a column: 1..255 bytes of UTF-8 without '/' and control characters.
 bool is_plain_name(std::string_view text) noexcept;
 
-/// The number that all of `text` spells; nothing when a character is left over or the type cannot hold it.
+/// The number that all of `text` spells; nothing when characters are left over or the type cannot hold it.
 template <class T>
 std::optional<T> parse_number(std::string_view text) noexcept {
   T value{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Bounds of a stream as the metadata record "tactus_bounds" of a trace: one entry per number, in the words of StreamBounds.
+/// Bounds of a stream as the metadata record "tactus_bounds" of a trace: one entry per number, named as in StreamBounds.
 ///   position_exp                                                        always
 ///   heartbeat, visual_position, visual_rotation, haptic                 if the stream had a rigid object that moves
 ///   weber_fraction, force_floor, cone_angle, fixed_position, fixed_rotation   those that `haptic` (off, isotropic, cone, fixed) uses
@@ -19,7 +19,7 @@ inline constexpr const char* kBoundsMetadata = "tactus_bounds";
 
 mcap::TextMap entries_of(const TraceBounds& bounds);
 
-/// Nothing when an entry is missing or spells none of its values.   in  info  with its meshes
+/// Nothing when an entry is missing or invalid.   in  info  with its meshes
 std::optional<TraceBounds> bounds_from(const mcap::TextMap& entries, const TraceInfo& info);
 
 }  // namespace tactus

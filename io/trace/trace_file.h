@@ -5,7 +5,7 @@
 /// /objects/<name>/pose         geometry_msgs/msg/PoseStamped       first tick, and ticks at which pose or twist is new
 /// /objects/<name>/twist        geometry_msgs/msg/TwistStamped      with the pose, objects that can move
 /// /users/<name>/device         geometry_msgs/msg/PointStamped      every tick
-/// /users/<name>/device_orientation  geometry_msgs/msg/QuaternionStamped  every tick    these four only of a device that senses it
+/// /users/<name>/device_orientation  geometry_msgs/msg/QuaternionStamped  every tick    these four only if the device senses them
 /// /users/<name>/device_velocity     geometry_msgs/msg/Vector3Stamped     every tick
 /// /users/<name>/device_buttons      tactus_msgs/msg/Buttons              first tick, and when it is new
 /// /users/<name>/device_time         sensor_msgs/msg/TimeReference        every tick
@@ -15,13 +15,16 @@
 /// /users/<name>/mesh_contact   tactus_msgs/msg/MeshContact         ticks with contact; only if there are meshes
 /// /meshes/<name>/rest          shape_msgs/msg/Mesh (no header)     first tick
 /// /meshes/<name>/displacement  tactus_msgs/msg/Displacements       ticks at which the shape is new; before the first, rest
-/// When nothing else comes every tick, the first object's pose does, or without objects the first mesh's displacement.
+/// If no other channel has a message every tick, the first object's pose has one; without objects, the first mesh's displacement.
 ///
-/// log_time, publish_time and header.stamp are round(tick * 1e9 / tick_rate), sequence is tick mod 2^32. The metadata record
-/// "tactus" holds format_version ("2"; in "1" poses and twists come every tick), tick_rate, source, objects, users and, if there are
-/// any, meshes (names in order, one a line); a replica's record "tactus_bounds" what its stream promises (trace_bounds.h); a pose
-/// channel's metadata holds dof, a rest channel's, where they are not none and 1, fixed (numbers of vertices with a blank
-/// in between, ascending) and period (ticks); the scene is the attachment "scene.toml". Chunks end at whole ticks, after 1 MiB or 1 s.
+/// log_time, publish_time and header.stamp are round(tick * 1e9 / tick_rate), sequence is tick mod 2^32. Metadata:
+///   record "tactus"         format_version ("2"; in "1" poses and twists come every tick), tick_rate, source, objects, users
+///                           and, if there are any, meshes (names in order, one per line)
+///   record "tactus_bounds"  of a replica: bounds of its stream (trace_bounds.h)
+///   pose channels           dof
+///   rest channels           fixed (vertex numbers, ascending, separated by blanks; left out if none); period (ticks; left out if
+///   1)
+/// The scene is the attachment "scene.toml". Chunks end at whole ticks, after 1 MiB or 1 s.
 ///
 /// rule      class             broken when
 /// R-TRC-1   io                the operating system refuses to open, read or write the file; errno tells why
@@ -60,16 +63,16 @@
 
 namespace tactus {
 
-/// Writes a trace as it happens. A process that dies leaves a file that reads up to its last whole chunk.
+/// Writes a trace as it happens. If the process dies, the file is readable up to its last whole chunk.
 class TraceWriter {
  public:
   /// path "-" is standard output.   err  io R-TRC-1; invalid_argument R-TRC-11 (source), R-TRC-17, R-SRF-n
   static Result<TraceWriter> create(const std::string& path, const TraceInfo& info);
-  /// in   frame  tick >= 0 and larger than the last; of a user without contact only contact.device is kept,
-  ///             of a mesh that was not updated nothing
-  /// time O(what is new) and about 15 instructions for each object that rests; of users and meshes what comes every tick
+  /// in   frame  tick >= 0 and larger than the last. Of a user without contact only contact.device is kept; a mesh that was not
+  ///             updated is not written
+  /// time O(changes), about 15 instructions for each object at rest, and the every-tick messages of users and meshes
   /// err  invalid_argument R-API-1 not finite; R-API-5 wrong count, tick or contact; R-API-6 a static object moved; io R-TRC-1.
-  ///      Nothing was written after invalid_argument. After io and limit_exceeded R-API-11 (no memory) the writer is of no more use.
+  ///      Nothing was written after invalid_argument. After io and limit_exceeded R-API-11 (no memory) the writer is unusable.
   Result<void> write(const TraceFrame& frame);
   /// Summary, index and footer. A writer destroyed without it leaves a readable but unindexed file.
   Result<void> finish();
@@ -84,10 +87,10 @@ class TraceWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Reads a trace front to back, one frame at a time, in memory bounded by a chunk. ROS 2 recordings of other people are read too:
-/// each PoseStamped topic is an object, a TwistStamped topic beside it (same path but for the last part) its motion, otherwise
-/// backward differences are; ticks follow from log_time and the median spacing of the first poses. A topic holds its last value,
-/// and frames begin when every object has one.
+/// Reads a trace front to back, one frame at a time, in memory bounded by a chunk. Foreign ROS 2 recordings are read too: each
+/// PoseStamped topic is an object. Its motion is the TwistStamped topic beside it (same path except for the last part), else
+/// backward differences. Ticks follow from log_time and the median spacing of the first poses. A topic holds its last value;
+/// frames begin when every object has one.
 class TraceReader {
  public:
   /// path "-" is standard input.   err  io R-TRC-1; malformed, truncated, invalid, unsupported, checksum, limit_exceeded: R-TRC-n,
@@ -98,11 +101,11 @@ class TraceReader {
   const TraceInfo& info() const noexcept;
   /// Number of frames if the file's summary tells it.
   std::optional<std::uint64_t> frame_count() const noexcept;
-  /// Next frame into `frame`; false at the end. Give every call the frame of the call before, whose vectors are reused: a shape that
-  /// is not new stays as it is there. After an error the reader must not be used further.
+  /// Read the next frame into `frame`; false at the end. Pass the frame of the previous call: its vectors are reused, and a shape
+  /// that is not new stays in it. Do not use the reader after an error.
   Result<bool> next(TraceFrame& frame);
-  /// The file had no whole ending (crash, cut): everything up to its last whole chunk was delivered. Known once next()
-  /// has returned false.
+  /// True if the file ends early (crash, truncation); everything up to its last whole chunk was delivered. Valid once next() has
+  /// returned false.
   bool cut_short() const noexcept;
 
   TraceReader(TraceReader&&) noexcept;

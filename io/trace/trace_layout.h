@@ -67,7 +67,7 @@ inline MessageType message_type(Role role) noexcept {
   return MessageType::vector;
 }
 
-/// What a mesh's description adds to its rest shape is as it should be.
+/// True if a mesh's fixed vertices and period are valid.
 inline bool is_valid(const TraceDeformable& mesh) noexcept {
   const bool ascends = std::ranges::adjacent_find(mesh.fixed, std::greater_equal<>()) == mesh.fixed.end();
   const bool is_there = mesh.fixed.empty() || mesh.fixed.back() < mesh.rest.vertices.size();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// From a trace to a scene and to what a sender is told.
+/// Converts a trace into a scene, and its frames into a sender's input.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace tactus {
 
-/// How the deformable objects of a trace are coded; frame periods are the trace's.
+/// Coding options of a trace's deformable objects; the trace sets their frame periods.
 struct TraceCoding {
   DeformableCoding deformable{};
   std::function<Result<ModeBasis>(const TraceDeformable&)> basis{};  ///< main: makes each object's basis; empty: without
@@ -27,11 +27,12 @@ Result<void> add_deformable(SceneBuilder& scene, const TraceDeformable& mesh, co
 /// err  invalid_argument R-API-5 wrong count; those of a basis
 Result<SceneBuilder> scene_builder(const TraceInfo& info, const TraceFrame& first, const TraceCoding& coding = {});
 
-/// Who touches this deformable object: of several users the one who presses least, whose haptic threshold is the lowest.
+/// The touch that sets this object's haptic threshold: of several users, the one with the least force, as its threshold is the
+/// lowest.
 /// out  force is that of the coupling, k |x_p - x_d|
 std::optional<SurfaceTouch> touch_of(const TraceFrame& frame, std::size_t deformable) noexcept;
 
-/// Frames as a sender takes them. Holds the lists that a Truth points to.
+/// Converts frames into a sender's input. Holds the lists that a Truth points to.
 class FrameTruth {
  public:
   explicit FrameTruth(const TraceInfo& info) : contacts_(info.users.size()), deformables_(info.meshes.size()) {}
