@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A client: it receives what the server sends, shows it to its users and lets them feel it.
+/// A client: receives the server's packets and renders their state to its users, visually and haptically.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@
 
 namespace tactus::sim {
 
-/// Where the users of a scene sit.
+/// The client end of a simulation, with all users of the scene.
 class Client {
  public:
   /// in   server    outlives the client; without a codec the client sees its truth
@@ -26,15 +26,15 @@ class Client {
 
   /// err  errors of Receiver::push   no allocation
   Result<void> receive(std::span<const Packet> packets) noexcept;
-  /// Let users see the tick of this frame: what was received up to it, or the truth.   no allocation
-  /// in   truth  which shapes are new; without a codec all that is seen
+  /// Show the tick of this frame: the state received up to it, or the truth.   no allocation
+  /// in   truth  tells which shapes are new; without a codec, the state shown
   void show(const TraceFrame& truth) noexcept;
-  /// Move every user's probe on what is shown.   in  devices  one per user   no allocation
+  /// Move every user's probe on the shown state.   in  devices  one per user   no allocation
   void touch(std::span<const DeviceSample> devices) noexcept;
 
   const Vec3& felt(std::size_t user) const noexcept { return felt_[user]; }  ///< [N] rendered in the last touch()
   std::span<const Pose> poses() const noexcept { return poses_; }            ///< as shown, one per object of the trace
-  const Pose& watched(std::size_t user) const noexcept;                      ///< of what this user looks at
+  const Pose& watched(std::size_t user) const noexcept;                      ///< pose of the object that this user looks at
   Replica& replica() noexcept { return receiver_->replica(); }               ///< pre  there is a codec
 
  private:
@@ -42,13 +42,13 @@ class Client {
   void show_pose(std::uint32_t object, const Pose& pose) noexcept;
 
   const Scene& scene_;
-  std::optional<Receiver> receiver_;  // none: the truth is seen
+  std::optional<Receiver> receiver_;  // none: the truth is shown
   std::vector<Pose> poses_;
-  std::vector<Pose> places_;  // of deformable objects, for who looks at one
+  std::vector<Pose> places_;  // of deformable objects, for users who look at one
   RigidView rigid_;
   std::optional<MsdView> msds_;
   std::optional<DeformableView> deformables_;
-  std::vector<Touchable*> objects_;  // these, and what the server lends of its own
+  std::vector<Touchable*> objects_;  // these, and those that the server lends
   std::vector<Vec3> felt_;           // [N] one per user
 };
 

@@ -11,9 +11,9 @@ namespace tactus::sim {
 
 class PerfectLink {
  public:
-  /// What the devices reported, as the server gets to know it.
+  /// Device samples as the server receives them.
   std::span<const DeviceSample> to_server(std::span<const DeviceSample> devices) const noexcept { return devices; }
-  /// What the server sent, as the client receives it.
+  /// Packets as the client receives them.
   std::span<const Packet> to_client(std::span<const Packet> packets) const noexcept { return packets; }
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The server: it computes all objects, feels what every user's probe touches on their true state, and codes that state.
+/// The server: simulates all objects, renders every user's probe against their true state, and codes that state.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ struct ServerOptions {
   std::uint64_t seed = 1;            ///< of the noise
   std::optional<ServerCodec> codec;  ///< none: nothing is sent, clients see the truth
   double mesh_noise = 0;             ///< [m] RMS per axis of white noise on every vertex of a shape that the server reports
-  std::uint32_t estimate_every = 0;  ///< estimate the error of every so many deformations, 0: of none
+  std::uint32_t estimate_every = 0;  ///< estimate the error of every n-th deformation, 0: of none
 };
 
 class Server {
@@ -38,20 +38,20 @@ class Server {
   ///      make_deformable_objects()
   static Result<std::unique_ptr<Server>> create(const Scene& scene, const ServerOptions& options);
 
-  /// State of this tick, before any force of it acts, into frame().   no allocation
+  /// Write the state of this tick, before its forces act, to frame().   no allocation
   void observe() noexcept;
-  /// Move every user's probe; contacts and forces go into frame().   in  devices  one per user   no allocation
+  /// Move every user's probe; write contacts and forces to frame().   in  devices  one per user   no allocation
   void touch(std::span<const DeviceSample> devices) noexcept;
-  /// Packets that tell clients of this tick; valid until the next call.   err  errors of Sender::encode   no allocation
+  /// Packets of this tick for the clients; valid until the next call.   err  errors of Sender::encode   no allocation
   Result<std::span<const Packet>> encode() noexcept;
-  /// Let the forces of this tick act, within what devices render, and advance by one tick.
+  /// Apply the forces of this tick, limited to what the devices render, and advance by one tick.
   tl::expected<void, Diagnostic> step();
 
   TraceFrame& frame() noexcept { return frame_; }
   const TraceFrame& frame() const noexcept { return frame_; }
   const Scene& scene() const noexcept { return scene_; }
   TraceInfo info() const;  ///< of the frames
-  /// What is declared to clients; null without a codec.
+  /// Scene declaration for the clients; null without a codec.
   SharedScene stream_scene() const noexcept { return sender_ ? sender_->scene() : nullptr; }
   DeformableObjects* deformables() const noexcept { return deformables_; }  ///< null: the scene has none
 

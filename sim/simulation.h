@@ -7,11 +7,11 @@
 ///   4 client   proxy on what the replica shows, same x_d: force f_c, which the hand will feel             sim/client.h
 ///   5 physics  -f acts on the touched object at the proxy; state of the next tick                         sim/server.h
 ///
-/// Rigid, one-dimensional and deformable objects go through the same steps (sim/touchable.h); what a user feels is the sum of all,
-/// clipped to what the device can yield.
+/// Rigid, one-dimensional and deformable objects go through the same steps (sim/touchable.h). A user feels the sum of their
+/// forces, clipped to the device's limit.
 ///
-/// The frame of a tick holds the states of 2, the device sample of 1 and both forces: everything in it belongs to one instant, so
-/// whoever recomputes a force from contact and pose gets the encoder's own number.
+/// The frame of a tick holds the states of 2, the device sample of 1 and both forces. All of it belongs to one instant, so that a
+/// force recomputed from contact and pose equals the encoder's own number.
 #pragma once
 
 #include <cstdint>
@@ -41,7 +41,7 @@ struct SimulationOptions {
   std::optional<Grip> grip;               ///< instead of the scene's, for every user
   std::optional<ChannelOptions> channel;  ///< none: the client sees the true poses
   double mesh_noise = 0;                  ///< [m] RMS per axis of white noise on every vertex that the server reports
-  std::uint32_t estimate_every = 0;       ///< estimate the error of every so many deformations, 0: of none
+  std::uint32_t estimate_every = 0;       ///< estimate the error of every n-th deformation, 0: of none
 };
 
 class Simulation {
@@ -71,7 +71,7 @@ class Simulation {
   SharedScene stream_scene() const noexcept;                     ///< of the packets.   pre  there is a channel
   const DeformableObjects* deformables() const noexcept;         ///< null: the scene has none
   const TouchSummary& touched(std::size_t user) const noexcept;  ///< all ticks so far
-  /// [N/m] largest stiffness of a coupling to what does not yield (sampled_limit.h)
+  /// [N/m] largest stable stiffness of a coupling to a fixed point (sampled_limit.h)
   double bears(std::size_t user) const noexcept;
 
   Simulation(Simulation&&) noexcept;

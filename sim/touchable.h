@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What probes can touch: rigid, one-dimensional and deformable objects behind one interface, at the server and at a client.
+/// Objects that probes can touch: rigid, one-dimensional and deformable behind one interface, at the server and at a client.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace tactus::sim {
 
-/// What one probe feels, and where.
+/// Contact and force of one probe.
 struct Touch {
   Contact contact;                          ///< with a rigid or one-dimensional object; contact.device is always set
   std::optional<SurfaceContact> surface{};  ///< with a deformable object
@@ -20,7 +20,7 @@ struct Touch {
   Vec3 force;                               ///< [N] on the hand, world frame
 };
 
-/// The share of a force that a device renders which yields at most `limit` [N].
+/// The share of a force that a device renders whose largest force is `limit` [N].
 inline double share_rendered(const Vec3& force, double limit) noexcept {
   const double magnitude = norm(force);
   return magnitude > limit ? limit / magnitude : 1;
@@ -30,20 +30,20 @@ inline double share_rendered(const Vec3& force, double limit) noexcept {
 class Touchable {
  public:
   /// Move a user's probe. It touches one object of a kind at a time: the first one met, until it lets go.
-  /// in   held  by a contact with an object of another kind: the probe then touches no rigid or one-dimensional object here
+  /// in   held  an object of another kind holds the probe, which then touches no rigid or one-dimensional object here
   /// time O(objects); no allocation
   virtual Touch touch(std::size_t user, const DeviceSample& device, bool held) noexcept = 0;
   virtual ~Touchable() = default;
 };
 
-/// The objects where they are computed.
+/// The objects at the server, which computes them.
 class Simulated : public Touchable {
  public:
-  /// Their part of the frame: the state of this tick, before any force of this tick acts.   no allocation
+  /// Write their part of the frame: the state of this tick, before its forces act.   no allocation
   virtual void observe(TraceFrame& frame) noexcept = 0;
-  /// Let what the user's probe touched last bear `share` of the force that it yielded.   no allocation
+  /// Apply `share` of the reaction to the user's last force to the object touched.   no allocation
   virtual void push(std::size_t user, double share) noexcept = 0;
-  /// Advance by one tick.   err  a rule, the tick as the step, and the object that broke it as the element
+  /// Advance by one tick.   err  the broken rule, with the tick as the step and the object as the element
   virtual tl::expected<void, Diagnostic> step() = 0;
 };
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Tree of axis-aligned boxes over the triangles of a mesh. Thesis 2.3.3, figure 2.5.
 ///
-/// Built once by halving at the median of the longest side; when vertices move, refit() renews the boxes and keeps the tree. Boxes
-/// are single precision, larger than what they hold by 2^-22 of its coordinates, so that pruning never loses what the arithmetic
-/// in double precision would find: every query returns, bit for bit, what trying all triangles returns. Nothing depends on the
-/// order of triangles, vertices or corners but the number of the triangle named, of several at the same point: the lowest.
+/// Built once by splitting at the median of the longest side. When vertices move, refit() updates the boxes and keeps the tree.
+/// Boxes are single precision, enlarged by 2^-22 of the coordinates, so that pruning loses no result of the double precision
+/// arithmetic: every query returns, bit for bit, what trying all triangles returns. Results do not depend on the order of
+/// triangles, vertices or corners, except for ties: of several triangles at the same point the lowest number wins.
 ///
 /// The caller owns the vertices and hands in those that the boxes were fitted to.
 #pragma once
@@ -40,10 +40,10 @@ struct SurfacePoint {
 struct SurfaceHit {
   double t = 0;     ///< share of the way, 0..1
   double rest = 0;  ///< share of the way, 0..t, up to which a sphere keeps its slack
-  SurfacePoint at;  ///< point met; its distance is that of the sphere's centre then
+  SurfacePoint at;  ///< point met; its distance is to the sphere's centre at that time
 };
 
-/// Of two contacts the one that counts: if at the same time, that of the triangle with the lower number.
+/// The earlier of two contacts; at the same time, that of the triangle with the lower number.
 inline bool earlier(const SurfaceHit& hit, const std::optional<SurfaceHit>& first) noexcept {
   return !first || hit.t < first->t || (hit.t == first->t && hit.at.triangle < first->at.triangle);
 }
@@ -54,13 +54,13 @@ class AabbTree {
   /// Tree over a whole mesh.   time O(n log n), 60 ms for 100 000 triangles
   explicit AabbTree(const TriMesh& mesh);
 
-  /// Room for trees over up to `triangles` triangles of a mesh that has `numbers`: build() then allocates nothing.
+  /// Reserve memory for trees over up to `triangles` of a mesh's `numbers` triangles; build() then allocates nothing.
   void reserve(std::size_t triangles, std::size_t numbers);
   /// Tree over some triangles of a mesh, which keep their numbers.   time O(n log n)
-  /// pre  no number stands twice in `chosen`
+  /// pre  the numbers in `chosen` are distinct
   void build(std::span<const Triangle> triangles, std::span<const std::uint32_t> chosen, std::span<const Vec3> vertices);
-  /// Fit the boxes to moved vertices. Queries then find what a tree built anew finds (points may differ by rounding, because corners
-  /// keep the order of the positions when built).   time O(n), 9 us for 1424 triangles; no allocation
+  /// Fit the boxes to moved vertices. Queries then return what a new tree would (up to rounding of points, because corners keep
+  /// the order of the positions when built).   time O(n), 9 us for 1424 triangles; no allocation
   void refit(std::span<const Vec3> vertices) noexcept;
 
   /// Closest point of the mesh that is no further than `within` [m].   time O(log n) near the surface, no allocation
@@ -77,7 +77,7 @@ class AabbTree {
   template <class Visit>
   void visit_sphere(const Vec3& centre, double radius, std::span<const Vec3> vertices, Visit&& visit) const;
 
-  /// A moving sphere stays outside of the box around all triangles.   time O(1)
+  /// True if a moving sphere stays outside of the box around all triangles.   time O(1)
   bool is_far(const Sweep& sphere) const noexcept {
     return nodes_.empty() || !near_segment(nodes_[0].box, sphere.from, sphere.way, sphere.radius + sphere.slack);
   }
@@ -113,7 +113,7 @@ class AabbTree {
   static SurfacePoint named(const Leaf& leaf, const std::array<double, 3>& weights, const Vec3& point, double distance) noexcept;
   static Vec3 away(const Box& box, const Vec3& point) noexcept;
   static double distance2(const Box& box, const Vec3& point) noexcept { return dot(away(box, point), away(box, point)); }
-  /// Call visit(node) for every one with triangles that reaches into a sphere, until it returns false: then so does this.
+  /// Call visit(node) for every leaf that reaches into a sphere. Stops and returns false as soon as visit() does.
   template <class Visit>
   bool visit_boxes(const Vec3& centre, double radius, Visit&& visit) const;
   static bool near_segment(const Box& box, const Vec3& from, const Vec3& way, double radius) noexcept;

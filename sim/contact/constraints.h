@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The planes that hold a virtual proxy, and where it wants to be among them (thesis 2.3.4.1): one plane on a face, two in a groove,
+/// The constraint planes of a virtual proxy, and its goal among them (thesis 2.3.4.1): one plane on a face, two in a groove,
 /// three in a corner.
 ///
 ///   minimise |x - goal|  with  n_i . x >= o_i        x = goal + sum lambda_i n_i,  lambda_i >= 0
-/// lambda_i [m] is how deep the probe lies below what plane i alone makes of it: times the stiffness, the force of that plane.
+/// lambda_i [m] is the part of the probe's depth that plane i resists; times the stiffness, it is the force of that plane.
 #pragma once
 
 #include <array>
@@ -29,10 +29,10 @@ struct Constrained {
   double sum() const noexcept;                  ///< of lambda
 };
 
-/// Nearest point to the goal in the intersection, by trying which planes hold it.
+/// Nearest point to the goal in the intersection, found by trying sets of active planes.
 /// in   planes  at most kMaxHalfspaces
-///      slack   [m] by so much a plane may be overstepped: rounding is no contact
-/// out  nothing when rounding hides the answer (planes that are parallel but for rounding)
+///      slack   [m] tolerated depth below a plane: rounding is no contact
+/// out  nothing when rounding hides the answer (nearly parallel planes)
 /// time O(1): at most 42 sets of planes are tried; no allocation
 std::optional<Constrained> nearest_within(std::span<const Halfspace> planes, const Vec3& goal, double slack) noexcept;
 

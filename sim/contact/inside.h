@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Which points lie inside of a mesh: below the closest point of a component that is closed. An open component has no inside.
+/// Tests which points lie inside a mesh: those below the closest point of a closed component. An open component has no inside.
 ///
-/// "Below" means against the normals around the closest point, each weighted by the angle of its triangle there: the one weighting
-/// whose sign is right at every edge and corner (Baerentzen and Aanaes 2005).
+/// "Below" refers to the normals around the closest point, each weighted by the angle of its triangle there. Only this weighting
+/// gives the right sign at every edge and corner (Baerentzen and Aanaes 2005).
 #pragma once
 
 #include <cstdint>

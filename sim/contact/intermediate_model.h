@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What is touched of a deformable object between two of its deformation steps: an exact cut-out of the mesh, m rings around the
-/// touched triangle. Thesis 2.3.4.2, figure 2.7, and 3.3.2.
+/// The local surface that probes touch between two deformation steps of an object: an exact cut-out of the mesh, m rings around
+/// the touched triangle. Thesis 2.3.4.2, figure 2.7, and 3.3.2.
 ///
-/// Every deformation step cuts out anew. Vertices then go in a straight line from where they are shown to where the step put them
-/// and are there when the next one is due. Nothing jumps, because every vertex starts where it was: one that was cut out before
-/// where it was shown, any other where the last step had put it. Triangles and vertices keep their numbers in the mesh, so the
-/// proxy goes from cut-out to cut-out without noticing.
+/// Every deformation step makes a new cut-out. Its vertices then move linearly from where they are shown to the result of the
+/// step, and arrive when the next step is due. Every vertex starts where it was, so that nothing jumps: a vertex of the previous
+/// cut-out where it was shown, any other at the result of the previous step. Triangles and vertices keep their numbers in the
+/// mesh, so that the proxy passes from cut-out to cut-out unchanged.
 ///
-/// A proxy that is about to leave the outermost ring below the surface goes only a part of the way, or waits, until the next cut-out
-/// has it in the middle.
+/// A proxy that is about to leave the outermost ring below the surface moves only part of the way, or waits, until the next
+/// cut-out is centred on it.
 #pragma once
 
 #include <cstdint>
@@ -28,17 +28,17 @@ struct IntermediateModelOptions {
 class IntermediateModel {
  public:
   /// in   mesh, topology  outlive this object; the mesh as it is at rest
-  /// time O(triangles of all cut-outs); allocates all there is to allocate
+  /// time O(triangles of all cut-outs); the only function that allocates
   IntermediateModel(const TriMesh& mesh, const MeshTopology& topology, const IntermediateModelOptions& options);
 
-  /// Put the probe there without history, on the mesh as it is now.   as update()
+  /// Place the probe without history, on the mesh as it is now.   as update()
   ProxyTouch place(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
-  /// A deformation step is done: cut out around the proxy; what is shown does not change. A free proxy that is inside of the object
-  /// by now, because it came to where nothing was cut out, is put on the surface.
+  /// Take over a deformation step: cut out around the proxy. The shown surface does not change. A free proxy that is now inside
+  /// the object, because it moved beyond the previous cut-out, is put on the surface.
   /// in   vertices  of the whole mesh; the tree is fitted to them
   /// time O(n); no allocation
   void update(std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
-  /// A deformation step is done and moved nothing: what update() does then.   time O(cut-out) where the proxy went on, else O(log n)
+  /// update() for a deformation step that moved nothing.   time O(cut-out) if the proxy has moved on, else O(log n)
   void update_at_rest(std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
   /// One tick of haptic rendering.   pre  place()   time O(cut-out), about 2 us for three rings; no allocation
   ProxyTouch move(const Vec3& probe) noexcept;
@@ -63,10 +63,10 @@ class IntermediateModel {
   std::vector<std::uint32_t> cut_;       // triangles
   std::vector<std::uint32_t> moving_;    // vertices of them
   std::vector<std::uint8_t> is_moving_;  // by vertex
-  std::vector<std::uint8_t> is_rim_;     // by triangle: around one of its corners the mesh goes on beyond the cut-out
+  std::vector<std::uint8_t> is_rim_;     // by triangle: at one of its corners the mesh continues beyond the cut-out
   std::vector<Vec3> from_, to_;          // by vertex: start and end of this period
   std::vector<Vec3> shown_, next_;       // next_: in this tick, of the cut-out
-  double reach_ = 0;                     // [m] at most so far does a vertex of the cut-out move in a tick of this period
+  double reach_ = 0;                     // [m] bound on a cut-out vertex's motion per tick of this period
   std::uint32_t tick_ = 0;               // since the last deformation step
   std::uint32_t still_ = 0;              // deformation steps in a row in which nothing moved
   std::uint32_t cut_around_triangle_ = MeshTopology::kNone;  // in the middle of the cut-out

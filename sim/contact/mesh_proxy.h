@@ -2,21 +2,22 @@
 /// Haptic rendering of triangle meshes: virtual proxy (god object) with friction cone. Thesis 2.3.4.1, figure 2.6.
 ///
 /// The proxy is a sphere that moves towards the probe as far as the mesh lets it, never through a triangle:
-///   1. It sweeps along the straight line to where it wants to be; the first triangle in its way stops it and adds a plane.
-///   2. It wants to be at the point nearest to the probe above the planes met so far: on a face one holds it, in a groove two,
-///      in a corner three (constraints.h). A triangle is convex, so it cannot be crossed by a proxy that stays above its plane.
-///   3. Friction: depths below the planes held by add up to D. Within mu D of where it wants to be the proxy stays (static friction),
+///   1. It sweeps along the straight line to its goal; the first triangle in its way stops it and adds a plane.
+///   2. The goal is the point nearest to the probe above the planes met so far: one holds it on a face, two in a groove, three in
+///      a corner (constraints.h). A triangle is convex, so it cannot be crossed by a proxy that stays above its plane.
+///   3. Friction: D is the sum of the depths below the active planes. Within mu D of the goal the proxy stays (static friction),
 ///      else it follows to that distance (dynamic friction).
-///   4. When no plane is new, the planes are forgotten and met again: behind a convex edge the old one holds no longer.
-/// The distance to the probe never grows, so this ends; what is left of it after a bounded number of sweeps waits for the next call.
+///   4. When no plane is new, the planes are dropped and met again: beyond a convex edge the old one no longer holds.
+/// The distance to the probe never grows, so this ends. After a bounded number of sweeps the rest waits for the next call.
 ///
 /// Triangles have two sides; on an open mesh the proxy touches the side that it came from.
 ///
 /// A point probe is a sphere, too: of radius `skin`, 2^-24 of the largest coordinate (6 nm at 0.1 m), a million times the rounding of
-/// positions. Every proxy keeps that distance on top of its radius. A sphere is settled to 2^-14 of its radius (0.3 um of 5 mm).
+/// positions. Every proxy keeps that distance on top of its radius. A sphere is placed to within 2^-14 of its radius (0.3 um of 5
+/// mm).
 ///
-/// Surfaces that move: the proxy first moves along with the point of the surface that holds it, or, if free, with the one that
-/// expect() found. A surface that was announced to expect() therefore never passes over the proxy, and friction carries it.
+/// Moving surfaces: the proxy first moves with the surface point that holds it or, if free, with the one that expect() found. A
+/// surface that was announced to expect() therefore never passes over the proxy, and friction carries the proxy.
 #pragma once
 
 #include <array>
@@ -38,7 +39,7 @@ struct MeshProxyOptions {
 
 /// What a probe touches.
 struct ProxyTouch {
-  bool touched = false;  ///< no: the proxy is where the probe is, and the rest is of no meaning
+  bool touched = false;  ///< false: the proxy is at the probe, and the other fields have no meaning
   std::uint32_t triangle = MeshTopology::kNone;
   std::array<double, 3> weights{};  ///< of its corners: the point touched
   Vec3 proxy;                       ///< [m] x_p, centre of the sphere
@@ -50,21 +51,24 @@ class MeshProxy {
   /// in  extent  [m] largest absolute coordinate of the mesh
   MeshProxy(const MeshProxyOptions& options, double extent) noexcept;
 
-  /// Put the probe there without history: inside of the mesh or too close, the closest point of the surface holds it.
+  /// Place the probe without history. Inside the mesh or too close to it, the closest point of the surface holds it.
   ProxyTouch place(const Vec3& probe, const InsideTest& inside, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
-  /// Move the probe there; the first time it is put there, on whichever side of the surface that is. A probe that is not a finite point stays where it was.
+  /// Move the probe. The first call places it, on whichever side of the surface that is. A position that is not finite is
+  /// ignored.
   /// in   vertices  where they are now; the tree is fitted to them. All in the frame of the mesh
-  /// time O(log n) per triangle crossed, on a mesh of 100 000 about 0.1 us in the open and 1.5 us in contact (4 us for a sphere larger
+  /// time O(log n) per triangle crossed, on a mesh of 100 000 about 0.1 us in free space and 1.5 us in contact (4 us for a sphere
+  ///      larger
   ///      than the triangles, 20 us for 1 % of the calls); at most 16 sweeps, the rest waits for the next call; no allocation
   ProxyTouch move(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
 
-  /// The surface is about to move: a free proxy that it may pass over will go along with that triangle which comes farthest past it.
-  /// in   reach     [m] of the longest way of a vertex
-  ///      vertices  where they still are; the tree is fitted to them
-  ///      next      where they will be
+  /// Announce a motion of the surface. A free proxy that it may pass over will move with the triangle that comes farthest past
+  /// it.
+  /// in   reach     [m] longest displacement of a vertex
+  ///      vertices  positions before the motion; the tree is fitted to them
+  ///      next      positions after it
   /// time O(log n + triangles within reach), O(1) if far; no allocation
   void expect(double reach, std::span<const Vec3> vertices, std::span<const Vec3> next, const AabbTree& tree) noexcept;
-  /// Move along with the surface, but not towards the probe: what move() does first.   time O(1) if nothing moved
+  /// Move with the surface, but not towards the probe: the first part of move().   time O(1) if nothing moved
   void carry(std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
 
   const Vec3& position() const noexcept { return centre_; }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The triangles around a sphere that moves a little, many times over: collected from the tree once, then asked without it.
+/// Cache of the triangles around a sphere that makes many small moves: collected from the tree once, then queried without it.
 ///
-/// Most of them need not even be asked. A triangle is convex: whatever the direction n, it lies wholly behind the plane across n
-/// through its foremost corner. A sphere whose way starts and ends before that plane by more than its radius meets no point of the
-/// triangle. The direction from the triangle's closest point gives the best plane and is kept once that point had to be computed;
-/// until then the direction from the box of the tree's leaf has to do.
+/// Most of them need no distance query. A triangle is convex: for any direction n, it lies wholly behind the plane across n
+/// through its foremost corner. A sphere meets no point of the triangle if its path starts and ends before that plane by more
+/// than its radius. The direction from the triangle's closest point gives the best plane and is kept once that point was
+/// computed. Until then the direction from the box of the tree's leaf is used.
 ///
-/// Answers are those of the tree, bit for bit: a triangle is left out only where it is further than contact by half the slack, which
+/// Results are those of the tree, bit for bit: a triangle is left out only if it is farther than contact by half the slack, which
 /// is a million times the rounding of positions.
 #pragma once
 
@@ -29,13 +29,13 @@ class TriangleCache {
   }
 
   /// As AabbTree::sweep, with contacts up to a share `limit` of the way.
-  /// time O(log n) where the sphere was not yet; then 5 ns per triangle around and 0.1 us per one close by; no allocation
+  /// time O(log n) at a new place; then 5 ns per triangle around and 0.1 us per one close by; no allocation
   std::optional<SurfaceHit> sweep(const Sweep& sphere, std::span<const std::uint32_t> left_out, double limit = 1) noexcept;
   /// The same with one triangle of the tree.
   std::optional<SurfaceHit> sweep_one(const Sweep& sphere, std::uint32_t triangle) noexcept;
 
  private:
-  /// A triangle lies where n . p <= offset, n of unit length. Vec3 would be set to zero, all room of it, every time.
+  /// A triangle lies where n . p <= offset, n of unit length. Plain numbers: an array of Vec3 would be set to zero every time.
   struct Plane {
     double x, y, z, offset;
   };
@@ -58,9 +58,9 @@ class TriangleCache {
   const AabbTree& tree_;
   std::span<const Vec3> vertices_;
   double wanted_reach_;
-  bool is_of_use_ = true;  // not where triangles are too many, nor for a sphere that goes too far
+  bool is_of_use_ = true;  // false if there are too many triangles, or the sphere goes too far
   Vec3 centre_;
-  double reach_ = -1;  // [m] so far from centre_ every triangle that the sphere may meet is a candidate
+  double reach_ = -1;  // [m] within this distance of centre_ the candidates are complete
   std::size_t count_ = 0;
   std::array<Candidate, kRoom> candidates_;
   std::array<std::uint32_t, kKnown> known_;

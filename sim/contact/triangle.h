@@ -15,7 +15,7 @@
 
 namespace tactus::sim {
 
-/// Corners of a triangle, in an order that whoever asks keeps the same: results have the same bits only for the same order.
+/// Corners of a triangle. The caller keeps their order: results have the same bits only for the same order.
 using Corners = std::array<Vec3, 3>;
 
 /// Point of a triangle that is closest to another point.
@@ -43,8 +43,8 @@ struct TriangleShape {
         area2(dot(normal, normal)) {}
 };
 
-/// Needles whose height is below 1e-10 of their length are their edges.
-/// As a call it would take a tenth more of every contact's time, in handing over results.
+/// Needles whose height is below 1e-10 of their length are treated as their edges.
+/// Inlined: a call would add a tenth to the time of every contact, for handing over results.
 [[gnu::always_inline]] inline TrianglePoint closest_on_triangle(const Vec3& p, const TriangleShape& s) noexcept {
   const Vec3 q = p - s.v[0];
   const double longest2 = std::max(s.u2, s.w2);
@@ -129,7 +129,7 @@ inline std::optional<TriangleHit> segment_hits_triangle(const Vec3& from, const 
 
 /// A moving sphere.
 struct Sweep {
-  Vec3 from, way;     ///< [m] start of the centre, and its end as seen from there
+  Vec3 from, way;     ///< [m] start of the centre, and its displacement
   double radius = 0;  ///< [m] > 0
   double slack = 0;   ///< [m] > 0: distance from contact at which it is to come to rest
 };
@@ -143,9 +143,9 @@ struct TriangleTouch {
 };
 
 /// A sphere that touches at the start, or reaches into the triangle, is stopped when it would come closer, and free to leave.
-/// in  limit    later contacts are of no interest
+/// in  limit    later contacts are ignored
 ///     closest  point of the triangle to the start of the way
-/// time one closest point for what is far or moves away, a few for a contact; at most 32, then it stops short of contact
+/// time one closest point if far or moving away, a few for a contact; after at most 32 the sphere stops short of contact
 [[gnu::always_inline]] inline std::optional<TriangleTouch> sphere_hits_triangle(const Sweep& sweep, const TriangleShape& triangle,
                                                                                 double limit,
                                                                                 const TrianglePoint& closest) noexcept {

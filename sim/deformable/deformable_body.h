@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// One deformable object: finite elements at the low rate, and its surface.
 ///
-/// Sleep  after kRestSteps steps in a row without a push in which no vertex was faster than 2^-44 of the object's size per step, no
-///        more steps are taken until it is pushed. It keeps its last state, velocities included; what is left out is the trembling
-///        by the rounding of its forces. What has not moved since it was made comes out of sleep bit by bit as if it had never
+/// Sleep  No more steps are taken after kRestSteps steps in a row without a push, in which no vertex was faster than 2^-44 of the
+///        object's size per step. A push wakes the object. It keeps its last state, velocities included; only jitter from the
+///        rounding of its forces is left out. An object that has not moved since it was made wakes bit by bit as if it had never
 ///        slept. An object without a free vertex never takes a step, one without weight none before it is pushed.
 #pragma once
 
@@ -21,12 +21,12 @@
 
 namespace tactus::sim {
 
-/// What a scene says about an object, as finite elements take it.
+/// FEM options of a scene's object.
 FemOptions fem_options(const SceneDeformable& object);
 /// The scene's method, or the one that suits it, and why.
 Choice chosen_method(const SceneDeformable& object, const FemModel& model);
 
-inline constexpr std::uint32_t kRestSteps = 32;  ///< more than a client goes on predicting motion for (codec/deformable/motion.h)
+inline constexpr std::uint32_t kRestSteps = 32;  ///< longer than a client predicts motion (codec/deformable/motion.h)
 
 class DeformableBody {
  public:
@@ -44,10 +44,10 @@ class DeformableBody {
   void push(std::uint32_t triangle, std::span<const double, 3> weights, const Vec3& force) noexcept;
   /// End a tick. A new shape is not seen before show().   err  R-FEM-6, R-FEM-7; the shape before is kept
   tl::expected<Tick, Diagnostic> tick();
-  /// How far the vertex of the surface moves that moves farthest when the new shape is shown [m].
+  /// Largest displacement of a surface vertex when the new shape is shown [m].
   double reach() const noexcept { return reach_; }
   std::span<const Vec3> next_vertices() const noexcept { return next_vertices_; }  ///< of the surface when it is shown
-  /// Let the surface have its new shape.
+  /// Give the surface its new shape.
   void show() noexcept;
 
   const TetSurface& surface() const noexcept { return surface_; }

@@ -23,7 +23,7 @@
 
 namespace tactus::sim {
 
-/// How an object is computed, in words.
+/// Human-readable solver summary of an object.
 struct DeformableInfo {
   std::string name;
   std::size_t vertices = 0;
@@ -33,28 +33,28 @@ struct DeformableInfo {
   double largest_frequency = 0;  ///< [rad/s] at rest; 0: not measured, as the scene names the method
 };
 
-/// What a deformation took [s]: wall clock, and CPU time of all threads of the process.
+/// Cost of a deformation [s]: wall clock, and CPU time of all threads of the process.
 struct DeformationTime {
   double wall = 0, cpu = 0;
 };
 
-/// Relative error of single deformation steps by step doubling (sim/fem/error_estimate.h), and what they come to together.
+/// Relative error of single deformation steps by step doubling (sim/fem/error_estimate.h), and the energy error of all together.
 struct DeformableError {
   double p50 = 0, max = 0;
   std::int64_t samples = 0;
-  double energy = 0;  ///< gained without cause, as a share of all that moved (sim/fem/energy_balance.h); negative: lost
+  double energy = 0;  ///< gained without cause, relative to all energy that moved (sim/fem/energy_balance.h); negative: lost
 };
 
 class DeformableObjects : public Simulated {
  public:
-  /// Shapes as the server sees them now; `updated` when the last tick computed one, which it does not while the object rests, or when one
-  /// is due and report_at_rest is set.
+  /// Write the current shapes to the frame. `updated` is set if the last tick computed a shape, which it does not while the
+  /// object rests, or if a shape is due and report_at_rest is set.
   void observe(TraceFrame& frame) noexcept override = 0;
   /// Advance by one tick.   time of an object that rests and whose probes are far: O(users); no allocation after the first deformation
   /// err  invalid_argument R-FEM-6, internal R-FEM-7 with element and remedy; the shapes before the step are kept
   tl::expected<void, Diagnostic> step() override = 0;
 
-  /// A shape of this object is due now, computed or not.
+  /// True if a shape of this object is due now, computed or not.
   virtual bool is_due(std::size_t object) const noexcept = 0;
   /// The same objects at clients that see the truth at once.   pre  DeformableOptions::true_views
   virtual Touchable& true_view() noexcept = 0;
@@ -67,12 +67,12 @@ class DeformableObjects : public Simulated {
 
 struct DeformableOptions {
   bool true_views = true;            ///< clients see what is computed; else they have a DeformableView
-  std::uint32_t estimate_every = 0;  ///< estimate the local error of every so many deformations, 0: of none
-  bool report_at_rest = false;       ///< observe() tells of every shape that is due, also of objects that sleep
+  std::uint32_t estimate_every = 0;  ///< estimate the local error of every n-th deformation, 0: of none
+  bool report_at_rest = false;       ///< observe() reports every shape that is due, also of sleeping objects
 };
 
 /// pre  the scene has deformables.
-/// err  unsupported R-SIM-2: this build has no finite elements; R-TET-n, R-FEM-1..4, 7, 8: what the scene asks for cannot be
+/// err  unsupported R-SIM-2: this build has no finite elements; R-TET-n, R-FEM-1..4, 7, 8: the scene asks for an invalid object
 Result<std::unique_ptr<DeformableObjects>> make_deformable_objects(const Scene& scene, const DeformableOptions& options);
 
 }  // namespace tactus::sim

@@ -62,12 +62,12 @@ class DeformableProbes {
     return result(touched, felt, device);
   }
 
-  /// The surface that they see is about to move.   in  reach [m] of the vertex that moves farthest
+  /// Announce a motion of the surface that they see.   in  reach [m] largest displacement of a vertex
   void expect(std::uint32_t object, double reach, std::span<const Vec3> vertices, std::span<const Vec3> next,
               const AabbTree& tree) noexcept;
-  /// It has a new shape.
+  /// Take over a new shape.
   void update(std::uint32_t object, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
-  /// A shape was due, and it is the one before.
+  /// Report that a shape was due and did not change.
   void update_at_rest(std::uint32_t object, std::span<const Vec3> vertices, const AabbTree& tree) noexcept;
 
  private:

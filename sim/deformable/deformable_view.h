@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Deformable objects at a client that sees what it is shown; before the first time the rest shape. It needs no finite elements.
+/// Deformable objects as shown at a client; the rest shape before the first show(). Needs no finite elements.
 #pragma once
 
 #include <array>
@@ -18,7 +18,8 @@ class DeformableView final : public Touchable {
   /// in   objects  surfaces at rest, one per deformable object of the scene; they outlive the view
   DeformableView(const Scene& scene, std::span<const TraceDeformable> objects);
 
-  /// What users see from now on.   in  displacements  V x 3, as Replica::displacements, 2^-position_exp m   no allocation
+  /// Set the shape that users see from now on.   in  displacements  V x 3, as Replica::displacements, 2^-position_exp m   no
+  /// allocation
   void show(std::size_t object, std::span<const std::array<std::int32_t, 3>> displacements, unsigned position_exp) noexcept;
   Touch touch(std::size_t user, const DeviceSample& device, bool held) noexcept override;
 

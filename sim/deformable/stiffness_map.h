@@ -21,20 +21,20 @@ struct StiffnessMap {
   TriMesh surface;                ///< at rest
   std::vector<double> stiffness;  ///< [N/m] per vertex of the surface; infinite where it is fixed
 
-  /// At a point of a triangle, linear between its corners; infinite where a fixed corner has a part in it.
+  /// Stiffness at a point of a triangle, linear between its corners; infinite where a fixed corner has a weight.
   double at(std::uint32_t triangle, const std::array<double, 3>& weights) const noexcept;
 };
 
 /// time one factorisation and one solve per surface vertex: 0.2 s for 714 vertices
-/// err  internal R-FEM-7: K is singular, because too little is fixed; R-FEM-1..4, R-TET-n: the object cannot be; unsupported R-SIM-2:
+/// err  internal R-FEM-7: K is singular, as too little is fixed; R-FEM-1..4, R-TET-n: the object is invalid; unsupported R-SIM-2:
 ///      this build has no finite elements
 Result<StiffnessMap> stiffness_map(const SceneDeformable& object);
 
-/// Largest sum of the couplings [N/m] that press this object at one place without swinging up: eq. 4.38 with the period of its
-/// deformation, k_o = |f| / |u . n| at that place, the mass that a force on that triangle meets, 1 / sum of w^2 / m, and the damping
-/// of both. In eq. 4.38 all else rests; here neighbours give way too, so that several times as much may hold.
-/// time the model made again and one solve by conjugate gradients: 25 ms for 2000 tetrahedra
-/// err  R-FEM-1..4, R-TET-n: the object cannot be; unsupported R-SIM-2: this build has no finite elements
+/// Largest stable sum of couplings [N/m] that press this object at one place: eq. 4.38 with the object's deformation period, k_o
+/// = |f| / |u . n| at that place, the effective mass of that triangle, 1 / sum of w^2 / m, and the damping of both. Eq. 4.38
+/// assumes that all else rests; here neighbours yield too, so that several times as much may be stable.
+/// time one construction of the model and one solve by conjugate gradients: 25 ms for 2000 tetrahedra
+/// err  R-FEM-1..4, R-TET-n: the object is invalid; unsupported R-SIM-2: this build has no finite elements
 Result<double> critical_stiffness(const SceneDeformable& object, const SurfaceContact& contact);
 
 }  // namespace tactus::sim

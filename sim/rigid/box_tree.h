@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Which of many boxes that stand still overlap another one: a tree of boxes, halved at the median of the longest side.
+/// Overlap queries against many static boxes: a tree of boxes, split at the median of the longest side.
 #pragma once
 
 #include <cstdint>
@@ -26,11 +26,11 @@ class BoxTree {
     Extent bounds;
   };
 
-  /// Room for so many: build() then allocates nothing.
+  /// Reserve memory for so many items; build() then allocates nothing.
   void reserve(std::size_t count);
   void clear() noexcept { items_.clear(); }
   void add(const Item& item) { items_.push_back(item); }
-  /// Of what was added.   time O(n log n)
+  /// Build the tree over all added items.   time O(n log n)
   void build();
   /// Call visit(number) for every item that overlaps a box, in no particular order.   time O(log n + visits), no allocation
   template <class Visit>
@@ -50,12 +50,12 @@ class BoxTree {
   struct Node {
     Extent bounds;
     std::uint32_t first = 0, count = 0;  // items of a leaf; count 0: inner node, its children follow
-    std::size_t skip = 0;                // node behind it and all below it
+    std::size_t skip = 0;                // node after this subtree
   };
   void split(std::uint32_t first, std::uint32_t last);
 
   std::vector<Item> items_;
-  std::vector<Node> nodes_;  // in the order of a walk that goes down before it goes on
+  std::vector<Node> nodes_;  // depth first
 };
 
 }  // namespace tactus::sim

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Solids of any shape in ODE. Internal to rigid_world.cpp.
 ///
-/// They collide as triangle meshes, not as convex hulls: a bracket's inner corner must hold what lies in it, and ODE's test of hulls
-/// against each other yields a single point where two faces meet. On a mesh ODE finds a contact at every corner and edge, hundreds
-/// on a fine one; of these a few suffice.
+/// They collide as triangle meshes, not as convex hulls: a bracket's inner corner must hold an object that lies in it, and ODE's
+/// hull-hull test yields a single point where two faces meet. On a mesh ODE finds a contact at every corner and edge, hundreds on
+/// a fine mesh. A few of them suffice.
 #pragma once
 
 #include <ode/ode.h>
@@ -27,8 +27,8 @@ OdeMesh make_ode_mesh(const TriMesh& mesh);
 /// in  geom  of the mesh, where it was made
 dMass mass_of_mesh(dGeomID geom, double mass);
 
-/// Bring those contacts to the front that carry best: the deepest, then again and again the one farthest from those.
-/// out  how many: at most `most`.   time O(contacts * most)
+/// Move the best supporting contacts to the front: the deepest, then repeatedly the one farthest from those chosen.
+/// out  their number: at most `most`.   time O(contacts * most)
 int keep_outermost(std::span<dContact> contacts, int most) noexcept;
 
 }  // namespace tactus::sim

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The scene's rigid objects as probes touch them: at the server, where ODE moves them, and at a client, where they are seen.
+/// The scene's rigid objects for probes: at the server, where ODE moves them, and at a client, where they are shown.
 #pragma once
 
 #include <span>
@@ -33,7 +33,7 @@ class RigidObjects final : public Simulated {
 /// At a client.
 class RigidView final : public Touchable {
  public:
-  /// Whether the client is told which objects moved: it then looks at the others now and then only.
+  /// Whether the client knows which objects moved; it then checks the others only occasionally.
   enum class News : std::uint8_t { of_all, of_changed };
 
   RigidView(const Scene& scene, News news);

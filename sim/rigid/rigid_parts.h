@@ -25,7 +25,7 @@ inline constexpr int kMaxContacts = 8;  // per pair; box against box yields up t
 inline constexpr std::size_t kMostTouching = 65536, kMostPairs = 8 * kMostTouching;
 inline constexpr int kMostFound = 4096;              // on a mesh, of which the outermost are kept
 inline constexpr double kSliding = 1e-9;             // [m/s] below this a contact point has no direction of sliding
-inline constexpr double kStandstill = 1e-8;          // [m/s] slower than this, what touches something stands still
+inline constexpr double kStandstill = 1e-8;          // [m/s] an object in contact that is slower stands still
 inline constexpr std::uint32_t kFloor = 0xffffffff;  // in place of a body's number
 
 /// Keeps ODE initialised for the process and its collision code for this thread.
@@ -69,14 +69,14 @@ struct Body {
   double reach = 0;       // [m] of its corners from its centre
   bool awake = false;
   bool touches = false;      // in this step
-  bool stands = false;       // did in the last step
+  bool stands = false;       // touched something in the last step and stands still
   std::uint32_t still = 0;   // ticks in which no bit of its state changed
-  std::uint32_t group = 0;   // another body that it touches, directly or by others; itself: it stands for them
+  std::uint32_t group = 0;   // another body of its contact group; itself: it represents the group
   std::uint32_t island = 0;  // the one that stands for those that it touches; kFloor: it touches nothing
   RigidSample before;        // this step
 };
 
-/// Two bodies near each other, the first of which moves, and where they touch.
+/// Two bodies near each other and their contacts. The first body can move.
 struct Pair {
   std::uint32_t a = 0, b = 0;
   std::size_t first = 0, count = 0;  // contacts
@@ -100,7 +100,7 @@ struct RigidWorld::Impl {
   std::vector<Pose> moving;            // poses for it
   std::vector<std::uint32_t> awake;    // bodies, ascending
   std::vector<std::uint32_t> changed;  // by the last step, ascending
-  BoxTree resting;                     // what is static, or slept when it was built
+  BoxTree resting;                     // bodies that are static, or slept when it was built
   bool resting_is_old = true;
   // Of one step.
   std::vector<Pair> pairs;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Haptic rendering of rigid objects. Solids of any shape: surface_proxy.h. Boxes: virtual proxy (god object) with friction cone. Thesis 2.3.4.1, figure 2.6, eq. 2.6.
 ///
-/// The proxy remembers where the probe entered and stays on that face while the probe is inside, so that neither a thin box lets
-/// the probe through nor an edge turns the force. It is kept in the box's frame and so moves with the box.
+/// The proxy stays on the face where the probe entered as long as the probe is inside: a thin box does not let the probe through,
+/// and an edge does not turn the force. The proxy is kept in the box's frame and so moves with the box.
 ///   g      foot of the probe on the face's plane          depth = |x_d - g|
 ///   inside the cone  |x_p - g| <= mu depth: the proxy stays (static friction)
 ///   outside          it follows to the circle's rim:  x_p = g + mu depth (x_p - g) / |x_p - g|
-/// A proxy that follows over the face's border has nothing below it any more; it joins the probe, which is then outside the box.
+/// A proxy that slides over the face's border loses its support. It joins the probe, which is then outside the box.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,7 @@ class BoxProxy {
   /// in  half  [m] half edge lengths
   BoxProxy(const Vec3& half, double friction) noexcept : half_(half), friction_(friction) {}
 
-  /// Put the probe there without history; inside the box the nearest face holds it.
+  /// Place the probe without history; inside the box the nearest face holds it.
   void place(const Vec3& probe) noexcept;
   /// Move the probe there.
   void move(const Vec3& probe) noexcept;
@@ -57,9 +57,9 @@ class BoxProxy {
 
 /// A probe among the scene's rigid objects. It touches one at a time: the first one met, until it lets go.
 ///
-/// Who tells it of each object that moves (expect_attend(), attend()) pays only for those and for what is within reach: the others,
-/// which keep still more than 0.1 m away, are looked at again when the probe has gone a part of that way. What it feels is the
-/// same, bit for bit.
+/// A caller that reports each object that moves (expect_attend(), attend()) pays only for those and for objects within reach. The
+/// others, which are still and more than 0.1 m away, are checked again when the probe has covered a part of that distance. Forces
+/// are the same, bit for bit.
 class RigidProbe {
  public:
   /// Copies share the surfaces.
@@ -74,7 +74,8 @@ class RigidProbe {
   ///      button  down while an object is touched: a spring ties the probe to the touched point until the button comes up
   ///      poses   one per object
   /// out  the force k_o (x_p - x_d), or the lifting spring's
-  /// time O(objects), about 50 ns for a box; with attend() O(near objects), and now and then 3 ns for each of the others; no allocation
+  /// time O(objects), about 50 ns for a box; with attend() O(near objects), and occasionally 3 ns for each of the others; no
+  ///      allocation
   Touch move(const Vec3& device, bool button, std::span<const Pose> poses) noexcept;
 
  private:
@@ -97,7 +98,7 @@ class RigidProbe {
     bool near = true;
   };
   std::vector<Seen> seen_;           // one per object
-  std::vector<std::uint32_t> near_;  // ascending; in the others' proxies the probe is free and where device_ is
+  std::vector<std::uint32_t> near_;  // ascending; every other proxy is free, at device_
   Vec3 device_, looked_from_;        // in the last move; where look_around() was
   std::uint64_t moves_ = 0;
 };

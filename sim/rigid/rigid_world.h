@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Boxes and other solids (ode_mesh.h) on a floor, stepped by ODE at 1 kHz (thesis 3.2.4.1).
 ///
-/// Coulomb friction  ODE bounds friction per axis (a pyramid). One axis is laid along the velocity that the contact point would
+/// Coulomb friction  ODE bounds friction per axis (a pyramid). One axis is aligned with the velocity that the contact point would
 ///                   have without friction, so that the bound is mu N in every direction of sliding, not up to 41 % more.
 /// Damping           v and w are multiplied by the object's d after every step.
-/// Standstill        what touches something, is not pushed and of which no point is faster than 1e-8 m/s after a step stands still:
-///                   it keeps its pose, and its velocity is zero. Else it would creep by what the solver leaves over.
-/// Sleep             objects that touch each other, or one alone, whose states no bit of which changed in 16 ticks are left out of
-///                   steps until one of them is pushed or hit. That changes no bit of anything: each group of objects that touch
-///                   each other is solved for itself, whatever others do. A pile that trembles sleeps, too (rest_watch.h), and
-///                   then loses its velocities.
+/// Standstill        an object in contact stands still if it is not pushed and none of its points is faster than 1e-8 m/s after a
+///                   step: it keeps its pose, and its velocity is zero. Otherwise it would creep by the solver's residual.
+/// Sleep             a group of touching objects, or a single one, is left out of steps when no bit of its state changed in 16
+///                   ticks, until one of them is pushed or hit. Results are the same bit for bit: each group of touching objects
+///                   is solved on its own. A pile that jitters sleeps, too (rest_watch.h), and then loses its velocities.
 /// Locked axes       an object keeps the exact bits of its first position along them, and of its first rotation.
 #pragma once
 
@@ -27,20 +26,21 @@ namespace tactus::sim {
 
 class RigidWorld {
  public:
-  /// Only the scene's objects, floor and gravity are looked at.   pre  every call on the same thread
+  /// Uses only the scene's objects, floor and gravity.   pre  every call on the same thread
   explicit RigidWorld(const Scene& scene);
 
-  /// Add a force [N] at a world point to the next step. Along locked axes it only loads what carries the object.
+  /// Add a force [N] at a world point to the next step. Along locked axes it only loads the object's supports.
   void push(std::uint32_t object, const Vec3& force, const Vec3& point) noexcept;
 
   /// Advance by one tick.
   /// time O(contacts), about 15 us for one cube on the floor, and O(log objects) for each that is awake; nothing for those that sleep
   ///      or are static; no allocation once ODE's arenas fit the contacts, in the first step.
   /// err  limit_exceeded R-SIM-6: more than 65536 contacts in this step;
-  ///      invalid_argument R-SIM-1: a pose is not finite, or an object got faster than 1e4 m/s or 1e5 rad/s; the world is then of no more use.
+  ///      invalid_argument R-SIM-1: a pose is not finite, or an object got faster than 1e4 m/s or 1e5 rad/s; the world is then
+  ///      unusable.
   tl::expected<void, Diagnostic> step();
 
-  /// Let an object be part of the next step, as a push without force would.
+  /// Wake an object for the next step, as a push without force would.
   void wake(std::uint32_t object) noexcept;
   /// Objects whose states the last step may have changed, ascending; before the first step all.
   std::span<const std::uint32_t> changed() const noexcept;

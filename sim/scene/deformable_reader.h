@@ -13,7 +13,7 @@ namespace tactus::sim {
 SceneDeformable read_deformable(TomlReader& in, const toml::table& table, const std::filesystem::path& folder,
                                 const SceneTouch& touch);
 
-/// Whether there is memory for so many tetrahedra in one scene; if not, the reader fails with the estimate.   err  R-SCN-6
+/// Whether memory suffices for so many tetrahedra in one scene. If not, the reader fails with the estimate.   err  R-SCN-6
 bool affords_tets(TomlReader& in, const toml::node& node, const std::string& key, std::uint64_t tets);
 
 }  // namespace tactus::sim

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Surface files of rigid objects. Apart, so that a build without the component SURFACE says so and needs no part of it.
+/// Surface files of rigid objects. A file of its own, so that a build without the component SURFACE can report that it lacks it.
 #pragma once
 
 #include <string>

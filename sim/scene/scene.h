@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Scenes: what a simulation contains, read from TOML. sim/scenes/README.md lists every key. SI units throughout.
-/// A scene says what it lacks by not naming it: without users no contact is computed, without a floor nothing collides with one.
+/// What a scene does not name is absent: without users no contact is computed, without a floor nothing collides with one.
 #pragma once
 
 #include <algorithm>
@@ -41,7 +41,7 @@ struct SceneMaterial {
   double density = 0;  ///< [kg/m^3]
 };
 
-/// An elastic body. It is touched by probes and pulled by gravity; it meets neither the floor nor other objects.
+/// An elastic body. Probes and gravity act on it; it collides with neither the floor nor other objects.
 struct SceneDeformable {
   std::string name;
   TetMesh mesh;                                  ///< at rest, world frame
@@ -56,20 +56,20 @@ struct SceneDeformable {
   std::uint32_t rate = 1;                        ///< N: deformed every N ticks (thesis figure 4.14), 1..1000
 };
 
-/// A mass on a spring and a damper that gives way along one axis (thesis 4.3.1): a plane without end, pressed from the side to which
-/// it looks. It meets neither gravity nor other objects.
+/// A mass on a spring and a damper that yields along one axis (thesis 4.3.1): an infinite plane, pressed from its outer side.
+/// Neither gravity nor other objects act on it.
 struct SceneMsd {
   std::string name;
   MsdObject object;
   Vec3 position;             ///< [m] of the surface at rest
   unsigned axis = 2;         ///< along which it moves: 0, 1, 2
-  Vec3 normal{0, 0, 1};      ///< to where the surface looks, along that axis
+  Vec3 normal{0, 0, 1};      ///< outward normal of the surface, along that axis
   double touch_damping = 0;  ///< b_c [N s/m] of the coupling at the clients
   std::uint32_t rate = 1;    ///< N: deformed every N ticks (thesis figure 4.14), 1..1000
   std::uint8_t dof() const noexcept { return static_cast<std::uint8_t>(Dof::x << axis); }
 };
 
-/// How the probe feels every object of the scene (thesis 2.3.4.1, 3.2.4.1, 3.2.5.1).
+/// Haptic rendering parameters of all objects of the scene (thesis 2.3.4.1, 3.2.4.1, 3.2.5.1).
 struct SceneTouch {
   double stiffness = 0;       ///< k_o [N/m]
   double friction = 0;        ///< of the virtual proxy
@@ -85,17 +85,17 @@ struct SceneDevice {
 
 enum class Grip : std::uint8_t { loose, normal, firm };
 
-/// Frame that a waypoint is given in, fixed when its phase begins: the person looks once, then moves. z is up in all of them.
+/// Reference frame of a waypoint, fixed when its phase begins: the user looks once, then moves. z is up in all of them.
 enum class PathFrame : std::uint8_t {
   world,
   hand,         ///< origin where the last movement ended, world axes
   object,       ///< origin at the object's centre, x along that face normal of the object which points most along world x
   toward_goal,  ///< origin at the object's centre, x from there to the goal
-  at_goal,      ///< origin at the goal, x as before
+  at_goal,      ///< origin at the goal, x as in toward_goal
 };
 
-/// One minimum-jerk movement from where the last one ended; or, with turns, one round a vertical axis at an even speed, on which
-/// radius and height go evenly from those of the start to those of the end.
+/// One minimum-jerk movement from the end of the last one. With `turns` it circles a vertical axis at constant speed, while
+/// radius and height change evenly from start to end.
 struct PathPhase {
   std::string name;
   PathFrame frame = PathFrame::world;
@@ -112,13 +112,13 @@ struct SceneUser {
   double tremor = 0;         ///< [m] RMS per axis of the free hand, 8-12 Hz
   double variation = 0;      ///< share by which hand, speed and targets vary with the seed
   double scatter = 0;        ///< [m] by which targets vary with the seed
-  std::uint32_t object = 0;  ///< the one the user looks at: its place among the objects, then the msds, then the deformables
-  Vec3 goal;                 ///< [m] where the user wants that object
+  std::uint32_t object = 0;  ///< the object that the user looks at: index over the objects, then the msds, then the deformables
+  Vec3 goal;                 ///< [m] target position of that object
   Vec3 start;                ///< [m] of the probe
   SceneDevice device;
   std::vector<PathPhase> path;
 
-  /// What the device tells of besides its position.
+  /// What the device reports besides its position.
   DeviceSenses senses() const noexcept {
     return {.buttons = std::ranges::any_of(path, [](const PathPhase& phase) { return phase.button; })};
   }
@@ -130,14 +130,14 @@ struct Scene {
   Vec3 gravity;                      ///< [m/s^2]
   double duration = 0;               ///< [s]
   std::optional<double> floor;       ///< [m] height of a plane that carries the objects
-  std::optional<SceneTouch> touch;   ///< there whenever there are users
+  std::optional<SceneTouch> touch;   ///< set whenever there are users
   std::vector<SceneObject> objects;  ///< order of trace and stream
-  std::vector<SceneMsd> msds;        ///< there after the objects, as objects of one degree of freedom
+  std::vector<SceneMsd> msds;        ///< in trace and stream after the objects, as objects of one degree of freedom
   std::vector<SceneDeformable> deformables;
   std::vector<SceneUser> users;
 };
 
-/// Where a scene file broke which rule, and what would mend it.
+/// Location, broken rule and remedy of an error in a scene file.
 ///   R-SCN-1 the file cannot be read    R-SCN-2 not TOML                  R-SCN-3 unknown key       R-SCN-4 key missing
 ///   R-SCN-5 wrong type                 R-SCN-6 value out of range        R-SCN-7 unknown or repeated name
 ///   R-SCN-8 a file that the scene names cannot be used               R-SCN-9 over 4 MiB, or nested over 32 deep

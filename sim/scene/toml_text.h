@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a TOML file may cost, looked at before it is parsed: the parser calls itself once for every table in a table, however it is
-/// written, and parts of a dotted key are not among what it limits.
+/// Limits the nesting of a TOML file before it is parsed. The parser recurses for every nested table, in any notation, and does
+/// not limit the parts of a dotted key.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,8 @@ namespace tactus::sim {
 
 inline constexpr std::size_t kMostTomlNesting = 32;  ///< parts of one dotted key; brackets within brackets
 
-/// The first line with a dotted key of more parts, or within more brackets, than that. Strings and comments are skipped as TOML 1.0
-/// writes them; of what is no TOML at all, up to its first mistake.   time O(size), no allocation
+/// The first line that exceeds this limit. Strings and comments are skipped by the rules of TOML 1.0; text that is not TOML is
+/// checked up to its first mistake.   time O(size), no allocation
 std::optional<std::uint32_t> too_nested_line(std::string_view text) noexcept;
 
 }  // namespace tactus::sim
