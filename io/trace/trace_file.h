@@ -22,7 +22,7 @@
 ///                           and, if there are any, meshes (names in order, one per line)
 ///   record "tactus_bounds"  of a replica: bounds of its stream (trace_bounds.h)
 ///   pose channels           dof
-///   rest channels           fixed (vertex numbers, ascending, separated by blanks; left out if none), period (ticks; left out if 1)
+///   rest channels           fixed (vertex numbers, ascending, blanks between; left out if none), period (ticks; left out if 1)
 /// The scene is the attachment "scene.toml". Chunks end at whole ticks, after 1 MiB or 1 s.
 ///
 /// rule      class             broken when

@@ -6,7 +6,7 @@
 
 namespace tactus::sim {
 
-/// What all integrators have in common: input is checked, and no diverged state leaves a step (integrator.h).
+/// The common part of all integrators: checks the input, and lets no diverged state leave a step (integrator.h).
 class CheckedIntegrator : public Integrator {
  public:
   CheckedIntegrator(FemModel& model, const IntegratorOptions& options);
@@ -17,18 +17,18 @@ class CheckedIntegrator : public Integrator {
  protected:
   /// Compute `next` from `state`.   err  R-FEM-6, R-FEM-7; step and remedy are filled in here
   virtual tl::expected<StepReport, Diagnostic> advance(const Eigen::VectorXd& f, const FemState& state, FemState& next) = 0;
-  /// False: the method cannot, and FemModel::energy() is not what it conserves.
+  /// False if the method cannot. FemModel::energy() is then not what it conserves.
   virtual bool may_gain_energy() const noexcept { return true; }
-  /// How many times its smallest value the energy of a stable motion without forces may reach, as the method sees it.
+  /// Largest ratio of maximum to minimum energy, as the method sees it, of a stable motion without forces.
   virtual double largest_swing() const noexcept { return 1; }
   FemModel& model() noexcept { return model_; }
   double h() const noexcept { return options_.step; }
-  /// Whether the state given is not the one that the last step returned.
+  /// Whether the given state differs from the one that the last step returned.
   bool edited() const noexcept { return edited_; }
 
  private:
   bool finite(const Eigen::VectorXd& x) const noexcept;
-  /// Whether next_ is no step from `before`; it is remembered in last_ before that is known.
+  /// Whether next_ is not a valid step from `before`. Stores it in last_ before the result is known.
   bool diverged(const Eigen::VectorXd& f, const FemState& before);
   Diagnostic divergence() const;
   bool gained_energy();
@@ -38,7 +38,7 @@ class CheckedIntegrator : public Integrator {
   FemState next_;
   std::int64_t steps_ = 0;
   double far_ = 0;                                                // [m] movement that may have torn an element
-  double moved_ = 0;                                              // [m] since the last look at the elements
+  double moved_ = 0;                                              // [m] since the last check of the elements
   double work_ = 0;                                               // [J] of external forces since the reference
   double reference_ = 0;                                          // [J]
   double rounding_ = 0;                                           // [J] below which energy is noise

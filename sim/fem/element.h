@@ -4,7 +4,7 @@
 /// symbol  meaning                                                    per element
 /// F       deformation gradient I + sum_r (u_r - u_0) g_r^T           u_r displacements of corners 0..3
 /// g_r     gradient of corner r's shape function [1/m]                rows of the inverse of the rest edges; g_0 = -g_1 -g_2 -g_3
-/// R       rotation nearest to F (rotation.h); I when linear          sought from the one remembered
+/// R       rotation nearest to F (rotation.h); I when linear          iterated from the stored one
 /// e       sym(R^T F) - I                                             strain in the element's own frame
 /// W       V (mu |e|^2 + lambda/2 tr(e)^2)                            energy [J]
 /// k_r     V R (2 mu e + lambda tr(e) I) g_r                          force of corner r [N] = dW/dx_r, also = R K_e (R^T x - X)
@@ -35,14 +35,14 @@ class Elements {
   Elements(const TetMesh& mesh, std::span<const Lame> moduli, bool corotated);
 
   std::size_t size() const noexcept { return size_; }
-  /// k = forces at displacements u (both 3N); R remembered.   time O(tets), no allocation.
+  /// k = forces at displacements u (both 3N); stores R.   time O(tets), no allocation.
   void forces(const double* u, double* k) noexcept;
-  /// Sum of W; R is sought, but not remembered.   time O(tets), no allocation.
+  /// Sum of W; computes R without storing it.   time O(tets), no allocation.
   double energy(const double* u) noexcept;
-  /// R at u remembered; nothing when linear.   time O(tets), no allocation.
+  /// Store R at u; nothing when linear.   time O(tets), no allocation.
   void turn(const double* u) noexcept;
 
-  /// R that is remembered.
+  /// The stored R.
   Quat rotation(std::size_t element) const noexcept;
   /// g_0..g_3 [1/m]
   std::array<Vec3, 4> gradients(std::size_t element) const noexcept;
@@ -53,12 +53,12 @@ class Elements {
   /// 3 x the number of each corner: where its displacement begins in u.
   std::array<std::uint32_t, 4> corners(std::size_t element) const noexcept;
 
-  /// Work with another instruction set than the widest.   pre  supported(set)
+  /// Use another instruction set than the widest.   pre  supported(set)
   void use(InstructionSet set) noexcept { kernels_ = kernels(set); }
 
  private:
-  /// Elements that follow each other share vertices. They go to blocks that follow each other, so that those of one block seldom
-  /// share any and its sums do not wait for each other; `kDeal` blocks at a time, so that what is at work stays in the cache.
+  /// Consecutive elements share vertices. They go to consecutive blocks, so that the elements of one block seldom share a vertex
+  /// and its sums do not wait for each other. `kDeal` blocks are filled at a time, so that the working set stays in the cache.
   struct Place {
     std::size_t block, lane;
   };

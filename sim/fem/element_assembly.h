@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Sums of 12 x 12 element matrices in a sparse matrix whose pattern is known beforehand. Inside of FemModel.
+/// Assembles 12 x 12 element matrices into a sparse matrix of known pattern. Inside of FemModel.
 #pragma once
 
 #include <cstdint>

@@ -19,7 +19,7 @@ struct alignas(64) ElementBlock {
   std::uint32_t corner[4][kBlockSize];  ///< 4 x vertex: where its vector begins
 };
 
-/// Vector of a vertex. The fourth makes it one load and one store.
+/// Vector of a vertex. The fourth component makes it one load and one store.
 struct alignas(32) VertexVector {
   double xyz[3];
   double unused;
@@ -30,7 +30,7 @@ struct BlockSpan {
   std::size_t size;
 };
 
-/// What a step did to a state of n displacements and velocities, summed in the same order by every instruction set.
+/// Effect of a step on a state of n displacements and velocities, summed in the same order by every instruction set.
 struct Motion {
   double work;      ///< sum of f (u1 - u0) [J]
   double farthest;  ///< largest |u1 - u0| [m]
@@ -44,7 +44,7 @@ struct ElementKernels {
   double (*energy)(BlockSpan blocks, const double* u) noexcept;
   double (*linear_energy)(BlockSpan blocks, const double* u) noexcept;
   void (*turn)(BlockSpan blocks, const double* u) noexcept;
-  /// Copies u1 and v1 to u and v too: what is loaded is the cost.
+  /// Also copies u1 and v1 to u and v: loading them is the main cost.
   Motion (*motion)(const double* f, const double* u0, const double* u1, const double* v1, double* u, double* v,
                    std::size_t n) noexcept;
   bool (*finite)(const double* x, std::size_t n) noexcept;

@@ -69,10 +69,10 @@ struct Kernel {
   /// the rotation from there by the Gibbs vector t (tangent of half the angle along the axis) makes (R^T F) symmetric when
   ///   (G + s I) t = a,   s = a . t
   /// and the best of all rotations when G + s I is positive definite (Davenport's and Shuster's equation). a . t(s) - s is convex
-  /// and falls for s >= 0, so that Newton's method from s = 0 cannot miss; its first step is written out, the second mostly only
-  /// finds that the first was exact.
+  /// and falls for s >= 0, so that Newton's method from s = 0 always converges. Its first step is written out; the second mostly
+  /// only confirms that the first was exact.
   static Turned nearest(const Matrix& f, const Rotation& start) {
-    // Share of its size cubed that the determinant may fall to: below, the rotation hardly follows from F.
+    // Smallest determinant, relative to the cube of F's size: below it the rotation is ill-conditioned.
     constexpr double kRegular = 1e-9;
     constexpr double kArrived = 1e-26;  // square of the error of t
     constexpr double kStill = 1e-24;    // square of t that is not worth remembering
@@ -105,11 +105,11 @@ struct Kernel {
         out.moved = ~out.arrived | (square > kStill);
         return out;
       }
-      s = s + V::select(out.arrived, 0.0, left / (1.0 + square));  // what has arrived stays, whatever else is in the vector
+      s = s + V::select(out.arrived, 0.0, left / (1.0 + square));  // converged lanes stay, whatever the other lanes do
     }
   }
 
-  /// What that equation cannot do: inverted, flat and lost elements, one by one.
+  /// Elements that this equation cannot handle (inverted, flat, lost), one by one.
   [[gnu::noinline]] static void repair(const Matrix& f, const Rotation& start, Turned& turned) {
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       if (turned.arrived.lane(lane)) continue;
@@ -124,7 +124,7 @@ struct Kernel {
     }
   }
 
-  /// R of the elements from `lane` on, sought from the one that their block remembers.
+  /// R of the elements from `lane` on, iterated from the one stored in their block.
   static Turned find(const ElementBlock& block, std::size_t lane, const Matrix& f, Rotation& start) {
     for (std::size_t i = 0; i < 4; ++i) start.q[i] = V(block.rotation[i] + lane);
     Turned turned = nearest(f, start);
@@ -132,7 +132,7 @@ struct Kernel {
     return turned;
   }
 
-  /// The same, remembered unless it is the one remembered already: a second look at the same F changes no bit.
+  /// The same, and stores R unless it is unchanged: a second call with the same F changes no bit.
   static Matrix rotate(ElementBlock& block, std::size_t lane, const Matrix& f) {
     Rotation start;
     const Turned turned = find(block, lane, f, start);
@@ -238,7 +238,7 @@ struct Kernel {
 
   static constexpr std::size_t kParts = 8 / W;  ///< vectors that hold eight sums, whatever W is
 
-  /// 0 x is no number where x is none or infinite.
+  /// 0 x is NaN where x is NaN or infinite.
   static bool all_zero(const Half (&zero)[kParts]) {
     for (std::size_t i = 0; i < 8; ++i)
       if (zero[i / W][i % W] != 0.0) return false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Vectors of doubles for the element kernel: how wide, how to fetch vertices into them and back. Internal linkage throughout and no
+/// Vectors of doubles for the element kernel: their width, gather and scatter of vertices. Internal linkage throughout and no
 /// function of the standard library, so that no code for one instruction set can serve in place of another's.
 #pragma once
 
@@ -28,7 +28,7 @@ void add(double* p, const T& v) {
   store(p, load<T>(p) + v);
 }
 
-/// W doubles. Vertices lie in memory as x, y, z and an unused fourth; in vectors their x are together, their y and their z.
+/// W doubles. Vertices lie in memory as x, y, z and an unused fourth; one vector holds the x of all lanes, one the y, one the z.
 template <std::size_t W>
 struct Vectors;
 
@@ -128,7 +128,7 @@ struct Vectors<8> {
 };
 #endif
 
-/// Two vectors at work together: what one has to wait for leaves time for the other.
+/// Two vectors processed together, so that each hides the latency of the other.
 template <std::size_t W>
 struct Pair {
   using Half = typename Vectors<W>::Double;

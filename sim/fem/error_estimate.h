@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How wrong single steps are, by step doubling: one whole step beside two half ones from the same state, now and then, on a copy of
-/// the model. The simulation neither waits for it otherwise nor changes by it.
+/// Error of single steps by step doubling: one whole step against two half ones from the same state, for some of the steps, on a
+/// copy of the model. The simulation's results do not depend on it.
 ///   error of the whole step = 2^p / (2^p - 1) |u_whole - u_halves|,  p the order        relative to |u_halves|
 #pragma once
 
@@ -17,11 +17,12 @@ class ErrorEstimate {
     std::int64_t samples = 0;
   };
 
-  /// in  every  look at one step in so many   err  as make_integrator
+  /// in  every  estimate every n-th step   err  as make_integrator
   static tl::expected<ErrorEstimate, Diagnostic> create(const FemModel& model, const IntegratorOptions& options,
                                                         std::int64_t every = 50);
 
-  /// Tell of a step about to be taken.   time three steps when it is looked at, else nothing; no allocation after the first look
+  /// Report a step before it is taken.   time three steps if it is estimated, else nothing; no allocation after the first
+  /// estimate
   void look(const Eigen::VectorXd& f, const FemState& state);
   Result result() const;  ///< allocates
 

@@ -2,8 +2,8 @@
 /// Velocity Verlet (leapfrog with velocities at the same instant as displacements), `substeps` times per step with h / substeps each:
 ///   v' = e v0 + p M^-1 (f - k0),   u1 = u0 + h v',   k1 = k(u1 + beta v'),   v1 = e v' + p M^-1 (f - k1)
 ///   e = exp(-alpha h / 2),   p = (1 - e) / alpha, h / 2 without mass damping
-/// alpha is mass_damping, beta stiffness_damping; k1 is the next step's k0. Mass damping, solved exactly, never limits the step;
-/// stiffness damping, whose velocity is half a step old, does: h omega^2 (h + 2 beta) < 4.
+/// alpha is mass_damping, beta stiffness_damping; k1 is the next step's k0. Mass damping is solved exactly and never limits the
+/// step. Stiffness damping uses a velocity half a step old and does: h omega^2 (h + 2 beta) < 4.
 #pragma once
 
 #include <optional>

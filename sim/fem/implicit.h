@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Backward Euler, Newmark and TR-BDF2: which stages a step consists of (newton.h).
-/// Where the motion is so violent that a stage of the last two cannot be solved within the iterations allowed, the step is done
-/// again with backward Euler, and so are the next ones until one of them can be solved: what is not a solution would feed the
-/// stiff modes instead of damping them.
+/// If a stage of Newmark or TR-BDF2 does not converge within the iterations allowed, the step is repeated with backward Euler,
+/// and so are the next ones until one of them converges. A stage that is not solved would excite the stiff modes instead of
+/// damping them.
 #pragma once
 
 #include <tactus/sim/fem/checked_integrator.h>

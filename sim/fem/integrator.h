@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Time integration of deformable objects behind one interface. All methods advance the same equation,
 ///   M u'' + mass_damping M u' + k(u + stiffness_damping u') = f
-/// which is that of model.h: the elastic force a little ahead is the elastic force plus stiffness_damping K u', exactly when
-/// elasticity is linear, to first order else, and costs one evaluation.
+/// which is that of model.h: the elastic force at u + stiffness_damping u' is the elastic force plus stiffness_damping K u',
+/// exactly for linear elasticity, else to first order. It costs one evaluation.
 ///
 /// method            order  stable when            per step
 /// velocity_verlet   2      h omega_max < 2        one evaluation of k per sub-step; stiffness damping, half a step late, is of order 1
@@ -15,11 +15,11 @@
 /// modal             exact  always                 K modes of the problem linearised at rest, whatever the elasticity; exact in
 ///                                                 time for constant forces; motion outside the modes is lost
 ///
-/// Backward Euler starts its iteration at u0, with `prefactored` and in the other methods at the displacement extrapolated with v0.
-/// Newmark and TR-BDF2 take steps of backward Euler where the motion is so violent that their stages cannot be solved.
-/// A stage is a nonlinear system. Each iteration finds a direction with the linear solver, and takes a shorter step along it when
-/// the residual says that it went too far; `newton_iterations` 1 is the linearly implicit variant, without that check. If the
-/// convergence rate of earlier stages predicts a negligible second update, the residual check is skipped.
+/// Backward Euler starts its iteration at u0. With `prefactored`, and in the other methods, it starts at the displacement
+/// extrapolated with v0. Newmark and TR-BDF2 fall back to backward Euler where the motion is so violent that their stages cannot
+/// be solved. A stage is a nonlinear system. Each iteration finds a direction with the linear solver, and shortens the step along
+/// it when the residual shows that it overshoots. `newton_iterations` 1 is the linearly implicit variant, without that check. If
+/// the convergence rate of earlier stages predicts a negligible second update, the residual check is skipped.
 ///
 /// solver               direction                                                    per iteration
 /// conjugate_gradients  (a M + b K(u))^-1, block Jacobi, warm start                  assembly, about 3 products at h omega = 0.6
@@ -51,8 +51,8 @@ struct IntegratorOptions {
   LinearSolver solver = LinearSolver::conjugate_gradients;
   double solver_tolerance = 1e-6;  ///< of conjugate gradients: relative residual of the linear system
   int newton_iterations = 10;      ///< at most; 1: linearly implicit
-  /// Stop when an update, or what the next one is estimated to be, is below this share of the stage's first update, in the energy
-  /// norm of the system matrix: what is missing has a sign, and a share of the motion itself would be missed in every step.
+  /// Stop when an update, or the estimate of the next one, is below this share of the stage's first update, in the energy norm of
+  /// the system matrix. A share of the motion itself would bias every step: the missing part always has the same sign.
   double newton_tolerance = 1e-8;
   int modes = 0;  ///< of `modal`, 1 .. free degrees of freedom
 };
@@ -63,16 +63,16 @@ std::string to_string(const IntegratorOptions& options);  ///< "velocity-verlet,
 struct StepReport {
   int newton_iterations = 0;
   int solver_iterations = 0;
-  bool converged = true;  ///< Newton met its tolerance within its iterations; false is no error when only few were asked for
+  bool converged = true;  ///< Newton met its tolerance within its iterations; false is no error when few were allowed
 };
 
 class Integrator {
  public:
   /// Advance by h under constant external forces f [N].
   ///
-  /// A step diverged (R-FEM-6) when its result is not finite, when a tetrahedron is torn (FemModel::broken_element, looked for
-  /// whenever vertices have moved far enough since the last look), or when kinetic and elastic energy, looked at every 64th step,
-  /// exceed ten times what was there at the first look plus the work of f since. The state before the step is kept.
+  /// A step diverged (R-FEM-6) when its result is not finite, when a tetrahedron is torn (FemModel::broken_element, checked
+  /// whenever vertices have moved far enough since the last check), or when kinetic and elastic energy, checked every 64th step,
+  /// exceed ten times their value at the first check plus the work of f since. The state before the step is kept.
   /// The error names the tetrahedron that is torn, or else the one that is stretched most.
   /// time see the tables; no allocation after the first step.
   /// err  R-FEM-5, R-FEM-6 (remedy named), R-FEM-7
@@ -91,8 +91,8 @@ double largest_poisson(const FemModel& model) noexcept;
 /// A method with the solver and tolerance that suit the object: one factorisation at the start, where that converges.
 IntegratorOptions suited(const FemModel& model, Method method, double step);
 
-/// What suits the scene, and why, in one sentence with the numbers: velocity Verlet, in sub-steps of h omega <= 1.8 where they cost
-/// no more than an implicit step, else TR-BDF2.
+/// The method that suits the scene, and the reason, in one sentence with the numbers: velocity Verlet in sub-steps of h omega
+/// <= 1.8 where they cost no more than an implicit step, else TR-BDF2.
 struct Choice {
   IntegratorOptions options;
   double largest_frequency = 0;  ///< [rad/s]
@@ -101,7 +101,7 @@ struct Choice {
 /// time one power iteration, milliseconds for thousands of tetrahedra; allocates
 Choice choose(const FemModel& model, double step);
 
-/// What would help against a divergence, with the numbers of this object.
+/// Remedy for a divergence, with the numbers of this object.
 std::string divergence_remedy(const FemModel& model, const IntegratorOptions& options);
 
 }  // namespace tactus::sim

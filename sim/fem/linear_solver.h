@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Newton directions from the matrix at hand, assembled in every iteration (once when elasticity is linear).
+/// Newton directions from the current matrix, assembled in every iteration (once when elasticity is linear).
 #pragma once
 
 #include <tactus/sim/fem/cholesky.h>

@@ -8,12 +8,12 @@
 /// k(u)    3N          N      sum over elements of R_e K_e (R_e^T x - X), R_e the rotation nearest to the deformation gradient F
 /// W(u)    1           J      sum over elements of V (mu |e|^2 + lambda/2 tr(e)^2), e = sym(R_e^T F) - I; linear: R_e = I
 ///
-/// k is exactly the gradient of W, rotations included: for linear tetrahedra whose R_e is optimal its variation drops out
-/// (sim/fem/element.h). It fails only where the optimum is not unique, when the two smallest signed singular values of F sum to
-/// zero: there W has a kink and k is one of its slopes. Forces of a body have no sum, and no moment about the deformed positions.
-/// fem_element_test checks each of these sentences.
+/// k is exactly the gradient of W, rotations included: for linear tetrahedra with optimal R_e the variation of R_e drops out
+/// (sim/fem/element.h). The exception is an optimum that is not unique, when the two smallest signed singular values of F sum to
+/// zero: W has a kink there and k is one of its slopes. The forces of a body sum to zero, and so do their moments about the
+/// deformed positions. fem_element_test checks each of these sentences.
 ///
-/// Elements are worked on several at a time in the widest vectors of the machine (chosen at run time); each lane does the same
+/// Elements are processed several at a time in the widest vectors of the machine (chosen at run time); each lane does the same
 /// operations in the same order without contraction, so every instruction set yields the same bits.
 ///
 /// rule      class            broken when
@@ -82,12 +82,12 @@ class FemModel {
   const SparseMatrix& mass_matrix() const noexcept;     ///< free x free, diagonal when lumped [kg]
   double total_mass() const noexcept;                   ///< [kg]
 
-  /// k(u) [N]; zero at fixed vertices. Rotations found are remembered as the next call's start, which saves time and changes
-  /// k by 1e-13 of its size at most (except where the rotation is not unique); from the second call at the same u on, its bits are
-  /// the same. Non-finite entries of u propagate to k and do not update the warm start.
+  /// k(u) [N]; zero at fixed vertices. Rotations are stored as the start of the next call. This saves time and changes k by at
+  /// most 1e-13 of its size (except where the rotation is not unique); from the second call at the same u on, its bits are the
+  /// same. Non-finite entries of u propagate to k and do not update the warm start.
   /// time O(tets), 18 ns each (AVX-512; AVX2 21, SSE2 42), linear 8; 0.5 us more each where R is not unique; no allocation.
   void internal_forces(const Eigen::VectorXd& u, Eigen::VectorXd& k) noexcept;
-  /// W(u) [J], fixed vertices' elements included. No rotation is remembered: forces stay the same whether or not someone looks.
+  /// W(u) [J], fixed vertices' elements included. Stores no rotation, so that later forces do not depend on this call.
   /// time as internal_forces; no allocation.
   double energy(const Eigen::VectorXd& u) noexcept;
   /// Sum over elements of R_e K_e R_e^T with the rotations at u [N/m], free x free. `matrix` gets the pattern once, later calls only

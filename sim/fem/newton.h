@@ -3,7 +3,7 @@
 ///
 ///   M (v - b)/c + alpha M v + k(u + beta v) = f,   v = (u - a)/c                            unknown: u
 ///   r(u)  = left side - f [N]
-///   A     = (1 + c alpha)/c^2 M + (1 + beta/c) K(u + beta v), the derivative of r but for that of the rotations
+///   A     = (1 + c alpha)/c^2 M + (1 + beta/c) K(u + beta v), the derivative of r without that of the rotations
 ///
 /// scheme                       c      a                b
 /// backward Euler               h      u0               v0
@@ -38,14 +38,14 @@ class StageSystem {
   void scatter(const Eigen::VectorXd& free, Eigen::VectorXd& full) const noexcept;
   /// k(u + beta v); the place of evaluation stays in ahead().
   void forces(const Eigen::VectorXd& u, const Eigen::VectorXd& v, Eigen::VectorXd& k);
-  /// k as the stage's equation gives it for a solution with velocity v: free of the stiff error that is left in u.
+  /// k from the stage's equation for a solution with velocity v: free of the stiff error left in u.
   void balanced_forces(const Stage& stage, const Eigen::VectorXd& v, Eigen::VectorXd& k);
   void residual(const Stage& stage, const Eigen::VectorXd& u, Eigen::VectorXd& r);
-  /// v^T M v [J], the square of the energy norm of moving on with v for c.
+  /// v^T M v [J], the squared energy norm of a motion with v over c.
   double motion(const Stage& stage, const Eigen::VectorXd& u);
   /// u + beta v of the last evaluation, 3N.
   const Eigen::VectorXd& ahead() const noexcept { return ahead_; }
-  /// Norm of what rounding leaves of r when nothing moves [N].
+  /// Norm of the rounding error of r when nothing moves [N].
   double rounding() const noexcept { return rounding_; }
 
  private:
@@ -61,14 +61,14 @@ class DescentDirection {
   /// pre  system.ahead() belongs to r.   ret  iterations of the linear solver.   err  R-FEM-7
   virtual tl::expected<int, Diagnostic> find(StageSystem& system, const Stage& stage, const Eigen::VectorXd& r,
                                              Eigen::VectorXd& d) = 0;
-  /// What came of it: u moved by s, r changed by y.
+  /// Report the result of a direction: u moved by s, r changed by y.
   virtual void moved(const Eigen::VectorXd& s, const Eigen::VectorXd& y) = 0;
-  /// A direction turned out to reach too far: what it was built on is out of date.
+  /// Report that a direction overshot: the data it was built on are out of date.
   virtual void forget() {}
   virtual ~DescentDirection() = default;
 };
 
-/// Newton's method, exact or not, with a line search on the residual.
+/// Newton's method, exact or inexact, with a line search on the residual.
 class Newton {
  public:
   Newton(FemModel& model, const IntegratorOptions& options, std::unique_ptr<DescentDirection> direction);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Quasi-Newton directions from one factorisation of A0 = mass M + stiffness K(0), made at the start (Liu, Bouaziz and Kavan 2017).
 ///
-/// The factor knows the rest shape only. Two things bring it to the shape at hand:
-///   turning   d = -Q A0^-1 Q^T r; Q turns each vertex as its surroundings are turned. Whatever rotations Q holds, the product is
-///             symmetric positive definite; one iteration of Mueller et al. 2016 on a quarter of the vertices per stage keeps up.
-///   memory    the last pairs (s, y) of steps and changes of r correct it along what was seen (L-BFGS, Nocedal and Wright 7.4)
+/// The factor is that of the rest shape. Two corrections adapt it to the current shape:
+///   turning   d = -Q A0^-1 Q^T r; Q turns each vertex with its surroundings. For any rotations in Q the product is symmetric
+///             positive definite. One iteration of Mueller et al. 2016 on a quarter of the vertices per stage is enough.
+///   memory    the last pairs (s, y) of steps and changes of r correct it along past steps (L-BFGS, Nocedal and Wright 7.4)
 #pragma once
 
 #include <Eigen/Geometry>
@@ -17,12 +17,12 @@
 
 namespace tactus::sim {
 
-/// How each vertex's surroundings are turned against the rest shape.
+/// Rotation of each vertex's surroundings against the rest shape.
 class VertexRotations {
  public:
   explicit VertexRotations(const FemModel& model);
 
-  /// Look at the next `share`-th of the free vertices.   in  u [3N]   time O(vertices / share)
+  /// Update the next `share`-th of the free vertices.   in  u [3N]   time O(vertices / share)
   void follow(const Eigen::VectorXd& u, std::size_t share) noexcept;
   /// out = Q^T in.   in, out: free degrees of freedom
   void to_rest(const Eigen::VectorXd& in, Eigen::VectorXd& out) const noexcept;

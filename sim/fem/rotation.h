@@ -14,7 +14,7 @@ struct Matrix3 {
 /// when det F > 0, the closest proper rotation when not. By Davenport's method: q^T K(F) q is largest at the top eigenvector
 /// of a symmetric 4 x 4 matrix, found by Jacobi sweeps. Where several rotations are equally good (F a line or a point, or its
 /// two smallest signed singular values opposite) the one closest to `start` is taken, so that a sequence does not jump.
-/// Not a unit of F matters: F and 1e6 F have the same answer. F zero or not finite: `start`.
+/// The scale of F does not matter: F and 1e6 F have the same result. For F zero or not finite the result is `start`.
 /// pre  start is a unit quaternion.   time 1 us, no allocation.
 Quat nearest_rotation(const Matrix3& f, const Quat& start) noexcept;
 

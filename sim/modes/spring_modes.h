@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Vectors that displacements of a mesh can be combined from, made of nothing but its rest shape and what is fixed.
+/// Basis vectors for the displacements of a mesh, made from its rest shape and fixed vertices alone.
 ///
 /// A network of equal springs ties every vertex to those nearer than 2.3 mean edges, across the surface and through it:
 ///   K = sum over springs of n n^T between the blocks of its ends,  n its direction at rest

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// One-dimensional deformable object that several users press, deformed at a lower rate than it is felt. Thesis 4.3.1, figures 4.14
-/// and 4.15.
+/// One-dimensional deformable object pressed by several users; it is deformed at a lower rate than the haptic one. Thesis 4.3.1,
+/// figures 4.14 and 4.15.
 ///
 ///   rate 1/T_s           every client                      server                            rate 1/T_n, T_n = N T_s
 ///   x_d ──T_f──────────> f_s = G_s (x_d - x'_o)  ──decimator──>  D_o(z)  ──T_c = z^-1──> x'_o ──┬──> server, next period
@@ -22,7 +22,7 @@ struct MsdObject {
   double mass = 0;       ///< m_o [kg], positive
 };
 
-/// Largest sum of the users' k_s that a deformation period T_n carries: k_o + 2 b_o / T_n + 4 m_o / T_n^2.   eqs. 4.37, 4.38
+/// Largest sum of the users' k_s that is stable with deformation period T_n: k_o + 2 b_o / T_n + 4 m_o / T_n^2.   eqs. 4.37, 4.38
 constexpr double critical_stiffness(const MsdObject& o, double period) noexcept {
   return o.stiffness + 2 * o.damping / period + 4 * o.mass / (period * period);
 }
@@ -41,9 +41,9 @@ class MsdModel {
   double last_ = 0, second_last_ = 0;
 };
 
-/// What the deformation is told of the N forces of its period.
+/// How the N forces of a period are combined for the deformation.
 enum class Decimator : std::uint8_t { mean, last };
-/// How a surface position that came at the low rate is used at the high one: as it is, or approached linearly over the period.
+/// How a low-rate surface position is used at the high rate: at once, or approached linearly over the period.
 enum class Approach : std::uint8_t { at_once, linear };
 /// Tied: G_s and G_c pull, too, so that the loop is linear as in the analysis. Pressing: a probe outside feels nothing.
 enum class Coupling : std::uint8_t { tied, pressing };
@@ -82,7 +82,7 @@ class MsdLoop {
   /// in   device  x_d of every user [m], or kAway
   void step(std::span<const double> device) noexcept;
 
-  /// The same in parts, for those who have a network of their own: begin_tick(), any of the three, end_tick().
+  /// The same in parts, for callers with a network of their own: begin_tick(), any of the three, end_tick().
   void begin_tick() noexcept;  ///< surface() is then that of this tick
   /// G_s: force on the hand of a user [N], positive into the object.
   double press(std::size_t user, double device) const noexcept;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The scene's one-dimensional objects (sim/msd/msd.h: masses on springs and dampers) in space: planes that give way along their normal.
-/// Thesis 4.3.1.
+/// The scene's one-dimensional objects (sim/msd/msd.h: masses on springs and dampers) in space: planes that yield along their
+/// normal. Thesis 4.3.1.
 ///
 /// To trace, stream and client such an object is a rigid one that moves along one axis: its pose is that of its surface x'_o, which
 /// stays for N ticks; its velocity is the mean of the last period. Probes press and never pull. Their numbers among the trace's objects
@@ -30,7 +30,7 @@ struct MsdBody {
 class MsdObjects final : public Simulated {
  public:
   /// pre  the scene has such objects.
-  /// err  invalid R-SIM-3: together, the users' springs are as stiff as eq. 4.38 allows, or stiffer
+  /// err  invalid R-SIM-3: the sum of the users' springs reaches or exceeds the limit of eq. 4.38
   static Result<std::unique_ptr<MsdObjects>> create(const Scene& scene);
 
   /// Also begins the tick of the loops.
@@ -51,7 +51,7 @@ class MsdObjects final : public Simulated {
   std::int64_t tick_ = 0;
 };
 
-/// At a client: G_c between the device and the surface that came.
+/// At a client: G_c between the device and the received surface.
 class MsdView final : public Touchable {
  public:
   explicit MsdView(const Scene& scene);

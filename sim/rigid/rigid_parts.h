@@ -69,10 +69,10 @@ struct Body {
   double reach = 0;       // [m] of its corners from its centre
   bool awake = false;
   bool touches = false;      // in this step
-  bool stands = false;       // touched something in the last step and stands still
+  bool stands = false;       // stood still after the last step
   std::uint32_t still = 0;   // ticks in which no bit of its state changed
   std::uint32_t group = 0;   // another body of its contact group; itself: it represents the group
-  std::uint32_t island = 0;  // the one that stands for those that it touches; kFloor: it touches nothing
+  std::uint32_t island = 0;  // representative of its group; kFloor: it touches nothing
   RigidSample before;        // this step
 };
 

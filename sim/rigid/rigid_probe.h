@@ -66,7 +66,8 @@ class RigidProbe {
   RigidProbe(std::span<const SceneObject> objects, const SceneTouch& touch);
   /// From now on the caller calls attend() before each move() for every object whose pose is not what it was in the last move().
   void expect_attend() noexcept { attended_only_ = true; }
-  /// This object is about to have another pose than in the last move().   in  pose  that one   time O(near objects)
+  /// Report that this object will have another pose in the next move().   in  pose  that of the last move()   time O(near
+  /// objects)
   void attend(std::uint32_t object, const Pose& pose);
 
   /// Advance to a new device position and new poses.

@@ -11,14 +11,14 @@ namespace tactus::sim {
 
 using Polygon = std::vector<std::uint32_t>;
 
-/// Vertices and faces as they stand in a file, before anything is known about how they meet.
+/// Vertices and faces as stored in a file, without connectivity.
 struct PolygonSoup {
   std::vector<Vec3> vertices;
   std::vector<Polygon> polygons;
 };
 
 /// in   format  ".obj", ".ply", ".off", ".stl" to write, ".stla" (text) or ".stlb" (binary) to read
-/// err  why not, in a few words
+/// err  the reason, in a few words
 tl::expected<PolygonSoup, std::string> openmesh_read(const std::string& text, const std::string& format);
 tl::expected<std::string, std::string> openmesh_write(const TriMesh& mesh, const std::string& format);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A surface file's polygons as they stand in it, complete but not judged. Rules: surface_file.h. Internal to the library.
+/// A surface file's polygons as stored, complete but not validated. Rules: surface_file.h. Internal to the library.
 #pragma once
 
 #include <string_view>

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Triangle meshes in OBJ, PLY, STL and OFF files, read and written by OpenMesh.
 ///
-/// OpenMesh keeps coordinates in single precision (6e-8 of their size), believes what a file announces and drops silently what it cannot
-/// use. So sizes are checked before it sees the file, and what it brings is counted against what the file holds.
+/// OpenMesh keeps coordinates in single precision (6e-8 of their size), trusts the counts that a file announces, and silently
+/// drops what it cannot use. Therefore sizes are checked before it reads the file, and its result is counted against the file's
+/// content.
 ///
 /// rule      class           broken when
 /// R-SRF-1   io              the file cannot be opened, read or written

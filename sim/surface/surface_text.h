@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a surface file announces, looked at before OpenMesh reads it.
+/// Checks what a surface file announces, before OpenMesh reads it.
 #pragma once
 
 #include <optional>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Tetrahedral meshes in files: TetGen's .node with .ele, and Gmsh's .msh (ASCII, versions 2.2 and 4.1). Nothing in a file is
-/// believed: numbers are whole and finite, counts fit the bytes that are left before anything is reserved for them.
+/// Tetrahedral meshes in files: TetGen's .node with .ele, and Gmsh's .msh (ASCII, versions 2.2 and 4.1). Files are not trusted:
+/// numbers are whole and finite, and counts fit the remaining bytes before memory is reserved for them.
 ///
 /// rule      class           broken when
 /// R-TET-8   io              the file cannot be opened, read or written
@@ -24,7 +24,7 @@
 
 namespace tactus::sim {
 
-/// A mesh as it stands in a file; whether it makes sense is for check() to say.
+/// A mesh as stored in a file; check() validates it.
 struct TetFile {
   TetMesh mesh;
   std::vector<double> vertex_attributes;     ///< .node: those of vertex 0, of vertex 1, ...; as many for each

@@ -40,7 +40,7 @@ struct Bounds {
 };
 Bounds bounds(std::span<const Vec3> points) noexcept;
 
-/// All rules above, the first broken one in element order.   time O(n log n); allocates.   err  R-TET-1..7
+/// Checks all rules above; reports the first broken one in element order.   time O(n log n); allocates.   err  R-TET-1..7
 tl::expected<void, Diagnostic> check(const TetMesh& mesh);
 
 /// The boundary faces, outward, and which vertex of the tetrahedral mesh each of its vertices is. Vertices keep their order, so a
@@ -56,7 +56,7 @@ TetSurface surface(const TetMesh& mesh);
 /// pre  nx, ny, nz >= 1; cell > 0
 TetMesh make_slab(std::uint32_t nx, std::uint32_t ny, std::uint32_t nz, double cell);
 
-/// A tetrahedral mesh with every edge halved `times` times: space error is measured against such. Vertices keep their numbers, new
+/// A tetrahedral mesh with every edge halved `times` times, for measuring the space error. Vertices keep their numbers, new
 /// ones follow; tetrahedron t becomes 8 t .. 8 t + 7, the four inner ones around the shortest diagonal.
 /// pre  the mesh passed check().   time O(n log n) of the result
 TetMesh refined(const TetMesh& mesh, unsigned times);

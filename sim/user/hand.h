@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// A virtual hand on a force-feedback device: a mass pulled by a spring and a damper toward a minimum-jerk path, with tremor.
 ///   m x'' = k (x_t - x) + b (x_t' - x') + f_felt + f_tremor
-/// What it feels closes the loop; what the device reports is quantised by its encoders and smoothed (thesis 3.2.4.1).
+/// The felt force closes the loop. The device's reports are quantised by its encoders and smoothed (thesis 3.2.4.1).
 #pragma once
 
 #include <array>
@@ -70,10 +70,10 @@ class DeviceFilter {
   std::size_t next_ = 0;
 };
 
-/// A point of a phase in the world, for an object seen like this and a last movement that ended at `hand`.
+/// World position of a phase's point, given the shown pose of the object and the end of the last movement, `hand`.
 Vec3 waypoint(PathFrame frame, const Vec3& to, const Pose& object, const Vec3& goal, const Vec3& hand) noexcept;
 
-/// Where the hand wants to be, and how fast.
+/// Target position and velocity of the hand.
 struct Aim {
   Vec3 place, velocity;  ///< [m], [m/s]
 };
@@ -95,7 +95,7 @@ class Hand {
   Hand(const SceneUser& user, Grip grip, std::uint64_t seed);
 
   /// Advance by one tick.
-  /// in   felt    [N] force on the hand since the last call; clipped to the device's limit by whoever renders it
+  /// in   felt    [N] force on the hand since the last call, already clipped to the device's limit
   ///      object  the watched object as the user sees it
   /// time O(1), about 1 us (the tremor's sines); no allocation.
   DeviceSample step(const Vec3& felt, const Pose& object) noexcept;

@@ -6,8 +6,8 @@
 ///          E(n) = E(n-1) - f(n-1) . (x(n) - x(n-1))
 ///        passive as long as E >= 0. A spring of stiffness k that is pressed to depth X and released at d metres per tick gives
 ///        away k d X: the hold is one tick late, too weak on the way in and too strong on the way out.
-/// damping  before f(n) is shown the controller assumes that the hand moves on as in the last tick, and adds just so much of
-///          -alpha (x(n) - x(n-1)) / T, alpha <= max_damping, that E(n+1) would not be negative.
+/// damping  before f(n) is rendered, the controller assumes that the hand moves on as in the last tick, and adds just enough of
+///          -alpha (x(n) - x(n-1)) / T, alpha <= max_damping, to keep E(n+1) from being negative.
 /// tests    tests/unit/passivity_test.cpp
 #pragma once
 
@@ -22,14 +22,14 @@ namespace tactus::sim {
 /// Watches the energy at the port between device and environment.
 class PassivityObserver {
  public:
-  /// in  tolerance  [J] rounding that is no violation
+  /// in  tolerance  [J] rounding that does not count as a violation
   explicit PassivityObserver(double tolerance = 1e-12) noexcept : tolerance_(tolerance) {}
 
-  /// The device is here now.   time O(1), no allocation
+  /// Report the device's position.   time O(1), no allocation
   void arrive(const Vec3& position) noexcept;
-  /// This force acts on the hand until it arrives next.
+  /// Report the force that acts on the hand until the next arrive().
   void hold(const Vec3& force) noexcept { force_ = force; }
-  /// Forget energy beyond this; 0 starts anew.
+  /// Limit the stored energy; 0 starts anew.
   void cap(double energy) noexcept { energy_ = std::min(energy_, energy); }
   void reset() noexcept { energy_ = 0; }
 
@@ -47,8 +47,8 @@ class PassivityObserver {
 
 struct PassivityOptions {
   double tick = 1e-3;                                            ///< [s] T
-  double max_damping = std::numeric_limits<double>::infinity();  ///< [Ns/m] what the loop bears at this rate: about mass / T
-  double max_stored = std::numeric_limits<double>::infinity();   ///< [J] energy remembered: what is stored hides later activity
+  double max_damping = std::numeric_limits<double>::infinity();  ///< [Ns/m] stable limit at this rate: about mass / T
+  double max_stored = std::numeric_limits<double>::infinity();   ///< [J] limit of stored energy, which would hide later activity
   double reset_after = std::numeric_limits<double>::infinity();  ///< [s] without force, then the account starts anew
 };
 
@@ -56,13 +56,13 @@ class PassivityController {
  public:
   explicit PassivityController(const PassivityOptions& options) noexcept : options_(options) {}
 
-  /// Force to show instead of what the environment asks for.
+  /// Force to render in place of the environment's.
   /// in   position  [m] of the device now
   ///      force     [N] on the hand
   /// time O(1), no allocation
   Vec3 limit(const Vec3& position, const Vec3& force) noexcept;
 
-  const PassivityObserver& port() const noexcept { return port_; }  ///< with what the controller adds
+  const PassivityObserver& port() const noexcept { return port_; }  ///< including the controller's damping
   double damping() const noexcept { return damping_; }              ///< [Ns/m] alpha in this tick
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a run was like at one user's hand: contacts, forces, and the energy of the port between device and scene (thesis 2.2.2).
+/// Summary of a run at one user's hand: contacts, forces, and the energy of the port between device and scene (thesis 2.2.2).
 #pragma once
 
 #include <bitset>
@@ -16,13 +16,14 @@ struct TouchSummary {
   std::uint64_t ticks = 0;     ///< in contact with anything, at the server
   std::uint64_t contacts = 0;  ///< begun
   std::uint32_t most_in_a_second =
-      0;                     ///< contacts begun within one second: more than about ten is no hand's doing but chattering
+      0;                     ///< contacts begun within one second: more than about ten is chattering, not the hand's motion
   double largest_force = 0;  ///< [N] felt
-  /// [J] least energy that the hand had put into the scene minus what it got back since a contact began, at most 0. Below it the
-  /// scene gave away more than it had taken: sampling and delay make it do so (eq. 2.2), and so do weight and other users, who have
-  /// energy of their own. Each contact begins at 0, as what earlier ones took would hide what this one gives.
+  /// [J] least net energy that the hand had put into the scene since a contact began, at most 0. A negative value means that the
+  /// scene gave away more than it had taken. Sampling and delay cause this (eq. 2.2), and so do weight and other users, which
+  /// have energy of their own. Each contact begins at 0, because energy taken by earlier ones would hide energy given by this
+  /// one.
   double lowest_energy = 0;
-  double stiffest = 0;                      ///< [N/m] of the couplings that held the hand, the largest
+  double stiffest = 0;                      ///< [N/m] largest stiffness of the couplings that held the hand
   std::optional<SurfaceContact> hardest{};  ///< where a deformable object was pressed with most force
 };
 
