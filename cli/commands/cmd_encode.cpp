@@ -156,10 +156,7 @@ void setup_encode(Command& app, Action& action) {
   Command& command = app.add_command("encode", "Encode a trace into a stream of packets");
   command.add_option("TRACE", options->input, "Trace to encode (MCAP), - is standard input")->type_name("")->required();
   command.add_option("-o,--output", options->output, "Stream to write, - is standard output")->required()->type_name("FILE");
-  options->triggers.add_to(command);
-  options->triggers.add_encoder_to(command);
-  options->meshes.add_to(command);
-  options->meshes.add_encoder_to(command);
+  add_encoder_options(command, options->triggers, options->meshes);
   add_output_options(command, options->common);
   command.footer(
       "Examples:\n"

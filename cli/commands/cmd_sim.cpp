@@ -378,10 +378,7 @@ void setup_sim(Command& app, Action& action) {
                    "Close the loop through encoder, decoder and replica; every option from --stream to --layered implies it");
   command.add_option("--stream", options->stream, "Also write the packets")->type_name("FILE");
   add_interpolation(command, options->replica);
-  options->triggers.add_to(command);
-  options->triggers.add_encoder_to(command);
-  options->meshes.add_to(command);
-  options->meshes.add_encoder_to(command);
+  add_encoder_options(command, options->triggers, options->meshes);
   add_output_options(command, options->common);
   command.footer(
       "Examples:\n"

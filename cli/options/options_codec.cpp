@@ -34,6 +34,13 @@ Result<ModeBasis> spring_basis(const TraceDeformable&, std::size_t) { return fai
 
 }  // namespace
 
+void add_encoder_options(Command& app, TriggerArguments& triggers, MeshArguments& deformables) {
+  triggers.add_to(app);
+  triggers.add_encoder_to(app);
+  deformables.add_to(app);
+  deformables.add_encoder_to(app);
+}
+
 Check whole_number(std::uint64_t low, std::uint64_t high) {
   return [low, high](const std::string& text) {
     std::uint64_t number = 0;

@@ -84,6 +84,9 @@ class MeshArguments {
   std::vector<const Option*> options_;
 };
 
+/// Every option of both: for commands that encode.
+void add_encoder_options(Command& app, TriggerArguments& triggers, MeshArguments& deformables);
+
 /// Accept whole numbers from `low` to `high` only.
 Check whole_number(std::uint64_t low, std::uint64_t high);
 /// Accept numbers from `low` to `high` only.
