@@ -15,6 +15,13 @@ CODE = {".h", ".cpp"}
 SOURCES = CODE | {".py", ".sh", ".cmake", ".gp", ".mjs", ".js"}
 MAX_LINES = 500
 SHARED = {"base"}  # folders of codec/ that are not subjects of the specification
+# Everything else in codec/ is integers: what both ends compute is the same on every machine. These files are doors: SI units come in
+# or go out, a sender decides what to send, options are read once.
+FLOATS = {"base/geometry", "base/quantise", "base/tri_mesh", "scene/bounds", "scene/bounds_syntax", "scene/deformable_object",
+          "scene/rigid_object", "scene/scene_builder", "packet/key_policy", "packet/sender_policy", "rigid/contact",
+          "rigid/rigid_encoder", "rigid/rigid_state", "rigid/trigger", "deformable/deformable_encoder", "deformable/displacement",
+          "deformable/main_encoder", "deformable/mode_projection", "deformable/thesis_encoder", "deformable/trigger", "client/replica",
+          "sender"}
 UNITS = ("codec", "codec/*", "io/*", "metrics")  # each .cpp in them has a unit test of its name
 TESTED_BY = {  # those that have none: the parts of one subject, held against each other
     "codec/deformable/main_decoder": "deformable_decoder",
@@ -101,6 +108,13 @@ def check_sides(root):
                     yield f"{path.relative_to(root)}: the {side} includes {name}"
 
 
+def check_integers(root):
+    for path in sorted(p for p in (root / "codec").rglob("*") if p.suffix in CODE):
+        code = re.sub(r"//[^\n]*", "", path.read_text(encoding="utf-8"))
+        if path.relative_to(root / "codec").with_suffix("").as_posix() not in FLOATS and re.search(r"\b(float|double)\b|<cmath>", code):
+            yield f"{path.relative_to(root)}: floating point, and the file is not in FLOATS"
+
+
 def check_units(root):
     """Each source file has the unit test that bears its name, or that of its folder before it, or the one in TESTED_BY."""
     for path in sorted(p for pattern in UNITS for p in root.glob(f"{pattern}/*.cpp")):
@@ -124,7 +138,7 @@ def check_stems(root):
             continue
         if not any((root / "spec").glob(f"*{stem}*.md")):
             yield f"codec/{stem}: no spec/NN-{stem}.md"
-        for kind in ("fuzz", "bench") if stem != "packet" else ("fuzz",):  # packets are timed with what they carry
+        for kind in ("fuzz", "bench"):
             programs = (root / "tests" / kind).glob(f"*_{kind}.cpp")
             if not any(stem in p.stem or any(i.startswith(f"codec/{stem}/") for i in includes(p)) for p in programs):
                 yield f"codec/{stem}: no tests/{kind}/*_{kind}.cpp has its name or includes a header of it"
@@ -152,7 +166,7 @@ def check_readme(root):
             yield f"README.md: the tree names {path.relative_to(root)}, which is not there"
 
 
-CHECKS = (check_sources, check_sides, check_units, check_stems, check_readme)
+CHECKS = (check_sources, check_integers, check_sides, check_units, check_stems, check_readme)
 
 
 def findings(root):
@@ -178,6 +192,7 @@ def self_test():
     bad = {  # what is changed (None: left out) and a word of the finding that must follow
         "codec/rigid/rigid.h": [("int x;\n", "licence"), (spdx + "\n" * MAX_LINES, "501 lines"),
                                 (spdx + '#include <tactus/rigid/rigid_decoder.h>\n', "the encoder includes codec/rigid/rigid_decoder.h")],
+        "codec/rigid/rigid_decoder.cpp": [(spdx + "double x;\n", "floating point"), (spdx + "#include <cmath>\n", "floating point")],
         "codec/rigid/rigid_decoder.h": [(spdx + '#include <tactus/rigid/rigid_encoder.h>\n', "the decoder includes")],
         "spec/40-rigid.md": [(None, "no spec/NN-rigid.md")],
         "tests/unit/rigid_test.cpp": [(None, "rigid.cpp: no tests/unit"), (None, "TESTED_BY names tests/unit/rigid_test.cpp")],
