@@ -12,8 +12,8 @@ constexpr int kRounds = 200'000;
 constexpr std::size_t kChains = 8;  // of each kind: more than an addition takes cycles
 
 // A function per instruction set: the vectors of one that a function is not compiled for would be taken apart.
-#define TACTUS_ROUNDS(name, bytes)                                                \
-  double name() {                                                                 \
+#define TACTUS_ROUNDS(target, name, bytes)                                        \
+  target double name() {                                                          \
     using V [[gnu::vector_size(bytes)]] = double;                                 \
     V sum[kChains] = {}, product[kChains];                                        \
     for (V & p : product) p = V{} + 1.0;                                          \
@@ -30,13 +30,14 @@ constexpr std::size_t kChains = 8;  // of each kind: more than an addition takes
     return all[0];                                                                \
   }
 
-TACTUS_ROUNDS(portable_rounds, 16)
+TACTUS_ROUNDS(, portable_rounds, 16)
 #ifdef TACTUS_FEM_X86
-[[gnu::target("avx2")]] TACTUS_ROUNDS(avx2_rounds, 32) [[gnu::target("avx512f")]] TACTUS_ROUNDS(avx512_rounds, 64)
+TACTUS_ROUNDS([[gnu::target("avx2")]], avx2_rounds, 32)
+TACTUS_ROUNDS([[gnu::target("avx512f")]], avx512_rounds, 64)
 #endif
 #undef TACTUS_ROUNDS
 
-    double now() {
+double now() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
@@ -44,12 +45,12 @@ TACTUS_ROUNDS(portable_rounds, 16)
 
 }  // namespace
 
-double peak(InstructionSet set) {
+double peak(sim::InstructionSet set) {
   double (*rounds)() = portable_rounds;
   double lanes = 2;
 #ifdef TACTUS_FEM_X86
-  if (set == InstructionSet::avx2) rounds = avx2_rounds, lanes = 4;
-  if (set == InstructionSet::avx512) rounds = avx512_rounds, lanes = 8;
+  if (set == sim::InstructionSet::avx2) rounds = avx2_rounds, lanes = 4;
+  if (set == sim::InstructionSet::avx512) rounds = avx512_rounds, lanes = 8;
 #endif
   double shortest = 1;
   volatile double keep = 0;
