@@ -11,8 +11,8 @@ cd "$(dirname "$0")"
 
 demo_packages='g++ cmake ninja-build pkgconf libexpected-dev libzstd-dev libode-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev gnuplot-nox'
 build_packages="$demo_packages libeigen3-dev libsuitesparse-dev libspectra-dev libopenmesh-dev"
-test_packages='ccache clang libclang-rt-dev clang-tidy clang-format libgtest-dev python3 tetgen valgrind zstd'
 bench_packages='libbenchmark-dev libgtest-dev python3 libbullet-dev'
+test_packages="$bench_packages ccache clang libclang-rt-dev clang-tidy clang-format tetgen valgrind zstd"
 
 as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi
