@@ -28,8 +28,6 @@ Advice advice(const Error& error) noexcept {
 
 const char* errc_name(Errc code) noexcept {
   switch (code) {
-    case Errc::need_more_data:
-      return "need_more_data";
     case Errc::truncated:
       return "truncated";
     case Errc::malformed:
@@ -44,8 +42,6 @@ const char* errc_name(Errc code) noexcept {
       return "checksum";
     case Errc::state:
       return "state";
-    case Errc::buffer_too_small:
-      return "buffer_too_small";
     case Errc::invalid_argument:
       return "invalid_argument";
     case Errc::io:

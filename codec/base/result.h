@@ -9,7 +9,6 @@ namespace tactus {
 
 /// Error classes. Names and values are normative (spec/registry.md); the same input yields the same class and rule in every build.
 enum class Errc : std::uint8_t {
-  need_more_data = 1,     ///< not an error of the input: more bytes may follow
   truncated = 2,          ///< the input ends inside an element
   malformed = 3,          ///< syntax: a reserved bit is set, an encoding is not the shortest, bytes trail
   invalid = 4,            ///< semantics: a value outside its declared range
@@ -17,7 +16,6 @@ enum class Errc : std::uint8_t {
   limit_exceeded = 6,     ///< valid, but larger than the caller's limits
   checksum = 7,           ///< a check value does not match
   state = 8,              ///< protocol order: baseline not held, packet stale
-  buffer_too_small = 9,   ///< the caller's output buffer is too small
   invalid_argument = 10,  ///< an argument of an API call is not finite or out of range
   io = 11,                ///< the operating system refused to read or write
   internal = 12,          ///< a defect of this library
