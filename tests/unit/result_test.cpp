@@ -11,8 +11,9 @@ namespace {
 
 TEST(Result, EveryErrorClassHasANameOfItsOwn) {
   std::set<std::string> names;
-  for (int value = 1; value <= 12; ++value) names.insert(errc_name(static_cast<Errc>(value)));
-  EXPECT_EQ(names.size(), 12u);
+  for (const int value : {2, 3, 4, 5, 6, 7, 8, 10, 11, 12}) names.insert(errc_name(static_cast<Errc>(value)));
+  EXPECT_EQ(names.size(), 10u);
+  for (const int withdrawn : {1, 9}) EXPECT_STREQ(errc_name(static_cast<Errc>(withdrawn)), "unknown");
   EXPECT_TRUE(names.contains("malformed") && names.contains("limit_exceeded"));
 }
 
