@@ -111,6 +111,7 @@ tl::expected<StepReport, Diagnostic> Newton::solve(const Stage& stage, Eigen::Ve
     direction_->moved(d_, next_r_);
     if (report.converged) break;
   }
+  diverged_ = diverged_ && !report.converged;
   return report;
 }
 

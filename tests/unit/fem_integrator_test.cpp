@@ -6,10 +6,13 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include <tactus/sim/fem/error_estimate.h>
+#include <tactus/sim/fem/linear_solver.h>
+#include <tactus/sim/fem/newton.h>
 #include <tactus/sim/random.h>
 #include "tests/property/allocated.h"
 #include "tests/property/heap_calls.h"
@@ -320,6 +323,29 @@ TEST(FemIntegrator, NewtonSaysWhetherItMetItsTolerance) {
   report = make(model, o)->step(strip_load(model), state);
   ASSERT_TRUE(report);
   EXPECT_FALSE(report->converged);
+}
+
+// A first update that overshoots what rounding leaves must not mark the solve that then ends by rounding.
+TEST(FemIntegrator, NoSolveBothConvergesAndDiverges) {
+  FemModel model = strip();
+  IntegratorOptions o;
+  o.method = Method::tr_bdf2;
+  o.step = 0.01;
+  o.solver = LinearSolver::cholesky;
+  Newton newton(model, o, std::make_unique<NewtonDirection>(model, o));
+  const Eigen::Index n = newton.system().size();
+  const double unit = newton.system().rounding() / std::sqrt(static_cast<double>(n));
+  int converged = 0;
+  for (double scale = 0.1; scale < 1e6; scale *= 1.05) {
+    Stage stage{.c = 0.003, .a = VectorXd::Zero(n), .Mb = VectorXd::Zero(n), .f = VectorXd(n)};
+    for (Eigen::Index i = 0; i < n; ++i) stage.f[i] = scale * unit * static_cast<double>(i * 7919 % 13 - 6) / 4;
+    VectorXd u = VectorXd::Zero(n);
+    const auto report = newton.solve(stage, u);
+    ASSERT_TRUE(report);
+    converged += report->converged ? 1 : 0;
+    EXPECT_FALSE(report->converged && newton.diverged()) << scale;
+  }
+  EXPECT_GT(converged, 100);
 }
 
 TEST(FemIntegrator, StepsAllocateNothing) {
