@@ -53,7 +53,7 @@ tl::expected<std::span<const Packet>, Diagnostic> Simulation::step() {
 tl::expected<std::span<const Packet>, Diagnostic> Simulation::step(std::span<const DeviceSample> devices) {
   auto& [seed, server, client, link, hands, own_devices, records] = *impl_;
   if (devices.size() != records.size()) return impl_->refuse(fail(Errc::invalid_argument, "R-API-5").value());
-  if (!std::ranges::all_of(devices, [](const DeviceSample& device) { return is_finite(device); }))
+  if (!std::ranges::all_of(devices, [](const DeviceSample& device) { return is_valid(device); }))
     return impl_->refuse(fail(Errc::invalid_argument, "R-API-1").value());
 
   server->observe();

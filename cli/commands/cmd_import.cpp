@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include <tactus/trace/csv.h>
+#include <tactus/trace/csv_plan.h>
 #include "cli/report/report.h"
 #include "cli/report/table.h"
 
@@ -100,7 +101,8 @@ bool blames_arguments(const CsvMapping& mapping, std::string_view rule) {
 
 tl::unexpected<Failure> refuse_csv(const ImportOptions& options, const CsvMapping& mapping, const Diagnostic& e) {
   const std::string& file = options.input;
-  if (options.preset.empty() && options.maps.empty() && e.line == 1 && e.error.rule == std::string_view("R-CSV-2"))
+  if (options.preset.empty() && options.maps.empty() && e.line == 1 && e.error.rule == std::string_view("R-CSV-2") &&
+      e.detail == place_of_field("tick", ""))
     return refuse_arguments(file + ": no columns are given",
                             "Give --preset NAME or --map position=x,y,z. Only tables of `tactus export csv` need neither.");
   const bool arguments = blames_arguments(mapping, e.error.rule);

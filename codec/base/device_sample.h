@@ -14,7 +14,7 @@ namespace tactus {
 /// orientation  4      1     world: of the handle, unit length
 /// velocity     3      m/s   world: as the device measures it
 /// buttons             1     bit i is set while button i is down
-/// time                ns    on the device's own clock, from any origin
+/// time                ns    on the device's own clock, from any origin, not negative
 struct DeviceSample {
   Vec3 position;
   Quat orientation{};
@@ -34,8 +34,11 @@ struct DeviceSenses {
   friend bool operator==(const DeviceSenses&, const DeviceSenses&) = default;
 };
 
-inline bool is_finite(const DeviceSample& sample) noexcept {
-  return is_finite(sample.position) && is_finite(sample.orientation) && is_finite(sample.velocity);
+/// Finite, not before the clock's origin, and the orientation of unit length within what single precision and printed digits lose.
+inline bool is_valid(const DeviceSample& sample) noexcept {
+  const auto& [w, x, y, z] = sample.orientation;
+  const double off_unit = w * w + x * x + y * y + z * z - 1;
+  return is_finite(sample.position) && is_finite(sample.velocity) && off_unit >= -1e-3 && off_unit <= 1e-3 && sample.time >= 0;
 }
 
 }  // namespace tactus

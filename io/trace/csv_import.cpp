@@ -53,7 +53,7 @@ class Importer {
   Result<void> write(Row& row);
   Result<std::int64_t> tick_of(const Row& row, bool begins_segment);
   void derive_motion(TraceFrame& frame) const;
-  void settle_angular_velocity(TraceFrame& frame, bool begins_segment);
+  Result<void> settle_angular_velocity(TraceFrame& frame, bool begins_segment);
 
   const CsvMapping& mapping_;
   CsvPlan plan_;
@@ -141,11 +141,13 @@ Result<void> Importer::parse_whole_numbers(const std::vector<std::string>& field
     if (kind > static_cast<std::uint8_t>(ContactKind::spring)) return fail(Errc::malformed, "R-CSV-4");
     user.contact.kind = static_cast<ContactKind>(kind);
     TACTUS_TRY(user.contact.object, number<std::uint32_t>(fields, columns.object));
+    if (kind > 0 && user.contact.object >= plan_.info.objects.size()) return fail(Errc::malformed, "R-CSV-4");
     if (columns.buttons) {
       TACTUS_TRY(user.device.buttons, number<std::uint32_t>(fields, *columns.buttons));
     }
     if (columns.time) {
       TACTUS_TRY(user.device.time, number<std::int64_t>(fields, *columns.time));
+      if (user.device.time < 0 || user.device.time / 1'000'000'000 >= kMaxSeconds) return fail(Errc::malformed, "R-CSV-4");
     }
   }
   return {};
@@ -156,7 +158,8 @@ std::uint32_t Importer::find_rate() const {
   if (mapping_.tick_rate > 0) return mapping_.tick_rate;
   if (plan_.tick) {
     const Row& row = waiting_.back();
-    const double rate = row.time > 0 ? std::round(static_cast<double>(row.frame.tick) / row.time) : TraceInfo().tick_rate;
+    if (row.frame.tick == 0) return TraceInfo().tick_rate;
+    const double rate = std::round(static_cast<double>(row.frame.tick) / row.time);
     return rate >= 1 && rate <= kMaxTickRate ? static_cast<std::uint32_t>(rate) : 0;
   }
   std::vector<double> gaps;
@@ -166,6 +169,7 @@ std::uint32_t Importer::find_rate() const {
 }
 
 Result<void> Importer::start() {
+  line_ = 1;
   plan_.info.tick_rate = find_rate();
   if (plan_.info.tick_rate == 0) return fail(Errc::invalid_argument, "R-CSV-7");
   TACTUS_TRY(writer_, TraceWriter::create(out_path_, plan_.info));
@@ -175,7 +179,12 @@ Result<void> Importer::start() {
 }
 
 Result<std::int64_t> Importer::tick_of(const Row& row, bool begins_segment) {
-  if (plan_.tick) return row.frame.tick;
+  if (plan_.tick) {
+    const double seconds = static_cast<double>(row.frame.tick) / plan_.info.tick_rate;
+    const bool agrees = std::abs(row.time - seconds) <= 0.5 / plan_.info.tick_rate;
+    if (!agrees && mapping_.tick_rate == 0) return fail(Errc::invalid, "R-CSV-5");
+    return row.frame.tick;
+  }
   const std::int64_t next = done_.ticks.count() == 0 ? 0 : last_.frame.tick + 1;
   if (begins_segment) {
     segment_tick_ = next;
@@ -195,7 +204,7 @@ Result<void> Importer::write(Row& row) {
   if (!increases || tick / plan_.info.tick_rate >= kMaxSeconds) return fail(Errc::invalid, "R-CSV-5");
   row.frame.tick = tick;
   if (!begins_segment) derive_motion(row.frame);
-  if (plan_.check_angular_velocity) settle_angular_velocity(row.frame, begins_segment);
+  if (plan_.check_angular_velocity) TACTUS_CHECK(settle_angular_velocity(row.frame, begins_segment));
   TACTUS_CHECK(writer_->write(row.frame));
   done_.ticks.add(tick);
   if (begins_segment) ++done_.segments;
@@ -214,18 +223,21 @@ void Importer::derive_motion(TraceFrame& frame) const {
 }
 
 /// Turn the angular velocity that was read into the world frame, and hold it against the turn since the row before.
-void Importer::settle_angular_velocity(TraceFrame& frame, bool begins_segment) {
+Result<void> Importer::settle_angular_velocity(TraceFrame& frame, bool begins_segment) {
   RigidSample& sample = frame.objects.front();
   const Quat& q = sample.pose.rotation;
   const double size = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
-  if (!(size > 0)) return;  // the writer refuses it
+  if (!(size > 0)) {
+    column_ = mapping_.rotation.front();
+    return fail(Errc::malformed, "R-CSV-4");
+  }
   const Vec3 given = sample.angular_velocity, turned = rotate(Quat{q.w / size, q.x / size, q.y / size, q.z / size}, given);
   const bool is_body = mapping_.angular_velocity_frame == AngularVelocityFrame::body;
   if (is_body) sample.angular_velocity = turned;
-  if (begins_segment) return;
+  if (begins_segment) return {};
   const double seconds = static_cast<double>(frame.tick - last_.frame.tick) / plan_.info.tick_rate;
   const Vec3 seen = motion_between(last_.frame.objects.front().pose, sample.pose, seconds).angular;
-  if (norm(seen) * seconds > std::numbers::pi / 2 || norm(given) * seconds > std::numbers::pi / 2) return;
+  if (norm(seen) * seconds > std::numbers::pi / 2 || norm(given) * seconds > std::numbers::pi / 2) return {};
   AngularVelocityCheck& angular_velocity = done_.angular_velocity;
   const auto take = [share = 1.0 / static_cast<double>(++angular_velocity.rows)](double& mean, double value) {
     mean += share * (value - mean);
@@ -233,6 +245,7 @@ void Importer::settle_angular_velocity(TraceFrame& frame, bool begins_segment) {
   take(angular_velocity.given, norm(given));
   take(angular_velocity.off, norm(seen - sample.angular_velocity));
   take(angular_velocity.off_other, norm(seen - (is_body ? given : turned)));
+  return {};
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ class Planner {
  public:
   Planner(const CsvMapping& mapping, const std::vector<std::string>& names) : mapping_(mapping) {
     plan_.names = names;
+    used_.resize(names.size());
     for (std::size_t i = 0; i < plan_.names.size(); ++i)
       if (const auto [there, is_new] = columns_.emplace(plan_.names[i], i); !is_new) there->second = kTwice;
   }
@@ -48,13 +49,19 @@ class Planner {
   void plan_tactus_object(const std::string& path);
   void plan_tactus_user(const std::string& path);
   bool has_group(std::span<const std::string> columns);
+  template <std::size_t N>
+  bool bind_sense(const std::string& path, const std::array<CsvColumn<UserSample>, N>& columns);
+  std::optional<std::size_t> whole_number(const std::string& name);
   void bind_object(std::span<const std::string> columns, std::size_t first, double scale);
   void bind_user(std::span<const std::string> columns, std::span<const CsvColumn<UserSample>> fields, std::size_t first,
                  double scale);
 
   std::size_t column(const std::string& name) {
     const auto found = columns_.find(name);
-    if (found != columns_.end() && found->second != kTwice) return found->second;
+    if (found != columns_.end() && found->second != kTwice) {
+      used_[found->second] = true;
+      return found->second;
+    }
     note(Errc::malformed, "R-CSV-2", name);
     return 0;
   }
@@ -66,6 +73,7 @@ class Planner {
   static constexpr std::size_t kTwice = SIZE_MAX;
   CsvPlan plan_;
   std::map<std::string_view, std::size_t> columns_;  // by name
+  std::vector<bool> used_;                           // per column
   std::optional<Diagnostic> mistake_;
 };
 
@@ -132,6 +140,23 @@ void Planner::plan_tactus() {
     if (path.starts_with("/objects/") && last == kDofColumn) plan_tactus_object(path);
     if (path.starts_with("/users/") && last == kContactColumn) plan_tactus_user(path);
   }
+  for (std::size_t i = 0; i < plan_.names.size(); ++i) {
+    const std::string& name = plan_.names[i];
+    if (!used_[i] && (name.starts_with("/objects/") || name.starts_with("/users/"))) note(Errc::malformed, "R-CSV-2", name);
+  }
+}
+
+/// What only some devices sense: all of its columns, or none.
+template <std::size_t N>
+bool Planner::bind_sense(const std::string& path, const std::array<CsvColumn<UserSample>, N>& columns) {
+  const std::vector<std::string> names = all_columns(path, columns);
+  if (std::ranges::none_of(names, [&](const std::string& name) { return columns_.contains(name); })) return false;
+  bind_user(names, columns, 0, 1.0);
+  return true;
+}
+
+std::optional<std::size_t> Planner::whole_number(const std::string& name) {
+  return columns_.contains(name) ? std::optional(column(name)) : std::nullopt;
 }
 
 void Planner::plan_tactus_object(const std::string& path) {
@@ -146,16 +171,13 @@ void Planner::plan_tactus_user(const std::string& path) {
   plan_.info.users.push_back({path.substr(kRoot, path.size() - kRoot - 1)});
   plan_.users.push_back({column(path + kContactColumn), column(path + kContactObjectColumn), {}, {}});
   bind_user(all_columns(path, kUserColumns), kUserColumns, 0, 1.0);
-  const auto has = [&](const std::string& name) { return std::ranges::find(plan_.names, name) != plan_.names.end(); };
-  DeviceSenses& senses = plan_.info.users.back().senses;
-  senses.orientation = has(path + kOrientationColumns[0].name);
-  if (senses.orientation) bind_user(all_columns(path, kOrientationColumns), kOrientationColumns, 0, 1.0);
-  senses.velocity = has(path + kDeviceVelocityColumns[0].name);
-  if (senses.velocity) bind_user(all_columns(path, kDeviceVelocityColumns), kDeviceVelocityColumns, 0, 1.0);
-  senses.buttons = has(path + kButtonsColumn);
-  if (senses.buttons) plan_.users.back().buttons = column(path + kButtonsColumn);
-  senses.time = has(path + kDeviceTimeColumn);
-  if (senses.time) plan_.users.back().time = column(path + kDeviceTimeColumn);
+  CsvUserColumns& columns = plan_.users.back();
+  columns.buttons = whole_number(path + kButtonsColumn);
+  columns.time = whole_number(path + kDeviceTimeColumn);
+  plan_.info.users.back().senses = {.orientation = bind_sense(path, kOrientationColumns),
+                                    .velocity = bind_sense(path, kDeviceVelocityColumns),
+                                    .buttons = columns.buttons.has_value(),
+                                    .time = columns.time.has_value()};
 }
 
 }  // namespace

@@ -284,7 +284,12 @@ Result<std::uint64_t> TactusAssembler::store_user(std::span<const std::uint8_t> 
     user.contact = contact.value;
     return contact.time;
   }
-  if (channel.role == Role::orientation) return keep(decode_quaternion(data), user.device.orientation);
+  if (channel.role == Role::orientation) {
+    TACTUS_TRY(const auto orientation, decode_quaternion(data));
+    user.device.orientation = orientation.value;
+    if (!is_valid(user.device)) return fail(Errc::invalid, "R-TRC-14");
+    return orientation.time;
+  }
   if (channel.role == Role::buttons) return keep(decode_buttons(data), user.device.buttons);
   if (channel.role == Role::device_time) return keep(decode_time_reference(data), user.device.time);
   TACTUS_TRY(const auto vector, decode_vector(data));

@@ -56,7 +56,8 @@ bool is_finite(const RigidSample& sample) noexcept {
 }
 
 bool is_finite(const UserSample& user) noexcept {
-  return is_finite(user.device) && is_finite(user.force) && is_finite(user.server_force);
+  return is_finite(user.device.position) && is_finite(user.device.orientation) && is_finite(user.device.velocity) &&
+         is_finite(user.force) && is_finite(user.server_force);
 }
 
 bool is_finite(const DeformableSample& mesh) noexcept {
@@ -196,7 +197,7 @@ Result<TraceWriter> TraceWriter::create(const std::string& path, const TraceInfo
 
 /// Whether a user's contacts are valid, name what is there and belong to the device sample.
 bool TraceWriter::Impl::can_hold(const UserSample& user) const {
-  if (user.device.time < 0 || user.device.time / 1'000'000'000 >= kMaxSeconds) return false;
+  if (!is_valid(user.device) || user.device.time / 1'000'000'000 >= kMaxSeconds) return false;
   const Contact& contact = user.contact;
   if (contact.kind != ContactKind::none &&
       (!is_valid(contact) || contact.object >= info.objects.size() || contact.device != user.device.position))

@@ -19,7 +19,7 @@ void check(const tactus::TraceInfo& info, const tactus::TraceFrame& frame) {
     require(is_finite(object.velocity) && is_finite(object.angular_velocity));
   }
   for (const auto& user : frame.users) {
-    require(is_finite(user.contact.device) && is_finite(user.force) && is_finite(user.server_force));
+    require(is_valid(user.device) && is_finite(user.contact.device) && is_finite(user.force) && is_finite(user.server_force));
     require(user.contact.kind == tactus::ContactKind::none || user.contact.object < info.objects.size());
     if (!user.surface_contact) continue;
     require(user.surface_contact->mesh < info.meshes.size());

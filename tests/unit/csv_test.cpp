@@ -293,6 +293,52 @@ TEST(Csv, TactusLayoutDistrustsItsNumbers) {
   EXPECT_EQ(with("\n0,0,63,", "\n0.5,0,63,"), "R-CSV-4");
   EXPECT_EQ(with("\n0,0,63,", "\n7,0,63,"), "R-CSV-5");
   EXPECT_EQ(with("/users/left/contact_object", "/users/left/elsewhere"), "R-CSV-2");
+  for (const char* column : {"device_qw", "device_qy", "device_vx", "device_vz", "device_buttons", "device_time_ns"}) {
+    const std::string path = std::string("/users/left/") + column;
+    EXPECT_EQ(with(path, "/users/left/misspelt"), "R-CSV-2") << column;
+    EXPECT_EQ(with(path, "/users/left/device_x"), "R-CSV-2") << column;  // twice
+  }
+  EXPECT_EQ(with("\n1,0.001,63,", "\n1,0.0014,63,"), "");
+  EXPECT_EQ(with("\n1,0.001,63,", "\n1,0.0016,63,"), "R-CSV-5");
+  EXPECT_EQ(with("\n2,0.002,63,", "\n2,0,63,"), "R-CSV-7");
+}
+
+TEST(Csv, TactusLayoutDistrustsDevices) {
+  constexpr std::string_view kNames =
+      "tick,time_s,/objects/cube/dof,/objects/cube/x,/objects/cube/y,/objects/cube/z,/objects/cube/qw,/objects/cube/qx,"
+      "/objects/cube/qy,/objects/cube/qz,/objects/cube/vx,/objects/cube/vy,/objects/cube/vz,/objects/cube/wx,/objects/cube/wy,"
+      "/objects/cube/wz,/users/u/contact,/users/u/contact_object,/users/u/device_x,/users/u/device_y,/users/u/device_z,"
+      "/users/u/force_x,/users/u/force_y,/users/u/force_z,/users/u/server_force_x,/users/u/server_force_y,/users/u/"
+      "server_force_z,"
+      "/users/u/point_x,/users/u/point_y,/users/u/point_z,/users/u/normal_x,/users/u/normal_y,/users/u/normal_z,"
+      "/users/u/stiffness,/users/u/device_qw,/users/u/device_qx,/users/u/device_qy,/users/u/device_qz,/users/u/device_buttons,"
+      "/users/u/device_time_ns\n";
+  const auto check = [&](const std::string& contact, const std::string& device, std::string_view rule, std::string_view place) {
+    const Outcome outcome = import(std::string(kNames) + "0,0,63,0,0,0,1,0,0,0,0,0,0,0,0,0," + contact +
+                                       ",0,0,0,0,0,0,0,0,0,0,0,0,0,0,1,100," + device + "\n",
+                                   preset("tactus"));
+    EXPECT_EQ(outcome.rule, rule) << device;
+    EXPECT_EQ(place_of(outcome.error), place) << device;
+  };
+  check("1,0", "0.6,0,0,-0.8,3,5", "", "");
+  check("1,0", "1,0,0,0,-1,5", "R-CSV-4", "line 2, column /users/u/device_buttons, '-1'");
+  check("1,0", "1,0,0,0,4294967296,5", "R-CSV-4", "line 2, column /users/u/device_buttons, '4294967296'");
+  check("1,0", "1,0,0,0,0,-5", "R-CSV-4", "line 2, column /users/u/device_time_ns, '-5'");
+  check("1,0", "1,0,0,0,0,9223372036854775807", "R-CSV-4", "line 2, column /users/u/device_time_ns, '9223372036854775807'");
+  check("1,0", "nan,0,0,0,0,5", "R-CSV-4", "line 2, column /users/u/device_qw, 'nan'");
+  check("1,0", "0,0,0,0,0,5", "R-API-5", "line 2");
+  check("1,0", "1,0,0,0.1,0,5", "R-API-5", "line 2");
+  check("1,0", "1e200,0,0,0,0,5", "R-API-5", "line 2");
+  check("1,1", "1,0,0,0,0,5", "R-CSV-4", "line 2, column /users/u/contact_object, '1'");
+}
+
+TEST(Csv, ARotationOfNoLengthIsRefused) {
+  std::string tosses(kTosses);
+  const std::string_view second = "0.4373504,0.2366988,0.8673623,-0.01951942";
+  tosses.replace(tosses.find(second), second.size(), "0,0,0,0");
+  const Outcome outcome = import(tosses, preset("cube-tosses"));
+  EXPECT_EQ(outcome.rule, "R-CSV-4");
+  EXPECT_EQ(place_of(outcome.error), "line 3, column qw");
 }
 
 }  // namespace

@@ -84,6 +84,10 @@ inline Recording make_recording(std::size_t frame_count, std::uint32_t tick_rate
   const auto vec = [&number] { return Vec3{number(), number(), number()}; };
   std::mt19937_64 others(8);  // what only some devices sense leaves the rest as it is
   const auto more = [&others] { return std::ldexp(static_cast<double>(others()), -60) - 8.0; };
+  const auto turn = [&more] {
+    const double a = more();
+    return Quat{std::cos(a), 0.6 * std::sin(a), 0, -0.8 * std::sin(a)};
+  };
   Recording recording;
   recording.info = {tick_rate,
                     {{"cube", Dof::all}, {"floor \xC3\xA4", Dof::none}},
@@ -98,11 +102,7 @@ inline Recording make_recording(std::size_t frame_count, std::uint32_t tick_rate
     UserSample touching{.device = {}, .contact = {}, .force = vec(), .server_force = vec()};
     if (i % 3 == 1) touching.contact = {ContactKind::surface, 1, vec(), {0, 0, 1}, {}, 630.0};
     if (i % 3 == 2) touching.contact = {ContactKind::spring, 0, vec(), vec(), {}, 1e-3};
-    touching.device = {vec(),
-                       {more(), more(), more(), more()},
-                       {more(), more(), more()},
-                       static_cast<std::uint32_t>(i / 2 % 4),
-                       1'000'003 * frame.tick};
+    touching.device = {vec(), turn(), {more(), more(), more()}, static_cast<std::uint32_t>(i / 2 % 4), 1'000'003 * frame.tick};
     touching.contact.device = touching.device.position;
     UserSample apart;
     apart.device.position = apart.contact.device = vec();

@@ -79,7 +79,7 @@ TEST(Trace, UserWithoutObjects) {
   recording.info.users = {{"hand"}};
   for (std::int64_t tick = 0; tick < 4; ++tick) {
     UserSample user;
-    user.contact.device = {static_cast<double>(tick), 0.5, 0};
+    user.device.position = {static_cast<double>(tick), 0.5, 0};
     recording.frames.push_back({tick, {}, {user}});
   }
   const Reading reading = read_bytes(write_recording(recording, file.path()));
