@@ -4,16 +4,14 @@
 #include <algorithm>
 #include <utility>
 
+#include <tactus/sim/tets/tet_mesh.h>
+
 namespace tactus::sim {
 namespace {
 
 /// Of the mesh's box [m].
 Vec3 centre(const TriMesh& mesh) {
-  Vec3 low = mesh.vertices[0], high = low;
-  for (const Vec3& v : mesh.vertices) {
-    low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
-    high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
-  }
+  const auto [low, high] = bounds(mesh.vertices);
   return 0.5 * (low + high);
 }
 

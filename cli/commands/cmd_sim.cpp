@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include <tactus/file/stream_file.h>
 #include <tactus/scene/scene_syntax.h>
@@ -83,8 +84,9 @@ tl::expected<std::span<const Packet>, Failure> step(Run& run, const SimOptions& 
   if (run.recording) run.devices = recorded_devices(*run.recording, run.recorded);
   const auto stepped = times.measure([&] { return run.recording ? run.simulation.step(run.devices) : run.simulation.step(); });
   if (stepped) return *stepped;
-  const Diagnostic& error = stepped.error();
-  const std::string place = place_of_tick(error.step) + (error.detail.empty() ? "" : ", " + error.detail);
+  Diagnostic error = stepped.error();
+  std::string place = place_of_tick(std::exchange(error.step, -1));
+  if (const std::string within = place_of(error); !within.empty()) place += ", " + within;
   auto refused = refuse(options.scene, place, error.error);
   if (!error.remedy.empty()) refused.value().remedy = error.remedy + '.';
   return refused;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <tactus/sim/deformable/stiffness_map.h>
+#include <tactus/sim/tets/tet_mesh.h>
 
 namespace tactus::cli {
 namespace {
@@ -58,11 +59,7 @@ Plot stiffness_plot(const std::string& file, const std::string& object, const si
     for (const auto& line : {row(a), row(b), {}, row(c), row(c), {}, {}}) faces.rows.push_back(line);
   for (std::uint32_t v = 0; v < map.stiffness.size(); ++v)
     if (!std::isfinite(map.stiffness[v])) held.rows.push_back(row(v));
-  Vec3 low = map.surface.vertices[0], high = low;
-  for (const Vec3& v : map.surface.vertices) {
-    low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
-    high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
-  }
+  const auto [low, high] = sim::bounds(map.surface.vertices);
   const double flatness = 1 - (high.z - low.z) / std::max({high.x - low.x, high.y - low.y, high.z - low.z});
   plot.set("heading", fmt::format("Local stiffness of {}: {:.3g} to {:.3g} N/m", object, scale.all.low, scale.all.high));
   plot.set("low", scale.colours.low);

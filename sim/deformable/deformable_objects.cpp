@@ -104,7 +104,7 @@ tl::expected<void, Diagnostic> Objects::step() {
     if (!moved)
       return tl::unexpected(Diagnostic{.error = moved.error().error,
                                        .step = tick_,
-                                       .kind = "object",
+                                       .kind = "deformable object",
                                        .element = i,
                                        .detail = place_of(moved.error()),
                                        .remedy = moved.error().remedy});

@@ -166,7 +166,7 @@ SceneDeformable read_deformable(TomlReader& in, const toml::table& table, const 
            {"name", "mesh", "cells", "cell", "position", "young", "poisson", "density", "region", "fixed", "elasticity",
             "mass_damping", "stiffness_damping", "stiffness", "friction", "method", "solver", "rate"});
   SceneDeformable body;
-  body.name = in.text(table, path, "name");
+  body.name = in.name(table, path);
   body.mesh = read_mesh(in, table, path, folder);
   body.materials = {read_material(in, table, path, std::nullopt)};
   body.corotated = in.word(table, path, "elasticity", {"corotated", "linear"}, "corotated") == 0;

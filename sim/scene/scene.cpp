@@ -88,7 +88,7 @@ SceneObject read_object(TomlReader& in, const toml::table& table, const std::fil
   const std::string path = "object";
   in.allow(table, path, {"name", "size", "surface", "mass", "friction", "damping", "dof", "position", "rotation"});
   SceneObject object;
-  object.name = in.text(table, path, "name");
+  object.name = in.name(table, path);
   if (!table.contains("surface")) object.size = in.vector(table, path, "size", {1e-4, kFarthest});
   object.dof = read_axes(in, table, path, "dof", Dof::all);
   object.mass = in.number(table, path, "mass", {1e-6, 1e6});
@@ -104,7 +104,7 @@ SceneMsd read_msd(TomlReader& in, const toml::table& table) {
   const std::string path = "msd";
   in.allow(table, path, {"name", "stiffness", "damping", "mass", "position", "faces", "touch_damping", "rate"});
   SceneMsd msd;
-  msd.name = in.text(table, path, "name");
+  msd.name = in.name(table, path);
   msd.object.stiffness = in.number(table, path, "stiffness", {0, 1e9});
   msd.object.damping = in.number(table, path, "damping", {0, 1e6});
   msd.object.mass = in.number(table, path, "mass", {1e-6, 1e6});
@@ -173,7 +173,7 @@ SceneUser read_user(TomlReader& in, const toml::table& table, const Scene& scene
   const std::string path = "user";
   in.allow(table, path, {"name", "grip", "tremor", "variation", "scatter", "object", "goal", "start", "device", "path"});
   SceneUser user;
-  user.name = in.text(table, path, "name");
+  user.name = in.name(table, path);
   user.grip = static_cast<Grip>(in.word(table, path, "grip", {"loose", "normal", "firm"}, "normal"));
   user.tremor = in.number(table, path, "tremor", {0, 0.01}, 0.0);
   user.variation = in.number(table, path, "variation", {0, 0.5}, 0.0);

@@ -20,6 +20,7 @@
 #include <tactus/base/rule.h>
 #include <tactus/sim/scene/scene.h>
 #include <tactus/sim/scene/toml_text.h>
+#include <tactus/trace/text.h>
 
 namespace tactus::sim {
 
@@ -132,6 +133,15 @@ class TomlReader {
     if (!value || value->empty() || value->size() > 255)
       fail_at(node->source(), Errc::invalid, "R-SCN-5", join(path, key), "write a string of 1 to 255 bytes");
     return value.value_or("");
+  }
+
+  /// What becomes part of a topic of the trace and of a column.
+  std::string name(const toml::table& table, const std::string& path) {
+    std::string given = text(table, path, "name");
+    if (!given.empty() && !is_plain_name(given))
+      fail_at(table["name"].node()->source(), Errc::invalid, "R-SCN-6", join(path, "name"),
+              "write UTF-8 without '/' and control characters");
+    return given;
   }
 
   /// A word of a fixed list, as its index.

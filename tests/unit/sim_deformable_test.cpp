@@ -231,7 +231,7 @@ TEST(DeformableSimulation, DivergenceIsAnErrorWithARemedy) {
     if (stepped) continue;
     EXPECT_STREQ(stepped.error().error.rule, "R-FEM-6");
     EXPECT_EQ(stepped.error().step, i);
-    EXPECT_STREQ(stepped.error().kind, "object");
+    EXPECT_STREQ(stepped.error().kind, "deformable object");
     EXPECT_EQ(stepped.error().element, 0u);
     EXPECT_NE(stepped.error().remedy.find("tr-bdf2"), std::string::npos) << stepped.error().remedy;
     return;
