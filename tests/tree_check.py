@@ -17,11 +17,11 @@ MAX_LINES = 500
 SHARED = {"base"}  # folders of codec/ that are not subjects of the specification
 # Everything else in codec/ is integers: what both ends compute is the same on every machine. These files are doors: SI units come in
 # or go out, a sender decides what to send, options are read once.
-FLOATS = {"base/geometry", "base/quantise", "base/tri_mesh", "scene/bounds", "scene/bounds_syntax", "scene/deformable_object",
-          "scene/rigid_object", "scene/scene_builder", "packet/key_policy", "packet/sender_policy", "rigid/contact",
-          "rigid/rigid_encoder", "rigid/rigid_state", "rigid/trigger", "deformable/deformable_encoder", "deformable/displacement",
-          "deformable/main_encoder", "deformable/mode_projection", "deformable/thesis_encoder", "deformable/trigger", "client/replica",
-          "sender"}
+FLOATS = {"base/device_sample", "base/geometry", "base/quantise", "base/tri_mesh", "scene/bounds", "scene/bounds_syntax",
+          "scene/deformable_object", "scene/rigid_object", "scene/scene_builder", "packet/key_policy", "packet/sender_policy",
+          "rigid/contact", "rigid/rigid_encoder", "rigid/rigid_state", "rigid/trigger", "deformable/deformable_encoder",
+          "deformable/displacement", "deformable/main_encoder", "deformable/mode_projection", "deformable/thesis_encoder",
+          "deformable/trigger", "client/replica", "sender"}
 UNITS = ("codec", "codec/*", "io/*", "metrics")  # each .cpp in them has a unit test of its name
 TESTED_BY = {  # those that have none: the parts of one subject, held against each other
     "codec/deformable/main_decoder": "deformable_decoder",
