@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/base/rule.h>
 #include <tactus/sim/fem/checked_integrator.h>
 
 #include <algorithm>
@@ -7,6 +6,8 @@
 #include <cstring>
 #include <limits>
 #include <utility>
+
+#include <tactus/base/rule.h>
 
 namespace tactus::sim {
 namespace {

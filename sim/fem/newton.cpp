@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/base/rule.h>
 #include <tactus/sim/fem/newton.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
+
+#include <tactus/base/rule.h>
 
 namespace tactus::sim {
 namespace {

@@ -20,7 +20,6 @@
 #include <tactus/base/geometry.h>
 #include <tactus/rigid/rigid_state.h>
 #include <tactus/sim/scene/scene.h>
-#include <tactus/sim/touchable.h>
 
 namespace tactus::sim {
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/base/rule.h>
 #include <tactus/sim/study/quadratic_tets.h>
 
 #include <Eigen/Dense>
@@ -7,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <utility>
+
+#include <tactus/base/rule.h>
 
 namespace tactus::sim::study {
 namespace {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/base/rule.h>
 #include <tactus/sim/surface/surface_text.h>
 
 #include <algorithm>
@@ -10,6 +9,8 @@
 #include <cstring>
 #include <limits>
 #include <vector>
+
+#include <tactus/base/rule.h>
 
 namespace tactus::sim {
 namespace {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/base/rule.h>
 #include <tactus/sim/tets/tet_mesh.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include <tactus/base/rule.h>
 
 namespace tactus::sim {
 namespace {
