@@ -96,7 +96,7 @@ Outcome interact(const Setting& setting) {
 
 bool comes_to_rest(const Setting& setting) { return interact(setting).verdict == Verdict::stable; }
 
-/// Where a barely held device that presses stops coming to rest: the longest delay, and the damping at the client that mends 100 ms.
+/// Limits for a barely held device that presses to come to rest: the longest delay, and the least damping at the client for 100 ms.
 void limit_rows(Study& study, const Progress& progress) {
   Setting setting{"", "barely held", "", kBarelyHeld, 350, 0, 0};
   const auto add = [&](const char* quantity, const char* unit, double measured, const char* remark) {

@@ -25,7 +25,7 @@ std::string cell_text(const FemOutcome& outcome) {
   return name(outcome.verdict);
 }
 
-/// With what came of the energy: a method can be stable and still brake.
+/// Includes the energy at the end: a stable method can still damp the motion.
 std::string chosen_text(const FemOutcome& outcome) {
   std::string out = outcome.taken.empty() ? cell_text(outcome) : outcome.taken + ": " + cell_text(outcome);
   if (!outcome.error.empty()) return out;
@@ -144,7 +144,7 @@ void limit_rows(Study& study, Extent extent, const Progress& progress) {
   }
 }
 
-/// Which (E, h) each method gets through: 1000 steps of a slab displaced by up to 2 mm, without damping.
+/// The (E, h) that each method gets through: 1000 steps of a slab displaced by up to 2 mm, without damping.
 void map_series(Study& study, const Progress& progress) {
   Series limit{.name = "map-limit", .columns = {"E [Pa]", "h [s]"}};
   for (std::size_t m = 0; m + 1 < kMethods.size(); ++m) {

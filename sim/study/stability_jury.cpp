@@ -24,7 +24,7 @@ struct Setting {
   ServerLoop loop;
 };
 
-/// One parameter at a time, around the figure.
+/// Settings that differ from the figure in one parameter.
 std::vector<Setting> variations() {
   std::vector<Setting> out;
   const auto vary = [&](const std::string& subject, auto change) {

@@ -87,7 +87,7 @@ Row tower_row(double seconds, Sleep sleep, const Progress& progress) {
   std::optional<double> asleep;  // [s]
   for (std::int64_t tick = 0; tick < ticks; ++tick) {
     if (tick % 100 == 0) progress("rigid, tower", static_cast<std::uint64_t>(tick), static_cast<std::uint64_t>(ticks));
-    // A force that changes nothing keeps the pile awake.
+    // A negligible force keeps the pile awake.
     if (sleep == Sleep::prevented) world.push(0, {0, 0, -1e-12}, scene.objects[0].pose.position);
     if (const auto step = world.step(); !step) {
       row.verdict = Verdict::diverges;
@@ -131,7 +131,7 @@ struct Rail {
   int every = 1;       // ticks
 };
 
-/// What `every` ticks of RigidWorld make of position, velocity and force: v += h f / m, x += h v, v *= d.
+/// Position, velocity and force after `every` ticks of RigidWorld: v += h f / m, x += h v, v *= d.
 Transition transition(const Rail& rail) {
   const auto advance = [&](double x, double v, double f) {
     for (int i = 0; i < rail.every; ++i) {
