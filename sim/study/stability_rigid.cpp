@@ -272,10 +272,9 @@ Study study_rigid(Extent extent, const Progress& progress) {
   Study study{.name = "rigid", .title = "Rigid objects"};
   study.text =
       "`RigidWorld` (ODE QuickStep, 100 iterations, 1 kHz). Blocks of 75 x 25 x 15 mm and 14 g, cubes of 4 cm and 150 g, "
-      "friction "
-      "0.5. A pile of which no point moved 20 um in 256 ms sleeps until it is pushed or hit; the tower is shown with and without "
-      "that. *Stiff touch*: a spring ties a cube on a rail to a probe that stands still; its force is computed every tick or, at "
-      "60 Hz, every 17th, and held. A mass ratio is a limit that is reported, not a promise.";
+      "friction 0.5. A pile sleeps when no point of it has moved 20 um in 256 ms, until it is pushed or hit; the tower is shown "
+      "with and without sleep. *Stiff touch*: a spring ties a cube on a rail to a probe that stands still. The spring's force "
+      "is computed every tick or, at 60 Hz, every 17th tick, and held. Mass ratios are reported as limits, not guaranteed.";
   study.rows.push_back(tower_row(full ? 600 : 2, Sleep::allowed, progress));
   if (full) study.rows.push_back(tower_row(11, Sleep::prevented, progress));
   const std::vector<double> ratios = full ? std::vector<double>{1, 3, 10, 30, 100, 1e3, 1e4} : std::vector<double>{1, 100};
