@@ -20,7 +20,8 @@ class ErrorSeries {
 
   std::uint64_t ticks() const noexcept { return ticks_; }  ///< with at least one sample
   std::uint64_t ticks_over() const noexcept { return ticks_over_; }
-  std::uint64_t longest_run() const noexcept { return longest_run_; }  ///< [ticks] longest run of consecutive violating samples
+  /// [ticks] Longest run of violating ticks, from its first to its last, with ticks missing in between; any other tick ends it.
+  std::uint64_t longest_run() const noexcept { return longest_run_; }
   double rms() const noexcept;
   double max() const noexcept { return max_; }
 

@@ -28,6 +28,7 @@ class Client {
   Result<void> receive(std::span<const Packet> packets) noexcept;
   /// Show the tick of this frame: the state received up to it, or the truth.   no allocation
   /// in   truth  tells which shapes are new; without a codec, the state shown
+  /// pre  called for every tick: a shape, and without a codec a pose, is read only when it is new; without a codec truth.changed is set
   void show(const TraceFrame& truth) noexcept;
   /// Move every user's probe on the shown state.   in  devices  one per user   no allocation
   void touch(std::span<const DeviceSample> devices) noexcept;

@@ -25,7 +25,7 @@ Result<std::unique_ptr<Server>> Server::create(const Scene& scene, const ServerO
   return server;
 }
 
-/// Only kinds that the scene has.
+/// Add the rigid objects, and the other kinds if the scene has them.
 Result<void> Server::add_objects(const ServerOptions& options) {
   objects_.push_back(std::make_unique<RigidObjects>(scene_));
   if (!scene_.msds.empty()) {
@@ -79,7 +79,7 @@ void Server::touch(std::span<const DeviceSample> devices) noexcept {
     shares_[i] = share_rendered(user.server_force, scene_.users[i].device.max_force);
     user.server_force = shares_[i] * user.server_force;
     if (!user.surface_contact) continue;
-    // Who touches an object that sleeps needs its shape to what a hand feels, not to what an eye sees.
+    // A user who touches a sleeping object needs its shape at haptic, not visual, accuracy.
     DeformableSample& mesh = frame_.meshes[user.surface_contact->mesh];
     mesh.updated = mesh.updated || deformables_->is_due(user.surface_contact->mesh);
   }

@@ -20,7 +20,7 @@ struct Simulation::Impl {
   std::unique_ptr<Server> server;
   std::unique_ptr<Client> client;
   PerfectLink link;
-  std::vector<Hand> hands;            // one per user, as all that follows
+  std::vector<Hand> hands;            // one per user, like the vectors below
   std::vector<DeviceSample> devices;  // of the hands
   std::vector<TouchRecord> records;
 

@@ -81,8 +81,8 @@ std::string space_title(const SpaceStudy& space) {
 std::string reference_text(const TimeStudy& time) {
   const sim::study::Errors& floor = time.reference.errors;
   return fmt::format(
-      "reference: Runge-Kutta of order 4, none of the methods compared, h = {:.3g} us, {}; its own error: u {}, v {}, force {}, "
-      "energy {}, weight {}, push {}",
+      "reference: Runge-Kutta of order 4, not among the methods compared, h = {:.3g} us, {}; its own error: u {}, v {}, force "
+      "{}, energy {}, weight {}, push {}",
       1e6 * time.reference.step, time.reference.remark, scientific(floor.displacement), scientific(floor.velocity),
       scientific(floor.force), scientific(floor.energy), scientific(floor.weight), scientific(floor.push));
 }
@@ -95,7 +95,7 @@ std::vector<std::string> omissions(const TimeStudy& time) {
     const PrecisionPoint& p = time.points[i];
     const std::string place = fmt::format("{}, h = {} ms: ", p.method, milliseconds(p.step));
     if (!p.remark.empty()) out.push_back(place + p.remark);
-    else if (!is_usable(p.errors.displacement)) out.push_back(place + "finished, but as wrong as standing still");
+    else if (!is_usable(p.errors.displacement)) out.push_back(place + "finished, but no better than standing still");
     const bool is_last = i + 1 == time.points.size() || time.points[i + 1].method != p.method;
     if (is_last && p.steps_per_sample != smallest)
       out.push_back(fmt::format("{}, h below {} ms: left out, {:.2g} times slower than real time there already", p.method,
@@ -261,19 +261,17 @@ std::string precision_json(const PrecisionReport& report) {
 std::string precision_markdown(const PrecisionReport& report) {
   std::string out =
       "# Error against run time\n\n"
-      "Made by `tactus bench precision`. Columns: relative errors over all sample times under a load that grows from nothing "
-      "(`u` "
-      "displacement,\n`u, end` at the end only, `v` velocity, energy), of the force of a probe, and of the displacements under "
-      "`weight` and `push`, self weight and\nload that are there at once; processor time per step, `s/s` seconds of one core per "
-      "simulated second (below 1: faster than real time),\n`setup` before the second step, Newton and solver iterations per "
-      "step. "
-      "Times are medians. `chosen` is what `tactus sim` takes.\n\n";
+      "Made by `tactus bench precision`. The columns are relative errors over all sample times: of displacement (`u`; `u, end` "
+      "only at the\nlast one), velocity (`v`) and energy under a load that grows from zero, of the force of a probe, and of the "
+      "displacements under self weight\n(`weight`) and load (`push`) applied at once; then processor time per step, seconds of "
+      "one core per simulated second (`s/s`; below 1:\nfaster than real time), time up to the second step (`setup`), Newton and "
+      "solver iterations per step. Times are medians. `chosen` is the\nmethod that `tactus sim` takes.\n\n";
   for (const auto& [key, value] : report.context) out += fmt::format("* {}: {}\n", key, value);
   out += markdown_at_one_millisecond(report);
   for (const TimeStudy& time : report.times) out += markdown_of(time);
   if (report.spaces.empty()) return out;
   out +=
-      "\n## Space error\n\nMean deflection of the loaded patch against the limit under refinement; no time step makes up for "
+      "\n## Space error\n\nError of the loaded patch's mean deflection against its limit under refinement. No time step reduces "
       "it.\n\n";
   for (const SpaceStudy& space : report.spaces) {
     const std::string image = fmt::format("![{0}: space error](space-{0}.svg)\n", space.scene);

@@ -125,8 +125,8 @@ std::string to_markdown(std::span<const Study> studies, std::span<const Picture>
       "# Where the simulation stops being stable\n\n"
       "`tactus bench stability{}` on {} ({}, {} build). Every study is deterministic; no figure here is a time.\n\n"
       "*stable*: what was disturbed comes to rest, or stays within what the disturbance explains. *limit*: a limit was measured, "
-      "or the motion goes on within bounds. *diverges*: it grows without bound, or the step was refused with an error and the "
-      "state before it kept. The same rows stand in `stability.csv` and `stability.json`.\n",
+      "or the motion goes on within bounds. *diverges*: the motion grows without bound, or a step was refused with an error and "
+      "the state before it was kept. The same rows are in `stability.csv` and `stability.json`.\n",
       extent == sim::study::Extent::full ? "" : " --short", context.at("machine"), context.at("compiler"), context.at("build"));
   for (const Study& study : studies) {
     out += fmt::format("\n## {}\n\n{}\n", study.title, study.text);

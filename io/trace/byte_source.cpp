@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/base/rule.h>
 #include <tactus/trace/byte_source.h>
 
 #include <algorithm>
+
+#include <tactus/base/rule.h>
 
 namespace tactus {
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/base/rule.h>
 #include <tactus/trace/compression.h>
 
 #include <zstd.h>
+
+#include <tactus/base/rule.h>
 
 namespace tactus {
 namespace {
@@ -54,7 +55,7 @@ Result<StreamDecompressor::Progress> StreamDecompressor::decompress(std::span<co
   ZSTD_outBuffer out{output.data(), output.size(), 0};
   const std::size_t rest = ZSTD_decompressStream(context_->zstd.get(), &out, &in);
   if (ZSTD_isError(rest) != 0) return fail(Errc::malformed, "R-TRC-8");
-  if (in.pos > 0 || out.pos > 0) at_frame_end_ = rest == 0;  // without progress the hint already speaks of a next frame
+  if (in.pos > 0 || out.pos > 0) at_frame_end_ = rest == 0;  // without progress the hint is about the next frame
   return Progress{in.pos, out.pos};
 }
 

@@ -11,21 +11,21 @@
 namespace tactus::mcap {
 namespace {
 
-/// Bytes taken from the source at once: what a hostile length can make a reader allocate beyond the input's real size.
+/// Bytes read from the source at once: a record's memory grows with the bytes read, not with a false length. Chunks: open_chunk().
 constexpr std::uint64_t kPiece = 64u << 10;
-constexpr std::uint64_t kSummaryBytes = 64u << 20;  // larger summaries are not looked into ahead of time
+constexpr std::uint64_t kSummaryBytes = 64u << 20;  // larger summaries are not read ahead
 
 std::string_view get_text(ByteReader& in) {
   const auto raw = in.bytes(in.u32());
   return {reinterpret_cast<const char*>(raw.data()), raw.size()};
 }
 
-/// A check value of 0 says "not computed".
+/// A check value of 0 means "not computed".
 bool differs(std::uint32_t stored, std::uint32_t computed) noexcept { return stored != 0 && stored != computed; }
 
 std::span<const std::uint8_t> whole_of(ByteReader in) { return in.bytes(in.remaining()); }
 
-/// Nothing when a string is not UTF-8, a key stands twice or a length does not fit.
+/// Nothing if a string is not UTF-8, a key occurs twice or a length does not fit.
 std::optional<TextMap> get_map(ByteReader& in) {
   TextMap map;
   ByteReader entries = in.sub(in.u32());
@@ -181,7 +181,7 @@ Result<std::optional<Item>> Reader::next_at_top() {
   return take_record(opcode, content);
 }
 
-/// Records whose place has been found lawful.
+/// Handle a record that is allowed at its place.
 Result<std::optional<Item>> Reader::take_record(Opcode opcode, ByteReader content) {
   switch (opcode) {
     case Opcode::schema:
@@ -205,7 +205,7 @@ Result<std::optional<Item>> Reader::take_record(Opcode opcode, ByteReader conten
 }
 
 Result<void> Reader::open_chunk(ByteReader content) {
-  content.u64();  // message start and end time: the messages tell
+  content.u64();  // message start and end time: the messages have their own
   content.u64();
   const std::uint64_t size = content.u64();
   const std::uint32_t crc = content.u32();

@@ -24,8 +24,10 @@ struct ReadLimits {
 /// What next() found.
 enum class Item : std::uint8_t { end, message, attachment, metadata };
 
-/// Reads any MCAP file front to back and trusts nothing in it. Holds one record and one chunk at a time. Memory grows with the
-/// bytes that follow a length, never with the length itself. Checks every CRC that is present. Unknown records are skipped.
+/// Reads any MCAP file front to back and trusts nothing in it. Holds one record and one chunk at a time. The memory of a record
+/// grows with the bytes read, not with the length announced. A compressed chunk takes its announced size at once, within ReadLimits
+/// and the budget: 64 MiB, and 256 bytes more for each byte read (input_budget.h). Checks every CRC that is present. Unknown records
+/// are skipped.
 /// err (all)  R-TRC-1 .. R-TRC-11, R-TRC-18 as listed in trace_file.h; the offset is that of the record at top level.
 class Reader {
  public:

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/base/rule.h>
 #include <tactus/trace/messages.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include <tactus/base/rule.h>
 
 namespace tactus {
 namespace {

@@ -15,11 +15,11 @@
 namespace tactus {
 namespace {
 
-// Look-ahead: until one topic has shown so many poses, which tells the rate, but no further than so many messages of all topics.
+// The look-ahead ends when one topic has had so many poses, which give the rate, or after so many poses and twists of all topics.
 constexpr std::size_t kPosesForRate = 64;
 constexpr std::size_t kLookAhead = 4096;
 
-// [bytes] of the budget for each object of a frame, whether it was heard of or not: about what it takes in a table.
+// [bytes] of the budget for each object of a frame, changed or not: about its size in a table.
 constexpr std::uint64_t kCostOfObject = 256;
 
 struct Sample {
@@ -59,7 +59,7 @@ class RosAssembler final : public FrameAssembler {
  private:
   struct Track {
     bool known = false;      // has had a pose
-    bool has_twist = false;  // a twist topic tells its motion
+    bool has_twist = false;  // its motion comes from a twist topic
     std::uint64_t time = 0;  // of its last pose
   };
   Result<void> look_ahead(mcap::Reader& mcap);
@@ -117,7 +117,7 @@ Result<void> RosAssembler::look_ahead(mcap::Reader& mcap) {
   return {};
 }
 
-/// The topics that spoke during the look-ahead, in order of their channel ids.
+/// Objects are the topics with poses in the look-ahead, in order of their channel ids.
 Result<void> RosAssembler::find_objects(const mcap::Reader& mcap) {
   std::set<std::uint16_t> poses, twists;
   for (const Sample& sample : ahead_) (std::holds_alternative<Pose>(sample.value) ? poses : twists).insert(sample.channel);

@@ -12,8 +12,8 @@
 namespace tactus {
 namespace {
 
-// [bytes] of the budget for each object that is there at a tick though nothing tells of it. Less than it has: scenes of a thousand
-// static objects are read at the usual sizes of what moves among them.
+// [bytes] of the budget for each static object repeated at a tick. Less than its true size, so that scenes with a thousand static
+// objects stay readable.
 constexpr std::uint64_t kCostOfStatic = 32;
 
 std::vector<std::string> split_lines(std::string_view text) {
@@ -31,7 +31,7 @@ std::string_view entry(const mcap::TextMap& map, const char* key) {
   return found == map.end() ? std::string_view() : found->second;
 }
 
-/// Fixed vertices and period; false when the text is none.
+/// Read fixed vertices and period; false if the text is malformed.
 bool read_metadata(const mcap::TextMap& metadata, TraceDeformable& mesh) {
   std::string_view fixed = entry(metadata, "fixed"), period = entry(metadata, "period");
   while (!fixed.empty()) {
@@ -118,7 +118,7 @@ Result<void> TactusAssembler::start(mcap::Reader& mcap, const Preamble& preamble
   return info_.meshes.empty() ? Result<void>() : read_rest(mcap);
 }
 
-/// The first tick holds the rest shapes, which belong to the description.
+/// Read the first tick: it holds the rest shapes, which belong to the description.
 Result<void> TactusAssembler::read_rest(mcap::Reader& mcap) {
   current_.meshes.resize(info_.meshes.size());
   if (item_ == mcap::Item::end && !mcap.cut_short()) return refuse(mcap, Errc::invalid, "R-TRC-15");
@@ -177,7 +177,7 @@ Result<bool> TactusAssembler::next(mcap::Reader& mcap, TraceFrame& frame) {
   return true;
 }
 
-/// Shapes that are not new are in the frame since the call before, unless it is another frame.
+/// A shape that is not new is still in the frame from the previous call, unless the caller gives another frame.
 void TactusAssembler::deliver(TraceFrame& frame) const {
   frame.tick = current_.tick;
   frame.objects = current_.objects;
@@ -259,7 +259,7 @@ Result<std::uint64_t> TactusAssembler::store(const mcap::Reader& mcap, const Tra
   return store_user(data, channel);
 }
 
-/// The value into its place; the result is the time of its header.
+/// Put a user's value into its place; the result is the time of its header.
 template <class T>
 Result<std::uint64_t> keep(const Result<Stamped<T>>& message, T& place) noexcept {
   if (!message) return tl::unexpected(message.error());

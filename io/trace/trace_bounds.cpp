@@ -20,7 +20,7 @@ std::string text_of(double value) {
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
 }
 
-/// Both directions go through the same list of entries.
+/// Entries of the metadata. Reading and writing go through the same list.
 class Entries {
  public:
   explicit Entries(mcap::TextMap& out) : out_(&out) {}
@@ -45,7 +45,7 @@ class Entries {
     sound = sound && name != kRules.end();
     rule = sound ? static_cast<HapticRule>(name - kRules.begin()) : HapticRule::off;
   }
-  /// Reading: whether there is such an entry.
+  /// When reading: whether there is such an entry.
   bool has(const std::string& key) const { return in_->contains(key); }
   bool reads() const noexcept { return in_ != nullptr; }
 

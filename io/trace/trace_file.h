@@ -41,11 +41,13 @@
 /// R-TRC-11  invalid           text is not UTF-8, or a key stands twice in a map
 /// R-TRC-12  invalid           the "tactus" or "tactus_bounds" metadata or the channels lack something or contradict each other
 /// R-TRC-13  malformed         a message is not CDR of its channel's type
-/// R-TRC-14  invalid           a value is NaN or infinite, a contact or time stamp is invalid, or a mesh has another number of vertices
+/// R-TRC-14  invalid           a value is NaN or infinite, a contact, device time or time stamp is invalid, or a mesh has another number
+///                             of vertices
 /// R-TRC-15  invalid           ticks do not increase, a message's times disagree, or a tick lacks a message or has one twice
 /// R-TRC-16  unsupported       a foreign file without PoseStamped channels, or with one that begins after the look-ahead
 /// R-TRC-17  invalid_argument  TraceInfo: nothing to record, over 65535 channels, tick rate not in 1..1000000, dof bits, fixed
-///                             vertices or the period of a mesh, bounds of another number of meshes, or a name that is empty, repeated, over 255 bytes, not UTF-8 or has '/' or control characters
+///                             vertices or the period of a mesh, bounds of another number of meshes, or a name that is empty, repeated,
+///                             over 255 bytes, not UTF-8 or has '/' or control characters
 /// R-TRC-18  limit_exceeded    chunks unpack to more, or objects of which nothing is said at a tick are more, than the file's size has
 ///                             earned (input_budget.h)
 /// R-SRF-n   as tri_mesh.h     a mesh's rest shape
@@ -67,11 +69,11 @@ class TraceWriter {
  public:
   /// path "-" is standard output.   err  io R-TRC-1; invalid_argument R-TRC-11 (source), R-TRC-17, R-SRF-n
   static Result<TraceWriter> create(const std::string& path, const TraceInfo& info);
-  /// in   frame  tick >= 0 and larger than the last. Of a user without contact only contact.device is kept; a mesh that was not
-  ///             updated is not written
+  /// in   frame  tick >= 0 and larger than the last. A user's device sample is always kept; without contact, `contact` and
+  ///             contact.device are ignored. A mesh that was not updated is not written
   /// time O(changes), about 15 instructions for each object at rest, and the every-tick messages of users and meshes
-  /// err  invalid_argument R-API-1 not finite; R-API-5 wrong count, tick or contact; R-API-6 a static object moved; io R-TRC-1.
-  ///      Nothing was written after invalid_argument. After io and limit_exceeded R-API-11 (no memory) the writer is unusable.
+  /// err  invalid_argument R-API-1 not finite; R-API-5 wrong count, tick, contact or device time; R-API-6 a static object moved;
+  ///      io R-TRC-1. Nothing was written after invalid_argument. After io and limit_exceeded R-API-11 (no memory) the writer is unusable.
   Result<void> write(const TraceFrame& frame);
   /// Summary, index and footer. A writer destroyed without it leaves a readable but unindexed file.
   Result<void> finish();

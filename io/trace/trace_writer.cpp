@@ -273,7 +273,7 @@ bool TraceWriter::Impl::is_due(const TraceChannel& channel, const TraceFrame& fr
   switch (channel.occurs) {
     case Occurs::every_tick:
       return true;
-    case Occurs::when_changed:  // of objects only channels of those that have are asked
+    case Occurs::when_changed:  // for objects, only called for those that changed
       return channel.role != Role::buttons || last_tick < 0 ||
              frame.users[channel.index].device.buttons != buttons[channel.index];
     case Occurs::first_tick:

@@ -12,7 +12,7 @@ bool before(const Vec3& a, const Vec3& b) { return std::tie(a.x, a.y, a.z) < std
 
 double component(const Vec3& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
-/// Is a point at this distance the better answer? Of several equally close the one that no renumbering changes.
+/// Whether a point is closer than the best so far. Ties are decided by position, then by number.
 bool better(double distance2, const Vec3& point, std::uint32_t triangle, double best2, const SurfacePoint& best) {
   if (distance2 != best2 || best.triangle == MeshTopology::kNone) return distance2 <= best2;
   if (point != best.point) return before(point, best.point);
@@ -55,7 +55,7 @@ void AabbTree::split(std::uint32_t first, std::uint32_t last, std::span<const Ve
   const std::size_t node = nodes_.size();
   nodes_.push_back({{}, first, last - first});
   if (last - first <= kLeafSize) return;
-  const auto centre = [&](const Leaf& leaf, int axis) {  // three times it
+  const auto centre = [&](const Leaf& leaf, int axis) {  // three times the centre
     const Corners v = corners(leaf, vertices);
     return component(v[0], axis) + component(v[1], axis) + component(v[2], axis);
   };
@@ -161,7 +161,7 @@ std::optional<SurfacePoint> AabbTree::closest(const Vec3& point, std::span<const
   return best;
 }
 
-/// Separating axes of segment and box grown by the radius; errs on the side of "near".
+/// Test the separating axes of segment and box grown by the radius; in doubt they are near.
 bool AabbTree::near_segment(const Box& box, const Vec3& from, const Vec3& way, double radius) noexcept {
   const auto half = [&](std::size_t axis) { return 0.5 * (double{box.high[axis]} - box.low[axis]) + radius; };
   const auto centre = [&](std::size_t axis) { return 0.5 * (double{box.high[axis]} + box.low[axis]); };
@@ -179,7 +179,7 @@ bool AabbTree::near_segment(const Box& box, const Vec3& from, const Vec3& way, d
          !apart(m.x, h.y, m.y, h.x, e.x, a.y, e.y, a.x);
 }
 
-/// Call test(leaf), which returns the share of the way that still matters, for every triangle near what still matters of it.
+/// Call test(leaf) for every triangle near the part of the path that still matters. It returns the share that matters from then on.
 template <class Test>
 void AabbTree::along(const Vec3& from, const Vec3& way, double radius, Test&& test) const noexcept {
   if (nodes_.empty()) return;

@@ -7,7 +7,7 @@
 namespace tactus::sim {
 namespace {
 
-constexpr double kParallel = 1e-14;  // squared sine, or squared volume, below which normals are as good as dependent
+constexpr double kParallel = 1e-14;  // squared sine, or squared volume, below which normals count as dependent
 
 class Search {
  public:

@@ -7,7 +7,7 @@
 namespace tactus::sim {
 namespace {
 
-constexpr int kMaxHalvings = 3;  // of a way that leads over the border
+constexpr int kMaxHalvings = 3;  // of a path that leaves the cut-out
 
 double extent_of(std::span<const Vec3> vertices) {
   double extent = 0;
@@ -40,7 +40,7 @@ IntermediateModel::IntermediateModel(const TriMesh& mesh, const MeshTopology& to
 }
 
 void IntermediateModel::cut_around(std::uint32_t triangle) noexcept {
-  if (still_ > 1 && triangle == cut_around_triangle_) return;  // it would be the same one
+  if (still_ > 1 && triangle == cut_around_triangle_) return;  // the cut-out would be the same
   cut_around_triangle_ = triangle;
   for (const std::uint32_t t : cut_) is_rim_[t] = 0;
   for (const std::uint32_t v : moving_) is_moving_[v] = 0;
@@ -105,7 +105,7 @@ void IntermediateModel::recut(std::span<const Vec3> vertices, const AabbTree& tr
   reach_ = std::sqrt(farthest2) / options_.ticks;
 }
 
-/// One tick nearer to where the deformation step put the vertices.
+/// Move the vertices one tick closer to the result of the deformation step.
 void IntermediateModel::approach() noexcept {
   tick_ = std::min(tick_ + 1, options_.ticks);
   if (reach_ == 0) return;

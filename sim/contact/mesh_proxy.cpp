@@ -10,9 +10,9 @@ namespace {
 
 constexpr int kMaxSweeps = 16;
 constexpr int kMaxPushes = 4;
-constexpr int kConfirmations = 2;  // searches without a way out, where several planes hold
-constexpr int kMaxIdle = 4;        // searches that move the proxy, but by rounding only
-constexpr double kExpected = 0.6;  // of the distance kept: so far the proxy may well go in a call, even if the probe does not
+constexpr int kConfirmations = 2;  // searches without progress that settle it, when several planes hold
+constexpr int kMaxIdle = 4;        // searches that move the proxy only by rounding
+constexpr double kExpected = 0.6;  // of the distance kept: how far the proxy may well go in a call, even if the probe rests
 
 Corners corners_of(const Triangle& triangle, std::span<const Vec3> vertices) {
   return {vertices[triangle[0]], vertices[triangle[1]], vertices[triangle[2]]};
@@ -22,7 +22,7 @@ Vec3 blend(const std::array<double, 3>& weights, const Corners& v) {
   return weights[0] * v[0] + weights[1] * v[1] + weights[2] * v[2];
 }
 
-/// Axes that lie in a triangle like those of any other: along its first edge, across it, along its normal.
+/// Axes of a triangle: along its first edge, across it, along its normal.
 std::optional<std::array<Vec3, 3>> axes(const Corners& v) {
   const Vec3 edge = v[1] - v[0], normal = cross(edge, v[2] - v[0]);
   const double length = norm(edge), area = norm(normal);
@@ -31,7 +31,7 @@ std::optional<std::array<Vec3, 3>> axes(const Corners& v) {
   return std::array<Vec3, 3>{x, cross(z, x), z};
 }
 
-/// Unit vector from a point of the surface to the sphere's centre. On a face that of the plane itself: exact however close they are.
+/// Unit vector from a point of the surface to the sphere's centre. On a face it is the plane's normal, exact at any distance.
 Vec3 away_from(const SurfacePoint& at, const Vec3& centre, std::span<const Vec3> vertices, const AabbTree& tree) {
   const Vec3 away = centre - at.point;
   if (at.feature() == Feature::face) {
@@ -53,11 +53,11 @@ MeshProxy::MeshProxy(const MeshProxyOptions& options, double extent) noexcept
 
 Sweep MeshProxy::towards(const Vec3& goal) const noexcept { return {centre_, goal - centre_, distance(), slack_}; }
 
-/// What is less than the slack is not worth a move: a proxy that is held does not creep.
+/// Motion below the slack is ignored, so that a held proxy does not creep.
 bool MeshProxy::lets_move(const SurfaceHit& hit, const Vec3& way) const noexcept { return hit.rest * norm(way) > slack_; }
 
-/// The triangles that held the proxy last are asked first: one that does not let it move at all settles the matter. The edge of a
-/// triangle may only seem to be in the way of a point, where the face beside it is what carries it.
+/// Test the triangles that held the proxy last first. One that allows no motion decides, unless a point meets it at an edge: the face
+/// beside the edge may be what carries the point.
 std::optional<SurfaceHit> MeshProxy::first_contact(const Vec3& goal, const AabbTree& tree, TriangleCache& around) const noexcept {
   const Sweep sweep = towards(goal);
   std::array<std::uint32_t, kMaxHalfspaces + std::tuple_size_v<decltype(recent_)>> asked;
@@ -76,7 +76,7 @@ std::optional<SurfaceHit> MeshProxy::first_contact(const Vec3& goal, const AabbT
   return hit && earlier(*hit, first) ? hit : first;
 }
 
-/// Make room by forgetting the planes that do not press, then those met first.
+/// Add a plane. If there is no room, drop the planes that do not press, or else the oldest one.
 void MeshProxy::hold(const Plane& plane) noexcept {
   if (held_ == kMaxHalfspaces) {
     std::size_t kept = 0;
@@ -98,10 +98,10 @@ void MeshProxy::release() noexcept {
   depth_.fill(0);
 }
 
-/// Where the proxy wants to be: near the probe, above its planes, and held back by friction.
+/// The proxy's goal: as near to the probe as its planes and friction permit.
 std::optional<Vec3> MeshProxy::wanted(const Vec3& probe) noexcept {
   if (held_ == 0) return probe;
-  std::array<Halfspace, kMaxHalfspaces> planes;  // as seen from the proxy, where rounding is smallest
+  std::array<Halfspace, kMaxHalfspaces> planes;  // relative to the proxy, where rounding is smallest
   for (std::size_t i = 0; i < held_; ++i) {
     const Plane& plane = planes_[i];
     planes[i] = {plane.normal, dot(plane.normal, plane.at.point - centre_) + (distance() + slack_)};
@@ -117,12 +117,12 @@ std::optional<Vec3> MeshProxy::wanted(const Vec3& probe) noexcept {
 void MeshProxy::follow(const Vec3& probe, std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
   release();
   TriangleCache around(tree, vertices, std::fmax(norm(probe - probe_), kExpected * distance()));
-  bool moved = false;  // since the planes were last forgotten
-  int idle = 0;        // how often they were forgotten without a gain
+  bool moved = false;  // since the planes were last released
+  int idle = 0;        // how often in a row they were released without progress
   double reached = norm(probe - centre_);
   for (int sweeps = 0; sweeps < kMaxSweeps;) {
     const auto goal = wanted(probe);
-    if (!goal) {  // two planes as good as parallel: the one met last decides
+    if (!goal) {  // two planes are almost parallel: the one met last decides
       const Plane last = planes_[held_ - 1];
       release();
       hold(last);
@@ -143,7 +143,7 @@ void MeshProxy::follow(const Vec3& probe, std::span<const Vec3> vertices, const 
       }
       if (held_ == 0) return;
     }
-    // One plane that does not let the proxy move is beyond doubt; among several, one touched at its edge may have hidden the way out.
+    // A single plane that allows no motion is certain. Among several, one met at an edge may have hidden a possible motion.
     const double remaining = norm(probe - centre_);
     idle = remaining < reached - slack_ ? 0 : idle + 1;
     if ((settled && !moved && (held_ == 1 || idle >= kConfirmations)) || idle > kMaxIdle || sweeps >= kMaxSweeps) return;
@@ -153,7 +153,7 @@ void MeshProxy::follow(const Vec3& probe, std::span<const Vec3> vertices, const 
   }
 }
 
-/// As the triangle of the anchor turned and moved.
+/// Move and turn the proxy along with its anchor's triangle.
 void MeshProxy::carry(std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
   if (!tree.contains(anchor_.triangle)) return;
   const Corners now = corners_of(tree.triangle(anchor_.triangle), vertices);
@@ -167,7 +167,7 @@ void MeshProxy::carry(std::span<const Vec3> vertices, const AabbTree& tree) noex
   const Vec3 foot = blend(anchor_.weights, now);
   anchor_.corners = now;
   centre_ = foot + offset;
-  if (const double height = norm(offset), least = distance() + slack_; height > 2 * least) {  // other parts may have come between
+  if (const double height = norm(offset), least = distance() + slack_; height > 2 * least) {  // others may lie in between
     centre_ = foot + (least / height) * offset;
     const auto hit = tree.sweep(towards(foot + offset), vertices, {&anchor_.triangle, 1});
     centre_ = hit ? centre_ + hit->rest * (foot + offset - centre_) : foot + offset;
@@ -175,8 +175,8 @@ void MeshProxy::carry(std::span<const Vec3> vertices, const AabbTree& tree) noex
   keep_distance(vertices, tree);
 }
 
-/// A triangle may pass over the proxy if its closest point comes nearer by half of the distance or more: the whole of it, but for
-/// how the triangle turns meanwhile.
+/// A triangle may pass over the proxy if its closest point comes nearer by at least half of the distance. The other half allows for
+/// the triangle's rotation.
 void MeshProxy::expect(double reach, std::span<const Vec3> vertices, std::span<const Vec3> next, const AabbTree& tree) noexcept {
   if (!placed_ || held_ > 0) return;
   double farthest = 0;
@@ -195,7 +195,7 @@ void MeshProxy::expect(double reach, std::span<const Vec3> vertices, std::span<c
   });
 }
 
-/// Step back from triangles that came closer than they may.
+/// Step back from triangles that are closer than the distance kept.
 void MeshProxy::keep_distance(std::span<const Vec3> vertices, const AabbTree& tree) noexcept {
   for (int push = 0; push < kMaxPushes; ++push) {
     const auto nearest = tree.closest(centre_, vertices, distance() - slack_);
@@ -228,7 +228,7 @@ ProxyTouch MeshProxy::settle(const Vec3& probe, std::span<const Vec3> vertices, 
   return touch;
 }
 
-/// Free, and nothing is between it and the probe: what move() would find out in the end.
+/// True if the proxy is free and nothing lies between it and the probe. move() would find the same, but slower.
 bool MeshProxy::is_far(const Vec3& probe, const AabbTree& tree) const noexcept {
   return placed_ && held_ == 0 && anchor_.triangle == MeshTopology::kNone && is_finite(probe) && tree.is_far(towards(probe));
 }

@@ -10,7 +10,7 @@ TriangleCache::Plane TriangleCache::plane_before(const Vec3& n, const Corners& v
   return {n.x, n.y, n.z, std::max({dot(n, v[0]), dot(n, v[1]), dot(n, v[2])})};
 }
 
-/// Both ends of the way, and so all of it, are further from the triangle than contact. Without a branch between the two.
+/// Whether both ends of the path, and thus all of it, are beyond contact with the triangle. Without a branch between the two.
 bool TriangleCache::clears(const Plane& plane, const Sweep& sphere, double limit) noexcept {
   const double contact = sphere.radius + 0.5 * sphere.slack;
   const double start = plane.x * sphere.from.x + plane.y * sphere.from.y + plane.z * sphere.from.z - plane.offset;
@@ -18,7 +18,7 @@ bool TriangleCache::clears(const Plane& plane, const Sweep& sphere, double limit
   return std::min(start, end) > contact;
 }
 
-/// Compute the closest point, and remember the plane that it gives.
+/// Test a triangle, and remember the plane that its closest point gives.
 std::optional<SurfaceHit> TriangleCache::ask(std::uint32_t number, const Sweep& sphere, double limit) noexcept {
   const AabbTree::Leaf& leaf = tree_.leaves_[number];
   const TriangleShape triangle(AabbTree::corners(leaf, vertices_));
@@ -38,7 +38,7 @@ std::optional<SurfaceHit> TriangleCache::sweep_one(const Sweep& sphere, std::uin
   return ask(leaf, sphere, 1);
 }
 
-/// Gather what the sphere may meet while its centre is that close.
+/// Collect the triangles that the sphere may meet while it is within `reach` of `centre`.
 /// out  false: there are too many
 bool TriangleCache::collect(const Vec3& centre, double reach, const Sweep& sphere) noexcept {
   centre_ = centre;
@@ -59,16 +59,16 @@ bool TriangleCache::collect(const Vec3& centre, double reach, const Sweep& spher
   });
 }
 
-/// Share of the way that is known to lie around.
+/// Share of the path that the cache covers.
 double TriangleCache::covered(const Sweep& sphere) const noexcept {
   const double left = reach_ - norm(sphere.from - centre_);
   if (left >= 0 && norm(sphere.from + sphere.way - centre_) <= reach_) return 1;
   return std::min(left / norm(sphere.way), 1.0);
 }
 
-/// Collect anew if too little of the way lies around: a short one with room at both ends; of a long one, which most often is stopped
-/// soon, its beginning.
-/// out  share of the way that lies around, at most the limit
+/// Rebuild the cache if it covers too little of the path. A short path is covered with a margin at both ends; of a long one only the
+/// start, as it usually stops early.
+/// out  share of the path that is covered, at most the limit
 double TriangleCache::cover(const Sweep& sphere, double limit) noexcept {
   const double share = reach_ < 0 ? -1 : std::min(covered(sphere), limit), length = limit * norm(sphere.way);
   if (share == limit) return limit;
@@ -81,7 +81,7 @@ double TriangleCache::cover(const Sweep& sphere, double limit) noexcept {
   return std::min(covered(sphere), limit);
 }
 
-/// First the planes of all candidates, in a loop that predicts no branches; then closest points of the few that are left.
+/// Test the planes of all candidates in a loop without branches, then the closest points of the few that are left.
 std::optional<SurfaceHit> TriangleCache::first_around(const Sweep& sphere, std::span<const std::uint32_t> left_out,
                                                       double limit) noexcept {
   std::array<std::uint32_t, kRoom> close;
@@ -96,7 +96,7 @@ std::optional<SurfaceHit> TriangleCache::first_around(const Sweep& sphere, std::
     if (first && clears(plane, sphere, limit)) continue;
     const std::uint32_t triangle = tree_.leaves_[leaf].triangle;
     if (std::find(left_out.begin(), left_out.end(), triangle) != left_out.end()) continue;
-    if (!knows(leaf)) {  // the corners reach less far than the box
+    if (!knows(leaf)) {  // a plane before the corners is tighter than one before the box
       plane = plane_before({plane.x, plane.y, plane.z}, AabbTree::corners(tree_.leaves_[leaf], vertices_));
       if (clears(plane, sphere, limit)) continue;
     }

@@ -23,7 +23,7 @@ std::vector<TouchedSurface> surfaces_of(const Bodies& bodies, const Scene& scene
   return out;
 }
 
-/// Clients that see the truth.
+/// The deformable objects of clients that see the truth.
 class TrueView final : public Touchable {
  public:
   TrueView(const Bodies& bodies, const Scene& scene)
@@ -68,7 +68,7 @@ class Objects final : public DeformableObjects {
   std::unique_ptr<TrueView> true_view_;  // none: clients have their own
   std::vector<TraceDeformable> meshes_;
   std::vector<DeformableInfo> info_;
-  std::vector<DeformableBody::Tick> last_;  // what the last tick came to, one per object
+  std::vector<DeformableBody::Tick> last_;  // results of the last tick, one per object
   std::int64_t tick_ = 0;
   bool report_at_rest_ = false;
 };
@@ -117,7 +117,7 @@ tl::expected<void, Diagnostic> Objects::step() {
   return {};
 }
 
-/// A new shape is shown to those who see the truth.
+/// Deform an object; clients that see the truth see its new shape.
 void Objects::deform(std::uint32_t object) noexcept {
   DeformableBody& body = *bodies_[object];
   if (body.reach() > 0) {

@@ -10,7 +10,7 @@
 namespace tactus::sim {
 namespace {
 
-/// The longest of the ways from one place to the other [m].
+/// Largest distance between a point and its counterpart [m].
 double farthest(std::span<const Vec3> from, std::span<const Vec3> to) {
   double square = 0;
   for (std::size_t i = 0; i < from.size(); ++i) square = std::max(square, dot(to[i] - from[i], to[i] - from[i]));

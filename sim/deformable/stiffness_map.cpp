@@ -14,9 +14,9 @@
 namespace tactus::sim {
 namespace {
 
-constexpr double kSingular = 1e-12;  // smallest pivot over largest; a body that can move without force has one of about 1e-16
+constexpr double kSingular = 1e-12;  // smallest over largest pivot; about 1e-16 for a body that can move without force
 
-/// Where each degree of freedom stands among the free ones, -1: it is fixed.
+/// Number of each degree of freedom among the free ones; -1: fixed.
 std::vector<int> numbers_of(const FemModel& model) {
   std::vector<int> numbers(static_cast<std::size_t>(model.size()), -1);
   int next = 0;

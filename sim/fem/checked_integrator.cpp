@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/base/rule.h>
 #include <tactus/sim/fem/checked_integrator.h>
 
 #include <algorithm>
@@ -8,12 +7,14 @@
 #include <limits>
 #include <utility>
 
+#include <tactus/base/rule.h>
+
 namespace tactus::sim {
 namespace {
 
 constexpr std::int64_t kEnergyEvery = 64;  ///< steps
 constexpr double kEnergyFactor = 10;
-constexpr double kTornFrom = 400;  ///< an edge 1000 times its length takes vertices that moved more than this many lengths
+constexpr double kTornFrom = 400;  ///< edge lengths: a vertex moves at least so far before an edge is 1000 times as long
 
 double shortest_edge(const TetMesh& mesh) {
   double shortest = std::numeric_limits<double>::infinity();
@@ -23,7 +24,7 @@ double shortest_edge(const TetMesh& mesh) {
   return shortest;
 }
 
-/// Name the tetrahedron that is at fault, -1: none.
+/// Name the tetrahedron at fault; -1: none.
 void blame(Diagnostic& error, std::int64_t tetrahedron) {
   if (tetrahedron < 0) return;
   error.kind = "tetrahedron";
@@ -52,7 +53,7 @@ std::int64_t most_stretched(const TetMesh& mesh, const Eigen::VectorXd& u) {
   return out;
 }
 
-/// Elastic energy when everything is strained by the rounding of a double.
+/// Elastic energy of a strain that is only rounding.
 double rounding_energy(const FemModel& model) {
   const auto& materials = model.options().materials;
   double sum = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/sim/fem/cholesky.h>
 
-extern "C" {  // which its header does not say itself
+extern "C" {  // missing in its header
 #include <ldl.h>
 }
 
@@ -14,7 +14,7 @@ namespace {
 
 int size_of(const std::vector<int>& rows) { return static_cast<int>(rows.size()); }
 
-/// LDL's interface knows no const; it reads these only.
+/// LDL takes pointers without const, but only reads what these point to.
 int* indices(const int* values) { return const_cast<int*>(values); }
 
 }  // namespace

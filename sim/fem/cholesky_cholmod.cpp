@@ -11,12 +11,12 @@
 namespace tactus::sim {
 namespace {
 
-constexpr std::size_t kTogether = 4;  ///< right sides that CHOLMOD makes room for
+constexpr std::size_t kTogether = 4;  ///< right sides that CHOLMOD's workspace holds
 
 int* ints(void* data) { return static_cast<int*>(data); }
 double* doubles(void* data) { return static_cast<double*>(data); }
 
-/// What CHOLMOD could not allocate.
+/// Throw if CHOLMOD could not allocate.
 template <class T>
 T* allocated(T* made) {
   if (made == nullptr) throw std::bad_alloc();
@@ -62,7 +62,7 @@ void CholmodCholesky::analyse(const SparseMatrix& A) {
   if (A.rows() == 0) return;  // CHOLMOD refuses matrices without columns
   impl_ = std::make_unique<Impl>();
   Impl& s = *impl_;
-  // The values are their own places, so that permuting the matrix once tells where each value goes. CHOLMOD only reads.
+  // Each value is its own index, so that one permutation of the matrix shows where each value goes. CHOLMOD only reads.
   const auto count = static_cast<std::size_t>(A.nonZeros());
   std::vector<double> place(count);
   for (std::size_t i = 0; i < count; ++i) place[i] = static_cast<double>(i);
@@ -115,7 +115,7 @@ void CholmodCholesky::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) noexce
   };
   cholmod_dense right = column(b), left = column(x);
   cholmod_dense* solution = &left;       // large enough: CHOLMOD writes into it
-  s.work->nrow = s.work->d = kTogether;  // another shape, as the last call has left it, would be allocated anew
+  s.work->nrow = s.work->d = kTogether;  // if the last call left another shape, CHOLMOD would allocate
   s.work->ncol = s.factor->n;
   cholmod_solve2(CHOLMOD_A, s.factor, &right, nullptr, &solution, nullptr, &s.work, &s.unused, &s.common);
 }

@@ -9,13 +9,13 @@
 namespace tactus::sim {
 namespace {
 
-constexpr double kExplicitLimit = 1.8;  ///< of 2: deformation and contact stiffen what was measured at rest
-/// What a step of TR-BDF2 costs in evaluations of the forces. Measured on the membrane: 11 in slow motion, 60 in fast. So many
-/// sub-steps are no dearer, and nearer to the truth: the error of one is that of a step many times shorter.
+constexpr double kExplicitLimit = 1.8;  ///< of 2: deformation and contact stiffen the object
+/// Cost of a step of TR-BDF2 in evaluations of the forces. Measured on the membrane: 11 in slow motion, 60 in fast. This many
+/// sub-steps cost no more and are more accurate: each has the error of a step many times shorter.
 constexpr int kWorthwhile = 12;
 constexpr double kTolerance = 1e-4;  ///< of the quasi-Newton scheme; at 1e-2 a turning object visibly brakes
 
-/// Largest h omega of an undamped oscillator that is as near to instability as this one with stiffness damping (explicit.h).
+/// h omega of the undamped oscillator that is as close to instability as this one with stiffness damping (explicit.h).
 double effective(double h, double omega, double beta) { return omega * std::sqrt(h * (h + 2 * beta)); }
 
 /// Step with which effective() is `limit`.

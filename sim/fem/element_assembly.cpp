@@ -48,7 +48,7 @@ Matrix3d clamped(const Matrix3d& g, double c, double mu) {
   solver.computeDirect(g);
   Vector3d h;
   for (int i = 0; i < 3; ++i) {
-    const double gamma = std::max(solver.eigenvalues()[i], 1e-6);  // F and G have no unit: 1 is the rest state
+    const double gamma = std::max(solver.eigenvalues()[i], 1e-6);  // F and G are dimensionless, and 1 at rest
     h[i] = std::clamp(c / gamma, -63 * mu, mu);
   }
   return solver.eigenvectors() * h.asDiagonal() * solver.eigenvectors().transpose();

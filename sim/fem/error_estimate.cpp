@@ -8,7 +8,7 @@
 namespace tactus::sim {
 namespace {
 
-constexpr std::size_t kMost = 4096;  ///< samples; when there are as many, every other one goes and looks become half as frequent
+constexpr std::size_t kMost = 4096;  ///< samples; when full, every second sample is dropped and the sampling interval doubles
 
 int order(Method method) { return method == Method::backward_euler || method == Method::projective ? 1 : 2; }
 

@@ -73,7 +73,7 @@ tl::expected<StepReport, Diagnostic> Implicit::second_order() {
   return done ? report + *done : done;
 }
 
-/// Solve the stage from the start in u, and take its velocity.
+/// Solve the stage from the initial guess in u, and compute its velocity.
 tl::expected<StepReport, Diagnostic> Implicit::solve() {
   auto report = newton_.solve(stage_, u_);
   if (!report) return report;
@@ -89,11 +89,11 @@ tl::expected<StepReport, Diagnostic> Implicit::backward_euler() {
   return solve();
 }
 
-/// Starting from u0 + duration v0 makes one iteration second-order: what the update has to correct is small by then.
+/// Starting from u0 + duration v0 makes a single iteration second-order, because the remaining correction is small.
 tl::expected<StepReport, Diagnostic> Implicit::trapezoidal(double duration) {
   const double c = stage_.c;
   stage_.Mb.noalias() = (1 - c * newton_.system().alpha()) * (model().mass_matrix() * v_);
-  const bool balanced = options().newton_iterations > 1;  // one iteration leaves an error of order two there
+  const bool balanced = options().newton_iterations > 1;  // one iteration leaves an error of order two in k_
   if (edited() || !balanced) newton_.system().forces(u_, v_, k_);
   stage_.Mb += c * (stage_.f - k_);
   stage_.a = u_ + c * v_;

@@ -51,8 +51,9 @@ struct IntegratorOptions {
   LinearSolver solver = LinearSolver::conjugate_gradients;
   double solver_tolerance = 1e-6;  ///< of conjugate gradients: relative residual of the linear system
   int newton_iterations = 10;      ///< at most; 1: linearly implicit
-  /// Stop when an update, or the estimate of the next one, is below this share of the stage's first update, in the energy norm of
-  /// the system matrix. A share of the motion itself would bias every step: the missing part always has the same sign.
+  /// Stop when an update d, or the estimate of the next one, is below this share of the stage's first update, or below 1e-10 of the
+  /// motion, sqrt(v^T M v). The size of d is sqrt(-d . r) with the residual r: for d = -A^-1 r its energy norm in the system matrix
+  /// A, without a product with A. A larger share of the motion would bias every step: the missing part always has the same sign.
   double newton_tolerance = 1e-8;
   int modes = 0;  ///< of `modal`, 1 .. free degrees of freedom
 };
@@ -71,8 +72,10 @@ class Integrator {
   /// Advance by h under constant external forces f [N].
   ///
   /// A step diverged (R-FEM-6) when its result is not finite, when a tetrahedron is torn (FemModel::broken_element, checked
-  /// whenever vertices have moved far enough since the last check), or when kinetic and elastic energy, checked every 64th step,
-  /// exceed ten times their value at the first check plus the work of f since. The state before the step is kept.
+  /// whenever vertices have moved far enough since the last check), or when the sum of kinetic and elastic energy, checked every 64th
+  /// step except with `modal`, exceeds 10 s (E + W) by more than rounding. E is the sum at the first check, W the sum of |work of f|
+  /// per step since then; both start anew when the caller has changed the state. s is 1; with velocity Verlet
+  /// below its limit 1 / (1 - (h omega_max / 2)^2), the swing of its energy in stable motion. The state before the step is kept.
   /// The error names the tetrahedron that is torn, or else the one that is stretched most.
   /// time see the tables; no allocation after the first step.
   /// err  R-FEM-5, R-FEM-6 (remedy named), R-FEM-7
@@ -98,7 +101,7 @@ struct Choice {
   double largest_frequency = 0;  ///< [rad/s]
   std::string reason;
 };
-/// time one power iteration, milliseconds for thousands of tetrahedra; allocates
+/// time one Lanczos iteration for omega_max, milliseconds for thousands of tetrahedra; allocates
 Choice choose(const FemModel& model, double step);
 
 /// Remedy for a divergence, with the numbers of this object.

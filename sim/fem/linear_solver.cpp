@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/base/rule.h>
 #include <tactus/sim/fem/linear_solver.h>
 
 #include <Eigen/LU>
 
 #include <algorithm>
+
+#include <tactus/base/rule.h>
 
 namespace tactus::sim {
 namespace {

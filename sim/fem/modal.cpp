@@ -10,7 +10,7 @@
 namespace tactus::sim {
 namespace {
 
-/// exp of the step's matrix, by scaling and squaring of its Taylor series; lambda and damping of any size, zero and critical too.
+/// Exponential of the step's matrix by its Taylor series, scaled and squared, for any lambda and damping, zero and critical included.
 Eigen::Matrix<double, 2, 3> exact_step(double lambda, double damping, double h) {
   Eigen::Matrix3d A;
   A << 0, 1, 0, -lambda * h * h, -damping * h, 1, 0, 0, 0;

@@ -63,7 +63,7 @@ double shortest_edge(const TetMesh& mesh) {
   return shortest;
 }
 
-constexpr double kTorn = 1e3;  // times the rest distance: farther apart than this nothing deformable comes back
+constexpr double kTorn = 1e3;  // times the rest length: no object recovers from a stretch beyond this
 
 }  // namespace
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/base/rule.h>
 #include <tactus/sim/fem/newton.h>
 
 #include <algorithm>
@@ -7,12 +6,14 @@
 #include <limits>
 #include <utility>
 
+#include <tactus/base/rule.h>
+
 namespace tactus::sim {
 namespace {
 
-constexpr double kAge = 0.8;        ///< exponent of a remembered shrinkage from use to use
+constexpr double kAge = 0.8;        ///< each use of the remembered shrinkage raises it to this power
 constexpr double kDiverged = 0.01;  ///< of the motion
-constexpr double kNothing = 1e-10;  ///< of the motion: what rounding may leave, and what nobody sees in a thousand steps
+constexpr double kNothing = 1e-10;  ///< of the motion: below rounding, and invisible even after a thousand steps
 
 }  // namespace
 
@@ -95,13 +96,13 @@ tl::expected<StepReport, Diagnostic> Newton::solve(const Stage& stage, Eigen::Ve
     const double enough = std::max(tolerance_ * tolerance_ * first, kNothing * kNothing * motion);
     report.converged = decrease <= enough;
     if (report.newton_iterations == 1 && shrinkage_ * decrease <= enough) {
-      // What a second iteration would add can be told from the stages before (Hairer and Wanner 1996, IV.8).
+      // Earlier stages predict what a second iteration would add (Hairer and Wanner 1996, IV.8).
       report.converged = true;
       shrinkage_ = std::pow(shrinkage_, kAge);
     }
     if (report.converged || iterations_ == 1) break;
     if (!search(stage, decrease, u)) direction_->forget();
-    // The next update would be smaller than this one about as the residual is.
+    // The next update would shrink about as much as the residual did.
     const double shrinkage = next_r_.squaredNorm() / (residual * residual);
     if (report.newton_iterations == 1) shrinkage_ = std::min(shrinkage, 1.0);
     report.converged = shrinkage * decrease <= enough;
@@ -115,8 +116,8 @@ tl::expected<StepReport, Diagnostic> Newton::solve(const Stage& stage, Eigen::Ve
   return report;
 }
 
-/// Shorten the step just taken while the residual along it says that it went beyond the lowest point by more than half.
-/// Afterwards d is the step as it is and next_r its residual.   ret  false when it had to be shortened
+/// Shorten the step just taken while the slope at its end shows that it overshot the minimum by more than half.
+/// Afterwards d is the step in its final length and next_r its residual.   ret  false when it had to be shortened
 bool Newton::search(const Stage& stage, double decrease, Eigen::VectorXd& u) {
   constexpr int kMost = 4;
   for (int i = 0;; ++i) {

@@ -47,7 +47,7 @@ void VertexRotations::follow(const Eigen::VectorXd& u, std::size_t share) noexce
   }
 }
 
-/// What one step takes R nearer to the rotation in `moments` (Mueller et al. 2016): by omega = sum_i r_i x c_i / |sum_i r_i . c_i|,
+/// One step of R towards the rotation in `moments` (Mueller et al. 2016): a turn by omega = sum_i r_i x c_i / |sum_i r_i . c_i|, with
 /// r_i and c_i the columns of R and of the moments.
 Eigen::Quaterniond VertexRotations::nearer(const Eigen::Matrix3d& R, const Eigen::Matrix3d& moments, double size) noexcept {
   Eigen::Vector3d omega = Eigen::Vector3d::Zero();
@@ -62,7 +62,7 @@ Eigen::Quaterniond VertexRotations::nearer(const Eigen::Matrix3d& R, const Eigen
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle, omega / angle));
 }
 
-/// All at once, as the body turns as a whole.
+/// Turn all vertices at once by one step towards the rotation of the whole body.
 void VertexRotations::turn_all(const Eigen::VectorXd& u) noexcept {
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
@@ -116,7 +116,7 @@ tl::expected<std::unique_ptr<DescentDirection>, Diagnostic> PrefactoredDirection
   return made;
 }
 
-/// The two loops of L-BFGS, newest pair first and last, seen from the shape at rest.
+/// The two loops of L-BFGS, the first from the newest pair back, the second up to it, both in the frame of the rest shape.
 tl::expected<int, Diagnostic> PrefactoredDirection::find(StageSystem& system, const Stage& /*stage*/, const Eigen::VectorXd& r,
                                                          Eigen::VectorXd& d) {
   if (turning_) rotations_.follow(system.ahead(), kShare);

@@ -37,9 +37,9 @@ void rotate_pair(Eigen4& e, int p, int q) {
   e.value[p][q] = e.value[q][p] = 0;
 }
 
-/// Cyclic Jacobi; quadratic, so that 4 x 4 takes five or six sweeps.
+/// Cyclic Jacobi. It converges quadratically: a 4 x 4 matrix takes five or six sweeps.
 void diagonalise(Eigen4& e) {
-  constexpr double kNegligible = 1e-34;  // square of what double precision resolves, K being of size 1
+  constexpr double kNegligible = 1e-34;  // square of the resolution of double precision, as K is of size 1
   for (int sweep = 0; sweep < 16; ++sweep) {
     double off = 0;
     for (int p = 0; p < 4; ++p)
@@ -81,7 +81,7 @@ Quat nearest_rotation(const Matrix3& f, const Quat& start) noexcept {
     if (e.value[i][i] > e.value[top][top]) top = i;
     size = std::max(size, std::abs(e.value[i][i]));
   }
-  // Eigenvalues this close are equal in double precision: all of their span is optimal.
+  // Eigenvalues this close are equal in double precision: every vector of their span is optimal.
   const double equal = e.value[top][top] - 1e-14 * size;
   const double from[4] = {start.w, start.x, start.y, start.z};
   double q[4] = {}, norm2 = 0;

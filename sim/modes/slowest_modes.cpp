@@ -48,7 +48,7 @@ Modes best_modes(const SymmetricMatrix& K, const SymmetricMatrix& M, const Basis
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz(X.transpose() * KX, X.transpose() * MX);
   Modes out{ritz.eigenvalues().head(count).cwiseMax(0.0), X * ritz.eigenvectors().leftCols(count)};
   for (auto shape : out.shapes.colwise()) {
-    const double large = shape.cwiseAbs().maxCoeff() / 2;  // not the largest: in a symmetric body that is one of several
+    const double large = shape.cwiseAbs().maxCoeff() / 2;  // not the largest: a symmetric body has several equal ones
     if (*std::ranges::find_if(shape, [large](double x) { return std::abs(x) >= large; }) < 0) shape = -shape;
   }
   return out;
@@ -57,8 +57,8 @@ Modes best_modes(const SymmetricMatrix& K, const SymmetricMatrix& M, const Basis
 }  // namespace
 
 std::optional<Modes> slowest_modes(const SymmetricMatrix& K, const SymmetricMatrix& M, Eigen::Index count) {
-  constexpr Eigen::Index kDense = 300;  // problems this small are solved whole
-  constexpr double kShift = 1e-6;       // rounding of a free body's modes grows with less, the number of solves with more
+  constexpr Eigen::Index kDense = 300;  // up to this size the dense problem is solved
+  constexpr double kShift = 1e-6;       // less: more rounding in a free body's modes; more: more solves
   constexpr double kAccuracy = 1e-10;   // of 1 / (lambda + shift)
   constexpr int kMostRestarts = 300;
   const Eigen::Index rows = K.rows(), space = 2 * count + 20;
@@ -82,7 +82,7 @@ std::optional<Modes> slowest_modes(const SymmetricMatrix& K, const SymmetricMatr
   try {
     lanczos.init(start.data());
     lanczos.compute(Spectra::SortRule::LargestMagn, kMostRestarts, kAccuracy, Spectra::SortRule::SmallestAlge);
-  } catch (const std::runtime_error&) {  // of its tridiagonal eigenproblem
+  } catch (const std::runtime_error&) {  // Spectra's tridiagonal eigenproblem did not converge
     return std::nullopt;
   }
   if (lanczos.info() != Spectra::CompInfo::Successful) return std::nullopt;

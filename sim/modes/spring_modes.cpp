@@ -24,7 +24,7 @@ double mean_edge(const TriMesh& mesh) {
   return mesh.triangles.empty() ? 0 : sum / static_cast<double>(3 * mesh.triangles.size());
 }
 
-/// Vertices in boxes as wide as a spring can be long.
+/// Vertices sorted into boxes as wide as the longest spring.
 class Boxes {
  public:
   Boxes(const TriMesh& mesh, double width) : width_(width) {

@@ -55,7 +55,7 @@ double MsdLoop::press(std::size_t user, double device) const noexcept {
 
 double MsdLoop::feel(std::size_t index, double device, double received) noexcept {
   User& user = users_[index];
-  // The packet that carries x'_o leaves whenever it changed; in between the network holds the last value.
+  // A packet with x'_o is sent whenever it changes; in between the network holds the last value.
   if (received != user.model.to) user.model.receive(received);
   user.model.advance(options_.divider);
   const double penetration = device == kAway ? 0 : device - user.model.value;
@@ -69,7 +69,7 @@ double MsdLoop::feel(std::size_t index, double device, double received) noexcept
 void MsdLoop::end_tick() noexcept {
   sum_ += last_;
   if (++phase_ < options_.divider) return;
-  // T_c: what is computed from this period's forces is used from the next period on.
+  // T_c: the result of this period's forces takes effect in the next period.
   const double x = model_.step(options_.decimator == Decimator::mean ? sum_ / options_.divider : last_);
   server_.receive(x);
   for (User& user : users_) user.sent = x;

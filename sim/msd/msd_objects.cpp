@@ -14,7 +14,7 @@ MsdLoopOptions loop_options(const Scene& scene, const SceneMsd& spec) {
   MsdLoopOptions out{.object = spec.object,
                      .tick = kTick,
                      .divider = spec.rate,
-                     .client = Approach::linear,  // else b_c would answer every new surface with a blow
+                     .client = Approach::linear,  // else b_c turns every new surface into a force peak
                      .coupling = Coupling::pressing,
                      .users = {}};
   if (scene.touch)

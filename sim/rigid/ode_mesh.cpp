@@ -26,7 +26,7 @@ OdeMesh make_ode_mesh(const TriMesh& mesh) {
 dMass mass_of_mesh(dGeomID geom, double mass) {
   dMass out;
   dMassSetTrimeshTotal(&out, mass, geom);
-  dMassTranslate(&out, -out.c[0], -out.c[1], -out.c[2]);  // what rounding left
+  dMassTranslate(&out, -out.c[0], -out.c[1], -out.c[2]);  // rounding error of the centre
   return out;
 }
 

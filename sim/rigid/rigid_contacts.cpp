@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who touches whom, and what that makes of their motion.
+// Contacts between objects, and the steps of the groups they form.
 #include <algorithm>
 #include <tuple>
 
@@ -30,10 +30,10 @@ int RigidWorld::Impl::collide(dGeomID a, dGeomID b) {
   return on_mesh ? keep_outermost(std::span(found).first(static_cast<std::size_t>(count)), kMaxContacts) : count;
 }
 
-/// Whoever is awake against what rests. One that sleeps and is hit is awake from now on, as are those that it touches in turn.
+/// Test awake bodies against resting ones. A sleeping body that is hit wakes, and so do the bodies it touches.
 void RigidWorld::Impl::find_pairs() {
   pairs.clear();
-  groups = awake;  // grows
+  groups = awake;  // grows in the loop
   for (std::size_t k = 0; k < groups.size(); ++k) {
     const std::uint32_t i = groups[k];
     const Extent box = bounds(i);
@@ -49,7 +49,7 @@ void RigidWorld::Impl::find_pairs() {
   find_pairs_among_awake();
 }
 
-/// Sorted along x.
+/// Sweep and prune along x.
 void RigidWorld::Impl::find_pairs_among_awake() {
   order.clear();
   for (const std::uint32_t i : awake) order.emplace_back(bounds(i).low.x, i);
@@ -62,7 +62,7 @@ void RigidWorld::Impl::find_pairs_among_awake() {
   }
 }
 
-/// Where the pairs touch, and which bodies hang together by that; false when that is too much.
+/// Find the contacts of all pairs and the groups they form. False if there are too many contacts.
 bool RigidWorld::Impl::find_contacts() {
   touching.clear();
   for (const std::uint32_t i : awake) {
@@ -90,7 +90,7 @@ std::uint32_t RigidWorld::Impl::group_of(std::uint32_t body) {
   return body;
 }
 
-/// Contacts of a pair become joints.
+/// Turn the contacts of a pair into joints.
 void RigidWorld::Impl::attach(const Pair& pair) {
   const Body& first = bodies[pair.a];
   const Body* const second = body(pair.b);
@@ -111,7 +111,7 @@ void RigidWorld::Impl::attach(const Pair& pair) {
   }
 }
 
-/// Bodies and pairs group by group; what touches nothing is one group, without pairs.
+/// Sort bodies and pairs by group. Bodies that touch nothing form one group, without pairs.
 void RigidWorld::Impl::make_groups() {
   for (const std::uint32_t i : awake) bodies[i].island = bodies[i].touches ? group_of(i) : kFloor;
   std::erase_if(pairs, [](const Pair& pair) { return pair.count == 0; });
@@ -123,8 +123,8 @@ void RigidWorld::Impl::make_groups() {
             [this](std::uint32_t a, std::uint32_t b) { return std::pair(bodies[a].island, a) < std::pair(bodies[b].island, b); });
 }
 
-/// QuickStep shuffles its constraints with the process's one random generator. Seeded, and with one group of bodies at a time, what
-/// becomes of a group depends on this group alone, not on which others there are or whether they sleep.
+/// QuickStep shuffles its constraints with the one random generator of the process. The generator is seeded and groups are stepped one
+/// by one, so that a group's result depends on this group alone, not on other groups or whether they sleep.
 void RigidWorld::Impl::step_groups() {
   const auto switch_all = [this](void (*to)(dBodyID)) {
     for (const std::uint32_t i : groups) to(bodies[i].handle);

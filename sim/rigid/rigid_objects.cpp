@@ -8,7 +8,7 @@ namespace {
 
 constexpr unsigned kLiftButton = 0;
 
-/// One per user, all as if the first had been copied: copies share surfaces.
+/// One probe per user. They are copies, so they share the surfaces.
 std::vector<RigidProbe> make_probes(const Scene& scene, bool attended) {
   if (scene.users.empty()) return {};
   RigidProbe probe(scene.objects, *scene.touch);

@@ -17,7 +17,8 @@ class RigidObjects final : public Simulated {
   /// pre  every call on the same thread (RigidWorld)
   explicit RigidObjects(const Scene& scene);
 
-  /// time O(objects that moved): `frame` must be that of the tick before
+  /// pre  `frame` is that of the tick before, has room for all objects of the scene, and frame.changed is set with capacity for them
+  /// time O(objects that moved)
   void observe(TraceFrame& frame) noexcept override;
   Touch touch(std::size_t user, const DeviceSample& device, bool held) noexcept override;
   void push(std::size_t user, double share) noexcept override;

@@ -58,7 +58,7 @@ void BoxProxy::move(const Vec3& probe) noexcept {
   else proxy_ = probe;
 }
 
-/// Where does the way from the proxy, which is outside, to the probe first meet the box? (slab test)
+/// Move the proxy to where its path to the probe first meets the box (slab test); false if it does not.   pre  the proxy is outside
 bool BoxProxy::enter(const Vec3& probe) noexcept {
   double first = 0, last = 1;
   std::optional<BoxFace> met;
@@ -131,7 +131,7 @@ void RigidProbe::attend(std::uint32_t object, const Pose& pose) {
   near_.insert(std::lower_bound(near_.begin(), near_.end(), object), object);
 }
 
-/// Find out which objects the probe may meet on its way to the device, and some way beyond.
+/// Find the objects that the probe may meet on its path to the device, and a little beyond.
 void RigidProbe::look_around(const Vec3& device, std::span<const Pose> poses) noexcept {
   looked_from_ = device;
   const Vec3 middle = 0.5 * (device_ + device);
@@ -148,7 +148,7 @@ void RigidProbe::look_around(const Vec3& device, std::span<const Pose> poses) no
   }
 }
 
-/// Whether it touches afterwards.
+/// Move one proxy; true if it touches afterwards.
 bool RigidProbe::move_one(std::size_t object, const Vec3& device, std::span<const Pose> poses) noexcept {
   return std::visit(
       [&](auto& proxy) {
@@ -158,7 +158,7 @@ bool RigidProbe::move_one(std::size_t object, const Vec3& device, std::span<cons
       proxies_[object]);
 }
 
-/// Move the proxies; while one object is touched the others do not feel the probe.
+/// Move the proxies; while one object is touched, the others ignore the probe.
 void RigidProbe::follow(const Vec3& device, std::span<const Pose> poses) noexcept {
   if (touched_) {
     if (move_one(*touched_, device, poses)) return;

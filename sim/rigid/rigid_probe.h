@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Haptic rendering of rigid objects. Solids of any shape: surface_proxy.h. Boxes: virtual proxy (god object) with friction cone. Thesis 2.3.4.1, figure 2.6, eq. 2.6.
+/// Haptic rendering of rigid objects. Solids of any shape: surface_proxy.h. Boxes: virtual proxy (god object) with friction cone.
+/// Thesis 2.3.4.1, figure 2.6, eq. 2.6.
 ///
 /// The proxy stays on the face where the probe entered as long as the probe is inside: a thin box does not let the probe through,
 /// and an edge does not turn the force. The proxy is kept in the box's frame and so moves with the box.

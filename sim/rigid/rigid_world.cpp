@@ -15,15 +15,15 @@ namespace {
 
 using namespace rigid;
 
-// Resting boxes stay this deep in what carries them [m]: at depth 0 rounding would open and close the contact in turn. The floor
-// is raised by as much, so that a box on it rests at the height the scene gives.
+// Depth of resting boxes in their support [m]: at depth 0 rounding would open and close the contact in turn. The floor is raised by
+// as much, so that a box on it rests at the height the scene gives.
 constexpr double kSurfaceLayer = 1e-5;
 // dWorldStep loses friction for single ticks ("LCP internal error" on a pushed cube that sticks). QuickStep does not; for one
 // cube on the floor its error in the friction force falls from 3e-2 (20 iterations) over 1e-6 (50) to 1e-8 (100) of mu N.
 constexpr int kIterations = 100;
 constexpr std::uint32_t kStillTicks = 16;
 
-// Beyond these a step no longer makes sense, and ODE ends the process when a rotation overflows.
+// Faster objects cannot be stepped sensibly, and ODE aborts the process when a rotation overflows.
 constexpr double kFastest = 1e4;      // [m/s]
 constexpr double kFastestTurn = 1e5;  // [rad/s]
 
@@ -32,7 +32,7 @@ Vec3 along_free(const Vec3& v, std::uint8_t dof, int first) {
   return {dof >> first & 1 ? v.x : 0.0, dof >> (first + 1) & 1 ? v.y : 0.0, dof >> (first + 2) & 1 ? v.z : 0.0};
 }
 
-/// Neither NaN nor absurd.
+/// Neither NaN nor too fast.
 bool can_step(const Motion& motion) { return norm(motion.velocity) < kFastest && norm(motion.angular_velocity) < kFastestTurn; }
 
 Rows inverse_of(const dMass& mass) {
@@ -124,7 +124,7 @@ Vec3 RigidWorld::Impl::velocity_without_contact(const Body* body, const Vec3& po
   return motion.velocity + cross(motion.angular_velocity, point - vec(dBodyGetPosition(body->handle)));
 }
 
-/// Damp, then put the object back onto its axes.
+/// Damp the velocities, then project the object back onto its free axes.
 void RigidWorld::Impl::project(Body& body) const {
   const std::uint8_t dof = body.spec.dof;
   const Vec3 v = body.spec.damping * along_free(vec(dBodyGetLinearVel(body.handle)), dof, 0);
@@ -147,8 +147,8 @@ void RigidWorld::Impl::project(Body& body) const {
   dBodySetQuaternion(body.handle, rotation);
 }
 
-/// What the solver leaves over is not a motion. Who stands still already goes on to stand up to a larger speed, so that no other shuffle
-/// of the constraints makes it go.
+/// The solver's residual is not motion. A standing object keeps standing up to a higher speed, so that another order of the
+/// constraints does not start it.
 void RigidWorld::Impl::stand_still(Body& body) const {
   const bool is_pushed = body.force != Vec3{} || body.torque != Vec3{};
   const double speed = norm(vec(dBodyGetLinearVel(body.handle))) + body.reach * norm(vec(dBodyGetAngularVel(body.handle)));
@@ -158,7 +158,7 @@ void RigidWorld::Impl::stand_still(Body& body) const {
     const dQuaternion rotation{q.w, q.x, q.y, q.z};
     dBodySetPosition(body.handle, x.x, x.y, x.z);
     dBodySetQuaternion(body.handle, rotation);
-    std::copy_n(rotation, 4, const_cast<dReal*>(dBodyGetQuaternion(body.handle)));  // ODE made it one of unit length: other bits
+    std::copy_n(rotation, 4, const_cast<dReal*>(dBodyGetQuaternion(body.handle)));  // ODE normalised it, which changes bits
     dBodySetLinearVel(body.handle, 0, 0, 0);
     dBodySetAngularVel(body.handle, 0, 0, 0);
   }
@@ -180,7 +180,7 @@ void RigidWorld::Impl::put_to_sleep(std::uint32_t number) {
   resting_is_old = true;
 }
 
-/// Whatever touches each other sleeps together, or not at all.
+/// A group of touching objects sleeps as a whole or not at all.
 void RigidWorld::Impl::let_still_sleep() {
   for (auto first = groups.begin(); first != groups.end();) {
     const std::uint32_t island = bodies[*first].island;
@@ -193,7 +193,7 @@ void RigidWorld::Impl::let_still_sleep() {
   }
 }
 
-/// At the end of a period; whatever wakes a body, a push or one that hits it, wakes all that it touches.
+/// Put resting piles to sleep at the end of a period. A push or a hit that wakes a body wakes all that it touches.
 void RigidWorld::Impl::let_piles_sleep() {
   for (const Body& body : bodies)
     if (body.handle) moving[body.mover] = {vec(dBodyGetPosition(body.handle)), quaternion(body.handle)};

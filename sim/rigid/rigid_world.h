@@ -5,7 +5,8 @@
 ///                   have without friction, so that the bound is mu N in every direction of sliding, not up to 41 % more.
 /// Damping           v and w are multiplied by the object's d after every step.
 /// Standstill        an object in contact stands still if it is not pushed and none of its points is faster than 1e-8 m/s after a
-///                   step: it keeps its pose, and its velocity is zero. Otherwise it would creep by the solver's residual.
+///                   step, or 1e-7 m/s if it stood still before: it keeps its pose, and its velocity is zero. Otherwise it would
+///                   creep by the solver's residual.
 /// Sleep             a group of touching objects, or a single one, is left out of steps when no bit of its state changed in 16
 ///                   ticks, until one of them is pushed or hit. Results are the same bit for bit: each group of touching objects
 ///                   is solved on its own. A pile that jitters sleeps, too (rest_watch.h), and then loses its velocities.
@@ -20,7 +21,6 @@
 #include <tactus/base/geometry.h>
 #include <tactus/rigid/rigid_state.h>
 #include <tactus/sim/scene/scene.h>
-#include <tactus/sim/touchable.h>
 
 namespace tactus::sim {
 

@@ -10,7 +10,7 @@ constexpr double kFarthest = 100;  // [m] as for other objects
 constexpr Range kPlace{-kFarthest, kFarthest};
 constexpr double kTetBytes = 3000;            // as measured, without a factorised matrix
 constexpr std::uint64_t kMostTets = 170'000;  // of a scene
-constexpr double kRounding = 1e-9;            // of the mesh's size: what a box or corner may miss a vertex by
+constexpr double kRounding = 1e-9;            // of the mesh's size: tolerance of boxes and corners
 
 // As tactus::sim::name(Method) and name(LinearSolver) spell them; modal is left out, because contact excites what its modes lack.
 constexpr std::array<std::string_view, 6> kMethods{"auto",    "velocity-verlet", "backward-euler",

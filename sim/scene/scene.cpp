@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kMostSceneBytes = std::size_t{4} << 20;
 constexpr double kFarthest = 100;                                   // [m] well inside the codec's default grid
-constexpr std::size_t kMostObjects = 4096, kMostDeformables = 255;  // as streams take
+constexpr std::size_t kMostObjects = 4096, kMostDeformables = 255;  // limits of a stream
 constexpr std::size_t kMostUsers = 64;
 constexpr double kLongest = 24 * 3600.0;                                           // [s]
 constexpr std::array<std::string_view, 6> kAxes{"x", "y", "z", "rx", "ry", "rz"};  // order of the bits in Dof
@@ -59,7 +59,7 @@ Quat read_rotation(TomlReader& in, const toml::table& table, const std::string& 
   return {w / length, x / length, y / length, z / length};
 }
 
-/// Move the surface so that its centre of mass is the object's origin, which then stands where that centre was.
+/// Read the surface and shift it so that its centre of mass is the object's origin. The object's position is adjusted accordingly.
 void read_surface(TomlReader& in, const toml::table& table, const std::filesystem::path& folder, SceneObject& object) {
   const toml::node& node = *table.get("surface");
   if (const toml::node* size = table.get("size"))
@@ -186,7 +186,7 @@ SceneUser read_user(TomlReader& in, const toml::table& table, const Scene& scene
   return user;
 }
 
-/// A scene of more would take memory and time that a few bytes of text have not earned.
+/// Limit the memory and time that a few bytes of text can demand.
 void limit(TomlReader& in, const toml::table& root, std::string_view key, std::size_t most) {
   const std::size_t count = in.tables(root, "", key).size();
   if (count > most)
@@ -250,7 +250,7 @@ tl::expected<Scene, Diagnostic> parse_scene(std::string_view text, std::string_v
 
 tl::expected<Scene, Diagnostic> load_scene(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  std::string text(kMostSceneBytes + 1, '\0');  // one more: that it is too long is for parse_scene() to say
+  std::string text(kMostSceneBytes + 1, '\0');  // one more, so that parse_scene() can refuse a longer one
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(file.gcount()));
   if (file.bad() || !(file.good() || file.eof()))

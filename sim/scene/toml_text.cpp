@@ -6,7 +6,7 @@
 namespace tactus::sim {
 namespace {
 
-/// Bytes of the string at the front of `text`: to the end of its line at most, but for those in three quotes.
+/// Bytes of the string at the front of `text`. It ends with its line at the latest, unless it is in three quotes.
 std::size_t string_length(std::string_view text) noexcept {
   const char quote = text[0];
   const bool is_long = text.size() > 2 && text[1] == quote && text[2] == quote;

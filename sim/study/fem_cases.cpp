@@ -13,7 +13,7 @@ namespace {
 constexpr double kCell = 0.01;       // [m]
 constexpr double kMassDamping = 20;  // [1/s]
 constexpr double kGrown = 10;        // times the energy at the start
-constexpr double kRounding = 1e-20;  // of Young's modulus times volume: energy that is none
+constexpr double kRounding = 1e-20;  // of Young's modulus times volume: energy below this is rounding
 constexpr int kModes = 12;
 constexpr Material kSoft{.young = 1e4, .poisson = 0.45, .density = 10'000};  // of the thesis's membrane
 
@@ -70,7 +70,7 @@ TetMesh two_parts(Cells n) {
   return out;
 }
 
-/// A regular tetrahedron and, on its base, one whose height is that of a dihedral angle of 0.1 degrees.
+/// A regular tetrahedron and, on its base, one so flat that its dihedral angle is 0.1 degrees.
 FemCase sliver() {
   const double a = kCell, inradius = a / std::sqrt(12.0), flat = inradius * std::tan(0.1 * std::numbers::pi / 180);
   FemCase out{.name = "sliver, dihedral 0.1 deg", .mesh = {}, .options = {}, .start = {}};
@@ -131,7 +131,7 @@ void add_starts(std::vector<FemCase>& out, Extent extent) {
   add("start at random", [&](const Vec3&) {
     return Vec3{random.uniform(0, size.x), random.uniform(0, size.y), random.uniform(0, size.z)};
   });
-  // Half a turn about the long axis, more and more toward the far end.
+  // Twisted about the long axis, from nothing at one end to half a turn at the other.
   add("twisted by 180 deg", [&](const Vec3& x) {
     const double angle = std::numbers::pi * x.y / size.y, dx = x.x - size.x / 2, dz = x.z - size.z / 2;
     return Vec3{size.x / 2 + dx * std::cos(angle) - dz * std::sin(angle), x.y,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Deformable objects in extreme states, and what a method of integration makes of them.
+/// Deformable objects in extreme states, and how each method of integration copes with them.
 #pragma once
 
 #include <cstdint>
@@ -40,7 +40,7 @@ struct FemOutcome {
 ///   stable    it went through all steps, energy did not grow, nothing is inside out
 ///   limit     the same, but tetrahedra stay inside out
 ///   diverges  an error, or energy is more than ten times what it was (that of velocity Verlet swings below its limit)
-/// in   method  with the solver that a scene gets which names it (suited()); none: what choose() takes
+/// in   method  with the solver that a scene with this method gets (suited()); none: the choice of choose()
 FemOutcome run(const FemCase& fem_case, std::optional<Method> method);
 
 /// The extremes, on a slab of 4 x 5 x 1 cells of 1 cm with fixed corners, E 10 kPa, nu 0.45, 10 000 kg/m^3, damped by mass (20/s).

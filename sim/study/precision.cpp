@@ -68,7 +68,7 @@ struct Run {
   const PrecisionScene& scene;
   const PrecisionMethod& method;
   Loading loading;
-  FemModel model, observer;  // the integrator has its model for itself
+  FemModel model, observer;  // the integrator needs a model of its own
   std::unique_ptr<Integrator> integrator;
   FemState state;
   Eigen::VectorXd f;
@@ -233,7 +233,7 @@ tl::expected<Reference, Diagnostic> make_reference(const PrecisionScene& scene) 
   out.order = std::log2(state_error(quarter.u, half.load.u) / out.floor.displacement);
   for (double* error : {&out.floor.displacement_end, &out.floor.displacement, &out.floor.velocity, &out.floor.force,
                         &out.floor.energy, &out.floor.weight, &out.floor.push})
-    *error /= 15;  // of two results of order 4, the finer one is off by a fifteenth of their difference
+    *error /= 15;  // of two results of order 4, the finer one's error is a fifteenth of their difference
   return out;
 }
 
@@ -267,7 +267,7 @@ PrecisionPoint measure(const PrecisionScene& scene, const PrecisionMethod& metho
   if (once) runs.push_back(*std::move(run));
   while (!once && static_cast<int>(runs.size()) < timing.runs) {
     auto again = simulate(scene, method, steps_per_sample, Loading::force);
-    if (!again) return out;  // never: it is the first run once more
+    if (!again) return out;  // cannot happen: it repeats the first run
     runs.push_back(*std::move(again));
   }
   out.runs = static_cast<int>(runs.size());

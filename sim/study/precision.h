@@ -4,16 +4,16 @@
 /// error             relative 2-norm over all sample times of
 /// displacement      u, all vertices; `displacement_end`: at the last sample time only
 /// velocity          v, all vertices
-/// weight            u under self weight that is there at once, as much as the load in all
-/// push              u under the load when it is there at once: excites every motion the mesh has
+/// weight            u under self weight applied at once, in all as much as the load
+/// push              u under the load applied at once, which excites every motion the mesh has
 /// force             the force of a probe that presses the patch down
 /// energy            elastic and kinetic energy
 ///
-/// All against the same mesh under the Runge-Kutta method of order 4, which is none of those compared, with forces that are not held
-/// over its steps. Half and a quarter as many steps yield that reference's own error (Richardson) and its order.
-/// External forces are held over a step, so each method is given them where that costs it no order: the one-sided methods at the
-/// end, the others in the middle. The penetration of the probe there is predicted with the
-/// velocity at the beginning.
+/// The reference is the same mesh under the Runge-Kutta method of order 4, which is not among the methods compared. It does not hold
+/// forces over its steps. Half and a quarter as many steps yield the reference's own error (Richardson) and its order.
+/// The methods hold external forces over a step, so each gets them where that costs it no order: the one-sided methods those at the
+/// end, the others those in the middle. At that time the probe's penetration is predicted from the velocity at the beginning of the
+/// step.
 #pragma once
 
 #include <tactus/sim/study/precision_scene.h>
@@ -36,7 +36,7 @@ struct Trajectory {
   double newton_per_step = 0;      ///< iterations
   double solver_per_step = 0;
   int unconverged_steps = 0;  ///< Newton ran out of iterations
-  std::string taken;          ///< of a method that is chosen: which
+  std::string taken;          ///< if the method was chosen: which one
 };
 
 /// The error's step counts from 0 at rest.
@@ -66,16 +66,16 @@ struct PrecisionPoint {
   Errors errors;
   double seconds_per_second = 0;  ///< processor time per simulated time, median
   double setup_seconds = 0;
-  int runs = 0;  ///< that the median is of
+  int runs = 0;  ///< behind the medians
   double newton_per_step = 0, solver_per_step = 0;
   int unconverged_steps = 0;
-  std::string taken;   ///< of a method that is chosen: which
+  std::string taken;   ///< if the method was chosen: which one
   std::string remark;  ///< why it stopped and there are no errors; "probe: ..." when only the force is missing
 
   double seconds_per_step() const noexcept { return seconds_per_second * step; }
 };
 
-/// How often a run is timed after one to warm up; one that takes longer than `longest_repeated` [s] only that once.
+/// How often a run is timed after a warm-up. If that takes longer than `longest_repeated` [s], it is the only run timed.
 struct Timing {
   int runs = 5;
   double longest_repeated = 1;

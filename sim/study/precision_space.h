@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a mesh of linear tetrahedra gets wrong, however small the time step: the space error, under refinement.
+/// The space error of meshes of linear tetrahedra under refinement: what remains wrong however small the time step.
 ///
 /// membrane     slab of 16 x 20 x 1 cells of 1 cm and finer ones of the same shape; clamped over one coarse cell at each corner (a
 ///              clamped point would sink in without limit), loaded on 4 x 4 cm of the top
 /// cantilever   beam 1 x 0.2 x 0.2 m clamped at x = 0, loaded on the tip
 ///
-/// Refinement r divides every edge of the coarse mesh into r. What is looked at is the mean deflection of the loaded patch: under a
-/// static load on the undeformed object, and in time with co-rotated elements under -sin^2(2 pi t). The limit of the static deflection
-/// comes from quadratic elements (quadratic_tets.h); in time, the finest mesh has to do.
+/// Refinement r divides every edge of the coarse mesh into r. The mean deflection of the loaded patch is compared: under a static load
+/// on the undeformed object, and in time with co-rotated elements under -sin^2(2 pi t). The limit of the static deflection comes from
+/// quadratic elements (quadratic_tets.h); in time, the finest mesh takes its place.
 #pragma once
 
 #include <tactus/sim/study/precision_scene.h>

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/base/rule.h>
 #include <tactus/sim/study/quadratic_tets.h>
 
 #include <Eigen/Dense>
@@ -8,11 +7,13 @@
 #include <array>
 #include <utility>
 
+#include <tactus/base/rule.h>
+
 namespace tactus::sim::study {
 namespace {
 
 constexpr int kNodes = 10;
-constexpr double kResidual = 1e-5;  // of the load; the deflection is then good to 12 digits, as 1e-11 shows on two meshes
+constexpr double kResidual = 1e-5;  // of the load; 12 digits of the deflection are then as with 1e-11, on two meshes
 constexpr std::array<std::pair<int, int>, 6> kEdges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 
 using Element = std::array<std::uint32_t, kNodes>;  // corners, then the middles of kEdges
@@ -107,7 +108,7 @@ Stiffness element_stiffness(const TetMesh& mesh, std::size_t tet, const Material
   return out;
 }
 
-/// Zeros where free nodes share an element; node by node, since triplets of all elements would fill the memory.
+/// Zeros where free nodes share an element. Made node by node, since triplets of all elements would fill the memory.
 SparseMatrix pattern(const Mesh& mesh, const TetMesh& tets) {
   std::vector<std::vector<int>> neighbours(static_cast<std::size_t>(mesh.free_nodes()));
   for (const Tet& tet : tets.tets) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Ten-node tetrahedra (displacement quadratic, edges straight), linear elasticity: what linear tetrahedra are measured against. They do
-/// not lock in bending, so a coarse mesh of them is closer to the truth than the finest one of linear elements.
+/// Ten-node tetrahedra (displacement quadratic, edges straight), linear elasticity: the reference for linear tetrahedra. They do not lock
+/// in bending, so a coarse mesh of them is closer to the truth than the finest one of linear elements.
 #pragma once
 
 #include <tactus/sim/study/precision_scene.h>

@@ -20,7 +20,7 @@ Matrix product(const Matrix& a, const Matrix& b) noexcept {
 }  // namespace
 
 Transition transition(const Impedance& impedance, double period) noexcept {
-  // exp of the system {x, v, u} by its series on a period short enough, then squared back.
+  // Exponential of the system {x, v, u}: the series over a part of the period that is short enough, then squared repeatedly.
   const double rate = impedance.damping / impedance.mass + std::sqrt(impedance.stiffness / impedance.mass) + 1 / period;
   const int halvings = std::max(0, static_cast<int>(std::ceil(std::log2(rate * period)))) + 4;
   const double h = std::ldexp(period, -halvings);

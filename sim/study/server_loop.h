@@ -28,7 +28,7 @@ struct ServerLoop {
 /// time O(users N), 1.5 ns each, 20 000 times
 Verdict step_response(const ServerLoop& loop, double stiffness);
 
-/// Largest k_s per user [N/m] whose step response does not diverge, to a relative 1e-4.
+/// Largest k_s per user [N/m] with a step response that does not diverge, to a relative 1e-4.
 double measured_limit(const ServerLoop& loop);
 
 /// Largest magnitude of the closed loop's poles: eq. 4.36, with the model's linear approach to a new surface where that is chosen.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Where each part of the simulation stops being stable, measured beside what theory says.
+/// Limits of stability of each part of the simulation, measured and from theory.
 ///
 ///   jury     multi-rate loop at the server             thesis eqs. 4.37, 4.38; figure 4.16
 ///   wall     sampled virtual wall on a held device     thesis eqs. 2.2 to 2.4; figure 2.2

@@ -96,7 +96,7 @@ Outcome interact(const Setting& setting) {
 
 bool comes_to_rest(const Setting& setting) { return interact(setting).verdict == Verdict::stable; }
 
-/// Where a barely held device that presses stops coming to rest: the longest delay, and the damping at the client that mends 100 ms.
+/// Limits for a barely held device that presses to come to rest: the longest delay, and the least damping at the client for 100 ms.
 void limit_rows(Study& study, const Progress& progress) {
   Setting setting{"", "barely held", "", kBarelyHeld, 350, 0, 0};
   const auto add = [&](const char* quantity, const char* unit, double measured, const char* remark) {
@@ -133,12 +133,11 @@ void limit_rows(Study& study, const Progress& progress) {
 Study study_client(Extent, const Progress& progress) {
   Study study{.name = "client", .title = "Force rendering at a client with delay"};
   study.text =
-      "Thesis figure 4.17: a user presses a mass-spring-damper object over a network, k_c = 700 N/m, k_s = 250 N/m, N = 10, "
-      "m_o = 10 g and b_o = 1 N s/m (the thesis does not state these three); the hand builds up 1 N. What the thesis calls a "
-      "loose grasp has "
-      "nearly no impedance: here 50 g, 0.8 N s/m, 5 N/m, the stylus lying on the fingers. The passivity observer watches the "
-      "port "
-      "between hand and client; sim/user's loose grip (12 N s/m) is far from that and stable throughout.";
+      "Thesis figure 4.17: a user presses a mass-spring-damper object over a network, k_c = 700 N/m, k_s = 250 N/m, N = 10, m_o "
+      "= 10 g and b_o = 1 N s/m (the thesis does not state these three); the hand builds up 1 N. What the thesis calls a loose "
+      "grasp has nearly no impedance. Here it is a stylus lying on the fingers: 50 g, 0.8 N s/m, 5 N/m. The loose grip of "
+      "sim/user (12 N s/m) is far from that and stable throughout. The passivity observer watches the port between hand and "
+      "client.";
   const std::array<Setting, 6> settings{
       {{"a", "barely held", "", kBarelyHeld, 350, 0, 0},
        {"b", "barely held", "bounces on and on, and gives energy away", kBarelyHeld},

@@ -25,7 +25,7 @@ std::string cell_text(const FemOutcome& outcome) {
   return name(outcome.verdict);
 }
 
-/// With what came of the energy: a method can be stable and still brake.
+/// Includes the energy at the end: a stable method can still damp the motion.
 std::string chosen_text(const FemOutcome& outcome) {
   std::string out = outcome.taken.empty() ? cell_text(outcome) : outcome.taken + ": " + cell_text(outcome);
   if (!outcome.error.empty()) return out;
@@ -144,7 +144,7 @@ void limit_rows(Study& study, Extent extent, const Progress& progress) {
   }
 }
 
-/// Which (E, h) each method gets through: 1000 steps of a slab displaced by up to 2 mm, without damping.
+/// The (E, h) that each method gets through: 1000 steps of a slab displaced by up to 2 mm, without damping.
 void map_series(Study& study, const Progress& progress) {
   Series limit{.name = "map-limit", .columns = {"E [Pa]", "h [s]"}};
   for (std::size_t m = 0; m + 1 < kMethods.size(); ++m) {
@@ -171,20 +171,16 @@ Study study_fem(Extent extent, const Progress& progress) {
   Study study{.name = "fem", .title = "Deformable objects"};
   study.text =
       "A co-rotated slab with fixed corners (4 x 5 x 1 cells of 1 cm, E 10 kPa, nu 0.45, 10 000 kg/m3, mass damping 20/s, h = 1 "
-      "ms, 1000 "
-      "steps unless said otherwise; the short form has 2 x 2 x 1 cells and 200 steps) starts in an extreme state and is left "
-      "alone. *Stable*: "
-      "all steps done, energy did not grow, nothing is inside out. *N inverted*: the same, but N tetrahedra stay inside out. "
-      "*Stopped*: the step was refused with an error that names step, tetrahedron and remedy (in stability.csv), and the state "
-      "before it "
-      "kept. *Refused*: not begun at all. The modal method keeps 12 modes of the linear problem and loses what they do not hold. "
-      "Each method is run with the solver and the tolerance that a scene gets which names it; *chosen* is what a scene gets that "
-      "names none, with the energy at the end as a share of that at the start. The two slabs that turn freely are undamped: 1 is "
-      "right. "
-      "Newmark keeps the energy of a linear object, not that of one whose elements turn: in the map it has a stripe of stops at "
-      "h "
-      "omega_max of some 4 to 16. With longer steps its stages cannot be solved any more, backward Euler takes over and damps. "
-      "The explicit limit is bisected from tiny random displacements.";
+      "ms, 1000 steps unless said otherwise; the short form has 2 x 2 x 1 cells and 200 steps) starts in an extreme state and "
+      "is left alone. *Stable*: all steps were done, the energy did not grow, and no tetrahedron is inside out. *N inverted*: "
+      "the same, but N tetrahedra stay inside out. *Stopped*: a step was refused with an error that names step, tetrahedron and "
+      "remedy (in stability.csv), and the state before it was kept. *Refused*: the run was not begun. The modal method keeps 12 "
+      "modes of the linear problem and loses motion outside of them. Each method runs with the solver and the tolerance of a "
+      "scene that names the method; *chosen* is the method of a scene that names none, with the energy at the end as a share of "
+      "that at the start. The two slabs that turn freely are undamped: 1 is right. Newmark keeps the energy of a linear object, "
+      "but not of one whose elements turn: in the map it has a stripe of stops at h omega_max of some 4 to 16. With longer "
+      "steps its stages can no longer be solved; backward Euler takes over and damps. The explicit limit is bisected from tiny "
+      "random displacements.";
   extremes(study, extent, progress);
   limit_rows(study, extent, progress);
   rest_rows(study, extent, progress);

@@ -24,7 +24,7 @@ struct Setting {
   ServerLoop loop;
 };
 
-/// One parameter at a time, around the figure.
+/// Settings that differ from the figure in one parameter.
 std::vector<Setting> variations() {
   std::vector<Setting> out;
   const auto vary = [&](const std::string& subject, auto change) {
@@ -127,11 +127,10 @@ Row figure_row(double sum_of_stiffness) {
 Study study_jury(Extent extent, const Progress& progress) {
   Study study{.name = "jury", .title = "Deformation loop at the server"};
   study.text =
-      "Users press a mass-spring-damper object that is deformed every N ticks of 1 ms. Every hand steps 1 mm into it; the "
-      "largest "
-      "stiffness whose response stays bounded over 20 000 deformation periods is bisected and set beside Jury's criterion "
-      "(thesis "
-      "eqs. 4.37 and 4.38). The poles of the closed loop (eq. 4.36) must leave the unit circle at the same place.";
+      "Users press a mass-spring-damper object that is deformed every N ticks of 1 ms. Every hand steps 1 mm into it. The "
+      "largest stiffness with a response that stays bounded over 20 000 deformation periods is found by bisection and compared "
+      "with Jury's criterion (thesis eqs. 4.37 and 4.38). The poles of the closed loop (eq. 4.36) must leave the unit circle at "
+      "the same stiffness.";
   const double critical = critical_stiffness(kFigure.object, kFigure.period());
   for (const double around : {kAround, -kAround}) study.rows.push_back(figure_row(critical + around));
   study.series.push_back(figure_response("figure-4.16-a", critical + kAround));

@@ -87,7 +87,7 @@ Row tower_row(double seconds, Sleep sleep, const Progress& progress) {
   std::optional<double> asleep;  // [s]
   for (std::int64_t tick = 0; tick < ticks; ++tick) {
     if (tick % 100 == 0) progress("rigid, tower", static_cast<std::uint64_t>(tick), static_cast<std::uint64_t>(ticks));
-    // A force that changes nothing keeps the pile awake.
+    // A negligible force keeps the pile awake.
     if (sleep == Sleep::prevented) world.push(0, {0, 0, -1e-12}, scene.objects[0].pose.position);
     if (const auto step = world.step(); !step) {
       row.verdict = Verdict::diverges;
@@ -131,7 +131,7 @@ struct Rail {
   int every = 1;       // ticks
 };
 
-/// What `every` ticks of RigidWorld make of position, velocity and force: v += h f / m, x += h v, v *= d.
+/// Position, velocity and force after `every` ticks of RigidWorld: v += h f / m, x += h v, v *= d.
 Transition transition(const Rail& rail) {
   const auto advance = [&](double x, double v, double f) {
     for (int i = 0; i < rail.every; ++i) {
@@ -272,10 +272,9 @@ Study study_rigid(Extent extent, const Progress& progress) {
   Study study{.name = "rigid", .title = "Rigid objects"};
   study.text =
       "`RigidWorld` (ODE QuickStep, 100 iterations, 1 kHz). Blocks of 75 x 25 x 15 mm and 14 g, cubes of 4 cm and 150 g, "
-      "friction "
-      "0.5. A pile of which no point moved 20 um in 256 ms sleeps until it is pushed or hit; the tower is shown with and without "
-      "that. *Stiff touch*: a spring ties a cube on a rail to a probe that stands still; its force is computed every tick or, at "
-      "60 Hz, every 17th, and held. A mass ratio is a limit that is reported, not a promise.";
+      "friction 0.5. A pile sleeps when no point of it has moved 20 um in 256 ms, until it is pushed or hit; the tower is shown "
+      "with and without sleep. *Stiff touch*: a spring ties a cube on a rail to a probe that stands still. The spring's force "
+      "is computed every tick or, at 60 Hz, every 17th tick, and held. Mass ratios are reported as limits, not guaranteed.";
   study.rows.push_back(tower_row(full ? 600 : 2, Sleep::allowed, progress));
   if (full) study.rows.push_back(tower_row(11, Sleep::prevented, progress));
   const std::vector<double> ratios = full ? std::vector<double>{1, 3, 10, 30, 100, 1e3, 1e4} : std::vector<double>{1, 100};

@@ -31,7 +31,7 @@ struct Row {
   Verdict verdict = Verdict::stable;
   std::string quantity{};            ///< what was measured, "sum of k_s"
   std::string unit{};                ///< of both figures below
-  std::optional<double> measured{};  ///< none: the verdict is all there is
+  std::optional<double> measured{};  ///< none: there is only a verdict
   std::optional<double> analytic{};  ///< limit that theory gives
   std::string remark{};
   bool detail = false;  ///< for files only: a table sums it up
@@ -66,10 +66,10 @@ struct Study {
   std::vector<Series> series{};
 };
 
-/// Seconds for continuous integration, or as long as it takes.
+/// A few seconds, for continuous integration, or as long as it takes.
 enum class Extent : std::uint8_t { brief, full };
 
-/// Told now and then how far a piece of work is.
+/// Called now and then with the progress of a piece of work.
 using Progress = std::function<void(const std::string& work, std::uint64_t done, std::uint64_t total)>;
 
 /// The border between `low`, which holds, and `high`, which does not, to a relative width.

@@ -14,7 +14,7 @@ constexpr int kWay = 1000;          // samples into the wall
 constexpr int kReversals = 10'000;  // of the fast motion
 constexpr int kSamples = 100'000;   // of a device that was let go
 constexpr double kFar = 1e3;        // [m]
-constexpr int kWindow = 1000;       // samples; what moves farther in the last window than in the second one grows
+constexpr int kWindow = 1000;       // samples; motion that is larger in the last window than in the second one grows
 
 /// Penetration at sample n, from outside the wall and back there.
 double penetration(Motion motion, int n) {

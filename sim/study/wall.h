@@ -14,13 +14,13 @@ struct Wall {
 };
 
 /// How a hand that yields to nothing moves the device. Both are straight between samples: of all motions through the same samples
-/// these waste least in the device's damper, so that what they find is the border for every hand.
+/// these lose least energy in the device's damper, so the limit found holds for every hand.
 ///   slow  in by a thousandth of the way per sample, and out again
 ///   fast  to and fro at every sample, at half the sampling rate
 enum class Motion : std::uint8_t { slow, fast };
 
-/// A passivity observer between this hand and the device (damping b_d) in front of the wall never sees energy coming out, which a
-/// full cycle did not put in.
+/// Whether a passivity observer between this hand and the device (damping b_d) in front of the wall sees no more energy come out than
+/// went in, over the whole motion.
 bool is_passive(const Wall& wall, double device_damping, double period, Motion motion);
 
 /// A hand on the device, tied to the wall at 1 mm and let go: does it stay within bounds?

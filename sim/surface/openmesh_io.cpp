@@ -22,8 +22,8 @@ namespace {
 
 namespace om = OpenMesh;
 
-/// OpenMesh's readers and message streams are process-wide: one call at a time, and nothing reaches the terminal. (Connecting a stream
-/// of ours instead, to repeat its words, leaks in OpenMesh 9.)
+/// OpenMesh's readers and message streams are process-wide: one call at a time, and nothing reaches the terminal. (Redirecting its
+/// messages to a stream of ours leaks in OpenMesh 9.)
 class QuietOpenMesh {
  public:
   QuietOpenMesh() : lock_(mutex()) {
@@ -47,7 +47,7 @@ class QuietOpenMesh {
   std::scoped_lock<std::mutex> lock_;
 };
 
-/// Takes what a reader finds as it is; OpenMesh's own importer leaves out or doubles what does not fit its half-edges.
+/// Keeps all that a reader finds. OpenMesh's own importer drops or duplicates what does not fit its half-edges.
 class SoupImporter final : public om::IO::BaseImporter {
  public:
   PolygonSoup soup;
@@ -109,7 +109,7 @@ class SoupImporter final : public om::IO::BaseImporter {
   void set_status(om::FaceHandle, const om::Attributes::StatusInfo&) override {}
 };
 
-constexpr std::streamsize kDigits = 9;  // bring a float back to the same bits
+constexpr std::streamsize kDigits = 9;  // restore a float's bits
 
 }  // namespace
 

@@ -21,7 +21,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kMostWords = 1 << 16;
 
-/// Where the child reads, writes and works.
+/// Input, output and working folder of the child.
 class SpawnActions {
  public:
   SpawnActions(const fs::path& folder, const fs::path& output) {
@@ -40,7 +40,7 @@ class SpawnActions {
   posix_spawn_file_actions_t actions_{};
 };
 
-/// Status of the child; nothing when the deadline came first.
+/// Status of the child; nothing if the deadline passes first.
 std::optional<int> wait_until(pid_t child, Clock::time_point deadline) {
   using namespace std::chrono_literals;
   auto pause = 1ms;

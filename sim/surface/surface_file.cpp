@@ -10,7 +10,7 @@
 namespace tactus::sim {
 namespace {
 
-constexpr std::size_t kMaxCorners = 1024;  // trying each as the fan's first is quadratic
+constexpr std::size_t kMaxCorners = 1024;  // the search for a fan's first corner is quadratic
 
 /// Twice the area, along the normal (Newell).
 Vec3 polygon_normal(const std::vector<Vec3>& vertices, const Polygon& polygon) {
@@ -21,7 +21,7 @@ Vec3 polygon_normal(const std::vector<Vec3>& vertices, const Polygon& polygon) {
   return sum;
 }
 
-/// Triangles from one corner to every edge, from the first corner where each looks the way the polygon does.   out  false: there is none
+/// Cut the polygon into a fan of triangles from the first corner where all of them face its way.   out  false: there is none
 bool append_fan(const Polygon& polygon, TriMesh& mesh) {
   const std::size_t n = polygon.size();
   const Vec3 normal = polygon_normal(mesh.vertices, polygon);

@@ -8,14 +8,15 @@
 /// rule      class           broken when
 /// R-SRF-1   io              the file cannot be opened, read or written
 /// R-SRF-2   limit_exceeded  it is larger than 512 MiB, or announces more than 2^20 vertices or 2^21 faces
-/// R-SRF-3   unsupported     the name ends in none of .obj, .ply, .stl and .off; a binary OFF; a PLY that does not begin with vertices and
-///                           faces, whose coordinates are neither float nor double, or with other lists than the faces' corners,
+/// R-SRF-3   unsupported     the name ends in none of .obj, .ply, .stl and .off; a binary OFF; a PLY that does not begin with vertices
+///                           and faces, whose coordinates are neither float nor double, or with other lists than the faces' corners,
 ///                           counted by one byte
-/// R-SRF-4   malformed       a line is not one of the format, the header announces more than the file's size allows, or OpenMesh refuses it
+/// R-SRF-4   malformed       a line is not one of the format, the header announces more than the file's size allows, or OpenMesh
+///                           refuses it
 /// R-SRF-5   malformed       it holds more faces or vertices than could be read
 /// R-SRF-6   invalid         a polygon has fewer than 3 or more than 1024 corners, or no corner from which all of it is seen
 /// R-SRF-7   invalid         it holds no face
-/// R-SRF-8..14                the mesh is broken, see codec/base/tri_mesh.h
+/// R-SRF-8..14               the mesh is broken, see codec/base/tri_mesh.h
 #pragma once
 
 #include <string_view>

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 
-/// The number at the front of `text` without leading zeros, as digits; `text` moves on behind it.
+/// Take the digits at the front of `text`; the result is without leading zeros.
 std::string_view take_number(std::string_view& text) noexcept {
   std::size_t end = 0;
   while (end < text.size() && is_digit(text[end])) ++end;

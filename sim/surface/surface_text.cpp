@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/base/rule.h>
 #include <tactus/sim/surface/surface_text.h>
 
 #include <algorithm>
@@ -10,6 +9,8 @@
 #include <cstring>
 #include <limits>
 #include <vector>
+
+#include <tactus/base/rule.h>
 
 namespace tactus::sim {
 namespace {
@@ -79,7 +80,7 @@ tl::expected<void, Diagnostic> check_counts(const SurfaceText& announced, std::s
   return {};
 }
 
-/// Vertices and faces alone, faces without numbers of textures and normals.
+/// Keep only vertices and faces, without the faces' numbers of textures and normals.
 Prepared prepare_obj(std::string_view text) {
   SurfaceText out{{}, ".obj", 0, 0};
   std::string line;
@@ -104,14 +105,14 @@ Prepared prepare_obj(std::string_view text) {
   return out;
 }
 
-/// Append the first three words of a line of OFF.   out  false: they are no coordinates
+/// Append the first three words of a line of OFF.   out  false: they are not coordinates
 bool append_vertex(const std::vector<std::string_view>& words, std::string& out) {
   if (words.size() < 3 || !std::all_of(words.begin(), words.begin() + 3, is_real)) return false;
   for (std::size_t i = 0; i < 3; ++i) (out += words[i]) += i < 2 ? ' ' : '\n';
   return true;
 }
 
-/// Append the number of corners and these.   out  false: they are not there
+/// Append the number of corners and the corners.   out  false: they are missing
 bool append_face(const std::vector<std::string_view>& words, std::string& out) {
   const std::size_t corners = whole_number(words[0]).value_or(words.size());
   if (corners >= words.size()) return false;
@@ -122,7 +123,7 @@ bool append_face(const std::vector<std::string_view>& words, std::string& out) {
   return true;
 }
 
-/// Coordinates and corners alone, one element a line. The header is "OFF" and "vertices faces edges", on one line or two.
+/// Keep only coordinates and corners, one element per line. The header is "OFF" and "vertices faces edges", on one line or two.
 Prepared prepare_off(std::string_view text) {
   SurfaceText out{{}, ".off", 0, 0};
   std::vector<std::string_view> header;
@@ -176,10 +177,10 @@ struct PlyColumn {
 /// Header of a PLY file: vertices, then faces; what follows them is not read.
 struct PlyHeader {
   bool binary = false, ended = false;
-  std::size_t elements = 0;  ///< that the header names
+  std::size_t elements = 0;  ///< in the header
   std::array<std::size_t, 2> counts{};
   std::array<std::vector<PlyColumn>, 2> columns;
-  std::string text = "ply\n";  ///< the same again without comments, in the words that OpenMesh knows
+  std::string text = "ply\n";  ///< the header again without comments, in words that OpenMesh knows
 };
 
 tl::expected<void, Diagnostic> read_ply_property(std::string_view rest, PlyHeader& header) {
@@ -236,7 +237,7 @@ tl::expected<void, Diagnostic> read_ply_line(std::string_view line, PlyHeader& h
   return header.ended ? tl::expected<void, Diagnostic>() : malformed(line);
 }
 
-/// True when the words of a line are what the columns ask for.
+/// True if the words of a line match the columns.
 bool fits(const std::vector<std::string_view>& words, const std::vector<PlyColumn>& columns) {
   std::size_t at = 0;
   for (const PlyColumn& column : columns) {

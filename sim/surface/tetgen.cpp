@@ -72,7 +72,7 @@ std::string fill_switches(const FillOptions& options) {
   return switches;
 }
 
-/// "Facet #3 intersects facet #5 at triangles:", counted from 1; empty when no facet is complained about.
+/// "Facet #3 intersects facet #5 at triangles:", counted from 1; empty if no facet is named.
 std::string first_two_facets(const std::string& words) {
   std::array<std::string, 2> found;
   std::size_t at = 0;
@@ -95,7 +95,7 @@ std::string last_line(const std::string& words) {
   return last;
 }
 
-/// A run of the program in its folder, until the time limit of the whole task.
+/// Runs the program in its folder, within the time limit of the whole task.
 class TetGen {
  public:
   TetGen(const FillOptions& options, const fs::path& folder)
@@ -112,7 +112,7 @@ class TetGen {
     return broken(Errc::io, "R-TGN-6", "");
   }
 
-  /// Why it gave up: it ends in the same way for every reason, but can be asked for facets that cut one another.
+  /// Why it failed. Its result does not tell, but a second run can look for facets that cut each other.
   Diagnostic reason(const ProgramResult& failed) const {
     const auto asked = run("-dz");
     if (!asked) return asked.error();
@@ -128,7 +128,7 @@ class TetGen {
   std::chrono::steady_clock::time_point deadline_;
 };
 
-/// Put the surface's vertices back to their own bits: TetGen writes 16 digits.
+/// Restore the bits of the surface's vertices: TetGen writes only 16 digits.
 void restore_vertices(const TriMesh& surface, TetMesh& mesh) {
   const Bounds box = bounds(surface.vertices);
   const double near = kSamePlace * norm(box.high - box.low);

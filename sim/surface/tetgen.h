@@ -12,7 +12,7 @@
 /// R-TGN-7   invalid_argument  an option is not finite or out of range
 /// R-TGN-8   invalid           the vertex named belongs to no triangle, or stands where another one does
 /// R-TGN-9   invalid           the tetrahedra's volume is not what the surface encloses (a cavity, or one part inside another)
-/// R-SRF-8..14                  the mesh is broken, see codec/base/tri_mesh.h
+/// R-SRF-8..14                 the mesh is broken, see codec/base/tri_mesh.h
 #pragma once
 
 #include <tactus/base/tri_mesh.h>

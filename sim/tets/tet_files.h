@@ -5,14 +5,14 @@
 /// rule      class           broken when
 /// R-TET-8   io              the file cannot be opened, read or written
 /// R-TET-9   limit_exceeded  it is larger than 512 MiB, or announces more than 2^20 vertices or 2^22 tetrahedra
-/// R-TET-10   truncated       it ends before everything announced was there
-/// R-TET-11   malformed       a number is expected, and the word is none or does not fit its type
-/// R-TET-12   invalid         a number is NaN or infinite
-/// R-TET-13   malformed       a line has more or fewer words than its place asks for, or a section is missing or stands there twice
-/// R-TET-14   unsupported     not three dimensions, not linear tetrahedra, a binary .msh, or another version than 2.2 and 4.1
-/// R-TET-15   invalid         vertices or tetrahedra are not numbered one by one from 0 or 1 (.node, .ele), a vertex number stands there
-///                           twice, or a tetrahedron names a vertex that is not there
-/// R-TET-16   invalid         it holds no tetrahedron
+/// R-TET-10  truncated       it ends before everything announced was there
+/// R-TET-11  malformed       a number is expected, and the word is none or does not fit its type
+/// R-TET-12  invalid         a number is NaN or infinite
+/// R-TET-13  malformed       a line has more or fewer words than its place asks for, or a section is missing or occurs twice
+/// R-TET-14  unsupported     not three dimensions, not linear tetrahedra, a binary .msh, or another version than 2.2 and 4.1
+/// R-TET-15  invalid         vertices or tetrahedra are not numbered one by one from 0 or 1 (.node, .ele), a vertex number occurs
+///                           twice, or a tetrahedron names a vertex that does not exist
+/// R-TET-16  invalid         it holds no tetrahedron
 /// R-TET-17  unsupported     the name does not end in .node, .ele or .msh
 #pragma once
 

@@ -211,7 +211,7 @@ class MshReader {
     return words_.end_of_line();
   }
 
-  /// Points that only curves and surfaces were made of, such as the centre of a circle.
+  /// Drop points that only curves and surfaces were made of, such as the centre of a circle.
   void drop_unused_vertices() {
     std::vector<std::uint32_t> number(file_.mesh.vertices.size(), 0);
     for (const Tet& tet : file_.mesh.tets)

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/base/rule.h>
 #include <tactus/sim/tets/tet_mesh.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include <tactus/base/rule.h>
 
 namespace tactus::sim {
 namespace {
@@ -27,7 +28,7 @@ bool is_in_range(const Vec3& v) noexcept {  // false for NaN
   return std::abs(v.x) <= kMaxCoordinate && std::abs(v.y) <= kMaxCoordinate && std::abs(v.z) <= kMaxCoordinate;
 }
 
-bool is_flat(const TetMesh& mesh, std::size_t tet) noexcept {  // also when a corner stands there twice
+bool is_flat(const TetMesh& mesh, std::size_t tet) noexcept {  // also when a corner occurs twice
   double longest = 0;
   const Tet& corners = mesh.tets[tet];
   for (std::size_t i = 0; i < 4; ++i)
@@ -48,7 +49,7 @@ tl::expected<void, Diagnostic> check_elements(const TetMesh& mesh) {
   return {};
 }
 
-/// A face of a tetrahedron as a number: equal for equal corners, whichever way they go round.
+/// A face of a tetrahedron as a number, which is the same for any order of its corners.
 std::uint64_t face_key(Face face) noexcept {
   std::sort(face.begin(), face.end());
   return std::uint64_t{face[0]} << 40 | std::uint64_t{face[1]} << 20 | face[2];

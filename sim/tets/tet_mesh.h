@@ -4,9 +4,9 @@
 /// rule      class           element  broken when
 /// R-TET-1   invalid         vertex   a coordinate is NaN or infinite, or larger than 1e6 m
 /// R-TET-2   invalid         tet      an index is not that of a vertex
-/// R-TET-3   invalid         tet      two corners are the same vertex, or its volume is zero relative to its longest edge (1e-12 of its cube)
+/// R-TET-3   invalid         tet      two corners are the same vertex, or its volume is zero: below 1e-12 of its longest edge's cube
 /// R-TET-4   invalid         tet      inside out: negative volume
-/// R-TET-5   invalid         tet      a face belongs to a third tetrahedron, or two lie on the same side of it (as when one stands there twice)
+/// R-TET-5   invalid         tet      a face belongs to a third tetrahedron, or two lie on the same side of it (as if listed twice)
 /// R-TET-6   invalid         vertex   belongs to no tetrahedron: it would have no mass
 /// R-TET-7   limit_exceeded  0        more than 2^20 vertices or 2^22 tetrahedra
 #pragma once

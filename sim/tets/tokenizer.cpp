@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/base/rule.h>
 #include <tactus/sim/tets/tokenizer.h>
 
 #include <algorithm>
+
+#include <tactus/base/rule.h>
 
 namespace tactus::sim {
 namespace {

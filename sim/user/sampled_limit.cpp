@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-/// The loop at z = e^jw: without the spring, and what multiplies k.
+/// The loop at z = e^jw: the hand without the spring, and the factor of k.
 struct Response {
   std::complex<double> hand, filter;
 };
@@ -23,7 +23,7 @@ Response at(double w, const HandImpedance& hand, double samples) {
           (1.0 - std::polar(1.0, -w * samples)) / (samples * step)};
 }
 
-/// The k with which the imaginary part vanishes, and what is left of the real one.
+/// The k that makes the imaginary part zero, and the real part that remains.
 struct Crossing {
   double stiffness, rest;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What rests is left alone, and nothing else changes by it: sim/deformable/deformable_body.h, deformable_world.h.
+// What rests is left alone, and nothing else changes by it: sim/deformable/deformable_body.h, deformable_objects.h.
 #include <gtest/gtest.h>
 
 #include <algorithm>
