@@ -39,7 +39,7 @@ class Receiver {
   /// err  invalid_argument R-API-4: a replica option; limit_exceeded R-STR-14, R-STR-18 the scene is beyond the limits, R-API-11 memory
   static Result<Receiver> create(SharedScene scene, const ReceiverOptions& options = {});
 
-  /// Decode a packet and apply it to the replica. An error leaves the receiver unchanged.
+  /// Decode a packet and apply it to the replica. An error leaves the receiver unchanged, but R-PKT-7 drops its baselines.
   /// in   packet  as Packet::bytes
   ///      now     [ticks] time of arrival on the receiver's own clock, any origin. Packets of a file need none: each counts as
   ///              arriving in its own tick (R-FIL-7)

@@ -9,6 +9,12 @@
 
 namespace tactus {
 
+/// Signed integers as unsigned ones: 0, -1, 1, -2, ... are 0, 1, 2, 3, ...
+constexpr std::uint64_t zigzag(std::int64_t v) noexcept {
+  return static_cast<std::uint64_t>(v) << 1 ^ static_cast<std::uint64_t>(v >> 63);
+}
+constexpr std::int64_t unzigzag(std::uint64_t v) noexcept { return static_cast<std::int64_t>(v >> 1 ^ (~(v & 1) + 1)); }
+
 /// Reads an untrusted span. After the first fault (end of the span or overlong varint) every read returns 0 and the reader stays
 /// failed. A syntax function checks ok() once, at its end.
 class ByteReader {

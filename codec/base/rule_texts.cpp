@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Sentences of spec/rules.csv. Apart from result.cpp: a program that shows none carries none.
+/// Sentences of spec/rules.csv. In a file of its own, so that programs that never show them do not link them.
 #include <algorithm>
 #include <iterator>
 #include <string_view>

@@ -127,7 +127,6 @@ tl::expected<void, Diagnostic> check(const TriMesh& mesh) try {
 MeshTopology::MeshTopology(const TriMesh& mesh)
     : first_triangle_(mesh.vertices.size() + 1, 0),
       triangle_list_(3 * mesh.triangles.size()),
-      first_neighbour_(mesh.vertices.size() + 1, 0),
       corners_(mesh.triangles),
       across_(mesh.triangles.size(), {kNone, kNone, kNone}) {
   for (const Triangle& triangle : mesh.triangles)
@@ -137,34 +136,17 @@ MeshTopology::MeshTopology(const TriMesh& mesh)
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
     for (const std::uint32_t v : mesh.triangles[t]) triangle_list_[end[v]++] = t;
 
-  std::vector<EdgeSide> sides = sorted_sides(mesh);
+  const std::vector<EdgeSide> sides = sorted_sides(mesh);
   for (std::size_t i = 1; i < sides.size(); ++i) {
     if (edge_of(sides[i]) != edge_of(sides[i - 1])) continue;
     const std::uint32_t a = corner_of(sides[i - 1]), b = corner_of(sides[i]);
     across_[a / 3][a % 3] = b / 3;
     across_[b / 3][b % 3] = a / 3;
   }
-  sides.erase(std::unique(sides.begin(), sides.end(), [](EdgeSide a, EdgeSide b) { return edge_of(a) == edge_of(b); }),
-              sides.end());
-  for (const EdgeSide side : sides) {
-    ++first_neighbour_[low_vertex(side)];
-    ++first_neighbour_[high_vertex(side)];
-  }
-  accumulate(first_neighbour_);
-  end = first_neighbour_;
-  neighbour_list_.resize(2 * sides.size());
-  for (const EdgeSide side : sides) {  // in this order each vertex meets its lower neighbours, then its higher ones, ascending
-    neighbour_list_[end[low_vertex(side)]++] = high_vertex(side);
-    neighbour_list_[end[high_vertex(side)]++] = low_vertex(side);
-  }
 }
 
 std::span<const std::uint32_t> MeshTopology::triangles_of(std::uint32_t vertex) const noexcept {
   return std::span(triangle_list_).subspan(first_triangle_[vertex], first_triangle_[vertex + 1] - first_triangle_[vertex]);
-}
-
-std::span<const std::uint32_t> MeshTopology::neighbours_of(std::uint32_t vertex) const noexcept {
-  return std::span(neighbour_list_).subspan(first_neighbour_[vertex], first_neighbour_[vertex + 1] - first_neighbour_[vertex]);
 }
 
 void MeshTopology::rings_around(std::uint32_t triangle, unsigned rings, std::vector<std::uint32_t>& out) const {

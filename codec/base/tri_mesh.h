@@ -41,7 +41,6 @@ class MeshTopology {
   explicit MeshTopology(const TriMesh& mesh);
 
   std::span<const std::uint32_t> triangles_of(std::uint32_t vertex) const noexcept;
-  std::span<const std::uint32_t> neighbours_of(std::uint32_t vertex) const noexcept;  ///< vertices across one edge, ascending
   /// Triangle across the edge from corner k to corner k+1, or kNone at a boundary.
   std::uint32_t across(std::uint32_t triangle, unsigned k) const noexcept { return across_[triangle][k]; }
   static constexpr std::uint32_t kNone = 0xffffffff;
@@ -51,7 +50,7 @@ class MeshTopology {
   void rings_around(std::uint32_t triangle, unsigned rings, std::vector<std::uint32_t>& out) const;
 
  private:
-  std::vector<std::uint32_t> first_triangle_, triangle_list_, first_neighbour_, neighbour_list_;
+  std::vector<std::uint32_t> first_triangle_, triangle_list_;
   std::vector<Triangle> corners_;
   std::vector<std::array<std::uint32_t, 3>> across_;
 };

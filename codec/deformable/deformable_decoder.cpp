@@ -11,9 +11,6 @@
 namespace tactus {
 namespace {
 
-std::uint64_t hash_of(const DeformableObject& object, const MainState& state) noexcept { return state_hash(object, state); }
-std::uint64_t hash_of(const DeformableObject&, const ThesisState& state) noexcept { return state_hash(state); }
-
 template <class Codec>
 class Of final : public DeformableDecoder {
  public:
@@ -31,7 +28,7 @@ class Of final : public DeformableDecoder {
     return stream_.codec().predict(state, std::clamp(tick, state.tick, kTickLimit));
   }
   std::int64_t tick() const noexcept override { return stream_.newest().tick; }
-  std::uint64_t state_hash() const noexcept override { return hash_of(object_, stream_.newest()); }
+  std::uint64_t state_hash() const noexcept override { return tactus::state_hash(object_, stream_.newest()); }
 
  private:
   const DeformableObject& object_;

@@ -14,9 +14,6 @@
 namespace tactus {
 namespace {
 
-std::uint64_t hash_of(const DeformableObject& object, const MainState& state) noexcept { return state_hash(object, state); }
-std::uint64_t hash_of(const DeformableObject&, const ThesisState& state) noexcept { return state_hash(state); }
-
 template <class Codec>
 class Of final : public DeformableEncoder {
  public:
@@ -41,10 +38,10 @@ class Of final : public DeformableEncoder {
   void request_key() noexcept override { stream_.request_key(); }
   void forget_last() noexcept override { stream_.forget_last(); }
   void acknowledge(std::uint16_t sequence) noexcept override { stream_.acknowledge(sequence); }
-  std::uint64_t state_hash() const noexcept override { return hash_of(object_, stream_.newest()); }
+  std::uint64_t state_hash() const noexcept override { return tactus::state_hash(object_, stream_.newest()); }
 
  private:
-  /// The packets of a layer leave the others where their baseline has them, and so build on the newest.
+  /// A packet of one layer takes the vertices of the other from its baseline, so it must build on the newest packet.
   static SenderPolicy chained(SenderPolicy policy) noexcept {
     policy.baseline = Baseline::previous;
     return policy;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/base/rule.h>
 #include <tactus/deformable/displacement.h>
 
 #include <cmath>
+
+#include <tactus/base/rule.h>
 
 namespace tactus {
 

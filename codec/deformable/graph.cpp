@@ -202,9 +202,9 @@ class HierarchyBuilder {
 
   static constexpr std::int64_t bounded(std::int64_t v, std::int64_t limit) noexcept { return std::clamp(v, -limit, limit); }
 
-  /// Both right sides at once by L D L^T of the lower triangle. False: the matrix is not definite, since copies count as a unit apart
-  /// or near vertices fall together; what is noise on the diagonal keeps the pivots of all others far above the least. No bound is
-  /// reached where the matrix is definite; with them every product fits 63 bits.
+  /// Solves for both right sides by L D L^T of the lower triangle. False: the matrix is not positive definite, which happens where
+  /// vertices (nearly) coincide. Otherwise the noise term on the diagonal keeps all pivots large, and no clamp acts: they only keep
+  /// products within 63 bits.
   static bool solve(std::array<Row, VertexHierarchy::kParents>& m, std::size_t n, Row& a, Row& b) noexcept {
     for (std::size_t j = 0; j < n; ++j) {
       if (m[j][j] < kLeastPivot) return false;

@@ -79,15 +79,6 @@ MainHead MainEncoder::head_for(const EncodeRequest<MainState>& request) const no
   return head;
 }
 
-void MainEncoder::set_bounds(const MainHead& head) noexcept {
-  std::span<const std::uint32_t> area;
-  if (head.touched) {
-    rings_.triangles_around(head.triangle, object_.rings);
-    area = rings_.vertices();
-  }
-  coder_.set_bounds(head.visual, head.touched ? haptic_bound(head.haptic) : head.visual, area, head.layer);
-}
-
 /// A key packet forgets the whole shape, and so is due as soon as any bound is broken.
 bool MainEncoder::bounds_hold(const EncodeRequest<MainState>& request) noexcept {
   predictor_.predict(request.shown, request.tick, expected_);
@@ -147,7 +138,7 @@ std::size_t MainEncoder::write(MainHead head, const MainState& base, std::span<s
 Result<Payload> MainEncoder::encode(const EncodeRequest<MainState>& request, std::span<std::uint8_t> out) noexcept {
   MainHead head = head_for(request);
   if (head.layer == Layer::haptic && !head.touched) return Payload{};
-  set_bounds(head);
+  coder_.set_bounds(head, rings_, object_.rings);
   if (!request.requested && bounds_hold(request)) return Payload{};
   // What is felt goes first: a key packet of the rest alone would forget it.
   if (head.layer == Layer::visual && head.key && head.touched) return Payload{};

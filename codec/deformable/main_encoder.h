@@ -44,7 +44,6 @@ class MainEncoder {
   };
 
   MainHead head_for(const EncodeRequest<MainState>& request) const noexcept;
-  void set_bounds(const MainHead& head) noexcept;
   bool bounds_hold(const EncodeRequest<MainState>& request) noexcept;
   void choose_coefficients(std::uint32_t visual) noexcept;
   void move_modes(std::uint32_t visual) noexcept;

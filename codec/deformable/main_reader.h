@@ -35,7 +35,7 @@ class MainReader {
     if (head.haptic > kMaxHapticIndex || head.visual > kMaxVisualBound) return fail(Errc::invalid, "R-DEF-10");
     const std::int64_t tick = base.tick + head.tick_delta;
     predictor_.predict(base, tick, expected_);
-    set_bounds(head);
+    coder_.set_bounds(head, rings_, object_.rings);
     if (object_.layered) coder_.begin_layer(base, head.same_frame, expected_, next.displacement);
     if (head.layer == Layer::haptic) {
       keep_motion(base, next);
@@ -60,15 +60,6 @@ class MainReader {
   }
 
  private:
-  void set_bounds(const MainHead& head) noexcept {
-    std::span<const std::uint32_t> area;
-    if (head.touched) {
-      rings_.triangles_around(head.triangle, object_.rings);
-      area = rings_.vertices();
-    }
-    coder_.set_bounds(head.visual, head.touched ? haptic_bound(head.haptic) : head.visual, area, head.layer);
-  }
-
   /// After a residual that is too wide, the loop continues with zeros.
   template <class Coder>
   std::uint32_t read_vertices(Coder& coder, MainModels& models, const MainHead& head, MainState& next) noexcept {

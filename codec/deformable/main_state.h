@@ -62,7 +62,7 @@ constexpr std::int64_t step_of(std::uint32_t bound) noexcept {
 /// Adds motion and modes to displacements. Holds scratch space; allocates at creation only.
 class ShapePredictor {
  public:
-  /// pre  `mesh` outlives the predictor
+  /// pre  `object` outlives the predictor
   explicit ShapePredictor(const DeformableObject& object);
 
   /// out = the displacement that `state` predicts for a tick not before its own. Without a basis it is the state's displacement.

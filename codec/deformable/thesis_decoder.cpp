@@ -33,7 +33,7 @@ Result<PacketHead> ThesisDecoder::read_head(std::span<const std::uint8_t> payloa
   head_.tick_delta = static_cast<std::uint32_t>(tick_delta);
   head_.count = static_cast<std::uint32_t>(count);
   head_.list_bytes = static_cast<std::uint32_t>(list_bytes);
-  head_.lowest = static_cast<std::int32_t>(lowest >> 1 ^ (~(lowest & 1) + 1));
+  head_.lowest = static_cast<std::int32_t>(unzigzag(lowest));
   head_.range = static_cast<std::uint32_t>(range);
   return head_;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <tactus/base/bytes.h>
 #include <tactus/deformable/displacement.h>
 
 namespace tactus {
@@ -87,7 +88,7 @@ std::size_t ThesisEncoder::write_head(const ThesisHead& head, std::span<std::uin
   varint(head.tick_delta);
   varint(head.count);
   varint(head.list_bytes);
-  varint(static_cast<std::uint32_t>(head.lowest) << 1 ^ static_cast<std::uint32_t>(head.lowest >> 31));
+  varint(zigzag(head.lowest));
   varint(head.range);
   return at;
 }

@@ -16,7 +16,7 @@ ThesisState initial_thesis_state(const DeformableObject& object) {
   return state;
 }
 
-std::uint64_t state_hash(const ThesisState& state) noexcept {
+std::uint64_t state_hash(const DeformableObject&, const ThesisState& state) noexcept {
   Fnv1a hash;
   hash.add64(static_cast<std::uint64_t>(state.tick));
   for (const Vec3i& u : state.displacement)

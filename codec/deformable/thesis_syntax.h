@@ -25,7 +25,7 @@ struct ThesisState {
 };
 
 ThesisState initial_thesis_state(const DeformableObject& object);
-std::uint64_t state_hash(const ThesisState& state) noexcept;
+std::uint64_t state_hash(const DeformableObject& object, const ThesisState& state) noexcept;
 
 /// Order-0 models: the index list's symbol, then the displacements' symbol of quant_bits bits.
 std::vector<BitModel> initial_thesis_models(const DeformableObject& object);

@@ -22,17 +22,22 @@ class VertexCoder {
     area_.reserve(vertices);
   }
 
-  /// Set the bounds of the packet: min(visual, haptic) inside the area of interest, `visual` elsewhere.
-  void set_bounds(std::uint32_t visual, std::uint32_t haptic, std::span<const std::uint32_t> area, Layer layer) noexcept {
+  /// Set the bounds of the packet: min(visual, haptic) within `reach` rings of the touched triangle, `visual` elsewhere.
+  void set_bounds(const MainHead& head, Rings& rings, std::uint32_t reach) noexcept {
     for (const std::uint32_t v : area_) inside_[v] = 0;
-    area_.assign(area.begin(), area.end());
+    area_.clear();
+    if (head.touched) {
+      rings.triangles_around(head.triangle, reach);
+      area_.assign(rings.vertices().begin(), rings.vertices().end());
+    }
     for (const std::uint32_t v : area_) inside_[v] = 1;
-    bound_[0] = visual;
-    bound_[1] = std::min(visual, haptic);
-    bound_ratio_ = bound_ratio_of(haptic, visual);
+    const std::uint32_t haptic = head.touched ? haptic_bound(head.haptic) : head.visual;
+    bound_[0] = head.visual;
+    bound_[1] = std::min(head.visual, haptic);
+    bound_ratio_ = bound_ratio_of(haptic, head.visual);
     for (std::size_t i = 0; i < 2; ++i) step_[i] = step_of(bound_[i]);
-    codes_[0] = layer != Layer::haptic;
-    codes_[1] = layer != Layer::visual;
+    codes_[0] = head.layer != Layer::haptic;
+    codes_[1] = head.layer != Layer::visual;
   }
   std::uint32_t bound_of(std::uint32_t vertex) const noexcept { return bound_[inside_[vertex]]; }
   /// Whether the packet codes this vertex; the others keep the temporal prediction.

@@ -53,7 +53,7 @@ class StreamFileReader {
   const SharedScene& scene() const noexcept { return scene_; }
   std::uint64_t header_bytes() const noexcept { return first_; }
   /// Next packet; nothing at the end. Unknown extension records are skipped.
-  /// err  truncated R-FIL-2; unsupported R-FIL-3; limit_exceeded R-FIL-4; checksum R-FIL-5; malformed R-FIL-6. The reader then stays where it is.
+  /// err  truncated R-FIL-2; unsupported R-FIL-3; limit_exceeded R-FIL-4; checksum R-FIL-5; malformed R-FIL-6, 8. The reader then stays where it is.
   Result<std::optional<FilePacket>> next() noexcept;
   /// Seek to the last key packet at or before `tick`, by the index. Returns false and changes nothing if the file has no valid
   /// index or no key packet that early.

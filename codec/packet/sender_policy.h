@@ -13,10 +13,12 @@ enum class Baseline : std::uint8_t {
 };
 
 struct SenderPolicy {
-  double key_interval =
-      5.0;  ///< [s] after this long the next packet builds on the initial state (a place to seek to); 0: never, but
-            ///< after 8 s of silence, when receivers may soon have forgotten what there was
-  std::uint16_t first_sequence = 1;  ///< a sender restarted for the same receivers takes another number, at random
+  /// [s] After this long the next packet builds on the initial state (a place to seek to). 0: never, but after a silence of half
+  /// the time of 25-packet section 5 (8192 ticks, or 8 s if that is longer), when receivers may soon have forgotten what there was.
+  double key_interval = 5.0;
+  /// A sender restarted for the same receivers takes another number, at random. Its key packet does not name the objects at their
+  /// initial state: a receiver that showed an earlier run goes on showing these as before, unless it begins anew as well.
+  std::uint16_t first_sequence = 1;
   Baseline baseline = Baseline::previous;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/base/rule.h>
 #include <tactus/packet/substream.h>
+
+#include <tactus/base/rule.h>
 
 namespace tactus {
 

@@ -106,7 +106,7 @@ class SubstreamEncoder {
     const bool requested = key_.is_requested();
     key_ = before_.key;
     if (requested) key_.request();
-    base_ = before_.base;
+    base_ = before_.base < oldest_ ? 0 : before_.base;
   }
 
   /// Report that the receiver holds the state after packet `sequence`.

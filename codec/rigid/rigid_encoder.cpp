@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/base/rule.h>
 #include <tactus/rigid/rigid_encoder.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
+
+#include <tactus/base/rule.h>
 
 namespace tactus {
 namespace {
@@ -24,8 +25,8 @@ Result<PoseThresholds> make_thresholds(double distance, double angle, const Grid
   PoseThresholds out;
   const auto units = static_cast<std::int64_t>(std::min(distance / unit, 1073741824.0)) - 1;
   out.distance_squared = units * units;
-  const auto quarter = static_cast<std::uint32_t>(angle / (4 * std::numbers::pi) * 4294967296.0);
-  const std::int64_t sine = sin30(quarter) - 8;
+  const auto half = static_cast<std::uint32_t>(angle / (4 * std::numbers::pi) * 4294967296.0);
+  const std::int64_t sine = sin30(half) - 8;
   out.half_angle_squared = sine * sine;
   const double worst = std::sqrt(0.75);
   while (out.level < 7 && worst * unit * std::ldexp(4.0, 2 * static_cast<int>(out.level)) <= kVisualShare * distance &&
@@ -145,8 +146,8 @@ Reason RigidEncoder::reason_for(std::uint32_t object, const RigidState& held) co
   return Reason::request;
 }
 
-/// Everything that a trigger asks for, and all in which the baseline differs from what receivers show: in a key packet what has left
-/// the initial state. Nothing is pending without at least one trigger or a request.
+/// Collects objects whose trigger fired, and objects whose baseline differs from what receivers show: in a key packet, all that have
+/// left their initial state. Nothing is pending without at least one trigger or a request.
 void RigidEncoder::collect(const EncodeRequest<RigidStates>& request) noexcept {
   pending_.clear();
   const bool same = &request.base == &request.shown;

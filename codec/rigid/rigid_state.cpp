@@ -31,14 +31,6 @@ Result<RigidState> to_grid(const RigidSample& sample, std::int64_t tick, const G
   return state;
 }
 
-RigidSample to_sample(const RigidState& state, const GridExponents& grid) noexcept {
-  const double speed = 1.0 / static_cast<double>(std::uint64_t{1} << grid.velocity);
-  const double turn = 1.0 / static_cast<double>(std::uint64_t{1} << grid.angular_velocity);
-  return {to_pose({state.position, state.rotation}, grid.position),
-          {state.velocity[0] * speed, state.velocity[1] * speed, state.velocity[2] * speed},
-          {state.angular_velocity[0] * turn, state.angular_velocity[1] * turn, state.angular_velocity[2] * turn}};
-}
-
 std::uint64_t state_hash(const Scene& scene, const RigidStates& states) noexcept {
   Fnv1a hash;
   for (const std::uint32_t i : scene.moving()) {

@@ -45,9 +45,6 @@ RigidStates initial_states(const Scene& scene);
 ///      R-API-3 the quaternion's length differs from 1 by more than 1e-3.
 Result<RigidState> to_grid(const RigidSample& sample, std::int64_t tick, const GridExponents& grid) noexcept;
 
-/// Grid to SI units.
-RigidSample to_sample(const RigidState& state, const GridExponents& grid) noexcept;
-
 /// FNV-1a (64 bit) over tick, position, rotation, velocity and angular velocity of every object that can move. spec 40-rigid 6
 std::uint64_t state_hash(const Scene& scene, const RigidStates& states) noexcept;
 

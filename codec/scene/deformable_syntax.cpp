@@ -13,11 +13,6 @@ namespace {
 
 constexpr std::uint32_t kNoVertex = 0xffffffff;
 
-constexpr std::uint64_t zigzag(std::int64_t v) noexcept {
-  return static_cast<std::uint64_t>(v) << 1 ^ static_cast<std::uint64_t>(v >> 63);
-}
-constexpr std::int64_t unzigzag(std::uint64_t v) noexcept { return static_cast<std::int64_t>(v >> 1 ^ (~(v & 1) + 1)); }
-
 bool are_parameters(const DeformableObject& m) noexcept {
   if (m.rings > DeformableObject::kMaxRings) return false;
   if (m.profile == DeformableProfile::thesis) return m.quant_bits >= 1 && m.quant_bits <= DeformableObject::kMaxQuantBits;
@@ -36,8 +31,6 @@ bool is_basis(const DeformableObject& m) noexcept {
          std::all_of(b.entries.begin(), b.entries.end(),
                      [](std::int16_t e) { return e >= -ModeBasis::kMaxEntry && e <= ModeBasis::kMaxEntry; });
 }
-
-Errc class_of_overflow(const ByteReader& in) noexcept { return in.overrun() ? Errc::truncated : Errc::malformed; }
 
 Result<void> parse_parameters(ByteReader& in, DeformableObject& object) {
   const std::uint8_t profile = in.u8();

@@ -4,6 +4,7 @@
 
 #include <string_view>
 
+#include <tactus/base/bytes.h>
 #include <tactus/base/rule.h>
 #include <tactus/scene/scene.h>
 
@@ -13,6 +14,9 @@ inline constexpr std::size_t kMaxDeformables = 255;  ///< packets name them by a
 
 /// 1..255 bytes of UTF-8 without control characters.
 bool is_name(std::string_view name) noexcept;
+
+/// Class of R-STR-5 after a read failed.
+inline Errc class_of_overflow(const ByteReader& in) noexcept { return in.overrun() ? Errc::truncated : Errc::malformed; }
 
 /// The first rule that an element breaks, or none. Names that occur twice are found by check_scene().
 RuleName broken_object_rule(const RigidObject& object) noexcept;

@@ -24,8 +24,6 @@ constexpr std::uint8_t kProfile = 0;
 constexpr std::uint16_t kHasDeformables = 1;  // flag
 constexpr std::size_t kFixedSize = 12;        // magic, version, profile, flags, body_size
 
-Errc class_of_overflow(const ByteReader& in) noexcept { return in.overrun() ? Errc::truncated : Errc::malformed; }
-
 Result<RigidObject> parse_object(ByteReader& body) {
   const std::uint64_t start = body.bit_offset();
   const std::uint8_t kind = body.u8();

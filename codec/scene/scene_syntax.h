@@ -12,7 +12,7 @@
 
 namespace tactus {
 
-/// Deterministic: equal scenes give equal bytes.   err  internal: out of memory
+/// Deterministic: equal scenes give equal bytes.   err  limit_exceeded R-API-11: out of memory
 Result<std::vector<std::uint8_t>> write_scene(const Scene& scene);
 
 /// A scene and the number of bytes that its declaration took.

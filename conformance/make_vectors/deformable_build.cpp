@@ -163,12 +163,7 @@ Bytes DeformableComposer::packet(const MainStep& step) {
     MainModels models = main_start_models();
     code_main_start(coder, models, item, fixed_->span, head);
     code_main_head(coder, models, item, fixed_->rings, base, head);
-    std::span<const std::uint32_t> area;
-    if (head.touched) {
-      fixed_->rings.triangles_around(head.triangle, item.rings);
-      area = fixed_->rings.vertices();
-    }
-    fixed_->pass.set_bounds(head.visual, head.touched ? haptic_bound(head.haptic) : head.visual, area, head.layer);
+    fixed_->pass.set_bounds(head, fixed_->rings, item.rings);
     std::vector<Vec3i> expected(item.rest.size());
     fixed_->predictor.predict(base, step.at.tick, expected);
     if (item.layered) fixed_->pass.begin_layer(base, head.same_frame, expected, next.displacement);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/base/rule.h>
 #include <tactus/trace/csv_reader.h>
 
 #include <algorithm>
 #include <array>
+
+#include <tactus/base/rule.h>
 
 namespace tactus {
 namespace {

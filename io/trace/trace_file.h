@@ -41,8 +41,8 @@
 /// R-TRC-11  invalid           text is not UTF-8, or a key stands twice in a map
 /// R-TRC-12  invalid           the "tactus" or "tactus_bounds" metadata or the channels lack something or contradict each other
 /// R-TRC-13  malformed         a message is not CDR of its channel's type
-/// R-TRC-14  invalid           a value is NaN or infinite, a contact, device time or time stamp is invalid, or a mesh has another number
-///                             of vertices
+/// R-TRC-14  invalid           a value is NaN or infinite, a contact, an orientation or a time of a device or a time stamp is invalid, or a
+///                             mesh has another number of vertices
 /// R-TRC-15  invalid           ticks do not increase, a message's times disagree, or a tick lacks a message or has one twice
 /// R-TRC-16  unsupported       a foreign file without PoseStamped channels, or with one that begins after the look-ahead
 /// R-TRC-17  invalid_argument  TraceInfo: nothing to record, over 65535 channels, tick rate not in 1..1000000, dof bits, fixed
@@ -72,8 +72,9 @@ class TraceWriter {
   /// in   frame  tick >= 0 and larger than the last. A user's device sample is always kept; without contact, `contact` and
   ///             contact.device are ignored. A mesh that was not updated is not written
   /// time O(changes), about 15 instructions for each object at rest, and the every-tick messages of users and meshes
-  /// err  invalid_argument R-API-1 not finite; R-API-5 wrong count, tick, contact or device time; R-API-6 a static object moved;
-  ///      io R-TRC-1. Nothing was written after invalid_argument. After io and limit_exceeded R-API-11 (no memory) the writer is unusable.
+  /// err  invalid_argument R-API-1 not finite; R-API-5 wrong count, tick, contact, orientation or time of a device; R-API-6 a static
+  ///      object moved; io R-TRC-1. Nothing was written after invalid_argument. After io and limit_exceeded R-API-11 (no memory) the
+  ///      writer is unusable.
   Result<void> write(const TraceFrame& frame);
   /// Summary, index and footer. A writer destroyed without it leaves a readable but unindexed file.
   Result<void> finish();

@@ -191,6 +191,30 @@ INSTANTIATE_TEST_SUITE_P(Profiles, AcknowledgedShapes,
                                            std::tuple{DeformableProfile::thesis, 0, false},
                                            std::tuple{DeformableProfile::thesis, 0, true}));
 
+/// A receiver that asked for a key packet holds nothing from before, whatever is forgotten afterwards.
+TEST(AcknowledgedBaselines, NothingBuildsOnWhatIsOlderThanARequest) {
+  SceneSpec spec = testing::spec_of(1);
+  spec.baseline_span = 8;
+  SenderOptions options = acknowledged();
+  options.triggers.reduction = Reduction::none;
+  auto sender = Sender::create(testing::shared(std::move(spec)), options).value();
+  testing::Motion motion(1);
+  std::int64_t tick = 0;
+  const auto key = [&] {
+    const RigidSample sample = motion.step(1e-3);
+    return testing::only(sender.encode(tick++, {{&sample, 1}})).key;
+  };
+  EXPECT_TRUE(key());
+  sender.acknowledge(0, 1);
+  EXPECT_FALSE(key());
+  sender.request_key();
+  sender.forget_last(0);
+  EXPECT_TRUE(key()) << "requested";
+  EXPECT_TRUE(key()) << "nothing newer is acknowledged";
+  sender.acknowledge(0, 1);
+  EXPECT_TRUE(key());
+}
+
 /// Without any acknowledgement there is only the initial state to build on; with one, that state until it is too old.
 TEST(AcknowledgedBaselines, ReachAsFarBackAsTheScene) {
   SceneSpec spec = testing::spec_of(1);
