@@ -8,7 +8,7 @@
 
 #include <tactus/base/rule.h>
 #include <tactus/sim/client.h>
-#include <tactus/sim/link.h>
+#include <tactus/sim/link/perfect_link.h>
 #include <tactus/sim/server.h>
 #include <tactus/sim/user/hand.h>
 #include <tactus/sim/user/sampled_limit.h>

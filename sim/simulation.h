@@ -3,7 +3,7 @@
 ///
 ///   1 hand     feels the client's force of the last tick and moves; the device reports x_d                sim/user/hand.h
 ///   2 server   proxy on the true state: contact, force f                                                  sim/server.h
-///   3 link     truth -> Sender -> packets -> Receiver -> Replica         (left out without a codec)       sim/link.h
+///   3 link     truth -> Sender -> packets -> Receiver -> Replica         (left out without a codec)       sim/link/perfect_link.h
 ///   4 client   proxy on what the replica shows, same x_d: force f_c, which the hand will feel             sim/client.h
 ///   5 physics  -f acts on the touched object at the proxy; state of the next tick                         sim/server.h
 ///

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Server, link, client and hands taken apart: sim/server.h, sim/client.h, sim/link.h, sim/deformable/deformable_view.h.
+// Server, link, client and hands taken apart: sim/server.h, sim/client.h, sim/link/perfect_link.h, sim/deformable/deformable_view.h.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <tactus/sim/client.h>
-#include <tactus/sim/link.h>
+#include <tactus/sim/link/perfect_link.h>
 #include <tactus/sim/server.h>
 #include <tactus/sim/simulation.h>
 #include <tactus/sim/user/hand.h>
