@@ -108,8 +108,9 @@ Outcome OutputFile::check_free(const std::string& path, Existing existing, std::
   if (path.empty()) return refuse_arguments("the name of an output is empty", "Give a name, or - for standard output.");
   for (const std::string& other : others) {
     if (path == "-" || other.empty() || !is_same_file(path, other)) continue;
-    return refuse_arguments(fmt::format("{}: the output is {}, which this command also uses", shown_path(path), shown_path(other)),
-                            "Give another name.");
+    return refuse_arguments(
+        fmt::format("{}: the output is {}, which this command also uses", shown_path(path), shown_path(other)),
+        "Give another name.");
   }
   std::error_code ignored;
   if (path == "-" || existing == Existing::replace) return {};

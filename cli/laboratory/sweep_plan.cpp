@@ -12,7 +12,7 @@ namespace tactus::cli {
 namespace {
 
 constexpr std::size_t kMostPoints = 1000000;
-constexpr std::size_t kMostEntries = 256;  // of each list but the values of a parameter
+constexpr std::size_t kMostEntries = 256;    // of each list but the values of a parameter
 constexpr std::size_t kLongestWord = 65536;  // [bytes] of a command with its values: Linux passes twice as much
 constexpr std::size_t kLongestPath = 4096;   // [bytes] PATH_MAX of Linux
 constexpr std::size_t kMostPlanBytes = std::size_t{1} << 20;
@@ -275,7 +275,8 @@ std::vector<std::string> SweepPlan::values(std::size_t point) const {
 
 std::vector<std::string> SweepInput::words(const std::string& path) const {
   std::vector<std::string> out;
-  for (const std::string& word : command) out.push_back(filled(word, [&](std::string_view) -> const std::string& { return path; }));
+  for (const std::string& word : command)
+    out.push_back(filled(word, [&](std::string_view) -> const std::string& { return path; }));
   return out;
 }
 
