@@ -48,6 +48,13 @@ tl::unexpected<Failure> refuse_existing(const std::string& path) {
   return refuse(shown_path(path) + ": the file already exists", "Give -f to replace it, or another name.");
 }
 
+/// Two names of one file, whether it is there already or not.
+bool is_same_file(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  const auto whole = [&](const std::string& path) { return fs::weakly_canonical(fs::absolute(path, ignored), ignored); };
+  return fs::equivalent(a, b, ignored) || whole(a) == whole(b);
+}
+
 /// A hidden name beside `path` or in a folder, which nobody can foresee.
 std::string random_name(const fs::path& folder, const std::string& name) {
   constexpr std::string_view kDigits = "0123456789abcdefghijklmnopqrstuvwxyz";
@@ -99,14 +106,13 @@ Descriptor::~Descriptor() {
 
 Outcome OutputFile::check_free(const std::string& path, Existing existing, std::initializer_list<std::string> others) {
   if (path.empty()) return refuse_arguments("the name of an output is empty", "Give a name, or - for standard output.");
-  std::error_code ignored;
   for (const std::string& other : others) {
-    if (path != "-" && (path == other || fs::equivalent(path, other, ignored))) {
-      return refuse_arguments(
-          fmt::format("{}: the output is also {}, an input of the command", shown_path(path), shown_path(other)),
-          "Give another name.");
-    }
+    if (path == "-" || other.empty() || !is_same_file(path, other)) continue;
+    return refuse_arguments(
+        fmt::format("{}: the output is {}, which this command also uses", shown_path(path), shown_path(other)),
+        "Give another name.");
   }
+  std::error_code ignored;
   if (path == "-" || existing == Existing::replace) return {};
   const bool is_loose_link = fs::is_symlink(path, ignored) && !fs::exists(path, ignored);
   return is_loose_link || fs::is_regular_file(path, ignored) ? refuse_existing(path) : Outcome();

@@ -49,7 +49,7 @@ class Descriptor {
 class OutputFile {
  public:
   enum class Existing { keep, replace };
-  /// err  PATH is empty, exists and is to be kept, or is one of the files that the command reads or writes besides
+  /// err  PATH is empty, exists and is to be kept, or names one of the files that the command also reads or writes
   static Outcome check_free(const std::string& path, Existing existing, std::initializer_list<std::string> others = {});
   /// err  as check_free(); the operating system refuses
   static tl::expected<OutputFile, Failure> create(const std::string& path, Existing existing,

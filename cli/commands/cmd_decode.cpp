@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <span>
 
 #include <tactus/base/shown.h>
@@ -61,19 +62,23 @@ class TickSource {
   std::int64_t tick_ = 0;
 };
 
-/// Without a word about ticks they go on to the last packet's. A few bytes can name a tick that is hours away: ten minutes are free, and
-/// beyond that every byte earns half a second. A stream at rest takes ten bytes a second.
+/// Without --ticks or --like, decoding runs to the last packet's tick, and a few bytes can name a tick that is hours away. Ten minutes
+/// are free, shared among all objects and vertices; beyond that every byte of a packet earns half a second. A stream at rest takes ten
+/// bytes a second.
 Outcome check_length(std::span<const std::uint8_t> file, const DecodeOptions& options) {
   constexpr std::uint64_t kFreeTicks = 600000, kTicksByByte = 512;
   if (options.ticks || !options.like.empty()) return {};
   auto reader = StreamFileReader::open(file);
   if (!reader) return refuse(options.input, reader.error());
-  std::uint64_t last = 0;
-  while (const auto packet = reader->next().value_or(std::nullopt)) last = static_cast<std::uint64_t>(packet->tick);
-  const std::uint64_t most = kFreeTicks + kTicksByByte * file.size();
-  if (last < most) return {};
-  return refuse(fmt::format("{}: its last packet is at tick {}, implausibly far for a stream of {} bytes",
-                            shown_path(options.input), last, file.size()),
+  std::uint64_t last = 0, packets = 0, elements = reader->scene()->objects.size();
+  while (const auto packet = reader->next().value_or(std::nullopt)) {
+    last = static_cast<std::uint64_t>(packet->tick);
+    packets += packet->bytes.size();
+  }
+  for (const DeformableObject& object : reader->scene()->deformables) elements += object.rest.size();
+  if (last <= kFreeTicks / std::max<std::uint64_t>(elements, 1) + kTicksByByte * packets) return {};
+  return refuse(fmt::format("{}: its last packet is at tick {}, implausibly far for packets of {} bytes in all",
+                            shown_path(options.input), last, packets),
                 "If that is right, give the number of ticks to write with --ticks N.");
 }
 

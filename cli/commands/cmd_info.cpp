@@ -8,6 +8,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <tactus/base/shown.h>
 #include <tactus/metrics/errors.h>
@@ -168,7 +172,7 @@ Json header_json(const Scene& h, std::uint64_t header_bytes, std::size_t size) {
   return out;
 }
 
-/// A stream that was cut is told of like a trace that was: everything before can be used.
+/// A truncated stream gives a warning, as a truncated trace does: everything before the cut is usable.
 Outcome end_of(const InfoOptions& options, const std::optional<Error>& error) {
   if (!error) return {};
   if (error->rule != std::string_view("R-FIL-2")) return refuse(options.input, *error);
@@ -177,34 +181,73 @@ Outcome end_of(const InfoOptions& options, const std::optional<Error>& error) {
   return {};
 }
 
-Outcome info_stream(const InfoOptions& options) {
-  TACTUS_TRY(const auto bytes, read_file(options.readable));
-  auto player = Player::open({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
-  if (!player) return refuse(options.input, player.error());
-  Json info = header_json(player->scene(), player->header_bytes(), bytes.size());
-  StreamTotals totals(player->scene());
-  Json packets = Json::array();
-  std::optional<Error> error;
+using Bytes = std::span<const std::uint8_t>;
+
+/// What a stream holds, packet by packet, and how it ends.
+template <class OnPacket>
+std::optional<Error> for_each_packet(Player& player, OnPacket on_packet) {
   while (true) {
-    const auto played = player->play(INT64_MAX);
-    if (!played) error = played.error();
-    if (!played || !*played) break;
-    totals.add(**played);
-    if (options.packets) packets.push_back(options.json ? packet_info_json(**played) : packet_json(**played, player->scene()));
+    const auto played = player.play(INT64_MAX);
+    if (!played) return played.error();
+    if (!*played) return std::nullopt;
+    on_packet(**played);
   }
-  if (options.json) {
-    info = stream_info_json(*player, totals, bytes.size(), {error, player->complete()});
-    if (options.packets) info["packet_list"] = std::move(packets);
-    fmt::print("{}\n", text_of_json(info));
-    return end_of(options, error);
-  }
+}
+
+std::vector<std::string> cells_of(const Json& packet) {
+  std::vector<std::string> cells;
+  for (const auto& item : packet.items()) cells.push_back(cell_of(item.key(), item.value()));
+  return shown_cells(std::move(cells));
+}
+
+std::vector<std::string> names_of(const Json& packet) {
+  std::vector<std::string> names;
+  for (const auto& item : packet.items()) names.push_back(item.key());
+  return names;
+}
+
+/// Packets can be too many to be kept: `columns` has looked at them, and the stream is played again.
+void print_packets(Bytes bytes, const Columns& columns) {
+  auto player = Player::open(bytes);
+  if (!player) return;
+  bool first = true;
+  for_each_packet(*player, [&](const PlayedPacket& played) {
+    const Json packet = packet_json(played, player->scene());
+    if (std::exchange(first, false)) {
+      fmt::print("\n");
+      print_heading(stdout, columns.aligned(names_of(packet)));
+    }
+    fmt::print("{}\n", columns.aligned(cells_of(packet)));
+  });
+}
+
+/// The same as the last member of the JSON object `info`.
+void print_with_packets(Bytes bytes, const Json& info) {
+  const auto indented = [](std::string text) {
+    for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 5) text.insert(at + 1, "    ");
+    return text;
+  };
+  auto player = Player::open(bytes);
+  std::string head = text_of_json(info);
+  head.erase(head.rfind("\n}"));
+  fmt::print("{},\n  \"packet_list\": [", head);
+  bool first = true;
+  if (player)
+    for_each_packet(*player, [&](const PlayedPacket& played) {
+      fmt::print("{}\n    {}", std::exchange(first, false) ? "" : ",", indented(text_of_json(packet_info_json(played))));
+    });
+  fmt::print("{}]\n}}\n", first ? "" : "\n  ");
+}
+
+Json summary_json(const Player& player, const StreamTotals& totals, std::size_t size, const std::optional<Error>& error) {
+  Json info = header_json(player.scene(), player.header_bytes(), size);
   if (totals.traffic.all_packets() > 0 || totals.meshes.empty()) show_rigid(totals, info);
   info["last tick"] = totals.last_tick;
-  info["ending"] = error                ? fmt::format("broken at {} ({})", place_of_bit(error->bit_offset), error->rule)
-                   : player->complete() ? "complete"
-                                        : "no trailer: the writer did not finish";
-  for (const RigidObject& o : player->scene().objects) {
-    const Pose pose = to_pose(o.initial, player->scene().grid.position);
+  info["ending"] = error               ? fmt::format("broken at {} ({})", place_of_bit(error->bit_offset), error->rule)
+                   : player.complete() ? "complete"
+                                       : "no trailer: the writer did not finish";
+  for (const RigidObject& o : player.scene().objects) {
+    const Pose pose = to_pose(o.initial, player.scene().grid.position);
     info["objects"].push_back(
         {{"object", o.name},
          {"moves along", dof_text(o.dof)},
@@ -214,11 +257,35 @@ Outcome info_stream(const InfoOptions& options) {
     return std::ranges::any_of(t.layers, [](const auto& h) { return h.packets > 0; });
   });
   for (std::size_t i = 0; i < totals.meshes.size(); ++i) {
-    info["deformables"].push_back(mesh_json(player->scene().deformables[i], player->scene(), totals.meshes[i]));
+    info["deformables"].push_back(mesh_json(player.scene().deformables[i], player.scene(), totals.meshes[i]));
     if (is_layered) info["deformables"].back().update(layers_json(totals.meshes[i]));
   }
-  if (options.packets) info["packet list"] = std::move(packets);
-  print_info(info);
+  return info;
+}
+
+Outcome info_stream(const InfoOptions& options) {
+  TACTUS_TRY(const auto file, read_file(options.readable));
+  const Bytes bytes(reinterpret_cast<const std::uint8_t*>(file.data()), file.size());
+  auto player = Player::open(bytes);
+  if (!player) return refuse(options.input, player.error());
+  StreamTotals totals(player->scene());
+  Columns columns;  // of the list of packets
+  const bool is_table = options.packets && !options.json;
+  const std::optional<Error> error = for_each_packet(*player, [&](const PlayedPacket& played) {
+    totals.add(played);
+    if (!is_table) return;
+    const Json packet = packet_json(played, player->scene());
+    columns.look(names_of(packet), true);
+    columns.look(cells_of(packet), false);
+  });
+  if (options.json) {
+    const Json info = stream_info_json(*player, totals, bytes.size(), {error, player->complete()});
+    if (options.packets) print_with_packets(bytes, info);
+    else fmt::print("{}\n", text_of_json(info));
+  } else {
+    print_info(summary_json(*player, totals, bytes.size(), error));
+    if (options.packets) print_packets(bytes, columns);
+  }
   return end_of(options, error);
 }
 

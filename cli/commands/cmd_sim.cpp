@@ -49,7 +49,8 @@ struct StreamOutput {
 };
 
 tl::expected<StreamOutput, Failure> open_stream(const SimOptions& options, const Scene& scene) {
-  TACTUS_TRY(auto file, OutputFile::create(options.stream, options.common.existing(), {options.scene, options.replay}));
+  TACTUS_TRY(auto file, OutputFile::create(options.stream, options.common.existing(),
+                                           {options.output, options.stiffness_map, options.scene, options.replay}));
   TACTUS_TRY(const auto out, file.open());
   auto writer = StreamFileWriter::create(*out, scene);
   if (!writer) return refuse(options.stream, writer.error());

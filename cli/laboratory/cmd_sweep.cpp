@@ -71,13 +71,6 @@ tl::expected<std::string, Failure> run_command(const std::vector<std::string>& w
   return refuse(as_typed(words) + "\n" + in_words(done->error), "");
 }
 
-/// The command that makes an input, writing to `file`.
-std::vector<std::string> words_of(const SweepInput& input, const std::string& file) {
-  std::vector<std::string> words = input.command;
-  std::replace(words.begin(), words.end(), std::string("{file}"), file);
-  return words;
-}
-
 /// Inputs that are not there yet. Made aside and moved, so that a file with the right name is whole.
 Outcome make_inputs(const SweepPlan& plan, const std::string& folder, Visibility visibility) {
   std::error_code failed;
@@ -89,7 +82,7 @@ Outcome make_inputs(const SweepPlan& plan, const std::string& folder, Visibility
     if (fs::exists(file, failed)) continue;
     TACTUS_TRY(const auto aside, AsideFolder::create(folder, "unfinished"));
     const fs::path made = fs::path(aside.path()) / input.file;
-    TACTUS_CHECK(run_command(words_of(input, made.string())));
+    TACTUS_CHECK(run_command(input.words(made.string())));
     fs::rename(made, file, failed);
     if (failed) {
       return refuse(fmt::format("input {}: the command left no file: {}", input.name, failed.message()),
@@ -176,7 +169,7 @@ class Workers {
 };
 
 void print_commands(const SweepPlan& plan, const std::string& folder) {
-  for (const SweepInput& input : plan.inputs) fmt::print("{}\n", as_typed(words_of(input, folder + "/" + input.file)));
+  for (const SweepInput& input : plan.inputs) fmt::print("{}\n", as_typed(input.words(folder + "/" + input.file)));
   for (std::size_t point = 0; point < plan.points(); ++point) fmt::print("{}\n", as_typed(plan.words(point, folder)));
 }
 

@@ -71,8 +71,9 @@ std::string Plot::script() const {
   return out.append(text_of_program("style")).append(text_of_program(program));
 }
 
-Outcome check_plot(const Plot& plot, const std::string& directory, OutputFile::Existing existing) {
-  return OutputFile::check_free(file_of(plot, directory), existing);
+Outcome check_plot(const Plot& plot, const std::string& directory, OutputFile::Existing existing,
+                   std::initializer_list<std::string> others) {
+  return OutputFile::check_free(file_of(plot, directory), existing, others);
 }
 
 tl::expected<Drawn, Failure> draw(const Plot& plot, const std::string& directory, OutputFile::Existing existing) {

@@ -38,8 +38,9 @@ struct Plot {
 
 enum class Drawn : bool { no, yes };
 
-/// err  the file of draw() is there and to be kept
-Outcome check_plot(const Plot& plot, const std::string& directory, OutputFile::Existing existing);
+/// err  the file of draw() is there and to be kept, or is one of those that the command also uses
+Outcome check_plot(const Plot& plot, const std::string& directory, OutputFile::Existing existing,
+                   std::initializer_list<std::string> others = {});
 
 /// Write DIR/NAME.svg, which gnuplot makes of its standard input on its standard output: it opens no file.
 /// out  Drawn::no: there is no gnuplot

@@ -96,7 +96,10 @@ tl::expected<Drawn, Failure> write_stiffness_map(const sim::Scene& scene, const 
   }
   const std::string folder = place.has_parent_path() ? place.parent_path().string() : ".";
   if (file == "-") plots.clear();
-  for (const Plot& plot : plots) TACTUS_CHECK(check_plot(plot, folder, existing));
+  for (const Plot& plot : plots) {
+    TACTUS_CHECK(check_plot(plot, folder, existing, {file}));
+    TACTUS_CHECK(check_plot(plot, folder, existing, others));
+  }
   TACTUS_CHECK(table.keep());
   for (const Plot& plot : plots) {
     auto drawn = draw(plot, folder, existing);

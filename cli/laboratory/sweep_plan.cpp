@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/laboratory/sweep_plan.h"
 
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -11,7 +12,9 @@ namespace tactus::cli {
 namespace {
 
 constexpr std::size_t kMostPoints = 1000000;
-constexpr std::size_t kMostEntries = 256;  // of each list but the values of a parameter
+constexpr std::size_t kMostEntries = 256;    // of each list but the values of a parameter
+constexpr std::size_t kLongestWord = 65536;  // [bytes] of a command with its values: Linux passes twice as much
+constexpr std::size_t kLongestPath = 4096;   // [bytes] PATH_MAX of Linux
 constexpr std::size_t kMostPlanBytes = std::size_t{1} << 20;
 
 bool is_simple(std::string_view name) {
@@ -110,7 +113,7 @@ class PlanReader {
   SweepInput input(const toml::table& table) {
     in_.allow(table, "input", {"name", "file", "command"});
     SweepInput out{name(table, "input", "name"), name(table, "input", "file"), strings(table, "input", "command")};
-    check_places(table, "input.command", out.command, [](const std::string& place) { return place == "file"; });
+    check_places(table, "input.command", out.command, {{"file", kLongestPath}});
     return out;
   }
 
@@ -172,23 +175,39 @@ class PlanReader {
     return plot;
   }
 
-  /// Each {name} in a command stands for something.
-  template <class Known>
-  void check_places(const toml::node& at, const char* key, const std::vector<std::string>& words, Known known) {
+  using Lengths = std::map<std::string, std::size_t, std::less<>>;  ///< [bytes] by name, of what stands for {name} at most
+
+  /// Each {name} in a command stands for something, and no word grows too long.
+  void check_places(const toml::node& at, const char* key, const std::vector<std::string>& words, const Lengths& lengths) {
     for (const std::string& word : words) {
+      std::size_t length = word.size();
       for (std::size_t open = word.find('{'); open != std::string::npos; open = word.find('{', open + 1)) {
-        const std::string place = word.substr(open + 1, word.find('}', open) - open - 1);
-        if (!known(place)) invalid(at, "R-SCN-7", key, "correct {" + place + "}: nothing here has this name");
+        const std::size_t close = word.find('}', open);
+        const std::string place = word.substr(open + 1, close - open - 1);
+        const auto known = lengths.find(place);
+        if (close == std::string::npos) invalid(at, "R-SCN-7", key, "close {" + place + " with a }");
+        else if (known == lengths.end()) invalid(at, "R-SCN-7", key, "correct {" + place + "}: nothing here has this name");
+        else length += known->second;
       }
+      if (length > kLongestWord)
+        invalid(at, "R-SCN-6", key, "shorten a word: with its values it may have at most 65536 bytes, files counted as 4096");
     }
+  }
+
+  static Lengths lengths_of(const SweepPlan& plan) {
+    Lengths lengths;
+    for (const SweepParameter& parameter : plan.parameters)
+      for (const std::string& value : parameter.values) {
+        std::size_t& longest = lengths[parameter.name];
+        longest = std::max(longest, plan.input_named(value) ? kLongestPath : value.size());
+      }
+    return lengths;
   }
 
   /// Every parameter is used in the command and nothing else, and the sweep has a sane number of points.
   void check_uses(const toml::table& root, const SweepPlan& plan) {
     std::size_t points = 1;
-    check_places(root.contains("command") ? *root.get("command") : root, "command", plan.command, [&](const std::string& place) {
-      return std::ranges::any_of(plan.parameters, [&](const SweepParameter& p) { return p.name == place; });
-    });
+    check_places(root.contains("command") ? *root.get("command") : root, "command", plan.command, lengths_of(plan));
     for (const SweepParameter& parameter : plan.parameters) {
       points = std::min(points * parameter.values.size(), kMostPoints + 1);
       const std::string word = "{" + parameter.name + "}";
@@ -214,10 +233,18 @@ class PlanReader {
   sim::TomlReader in_;
 };
 
-std::string replaced(std::string word, const std::string& what, const std::string& by) {
-  for (std::size_t at = word.find(what); at != std::string::npos; at = word.find(what, at + by.size()))
-    word.replace(at, what.size(), by);
-  return word;
+/// A command's word with value(NAME) for each {NAME}. What was inserted is not searched again.
+template <class Value>
+std::string filled(std::string_view word, Value value) {
+  std::string out;
+  while (true) {
+    const std::size_t open = std::min(word.find('{'), word.size());
+    out += word.substr(0, open);
+    if (open == word.size()) return out;
+    const std::size_t close = word.find('}', open);
+    out += value(word.substr(open + 1, close - open - 1));
+    word.remove_prefix(close + 1);
+  }
 }
 
 /// Words between blanks.
@@ -246,28 +273,34 @@ std::vector<std::string> SweepPlan::values(std::size_t point) const {
   return out;
 }
 
+std::vector<std::string> SweepInput::words(const std::string& path) const {
+  std::vector<std::string> out;
+  for (const std::string& word : command)
+    out.push_back(filled(word, [&](std::string_view) -> const std::string& { return path; }));
+  return out;
+}
+
+const SweepInput* SweepPlan::input_named(const std::string& value) const {
+  const auto input = std::ranges::find(inputs, value, &SweepInput::name);
+  return input == inputs.end() ? nullptr : &*input;
+}
+
 std::vector<std::string> SweepPlan::words(std::size_t point, const std::string& folder) const {
   const auto chosen = values(point);
-  auto stands = chosen;
-  for (std::string& value : stands)
-    for (const SweepInput& input : inputs)
-      if (input.name == value) {
-        value = folder + "/" + input.file;
-        break;
-      }
+  std::map<std::string, std::string, std::less<>> stands;
+  std::map<std::string, std::string> split_words;  // {name} as a word of its own -> words
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const SweepInput* input = input_named(chosen[i]);
+    stands[parameters[i].name] = input ? folder + "/" + input->file : chosen[i];
+    if (!input) split_words["{" + parameters[i].name + "}"] = chosen[i];
+  }
   std::vector<std::string> out;
-  for (std::string word : command) {
-    bool is_split = false;
-    for (std::size_t i = 0; i < parameters.size(); ++i) {
-      const std::string place = "{" + parameters[i].name + "}";
-      is_split = word == place && stands[i] == chosen[i];
-      if (is_split) {
-        for (std::string& part : split(chosen[i])) out.push_back(std::move(part));
-        break;
-      }
-      word = replaced(std::move(word), place, stands[i]);
+  for (const std::string& word : command) {
+    if (const auto found = split_words.find(word); found != split_words.end()) {
+      for (std::string& part : split(found->second)) out.push_back(std::move(part));
+    } else {
+      out.push_back(filled(word, [&](std::string_view place) -> const std::string& { return stands.find(place)->second; }));
     }
-    if (!is_split) out.push_back(std::move(word));
   }
   return out;
 }

@@ -11,11 +11,13 @@
 
 namespace tactus::cli {
 
-/// An input that is made once before the first point, by a command whose word {file} is where to put it.
+/// An input that is made once before the first point, by a command in which {file} stands for the path to write.
 struct SweepInput {
   std::string name;
   std::string file;  ///< name of the file in the sweep's folder
   std::vector<std::string> command;
+
+  std::vector<std::string> words(const std::string& path) const;  ///< the command that writes to `path`
 };
 
 /// One figure: every y over x in a panel of its own, one below the other; one line for each value of a parameter.
@@ -47,9 +49,10 @@ struct SweepPlan {
   std::vector<SweepMeasure> measures;
   std::vector<SweepPlot> plots;
 
-  std::size_t points() const;                                ///< number of combinations
-  std::vector<std::string> values(std::size_t point) const;  ///< one per parameter; the last one varies fastest
-  /// The words of a point's command. A value that names an input stands for its file in `folder`; where a parameter is a word of its
+  std::size_t points() const;                                     ///< number of combinations
+  std::vector<std::string> values(std::size_t point) const;       ///< one per parameter; the last one varies fastest
+  const SweepInput* input_named(const std::string& value) const;  ///< nullptr: there is none
+  /// The words of a point's command. Values are inserted as they are: {name} in a value stands for nothing. A value that names an input stands for its file in `folder`; where a parameter is a word of its
   /// own, its value may be several words, or none.
   std::vector<std::string> words(std::size_t point, const std::string& folder) const;
   std::vector<std::string> columns() const;  ///< parameters, then measures

@@ -21,43 +21,54 @@ std::string counted(unsigned long long number, const char* noun) {
   return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
 }
 
+std::vector<std::string> shown_cells(std::vector<std::string> cells) {
+  constexpr std::size_t kWidestCell = 1000;
+  for (std::string& cell : cells) cell = shown(cell, kWidestCell);
+  return cells;
+}
+
+void Columns::look(const std::vector<std::string>& cells, bool heading) {
+  columns_.resize(std::max(columns_.size(), cells.size()));
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    columns_[i].width = std::max(columns_[i].width, display_width(cells[i]));
+    if (heading || cells[i].empty()) continue;
+    const char first = cells[i].front();
+    columns_[i].is_text = columns_[i].is_text || first == '/' || std::isalpha(static_cast<unsigned char>(first)) != 0;
+  }
+}
+
+std::string Columns::aligned(const std::vector<std::string>& cells) const {
+  std::string text;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const std::string pad(columns_[i].width - display_width(cells[i]), ' ');
+    text += (i == 0 ? "" : "  ") + (i == 0 || columns_[i].is_text ? cells[i] + pad : pad + cells[i]);
+  }
+  text.erase(text.find_last_not_of(' ') + 1);
+  return text;
+}
+
 void Table::heading(std::vector<std::string> cells) { add(true, std::move(cells)); }
 void Table::row(std::vector<std::string> cells) { add(false, std::move(cells)); }
 
 void Table::add(bool heading, std::vector<std::string> cells) {
-  constexpr std::size_t kWidestCell = 1000;
-  for (std::string& cell : cells) cell = shown(cell, kWidestCell);
+  cells = shown_cells(std::move(cells));
+  columns_.look(cells, heading);
   lines_.push_back({heading, std::move(cells)});
 }
 
 void Table::print(std::FILE* out) const {
-  std::vector<std::size_t> widths;
-  for (const Line& line : lines_) {
-    widths.resize(std::max(widths.size(), line.cells.size()));
-    for (std::size_t i = 0; i < line.cells.size(); ++i) widths[i] = std::max(widths[i], display_width(line.cells[i]));
-  }
-  const auto is_text = [&](std::size_t column) {
-    return column == 0 || std::any_of(lines_.begin(), lines_.end(), [&](const Line& line) {
-             if (line.heading || column >= line.cells.size() || line.cells[column].empty()) return false;
-             const char first = line.cells[column].front();
-             return first == '/' || std::isalpha(static_cast<unsigned char>(first)) != 0;
-           });
-  };
-  const bool coloured = is_coloured(fileno(out));
   bool first = true;
   for (const Line& line : lines_) {
     if (line.heading && !first) fmt::print(out, "\n");
     first = false;
-    std::string text;
-    for (std::size_t i = 0; i < line.cells.size(); ++i) {
-      const std::string& cell = line.cells[i];
-      const std::string pad(widths[i] - display_width(cell), ' ');
-      text += (i == 0 ? "" : "  ") + (is_text(i) ? cell + pad : pad + cell);
-    }
-    text.erase(text.find_last_not_of(' ') + 1);
-    const bool bold = line.heading && coloured;
-    fmt::print(out, "{}{}{}\n", bold ? "\x1b[1m" : "", text, bold ? "\x1b[0m" : "");
+    if (line.heading) print_heading(out, columns_.aligned(line.cells));
+    else fmt::print(out, "{}\n", columns_.aligned(line.cells));
   }
+}
+
+void print_heading(std::FILE* out, const std::string& text) {
+  const bool bold = is_coloured(fileno(out));
+  fmt::print(out, "{}{}{}\n", bold ? "\x1b[1m" : "", text, bold ? "\x1b[0m" : "");
 }
 
 }  // namespace tactus::cli
