@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <new>
 #include <string_view>
 
-#include <tactus/base/shown.h>
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "cli/progress.h"
@@ -40,19 +38,6 @@ int status_of(const Failure& failure) {
       return kSignal + failure.signal;
   }
   return kFailed;
-}
-
-/// Every line of a message without power over a terminal. Whoever made it has done so for each foreign text; this is the last net.
-std::string printable(std::string_view message) {
-  constexpr std::size_t kLongestLine = 2000;
-  std::string out;
-  while (true) {
-    const std::size_t end = std::min(message.find('\n'), message.size());
-    out += tactus::shown(message.substr(0, end), kLongestLine);
-    if (end == message.size()) return out;
-    out += '\n';
-    message.remove_prefix(end + 1);
-  }
 }
 
 int report_failure(const Failure& failure, bool as_json) {

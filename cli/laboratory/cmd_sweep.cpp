@@ -199,7 +199,7 @@ void print_summary(const SweepOptions& options, const SweepPlan& plan, const Sum
   table.row({"  failed", fmt::to_string(s.failed)});
   table.row({"  time [s]", fmt::format("{:.1f}", s.seconds)});
   table.print(stdout);
-  for (const std::string& file : s.files) fmt::print("  {}\n", file);
+  for (const std::string& file : s.files) fmt::print("  {}\n", shown_path(file));
 }
 
 Outcome run(const SweepOptions& options) {
