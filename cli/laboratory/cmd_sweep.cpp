@@ -40,11 +40,23 @@ struct SweepOptions {
   CommonOptions common;
 };
 
+/// A word as a POSIX shell takes it.
+std::string quoted(const std::string& word) {
+  constexpr std::string_view kBare = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./,:=%+-";
+  if (!word.empty() && word.find_first_not_of(kBare) == std::string::npos) return word;
+  std::string out = "'";
+  for (const char c : word) {
+    if (c == '\'') out += "'\\''";
+    else out += c;
+  }
+  return out + '\'';
+}
+
+/// A command as it can be typed, whole; only control characters are escaped, for the terminal.
 std::string as_typed(const std::vector<std::string>& words) {
   std::string out = "tactus";
-  for (const std::string& word : words)
-    out += word.find(' ') == std::string::npos ? " " + shown_path(word) : " '" + shown_path(word) + "'";
-  return out;
+  for (const std::string& word : words) out += ' ' + quoted(word);
+  return shown(out, out.npos);
 }
 
 /// What a command said on standard error, its error not as JSON.
