@@ -70,7 +70,7 @@ struct Run {
   std::vector<DeviceSample> devices;  // of this tick, recorded
 };
 
-/// A recording that knows nothing of buttons has one down while something is lifted by a spring.
+/// If the recording has no buttons, button 0 counts as pressed during a spring contact.
 std::vector<DeviceSample> recorded_devices(const TraceReader& recording, const TraceFrame& frame) {
   std::vector<DeviceSample> devices;
   for (std::size_t i = 0; i < frame.users.size(); ++i) {
