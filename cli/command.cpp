@@ -142,6 +142,7 @@ Program::Program(const std::string& name, const std::string& help, const std::st
     : Program(std::make_unique<CLI::App>(help, name)) {
   app_->set_version_flag("--version", version);
   app_->get_formatter()->column_width(34);
+  app_->failure_message([](const CLI::App* app, const CLI::Error& e) { return printable(CLI::FailureMessage::simple(app, e)); });
 }
 
 Program::Program(std::unique_ptr<CLI::App> app) : Command(*app), owned_(std::move(app)) {}

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <new>
 #include <string_view>
 
-#include <tactus/base/shown.h>
 #include "cli/commands/commands.h"
 #include "cli/output.h"
 #include "cli/progress.h"
@@ -40,19 +38,6 @@ int status_of(const Failure& failure) {
       return kSignal + failure.signal;
   }
   return kFailed;
-}
-
-/// Every line of a message without power over a terminal. Whoever made it has done so for each foreign text; this is the last net.
-std::string printable(std::string_view message) {
-  constexpr std::size_t kLongestLine = 2000;
-  std::string out;
-  while (true) {
-    const std::size_t end = std::min(message.find('\n'), message.size());
-    out += tactus::shown(message.substr(0, end), kLongestLine);
-    if (end == message.size()) return out;
-    out += '\n';
-    message.remove_prefix(end + 1);
-  }
 }
 
 int report_failure(const Failure& failure, bool as_json) {
@@ -99,7 +84,8 @@ int main(int argc, char** argv) {
       "  tactus compare push.mcap replica.mcap -p 4%              measure the error\n"
       "`tactus COMMAND --help` lists all options. Quantities take units: 2deg, 5mm, 4%, 100ms, 0.05N.\n"
       "Exit status: 0 done, 1 an input was refused or the work failed, 2 the arguments are wrong,\n"
-      "3 done, but a bound that the stream declares or an option sets is broken.");
+      "3 done, but a bound that the stream declares or an option sets is broken,\n"
+      "128 + n stopped by signal n, such as 130 by Ctrl-C.");
   Action action;
   for (const Entry& entry : kCommands) {
     const std::size_t split = entry.name.find('_');

@@ -68,7 +68,7 @@ std::string random_name(const fs::path& folder, const std::string& name) {
 
 constexpr int kTries = 100;  // of random names
 
-/// The name of an open file that holds whatever becomes of the name it was opened by.
+/// A path to the open file that stays valid if the file is renamed.
 std::string name_of(const Descriptor& file, const std::string& otherwise) {
   std::string name = "/proc/self/fd/" + std::to_string(file.number());
   return access(name.c_str(), F_OK) == 0 ? name : otherwise;
@@ -156,7 +156,7 @@ Outcome OutputFile::open_temporary() {
   return {};
 }
 
-/// What is not a plain file, which must not become one between the look at it and the first byte.
+/// Opens a pipe or device. Refuses if the path has become a regular file since it was checked.
 Outcome OutputFile::open_directly() {
   working_path_ = path_;
   if (path_ == "-") return {};

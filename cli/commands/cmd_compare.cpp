@@ -131,7 +131,7 @@ tl::expected<Side, Failure> open(const std::string& path) {
   return Side{path, std::move(*reader)};
 }
 
-/// What is typed goes before what the stream of the replica promises, and that before the defaults.
+/// Bounds come from the options, else from the stream, else from the defaults.
 void set_bounds(const CompareOptions& options, const TraceInfo& info, const std::optional<TraceBounds>& promised,
                 Report& report) {
   const bool is_typed = options.triggers.any_given() || options.meshes.any_given();

@@ -73,8 +73,8 @@ void judge(Session& s, const TraceFrame& frame, Report& report) {
   }
 }
 
-/// The time of a tick with a new shape counts for that object, that of the others for the rigid ones; where there are none, a tick
-/// without a shape is not looked at.
+/// A tick with a new shape is timed for that deformable object, any other tick for the rigid objects. Without rigid objects, ticks
+/// without a new shape are skipped.
 StepTimes* times_of(const TraceFrame& frame, Report& report) {
   for (std::size_t i = 0; i < frame.meshes.size(); ++i)
     if (frame.meshes[i].updated) return &report.meshes[i].encode;
@@ -92,7 +92,7 @@ Result<void> encode_frame(Session& s, const TraceFrame& frame, Report& report) {
   return {};
 }
 
-/// The trace is to blame for what its objects do, the output for bytes that it does not take.
+/// The file that an error message names: the output for write errors, else the trace.
 const std::string& to_blame(const Error& error, const EncodeOptions& options) {
   return error.code == Errc::io ? options.output : options.input;
 }

@@ -22,7 +22,7 @@ struct ExportMeshOptions {
   CommonOptions common;
 };
 
-/// The folder to make, without what a shell that completes names puts behind it.
+/// The folder to make, without the trailing slash of shell completion.
 tl::expected<fs::path, Failure> target_of(const std::string& output) {
   fs::path path = fs::path(output).lexically_normal();
   if (!path.has_filename()) path = path.parent_path();

@@ -9,6 +9,7 @@
 #include <span>
 #include <string_view>
 
+#include <tactus/base/shown.h>
 #include <tactus/trace/csv.h>
 #include <tactus/trace/csv_plan.h>
 #include "cli/report/report.h"
@@ -150,7 +151,7 @@ Outcome run(const ImportOptions& options) {
   report.segments = imported->segments;
   if (imported->angular_velocity.is_off()) {
     report.warnings.push_back(contradiction(imported->angular_velocity, mapping.angular_velocity_frame));
-    fmt::print(stderr, "warning: {}: {}\n", options.input, report.warnings.back());
+    fmt::print(stderr, "warning: {}: {}\n", shown_path(options.input), report.warnings.back());
   }
   TACTUS_CHECK(output.keep());
   print(report, options.common, beside(options.output));

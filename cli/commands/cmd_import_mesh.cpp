@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 
 #include <tactus/base/shown.h>
@@ -103,14 +102,6 @@ Outcome run(const ImportMeshOptions& options) {
   return {};
 }
 
-/// Up to a frame per microsecond.
-std::string frame_rate(const std::string& typed) {
-  double rate = 0;
-  const auto [end, status] = std::from_chars(typed.data(), typed.data() + typed.size(), rate);
-  const bool fits = status == std::errc() && end == typed.data() + typed.size() && rate >= 0.001 && rate <= 1e6;
-  return fits ? std::string() : fmt::format("'{}': not a number from 0.001 to 1000000", typed);
-}
-
 }  // namespace
 
 void setup_import_mesh(Command& group, Action& action) {
@@ -122,7 +113,8 @@ void setup_import_mesh(Command& group, Action& action) {
   command.add_option("-o,--output", options->output, "Trace to write (MCAP), - is standard output")
       ->type_name("FILE")
       ->required();
-  Option* rate = command.add_option("--rate", options->rate, "Frames per second [60]")->check(frame_rate)->type_name("HZ");
+  Option* rate =
+      command.add_option("--rate", options->rate, "Frames per second [60]")->check(number(0.001, 1e6))->type_name("HZ");
   add_quantity(command, "--period", options->period, Dimension::time, "Frame period, instead of --rate")
       ->check(within(Dimension::time, "1us", "1000s"))
       ->excludes(rate);

@@ -39,7 +39,7 @@ struct MeshOptions {
 };
 
 /// What became of the input, and how long each part took.
-struct MeshReport {
+struct TetMeshReport {
   sim::TetMesh mesh;
   struct Note {
     std::string key, name, text;
@@ -60,7 +60,7 @@ void scale(std::vector<Vec3>& points, double unit) {
   for (Vec3& p : points) p = unit * p;
 }
 
-Outcome make_slab(const MeshOptions& options, MeshReport& report) {
+Outcome make_slab(const MeshOptions& options, TetMeshReport& report) {
   std::array<std::uint32_t, 3> cells{};
   const char *at = options.slab.data(), *const end = at + options.slab.size();
   bool good = true;
@@ -79,7 +79,7 @@ Outcome make_slab(const MeshOptions& options, MeshReport& report) {
   return {};
 }
 
-Outcome read_tets(const MeshOptions& options, MeshReport& report) {
+Outcome read_tets(const MeshOptions& options, TetMeshReport& report) {
   note_idle_options(*options.common.command, {}, "file");
   auto file = report.measure("read", [&] { return sim::read_tet_mesh(options.input); });
   if (!file) return refuse(file.error());
@@ -95,7 +95,7 @@ Outcome read_tets(const MeshOptions& options, MeshReport& report) {
 /// Volume of a regular tetrahedron.
 double volume_of_edge(double edge) { return edge * edge * edge / (6 * std::numbers::sqrt2); }
 
-Outcome fill_surface(const MeshOptions& options, MeshReport& report) {
+Outcome fill_surface(const MeshOptions& options, TetMeshReport& report) {
   auto file = report.measure("read", [&] { return sim::read_surface(options.input); });
   if (!file) return refuse(file.error());
   if (file->polygons > 0)
@@ -118,7 +118,7 @@ Outcome fill_surface(const MeshOptions& options, MeshReport& report) {
   return {};
 }
 #else
-Outcome fill_surface(const MeshOptions& options, MeshReport&) {
+Outcome fill_surface(const MeshOptions& options, TetMeshReport&) {
   return refuse(shown_path(options.input) + ": this program was built without reading surfaces",
                 "Install libopenmesh-dev and build again, or give .node, .ele or .msh.");
 }
@@ -145,7 +145,7 @@ Outcome write_mesh(const MeshOptions& options, const sim::TetMesh& mesh) {
   return ele_file.keep();
 }
 
-Json to_json(const MeshOptions& options, const MeshReport& report) {
+Json to_json(const MeshOptions& options, const TetMeshReport& report) {
   const sim::TetQuality q = quality(report.mesh);
   const sim::TetSurface outside = surface(report.mesh);
   const sim::Bounds box = sim::bounds(report.mesh.vertices);
@@ -154,7 +154,7 @@ Json to_json(const MeshOptions& options, const MeshReport& report) {
   Json out{{"schema", "tactus.mesh/2"}, {"files", {{"output", options.output}}}};
   if (options.slab.empty()) out["files"]["input"] = options.input;
   else out["slab"] = options.slab;
-  for (const MeshReport::Note& note : report.notes) out[note.key] = note.number;
+  for (const TetMeshReport::Note& note : report.notes) out[note.key] = note.number;
   out["vertices"] = report.mesh.vertices.size();
   out["tetrahedra"] = report.mesh.tets.size();
   out["surface_vertices"] = outside.mesh.vertices.size();
@@ -168,12 +168,12 @@ Json to_json(const MeshOptions& options, const MeshReport& report) {
   return out;
 }
 
-void print_text(const Json& r, const MeshReport& report, const MeshOptions& options) {
+void print_text(const Json& r, const TetMeshReport& report, const MeshOptions& options) {
   Table head;
   head.heading({"mesh"});
   head.row({fmt::format("  {:<8} {}", "from", options.slab.empty() ? options.input : "slab " + options.slab)});
   head.row({fmt::format("  {:<8} {}", "to", options.output)});
-  for (const MeshReport::Note& note : report.notes) head.row({fmt::format("  {:<8} {}", note.name, note.text)});
+  for (const TetMeshReport::Note& note : report.notes) head.row({fmt::format("  {:<8} {}", note.name, note.text)});
   head.print(stdout);
   fmt::print("\n");
 
@@ -208,7 +208,7 @@ Outcome run(const MeshOptions& options) {
   if (!options.output.ends_with(".node") && !options.output.ends_with(".msh"))
     return refuse_arguments(options.output + ": not the name of a mesh",
                             "Give -o NAME.node (with NAME.ele beside it) or -o NAME.msh.");
-  MeshReport report;
+  TetMeshReport report;
   TACTUS_CHECK(!options.slab.empty()        ? make_slab(options, report)
                : is_tet_file(options.input) ? read_tets(options, report)
                                             : fill_surface(options, report));

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include <tactus/file/stream_file.h>
@@ -14,6 +13,7 @@
 #include <tactus/trace/trace_file.h>
 #include "cli/commands/stop.h"
 #include "cli/laboratory/stiffness_map.h"
+#include "cli/options/grip_option.h"
 #include "cli/options/option_needs.h"
 #include "cli/report/report.h"
 #include "cli/report/table.h"
@@ -25,12 +25,12 @@ namespace {
 struct SimOptions {
   std::string scene, output, stream, replay;
   std::string stiffness_map;   // CSV to write
+  std::string grip;            // empty: the scene's
   std::string method, solver;  // of deformable objects, empty: the scene's
   std::uint32_t rate = 0;      // ticks between deformations, 0: the scene's
   std::uint64_t seed = 1;
   double duration = -1;   // [s], negative: the scene's
   double mesh_noise = 0;  // [m] RMS per axis
-  std::optional<sim::Grip> grip;
   bool codec = false;
   TriggerArguments triggers;
   MeshArguments meshes;
@@ -70,7 +70,7 @@ struct Run {
   std::vector<DeviceSample> devices;  // of this tick, recorded
 };
 
-/// A recording that knows nothing of buttons has one down while something is lifted by a spring.
+/// If the recording has no buttons, button 0 counts as pressed during a spring contact.
 std::vector<DeviceSample> recorded_devices(const TraceReader& recording, const TraceFrame& frame) {
   std::vector<DeviceSample> devices;
   for (std::size_t i = 0; i < frame.users.size(); ++i) {
@@ -288,7 +288,7 @@ Outcome run(const SimOptions& options) {
   TACTUS_TRY(const auto scene, read_scene(options));
   note_idle_options(*options.common.command, subjects_of(scene), "scene");
   sim::SimulationOptions settings{.seed = options.seed,
-                                  .grip = options.grip,
+                                  .grip = options.grip.empty() ? std::nullopt : std::optional(kGrips.at(options.grip)),
                                   .channel = {},
                                   .mesh_noise = options.mesh_noise,
                                   .estimate_every = kEstimateEvery};
@@ -354,20 +354,18 @@ void setup_sim(Command& app, Action& action) {
   add_quantity(command, "--duration", options->duration, Dimension::time, "Length [the scene's]");
   add_quantity(command, "--deformable-noise", options->mesh_noise, Dimension::length,
                "White noise added to recorded and sent shapes, RMS per axis [0]");
-  const std::map<std::string, sim::Grip> grips{
-      {"loose", sim::Grip::loose}, {"normal", sim::Grip::normal}, {"firm", sim::Grip::firm}};
-  command
-      .add_option(
-          "--grip", [&grip = options->grip, grips](const std::string& name) { grip = grips.at(name); },
-          "Grip of the hand on the device: loose, normal or firm [the scene's]")
-      ->check(one_of({"loose", "normal", "firm"}))
-      ->type_name("GRIP");
+  add_grip(command, options->grip, "the scene's");
   command.add_option("--replay", options->replay, "Replay the device samples of this trace instead of virtual hands")
       ->type_name("TRACE");
-  command.add_option("--method", options->method, "Time integration of deformable objects [the scene's]")
+  command
+      .add_option("--method", options->method,
+                  "Time integration of deformable objects: auto, velocity-verlet, backward-euler, newmark, tr-bdf2 or projective "
+                  "[the scene's]")
       ->check(one_of({"auto", "velocity-verlet", "backward-euler", "newmark", "tr-bdf2", "projective"}))
       ->type_name("NAME");
-  command.add_option("--solver", options->solver, "Linear solver of implicit methods [the scene's]")
+  command
+      .add_option("--solver", options->solver,
+                  "Linear solver of implicit methods: auto, cg, cholesky or prefactored [the scene's]")
       ->check(one_of({"auto", "cg", "cholesky", "prefactored"}))
       ->type_name("NAME");
   command.add_option("--rate", options->rate, "Ticks between deformation steps, 1 to 1000 [the scene's]")

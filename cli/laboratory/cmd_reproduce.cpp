@@ -7,7 +7,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -16,6 +15,7 @@
 #include <tactus/receiver.h>
 #include <tactus/sim/simulation.h>
 #include "cli/laboratory/workers.h"
+#include "cli/options/grip_option.h"
 #include "cli/options/options_codec.h"
 #include "cli/report/json_parts.h"
 #include "cli/report/table.h"
@@ -265,9 +265,7 @@ Outcome run(const ReproduceOptions& options) {
   if (!path) return refuse(path.error());
   const auto scene = sim::load_scene(*path);
   if (!scene) return refuse(scene.error());
-  const std::map<std::string, sim::Grip> grips{
-      {"loose", sim::Grip::loose}, {"normal", sim::Grip::normal}, {"firm", sim::Grip::firm}};
-  const sim::Grip grip = grips.at(options.grip);
+  const sim::Grip grip = kGrips.at(options.grip);
   const std::size_t jobs = kSettings.size() * options.seeds;
   std::optional<std::vector<Measured>> results;
   {
@@ -303,9 +301,7 @@ void setup_reproduce(Command& app, Action& action) {
   add_quantity(command, "--length-unit", options->length_unit, Dimension::length,
                "Metres per virtual length unit of the thesis [0.05m]")
       ->check(above_zero(Dimension::length));
-  command.add_option("--grip", options->grip, "Grip of the hand on the device: loose, normal or firm [normal]")
-      ->check(one_of({"loose", "normal", "firm"}))
-      ->type_name("GRIP");
+  add_grip(command, options->grip, options->grip);
   add_report_options(command, options->common);
   command.footer("Example:\n  tactus reproduce fig3.14 --seeds 5");
   on_chosen<ReproduceOptions>(command, action, options, run);

@@ -40,11 +40,23 @@ struct SweepOptions {
   CommonOptions common;
 };
 
+/// A word as a POSIX shell takes it.
+std::string quoted(const std::string& word) {
+  constexpr std::string_view kBare = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./,:=%+-";
+  if (!word.empty() && word.find_first_not_of(kBare) == std::string::npos) return word;
+  std::string out = "'";
+  for (const char c : word) {
+    if (c == '\'') out += "'\\''";
+    else out += c;
+  }
+  return out + '\'';
+}
+
+/// A command as it can be typed, whole; only control characters are escaped, for the terminal.
 std::string as_typed(const std::vector<std::string>& words) {
   std::string out = "tactus";
-  for (const std::string& word : words)
-    out += word.find(' ') == std::string::npos ? " " + shown_path(word) : " '" + shown_path(word) + "'";
-  return out;
+  for (const std::string& word : words) out += ' ' + quoted(word);
+  return shown(out, out.npos);
 }
 
 /// What a command said on standard error, its error not as JSON.
@@ -199,7 +211,7 @@ void print_summary(const SweepOptions& options, const SweepPlan& plan, const Sum
   table.row({"  failed", fmt::to_string(s.failed)});
   table.row({"  time [s]", fmt::format("{:.1f}", s.seconds)});
   table.print(stdout);
-  for (const std::string& file : s.files) fmt::print("  {}\n", file);
+  for (const std::string& file : s.files) fmt::print("  {}\n", shown_path(file));
 }
 
 Outcome run(const SweepOptions& options) {

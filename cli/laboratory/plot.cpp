@@ -31,7 +31,7 @@ std::string_view text_of_program(std::string_view name) {
 std::string in_gnuplot(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "NaN"; }
 
 std::string in_gnuplot(std::string_view text) {
-  // Doubled, as gnuplot wants an apostrophe, it ends the string all the same where two stand together or one in front.
+  // gnuplot's escape '' fails for two adjacent apostrophes and for one at the start of the string.
   constexpr const char* kApostrophe = "\u2019";
   std::string out = "'";
   for (const char c : shown(text, kLongestText)) {

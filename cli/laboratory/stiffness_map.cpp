@@ -10,6 +10,7 @@
 
 #include <tactus/sim/deformable/stiffness_map.h>
 #include <tactus/sim/tets/tet_mesh.h>
+#include <tactus/trace/csv_reader.h>
 
 namespace tactus::cli {
 namespace {
@@ -87,7 +88,7 @@ tl::expected<Drawn, Failure> write_stiffness_map(const sim::Scene& scene, const 
     if (!map) return refuse(scene_file, object.name, map.error());
     for (std::size_t v = 0; v < map->stiffness.size(); ++v) {
       const Vec3& at = map->surface.vertices[v];
-      *out << fmt::format("{},{},{},{},{},{}\n", object.name, v, at.x, at.y, at.z, map->stiffness[v]);
+      *out << fmt::format("{},{},{},{},{},{}\n", csv_field(object.name), v, at.x, at.y, at.z, map->stiffness[v]);
     }
     const std::string stem = place.stem().string();
     std::string name = plots.empty() ? stem : stem + "-" + object.name;

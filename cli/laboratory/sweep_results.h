@@ -23,7 +23,6 @@ class SweepResults {
   static tl::expected<SweepResults, Failure> open(const std::string& folder, const SweepPlan& plan);
 
   bool has(const std::vector<std::string>& values) const { return rows_.contains(values); }
-  std::size_t size() const { return rows_.size(); }
   /// Write a row through to the disk.   err  the operating system refuses
   Outcome add(const std::vector<std::string>& values, const std::vector<std::string>& measures);
   /// Rows of the plan's points in its order; unfinished points are left out.

@@ -33,6 +33,7 @@ std::optional<std::vector<Value>> run_in_workers(std::size_t count, Job&& job, O
   for (std::size_t worker = 0; worker < workers; ++worker) {
     const pid_t child = fork();
     if (child == 0) {
+      close(pipe_ends[0]);  // a worker whose reader is gone is to end, not to wait for room in the pipe
       try {
         for (std::size_t i = worker; i < count; i += workers) {
           const Message message{i, job(i)};

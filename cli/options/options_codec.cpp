@@ -94,11 +94,15 @@ void TriggerArguments::add_to(Command& app) {
       add_pose_bound(app, "--visual", visual_, "Visual threshold: largest shown error of position and rotation [6mm,2deg]");
   fixed_option_ = add_pose_bound(app, "--fixed", fixed_, "Largest pose error in contact with --haptic fixed [1.5mm,2deg]");
   length_unit_option_ = add_quantity(app, "--length-unit", length_unit_, Dimension::length,
-                                     "Unit of lengths given without one in --visual and --fixed [1m]")
+                                     "Unit of lengths given without one in --visual and --fixed [none: lengths need their unit]")
                             ->check(above_zero(Dimension::length));
-  haptic_ = app.add_option("--haptic", rule, "Haptic threshold: isotropic, cone, fixed or off [isotropic]")
-                ->check(one_of({"isotropic", "cone", "fixed", "off"}))
-                ->type_name("RULE");
+  haptic_ =
+      app.add_option(
+             "--haptic", rule,
+             "Haptic threshold: isotropic (bounds the force error in all directions alike), cone (bounds its amount by -p and "
+             "its direction by --alpha), fixed (bounds the pose by --fixed) or off [isotropic]")
+          ->check(one_of({"isotropic", "cone", "fixed", "off"}))
+          ->type_name("RULE");
   alpha_ = add_quantity(app, "--alpha", triggers_.cone_angle, Dimension::angle,
                         "Largest error of the force's direction with --haptic cone [2.1deg]")
                ->check(within(Dimension::angle, "0.001deg", "180deg"));
@@ -130,9 +134,9 @@ void TriggerArguments::check_bound(const Option& option, const PoseBound& bound)
 }
 
 void TriggerArguments::add_encoder_to(Command& app) {
-  options_.push_back(
-      add_quantity(app, "--heartbeat", triggers_.heartbeat, Dimension::time, "Longest time without an update, 0: unlimited [1s]")
-          ->check(within(Dimension::time, "0s", "3600s")));
+  options_.push_back(add_quantity(app, "--heartbeat", triggers_.heartbeat, Dimension::time,
+                                  "An object that was not sent for this long is sent again, as a sign of life; 0: never [1s]")
+                         ->check(within(Dimension::time, "0s", "3600s")));
   options_.push_back(add_quantity(app, "--key-interval", key_interval_, Dimension::time,
                                   "Time between key packets, at which decoding can start; 0: the first only [5s]")
                          ->check(within(Dimension::time, "0s", "86400s")));
@@ -170,10 +174,11 @@ void MeshArguments::add_to(Command& app) {
   visual_ = add_quantity(app, "--deformable-visual", thresholds_.visual, Dimension::length,
                          "Visual threshold of a vertex of a deformable object, 0: exact to the grid [0.25mm]")
                 ->check(within(Dimension::length, "0m", "1000000m"));
-  rings_ = app.add_option("--rings", coding_.rings,
-                          "Area of interest: rings of triangles around the touched one in which -p holds [3]")
-               ->check(whole_number(0, DeformableObject::kMaxRings))
-               ->type_name("M");
+  rings_ =
+      app.add_option("--rings", coding_.rings,
+                     "Area of interest in which -p holds: the touched triangle and this many rings of neighbours around it [3]")
+          ->check(whole_number(0, DeformableObject::kMaxRings))
+          ->type_name("M");
   options_ = {visual_, rings_};
 }
 
@@ -181,7 +186,7 @@ void MeshArguments::add_encoder_to(Command& app) {
   const std::map<std::string, DeformableProfile> profiles{{"thesis", DeformableProfile::thesis},
                                                           {"main", DeformableProfile::main}};
   const auto profile = [this, profiles](const std::string& name) { coding_.profile = profiles.at(name); };
-  Option* modes = app.add_option("--basis", modes_, "main: vibration modes declared to both ends, 0: none [0]")
+  Option* modes = app.add_option("--basis", modes_, "Vibration modes declared to both ends, 0: none (--profile main) [0]")
                       ->check(whole_number(0, ModeBasis::kMaxModes))
                       ->type_name("K");
   options_.insert(
@@ -191,15 +196,16 @@ void MeshArguments::add_encoder_to(Command& app) {
            ->type_name("NAME"),
        modes,
        add_quantity(app, "--visual-share", visual_share_, Dimension::fraction,
-                    "main: code to this share of --deformable-visual, 0.1% or more [100%]")
+                    "Code to this share of --deformable-visual, 0.1% or more (--profile main) [100%]")
            ->check(within(Dimension::fraction, "0.1%", "100%")),
        add_quantity(app, "--haptic-share", haptic_share_, Dimension::fraction,
-                    "main: code to this share of -p's bound, 0.1% or more [100%]")
+                    "Code to this share of -p's bound, 0.1% or more (--profile main) [100%]")
            ->check(within(Dimension::fraction, "0.1%", "100%")),
-       app.add_option("--quant-bits", coding_.quant_bits, "thesis: bits of its quantiser, 1 to 12 [8]")
+       app.add_option("--quant-bits", coding_.quant_bits, "Bits of the quantiser, 1 to 12 (--profile thesis) [8]")
            ->check(whole_number(1, DeformableObject::kMaxQuantBits))
            ->type_name("Q"),
-       app.add_flag("--keep-models", coding_.models_kept, "thesis: keep adapting the entropy models from packet to packet"),
+       app.add_flag("--keep-models", coding_.models_kept,
+                    "Keep adapting the entropy models from packet to packet (--profile thesis)"),
        app.add_flag("--layered", coding_.layered,
                     "Touched deformable objects: send the haptic layer in its own packet before the visual layer. Costs "
                     "a second header per update and 3 to 30 % of the bits")});

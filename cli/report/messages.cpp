@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <system_error>
 
@@ -69,6 +70,18 @@ tl::unexpected<Failure> refuse_io(const std::string& file, const std::string& wh
   refused.value().file = file;
   refused.value().error_class = errc_name(Errc::io);
   return refused;
+}
+
+std::string printable(std::string_view message) {
+  constexpr std::size_t kLongestLine = 2000;
+  std::string out;
+  while (true) {
+    const std::size_t end = std::min(message.find('\n'), message.size());
+    out += shown(message.substr(0, end), kLongestLine);
+    if (end == message.size()) return out;
+    out += '\n';
+    message.remove_prefix(end + 1);
+  }
 }
 
 tl::unexpected<Failure> refuse(std::string text, std::string remedy) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <tl/expected.hpp>
 
 #include <tactus/base/diagnostic.h>
@@ -21,6 +22,9 @@ struct Failure {
   std::string file{}, place{}, error_class{}, rule{};
 };
 using Outcome = tl::expected<void, Failure>;
+
+/// Escapes control characters in every line. Callers already escape foreign text; this is a second safeguard.
+std::string printable(std::string_view message);
 
 /// Place of a bit in a file: "byte 132" or "byte 132, bit 3"; empty for 0.
 std::string place_of_bit(std::uint64_t bit_offset);

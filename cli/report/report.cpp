@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include <tactus/base/shown.h>
 #include "cli/report/figures.h"
 #include "cli/report/table.h"
 
@@ -214,7 +215,7 @@ std::string broken_bounds(const Report& r) {
   }
   for (const MeshReport& mesh : r.meshes)
     if (mesh.fidelity && mesh.promised)
-      look(mesh.name + " at", mesh.fidelity->all().violations, mesh.fidelity->all().vertices, "vertex");
+      look(shown(mesh.name) + " at", mesh.fidelity->all().violations, mesh.fidelity->all().vertices, "vertex");
   return text;
 }
 

@@ -11,8 +11,8 @@
 namespace tactus::cli {
 
 void warn_cut_stream(const std::string& path, const Error& error) {
-  fmt::print(stderr, "warning: {}: the stream ends inside a record at {}; everything before the cut could be read\n", path,
-             place_of_bit(error.bit_offset));
+  fmt::print(stderr, "warning: {}: the stream ends inside a record at {}; everything before the cut could be read\n",
+             shown_path(path), place_of_bit(error.bit_offset));
 }
 
 Outcome check_ending(const std::string& path, const TraceReader& reader, std::uint64_t frames) {

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The option --grip of commands that simulate.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include <tactus/sim/simulation.h>
+#include "cli/options/options_codec.h"
+
+namespace tactus::cli {
+
+inline const std::map<std::string, sim::Grip> kGrips{
+    {"loose", sim::Grip::loose}, {"normal", sim::Grip::normal}, {"firm", sim::Grip::firm}};
+
+/// in  otherwise  what holds without it, for the help
+inline Option* add_grip(Command& command, std::string& grip, const std::string& otherwise) {
+  return command.add_option("--grip", grip, "Grip of the hand on the device: loose, normal or firm [" + otherwise + "]")
+      ->check(one_of({"loose", "normal", "firm"}))
+      ->type_name("GRIP");
+}
+
+}  // namespace tactus::cli
