@@ -10,8 +10,8 @@
 #include <numbers>
 #include <string>
 
-#ifdef TACTUS_HAS_MODES
 #include <tactus/base/rule.h>
+#ifdef TACTUS_HAS_MODES
 #include <tactus/deformable/displacement.h>
 #include <tactus/sim/modes/spring_modes.h>
 #endif

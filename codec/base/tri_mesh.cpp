@@ -20,7 +20,6 @@ static_assert(kMaxMeshVertices <= std::size_t{1} << 20 && 3 * kMaxMeshTriangles 
 
 constexpr EdgeSide edge_of(EdgeSide side) noexcept { return side >> 23; }
 constexpr std::uint32_t low_vertex(EdgeSide side) noexcept { return static_cast<std::uint32_t>(side >> 43); }
-constexpr std::uint32_t high_vertex(EdgeSide side) noexcept { return static_cast<std::uint32_t>((side >> 23) & 0xfffff); }
 constexpr std::uint32_t corner_of(EdgeSide side) noexcept {
   return static_cast<std::uint32_t>(side & 0x7fffff);
 }  // 3 triangle + k
