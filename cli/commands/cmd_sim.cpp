@@ -288,7 +288,7 @@ Outcome run(const SimOptions& options) {
   TACTUS_TRY(const auto scene, read_scene(options));
   note_idle_options(*options.common.command, subjects_of(scene), "scene");
   sim::SimulationOptions settings{.seed = options.seed,
-                                  .grip = options.grip.empty() ? std::nullopt : std::optional(kGrips.at(options.grip)),
+                                  .grip = options.grip.empty() ? std::nullopt : std::optional(grip_of(options.grip)),
                                   .channel = {},
                                   .mesh_noise = options.mesh_noise,
                                   .estimate_every = kEstimateEvery};

@@ -265,7 +265,7 @@ Outcome run(const ReproduceOptions& options) {
   if (!path) return refuse(path.error());
   const auto scene = sim::load_scene(*path);
   if (!scene) return refuse(scene.error());
-  const sim::Grip grip = kGrips.at(options.grip);
+  const sim::Grip grip = grip_of(options.grip);
   const std::size_t jobs = kSettings.size() * options.seeds;
   std::optional<std::vector<Measured>> results;
   {

@@ -56,7 +56,7 @@ std::string quoted(const std::string& word) {
 std::string as_typed(const std::vector<std::string>& words) {
   std::string out = "tactus";
   for (const std::string& word : words) out += ' ' + quoted(word);
-  return shown(out, out.npos);
+  return shown(out, std::string::npos);
 }
 
 /// What a command said on standard error, its error not as JSON.

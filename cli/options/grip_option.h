@@ -2,7 +2,6 @@
 /// The option --grip of commands that simulate.
 #pragma once
 
-#include <map>
 #include <string>
 
 #include <tactus/sim/simulation.h>
@@ -10,8 +9,10 @@
 
 namespace tactus::cli {
 
-inline const std::map<std::string, sim::Grip> kGrips{
-    {"loose", sim::Grip::loose}, {"normal", sim::Grip::normal}, {"firm", sim::Grip::firm}};
+/// pre  add_grip() took this name
+inline sim::Grip grip_of(const std::string& name) {
+  return name == "loose" ? sim::Grip::loose : name == "firm" ? sim::Grip::firm : sim::Grip::normal;
+}
 
 /// in  otherwise  what holds without it, for the help
 inline Option* add_grip(Command& command, std::string& grip, const std::string& otherwise) {
