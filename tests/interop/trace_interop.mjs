@@ -18,18 +18,18 @@ const decompressHandlers = { zstd: (data, size) => zstd.decompress(data, Number(
 const ticks = 2500; // as in trace_tool.cpp
 const number = (tick, slot) => (tick * 1031 + slot * 7 - 5000) / 64;
 const vector = (tick, slot) => ({ x: number(tick, slot), y: number(tick, slot + 1), z: number(tick, slot + 2) });
-const pose = (tick, slot) => ({
-  position: vector(tick, slot),
-  orientation: { w: number(tick, slot + 3), x: number(tick, slot + 4), y: number(tick, slot + 5), z: number(tick, slot + 6) },
-});
+const turns = [[1, 0, 0, 0], [0.5, -0.5, 0.5, 0.5], [0, 0.6, 0, -0.8], [-0.1, 0.7, 0.5, 0.5], [0.28, 0, -0.96, 0]];
+const turn = (tick) => {
+  const [w, x, y, z] = turns[tick % turns.length];
+  return { w, x, y, z };
+};
+const pose = (tick, slot) => ({ position: vector(tick, slot), orientation: turn(tick) });
 const expected = {
   "/objects/cube/pose": (tick) => ({ pose: pose(tick, 0) }),
   "/objects/cube/twist": (tick) => ({ twist: { linear: vector(tick, 7), angular: vector(tick, 10) } }),
-  "/objects/floor/pose": (tick) => (tick === 0 ? { pose: pose(0, 100) } : undefined),
+  "/objects/floor/pose": (tick) => (tick === 0 ? { pose: { position: vector(0, 100), orientation: turn(1) } } : undefined),
   "/users/hand/device": (tick) => ({ point: vector(tick, 200) }),
-  "/users/hand/device_orientation": (tick) => ({
-    quaternion: { w: number(tick, 220), x: number(tick, 221), y: number(tick, 222), z: number(tick, 223) },
-  }),
+  "/users/hand/device_orientation": (tick) => ({ quaternion: turn(tick + 2) }),
   "/users/hand/device_velocity": (tick) => ({ vector: vector(tick, 230) }),
   "/users/hand/device_buttons": (tick) => (tick % 4 === 0 ? { down: (tick / 4) % 4 } : undefined),
   "/users/hand/device_time": (tick) => ({

@@ -23,17 +23,25 @@ double number(std::int64_t tick, std::size_t slot) {
   return static_cast<double>(tick * 1031 + static_cast<std::int64_t>(slot) * 7 - 5000) / 64;
 }
 
+/// Of unit length, exact in decimals, no two components of one axis alike.
+Quat turn(std::int64_t tick) {
+  constexpr Quat kTurns[] = {{1, 0, 0, 0}, {0.5, -0.5, 0.5, 0.5}, {0, 0.6, 0, -0.8}, {-0.1, 0.7, 0.5, 0.5}, {0.28, 0, -0.96, 0}};
+  return kTurns[tick % 5];
+}
+
 TraceFrame make_frame(std::int64_t tick) {
   TraceFrame frame{tick, std::vector<RigidSample>(2), std::vector<UserSample>(1)};
   for (std::size_t k = 0; k < kObjectColumns.size(); ++k) kObjectColumns[k].field(frame.objects[0]) = number(tick, k);
   for (std::size_t k = 0; k < 7; ++k) kObjectColumns[k].field(frame.objects[1]) = number(0, 100 + k);  // static: pose only
+  frame.objects[0].pose.rotation = turn(tick);
+  frame.objects[1].pose.rotation = turn(1);
   const bool touches = tick % 3 == 1;
   for (std::size_t k = 0; k < (touches ? kUserColumns.size() : 9); ++k)
     kUserColumns[k].field(frame.users[0]) = number(tick, 200 + k);
   frame.users[0].contact.device = frame.users[0].device.position;
   frame.users[0].contact.kind = touches ? ContactKind::spring : ContactKind::none;
   if (touches) frame.users[0].contact.stiffness = 630;
-  for (std::size_t k = 0; k < 4; ++k) kOrientationColumns[k].field(frame.users[0]) = number(tick, 220 + k);
+  frame.users[0].device.orientation = turn(tick + 2);
   for (std::size_t k = 0; k < 3; ++k) kDeviceVelocityColumns[k].field(frame.users[0]) = number(tick, 230 + k);
   frame.users[0].device.buttons = static_cast<std::uint32_t>(tick / 4 % 4);
   frame.users[0].device.time = 1'000'003 * tick;
