@@ -133,7 +133,7 @@ bool Link::is_cut(Microseconds now) const noexcept {
 /// A chain of two states: within a burst everything is lost, outside nothing (Gilbert 1960).
 bool Link::draw_loss() noexcept {
   const double draw = loss_.uniform(0, 1);
-  if (options_.burst <= 1) return draw < options_.loss;
+  if (options_.burst <= 1 || options_.loss >= 1) return draw < options_.loss;
   const double enter = burst_begin(options_.loss, options_.burst), leave = 1 / options_.burst;
   in_burst_ = in_burst_ ? draw >= leave : draw < enter;
   return in_burst_;

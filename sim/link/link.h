@@ -42,7 +42,7 @@ struct LinkOptions {
   Microseconds gamma_deviation = 0;
   Microseconds gamma_piece = 1'000'000;  ///< at least 1 ms
 
-  std::vector<DelayChange> recorded{};  ///< a measured delay over time, starting at 0; repeated after the last entry's time
+  std::vector<DelayChange> recorded{};  ///< a measured delay over time, starting at 0; the last entry says when it begins anew
 
   double loss = 0;        ///< share of datagrams
   double burst = 1;       ///< [datagrams] mean length of a row of losses (Gilbert-Elliott); 1: independent of each other
@@ -69,8 +69,9 @@ class Link {
     std::span<const std::uint8_t> bytes;
   };
 
-  /// err  invalid_argument R-LNK-1: a time is negative or over an hour, a piece is shorter than 1 ms, a share is not within 0 and 1, a burst is shorter than 1 or
-  ///      longer than the share of losses permits, the rate is not finite, or recorded delays and outages are not in order
+  /// err  invalid_argument R-LNK-1: a time is negative or over an hour, a piece is shorter than 1 ms, a share is not within 0 and 1, a
+  ///      burst is shorter than 1 or than the share of losses asks for, the rate is not finite, or recorded delays and outages are
+  ///      not in order
   static Result<Link> create(const LinkOptions& options);
 
   /// pre  `now` never decreases.   time O(log of datagrams on their way); allocates only to hold more of them than ever before.

@@ -157,6 +157,10 @@ TEST(Link, LossesAreIndependentOrInBursts) {
   }
 }
 
+TEST(Link, ALossOfAllIsOne) {
+  for (const double burst : {1.0, 5.0}) EXPECT_EQ(run({.loss = 1, .burst = burst}, 1000).counters.lost, 1000u) << burst;
+}
+
 TEST(Link, OneCauseLeavesTheOthersAsTheyWere) {
   const LinkOptions plain{.seed = 9, .jitter = 5 * kMillisecond, .loss = 0.2};
   LinkOptions more = plain;
@@ -267,6 +271,12 @@ TEST(Link, AllocatesOnlyForMoreThanEverBefore) {
     }
     link.send(now, bytes);
   };
+  for (int i = 0; i < 30; ++i) link.send(now, bytes);
+  const auto sent = testing::allocated_bytes();
+  while (link.poll(kSecond)) {
+  }
+  EXPECT_EQ(testing::allocated_bytes(), sent) << "arrivals never do";
+  now = kSecond;
   for (int i = 0; i < 5000; ++i) step();
   const auto before = testing::allocated_bytes();
   for (int i = 0; i < 1000; ++i) step();
