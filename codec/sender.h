@@ -55,7 +55,8 @@ class Sender {
   /// in   tick  strictly increasing, below 2^32 - 1
   /// out  at most one packet per substream, two for a layered object, its haptic layer first. Valid until the next call: bind the
   ///      Result to a name before iterating over it
-  /// time < 1 us per rigid object while contacts are few (each object looks at all of them); O(V * (1 + modes)) per new shape, 100 us for 714 vertices and 48 modes.
+  /// time < 1 us per rigid object while contacts are few (each object looks at all of them); O(V * (1 + modes)) per new shape, 100 us
+  ///      for 714 vertices and 48 modes.
   /// err  invalid_argument R-API-1, 2, 3 a sample, displacement or force is not finite or out of range; R-API-5 wrong count,
   ///      order of ticks, contact, triangle, force or stiffness; R-API-6 an object moved along a locked axis; R-API-7 the
   ///      residual from the predicted pose exceeds what an update can code. An error leaves the sender unchanged.

@@ -43,7 +43,8 @@ class Simulated : public Touchable {
   virtual void observe(TraceFrame& frame) noexcept = 0;
   /// Apply `share` of the reaction to the user's last force to the object touched.   no allocation
   virtual void push(std::size_t user, double share) noexcept = 0;
-  /// Advance by one tick.   err  the broken rule, with the tick as the step and the object as the element: its index in the frame's objects or meshes
+  /// Advance by one tick.
+  /// err  the broken rule, with the tick as the step and the object as the element: its index in the frame's objects or meshes
   virtual tl::expected<void, Diagnostic> step() = 0;
 };
 

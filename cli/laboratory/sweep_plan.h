@@ -52,8 +52,8 @@ struct SweepPlan {
   std::size_t points() const;                                     ///< number of combinations
   std::vector<std::string> values(std::size_t point) const;       ///< one per parameter; the last one varies fastest
   const SweepInput* input_named(const std::string& value) const;  ///< nullptr: there is none
-  /// The words of a point's command. Values are inserted as they are: {name} in a value stands for nothing. A value that names an input stands for its file in `folder`; where a parameter is a word of its
-  /// own, its value may be several words, or none.
+  /// The words of a point's command. Values are inserted as they are: {name} in a value stands for nothing. A value that names an input
+  /// stands for its file in `folder`; where a parameter is a word of its own, its value may be several words, or none.
   std::vector<std::string> words(std::size_t point, const std::string& folder) const;
   std::vector<std::string> columns() const;  ///< parameters, then measures
 };

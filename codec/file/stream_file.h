@@ -18,7 +18,8 @@ class StreamFileWriter {
  public:
   /// err  io R-FIL-1.   pre  `out` outlives the writer and is in binary mode.
   static Result<StreamFileWriter> create(std::ostream& out, const Scene& scene);
-  /// pre  ticks do not fall.   err  io R-FIL-1; invalid_argument R-API-5 (tick order).   allocates: a buffer that grows to the largest packet
+  /// pre  ticks do not fall.   err  io R-FIL-1; invalid_argument R-API-5 (tick order).
+  /// allocates a buffer that grows to the largest packet
   Result<void> add(std::int64_t tick, std::span<const std::uint8_t> packet, bool key);
   Result<void> finish();
   std::uint64_t header_bytes() const noexcept { return header_bytes_; }
@@ -53,7 +54,8 @@ class StreamFileReader {
   const SharedScene& scene() const noexcept { return scene_; }
   std::uint64_t header_bytes() const noexcept { return first_; }
   /// Next packet; nothing at the end. Unknown extension records are skipped.
-  /// err  truncated R-FIL-2; unsupported R-FIL-3; limit_exceeded R-FIL-4; checksum R-FIL-5; malformed R-FIL-6, 8. The reader then stays where it is.
+  /// err  truncated R-FIL-2; unsupported R-FIL-3; limit_exceeded R-FIL-4; checksum R-FIL-5; malformed R-FIL-6, 8.
+  ///      The reader then stays where it is.
   Result<std::optional<FilePacket>> next() noexcept;
   /// Seek to the last key packet at or before `tick`, by the index. Returns false and changes nothing if the file has no valid
   /// index or no key packet that early.
