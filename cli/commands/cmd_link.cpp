@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/commands/commands.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <deque>
+#include <nlohmann/json.hpp>
+
+#include <tactus/net/udp.h>
+#include "cli/commands/stop.h"
+#include "cli/options/options_link.h"
+#include "cli/options/units.h"
+#include "cli/report/json_parts.h"
+#include "cli/report/report.h"
+#include "cli/report/table.h"
+
+namespace tactus::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using sim::Microseconds;
+
+constexpr std::size_t kMostClients = 64;
+constexpr std::size_t kLargestDatagram = 65536;
+
+struct ForwardOptions {
+  std::string listen, to;
+  sim::LinkOptions up, down;
+  double duration = 0;  // [s], 0: until interrupted
+  CommonOptions common;
+};
+
+/// A client, its socket towards the server and both directions of its network.
+struct Path {
+  net::Address client;
+  net::UdpSocket server;
+  sim::Link up, down;
+  std::uint64_t refused = 0;  // by the system
+};
+
+/// Hands datagrams on, in real time. Time counts from its making.
+class Forwarder {
+ public:
+  Forwarder(const ForwardOptions& options, net::UdpSocket own, net::Address server)
+      : options_(options), own_(std::move(own)), server_(server), buffer_(kLargestDatagram) {}
+
+  /// Wait until something comes or is due, but not past `end`, and hand on what is.
+  void step(Microseconds end);
+  Microseconds now() const {
+    return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - start_).count();
+  }
+  const std::deque<Path>& paths() const { return paths_; }
+  const std::vector<Microseconds>& lateness() const { return lateness_; }
+  std::uint64_t strangers() const { return strangers_; }
+
+ private:
+  void wait(Microseconds end);
+  Path* path_of(const net::Address& client);
+  void take();
+  void hand_on();
+  void note_late(Microseconds due);
+
+  const ForwardOptions& options_;
+  net::UdpSocket own_;
+  net::Address server_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::deque<Path> paths_;
+  std::vector<std::uint8_t> buffer_;
+  std::vector<pollfd> handles_;
+  std::vector<Microseconds> lateness_;  // of what was handed on, the last kRemembered
+  std::size_t late_next_ = 0;
+  std::uint64_t strangers_ = 0;  // datagrams of clients beyond the most
+};
+
+void Forwarder::step(Microseconds end) {
+  wait(end);
+  take();
+  hand_on();
+}
+
+void Forwarder::wait(Microseconds end) {
+  handles_.assign(1, {own_.handle(), POLLIN, 0});
+  for (const Path& path : paths_) {
+    handles_.push_back({path.server.handle(), POLLIN, 0});
+    for (const sim::Link* link : {&path.up, &path.down}) end = std::min(end, link->next().value_or(end));
+  }
+  const Microseconds left = std::max<Microseconds>(0, end - now());
+  const timespec timeout{left / 1'000'000, left % 1'000'000 * 1000};
+  ::ppoll(handles_.data(), handles_.size(), &timeout, nullptr);
+}
+
+Path* Forwarder::path_of(const net::Address& client) {
+  const auto found = std::ranges::find(paths_, client, &Path::client);
+  if (found != paths_.end()) return &*found;
+  if (paths_.size() == kMostClients) return nullptr;
+  auto server = net::UdpSocket::connect(server_);
+  if (!server) return nullptr;
+  sim::LinkOptions up = options_.up, down = options_.down;  // each client meets a network of its own
+  up.seed += 2 * paths_.size();
+  down.seed += 2 * paths_.size() + 1;
+  return &paths_.emplace_back(
+      Path{client, std::move(*server), sim::Link::create(up).value(), sim::Link::create(down).value()});
+}
+
+void Forwarder::take() {
+  while (const auto received = own_.receive(buffer_)) {
+    if (Path* path = path_of(received->from)) path->up.send(now(), received->bytes);
+    else ++strangers_;
+  }
+  for (Path& path : paths_)
+    while (const auto received = path.server.receive(buffer_)) path.down.send(now(), received->bytes);
+}
+
+void Forwarder::hand_on() {
+  for (Path& path : paths_) {
+    while (const auto arrival = path.up.poll(now())) {
+      if (!path.server.send(arrival->bytes)) ++path.refused;
+      note_late(arrival->time);
+    }
+    while (const auto arrival = path.down.poll(now())) {
+      if (!own_.send(path.client, arrival->bytes)) ++path.refused;
+      note_late(arrival->time);
+    }
+  }
+}
+
+void Forwarder::note_late(Microseconds due) {
+  constexpr std::size_t kRemembered = 1 << 16;
+  if (lateness_.size() < kRemembered) lateness_.push_back(0);
+  lateness_[late_next_] = now() - due;
+  late_next_ = (late_next_ + 1) % kRemembered;
+}
+
+Json direction_json(const sim::LinkCounters& c) {
+  return {{"sent", c.sent},         {"arrived", c.arrived},       {"lost", c.lost},          {"in_outages", c.cut},
+          {"overflowed", c.overflowed}, {"duplicated", c.duplicated}, {"overtaken", c.overtaken}};
+}
+
+Json to_json(const ForwardOptions& options, const Forwarder& forwarder, double seconds) {
+  Json out{{"schema", "tactus.link/1"}, {"listen", options.listen}, {"to", options.to}, {"seconds", seconds}};
+  out["clients"] = Json::array();
+  for (const Path& path : forwarder.paths())
+    out["clients"].push_back({{"address", path.client.text()},
+                              {"up", direction_json(path.up.counters())},
+                              {"down", direction_json(path.down.counters())},
+                              {"refused_by_the_system", path.refused}});
+  out["datagrams_of_further_clients"] = forwarder.strangers();
+  std::vector<Microseconds> late = forwarder.lateness();
+  if (late.empty()) return out;
+  std::ranges::sort(late);
+  const auto at = [&](double share) {
+    return 1e-6 * static_cast<double>(late[static_cast<std::size_t>(share * static_cast<double>(late.size() - 1))]);
+  };
+  out["lateness"] = {{"p50_s", at(0.5)}, {"p99_s", at(0.99)}, {"max_s", at(1)}};
+  return out;
+}
+
+void print_text(const Json& r) {
+  Table table;
+  table.heading({"link"});
+  table.row({fmt::format("  {:<8} {}", "listen", r["listen"].get<std::string>())});
+  table.row({fmt::format("  {:<8} {}", "to", r["to"].get<std::string>())});
+  table.row({fmt::format("  {:<8} {:.3f} s", "time", r["seconds"].get<double>())});
+  table.print(stdout);
+  fmt::print("\n");
+  Table counts;
+  counts.heading({"datagrams", "sent", "arrived", "lost", "in outages", "overflowed", "duplicated", "overtaken"});
+  for (const Json& client : r["clients"]) {
+    for (const char* way : {"up", "down"}) {
+      std::vector<std::string> cells{fmt::format("  {}, {}", client["address"].get<std::string>(), way)};
+      for (const auto& [name, count] : client[way].items()) cells.push_back(count.dump());
+      counts.row(cells);
+    }
+  }
+  if (r.contains("lateness")) {
+    counts.heading({"handed on late [ms]", "p50", "p99", "max"});
+    std::vector<std::string> cells{"  all"};
+    for (const auto& [name, seconds] : r["lateness"].items()) cells.push_back(fmt::format("{:.3f}", 1e3 * seconds.get<double>()));
+    counts.row(cells);
+  }
+  counts.print(stdout);
+}
+
+/// A port alone is one of the loopback. Elsewhere a forwarder would serve strangers.
+tl::expected<net::Address, Failure> loopback(const std::string& option, const std::string& typed) {
+  const std::string full = typed.find(':') == std::string::npos ? "127.0.0.1:" + typed : typed;
+  const auto address = net::Address::parse(full);
+  if (!address) return refuse_arguments(option + " " + typed + ": not a port and not HOST:PORT", "Give a port from 0 to 65535.");
+  if (!address->is_loopback())
+    return refuse_arguments(option + " " + typed + ": not on the loopback", "Give a port, or an address of this machine's loopback.");
+  return *address;
+}
+
+Outcome run(const ForwardOptions& options) {
+  TACTUS_TRY(const net::Address listen, loopback("--listen", options.listen));
+  TACTUS_TRY(const net::Address to, loopback("--to", options.to));
+  auto own = net::UdpSocket::bind(listen);
+  if (!own) return refuse(options.listen, own.error());
+  ForwardOptions shown = options;
+  shown.listen = own->own().text();
+  shown.to = to.text();
+  if (!options.common.quiet) fmt::print(stderr, "listening at {}\n", shown.listen);
+  const StopOnSignal stop;
+  Forwarder forwarder(options, std::move(*own), to);
+  constexpr Microseconds kLook = 100'000;  // for a signal that came just before waiting
+  const Microseconds end = options.duration > 0 ? std::llround(1e6 * options.duration) : INT64_MAX;
+  while (StopOnSignal::caught() == 0 && forwarder.now() < end) forwarder.step(std::min(end, forwarder.now() + kLook));
+  const Json report = to_json(shown, forwarder, 1e-6 * static_cast<double>(forwarder.now()));
+  if (options.common.json) fmt::print("{}\n", text_of_json(report));
+  else if (!options.common.quiet) print_text(report);
+  return {};
+}
+
+}  // namespace
+
+void setup_link(Command& app, Action& action) {
+  auto options = std::make_shared<ForwardOptions>();
+  Command& command = app.add_command("link", "Hand on UDP datagrams like a network that delays and loses");
+  command.add_option("--listen", options->listen, "Port for clients, 0: any free one")->required()->type_name("PORT");
+  command.add_option("--to", options->to, "Port of the server")->required()->type_name("PORT");
+  add_link(command, "--up", options->up, "Network from the clients to the server [perfect]");
+  add_link(command, "--down", options->down, "Network from the server to the clients [perfect]");
+  add_quantity(command, "--duration", options->duration, Dimension::time, "End after this long [until Ctrl-C]");
+  add_report_options(command, options->common);
+  command.footer(std::string(kLinkHelp) +
+                 "\nEach client meets a network of its own, with the seed of the one before plus 2.\n\n"
+                 "Example:\n"
+                 "  tactus link --listen 4001 --to 4000 --up delay=20ms,loss=1% --down delay=20ms,jitter=5ms,loss=1%,burst=5");
+  on_chosen<ForwardOptions>(command, action, options, run);
+}
+
+}  // namespace tactus::cli
