@@ -104,8 +104,7 @@ Path* Forwarder::path_of(const net::Address& client) {
   sim::LinkOptions up = options_.up, down = options_.down;  // each client meets a network of its own
   up.seed += 2 * paths_.size();
   down.seed += 2 * paths_.size() + 1;
-  return &paths_.emplace_back(
-      Path{client, std::move(*server), sim::Link::create(up).value(), sim::Link::create(down).value()});
+  return &paths_.emplace_back(Path{client, std::move(*server), sim::Link::create(up).value(), sim::Link::create(down).value()});
 }
 
 void Forwarder::take() {
@@ -138,8 +137,9 @@ void Forwarder::note_late(Microseconds due) {
 }
 
 Json direction_json(const sim::LinkCounters& c) {
-  return {{"sent", c.sent},         {"arrived", c.arrived},       {"lost", c.lost},          {"in_outages", c.cut},
-          {"overflowed", c.overflowed}, {"duplicated", c.duplicated}, {"overtaken", c.overtaken}};
+  return {{"sent", c.sent},          {"arrived", c.arrived},       {"lost", c.lost},
+          {"in_outages", c.cut},     {"overflowed", c.overflowed}, {"duplicated", c.duplicated},
+          {"overtaken", c.overtaken}};
 }
 
 Json to_json(const ForwardOptions& options, const Forwarder& forwarder, double seconds) {
@@ -193,7 +193,8 @@ tl::expected<net::Address, Failure> loopback(const std::string& option, const st
   const auto address = net::Address::parse(full);
   if (!address) return refuse_arguments(option + " " + typed + ": not a port and not HOST:PORT", "Give a port from 0 to 65535.");
   if (!address->is_loopback())
-    return refuse_arguments(option + " " + typed + ": not on the loopback", "Give a port, or an address of this machine's loopback.");
+    return refuse_arguments(option + " " + typed + ": not on the loopback",
+                            "Give a port, or an address of this machine's loopback.");
   return *address;
 }
 

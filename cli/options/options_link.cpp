@@ -50,7 +50,8 @@ Parsed<double> amount(Text text, std::array<Text, 3> units) {
   const Text unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
   for (std::size_t i = 0; i < units.size() && error == std::errc(); ++i)
     if (unit == units[i] && number > 0 && number <= 1e6) return number * std::pow(1e3, static_cast<double>(i));
-  return tl::unexpected(fmt::format("'{}': not a number above 0 with its unit: {}, {} or {}", text, units[0], units[1], units[2]));
+  return tl::unexpected(
+      fmt::format("'{}': not a number above 0 with its unit: {}, {} or {}", text, units[0], units[1], units[2]));
 }
 
 /// Splits at a sign; the last piece takes the rest.
@@ -88,12 +89,14 @@ Parsed<void> read_delays(sim::LinkOptions& link, Text value) {
   while (true) {
     const auto more = reader->next();
     if (!more) return wrong("cannot be read");
-    if (!*more) return {};
+    if (!*more)
+      return link.recorded.size() >= 2 ? Parsed<void>() : wrong("fewer than two delays; the last says when they begin anew");
     const auto& fields = reader->fields();
     const auto at = fields.size() == 2 ? parse_number<double>(fields[0]) : std::nullopt;
     const auto delay = fields.size() == 2 ? parse_number<double>(fields[1]) : std::nullopt;
     const bool good = at && delay && *at >= 0 && *at <= 1e6 && *delay >= 0 && *delay <= 3600;  // refuses NaN
-    if (!good || link.recorded.size() == 10'000'000) return wrong(fmt::format("line {}: not a time and a delay in seconds", reader->line()));
+    if (!good || link.recorded.size() == 10'000'000)
+      return wrong(fmt::format("line {}: not a time and a delay in seconds", reader->line()));
     link.recorded.push_back({std::llround(1e6 * *at), std::llround(1e6 * *delay)});
   }
 }
@@ -112,7 +115,8 @@ Parsed<void> read_queue(sim::LinkOptions& link, Text value) {
 
 Parsed<void> read_burst(sim::LinkOptions& link, Text value) {
   const auto burst = parse_number<double>(value);
-  if (!burst || !(*burst >= 1 && *burst <= 1e6)) return tl::unexpected(fmt::format("'{}': not a number of datagrams from 1", value));
+  if (!burst || !(*burst >= 1 && *burst <= 1e6))
+    return tl::unexpected(fmt::format("'{}': not a number of datagrams from 1", value));
   link.burst = *burst;
   return {};
 }
@@ -147,7 +151,10 @@ constexpr std::array<Part, 12> kParts{{
     {"burst", read_burst},
     {"duplicates", [](Options& link, Text value) { return put(link.duplicates, quantity(value, Dimension::fraction)); }},
     {"late", read_late},
-    {"rate", [](Options& link, Text value) { return put(link.rate, amount(value, {"bit", "kbit", "Mbit"})); }},
+    {"rate",
+     [](Options& link, Text value) {
+       return put(link.rate, amount(value, {"bit", "kbit", "Mbit"}));
+     }},
     {"queue", read_queue},
     {"outage", read_outage},
     {"seed", read_seed},
@@ -174,10 +181,11 @@ Parsed<sim::LinkOptions> parse_link(Text text) {
     if (const auto read = read_part(link, name, value); !read) return tl::unexpected(fmt::format("'{}': {}", part, read.error()));
   }
   if (!sim::Link::create(link))
-    return tl::unexpected(fmt::format(
-        "'{}': the parts contradict each other: a deviation needs a mean, pieces at least 1 ms, bursts a loss that leaves room for good "
-        "datagrams, outages and recorded times their order, recorded times begin at 0",
-        text));
+    return tl::unexpected(
+        fmt::format("'{}': the parts contradict each other: a deviation needs a mean, pieces at least 1 ms, bursts a loss that "
+                    "leaves room for good "
+                    "datagrams, outages and recorded times their order, recorded times begin at 0",
+                    text));
   return link;
 }
 

@@ -57,7 +57,8 @@ Result<Address> Address::parse(std::string_view text) {
   wanted.ai_socktype = SOCK_DGRAM;
   wanted.ai_flags = AI_NUMERICSERV;
   addrinfo* found = nullptr;
-  if (getaddrinfo(parts->first.c_str(), parts->second.c_str(), &wanted, &found) != 0) return fail(Errc::invalid_argument, "R-NET-1");
+  if (getaddrinfo(parts->first.c_str(), parts->second.c_str(), &wanted, &found) != 0)
+    return fail(Errc::invalid_argument, "R-NET-1");
   const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> owned(found, freeaddrinfo);
   Address out;
   out.size_ = found->ai_addrlen;
@@ -68,7 +69,8 @@ Result<Address> Address::parse(std::string_view text) {
 std::string Address::text() const {
   char host[INET6_ADDRSTRLEN]{};
   char port[8]{};
-  if (size_ == 0 || getnameinfo(as_sockaddr(bytes_), size_, host, sizeof host, port, sizeof port, NI_NUMERICHOST | NI_NUMERICSERV) != 0)
+  if (size_ == 0 ||
+      getnameinfo(as_sockaddr(bytes_), size_, host, sizeof host, port, sizeof port, NI_NUMERICHOST | NI_NUMERICSERV) != 0)
     return "nowhere";
   const bool is_ipv6 = as_sockaddr(bytes_)->sa_family == AF_INET6;
   return (is_ipv6 ? '[' + std::string(host) + ']' : std::string(host)) + ':' + port;

@@ -26,7 +26,7 @@ class Address {
 
  private:
   friend class UdpSocket;
-  static constexpr std::size_t kLargest = 28;         // sockaddr_in6
+  static constexpr std::size_t kLargest = 28;  // sockaddr_in6
   alignas(8) std::uint8_t bytes_[kLargest]{};  // a sockaddr_in or sockaddr_in6
   std::uint32_t size_ = 0;
 };

@@ -17,7 +17,8 @@ std::string refusal(const std::string& text) {
 
 TEST(OptionsLink, EveryPartIsRead) {
   const auto link = parse_link(
-      "delay=20ms,jitter=500us,gamma=10ms/4ms/2s,loss=1%,burst=5,duplicates=0.02,late=3%/40ms,rate=1.5Mbit,queue=32kB,outage=1s+500ms,"
+      "delay=20ms,jitter=500us,gamma=10ms/4ms/2s,loss=1%,burst=5,duplicates=0.02,late=3%/"
+      "40ms,rate=1.5Mbit,queue=32kB,outage=1s+500ms,"
       "outage=3s+1s,seed=7");
   ASSERT_TRUE(link) << link.error();
   EXPECT_EQ(link->delay, 20'000);
@@ -70,7 +71,8 @@ TEST(OptionsLink, RecordedDelaysComeFromATable) {
   EXPECT_EQ(with("t,d\n0,1\n").error(), "'delays=" + path + "': '" + path + "': the first line must be time_s,delay_s");
   EXPECT_EQ(with("time_s,delay_s\n0,0.02\n1,nan\n").error(),
             "'delays=" + path + "': '" + path + "': line 3: not a time and a delay in seconds");
-  for (const char* rows : {"", "0,0.02\n", "1,0.02\n2,0.02\n", "0,0.02\n0,0.02\n", "0,-1\n1,0\n", "0,3601\n1,0\n", "0\n", "0,1,2\n", "0,1x\n"})
+  for (const char* rows :
+       {"", "0,0.02\n", "1,0.02\n2,0.02\n", "0,0.02\n0,0.02\n", "0,-1\n1,0\n", "0,3601\n1,0\n", "0\n", "0,1,2\n", "0,1x\n"})
     EXPECT_FALSE(with(std::string("time_s,delay_s\n") + rows)) << rows;
   std::filesystem::remove(path);
 }
