@@ -229,7 +229,7 @@ void setup_link(Command& app, Action& action) {
   add_link(command, "--down", options->down, "Network from the server to the clients [perfect]");
   add_quantity(command, "--duration", options->duration, Dimension::time, "End after this long [until Ctrl-C]");
   add_report_options(command, options->common);
-  command.footer(std::string(kLinkHelp) +
+  command.footer(std::string(link_help()) +
                  "\nEach client meets a network of its own, with the seed of the one before plus 2.\n\n"
                  "Example:\n"
                  "  tactus link --listen 4001 --to 4000 --up delay=20ms,loss=1% --down delay=20ms,jitter=5ms,loss=1%,burst=5");

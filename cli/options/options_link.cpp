@@ -13,19 +13,6 @@
 
 namespace tactus::cli {
 
-const char* const kLinkHelp =
-    "A network is a list of parts, NAME=VALUE, separated by commas:\n"
-    "  delay=20ms             of every datagram\n"
-    "  jitter=5ms             more, uniform from 0 to this; datagrams overtake each other\n"
-    "  gamma=20ms/10ms/1s     more, gamma-distributed: mean/deviation/how long a value stays\n"
-    "  delays=FILE            more, recorded: CSV with the columns time_s,delay_s; repeated\n"
-    "  loss=1%  burst=5       share of datagrams lost; mean length of a row of losses\n"
-    "  duplicates=1%          share that arrives twice\n"
-    "  late=1%/30ms           share that comes so much later\n"
-    "  rate=1Mbit  queue=64kB bottleneck and the queue before it, headers included\n"
-    "  outage=10s+500ms       nothing passes, from when for how long; may be repeated\n"
-    "  seed=1                 the same seed gives the same network";
-
 namespace {
 
 using Text = std::string_view;
@@ -170,6 +157,20 @@ Parsed<void> read_part(sim::LinkOptions& link, Text name, Text value) {
 }
 
 }  // namespace
+
+const char* link_help() {
+  return "A network is a list of parts, NAME=VALUE, separated by commas:\n"
+         "  delay=20ms             of every datagram\n"
+         "  jitter=5ms             more, uniform from 0 to this; datagrams overtake each other\n"
+         "  gamma=20ms/10ms/1s     more, gamma-distributed: mean/deviation/how long a value stays\n"
+         "  delays=FILE            more, recorded: CSV with the columns time_s,delay_s; repeated\n"
+         "  loss=1%  burst=5       share of datagrams lost; mean length of a row of losses\n"
+         "  duplicates=1%          share that arrives twice\n"
+         "  late=1%/30ms           share that comes so much later\n"
+         "  rate=1Mbit  queue=64kB bottleneck and the queue before it, headers included\n"
+         "  outage=10s+500ms       nothing passes, from when for how long; may be repeated\n"
+         "  seed=1                 the same seed gives the same network";
+}
 
 Parsed<sim::LinkOptions> parse_link(Text text) {
   sim::LinkOptions link;

@@ -18,6 +18,6 @@ tl::expected<sim::LinkOptions, std::string> parse_link(std::string_view text);
 Option* add_link(Command& app, const std::string& name, sim::LinkOptions& value, const std::string& help);
 
 /// The parts and their units, for the end of a help text.
-extern const char* const kLinkHelp;
+const char* link_help();
 
 }  // namespace tactus::cli
