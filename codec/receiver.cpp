@@ -60,7 +60,7 @@ Result<DecodedPacket> Receiver::push(std::span<const std::uint8_t> packet, std::
     const Error& error = decoded.error();
     return fail_at(error, error.bit_offset + 8 * (packet.size() - part.bytes.size()));
   }
-  if (part.substream == 0) r.replica.apply(*decoded, r.rigid.newest().objects, now.value_or(decoded->tick));
+  if (part.substream == 0) r.replica.apply(*decoded, r.rigid.after(*decoded).objects, now.value_or(decoded->tick));
   return decoded;
 }
 

@@ -3,7 +3,7 @@
 
 Written from spec/ alone and meant to be read beside it: functions carry the names of the specification, and each
 file names its chapter. As a program it is a testee (README.md):
-python3 decoder.py [--replica none|linear] < stream.tct
+python3 decoder.py [--replica none|linear|playout] < stream.tct
 """
 from __future__ import annotations
 
@@ -16,9 +16,13 @@ from typing import Iterator, Optional, Union
 from conventions import FNV_START, StreamError, fnv1a, require
 from deformable_decoder import DeformableDecoder, DeformablePacket
 from file import File
+from playout import Playout
 from replica import Replica
 from rigid import Packet, RigidDecoder
 from scene import Declaration, Limits
+
+
+PLAYOUT_DELAY = 100                                         # ticks
 
 
 class SceneDecoder:
@@ -84,16 +88,18 @@ def lines(data: bytes, mode: Optional[str]) -> Iterator[dict]:
     states = [f"{decoder.state_hash():016x}" for decoder in decoders.substreams.values()]
     end = {"complete": file.complete, "packets": count, "state": states if several else states[0]}
     if viewer:
-        viewer.look_until(viewer.tick + 1)
+        viewer.look_until(viewer.tick + 1 + viewer.delay)
         end["shown"] = f"{viewer.all:016x}"
     yield {"end": end}
 
 
 class Viewer:
-    """A client that applies every packet at its tick and looks at every tick."""
+    """A client that applies every packet at its tick and looks at every tick, or in playout at the tick `delay` before."""
 
     def __init__(self, scene: Declaration, decoders: SceneDecoder, mode: str):
-        self.replica = Replica(scene, mode)
+        self.playout = mode == "playout"
+        self.delay = PLAYOUT_DELAY if self.playout else 0
+        self.replica = Playout(scene) if self.playout else Replica(scene, mode)
         self.deformables = [decoders.substreams[i + 1] for i in range(len(scene.deformables))]
         self.tick, self.all = 0, FNV_START
 
@@ -107,16 +113,17 @@ class Viewer:
             self.tick += 1
 
     def shown_at(self, tick: int) -> int:
+        tick -= self.delay
         shown = self.replica.pose_hash(tick)
         if not self.deformables:
             return shown
-        displacements = [c for item in self.deformables for c in item.shown(tick)]
+        displacements = [c for item in self.deformables for c in item.shown(tick, self.playout)]
         return fnv1a(struct.pack(f"<Q{len(displacements)}i", shown, *displacements))
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description="Decode a Tactus stream file from standard input to JSON lines.")
-    parser.add_argument("--replica", choices=("none", "linear"), help="also show what a client shows")
+    parser.add_argument("--replica", choices=("none", "linear", "playout"), help="also show what a client shows")
     mode = parser.parse_args().replica
     try:
         for line in lines(sys.stdin.buffer.read(), mode):

@@ -38,9 +38,9 @@ class DeformableDecoder:
         self.receiver.accept(number, key, state, now)
         return DeformablePacket(number % (1 << 16), key, vertices, decoder.range, decoder.code, state)
 
-    def shown(self, tick: int) -> list[int]:
-        """The displacements that a client shows at a tick; one before the current state's counts as that."""
-        state = self.receiver.current
+    def shown(self, tick: int, playout: bool = False) -> list[int]:
+        """The displacements that a client shows at a tick; one before the state's counts as that."""
+        state = self.receiver.at(tick) if playout else self.receiver.current
         return self.codec.expect(state, max(tick, state.tick))
 
     def state_hash(self) -> int:

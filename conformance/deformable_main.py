@@ -150,7 +150,7 @@ class MainCodec:
         else:
             tick_delta = max(0, round_shift(self.item.frame_period, 8) + decoder.signed(models["LATE"]))
         base = receiver.baseline(number, key, baseline_delta)
-        return Start(key, layer, same_frame, base, receiver.tick(base, key, tick_delta, "R-DEF-8"))
+        return Start(key, layer, same_frame, base, receiver.tick(number, base, key, tick_delta, "R-DEF-8"))
 
     def read_head(self, decoder: RangeDecoder, models: Models, start: Start) -> MainState:
         state = start.base if start.same_frame else self.read_bounds(decoder, models, start)

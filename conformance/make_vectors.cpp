@@ -20,6 +20,7 @@ Catalogue all() {
   add_packet_rigid(catalogue);
   add_packet_deformable(catalogue);
   add_packet_substreams(catalogue);
+  add_packet_overtaken(catalogue);
   catalogue.begin("range", "Payloads of the range coder: symbols, carries, ends.");
   add_range(catalogue);
   catalogue.begin("rigid", "Packets of rigid objects.");
@@ -29,6 +30,7 @@ Catalogue all() {
   add_rigid_orders(catalogue);
   catalogue.begin("client", "What a client shows of rigid objects, at every tick.");
   add_client(catalogue);
+  add_client_playout(catalogue);
   catalogue.begin("deformable", "Deformable objects: their declaration, and packets of both profiles.");
   add_deformable_header(catalogue);
   add_deformable_limits(catalogue);

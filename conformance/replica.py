@@ -25,6 +25,7 @@ class ReplicaObject:
 
     def __init__(self, state: State):
         self.state = state
+        self.number = 0                                     # of the packet of the newest update
         self.begin = self.end = 0
         self.arrival: Optional[int] = None
         self.gaps: deque[int] = deque(maxlen=MOST_GAPS)
@@ -43,6 +44,9 @@ class Replica:
     def apply(self, packet: Packet, now: int) -> None:
         for update in packet.updates:
             o = self.objects[update.object]
+            if packet.number < o.number:
+                continue
+            o.number = packet.number
             arrivals = (now, packet.tick) if o.arrival is None else (now, packet.tick, o.arrival)
             self.apply_state(o, packet.moment.states[update.object], max(arrivals))
 

@@ -123,14 +123,15 @@ void write_shown(std::uint64_t hash, std::ostream& out) { out << R"(,"shown":")"
 
 constexpr DecodeLimits kLimits{.header_bytes = 1u << 20, .packet_bytes = 1u << 20};  // of every testee, README.md
 
-/// A receiver that gets every packet at its tick and looks at every tick.
+/// A receiver that gets every packet at its tick and looks at every tick; in playout, at the tick that lies so far back.
 class Client {
  public:
   static Result<Client> create(const SharedScene& scene, std::optional<Interpolation> interpolation) {
     TACTUS_TRY(
         Receiver receiver,
         Receiver::create(scene, {.replica = {.interpolation = interpolation.value_or(Interpolation::none)}, .limits = kLimits}));
-    return Client(scene, std::move(receiver), interpolation.has_value());
+    const std::int64_t delay = interpolation == Interpolation::playout ? kPlayoutDelay : 0;
+    return Client(scene, std::move(receiver), interpolation.has_value(), delay);
   }
 
   /// Decodes the packet of a record and writes its line.
@@ -162,19 +163,22 @@ class Client {
   /// What was shown at every tick up to the last packet's.
   void write_all_shown(std::ostream& out) {
     if (!looks_) return;
-    all_.add64(shown_at(tick_));
+    look_until(tick_ + 1 + delay_);
     write_shown(all_.value(), out);
   }
 
  private:
-  Client(SharedScene scene, Receiver receiver, bool looks)
-      : scene_(std::move(scene)), receiver_(std::move(receiver)), looks_(looks) {}
+  static constexpr std::int64_t kPlayoutDelay = 100;  // ticks
+
+  Client(SharedScene scene, Receiver receiver, bool looks, std::int64_t delay)
+      : scene_(std::move(scene)), receiver_(std::move(receiver)), looks_(looks), delay_(delay) {}
 
   void look_until(std::int64_t tick) {
     for (; tick_ < tick; ++tick_) all_.add64(shown_at(tick_));
   }
 
   std::uint64_t shown_at(std::int64_t tick) {
+    tick -= delay_;
     Replica& replica = receiver_.replica();
     if (scene_->deformables.empty()) return replica.pose_hash(tick);
     Fnv1a hash;
@@ -188,6 +192,7 @@ class Client {
   SharedScene scene_;
   Receiver receiver_;
   bool looks_;
+  std::int64_t delay_;
   std::int64_t tick_ = 0;
   Fnv1a all_;
 };

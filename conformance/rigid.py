@@ -100,12 +100,17 @@ class Update(NamedTuple):
 
 
 class Packet(NamedTuple):
-    sequence: int
+    number: int
+    restarts: bool
     key: int
     updates: list[Update]
     moment: Moment
     range: int                                              # final state of the range decoder
     code: int
+
+    @property
+    def sequence(self) -> int:
+        return self.number % (1 << 16)
 
     @property
     def tick(self) -> int:
@@ -133,7 +138,7 @@ class RigidDecoder:
         tick_delta = decoder.magnitude(models["TICK"])
         count = decoder.magnitude(models["COUNT"]) if several else 1
         baseline = self.receiver.baseline(number, key, baseline_delta)
-        tick = self.receiver.tick(baseline, key, tick_delta, "R-RIG-1")
+        tick = self.receiver.tick(number, baseline, key, tick_delta, "R-RIG-1")
         require(1 <= count <= len(self.moving), "invalid", "R-RIG-3")
 
         moment = Moment(tick, list(baseline.states))
@@ -145,8 +150,8 @@ class RigidDecoder:
             updates.append(self.read_update(decoder, models, moment, self.moving[index]))
         decoder.check_end()
         require(record_tick in (None, tick), "invalid", "R-FIL-7")
-        self.receiver.accept(number, key, moment, now)
-        return Packet(number % (1 << 16), key, updates, moment, decoder.range, decoder.code)
+        restarts = self.receiver.accept(number, key, moment, now)
+        return Packet(number, restarts, key, updates, moment, decoder.range, decoder.code)
 
     def read_update(self, decoder: RangeDecoder, models: Models, moment: Moment, index: int) -> Update:
         """Replaces the baseline's state of an object in `moment` by its new state."""

@@ -15,8 +15,9 @@ int main(int argc, char** argv) {
   const std::string_view kind = argc == 3 && std::string_view(argv[1]) == "--replica" ? argv[2] : "";
   if (kind == "none") replica = tactus::Interpolation::none;
   if (kind == "linear") replica = tactus::Interpolation::linear;
+  if (kind == "playout") replica = tactus::Interpolation::playout;
   if (argc != 1 && !replica) {
-    std::fputs("usage: testee [--replica none|linear] <stream.tct\n", stderr);
+    std::fputs("usage: testee [--replica none|linear|playout] <stream.tct\n", stderr);
     return 2;
   }
   std::ios::sync_with_stdio(false);

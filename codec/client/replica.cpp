@@ -8,6 +8,7 @@
 #include <tactus/base/fixed.h>
 #include <tactus/base/hash.h>
 #include <tactus/base/rule.h>
+#include <tactus/client/bend.h>
 #include <tactus/deformable/deformable_decoder.h>
 
 namespace tactus {
@@ -26,8 +27,11 @@ Replica::Replica(const Scene& scene, const ReplicaOptions& options, std::vector<
       share_(static_cast<std::uint32_t>(std::floor(options.share * 65536 + 0.5))),
       shortest_(static_cast<std::int64_t>(std::floor(options.shortest * scene.tick_rate + 0.5))),
       longest_(static_cast<std::int64_t>(std::floor(options.longest * scene.tick_rate + 0.5))),
-      tracks_(scene.objects.size()),
+      reach_(std::min<std::int64_t>(round_div(300 * std::int64_t{scene.tick_rate}, 1000), scene.max_extrapolation)),
+      tracks_(interpolation_ == Interpolation::playout ? 0 : scene.objects.size()),
+      timelines_(interpolation_ == Interpolation::playout ? scene.objects.size() : 0),
       shapes_(std::move(shapes)) {
+  reset_timelines();
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
     tracks_[i].state.position = scene.objects[i].initial.position;
     tracks_[i].state.rotation = scene.objects[i].initial.rotation;
@@ -43,9 +47,26 @@ std::int64_t Replica::interval(const Track& track) const noexcept {
   return std::clamp(mean_share, shortest_, longest_);
 }
 
+void Replica::reset_timelines() noexcept {
+  heard_.reset();
+  for (std::size_t i = 0; i < timelines_.size(); ++i) {
+    const RigidPose& initial = scene_.objects[i].initial;
+    timelines_[i].reset({.position = initial.position, .rotation = initial.rotation});
+  }
+}
+
+void Replica::add_to_timelines(const DecodedPacket& packet, std::span<const RigidState> objects) noexcept {
+  if (packet.restarts) reset_timelines();
+  heard_.add(packet.number);
+  for (const RigidUpdate& update : packet.updates) timelines_[update.object].add({packet.number, objects[update.object]});
+}
+
 void Replica::apply(const DecodedPacket& packet, std::span<const RigidState> objects, std::int64_t arrival) noexcept {
+  if (interpolation_ == Interpolation::playout) return add_to_timelines(packet, objects);
   for (const RigidUpdate& update : packet.updates) {
     Track& track = tracks_[update.object];
+    if (packet.number < track.number) continue;  // overtaken by a newer update of this object
+    track.number = packet.number;
     const std::int64_t now = std::max({arrival, packet.tick, track.last_arrival});
     const RigidPose shown = pose(update.object, now);
     const bool running = now < track.end;
@@ -78,7 +99,17 @@ void Replica::begin_interpolation(Track& track, const RigidPose& shown) const no
   }
 }
 
+/// spec 60-client 7
+RigidPose Replica::past_pose(std::uint32_t object, std::int64_t tick) const noexcept {
+  const auto [a, b] = timelines_[object].around(tick);
+  tick = std::max(tick, a.state.tick);
+  if (b == nullptr || a.number == 0 || b->state.tick - a.state.tick > reach_ || heard_.all_between(a.number, b->number))
+    return predictor_.pose(a.state, tick);
+  return bend(scene_, a.state, b->state, tick);
+}
+
 RigidPose Replica::pose(std::uint32_t object, std::int64_t now) const noexcept {
+  if (interpolation_ == Interpolation::playout) return past_pose(object, now);
   const Track& track = tracks_[object];
   now = std::max(now, track.begin);
   if (now >= track.end) return predictor_.pose(track.state, now);
@@ -94,7 +125,8 @@ RigidPose Replica::pose(std::uint32_t object, std::int64_t now) const noexcept {
 }
 
 std::span<const Vec3i> Replica::displacements(std::size_t object, std::int64_t now) noexcept {
-  return shapes_[object]->displacements_at(now);
+  return interpolation_ == Interpolation::playout ? shapes_[object]->displacements_of(now)
+                                                  : shapes_[object]->displacements_at(now);
 }
 
 std::uint64_t Replica::pose_hash(std::int64_t now) const noexcept {

@@ -23,14 +23,16 @@ class Of final : public DeformableDecoder {
     return decoded;
   }
   std::span<const Vec3i> displacements() const noexcept override { return stream_.newest().displacement; }
-  std::span<const Vec3i> displacements_at(std::int64_t tick) noexcept override {
-    const auto& state = stream_.newest();
-    return stream_.codec().predict(state, std::clamp(tick, state.tick, kTickLimit));
-  }
+  std::span<const Vec3i> displacements_at(std::int64_t tick) noexcept override { return predict(stream_.newest(), tick); }
+  std::span<const Vec3i> displacements_of(std::int64_t tick) noexcept override { return predict(stream_.at(tick), tick); }
   std::int64_t tick() const noexcept override { return stream_.newest().tick; }
   std::uint64_t state_hash() const noexcept override { return tactus::state_hash(object_, stream_.newest()); }
 
  private:
+  std::span<const Vec3i> predict(const typename Codec::State& state, std::int64_t tick) noexcept {
+    return stream_.codec().predict(state, std::clamp(tick, state.tick, kTickLimit));
+  }
+
   const DeformableObject& object_;
   SubstreamDecoder<Codec> stream_;
   std::size_t number_;

@@ -33,6 +33,9 @@ struct Packet {
 struct DecodedPacket {
   std::size_t substream = 0;
   std::uint16_t sequence = 0;
+  std::uint64_t number = 0;  ///< the sequence, extended so that it does not wrap, above 0: the order of sending
+  bool restarts =
+      false;  ///< a key packet of another or restarted sender, or after a long outage: nothing before it is a baseline
   bool key = false;
   std::int64_t tick = 0;
   Layer layer = Layer::all;                ///< deformable objects, profile main; not coded in profile thesis

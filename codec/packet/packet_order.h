@@ -19,41 +19,41 @@ class PacketOrder {
  public:
   explicit PacketOrder(std::uint32_t tick_rate) noexcept : forget_(forget_ticks(tick_rate)) {}
 
-  /// A packet arrives at a tick of the receiver's clock.
-  void arrive(std::optional<std::int64_t> now) noexcept {
-    now_ = now;
-    if (now_ && arrival_ && *now_ - *arrival_ > forget_) forget();
-  }
-  /// True for one of the newest numbers: a repeated packet, or one overtaken by others (R-PKT-5).
-  bool is_late(std::uint16_t sequence) const noexcept { return begun_ && static_cast<std::uint16_t>(newest_ - sequence) < kLate; }
-  std::uint64_t number_of(std::uint16_t sequence) const noexcept {
+  /// True if the receiver's clock says that numbers may have wrapped since the newest packet: states kept are ambiguous.
+  bool outlasts(std::optional<std::int64_t> now) const noexcept { return now && arrival_ && *now - *arrival_ > forget_; }
+  /// in  keeps  the receiver keeps a state
+  std::uint64_t number_of(std::uint16_t sequence, bool keeps) const noexcept {
+    const auto behind = static_cast<std::uint16_t>(newest_ - sequence);
+    if (keeps && behind < kBehind) return newest_ - behind;
     return newest_ + 1 + static_cast<std::uint16_t>(sequence - newest_ - 1);
   }
+  /// True for a repeated packet, and for one that others sent after it came before.
+  bool is_overtaken(std::uint64_t number) const noexcept { return number <= newest_; }
   /// True for a number that one sender cannot reach: another sender, or a long outage at the receiver (R-PKT-7).
-  bool is_foreign(std::uint64_t number) const noexcept { return begun_ && number - newest_ > kAhead; }
-  /// Drop all states. The next packet must be a key packet; its number and tick are free.
-  void forget() noexcept { begun_ = false; }
-  /// Whether the state after a packet may serve as a baseline.
-  bool holds(std::uint64_t number) const noexcept { return begun_ && number >= first_; }
+  bool is_foreign(std::uint64_t number) const noexcept { return number > newest_ + kAhead; }
   /// Ticks of one sender never decrease. A key packet with an earlier tick starts a new sequence.
-  bool fits(bool key, std::int64_t tick) const noexcept { return key || tick >= tick_; }
-  void accept(std::uint64_t number, bool key, std::int64_t tick) noexcept {
-    if (key && (!begun_ || is_foreign(number) || tick < tick_)) first_ = number;
+  bool fits(std::uint64_t number, bool key, std::int64_t tick) const noexcept {
+    return is_overtaken(number) ? tick <= tick_ : key || tick >= tick_;
+  }
+  /// True for a key packet after which no state before it may serve as a baseline.   pre  fits()
+  bool restarts(std::uint64_t number, bool key, std::int64_t tick) const noexcept {
+    return key && !is_overtaken(number) && (is_foreign(number) || tick < tick_);
+  }
+  void accept(std::uint64_t number, std::int64_t tick, std::optional<std::int64_t> now) noexcept {
+    if (is_overtaken(number)) return;
     newest_ = number;
     tick_ = tick;
-    begun_ = true;
-    arrival_ = now_;
+    arrival_ = now;
   }
 
  private:
-  static constexpr std::uint16_t kLate = 128;
+  static constexpr std::uint16_t kBehind = 128;
   static constexpr std::uint64_t kAhead = 32767;
 
   std::int64_t forget_;
-  std::optional<std::int64_t> now_, arrival_;   // of the current packet, of the newest accepted
-  bool begun_ = false;                          // a packet was accepted since the last forget()
-  std::uint64_t newest_ = 1 << 16, first_ = 0;  // accepted; states before `first_` are forgotten
-  std::int64_t tick_ = 0;                       // of the newest
+  std::optional<std::int64_t> arrival_;  // of the newest accepted
+  std::uint64_t newest_ = 1 << 16;       // highest number accepted; numbers stay above 0
+  std::int64_t tick_ = 0;                // of the newest
 };
 
 }  // namespace tactus

@@ -45,26 +45,32 @@ class SubstreamDecoder {
     if (packet.size() < kSequence) return fail(Errc::truncated, "R-PKT-2");
     DecodedPacket out;
     out.sequence = static_cast<std::uint16_t>(packet[0] | packet[1] << 8);
-    order_.arrive(now);
-    if (order_.is_late(out.sequence)) return fail(Errc::state, "R-PKT-5");
-    const std::uint64_t number = order_.number_of(out.sequence);
+    if (order_.outlasts(now)) states_.clear();
+    out.number = order_.number_of(out.sequence, !states_.empty());
+    if (order_.is_overtaken(out.number) && (out.number < *states_.lowest() || states_.find(out.number) != nullptr))
+      return fail(Errc::state, "R-PKT-5");
     const auto head = codec_.read_head(packet.subspan(kSequence));
     if (!head) return placed(head.error());
-    TACTUS_TRY(const State* base, baseline_of(*head, number));
+    TACTUS_TRY(const State* base, baseline_of(*head, out.number));
     out.key = head->key;
     out.tick = base->tick + head->tick_delta;
-    if (out.tick >= kTickLimit || !order_.fits(head->key, out.tick))
+    if (out.tick >= kTickLimit || !order_.fits(out.number, head->key, out.tick))
       return placed({Errc::invalid, Codec::kTickRule, codec_.bit()});
     if (const auto body = codec_.read_body(*base, out.tick, out); !body) return placed(body.error());
-    states_.push(number, [&](State& next) {
+    out.restarts = order_.restarts(out.number, head->key, out.tick);
+    if (out.restarts) states_.clear();
+    states_.put(out.number, [&](State& next) {
       codec_.commit(*base, next);
       next.tick = out.tick;
     });
-    order_.accept(number, head->key, out.tick);
+    order_.accept(out.number, out.tick, now);
     return out;
   }
 
   const State& newest() const noexcept { return states_.newest(); }
+  /// The state after a packet.   pre  decode() has just returned it
+  const State& after(const DecodedPacket& packet) const noexcept { return *states_.find(packet.number); }
+  const State& at(std::int64_t tick) const noexcept { return states_.at(tick); }  ///< BaselineRing::at
   Codec& codec() noexcept { return codec_; }
 
  private:
@@ -73,13 +79,12 @@ class SubstreamDecoder {
   Result<const State*> baseline_of(const PacketHead& head, std::uint64_t number) noexcept {
     if (head.key) return &states_.initial();
     if (head.baseline_delta < 1 || head.baseline_delta > span_) return fail(Errc::invalid, "R-PKT-3");
-    if (order_.is_foreign(number)) {
-      order_.forget();
+    if (!states_.empty() && order_.is_foreign(number)) {
+      states_.clear();
       return fail(Errc::state, "R-PKT-7");
     }
-    const std::uint64_t wanted = number - head.baseline_delta;
-    const State* state = states_.find(wanted);
-    if (!order_.holds(wanted) || state == nullptr) return fail(Errc::state, "R-PKT-4");
+    const State* state = states_.find(number - head.baseline_delta);
+    if (state == nullptr) return fail(Errc::state, "R-PKT-4");
     return state;
   }
 

@@ -5,6 +5,9 @@
 ///   State                                            has a member tick
 ///   Result<Payload> encode(request, out)             a payload in `out` if one is needed, and the pending state after it
 ///   void commit(base, next)                          writes the pending state to `next`, which may be `base`
+/// and, if it wants to know what receivers may lack:
+///   void acknowledge(number)                         the receiver holds the state after this packet
+///   void forget_last()                               the last packet will not be decoded
 #pragma once
 
 #include <algorithm>
@@ -27,8 +30,9 @@ namespace tactus {
 template <class State>
 struct EncodeRequest {
   std::int64_t tick = 0;
-  PacketHead head;         ///< without the tick
-  bool requested = false;  ///< a packet is required even if every bound holds
+  std::uint64_t number = 0;  ///< of the packet, unwrapped
+  PacketHead head;           ///< without the tick
+  bool requested = false;    ///< a packet is required even if every bound holds
   Layer layer = Layer::all;
   const State& shown;  ///< state of a receiver that got every packet; bounds are checked against it
   const State& base;   ///< baseline of the payload
@@ -70,14 +74,14 @@ class SubstreamEncoder {
     head.tick_delta = static_cast<std::uint32_t>(tick - base->tick);
     std::vector<std::uint8_t>& buffer = buffers_[layer == Layer::visual ? 1 : 0];
     const std::size_t start = start_ + 2;
-    TACTUS_TRY(const Payload payload, codec_.encode({tick, head, key_.is_requested(), layer, states_.newest(), *base},
+    TACTUS_TRY(const Payload payload, codec_.encode({tick, next_, head, key_.is_requested(), layer, states_.newest(), *base},
                                                     std::span(buffer).subspan(start)));
     if (payload.size == 0) return Packet{};
     const auto sequence = static_cast<std::uint16_t>(next_);
     buffer[start - 2] = static_cast<std::uint8_t>(sequence);
     buffer[start - 1] = static_cast<std::uint8_t>(sequence >> 8);
     before_ = {key_, base_};
-    states_.push(next_, [&](State& next) {
+    states_.put(next_, [&](State& next) {
       codec_.commit(*base, next);
       next.tick = tick;
     });
@@ -103,6 +107,7 @@ class SubstreamEncoder {
   void forget_last() noexcept {
     if (!std::exchange(can_forget_, false)) return;
     states_.pop();
+    if constexpr (requires { codec_.forget_last(); }) codec_.forget_last();
     const bool requested = key_.is_requested();
     key_ = before_.key;
     if (requested) key_.request();
@@ -113,7 +118,9 @@ class SubstreamEncoder {
   void acknowledge(std::uint16_t sequence) noexcept {
     if (baseline_ != Baseline::acknowledged) return;
     const std::uint64_t number = next_ - static_cast<std::uint16_t>(next_ - sequence);
-    if (number > base_ && number >= oldest_ && number < next_ && states_.find(number) != nullptr) base_ = number;
+    if (number < oldest_ || number >= next_) return;
+    if constexpr (requires { codec_.acknowledge(number); }) codec_.acknowledge(number);
+    if (number > base_ && states_.find(number) != nullptr) base_ = number;
   }
 
   const State& newest() const noexcept { return states_.newest(); }

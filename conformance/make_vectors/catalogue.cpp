@@ -90,7 +90,9 @@ struct Answer {
 Answer answer(const Case& c) {
   std::ostringstream out;
   std::optional<Interpolation> replica;
-  if (!c.replica.empty()) replica = c.replica == "none" ? Interpolation::none : Interpolation::linear;
+  if (c.replica == "none") replica = Interpolation::none;
+  if (c.replica == "linear") replica = Interpolation::linear;
+  if (c.replica == "playout") replica = Interpolation::playout;
   const auto done = report(c.input.bytes, replica, out);
   if (!c.rejection) return {out.str(), done.has_value()};
   report_error(c.rejection->errc.c_str(), c.rejection->rule.c_str(), out);

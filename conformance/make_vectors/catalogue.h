@@ -43,7 +43,7 @@ struct Case {
   std::string section;             ///< of the specification
   std::vector<std::string> rules;  ///< what the vector is for, besides the section
   Input input;
-  std::string replica;                 ///< none, linear or empty
+  std::string replica;                 ///< none, linear, playout or empty
   std::optional<Rejection> rejection;  ///< nothing: the file is valid
 };
 
@@ -85,12 +85,14 @@ void add_file(Catalogue& catalogue);
 void add_packet_rigid(Catalogue& catalogue);
 void add_packet_deformable(Catalogue& catalogue);
 void add_packet_substreams(Catalogue& catalogue);
+void add_packet_overtaken(Catalogue& catalogue);
 void add_range(Catalogue& catalogue);
 void add_rigid(Catalogue& catalogue);
 void add_rigid_rules(Catalogue& catalogue);
 void add_rigid_edges(Catalogue& catalogue);
 void add_rigid_orders(Catalogue& catalogue);
 void add_client(Catalogue& catalogue);
+void add_client_playout(Catalogue& catalogue);
 void add_deformable_header(Catalogue& catalogue);
 void add_deformable_limits(Catalogue& catalogue);
 void add_deformable_main(Catalogue& catalogue);

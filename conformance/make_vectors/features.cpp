@@ -10,7 +10,7 @@ namespace {
 constexpr std::array kFlags{
     Flag{"order", "breaks two rules; the one that is read first counts"},
     Flag{"key", "a key packet after the first packet of a substream"},
-    Flag{"loss", "packets are missing, late or come twice: sequence numbers do not follow each other"},
+    Flag{"loss", "packets are missing, overtaken or come twice: sequence numbers do not follow each other"},
     Flag{"baselines", "baseline_span is greater than 1"},
     Flag{"substreams", "packets begin with a substream byte"},
     Flag{"bounds", "the scene declaration has a bounds record"},

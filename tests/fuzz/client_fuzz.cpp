@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Any sequence of states and delays shown by both kinds of replica: always a unit rotation, and the state itself once time has passed.
+/// Any sequence of states, gaps and delays shown by every kind of replica: always a unit rotation, and the state itself once time has
+/// passed.
 #include <cstdlib>
 #include <cstring>
 
@@ -12,10 +13,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const SharedScene scene = Scene::create(std::move(spec)).value();
   const RigidPredictor predictor(*scene);
   ReplicaOptions options;
-  if (size > 0 && (data[0] & 1)) options.interpolation = Interpolation::linear;
+  constexpr Interpolation kWays[] = {Interpolation::none, Interpolation::linear, Interpolation::playout};
+  if (size > 0) options.interpolation = kWays[data[0] % 3];
   Replica replica(*scene, options, {});
   constexpr std::size_t kStep = 40;
   std::int64_t now = 0;
+  std::uint64_t number = 1;
   for (std::size_t at = 1; at + kStep <= size; at += kStep) {
     std::int32_t v[10];
     std::memcpy(v, data + at, sizeof v);
@@ -28,9 +31,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const RigidUpdate update{0, Reason::visual, 0};
     DecodedPacket packet;
     packet.tick = state.tick;
+    packet.number = number += static_cast<std::uint32_t>(v[0]) >> 20 & 3;  // packets in between are missing
     packet.updates = {&update, 1};
     replica.apply(packet, {&state, 1}, now);
-    for (const std::int64_t later : {0, 1, 10, 99, 5000}) {
+    for (const std::int64_t later : {-5000, -250, -30, -1, 0, 1, 10, 99, 5000}) {
       const RigidPose shown = replica.pose(0, now + later);
       double square = 0;
       for (const std::int32_t c : shown.rotation) square += static_cast<double>(c) * c;

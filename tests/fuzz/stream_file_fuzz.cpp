@@ -20,7 +20,8 @@ struct Heard {
 
 /// Records until the end or the first broken one.
 Heard listen(StreamFileReader& reader, bool has_clock) {
-  const ReceiverOptions options{.replica = {.interpolation = Interpolation::linear}, .limits = kLimits};
+  const Interpolation way = has_clock ? Interpolation::playout : Interpolation::linear;
+  const ReceiverOptions options{.replica = {.interpolation = way}, .limits = kLimits};
   auto receiver = Receiver::create(reader.scene(), options).value();
   Heard out;
   for (bool sound = true;; ++out.records) {
