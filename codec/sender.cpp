@@ -14,7 +14,8 @@ namespace tactus {
 struct Sender::Impl {
   Impl(SharedScene of, const SenderOptions& options)
       : scene(std::move(of)),
-        rigid(*scene, options.policy, 0, max_rigid_packet(*scene), 1, initial_states(*scene), *scene, options.triggers) {
+        rigid(*scene, options.policy, 0, max_rigid_packet(*scene), 1, initial_states(*scene), *scene, options.triggers,
+              options.policy.baseline) {
     for (std::size_t i = 0; i < scene->deformables.size(); ++i)
       deformables.push_back(DeformableEncoder::create(*scene, i, options.deformable, options.policy));
     packets.reserve(1 + 2 * deformables.size());
@@ -86,6 +87,8 @@ void Sender::acknowledge(std::size_t substream, std::uint16_t sequence) noexcept
   if (substream == 0) impl_->rigid.acknowledge(sequence);
   else if (substream <= impl_->deformables.size()) impl_->deformables[substream - 1]->acknowledge(sequence);
 }
+
+void Sender::set_link(const LinkState& link) noexcept { impl_->rigid.codec().set_link(link); }
 
 void Sender::forget_last(std::size_t substream) noexcept {
   if (substream == 0) impl_->rigid.forget_last();

@@ -41,7 +41,9 @@ struct Truth {
 ///
 /// Loss. With Baseline::previous each packet builds on the one before it in its substream. A receiver that misses a packet
 /// refuses the following ones (R-PKT-4) until a key packet, sent after key_interval or request_key(). With Baseline::acknowledged
-/// a packet builds on the newest state that acknowledge() named. A key packet of a layered object drops the shape outside the
+/// a packet builds on the newest state that acknowledge() named, so that every one that arrives can be decoded; a packet that goes
+/// out anyway also names the rigid objects that are over half of a bound, and set_link() has states sent again. The bounds above
+/// still hold only for what arrived: a client that shows the past (Interpolation::playout) bends over the gaps. A key packet of a layered object drops the shape outside the
 /// area of interest until the visual packet arrives. If no client joins or seeks, key_interval 0 avoids that.
 ///
 /// Threads: one at a time. The scene is shared. No allocation and no exception after create().
@@ -67,9 +69,14 @@ class Sender {
   /// not sent.
   void request_key() noexcept;
 
-  /// Report that the receiver has decoded a packet. Unknown and old numbers are ignored.
+  /// Report that the receiver has decoded a packet. Report all of them, in any order: the newest is the next baseline, and objects
+  /// that others named are not sent again. Numbers of no packet, or of one long ago, are ignored.
   /// in  substream, sequence  as in Packet
   void acknowledge(std::size_t substream, std::uint16_t sequence) noexcept;
+
+  /// Report what the way to the receiver and back does. With Baseline::acknowledged the newest state of a rigid object is sent again,
+  /// made anew, while no acknowledgement names a packet that held it.
+  void set_link(const LinkState& link) noexcept;
 
   /// Report that the newest packet of this substream will not be decoded (it is dropped, or known to be lost). The next one
   /// builds on the state before it, or on the initial state if the scene's baseline_span does not reach that far. At most once

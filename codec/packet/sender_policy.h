@@ -12,6 +12,13 @@ enum class Baseline : std::uint8_t {
                  ///< Layered objects use `previous` in any case: each layer takes the other one from the packet before
 };
 
+/// What the way to the receiver and back does, as measured. It decides when Baseline::acknowledged sends a state again.
+struct LinkState {
+  std::int64_t answer = 0;  ///< [ticks] after which a packet that arrived is acknowledged: round trip, jitter, time between
+                            ///< acknowledgements. 0: not known, nothing is sent again
+  double loss = 0;          ///< share of packets, 0 to 1
+};
+
 struct SenderPolicy {
   /// [s] After this long the next packet builds on the initial state (a place to seek to). 0: never, but after a silence of half
   /// the time of 25-packet section 5 (8192 ticks, or 8 s if that is longer), when receivers may soon have forgotten what there was.

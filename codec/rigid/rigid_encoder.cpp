@@ -2,6 +2,7 @@
 #include <tactus/rigid/rigid_encoder.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -14,7 +15,11 @@ namespace {
 // Shares of a bound that the quantisation of an update may use up; the rest is left for the motion until the next update.
 constexpr double kVisualShare = 0.125;
 constexpr double kHapticShare = 0.35;
-constexpr std::int32_t kDofTolerance = 64;  // x 2^-30: a locked axis may be off by rounding only
+// Baseline::acknowledged: objects near their bounds join a packet that goes out anyway, and what is not acknowledged goes again.
+constexpr double kEarly = 0.5, kEarlyAtHeavyLoss = 0.3;  // shares of a bound
+constexpr double kSomeLoss = 0.003, kHeavyLoss = 0.15;   // shares of packets
+constexpr std::array kFollowUp{0.020, 0.040, 0.060};     // [s] since the last sending
+constexpr std::int32_t kDofTolerance = 64;               // x 2^-30: a locked axis may be off by rounding only
 
 Result<PoseThresholds> make_thresholds(double distance, double angle, const GridExponents& grid) {
   const double unit = std::ldexp(1.0, -grid.position);
@@ -34,6 +39,13 @@ Result<PoseThresholds> make_thresholds(double distance, double angle, const Grid
     ++out.level;
   }
   return out;
+}
+
+/// A share of what is permitted; the grid level stays.
+PoseThresholds scaled(PoseThresholds t, double share) {
+  t.distance_squared = static_cast<std::int64_t>(share * share * static_cast<double>(t.distance_squared));
+  t.half_angle_squared = static_cast<std::int64_t>(share * share * static_cast<double>(t.half_angle_squared));
+  return t;
 }
 
 bool within(const PoseThresholds& t, const RigidPose& shown, const RigidState& truth) noexcept {
@@ -88,7 +100,7 @@ Result<void> RigidEncoder::check(const RigidTriggers& triggers, const GridExpone
   return {};
 }
 
-RigidEncoder::RigidEncoder(const Scene& scene, const RigidTriggers& triggers)
+RigidEncoder::RigidEncoder(const Scene& scene, const RigidTriggers& triggers, Baseline baseline)
     : scene_(scene),
       triggers_(triggers),
       predictor_(scene),
@@ -98,6 +110,20 @@ RigidEncoder::RigidEncoder(const Scene& scene, const RigidTriggers& triggers)
       truth_(initial_states(scene).objects) {
   if (triggers.reduction == Reduction::none) visual_.level = fixed_.level = 0;  // the reference is as exact as the grid
   pending_.reserve(scene.moving().size());
+  before_.reserve(scene.moving().size());
+  for (const RigidState& state : truth_) sent_.push_back({.state = state});
+  early_ = baseline == Baseline::acknowledged ? kEarly : 1;
+  early_visual_ = scaled(visual_, early_);
+}
+
+void RigidEncoder::set_link(const LinkState& link) noexcept {
+  if (early_ == 1) return;
+  early_ = link.loss > kHeavyLoss ? kEarlyAtHeavyLoss : kEarly;
+  early_visual_ = scaled(visual_, early_);
+  for (std::size_t i = 0; i < follow_up_.size(); ++i) {
+    const auto soon = static_cast<std::int64_t>(std::ceil(kFollowUp[i] * scene_.tick_rate));
+    follow_up_[i] = link.answer <= 0 ? 0 : link.loss >= kSomeLoss ? soon : link.answer;
+  }
 }
 
 Result<void> RigidEncoder::read(std::int64_t tick, std::span<const RigidSample> samples,
@@ -146,20 +172,38 @@ Reason RigidEncoder::reason_for(std::uint32_t object, const RigidState& held) co
   return Reason::request;
 }
 
-/// Collects objects whose trigger fired, and objects whose baseline differs from what receivers show: in a key packet, all that have
-/// left their initial state. Nothing is pending without at least one trigger or a request.
+bool RigidEncoder::is_follow_up_due(std::uint32_t object) const noexcept {
+  const Sent& sent = sent_[object];
+  const std::int64_t wait = follow_up_[std::min<std::size_t>(sent.follow_ups, follow_up_.size() - 1)];
+  return !sent.acknowledged && wait > 0 && truth_[object].tick - sent.state.tick >= wait;
+}
+
+/// Whether an object whose trigger did not fire is named in a packet that others have caused: in a key packet if it has left its
+/// initial state; else if it would soon cause a packet of its own.
+bool RigidEncoder::joins(std::uint32_t object, const EncodeRequest<RigidStates>& request) const noexcept {
+  const RigidState& held = sent_[object].state;
+  if (request.head.key && held != request.base.objects[object]) return true;
+  if (early_ == 1) return false;
+  const RigidPose shown = predictor_.pose(held, request.tick);
+  return !within(early_visual_, shown, truth_[object]) || (!haptic_within(object, shown, early_) && can_improve(object, shown));
+}
+
+/// Nothing is pending without at least one trigger, follow-up or request.
 void RigidEncoder::collect(const EncodeRequest<RigidStates>& request) noexcept {
   pending_.clear();
-  const bool same = &request.base == &request.shown;
-  bool triggered = request.requested;
   for (const std::uint32_t i : scene_.moving()) {
-    const RigidState& held = request.shown.objects[i];
-    const Reason reason = reason_for(i, held);
+    const Reason reason = reason_for(i, sent_[i].state);
     const bool fires = reason != Reason::request || triggers_.reduction == Reduction::none;
-    triggered = triggered || fires;
-    if (fires || (!same && held != request.base.objects[i])) pending_.push_back({i, reason, {}});
+    if (fires || is_follow_up_due(i)) pending_.push_back({i, reason, {}, !fires});
   }
-  if (!triggered) pending_.clear();
+  const std::size_t causes = pending_.size();
+  if ((causes == 0 && !request.requested) || (!request.head.key && early_ == 1)) return;
+  std::size_t next = 0;  // of the causes
+  for (const std::uint32_t i : scene_.moving()) {
+    if (next < causes && pending_[next].object == i) ++next;
+    else if (joins(i, request)) pending_.push_back({i, Reason::request, {}, false});
+  }
+  std::ranges::sort(pending_, {}, &Pending::object);
 }
 
 /// The coarsest level whose rounding leaves room inside every bound; without one, the finest that keeps them; where the grid is too
@@ -190,6 +234,7 @@ Result<CodedUpdate> RigidEncoder::quantise(Pending& update, const Prediction& pr
 
 Result<Payload> RigidEncoder::encode(const EncodeRequest<RigidStates>& request, std::span<std::uint8_t> out) noexcept {
   collect(request);
+  number_ = request.number;
   if (pending_.empty()) return Payload{};
   const auto moving = scene_.moving();
   RangeEncoder coder(out);
@@ -214,7 +259,24 @@ Result<Payload> RigidEncoder::encode(const EncodeRequest<RigidStates>& request, 
 
 void RigidEncoder::commit(const RigidStates& base, RigidStates& next) noexcept {
   if (&base != &next) std::copy(base.objects.begin(), base.objects.end(), next.objects.begin());
-  for (const Pending& update : pending_) next.objects[update.object] = update.state;
+  before_.clear();
+  for (const Pending& update : pending_) {
+    next.objects[update.object] = update.state;
+    Sent& sent = sent_[update.object];
+    before_.emplace_back(update.object, sent);
+    const auto follow_ups = static_cast<std::uint8_t>(update.follow_up ? std::min(sent.follow_ups + 1, 255) : 0);
+    sent = {update.state, number_, follow_ups, false};
+  }
+}
+
+void RigidEncoder::forget_last() noexcept {
+  for (const auto& [object, sent] : before_) sent_[object] = sent;
+  before_.clear();
+}
+
+void RigidEncoder::acknowledge(std::uint64_t number) noexcept {
+  for (Sent& sent : sent_) sent.acknowledged = sent.acknowledged || sent.number == number;
+  for (auto& [object, sent] : before_) sent.acknowledged = sent.acknowledged || sent.number == number;
 }
 
 }  // namespace tactus

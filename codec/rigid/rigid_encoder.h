@@ -9,8 +9,10 @@
 /// evaluates the haptic error in floating point, which is an encoder's choice; decoding is in integers.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <tactus/base/result.h>
@@ -36,7 +38,7 @@ class RigidEncoder {
   /// R-API-4: a threshold is negative, NaN or finer than the grid.
   static Result<void> check(const RigidTriggers& triggers, const GridExponents& grid) noexcept;
   /// pre  check(), and `scene` outlives the encoder
-  RigidEncoder(const Scene& scene, const RigidTriggers& triggers);
+  RigidEncoder(const Scene& scene, const RigidTriggers& triggers, Baseline baseline);
 
   /// Take the truth of one tick; changes nothing else.   in, err  Sender::encode
   Result<void> read(std::int64_t tick, std::span<const RigidSample> samples, std::span<const Contact> contacts) noexcept;
@@ -44,30 +46,48 @@ class RigidEncoder {
   /// err  invalid_argument R-API-7 the residual from the predicted pose exceeds what an update can code
   Result<Payload> encode(const EncodeRequest<RigidStates>& request, std::span<std::uint8_t> out) noexcept;
   void commit(const RigidStates& base, RigidStates& next) noexcept;
+  void acknowledge(std::uint64_t number) noexcept;
+  void forget_last() noexcept;
+  void set_link(const LinkState& link) noexcept;
 
  private:
+  /// What a receiver of every packet shows of an object.
+  struct Sent {
+    RigidState state;
+    std::uint64_t number = 0;     // of the packet that said so
+    std::uint8_t follow_ups = 0;  // since a trigger asked for it
+    bool acknowledged = true;
+  };
   struct Pending {
     std::uint32_t object = 0;  // index into the scene
     Reason reason = Reason::request;
     RigidState state;  // what the decoder will hold
+    bool follow_up = false;
   };
 
   Reason reason_for(std::uint32_t object, const RigidState& held) const noexcept;
   bool can_improve(std::uint32_t object, const RigidPose& shown) const noexcept;
   bool haptic_within(std::uint32_t object, const RigidPose& shown, double share) const noexcept;
   bool is_touched(std::uint32_t object) const noexcept;
+  bool is_follow_up_due(std::uint32_t object) const noexcept;
+  bool joins(std::uint32_t object, const EncodeRequest<RigidStates>& request) const noexcept;
   void collect(const EncodeRequest<RigidStates>& request) noexcept;
   Result<CodedUpdate> quantise(Pending& update, const Prediction& prediction) const noexcept;
 
   const Scene& scene_;
   RigidTriggers triggers_;
   RigidPredictor predictor_;
-  PoseThresholds visual_, fixed_;
-  std::int64_t heartbeat_ = 0;            // [ticks], 0: off
-  std::vector<RigidState> truth_;         // this tick, on the grid
-  std::span<const RigidSample> samples_;  // this tick, as given
+  PoseThresholds visual_, fixed_, early_visual_;
+  double early_ = 1;                         // share of its bounds over which an object joins a packet
+  std::array<std::int64_t, 3> follow_up_{};  // [ticks] without an acknowledgement before the first, the second and later; 0: none
+  std::int64_t heartbeat_ = 0;               // [ticks], 0: off
+  std::vector<RigidState> truth_;            // this tick, on the grid
+  std::span<const RigidSample> samples_;     // this tick, as given
   std::span<const Contact> contacts_;
   std::vector<Pending> pending_;
+  std::uint64_t number_ = 0;                            // of the pending packet
+  std::vector<Sent> sent_;                              // by object
+  std::vector<std::pair<std::uint32_t, Sent>> before_;  // what the last packet replaced in it
 };
 
 }  // namespace tactus

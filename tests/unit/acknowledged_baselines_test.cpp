@@ -2,8 +2,12 @@
 /// Packets that build on what the receiver has acknowledged: no loss stops a stream, and all that arrives keeps its bounds.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <deque>
 #include <functional>
+#include <optional>
+#include <utility>
 
 #include <tactus/rigid/rigid_predictor.h>
 #include <tactus/tactus.h>
@@ -120,8 +124,12 @@ TEST(AcknowledgedBaselines, NoLossStopsRigidObjects) {
     const auto look = [&](Receiver& receiver, const DecodedPacket& packet) {
       const auto& truly = samples[static_cast<std::size_t>(packet.tick)];
       updates += packet.updates.size();
-      for (std::size_t i = 0; i < kObjects; ++i) {  // those that the packet leaves out, too
-        const Pose shown = to_pose(predictor.pose(receiver.objects()[i], packet.tick), scene->grid.position);
+      for (std::uint32_t i = 0; i < kObjects; ++i) {
+        const bool named = std::ranges::any_of(packet.updates, [i](const RigidUpdate& update) { return update.object == i; });
+        if (!named && channel.loss > 0) continue;  // a lost packet may have named it
+        const RigidPose held =
+            named ? predictor.pose(receiver.objects()[i], packet.tick) : receiver.replica().pose(i, packet.tick);
+        const Pose shown = to_pose(held, scene->grid.position);
         const Pose& pose = truly[i].pose;
         const bool seen = norm(shown.position - pose.position) <= RigidTriggers{}.visual_position &&
                           angle_between(shown.rotation, pose.rotation) <= RigidTriggers{}.visual_rotation;
@@ -190,6 +198,92 @@ INSTANTIATE_TEST_SUITE_P(Profiles, AcknowledgedShapes,
                                            std::tuple{DeformableProfile::main, 6, false},
                                            std::tuple{DeformableProfile::thesis, 0, false},
                                            std::tuple{DeformableProfile::thesis, 0, true}));
+
+/// One object that jumps by a centimetre now and then and otherwise rests; every tick in which a packet is sent, after the first.
+class Jumping {
+ public:
+  explicit Jumping(const LinkState& link) {
+    SceneSpec spec = testing::spec_of(1);
+    spec.baseline_span = 8;
+    SenderOptions options = acknowledged();
+    options.triggers.heartbeat = 0;
+    sender_.emplace(Sender::create(testing::shared(std::move(spec)), options).value());
+    sender_->set_link(link);
+  }
+  void jump() { sample_.pose.position.x += 0.01; }
+  /// Number of ticks until the next packet, at most `most`; nothing when there is none.
+  std::optional<std::int64_t> until_next(std::int64_t most) {
+    for (std::int64_t i = 1; i <= most; ++i) {
+      const auto packets = testing::all(sender_->encode(tick_++, {{&sample_, 1}}));
+      if (packets.empty()) continue;
+      sequence_ = packets[0].sequence;
+      return i;
+    }
+    return std::nullopt;
+  }
+  void acknowledge(int back = 0) { sender_->acknowledge(0, static_cast<std::uint16_t>(sequence_ - back)); }
+  Sender& sender() { return *sender_; }
+
+ private:
+  std::optional<Sender> sender_;
+  RigidSample sample_;
+  std::int64_t tick_ = 0;
+  std::uint16_t sequence_ = 0;
+};
+
+TEST(AcknowledgedBaselines, WhatIsNotAcknowledgedIsSentAgain) {
+  Jumping object({.answer = 55, .loss = 0.1});
+  EXPECT_EQ(object.until_next(1000), std::nullopt) << "at its initial state";
+  object.jump();
+  EXPECT_EQ(object.until_next(1), 1);
+  EXPECT_EQ(object.until_next(1000), 20);
+  EXPECT_EQ(object.until_next(1000), 40);
+  EXPECT_EQ(object.until_next(1000), 60);
+  EXPECT_EQ(object.until_next(1000), 60);
+  object.acknowledge(1);
+  EXPECT_EQ(object.until_next(1000), 60) << "the newest is not known yet";
+  object.acknowledge();
+  EXPECT_EQ(object.until_next(5000), std::nullopt) << "what rests costs nothing";
+  object.jump();
+  EXPECT_EQ(object.until_next(1), 1);
+  EXPECT_EQ(object.until_next(1000), 20) << "begins anew";
+  object.sender().forget_last(0);
+  EXPECT_EQ(object.until_next(1000), 1) << "the one before is due for longer";
+}
+
+TEST(AcknowledgedBaselines, WithoutLossOnlyWhatShouldHaveBeenAnsweredIsSentAgain) {
+  Jumping object({.answer = 55, .loss = 0.001});
+  object.jump();
+  EXPECT_EQ(object.until_next(1), 1);
+  EXPECT_EQ(object.until_next(1000), 55);
+  EXPECT_EQ(object.until_next(1000), 55);
+  object.sender().set_link({});
+  EXPECT_EQ(object.until_next(5000), std::nullopt) << "nothing is known of the way back";
+}
+
+/// Two objects with the same motion, the second one a little slower: it never sends a packet of its own.
+TEST(AcknowledgedBaselines, ObjectsNearTheirBoundsJoinAPacket) {
+  SceneSpec spec = testing::spec_of(3);
+  spec.baseline_span = 8;
+  const SharedScene scene = testing::shared(std::move(spec));
+  for (const auto& [options, least] : {std::pair{acknowledged(), 2u}, std::pair{previous(), 1u}}) {
+    auto sender = Sender::create(scene, options).value();
+    std::array<RigidSample, 3> samples;
+    std::size_t packets = 0;
+    for (std::int64_t tick = 0; tick < 2000; ++tick) {
+      for (std::size_t i = 0; i < 3; ++i)
+        samples[i].pose.position.x = 1e-4 * (i == 0 ? 1.0 : i == 1 ? 0.7 : 0.3) * static_cast<double>(tick);
+      for (const Packet& packet : testing::all(sender.encode(tick, {samples}))) {
+        ++packets;
+        if (tick < 100) {
+          EXPECT_EQ(packet.updates, least) << tick;
+        }
+        sender.acknowledge(0, packet.sequence);
+      }
+    }
+    EXPECT_GT(packets, 10u);
+  }
+}
 
 /// A receiver that asked for a key packet holds nothing from before, whatever is forgotten afterwards.
 TEST(AcknowledgedBaselines, NothingBuildsOnWhatIsOlderThanARequest) {

@@ -64,7 +64,9 @@ TEST(Allocation, ASceneOfSeveralSubstreamsAllocatesNothing) {
                                 .value();
   for (const Baseline baseline : {Baseline::previous, Baseline::acknowledged}) {
     auto sender = Sender::create(scene, {.triggers = {}, .deformable = {}, .policy = {.baseline = baseline}}).value();
-    auto receiver = Receiver::create(scene).value();
+    sender.set_link({.answer = 5, .loss = 0.1});
+    const Interpolation way = baseline == Baseline::previous ? Interpolation::linear : Interpolation::playout;
+    auto receiver = Receiver::create(scene, {.replica = {.interpolation = way}, .limits = {}}).value();
     testing::Motion motion(1);
     testing::DentedSheet sheet(mesh, 6);
     std::vector<testing::SheetFrame> frames;
@@ -89,7 +91,8 @@ TEST(Allocation, ASceneOfSeveralSubstreamsAllocatesNothing) {
             ++decoded;
           }
         }
-        (void)receiver.replica().displacements(0, tick);
+        (void)receiver.replica().displacements(0, tick - 10);
+        (void)receiver.replica().pose(0, tick - 10);
       }
     });
     EXPECT_EQ(counted, 0u);
