@@ -23,8 +23,8 @@ struct ReceiverOptions {
 
 /// Keeps the newest `baseline_span` states of each substream and nothing else.
 ///
-/// Packets may be lost, repeated, or come in any order, late by up to 127 packets. A packet is decoded from exactly the baseline that it was coded
-/// against, or it is refused.
+/// Packets may be lost, repeated, or come in any order, late by up to 127 packets. A packet is decoded from exactly the baseline that
+/// it was coded against, or it is refused.
 /// With a clock (`now`) this holds after outages of any length. Baselines that became ambiguous are dropped, and the next key
 /// packet is accepted whatever its number and tick. The same happens when another sender of this scene, or a restarted one, is
 /// heard. spec/25-packet.md 4 and 5.
@@ -47,7 +47,8 @@ class Receiver {
   /// time < 2 us for one rigid update; 60 us for 714 vertices and 48 modes; no allocation.
   /// err  advice() tells how to react. truncated, malformed, invalid: R-PKT, R-RIG, R-DEF, R-RNG; limit_exceeded R-PKT-1;
   ///      state R-PKT-5: the packet was decoded before, or comes later than all that are held; R-PKT-4: its baseline is not held, as
-  ///      an earlier packet is lost or late; R-PKT-7: its number belongs to another sender or follows a long outage, and all baselines are dropped
+  ///      an earlier packet is lost or late; R-PKT-7: its number belongs to another sender or follows a long outage, and all baselines
+  ///      are dropped
   Result<DecodedPacket> push(std::span<const std::uint8_t> packet, std::optional<std::int64_t> now = {}) noexcept;
 
   /// What the client shows.

@@ -43,8 +43,9 @@ struct Truth {
 /// refuses the following ones (R-PKT-4) until a key packet, sent after key_interval or request_key(). With Baseline::acknowledged
 /// a packet builds on the newest state that acknowledge() named, so that every one that arrives can be decoded; a packet that goes
 /// out anyway also names the rigid objects that are over half of a bound, and set_link() has states sent again. The bounds above
-/// still hold only for what arrived: a client that shows the past (Interpolation::playout) bends over the gaps. A key packet of a layered object drops the shape outside the
-/// area of interest until the visual packet arrives. If no client joins or seeks, key_interval 0 avoids that.
+/// still hold only for what arrived: a client that shows the past (Interpolation::playout) bends over the gaps.
+/// A key packet of a layered object drops the shape outside the area of interest until the visual packet arrives. If no client joins or
+/// seeks, key_interval 0 avoids that.
 ///
 /// Threads: one at a time. The scene is shared. No allocation and no exception after create().
 class Sender {

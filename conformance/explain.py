@@ -254,7 +254,7 @@ def play(file, lost):
             result = f"tick {packet.tick}"
         except StreamError as error:
             builds_on, result = f"{Found.number - Found.delta}", f"refused: {error.rule}"
-        kept = ", ".join(str(number) for number, _ in decoder.receiver.kept)
+        kept = ", ".join(map(str, sorted(decoder.receiver.kept)))
         rows.append(f"| {count} | {sequence} | {Found.number} | {builds_on} | {result} | {kept} | `{decoder.state_hash():016x}` |")
     table("packet | sequence | number | baseline | result | kept numbers | state hash", rows)
 

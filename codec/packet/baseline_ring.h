@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The newest states of a substream, by the number of the packet that made them. spec/25-packet.md sections 4 and 5. Internal to the library.
+/// The newest states of a substream, by the number of the packet that made them. spec/25-packet.md sections 4 and 5. Internal to the
+/// library.
 #pragma once
 
 #include <algorithm>

@@ -3,14 +3,19 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <random>
 #include <string_view>
 
+#include <tactus/client/bend.h>
 #include "tests/unit/rigid_fixture.h"
+#include "tests/unit/smooth_motion.h"
 
 namespace tactus {
 namespace {
 
+using testing::along;
 using testing::scene_of;
 
 /// Hands a replica updates of one object without a bitstream.
@@ -165,6 +170,91 @@ TEST(ClientReplica, OptionsOutsideTheirRangeAreRefused) {
   EXPECT_TRUE(refused({Interpolation::linear, 0.75, 0.2, 0.1}));
   EXPECT_TRUE(refused({Interpolation::linear, 0.75, 0.005, 10.1}));
   EXPECT_FALSE(refused({}));
+}
+
+/// Updates of one object; their packets arrive in any order, or not at all.
+struct Arrival {
+  std::uint64_t number;
+  std::int64_t tick;
+  bool restarts = false;
+};
+
+class PlayoutReplica {
+ public:
+  explicit PlayoutReplica(Interpolation way = Interpolation::playout) : replica_(*scene_, {.interpolation = way}, {}) {}
+  void take(const Arrival& arrival, std::int64_t now = 0) {
+    const RigidState state = along(arrival.tick, true);
+    const RigidUpdate named{0, Reason::visual, 0};
+    DecodedPacket packet;
+    packet.number = arrival.number;
+    packet.tick = arrival.tick;
+    packet.restarts = arrival.restarts;
+    packet.updates = {&named, 1};
+    replica_.apply(packet, {&state, 1}, now);
+  }
+  RigidPose shown(std::int64_t tick) const { return replica_.pose(0, tick); }
+  RigidPose reckoned(std::int64_t from, std::int64_t tick) const { return RigidPredictor(*scene_).pose(along(from, true), tick); }
+  RigidPose bent(std::int64_t from, std::int64_t to, std::int64_t tick) const {
+    return bend(*scene_, along(from, true), along(to, true), tick);
+  }
+
+ private:
+  SharedScene scene_ = scene_of(1);
+  Replica replica_;
+};
+
+TEST(ClientPlayout, BendsOverKnownGapsOnly) {
+  PlayoutReplica client;
+  for (const Arrival& a : {Arrival{1, 400}, {2, 440}, {4, 500}, {6, 900}}) client.take(a);
+  EXPECT_EQ(client.shown(420), client.reckoned(400, 420)) << "nothing is missing";
+  EXPECT_EQ(client.shown(440), client.reckoned(440, 440));
+  EXPECT_EQ(client.shown(470), client.bent(440, 500, 470)) << "packet 3 is missing";
+  EXPECT_EQ(client.shown(600), client.reckoned(500, 600)) << "packet 5 is missing, for longer than 300 ms";
+  EXPECT_EQ(client.shown(950), client.reckoned(900, 950)) << "the future is not known";
+  client.take({3, 441});
+  EXPECT_EQ(client.shown(470), client.reckoned(441, 470)) << "it was only overtaken";
+}
+
+TEST(ClientPlayout, BeforeTheFirstUpdateTheInitialStateIsShown) {
+  PlayoutReplica client;
+  EXPECT_EQ(client.shown(-100), RigidPose{});
+  client.take({70000, 40});
+  for (const std::int64_t tick : {-1, 0, 39}) EXPECT_EQ(client.shown(tick), RigidPose{}) << "no curve comes from there";
+  EXPECT_EQ(client.shown(40), client.reckoned(40, 40));
+}
+
+TEST(ClientPlayout, OrderOfArrivalDoesNotMatter) {
+  std::vector<Arrival> arrivals;
+  for (std::uint64_t n = 1; n < 50; ++n)
+    if (n % 7 != 0) arrivals.push_back({n, static_cast<std::int64_t>(20 * n)});
+  PlayoutReplica in_order;
+  for (const Arrival& a : arrivals) in_order.take(a);
+  std::mt19937_64 random(2);
+  std::shuffle(arrivals.begin(), arrivals.end(), random);
+  PlayoutReplica shuffled;
+  for (const Arrival& a : arrivals) shuffled.take(a);
+  for (std::int64_t tick = 0; tick < 1000; ++tick) EXPECT_EQ(in_order.shown(tick), shuffled.shown(tick)) << tick;
+}
+
+TEST(ClientPlayout, ARestartForgetsWhatWasKnown) {
+  PlayoutReplica client;
+  client.take({1, 400});
+  client.take({2, 450});
+  client.take({40000, 30, true});
+  EXPECT_EQ(client.shown(20), RigidPose{});
+  EXPECT_EQ(client.shown(460), client.reckoned(30, 460));
+}
+
+TEST(ClientReplicaOrder, AnOvertakenUpdateIsNotShown) {
+  for (const Interpolation way : {Interpolation::none, Interpolation::linear}) {
+    PlayoutReplica client(way), spared(way);
+    for (PlayoutReplica* both : {&client, &spared}) {
+      both->take({1, 400}, 400);
+      both->take({3, 440}, 440);
+    }
+    client.take({2, 420}, 445);
+    for (std::int64_t tick = 445; tick < 500; ++tick) EXPECT_EQ(client.shown(tick), spared.shown(tick));
+  }
 }
 
 }  // namespace
