@@ -49,6 +49,19 @@ Bytes one_gap(const RawHeader& header, const Residual& first, const Residual& se
   return stream.finish().bytes();
 }
 
+/// Packet 0 leaves everything as it is; 1 and 3 build on it, and 2 between them is lost.
+Bytes apart(const RawHeader& header, const Update& first, const Update& second) {
+  Stream stream(header);
+  stream.add({.tick = 5, .updates = {{0, Reason::visual, 0, {}}}, .key = true});
+  stream.add({.tick = 5, .updates = {first}});
+  stream.add({.tick = 45, .updates = {second}, .baseline = 3, .sequence = std::uint16_t{3}});
+  return stream.finish().bytes();
+}
+
+Update pose(unsigned level, const Vec3i& position, const Vec3i& velocity, const Vec3i& rotation, const Vec3i& angular_velocity) {
+  return {0, Reason::visual, static_cast<std::uint8_t>(level), {{position, velocity, rotation, angular_velocity}}};
+}
+
 /// Near the largest angular velocity for 290 ms.
 Bytes fast_spins() {
   Stream stream(of({{"a"}}));
@@ -76,6 +89,16 @@ Bytes several_objects() {
     if (i % 5 != 3) stream.add(step);
     tick += random.below(30) == 0 ? 301 : random.below(25);
   }
+  return stream.finish().bytes();
+}
+
+Bytes overtaken() {
+  Stream stream(of({{"a"}, {"b"}}));
+  stream.add({.tick = 5, .updates = {pushed(0, 0), pushed(1, 1)}, .key = true});
+  stream.add({.tick = 30, .updates = {pushed(6, 0), pushed(7, 1)}});
+  stream.add({.tick = 45, .updates = {pushed(2, 0)}, .baseline = 2, .sequence = std::uint16_t{3}});
+  stream.add({.tick = 45, .updates = {pushed(3, 0), pushed(4, 1)}, .baseline = 1, .sequence = std::uint16_t{2}});
+  stream.add({.tick = 120, .updates = {pushed(5, 1)}, .baseline = 1, .sequence = std::uint16_t{4}});
   return stream.finish().bytes();
 }
 
@@ -120,7 +143,7 @@ Bytes shapes() {
   Random random(541);
   for (std::int64_t i = 0; i < 14; ++i) {
     const bool lost = i % 5 == 3, after_loss = i % 5 == 4;
-    const MainStep step{.at = {.tick = 17 * i, .key = i == 0, .baseline = after_loss ? 2u : 1u},
+    const MainStep step{.at = {.tick = 17 * i + 3, .key = i == 0, .baseline = after_loss ? 2u : 1u},
                         .residuals = random_residuals(random, 5, 60)};
     if (lost) stream.lose(step);
     else stream.add(step);
@@ -132,6 +155,10 @@ Bytes shapes() {
 
 void add_client_playout(Catalogue& c) {
   const auto playout = [&](const char* name, const char* what, const Bytes& bytes) { c.valid(name, what, bytes, {}, "playout"); };
+  c.section(section::kClient);
+  c.valid("overtaken", "A packet that was overtaken: of two objects that it names, one has a newer update.", overtaken(), {},
+          "linear");
+  c.valid("overtaken-none", "The same without interpolation.", overtaken(), {}, "none");
   c.section(section::kPlayout);
   playout("playout-empty", "No packet: the initial state.", Stream(of({{"a"}})).bytes());
   playout("playout-nothing-missing", "Every packet is there: dead reckoning between the updates.",
@@ -163,6 +190,35 @@ void add_client_playout(Catalogue& c) {
   playout("playout-several-objects", "150 packets for four objects, every fifth lost.", several_objects());
   playout("playout-heard", "Between the updates of one object lie 1023 packets of another, all heard.", many_between(1023));
   playout("playout-forgotten", "The same of 1024: the first of them is 1024 back and counts as missing.", many_between(1024));
+  RawHeader fast = of({{"a"}});
+  fast.tick_rate = 5000;
+  playout("playout-fast-clock", "At 5000 ticks per second a gap of 1500 ticks, and one of 1501.",
+          with_losses(fast, {3, -1, 1503, -1, 3004, -1, 3010}));
+  playout("playout-stops", "An object that moved and turned has no velocity after the gap.",
+          apart(of({{"a"}}), pose(0, {}, {70000, -3, 0}, {}, {0, 0, 90000}), pose(0, {900, 0, 0}, {}, {0, 500, 0}, {})));
+  playout("playout-largest-differences", "From one end of 32 bits to the other, and from the largest velocity to the smallest.",
+          apart(of({{"a"}}), pose(1, {-kLargest, kLargest, 0}, {-kLargest, kLargest, 0}, {}, {}),
+                pose(1, {kLargest, -kLargest, 0}, {kLargest, -kLargest, 0}, {}, {})));
+  RawHeader fastest = of({{"a"}});
+  fastest.tick_rate = 1000000;
+  fastest.grid = {20, 20, 20, 18};
+  playout("playout-largest-velocities", "Velocities that differ by more than 32 bits, at 10^6 ticks per second.",
+          apart(fastest, pose(1, {}, {-kLargest, kLargest, 0}, {}, {}), pose(1, {}, {kLargest, -kLargest, 0}, {}, {})));
+  playout("playout-over-the-end", "A curve that would leave 32 bits.",
+          apart(of({{"a"}}), pose(1, {kLargest, -kLargest, 5}, {kLargest, -kLargest, 0}, {}, {}),
+                pose(1, {kLargest, -kLargest, 5}, {-kLargest, kLargest, 0}, {}, {})));
+  playout("playout-long-way", "The updates are 340 degrees apart: the curve takes the short way.",
+          apart(of({{"a"}}), pose(0, {}, {}, {961000, 0, 0}, {}), pose(0, {}, {}, {-961000, 0, 0}, {})));
+  playout("playout-half-circle-about-x", "Half a circle: w of the difference is 0.",
+          apart(of({{"a"}}), pose(0, {}, {}, {}, {}), pose(0, {}, {}, {kHalfCircle, 0, 0}, {})));
+  RawHeader fine = of({{"a"}});
+  fine.grid = {22, 17, 28, 20};
+  playout("playout-beyond-half-circle", "The way round is chosen by the sign of w, which is -2^-30.",
+          apart(fine, pose(0, {}, {}, {(1 << 28) - 2, 0, 0}, {2, 0, 0}), pose(0, {}, {}, {5, 0, 0}, {})));
+  RawHeader longer = of({{"a"}});
+  longer.objects[0].rotation = {kOne30, 0, 1 << 20, -(1 << 20)};
+  playout("playout-longest-half-circle", "Half a circle from a rotation longer than 1: the sine of half the angle is above 1.",
+          apart(longer, pose(0, {}, {}, {}, {}), pose(0, {}, {}, {605395, 605395, 605395}, {})));
   playout("playout-shapes", "A deformable object, two packets lost: the newest state kept that is not later.", shapes());
 }
 

@@ -53,6 +53,9 @@ void add_rigid_packets(Catalogue& c) {
             Overtaken(2).add(0, 0, 10).add(1, 1).add(3, 2).add(4, 1).add(2, 1).bytes());
   c.invalid("overtaken-and-dropped", "Packet 4 was overtaken by 5 and 6, for which the state that it builds on had to make room.",
             {"state", "R-PKT-4"}, Overtaken(3).add(0, 0, 10).add(1, 1).add(3, 2).add(5, 2).add(6, 1).add(4, 3).bytes());
+  c.invalid("overtaken-and-restarted",
+            "A key packet restarts; the one before it, which was overtaken, is below the lowest state kept.",
+            {"state", "R-PKT-5"}, Overtaken(8).add(0, 0, 10).add(1, 1).add(40001, 0).add(40000, 0).bytes());
   c.invalid("overtaken-in-the-future", "A packet that was overtaken has a higher tick than the one that overtook it.",
             {"invalid", "R-RIG-1"}, Overtaken(8).add(0, 0, 10).add(1, 1).add(3, 2).add(2, 1, kTick + 1).bytes());
   c.invalid("overtaken-key-in-the-future", "The same of a key packet.", {"invalid", "R-RIG-1"},
