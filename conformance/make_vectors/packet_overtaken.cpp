@@ -72,9 +72,9 @@ void add_deformable_packets(Catalogue& c) {
                      .residuals = random_residuals(random, 5, 200)});
     return out;
   };
-  const auto overtaken = [](std::int64_t tick) {
-    Random random(641);
-    return MainStep{.at = {.tick = tick, .sequence = std::uint16_t{2}}, .residuals = random_residuals(random, 5, 200)};
+  Random other(641);
+  const auto overtaken = [&](std::int64_t tick) {
+    return MainStep{.at = {.tick = tick, .sequence = std::uint16_t{2}}, .residuals = random_residuals(other, 5, 200)};
   };
   DeformableStream valid = stream();
   valid.add(overtaken(kTick));
