@@ -32,6 +32,11 @@ struct Receiver::Impl {
     return out;
   }
 
+  Result<DecodedPacket> push(std::optional<std::uint64_t> number, std::span<const std::uint8_t> packet,
+                             std::optional<std::int64_t> now) noexcept;
+  Result<DecodedPacket> decode(std::optional<std::uint64_t> number, const SubstreamPacket& part,
+                               std::optional<std::int64_t> now) noexcept;
+
   SharedScene scene;
   SubstreamDecoder<RigidDecoder> rigid;
   Decoders deformables;
@@ -51,17 +56,31 @@ Result<Receiver> Receiver::create(SharedScene scene, const ReceiverOptions& opti
   return out_of_memory();
 }
 
-Result<DecodedPacket> Receiver::push(std::span<const std::uint8_t> packet, std::optional<std::int64_t> now) noexcept {
-  Impl& r = *impl_;
-  TACTUS_TRY(const SubstreamPacket part, split_substream(*r.scene, packet));
-  auto decoded =
-      part.substream == 0 ? r.rigid.decode(part.bytes, now) : r.deformables[part.substream - 1]->decode(part.bytes, now);
+Result<DecodedPacket> Receiver::Impl::decode(std::optional<std::uint64_t> number, const SubstreamPacket& part,
+                                             std::optional<std::int64_t> now) noexcept {
+  if (part.substream == 0) return number ? rigid.decode_numbered(*number, part.bytes) : rigid.decode(part.bytes, now);
+  DeformableDecoder& object = *deformables[part.substream - 1];
+  return number ? object.decode_numbered(*number, part.bytes) : object.decode(part.bytes, now);
+}
+
+Result<DecodedPacket> Receiver::Impl::push(std::optional<std::uint64_t> number, std::span<const std::uint8_t> packet,
+                                           std::optional<std::int64_t> now) noexcept {
+  TACTUS_TRY(const SubstreamPacket part, split_substream(*scene, packet));
+  auto decoded = decode(number, part, now);
   if (!decoded) {
     const Error& error = decoded.error();
     return fail_at(error, error.bit_offset + 8 * (packet.size() - part.bytes.size()));
   }
-  if (part.substream == 0) r.replica.apply(*decoded, r.rigid.after(*decoded).objects, now.value_or(decoded->tick));
+  if (part.substream == 0) replica.apply(*decoded, rigid.after(*decoded).objects, now.value_or(decoded->tick));
   return decoded;
+}
+
+Result<DecodedPacket> Receiver::push(std::span<const std::uint8_t> packet, std::optional<std::int64_t> now) noexcept {
+  return impl_->push({}, packet, now);
+}
+
+Result<DecodedPacket> Receiver::push_numbered(std::uint64_t number, std::span<const std::uint8_t> packet) noexcept {
+  return impl_->push(number, packet, {});
 }
 
 Replica& Receiver::replica() noexcept { return impl_->replica; }

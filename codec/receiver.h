@@ -51,6 +51,10 @@ class Receiver {
   ///      are dropped
   Result<DecodedPacket> push(std::span<const std::uint8_t> packet, std::optional<std::int64_t> now = {}) noexcept;
 
+  /// The same for a packet of a session, which knows its number (Sender::encode_numbered) and when it is lost: R-PKT-7 does not occur.
+  /// in   number  above 0
+  Result<DecodedPacket> push_numbered(std::uint64_t number, std::span<const std::uint8_t> packet) noexcept;
+
   /// What the client shows.
   Replica& replica() noexcept;
 

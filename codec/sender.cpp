@@ -22,6 +22,7 @@ struct Sender::Impl {
   }
 
   Result<void> read(std::int64_t tick, const Truth& truth) noexcept;
+  Result<std::span<const Packet>> encode(std::optional<std::uint64_t> number, std::int64_t tick, const Truth& truth) noexcept;
   void add(const Packet& packet) noexcept {
     if (!packet.bytes.empty()) packets.push_back(packet);
   }
@@ -45,6 +46,24 @@ Result<void> Sender::Impl::read(std::int64_t tick, const Truth& truth) noexcept 
   return {};
 }
 
+Result<std::span<const Packet>> Sender::Impl::encode(std::optional<std::uint64_t> number, std::int64_t tick,
+                                                     const Truth& truth) noexcept {
+  TACTUS_CHECK(read(tick, truth));
+  packets.clear();
+  if (!scene->moving().empty()) {
+    TACTUS_TRY(const Packet packet, rigid.encode(tick, Layer::all, number));
+    add(packet);
+  }
+  for (std::size_t i = 0; i < truth.deformables.size(); ++i) {
+    if (truth.deformables[i].displacements.empty()) continue;
+    DeformableEncoder& object = *deformables[i];
+    add(object.encode(tick, object.is_layered() ? Layer::haptic : Layer::all, number));
+    if (object.is_layered()) add(object.encode(tick, Layer::visual, number ? std::optional(*number + 1) : std::nullopt));
+  }
+  last_tick = tick;
+  return std::span<const Packet>(packets);
+}
+
 Sender::Sender(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}
 Sender::Sender(Sender&&) noexcept = default;
 Sender& Sender::operator=(Sender&&) noexcept = default;
@@ -61,21 +80,11 @@ Result<Sender> Sender::create(SharedScene scene, const SenderOptions& options) t
 }
 
 Result<std::span<const Packet>> Sender::encode(std::int64_t tick, const Truth& truth) noexcept {
-  Impl& s = *impl_;
-  TACTUS_CHECK(s.read(tick, truth));
-  s.packets.clear();
-  if (!s.scene->moving().empty()) {
-    TACTUS_TRY(const Packet packet, s.rigid.encode(tick, Layer::all));
-    s.add(packet);
-  }
-  for (std::size_t i = 0; i < truth.deformables.size(); ++i) {
-    if (truth.deformables[i].displacements.empty()) continue;
-    DeformableEncoder& object = *s.deformables[i];
-    s.add(object.encode(tick, object.is_layered() ? Layer::haptic : Layer::all));
-    if (object.is_layered()) s.add(object.encode(tick, Layer::visual));
-  }
-  s.last_tick = tick;
-  return std::span<const Packet>(s.packets);
+  return impl_->encode({}, tick, truth);
+}
+
+Result<std::span<const Packet>> Sender::encode_numbered(std::uint64_t number, std::int64_t tick, const Truth& truth) noexcept {
+  return impl_->encode(number, tick, truth);
 }
 
 void Sender::request_key() noexcept {

@@ -22,6 +22,11 @@ class Of final : public DeformableDecoder {
     decoded.substream = number_;
     return decoded;
   }
+  Result<DecodedPacket> decode_numbered(std::uint64_t number, std::span<const std::uint8_t> packet) noexcept override {
+    TACTUS_TRY(DecodedPacket decoded, stream_.decode_numbered(number, packet));
+    decoded.substream = number_;
+    return decoded;
+  }
   std::span<const Vec3i> displacements() const noexcept override { return stream_.newest().displacement; }
   std::span<const Vec3i> displacements_at(std::int64_t tick) noexcept override { return predict(stream_.newest(), tick); }
   std::span<const Vec3i> displacements_of(std::int64_t tick) noexcept override { return predict(stream_.at(tick), tick); }

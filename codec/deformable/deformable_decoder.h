@@ -23,6 +23,8 @@ class DeformableDecoder {
 
   /// in, err  Receiver::push
   virtual Result<DecodedPacket> decode(std::span<const std::uint8_t> packet, std::optional<std::int64_t> now) noexcept = 0;
+  /// in, err  Receiver::push_numbered
+  virtual Result<DecodedPacket> decode_numbered(std::uint64_t number, std::span<const std::uint8_t> packet) noexcept = 0;
   /// Newest decoded displacement of every vertex, x 2^-position_exp m.
   virtual std::span<const std::array<std::int32_t, 3>> displacements() const noexcept = 0;
   /// Predicted displacements at a tick; a tick before the newest packet counts as that packet's. Valid until the next call.

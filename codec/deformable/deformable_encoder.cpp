@@ -33,7 +33,9 @@ class Of final : public DeformableEncoder {
     stream_.codec().read(truth_, touch_ ? &*touch_ : nullptr);
     return {};
   }
-  Packet encode(std::int64_t tick, Layer layer) noexcept override { return stream_.encode(tick, layer).value_or(Packet{}); }
+  Packet encode(std::int64_t tick, Layer layer, std::optional<std::uint64_t> number) noexcept override {
+    return stream_.encode(tick, layer, number).value_or(Packet{});
+  }
   bool is_layered() const noexcept override { return layered_; }
   void request_key() noexcept override { stream_.request_key(); }
   void forget_last() noexcept override { stream_.forget_last(); }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include <tactus/base/result.h>
 #include <tactus/deformable/trigger.h>
@@ -27,7 +28,8 @@ class DeformableEncoder {
   virtual Result<void> read(const DeformableTruth& truth) noexcept = 0;
   /// Code one packet of the frame. A layered object takes its haptic layer first, then the visual one; others take Layer::all.
   /// Returns a packet without bytes if none is needed.
-  virtual Packet encode(std::int64_t tick, Layer layer) noexcept = 0;
+  /// in   number  as in SubstreamEncoder::encode
+  virtual Packet encode(std::int64_t tick, Layer layer, std::optional<std::uint64_t> number) noexcept = 0;
   virtual bool is_layered() const noexcept = 0;
   virtual void request_key() noexcept = 0;
   virtual void forget_last() noexcept = 0;

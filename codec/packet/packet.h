@@ -23,6 +23,7 @@ struct Packet {
   std::span<const std::uint8_t> bytes;  ///< with the number of its substream; valid until the sender's next call of encode()
   std::size_t substream = 0;            ///< 0: the rigid objects; i + 1: deformable object i
   std::uint16_t sequence = 0;           ///< in its substream
+  std::uint64_t number = 0;             ///< the same, not wrapped
   bool key = false;                     ///< builds on the initial state: a place to seek to
   Layer layer = Layer::all;             ///< deformable objects: which vertices it codes
   Reason reason = Reason::request;      ///< rigid objects: strongest among the updates (haptic > visual > heartbeat > request)

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 namespace tactus {
 
@@ -27,10 +28,14 @@ class PacketOrder {
     if (keeps && behind < kBehind) return newest_ - behind;
     return newest_ + 1 + static_cast<std::uint16_t>(sequence - newest_ - 1);
   }
+  /// The packets of a session come with their numbers, which count from any value above 0.   in  number  of the first one
+  void begin(std::uint64_t number) noexcept {
+    if (!std::exchange(numbered_, true)) newest_ = number - 1;
+  }
   /// True for a repeated packet, and for one that others sent after it came before.
   bool is_overtaken(std::uint64_t number) const noexcept { return number <= newest_; }
   /// True for a number that one sender cannot reach: another sender, or a long outage at the receiver (R-PKT-7).
-  bool is_foreign(std::uint64_t number) const noexcept { return number > newest_ + kAhead; }
+  bool is_foreign(std::uint64_t number) const noexcept { return !numbered_ && number > newest_ + kAhead; }
   /// Ticks of one sender never decrease. A key packet with an earlier tick starts a new sequence.
   bool fits(std::uint64_t number, bool key, std::int64_t tick) const noexcept {
     return is_overtaken(number) ? tick <= tick_ : key || tick >= tick_;
@@ -54,6 +59,7 @@ class PacketOrder {
   std::optional<std::int64_t> arrival_;  // of the newest accepted
   std::uint64_t newest_ = 1 << 16;       // highest number accepted; numbers stay above 0
   std::int64_t tick_ = 0;                // of the newest
+  bool numbered_ = false;                // by a session
 };
 
 }  // namespace tactus

@@ -38,18 +38,40 @@ class SubstreamDecoder {
         span_(scene.baseline_span),
         limit_(limits.packet_bytes) {}
 
-  /// An error leaves the states unchanged.   err  Receiver::push
+  /// A packet that carries its number. An error leaves the states unchanged.   err  Receiver::push
   Result<DecodedPacket> decode(std::span<const std::uint8_t> packet, std::optional<std::int64_t> now) noexcept {
     constexpr std::size_t kSequence = 2;
     if (packet.size() > limit_) return fail(Errc::limit_exceeded, "R-PKT-1");
     if (packet.size() < kSequence) return fail(Errc::truncated, "R-PKT-2");
-    DecodedPacket out;
-    out.sequence = static_cast<std::uint16_t>(packet[0] | packet[1] << 8);
+    const auto sequence = static_cast<std::uint16_t>(packet[0] | packet[1] << 8);
     if (order_.outlasts(now)) states_.clear();
-    out.number = order_.number_of(out.sequence, !states_.empty());
+    return decode_payload(order_.number_of(sequence, !states_.empty()), packet.subspan(kSequence), now, kSequence);
+  }
+
+  /// A packet of a session, which knows its number. An error leaves the states unchanged.   err  Receiver::push_numbered
+  Result<DecodedPacket> decode_numbered(std::uint64_t number, std::span<const std::uint8_t> packet) noexcept {
+    if (packet.size() > limit_) return fail(Errc::limit_exceeded, "R-PKT-1");
+    order_.begin(number);
+    return decode_payload(number, packet, {}, 0);
+  }
+
+  const State& newest() const noexcept { return states_.newest(); }
+  /// The state after a packet.   pre  decode() has just returned it
+  const State& after(const DecodedPacket& packet) const noexcept { return *states_.find(packet.number); }
+  const State& at(std::int64_t tick) const noexcept { return states_.at(tick); }  ///< BaselineRing::at
+  Codec& codec() noexcept { return codec_; }
+
+ private:
+  /// in  start  of the payload in the packet [bytes]
+  Result<DecodedPacket> decode_payload(std::uint64_t number, std::span<const std::uint8_t> payload,
+                                       std::optional<std::int64_t> now, std::size_t start) noexcept {
+    const auto placed = [start](const Error& error) noexcept { return fail_at(error, 8 * start + error.bit_offset); };
+    DecodedPacket out;
+    out.number = number;
+    out.sequence = static_cast<std::uint16_t>(number);
     if (order_.is_overtaken(out.number) && (out.number < *states_.lowest() || states_.find(out.number) != nullptr))
       return fail(Errc::state, "R-PKT-5");
-    const auto head = codec_.read_head(packet.subspan(kSequence));
+    const auto head = codec_.read_head(payload);
     if (!head) return placed(head.error());
     TACTUS_TRY(const State* base, baseline_of(*head, out.number));
     out.key = head->key;
@@ -66,15 +88,6 @@ class SubstreamDecoder {
     order_.accept(out.number, out.tick, now);
     return out;
   }
-
-  const State& newest() const noexcept { return states_.newest(); }
-  /// The state after a packet.   pre  decode() has just returned it
-  const State& after(const DecodedPacket& packet) const noexcept { return *states_.find(packet.number); }
-  const State& at(std::int64_t tick) const noexcept { return states_.at(tick); }  ///< BaselineRing::at
-  Codec& codec() noexcept { return codec_; }
-
- private:
-  static tl::unexpected<Error> placed(const Error& error) noexcept { return fail_at(error, 16 + error.bit_offset); }
 
   Result<const State*> baseline_of(const PacketHead& head, std::uint64_t number) noexcept {
     if (head.key) return &states_.initial();

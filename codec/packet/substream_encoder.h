@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -66,20 +67,21 @@ class SubstreamEncoder {
     buffers_.assign(layers, std::vector<std::uint8_t>(start_ + largest, static_cast<std::uint8_t>(substream)));
   }
 
+  /// in   number  given by a session, above all before: the packet does not carry it. Without: counted, and written
   /// out  a packet without bytes: no packet is needed
-  Result<Packet> encode(std::int64_t tick, Layer layer) noexcept {
-    const State* base = key_.is_due(tick, states_.newest().tick) ? nullptr : baseline();
+  Result<Packet> encode(std::int64_t tick, Layer layer, std::optional<std::uint64_t> number = {}) noexcept {
+    if (number) next_ = *number;
+    const State* base = key_.is_due(tick, number ? tick : states_.newest().tick) ? nullptr : baseline();
     PacketHead head{base == nullptr, static_cast<std::uint32_t>(next_ - base_), 0};
     if (head.key) base = &states_.initial();
     head.tick_delta = static_cast<std::uint32_t>(tick - base->tick);
     std::vector<std::uint8_t>& buffer = buffers_[layer == Layer::visual ? 1 : 0];
-    const std::size_t start = start_ + 2;
+    const std::size_t start = start_ + (number ? 0 : 2);
     TACTUS_TRY(const Payload payload, codec_.encode({tick, next_, head, key_.is_requested(), layer, states_.newest(), *base},
                                                     std::span(buffer).subspan(start)));
     if (payload.size == 0) return Packet{};
     const auto sequence = static_cast<std::uint16_t>(next_);
-    buffer[start - 2] = static_cast<std::uint8_t>(sequence);
-    buffer[start - 1] = static_cast<std::uint8_t>(sequence >> 8);
+    for (std::size_t i = start_; i < start; ++i) buffer[i] = static_cast<std::uint8_t>(sequence >> 8 * (i - start_));
     before_ = {key_, base_};
     states_.put(next_, [&](State& next) {
       codec_.commit(*base, next);
@@ -92,6 +94,7 @@ class SubstreamEncoder {
     return Packet{.bytes = std::span<const std::uint8_t>(buffer).first(start + payload.size),
                   .substream = substream_,
                   .sequence = sequence,
+                  .number = next_ - 1,
                   .key = head.key,
                   .layer = layer,
                   .reason = payload.reason,
