@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/session/received_numbers.h>
+
+#include <algorithm>
+
+#include <tactus/base/rule.h>
+
+namespace tactus {
+namespace {
+
+std::size_t word(std::uint64_t number) noexcept { return static_cast<std::size_t>(number / 64 % (NumberWindow::kReach / 64)); }
+std::uint64_t bit(std::uint64_t number) noexcept { return std::uint64_t{1} << (number % 64); }
+
+}  // namespace
+
+bool NumberWindow::has(std::uint64_t number) const noexcept {
+  return number <= newest_ && !is_too_old(number) && (bits_[word(number)] & bit(number)) != 0;
+}
+
+void NumberWindow::add(std::uint64_t number) noexcept {
+  if (number > newest_ + kReach) {
+    bits_ = {};
+    newest_ = number;
+  }
+  for (; newest_ < number; bits_[word(newest_)] &= ~bit(newest_)) ++newest_;
+  bits_[word(number)] |= bit(number);
+}
+
+Result<std::uint64_t> ReceivedNumbers::extend(std::uint16_t wire) const noexcept {
+  const std::uint64_t newest = received_.newest();
+  const auto ahead = static_cast<std::uint16_t>(wire - newest + 32767);
+  if (newest + ahead < 32767 + 1) return fail(Errc::state, "R-SES-4", 8);  // numbers count from 1
+  const std::uint64_t number = newest + ahead - 32767;
+  if (received_.is_too_old(number) || received_.has(number)) return fail(Errc::state, "R-SES-4", 8);
+  return number;
+}
+
+void ReceivedNumbers::accept(std::uint64_t number, std::uint64_t now, bool asks) noexcept {
+  if (accepted_.is_too_old(number)) return;
+  if (number > accepted_.newest()) newest_at_ = now;
+  accepted_.add(number);
+  if (asks && !first_unsaid_) first_unsaid_ = now;
+}
+
+std::optional<std::uint64_t> ReceivedNumbers::due() const noexcept {
+  if (!first_unsaid_) return std::nullopt;
+  return *first_unsaid_ + kPatience;
+}
+
+Acknowledgement ReceivedNumbers::acknowledge(std::uint64_t now) noexcept {
+  first_unsaid_.reset();
+  Acknowledgement out;
+  const std::uint64_t newest = accepted_.newest();
+  out.newest = static_cast<std::uint16_t>(newest);
+  out.held = static_cast<std::uint16_t>(std::min<std::uint64_t>((now - newest_at_) / 16, Acknowledgement::kNoTiming));
+  for (std::uint64_t i = 0; i < 64; ++i)
+    if (newest < 2 + i || !accepted_.has(newest - 1 - i)) out.missing |= std::uint64_t{1} << i;
+  return out;
+}
+
+}  // namespace tactus

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The numbered datagrams that an end has received: which are new, and what to acknowledge. spec/70-session.md section 4. Internal to
+/// the library.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include <tactus/base/result.h>
+#include <tactus/session/datagram.h>
+
+namespace tactus {
+
+/// A set of the newest numbers. All below its reach are gone.
+class NumberWindow {
+ public:
+  static constexpr std::uint64_t kReach = 1024;
+
+  std::uint64_t newest() const noexcept { return newest_; }  ///< highest number added; 0: none
+  bool is_too_old(std::uint64_t number) const noexcept { return number + kReach <= newest_; }
+  bool has(std::uint64_t number) const noexcept;
+  void add(std::uint64_t number) noexcept;  ///< pre  not too old, above 0.   time O(distance from newest()), at most kReach
+
+ private:
+  std::array<std::uint64_t, kReach / 64> bits_{};
+  std::uint64_t newest_ = 0;
+};
+
+class ReceivedNumbers {
+ public:
+  static constexpr std::uint64_t kPatience = 10'000;  ///< [us] an acknowledgement waits for a datagram to ride on
+
+  /// The number that 16 bits of it stand for: the one nearest to the newest.
+  /// err  state R-SES-4: it was received before, or is too old
+  Result<std::uint64_t> extend(std::uint16_t wire) const noexcept;
+  void receive(std::uint64_t number) noexcept { received_.add(number); }  ///< pre  extend()
+
+  /// A received datagram, all of whose packets are decoded, is to be acknowledged.
+  /// in   now  [us];  asks  it holds more than acknowledgements and clocks
+  void accept(std::uint64_t number, std::uint64_t now, bool asks) noexcept;
+
+  bool has_news() const noexcept { return first_unsaid_.has_value(); }
+  /// [us] when an acknowledgement should go even if nothing else does
+  std::optional<std::uint64_t> due() const noexcept;
+  /// pre  something was accepted
+  Acknowledgement acknowledge(std::uint64_t now) noexcept;
+  bool can_acknowledge() const noexcept { return accepted_.newest() > 0; }
+
+ private:
+  NumberWindow received_, accepted_;
+  std::uint64_t newest_at_ = 0;                // [us] when accepted_.newest() came
+  std::optional<std::uint64_t> first_unsaid_;  // [us] when the first came that no acknowledgement has told of
+};
+
+}  // namespace tactus

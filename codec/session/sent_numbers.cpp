@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/session/sent_numbers.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include <tactus/base/rule.h>
+
+namespace tactus {
+
+bool WindowedMinimum::add(std::int64_t sample, std::uint64_t now) noexcept {
+  newest_ = now / (window_ / kParts) + 1;
+  Part& part = parts_[newest_ % kParts];
+  if (part.number != newest_) part = {sample, newest_};
+  part.least = std::min(part.least, sample);
+  return *value() == sample;
+}
+
+std::optional<std::int64_t> WindowedMinimum::value() const noexcept {
+  std::optional<std::int64_t> out;
+  for (const Part& part : parts_)
+    if (part.number > 0 && part.number + kParts > newest_) out = std::min(out.value_or(part.least), part.least);
+  return out;
+}
+
+std::optional<std::uint64_t> SentNumbers::next() const noexcept {
+  if (next_ > highest_ + kMostAhead) return std::nullopt;
+  return next_;
+}
+
+void SentNumbers::send(std::uint64_t now) noexcept {
+  slots_[next_ % kRemembered] = {next_, now, Fate::open};
+  ++next_;
+}
+
+SentNumbers::Slot* SentNumbers::find(std::uint64_t number) noexcept {
+  Slot& slot = slots_[number % kRemembered];
+  return slot.number == number ? &slot : nullptr;
+}
+
+bool SentNumbers::is_open(std::uint64_t number) const noexcept {
+  const Slot& slot = slots_[number % kRemembered];
+  return slot.number == number && slot.fate == Fate::open;
+}
+
+Result<std::uint64_t> SentNumbers::extend(const Acknowledgement& said) const noexcept {
+  const auto behind = static_cast<std::uint16_t>(next_ - 1 - said.newest);
+  if (behind >= kMostAhead || behind + std::uint64_t{1} >= next_) return fail(Errc::invalid, "R-SES-6");
+  return next_ - 1 - behind;
+}
+
+/// RFC 9002 section 5.3, with the time that the other end held the datagram taken off.
+void SentNumbers::measure(std::uint64_t newest, std::uint16_t held, std::uint64_t now) noexcept {
+  const Slot* slot = find(newest);
+  sample_.reset();
+  if (slot == nullptr || slot->fate == Fate::arrived || held == Acknowledgement::kNoTiming) return;
+  const auto sample = std::max<std::int64_t>(0, static_cast<std::int64_t>(now - slot->time) - 16 * held);
+  sample_ = sample;
+  least_.add(sample, now);
+  if (!round_trip_) {
+    round_trip_ = RoundTrip{sample, sample / 2, sample};
+    return;
+  }
+  RoundTrip& trip = *round_trip_;
+  trip.variation += (std::abs(trip.smoothed - sample) - trip.variation) / 4;
+  trip.smoothed += (sample - trip.smoothed) / 8;
+  trip.least = *least_.value();
+}
+
+bool SentNumbers::mark(std::uint64_t number) noexcept {
+  highest_ = std::max(highest_, number);
+  Slot* slot = find(number);
+  if (slot == nullptr || slot->fate == Fate::arrived) return false;
+  if (slot->fate == Fate::open) count(false);
+  slot->fate = Fate::arrived;
+  return true;
+}
+
+bool SentNumbers::is_lost(std::uint64_t number, std::uint64_t newest, std::uint64_t now) noexcept {
+  Slot* slot = find(number);
+  if (slot == nullptr || slot->fate != Fate::open || !round_trip_) return false;
+  const std::int64_t waited = static_cast<std::int64_t>(now - slot->time);
+  const std::int64_t patience = round_trip_->smoothed + std::max<std::int64_t>(4 * round_trip_->variation, 1000);
+  if (waited <= patience && newest - number <= 64) return false;
+  slot->fate = Fate::lost;
+  count(true);
+  return true;
+}
+
+void SentNumbers::count(bool lost) noexcept {
+  const std::uint64_t bit = std::uint64_t{1} << (fate_next_ % 64);
+  std::uint64_t& word = fates_[fate_next_ / 64];
+  word = lost ? word | bit : word & ~bit;
+  fate_next_ = (fate_next_ + 1) % 256;
+  fate_count_ = std::min<std::size_t>(fate_count_ + 1, 256);
+}
+
+std::uint32_t SentNumbers::loss() const noexcept {
+  std::uint32_t lost = 0;
+  for (const std::uint64_t word : fates_) lost += static_cast<std::uint32_t>(std::popcount(word));
+  return fate_count_ == 0 ? 0 : (lost << 16) / static_cast<std::uint32_t>(fate_count_);
+}
+
+}  // namespace tactus

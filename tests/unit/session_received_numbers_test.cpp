@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/session/received_numbers.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <set>
+#include <vector>
+
+namespace tactus {
+namespace {
+
+TEST(ReceivedNumbers, SixteenBitsStandForTheNearestNumber) {
+  ReceivedNumbers received;
+  EXPECT_EQ(received.extend(1).value(), 1u);
+  EXPECT_EQ(received.extend(32767).value(), 32767u);
+  EXPECT_FALSE(received.extend(0)) << "numbers count from 1";
+  EXPECT_FALSE(received.extend(40000)) << "below 1";
+  std::uint64_t number = 0;
+  for (const std::uint64_t step : {1u, 1u, 16384u, 16384u, 32767u, 5u, 30000u}) {
+    number += step;
+    ASSERT_EQ(received.extend(static_cast<std::uint16_t>(number)).value(), number);
+    received.receive(number);
+    EXPECT_FALSE(received.extend(static_cast<std::uint16_t>(number))) << "twice";
+    if (number > 1024) {
+      EXPECT_STREQ(received.extend(static_cast<std::uint16_t>(number - 1024)).error().rule, "R-SES-4");
+    }
+  }
+}
+
+TEST(ReceivedNumbers, EachIsTakenOnceInAnyOrder) {
+  std::mt19937_64 random(3);
+  ReceivedNumbers received;
+  std::set<std::uint64_t> taken;
+  std::uint64_t newest = 0;
+  for (int i = 0; i < 50000; ++i) {
+    const std::uint64_t at = newest + 1 + random() % 20;
+    const std::uint64_t number = random() % 3 == 0 ? at : at > 1100 ? at - random() % 1100 : 1 + random() % at;
+    const bool fresh = !taken.contains(number) && number + 1024 > newest;
+    const auto read = received.extend(static_cast<std::uint16_t>(number));
+    ASSERT_EQ(read.has_value(), fresh) << number << " after " << newest;
+    if (!read) continue;
+    ASSERT_EQ(*read, number);
+    received.receive(number);
+    taken.insert(number);
+    newest = std::max(newest, number);
+  }
+  EXPECT_GT(newest, 100000u);
+}
+
+TEST(ReceivedNumbers, AcknowledgementsTellOfWhatWasAccepted) {
+  ReceivedNumbers received;
+  EXPECT_FALSE(received.can_acknowledge());
+  EXPECT_FALSE(received.due());
+  received.accept(1, 1000, true);
+  received.accept(2, 2000, true);
+  received.accept(5, 5000, false);
+  received.accept(4, 6000, true);
+  EXPECT_EQ(received.due(), 11000u) << "10 ms after the first";
+  const Acknowledgement said = received.acknowledge(7616);
+  EXPECT_EQ(said.newest, 5);
+  EXPECT_EQ(said.held, 163) << "2616 us since 5 came, in units of 16";
+  EXPECT_EQ(said.missing, ~std::uint64_t{0b1101}) << "4, 2 and 1 were accepted, 3 and what is below 1 were not";
+  EXPECT_FALSE(received.due());
+  received.accept(6, 8000, false);
+  EXPECT_FALSE(received.due()) << "an acknowledgement asks for none";
+  EXPECT_EQ(received.acknowledge(8000 + 2'000'000).held, Acknowledgement::kNoTiming);
+  EXPECT_EQ(received.acknowledge(8000 + 16 * 65534).held, 65534);
+}
+
+TEST(ReceivedNumbers, WhatIsNotAcceptedIsMissing) {
+  ReceivedNumbers received;
+  for (std::uint64_t number = 1; number <= 200; ++number) {
+    received.receive(number);
+    if (number % 5 != 0) received.accept(number, 1, true);
+  }
+  const Acknowledgement said = received.acknowledge(1);
+  EXPECT_EQ(said.newest, 199);
+  for (std::uint64_t i = 0; i < 64; ++i) EXPECT_EQ(said.missing >> i & 1u, (199 - 1 - i) % 5 == 0 ? 1u : 0u);
+}
+
+}  // namespace
+}  // namespace tactus
