@@ -83,6 +83,8 @@ Result<DecodedPacket> Receiver::push_numbered(std::uint64_t number, std::span<co
   return impl_->push(number, packet, {});
 }
 
+void Receiver::skip_number(std::uint64_t number) noexcept { impl_->replica.skip_number(number); }
+
 Replica& Receiver::replica() noexcept { return impl_->replica; }
 const SharedScene& Receiver::scene() const noexcept { return impl_->scene; }
 std::span<const RigidState> Receiver::objects() const noexcept { return impl_->rigid.newest().objects; }

@@ -57,8 +57,11 @@ Result<std::span<const Packet>> Sender::Impl::encode(std::optional<std::uint64_t
   for (std::size_t i = 0; i < truth.deformables.size(); ++i) {
     if (truth.deformables[i].displacements.empty()) continue;
     DeformableEncoder& object = *deformables[i];
-    add(object.encode(tick, object.is_layered() ? Layer::haptic : Layer::all, number));
-    if (object.is_layered()) add(object.encode(tick, Layer::visual, number ? std::optional(*number + 1) : std::nullopt));
+    const Packet first = object.encode(tick, object.is_layered() ? Layer::haptic : Layer::all, number);
+    add(first);
+    if (!object.is_layered()) continue;
+    const bool follows = number && !first.bytes.empty();
+    add(object.encode(tick, Layer::visual, follows ? std::optional(*number + 1) : number));
   }
   last_tick = tick;
   return std::span<const Packet>(packets);

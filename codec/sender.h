@@ -66,7 +66,7 @@ class Sender {
   Result<std::span<const Packet>> encode(std::int64_t tick, const Truth& truth) noexcept;
 
   /// The same for a session, which numbers its datagrams: packets do not carry their numbers.
-  /// in   number  of the packets of this tick, above that of any packet before; the second layer of an object has number + 1
+  /// in   number  of the packets of this tick, above that of any packet before; a second packet of an object has number + 1
   Result<std::span<const Packet>> encode_numbered(std::uint64_t number, std::int64_t tick, const Truth& truth) noexcept;
 
   /// Call when a receiver refuses packets (Advice::request_key). The next packet of every substream is then a key packet, sent

@@ -46,6 +46,9 @@ class Replica {
   /// time O(updates), no allocation.
   void apply(const DecodedPacket& packet, std::span<const RigidState> objects, std::int64_t arrival) noexcept;
 
+  /// With Interpolation::playout: this number is not that of a lost packet.
+  void skip_number(std::uint64_t number) noexcept { heard_.add(number); }
+
   /// Pose of one object as shown at tick `now`. Before the object's newest update, the pose shown when that was applied. With
   /// Interpolation::playout `now` is the tick that is shown, not before any shown so far.
   /// pre  object < scene.objects.size().   time O(1), about 50 ns (100 ns while interpolating, 0.5 us over a gap), no allocation.

@@ -65,6 +65,11 @@ class Of final : public DeformableEncoder {
 
 }  // namespace
 
+std::size_t max_packet(const DeformableObject& object) noexcept {
+  if (object.profile == DeformableProfile::thesis) return max_thesis_packet(object.rest.size(), object.quant_bits);
+  return max_main_packet(object.rest.size(), object.basis.steps.size());
+}
+
 Result<void> DeformableEncoder::check(const DeformableOptions& options) noexcept {
   const auto in = [](double v, double low, double high) { return v >= low && v <= high; };  // false for NaN
   const DeformableThresholds& t = options.thresholds;
@@ -78,10 +83,9 @@ std::unique_ptr<DeformableEncoder> DeformableEncoder::create(const Scene& scene,
                                                              const DeformableOptions& options, const SenderPolicy& policy) {
   const DeformableObject& o = scene.deformables[object];
   if (o.profile == DeformableProfile::thesis)
-    return std::make_unique<Of<ThesisEncoder>>(scene, object, options, policy, max_thesis_packet(o.rest.size(), o.quant_bits),
-                                               options.layered, initial_thesis_state(o));
-  return std::make_unique<Of<MainEncoder>>(scene, object, options, policy, max_main_packet(o.rest.size(), o.basis.steps.size()),
-                                           o.layered, initial_main_state(o));
+    return std::make_unique<Of<ThesisEncoder>>(scene, object, options, policy, max_packet(o), options.layered,
+                                               initial_thesis_state(o));
+  return std::make_unique<Of<MainEncoder>>(scene, object, options, policy, max_packet(o), o.layered, initial_main_state(o));
 }
 
 }  // namespace tactus

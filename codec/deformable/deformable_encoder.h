@@ -11,9 +11,13 @@
 #include <tactus/deformable/trigger.h>
 #include <tactus/packet/packet.h>
 #include <tactus/packet/sender_policy.h>
+#include <tactus/scene/deformable_object.h>
 #include <tactus/scene/scene.h>
 
 namespace tactus {
+
+/// Largest packet of an object, without the number of its substream [bytes].
+std::size_t max_packet(const DeformableObject& object) noexcept;
 
 class DeformableEncoder {
  public:

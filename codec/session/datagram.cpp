@@ -3,27 +3,37 @@
 
 #include <algorithm>
 
+#include <tactus/base/hash.h>
 #include <tactus/base/rule.h>
 
 namespace tactus {
 namespace {
 
-enum Kind : std::uint8_t { kJoin, kChallenge, kWelcome, kRefusal, kLeave, kParts, kPacket };
-enum Type : std::uint8_t { kPacketPart = 1, kFragment, kAcknowledgement, kClock, kPiece, kReady, kHash, kEpoch, kFirstUnknown };
+enum Form : std::uint16_t { kHandshake, kParts, kPacket, kReserved };  // low bits of the head
+enum Kind : std::uint16_t { kJoin, kWelcome, kRefusal, kLeave, kFirstUnknownKind };  // of handshakes
+enum Type : std::uint8_t { kAcknowledgement = 1, kClock, kButtons, kPiece, kState, kHash, kFragment, kPacketPart, kFirstUnknown };
 
 constexpr std::uint32_t kMagic = 0x53544354;  // "TCTS"
 constexpr std::uint8_t kVersion = 1;
-constexpr std::size_t kLeastJoin = 64;      // [bytes]: answers are shorter
+constexpr std::size_t kHeadSize = 2, kCheckSize = 4;
+constexpr std::size_t kLeastJoin = 80;      // [bytes]: answers are shorter
 constexpr std::uint8_t kFirstSkipped = 64;  // part types for later or private use
 constexpr LeaveReason kLastReason = LeaveReason::protocol;
 
 bool comes(Kind kind, Direction direction) noexcept {
-  if (kind == kJoin) return direction == Direction::up;
-  return kind == kLeave || kind >= kParts || direction == Direction::down;
+  return kind == kLeave || (kind < kFirstUnknownKind && (kind == kJoin) == (direction == Direction::up));
 }
 bool comes(Type type, Direction direction) noexcept {
-  if (type == kReady || type == kHash) return direction == Direction::up;
-  return (type != kPiece && type != kEpoch) || direction == Direction::down;
+  if (type == kButtons || type == kState || type == kHash) return direction == Direction::up;
+  return (type != kClock && type != kPiece) || direction == Direction::down;
+}
+
+/// CRC-32 of epoch, direction and body.
+std::uint32_t check_of(std::span<const std::uint8_t> body, std::uint64_t epoch, Direction direction) noexcept {
+  std::array<std::uint8_t, 9> front{};
+  for (std::size_t i = 0; i < 8; ++i) front[i] = static_cast<std::uint8_t>(epoch >> (8 * i));
+  front[8] = static_cast<std::uint8_t>(direction);
+  return crc32(body, crc32(front));
 }
 
 /// Syntax of elements, and that nothing follows.
@@ -39,30 +49,32 @@ Result<Datagram> handshake(const ByteReader& reader, T said) noexcept {
   return Datagram(std::move(said));
 }
 
-Epoch read_epoch(ByteReader& r) noexcept {
-  Epoch out;
-  out.epoch = r.u64();
-  out.size = r.varint();
-  out.hash = r.u64();
-  out.start = r.varint();
-  return out;
-}
-
-Result<Datagram> read_join(ByteReader& r, std::size_t size) noexcept {
+Result<Datagram> read_join(ByteReader& r) noexcept {
   const std::uint32_t magic = r.u32();
   const std::uint8_t version = r.u8(), role = r.u8();
   if (r.ok() && (magic != kMagic || version != kVersion || role > static_cast<std::uint8_t>(Role::participant)))
-    return fail(Errc::unsupported, "R-SES-9", 8);
+    return fail(Errc::unsupported, "R-SES-9", 8 * kHeadSize);
   Join said;
   said.role = static_cast<Role>(role);
   said.nonce = r.u64();
-  said.cookie = r.u64();
   said.state_limit = r.varint();
-  said.packet_limit = r.varint();
-  if (r.ok() && size < kLeastJoin) return fail(Errc::truncated, "R-SES-3", r.bit_offset());
+  said.header_limit = r.varint();
   const std::uint64_t padding = r.bit_offset();
+  if (r.ok() && padding / 8 + r.remaining() < kLeastJoin - kCheckSize) return fail(Errc::truncated, "R-SES-3", padding);
   const auto zeros = r.bytes(r.remaining());
   if (std::ranges::any_of(zeros, [](std::uint8_t byte) { return byte != 0; })) return fail(Errc::malformed, "R-SES-3", padding);
+  return handshake(r, said);
+}
+
+Result<Datagram> read_welcome(ByteReader& r) noexcept {
+  Welcome said;
+  said.nonce = r.u64();
+  said.serial = r.varint();
+  said.epoch = r.u64();
+  said.client = r.u16();
+  said.size = r.varint();
+  said.hash = r.u64();
+  said.start = r.varint();
   return handshake(r, said);
 }
 
@@ -72,10 +84,9 @@ Result<LeaveReason> read_reason(ByteReader& r) noexcept {
   return static_cast<LeaveReason>(reason);
 }
 
-Result<Datagram> read_numbered(ByteReader& r, bool single, Direction direction) noexcept {
+Result<Datagram> read_numbered(ByteReader& r, std::uint16_t number, bool single, Direction direction) noexcept {
   Numbered out;
-  out.number = r.u16();
-  if (!r.ok()) return fail(Errc::truncated, "R-SES-3", r.bit_offset());
+  out.number = number;
   out.bytes = r.bytes(r.remaining());
   out.single = single;
   PartReader parts = out.parts(direction);
@@ -104,7 +115,6 @@ class Put {
     else std::copy(data.begin(), data.end(), to_.begin() + static_cast<std::ptrdiff_t>(at_)), at_ += data.size();
     return *this;
   }
-  Put& epoch(const Epoch& e) noexcept { return integer(e.epoch, 8).varint(e.size).integer(e.hash, 8).varint(e.start); }
   bool fits() const noexcept { return at_ <= to_.size(); }
   std::size_t at() const noexcept { return at_; }
 
@@ -119,38 +129,93 @@ class Put {
 
 constexpr std::size_t varint_size(std::uint64_t value) noexcept { return value < 0x80 ? 1 : 1 + varint_size(value >> 7); }
 
+constexpr std::uint64_t head_of(Kind kind) noexcept { return kHandshake + 4u * kind; }
+
 void put(Put& to, const Join& j) noexcept {
-  to.integer(kJoin, 1).integer(kMagic, 4).integer(kVersion, 1).integer(static_cast<std::uint64_t>(j.role), 1);
-  to.integer(j.nonce, 8).integer(j.cookie, 8).varint(j.state_limit).varint(j.packet_limit);
-  while (to.at() < kLeastJoin) to.integer(0, 1);
+  to.integer(head_of(kJoin), 2).integer(kMagic, 4).integer(kVersion, 1).integer(static_cast<std::uint64_t>(j.role), 1);
+  to.integer(j.nonce, 8).varint(j.state_limit).varint(j.header_limit);
+  while (to.at() < kLeastJoin - kCheckSize) to.integer(0, 1);
 }
-void put(Put& to, const Challenge& c) noexcept { to.integer(kChallenge, 1).integer(c.nonce, 8).integer(c.cookie, 8); }
 void put(Put& to, const Welcome& w) noexcept {
-  to.integer(kWelcome, 1).integer(w.nonce, 8).integer(w.client, 2).epoch(w.epoch).varint(w.time);
+  to.integer(head_of(kWelcome), 2).integer(w.nonce, 8).varint(w.serial).integer(w.epoch, 8).integer(w.client, 2);
+  to.varint(w.size).integer(w.hash, 8).varint(w.start);
 }
 void put(Put& to, const Refusal& r) noexcept {
-  to.integer(kRefusal, 1).integer(r.nonce, 8).integer(static_cast<std::uint64_t>(r.reason), 1);
+  to.integer(head_of(kRefusal), 2).integer(r.nonce, 8).integer(static_cast<std::uint64_t>(r.reason), 1);
 }
-void put(Put& to, const Leave& l) noexcept { to.integer(kLeave, 1).integer(static_cast<std::uint64_t>(l.reason), 1); }
+void put(Put& to, const Leave& l) noexcept {
+  to.integer(head_of(kLeave), 2).integer(static_cast<std::uint64_t>(l.reason), 1);
+}
 void put(Put&, const Numbered&) noexcept {}
 
-std::size_t size_of(const PacketPart& p) noexcept { return varint_size(p.back) + p.bytes.size(); }
-std::size_t size_of(const FragmentPart& f) noexcept { return varint_size(f.index) + varint_size(f.count) + f.bytes.size(); }
 std::size_t size_of(const Acknowledgement& a) noexcept { return 4 + varint_size(a.missing); }
 std::size_t size_of(const ClockPart& c) noexcept { return varint_size(c.time); }
-std::size_t size_of(const PiecePart& p) noexcept { return varint_size(p.offset) + p.bytes.size(); }
-std::size_t size_of(const ReadyPart&) noexcept { return 0; }
+std::size_t size_of(const ButtonsPart&) noexcept { return 8; }
+std::size_t size_of(const PiecePart& p) noexcept { return varint_size(p.index) + p.bytes.size(); }
+std::size_t size_of(const StatePart&) noexcept { return 1; }
 std::size_t size_of(const HashPart&) noexcept { return 7; }
-std::size_t size_of(const Epoch& e) noexcept { return 16 + varint_size(e.size) + varint_size(e.start); }
+std::size_t size_of(const FragmentPart& f) noexcept {
+  return varint_size(f.back) + varint_size(f.substream) + varint_size(f.index) + varint_size(f.count) + f.bytes.size();
+}
+std::size_t size_of(const PacketPart& p) noexcept { return varint_size(p.back) + p.bytes.size(); }
 
-void put(Put& to, const PacketPart& p) noexcept { to.varint(p.back).bytes(p.bytes); }
-void put(Put& to, const FragmentPart& f) noexcept { to.varint(f.index).varint(f.count).bytes(f.bytes); }
 void put(Put& to, const Acknowledgement& a) noexcept { to.integer(a.newest, 2).integer(a.held, 2).varint(a.missing); }
 void put(Put& to, const ClockPart& c) noexcept { to.varint(c.time); }
-void put(Put& to, const PiecePart& p) noexcept { to.varint(p.offset).bytes(p.bytes); }
-void put(Put&, const ReadyPart&) noexcept {}
+void put(Put& to, const ButtonsPart& b) noexcept { to.integer(b.tick, 4).integer(b.mask, 4); }
+void put(Put& to, const PiecePart& p) noexcept { to.varint(p.index).bytes(p.bytes); }
+void put(Put& to, const StatePart& s) noexcept { to.integer(s.live, 1); }
 void put(Put& to, const HashPart& h) noexcept { to.integer(h.substream, 1).integer(h.number, 2).integer(h.hash, 4); }
-void put(Put& to, const Epoch& e) noexcept { to.epoch(e); }
+void put(Put& to, const FragmentPart& f) noexcept {
+  to.varint(f.back).varint(f.substream).varint(f.index).varint(f.count).bytes(f.bytes);
+}
+void put(Put& to, const PacketPart& p) noexcept { to.varint(p.back).bytes(p.bytes); }
+
+/// The elements of a part; the reader says whether they were all there.
+Part read_part(Type type, ByteReader& r) noexcept {
+  switch (type) {
+    case kAcknowledgement: {
+      Acknowledgement a;
+      a.newest = r.u16();
+      a.held = r.u16();
+      a.missing = r.varint();
+      return a;
+    }
+    case kClock:
+      return ClockPart{r.varint()};
+    case kButtons: {
+      ButtonsPart b;
+      b.tick = r.u32();
+      b.mask = r.u32();
+      return b;
+    }
+    case kPiece: {
+      const std::uint64_t index = r.varint();
+      return PiecePart{index, r.bytes(r.remaining())};
+    }
+    case kState:
+      return StatePart{r.u8()};
+    case kHash: {
+      HashPart h;
+      h.substream = r.u8();
+      h.number = r.u16();
+      h.hash = r.u32();
+      return h;
+    }
+    case kFragment: {
+      FragmentPart f;
+      f.back = r.varint();
+      f.substream = r.varint();
+      f.index = r.varint();
+      f.count = r.varint();
+      f.bytes = r.bytes(r.remaining());
+      return f;
+    }
+    default: {
+      const std::uint64_t back = r.varint();
+      return PacketPart{back, r.bytes(r.remaining())};
+    }
+  }
+}
 
 }  // namespace
 
@@ -177,104 +242,56 @@ Result<std::optional<Part>> PartReader::next() noexcept {
 }
 
 Result<std::optional<Part>> PartReader::read(std::uint8_t type, ByteReader part) noexcept {
-  Part out;
-  switch (type) {
-    case kPacketPart: {
-      const std::uint64_t back = part.varint();
-      out = PacketPart{back, part.bytes(part.remaining())};
-      only_packet_ = parts_ == 1 && back == 0;
-      break;
-    }
-    case kFragment: {
-      const std::uint64_t index = part.varint(), count = part.varint();
-      const auto small = [](std::uint64_t v) { return static_cast<std::uint32_t>(std::min<std::uint64_t>(v, 0xffffffff)); };
-      out = FragmentPart{small(index), small(count), part.bytes(part.remaining())};
-      break;
-    }
-    case kAcknowledgement: {
-      Acknowledgement a;
-      a.newest = part.u16();
-      a.held = part.u16();
-      a.missing = part.varint();
-      out = a;
-      break;
-    }
-    case kClock:
-      out = ClockPart{part.varint()};
-      break;
-    case kPiece: {
-      const std::uint64_t offset = part.varint();
-      out = PiecePart{offset, part.bytes(part.remaining())};
-      break;
-    }
-    case kReady:
-      out = ReadyPart{};
-      break;
-    case kHash: {
-      HashPart h;
-      h.substream = part.u8();
-      h.number = part.u16();
-      h.hash = part.u32();
-      out = h;
-      break;
-    }
-    default:
-      out = read_epoch(part);
-  }
+  const Part out = read_part(static_cast<Type>(type), part);
   TACTUS_CHECK(finished(part));
+  const auto* packet = std::get_if<PacketPart>(&out);
+  only_packet_ = parts_ == 1 && packet != nullptr && packet->back == 0;
   return std::optional<Part>(out);
 }
 
-Result<Datagram> read_datagram(std::span<const std::uint8_t> bytes, Direction direction) noexcept {
-  ByteReader r(bytes);
-  const std::uint8_t kind = r.u8();
-  if (bytes.empty() || bytes.size() > kLargestDatagram || kind > kPacket || !comes(static_cast<Kind>(kind), direction))
-    return fail(Errc::invalid, "R-SES-2");
-  switch (kind) {
-    case kJoin:
-      return read_join(r, bytes.size());
-    case kChallenge: {
-      const std::uint64_t nonce = r.u64();
-      return handshake(r, Challenge{nonce, r.u64()});
-    }
-    case kWelcome: {
-      Welcome w;
-      w.nonce = r.u64();
-      w.client = r.u16();
-      w.epoch = read_epoch(r);
-      w.time = r.varint();
-      return handshake(r, w);
-    }
-    case kRefusal: {
-      const std::uint64_t nonce = r.u64();
-      TACTUS_TRY(const LeaveReason reason, read_reason(r));
-      return handshake(r, Refusal{nonce, reason});
-    }
-    case kLeave: {
-      TACTUS_TRY(const LeaveReason reason, read_reason(r));
-      return handshake(r, Leave{reason});
-    }
-    default:
-      return read_numbered(r, kind == kPacket, direction);
-  }
+bool is_of_epoch(std::span<const std::uint8_t> datagram, std::uint64_t epoch, Direction direction) noexcept {
+  if (datagram.size() < kHeadSize + kCheckSize || datagram.size() > kLargestDatagram) return false;
+  const auto body = datagram.first(datagram.size() - kCheckSize);
+  return ByteReader(datagram.last(kCheckSize)).u32() == check_of(body, epoch, direction);
 }
 
-std::span<const std::uint8_t> DatagramWriter::write(const Datagram& said) noexcept {
+Result<Datagram> read_datagram(std::span<const std::uint8_t> datagram, Direction direction) noexcept {
+  if (datagram.size() < kHeadSize + kCheckSize || datagram.size() > kLargestDatagram) return fail(Errc::invalid, "R-SES-2");
+  ByteReader r(datagram.first(datagram.size() - kCheckSize));
+  const std::uint16_t head = r.u16();
+  const auto form = static_cast<Form>(head & 3u);
+  const auto value = static_cast<std::uint16_t>(head >> 2);
+  if (form == kParts || form == kPacket) return read_numbered(r, value, form == kPacket, direction);
+  if (form != kHandshake || !comes(static_cast<Kind>(value), direction)) return fail(Errc::invalid, "R-SES-2");
+  if (value == kJoin) return read_join(r);
+  if (value == kWelcome) return read_welcome(r);
+  const std::uint64_t nonce = value == kRefusal ? r.u64() : 0;
+  TACTUS_TRY(const LeaveReason reason, read_reason(r));
+  if (value == kRefusal) return handshake(r, Refusal{nonce, reason});
+  return handshake(r, Leave{reason});
+}
+
+std::span<const std::uint8_t> DatagramWriter::with_check(std::size_t size, std::uint64_t epoch) noexcept {
+  const std::uint32_t check = check_of(std::span(bytes_).first(size), epoch, direction_);
+  return std::span(bytes_).first(Put(bytes_, size).integer(check, 4).at());
+}
+
+std::span<const std::uint8_t> DatagramWriter::write(const Datagram& said, std::uint64_t epoch) noexcept {
   Put to(bytes_, 0);
   std::visit([&](const auto& d) { put(to, d); }, said);
-  return std::span(bytes_).first(to.at());
+  return with_check(to.at(), epoch);
 }
 
-void DatagramWriter::begin(std::uint16_t number) noexcept {
-  size_ = Put(bytes_, 0).integer(kParts, 1).integer(number, 2).at();
+void DatagramWriter::begin(std::uint64_t number) noexcept {
+  size_ = Put(bytes_, 0).integer(kParts + 4 * (number % kNumbers), 2).at();
   parts_ = single_ = 0;
 }
 
 bool DatagramWriter::add(const Part& part) noexcept {
   const std::size_t size = std::visit([](const auto& p) { return size_of(p); }, part);
-  Put to(bytes_, size_);
+  Put to(std::span<std::uint8_t>(bytes_).first(kLargestDatagram - kCheckSize), size_);
   to.integer(part.index() + 1, 1).varint(size);
-  if (!to.fits() || size > bytes_.size() - to.at()) return false;
+  if (!to.fits() || size > kLargestDatagram - kCheckSize - to.at()) return false;
   std::visit([&](const auto& p) { put(to, p); }, part);
   size_ = to.at();
   const auto* packet = std::get_if<PacketPart>(&part);
@@ -283,17 +300,16 @@ bool DatagramWriter::add(const Part& part) noexcept {
 }
 
 std::size_t DatagramWriter::room() const noexcept {
-  constexpr std::size_t kPartHead = 1 + 2 + 2;  // type, size, and a `back` below 2^14
-  return bytes_.size() - std::min(bytes_.size(), size_ + kPartHead);
+  constexpr std::size_t kPartHead = 1 + 2 + 12;  // type, size, and the numbers before the data
+  return kLargestDatagram - kCheckSize - std::min(kLargestDatagram - kCheckSize, size_ + kPartHead);
 }
 
-std::span<const std::uint8_t> DatagramWriter::finish() noexcept {
-  if (single_ == 0) return std::span(bytes_).first(size_);
-  constexpr std::size_t kHead = 3;
-  bytes_[0] = kPacket;
+std::span<const std::uint8_t> DatagramWriter::finish(std::uint64_t epoch) noexcept {
+  if (single_ == 0) return with_check(size_, epoch);
+  bytes_[0] = static_cast<std::uint8_t>((bytes_[0] & ~3u) | kPacket);
   std::copy(bytes_.begin() + static_cast<std::ptrdiff_t>(single_), bytes_.begin() + static_cast<std::ptrdiff_t>(size_),
-            bytes_.begin() + kHead);
-  return std::span(bytes_).first(kHead + size_ - single_);
+            bytes_.begin() + kHeadSize);
+  return with_check(kHeadSize + size_ - single_, epoch);
 }
 
 }  // namespace tactus

@@ -11,49 +11,32 @@
 
 #include <tactus/base/bytes.h>
 #include <tactus/base/result.h>
+#include <tactus/session/session_options.h>
 
 namespace tactus {
 
-inline constexpr std::size_t kLargestDatagram = 1200;  ///< [bytes] without its seal
+inline constexpr std::size_t kLargestDatagram = 1200;  ///< [bytes] with its check
+inline constexpr std::uint64_t kNumbers = 1 << 14;      ///< datagrams carry their numbers modulo this
 
 enum class Direction : std::uint8_t { up, down };  ///< from a client to the server, and back
-
-enum class Role : std::uint8_t {
-  observer,     ///< only looks
-  participant,  ///< touches: sends the samples of a device
-};
-
-enum class LeaveReason : std::uint8_t { bye, version, full, limits, silence, scene, protocol };
 
 struct Join {
   Role role = Role::observer;
   std::uint64_t nonce = 0;
-  std::uint64_t cookie = 0;        ///< 0: none yet
   std::uint64_t state_limit = 0;   ///< [bytes] DecodeLimits::state_bytes of the client
-  std::uint64_t packet_limit = 0;  ///< [bytes]
+  std::uint64_t header_limit = 0;  ///< [bytes] DecodeLimits::header_bytes
   friend bool operator==(const Join&, const Join&) = default;
 };
 
-struct Challenge {
+/// A scene declaration to come, and the epoch that begins with it.
+struct Welcome {
   std::uint64_t nonce = 0;
-  std::uint64_t cookie = 0;
-  friend bool operator==(const Challenge&, const Challenge&) = default;
-};
-
-/// A scene declaration to come, and all that belongs to it.
-struct Epoch {
+  std::uint64_t serial = 0;  ///< of the epochs of this client, from 0
   std::uint64_t epoch = 0;
+  std::uint16_t client = 0;
   std::uint64_t size = 0;   ///< [bytes] of the declaration
   std::uint64_t hash = 0;   ///< FNV-1a of its bytes
   std::uint64_t start = 0;  ///< [us] the server's clock at tick 0
-  friend bool operator==(const Epoch&, const Epoch&) = default;
-};
-
-struct Welcome {
-  std::uint64_t nonce = 0;
-  std::uint16_t client = 0;
-  Epoch epoch;
-  std::uint64_t time = 0;  ///< [us] the server's clock when it was sent
   friend bool operator==(const Welcome&, const Welcome&) = default;
 };
 
@@ -68,36 +51,35 @@ struct Leave {
   friend bool operator==(const Leave&, const Leave&) = default;
 };
 
-// Parts of numbered datagrams. Spans point into the datagram.
-
-struct PacketPart {
-  std::uint64_t back = 0;  ///< the packet's number is so far below the datagram's
-  std::span<const std::uint8_t> bytes;
-};
-
-struct FragmentPart {
-  std::uint32_t index = 0, count = 0;
-  std::span<const std::uint8_t> bytes;
-};
+// Parts of numbered datagrams, in the order of their types. Spans point into the datagram.
 
 struct Acknowledgement {
   static constexpr std::uint16_t kNoTiming = 65535;
-  std::uint16_t newest = 0;        ///< highest number taken, modulo 2^16
+  std::uint16_t newest = 0;        ///< highest number accepted, modulo 2^16
   std::uint16_t held = kNoTiming;  ///< [16 us] since it came
-  std::uint64_t missing = 0;       ///< bit i: number newest - 1 - i was not taken
+  std::uint64_t missing = 0;       ///< bit i: number newest - 1 - i, above 0, was not accepted
   friend bool operator==(const Acknowledgement&, const Acknowledgement&) = default;
 };
 
 struct ClockPart {
-  std::uint64_t time = 0;  ///< [us] the sender's clock when the datagram was sent
+  std::uint64_t time = 0;  ///< [us] the server's clock when the datagram was sent
+};
+
+struct ButtonsPart {
+  std::uint32_t tick = 0;  ///< of the device, since when they are
+  std::uint32_t mask = 0;  ///< bit i: button i is down
+  friend bool operator==(const ButtonsPart&, const ButtonsPart&) = default;
 };
 
 struct PiecePart {
-  std::uint64_t offset = 0;
+  std::uint64_t index = 0;
   std::span<const std::uint8_t> bytes;
 };
 
-struct ReadyPart {};
+/// How far the client is. It also keeps the session alive, and asks for an answer.
+struct StatePart {
+  std::uint8_t live = 0;  ///< 1: it holds the declaration, and wants packets
+};
 
 struct HashPart {
   std::uint8_t substream = 0;
@@ -105,8 +87,19 @@ struct HashPart {
   std::uint32_t hash = 0;    ///< low bits of the state hash after it
 };
 
+struct FragmentPart {
+  std::uint64_t back = 0;  ///< the packet's number is so far below the datagram's
+  std::uint64_t substream = 0, index = 0, count = 0;
+  std::span<const std::uint8_t> bytes;
+};
+
+struct PacketPart {
+  std::uint64_t back = 0;  ///< the packet's number is so far below the datagram's
+  std::span<const std::uint8_t> bytes;
+};
+
 /// In the order of their types, 1..8.
-using Part = std::variant<PacketPart, FragmentPart, Acknowledgement, ClockPart, PiecePart, ReadyPart, HashPart, Epoch>;
+using Part = std::variant<Acknowledgement, ClockPart, ButtonsPart, PiecePart, StatePart, HashPart, FragmentPart, PacketPart>;
 
 /// Parts one after the other. Those for later versions are skipped.
 class PartReader {
@@ -120,7 +113,7 @@ class PartReader {
   Result<std::optional<Part>> next() noexcept;
 
  private:
-  static constexpr std::size_t kStart = 3;  // of the parts in the datagram [bytes]
+  static constexpr std::size_t kStart = 2;  // of the parts in the datagram [bytes]
   Result<std::optional<Part>> read(std::uint8_t type, ByteReader part) noexcept;
 
   ByteReader reader_;
@@ -131,39 +124,51 @@ class PartReader {
   bool only_packet_ = false;  // the first part is a packet of the datagram's own number
 };
 
+inline constexpr std::size_t kNumberedOverhead = 6;  ///< [bytes] head and check of a numbered datagram
+
 /// A numbered datagram whose parts have been read once without an error.
 struct Numbered {
-  std::uint16_t number = 0;  ///< modulo 2^16
+  std::uint16_t number = 0;  ///< modulo 2^14
   std::span<const std::uint8_t> bytes;
   bool single = false;  ///< `bytes` is one packet
   PartReader parts(Direction direction) const noexcept { return {bytes, direction, single}; }
 };
 
-using Datagram = std::variant<Join, Challenge, Welcome, Refusal, Leave, Numbered>;
+using Datagram = std::variant<Join, Welcome, Refusal, Leave, Numbered>;
 
+/// The CRC-32 at the end of a datagram holds for this epoch and direction. Joins, welcomes and refusals have epoch 0.
+/// time O(bytes), about 1 ns per byte
+bool is_of_epoch(std::span<const std::uint8_t> datagram, std::uint64_t epoch, Direction direction) noexcept;
+
+/// pre  is_of_epoch()
 /// err  invalid R-SES-2: its kind or length; truncated, malformed R-SES-3: its elements; unsupported R-SES-9: its version;
 ///      malformed R-SES-5: its parts
 /// time O(bytes); no allocation
-Result<Datagram> read_datagram(std::span<const std::uint8_t> bytes, Direction direction) noexcept;
+Result<Datagram> read_datagram(std::span<const std::uint8_t> datagram, Direction direction) noexcept;
 
-/// Writes datagrams into a buffer of its own.
+/// Writes the datagrams of one direction into a buffer of its own.
 class DatagramWriter {
  public:
+  explicit DatagramWriter(Direction direction) noexcept : direction_(direction) {}
+
   /// One that is not numbered. The span is valid until the next call.   time O(1); no allocation
-  std::span<const std::uint8_t> write(const Datagram& handshake) noexcept;
+  std::span<const std::uint8_t> write(const Datagram& handshake, std::uint64_t epoch = 0) noexcept;
 
   /// Begin a numbered one.
-  void begin(std::uint16_t number) noexcept;
+  void begin(std::uint64_t number) noexcept;
   /// False, and nothing changes: there is no room.   pre  types do not fall
   bool add(const Part& part) noexcept;
   bool empty() const noexcept { return parts_ == 0; }
-  /// Bytes left for a packet that is the next part.
+  /// Bytes left for the data of one more part.
   std::size_t room() const noexcept;
   /// Valid until the next call.   pre  a part was added
-  std::span<const std::uint8_t> finish() noexcept;
+  std::span<const std::uint8_t> finish(std::uint64_t epoch) noexcept;
 
  private:
+  std::span<const std::uint8_t> with_check(std::size_t size, std::uint64_t epoch) noexcept;
+
   std::array<std::uint8_t, kLargestDatagram> bytes_{};
+  Direction direction_;
   std::size_t size_ = 0, parts_ = 0;
   std::size_t single_ = 0;  // where the bytes of the only packet of the datagram's number begin; 0: there is none
 };

@@ -8,6 +8,9 @@
 namespace tactus {
 namespace {
 
+constexpr std::uint64_t kAhead = 4096;  // SentNumbers::kMostAhead
+constexpr std::uint64_t kBehind = kNumbers - 1 - kAhead;
+
 std::size_t word(std::uint64_t number) noexcept { return static_cast<std::size_t>(number / 64 % (NumberWindow::kReach / 64)); }
 std::uint64_t bit(std::uint64_t number) noexcept { return std::uint64_t{1} << (number % 64); }
 
@@ -28,10 +31,10 @@ void NumberWindow::add(std::uint64_t number) noexcept {
 
 Result<std::uint64_t> ReceivedNumbers::extend(std::uint16_t wire) const noexcept {
   const std::uint64_t newest = received_.newest();
-  const auto ahead = static_cast<std::uint16_t>(wire - newest + 32767);
-  if (newest + ahead < 32767 + 1) return fail(Errc::state, "R-SES-4", 8);  // numbers count from 1
-  const std::uint64_t number = newest + ahead - 32767;
-  if (received_.is_too_old(number) || received_.has(number)) return fail(Errc::state, "R-SES-4", 8);
+  const std::uint64_t ahead = (wire + kBehind - newest) % kNumbers;
+  if (newest + ahead < kBehind + 1) return fail(Errc::state, "R-SES-4");  // numbers count from 1
+  const std::uint64_t number = newest + ahead - kBehind;
+  if (received_.is_too_old(number) || received_.has(number)) return fail(Errc::state, "R-SES-4");
   return number;
 }
 
@@ -54,7 +57,7 @@ Acknowledgement ReceivedNumbers::acknowledge(std::uint64_t now) noexcept {
   out.newest = static_cast<std::uint16_t>(newest);
   out.held = static_cast<std::uint16_t>(std::min<std::uint64_t>((now - newest_at_) / 16, Acknowledgement::kNoTiming));
   for (std::uint64_t i = 0; i < 64; ++i)
-    if (newest < 2 + i || !accepted_.has(newest - 1 - i)) out.missing |= std::uint64_t{1} << i;
+    if (newest > 1 + i && !accepted_.has(newest - 1 - i)) out.missing |= std::uint64_t{1} << i;
   return out;
 }
 

@@ -32,9 +32,10 @@ class ReceivedNumbers {
  public:
   static constexpr std::uint64_t kPatience = 10'000;  ///< [us] an acknowledgement waits for a datagram to ride on
 
-  /// The number that 16 bits of it stand for: the one nearest to the newest.
+  /// The number that 14 bits of it stand for: the one nearest to the newest.
   /// err  state R-SES-4: it was received before, or is too old
   Result<std::uint64_t> extend(std::uint16_t wire) const noexcept;
+  std::uint64_t newest() const noexcept { return received_.newest(); }  ///< highest number received, 0: none
   void receive(std::uint64_t number) noexcept { received_.add(number); }  ///< pre  extend()
 
   /// A received datagram, all of whose packets are decoded, is to be acknowledged.

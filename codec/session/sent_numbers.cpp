@@ -8,21 +8,6 @@
 
 namespace tactus {
 
-bool WindowedMinimum::add(std::int64_t sample, std::uint64_t now) noexcept {
-  newest_ = now / (window_ / kParts) + 1;
-  Part& part = parts_[newest_ % kParts];
-  if (part.number != newest_) part = {sample, newest_};
-  part.least = std::min(part.least, sample);
-  return *value() == sample;
-}
-
-std::optional<std::int64_t> WindowedMinimum::value() const noexcept {
-  std::optional<std::int64_t> out;
-  for (const Part& part : parts_)
-    if (part.number > 0 && part.number + kParts > newest_) out = std::min(out.value_or(part.least), part.least);
-  return out;
-}
-
 std::optional<std::uint64_t> SentNumbers::next() const noexcept {
   if (next_ > highest_ + kMostAhead) return std::nullopt;
   return next_;

@@ -3,6 +3,7 @@
 /// and 7. Internal to the library.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -11,38 +12,14 @@
 
 #include <tactus/base/result.h>
 #include <tactus/session/datagram.h>
+#include <tactus/session/windowed_minimum.h>
 
 namespace tactus {
-
-/// The least of the samples of a time.
-class WindowedMinimum {
- public:
-  /// in   window  [us]
-  explicit WindowedMinimum(std::uint64_t window) noexcept : window_(window) {}
-  /// True if the sample is the least now.
-  bool add(std::int64_t sample, std::uint64_t now) noexcept;
-  std::optional<std::int64_t> value() const noexcept;
-
- private:
-  static constexpr std::size_t kParts = 10;  // of the window, each with its own minimum
-  struct Part {
-    std::int64_t least = 0;
-    std::uint64_t number = 0;  // of this length of time since 0, + 1; 0: empty
-  };
-  std::uint64_t window_, newest_ = 0;
-  std::array<Part, kParts> parts_{};
-};
-
-struct RoundTrip {
-  std::int64_t smoothed = 0;   ///< [us]
-  std::int64_t variation = 0;  ///< [us] mean deviation
-  std::int64_t least = 0;      ///< [us] of the last 10 s
-};
 
 class SentNumbers {
  public:
   static constexpr std::uint64_t kRemembered = 1024;
-  static constexpr std::uint64_t kMostAhead = 16384;  ///< numbers above the highest acknowledged: 16 bits stay unambiguous
+  static constexpr std::uint64_t kMostAhead = 4096;  ///< numbers above the highest acknowledged: 14 bits stay unambiguous
 
   /// Number of the next datagram; nothing while too many wait for an acknowledgement.
   std::optional<std::uint64_t> next() const noexcept;

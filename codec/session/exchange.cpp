@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/session/exchange.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tactus {
+namespace {
+
+constexpr std::uint64_t kSilence = 1'000'000;       // [us] without acknowledgements, at least, before an end sends little
+constexpr std::uint64_t kSeldom = 50'000;           // [us] from datagram to datagram then
+constexpr std::uint64_t kFirstPatience = 250'000;   // [us] while no round trip is known
+constexpr std::uint64_t kHashEvery = 64;            // packet numbers
+
+}  // namespace
+
+void Exchange::receive_with(Receiver decoder, std::size_t largest) {
+  fragments_ = Fragments(largest);
+  receiver.emplace(std::move(decoder));
+}
+
+// In
+
+Result<std::uint64_t> Exchange::receive(std::uint64_t now, const Numbered& datagram) noexcept {
+  TACTUS_TRY(const std::uint64_t number, received_.extend(datagram.number));
+  if (number > received_.newest()) heard_at_ = now;
+  received_.receive(number);
+  ++traffic_.datagrams_heard;
+  traffic_.bytes_heard += datagram.bytes.size() + kNumberedOverhead;
+  return number;
+}
+
+Result<bool> Exchange::handle(const Part& part, Reading& reading) noexcept {
+  if (const auto* said = std::get_if<Acknowledgement>(&part)) {
+    TACTUS_CHECK(acknowledged(*said, reading));
+    return true;
+  }
+  reading.asks = reading.asks || !std::holds_alternative<ClockPart>(part);
+  if (const auto* fragment = std::get_if<FragmentPart>(&part)) {
+    TACTUS_CHECK(take(*fragment, reading));
+    return true;
+  }
+  if (const auto* packet = std::get_if<PacketPart>(&part)) {
+    const bool decoded = packet->back < reading.heard.number && decode(reading.heard.number - packet->back, packet->bytes, reading);
+    reading.complete = reading.complete && decoded;
+    return true;
+  }
+  return false;
+}
+
+std::uint64_t Exchange::patience() const noexcept {
+  if (!sent_.round_trip()) return kFirstPatience;
+  const RoundTrip& trip = *sent_.round_trip();
+  return static_cast<std::uint64_t>(trip.smoothed + 4 * trip.variation) + ReceivedNumbers::kPatience;
+}
+
+void Exchange::report_link() noexcept {
+  if (!sender || !sent_.round_trip()) return;
+  const std::int64_t tick_rate = sender->scene()->tick_rate;
+  const auto answer = (static_cast<std::int64_t>(patience()) * tick_rate + 999'999) / 1'000'000;
+  sender->set_link({.answer = std::max<std::int64_t>(1, answer), .loss = std::ldexp(sent_.loss(), -16)});
+}
+
+Result<void> Exchange::acknowledged(const Acknowledgement& said, Reading& reading) noexcept {
+  const auto arrived = [&](std::uint64_t number) {
+    progress_at_ = reading.now;
+    if (pieces) pieces->arrived(number);
+    const Slot& slot = slots_[number % slots_.size()];
+    if (!sender || slot.number != number) return;
+    for (std::size_t i = 0; i < slot.count; ++i) sender->acknowledge(slot.packets[i].substream, slot.packets[i].sequence);
+  };
+  const auto lost = [&](std::uint64_t number) {
+    ++traffic_.lost;
+    if (pieces) pieces->lost(number);
+    const Slot& slot = slots_[number % slots_.size()];
+    wants_key_ = wants_key_ || (slot.number == number && slot.layered);
+  };
+  TACTUS_CHECK(sent_.acknowledge(said, reading.now, arrived, lost));
+  reading.heard.round_trip = sent_.sample();
+  if (sent_.sample()) report_link();
+  return {};
+}
+
+/// A packet of this datagram, or one that it completed.
+bool Exchange::decode(std::uint64_t number, std::span<const std::uint8_t> packet, Reading& reading) noexcept {
+  const auto decoded = receiver ? receiver->push_numbered(number, packet) : tl::unexpected(Error{});
+  if (!decoded) {
+    ++traffic_.packets_refused;
+    return false;
+  }
+  ++traffic_.packets_heard;
+  traffic_.payload_heard += packet.size();
+  if (decoded->substream == 0) reading.heard.tick = decoded->tick;
+  const bool newest = receiver->tick(decoded->substream) == decoded->tick;
+  if (number % kHashEvery == 0 && newest && decoded->layer == Layer::all) {
+    const auto hash = static_cast<std::uint32_t>(receiver->state_hash(decoded->substream));
+    reading.heard.hash = HashPart{static_cast<std::uint8_t>(decoded->substream), static_cast<std::uint16_t>(number), hash};
+  }
+  return true;
+}
+
+Result<void> Exchange::take(const FragmentPart& fragment, Reading& reading) noexcept {
+  reading.waits = true;
+  TACTUS_TRY(const auto whole, fragments_.take(reading.heard.number, fragment));
+  if (!whole || !decode(whole->number, whole->packet, reading)) return {};
+  for (const std::uint64_t datagram : whole->datagrams) accept(datagram, reading);
+  return {};
+}
+
+void Exchange::accept(std::uint64_t number, const Reading& reading) noexcept {
+  received_.accept(number, reading.now, reading.asks);
+  if (receiver) receiver->skip_number(number);
+}
+
+void Exchange::finish(const Reading& reading) noexcept {
+  if (reading.complete && !reading.waits) accept(reading.heard.number, reading);
+}
+
+// Out
+
+bool Exchange::may_send(std::uint64_t now) const noexcept {
+  const bool waits = asked_ > sent_.highest_acknowledged() && now > progress_at_ + std::max(kSilence, 4 * patience());
+  return !waits || now >= sent_at_ + kSeldom;
+}
+
+Result<std::span<const Packet>> Exchange::submit(std::uint64_t now, std::int64_t tick, const Truth& truth) noexcept {
+  traffic_.packets_held += packets_.size() - next_packet_;
+  packets_ = {};
+  next_packet_ = next_fragment_ = 0;
+  const auto number = sent_.next();
+  if (!sender || !number) return packets_;
+  if (!may_send(now)) {
+    ++traffic_.ticks_held;
+    return packets_;
+  }
+  if (std::exchange(wants_key_, false)) sender->request_key();
+  TACTUS_TRY(packets_, sender->encode_numbered(*number, tick, truth));
+  return packets_;
+}
+
+std::optional<std::uint64_t> Exchange::begin(std::uint64_t now, bool wanted) noexcept {
+  const auto number = sent_.next();
+  if (!number) return std::nullopt;
+  writer_.begin(*number);
+  slots_[*number % slots_.size()] = {.number = *number};
+  if (received_.can_acknowledge() && (received_.has_news() || wanted)) writer_.add(received_.acknowledge(now));
+  return number;
+}
+
+/// A piece of a packet that is too large for one datagram.
+bool Exchange::add_fragment(const Packet& packet, std::uint64_t number) noexcept {
+  const std::size_t count = (packet.bytes.size() + kFragmentSize - 1) / kFragmentSize, begin = next_fragment_ * kFragmentSize;
+  const auto bytes = packet.bytes.subspan(begin, std::min(kFragmentSize, packet.bytes.size() - begin));
+  if (!writer_.add(FragmentPart{number - packet.number, packet.substream, next_fragment_, count, bytes})) return false;
+  traffic_.payload_sent += bytes.size();
+  if (++next_fragment_ == count) {
+    ++next_packet_;
+    next_fragment_ = 0;
+  }
+  return true;
+}
+
+/// As many of the waiting packets as fit.
+bool Exchange::add_packets(std::uint64_t number) noexcept {
+  Slot& slot = slots_[number % slots_.size()];
+  bool added = false, whole = false;
+  while (has_packets() && packets_[next_packet_].number <= number && slot.count < slot.packets.size()) {
+    const Packet& packet = packets_[next_packet_];
+    if (packet.bytes.size() > kFragmentSize * kMostFragments) {
+      ++traffic_.packets_held;
+      ++next_packet_;
+      continue;
+    }
+    if (packet.bytes.size() > kFragmentSize) {
+      if (whole || !add_fragment(packet, number)) break;
+    } else {
+      if (!writer_.add(PacketPart{number - packet.number, packet.bytes})) break;
+      traffic_.payload_sent += packet.bytes.size();
+      ++next_packet_;
+      whole = true;
+    }
+    if (next_fragment_ == 0) ++traffic_.packets_sent;
+    slot.packets[slot.count++] = {static_cast<std::uint16_t>(packet.substream), packet.sequence};
+    slot.layered = slot.layered || packet.layer != Layer::all;
+    added = true;
+  }
+  return added;
+}
+
+std::span<const std::uint8_t> Exchange::end(std::uint64_t now, bool asks) noexcept {
+  const std::uint64_t number = *sent_.next();
+  asks = add_packets(number) || asks;
+  if (asks && asked_ <= sent_.highest_acknowledged()) progress_at_ = now;
+  if (asks) asked_ = number, asked_at_ = now;
+  sent_.send(now);
+  sent_at_ = now;
+  const auto datagram = writer_.finish(epoch_);
+  ++traffic_.datagrams_sent;
+  traffic_.bytes_sent += datagram.size();
+  return datagram;
+}
+
+}  // namespace tactus

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+/// One end of an epoch: numbered datagrams out and in, what they acknowledge, and the packets in them. spec/70-session.md sections 4, 5
+/// and 7. Internal to the library.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include <tactus/receiver.h>
+#include <tactus/sender.h>
+#include <tactus/session/datagram.h>
+#include <tactus/session/fragments.h>
+#include <tactus/session/pieces.h>
+#include <tactus/session/received_numbers.h>
+#include <tactus/session/sent_numbers.h>
+#include <tactus/session/traffic.h>
+
+namespace tactus {
+
+/// pre  `now` [us] never decreases.   Only receive_with() allocates.
+class Exchange {
+ public:
+  /// in   direction  of what it sends
+  Exchange(Direction direction, std::uint64_t epoch, std::uint64_t now) noexcept
+      : direction_(direction), epoch_(epoch), writer_(direction), heard_at_(now), sent_at_(now) {}
+
+  std::uint64_t epoch() const noexcept { return epoch_; }
+
+  std::optional<Sender> sender;       ///< of the packets that go; none: no packets go
+  std::optional<Receiver> receiver;   ///< of those that come; none: all are refused
+  std::optional<PieceSender> pieces;  ///< of the declaration, until all have arrived
+
+  void receive_with(Receiver decoder, std::size_t largest);  ///< allocates for the fragments of the `largest` packet [bytes]
+
+  // In
+
+  /// What the packets of a datagram brought.
+  struct Heard {
+    std::uint64_t number = 0;           ///< of the datagram
+    std::optional<std::int64_t> tick;   ///< of the packet of rigid objects, if one was decoded
+    std::optional<HashPart> hash;       ///< to be told to the sender
+    std::optional<std::int64_t> round_trip;  ///< [us] that its acknowledgement measured
+  };
+  /// in   take  Result<void>(const Part&, const Heard&), for the parts that are not acknowledgements, fragments and packets, in order
+  /// err  state R-SES-4 an old number; invalid R-SES-6, R-SES-7; what `take` returns. Parts before it have taken effect. A packet that
+  ///      is refused is counted, not an error: the datagram is not acknowledged
+  template <class Take>
+  Result<Heard> handle(std::uint64_t now, const Numbered& datagram, Take&& take) noexcept {
+    TACTUS_TRY(const std::uint64_t number, receive(now, datagram));
+    Reading reading{{.number = number, .tick = {}, .hash = {}, .round_trip = {}}, now};
+    PartReader parts = datagram.parts(direction_ == Direction::up ? Direction::down : Direction::up);
+    for (;;) {
+      TACTUS_TRY(const std::optional<Part> part, parts.next());
+      if (!part) break;
+      TACTUS_TRY(const bool taken, handle(*part, reading));
+      if (!taken) TACTUS_CHECK(take(*part, reading.heard));
+    }
+    finish(reading);
+    return reading.heard;
+  }
+
+  // Out
+
+  /// Code the packets of a tick; they wait for poll() until the next submit(). None, while too little is acknowledged.
+  /// err  of Sender::encode
+  Result<std::span<const Packet>> submit(std::uint64_t now, std::int64_t tick, const Truth& truth) noexcept;
+
+  /// The next datagram, valid until the next call; nothing: none is due.
+  /// in   wanted  one should go even if there are neither packets nor acknowledgements due
+  ///      extras  bool(DatagramWriter&, number), adds parts of types 2 to 6; true: the other end must acknowledge them
+  template <class Extras>
+  std::optional<std::span<const std::uint8_t>> poll(std::uint64_t now, bool wanted, Extras&& extras) noexcept {
+    if (!wanted && !has_packets() && !is_acknowledgement_due(now)) return std::nullopt;
+    const auto number = begin(now, wanted);
+    if (!number) return std::nullopt;
+    const bool asks = extras(writer_, *number);
+    return end(now, asks);
+  }
+
+  /// When poll() has something without anything else happening; nothing: never.
+  std::optional<std::uint64_t> due() const noexcept { return received_.due(); }
+  bool has_packets() const noexcept { return next_packet_ < packets_.size(); }
+  /// While nothing of what was sent is acknowledged for long, an end sends little.
+  bool may_send(std::uint64_t now) const noexcept;
+
+  std::uint64_t heard_at() const noexcept { return heard_at_; }  ///< [us] when the newest datagram came
+  std::uint64_t sent_at() const noexcept { return sent_at_; }    ///< [us] when the last one went
+  std::uint64_t asked_at() const noexcept { return asked_at_; }  ///< [us] when the last one went that must be acknowledged
+  void hold_tick() noexcept { ++traffic_.ticks_held; }           ///< instead of submit(): nothing may be sent
+  const SentNumbers& sent() const noexcept { return sent_; }
+  std::uint64_t patience() const noexcept;  ///< [us] after which an acknowledgement should have come
+  const Traffic& traffic() const noexcept { return traffic_; }
+
+ private:
+  struct Reading {
+    Heard heard;
+    std::uint64_t now = 0;
+    bool asks = false;
+    bool complete = true;  // all packets in it are decoded
+    bool waits = false;    // for other fragments
+  };
+  struct PacketName {
+    std::uint16_t substream = 0, sequence = 0;
+  };
+  struct Slot {
+    std::uint64_t number = 0;
+    std::array<PacketName, 8> packets{};
+    std::uint8_t count = 0;
+    bool layered = false;
+  };
+
+  Result<std::uint64_t> receive(std::uint64_t now, const Numbered& datagram) noexcept;
+  Result<bool> handle(const Part& part, Reading& reading) noexcept;
+  Result<void> acknowledged(const Acknowledgement& said, Reading& reading) noexcept;
+  Result<void> take(const FragmentPart& fragment, Reading& reading) noexcept;
+  bool decode(std::uint64_t number, std::span<const std::uint8_t> packet, Reading& reading) noexcept;
+  void accept(std::uint64_t number, const Reading& reading) noexcept;
+  void finish(const Reading& reading) noexcept;
+  void report_link() noexcept;
+
+  bool is_acknowledgement_due(std::uint64_t now) const noexcept { return received_.due() && *received_.due() <= now; }
+  std::optional<std::uint64_t> begin(std::uint64_t now, bool wanted) noexcept;
+  bool add_packets(std::uint64_t number) noexcept;
+  bool add_fragment(const Packet& packet, std::uint64_t number) noexcept;
+  std::span<const std::uint8_t> end(std::uint64_t now, bool asks) noexcept;
+
+  Direction direction_;
+  std::uint64_t epoch_;
+  DatagramWriter writer_;
+  ReceivedNumbers received_;
+  SentNumbers sent_;
+  Fragments fragments_{0};
+  std::array<Slot, SentNumbers::kRemembered> slots_{};
+  std::span<const Packet> packets_;  // of the last submit()
+  std::size_t next_packet_ = 0, next_fragment_ = 0;
+  std::uint64_t heard_at_, sent_at_;
+  std::uint64_t asked_at_ = 0;     // [us] when a datagram went that asks for an acknowledgement
+  std::uint64_t asked_ = 0;        // highest number that asks
+  std::uint64_t progress_at_ = 0;  // [us] when one was acknowledged, or the first asked
+  bool wants_key_ = false;         // a layer is lost
+  Traffic traffic_;
+};
+
+}  // namespace tactus

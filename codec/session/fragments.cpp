@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/session/fragments.h>
+
+#include <algorithm>
+
+#include <tactus/base/rule.h>
+
+namespace tactus {
+
+Fragments::Fragments(std::size_t largest) : largest_(std::min(largest, kFragmentSize * kMostFragments)) {
+  if (largest_ <= kFragmentSize) return;
+  packets_.resize(kMost);
+  for (Packet& packet : packets_) {
+    packet.bytes.resize(largest_);
+    packet.datagrams.resize((largest_ + kFragmentSize - 1) / kFragmentSize);
+  }
+}
+
+/// Where the fragment belongs; null: nowhere, as all places hold newer packets.
+Fragments::Packet* Fragments::place_for(std::uint64_t number, const FragmentPart& fragment) noexcept {
+  for (Packet& packet : packets_)
+    if (packet.number == number && packet.substream == fragment.substream) return &packet;
+  Packet& oldest = *std::ranges::min_element(packets_, {}, &Packet::number);
+  if (oldest.number > number) return nullptr;
+  oldest.number = number;
+  oldest.substream = fragment.substream;
+  oldest.count = static_cast<std::size_t>(fragment.count);
+  oldest.have = oldest.size = 0;
+  std::ranges::fill(oldest.datagrams, 0);
+  return &oldest;
+}
+
+Result<std::optional<Fragments::Complete>> Fragments::take(std::uint64_t datagram, const FragmentPart& fragment) noexcept {
+  const bool is_last = fragment.index + 1 == fragment.count;
+  const bool sound = fragment.count >= 2 && fragment.index < fragment.count && fragment.count <= kMostFragments &&
+                     fragment.back < datagram && !fragment.bytes.empty() && fragment.bytes.size() <= kFragmentSize &&
+                     (is_last || fragment.bytes.size() == kFragmentSize) &&
+                     fragment.index * kFragmentSize + fragment.bytes.size() <= largest_;
+  if (!sound) return fail(Errc::invalid, "R-SES-7");
+  Packet* packet = place_for(datagram - fragment.back, fragment);
+  if (packet == nullptr) return std::optional<Complete>();
+  const auto index = static_cast<std::size_t>(fragment.index);
+  if (packet->count != fragment.count) return fail(Errc::invalid, "R-SES-7");
+  if (packet->datagrams[index] != 0) return std::optional<Complete>();
+  packet->datagrams[index] = datagram;
+  std::ranges::copy(fragment.bytes, packet->bytes.begin() + static_cast<std::ptrdiff_t>(index * kFragmentSize));
+  if (is_last) packet->size = index * kFragmentSize + fragment.bytes.size();
+  if (++packet->have < packet->count) return std::optional<Complete>();
+  return std::optional(Complete{packet->number, std::span<const std::uint8_t>(packet->bytes).first(packet->size),
+                                std::span<const std::uint64_t>(packet->datagrams).first(packet->count)});
+}
+
+}  // namespace tactus

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Packets that do not fit into one datagram, put together again. spec/70-session.md section 5. Internal to the library.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <tactus/base/result.h>
+#include <tactus/session/datagram.h>
+
+namespace tactus {
+
+inline constexpr std::size_t kFragmentSize = 1150;  ///< [bytes] of all but the last
+inline constexpr std::size_t kMostFragments = 1024;
+
+class Fragments {
+ public:
+  static constexpr std::size_t kMost = 4;  ///< packets at a time; a newer one takes the place of the oldest
+
+  /// Nothing is allocated if no packet is larger than a fragment.   in  largest  packet [bytes]
+  explicit Fragments(std::size_t largest);
+
+  /// A packet that is complete, and the datagrams that brought it. Valid until the next call.
+  struct Complete {
+    std::uint64_t number = 0;
+    std::span<const std::uint8_t> packet;
+    std::span<const std::uint64_t> datagrams;
+  };
+  /// in   datagram  its number
+  /// out  the packet, once, when this was the last fragment that it lacked
+  /// err  invalid R-SES-7: index, count or length; the packet's number is below 1, or it is larger than any of the scene
+  Result<std::optional<Complete>> take(std::uint64_t datagram, const FragmentPart& fragment) noexcept;
+
+ private:
+  struct Packet {
+    std::uint64_t number = 0, substream = 0;  // number 0: empty
+    std::size_t count = 0, have = 0, size = 0;
+    std::vector<std::uint8_t> bytes;
+    std::vector<std::uint64_t> datagrams;  // by fragment; 0: missing
+  };
+  Packet* place_for(std::uint64_t number, const FragmentPart& fragment) noexcept;
+
+  std::size_t largest_;
+  std::vector<Packet> packets_;
+};
+
+}  // namespace tactus

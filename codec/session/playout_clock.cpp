@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/session/playout_clock.h>
+
+#include <algorithm>
+
+namespace tactus {
+namespace {
+
+constexpr std::int64_t kSlack = 30'000, kLeastSlack = 10'000;  // [us]
+constexpr std::uint64_t kAdaptEvery = 100'000;                 // [us]
+constexpr std::int64_t kShrink = 100;                          // [us] in this time: 1 ms per second
+
+constexpr std::int64_t floor_div(std::int64_t a, std::int64_t b) noexcept { return a / b - (a % b < 0 ? 1 : 0); }
+
+}  // namespace
+
+std::int64_t PlayoutClock::time_of(std::int64_t tick) const noexcept { return floor_div(tick * 1'000'000, tick_rate_); }
+
+void PlayoutClock::heard(std::int64_t tick, std::uint64_t now) noexcept {
+  const std::int64_t lead = static_cast<std::int64_t>(now) - time_of(tick);
+  base_.add(lead, now);
+  leads_[next_] = lead;
+  next_ = (next_ + 1) % kRemembered;
+  count_ = std::min(count_ + 1, kRemembered);
+  if (count_ == 1) shown_ = tick;  // before it nothing is known
+  if (count_ == 1 || now >= adapted_at_ + kAdaptEvery) adapt(now);
+}
+
+void PlayoutClock::adapt(std::uint64_t now) noexcept {
+  adapted_at_ = now;
+  if (options_.fixed) {
+    delay_ = *options_.fixed;
+    return;
+  }
+  const auto end = sorted_.begin() + static_cast<std::ptrdiff_t>(count_);
+  std::copy(leads_.begin(), leads_.begin() + static_cast<std::ptrdiff_t>(count_), sorted_.begin());
+  const auto late_at = sorted_.begin() + static_cast<std::ptrdiff_t>((count_ * 999 + 999) / 1000 - 1);
+  std::nth_element(sorted_.begin(), late_at, end);
+  const std::int64_t base = *base_.value(), late = *late_at - base;
+  std::int64_t early = 0;  // sum
+  for (auto lead = sorted_.begin(); lead != end; ++lead) early += *late_at - *lead;
+  const std::int64_t wanted = late + std::max(kLeastSlack, kSlack - early / static_cast<std::int64_t>(count_));
+  delay_ = std::max(wanted, delay_ - kShrink);
+}
+
+std::int64_t PlayoutClock::shown(std::uint64_t now) noexcept {
+  const auto base = base_.value();
+  if (!base) return -1;
+  const std::int64_t time = static_cast<std::int64_t>(now) - *base - delay_;
+  shown_ = std::max(shown_, floor_div(time * tick_rate_, 1'000'000));
+  return shown_;
+}
+
+}  // namespace tactus

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+/// One client at the server. spec/70-session.md sections 3, 6 and 9. Internal to the library.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <tactus/session/exchange.h>
+#include <tactus/session/playout_clock.h>
+#include <tactus/session/session_server.h>
+#include <tactus/session/token_bucket.h>
+
+namespace tactus {
+
+/// What all clients get.
+struct ServedScene {
+  SharedScene scene, device;
+  std::shared_ptr<const std::vector<std::uint8_t>> declaration;
+  std::uint64_t hash = 0;   ///< of the declaration
+  std::uint64_t start = 0;  ///< [us] at tick 0
+  SenderOptions sender;
+};
+
+class ServerConnection {
+ public:
+  ServerConnection(std::uint16_t client, const SessionServerOptions& options) noexcept
+      : client_(client), silence_(options.silence), bucket_(options.rate) {}
+
+  std::uint16_t client() const noexcept { return client_; }
+  std::uint64_t peer() const noexcept { return peer_; }  ///< 0: none
+  std::uint64_t nonce() const noexcept { return join_.nonce; }
+  SessionState state() const noexcept { return state_; }
+  bool is_free() const noexcept { return state_ == SessionState::closed && leaves_ == 0; }
+  const Welcome& welcome() const noexcept { return welcome_; }
+
+  void open(std::uint64_t peer, const Join& said, const ServedScene& served, std::uint64_t epoch, std::uint64_t now) noexcept;
+  /// A new scene.   pre  open
+  void begin_epoch(const ServedScene& served, std::uint64_t epoch, std::uint64_t now) noexcept;
+  /// Go, if the state permits it. Unless the client has left or may not be there at all, it is told.
+  bool leave(SessionEvent event, LeaveReason reason) noexcept;
+
+  bool is_mine(std::span<const std::uint8_t> datagram) const noexcept;
+  Result<void> handle_datagram(std::uint64_t now, std::span<const std::uint8_t> datagram) noexcept;  ///< pre  is_mine()
+  bool has_left() const noexcept { return left_.has_value(); }
+  LeaveReason leave_reason() const noexcept { return *left_; }
+  bool is_at_fault() const noexcept;  ///< it breaks rules again and again
+  bool is_silent(std::uint64_t now) const noexcept;
+
+  Result<void> submit(std::uint64_t now, std::int64_t tick, const Truth& truth) noexcept;  ///< pre  live
+  std::optional<std::span<const std::uint8_t>> poll(std::uint64_t now) noexcept;
+  std::optional<std::uint64_t> next_timeout() const noexcept;
+
+  std::optional<DeviceSample> device(std::uint64_t now) noexcept;
+  ClientStatus status() const noexcept;
+  std::uint64_t state_hash(std::size_t substream) const noexcept { return exchange_->sender->state_hash(substream); }
+
+ private:
+  struct KnownHash {
+    std::size_t substream = 0;
+    std::uint64_t number = 0;
+    std::uint32_t hash = 0;
+  };
+  Result<void> handle(const Part& part, std::uint64_t now) noexcept;
+  Result<void> go_live() noexcept;
+  void compare(const HashPart& said) noexcept;
+  bool wants_piece(std::uint64_t now) const noexcept;
+  bool wants_welcome(std::uint64_t now) const noexcept;
+
+  std::uint16_t client_;
+  std::uint64_t silence_;
+  SessionState state_ = SessionState::closed;
+  std::uint64_t peer_ = 0;
+  Join join_;
+  Welcome welcome_;
+  ServedScene served_;
+  std::optional<Exchange> exchange_;
+  DatagramWriter writer_{Direction::down};  // of what is outside of the exchange
+  TokenBucket bucket_;
+  bool proven_ = false;  // it knows the epoch: the address is its own
+  bool repeats_welcome_ = false;
+  std::uint64_t welcome_at_ = 0, clock_at_ = 0, piece_at_ = 0;  // [us] when the next may go
+  std::optional<LeaveReason> left_;                             // said by the client
+  LeaveReason leaving_ = LeaveReason::bye;
+  unsigned leaves_ = 0;  // that are still to be sent
+  unsigned faults_ = 0;
+  std::array<KnownHash, 32> hashes_{};
+  std::size_t next_hash_ = 0;
+  std::uint64_t wrong_states_ = 0;
+  std::optional<PlayoutClock> device_clock_;
+  ButtonsPart buttons_;
+};
+
+}  // namespace tactus

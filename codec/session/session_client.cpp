@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/session/session_client.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <tactus/base/out_of_memory.h>
+#include <tactus/base/rule.h>
+#include <tactus/deformable/deformable_encoder.h>
+#include <tactus/rigid/rigid_syntax.h>
+#include <tactus/scene/scene_syntax.h>
+#include <tactus/session/clock_offset.h>
+#include <tactus/session/exchange.h>
+#include <tactus/session/force_fade.h>
+#include <tactus/session/playout_clock.h>
+
+namespace tactus {
+namespace {
+
+constexpr std::uint64_t kFirstRetry = 250'000, kLastRetry = 2'000'000, kJoinFor = 10'000'000;  // [us]
+// [us] from one sign of life to the next: of a participant that moves or feels, while packets come, at rest.
+constexpr std::uint64_t kActive = 25'000, kServed = 100'000, kIdle = 1'000'000;
+constexpr std::uint64_t kRecent = 1'000'000;   // [us]: what counts as now
+constexpr std::uint64_t kButtonsEvery = 20'000;  // [us] until they are acknowledged
+constexpr unsigned kLeaves = 3;                // one of them should arrive
+
+std::size_t largest_packet(const Scene& scene) {
+  std::size_t out = scene.moving().empty() ? 0 : max_rigid_packet(scene);
+  for (const DeformableObject& object : scene.deformables) out = std::max(out, max_packet(object));
+  return out + 1;  // the number of its substream
+}
+
+/// An epoch, from its welcome on.
+struct Epoch {
+  Epoch(const Welcome& said, std::uint64_t now)
+      : welcome(said), exchange(Direction::up, said.epoch, now), pieces(said.size, said.hash) {}
+
+  Welcome welcome;
+  Exchange exchange;
+  PieceReceiver pieces;
+  std::optional<PlayoutClock> playout;
+  std::optional<DeviceTruth> device;
+  std::uint64_t device_start = 0;  // [us] of the device's tick 0
+  std::int64_t device_tick = -1;   // of the last sample
+};
+
+}  // namespace
+
+struct SessionClient::Impl {
+  explicit Impl(const SessionClientOptions& of) : options(of) {}
+
+  bool go(SessionEvent event) noexcept;
+  void close(SessionEvent event, LeaveReason reason) noexcept;
+  Result<void> welcomed(std::uint64_t now, const Welcome& said) noexcept;
+  Result<void> handle(std::uint64_t now, const Numbered& said) noexcept;
+  Result<void> take(const Part& part, const Exchange::Heard& heard, std::uint64_t now) noexcept;
+  Result<void> complete(std::uint64_t now) noexcept;
+  std::uint64_t sign_due() const noexcept;
+  bool has_buttons_due(std::uint64_t now) const noexcept;
+  void note(ClientEvent event) noexcept {
+    if (event_count < events.size()) events[event_count++] = event;
+  }
+
+  SessionClientOptions options;
+  SessionState state = SessionState::closed;
+  std::uint64_t nonce = 0;
+  std::uint64_t opened_at = 0, join_at = 0, retry = 0;
+  std::unique_ptr<Epoch> current;  // the newest
+  std::unique_ptr<Epoch> shown;    // the one before, until the newest is live
+  std::uint64_t sign_at = 0;       // [us] of the last sign of life
+  std::uint64_t packet_at = 0, active_at = 0;  // [us] of the last packet, of the last motion or force
+  std::optional<HashPart> hash;
+  ButtonsPart buttons;
+  std::uint64_t buttons_at = 0;       // [us] when they go next
+  std::uint64_t buttons_number = 0;   // of the datagram that first brought them; 0: none yet
+  bool buttons_wait = false;          // for an acknowledgement
+  ClockOffset offset;
+  ForceFade fade;
+  unsigned leaves = 0;
+  LeaveReason leaving = LeaveReason::bye;
+  DatagramWriter writer{Direction::up};
+  std::array<ClientEvent, 8> events{};
+  std::size_t event_count = 0, next_event = 0;
+};
+
+SessionClient::SessionClient(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}
+SessionClient::SessionClient(SessionClient&&) noexcept = default;
+SessionClient& SessionClient::operator=(SessionClient&&) noexcept = default;
+SessionClient::~SessionClient() = default;
+
+Result<SessionClient> SessionClient::create(const SessionClientOptions& options) try {
+  return SessionClient(std::make_unique<Impl>(options));
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
+
+bool SessionClient::Impl::go(SessionEvent event) noexcept {
+  const auto next = next_state(client_transitions(), state, event);
+  if (next) state = *next;
+  return next.has_value();
+}
+
+void SessionClient::Impl::close(SessionEvent event, LeaveReason reason) noexcept {
+  const bool tells = state == SessionState::receiving || state == SessionState::live;
+  if (!go(event)) return;
+  leaving = reason;
+  leaves = tells && event != SessionEvent::left ? kLeaves : 0;
+  note({.kind = ClientEvent::Kind::closed, .reason = reason});
+}
+
+void SessionClient::open(std::uint64_t now, std::uint64_t nonce) noexcept {
+  if (!impl_->go(SessionEvent::open)) return;
+  impl_->nonce = nonce;
+  impl_->opened_at = impl_->join_at = now;
+  impl_->retry = kFirstRetry;
+  impl_->leaves = 0;
+  impl_->current.reset();
+  impl_->shown.reset();
+}
+
+void SessionClient::close() noexcept { impl_->close(SessionEvent::close, LeaveReason::bye); }
+
+Result<void> SessionClient::handle_datagram(std::uint64_t now, std::span<const std::uint8_t> datagram) noexcept {
+  Impl& in = *impl_;
+  const bool active = in.state == SessionState::receiving || in.state == SessionState::live;
+  if (active && is_of_epoch(datagram, in.current->exchange.epoch(), Direction::down)) {
+    TACTUS_TRY(const Datagram said, read_datagram(datagram, Direction::down));
+    if (const auto* numbered = std::get_if<Numbered>(&said)) return in.handle(now, *numbered);
+    if (const auto* leave = std::get_if<Leave>(&said)) in.close(SessionEvent::left, leave->reason);
+    return {};
+  }
+  if (!is_of_epoch(datagram, 0, Direction::down)) return fail(Errc::checksum, "R-SES-1");
+  TACTUS_TRY(const Datagram said, read_datagram(datagram, Direction::down));
+  if (const auto* welcome = std::get_if<Welcome>(&said); welcome != nullptr && welcome->nonce == in.nonce) return in.welcomed(now, *welcome);
+  if (const auto* refusal = std::get_if<Refusal>(&said); refusal != nullptr && refusal->nonce == in.nonce)
+    in.close(SessionEvent::refused, refusal->reason);
+  return {};
+}
+
+Result<void> SessionClient::Impl::welcomed(std::uint64_t now, const Welcome& said) noexcept try {
+  const bool repeated = current && said.serial <= current->welcome.serial && state != SessionState::joining;
+  if (repeated || !next_state(client_transitions(), state, SessionEvent::welcomed)) return {};
+  if (said.size > options.limits.header_bytes) {
+    close(SessionEvent::close, LeaveReason::limits);
+    return {};
+  }
+  auto next = std::make_unique<Epoch>(said, now);
+  if (state == SessionState::live) shown = std::move(current);
+  current = std::move(next);
+  go(SessionEvent::welcomed);
+  sign_at = 0;
+  hash.reset();
+  buttons_wait = false;
+  note({.kind = ClientEvent::Kind::welcomed});
+  return {};
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
+
+Result<void> SessionClient::Impl::handle(std::uint64_t now, const Numbered& said) noexcept {
+  const auto take_part = [&](const Part& part, const Exchange::Heard& heard) { return take(part, heard, now); };
+  TACTUS_TRY(const Exchange::Heard heard, current->exchange.handle(now, said, take_part));
+  if (heard.hash) hash = heard.hash;
+  if (heard.tick) {
+    packet_at = now;
+    current->playout->heard(*heard.tick, now);
+  }
+  if (buttons_wait && current->exchange.sent().highest_acknowledged() >= buttons_number && buttons_number > 0) buttons_wait = false;
+  if (state == SessionState::receiving && current->pieces.is_complete()) return complete(now);
+  return {};
+}
+
+Result<void> SessionClient::Impl::take(const Part& part, const Exchange::Heard& heard, std::uint64_t now) noexcept {
+  if (const auto* clock = std::get_if<ClockPart>(&part)) {
+    if (heard.round_trip) offset.add(clock->time, *heard.round_trip, now);
+  } else if (const auto* piece = std::get_if<PiecePart>(&part)) {
+    if (state == SessionState::receiving) return current->pieces.take(piece->index, piece->bytes);
+  }
+  return {};
+}
+
+/// The declaration is here: show its scene from now on, or leave.
+Result<void> SessionClient::Impl::complete(std::uint64_t now) noexcept try {
+  const auto begin = [&]() -> Result<void> {
+    TACTUS_TRY(const auto bytes, current->pieces.declaration());
+    TACTUS_TRY(const ParsedScene parsed, parse_scene(bytes, options.limits));
+    const SharedScene& scene = parsed.scene;
+    TACTUS_TRY(Receiver receiver, Receiver::create(scene, {.replica = {.interpolation = Interpolation::playout}, .limits = options.limits}));
+    current->exchange.receive_with(std::move(receiver), largest_packet(*scene));
+    current->playout.emplace(scene->tick_rate, options.playout);
+    if (options.role == Role::observer) return {};
+    TACTUS_TRY(SharedScene device, device_scene(*scene));
+    TACTUS_TRY(current->exchange.sender, Sender::create(std::move(device), device_sender_options(options.device)));
+    current->device.emplace(scene->tick_rate, options.senses_velocity);
+    current->device_start = now;
+    return {};
+  };
+  if (const auto begun = begin(); !begun) {
+    const bool too_large = begun.error().code == Errc::limit_exceeded;
+    close(SessionEvent::rejected, too_large ? LeaveReason::limits : LeaveReason::scene);
+    return tl::unexpected(begun.error());
+  }
+  go(SessionEvent::completed);
+  shown.reset();
+  sign_at = 0;
+  note({.kind = ClientEvent::Kind::live});
+  return {};
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
+
+/// When the next sign of life goes.
+std::uint64_t SessionClient::Impl::sign_due() const noexcept {
+  if (sign_at == 0) return 0;
+  const std::uint64_t sent = std::max(sign_at, current->exchange.asked_at());
+  if (state == SessionState::receiving || sent < packet_at + kRecent) return sent + (sent < active_at + kRecent ? kActive : kServed);
+  return sent + (sent < active_at + kRecent ? kActive : kIdle);
+}
+
+bool SessionClient::Impl::has_buttons_due(std::uint64_t now) const noexcept { return buttons_wait && now >= buttons_at; }
+
+void SessionClient::handle_timeout(std::uint64_t now) noexcept {
+  Impl& in = *impl_;
+  if (in.state == SessionState::joining && now >= in.opened_at + kJoinFor) in.close(SessionEvent::silent, LeaveReason::silence);
+  if ((in.state == SessionState::receiving || in.state == SessionState::live) &&
+      now >= in.current->exchange.heard_at() + in.options.silence)
+    in.close(SessionEvent::silent, LeaveReason::silence);
+}
+
+Result<void> SessionClient::submit(std::uint64_t now, const DeviceSample& sample, const std::optional<DeviceContact>& contact) noexcept {
+  Impl& in = *impl_;
+  if (in.state != SessionState::live || !in.current->device) return {};
+  Epoch& epoch = *in.current;
+  const auto rate = static_cast<std::uint64_t>(epoch.exchange.sender->scene()->tick_rate);
+  const auto tick = static_cast<std::int64_t>((now - epoch.device_start) * rate / 1'000'000);
+  if (tick <= epoch.device_tick) return {};
+  TACTUS_TRY(const auto packets, epoch.exchange.submit(now, tick, epoch.device->of(tick, sample, contact)));
+  epoch.device_tick = tick;
+  if (!packets.empty() || contact) in.active_at = now;
+  if (sample.buttons != in.buttons.mask) {
+    in.buttons = {static_cast<std::uint32_t>(tick), sample.buttons};
+    in.buttons_wait = true;
+    in.buttons_number = 0;
+    in.buttons_at = now;
+  }
+  return {};
+}
+
+std::optional<std::span<const std::uint8_t>> SessionClient::poll_datagram(std::uint64_t now) noexcept {
+  Impl& in = *impl_;
+  if (in.leaves > 0) {
+    --in.leaves;
+    return in.writer.write(Leave{in.leaving}, in.current->exchange.epoch());
+  }
+  if (in.state == SessionState::closed) return std::nullopt;
+  if (in.state == SessionState::joining) {
+    if (now < in.join_at) return std::nullopt;
+    in.join_at = now + in.retry;
+    in.retry = std::min(2 * in.retry, kLastRetry);
+    return in.writer.write(Join{in.options.role, in.nonce, in.options.limits.state_bytes, in.options.limits.header_bytes});
+  }
+  const bool sign = now >= in.sign_due(), buttons = in.has_buttons_due(now);
+  return in.current->exchange.poll(now, sign || buttons, [&](DatagramWriter& writer, std::uint64_t number) {
+    if (in.buttons_wait) {
+      writer.add(in.buttons);
+      in.buttons_at = now + kButtonsEvery;
+      if (in.buttons_number == 0) in.buttons_number = number;
+    }
+    if (sign) {
+      writer.add(StatePart{static_cast<std::uint8_t>(in.state == SessionState::live ? 1 : 0)});
+      in.sign_at = now;
+    }
+    if (in.hash) writer.add(*in.hash);
+    in.hash.reset();
+    return sign || in.buttons_wait;
+  });
+}
+
+std::optional<ClientEvent> SessionClient::poll_event() noexcept {
+  Impl& in = *impl_;
+  if (in.next_event < in.event_count) return in.events[in.next_event++];
+  in.next_event = in.event_count = 0;
+  return std::nullopt;
+}
+
+std::optional<std::uint64_t> SessionClient::next_timeout() const noexcept {
+  const Impl& in = *impl_;
+  if (in.state == SessionState::closed) return std::nullopt;
+  if (in.state == SessionState::joining) return std::min(in.join_at, in.opened_at + kJoinFor);
+  std::uint64_t due = std::min(in.sign_due(), in.current->exchange.heard_at() + in.options.silence);
+  if (in.buttons_wait) due = std::min(due, in.buttons_at);
+  if (const auto acknowledgement = in.current->exchange.due()) due = std::min(due, *acknowledgement);
+  return due;
+}
+
+Receiver* SessionClient::receiver() noexcept {
+  if (impl_->shown) return &*impl_->shown->exchange.receiver;
+  return impl_->current && impl_->current->exchange.receiver ? &*impl_->current->exchange.receiver : nullptr;
+}
+
+std::int64_t SessionClient::shown_tick(std::uint64_t now) noexcept {
+  Epoch* epoch = impl_->shown ? impl_->shown.get() : impl_->current.get();
+  return epoch != nullptr && epoch->playout ? epoch->playout->shown(now) : -1;
+}
+
+double SessionClient::force_share(std::uint64_t now) noexcept {
+  const Impl& in = *impl_;
+  const std::uint64_t heard = in.state == SessionState::live ? in.current->exchange.heard_at() : 0;
+  return std::ldexp(static_cast<double>(impl_->fade.share(now, heard)), -16);
+}
+
+SessionStatus SessionClient::status() const noexcept {
+  const Impl& in = *impl_;
+  SessionStatus out;
+  out.state = in.state;
+  out.clock_offset = in.offset.value();
+  if (!in.current) return out;
+  const Epoch& epoch = *in.current;
+  out.client = epoch.welcome.client;
+  out.declaration = epoch.pieces.size();
+  out.received = std::min(epoch.pieces.received(), out.declaration);
+  out.start = epoch.welcome.start;
+  out.round_trip = epoch.exchange.sent().round_trip();
+  out.playout_delay = epoch.playout ? epoch.playout->delay() : 0;
+  out.loss = std::ldexp(epoch.exchange.sent().loss(), -16);
+  out.traffic = epoch.exchange.traffic();
+  return out;
+}
+
+}  // namespace tactus

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The client's end of a session: a function of datagrams and time. spec/70-session.md. For how to drive it, see session_server.h.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include <tactus/base/device_sample.h>
+#include <tactus/base/result.h>
+#include <tactus/receiver.h>
+#include <tactus/session/session_options.h>
+#include <tactus/session/session_state.h>
+#include <tactus/session/traffic.h>
+#include <tactus/signal/device_signal.h>
+
+namespace tactus {
+
+/// How the session does.
+struct SessionStatus {
+  SessionState state = SessionState::closed;
+  std::uint16_t client = 0;
+  std::uint64_t declaration = 0, received = 0;  ///< [bytes] of the scene declaration, in all and so far
+  std::uint64_t start = 0;                      ///< [us] the server's clock at tick 0
+  std::optional<RoundTrip> round_trip;
+  std::optional<std::int64_t> clock_offset;  ///< [us] the server's clock less the client's
+  std::int64_t playout_delay = 0;            ///< [us] behind the fastest packet
+  double loss = 0;                           ///< share of the last 256 datagrams to the server
+  Traffic traffic;
+};
+
+struct ClientEvent {
+  enum class Kind : std::uint8_t {
+    welcomed,  ///< the declaration is on its way
+    live,      ///< it is here: receiver() is a new one
+    closed,    ///< for `reason`
+  };
+  Kind kind = Kind::welcomed;
+  LeaveReason reason = LeaveReason::bye;
+};
+
+/// Threads: one at a time. No call on the way of a datagram allocates but those that bring the declaration; none throws.
+class SessionClient {
+ public:
+  /// err  as Sender::create: R-API-4 a bound of the device
+  static Result<SessionClient> create(const SessionClientOptions& options);
+
+  /// Join.   in  nonce  64 bits from the system   pre  closed
+  void open(std::uint64_t now, std::uint64_t nonce) noexcept;
+  void close() noexcept;
+
+  /// err  the datagram is dropped, and nothing has changed but the traffic: checksum R-SES-1; those of R-SES rules
+  Result<void> handle_datagram(std::uint64_t now, std::span<const std::uint8_t> datagram) noexcept;
+  void handle_timeout(std::uint64_t now) noexcept;
+  /// The device now: at most one sample per tick counts. Nothing happens unless the session is live and the client participates.
+  /// err  as Sender::encode
+  Result<void> submit(std::uint64_t now, const DeviceSample& sample, const std::optional<DeviceContact>& contact) noexcept;
+
+  std::optional<std::span<const std::uint8_t>> poll_datagram(std::uint64_t now) noexcept;  ///< valid until the next call
+  std::optional<ClientEvent> poll_event() noexcept;
+  std::optional<std::uint64_t> next_timeout() const noexcept;  ///< [us] nothing: never
+
+  /// Of the newest scene whose declaration is complete; null: there is none yet. It shows ticks of the past: show shown_tick().
+  Receiver* receiver() noexcept;
+  /// The tick to show; it never falls within an epoch. -1: none yet.
+  std::int64_t shown_tick(std::uint64_t now) noexcept;
+  /// Share of a force that may be rendered: without news none.   out  0 to 1
+  double force_share(std::uint64_t now) noexcept;
+  SessionStatus status() const noexcept;
+
+  SessionClient(SessionClient&&) noexcept;
+  SessionClient& operator=(SessionClient&&) noexcept;
+  ~SessionClient();
+
+ private:
+  struct Impl;
+  explicit SessionClient(std::unique_ptr<Impl> impl) noexcept;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tactus

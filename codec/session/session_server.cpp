@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/session/session_server.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include <tactus/base/hash.h>
+#include <tactus/base/out_of_memory.h>
+#include <tactus/base/rule.h>
+#include <tactus/scene/scene_syntax.h>
+#include <tactus/session/server_connection.h>
+
+namespace tactus {
+
+struct SessionServer::Impl {
+  Result<void> serve(SharedScene of, std::uint64_t now);
+  Result<void> join(std::uint64_t now, std::uint64_t peer, const Join& said) noexcept;
+  ServerConnection* find(std::uint64_t peer) noexcept;
+  void note(ServerEvent event) noexcept {
+    if (events.size() < events.capacity()) events.push_back(event);
+  }
+  void drop(ServerConnection& connection, SessionEvent event, LeaveReason reason) noexcept;
+  Result<Welcome> answer(std::uint64_t now, std::uint64_t peer, const Join& said) noexcept;
+
+  SessionServerOptions options;
+  ServedScene served;
+  std::uint64_t entropy = 0;
+  std::vector<std::unique_ptr<ServerConnection>> connections;
+  std::size_t cursor = 0;  // of poll_datagram()
+  std::vector<ServerEvent> events;
+  std::size_t next_event = 0;
+  DatagramWriter writer{Direction::down};
+  std::optional<std::pair<std::uint64_t, Datagram>> reply;  // to an address, outside of any epoch
+};
+
+/// SplitMix64: epochs that differ and that strangers cannot tell, if they cannot tell the seed.
+static std::uint64_t draw(std::uint64_t& state) noexcept {
+  state += 0x9E3779B97F4A7C15u;
+  std::uint64_t z = state;
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
+  z ^= z >> 31;
+  return z == 0 ? 1 : z;
+}
+
+SessionServer::SessionServer(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}
+SessionServer::SessionServer(SessionServer&&) noexcept = default;
+SessionServer& SessionServer::operator=(SessionServer&&) noexcept = default;
+SessionServer::~SessionServer() = default;
+
+Result<SessionServer> SessionServer::create(SharedScene scene, const SessionServerOptions& options, std::uint64_t entropy,
+                                            std::uint64_t now) try {
+  if (options.clients == 0 || options.rate > 1'000'000'000'000) return fail(Errc::invalid_argument, "R-API-4");
+  auto impl = std::make_unique<Impl>();
+  impl->options = options;
+  impl->options.sender.policy.baseline = Baseline::acknowledged;
+  impl->options.sender.policy.key_interval = 0;
+  impl->entropy = entropy;
+  for (std::uint16_t i = 0; i < options.clients; ++i) impl->connections.push_back(std::make_unique<ServerConnection>(i, options));
+  impl->events.reserve(8 * std::size_t{options.clients} + 8);
+  TACTUS_CHECK(impl->serve(std::move(scene), now));
+  return SessionServer(std::move(impl));
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
+
+Result<void> SessionServer::Impl::serve(SharedScene of, std::uint64_t now) {
+  TACTUS_CHECK(Sender::create(of, options.sender));  // so that no client meets a scene that cannot be sent
+  TACTUS_TRY(auto declaration, write_scene(*of));
+  TACTUS_TRY(auto device, device_scene(*of));
+  Fnv1a hash;
+  for (const std::uint8_t byte : declaration) hash.add_byte(byte);
+  served = {.scene = std::move(of),
+            .device = std::move(device),
+            .declaration = std::make_shared<const std::vector<std::uint8_t>>(std::move(declaration)),
+            .hash = hash.value(),
+            .start = now,
+            .sender = options.sender};
+  return {};
+}
+
+Result<void> SessionServer::replace_scene(SharedScene scene, std::uint64_t now) try {
+  TACTUS_CHECK(impl_->serve(std::move(scene), now));
+  for (auto& connection : impl_->connections)
+    if (connection->state() != SessionState::closed) connection->begin_epoch(impl_->served, draw(impl_->entropy), now);
+  return {};
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
+
+ServerConnection* SessionServer::Impl::find(std::uint64_t peer) noexcept {
+  const auto found = std::ranges::find_if(connections, [peer](const auto& c) { return c->peer() == peer; });
+  return found == connections.end() ? nullptr : found->get();
+}
+
+void SessionServer::Impl::drop(ServerConnection& connection, SessionEvent event, LeaveReason reason) noexcept {
+  if (!connection.leave(event, reason)) return;
+  note({.kind = ServerEvent::Kind::left, .client = connection.client(), .reason = reason});
+}
+
+/// A place for the client, or why there is none.
+Result<void> SessionServer::Impl::join(std::uint64_t now, std::uint64_t peer, const Join& said) noexcept {
+  ServerConnection* place = find(peer);
+  if (place != nullptr && place->state() != SessionState::closed && place->nonce() == said.nonce) {
+    reply.emplace(peer, place->welcome());
+    return {};
+  }
+  if (place != nullptr) drop(*place, SessionEvent::left, LeaveReason::bye);  // the client has begun anew
+  const auto refuse = [&](LeaveReason reason) { reply.emplace(peer, Refusal{said.nonce, reason}); };
+  if (state_bytes(*served.scene) > said.state_limit || served.declaration->size() > said.header_limit) {
+    refuse(LeaveReason::limits);
+    return {};
+  }
+  if (place == nullptr) {
+    const auto free = std::ranges::find_if(connections, [](const auto& c) { return c->is_free(); });
+    if (free == connections.end()) {
+      refuse(LeaveReason::full);
+      return {};
+    }
+    place = free->get();
+  }
+  place->open(peer, said, served, draw(entropy), now);
+  reply.emplace(peer, place->welcome());
+  note({.kind = ServerEvent::Kind::joined, .client = place->client()});
+  return {};
+}
+
+Result<void> SessionServer::handle_datagram(std::uint64_t now, std::uint64_t peer, std::span<const std::uint8_t> datagram) noexcept {
+  Impl& in = *impl_;
+  ServerConnection* connection = in.find(peer);
+  if (connection != nullptr && connection->is_mine(datagram)) {
+    const SessionState before = connection->state();
+    const auto handled = connection->handle_datagram(now, datagram);
+    if (before == SessionState::receiving && connection->state() == SessionState::live)
+      in.note({.kind = ServerEvent::Kind::live, .client = connection->client()});
+    if (connection->has_left()) in.drop(*connection, SessionEvent::left, connection->leave_reason());
+    if (connection->is_at_fault()) in.drop(*connection, SessionEvent::close, LeaveReason::protocol);
+    return handled;
+  }
+  if (!is_of_epoch(datagram, 0, Direction::up)) return fail(Errc::checksum, "R-SES-1");
+  TACTUS_TRY(const Datagram said, read_datagram(datagram, Direction::up));
+  const Join* const join = std::get_if<Join>(&said);
+  if (join == nullptr) return fail(Errc::invalid, "R-SES-2");
+  return in.join(now, peer, *join);
+}
+
+void SessionServer::handle_timeout(std::uint64_t now) noexcept {
+  for (auto& connection : impl_->connections)
+    if (connection->is_silent(now)) impl_->drop(*connection, SessionEvent::silent, LeaveReason::silence);
+}
+
+Result<void> SessionServer::submit(std::uint64_t now, std::int64_t tick, const Truth& truth) noexcept {
+  for (auto& connection : impl_->connections)
+    if (connection->state() == SessionState::live) TACTUS_CHECK(connection->submit(now, tick, truth));
+  return {};
+}
+
+void SessionServer::close(std::uint16_t client, LeaveReason reason) noexcept {
+  impl_->drop(*impl_->connections[client], SessionEvent::close, reason);
+}
+
+void SessionServer::close() noexcept {
+  for (auto& connection : impl_->connections) impl_->drop(*connection, SessionEvent::close, LeaveReason::bye);
+}
+
+std::optional<SessionServer::Transmit> SessionServer::poll_datagram(std::uint64_t now) noexcept {
+  Impl& in = *impl_;
+  if (in.reply) {
+    const auto [peer, said] = *std::exchange(in.reply, std::nullopt);
+    return Transmit{peer, in.writer.write(said)};
+  }
+  for (; in.cursor < in.connections.size(); ++in.cursor) {
+    ServerConnection& connection = *in.connections[in.cursor];
+    if (const auto datagram = connection.poll(now)) return Transmit{connection.peer(), *datagram};
+  }
+  in.cursor = 0;
+  return std::nullopt;
+}
+
+std::optional<ServerEvent> SessionServer::poll_event() noexcept {
+  Impl& in = *impl_;
+  if (in.next_event < in.events.size()) return in.events[in.next_event++];
+  in.events.clear();
+  in.next_event = 0;
+  return std::nullopt;
+}
+
+std::optional<std::uint64_t> SessionServer::next_timeout() const noexcept {
+  std::optional<std::uint64_t> out;
+  for (const auto& connection : impl_->connections)
+    if (const auto due = connection->next_timeout()) out = std::min(out.value_or(*due), *due);
+  return out;
+}
+
+std::optional<DeviceSample> SessionServer::device(std::uint16_t client, std::uint64_t now) noexcept {
+  return impl_->connections[client]->device(now);
+}
+
+std::size_t SessionServer::clients() const noexcept { return impl_->connections.size(); }
+ClientStatus SessionServer::status(std::uint16_t client) const noexcept { return impl_->connections[client]->status(); }
+
+std::uint64_t SessionServer::state_hash(std::uint16_t client, std::size_t substream) const noexcept {
+  return impl_->connections[client]->state_hash(substream);
+}
+
+}  // namespace tactus

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The server's end of sessions with many clients: a function of datagrams and time. spec/70-session.md.
+///
+/// It knows neither sockets nor clocks. The program calls one of handle_datagram(), handle_timeout(), submit() and the like, and then
+///   while (auto d = server.poll_datagram(now)) send d->bytes to d->peer;
+///   while (auto e = server.poll_event()) tell the user;
+///   wait for a datagram, the next tick, or server.next_timeout(), whichever comes first.
+/// Times are microseconds of any clock of the program that never steps back.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include <tactus/base/device_sample.h>
+#include <tactus/base/result.h>
+#include <tactus/sender.h>
+#include <tactus/session/session_options.h>
+#include <tactus/session/session_state.h>
+#include <tactus/session/traffic.h>
+
+namespace tactus {
+
+/// How a client does.
+struct ClientStatus {
+  std::uint16_t client = 0;
+  std::uint64_t peer = 0;
+  SessionState state = SessionState::closed;
+  Role role = Role::observer;
+  std::optional<RoundTrip> round_trip;
+  double loss = 0;  ///< share of the last 256 datagrams to the client
+  Traffic traffic;
+};
+
+struct ServerEvent {
+  enum class Kind : std::uint8_t {
+    joined,  ///< and gets the declaration
+    live,    ///< holds it
+    left,    ///< for `reason`
+  };
+  Kind kind = Kind::joined;
+  std::uint16_t client = 0;
+  LeaveReason reason = LeaveReason::bye;
+};
+
+/// Threads: one at a time. No call on the way of a datagram allocates but those that bring a client live; none throws.
+class SessionServer {
+ public:
+  /// in   entropy  64 bits from the system, that nobody else can tell;  now  [us]
+  /// err  as Sender::create; invalid_argument R-API-4: no client, or more than 65535
+  static Result<SessionServer> create(SharedScene scene, const SessionServerOptions& options, std::uint64_t entropy, std::uint64_t now);
+
+  /// in   peer  who sent it: the transport's name for an address, never 0
+  /// err  the datagram is dropped, and nothing has changed but the traffic: checksum R-SES-1; those of R-SES rules
+  Result<void> handle_datagram(std::uint64_t now, std::uint64_t peer, std::span<const std::uint8_t> datagram) noexcept;
+  void handle_timeout(std::uint64_t now) noexcept;
+  /// Code a tick for every live client.   time that of Sender::encode for each client   err  as Sender::encode
+  Result<void> submit(std::uint64_t now, std::int64_t tick, const Truth& truth) noexcept;
+  /// Another scene: clients get a new epoch, and show the old one until they hold the new. Ticks begin anew.   err  as create()
+  Result<void> replace_scene(SharedScene scene, std::uint64_t now);
+  /// Take leave of a client, or of all.
+  void close(std::uint16_t client, LeaveReason reason) noexcept;
+  void close() noexcept;
+
+  struct Transmit {
+    std::uint64_t peer = 0;
+    std::span<const std::uint8_t> bytes;  ///< valid until the next call
+  };
+  std::optional<Transmit> poll_datagram(std::uint64_t now) noexcept;
+  std::optional<ServerEvent> poll_event() noexcept;
+  /// When handle_timeout() should be called; nothing: never.   time O(clients)
+  std::optional<std::uint64_t> next_timeout() const noexcept;
+
+  /// The device of a live participant; nothing: it was not heard yet, or the client is an observer.
+  std::optional<DeviceSample> device(std::uint16_t client, std::uint64_t now) noexcept;
+  std::size_t clients() const noexcept;  ///< most of them; client < clients()
+  ClientStatus status(std::uint16_t client) const noexcept;
+  /// Hash of a substream's state as the client has it when it has got all packets.   pre  live
+  std::uint64_t state_hash(std::uint16_t client, std::size_t substream) const noexcept;
+
+  SessionServer(SessionServer&&) noexcept;
+  SessionServer& operator=(SessionServer&&) noexcept;
+  ~SessionServer();
+
+ private:
+  struct Impl;
+  explicit SessionServer(std::unique_ptr<Impl> impl) noexcept;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace tactus

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/signal/device_signal.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <tactus/scene/scene_builder.h>
+
+namespace tactus {
+
+Result<SharedScene> device_scene(const Scene& scene) {
+  constexpr double kReach = 0.1;  // [s]: a device that is not heard of stands still then
+  auto built = SceneBuilder(scene.tick_rate).rigid("device").grid(scene.grid).extrapolate(kReach).baselines(64).build();
+  if (!built) return tl::unexpected(built.error().error);
+  return *built;
+}
+
+SenderOptions device_sender_options(const DeviceCoding& coding) noexcept {
+  SenderOptions options;
+  options.triggers = {.reduction = coding.every_tick ? Reduction::none : Reduction::dead_reckoning,
+                      .heartbeat = 0,
+                      .visual_position = coding.position,
+                      .visual_rotation = coding.rotation,
+                      .haptic = HapticRule::isotropic,
+                      .weber_fraction = coding.weber_fraction};
+  options.policy = {.key_interval = 0, .baseline = Baseline::acknowledged};
+  return options;
+}
+
+/// [m/tick] Least-squares line through the last samples.
+Vec3 DeviceTruth::slope() const noexcept {
+  const std::size_t count = std::min(count_, kSamples);
+  if (count < 2) return {};
+  const std::int64_t newest = places_[(count_ - 1) % kSamples].tick;
+  double mean = 0, square = 0;
+  Vec3 centre;
+  for (std::size_t i = 0; i < count; ++i) {
+    mean += static_cast<double>(places_[i].tick - newest) / static_cast<double>(count);
+    centre = centre + (1.0 / static_cast<double>(count)) * places_[i].position;
+  }
+  Vec3 sum;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double t = static_cast<double>(places_[i].tick - newest) - mean;
+    sum = sum + t * (places_[i].position - centre);
+    square += t * t;
+  }
+  return square > 0 ? (1 / square) * sum : Vec3{};
+}
+
+Truth DeviceTruth::of(std::int64_t tick, const DeviceSample& sample, const std::optional<DeviceContact>& contact) noexcept {
+  sample_.pose = {sample.position, sample.orientation};
+  if (senses_velocity_) {
+    sample_.velocity = sample.velocity;
+  } else {
+    places_[count_++ % kSamples] = {tick, sample.position};
+    sample_.velocity = static_cast<double>(tick_rate_) * slope();
+  }
+  // The error of the device is that of the other end of the spring: the force and its threshold are the same.
+  if (contact) {
+    contact_.kind = ContactKind::spring;
+    contact_.device = contact->proxy;
+    contact_.stiffness = contact->stiffness;
+  }
+  return {.objects = {&sample_, 1}, .contacts = {&contact_, contact ? 1u : 0u}, .deformables = {}};
+}
+
+DeviceSample device_at(Receiver& receiver, std::int64_t tick, std::uint32_t buttons) noexcept {
+  const GridExponents& grid = receiver.scene()->grid;
+  const Pose pose = to_pose(receiver.replica().pose(0, tick), grid.position);
+  DeviceSample out{.position = pose.position, .orientation = pose.rotation, .buttons = buttons};
+  const RigidState& state = receiver.objects()[0];
+  if (tick >= state.tick + receiver.scene()->max_extrapolation) return out;  // it stands still
+  const double unit = std::ldexp(1.0, -grid.velocity);
+  out.velocity = {unit * state.velocity[0], unit * state.velocity[1], unit * state.velocity[2]};
+  return out;
+}
+
+}  // namespace tactus

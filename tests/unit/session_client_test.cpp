@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/session/session_client.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include <tactus/rigid/rigid_state.h>
+#include <tactus/scene/scene_builder.h>
+#include "tests/unit/session_fixture.h"
+
+namespace tactus {
+namespace {
+
+using testing::SessionWorld;
+
+SharedScene pendulum_scene() { return SceneBuilder(1000).rigid("pendulum").baselines(64).build().value(); }
+
+RigidSample pendulum(std::int64_t tick) {
+  const double w = 2 * std::numbers::pi, t = 1e-3 * static_cast<double>(tick);
+  return {.pose = {{0.1 * std::sin(w * t), 0, 0}, {}}, .velocity = {0.1 * w * std::cos(w * t), 0, 0}, .angular_velocity = {}};
+}
+
+/// Drives a world with a pendulum, and judges what a client shows.
+struct Swing {
+  explicit Swing(const sim::LinkOptions& up, const sim::LinkOptions& down, SessionClientOptions options = {})
+      : scene(pendulum_scene()), world(scene, server_options()) {
+    world.add(options, up, down);
+  }
+  static SessionServerOptions server_options() {
+    SessionServerOptions options;
+    options.sender.triggers.visual_position = 0.001;
+    return options;
+  }
+  void run(int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      world.step([this](std::int64_t tick) {
+        sample = pendulum(tick);
+        return Truth{.objects = {&sample, 1}, .contacts = {}, .deformables = {}};
+      });
+      judge();
+    }
+  }
+  void judge() {
+    SessionClient& client = *world.ends[0].client;
+    Receiver* receiver = client.receiver();
+    const std::int64_t shown = client.shown_tick(world.now);
+    if (receiver == nullptr || shown < 0) return;
+    EXPECT_GE(shown, last_shown);
+    EXPECT_LE(shown, world.tick);
+    last_shown = shown;
+    const Pose pose = to_pose(receiver->replica().pose(0, shown), scene->grid.position);
+    ++judged;
+    if (norm(pose.position - pendulum(shown).pose.position) > 0.001) ++over;
+  }
+
+  SharedScene scene;
+  SessionWorld world;
+  RigidSample sample;
+  std::int64_t last_shown = -1;
+  int judged = 0, over = 0;
+};
+
+TEST(SessionClient, JoinsGetsTheSceneAndFollowsIt) {
+  Swing swing({.seed = 1, .delay = 20'000}, {.seed = 2, .delay = 20'000});
+  swing.run(3000);
+  const auto& end = swing.world.ends[0];
+  ASSERT_EQ(end.events.size(), 2u);
+  EXPECT_EQ(end.events[0].kind, ClientEvent::Kind::welcomed);
+  EXPECT_EQ(end.events[1].kind, ClientEvent::Kind::live);
+  ASSERT_EQ(swing.world.events.size(), 2u);
+  EXPECT_EQ(swing.world.events[1].kind, ServerEvent::Kind::live);
+  EXPECT_GT(swing.judged, 2500);
+  EXPECT_EQ(swing.over, 0);
+  const SessionStatus status = end.client->status();
+  ASSERT_TRUE(status.round_trip);
+  EXPECT_NEAR(static_cast<double>(status.round_trip->smoothed), 40000, 250);
+  ASSERT_TRUE(status.clock_offset);
+  EXPECT_NEAR(static_cast<double>(*status.clock_offset), 0, 250);
+  EXPECT_EQ(status.traffic.packets_refused, 0u);
+  EXPECT_EQ(swing.world.refused, 0u);
+}
+
+TEST(SessionClient, FollowsOverALinkThatLosesAndReorders) {
+  const sim::LinkOptions down{.seed = 2, .delay = 5'000, .jitter = 30'000, .loss = 0.1, .duplicates = 0.05};
+  sim::LinkOptions up = down;
+  up.seed = 3;
+  Swing swing(up, down);
+  swing.run(20000);
+  EXPECT_GT(swing.judged, 19000);
+  EXPECT_LT(swing.over, swing.judged / 50);
+  const ClientStatus status = swing.world.server->status(0);
+  EXPECT_EQ(status.traffic.wrong_states, 0u);
+  EXPECT_NEAR(status.loss, 0.1, 0.05);
+}
+
+TEST(SessionClient, LeavesAndMayJoinAgain) {
+  Swing swing({.seed = 1, .delay = 1'000}, {.seed = 2, .delay = 1'000});
+  swing.run(300);
+  SessionClient& client = *swing.world.ends[0].client;
+  client.close();
+  swing.run(50);
+  EXPECT_EQ(client.status().state, SessionState::closed);
+  EXPECT_EQ(swing.world.server->status(0).state, SessionState::closed);
+  client.open(swing.world.now, 99);
+  swing.last_shown = -1;
+  swing.run(300);
+  EXPECT_EQ(client.status().state, SessionState::live);
+  EXPECT_EQ(swing.world.server->status(0).state, SessionState::live);
+}
+
+TEST(SessionClient, GivesUpWhenNobodyAnswers) {
+  Swing swing({.seed = 1, .loss = 1}, {});
+  swing.run(11000);
+  const auto& end = swing.world.ends[0];
+  ASSERT_EQ(end.events.size(), 1u);
+  EXPECT_EQ(end.events[0].kind, ClientEvent::Kind::closed);
+  EXPECT_EQ(end.events[0].reason, LeaveReason::silence);
+  EXPECT_LE(swing.world.datagrams_up, 10u);
+}
+
+TEST(SessionClient, ForceFadesWithin100MillisecondsWithoutNewsAndReturns) {
+  Swing swing({.seed = 1, .delay = 5'000}, {.seed = 2, .delay = 5'000, .outages = {{7'000'000, 9'000'000}}},
+              {.role = Role::participant});
+  SessionClient& client = *swing.world.ends[0].client;
+  double before = 0, largest_step = 0;
+  std::uint64_t zero_at = 0;
+  for (int i = 0; i < 6000; ++i) {
+    ASSERT_TRUE(client.submit(swing.world.now, {.position = {1e-4 * i, 0, 0}}, DeviceContact{{1e-4 * i, 0, 1e-3}, 500}));
+    swing.run(1);
+    const double share = client.force_share(swing.world.now);
+    largest_step = std::max(largest_step, std::abs(share - before));
+    if (share == 0 && before > 0) zero_at = swing.world.now;
+    before = share;
+    if (i == 1500) {
+      EXPECT_EQ(share, 1);
+    }
+  }
+  EXPECT_GT(zero_at, 7'000'000u);
+  EXPECT_LE(zero_at, 7'000'000u + 5'000 + 100'000 + 1'000);
+  EXPECT_LE(largest_step, 0.035);
+  EXPECT_EQ(before, 1) << "long after the outage";
+}
+
+}  // namespace
+}  // namespace tactus
