@@ -17,11 +17,13 @@ Vec3 centre(const TriMesh& mesh) {
 
 }  // namespace
 
-Client::Client(Server& server, std::optional<Receiver> receiver)
+Client::Client(Server& server, std::optional<Receiver> receiver, SessionClient* session)
     : scene_(server.scene()),
       receiver_(std::move(receiver)),
-      rigid_(scene_, receiver_ ? RigidView::News::of_all : RigidView::News::of_changed),
-      felt_(scene_.users.size()) {
+      session_(session),
+      rigid_(scene_, server.stream_scene() ? RigidView::News::of_all : RigidView::News::of_changed),
+      felt_(scene_.users.size()),
+      contacts_(scene_.users.size()) {
   poses_.assign(rigid_.poses().begin(), rigid_.poses().end());
   objects_.push_back(&rigid_);
   if (!scene_.msds.empty()) {
@@ -32,7 +34,7 @@ Client::Client(Server& server, std::optional<Receiver> receiver)
   DeformableObjects* deformables = server.deformables();
   if (!deformables) return;
   for (const TraceDeformable& mesh : deformables->meshes()) places_.push_back({centre(mesh.rest), {}});
-  if (receiver_) objects_.push_back(&deformables_.emplace(scene_, deformables->meshes()));
+  if (server.stream_scene()) objects_.push_back(&deformables_.emplace(scene_, deformables->meshes()));
   else objects_.push_back(&deformables->true_view());
 }
 
@@ -41,7 +43,11 @@ Result<std::unique_ptr<Client>> Client::create(Server& server, const ReplicaOpti
   if (SharedScene declared = server.stream_scene()) {
     TACTUS_TRY(receiver, Receiver::create(std::move(declared), {.replica = replica, .limits = {}}));
   }
-  return std::unique_ptr<Client>(new Client(server, std::move(receiver)));
+  return std::unique_ptr<Client>(new Client(server, std::move(receiver), nullptr));
+}
+
+std::unique_ptr<Client> Client::create(Server& server, SessionClient& session) {
+  return std::unique_ptr<Client>(new Client(server, {}, &session));
 }
 
 Result<void> Client::receive(std::span<const Packet> packets) noexcept {
@@ -60,24 +66,39 @@ void Client::show(const TraceFrame& truth) noexcept {
     for (const std::uint32_t i : *truth.changed) show_pose(i, truth.objects[i].pose);
     return;
   }
-  Replica& replica = receiver_->replica();
-  const unsigned position_exp = receiver_->scene()->grid.position;
+  show(*receiver_, truth.tick, truth);
+}
+
+void Client::show(Receiver& receiver, std::int64_t tick, const TraceFrame& truth) noexcept {
+  Replica& replica = receiver.replica();
+  const unsigned position_exp = receiver.scene()->grid.position;
   for (std::size_t i = 0; i < truth.meshes.size(); ++i)
-    if (truth.meshes[i].updated) deformables_->show(i, replica.displacements(i, truth.tick), position_exp);
-  for (std::uint32_t i = 0; i < poses_.size(); ++i) show_pose(i, to_pose(replica.pose(i, truth.tick), position_exp));
+    if (truth.meshes[i].updated) deformables_->show(i, replica.displacements(i, tick), position_exp);
+  for (std::uint32_t i = 0; i < poses_.size(); ++i) show_pose(i, to_pose(replica.pose(i, tick), position_exp));
+}
+
+std::int64_t Client::show(std::uint64_t now, const TraceFrame& truth) noexcept {
+  const std::int64_t tick = session_->shown_tick(now);
+  if (tick >= 0) show(*session_->receiver(), tick, truth);
+  return tick;
 }
 
 void Client::touch(std::span<const DeviceSample> devices) noexcept {
-  for (std::size_t i = 0; i < devices.size(); ++i) {
-    Vec3 force;
-    bool held = false;
-    for (Touchable* objects : objects_) {
-      const Touch touch = objects->touch(i, devices[i], held);
-      held = held || touch.contact.kind != ContactKind::none;
-      force = force + touch.force;
-    }
-    felt_[i] = share_rendered(force, scene_.users[i].device.max_force) * force;
+  for (std::size_t i = 0; i < devices.size(); ++i) touch(i, devices[i], 1);
+}
+
+void Client::touch(std::size_t user, const DeviceSample& device, double share) noexcept {
+  Vec3 force;
+  bool held = false;
+  contacts_[user].reset();
+  for (Touchable* objects : objects_) {
+    const Touch touch = objects->touch(user, device, held);
+    if (touch.contact.kind != ContactKind::none) contacts_[user] = {touch.proxy, touch.contact.stiffness};
+    else if (touch.surface) contacts_[user] = {touch.surface->proxy, touch.surface->stiffness};
+    held = held || touch.contact.kind != ContactKind::none;
+    force = force + touch.force;
   }
+  felt_[user] = share * share_rendered(force, scene_.users[user].device.max_force) * force;
 }
 
 const Pose& Client::watched(std::size_t user) const noexcept {

@@ -48,10 +48,12 @@ Result<void> Server::add_codec(const ServerCodec& codec) {
   if (deformables_)
     for (const TraceDeformable& mesh : deformables_->meshes()) TACTUS_CHECK(add_deformable(builder, mesh, codec.coding));
   builder.promise(codec.sender.triggers, codec.sender.deformable.thresholds);
-  TACTUS_TRY(SharedScene declared, builder.build());
-  TACTUS_TRY(Sender sender, Sender::create(std::move(declared), codec.sender));
-  sender_.emplace(std::move(sender));
+  constexpr std::uint8_t kBaselines = 64;
+  if (codec.sessions) builder.baselines(kBaselines);
+  TACTUS_TRY(declared_, builder.build());
   truth_.emplace(info());
+  if (codec.sessions) return {};
+  TACTUS_TRY(sender_, Sender::create(declared_, codec.sender));
   return {};
 }
 

@@ -22,6 +22,7 @@ namespace tactus::sim {
 struct ServerCodec {
   SenderOptions sender;
   TraceCoding coding{};  ///< of deformable objects
+  bool sessions = false; ///< clients have sessions of their own, which code for them
 };
 
 struct ServerOptions {
@@ -44,6 +45,8 @@ class Server {
   void touch(std::span<const DeviceSample> devices) noexcept;
   /// Packets of this tick for the clients; valid until the next call.   err  errors of Sender::encode   no allocation
   Result<std::span<const Packet>> encode() noexcept;
+  /// What they are made of, for the sessions.   pre  there is a codec
+  Truth truth() noexcept { return truth_->of(frame_); }
   /// Apply the forces of this tick, limited to what the devices render, and advance by one tick.
   tl::expected<void, Diagnostic> step();
 
@@ -52,7 +55,7 @@ class Server {
   const Scene& scene() const noexcept { return scene_; }
   TraceInfo info() const;  ///< of the frames
   /// Scene declaration for the clients; null without a codec.
-  SharedScene stream_scene() const noexcept { return sender_ ? sender_->scene() : nullptr; }
+  SharedScene stream_scene() const noexcept { return declared_; }
   DeformableObjects* deformables() const noexcept { return deformables_; }  ///< null: the scene has none
 
  private:
@@ -66,6 +69,7 @@ class Server {
   double noise_reach_;  // [m] of a uniform distribution
   std::vector<std::unique_ptr<Simulated>> objects_;
   DeformableObjects* deformables_ = nullptr;  // among objects_
+  SharedScene declared_;  // null: without codec
   std::optional<Sender> sender_;
   std::optional<FrameTruth> truth_;
   TraceFrame frame_;

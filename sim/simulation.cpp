@@ -17,9 +17,17 @@ namespace tactus::sim {
 
 struct Simulation::Impl {
   std::uint64_t seed;
+  Client& client(std::size_t user) noexcept { return *clients[clients.size() > 1 ? user : 0]; }
+  Result<std::span<const Packet>> travel(std::span<const DeviceSample> devices) noexcept;
+  void render(std::span<const DeviceSample> devices) noexcept;
+
   std::unique_ptr<Server> server;
-  std::unique_ptr<Client> client;
+  std::unique_ptr<SessionNetwork> network;  // null: a perfect link
+  std::vector<std::unique_ptr<Client>> clients;  // with a network one per user
   PerfectLink link;
+  std::vector<std::optional<DeviceContact>> contacts;  // of the devices, in the tick before
+  std::vector<std::int64_t> shown;                     // tick, at each user's client
+  std::vector<double> shares;                          // of the force that it renders
   std::vector<Hand> hands;            // one per user, like the vectors below
   std::vector<DeviceSample> devices;  // of the hands
   std::vector<TouchRecord> records;
@@ -31,52 +39,94 @@ struct Simulation::Impl {
 
 Result<Simulation> Simulation::create(const Scene& scene, const SimulationOptions& options) {
   ServerOptions of_server{options.seed, {}, options.mesh_noise, options.estimate_every};
-  if (options.channel) of_server.codec = ServerCodec{options.channel->sender, options.channel->coding};
+  const NetworkOptions* const network = options.channel && options.channel->network ? &*options.channel->network : nullptr;
+  if (options.channel) of_server.codec = ServerCodec{options.channel->sender, options.channel->coding, network != nullptr};
   auto impl = std::make_unique<Impl>();
   impl->seed = options.seed;
   TACTUS_TRY(impl->server, Server::create(scene, of_server));
-  TACTUS_TRY(impl->client, Client::create(*impl->server, options.channel ? options.channel->replica : ReplicaOptions{}));
+  if (network != nullptr) {
+    TACTUS_TRY(impl->network, SessionNetwork::create(impl->server->stream_scene(), scene.users.size(), options.channel->sender, *network));
+    for (std::size_t i = 0; i < scene.users.size(); ++i) impl->clients.push_back(Client::create(*impl->server, impl->network->client(i)));
+  } else {
+    impl->clients.emplace_back();
+    TACTUS_TRY(impl->clients[0], Client::create(*impl->server, options.channel ? options.channel->replica : ReplicaOptions{}));
+  }
   Random seeds(options.seed);
   for (const SceneUser& user : scene.users) impl->hands.emplace_back(user, options.grip.value_or(user.grip), seeds.next());
   impl->devices.resize(scene.users.size());
   impl->records.resize(scene.users.size());
+  impl->contacts.resize(scene.users.size());
+  impl->shown.assign(scene.users.size(), -1);
+  impl->shares.assign(scene.users.size(), 1);
   return Simulation(std::move(impl));
 }
 
 tl::expected<std::span<const Packet>, Diagnostic> Simulation::step() {
   Impl& in = *impl_;
   for (std::size_t i = 0; i < in.hands.size(); ++i)  // 1
-    in.devices[i] = in.hands[i].step(in.client->felt(i), in.client->watched(i));
+    in.devices[i] = in.hands[i].step(in.client(i).felt(i), in.client(i).watched(i));
   return step(in.devices);
 }
 
-tl::expected<std::span<const Packet>, Diagnostic> Simulation::step(std::span<const DeviceSample> devices) {
-  auto& [seed, server, client, link, hands, own_devices, records] = *impl_;
-  if (devices.size() != records.size()) return impl_->refuse(fail(Errc::invalid_argument, "R-API-5").value());
-  if (!std::ranges::all_of(devices, [](const DeviceSample& device) { return is_valid(device); }))
-    return impl_->refuse(fail(Errc::invalid_argument, "R-API-1").value());
-
-  server->observe();
-  server->touch(link.to_server(devices));  // 2
-  const auto packets = server->encode();   // 3
-  if (!packets) return impl_->refuse(packets.error());
-  if (const auto received = client->receive(link.to_client(*packets)); !received) return impl_->refuse(received.error());
-  client->show(server->frame());
-  client->touch(devices);  // 4
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    UserSample& user = server->frame().users[i];
-    user.force = client->felt(i);
-    records[i].add(user);
+/// Steps 2 and 3: the devices go to the server, its packets to the clients.
+Result<std::span<const Packet>> Simulation::Impl::travel(std::span<const DeviceSample> at_clients) noexcept {
+  const std::int64_t tick = server->frame().tick;
+  if (!network) {
+    server->touch(link.to_server(at_clients));
+    TACTUS_TRY(const auto packets, server->encode());
+    TACTUS_CHECK(clients[0]->receive(link.to_client(packets)));
+    return packets;
   }
-  TACTUS_CHECK(server->step());  // 5
+  TACTUS_CHECK(network->to_server(tick, at_clients, contacts));
+  server->touch(network->heard());
+  TACTUS_CHECK(network->to_clients(tick, server->truth()));
+  return std::span<const Packet>();
+}
+
+/// Step 4.
+void Simulation::Impl::render(std::span<const DeviceSample> at_clients) noexcept {
+  if (!network) {
+    clients[0]->show(server->frame());
+    return clients[0]->touch(at_clients);
+  }
+  for (std::size_t i = 0; i < clients.size(); ++i) {
+    shown[i] = clients[i]->show(network->now(), server->frame());
+    shares[i] = network->client(i).force_share(network->now());
+    clients[i]->touch(i, at_clients[i], shares[i]);
+    contacts[i] = clients[i]->contact(i);
+  }
+}
+
+tl::expected<std::span<const Packet>, Diagnostic> Simulation::step(std::span<const DeviceSample> devices) {
+  Impl& in = *impl_;
+  if (devices.size() != in.records.size()) return in.refuse(fail(Errc::invalid_argument, "R-API-5").value());
+  if (!std::ranges::all_of(devices, [](const DeviceSample& device) { return is_valid(device); }))
+    return in.refuse(fail(Errc::invalid_argument, "R-API-1").value());
+
+  in.server->observe();
+  const auto packets = in.travel(devices);  // 2, 3
+  if (!packets) return in.refuse(packets.error());
+  in.render(devices);  // 4
+  for (std::size_t i = 0; i < in.records.size(); ++i) {
+    UserSample& user = in.server->frame().users[i];
+    user.force = in.client(i).felt(i);
+    in.records[i].add(user);
+  }
+  TACTUS_CHECK(in.server->step());  // 5
   return *packets;
 }
 
 const TraceFrame& Simulation::frame() const noexcept { return impl_->server->frame(); }
-std::span<const Pose> Simulation::client_poses() const noexcept { return impl_->client->poses(); }
+std::span<const Pose> Simulation::client_poses() const noexcept { return impl_->client(0).poses(); }
+std::span<const Pose> Simulation::client_poses(std::size_t user) const noexcept { return impl_->client(user).poses(); }
+std::int64_t Simulation::shown_tick(std::size_t user) const noexcept {
+  return impl_->network ? impl_->shown[user] : impl_->server->frame().tick;
+}
+double Simulation::share_rendered(std::size_t user) const noexcept { return impl_->contacts[user] ? impl_->shares[user] : 1; }
+const SessionNetwork* Simulation::network() const noexcept { return impl_->network.get(); }
 const DeformableObjects* Simulation::deformables() const noexcept { return impl_->server->deformables(); }
 const TouchSummary& Simulation::touched(std::size_t user) const noexcept { return impl_->records[user].summary(); }
-Replica& Simulation::replica() noexcept { return impl_->client->replica(); }
+Replica& Simulation::replica() noexcept { return impl_->client(0).replica(); }
 SharedScene Simulation::stream_scene() const noexcept { return impl_->server->stream_scene(); }
 
 double Simulation::bears(std::size_t user) const noexcept {

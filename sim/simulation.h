@@ -23,6 +23,7 @@
 #include <tactus/sender.h>
 #include <tactus/sim/deformable/deformable_objects.h>
 #include <tactus/sim/scene/scene.h>
+#include <tactus/sim/link/session_network.h>
 #include <tactus/sim/touchable.h>
 #include <tactus/sim/user/touch_record.h>
 #include <tactus/trace/frame.h>
@@ -34,6 +35,7 @@ struct ChannelOptions {
   SenderOptions sender;
   ReplicaOptions replica;
   TraceCoding coding{};  ///< of deformable objects
+  std::optional<NetworkOptions> network{};  ///< each user has a client with a session; none: one client, and no time passes
 };
 
 struct SimulationOptions {
@@ -52,7 +54,7 @@ class Simulation {
   static Result<Simulation> create(const Scene& scene, const SimulationOptions& options = {});
 
   /// One tick with the scene's virtual hands. Afterwards frame() is this tick.
-  /// out  the packets of this tick; valid until the next call
+  /// out  the packets of this tick; valid until the next call. With a network none: each session has its own
   /// time about 16 us for one cube and user; no allocation after the first tick, in which ODE makes its arenas, and the first
   ///      deformation.
   /// err  invalid_argument R-SIM-1, R-FEM-6: the physics broke down; errors of Sender::encode and Receiver::push
@@ -65,7 +67,12 @@ class Simulation {
 
   const TraceFrame& frame() const noexcept;                      ///< pre  step() was called
   std::span<const Pose> client_poses() const noexcept;           ///< as shown at the client in that tick, one per object
-  Replica& replica() noexcept;                                   ///< the client's.   pre  there is a channel
+  std::span<const Pose> client_poses(std::size_t user) const noexcept;  ///< at the client of that user
+  /// The tick whose state the user's client shows: with a network one of the past, -1 before the first.
+  std::int64_t shown_tick(std::size_t user) const noexcept;
+  double share_rendered(std::size_t user) const noexcept;  ///< of the force: less than 1 while the data are old
+  const SessionNetwork* network() const noexcept;  ///< null: there is none
+  Replica& replica() noexcept;                                   ///< the client's.   pre  there is a channel without network
   std::int64_t ticks() const noexcept;                           ///< length of the scene
   TraceInfo info() const;                                        ///< for a TraceWriter of these frames
   SharedScene stream_scene() const noexcept;                     ///< of the packets.   pre  there is a channel

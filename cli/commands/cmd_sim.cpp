@@ -15,6 +15,9 @@
 #include "cli/laboratory/stiffness_map.h"
 #include "cli/options/grip_option.h"
 #include "cli/options/option_needs.h"
+#include "cli/options/options_link.h"
+#include "cli/options/options_session.h"
+#include "cli/report/network_judge.h"
 #include "cli/report/report.h"
 #include "cli/report/table.h"
 #include "cli/report/trace_ending.h"
@@ -35,10 +38,13 @@ struct SimOptions {
   TriggerArguments triggers;
   MeshArguments meshes;
   ReplicaOptions replica;
+  std::optional<sim::LinkOptions> link, uplink;  // of both directions, of the one to the server
+  std::string playout = "adaptive";
   CommonOptions common;
 
+  bool has_network() const { return link || uplink; }
   bool has_channel() const {
-    return codec || !stream.empty() || triggers.any_given() || meshes.any_given() || replica.interpolation != Interpolation::none;
+    return codec || has_network() || !stream.empty() || triggers.any_given() || meshes.any_given() || replica.interpolation != Interpolation::none;
   }
 };
 
@@ -68,6 +74,7 @@ struct Run {
   std::optional<TraceReader> recording;
   TraceFrame recorded;
   std::vector<DeviceSample> devices;  // of this tick, recorded
+  std::optional<NetworkJudge> judge;  // with a network
 };
 
 /// If the recording has no buttons, button 0 counts as pressed during a spring contact.
@@ -122,11 +129,13 @@ Outcome record(Run& run, std::span<const Packet> packets, const SimOptions& opti
   if (const auto written = run.trace.write(frame); !written)
     return refuse(options.output, place_of_tick(frame.tick), written.error());
   TACTUS_CHECK(record_packets(run, packets, options, report));
-  judge_meshes(run, report);
-  if (report.fidelity) {
+  if (run.judge) {
+    run.judge->add(run.simulation);
+  } else if (report.fidelity) {
+    judge_meshes(run, report);
     report.fidelity->add(frame, run.simulation.client_poses());
-    report.fidelity->add_rendered(frame);
   }
+  if (report.fidelity) report.fidelity->add_rendered(frame);
   report.ticks.add(frame.tick);
   return {};
 }
@@ -196,6 +205,10 @@ Report make_report(const SimOptions& options, const TraceInfo& info) {
   if (options.replay.empty()) report.seed = options.seed;
   else report.files.emplace_back("replay", options.replay);
   if (!options.has_channel()) return report;
+  if (options.has_network()) {
+    report.fidelity.emplace(info, options.triggers.triggers());
+    return report;
+  }
   if (report.moving > 0 || info.meshes.empty()) report.traffic.emplace();
   report.fidelity.emplace(info, options.triggers.triggers());
   add_meshes(info, options.meshes, options.triggers, report);
@@ -278,6 +291,19 @@ tl::unexpected<Failure> stopped(int signal, const Report& report, const SimOptio
   return tl::unexpected(std::move(failure));
 }
 
+/// What `--link`, `--uplink` and `--playout` say.
+tl::expected<sim::NetworkOptions, Failure> network_of(const SimOptions& options, const sim::Scene& scene) {
+  if (!options.stream.empty())
+    return refuse_arguments("--stream: over a network each user gets packets of their own", "Leave out --stream, or --link.");
+  if (scene.users.empty())
+    return refuse_arguments("--link: nobody is in this scene, so there is no session", "Give a scene with users.");
+  sim::NetworkOptions out;
+  out.downlink = options.link.value_or(sim::LinkOptions{});
+  out.uplink = options.uplink.value_or(out.downlink);
+  out.playout.fixed = playout_of(options.playout);
+  return out;
+}
+
 Outcome run(const SimOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
   if (options.duration >= 0 && options.duration < 0.5 / sim::kTickRate)
@@ -293,7 +319,10 @@ Outcome run(const SimOptions& options) {
                                   .mesh_noise = options.mesh_noise,
                                   .estimate_every = kEstimateEvery};
   if (options.has_channel())
-    settings.channel = sim::ChannelOptions{options.meshes.sender(options.triggers), options.replica, options.meshes.coding()};
+    settings.channel = sim::ChannelOptions{options.meshes.sender(options.triggers), options.replica, options.meshes.coding(), {}};
+  if (options.has_network()) {
+    TACTUS_TRY(settings.channel->network, network_of(options, scene));
+  }
   auto simulation = sim::Simulation::create(scene, settings);
   if (!simulation) return refuse(options.scene, simulation.error());
   std::optional<TraceReader> recording;
@@ -317,7 +346,8 @@ Outcome run(const SimOptions& options) {
 
   Report report = make_report(options, info);
   describe_deformables(*simulation, report);
-  Run session{std::move(*simulation), std::move(output), std::move(*trace), std::move(stream), std::move(recording), {}, {}};
+  Run session{std::move(*simulation), std::move(output), std::move(*trace), std::move(stream), std::move(recording), {}, {}, {}};
+  if (options.has_network()) session.judge.emplace(info, options.triggers.triggers());
   const auto ticks = options.duration < 0 ? session.simulation.ticks()
                                           : static_cast<std::int64_t>(std::llround(options.duration * sim::kTickRate));
   if (auto done = simulate(session, ticks, options, report); !done) {
@@ -325,7 +355,8 @@ Outcome run(const SimOptions& options) {
     return done;
   }
   report_touches(scene, session.simulation, report);
-  if (options.has_channel()) report.stream = stream_size(session);
+  if (session.judge) report.networks = session.judge->finish(session.simulation);
+  else if (options.has_channel()) report.stream = stream_size(session);
   report_errors(session.simulation, report);
   report.timings.push_back(std::move(map));
   print(report, options.common, beside(options.output));
@@ -378,14 +409,21 @@ void setup_sim(Command& app, Action& action) {
   command.add_flag("--codec", options->codec,
                    "Close the loop through encoder, decoder and replica; every option from --stream to --layered implies it");
   command.add_option("--stream", options->stream, "Also write the packets")->type_name("FILE");
-  add_interpolation(command, options->replica);
+  Option* const interpolate = add_interpolation(command, options->replica);
+  add_link(command, "--link", options->link, "Give each user a client of their own, joined over this network, the same there and back")
+      ->excludes(interpolate);
+  add_link(command, "--uplink", options->uplink, "The network from the clients to the server, if it differs");
+  add_playout(command, options->playout);
   add_encoder_options(command, options->triggers, options->meshes);
   add_output_options(command, options->common);
   command.footer(
       "Examples:\n"
       "  tactus sim push-1dof -o push.mcap --seed 7\n"
       "  tactus sim membrane -o membrane.mcap --rate 1\n"
-      "  tactus sim rotate-push-lift -o felt.mcap --stream felt.tct -p 4% --interpolate");
+      "  tactus sim rotate-push-lift -o felt.mcap --stream felt.tct -p 4% --interpolate\n"
+      "  tactus sim rotate-push-lift -o far.mcap -p 4% --link delay=20ms,jitter=5ms,loss=1%\n"
+      "\n" +
+      std::string(link_help()));
   on_chosen<SimOptions>(command, action, options, run);
 }
 

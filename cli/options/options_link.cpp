@@ -190,13 +190,25 @@ Parsed<sim::LinkOptions> parse_link(Text text) {
   return link;
 }
 
-Option* add_link(Command& app, const std::string& name, sim::LinkOptions& value, const std::string& help) {
+namespace {
+
+template <class Value>
+Option* add(Command& app, const std::string& name, Value& value, const std::string& help) {
   const auto read = [&value, name](const std::string& text) {
     auto parsed = parse_link(text);
     if (!parsed) refuse_option(name, parsed.error());
     value = std::move(*parsed);
   };
   return app.add_option(name, read, help)->type_name("NETWORK");
+}
+
+}  // namespace
+
+Option* add_link(Command& app, const std::string& name, sim::LinkOptions& value, const std::string& help) {
+  return add(app, name, value, help);
+}
+Option* add_link(Command& app, const std::string& name, std::optional<sim::LinkOptions>& value, const std::string& help) {
+  return add(app, name, value, help);
 }
 
 }  // namespace tactus::cli

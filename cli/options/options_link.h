@@ -2,6 +2,7 @@
 /// An emulated network as people type it: delay=20ms,jitter=5ms,loss=1%
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
@@ -16,6 +17,7 @@ tl::expected<sim::LinkOptions, std::string> parse_link(std::string_view text);
 
 /// Option that takes such a network.
 Option* add_link(Command& app, const std::string& name, sim::LinkOptions& value, const std::string& help);
+Option* add_link(Command& app, const std::string& name, std::optional<sim::LinkOptions>& value, const std::string& help);
 
 /// The parts and their units, for the end of a help text.
 const char* link_help();

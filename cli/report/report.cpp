@@ -65,10 +65,9 @@ void error_row(Table& table, const Report& r, const std::string& name, const std
              fmt::format("{:.0f}", 1e3 * static_cast<double>(s.longest_run()) / r.tick_rate)});
 }
 
-void error_rows(Table& table, const Report& r) {
-  const ErrorMetrics& f = *r.fidelity;
+void error_rows(Table& table, const Report& r, const ErrorMetrics& f, const std::string& of) {
   const RigidTriggers& b = f.bounds();
-  table.heading({"error", "bound", "RMS", "max", "ticks over", "share", "longest [ms]"});
+  table.heading({"error" + of, "bound", "RMS", "max", "ticks over", "share", "longest [ms]"});
   if (f.position().ticks() > 0) {
     error_row(table, r, "  position [mm]", significant(1e3 * b.visual_position), f.position(), 1e-3);
     error_row(table, r, "  rotation [deg]", significant(b.visual_rotation / kDegree), f.rotation(), kDegree);
@@ -152,6 +151,7 @@ void note_rows(Table& table, const Report& r) {
              fmt::format("{}: {}, {:.1f} % of the ticks, at most {:.2f} N, least energy of a contact {:.2g} mJ", t.user,
                          counted(t.contacts, "contact"), 100 * t.share, t.largest_force, 1e3 * t.lowest_energy));
   }
+  for (const NetworkReport& user : r.networks) note_row(table, "network", network_note(user));
   if (!r.bounds_from.empty())
     note_row(table, "bounds",
              r.bounds_from == "stream"    ? "declared by the stream"
@@ -184,7 +184,11 @@ void print_text(const Report& r, std::FILE* out) {
   fmt::print(out, "\n");
   Table figures;
   if (r.traffic) traffic_rows(figures, r);
-  if (r.fidelity && has_errors(*r.fidelity)) error_rows(figures, r);
+  if (r.fidelity && has_errors(*r.fidelity)) error_rows(figures, r, *r.fidelity, "");
+  for (const NetworkReport& user : r.networks) {
+    network_rows(figures, user, r.seconds());
+    if (has_errors(user.errors)) error_rows(figures, r, user.errors, " at " + user.user + ", against the tick shown");
+  }
   for (const MeshReport& mesh : r.meshes) mesh_rows(figures, mesh, r.seconds());
   if (r.stream) stream_rows(figures, r);
   if (!r.timings.empty() || !r.meshes.empty()) time_rows(figures, r);

@@ -12,6 +12,7 @@
 #include <tactus/metrics/rates.h>
 #include "cli/options/options_codec.h"
 #include "cli/report/mesh_report.h"
+#include "cli/report/network_report.h"
 #include "cli/report/touch_report.h"
 
 namespace tactus::cli {
@@ -56,6 +57,7 @@ struct Report {
   std::optional<RateMetrics> traffic{};
   std::optional<ErrorMetrics> fidelity{};
   std::vector<MeshReport> meshes{};
+  std::vector<NetworkReport> networks{};  ///< one per user with a session
   std::vector<Timing> timings{};
 
   /// Take over what a trace's description says.

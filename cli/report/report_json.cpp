@@ -135,8 +135,7 @@ Json mesh_bounds_json(const DeformableErrors& f, bool promised) {
   return out;
 }
 
-Json errors_json(const Report& r) {
-  const ErrorMetrics& f = *r.fidelity;
+Json errors_json(const Report& r, const ErrorMetrics& f) {
   Json out;
   if (f.position().ticks() > 0) {
     out["position_m"] = series_json(r, f.position());
@@ -222,11 +221,17 @@ std::string to_json(const Report& r) {
   if (r.traffic) out["traffic"] = rigid_traffic_json(r);
   if (r.fidelity && has_errors(*r.fidelity)) {
     out["bounds"] = bounds_json(r.fidelity->bounds());
-    out["error"] = errors_json(r);
+    out["error"] = errors_json(r, *r.fidelity);
   }
   if (!r.bounds_from.empty()) {
     out["bounds_from"] = r.bounds_from;
     out["bounds_held"] = broken_bounds(r).empty();
+  }
+  for (const NetworkReport& user : r.networks) {
+    Json session = network_json(user, r.seconds());
+    session["bounds"] = bounds_json(user.errors.bounds());
+    if (has_errors(user.errors)) session["error"] = errors_json(r, user.errors);
+    out["sessions"].push_back(std::move(session));
   }
   for (const MeshReport& mesh : r.meshes) out["deformables"].push_back(mesh_json(mesh, r.seconds()));
   for (const Timing& t : r.timings)

@@ -36,7 +36,10 @@ Result<bool> Exchange::handle(const Part& part, Reading& reading) noexcept {
     TACTUS_CHECK(acknowledged(*said, reading));
     return true;
   }
-  reading.asks = reading.asks || !std::holds_alternative<ClockPart>(part);
+  const Asks asks = std::holds_alternative<StatePart>(part)   ? Asks::now
+                    : std::holds_alternative<ClockPart>(part) ? Asks::never
+                                                              : Asks::soon;
+  reading.asks = std::max(reading.asks, asks);
   if (const auto* fragment = std::get_if<FragmentPart>(&part)) {
     TACTUS_CHECK(take(*fragment, reading));
     return true;
@@ -52,7 +55,8 @@ Result<bool> Exchange::handle(const Part& part, Reading& reading) noexcept {
 std::uint64_t Exchange::patience() const noexcept {
   if (!sent_.round_trip()) return kFirstPatience;
   const RoundTrip& trip = *sent_.round_trip();
-  return static_cast<std::uint64_t>(trip.smoothed + 4 * trip.variation) + ReceivedNumbers::kPatience;
+  const std::uint64_t held = direction_ == Direction::up ? kDownPatience : kUpPatience;  // by the other end
+  return static_cast<std::uint64_t>(trip.smoothed + 4 * trip.variation) + held;
 }
 
 void Exchange::report_link() noexcept {

@@ -20,6 +20,8 @@
 
 namespace tactus {
 
+inline constexpr std::uint64_t kUpPatience = 10'000, kDownPatience = 25'000;  ///< [us] of acknowledgements in these directions
+
 /// pre  `now` [us] never decreases.   Only receive_with() allocates.
 class Exchange {
  public:
@@ -98,7 +100,7 @@ class Exchange {
   struct Reading {
     Heard heard;
     std::uint64_t now = 0;
-    bool asks = false;
+    Asks asks = Asks::never;
     bool complete = true;  // all packets in it are decoded
     bool waits = false;    // for other fragments
   };
@@ -130,7 +132,7 @@ class Exchange {
   Direction direction_;
   std::uint64_t epoch_;
   DatagramWriter writer_;
-  ReceivedNumbers received_;
+  ReceivedNumbers received_{direction_ == Direction::up ? kUpPatience : kDownPatience};
   SentNumbers sent_;
   Fragments fragments_{0};
   std::array<Slot, SentNumbers::kRemembered> slots_{};

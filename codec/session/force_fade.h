@@ -14,6 +14,9 @@ class ForceFade {
   static constexpr std::uint64_t kFresh = 70'000, kStale = 100'000, kReturn = 500'000;  ///< [us]
   static constexpr std::int64_t kAll = 65536;
 
+  /// The device feels nothing: a new contact need not rise slowly.
+  void release() noexcept { share_ = kAll; }
+
   /// in   now >= heard  [us]; `now` never decreases.   out  x 2^-16
   std::int64_t share(std::uint64_t now, std::uint64_t heard) noexcept {
     const std::uint64_t age = std::clamp(now - heard, kFresh, kStale);

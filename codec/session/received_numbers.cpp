@@ -38,20 +38,17 @@ Result<std::uint64_t> ReceivedNumbers::extend(std::uint16_t wire) const noexcept
   return number;
 }
 
-void ReceivedNumbers::accept(std::uint64_t number, std::uint64_t now, bool asks) noexcept {
+void ReceivedNumbers::accept(std::uint64_t number, std::uint64_t now, Asks asks) noexcept {
   if (accepted_.is_too_old(number)) return;
   if (number > accepted_.newest()) newest_at_ = now;
   accepted_.add(number);
-  if (asks && !first_unsaid_) first_unsaid_ = now;
-}
-
-std::optional<std::uint64_t> ReceivedNumbers::due() const noexcept {
-  if (!first_unsaid_) return std::nullopt;
-  return *first_unsaid_ + kPatience;
+  if (asks == Asks::never) return;
+  const std::uint64_t due = asks == Asks::now ? now : now + patience_;
+  due_ = std::min(due_.value_or(due), due);
 }
 
 Acknowledgement ReceivedNumbers::acknowledge(std::uint64_t now) noexcept {
-  first_unsaid_.reset();
+  due_.reset();
   Acknowledgement out;
   const std::uint64_t newest = accepted_.newest();
   out.newest = static_cast<std::uint16_t>(newest);

@@ -28,9 +28,17 @@ class NumberWindow {
   std::uint64_t newest_ = 0;
 };
 
+/// When a datagram is to be acknowledged.
+enum class Asks : std::uint8_t {
+  never,  ///< it holds nothing but acknowledgements and clocks
+  soon,
+  now,  ///< a sign of life
+};
+
 class ReceivedNumbers {
  public:
-  static constexpr std::uint64_t kPatience = 10'000;  ///< [us] an acknowledgement waits for a datagram to ride on
+  /// in   patience  [us] an acknowledgement waits for a datagram to ride on
+  explicit ReceivedNumbers(std::uint64_t patience) noexcept : patience_(patience) {}
 
   /// The number that 14 bits of it stand for: the one nearest to the newest.
   /// err  state R-SES-4: it was received before, or is too old
@@ -39,12 +47,12 @@ class ReceivedNumbers {
   void receive(std::uint64_t number) noexcept { received_.add(number); }  ///< pre  extend()
 
   /// A received datagram, all of whose packets are decoded, is to be acknowledged.
-  /// in   now  [us];  asks  it holds more than acknowledgements and clocks
-  void accept(std::uint64_t number, std::uint64_t now, bool asks) noexcept;
+  /// in   now  [us]
+  void accept(std::uint64_t number, std::uint64_t now, Asks asks) noexcept;
 
-  bool has_news() const noexcept { return first_unsaid_.has_value(); }
+  bool has_news() const noexcept { return due_.has_value(); }
   /// [us] when an acknowledgement should go even if nothing else does
-  std::optional<std::uint64_t> due() const noexcept;
+  std::optional<std::uint64_t> due() const noexcept { return due_; }
   /// pre  something was accepted
   Acknowledgement acknowledge(std::uint64_t now) noexcept;
   bool can_acknowledge() const noexcept { return accepted_.newest() > 0; }
@@ -52,7 +60,8 @@ class ReceivedNumbers {
  private:
   NumberWindow received_, accepted_;
   std::uint64_t newest_at_ = 0;                // [us] when accepted_.newest() came
-  std::optional<std::uint64_t> first_unsaid_;  // [us] when the first came that no acknowledgement has told of
+  std::uint64_t patience_;
+  std::optional<std::uint64_t> due_;
 };
 
 }  // namespace tactus

@@ -20,9 +20,11 @@ namespace tactus {
 namespace {
 
 constexpr std::uint64_t kFirstRetry = 250'000, kLastRetry = 2'000'000, kJoinFor = 10'000'000;  // [us]
-// [us] from one sign of life to the next: of a participant that moves or feels, while packets come, at rest.
-constexpr std::uint64_t kActive = 25'000, kServed = 100'000, kIdle = 1'000'000;
-constexpr std::uint64_t kRecent = 1'000'000;   // [us]: what counts as now
+// [us] from one sign of life to the next: of a participant who feels something, over a network that loses or not; of another
+// participant; of an observer while packets come, and at rest.
+constexpr std::uint64_t kFeltAtLoss = 12'000, kFelt = 25'000, kParticipant = 50'000, kServed = 100'000, kIdle = 1'000'000;
+constexpr std::uint32_t kSomeLoss = 65536 / 50;
+constexpr std::uint64_t kRecent = 1'000'000;     // [us]: what counts as now
 constexpr std::uint64_t kButtonsEvery = 20'000;  // [us] until they are acknowledged
 constexpr unsigned kLeaves = 3;                // one of them should arrive
 
@@ -70,7 +72,8 @@ struct SessionClient::Impl {
   std::unique_ptr<Epoch> current;  // the newest
   std::unique_ptr<Epoch> shown;    // the one before, until the newest is live
   std::uint64_t sign_at = 0;       // [us] of the last sign of life
-  std::uint64_t packet_at = 0, active_at = 0;  // [us] of the last packet, of the last motion or force
+  std::uint64_t packet_at = 0;     // [us] of the last packet
+  bool feels = false;              // the device is in contact
   std::optional<HashPart> hash;
   ButtonsPart buttons;
   std::uint64_t buttons_at = 0;       // [us] when they go next
@@ -151,6 +154,7 @@ Result<void> SessionClient::Impl::welcomed(std::uint64_t now, const Welcome& sai
   current = std::move(next);
   go(SessionEvent::welcomed);
   sign_at = 0;
+  feels = false;
   hash.reset();
   buttons_wait = false;
   note({.kind = ClientEvent::Kind::welcomed});
@@ -215,8 +219,9 @@ Result<void> SessionClient::Impl::complete(std::uint64_t now) noexcept try {
 std::uint64_t SessionClient::Impl::sign_due() const noexcept {
   if (sign_at == 0) return 0;
   const std::uint64_t sent = std::max(sign_at, current->exchange.asked_at());
-  if (state == SessionState::receiving || sent < packet_at + kRecent) return sent + (sent < active_at + kRecent ? kActive : kServed);
-  return sent + (sent < active_at + kRecent ? kActive : kIdle);
+  if (feels) return sent + (current->exchange.sent().loss() > kSomeLoss ? kFeltAtLoss : kFelt);
+  if (options.role == Role::participant) return sent + kParticipant;
+  return sent + (state == SessionState::receiving || sent < packet_at + kRecent ? kServed : kIdle);
 }
 
 bool SessionClient::Impl::has_buttons_due(std::uint64_t now) const noexcept { return buttons_wait && now >= buttons_at; }
@@ -236,9 +241,9 @@ Result<void> SessionClient::submit(std::uint64_t now, const DeviceSample& sample
   const auto rate = static_cast<std::uint64_t>(epoch.exchange.sender->scene()->tick_rate);
   const auto tick = static_cast<std::int64_t>((now - epoch.device_start) * rate / 1'000'000);
   if (tick <= epoch.device_tick) return {};
-  TACTUS_TRY(const auto packets, epoch.exchange.submit(now, tick, epoch.device->of(tick, sample, contact)));
+  TACTUS_CHECK(epoch.exchange.submit(now, tick, epoch.device->of(tick, sample, contact)));
   epoch.device_tick = tick;
-  if (!packets.empty() || contact) in.active_at = now;
+  in.feels = contact.has_value();
   if (sample.buttons != in.buttons.mask) {
     in.buttons = {static_cast<std::uint32_t>(tick), sample.buttons};
     in.buttons_wait = true;
@@ -308,6 +313,7 @@ std::int64_t SessionClient::shown_tick(std::uint64_t now) noexcept {
 double SessionClient::force_share(std::uint64_t now) noexcept {
   const Impl& in = *impl_;
   const std::uint64_t heard = in.state == SessionState::live ? in.current->exchange.heard_at() : 0;
+  if (!in.feels) impl_->fade.release();
   return std::ldexp(static_cast<double>(impl_->fade.share(now, heard)), -16);
 }
 

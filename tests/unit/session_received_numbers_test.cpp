@@ -12,7 +12,7 @@ namespace tactus {
 namespace {
 
 TEST(ReceivedNumbers, FourteenBitsStandForOneNumber) {
-  ReceivedNumbers received;
+  ReceivedNumbers received(10'000);
   EXPECT_EQ(received.extend(1).value(), 1u);
   EXPECT_EQ(received.extend(4096).value(), 4096u);
   EXPECT_FALSE(received.extend(0)) << "numbers count from 1";
@@ -31,7 +31,7 @@ TEST(ReceivedNumbers, FourteenBitsStandForOneNumber) {
 
 TEST(ReceivedNumbers, EachIsTakenOnceInAnyOrder) {
   std::mt19937_64 random(3);
-  ReceivedNumbers received;
+  ReceivedNumbers received(10'000);
   std::set<std::uint64_t> taken;
   std::uint64_t newest = 0;
   for (int i = 0; i < 50000; ++i) {
@@ -50,30 +50,32 @@ TEST(ReceivedNumbers, EachIsTakenOnceInAnyOrder) {
 }
 
 TEST(ReceivedNumbers, AcknowledgementsTellOfWhatWasAccepted) {
-  ReceivedNumbers received;
+  ReceivedNumbers received(10'000);
   EXPECT_FALSE(received.can_acknowledge());
   EXPECT_FALSE(received.due());
-  received.accept(1, 1000, true);
-  received.accept(2, 2000, true);
-  received.accept(5, 5000, false);
-  received.accept(4, 6000, true);
+  received.accept(1, 1000, Asks::soon);
+  received.accept(2, 2000, Asks::soon);
+  received.accept(5, 5000, Asks::never);
+  received.accept(4, 6000, Asks::soon);
   EXPECT_EQ(received.due(), 11000u) << "10 ms after the first";
   const Acknowledgement said = received.acknowledge(7616);
   EXPECT_EQ(said.newest, 5);
   EXPECT_EQ(said.held, 163) << "2616 us since 5 came, in units of 16";
   EXPECT_EQ(said.missing, 0b0010u) << "4, 2 and 1 were accepted, 3 was not, and there is none below 1";
   EXPECT_FALSE(received.due());
-  received.accept(6, 8000, false);
+  received.accept(6, 8000, Asks::never);
   EXPECT_FALSE(received.due()) << "an acknowledgement asks for none";
+  received.accept(7, 8000, Asks::now);
+  EXPECT_EQ(received.due(), 8000u);
   EXPECT_EQ(received.acknowledge(8000 + 2'000'000).held, Acknowledgement::kNoTiming);
   EXPECT_EQ(received.acknowledge(8000 + 16 * 65534).held, 65534);
 }
 
 TEST(ReceivedNumbers, WhatIsNotAcceptedIsMissing) {
-  ReceivedNumbers received;
+  ReceivedNumbers received(10'000);
   for (std::uint64_t number = 1; number <= 200; ++number) {
     received.receive(number);
-    if (number % 5 != 0) received.accept(number, 1, true);
+    if (number % 5 != 0) received.accept(number, 1, Asks::soon);
   }
   const Acknowledgement said = received.acknowledge(1);
   EXPECT_EQ(said.newest, 199);

@@ -82,7 +82,7 @@ TEST(SentNumbers, TheRoundTripLeavesOutWhatTheOtherEndHeld) {
 /// Both ends over a way that loses and delays: what is said to be lost was, and the share is right.
 TEST(SentNumbers, LossIsFoundOut) {
   SentNumbers sent;
-  ReceivedNumbers received;
+  ReceivedNumbers received(10'000);
   std::mt19937_64 random(5);
   std::multimap<std::uint64_t, std::uint64_t> on_the_way;
   std::multimap<std::uint64_t, Acknowledgement> back;
@@ -99,7 +99,7 @@ TEST(SentNumbers, LossIsFoundOut) {
       const std::uint64_t number = received.extend(static_cast<std::uint16_t>(on_the_way.begin()->second)).value();
       ASSERT_EQ(number, on_the_way.begin()->second);
       received.receive(number);
-      received.accept(number, on_the_way.begin()->first, true);
+      received.accept(number, on_the_way.begin()->first, Asks::soon);
     }
     if (received.due().value_or(now + 1) <= now) back.emplace(now + 20000, received.acknowledge(now));
     for (; !back.empty() && back.begin()->first <= now; back.erase(back.begin())) {

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/options/options_session.h"
+
+#include <cmath>
+
+#include "cli/options/units.h"
+
+namespace tactus::cli {
+
+Option* add_playout(Command& app, std::string& value) {
+  const auto read = [&value](const std::string& text) {
+    if (text != "adaptive") {
+      const auto time = parse_quantity(text, Dimension::time);
+      if (!time) refuse_option("--playout", time.error() + ", or adaptive");
+      if (!(time->value >= 0 && time->value <= 2)) refuse_option("--playout", "'" + text + "': from 0 to 2s, or adaptive");
+    }
+    value = text;
+  };
+  return app
+      .add_option("--playout", read,
+                  "How long after the fastest packet a client shows a tick: a time, or adaptive, which waits for nearly all [adaptive]")
+      ->type_name("TIME");
+}
+
+std::optional<std::uint32_t> playout_of(const std::string& value) {
+  if (value == "adaptive") return std::nullopt;
+  return static_cast<std::uint32_t>(std::llround(1e6 * parse_quantity(value, Dimension::time)->value));
+}
+
+}  // namespace tactus::cli
