@@ -25,12 +25,12 @@ std::size_t width_beside(const std::string& label) {
   return std::clamp(columns > taken ? columns - taken : 0, kLeastWidth, kWidth);
 }
 
+}  // namespace
+
 bool is_capable_terminal(int stream) {
   const char* term = std::getenv("TERM");
   return isatty(stream) != 0 && term != nullptr && std::string_view(term) != "dumb";
 }
-
-}  // namespace
 
 bool is_coloured(int stream) {
   const char* refused = std::getenv("NO_COLOR");

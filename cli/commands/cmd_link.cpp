@@ -14,6 +14,7 @@
 
 #include <tactus/net/udp.h>
 #include "cli/commands/stop.h"
+#include "cli/live/live_report.h"
 #include "cli/options/options_link.h"
 #include "cli/options/units.h"
 #include "cli/report/json_parts.h"
@@ -187,20 +188,9 @@ void print_text(const Json& r) {
   counts.print(stdout);
 }
 
-/// A port alone is one of the loopback. Elsewhere a forwarder would serve strangers.
-tl::expected<net::Address, Failure> loopback(const std::string& option, const std::string& typed) {
-  const std::string full = typed.find(':') == std::string::npos ? "127.0.0.1:" + typed : typed;
-  const auto address = net::Address::parse(full);
-  if (!address) return refuse_arguments(option + " " + typed + ": not a port and not HOST:PORT", "Give a port from 0 to 65535.");
-  if (!address->is_loopback())
-    return refuse_arguments(option + " " + typed + ": not on the loopback",
-                            "Give a port, or an address of this machine's loopback.");
-  return *address;
-}
-
 Outcome run(const ForwardOptions& options) {
-  TACTUS_TRY(const net::Address listen, loopback("--listen", options.listen));
-  TACTUS_TRY(const net::Address to, loopback("--to", options.to));
+  TACTUS_TRY(const net::Address listen, loopback_address("--listen", options.listen));
+  TACTUS_TRY(const net::Address to, loopback_address("--to", options.to));
   auto own = net::UdpSocket::bind(listen);
   if (!own) return refuse(options.listen, own.error());
   ForwardOptions shown = options;

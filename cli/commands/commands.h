@@ -18,6 +18,8 @@ void setup_info(Command& app, Action& action);
 void setup_export(Command& app, Action& action);
 void setup_export_mesh(Command& group, Action& action);
 void setup_link(Command& app, Action& action);
+void setup_serve(Command& app, Action& action);
+void setup_join(Command& app, Action& action);
 void setup_sweep(Command& app, Action& action);
 void setup_reproduce(Command& app, Action& action);
 void setup_bench(Command& app, Action& action);

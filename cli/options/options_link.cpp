@@ -129,6 +129,8 @@ struct Part {
   Parsed<void> (*read)(sim::LinkOptions& link, Text value);
 };
 using Options = sim::LinkOptions;
+constexpr std::array<Text, 3> kBitRates{"bit", "kbit", "Mbit"};
+
 constexpr std::array<Part, 12> kParts{{
     {"delay", [](Options& link, Text value) { return put(link.delay, time(value)); }},
     {"jitter", [](Options& link, Text value) { return put(link.jitter, time(value)); }},
@@ -140,7 +142,7 @@ constexpr std::array<Part, 12> kParts{{
     {"late", read_late},
     {"rate",
      [](Options& link, Text value) {
-       return put(link.rate, amount(value, {"bit", "kbit", "Mbit"}));
+       return put(link.rate, amount(value, kBitRates));
      }},
     {"queue", read_queue},
     {"outage", read_outage},
@@ -203,6 +205,15 @@ Option* add(Command& app, const std::string& name, Value& value, const std::stri
 }
 
 }  // namespace
+
+Option* add_bit_rate(Command& app, const std::string& name, double& value, const std::string& help) {
+  const auto read = [&value, name](const std::string& text) {
+    const auto rate = amount(text, kBitRates);
+    if (!rate) refuse_option(name, rate.error());
+    value = *rate;
+  };
+  return app.add_option(name, read, help)->type_name("RATE");
+}
 
 Option* add_link(Command& app, const std::string& name, sim::LinkOptions& value, const std::string& help) {
   return add(app, name, value, help);

@@ -19,6 +19,9 @@ tl::expected<sim::LinkOptions, std::string> parse_link(std::string_view text);
 Option* add_link(Command& app, const std::string& name, sim::LinkOptions& value, const std::string& help);
 Option* add_link(Command& app, const std::string& name, std::optional<sim::LinkOptions>& value, const std::string& help);
 
+/// Option that takes bits per second with their unit: 200kbit.
+Option* add_bit_rate(Command& app, const std::string& name, double& value, const std::string& help);
+
 /// The parts and their units, for the end of a help text.
 const char* link_help();
 

@@ -14,6 +14,7 @@
 #include <memory>
 #include <utility>
 
+#include <tactus/base/hash.h>
 #include <tactus/base/rule.h>
 
 namespace tactus::net {
@@ -74,6 +75,12 @@ std::string Address::text() const {
     return "nowhere";
   const bool is_ipv6 = as_sockaddr(bytes_)->sa_family == AF_INET6;
   return (is_ipv6 ? '[' + std::string(host) + ']' : std::string(host)) + ':' + port;
+}
+
+std::uint64_t Address::key() const noexcept {
+  Fnv1a hash;
+  for (std::size_t i = 0; i < size_; ++i) hash.add_byte(bytes_[i]);
+  return hash.value() == 0 ? 1 : hash.value();
 }
 
 bool Address::is_loopback() const noexcept {

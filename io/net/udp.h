@@ -22,6 +22,7 @@ class Address {
 
   std::string text() const;  ///< as parse() takes it, in numbers
   bool is_loopback() const noexcept;
+  std::uint64_t key() const noexcept;  ///< equal for equal addresses, else almost certainly different; never 0
   friend bool operator==(const Address& a, const Address& b) noexcept;
 
  private:
