@@ -55,8 +55,8 @@ class Client {
   void show_pose(std::uint32_t object, const Pose& pose) noexcept;
 
   const Scene& scene_;
-  std::optional<Receiver> receiver_;   // none: the truth is shown,
-  SessionClient* session_ = nullptr;   // or what this receives
+  std::optional<Receiver> receiver_;  // none: the truth is shown,
+  SessionClient* session_ = nullptr;  // or what this receives
   std::vector<Pose> poses_;
   std::vector<Pose> places_;  // of deformable objects, for users who look at one
   RigidView rigid_;

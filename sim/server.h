@@ -21,8 +21,8 @@ namespace tactus::sim {
 /// What is coded, and how.
 struct ServerCodec {
   SenderOptions sender;
-  TraceCoding coding{};  ///< of deformable objects
-  bool sessions = false; ///< clients have sessions of their own, which code for them
+  TraceCoding coding{};   ///< of deformable objects
+  bool sessions = false;  ///< clients have sessions of their own, which code for them
 };
 
 struct ServerOptions {
@@ -69,7 +69,7 @@ class Server {
   double noise_reach_;  // [m] of a uniform distribution
   std::vector<std::unique_ptr<Simulated>> objects_;
   DeformableObjects* deformables_ = nullptr;  // among objects_
-  SharedScene declared_;  // null: without codec
+  SharedScene declared_;                      // null: without codec
   std::optional<Sender> sender_;
   std::optional<FrameTruth> truth_;
   TraceFrame frame_;

@@ -22,14 +22,14 @@ struct Simulation::Impl {
   void render(std::span<const DeviceSample> devices) noexcept;
 
   std::unique_ptr<Server> server;
-  std::unique_ptr<SessionNetwork> network;  // null: a perfect link
+  std::unique_ptr<SessionNetwork> network;       // null: a perfect link
   std::vector<std::unique_ptr<Client>> clients;  // with a network one per user
   PerfectLink link;
   std::vector<std::optional<DeviceContact>> contacts;  // of the devices, in the tick before
   std::vector<std::int64_t> shown;                     // tick, at each user's client
   std::vector<double> shares;                          // of the force that it renders
-  std::vector<Hand> hands;            // one per user, like the vectors below
-  std::vector<DeviceSample> devices;  // of the hands
+  std::vector<Hand> hands;                             // one per user, like the vectors below
+  std::vector<DeviceSample> devices;                   // of the hands
   std::vector<TouchRecord> records;
 
   tl::expected<std::span<const Packet>, Diagnostic> refuse(const Error& error) const {
@@ -45,8 +45,10 @@ Result<Simulation> Simulation::create(const Scene& scene, const SimulationOption
   impl->seed = options.seed;
   TACTUS_TRY(impl->server, Server::create(scene, of_server));
   if (network != nullptr) {
-    TACTUS_TRY(impl->network, SessionNetwork::create(impl->server->stream_scene(), scene.users.size(), options.channel->sender, *network));
-    for (std::size_t i = 0; i < scene.users.size(); ++i) impl->clients.push_back(Client::create(*impl->server, impl->network->client(i)));
+    TACTUS_TRY(impl->network,
+               SessionNetwork::create(impl->server->stream_scene(), scene.users.size(), options.channel->sender, *network));
+    for (std::size_t i = 0; i < scene.users.size(); ++i)
+      impl->clients.push_back(Client::create(*impl->server, impl->network->client(i)));
   } else {
     impl->clients.emplace_back();
     TACTUS_TRY(impl->clients[0], Client::create(*impl->server, options.channel ? options.channel->replica : ReplicaOptions{}));

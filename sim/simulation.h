@@ -22,8 +22,8 @@
 #include <tactus/receiver.h>
 #include <tactus/sender.h>
 #include <tactus/sim/deformable/deformable_objects.h>
-#include <tactus/sim/scene/scene.h>
 #include <tactus/sim/link/session_network.h>
+#include <tactus/sim/scene/scene.h>
 #include <tactus/sim/touchable.h>
 #include <tactus/sim/user/touch_record.h>
 #include <tactus/trace/frame.h>
@@ -34,7 +34,7 @@ namespace tactus::sim {
 struct ChannelOptions {
   SenderOptions sender;
   ReplicaOptions replica;
-  TraceCoding coding{};  ///< of deformable objects
+  TraceCoding coding{};                     ///< of deformable objects
   std::optional<NetworkOptions> network{};  ///< each user has a client with a session; none: one client, and no time passes
 };
 
@@ -65,13 +65,13 @@ class Simulation {
   /// err  as step(); invalid_argument R-API-5: wrong count, R-API-1: not finite
   tl::expected<std::span<const Packet>, Diagnostic> step(std::span<const DeviceSample> devices);
 
-  const TraceFrame& frame() const noexcept;                      ///< pre  step() was called
-  std::span<const Pose> client_poses() const noexcept;           ///< as shown at the client in that tick, one per object
+  const TraceFrame& frame() const noexcept;                             ///< pre  step() was called
+  std::span<const Pose> client_poses() const noexcept;                  ///< as shown at the client in that tick, one per object
   std::span<const Pose> client_poses(std::size_t user) const noexcept;  ///< at the client of that user
   /// The tick whose state the user's client shows: with a network one of the past, -1 before the first.
   std::int64_t shown_tick(std::size_t user) const noexcept;
-  double share_rendered(std::size_t user) const noexcept;  ///< of the force: less than 1 while the data are old
-  const SessionNetwork* network() const noexcept;  ///< null: there is none
+  double share_rendered(std::size_t user) const noexcept;        ///< of the force: less than 1 while the data are old
+  const SessionNetwork* network() const noexcept;                ///< null: there is none
   Replica& replica() noexcept;                                   ///< the client's.   pre  there is a channel without network
   std::int64_t ticks() const noexcept;                           ///< length of the scene
   TraceInfo info() const;                                        ///< for a TraceWriter of these frames

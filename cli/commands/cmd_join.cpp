@@ -35,7 +35,7 @@ struct JoinOptions {
   std::string playout = "adaptive";
   double duration = 0;  // [s], 0: until interrupted or the end of the recording
   std::uint64_t seed = 1;
-  double device_error = 1e-4;      // [m]
+  double device_error = 1e-4;  // [m]
   double weber_fraction = 0.04;
   CommonOptions common;
 
@@ -91,7 +91,8 @@ bool is_same_scene(const tactus::Scene& served, const tactus::Scene& own) {
 /// Takes part in a session in real time.
 class Visit {
  public:
-  Visit(const JoinOptions& options, SessionClient& session, net::UdpSocket& socket) : options_(options), session_(session), socket_(socket) {}
+  Visit(const JoinOptions& options, SessionClient& session, net::UdpSocket& socket)
+      : options_(options), session_(session), socket_(socket) {}
 
   Outcome hear(std::uint64_t now);
   void say(std::uint64_t now);
@@ -127,14 +128,16 @@ Outcome Visit::arrive() {
   was_live = true;
   const tactus::Scene& scene = *session_.receiver()->scene();
   if (body && !is_same_scene(scene, *body->shapes->stream_scene()))
-    return refuse_arguments("--scene " + options_.scene + ": the server simulates another scene", "Give the scene of the server.");
+    return refuse_arguments("--scene " + options_.scene + ": the server simulates another scene",
+                            "Give the scene of the server.");
   if (options_.output.empty() || trace) return {};
   TraceInfo info{.tick_rate = scene.tick_rate, .objects = {}, .users = {}, .source = "join " + options_.server, .scene = {}};
   for (const RigidObject& object : scene.objects) info.objects.push_back({object.name, object.dof});
   if (body) info.users.push_back({body->shapes->scene().users[body->user].name, {.buttons = true}});
   frame_.objects.resize(info.objects.size());
   frame_.users.resize(info.users.size());
-  TACTUS_TRY(auto file, OutputFile::create_growing(options_.output, options_.common.existing(), {options_.scene, options_.replay}));
+  TACTUS_TRY(auto file,
+             OutputFile::create_growing(options_.output, options_.common.existing(), {options_.scene, options_.replay}));
   output.emplace(std::move(file));
   auto writer = TraceWriter::create(output->working_path(), info);
   if (!writer) return refuse(options_.output, writer.error());
@@ -215,7 +218,8 @@ Outcome Visit::step(std::uint64_t now) {
 }
 
 std::string meter_text(const SessionStatus& status, const Ticker& ticker) {
-  if (status.state != SessionState::live) return fmt::format("{} {} of {} kB", name_of(status.state), status.received / 1000, status.declaration / 1000);
+  if (status.state != SessionState::live)
+    return fmt::format("{} {} of {} kB", name_of(status.state), status.received / 1000, status.declaration / 1000);
   const double trip = status.round_trip ? 1e-3 * static_cast<double>(status.round_trip->smoothed) : 0;
   return fmt::format("live  round trip {:.1f} ms  shows {:.1f} ms after the fastest packet  loss up {:.1f} %  missed {}", trip,
                      1e-3 * static_cast<double>(status.playout_delay), 100 * status.loss, ticker.missed());
@@ -277,7 +281,8 @@ Outcome run(const JoinOptions& typed) {
   TACTUS_TRY(const net::Address server, loopback_address("SERVER", options.server));
   options.server = server.text();
   if (!options.participates() && (!options.replay.empty() || !options.user.empty()))
-    return refuse_arguments("--replay and --user: nothing is touched without --scene", "Give the scene of the server with --scene.");
+    return refuse_arguments("--replay and --user: nothing is touched without --scene",
+                            "Give the scene of the server with --scene.");
   auto session = SessionClient::create({.role = options.participates() ? Role::participant : Role::observer,
                                         .playout = {playout_of(options.playout)},
                                         .device = {.position = options.device_error, .weber_fraction = options.weber_fraction}});
@@ -336,14 +341,16 @@ void setup_join(Command& app, Action& action) {
                   "The scene of the server: its shapes are touched by a virtual hand. Without, the client only looks on")
       ->type_name("SCENE");
   command.add_option("--user", options->user, "The user of the scene whose hand it is [the first]")->type_name("NAME");
-  command.add_option("--replay", options->replay, "The device samples of this trace instead of the virtual hand")->type_name("TRACE");
+  command.add_option("--replay", options->replay, "The device samples of this trace instead of the virtual hand")
+      ->type_name("TRACE");
   command.add_option("-o,--output", options->output, "Also write a trace of what is shown and felt, on the server's time (MCAP)")
       ->type_name("FILE");
   command.add_option("--seed", options->seed, "Seed of the virtual hand")
       ->check(whole_number(0, UINT64_MAX))
       ->show_default()
       ->type_name("N");
-  add_quantity(command, "--duration", options->duration, Dimension::time, "End after this long [until Ctrl-C or the server's end]");
+  add_quantity(command, "--duration", options->duration, Dimension::time,
+               "End after this long [until Ctrl-C or the server's end]");
   add_playout(command, options->playout);
   add_quantity(command, "--device-error", options->device_error, Dimension::length,
                "Largest error of the device's position that the server is told [0.1mm]")

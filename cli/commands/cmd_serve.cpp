@@ -72,7 +72,11 @@ class Peers {
 class Service {
  public:
   Service(sim::Server& world, SessionServer& sessions, net::UdpSocket& socket)
-      : world_(world), sessions_(sessions), socket_(socket), peers_(4 * sessions.clients()), players_(world.scene().users.size()) {
+      : world_(world),
+        sessions_(sessions),
+        socket_(socket),
+        peers_(4 * sessions.clients()),
+        players_(world.scene().users.size()) {
     for (const sim::SceneUser& user : world.scene().users) devices_.push_back({.position = user.start});
   }
 
@@ -146,16 +150,19 @@ std::size_t Service::live() const {
 }
 
 std::string meter_text(const sim::Server& world, const SessionServer& sessions, const Service& service, const Ticker& ticker) {
-  std::string text = fmt::format("{:.1f} s  {}", 1e-3 * static_cast<double>(world.frame().tick), counted(service.live(), "client"));
+  std::string text =
+      fmt::format("{:.1f} s  {}", 1e-3 * static_cast<double>(world.frame().tick), counted(service.live(), "client"));
   for (std::uint16_t i = 0; i < sessions.clients(); ++i) {
     const ClientStatus status = sessions.status(i);
     if (status.state != SessionState::live || !status.round_trip) continue;
-    text += fmt::format("  [{}] {:.1f} ms, loss {:.1f} %", i, 1e-3 * static_cast<double>(status.round_trip->smoothed), 100 * status.loss);
+    text += fmt::format("  [{}] {:.1f} ms, loss {:.1f} %", i, 1e-3 * static_cast<double>(status.round_trip->smoothed),
+                        100 * status.loss);
   }
   return text + fmt::format("  missed {}", ticker.missed());
 }
 
-Json to_json(const ServeOptions& options, const SessionServer& sessions, const Service& service, const Ticker& ticker, double seconds) {
+Json to_json(const ServeOptions& options, const SessionServer& sessions, const Service& service, const Ticker& ticker,
+             double seconds) {
   Json out{{"schema", "tactus.serve/1"}, {"scene", options.scene}, {"listen", options.listen}, {"seconds", seconds}};
   out["pace"] = pace_json(ticker);
   out["datagrams_refused"] = service.refused();
@@ -174,7 +181,8 @@ Json to_json(const ServeOptions& options, const SessionServer& sessions, const S
   return out;
 }
 
-void print_text(const ServeOptions& options, const SessionServer& sessions, const Service& service, const Ticker& ticker, double seconds) {
+void print_text(const ServeOptions& options, const SessionServer& sessions, const Service& service, const Ticker& ticker,
+                double seconds) {
   Table head;
   head.heading({"serve"});
   head.row({fmt::format("  {:<8} {}", "scene", options.scene)});
@@ -188,8 +196,8 @@ void print_text(const ServeOptions& options, const SessionServer& sessions, cons
   for (std::uint16_t i = 0; i < sessions.clients(); ++i) {
     const ClientStatus status = sessions.status(i);
     if (status.traffic.datagrams_sent == 0) continue;
-    traffic_row(table, fmt::format("to client {}, {}", i, status.role == Role::observer ? "observer" : "participant"), status.traffic,
-                seconds);
+    traffic_row(table, fmt::format("to client {}, {}", i, status.role == Role::observer ? "observer" : "participant"),
+                status.traffic, seconds);
   }
   pace_rows(table, ticker);
   table.print(stdout);
@@ -201,8 +209,8 @@ tl::expected<std::unique_ptr<sim::Server>, Failure> make_world(const ServeOption
   const auto scene = sim::load_scene(*path);
   if (!scene) return refuse(scene.error());
   auto world = sim::Server::create(
-      *scene, {.seed = options.seed,
-               .codec = sim::ServerCodec{options.meshes.sender(options.triggers), options.meshes.coding(), true}});
+      *scene,
+      {.seed = options.seed, .codec = sim::ServerCodec{options.meshes.sender(options.triggers), options.meshes.coding(), true}});
   if (!world) return refuse(options.scene, world.error());
   return std::move(*world);
 }

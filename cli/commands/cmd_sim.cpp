@@ -44,7 +44,8 @@ struct SimOptions {
 
   bool has_network() const { return link || uplink; }
   bool has_channel() const {
-    return codec || has_network() || !stream.empty() || triggers.any_given() || meshes.any_given() || replica.interpolation != Interpolation::none;
+    return codec || has_network() || !stream.empty() || triggers.any_given() || meshes.any_given() ||
+           replica.interpolation != Interpolation::none;
   }
 };
 
@@ -410,7 +411,8 @@ void setup_sim(Command& app, Action& action) {
                    "Close the loop through encoder, decoder and replica; every option from --stream to --layered implies it");
   command.add_option("--stream", options->stream, "Also write the packets")->type_name("FILE");
   Option* const interpolate = add_interpolation(command, options->replica);
-  add_link(command, "--link", options->link, "Give each user a client of their own, joined over this network, the same there and back")
+  add_link(command, "--link", options->link,
+           "Give each user a client of their own, joined over this network, the same there and back")
       ->excludes(interpolate);
   add_link(command, "--uplink", options->uplink, "The network from the clients to the server, if it differs");
   add_playout(command, options->playout);

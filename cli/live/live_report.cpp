@@ -38,12 +38,9 @@ const char* name_of(SessionState state) {
 }
 
 const char* name_of(LeaveReason reason) {
-  constexpr const char* kNames[]{"the other end has ended it",
-                                 "the server speaks another version",
-                                 "the server has no room",
-                                 "the scene is too large",
-                                 "nothing was heard for too long",
-                                 "the scene declaration is not valid",
+  constexpr const char* kNames[]{"the other end has ended it",       "the server speaks another version",
+                                 "the server has no room",           "the scene is too large",
+                                 "nothing was heard for too long",   "the scene declaration is not valid",
                                  "the other end breaks the protocol"};
   return kNames[static_cast<std::size_t>(reason)];
 }
@@ -83,10 +80,10 @@ void traffic_heading(Table& table) {
 void traffic_row(Table& table, const std::string& name, const Traffic& t, double seconds) {
   const auto whole = [](double value) { return fmt::format("{:.0f}", value); };
   const double payload = 8 * rate(t.payload_sent, seconds), all = 8 * rate(t.bytes_sent + kUdpHeader * t.datagrams_sent, seconds);
-  table.row({"  " + name, fmt::format("{:.1f}", rate(t.packets_sent, seconds)), fmt::format("{:.1f}", rate(t.datagrams_sent, seconds)),
-             whole(payload), whole(8 * rate(t.bytes_sent - t.payload_sent, seconds)),
-             whole(8 * rate(kUdpHeader * t.datagrams_sent, seconds)), whole(all),
-             percent(per(static_cast<double>(t.lost), static_cast<double>(t.datagrams_sent)))});
+  table.row({"  " + name, fmt::format("{:.1f}", rate(t.packets_sent, seconds)),
+             fmt::format("{:.1f}", rate(t.datagrams_sent, seconds)), whole(payload),
+             whole(8 * rate(t.bytes_sent - t.payload_sent, seconds)), whole(8 * rate(kUdpHeader * t.datagrams_sent, seconds)),
+             whole(all), percent(per(static_cast<double>(t.lost), static_cast<double>(t.datagrams_sent)))});
 }
 
 void pace_rows(Table& table, const Ticker& ticker) {

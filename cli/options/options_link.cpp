@@ -140,10 +140,7 @@ constexpr std::array<Part, 12> kParts{{
     {"burst", read_burst},
     {"duplicates", [](Options& link, Text value) { return put(link.duplicates, quantity(value, Dimension::fraction)); }},
     {"late", read_late},
-    {"rate",
-     [](Options& link, Text value) {
-       return put(link.rate, amount(value, kBitRates));
-     }},
+    {"rate", [](Options& link, Text value) { return put(link.rate, amount(value, kBitRates)); }},
     {"queue", read_queue},
     {"outage", read_outage},
     {"seed", read_seed},

@@ -17,8 +17,9 @@ Option* add_playout(Command& app, std::string& value) {
     value = text;
   };
   return app
-      .add_option("--playout", read,
-                  "How long after the fastest packet a client shows a tick: a time, or adaptive, which waits for nearly all [adaptive]")
+      .add_option(
+          "--playout", read,
+          "How long after the fastest packet a client shows a tick: a time, or adaptive, which waits for nearly all [adaptive]")
       ->type_name("TIME");
 }
 

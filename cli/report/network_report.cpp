@@ -31,15 +31,9 @@ void direction_row(Table& table, const std::string& name, const DirectionReport&
 
 Json direction_json(const DirectionReport& direction, double seconds) {
   const Layers l = layers_of(direction.traffic, seconds);
-  return {{"packets_per_s", l.packets},
-          {"datagrams_per_s", l.datagrams},
-          {"payload_bit_per_s", l.payload},
-          {"session_bit_per_s", l.session},
-          {"udp_ipv4_bit_per_s", l.headers},
-          {"datagrams", direction.sent},
-          {"lost", direction.lost},
-          {"duplicated", direction.duplicated},
-          {"overtaken", direction.overtaken}};
+  return {{"packets_per_s", l.packets},     {"datagrams_per_s", l.datagrams},     {"payload_bit_per_s", l.payload},
+          {"session_bit_per_s", l.session}, {"udp_ipv4_bit_per_s", l.headers},    {"datagrams", direction.sent},
+          {"lost", direction.lost},         {"duplicated", direction.duplicated}, {"overtaken", direction.overtaken}};
 }
 
 double mean_delay(const NetworkReport& user) { return per(user.delay_sum, static_cast<double>(user.shown)); }
@@ -47,7 +41,8 @@ double mean_delay(const NetworkReport& user) { return per(user.delay_sum, static
 }  // namespace
 
 void network_rows(Table& table, const NetworkReport& user, double seconds) {
-  table.heading({"session " + user.user, "packets/s", "datagrams/s", "payload [bit/s]", "session", "UDP/IPv4", "all [bit/s]", "lost"});
+  table.heading(
+      {"session " + user.user, "packets/s", "datagrams/s", "payload [bit/s]", "session", "UDP/IPv4", "all [bit/s]", "lost"});
   direction_row(table, "  up, to the server", user.up, seconds);
   direction_row(table, "  down, to the client", user.down, seconds);
 }

@@ -15,7 +15,7 @@ class Table;
 
 /// One direction: what an end sent, and what the network did to it.
 struct DirectionReport {
-  Traffic traffic{};  ///< of the end that sends
+  Traffic traffic{};                                                ///< of the end that sends
   std::uint64_t sent = 0, lost = 0, duplicated = 0, overtaken = 0;  ///< datagrams
 };
 

@@ -22,7 +22,8 @@ class ClockOffset {
   std::optional<std::int64_t> value() const noexcept {
     const Best* found = nullptr;
     for (const Best& best : seconds_)
-      if (best.second > 0 && best.second + kSeconds > newest_ && (found == nullptr || best.round_trip < found->round_trip)) found = &best;
+      if (best.second > 0 && best.second + kSeconds > newest_ && (found == nullptr || best.round_trip < found->round_trip))
+        found = &best;
     return found == nullptr ? std::nullopt : std::optional(found->offset);
   }
 

@@ -9,7 +9,7 @@
 namespace tactus {
 namespace {
 
-enum Form : std::uint16_t { kHandshake, kParts, kPacket, kReserved };  // low bits of the head
+enum Form : std::uint16_t { kHandshake, kParts, kPacket, kReserved };                // low bits of the head
 enum Kind : std::uint16_t { kJoin, kWelcome, kRefusal, kLeave, kFirstUnknownKind };  // of handshakes
 enum Type : std::uint8_t { kAcknowledgement = 1, kClock, kButtons, kPiece, kState, kHash, kFragment, kPacketPart, kFirstUnknown };
 
@@ -143,9 +143,7 @@ void put(Put& to, const Welcome& w) noexcept {
 void put(Put& to, const Refusal& r) noexcept {
   to.integer(head_of(kRefusal), 2).integer(r.nonce, 8).integer(static_cast<std::uint64_t>(r.reason), 1);
 }
-void put(Put& to, const Leave& l) noexcept {
-  to.integer(head_of(kLeave), 2).integer(static_cast<std::uint64_t>(l.reason), 1);
-}
+void put(Put& to, const Leave& l) noexcept { to.integer(head_of(kLeave), 2).integer(static_cast<std::uint64_t>(l.reason), 1); }
 void put(Put&, const Numbered&) noexcept {}
 
 std::size_t size_of(const Acknowledgement& a) noexcept { return 4 + varint_size(a.missing); }

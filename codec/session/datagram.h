@@ -16,7 +16,7 @@
 namespace tactus {
 
 inline constexpr std::size_t kLargestDatagram = 1200;  ///< [bytes] with its check
-inline constexpr std::uint64_t kNumbers = 1 << 14;      ///< datagrams carry their numbers modulo this
+inline constexpr std::uint64_t kNumbers = 1 << 14;     ///< datagrams carry their numbers modulo this
 
 enum class Direction : std::uint8_t { up, down };  ///< from a client to the server, and back
 

@@ -8,10 +8,10 @@
 namespace tactus {
 namespace {
 
-constexpr std::uint64_t kSilence = 1'000'000;       // [us] without acknowledgements, at least, before an end sends little
-constexpr std::uint64_t kSeldom = 50'000;           // [us] from datagram to datagram then
-constexpr std::uint64_t kFirstPatience = 250'000;   // [us] while no round trip is known
-constexpr std::uint64_t kHashEvery = 64;            // packet numbers
+constexpr std::uint64_t kSilence = 1'000'000;      // [us] without acknowledgements, at least, before an end sends little
+constexpr std::uint64_t kSeldom = 50'000;          // [us] from datagram to datagram then
+constexpr std::uint64_t kFirstPatience = 250'000;  // [us] while no round trip is known
+constexpr std::uint64_t kHashEvery = 64;           // packet numbers
 
 }  // namespace
 
@@ -45,7 +45,8 @@ Result<bool> Exchange::handle(const Part& part, Reading& reading) noexcept {
     return true;
   }
   if (const auto* packet = std::get_if<PacketPart>(&part)) {
-    const bool decoded = packet->back < reading.heard.number && decode(reading.heard.number - packet->back, packet->bytes, reading);
+    const bool decoded =
+        packet->back < reading.heard.number && decode(reading.heard.number - packet->back, packet->bytes, reading);
     reading.complete = reading.complete && decoded;
     return true;
   }

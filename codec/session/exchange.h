@@ -41,9 +41,9 @@ class Exchange {
 
   /// What the packets of a datagram brought.
   struct Heard {
-    std::uint64_t number = 0;           ///< of the datagram
-    std::optional<std::int64_t> tick;   ///< of the packet of rigid objects, if one was decoded
-    std::optional<HashPart> hash;       ///< to be told to the sender
+    std::uint64_t number = 0;                ///< of the datagram
+    std::optional<std::int64_t> tick;        ///< of the packet of rigid objects, if one was decoded
+    std::optional<HashPart> hash;            ///< to be told to the sender
     std::optional<std::int64_t> round_trip;  ///< [us] that its acknowledgement measured
   };
   /// in   take  Result<void>(const Part&, const Heard&), for the parts that are not acknowledgements, fragments and packets, in order

@@ -43,7 +43,7 @@ class ReceivedNumbers {
   /// The number that 14 bits of it stand for: the one nearest to the newest.
   /// err  state R-SES-4: it was received before, or is too old
   Result<std::uint64_t> extend(std::uint16_t wire) const noexcept;
-  std::uint64_t newest() const noexcept { return received_.newest(); }  ///< highest number received, 0: none
+  std::uint64_t newest() const noexcept { return received_.newest(); }    ///< highest number received, 0: none
   void receive(std::uint64_t number) noexcept { received_.add(number); }  ///< pre  extend()
 
   /// A received datagram, all of whose packets are decoded, is to be acknowledged.
@@ -59,7 +59,7 @@ class ReceivedNumbers {
 
  private:
   NumberWindow received_, accepted_;
-  std::uint64_t newest_at_ = 0;                // [us] when accepted_.newest() came
+  std::uint64_t newest_at_ = 0;  // [us] when accepted_.newest() came
   std::uint64_t patience_;
   std::optional<std::uint64_t> due_;
 };

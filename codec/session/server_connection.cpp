@@ -124,7 +124,8 @@ Result<void> ServerConnection::go_live() noexcept {
 
 void ServerConnection::compare(const HashPart& said) noexcept {
   for (const KnownHash& known : hashes_) {
-    if (known.number == 0 || known.substream != said.substream || static_cast<std::uint16_t>(known.number) != said.number) continue;
+    if (known.number == 0 || known.substream != said.substream || static_cast<std::uint16_t>(known.number) != said.number)
+      continue;
     if (known.hash == said.hash) return;
     ++wrong_states_;
     exchange_->sender->request_key();
@@ -206,7 +207,8 @@ std::optional<DeviceSample> ServerConnection::device(std::uint64_t now) noexcept
 }
 
 ClientStatus ServerConnection::status() const noexcept {
-  ClientStatus out{.client = client_, .peer = peer_, .state = state_, .role = join_.role, .round_trip = {}, .loss = 0, .traffic = {}};
+  ClientStatus out{
+      .client = client_, .peer = peer_, .state = state_, .role = join_.role, .round_trip = {}, .loss = 0, .traffic = {}};
   if (!exchange_) return out;
   out.round_trip = exchange_->sent().round_trip();
   out.loss = std::ldexp(exchange_->sent().loss(), -16);

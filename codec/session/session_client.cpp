@@ -26,7 +26,7 @@ constexpr std::uint64_t kFeltAtLoss = 12'000, kFelt = 25'000, kParticipant = 50'
 constexpr std::uint32_t kSomeLoss = 65536 / 50;
 constexpr std::uint64_t kRecent = 1'000'000;     // [us]: what counts as now
 constexpr std::uint64_t kButtonsEvery = 20'000;  // [us] until they are acknowledged
-constexpr unsigned kLeaves = 3;                // one of them should arrive
+constexpr unsigned kLeaves = 3;                  // one of them should arrive
 
 std::size_t largest_packet(const Scene& scene) {
   std::size_t out = scene.moving().empty() ? 0 : max_rigid_packet(scene);
@@ -76,9 +76,9 @@ struct SessionClient::Impl {
   bool feels = false;              // the device is in contact
   std::optional<HashPart> hash;
   ButtonsPart buttons;
-  std::uint64_t buttons_at = 0;       // [us] when they go next
-  std::uint64_t buttons_number = 0;   // of the datagram that first brought them; 0: none yet
-  bool buttons_wait = false;          // for an acknowledgement
+  std::uint64_t buttons_at = 0;      // [us] when they go next
+  std::uint64_t buttons_number = 0;  // of the datagram that first brought them; 0: none yet
+  bool buttons_wait = false;         // for an acknowledgement
   ClockOffset offset;
   ForceFade fade;
   unsigned leaves = 0;
@@ -136,7 +136,8 @@ Result<void> SessionClient::handle_datagram(std::uint64_t now, std::span<const s
   }
   if (!is_of_epoch(datagram, 0, Direction::down)) return fail(Errc::checksum, "R-SES-1");
   TACTUS_TRY(const Datagram said, read_datagram(datagram, Direction::down));
-  if (const auto* welcome = std::get_if<Welcome>(&said); welcome != nullptr && welcome->nonce == in.nonce) return in.welcomed(now, *welcome);
+  if (const auto* welcome = std::get_if<Welcome>(&said); welcome != nullptr && welcome->nonce == in.nonce)
+    return in.welcomed(now, *welcome);
   if (const auto* refusal = std::get_if<Refusal>(&said); refusal != nullptr && refusal->nonce == in.nonce)
     in.close(SessionEvent::refused, refusal->reason);
   return {};
@@ -171,7 +172,8 @@ Result<void> SessionClient::Impl::handle(std::uint64_t now, const Numbered& said
     packet_at = now;
     current->playout->heard(*heard.tick, now);
   }
-  if (buttons_wait && current->exchange.sent().highest_acknowledged() >= buttons_number && buttons_number > 0) buttons_wait = false;
+  if (buttons_wait && current->exchange.sent().highest_acknowledged() >= buttons_number && buttons_number > 0)
+    buttons_wait = false;
   if (state == SessionState::receiving && current->pieces.is_complete()) return complete(now);
   return {};
 }
@@ -191,7 +193,8 @@ Result<void> SessionClient::Impl::complete(std::uint64_t now) noexcept try {
     TACTUS_TRY(const auto bytes, current->pieces.declaration());
     TACTUS_TRY(const ParsedScene parsed, parse_scene(bytes, options.limits));
     const SharedScene& scene = parsed.scene;
-    TACTUS_TRY(Receiver receiver, Receiver::create(scene, {.replica = {.interpolation = Interpolation::playout}, .limits = options.limits}));
+    TACTUS_TRY(Receiver receiver,
+               Receiver::create(scene, {.replica = {.interpolation = Interpolation::playout}, .limits = options.limits}));
     current->exchange.receive_with(std::move(receiver), largest_packet(*scene));
     current->playout.emplace(scene->tick_rate, options.playout);
     if (options.role == Role::observer) return {};
@@ -234,7 +237,8 @@ void SessionClient::handle_timeout(std::uint64_t now) noexcept {
     in.close(SessionEvent::silent, LeaveReason::silence);
 }
 
-Result<void> SessionClient::submit(std::uint64_t now, const DeviceSample& sample, const std::optional<DeviceContact>& contact) noexcept {
+Result<void> SessionClient::submit(std::uint64_t now, const DeviceSample& sample,
+                                   const std::optional<DeviceContact>& contact) noexcept {
   Impl& in = *impl_;
   if (in.state != SessionState::live || !in.current->device) return {};
   Epoch& epoch = *in.current;

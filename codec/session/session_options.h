@@ -40,9 +40,9 @@ struct PlayoutOptions {
 };
 
 struct SessionServerOptions {
-  SenderOptions sender{};        ///< for every client; the baseline is always the acknowledged one
-  std::uint16_t clients = 8;     ///< at a time
-  std::uint64_t rate = 0;        ///< [bit/s] to each client, UDP and IPv4 headers included; 0: no limit
+  SenderOptions sender{};               ///< for every client; the baseline is always the acknowledged one
+  std::uint16_t clients = 8;            ///< at a time
+  std::uint64_t rate = 0;               ///< [bit/s] to each client, UDP and IPv4 headers included; 0: no limit
   std::uint64_t silence = 120'000'000;  ///< [us] after which a client counts as gone
 };
 
@@ -50,8 +50,8 @@ struct SessionClientOptions {
   Role role = Role::observer;
   DecodeLimits limits{};
   PlayoutOptions playout{};
-  DeviceCoding device{};         ///< of a participant
-  bool senses_velocity = false;  ///< the samples of the device have one
+  DeviceCoding device{};                ///< of a participant
+  bool senses_velocity = false;         ///< the samples of the device have one
   std::uint64_t silence = 120'000'000;  ///< [us] after which the server counts as gone
 };
 

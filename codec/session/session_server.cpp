@@ -127,7 +127,8 @@ Result<void> SessionServer::Impl::join(std::uint64_t now, std::uint64_t peer, co
   return {};
 }
 
-Result<void> SessionServer::handle_datagram(std::uint64_t now, std::uint64_t peer, std::span<const std::uint8_t> datagram) noexcept {
+Result<void> SessionServer::handle_datagram(std::uint64_t now, std::uint64_t peer,
+                                            std::span<const std::uint8_t> datagram) noexcept {
   Impl& in = *impl_;
   ServerConnection* connection = in.find(peer);
   if (connection != nullptr && connection->is_mine(datagram)) {

@@ -50,7 +50,8 @@ class SessionServer {
  public:
   /// in   entropy  64 bits from the system, that nobody else can tell;  now  [us]
   /// err  as Sender::create; invalid_argument R-API-4: no client, or more than 65535
-  static Result<SessionServer> create(SharedScene scene, const SessionServerOptions& options, std::uint64_t entropy, std::uint64_t now);
+  static Result<SessionServer> create(SharedScene scene, const SessionServerOptions& options, std::uint64_t entropy,
+                                      std::uint64_t now);
 
   /// in   peer  who sent it: the transport's name for an address, never 0
   /// err  the datagram is dropped, and nothing has changed but the traffic: checksum R-SES-1; those of R-SES rules

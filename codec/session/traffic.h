@@ -14,8 +14,8 @@ struct Traffic {
   std::uint64_t packets_refused = 0;  ///< could not be decoded
   std::uint64_t packets_held = 0;     ///< too large, or the program did not take their datagrams before the next tick
   std::uint64_t lost = 0;             ///< of the datagrams sent, as far as is known
-  std::uint64_t ticks_held = 0;       ///< in which nothing was coded, as the rate or the missing acknowledgements did not permit it
-  std::uint64_t wrong_states = 0;     ///< hashes that the other end told and that are not those of the sender
+  std::uint64_t ticks_held = 0;    ///< in which nothing was coded, as the rate or the missing acknowledgements did not permit it
+  std::uint64_t wrong_states = 0;  ///< hashes that the other end told and that are not those of the sender
 };
 
 }  // namespace tactus

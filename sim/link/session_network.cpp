@@ -95,8 +95,10 @@ void SessionNetwork::drain() noexcept {
 
 void SessionNetwork::deliver() noexcept {
   for (std::size_t i = 0; i < users_.size(); ++i) {
-    while (const auto arrival = users_[i].up->poll(link_time())) static_cast<void>(server_->handle_datagram(now_, i + 1, arrival->bytes));
-    while (const auto arrival = users_[i].down->poll(link_time())) static_cast<void>(users_[i].client->handle_datagram(now_, arrival->bytes));
+    while (const auto arrival = users_[i].up->poll(link_time()))
+      static_cast<void>(server_->handle_datagram(now_, i + 1, arrival->bytes));
+    while (const auto arrival = users_[i].down->poll(link_time()))
+      static_cast<void>(users_[i].client->handle_datagram(now_, arrival->bytes));
     users_[i].client->handle_timeout(now_);
   }
   server_->handle_timeout(now_);

@@ -46,8 +46,8 @@ class SessionNetwork {
   /// Counters of the links since tick 0.
   const LinkCounters& uplink(std::size_t user) const noexcept { return users_[user].up->counters(); }
   const LinkCounters& downlink(std::size_t user) const noexcept { return users_[user].down->counters(); }
-  Traffic sent_to(std::size_t user) const noexcept;    ///< by the server, since tick 0
-  Traffic sent_by(std::size_t user) const noexcept;    ///< by the client, since tick 0
+  Traffic sent_to(std::size_t user) const noexcept;  ///< by the server, since tick 0
+  Traffic sent_by(std::size_t user) const noexcept;  ///< by the client, since tick 0
 
  private:
   struct User {

@@ -49,7 +49,8 @@ TEST(Datagram, HandshakesAreReadAsWritten) {
     ASSERT_TRUE(read) << read.error().rule;
     EXPECT_TRUE(equal(*read, kHandshakes[i])) << i;
     for (std::size_t size = 2; size < bytes.size() - 4; ++size)
-      EXPECT_EQ(rule_of_body(Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)), kComes[i]), "R-SES-3") << size;
+      EXPECT_EQ(rule_of_body(Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)), kComes[i]), "R-SES-3")
+          << size;
     Bytes longer(bytes.begin(), bytes.end() - 4);
     longer.push_back(1);
     EXPECT_EQ(rule_of_body(longer, kComes[i]), "R-SES-3");

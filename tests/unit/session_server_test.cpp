@@ -87,7 +87,8 @@ TEST(SessionServer, AfterAnyOutageOnePacketRestoresTheState) {
     Show show(3, false);
     SessionWorld world(show.scene, {});
     const sim::Microseconds begin = 7'000'000, end = begin + static_cast<sim::Microseconds>(outage);
-    world.add({}, {.seed = 1, .delay = 10'000, .outages = {{begin, end}}}, {.seed = 2, .delay = 10'000, .outages = {{begin, end}}});
+    world.add({}, {.seed = 1, .delay = 10'000, .outages = {{begin, end}}},
+              {.seed = 2, .delay = 10'000, .outages = {{begin, end}}});
     const auto run = [&](std::uint64_t until) {
       while (world.now < until) world.step([&](std::int64_t tick) { return show.at(tick); });
     };
@@ -170,7 +171,8 @@ TEST(SessionServer, TheRateIsKept) {
 TEST(SessionServer, KnowsWhereADeviceIs) {
   Show show(1, false);
   SessionWorld world(show.scene, {});
-  world.add({.role = Role::participant, .device = {.position = 1e-3}}, {.seed = 1, .delay = 20'000}, {.seed = 2, .delay = 20'000});
+  world.add({.role = Role::participant, .device = {.position = 1e-3}}, {.seed = 1, .delay = 20'000},
+            {.seed = 2, .delay = 20'000});
   double worst = 0;
   std::uint64_t samples = 0;
   const auto place = [](std::uint64_t now) {
