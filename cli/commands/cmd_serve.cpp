@@ -161,8 +161,17 @@ std::string meter_text(const sim::Server& world, const SessionServer& sessions, 
   return text + fmt::format("  missed {}", ticker.missed());
 }
 
-Json to_json(const ServeOptions& options, const SessionServer& sessions, const Service& service, const Ticker& ticker,
-             double seconds) {
+/// Of each substream, as a client has it that got every packet.
+Json hashes_json(const SessionServer& sessions, const tactus::Scene& scene, std::uint16_t client) {
+  Json out = Json::array();
+  const auto add = [&](std::size_t substream) { out.push_back(fmt::format("{:016x}", sessions.state_hash(client, substream))); };
+  if (!scene.objects.empty()) add(0);
+  for (std::size_t i = 0; i < scene.deformables.size(); ++i) add(i + 1);
+  return out;
+}
+
+Json to_json(const ServeOptions& options, const SessionServer& sessions, const tactus::Scene& scene, const Service& service,
+             const Ticker& ticker, double seconds) {
   Json out{{"schema", "tactus.serve/1"}, {"scene", options.scene}, {"listen", options.listen}, {"seconds", seconds}};
   out["pace"] = pace_json(ticker);
   out["datagrams_refused"] = service.refused();
@@ -176,6 +185,7 @@ Json to_json(const ServeOptions& options, const SessionServer& sessions, const S
                 {"loss", status.loss},
                 {"traffic", traffic_json(status.traffic, seconds)}};
     if (status.round_trip) client["round_trip"] = round_trip_json(*status.round_trip);
+    if (status.state == SessionState::live) client["state_hashes"] = hashes_json(sessions, scene, i);
     out["clients"].push_back(std::move(client));
   }
   return out;
@@ -254,13 +264,14 @@ Outcome run(const ServeOptions& typed) {
     if (meter.is_due(now)) meter.draw(now, meter_text(*world, *sessions, service, ticker));
   }
   const double seconds = static_cast<double>(ticker.ticks()) / sim::kTickRate;
+  const Json report = to_json(options, *sessions, *world->stream_scene(), service, ticker, seconds);
   sessions->close();
   service.say(microseconds_now());
   if (trace) {
     if (const auto done = trace->finish(); !done) return refuse(options.output, done.error());
     TACTUS_CHECK(output->keep());
   }
-  if (options.common.json) fmt::print("{}\n", text_of_json(to_json(options, *sessions, service, ticker, seconds)));
+  if (options.common.json) fmt::print("{}\n", text_of_json(report));
   else if (!options.common.quiet) print_text(options, *sessions, service, ticker, seconds);
   return {};
 }

@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""A client written from the specification alone: joins `tactus serve` over UDP and moves a device about.
+
+  client.py PORT [--seconds S] [--observe]    prints one line of JSON at the end: packets, round trip, hash of each substream's state
+
+It ends when the server leaves, or after S seconds.
+"""
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import secrets
+import socket
+import sys
+import time
+from typing import Optional
+
+from conventions import StreamError
+from range_encoder import RangeEncoder
+from session import Client
+from start_models import Models
+
+
+class Device:
+    """Chapter 65: the device moves on a circle; each of its packets is a key packet, so that none needs another."""
+
+    RADIUS, SPEED = 0.05, 2.0                               # m, rad/s
+
+    def __init__(self, position_exp: int, tick_rate: int, now: float):
+        self.scale, self.tick_rate, self.start = 2.0 ** position_exp, tick_rate, now
+
+    def packet(self, now: float) -> bytes:
+        angle = self.SPEED * (now - self.start)
+        place = (self.RADIUS * math.cos(angle), self.RADIUS * math.sin(angle), 0.0)
+        models, encoder = Models("rigid-start-models.csv"), RangeEncoder()
+        encoder.bit(models["KEY"][1], 1)
+        encoder.magnitude(models["TICK"], int((now - self.start) * self.tick_rate))
+        encoder.tree(models["REASON"], 2, 0)
+        encoder.tree(models["LEVEL"], 3, 0)
+        context = 0                                         # the reason: request
+        for q in range(4):                                  # position, velocity, rotation, angular velocity
+            context, largest = 0 if q == 2 else context, 0
+            for a in range(3):
+                value = round(place[a] * self.scale) if q == 0 else 0
+                encoder.signed(models[f"RESIDUAL[{q}][{context}]"], value)
+                largest = max(largest, abs(value))
+                width = largest.bit_length()
+                context = 4 if width == 0 else 5 if width <= 2 else 6 if width <= 5 else 7
+        return encoder.finish()
+
+
+def run(port: int, seconds: float, observe: bool) -> Client:
+    sock = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    sock.connect(("127.0.0.1", port))
+    device: Optional[Device] = None
+
+    def next_packet(number: int) -> bytes:
+        nonlocal device
+        if device is None:
+            device = Device(client.epoch.scene.position_exp, client.epoch.scene.tick_rate, time.monotonic())
+        return device.packet(time.monotonic())
+
+    client = Client(secrets.randbits(64), None if observe else next_packet)
+    end = time.monotonic() + seconds
+    while client.state != "closed" and time.monotonic() < end:
+        for datagram in client.poll(time.monotonic_ns() // 1000):
+            sock.send(datagram)
+        sock.settimeout(0.002)
+        try:
+            client.handle(time.monotonic_ns() // 1000, sock.recv(2048))
+        except (StreamError, TimeoutError, ConnectionRefusedError):
+            pass                                            # dropped; nothing has come; nobody is there yet
+    if client.state != "closed" and client.epoch:
+        sock.send(client.leave())
+    return client
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("port", type=int)
+    parser.add_argument("--seconds", type=float, default=1e9)
+    parser.add_argument("--observe", action="store_true", help="look on, without a device")
+    arguments = parser.parse_args()
+    epoch = run(arguments.port, arguments.seconds, arguments.observe).epoch
+    if epoch is None or epoch.decoders is None:
+        print("no session", file=sys.stderr)
+        return 1
+    print(json.dumps({"client": epoch.client, "packets": epoch.packets, "round_trip_us": epoch.round_trip,
+                      "state_hashes": [f"{d.state_hash():016x}" for d in epoch.decoders.substreams.values()]}))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,285 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Chapter 70 of the specification: the client's end of a session, as a function of datagrams and time. No socket, no clock."""
+from __future__ import annotations
+
+import struct
+import zlib
+from typing import Callable, Iterator, Optional
+
+from conventions import Cursor, StreamError, fnv1a, require
+from decoder import SceneDecoder
+from packet import Receiver
+from scene import Declaration, read_declaration
+
+UP, DOWN = 0, 1
+HANDSHAKE, PARTS, PACKET = range(3)                         # forms
+JOIN, WELCOME, REFUSAL, LEAVE = range(4)                    # kinds of handshakes
+ACK, CLOCK, BUTTONS, PIECE, STATE, HASH, FRAGMENT, PACKET_PART = range(1, 9)
+LARGEST_DATAGRAM = 1200
+PIECE_SIZE, WINDOW = 1024, 64
+FRAGMENT_SIZE, MOST_FRAGMENTS, MOST_IN_PIECES = 1150, 1024, 4
+MS = 1000                                                   # us
+NO_TIMING = 65535
+
+CUT, SPARE = ("truncated", "R-SES-3"), ("malformed", "R-SES-3")
+
+
+# ---- Section 2: datagrams -------------------------------------------------------------------------------------------
+def check_of(body: bytes, epoch: int, direction: int) -> int:
+    return zlib.crc32(struct.pack("<QB", epoch, direction) + body)
+
+
+def sealed(body: bytes, epoch: int, direction: int = UP) -> bytes:
+    return body + struct.pack("<I", check_of(body, epoch, direction))
+
+
+def is_of_epoch(datagram: bytes, epoch: int, direction: int = DOWN) -> bool:
+    return 6 <= len(datagram) <= LARGEST_DATAGRAM and \
+        struct.unpack("<I", datagram[-4:])[0] == check_of(datagram[:-4], epoch, direction)
+
+
+def head(form: int, value: int) -> bytes:
+    return struct.pack("<H", form + 4 * value)
+
+
+def varint(v: int) -> bytes:
+    out = b""
+    while v >= 0x80:
+        out += bytes([v & 0x7F | 0x80])
+        v >>= 7
+    return out + bytes([v])
+
+
+def part(kind: int, data: bytes) -> bytes:
+    return bytes([kind]) + varint(len(data)) + data
+
+
+def read_parts(body: bytes) -> Iterator[tuple[int, Cursor]]:
+    """Type and elements of each part of a datagram that comes down."""
+    cursor, last, count = Cursor(body, 2, len(body)), 0, 0
+    while cursor.left():
+        kind = cursor.number(1, CUT)
+        size = cursor.varint(CUT, SPARE)
+        data = cursor.take(size, CUT)
+        require(last <= kind and kind > 0, "malformed", "R-SES-5")
+        require(kind in (ACK, CLOCK, PIECE, FRAGMENT, PACKET_PART) or kind >= 64, "malformed", "R-SES-5")
+        last, count = kind, count + 1
+        if kind < 64:
+            yield kind, Cursor(data, 0, len(data))
+    require(count > 0, "malformed", "R-SES-5")
+
+
+# ---- 25, section 9: packets with given numbers ----------------------------------------------------------------------
+class NumberedReceiver(Receiver):
+    given = 0
+
+    def open(self, data: bytes, now: Optional[int] = None) -> int:
+        require(len(data) - 2 <= self.largest_packet, "limit_exceeded", "R-PKT-1")
+        if not self.kept and self.newest == 0:
+            self.newest = self.given - 1
+        held = bool(self.kept) and self.given > min(self.kept) and self.given not in self.kept
+        require(self.given > self.newest or held, "state", "R-PKT-5")
+        return self.given
+
+    def baseline(self, number: int, key: int, baseline_delta: int):
+        require(1 <= baseline_delta <= self.span, "invalid", "R-PKT-3")
+        require(key or number - baseline_delta in self.kept, "state", "R-PKT-4")
+        return self.initial if key else self.kept[number - baseline_delta]
+
+
+def decode_numbered(decoder, number: int, packet: bytes):
+    decoder.receiver.__class__ = NumberedReceiver
+    decoder.receiver.given = number
+    return decoder.decode(b"\0\0" + packet)                 # in place of the sequence
+
+
+# ---- Sections 4 to 6: one end of an epoch ---------------------------------------------------------------------------
+class Epoch:
+    def __init__(self, epoch: int, client: int, serial: int, size: int, digest: int, start: int):
+        self.epoch, self.client, self.serial, self.start = epoch, client, serial, start
+        self.size, self.digest = size, digest
+        self.pieces: dict[int, bytes] = {}
+        self.scene: Optional[Declaration] = None
+        self.decoders: Optional[SceneDecoder] = None
+        self.newest, self.received = 0, set()               # numbers of datagrams, down
+        self.accepted: dict[int, int] = {}                  # when each came
+        self.ack_due: Optional[int] = None
+        self.next, self.acknowledged = 1, 0                 # own numbers
+        self.sent_at: dict[int, int] = {}
+        self.round_trip: Optional[int] = None
+        self.fragments: dict[tuple, dict] = {}
+        self.hash: Optional[bytes] = None
+        self.packets = 0
+
+    def extend(self, value: int) -> int:
+        number = self.newest + (value + 12287 - self.newest) % (1 << 14) - 12287
+        require(number >= 1 and number > self.newest - 1024 and number not in self.received, "state", "R-SES-4")
+        return number
+
+    def take(self, now: int, datagram: bytes) -> None:
+        """A numbered datagram whose check holds."""
+        body = datagram[:-4]
+        form, value = body[0] & 3, struct.unpack("<H", body[:2])[0] >> 2
+        parts = [(PACKET_PART, Cursor(b"\0" + body[2:], 0, len(body) - 1))] if form == PACKET else list(read_parts(body))
+        number = self.extend(value)
+        self.received.add(number)
+        self.newest = max(self.newest, number)
+        self.received = {n for n in self.received if n > self.newest - 1024}
+        complete, asks = True, False
+        for kind, elements in parts:
+            asks |= kind not in (ACK, CLOCK)
+            complete &= self.take_part(now, number, kind, elements)
+        if complete:
+            self.accept(now, number, asks)
+
+    def take_part(self, now: int, number: int, kind: int, e: Cursor) -> bool:
+        if kind == ACK:
+            newest, held = e.number(2, CUT), e.number(2, CUT)
+            e.varint(CUT, SPARE)                            # what is missing matters to senders that repeat
+            back = (self.next - 1 - newest) % (1 << 16)
+            require(back < 4096 and back < self.next - 1, "invalid", "R-SES-6")
+            if self.next - 1 - back > self.acknowledged:
+                self.acknowledged = self.next - 1 - back
+                if held != NO_TIMING:
+                    self.round_trip = max(0, now - self.sent_at[self.acknowledged] - 16 * held)
+        elif kind == PIECE:
+            self.take_piece(e.varint(CUT, SPARE), e.take(e.left(), CUT))
+        elif kind == FRAGMENT:
+            return self.take_fragment(now, number, e)
+        elif kind == PACKET_PART:
+            return self.decode(number - e.varint(CUT, SPARE), e.take(e.left(), CUT))
+        return True
+
+    def take_piece(self, index: int, data: bytes) -> None:
+        front = next(i for i in range(self.size // PIECE_SIZE + 2) if i not in self.pieces)
+        inside = index * PIECE_SIZE < self.size and index < front + WINDOW
+        require(inside and len(data) == min(PIECE_SIZE, self.size - index * PIECE_SIZE), "invalid", "R-SES-8")
+        self.pieces[index] = data
+        if self.scene or sum(map(len, self.pieces.values())) < self.size:
+            return
+        declaration = b"".join(self.pieces[i] for i in sorted(self.pieces))
+        require(fnv1a(declaration) == self.digest, "checksum", "R-SES-10")
+        self.scene, _ = read_declaration(declaration)
+        self.decoders = SceneDecoder(self.scene)
+
+    def take_fragment(self, now: int, number: int, e: Cursor) -> bool:
+        back, substream, index, count = (e.varint(CUT, SPARE) for _ in range(4))
+        data = e.take(e.left(), CUT)
+        sound = 2 <= count <= MOST_FRAGMENTS and index < count and back < number and 0 < len(data) <= FRAGMENT_SIZE
+        require(sound and (index == count - 1 or len(data) == FRAGMENT_SIZE), "invalid", "R-SES-7")
+        have = self.fragments.setdefault((number - back, substream), {"count": count, "data": {}, "numbers": []})
+        require(have["count"] == count, "invalid", "R-SES-7")
+        have["data"][index] = data
+        have["numbers"].append(number)
+        while len(self.fragments) > MOST_IN_PIECES:
+            del self.fragments[min(self.fragments)]
+        if len(have["data"]) == count and self.decode(number - back, b"".join(have["data"][i] for i in range(count))):
+            for n in have["numbers"]:
+                self.accept(now, n, True)
+            self.fragments.pop((number - back, substream), None)
+        return False
+
+    def decode(self, number: int, packet: bytes) -> bool:
+        if number < 1 or not self.decoders:
+            return False
+        try:
+            substream, payload = self.decoders.split(packet)
+            decoder = self.decoders.substreams[substream]
+            decoded = decode_numbered(decoder, number, payload)
+        except StreamError:
+            return False
+        self.packets += 1
+        if number % 64 == 0 and number == decoder.receiver.newest and getattr(decoded, "layer", 2) == 2:
+            self.hash = struct.pack("<BHI", substream, number % (1 << 16), decoder.state_hash() % (1 << 32))
+        return True
+
+    def accept(self, now: int, number: int, asks: bool) -> None:
+        self.accepted[number] = now
+        if asks and self.ack_due is None:
+            self.ack_due = now + 10 * MS
+
+    def acknowledgement(self, now: int) -> bytes:
+        newest = max(self.accepted)
+        held = min((now - self.accepted[newest]) // 16, NO_TIMING)
+        missing = sum(1 << i for i in range(64) if newest - 1 - i > 0 and newest - 1 - i not in self.accepted)
+        self.accepted = {n: at for n, at in self.accepted.items() if n > newest - 1024}
+        self.ack_due = None
+        return part(ACK, struct.pack("<HH", newest % (1 << 16), held) + varint(missing))
+
+    def write(self, now: int, parts: list[bytes], packet: bytes = b"") -> Optional[bytes]:
+        """A numbered datagram of these parts and a packet of its own number, with an acknowledgement if there is news."""
+        if self.next - 4096 > self.acknowledged:
+            return None
+        if self.ack_due is not None:
+            parts = [self.acknowledgement(now)] + parts
+        if packet and parts:
+            parts = parts + [part(PACKET_PART, varint(0) + packet)]
+        form = PARTS if parts else PACKET
+        self.sent_at[self.next] = now
+        datagram = sealed(head(form, self.next % (1 << 14)) + (b"".join(parts) or packet), self.epoch)
+        self.next += 1
+        return datagram
+
+
+# ---- Section 3: the client ------------------------------------------------------------------------------------------
+class Client:
+    """State is closed, joining, receiving or live. `device(number)` gives the packet of the device for a datagram of that number."""
+
+    def __init__(self, nonce: int, device: Optional[Callable[[int], bytes]] = None):
+        self.nonce, self.device = nonce, device
+        self.state, self.reason = "joining", ""
+        self.epoch: Optional[Epoch] = None
+        self.retry_at, self.retry = 0, 250 * MS
+        self.sign_at = self.device_at = 0
+
+    def handle(self, now: int, datagram: bytes) -> None:
+        """Raises StreamError if the datagram is dropped."""
+        if self.epoch and is_of_epoch(datagram, self.epoch.epoch):
+            if datagram[0] & 3 in (PARTS, PACKET):
+                self.epoch.take(now, datagram)
+                if self.state == "receiving" and self.epoch.scene:
+                    self.state, self.sign_at = "live", 0
+            elif datagram[0] & 3 == HANDSHAKE and datagram[0] >> 2 == LEAVE:
+                self.state, self.reason = "closed", f"left, reason {datagram[2]}"
+            return
+        require(is_of_epoch(datagram, 0), "checksum", "R-SES-1")
+        e = Cursor(datagram, 2, len(datagram) - 4)
+        kind = struct.unpack("<H", datagram[:2])[0] >> 2
+        if e.number(8, CUT) != self.nonce:
+            return
+        if kind == REFUSAL and self.state == "joining":
+            self.state, self.reason = "closed", f"refused, reason {e.number(1, CUT)}"
+        elif kind == WELCOME and self.state != "closed":
+            serial, epoch, client = e.varint(CUT, SPARE), e.number(8, CUT), e.number(2, CUT)
+            if self.state != "joining" and serial <= self.epoch.serial:
+                return
+            size, digest, start = e.varint(CUT, SPARE), e.number(8, CUT), e.varint(CUT, SPARE)
+            self.epoch = Epoch(epoch, client, serial, size, digest, start)
+            self.state, self.sign_at = "receiving", 0
+
+    def poll(self, now: int) -> Iterator[bytes]:
+        """What is to be sent now."""
+        if self.state == "joining" and now >= self.retry_at:
+            self.retry_at, self.retry = now + self.retry, min(2 * self.retry, 2000 * MS)
+            body = head(HANDSHAKE, JOIN) + b"TCTS" + struct.pack("<BBQ", 1, 1 if self.device else 0, self.nonce)
+            yield sealed((body + varint(1 << 28) + varint(1 << 20)).ljust(76, b"\0"), 0)
+        if self.state not in ("receiving", "live"):
+            return
+        live, parts, packet = self.state == "live", [], b""
+        if now >= self.sign_at:
+            self.sign_at = now + (50 * MS if self.device else 100 * MS)
+            parts.append(part(STATE, bytes([live])))
+        if self.epoch.hash:
+            parts.append(part(HASH, self.epoch.hash))
+            self.epoch.hash = None
+        if live and self.device and now >= self.device_at:
+            self.device_at = now + 10 * MS
+            packet = self.device(self.epoch.next)
+        due = self.epoch.ack_due is not None and now >= self.epoch.ack_due
+        datagram = self.epoch.write(now, parts, packet) if parts or packet or due else None
+        if datagram:
+            yield datagram
+
+    def leave(self) -> bytes:
+        self.state = "closed"
+        return sealed(head(HANDSHAKE, LEAVE) + b"\0", self.epoch.epoch)
