@@ -233,6 +233,8 @@ Result<std::optional<Part>> PartReader::next() noexcept {
     ++parts_;
     if (type >= kFirstSkipped) continue;
     if (type >= kFirstUnknown || !comes(static_cast<Type>(type), direction_)) return fail(Errc::malformed, "R-SES-5", place);
+    if (type >= kFragment && fragment_) return fail(Errc::malformed, "R-SES-5", place);
+    fragment_ = type == kFragment;
     return read(type, part);
   }
   if (parts_ == 0 || (parts_ == 1 && only_packet_)) return fail(Errc::malformed, "R-SES-5", 8);

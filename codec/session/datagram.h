@@ -109,7 +109,8 @@ class PartReader {
       : reader_(bytes, kStart), direction_(direction), single_(single) {}
 
   /// The next part; nothing at the end.
-  /// err  truncated, malformed R-SES-3: an element; malformed R-SES-5: order, type or direction, a packet that should be single
+  /// err  truncated, malformed R-SES-3: an element; malformed R-SES-5: order, type or direction, a packet that should be single,
+  ///      one beside a fragment
   Result<std::optional<Part>> next() noexcept;
 
  private:
@@ -122,6 +123,7 @@ class PartReader {
   std::uint8_t last_ = 0;  // type of the part before
   std::size_t parts_ = 0;
   bool only_packet_ = false;  // the first part is a packet of the datagram's own number
+  bool fragment_ = false;     // there was one: neither packets nor another may follow
 };
 
 inline constexpr std::size_t kNumberedOverhead = 6;  ///< [bytes] head and check of a numbered datagram

@@ -124,22 +124,47 @@ void Exchange::finish(const Reading& reading) noexcept {
 
 // Out
 
+/// Of packets that nobody took, the numbers are lost: the next ones must have others.
+void Exchange::give_up(std::uint64_t now) noexcept {
+  for (; has_packets(); ++next_packet_) {
+    const Packet& packet = packets_[next_packet_];
+    ++traffic_.packets_held;
+    wants_key_ = wants_key_ || packet.layer != Layer::all;
+    while (sent_.next() && *sent_.next() <= packet.number) skip_number(now);
+  }
+  packets_ = {};
+  next_packet_ = next_fragment_ = 0;
+}
+
+void Exchange::skip_number(std::uint64_t now) noexcept {
+  const std::uint64_t number = *sent_.next();
+  slots_[number % slots_.size()] = {.number = number};
+  sent_.send(now);
+}
+
+/// The layers of a mesh build on each other: once one is lost, the other end refuses the rest, and acknowledges nothing that would tell.
+bool Exchange::misses_layers(std::uint64_t now) const noexcept {
+  return layered_ > sent_.highest_acknowledged() && now > std::max(progress_at_, key_wanted_at_) + 2 * patience();
+}
+
 bool Exchange::may_send(std::uint64_t now) const noexcept {
   const bool waits = asked_ > sent_.highest_acknowledged() && now > progress_at_ + std::max(kSilence, 4 * patience());
   return !waits || now >= sent_at_ + kSeldom;
 }
 
 Result<std::span<const Packet>> Exchange::submit(std::uint64_t now, std::int64_t tick, const Truth& truth) noexcept {
-  traffic_.packets_held += packets_.size() - next_packet_;
-  packets_ = {};
-  next_packet_ = next_fragment_ = 0;
+  give_up(now);
   const auto number = sent_.next();
   if (!sender || !number) return packets_;
   if (!may_send(now)) {
     ++traffic_.ticks_held;
     return packets_;
   }
-  if (std::exchange(wants_key_, false)) sender->request_key();
+  if (misses_layers(now)) wants_key_ = true;
+  if (std::exchange(wants_key_, false)) {
+    sender->request_key();
+    key_wanted_at_ = now;
+  }
   TACTUS_TRY(packets_, sender->encode_numbered(*number, tick, truth));
   return packets_;
 }
@@ -166,11 +191,11 @@ bool Exchange::add_fragment(const Packet& packet, std::uint64_t number) noexcept
   return true;
 }
 
-/// As many of the waiting packets as fit.
+/// As many of the waiting packets as fit, or one fragment.
 bool Exchange::add_packets(std::uint64_t number) noexcept {
   Slot& slot = slots_[number % slots_.size()];
-  bool added = false, whole = false;
-  while (has_packets() && packets_[next_packet_].number <= number && slot.count < slot.packets.size()) {
+  bool added = false, cut = false;
+  while (has_packets() && !cut && packets_[next_packet_].number <= number && slot.count < slot.packets.size()) {
     const Packet& packet = packets_[next_packet_];
     if (packet.bytes.size() > kFragmentSize * kMostFragments) {
       ++traffic_.packets_held;
@@ -178,16 +203,17 @@ bool Exchange::add_packets(std::uint64_t number) noexcept {
       continue;
     }
     if (packet.bytes.size() > kFragmentSize) {
-      if (whole || !add_fragment(packet, number)) break;
+      if (added || !add_fragment(packet, number)) break;
     } else {
       if (!writer_.add(PacketPart{number - packet.number, packet.bytes})) break;
       traffic_.payload_sent += packet.bytes.size();
       ++next_packet_;
-      whole = true;
     }
+    cut = packet.bytes.size() > kFragmentSize;
     if (next_fragment_ == 0) ++traffic_.packets_sent;
     slot.packets[slot.count++] = {static_cast<std::uint16_t>(packet.substream), packet.sequence};
     slot.layered = slot.layered || packet.layer != Layer::all;
+    if (slot.layered) layered_ = number;
     added = true;
   }
   return added;
@@ -196,6 +222,10 @@ bool Exchange::add_packets(std::uint64_t number) noexcept {
 std::span<const std::uint8_t> Exchange::end(std::uint64_t now, bool asks) noexcept {
   const std::uint64_t number = *sent_.next();
   asks = add_packets(number) || asks;
+  if (writer_.empty()) {  // all were too large
+    skip_number(now);
+    return {};
+  }
   if (asks && asked_ <= sent_.highest_acknowledged()) progress_at_ = now;
   if (asks) asked_ = number, asked_at_ = now;
   sent_.send(now);

@@ -79,7 +79,8 @@ class Exchange {
     const auto number = begin(now, wanted);
     if (!number) return std::nullopt;
     const bool asks = extras(writer_, *number);
-    return end(now, asks);
+    const auto datagram = end(now, asks);
+    return datagram.empty() ? std::nullopt : std::optional(datagram);
   }
 
   /// When poll() has something without anything else happening; nothing: never.
@@ -125,6 +126,9 @@ class Exchange {
 
   bool is_acknowledgement_due(std::uint64_t now) const noexcept { return received_.due() && *received_.due() <= now; }
   std::optional<std::uint64_t> begin(std::uint64_t now, bool wanted) noexcept;
+  void give_up(std::uint64_t now) noexcept;
+  void skip_number(std::uint64_t now) noexcept;
+  bool misses_layers(std::uint64_t now) const noexcept;
   bool add_packets(std::uint64_t number) noexcept;
   bool add_fragment(const Packet& packet, std::uint64_t number) noexcept;
   std::span<const std::uint8_t> end(std::uint64_t now, bool asks) noexcept;
@@ -142,7 +146,9 @@ class Exchange {
   std::uint64_t asked_at_ = 0;     // [us] when a datagram went that asks for an acknowledgement
   std::uint64_t asked_ = 0;        // highest number that asks
   std::uint64_t progress_at_ = 0;  // [us] when one was acknowledged, or the first asked
+  std::uint64_t layered_ = 0;      // highest number that brings a layer of a mesh
   bool wants_key_ = false;         // a layer is lost
+  std::uint64_t key_wanted_at_ = 0;  // [us]
   Traffic traffic_;
 };
 

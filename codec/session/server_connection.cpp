@@ -17,16 +17,22 @@ constexpr std::uint64_t kUnproven = 10'000'000;   // [us] for the first datagram
 constexpr unsigned kMostFaults = 100;
 constexpr unsigned kLeaves = 3;  // one of them should arrive
 constexpr std::uint64_t kHashEvery = 64;
-constexpr std::int64_t kHeaders = 28;  // [bytes] of UDP and IPv4
+constexpr std::uint64_t kHeaders = 28;  // [bytes] of UDP and IPv4
 
 }  // namespace
+
+ServerConnection::ServerConnection(std::uint16_t client, const SessionServerOptions& options) noexcept
+    : client_(client),
+      silence_(options.silence),
+      piece_time_(options.rate == 0 ? 0 : 8'000'000 * (kLargestDatagram + kHeaders) / options.rate),
+      bucket_(options.rate) {}
 
 void ServerConnection::open(std::uint64_t peer, const Join& said, const ServedScene& served, std::uint64_t epoch,
                             std::uint64_t now) noexcept {
   state_ = *next_state(server_transitions(), SessionState::closed, SessionEvent::open);
   peer_ = peer;
   join_ = said;
-  proven_ = repeats_welcome_ = false;
+  proven_ = repeats_welcome_ = outdated_ = false;
   left_.reset();
   leaves_ = faults_ = 0;
   welcome_.serial = 0;
@@ -35,6 +41,7 @@ void ServerConnection::open(std::uint64_t peer, const Join& said, const ServedSc
 
 void ServerConnection::begin_epoch(const ServedScene& served, std::uint64_t epoch, std::uint64_t now) noexcept {
   const bool replaces = proven_;
+  outdated_ = false;
   state_ = next_state(server_transitions(), state_, SessionEvent::replaced).value_or(state_);
   served_ = served;
   welcome_ = {.nonce = join_.nonce,
@@ -180,10 +187,10 @@ std::optional<std::span<const std::uint8_t>> ServerConnection::poll(std::uint64_
     const std::uint64_t index = *exchange_->pieces->next(now, exchange_->patience());
     if (!writer.add(PiecePart{index, exchange_->pieces->bytes(index)})) return false;
     exchange_->pieces->sent(index, number, now);
-    piece_at_ = now + kPieceEvery;
+    piece_at_ = now + std::max(kPieceEvery, piece_time_);
     return true;
   });
-  if (datagram) bucket_.take(8 * (static_cast<std::int64_t>(datagram->size()) + kHeaders));
+  if (datagram && !piece) bucket_.take(static_cast<std::int64_t>(8 * (datagram->size() + kHeaders)));
   return datagram;
 }
 

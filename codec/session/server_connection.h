@@ -28,8 +28,7 @@ struct ServedScene {
 
 class ServerConnection {
  public:
-  ServerConnection(std::uint16_t client, const SessionServerOptions& options) noexcept
-      : client_(client), silence_(options.silence), bucket_(options.rate) {}
+  ServerConnection(std::uint16_t client, const SessionServerOptions& options) noexcept;
 
   std::uint16_t client() const noexcept { return client_; }
   std::uint64_t peer() const noexcept { return peer_; }  ///< 0: none
@@ -39,6 +38,10 @@ class ServerConnection {
   const Welcome& welcome() const noexcept { return welcome_; }
 
   void open(std::uint64_t peer, const Join& said, const ServedScene& served, std::uint64_t epoch, std::uint64_t now) noexcept;
+  /// A new scene waits until the client has spoken in the epoch that it was welcomed to: no other welcome can reach it before.
+  void outdate() noexcept { outdated_ = true; }
+  bool needs_epoch() const noexcept { return outdated_ && proven_ && state_ != SessionState::closed; }
+  bool is_proven() const noexcept { return proven_; }
   /// A new scene.   pre  open
   void begin_epoch(const ServedScene& served, std::uint64_t epoch, std::uint64_t now) noexcept;
   /// Go, if the state permits it. Unless the client has left or may not be there at all, it is told.
@@ -72,7 +75,7 @@ class ServerConnection {
   bool wants_welcome(std::uint64_t now) const noexcept;
 
   std::uint16_t client_;
-  std::uint64_t silence_;
+  std::uint64_t silence_, piece_time_;  // [us]; a piece at the rate
   SessionState state_ = SessionState::closed;
   std::uint64_t peer_ = 0;
   Join join_;
@@ -82,6 +85,7 @@ class ServerConnection {
   DatagramWriter writer_{Direction::down};  // of what is outside of the exchange
   TokenBucket bucket_;
   bool proven_ = false;  // it knows the epoch: the address is its own
+  bool outdated_ = false;  // there is a newer scene
   bool repeats_welcome_ = false;
   std::uint64_t welcome_at_ = 0, clock_at_ = 0, piece_at_ = 0;  // [us] when the next may go
   std::optional<LeaveReason> left_;                             // said by the client

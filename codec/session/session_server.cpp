@@ -83,8 +83,11 @@ Result<void> SessionServer::Impl::serve(SharedScene of, std::uint64_t now) {
 
 Result<void> SessionServer::replace_scene(SharedScene scene, std::uint64_t now) try {
   TACTUS_CHECK(impl_->serve(std::move(scene), now));
-  for (auto& connection : impl_->connections)
-    if (connection->state() != SessionState::closed) connection->begin_epoch(impl_->served, draw(impl_->entropy), now);
+  for (auto& connection : impl_->connections) {
+    if (connection->state() == SessionState::closed) continue;
+    if (connection->is_proven()) connection->begin_epoch(impl_->served, draw(impl_->entropy), now);
+    else connection->outdate();
+  }
   return {};
 } catch (const std::bad_alloc&) {
   return out_of_memory();
@@ -138,6 +141,7 @@ Result<void> SessionServer::handle_datagram(std::uint64_t now, std::uint64_t pee
       in.note({.kind = ServerEvent::Kind::live, .client = connection->client()});
     if (connection->has_left()) in.drop(*connection, SessionEvent::left, connection->leave_reason());
     if (connection->is_at_fault()) in.drop(*connection, SessionEvent::close, LeaveReason::protocol);
+    if (connection->needs_epoch()) connection->begin_epoch(in.served, draw(in.entropy), now);
     return handled;
   }
   if (!is_of_epoch(datagram, 0, Direction::up)) return fail(Errc::checksum, "R-SES-1");

@@ -1,0 +1,498 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/session/exchange.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <memory>
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <tactus/base/rule.h>
+#include <tactus/deformable/deformable_encoder.h>
+#include <tactus/rigid/rigid_syntax.h>
+#include <tactus/scene/scene_builder.h>
+#include "tests/unit/deformable_fixture.h"
+
+namespace tactus {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+constexpr std::uint64_t kEpoch = 7, kMillisecond = 1000;
+
+struct Meshes {
+  std::uint32_t squares = 4;
+  std::size_t count = 0;
+  bool layered = false;
+  double noise = 5e-4;  // [m]
+};
+
+/// A server's end that sends the packets of a scene at 100 ticks per second, and a client's end.
+struct Ends {
+  explicit Ends(const Meshes& meshes = {}, std::size_t objects = 3) : mesh(testing::sheet(meshes.squares, meshes.squares)) {
+    SceneBuilder builder(100);
+    for (std::size_t i = 0; i < objects; ++i) {
+      builder.rigid("body " + std::to_string(i));
+      motions.emplace_back(i + 1);
+    }
+    for (std::size_t i = 0; i < meshes.count; ++i) {
+      builder.deformable("sheet " + std::to_string(i), mesh, {.layered = meshes.layered});
+      sheets.emplace_back(mesh, meshes.squares, meshes.noise);
+    }
+    scene = builder.baselines(64).build().value();
+    SenderOptions options;
+    options.triggers.reduction = Reduction::none;  // a packet of the bodies in every tick
+    options.policy = {.key_interval = 0, .baseline = Baseline::acknowledged};
+    server->sender.emplace(Sender::create(scene, options).value());
+    std::size_t largest = max_rigid_packet(*scene);
+    for (const DeformableObject& object : scene->deformables) largest = std::max(largest, max_packet(object));
+    client->receive_with(Receiver::create(scene).value(), largest + 1);
+    samples.resize(objects);
+  }
+
+  /// Code the next tick.
+  std::span<const Packet> submit() {
+    for (std::size_t i = 0; i < motions.size(); ++i) samples[i] = motions[i].step(1e-2);
+    frames.clear();
+    shapes.clear();
+    for (testing::DentedSheet& sheet : sheets) frames.push_back(sheet.frame(tick));
+    for (const testing::SheetFrame& frame : frames) shapes.push_back(frame.truth());
+    const auto packets = server->submit(now, tick++, {.objects = samples, .contacts = {}, .deformables = shapes});
+    EXPECT_TRUE(packets) << packets.error().rule;
+    return packets.value_or(std::span<const Packet>());
+  }
+  /// The datagrams that an end has now.
+  std::vector<Bytes> drain(Exchange& from, bool wanted = false) const {
+    std::vector<Bytes> out;
+    const auto extras = [wanted](DatagramWriter& writer, std::uint64_t) {
+      if (wanted) writer.add(ClockPart{1});
+      return false;
+    };
+    while (const auto datagram = from.poll(now, wanted && out.empty(), extras))
+      out.emplace_back(datagram->begin(), datagram->end());
+    return out;
+  }
+  Result<Exchange::Heard> hear(Exchange& to, const Bytes& bytes) {
+    const Direction direction = &to == client.get() ? Direction::down : Direction::up;
+    EXPECT_TRUE(is_of_epoch(bytes, kEpoch, direction));
+    const auto read = read_datagram(bytes, direction);
+    EXPECT_TRUE(read) << read.error().rule;
+    if (!read) return tl::unexpected(read.error());
+    return to.handle(now, std::get<Numbered>(*read), [&](const Part& part, const auto&) {
+      others.push_back(part.index() + 1);
+      return other;
+    });
+  }
+  void give(const std::vector<Bytes>& datagrams) {
+    for (const Bytes& bytes : datagrams) EXPECT_TRUE(hear(*client, bytes));
+  }
+  /// The client says what it has, and the server hears it.
+  void answer() {
+    now += 10 * kMillisecond;
+    for (const Bytes& bytes : drain(*client)) EXPECT_TRUE(hear(*server, bytes));
+  }
+  void expect_same() {
+    for (std::size_t s = 0; s <= sheets.size(); ++s)
+      EXPECT_EQ(client->receiver->state_hash(s), server->sender->state_hash(s)) << "substream " << s << " at tick " << tick;
+  }
+
+  TriMesh mesh;
+  SharedScene scene;
+  std::vector<testing::Motion> motions;
+  std::vector<testing::DentedSheet> sheets;
+  std::vector<RigidSample> samples;
+  std::vector<testing::SheetFrame> frames;
+  std::vector<DeformableTruth> shapes;
+  std::uint64_t now = 5'000'000;
+  std::int64_t tick = 0;
+  std::unique_ptr<Exchange> server = std::make_unique<Exchange>(Direction::down, kEpoch, now);
+  std::unique_ptr<Exchange> client = std::make_unique<Exchange>(Direction::up, kEpoch, now);
+  std::vector<std::size_t> others;  // types of the parts that an end handed on
+  Result<void> other;               // what is said to them
+};
+
+std::vector<std::size_t> types_of(const Bytes& bytes, Direction direction = Direction::down) {
+  const auto read = read_datagram(bytes, direction).value();
+  PartReader parts = std::get<Numbered>(read).parts(direction);
+  std::vector<std::size_t> out;
+  while (const auto part = parts.next().value()) out.push_back(part->index() + 1);
+  return out;
+}
+
+constexpr std::size_t kIsClock = 2, kIsFragment = 7, kIsPacket = 8;
+
+TEST(Exchange, PacketsGoAreDecodedAndAcknowledged) {
+  Ends ends;
+  ends.submit();
+  const auto down = ends.drain(*ends.server);
+  ASSERT_EQ(down.size(), 1u);
+  EXPECT_EQ(std::get<Numbered>(read_datagram(down[0], Direction::down).value()).number, 1);
+  ends.now += 20 * kMillisecond;
+  const auto heard = ends.hear(*ends.client, down[0]);
+  ASSERT_TRUE(heard);
+  EXPECT_EQ(heard->number, 1u);
+  EXPECT_EQ(heard->tick, 0);
+  ends.expect_same();
+  EXPECT_TRUE(ends.drain(*ends.client).empty()) << "an acknowledgement waits for something to ride on";
+  EXPECT_EQ(ends.client->due(), ends.now + 10 * kMillisecond);
+  ends.now += 10 * kMillisecond;
+  const auto up = ends.drain(*ends.client);
+  ASSERT_EQ(up.size(), 1u);
+  EXPECT_EQ(types_of(up[0], Direction::up), std::vector<std::size_t>{1});
+  ends.now += 20 * kMillisecond;
+  const auto back = ends.hear(*ends.server, up[0]);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->round_trip, 40'000) << "without the 10 ms that it was held";
+  EXPECT_EQ(ends.server->sent().highest_acknowledged(), 1u);
+  EXPECT_EQ(ends.server->due(), std::nullopt) << "an acknowledgement is not acknowledged";
+}
+
+TEST(Exchange, OldAndDoubledDatagramsAreRefused) {
+  Ends ends;
+  std::vector<Bytes> all;
+  for (int i = 0; i < 20; ++i) {
+    ends.submit();
+    for (const Bytes& bytes : ends.drain(*ends.server)) all.push_back(bytes);
+  }
+  ASSERT_EQ(all.size(), 20u);
+  for (std::size_t i = 2; i < 20; i += 2) std::swap(all[i - 1], all[i]);  // each overtakes another
+  ends.give(all);
+  const Traffic before = ends.client->traffic();
+  for (const Bytes& bytes : all) {
+    const auto heard = ends.hear(*ends.client, bytes);
+    ASSERT_FALSE(heard);
+    EXPECT_STREQ(heard.error().rule, "R-SES-4");
+    EXPECT_EQ(heard.error().code, Errc::state);
+  }
+  EXPECT_EQ(ends.client->traffic().packets_heard, before.packets_heard);
+  EXPECT_EQ(before.packets_heard, all.size()) << "all were decoded";
+}
+
+TEST(Exchange, WhatIsRefusedIsNotAcknowledged) {
+  Ends ends;
+  DatagramWriter writer(Direction::down);
+  const Bytes nonsense(30, 0xff);
+  for (std::uint64_t number = 1; number <= 3; ++number) {
+    writer.begin(number);
+    ASSERT_TRUE(writer.add(PacketPart{number == 2 ? 0u : 10u, nonsense}));  // of a number below 1, too
+    const auto bytes = writer.finish(kEpoch);
+    EXPECT_TRUE(ends.hear(*ends.client, Bytes(bytes.begin(), bytes.end())));
+  }
+  EXPECT_EQ(ends.client->traffic().packets_heard, 0u);
+  EXPECT_EQ(ends.client->due(), std::nullopt);
+  ends.now += 1'000'000;
+  EXPECT_TRUE(ends.drain(*ends.client).empty());
+
+  Ends deaf;  // whose client cannot decode anything yet
+  deaf.client->receiver.reset();
+  deaf.submit();
+  deaf.give(deaf.drain(*deaf.server));
+  EXPECT_EQ(deaf.client->traffic().packets_refused, 1u);
+  EXPECT_EQ(deaf.client->due(), std::nullopt);
+}
+
+TEST(Exchange, SeveralPacketsShareADatagram) {
+  Ends ends({.count = 3});
+  EXPECT_EQ(ends.submit().size(), 4u);
+  const auto down = ends.drain(*ends.server);
+  ASSERT_EQ(down.size(), 1u);
+  EXPECT_EQ(types_of(down[0]), (std::vector<std::size_t>{kIsPacket, kIsPacket, kIsPacket, kIsPacket}));
+  ends.give(down);
+  ends.expect_same();
+  ends.answer();
+  EXPECT_EQ(ends.server->sent().highest_acknowledged(), 1u);
+}
+
+TEST(Exchange, OneRefusedPacketLeavesItsDatagramUnacknowledged) {
+  Ends ends({.count = 3});
+  ends.submit();
+  const Bytes whole = ends.drain(*ends.server)[0];
+  const auto read = read_datagram(whole, Direction::down).value();
+  PartReader parts = std::get<Numbered>(read).parts(Direction::down);
+  DatagramWriter writer(Direction::down);
+  writer.begin(1);
+  const Bytes nonsense(30, 0xff);
+  for (int i = 0; const auto part = parts.next().value(); ++i)
+    ASSERT_TRUE(writer.add(i == 1 ? Part(PacketPart{0, nonsense}) : *part));
+  const auto bytes = writer.finish(kEpoch);
+  EXPECT_TRUE(ends.hear(*ends.client, Bytes(bytes.begin(), bytes.end())));
+  EXPECT_EQ(ends.client->traffic().packets_refused, 1u);
+  EXPECT_EQ(ends.client->traffic().packets_heard, 3u) << "the others count";
+  EXPECT_EQ(ends.client->due(), std::nullopt);
+}
+
+TEST(Exchange, ALargePacketComesInFragments) {
+  Ends ends({.squares = 40, .count = 1, .noise = 5e-3});
+  const auto packets = ends.submit();
+  ASSERT_EQ(packets.size(), 2u);
+  const std::size_t size = packets[1].bytes.size(), count = (size + 1149) / 1150;
+  ASSERT_GT(count, 3u);
+  auto down = ends.drain(*ends.server);
+  ASSERT_GE(down.size(), count);
+  for (const Bytes& bytes : down) EXPECT_LE(bytes.size(), kLargestDatagram);
+  EXPECT_EQ(types_of(down[0]), std::vector<std::size_t>{kIsPacket});
+  EXPECT_EQ(types_of(down[2]), std::vector<std::size_t>{kIsFragment});
+  std::mt19937_64 random(3);
+  std::ranges::shuffle(down, random);
+  for (std::size_t i = 0; i < down.size(); ++i) {
+    EXPECT_LT(ends.client->traffic().packets_heard, 2u);
+    EXPECT_TRUE(ends.hear(*ends.client, down[i]));
+  }
+  EXPECT_EQ(ends.client->traffic().packets_heard, 2u);
+  ends.expect_same();
+  ends.answer();
+  EXPECT_EQ(ends.server->sent().highest_acknowledged(), down.size());
+  EXPECT_EQ(ends.server->sent().loss(), 0u);
+  EXPECT_EQ(ends.server->traffic().packets_sent, 2u);
+}
+
+TEST(Exchange, WithoutAllItsFragmentsNoneIsAcknowledged) {
+  Ends ends({.squares = 40, .count = 1, .noise = 5e-3}, 0);
+  ends.submit();
+  auto down = ends.drain(*ends.server);
+  ASSERT_GT(down.size(), 3u);
+  down.erase(down.begin() + 1);
+  ends.give(down);
+  EXPECT_EQ(ends.client->due(), std::nullopt);
+  for (int i = 0; i < 30; ++i) {  // later packets do without it
+    ends.submit();
+    ends.give(ends.drain(*ends.server));
+    ends.answer();
+  }
+  ends.expect_same();
+  EXPECT_EQ(ends.client->traffic().packets_refused, 0u);
+  EXPECT_GT(ends.client->traffic().packets_heard, 10u);
+  EXPECT_EQ(ends.server->traffic().lost, down.size() + 1);
+}
+
+/// A datagram is acknowledged as a whole: were a fragment beside a packet or another fragment, what completes the one would acknowledge
+/// the other, too.
+TEST(Exchange, AFragmentSharesItsDatagramWithNoOtherPacket) {
+  Ends ends({.squares = 40, .count = 3, .noise = 2e-3});
+  std::size_t fragments = 0;
+  for (int i = 0; i < 30; ++i) {
+    ends.submit();
+    const auto down = ends.drain(*ends.server);
+    for (const Bytes& bytes : down) {
+      const auto types = types_of(bytes);
+      if (std::ranges::find(types, kIsFragment) == types.end()) continue;
+      ++fragments;
+      EXPECT_EQ(std::ranges::count_if(types, [](std::size_t type) { return type >= kIsFragment; }), 1);
+    }
+    ends.give(down);
+    ends.answer();
+    ends.expect_same();
+  }
+  EXPECT_GT(fragments, 100u);
+  const Bytes some(20, 1);
+  for (const bool is_packet : {false, true}) {
+    DatagramWriter writer(Direction::down);
+    writer.begin(1);
+    ASSERT_TRUE(writer.add(FragmentPart{0, 1, 1, 2, some}));
+    ASSERT_TRUE(writer.add(is_packet ? Part(PacketPart{0, some}) : Part(FragmentPart{0, 2, 1, 2, some})));
+    const auto read = read_datagram(writer.finish(kEpoch), Direction::down);
+    ASSERT_FALSE(read);
+    EXPECT_STREQ(read.error().rule, "R-SES-5");
+  }
+}
+
+/// The layers of a mesh build on each other: the second has the next number, and goes in the next datagram.
+TEST(Exchange, TheSecondLayerOfAMeshHasTheNextNumber) {
+  Ends ends({.squares = 12, .count = 2, .layered = true});
+  std::uint64_t number = 0, visual = 0;
+  for (int i = 0; i < 200; ++i) {
+    const auto packets = ends.submit();
+    for (const Packet& packet : packets) {
+      EXPECT_GE(packet.number, number + 1);
+      EXPECT_LE(packet.number, number + 2);
+      visual += packet.layer == Layer::visual ? 1u : 0u;
+    }
+    const auto down = ends.drain(*ends.server);
+    number += down.size();
+    ends.give(down);
+    if (i % 2 == 0) ends.answer();
+    ends.expect_same();
+  }
+  EXPECT_GT(visual, 50u);
+  EXPECT_EQ(ends.client->traffic().packets_refused, 0u);
+}
+
+TEST(Exchange, ALostLayerIsMadeUpFor) {
+  Ends ends({.squares = 12, .count = 1, .layered = true});
+  std::mt19937_64 random(6);
+  std::uint64_t dropped = 0;
+  for (int i = 0; i < 600; ++i) {
+    ends.submit();
+    for (const Bytes& bytes : ends.drain(*ends.server)) {
+      if (i < 500 && random() % 10 == 0) ++dropped;
+      else EXPECT_TRUE(ends.hear(*ends.client, bytes));
+    }
+    ends.answer();
+  }
+  EXPECT_GT(dropped, 20u);
+  ends.expect_same();
+  EXPECT_GT(ends.client->traffic().packets_heard, 400u);
+}
+
+/// Packets of a tick that nobody fetched, or some of them: the states stay the same, now and later.
+TEST(Exchange, PacketsThatAreNotTakenDoNoHarm) {
+  for (const bool layered : {false, true}) {
+    for (const std::size_t taken : {0u, 1u}) {
+      Ends ends({.squares = 12, .count = 2, .layered = layered});
+      std::mt19937_64 random(9);
+      for (int i = 0; i < 400; ++i) {
+        ends.submit();
+        const auto extras = [](DatagramWriter&, std::uint64_t) { return false; };
+        if (i < 300 && random() % 4 == 0) {
+          for (std::size_t n = 0; n < taken; ++n) {
+            const auto datagram = ends.server->poll(ends.now, false, extras);
+            if (datagram) ends.give({Bytes(datagram->begin(), datagram->end())});
+          }
+          continue;
+        }
+        ends.give(ends.drain(*ends.server));
+        ends.answer();
+        if (!layered && ends.server->sender->state_hash(0) != ends.client->receiver->state_hash(0)) {
+          ADD_FAILURE() << "other states at tick " << ends.tick << ", " << taken << " taken";
+          break;
+        }
+      }
+      ends.expect_same();
+      EXPECT_TRUE(taken > 0 || ends.server->traffic().packets_held > 30u);
+      if (!layered) {
+        EXPECT_EQ(ends.client->traffic().packets_refused, 0u);
+      }
+    }
+  }
+}
+
+TEST(Exchange, APacketThatIsTooLargeIsLeftOut) {
+  constexpr std::uint32_t kSquares = 380;
+  const TriMesh mesh = testing::sheet(kSquares, kSquares);
+  DeformableOptions exact;
+  exact.thresholds = {.visual = 0, .weber_fraction = {}};
+  Ends ends({}, 0);
+  const SharedScene scene = SceneBuilder(100).deformable("sheet", mesh).baselines(2).build().value();
+  ends.server->sender.emplace(Sender::create(scene, {.triggers = {}, .deformable = exact, .policy = {}}).value());
+  std::vector<float> far(3 * mesh.vertices.size());
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<float> metres(-25, 25);
+  for (float& u : far) u = metres(random);
+  const DeformableTruth truth{far, {}};
+  const auto packets = ends.server->submit(ends.now, 0, {.objects = {}, .contacts = {}, .deformables = {&truth, 1}});
+  ASSERT_TRUE(packets) << packets.error().rule;
+  ASSERT_EQ(packets->size(), 1u);
+  ASSERT_GT((*packets)[0].bytes.size(), kFragmentSize * kMostFragments);
+  int datagrams = 0;
+  while (const auto datagram = ends.server->poll(ends.now, false, [](DatagramWriter&, std::uint64_t) { return false; })) {
+    EXPECT_TRUE(read_datagram(*datagram, Direction::down)) << "a datagram of " << datagram->size() << " bytes";
+    ++datagrams;
+  }
+  EXPECT_EQ(datagrams, 0);
+  EXPECT_EQ(ends.server->traffic().packets_held, 1u);
+}
+
+TEST(Exchange, WithoutAcknowledgementsItSendsLittle) {
+  Ends ends;
+  const auto datagrams = [&](int ticks, bool answers) {
+    std::size_t count = 0;
+    for (int i = 0; i < ticks; ++i) {
+      ends.submit();
+      const auto down = ends.drain(*ends.server);
+      count += down.size();
+      if (answers) {
+        ends.give(down);
+        ends.answer();
+      } else {
+        ends.now += 10 * kMillisecond;
+      }
+    }
+    return count;
+  };
+  EXPECT_GT(datagrams(200, true), 100u);
+  EXPECT_EQ(ends.server->traffic().ticks_held, 0u);
+  datagrams(110, false);  // it waits for a second at least
+  const std::size_t silent = datagrams(1000, false);
+  EXPECT_LE(silent, 201u) << "20 in a second";
+  EXPECT_GE(silent, 100u) << "so that the end is found again";
+  EXPECT_GT(ends.server->traffic().ticks_held, 500u);
+  datagrams(20, true);
+  const std::uint64_t held = ends.server->traffic().ticks_held;
+  EXPECT_GT(datagrams(100, true), 50u);
+  EXPECT_EQ(ends.server->traffic().ticks_held, held);
+  ends.expect_same();
+}
+
+TEST(Exchange, WhenTooManyNumbersWaitItIsSilent) {
+  Ends ends;
+  std::size_t datagrams = 0;
+  for (int i = 0; i < 30'000; ++i) {
+    ends.submit();
+    datagrams += ends.drain(*ends.server).size();
+    ends.now += 50 * kMillisecond;
+  }
+  EXPECT_EQ(datagrams, SentNumbers::kMostAhead);
+  EXPECT_TRUE(ends.drain(*ends.server, true).empty());
+}
+
+TEST(Exchange, OtherPartsAreHandedOn) {
+  Ends ends;
+  DatagramWriter writer(Direction::up);
+  const auto send = [&](std::uint64_t number) {
+    writer.begin(number);
+    EXPECT_TRUE(writer.add(ButtonsPart{1, 2}) && writer.add(StatePart{1}) && writer.add(HashPart{}));
+    const auto bytes = writer.finish(kEpoch);
+    return ends.hear(*ends.server, Bytes(bytes.begin(), bytes.end()));
+  };
+  EXPECT_TRUE(send(1));
+  EXPECT_EQ(ends.others, (std::vector<std::size_t>{3, 5, 6}));
+  EXPECT_TRUE(ends.server->due()) << "they must be acknowledged";
+  ends.other = fail(Errc::invalid, "R-SES-8");
+  const auto refused = send(2);
+  ASSERT_FALSE(refused);
+  EXPECT_STREQ(refused.error().rule, "R-SES-8");
+  EXPECT_EQ(ends.others.size(), 4u) << "nothing after the part that was refused";
+}
+
+TEST(Exchange, AClockAloneIsNotAcknowledged) {
+  Ends ends;
+  ends.give(ends.drain(*ends.server, true));
+  EXPECT_EQ(ends.others, std::vector<std::size_t>{kIsClock});
+  EXPECT_EQ(ends.client->due(), std::nullopt);
+}
+
+TEST(Exchange, AcknowledgementsOfWhatWasNeverSentAreRefused) {
+  Ends ends;
+  DatagramWriter writer(Direction::up);
+  writer.begin(1);
+  ASSERT_TRUE(writer.add(Acknowledgement{5, 0, 0}));
+  const auto bytes = writer.finish(kEpoch);
+  const auto heard = ends.hear(*ends.server, Bytes(bytes.begin(), bytes.end()));
+  ASSERT_FALSE(heard);
+  EXPECT_STREQ(heard.error().rule, "R-SES-6");
+}
+
+TEST(Exchange, EachSixtyFourthPacketIsHashed) {
+  Ends ends;
+  std::set<std::uint16_t> hashed;
+  for (int i = 0; i < 400; ++i) {
+    ends.submit();
+    for (const Bytes& bytes : ends.drain(*ends.server)) {
+      const auto heard = ends.hear(*ends.client, bytes);
+      ASSERT_TRUE(heard);
+      if (!heard->hash) continue;
+      EXPECT_EQ(heard->hash->hash, static_cast<std::uint32_t>(ends.server->sender->state_hash(0)));
+      EXPECT_EQ(heard->hash->number % 64, 0);
+      hashed.insert(heard->hash->number);
+    }
+    ends.answer();
+  }
+  EXPECT_GE(hashed.size(), 3u);
+}
+
+}  // namespace
+}  // namespace tactus
