@@ -63,10 +63,12 @@ def read_parts(body: bytes) -> Iterator[tuple[int, Cursor]]:
         data = cursor.take(size, CUT)
         require(last <= kind and kind > 0, "malformed", "R-SES-5")
         require(kind in (ACK, CLOCK, PIECE, FRAGMENT, PACKET_PART) or kind >= 64, "malformed", "R-SES-5")
+        require(kind >= 64 or last < FRAGMENT or last == kind == PACKET_PART, "malformed", "R-SES-5")
         last, count = kind, count + 1
         if kind < 64:
             yield kind, Cursor(data, 0, len(data))
-    require(count > 0, "malformed", "R-SES-5")
+    alone = count == 1 and last == PACKET_PART and data[:1] == b"\0"
+    require(count > 0 and not alone, "malformed", "R-SES-5")
 
 
 # ---- 25, section 9: packets with given numbers ----------------------------------------------------------------------
