@@ -85,7 +85,8 @@ class Exchange {
   std::optional<std::uint64_t> due() const noexcept { return received_.due(); }
   bool has_packets() const noexcept { return next_packet_ < packets_.size(); }
   /// While nothing of what was sent is acknowledged for long, an end sends little.
-  bool may_send(std::uint64_t now) const noexcept;
+  bool may_send(std::uint64_t now) const noexcept { return next_send(now) <= now; }
+  std::uint64_t next_send(std::uint64_t wanted) const noexcept;  ///< [us] when what should go at `wanted` may go
 
   std::uint64_t heard_at() const noexcept { return heard_at_; }  ///< [us] when the newest datagram came
   std::uint64_t sent_at() const noexcept { return sent_at_; }    ///< [us] when the last one went
