@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::uint64_t kSilence = 1'000'000;      // [us] without acknowledgements, at least, before an end sends little
 constexpr std::uint64_t kSeldom = 50'000;          // [us] from datagram to datagram then
+constexpr std::uint64_t kSparing = 1024;           // the wait is this part of the silence at least: numbers last for 17 minutes
 constexpr std::uint64_t kFirstPatience = 250'000;  // [us] while no round trip is known
-constexpr std::uint64_t kHashEvery = 64;           // packet numbers
 
 }  // namespace
 
@@ -147,9 +147,11 @@ bool Exchange::misses_layers(std::uint64_t now) const noexcept {
   return layered_ > sent_.highest_acknowledged() && now > std::max(progress_at_, key_wanted_at_) + 2 * patience();
 }
 
-bool Exchange::may_send(std::uint64_t now) const noexcept {
-  const bool waits = asked_ > sent_.highest_acknowledged() && now > progress_at_ + std::max(kSilence, 4 * patience());
-  return !waits || now >= sent_at_ + kSeldom;
+std::uint64_t Exchange::next_send(std::uint64_t wanted) const noexcept {
+  const bool waits = asked_ > sent_.highest_acknowledged() && wanted > progress_at_ + std::max(kSilence, 4 * patience());
+  if (!waits) return wanted;
+  const std::uint64_t silent = std::max(sent_at_, progress_at_) - progress_at_;
+  return std::max(wanted, sent_at_ + std::max(kSeldom, silent / kSparing));
 }
 
 Result<std::span<const Packet>> Exchange::submit(std::uint64_t now, std::int64_t tick, const Truth& truth) noexcept {

@@ -20,6 +20,7 @@
 
 namespace tactus {
 
+inline constexpr std::uint64_t kHashEvery = 64;  ///< packets with a number that this divides: clients tell the hash of the state
 inline constexpr std::uint64_t kUpPatience = 10'000, kDownPatience = 25'000;  ///< [us] of acknowledgements in these directions
 
 /// pre  `now` [us] never decreases.   Only receive_with() allocates.
@@ -87,7 +88,8 @@ class Exchange {
   std::optional<std::uint64_t> due() const noexcept { return received_.due(); }
   bool has_packets() const noexcept { return next_packet_ < packets_.size(); }
   /// While nothing of what was sent is acknowledged for long, an end sends little.
-  bool may_send(std::uint64_t now) const noexcept;
+  bool may_send(std::uint64_t now) const noexcept { return next_send(now) <= now; }
+  std::uint64_t next_send(std::uint64_t wanted) const noexcept;  ///< [us] when what should go at `wanted` may go
 
   std::uint64_t heard_at() const noexcept { return heard_at_; }  ///< [us] when the newest datagram came
   std::uint64_t sent_at() const noexcept { return sent_at_; }    ///< [us] when the last one went
@@ -143,11 +145,11 @@ class Exchange {
   std::span<const Packet> packets_;  // of the last submit()
   std::size_t next_packet_ = 0, next_fragment_ = 0;
   std::uint64_t heard_at_, sent_at_;
-  std::uint64_t asked_at_ = 0;     // [us] when a datagram went that asks for an acknowledgement
-  std::uint64_t asked_ = 0;        // highest number that asks
-  std::uint64_t progress_at_ = 0;  // [us] when one was acknowledged, or the first asked
-  std::uint64_t layered_ = 0;      // highest number that brings a layer of a mesh
-  bool wants_key_ = false;         // a layer is lost
+  std::uint64_t asked_at_ = 0;       // [us] when a datagram went that asks for an acknowledgement
+  std::uint64_t asked_ = 0;          // highest number that asks
+  std::uint64_t progress_at_ = 0;    // [us] when one was acknowledged, or the first asked
+  std::uint64_t layered_ = 0;        // highest number that brings a layer of a mesh
+  bool wants_key_ = false;           // a layer is lost
   std::uint64_t key_wanted_at_ = 0;  // [us]
   Traffic traffic_;
 };

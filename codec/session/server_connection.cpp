@@ -15,8 +15,7 @@ constexpr std::uint64_t kClockEvery = 100'000;    // [us]
 constexpr std::uint64_t kPieceEvery = 500;        // [us]: 16 Mbit/s
 constexpr std::uint64_t kUnproven = 10'000'000;   // [us] for the first datagram in the epoch
 constexpr unsigned kMostFaults = 100;
-constexpr unsigned kLeaves = 3;  // one of them should arrive
-constexpr std::uint64_t kHashEvery = 64;
+constexpr unsigned kLeaves = 3;         // one of them should arrive
 constexpr std::uint64_t kHeaders = 28;  // [bytes] of UDP and IPv4
 
 }  // namespace

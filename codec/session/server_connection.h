@@ -84,7 +84,7 @@ class ServerConnection {
   std::optional<Exchange> exchange_;
   DatagramWriter writer_{Direction::down};  // of what is outside of the exchange
   TokenBucket bucket_;
-  bool proven_ = false;  // it knows the epoch: the address is its own
+  bool proven_ = false;    // it knows the epoch: the address is its own
   bool outdated_ = false;  // there is a newer scene
   bool repeats_welcome_ = false;
   std::uint64_t welcome_at_ = 0, clock_at_ = 0, piece_at_ = 0;  // [us] when the next may go

@@ -222,12 +222,15 @@ Result<void> SessionClient::Impl::complete(std::uint64_t now) noexcept try {
 std::uint64_t SessionClient::Impl::sign_due() const noexcept {
   if (sign_at == 0) return 0;
   const std::uint64_t sent = std::max(sign_at, current->exchange.asked_at());
-  if (feels) return sent + (current->exchange.sent().loss() > kSomeLoss ? kFeltAtLoss : kFelt);
-  if (options.role == Role::participant) return sent + kParticipant;
-  return sent + (state == SessionState::receiving || sent < packet_at + kRecent ? kServed : kIdle);
+  const bool served = state == SessionState::receiving || sent < packet_at + kRecent;
+  const std::uint64_t felt = current->exchange.sent().loss() > kSomeLoss ? kFeltAtLoss : kFelt;
+  const std::uint64_t pause = feels ? felt : options.role == Role::participant ? kParticipant : served ? kServed : kIdle;
+  return current->exchange.next_send(sent + pause);
 }
 
-bool SessionClient::Impl::has_buttons_due(std::uint64_t now) const noexcept { return buttons_wait && now >= buttons_at; }
+bool SessionClient::Impl::has_buttons_due(std::uint64_t now) const noexcept {
+  return buttons_wait && now >= current->exchange.next_send(buttons_at);
+}
 
 void SessionClient::handle_timeout(std::uint64_t now) noexcept {
   Impl& in = *impl_;
@@ -299,7 +302,7 @@ std::optional<std::uint64_t> SessionClient::next_timeout() const noexcept {
   if (in.state == SessionState::closed) return std::nullopt;
   if (in.state == SessionState::joining) return std::min(in.join_at, in.opened_at + kJoinFor);
   std::uint64_t due = std::min(in.sign_due(), in.current->exchange.heard_at() + in.options.silence);
-  if (in.buttons_wait) due = std::min(due, in.buttons_at);
+  if (in.buttons_wait) due = std::min(due, in.current->exchange.next_send(in.buttons_at));
   if (const auto acknowledgement = in.current->exchange.due()) due = std::min(due, *acknowledgement);
   return due;
 }

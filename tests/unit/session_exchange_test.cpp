@@ -430,7 +430,7 @@ TEST(Exchange, WithoutAcknowledgementsItSendsLittle) {
 TEST(Exchange, WhenTooManyNumbersWaitItIsSilent) {
   Ends ends;
   std::size_t datagrams = 0;
-  for (int i = 0; i < 30'000; ++i) {
+  for (int i = 0; i < 60'000; ++i) {
     ends.submit();
     datagrams += ends.drain(*ends.server).size();
     ends.now += 50 * kMillisecond;
