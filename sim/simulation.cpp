@@ -18,8 +18,8 @@ namespace tactus::sim {
 struct Simulation::Impl {
   std::uint64_t seed;
   Client& client(std::size_t user) noexcept { return *clients[clients.size() > 1 ? user : 0]; }
-  Result<std::span<const Packet>> travel(std::span<const DeviceSample> devices) noexcept;
-  void render(std::span<const DeviceSample> devices) noexcept;
+  Result<std::span<const Packet>> travel(std::span<const DeviceSample> at_clients) noexcept;
+  void render(std::span<const DeviceSample> at_clients) noexcept;
 
   std::unique_ptr<Server> server;
   std::unique_ptr<SessionNetwork> network;       // null: a perfect link

@@ -75,7 +75,7 @@ class Service {
       : world_(world),
         sessions_(sessions),
         socket_(socket),
-        peers_(4 * sessions.clients()),
+        peers_(4 * std::size_t{sessions.clients()}),
         players_(world.scene().users.size()) {
     for (const sim::SceneUser& user : world.scene().users) devices_.push_back({.position = user.start});
   }

@@ -25,5 +25,6 @@ void setup_reproduce(Command& app, Action& action);
 void setup_bench(Command& app, Action& action);
 void setup_bench_precision(Command& group, Action& action);
 void setup_bench_stability(Command& group, Action& action);
+void setup_bench_session(Command& group, Action& action);
 
 }  // namespace tactus::cli

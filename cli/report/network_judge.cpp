@@ -14,6 +14,7 @@ constexpr std::size_t kKept = 4096;  // [ticks] of truth: more than any client l
 
 NetworkJudge::NetworkJudge(const TraceInfo& info, const RigidTriggers& bounds) : past_(kKept) {
   for (const TraceUser& user : info.users) users_.push_back({.user = user.name, .errors = ErrorMetrics(info, bounds)});
+  judged_.assign(users_.size(), -1);
 }
 
 void NetworkJudge::add(const sim::Simulation& simulation) {
@@ -27,7 +28,7 @@ void NetworkJudge::add(const sim::Simulation& simulation) {
       ++user.not_shown;
       continue;
     }
-    user.errors.add(*truth, simulation.client_poses(i));
+    if (std::exchange(judged_[i], truth->tick) < truth->tick) user.errors.add(*truth, simulation.client_poses(i));
     user.delay_sum += 1e-3 * static_cast<double>(now.tick - truth->tick);
     ++user.shown;
   }

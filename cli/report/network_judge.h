@@ -23,6 +23,7 @@ class NetworkJudge {
  private:
   PastFrames past_;
   std::vector<NetworkReport> users_;
+  std::vector<std::int64_t> judged_;  // last tick, of each user
 };
 
 }  // namespace tactus::cli

@@ -203,7 +203,7 @@ std::optional<DeviceSample> SessionServer::device(std::uint16_t client, std::uin
   return impl_->connections[client]->device(now);
 }
 
-std::size_t SessionServer::clients() const noexcept { return impl_->connections.size(); }
+std::uint16_t SessionServer::clients() const noexcept { return impl_->options.clients; }
 ClientStatus SessionServer::status(std::uint16_t client) const noexcept { return impl_->connections[client]->status(); }
 
 std::uint64_t SessionServer::state_hash(std::uint16_t client, std::size_t substream) const noexcept {

@@ -76,7 +76,7 @@ class SessionServer {
 
   /// The device of a live participant; nothing: it was not heard yet, or the client is an observer.
   std::optional<DeviceSample> device(std::uint16_t client, std::uint64_t now) noexcept;
-  std::size_t clients() const noexcept;  ///< most of them; client < clients()
+  std::uint16_t clients() const noexcept;  ///< most of them; client < clients()
   ClientStatus status(std::uint16_t client) const noexcept;
   /// Hash of a substream's state as the client has it when it has got all packets.   pre  live
   std::uint64_t state_hash(std::uint16_t client, std::size_t substream) const noexcept;

@@ -11,7 +11,6 @@ namespace tactus::sim {
 namespace {
 
 constexpr std::uint64_t kPatience = 60'000'000, kLook = 10'000;  // [us]
-constexpr std::uint64_t kTick = 1000;                            // [us]
 
 Traffic difference(const Traffic& now, const Traffic& before) noexcept {
   Traffic out = now;
@@ -31,12 +30,13 @@ Traffic difference(const Traffic& now, const Traffic& before) noexcept {
 Result<std::unique_ptr<SessionNetwork>> SessionNetwork::create(SharedScene scene, std::size_t users, const SenderOptions& sender,
                                                                const NetworkOptions& options) {
   std::unique_ptr<SessionNetwork> network(new SessionNetwork);
+  network->tick_rate_ = scene->tick_rate;
   Random seeds(options.downlink.seed);
   SessionServerOptions of_server{.sender = sender, .clients = static_cast<std::uint16_t>(std::max<std::size_t>(1, users))};
   TACTUS_TRY(auto server, SessionServer::create(std::move(scene), of_server, seeds.next(), network->now_));
   network->server_ = std::make_unique<SessionServer>(std::move(server));
   for (std::size_t i = 0; i < users; ++i) {
-    const SessionClientOptions of_client{.role = Role::participant, .playout = options.playout, .device = options.device};
+    const SessionClientOptions of_client{.role = options.role, .playout = options.playout, .device = options.device};
     TACTUS_TRY(auto client, SessionClient::create(of_client));
     network->users_.push_back({std::make_unique<SessionClient>(std::move(client)), {}, {}, 0, {}, {}});
     network->users_.back().client->open(network->now_, seeds.next());
@@ -124,11 +124,15 @@ void SessionNetwork::advance(std::uint64_t until) noexcept {
   drain();
 }
 
+std::uint64_t SessionNetwork::time_of(std::int64_t tick) const noexcept {
+  return start_ + 1'000'000 * static_cast<std::uint64_t>(tick) / tick_rate_;
+}
+
 Result<void> SessionNetwork::to_server(std::int64_t tick, std::span<const DeviceSample> devices,
                                        std::span<const std::optional<DeviceContact>> contacts) {
   if (!std::exchange(begun_, true)) std::ranges::copy(devices, heard_.begin());
-  advance(start_ + kTick * static_cast<std::uint64_t>(tick));
-  for (std::size_t i = 0; i < users_.size(); ++i) TACTUS_CHECK(users_[i].client->submit(now_, devices[i], contacts[i]));
+  advance(time_of(tick));
+  for (std::size_t i = 0; i < devices.size(); ++i) TACTUS_CHECK(users_[i].client->submit(now_, devices[i], contacts[i]));
   drain();
   deliver();
   drain();

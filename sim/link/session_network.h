@@ -20,17 +20,19 @@ struct NetworkOptions {
   LinkOptions uplink, downlink;  ///< of user 0; those of others differ by their seeds
   DeviceCoding device{};
   PlayoutOptions playout{};
+  Role role = Role::participant;  ///< of every client
 };
 
 class SessionNetwork {
  public:
   /// Let the sessions begin, before tick 0, over links as they will be but for their outages and recorded delays.
-  /// in   users  number of clients, each a participant
+  /// in   users  number of clients
   /// err  of SessionServer::create, SessionClient::create, Link::create; state R-SIM-7: after a minute not all are live
   static Result<std::unique_ptr<SessionNetwork>> create(SharedScene scene, std::size_t users, const SenderOptions& sender,
                                                         const NetworkOptions& options);
 
-  /// What clients and server say and hear until this tick, then the devices at the clients.   in  contacts  one per user
+  /// What clients and server say and hear until this tick, then the devices at the clients.
+  /// in   devices, contacts  one per participant
   /// err  of SessionClient::submit
   Result<void> to_server(std::int64_t tick, std::span<const DeviceSample> devices,
                          std::span<const std::optional<DeviceContact>> contacts);
@@ -62,6 +64,7 @@ class SessionNetwork {
   void drain() noexcept;
   void deliver() noexcept;
   void advance(std::uint64_t until) noexcept;
+  std::uint64_t time_of(std::int64_t tick) const noexcept;
   Microseconds link_time() const noexcept { return static_cast<Microseconds>(now_ - links_since_); }
 
   std::unique_ptr<SessionServer> server_;
@@ -69,6 +72,7 @@ class SessionNetwork {
   std::vector<DeviceSample> heard_;
   std::uint64_t now_ = 1'000'000, links_since_ = now_;
   std::uint64_t start_ = 0;  // [us] of tick 0
+  std::uint64_t tick_rate_ = 1000;
   bool begun_ = false;
 };
 

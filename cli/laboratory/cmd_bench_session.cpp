@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include <tactus/sim/study/session.h>
+#include <tactus/trace/csv_reader.h>
+#include <tactus/trace/trace_file.h>
+#include "cli/commands/commands.h"
+#include "cli/laboratory/cmd_bench.h"
+#include "cli/laboratory/plot.h"
+#include "cli/options/options_codec.h"
+#include "cli/output.h"
+#include "cli/progress.h"
+#include "cli/report/figures.h"
+#include "cli/report/json_parts.h"
+#include "cli/report/table.h"
+
+namespace tactus::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using sim::study::Motion;
+using sim::study::SessionResult;
+
+struct SessionBenchOptions {
+  std::vector<std::string> traces;
+  bool brief = false;
+  std::string directory;
+  TriggerArguments triggers;
+  CommonOptions common;
+};
+
+/// A motion and what became of it.
+struct Study {
+  Motion motion;
+  double chain = 0;  // [bit/s]
+  std::vector<SessionResult> results{};
+};
+
+constexpr std::uint64_t kMostTicks = 10'000'000;  // of a trace: all of it is in memory
+
+tl::expected<Motion, Failure> read_motion(const std::string& path, const RigidTriggers& bounds) {
+  auto reader = TraceReader::open(path);
+  if (!reader) return refuse(path, reader.error());
+  Motion out{.name = path, .info = reader->info(), .frames = {}, .bounds = bounds};
+  out.name = out.name.substr(out.name.rfind('/') + 1);
+  if (out.info.objects.empty() || !out.info.meshes.empty())
+    return refuse_arguments(path + ": a session is studied on rigid objects only", "Give a trace with rigid objects and no meshes.");
+  TraceFrame frame;
+  for (;;) {
+    const auto more = reader->next(frame);
+    if (!more) return refuse(path, more.error());
+    if (!*more) break;
+    if (out.frames.size() == kMostTicks) return refuse_arguments(path + ": too long", "Give a trace of at most 10 million ticks.");
+    frame.tick = static_cast<std::int64_t>(out.frames.size());  // a gap in a recording takes no time here
+    out.frames.push_back(frame);
+  }
+  if (out.frames.empty()) return refuse_arguments(path + ": no frame", "Give a trace with at least one tick.");
+  return out;
+}
+
+tl::expected<Study, Failure> run_study(Motion motion, const SessionBenchOptions& options) {
+  Study study{.motion = std::move(motion)};
+  const auto chain = sim::study::chain_payload(study.motion);
+  if (!chain) return refuse(study.motion.name, chain.error());
+  study.chain = *chain;
+  const auto cases = sim::study::session_cases(options.brief);
+  Progress progress(study.motion.name, cases.size(), options.common.progress());
+  const double seconds = static_cast<double>(study.motion.frames.size()) / study.motion.info.tick_rate;
+  for (const sim::study::SessionCase& one : cases) {
+    const auto outage = std::ranges::max_element(one.link.outages, {}, &sim::Outage::end);
+    const bool fits = outage == one.link.outages.end() || 1e-6 * static_cast<double>(outage->end) + 1 < seconds;
+    if (fits) {
+      auto result = sim::study::run_session(study.motion, one);
+      if (!result) return refuse(study.motion.name, result.error());
+      study.results.push_back(std::move(*result));
+    }
+    progress.update(study.results.size());
+  }
+  return study;
+}
+
+struct Figures {
+  double over, longest, mean, behind;              // share, [ms]
+  double payload, against_chain, session, headers; // [kbit/s] down
+  double up;                                       // [kbit/s] all
+};
+Figures figures_of(const Study& study, const SessionResult& r) {
+  const auto kbit = [&](std::uint64_t bytes) { return 8e-3 * per(static_cast<double>(bytes), r.seconds); };
+  const double payload = kbit(r.down.payload_sent);
+  return {.over = per(static_cast<double>(r.over), static_cast<double>(r.ticks)),
+          .longest = 1e3 * r.longest,
+          .mean = 1e3 * r.mean,
+          .behind = 1e3 * r.behind,
+          .payload = payload,
+          .against_chain = per(1e3 * payload, study.chain),
+          .session = kbit(r.down.bytes_sent - r.down.payload_sent),
+          .headers = kbit(kUdpHeader * r.down.datagrams_sent),
+          .up = kbit(r.up.bytes_sent + kUdpHeader * r.up.datagrams_sent)};
+}
+
+constexpr const char* kColumns[]{"over a bound", "longest [ms]", "mean [ms]", "shown behind [ms]", "payload [kbit/s]", "x chain",
+                                 "session", "UDP/IPv4", "all down", "all up"};
+
+std::vector<std::string> cells_of(const Study& study, const SessionResult& r) {
+  const Figures f = figures_of(study, r);
+  const auto one = [](double value) { return fmt::format("{:.1f}", value); };
+  const auto two = [](double value) { return fmt::format("{:.2f}", value); };
+  return {fmt::format("{:.3f} %", 100 * f.over), one(f.longest),     one(f.mean),    one(f.behind),
+          two(f.payload),                        two(f.against_chain), two(f.session), two(f.headers),
+          two(f.payload + f.session + f.headers), two(f.up)};
+}
+
+std::string recovery_text(const SessionResult& r) {
+  return r.recovery > 0 ? fmt::format("; mended {:.0f} ms after it", 1e3 * r.recovery) : "";
+}
+
+void print_table(const std::vector<Study>& studies) {
+  for (const Study& study : studies) {
+    Table table;
+    std::string group;
+    for (const SessionResult& r : study.results) {
+      if (r.of.group != group) {
+        std::vector<std::string> head{study.motion.name + ": " + r.of.group};
+        head.insert(head.end(), std::begin(kColumns), std::end(kColumns));
+        table.heading(std::move(head));
+        group = r.of.group;
+      }
+      std::vector<std::string> row{"  " + r.of.name + recovery_text(r)};
+      for (std::string& cell : cells_of(study, r)) row.push_back(std::move(cell));
+      table.row(std::move(row));
+    }
+    table.print(stdout);
+    fmt::print("\n");
+  }
+}
+
+std::string to_csv(const std::vector<Study>& studies) {
+  std::string out =
+      "motion,group,case,ticks,over,over_position,over_rotation,over_force,longest_s,mean_s,behind_s,down_payload_bit_per_s,"
+      "chain_payload_bit_per_s,down_session_bit_per_s,down_udp_ipv4_bit_per_s,up_bit_per_s,recovery_s\n";
+  for (const Study& study : studies)
+    for (const SessionResult& r : study.results) {
+      const Figures f = figures_of(study, r);
+      out += fmt::format("{},{},{},{},{},{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n",
+                         csv_field(study.motion.name), csv_field(r.of.group), csv_field(r.of.name), r.ticks, r.over, r.position,
+                         r.rotation, r.force, r.longest, r.mean, r.behind, 1e3 * f.payload, study.chain, 1e3 * f.session,
+                         1e3 * f.headers, 1e3 * f.up, r.recovery);
+    }
+  return out;
+}
+
+Json to_json(const std::vector<Study>& studies) {
+  Json out{{"schema", "tactus.session/1"}, {"context", bench_context()}, {"motions", Json::array()}};
+  for (const Study& study : studies) {
+    Json motion{{"name", study.motion.name},
+                {"seconds", static_cast<double>(study.motion.frames.size()) / study.motion.info.tick_rate},
+                {"chain_payload_bit_per_s", study.chain},
+                {"cases", Json::array()}};
+    for (const SessionResult& r : study.results) {
+      const Figures f = figures_of(study, r);
+      Json one{{"group", r.of.group},
+               {"case", r.of.name},
+               {"ticks", r.ticks},
+               {"ticks_over", {{"any", r.over}, {"position", r.position}, {"rotation", r.rotation}, {"force", r.force}}},
+               {"longest_run_s", r.longest},
+               {"mean_run_s", r.mean},
+               {"shown_behind_s", r.behind},
+               {"down_bit_per_s", {{"payload", 1e3 * f.payload}, {"session", 1e3 * f.session}, {"udp_ipv4", 1e3 * f.headers}}},
+               {"up_bit_per_s", 1e3 * f.up},
+               {"coding_cpu_s", r.server_time}};
+      if (r.recovery > 0) one["recovery_s"] = r.recovery;
+      motion["cases"].push_back(std::move(one));
+    }
+    out["motions"].push_back(std::move(motion));
+  }
+  return out;
+}
+
+std::string to_markdown(const std::vector<Study>& studies, const SessionBenchOptions& options, bool has_figure) {
+  const auto context = bench_context();
+  std::string out = fmt::format(
+      "# Sessions over networks that delay, lose and reorder\n\n"
+      "`tactus bench session{}` on {} ({}, {} build). All but the times is deterministic.\n\n"
+      "A client looks on over the network of each row: round trip 40 ms and 5 % duplicates unless said, the same network up and down. "
+      "What it shows is judged against the truth of the tick that it shows. *Over a bound*: share of the ticks in which a position, "
+      "rotation or contact force is off by more than its bound; *longest*, *mean*: runs of such ticks; *shown behind*: how far the tick "
+      "shown lies behind the server's, delay of the network included. *x chain*: the payload as a multiple of that of packets that "
+      "build on the one before over a network that loses nothing. The same rows are in `session.csv`.\n",
+      options.brief ? " --short" : "", context.at("machine"), context.at("compiler"), context.at("build"));
+  if (has_figure) out += "\n![share of ticks over a bound, over loss](session-loss.svg)\n";
+  for (const Study& study : studies) {
+    double coding = 0;
+    for (const SessionResult& r : study.results) coding = std::max(coding, r.server_time);
+    out += fmt::format("\n## {}\n\n{} ticks at {} Hz; chain {:.2f} kbit/s. Coding a tick and its datagrams takes {} (median, CPU).\n",
+                       study.motion.name, study.motion.frames.size(), study.motion.info.tick_rate, 1e-3 * study.chain, duration(coding));
+    std::string group;
+    for (const SessionResult& r : study.results) {
+      if (r.of.group != group) {
+        group = r.of.group;
+        out += fmt::format("\n| {} | {} |\n|---{}|\n", group, fmt::join(kColumns, " | "), "|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:");
+      }
+      out += fmt::format("| {}{} | {} |\n", r.of.name, recovery_text(r), fmt::join(cells_of(study, r), " | "));
+    }
+  }
+  return out;
+}
+
+/// Share of the ticks over a bound, over the loss, a line for each of the kinds of loss of the first motion.
+Plot loss_plot(const Study& study) {
+  Plot plot{.name = "session-loss", .program = "session-loss"};
+  const auto add = [&](const char* block, const char* group) {
+    PlotData data{block, {}};
+    for (const SessionResult& r : study.results)
+      if (r.of.group == group) data.rows.push_back({100 * r.of.link.loss, 100 * figures_of(study, r).over});
+    plot.data.push_back(std::move(data));
+  };
+  add("plain", "loss");
+  add("jitter", "loss, jitter up to 30 ms");
+  add("bursts", "loss in bursts of 5");
+  return plot;
+}
+
+Outcome write_report(const std::vector<Study>& studies, const SessionBenchOptions& options) {
+  bool drawn = false;
+  if (!options.brief) {
+    TACTUS_TRY(const auto figure, draw(loss_plot(studies.front()), options.directory, options.common.existing()));
+    drawn = figure == Drawn::yes;
+    if (!drawn) fmt::print(stderr, "note: {}\n", kNoGnuplot);
+  }
+  TACTUS_CHECK(write_file(options.directory + "/session.csv", to_csv(studies), options.common.existing()));
+  return write_file(options.directory + "/report.md", to_markdown(studies, options, drawn), options.common.existing());
+}
+
+Outcome run(const SessionBenchOptions& options) {
+  const bool writes = !options.directory.empty();
+  if (writes) {
+    TACTUS_CHECK(make_folder(options.directory));
+    for (const char* file : {"/report.md", "/session.csv"})
+      TACTUS_CHECK(OutputFile::check_free(options.directory + file, options.common.existing()));
+  }
+  constexpr std::int64_t kTicks = 120'000, kFewTicks = 10'000;
+  std::vector<Motion> motions{sim::study::swinging_bodies(options.brief ? kFewTicks : kTicks)};
+  for (const std::string& trace : options.traces) {
+    TACTUS_TRY(auto motion, read_motion(trace, options.triggers.triggers()));
+    motions.push_back(std::move(motion));
+  }
+  std::vector<Study> studies;
+  for (Motion& motion : motions) {
+    TACTUS_TRY(auto study, run_study(std::move(motion), options));
+    studies.push_back(std::move(study));
+  }
+  if (writes) TACTUS_CHECK(write_report(studies, options));
+  if (options.common.json) fmt::print("{}\n", text_of_json(to_json(studies)));
+  else if (!options.common.quiet) print_table(studies);
+  return {};
+}
+
+}  // namespace
+
+void setup_bench_session(Command& group, Action& action) {
+  auto options = std::make_shared<SessionBenchOptions>();
+  Command& command = group.add_command("session", "How sessions bear networks that lose, delay and reorder");
+  command.add_option("TRACE", options->traces, "Also study these recordings of rigid objects, at the bounds given by options")
+      ->type_name("");
+  command.add_flag("--short", options->brief, "Run two cases over 10 s");
+  command.add_option("-o,--output", options->directory, "Folder for report.md, CSV and figure")->type_name("DIR");
+  options->triggers.add_to(command);
+  add_output_options(command, options->common);
+  command.footer("Example:\n  tactus bench session truth.mcap -p 4% --visual 0.3mm,2deg -o session");
+  on_chosen<SessionBenchOptions>(command, action, options, run);
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What a session makes of a motion over a network: how often what a client shows is over a bound, against the truth of the tick that it
+/// shows, and what that costs. Everything but the times is deterministic.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <tactus/metrics/errors.h>
+#include <tactus/sender.h>
+#include <tactus/sim/link/session_network.h>
+#include <tactus/trace/frame.h>
+
+namespace tactus::sim::study {
+
+/// A recorded motion of rigid objects.
+struct Motion {
+  std::string name;
+  TraceInfo info;
+  std::vector<TraceFrame> frames;  ///< of ticks 0, 1, 2, ...
+  RigidTriggers bounds;
+};
+
+/// Three bodies that swing by 0.15 m and 34 deg at 0.5 to 1 Hz, without being told their angular velocity: 1 mm and 1 deg.
+Motion swinging_bodies(std::int64_t ticks);
+
+struct SessionCase {
+  std::string group, name;  ///< "loss", "10 %"
+  LinkOptions link{};       ///< the same there and back, but for the seed
+  PlayoutOptions playout{};
+};
+
+struct SessionResult {
+  SessionCase of;
+  std::uint64_t ticks = 0, over = 0;  ///< judged; with any bound broken
+  std::uint64_t position = 0, rotation = 0, force = 0;  ///< ticks over each bound
+  double longest = 0, mean = 0;  ///< [s] runs of ticks over a bound
+  double behind = 0;             ///< [s] the tick shown, on average
+  Traffic down{}, up{};
+  double seconds = 0;
+  double recovery = 0;  ///< [s] after the last outage until the client has a state sent after it; 0: there was none
+  double server_time = 0;  ///< [s] CPU, median: coding a tick and its datagrams
+};
+
+/// err  of SessionNetwork
+Result<SessionResult> run_session(const Motion& motion, const SessionCase& one);
+
+/// Payload of packets that build on the one before, over a network that loses nothing [bit/s].   err  of Sender
+Result<double> chain_payload(const Motion& motion);
+
+/// Losses, jitter, bursts, delays, playout delays, other disorder, outages.   in  brief  a few of them
+std::vector<SessionCase> session_cases(bool brief);
+
+}  // namespace tactus::sim::study
