@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
-#include <utility>
 
 namespace tactus {
 
@@ -28,9 +27,11 @@ class PacketOrder {
     if (keeps && behind < kBehind) return newest_ - behind;
     return newest_ + 1 + static_cast<std::uint16_t>(sequence - newest_ - 1);
   }
-  /// The packets of a session come with their numbers, which count from any value above 0.   in  number  of the first one
+  /// The packets of a session come with their numbers, which count from any value above 0.
+  /// in   number  of one that comes while no state is kept: none is overtaken yet, whatever was refused before
   void begin(std::uint64_t number) noexcept {
-    if (!std::exchange(numbered_, true)) newest_ = number - 1;
+    numbered_ = true;
+    newest_ = number - 1;
   }
   /// True for a repeated packet, and for one that others sent after it came before.
   bool is_overtaken(std::uint64_t number) const noexcept { return number <= newest_; }

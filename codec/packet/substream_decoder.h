@@ -51,7 +51,7 @@ class SubstreamDecoder {
   /// A packet of a session, which knows its number. An error leaves the states unchanged.   err  Receiver::push_numbered
   Result<DecodedPacket> decode_numbered(std::uint64_t number, std::span<const std::uint8_t> packet) noexcept {
     if (packet.size() > limit_) return fail(Errc::limit_exceeded, "R-PKT-1");
-    order_.begin(number);
+    if (states_.empty()) order_.begin(number);
     return decode_payload(number, packet, {}, 0);
   }
 

@@ -125,5 +125,25 @@ TEST(NumberedPackets, AreRefusedLikeOthers) {
   EXPECT_STREQ(receiver.push_numbered(11, Bytes{}).error().rule, "R-PKT-6");
 }
 
+/// The layers of the first shape in the wrong order: the visual one, number 6, is refused, and its baseline comes after it.
+TEST(NumberedPackets, TheFirstMayBeRefusedAndAnEarlierOneCome) {
+  const SharedScene scene = make_scene();
+  auto sender = Sender::create(scene, with(Baseline::previous)).value();
+  auto receiver = Receiver::create(scene).value();
+  World world;
+  std::vector<Packet> layers;
+  const auto packets = testing::all(sender.encode_numbered(5, 30, world.step(30)));
+  for (const Packet& packet : packets)
+    if (packet.substream == 1) layers.push_back(packet);
+  ASSERT_EQ(layers.size(), 2u);
+  ASSERT_EQ(layers[1].number, 6u);
+  const auto refused = receiver.push_numbered(6, layers[1].bytes);
+  ASSERT_FALSE(refused);
+  EXPECT_STREQ(refused.error().rule, "R-PKT-4");
+  EXPECT_TRUE(receiver.push_numbered(5, layers[0].bytes));
+  EXPECT_TRUE(receiver.push_numbered(6, layers[1].bytes));
+  EXPECT_EQ(receiver.state_hash(1), sender.state_hash(1));
+}
+
 }  // namespace
 }  // namespace tactus
