@@ -77,7 +77,7 @@ class NumberedReceiver(Receiver):
 
     def open(self, data: bytes, now: Optional[int] = None) -> int:
         require(len(data) - 2 <= self.largest_packet, "limit_exceeded", "R-PKT-1")
-        if not self.kept and self.newest == 0:
+        if not self.kept:
             self.newest = self.given - 1
         held = bool(self.kept) and self.given > min(self.kept) and self.given not in self.kept
         require(self.given > self.newest or held, "state", "R-PKT-5")
