@@ -17,10 +17,9 @@ Vec3 centre(const TriMesh& mesh) {
 
 }  // namespace
 
-Client::Client(Server& server, std::optional<Receiver> receiver, SessionClient* session)
+Client::Client(Server& server, std::optional<Receiver> receiver)
     : scene_(server.scene()),
       receiver_(std::move(receiver)),
-      session_(session),
       rigid_(scene_, server.stream_scene() ? RigidView::News::of_all : RigidView::News::of_changed),
       felt_(scene_.users.size()),
       contacts_(scene_.users.size()) {
@@ -43,12 +42,10 @@ Result<std::unique_ptr<Client>> Client::create(Server& server, const ReplicaOpti
   if (SharedScene declared = server.stream_scene()) {
     TACTUS_TRY(receiver, Receiver::create(std::move(declared), {.replica = replica, .limits = {}}));
   }
-  return std::unique_ptr<Client>(new Client(server, std::move(receiver), nullptr));
+  return std::unique_ptr<Client>(new Client(server, std::move(receiver)));
 }
 
-std::unique_ptr<Client> Client::create(Server& server, SessionClient& session) {
-  return std::unique_ptr<Client>(new Client(server, {}, &session));
-}
+std::unique_ptr<Client> Client::create_remote(Server& server) { return std::unique_ptr<Client>(new Client(server, {})); }
 
 Result<void> Client::receive(std::span<const Packet> packets) noexcept {
   for (const Packet& packet : packets) TACTUS_CHECK(receiver_->push(packet.bytes));
@@ -75,12 +72,6 @@ void Client::show(Receiver& receiver, std::int64_t tick, const TraceFrame& truth
   for (std::size_t i = 0; i < truth.meshes.size(); ++i)
     if (truth.meshes[i].updated) deformables_->show(i, replica.displacements(i, tick), position_exp);
   for (std::uint32_t i = 0; i < poses_.size(); ++i) show_pose(i, to_pose(replica.pose(i, tick), position_exp));
-}
-
-std::int64_t Client::show(std::uint64_t now, const TraceFrame& truth) noexcept {
-  const std::int64_t tick = session_->shown_tick(now);
-  if (tick >= 0) show(*session_->receiver(), tick, truth);
-  return tick;
 }
 
 void Client::touch(std::span<const DeviceSample> devices) noexcept {

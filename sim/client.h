@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <tactus/receiver.h>
-#include <tactus/session/session_client.h>
+#include <tactus/signal/device_signal.h>
 #include <tactus/sim/deformable/deformable_view.h>
 #include <tactus/sim/msd/msd_objects.h>
 #include <tactus/sim/rigid/rigid_objects.h>
@@ -17,15 +17,15 @@
 
 namespace tactus::sim {
 
-/// The client end of a simulation: with all users of the scene, or with one who has a session.
+/// The client end of a simulation: with all users of the scene, or with one, behind a network.
 class Client {
  public:
   /// in   server    outlives the client; without a codec the client sees its truth
   ///      replica   how the client shows what it received
   /// err  errors of Receiver::create
   static Result<std::unique_ptr<Client>> create(Server& server, const ReplicaOptions& replica);
-  /// The client of one user, which has a session.   in  session  outlives the client
-  static std::unique_ptr<Client> create(Server& server, SessionClient& session);
+  /// The client of one user, which shows what a network gives it.   pre  the server has a codec
+  static std::unique_ptr<Client> create_remote(Server& server);
 
   /// err  errors of Receiver::push   no allocation
   Result<void> receive(std::span<const Packet> packets) noexcept;
@@ -33,10 +33,8 @@ class Client {
   /// in   truth  tells which shapes are new; without a codec, the state shown
   /// pre  called for every tick: a shape, and without a codec a pose, is read only when it is new; without a codec truth.changed is set
   void show(const TraceFrame& truth) noexcept;
-  /// With a session: show the tick that is due at this time, if there is one.   no allocation
-  /// in   now  [us] of the session;  truth  tells how often shapes are new
-  /// out  the tick; -1: nothing has come yet
-  std::int64_t show(std::uint64_t now, const TraceFrame& truth) noexcept;
+  /// The same of a tick that came over a network.   in  truth  tells how often shapes are new
+  void show(Receiver& receiver, std::int64_t tick, const TraceFrame& truth) noexcept;
   /// Move every user's probe on the shown state.   in  devices  one per user   no allocation
   void touch(std::span<const DeviceSample> devices) noexcept;
   /// Move one user's probe, and render so much of the force.   no allocation
@@ -50,13 +48,11 @@ class Client {
   Replica& replica() noexcept { return receiver_->replica(); }               ///< pre  there is a codec
 
  private:
-  Client(Server& server, std::optional<Receiver> receiver, SessionClient* session);
-  void show(Receiver& receiver, std::int64_t tick, const TraceFrame& truth) noexcept;
+  Client(Server& server, std::optional<Receiver> receiver);
   void show_pose(std::uint32_t object, const Pose& pose) noexcept;
 
   const Scene& scene_;
-  std::optional<Receiver> receiver_;  // none: the truth is shown,
-  SessionClient* session_ = nullptr;  // or what this receives
+  std::optional<Receiver> receiver_;  // none: the truth is shown, or what a network gives
   std::vector<Pose> poses_;
   std::vector<Pose> places_;  // of deformable objects, for users who look at one
   RigidView rigid_;

@@ -22,7 +22,7 @@ struct Simulation::Impl {
   void render(std::span<const DeviceSample> at_clients) noexcept;
 
   std::unique_ptr<Server> server;
-  std::unique_ptr<SessionNetwork> network;       // null: a perfect link
+  std::unique_ptr<Network> network;              // null: a perfect link
   std::vector<std::unique_ptr<Client>> clients;  // with a network one per user
   PerfectLink link;
   std::vector<std::optional<DeviceContact>> contacts;  // of the devices, in the tick before
@@ -39,16 +39,15 @@ struct Simulation::Impl {
 
 Result<Simulation> Simulation::create(const Scene& scene, const SimulationOptions& options) {
   ServerOptions of_server{options.seed, {}, options.mesh_noise, options.estimate_every};
-  const NetworkOptions* const network = options.channel && options.channel->network ? &*options.channel->network : nullptr;
-  if (options.channel) of_server.codec = ServerCodec{options.channel->sender, options.channel->coding, network != nullptr};
+  const bool is_remote = options.channel && options.channel->network;
+  if (options.channel) of_server.codec = ServerCodec{options.channel->sender, options.channel->coding, is_remote};
   auto impl = std::make_unique<Impl>();
   impl->seed = options.seed;
   TACTUS_TRY(impl->server, Server::create(scene, of_server));
-  if (network != nullptr) {
+  if (is_remote) {
     TACTUS_TRY(impl->network,
-               SessionNetwork::create(impl->server->stream_scene(), scene.users.size(), options.channel->sender, *network));
-    for (std::size_t i = 0; i < scene.users.size(); ++i)
-      impl->clients.push_back(Client::create(*impl->server, impl->network->client(i)));
+               options.channel->network(impl->server->stream_scene(), scene.users.size(), options.channel->sender));
+    for (std::size_t i = 0; i < scene.users.size(); ++i) impl->clients.push_back(Client::create_remote(*impl->server));
   } else {
     impl->clients.emplace_back();
     TACTUS_TRY(impl->clients[0], Client::create(*impl->server, options.channel ? options.channel->replica : ReplicaOptions{}));
@@ -92,9 +91,11 @@ void Simulation::Impl::render(std::span<const DeviceSample> at_clients) noexcept
     return clients[0]->touch(at_clients);
   }
   for (std::size_t i = 0; i < clients.size(); ++i) {
-    shown[i] = clients[i]->show(network->now(), server->frame());
-    shares[i] = network->client(i).force_share(network->now());
-    clients[i]->touch(i, at_clients[i], shares[i]);
+    const Network::View view = network->view(i);
+    shown[i] = view.tick;
+    shares[i] = view.force_share;
+    if (view.tick >= 0) clients[i]->show(*view.receiver, view.tick, server->frame());
+    clients[i]->touch(i, at_clients[i], view.force_share);
     contacts[i] = clients[i]->contact(i);
   }
 }
@@ -125,7 +126,6 @@ std::int64_t Simulation::shown_tick(std::size_t user) const noexcept {
   return impl_->network ? impl_->shown[user] : impl_->server->frame().tick;
 }
 double Simulation::share_rendered(std::size_t user) const noexcept { return impl_->contacts[user] ? impl_->shares[user] : 1; }
-const SessionNetwork* Simulation::network() const noexcept { return impl_->network.get(); }
 const DeformableObjects* Simulation::deformables() const noexcept { return impl_->server->deformables(); }
 const TouchSummary& Simulation::touched(std::size_t user) const noexcept { return impl_->records[user].summary(); }
 Replica& Simulation::replica() noexcept { return impl_->client(0).replica(); }

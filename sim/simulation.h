@@ -22,7 +22,7 @@
 #include <tactus/receiver.h>
 #include <tactus/sender.h>
 #include <tactus/sim/deformable/deformable_objects.h>
-#include <tactus/sim/link/session_network.h>
+#include <tactus/sim/link/network.h>
 #include <tactus/sim/scene/scene.h>
 #include <tactus/sim/touchable.h>
 #include <tactus/sim/user/touch_record.h>
@@ -34,8 +34,8 @@ namespace tactus::sim {
 struct ChannelOptions {
   SenderOptions sender;
   ReplicaOptions replica;
-  TraceCoding coding{};                     ///< of deformable objects
-  std::optional<NetworkOptions> network{};  ///< each user has a client with a session; none: one client, and no time passes
+  TraceCoding coding{};    ///< of deformable objects
+  NetworkMaker network{};  ///< each user has a client behind it; none: one client, and no time passes
 };
 
 struct SimulationOptions {
@@ -71,7 +71,6 @@ class Simulation {
   /// The tick whose state the user's client shows: with a network one of the past, -1 before the first.
   std::int64_t shown_tick(std::size_t user) const noexcept;
   double share_rendered(std::size_t user) const noexcept;        ///< of the force: less than 1 while the data are old
-  const SessionNetwork* network() const noexcept;                ///< null: there is none
   Replica& replica() noexcept;                                   ///< the client's.   pre  there is a channel without network
   std::int64_t ticks() const noexcept;                           ///< length of the scene
   TraceInfo info() const;                                        ///< for a TraceWriter of these frames

@@ -54,7 +54,7 @@ struct Body {
   DeviceSample device;
 };
 
-tl::expected<Body, Failure> make_body(const JoinOptions& options, SessionClient& session) {
+tl::expected<Body, Failure> make_body(const JoinOptions& options) {
   const auto path = sim::find_scene(options.scene);
   if (!path) return refuse(path.error());
   const auto scene = sim::load_scene(*path);
@@ -66,7 +66,7 @@ tl::expected<Body, Failure> make_body(const JoinOptions& options, SessionClient&
   auto shapes = sim::Server::create(*scene, {.seed = options.seed, .codec = sim::ServerCodec{{}, {}, true}});
   if (!shapes) return refuse(options.scene, shapes.error());
   body.shapes = std::move(*shapes);
-  body.client = sim::Client::create(*body.shapes, session);
+  body.client = sim::Client::create_remote(*body.shapes);
   body.user = options.user.empty() ? 0 : static_cast<std::size_t>(user - scene->users.begin());
   const sim::SceneUser& played = scene->users[body.user];
   body.hand.emplace(played, played.grip, options.seed);
@@ -178,7 +178,8 @@ void Visit::render(std::uint64_t now) {
     news.meshes[i].updated = receiver.tick(i + 1) != body->mesh_ticks[i];
     body->mesh_ticks[i] = receiver.tick(i + 1);
   }
-  shown_ = body->client->show(now, news);
+  shown_ = session_.shown_tick(now);
+  if (shown_ >= 0) body->client->show(receiver, shown_, news);
   share_ = session_.force_share(now);
   body->client->touch(body->user, body->device, share_);
   largest_force = std::max(largest_force, norm(body->client->felt(body->user)));
@@ -291,7 +292,7 @@ Outcome run(const JoinOptions& typed) {
   if (!socket) return refuse(options.server, socket.error());
   Visit visit(options, *session, *socket);
   if (options.participates()) {
-    TACTUS_TRY(visit.body, make_body(options, *session));
+    TACTUS_TRY(visit.body, make_body(options));
   }
   session->open(microseconds_now(), system_entropy());
 

@@ -9,6 +9,7 @@
 
 #include <tactus/file/stream_file.h>
 #include <tactus/scene/scene_syntax.h>
+#include <tactus/sim/link/session_network.h>
 #include <tactus/sim/simulation.h>
 #include <tactus/trace/trace_file.h>
 #include "cli/commands/stop.h"
@@ -76,6 +77,7 @@ struct Run {
   TraceFrame recorded;
   std::vector<DeviceSample> devices;  // of this tick, recorded
   std::optional<NetworkJudge> judge;  // with a network
+  const sim::SessionNetwork* network = nullptr;
 };
 
 /// If the recording has no buttons, button 0 counts as pressed during a spring contact.
@@ -321,8 +323,15 @@ Outcome run(const SimOptions& options) {
                                   .estimate_every = kEstimateEvery};
   if (options.has_channel())
     settings.channel = sim::ChannelOptions{options.meshes.sender(options.triggers), options.replica, options.meshes.coding(), {}};
+  const sim::SessionNetwork* network = nullptr;
   if (options.has_network()) {
-    TACTUS_TRY(settings.channel->network, network_of(options, scene));
+    TACTUS_TRY(const auto of_network, network_of(options, scene));
+    settings.channel->network = [&network, of_network](SharedScene declared, std::size_t users,
+                                                       const SenderOptions& sender) -> Result<std::unique_ptr<sim::Network>> {
+      TACTUS_TRY(auto made, sim::SessionNetwork::create(std::move(declared), users, sender, of_network));
+      network = made.get();
+      return made;
+    };
   }
   auto simulation = sim::Simulation::create(scene, settings);
   if (!simulation) return refuse(options.scene, simulation.error());
@@ -348,7 +357,10 @@ Outcome run(const SimOptions& options) {
   Report report = make_report(options, info);
   describe_deformables(*simulation, report);
   Run session{std::move(*simulation), std::move(output), std::move(*trace), std::move(stream), std::move(recording), {}, {}, {}};
-  if (options.has_network()) session.judge.emplace(info, options.triggers.triggers());
+  if (network != nullptr) {
+    session.judge.emplace(info, options.triggers.triggers());
+    session.network = network;
+  }
   const auto ticks = options.duration < 0 ? session.simulation.ticks()
                                           : static_cast<std::int64_t>(std::llround(options.duration * sim::kTickRate));
   if (auto done = simulate(session, ticks, options, report); !done) {
@@ -356,7 +368,7 @@ Outcome run(const SimOptions& options) {
     return done;
   }
   report_touches(scene, session.simulation, report);
-  if (session.judge) report.networks = session.judge->finish(session.simulation);
+  if (session.judge) report.networks = session.judge->finish(*session.network);
   else if (options.has_channel()) report.stream = stream_size(session);
   report_errors(session.simulation, report);
   report.timings.push_back(std::move(map));

@@ -48,13 +48,15 @@ tl::expected<Motion, Failure> read_motion(const std::string& path, const RigidTr
   Motion out{.name = path, .info = reader->info(), .frames = {}, .bounds = bounds};
   out.name = out.name.substr(out.name.rfind('/') + 1);
   if (out.info.objects.empty() || !out.info.meshes.empty())
-    return refuse_arguments(path + ": a session is studied on rigid objects only", "Give a trace with rigid objects and no meshes.");
+    return refuse_arguments(path + ": a session is studied on rigid objects only",
+                            "Give a trace with rigid objects and no meshes.");
   TraceFrame frame;
   for (;;) {
     const auto more = reader->next(frame);
     if (!more) return refuse(path, more.error());
     if (!*more) break;
-    if (out.frames.size() == kMostTicks) return refuse_arguments(path + ": too long", "Give a trace of at most 10 million ticks.");
+    if (out.frames.size() == kMostTicks)
+      return refuse_arguments(path + ": too long", "Give a trace of at most 10 million ticks.");
     frame.tick = static_cast<std::int64_t>(out.frames.size());  // a gap in a recording takes no time here
     out.frames.push_back(frame);
   }
@@ -84,9 +86,9 @@ tl::expected<Study, Failure> run_study(Motion motion, const SessionBenchOptions&
 }
 
 struct Figures {
-  double over, longest, mean, behind;              // share, [ms]
-  double payload, against_chain, session, headers; // [kbit/s] down
-  double up;                                       // [kbit/s] all
+  double over, longest, mean, behind;               // share, [ms]
+  double payload, against_chain, session, headers;  // [kbit/s] down
+  double up;                                        // [kbit/s] all
 };
 Figures figures_of(const Study& study, const SessionResult& r) {
   const auto kbit = [&](std::uint64_t bytes) { return 8e-3 * per(static_cast<double>(bytes), r.seconds); };
@@ -102,16 +104,23 @@ Figures figures_of(const Study& study, const SessionResult& r) {
           .up = kbit(r.up.bytes_sent + kUdpHeader * r.up.datagrams_sent)};
 }
 
-constexpr const char* kColumns[]{"over a bound", "longest [ms]", "mean [ms]", "shown behind [ms]", "payload [kbit/s]", "x chain",
-                                 "session", "UDP/IPv4", "all down", "all up"};
+constexpr const char* kColumns[]{"over a bound", "longest [ms]", "mean [ms]", "shown behind [ms]", "payload [kbit/s]",
+                                 "x chain",      "session",      "UDP/IPv4",  "all down",          "all up"};
 
 std::vector<std::string> cells_of(const Study& study, const SessionResult& r) {
   const Figures f = figures_of(study, r);
   const auto one = [](double value) { return fmt::format("{:.1f}", value); };
   const auto two = [](double value) { return fmt::format("{:.2f}", value); };
-  return {fmt::format("{:.3f} %", 100 * f.over), one(f.longest),     one(f.mean),    one(f.behind),
-          two(f.payload),                        two(f.against_chain), two(f.session), two(f.headers),
-          two(f.payload + f.session + f.headers), two(f.up)};
+  return {fmt::format("{:.3f} %", 100 * f.over),
+          one(f.longest),
+          one(f.mean),
+          one(f.behind),
+          two(f.payload),
+          two(f.against_chain),
+          two(f.session),
+          two(f.headers),
+          two(f.payload + f.session + f.headers),
+          two(f.up)};
 }
 
 std::string recovery_text(const SessionResult& r) {
@@ -185,23 +194,29 @@ std::string to_markdown(const std::vector<Study>& studies, const SessionBenchOpt
   std::string out = fmt::format(
       "# Sessions over networks that delay, lose and reorder\n\n"
       "`tactus bench session{}` on {} ({}, {} build). All but the times is deterministic.\n\n"
-      "A client looks on over the network of each row: round trip 40 ms and 5 % duplicates unless said, the same network up and down. "
-      "What it shows is judged against the truth of the tick that it shows. *Over a bound*: share of the ticks in which a position, "
-      "rotation or contact force is off by more than its bound; *longest*, *mean*: runs of such ticks; *shown behind*: how far the tick "
-      "shown lies behind the server's, delay of the network included. *x chain*: the payload as a multiple of that of packets that "
+      "A client looks on over the network of each row: round trip 40 ms and 5 % duplicates unless said, the same network up and "
+      "down. "
+      "What it shows is judged against the truth of the tick that it shows. *Over a bound*: share of the ticks in which a "
+      "position, "
+      "rotation or contact force is off by more than its bound; *longest*, *mean*: runs of such ticks; *shown behind*: how far "
+      "the tick "
+      "shown lies behind the server's, delay of the network included. *x chain*: the payload as a multiple of that of packets "
+      "that "
       "build on the one before over a network that loses nothing. The same rows are in `session.csv`.\n",
       options.brief ? " --short" : "", context.at("machine"), context.at("compiler"), context.at("build"));
   if (has_figure) out += "\n![share of ticks over a bound, over loss](session-loss.svg)\n";
   for (const Study& study : studies) {
     double coding = 0;
     for (const SessionResult& r : study.results) coding = std::max(coding, r.server_time);
-    out += fmt::format("\n## {}\n\n{} ticks at {} Hz; chain {:.2f} kbit/s. Coding a tick and its datagrams takes {} (median, CPU).\n",
-                       study.motion.name, study.motion.frames.size(), study.motion.info.tick_rate, 1e-3 * study.chain, duration(coding));
+    out += fmt::format(
+        "\n## {}\n\n{} ticks at {} Hz; chain {:.2f} kbit/s. Coding a tick and its datagrams takes {} (median, CPU).\n",
+        study.motion.name, study.motion.frames.size(), study.motion.info.tick_rate, 1e-3 * study.chain, duration(coding));
     std::string group;
     for (const SessionResult& r : study.results) {
       if (r.of.group != group) {
         group = r.of.group;
-        out += fmt::format("\n| {} | {} |\n|---{}|\n", group, fmt::join(kColumns, " | "), "|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:");
+        out += fmt::format("\n| {} | {} |\n|---{}|\n", group, fmt::join(kColumns, " | "),
+                           "|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:");
       }
       out += fmt::format("| {}{} | {} |\n", r.of.name, recovery_text(r), fmt::join(cells_of(study, r), " | "));
     }

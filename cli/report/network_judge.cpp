@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include <tactus/sim/link/session_network.h>
 #include <tactus/sim/simulation.h>
 
 namespace tactus::cli {
@@ -34,8 +35,7 @@ void NetworkJudge::add(const sim::Simulation& simulation) {
   }
 }
 
-std::vector<NetworkReport> NetworkJudge::finish(const sim::Simulation& simulation) {
-  const sim::SessionNetwork& network = *simulation.network();
+std::vector<NetworkReport> NetworkJudge::finish(const sim::SessionNetwork& network) {
   const auto direction = [](const Traffic& traffic, const sim::LinkCounters& link) {
     return DirectionReport{.traffic = traffic,
                            .sent = link.sent,

@@ -7,8 +7,9 @@
 #include "cli/report/network_report.h"
 
 namespace tactus::sim {
+class SessionNetwork;
 class Simulation;
-}
+}  // namespace tactus::sim
 
 namespace tactus::cli {
 
@@ -18,7 +19,7 @@ class NetworkJudge {
   NetworkJudge(const TraceInfo& info, const RigidTriggers& bounds);
   void add(const sim::Simulation& simulation);  ///< after each step
   /// One report per user, with what the sessions counted.
-  std::vector<NetworkReport> finish(const sim::Simulation& simulation);
+  std::vector<NetworkReport> finish(const sim::SessionNetwork& network);
 
  private:
   PastFrames past_;

@@ -139,7 +139,7 @@ struct Numbered {
 using Datagram = std::variant<Join, Welcome, Refusal, Leave, Numbered>;
 
 /// The CRC-32 at the end of a datagram holds for this epoch and direction. Joins, welcomes and refusals have epoch 0.
-/// time O(bytes), about 1 ns per byte
+/// time O(bytes), about 2 ns per byte
 bool is_of_epoch(std::span<const std::uint8_t> datagram, std::uint64_t epoch, Direction direction) noexcept;
 
 /// pre  is_of_epoch()

@@ -148,6 +148,11 @@ Result<void> SessionNetwork::to_clients(std::int64_t tick, const Truth& truth) {
   return {};
 }
 
+Network::View SessionNetwork::view(std::size_t user) noexcept {
+  SessionClient& client = *users_[user].client;
+  return {client.receiver(), client.shown_tick(now_), client.force_share(now_)};
+}
+
 Traffic SessionNetwork::sent_to(std::size_t user) const noexcept {
   return difference(server_->status(users_[user].number).traffic, users_[user].down_before);
 }

@@ -13,6 +13,7 @@
 #include <tactus/session/session_client.h>
 #include <tactus/session/session_server.h>
 #include <tactus/sim/link/link.h>
+#include <tactus/sim/link/network.h>
 
 namespace tactus::sim {
 
@@ -23,7 +24,7 @@ struct NetworkOptions {
   Role role = Role::participant;  ///< of every client
 };
 
-class SessionNetwork {
+class SessionNetwork final : public Network {
  public:
   /// Let the sessions begin, before tick 0, over links as they will be but for their outages and recorded delays.
   /// in   users  number of clients
@@ -31,15 +32,11 @@ class SessionNetwork {
   static Result<std::unique_ptr<SessionNetwork>> create(SharedScene scene, std::size_t users, const SenderOptions& sender,
                                                         const NetworkOptions& options);
 
-  /// What clients and server say and hear until this tick, then the devices at the clients.
-  /// in   devices, contacts  one per participant
-  /// err  of SessionClient::submit
   Result<void> to_server(std::int64_t tick, std::span<const DeviceSample> devices,
-                         std::span<const std::optional<DeviceContact>> contacts);
-  /// The devices as the server knows them; one that it has not heard of yet is where it was at first. Valid until the next call.
-  std::span<const DeviceSample> heard() const noexcept { return heard_; }
-  /// The truth of the tick goes; what takes no time arrives.   err  of SessionServer::submit
-  Result<void> to_clients(std::int64_t tick, const Truth& truth);
+                         std::span<const std::optional<DeviceContact>> contacts) override;  ///< err  of SessionClient::submit
+  std::span<const DeviceSample> heard() const noexcept override { return heard_; }
+  Result<void> to_clients(std::int64_t tick, const Truth& truth) override;  ///< err  of SessionServer::submit
+  View view(std::size_t user) noexcept override;
 
   SessionClient& client(std::size_t user) noexcept { return *users_[user].client; }
   SessionStatus status(std::size_t user) const noexcept { return users_[user].client->status(); }

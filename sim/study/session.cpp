@@ -116,7 +116,10 @@ class Judge {
 }  // namespace
 
 Motion swinging_bodies(std::int64_t ticks) {
-  Motion out{.name = "three swinging bodies", .info = {.tick_rate = 1000, .objects = {}, .users = {}, .source = {}, .scene = {}}, .frames = {}, .bounds = {}};
+  Motion out{.name = "three swinging bodies",
+             .info = {.tick_rate = 1000, .objects = {}, .users = {}, .source = {}, .scene = {}},
+             .frames = {},
+             .bounds = {}};
   out.bounds.visual_position = 1e-3;
   out.bounds.visual_rotation = std::numbers::pi / 180;
   for (const char* name : {"a", "b", "c"}) out.info.objects.push_back({name});
@@ -129,7 +132,8 @@ Motion swinging_bodies(std::int64_t ticks) {
                           2 * std::numbers::pi * (0.9 - 0.07 * k)};
       const double phase[] = {1.0 * k, 1.0 + k, 2.0 * k};
       RigidSample body;
-      body.pose.position = {a * std::sin(w[0] * t + phase[0]), a * std::sin(w[1] * t + phase[1]), a * std::sin(w[2] * t + phase[2])};
+      body.pose.position = {a * std::sin(w[0] * t + phase[0]), a * std::sin(w[1] * t + phase[1]),
+                            a * std::sin(w[2] * t + phase[2])};
       body.velocity = {a * w[0] * std::cos(w[0] * t + phase[0]), a * w[1] * std::cos(w[1] * t + phase[1]),
                        a * w[2] * std::cos(w[2] * t + phase[2])};
       const double half = 0.3 * std::sin(w[0] * t + k);
@@ -203,10 +207,10 @@ std::vector<SessionCase> session_cases(bool brief) {
   for (const std::uint32_t playout : {0u, 10'000u, 20'000u, 40'000u, 60'000u, 100'000u})
     add("10 % loss, playout delay", milliseconds(playout), with([&](LinkOptions& l) { l.loss = 0.1; }), {playout});
   add("disorder", "5 % come 30 ms later", with([&](LinkOptions& l) { l.held_back = 0.05, l.held_back_by = 30'000; }));
-  add("disorder", "gamma, 20 ms +- 10 ms for 1 s", with([&](LinkOptions& l) { l.gamma_mean = 20'000, l.gamma_deviation = 10'000; }));
+  add("disorder", "gamma, 20 ms +- 10 ms for 1 s",
+      with([&](LinkOptions& l) { l.gamma_mean = 20'000, l.gamma_deviation = 10'000; }));
   for (const Microseconds length : {100'000, 1'000'000, 10'000'000, 60'000'000})
-    add("outage", milliseconds(length),
-        with([&](LinkOptions& l) { l.outages = {{5'000'000, 5'000'000 + length}}; }));
+    add("outage", milliseconds(length), with([&](LinkOptions& l) { l.outages = {{5'000'000, 5'000'000 + length}}; }));
   return out;
 }
 

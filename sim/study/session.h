@@ -33,13 +33,13 @@ struct SessionCase {
 
 struct SessionResult {
   SessionCase of;
-  std::uint64_t ticks = 0, over = 0;  ///< judged; with any bound broken
+  std::uint64_t ticks = 0, over = 0;                    ///< judged; with any bound broken
   std::uint64_t position = 0, rotation = 0, force = 0;  ///< ticks over each bound
-  double longest = 0, mean = 0;  ///< [s] runs of ticks over a bound
-  double behind = 0;             ///< [s] the tick shown, on average
+  double longest = 0, mean = 0;                         ///< [s] runs of ticks over a bound
+  double behind = 0;                                    ///< [s] the tick shown, on average
   Traffic down{}, up{};
   double seconds = 0;
-  double recovery = 0;  ///< [s] after the last outage until the client has a state sent after it; 0: there was none
+  double recovery = 0;     ///< [s] after the last outage until the client has a state sent after it; 0: there was none
   double server_time = 0;  ///< [s] CPU, median: coding a tick and its datagrams
 };
 
