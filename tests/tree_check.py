@@ -21,7 +21,7 @@ FLOATS = {"base/device_sample", "base/geometry", "base/quantise", "base/tri_mesh
           "scene/deformable_object", "scene/rigid_object", "scene/scene_builder", "packet/key_policy", "packet/sender_policy",
           "rigid/contact", "rigid/rigid_encoder", "rigid/rigid_state", "rigid/trigger", "deformable/deformable_encoder",
           "deformable/displacement", "deformable/main_encoder", "deformable/mode_projection", "deformable/thesis_encoder",
-          "deformable/trigger", "client/replica", "sender", "signal/device_signal", "session/exchange",
+          "deformable/trigger", "client/replica", "sender", "signal/device_signal", "signal/force_signal", "session/exchange",
           "session/server_connection", "session/session_client", "session/session_server"}
 UNITS = ("codec", "codec/*", "io/*", "metrics")  # each .cpp in them has a unit test of its name
 TESTED_BY = {  # those that have none: the parts of one subject, held against each other

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "cli/laboratory/cmd_reproduce.h"
 #include "cli/commands/commands.h"
 
 #include <fmt/format.h>
@@ -24,14 +25,6 @@ namespace tactus::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-struct ReproduceOptions {
-  std::string figure = "fig3.14";
-  std::uint32_t seeds = 5;
-  double length_unit = 0.05;
-  std::string grip = "normal";
-  CommonOptions common;
-};
 
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -260,7 +253,7 @@ void print_json(const std::vector<Row>& rows, const ReproduceOptions& options, c
   fmt::print("{}\n", text_of_json(out));
 }
 
-Outcome run(const ReproduceOptions& options) {
+Outcome reproduce_settings(const ReproduceOptions& options) {
   const auto path = sim::find_scene("rotate-push-lift");
   if (!path) return refuse(path.error());
   const auto scene = sim::load_scene(*path);
@@ -288,14 +281,23 @@ Outcome run(const ReproduceOptions& options) {
   return {};
 }
 
+Outcome run(const ReproduceOptions& options) {
+  if (options.figure == "fig3.6") return reproduce_architectures(options);
+  if (options.figure == "fig3.10") return reproduce_adjusted(options);
+  return reproduce_settings(options);
+}
+
 }  // namespace
 
 void setup_reproduce(Command& app, Action& action) {
   auto options = std::make_shared<ReproduceOptions>();
   Command& command = app.add_command("reproduce", "Run an experiment of the thesis and compare the figures");
-  command.add_option("FIGURE", options->figure, "fig3.14, also called table3.3")
+  command
+      .add_option(
+          "FIGURE", options->figure,
+          "fig3.6: states or forces; fig3.10: updates at the adjusted deadbands; fig3.14, also called table3.3: traffic settings")
       ->required()
-      ->check(one_of({"fig3.14", "table3.3"}))
+      ->check(one_of({"fig3.6", "fig3.10", "fig3.14", "table3.3"}))
       ->type_name("");
   command.add_option("--seeds", options->seeds, "Runs per setting")->show_default()->check(whole_number(1, 1000))->type_name("N");
   add_quantity(command, "--length-unit", options->length_unit, Dimension::length,

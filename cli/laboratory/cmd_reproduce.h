@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What the figures of `tactus reproduce` share.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "cli/command.h"
+#include "cli/options/options_codec.h"
+#include "cli/report/messages.h"
+
+namespace tactus::cli {
+
+struct ReproduceOptions {
+  std::string figure = "fig3.14";
+  std::uint32_t seeds = 5;
+  double length_unit = 0.05;  ///< [m]
+  std::string grip = "normal";
+  CommonOptions common;
+};
+
+/// Figure 3.6: packets per second that a client gets when it is sent object states, and when it is sent forces.
+Outcome reproduce_architectures(const ReproduceOptions& options);
+/// Figure 3.10: updates per second in contact, at the deadbands that the subjects chose.
+Outcome reproduce_adjusted(const ReproduceOptions& options);
+
+}  // namespace tactus::cli
