@@ -282,6 +282,11 @@ Outcome reproduce_settings(const ReproduceOptions& options) {
 }
 
 Outcome run(const ReproduceOptions& options) {
+  const bool draws = options.figure == "fig3.3" || options.figure == "fig3.11";
+  if (!draws && !options.directory.empty())
+    return refuse_arguments("--output: only fig3.3 and fig3.11 are drawn", "Leave out --output.");
+  if (options.figure == "fig3.3") return reproduce_traffic(options);
+  if (options.figure == "fig3.11") return reproduce_interpolation(options);
   if (options.figure == "fig3.6") return reproduce_architectures(options);
   if (options.figure == "fig3.10") return reproduce_adjusted(options);
   return reproduce_settings(options);
@@ -293,19 +298,23 @@ void setup_reproduce(Command& app, Action& action) {
   auto options = std::make_shared<ReproduceOptions>();
   Command& command = app.add_command("reproduce", "Run an experiment of the thesis and compare the figures");
   command
-      .add_option(
-          "FIGURE", options->figure,
-          "fig3.6: states or forces; fig3.10: updates at the adjusted deadbands; fig3.14, also called table3.3: traffic settings")
+      .add_option("FIGURE", options->figure,
+                  "fig3.3: why updates are sent; fig3.6: states or forces; fig3.11: interpolation; fig3.10: updates at the "
+                  "adjusted deadbands; fig3.14, also called table3.3: traffic settings")
       ->required()
-      ->check(one_of({"fig3.6", "fig3.10", "fig3.14", "table3.3"}))
+      ->check(one_of({"fig3.3", "fig3.6", "fig3.10", "fig3.11", "fig3.14", "table3.3"}))
       ->type_name("");
   command.add_option("--seeds", options->seeds, "Runs per setting")->show_default()->check(whole_number(1, 1000))->type_name("N");
   add_quantity(command, "--length-unit", options->length_unit, Dimension::length,
                "Metres per virtual length unit of the thesis [0.05m]")
       ->check(above_zero(Dimension::length));
   add_grip(command, options->grip, options->grip);
-  add_report_options(command, options->common);
-  command.footer("Example:\n  tactus reproduce fig3.14 --seeds 5");
+  command.add_option("-o,--output", options->directory, "Folder for figure and table (fig3.3 and fig3.11)")->type_name("DIR");
+  add_output_options(command, options->common);
+  command.footer(
+      "Examples:\n"
+      "  tactus reproduce fig3.14 --seeds 5\n"
+      "  tactus reproduce fig3.3 -o figures");
   on_chosen<ReproduceOptions>(command, action, options, run);
 }
 

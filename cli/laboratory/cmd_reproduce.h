@@ -16,9 +16,14 @@ struct ReproduceOptions {
   std::uint32_t seeds = 5;
   double length_unit = 0.05;  ///< [m]
   std::string grip = "normal";
+  std::string directory;  ///< of figures and tables; empty: none are written
   CommonOptions common;
 };
 
+/// Figure 3.3: why updates are sent while a cube is pushed.
+Outcome reproduce_traffic(const ReproduceOptions& options);
+/// Figure 3.11: the rendered force with and without interpolation.
+Outcome reproduce_interpolation(const ReproduceOptions& options);
 /// Figure 3.6: packets per second that a client gets when it is sent object states, and when it is sent forces.
 Outcome reproduce_architectures(const ReproduceOptions& options);
 /// Figure 3.10: updates per second in contact, at the deadbands that the subjects chose.

@@ -24,7 +24,7 @@ TEST(ReceivedNumbers, FourteenBitsStandForOneNumber) {
     received.receive(number);
     EXPECT_FALSE(received.extend(static_cast<std::uint16_t>(number % kNumbers))) << "twice";
     if (number > 1024) {
-      EXPECT_STREQ(received.extend(static_cast<std::uint16_t>((number - 1023) % kNumbers)).error().rule, "R-SES-4");
+      EXPECT_STREQ(received.extend(static_cast<std::uint16_t>((number - 1024) % kNumbers)).error().rule, "R-SES-4");
     }
   }
 }
