@@ -9,9 +9,13 @@
 namespace tactus {
 namespace {
 
-enum Form : std::uint16_t { kHandshake, kParts, kPacket, kReserved };                // low bits of the head
-enum Kind : std::uint16_t { kJoin, kWelcome, kRefusal, kLeave, kFirstUnknownKind };  // of handshakes
-enum Type : std::uint8_t { kAcknowledgement = 1, kClock, kButtons, kPiece, kState, kHash, kFragment, kPacketPart, kFirstUnknown };
+// Forms: low bits of the head.
+constexpr std::uint16_t kHandshake = 0, kParts = 1, kPacket = 2;
+// Kinds of handshakes.
+constexpr std::uint16_t kJoin = 0, kWelcome = 1, kRefusal = 2, kLeave = 3, kFirstUnknownKind = 4;
+// Types of parts.
+constexpr std::uint8_t kAcknowledgement = 1, kClock = 2, kButtons = 3, kPiece = 4, kState = 5, kHash = 6, kFragment = 7,
+                       kPacketPart = 8, kFirstUnknown = 9;
 
 constexpr std::uint32_t kMagic = 0x53544354;  // "TCTS"
 constexpr std::uint8_t kVersion = 1;
@@ -20,10 +24,10 @@ constexpr std::size_t kLeastJoin = 80;      // [bytes]: answers are shorter
 constexpr std::uint8_t kFirstSkipped = 64;  // part types for later or private use
 constexpr LeaveReason kLastReason = LeaveReason::protocol;
 
-bool comes(Kind kind, Direction direction) noexcept {
+bool kind_comes(std::uint16_t kind, Direction direction) noexcept {
   return kind == kLeave || (kind < kFirstUnknownKind && (kind == kJoin) == (direction == Direction::up));
 }
-bool comes(Type type, Direction direction) noexcept {
+bool part_comes(std::uint8_t type, Direction direction) noexcept {
   if (type == kButtons || type == kState || type == kHash) return direction == Direction::up;
   return (type != kClock && type != kPiece) || direction == Direction::down;
 }
@@ -129,7 +133,7 @@ class Put {
 
 constexpr std::size_t varint_size(std::uint64_t value) noexcept { return value < 0x80 ? 1 : 1 + varint_size(value >> 7); }
 
-constexpr std::uint64_t head_of(Kind kind) noexcept { return kHandshake + 4u * kind; }
+constexpr std::uint64_t head_of(std::uint16_t kind) noexcept { return kHandshake + 4u * kind; }
 
 void put(Put& to, const Join& j) noexcept {
   to.integer(head_of(kJoin), 2).integer(kMagic, 4).integer(kVersion, 1).integer(static_cast<std::uint64_t>(j.role), 1);
@@ -169,7 +173,7 @@ void put(Put& to, const FragmentPart& f) noexcept {
 void put(Put& to, const PacketPart& p) noexcept { to.varint(p.back).bytes(p.bytes); }
 
 /// The elements of a part; the reader says whether they were all there.
-Part read_part(Type type, ByteReader& r) noexcept {
+Part read_part(std::uint8_t type, ByteReader& r) noexcept {
   switch (type) {
     case kAcknowledgement: {
       Acknowledgement a;
@@ -232,7 +236,7 @@ Result<std::optional<Part>> PartReader::next() noexcept {
     last_ = type;
     ++parts_;
     if (type >= kFirstSkipped) continue;
-    if (type >= kFirstUnknown || !comes(static_cast<Type>(type), direction_)) return fail(Errc::malformed, "R-SES-5", place);
+    if (type >= kFirstUnknown || !part_comes(type, direction_)) return fail(Errc::malformed, "R-SES-5", place);
     if (type >= kFragment && fragment_) return fail(Errc::malformed, "R-SES-5", place);
     fragment_ = type == kFragment;
     return read(type, part);
@@ -242,7 +246,7 @@ Result<std::optional<Part>> PartReader::next() noexcept {
 }
 
 Result<std::optional<Part>> PartReader::read(std::uint8_t type, ByteReader part) noexcept {
-  const Part out = read_part(static_cast<Type>(type), part);
+  const Part out = read_part(type, part);
   TACTUS_CHECK(finished(part));
   const auto* packet = std::get_if<PacketPart>(&out);
   only_packet_ = parts_ == 1 && packet != nullptr && packet->back == 0;
@@ -259,10 +263,10 @@ Result<Datagram> read_datagram(std::span<const std::uint8_t> datagram, Direction
   if (datagram.size() < kHeadSize + kCheckSize || datagram.size() > kLargestDatagram) return fail(Errc::invalid, "R-SES-2");
   ByteReader r(datagram.first(datagram.size() - kCheckSize));
   const std::uint16_t head = r.u16();
-  const auto form = static_cast<Form>(head & 3u);
+  const std::uint16_t form = head & 3u;
   const auto value = static_cast<std::uint16_t>(head >> 2);
   if (form == kParts || form == kPacket) return read_numbered(r, value, form == kPacket, direction);
-  if (form != kHandshake || !comes(static_cast<Kind>(value), direction)) return fail(Errc::invalid, "R-SES-2");
+  if (form != kHandshake || !kind_comes(value, direction)) return fail(Errc::invalid, "R-SES-2");
   if (value == kJoin) return read_join(r);
   if (value == kWelcome) return read_welcome(r);
   const std::uint64_t nonce = value == kRefusal ? r.u64() : 0;

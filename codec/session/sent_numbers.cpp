@@ -39,7 +39,7 @@ void SentNumbers::measure(std::uint64_t newest, std::uint16_t held, std::uint64_
   const Slot* slot = find(newest);
   sample_.reset();
   if (slot == nullptr || slot->fate == Fate::arrived || held == Acknowledgement::kNoTiming) return;
-  const auto sample = std::max<std::int64_t>(0, static_cast<std::int64_t>(now - slot->time) - 16 * held);
+  const auto sample = std::max<std::int64_t>(0, static_cast<std::int64_t>(now - slot->time) - std::int64_t{16} * held);
   sample_ = sample;
   least_.add(sample, now);
   if (!round_trip_) {
