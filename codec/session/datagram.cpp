@@ -15,7 +15,7 @@ constexpr std::uint16_t kHandshake = 0, kParts = 1, kPacket = 2;
 constexpr std::uint16_t kJoin = 0, kWelcome = 1, kRefusal = 2, kLeave = 3, kFirstUnknownKind = 4;
 // Types of parts.
 constexpr std::uint8_t kAcknowledgement = 1, kClock = 2, kButtons = 3, kPiece = 4, kState = 5, kHash = 6, kFragment = 7,
-                       kPacketPart = 8, kFirstUnknown = 9;
+                       kFirstUnknown = 9;  // 8: packet
 
 constexpr std::uint32_t kMagic = 0x53544354;  // "TCTS"
 constexpr std::uint8_t kVersion = 1;
