@@ -24,10 +24,12 @@ void CdrWriter::u32(std::uint32_t value) {
   out_.u32(value);
 }
 
-void CdrWriter::f64(double value) {
+void CdrWriter::i64(std::int64_t value) {
   align(sizeof value);
-  out_.u64(std::bit_cast<std::uint64_t>(value));
+  out_.u64(static_cast<std::uint64_t>(value));
 }
+
+void CdrWriter::f64(double value) { i64(std::bit_cast<std::int64_t>(value)); }
 
 void CdrWriter::text(std::string_view value) {
   u32(static_cast<std::uint32_t>(value.size() + 1));
@@ -39,6 +41,13 @@ void CdrWriter::vec3(const Vec3& value) {
   f64(value.x);
   f64(value.y);
   f64(value.z);
+}
+
+void CdrWriter::quat(const Quat& value) {
+  f64(value.x);
+  f64(value.y);
+  f64(value.z);
+  f64(value.w);
 }
 
 CdrReader::CdrReader(std::span<const std::uint8_t> message) noexcept
@@ -53,10 +62,12 @@ std::uint32_t CdrReader::u32() noexcept {
   return body_.u32();
 }
 
-double CdrReader::f64() noexcept {
-  align(sizeof(double));
-  return std::bit_cast<double>(body_.u64());
+std::int64_t CdrReader::i64() noexcept {
+  align(sizeof(std::int64_t));
+  return static_cast<std::int64_t>(body_.u64());
 }
+
+double CdrReader::f64() noexcept { return std::bit_cast<double>(i64()); }
 
 std::uint32_t CdrReader::count(std::size_t item_size) noexcept {
   const std::uint32_t items = u32();
@@ -77,6 +88,20 @@ std::string_view CdrReader::text() noexcept {
 Vec3 CdrReader::vec3() noexcept {
   const double x = f64(), y = f64();
   return {x, y, f64()};
+}
+
+Quat CdrReader::quat() noexcept {
+  Quat q;
+  q.x = f64();
+  q.y = f64();
+  q.z = f64();
+  q.w = f64();
+  return q;
+}
+
+Pose CdrReader::pose() noexcept {
+  const Vec3 position = vec3();
+  return {position, quat()};
 }
 
 }  // namespace tactus

@@ -20,10 +20,12 @@ class CdrWriter {
   explicit CdrWriter(std::vector<std::uint8_t>& out);
   void u8(std::uint8_t value) { out_.u8(value); }
   void u32(std::uint32_t value);
+  void i64(std::int64_t value);
   void f32(float value) { u32(std::bit_cast<std::uint32_t>(value)); }
   void f64(double value);
   void text(std::string_view value);  ///< length with the closing zero, the bytes, a zero
   void vec3(const Vec3& value);
+  void quat(const Quat& value);  ///< x, y, z, w, as ROS writes it
 
  private:
   void align(std::size_t size);
@@ -39,6 +41,7 @@ class CdrReader {
   bool is_supported() const noexcept { return supported_; }
   std::uint8_t u8() noexcept { return body_.u8(); }
   std::uint32_t u32() noexcept;
+  std::int64_t i64() noexcept;
   float f32() noexcept { return std::bit_cast<float>(u32()); }
   double f64() noexcept;
   /// Length of a sequence whose items take `item_size` bytes each. A length that cannot fit into the rest of the message fails
@@ -46,6 +49,8 @@ class CdrReader {
   std::uint32_t count(std::size_t item_size) noexcept;
   std::string_view text() noexcept;
   Vec3 vec3() noexcept;
+  Quat quat() noexcept;
+  Pose pose() noexcept;  ///< geometry_msgs/Pose, and Transform
   /// True if the whole message was read without overrun; up to 3 bytes of padding may follow.
   bool done() const noexcept { return body_.ok() && !malformed_ && body_.remaining() < 4; }
 

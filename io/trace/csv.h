@@ -6,7 +6,7 @@
 ///          malformed         its zstd data is damaged
 /// R-CSV-2  malformed         a column of the mapping is not there, or there twice
 /// R-CSV-3  malformed         a row has more or fewer fields than there are columns
-/// R-CSV-4  malformed         a field is not a finite decimal number, or not a whole number in range where one is needed
+/// R-CSV-4  malformed         a field is not a finite decimal number, not a whole number in range where one is needed, or no reports
 /// R-CSV-5  invalid           time does not increase within a segment by a tick at least, or leaves 0 .. 2^31 s
 /// R-CSV-6  limit_exceeded    a line is longer than 1 MiB
 /// R-CSV-7  invalid_argument  the rate is unknown: no tick_rate in the mapping and no column of time with two rows
@@ -34,6 +34,8 @@ enum class CsvLayout : std::uint8_t {
 
 /// Frame of the recorded angular velocities. A gyroscope on the object measures in the body frame.
 enum class AngularVelocityFrame : std::uint8_t { world, body };
+
+inline constexpr const char* kZeroColumn = "0";  ///< in a vector: a component that the table lacks and that is 0
 
 /// Which column feeds which quantity; an empty name means "not there". Named groups: see csv_presets().
 struct CsvMapping {

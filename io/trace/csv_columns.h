@@ -64,10 +64,16 @@ inline constexpr std::array<CsvColumn<UserSample>, 3> kDeviceVelocityColumns{{
     {"device_vz", [](UserSample& u) -> double& { return u.device.velocity.z; }},
 }};
 
+// Reports of a device at this tick: each in hexadecimal digits, blanks between. What they mean is not in a table.
+inline constexpr const char* kReportsColumn = "device_reports";
+
 // Integer columns: TraceObject::dof; the contact's kind (0: none) and object; DeviceSample::buttons and time where the device has
-// them.
+// them; TraceFrame::shown of a client.
+inline constexpr const char* kShownColumn = "shown_tick";
 inline constexpr const char* kButtonsColumn = "device_buttons";
 inline constexpr const char* kDeviceTimeColumn = "device_time_ns";
+inline constexpr std::array<const char*, 4> kServoColumns{"late_ns", "age_ns", "missed",
+                                                          "guard"};  // of ServoSample, in its order
 inline constexpr const char* kDofColumn = "dof";
 inline constexpr const char* kContactColumn = "contact";
 inline constexpr const char* kContactObjectColumn = "contact_object";

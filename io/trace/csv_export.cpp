@@ -13,14 +13,16 @@ namespace {
 
 std::string header_row(const TraceInfo& info) {
   std::string row = "tick,time_s";
+  if (info.shows_past) row.append(",").append(kShownColumn);
   const auto add = [&row](const std::string& path, const char* name) { row.append(",").append(csv_field(path + name)); };
   for (const TraceObject& object : info.objects) {
     const std::string path = "/objects/" + object.name + "/";
     add(path, kDofColumn);
     for (const auto& column : kObjectColumns) add(path, column.name);
   }
-  for (const auto& [name, senses] : info.users) {
-    const std::string path = "/users/" + name + "/";
+  for (const TraceUser& user : info.users) {
+    const std::string path = "/users/" + user.name + "/";
+    const DeviceSenses& senses = user.senses;
     add(path, kContactColumn);
     add(path, kContactObjectColumn);
     for (const auto& column : kUserColumns) add(path, column.name);
@@ -30,6 +32,9 @@ std::string header_row(const TraceInfo& info) {
       for (const auto& column : kDeviceVelocityColumns) add(path, column.name);
     if (senses.buttons) add(path, kButtonsColumn);
     if (senses.time) add(path, kDeviceTimeColumn);
+    if (user.has_servo)
+      for (const char* column : kServoColumns) add(path, column);
+    if (user.report_descriptor) add(path, kReportsColumn);
   }
   return row + '\n';
 }
@@ -42,10 +47,21 @@ void add_number(std::string& row, T value) {
   row.append(digits, result.ptr);
 }
 
+void add_reports(std::string& row, const DeviceReports& reports) {
+  row += ',';
+  std::span<const std::uint8_t> left(reports.bytes);
+  for (const std::uint32_t size : reports.sizes) {
+    if (left.size() < reports.bytes.size()) row += ' ';
+    row += hex_of(left.first(size));
+    left = left.subspan(size);
+  }
+}
+
 void write_row(std::string& row, const TraceInfo& info, TraceFrame& frame) {
   row.clear();
   add_number(row, frame.tick);
   add_number(row, static_cast<double>(frame.tick) / info.tick_rate);
+  if (info.shows_past) add_number(row, frame.shown);
   for (std::size_t i = 0; i < frame.objects.size(); ++i) {
     add_number(row, unsigned{info.objects[i].dof});
     for (const auto& column : kObjectColumns) add_number(row, column.field(frame.objects[i]));
@@ -62,6 +78,13 @@ void write_row(std::string& row, const TraceInfo& info, TraceFrame& frame) {
       for (const auto& column : kDeviceVelocityColumns) add_number(row, column.field(user));
     if (senses.buttons) add_number(row, user.device.buttons);
     if (senses.time) add_number(row, user.device.time);
+    if (info.users[i].has_servo) {
+      add_number(row, user.servo.lateness);
+      add_number(row, user.servo.age);
+      add_number(row, user.servo.missed);
+      add_number(row, user.servo.guard);
+    }
+    if (info.users[i].report_descriptor) add_reports(row, user.reports);
   }
   row += '\n';
 }

@@ -47,7 +47,9 @@ class Importer {
   Result<Row> parse(const CsvReader& reader);
   template <class T>
   Result<T> number(const std::vector<std::string>& fields, std::size_t column);
-  Result<void> parse_whole_numbers(const std::vector<std::string>& fields, Row& row);
+  Result<void> parse_reports(const std::vector<std::string>& fields, std::size_t column, DeviceReports& reports);
+  Result<void> parse_servo(const std::vector<std::string>& fields, const std::array<std::size_t, 4>& columns, ServoSample& servo);
+  Result<void> parse_others(const std::vector<std::string>& fields, Row& row);
   Result<void> start();
   std::uint32_t find_rate() const;
   Result<void> write(Row& row);
@@ -113,7 +115,7 @@ Result<Row> Importer::parse(const CsvReader& reader) {
     field = binding.scale * value;
   }
   for (UserSample& user : row.frame.users) user.contact.device = user.device.position;
-  TACTUS_CHECK(parse_whole_numbers(fields, row));
+  TACTUS_CHECK(parse_others(fields, row));
   if (plan_.segment) row.segment = fields[*plan_.segment];
   if (plan_.time) {
     TACTUS_TRY(row.time, number<double>(fields, *plan_.time));
@@ -123,10 +125,36 @@ Result<Row> Importer::parse(const CsvReader& reader) {
   return row;
 }
 
+Result<void> Importer::parse_servo(const std::vector<std::string>& fields, const std::array<std::size_t, 4>& columns,
+                                   ServoSample& servo) {
+  TACTUS_TRY(servo.lateness, number<std::int64_t>(fields, columns[0]));
+  TACTUS_TRY(servo.age, number<std::int64_t>(fields, columns[1]));
+  TACTUS_TRY(servo.missed, number<std::uint32_t>(fields, columns[2]));
+  TACTUS_TRY(servo.guard, number<std::uint32_t>(fields, columns[3]));
+  return servo.lateness >= 0 && servo.age >= 0 ? Result<void>() : fail(Errc::malformed, "R-CSV-4");
+}
+
+Result<void> Importer::parse_reports(const std::vector<std::string>& fields, std::size_t column, DeviceReports& reports) {
+  column_ = plan_.names[column];
+  text_ = fields[column];
+  for (std::string_view left = text_; !left.empty();) {
+    const std::size_t end = std::min(left.find(' '), left.size());
+    const auto bytes = bytes_of_hex(left.substr(0, end));
+    if (!bytes || bytes->empty()) return fail(Errc::malformed, "R-CSV-4");
+    reports.sizes.push_back(static_cast<std::uint32_t>(bytes->size()));
+    reports.bytes.insert(reports.bytes.end(), bytes->begin(), bytes->end());
+    left.remove_prefix(std::min(end + 1, left.size()));
+  }
+  return {};
+}
+
 /// What only layout `tactus` has.
-Result<void> Importer::parse_whole_numbers(const std::vector<std::string>& fields, Row& row) {
+Result<void> Importer::parse_others(const std::vector<std::string>& fields, Row& row) {
   if (plan_.tick) {
     TACTUS_TRY(row.frame.tick, number<std::int64_t>(fields, *plan_.tick));
+  }
+  if (plan_.shown) {
+    TACTUS_TRY(row.frame.shown, number<std::int64_t>(fields, *plan_.shown));
   }
   for (std::size_t i = 0; i < plan_.dof.size(); ++i) {
     TACTUS_TRY(const auto dof, number<std::uint8_t>(fields, plan_.dof[i]));
@@ -149,6 +177,8 @@ Result<void> Importer::parse_whole_numbers(const std::vector<std::string>& field
       TACTUS_TRY(user.device.time, number<std::int64_t>(fields, *columns.time));
       if (user.device.time < 0 || user.device.time / 1'000'000'000 >= kMaxSeconds) return fail(Errc::malformed, "R-CSV-4");
     }
+    if (columns.servo) TACTUS_CHECK(parse_servo(fields, *columns.servo, user.servo));
+    if (columns.reports) TACTUS_CHECK(parse_reports(fields, *columns.reports, user.reports));
   }
   return {};
 }
@@ -255,11 +285,14 @@ tl::expected<CsvImport, Diagnostic> import_csv(const std::string& path, const Cs
   const auto refuse = [](Diagnostic error) { return tl::unexpected<Diagnostic>(std::move(error)); };
   auto reader = CsvReader::open(path);
   if (!reader) return refuse({.error = reader.error()});
-  const auto has_names = reader->next();
+  const auto has_names = reader->names();
   if (!has_names) return refuse({.error = has_names.error(), .line = 1});
   if (!*has_names) return refuse({.error = fail(Errc::truncated, "R-CSV-1").value(), .line = 1});
   auto plan = plan_csv(mapping, reader->fields());
-  if (!plan) return refuse(plan.error());
+  if (!plan) {
+    plan.error().line = reader->line();
+    return refuse(plan.error());
+  }
   plan->info.source = "import " + (path == "-" ? "standard input" : std::filesystem::path(path).filename().string());
 
   Importer importer(mapping, *std::move(plan), out_path);

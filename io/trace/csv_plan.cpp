@@ -51,7 +51,7 @@ class Planner {
   bool has_group(std::span<const std::string> columns);
   template <std::size_t N>
   bool bind_sense(const std::string& path, const std::array<CsvColumn<UserSample>, N>& columns);
-  std::optional<std::size_t> whole_number(const std::string& name);
+  std::optional<std::size_t> column_if_there(const std::string& name);
   void bind_object(std::span<const std::string> columns, std::size_t first, double scale);
   void bind_user(std::span<const std::string> columns, std::span<const CsvColumn<UserSample>> fields, std::size_t first,
                  double scale);
@@ -65,6 +65,8 @@ class Planner {
     note(Errc::malformed, "R-CSV-2", name);
     return 0;
   }
+  /// Not recorded: zero in every row.
+  bool is_zero(const std::string& name) const { return name == kZeroColumn && !columns_.contains(name); }
   void note(Errc code, RuleName rule, const std::string& name) {
     if (!mistake_) mistake_ = Diagnostic{.error = fail(code, rule).value(), .line = 1, .detail = place_of_field(name, "")};
   }
@@ -89,14 +91,15 @@ bool Planner::has_group(std::span<const std::string> columns) {
 void Planner::bind_object(std::span<const std::string> columns, std::size_t first, double scale) {
   const auto object = static_cast<std::uint32_t>(plan_.info.objects.size() - 1);
   for (std::size_t i = 0; i < columns.size(); ++i)
-    plan_.bindings.push_back({column(columns[i]), object, scale, kObjectColumns[first + i].field, nullptr});
+    if (!is_zero(columns[i]))
+      plan_.bindings.push_back({column(columns[i]), object, scale, kObjectColumns[first + i].field, nullptr});
 }
 
 void Planner::bind_user(std::span<const std::string> columns, std::span<const CsvColumn<UserSample>> fields, std::size_t first,
                         double scale) {
   const auto user = static_cast<std::uint32_t>(plan_.info.users.size() - 1);
   for (std::size_t i = 0; i < columns.size(); ++i)
-    plan_.bindings.push_back({column(columns[i]), user, scale, nullptr, fields[first + i].field});
+    if (!is_zero(columns[i])) plan_.bindings.push_back({column(columns[i]), user, scale, nullptr, fields[first + i].field});
 }
 
 void Planner::plan_named() {
@@ -131,6 +134,8 @@ void Planner::plan_named() {
 void Planner::plan_tactus() {
   plan_.tick = column("tick");
   plan_.time = column("time_s");
+  plan_.shown = column_if_there(kShownColumn);
+  plan_.info.shows_past = plan_.shown.has_value();
   for (const std::string& name : plan_.names) {
     if (mistake_) return;
     const std::size_t slash = name.rfind('/');
@@ -155,7 +160,7 @@ bool Planner::bind_sense(const std::string& path, const std::array<CsvColumn<Use
   return true;
 }
 
-std::optional<std::size_t> Planner::whole_number(const std::string& name) {
+std::optional<std::size_t> Planner::column_if_there(const std::string& name) {
   return columns_.contains(name) ? std::optional(column(name)) : std::nullopt;
 }
 
@@ -169,11 +174,18 @@ void Planner::plan_tactus_object(const std::string& path) {
 void Planner::plan_tactus_user(const std::string& path) {
   constexpr std::size_t kRoot = std::string_view("/users/").size();
   plan_.info.users.push_back({path.substr(kRoot, path.size() - kRoot - 1)});
-  plan_.users.push_back({column(path + kContactColumn), column(path + kContactObjectColumn), {}, {}});
+  plan_.users.push_back({column(path + kContactColumn), column(path + kContactObjectColumn), {}, {}, {}, {}});
   bind_user(all_columns(path, kUserColumns), kUserColumns, 0, 1.0);
   CsvUserColumns& columns = plan_.users.back();
-  columns.buttons = whole_number(path + kButtonsColumn);
-  columns.time = whole_number(path + kDeviceTimeColumn);
+  columns.buttons = column_if_there(path + kButtonsColumn);
+  columns.time = column_if_there(path + kDeviceTimeColumn);
+  if (columns_.contains(path + kServoColumns[0])) {
+    columns.servo.emplace();
+    for (std::size_t i = 0; i < kServoColumns.size(); ++i) (*columns.servo)[i] = column(path + kServoColumns[i]);
+  }
+  columns.reports = column_if_there(path + kReportsColumn);
+  if (columns.reports) plan_.info.users.back().report_descriptor.emplace();
+  plan_.info.users.back().has_servo = columns.servo.has_value();
   plan_.info.users.back().senses = {.orientation = bind_sense(path, kOrientationColumns),
                                     .velocity = bind_sense(path, kDeviceVelocityColumns),
                                     .buttons = columns.buttons.has_value(),

@@ -2,6 +2,7 @@
 /// Maps the fields of a row to quantities, from a column mapping and a line of names.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -21,17 +22,19 @@ struct CsvBinding {
   double& (*user_field)(UserSample&) = nullptr;
 };
 
-/// Whole numbers of a user, layout `tactus` only.
+/// What is no number, and whole numbers of a user, layout `tactus` only.
 struct CsvUserColumns {
-  std::size_t kind = 0, object = 0;          ///< of the contact
-  std::optional<std::size_t> buttons, time;  ///< of the device
+  std::size_t kind = 0, object = 0;                 ///< of the contact
+  std::optional<std::size_t> buttons, time;         ///< of the device
+  std::optional<std::array<std::size_t, 4>> servo;  ///< kServoColumns
+  std::optional<std::size_t> reports;
 };
 
 struct CsvPlan {
   std::vector<std::string> names;  ///< of all columns
   TraceInfo info;                  ///< the rows determine tick rate and degrees of freedom
   std::vector<CsvBinding> bindings;
-  std::optional<std::size_t> tick, time, segment;
+  std::optional<std::size_t> tick, time, segment, shown;
   std::vector<std::size_t> dof;       ///< per object, layout `tactus` only
   std::vector<CsvUserColumns> users;  ///< per user, likewise
   bool derive_velocity = false, derive_angular_velocity = false;

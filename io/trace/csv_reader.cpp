@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include <tactus/base/rule.h>
+#include <tactus/trace/text.h>
 
 namespace tactus {
 namespace {
@@ -14,6 +16,7 @@ constexpr std::size_t kMaxLine = 1u << 20;
 constexpr std::array<std::uint8_t, 4> kZstdMagic{0x28, 0xB5, 0x2F, 0xFD};  // RFC 8878 3.1.1
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::string_view kBlank = " \t\r";
+constexpr std::string_view kComment = "#%";
 
 std::string_view trim(std::string_view text) noexcept {
   text.remove_prefix(std::min(text.find_first_not_of(kBlank), text.size()));
@@ -30,6 +33,26 @@ std::string_view unquote(std::string_view line, std::string& field) {
     field += line[0];
   }
   return line;
+}
+
+/// What separates the fields of a line of names: the most frequent one outside quotes.
+char separator_of(std::string_view names) noexcept {
+  constexpr std::string_view kSeparators = ",;\t";
+  std::array<std::size_t, kSeparators.size()> counts{};
+  bool is_quoted = false;
+  for (const char c : names) {
+    if (c == '"') is_quoted = !is_quoted;
+    const std::size_t which = kSeparators.find(c);
+    if (which != std::string_view::npos && !is_quoted) ++counts[which];
+  }
+  return kSeparators[static_cast<std::size_t>(std::max_element(counts.begin(), counts.end()) - counts.begin())];
+}
+
+/// "1,5" becomes "1.5"; what has both signs, or one twice, is no number.
+void give_point(std::string& field) noexcept {
+  const std::size_t comma = field.find(',');
+  if (comma == std::string::npos || field.find_first_of(".,", comma + 1) != std::string::npos || field.find('.') < comma) return;
+  field[comma] = '.';
 }
 
 }  // namespace
@@ -104,28 +127,63 @@ Result<std::optional<std::string_view>> CsvReader::next_line() {
   }
 }
 
-Result<bool> CsvReader::next() {
+/// The next line that is neither blank nor a comment.
+Result<std::optional<std::string_view>> CsvReader::next_row() {
   while (true) {
     TACTUS_TRY(const auto line, next_line());
-    if (!line) return false;
-    if (trim(*line).empty()) continue;
-    split(*line);
-    return true;
+    if (!line) return std::nullopt;
+    const std::string_view text = trim(*line);
+    if (text.empty()) continue;
+    if (kComment.find(text.front()) == std::string_view::npos) return *line;
+    if (!has_names_) comment_ = trim(text.substr(1));
   }
 }
 
+Result<bool> CsvReader::next() {
+  if (std::exchange(holds_, false)) {
+    fields_.swap(held_);
+    return true;
+  }
+  TACTUS_TRY(const auto row, next_row());
+  if (row) split(*row);
+  return row.has_value();
+}
+
+Result<bool> CsvReader::names() {
+  TACTUS_TRY(const auto row, next_row());
+  if (!row) return false;
+  has_names_ = true;
+  separator_ = separator_of(comment_);
+  split(*row);
+  if (!comment_.empty() && holds_numbers()) {
+    held_ = fields_;
+    split(comment_);
+    holds_ = fields_.size() == held_.size();
+    if (holds_) return true;
+  }
+  separator_ = separator_of(*row);
+  split(*row);
+  return true;
+}
+
+bool CsvReader::holds_numbers() const {
+  return std::ranges::all_of(fields_, [](const std::string& field) { return parse_number<double>(field).has_value(); });
+}
+
 void CsvReader::split(std::string_view line) {
+  const std::string_view blank = separator_ == '\t' ? kBlank.substr(0, 1) : kBlank;  // an empty field is one, too
   std::size_t count = 0;
   for (bool more = true; more; ++count) {
     if (count == fields_.size()) fields_.emplace_back();
     std::string& field = fields_[count];
     field.clear();
-    line.remove_prefix(std::min(line.find_first_not_of(kBlank), line.size()));
+    line.remove_prefix(std::min(line.find_first_not_of(blank), line.size()));
     if (line.starts_with('"')) line = unquote(line, field);
-    const std::size_t comma = std::min(line.find(','), line.size());
-    field += trim(line.substr(0, comma));  // after a closing quote nothing should be left; if it is, the field is no number
-    more = comma < line.size();
-    line.remove_prefix(std::min(comma + 1, line.size()));
+    const std::size_t end = std::min(line.find(separator_), line.size());
+    field += trim(line.substr(0, end));  // after a closing quote nothing should be left; if it is, the field is no number
+    if (separator_ != ',') give_point(field);
+    more = end < line.size();
+    line.remove_prefix(std::min(end + 1, line.size()));
   }
   fields_.resize(count);
 }

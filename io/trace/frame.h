@@ -13,6 +13,7 @@
 #include <tactus/rigid/contact.h>
 #include <tactus/rigid/rigid_state.h>
 #include <tactus/scene/bounds.h>
+#include <tactus/trace/device_reports.h>
 
 namespace tactus {
 
@@ -32,7 +33,10 @@ struct TraceDeformable {
 
 struct TraceUser {
   std::string name;
-  DeviceSenses senses{};  ///< of the user's device; a quantity that it does not sense has no channel
+  DeviceSenses senses{};   ///< of the user's device; a quantity that it does not sense has no channel
+  bool has_servo = false;  ///< a device was captured: how each of its ticks went
+  /// What the input reports of the device mean (HID 1.11, section 6.2.2); none: they are not in the trace.
+  std::optional<std::vector<std::uint8_t>> report_descriptor{};
   friend bool operator==(const TraceUser&, const TraceUser&) = default;
 };
 
@@ -43,6 +47,15 @@ struct TraceBounds {
   std::vector<std::uint8_t> rings{};                     ///< per mesh: size of the area of interest
 };
 
+/// Circumstances of a capture. Text of the user and of the device, UTF-8.
+struct TraceCapture {
+  std::int64_t started = 0;         ///< [ns] since 1970-01-01 UTC, of tick 0, >= 0
+  std::string device{}, backend{};  ///< model and serial number; "falcon"
+  std::string scheduling{};         ///< what real-time privileges the loop had
+  std::string subject{}, remarks{};
+  friend bool operator==(const TraceCapture&, const TraceCapture&) = default;
+};
+
 struct TraceInfo {
   std::uint32_t tick_rate = 1000;  ///< ticks per second
   std::vector<TraceObject> objects;
@@ -50,7 +63,9 @@ struct TraceInfo {
   std::string source;            ///< "sim push-1dof seed 1", "import cube-tosses.csv"
   std::string scene;             ///< scene file (TOML) attached to the trace; may be empty
   std::vector<TraceDeformable> meshes{};
-  std::optional<TraceBounds> bounds{};  ///< of a replica whose stream tells them
+  std::optional<TraceBounds> bounds{};    ///< of a replica whose stream tells them
+  bool shows_past = false;                ///< a client behind a network: what it shows at a tick is of an earlier one
+  std::optional<TraceCapture> capture{};  ///< a device was captured: ticks may have markers
 };
 
 /// Contact of one user's probe with the surface of a deformable object.
@@ -63,6 +78,15 @@ struct SurfaceContact {
   double stiffness = 0;                    ///< [N/m] of the coupling between proxy and device, > 0
 };
 
+/// How a tick of a captured device went.
+struct ServoSample {
+  std::int64_t lateness = 0;  ///< [ns] the tick began so long after its time, >= 0
+  std::int64_t age = 0;       ///< [ns] of the device's sample when the tick began, >= 0
+  std::uint32_t missed = 0;   ///< ticks left out before this one, because one before took too long
+  std::uint32_t guard = 0;    ///< what was done to the force: bit i is device::GuardAction i
+  friend bool operator==(const ServoSample&, const ServoSample&) = default;
+};
+
 /// One user at one tick.
 struct UserSample {
   DeviceSample device;
@@ -70,6 +94,8 @@ struct UserSample {
   Vec3 force;         ///< [N] rendered at the client, what the hand felt
   Vec3 server_force;  ///< [N] rendered at the server from the true state, same device sample
   std::optional<SurfaceContact> surface_contact{};
+  ServoSample servo{};      ///< only with TraceUser::has_servo
+  DeviceReports reports{};  ///< that came since the tick before; only with TraceUser::report_descriptor
 };
 
 /// Shape of one mesh. Deformations may be computed less often than every tick; in between the last shape holds.
@@ -83,6 +109,8 @@ struct TraceFrame {
   std::vector<RigidSample> objects;        ///< order of TraceInfo::objects
   std::vector<UserSample> users;           ///< order of TraceInfo::users
   std::vector<DeformableSample> meshes{};  ///< order of TraceInfo::meshes
+  std::int64_t shown = 0;  ///< tick whose objects and meshes these are, never falls; only with TraceInfo::shows_past
+  std::string marker{};    ///< what the experimenter marked at this tick, UTF-8; empty: nothing; only with TraceInfo::capture
   /// Objects that may differ from the tick before, ascending; none: any of them may. Set by sources that know. Valid only if the
   /// frame directly follows that of the tick before. Code that changes `objects` afterwards resets it.
   std::optional<std::vector<std::uint32_t>> changed{};
@@ -97,6 +125,7 @@ class TickSpan {
     last_ = tick;
   }
   std::uint64_t count() const noexcept { return count_; }
+  std::int64_t last() const noexcept { return last_; }  ///< 0 before the first
   /// [ticks] from the first to the last, both included
   std::uint64_t length() const noexcept { return count_ == 0 ? 0 : static_cast<std::uint64_t>(last_ - first_) + 1; }
   std::uint64_t left_out() const noexcept { return length() - count_; }

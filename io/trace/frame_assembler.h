@@ -23,9 +23,10 @@ class FrameAssembler {
 
 /// What a file tells ahead of its first message.
 struct Preamble {
-  mcap::Item item = mcap::Item::end;    ///< current item of the reader: a message, or the end
-  std::optional<mcap::TextMap> tactus;  ///< our metadata record
-  std::optional<mcap::TextMap> bounds;  ///< metadata record of the bounds
+  mcap::Item item = mcap::Item::end;     ///< current item of the reader: a message, or the end
+  std::optional<mcap::TextMap> tactus;   ///< our metadata record
+  std::optional<mcap::TextMap> bounds;   ///< metadata record of the bounds
+  std::optional<mcap::TextMap> capture;  ///< and of the capture
   std::string scene;
 };
 

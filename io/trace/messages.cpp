@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <tactus/base/rule.h>
+#include <tactus/trace/text.h>
 
 namespace tactus {
 namespace {
@@ -35,28 +36,10 @@ bool is_finite(const Contact& contact) noexcept { return is_valid(contact); }
 bool is_finite(std::uint32_t) noexcept { return true; }
 bool is_finite(std::int64_t time) noexcept { return time >= 0; }
 bool is_finite(const SurfaceContact& contact) noexcept { return is_valid(contact); }
+bool is_finite(const ServoSample& servo) noexcept { return servo.lateness >= 0 && servo.age >= 0; }
 
-Quat read_quaternion(CdrReader& in) noexcept {
-  Quat q;
-  q.x = in.f64();  // ROS writes x, y, z, w
-  q.y = in.f64();
-  q.z = in.f64();
-  q.w = in.f64();
-  return q;
-}
-
-void write_quaternion(CdrWriter& out, const Quat& q) {
-  out.f64(q.x);
-  out.f64(q.y);
-  out.f64(q.z);
-  out.f64(q.w);
-}
-
-Pose read_pose(CdrReader& in) noexcept {
-  const Vec3 position = in.vec3();
-  return {position, read_quaternion(in)};
-}
-
+Quat read_quaternion(CdrReader& in) noexcept { return in.quat(); }
+Pose read_pose(CdrReader& in) noexcept { return in.pose(); }
 std::uint32_t read_buttons(CdrReader& in) noexcept { return in.u32(); }
 
 /// Negative: no time.
@@ -95,6 +78,15 @@ SurfaceContact read_mesh_contact(CdrReader& in) noexcept {
   contact.normal = in.vec3();
   contact.stiffness = in.f64();
   return contact;
+}
+
+ServoSample read_servo(CdrReader& in) noexcept {
+  ServoSample servo;
+  servo.lateness = in.i64();
+  servo.age = in.i64();
+  servo.missed = in.u32();
+  servo.guard = in.u32();
+  return servo;
 }
 
 template <class T>
@@ -137,7 +129,7 @@ bool is_valid(const SurfaceContact& contact) noexcept {
 void encode_pose(std::vector<std::uint8_t>& message, std::uint64_t time, const Pose& pose) {
   CdrWriter out = begin(message, time);
   out.vec3(pose.position);
-  write_quaternion(out, pose.rotation);
+  out.quat(pose.rotation);
 }
 
 void encode_twist(std::vector<std::uint8_t>& message, std::uint64_t time, const Twist& twist) {
@@ -153,7 +145,7 @@ void encode_vector(std::vector<std::uint8_t>& message, std::uint64_t time, const
 
 void encode_quaternion(std::vector<std::uint8_t>& message, std::uint64_t time, const Quat& quaternion) {
   CdrWriter out = begin(message, time);
-  write_quaternion(out, quaternion);
+  out.quat(quaternion);
 }
 
 void encode_buttons(std::vector<std::uint8_t>& message, std::uint64_t time, std::uint32_t down) {
@@ -195,6 +187,66 @@ Result<Stamped<Contact>> decode_contact(std::span<const std::uint8_t> message) n
 
 Result<Stamped<SurfaceContact>> decode_mesh_contact(std::span<const std::uint8_t> message) noexcept {
   return decode(message, read_mesh_contact);
+}
+
+void encode_servo(std::vector<std::uint8_t>& message, std::uint64_t time, const ServoSample& servo) {
+  CdrWriter out = begin(message, time);
+  out.i64(servo.lateness);
+  out.i64(servo.age);
+  out.u32(servo.missed);
+  out.u32(servo.guard);
+}
+
+Result<Stamped<ServoSample>> decode_servo(std::span<const std::uint8_t> message) noexcept { return decode(message, read_servo); }
+
+void encode_reports(std::vector<std::uint8_t>& message, std::uint64_t time, const DeviceReports& reports) {
+  CdrWriter out = begin(message, time);
+  out.u32(static_cast<std::uint32_t>(reports.sizes.size()));
+  for (const std::uint32_t size : reports.sizes) out.u32(size);
+  out.u32(static_cast<std::uint32_t>(reports.bytes.size()));
+  for (const std::uint8_t byte : reports.bytes) out.u8(byte);
+}
+
+Result<std::uint64_t> decode_reports(std::span<const std::uint8_t> message, DeviceReports& out) {
+  CdrReader in(message);
+  if (!in.is_supported()) return fail(Errc::unsupported, "R-TRC-7");
+  const auto time = read_header(in);
+  out.sizes.resize(in.count(sizeof(std::uint32_t)));
+  for (std::uint32_t& size : out.sizes) size = in.u32();
+  out.bytes.resize(in.count(1));
+  for (std::uint8_t& byte : out.bytes) byte = in.u8();
+  if (!in.done()) return fail(Errc::malformed, "R-TRC-13");
+  if (!time || out.sizes.empty() || !is_valid(out)) return fail(Errc::invalid, "R-TRC-14");
+  return *time;
+}
+
+void encode_log(std::vector<std::uint8_t>& message, std::uint64_t time, std::string_view text) {
+  constexpr std::uint8_t kInfo = 20;
+  CdrWriter out(message);
+  out.u32(static_cast<std::uint32_t>(time / kNanoseconds));
+  out.u32(static_cast<std::uint32_t>(time % kNanoseconds));
+  out.u8(kInfo);
+  out.text("tactus");
+  out.text(text);
+  out.text("");  // file, function
+  out.text("");
+  out.u32(0);  // line
+}
+
+Result<Stamped<std::string_view>> decode_log(std::span<const std::uint8_t> message) noexcept {
+  CdrReader in(message);
+  if (!in.is_supported()) return fail(Errc::unsupported, "R-TRC-7");
+  const std::uint32_t seconds = in.u32(), nanoseconds = in.u32();
+  in.u8();
+  in.text();
+  const std::string_view text = in.text();
+  in.text();
+  in.text();
+  in.u32();
+  if (!in.done()) return fail(Errc::malformed, "R-TRC-13");
+  if (seconds >= kMaxSeconds || nanoseconds >= kNanoseconds) return fail(Errc::invalid, "R-TRC-14");
+  if (!is_utf8(text)) return fail(Errc::invalid, "R-TRC-11");
+  return Stamped<std::string_view>{seconds * kNanoseconds + nanoseconds, text};
 }
 
 void encode_mesh(std::vector<std::uint8_t>& message, const TriMesh& mesh) {

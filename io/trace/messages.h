@@ -44,6 +44,11 @@ void encode_time_reference(std::vector<std::uint8_t>& message, std::uint64_t tim
 /// `device` is not part of the message.
 void encode_contact(std::vector<std::uint8_t>& message, std::uint64_t time, const Contact& contact, std::string_view object);
 
+void encode_servo(std::vector<std::uint8_t>& message, std::uint64_t time, const ServoSample& servo);
+void encode_reports(std::vector<std::uint8_t>& message, std::uint64_t time, const DeviceReports& reports);
+/// An entry of a log, of level "info".   in  text  UTF-8
+void encode_log(std::vector<std::uint8_t>& message, std::uint64_t time, std::string_view text);
+
 void encode_mesh(std::vector<std::uint8_t>& message, const TriMesh& mesh);  ///< has no header
 void encode_displacements(std::vector<std::uint8_t>& message, std::uint64_t time, std::span<const float> displacements);
 void encode_mesh_contact(std::vector<std::uint8_t>& message, std::uint64_t time, const SurfaceContact& contact,
@@ -58,7 +63,7 @@ struct Stamped {
 
 /// err  unsupported R-TRC-7: not plain little-endian CDR; malformed R-TRC-13: size or text does not fit the type;
 ///      invalid R-TRC-14: a number is NaN or infinite, a time is negative or has 1e9 ns or more, a contact's kind, normal or
-///      stiffness is invalid, there are not as many displacements as `out` takes.
+///      stiffness is invalid, a duration is negative, there are not as many displacements as `out` takes.
 Result<Stamped<Pose>> decode_pose(std::span<const std::uint8_t> message) noexcept;
 Result<Stamped<Twist>> decode_twist(std::span<const std::uint8_t> message) noexcept;
 Result<Stamped<Vec3>> decode_vector(std::span<const std::uint8_t> message) noexcept;
@@ -66,6 +71,13 @@ Result<Stamped<Quat>> decode_quaternion(std::span<const std::uint8_t> message) n
 Result<Stamped<std::uint32_t>> decode_buttons(std::span<const std::uint8_t> message) noexcept;
 Result<Stamped<std::int64_t>> decode_time_reference(std::span<const std::uint8_t> message) noexcept;
 Result<Stamped<Contact>> decode_contact(std::span<const std::uint8_t> message) noexcept;
+
+Result<Stamped<ServoSample>> decode_servo(std::span<const std::uint8_t> message) noexcept;
+/// out  `out` gets the reports; the result is the time of the header
+/// err  also invalid R-TRC-14: the sizes are not those of the bytes
+Result<std::uint64_t> decode_reports(std::span<const std::uint8_t> message, DeviceReports& out);
+/// The text lasts as long as the message.   err  also invalid R-TRC-11: it is not UTF-8
+Result<Stamped<std::string_view>> decode_log(std::span<const std::uint8_t> message) noexcept;
 
 Result<Stamped<SurfaceContact>> decode_mesh_contact(std::span<const std::uint8_t> message) noexcept;
 /// out  `out` gets the displacements; the result is the time of the header

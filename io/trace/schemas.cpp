@@ -79,6 +79,32 @@ Message message_of(MessageType type) {
           {kHeader, kTime}};
     case MessageType::time_reference:
       return {"std_msgs/Header header\nbuiltin_interfaces/Time time_ref\nstring source\n", {kHeader, kTime}};
+    case MessageType::servo:
+      return {
+          "# How a tick of a captured device went.\n"
+          "std_msgs/Header header\n"
+          "# [ns] The tick began so long after its time; the device's sample was so old then.\n"
+          "int64 lateness\n"
+          "int64 age\n"
+          "# Ticks left out before this one.\n"
+          "uint32 missed\n"
+          "# What was done to the force: 1 not finite, 2 stale, 4 sample not valid, 8 clamp, 16 passivity, 32 slew.\n"
+          "uint32 guard\n",
+          {kHeader, kTime}};
+    case MessageType::log:
+      return {
+          "byte DEBUG=10\nbyte INFO=20\nbyte WARN=30\nbyte ERROR=40\nbyte FATAL=50\n"
+          "builtin_interfaces/Time stamp\nuint8 level\nstring name\nstring msg\nstring file\nstring function\nuint32 line\n",
+          {kTime}};
+    case MessageType::reports:
+      return {
+          "# Input reports of a device that came since the tick before, as it sent them. No message at a tick: none came.\n"
+          "std_msgs/Header header\n"
+          "# [bytes] of each report, the oldest first\n"
+          "uint32[] sizes\n"
+          "# One report behind the other.\n"
+          "uint8[] data\n",
+          {kHeader, kTime}};
     case MessageType::surface_contact:
       break;
   }
@@ -103,11 +129,12 @@ Message message_of(MessageType type) {
 }  // namespace
 
 std::string_view schema_name(MessageType type) noexcept {
-  constexpr std::array<std::string_view, 11> kNames{
+  constexpr std::array<std::string_view, 14> kNames{
       "geometry_msgs/msg/PoseStamped",    "geometry_msgs/msg/TwistStamped", "geometry_msgs/msg/PointStamped",
       "geometry_msgs/msg/Vector3Stamped", "tactus_msgs/msg/Contact",        "shape_msgs/msg/Mesh",
       "tactus_msgs/msg/Displacements",    "tactus_msgs/msg/MeshContact",    "geometry_msgs/msg/QuaternionStamped",
-      "tactus_msgs/msg/Buttons",          "sensor_msgs/msg/TimeReference"};
+      "tactus_msgs/msg/Buttons",          "sensor_msgs/msg/TimeReference",  "tactus_msgs/msg/Servo",
+      "rcl_interfaces/msg/Log",           "tactus_msgs/msg/Reports"};
   return kNames[static_cast<std::size_t>(type)];
 }
 

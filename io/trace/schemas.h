@@ -19,7 +19,10 @@ enum class MessageType : std::uint8_t {
   surface_contact,
   quaternion,
   buttons,
-  time_reference
+  time_reference,
+  servo,
+  log,
+  reports
 };
 
 /// "geometry_msgs/msg/PoseStamped"

@@ -7,6 +7,7 @@
 #include <tactus/trace/messages.h>
 #include <tactus/trace/text.h>
 #include <tactus/trace/trace_bounds.h>
+#include <tactus/trace/trace_capture.h>
 #include <tactus/trace/trace_layout.h>
 
 namespace tactus {
@@ -65,6 +66,7 @@ class TactusAssembler final : public FrameAssembler {
   Result<void> advance(mcap::Reader& mcap);
   Result<void> take(const mcap::Reader& mcap, std::int64_t tick);
   Result<std::uint64_t> store(const mcap::Reader& mcap, const TraceChannel& channel);
+  Result<std::uint64_t> store_shown(std::span<const std::uint8_t> data);
   Result<std::uint64_t> store_user(std::span<const std::uint8_t> data, const TraceChannel& channel);
   bool is_complete(std::int64_t tick) const noexcept;
   void deliver(TraceFrame& frame) const;
@@ -109,6 +111,10 @@ Result<void> TactusAssembler::start(mcap::Reader& mcap, const Preamble& preamble
     info_.bounds = bounds_from(*preamble.bounds, info_);
     if (!info_.bounds) return refuse(mcap, Errc::invalid, "R-TRC-12");
   }
+  if (preamble.capture) {
+    info_.capture = capture_from(*preamble.capture);
+    if (!info_.capture) return refuse(mcap, Errc::invalid, "R-TRC-12");
+  }
   item_ = preamble.item;
   const bool ended_early = item_ == mcap::Item::end && mcap.cut_short();
   TACTUS_CHECK(find_channels(mcap, ended_early ? Errc::truncated : Errc::invalid));
@@ -148,7 +154,13 @@ Result<void> TactusAssembler::find_channels(const mcap::Reader& mcap, Errc missi
   for (TraceUser& user : info_.users) {
     const auto has = [&](const char* channel) { return by_topic.contains("/users/" + user.name + channel); };
     user.senses = {has("/device_orientation"), has("/device_velocity"), has("/device_buttons"), has("/device_time")};
+    user.has_servo = has("/servo");
+    if (!has("/device_reports")) continue;
+    const mcap::Channel& reports = *by_topic.at("/users/" + user.name + "/device_reports");
+    user.report_descriptor = bytes_of_hex(entry(reports.metadata, "report_descriptor"));
+    if (!user.report_descriptor) return refuse(mcap, Errc::invalid, "R-TRC-12");
   }
+  info_.shows_past = by_topic.contains(kShownTopic);
   for (TraceChannel& wanted : trace_channels(info_)) {
     const auto found = by_topic.find(wanted.topic);
     if (found == by_topic.end()) return refuse(mcap, missing, rule);
@@ -180,6 +192,8 @@ Result<bool> TactusAssembler::next(mcap::Reader& mcap, TraceFrame& frame) {
 /// A shape that is not new is still in the frame from the previous call, unless the caller gives another frame.
 void TactusAssembler::deliver(TraceFrame& frame) const {
   frame.tick = current_.tick;
+  frame.shown = current_.shown;
+  frame.marker = current_.marker;
   frame.objects = current_.objects;
   frame.changed.reset();
   frame.users = current_.users;
@@ -200,10 +214,13 @@ Result<bool> TactusAssembler::assemble(mcap::Reader& mcap) {
   if (tick <= last_tick_ || tick / info_.tick_rate >= kMaxSeconds) return refuse(mcap, Errc::invalid, "R-TRC-15");
   TACTUS_CHECK(mcap.spend(static_objects_ * kCostOfStatic));
   current_.tick = tick;
+  current_.marker.clear();
   for (DeformableSample& mesh : current_.meshes) mesh.updated = false;
   for (UserSample& user : current_.users) {
     user.contact = Contact{};
     user.surface_contact.reset();
+    user.reports.sizes.clear();
+    user.reports.bytes.clear();
   }
   while (item_ == mcap::Item::message && mcap.message().log_time == time) {
     TACTUS_CHECK(take(mcap, tick));
@@ -256,7 +273,21 @@ Result<std::uint64_t> TactusAssembler::store(const mcap::Reader& mcap, const Tra
     mesh.updated = true;
     return decode_displacements(data, mesh.displacements);
   }
-  return store_user(data, channel);
+  if (channel.role == Role::marker) {
+    TACTUS_TRY(const auto entry, decode_log(data));
+    current_.marker = entry.value;
+    return entry.time;
+  }
+  return channel.role == Role::shown ? store_shown(data) : store_user(data, channel);
+}
+
+Result<std::uint64_t> TactusAssembler::store_shown(std::span<const std::uint8_t> data) {
+  TACTUS_TRY(const auto reference, decode_time_reference(data));
+  const auto time = static_cast<std::uint64_t>(reference.value);
+  const std::int64_t shown = tick_of_time(time, info_.tick_rate);
+  if (shown < current_.shown || time_of_tick(shown, info_.tick_rate) != time) return fail(Errc::invalid, "R-TRC-15");
+  current_.shown = shown;
+  return reference.time;
 }
 
 /// Put a user's value into its place; the result is the time of its header.
@@ -291,6 +322,8 @@ Result<std::uint64_t> TactusAssembler::store_user(std::span<const std::uint8_t> 
     return orientation.time;
   }
   if (channel.role == Role::buttons) return keep(decode_buttons(data), user.device.buttons);
+  if (channel.role == Role::servo) return keep(decode_servo(data), user.servo);
+  if (channel.role == Role::reports) return decode_reports(data, user.reports);
   if (channel.role == Role::device_time) return keep(decode_time_reference(data), user.device.time);
   TACTUS_TRY(const auto vector, decode_vector(data));
   if (channel.role == Role::device) user.device.position = vector.value;

@@ -9,21 +9,27 @@
 /// /users/<name>/device_velocity     geometry_msgs/msg/Vector3Stamped     every tick
 /// /users/<name>/device_buttons      tactus_msgs/msg/Buttons              first tick, and when it is new
 /// /users/<name>/device_time         sensor_msgs/msg/TimeReference        every tick
+/// /users/<name>/device_reports      tactus_msgs/msg/Reports              ticks with reports; only of a device that nobody interprets
+/// /users/<name>/servo          tactus_msgs/msg/Servo               every tick of a captured device
 /// /users/<name>/force          geometry_msgs/msg/Vector3Stamped    every tick
 /// /users/<name>/server_force   geometry_msgs/msg/Vector3Stamped    every tick
 /// /users/<name>/contact        tactus_msgs/msg/Contact             ticks with contact
 /// /users/<name>/mesh_contact   tactus_msgs/msg/MeshContact         ticks with contact; only if there are meshes
 /// /meshes/<name>/rest          shape_msgs/msg/Mesh (no header)     first tick
 /// /meshes/<name>/displacement  tactus_msgs/msg/Displacements       ticks at which the shape is new; before the first, rest
+/// /shown                       sensor_msgs/msg/TimeReference       every tick of a client behind a network: the time of what it shows
+/// /markers                     rcl_interfaces/msg/Log (no header)  ticks that the experimenter marked; only of a capture
 /// If no other channel has a message every tick, the first object's pose has one; without objects, the first mesh's displacement.
 ///
 /// log_time, publish_time and header.stamp are round(tick * 1e9 / tick_rate), sequence is tick mod 2^32. Metadata:
 ///   record "tactus"         format_version ("2"; in "1" poses and twists come every tick), tick_rate, source, objects, users
 ///                           and, if there are any, meshes (names in order, one per line)
 ///   record "tactus_bounds"  of a replica: bounds of its stream (trace_bounds.h)
+///   record "tactus_capture" of a capture: who, what and when (trace_capture.h)
 ///   pose channels           dof
+///   reports channels        report_descriptor (hexadecimal)
 ///   rest channels           fixed (vertex numbers, ascending, blanks between; left out if none), period (ticks; left out if 1)
-/// The scene is the attachment "scene.toml". Chunks end at whole ticks, after 1 MiB or 1 s.
+/// The scene is the attachment "scene.toml". Chunks end at whole ticks, after 1 MiB or TraceWriterOptions::chunk_time.
 ///
 /// rule      class             broken when
 /// R-TRC-1   io                the operating system refuses to open, read or write the file; errno tells why
@@ -43,8 +49,10 @@
 /// R-TRC-13  malformed         a message is not CDR of its channel's type
 /// R-TRC-14  invalid           a value is NaN or infinite, a contact, an orientation or a time of a device or a time stamp is invalid, or a
 ///                             mesh has another number of vertices
-/// R-TRC-15  invalid           ticks do not increase, a message's times disagree, or a tick lacks a message or has one twice
-/// R-TRC-16  unsupported       a foreign file without PoseStamped channels, or with one that begins after the look-ahead
+/// R-TRC-15  invalid           ticks do not increase, a message's times disagree, a tick lacks a message or has one twice, or what is
+///                             shown at a tick is not of a tick, or of an earlier one than before
+/// R-TRC-16  unsupported       a foreign file without poses, transforms and forces, or with a topic or frame that begins after the
+///                             look-ahead or shares its name, or with a frame that comes to hang on another one
 /// R-TRC-17  invalid_argument  TraceInfo: nothing to record, over 65535 channels, tick rate not in 1..1000000, dof bits, fixed
 ///                             vertices or the period of a mesh, bounds of another number of meshes, or a name that is empty, repeated,
 ///                             over 255 bytes, not UTF-8 or has '/' or control characters
@@ -64,11 +72,15 @@
 
 namespace tactus {
 
+struct TraceWriterOptions {
+  double chunk_time = 1;  ///< [s] a crash loses at most so much; shorter chunks compress less
+};
+
 /// Writes a trace as it happens. If the process dies, the file is readable up to its last whole chunk.
 class TraceWriter {
  public:
-  /// path "-" is standard output.   err  io R-TRC-1; invalid_argument R-TRC-11 (source), R-TRC-17, R-SRF-n
-  static Result<TraceWriter> create(const std::string& path, const TraceInfo& info);
+  /// path "-" is standard output.   err  io R-TRC-1; invalid_argument R-TRC-11 (texts), R-TRC-17, R-SRF-n
+  static Result<TraceWriter> create(const std::string& path, const TraceInfo& info, const TraceWriterOptions& options = {});
   /// in   frame  tick >= 0 and larger than the last. A user's device sample is always kept; without contact, `contact` and
   ///             contact.device are ignored. A mesh that was not updated is not written
   /// time O(changes), about 15 instructions for each object at rest, and the every-tick messages of users and meshes
@@ -89,10 +101,16 @@ class TraceWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Reads a trace front to back, one frame at a time, in memory bounded by a chunk. Foreign ROS 2 recordings are read too: each
-/// PoseStamped topic is an object. Its motion is the TwistStamped topic beside it (same path except for the last part), else
-/// backward differences. Ticks follow from log_time and the median spacing of the first poses. A topic holds its last value;
-/// frames begin when every object has one.
+/// Reads a trace front to back, one frame at a time, in memory bounded by a chunk. Foreign ROS 2 recordings are read too:
+///
+///   PoseStamped, Odometry          each topic is an object; its motion is the odometry's, or the TwistStamped topic beside it (same path
+///                                  except for the last part), else backward differences
+///   TransformStamped, TFMessage    each frame that hangs on another one is an object, in the frame that hangs on none
+///   WrenchStamped                  each topic is a user who feels the force, where its frame is, or the one object of a topic beside it;
+///                                  a force in a known frame is turned to the world
+///
+/// Ticks follow from log_time and the median spacing of the topic or frame with the most samples. What a topic said last holds; frames
+/// begin when every object has a pose.
 class TraceReader {
  public:
   /// path "-" is standard input.   err  io R-TRC-1; malformed, truncated, invalid, unsupported, checksum, limit_exceeded: R-TRC-n,

@@ -26,9 +26,16 @@ enum class Role : std::uint8_t {
   contact,
   surface_contact,
   rest,
-  displacement
+  displacement,
+  shown,
+  marker,
+  servo,
+  reports
 };
-enum class Occurs : std::uint8_t { every_tick, first_tick, when_changed, in_contact, when_updated };
+enum class Occurs : std::uint8_t { every_tick, first_tick, when_changed, in_contact, when_updated, when_marked, when_reported };
+
+inline constexpr const char* kShownTopic = "/shown";
+inline constexpr const char* kMarkersTopic = "/markers";
 
 struct TraceChannel {
   Role role = Role::pose;
@@ -58,7 +65,14 @@ inline MessageType message_type(Role role) noexcept {
     case Role::buttons:
       return MessageType::buttons;
     case Role::device_time:
+    case Role::shown:
       return MessageType::time_reference;
+    case Role::marker:
+      return MessageType::log;
+    case Role::servo:
+      return MessageType::servo;
+    case Role::reports:
+      return MessageType::reports;
     case Role::velocity:
     case Role::force:
     case Role::server_force:
@@ -87,6 +101,8 @@ inline std::vector<TraceChannel> trace_channels(const TraceInfo& info) {
     channels.push_back({Role::rest, Occurs::first_tick, i, path + "/rest"});
     channels.push_back({Role::displacement, Occurs::when_updated, i, path + "/displacement"});
   }
+  if (info.shows_past) channels.push_back({Role::shown, Occurs::every_tick, 0, kShownTopic});
+  if (info.capture) channels.push_back({Role::marker, Occurs::when_marked, 0, kMarkersTopic});
   for (std::uint32_t i = 0; i < info.users.size(); ++i) {
     const std::string path = "/users/" + info.users[i].name;
     const DeviceSenses& senses = info.users[i].senses;
@@ -95,6 +111,8 @@ inline std::vector<TraceChannel> trace_channels(const TraceInfo& info) {
     if (senses.velocity) channels.push_back({Role::velocity, Occurs::every_tick, i, path + "/device_velocity"});
     if (senses.buttons) channels.push_back({Role::buttons, Occurs::when_changed, i, path + "/device_buttons"});
     if (senses.time) channels.push_back({Role::device_time, Occurs::every_tick, i, path + "/device_time"});
+    if (info.users[i].has_servo) channels.push_back({Role::servo, Occurs::every_tick, i, path + "/servo"});
+    if (info.users[i].report_descriptor) channels.push_back({Role::reports, Occurs::when_reported, i, path + "/device_reports"});
     channels.push_back({Role::force, Occurs::every_tick, i, path + "/force"});
     channels.push_back({Role::server_force, Occurs::every_tick, i, path + "/server_force"});
     channels.push_back({Role::contact, Occurs::in_contact, i, path + "/contact"});

@@ -2,6 +2,7 @@
 #include <tactus/base/out_of_memory.h>
 #include <tactus/trace/frame_assembler.h>
 #include <tactus/trace/trace_bounds.h>
+#include <tactus/trace/trace_capture.h>
 #include <tactus/trace/trace_file.h>
 
 namespace tactus {
@@ -15,6 +16,7 @@ Result<Preamble> read_preamble(mcap::Reader& mcap) {
       case mcap::Item::metadata:
         if (mcap.metadata().name == "tactus") preamble.tactus = mcap.metadata().entries;
         if (mcap.metadata().name == kBoundsMetadata) preamble.bounds = mcap.metadata().entries;
+        if (mcap.metadata().name == kCaptureMetadata) preamble.capture = mcap.metadata().entries;
         break;
       case mcap::Item::attachment: {
         const mcap::Attachment& attachment = mcap.attachment();

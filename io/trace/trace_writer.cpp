@@ -13,6 +13,7 @@
 #include <tactus/trace/messages.h>
 #include <tactus/trace/text.h>
 #include <tactus/trace/trace_bounds.h>
+#include <tactus/trace/trace_capture.h>
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_layout.h>
 
@@ -20,7 +21,6 @@ namespace tactus {
 namespace {
 
 constexpr std::size_t kChunkBytes = 1u << 20;
-constexpr std::uint64_t kChunkTime = 1'000'000'000;  // [ns]
 
 template <class Range, class Name>
 bool are_names(const Range& range, Name name) {
@@ -46,6 +46,7 @@ Result<void> check(const TraceInfo& info) {
   }
   const bool bounds_fit = !info.bounds || (info.bounds->stream.deformables.size() == info.meshes.size() &&
                                            info.bounds->rings.size() == info.meshes.size());
+  if (info.capture && !is_valid(*info.capture)) return fail(Errc::invalid_argument, "R-TRC-11");
   if (!bounds_fit) return fail(Errc::invalid_argument, "R-TRC-17");
   return {};
 }
@@ -120,8 +121,11 @@ mcap::Attachment scene_of(const TraceInfo& info) {
 }  // namespace
 
 struct TraceWriter::Impl {
-  Impl(mcap::Writer writer, const TraceInfo& trace_info)
-      : mcap(std::move(writer)), info(trace_info), channels(trace_channels(trace_info)) {
+  Impl(mcap::Writer writer, const TraceInfo& trace_info, const TraceWriterOptions& options)
+      : mcap(std::move(writer)),
+        info(trace_info),
+        chunk_time(static_cast<std::uint64_t>(1e9 * options.chunk_time)),
+        channels(trace_channels(trace_info)) {
     for (std::size_t i = 0; i < channels.size(); ++i) {
       const Role role = channels[i].role;
       if (role == Role::pose) of_object.push_back(i);
@@ -152,9 +156,10 @@ struct TraceWriter::Impl {
 
   mcap::Writer mcap;
   TraceInfo info;
+  std::uint64_t chunk_time;            // [ns]
   std::vector<TraceChannel> channels;  // channel i has id i + 1
   std::vector<std::uint8_t> message;
-  std::int64_t last_tick = -1;
+  std::int64_t last_tick = -1, last_shown = 0;
   std::vector<std::size_t> of_object;  // first channel of each object, and of what follows them
   std::size_t others = 0;              // first channel of no object
   std::vector<RigidSample> written;    // last
@@ -166,6 +171,7 @@ struct TraceWriter::Impl {
 Result<void> TraceWriter::Impl::declare() {
   TACTUS_CHECK(mcap.add(metadata_of(info)));
   if (info.bounds) TACTUS_CHECK(mcap.add(mcap::Metadata{kBoundsMetadata, entries_of(*info.bounds)}));
+  if (info.capture) TACTUS_CHECK(mcap.add(mcap::Metadata{kCaptureMetadata, entries_of(*info.capture)}));
   if (!info.scene.empty()) TACTUS_CHECK(mcap.add(scene_of(info)));
   std::set<MessageType> types;
   for (std::size_t i = 0; i < channels.size(); ++i) {
@@ -177,18 +183,20 @@ Result<void> TraceWriter::Impl::declare() {
     mcap::TextMap metadata;
     if (channel.role == Role::pose) metadata["dof"] = std::to_string(info.objects[channel.index].dof);
     if (channel.role == Role::rest) metadata = metadata_of(info.meshes[channel.index]);
+    if (channel.role == Role::reports) metadata["report_descriptor"] = hex_of(*info.users[channel.index].report_descriptor);
     metadata["offered_qos_profiles"] = quality_of_service(channel.occurs);
     TACTUS_CHECK(mcap.add(mcap::Channel{static_cast<std::uint16_t>(i + 1), schema_id, channel.topic, "cdr", metadata}));
   }
   return {};
 }
 
-Result<TraceWriter> TraceWriter::create(const std::string& path, const TraceInfo& info) try {
+Result<TraceWriter> TraceWriter::create(const std::string& path, const TraceInfo& info, const TraceWriterOptions& options) try {
   TACTUS_CHECK(check(info));
+  if (!(options.chunk_time > 0 && options.chunk_time <= 3600)) return fail(Errc::invalid_argument, "R-TRC-17");
   const std::size_t channel_count = trace_channels(info).size();
   if (channel_count > UINT16_MAX) return fail(Errc::invalid_argument, "R-TRC-17");
   TACTUS_TRY(auto mcap, mcap::Writer::create(path, "ros2"));
-  auto impl = std::make_unique<Impl>(std::move(mcap), info);
+  auto impl = std::make_unique<Impl>(std::move(mcap), info, options);
   TACTUS_CHECK(impl->declare());
   return TraceWriter(std::move(impl));
 } catch (const std::bad_alloc&) {
@@ -198,6 +206,7 @@ Result<TraceWriter> TraceWriter::create(const std::string& path, const TraceInfo
 /// Whether a user's contacts are valid, name what is there and belong to the device sample.
 bool TraceWriter::Impl::can_hold(const UserSample& user) const {
   if (!is_valid(user.device) || user.device.time / 1'000'000'000 >= kMaxSeconds) return false;
+  if (user.servo.lateness < 0 || user.servo.age < 0 || !is_valid(user.reports)) return false;
   const Contact& contact = user.contact;
   if (contact.kind != ContactKind::none &&
       (!is_valid(contact) || contact.object >= info.objects.size() || contact.device != user.device.position))
@@ -211,7 +220,8 @@ Result<void> TraceWriter::Impl::check(const TraceFrame& frame) const {
   const bool has_counts = frame.objects.size() == info.objects.size() && frame.users.size() == info.users.size() &&
                           frame.meshes.size() == info.meshes.size();
   const bool has_tick = frame.tick > last_tick && frame.tick / info.tick_rate < kMaxSeconds;
-  if (!has_counts || !has_tick) return fail(Errc::invalid_argument, "R-API-5");
+  const bool has_shown = !info.shows_past || (frame.shown >= last_shown && frame.shown / info.tick_rate < kMaxSeconds);
+  if (!has_counts || !has_tick || !has_shown || !is_utf8(frame.marker)) return fail(Errc::invalid_argument, "R-API-5");
   for (const std::uint32_t i : changed) {
     const RigidSample& sample = frame.objects[i];
     if (!is_finite(sample)) return fail(Errc::invalid_argument, "R-API-1");
@@ -264,6 +274,14 @@ void TraceWriter::Impl::encode(const TraceChannel& channel, std::uint64_t time, 
     }
     case Role::rest:
       return encode_mesh(message, info.meshes[channel.index].rest);
+    case Role::servo:
+      return encode_servo(message, time, frame.users[channel.index].servo);
+    case Role::reports:
+      return encode_reports(message, time, frame.users[channel.index].reports);
+    case Role::marker:
+      return encode_log(message, time, frame.marker);
+    case Role::shown:
+      return encode_time_reference(message, time, static_cast<std::int64_t>(time_of_tick(frame.shown, info.tick_rate)));
     case Role::displacement:
       return encode_displacements(message, time, frame.meshes[channel.index].displacements);
   }
@@ -278,6 +296,10 @@ bool TraceWriter::Impl::is_due(const TraceChannel& channel, const TraceFrame& fr
              frame.users[channel.index].device.buttons != buttons[channel.index];
     case Occurs::first_tick:
       return last_tick < 0;
+    case Occurs::when_marked:
+      return !frame.marker.empty();
+    case Occurs::when_reported:
+      return !frame.users[channel.index].reports.sizes.empty();
     case Occurs::when_updated:
       return frame.meshes[channel.index].updated;
     case Occurs::in_contact:
@@ -332,7 +354,8 @@ Result<void> TraceWriter::write(const TraceFrame& frame) try {
   for (const std::uint32_t i : impl_->changed) impl_->written[i] = frame.objects[i];
   for (std::size_t i = 0; i < frame.users.size(); ++i) impl_->buttons[i] = frame.users[i].device.buttons;
   impl_->last_tick = frame.tick;
-  const bool is_full = impl_->mcap.chunk_size() >= kChunkBytes || time - impl_->mcap.chunk_start_time() >= kChunkTime;
+  if (impl_->info.shows_past) impl_->last_shown = frame.shown;
+  const bool is_full = impl_->mcap.chunk_size() >= kChunkBytes || time - impl_->mcap.chunk_start_time() >= impl_->chunk_time;
   return is_full ? impl_->mcap.end_chunk() : Result<void>();
 } catch (const std::bad_alloc&) {
   impl_->finished = true;  // what it holds of this tick is not whole

@@ -241,6 +241,31 @@ TEST(Csv, LineEndsQuotesBlanksAndByteOrderMark) {
   EXPECT_EQ(outcome.frames[1].objects[0].pose.position, (Vec3{4, 5, 6}));
 }
 
+TEST(Csv, SemicolonsTabsDecimalCommasAndComments) {
+  const auto check = [](std::string_view text) {
+    const Outcome outcome = import(text, xyz());
+    ASSERT_EQ(outcome.rule, "") << text;
+    ASSERT_EQ(outcome.frames.size(), 2u) << text;
+    EXPECT_EQ(outcome.frames[0].objects[0].pose.position, (Vec3{1.5, -2e-3, 3})) << text;
+    EXPECT_EQ(outcome.frames[1].objects[0].pose.position, (Vec3{4, 5, 6})) << text;
+  };
+  check("x;y;z\n1,5;-2,0e-3;3\n4;5;6\n");
+  check("x;y;z;a, b\n1.5;-0.002;3;0\n4;5;6;0\n");
+  check("x\ty\tz\n1,5\t-0,002\t3\n4\t5\t6\n");
+  check("x\ty\tz\tnote\n1.5\t-0.002\t3\t\n4\t5\t6\t\n");  // an empty field at the end is one
+  check("x,\ty,\tz\n1.5,\t-0.002,\t3\n4,\t5,\t6\n");
+  check("x,y,z,\"m;s\"\n1.5,-0.002,3,0\n4,5,6,0\n");
+  check("# made by hand\n% of 2 samples\nx,y,z\n# the first\n1.5,-2e-3,3\n4,5,6\n# the end");
+  check("# nothing\n# x,y,z\n1.5,-2e-3,3\n4,5,6\n");  // as numpy.savetxt writes names
+  check("# x;y;z\n1,5;-0,002;3,0\n4,0;5,0;6,0\n");    // more commas than semicolons
+  check("#x;y;z\r\n1,5;-0,002;3\r\n4;5;6\r\n");
+  EXPECT_EQ(import("# x,y\n1,2,3\n", xyz()).rule, "R-CSV-2");
+  EXPECT_EQ(import("x;y;z\n1.000,5;2;3\n", xyz()).rule, "R-CSV-4");
+  EXPECT_EQ(import("x;y;z\n1,000,5;2;3\n", xyz()).rule, "R-CSV-4");
+  EXPECT_EQ(import("x;y;z\n1,2,3\n", xyz()).rule, "R-CSV-3");
+  EXPECT_EQ(place_of(import("# a\n\nx;y\n1;2\n", xyz()).error), "line 3, column z");
+}
+
 TEST(Csv, MistakesAreNamedWithTheirPlace) {
   const auto check = [](std::string_view text, std::string_view rule, std::string_view place) {
     const Outcome outcome = import(text, xyz());
@@ -260,6 +285,20 @@ TEST(Csv, MistakesAreNamedWithTheirPlace) {
   check("x,y,z\n" + std::string((1u << 20) + (1u << 17), '1'), "R-CSV-6", "line 2");
 }
 
+TEST(Csv, AComponentThatTheTableLacksIsZero) {
+  CsvMapping plane;
+  plane.device = {"x", kZeroColumn, "y"};
+  plane.tick_rate = 100;
+  const Outcome out = import("x,y\n1,2\n3,4\n", plane);
+  ASSERT_EQ(out.frames.size(), 2u);
+  EXPECT_EQ(out.frames[1].users[0].device.position, (Vec3{3, 0, 4}));
+  const Outcome named = import("x,y,0\n1,2,5\n", plane);
+  ASSERT_EQ(named.frames.size(), 1u);
+  EXPECT_EQ(named.frames[0].users[0].device.position, (Vec3{1, 5, 2})) << "a column of this name";
+  plane.segment = kZeroColumn;
+  EXPECT_EQ(import("x,y\n1,2\n", plane).rule, "R-CSV-2") << "only components";
+}
+
 TEST(Csv, MappingsThatMakeNoSense) {
   CsvMapping partly = xyz();
   partly.position[1].clear();
@@ -273,6 +312,21 @@ TEST(Csv, MappingsThatMakeNoSense) {
   EXPECT_EQ(import("x,y,z\n1,2,3\n", bad_name).rule, "R-TRC-17");
   const TempFile out;
   EXPECT_EQ(import_csv(out.path() + ".absent", xyz(), out.path()).error().error.code, Errc::io);
+}
+
+TEST(Csv, TheTicksThatAClientShowsAreKept) {
+  Recording recording = make_recording(3);
+  recording.info.shows_past = true;
+  for (TraceFrame& frame : recording.frames) frame.shown = frame.tick / 2;
+  const TempFile trace;
+  write_recording(recording, trace.path());
+  std::ostringstream text;
+  auto reader = TraceReader::open(trace.path());
+  ASSERT_TRUE(export_csv(*reader, text));
+  EXPECT_TRUE(text.str().starts_with("tick,time_s,shown_tick,/objects/cube/dof"));
+  const Outcome outcome = import(text.str(), preset("tactus"));
+  ASSERT_EQ(outcome.frames.size(), 3u) << outcome.rule;
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(image(outcome.frames[i]), image(recording.frames[i])) << i;
 }
 
 TEST(Csv, TactusLayoutDistrustsItsNumbers) {

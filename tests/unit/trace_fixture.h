@@ -49,7 +49,8 @@ inline std::string image(const TraceFrame& frame) {
     out.append(raw, sizeof value);
   };
   const auto put_vec = [&put](const Vec3& v) { put(v.x), put(v.y), put(v.z); };
-  put(frame.tick);
+  put(frame.tick), put(frame.shown);
+  out.append(frame.marker).append(1, '\0');
   for (const RigidSample& s : frame.objects) {
     put_vec(s.pose.position), put_vec(s.velocity), put_vec(s.angular_velocity);
     put(s.pose.rotation.w), put(s.pose.rotation.x), put(s.pose.rotation.y), put(s.pose.rotation.z);
@@ -59,6 +60,7 @@ inline std::string image(const TraceFrame& frame) {
     put(u.device.orientation.w), put(u.device.orientation.x), put(u.device.orientation.y), put(u.device.orientation.z);
     put(u.contact.kind), put(u.contact.object), put(u.contact.stiffness);
     put_vec(u.contact.point), put_vec(u.contact.normal), put_vec(u.force), put_vec(u.server_force);
+    put(u.servo.lateness), put(u.servo.age), put(u.servo.missed), put(u.servo.guard);
     if (!u.surface_contact) continue;
     put(u.surface_contact->mesh), put(u.surface_contact->triangle), put(u.surface_contact->stiffness);
     for (const double weight : u.surface_contact->weights) put(weight);

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Recordings of other programs: odometry, frames that hang on each other, forces.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include <tactus/trace/cdr.h>
+#include <tactus/trace/mcap_writer.h>
+#include <tactus/trace/messages.h>
+#include <tactus/trace/ros_messages.h>
+#include <tactus/trace/schemas.h>
+#include "tests/unit/trace_fixture.h"
+
+namespace tactus {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+Quat about_z(double angle) { return {std::cos(angle / 2), 0, 0, std::sin(angle / 2)}; }
+
+void header(CdrWriter& out, std::string_view frame) {
+  out.u32(1'700'000'000);  // not used
+  out.u32(0);
+  out.text(frame);
+}
+
+struct Hung {
+  std::string_view parent, child;
+  Pose pose;
+};
+
+Bytes transforms(const std::vector<Hung>& all) {
+  Bytes message;
+  CdrWriter out(message);
+  out.u32(static_cast<std::uint32_t>(all.size()));
+  for (const Hung& one : all) {
+    header(out, one.parent);
+    out.text(one.child);
+    out.vec3(one.pose.position);
+    out.quat(one.pose.rotation);
+  }
+  return message;
+}
+
+Bytes transform(const Hung& one) {
+  Bytes message;
+  CdrWriter out(message);
+  header(out, one.parent);
+  out.text(one.child);
+  out.vec3(one.pose.position);
+  out.quat(one.pose.rotation);
+  return message;
+}
+
+Bytes odometry(const Pose& pose, const Twist& twist) {
+  Bytes message;
+  CdrWriter out(message);
+  header(out, "odom");
+  out.text("base");
+  out.vec3(pose.position);
+  out.quat(pose.rotation);
+  for (int i = 0; i < 36; ++i) out.f64(i);
+  out.vec3(twist.linear);
+  out.vec3(twist.angular);
+  for (int i = 0; i < 36; ++i) out.f64(-i);
+  return message;
+}
+
+Bytes wrench(std::string_view frame, const Vec3& force) {
+  Bytes message;
+  CdrWriter out(message);
+  header(out, frame);
+  out.vec3(force);
+  out.vec3({9, 9, 9});
+  return message;
+}
+
+Bytes pose(const Pose& value) {
+  Bytes message;
+  encode_pose(message, 0, value);
+  return message;
+}
+
+/// A recording that begins on an ordinary day.
+class RosBag {
+ public:
+  RosBag& add(double ms, const std::string& topic, std::string_view schema, const Bytes& message) {
+    if (!channels_.contains(topic)) {
+      const auto id = static_cast<std::uint16_t>(channels_.size() + 1);
+      channels_[topic] = id;
+      EXPECT_TRUE(out_.add(mcap::Schema{id, std::string(schema), "ros2msg", ""}));
+      EXPECT_TRUE(out_.add(mcap::Channel{id, id, topic, "cdr", {}}));
+    }
+    const auto time = std::uint64_t{1'700'000'000'000'000'000} + static_cast<std::uint64_t>(1e6 * ms);
+    out_.add(mcap::Message{channels_[topic], 0, time, time, message});
+    return *this;
+  }
+  RosBag& tf(double ms, const std::vector<Hung>& all) { return add(ms, "/tf", kTransformsSchema, transforms(all)); }
+  RosBag& force(double ms, std::string_view frame, const Vec3& force) {
+    return add(ms, "/arm/wrench", kWrenchSchema, wrench(frame, force));
+  }
+
+  Result<TraceReader> open() {
+    EXPECT_TRUE(out_.finish());
+    return TraceReader::open(file_.path());
+  }
+  std::string rule() {
+    const Reading reading = read_all(open());
+    return reading.error ? reading.error->rule : "";
+  }
+
+ private:
+  TempFile file_;
+  mcap::Writer out_ = mcap::Writer::create(file_.path(), "ros2").value();
+  std::map<std::string, std::uint16_t> channels_;
+};
+
+void expect_near(const Vec3& a, const Vec3& b, double off = 1e-9) {
+  EXPECT_LT(norm(a - b), off) << a.x << ' ' << a.y << ' ' << a.z;
+}
+
+TEST(TraceRos, OdometryMovesAnObjectByItsOwnVelocity) {
+  RosBag bag;
+  for (int i = 0; i < 5; ++i)
+    bag.add(10 * i, "/robot/odom", kOdometrySchema, odometry({{0.1 * i, 0, 0}, about_z(kPi / 2)}, {{2, 0, 0}, {0, 0, 3}}));
+  auto reader = bag.open();
+  ASSERT_TRUE(reader);
+  EXPECT_EQ(reader->info().tick_rate, 100u);
+  ASSERT_EQ(reader->info().objects.size(), 1u);
+  EXPECT_EQ(reader->info().objects[0].name, "robot.odom");
+  const Reading reading = read_all(std::move(reader));
+  ASSERT_EQ(reading.frames.size(), 5u);
+  expect_near(reading.frames[3].objects[0].pose.position, {0.3, 0, 0});
+  expect_near(reading.frames[3].objects[0].velocity, {0, 2, 0});  // the robot's ahead is the world's y
+  expect_near(reading.frames[3].objects[0].angular_velocity, {0, 0, 3});
+}
+
+TEST(TraceRos, FramesAreObjectsInTheFrameThatHangsOnNone) {
+  RosBag bag;
+  bag.add(0, "/tf_static", kTransformsSchema, transforms({{"hand", "tip", {{0.1, 0, 0}, {}}}}));
+  for (int i = 0; i < 6; ++i)
+    bag.tf(i, {{"arm", "hand", {{1, 0, 0}, about_z(0.01 * i)}}, {"map", "arm", {{0, 0, 0.002 * i}, about_z(kPi / 2)}}});
+  auto reader = bag.open();
+  ASSERT_TRUE(reader);
+  EXPECT_EQ(reader->info().tick_rate, 1000u);
+  ASSERT_EQ(reader->info().objects.size(), 3u);
+  std::map<std::string, std::size_t> number;
+  for (std::size_t i = 0; i < 3; ++i) number[reader->info().objects[i].name] = i;
+  ASSERT_TRUE(number.contains("hand") && number.contains("tip") && number.contains("arm"));
+  const Reading reading = read_all(std::move(reader));
+  ASSERT_EQ(reading.frames.size(), 6u);
+  const auto& objects = reading.frames[4].objects;
+  expect_near(objects[number["arm"]].pose.position, {0, 0, 0.008});
+  expect_near(objects[number["hand"]].pose.position, {0, 1, 0.008});
+  const double turn = kPi / 2 + 0.04;
+  expect_near(objects[number["tip"]].pose.position, {0.1 * std::cos(turn), 1 + 0.1 * std::sin(turn), 0.008});
+  expect_near(objects[number["arm"]].velocity, {0, 0, 2});
+  expect_near(objects[number["tip"]].angular_velocity, {0, 0, 10}, 1e-6);
+  EXPECT_NEAR(objects[number["tip"]].velocity.z, 2, 1e-9);
+}
+
+TEST(TraceRos, AForceActsWhereItsFrameIs) {
+  RosBag bag;
+  for (int i = 0; i < 4; ++i) {
+    bag.add(i, "/tracker", kTransformSchema, transform({"map", "tool", {{0.1 * i, 0, 0}, about_z(kPi / 2)}}));
+    bag.force(i + 0.1, "tool", {i + 1.0, 0, 0});
+  }
+  auto reader = bag.open();
+  ASSERT_TRUE(reader);
+  ASSERT_EQ(reader->info().users.size(), 1u);
+  EXPECT_EQ(reader->info().users[0].name, "arm");
+  const Reading reading = read_all(std::move(reader));
+  ASSERT_EQ(reading.frames.size(), 4u);
+  for (int i = 0; i < 4; ++i) {
+    const UserSample& user = reading.frames[static_cast<std::size_t>(i)].users[0];
+    expect_near(user.device.position, {0.1 * i, 0, 0});
+    expect_near(user.force, {0, i + 1.0, 0});
+    expect_near(user.server_force, user.force);
+  }
+}
+
+TEST(TraceRos, AForceOfAnUnknownFrameActsAtTheTopicBeside) {
+  RosBag bag;
+  for (int i = 0; i < 3; ++i) {
+    bag.add(2 * i, "/arm/pose", schema_name(MessageType::pose), pose({{0, 0.1 * i, 0}, about_z(1)}));
+    bag.force(2 * i, "sensor", {0, 0, 1});
+    bag.force(2 * i + 1, "sensor", {0, 0, 2});
+  }
+  auto reader = bag.open();
+  ASSERT_TRUE(reader);
+  EXPECT_EQ(reader->info().tick_rate, 1000u);
+  const Reading reading = read_all(std::move(reader));
+  ASSERT_EQ(reading.frames.size(), 6u);
+  expect_near(reading.frames[5].users[0].device.position, {0, 0.2, 0});
+  expect_near(reading.frames[5].users[0].force, {0, 0, 2});
+  expect_near(reading.frames[4].users[0].force, {0, 0, 1});
+}
+
+TEST(TraceRos, ForcesAloneAreARecording) {
+  RosBag bag;
+  for (int i = 0; i < 10; ++i) bag.force(2 * i, "sensor", {0, 0, 0.5 * i});
+  const Reading reading = read_all(bag.open());
+  ASSERT_EQ(reading.frames.size(), 10u);
+  EXPECT_TRUE(reading.frames[0].objects.empty());
+  expect_near(reading.frames[9].users[0].force, {0, 0, 4.5});
+}
+
+TEST(TraceRos, WhatIsNoTreeIsRefused) {
+  const Pose there{{1, 0, 0}, {}};
+  EXPECT_EQ(RosBag().tf(0, {{"a", "b", there}}).tf(1, {{"a", "b", there}}).rule(), "");
+  EXPECT_EQ(RosBag().tf(0, {{"a", "b", there}}).tf(1, {{"c", "b", there}}).rule(), "R-TRC-16");
+  EXPECT_EQ(RosBag().tf(0, {{"a", "a", there}}).rule(), "R-TRC-16");
+  EXPECT_EQ(RosBag().tf(0, {{"a", "b", there}, {"b", "c", there}, {"c", "a", there}}).rule(), "R-TRC-16");
+  EXPECT_EQ(RosBag().tf(0, {{"m", "a/b", there}, {"m", "a.b", there}}).rule(), "R-TRC-16");  // one name for two
+  EXPECT_EQ(RosBag().tf(0, {{"m", "", there}}).rule(), "R-TRC-16");
+  EXPECT_EQ(RosBag().tf(0, {}).rule(), "R-TRC-16");
+}
+
+TEST(TraceRos, AFrameThatBeginsLateIsRefused) {
+  RosBag bag;
+  const Pose there{{1, 0, 0}, {}};
+  for (int i = 0; i < 4096; ++i) bag.tf(i, {{"a", "b", there}});
+  bag.tf(4096, {{"a", "c", there}});
+  EXPECT_EQ(bag.rule(), "R-TRC-16");
+}
+
+TEST(TraceRos, AFrameThatComesSeldomBelongsToTheRecording) {
+  RosBag bag;
+  for (int i = 0; i < 2000; ++i) {
+    bag.force(i, "tool", {0, 0, 1});
+    if (i % 1000 == 500) bag.tf(i, {{"map", "tool", {{1, 0, 0}, {}}}});
+  }
+  const Reading reading = read_all(bag.open());
+  ASSERT_FALSE(reading.error);
+  ASSERT_EQ(reading.frames.size(), 1500u);  // from the first place on
+  expect_near(reading.frames[0].users[0].device.position, {1, 0, 0});
+}
+
+TEST(TraceRos, ACommandBesideOdometryIsNotItsMotion) {
+  Bytes command;
+  encode_twist(command, 0, {{9, 9, 9}, {9, 9, 9}});
+  RosBag bag;
+  for (int i = 0; i < 3; ++i) {
+    bag.add(10 * i, "/odom", kOdometrySchema, odometry({{0.1 * i, 0, 0}, {}}, {{2, 0, 0}, {}}));
+    bag.add(10 * i, "/cmd_vel", schema_name(MessageType::twist), command);
+  }
+  const Reading reading = read_all(bag.open());
+  ASSERT_EQ(reading.frames.size(), 3u);
+  expect_near(reading.frames[2].objects[0].velocity, {2, 0, 0});
+}
+
+TEST(TraceRos, AForceBesideSeveralTopicsActsAtNoneOfThem) {
+  RosBag bag;
+  for (int i = 0; i < 3; ++i) {
+    bag.add(i, "/left", schema_name(MessageType::pose), pose({{1, 0, 0}, {}}));
+    bag.add(i, "/right", schema_name(MessageType::pose), pose({{2, 0, 0}, {}}));
+    bag.add(i, "/wrench", kWrenchSchema, wrench("sensor", {0, 0, 1}));
+  }
+  auto reader = bag.open();
+  ASSERT_TRUE(reader);
+  EXPECT_EQ(reader->info().users[0].name, "wrench");
+  const Reading reading = read_all(std::move(reader));
+  ASSERT_FALSE(reading.frames.empty());
+  expect_near(reading.frames.back().users[0].device.position, {0, 0, 0});
+}
+
+TEST(TraceRos, MessagesAreDistrusted) {
+  const Bytes good = transforms({{"a", "b", {{1, 0, 0}, {}}}, {"a", "c", {{1, 0, 0}, {}}}});
+  const auto rule = [](std::string_view schema, const Bytes& message) { return RosBag().add(0, "/t", schema, message).rule(); };
+  EXPECT_EQ(rule(kTransformsSchema, good), "");
+  EXPECT_EQ(rule(kTransformSchema, good), "R-TRC-13");
+  for (std::size_t size = 4; size < good.size() - 3; ++size)
+    EXPECT_EQ(rule(kTransformsSchema, Bytes(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size))), "R-TRC-13") << size;
+  Bytes many = good;
+  many[7] = 0xff;  // 4 000 000 000 transforms
+  EXPECT_EQ(rule(kTransformsSchema, many), "R-TRC-13");
+  EXPECT_EQ(rule(kTransformsSchema, transforms({{"a", "b", {{NAN, 0, 0}, {}}}})), "R-TRC-14");
+  EXPECT_EQ(rule(kTransformsSchema, transforms({{"a", "b", {{1, 0, 0}, {0, 0, 0, 0}}}})), "R-TRC-14");
+  EXPECT_EQ(rule(kTransformsSchema, transforms({{"a", "b", {{1, 0, 0}, {NAN, 0, 0, 0}}}})), "R-TRC-14");
+  EXPECT_EQ(rule(kOdometrySchema, odometry({}, {{INFINITY, 0, 0}, {}})), "R-TRC-14");
+  EXPECT_EQ(rule(kOdometrySchema, odometry({{}, {2, 0, 0, 0}}, {})), "R-TRC-14");
+  EXPECT_EQ(rule(kWrenchSchema, wrench("f", {0, NAN, 0})), "R-TRC-14");
+  EXPECT_EQ(rule(kWrenchSchema, Bytes(3)), "R-TRC-7");
+}
+
+}  // namespace
+}  // namespace tactus
