@@ -93,6 +93,12 @@ std::span<const std::array<std::int32_t, 3>> Receiver::displacements(std::size_t
   return impl_->deformables[object]->displacements();
 }
 
+bool Receiver::holds(std::uint64_t number, std::span<const std::uint8_t> packet) const noexcept {
+  const auto part = split_substream(*impl_->scene, packet);
+  if (!part) return false;
+  return part->substream == 0 ? impl_->rigid.holds(number) : impl_->deformables[part->substream - 1]->holds(number);
+}
+
 std::int64_t Receiver::tick(std::size_t substream) const noexcept {
   return substream == 0 ? impl_->rigid.newest().tick : impl_->deformables[substream - 1]->tick();
 }

@@ -55,6 +55,9 @@ class Receiver {
   /// in   number  above 0
   Result<DecodedPacket> push_numbered(std::uint64_t number, std::span<const std::uint8_t> packet) noexcept;
 
+  /// A packet of a session is decoded, and its state may be a baseline: it came before.   in  number, packet  as push_numbered()
+  bool holds(std::uint64_t number, std::span<const std::uint8_t> packet) const noexcept;
+
   /// This number of a session is not lost, and no packet of rigid objects has it: the replica need not bend over it.
   void skip_number(std::uint64_t number) noexcept;
 

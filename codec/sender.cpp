@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/sender.h>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -101,6 +102,12 @@ void Sender::acknowledge(std::size_t substream, std::uint16_t sequence) noexcept
 }
 
 void Sender::set_link(const LinkState& link) noexcept { impl_->rigid.codec().set_link(link); }
+
+void Sender::set_widening(double factor) noexcept {
+  const double within = factor >= 1 ? std::min(factor, 64.0) : 1;  // NaN: 1
+  impl_->rigid.codec().set_widening(within);
+  for (auto& object : impl_->deformables) object->set_widening(within);
+}
 
 void Sender::forget_last(std::size_t substream) noexcept {
   if (substream == 0) impl_->rigid.forget_last();

@@ -83,6 +83,10 @@ class Sender {
   /// made anew, while no acknowledgement names a packet that held it.
   void set_link(const LinkState& link) noexcept;
 
+  /// Multiply all bounds but the heartbeat, from the next tick on: less to send where the way does not carry what they ask for.
+  /// in   factor  1 to 64; it is limited to these. 1: the bounds as given
+  void set_widening(double factor) noexcept;
+
   /// Report that the newest packet of this substream will not be decoded (it is dropped, or known to be lost). The next one
   /// builds on the state before it, or on the initial state if the scene's baseline_span does not reach that far. At most once
   /// per packet.

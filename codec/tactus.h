@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// All of tactus::codec. A Sender turns true states into packets; a Receiver turns packets into a replica:
+/// Scenes, packets and streams of tactus::codec; sessions over a network have headers of their own (session/). A Sender turns true
+/// states into packets; a Receiver turns packets into a replica:
 ///
 ///   #include <cstdio>
 ///   #include <tactus/tactus.h>
@@ -21,7 +22,7 @@
 ///     std::printf("the client shows x = %.3f m\n", shown.position.x);
 ///   }
 ///
-/// examples/ continues with losses, deformable objects and traces.
+/// examples/ continues with losses, sessions, deformable objects and traces.
 ///
 /// Errors are values: every function that can fail returns a Result, whose Error names a class and a rule of the specification.
 /// describe() explains it, remedy() suggests a fix, advice() tells a receiver how to react. Nothing throws but std::bad_alloc,

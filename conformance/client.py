@@ -72,8 +72,9 @@ def run(port: int, seconds: float, observe: bool) -> Client:
             client.handle(time.monotonic_ns() // 1000, sock.recv(2048))
         except (StreamError, TimeoutError, ConnectionRefusedError):
             pass                                            # dropped; nothing has come; nobody is there yet
-    if client.state != "closed" and client.epoch:
-        sock.send(client.leave())
+    client.leave()
+    for datagram in client.poll(time.monotonic_ns() // 1000):
+        sock.send(datagram)
     return client
 
 

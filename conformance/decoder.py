@@ -121,12 +121,18 @@ class Viewer:
         return fnv1a(struct.pack(f"<Q{len(displacements)}i", shown, *displacements))
 
 
+def session_lines() -> Iterator[dict]:
+    import session                                          # which imports this module
+    return session.lines(sys.stdin.read())
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description="Decode a Tactus stream file from standard input to JSON lines.")
     parser.add_argument("--replica", choices=("none", "linear", "playout"), help="also show what a client shows")
-    mode = parser.parse_args().replica
+    parser.add_argument("--session", action="store_true", help="read a script for the client's end of a session instead")
+    arguments = parser.parse_args()
     try:
-        for line in lines(sys.stdin.buffer.read(), mode):
+        for line in session_lines() if arguments.session else lines(sys.stdin.buffer.read(), arguments.replica):
             print(json.dumps(line, separators=(",", ":")))
     except StreamError as error:
         print(json.dumps({"error": {"errc": error.errc, "rule": error.rule}}, separators=(",", ":")))

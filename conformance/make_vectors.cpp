@@ -31,6 +31,9 @@ Catalogue all() {
   catalogue.begin("client", "What a client shows of rigid objects, at every tick.");
   add_client(catalogue);
   add_client_playout(catalogue);
+  catalogue.begin("session", "What the client's end of a session does with datagrams.");
+  add_session(catalogue);
+  add_session_server(catalogue);
   catalogue.begin("deformable", "Deformable objects: their declaration, and packets of both profiles.");
   add_deformable_header(catalogue);
   add_deformable_limits(catalogue);

@@ -16,7 +16,7 @@ MODULES = {
     "decoder": ("packet", "client"),
     "deformable_header": ("deformable",), "deformable_graph": ("deformable",), "deformable_main": ("deformable",),
     "deformable_motion": ("deformable",), "deformable_thesis": ("deformable",), "deformable_decoder": ("deformable", "packet")}
-LEFT_ALONE = {"main"}                                       # functions
+LEFT_ALONE = {"main", "session_lines"}                                       # functions
 KINDS = ("constant", "index", "comparison", "clamp", "arithmetic", "rounding", "condition", "check", "order")
 
 COMPARISONS = {ast.Lt: (ast.LtE, ast.GtE), ast.LtE: (ast.Lt, ast.Gt), ast.Gt: (ast.GtE, ast.LtE), ast.GtE: (ast.Gt, ast.Lt),

@@ -64,6 +64,7 @@ class Loader(importlib.abc.MetaPathFinder, importlib.abc.Loader):
 def answer(vector: Vector) -> list[str]:
     """What the decoder says, a line at a time; ends at the first line that is not the one wanted."""
     import decoder
+    import session
     from conventions import StreamError
     said: list[str] = []
 
@@ -72,7 +73,8 @@ def answer(vector: Vector) -> list[str]:
         return len(said) <= len(vector.lines) and said[-1] == vector.lines[len(said) - 1]
 
     try:
-        for line in decoder.lines(vector.data, vector.mode()):
+        is_script = "session" in vector.case.traits
+        for line in session.lines(vector.data.decode("ascii")) if is_script else decoder.lines(vector.data, vector.mode()):
             if not say(line):
                 break
     except StreamError as error:

@@ -144,7 +144,8 @@ def make_case(root: Path, stem: str, said: dict) -> Case:
         raise ValueError("result is neither valid nor invalid")
     base = root / "vectors" / stem / said["name"]
     error = {"errc": said["errc"], "rule": said["rule"]} if said["result"] == "invalid" else None
-    case = Case(f"{stem}/{said['name']}", base.with_name(base.name + ".tct"), base.with_name(base.name + ".jsonl"), said["sha256"],
+    suffix = ".script" if "session" in said["flags"] else ".tct"
+    case = Case(f"{stem}/{said['name']}", base.with_name(base.name + suffix), base.with_name(base.name + ".jsonl"), said["sha256"],
                 said.get("repeat"), said.get("args", []), error, {*said["profile"], *said["flags"]})
     for file in (case.input, case.output):
         if not file.is_file():

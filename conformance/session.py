@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Chapter 70 of the specification: the client's end of a session, as a function of datagrams and time. No socket, no clock."""
+"""Chapter 70 of the specification: datagrams, epochs and the client's end, as functions of datagrams and time. No socket, no clock."""
 from __future__ import annotations
 
+import json
 import struct
 import zlib
 from typing import Callable, Iterator, Optional
@@ -19,7 +20,9 @@ LARGEST_DATAGRAM = 1200
 PIECE_SIZE, WINDOW = 1024, 64
 FRAGMENT_SIZE, MOST_FRAGMENTS, MOST_IN_PIECES = 1150, 1024, 4
 MS = 1000                                                   # us
-NO_TIMING = 65535
+BYE, WRONG_VERSION, FULL, TOO_LARGE, SILENCE, NO_SCENE, LAST_REASON = 0, 1, 2, 3, 4, 5, 6
+STATE_LIMIT, HEADER_LIMIT = 1 << 28, 1 << 20                # bytes
+NO_TIMING, END_OF_TIME = 65535, 1 << 53
 
 CUT, SPARE = ("truncated", "R-SES-3"), ("malformed", "R-SES-3")
 
@@ -54,19 +57,45 @@ def part(kind: int, data: bytes) -> bytes:
     return bytes([kind]) + varint(len(data)) + data
 
 
-def read_parts(body: bytes) -> Iterator[tuple[int, Cursor]]:
-    """Type and elements of each part of a datagram that comes down."""
+COMES = {UP: (ACK, BUTTONS, STATE, HASH, FRAGMENT, PACKET_PART), DOWN: (ACK, CLOCK, PIECE, FRAGMENT, PACKET_PART)}
+
+
+def elements_of(kind: int, e: Cursor) -> tuple:
+    if kind == ACK:
+        out = e.number(2, CUT), e.number(2, CUT), e.varint(CUT, SPARE)
+    elif kind == CLOCK:
+        out = (e.varint(CUT, SPARE),)
+    elif kind == BUTTONS:
+        out = e.number(4, CUT), e.number(4, CUT)
+    elif kind == STATE:
+        out = (e.number(1, CUT),)
+    elif kind == HASH:
+        out = e.number(1, CUT), e.number(2, CUT), e.number(4, CUT)
+    else:
+        out = tuple(e.varint(CUT, SPARE) for _ in range(4 if kind == FRAGMENT else 1)) + (e.take(e.left(), CUT),)
+    require(e.left() == 0 and (kind != STATE or out[0] <= 1) and (kind != CLOCK or out[0] < END_OF_TIME), *SPARE)
+    return out
+
+
+def reason_of(e: Cursor) -> int:
+    reason = e.number(1, CUT)
+    require(reason <= LAST_REASON and e.left() == 0, *SPARE)
+    return reason
+
+
+def read_parts(body: bytes, direction: int) -> Iterator[tuple[int, tuple]]:
+    """Type and elements of each part of a datagram."""
     cursor, last, count = Cursor(body, 2, len(body)), 0, 0
     while cursor.left():
         kind = cursor.number(1, CUT)
         size = cursor.varint(CUT, SPARE)
         data = cursor.take(size, CUT)
         require(last <= kind and kind > 0, "malformed", "R-SES-5")
-        require(kind in (ACK, CLOCK, PIECE, FRAGMENT, PACKET_PART) or kind >= 64, "malformed", "R-SES-5")
+        require(kind in COMES[direction] or kind >= 64, "malformed", "R-SES-5")
         require(kind >= 64 or last < FRAGMENT or last == kind == PACKET_PART, "malformed", "R-SES-5")
         last, count = kind, count + 1
         if kind < 64:
-            yield kind, Cursor(data, 0, len(data))
+            yield kind, elements_of(kind, Cursor(data, 0, len(data)))
     alone = count == 1 and last == PACKET_PART and data[:1] == b"\0"
     require(count > 0 and not alone, "malformed", "R-SES-5")
 
@@ -97,6 +126,8 @@ def decode_numbered(decoder, number: int, packet: bytes):
 
 # ---- Sections 4 to 6: one end of an epoch ---------------------------------------------------------------------------
 class Epoch:
+    direction, patience = UP, 10 * MS                       # of what it sends; until an acknowledgement is due
+
     def __init__(self, epoch: int, client: int, serial: int, size: int, digest: int, start: int):
         self.epoch, self.client, self.serial, self.start = epoch, client, serial, start
         self.size, self.digest = size, digest
@@ -122,7 +153,7 @@ class Epoch:
         """A numbered datagram whose check holds."""
         body = datagram[:-4]
         form, value = body[0] & 3, struct.unpack("<H", body[:2])[0] >> 2
-        parts = [(PACKET_PART, Cursor(b"\0" + body[2:], 0, len(body) - 1))] if form == PACKET else list(read_parts(body))
+        parts = [(PACKET_PART, (0, body[2:]))] if form == PACKET else list(read_parts(body, 1 - self.direction))
         number = self.extend(value)
         self.received.add(number)
         self.newest = max(self.newest, number)
@@ -134,39 +165,50 @@ class Epoch:
         if complete:
             self.accept(now, number, asks)
 
-    def take_part(self, now: int, number: int, kind: int, e: Cursor) -> bool:
+    def take_part(self, now: int, number: int, kind: int, elements: tuple) -> bool:
         if kind == ACK:
-            newest, held = e.number(2, CUT), e.number(2, CUT)
-            e.varint(CUT, SPARE)                            # what is missing matters to senders that repeat
+            newest, held, _ = elements
             back = (self.next - 1 - newest) % (1 << 16)
             require(back < 4096 and back < self.next - 1, "invalid", "R-SES-6")
             if self.next - 1 - back > self.acknowledged:
                 self.acknowledged = self.next - 1 - back
                 if held != NO_TIMING:
                     self.round_trip = max(0, now - self.sent_at[self.acknowledged] - 16 * held)
+            self.take_acknowledged(newest, elements[2])
         elif kind == PIECE:
-            self.take_piece(e.varint(CUT, SPARE), e.take(e.left(), CUT))
+            self.take_piece(*elements)
         elif kind == FRAGMENT:
-            return self.take_fragment(now, number, e)
+            return self.take_fragment(now, number, *elements)
         elif kind == PACKET_PART:
-            return self.decode(number - e.varint(CUT, SPARE), e.take(e.left(), CUT))
+            back, packet = elements
+            return self.decode(number - back, packet)
+        else:
+            self.take_said(kind, elements)
         return True
+
+    def take_acknowledged(self, newest: int, missing: int) -> None:
+        """At the server, which repeats pieces."""
+
+    def take_said(self, kind: int, elements: tuple) -> None:
+        """What comes up only."""
 
     def take_piece(self, index: int, data: bytes) -> None:
         front = next(i for i in range(self.size // PIECE_SIZE + 2) if i not in self.pieces)
         inside = index * PIECE_SIZE < self.size and index < front + WINDOW
         require(inside and len(data) == min(PIECE_SIZE, self.size - index * PIECE_SIZE), "invalid", "R-SES-8")
         self.pieces[index] = data
+
+    def begin(self) -> bool:
+        """The scene, once all pieces are there."""
         if self.scene or sum(map(len, self.pieces.values())) < self.size:
-            return
+            return False
         declaration = b"".join(self.pieces[i] for i in sorted(self.pieces))
         require(fnv1a(declaration) == self.digest, "checksum", "R-SES-10")
         self.scene, _ = read_declaration(declaration)
         self.decoders = SceneDecoder(self.scene)
+        return True
 
-    def take_fragment(self, now: int, number: int, e: Cursor) -> bool:
-        back, substream, index, count = (e.varint(CUT, SPARE) for _ in range(4))
-        data = e.take(e.left(), CUT)
+    def take_fragment(self, now: int, number: int, back: int, substream: int, index: int, count: int, data: bytes) -> bool:
         sound = 2 <= count <= MOST_FRAGMENTS and index < count and back < number and 0 < len(data) <= FRAGMENT_SIZE
         require(sound and (index == count - 1 or len(data) == FRAGMENT_SIZE), "invalid", "R-SES-7")
         have = self.fragments.setdefault((number - back, substream), {"count": count, "data": {}, "numbers": []})
@@ -187,6 +229,8 @@ class Epoch:
         try:
             substream, payload = self.decoders.split(packet)
             decoder = self.decoders.substreams[substream]
+            if number in decoder.receiver.kept:
+                return True                                 # it came before
             decoded = decode_numbered(decoder, number, payload)
         except StreamError:
             return False
@@ -198,7 +242,7 @@ class Epoch:
     def accept(self, now: int, number: int, asks: bool) -> None:
         self.accepted[number] = now
         if asks and self.ack_due is None:
-            self.ack_due = now + 10 * MS
+            self.ack_due = now + self.patience
 
     def acknowledgement(self, now: int) -> bytes:
         newest = max(self.accepted)
@@ -218,7 +262,7 @@ class Epoch:
             parts = parts + [part(PACKET_PART, varint(0) + packet)]
         form = PARTS if parts else PACKET
         self.sent_at[self.next] = now
-        datagram = sealed(head(form, self.next % (1 << 14)) + (b"".join(parts) or packet), self.epoch)
+        datagram = sealed(head(form, self.next % (1 << 14)) + (b"".join(parts) or packet), self.epoch, self.direction)
         self.next += 1
         return datagram
 
@@ -229,42 +273,64 @@ class Client:
 
     def __init__(self, nonce: int, device: Optional[Callable[[int], bytes]] = None):
         self.nonce, self.device = nonce, device
-        self.state, self.reason = "joining", ""
+        self.state, self.reason = "joining", 0
+        self.leaving = b""
         self.epoch: Optional[Epoch] = None
         self.retry_at, self.retry = 0, 250 * MS
         self.sign_at = self.device_at = 0
 
     def handle(self, now: int, datagram: bytes) -> None:
         """Raises StreamError if the datagram is dropped."""
-        if self.epoch and is_of_epoch(datagram, self.epoch.epoch):
-            if datagram[0] & 3 in (PARTS, PACKET):
-                self.epoch.take(now, datagram)
-                if self.state == "receiving" and self.epoch.scene:
-                    self.state, self.sign_at = "live", 0
-            elif datagram[0] & 3 == HANDSHAKE and datagram[0] >> 2 == LEAVE:
-                self.state, self.reason = "closed", f"left, reason {datagram[2]}"
+        form, value = (datagram[0] & 3, struct.unpack("<H", datagram[:2])[0] >> 2) if len(datagram) > 1 else (0, 0)
+        before = form == HANDSHAKE and value < LEAVE        # any epoch
+        require(before or self.state in ("receiving", "live"), "checksum", "R-SES-1")
+        require(is_of_epoch(datagram, 0 if before else self.epoch.epoch), "checksum", "R-SES-1")
+        if form in (PARTS, PACKET):
+            self.epoch.take(now, datagram)
+            self.begin()
             return
-        require(is_of_epoch(datagram, 0), "checksum", "R-SES-1")
+        require(form == HANDSHAKE and value in (WELCOME, REFUSAL, LEAVE), "invalid", "R-SES-2")
         e = Cursor(datagram, 2, len(datagram) - 4)
-        kind = struct.unpack("<H", datagram[:2])[0] >> 2
-        if e.number(8, CUT) != self.nonce:
+        if value == WELCOME:
+            self.welcomed(e)
             return
-        if kind == REFUSAL and self.state == "joining":
-            self.state, self.reason = "closed", f"refused, reason {e.number(1, CUT)}"
-        elif kind == WELCOME and self.state != "closed":
-            serial, epoch, client = e.varint(CUT, SPARE), e.number(8, CUT), e.number(2, CUT)
-            if self.state != "joining" and serial <= self.epoch.serial:
-                return
-            size, digest, start = e.varint(CUT, SPARE), e.number(8, CUT), e.varint(CUT, SPARE)
-            self.epoch = Epoch(epoch, client, serial, size, digest, start)
-            self.state, self.sign_at = "receiving", 0
+        nonce = e.number(8, CUT) if value == REFUSAL else self.nonce
+        reason = reason_of(e)
+        if nonce == self.nonce and (value == LEAVE or self.state == "joining"):
+            self.state, self.reason = "closed", reason
+
+    def welcomed(self, e: Cursor) -> None:
+        nonce, serial, epoch, client = e.number(8, CUT), e.varint(CUT, SPARE), e.number(8, CUT), e.number(2, CUT)
+        size, digest, start = e.varint(CUT, SPARE), e.number(8, CUT), e.varint(CUT, SPARE)
+        require(start < END_OF_TIME and e.left() == 0, *SPARE)
+        again = self.state != "joining" and self.epoch and serial <= self.epoch.serial
+        if nonce != self.nonce or self.state == "closed" or again:
+            return
+        self.epoch = Epoch(epoch, client, serial, size, digest, start)
+        self.state, self.sign_at = "receiving", 0
+        if size > HEADER_LIMIT:
+            self.leave(TOO_LARGE)
+
+    def begin(self) -> None:
+        """Live, once the declaration is here; gone, if it cannot be read."""
+        if self.state != "receiving":
+            return
+        try:
+            if self.epoch.begin():
+                self.state, self.sign_at = "live", 0
+        except StreamError as error:
+            self.leave(TOO_LARGE if error.errc == "limit_exceeded" else NO_SCENE)
+            raise
 
     def poll(self, now: int) -> Iterator[bytes]:
         """What is to be sent now."""
+        if self.leaving:
+            yield self.leaving
+        self.leaving = b""
         if self.state == "joining" and now >= self.retry_at:
             self.retry_at, self.retry = now + self.retry, min(2 * self.retry, 2000 * MS)
             body = head(HANDSHAKE, JOIN) + b"TCTS" + struct.pack("<BBQ", 1, 1 if self.device else 0, self.nonce)
-            yield sealed((body + varint(1 << 28) + varint(1 << 20)).ljust(76, b"\0"), 0)
+            yield sealed((body + varint(STATE_LIMIT) + varint(HEADER_LIMIT)).ljust(76, b"\0"), 0)
         if self.state not in ("receiving", "live"):
             return
         live, parts, packet = self.state == "live", [], b""
@@ -282,6 +348,65 @@ class Client:
         if datagram:
             yield datagram
 
-    def leave(self) -> bytes:
-        self.state = "closed"
-        return sealed(head(HANDSHAKE, LEAVE) + b"\0", self.epoch.epoch)
+    def leave(self, reason: int = BYE) -> None:
+        """poll() tells the server."""
+        if self.state in ("receiving", "live"):
+            self.leaving = sealed(head(HANDSHAKE, LEAVE) + bytes([reason]), self.epoch.epoch)
+        self.state, self.reason = "closed", reason
+
+
+# ---- Testee (README.md) ---------------------------------------------------------------------------------------------
+PATIENCE = 10 * MS
+
+
+def said_by(datagrams: list[bytes]) -> dict:
+    """What a client has said, apart from when: acknowledgement, hashes, whole handshakes."""
+    out: dict = {}
+    for datagram in datagrams:
+        form = datagram[0] & 3
+        if form == HANDSHAKE:
+            out.setdefault("says", []).append(datagram.hex())
+        cursor = Cursor(datagram, 2, len(datagram) - 4)
+        while form == PARTS and cursor.left():
+            kind, size = cursor.number(1, CUT), cursor.varint(CUT, SPARE)
+            e = Cursor(cursor.take(size, CUT), 0, size)
+            if kind == ACK:
+                out["acknowledges"] = [e.number(2, CUT), e.number(2, CUT), f"{e.varint(CUT, SPARE):016x}"]
+            elif kind == HASH:
+                out.setdefault("hashes", []).append([e.number(1, CUT), e.number(2, CUT), f"{e.number(4, CUT):08x}"])
+    return {name: out[name] for name in ("acknowledges", "hashes", "says") if name in out}
+
+
+def lines(script: str) -> Iterator[dict]:
+    """A line for each line of a script: what the end that it is for makes of it, and what it says then."""
+    if '"serve":' in script.split("\n", 1)[0]:
+        import session_server                               # which imports this module
+        yield from session_server.lines(script)
+        return
+    client: Optional[Client] = None
+    told = None
+    for number, line in enumerate(script.splitlines()):
+        step, error, out = json.loads(line), None, []
+        try:
+            if "join" in step:
+                client = Client(int(step["join"], 16))
+            elif "heard" in step:
+                client.handle(step["at"], bytes.fromhex(step["heard"]))
+            else:
+                client.leave()
+        except StreamError as e:
+            error = e
+        said = said_by(list(client.poll(step["at"] + PATIENCE)))
+        newest, held, missing = said.get("acknowledges", (None, 0, None))
+        if told == (newest, missing):
+            del said["acknowledges"]                        # nothing new
+        told = (newest, missing) if newest is not None else told
+        answer = {"line": number, "state": client.state}
+        if client.state == "closed":
+            answer["reason"] = client.reason
+        if error:
+            answer["error"] = {"errc": error.errc, "rule": error.rule}
+        answer.update(said)
+        if client.state == "live":
+            answer["states"] = [f"{d.state_hash():016x}" for d in client.epoch.decoders.substreams.values()]
+        yield answer

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Our decoder behind the testee contract: a stream file on stdin, JSON lines on stdout, exit 0, 1 (rejected) or 2 (usage).
+/// Our decoder behind the testee contract: a stream file or a script on stdin, JSON lines on stdout, exit 0, 1 (rejected) or 2 (usage).
 #include <cstdint>
 #include <cstdio>
 #include <iostream>
 #include <iterator>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "conformance/report.h"
+#include "conformance/session_report.h"
 
 int main(int argc, char** argv) {
   std::optional<tactus::Interpolation> replica;
@@ -16,11 +18,16 @@ int main(int argc, char** argv) {
   if (kind == "none") replica = tactus::Interpolation::none;
   if (kind == "linear") replica = tactus::Interpolation::linear;
   if (kind == "playout") replica = tactus::Interpolation::playout;
-  if (argc != 1 && !replica) {
-    std::fputs("usage: testee [--replica none|linear|playout] <stream.tct\n", stderr);
+  const bool session = argc == 2 && std::string_view(argv[1]) == "--session";
+  if (argc != 1 && !replica && !session) {
+    std::fputs("usage: testee [--replica none|linear|playout] <stream.tct\n       testee --session <datagrams.script\n", stderr);
     return 2;
   }
   std::ios::sync_with_stdio(false);
+  if (session) {
+    const std::string script{std::istreambuf_iterator<char>(std::cin), {}};
+    return tactus::conformance::report_session(script, std::cout) ? 0 : 2;
+  }
   const std::vector<char> file{std::istreambuf_iterator<char>(std::cin), {}};
   const auto done =
       tactus::conformance::report({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, replica, std::cout);

@@ -32,7 +32,10 @@ Client::Client(Server& server, std::optional<Receiver> receiver)
   }
   DeformableObjects* deformables = server.deformables();
   if (!deformables) return;
-  for (const TraceDeformable& mesh : deformables->meshes()) places_.push_back({centre(mesh.rest), {}});
+  for (const TraceDeformable& mesh : deformables->meshes()) {
+    places_.push_back({centre(mesh.rest), {}});
+    shown_.push_back({.period = mesh.period});
+  }
   if (server.stream_scene()) objects_.push_back(&deformables_.emplace(scene_, deformables->meshes()));
   else objects_.push_back(&deformables->true_view());
 }
@@ -63,15 +66,30 @@ void Client::show(const TraceFrame& truth) noexcept {
     for (const std::uint32_t i : *truth.changed) show_pose(i, truth.objects[i].pose);
     return;
   }
-  show(*receiver_, truth.tick, truth);
+  for (std::size_t i = 0; i < truth.meshes.size(); ++i)
+    if (truth.meshes[i].updated) show_shape(*receiver_, truth.tick, i);
+  show_poses(*receiver_, truth.tick);
 }
 
-void Client::show(Receiver& receiver, std::int64_t tick, const TraceFrame& truth) noexcept {
-  Replica& replica = receiver.replica();
-  const unsigned position_exp = receiver.scene()->grid.position;
-  for (std::size_t i = 0; i < truth.meshes.size(); ++i)
-    if (truth.meshes[i].updated) deformables_->show(i, replica.displacements(i, tick), position_exp);
-  for (std::uint32_t i = 0; i < poses_.size(); ++i) show_pose(i, to_pose(replica.pose(i, tick), position_exp));
+void Client::show(Receiver& receiver, std::int64_t tick) noexcept {
+  for (std::size_t i = 0; i < shown_.size(); ++i) {
+    ShownMesh& mesh = shown_[i];
+    const auto frame = static_cast<std::int64_t>(static_cast<double>(tick) / mesh.period);
+    const double rests = static_cast<double>(receiver.tick(i + 1) + receiver.scene()->max_extrapolation) + mesh.period;
+    if (frame == mesh.frame || static_cast<double>(tick) > rests) continue;
+    mesh.frame = frame;
+    show_shape(receiver, tick, i);
+  }
+  show_poses(receiver, tick);
+}
+
+void Client::show_shape(Receiver& receiver, std::int64_t tick, std::size_t mesh) noexcept {
+  deformables_->show(mesh, receiver.replica().displacements(mesh, tick), receiver.scene()->grid.position);
+}
+
+void Client::show_poses(Receiver& receiver, std::int64_t tick) noexcept {
+  for (std::uint32_t i = 0; i < poses_.size(); ++i)
+    show_pose(i, to_pose(receiver.replica().pose(i, tick), receiver.scene()->grid.position));
 }
 
 void Client::touch(std::span<const DeviceSample> devices) noexcept {

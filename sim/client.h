@@ -33,8 +33,9 @@ class Client {
   /// in   truth  tells which shapes are new; without a codec, the state shown
   /// pre  called for every tick: a shape, and without a codec a pose, is read only when it is new; without a codec truth.changed is set
   void show(const TraceFrame& truth) noexcept;
-  /// The same of a tick that came over a network.   in  truth  tells how often shapes are new
-  void show(Receiver& receiver, std::int64_t tick, const TraceFrame& truth) noexcept;
+  /// Show a tick of what came over a network. A shape is read once in each of its frames; one that rests is not read.   no allocation
+  /// in   tick  never falls, as long as the receiver is the same
+  void show(Receiver& receiver, std::int64_t tick) noexcept;
   /// Move every user's probe on the shown state.   in  devices  one per user   no allocation
   void touch(std::span<const DeviceSample> devices) noexcept;
   /// Move one user's probe, and render so much of the force.   no allocation
@@ -50,11 +51,18 @@ class Client {
  private:
   Client(Server& server, std::optional<Receiver> receiver);
   void show_pose(std::uint32_t object, const Pose& pose) noexcept;
+  void show_shape(Receiver& receiver, std::int64_t tick, std::size_t mesh) noexcept;
+  void show_poses(Receiver& receiver, std::int64_t tick) noexcept;
 
   const Scene& scene_;
   std::optional<Receiver> receiver_;  // none: the truth is shown, or what a network gives
   std::vector<Pose> poses_;
   std::vector<Pose> places_;  // of deformable objects, for users who look at one
+  struct ShownMesh {
+    double period = 1;        // [ticks] from frame to frame
+    std::int64_t frame = -1;  // shown last
+  };
+  std::vector<ShownMesh> shown_;  // behind a network
   RigidView rigid_;
   std::optional<MsdView> msds_;
   std::optional<DeformableView> deformables_;

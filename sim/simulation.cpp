@@ -18,6 +18,7 @@ namespace tactus::sim {
 struct Simulation::Impl {
   std::uint64_t seed;
   Client& client(std::size_t user) noexcept { return *clients[clients.size() > 1 ? user : 0]; }
+  void move_hands(std::size_t but) noexcept;
   Result<std::span<const Packet>> travel(std::span<const DeviceSample> at_clients) noexcept;
   void render(std::span<const DeviceSample> at_clients) noexcept;
 
@@ -52,8 +53,10 @@ Result<Simulation> Simulation::create(const Scene& scene, const SimulationOption
     impl->clients.emplace_back();
     TACTUS_TRY(impl->clients[0], Client::create(*impl->server, options.channel ? options.channel->replica : ReplicaOptions{}));
   }
-  Random seeds(options.seed);
-  for (const SceneUser& user : scene.users) impl->hands.emplace_back(user, options.grip.value_or(user.grip), seeds.next());
+  for (std::size_t i = 0; i < scene.users.size(); ++i) {
+    const SceneUser& user = scene.users[i];
+    impl->hands.emplace_back(user, options.grip.value_or(user.grip), hand_seed(options.seed, i));
+  }
   impl->devices.resize(scene.users.size());
   impl->records.resize(scene.users.size());
   impl->contacts.resize(scene.users.size());
@@ -62,11 +65,21 @@ Result<Simulation> Simulation::create(const Scene& scene, const SimulationOption
   return Simulation(std::move(impl));
 }
 
+/// Step 1, but for the hand of this user.
+void Simulation::Impl::move_hands(std::size_t but) noexcept {
+  for (std::size_t i = 0; i < hands.size(); ++i)
+    if (i != but) devices[i] = hands[i].step(client(i).felt(i), client(i).watched(i));
+}
+
 tl::expected<std::span<const Packet>, Diagnostic> Simulation::step() {
-  Impl& in = *impl_;
-  for (std::size_t i = 0; i < in.hands.size(); ++i)  // 1
-    in.devices[i] = in.hands[i].step(in.client(i).felt(i), in.client(i).watched(i));
-  return step(in.devices);
+  impl_->move_hands(SIZE_MAX);
+  return step(impl_->devices);
+}
+
+tl::expected<std::span<const Packet>, Diagnostic> Simulation::step(std::size_t user, const DeviceSample& device) {
+  impl_->move_hands(user);
+  impl_->devices[user] = device;
+  return step(impl_->devices);
 }
 
 /// Steps 2 and 3: the devices go to the server, its packets to the clients.
@@ -94,7 +107,7 @@ void Simulation::Impl::render(std::span<const DeviceSample> at_clients) noexcept
     const Network::View view = network->view(i);
     shown[i] = view.tick;
     shares[i] = view.force_share;
-    if (view.tick >= 0) clients[i]->show(*view.receiver, view.tick, server->frame());
+    if (view.tick >= 0) clients[i]->show(*view.receiver, view.tick);
     clients[i]->touch(i, at_clients[i], view.force_share);
     contacts[i] = clients[i]->contact(i);
   }
@@ -122,6 +135,7 @@ tl::expected<std::span<const Packet>, Diagnostic> Simulation::step(std::span<con
 const TraceFrame& Simulation::frame() const noexcept { return impl_->server->frame(); }
 std::span<const Pose> Simulation::client_poses() const noexcept { return impl_->client(0).poses(); }
 std::span<const Pose> Simulation::client_poses(std::size_t user) const noexcept { return impl_->client(user).poses(); }
+const Pose& Simulation::watched(std::size_t user) const noexcept { return impl_->client(user).watched(user); }
 std::int64_t Simulation::shown_tick(std::size_t user) const noexcept {
   return impl_->network ? impl_->shown[user] : impl_->server->frame().tick;
 }

@@ -37,6 +37,7 @@ class Of final : public DeformableEncoder {
     return stream_.encode(tick, layer, number).value_or(Packet{});
   }
   bool is_layered() const noexcept override { return layered_; }
+  void set_widening(double factor) noexcept override { stream_.codec().set_widening(factor); }
   void request_key() noexcept override { stream_.request_key(); }
   void forget_last() noexcept override { stream_.forget_last(); }
   void acknowledge(std::uint16_t sequence) noexcept override { stream_.acknowledge(sequence); }

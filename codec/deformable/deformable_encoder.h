@@ -35,6 +35,7 @@ class DeformableEncoder {
   /// in   number  as in SubstreamEncoder::encode
   virtual Packet encode(std::int64_t tick, Layer layer, std::optional<std::uint64_t> number) noexcept = 0;
   virtual bool is_layered() const noexcept = 0;
+  virtual void set_widening(double factor) noexcept = 0;  ///< of all thresholds.   pre  factor >= 1
   virtual void request_key() noexcept = 0;
   virtual void forget_last() noexcept = 0;
   virtual void acknowledge(std::uint16_t sequence) noexcept = 0;

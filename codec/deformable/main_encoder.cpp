@@ -70,11 +70,11 @@ MainHead MainEncoder::head_for(const EncodeRequest<MainState>& request) const no
   MainHead head{request.head};
   head.layer = request.layer;
   head.same_frame = request.layer == Layer::visual && !head.key && request.base.tick == request.tick;
-  head.visual = units(options_.visual_share * t.visual);
+  head.visual = units(widening_ * options_.visual_share * t.visual);
   head.touched = touch_ != nullptr && t.weber_fraction;
   if (!head.touched) return head;
   head.triangle = touch_->triangle;
-  const std::uint32_t haptic = units(options_.haptic_share * haptic_threshold(t, *touch_));
+  const std::uint32_t haptic = units(widening_ * options_.haptic_share * haptic_threshold(t, *touch_));
   while (head.haptic < kMaxHapticIndex && haptic_bound(head.haptic + 1) <= haptic) ++head.haptic;
   return head;
 }

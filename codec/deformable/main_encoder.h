@@ -33,6 +33,7 @@ class MainEncoder {
     truth_ = truth;
     touch_ = touch;
   }
+  void set_widening(double factor) noexcept { widening_ = factor; }
   /// time O(vertices * (1 + modes)), no allocation
   Result<Payload> encode(const EncodeRequest<MainState>& request, std::span<std::uint8_t> out) noexcept;
   void commit(const MainState&, MainState& next) noexcept { std::swap(next_, next); }
@@ -52,6 +53,7 @@ class MainEncoder {
 
   const DeformableObject& object_;
   const DeformableOptions options_;
+  double widening_ = 1;
   double unit_;  // [m] of the grid
   std::uint8_t baseline_span_;
   std::span<const Vec3i> truth_;

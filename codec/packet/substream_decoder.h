@@ -55,6 +55,7 @@ class SubstreamDecoder {
     return decode_payload(number, packet, {}, 0);
   }
 
+  bool holds(std::uint64_t number) const noexcept { return !states_.empty() && states_.find(number) != nullptr; }
   const State& newest() const noexcept { return states_.newest(); }
   /// The state after a packet.   pre  decode() has just returned it
   const State& after(const DecodedPacket& packet) const noexcept { return *states_.find(packet.number); }

@@ -41,6 +41,12 @@ Result<PoseThresholds> make_thresholds(double distance, double angle, const Grid
   return out;
 }
 
+/// pre  check()
+PoseThresholds widened(double distance, double angle, double factor, const GridExponents& grid) {
+  return make_thresholds(std::min(factor * distance, 999'999.0), std::min(factor * angle, std::numbers::pi), grid)
+      .value_or(PoseThresholds{});
+}
+
 /// A share of what is permitted; the grid level stays.
 PoseThresholds scaled(PoseThresholds t, double share) {
   t.distance_squared = static_cast<std::int64_t>(share * share * static_cast<double>(t.distance_squared));
@@ -104,15 +110,20 @@ RigidEncoder::RigidEncoder(const Scene& scene, const RigidTriggers& triggers, Ba
     : scene_(scene),
       triggers_(triggers),
       predictor_(scene),
-      visual_(make_thresholds(triggers.visual_position, triggers.visual_rotation, scene.grid).value_or(PoseThresholds{})),
-      fixed_(make_thresholds(triggers.fixed_position, triggers.fixed_rotation, scene.grid).value_or(PoseThresholds{})),
+      early_(baseline == Baseline::acknowledged ? kEarly : 1),
       heartbeat_(static_cast<std::int64_t>(std::ceil(triggers.heartbeat * scene.tick_rate))),
       truth_(initial_states(scene).objects) {
-  if (triggers.reduction == Reduction::none) visual_.level = fixed_.level = 0;  // the reference is as exact as the grid
   pending_.reserve(scene.moving().size());
   before_.reserve(scene.moving().size());
   for (const RigidState& state : truth_) sent_.push_back({.state = state});
-  early_ = baseline == Baseline::acknowledged ? kEarly : 1;
+  set_widening(1);
+}
+
+void RigidEncoder::set_widening(double factor) noexcept {
+  widening_ = factor;
+  visual_ = widened(triggers_.visual_position, triggers_.visual_rotation, factor, scene_.grid);
+  fixed_ = widened(triggers_.fixed_position, triggers_.fixed_rotation, factor, scene_.grid);
+  if (triggers_.reduction == Reduction::none) visual_.level = fixed_.level = 0;  // the reference is as exact as the grid
   early_visual_ = scaled(visual_, early_);
 }
 
@@ -152,7 +163,7 @@ bool RigidEncoder::haptic_within(std::uint32_t object, const RigidPose& shown, d
     if (triggers_.haptic == HapticRule::fixed) return within(fixed_, shown, truth_[object]);
     const Vec3 estimate = contact_force(contact, to_pose(shown, scene_.grid.position));
     const double ratio = haptic_ratio(triggers_, contact_force(contact, samples_[object].pose), estimate);
-    if (!(ratio <= share)) return false;  // forces too large to compare are outside, too
+    if (!(ratio <= share * widening_)) return false;  // forces too large to compare are outside, too
   }
   return true;
 }

@@ -49,6 +49,7 @@ class RigidEncoder {
   void acknowledge(std::uint64_t number) noexcept;
   void forget_last() noexcept;
   void set_link(const LinkState& link) noexcept;
+  void set_widening(double factor) noexcept;  ///< of all thresholds.   pre  factor >= 1
 
  private:
   /// What a receiver of every packet shows of an object.
@@ -77,8 +78,9 @@ class RigidEncoder {
   const Scene& scene_;
   RigidTriggers triggers_;
   RigidPredictor predictor_;
-  PoseThresholds visual_, fixed_, early_visual_;
-  double early_ = 1;                         // share of its bounds over which an object joins a packet
+  double widening_ = 1;
+  PoseThresholds visual_, fixed_, early_visual_;  // widened
+  double early_ = 1;                              // share of its bounds over which an object joins a packet
   std::array<std::int64_t, 3> follow_up_{};  // [ticks] without an acknowledgement before the first, the second and later; 0: none
   std::int64_t heartbeat_ = 0;               // [ticks], 0: off
   std::vector<RigidState> truth_;            // this tick, on the grid

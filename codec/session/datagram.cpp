@@ -20,8 +20,9 @@ constexpr std::uint8_t kAcknowledgement = 1, kClock = 2, kButtons = 3, kPiece = 
 constexpr std::uint32_t kMagic = 0x53544354;  // "TCTS"
 constexpr std::uint8_t kVersion = 1;
 constexpr std::size_t kHeadSize = 2, kCheckSize = 4;
-constexpr std::size_t kLeastJoin = 80;      // [bytes]: answers are shorter
-constexpr std::uint8_t kFirstSkipped = 64;  // part types for later or private use
+constexpr std::uint64_t kEndOfTime = std::uint64_t{1} << 53;  // [us] of any clock
+constexpr std::size_t kLeastJoin = 80;                        // [bytes]: answers are shorter
+constexpr std::uint8_t kFirstSkipped = 64;                    // part types for later or private use
 constexpr LeaveReason kLastReason = LeaveReason::protocol;
 
 bool kind_comes(std::uint16_t kind, Direction direction) noexcept {
@@ -56,11 +57,13 @@ Result<Datagram> handshake(const ByteReader& reader, T said) noexcept {
 Result<Datagram> read_join(ByteReader& r) noexcept {
   const std::uint32_t magic = r.u32();
   const std::uint8_t version = r.u8(), role = r.u8();
-  if (r.ok() && (magic != kMagic || version != kVersion || role > static_cast<std::uint8_t>(Role::participant)))
-    return fail(Errc::unsupported, "R-SES-9", 8 * kHeadSize);
   Join said;
-  said.role = static_cast<Role>(role);
+  said.is_known = version == kVersion;
   said.nonce = r.u64();
+  if (r.ok() && (magic != kMagic || (said.is_known && role > static_cast<std::uint8_t>(Role::participant))))
+    return fail(Errc::unsupported, "R-SES-9", 8 * kHeadSize);
+  if (r.ok() && !said.is_known && r.bit_offset() / 8 + r.remaining() >= kLeastJoin - kCheckSize) return Datagram(said);
+  said.role = static_cast<Role>(role);
   said.state_limit = r.varint();
   said.header_limit = r.varint();
   const std::uint64_t padding = r.bit_offset();
@@ -79,6 +82,7 @@ Result<Datagram> read_welcome(ByteReader& r) noexcept {
   said.size = r.varint();
   said.hash = r.u64();
   said.start = r.varint();
+  if (r.ok() && said.start >= kEndOfTime) return fail(Errc::malformed, "R-SES-3", r.bit_offset());
   return handshake(r, said);
 }
 
@@ -248,6 +252,10 @@ Result<std::optional<Part>> PartReader::next() noexcept {
 Result<std::optional<Part>> PartReader::read(std::uint8_t type, ByteReader part) noexcept {
   const Part out = read_part(type, part);
   TACTUS_CHECK(finished(part));
+  const auto* state = std::get_if<StatePart>(&out);
+  const auto* clock = std::get_if<ClockPart>(&out);
+  if ((state != nullptr && state->live > 1) || (clock != nullptr && clock->time >= kEndOfTime))
+    return fail(Errc::malformed, "R-SES-3", part.bit_offset());
   const auto* packet = std::get_if<PacketPart>(&out);
   only_packet_ = parts_ == 1 && packet != nullptr && packet->back == 0;
   return std::optional<Part>(out);
@@ -259,8 +267,14 @@ bool is_of_epoch(std::span<const std::uint8_t> datagram, std::uint64_t epoch, Di
   return ByteReader(datagram.last(kCheckSize)).u32() == check_of(body, epoch, direction);
 }
 
+bool is_before_epochs(std::span<const std::uint8_t> datagram) noexcept {
+  if (datagram.size() < kHeadSize) return false;
+  const std::uint16_t head = ByteReader(datagram).u16();
+  return (head & 3u) == kHandshake && head >> 2 < kLeave;
+}
+
 Result<Datagram> read_datagram(std::span<const std::uint8_t> datagram, Direction direction) noexcept {
-  if (datagram.size() < kHeadSize + kCheckSize || datagram.size() > kLargestDatagram) return fail(Errc::invalid, "R-SES-2");
+  if (datagram.size() < kHeadSize + kCheckSize || datagram.size() > kLargestDatagram) return fail(Errc::checksum, "R-SES-1");
   ByteReader r(datagram.first(datagram.size() - kCheckSize));
   const std::uint16_t head = r.u16();
   const std::uint16_t form = head & 3u;
@@ -289,15 +303,18 @@ std::span<const std::uint8_t> DatagramWriter::write(const Datagram& said, std::u
 void DatagramWriter::begin(std::uint64_t number) noexcept {
   size_ = Put(bytes_, 0).integer(kParts + 4 * (number % kNumbers), 2).at();
   parts_ = single_ = 0;
+  fragment_ = false;
 }
 
 bool DatagramWriter::add(const Part& part) noexcept {
+  if (fragment_ && part.index() + 1 >= kFragment) return false;
   const std::size_t size = std::visit([](const auto& p) { return size_of(p); }, part);
   Put to(std::span<std::uint8_t>(bytes_).first(kLargestDatagram - kCheckSize), size_);
   to.integer(part.index() + 1, 1).varint(size);
   if (!to.fits() || size > kLargestDatagram - kCheckSize - to.at()) return false;
   std::visit([&](const auto& p) { put(to, p); }, part);
   size_ = to.at();
+  fragment_ = std::holds_alternative<FragmentPart>(part);
   const auto* packet = std::get_if<PacketPart>(&part);
   single_ = ++parts_ == 1 && packet != nullptr && packet->back == 0 ? size_ - packet->bytes.size() : 0;
   return true;

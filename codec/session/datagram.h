@@ -25,6 +25,7 @@ struct Join {
   std::uint64_t nonce = 0;
   std::uint64_t state_limit = 0;   ///< [bytes] DecodeLimits::state_bytes of the client
   std::uint64_t header_limit = 0;  ///< [bytes] DecodeLimits::header_bytes
+  bool is_known = true;            ///< its version; else there is nothing here but the nonce
   friend bool operator==(const Join&, const Join&) = default;
 };
 
@@ -142,9 +143,12 @@ using Datagram = std::variant<Join, Welcome, Refusal, Leave, Numbered>;
 /// time O(bytes), about 2 ns per byte
 bool is_of_epoch(std::span<const std::uint8_t> datagram, std::uint64_t epoch, Direction direction) noexcept;
 
+/// A join, welcome or refusal: its epoch is 0.
+bool is_before_epochs(std::span<const std::uint8_t> datagram) noexcept;
+
 /// pre  is_of_epoch()
-/// err  invalid R-SES-2: its kind or length; truncated, malformed R-SES-3: its elements; unsupported R-SES-9: its version;
-///      malformed R-SES-5: its parts
+/// err  checksum R-SES-1: its length; invalid R-SES-2: its kind; truncated, malformed R-SES-3: its elements; unsupported R-SES-9: its
+///      version; malformed R-SES-5: its parts
 /// time O(bytes); no allocation
 Result<Datagram> read_datagram(std::span<const std::uint8_t> datagram, Direction direction) noexcept;
 
@@ -172,6 +176,7 @@ class DatagramWriter {
   std::array<std::uint8_t, kLargestDatagram> bytes_{};
   Direction direction_;
   std::size_t size_ = 0, parts_ = 0;
+  bool fragment_ = false;   // the last part is one
   std::size_t single_ = 0;  // where the bytes of the only packet of the datagram's number begin; 0: there is none
 };
 

@@ -11,9 +11,16 @@ namespace {
 constexpr std::uint64_t kSilence = 1'000'000;      // [us] without acknowledgements, at least, before an end sends little
 constexpr std::uint64_t kSeldom = 50'000;          // [us] from datagram to datagram then
 constexpr std::uint64_t kSparing = 1024;           // the wait is this part of the silence at least: numbers last for 17 minutes
+constexpr std::uint32_t kHeavyLoss = 65536 / 20;   // from here on, what is lost goes twice again
+constexpr std::int64_t kSlowestCopy = 80'000;      // [us] until the other end has it
 constexpr std::uint64_t kFirstPatience = 250'000;  // [us] while no round trip is known
 
 }  // namespace
+
+void Exchange::send_with(Sender coder) {
+  if (!coder.scene()->deformables.empty()) resends_.emplace();
+  sender.emplace(std::move(coder));
+}
 
 void Exchange::receive_with(Receiver decoder, std::size_t largest) {
   fragments_ = Fragments(largest);
@@ -45,9 +52,8 @@ Result<bool> Exchange::handle(const Part& part, Reading& reading) noexcept {
     return true;
   }
   if (const auto* packet = std::get_if<PacketPart>(&part)) {
-    const bool decoded =
-        packet->back < reading.heard.number && decode(reading.heard.number - packet->back, packet->bytes, reading);
-    reading.complete = reading.complete && decoded;
+    const std::uint64_t number = packet->back < reading.heard.number ? reading.heard.number - packet->back : 0;
+    reading.complete = decode(number, packet->bytes, reading) && reading.complete;
     return true;
   }
   return false;
@@ -80,6 +86,7 @@ Result<void> Exchange::acknowledged(const Acknowledgement& said, Reading& readin
     if (pieces) pieces->lost(number);
     const Slot& slot = slots_[number % slots_.size()];
     wants_key_ = wants_key_ || (slot.number == number && slot.layered);
+    if (resends_ && copies_come_in_time()) resends_->lost(number, reading.now, sent_.loss() > kHeavyLoss ? 2 : 1);
   };
   TACTUS_CHECK(sent_.acknowledge(said, reading.now, arrived, lost));
   reading.heard.round_trip = sent_.sample();
@@ -87,18 +94,21 @@ Result<void> Exchange::acknowledged(const Acknowledgement& said, Reading& readin
   return {};
 }
 
-/// A packet of this datagram, or one that it completed.
+/// A packet of this datagram, or one that it completed.   in   number  0: of no datagram
 bool Exchange::decode(std::uint64_t number, std::span<const std::uint8_t> packet, Reading& reading) noexcept {
-  const auto decoded = receiver ? receiver->push_numbered(number, packet) : tl::unexpected(Error{});
+  const auto decoded = receiver && number > 0 ? receiver->push_numbered(number, packet) : tl::unexpected(Error{});
   if (!decoded) {
+    if (receiver && number > 0 && receiver->holds(number, packet)) return true;  // it came before
     ++traffic_.packets_refused;
     return false;
   }
   ++traffic_.packets_heard;
   traffic_.payload_heard += packet.size();
-  if (decoded->substream == 0) reading.heard.tick = decoded->tick;
+  reading.heard.tick = std::max(reading.heard.tick.value_or(decoded->tick), decoded->tick);
+  if (decoded->substream > 0) reading.asks = Asks::now;
+  reading.heard.oldest = std::min(reading.heard.oldest.value_or(decoded->tick), decoded->tick);
   const bool newest = receiver->tick(decoded->substream) == decoded->tick;
-  if (number % kHashEvery == 0 && newest && decoded->layer == Layer::all) {
+  if (direction_ == Direction::up && number % kHashEvery == 0 && newest && decoded->layer == Layer::all) {
     const auto hash = static_cast<std::uint32_t>(receiver->state_hash(decoded->substream));
     reading.heard.hash = HashPart{static_cast<std::uint8_t>(decoded->substream), static_cast<std::uint16_t>(number), hash};
   }
@@ -123,6 +133,11 @@ void Exchange::finish(const Reading& reading) noexcept {
 }
 
 // Out
+
+std::optional<std::uint64_t> Exchange::due() const noexcept {
+  const auto acknowledgement = received_.due(), copy = resends_ ? resends_->due() : std::nullopt;
+  return acknowledgement && copy ? std::min(*acknowledgement, *copy) : acknowledgement ? acknowledgement : copy;
+}
 
 /// Of packets that nobody took, the numbers are lost: the next ones must have others.
 void Exchange::give_up(std::uint64_t now) noexcept {
@@ -193,8 +208,35 @@ bool Exchange::add_fragment(const Packet& packet, std::uint64_t number) noexcept
   return true;
 }
 
+/// Or else clients would show the past for nothing.
+bool Exchange::copies_come_in_time() const noexcept {
+  const auto& trip = sent_.round_trip();
+  return trip && trip->smoothed + 4 * trip->variation + trip->least / 2 <= kSlowestCopy;
+}
+
+const Resends::Kept* Exchange::next_copy(std::uint64_t now) noexcept {
+  if (!resends_ || !sent_.round_trip()) return nullptr;
+  return resends_->next(now, static_cast<std::uint64_t>(sent_.round_trip()->least / 2));
+}
+
+/// As many as fit of the packets that are lost and not too old.
+bool Exchange::add_copies(std::uint64_t number, std::uint64_t now) noexcept {
+  Slot& slot = slots_[number % slots_.size()];
+  bool added = false;
+  while (slot.count < slot.packets.size()) {
+    const Resends::Kept* const copy = next_copy(now);
+    if (copy == nullptr || !writer_.add(PacketPart{number - copy->number, copy->bytes})) break;
+    traffic_.payload_sent += copy->bytes.size();
+    ++traffic_.packets_sent;
+    slot.packets[slot.count++] = {copy->substream, copy->sequence};
+    resends_->sent(*copy, now);
+    added = true;
+  }
+  return added;
+}
+
 /// As many of the waiting packets as fit, or one fragment.
-bool Exchange::add_packets(std::uint64_t number) noexcept {
+bool Exchange::add_packets(std::uint64_t number, std::uint64_t now) noexcept {
   Slot& slot = slots_[number % slots_.size()];
   bool added = false, cut = false;
   while (has_packets() && !cut && packets_[next_packet_].number <= number && slot.count < slot.packets.size()) {
@@ -209,6 +251,7 @@ bool Exchange::add_packets(std::uint64_t number) noexcept {
     } else {
       if (!writer_.add(PacketPart{number - packet.number, packet.bytes})) break;
       traffic_.payload_sent += packet.bytes.size();
+      if (resends_ && packet.substream > 0 && packet.layer == Layer::all) resends_->keep(number, packet, now);
       ++next_packet_;
     }
     cut = packet.bytes.size() > kFragmentSize;
@@ -223,7 +266,8 @@ bool Exchange::add_packets(std::uint64_t number) noexcept {
 
 std::span<const std::uint8_t> Exchange::end(std::uint64_t now, bool asks) noexcept {
   const std::uint64_t number = *sent_.next();
-  asks = add_packets(number) || asks;
+  asks = add_packets(number, now) || asks;
+  asks = add_copies(number, now) || asks;
   if (writer_.empty()) {  // all were too large
     skip_number(now);
     return {};

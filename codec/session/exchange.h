@@ -15,6 +15,7 @@
 #include <tactus/session/fragments.h>
 #include <tactus/session/pieces.h>
 #include <tactus/session/received_numbers.h>
+#include <tactus/session/resends.h>
 #include <tactus/session/sent_numbers.h>
 #include <tactus/session/traffic.h>
 
@@ -32,10 +33,11 @@ class Exchange {
 
   std::uint64_t epoch() const noexcept { return epoch_; }
 
-  std::optional<Sender> sender;       ///< of the packets that go; none: no packets go
+  std::optional<Sender> sender;       ///< of the packets that go; none: no packets go. Set by send_with()
   std::optional<Receiver> receiver;   ///< of those that come; none: all are refused
   std::optional<PieceSender> pieces;  ///< of the declaration, until all have arrived
 
+  void send_with(Sender coder);                              ///< allocates if the scene has deformable objects
   void receive_with(Receiver decoder, std::size_t largest);  ///< allocates for the fragments of the `largest` packet [bytes]
 
   // In
@@ -43,7 +45,8 @@ class Exchange {
   /// What the packets of a datagram brought.
   struct Heard {
     std::uint64_t number = 0;                ///< of the datagram
-    std::optional<std::int64_t> tick;        ///< of the packet of rigid objects, if one was decoded
+    std::optional<std::int64_t> tick;        ///< newest of the packets that were decoded
+    std::optional<std::int64_t> oldest;      ///< oldest of them
     std::optional<HashPart> hash;            ///< to be told to the sender
     std::optional<std::int64_t> round_trip;  ///< [us] that its acknowledgement measured
   };
@@ -53,7 +56,7 @@ class Exchange {
   template <class Take>
   Result<Heard> handle(std::uint64_t now, const Numbered& datagram, Take&& take) noexcept {
     TACTUS_TRY(const std::uint64_t number, receive(now, datagram));
-    Reading reading{{.number = number, .tick = {}, .hash = {}, .round_trip = {}}, now};
+    Reading reading{{.number = number, .tick = {}, .oldest = {}, .hash = {}, .round_trip = {}}, now};
     PartReader parts = datagram.parts(direction_ == Direction::up ? Direction::down : Direction::up);
     for (;;) {
       TACTUS_TRY(const std::optional<Part> part, parts.next());
@@ -76,7 +79,7 @@ class Exchange {
   ///      extras  bool(DatagramWriter&, number), adds parts of types 2 to 6; true: the other end must acknowledge them
   template <class Extras>
   std::optional<std::span<const std::uint8_t>> poll(std::uint64_t now, bool wanted, Extras&& extras) noexcept {
-    if (!wanted && !has_packets() && !is_acknowledgement_due(now)) return std::nullopt;
+    if (!wanted && !has_packets() && !is_acknowledgement_due(now) && !next_copy(now)) return std::nullopt;
     const auto number = begin(now, wanted);
     if (!number) return std::nullopt;
     const bool asks = extras(writer_, *number);
@@ -85,7 +88,7 @@ class Exchange {
   }
 
   /// When poll() has something without anything else happening; nothing: never.
-  std::optional<std::uint64_t> due() const noexcept { return received_.due(); }
+  std::optional<std::uint64_t> due() const noexcept;
   bool has_packets() const noexcept { return next_packet_ < packets_.size(); }
   /// While nothing of what was sent is acknowledged for long, an end sends little.
   bool may_send(std::uint64_t now) const noexcept { return next_send(now) <= now; }
@@ -131,8 +134,11 @@ class Exchange {
   void give_up(std::uint64_t now) noexcept;
   void skip_number(std::uint64_t now) noexcept;
   bool misses_layers(std::uint64_t now) const noexcept;
-  bool add_packets(std::uint64_t number) noexcept;
+  bool add_packets(std::uint64_t number, std::uint64_t now) noexcept;
   bool add_fragment(const Packet& packet, std::uint64_t number) noexcept;
+  bool copies_come_in_time() const noexcept;
+  const Resends::Kept* next_copy(std::uint64_t now) noexcept;
+  bool add_copies(std::uint64_t number, std::uint64_t now) noexcept;
   std::span<const std::uint8_t> end(std::uint64_t now, bool asks) noexcept;
 
   Direction direction_;
@@ -142,6 +148,7 @@ class Exchange {
   SentNumbers sent_;
   Fragments fragments_{0};
   std::array<Slot, SentNumbers::kRemembered> slots_{};
+  std::optional<Resends> resends_;   // none: no packet goes twice
   std::span<const Packet> packets_;  // of the last submit()
   std::size_t next_packet_ = 0, next_fragment_ = 0;
   std::uint64_t heard_at_, sent_at_;

@@ -8,20 +8,27 @@
 namespace tactus {
 
 /// Share of a force that a client may render, by the age of its news: all of it up to `kFresh`, none from `kStale` on, straight between.
-/// When news come again, it returns over `kReturn`.
+/// When news come again, or share() is called again after a pause, it returns over `kReturn`.
 class ForceFade {
  public:
   static constexpr std::uint64_t kFresh = 70'000, kStale = 100'000, kReturn = 500'000;  ///< [us]
   static constexpr std::int64_t kAll = 65536;
 
   /// The device feels nothing: a new contact need not rise slowly.
-  void release() noexcept { share_ = kAll; }
+  void release(std::uint64_t now) noexcept {
+    share_ = kAll;
+    looked_at_ = now;
+  }
 
   /// in   now >= heard  [us]; `now` never decreases.   out  x 2^-16
   std::int64_t share(std::uint64_t now, std::uint64_t heard) noexcept {
     const std::uint64_t age = std::clamp(now - heard, kFresh, kStale);
     const auto most = static_cast<std::int64_t>((kStale - age) * static_cast<std::uint64_t>(kAll) / (kStale - kFresh));
-    const std::uint64_t passed = std::min(now - looked_at_, kReturn);
+    if (now - looked_at_ > kStale) {  // nobody looked: what was felt meanwhile is not known
+      share_ = 0;
+      looked_at_ = now;
+    }
+    const std::uint64_t passed = now - looked_at_;
     const auto risen = share_ + static_cast<std::int64_t>(passed * static_cast<std::uint64_t>(kAll) / kReturn);
     if (risen > share_ || most < share_) looked_at_ = now;
     share_ = std::min(most, risen);

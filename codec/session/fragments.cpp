@@ -32,9 +32,9 @@ Fragments::Packet* Fragments::place_for(std::uint64_t number, const FragmentPart
 
 Result<std::optional<Fragments::Complete>> Fragments::take(std::uint64_t datagram, const FragmentPart& fragment) noexcept {
   const bool is_last = fragment.index + 1 == fragment.count;
-  const bool sound = fragment.count >= 2 && fragment.index < fragment.count && fragment.count <= kMostFragments &&
-                     fragment.back < datagram && !fragment.bytes.empty() && fragment.bytes.size() <= kFragmentSize &&
-                     (is_last || fragment.bytes.size() == kFragmentSize) &&
+  const bool sound = !packets_.empty() && fragment.count >= 2 && fragment.index < fragment.count &&
+                     fragment.count <= kMostFragments && fragment.back < datagram && !fragment.bytes.empty() &&
+                     fragment.bytes.size() <= kFragmentSize && (is_last || fragment.bytes.size() == kFragmentSize) &&
                      fragment.index * kFragmentSize + fragment.bytes.size() <= largest_;
   if (!sound) return fail(Errc::invalid, "R-SES-7");
   Packet* packet = place_for(datagram - fragment.back, fragment);

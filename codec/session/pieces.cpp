@@ -10,7 +10,7 @@
 namespace tactus {
 
 std::optional<std::uint64_t> PieceSender::next(std::uint64_t now, std::uint64_t patience) const noexcept {
-  const std::uint64_t end = std::min(piece_count(bytes_->size()), arrived_.front() + kPieceWindow);
+  const std::uint64_t end = std::min(piece_count(bytes_->size()), arrived_.front() + most_);
   for (std::uint64_t index = arrived_.front(); index < end; ++index) {
     const OnItsWay& sent = on_its_way_[index % kPieceWindow];
     const bool waits = sent.number > 0 && sent.index == index && now < sent.time + patience;
@@ -22,7 +22,8 @@ std::optional<std::uint64_t> PieceSender::next(std::uint64_t now, std::uint64_t 
 std::optional<std::uint64_t> PieceSender::due(std::uint64_t patience) const noexcept {
   std::optional<std::uint64_t> out;
   for (const OnItsWay& sent : on_its_way_)
-    if (sent.number > 0 && !arrived_.has(sent.index)) out = std::min(out.value_or(~std::uint64_t{0}), sent.time + patience);
+    if (sent.number > 0 && sent.index < arrived_.front() + most_ && !arrived_.has(sent.index))
+      out = std::min(out.value_or(~std::uint64_t{0}), sent.time + patience);
   return out;
 }
 
@@ -40,6 +41,7 @@ void PieceSender::arrived(std::uint64_t number) noexcept {
   for (OnItsWay& sent : on_its_way_) {
     if (sent.number != number) continue;
     sent.number = 0;
+    most_ = std::min(most_ + 1, kPieceWindow);
     return arrived_.add(sent.index);
   }
 }
@@ -48,6 +50,8 @@ void PieceSender::lost(std::uint64_t number) noexcept {
   for (OnItsWay& sent : on_its_way_)
     if (sent.number == number) sent.number = 0;
 }
+
+void PieceSender::slow_down() noexcept { most_ = std::max(most_ / 2, kFewest); }
 
 Result<void> PieceReceiver::take(std::uint64_t index, std::span<const std::uint8_t> bytes) try {
   const std::uint64_t begin = index * kPieceSize;

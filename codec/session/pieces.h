@@ -48,14 +48,17 @@ class PieceSender {
   void sent(std::uint64_t index, std::uint64_t number, std::uint64_t now) noexcept;  ///< in a datagram of this number
   void arrived(std::uint64_t number) noexcept;
   void lost(std::uint64_t number) noexcept;
+  void slow_down() noexcept;  ///< pieces wait in a queue on their way: half as many at a time
 
  private:
+  static constexpr std::uint64_t kFirst = 8, kFewest = 4;
   struct OnItsWay {
     std::uint64_t index = 0, number = 0, time = 0;  // number 0: not on its way
   };
   std::shared_ptr<const std::vector<std::uint8_t>> bytes_;
   PieceSet arrived_;
   std::array<OnItsWay, kPieceWindow> on_its_way_{};  // by index modulo the window
+  std::uint64_t most_ = kFirst;                      // from the first that has not arrived on
 };
 
 class PieceReceiver {

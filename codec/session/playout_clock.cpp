@@ -7,8 +7,10 @@ namespace tactus {
 namespace {
 
 constexpr std::int64_t kSlack = 30'000, kLeastSlack = 10'000;  // [us]
+constexpr std::int64_t kLongestBurst = 150'000;                // [us]
 constexpr std::uint64_t kAdaptEvery = 100'000;                 // [us]
 constexpr std::int64_t kShrink = 100;                          // [us] in this time: 1 ms per second
+constexpr std::int64_t kLong = 150'000;                        // [us]: what is above goes sooner
 
 constexpr std::int64_t floor_div(std::int64_t a, std::int64_t b) noexcept { return a / b - (a % b < 0 ? 1 : 0); }
 
@@ -16,14 +18,24 @@ constexpr std::int64_t floor_div(std::int64_t a, std::int64_t b) noexcept { retu
 
 std::int64_t PlayoutClock::time_of(std::int64_t tick) const noexcept { return floor_div(tick * 1'000'000, tick_rate_); }
 
-void PlayoutClock::heard(std::int64_t tick, std::uint64_t now) noexcept {
-  const std::int64_t lead = static_cast<std::int64_t>(now) - time_of(tick);
+void PlayoutClock::heard(std::uint64_t number, std::optional<std::int64_t> tick, std::uint64_t now) noexcept {
+  if (!options_.fixed) bursts_.heard(number, tick, now);
+  if (!tick) return;
+  const bool first = count_ == 0;
+  add(static_cast<std::int64_t>(now) - time_of(*tick), now);
+  if (first) shown_ = *tick;  // before it nothing is known
+  if (first || now >= adapted_at_ + kAdaptEvery) adapt(now);
+}
+
+void PlayoutClock::late(std::int64_t tick, std::uint64_t now) noexcept {
+  add(static_cast<std::int64_t>(now) - time_of(tick), now);
+}
+
+void PlayoutClock::add(std::int64_t lead, std::uint64_t now) noexcept {
   base_.add(lead, now);
-  leads_[next_] = lead;
+  leads_[next_] = {lead, now};
   next_ = (next_ + 1) % kRemembered;
   count_ = std::min(count_ + 1, kRemembered);
-  if (count_ == 1) shown_ = tick;  // before it nothing is known
-  if (count_ == 1 || now >= adapted_at_ + kAdaptEvery) adapt(now);
 }
 
 void PlayoutClock::adapt(std::uint64_t now) noexcept {
@@ -32,15 +44,19 @@ void PlayoutClock::adapt(std::uint64_t now) noexcept {
     delay_ = *options_.fixed;
     return;
   }
-  const auto end = sorted_.begin() + static_cast<std::ptrdiff_t>(count_);
-  std::copy(leads_.begin(), leads_.begin() + static_cast<std::ptrdiff_t>(count_), sorted_.begin());
-  const auto late_at = sorted_.begin() + static_cast<std::ptrdiff_t>((count_ * 999 + 999) / 1000 - 1);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < count_; ++i)
+    if (leads_[i].at + kRecent >= now) sorted_[count++] = leads_[i].lead;
+  const auto end = sorted_.begin() + static_cast<std::ptrdiff_t>(count);
+  const auto late_at = sorted_.begin() + static_cast<std::ptrdiff_t>((count * 999 + 999) / 1000 - 1);
   std::nth_element(sorted_.begin(), late_at, end);
   const std::int64_t base = *base_.value(), late = *late_at - base;
   std::int64_t early = 0;  // sum
   for (auto lead = sorted_.begin(); lead != end; ++lead) early += *late_at - *lead;
-  const std::int64_t wanted = late + std::max(kLeastSlack, kSlack - early / static_cast<std::int64_t>(count_));
-  delay_ = std::max(wanted, delay_ - kShrink);
+  const std::int64_t longest = kLongestBurst * tick_rate_ / 1'000'000;
+  const std::int64_t slack = std::max(kSlack, time_of(bursts_.bridge(longest, now)));
+  const std::int64_t wanted = late + std::max(kLeastSlack, slack - early / static_cast<std::int64_t>(count));
+  delay_ = std::max(wanted, delay_ - std::max(kShrink, (delay_ - kLong) / 64));
 }
 
 std::int64_t PlayoutClock::shown(std::uint64_t now) noexcept {

@@ -23,7 +23,8 @@ class SentNumbers {
 
   /// Number of the next datagram; nothing while too many wait for an acknowledgement.
   std::optional<std::uint64_t> next() const noexcept;
-  void send(std::uint64_t now) noexcept;  ///< the datagram of number next() goes
+  std::uint64_t newest() const noexcept { return next_ - 1; }  ///< number given; 0: none
+  void send(std::uint64_t now) noexcept;                       ///< the datagram of number next() goes
 
   /// Look at an acknowledgement.
   /// in   arrived(number), lost(number)  called once for each number, arrived for those said to be lost, too, if they come later

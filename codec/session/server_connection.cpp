@@ -13,18 +13,22 @@ namespace {
 constexpr std::uint64_t kWelcomeEvery = 250'000;  // [us] of a new epoch, until the client has heard
 constexpr std::uint64_t kClockEvery = 100'000;    // [us]
 constexpr std::uint64_t kPieceEvery = 500;        // [us]: 16 Mbit/s
+constexpr std::int64_t kPieceQueue = 80'000;      // [us] that a piece may wait on its way
+constexpr std::uint64_t kJammedEvery = 50'000;    // [us]: packets through a long queue
 constexpr std::uint64_t kUnproven = 10'000'000;   // [us] for the first datagram in the epoch
 constexpr unsigned kMostFaults = 100;
-constexpr unsigned kLeaves = 3;         // one of them should arrive
-constexpr std::uint64_t kHeaders = 28;  // [bytes] of UDP and IPv4
+constexpr unsigned kLeaves = 3;  // one of them should arrive
 
 }  // namespace
 
 ServerConnection::ServerConnection(std::uint16_t client, const SessionServerOptions& options) noexcept
     : client_(client),
       silence_(options.silence),
-      piece_time_(options.rate == 0 ? 0 : 8'000'000 * (kLargestDatagram + kHeaders) / options.rate),
-      bucket_(options.rate) {}
+      headers_(options.headers),
+      piece_time_(options.rate == 0 ? 0 : 8'000'000 * (kLargestDatagram + options.headers) / options.rate),
+      most_widening_(options.widening),
+      bucket_(options.rate),
+      congestion_(options.widening) {}
 
 void ServerConnection::open(std::uint64_t peer, const Join& said, const ServedScene& served, std::uint64_t epoch,
                             std::uint64_t now) noexcept {
@@ -34,6 +38,8 @@ void ServerConnection::open(std::uint64_t peer, const Join& said, const ServedSc
   proven_ = repeats_welcome_ = outdated_ = false;
   left_.reset();
   leaves_ = faults_ = 0;
+  wrong_states_ = 0;
+  congestion_ = Congestion(most_widening_);
   welcome_.serial = 0;
   begin_epoch(served, epoch, now);
 }
@@ -55,6 +61,7 @@ void ServerConnection::begin_epoch(const ServedScene& served, std::uint64_t epoc
   repeats_welcome_ = replaces;
   welcome_at_ = clock_at_ = piece_at_ = now;
   hashes_ = {};
+  held_ = false;
   device_clock_.reset();
   buttons_ = {};
 }
@@ -70,7 +77,8 @@ bool ServerConnection::leave(SessionEvent event, LeaveReason reason) noexcept {
 }
 
 bool ServerConnection::is_mine(std::span<const std::uint8_t> datagram) const noexcept {
-  return state_ != SessionState::closed && is_of_epoch(datagram, exchange_->epoch(), Direction::up);
+  return state_ != SessionState::closed && !is_before_epochs(datagram) &&
+         is_of_epoch(datagram, exchange_->epoch(), Direction::up);
 }
 
 bool ServerConnection::is_at_fault() const noexcept { return faults_ >= kMostFaults; }
@@ -90,22 +98,29 @@ Result<void> ServerConnection::handle_datagram(std::uint64_t now, std::span<cons
     left_ = leave->reason;
     return {};
   }
-  const auto* numbered = std::get_if<Numbered>(&*said);
-  if (numbered == nullptr) return fail(Errc::invalid, "R-SES-2");  // a join belongs to no epoch
+  const Numbered& numbered = std::get<Numbered>(*said);
   repeats_welcome_ = false;
-  const auto heard = exchange_->handle(now, *numbered, [&](const Part& part, const auto&) { return handle(part, now); });
+  const auto heard = exchange_->handle(now, numbered, [&](const Part& part, const auto&) { return handle(part, now); });
   if (!heard) {
-    if (heard.error().code != Errc::state) ++faults_;
+    const bool may_be_late = heard.error().code == Errc::state || heard.error().rule == std::string_view("R-SES-6");
+    if (!may_be_late) ++faults_;
     return tl::unexpected(heard.error());
   }
-  if (heard->tick && device_clock_) device_clock_->heard(*heard->tick, now);
+  if (heard->round_trip) measured(*heard->round_trip, now);
+  if (device_clock_) device_clock_->heard(heard->number, heard->tick, now);
   return {};
 }
 
+/// in  sample  [us] a round trip
+void ServerConnection::measured(std::int64_t sample, std::uint64_t now) noexcept {
+  const RoundTrip& trip = *exchange_->sent().round_trip();
+  congestion_.round_trip(trip, sample, now);
+  if (exchange_->pieces && sample - trip.least > kPieceQueue) exchange_->pieces->slow_down();
+}
+
 Result<void> ServerConnection::handle(const Part& part, std::uint64_t now) noexcept {
-  static_cast<void>(now);
   if (const auto* state = std::get_if<StatePart>(&part)) {
-    if (state->live != 0 && exchange_->pieces && exchange_->pieces->is_done()) return go_live();
+    if (state->live != 0 && exchange_->pieces && exchange_->pieces->is_done()) return go_live(now);
   } else if (const auto* buttons = std::get_if<ButtonsPart>(&part)) {
     if (buttons->tick >= buttons_.tick) buttons_ = *buttons;
   } else if (const auto* hash = std::get_if<HashPart>(&part)) {
@@ -115,10 +130,12 @@ Result<void> ServerConnection::handle(const Part& part, std::uint64_t now) noexc
 }
 
 /// The client holds the declaration: from the next tick on it gets packets, and may send those of its device.
-Result<void> ServerConnection::go_live() noexcept {
+Result<void> ServerConnection::go_live(std::uint64_t now) noexcept try {
   const auto next = next_state(server_transitions(), state_, SessionEvent::completed);
   if (!next) return {};
-  TACTUS_TRY(exchange_->sender, Sender::create(served_.scene, served_.sender));
+  TACTUS_TRY(auto sender, Sender::create(served_.scene, served_.sender));
+  exchange_->send_with(std::move(sender));
+  congestion_.begin(now);
   if (join_.role == Role::participant) {
     TACTUS_TRY(exchange_->receiver, Receiver::create(served_.device));
     device_clock_.emplace(served_.scene->tick_rate, PlayoutOptions{.fixed = 0});
@@ -126,12 +143,15 @@ Result<void> ServerConnection::go_live() noexcept {
   exchange_->pieces.reset();
   state_ = *next;
   return {};
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
 }
 
 void ServerConnection::compare(const HashPart& said) noexcept {
+  const std::uint64_t newest = exchange_->sent().newest();
+  const std::uint64_t back = static_cast<std::uint16_t>(newest - said.number);
   for (const KnownHash& known : hashes_) {
-    if (known.number == 0 || known.substream != said.substream || static_cast<std::uint16_t>(known.number) != said.number)
-      continue;
+    if (known.number == 0 || known.substream != said.substream || known.number + back != newest) continue;
     if (known.hash == said.hash) return;
     ++wrong_states_;
     exchange_->sender->request_key();
@@ -140,7 +160,10 @@ void ServerConnection::compare(const HashPart& said) noexcept {
 }
 
 Result<void> ServerConnection::submit(std::uint64_t now, std::int64_t tick, const Truth& truth) noexcept {
-  if (!bucket_.is_open(now)) {
+  const bool jammed = congestion_.is_jammed() && now < exchange_->sent_at() + kJammedEvery;
+  held_ = !bucket_.is_open(now) || jammed;
+  if (congestion_.tick(held_, now)) exchange_->sender->set_widening(widening());
+  if (held_) {
     exchange_->hold_tick();
     return {};
   }
@@ -154,8 +177,7 @@ Result<void> ServerConnection::submit(std::uint64_t now, std::int64_t tick, cons
 }
 
 bool ServerConnection::wants_piece(std::uint64_t now) const noexcept {
-  return proven_ && exchange_->pieces && now >= piece_at_ && exchange_->may_send(now) &&
-         exchange_->pieces->next(now, exchange_->patience()).has_value();
+  return proven_ && exchange_->pieces && now >= piece_at_ && exchange_->pieces->next(now, exchange_->patience()).has_value();
 }
 
 bool ServerConnection::wants_welcome(std::uint64_t now) const noexcept {
@@ -176,6 +198,8 @@ std::optional<std::span<const std::uint8_t>> ServerConnection::poll(std::uint64_
     welcome_at_ = now + kWelcomeEvery;
     return writer_.write(welcome_);
   }
+  if (held_) return std::nullopt;  // an acknowledgement would say that what the client has is new
+  if (now >= piece_at_) piece_at_ = exchange_->next_send(now);
   const bool piece = wants_piece(now);
   const auto datagram = exchange_->poll(now, piece, [&](DatagramWriter& writer, std::uint64_t number) {
     if (now >= clock_at_ && !writer.empty()) {  // together with an acknowledgement
@@ -189,15 +213,16 @@ std::optional<std::span<const std::uint8_t>> ServerConnection::poll(std::uint64_
     piece_at_ = now + std::max(kPieceEvery, piece_time_);
     return true;
   });
-  if (datagram && !piece) bucket_.take(static_cast<std::int64_t>(8 * (datagram->size() + kHeaders)));
+  if (datagram && !piece) bucket_.take(static_cast<std::int64_t>(8 * (datagram->size() + headers_)));
   return datagram;
 }
 
 std::optional<std::uint64_t> ServerConnection::next_timeout() const noexcept {
   if (state_ == SessionState::closed) return std::nullopt;
   std::uint64_t due = exchange_->heard_at() + (proven_ ? silence_ : kUnproven);
-  if (const auto acknowledgement = exchange_->due()) due = std::min(due, *acknowledgement);
   if (repeats_welcome_ && state_ == SessionState::receiving) due = std::min(due, welcome_at_);
+  if (held_ || !exchange_->sent().next()) return due;  // nothing else may be said, or there is no number left
+  if (const auto acknowledgement = exchange_->due()) due = std::min(due, *acknowledgement);
   if (proven_ && exchange_->pieces) {
     if (exchange_->pieces->next(piece_at_, exchange_->patience())) due = std::min(due, piece_at_);
     else if (const auto lost = exchange_->pieces->due(exchange_->patience())) due = std::min(due, *lost);
@@ -213,8 +238,15 @@ std::optional<DeviceSample> ServerConnection::device(std::uint64_t now) noexcept
 }
 
 ClientStatus ServerConnection::status() const noexcept {
-  ClientStatus out{
-      .client = client_, .peer = peer_, .state = state_, .role = join_.role, .round_trip = {}, .loss = 0, .traffic = {}};
+  ClientStatus out{.client = client_,
+                   .peer = peer_,
+                   .state = state_,
+                   .role = join_.role,
+                   .round_trip = {},
+                   .loss = 0,
+                   .widening = widening(),
+                   .widened = congestion_.so_far(),
+                   .traffic = {}};
   if (!exchange_) return out;
   out.round_trip = exchange_->sent().round_trip();
   out.loss = std::ldexp(exchange_->sent().loss(), -16);

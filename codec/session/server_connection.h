@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include <tactus/session/congestion.h>
 #include <tactus/session/exchange.h>
 #include <tactus/session/playout_clock.h>
 #include <tactus/session/session_server.h>
@@ -24,6 +25,11 @@ struct ServedScene {
   std::uint64_t hash = 0;   ///< of the declaration
   std::uint64_t start = 0;  ///< [us] at tick 0
   SenderOptions sender;
+
+  /// Within the limits of a client.
+  bool fits(const Join& said) const noexcept {
+    return state_bytes(*scene) <= said.state_limit && declaration->size() <= said.header_limit;
+  }
 };
 
 class ServerConnection {
@@ -33,6 +39,7 @@ class ServerConnection {
   std::uint16_t client() const noexcept { return client_; }
   std::uint64_t peer() const noexcept { return peer_; }  ///< 0: none
   std::uint64_t nonce() const noexcept { return join_.nonce; }
+  const Join& join() const noexcept { return join_; }
   SessionState state() const noexcept { return state_; }
   bool is_free() const noexcept { return state_ == SessionState::closed && leaves_ == 0; }
   const Welcome& welcome() const noexcept { return welcome_; }
@@ -55,12 +62,14 @@ class ServerConnection {
   bool is_silent(std::uint64_t now) const noexcept;
 
   Result<void> submit(std::uint64_t now, std::int64_t tick, const Truth& truth) noexcept;  ///< pre  live
+  double widening() const noexcept { return congestion_.widening(); }
   std::optional<std::span<const std::uint8_t>> poll(std::uint64_t now) noexcept;
   std::optional<std::uint64_t> next_timeout() const noexcept;
 
   std::optional<DeviceSample> device(std::uint64_t now) noexcept;
   ClientStatus status() const noexcept;
   std::uint64_t state_hash(std::size_t substream) const noexcept { return exchange_->sender->state_hash(substream); }
+  std::uint64_t device_hash() const noexcept { return exchange_->receiver->state_hash(0); }  ///< pre  a live participant
 
  private:
   struct KnownHash {
@@ -69,13 +78,15 @@ class ServerConnection {
     std::uint32_t hash = 0;
   };
   Result<void> handle(const Part& part, std::uint64_t now) noexcept;
-  Result<void> go_live() noexcept;
+  Result<void> go_live(std::uint64_t now) noexcept;
+  void measured(std::int64_t sample, std::uint64_t now) noexcept;
   void compare(const HashPart& said) noexcept;
   bool wants_piece(std::uint64_t now) const noexcept;
   bool wants_welcome(std::uint64_t now) const noexcept;
 
   std::uint16_t client_;
-  std::uint64_t silence_, piece_time_;  // [us]; a piece at the rate
+  std::uint64_t silence_, headers_, piece_time_;  // [us], [bytes] around a datagram, [us] of a piece at the rate
+  double most_widening_;
   SessionState state_ = SessionState::closed;
   std::uint64_t peer_ = 0;
   Join join_;
@@ -84,6 +95,8 @@ class ServerConnection {
   std::optional<Exchange> exchange_;
   DatagramWriter writer_{Direction::down};  // of what is outside of the exchange
   TokenBucket bucket_;
+  Congestion congestion_;
+  bool held_ = false;      // the last tick was not sent
   bool proven_ = false;    // it knows the epoch: the address is its own
   bool outdated_ = false;  // there is a newer scene
   bool repeats_welcome_ = false;

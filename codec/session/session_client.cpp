@@ -72,6 +72,7 @@ struct SessionClient::Impl {
   std::unique_ptr<Epoch> current;  // the newest
   std::unique_ptr<Epoch> shown;    // the one before, until the newest is live
   std::uint64_t sign_at = 0;       // [us] of the last sign of life
+  std::uint64_t live_number = 0;   // of the first datagram that said that the client is live; 0: none did yet
   std::uint64_t packet_at = 0;     // [us] of the last packet
   bool feels = false;              // the device is in contact
   std::optional<HashPart> hash;
@@ -94,6 +95,10 @@ SessionClient& SessionClient::operator=(SessionClient&&) noexcept = default;
 SessionClient::~SessionClient() = default;
 
 Result<SessionClient> SessionClient::create(const SessionClientOptions& options) try {
+  if (options.role == Role::participant) {  // so that no session ends for what is known before
+    TACTUS_TRY(SharedScene any, device_scene({}));
+    TACTUS_CHECK(Sender::create(std::move(any), device_sender_options(options.device)));
+  }
   return SessionClient(std::make_unique<Impl>(options));
 } catch (const std::bad_alloc&) {
   return out_of_memory();
@@ -121,6 +126,7 @@ void SessionClient::open(std::uint64_t now, std::uint64_t nonce) noexcept {
   impl_->leaves = 0;
   impl_->current.reset();
   impl_->shown.reset();
+  impl_->offset = {};
 }
 
 void SessionClient::close() noexcept { impl_->close(SessionEvent::close, LeaveReason::bye); }
@@ -128,14 +134,15 @@ void SessionClient::close() noexcept { impl_->close(SessionEvent::close, LeaveRe
 Result<void> SessionClient::handle_datagram(std::uint64_t now, std::span<const std::uint8_t> datagram) noexcept {
   Impl& in = *impl_;
   const bool active = in.state == SessionState::receiving || in.state == SessionState::live;
-  if (active && is_of_epoch(datagram, in.current->exchange.epoch(), Direction::down)) {
-    TACTUS_TRY(const Datagram said, read_datagram(datagram, Direction::down));
+  const bool before = is_before_epochs(datagram);
+  if (!before && !active) return fail(Errc::checksum, "R-SES-1");
+  if (!is_of_epoch(datagram, before ? 0 : in.current->exchange.epoch(), Direction::down)) return fail(Errc::checksum, "R-SES-1");
+  TACTUS_TRY(const Datagram said, read_datagram(datagram, Direction::down));
+  if (!before) {
     if (const auto* numbered = std::get_if<Numbered>(&said)) return in.handle(now, *numbered);
     if (const auto* leave = std::get_if<Leave>(&said)) in.close(SessionEvent::left, leave->reason);
     return {};
   }
-  if (!is_of_epoch(datagram, 0, Direction::down)) return fail(Errc::checksum, "R-SES-1");
-  TACTUS_TRY(const Datagram said, read_datagram(datagram, Direction::down));
   if (const auto* welcome = std::get_if<Welcome>(&said); welcome != nullptr && welcome->nonce == in.nonce)
     return in.welcomed(now, *welcome);
   if (const auto* refusal = std::get_if<Refusal>(&said); refusal != nullptr && refusal->nonce == in.nonce)
@@ -146,17 +153,21 @@ Result<void> SessionClient::handle_datagram(std::uint64_t now, std::span<const s
 Result<void> SessionClient::Impl::welcomed(std::uint64_t now, const Welcome& said) noexcept try {
   const bool repeated = current && said.serial <= current->welcome.serial && state != SessionState::joining;
   if (repeated || !next_state(client_transitions(), state, SessionEvent::welcomed)) return {};
-  if (said.size > options.limits.header_bytes) {
-    close(SessionEvent::close, LeaveReason::limits);
-    return {};
-  }
-  auto next = std::make_unique<Epoch>(said, now);
+  const bool too_large = said.size > options.limits.header_bytes;
+  Welcome taken = said;
+  if (too_large) taken.size = 0;  // nothing of it is to come
+  auto next = std::make_unique<Epoch>(taken, now);
   if (state == SessionState::live) shown = std::move(current);
   current = std::move(next);
   go(SessionEvent::welcomed);
-  sign_at = 0;
+  if (too_large) {
+    close(SessionEvent::rejected, LeaveReason::limits);
+    return {};
+  }
+  sign_at = live_number = 0;
   feels = false;
   hash.reset();
+  buttons = {};
   buttons_wait = false;
   note({.kind = ClientEvent::Kind::welcomed});
   return {};
@@ -168,10 +179,9 @@ Result<void> SessionClient::Impl::handle(std::uint64_t now, const Numbered& said
   const auto take_part = [&](const Part& part, const Exchange::Heard& heard) { return take(part, heard, now); };
   TACTUS_TRY(const Exchange::Heard heard, current->exchange.handle(now, said, take_part));
   if (heard.hash) hash = heard.hash;
-  if (heard.tick) {
-    packet_at = now;
-    current->playout->heard(*heard.tick, now);
-  }
+  if (heard.tick) packet_at = now;
+  if (current->playout) current->playout->heard(heard.number, heard.tick, now);
+  if (current->playout && heard.oldest < heard.tick) current->playout->late(*heard.oldest, now);
   if (buttons_wait && current->exchange.sent().highest_acknowledged() >= buttons_number && buttons_number > 0)
     buttons_wait = false;
   if (state == SessionState::receiving && current->pieces.is_complete()) return complete(now);
@@ -182,7 +192,7 @@ Result<void> SessionClient::Impl::take(const Part& part, const Exchange::Heard& 
   if (const auto* clock = std::get_if<ClockPart>(&part)) {
     if (heard.round_trip) offset.add(clock->time, *heard.round_trip, now);
   } else if (const auto* piece = std::get_if<PiecePart>(&part)) {
-    if (state == SessionState::receiving) return current->pieces.take(piece->index, piece->bytes);
+    return current->pieces.take(piece->index, piece->bytes);
   }
   return {};
 }
@@ -199,7 +209,8 @@ Result<void> SessionClient::Impl::complete(std::uint64_t now) noexcept try {
     current->playout.emplace(scene->tick_rate, options.playout);
     if (options.role == Role::observer) return {};
     TACTUS_TRY(SharedScene device, device_scene(*scene));
-    TACTUS_TRY(current->exchange.sender, Sender::create(std::move(device), device_sender_options(options.device)));
+    TACTUS_TRY(auto sender, Sender::create(std::move(device), device_sender_options(options.device)));
+    current->exchange.send_with(std::move(sender));
     current->device.emplace(scene->tick_rate, options.senses_velocity);
     current->device_start = now;
     return {};
@@ -221,6 +232,9 @@ Result<void> SessionClient::Impl::complete(std::uint64_t now) noexcept try {
 /// When the next sign of life goes.
 std::uint64_t SessionClient::Impl::sign_due() const noexcept {
   if (sign_at == 0) return 0;
+  // Until the server knows that the client is live, it takes no packet of the device, and acknowledges none.
+  if (state == SessionState::live && current->exchange.sent().highest_acknowledged() < live_number)
+    return current->exchange.next_send(sign_at + kParticipant);
   const std::uint64_t sent = std::max(sign_at, current->exchange.asked_at());
   const bool served = state == SessionState::receiving || sent < packet_at + kRecent;
   const std::uint64_t felt = current->exchange.sent().loss() > kSomeLoss ? kFeltAtLoss : kFelt;
@@ -282,6 +296,7 @@ std::optional<std::span<const std::uint8_t>> SessionClient::poll_datagram(std::u
     }
     if (sign) {
       writer.add(StatePart{static_cast<std::uint8_t>(in.state == SessionState::live ? 1 : 0)});
+      if (in.state == SessionState::live && in.live_number == 0) in.live_number = number;
       in.sign_at = now;
     }
     if (in.hash) writer.add(*in.hash);
@@ -301,7 +316,9 @@ std::optional<std::uint64_t> SessionClient::next_timeout() const noexcept {
   const Impl& in = *impl_;
   if (in.state == SessionState::closed) return std::nullopt;
   if (in.state == SessionState::joining) return std::min(in.join_at, in.opened_at + kJoinFor);
-  std::uint64_t due = std::min(in.sign_due(), in.current->exchange.heard_at() + in.options.silence);
+  std::uint64_t due = in.current->exchange.heard_at() + in.options.silence;
+  if (!in.current->exchange.sent().next()) return due;  // there is no number left to say anything with
+  due = std::min(due, in.sign_due());
   if (in.buttons_wait) due = std::min(due, in.current->exchange.next_send(in.buttons_at));
   if (const auto acknowledgement = in.current->exchange.due()) due = std::min(due, *acknowledgement);
   return due;
@@ -320,7 +337,7 @@ std::int64_t SessionClient::shown_tick(std::uint64_t now) noexcept {
 double SessionClient::force_share(std::uint64_t now) noexcept {
   const Impl& in = *impl_;
   const std::uint64_t heard = in.state == SessionState::live ? in.current->exchange.heard_at() : 0;
-  if (!in.feels) impl_->fade.release();
+  if (!in.feels) impl_->fade.release(now);
   return std::ldexp(static_cast<double>(impl_->fade.share(now, heard)), -16);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The client's end of a session: a function of datagrams and time. spec/70-session.md. For how to drive it, see session_server.h.
+/// The client's end of a session: a function of datagrams and time. spec/70-session.md. For how to drive it, see session_server.h
+/// and examples/session.cpp.
 #pragma once
 
 #include <cstddef>

@@ -52,7 +52,8 @@ SessionServer::~SessionServer() = default;
 
 Result<SessionServer> SessionServer::create(SharedScene scene, const SessionServerOptions& options, std::uint64_t entropy,
                                             std::uint64_t now) try {
-  if (options.clients == 0 || options.rate > 1'000'000'000'000) return fail(Errc::invalid_argument, "R-API-4");
+  const bool widens = options.widening >= 1 && options.widening <= 64;  // false for NaN
+  if (options.clients == 0 || options.rate > 1'000'000'000'000 || !widens) return fail(Errc::invalid_argument, "R-API-4");
   auto impl = std::make_unique<Impl>();
   impl->options = options;
   impl->options.sender.policy.baseline = Baseline::acknowledged;
@@ -85,7 +86,8 @@ Result<void> SessionServer::replace_scene(SharedScene scene, std::uint64_t now) 
   TACTUS_CHECK(impl_->serve(std::move(scene), now));
   for (auto& connection : impl_->connections) {
     if (connection->state() == SessionState::closed) continue;
-    if (connection->is_proven()) connection->begin_epoch(impl_->served, draw(impl_->entropy), now);
+    if (!impl_->served.fits(connection->join())) impl_->drop(*connection, SessionEvent::close, LeaveReason::limits);
+    else if (connection->is_proven()) connection->begin_epoch(impl_->served, draw(impl_->entropy), now);
     else connection->outdate();
   }
   return {};
@@ -105,14 +107,18 @@ void SessionServer::Impl::drop(ServerConnection& connection, SessionEvent event,
 
 /// A place for the client, or why there is none.
 Result<void> SessionServer::Impl::join(std::uint64_t now, std::uint64_t peer, const Join& said) noexcept {
+  const auto refuse = [&](LeaveReason reason) { reply.emplace(peer, Refusal{said.nonce, reason}); };
+  if (!said.is_known) {
+    refuse(LeaveReason::version);
+    return {};
+  }
   ServerConnection* place = find(peer);
   if (place != nullptr && place->state() != SessionState::closed && place->nonce() == said.nonce) {
     reply.emplace(peer, place->welcome());
     return {};
   }
   if (place != nullptr) drop(*place, SessionEvent::left, LeaveReason::bye);  // the client has begun anew
-  const auto refuse = [&](LeaveReason reason) { reply.emplace(peer, Refusal{said.nonce, reason}); };
-  if (state_bytes(*served.scene) > said.state_limit || served.declaration->size() > said.header_limit) {
+  if (!served.fits(said)) {
     refuse(LeaveReason::limits);
     return {};
   }
@@ -144,7 +150,7 @@ Result<void> SessionServer::handle_datagram(std::uint64_t now, std::uint64_t pee
     if (connection->needs_epoch()) connection->begin_epoch(in.served, draw(in.entropy), now);
     return handled;
   }
-  if (!is_of_epoch(datagram, 0, Direction::up)) return fail(Errc::checksum, "R-SES-1");
+  if (!is_before_epochs(datagram) || !is_of_epoch(datagram, 0, Direction::up)) return fail(Errc::checksum, "R-SES-1");
   TACTUS_TRY(const Datagram said, read_datagram(datagram, Direction::up));
   const Join* const join = std::get_if<Join>(&said);
   if (join == nullptr) return fail(Errc::invalid, "R-SES-2");
@@ -157,9 +163,15 @@ void SessionServer::handle_timeout(std::uint64_t now) noexcept {
 }
 
 Result<void> SessionServer::submit(std::uint64_t now, std::int64_t tick, const Truth& truth) noexcept {
-  for (auto& connection : impl_->connections)
-    if (connection->state() == SessionState::live) TACTUS_CHECK(connection->submit(now, tick, truth));
-  return {};
+  Result<void> first;
+  for (auto& connection : impl_->connections) {
+    if (connection->state() != SessionState::live) continue;
+    const double before = connection->widening();
+    if (const auto done = connection->submit(now, tick, truth); !done && first) first = done;
+    if (connection->widening() != before)
+      impl_->note({.kind = ServerEvent::Kind::widened, .client = connection->client(), .widening = connection->widening()});
+  }
+  return first;
 }
 
 void SessionServer::close(std::uint16_t client, LeaveReason reason) noexcept {
@@ -203,6 +215,10 @@ std::optional<DeviceSample> SessionServer::device(std::uint16_t client, std::uin
   return impl_->connections[client]->device(now);
 }
 
+std::uint64_t SessionServer::device_hash(std::uint16_t client) const noexcept {
+  return impl_->connections[client]->device_hash();
+}
+bool SessionServer::has_peer(std::uint64_t peer) const noexcept { return peer != 0 && impl_->find(peer) != nullptr; }
 std::uint16_t SessionServer::clients() const noexcept { return impl_->options.clients; }
 ClientStatus SessionServer::status(std::uint16_t client) const noexcept { return impl_->connections[client]->status(); }
 

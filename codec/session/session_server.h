@@ -5,7 +5,10 @@
 ///   while (auto d = server.poll_datagram(now)) send d->bytes to d->peer;
 ///   while (auto e = server.poll_event()) tell the user;
 ///   wait for a datagram, the next tick, or server.next_timeout(), whichever comes first.
-/// Times are microseconds of any clock of the program that never steps back.
+/// Take all datagrams before the next submit(): what still waits then is left out, and counted as Traffic::packets_held.
+/// A scene for sessions keeps baselines, SceneBuilder::baselines(64): with one alone a packet is a key packet unless the one before it is
+/// acknowledged already. Its tick rate is that of submit(): bounds hold at the ticks that were submitted.
+/// Times are microseconds of any clock of the program that never steps back. examples/session.cpp is a whole program with both ends.
 #pragma once
 
 #include <cstddef>
@@ -30,25 +33,30 @@ struct ClientStatus {
   SessionState state = SessionState::closed;
   Role role = Role::observer;
   std::optional<RoundTrip> round_trip;
-  double loss = 0;  ///< share of the last 256 datagrams to the client
+  double loss = 0;      ///< share of the last 256 datagrams to the client
+  double widening = 1;  ///< factor of the bounds now
+  Widening widened;     ///< since it joined
   Traffic traffic;
 };
 
 struct ServerEvent {
   enum class Kind : std::uint8_t {
-    joined,  ///< and gets the declaration
-    live,    ///< holds it
-    left,    ///< for `reason`
+    joined,   ///< and gets the declaration
+    live,     ///< holds it
+    left,     ///< for `reason`
+    widened,  ///< its bounds are multiplied by `widening` from now on
   };
   Kind kind = Kind::joined;
   std::uint16_t client = 0;
   LeaveReason reason = LeaveReason::bye;
+  double widening = 1;
 };
 
 /// Threads: one at a time. No call on the way of a datagram allocates but those that bring a client live; none throws.
 class SessionServer {
  public:
-  /// in   entropy  64 bits from the system, that nobody else can tell;  now  [us]
+  /// in   entropy  64 bits from the system, that nobody else can tell;  now  [us]. Epochs are drawn from them so that who has one could
+  ///               work out the next: without the seal, clients of one server trust each other
   /// err  as Sender::create; invalid_argument R-API-4: no client, or more than 65535
   static Result<SessionServer> create(SharedScene scene, const SessionServerOptions& options, std::uint64_t entropy,
                                       std::uint64_t now);
@@ -57,7 +65,8 @@ class SessionServer {
   /// err  the datagram is dropped, and nothing has changed but the traffic: checksum R-SES-1; those of R-SES rules
   Result<void> handle_datagram(std::uint64_t now, std::uint64_t peer, std::span<const std::uint8_t> datagram) noexcept;
   void handle_timeout(std::uint64_t now) noexcept;
-  /// Code a tick for every live client.   time that of Sender::encode for each client   err  as Sender::encode
+  /// Code a tick for every live client.   time that of Sender::encode for each client
+  /// err  as Sender::encode, the first; all clients that can are served
   Result<void> submit(std::uint64_t now, std::int64_t tick, const Truth& truth) noexcept;
   /// Another scene: clients get a new epoch, and show the old one until they hold the new. Ticks begin anew.   err  as create()
   Result<void> replace_scene(SharedScene scene, std::uint64_t now);
@@ -76,7 +85,10 @@ class SessionServer {
 
   /// The device of a live participant; nothing: it was not heard yet, or the client is an observer.
   std::optional<DeviceSample> device(std::uint16_t client, std::uint64_t now) noexcept;
-  std::uint16_t clients() const noexcept;  ///< most of them; client < clients()
+  /// Hash of the state of its device scene.   pre  a live participant
+  std::uint64_t device_hash(std::uint16_t client) const noexcept;
+  bool has_peer(std::uint64_t peer) const noexcept;  ///< there is something to be said to it yet.   time O(clients)
+  std::uint16_t clients() const noexcept;            ///< most of them; client < clients()
   ClientStatus status(std::uint16_t client) const noexcept;
   /// Hash of a substream's state as the client has it when it has got all packets.   pre  live
   std::uint64_t state_hash(std::uint16_t client, std::size_t substream) const noexcept;

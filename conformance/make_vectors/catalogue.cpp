@@ -11,6 +11,7 @@
 #include "conformance/make_vectors/features.h"
 #include "conformance/make_vectors/sha256.h"
 #include "conformance/report.h"
+#include "conformance/session_report.h"
 
 namespace tactus::conformance {
 namespace {
@@ -58,7 +59,8 @@ std::vector<std::string> checked_rules(const Case& c) {
 }
 
 std::string case_json(const Case& c, std::string_view answer) {
-  Features f = features(c.input.bytes, answer);
+  Features f = c.session ? Features{} : features(c.input.bytes, answer);
+  if (c.session) f.flags.insert("session");
   if (c.rejection && !c.rejection->later.empty()) f.flags.insert("order");
   if (!c.replica.empty()) f.flags.insert("client");
   if (c.input.repeat) f.flags.insert("large");
@@ -74,6 +76,7 @@ std::string case_json(const Case& c, std::string_view answer) {
   if (!rules.empty()) out << ", \"rules\": " << json_list(rules);
   out << ",\n     \"profile\": " << json_list(f.profiles) << ", \"flags\": " << json_list(flags);
   if (!c.replica.empty()) out << ", \"args\": [\"--replica\", \"" << c.replica << "\"]";
+  if (c.session) out << ", \"args\": [\"--session\"]";
   if (c.input.repeat)
     out << ", \"repeat\": {\"at\": " << c.input.repeat->at << ", \"bytes\": \"" << hex(c.input.repeat->pattern)
         << "\", \"times\": " << c.input.repeat->times << '}';
@@ -89,6 +92,10 @@ struct Answer {
 /// What a testee must print: our decoder's lines, but the verdict is the case's own.
 Answer answer(const Case& c) {
   std::ostringstream out;
+  if (c.session) {
+    const bool read = report_session(std::string(as_text(c.input.bytes)), out);
+    return {out.str(), read};
+  }
   std::optional<Interpolation> replica;
   if (c.replica == "none") replica = Interpolation::none;
   if (c.replica == "linear") replica = Interpolation::linear;
@@ -99,6 +106,8 @@ Answer answer(const Case& c) {
   return {out.str(), !done && errc_name(done.error().code) == c.rejection->errc && done.error().rule == c.rejection->rule};
 }
 
+const char* suffix_of(const Case& c) { return c.session ? ".script" : ".tct"; }
+
 /// Write both files of a case.
 bool write_case(const Case& c, const Answer& expected, const fs::path& folder) {
   const std::string base = (folder / c.name).string();
@@ -106,7 +115,7 @@ bool write_case(const Case& c, const Answer& expected, const fs::path& folder) {
   const Bytes stored = c.input.written();
   if (stored.size() > kLargestFile)
     std::fprintf(stderr, "%s: %zu bytes, at most %zu\n", base.c_str(), stored.size(), kLargestFile);
-  const bool written = write_file(base + ".tct", as_text(stored)) && write_file(base + ".jsonl", expected.lines);
+  const bool written = write_file(base + suffix_of(c), as_text(stored)) && write_file(base + ".jsonl", expected.lines);
   return written && expected.as_expected && stored.size() <= kLargestFile;
 }
 
@@ -124,11 +133,15 @@ void Catalogue::begin(const std::string& stem, const std::string& what) { stems_
 
 void Catalogue::valid(const std::string& name, const std::string& what, Input input, std::vector<std::string> rules,
                       const std::string& replica) {
-  add(name, {"", what, section_, std::move(rules), std::move(input), replica, std::nullopt});
+  add(name, {"", what, section_, std::move(rules), std::move(input), replica, std::nullopt, false});
 }
 
 void Catalogue::invalid(const std::string& name, const std::string& what, const Rejection& rejection, Input input) {
-  add(name, {"", what, "", {}, std::move(input), "", rejection});
+  add(name, {"", what, "", {}, std::move(input), "", rejection, false});
+}
+
+void Catalogue::session(const std::string& name, const std::string& what, Input script, std::vector<std::string> rules) {
+  add(name, {"", what, section_, std::move(rules), std::move(script), "", std::nullopt, true});
 }
 
 void Catalogue::add(const std::string& name, Case entry) {

@@ -45,6 +45,7 @@ struct Case {
   Input input;
   std::string replica;                 ///< none, linear, playout or empty
   std::optional<Rejection> rejection;  ///< nothing: the file is valid
+  bool session = false;                ///< the input is a script for an end of a session, not a stream
 };
 
 /// A folder of vectors.
@@ -62,9 +63,12 @@ class Catalogue {
   void section(const std::string& section) { section_ = section; }
   void valid(const std::string& name, const std::string& what, Input input, std::vector<std::string> rules = {},
              const std::string& replica = "");
+  /// What a client does with a script of datagrams.
+  void session(const std::string& name, const std::string& what, Input script, std::vector<std::string> rules = {});
   void invalid(const std::string& name, const std::string& what, const Rejection& rejection, Input input);
 
-  /// Write manifest.json, vectors/<stem>.json and vectors/<stem>/NNN-name.{tct,jsonl} below `folder`. False and a message on stderr
+  /// Write manifest.json, vectors/<stem>.json and vectors/<stem>/NNN-name.{tct or script, jsonl} below `folder`. False and a message on
+  /// stderr
   /// when our own decoder does not answer as a case expects; everything is written nevertheless.
   bool write(const std::filesystem::path& folder) const;
   /// Replace the table between the two marks of the specification's index.
@@ -93,6 +97,8 @@ void add_rigid_edges(Catalogue& catalogue);
 void add_rigid_orders(Catalogue& catalogue);
 void add_client(Catalogue& catalogue);
 void add_client_playout(Catalogue& catalogue);
+void add_session(Catalogue& catalogue);
+void add_session_server(Catalogue& catalogue);
 void add_deformable_header(Catalogue& catalogue);
 void add_deformable_limits(Catalogue& catalogue);
 void add_deformable_main(Catalogue& catalogue);

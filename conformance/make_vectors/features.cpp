@@ -18,6 +18,7 @@ constexpr std::array kFlags{
     Flag{"layered", "a deformable object has haptic and visual layers"},
     Flag{"models_kept", "entropy models are part of a deformable object's state"},
     Flag{"client", "runs a client: the testee is called with --replica"},
+    Flag{"session", "runs the client's end of a session: the testee is called with --session and reads a .script file"},
     Flag{"large", "the input has bytes that are not in the .tct file but in the member repeat"},
 };
 

@@ -23,6 +23,7 @@ class Address {
   std::string text() const;  ///< as parse() takes it, in numbers
   bool is_loopback() const noexcept;
   std::uint64_t key() const noexcept;  ///< equal for equal addresses, else almost certainly different; never 0
+  std::span<const std::uint8_t> bytes() const noexcept { return {bytes_, size_}; }  ///< equal for equal addresses only
   friend bool operator==(const Address& a, const Address& b) noexcept;
 
  private:
@@ -30,6 +31,12 @@ class Address {
   static constexpr std::size_t kLargest = 28;  // sockaddr_in6
   alignas(8) std::uint8_t bytes_[kLargest]{};  // a sockaddr_in or sockaddr_in6
   std::uint32_t size_ = 0;
+};
+
+/// A datagram to be sent.
+struct Transmit {
+  Address to;
+  std::span<const std::uint8_t> bytes;
 };
 
 /// pre  one thread at a time.   No call after the first two allocates, blocks or throws.

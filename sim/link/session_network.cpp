@@ -10,7 +10,7 @@
 namespace tactus::sim {
 namespace {
 
-constexpr std::uint64_t kPatience = 60'000'000, kLook = 10'000;  // [us]
+constexpr std::uint64_t kPatience = 60'000'000, kLook = 10'000, kFarewell = 1'000'000;  // [us]
 
 Traffic difference(const Traffic& now, const Traffic& before) noexcept {
   Traffic out = now;
@@ -22,6 +22,11 @@ Traffic difference(const Traffic& now, const Traffic& before) noexcept {
   out.bytes_heard -= before.bytes_heard;
   out.packets_heard -= before.packets_heard;
   out.payload_heard -= before.payload_heard;
+  out.packets_refused -= before.packets_refused;
+  out.packets_held -= before.packets_held;
+  out.lost -= before.lost;
+  out.ticks_held -= before.ticks_held;
+  out.wrong_states -= before.wrong_states;
   return out;
 }
 
@@ -31,8 +36,10 @@ Result<std::unique_ptr<SessionNetwork>> SessionNetwork::create(SharedScene scene
                                                                const NetworkOptions& options) {
   std::unique_ptr<SessionNetwork> network(new SessionNetwork);
   network->tick_rate_ = scene->tick_rate;
+  network->observer_ = options.observer;
   Random seeds(options.downlink.seed);
-  SessionServerOptions of_server{.sender = sender, .clients = static_cast<std::uint16_t>(std::max<std::size_t>(1, users))};
+  const SessionServerOptions of_server{
+      .sender = sender, .clients = static_cast<std::uint16_t>(std::max<std::size_t>(1, users)), .rate = options.rate};
   TACTUS_TRY(auto server, SessionServer::create(std::move(scene), of_server, seeds.next(), network->now_));
   network->server_ = std::make_unique<SessionServer>(std::move(server));
   for (std::size_t i = 0; i < users; ++i) {
@@ -67,9 +74,10 @@ Result<void> SessionNetwork::lay_links(const NetworkOptions& options) {
 
 Result<void> SessionNetwork::connect() {
   const auto all_live = [&] {
-    return std::ranges::all_of(users_, [](const User& user) {
+    return std::ranges::all_of(users_, [&](const User& user) {
       const SessionStatus status = user.client->status();
-      return status.state == SessionState::live && status.round_trip;
+      return status.state == SessionState::live && status.round_trip &&
+             server_->status(status.client).state == SessionState::live;
     });
   };
   drain();
@@ -84,21 +92,36 @@ Result<void> SessionNetwork::connect() {
   return {};
 }
 
+void SessionNetwork::show(Sighting::Place place, std::size_t user, std::span<const std::uint8_t> datagram) const noexcept {
+  if (observer_) observer_({place, user, now_, datagram});
+}
+
 void SessionNetwork::drain() noexcept {
-  while (const auto datagram = server_->poll_datagram(now_)) users_[datagram->peer - 1].down->send(link_time(), datagram->bytes);
+  while (const auto datagram = server_->poll_datagram(now_)) {
+    const std::size_t user = datagram->peer - 1;
+    show(Sighting::Place::server_sends, user, datagram->bytes);
+    users_[user].down->send(link_time(), datagram->bytes);
+  }
   while (server_->poll_event()) continue;
-  for (User& user : users_) {
-    while (const auto datagram = user.client->poll_datagram(now_)) user.up->send(link_time(), *datagram);
-    while (user.client->poll_event()) continue;
+  for (std::size_t i = 0; i < users_.size(); ++i) {
+    while (const auto datagram = users_[i].client->poll_datagram(now_)) {
+      show(Sighting::Place::client_sends, i, *datagram);
+      users_[i].up->send(link_time(), *datagram);
+    }
+    while (users_[i].client->poll_event()) continue;
   }
 }
 
 void SessionNetwork::deliver() noexcept {
   for (std::size_t i = 0; i < users_.size(); ++i) {
-    while (const auto arrival = users_[i].up->poll(link_time()))
+    while (const auto arrival = users_[i].up->poll(link_time())) {
+      show(Sighting::Place::server_hears, i, arrival->bytes);
       static_cast<void>(server_->handle_datagram(now_, i + 1, arrival->bytes));
-    while (const auto arrival = users_[i].down->poll(link_time()))
+    }
+    while (const auto arrival = users_[i].down->poll(link_time())) {
+      show(Sighting::Place::client_hears, i, arrival->bytes);
       static_cast<void>(users_[i].client->handle_datagram(now_, arrival->bytes));
+    }
     users_[i].client->handle_timeout(now_);
   }
   server_->handle_timeout(now_);
@@ -146,6 +169,12 @@ Result<void> SessionNetwork::to_clients(std::int64_t tick, const Truth& truth) {
   deliver();
   drain();
   return {};
+}
+
+void SessionNetwork::leave() noexcept {
+  for (User& user : users_) user.client->close();
+  drain();
+  advance(now_ + kFarewell);
 }
 
 Network::View SessionNetwork::view(std::size_t user) noexcept {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -17,11 +18,23 @@
 
 namespace tactus::sim {
 
+/// A datagram at an end: when the end hands it to the network, or when it comes out of it there.
+struct Sighting {
+  enum class Place : std::uint8_t { client_sends, client_hears, server_sends, server_hears };
+  Place place = Place::client_sends;
+  std::size_t user = 0;    ///< of the client
+  std::uint64_t time = 0;  ///< [us] on the clock of both ends; never falls
+  std::span<const std::uint8_t> datagram;
+};
+
 struct NetworkOptions {
   LinkOptions uplink, downlink;  ///< of user 0; those of others differ by their seeds
   DeviceCoding device{};
   PlayoutOptions playout{};
   Role role = Role::participant;  ///< of every client
+  std::uint64_t rate = 0;         ///< [bit/s] at most, to each client; 0: no limit
+  /// Sees each datagram at both ends, from the first join on. It may not throw.
+  std::function<void(const Sighting&)> observer{};
 };
 
 class SessionNetwork final : public Network {
@@ -37,14 +50,18 @@ class SessionNetwork final : public Network {
   std::span<const DeviceSample> heard() const noexcept override { return heard_; }
   Result<void> to_clients(std::int64_t tick, const Truth& truth) override;  ///< err  of SessionServer::submit
   View view(std::size_t user) noexcept override;
+  /// The clients end their sessions, and a second passes.
+  void leave() noexcept;
 
   SessionClient& client(std::size_t user) noexcept { return *users_[user].client; }
   SessionStatus status(std::size_t user) const noexcept { return users_[user].client->status(); }
   SessionServer& server() noexcept { return *server_; }
-  std::uint64_t now() const noexcept { return now_; }  ///< [us] on the clock of both ends
+  std::uint64_t now() const noexcept { return now_; }      ///< [us] on the clock of both ends
+  std::uint64_t start() const noexcept { return start_; }  ///< [us] of tick 0
   /// Counters of the links since tick 0.
   const LinkCounters& uplink(std::size_t user) const noexcept { return users_[user].up->counters(); }
   const LinkCounters& downlink(std::size_t user) const noexcept { return users_[user].down->counters(); }
+  Widening widened(std::size_t user) const noexcept { return server_->status(users_[user].number).widened; }
   Traffic sent_to(std::size_t user) const noexcept;  ///< by the server, since tick 0
   Traffic sent_by(std::size_t user) const noexcept;  ///< by the client, since tick 0
 
@@ -59,6 +76,7 @@ class SessionNetwork final : public Network {
   Result<void> lay_links(const NetworkOptions& options);
   Result<void> connect();
   void drain() noexcept;
+  void show(Sighting::Place place, std::size_t user, std::span<const std::uint8_t> datagram) const noexcept;
   void deliver() noexcept;
   void advance(std::uint64_t until) noexcept;
   std::uint64_t time_of(std::int64_t tick) const noexcept;
@@ -67,6 +85,7 @@ class SessionNetwork final : public Network {
   std::unique_ptr<SessionServer> server_;
   std::vector<User> users_;
   std::vector<DeviceSample> heard_;
+  std::function<void(const Sighting&)> observer_;
   std::uint64_t now_ = 1'000'000, links_since_ = now_;
   std::uint64_t start_ = 0;  // [us] of tick 0
   std::uint64_t tick_rate_ = 1000;

@@ -10,16 +10,17 @@
 #include <tactus/metrics/errors.h>
 #include <tactus/sender.h>
 #include <tactus/sim/link/session_network.h>
-#include <tactus/trace/frame.h>
+#include <tactus/trace/trace_scene.h>
 
 namespace tactus::sim::study {
 
-/// A recorded motion of rigid objects.
+/// A recorded motion.
 struct Motion {
   std::string name;
   TraceInfo info;
-  std::vector<TraceFrame> frames;  ///< of ticks 0, 1, 2, ...
-  RigidTriggers bounds;
+  std::vector<TraceFrame> frames;  ///< of ticks 0, 1, 2, ...; shapes only where they are new
+  SenderOptions sender{};
+  TraceCoding coding{};
 };
 
 /// Three bodies that swing by 0.15 m and 34 deg at 0.5 to 1 Hz, without being told their angular velocity: 1 mm and 1 deg.
@@ -29,15 +30,18 @@ struct SessionCase {
   std::string group, name;  ///< "loss", "10 %"
   LinkOptions link{};       ///< the same there and back, but for the seed
   PlayoutOptions playout{};
+  std::uint64_t rate = 0;  ///< [bit/s] at most, down; 0: no limit
 };
 
 struct SessionResult {
   SessionCase of;
-  std::uint64_t ticks = 0, over = 0;                    ///< judged; with any bound broken
-  std::uint64_t position = 0, rotation = 0, force = 0;  ///< ticks over each bound
-  double longest = 0, mean = 0;                         ///< [s] runs of ticks over a bound
-  double behind = 0;                                    ///< [s] the tick shown, on average
+  std::uint64_t ticks = 0,
+                over = 0;  ///< judged: all that are shown, without rigid objects those with a new shape; with any bound broken
+  std::uint64_t position = 0, rotation = 0, force = 0, shape = 0;  ///< ticks over each bound
+  double longest = 0, mean = 0;                                    ///< [s] runs of ticks over a bound
+  double behind = 0;                                               ///< [s] the tick shown, on average
   Traffic down{}, up{};
+  Widening widened{};
   double seconds = 0;
   double recovery = 0;     ///< [s] after the last outage until the client has a state sent after it; 0: there was none
   double server_time = 0;  ///< [s] CPU, median: coding a tick and its datagrams
@@ -49,7 +53,7 @@ Result<SessionResult> run_session(const Motion& motion, const SessionCase& one);
 /// Payload of packets that build on the one before, over a network that loses nothing [bit/s].   err  of Sender
 Result<double> chain_payload(const Motion& motion);
 
-/// Losses, jitter, bursts, delays, playout delays, other disorder, outages.   in  brief  a few of them
-std::vector<SessionCase> session_cases(bool brief);
+/// Losses, jitter, bursts, delays, playout delays, other disorder, outages.   in  brief  a few of them;  seed  of every network
+std::vector<SessionCase> session_cases(bool brief, std::uint64_t seed);
 
 }  // namespace tactus::sim::study

@@ -102,6 +102,12 @@ Aim Spiral::at(double share) const noexcept {
           growth_ * outward + (radius * sweep_) * onward + Vec3{0, 0, rise_}};
 }
 
+std::uint64_t hand_seed(std::uint64_t seed, std::size_t user) noexcept {
+  Random seeds(seed);
+  for (std::size_t i = 0; i < user; ++i) seeds.next();
+  return seeds.next();
+}
+
 Hand::Hand(const SceneUser& user, Grip grip, std::uint64_t seed)
     : user_(user),
       random_(seed),

@@ -34,6 +34,9 @@ constexpr HandImpedance hand_impedance(Grip grip) noexcept {
   return {};
 }
 
+/// Seed of the hand of a scene's user, in a simulation or a session of this seed.
+std::uint64_t hand_seed(std::uint64_t seed, std::size_t user) noexcept;
+
 /// Share of the way done at share s of the time, with zero velocity and acceleration at both ends (Flash and Hogan 1985), and its
 /// slope.
 struct MinimumJerk {

@@ -11,6 +11,9 @@
 #include <string>
 #include <string_view>
 
+#include <tactus/receiver.h>
+#include <tactus/rigid/contact.h>
+#include <tactus/rigid/trigger.h>
 #include "tests/unit/deformable_fixture.h"
 
 namespace tactus {
@@ -133,6 +136,70 @@ TEST(Sender, SaysNothingOfWhatHasNoNewShape) {
   EXPECT_EQ(substreams(2, {.objects = frame.samples, .deformables = last}), (std::set<std::size_t>{3}));
   EXPECT_EQ(substreams(3, {.objects = frame.samples, .deformables = truth.deformables}), (std::set<std::size_t>{1, 2}));
   EXPECT_EQ(substreams(4, {.objects = frame.samples, .deformables = truth.deformables}), (std::set<std::size_t>{}));
+}
+
+/// What a receiver of all packets shows is within the bounds times their factor; a narrower one holds from the next tick on.
+TEST(Sender, WidenedBoundsHoldAndAskForLess) {
+  const SharedScene scene = make_scene();
+  const SenderOptions options;
+  std::array<std::size_t, 4> bytes{}, steps{1, 4, 8, 1};
+  auto sender = Sender::create(scene, options).value();
+  auto receiver = Receiver::create(scene).value();
+  World world(3);
+  double worst = 0;  // error of a position over its given bound
+  for (std::int64_t tick = 0; tick < 2000; ++tick) {
+    const auto phase = static_cast<std::size_t>(tick / 500);
+    if (tick % 500 == 0) sender.set_widening(static_cast<double>(steps[phase]));
+    Frame frame = world.step();
+    const Truth truth = frame.truth();
+    for (const Packet& packet : all(sender.encode(tick, truth))) {
+      bytes[phase] += packet.bytes.size();
+      ASSERT_TRUE(receiver.push(packet.bytes));
+    }
+    const double factor = static_cast<double>(steps[phase]);
+    const RigidTriggers& t = options.triggers;
+    const Pose shown = to_pose(receiver.replica().pose(0, tick), scene->grid.position);
+    const double error = norm(shown.position - frame.samples[0].pose.position);
+    if (phase > 0) worst = std::max(worst, error / t.visual_position);
+    EXPECT_LE(error, factor * t.visual_position);
+    EXPECT_LE(angle_between(shown.rotation, frame.samples[0].pose.rotation), factor * t.visual_rotation);
+    const Vec3 force = contact_force(frame.contacts[0], frame.samples[0].pose);
+    EXPECT_LE(haptic_ratio(t, force, contact_force(frame.contacts[0], shown)), factor);
+    for (std::size_t object = 0; object < 2; ++object) {  // those of profile main, which keeps its bounds
+      const auto shape = receiver.replica().displacements(object, tick);
+      for (std::size_t v = 0; v < shape.size(); ++v) {
+        double squared = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          const double e = std::ldexp(shape[v][axis], -scene->grid.position) -
+                           static_cast<double>(truth.deformables[object].displacements[3 * v + axis]);
+          squared += e * e;
+        }
+        EXPECT_LE(std::sqrt(squared), factor * options.deformable.thresholds.visual);
+      }
+    }
+  }
+  EXPECT_GT(worst, 1.2) << "they are used";
+  EXPECT_LT(2 * bytes[1], bytes[0]);
+  EXPECT_LT(bytes[2], bytes[1]);
+  EXPECT_GT(bytes[3], bytes[1]);
+}
+
+TEST(Sender, AWideningIsAtLeastOne) {
+  const SharedScene scene = make_scene();
+  const auto hashes_with = [&](double factor) {
+    auto sender = Sender::create(scene).value();
+    sender.set_widening(factor);
+    World world;
+    for (std::int64_t tick = 0; tick < 200; ++tick) {
+      Frame frame = world.step();
+      all(sender.encode(tick, frame.truth()));
+    }
+    return hashes(sender);
+  };
+  const auto as_given = hashes_with(1);
+  for (const double factor : {0.0, -3.0, 0.5, std::numeric_limits<double>::quiet_NaN()}) EXPECT_EQ(hashes_with(factor), as_given);
+  EXPECT_EQ(hashes_with(1e300), hashes_with(64));
+  EXPECT_NE(hashes_with(64), as_given);
 }
 
 TEST(Sender, ASceneWithoutMotionNeedsNoSamples) {

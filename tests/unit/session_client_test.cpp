@@ -8,6 +8,7 @@
 
 #include <tactus/rigid/rigid_state.h>
 #include <tactus/scene/scene_builder.h>
+#include "tests/unit/deformable_fixture.h"
 #include "tests/unit/session_fixture.h"
 
 namespace tactus {
@@ -141,6 +142,91 @@ TEST(SessionClient, ForceFadesWithin100MillisecondsWithoutNewsAndReturns) {
   EXPECT_LE(zero_at, 7'000'000u + 5'000 + 100'000 + 1'000);
   EXPECT_LE(largest_step, 0.035);
   EXPECT_EQ(before, 1) << "long after the outage";
+}
+
+/// A scene of nothing but a mesh: its packets tell the time, too, and the shape of the tick shown is within its bounds.
+TEST(SessionClient, ShowsASceneOfMeshesOnly) {
+  constexpr std::uint32_t kSquares = 12;
+  const TriMesh mesh = testing::sheet(kSquares, kSquares);
+  const SharedScene scene = SceneBuilder(60).deformable("sheet", mesh).baselines(64).build().value();
+  SessionWorld world(scene, {});
+  world.add({}, {.seed = 1, .delay = 20'000}, {.seed = 2, .delay = 20'000});
+  testing::DentedSheet sheet(mesh, kSquares);
+  std::vector<testing::SheetFrame> frames;
+  DeformableTruth shape;
+  double worst = 0;
+  int judged = 0;
+  for (int i = 0; i < 300; ++i) {
+    world.step([&](std::int64_t tick) {
+      frames.push_back(sheet.frame(tick));
+      shape = frames.back().truth();
+      return Truth{.objects = {}, .contacts = {}, .deformables = {&shape, 1}};
+    });
+    SessionClient& client = *world.ends[0].client;
+    const std::int64_t shown = client.shown_tick(world.now);
+    if (shown < 10) continue;
+    ++judged;
+    const auto displacements = client.receiver()->replica().displacements(0, shown);
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+      const double unit = std::ldexp(1.0, -scene->grid.position);
+      const Vec3 u{unit * displacements[v][0], unit * displacements[v][1], unit * displacements[v][2]};
+      worst = std::max(worst, norm(u - testing::vertex_of(frames[static_cast<std::size_t>(shown)].displacements, v)));
+    }
+  }
+  EXPECT_GT(judged, 250);
+  EXPECT_LE(worst, DeformableThresholds{}.visual + 1e-6);
+}
+
+TEST(SessionClient, TellsAtOnceOfBoundsThatNoDeviceCanKeep) {
+  for (const double position : {0.0, -1.0, std::nan("")}) {
+    const auto client = SessionClient::create({.role = Role::participant, .device = {.position = position}});
+    ASSERT_FALSE(client) << position;
+    EXPECT_STREQ(client.error().rule, "R-API-4");
+    EXPECT_TRUE(SessionClient::create({.role = Role::observer, .device = {.position = position}})) << "it has no device";
+  }
+}
+
+/// A button that is held while the scene changes is held in the new one.
+TEST(SessionClient, ButtonsLiveThroughANewEpoch) {
+  SessionWorld world(pendulum_scene(), {});
+  world.add({.role = Role::participant}, {.seed = 1, .delay = 2'000}, {.seed = 2, .delay = 2'000});
+  const auto run = [&](int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      ASSERT_TRUE(world.ends[0].client->submit(world.now, {.position = {1e-4 * i, 0, 0}, .buttons = 2}, {}));
+      world.step();
+    }
+  };
+  run(300);
+  ASSERT_EQ(world.server->device(0, world.now)->buttons, 2u);
+  ASSERT_TRUE(world.server->replace_scene(pendulum_scene(), world.now));
+  run(600);
+  ASSERT_EQ(world.ends[0].client->status().state, SessionState::live);
+  const auto device = world.server->device(0, world.now);
+  ASSERT_TRUE(device);
+  EXPECT_EQ(device->buttons, 2u);
+}
+
+/// However a session stalls, what it says about its next timeout lets a program sleep.
+TEST(SessionClient, ATimeoutThatIsDueHasSomethingToSay) {
+  for (const bool participant : {false, true}) {
+    SessionWorld world(pendulum_scene(), {.silence = 3'000'000'000});
+    world.add({.role = participant ? Role::participant : Role::observer, .silence = 3'000'000'000}, {.seed = 1}, {.seed = 2});
+    for (int i = 0; i < 500; ++i) world.step();
+    SessionClient& client = *world.ends[0].client;
+    std::uint64_t wakes = 0;
+    const std::uint64_t end = world.now + 2'500'000'000;  // nobody answers for 40 minutes, numbers run out
+    for (std::uint64_t now = world.now; now < end; ++wakes) {
+      ASSERT_TRUE(
+          client.submit(now, {.position = {1e-9 * static_cast<double>(now % 1000), 0, 0}}, DeviceContact{{0, 0, 1}, 500}));
+      client.handle_timeout(now);
+      while (client.poll_datagram(now)) continue;
+      const auto due = client.next_timeout();
+      ASSERT_TRUE(due);
+      ASSERT_GT(*due, now) << "it would be asked again and again";
+      now = *due;
+    }
+    EXPECT_LT(wakes, 20'000u);
+  }
 }
 
 }  // namespace

@@ -22,19 +22,23 @@ class SessionWorld {
     std::unique_ptr<SessionClient> client;
     std::unique_ptr<sim::Link> up, down;
     std::vector<ClientEvent> events;
-    bool silent = false;  // the program has died: it neither hears nor says anything
+    bool silent = false;      // the program has died: it neither hears nor says anything
+    std::uint64_t clock = 0;  // [us] that of the client is ahead of the server's
   };
 
   SessionWorld(const SharedScene& scene, const SessionServerOptions& options, std::uint64_t entropy = 77)
       : server(std::make_unique<SessionServer>(SessionServer::create(scene, options, entropy, now).value())),
         rate(scene->tick_rate) {}
 
-  End& add(const SessionClientOptions& options, const sim::LinkOptions& up, const sim::LinkOptions& down) {
+  /// in   clock  [us] that of the client is ahead of the server's
+  End& add(const SessionClientOptions& options, const sim::LinkOptions& up, const sim::LinkOptions& down,
+           std::uint64_t clock = 0) {
     End& end = ends.emplace_back();
     end.client = std::make_unique<SessionClient>(SessionClient::create(options).value());
     end.up = std::make_unique<sim::Link>(sim::Link::create(up).value());
     end.down = std::make_unique<sim::Link>(sim::Link::create(down).value());
-    end.client->open(now, 1000 + ends.size());
+    end.clock = clock;
+    end.client->open(now + clock, 1000 + ends.size());
     return end;
   }
 
@@ -63,7 +67,7 @@ class SessionWorld {
     while (const auto event = server->poll_event()) events.push_back(*event);
     for (End& end : ends) {
       if (end.silent) continue;
-      while (const auto datagram = end.client->poll_datagram(now)) {
+      while (const auto datagram = end.client->poll_datagram(now + end.clock)) {
         ++datagrams_up;
         end.up->send(static_cast<sim::Microseconds>(now), *datagram);
       }
@@ -76,8 +80,8 @@ class SessionWorld {
       while (const auto datagram = ends[i].up->poll(static_cast<sim::Microseconds>(now)))
         if (!server->handle_datagram(now, i + 1, datagram->bytes)) ++refused;
       while (const auto datagram = ends[i].down->poll(static_cast<sim::Microseconds>(now)))
-        if (!ends[i].silent && !ends[i].client->handle_datagram(now, datagram->bytes)) ++refused;
-      if (!ends[i].silent) ends[i].client->handle_timeout(now);
+        if (!ends[i].silent && !ends[i].client->handle_datagram(now + ends[i].clock, datagram->bytes)) ++refused;
+      if (!ends[i].silent) ends[i].client->handle_timeout(now + ends[i].clock);
     }
     server->handle_timeout(now);
   }

@@ -65,5 +65,23 @@ TEST(ForceFade, StartsWithNothing) {
   EXPECT_LT(fade.share(kStart + kMillisecond, kStart + kMillisecond), ForceFade::kAll / 100);
 }
 
+/// A session that begins or comes back while something is touched: nobody looked for a while.
+TEST(ForceFade, RisesSlowlyAfterAPauseToo) {
+  ForceFade first;
+  EXPECT_LT(first.share(kStart, kStart), ForceFade::kAll / 100);
+  ForceFade fade = risen();
+  const std::uint64_t later = kStart + 60'000'000;
+  EXPECT_LT(fade.share(later, later), ForceFade::kAll / 100);
+  EXPECT_NEAR(static_cast<double>(fade.share(later + 50'000, later + 50'000)), ForceFade::kAll / 10, ForceFade::kAll / 100);
+}
+
+TEST(ForceFade, ANewContactNeedNotRise) {
+  ForceFade fade;
+  fade.release(kStart);
+  EXPECT_EQ(fade.share(kStart + kMillisecond, kStart + kMillisecond), ForceFade::kAll);
+  fade.release(kStart + 200 * kMillisecond);
+  EXPECT_EQ(fade.share(kStart + 200 * kMillisecond, kStart), 0) << "but not on old news";
+}
+
 }  // namespace
 }  // namespace tactus

@@ -160,5 +160,16 @@ TEST(Fragments, NothingIsAllocatedWhenEveryPacketFitsNorLater) {
   EXPECT_EQ(testing::allocated_bytes(), made);
 }
 
+/// A scene whose largest packet fills one fragment exactly needs no place for fragments.
+TEST(Fragments, WhereNoPacketNeedsThemTheyAreRefused) {
+  const Bytes bytes(kFragmentSize);
+  for (const std::size_t largest : {std::size_t{0}, std::size_t{1}, kFragmentSize}) {
+    Fragments fragments(largest);
+    const auto taken = fragments.take(7, {0, 0, 0, 2, bytes});
+    ASSERT_FALSE(taken) << largest;
+    EXPECT_STREQ(taken.error().rule, "R-SES-7");
+  }
+}
+
 }  // namespace
 }  // namespace tactus

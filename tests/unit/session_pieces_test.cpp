@@ -32,21 +32,60 @@ std::uint64_t hash_of(const Bytes& bytes) {
 PieceSender sender_of(const Bytes& bytes) { return PieceSender(std::make_shared<const Bytes>(bytes)); }
 std::string rule_of(const Result<void>& result) { return result ? "" : result.error().rule; }
 
+/// Sends all that may go at `now`, as datagrams of the pieces' indices + 1, and returns how many those are.
+std::uint64_t send_all(PieceSender& sender, std::uint64_t now) {
+  std::uint64_t count = 0;
+  for (; const auto index = sender.next(now, kPatience); ++count) sender.sent(*index, *index + 1, now);
+  return count;
+}
+
 TEST(PieceSender, SendsAWindowAndThenWaits) {
-  PieceSender sender = sender_of(Bytes(200 * 1024));
-  for (std::uint64_t i = 0; i < 64; ++i) {
-    ASSERT_EQ(sender.next(i, kPatience), i);
-    sender.sent(i, i + 1, i);
-  }
-  EXPECT_EQ(sender.next(64, kPatience), std::nullopt);
+  PieceSender sender = sender_of(Bytes(400 * 1024));
+  EXPECT_EQ(send_all(sender, 0), 8u);
   sender.arrived(3);
-  EXPECT_EQ(sender.next(64, kPatience), std::nullopt) << "the window begins at the lowest that is missing";
+  EXPECT_EQ(send_all(sender, 1), 1u) << "there are more at a time, and the window begins at the lowest that is missing";
   sender.arrived(1);
-  EXPECT_EQ(sender.next(64, kPatience), 64u);
-  sender.sent(64, 65, 64);
-  EXPECT_EQ(sender.next(64, kPatience), std::nullopt);
+  EXPECT_EQ(send_all(sender, 2), 2u);
   sender.arrived(2);
-  EXPECT_EQ(sender.next(64, kPatience), 65u) << "2 was there before: the window moves on by two";
+  EXPECT_EQ(send_all(sender, 3), 3u) << "2 was there before: the window moves on by two";
+  for (std::uint64_t i = 4; i <= 90; ++i) {
+    sender.arrived(i);
+    send_all(sender, i);
+  }
+  EXPECT_EQ(sender.next(91, kPatience), std::nullopt);
+  sender.arrived(91);
+  EXPECT_EQ(sender.next(91, kPatience), 91u + 63) << "at most 64 at a time";
+}
+
+/// What waits beyond the few that may go is not due: nothing would be sent for it.
+TEST(PieceSender, NothingIsDueThatMayNotGo) {
+  PieceSender sender = sender_of(Bytes(400 * 1024));
+  EXPECT_EQ(send_all(sender, 0), 8u);
+  sender.slow_down();
+  EXPECT_EQ(send_all(sender, kPatience), 4u);
+  EXPECT_EQ(sender.due(kPatience), 2 * kPatience);
+}
+
+TEST(PieceSender, ThroughAQueueFewGoAtATime) {
+  PieceSender sender = sender_of(Bytes(1000 * 1024));
+  std::uint64_t sent = 0, arrived = 0;
+  const auto send = [&] {
+    const std::uint64_t count = send_all(sender, 1);
+    sent += count;
+    return count;
+  };
+  const auto all_arrive = [&] {
+    while (arrived < sent) sender.arrived(++arrived);
+  };
+  for (const std::uint64_t expected : {8u, 16u, 32u, 64u, 64u}) {
+    EXPECT_EQ(send(), expected);
+    all_arrive();
+  }
+  sender.slow_down();
+  EXPECT_EQ(send(), 32u);
+  all_arrive();
+  for (int i = 0; i < 10; ++i) sender.slow_down();
+  EXPECT_EQ(send(), 4u) << "but so many do";
 }
 
 TEST(PieceSender, WhatIsLostOrLateGoesAgain) {

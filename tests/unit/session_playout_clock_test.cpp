@@ -16,13 +16,15 @@ struct Way {
   explicit Way(const PlayoutOptions& options = {}) : clock(1000, options) {}
 
   /// in   delay(time) [us]; nothing: lost.   Both times are those of the server's clock; the client's is `client(time)`.
-  void run(std::uint64_t milliseconds, const std::function<std::optional<std::uint64_t>(std::uint64_t)>& delay) {
+  ///      every  [ticks] from number to number
+  void run(std::uint64_t milliseconds, const std::function<std::optional<std::uint64_t>(std::uint64_t)>& delay,
+           std::uint64_t every = 1) {
     for (const std::uint64_t end = time + 1000 * milliseconds; time < end; time += 1000) {
       const auto tick = static_cast<std::int64_t>(time / 1000);
       if (const auto after = delay(time)) coming.emplace(time + *after, tick);
       for (; !coming.empty() && coming.begin()->first <= time; coming.erase(coming.begin())) {
         const std::int64_t arrived = coming.begin()->second;
-        clock.heard(arrived, client(coming.begin()->first));
+        clock.heard(static_cast<std::uint64_t>(arrived) / every + 1, arrived, client(coming.begin()->first));
         first = first < 0 ? arrived : first;
         ++packets;
         if (arrived < last && time >= settled) ++late;
@@ -48,7 +50,9 @@ TEST(PlayoutClock, WithoutPacketsThereIsNothingToShow) {
   PlayoutClock clock(1000, {});
   EXPECT_EQ(clock.shown(0), -1);
   EXPECT_EQ(clock.shown(1'000'000), -1);
-  clock.heard(500, 1'000'000);
+  clock.heard(1, {}, 900'000);
+  EXPECT_EQ(clock.shown(1'000'000), -1) << "a datagram without packets";
+  clock.heard(2, 500, 1'000'000);
   EXPECT_EQ(clock.shown(1'000'000), 500) << "before its first packet nothing is known";
 }
 
@@ -70,6 +74,37 @@ TEST(PlayoutClock, LossChangesNothing) {
   way.run(30'000, [&](std::uint64_t) { return random() % 2 ? std::optional<std::uint64_t>(random() % 30'000) : std::nullopt; });
   EXPECT_LE(way.late, way.packets / 500);
   EXPECT_LE(way.clock.delay(), 62'000);
+}
+
+/// Gilbert-Elliott: one loss in 20, on average five in a row.
+TEST(PlayoutClock, BridgesBurstsOfLosses) {
+  for (const std::uint64_t every : {1u, 5u}) {  // [ticks] from packet to packet
+    Way way;
+    std::mt19937_64 random(6);
+    bool lost = false;
+    std::uint64_t row = 0, long_rows = 0, rows = 0;
+    way.run(
+        60'000,
+        [&](std::uint64_t time) {
+          if (time / 1000 % every > 0) return std::optional<std::uint64_t>();
+          lost = random() % 1000 < (lost ? 800u : 10u);
+          if (!lost && row > 0) {
+            ++rows;
+            if (1000 * (row + 1) * every > static_cast<std::uint64_t>(way.clock.delay()) + 1000) ++long_rows;
+          }
+          row = lost ? row + 1 : 0;
+          return lost ? std::nullopt : std::optional<std::uint64_t>(20'000);
+        },
+        every);
+    EXPECT_GT(rows, 100u);
+    EXPECT_LE(long_rows, rows * 2 / 5) << "a third of them, and those of which it has not heard yet";
+    if (every == 1) {
+      EXPECT_LE(way.clock.delay(), 45'000);
+    } else {
+      EXPECT_GT(way.clock.delay(), 30'000);
+    }
+    EXPECT_LE(way.clock.delay(), 151'000);
+  }
 }
 
 TEST(PlayoutClock, GrowsAtOnceAndShrinksByAMillisecondPerSecond) {
@@ -115,6 +150,18 @@ TEST(PlayoutClock, FollowsADriftingClock) {
   }
 }
 
+/// Heartbeats alone, for an hour, from a clock that is 100 ppm faster or slower.
+TEST(PlayoutClock, DriftAtRestAddsNoDelay) {
+  for (const std::int64_t ppm : {-100, 100}) {
+    PlayoutClock clock(1000, {});
+    for (std::int64_t second = 0; second < 3600; ++second) {
+      const std::int64_t now = 1'000'000 * second + ppm * second + 10'000'000;
+      clock.heard(static_cast<std::uint64_t>(second) + 1, 1000 * second, static_cast<std::uint64_t>(now));
+    }
+    EXPECT_LE(clock.delay(), 40'000) << ppm;
+  }
+}
+
 TEST(PlayoutClock, FollowsAWayThatChanges) {
   Way way;
   const auto constant = [](std::uint64_t delay) { return [delay](std::uint64_t) { return delay; }; };
@@ -136,7 +183,7 @@ TEST(PlayoutClock, ShownNeverFallsWhateverComes) {
     std::uint64_t now = random() % 1'000'000'000'000;
     for (int i = 0; i < 20'000; ++i) {
       now += random() % (i % 100 == 0 ? 3'000'000 : 3'000);
-      clock.heard(static_cast<std::int64_t>(random() >> (32 + random() % 20)), now);
+      clock.heard(random() >> (random() % 64), static_cast<std::int64_t>(random() >> (32 + random() % 20)), now);
       const std::int64_t shown = clock.shown(now);
       ASSERT_GE(shown, last);
       ASSERT_GE(shown, 0);

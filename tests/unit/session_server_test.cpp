@@ -156,16 +156,98 @@ TEST(SessionServer, AClientThatDiesIsForgotten) {
   EXPECT_EQ(world.ends[1].client->status().state, SessionState::live) << "its place is free";
 }
 
+/// Against the truth of the links, whatever the client's clock says; 5 ms of jitter each way, uniform: 2.5 ms on average.
+TEST(SessionServer, RoundTripAndClockAreMeasured) {
+  for (const std::uint64_t clock : {std::uint64_t{0}, std::uint64_t{7'654'321'012}}) {
+    for (const double loss : {0.0, 0.05}) {
+      Show show(1, false);
+      SessionWorld world(show.scene, {});
+      const auto way = [loss](std::uint64_t seed) {
+        return sim::LinkOptions{.seed = seed, .delay = 20'000, .jitter = 5'000, .loss = loss};
+      };
+      world.add({}, way(1), way(2), clock);
+      double server = 0, client = 0, worst_offset = 0;
+      constexpr int kTicks = 3000, kWarm = 300;
+      for (int i = 0; i < kTicks; ++i) {
+        world.step([&](std::int64_t tick) { return show.at(tick); });
+        if (i < kWarm) continue;
+        const SessionStatus status = world.ends[0].client->status();
+        server += static_cast<double>(world.server->status(0).round_trip->smoothed);
+        client += static_cast<double>(status.round_trip->smoothed);
+        worst_offset =
+            std::max(worst_offset, std::abs(static_cast<double>(*status.clock_offset + static_cast<std::int64_t>(clock))));
+      }
+      EXPECT_NEAR(server / (kTicks - kWarm), 45'000, 500) << loss;
+      EXPECT_NEAR(client / (kTicks - kWarm), 45'000, 500) << loss;
+      EXPECT_LT(worst_offset, 500) << loss;
+    }
+  }
+}
+
+/// With the headers of UDP and IPv4, and with those and the seal.
 TEST(SessionServer, TheRateIsKept) {
-  Show show(1, false);
-  SessionWorld world(show.scene, {.rate = 6'000});
+  for (const std::uint32_t headers : {28u, 57u}) {
+    Show show(1, false);
+    SessionWorld world(show.scene, {.rate = 6'000, .headers = headers, .widening = 1});
+    world.add({}, {}, {});
+    for (int i = 0; i < 3000; ++i) world.step([&](std::int64_t tick) { return show.at(tick); });
+    const Traffic traffic = world.server->status(0).traffic;
+    const double bits = 8.0 * static_cast<double>(traffic.bytes_sent + headers * traffic.datagrams_sent);
+    EXPECT_LT(bits / 30, 6'300) << headers;
+    EXPECT_GT(bits / 30, 5'000) << "it is used";
+    EXPECT_GT(traffic.ticks_held, 100u);
+  }
+}
+
+TEST(SessionServer, KnowsToWhomItHasSomethingToSay) {
+  Show show;
+  SessionWorld world(show.scene, {.clients = 1});
   world.add({}, {}, {});
-  for (int i = 0; i < 3000; ++i) world.step([&](std::int64_t tick) { return show.at(tick); });
-  const Traffic traffic = world.server->status(0).traffic;
-  const double bits = 8.0 * static_cast<double>(traffic.bytes_sent + 28 * traffic.datagrams_sent);
-  EXPECT_LT(bits / 30, 6'300);
-  EXPECT_GT(bits / 30, 5'000) << "it is used";
-  EXPECT_GT(traffic.ticks_held, 100u);
+  for (int i = 0; i < 50; ++i) world.step();
+  world.add({}, {}, {});
+  for (int i = 0; i < 50; ++i) world.step();
+  EXPECT_TRUE(world.server->has_peer(1));
+  EXPECT_FALSE(world.server->has_peer(2)) << "it was refused";
+  EXPECT_FALSE(world.server->has_peer(0)) << "the name of nobody";
+  world.server->close();
+  EXPECT_TRUE(world.server->has_peer(1)) << "the leave has not been sent";
+  world.step();
+  EXPECT_FALSE(world.server->has_peer(1));
+}
+
+TEST(SessionServer, BoundsWidenWhileTheRateDoesNotCarryThem) {
+  const auto run = [](const SessionServerOptions& options, const sim::LinkOptions& down) {
+    Show show(1, true);
+    SessionWorld world(show.scene, options);
+    world.add({}, {.delay = 20'000}, down);
+    for (int i = 0; i < 4000; ++i) world.step([&](std::int64_t tick) { return show.at(tick); });
+    const ClientStatus status = world.server->status(0);
+    std::vector<double> factors{1};
+    for (const ServerEvent& event : world.events) {
+      if (event.kind != ServerEvent::Kind::widened) continue;
+      EXPECT_NE(event.widening, factors.back());
+      factors.push_back(event.widening);
+    }
+    EXPECT_EQ(factors.back(), status.widening);
+    EXPECT_EQ(std::ranges::max(factors), status.widened.widest);
+    return status;
+  };
+  const ClientStatus free = run({}, {.delay = 20'000});
+  EXPECT_EQ(free.widened.widest, 1);
+  EXPECT_EQ(free.widened.time, 0u);
+  const auto needed = 8 * (free.traffic.bytes_sent + 28 * free.traffic.datagrams_sent) / 40;
+  const ClientStatus fixed = run({.rate = needed / 3, .widening = 1}, {.delay = 20'000});
+  const ClientStatus rated = run({.rate = needed / 3}, {.delay = 20'000});
+  EXPECT_EQ(fixed.widened.widest, 1);
+  EXPECT_GT(rated.widened.widest, 1.9);
+  EXPECT_GT(rated.widened.time, 10'000'000u);
+  EXPECT_LT(rated.traffic.ticks_held, fixed.traffic.ticks_held / 2);
+  // A bottleneck on the way of which the server knows nothing but the round trip.
+  const sim::LinkOptions narrow{.delay = 20'000, .rate = static_cast<double>(needed) / 3};
+  const ClientStatus blind = run({.widening = 1}, narrow);
+  const ClientStatus seeing = run({}, narrow);
+  EXPECT_GT(blind.round_trip->smoothed, 1'000'000);
+  EXPECT_LT(seeing.round_trip->smoothed, 300'000);
 }
 
 TEST(SessionServer, KnowsWhereADeviceIs) {
@@ -197,44 +279,80 @@ TEST(SessionServer, KnowsWhereADeviceIs) {
 }
 
 /// Strangers, old datagrams, damaged ones: nothing changes, nothing is allocated, and nothing longer is answered.
-TEST(SessionServer, HostileDatagramsChangeNothing) {
-  Show show(1, false);
-  SessionWorld world(show.scene, {.clients = 2});
-  world.add({.role = Role::participant}, {.seed = 1}, {.seed = 2});
-  std::vector<std::vector<std::uint8_t>> heard;
-  for (int i = 0; i < 200; ++i) {
-    ASSERT_TRUE(world.ends[0].client->submit(world.now, {.position = {1e-3 * i, 0, 0}}, {}));
-    world.drain();
-    world.step([&](std::int64_t tick) { return show.at(tick); });
-  }
-  std::mt19937_64 random(5);
-  DatagramWriter writer(Direction::up);
-  const auto join = writer.write(Join{});
-  const std::vector<std::uint8_t> joined(join.begin(), join.end());
-  const Traffic before = world.server->status(0).traffic;
-  std::vector<std::uint8_t> bytes;
-  std::uint64_t answered = 0, taken = 0;
-  bytes.reserve(1300);
-  const std::uint64_t allocated = testing::allocated_bytes();
-  for (int run = 0; run < 100'000; ++run) {
-    bytes.assign(joined.begin(), joined.end());
-    if (run % 3 == 0) {
-      bytes.resize(random() % 1300);
-      for (auto& b : bytes) b = static_cast<std::uint8_t>(random());
+/// A stranger's datagram: noise, a join that is damaged or whole, or what a client once said, damaged or whole, from another address.
+class Stranger {
+ public:
+  explicit Stranger(std::uint64_t seed) : random_(seed) { bytes_.reserve(1300); }
+
+  /// in   whole  it may be without damage
+  std::span<const std::uint8_t> next(const std::vector<std::vector<std::uint8_t>>& overheard, bool whole) {
+    const std::uint64_t kind = random_() % 8;
+    if (kind < 2) {
+      bytes_.resize(random_() % 1300);
+      for (auto& b : bytes_) b = static_cast<std::uint8_t>(random_());
+    } else if (kind < 5 || overheard.empty()) {
+      const auto join = writer_.write(Join{.role = Role::participant, .nonce = random_()});
+      bytes_.assign(join.begin(), join.end());
     } else {
-      for (std::uint64_t flips = 1 + random() % 4; flips > 0; --flips)
-        bytes[random() % bytes.size()] ^= static_cast<std::uint8_t>(1u << random() % 8);
+      const auto& heard = overheard[random_() % overheard.size()];
+      bytes_.assign(heard.begin(), heard.end());
     }
-    if (bytes == joined) continue;
-    const std::uint64_t peer = 1 + random() % 3;
-    if (world.server->handle_datagram(world.now, peer, bytes)) ++taken;
-    while (const auto datagram = world.server->poll_datagram(world.now)) answered += datagram->peer == peer ? 1u : 0u;
+    const bool damaged = !bytes_.empty() && (kind % 2 == 0 || !whole);
+    const std::size_t count = damaged ? 1 + random_() % std::min<std::size_t>(4, bytes_.size()) : 0, first = random_() % 1300;
+    for (std::size_t i = 0; i < count; ++i) bytes_[(first + i) % bytes_.size()] ^= static_cast<std::uint8_t>(1 + random_() % 255);
+    return bytes_;
   }
-  EXPECT_EQ(testing::allocated_bytes(), allocated);
-  EXPECT_EQ(taken, 0u) << "no check of 32 bits held by chance in so few";
-  EXPECT_EQ(answered, 0u);
-  EXPECT_EQ(world.server->status(0).traffic.datagrams_heard, before.datagrams_heard);
-  EXPECT_EQ(world.server->status(1).state, SessionState::closed);
+
+ private:
+  std::mt19937_64 random_;
+  DatagramWriter writer_{Direction::up};
+  std::vector<std::uint8_t> bytes_;
+};
+
+/// 10^6 in all: while a client joins, while it gets the declaration, and while it is live. It has the only place.
+TEST(SessionServer, HostileDatagramsChangeNothing) {
+  constexpr std::uint64_t kRuns = 333'334, kStrangers = 1000;
+  Show show;
+  SessionWorld world(show.scene, {.clients = 1});
+  world.add({.role = Role::participant}, {.seed = 1, .delay = 5'000}, {.seed = 2, .delay = 5'000});
+  std::vector<std::vector<std::uint8_t>> overheard;
+  Stranger stranger(5);
+  std::uint64_t allocated = 0, largest = 0, attacks = 0;
+  for (const auto during : {SessionState::closed, SessionState::receiving, SessionState::live}) {
+    while (world.server->status(0).state != during) {
+      world.now += 1000;
+      world.deliver();
+      while (const auto datagram = world.ends[0].client->poll_datagram(world.now)) {
+        overheard.emplace_back(datagram->begin(), datagram->end());
+        world.ends[0].up->send(static_cast<sim::Microseconds>(world.now), *datagram);
+      }
+      world.drain();
+    }
+    const bool has_place = during != SessionState::closed;  // else the first whole join would take it
+    const Traffic before = world.server->status(0).traffic;
+    allocated = testing::allocated_bytes();
+    for (std::uint64_t run = 0; run < kRuns; ++run, ++attacks) {
+      const auto bytes = stranger.next(overheard, has_place);
+      const std::uint64_t peer = 100 + attacks % kStrangers;
+      const bool taken = world.server->handle_datagram(world.now, peer, bytes).has_value();
+      EXPECT_TRUE(!taken || has_place);
+      while (const auto datagram = world.server->poll_datagram(world.now)) {
+        if (datagram->peer != peer) continue;
+        largest = std::max<std::uint64_t>(largest, datagram->bytes.size());
+        EXPECT_TRUE(taken);
+        EXPECT_LE(datagram->bytes.size(), bytes.size()) << "a refusal is no larger than the join";
+      }
+    }
+    EXPECT_EQ(testing::allocated_bytes(), allocated);
+    EXPECT_EQ(world.server->status(0).state, during);
+    EXPECT_EQ(world.server->status(0).traffic.datagrams_heard, before.datagrams_heard);
+    EXPECT_EQ(world.server->status(0).traffic.packets_refused, before.packets_refused);
+  }
+  EXPECT_GE(attacks, 1'000'000u);
+  EXPECT_GT(largest, 0u) << "those who ask are told that there is no room";
+  for (int i = 0; i < 300; ++i) world.step([&](std::int64_t tick) { return show.at(tick); });
+  EXPECT_EQ(world.ends[0].client->status().state, SessionState::live);
+  EXPECT_EQ(world.server->status(0).traffic.wrong_states, 0u);
 }
 
 TEST(SessionServer, SubmitAndDatagramsAllocateNothing) {
@@ -266,6 +384,27 @@ TEST(SessionServer, SubmitAndDatagramsAllocateNothing) {
   }
   EXPECT_EQ(allocated, 0u);
   expect_same_states(world, 2);
+}
+
+/// While the rate holds the bodies back nothing else is said either: what the client has would count as new.
+TEST(SessionServer, NoForceFromStatesThatTheRateHeldBack) {
+  Show show;
+  SessionWorld world(show.scene, {.sender = {.triggers = {.visual_position = 1e-4}}, .rate = 20'000, .widening = 1});
+  SessionClient& client = *world.add({.role = Role::participant}, {.delay = 5'000}, {.delay = 5'000}).client;
+  int old_states = 0, felt = 0;
+  for (int i = 0; i < 1500; ++i) {
+    const Vec3 place{1e-3 * i, 0, 0};
+    ASSERT_TRUE(client.submit(world.now, {.position = place}, DeviceContact{place + Vec3{0, 0, 1e-3}, 500}));
+    world.step([&](std::int64_t tick) { return show.at(tick); });
+    if (client.status().state != SessionState::live || i < 300) continue;
+    const std::int64_t age = world.tick - client.receiver()->tick(0);  // [10 ms]
+    old_states += age > 20 ? 1 : 0;
+    if (client.force_share(world.now) == 0) continue;
+    ++felt;
+    EXPECT_LE(age, 12) << i;
+  }
+  EXPECT_GT(old_states, 100) << "the rate is too high for this test";
+  EXPECT_GT(felt, 100);
 }
 
 }  // namespace

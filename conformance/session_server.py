@@ -1,0 +1,295 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Chapter 70 of the specification: the server's end of sessions whose objects rest, as a function of datagrams and time."""
+from __future__ import annotations
+
+import json
+import struct
+from typing import Iterator, Optional
+
+from conventions import Cursor, StreamError, fnv1a, require
+from decoder import SceneDecoder
+from scene import Declaration, Object, State, read_declaration, state_bytes
+from session import (ACK, BUTTONS, BYE, CUT, DOWN, FRAGMENT, FULL, HANDSHAKE, JOIN, LEAVE, MS, PARTS, PIECE, PIECE_SIZE, REFUSAL, SILENCE, SPARE,
+                     STATE, TOO_LARGE, UP, WELCOME, WINDOW, WRONG_VERSION, Epoch, head, is_of_epoch, part, reason_of, sealed, varint)
+
+LEAST_JOIN = 80                                             # bytes
+WELCOME_EVERY, UNPROVEN, MOST_SILENCE = 250 * MS, 10_000 * MS, 120_000 * MS
+ROLES = "observer", "participant"
+
+
+def device_scene(scene: Declaration) -> Declaration:
+    """65, section 2."""
+    device = Object("device", 63, State(0, (0, 0, 0), (1 << 30, 0, 0, 0)))
+    return Declaration(scene.version, scene.profile, scene.tick_rate, scene.position_exp, scene.velocity_exp, scene.rotation_exp,
+                       scene.angular_exp, (scene.tick_rate + 5) // 10, 64, [device])
+
+
+# ---- Section 6: the server's end of an epoch ------------------------------------------------------------------------
+class ServedEpoch(Epoch):
+    direction, patience = DOWN, 25 * MS
+    live = False
+    buttons = (0, 0)                                        # tick, mask
+
+    def offer(self, declaration: bytes, participates: bool) -> None:
+        self.offered = [declaration[i:i + PIECE_SIZE] for i in range(0, len(declaration), PIECE_SIZE)]
+        self.participates = participates
+        self.carries: dict[int, int] = {}                   # piece in each datagram
+        self.sent: set[int] = set()
+        self.arrived: set[int] = set()
+        self.device_packets = 0
+
+    def take_acknowledged(self, newest: int, missing: int) -> None:
+        for number, index in self.carries.items():
+            age = (newest - number) % (1 << 16)
+            if age == 0 or 0 < age <= 64 and not missing >> (age - 1) & 1:
+                self.arrived.add(index)
+
+    def take_said(self, kind: int, elements: tuple) -> None:
+        if kind == STATE and elements[0] == 1 and len(self.arrived) == len(self.offered) and not self.live:
+            self.live = True
+            if self.participates:
+                self.decoders = SceneDecoder(device_scene(self.scene))
+        elif kind == BUTTONS and elements[0] >= self.buttons[0]:
+            self.buttons = elements
+
+    def poll(self, now: int) -> Iterator[bytes]:
+        first = next((i for i in range(len(self.offered)) if i not in self.arrived), len(self.offered))
+        for index in range(first, min(first + WINDOW, len(self.offered))):
+            if index not in self.arrived | self.sent:
+                self.sent.add(index)
+                self.carries[self.next] = index
+                yield self.write(now, [part(PIECE, varint(index) + self.offered[index])])
+        if self.ack_due is not None and now >= self.ack_due:
+            yield self.write(now, [])
+
+
+# ---- Section 3: one client ------------------------------------------------------------------------------------------
+class Connection:
+    def __init__(self, peer: int, client: int, role: int, nonce: int, limits: tuple[int, int]):
+        self.peer, self.client, self.role, self.nonce, self.limits = peer, client, role, nonce, limits
+        self.proven = self.repeats_welcome = self.outdated = False
+        self.epoch: ServedEpoch
+        self.serial = self.heard_at = self.welcome_at = 0
+
+    def begin(self, server: Server, epoch: int, now: int) -> None:
+        self.serial += 1 if self.proven else 0
+        self.repeats_welcome, self.outdated = self.proven, False
+        self.heard_at = self.welcome_at = now
+        self.epoch = ServedEpoch(epoch, self.client, self.serial, len(server.declaration), fnv1a(server.declaration), server.start)
+        self.epoch.scene = server.scene
+        self.epoch.offer(server.declaration, self.role == 1)
+
+    def welcome(self) -> bytes:
+        e = self.epoch
+        body = head(HANDSHAKE, WELCOME) + struct.pack("<Q", self.nonce) + varint(e.serial) + struct.pack("<QH", e.epoch, e.client)
+        return sealed(body + varint(e.size) + struct.pack("<Q", e.digest) + varint(e.start), 0, DOWN)
+
+    def state(self) -> str:
+        return "live" if self.epoch.live else "receiving"
+
+
+class Server:
+    """`epochs` gives the epochs of clients, one after the other."""
+
+    def __init__(self, declaration: bytes, clients: int, epochs: Iterator[int], now: int):
+        self.connections: list[Optional[Connection]] = [None] * clients
+        self.epochs = epochs
+        self.says: list[tuple[int, bytes]] = []
+        self.left: list[tuple[int, int]] = []
+        self.serve(declaration, now)
+
+    def serve(self, declaration: bytes, now: int) -> None:
+        self.declaration, self.start = declaration, now
+        self.scene, _ = read_declaration(declaration)
+
+    def there(self) -> list[Connection]:
+        return [c for c in self.connections if c]
+
+    def replace(self, declaration: bytes, now: int) -> None:
+        self.serve(declaration, now)
+        for c in self.there():
+            if not self.fits(c.limits):
+                self.end(c, TOO_LARGE, says=True)
+            elif c.proven:
+                c.begin(self, next(self.epochs), now)
+            else:
+                c.outdated = True
+
+    def end(self, c: Connection, reason: int, says: bool) -> None:
+        self.connections[c.client] = None
+        self.left.append((c.client, reason))
+        if says and c.proven:
+            self.says += [(c.peer, sealed(head(HANDSHAKE, LEAVE) + bytes([reason]), c.epoch.epoch, DOWN))] * 3
+
+    def handle(self, now: int, peer: int, datagram: bytes) -> None:
+        """Raises StreamError if the datagram is dropped."""
+        form, value = (datagram[0] & 3, struct.unpack("<H", datagram[:2])[0] >> 2) if len(datagram) > 1 else (0, 0)
+        before = form == HANDSHAKE and value < LEAVE        # any epoch
+        c = next((c for c in self.there() if c.peer == peer), None)
+        if before or not c or not is_of_epoch(datagram, c.epoch.epoch, UP):
+            require(before and is_of_epoch(datagram, 0, UP), "checksum", "R-SES-1")
+            require(value == JOIN, "invalid", "R-SES-2")
+            self.join(now, peer, c, Cursor(datagram, 2, len(datagram) - 4))
+            return
+        c.heard_at = now
+        if form == HANDSHAKE or form > 2:
+            require(form == HANDSHAKE and value == LEAVE, "invalid", "R-SES-2")
+            reason = reason_of(Cursor(datagram, 2, len(datagram) - 4))
+            c.proven = True
+            self.end(c, reason, says=False)
+            return
+        self.take(now, c, datagram)
+
+    def take(self, now: int, c: Connection, datagram: bytes) -> None:
+        try:
+            c.epoch.take(now, datagram)
+        except StreamError as error:
+            if error.rule not in ("R-SES-3", "R-SES-5"):    # of these nothing is known
+                self.has_spoken(c, now)
+            raise
+        self.has_spoken(c, now)
+
+    def has_spoken(self, c: Connection, now: int) -> None:
+        c.proven, c.repeats_welcome = True, False
+        if c.outdated:
+            c.begin(self, next(self.epochs), now)
+
+    def join(self, now: int, peer: int, c: Optional[Connection], e: Cursor) -> None:
+        whole = e.left() + 2 + 4
+        magic, version, role, nonce = e.take(4, CUT), e.number(1, CUT), e.number(1, CUT), e.number(8, CUT)
+        require(magic == b"TCTS" and (version != 1 or role < len(ROLES)), "unsupported", "R-SES-9")
+        require(whole >= LEAST_JOIN, *CUT)
+        if version != 1:
+            self.refuse(peer, nonce, WRONG_VERSION)
+            return
+        state_limit, header_limit = e.varint(CUT, SPARE), e.varint(CUT, SPARE)
+        require(not any(e.take(e.left(), CUT)), *SPARE)
+        if c and c.nonce == nonce:
+            self.says.append((peer, c.welcome()))
+            return
+        if c:
+            self.end(c, BYE, says=False)
+        if not self.fits((state_limit, header_limit)):
+            self.refuse(peer, nonce, TOO_LARGE)
+        elif None not in self.connections:
+            self.refuse(peer, nonce, FULL)
+        else:
+            place = self.connections.index(None)
+            c = self.connections[place] = Connection(peer, place, role, nonce, (state_limit, header_limit))
+            c.begin(self, next(self.epochs), now)
+            self.says.append((peer, c.welcome()))
+
+    def fits(self, limits: tuple[int, int]) -> bool:
+        return state_bytes(self.scene) <= limits[0] and len(self.declaration) <= limits[1]
+
+    def refuse(self, peer: int, nonce: int, reason: int) -> None:
+        self.says.append((peer, sealed(head(HANDSHAKE, REFUSAL) + struct.pack("<QB", nonce, reason), 0, DOWN)))
+
+    def pass_time(self, now: int) -> None:
+        for c in self.there():
+            if now >= c.heard_at + (MOST_SILENCE if c.proven else UNPROVEN):
+                self.end(c, SILENCE, says=True)
+
+    def poll(self, now: int) -> Iterator[tuple[int, bytes]]:
+        """What is to be sent now, and to whom."""
+        yield from self.says
+        self.says = []
+        for c in self.there():
+            if c.repeats_welcome and now >= c.welcome_at:
+                c.welcome_at = now + WELCOME_EVERY
+                yield c.peer, c.welcome()
+            if c.proven:
+                for datagram in c.epoch.poll(now):
+                    yield c.peer, datagram
+
+
+# ---- Testee (README.md) ---------------------------------------------------------------------------------------------
+PATIENCE = 25 * MS
+
+
+def split_mix(state: int) -> Iterator[int]:
+    """SplitMix64."""
+    most = (1 << 64) - 1
+    while True:
+        state = (state + 0x9E3779B97F4A7C15) & most
+        z = ((state ^ state >> 30) * 0xBF58476D1CE4E5B9) & most
+        z = ((z ^ z >> 27) * 0x94D049BB133111EB) & most
+        yield z ^ z >> 31 or 1
+
+
+class Listener:
+    """What the server has said to each address."""
+
+    def __init__(self) -> None:
+        self.newest: dict[int, int] = {}                    # number of a datagram
+        self.told: dict[int, tuple] = {}
+
+    def acknowledgement(self, peer: int, number: int, epoch: int, parts: bytes) -> bytes:
+        ack = part(ACK, struct.pack("<HHB", self.newest.get(peer, 0), 65535, 0))
+        return sealed(head(PARTS, number) + ack + parts, epoch, UP)
+
+    def hear(self, said: list[tuple[int, bytes]]) -> dict:
+        acks, handshakes = {}, set()
+        for peer, datagram in said:
+            value = struct.unpack("<H", datagram[:2])[0] >> 2
+            if datagram[0] & 3 == HANDSHAKE:
+                handshakes.add((peer, datagram.hex()))
+                if value == WELCOME and datagram not in self.told.get(("welcome", peer), ()):
+                    self.newest[peer] = 0
+                    self.told.pop(peer, None)
+                    self.told["welcome", peer] = (datagram,)
+                continue
+            self.newest[peer] = value
+            cursor = Cursor(datagram, 2, len(datagram) - 4)
+            while cursor.left():
+                kind, size = cursor.number(1, CUT), cursor.varint(CUT, SPARE)
+                e = Cursor(cursor.take(size, CUT), 0, size)
+                if kind == ACK:
+                    acks[peer] = [peer, e.number(2, CUT), e.number(2, CUT), f"{e.varint(CUT, SPARE):016x}"]
+        out: dict = {}
+        for peer, ack in sorted(acks.items()):
+            if self.told.get(peer) != (ack[1], ack[3]):
+                out.setdefault("acknowledges", []).append(ack)
+            self.told[peer] = ack[1], ack[3]
+        if handshakes:
+            out["says"] = [list(item) for item in sorted(handshakes)]
+        return out
+
+
+def lines(script: str) -> Iterator[dict]:
+    """A line for each line of a script: who is there, and what the server says 25 ms later."""
+    server, listener = None, Listener()
+    for number, line in enumerate(script.splitlines()):
+        step, error = json.loads(line), None
+        now, peer = step["at"], step.get("from", 0)
+        if "serve" in step:
+            server = Server(bytes.fromhex(step["serve"]), step["clients"], split_mix(int(step["entropy"], 16)), now)
+        server.pass_time(now)
+        try:
+            if "heard" in step:
+                server.handle(now, peer, bytes.fromhex(step["heard"]))
+            elif "acknowledges" in step:
+                server.handle(now, peer, listener.acknowledgement(peer, step["acknowledges"], int(step["epoch"], 16), bytes.fromhex(step["parts"])))
+            elif "scene" in step:
+                server.replace(bytes.fromhex(step["scene"]), now)
+            elif "closes" in step:
+                server.end(server.connections[step["closes"]], step["reason"], says=True)
+        except StreamError as e:
+            error = e
+        said = listener.hear(list(server.poll(now + PATIENCE)))
+        answer: dict = {"line": number, "clients": [[c.peer, c.client, ROLES[c.role], c.state()] for c in server.there()]}
+        if server.left:
+            answer["left"] = [list(item) for item in server.left]
+            server.left = []
+        if error:
+            answer["error"] = {"errc": error.errc, "rule": error.rule}
+        answer.update(said)
+        devices = [device_of(c.epoch) for c in server.there() if c.epoch.live and c.epoch.participates]
+        if devices:
+            answer["devices"] = devices
+        yield answer
+
+
+def device_of(epoch: ServedEpoch) -> list:
+    decoder = epoch.decoders.substreams[0]
+    return [epoch.client, f"{decoder.state_hash():016x}"] + ([epoch.buttons[1]] if epoch.packets else [])

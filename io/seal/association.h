@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+/// One DTLS association: datagrams in, datagrams out, without socket and clock. spec/70-session.md section 11. Internal to the library.
+///
+/// GnuTLS never repeats a flight here, as its timers know the machine's clock only: who owns the association sends flight() again.
+#pragma once
+
+#include <gnutls/dtls.h>
+#include <gnutls/gnutls.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <tactus/seal/counters.h>
+#include <tactus/seal/key.h>
+
+namespace tactus::seal {
+
+enum class Content : std::uint8_t { change_cipher_spec = 20, alert = 21, handshake = 22, application_data = 23 };
+constexpr std::uint8_t kClientHello = 1, kHelloVerifyRequest = 3, kClientKeyExchange = 16;  // types of handshake messages
+constexpr std::size_t kRecordHead = 13, kMessageHead = 12;                                  // [bytes]
+
+/// Head of the first record of a datagram (RFC 6347, section 4.1).
+struct RecordHead {
+  Content content = Content::alert;
+  std::uint16_t epoch = 0;
+  std::uint64_t number = 0;
+  bool is_alone = false;  ///< the record is the whole datagram
+};
+/// Nothing: it does not begin with a record of DTLS 1.0 to 1.2, or is not whole records to its end.
+std::optional<RecordHead> read_head(std::span<const std::uint8_t> wire) noexcept;
+/// The type of the handshake message that a datagram begins with.   pre  read_head() says handshake, epoch 0
+std::optional<std::uint8_t> message_type(std::span<const std::uint8_t> wire) noexcept;
+
+/// What the associations of one end share: key and priorities. It stays where it is.
+class Context {
+ public:
+  static Result<std::unique_ptr<const Context>> create(Key key, const Limits& limits);
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+  ~Context();
+
+ private:
+  friend class Association;
+  Context(Key key, const Limits& limits) noexcept : key_(std::move(key)), limits_(limits) {}
+
+  Key key_;
+  Limits limits_;
+  gnutls_priority_t priority_ = nullptr;
+  gnutls_psk_client_credentials_t client_ = nullptr;
+  gnutls_psk_server_credentials_t server_ = nullptr;
+};
+
+class Association {
+ public:
+  /// err  internal R-SEA-6
+  static Result<std::unique_ptr<Association>> client(const Context& context);
+  static Result<std::unique_ptr<Association>> server(const Context& context, gnutls_dtls_prestate_st cookie);
+  Association(const Association&) = delete;
+  Association& operator=(const Association&) = delete;
+  ~Association();
+
+  enum class Stage { handshake, open, broken };
+  Stage stage() const noexcept { return stage_; }
+  /// Go on with the handshake: as a client begin it with nothing.   pre  handshake   time some 0.1 ms
+  Stage advance(std::span<const std::uint8_t> wire) noexcept;
+  /// The last advance() made a new flight.
+  bool has_spoken() const noexcept { return has_spoken_; }
+  std::span<const std::uint8_t> flight() const noexcept { return flight_; }  ///< the newest, one datagram
+
+  /// One record.   out  in `out`   pre  open, out.size() >= kLargestSealed
+  /// err  limit_exceeded R-SEA-4: then the association is broken;  limit_exceeded R-SEA-5: empty or too large
+  Result<std::span<const std::uint8_t>> seal(std::span<const std::uint8_t> plain, std::span<std::uint8_t> out) noexcept;
+
+  enum class Opened { plain, nothing, unauthentic, replayed, closed, used_up };
+  struct Inside {
+    Opened what = Opened::nothing;
+    std::span<const std::uint8_t> plain{};
+  };
+  /// in   wire  a datagram whose only record is alert or application_data of epoch 1   pre  open, out.size() >= kLargestSealed
+  Inside open(const RecordHead& head, std::span<const std::uint8_t> wire, std::span<std::uint8_t> out) noexcept;
+  /// The alert close_notify: say no more.   pre  open
+  std::span<const std::uint8_t> close() noexcept;
+
+ private:
+  Association(const Context& context) noexcept : context_(context) {}
+  static Result<std::unique_ptr<Association>> create(const Context& context, unsigned flags, int credentials, void* of);
+  bool was_heard(std::uint64_t number) const noexcept;
+  void note_heard(std::uint64_t number) noexcept;
+  static ssize_t push(gnutls_transport_ptr_t self, const void* bytes, std::size_t size) noexcept;
+  static ssize_t pull(gnutls_transport_ptr_t self, void* bytes, std::size_t size) noexcept;
+  static int wait(gnutls_transport_ptr_t self, unsigned milliseconds) noexcept;
+
+  const Context& context_;
+  gnutls_session_t session_ = nullptr;
+  Stage stage_ = Stage::handshake;
+  std::span<const std::uint8_t> inbox_;  // the datagram that GnuTLS may take
+  std::span<std::uint8_t> outbox_;       // where a sealed record goes; empty: into flight_
+  std::size_t sealed_size_ = 0;
+  std::vector<std::uint8_t> flight_;
+  bool has_spoken_ = false, failed_to_speak_ = false;
+  std::uint64_t sealed_ = 0, unauthentic_ = 0;
+  std::uint64_t newest_ = 0,
+                window_ = 0;  // bit i: number newest_ - i was heard. To tell replays from forgeries; GnuTLS has its own
+};
+
+}  // namespace tactus::seal

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/session/resends.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+#include "tests/property/allocated.h"
+
+namespace tactus {
+namespace {
+
+constexpr std::uint64_t kMillisecond = 1000, kWay = 20'000;  // [us]
+
+struct Sent {
+  explicit Sent(std::size_t size = 40) : bytes(size, 7) {}
+  Packet packet(std::uint64_t number) const {
+    return {.bytes = bytes, .substream = 2, .sequence = static_cast<std::uint16_t>(number), .number = number};
+  }
+  std::vector<std::uint8_t> bytes;
+};
+
+TEST(Resends, WhatIsLostGoesAgainOnce) {
+  Resends resends;
+  const Sent sent;
+  for (std::uint64_t n = 1; n <= 5; ++n) resends.keep(n + 100, sent.packet(n), n * kMillisecond);
+  EXPECT_EQ(resends.next(10 * kMillisecond, kWay), nullptr);
+  EXPECT_FALSE(resends.due());
+  resends.lost(103, 50 * kMillisecond, 1);
+  resends.lost(999, 50 * kMillisecond, 1);
+  EXPECT_EQ(resends.due(), 50 * kMillisecond);
+  const auto* copy = resends.next(50 * kMillisecond, kWay);
+  ASSERT_NE(copy, nullptr);
+  EXPECT_EQ(copy->number, 3u);
+  EXPECT_EQ(copy->substream, 2u);
+  EXPECT_EQ(copy->sequence, 3u);
+  EXPECT_EQ(copy->bytes, sent.bytes);
+  resends.sent(*copy, 50 * kMillisecond);
+  EXPECT_EQ(resends.next(51 * kMillisecond, kWay), nullptr);
+  EXPECT_FALSE(resends.due());
+}
+
+TEST(Resends, TheSecondCopyGoesTenMillisecondsLater) {
+  Resends resends;
+  const Sent sent;
+  resends.keep(1, sent.packet(1), 0);
+  resends.lost(1, 50 * kMillisecond, 2);
+  resends.sent(*resends.next(52 * kMillisecond, kWay), 52 * kMillisecond);
+  EXPECT_EQ(resends.next(62 * kMillisecond - 1, kWay), nullptr);
+  EXPECT_EQ(resends.due(), 62 * kMillisecond);
+  resends.sent(*resends.next(62 * kMillisecond, kWay), 62 * kMillisecond);
+  EXPECT_EQ(resends.next(90 * kMillisecond, kWay), nullptr);
+}
+
+TEST(Resends, OldPacketsDoNotGo) {
+  Resends resends;
+  const Sent sent;
+  resends.keep(1, sent.packet(1), 0);
+  resends.lost(1, 50 * kMillisecond, 2);
+  Resends late = resends;
+  EXPECT_NE(resends.next(100 * kMillisecond, kWay), nullptr) << "it arrives 120 ms after the first";
+  EXPECT_EQ(late.next(100 * kMillisecond + 1, kWay), nullptr);
+  EXPECT_FALSE(late.due());
+}
+
+TEST(Resends, AllPacketsOfADatagramGoTheOldestFirst) {
+  Resends resends;
+  const Sent sent;
+  resends.keep(9, sent.packet(12), 0);
+  resends.keep(9, sent.packet(11), 0);
+  resends.keep(8, sent.packet(10), 0);
+  resends.lost(9, kMillisecond, 1);
+  for (const std::uint64_t number : {11u, 12u}) {
+    const auto* copy = resends.next(kMillisecond, kWay);
+    ASSERT_NE(copy, nullptr);
+    EXPECT_EQ(copy->number, number);
+    resends.sent(*copy, kMillisecond);
+  }
+  EXPECT_EQ(resends.next(kMillisecond, kWay), nullptr);
+}
+
+/// Against a list of what should go; nothing is allocated.
+TEST(Resends, ForgetsTheOldestAndAllocatesNothing) {
+  Resends resends;
+  std::mt19937_64 random(1);
+  const Sent large(1150);
+  const std::uint64_t before = testing::allocated_bytes();
+  std::uint64_t number = 0, now = 0, copies = 0;
+  for (int i = 0; i < 20'000; ++i) {
+    now += random() % 5'000;
+    ++number;
+    resends.keep(number, large.packet(number), now);
+    if (random() % 2) resends.lost(number - std::min<std::uint64_t>(number - 1, random() % 100), now, 1 + random() % 2);
+    while (const auto* copy = random() % 4 ? resends.next(now, kWay) : nullptr) {
+      ASSERT_GT(copy->number + 64, number);
+      ASSERT_LE(now + kWay, copy->time + 120'000);
+      resends.sent(*copy, now);
+      ++copies;
+    }
+  }
+  EXPECT_GT(copies, 1'000u);
+  EXPECT_EQ(testing::allocated_bytes(), before);
+  now += 1'000'000;
+  EXPECT_EQ(resends.next(now, kWay), nullptr);
+  EXPECT_FALSE(resends.due()) << "the count of those that wait is right";
+}
+
+}  // namespace
+}  // namespace tactus
