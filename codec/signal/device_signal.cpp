@@ -8,7 +8,7 @@
 
 namespace tactus {
 
-Result<SharedScene> device_scene(const Scene& scene) {
+Result<SharedScene> device_scene(const SceneSpec& scene) {
   constexpr double kReach = 0.1;  // [s]: a device that is not heard of stands still then
   auto built = SceneBuilder(scene.tick_rate).rigid("device").grid(scene.grid).extrapolate(kReach).baselines(64).build();
   if (!built) return tl::unexpected(built.error().error);
@@ -27,21 +27,25 @@ SenderOptions device_sender_options(const DeviceCoding& coding) noexcept {
   return options;
 }
 
-/// [m/tick] Least-squares line through the last samples.
+/// [m/tick] Least-squares line through the samples of the last 8 ms, or three: longer windows lag behind a hand, shorter ones follow the
+/// noise of its sensor.
 Vec3 DeviceTruth::slope() const noexcept {
-  const std::size_t count = std::min(count_, kSamples);
+  const std::size_t kept = std::min(count_, kSamples);
+  const auto place = [&](std::size_t back) -> const Place& { return places_[(count_ - 1 - back) % kSamples]; };
+  const auto is_recent = [&](const Place& p) { return (place(0).tick - p.tick) * 1000 < std::int64_t{8} * tick_rate_; };
+  std::size_t count = std::min<std::size_t>(kept, 3);
+  while (count < kept && is_recent(place(count))) ++count;
   if (count < 2) return {};
-  const std::int64_t newest = places_[(count_ - 1) % kSamples].tick;
   double mean = 0, square = 0;
   Vec3 centre;
   for (std::size_t i = 0; i < count; ++i) {
-    mean += static_cast<double>(places_[i].tick - newest) / static_cast<double>(count);
-    centre = centre + (1.0 / static_cast<double>(count)) * places_[i].position;
+    mean += static_cast<double>(place(i).tick - place(0).tick) / static_cast<double>(count);
+    centre = centre + (1.0 / static_cast<double>(count)) * place(i).position;
   }
   Vec3 sum;
   for (std::size_t i = 0; i < count; ++i) {
-    const double t = static_cast<double>(places_[i].tick - newest) - mean;
-    sum = sum + t * (places_[i].position - centre);
+    const double t = static_cast<double>(place(i).tick - place(0).tick) - mean;
+    sum = sum + t * (place(i).position - centre);
     square += t * t;
   }
   return square > 0 ? (1 / square) * sum : Vec3{};

@@ -31,12 +31,13 @@ struct DeviceContact {
 };
 
 /// The scene of a device that moves in `scene`; its orientation is coded, too.
-Result<SharedScene> device_scene(const Scene& scene);
+Result<SharedScene> device_scene(const SceneSpec& scene);
 
 /// Options of the Sender of a device.
 SenderOptions device_sender_options(const DeviceCoding& coding) noexcept;
 
-/// Samples of a device as the truth that its Sender codes. A device that does not sense its velocity gets one from its last positions.
+/// Samples of a device as the truth that its Sender codes. A device that does not sense its velocity gets one from its
+/// positions of the last 8 ms.
 class DeviceTruth {
  public:
   /// in   velocity  the samples have one
@@ -46,7 +47,7 @@ class DeviceTruth {
   Truth of(std::int64_t tick, const DeviceSample& sample, const std::optional<DeviceContact>& contact) noexcept;
 
  private:
-  static constexpr std::size_t kSamples = 8;  // from which a velocity is taken
+  static constexpr std::size_t kSamples = 32;  // at most, from which a velocity is taken
   struct Place {
     std::int64_t tick = 0;
     Vec3 position;

@@ -161,6 +161,20 @@ TEST(DeviceSignal, AVelocityIsThereWhateverTheTicks) {
   EXPECT_NEAR(norm(truth.of(100'008, {.position = {2, 2, 2}}, {}).objects[0].velocity), 0, 1e-9) << "old samples are forgotten";
 }
 
+TEST(DeviceSignal, TheVelocityLagsAsLittleAtEveryRate) {
+  for (const std::uint32_t rate : {148u, 250u, 500u, 609u, 1000u, 4000u}) {
+    DeviceTruth truth(rate, false);
+    Vec3 velocity;
+    double time = 0;
+    for (std::int64_t tick = 0; tick < 100; ++tick) {
+      time = static_cast<double>(tick) / rate;
+      velocity = truth.of(tick, {.position = {0.5 * time * time, 0, 0}}, {}).objects[0].velocity;  // 1 m/s^2
+    }
+    const double lag = time - velocity.x;
+    EXPECT_NEAR(lag, std::max(3.5e-3, 1.0 / rate), 6e-4) << rate << ": half of the window";
+  }
+}
+
 TEST(DeviceSignal, WhatIsNotANumberSpoilsNothing) {
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     Channel channel({});
