@@ -53,7 +53,7 @@ double MsdLoop::press(std::size_t user, double device) const noexcept {
   return free ? 0 : -users_[user].spec.server_stiffness * penetration;
 }
 
-double MsdLoop::feel(std::size_t index, double device, double received) noexcept {
+double MsdLoop::feel(std::size_t index, double device, double received, double stiffness) noexcept {
   User& user = users_[index];
   // A packet with x'_o is sent whenever it changes; in between the network holds the last value.
   if (received != user.model.to) user.model.receive(received);
@@ -61,7 +61,7 @@ double MsdLoop::feel(std::size_t index, double device, double received) noexcept
   const double penetration = device == kAway ? 0 : device - user.model.value;
   const double rate = (penetration - user.penetration) / options_.tick;
   user.penetration = penetration;
-  const double resistance = user.spec.client_stiffness * penetration + user.spec.client_damping * rate;
+  const double resistance = stiffness * penetration + user.spec.client_damping * rate;
   const bool free = device == kAway || (options_.coupling == Coupling::pressing && (penetration <= 0 || resistance <= 0));
   return user.felt = free ? 0 : -resistance;
 }

@@ -87,7 +87,11 @@ class MsdLoop {
   /// G_s: force on the hand of a user [N], positive into the object.
   double press(std::size_t user, double device) const noexcept;
   /// G_c: likewise at the client, which received this surface x'_o [m].
-  double feel(std::size_t index, double device, double received) noexcept;
+  double feel(std::size_t index, double device, double received) noexcept {
+    return feel(index, device, received, users_[index].spec.client_stiffness);
+  }
+  /// With another stiffness [N/m] than the user's k_c at this tick.
+  double feel(std::size_t index, double device, double received, double stiffness) noexcept;
   void load(double force) noexcept { last_ += force; }  ///< on the object in this tick [N]; forces add up
   void end_tick() noexcept;
 

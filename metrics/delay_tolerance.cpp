@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/metrics/delay_tolerance.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace tactus {
+namespace {
+
+constexpr double kWindow = 8e-3;      // [s] of the velocity
+constexpr double kLeastSpeed = 1e-6;  // [m/s] less is rounding
+constexpr double kLeastForce = 1e-9;  // [N]
+
+}  // namespace
+
+std::optional<double> tolerable_round_trip(const Vec3& force, const Vec3& velocity, double stiffness, double weber) noexcept {
+  const double size = norm(force);
+  if (size < kLeastForce) return std::nullopt;
+  const double against = -dot(velocity, force) / size;
+  if (against < kLeastSpeed) return std::nullopt;
+  return weber * size / (stiffness * against);
+}
+
+void DelayTolerance::Touch::add(std::optional<double> most) {
+  ++ticks_;
+  if (!most) return;
+  ++pressing_;
+  for (std::size_t i = 0; i < kRoundTrips.size(); ++i) felt_[i] += kRoundTrips[i] > *most ? 1U : 0U;
+  if (*most < kLongest) ++bins_[static_cast<std::uint32_t>(*most / kBin)];
+}
+
+std::optional<double> DelayTolerance::Touch::quantile(double share) const noexcept {
+  std::uint64_t seen = 0;
+  for (const auto& [bin, ticks] : bins_) {
+    seen += ticks;
+    if (static_cast<double>(seen) >= share * static_cast<double>(pressing_)) return kBin * (bin + 1.0);
+  }
+  return std::nullopt;
+}
+
+double DelayTolerance::Touch::felt(std::size_t i) const noexcept {
+  return ticks_ == 0 ? 0 : static_cast<double>(felt_[i]) / static_cast<double>(ticks_);
+}
+
+std::optional<Vec3> DelayTolerance::Path::velocity(double tick) const noexcept {
+  if (places.size() < 2) return std::nullopt;
+  const auto& [from, a] = places.front();
+  const auto& [to, b] = places.back();
+  return (1 / (tick * static_cast<double>(to - from))) * (b - a);
+}
+
+void DelayTolerance::add(const TraceFrame& frame) {
+  for (std::uint32_t i = 0; i < frame.users.size(); ++i) {
+    const UserSample& user = frame.users[i];
+    auto& places = users_[i].places;
+    const auto is_old = [&](const auto& place) { return static_cast<double>(frame.tick - place.first) * tick_ > kWindow; };
+    if (!places.empty() && frame.tick - places.back().first > 1 && is_old(places.back())) places.clear();  // a pause
+    const auto kept = std::ranges::find_if_not(places, is_old);
+    places.erase(places.begin(), kept == places.end() && kept != places.begin() ? kept - 1 : kept);
+    places.emplace_back(frame.tick, user.device.position);
+    const auto velocity = users_[i].velocity(tick_);
+    if (!velocity) continue;
+    const auto most = [&](double k) { return tolerable_round_trip(user.server_force, *velocity, k, weber_); };
+    if (user.contact.kind != ContactKind::none) touches_[{i, false, user.contact.object}].add(most(user.contact.stiffness));
+    if (user.surface_contact) touches_[{i, true, user.surface_contact->mesh}].add(most(user.surface_contact->stiffness));
+  }
+}
+
+}  // namespace tactus
