@@ -2,17 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 # Installs missing packages, builds and runs Tactus on Debian 12. Needs root or sudo only to install packages.
 #   ./go demo     simulate a touch, encode, decode and compare; report and figure in out/demo/ (under 3 minutes on 2 cores, 300 MB)
-#   ./go test     build with g++ and clang, run every test (40 minutes on 2 cores, 4 GB)
+#   ./go test     build with g++ and clang, run every test (55 minutes on 2 cores, 4 GB)
 #   ./go bench    build and run the benchmarks; JSON in build/bench/
+#   ./go devices  capture a device of the kernel's own making in an emulated machine, from /dev/uhid to the trace (30 s after the build)
 #   ./go format   format the sources with clang-format
 # shellcheck disable=SC2086 # lists of packages are words
 set -eu
 cd "$(dirname "$0")"
 
 demo_packages='g++ cmake ninja-build pkgconf libexpected-dev libzstd-dev libode-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev gnuplot-nox'
-build_packages="$demo_packages libeigen3-dev libsuitesparse-dev libspectra-dev libopenmesh-dev"
+build_packages="$demo_packages libgnutls28-dev libeigen3-dev libsuitesparse-dev libspectra-dev libopenmesh-dev libusb-1.0-0-dev libhidapi-dev libboost-dev"
 bench_packages='libbenchmark-dev libgtest-dev python3 libbullet-dev'
-test_packages="$bench_packages ccache clang libclang-rt-dev clang-tidy clang-format tetgen valgrind zstd"
+test_packages="$bench_packages ccache clang libclang-rt-dev clang-tidy clang-format tetgen tshark umockdev libumockdev-dev valgrind zstd"
 
 as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi
@@ -79,7 +80,7 @@ run_test() {
 # Only the components that the demo needs: rigid objects.
 build_demo() {
   cmake -S . -B build/demo -G Ninja -DCMAKE_BUILD_TYPE=Release -DTACTUS_WITH_CLI=ON -DTACTUS_WITH_SIM=ON -DTACTUS_WITH_STUDY=OFF \
-    -DTACTUS_WITH_FEM=OFF -DTACTUS_WITH_SURFACE=OFF -DTACTUS_WITH_MODES=OFF -DTACTUS_WITH_CONFORMANCE=OFF -DTACTUS_WITH_TESTS=OFF &&
+    -DTACTUS_WITH_SEAL=OFF -DTACTUS_WITH_FEM=OFF -DTACTUS_WITH_SURFACE=OFF -DTACTUS_WITH_MODES=OFF -DTACTUS_WITH_CONFORMANCE=OFF -DTACTUS_WITH_TESTS=OFF &&
     cmake --build build/demo
 }
 
@@ -116,14 +117,24 @@ run_bench() {
   tests/check.sh bench
 }
 
+build_devices() {
+  cmake --preset gcc -G Ninja && cmake --build build/gcc --target tactus uhid_device
+}
+
+run_devices() {
+  install $build_packages $bench_packages qemu-system-x86 linux-image-amd64 busybox-static cpio kmod
+  step 'build the program and the device' build_devices
+  tests/qemu/run.py build/gcc/cli/tactus build/gcc/tests/qemu/uhid_device build/qemu
+}
+
 run_format() {
   install clang-format
-  find codec io metrics sim cli conformance tests \( -name '*.h' -o -name '*.cpp' \) -exec clang-format -i {} +
+  find codec io metrics sim device cli conformance tests \( -name '*.h' -o -name '*.cpp' \) -exec clang-format -i {} +
 }
 
 case ${1-help} in
-  demo | test | bench | format) "run_$1" ;;
-  help | -h | --help) sed -n '3,7s/^# \{0,1\}//p' "$0" ;;
+  demo | test | bench | devices | format) "run_$1" ;;
+  help | -h | --help) sed -n '3,8s/^# \{0,1\}//p' "$0" ;;
   *)
     echo "go: no such command: $1 (try ./go help)" >&2
     exit 2

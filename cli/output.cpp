@@ -104,7 +104,7 @@ Descriptor::~Descriptor() {
   if (is_open()) ::close(number_);
 }
 
-Outcome OutputFile::check_free(const std::string& path, Existing existing, std::initializer_list<std::string> others) {
+Outcome OutputFile::check_free(const std::string& path, Existing existing, const std::vector<std::string>& others) {
   if (path.empty()) return refuse_arguments("the name of an output is empty", "Give a name, or - for standard output.");
   for (const std::string& other : others) {
     if (path == "-" || other.empty() || !is_same_file(path, other)) continue;
@@ -119,7 +119,7 @@ Outcome OutputFile::check_free(const std::string& path, Existing existing, std::
 }
 
 tl::expected<OutputFile, Failure> OutputFile::create(const std::string& path, Existing existing,
-                                                     std::initializer_list<std::string> others) {
+                                                     const std::vector<std::string>& others) {
   TACTUS_CHECK(check_free(path, existing, others));
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
@@ -130,7 +130,7 @@ tl::expected<OutputFile, Failure> OutputFile::create(const std::string& path, Ex
 }
 
 tl::expected<OutputFile, Failure> OutputFile::create_growing(const std::string& path, Existing existing,
-                                                             std::initializer_list<std::string> others) {
+                                                             const std::vector<std::string>& others) {
   TACTUS_CHECK(check_free(path, existing, others));
   std::error_code ignored;
   if (path == "-" || fs::exists(path, ignored)) return create(path, existing, others);

@@ -4,11 +4,11 @@
 
 #include <cstdint>
 #include <fstream>
-#include <initializer_list>
 #include <iosfwd>
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "cli/report/messages.h"
 
@@ -50,14 +50,14 @@ class OutputFile {
  public:
   enum class Existing { keep, replace };
   /// err  PATH is empty, exists and is to be kept, or names one of the files that the command also reads or writes
-  static Outcome check_free(const std::string& path, Existing existing, std::initializer_list<std::string> others = {});
+  static Outcome check_free(const std::string& path, Existing existing, const std::vector<std::string>& others = {});
   /// err  as check_free(); the operating system refuses
   static tl::expected<OutputFile, Failure> create(const std::string& path, Existing existing,
-                                                  std::initializer_list<std::string> others = {});
+                                                  const std::vector<std::string>& others = {});
   /// The same, but where nothing is yet, the file grows under its own name and stays, finished or not: for what a crash leaves
   /// readable.
   static tl::expected<OutputFile, Failure> create_growing(const std::string& path, Existing existing,
-                                                          std::initializer_list<std::string> others = {});
+                                                          const std::vector<std::string>& others = {});
 
   const std::string& path() const noexcept { return path_; }
   /// What to open for writing, or for reading back: names the open file itself, whoever renames it; "-": standard output.

@@ -5,6 +5,7 @@
 set(TACTUS_PACKAGES
   "zstd            libzstd-dev             zstd::libzstd_shared"
   "ode             libode-dev,pkgconf      PkgConfig::ode"
+  "GnuTLS          libgnutls28-dev         GnuTLS::GnuTLS"
   "tomlplusplus    libtomlplusplus-dev     tomlplusplus::tomlplusplus"
   "CLI11           libcli11-dev            CLI11::CLI11"
   "nlohmann_json   nlohmann-json3-dev      nlohmann_json::nlohmann_json"
@@ -13,6 +14,10 @@ set(TACTUS_PACKAGES
   "CHOLMOD         libsuitesparse-dev      SuiteSparse::CHOLMOD"
   "Spectra         libspectra-dev          Spectra::Spectra"
   "OpenMesh        libopenmesh-dev         OpenMeshCore"
+  "libusb          libusb-1.0-0-dev,pkgconf PkgConfig::libusb"
+  "hidapi          libhidapi-dev,pkgconf   PkgConfig::hidapi"
+  "Boost           libboost-dev            Boost::headers"
+  "Threads         libc6-dev               Threads::Threads"
   "fmt             libfmt-dev              fmt::fmt"
   "GTest           libgtest-dev            GTest::gtest_main"
   "benchmark       libbenchmark-dev        benchmark::benchmark"
@@ -21,13 +26,23 @@ set(TACTUS_PACKAGES
 # LDL and CHOLMOD come without a CMake file: FindLDL.cmake and FindCHOLMOD.cmake, installed beside ours.
 list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})
 
-# The two packages whose ways differ from `find_package(NAME)`: ODE comes without a CMake file, Python needs its component named.
+# The packages whose ways differ from `find_package(NAME)`: ODE, libusb and hidapi come without a CMake file, Python needs its component named.
 # A macro, so that what a package's own CMake file sets reaches the caller.
 macro(tactus_find package)
   if(${package} STREQUAL ode)
     find_package(PkgConfig QUIET)
     if(PkgConfig_FOUND)
       pkg_check_modules(ode QUIET IMPORTED_TARGET ode)
+    endif()
+  elseif(${package} STREQUAL libusb)
+    find_package(PkgConfig QUIET)
+    if(PkgConfig_FOUND)
+      pkg_check_modules(libusb QUIET IMPORTED_TARGET libusb-1.0)
+    endif()
+  elseif(${package} STREQUAL hidapi)
+    find_package(PkgConfig QUIET)
+    if(PkgConfig_FOUND)
+      pkg_check_modules(hidapi QUIET IMPORTED_TARGET hidapi-hidraw)
     endif()
   elseif(${package} STREQUAL Python3)
     find_package(Python3 3.9 QUIET COMPONENTS Interpreter)
@@ -37,11 +52,11 @@ macro(tactus_find package)
 endmacro()
 
 # tactus_missing(OUT required...): Debian packages or components of ours that are needed and not there; empty when all is well.
-# What is required is a component of ours (trace, mesh, fem, surface, sim) or a name from TACTUS_PACKAGES.
+# What is required is a component of ours (trace, net, fem, surface, sim, device) or a name from TACTUS_PACKAGES.
 function(tactus_missing out)
   set(missing)
   foreach(required IN LISTS ARGN)
-    if(required MATCHES "^(trace|net|tets|fem|surface|sim)$")
+    if(required MATCHES "^(trace|net|seal|tets|fem|surface|sim|device)$")
       if(NOT TARGET tactus_${required})
         string(TOUPPER ${required} upper)
         list(APPEND missing "TACTUS_WITH_${upper}")

@@ -25,6 +25,15 @@ LICENCES = {
     "libtomlplusplus": "MIT",
     "libldl": "LGPL-2.1+, loaded as it is and replaceable",
     "libOpenMeshCore": "BSD-3-Clause",
+    "libgnutls": "LGPL-2.1+, loaded as it is and replaceable",
+    "libtasn1": "LGPL-2.1+, loaded by libgnutls",
+    "libp11-kit": "BSD-3-Clause, loaded by libgnutls",
+    "libffi": "MIT, loaded by libp11-kit",
+    "libnettle": "LGPL-3+ or GPL-2+, loaded by libgnutls",
+    "libhogweed": "LGPL-3+ or GPL-2+, loaded by libgnutls",
+    "libgmp": "LGPL-3+ or GPL-2+, loaded by libgnutls",
+    "libidn2": "LGPL-3+ or GPL-2+, loaded by libgnutls",
+    "libunistring": "LGPL-3+ or GPL-2+, loaded by libgnutls",
 }
 LOADER = re.compile(r"linux-vdso|ld-linux")
 SANITIZER = re.compile(r"lib[alt]san")

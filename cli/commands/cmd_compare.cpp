@@ -25,6 +25,8 @@ Outcome check_same_scene(const CompareOptions& options, const TraceInfo& truth, 
     return refuse(shown_path(options.replica) + ": " + what + " as in " + shown_path(options.truth),
                   "Compare a trace with the replica that was decoded from its own stream.");
   };
+  if (truth.shows_past)
+    return refuse(shown_path(options.truth) + ": is what a client showed, not the truth", "Give the server's trace first.");
   if (truth.tick_rate != replica.tick_rate)
     return differ(fmt::format("the tick rate is {} Hz, not {} Hz", replica.tick_rate, truth.tick_rate));
   if (truth.objects.size() != replica.objects.size()) {
@@ -88,10 +90,13 @@ struct Side {
     frames += more ? 1 : 0;
     return more ? Outcome() : check_ending(path, reader, frames);
   }
-  bool is_before(const Side& other) const { return more && (!other.more || frame.tick < other.frame.tick); }
+  /// The tick whose objects the frame has.
+  std::int64_t time() const { return reader.info().shows_past ? frame.shown : frame.tick; }
+  bool is_before(const Side& other) const { return more && (!other.more || time() < other.time()); }
 };
 
-/// Both traces side by side; ticks that only one of them has are counted and passed over.
+/// Both traces side by side; ticks that only one of them has are counted and passed over. A client that shows a tick for longer is held
+/// against it each time.
 Outcome compare_all(Side& truth, Side& replica, const CompareOptions& options, Report& report) {
   Progress progress("compare", truth.reader.frame_count(), options.common.progress());
   Shown shown(truth.reader.info());
@@ -102,13 +107,13 @@ Outcome compare_all(Side& truth, Side& replica, const CompareOptions& options, R
     if (has_replica) shown.take(replica.frame);
     if (has_truth && has_replica) {
       report.timings[0].times.measure([&] { return add(truth.frame, shown, report), true; });
-      report.ticks.add(truth.frame.tick);
+      report.ticks.add(replica.frame.tick);
       progress.update(report.ticks.count());
     } else {
       ++(has_truth ? truth : replica).unmatched;
     }
-    if (has_truth) TACTUS_CHECK(truth.advance());
     if (has_replica) TACTUS_CHECK(replica.advance());
+    if (has_truth && !(replica.more && replica.time() == truth.time())) TACTUS_CHECK(truth.advance());
   }
   return {};
 }
@@ -116,13 +121,14 @@ Outcome compare_all(Side& truth, Side& replica, const CompareOptions& options, R
 /// Says which ticks were left out.
 void note_unmatched(const Side& truth, const Side& replica, Report& report) {
   std::string text;
-  if (truth.unmatched > 0)
-    text = fmt::format("{} of {} ticks are not in the replica", truth.unmatched, truth.unmatched + report.ticks.count());
+  if (truth.unmatched > 0) text = fmt::format("{} of {} ticks are not in the replica", truth.unmatched, truth.frames);
   if (replica.unmatched > 0) {
     text += fmt::format("{}{} of the replica's {} ticks are not in the truth", text.empty() ? "" : " and ", replica.unmatched,
-                        replica.unmatched + report.ticks.count());
+                        replica.frames);
   }
-  if (!text.empty()) report.warnings.push_back(text + ". They were left out; decode with --like " + truth.path);
+  if (text.empty()) return;
+  const bool is_live = replica.reader.info().shows_past;
+  report.warnings.push_back(text + ". They were left out" + (is_live ? "" : "; decode with --like " + truth.path));
 }
 
 tl::expected<Side, Failure> open(const std::string& path) {
@@ -177,15 +183,20 @@ void setup_compare(Command& app, Action& action) {
   auto options = std::make_shared<CompareOptions>();
   Command& command = app.add_command("compare", "Measure the error of a replica");
   command.add_option("TRUTH", options->truth, "Trace of the server (MCAP)")->type_name("")->required();
-  command.add_option("REPLICA", options->replica, "Trace of the client, from `tactus decode` (MCAP)")->type_name("")->required();
+  command.add_option("REPLICA", options->replica, "Trace of the client, from `tactus decode` or `tactus join` (MCAP)")
+      ->type_name("")
+      ->required();
   options->triggers.add_to(command);
   options->meshes.add_to(command);
   add_report_options(command, options->common);
   command.footer(
       "The bounds are those that the stream of the replica declares; options override them. Exit status 3: a bound is broken.\n"
-      "Ticks that only one of the traces has are left out; a warning gives their number.\n"
-      "Example:\n"
-      "  tactus compare push.mcap replica.mcap -p 4% --visual 6mm,2deg");
+      "Ticks that only one of the traces has are left out; a warning gives their number. What a client of `tactus join` shows is "
+      "held\n"
+      "against the tick that it is of.\n"
+      "Examples:\n"
+      "  tactus compare push.mcap replica.mcap -p 4% --visual 6mm,2deg\n"
+      "  tactus compare server.mcap felt.mcap -p 4%");
   on_chosen<CompareOptions>(command, action, options, run);
 }
 

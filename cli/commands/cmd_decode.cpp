@@ -7,10 +7,10 @@
 #include <span>
 
 #include <tactus/base/shown.h>
-#include <tactus/deformable/displacement.h>
 #include <tactus/file/stream_file.h>
 #include <tactus/player.h>
 #include <tactus/trace/trace_file.h>
+#include <tactus/trace/trace_replica.h>
 #include "cli/report/report.h"
 #include "cli/report/trace_ending.h"
 
@@ -82,45 +82,13 @@ Outcome check_length(std::span<const std::uint8_t> file, const DecodeOptions& op
                 "If that is right, give the number of ticks to write with --ticks N.");
 }
 
-TraceInfo replica_info(const Scene& scene, const std::string& input) {
-  TraceInfo info;
-  info.tick_rate = scene.tick_rate;
-  info.source = "decode " + input;
-  for (const RigidObject& object : scene.objects) info.objects.push_back({object.name, object.dof});
-  for (const DeformableObject& object : scene.deformables) {
-    TraceDeformable& out = info.meshes.emplace_back(TraceDeformable{.name = object.name, .rest = {{}, object.triangles}});
-    for (const auto& vertex : object.rest) out.rest.vertices.push_back(to_metres(vertex, scene.grid.position));
-    out.period = object.frame_period / 256.0;
-  }
-  if (scene.bounds) {
-    info.bounds = TraceBounds{*scene.bounds, scene.grid.position, {}};
-    for (const DeformableObject& object : scene.deformables) info.bounds->rings.push_back(object.rings);
-  }
-  return info;
-}
-
-/// The shape that the player shows at a tick; new if any vertex is elsewhere than in the one before.
-void show(Player& player, std::size_t mesh, std::int64_t tick, DeformableSample& sample) {
-  sample.updated = false;
-  auto out = sample.displacements.begin();
-  const auto put = [&](double metres) {
-    const auto value = static_cast<float>(metres);
-    sample.updated = sample.updated || *out != value;
-    *out++ = value;
-  };
-  for (const auto& displacement : player.replica().displacements(mesh, tick)) {
-    const Vec3 u = to_metres(displacement, player.scene().grid.position);
-    put(u.x), put(u.y), put(u.z);
-  }
-}
-
 void count(const PlayedPacket& played, Report& report) {
   if (played.substream > 0)
     report.meshes[played.substream - 1].traffic->add(played.bytes, played.vertices, played.key, played.layer);
   else if (report.traffic) report.traffic->add(strongest_reason(played), played.updates.size(), played.bytes, played.key);
 }
 
-/// Bring the player to `tick` and take over what it shows there: poses and shapes, a replica has no velocities of its own.
+/// Bring the player to `tick` and take over what it shows there.
 Result<void> decode_tick(Player& player, std::int64_t tick, TraceFrame& frame, Report& report) {
   while (true) {
     TACTUS_TRY(const auto played, player.play(tick));
@@ -128,9 +96,7 @@ Result<void> decode_tick(Player& player, std::int64_t tick, TraceFrame& frame, R
     count(*played, report);
   }
   frame.tick = tick;
-  for (std::uint32_t i = 0; i < frame.objects.size(); ++i)
-    frame.objects[i].pose = to_pose(player.replica().pose(i, tick), player.scene().grid.position);
-  for (std::size_t i = 0; i < frame.meshes.size(); ++i) show(player, i, tick, frame.meshes[i]);
+  take_shown(player.replica(), player.scene(), tick, frame);
   return {};
 }
 
@@ -143,10 +109,7 @@ tl::unexpected<Failure> refuse_at(std::int64_t tick, const Error& error, const D
 
 Outcome decode_all(Player& player, TraceWriter& writer, const DecodeOptions& options, Report& report) {
   TACTUS_TRY(auto ticks, TickSource::create(options));
-  TraceFrame frame;
-  frame.objects.resize(player.scene().objects.size());
-  for (const DeformableObject& mesh : player.scene().deformables)
-    frame.meshes.push_back({false, std::vector<float>(3 * mesh.rest.size())});
+  TraceFrame frame = replica_frame(player.scene());
   const auto total = options.ticks ? std::optional(static_cast<std::uint64_t>(*options.ticks)) : std::nullopt;
   Progress progress("decode", total, options.common.progress());
   while (true) {
@@ -172,7 +135,7 @@ Outcome run(const DecodeOptions& options) {
   if (!player) return refuse(options.input, player.error());
   TACTUS_CHECK(check_length(file, options));
   TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing(), {options.input, options.like}));
-  const TraceInfo info = replica_info(player->scene(), options.input);
+  const TraceInfo info = replica_info(player->scene(), "decode " + options.input);
   note_idle_options(*options.common.command, subjects_of(info), "stream");
   auto writer = TraceWriter::create(output.working_path(), info);
   if (!writer) return refuse(options.output, writer.error());

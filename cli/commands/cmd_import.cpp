@@ -54,7 +54,7 @@ Outcome apply_map(const std::string& text, CsvMapping& mapping) {
   if (columns.size() != target->second.size()) {
     return refuse_arguments(
         fmt::format("--map '{}': {} columns where {} needs {}", text, columns.size(), target->first, target->second.size()),
-        "Name the columns as the first line of the file does, with commas between.");
+        "Name the columns as the first line of the file does, with commas between; 0 stands for one that it lacks.");
   }
   std::copy(columns.begin(), columns.end(), target->second.begin());
   return {};
@@ -102,7 +102,7 @@ bool blames_arguments(const CsvMapping& mapping, std::string_view rule) {
 
 tl::unexpected<Failure> refuse_csv(const ImportOptions& options, const CsvMapping& mapping, const Diagnostic& e) {
   const std::string& file = options.input;
-  if (options.preset.empty() && options.maps.empty() && e.line == 1 && e.error.rule == std::string_view("R-CSV-2") &&
+  if (options.preset.empty() && options.maps.empty() && e.error.rule == std::string_view("R-CSV-2") &&
       e.detail == place_of_field("tick", ""))
     return refuse_arguments(file + ": no columns are given",
                             "Give --preset NAME or --map position=x,y,z. Only tables of `tactus export csv` need neither.");
@@ -170,7 +170,9 @@ void setup_import(Command& app, Action& action) {
   Option* output =
       command.add_option("-o,--output", options->output, "Trace to write (MCAP), - is standard output")->type_name("FILE");
   command.add_option("--preset", options->preset, "Built-in column mapping")->type_name("NAME");
-  command.add_option("--map", options->maps, "Columns of one quantity, such as position=x,y,z; may be repeated")
+  command
+      .add_option("--map", options->maps,
+                  "Columns of one quantity, such as position=x,y,z, or device=x,y,0 of a plane; may be repeated")
       ->one_value()
       ->type_name("QUANTITY=COLUMNS");
   command.add_option("--time", options->time, "Column with the time in seconds")->type_name("COLUMN");
@@ -195,6 +197,7 @@ void setup_import(Command& app, Action& action) {
       "Examples:\n"
       "  tactus import csv tosses.csv.zst --preset cube-tosses -o tosses.mcap\n"
       "  tactus import csv arm.csv --time t --map position=x,y,z --map rotation=qw,qx,qy,qz -o arm.mcap\n"
+      "Fields are separated by the semicolons, tabs or commas of the first line; lines that begin with # or % are comments.\n"
       "Segments are joined without a gap. A pause inside a segment is kept: its ticks are missing, but its time counts.");
   command.on_chosen([&action, options, list, input, output] {
     if (list->count() == 0 && input->count() == 0) miss_option("FILE");

@@ -345,6 +345,13 @@ Outcome info_trace(const InfoOptions& options) {
             {"seconds", static_cast<double>(frame.tick - first + (frames > 0 ? 1 : 0)) / trace.tick_rate},
             {"scene", trace.scene.empty() ? "none" : fmt::format("{} bytes of TOML", trace.scene.size())},
             {"ending", reader->cut_short() ? "truncated; everything before the cut was read" : "complete"}};
+  if (trace.capture) {
+    info["captured"] = text_of_wall_time(trace.capture->started);
+    info["device"] = fmt::format("{} ({})", trace.capture->device, trace.capture->backend);
+    info["real time"] = trace.capture->scheduling;
+    if (!trace.capture->subject.empty()) info["subject"] = trace.capture->subject;
+    if (!trace.capture->remarks.empty()) info["remarks"] = trace.capture->remarks;
+  }
   for (const TraceObject& o : trace.objects) info["objects"].push_back({{"object", o.name}, {"moves along", dof_text(o.dof)}});
   for (std::size_t i = 0; i < trace.meshes.size(); ++i) {
     const TriMesh& rest = trace.meshes[i].rest;

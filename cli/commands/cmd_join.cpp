@@ -5,25 +5,33 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include <tactus/base/shown.h>
+#include <tactus/device/real_time.h>
+#include <tactus/device/servo.h>
 #include <tactus/net/udp.h>
 #include <tactus/session/session_client.h>
 #include <tactus/sim/client.h>
-#include <tactus/sim/user/hand.h>
-#include <tactus/trace/trace_file.h>
+#include <tactus/trace/trace_recorder.h>
+#include <tactus/trace/trace_replica.h>
 #include "cli/commands/stop.h"
+#include "cli/live/device_choice.h"
+#include "cli/live/guard_report.h"
 #include "cli/live/live_report.h"
 #include "cli/live/meter.h"
 #include "cli/live/ticker.h"
+#include "cli/live/wire.h"
 #include "cli/options/options_codec.h"
 #include "cli/options/options_session.h"
 #include "cli/options/units.h"
 #include "cli/output.h"
 #include "cli/report/json_parts.h"
 #include "cli/report/messages.h"
+#include "cli/report/trace_ending.h"
 
 namespace tactus::cli {
 namespace {
@@ -31,10 +39,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct JoinOptions {
-  std::string server, scene, user, replay, output;
+  std::string server, scene, user, key, output;
+  DeviceArguments device;
   std::string playout = "adaptive";
-  double duration = 0;  // [s], 0: until interrupted or the end of the recording
-  std::uint64_t seed = 1;
+  double duration = 0;         // [s], 0: until interrupted or the end of the recording
   double device_error = 1e-4;  // [m]
   double weber_fraction = 0.04;
   CommonOptions common;
@@ -47,11 +55,12 @@ struct Body {
   std::unique_ptr<sim::Server> shapes;  // of the scene; nothing moves here
   std::unique_ptr<sim::Client> client;
   std::size_t user = 0;
-  std::optional<sim::Hand> hand;
-  std::optional<TraceReader> recording;
-  TraceFrame recorded;
-  std::vector<std::int64_t> mesh_ticks;  // of the shapes shown
-  DeviceSample device;
+  ChosenDevice chosen;
+  std::unique_ptr<device::Servo> servo;  // from the first live tick on
+  Vec3 origin{};                         // [m] of the device's frame in the world
+  DeviceSample sample;                   // in the world
+  device::ServoTick tick;
+  device::Time begin = 0;  // of the first one
 };
 
 tl::expected<Body, Failure> make_body(const JoinOptions& options) {
@@ -63,21 +72,15 @@ tl::expected<Body, Failure> make_body(const JoinOptions& options) {
   if (scene->users.empty() || (!options.user.empty() && user == scene->users.end()))
     return refuse_arguments(fmt::format("--user {}: not a user of {}", options.user, options.scene), "Give a user of the scene.");
   Body body;
-  auto shapes = sim::Server::create(*scene, {.seed = options.seed, .codec = sim::ServerCodec{{}, {}, true}});
+  auto shapes = sim::Server::create(*scene, {.seed = options.device.seed, .codec = sim::ServerCodec{{}, {}, true}});
   if (!shapes) return refuse(options.scene, shapes.error());
   body.shapes = std::move(*shapes);
   body.client = sim::Client::create_remote(*body.shapes);
   body.user = options.user.empty() ? 0 : static_cast<std::size_t>(user - scene->users.begin());
-  const sim::SceneUser& played = scene->users[body.user];
-  body.hand.emplace(played, played.grip, options.seed);
-  body.device.position = played.start;
-  body.mesh_ticks.assign(body.shapes->frame().meshes.size(), -1);
-  if (options.replay.empty()) return body;
-  auto reader = TraceReader::open(options.replay);
-  if (!reader) return refuse(options.replay, reader.error());
-  if (reader->info().users.empty())
-    return refuse_arguments("--replay " + options.replay + ": nobody is in this trace", "Give a trace with a user.");
-  body.recording.emplace(std::move(*reader));
+  TACTUS_TRY(body.chosen, open_device(options.device, &*scene, body.user));
+  TACTUS_CHECK(check_place(body.chosen.device->capabilities()));
+  TACTUS_CHECK(check_force(options.device, body.chosen.device->capabilities()));
+  if (!body.chosen.in_world) body.origin = scene->users[body.user].start;
   return body;
 }
 
@@ -88,39 +91,52 @@ bool is_same_scene(const tactus::Scene& served, const tactus::Scene& own) {
   return same_objects && std::ranges::equal(served.deformables, own.deformables, {}, vertices, vertices);
 }
 
+Pace pace_of(const device::ServoTimes& times) {
+  const auto us = [&](double share) { return 1e-3 * static_cast<double>(times.lateness.quantile(share)); };
+  return {times.ticks, times.missed, us(0.5), us(0.99)};
+}
+
 /// Takes part in a session in real time.
 class Visit {
  public:
-  Visit(const JoinOptions& options, SessionClient& session, net::UdpSocket& socket)
-      : options_(options), session_(session), socket_(socket) {}
+  Visit(const JoinOptions& options, SessionClient& session, ClientWire& wire)
+      : options_(options), session_(session), wire_(wire) {}
 
-  Outcome hear(std::uint64_t now);
+  Outcome hear();
   void say(std::uint64_t now);
+  /// Take leave, and end what is written.
+  Outcome close(std::uint64_t now);
   /// A tick of the device.   pre  live
   Outcome step(std::uint64_t now);
-  /// False: the recording has ended.
-  tl::expected<bool, Failure> move();
-  void render(std::uint64_t now);
+  /// Wait for the device's next tick.   pre  there is a body
+  Outcome wait();
+  Outcome render(std::uint64_t now);
   Outcome record(std::uint64_t now);
 
+  /// None: there is no device, or it takes no force.
+  std::optional<GuardReport> guard() const {
+    return body && body->servo ? guard_report(*body->servo, body->begin) : std::nullopt;
+  }
+  Pace pace(const Ticker& ticker) const { return body && body->servo ? pace_of(body->servo->times()) : pace_of(ticker); }
+
   std::optional<Body> body;
-  std::optional<TraceWriter> trace;
+  std::optional<TraceRecorder> trace;
   std::optional<OutputFile> output;
   std::optional<LeaveReason> closed;
   bool was_live = false, at_end = false;
   std::uint64_t refused = 0;
   double largest_force = 0;  // [N]
+  std::uint64_t lost = 0;    // ticks that are not in the trace
 
  private:
   Outcome arrive();
 
   const JoinOptions& options_;
   SessionClient& session_;
-  net::UdpSocket& socket_;
-  std::array<std::uint8_t, 2048> buffer_{};
+  ClientWire& wire_;
+  bool has_joined_ = false;
   TraceFrame frame_;
   std::int64_t shown_ = -1, written_ = -1;
-  double share_ = 1;
 };
 
 /// The declaration is here.
@@ -130,100 +146,144 @@ Outcome Visit::arrive() {
   if (body && !is_same_scene(scene, *body->shapes->stream_scene()))
     return refuse_arguments("--scene " + options_.scene + ": the server simulates another scene",
                             "Give the scene of the server.");
-  if (options_.output.empty() || trace) return {};
-  TraceInfo info{.tick_rate = scene.tick_rate, .objects = {}, .users = {}, .source = "join " + options_.server, .scene = {}};
-  for (const RigidObject& object : scene.objects) info.objects.push_back({object.name, object.dof});
-  if (body) info.users.push_back({body->shapes->scene().users[body->user].name, {.buttons = true}});
-  frame_.objects.resize(info.objects.size());
+  if (options_.output.empty()) return {};
+  if (trace) {  // it holds the scene before
+    at_end = true;
+    if (!options_.common.quiet) fmt::print(stderr, "the server has another scene: {} ends here\n", shown_path(options_.output));
+    return {};
+  }
+  TraceInfo info = replica_info(scene, "join " + options_.server);
+  info.shows_past = true;
+  if (body) {
+    DeviceSenses senses = body->chosen.device->capabilities().senses;
+    senses.buttons = true;
+    info.users.push_back({.name = body->shapes->scene().users[body->user].name, .senses = senses, .has_servo = true});
+  }
+  frame_ = replica_frame(scene);
   frame_.users.resize(info.users.size());
-  TACTUS_TRY(auto file,
-             OutputFile::create_growing(options_.output, options_.common.existing(), {options_.scene, options_.replay}));
+  TACTUS_TRY(auto file, OutputFile::create_growing(options_.output, options_.common.existing(),
+                                                   {options_.scene, replayed_file(options_.device), options_.key}));
   output.emplace(std::move(file));
-  auto writer = TraceWriter::create(output->working_path(), info);
-  if (!writer) return refuse(options_.output, writer.error());
-  trace.emplace(std::move(*writer));
+  auto recorder = TraceRecorder::create(output->working_path(), info, frame_);
+  if (!recorder) return refuse(options_.output, recorder.error());
+  trace.emplace(std::move(*recorder));
   return {};
 }
 
-Outcome Visit::hear(std::uint64_t now) {
-  while (const auto received = socket_.receive(buffer_))
-    if (!session_.handle_datagram(now, received->bytes)) ++refused;
+/// Each datagram has the time at which it was taken: what came while another was handled did not come before it.
+Outcome Visit::hear() {
+  constexpr int kMost = 1000;  // at a time: a tick must not wait for a flood to end
+  std::optional<Error> gone;
+  for (int i = 0; i < kMost && !gone; ++i) {
+    const auto heard = wire_.receive(microseconds_now());
+    if (!heard) gone = heard.error();
+    else if (!*heard) break;
+    else if (!session_.handle_datagram(microseconds_now(), **heard)) ++refused;
+  }
+  const std::uint64_t now = microseconds_now();
+  if (const auto there = wire_.handle_timeout(now); !there && !gone) gone = there.error();
+  if (wire_.is_open() && !std::exchange(has_joined_, true)) session_.open(now, system_entropy());
   session_.handle_timeout(now);
   while (const auto event = session_.poll_event()) {
     if (event->kind == ClientEvent::Kind::closed) closed = event->reason;
     if (event->kind == ClientEvent::Kind::live) TACTUS_CHECK(arrive());
   }
+  if (!gone || closed) return {};
+  if (gone->rule != std::string_view("R-SEA-3")) return refuse(options_.server, *gone);
+  closed = LeaveReason::bye;  // 70, section 11.4
   return {};
 }
 
 void Visit::say(std::uint64_t now) {
-  while (const auto datagram = session_.poll_datagram(now)) socket_.send(*datagram);
+  while (const auto datagram = session_.poll_datagram(now)) wire_.send(*datagram);
 }
 
-tl::expected<bool, Failure> Visit::move() {
-  if (!body->recording) {
-    body->device = body->hand->step(body->client->felt(body->user), body->client->watched(body->user));
-    return true;
+Outcome Visit::close(std::uint64_t now) {
+  session_.close();
+  say(now);
+  wire_.close();
+  if (!trace) return {};
+  const auto done = trace->finish();
+  const TraceRecorder::Status status = trace->status();
+  if (!done) return refuse(options_.output, status.error ? place_of_tick(status.last_written) : "", done.error());
+  lost = status.lost;
+  return output->keep();
+}
+
+Outcome Visit::wait() {
+  Body& own = *body;
+  const std::string& name = own.chosen.device->capabilities().name;
+  if (!own.servo) {
+    auto servo = device::Servo::start(*own.chosen.device, {.rate = sim::kTickRate, .limits = options_.device.limits()});
+    if (!servo) return refuse_device(name, servo.error());
+    own.servo = std::move(*servo);
   }
-  const auto more = body->recording->next(body->recorded);
-  if (!more) return refuse(options_.replay, more.error());
-  if (*more) body->device = body->recorded.users[0].device;
-  return *more;
+  if (own.chosen.hand != nullptr) own.chosen.hand->watch(own.client->watched(own.user));
+  const auto tick = own.servo->next();
+  if (!tick) return refuse_device(name, tick.error());
+  own.tick = *tick;
+  if (own.servo->times().ticks == 1) own.begin = tick->due;
+  own.sample = tick->reading.sample;
+  own.sample.position = own.sample.position + own.origin;
+  at_end = at_end || tick->reading.state == device::Reading::State::ended;
+  return {};
 }
 
-void Visit::render(std::uint64_t now) {
-  TraceFrame& news = body->shapes->frame();
+Outcome Visit::render(std::uint64_t now) {
+  Body& own = *body;
   Receiver& receiver = *session_.receiver();
-  for (std::size_t i = 0; i < body->mesh_ticks.size(); ++i) {
-    news.meshes[i].updated = receiver.tick(i + 1) != body->mesh_ticks[i];
-    body->mesh_ticks[i] = receiver.tick(i + 1);
-  }
   shown_ = session_.shown_tick(now);
-  if (shown_ >= 0) body->client->show(receiver, shown_, news);
-  share_ = session_.force_share(now);
-  body->client->touch(body->user, body->device, share_);
-  largest_force = std::max(largest_force, norm(body->client->felt(body->user)));
+  if (shown_ >= 0) own.client->show(receiver, shown_);
+  own.client->touch(own.user, own.sample, session_.force_share(now));
+  if (const auto exerted = own.servo->exert(own.client->felt(own.user)); !exerted)
+    return refuse_device(own.chosen.device->capabilities().name, exerted.error());
+  largest_force = std::max(largest_force, norm(own.client->felt(own.user)));
+  return {};
 }
 
 /// On the server's time base: the tick now at the server.
 Outcome Visit::record(std::uint64_t now) {
   const SessionStatus status = session_.status();
   const Receiver* receiver = session_.receiver();
-  if (!trace || shown_ < 0 || !status.clock_offset) return {};
+  if (!trace || at_end || shown_ < 0 || !status.clock_offset) return {};
   const std::int64_t at_server = static_cast<std::int64_t>(now) + *status.clock_offset - static_cast<std::int64_t>(status.start);
-  const std::int64_t tick = at_server * receiver->scene()->tick_rate / 1'000'000;
+  const std::int64_t rate = receiver->scene()->tick_rate;
+  const std::int64_t tick = at_server / 1'000'000 * rate + at_server % 1'000'000 * rate / 1'000'000;
   if (tick <= written_) return {};
   written_ = frame_.tick = tick;
-  Replica& replica = session_.receiver()->replica();
-  for (std::uint32_t i = 0; i < frame_.objects.size(); ++i)
-    frame_.objects[i].pose = to_pose(replica.pose(i, shown_), receiver->scene()->grid.position);
+  frame_.shown = shown_;
+  take_shown(session_.receiver()->replica(), *receiver->scene(), shown_, frame_);
   if (body) {
-    frame_.users[0].device = body->device;
-    frame_.users[0].force = body->client->felt(body->user);
+    const device::ForceGuard* guard = body->servo->guard();
+    UserSample& user = frame_.users[0];
+    user.device = body->sample;
+    user.force = guard != nullptr ? guard->written() : Vec3{};
+    user.servo = {body->tick.lateness, body->tick.age, body->tick.missed, guard != nullptr ? guard->actions() : 0U};
   }
-  if (const auto written = trace->write(frame_); !written) return refuse(options_.output, place_of_tick(tick), written.error());
-  return {};
+  trace->offer(frame_);
+  const TraceRecorder::Status writing = trace->status();
+  if (!writing.error) return {};
+  errno = writing.cause;
+  return refuse(options_.output, place_of_tick(tick), *writing.error);
 }
 
 Outcome Visit::step(std::uint64_t now) {
   if (body) {
-    TACTUS_TRY(const bool moves, move());
-    at_end = !moves;
-    if (const auto sent = session_.submit(now, body->device, body->client->contact(body->user)); !sent)
+    if (const auto sent = session_.submit(now, body->sample, body->client->contact(body->user)); !sent)
       return refuse("device", sent.error());
-    render(now);
+    TACTUS_CHECK(render(now));
   } else {
     shown_ = session_.shown_tick(now);
   }
   return record(now);
 }
 
-std::string meter_text(const SessionStatus& status, const Ticker& ticker) {
+std::string meter_text(const SessionStatus& status, std::uint64_t missed) {
   if (status.state != SessionState::live)
     return fmt::format("{} {} of {} kB", name_of(status.state), status.received / 1000, status.declaration / 1000);
   const double trip = status.round_trip ? 1e-3 * static_cast<double>(status.round_trip->smoothed) : 0;
   return fmt::format("live  round trip {:.1f} ms  shows {:.1f} ms after the fastest packet  loss up {:.1f} %  missed {}", trip,
-                     1e-3 * static_cast<double>(status.playout_delay), 100 * status.loss, ticker.missed());
+                     1e-3 * static_cast<double>(status.playout_delay), 100 * status.loss, missed);
 }
 
 Json hashes_json(SessionClient& session) {
@@ -236,25 +296,29 @@ Json hashes_json(SessionClient& session) {
   return out;
 }
 
-Json to_json(const JoinOptions& options, SessionClient& session, const Visit& visit, const Ticker& ticker, double seconds) {
+Json to_json(const JoinOptions& options, SessionClient& session, const Visit& visit, const Pace& pace, double seconds,
+             const std::optional<SealUse>& seal) {
   const SessionStatus status = session.status();
   Json out{{"schema", "tactus.join/1"},
            {"server", options.server},
            {"role", options.participates() ? "participant" : "observer"},
            {"seconds", seconds},
-           {"pace", pace_json(ticker)},
+           {"pace", pace_json(pace)},
            {"playout_delay_us", status.playout_delay},
            {"loss", status.loss},
            {"datagrams_refused", visit.refused},
-           {"traffic", traffic_json(status.traffic, seconds)},
+           {"traffic", traffic_json(status.traffic, seconds, seal)},
            {"state_hashes", hashes_json(session)}};
   if (status.round_trip) out["round_trip"] = round_trip_json(*status.round_trip);
   if (status.clock_offset) out["clock_offset_us"] = *status.clock_offset;
+  if (seal) out["seal"] = seal_json(seal->counters);
   if (options.participates()) out["largest_force_N"] = visit.largest_force;
+  if (const auto guard = visit.guard()) out["guard"] = to_json(*guard);
   return out;
 }
 
-void print_text(const JoinOptions& options, SessionClient& session, const Visit& visit, const Ticker& ticker, double seconds) {
+void print_text(const JoinOptions& options, SessionClient& session, const Visit& visit, const Pace& pace, double seconds,
+                const std::optional<SealUse>& seal) {
   const SessionStatus status = session.status();
   Table head;
   head.heading({"join"});
@@ -267,65 +331,97 @@ void print_text(const JoinOptions& options, SessionClient& session, const Visit&
                             1e-3 * static_cast<double>(status.round_trip->least)));
   row("playout", fmt::format("{:.2f} ms after the fastest packet", 1e-3 * static_cast<double>(status.playout_delay)));
   if (options.participates()) row("touch", fmt::format("at most {:.2f} N", visit.largest_force));
+  if (const auto guard = visit.guard()) row("guard", to_text(*guard));
+  if (seal) row("seal", seal_text(seal->counters));
   for (const Json& hash : hashes_json(session)) row("state", hash.get<std::string>());
   head.print(stdout);
   fmt::print("\n");
   Table table;
-  traffic_heading(table);
-  traffic_row(table, "to the server", status.traffic, seconds);
-  pace_rows(table, ticker);
+  traffic_heading(table, seal);
+  traffic_row(table, "to the server", status.traffic, seconds, seal);
+  pace_rows(table, pace);
   table.print(stdout);
+}
+
+tl::expected<std::unique_ptr<ClientWire>, Failure> make_wire(const JoinOptions& options, net::UdpSocket& socket) {
+  if (options.key.empty()) return plain_wire_of_client(socket);
+  return sealed_wire_of_client(socket, options.key);
+}
+
+bool is_live(SessionClient& session) { return session.receiver() != nullptr && session.status().state == SessionState::live; }
+
+/// Until it is to end.   out  ticks that were live
+Outcome take_part(const JoinOptions& options, SessionClient& session, Visit& visit, ClientWire& wire, Ticker& ticker,
+                  const net::UdpSocket& socket, std::uint64_t& live_ticks) {
+  const StopOnSignal stop;
+  Meter meter(options.common.progress());
+  const double most = options.duration > 0 ? options.duration * sim::kTickRate : 1e18;
+  while (StopOnSignal::caught() == 0 && !visit.closed && !visit.at_end && static_cast<double>(live_ticks) < most) {
+    const bool by_device = visit.body && is_live(session);
+    bool is_tick = by_device;
+    if (by_device) {
+      TACTUS_CHECK(visit.wait());
+    } else {
+      const std::uint64_t timeout =
+          std::min(session.next_timeout().value_or(UINT64_MAX), wire.next_timeout().value_or(UINT64_MAX));
+      is_tick = ticker.wait(socket.handle(), timeout) == Ticker::Woken::by_tick && !visit.body;
+    }
+    TACTUS_CHECK(visit.hear());
+    const std::uint64_t now = microseconds_now();
+    if (is_tick && is_live(session)) {
+      TACTUS_CHECK(visit.step(now));
+      ++live_ticks;
+    }
+    visit.say(now);
+    if (meter.is_due(now)) meter.draw(now, meter_text(session.status(), visit.pace(ticker).missed));
+  }
+  return {};
 }
 
 Outcome run(const JoinOptions& typed) {
   JoinOptions options = typed;
-  TACTUS_TRY(const net::Address server, loopback_address("SERVER", options.server));
+  TACTUS_TRY(const net::Address server, session_address("SERVER", options.server, options.key));
   options.server = server.text();
-  if (!options.participates() && (!options.replay.empty() || !options.user.empty()))
-    return refuse_arguments("--replay and --user: nothing is touched without --scene",
-                            "Give the scene of the server with --scene.");
+  if (!options.participates() && !options.user.empty())
+    return refuse_arguments("--user: nothing is touched without --scene", "Give the scene of the server with --scene.");
   auto session = SessionClient::create({.role = options.participates() ? Role::participant : Role::observer,
                                         .playout = {playout_of(options.playout)},
                                         .device = {.position = options.device_error, .weber_fraction = options.weber_fraction}});
   if (!session) return refuse("session", session.error());
   auto socket = net::UdpSocket::connect(server);
   if (!socket) return refuse(options.server, socket.error());
-  Visit visit(options, *session, *socket);
+  std::optional<Body> body;
+  std::optional<device::RealTime> real_time;
   if (options.participates()) {
-    TACTUS_TRY(visit.body, make_body(options));
+    real_time.emplace();
+    TACTUS_TRY(body, make_body(options));
   }
-  session->open(microseconds_now(), system_entropy());
+  TACTUS_TRY(const auto wire, make_wire(options, *socket));
+  Visit visit(options, *session, *wire);
+  visit.body = std::move(body);
 
-  const StopOnSignal stop;
-  Meter meter(options.common.progress());
   Ticker ticker(1'000'000 / sim::kTickRate);
   std::uint64_t live_ticks = 0;
-  const double most = options.duration > 0 ? options.duration * sim::kTickRate : 1e18;
-  while (StopOnSignal::caught() == 0 && !visit.closed && !visit.at_end && static_cast<double>(live_ticks) < most) {
-    const auto woken = ticker.wait(socket->handle(), session->next_timeout().value_or(UINT64_MAX));
-    const std::uint64_t now = microseconds_now();
-    TACTUS_CHECK(visit.hear(now));
-    if (woken == Ticker::Woken::by_tick && session->receiver() != nullptr && session->status().state == SessionState::live) {
-      TACTUS_CHECK(visit.step(now));
-      ++live_ticks;
-    }
-    visit.say(now);
-    if (meter.is_due(now)) meter.draw(now, meter_text(session->status(), ticker));
-  }
+  const Outcome worked = take_part(options, *session, visit, *wire, ticker, *socket, live_ticks);
   const double seconds = static_cast<double>(live_ticks) / sim::kTickRate;
   const bool ended_by_server = visit.closed.has_value();
-  session->close();
-  visit.say(microseconds_now());
-  if (visit.trace) {
-    if (const auto done = visit.trace->finish(); !done) return refuse(options.output, done.error());
-    TACTUS_CHECK(visit.output->keep());
-  }
+  const Outcome finished = visit.close(microseconds_now());
+  TACTUS_CHECK(worked);
+  TACTUS_CHECK(finished);
   if (!visit.was_live) {
     const std::string why = visit.closed ? name_of(*visit.closed) : "interrupted";
-    return tl::unexpected(Failure{fmt::format("{}: no session: {}", options.server, why), "Is `tactus serve` running there?"});
+    const std::string seal = options.key.empty() ? " If it has a key, this end needs it too: --key." : "";
+    return tl::unexpected(
+        Failure{fmt::format("{}: no session: {}", options.server, why), "Is `tactus serve` running there?" + seal});
   }
-  if (options.common.json) fmt::print("{}\n", text_of_json(to_json(options, *session, visit, ticker, seconds)));
-  else if (!options.common.quiet) print_text(options, *session, visit, ticker, seconds);
+  if (options.common.json)
+    fmt::print("{}\n", text_of_json(to_json(options, *session, visit, visit.pace(ticker), seconds, wire->seal())));
+  else if (!options.common.quiet) print_text(options, *session, visit, visit.pace(ticker), seconds, wire->seal());
+  if (visit.lost > 0) {
+    Failure failure{fmt::format("{}: {} lost", options.output, counted(visit.lost, "tick")), "Write to a faster disk."};
+    failure.cause = Failure::Cause::bound;
+    return tl::unexpected(std::move(failure));
+  }
   if (ended_by_server && *visit.closed != LeaveReason::bye)
     return tl::unexpected(Failure{fmt::format("{}: the session ended: {}", options.server, name_of(*visit.closed)), ""});
   return {};
@@ -336,22 +432,18 @@ Outcome run(const JoinOptions& typed) {
 void setup_join(Command& app, Action& action) {
   auto options = std::make_shared<JoinOptions>();
   Command& command = app.add_command("join", "Take part in a scene that `tactus serve` simulates");
-  command.add_option("SERVER", options->server, "Its port, or HOST:PORT on the loopback")->type_name("")->required();
+  command.add_option("SERVER", options->server, "Its port on this machine; with --key HOST:PORT")->type_name("")->required();
   command
       .add_option("--scene", options->scene,
-                  "The scene of the server: its shapes are touched by a virtual hand. Without, the client only looks on")
+                  "The scene of the server: its shapes are touched with --device. Without, the client only looks on")
       ->type_name("SCENE");
   command.add_option("--user", options->user, "The user of the scene whose hand it is [the first]")->type_name("NAME");
-  command.add_option("--replay", options->replay, "The device samples of this trace instead of the virtual hand")
-      ->type_name("TRACE");
+  add_device_options(command, options->device);
   command.add_option("-o,--output", options->output, "Also write a trace of what is shown and felt, on the server's time (MCAP)")
       ->type_name("FILE");
-  command.add_option("--seed", options->seed, "Seed of the virtual hand")
-      ->check(whole_number(0, UINT64_MAX))
-      ->show_default()
-      ->type_name("N");
   add_quantity(command, "--duration", options->duration, Dimension::time,
                "End after this long [until Ctrl-C or the server's end]");
+  add_key(command, options->key);
   add_playout(command, options->playout);
   add_quantity(command, "--device-error", options->device_error, Dimension::length,
                "Largest error of the device's position that the server is told [0.1mm]")
@@ -360,7 +452,9 @@ void setup_join(Command& app, Action& action) {
                "In contact, largest error of the force that this error causes [4%]")
       ->check(within(Dimension::fraction, "0.1%", "100%"));
   add_output_options(command, options->common);
-  command.footer("Example:\n  tactus join 7447 --scene rotate-push-lift -o felt.mcap");
+  command.footer(
+      "Example:\n  tactus join 7447 --scene rotate-push-lift -o felt.mcap\n"
+      "From another machine:\n  tactus join 192.0.2.1:7447 --key lab.key --scene rotate-push-lift");
   on_chosen<JoinOptions>(command, action, options, run);
 }
 

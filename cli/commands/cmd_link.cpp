@@ -32,7 +32,8 @@ constexpr std::size_t kLargestDatagram = 65536;
 
 struct ForwardOptions {
   std::string listen, to;
-  sim::LinkOptions up, down;
+  sim::LinkOptions link;  // of both directions
+  std::optional<sim::LinkOptions> uplink{};
   double duration = 0;  // [s], 0: until interrupted
   CommonOptions common;
 };
@@ -102,9 +103,9 @@ Path* Forwarder::path_of(const net::Address& client) {
   if (paths_.size() == kMostClients) return nullptr;
   auto server = net::UdpSocket::connect(server_);
   if (!server) return nullptr;
-  sim::LinkOptions up = options_.up, down = options_.down;  // each client meets a network of its own
-  up.seed += 2 * paths_.size();
-  down.seed += 2 * paths_.size() + 1;
+  sim::LinkOptions down = options_.link, up = options_.uplink.value_or(down);  // each client meets a network of its own
+  up.seed += 2 * paths_.size() + 1;
+  down.seed += 2 * paths_.size();
   return &paths_.emplace_back(Path{client, std::move(*server), sim::Link::create(up).value(), sim::Link::create(down).value()});
 }
 
@@ -215,14 +216,14 @@ void setup_link(Command& app, Action& action) {
   Command& command = app.add_command("link", "Hand on UDP datagrams like a network that delays and loses");
   command.add_option("--listen", options->listen, "Port for clients, 0: any free one")->required()->type_name("PORT");
   command.add_option("--to", options->to, "Port of the server")->required()->type_name("PORT");
-  add_link(command, "--up", options->up, "Network from the clients to the server [perfect]");
-  add_link(command, "--down", options->down, "Network from the server to the clients [perfect]");
+  add_link(command, "--link", options->link, "Network between server and clients, the same there and back [perfect]");
+  add_link(command, "--uplink", options->uplink, "Network from the clients to the server, if it differs");
   add_quantity(command, "--duration", options->duration, Dimension::time, "End after this long [until Ctrl-C]");
   add_report_options(command, options->common);
   command.footer(std::string(link_help()) +
-                 "\nEach client meets a network of its own, with the seed of the one before plus 2.\n\n"
+                 "\nEach client meets a network of its own: client i, from 0, has seed + 2 i down and seed + 2 i + 1 up.\n\n"
                  "Example:\n"
-                 "  tactus link --listen 4001 --to 4000 --up delay=20ms,loss=1% --down delay=20ms,jitter=5ms,loss=1%,burst=5");
+                 "  tactus link --listen 4001 --to 4000 --link delay=20ms,jitter=5ms,loss=1%,burst=5");
   on_chosen<ForwardOptions>(command, action, options, run);
 }
 

@@ -17,13 +17,17 @@
 #include "cli/live/live_report.h"
 #include "cli/live/meter.h"
 #include "cli/live/ticker.h"
+#include "cli/live/wire.h"
 #include "cli/options/option_needs.h"
 #include "cli/options/options_codec.h"
 #include "cli/options/options_link.h"
+#include "cli/options/options_session.h"
 #include "cli/options/units.h"
 #include "cli/output.h"
+#include "cli/report/figures.h"
 #include "cli/report/json_parts.h"
 #include "cli/report/messages.h"
+#include "cli/report/network_report.h"
 
 namespace tactus::cli {
 namespace {
@@ -31,7 +35,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct ServeOptions {
-  std::string scene, listen = "7447", output;
+  std::string scene, listen = "7447", key, output;
   std::uint32_t clients = 8;
   double duration = 0;  // [s], 0: until interrupted
   double rate = 0;      // [bit/s] to each client
@@ -41,80 +45,72 @@ struct ServeOptions {
   CommonOptions common;
 };
 
-/// Who sent datagrams: the session names addresses by their keys.
-class Peers {
- public:
-  explicit Peers(std::size_t most) : most_(most) {}
-
-  std::uint64_t name(const net::Address& from) {
-    last_ = from;
-    return from.key();
-  }
-  /// The sender of the last datagram has a session.
-  void keep() {
-    if (std::ranges::find(known_, last_) != known_.end()) return;
-    if (known_.size() == most_) known_.erase(known_.begin());
-    known_.push_back(last_);
-  }
-  const net::Address* find(std::uint64_t peer) const {
-    const auto found = std::ranges::find(known_, peer, &net::Address::key);
-    if (found != known_.end()) return &*found;
-    return last_.key() == peer ? &last_ : nullptr;
-  }
-
- private:
-  std::size_t most_;
-  std::vector<net::Address> known_;
-  net::Address last_;
-};
-
 /// Serves a simulated world in real time.
 class Service {
  public:
-  Service(sim::Server& world, SessionServer& sessions, net::UdpSocket& socket)
-      : world_(world),
-        sessions_(sessions),
-        socket_(socket),
-        peers_(4 * std::size_t{sessions.clients()}),
-        players_(world.scene().users.size()) {
+  Service(sim::Server& world, SessionServer& sessions, ServerWire& wire)
+      : world_(world), sessions_(sessions), wire_(wire), players_(world.scene().users.size()) {
     for (const sim::SceneUser& user : world.scene().users) devices_.push_back({.position = user.start});
   }
 
   /// Take what has come, and what time has brought.
-  void hear(std::uint64_t now);
+  void hear();
   /// A tick of the world.
   Outcome step(std::uint64_t now, std::optional<TraceWriter>& trace, const std::string& output);
   void say(std::uint64_t now);
+  /// Take leave of all.
+  void close(std::uint64_t now);
   std::size_t live() const;
   std::uint64_t refused() const { return refused_; }
 
  private:
   void seat(const ServerEvent& event);
+  void end(std::uint64_t peer);
+  bool has_session(std::uint64_t peer) const { return sessions_.has_peer(peer); }
 
   sim::Server& world_;
   SessionServer& sessions_;
-  net::UdpSocket& socket_;
-  Peers peers_;
+  ServerWire& wire_;
   std::vector<std::optional<std::uint16_t>> players_;  // the client that plays each user of the scene
   std::vector<DeviceSample> devices_;
-  std::array<std::uint8_t, 2048> buffer_{};
   std::uint64_t refused_ = 0;
 };
 
-void Service::hear(std::uint64_t now) {
-  while (const auto received = socket_.receive(buffer_)) {
-    if (sessions_.handle_datagram(now, peers_.name(received->from), received->bytes)) peers_.keep();
-    else ++refused_;
+/// Each datagram has the time at which it was taken: what came while another was handled did not come before it.
+void Service::hear() {
+  constexpr int kMost = 1000;  // at a time: a tick must not wait for a flood to end
+  for (int i = 0; i < kMost; ++i) {
+    const auto heard = wire_.receive(microseconds_now());
+    if (!heard) break;
+    const std::uint64_t now = microseconds_now();
+    if (!sessions_.handle_datagram(now, heard->peer, heard->bytes)) ++refused_;
+    wire_.settle([this](std::uint64_t peer) { return has_session(peer); });
     say(now);
   }
-  sessions_.handle_timeout(now);
+  while (const auto peer = wire_.poll_closed()) end(*peer);
+  sessions_.handle_timeout(microseconds_now());
 }
 
-/// A participant plays the first user of the scene whom nobody plays.
+/// The peer is gone: its client has left, even if no leave was heard.
+void Service::end(std::uint64_t peer) {
+  for (std::uint16_t i = 0; i < sessions_.clients(); ++i)
+    if (sessions_.status(i).peer == peer) sessions_.close(i, LeaveReason::bye);
+}
+
+void Service::close(std::uint64_t now) {
+  sessions_.close();
+  say(now);
+  wire_.close();
+}
+
+/// A participant plays the first user of the scene whom nobody plays. The hand of one who left is where it was before anybody came.
 void Service::seat(const ServerEvent& event) {
   if (event.kind == ServerEvent::Kind::left) {
-    for (auto& player : players_)
-      if (player == event.client) player.reset();
+    for (std::size_t i = 0; i < players_.size(); ++i) {
+      if (players_[i] != event.client) continue;
+      players_[i].reset();
+      devices_[i] = {.position = world_.scene().users[i].start};
+    }
     return;
   }
   if (event.kind != ServerEvent::Kind::live || sessions_.status(event.client).role != Role::participant) return;
@@ -123,12 +119,12 @@ void Service::seat(const ServerEvent& event) {
 }
 
 void Service::say(std::uint64_t now) {
-  while (const auto datagram = sessions_.poll_datagram(now))
-    if (const net::Address* to = peers_.find(datagram->peer)) socket_.send(*to, datagram->bytes);
+  while (const auto datagram = sessions_.poll_datagram(now)) wire_.send(datagram->peer, datagram->bytes);
   while (const auto event = sessions_.poll_event()) seat(*event);
 }
 
 Outcome Service::step(std::uint64_t now, std::optional<TraceWriter>& trace, const std::string& output) {
+  wire_.tick(now, [this](std::uint64_t peer) { return has_session(peer); });
   for (std::size_t i = 0; i < players_.size(); ++i)
     if (players_[i]) devices_[i] = sessions_.device(*players_[i], now).value_or(devices_[i]);
   world_.observe();
@@ -171,10 +167,11 @@ Json hashes_json(const SessionServer& sessions, const tactus::Scene& scene, std:
 }
 
 Json to_json(const ServeOptions& options, const SessionServer& sessions, const tactus::Scene& scene, const Service& service,
-             const Ticker& ticker, double seconds) {
+             const Ticker& ticker, double seconds, const std::optional<SealUse>& seal) {
   Json out{{"schema", "tactus.serve/1"}, {"scene", options.scene}, {"listen", options.listen}, {"seconds", seconds}};
-  out["pace"] = pace_json(ticker);
+  out["pace"] = pace_json(pace_of(ticker));
   out["datagrams_refused"] = service.refused();
+  if (seal) out["seal"] = seal_json(seal->counters);
   out["clients"] = Json::array();
   for (std::uint16_t i = 0; i < sessions.clients(); ++i) {
     const ClientStatus status = sessions.status(i);
@@ -183,7 +180,8 @@ Json to_json(const ServeOptions& options, const SessionServer& sessions, const t
                 {"state", name_of(status.state)},
                 {"role", status.role == Role::observer ? "observer" : "participant"},
                 {"loss", status.loss},
-                {"traffic", traffic_json(status.traffic, seconds)}};
+                {"bounds_widened", widening_json(status.widened)},
+                {"traffic", traffic_json(status.traffic, seconds, seal)}};
     if (status.round_trip) client["round_trip"] = round_trip_json(*status.round_trip);
     if (status.state == SessionState::live) client["state_hashes"] = hashes_json(sessions, scene, i);
     out["clients"].push_back(std::move(client));
@@ -192,24 +190,25 @@ Json to_json(const ServeOptions& options, const SessionServer& sessions, const t
 }
 
 void print_text(const ServeOptions& options, const SessionServer& sessions, const Service& service, const Ticker& ticker,
-                double seconds) {
+                double seconds, const std::optional<SealUse>& seal) {
   Table head;
   head.heading({"serve"});
   head.row({fmt::format("  {:<8} {}", "scene", options.scene)});
   head.row({fmt::format("  {:<8} {}", "listen", options.listen)});
   head.row({fmt::format("  {:<8} {:.3f} s", "time", seconds)});
   if (service.refused() > 0) head.row({fmt::format("  {:<8} {}", "refused", counted(service.refused(), "datagram"))});
+  if (seal) head.row({fmt::format("  {:<8} {}", "seal", seal_text(seal->counters))});
   head.print(stdout);
   fmt::print("\n");
   Table table;
-  traffic_heading(table);
+  traffic_heading(table, seal);
   for (std::uint16_t i = 0; i < sessions.clients(); ++i) {
     const ClientStatus status = sessions.status(i);
     if (status.traffic.datagrams_sent == 0) continue;
     traffic_row(table, fmt::format("to client {}, {}", i, status.role == Role::observer ? "observer" : "participant"),
-                status.traffic, seconds);
+                status.traffic, seconds, seal);
   }
-  pace_rows(table, ticker);
+  pace_rows(table, pace_of(ticker));
   table.print(stdout);
 }
 
@@ -225,54 +224,82 @@ tl::expected<std::unique_ptr<sim::Server>, Failure> make_world(const ServeOption
   return std::move(*world);
 }
 
+/// What a run writes, if it was asked to.
+struct Recording {
+  std::optional<OutputFile> output;
+  std::optional<TraceWriter> trace;
+
+  Outcome finish(const std::string& name) {
+    if (!trace) return {};
+    if (const auto done = trace->finish(); !done) return refuse(name, done.error());
+    return output->keep();
+  }
+};
+
+tl::expected<Recording, Failure> make_recording(const ServeOptions& options, const sim::Server& world) {
+  Recording out;
+  if (options.output.empty()) return out;
+  TACTUS_TRY(auto file, OutputFile::create_growing(options.output, options.common.existing(), {options.scene, options.key}));
+  out.output.emplace(std::move(file));
+  TraceInfo info = world.info();
+  info.source = "serve " + world.scene().name;
+  auto writer = TraceWriter::create(out.output->working_path(), info);
+  if (!writer) return refuse(options.output, writer.error());
+  out.trace.emplace(std::move(*writer));
+  return out;
+}
+
+tl::expected<std::unique_ptr<ServerWire>, Failure> make_wire(const ServeOptions& options, net::UdpSocket& socket) {
+  if (options.key.empty()) return plain_wire_of_server(socket, options.clients);
+  return sealed_wire_of_server(socket, options.clients, options.key);
+}
+
+/// Until it is to end.
+Outcome serve(const ServeOptions& options, const sim::Server& world, SessionServer& sessions, Service& service, Ticker& ticker,
+              const net::UdpSocket& socket, std::optional<TraceWriter>& trace) {
+  const StopOnSignal stop;
+  Meter meter(options.common.progress());
+  const auto ticks = options.duration > 0 ? std::llround(options.duration * sim::kTickRate) : INT64_MAX;
+  while (StopOnSignal::caught() == 0 && world.frame().tick < ticks) {
+    const auto woken = ticker.wait(socket.handle(), sessions.next_timeout().value_or(UINT64_MAX));
+    service.hear();
+    const std::uint64_t now = microseconds_now();
+    if (woken == Ticker::Woken::by_tick) TACTUS_CHECK(service.step(now, trace, options.output));
+    service.say(now);
+    if (meter.is_due(now)) meter.draw(now, meter_text(world, sessions, service, ticker));
+  }
+  return {};
+}
+
 Outcome run(const ServeOptions& typed) {
   ServeOptions options = typed;
-  TACTUS_TRY(const net::Address listen, loopback_address("--listen", options.listen));
+  TACTUS_TRY(const net::Address listen, session_address("--listen", options.listen, options.key));
   TACTUS_TRY(const auto world, make_world(options));
   auto socket = net::UdpSocket::bind(listen);
   if (!socket) return refuse(options.listen, socket.error());
   options.listen = socket->own().text();
+  TACTUS_TRY(const auto wire, make_wire(options, *socket));
+  const std::size_t seal = wire->seal() ? wire->seal()->overhead : 0;
   const SessionServerOptions settings{.sender = options.meshes.sender(options.triggers),
                                       .clients = static_cast<std::uint16_t>(options.clients),
-                                      .rate = static_cast<std::uint64_t>(options.rate)};
+                                      .rate = static_cast<std::uint64_t>(options.rate),
+                                      .headers = static_cast<std::uint32_t>(kUdpHeader + seal)};
   auto sessions = SessionServer::create(world->stream_scene(), settings, system_entropy(), microseconds_now());
   if (!sessions) return refuse(options.scene, sessions.error());
-  std::optional<OutputFile> output;
-  std::optional<TraceWriter> trace;
-  if (!options.output.empty()) {
-    TACTUS_TRY(auto file, OutputFile::create_growing(options.output, options.common.existing(), {options.scene}));
-    output.emplace(std::move(file));
-    TraceInfo info = world->info();
-    info.source = "serve " + world->scene().name;
-    auto writer = TraceWriter::create(output->working_path(), info);
-    if (!writer) return refuse(options.output, writer.error());
-    trace.emplace(std::move(*writer));
-  }
+  TACTUS_TRY(auto recording, make_recording(options, *world));
   if (!options.common.quiet) fmt::print(stderr, "serving {} at {}\n", options.scene, options.listen);
 
-  const StopOnSignal stop;
-  Meter meter(options.common.progress());
-  Service service(*world, *sessions, *socket);
-  const auto ticks = options.duration > 0 ? std::llround(options.duration * sim::kTickRate) : INT64_MAX;
+  Service service(*world, *sessions, *wire);
   Ticker ticker(1'000'000 / sim::kTickRate);
-  while (StopOnSignal::caught() == 0 && world->frame().tick < ticks) {
-    const auto woken = ticker.wait(socket->handle(), sessions->next_timeout().value_or(UINT64_MAX));
-    const std::uint64_t now = microseconds_now();
-    service.hear(now);
-    if (woken == Ticker::Woken::by_tick) TACTUS_CHECK(service.step(now, trace, options.output));
-    service.say(now);
-    if (meter.is_due(now)) meter.draw(now, meter_text(*world, *sessions, service, ticker));
-  }
+  const Outcome worked = serve(options, *world, *sessions, service, ticker, *socket, recording.trace);
   const double seconds = static_cast<double>(ticker.ticks()) / sim::kTickRate;
-  const Json report = to_json(options, *sessions, *world->stream_scene(), service, ticker, seconds);
-  sessions->close();
-  service.say(microseconds_now());
-  if (trace) {
-    if (const auto done = trace->finish(); !done) return refuse(options.output, done.error());
-    TACTUS_CHECK(output->keep());
-  }
+  const Json report = to_json(options, *sessions, *world->stream_scene(), service, ticker, seconds, wire->seal());
+  service.close(microseconds_now());
+  const Outcome finished = recording.finish(options.output);
+  TACTUS_CHECK(worked);
+  TACTUS_CHECK(finished);
   if (options.common.json) fmt::print("{}\n", text_of_json(report));
-  else if (!options.common.quiet) print_text(options, *sessions, service, ticker, seconds);
+  else if (!options.common.quiet) print_text(options, *sessions, service, ticker, seconds, wire->seal());
   return {};
 }
 
@@ -282,7 +309,10 @@ void setup_serve(Command& app, Action& action) {
   auto options = std::make_shared<ServeOptions>();
   Command& command = app.add_command("serve", "Simulate a scene in real time for clients that join");
   command.add_option("SCENE", options->scene, "As in `tactus sim`")->type_name("")->required();
-  command.add_option("--listen", options->listen, "Port for clients, 0: any free one")->show_default()->type_name("PORT");
+  command.add_option("--listen", options->listen, "Port for clients, 0: any free one; with --key ADDRESS:PORT of any network")
+      ->show_default()
+      ->type_name("PORT");
+  add_key(command, options->key);
   command.add_option("-o,--output", options->output, "Also write a trace (MCAP)")->type_name("FILE");
   command.add_option("--clients", options->clients, "Most clients at a time")
       ->check(whole_number(1, 1024))
@@ -296,8 +326,11 @@ void setup_serve(Command& app, Action& action) {
       "A participant plays the first user of the scene whom nobody plays; others and observers look on.\n\n"
       "Example, in three terminals:\n"
       "  tactus serve rotate-push-lift -p 4%\n"
-      "  tactus link --listen 4001 --to 7447 --up delay=20ms,loss=1% --down delay=20ms,loss=1%\n"
-      "  tactus join 4001 --scene rotate-push-lift");
+      "  tactus link --listen 4001 --to 7447 --link delay=20ms,loss=1%\n"
+      "  tactus join 4001 --scene rotate-push-lift\n"
+      "For other machines, sealed (29 bytes per datagram more):\n"
+      "  tactus key -o lab.key\n"
+      "  tactus serve rotate-push-lift -p 4% --listen 192.0.2.1:7447 --key lab.key");
   on_chosen<ServeOptions>(command, action, options, run);
 }
 

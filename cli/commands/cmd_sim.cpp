@@ -12,6 +12,10 @@
 #include <tactus/sim/link/session_network.h>
 #include <tactus/sim/simulation.h>
 #include <tactus/trace/trace_file.h>
+#ifdef TACTUS_HAS_NET
+#include "cli/commands/session_capture.h"
+#endif
+#include "cli/commands/replay.h"
 #include "cli/commands/stop.h"
 #include "cli/laboratory/stiffness_map.h"
 #include "cli/options/grip_option.h"
@@ -28,6 +32,7 @@ namespace {
 
 struct SimOptions {
   std::string scene, output, stream, replay;
+  std::string pcap;            // capture to write
   std::string stiffness_map;   // CSV to write
   std::string grip;            // empty: the scene's
   std::string method, solver;  // of deformable objects, empty: the scene's
@@ -77,7 +82,7 @@ struct Run {
   TraceFrame recorded;
   std::vector<DeviceSample> devices;  // of this tick, recorded
   std::optional<NetworkJudge> judge;  // with a network
-  const sim::SessionNetwork* network = nullptr;
+  sim::SessionNetwork* network = nullptr;
 };
 
 /// If the recording has no buttons, button 0 counts as pressed during a spring contact.
@@ -133,7 +138,7 @@ Outcome record(Run& run, std::span<const Packet> packets, const SimOptions& opti
     return refuse(options.output, place_of_tick(frame.tick), written.error());
   TACTUS_CHECK(record_packets(run, packets, options, report));
   if (run.judge) {
-    run.judge->add(run.simulation);
+    run.judge->add(run.simulation, *run.network);
   } else if (report.fidelity) {
     judge_meshes(run, report);
     report.fidelity->add(frame, run.simulation.client_poses());
@@ -278,7 +283,7 @@ Outcome draw_stiffness(const sim::Scene& scene, const SimOptions& options, StepT
   if (options.stiffness_map.empty() || scene.deformables.empty()) return {};
   TACTUS_TRY(const auto drawn, times.measure([&] {
     return write_stiffness_map(scene, options.scene, options.stiffness_map, options.common.existing(),
-                               {options.scene, options.output, options.stream, options.replay});
+                               {options.scene, options.output, options.stream, options.replay, options.pcap});
   }));
   if (drawn == Drawn::no) fmt::print(stderr, "note: {}\n", kNoGnuplot);
   return {};
@@ -307,6 +312,46 @@ tl::expected<sim::NetworkOptions, Failure> network_of(const SimOptions& options,
   return out;
 }
 
+/// The network of a simulation, once that is made, and the capture of its datagrams.
+struct Networked {
+  sim::SessionNetwork* network = nullptr;
+#ifdef TACTUS_HAS_NET
+  std::unique_ptr<SessionCapture> capture;
+#endif
+};
+
+/// in   networked  outlives the making of the simulation
+Outcome add_network(const SimOptions& options, const sim::Scene& scene, Networked& networked, sim::ChannelOptions& channel) {
+  TACTUS_TRY(auto of_network, network_of(options, scene));
+#ifdef TACTUS_HAS_NET
+  if (!options.pcap.empty()) {
+    TACTUS_TRY(networked.capture, SessionCapture::create(options.pcap, options.common.existing(),
+                                                         {options.output, options.scene, options.replay, options.stiffness_map},
+                                                         SessionCapture::End::client));
+    of_network.observer = networked.capture->observer();
+  }
+#endif
+  channel.network = [&networked, of_network](SharedScene declared, std::size_t users,
+                                             const SenderOptions& sender) -> Result<std::unique_ptr<sim::Network>> {
+    TACTUS_TRY(auto made, sim::SessionNetwork::create(std::move(declared), users, sender, of_network));
+    networked.network = made.get();
+    return made;
+  };
+  return {};
+}
+
+/// The sessions end, and the capture is whole.
+Outcome keep_capture(const Networked& networked) {
+#ifdef TACTUS_HAS_NET
+  if (!networked.capture) return {};
+  networked.network->leave();
+  return networked.capture->keep();
+#else
+  static_cast<void>(networked);
+  return {};
+#endif
+}
+
 Outcome run(const SimOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
   if (options.duration >= 0 && options.duration < 0.5 / sim::kTickRate)
@@ -314,6 +359,10 @@ Outcome run(const SimOptions& options) {
   if (options.duration * sim::kTickRate > kMostTicks)
     return refuse_arguments("--duration: more ticks than can be numbered",
                             fmt::format("Give at most {:.0f}s.", std::floor(kMostTicks / sim::kTickRate)));
+  if (!options.pcap.empty() && !options.has_network())
+    return refuse_arguments("--pcap: without a network there are no datagrams", "Give a network with --link.");
+  if (!options.has_network() && options.common.command->find("--playout")->count() > 0)
+    return refuse_arguments("--playout: without a network nothing is late", "Give --link or --uplink, or leave out --playout.");
   TACTUS_TRY(const auto scene, read_scene(options));
   note_idle_options(*options.common.command, subjects_of(scene), "scene");
   sim::SimulationOptions settings{.seed = options.seed,
@@ -323,26 +372,18 @@ Outcome run(const SimOptions& options) {
                                   .estimate_every = kEstimateEvery};
   if (options.has_channel())
     settings.channel = sim::ChannelOptions{options.meshes.sender(options.triggers), options.replica, options.meshes.coding(), {}};
-  const sim::SessionNetwork* network = nullptr;
-  if (options.has_network()) {
-    TACTUS_TRY(const auto of_network, network_of(options, scene));
-    settings.channel->network = [&network, of_network](SharedScene declared, std::size_t users,
-                                                       const SenderOptions& sender) -> Result<std::unique_ptr<sim::Network>> {
-      TACTUS_TRY(auto made, sim::SessionNetwork::create(std::move(declared), users, sender, of_network));
-      network = made.get();
-      return made;
-    };
-  }
+  Networked networked;
+  if (options.has_network()) TACTUS_CHECK(add_network(options, scene, networked, *settings.channel));
   auto simulation = sim::Simulation::create(scene, settings);
   if (!simulation) return refuse(options.scene, simulation.error());
   std::optional<TraceReader> recording;
   if (!options.replay.empty()) {
-    auto reader = TraceReader::open(options.replay);
-    if (!reader) return refuse(options.replay, reader.error());
-    recording.emplace(std::move(*reader));
+    TACTUS_TRY(auto reader, open_replay(options.replay));
+    recording.emplace(std::move(reader));
   }
-  TACTUS_TRY(auto output, OutputFile::create_growing(options.output, options.common.existing(),
-                                                     {options.stream, options.stiffness_map, options.scene, options.replay}));
+  TACTUS_TRY(auto output,
+             OutputFile::create_growing(options.output, options.common.existing(),
+                                        {options.stream, options.stiffness_map, options.scene, options.replay, options.pcap}));
   std::optional<StreamOutput> stream;
   if (!options.stream.empty()) {
     TACTUS_TRY(auto opened, open_stream(options, *simulation->stream_scene()));
@@ -357,9 +398,9 @@ Outcome run(const SimOptions& options) {
   Report report = make_report(options, info);
   describe_deformables(*simulation, report);
   Run session{std::move(*simulation), std::move(output), std::move(*trace), std::move(stream), std::move(recording), {}, {}, {}};
-  if (network != nullptr) {
-    session.judge.emplace(info, options.triggers.triggers());
-    session.network = network;
+  if (networked.network != nullptr) {
+    session.judge.emplace(info, options.triggers, options.meshes);
+    session.network = networked.network;
   }
   const auto ticks = options.duration < 0 ? session.simulation.ticks()
                                           : static_cast<std::int64_t>(std::llround(options.duration * sim::kTickRate));
@@ -370,6 +411,7 @@ Outcome run(const SimOptions& options) {
   report_touches(scene, session.simulation, report);
   if (session.judge) report.networks = session.judge->finish(*session.network);
   else if (options.has_channel()) report.stream = stream_size(session);
+  TACTUS_CHECK(keep_capture(networked));
   report_errors(session.simulation, report);
   report.timings.push_back(std::move(map));
   print(report, options.common, beside(options.output));
@@ -426,8 +468,14 @@ void setup_sim(Command& app, Action& action) {
   add_link(command, "--link", options->link,
            "Give each user a client of their own, joined over this network, the same there and back")
       ->excludes(interpolate);
-  add_link(command, "--uplink", options->uplink, "The network from the clients to the server, if it differs");
+  add_link(command, "--uplink", options->uplink, "Network from the clients to the server, if it differs");
   add_playout(command, options->playout);
+#ifdef TACTUS_HAS_NET
+  command
+      .add_option("--pcap", options->pcap,
+                  "With --link: also write the datagrams at the clients' network interfaces (pcap; see `tactus export pcap`)")
+      ->type_name("FILE");
+#endif
   add_encoder_options(command, options->triggers, options->meshes);
   add_output_options(command, options->common);
   command.footer(

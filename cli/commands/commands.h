@@ -15,16 +15,27 @@ void setup_encode(Command& app, Action& action);
 void setup_decode(Command& app, Action& action);
 void setup_compare(Command& app, Action& action);
 void setup_info(Command& app, Action& action);
+void setup_tolerable(Command& app, Action& action);
+void setup_capture(Command& app, Action& action);
+void setup_play(Command& app, Action& action);
+void setup_devices(Command& app, Action& action);
+void setup_cut(Command& app, Action& action);
+void setup_merge(Command& app, Action& action);
+void setup_recover(Command& app, Action& action);
+void setup_resample(Command& app, Action& action);
 void setup_export(Command& app, Action& action);
 void setup_export_mesh(Command& group, Action& action);
+void setup_export_pcap(Command& group, Action& action);
 void setup_link(Command& app, Action& action);
 void setup_serve(Command& app, Action& action);
 void setup_join(Command& app, Action& action);
+void setup_key(Command& app, Action& action);
 void setup_sweep(Command& app, Action& action);
 void setup_reproduce(Command& app, Action& action);
 void setup_bench(Command& app, Action& action);
 void setup_bench_precision(Command& group, Action& action);
 void setup_bench_stability(Command& group, Action& action);
 void setup_bench_session(Command& group, Action& action);
+void setup_bench_signals(Command& group, Action& action);
 
 }  // namespace tactus::cli

@@ -63,7 +63,7 @@ Outcome make_folder(const std::string& directory) {
 }
 
 void setup_bench(Command& app, Action&) {
-  Command& bench = app.add_command("bench", "Measure the simulation itself: error against run time, and stability limits");
+  Command& bench = app.add_command("bench", "Measure the simulation, sessions and signals");
   bench.footer("Example:\n  tactus bench stability --help");
 }
 

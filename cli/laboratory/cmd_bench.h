@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the subcommands of `tactus bench` share: studies of the simulation itself.
+/// What the subcommands of `tactus bench` share.
 #pragma once
 
 #include <map>

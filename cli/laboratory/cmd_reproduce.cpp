@@ -282,9 +282,11 @@ Outcome reproduce_settings(const ReproduceOptions& options) {
 }
 
 Outcome run(const ReproduceOptions& options) {
-  const bool draws = options.figure == "fig3.3" || options.figure == "fig3.11";
+  const bool has_delay = options.figure.starts_with("fig4.");
+  const bool draws = has_delay || options.figure == "fig3.3" || options.figure == "fig3.11";
   if (!draws && !options.directory.empty())
-    return refuse_arguments("--output: only fig3.3 and fig3.11 are drawn", "Leave out --output.");
+    return refuse_arguments("--output: " + options.figure + " is a table, and not drawn", "Leave out --output.");
+  if (has_delay) return reproduce_delay(options);
   if (options.figure == "fig3.3") return reproduce_traffic(options);
   if (options.figure == "fig3.11") return reproduce_interpolation(options);
   if (options.figure == "fig3.6") return reproduce_architectures(options);
@@ -300,21 +302,25 @@ void setup_reproduce(Command& app, Action& action) {
   command
       .add_option("FIGURE", options->figure,
                   "fig3.3: why updates are sent; fig3.6: states or forces; fig3.11: interpolation; fig3.10: updates at the "
-                  "adjusted deadbands; fig3.14, also called table3.3: traffic settings")
+                  "adjusted deadbands; fig3.14, also called table3.3: traffic settings; of delay, fig4.7: impedance of a rigid "
+                  "object at a "
+                  "client, fig4.20: of a deformable one, fig4.22: with compensation, fig4.21: one user presses, fig4.24: two do")
       ->required()
-      ->check(one_of({"fig3.3", "fig3.6", "fig3.10", "fig3.11", "fig3.14", "table3.3"}))
+      ->check(one_of({"fig3.3", "fig3.6", "fig3.10", "fig3.11", "fig3.14", "fig4.7", "fig4.20", "fig4.21", "fig4.22", "fig4.24",
+                      "table3.3"}))
       ->type_name("");
   command.add_option("--seeds", options->seeds, "Runs per setting")->show_default()->check(whole_number(1, 1000))->type_name("N");
   add_quantity(command, "--length-unit", options->length_unit, Dimension::length,
                "Metres per virtual length unit of the thesis [0.05m]")
       ->check(above_zero(Dimension::length));
   add_grip(command, options->grip, options->grip);
-  command.add_option("-o,--output", options->directory, "Folder for figure and table (fig3.3 and fig3.11)")->type_name("DIR");
+  command.add_option("-o,--output", options->directory, "Folder for figure and table (fig3.3, fig3.11, fig4)")->type_name("DIR");
   add_output_options(command, options->common);
   command.footer(
       "Examples:\n"
       "  tactus reproduce fig3.14 --seeds 5\n"
-      "  tactus reproduce fig3.3 -o figures");
+      "  tactus reproduce fig3.3 -o figures\n"
+      "  tactus reproduce fig4.24 -o figures");
   on_chosen<ReproduceOptions>(command, action, options, run);
 }
 

@@ -4,8 +4,11 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/command.h"
+#include "cli/laboratory/plot.h"
 #include "cli/options/options_codec.h"
 #include "cli/report/messages.h"
 
@@ -20,6 +23,10 @@ struct ReproduceOptions {
   CommonOptions common;
 };
 
+/// Write a figure, and tables by their names, to the folder of the options; nothing if there is none.
+Outcome write_figure(const ReproduceOptions& options, const Plot& plot,
+                     const std::vector<std::pair<std::string, std::string>>& tables);
+
 /// Figure 3.3: why updates are sent while a cube is pushed.
 Outcome reproduce_traffic(const ReproduceOptions& options);
 /// Figure 3.11: the rendered force with and without interpolation.
@@ -28,5 +35,7 @@ Outcome reproduce_interpolation(const ReproduceOptions& options);
 Outcome reproduce_architectures(const ReproduceOptions& options);
 /// Figure 3.10: updates per second in contact, at the deadbands that the subjects chose.
 Outcome reproduce_adjusted(const ReproduceOptions& options);
+/// Figures 4.7, 4.20, 4.21, 4.22 and 4.24: what delay does to the force at a client, and compensation.
+Outcome reproduce_delay(const ReproduceOptions& options);
 
 }  // namespace tactus::cli

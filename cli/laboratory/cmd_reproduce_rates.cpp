@@ -212,8 +212,7 @@ Outcome reproduce_architectures(const ReproduceOptions& options) {
   fmt::print(
       "Thesis figure 3.6: packets per second to a client that is sent object states (CS-State) or forces (CS-Force), {}, seeds 1 "
       "to {}\n"
-      "One user here, two in the thesis, whose figure has no numbers. No packet goes when nothing is touched and nothing "
-      "moves.\n\n",
+      "One user here, two in the thesis, whose figure has no numbers.\n\n",
       scene.name, options.seeds);
   Table table;
   table.heading({"p", "CS-State", "CS-Force, linear", "CS-Force, hold", "felt error, state [N]", "linear [N]", "hold [N]"});

@@ -103,7 +103,10 @@ Jumps jumps_of(const std::vector<Tick>& ticks) {
   return out;
 }
 
-Outcome write(const ReproduceOptions& options, const Plot& plot, const std::vector<std::pair<std::string, std::string>>& tables) {
+}  // namespace
+
+Outcome write_figure(const ReproduceOptions& options, const Plot& plot,
+                     const std::vector<std::pair<std::string, std::string>>& tables) {
   if (options.directory.empty()) return {};
   TACTUS_CHECK(make_folder(options.directory));
   for (const auto& [name, text] : tables)
@@ -112,8 +115,6 @@ Outcome write(const ReproduceOptions& options, const Plot& plot, const std::vect
   if (drawn == Drawn::no) fmt::print(stderr, "note: {}\n", kNoGnuplot);
   return {};
 }
-
-}  // namespace
 
 Outcome reproduce_traffic(const ReproduceOptions& options) {
   TACTUS_TRY(const std::vector<Tick> ticks, push(0.08, Interpolation::none, options));
@@ -151,7 +152,7 @@ Outcome reproduce_traffic(const ReproduceOptions& options) {
   Plot plot{.name = "fig3.3", .program = "traffic-figure-3.3", .width = 900, .height = 620};
   plot.data = {curve("force", ticks, &Tick::felt, 1), curve("position", ticks, &Tick::position, 1e3), updates("haptic", ticks, 3),
                updates("visual", ticks, 2), updates("heartbeat", ticks, 1)};
-  return write(options, plot, {{"fig3.3.csv", csv_of(ticks)}});
+  return write_figure(options, plot, {{"fig3.3.csv", csv_of(ticks)}});
 }
 
 Outcome reproduce_interpolation(const ReproduceOptions& options) {
@@ -182,7 +183,7 @@ Outcome reproduce_interpolation(const ReproduceOptions& options) {
   Plot plot{.name = "fig3.11", .program = "interpolation-figure-3.11", .width = 900, .height = 620};
   plot.data = {curve("felt_without", without, &Tick::felt, 1), curve("server_without", without, &Tick::server, 1),
                curve("felt_with", with, &Tick::felt, 1), curve("server_with", with, &Tick::server, 1)};
-  return write(options, plot, {{"fig3.11-without.csv", csv_of(without)}, {"fig3.11-with.csv", csv_of(with)}});
+  return write_figure(options, plot, {{"fig3.11-without.csv", csv_of(without)}, {"fig3.11-with.csv", csv_of(with)}});
 }
 
 }  // namespace tactus::cli

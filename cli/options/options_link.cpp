@@ -71,7 +71,7 @@ Parsed<void> read_delays(sim::LinkOptions& link, Text value) {
   auto reader = CsvReader::open(path);
   const auto wrong = [&](const std::string& why) { return tl::unexpected(fmt::format("'{}': {}", path, why)); };
   if (!reader) return wrong("cannot be read");
-  if (const auto more = reader->next(); !more || !*more || reader->fields() != std::vector<std::string>{"time_s", "delay_s"})
+  if (const auto more = reader->names(); !more || !*more || reader->fields() != std::vector<std::string>{"time_s", "delay_s"})
     return wrong("the first line must be time_s,delay_s");
   while (true) {
     const auto more = reader->next();

@@ -28,4 +28,9 @@ std::optional<std::uint32_t> playout_of(const std::string& value) {
   return static_cast<std::uint32_t>(std::llround(1e6 * parse_quantity(value, Dimension::time)->value));
 }
 
+Option* add_key(Command& app, std::string& value) {
+  return app.add_option("--key", value, "Seal the session with this key, the same at both ends; see `tactus key` [not sealed]")
+      ->type_name("FILE");
+}
+
 }  // namespace tactus::cli

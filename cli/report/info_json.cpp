@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/report/info_json.h"
 
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <ctime>
 #include <nlohmann/json.hpp>
 
 #include "cli/report/figures.h"
@@ -64,6 +68,13 @@ Json without_shares(Json traffic) {
     for (const char* share : {"reduction_from_24_byte_states", "reduction_from_48_byte_states"}) traffic[name].erase(share);
   traffic.erase("reduction_of_updates");
   return traffic;
+}
+
+Json capture_json(const TraceCapture& capture) {
+  return {{"started_ns", capture.started},    {"started", text_of_wall_time(capture.started)},
+          {"device", capture.device},         {"backend", capture.backend},
+          {"scheduling", capture.scheduling}, {"subject", capture.subject},
+          {"remarks", capture.remarks}};
 }
 
 }  // namespace
@@ -132,6 +143,10 @@ Json stream_info_json(const Player& player, const StreamTotals& totals, std::uin
   return out;
 }
 
+std::string text_of_wall_time(std::int64_t time) {
+  return fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(static_cast<std::time_t>(time / 1'000'000'000)));
+}
+
 Json trace_info_json(const TraceInfo& trace, const TraceTotals& totals) {
   const auto length = static_cast<double>(totals.last - totals.first + (totals.frames > 0 ? 1 : 0));
   Json out{{"schema", kSchema},
@@ -158,6 +173,7 @@ Json trace_info_json(const TraceInfo& trace, const TraceTotals& totals) {
   }
   out["users"] = Json::array();
   for (const TraceUser& user : trace.users) out["users"].push_back({{"name", user.name}});
+  if (trace.capture) out["capture"] = capture_json(*trace.capture);
   return out;
 }
 

@@ -2,6 +2,7 @@
 /// What `tactus info --json` prints: schema info.json.
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -31,6 +32,8 @@ struct TraceTotals {
   bool complete = false;
   std::vector<std::uint64_t> shapes{};  ///< per mesh: how many are new
 };
+/// "2026-01-31 09:30:00 UTC"   in  time  [ns] since 1970-01-01 UTC
+std::string text_of_wall_time(std::int64_t time);
 nlohmann::ordered_json trace_info_json(const TraceInfo& trace, const TraceTotals& totals);
 
 #ifdef TACTUS_HAS_SIM

@@ -35,10 +35,10 @@ void traffic_rows(Table& table, const MeshReport& mesh, double seconds) {
   table.row({"  vertices coded per packet", fmt::format("{:.1f}", per(static_cast<double>(t.updates), packets_of(t)))});
 }
 
-void error_rows(Table& table, const MeshReport& mesh) {
+void error_rows(Table& table, const MeshReport& mesh, const std::string& where) {
   const DeformableErrors& f = *mesh.fidelity;
   const DeformableThresholds& b = f.bounds();
-  table.heading({"error of " + mesh.name, "bound", "MSE [mm2]", "max", "violations", "vertices"});
+  table.heading({"error of " + mesh.name + where, "bound", "MSE [mm2]", "max", "violations", "vertices"});
   const auto row = [&](const std::string& name, const std::string& bound, const VertexErrors& e) {
     table.row({name, bound, significant(1e6 * e.mse()), significant(1e3 * e.max, 5), fmt::to_string(e.violations),
                fmt::to_string(e.vertices)});
@@ -54,9 +54,9 @@ void error_rows(Table& table, const MeshReport& mesh) {
 
 }  // namespace
 
-void mesh_rows(Table& table, const MeshReport& mesh, double seconds) {
+void mesh_rows(Table& table, const MeshReport& mesh, double seconds, const std::string& where) {
   if (mesh.traffic) traffic_rows(table, mesh, seconds);
-  if (mesh.fidelity && mesh.fidelity->frames() > 0) error_rows(table, mesh);
+  if (mesh.fidelity && mesh.fidelity->frames() > 0) error_rows(table, mesh, where);
 }
 
 }  // namespace tactus::cli

@@ -23,7 +23,8 @@ struct MeshReport {
   StepTimes encode{}, decode{};
 };
 
-void mesh_rows(Table& table, const MeshReport& mesh, double seconds);
+/// in   where  of the errors: at which client
+void mesh_rows(Table& table, const MeshReport& mesh, double seconds, const std::string& where = {});
 
 /// With `header` bytes below each packet.
 inline double bytes_of(const DeformableRates& t, std::uint64_t header) {

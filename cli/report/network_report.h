@@ -5,13 +5,13 @@
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include <tactus/metrics/errors.h>
 #include <tactus/session/session_client.h>
+#include "cli/report/mesh_report.h"
 
 namespace tactus::cli {
-
-class Table;
 
 /// One direction: what an end sent, and what the network did to it.
 struct DirectionReport {
@@ -21,15 +21,19 @@ struct DirectionReport {
 
 struct NetworkReport {
   std::string user;
-  ErrorMetrics errors;              ///< of what was shown against the truth of the tick shown
-  std::uint64_t not_shown = 0;      ///< ticks in which the client had nothing to show
-  std::uint64_t without_force = 0;  ///< ticks in which old data kept the client from rendering its full force
-  double delay_sum = 0;             ///< [s] of the ticks shown, behind the server's
+  ErrorMetrics errors;               ///< of what was shown against the truth of the tick shown
+  std::vector<MeshReport> meshes{};  ///< the same, of deformable objects
+  std::uint64_t not_shown = 0;       ///< ticks in which the client had nothing to show
+  std::uint64_t without_force = 0;   ///< ticks in which old data kept the client from rendering its full force
+  double delay_sum = 0;              ///< [s] of the ticks shown, behind the server's
   std::uint64_t shown = 0;
   SessionStatus status{};
+  Widening widened{};  ///< of the bounds, by the server
   DirectionReport up{}, down{};
 };
 
+nlohmann::ordered_json widening_json(const Widening& widened);
+std::string widening_text(const Widening& widened);  ///< to go on with; empty: the bounds were never widened
 std::string network_note(const NetworkReport& user);
 void network_rows(Table& table, const NetworkReport& user, double seconds);
 nlohmann::ordered_json network_json(const NetworkReport& user, double seconds);

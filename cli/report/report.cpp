@@ -187,7 +187,9 @@ void print_text(const Report& r, std::FILE* out) {
   if (r.fidelity && has_errors(*r.fidelity)) error_rows(figures, r, *r.fidelity, "");
   for (const NetworkReport& user : r.networks) {
     network_rows(figures, user, r.seconds());
-    if (has_errors(user.errors)) error_rows(figures, r, user.errors, " at " + user.user + ", against the tick shown");
+    const std::string where = " at " + user.user + ", against the tick shown";
+    if (has_errors(user.errors)) error_rows(figures, r, user.errors, where);
+    for (const MeshReport& mesh : user.meshes) mesh_rows(figures, mesh, r.seconds(), where);
   }
   for (const MeshReport& mesh : r.meshes) mesh_rows(figures, mesh, r.seconds());
   if (r.stream) stream_rows(figures, r);

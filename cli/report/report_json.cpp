@@ -231,6 +231,7 @@ std::string to_json(const Report& r) {
     Json session = network_json(user, r.seconds());
     session["bounds"] = bounds_json(user.errors.bounds());
     if (has_errors(user.errors)) session["error"] = errors_json(r, user.errors);
+    for (const MeshReport& mesh : user.meshes) session["deformables"].push_back(mesh_json(mesh, r.seconds()));
     out["sessions"].push_back(std::move(session));
   }
   for (const MeshReport& mesh : r.meshes) out["deformables"].push_back(mesh_json(mesh, r.seconds()));

@@ -3,6 +3,7 @@
 #include <benchmark/benchmark.h>
 
 #include <tactus/client/replica.h>
+#include <tactus/client/stiffness_reduction.h>
 #include "tests/unit/rigid_fixture.h"
 
 namespace tactus {
@@ -55,6 +56,17 @@ void apply(benchmark::State& state, Interpolation mode) {
 }
 BENCHMARK_CAPTURE(apply, linear, Interpolation::linear)->Repetitions(5)->ReportAggregatesOnly();
 BENCHMARK_CAPTURE(apply, playout, Interpolation::playout)->Repetitions(5)->ReportAggregatesOnly();
+
+/// A tick of a client that makes up for delay while it presses.
+void reduce(benchmark::State& state) {
+  auto reduction = StiffnessReduction::create({}).value();
+  double z = 0;
+  for (auto _ : state) {
+    reduction.move({0, 0, z -= 1e-6});
+    benchmark::DoNotOptimize(reduction.reduced({{0, 0, -0.01}, {0, 0, 1}, 340, 100}, 80));
+  }
+}
+BENCHMARK(reduce)->Repetitions(5)->ReportAggregatesOnly();
 
 }  // namespace
 }  // namespace tactus

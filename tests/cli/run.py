@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Run the command-line cases beside this file against a `tactus` program.
 
-  run.py [--without PARTS] PROGRAM [CASE...]   run all cases or those named; PARTS that the program lacks: fem,surface
+  run.py [--without PARTS] PROGRAM [CASE...]   run all cases or those named; PARTS that the program lacks: fem,seal,surface
                                                ends with 77 when all of them are skipped
   run.py --self-test                           check that each kind of difference is found
 
@@ -12,6 +12,7 @@ A case is a folder NNN-name:
   stderr.exact | stderr.glob   the same for messages; without a file the stream must be empty
   exit                         exit status, 0 without the file
   needs                        parts of the program without which there is nothing to see, one a line: the case is skipped
+A case that ends with 77 is skipped too, for the reason that it prints: the machine lacks what it needs.
 """
 import os
 import pathlib
@@ -48,6 +49,8 @@ def run_case(program, case):
                                   stdin=subprocess.DEVNULL, timeout=TIMEOUT_S, check=False)
         except subprocess.TimeoutExpired:
             return [f"still running after {TIMEOUT_S} s"]
+    if done.returncode == SKIPPED:
+        return [f"skipped: {done.stdout.strip()}"]
     status = case / "exit"
     wanted = int(status.read_text()) if status.is_file() else 0
     differences = [] if done.returncode == wanted else [f"exit status is {done.returncode}, expected {wanted}"]
@@ -68,6 +71,10 @@ def run_cases(program, cases, without):
             print(f"skipped {case.name}")
             continue
         differences = run_case(program, case)
+        if differences and differences[0].startswith("skipped: "):
+            skipped += 1
+            print(case.name, *differences)
+            continue
         failed += bool(differences)
         print(f"{'FAILED' if differences else 'ok':7}{case.name}", *differences, sep="\n       " if differences else "")
     print(f"{len(cases)} cases, {failed} failed, {skipped} skipped")
@@ -78,7 +85,7 @@ def self_test():
     base = {"cmd": "tactus", "stdout.exact": "out 12\n", "stderr.glob": "warning: * [x]\n", "exit": "3"}
     changes = [({}, True), ({"stdout.exact": "out 1\n"}, False), ({"stdout.exact": None}, False), ({"stderr.glob": "*error*"}, False),
                ({"stderr.glob": "warning: * [y]\n"}, False), ({"exit": None}, False), ({"cmd": "echo more; tactus"}, False),
-               ({"stdout.exact": None, "stdout.glob": "out *\n"}, True), ({"cmd": "not-a-program"}, False)]
+               ({"cmd": "echo no; exit 77"}, False), ({"stdout.exact": None, "stdout.glob": "out *\n"}, True), ({"cmd": "not-a-program"}, False)]
     wrong = 0
     with tempfile.TemporaryDirectory() as scratch:
         program = pathlib.Path(scratch, "program")

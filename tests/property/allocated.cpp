@@ -9,12 +9,17 @@ namespace {
 
 std::atomic<std::uint64_t> total{0}, blocks{0}, until_failure{0};
 
-void* counted(std::size_t size) {
-  if (until_failure > 0 && --until_failure == 0) throw std::bad_alloc();
+void* counted(std::size_t size, const std::nothrow_t&) noexcept {
+  if (until_failure > 0 && --until_failure == 0) return nullptr;
   total += size;
   void* p = std::malloc(size);
+  if (p != nullptr) ++blocks;
+  return p;
+}
+
+void* counted(std::size_t size) {
+  void* p = counted(size, std::nothrow);
   if (p == nullptr) throw std::bad_alloc();
-  ++blocks;
   return p;
 }
 
@@ -27,10 +32,14 @@ void release(void* p) noexcept {
 
 void* operator new(std::size_t size) { return counted(size); }
 void* operator new[](std::size_t size) { return counted(size); }
+void* operator new(std::size_t size, const std::nothrow_t& tag) noexcept { return counted(size, tag); }
+void* operator new[](std::size_t size, const std::nothrow_t& tag) noexcept { return counted(size, tag); }
 void operator delete(void* p) noexcept { release(p); }
 void operator delete[](void* p) noexcept { release(p); }
 void operator delete(void* p, std::size_t) noexcept { release(p); }
 void operator delete[](void* p, std::size_t) noexcept { release(p); }
+void operator delete(void* p, const std::nothrow_t&) noexcept { release(p); }
+void operator delete[](void* p, const std::nothrow_t&) noexcept { release(p); }
 
 namespace tactus::testing {
 

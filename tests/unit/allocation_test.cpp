@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <new>
 
 #include "tests/property/allocated.h"
 #include "tests/unit/deformable_fixture.h"
@@ -20,6 +21,7 @@ std::uint64_t count_of(auto&& action) {
 
 TEST(Allocation, TheCounterCounts) {
   EXPECT_EQ(count_of([] { ::operator delete(::operator new(1000)); }), 1000u);  // a new expression may be optimised away
+  EXPECT_EQ(count_of([] { ::operator delete(::operator new(1000, std::nothrow)); }), 1000u);
 }
 
 TEST(Allocation, EncodeDecodeAndShowAllocateNothing) {

@@ -6,6 +6,7 @@
 
 #include <tactus/metrics/deformable_errors.h>
 #include <tactus/metrics/errors.h>
+#include <tactus/metrics/played_shapes.h>
 #include <tactus/metrics/rates.h>
 #include "tests/unit/deformable_fixture.h"
 
@@ -156,6 +157,39 @@ TEST(DeformableErrors, BoundsDoNotGoBelowTheGrid) {
   EXPECT_EQ(fidelity.all().violations, 0u);
   fidelity.add(testing::moved_by(4, {7 * unit + half, -3 * unit + half, 1.01 * half}), shown, {});
   EXPECT_EQ(fidelity.all().violations, 4u);
+}
+
+/// A client that has nothing but the rest shape of a sheet.
+struct Resting {
+  TriMesh mesh = testing::sheet(1, 1);
+  SharedScene scene = SceneBuilder().deformable("sheet", mesh).build().value();
+  Receiver receiver = Receiver::create(scene).value();
+  DeformableErrors errors{mesh, {.visual = 0.001}, 0, scene->grid.position};
+};
+
+TEST(PlayedShapes, AreJudgedWhenTheirTickIsShown) {
+  Resting client;
+  PlayedShapes played(0, std::move(client.errors), 8);
+  played.add(0, std::vector<float>(12), {});
+  played.look(client.receiver.replica(), 0);
+  EXPECT_EQ(played.errors().frames(), 0u) << "it came before anything was shown";
+  played.add(10, testing::moved_by(4, {0, 0, 0.0009}), {});
+  played.add(20, testing::moved_by(4, {0, 0, 0.0011}), {});
+  played.look(client.receiver.replica(), 19);
+  EXPECT_EQ(played.errors().frames(), 1u);
+  EXPECT_EQ(played.errors().all().violations, 0u);
+  played.look(client.receiver.replica(), 25);
+  EXPECT_EQ(played.errors().frames(), 2u);
+  EXPECT_EQ(played.errors().all().violations, 4u);
+}
+
+TEST(PlayedShapes, KeepNoMoreThanAsked) {
+  Resting client;
+  PlayedShapes played(0, std::move(client.errors), 3);
+  played.look(client.receiver.replica(), 0);
+  for (std::int64_t tick = 1; tick <= 10; ++tick) played.add(tick, std::vector<float>(12), {});
+  played.look(client.receiver.replica(), 10);
+  EXPECT_EQ(played.errors().frames(), 3u);
 }
 
 TEST(RateMetrics, CountsByStrongestReason) {

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include <tactus/base/shown.h>
+#include <tactus/trace/trace_file.h>
+#include <tactus/trace/trace_scene.h>
+#include "cli/commands/commands.h"
+#include "cli/commands/session_capture.h"
+#include "cli/live/live_report.h"
+#include "cli/options/option_needs.h"
+#include "cli/options/options_link.h"
+#include "cli/report/json_parts.h"
+#include "cli/report/report.h"
+#include "cli/report/table.h"
+#include "cli/report/trace_ending.h"
+
+namespace tactus::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct ExportPcapOptions {
+  std::string input, output, at = "client";
+  sim::LinkOptions link;
+  std::optional<sim::LinkOptions> uplink;  // to the server, if it differs
+  bool observe = false;
+  TriggerArguments triggers;
+  MeshArguments meshes;
+  CommonOptions common;
+};
+
+constexpr std::uint8_t kBaselines = 64;  // as the simulation and `serve` declare
+
+/// A trace on its way through sessions.
+struct Playback {
+  TraceReader reader;
+  TraceFrame frame;
+  std::unique_ptr<sim::SessionNetwork> network;
+  FrameTruth truth;
+  std::vector<DeviceSample> devices{};  // of the clients that have one
+  std::vector<std::optional<DeviceContact>> contacts{};
+};
+
+bool are_participants(const ExportPcapOptions& options, const TraceInfo& info) { return !options.observe && !info.users.empty(); }
+
+Result<std::unique_ptr<sim::SessionNetwork>> connect(const TraceInfo& info, const TraceFrame& first,
+                                                     const ExportPcapOptions& options, SessionCapture& capture) {
+  const SenderOptions sender = options.meshes.sender(options.triggers);
+  TACTUS_TRY(SceneBuilder builder, scene_builder(info, first, options.meshes.coding()));
+  TACTUS_TRY(SharedScene scene, builder.promise(sender.triggers, sender.deformable.thresholds).baselines(kBaselines).build());
+  sim::NetworkOptions network;
+  network.downlink = options.link;
+  network.uplink = options.uplink.value_or(options.link);
+  network.role = are_participants(options, info) ? Role::participant : Role::observer;
+  network.observer = capture.observer();
+  const std::size_t clients = network.role == Role::participant ? info.users.size() : 1;
+  return sim::SessionNetwork::create(std::move(scene), clients, sender, network);
+}
+
+/// What the device of a recorded user feels: the proxy is where the recorded force pulls it.
+std::optional<DeviceContact> contact_of(const UserSample& user, const TraceFrame& frame) {
+  if (const auto& surface = user.surface_contact) return DeviceContact{surface->proxy, surface->stiffness};
+  const Contact& contact = user.contact;
+  if (contact.kind == ContactKind::none || contact.object >= frame.objects.size() || contact.stiffness <= 0) return std::nullopt;
+  const Vec3 force = contact_force(contact, frame.objects[contact.object].pose);
+  return DeviceContact{contact.device + (1 / contact.stiffness) * force, contact.stiffness};
+}
+
+Result<void> play_frame(Playback& play, std::int64_t tick) {
+  const TraceFrame& frame = play.frame;
+  for (std::size_t i = 0; i < play.devices.size(); ++i) {
+    play.devices[i] = frame.users[i].device;
+    play.contacts[i] = contact_of(frame.users[i], frame);
+  }
+  TACTUS_CHECK(play.network->to_server(tick, play.devices, play.contacts));
+  return play.network->to_clients(tick, play.truth.of(frame));
+}
+
+/// Ticks count from the first of the trace, and pauses of the recording take their time.
+Outcome play_all(Playback& play, const ExportPcapOptions& options, TickSpan& ticks) {
+  Progress progress("export", play.reader.frame_count(), options.common.progress());
+  const std::int64_t first = play.frame.tick;
+  for (;;) {
+    const std::int64_t tick = play.frame.tick;
+    if (const auto done = play_frame(play, tick - first); !done) return refuse(options.input, place_of_tick(tick), done.error());
+    ticks.add(tick);
+    progress.update(ticks.count());
+    const auto more = play.reader.next(play.frame);
+    if (!more) return refuse(options.input, more.error());
+    if (!*more) break;
+  }
+  play.network->leave();
+  return {};
+}
+
+Json count_json(const SessionCapture::Count& count) { return {{"datagrams", count.datagrams}, {"bytes", count.bytes}}; }
+
+Json to_json(const ExportPcapOptions& options, const Playback& play, const SessionCapture& capture, const TickSpan& ticks) {
+  const TraceInfo& info = play.reader.info();
+  const double seconds = static_cast<double>(ticks.length()) / info.tick_rate;
+  const bool participants = are_participants(options, info);
+  Json out{{"schema", "tactus.pcap/1"},
+           {"trace", options.input},
+           {"capture", options.output},
+           {"at", options.at},
+           {"seconds", seconds},
+           {"start_us", play.network->start()},
+           {"server", SessionCapture::text_of(SessionCapture::server())}};
+  out["clients"] = Json::array();
+  const std::size_t clients = participants ? info.users.size() : 1;
+  for (std::size_t i = 0; i < clients; ++i) {
+    const SessionCapture::Client captured = capture.count(i);
+    const SessionStatus status = play.network->status(i);
+    Json client{{"user", participants ? info.users[i].name : ""},
+                {"role", participants ? "participant" : "observer"},
+                {"address", SessionCapture::text_of(SessionCapture::client(i))},
+                {"captured", {{"up", count_json(captured.up)}, {"down", count_json(captured.down)}}},
+                {"declaration_bytes", status.declaration},
+                {"traffic", traffic_json(status.traffic, seconds, {})}};
+    if (status.round_trip) client["round_trip"] = round_trip_json(*status.round_trip);
+    out["clients"].push_back(std::move(client));
+  }
+  return out;
+}
+
+void print_text(const Json& r, std::FILE* to) {
+  Table table;
+  table.heading({"export pcap"});
+  table.row({fmt::format("  trace    {}", r["trace"].get<std::string>())});
+  table.row({fmt::format("  capture  {}, at the {}", r["capture"].get<std::string>(), r["at"].get<std::string>())});
+  table.row(
+      {fmt::format("  server   {}, tick 0 at {:.6f} s", r["server"].get<std::string>(), 1e-6 * r["start_us"].get<double>())});
+  table.print(to);
+  fmt::print(to, "\n");
+  Table counts;
+  counts.heading({"client", "datagrams up", "bytes", "down", "bytes"});
+  for (const Json& client : r["clients"]) {
+    std::vector<std::string> cells{fmt::format("  {} {} {}", client["address"].get<std::string>(),
+                                               client["role"].get<std::string>(), client["user"].get<std::string>())};
+    for (const char* way : {"up", "down"})
+      for (const auto& [name, count] : client["captured"][way].items()) cells.push_back(count.dump());
+    counts.row(cells);
+  }
+  counts.print(to);
+}
+
+Outcome run(const ExportPcapOptions& options) {
+  TACTUS_CHECK(check_no_terminal(options.output));
+  auto reader = TraceReader::open(options.input);
+  if (!reader) return refuse(options.input, reader.error());
+  TraceFrame first;
+  const auto any = reader->next(first);
+  if (!any) return refuse(options.input, any.error());
+  if (!*any) {
+    TACTUS_CHECK(check_ending(options.input, *reader, 0));
+    return refuse(shown_path(options.input) + ": the trace has no frames", "Record or simulate at least one tick.");
+  }
+  const TraceInfo info = reader->info();
+  note_idle_options(*options.common.command, subjects_of(info), "trace");
+  const auto end = options.at == "server" ? SessionCapture::End::server : SessionCapture::End::client;
+  TACTUS_TRY(const auto capture, SessionCapture::create(options.output, options.common.existing(), {options.input}, end));
+  auto network = connect(info, first, options, *capture);
+  if (!network) return refuse(options.input, network.error());
+  Playback play{
+      .reader = std::move(*reader), .frame = std::move(first), .network = std::move(*network), .truth = FrameTruth(info)};
+  if (are_participants(options, info)) {
+    play.devices.resize(info.users.size());
+    play.contacts.resize(info.users.size());
+  }
+  TickSpan ticks;
+  TACTUS_CHECK(play_all(play, options, ticks));
+  TACTUS_CHECK(check_ending(options.input, play.reader, ticks.count()));
+  TACTUS_CHECK(capture->keep());
+  if (options.common.quiet && !options.common.json) return {};
+  std::FILE* const to = options.output == "-" ? stderr : stdout;
+  const Json report = to_json(options, play, *capture, ticks);
+  if (options.common.json) fmt::print(to, "{}\n", text_of_json(report));
+  else print_text(report, to);
+  return {};
+}
+
+}  // namespace
+
+void setup_export_pcap(Command& group, Action& action) {
+  auto options = std::make_shared<ExportPcapOptions>();
+  Command& command = group.add_command("pcap", "The datagrams of a session over an emulated network, for Wireshark");
+  command.add_option("TRACE", options->input, "Trace whose objects the server sends (MCAP), - is standard input")
+      ->type_name("")
+      ->required();
+  command.add_option("-o,--output", options->output, "Capture to write (pcap, UDP over IPv4), - is standard output")
+      ->required()
+      ->type_name("FILE");
+  add_link(command, "--link", options->link, "Network between server and clients, the same there and back [perfect]");
+  add_link(command, "--uplink", options->uplink, "Network from the clients to the server, if it differs");
+  command
+      .add_option("--at", options->at,
+                  "Whose network interface is captured: client (what clients send, and what reaches them) or server [client]")
+      ->check(one_of({"client", "server"}))
+      ->type_name("");
+  command.add_flag("--observe", options->observe,
+                   "One client that only looks on; otherwise each user of the trace takes part and sends the recorded device");
+  add_encoder_options(command, options->triggers, options->meshes);
+  add_output_options(command, options->common);
+  command.footer(
+      "Examples:\n"
+      "  tactus export pcap push.mcap -o push.pcap -p 4% --link delay=20ms,jitter=5ms,loss=1%\n"
+      "  tactus export pcap push.mcap -o - -q | wireshark -X lua_script:tools/wireshark/tactus.lua -k -i -\n"
+      "\n"
+      "Time stamps are the server's clock in virtual time: datagrams of an event have the same. The same seed gives the same "
+      "bytes.\n" +
+      std::string(link_help()));
+  on_chosen<ExportPcapOptions>(command, action, options, run);
+}
+
+}  // namespace tactus::cli

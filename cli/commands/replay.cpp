@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/commands/replay.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include <tactus/base/shown.h>
+#include <tactus/sim/scene/scene.h>
+
+namespace tactus::cli {
+
+tl::expected<TraceReader, Failure> open_replay(const std::string& path) {
+  auto reader = TraceReader::open(path);
+  if (!reader) return refuse(path, reader.error());
+  const TraceInfo& info = reader->info();
+  if (info.users.empty()) return refuse(shown_path(path) + ": nobody is in this trace", "Give a trace with a user.");
+  if (info.tick_rate != sim::kTickRate)
+    return refuse(fmt::format("{}: {} ticks per second, not {}", shown_path(path), info.tick_rate, sim::kTickRate),
+                  fmt::format("`tactus resample --rate {}` makes one that fits.", sim::kTickRate));
+  return std::move(*reader);
+}
+
+}  // namespace tactus::cli

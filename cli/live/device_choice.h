@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Devices by name: which there are, and the options with which a command takes one.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <tactus/device/device.h>
+#include <tactus/device/force_guard.h>
+#include <tactus/sim/scene/scene.h>
+#include "cli/command.h"
+#include "cli/live/virtual_device.h"
+
+namespace tactus::cli {
+
+/// The backends of this program for hardware.
+const std::vector<std::unique_ptr<device::Backend>>& backends();
+
+struct DeviceArguments {
+  std::string name = "virtual";  ///< BACKEND[:WHICH]
+  device::OpenOptions open{};
+  double force = 0;  ///< [N] 0: what the device can hold
+  bool passivity = false;
+  double pace = 1;  ///< of a recording
+  bool loops = false;
+  std::uint64_t seed = 1;  ///< of a virtual hand
+
+  std::string backend() const { return name.substr(0, name.find(':')); }
+  device::GuardLimits limits() const { return {.force = force, .passivity = passivity}; }
+};
+void add_device_options(Command& command, DeviceArguments& arguments);
+
+/// The file that a replayed device is read from; empty: it is no such device.
+std::string replayed_file(const DeviceArguments& arguments);
+/// err  the device cannot hold --force-limit
+Outcome check_force(const DeviceArguments& arguments, const device::Capabilities& device);
+
+/// err  the device has no place: its reports are only recorded
+Outcome check_place(const device::Capabilities& device);
+
+/// What a device said, or the servo loop about it. Nothing of it is the operating system's.
+tl::unexpected<Failure> refuse_device(const std::string& name, const Error& error);
+
+/// An open device.
+struct ChosenDevice {
+  std::unique_ptr<device::Device> device;
+  VirtualDevice* hand = nullptr;  ///< it is a virtual one
+  bool in_world = false;          ///< its frame is the world's: a virtual hand, or a recording
+};
+/// in   scene, user  that the device touches; none: a virtual hand moves as in the scene that its name names, or push-1dof
+tl::expected<ChosenDevice, Failure> open_device(const DeviceArguments& arguments, const sim::Scene* scene, std::size_t user);
+
+}  // namespace tactus::cli

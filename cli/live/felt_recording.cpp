@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/live/felt_recording.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace tactus::cli {
+namespace {
+
+using device::Time;
+
+constexpr Time kGrowth = 1000 * device::kMillisecond;  // until the spring has its whole stiffness
+constexpr double kDamping = 2;                         // [N s/m] too little to make a device with coarse steps hum
+constexpr double kSmoothing = 0.1;                     // of the speed, per tick
+
+}  // namespace
+
+FeltRecording::FeltRecording(device::Recording recording, Exerted exerted, double stiffness)
+    : recording_(std::move(recording)), exerted_(exerted), stiffness_(stiffness) {}
+
+TraceInfo FeltRecording::info() const {
+  TraceInfo info;
+  info.users.push_back({recording_.user().name});
+  return info;
+}
+
+tl::expected<Vec3, Failure> FeltRecording::step(const device::ServoTick& tick, TraceFrame& frame) {
+  DeviceSample sample = tick.reading.sample;
+  if (begin_ < 0 && tick.reading.state == device::Reading::State::valid) {
+    begin_ = tick.due;
+    origin_ = recording_.begin() - sample.position;
+    place_ = recording_.begin();
+    placed_ = tick.due;
+  }
+  sample.position = sample.position + origin_;
+  frame.users.front().device = sample;
+  if (begin_ < 0) return Vec3{};
+  const device::Recording::Moment moment = recording_.at(tick.due - begin_);
+  is_over_ = moment.is_over;
+  const Vec3 way = moment.sample.position - sample.position;
+  const double distance = norm(way);
+  sum_ += distance;
+  largest_ = std::max(largest_, distance);
+  ++ticks_;
+  if (exerted_ == Exerted::path) return spring(way, sample.position, moment.into, tick.due);
+  return exerted_ == Exerted::force ? moment.force : Vec3{};
+}
+
+/// It grows from nothing, also when the recording begins again and the hand is far away.
+Vec3 FeltRecording::spring(const Vec3& way, const Vec3& hand, Time into, Time now) noexcept {
+  if (now > placed_) {
+    const Vec3 speed = (1e9 / static_cast<double>(now - placed_)) * (hand - place_);
+    speed_ = speed_ + kSmoothing * (speed - speed_);
+    place_ = hand;
+    placed_ = now;
+  }
+  const double share = std::min(static_cast<double>(into) / static_cast<double>(kGrowth), 1.0);
+  return share * (stiffness_ * way - kDamping * speed_);
+}
+
+FeltRecording::Distance FeltRecording::distance() const noexcept {
+  return {ticks_ > 0 ? sum_ / static_cast<double>(ticks_) : 0, largest_};
+}
+
+}  // namespace tactus::cli

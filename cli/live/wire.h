@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+/// How datagrams of sessions travel: as they are, on the loopback, or sealed.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include <tactus/net/udp.h>
+#include <tactus/seal/counters.h>
+#include "cli/report/messages.h"
+
+namespace tactus::cli {
+
+/// What the seal did, for the report.
+struct SealUse {
+  std::size_t overhead = 0;  ///< [bytes] around each datagram
+  seal::Counters counters;
+};
+
+/// Of a server. Spans are valid until the next call.
+class ServerWire {
+ public:
+  struct Heard {
+    std::uint64_t peer = 0;
+    std::span<const std::uint8_t> bytes;
+  };
+  using HasSession = std::function<bool(std::uint64_t peer)>;
+
+  virtual ~ServerWire() = default;
+  /// The next datagram for the sessions, of few that wait; nothing: none, or it is time to do something else.
+  virtual std::optional<Heard> receive(std::uint64_t now) = 0;
+  /// After each datagram, when the sessions have taken it.
+  virtual void settle(const HasSession& has_session) = 0;
+  virtual void send(std::uint64_t peer, std::span<const std::uint8_t> bytes) = 0;
+  virtual void tick(std::uint64_t now, const HasSession& has_session) = 0;
+  /// A peer that is gone, whatever its session believes.
+  virtual std::optional<std::uint64_t> poll_closed() = 0;
+  virtual void close() = 0;
+  virtual std::optional<SealUse> seal() const = 0;  ///< nothing: it is not sealed
+};
+
+/// Of a client.
+class ClientWire {
+ public:
+  virtual ~ClientWire() = default;
+  /// The next datagram for the session, valid until the next call.   err  the wire is gone
+  virtual Result<std::optional<std::span<const std::uint8_t>>> receive(std::uint64_t now) = 0;
+  virtual Result<void> handle_timeout(std::uint64_t now) = 0;  ///< err  the wire is gone
+  virtual void send(std::span<const std::uint8_t> bytes) = 0;
+  virtual bool is_open() const = 0;                               ///< the session may begin
+  virtual std::optional<std::uint64_t> next_timeout() const = 0;  ///< [us] nothing: never
+  virtual void close() = 0;
+  virtual std::optional<SealUse> seal() const = 0;  ///< nothing: it is not sealed
+};
+
+/// pre  the socket outlives the wire
+std::unique_ptr<ServerWire> plain_wire_of_server(net::UdpSocket& socket, std::uint32_t clients);
+std::unique_ptr<ClientWire> plain_wire_of_client(net::UdpSocket& socket);
+/// in   key  path of a key file
+/// err  it cannot be read or used; this program was built without the seal
+tl::expected<std::unique_ptr<ServerWire>, Failure> sealed_wire_of_server(net::UdpSocket& socket, std::uint32_t clients,
+                                                                         const std::string& key);
+tl::expected<std::unique_ptr<ClientWire>, Failure> sealed_wire_of_client(net::UdpSocket& socket, const std::string& key);
+
+}  // namespace tactus::cli
