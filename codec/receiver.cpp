@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/receiver.h>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
 #include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
 #include <tactus/deformable/deformable_decoder.h>
+#include <tactus/load/load_decoder.h>
 #include <tactus/packet/substream.h>
 #include <tactus/packet/substream_decoder.h>
 #include <tactus/rigid/rigid_decoder.h>
@@ -18,7 +20,9 @@ struct Receiver::Impl {
       : scene(std::move(of)),
         rigid(*scene, options.limits, initial_states(*scene), *scene),
         deformables(decoders(*scene, options.limits)),
-        replica(*scene, options.replica, shapes(deformables)) {}
+        replica(*scene, options.replica, shapes(deformables)) {
+    if (scene->loads) loads.emplace(*scene, options.limits, initial_loads(*scene), *scene);
+  }
 
   using Decoders = std::vector<std::unique_ptr<DeformableDecoder>>;
   static Decoders decoders(const Scene& scene, const DecodeLimits& limits) {
@@ -40,6 +44,7 @@ struct Receiver::Impl {
   SharedScene scene;
   SubstreamDecoder<RigidDecoder> rigid;
   Decoders deformables;
+  std::optional<SubstreamDecoder<LoadDecoder>> loads;
   Replica replica;
 };
 
@@ -59,6 +64,8 @@ Result<Receiver> Receiver::create(SharedScene scene, const ReceiverOptions& opti
 Result<DecodedPacket> Receiver::Impl::decode(std::optional<std::uint64_t> number, const SubstreamPacket& part,
                                              std::optional<std::int64_t> now) noexcept {
   if (part.substream == 0) return number ? rigid.decode_numbered(*number, part.bytes) : rigid.decode(part.bytes, now);
+  if (part.substream > deformables.size())
+    return number ? loads->decode_numbered(*number, part.bytes) : loads->decode(part.bytes, now);
   DeformableDecoder& object = *deformables[part.substream - 1];
   return number ? object.decode_numbered(*number, part.bytes) : object.decode(part.bytes, now);
 }
@@ -96,15 +103,28 @@ std::span<const std::array<std::int32_t, 3>> Receiver::displacements(std::size_t
 bool Receiver::holds(std::uint64_t number, std::span<const std::uint8_t> packet) const noexcept {
   const auto part = split_substream(*impl_->scene, packet);
   if (!part) return false;
-  return part->substream == 0 ? impl_->rigid.holds(number) : impl_->deformables[part->substream - 1]->holds(number);
+  if (part->substream == 0) return impl_->rigid.holds(number);
+  if (part->substream > impl_->deformables.size()) return impl_->loads->holds(number);
+  return impl_->deformables[part->substream - 1]->holds(number);
+}
+
+std::span<const Vec3i> Receiver::load(std::uint32_t object, std::int64_t tick) const noexcept {
+  const Scene& scene = *impl_->scene;
+  const auto at = std::ranges::lower_bound(scene.moving(), object);
+  if (!impl_->loads || at == scene.moving().end() || *at != object) return {};
+  const std::size_t size = vectors_of_load(scene);
+  return std::span(impl_->loads->at(tick).vectors).subspan(static_cast<std::size_t>(at - scene.moving().begin()) * size, size);
 }
 
 std::int64_t Receiver::tick(std::size_t substream) const noexcept {
-  return substream == 0 ? impl_->rigid.newest().tick : impl_->deformables[substream - 1]->tick();
+  if (substream == 0) return impl_->rigid.newest().tick;
+  if (substream > impl_->deformables.size()) return impl_->loads->newest().tick;
+  return impl_->deformables[substream - 1]->tick();
 }
 
 std::uint64_t Receiver::state_hash(std::size_t substream) const noexcept {
   if (substream == 0) return tactus::state_hash(*impl_->scene, impl_->rigid.newest());
+  if (substream > impl_->deformables.size()) return tactus::state_hash(impl_->loads->newest());
   return impl_->deformables[substream - 1]->state_hash();
 }
 

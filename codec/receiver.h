@@ -11,6 +11,7 @@
 
 #include <tactus/base/result.h>
 #include <tactus/client/replica.h>
+#include <tactus/load/load_state.h>
 #include <tactus/packet/packet.h>
 #include <tactus/scene/scene.h>
 
@@ -69,6 +70,9 @@ class Receiver {
   std::span<const RigidState> objects() const noexcept;
   /// Newest decoded displacements of a deformable object, V x 3, x 2^-position_exp m.   pre  object < scene.deformables.size()
   std::span<const std::array<std::int32_t, 3>> displacements(std::size_t object) const noexcept;
+  /// Vectors of a rigid object's load (kExternal, kHold, kPushes ..) at a tick that is shown, x 2^-force_exp N: of the newest state held
+  /// that is not later. Empty: the scene has no loads, or the object cannot move. Valid until the next push().   time O(log objects)
+  std::span<const Vec3i> load(std::uint32_t object, std::int64_t tick) const noexcept;
   std::int64_t tick(std::size_t substream) const noexcept;         ///< tick of the newest packet, 0 before the first
   std::uint64_t state_hash(std::size_t substream) const noexcept;  ///< pre  the substream exists
 

@@ -8,6 +8,7 @@
 #include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
 #include <tactus/deformable/deformable_encoder.h>
+#include <tactus/load/load_encoder.h>
 #include <tactus/rigid/rigid_encoder.h>
 
 namespace tactus {
@@ -19,7 +20,10 @@ struct Sender::Impl {
               options.policy.baseline) {
     for (std::size_t i = 0; i < scene->deformables.size(); ++i)
       deformables.push_back(DeformableEncoder::create(*scene, i, options.deformable, options.policy));
-    packets.reserve(1 + 2 * deformables.size());
+    if (scene->loads)
+      loads.emplace(*scene, options.policy, load_substream(*scene), max_load_packet(*scene), 1, initial_loads(*scene), *scene,
+                    options.load);
+    packets.reserve(2 + 2 * deformables.size());
   }
 
   Result<void> read(std::int64_t tick, const Truth& truth) noexcept;
@@ -31,6 +35,7 @@ struct Sender::Impl {
   SharedScene scene;
   SubstreamEncoder<RigidEncoder> rigid;
   std::vector<std::unique_ptr<DeformableEncoder>> deformables;
+  std::optional<SubstreamEncoder<LoadEncoder>> loads;
   std::vector<Packet> packets;  // of this tick
   std::int64_t last_tick = -1;
 };
@@ -44,6 +49,8 @@ Result<void> Sender::Impl::read(std::int64_t tick, const Truth& truth) noexcept 
     TACTUS_CHECK(rigid.codec().read(tick, truth.objects, truth.contacts));
   for (std::size_t i = 0; i < truth.deformables.size(); ++i)
     if (!truth.deformables[i].displacements.empty()) TACTUS_CHECK(deformables[i]->read(truth.deformables[i]));
+  if (loads) return loads->codec().read(tick, truth.loads);
+  if (!truth.loads.empty()) return fail(Errc::invalid_argument, "R-API-5");
   return {};
 }
 
@@ -64,6 +71,10 @@ Result<std::span<const Packet>> Sender::Impl::encode(std::optional<std::uint64_t
     const bool follows = number && !first.bytes.empty();
     add(object.encode(tick, Layer::visual, follows ? std::optional(*number + 1) : number));
   }
+  if (loads) {
+    TACTUS_TRY(const Packet packet, loads->encode(tick, Layer::all, number));
+    add(packet);
+  }
   last_tick = tick;
   return std::span<const Packet>(packets);
 }
@@ -78,6 +89,7 @@ Result<Sender> Sender::create(SharedScene scene, const SenderOptions& options) t
   if (!(interval >= 0 && interval <= 86400)) return fail(Errc::invalid_argument, "R-API-4");
   if (!scene->moving().empty()) TACTUS_CHECK(RigidEncoder::check(options.triggers, scene->grid));
   if (!scene->deformables.empty()) TACTUS_CHECK(DeformableEncoder::check(options.deformable));
+  if (scene->loads) TACTUS_CHECK(LoadEncoder::check(options.load));
   return Sender(std::make_unique<Impl>(std::move(scene), options));
 } catch (const std::bad_alloc&) {
   return out_of_memory();
@@ -94,30 +106,38 @@ Result<std::span<const Packet>> Sender::encode_numbered(std::uint64_t number, st
 void Sender::request_key() noexcept {
   impl_->rigid.request_key();
   for (auto& object : impl_->deformables) object->request_key();
+  if (impl_->loads) impl_->loads->request_key();
 }
 
 void Sender::acknowledge(std::size_t substream, std::uint16_t sequence) noexcept {
   if (substream == 0) impl_->rigid.acknowledge(sequence);
   else if (substream <= impl_->deformables.size()) impl_->deformables[substream - 1]->acknowledge(sequence);
+  else if (impl_->loads && substream == load_substream(*impl_->scene)) impl_->loads->acknowledge(sequence);
 }
 
-void Sender::set_link(const LinkState& link) noexcept { impl_->rigid.codec().set_link(link); }
+void Sender::set_link(const LinkState& link) noexcept {
+  impl_->rigid.codec().set_link(link);
+  if (impl_->loads) impl_->loads->codec().set_link(link);
+}
 
 void Sender::set_widening(double factor) noexcept {
   const double within = factor >= 1 ? std::min(factor, 64.0) : 1;  // NaN: 1
   impl_->rigid.codec().set_widening(within);
   for (auto& object : impl_->deformables) object->set_widening(within);
+  if (impl_->loads) impl_->loads->codec().set_widening(within);
 }
 
 void Sender::forget_last(std::size_t substream) noexcept {
   if (substream == 0) impl_->rigid.forget_last();
   else if (substream <= impl_->deformables.size()) impl_->deformables[substream - 1]->forget_last();
+  else if (impl_->loads && substream == load_substream(*impl_->scene)) impl_->loads->forget_last();
 }
 
 const SharedScene& Sender::scene() const noexcept { return impl_->scene; }
 
 std::uint64_t Sender::state_hash(std::size_t substream) const noexcept {
   if (substream == 0) return tactus::state_hash(*impl_->scene, impl_->rigid.newest());
+  if (substream > impl_->deformables.size()) return tactus::state_hash(impl_->loads->newest());
   return impl_->deformables[substream - 1]->state_hash();
 }
 

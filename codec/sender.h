@@ -9,6 +9,7 @@
 
 #include <tactus/base/result.h>
 #include <tactus/deformable/trigger.h>
+#include <tactus/load/load_state.h>
 #include <tactus/packet/packet.h>
 #include <tactus/packet/sender_policy.h>
 #include <tactus/rigid/contact.h>
@@ -21,6 +22,7 @@ namespace tactus {
 struct SenderOptions {
   RigidTriggers triggers{};
   DeformableOptions deformable{};
+  LoadThresholds load{};
   SenderPolicy policy{};
 };
 
@@ -29,6 +31,7 @@ struct Truth {
   std::span<const RigidSample> objects{};          ///< one per rigid object of the scene; entries of static objects are ignored
   std::span<const Contact> contacts{};             ///< of rigid objects: any number, from any clients
   std::span<const DeformableTruth> deformables{};  ///< one per deformable object; empty: none has a new shape
+  std::span<const ObjectLoad> loads{};  ///< one per rigid object, if the scene has loads; those of static ones are ignored
 };
 
 /// Decides at every tick which states must be sent, and codes them.
@@ -36,7 +39,8 @@ struct Truth {
 /// Bounds. After every tick, a receiver that got all packets and does not interpolate satisfies, for every
 /// object, contact and vertex given,
 ///   |x^ - x| <= visual_position,  angle(q^, q) <= visual_rotation,  haptic_ratio(f, f^) <= 1,
-///   |u^ - u| <= v, and <= h inside the area of interest.
+///   |u^ - u| <= v, and <= h inside the area of interest,
+///   |f^ - f| <= p max(|f|, floor) for every vector of a load.
 /// A bound finer than the grid means the nearest grid point. Profile thesis only aims at its bounds.
 ///
 /// Loss. With Baseline::previous each packet builds on the one before it in its substream. A receiver that misses a packet

@@ -37,6 +37,7 @@
 #include <tactus/deformable/displacement.h>
 #include <tactus/deformable/trigger.h>
 #include <tactus/file/stream_file.h>
+#include <tactus/load/load_state.h>
 #include <tactus/packet/packet.h>
 #include <tactus/player.h>
 #include <tactus/receiver.h>

@@ -16,6 +16,7 @@ from typing import Iterator, Optional, Union
 from conventions import FNV_START, StreamError, fnv1a, require
 from deformable_decoder import DeformableDecoder, DeformablePacket
 from file import File
+from load import LoadDecoder, LoadPacket
 from playout import Playout
 from replica import Replica
 from rigid import Packet, RigidDecoder
@@ -29,11 +30,13 @@ class SceneDecoder:
     """Chapter 25: the decoders of the substreams of a scene, by number."""
 
     def __init__(self, scene: Declaration, limits: Limits = Limits()):
-        self.substreams: dict[int, Union[RigidDecoder, DeformableDecoder]] = {}
+        self.substreams: dict[int, Union[RigidDecoder, DeformableDecoder, LoadDecoder]] = {}
         if scene.moving() or not scene.deformables:
             self.substreams[0] = RigidDecoder(scene, limits)
         for number, item in enumerate(scene.deformables, start=1):
             self.substreams[number] = DeformableDecoder(scene, item, limits)
+        if scene.loads:
+            self.substreams[len(scene.deformables) + 1] = LoadDecoder(scene, limits)
 
     def split(self, data: bytes) -> tuple[int, bytes]:
         """The substream of a packet, and the packet without that number."""
@@ -53,14 +56,20 @@ def describe_declaration(scene: Declaration) -> dict:
     if scene.deformables:
         said["meshes"] = [{"name": d.name, "profile": d.profile, "vertices": len(d.rest), "triangles": len(d.triangles),
                            "modes": len(d.modes)} for d in scene.deformables]
+    if scene.loads:
+        said["loads"] = list(scene.loads)
     if scene.bounds:
-        said["bounds"] = {**({"rigid": scene.bounds.rigid} if scene.bounds.rigid else {}), "meshes": scene.bounds.deformables}
+        said["bounds"] = {**({"rigid": scene.bounds.rigid} if scene.bounds.rigid else {}), "meshes": scene.bounds.deformables,
+                          **({"loads": scene.bounds.loads} if scene.bounds.loads else {})}
     return said
 
 
-def describe_packet(packet: Union[Packet, DeformablePacket]) -> dict:
+def describe_packet(packet: Union[Packet, DeformablePacket, LoadPacket]) -> dict:
     said = {"sequence": packet.sequence, "key": bool(packet.key), "tick": packet.tick}
-    said.update({"vertices": len(packet.vertices)} if isinstance(packet, DeformablePacket) else {"updates": packet.updates})
+    if isinstance(packet, LoadPacket):
+        said["loads"] = packet.loads
+    else:
+        said.update({"vertices": len(packet.vertices)} if isinstance(packet, DeformablePacket) else {"updates": packet.updates})
     return {**said, "range": f"{packet.range:08x}", "code": f"{packet.code:08x}"}
 
 
@@ -103,7 +112,7 @@ class Viewer:
         self.deformables = [decoders.substreams[i + 1] for i in range(len(scene.deformables))]
         self.tick, self.all = 0, FNV_START
 
-    def apply(self, packet: Union[Packet, DeformablePacket], tick: int) -> None:
+    def apply(self, packet: Union[Packet, DeformablePacket, LoadPacket], tick: int) -> None:
         if isinstance(packet, Packet):
             self.replica.apply(packet, tick)
 

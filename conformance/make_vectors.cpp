@@ -28,6 +28,8 @@ Catalogue all() {
   add_rigid_rules(catalogue);
   add_rigid_edges(catalogue);
   add_rigid_orders(catalogue);
+  catalogue.begin("load", "Loads: their declaration and packets.");
+  add_load(catalogue);
   catalogue.begin("client", "What a client shows of rigid objects, at every tick.");
   add_client(catalogue);
   add_client_playout(catalogue);

@@ -83,7 +83,10 @@ void write_bounds(const StreamBounds& bounds, std::ostream& out) {
     out << ']';
     comma = ",";
   }
-  out << "]}";
+  out << ']';
+  if (bounds.loads)
+    out << R"(,"loads":[)" << bits(bounds.loads->weber_fraction) << ',' << bits(bounds.loads->force_floor) << ']';
+  out << '}';
 }
 
 void write_header_line(const Scene& h, std::ostream& out) {
@@ -97,6 +100,7 @@ void write_header_line(const Scene& h, std::ostream& out) {
   }
   out << ']';
   if (!h.deformables.empty()) write_deformables(h.deformables, out);
+  if (h.loads) out << R"(,"loads":[)" << int{h.loads->force_exp} << ',' << int{h.loads->users} << ']';
   if (h.bounds) write_bounds(*h.bounds, out);
   out << "}}\n";
 }
@@ -112,6 +116,8 @@ void write_packet(const DecodedPacket& packet, std::uint64_t state, std::ostream
       comma = ",";
     }
     out << ']';
+  } else if (packet.loads > 0) {
+    out << R"(,"loads":)" << packet.loads;
   } else {
     out << R"(,"vertices":)" << packet.vertices;
   }
@@ -153,7 +159,7 @@ class Client {
     if (several) out << '[';
     const char* comma = "";
     const bool has_rigid = !scene_->moving().empty() || scene_->deformables.empty();
-    for (std::size_t i = has_rigid ? 0 : 1; i <= scene_->deformables.size(); ++i) {
+    for (std::size_t i = has_rigid ? 0 : 1; i <= scene_->deformables.size() + (scene_->loads ? 1 : 0); ++i) {
       out << comma << '"' << hex(receiver_.state_hash(i), 16) << '"';
       comma = ",";
     }

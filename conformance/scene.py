@@ -23,7 +23,7 @@ class Limits(NamedTuple):
 
 MAGIC = b"\x89TCT"
 SMALLEST_OBJECT = 32
-HAS_DEFORMABLES = 1                                         # bit 0 of `flags`
+HAS_DEFORMABLES, HAS_LOADS = 1, 2                           # bits 0 and 1 of `flags`
 
 
 class State(NamedTuple):                                    # chapter 40
@@ -40,10 +40,16 @@ class Object(NamedTuple):
     initial: State
 
 
+class LoadDeclaration(NamedTuple):                          # chapter 45
+    force_exp: int
+    users: int
+
+
 class Bounds(NamedTuple):
     """Elements of the bounds record in the order in which they are read, f64 as the hexadecimal digits of their bits."""
     rigid: Optional[list]
     deformables: list[list]
+    loads: Optional[list]
 
 
 @dataclass
@@ -59,6 +65,7 @@ class Declaration:
     baseline_span: int
     objects: list[Object] = field(default_factory=list)
     deformables: list[DeformableObject] = field(default_factory=list)
+    loads: Optional[LoadDeclaration] = None
     bounds: Optional[Bounds] = None
 
     def moving(self) -> list[int]:
@@ -79,7 +86,7 @@ def read_declaration(data: bytes, limits: Limits = Limits()) -> tuple[Declaratio
     require(version == 1, "unsupported", "R-STR-2")
     require(profile <= 1, "malformed", "R-STR-3")
     require(profile == 0, "unsupported", "R-STR-3")
-    require(flags <= HAS_DEFORMABLES, "malformed", "R-STR-4")
+    require(flags <= HAS_DEFORMABLES + HAS_LOADS, "malformed", "R-STR-4")
     require(body_size <= limits.body_size, "limit_exceeded", "R-STR-14")
     end = 12 + body_size
     require(len(data) >= end + 4, *STR_5)
@@ -94,6 +101,9 @@ def read_declaration(data: bytes, limits: Limits = Limits()) -> tuple[Declaratio
     scene.objects = [read_object(body) for _ in range(object_count)]
     if flags & HAS_DEFORMABLES:
         scene.deformables = read_deformable_objects(body, limits.objects - object_count, limits.vertices, limits.triangles)
+    if flags & HAS_LOADS:
+        scene.loads = LoadDeclaration(*body.take(2, STR_5))
+        require(scene.moving() and scene.loads.force_exp <= 20 and scene.loads.users <= 64, "invalid", "R-STR-19")
     while body.left() > 0:
         kind = body.varint(STR_16, STR_16)
         content = body.take(body.varint(STR_16, STR_16), STR_16)
@@ -118,7 +128,8 @@ def check_numbers(scene: Declaration) -> None:
 def state_bytes(scene: Declaration) -> int:
     """What all states take, as the chapter counts it."""
     states = scene.baseline_span + 2
-    total = 64 * states * len(scene.objects)
+    load = 12 * (2 + scene.loads.users) if scene.loads else 0
+    total = (64 + load) * states * len(scene.objects)
     for item in scene.deformables:
         total += states * ((24 if item.layered else 12) * len(item.rest) + 48 * len(item.modes))
         if item.profile == THESIS:
@@ -163,4 +174,4 @@ def read_bounds(data: Cursor, scene: Declaration) -> Bounds:
     for _ in scene.deformables:
         promise = choice()
         deformables.append([promise, *f64s(3 if promise & 2 else 1)])
-    return Bounds(rigid, deformables)
+    return Bounds(rigid, deformables, f64s(2) if scene.loads else None)

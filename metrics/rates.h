@@ -25,6 +25,17 @@ struct RateMetrics {
 /// Strongest reason among the updates of a packet.
 Reason strongest_reason(const DecodedPacket& packet) noexcept;
 
+/// Packets of loads.
+struct LoadRates {
+  std::uint64_t packets = 0, updates = 0, bytes = 0;  ///< updates: objects named; bytes as above
+
+  void add(std::size_t packet_bytes, std::uint64_t objects) noexcept {
+    ++packets;
+    updates += objects;
+    bytes += packet_bytes;
+  }
+};
+
 /// Packets of one deformable object.
 struct DeformableRates {
   std::uint64_t frames = 0;          ///< shapes evaluated; 0: unknown

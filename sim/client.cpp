@@ -9,6 +9,8 @@
 namespace tactus::sim {
 namespace {
 
+constexpr double kStill = 1e-8;  // [m] in a tick: an object that moves less does not
+
 /// Of the mesh's box [m].
 Vec3 centre(const TriMesh& mesh) {
   const auto [low, high] = bounds(mesh.vertices);
@@ -22,7 +24,8 @@ Client::Client(Server& server, std::optional<Receiver> receiver)
       receiver_(std::move(receiver)),
       rigid_(scene_, server.stream_scene() ? RigidView::News::of_all : RigidView::News::of_changed),
       felt_(scene_.users.size()),
-      contacts_(scene_.users.size()) {
+      contacts_(scene_.users.size()),
+      stiffness_(scene_.users.size()) {
   poses_.assign(rigid_.poses().begin(), rigid_.poses().end());
   objects_.push_back(&rigid_);
   if (!scene_.msds.empty()) {
@@ -48,7 +51,13 @@ Result<std::unique_ptr<Client>> Client::create(Server& server, const ReplicaOpti
   return std::unique_ptr<Client>(new Client(server, std::move(receiver)));
 }
 
-std::unique_ptr<Client> Client::create_remote(Server& server) { return std::unique_ptr<Client>(new Client(server, {})); }
+Result<std::unique_ptr<Client>> Client::create_remote(Server& server) {
+  std::unique_ptr<Client> client(new Client(server, {}));
+  if (!client->scene_.compensation) return client;
+  TACTUS_TRY(client->compensation_, Compensation::create(client->scene_));
+  client->moves_.resize(client->poses_.size());
+  return client;
+}
 
 Result<void> Client::receive(std::span<const Packet> packets) noexcept {
   for (const Packet& packet : packets) TACTUS_CHECK(receiver_->push(packet.bytes));
@@ -56,6 +65,7 @@ Result<void> Client::receive(std::span<const Packet> packets) noexcept {
 }
 
 void Client::show_pose(std::uint32_t object, const Pose& pose) noexcept {
+  if (compensation_) moves_[object] = norm(pose.position - poses_[object].position) > kStill;
   poses_[object] = pose;
   if (object < scene_.objects.size()) rigid_.show(object, pose);
   else msds_->show(object - scene_.objects.size(), pose);
@@ -81,6 +91,8 @@ void Client::show(Receiver& receiver, std::int64_t tick) noexcept {
     show_shape(receiver, tick, i);
   }
   show_poses(receiver, tick);
+  shown_by_ = &receiver;
+  shown_tick_ = tick;
 }
 
 void Client::show_shape(Receiver& receiver, std::int64_t tick, std::size_t mesh) noexcept {
@@ -93,21 +105,42 @@ void Client::show_poses(Receiver& receiver, std::int64_t tick) noexcept {
 }
 
 void Client::touch(std::span<const DeviceSample> devices) noexcept {
-  for (std::size_t i = 0; i < devices.size(); ++i) touch(i, devices[i], 1);
+  for (std::size_t i = 0; i < devices.size(); ++i) touch(i, devices[i], Rendering{});
 }
 
-void Client::touch(std::size_t user, const DeviceSample& device, double share) noexcept {
+/// What a user feels of an object, in spite of the delay.   pre  compensation_
+Vec3 Client::soften(std::size_t user, const Touch& touch, const Vec3& device, std::uint32_t delay) noexcept {
+  if (shown_by_ == nullptr) return touch.force;
+  Compensation::Shown shown;
+  if (!touch.surface) {
+    const std::uint32_t object = touch.contact.object;
+    shown.load = shown_by_->load(object, shown_tick_);
+    if (!shown.load.empty()) shown.force_exp = shown_by_->scene()->loads->force_exp;
+    shown.pose = poses_[object];
+    shown.moves = moves_[object];
+  }
+  const Vec3 force = compensation_->soften(user, touch, device, shown, delay);
+  stiffness_[user] = compensation_->stiffness(user);
+  return force;
+}
+
+void Client::touch(std::size_t user, const DeviceSample& device, const Rendering& how) noexcept {
   Vec3 force;
   bool held = false;
   contacts_[user].reset();
+  stiffness_[user] = 0;
+  if (compensation_) compensation_->move(user, device);
   for (Touchable* objects : objects_) {
     const Touch touch = objects->touch(user, device, held);
     if (touch.contact.kind != ContactKind::none) contacts_[user] = {touch.proxy, touch.contact.stiffness};
     else if (touch.surface) contacts_[user] = {touch.surface->proxy, touch.surface->stiffness};
+    if (contacts_[user]) stiffness_[user] = contacts_[user]->stiffness;
     held = held || touch.contact.kind != ContactKind::none;
-    force = force + touch.force;
+    const bool presses = touch.surface || touch.contact.kind == ContactKind::surface;
+    force = force + (compensation_ && presses ? soften(user, touch, device.position, how.delay) : touch.force);
   }
-  felt_[user] = share * share_rendered(force, scene_.users[user].device.max_force) * force;
+  if (compensation_ && !contacts_[user]) compensation_->release(user);
+  felt_[user] = how.share * share_rendered(force, scene_.users[user].device.max_force) * force;
 }
 
 const Pose& Client::watched(std::size_t user) const noexcept {

@@ -10,6 +10,7 @@
 
 #include <tactus/receiver.h>
 #include <tactus/signal/device_signal.h>
+#include <tactus/sim/compensation.h>
 #include <tactus/sim/deformable/deformable_view.h>
 #include <tactus/sim/msd/msd_objects.h>
 #include <tactus/sim/rigid/rigid_objects.h>
@@ -24,8 +25,9 @@ class Client {
   ///      replica   how the client shows what it received
   /// err  errors of Receiver::create
   static Result<std::unique_ptr<Client>> create(Server& server, const ReplicaOptions& replica);
-  /// The client of one user, which shows what a network gives it.   pre  the server has a codec
-  static std::unique_ptr<Client> create_remote(Server& server);
+  /// The client of one user, which shows what a network gives it, and makes up for its delay if the scene asks.
+  /// pre  the server has a codec, and outlives the client.   err  of Compensation::create
+  static Result<std::unique_ptr<Client>> create_remote(Server& server);
 
   /// err  errors of Receiver::push   no allocation
   Result<void> receive(std::span<const Packet> packets) noexcept;
@@ -38,11 +40,18 @@ class Client {
   void show(Receiver& receiver, std::int64_t tick) noexcept;
   /// Move every user's probe on the shown state.   in  devices  one per user   no allocation
   void touch(std::span<const DeviceSample> devices) noexcept;
-  /// Move one user's probe, and render so much of the force.   no allocation
-  void touch(std::size_t user, const DeviceSample& device, double share) noexcept;
+  /// How a force is rendered.
+  struct Rendering {
+    double share = 1;         ///< of it
+    std::uint32_t delay = 0;  ///< [ticks] of what is shown; 0: there is none to make up for
+  };
+  /// Move one user's probe, and render its force.   no allocation
+  void touch(std::size_t user, const DeviceSample& device, const Rendering& how) noexcept;
   /// What the user's device felt in the last touch(), if anything.
   const std::optional<DeviceContact>& contact(std::size_t user) const noexcept { return contacts_[user]; }
 
+  /// [N/m] of the spring that rendered a user's force in the last touch(); 0: of none.
+  double stiffness(std::size_t user) const noexcept { return stiffness_[user]; }
   const Vec3& felt(std::size_t user) const noexcept { return felt_[user]; }  ///< [N] rendered in the last touch()
   std::span<const Pose> poses() const noexcept { return poses_; }            ///< as shown, one per object of the trace
   const Pose& watched(std::size_t user) const noexcept;                      ///< pose of the object that this user looks at
@@ -53,6 +62,7 @@ class Client {
   void show_pose(std::uint32_t object, const Pose& pose) noexcept;
   void show_shape(Receiver& receiver, std::int64_t tick, std::size_t mesh) noexcept;
   void show_poses(Receiver& receiver, std::int64_t tick) noexcept;
+  Vec3 soften(std::size_t user, const Touch& touch, const Vec3& device, std::uint32_t delay) noexcept;
 
   const Scene& scene_;
   std::optional<Receiver> receiver_;  // none: the truth is shown, or what a network gives
@@ -62,13 +72,18 @@ class Client {
     double period = 1;        // [ticks] from frame to frame
     std::int64_t frame = -1;  // shown last
   };
-  std::vector<ShownMesh> shown_;  // behind a network
+  std::vector<ShownMesh> shown_;        // behind a network
+  const Receiver* shown_by_ = nullptr;  // likewise, and what tick of it
+  std::int64_t shown_tick_ = -1;
+  std::vector<bool> moves_;                     // objects that were shown elsewhere in the tick before
+  std::optional<Compensation> compensation_{};  // of the delay
   RigidView rigid_;
   std::optional<MsdView> msds_;
   std::optional<DeformableView> deformables_;
   std::vector<Touchable*> objects_;  // these, and those that the server lends
   std::vector<Vec3> felt_;           // [N] one per user
   std::vector<std::optional<DeviceContact>> contacts_;
+  std::vector<double> stiffness_;  // [N/m]
 };
 
 }  // namespace tactus::sim

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include <tactus/sim/msd/msd_objects.h>
-#include <tactus/sim/rigid/rigid_objects.h>
 
 namespace tactus::sim {
 
@@ -27,7 +26,9 @@ Result<std::unique_ptr<Server>> Server::create(const Scene& scene, const ServerO
 
 /// Add the rigid objects, and the other kinds if the scene has them.
 Result<void> Server::add_objects(const ServerOptions& options) {
-  objects_.push_back(std::make_unique<RigidObjects>(scene_));
+  auto rigid = std::make_unique<RigidObjects>(scene_);
+  rigid_ = rigid.get();
+  objects_.push_back(std::move(rigid));
   if (!scene_.msds.empty()) {
     TACTUS_TRY(auto msds, MsdObjects::create(scene_));
     objects_.push_back(std::move(msds));
@@ -47,7 +48,7 @@ Result<void> Server::add_codec(const ServerCodec& codec) {
   SceneBuilder builder = scene_builder(scene_);
   if (deformables_)
     for (const TraceDeformable& mesh : deformables_->meshes()) TACTUS_CHECK(add_deformable(builder, mesh, codec.coding));
-  builder.promise(codec.sender.triggers, codec.sender.deformable.thresholds);
+  builder.promise(codec.sender.triggers, codec.sender.deformable.thresholds, codec.sender.load);
   constexpr std::uint8_t kBaselines = 64;
   if (codec.sessions) builder.baselines(kBaselines);
   TACTUS_TRY(declared_, builder.build());
@@ -87,9 +88,15 @@ void Server::touch(std::span<const DeviceSample> devices) noexcept {
   }
 }
 
+Truth Server::truth() noexcept {
+  Truth out = truth_->of(frame_);
+  out.loads = rigid_->loads();
+  return out;
+}
+
 Result<std::span<const Packet>> Server::encode() noexcept {
   if (!sender_) return std::span<const Packet>();
-  return sender_->encode(frame_.tick, truth_->of(frame_));
+  return sender_->encode(frame_.tick, truth());
 }
 
 tl::expected<void, Diagnostic> Server::step() {

@@ -11,6 +11,7 @@
 #include <tactus/sender.h>
 #include <tactus/sim/deformable/deformable_objects.h>
 #include <tactus/sim/random.h>
+#include <tactus/sim/rigid/rigid_objects.h>
 #include <tactus/sim/scene/scene.h>
 #include <tactus/sim/touchable.h>
 #include <tactus/trace/frame.h>
@@ -46,7 +47,7 @@ class Server {
   /// Packets of this tick for the clients; valid until the next call.   err  errors of Sender::encode   no allocation
   Result<std::span<const Packet>> encode() noexcept;
   /// What they are made of, for the sessions.   pre  there is a codec
-  Truth truth() noexcept { return truth_->of(frame_); }
+  Truth truth() noexcept;
   /// Apply the forces of this tick, limited to what the devices render, and advance by one tick.
   tl::expected<void, Diagnostic> step();
 
@@ -68,8 +69,9 @@ class Server {
   Random noise_;
   double noise_reach_;  // [m] of a uniform distribution
   std::vector<std::unique_ptr<Simulated>> objects_;
-  DeformableObjects* deformables_ = nullptr;  // among objects_
-  SharedScene declared_;                      // null: without codec
+  RigidObjects* rigid_ = nullptr;  // among objects_, like
+  DeformableObjects* deformables_ = nullptr;
+  SharedScene declared_;  // null: without codec
   std::optional<Sender> sender_;
   std::optional<FrameTruth> truth_;
   TraceFrame frame_;

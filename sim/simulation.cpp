@@ -29,6 +29,7 @@ struct Simulation::Impl {
   std::vector<std::optional<DeviceContact>> contacts;  // of the devices, in the tick before
   std::vector<std::int64_t> shown;                     // tick, at each user's client
   std::vector<double> shares;                          // of the force that it renders
+  std::vector<std::uint32_t> delays;                   // [ticks] of what it shows
   std::vector<Hand> hands;                             // one per user, like the vectors below
   std::vector<DeviceSample> devices;                   // of the hands
   std::vector<TouchRecord> records;
@@ -48,7 +49,10 @@ Result<Simulation> Simulation::create(const Scene& scene, const SimulationOption
   if (is_remote) {
     TACTUS_TRY(impl->network,
                options.channel->network(impl->server->stream_scene(), scene.users.size(), options.channel->sender));
-    for (std::size_t i = 0; i < scene.users.size(); ++i) impl->clients.push_back(Client::create_remote(*impl->server));
+    for (std::size_t i = 0; i < scene.users.size(); ++i) {
+      TACTUS_TRY(auto client, Client::create_remote(*impl->server));
+      impl->clients.push_back(std::move(client));
+    }
   } else {
     impl->clients.emplace_back();
     TACTUS_TRY(impl->clients[0], Client::create(*impl->server, options.channel ? options.channel->replica : ReplicaOptions{}));
@@ -62,6 +66,7 @@ Result<Simulation> Simulation::create(const Scene& scene, const SimulationOption
   impl->contacts.resize(scene.users.size());
   impl->shown.assign(scene.users.size(), -1);
   impl->shares.assign(scene.users.size(), 1);
+  impl->delays.assign(scene.users.size(), 0);
   return Simulation(std::move(impl));
 }
 
@@ -107,8 +112,9 @@ void Simulation::Impl::render(std::span<const DeviceSample> at_clients) noexcept
     const Network::View view = network->view(i);
     shown[i] = view.tick;
     shares[i] = view.force_share;
+    delays[i] = view.delay;
     if (view.tick >= 0) clients[i]->show(*view.receiver, view.tick);
-    clients[i]->touch(i, at_clients[i], view.force_share);
+    clients[i]->touch(i, at_clients[i], {view.force_share, view.delay});
     contacts[i] = clients[i]->contact(i);
   }
 }
@@ -140,6 +146,8 @@ std::int64_t Simulation::shown_tick(std::size_t user) const noexcept {
   return impl_->network ? impl_->shown[user] : impl_->server->frame().tick;
 }
 double Simulation::share_rendered(std::size_t user) const noexcept { return impl_->contacts[user] ? impl_->shares[user] : 1; }
+double Simulation::round_trip(std::size_t user) const noexcept { return kTick * impl_->delays[user]; }
+double Simulation::stiffness(std::size_t user) const noexcept { return impl_->client(user).stiffness(user); }
 const DeformableObjects* Simulation::deformables() const noexcept { return impl_->server->deformables(); }
 const TouchSummary& Simulation::touched(std::size_t user) const noexcept { return impl_->records[user].summary(); }
 Replica& Simulation::replica() noexcept { return impl_->client(0).replica(); }

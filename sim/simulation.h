@@ -74,12 +74,14 @@ class Simulation {
   const Pose& watched(std::size_t user) const noexcept;                 ///< pose of the object that this user looks at, as shown
   /// The tick whose state the user's client shows: with a network one of the past, -1 before the first.
   std::int64_t shown_tick(std::size_t user) const noexcept;
-  double share_rendered(std::size_t user) const noexcept;        ///< of the force: less than 1 while the data are old
-  Replica& replica() noexcept;                                   ///< the client's.   pre  there is a channel without network
-  std::int64_t ticks() const noexcept;                           ///< length of the scene
-  TraceInfo info() const;                                        ///< for a TraceWriter of these frames
-  SharedScene stream_scene() const noexcept;                     ///< of the packets.   pre  there is a channel
-  const DeformableObjects* deformables() const noexcept;         ///< null: the scene has none
+  double share_rendered(std::size_t user) const noexcept;  ///< of the force: less than 1 while the data are old
+  double round_trip(std::size_t user) const noexcept;      ///< [s] age of what is shown, as an answer to the device; 0: not known
+  double stiffness(std::size_t user) const noexcept;       ///< [N/m] with which the user's force was rendered; 0: none was
+  Replica& replica() noexcept;                             ///< the client's.   pre  there is a channel without network
+  std::int64_t ticks() const noexcept;                     ///< length of the scene
+  TraceInfo info() const;                                  ///< for a TraceWriter of these frames
+  SharedScene stream_scene() const noexcept;               ///< of the packets.   pre  there is a channel
+  const DeformableObjects* deformables() const noexcept;   ///< null: the scene has none
   const TouchSummary& touched(std::size_t user) const noexcept;  ///< all ticks so far
   /// [N/m] largest stable stiffness of a coupling to a fixed point (sampled_limit.h)
   double bears(std::size_t user) const noexcept;

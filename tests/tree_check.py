@@ -20,6 +20,7 @@ SHARED = {"base"}  # folders of codec/ that are not subjects of the specificatio
 # or go out, a sender decides what to send, options are read once.
 FLOATS = {"base/device_sample", "base/geometry", "base/quantise", "base/tri_mesh", "scene/bounds", "scene/bounds_syntax",
           "scene/deformable_object", "scene/rigid_object", "scene/scene_builder", "packet/key_policy", "packet/sender_policy",
+          "load/load_encoder", "load/load_state",
           "rigid/contact", "rigid/rigid_encoder", "rigid/rigid_state", "rigid/trigger", "deformable/deformable_encoder",
           "deformable/displacement", "deformable/main_encoder", "deformable/mode_projection", "deformable/thesis_encoder",
           "deformable/trigger", "client/replica", "client/stiffness_reduction", "sender", "signal/device_signal", "signal/force_signal",
@@ -33,6 +34,9 @@ TESTED_BY = {  # those that have none: the parts of one subject, held against ea
     "codec/deformable/thesis_decoder": "deformable_decoder",
     "codec/deformable/thesis_encoder": "deformable_encoder",
     "codec/deformable/thesis_syntax": "deformable_encoder",
+    "codec/load/load_decoder": "load",
+    "codec/load/load_encoder": "load",
+    "codec/load/load_state": "load",
     "codec/rigid/rigid_decoder": "rigid",
     "codec/rigid/rigid_encoder": "rigid",
     "codec/rigid/rigid_predictor": "rigid",

@@ -83,7 +83,8 @@ Outcome check_length(std::span<const std::uint8_t> file, const DecodeOptions& op
 }
 
 void count(const PlayedPacket& played, Report& report) {
-  if (played.substream > 0)
+  if (played.substream > report.meshes.size()) report.loads->add(played.bytes, played.loads);
+  else if (played.substream > 0)
     report.meshes[played.substream - 1].traffic->add(played.bytes, played.vertices, played.key, played.layer);
   else if (report.traffic) report.traffic->add(strongest_reason(played), played.updates.size(), played.bytes, played.key);
 }
@@ -145,6 +146,7 @@ Outcome run(const DecodeOptions& options) {
   if (report.moving > 0 || info.meshes.empty()) report.traffic.emplace();
   for (const TraceDeformable& mesh : info.meshes)
     report.meshes.push_back({.name = mesh.name, .vertices = mesh.rest.vertices.size(), .traffic = DeformableRates{}});
+  if (player->scene().loads) report.loads.emplace();
   report.timings = {{"decode", "decode and show, per tick"}};
   report.stream = {player->header_bytes(), bytes.size()};
   if (report.traffic) report.client = options.replica.interpolation;

@@ -85,6 +85,7 @@ void print_info(const Json& info) {
 }
 
 std::string name_of_substream(const Scene& scene, std::size_t substream) {
+  if (substream > scene.deformables.size()) return "loads";
   return substream == 0 ? "rigid objects" : scene.deformables[substream - 1].name;
 }
 
@@ -95,14 +96,15 @@ Json packet_json(const PlayedPacket& played, const Scene& scene) {
            {"sequence", played.sequence},
            {"bytes", played.bytes},
            {"key", played.key ? "key" : "-"}};
-  if (!scene.deformables.empty()) out["substream"] = name_of_substream(scene, played.substream);
+  if (!scene.deformables.empty() || scene.loads) out["substream"] = name_of_substream(scene, played.substream);
   out["reason"] = is_rigid ? kReasons[static_cast<std::size_t>(strongest_reason(played))] : "-";
   std::string updates;
   for (const RigidUpdate& u : played.updates) updates += fmt::format("{}{}:{}", updates.empty() ? "" : " ", u.object, u.level);
   out["object:level"] = updates.empty() ? "-" : updates;
+  const bool is_shape = !is_rigid && played.loads == 0;
   if (!scene.deformables.empty()) {
-    out["layer"] = is_rigid || played.layer == Layer::all ? "-" : kLayers[static_cast<std::size_t>(played.layer)];
-    out["vertices"] = is_rigid ? Json() : Json(played.vertices);
+    out["layer"] = !is_shape || played.layer == Layer::all ? "-" : kLayers[static_cast<std::size_t>(played.layer)];
+    out["vertices"] = is_shape ? Json(played.vertices) : Json();
   }
   return out;
 }
@@ -242,6 +244,10 @@ void print_with_packets(Bytes bytes, const Json& info) {
 Json summary_json(const Player& player, const StreamTotals& totals, std::size_t size, const std::optional<Error>& error) {
   Json info = header_json(player.scene(), player.header_bytes(), size);
   if (totals.traffic.all_packets() > 0 || totals.meshes.empty()) show_rigid(totals, info);
+  if (player.scene().loads) {
+    info["packets of loads"] = totals.loads.packets;
+    info["bytes of loads"] = totals.loads.bytes;
+  }
   info["last tick"] = totals.last_tick;
   info["ending"] = error               ? fmt::format("broken at {} ({})", place_of_bit(error->bit_offset), error->rule)
                    : player.complete() ? "complete"

@@ -75,7 +75,9 @@ tl::expected<Body, Failure> make_body(const JoinOptions& options) {
   auto shapes = sim::Server::create(*scene, {.seed = options.device.seed, .codec = sim::ServerCodec{{}, {}, true}});
   if (!shapes) return refuse(options.scene, shapes.error());
   body.shapes = std::move(*shapes);
-  body.client = sim::Client::create_remote(*body.shapes);
+  auto client = sim::Client::create_remote(*body.shapes);
+  if (!client) return refuse(options.scene, client.error());
+  body.client = std::move(*client);
   body.user = options.user.empty() ? 0 : static_cast<std::size_t>(user - scene->users.begin());
   TACTUS_TRY(body.chosen, open_device(options.device, &*scene, body.user));
   TACTUS_CHECK(check_place(body.chosen.device->capabilities()));
@@ -234,7 +236,9 @@ Outcome Visit::render(std::uint64_t now) {
   Receiver& receiver = *session_.receiver();
   shown_ = session_.shown_tick(now);
   if (shown_ >= 0) own.client->show(receiver, shown_);
-  own.client->touch(own.user, own.sample, session_.force_share(now));
+  const auto delay =
+      static_cast<std::uint32_t>((session_.round_trip_shown(now).value_or(0) * sim::kTickRate + 500'000) / 1'000'000);
+  own.client->touch(own.user, own.sample, {session_.force_share(now), delay});
   if (const auto exerted = own.servo->exert(own.client->felt(own.user)); !exerted)
     return refuse_device(own.chosen.device->capabilities().name, exerted.error());
   largest_force = std::max(largest_force, norm(own.client->felt(own.user)));
@@ -293,6 +297,7 @@ Json hashes_json(SessionClient& session) {
   if (!receiver->scene()->objects.empty()) out.push_back(fmt::format("{:016x}", receiver->state_hash(0)));
   for (std::size_t i = 0; i < receiver->scene()->deformables.size(); ++i)
     out.push_back(fmt::format("{:016x}", receiver->state_hash(i + 1)));
+  if (receiver->scene()->loads) out.push_back(fmt::format("{:016x}", receiver->state_hash(load_substream(*receiver->scene()))));
   return out;
 }
 

@@ -163,6 +163,7 @@ Json hashes_json(const SessionServer& sessions, const tactus::Scene& scene, std:
   const auto add = [&](std::size_t substream) { out.push_back(fmt::format("{:016x}", sessions.state_hash(client, substream))); };
   if (!scene.objects.empty()) add(0);
   for (std::size_t i = 0; i < scene.deformables.size(); ++i) add(i + 1);
+  if (scene.loads) add(load_substream(scene));
   return out;
 }
 

@@ -111,7 +111,8 @@ tl::expected<std::span<const Packet>, Failure> step(Run& run, const SimOptions& 
 /// What was sent in this tick.
 Outcome record_packets(Run& run, std::span<const Packet> packets, const SimOptions& options, Report& report) {
   for (const Packet& packet : packets) {
-    if (packet.substream > 0)
+    if (packet.substream > report.meshes.size()) report.loads->add(packet.bytes.size(), packet.updates);
+    else if (packet.substream > 0)
       report.meshes[packet.substream - 1].traffic->add(packet.bytes.size(), packet.updates, packet.key, packet.layer);
     else if (report.traffic) report.traffic->add(packet.reason, packet.updates, packet.bytes.size(), packet.key);
     if (!run.stream) continue;

@@ -82,6 +82,10 @@ Json capture_json(const TraceCapture& capture) {
 Json packet_info_json(const PlayedPacket& played) {
   Json out{{"tick", played.tick},   {"byte", played.offset}, {"sequence", played.sequence},
            {"bytes", played.bytes}, {"key", played.key},     {"substream", played.substream}};
+  if (played.loads > 0) {
+    out["loads"] = played.loads;
+    return out;
+  }
   if (played.substream > 0) {
     out["layer"] = kLayers[static_cast<std::size_t>(played.layer)];
     out["vertices"] = played.vertices;
@@ -124,6 +128,7 @@ Json stream_info_json(const Player& player, const StreamTotals& totals, std::uin
       out["traffic"]["max_bytes"] = totals.rigid.largest;
     }
   }
+  if (h.loads) out["loads"] = load_traffic_json(totals.loads, report.seconds());
   if (h.bounds && h.bounds->rigid) out["bounds"] = bounds_json(*h.bounds->rigid);
   out["objects"] = Json::array();
   for (const RigidObject& o : h.objects) {

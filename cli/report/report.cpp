@@ -43,6 +43,12 @@ void traffic_rows(Table& table, const Report& r) {
   table.row({"  compression vs 48-byte states", percent(payload.saved_48), percent(datagram.saved_48)});
 }
 
+void load_rows(Table& table, const LoadRates& t, double seconds) {
+  table.heading({"loads", "number", "per second", "payload [bit/s]"});
+  table.row({"  packets", fmt::to_string(t.packets), fmt::format("{:.2f}", per(static_cast<double>(t.packets), seconds)),
+             fmt::format("{:.0f}", 8 * per(static_cast<double>(t.bytes), seconds))});
+}
+
 std::string rule_name(const RigidTriggers& b) {
   switch (b.haptic) {
     case HapticRule::off:
@@ -184,6 +190,7 @@ void print_text(const Report& r, std::FILE* out) {
   fmt::print(out, "\n");
   Table figures;
   if (r.traffic) traffic_rows(figures, r);
+  if (r.loads) load_rows(figures, *r.loads, r.seconds());
   if (r.fidelity && has_errors(*r.fidelity)) error_rows(figures, r, *r.fidelity, "");
   for (const NetworkReport& user : r.networks) {
     network_rows(figures, user, r.seconds());
@@ -249,6 +256,10 @@ bool has_errors(const ErrorMetrics& f) { return f.position().ticks() > 0 || f.re
 std::pair<std::uint64_t, std::uint64_t> Report::bytes_and_packets() const {
   std::pair<std::uint64_t, std::uint64_t> all{};
   if (traffic) all = {traffic->bytes, traffic->all_packets()};
+  if (loads) {
+    all.first += loads->bytes;
+    all.second += loads->packets;
+  }
   for (const MeshReport& mesh : meshes) {
     if (!mesh.traffic) continue;
     all.first += mesh.traffic->bytes;

@@ -55,6 +55,7 @@ struct Report {
   std::string bounds_from{};  ///< "stream", "options", "defaults"; empty: no verdict on them
   std::optional<StreamSize> stream{};
   std::optional<RateMetrics> traffic{};
+  std::optional<LoadRates> loads{};
   std::optional<ErrorMetrics> fidelity{};
   std::vector<MeshReport> meshes{};
   std::vector<NetworkReport> networks{};  ///< one per user with a session

@@ -42,6 +42,8 @@ Json rigid_traffic_json(const Report& r) {
   return out;
 }
 
+Json load_traffic_json(const LoadRates& t, double seconds) { return traffic_json(t.packets, 0, t.updates, t.bytes, seconds); }
+
 Json mesh_traffic_json(const MeshReport& mesh, double seconds) {
   const DeformableRates& t = *mesh.traffic;
   Json out = traffic_json(t.sizes.size(), t.keys, t.updates, t.bytes, seconds);
@@ -219,6 +221,7 @@ std::string to_json(const Report& r) {
   add_particulars(out, r);
   if (r.stream) out["stream"] = stream_json(r);
   if (r.traffic) out["traffic"] = rigid_traffic_json(r);
+  if (r.loads) out["loads"] = load_traffic_json(*r.loads, r.seconds());
   if (r.fidelity && has_errors(*r.fidelity)) {
     out["bounds"] = bounds_json(r.fidelity->bounds());
     out["error"] = errors_json(r, *r.fidelity);

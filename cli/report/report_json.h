@@ -9,6 +9,7 @@
 namespace tactus::cli {
 
 nlohmann::ordered_json rigid_traffic_json(const Report& report);  ///< pre  it has traffic
+nlohmann::ordered_json load_traffic_json(const LoadRates& traffic, double seconds);
 nlohmann::ordered_json mesh_traffic_json(const MeshReport& mesh, double seconds);
 nlohmann::ordered_json stream_json(const Report& report);  ///< pre  it has a stream
 nlohmann::ordered_json bounds_json(const RigidTriggers& bounds);

@@ -33,9 +33,11 @@ struct StreamTotals {
   std::int64_t last_tick = 0;
   Sizes rigid;
   std::vector<DeformableRates> meshes;
+  LoadRates loads;
 
   void add(const PlayedPacket& p) {
     last_tick = p.tick;
+    if (p.substream > meshes.size()) return loads.add(p.bytes, p.loads);
     if (p.substream > 0) return meshes[p.substream - 1].add(p.bytes, p.vertices, p.key, p.layer);
     traffic.add(strongest_reason(p), p.updates.size(), p.bytes, p.key);
     for (const RigidUpdate& u : p.updates) ++levels[u.level % levels.size()];

@@ -2,7 +2,9 @@
 #include <tactus/client/stiffness_reduction.h>
 
 #include <algorithm>
+#include <cmath>
 #include <new>
+#include <numbers>
 
 #include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
@@ -23,21 +25,43 @@ void StiffnessReduction::move(const Vec3& device) noexcept {
   known_ = std::min(known_ + 1, path_.size());
 }
 
-/// pre  known_ > 0
-const Vec3& StiffnessReduction::place(std::uint32_t ago) const noexcept {
-  const std::size_t back = 1 + std::min<std::size_t>(ago, known_ - 1);
-  return path_[(next_ + path_.size() - back) % path_.size()];
+/// [m] Of the device in the last round trip, as far as its path is known.
+Vec3 StiffnessReduction::way(std::uint32_t round_trip) const noexcept {
+  if (known_ == 0) return {};
+  const std::size_t back = std::min<std::size_t>(round_trip, known_ - 1);
+  const auto place = [this](std::size_t ago) -> const Vec3& { return path_[(next_ + path_.size() - 1 - ago) % path_.size()]; };
+  return place(0) - place(back);
 }
 
-double StiffnessReduction::reduced(const Touch& touch, std::uint32_t round_trip) noexcept {
-  const double k = touch.coupling, follows = k / (touch.object_stiffness + k);
-  const double stretch = -dot(touch.stretch, touch.normal);
-  const double way = known_ == 0 ? 0 : -dot(place(0) - place(round_trip), touch.normal);
-  double wanted = k;
-  if (way > 0) wanted = way < stretch ? k * (1 - follows * way / stretch) : k * (1 - follows);
+double StiffnessReduction::filtered(double wanted) noexcept {
   mean_ = is_touching_ ? filter_ * wanted + (1 - filter_) * mean_ : wanted;
   is_touching_ = true;
   return mean_;
+}
+
+double StiffnessReduction::reduced(const DeformableTouch& touch, std::uint32_t round_trip) noexcept {
+  const double k = touch.coupling, follows = k / (touch.object_stiffness + k);
+  const double stretch = -dot(touch.stretch, touch.normal), inwards = -dot(way(round_trip), touch.normal);
+  double wanted = k;
+  if (inwards > 0) wanted = inwards < stretch ? k * (1 - follows * inwards / stretch) : k * (1 - follows);
+  return filtered(wanted);
+}
+
+/// 4.27; without a hold the object can go anywhere.
+static double blending(const Vec3& hold, const Vec3& normal) noexcept {
+  const double length = norm(hold);
+  if (!(length > 0)) return 1;
+  return 2 / std::numbers::pi * std::acos(std::min(1.0, std::abs(dot(hold, normal)) / length));
+}
+
+double StiffnessReduction::reduced(const RigidTouch& touch, std::uint32_t round_trip) noexcept {
+  const double k = touch.coupling, stretch = norm(touch.stretch);
+  if (!(stretch > 0)) return filtered(k);
+  const Vec3 push = (1 / stretch) * touch.stretch;
+  const double resists = touch.moves ? -dot(touch.external, push) : norm(touch.hold);
+  const double due = std::max(0.0, resists - dot(touch.others, push));
+  const double behind = blending(touch.hold, touch.normal) * std::min(dot(way(round_trip), push), stretch - due / k);
+  return filtered(behind > 0 ? k * due / (due + k * behind) : k);
 }
 
 }  // namespace tactus

@@ -21,7 +21,7 @@ struct RigidUpdate {
 /// A packet to send.
 struct Packet {
   std::span<const std::uint8_t> bytes;  ///< with the number of its substream; valid until the sender's next call of encode()
-  std::size_t substream = 0;            ///< 0: the rigid objects; i + 1: deformable object i
+  std::size_t substream = 0;            ///< 0: the rigid objects; i + 1: deformable object i; the next: the loads
   std::uint16_t sequence = 0;           ///< in its substream
   std::uint64_t number = 0;             ///< the same, not wrapped
   bool key = false;                     ///< builds on the initial state: a place to seek to
@@ -41,6 +41,7 @@ struct DecodedPacket {
   std::int64_t tick = 0;
   Layer layer = Layer::all;                ///< deformable objects, profile main; not coded in profile thesis
   std::span<const RigidUpdate> updates{};  ///< rigid objects; valid until the receiver's next push()
+  std::uint32_t loads = 0;                 ///< loads: objects named
   std::uint32_t vertices = 0;              ///< deformable objects: vertices with a residual of their own
   std::uint32_t final_range = 0;           ///< range decoder's state after the last symbol (conformance)
   std::uint32_t final_code = 0;

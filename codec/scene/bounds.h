@@ -46,6 +46,13 @@ struct DeformableThresholds {
   friend bool operator==(const DeformableThresholds&, const DeformableThresholds&) = default;
 };
 
+/// When the force on a rigid object must be told: once it is off by more than p max(|f|, floor).
+struct LoadThresholds {
+  double weber_fraction = 0.1;  ///< p
+  double force_floor = 0.5;     ///< [N]
+  friend bool operator==(const LoadThresholds&, const LoadThresholds&) = default;
+};
+
 struct DeformableBounds {
   DeformableThresholds thresholds;
   bool kept = true;  ///< false: the bounds only decide what is sent; errors may exceed them (profile thesis: its quantiser)
@@ -56,6 +63,7 @@ struct StreamBounds {
   std::optional<RigidTriggers>
       rigid;  ///< none: no rigid object can move. Fields that `haptic` does not use are not transmitted and keep their defaults
   std::vector<DeformableBounds> deformables;  ///< one per deformable object
+  std::optional<LoadThresholds> loads{};      ///< set if the scene has loads
   friend bool operator==(const StreamBounds&, const StreamBounds&) = default;
 };
 

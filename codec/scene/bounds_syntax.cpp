@@ -48,9 +48,16 @@ void code_deformable(Coder& coder, DeformableBounds& mesh) {
 }
 
 template <class Coder>
+void code_loads(Coder& coder, LoadThresholds& t) {
+  t.weber_fraction = coder.number(t.weber_fraction);
+  t.force_floor = coder.number(t.force_floor);
+}
+
+template <class Coder>
 void code_bounds(Coder& coder, StreamBounds& bounds) {
   if (bounds.rigid) code_rigid(coder, *bounds.rigid);
   for (DeformableBounds& mesh : bounds.deformables) code_deformable(coder, mesh);
+  if (bounds.loads) code_loads(coder, *bounds.loads);
 }
 
 /// Finite and without a sign.
@@ -93,23 +100,30 @@ bool has_moving(const SceneSpec& spec) noexcept {
 
 }  // namespace
 
-StreamBounds bounds_of(const SceneSpec& spec, const RigidTriggers& rigid, const DeformableThresholds& deformables) {
+StreamBounds bounds_of(const SceneSpec& spec, const RigidTriggers& rigid, const DeformableThresholds& deformables,
+                       const LoadThresholds& loads) {
   StreamBounds bounds;
   if (has_moving(spec)) bounds.rigid = rigid;
   for (const DeformableObject& object : spec.deformables)
     bounds.deformables.push_back({deformables, object.profile == DeformableProfile::main});
+  if (spec.loads) bounds.loads = loads;
   return bounds;
 }
 
 bool are_bounds(const SceneSpec& spec) noexcept {
   const StreamBounds& bounds = *spec.bounds;
   if (bounds.rigid.has_value() != has_moving(spec) || bounds.deformables.size() != spec.deformables.size()) return false;
+  if (bounds.loads.has_value() != spec.loads.has_value()) return false;
   Checker checker;
   if (bounds.rigid) {
     RigidTriggers rigid = *bounds.rigid;
     code_rigid(checker, rigid);
   }
   for (DeformableBounds mesh : bounds.deformables) code_deformable(checker, mesh);
+  if (bounds.loads) {
+    LoadThresholds loads = *bounds.loads;
+    code_loads(checker, loads);
+  }
   return checker.sound;
 }
 
@@ -124,6 +138,7 @@ Result<StreamBounds> parse_bounds(ByteReader& in, const SceneSpec& spec) {
   StreamBounds bounds;
   if (has_moving(spec)) bounds.rigid.emplace();
   bounds.deformables.resize(spec.deformables.size());
+  if (spec.loads) bounds.loads.emplace();
   Reader reader{in};
   code_bounds(reader, bounds);
   if (!reader.check.sound) return fail(Errc::invalid, "R-STR-17", in.bit_offset());

@@ -68,6 +68,13 @@ RuleName broken_parameter_rule(const SceneSpec& spec) noexcept {
   return {};
 }
 
+RuleName broken_load_rule(const SceneSpec& spec) noexcept {
+  if (!spec.loads) return {};
+  const bool moves = std::ranges::any_of(spec.objects, [](const RigidObject& object) { return object.dof != Dof::none; });
+  const bool fits = spec.loads->force_exp <= LoadSpec::kMostExponent && spec.loads->users <= LoadSpec::kMostUsers;
+  return moves && fits ? RuleName{} : RuleName{"R-STR-19"};
+}
+
 namespace {
 
 Result<void> find_broken_rule(const SceneSpec& spec, const DecodeLimits& limits) {
@@ -87,6 +94,7 @@ Result<void> find_broken_rule(const SceneSpec& spec, const DecodeLimits& limits)
     triangles += object.triangles.size();
     if (vertices > limits.vertices || triangles > limits.triangles) return fail(Errc::limit_exceeded, "R-STR-14");
   }
+  if (const RuleName rule = broken_load_rule(spec)) return fail(Errc::invalid, rule);
   if (spec.bounds && !are_bounds(spec)) return fail(Errc::invalid, "R-STR-17");
   if (state_bytes(spec) > limits.state_bytes) return fail(Errc::limit_exceeded, "R-STR-18");
   return {};
@@ -114,7 +122,8 @@ Result<SharedScene> Scene::create(SceneSpec spec, const DecodeLimits& limits) tr
 
 std::uint64_t state_bytes(const SceneSpec& spec) noexcept {
   const std::uint64_t states = spec.baseline_span + 2u;  // the initial one and that of the packet at hand
-  std::uint64_t sum = 64 * states * spec.objects.size();
+  const std::uint64_t load = spec.loads ? 12 * (2 + std::uint64_t{spec.loads->users}) : 0;
+  std::uint64_t sum = (64 + load) * states * spec.objects.size();
   for (const DeformableObject& object : spec.deformables) {
     sum += states * ((object.layered ? 24 : 12) * object.rest.size() + 48 * object.basis.steps.size());
     if (object.profile == DeformableProfile::thesis)

@@ -33,6 +33,14 @@ struct GridExponents {
   friend bool operator==(const GridExponents&, const GridExponents&) = default;
 };
 
+/// What is told of the forces on rigid objects. spec/45-load.md
+struct LoadSpec {
+  static constexpr std::uint8_t kMostUsers = 64, kMostExponent = 20;
+  std::uint8_t force_exp = 10;  ///< forces are multiples of 2^-force_exp N, 0..20
+  std::uint8_t users = 1;       ///< whose forces are told, 0..64
+  friend bool operator==(const LoadSpec&, const LoadSpec&) = default;
+};
+
 struct SceneSpec {
   std::uint32_t tick_rate = 1000;  ///< ticks per second, 1 .. 1 000 000
   GridExponents grid;
@@ -40,6 +48,7 @@ struct SceneSpec {
   std::uint8_t baseline_span = 1;             ///< how many of the newest states a receiver keeps as baselines, 1..64
   std::vector<RigidObject> objects;           ///< order is the wire order
   std::vector<DeformableObject> deformables;  ///< a stream without any spends no byte on them
+  std::optional<LoadSpec> loads;              ///< of the objects that can move; none: a stream spends no byte on them
   std::optional<StreamBounds> bounds;         ///< error bounds that the sender guarantees; none: not declared
 };
 
@@ -81,6 +90,7 @@ Result<void> check_scene(const SceneSpec& spec, const DecodeLimits& limits = {})
 std::uint64_t state_bytes(const SceneSpec& spec) noexcept;
 
 /// Bounds of a stream whose sender uses these thresholds. Deformable objects of profile thesis only aim at theirs.
-StreamBounds bounds_of(const SceneSpec& spec, const RigidTriggers& rigid, const DeformableThresholds& deformables);
+StreamBounds bounds_of(const SceneSpec& spec, const RigidTriggers& rigid, const DeformableThresholds& deformables,
+                       const LoadThresholds& loads);
 
 }  // namespace tactus

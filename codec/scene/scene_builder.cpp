@@ -53,8 +53,14 @@ SceneBuilder& SceneBuilder::baselines(std::uint8_t count) {
   return *this;
 }
 
-SceneBuilder& SceneBuilder::promise(const RigidTriggers& rigid, const DeformableThresholds& deformables) {
-  promise_.emplace(rigid, deformables);
+SceneBuilder& SceneBuilder::loads(const LoadSpec& loads) {
+  spec_.loads = loads;
+  return *this;
+}
+
+SceneBuilder& SceneBuilder::promise(const RigidTriggers& rigid, const DeformableThresholds& deformables,
+                                    const LoadThresholds& loads) {
+  promise_ = {rigid, deformables, loads};
   return *this;
 }
 
@@ -85,7 +91,7 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build() try {
     if (const RuleName rule = broken_deformable_rule(*object)) return refuse({Errc::invalid, rule, 0}, of.name);
     spec.deformables.push_back(std::move(*object));
   }
-  if (taken.promise_) spec.bounds = bounds_of(spec, taken.promise_->first, taken.promise_->second);
+  if (taken.promise_) spec.bounds = bounds_of(spec, taken.promise_->rigid, taken.promise_->deformables, taken.promise_->loads);
   auto scene = Scene::create(std::move(spec));
   if (!scene) return refuse(scene.error(), {});
   return *scene;

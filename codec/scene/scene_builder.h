@@ -46,8 +46,10 @@ class SceneBuilder {
   SceneBuilder& extrapolate(double seconds);
   /// How many states a receiver keeps as baselines, 1..64. Losing fewer packets than that in a row interrupts nothing.
   SceneBuilder& baselines(std::uint8_t count);
+  /// Tell the forces on all objects that can move: of their surroundings, and of so many users.
+  SceneBuilder& loads(const LoadSpec& loads);
   /// Declare the bounds that hold at a client that gets every packet.
-  SceneBuilder& promise(const RigidTriggers& rigid, const DeformableThresholds& deformables);
+  SceneBuilder& promise(const RigidTriggers& rigid, const DeformableThresholds& deformables, const LoadThresholds& loads = {});
 
   /// err  invalid_argument R-API-1..3, R-API-10 a pose or surface does not fit the grid; those of Scene::create
   tl::expected<SharedScene, SceneFinding> build();
@@ -68,7 +70,12 @@ class SceneBuilder {
   std::optional<double> extrapolation_;  // [s]
   std::vector<Rigid> rigid_;
   std::vector<Deformable> deformables_;
-  std::optional<std::pair<RigidTriggers, DeformableThresholds>> promise_;
+  struct Promise {
+    RigidTriggers rigid;
+    DeformableThresholds deformables;
+    LoadThresholds loads;
+  };
+  std::optional<Promise> promise_;
 };
 
 }  // namespace tactus

@@ -22,5 +22,6 @@ inline Errc class_of_overflow(const ByteReader& in) noexcept { return in.overrun
 RuleName broken_object_rule(const RigidObject& object) noexcept;
 RuleName broken_parameter_rule(const SceneSpec& spec) noexcept;
 RuleName broken_deformable_rule(const DeformableObject& object) noexcept;
+RuleName broken_load_rule(const SceneSpec& spec) noexcept;
 
 }  // namespace tactus

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include <tactus/packet/substream.h>
+
 namespace tactus {
 namespace {
 
@@ -105,7 +107,7 @@ bool Exchange::decode(std::uint64_t number, std::span<const std::uint8_t> packet
   ++traffic_.packets_heard;
   traffic_.payload_heard += packet.size();
   reading.heard.tick = std::max(reading.heard.tick.value_or(decoded->tick), decoded->tick);
-  if (decoded->substream > 0) reading.asks = Asks::now;
+  if (is_of_deformable(*receiver->scene(), decoded->substream)) reading.asks = Asks::now;
   reading.heard.oldest = std::min(reading.heard.oldest.value_or(decoded->tick), decoded->tick);
   const bool newest = receiver->tick(decoded->substream) == decoded->tick;
   if (direction_ == Direction::up && number % kHashEvery == 0 && newest && decoded->layer == Layer::all) {
@@ -251,7 +253,8 @@ bool Exchange::add_packets(std::uint64_t number, std::uint64_t now) noexcept {
     } else {
       if (!writer_.add(PacketPart{number - packet.number, packet.bytes})) break;
       traffic_.payload_sent += packet.bytes.size();
-      if (resends_ && packet.substream > 0 && packet.layer == Layer::all) resends_->keep(number, packet, now);
+      if (resends_ && is_of_deformable(*sender->scene(), packet.substream) && packet.layer == Layer::all)
+        resends_->keep(number, packet, now);
       ++next_packet_;
     }
     cut = packet.bytes.size() > kFragmentSize;

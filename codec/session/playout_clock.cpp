@@ -67,4 +67,10 @@ std::int64_t PlayoutClock::shown(std::uint64_t now) noexcept {
   return shown_;
 }
 
+std::optional<std::int64_t> PlayoutClock::behind(std::uint64_t now) const noexcept {
+  const auto base = base_.value();
+  if (!base || shown_ < 0) return std::nullopt;
+  return static_cast<std::int64_t>(now) - *base - time_of(shown_);
+}
+
 }  // namespace tactus

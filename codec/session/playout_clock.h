@@ -23,6 +23,8 @@ class PlayoutClock {
   void late(std::int64_t tick, std::uint64_t now) noexcept;
   /// The tick to show; it never falls, nor below that of the first packet. -1: nothing was heard.
   std::int64_t shown(std::uint64_t now) noexcept;
+  /// [us] since the fastest packet would have brought the tick shown last; nothing: none was shown.
+  std::optional<std::int64_t> behind(std::uint64_t now) const noexcept;
   std::int64_t delay() const noexcept { return delay_; }  ///< [us] behind the fastest packet of the last 10 s
 
  private:

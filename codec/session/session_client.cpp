@@ -9,6 +9,7 @@
 #include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
 #include <tactus/deformable/deformable_encoder.h>
+#include <tactus/load/load_syntax.h>
 #include <tactus/rigid/rigid_syntax.h>
 #include <tactus/scene/scene_syntax.h>
 #include <tactus/session/clock_offset.h>
@@ -31,6 +32,7 @@ constexpr unsigned kLeaves = 3;                  // one of them should arrive
 std::size_t largest_packet(const Scene& scene) {
   std::size_t out = scene.moving().empty() ? 0 : max_rigid_packet(scene);
   for (const DeformableObject& object : scene.deformables) out = std::max(out, max_packet(object));
+  if (scene.loads) out = std::max(out, max_load_packet(scene));
   return out + 1;  // the number of its substream
 }
 
@@ -332,6 +334,16 @@ Receiver* SessionClient::receiver() noexcept {
 std::int64_t SessionClient::shown_tick(std::uint64_t now) noexcept {
   Epoch* epoch = impl_->shown ? impl_->shown.get() : impl_->current.get();
   return epoch != nullptr && epoch->playout ? epoch->playout->shown(now) : -1;
+}
+
+/// The fastest way up and down, and how much later than the fastest packet the tick is shown. No clock but the own one counts.
+std::optional<std::uint64_t> SessionClient::round_trip_shown(std::uint64_t now) const noexcept {
+  const Epoch* epoch = impl_->shown ? impl_->shown.get() : impl_->current.get();
+  if (epoch == nullptr || !epoch->playout) return std::nullopt;
+  const auto behind = epoch->playout->behind(now);
+  const auto& trip = epoch->exchange.sent().round_trip();
+  if (!behind || !trip) return std::nullopt;
+  return static_cast<std::uint64_t>(std::max<std::int64_t>(0, *behind + trip->least));
 }
 
 double SessionClient::force_share(std::uint64_t now) noexcept {

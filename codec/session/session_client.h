@@ -67,6 +67,9 @@ class SessionClient {
   Receiver* receiver() noexcept;
   /// The tick to show; it never falls within an epoch. -1: none yet.
   std::int64_t shown_tick(std::uint64_t now) noexcept;
+  /// [us] How old the tick that shown_tick() told last is as an answer to the own device: R of thesis chapter 4, playout included.
+  /// Nothing: not known yet.
+  std::optional<std::uint64_t> round_trip_shown(std::uint64_t now) const noexcept;
   /// Share of a force that may be rendered: without news none.   out  0 to 1
   double force_share(std::uint64_t now) noexcept;
   SessionStatus status() const noexcept;

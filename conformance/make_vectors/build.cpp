@@ -56,6 +56,7 @@ Bytes RawHeader::body() const {
     for (const std::int32_t c : object.rotation) w.i32(c);
   }
   w.bytes(deformables);
+  w.bytes(loads);
   w.bytes(extensions);
   return out;
 }

@@ -47,6 +47,7 @@ struct RawHeader {
   std::uint16_t max_extrapolation = 2000;
   std::uint8_t baseline_span = 1;
   Bytes deformables{};  ///< all about deformable objects, if flags say so
+  Bytes loads{};        ///< force_exp and load_users, if flags say so
   Bytes extensions{};
   std::array<std::uint8_t, 4> magic{0x89, 0x54, 0x43, 0x54};
   std::uint8_t version = 1;

@@ -95,6 +95,7 @@ void add_rigid(Catalogue& catalogue);
 void add_rigid_rules(Catalogue& catalogue);
 void add_rigid_edges(Catalogue& catalogue);
 void add_rigid_orders(Catalogue& catalogue);
+void add_load(Catalogue& catalogue);
 void add_client(Catalogue& catalogue);
 void add_client_playout(Catalogue& catalogue);
 void add_session(Catalogue& catalogue);

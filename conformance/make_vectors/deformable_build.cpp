@@ -68,6 +68,13 @@ RawHeader with_deformables(RawHeader header, const std::vector<RawDeformable>& i
   return header;
 }
 
+std::vector<RawDeformable> with_large_states(int count) {
+  std::vector<RawDeformable> out;
+  for (int i = 0; i < count; ++i)
+    out.push_back({.shape = one_vertex(), .profile = 0, .name = std::to_string(i), .quant_bits = 12, .models_kept = 1});
+  return out;
+}
+
 RawHeader only(const RawDeformable& item, std::uint8_t baseline_span) {
   RawHeader header;
   header.objects.clear();

@@ -58,6 +58,8 @@ struct RawDeformable {
 Bytes zigzag_varint(std::int64_t value);
 /// `header` with these deformable objects and the flag that says so.
 RawHeader with_deformables(RawHeader header, const std::vector<RawDeformable>& items);
+/// So many objects of one vertex, each with as many models in its state as there may be.
+std::vector<RawDeformable> with_large_states(int count);
 /// A header of one deformable object alone.
 RawHeader only(const RawDeformable& item, std::uint8_t baseline_span = 1);
 /// A header in which these bytes speak of deformable objects.

@@ -14,11 +14,7 @@ Bytes with_models(int count) {
   RawHeader header;
   header.objects.clear();
   header.baseline_span = 64;
-  std::vector<RawDeformable> list;
-  list.reserve(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i)
-    list.push_back({.shape = one_vertex(), .profile = 0, .name = std::to_string(i), .quant_bits = 12, .models_kept = 1});
-  return with_deformables(header, list).bytes();
+  return with_deformables(header, with_large_states(count)).bytes();
 }
 
 /// A triangle, then an object that announces so many vertices and triangles.

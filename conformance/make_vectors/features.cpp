@@ -14,6 +14,7 @@ constexpr std::array kFlags{
     Flag{"baselines", "baseline_span is greater than 1"},
     Flag{"substreams", "packets begin with a substream byte"},
     Flag{"bounds", "the scene declaration has a bounds record"},
+    Flag{"loads", "the scene has loads"},
     Flag{"basis", "a deformable object has modes"},
     Flag{"layered", "a deformable object has haptic and visual layers"},
     Flag{"models_kept", "entropy models are part of a deformable object's state"},
@@ -82,7 +83,8 @@ void skim_deformable(Skimmer& in, Features& out) {
 /// How many substreams the scene has.
 std::uint64_t skim_declaration(Skimmer& in, Features& out) {
   in.skip(6);
-  const bool has_deformables = in.u16() & 1u;
+  const unsigned flags = in.u16();
+  const bool has_deformables = flags & 1u, has_loads = flags == 2 || flags == 3;
   in.skip(4 + 10);  // body_size, tick_rate to max_extrapolation
   if (in.u8() > 1) out.flags.insert("baselines");
   bool moving = false;
@@ -96,6 +98,11 @@ std::uint64_t skim_declaration(Skimmer& in, Features& out) {
   for (std::uint64_t count = has_deformables ? in.varint() : 0; count > 0 && !in.at_end(); --count) {
     ++substreams;
     skim_deformable(in, out);
+  }
+  if (has_loads) {
+    out.flags.insert("loads");
+    ++substreams;
+    in.skip(2);
   }
   return substreams;
 }

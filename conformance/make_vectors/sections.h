@@ -16,6 +16,7 @@ inline constexpr const char* kPrediction = "40 Prediction";
 inline constexpr const char* kPose = "40 Pose";
 inline constexpr const char* kMotion = "40 Motion";
 inline constexpr const char* kStartModels = "40 Start models";
+inline constexpr const char* kLoadPacket = "45 Packet";
 inline constexpr const char* kDeformable = "20 Deformable objects";
 inline constexpr const char* kRings = "50 Rings and area of interest";
 inline constexpr const char* kCodingOrder = "50 Coding order";

@@ -107,7 +107,11 @@ tl::expected<void, Diagnostic> MsdObjects::step() {
   return {};
 }
 
-MsdView::MsdView(const Scene& scene) : bodies_(make_bodies(scene)), touched_(scene.users.size()) {
+MsdView::MsdView(const Scene& scene)
+    : bodies_(make_bodies(scene)),
+      touched_(scene.users.size()),
+      first_(static_cast<std::uint32_t>(scene.objects.size())),
+      stiffness_(scene.touch ? scene.touch->stiffness : 0) {
   for (const SceneMsd& msd : scene.msds) poses_.push_back({msd.position, {}});
 }
 
@@ -122,6 +126,15 @@ Touch MsdView::touch(std::size_t user, const DeviceSample& device, bool held) no
     const double depth = touched == i ? bodies_[i].depth(position) : kAway;
     out.force = out.force - bodies_[i].loop.feel(user, depth, surface(i)) * bodies_[i].spec.normal;
   }
+  if (!touched) return out;
+  const MsdBody& body = bodies_[*touched];
+  out.proxy = position + (body.depth(position) - surface(*touched)) * body.spec.normal;
+  out.contact = {.kind = ContactKind::surface,
+                 .object = first_ + static_cast<std::uint32_t>(*touched),
+                 .point = out.proxy - poses_[*touched].position,
+                 .normal = body.spec.normal,
+                 .device = position,
+                 .stiffness = stiffness_};
   return out;
 }
 

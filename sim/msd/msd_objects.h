@@ -66,6 +66,8 @@ class MsdView final : public Touchable {
   std::vector<MsdBody> bodies_;
   std::vector<std::optional<std::size_t>> touched_;
   std::vector<Pose> poses_;
+  std::uint32_t first_;   // index of the first body among the trace's objects
+  double stiffness_ = 0;  // of the coupling [N/m]
 };
 
 }  // namespace tactus::sim

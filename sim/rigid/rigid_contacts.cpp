@@ -94,7 +94,8 @@ std::uint32_t RigidWorld::Impl::group_of(std::uint32_t body) {
 void RigidWorld::Impl::attach(const Pair& pair) {
   const Body& first = bodies[pair.a];
   const Body* const second = body(pair.b);
-  for (dContact& contact : std::span(touching).subspan(pair.first, pair.count)) {
+  for (std::size_t i = pair.first; i < pair.first + pair.count; ++i) {
+    dContact& contact = touching[i];
     contact.surface = {};
     contact.surface.mode = dContactApprox1;
     contact.surface.mu = second ? std::min(first.mu, second->mu) : first.mu;
@@ -107,7 +108,9 @@ void RigidWorld::Impl::attach(const Pair& pair) {
       contact.fdir1[1] = sliding.y / speed;
       contact.fdir1[2] = sliding.z / speed;
     }
-    dJointAttach(dJointCreateContact(world, contacts, &contact), first.handle, second ? second->handle : nullptr);
+    const dJointID joint = dJointCreateContact(world, contacts, &contact);
+    dJointAttach(joint, first.handle, second ? second->handle : nullptr);
+    if (tells_loads) dJointSetFeedback(joint, &forces[i]);
   }
 }
 
@@ -123,12 +126,34 @@ void RigidWorld::Impl::make_groups() {
             [this](std::uint32_t a, std::uint32_t b) { return std::pair(bodies[a].island, a) < std::pair(bodies[b].island, b); });
 }
 
+/// What the contacts of a pair can oppose to a motion along them.
+void RigidWorld::Impl::add_hold(const Pair& pair) {
+  for (std::size_t i = pair.first; i < pair.first + pair.count; ++i) {
+    const Vec3 normal = vec(touching[i].geom.normal);
+    const Vec3 limit = touching[i].surface.mu * std::max(0.0, dot(vec(forces[i].f1), normal)) * normal;
+    const auto add = [&limit](Vec3& hold) { hold = dot(hold, limit) < 0 ? hold - limit : hold + limit; };
+    add(bodies[pair.a].load.hold);
+    if (pair.b != kFloor) add(bodies[pair.b].load.hold);
+  }
+}
+
+/// Of the bodies that were stepped, before their own forces are forgotten.
+void RigidWorld::Impl::tell_loads() {
+  for (const std::uint32_t i : awake) {
+    Body& body = bodies[i];
+    const Vec3 change = vec(dBodyGetLinearVel(body.handle)) - body.before.velocity;
+    body.load = {.external = body.spec.mass / kTick * change - body.force, .hold = {}};
+  }
+  for (const Pair& pair : pairs) add_hold(pair);
+}
+
 /// QuickStep shuffles its constraints with the one random generator of the process. The generator is seeded and groups are stepped one
 /// by one, so that a group's result depends on this group alone, not on other groups or whether they sleep.
 void RigidWorld::Impl::step_groups() {
   const auto switch_all = [this](void (*to)(dBodyID)) {
     for (const std::uint32_t i : groups) to(bodies[i].handle);
   };
+  if (tells_loads) forces.assign(touching.size(), {});
   const bool are_several = !groups.empty() && bodies[groups.front()].island != bodies[groups.back()].island;
   if (are_several) switch_all(dBodyDisable);
   auto pair = pairs.begin();

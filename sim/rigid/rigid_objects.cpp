@@ -19,7 +19,14 @@ std::vector<RigidProbe> make_probes(const Scene& scene, bool attended) {
 }  // namespace
 
 RigidObjects::RigidObjects(const Scene& scene)
-    : world_(scene), probes_(make_probes(scene, true)), touches_(scene.users.size()), poses_(scene.objects.size()) {}
+    : world_(scene), probes_(make_probes(scene, true)), touches_(scene.users.size()), poses_(scene.objects.size()) {
+  if (!tells_loads(scene)) return;
+  const std::size_t objects = scene.objects.size() + scene.msds.size(), users = scene.users.size();
+  pushes_.resize(objects * users);
+  pushing_.resize(objects * users);
+  for (std::size_t i = 0; i < objects; ++i)
+    loads_.push_back({.external = {}, .hold = {}, .pushes = std::span(pushes_).subspan(i * users, users)});
+}
 
 void RigidObjects::observe(TraceFrame& frame) noexcept {
   frame.tick = world_.tick();
@@ -37,7 +44,23 @@ Touch RigidObjects::touch(std::size_t user, const DeviceSample& device, bool) no
 
 void RigidObjects::push(std::size_t user, double share) noexcept {
   const Touch& touch = touches_[user];
-  if (touch.contact.kind != ContactKind::none) world_.push(touch.contact.object, -(share * touch.force), touch.proxy);
+  if (touch.contact.kind == ContactKind::none) return;
+  const Vec3 force = -(share * touch.force);
+  world_.push(touch.contact.object, force, touch.proxy);
+  if (!loads_.empty()) pushing_[touch.contact.object * touches_.size() + user] = force;
+}
+
+tl::expected<void, Diagnostic> RigidObjects::step() {
+  TACTUS_CHECK(world_.step());
+  if (loads_.empty()) return {};
+  for (std::uint32_t i = 0; i < poses_.size(); ++i) {
+    const RigidWorld::Load& load = world_.load(i);
+    loads_[i].external = load.external;
+    loads_[i].hold = load.hold;
+  }
+  std::ranges::copy(pushing_, pushes_.begin());
+  std::ranges::fill(pushing_, Vec3{});
+  return {};
 }
 
 RigidView::RigidView(const Scene& scene, News news) : news_(news), probes_(make_probes(scene, news == News::of_changed)) {

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <tactus/load/load_state.h>
 #include <tactus/sim/rigid/rigid_probe.h>
 #include <tactus/sim/rigid/rigid_world.h>
 #include <tactus/sim/scene/scene.h>
@@ -22,13 +23,20 @@ class RigidObjects final : public Simulated {
   void observe(TraceFrame& frame) noexcept override;
   Touch touch(std::size_t user, const DeviceSample& device, bool held) noexcept override;
   void push(std::size_t user, double share) noexcept override;
-  tl::expected<void, Diagnostic> step() override { return world_.step(); }
+  tl::expected<void, Diagnostic> step() override;
+
+  /// Forces of the last step on every rigid and one-dimensional object of the scene, those on the latter zero; empty unless
+  /// tells_loads(scene).
+  std::span<const ObjectLoad> loads() const noexcept { return loads_; }
 
  private:
   RigidWorld world_;
   std::vector<RigidProbe> probes_;  // one per user
   std::vector<Touch> touches_;      // likewise, of this tick
   std::vector<Pose> poses_;         // one per object
+  std::vector<ObjectLoad> loads_;   // one per object of the stream
+  std::vector<Vec3> pushes_;        // [N] of each user on each of them, in the last step,
+  std::vector<Vec3> pushing_;       // and in this tick
 };
 
 /// At a client.

@@ -74,6 +74,7 @@ struct Body {
   std::uint32_t group = 0;   // another body of its contact group; itself: it represents the group
   std::uint32_t island = 0;  // representative of its group; kFloor: it touches nothing
   RigidSample before;        // this step
+  RigidWorld::Load load;     // of it
 };
 
 /// Two bodies near each other and their contacts. The first body can move.
@@ -96,6 +97,7 @@ struct RigidWorld::Impl {
   Vec3 gravity;
   std::vector<Body> bodies;
   std::int64_t tick = 0;
+  bool tells_loads = false;
   RestWatch watch;
   std::vector<Pose> moving;            // poses for it
   std::vector<std::uint32_t> awake;    // bodies, ascending
@@ -105,6 +107,7 @@ struct RigidWorld::Impl {
   // Of one step.
   std::vector<Pair> pairs;
   std::vector<dContact> touching;
+  std::vector<dJointFeedback> forces;                   // of them; empty unless loads are told
   std::vector<std::pair<double, std::uint32_t>> order;  // of those awake, along x
   std::vector<std::uint32_t> groups;                    // those awake, group by group
   std::vector<dContact> found;                          // of one pair
@@ -127,6 +130,8 @@ struct RigidWorld::Impl {
   void make_groups();
   void step_groups();
   void attach(const Pair& pair);
+  void tell_loads();
+  void add_hold(const Pair& pair);
   rigid::Motion motion_without_contact(const Body& body) const;
   Vec3 velocity_without_contact(const Body* body, const Vec3& point) const;
   void project(Body& body) const;

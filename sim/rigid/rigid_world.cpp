@@ -50,7 +50,7 @@ bool are_same(const RigidSample& a, const RigidSample& b) {
 
 }  // namespace
 
-RigidWorld::Impl::Impl(const Scene& scene) : gravity(scene.gravity) {
+RigidWorld::Impl::Impl(const Scene& scene) : gravity(scene.gravity), tells_loads(sim::tells_loads(scene)) {
   dWorldSetGravity(world, gravity.x, gravity.y, gravity.z);
   dWorldSetContactSurfaceLayer(world, kSurfaceLayer);
   dWorldSetQuickStepNumIterations(world, kIterations);
@@ -69,6 +69,7 @@ RigidWorld::Impl::Impl(const Scene& scene) : gravity(scene.gravity) {
   resting.reserve(bodies.size());
   pairs.reserve(8 * moving.size());
   touching.reserve(moving.size() * 2 * kMaxContacts);
+  if (tells_loads) forces.reserve(touching.capacity());
   for (std::uint32_t i = 0; i < bodies.size(); ++i)
     if (bodies[i].handle) awake.push_back(i);
 }
@@ -266,6 +267,10 @@ tl::expected<void, Diagnostic> RigidWorld::step() {
     Body& body = in.bodies[i];
     in.project(body);
     in.stand_still(body);
+  }
+  if (in.tells_loads) in.tell_loads();
+  for (const std::uint32_t i : in.awake) {
+    Body& body = in.bodies[i];
     body.force = body.torque = {};
     const RigidSample s = in.sample(body);
     if (!is_finite(s.pose.position) || !is_finite(s.pose.rotation) || !can_step({s.velocity, s.angular_velocity}))
@@ -278,6 +283,8 @@ tl::expected<void, Diagnostic> RigidWorld::step() {
 }
 
 RigidSample RigidWorld::sample(std::uint32_t object) const noexcept { return impl_->sample(impl_->bodies[object]); }
+
+const RigidWorld::Load& RigidWorld::load(std::uint32_t object) const noexcept { return impl_->bodies[object].load; }
 
 std::int64_t RigidWorld::tick() const noexcept { return impl_->tick; }
 

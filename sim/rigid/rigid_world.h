@@ -47,6 +47,12 @@ class RigidWorld {
 
   /// State of an object now.   time O(1), no allocation.
   RigidSample sample(std::uint32_t object) const noexcept;
+  /// Forces on an object in the last step.
+  struct Load {
+    Vec3 external;  ///< [N] all but those of push(): gravity, contacts, damping
+    Vec3 hold;      ///< along the normal of its contacts, as long as the sum of mu |f_n| [N]   spec/45-load.md 3
+  };
+  const Load& load(std::uint32_t object) const noexcept;  ///< zero unless tells_loads(scene)
   std::int64_t tick() const noexcept;
 
   RigidWorld(RigidWorld&&) noexcept;

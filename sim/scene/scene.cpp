@@ -126,6 +126,14 @@ SceneTouch read_touch(TomlReader& in, const toml::table& table) {
           .lift_stiffness = in.number(table, path, "lift_stiffness", {1, 1e5})};
 }
 
+SceneCompensation read_compensation(TomlReader& in, const toml::table& table) {
+  const std::string path = "compensation";
+  in.allow(table, path, {"filter"});
+  SceneCompensation out;
+  out.filter = in.number(table, path, "filter", {1e-6, 1}, out.filter);
+  return out;
+}
+
 SceneDevice read_device(TomlReader& in, const toml::table& table) {
   const std::string path = "user.device";
   in.allow(table, path, {"max_force", "resolution", "filter", "axes"});
@@ -195,12 +203,13 @@ void limit(TomlReader& in, const toml::table& root, std::string_view key, std::s
 }
 
 void read_scene(TomlReader& in, const toml::table& root, const std::filesystem::path& folder, Scene& scene) {
-  in.allow(root, "", {"name", "gravity", "duration", "floor", "touch", "object", "msd", "deformable", "user"});
+  in.allow(root, "", {"name", "gravity", "duration", "floor", "touch", "compensation", "object", "msd", "deformable", "user"});
   scene.name = in.text(root, "", "name");
   scene.gravity = in.vector(root, "", "gravity", {-1000, 1000});
   scene.duration = in.number(root, "", "duration", {kTick, kLongest});
   if (root.contains("floor")) scene.floor = in.number(root, "", "floor", kPlace);
   if (const toml::table* touch = in.table(root, "", "touch")) scene.touch = read_touch(in, *touch);
+  if (const toml::table* asked = in.table(root, "", "compensation")) scene.compensation = read_compensation(in, *asked);
 
   limit(in, root, "object", kMostObjects);
   limit(in, root, "msd", kMostObjects);
@@ -272,10 +281,16 @@ tl::expected<std::string, Diagnostic> find_scene(const std::string& name) {
                  .remedy = "no such file, nor a scene of that name; name a file or one of the scenes in sim/scenes"});
 }
 
+bool tells_loads(const Scene& scene) noexcept {
+  return scene.compensation && !scene.users.empty() &&
+         std::ranges::any_of(scene.objects, [](const SceneObject& object) { return object.dof != Dof::none; });
+}
+
 SceneBuilder scene_builder(const Scene& scene) {
   SceneBuilder out(kTickRate);
   for (const SceneObject& object : scene.objects) out.rigid(object.name, object.pose, object.dof);
   for (const SceneMsd& msd : scene.msds) out.rigid(msd.name, {msd.position, {}}, msd.dof());
+  if (tells_loads(scene)) out.loads({.users = static_cast<std::uint8_t>(scene.users.size())});
   return out;
 }
 

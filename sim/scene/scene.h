@@ -76,6 +76,11 @@ struct SceneTouch {
   double lift_stiffness = 0;  ///< [N/m] spring that ties the probe to the touched point while the button is down
 };
 
+/// Clients make up for the delay of what they show (thesis 4.2.3 and 4.3.3).
+struct SceneCompensation {
+  double filter = 0.1;  ///< lambda of StiffnessReduction
+};
+
 struct SceneDevice {
   double max_force = 3.3;                ///< [N] the rendered force is clipped to it
   double resolution = 0.055e-3;          ///< [m] encoder step
@@ -126,13 +131,14 @@ struct SceneUser {
 
 struct Scene {
   std::string name;
-  std::string text;                  ///< the file itself, for the trace
-  Vec3 gravity;                      ///< [m/s^2]
-  double duration = 0;               ///< [s]
-  std::optional<double> floor;       ///< [m] height of a plane that carries the objects
-  std::optional<SceneTouch> touch;   ///< set whenever there are users
-  std::vector<SceneObject> objects;  ///< order of trace and stream
-  std::vector<SceneMsd> msds;        ///< in trace and stream after the objects, as objects of one degree of freedom
+  std::string text;                               ///< the file itself, for the trace
+  Vec3 gravity;                                   ///< [m/s^2]
+  double duration = 0;                            ///< [s]
+  std::optional<double> floor;                    ///< [m] height of a plane that carries the objects
+  std::optional<SceneTouch> touch;                ///< set whenever there are users
+  std::optional<SceneCompensation> compensation;  ///< none: loads are neither computed nor sent
+  std::vector<SceneObject> objects;               ///< order of trace and stream
+  std::vector<SceneMsd> msds;                     ///< in trace and stream after the objects, as objects of one degree of freedom
   std::vector<SceneDeformable> deformables;
   std::vector<SceneUser> users;
 };
@@ -149,7 +155,10 @@ tl::expected<Scene, Diagnostic> load_scene(const std::string& path);
 /// Path of a scene: `name` itself if it is a file, else <name>.toml among the scenes that come with Tactus.   err  R-SCN-1
 tl::expected<std::string, Diagnostic> find_scene(const std::string& name);
 
-/// The rigid objects of this scene for a sender: in order, at rest in their first poses.
+/// Whether clients need the forces on its objects: they make up for delay, and something can be pushed.
+bool tells_loads(const Scene& scene) noexcept;
+
+/// The rigid objects of this scene for a sender: in order, at rest in their first poses; with loads if clients make up for delay.
 SceneBuilder scene_builder(const Scene& scene);
 
 }  // namespace tactus::sim

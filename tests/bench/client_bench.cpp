@@ -63,7 +63,7 @@ void reduce(benchmark::State& state) {
   double z = 0;
   for (auto _ : state) {
     reduction.move({0, 0, z -= 1e-6});
-    benchmark::DoNotOptimize(reduction.reduced({{0, 0, -0.01}, {0, 0, 1}, 340, 100}, 80));
+    benchmark::DoNotOptimize(reduction.reduced(StiffnessReduction::DeformableTouch{{0, 0, -0.01}, {0, 0, 1}, 340, 100}, 80));
   }
 }
 BENCHMARK(reduce)->Repetitions(5)->ReportAggregatesOnly();

@@ -3,14 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <random>
 
 #include "tests/property/allocated.h"
 
 namespace tactus {
 namespace {
 
-using Touch = StiffnessReduction::Touch;
+using Touch = StiffnessReduction::DeformableTouch;
 
 constexpr double kCoupling = 340, kObject = 100;  // [N/m] thesis figure 4.18
 constexpr double kFollows = kCoupling / (kCoupling + kObject);
@@ -26,7 +28,7 @@ class Pressing : public ::testing::Test {
     }
   }
   double reduced(double stretch, std::uint32_t round_trip) {
-    return reduction_.reduced({{0, 0, -stretch}, {0, 0, 1}, kCoupling, kObject}, round_trip);
+    return reduction_.reduced(StiffnessReduction::DeformableTouch{{0, 0, -stretch}, {0, 0, 1}, kCoupling, kObject}, round_trip);
   }
   double z_ = 0;
   StiffnessReduction reduction_ = StiffnessReduction::create({.most_delay = 200, .filter = 1}).value();
@@ -62,7 +64,8 @@ TEST_F(Pressing, WhoLetsGoFeelsTheWholeStiffness) {
 
 TEST_F(Pressing, MotionAlongTheSurfaceDoesNotCount) {
   for (int i = 0; i < 100; ++i) reduction_.move({1e-4 * i, -2e-4 * i, 0});
-  EXPECT_EQ(reduction_.reduced({{0.05, 0.01, -0.002}, {0, 0, 1}, kCoupling, kObject}, 80), kCoupling);
+  EXPECT_EQ(reduction_.reduced(StiffnessReduction::DeformableTouch{{0.05, 0.01, -0.002}, {0, 0, 1}, kCoupling, kObject}, 80),
+            kCoupling);
 }
 
 TEST_F(Pressing, LongerThanThePathThatIsKnownCountsAsThat) {
@@ -83,6 +86,126 @@ TEST_F(Pressing, ForceOfAPushIsThatWithoutDelay) {
     const double in = kSpeed * tick, surface = kFollows * kSpeed * std::max(tick - kDelay, 0);
     const double stretch = in - surface;
     EXPECT_NEAR(reduced(stretch, kDelay) * stretch, kLeast * in, 1e-9) << tick;
+  }
+}
+
+/// A device that pushes a block along x by 1e-4 m each tick (0.1 m/s), 0.3 kg on a surface of mu 0.45.
+class Pushing : public ::testing::Test {
+ protected:
+  static constexpr double kStiffness = 700, kFriction = 0.45 * 0.3 * 9.81;  // [N/m], [N]
+  using Rigid = StiffnessReduction::RigidTouch;
+
+  void go(double speed, int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      x_ += speed;
+      reduction_.move({x_, 0, 0});
+    }
+  }
+  static Rigid moving(double stretch, double resistance = kFriction) {
+    return {.stretch = {stretch, 0, 0},
+            .normal = {-1, 0, 0},
+            .coupling = kStiffness,
+            .moves = true,
+            .external = {-resistance, 0, 0},
+            .others = {},
+            .hold = {0, 0, kFriction}};
+  }
+  static Rigid standing(double stretch) {
+    Rigid out = moving(stretch);
+    out.moves = false;
+    out.external = {};
+    return out;
+  }
+  double x_ = 0;
+  StiffnessReduction reduction_ = StiffnessReduction::create({.most_delay = 200, .filter = 1}).value();
+};
+
+/// Thesis 4.30; 0.3 kg, mu 0.45, 700 N/m at 0.1 m/s and 50 ms: 207 N/m with the damping of the block.
+TEST_F(Pushing, AtConstantSpeedTheForceIsThatWithoutDelay) {
+  go(1e-4, 300);
+  const double resistance = kFriction + 0.3 * 5 * 0.1;  // b_o = m (1 - d)/T_s = 1.5 N s/m
+  const double stretch = resistance / kStiffness + 0.005;
+  const double k = reduction_.reduced(moving(stretch, resistance), 50);
+  EXPECT_NEAR(k * stretch, resistance, 1e-12);
+  EXPECT_NEAR(k, kStiffness * resistance / (resistance + kStiffness * 0.005), 1e-9) << "4.30";
+  EXPECT_NEAR(k, 207, 1);
+}
+
+/// While it gains speed it takes more than it resists with: the share of that which 4.30 leaves.
+TEST_F(Pushing, WhoSetsAMassInMotionFeelsSomeOfItsInertia) {
+  go(1e-4, 300);
+  const double stretch = (kFriction + 0.6) / kStiffness + 0.005;
+  const double force = reduction_.reduced(moving(stretch), 50) * stretch;
+  EXPECT_GT(force, kFriction + 0.1);
+  EXPECT_LT(force, kFriction + 0.6);
+}
+
+TEST_F(Pushing, WithoutDelayOrAtRestNothingIsReduced) {
+  go(1e-4, 300);
+  EXPECT_EQ(reduction_.reduced(moving(0.007), 0), kStiffness);
+  go(0, 300);
+  EXPECT_EQ(reduction_.reduced(moving(0.007), 50), kStiffness);
+}
+
+TEST_F(Pushing, WhatOthersPushAwayIsNotFelt) {
+  go(1e-4, 300);
+  EXPECT_EQ(reduction_.reduced(moving(0.004, -1), 50), 0);
+  Rigid flat = moving(0.004, 0);
+  flat.hold = {kFriction, 0, 0};
+  EXPECT_EQ(reduction_.reduced(flat, 50), kStiffness) << "but it cannot run away into what holds it";
+}
+
+TEST_F(Pushing, WhoLetsGoFeelsTheWholeStiffness) {
+  go(-1e-4, 300);
+  EXPECT_EQ(reduction_.reduced(moving(0.007), 50), kStiffness);
+}
+
+/// Another user holds the block from the other side with 4 N: it stands still until both friction and user are overcome.
+TEST_F(Pushing, WhatAnotherUserHoldsIsNotSoftened) {
+  go(1e-4, 300);
+  Rigid held = standing((kFriction + 3.9) / kStiffness);
+  held.others = {-4, 0, 0};
+  EXPECT_EQ(reduction_.reduced(held, 50), kStiffness);
+}
+
+TEST_F(Pushing, BeforeTheFrictionIsOvercomeTheStiffnessStays) {
+  for (double stretch = 0; stretch < kFriction / kStiffness; stretch += 1e-4) {
+    go(1e-4, 1);
+    EXPECT_EQ(reduction_.reduced(standing(stretch), 50), kStiffness);
+  }
+}
+
+/// The object stands still as far as the client knows: the force stays what overcomes the friction, and does not break down.
+TEST_F(Pushing, WhileTheStartIsOnItsWayTheForceIsTheFriction) {
+  go(1e-4, 300);
+  for (double stretch = kFriction / kStiffness + 1e-9; stretch < 0.0068; stretch += 1e-4) {
+    go(1e-4, 1);
+    EXPECT_NEAR(reduction_.reduced(standing(stretch), 50) * stretch, kFriction, 1e-6) << stretch;
+  }
+}
+
+TEST_F(Pushing, AFaceThatLiesOnWhatHoldsTheObjectKeepsItsStiffness) {
+  go(1e-4, 300);
+  Rigid touch = moving(0.007);
+  touch.hold = {-kFriction, 0, 0};
+  EXPECT_NEAR(reduction_.reduced(touch, 50), kStiffness, 1e-9) << "beta 0";
+  touch.hold = {kFriction, 0, kFriction};  // 45 degrees: beta 1/2
+  const double excess = std::min(0.005, 0.007 - kFriction / kStiffness);
+  EXPECT_NEAR(reduction_.reduced(touch, 50), kStiffness * kFriction / (kFriction + 0.5 * kStiffness * excess), 1e-9);
+  touch.hold = {};
+  touch.stretch.x = 0.0068;
+  EXPECT_NEAR(reduction_.reduced(touch, 50) * 0.0068, kFriction, 1e-9) << "nothing holds it: it can go anywhere";
+}
+
+TEST_F(Pushing, NoForceIsReducedBelowWhatItShouldBe) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> any(0, 1);
+  for (int i = 0; i < 10'000; ++i) {
+    go(2e-4 * (any(random) - 0.3), 1);
+    const double stretch = 0.02 * any(random), due = 3 * any(random);
+    const double k = reduction_.reduced(moving(stretch, due), static_cast<std::uint32_t>(200 * any(random)));
+    EXPECT_LE(k, kStiffness);
+    EXPECT_GE(k * stretch, std::min(due, kStiffness * stretch) - 1e-9) << "at most down to what is due";
   }
 }
 
@@ -108,7 +231,7 @@ TEST(StiffnessReduction, ATickAllocatesNothing) {
   const std::uint64_t before = testing::allocated_bytes();
   for (int i = 0; i < 3000; ++i) {
     reduction.move({0, 0, -1e-5 * i});
-    (void)reduction.reduced({{0, 0, -0.01}, {0, 0, 1}, kCoupling, kObject}, 80);
+    (void)reduction.reduced(StiffnessReduction::DeformableTouch{{0, 0, -0.01}, {0, 0, 1}, kCoupling, kObject}, 80);
   }
   EXPECT_EQ(testing::allocated_bytes(), before);
 }

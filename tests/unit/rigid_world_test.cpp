@@ -43,6 +43,50 @@ void run(RigidWorld& world, int ticks, const Vec3& force = {}) {
   }
 }
 
+/// Thesis 4.2.3.4: f_e, and the normal force within it.
+TEST(Load, IsWhatActsOnAnObjectBesidesItsUsers) {
+  Scene scene = cube_scene();
+  scene.objects[0].damping = 0.995;
+  scene.compensation.emplace();
+  scene.users.resize(1);
+  RigidWorld world(scene);
+  run(world, 200);
+  EXPECT_NEAR(norm(world.load(0).external), 0, 1e-6) << "at rest";
+  EXPECT_NEAR(world.load(0).hold.z, kFriction, 1e-3);
+  EXPECT_NEAR(std::hypot(world.load(0).hold.x, world.load(0).hold.y), 0, 1e-3);
+  run(world, 20, {0.6 * kFriction, 0, 0});
+  EXPECT_NEAR(world.load(0).external.x, -0.6 * kFriction, 1e-3 * kFriction) << "static friction";
+  run(world, 20, {0, 0, -1});
+  EXPECT_NEAR(world.load(0).hold.z, kFriction + kMu * 1, 2e-2 * kFriction) << "pressed on the floor";
+  run(world, 200, {2 * kFriction, 0, 0});
+  const double speed = world.sample(0).velocity.x, damping = kMass * (1 - 0.995) / kTick;
+  EXPECT_GT(speed, 0.3);
+  EXPECT_NEAR(world.load(0).external.x, -(kFriction + damping * speed), 0.02 * kFriction) << "friction and 4.12";
+}
+
+TEST(Load, IsNotComputedUnlessTheSceneAsks) {
+  RigidWorld world(cube_scene());
+  run(world, 50, {2 * kFriction, 0, 0});
+  EXPECT_EQ(world.load(0).external, Vec3{});
+  EXPECT_EQ(world.load(0).hold, Vec3{});
+}
+
+/// Asking changes no bit of the motion.
+TEST(Load, DoesNotDisturbWhatItMeasures) {
+  Scene asked = cube_scene();
+  asked.compensation.emplace();
+  asked.users.resize(1);
+  RigidWorld with(asked), without(cube_scene());
+  for (int i = 0; i < 500; ++i) {
+    const Vec3 force{3 * std::sin(0.02 * i), std::cos(0.05 * i), i % 100 == 0 ? 5.0 : 0.0};
+    run(with, 1, force);
+    run(without, 1, force);
+    const RigidSample a = with.sample(0), b = without.sample(0);
+    ASSERT_EQ(a.pose.position, b.pose.position) << i;
+    ASSERT_EQ(a.velocity, b.velocity) << i;
+  }
+}
+
 class SlidingCube : public ::testing::TestWithParam<double> {};
 
 TEST_P(SlidingCube, DeceleratesWithMuGInEveryDirection) {

@@ -29,7 +29,7 @@ SceneSpec objects() {
 
 SceneSpec with_bounds(const RigidTriggers& rigid, const DeformableThresholds& deformables) {
   SceneSpec spec = objects();
-  spec.bounds = bounds_of(spec, rigid, deformables);
+  spec.bounds = bounds_of(spec, rigid, deformables, {});
   return spec;
 }
 
@@ -74,7 +74,7 @@ TEST(StreamBounds, AStreamWithoutThemHasNoByteAboutThem) {
   still.objects.erase(still.objects.begin());
   still.deformables.clear();
   const std::size_t bare = written(still).size();
-  still.bounds = bounds_of(still, {}, {});
+  still.bounds = bounds_of(still, {}, {}, {});
   EXPECT_EQ(written(still).size(), bare + 2) << "type and size";
 }
 

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What users feel behind a network, closed loop: thesis 4.2.4 and 4.3.4.
+#include <tactus/sim/study/delay.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include <tactus/sim/simulation.h>
+
+namespace tactus::sim::study {
+namespace {
+
+constexpr double kWeber = 0.1, kFilter = 0.1;
+
+Scene scene(const std::string& name) { return load_scene(*find_scene(name)).value(); }
+
+LinkOptions delayed(Microseconds round_trip) { return {.delay = round_trip / 2}; }
+
+std::vector<DelayEffect> effects(const Scene& scene, const DelayCase& one, const DelayRun& reference) {
+  const DelayRun run = run_delayed(scene, one).value();
+  std::vector<DelayEffect> out;
+  for (std::size_t i = 0; i < scene.users.size(); ++i) out.push_back(effect_of(run.users[i], reference.users[i], kWeber));
+  return out;
+}
+
+TEST(DelayStudy, TheRoundTripThatAClientTellsIsThatOfTheNetwork) {
+  const DelayRun run = run_delayed(scene("push-cube"), {.link = delayed(80'000)}).value();
+  for (std::size_t i = 2000; i < run.users[0].size(); ++i) ASSERT_NEAR(run.users[0][i].round_trip, 0.080, 0.002) << i;
+}
+
+TEST(DelayStudy, APushedCubeIsAsHeavyAsWithoutDelay) {
+  const Scene cube = scene("push-cube");
+  const DelayRun reference = run_delayed(cube, {.is_local = true}).value();
+  for (const Microseconds round_trip : {50'000, 100'000, 150'000}) {
+    const DelayEffect without = effects(cube, {.link = delayed(round_trip)}, reference)[0];
+    const DelayEffect with = effects(cube, {.link = delayed(round_trip), .filter = kFilter}, reference)[0];
+    EXPECT_GT(without.mean, 1.5 * without.reference_mean) << round_trip;
+    EXPECT_NEAR(with.mean, with.reference_mean, 0.1 * with.reference_mean) << round_trip;
+    EXPECT_LT(with.peak, 1.3 * with.reference_peak) << round_trip;
+  }
+}
+
+/// The second user who presses makes the block heavier for the first; what the second one presses does not yield and is not softened.
+TEST(DelayStudy, WhoPressesOnWhatCannotMoveFeelsItsWholeStiffness) {
+  const Scene jenga = scene("jenga-press");
+  const DelayRun run = run_delayed(jenga, {.link = delayed(80'000), .filter = kFilter}).value();
+  double least = 1e9;
+  for (std::size_t i = 0; i < run.users[1].size(); ++i)
+    if (run.users[1][i].client > 0.5) least = std::min(least, run.users[1][i].stiffness);
+  EXPECT_GT(least, 600);
+  double softest = 1e9;
+  for (const DelayTick& tick : run.users[0])
+    if (tick.client > 0.5) softest = std::min(softest, tick.stiffness);
+  EXPECT_LT(softest, 450);
+}
+
+TEST(DelayStudy, AOneDimensionalObjectIsPressedWithoutAPeak) {
+  Scene msd = scene("msd-1d");
+  msd.msds[0].object = {100, 2, 0.1};
+  msd.msds[0].rate = 1;
+  const DelayRun reference = run_delayed(msd, {.is_local = true}).value();
+  const DelayEffect without = effects(msd, {.link = delayed(80'000)}, reference)[0];
+  const DelayEffect with = effects(msd, {.link = delayed(80'000), .filter = kFilter}, reference)[0];
+  EXPECT_GT(without.peak, 1.25 * without.reference_peak);
+  EXPECT_LT(with.peak, 1.12 * with.reference_peak);
+  EXPECT_LT(with.rms, 0.6 * without.rms);
+}
+
+/// Compensation is absent unless the scene asks: the same packets, the same forces.
+TEST(DelayStudy, ASceneThatDoesNotAskSendsNoLoads) {
+  Scene cube = scene("push-cube");
+  ASSERT_TRUE(cube.compensation);
+  EXPECT_TRUE(scene_builder(cube).build().value()->loads);
+  cube.compensation.reset();
+  EXPECT_FALSE(scene_builder(cube).build().value()->loads);
+  auto simulation = Simulation::create(cube, {.seed = 1, .grip = {}, .channel = ChannelOptions{}}).value();
+  EXPECT_FALSE(simulation.stream_scene()->loads);
+}
+
+TEST(DelayStudy, EffectsAreMeasuredInContact) {
+  std::vector<DelayTick> reference(100), delayed(100);
+  for (std::size_t i = 20; i < 60; ++i) reference[i].client = 1, delayed[i].client = i < 30 ? 1.05 : 1.5;
+  delayed[40].energy = -0.25;
+  const DelayEffect effect = effect_of(delayed, reference, kWeber);
+  EXPECT_NEAR(effect.reference_mean, 1, 1e-12);
+  EXPECT_NEAR(effect.mean, (10 * 1.05 + 30 * 1.5) / 40, 1e-12);
+  EXPECT_EQ(effect.peak, 1.5);
+  EXPECT_EQ(effect.outside, 0.75);
+  EXPECT_NEAR(effect.rms, std::sqrt((10 * 0.0025 + 30 * 0.25) / 40), 1e-12);
+  EXPECT_EQ(effect.lowest_energy, -0.25);
+}
+
+}  // namespace
+}  // namespace tactus::sim::study
