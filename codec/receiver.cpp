@@ -108,7 +108,7 @@ bool Receiver::holds(std::uint64_t number, std::span<const std::uint8_t> packet)
   return impl_->deformables[part->substream - 1]->holds(number);
 }
 
-std::span<const Vec3i> Receiver::load(std::uint32_t object, std::int64_t tick) const noexcept {
+std::span<const GridForce> Receiver::load(std::uint32_t object, std::int64_t tick) const noexcept {
   const Scene& scene = *impl_->scene;
   const auto at = std::ranges::lower_bound(scene.moving(), object);
   if (!impl_->loads || at == scene.moving().end() || *at != object) return {};

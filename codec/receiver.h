@@ -72,7 +72,7 @@ class Receiver {
   std::span<const std::array<std::int32_t, 3>> displacements(std::size_t object) const noexcept;
   /// Vectors of a rigid object's load (kExternal, kHold, kPushes ..) at a tick that is shown, x 2^-force_exp N: of the newest state held
   /// that is not later. Empty: the scene has no loads, or the object cannot move. Valid until the next push().   time O(log objects)
-  std::span<const Vec3i> load(std::uint32_t object, std::int64_t tick) const noexcept;
+  std::span<const GridForce> load(std::uint32_t object, std::int64_t tick) const noexcept;
   std::int64_t tick(std::size_t substream) const noexcept;         ///< tick of the newest packet, 0 before the first
   std::uint64_t state_hash(std::size_t substream) const noexcept;  ///< pre  the substream exists
 

@@ -84,8 +84,7 @@ void write_bounds(const StreamBounds& bounds, std::ostream& out) {
     comma = ",";
   }
   out << ']';
-  if (bounds.loads)
-    out << R"(,"loads":[)" << bits(bounds.loads->weber_fraction) << ',' << bits(bounds.loads->force_floor) << ']';
+  if (bounds.loads) out << R"(,"loads":[)" << bits(bounds.loads->weber_fraction) << ',' << bits(bounds.loads->force_floor) << ']';
   out << '}';
 }
 

@@ -110,11 +110,10 @@ void Client::touch(std::span<const DeviceSample> devices) noexcept {
 
 /// What a user feels of an object, in spite of the delay.   pre  compensation_
 Vec3 Client::soften(std::size_t user, const Touch& touch, const Vec3& device, std::uint32_t delay) noexcept {
-  if (shown_by_ == nullptr) return touch.force;
   Compensation::Shown shown;
   if (!touch.surface) {
     const std::uint32_t object = touch.contact.object;
-    shown.load = shown_by_->load(object, shown_tick_);
+    if (shown_by_ != nullptr) shown.load = shown_by_->load(object, shown_tick_);
     if (!shown.load.empty()) shown.force_exp = shown_by_->scene()->loads->force_exp;
     shown.pose = poses_[object];
     shown.moves = moves_[object];

@@ -29,7 +29,7 @@ class Compensation {
   void move(std::size_t user, const DeviceSample& device) noexcept { reductions_[user].move(device.position); }
   /// What the object that a user touches is shown as.
   struct Shown {
-    std::span<const Vec3i> load{};  ///< Receiver::load
+    std::span<const GridForce> load{};  ///< Receiver::load
     unsigned force_exp = 0;
     Pose pose;
     bool moves = false;

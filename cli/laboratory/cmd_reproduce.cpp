@@ -286,6 +286,7 @@ Outcome run(const ReproduceOptions& options) {
   const bool draws = has_delay || options.figure == "fig3.3" || options.figure == "fig3.11";
   if (!draws && !options.directory.empty())
     return refuse_arguments("--output: " + options.figure + " is a table, and not drawn", "Leave out --output.");
+  if (is_touch_figure(options.figure)) return reproduce_touch(options);
   if (has_delay) return reproduce_delay(options);
   if (options.figure == "fig3.3") return reproduce_traffic(options);
   if (options.figure == "fig3.11") return reproduce_interpolation(options);
@@ -304,10 +305,15 @@ void setup_reproduce(Command& app, Action& action) {
                   "fig3.3: why updates are sent; fig3.6: states or forces; fig3.11: interpolation; fig3.10: updates at the "
                   "adjusted deadbands; fig3.14, also called table3.3: traffic settings; of delay, fig4.7: impedance of a rigid "
                   "object at a "
-                  "client, fig4.20: of a deformable one, fig4.22: with compensation, fig4.21: one user presses, fig4.24: two do")
+                  "client, fig4.20: of a deformable one, fig4.22: with compensation, fig4.21: one user presses, fig4.24: two do; "
+                  "in scenes, "
+                  "fig4.1 and fig4.2: what delay does, fig4.6: at constant speed, fig4.8: a cube, fig4.10 to fig4.12: two users "
+                  "at a block, fig4.25: at a "
+                  "one-dimensional object, fig4.27: a membrane")
       ->required()
-      ->check(one_of({"fig3.3", "fig3.6", "fig3.10", "fig3.11", "fig3.14", "fig4.7", "fig4.20", "fig4.21", "fig4.22", "fig4.24",
-                      "table3.3"}))
+      ->check(
+          one_of({"fig3.3",  "fig3.6",  "fig3.10", "fig3.11", "fig3.14", "fig4.1",  "fig4.2",  "fig4.6",  "fig4.7",  "fig4.8",
+                  "fig4.10", "fig4.11", "fig4.12", "fig4.20", "fig4.21", "fig4.22", "fig4.24", "fig4.25", "fig4.27", "table3.3"}))
       ->type_name("");
   command.add_option("--seeds", options->seeds, "Runs per setting")->show_default()->check(whole_number(1, 1000))->type_name("N");
   add_quantity(command, "--length-unit", options->length_unit, Dimension::length,

@@ -35,6 +35,9 @@ Outcome reproduce_interpolation(const ReproduceOptions& options);
 Outcome reproduce_architectures(const ReproduceOptions& options);
 /// Figure 3.10: updates per second in contact, at the deadbands that the subjects chose.
 Outcome reproduce_adjusted(const ReproduceOptions& options);
+/// Figures of what users of a scene feel behind a network: 4.1, 4.2, 4.6, 4.8, 4.10 to 4.12, 4.25, 4.27.
+bool is_touch_figure(const std::string& figure);
+Outcome reproduce_touch(const ReproduceOptions& options);
 /// Figures 4.7, 4.20, 4.21, 4.22 and 4.24: what delay does to the force at a client, and compensation.
 Outcome reproduce_delay(const ReproduceOptions& options);
 

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -17,42 +16,15 @@
 #include <tactus/sim/transparency/deformable_transparency.h>
 #include <tactus/sim/transparency/pressing.h>
 #include <tactus/sim/transparency/rigid_transparency.h>
-#include "cli/laboratory/cmd_reproduce.h"
-#include "cli/laboratory/plot.h"
-#include "cli/output.h"
-#include "cli/report/figures.h"
-#include "cli/report/json_parts.h"
-#include "cli/report/table.h"
+#include "cli/laboratory/delay_figure.h"
 
 namespace tactus::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kWeber = 0.1;                           // c
 constexpr double kFrequency = 0.5;                       // [Hz] of the hand
 constexpr std::array kDelays{0.0, 0.037, 0.075, 0.150};  // [s] round trips of figures 4.20 and 4.22
-
-/// A row of a figure's table: what comes out here, and the number of the thesis; or something for each setting.
-struct Quantity {
-  std::string name;
-  const char* unit;
-  std::vector<std::optional<double>> values;
-};
-
-struct Figure {
-  const char* figure;
-  std::string title;
-  std::vector<const char*> columns{"here", "thesis"};
-  std::vector<Quantity> quantities{};
-  Plot plot{};
-  std::string table{};  ///< CSV
-
-  void compare(std::string name, const char* unit, double here, std::optional<double> thesis = {}) {
-    quantities.push_back({std::move(name), unit, {here, thesis}});
-  }
-};
 
 double decibels(std::complex<double> value) { return 20 * std::log10(std::abs(value)); }
 double percent_over(double value, double reference) { return 100 * (value / reference - 1); }
@@ -68,38 +40,6 @@ std::vector<double> frequencies() {
   std::vector<double> out;
   for (int i = 0; i <= 200; ++i) out.push_back(std::pow(10.0, -1 + 0.01 * i));
   return out;
-}
-
-/// Three digits, without those that say nothing.
-std::string rounded(double value) {
-  const double step = std::abs(value) < 10 ? 0.01 : 0.1;
-  return fmt::format("{:g}", std::abs(value) < step / 2 ? 0 : std::round(value / step) * step);
-}
-
-Outcome finish(const ReproduceOptions& options, const Figure& result) {
-  if (options.common.json) {
-    Json out{{"schema", "tactus.reproduce_delay/1"}, {"figure", result.figure}};
-    for (const Quantity& q : result.quantities) {
-      Json entry{{"name", q.name}, {"unit", q.unit}};
-      for (std::size_t i = 0; i < q.values.size(); ++i)
-        if (q.values[i]) entry["values"][result.columns[i]] = *q.values[i];
-      out["quantities"].push_back(std::move(entry));
-    }
-    fmt::print("{}\n", text_of_json(out));
-  } else {
-    fmt::print("Thesis figure {}: {}\n\n", result.figure + 3, result.title);
-    Table table;
-    std::vector<std::string> heading{""};
-    heading.insert(heading.end(), result.columns.begin(), result.columns.end());
-    table.heading(std::move(heading));
-    for (const Quantity& q : result.quantities) {
-      std::vector<std::string> row{fmt::format("{} [{}]", q.name, q.unit)};
-      for (const auto& value : q.values) row.push_back(value ? rounded(*value) : "-");
-      table.row(std::move(row));
-    }
-    table.print(stdout);
-  }
-  return write_figure(options, result.plot, {{result.figure + std::string(".csv"), result.table}});
 }
 
 /// The cube of thesis 4.2.4.2 against viscous friction, one user.
@@ -122,11 +62,12 @@ struct Push {
 };
 
 /// Client impedance of a pushed object over frequency.
-Figure rigid_impedance() {
+DelayFigure rigid_impedance() {
   constexpr std::array kRoundTrips{0.0, 0.018, 0.050, 0.100};  // [s]
-  Figure out{.figure = "fig4.7",
-             .title = fmt::format("impedance at a client that pushes a rigid object of {} kg against viscous friction ({} N s/m)",
-                                  Push::kMass, Push::kFriction)};
+  DelayFigure out{
+      .figure = "fig4.7",
+      .title = fmt::format("impedance at a client that pushes a rigid object of {} kg against viscous friction ({} N s/m)",
+                           Push::kMass, Push::kFriction)};
   out.plot = {.name = "fig4.7", .program = "delay-rigid-figure-4.7", .width = 900, .height = 460};
   out.plot.set("delays", milliseconds(kRoundTrips));
   PlotData curves{"client", {}};
@@ -165,8 +106,8 @@ sim::DeformableCoupling pressed(double client_stiffness = 340) {
 }
 
 /// Impedances over frequency, with the client stiffness that belongs to each round trip.
-Figure deformable_impedance(const char* figure, double (*client_stiffness)(double round_trip)) {
-  Figure out{.figure = figure, .title = {}};
+DelayFigure deformable_impedance(const char* figure, double (*client_stiffness)(double round_trip)) {
+  DelayFigure out{.figure = figure, .title = {}};
   out.plot = {.name = figure, .program = "delay-deformable-figure-4.20", .width = 900, .height = 480};
   out.plot.set("delays", milliseconds(kDelays));
   PlotData client{"client", {}}, server{"server", {}};
@@ -200,8 +141,8 @@ double stiffness_of_4_47(double round_trip) {
   return round_trip == 0 ? 340 : sim::reduced_stiffness_undamped(pressed(), 2 * kPi * kFrequency, round_trip);
 }
 
-Figure without_compensation() {
-  Figure out = deformable_impedance("fig4.20", same_stiffness);
+DelayFigure without_compensation() {
+  DelayFigure out = deformable_impedance("fig4.20", same_stiffness);
   out.title = "impedance of a deformable object at a client, k_o 100 N/m, k 340 N/m, b_c 5 N s/m";
   const double omega = 2 * kPi * kFrequency;
   struct Tolerable {
@@ -220,8 +161,8 @@ Figure without_compensation() {
   return out;
 }
 
-Figure with_compensation() {
-  Figure out = deformable_impedance("fig4.22", stiffness_of_4_47);
+DelayFigure with_compensation() {
+  DelayFigure out = deformable_impedance("fig4.22", stiffness_of_4_47);
   out.title = "the same with the client stiffness reduced for 0.5 Hz";
   const double omega = 2 * kPi * kFrequency;
   const auto error = [](double round_trip) { return error_at(round_trip, stiffness_of_4_47(round_trip)); };
@@ -261,10 +202,10 @@ double share_felt(std::span<const double> force, std::span<const double> referen
 }
 
 /// Presses, holds and lets go, at several round trips.
-tl::expected<Figure, Failure> one_press() {
+tl::expected<DelayFigure, Failure> one_press() {
   constexpr std::array kRoundTrips{0U, 37U, 75U, 150U};  // [ms]
   const std::vector<sim::Press> presses{{0.2, 0.7, 2, 0.03}};
-  Figure out{.figure = "fig4.21", .title = "a user presses at 0.5 Hz, holds still and lets go"};
+  DelayFigure out{.figure = "fig4.21", .title = "a user presses at 0.5 Hz, holds still and lets go"};
   out.plot = {.name = "fig4.21", .program = "delay-press-figure-4.21", .width = 900, .height = 460};
   std::vector<std::vector<double>> clients;
   std::vector<double> reference, names;
@@ -312,10 +253,10 @@ struct While {
 constexpr std::array kWhiles{While{"user 1 presses alone", 0, 500, 1900}, While{"user 2 presses beside user 1", 1, 2000, 3900},
                              While{"user 1 presses beside user 2", 0, 5500, 6700}, While{"user 1 only holds", 0, 2000, 3900}};
 
-tl::expected<Figure, Failure> two_users() {
+tl::expected<DelayFigure, Failure> two_users() {
   const auto reference = press_both(false, {});
   const std::array runs{press_both(true, {}), press_both(true, 0.01), press_both(true, 0.1)};
-  Figure out{.figure = "fig4.24", .title = "two users press the same object, round trips 80 ms and 60 ms"};
+  DelayFigure out{.figure = "fig4.24", .title = "two users press the same object, round trips 80 ms and 60 ms"};
   for (const auto& run : {reference, runs[0], runs[1], runs[2]})
     if (!run) return refuse(out.figure, run.error());
   out.columns = {"without", "lambda 0.01", "lambda 0.1"};
@@ -324,8 +265,8 @@ tl::expected<Figure, Failure> two_users() {
       return std::span(force).subspan(begin, end - begin);
     };
     const auto server = part((*reference)[user].server);
-    Quantity over{fmt::format("{}: peak over that of the server", name), "%", {}};
-    Quantity outside{fmt::format("{}: time outside +-10 %", name), "%", {}};
+    FigureNumber over{fmt::format("{}: peak over that of the server", name), "%", {}};
+    FigureNumber outside{fmt::format("{}: time outside +-10 %", name), "%", {}};
     for (const auto& run : runs) {
       const auto client = part((*run)[user].client);
       over.values.emplace_back(percent_over(peak(client), peak(server)));
@@ -355,7 +296,7 @@ Outcome reproduce_delay(const ReproduceOptions& options) {
   if (options.figure == "fig4.7") return finish(options, rigid_impedance());
   if (options.figure == "fig4.20") return finish(options, without_compensation());
   if (options.figure == "fig4.22") return finish(options, with_compensation());
-  TACTUS_TRY(const Figure result, options.figure == "fig4.21" ? one_press() : two_users());
+  TACTUS_TRY(const DelayFigure result, options.figure == "fig4.21" ? one_press() : two_users());
   return finish(options, result);
 }
 

@@ -3,12 +3,12 @@
 /// (thesis 4.2.3.4: f_e and f_u of the object state). A substream of their own, absent unless the scene asks. spec/45-load.md
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include <tactus/base/fixed.h>
 #include <tactus/base/geometry.h>
 #include <tactus/base/result.h>
 #include <tactus/scene/scene.h>
@@ -22,13 +22,15 @@ struct ObjectLoad {
   std::span<const Vec3> pushes{};  ///< [N] f_u: of each user of the scene on it
 };
 
+using GridForce = std::array<std::int32_t, 3>;  ///< x 2^-force_exp N
+
 /// Where the vectors of an object are.
 inline constexpr std::size_t kExternal = 0, kHold = 1, kPushes = 2;
 
 /// The loads of all objects that can move after a packet, vectors_of_load() each.
 struct LoadState {
-  std::int64_t tick = 0;       ///< of the packet
-  std::vector<Vec3i> vectors;  ///< order of Scene::moving(), x 2^-force_exp N
+  std::int64_t tick = 0;           ///< of the packet
+  std::vector<GridForce> vectors;  ///< order of Scene::moving()
 };
 
 /// pre  the scene has loads
@@ -38,8 +40,8 @@ inline std::size_t load_substream(const Scene& scene) noexcept { return scene.de
 LoadState initial_loads(const Scene& scene);  ///< all zero.   pre  the scene has loads
 
 /// To the grid.   err  invalid_argument R-API-1 not finite; R-API-2 it leaves the grid's range
-Result<Vec3i> to_grid_force(const Vec3& force, unsigned force_exp) noexcept;
-Vec3 to_force(const Vec3i& force, unsigned force_exp) noexcept;  ///< [N]
+Result<GridForce> to_grid_force(const Vec3& force, unsigned force_exp) noexcept;
+Vec3 to_force(const GridForce& force, unsigned force_exp) noexcept;  ///< [N]
 
 /// FNV-1a (64 bit) over tick and vectors. spec 45-load 5
 std::uint64_t state_hash(const LoadState& state) noexcept;

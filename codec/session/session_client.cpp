@@ -340,10 +340,11 @@ std::int64_t SessionClient::shown_tick(std::uint64_t now) noexcept {
 std::optional<std::uint64_t> SessionClient::round_trip_shown(std::uint64_t now) const noexcept {
   const Epoch* epoch = impl_->shown ? impl_->shown.get() : impl_->current.get();
   if (epoch == nullptr || !epoch->playout) return std::nullopt;
-  const auto behind = epoch->playout->behind(now);
   const auto& trip = epoch->exchange.sent().round_trip();
-  if (!behind || !trip) return std::nullopt;
-  return static_cast<std::uint64_t>(std::max<std::int64_t>(0, *behind + trip->least));
+  if (!trip) return std::nullopt;
+  const std::int64_t behind =
+      epoch->playout->behind(now).value_or(epoch->playout->delay());  // before the first packet: as it will be
+  return static_cast<std::uint64_t>(std::max<std::int64_t>(0, behind + trip->least));
 }
 
 double SessionClient::force_share(std::uint64_t now) noexcept {

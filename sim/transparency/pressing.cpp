@@ -42,7 +42,9 @@ struct Hand {
     reduction->move({0, 0, -device});
     const double stretch = device - surface;
     if (stretch > 0)
-      return reduction->reduced(StiffnessReduction::DeformableTouch{{0, 0, -stretch}, {0, 0, 1}, pressing.stiffness, pressing.object.stiffness}, round_trip);
+      return reduction->reduced(
+          StiffnessReduction::DeformableTouch{{0, 0, -stretch}, {0, 0, 1}, pressing.stiffness, pressing.object.stiffness},
+          round_trip);
     reduction->release();
     return pressing.stiffness;
   }

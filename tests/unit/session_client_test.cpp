@@ -77,6 +77,10 @@ TEST(SessionClient, JoinsGetsTheSceneAndFollowsIt) {
   const SessionStatus status = end.client->status();
   ASSERT_TRUE(status.round_trip);
   EXPECT_NEAR(static_cast<double>(status.round_trip->smoothed), 40000, 250);
+  const auto shown = end.client->round_trip_shown(swing.world.now);
+  ASSERT_TRUE(shown);
+  EXPECT_NEAR(static_cast<double>(*shown), 40'000 + static_cast<double>(status.playout_delay), 1500)
+      << "a tick is shown for 1 ms";
   ASSERT_TRUE(status.clock_offset);
   EXPECT_NEAR(static_cast<double>(*status.clock_offset), 0, 250);
   EXPECT_EQ(status.traffic.packets_refused, 0u);

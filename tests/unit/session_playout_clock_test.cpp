@@ -56,6 +56,17 @@ TEST(PlayoutClock, WithoutPacketsThereIsNothingToShow) {
   EXPECT_EQ(clock.shown(1'000'000), 500) << "before its first packet nothing is known";
 }
 
+TEST(PlayoutClock, TellsHowLateATickIsShown) {
+  PlayoutClock clock(1000, {.fixed = 20'000});
+  EXPECT_FALSE(clock.behind(1'000'000));
+  clock.heard(1, 500, 1'000'000);
+  EXPECT_EQ(clock.shown(1'000'000), 500) << "not below that of the first packet";
+  EXPECT_EQ(clock.behind(1'000'000), 0);
+  EXPECT_EQ(clock.shown(1'050'300), 530);
+  EXPECT_EQ(clock.behind(1'050'300), 20'300);
+  EXPECT_EQ(clock.behind(1'051'000), 21'000) << "of the tick shown last";
+}
+
 TEST(PlayoutClock, AdaptsToJitterSoThatFewPacketsAreLate) {
   for (const std::uint64_t jitter : {0u, 3'000u, 30'000u}) {
     Way way;
