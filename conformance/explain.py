@@ -8,6 +8,7 @@ from pathlib import Path
 
 import deformable_main
 import deformable_thesis
+import load
 import rigid
 from conventions import Cursor, StreamError, clamp, round_shift
 from decoder import File, SceneDecoder
@@ -23,7 +24,7 @@ ELEMENTS = {                                                # models, and the el
     "LEVEL": "level", "LAYER": "layer", "SAME_FRAME": "same_frame", "LATE": "late",
     "TOUCHED": "touched", "SAME_TRIANGLE": "same triangle", "NEAR_TRIANGLE": "near triangle", "NEAR_PLACE": "entry of near",
     "HAPTIC": "haptic_change", "SAME_VISUAL": "same_visual", "VISUAL": "visual", "DENSITY": "density",
-    "COEFFICIENT": "coefficient", "SIGNIFICANT": "significant", "COMPONENT": "component of r", "ERROR": "symbol",
+    "CHANGED": "changed", "STEP": "step", "COEFFICIENT": "coefficient", "SIGNIFICANT": "significant", "COMPONENT": "component of r", "ERROR": "symbol",
 }
 
 
@@ -39,6 +40,13 @@ def name_of(models: list) -> str:
 class NamedModels(Models):
     """The models of a packet, each of which knows its name in the specification."""
 
+    def __missing__(self, name):
+        models = super().__missing__(name)
+        name_models(name, models)
+        return models
+
+
+class NamedInitialModels(load.InitialModels):
     def __missing__(self, name):
         models = super().__missing__(name)
         name_models(name, models)
@@ -111,8 +119,9 @@ class Found:
 def narrate():
     """From now on decoders tell what they do."""
     rigid.Models = deformable_main.Models = NamedModels
+    load.InitialModels = NamedInitialModels
     deformable_thesis.ThesisModels = NamedThesisModels
-    rigid.RangeDecoder = deformable_main.RangeDecoder = deformable_thesis.RangeDecoder = Narrator
+    load.RangeDecoder = rigid.RangeDecoder = deformable_main.RangeDecoder = deformable_thesis.RangeDecoder = Narrator
     baseline = Receiver.baseline
 
     def find(receiver, number, key, baseline_delta):
@@ -149,6 +158,13 @@ def tell_rigid(packet, scene):
                 f"{vector(state.angular_velocity)} |"]
         print(f"Object {update.object}, reason {update.reason}, level {update.level}:\n")
         table("| position | rotation | velocity | angular velocity", rows)
+
+
+def tell_load(packet, scene):
+    for i, (before, after) in enumerate(zip(Found.base.vectors, packet.state.vectors)):
+        names = ["external", "hold", *(f"push {j}" for j in range(scene.loads.users))]
+        print(f"Object {scene.moving()[i]}, x 2^-{scene.loads.force_exp} N:\n")
+        table("vector | in the baseline | decoded", [f"| {n} | {vector(b)} | {vector(a)} |" for n, b, a in zip(names, before, after)])
 
 
 def tell_main(packet, codec):
@@ -202,7 +218,7 @@ def tell_thesis(packet, data, span):
 
 
 def tell_packet(packet, data, decoder, scene, every_bit):
-    thesis = not isinstance(packet, rigid.Packet) and not isinstance(packet.state, deformable_main.MainState)
+    thesis = not isinstance(packet, (rigid.Packet, load.LoadPacket)) and not isinstance(packet.state, deformable_main.MainState)
     if thesis:
         tell_thesis(packet, data, scene.baseline_span)
     if every_bit:
@@ -211,6 +227,8 @@ def tell_packet(packet, data, decoder, scene, every_bit):
     print(f"Final state: range {packet.range:08x}, code {packet.code:08x}. Tick {packet.tick}, key {packet.key}.\n")
     if isinstance(packet, rigid.Packet):
         tell_rigid(packet, scene)
+    elif isinstance(packet, load.LoadPacket):
+        tell_load(packet, scene)
     elif thesis:
         table("vertex | u", [f"| {v} | {vector(packet.state.u[3 * v:3 * v + 3])} |" for v in packet.vertices])
     else:
@@ -307,6 +325,9 @@ def tell_declaration(file, data):
         f.varint("deformable_count")
         for item in file.declaration.deformables:
             tell_deformable(f, item)
+    if file.declaration.loads:
+        f.number("force_exp", "B")
+        f.number("load_users", "B")
     if f.cursor.position < end - 4:
         f.take("extension records", end - 4 - f.cursor.position)
     f.number("crc", "I")

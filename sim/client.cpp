@@ -9,7 +9,8 @@
 namespace tactus::sim {
 namespace {
 
-constexpr double kStill = 1e-8;  // [m] in a tick: an object that moves less does not
+constexpr double kPortRests = 0.1;  // [s] without force, then the account of its energy starts anew
+constexpr double kStill = 1e-8;     // [m] in a tick: an object that moves less does not
 
 /// Of the mesh's box [m].
 Vec3 centre(const TriMesh& mesh) {
@@ -27,6 +28,9 @@ Client::Client(Server& server, std::optional<Receiver> receiver)
       contacts_(scene_.users.size()),
       stiffness_(scene_.users.size()) {
   poses_.assign(rigid_.poses().begin(), rigid_.poses().end());
+  if (scene_.touch && scene_.touch->max_damping > 0)
+    ports_.assign(scene_.users.size(),
+                  PassivityController({.max_damping = scene_.touch->max_damping, .reset_after = kPortRests}));
   objects_.push_back(&rigid_);
   if (!scene_.msds.empty()) {
     msds_.emplace(scene_);
@@ -140,6 +144,9 @@ void Client::touch(std::size_t user, const DeviceSample& device, const Rendering
   }
   if (compensation_ && !contacts_[user]) compensation_->release(user);
   felt_[user] = how.share * share_rendered(force, scene_.users[user].device.max_force) * force;
+  if (ports_.empty()) return;
+  const Vec3 passive = ports_[user].limit(device.position, felt_[user]);
+  felt_[user] = share_rendered(passive, scene_.users[user].device.max_force) * passive;
 }
 
 const Pose& Client::watched(std::size_t user) const noexcept {

@@ -15,6 +15,7 @@
 #include <tactus/sim/msd/msd_objects.h>
 #include <tactus/sim/rigid/rigid_objects.h>
 #include <tactus/sim/server.h>
+#include <tactus/sim/user/passivity.h>
 
 namespace tactus::sim {
 
@@ -77,6 +78,7 @@ class Client {
   std::int64_t shown_tick_ = -1;
   std::vector<bool> moves_;                     // objects that were shown elsewhere in the tick before
   std::optional<Compensation> compensation_{};  // of the delay
+  std::vector<PassivityController> ports_;      // one per user, if the scene asks
   RigidView rigid_;
   std::optional<MsdView> msds_;
   std::optional<DeformableView> deformables_;

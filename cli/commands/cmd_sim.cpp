@@ -41,6 +41,7 @@ struct SimOptions {
   double duration = -1;   // [s], negative: the scene's
   double mesh_noise = 0;  // [m] RMS per axis
   bool codec = false;
+  bool no_compensation = false;
   TriggerArguments triggers;
   MeshArguments meshes;
   ReplicaOptions replica;
@@ -241,6 +242,7 @@ tl::expected<sim::Scene, Failure> read_scene(const SimOptions& options) {
   }
   for (sim::SceneMsd& object : scene->msds)
     if (options.rate > 0) object.rate = options.rate;
+  if (options.no_compensation) scene->compensation.reset();
   return *scene;
 }
 
@@ -398,6 +400,7 @@ Outcome run(const SimOptions& options) {
 
   Report report = make_report(options, info);
   describe_deformables(*simulation, report);
+  if (options.has_channel() && !options.has_network() && simulation->stream_scene()->loads) report.loads.emplace();
   Run session{std::move(*simulation), std::move(output), std::move(*trace), std::move(stream), std::move(recording), {}, {}, {}};
   if (networked.network != nullptr) {
     session.judge.emplace(info, options.triggers, options.meshes);
@@ -428,7 +431,7 @@ void setup_sim(Command& app, Action& action) {
   command
       .add_option("SCENE", options->scene,
                   "push-1dof, rotate-6dof, rotate-push-lift, membrane, membrane-light, membrane-large, membrane-small, msd-1d, "
-                  "bracket-and-pad, or a TOML file")
+                  "bracket-and-pad, push-cube, jenga-together, jenga-press, jenga-against, or a TOML file")
       ->type_name("")
       ->required();
   command.add_option("-o,--output", options->output, "Trace to write (MCAP), - is standard output")
@@ -471,6 +474,8 @@ void setup_sim(Command& app, Action& action) {
       ->excludes(interpolate);
   add_link(command, "--uplink", options->uplink, "Network from the clients to the server, if it differs");
   add_playout(command, options->playout);
+  command.add_flag("--no-compensation", options->no_compensation,
+                   "Clients do not make up for delay, even if the scene asks; no forces on objects are told");
 #ifdef TACTUS_HAS_NET
   command
       .add_option("--pcap", options->pcap,

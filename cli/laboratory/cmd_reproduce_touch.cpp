@@ -108,10 +108,11 @@ struct Spread {
 };
 
 struct UserEffects {
-  Spread mean, peak, outside;
+  Spread mean, peak, outside, energy;
 
   void add(const std::vector<study::DelayTick>& delayed, const std::vector<study::DelayTick>& reference) {
     const study::DelayEffect e = study::effect_of(delayed, reference, kWeber);
+    energy.values.push_back(1e3 * e.lowest_energy);
     if (e.reference_mean == 0) return;  // in this seed the hand misses the object
     mean.values.push_back(100 * (e.mean / e.reference_mean - 1));
     peak.values.push_back(100 * (e.peak / e.reference_peak - 1));
@@ -120,14 +121,15 @@ struct UserEffects {
 };
 
 void tell(DelayFigure& out, const std::string& user, const UserEffects& without, const std::optional<UserEffects>& with) {
-  const auto row = [&](const char* what, Spread UserEffects::*of) {
-    FigureNumber q{user + ": " + what, "%", {(without.*of).mean(), (without.*of).farthest()}};
+  const auto row = [&](const char* what, const char* unit, Spread UserEffects::*of) {
+    FigureNumber q{user + ": " + what, unit, {(without.*of).mean(), (without.*of).farthest()}};
     if (with) q.values.insert(q.values.end(), {(*with.*of).mean(), (*with.*of).farthest()});
     out.quantities.push_back(std::move(q));
   };
-  row("mean force over that without delay", &UserEffects::mean);
-  row("peak of the force over that without delay", &UserEffects::peak);
-  row("time outside +-10 % of the force without delay", &UserEffects::outside);
+  row("mean force over that without delay", "%", &UserEffects::mean);
+  row("peak of the force over that without delay", "%", &UserEffects::peak);
+  row("time outside +-10 % of the force without delay", "%", &UserEffects::outside);
+  row("least energy that the device has put in", "mJ", &UserEffects::energy);
 }
 
 /// Time, then for each user the force without delay, delayed, with compensation, its stiffness, and the round trip.

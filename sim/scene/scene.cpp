@@ -120,10 +120,11 @@ SceneMsd read_msd(TomlReader& in, const toml::table& table) {
 
 SceneTouch read_touch(TomlReader& in, const toml::table& table) {
   const std::string path = "touch";
-  in.allow(table, path, {"stiffness", "friction", "lift_stiffness"});
+  in.allow(table, path, {"stiffness", "friction", "lift_stiffness", "max_damping"});
   return {.stiffness = in.number(table, path, "stiffness", {1, 1e5}),
           .friction = in.number(table, path, "friction", {0, 100}),
-          .lift_stiffness = in.number(table, path, "lift_stiffness", {1, 1e5})};
+          .lift_stiffness = in.number(table, path, "lift_stiffness", {1, 1e5}),
+          .max_damping = in.number(table, path, "max_damping", {0, 1000}, 0)};
 }
 
 SceneCompensation read_compensation(TomlReader& in, const toml::table& table) {

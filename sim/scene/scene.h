@@ -74,6 +74,7 @@ struct SceneTouch {
   double stiffness = 0;       ///< k_o [N/m]
   double friction = 0;        ///< of the virtual proxy
   double lift_stiffness = 0;  ///< [N/m] spring that ties the probe to the touched point while the button is down
+  double max_damping = 0;     ///< [N s/m] of the passivity controllers at the clients (sim/user/passivity.h); 0: there are none
 };
 
 /// Clients make up for the delay of what they show (thesis 4.2.3 and 4.3.3).

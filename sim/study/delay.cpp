@@ -11,7 +11,8 @@
 namespace tactus::sim::study {
 namespace {
 
-constexpr double kTouch = 0.02;  // [N] below it nothing is felt
+constexpr double kTouch = 0.02;      // [N] below it nothing is felt
+constexpr std::int64_t kFree = 100;  // [ticks] without force, then energy is counted anew
 
 SimulationOptions options_of(const DelayCase& one) {
   SimulationOptions options{.seed = one.seed, .grip = {}, .channel = {}};
@@ -43,6 +44,7 @@ tl::expected<DelayRun, Diagnostic> run_delayed(const Scene& scene, const DelayCa
   const std::size_t users = scene.users.size();
   DelayRun out{std::vector<std::vector<DelayTick>>(users), {}};
   std::vector<PassivityObserver> observers(users);
+  std::vector<std::int64_t> free_since(users);
   for (std::int64_t tick = 0; tick < simulation.ticks(); ++tick) {
     const auto stepped = one.paths != nullptr ? simulation.step((*one.paths)[static_cast<std::size_t>(tick)]) : simulation.step();
     if (!stepped) return tl::unexpected(stepped.error());
@@ -51,7 +53,8 @@ tl::expected<DelayRun, Diagnostic> run_delayed(const Scene& scene, const DelayCa
       const UserSample& user = simulation.frame().users[i];
       devices.push_back(user.device);
       observers[i].arrive(user.device.position);
-      if (user.force == Vec3{}) observers[i].reset();
+      if (user.force != Vec3{}) free_since[i] = tick;
+      if (tick - free_since[i] >= kFree) observers[i].reset();
       observers[i].hold(user.force);
       out.users[i].push_back({.client = norm(user.force),
                               .server = norm(user.server_force),

@@ -30,7 +30,7 @@ struct DelayTick {
   double client = 0, server = 0;  ///< [N] magnitude of the force
   double stiffness = 0;           ///< [N/m] of the client's spring; 0: nothing is touched
   double round_trip = 0;          ///< [s] age of what is shown, as an answer to the device; 0 without a network
-  double energy = 0;              ///< [J] given to the environment by the device since the contact began
+  double energy = 0;              ///< [J] put into the environment by the device since it was last free for 0.1 s
 };
 
 struct DelayRun {

@@ -89,6 +89,7 @@ const std::vector<Broken>& broken() {
       {"unknown watched object",
        kHead + kCube + kTouch + "lift_stiffness = 68\n[[user]]\nname = \"u\"\nobject = \"ball\"\nstart = [0, 0, 0]\n", "R-SCN-7",
        14, "user.object"},
+      {"a filter that never follows", kHead + "[compensation]\nfilter = 0\n" + kCube, "R-SCN-6", 5, "compensation.filter"},
       {"unknown grip", kHead + kCube + kTouch + "lift_stiffness = 68\n" + kUser + "grip = \"iron\"\n", "R-SCN-7", 18,
        "user.grip"},
       {"half a filter step", kHead + kCube + kTouch + "lift_stiffness = 68\n" + kUser + "[user.device]\nfilter = 2.5\n",
@@ -113,6 +114,21 @@ TEST(Scene, EveryRuleNamesItsPlace) {
     rules.insert(c.rule);
   }
   EXPECT_EQ(rules.size(), 6u);  // R-SCN-2 to R-SCN-7
+}
+
+TEST(Scene, CompensationIsThereWhenAskedFor) {
+  EXPECT_FALSE(parse_scene(kHead + kCube, "test").value().compensation);
+  const Scene usual = parse_scene(kHead + "[compensation]\n" + kCube, "test").value();
+  ASSERT_TRUE(usual.compensation);
+  EXPECT_EQ(usual.compensation->filter, 0.1);
+  EXPECT_FALSE(tells_loads(usual)) << "nobody is there who could push";
+  const Scene asked =
+      parse_scene(kHead + "[compensation]\nfilter = 0.5\n" + kCube + kTouch + "lift_stiffness = 68\nmax_damping = 20\n" + kUser,
+                  "test")
+          .value();
+  EXPECT_EQ(asked.compensation->filter, 0.5);
+  EXPECT_EQ(asked.touch->max_damping, 20);
+  EXPECT_TRUE(tells_loads(asked));
 }
 
 TEST(Scene, MissingFileIsAnError) {

@@ -67,6 +67,29 @@ TEST(DelayStudy, AOneDimensionalObjectIsPressedWithoutAPeak) {
   EXPECT_LT(with.rms, 0.6 * without.rms);
 }
 
+/// A stiff coupling, a loose grip and 100 ms: figure 4.17b. The controller at the client adds what damping it takes.
+TEST(DelayStudy, APassiveClientGivesNoEnergyAwayWhileItsStiffnessRises) {
+  Scene msd = scene("msd-1d");
+  msd.msds[0].object = {350, 2, 0.1};
+  msd.msds[0].rate = 1;
+  msd.msds[0].touch_damping = 0;
+  msd.touch->stiffness = 700;
+  msd.users.resize(1);
+  msd.users[0].grip = Grip::loose;
+  msd.users[0].device.max_force = 7.9;
+  const DelayRun reference = run_delayed(msd, {.is_local = true}).value();
+  for (const bool compensates : {false, true}) {
+    DelayCase one{.link = delayed(100'000)};
+    if (compensates) one.filter = kFilter;
+    msd.touch->max_damping = 0;
+    EXPECT_LT(effects(msd, one, reference)[0].lowest_energy, -0.1) << "[J] it swings";
+    msd.touch->max_damping = 50;
+    const DelayEffect passive = effects(msd, one, reference)[0];
+    EXPECT_GE(passive.lowest_energy, -1e-6);
+    EXPECT_NEAR(passive.mean, passive.reference_mean, 0.1 * passive.reference_mean);
+  }
+}
+
 /// Compensation is absent unless the scene asks: the same packets, the same forces.
 TEST(DelayStudy, ASceneThatDoesNotAskSendsNoLoads) {
   Scene cube = scene("push-cube");
