@@ -58,13 +58,6 @@ double local_stiffness(FemModel& model, const TetSurface& surface, const Surface
 
 }  // namespace
 
-double StiffnessMap::at(std::uint32_t triangle, const std::array<double, 3>& weights) const noexcept {
-  double sum = 0;
-  for (std::size_t k = 0; k < 3; ++k)
-    if (weights[k] != 0) sum += weights[k] * stiffness[surface.triangles[triangle][k]];
-  return sum;
-}
-
 Result<StiffnessMap> stiffness_map(const SceneDeformable& object) {
   auto made = FemModel::create(object.mesh, fem_options(object));
   if (!made) return tl::unexpected(made.error().error);

@@ -22,7 +22,12 @@ struct StiffnessMap {
   std::vector<double> stiffness;  ///< [N/m] per vertex of the surface; infinite where it is fixed
 
   /// Stiffness at a point of a triangle, linear between its corners; infinite where a fixed corner has a weight.
-  double at(std::uint32_t triangle, const std::array<double, 3>& weights) const noexcept;
+  double at(std::uint32_t triangle, const std::array<double, 3>& weights) const noexcept {
+    double sum = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      if (weights[k] != 0) sum += weights[k] * stiffness[surface.triangles[triangle][k]];
+    return sum;
+  }
 };
 
 /// time one factorisation and one solve per surface vertex: 0.2 s for 714 vertices

@@ -35,7 +35,8 @@ Heard listen(StreamFileReader& reader, bool has_clock) {
     sound = sound && packet && packet->tick == tick;
     if (sound) ++out.accepted;
     if (!packet) continue;
-    if (packet->substream > 0) (void)receiver.replica().displacements(packet->substream - 1, packet->tick + 3);
+    if (packet->loads > 0) (void)receiver.load(0, packet->tick + 1);
+    else if (packet->substream > 0) (void)receiver.replica().displacements(packet->substream - 1, packet->tick + 3);
     else (void)receiver.replica().pose_hash(packet->tick + 5);
   }
 }
