@@ -191,7 +191,9 @@ tl::expected<DelayFigure, Failure> make(const TouchFigure& figure, const Reprodu
 study::DevicePaths constant_speed(const sim::Scene& scene, double speed, double duration) {
   study::DevicePaths paths;
   const double face = scene.objects[0].pose.position.x - scene.objects[0].size.x / 2;
-  for (double t = 0; t < duration; t += sim::kTick) {
+  const auto ticks = static_cast<std::size_t>(std::llround(duration / sim::kTick));
+  for (std::size_t tick = 0; tick < ticks; ++tick) {
+    const double t = sim::kTick * static_cast<double>(tick);
     std::vector<DeviceSample>& devices = paths.emplace_back();
     for (const sim::SceneUser& user : scene.users)
       devices.push_back({.position = {face - 0.001 + speed * t, user.start.y, user.start.z}});
@@ -238,6 +240,7 @@ tl::expected<DelayFigure, Failure> constant_push() {
     runs.insert(runs.end(), {*without, *with});
   }
   std::vector<double> delays;
+  delays.reserve(kRoundTrips.size());
   for (const sim::Microseconds r : kRoundTrips) delays.push_back(1e-3 * static_cast<double>(r));
   out.plot.set("delays", delays);
   out.table = "time_s,0ms_N,18ms_N,18ms_with_N,25ms_N,25ms_with_N,50ms_N,50ms_with_N,100ms_N,100ms_with_N\n";

@@ -70,6 +70,7 @@ RawHeader with_deformables(RawHeader header, const std::vector<RawDeformable>& i
 
 std::vector<RawDeformable> with_large_states(int count) {
   std::vector<RawDeformable> out;
+  out.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i)
     out.push_back({.shape = one_vertex(), .profile = 0, .name = std::to_string(i), .quant_bits = 12, .models_kept = 1});
   return out;
