@@ -57,7 +57,8 @@ bool has_deformables(std::span<const std::uint8_t> file) {
 /// Of all substreams.
 std::uint64_t state_hash(const Receiver& receiver) {
   Fnv1a hash;
-  for (std::size_t i = 0; i <= receiver.scene()->deformables.size() + (receiver.scene()->loads ? 1 : 0); ++i) hash.add64(receiver.state_hash(i));
+  for (std::size_t i = 0; i <= receiver.scene()->deformables.size() + (receiver.scene()->loads ? 1 : 0); ++i)
+    hash.add64(receiver.state_hash(i));
   return hash.value();
 }
 
