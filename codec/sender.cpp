@@ -22,7 +22,7 @@ struct Sender::Impl {
       deformables.push_back(DeformableEncoder::create(*scene, i, options.deformable, options.policy));
     if (scene->loads)
       loads.emplace(*scene, options.policy, load_substream(*scene), max_load_packet(*scene), 1, initial_loads(*scene), *scene,
-                    options.load);
+                    options.load, options.policy.baseline);
     packets.reserve(2 + 2 * deformables.size());
   }
 

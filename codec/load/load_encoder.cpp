@@ -38,9 +38,10 @@ Result<void> LoadEncoder::check(const LoadThresholds& thresholds) noexcept {
   return {};
 }
 
-LoadEncoder::LoadEncoder(const Scene& scene, const LoadThresholds& thresholds)
+LoadEncoder::LoadEncoder(const Scene& scene, const LoadThresholds& thresholds, Baseline baseline)
     : scene_(scene),
       thresholds_(thresholds),
+      is_acknowledged_(baseline == Baseline::acknowledged),
       floor_(std::ldexp(thresholds.force_floor, scene.loads->force_exp)),
       truth_(initial_loads(scene).vectors),
       wanted_(truth_),
@@ -49,6 +50,7 @@ LoadEncoder::LoadEncoder(const Scene& scene, const LoadThresholds& thresholds)
 }
 
 void LoadEncoder::set_link(const LinkState& link) noexcept {
+  if (!is_acknowledged_) return;
   const auto soon = static_cast<std::int64_t>(std::ceil(kSoon * scene_.tick_rate));
   answer_ = link.answer > 0 && link.loss >= kSomeLoss ? std::min(link.answer, soon) : link.answer;
 }

@@ -26,7 +26,7 @@ class LoadEncoder {
   /// R-API-4: a threshold is not positive or not finite.
   static Result<void> check(const LoadThresholds& thresholds) noexcept;
   /// pre  check(), the scene has loads and outlives the encoder
-  LoadEncoder(const Scene& scene, const LoadThresholds& thresholds);
+  LoadEncoder(const Scene& scene, const LoadThresholds& thresholds, Baseline baseline);
 
   /// Take the loads of one tick; changes nothing else.   in  loads  one per rigid object; those of static ones are ignored
   /// err  invalid_argument R-API-1, 2 a force is not finite or out of range; R-API-5 wrong count of objects or users
@@ -35,7 +35,7 @@ class LoadEncoder {
   Result<Payload> encode(const EncodeRequest<LoadState>& request, std::span<std::uint8_t> out) noexcept;
   void commit(const LoadState& base, LoadState& next) noexcept;
   void acknowledge(std::uint64_t number) noexcept { acknowledged_ = acknowledged_ || number == number_; }
-  void set_link(const LinkState& link) noexcept;
+  void set_link(const LinkState& link) noexcept;  ///< nothing without Baseline::acknowledged
   void set_widening(double factor) noexcept { widening_ = factor; }
 
  private:
@@ -46,7 +46,8 @@ class LoadEncoder {
 
   const Scene& scene_;
   LoadThresholds thresholds_;
-  double floor_ = 0;  // in grid steps
+  bool is_acknowledged_;  // Baseline::acknowledged
+  double floor_ = 0;      // in grid steps
   double widening_ = 1;
   std::vector<Vec3i> truth_, wanted_;  // of this tick; as decoders will hold it
   std::vector<std::size_t> pending_;   // objects, by their place in Scene::moving()

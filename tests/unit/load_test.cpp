@@ -125,6 +125,19 @@ TEST(Loads, EveryPacketThatArrivesCanBeUsedWhenBaselinesAreAcknowledged) {
   EXPECT_LE(worst(receiver, world, 6399), 1 + 1e-9) << "what was lost is sent again";
 }
 
+/// Nobody names packets then: what is not acknowledged is not taken for lost.
+TEST(Loads, AreNotSentAgainWhenEachPacketBuildsOnTheOneBefore) {
+  std::size_t packets[2]{};
+  for (const int linked : {0, 1}) {
+    auto sender = Sender::create(make_scene()).value();
+    if (linked) sender.set_link({.answer = 30, .loss = 0.1});
+    Pushed world;
+    for (std::int64_t tick = 0; tick < 2000; ++tick)
+      for (const Packet& packet : testing::all(sender.encode(tick, world.step(tick)))) packets[linked] += packet.substream > 0;
+  }
+  EXPECT_EQ(packets[1], packets[0]);
+}
+
 TEST(Loads, OfAPastTickAreThoseOfItsState) {
   const SharedScene scene = make_scene(64);
   auto sender = Sender::create(scene).value();
