@@ -2,6 +2,7 @@
 #include <tactus/sim/client.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <tactus/sim/tets/tet_mesh.h>
@@ -55,9 +56,14 @@ Result<std::unique_ptr<Client>> Client::create(Server& server, const ReplicaOpti
   return std::unique_ptr<Client>(new Client(server, std::move(receiver)));
 }
 
-Result<std::unique_ptr<Client>> Client::create_remote(Server& server) {
+Result<std::unique_ptr<Client>> Client::create_remote(Server& server, std::size_t user, const Scene& own) {
   std::unique_ptr<Client> client(new Client(server, {}));
-  if (!client->scene_.compensation) return client;
+  const auto& asked = client->scene_.compensation;
+  if (!asked) return client;
+  if (asked->method == CompensationMethod::simulation) {
+    TACTUS_TRY(client->prediction_, Prediction::create(own, user));
+    return client;
+  }
   TACTUS_TRY(client->compensation_, Compensation::create(client->scene_));
   client->moves_.resize(client->poses_.size());
   return client;
@@ -100,12 +106,33 @@ void Client::show(Receiver& receiver, std::int64_t tick) noexcept {
 }
 
 void Client::show_shape(Receiver& receiver, std::int64_t tick, std::size_t mesh) noexcept {
-  deformables_->show(mesh, receiver.replica().displacements(mesh, tick), receiver.scene()->grid.position);
+  const auto displacements = receiver.replica().displacements(mesh, tick);
+  const unsigned exp = receiver.scene()->grid.position;
+  if (!prediction_) return deformables_->show(mesh, displacements, exp);
+  prediction_->hear(mesh, displacements, exp, std::fmod(static_cast<double>(tick), shown_[mesh].period));
 }
 
 void Client::show_poses(Receiver& receiver, std::int64_t tick) noexcept {
-  for (std::uint32_t i = 0; i < poses_.size(); ++i)
-    show_pose(i, to_pose(receiver.replica().pose(i, tick), receiver.scene()->grid.position));
+  for (std::uint32_t i = 0; i < poses_.size(); ++i) {
+    const Pose pose = to_pose(receiver.replica().pose(i, tick), receiver.scene()->grid.position);
+    if (prediction_) prediction_->hear(i, pose);
+    else show_pose(i, pose);
+  }
+}
+
+std::span<const GridForce> Client::load(std::uint32_t object) const noexcept {
+  return shown_by_ != nullptr ? shown_by_->load(object, shown_tick_) : std::span<const GridForce>();
+}
+
+/// Show what the client's own simulation makes of it.   pre  prediction_
+void Client::predict(std::size_t user, std::uint32_t delay) noexcept {
+  for (std::uint32_t i = 0; i < scene_.objects.size(); ++i)
+    if (const auto known = load(i); !known.empty())
+      prediction_->push(i, others_push(known, user, shown_by_->scene()->loads->force_exp));
+  prediction_->correct(delay);
+  for (std::uint32_t i = 0; i < poses_.size(); ++i) show_pose(i, prediction_->poses()[i]);
+  for (std::size_t i = 0; i < shown_.size(); ++i)
+    if (const auto shape = prediction_->new_shape(i); !shape.empty()) deformables_->show(i, shape, PastShapes::kExp);
 }
 
 void Client::touch(std::span<const DeviceSample> devices) noexcept {
@@ -117,7 +144,7 @@ Vec3 Client::soften(std::size_t user, const Touch& touch, const Vec3& device, st
   Compensation::Shown shown;
   if (!touch.surface) {
     const std::uint32_t object = touch.contact.object;
-    if (shown_by_ != nullptr) shown.load = shown_by_->load(object, shown_tick_);
+    shown.load = load(object);
     if (!shown.load.empty()) shown.force_exp = shown_by_->scene()->loads->force_exp;
     shown.pose = poses_[object];
     shown.moves = moves_[object];
@@ -133,6 +160,7 @@ void Client::touch(std::size_t user, const DeviceSample& device, const Rendering
   contacts_[user].reset();
   stiffness_[user] = 0;
   if (compensation_) compensation_->move(user, device);
+  if (prediction_) predict(user, how.delay);
   for (Touchable* objects : objects_) {
     const Touch touch = objects->touch(user, device, held);
     if (touch.contact.kind != ContactKind::none) contacts_[user] = {touch.proxy, touch.contact.stiffness};
@@ -143,6 +171,7 @@ void Client::touch(std::size_t user, const DeviceSample& device, const Rendering
     force = force + (compensation_ && presses ? soften(user, touch, device.position, how.delay) : touch.force);
   }
   if (compensation_ && !contacts_[user]) compensation_->release(user);
+  if (prediction_) prediction_->step(device);
   felt_[user] = how.share * share_rendered(force, scene_.users[user].device.max_force) * force;
   if (ports_.empty()) return;
   const Vec3 passive = ports_[user].limit(device.position, felt_[user]);

@@ -13,6 +13,7 @@
 #include <tactus/sim/compensation.h>
 #include <tactus/sim/deformable/deformable_view.h>
 #include <tactus/sim/msd/msd_objects.h>
+#include <tactus/sim/prediction/prediction.h>
 #include <tactus/sim/rigid/rigid_objects.h>
 #include <tactus/sim/server.h>
 #include <tactus/sim/user/passivity.h>
@@ -27,8 +28,9 @@ class Client {
   /// err  errors of Receiver::create
   static Result<std::unique_ptr<Client>> create(Server& server, const ReplicaOptions& replica);
   /// The client of one user, which shows what a network gives it, and makes up for its delay if the scene asks.
-  /// pre  the server has a codec, and outlives the client.   err  of Compensation::create
-  static Result<std::unique_ptr<Client>> create_remote(Server& server);
+  /// in   own  what the client knows of the scene, if it simulates it: the objects and users of the server's
+  /// pre  the server has a codec, and outlives the client.   err  of Compensation::create, Prediction::create
+  static Result<std::unique_ptr<Client>> create_remote(Server& server, std::size_t user, const Scene& own);
 
   /// err  errors of Receiver::push   no allocation
   Result<void> receive(std::span<const Packet> packets) noexcept;
@@ -61,6 +63,8 @@ class Client {
  private:
   Client(Server& server, std::optional<Receiver> receiver);
   void show_pose(std::uint32_t object, const Pose& pose) noexcept;
+  void predict(std::size_t user, std::uint32_t delay) noexcept;
+  std::span<const GridForce> load(std::uint32_t object) const noexcept;
   void show_shape(Receiver& receiver, std::int64_t tick, std::size_t mesh) noexcept;
   void show_poses(Receiver& receiver, std::int64_t tick) noexcept;
   Vec3 soften(std::size_t user, const Touch& touch, const Vec3& device, std::uint32_t delay) noexcept;
@@ -77,8 +81,9 @@ class Client {
   const Receiver* shown_by_ = nullptr;  // likewise, and what tick of it
   std::int64_t shown_tick_ = -1;
   std::vector<bool> moves_;                     // objects that were shown elsewhere in the tick before
-  std::optional<Compensation> compensation_{};  // of the delay
-  std::vector<PassivityController> ports_;      // one per user, if the scene asks
+  std::optional<Compensation> compensation_{};  // of the delay: at most one of them
+  std::unique_ptr<Prediction> prediction_{};
+  std::vector<PassivityController> ports_;  // one per user, if the scene asks
   RigidView rigid_;
   std::optional<MsdView> msds_;
   std::optional<DeformableView> deformables_;

@@ -7,6 +7,13 @@
 
 namespace tactus::sim {
 
+Vec3 others_push(std::span<const GridForce> load, std::size_t user, unsigned force_exp) noexcept {
+  Vec3 sum;
+  for (std::size_t v = kPushes; v < load.size(); ++v)
+    if (v != kPushes + user) sum = sum + to_force(load[v], force_exp);
+  return sum;
+}
+
 Result<Compensation> Compensation::create(const Scene& scene) {
   Compensation out(scene);
   for (std::size_t i = 0; i < scene.users.size(); ++i) {
@@ -38,15 +45,12 @@ double Compensation::reduced(std::size_t user, const Touch& touch, const Vec3& s
   }
   if (shown.load.empty()) return contact.stiffness;
   const auto force = [&](std::size_t vector) { return to_force(shown.load[vector], shown.force_exp); };
-  Vec3 others;
-  for (std::size_t v = kPushes; v < shown.load.size(); ++v)
-    if (v != kPushes + user) others = others + force(v);
   return reduction.reduced(StiffnessReduction::RigidTouch{.stretch = stretch,
                                                           .normal = normal,
                                                           .coupling = contact.stiffness,
                                                           .moves = shown.moves,
                                                           .external = force(kExternal),
-                                                          .others = others,
+                                                          .others = others_push(shown.load, user, shown.force_exp),
                                                           .hold = force(kHold)},
                            delay);
 }

@@ -17,6 +17,9 @@
 
 namespace tactus::sim {
 
+/// [N] What all users but this one push an object with.   in  load  of Receiver::load
+Vec3 others_push(std::span<const GridForce> load, std::size_t user, unsigned force_exp) noexcept;
+
 /// Of all users of one client.
 class Compensation {
  public:

@@ -57,6 +57,7 @@ class Server {
   TraceInfo info() const;  ///< of the frames
   /// Scene declaration for the clients; null without a codec.
   SharedScene stream_scene() const noexcept { return declared_; }
+  RigidObjects& rigid() noexcept { return *rigid_; }
   DeformableObjects* deformables() const noexcept { return deformables_; }  ///< null: the scene has none
 
  private:

@@ -50,7 +50,7 @@ Result<Simulation> Simulation::create(const Scene& scene, const SimulationOption
     TACTUS_TRY(impl->network,
                options.channel->network(impl->server->stream_scene(), scene.users.size(), options.channel->sender));
     for (std::size_t i = 0; i < scene.users.size(); ++i) {
-      TACTUS_TRY(auto client, Client::create_remote(*impl->server));
+      TACTUS_TRY(auto client, Client::create_remote(*impl->server, i, options.channel->own ? *options.channel->own : scene));
       impl->clients.push_back(std::move(client));
     }
   } else {
@@ -148,6 +148,10 @@ std::int64_t Simulation::shown_tick(std::size_t user) const noexcept {
 double Simulation::share_rendered(std::size_t user) const noexcept { return impl_->contacts[user] ? impl_->shares[user] : 1; }
 double Simulation::round_trip(std::size_t user) const noexcept { return kTick * impl_->delays[user]; }
 double Simulation::stiffness(std::size_t user) const noexcept { return impl_->client(user).stiffness(user); }
+std::optional<Vec3> Simulation::touched_point(std::size_t user) const noexcept {
+  const auto& contact = impl_->client(user).contact(user);
+  return contact ? std::optional(contact->proxy) : std::nullopt;
+}
 const DeformableObjects* Simulation::deformables() const noexcept { return impl_->server->deformables(); }
 const TouchSummary& Simulation::touched(std::size_t user) const noexcept { return impl_->records[user].summary(); }
 Replica& Simulation::replica() noexcept { return impl_->client(0).replica(); }

@@ -34,8 +34,9 @@ namespace tactus::sim {
 struct ChannelOptions {
   SenderOptions sender;
   ReplicaOptions replica;
-  TraceCoding coding{};    ///< of deformable objects
-  NetworkMaker network{};  ///< each user has a client behind it; none: one client, and no time passes
+  TraceCoding coding{};        ///< of deformable objects
+  const Scene* own = nullptr;  ///< what clients simulate themselves, if they do; null: the scene
+  NetworkMaker network{};      ///< each user has a client behind it; none: one client, and no time passes
 };
 
 struct SimulationOptions {
@@ -77,11 +78,13 @@ class Simulation {
   double share_rendered(std::size_t user) const noexcept;  ///< of the force: less than 1 while the data are old
   double round_trip(std::size_t user) const noexcept;      ///< [s] age of what is shown, as an answer to the device; 0: not known
   double stiffness(std::size_t user) const noexcept;       ///< [N/m] with which the user's force was rendered; 0: none was
-  Replica& replica() noexcept;                             ///< the client's.   pre  there is a channel without network
-  std::int64_t ticks() const noexcept;                     ///< length of the scene
-  TraceInfo info() const;                                  ///< for a TraceWriter of these frames
-  SharedScene stream_scene() const noexcept;               ///< of the packets.   pre  there is a channel
-  const DeformableObjects* deformables() const noexcept;   ///< null: the scene has none
+  std::optional<Vec3> touched_point(
+      std::size_t user) const noexcept;                          ///< [m] proxy at the user's client; none: nothing is touched
+  Replica& replica() noexcept;                                   ///< the client's.   pre  there is a channel without network
+  std::int64_t ticks() const noexcept;                           ///< length of the scene
+  TraceInfo info() const;                                        ///< for a TraceWriter of these frames
+  SharedScene stream_scene() const noexcept;                     ///< of the packets.   pre  there is a channel
+  const DeformableObjects* deformables() const noexcept;         ///< null: the scene has none
   const TouchSummary& touched(std::size_t user) const noexcept;  ///< all ticks so far
   /// [N/m] largest stable stiffness of a coupling to a fixed point (sampled_limit.h)
   double bears(std::size_t user) const noexcept;

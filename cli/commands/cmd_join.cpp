@@ -75,10 +75,10 @@ tl::expected<Body, Failure> make_body(const JoinOptions& options) {
   auto shapes = sim::Server::create(*scene, {.seed = options.device.seed, .codec = sim::ServerCodec{{}, {}, true}});
   if (!shapes) return refuse(options.scene, shapes.error());
   body.shapes = std::move(*shapes);
-  auto client = sim::Client::create_remote(*body.shapes);
+  body.user = options.user.empty() ? 0 : static_cast<std::size_t>(user - scene->users.begin());
+  auto client = sim::Client::create_remote(*body.shapes, body.user, *scene);
   if (!client) return refuse(options.scene, client.error());
   body.client = std::move(*client);
-  body.user = options.user.empty() ? 0 : static_cast<std::size_t>(user - scene->users.begin());
   TACTUS_TRY(body.chosen, open_device(options.device, &*scene, body.user));
   TACTUS_CHECK(check_place(body.chosen.device->capabilities()));
   TACTUS_CHECK(check_force(options.device, body.chosen.device->capabilities()));

@@ -41,7 +41,7 @@ struct SimOptions {
   double duration = -1;   // [s], negative: the scene's
   double mesh_noise = 0;  // [m] RMS per axis
   bool codec = false;
-  bool no_compensation = false;
+  std::string compensation;  // empty: the scene's
   TriggerArguments triggers;
   MeshArguments meshes;
   ReplicaOptions replica;
@@ -242,7 +242,10 @@ tl::expected<sim::Scene, Failure> read_scene(const SimOptions& options) {
   }
   for (sim::SceneMsd& object : scene->msds)
     if (options.rate > 0) object.rate = options.rate;
-  if (options.no_compensation) scene->compensation.reset();
+  if (options.compensation == "none") scene->compensation.reset();
+  else if (!options.compensation.empty())
+    scene->compensation.emplace(scene->compensation.value_or(sim::SceneCompensation{})).method =
+        options.compensation == "stiffness" ? sim::CompensationMethod::stiffness : sim::CompensationMethod::simulation;
   return *scene;
 }
 
@@ -474,8 +477,11 @@ void setup_sim(Command& app, Action& action) {
       ->excludes(interpolate);
   add_link(command, "--uplink", options->uplink, "Network from the clients to the server, if it differs");
   add_playout(command, options->playout);
-  command.add_flag("--no-compensation", options->no_compensation,
-                   "Clients do not make up for delay, even if the scene asks; no forces on objects are told");
+  command
+      .add_option("--compensation", options->compensation,
+                  "How clients make up for delay: none, stiffness (they render it softer) or simulation (they simulate the scene "
+                  "themselves, and the server corrects them) [the scene's]")
+      ->check(one_of({"none", "stiffness", "simulation"}));
 #ifdef TACTUS_HAS_NET
   command
       .add_option("--pcap", options->pcap,

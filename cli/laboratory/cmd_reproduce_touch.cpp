@@ -22,8 +22,8 @@ namespace {
 
 namespace study = sim::study;
 
-constexpr double kWeber = 0.1;   // c
-constexpr double kFilter = 0.1;  // lambda
+constexpr double kWeber = 0.1;              // c
+const sim::SceneCompensation kStiffness{};  // with the thesis's adaptation
 
 /// A figure that runs a scene.
 struct TouchFigure {
@@ -79,10 +79,11 @@ struct Runs {
 };
 
 tl::expected<Runs, Failure> run_all(const TouchFigure& figure, const sim::Scene& scene, std::uint64_t seed) {
-  const auto run = [&](bool is_local, std::optional<double> filter) -> tl::expected<study::DelayRun, Failure> {
+  const auto run = [&](bool is_local,
+                       std::optional<sim::SceneCompensation> compensation) -> tl::expected<study::DelayRun, Failure> {
     sim::LinkOptions link = figure.link;
     link.seed = seed;
-    auto out = study::run_delayed(scene, {.link = link, .filter = filter, .is_local = is_local, .seed = seed});
+    auto out = study::run_delayed(scene, {.link = link, .compensation = compensation, .is_local = is_local, .seed = seed});
     if (!out) return refuse(figure.scene, out.error().error);
     return *std::move(out);
   };
@@ -90,7 +91,7 @@ tl::expected<Runs, Failure> run_all(const TouchFigure& figure, const sim::Scene&
   TACTUS_TRY(out.reference, run(true, {}));
   TACTUS_TRY(out.without, run(false, {}));
   if (!figure.compensates) return out;
-  TACTUS_TRY(out.with, run(false, kFilter));
+  TACTUS_TRY(out.with, run(false, kStiffness));
   return out;
 }
 
@@ -219,9 +220,10 @@ tl::expected<DelayFigure, Failure> constant_push() {
   const double damping = sim::damping_of_factor(block.mass, block.damping, sim::kTick) / 2;
   const double speed = kWeber * friction / (stiffness * kBound - kWeber * damping);  // 4.31
   const study::DevicePaths paths = constant_speed(scene, speed, kDuration);
-  const auto run = [&](std::optional<sim::Microseconds> round_trip, std::optional<double> filter) {
+  const auto run = [&](std::optional<sim::Microseconds> round_trip, std::optional<sim::SceneCompensation> compensation) {
     return study::run_delayed(
-        scene, {.link = constant(round_trip.value_or(0)), .filter = filter, .is_local = !round_trip, .paths = &paths});
+        scene,
+        {.link = constant(round_trip.value_or(0)), .compensation = compensation, .is_local = !round_trip, .paths = &paths});
   };
   DelayFigure out{.figure = "fig4.6",
                   .title = fmt::format("two users push a block side by side at constant {:.2f} mm/s", 1e3 * speed)};
@@ -231,7 +233,7 @@ tl::expected<DelayFigure, Failure> constant_push() {
   out.plot = {.name = "fig4.6", .program = "delay-constant-push", .width = 960, .height = 380};
   std::vector<study::DelayRun> runs{*reference};
   for (const sim::Microseconds round_trip : kRoundTrips) {
-    const auto without = run(round_trip, {}), with = run(round_trip, kFilter);
+    const auto without = run(round_trip, {}), with = run(round_trip, kStiffness);
     if (!without || !with) return refuse(of.scene, (without ? with : without).error().error);
     const auto over = [&](const study::DelayRun& r) { return 100 * (steady(r.users[0]) / steady(reference->users[0]) - 1); };
     out.quantities.push_back({fmt::format("{} ms: steady force over that without delay", round_trip / 1000),

@@ -50,6 +50,12 @@ void RigidObjects::push(std::size_t user, double share) noexcept {
   if (!loads_.empty()) pushing_[touch.contact.object * touches_.size() + user] = force;
 }
 
+void RigidObjects::place(std::uint32_t object, const Pose& pose) noexcept {
+  world_.place(object, pose);
+  for (RigidProbe& probe : probes_) probe.attend(object, poses_[object]);
+  poses_[object] = pose;
+}
+
 tl::expected<void, Diagnostic> RigidObjects::step() {
   TACTUS_CHECK(world_.step());
   if (loads_.empty()) return {};

@@ -25,6 +25,11 @@ class RigidObjects final : public Simulated {
   void push(std::size_t user, double share) noexcept override;
   tl::expected<void, Diagnostic> step() override;
 
+  /// Put an object elsewhere, as of this tick.   no allocation
+  void place(std::uint32_t object, const Pose& pose) noexcept;
+  /// Push an object at its centre with a force [N] in this tick.   no allocation
+  void push_centre(std::uint32_t object, const Vec3& force) noexcept { world_.push(object, force, poses_[object].position); }
+
   /// Forces of the last step on every rigid and one-dimensional object of the scene, those on the latter zero; empty unless
   /// tells_loads(scene).
   std::span<const ObjectLoad> loads() const noexcept { return loads_; }

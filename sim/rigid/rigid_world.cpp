@@ -231,6 +231,16 @@ void RigidWorld::push(std::uint32_t object, const Vec3& force, const Vec3& point
   body.torque = body.torque + along_free(cross(point - vec(dBodyGetPosition(body.handle)), force), body.spec.dof, 3);
 }
 
+void RigidWorld::place(std::uint32_t object, const Pose& pose) noexcept {
+  Body& body = impl_->bodies[object];
+  if (!body.handle) return;
+  impl_->watch.disturb(body.mover);
+  impl_->wake(object);
+  const dQuaternion rotation{pose.rotation.w, pose.rotation.x, pose.rotation.y, pose.rotation.z};
+  dBodySetPosition(body.handle, pose.position.x, pose.position.y, pose.position.z);
+  dBodySetQuaternion(body.handle, rotation);
+}
+
 void RigidWorld::wake(std::uint32_t object) noexcept {
   if (impl_->bodies[object].handle) impl_->wake(object);
 }

@@ -129,8 +129,9 @@ SceneTouch read_touch(TomlReader& in, const toml::table& table) {
 
 SceneCompensation read_compensation(TomlReader& in, const toml::table& table) {
   const std::string path = "compensation";
-  in.allow(table, path, {"filter"});
+  in.allow(table, path, {"method", "filter"});
   SceneCompensation out;
+  out.method = static_cast<CompensationMethod>(in.word(table, path, "method", {"stiffness", "simulation"}, "stiffness"));
   out.filter = in.number(table, path, "filter", {1e-6, 1}, out.filter);
   return out;
 }

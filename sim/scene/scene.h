@@ -77,8 +77,14 @@ struct SceneTouch {
   double max_damping = 0;     ///< [N s/m] of the passivity controllers at the clients (sim/user/passivity.h); 0: there are none
 };
 
-/// Clients make up for the delay of what they show (thesis 4.2.3 and 4.3.3).
+/// How clients make up for the delay of what they show.
+enum class CompensationMethod : std::uint8_t {
+  stiffness,   ///< they render it softer (sim/compensation.h; thesis 4.2.3 and 4.3.3)
+  simulation,  ///< they simulate it themselves, and the server corrects them (sim/prediction/prediction.h; thesis 5.2)
+};
+
 struct SceneCompensation {
+  CompensationMethod method = CompensationMethod::stiffness;
   double filter = 0.1;  ///< lambda of StiffnessReduction
 };
 

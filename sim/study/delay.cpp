@@ -18,6 +18,7 @@ SimulationOptions options_of(const DelayCase& one) {
   SimulationOptions options{.seed = one.seed, .grip = {}, .channel = {}};
   if (one.is_local) return options;
   ChannelOptions& channel = options.channel.emplace();
+  channel.own = one.own;
   channel.sender.triggers.reduction = Reduction::none;
   channel.sender.load = {.weber_fraction = 0.02, .force_floor = 0.5};
   channel.network = [link = one.link](SharedScene scene, std::size_t users,
@@ -36,8 +37,7 @@ SimulationOptions options_of(const DelayCase& one) {
 
 tl::expected<DelayRun, Diagnostic> run_delayed(const Scene& scene, const DelayCase& one) {
   Scene asked = scene;
-  asked.compensation.reset();
-  if (one.filter) asked.compensation = SceneCompensation{.filter = *one.filter};
+  asked.compensation = one.compensation;
   auto made = Simulation::create(asked, options_of(one));
   if (!made) return tl::unexpected(Diagnostic{.error = made.error()});
   Simulation simulation = std::move(*made);
@@ -60,6 +60,8 @@ tl::expected<DelayRun, Diagnostic> run_delayed(const Scene& scene, const DelayCa
                               .server = norm(user.server_force),
                               .stiffness = simulation.stiffness(i),
                               .round_trip = simulation.round_trip(i),
+                              .touched = simulation.touched_point(i),
+                              .shown = simulation.watched(i),
                               .energy = observers[i].energy()});
     }
   }

@@ -18,8 +18,9 @@ namespace tactus::sim::study {
 using DevicePaths = std::vector<std::vector<DeviceSample>>;
 
 struct DelayCase {
-  LinkOptions link{};                  ///< there and back, but for the seed
-  std::optional<double> filter{};      ///< lambda of the clients' compensation; none: there is none
+  LinkOptions link{};  ///< there and back, but for the seed
+  std::optional<SceneCompensation> compensation{};
+  const Scene* own = nullptr;          ///< what clients simulate, if they do so and it is not the scene
   bool is_local = false;               ///< no network at all: the reference
   const DevicePaths* paths = nullptr;  ///< instead of the hands, which feel the force
   std::uint64_t seed = 1;
@@ -30,6 +31,8 @@ struct DelayTick {
   double client = 0, server = 0;  ///< [N] magnitude of the force
   double stiffness = 0;           ///< [N/m] of the client's spring; 0: nothing is touched
   double round_trip = 0;          ///< [s] age of what is shown, as an answer to the device; 0 without a network
+  std::optional<Vec3> touched{};  ///< [m] where the client shows the point of the surface that the device touches
+  Pose shown;                     ///< of the object that the user looks at, at the client
   double energy = 0;              ///< [J] put into the environment by the device since it was last free for 0.1 s
 };
 

@@ -90,6 +90,7 @@ const std::vector<Broken>& broken() {
        kHead + kCube + kTouch + "lift_stiffness = 68\n[[user]]\nname = \"u\"\nobject = \"ball\"\nstart = [0, 0, 0]\n", "R-SCN-7",
        14, "user.object"},
       {"a filter that never follows", kHead + "[compensation]\nfilter = 0\n" + kCube, "R-SCN-6", 5, "compensation.filter"},
+      {"an unknown method", kHead + "[compensation]\nmethod = \"magic\"\n" + kCube, "R-SCN-7", 5, "compensation.method"},
       {"unknown grip", kHead + kCube + kTouch + "lift_stiffness = 68\n" + kUser + "grip = \"iron\"\n", "R-SCN-7", 18,
        "user.grip"},
       {"half a filter step", kHead + kCube + kTouch + "lift_stiffness = 68\n" + kUser + "[user.device]\nfilter = 2.5\n",
@@ -121,6 +122,9 @@ TEST(Scene, CompensationIsThereWhenAskedFor) {
   const Scene usual = parse_scene(kHead + "[compensation]\n" + kCube, "test").value();
   ASSERT_TRUE(usual.compensation);
   EXPECT_EQ(usual.compensation->filter, 0.1);
+  EXPECT_EQ(usual.compensation->method, CompensationMethod::stiffness);
+  const Scene simulated = parse_scene(kHead + "[compensation]\nmethod = \"simulation\"\n" + kCube, "test").value();
+  EXPECT_EQ(simulated.compensation->method, CompensationMethod::simulation);
   EXPECT_FALSE(tells_loads(usual)) << "nobody is there who could push";
   const Scene asked =
       parse_scene(kHead + "[compensation]\nfilter = 0.5\n" + kCube + kTouch + "lift_stiffness = 68\nmax_damping = 20\n" + kUser,

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include <tactus/sim/simulation.h>
@@ -11,7 +12,8 @@
 namespace tactus::sim::study {
 namespace {
 
-constexpr double kWeber = 0.1, kFilter = 0.1;
+constexpr double kWeber = 0.1;
+const SceneCompensation kStiffness{}, kSimulation{.method = CompensationMethod::simulation};
 
 Scene scene(const std::string& name) { return load_scene(*find_scene(name)).value(); }
 
@@ -34,7 +36,7 @@ TEST(DelayStudy, APushedCubeIsAsHeavyAsWithoutDelay) {
   const DelayRun reference = run_delayed(cube, {.is_local = true}).value();
   for (const Microseconds round_trip : {50'000, 100'000, 150'000}) {
     const DelayEffect without = effects(cube, {.link = delayed(round_trip)}, reference)[0];
-    const DelayEffect with = effects(cube, {.link = delayed(round_trip), .filter = kFilter}, reference)[0];
+    const DelayEffect with = effects(cube, {.link = delayed(round_trip), .compensation = kStiffness}, reference)[0];
     EXPECT_GT(without.mean, 1.5 * without.reference_mean) << round_trip;
     EXPECT_NEAR(with.mean, with.reference_mean, 0.1 * with.reference_mean) << round_trip;
     EXPECT_LT(with.peak, 1.3 * with.reference_peak) << round_trip;
@@ -44,7 +46,7 @@ TEST(DelayStudy, APushedCubeIsAsHeavyAsWithoutDelay) {
 /// The second user who presses makes the block heavier for the first; what the second one presses does not yield and is not softened.
 TEST(DelayStudy, WhoPressesOnWhatCannotMoveFeelsItsWholeStiffness) {
   const Scene jenga = scene("jenga-press");
-  const DelayRun run = run_delayed(jenga, {.link = delayed(80'000), .filter = kFilter}).value();
+  const DelayRun run = run_delayed(jenga, {.link = delayed(80'000), .compensation = kStiffness}).value();
   double least = 1e9;
   for (std::size_t i = 0; i < run.users[1].size(); ++i)
     if (run.users[1][i].client > 0.5) least = std::min(least, run.users[1][i].stiffness);
@@ -61,10 +63,44 @@ TEST(DelayStudy, AOneDimensionalObjectIsPressedWithoutAPeak) {
   msd.msds[0].rate = 1;
   const DelayRun reference = run_delayed(msd, {.is_local = true}).value();
   const DelayEffect without = effects(msd, {.link = delayed(80'000)}, reference)[0];
-  const DelayEffect with = effects(msd, {.link = delayed(80'000), .filter = kFilter}, reference)[0];
+  const DelayEffect with = effects(msd, {.link = delayed(80'000), .compensation = kStiffness}, reference)[0];
   EXPECT_GT(without.peak, 1.25 * without.reference_peak);
   EXPECT_LT(with.peak, 1.12 * with.reference_peak);
   EXPECT_LT(with.rms, 0.6 * without.rms);
+}
+
+/// [m] Farthest that the touched point is seen from where it is without delay, for 99 % of the time.
+double seen_away(const DelayRun& run, const DelayRun& reference) {
+  std::vector<double> away;
+  for (std::size_t i = 0; i < reference.users[0].size(); ++i)
+    if (run.users[0][i].touched && reference.users[0][i].touched)
+      away.push_back(norm(*run.users[0][i].touched - *reference.users[0][i].touched));
+  std::ranges::sort(away);
+  return away.empty() ? 0 : away[away.size() * 99 / 100];
+}
+
+TEST(DelayStudy, WhatAClientSimulatesIsFeltAndSeenAtOnce) {
+  const Scene cube = scene("push-cube");
+  const DelayRun reference = run_delayed(cube, {.is_local = true}).value();
+  for (const Microseconds round_trip : {100'000, 300'000}) {
+    const DelayRun run = run_delayed(cube, {.link = delayed(round_trip), .compensation = kSimulation}).value();
+    const DelayRun plain = run_delayed(cube, {.link = delayed(round_trip)}).value();
+    EXPECT_LT(effect_of(run.users[0], reference.users[0], kWeber).rms, 0.01);
+    EXPECT_LT(seen_away(run, reference), 1e-4);
+    EXPECT_GT(seen_away(plain, reference), 10e-3);
+  }
+}
+
+TEST(DelayStudy, ClientsOfDifferentModelsArePulledToTheServer) {
+  const Scene jenga = scene("jenga-press");
+  Scene wrong = jenga;
+  wrong.objects[0].mass *= 1.1;
+  wrong.objects[0].friction *= 1.1;
+  const DelayRun run = run_delayed(jenga, {.link = delayed(100'000), .compensation = kSimulation, .own = &wrong}).value();
+  const auto& first = run.users[0];
+  EXPECT_LT(norm(first.back().shown.position - run.users[1].back().shown.position), 0.5e-3) << "[m] at rest, both see the same";
+  for (std::size_t i = 1; i < first.size(); ++i)
+    ASSERT_LT(norm(first[i].shown.position - first[i - 1].shown.position), 1e-3) << "[m] in tick " << i;
 }
 
 /// A stiff coupling, a loose grip and 100 ms: figure 4.17b. The controller at the client adds what damping it takes.
@@ -80,7 +116,7 @@ TEST(DelayStudy, APassiveClientGivesNoEnergyAwayWhileItsStiffnessRises) {
   const DelayRun reference = run_delayed(msd, {.is_local = true}).value();
   for (const bool compensates : {false, true}) {
     DelayCase one{.link = delayed(100'000)};
-    if (compensates) one.filter = kFilter;
+    if (compensates) one.compensation = kStiffness;
     msd.touch->max_damping = 0;
     EXPECT_LT(effects(msd, one, reference)[0].lowest_energy, -0.1) << "[J] it swings";
     msd.touch->max_damping = 50;

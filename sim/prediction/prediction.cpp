@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/sim/prediction/prediction.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace tactus::sim {
+namespace {
+
+constexpr double kSettle = 0.1;  // tau [s]
+const double kShare = 1 - std::exp(-kTick / kSettle);
+constexpr double kClose = 1e-4, kCloseTurn = 2e-3;  // [m, rad]
+constexpr double kFar = 0.3, kFarTurn = 1.0;        // [m, rad] then the object is put to its place
+
+/// Rotation vector of a unit quaternion [rad].
+Vec3 turn_of(const Quat& q) noexcept {
+  const Vec3 axis{q.x, q.y, q.z};
+  const double sine = norm(axis);
+  if (!(sine > 0)) return {};
+  const double angle = 2 * std::atan2(sine, std::abs(q.w));
+  return ((q.w < 0 ? -angle : angle) / sine) * axis;
+}
+
+Quat quaternion_of(const Vec3& turn) noexcept {
+  const double angle = norm(turn);
+  if (!(angle > 0)) return {};
+  const Vec3 axis = (std::sin(angle / 2) / angle) * turn;
+  return {std::cos(angle / 2), axis.x, axis.y, axis.z};
+}
+
+Quat normalised(const Quat& q) noexcept {
+  const double s = 1 / std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+  return {s * q.w, s * q.x, s * q.y, s * q.z};
+}
+
+/// Of an error, what to correct in this tick.
+Vec3 part(const Vec3& error, double close) noexcept {
+  const double size = norm(error);
+  return size > close ? (kShare * (1 - close / size)) * error : Vec3{};
+}
+
+/// The scene as one user is alone in it.
+Scene own_scene(const Scene& scene, std::size_t user) {
+  Scene own = scene;
+  own.compensation.reset();
+  own.users = {scene.users[user]};
+  return own;
+}
+
+}  // namespace
+
+Prediction::Prediction(const Scene& scene, std::unique_ptr<Server> own)
+    : rigid_(scene.objects.size()), own_(std::move(own)), pushes_(rigid_), corrections_(rigid_), offsets_(scene.msds.size()) {
+  for (const SceneObject& object : scene.objects) {
+    poses_.push_back(object.pose);
+    pasts_.emplace_back(object.pose, object.dof == Dof::none ? 1 : kMostDelay + 1);
+  }
+  for (const SceneMsd& msd : scene.msds) {
+    poses_.push_back({msd.position, {}});
+    pasts_.emplace_back(poses_.back(), kMostDelay + 1);
+  }
+  heard_ = poses_;
+  if (own_->deformables() == nullptr) return;
+  for (const TraceDeformable& mesh : own_->deformables()->meshes())
+    meshes_.push_back({PastShapes(mesh.rest.vertices.size(), kMostDelay, mesh.period), mesh.period});
+}
+
+Result<std::unique_ptr<Prediction>> Prediction::create(const Scene& scene, std::size_t user) {
+  TACTUS_TRY(auto own, Server::create(own_scene(scene, user), {}));
+  return std::unique_ptr<Prediction>(new Prediction(scene, std::move(own)));
+}
+
+void Prediction::hear(std::uint32_t object, const Pose& pose) noexcept {
+  heard_[object] = pose;
+  has_heard_ = true;
+}
+
+void Prediction::hear(std::size_t mesh, Shape displacements, unsigned position_exp, double age) noexcept {
+  meshes_[mesh].past.hear(displacements, position_exp, age);
+  has_heard_ = true;
+}
+
+void Prediction::correct(std::uint32_t delay) noexcept {
+  if (is_broken_) return follow();
+  own_->observe();
+  const TraceFrame& own = own_->frame();
+  for (std::uint32_t i = 0; i < poses_.size(); ++i) pasts_[i].add(own.tick, without_corrections(i));
+  for (std::size_t i = 0; i < meshes_.size(); ++i)
+    if (own.meshes[i].updated) meshes_[i].past.add(own.tick, own.meshes[i].displacements);
+  if (!has_heard_) return show_own();
+  if (delay == 0) return follow();
+  const std::int64_t then = own.tick - std::min(delay, kMostDelay);
+  for (std::uint32_t i = 0; i < rigid_; ++i) correct_rigid(i, then);
+  for (std::size_t i = rigid_; i < poses_.size(); ++i) correct_yielding(i, then);
+  for (std::size_t i = 0; i < meshes_.size(); ++i) correct_shape(i, then);
+}
+
+/// The own pose of this tick, as if nothing had been corrected.
+Pose Prediction::without_corrections(std::size_t object) const noexcept {
+  const Pose& own = own_->frame().objects[object].pose;
+  if (object >= rigid_) return own;
+  const Pose& sum = corrections_[object];
+  return {own.position - sum.position, conjugate(sum.rotation) * own.rotation};
+}
+
+/// As long as there is no other state.
+void Prediction::show_own() noexcept {
+  for (std::size_t i = 0; i < poses_.size(); ++i) poses_[i] = own_->frame().objects[i].pose;
+  for (Mesh& mesh : meshes_) {
+    mesh.is_new = mesh.past.newest() == own_->frame().tick;
+    if (mesh.is_new) mesh.past.show();
+  }
+}
+
+/// The server's state, as it is.
+void Prediction::follow() noexcept {
+  for (std::uint32_t i = 0; i < rigid_; ++i) {
+    const Pose& own = own_->frame().objects[i].pose;
+    move(i, heard_[i].position - own.position, turn_of(heard_[i].rotation * conjugate(own.rotation)));
+  }
+  std::ranges::copy(heard_, poses_.begin());
+  for (Mesh& mesh : meshes_) {
+    mesh.is_new = mesh.past.heard_age() >= 0;
+    if (mesh.is_new) mesh.past.show_heard();
+  }
+}
+
+/// Correct the own pose of this tick.   in  turn  rotation vector [rad]
+void Prediction::move(std::uint32_t object, const Vec3& way, const Vec3& turn) noexcept {
+  const Pose& own = own_->frame().objects[object].pose;
+  poses_[object] = own;
+  if (way == Vec3{} && turn == Vec3{}) return;
+  const Quat rotation = quaternion_of(turn);
+  Pose& sum = corrections_[object];
+  sum = {sum.position + way, normalised(rotation * sum.rotation)};
+  poses_[object] = {own.position + way, normalised(rotation * own.rotation)};
+  own_->rigid().place(object, poses_[object]);
+}
+
+void Prediction::correct_rigid(std::uint32_t object, std::int64_t then) noexcept {
+  const Pose &sum = corrections_[object], &past = pasts_[object].at(then), &heard = heard_[object];
+  const Vec3 way = heard.position - (past.position + sum.position);
+  const Vec3 turn = turn_of(heard.rotation * conjugate(sum.rotation * past.rotation));
+  const bool is_far = norm(way) > kFar || norm(turn) > kFarTurn;
+  move(object, is_far ? way : part(way, kClose), is_far ? turn : part(turn, kCloseTurn));
+}
+
+void Prediction::correct_yielding(std::size_t object, std::int64_t then) noexcept {
+  Vec3& offset = offsets_[object - rigid_];
+  offset = offset + kShare * (heard_[object].position - pasts_[object].at(then).position - offset);
+  poses_[object].position = own_->frame().objects[object].pose.position + offset;
+}
+
+void Prediction::correct_shape(std::size_t number, std::int64_t then) noexcept {
+  auto& [past, period, is_new] = meshes_[number];
+  const std::int64_t now = own_->frame().tick;
+  const bool heard = past.heard_age() >= 0;
+  if (heard) past.compare(static_cast<double>(then) - past.heard_age(), 1 - std::exp(-period * kTick / kSettle));
+  // While the own simulation goes on, its shapes take along what was heard: one new shape in each period.
+  is_new = past.newest() == now || (heard && static_cast<double>(now - past.newest()) >= period);
+  if (is_new) past.show();
+}
+
+void Prediction::step(const DeviceSample& device) noexcept {
+  if (is_broken_) return;
+  own_->touch({&device, 1});
+  for (std::uint32_t i = 0; i < rigid_; ++i)
+    if (pushes_[i] != Vec3{}) own_->rigid().push_centre(i, pushes_[i]);
+  is_broken_ = !own_->step();
+}
+
+}  // namespace tactus::sim

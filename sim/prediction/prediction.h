@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A client's own simulation: what its user touches gives way at once, not after a round trip (client-side prediction; thesis 5.2).
+///
+/// The scene runs at the client as it does at the server, under the device of the client's own user; the pushes of the others on rigid
+/// objects come with the loads (load/load_state.h). So its state is what the server's will be when the device's sample of now has
+/// got there. What the server tells is R old, as an answer to the device, and is compared with the own state of R ago:
+///
+///   rigid objects    e = server's pose - own pose of R ago, with what was corrected since. The own pose follows by the share 1 - exp(-T_s/tau) of e
+///                    in each tick; less than kClose is left as it is: it is the codec's, and moves nothing in the hand
+///   others           shown = own shape + mean of (server's shape - own shape of R ago), time constant tau: elastic objects hold no error of the past
+///
+/// The user feels what is shown. As the own simulation takes the device and not the force of the client, nothing goes round the loop of delay but the
+/// hand. Nothing of it is coded, sent or bounded: only the server's state is.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <tactus/sim/prediction/past_poses.h>
+#include <tactus/sim/prediction/past_shapes.h>
+#include <tactus/sim/scene/scene.h>
+#include <tactus/sim/server.h>
+
+namespace tactus::sim {
+
+class Prediction {
+ public:
+  static constexpr std::uint32_t kMostDelay = 1000;  ///< [ticks] older states of the server correct as if they were so old
+
+  /// in   scene  what is simulated: the server's, as far as it is known
+  ///      user   whose device it is
+  /// err  of Server::create
+  /// space 64 kB for each rigid object that can move, 1 s of shapes for each that yields
+  static Result<std::unique_ptr<Prediction>> create(const Scene& scene, std::size_t user);
+
+  using Shape = std::span<const std::array<std::int32_t, 3>>;  ///< V x 3
+  /// What the server's state at the client is in this tick. What is not told stays.   no allocation
+  void hear(std::uint32_t object, const Pose& pose) noexcept;
+  /// The newest shape of a deformable object.   in  age  [ticks] of it against the poses; displacements  [2^-position_exp m]
+  void hear(std::size_t mesh, Shape displacements, unsigned position_exp, double age) noexcept;
+  /// What other users push a rigid object with [N], in every tick.
+  void push(std::uint32_t object, const Vec3& force) noexcept { pushes_[object] = force; }
+
+  /// Correct the state of this tick by what was heard.   in  delay  [ticks] R; 0: not known, the state is that of the server
+  /// no allocation
+  void correct(std::uint32_t delay) noexcept;
+  std::span<const Pose> poses() const noexcept { return poses_; }  ///< of this tick, one per rigid and one-dimensional object
+  /// The shape of a deformable object that is new in this tick [2^-PastShapes::kExp m]; none: empty.
+  Shape new_shape(std::size_t mesh) const noexcept { return meshes_[mesh].is_new ? meshes_[mesh].past.shown() : Shape(); }
+  /// Advance by one tick. Where the physics breaks down the state is from then on that of the server.
+  void step(const DeviceSample& device) noexcept;
+
+ private:
+  struct Mesh {
+    PastShapes past;
+    double period;  // [ticks]
+    bool is_new = false;
+  };
+  Prediction(const Scene& scene, std::unique_ptr<Server> own);
+  void show_own() noexcept;
+  void follow() noexcept;
+  void correct_rigid(std::uint32_t object, std::int64_t then) noexcept;
+  void correct_yielding(std::size_t object, std::int64_t then) noexcept;
+  void correct_shape(std::size_t number, std::int64_t then) noexcept;
+  void move(std::uint32_t object, const Vec3& way, const Vec3& turn) noexcept;
+  Pose without_corrections(std::size_t object) const noexcept;
+
+  std::size_t rigid_;  // objects; those that follow are one-dimensional
+  std::unique_ptr<Server> own_;
+  std::vector<Pose> heard_, poses_;
+  std::vector<PastPoses> pasts_;   // one per object; of rigid ones without the corrections
+  std::vector<Vec3> pushes_;       // [N] per rigid object
+  std::vector<Pose> corrections_;  // likewise, sum
+  std::vector<Vec3> offsets_;      // [m] per one-dimensional object
+  std::vector<Mesh> meshes_;
+  bool has_heard_ = false, is_broken_ = false;
+};
+
+}  // namespace tactus::sim

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/sim/prediction/prediction.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace tactus::sim {
+namespace {
+
+constexpr std::uint32_t kDelay = 60;  // [ticks]
+
+Scene cube() {
+  Scene out = load_scene(*find_scene("push-cube")).value();
+  out.compensation.emplace().method = CompensationMethod::simulation;
+  return out;
+}
+
+/// Pushes the cube of push-cube along x at a constant speed, from a while after the beginning on.
+DeviceSample pushing(std::int64_t tick) {
+  const double x = -0.03 + 2e-5 * static_cast<double>(std::max<std::int64_t>(0, tick - 200));
+  return {.position = {std::min(x, 0.03), 0, 0.02}};
+}
+
+double distance(const Pose& a, const Pose& b) { return norm(a.position - b.position); }
+
+/// A server of its own, which hears the device late and is heard late.
+struct FarServer {
+  explicit FarServer(const Scene& scene) : server(Server::create(scene, {}).value()), past(scene.objects[0].pose, 1000) {}
+  void step(std::int64_t tick) {
+    server->observe();
+    past.add(tick, server->frame().objects[0].pose);
+    const DeviceSample device = pushing(tick - kDelay / 2);
+    server->touch({&device, 1});
+    ASSERT_TRUE(server->step());
+  }
+  const Pose& heard(std::int64_t tick) const { return past.at(tick - kDelay / 2); }
+
+  std::unique_ptr<Server> server;
+  PastPoses past;
+};
+
+TEST(PastPoses, AreThoseOfTheirTicks) {
+  const auto at = [](double x) { return Pose{{x, 0, 0}, {}}; };
+  PastPoses past(at(0), 4);
+  EXPECT_EQ(past.at(100).position.x, 0);
+  past.add(10, at(1));
+  past.add(11, at(1));  // nothing
+  past.add(20, at(2));
+  EXPECT_EQ(past.at(9).position.x, 0);
+  EXPECT_EQ(past.at(10).position.x, 1);
+  EXPECT_EQ(past.at(19).position.x, 1);
+  EXPECT_EQ(past.at(20).position.x, 2);
+  for (int i = 0; i < 10; ++i) past.add(30 + i, at(3 + i));
+  EXPECT_EQ(past.at(9).position.x, 9) << "the oldest that is kept";
+  EXPECT_EQ(past.at(38).position.x, 11);
+  EXPECT_EQ(past.at(1000).position.x, 12);
+}
+
+TEST(PastShapes, AreComparedBetweenTheirTicks) {
+  PastShapes past(1, 100, 10);
+  for (int i = 1; i <= 5; ++i) {
+    const float shape[3]{0.001F * static_cast<float>(i), 0, 0};
+    past.add(10 * i, shape);
+  }
+  const PastShapes::Displacement heard{3 << 10, 0, 0};  // 0.003 m
+  past.hear({&heard, 1}, 20, 0);
+  EXPECT_EQ(past.heard_age(), 0);
+  past.compare(25, 1);  // own: 0.0025 m
+  EXPECT_LT(past.heard_age(), 0);
+  past.show();
+  const double metre = 1 << PastShapes::kExp;
+  EXPECT_NEAR(past.shown()[0][0] / metre, 0.005 + (3072 / metre - 0.0025), 2 / metre);
+  past.hear({&heard, 1}, 20, 0);
+  past.show_heard();
+  EXPECT_EQ(past.shown()[0][0], 3 << 10);
+}
+
+TEST(Prediction, IsWhatTheServerWillBeWhenTheDeviceHasGotThere) {
+  const Scene scene = cube();
+  FarServer server(scene);
+  const auto own = Prediction::create(scene, 0).value();
+  PastPoses predicted(scene.objects[0].pose, 1000);
+  double farthest = 0;
+  for (std::int64_t tick = 0; tick < 3500; ++tick) {
+    server.step(tick);
+    own->hear(0, server.heard(tick));
+    own->correct(kDelay);
+    predicted.add(tick, own->poses()[0]);
+    own->step(pushing(tick));
+    farthest = std::max(farthest, distance(predicted.at(tick - kDelay / 2), server.past.at(tick)));
+  }
+  EXPECT_GT(server.past.at(3499).position.x, 0.04) << "the cube is pushed";
+  EXPECT_LT(farthest, 1e-5);
+}
+
+/// What the client knows of friction, mass and damping is wrong: it is corrected, a little at a time.
+TEST(Prediction, ComesToTheServersStateWithoutAJump) {
+  const Scene scene = cube();
+  Scene wrong = scene;
+  wrong.objects[0].friction *= 1.2;
+  wrong.objects[0].mass *= 1.1;
+  FarServer server(scene);
+  const auto own = Prediction::create(wrong, 0).value();
+  double farthest = 0, longest = 0;
+  Pose before = scene.objects[0].pose;
+  for (std::int64_t tick = 0; tick < 5000; ++tick) {
+    server.step(tick);
+    own->hear(0, server.heard(tick));
+    own->correct(kDelay);
+    if (tick > 0) longest = std::max(longest, distance(own->poses()[0], before));
+    before = own->poses()[0];
+    farthest = std::max(farthest, distance(before, server.past.at(tick)));
+    own->step(pushing(tick));
+  }
+  EXPECT_LT(longest, 3 * 2e-5) << "[m] in a tick, while the device goes 2e-5";
+  EXPECT_LT(farthest, 2.5e-3) << "what the delay takes alone is 1.2 mm, one way";
+  EXPECT_LT(distance(own->poses()[0], server.past.at(4999)), 1.1e-4);
+}
+
+TEST(Prediction, PutsWhatIsFarAwayToItsPlace) {
+  const Scene scene = cube();
+  const auto own = Prediction::create(scene, 0).value();
+  const Pose there{{2, 1, 0.02}, {}};
+  for (std::int64_t tick = 0; tick < 3; ++tick) {
+    own->hear(0, there);
+    own->correct(kDelay);
+    EXPECT_LT(distance(own->poses()[0], there), 1e-3) << tick;
+    own->step({.position = {-0.05, 0, 0.02}});
+  }
+}
+
+TEST(Prediction, FollowsTheServerWhileTheDelayIsNotKnown) {
+  const Scene scene = cube();
+  const auto own = Prediction::create(scene, 0).value();
+  for (std::int64_t tick = 0; tick < 100; ++tick) {
+    const Pose heard{{1e-4 * static_cast<double>(tick), 0, 0.02}, {}};
+    own->hear(0, heard);
+    own->correct(0);
+    EXPECT_EQ(own->poses()[0].position, heard.position);
+    own->step({.position = {-0.05, 0, 0.02}});
+  }
+}
+
+TEST(Prediction, IsTheServersStateOnceItsPhysicsBrokeDown) {
+  const Scene scene = cube();
+  const auto own = Prediction::create(scene, 0).value();
+  const Pose heard{{0.01, 0, 0.02}, {}};
+  for (std::int64_t tick = 0; tick < 3; ++tick) {
+    own->hear(0, heard);
+    own->push(0, {1e15, 0, 0});
+    own->correct(kDelay);
+    own->step({.position = {-0.05, 0, 0.02}});
+  }
+  own->correct(kDelay);
+  EXPECT_EQ(own->poses()[0].position, heard.position);
+}
+
+TEST(Prediction, WhatRestsIsLeftAlone) {
+  const Scene scene = cube();
+  const auto own = Prediction::create(scene, 0).value();
+  Pose heard = scene.objects[0].pose;
+  heard.position.x += 5e-5;  // within what a codec leaves
+  for (std::int64_t tick = 0; tick < 300; ++tick) {
+    own->hear(0, heard);
+    own->correct(kDelay);
+    own->step({.position = {-0.05, 0, 0.02}});
+  }
+  own->correct(kDelay);
+  EXPECT_EQ(own->poses()[0].position.x, scene.objects[0].pose.position.x);
+}
+
+}  // namespace
+}  // namespace tactus::sim
