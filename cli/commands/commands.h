@@ -35,6 +35,7 @@ void setup_reproduce(Command& app, Action& action);
 void setup_bench(Command& app, Action& action);
 void setup_bench_precision(Command& group, Action& action);
 void setup_bench_stability(Command& group, Action& action);
+void setup_bench_delay(Command& group, Action& action);
 void setup_bench_session(Command& group, Action& action);
 void setup_bench_signals(Command& group, Action& action);
 
