@@ -18,6 +18,7 @@
 #include "cli/commands/replay.h"
 #include "cli/commands/stop.h"
 #include "cli/laboratory/stiffness_map.h"
+#include "cli/options/compensation_option.h"
 #include "cli/options/grip_option.h"
 #include "cli/options/option_needs.h"
 #include "cli/options/options_link.h"
@@ -242,10 +243,7 @@ tl::expected<sim::Scene, Failure> read_scene(const SimOptions& options) {
   }
   for (sim::SceneMsd& object : scene->msds)
     if (options.rate > 0) object.rate = options.rate;
-  if (options.compensation == "none") scene->compensation.reset();
-  else if (!options.compensation.empty())
-    scene->compensation.emplace(scene->compensation.value_or(sim::SceneCompensation{})).method =
-        options.compensation == "stiffness" ? sim::CompensationMethod::stiffness : sim::CompensationMethod::simulation;
+  compensate(*scene, options.compensation);
   return *scene;
 }
 
@@ -477,11 +475,7 @@ void setup_sim(Command& app, Action& action) {
       ->excludes(interpolate);
   add_link(command, "--uplink", options->uplink, "Network from the clients to the server, if it differs");
   add_playout(command, options->playout);
-  command
-      .add_option("--compensation", options->compensation,
-                  "How clients make up for delay: none, stiffness (they render it softer) or simulation (they simulate the scene "
-                  "themselves, and the server corrects them) [the scene's]")
-      ->check(one_of({"none", "stiffness", "simulation"}));
+  add_compensation(command, options->compensation);
 #ifdef TACTUS_HAS_NET
   command
       .add_option("--pcap", options->pcap,

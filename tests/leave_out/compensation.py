@@ -1,0 +1,56 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""A scene that does not ask for it pays nothing for making up for delay: nothing of it runs, over a network that delays.
+
+  compensation.py TACTUS FOLDER
+
+Runs the same scene with each kind of client and looks which functions were entered (callgrind). Without [compensation] these are none of
+loads, of softer rendering and of clients that simulate; with it they are those of the kind that was asked for, or nothing was compared.
+Exits with 77 (skipped) where valgrind is missing, and with instrumented programs.
+"""
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+KINDS = {
+    "loads": r"tactus::(LoadEncoder|LoadDecoder)::|tactus::sim::.*tell_loads",
+    "stiffness": r"tactus::StiffnessReduction::|tactus::sim::Compensation::",
+    "simulation": r"tactus::sim::(Prediction|PastShapes)::",
+}
+WANTED = {"none": set(), "stiffness": {"loads", "stiffness"}, "simulation": {"loads", "simulation"}}
+
+
+def entered(tactus, folder, clients):
+    counts = folder / f"{clients}.counts"
+    subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={counts}", str(tactus), "sim", "push-cube", "--duration", "800ms",
+                    "--link", "delay=20ms", "--compensation", clients, "-o", str(folder / f"{clients}.mcap"), "-f", "-q"],
+                   check=True, capture_output=True, text=True)
+    functions = re.findall(r"^c?fn=\(\d+\) (.+)$", counts.read_text(), re.MULTILINE)
+    return {kind: sorted({f for f in functions if re.search(pattern, f)}) for kind, pattern in KINDS.items()}
+
+
+def main(arguments):
+    if len(arguments) != 2:
+        print(__doc__, file=sys.stderr)
+        return 2
+    if shutil.which("valgrind") is None:
+        print("skipped: valgrind not found")
+        return 77
+    tactus, folder = map(pathlib.Path, arguments)
+    folder.mkdir(parents=True, exist_ok=True)
+    failed = False
+    for clients, wanted in WANTED.items():
+        found = entered(tactus, folder, clients)
+        ran = {kind for kind, functions in found.items() if functions}
+        failed |= ran != wanted
+        print(f"{'ok    ' if ran == wanted else 'FAILED'}  {clients}: " +
+              (", ".join(f"{len(found[kind])} functions of {kind}" for kind in sorted(ran)) or "nothing of it runs"))
+        if ran - wanted:
+            print(*(f"        {f}" for kind in ran - wanted for f in found[kind]), sep="\n")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
