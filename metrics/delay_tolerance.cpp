@@ -21,8 +21,9 @@ std::optional<double> tolerable_round_trip(const Vec3& force, const Vec3& veloci
   return weber * size / (stiffness * against);
 }
 
-void DelayTolerance::Touch::add(std::optional<double> most) {
+void DelayTolerance::Touch::add(std::optional<double> most, double follows) {
   ++ticks_;
+  follows_ += follows;
   if (!most) return;
   ++pressing_;
   for (std::size_t i = 0; i < kRoundTrips.size(); ++i) felt_[i] += kRoundTrips[i] > *most ? 1U : 0U;
@@ -49,7 +50,7 @@ std::optional<Vec3> DelayTolerance::Path::velocity(double tick) const noexcept {
   return (1 / (tick * static_cast<double>(to - from))) * (b - a);
 }
 
-void DelayTolerance::add(const TraceFrame& frame) {
+void DelayTolerance::add(const TraceFrame& frame, const Follows& follows) {
   for (std::uint32_t i = 0; i < frame.users.size(); ++i) {
     const UserSample& user = frame.users[i];
     auto& places = users_[i].places;
@@ -60,9 +61,12 @@ void DelayTolerance::add(const TraceFrame& frame) {
     places.emplace_back(frame.tick, user.device.position);
     const auto velocity = users_[i].velocity(tick_);
     if (!velocity) continue;
-    const auto most = [&](double k) { return tolerable_round_trip(user.server_force, *velocity, k, weber_); };
-    if (user.contact.kind != ContactKind::none) touches_[{i, false, user.contact.object}].add(most(user.contact.stiffness));
-    if (user.surface_contact) touches_[{i, true, user.surface_contact->mesh}].add(most(user.surface_contact->stiffness));
+    const auto add_to = [&](const Pair& pair, double k) {
+      const double share = follows ? follows(user) : 1;
+      touches_[pair].add(tolerable_round_trip(user.server_force, *velocity, share * k, weber_), share);
+    };
+    if (user.contact.kind != ContactKind::none) add_to({i, false, user.contact.object}, user.contact.stiffness);
+    if (user.surface_contact) add_to({i, true, user.surface_contact->mesh}, user.surface_contact->stiffness);
   }
 }
 

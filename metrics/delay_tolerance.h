@@ -7,11 +7,12 @@
 ///
 /// v_p is the speed of the device against f_s: motion along a surface stretches nothing. Equation 4.31 takes force and speed along the
 /// motion, which is the same where they are parallel. Who does not go against the force feels no delay.
-/// A deformable object follows a share K < 1 of the way only (eq. 4.54): it bears more than is told here, 1 / K times.
+/// A deformable object follows a share K < 1 of the way only (eq. 4.54) and bears 1 / K times as much.
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <tuple>
@@ -29,8 +30,11 @@ class DelayTolerance {
   /// in   weber  c, above 0
   DelayTolerance(const TraceInfo& info, double weber) : weber_(weber), tick_(1.0 / info.tick_rate), users_(info.users.size()) {}
 
+  /// K of what a user touches, above 0 to 1.
+  using Follows = std::function<double(const UserSample&)>;
+  /// in   follows  none: K is 1, also of what is deformable
   /// pre  ticks increase.   time O(users)
-  void add(const TraceFrame& frame);
+  void add(const TraceFrame& frame, const Follows& follows = {});
 
   /// What touches what.
   struct Pair {
@@ -43,7 +47,7 @@ class DelayTolerance {
   };
   class Touch {
    public:
-    void add(std::optional<double> most);
+    void add(std::optional<double> most, double follows);
     std::uint64_t ticks() const noexcept { return ticks_; }
     std::uint64_t pressing() const noexcept { return pressing_; }  ///< ticks in which delay adds force
     /// [s] R_max that a share of the pressing ticks does not reach, within kBin; none: longer than kLongest, or nobody pressed
@@ -51,10 +55,13 @@ class DelayTolerance {
     /// Share of all ticks in which a round trip of kRoundTrips[i] is felt.
     double felt(std::size_t i) const noexcept;
 
+    double follows() const noexcept { return ticks_ == 0 ? 1 : follows_ / static_cast<double>(ticks_); }  ///< mean of K
+
     static constexpr double kBin = 1e-4, kLongest = 1;  ///< [s]
 
    private:
     std::uint64_t ticks_ = 0, pressing_ = 0;
+    double follows_ = 0;  // sum
     std::array<std::uint64_t, kRoundTrips.size()> felt_{};
     std::map<std::uint32_t, std::uint64_t> bins_;  // by their number; only those with ticks
   };

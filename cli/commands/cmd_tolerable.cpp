@@ -9,6 +9,9 @@
 #include <tactus/base/shown.h>
 #include <tactus/metrics/delay_tolerance.h>
 #include <tactus/trace/trace_file.h>
+#ifdef TACTUS_HAS_SIM
+#include "cli/commands/tolerable_scene.h"
+#endif
 #include "cli/options/options_codec.h"
 #include "cli/options/units.h"
 #include "cli/output.h"
@@ -27,6 +30,7 @@ using Touch = DelayTolerance::Touch;
 
 struct TolerableOptions {
   std::string input;
+  std::uint64_t seed = 1;
   double weber = 0.1;
   CommonOptions common;
 };
@@ -44,7 +48,8 @@ Json to_json(const TolerableOptions& options, const TraceInfo& info, const Delay
     Json entry{{"user", info.users[pair.user].name},
                {pair.is_mesh ? "mesh" : "object", name_of(info, pair)},
                {"seconds", seconds(info, touch.ticks())},
-               {"pressing_seconds", seconds(info, touch.pressing())}};
+               {"pressing_seconds", seconds(info, touch.pressing())},
+               {"follows", touch.follows()}};
     const auto limit = [&entry, &touch = touch](const char* key, double share) {
       if (const auto most = touch.quantile(share)) entry[key] = *most;
     };
@@ -63,65 +68,107 @@ std::string milliseconds(const Touch& touch, double share) {
   return touch.pressing() == 0 ? "-" : fmt::format("> {:.0f}", 1e3 * Touch::kLongest);
 }
 
-void print_text(const TolerableOptions& options, const TraceInfo& info, const DelayTolerance& tolerance) {
+void print_text(const TolerableOptions& options, const TraceInfo& info, const DelayTolerance& tolerance, bool is_scene) {
   fmt::print(
       "Round trips that the touches of {} bear until {:g} % more force is felt, and the share of the time in contact in which\n"
       "a round trip is felt\n\n",
       shown_path(options.input), 100 * options.weber);
   Table table;
-  std::vector<std::string> heading{"user, object", "contact [s]", "pressing [s]", "bears, 5 % [ms]", "median [ms]"};
+  std::vector<std::string> heading{"user, object", "contact [s]", "pressing [s]", "follows", "bears, 5 % [ms]", "median [ms]"};
   for (const double round_trip : DelayTolerance::kRoundTrips) heading.push_back(fmt::format("{:g} ms", 1e3 * round_trip));
   table.heading(std::move(heading));
   for (const auto& [pair, touch] : tolerance.touches()) {
     std::vector<std::string> row{fmt::format("{}, {}", shown(info.users[pair.user].name), shown(name_of(info, pair))),
                                  fmt::format("{:.2f}", seconds(info, touch.ticks())),
-                                 fmt::format("{:.2f}", seconds(info, touch.pressing())), milliseconds(touch, 0.05),
+                                 fmt::format("{:.2f}", seconds(info, touch.pressing())),
+                                 fmt::format("{:.1f} %", 100 * touch.follows()),
+                                 milliseconds(touch, 0.05),
                                  milliseconds(touch, 0.5)};
     for (std::size_t i = 0; i < DelayTolerance::kRoundTrips.size(); ++i)
       row.push_back(fmt::format("{:.1f} %", 100 * touch.felt(i)));
     table.row(std::move(row));
   }
   table.print(stdout);
-  if (!info.meshes.empty()) fmt::print("\nA deformable object gives way and bears more than that.\n");
+  if (!is_scene && !info.meshes.empty())
+    fmt::print("\nA deformable object gives way and bears more than that; give its scene to see how much.\n");
 }
 
+tl::expected<DelayTolerance, Failure> of_trace(const TolerableOptions& options, TraceReader& reader) {
+  DelayTolerance out(reader.info(), options.weber);
+  Progress progress("tolerable", reader.frame_count(), options.common.progress());
+  TraceFrame frame;
+  std::uint64_t read = 0;
+  for (;; ++read) {
+    const auto more = reader.next(frame);
+    if (!more) return refuse(options.input, more.error());
+    if (!*more) break;
+    out.add(frame);
+    progress.update(read + 1);
+  }
+  TACTUS_CHECK(check_ending(options.input, reader, read));
+  return out;
+}
+
+Outcome report(const TolerableOptions& options, const TraceInfo& info, const DelayTolerance& tolerance, bool is_scene) {
+  if (tolerance.touches().empty())
+    return refuse(shown_path(options.input) + ": nobody touches anything", "Give a recording or a scene with contacts.");
+  if (options.common.json) fmt::print("{}\n", text_of_json(to_json(options, info, tolerance)));
+  else if (!options.common.quiet) print_text(options, info, tolerance, is_scene);
+  return {};
+}
+
+#ifdef TACTUS_HAS_SIM
+Outcome run_scene(const TolerableOptions& options) {
+  TACTUS_TRY(TolerableScene scene, TolerableScene::create(options.input, options.seed));
+  const TraceInfo info = scene.info();
+  DelayTolerance tolerance(info, options.weber);
+  Progress progress("tolerable", static_cast<std::uint64_t>(scene.ticks()), options.common.progress());
+  for (std::int64_t tick = 0; tick < scene.ticks(); ++tick) {
+    TACTUS_TRY(const TraceFrame* frame, scene.next());
+    tolerance.add(*frame, [&](const UserSample& user) { return scene.follows(user); });
+    progress.update(static_cast<std::uint64_t>(tick) + 1);
+  }
+  return report(options, info, tolerance, true);
+}
+#endif
+
 Outcome run(const TolerableOptions& options) {
+#ifdef TACTUS_HAS_SIM
+  if (TolerableScene::is_meant(options.input)) return run_scene(options);
+#endif
   auto reader = TraceReader::open(options.input);
   if (!reader) return refuse(options.input, reader.error());
   if (reader->info().users.empty())
     return refuse(shown_path(options.input) + ": nobody is in this recording", "Give one with a user, as `tactus sim` makes.");
-  DelayTolerance tolerance(reader->info(), options.weber);
-  Progress progress("tolerable", reader->frame_count(), options.common.progress());
-  TraceFrame frame;
-  std::uint64_t read = 0;
-  for (;; ++read) {
-    const auto more = reader->next(frame);
-    if (!more) return refuse(options.input, more.error());
-    if (!*more) break;
-    tolerance.add(frame);
-    progress.update(read + 1);
-  }
-  TACTUS_CHECK(check_ending(options.input, *reader, read));
-  if (tolerance.touches().empty())
-    return refuse(shown_path(options.input) + ": nobody touches anything", "Give a recording with contacts.");
-  if (options.common.json) fmt::print("{}\n", text_of_json(to_json(options, reader->info(), tolerance)));
-  else if (!options.common.quiet) print_text(options, reader->info(), tolerance);
-  return {};
+  TACTUS_TRY(const DelayTolerance tolerance, of_trace(options, *reader));
+  return report(options, reader->info(), tolerance, false);
 }
 
 }  // namespace
 
 void setup_tolerable(Command& app, Action& action) {
   auto options = std::make_shared<TolerableOptions>();
-  Command& command = app.add_command("tolerable", "Tell how much delay the touches of a recording bear until it is felt");
-  command.add_option("TRACE", options->input, "Recording with contacts (MCAP), - is standard input")->type_name("")->required();
+  Command& command =
+      app.add_command("tolerable", "Tell how much delay the touches of a recording or a scene bear until it is felt");
+  command
+      .add_option("TRACE", options->input, "Recording with contacts (MCAP), - is standard input; or a scene, which is simulated")
+      ->type_name("")
+      ->required();
   add_quantity(command, "-c,--weber-fraction", options->weber, Dimension::fraction, "Change of the force that is just felt [10%]")
       ->check(above_zero(Dimension::fraction));
+#ifdef TACTUS_HAS_SIM
+  command.add_option("--seed", options->seed, "Of the hands of a scene")
+      ->check(whole_number(0, UINT64_MAX))
+      ->show_default()
+      ->type_name("N");
+#endif
   add_report_options(command, options->common);
   command.footer(
       "A client learns of an object's motion a round trip late. Meanwhile a hand that presses goes further into what the client\n"
-      "shows, and feels more than at the server (thesis eqs. 4.17 to 4.20, 4.31).\n"
-      "Example:\n  tactus sim push-1dof -o push.mcap && tactus tolerable push.mcap");
+      "shows, and feels more than at the server (thesis eqs. 4.17 to 4.20, 4.31). What is deformable follows only a share of "
+      "the\n"
+      "device's way, and bears as much more; a recording does not tell which share (eq. 4.54).\n"
+      "Examples:\n  tactus sim push-1dof -o push.mcap && tactus tolerable push.mcap\n  tactus tolerable membrane");
   on_chosen<TolerableOptions>(command, action, options, run);
 }
 

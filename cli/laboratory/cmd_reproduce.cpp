@@ -282,10 +282,12 @@ Outcome reproduce_settings(const ReproduceOptions& options) {
 }
 
 Outcome run(const ReproduceOptions& options) {
+  if (options.figure == "all") return reproduce_all(options);
   const bool has_delay = options.figure.starts_with("fig4.");
   const bool draws = has_delay || options.figure == "fig3.3" || options.figure == "fig3.11";
   if (!draws && !options.directory.empty())
     return refuse_arguments("--output: " + options.figure + " is a table, and not drawn", "Leave out --output.");
+  if (is_limit_figure(options.figure)) return reproduce_limits(options);
   if (is_touch_figure(options.figure)) return reproduce_touch(options);
   if (has_delay) return reproduce_delay(options);
   if (options.figure == "fig3.3") return reproduce_traffic(options);
@@ -301,32 +303,33 @@ void setup_reproduce(Command& app, Action& action) {
   auto options = std::make_shared<ReproduceOptions>();
   Command& command = app.add_command("reproduce", "Run an experiment of the thesis and compare the figures");
   command
-      .add_option("FIGURE", options->figure,
-                  "fig3.3: why updates are sent; fig3.6: states or forces; fig3.11: interpolation; fig3.10: updates at the "
-                  "adjusted deadbands; fig3.14, also called table3.3: traffic settings; of delay, fig4.7: impedance of a rigid "
-                  "object at a "
-                  "client, fig4.20: of a deformable one, fig4.22: with compensation, fig4.21: one user presses, fig4.24: two do; "
-                  "in scenes, "
-                  "fig4.1 and fig4.2: what delay does, fig4.6: at constant speed, fig4.8: a cube, fig4.10 to fig4.12: two users "
-                  "at a block, fig4.25: at a "
-                  "one-dimensional object, fig4.27: a membrane")
+      .add_option(
+          "FIGURE", options->figure,
+          "all: every figure in one report. Traffic: fig3.3, why updates are sent; fig3.6, states or forces; fig3.10, "
+          "adjusted deadbands; fig3.11, interpolation; fig3.14, also called table3.3, settings. Delay: fig4.1 and fig4.2, "
+          "what it does; fig4.6, at constant speed; fig4.7, impedance of a rigid object; fig4.8, a cube; fig4.10 to "
+          "fig4.12, two users at a block; fig4.13a, a delay that varies; fig4.16 and fig4.17, limits of stability; fig4.18, "
+          "two users press; fig4.20 and fig4.22, impedance of a deformable object; fig4.21, a press; fig4.23, stiffness of "
+          "a membrane; fig4.24, two users, with compensation; fig4.25, a one-dimensional object; fig4.27, a membrane")
       ->required()
-      ->check(
-          one_of({"fig3.3",  "fig3.6",  "fig3.10", "fig3.11", "fig3.14", "fig4.1",  "fig4.2",  "fig4.6",  "fig4.7",  "fig4.8",
-                  "fig4.10", "fig4.11", "fig4.12", "fig4.20", "fig4.21", "fig4.22", "fig4.24", "fig4.25", "fig4.27", "table3.3"}))
+      ->check(one_of({"all",     "fig3.3",  "fig3.6",  "fig3.10", "fig3.11", "fig3.14",  "fig4.1",  "fig4.2",  "fig4.6",
+                      "fig4.7",  "fig4.8",  "fig4.10", "fig4.11", "fig4.12", "fig4.13a", "fig4.16", "fig4.17", "fig4.18",
+                      "fig4.20", "fig4.21", "fig4.22", "fig4.23", "fig4.24", "fig4.25",  "fig4.27", "table3.3"}))
       ->type_name("");
   command.add_option("--seeds", options->seeds, "Runs per setting")->show_default()->check(whole_number(1, 1000))->type_name("N");
   add_quantity(command, "--length-unit", options->length_unit, Dimension::length,
                "Metres per virtual length unit of the thesis [0.05m]")
       ->check(above_zero(Dimension::length));
   add_grip(command, options->grip, options->grip);
-  command.add_option("-o,--output", options->directory, "Folder for figure and table (fig3.3, fig3.11, fig4)")->type_name("DIR");
+  command.add_option("-o,--output", options->directory, "Folder for figure and table (fig3.3, fig3.11, fig4, all)")
+      ->type_name("DIR");
   add_output_options(command, options->common);
   command.footer(
       "Examples:\n"
       "  tactus reproduce fig3.14 --seeds 5\n"
       "  tactus reproduce fig3.3 -o figures\n"
-      "  tactus reproduce fig4.24 -o figures");
+      "  tactus reproduce fig4.24 -o figures\n"
+      "  tactus reproduce all -o thesis");
   on_chosen<ReproduceOptions>(command, action, options, run);
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <tactus/sim/link/link.h>
 #include "cli/command.h"
 #include "cli/laboratory/plot.h"
 #include "cli/options/options_codec.h"
@@ -38,7 +39,15 @@ Outcome reproduce_adjusted(const ReproduceOptions& options);
 /// Figures of what users of a scene feel behind a network: 4.1, 4.2, 4.6, 4.8, 4.10 to 4.12, 4.25, 4.27.
 bool is_touch_figure(const std::string& figure);
 Outcome reproduce_touch(const ReproduceOptions& options);
-/// Figures 4.7, 4.20, 4.21, 4.22 and 4.24: what delay does to the force at a client, and compensation.
+/// The network of thesis 4.2.4.3 and 4.2.4.4, one way: 25 ms and a gamma-distributed delay that keeps its value for a while.
+sim::LinkOptions varying_network();
+/// Figures 4.13a, 4.16, 4.17 and 4.23: a delay that varies, limits of stability, the stiffness of a surface.
+bool is_limit_figure(const std::string& figure);
+Outcome reproduce_limits(const ReproduceOptions& options);
+/// Figures 4.7, 4.18, 4.20, 4.21, 4.22 and 4.24: what delay does to the force at a client, and compensation.
 Outcome reproduce_delay(const ReproduceOptions& options);
+
+/// All of them, in one report.
+Outcome reproduce_all(const ReproduceOptions& options);
 
 }  // namespace tactus::cli

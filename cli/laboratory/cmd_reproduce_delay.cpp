@@ -232,14 +232,17 @@ tl::expected<DelayFigure, Failure> one_press() {
   return out;
 }
 
+constexpr std::size_t kDrawn = 4;  // every so many ticks, which no eye tells from all
+
 /// Two users at the object of figure 4.18.
 constexpr std::array kTwoRoundTrips{80U, 60U};  // [ms]
 
+const std::array<std::vector<sim::Press>, 2> kTwoPresses{std::vector<sim::Press>{{0.5, 1, 4, 0.03}, {5.5, 6, 7.5, 0.03}},
+                                                         std::vector<sim::Press>{{2, 2.5, 6.8, 0.03}}};
+
 tactus::Result<std::vector<sim::Felt>> press_both(bool delays, std::optional<double> lambda) {
-  const std::array<std::vector<sim::Press>, 2> presses{std::vector<sim::Press>{{0.5, 1, 4, 0.03}, {5.5, 6, 7.5, 0.03}},
-                                                       std::vector<sim::Press>{{2, 2.5, 6.8, 0.03}}};
   std::vector<sim::PressingUser> users;
-  for (std::size_t i = 0; i < 2; ++i) users.push_back(user_with(presses[i], delays ? kTwoRoundTrips[i] : 0));
+  for (std::size_t i = 0; i < 2; ++i) users.push_back(user_with(kTwoPresses[i], delays ? kTwoRoundTrips[i] : 0));
   sim::Pressing pressing = pressing_of(std::move(users), 8.5);
   pressing.compensation = lambda;
   return sim::press(pressing);
@@ -279,12 +282,44 @@ tl::expected<DelayFigure, Failure> two_users() {
   out.table =
       "time_s,server_1_N,without_1_N,lambda_0.01_1_N,lambda_0.1_1_N,server_2_N,without_2_N,lambda_0.01_2_N,lambda_0.1_2_N\n";
   for (std::size_t i = 0; i < (*reference)[0].client.size(); ++i) {
-    std::vector<double>& row = data.rows.emplace_back(std::vector{1e-3 * static_cast<double>(i)});
+    std::vector<double> row{1e-3 * static_cast<double>(i)};
     for (std::size_t user = 0; user < 2; ++user) {
       row.push_back((*reference)[user].server[i]);
       for (const auto& run : runs) row.push_back((*run)[user].client[i]);
     }
     out.table += fmt::format("{:.6g}\n", fmt::join(row, ","));
+    if (i % kDrawn == 0) data.rows.push_back(std::move(row));
+  }
+  out.plot.data = {std::move(data)};
+  return out;
+}
+
+/// What delay alone does to two users at one object.
+tl::expected<DelayFigure, Failure> two_users_delayed() {
+  const auto reference = press_both(false, {}), delayed = press_both(true, {});
+  DelayFigure out{.figure = "fig4.18",
+                  .title = "two users press the same object, round trips 80 ms and 60 ms, without compensation"};
+  if (!reference || !delayed) return refuse(out.figure, (reference ? delayed : reference).error());
+  out.columns = {"delayed"};
+  for (const auto& [name, user, begin, end] : kWhiles) {
+    const auto part = [begin = begin, end = end](const std::vector<double>& force) {
+      return std::span(force).subspan(begin, end - begin);
+    };
+    out.quantities.push_back({fmt::format("{}: peak over that without delay", name),
+                              "%",
+                              {percent_over(peak(part((*delayed)[user].client)), peak(part((*reference)[user].client)))}});
+  }
+  out.plot = {.name = "fig4.18", .program = "delay-press-figure-4.18", .width = 900, .height = 760};
+  PlotData data{"forces", {}};
+  out.table = "time_s,device_1_mm,device_2_mm,no_delay_1_N,delayed_1_N,no_delay_2_N,delayed_2_N\n";
+  for (std::size_t i = 0; i < (*reference)[0].client.size(); ++i) {
+    const double time = 1e-3 * static_cast<double>(i);
+    std::vector<double> row{time};
+    for (const auto& presses : kTwoPresses) row.push_back(1e3 * std::max(0.0, sim::depth_of(presses, time, kFrequency)));
+    for (std::size_t user = 0; user < 2; ++user)
+      row.insert(row.end(), {(*reference)[user].client[i], (*delayed)[user].client[i]});
+    out.table += fmt::format("{:.6g}\n", fmt::join(row, ","));
+    if (i % kDrawn == 0) data.rows.push_back(std::move(row));
   }
   out.plot.data = {std::move(data)};
   return out;
@@ -296,6 +331,10 @@ Outcome reproduce_delay(const ReproduceOptions& options) {
   if (options.figure == "fig4.7") return finish(options, rigid_impedance());
   if (options.figure == "fig4.20") return finish(options, without_compensation());
   if (options.figure == "fig4.22") return finish(options, with_compensation());
+  if (options.figure == "fig4.18") {
+    TACTUS_TRY(const DelayFigure delayed, two_users_delayed());
+    return finish(options, delayed);
+  }
   TACTUS_TRY(const DelayFigure result, options.figure == "fig4.21" ? one_press() : two_users());
   return finish(options, result);
 }

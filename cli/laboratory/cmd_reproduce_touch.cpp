@@ -38,9 +38,6 @@ struct TouchFigure {
 
 /// There and back alike.
 sim::LinkOptions constant(sim::Microseconds round_trip) { return {.delay = round_trip / 2}; }
-/// Thesis 4.2.4.3 and 4.2.4.4: 50 ms and, each way, a gamma-distributed delay that keeps its value for a while.
-sim::LinkOptions varying() { return {.delay = 25'000, .gamma_mean = 12'000, .gamma_deviation = 8'000, .gamma_piece = 500'000}; }
-
 const std::array<TouchFigure, 8>& figures() {
   static const std::array<TouchFigure, 8> all{{
       {"fig4.1", "two users push a block side by side, round trip 100 ms, without compensation", "jenga-together",
@@ -49,8 +46,8 @@ const std::array<TouchFigure, 8>& figures() {
        constant(100'000), false, false, 12},
       {"fig4.8", "the task of the subjects: a cube is pushed forth and back, round trip 100 ms", "push-cube", constant(100'000)},
       {"fig4.10", "two users push a block side by side, round trip 100 ms", "jenga-together", constant(100'000)},
-      {"fig4.11", "one user pushes a block, another presses on it; varying round trip", "jenga-press", varying()},
-      {"fig4.12", "one user pushes a block, another stops it; varying round trip", "jenga-against", varying()},
+      {"fig4.11", "one user pushes a block, another presses on it; varying round trip", "jenga-press", varying_network()},
+      {"fig4.12", "one user pushes a block, another stops it; varying round trip", "jenga-against", varying_network()},
       {"fig4.25", "two users press a one-dimensional object, round trip 50 ms", "msd-1d", constant(50'000), true, true},
       {"fig4.27", "a user presses a membrane and circles over it, round trip 100 ms", "membrane", constant(100'000), true, false,
        12},
@@ -209,6 +206,26 @@ double steady(const std::vector<study::DelayTick>& ticks) {
   return sum / 1000;
 }
 
+constexpr sim::Microseconds kJump = 2'800'000;  // of the delay, in the thesis's figure
+
+/// There and back alike, longer by so much from kJump on.
+sim::LinkOptions jumping(sim::Microseconds round_trip, sim::Microseconds by) {
+  sim::LinkOptions out = constant(round_trip);
+  out.recorded = {{0, 0}, {kJump, by / 2}, {3'600'000'000, 0}};
+  return out;
+}
+
+/// After a jump of the delay: how far the force is off at most [%], and for how long more than c [ms].
+std::array<double, 2> after_jump(const study::DelayRun& run, const study::DelayRun& reference) {
+  double most = 0, ticks = 0;
+  for (std::size_t i = kJump / 1000; i < run.users[0].size(); ++i) {
+    const double off = run.users[0][i].client / reference.users[0][i].client - 1;
+    if (std::abs(off) > std::abs(most)) most = off;
+    ticks += std::abs(off) > kWeber ? 1 : 0;
+  }
+  return {100 * most, ticks};
+}
+
 /// Forces at constant speed: the steady state, which the models describe.
 tl::expected<DelayFigure, Failure> constant_push() {
   constexpr double kBound = 0.018, kDuration = 5;                     // [s] that the thesis's figure bears; of the run
@@ -220,15 +237,16 @@ tl::expected<DelayFigure, Failure> constant_push() {
   const double damping = sim::damping_of_factor(block.mass, block.damping, sim::kTick) / 2;
   const double speed = kWeber * friction / (stiffness * kBound - kWeber * damping);  // 4.31
   const study::DevicePaths paths = constant_speed(scene, speed, kDuration);
-  const auto run = [&](std::optional<sim::Microseconds> round_trip, std::optional<sim::SceneCompensation> compensation) {
-    return study::run_delayed(
-        scene,
-        {.link = constant(round_trip.value_or(0)), .compensation = compensation, .is_local = !round_trip, .paths = &paths});
+  const auto over_link = [&](const sim::LinkOptions& link, std::optional<sim::SceneCompensation> compensation) {
+    return study::run_delayed(scene, {.link = link, .compensation = compensation, .paths = &paths});
+  };
+  const auto run = [&](sim::Microseconds round_trip, std::optional<sim::SceneCompensation> compensation) {
+    return over_link(constant(round_trip), compensation);
   };
   DelayFigure out{.figure = "fig4.6",
                   .title = fmt::format("two users push a block side by side at constant {:.2f} mm/s", 1e3 * speed)};
   out.columns = {"without", "with", "thesis without"};
-  const auto reference = run({}, {});
+  const auto reference = study::run_delayed(scene, {.is_local = true, .paths = &paths});
   if (!reference) return refuse(of.scene, reference.error().error);
   out.plot = {.name = "fig4.6", .program = "delay-constant-push", .width = 960, .height = 380};
   std::vector<study::DelayRun> runs{*reference};
@@ -240,6 +258,15 @@ tl::expected<DelayFigure, Failure> constant_push() {
                               "%",
                               {over(*without), over(*with), round_trip == 18'000 ? std::optional(10.0) : std::nullopt}});
     runs.insert(runs.end(), {*without, *with});
+  }
+  for (const sim::Microseconds by : {20'000, 50'000, 100'000}) {
+    const auto without = over_link(jumping(50'000, by), {}), with = over_link(jumping(50'000, by), kStiffness);
+    if (!without || !with) return refuse(of.scene, (without ? with : without).error().error);
+    const auto [most_without, long_without] = after_jump(*without, *reference);
+    const auto [most_with, long_with] = after_jump(*with, *reference);
+    const std::string name = fmt::format("50 ms, then {} ms: ", (50'000 + by) / 1000);
+    out.quantities.push_back({name + "farthest from the force without delay", "%", {most_without, most_with, {}}});
+    out.quantities.push_back({name + "time more than 10 % from it", "ms", {long_without, long_with, {}}});
   }
   std::vector<double> delays;
   delays.reserve(kRoundTrips.size());

@@ -47,9 +47,13 @@ void print_text(const DelayFigure& figure) {
 
 }  // namespace
 
-Outcome finish(const ReproduceOptions& options, const DelayFigure& figure) {
+void tell(const ReproduceOptions& options, const DelayFigure& figure) {
   if (options.common.json) fmt::print("{}\n", text_of_json(to_json(figure)));
   else print_text(figure);
+}
+
+Outcome finish(const ReproduceOptions& options, const DelayFigure& figure) {
+  tell(options, figure);
   return write_figure(options, figure.plot, {{figure.figure + std::string(".csv"), figure.table}});
 }
 

@@ -32,7 +32,9 @@ struct DelayFigure {
   }
 };
 
-/// Print the numbers; write plot and table to the folder of the options.
+/// Print the numbers.
+void tell(const ReproduceOptions& options, const DelayFigure& figure);
+/// The same; write plot and table to the folder of the options.
 Outcome finish(const ReproduceOptions& options, const DelayFigure& figure);
 
 }  // namespace tactus::cli

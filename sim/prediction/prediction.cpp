@@ -8,8 +8,8 @@
 namespace tactus::sim {
 namespace {
 
-constexpr double kSettle = 0.1;  // tau [s]
-const double kShare = 1 - std::exp(-kTick / kSettle);
+constexpr double kSettle = 0.1, kSettleYielding = 0.02;  // tau [s]: a rigid object, and those that yield
+const double kShare = 1 - std::exp(-kTick / kSettle), kShareYielding = 1 - std::exp(-kTick / kSettleYielding);
 constexpr double kClose = 1e-4, kCloseTurn = 2e-3;  // [m, rad]
 constexpr double kFar = 0.3, kFarTurn = 1.0;        // [m, rad] then the object is put to its place
 
@@ -148,7 +148,7 @@ void Prediction::correct_rigid(std::uint32_t object, std::int64_t then) noexcept
 
 void Prediction::correct_yielding(std::size_t object, std::int64_t then) noexcept {
   Vec3& offset = offsets_[object - rigid_];
-  offset = offset + kShare * (heard_[object].position - pasts_[object].at(then).position - offset);
+  offset = offset + kShareYielding * (heard_[object].position - pasts_[object].at(then).position - offset);
   poses_[object].position = own_->frame().objects[object].pose.position + offset;
 }
 
@@ -156,7 +156,7 @@ void Prediction::correct_shape(std::size_t number, std::int64_t then) noexcept {
   auto& [past, period, is_new] = meshes_[number];
   const std::int64_t now = own_->frame().tick;
   const bool heard = past.heard_age() >= 0;
-  if (heard) past.compare(static_cast<double>(then) - past.heard_age(), 1 - std::exp(-period * kTick / kSettle));
+  if (heard) past.compare(static_cast<double>(then) - past.heard_age(), 1 - std::exp(-period * kTick / kSettleYielding));
   // While the own simulation goes on, its shapes take along what was heard: one new shape in each period.
   is_new = past.newest() == now || (heard && static_cast<double>(now - past.newest()) >= period);
   if (is_new) past.show();

@@ -5,12 +5,12 @@
 /// objects come with the loads (load/load_state.h). So its state is what the server's will be when the device's sample of now has
 /// got there. What the server tells is R old, as an answer to the device, and is compared with the own state of R ago:
 ///
-///   rigid objects    e = server's pose - own pose of R ago, with what was corrected since. The own pose follows by the share 1 - exp(-T_s/tau) of e
-///                    in each tick; less than kClose is left as it is: it is the codec's, and moves nothing in the hand
-///   others           shown = own shape + mean of (server's shape - own shape of R ago), time constant tau: elastic objects hold no error of the past
+///   rigid objects  e = server's pose - own pose of R ago, with all that was corrected since. In each tick the own pose follows by the
+///                  share 1 - exp(-T_s / 0.1 s) of e: no force jumps. Less than 0.1 mm and 2 mrad are the codec's, and left alone.
+///   others         shown = own shape + mean of (server's shape - own shape of R ago), over 0.02 s: elastic objects keep no error
 ///
-/// The user feels what is shown. As the own simulation takes the device and not the force of the client, nothing goes round the loop of delay but the
-/// hand. Nothing of it is coded, sent or bounded: only the server's state is.
+/// The user feels what is shown. The own simulation takes the device, not the force of the client, so that nothing but the hand goes round
+/// the loop with the delay in it. Nothing of this is coded, sent or bounded: bounds are those of the server's state.
 #pragma once
 
 #include <array>

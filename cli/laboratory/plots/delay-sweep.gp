@@ -7,11 +7,12 @@ set label 1 '━●━ nothing' at screen 0.17,0.978 center textcolor linetype 2
 set label 2 '━■━ softer' at screen 0.36,0.978 center textcolor linetype 3
 set label 3 '━▲━ own simulation' at screen 0.58,0.978 center textcolor linetype 1
 set label 4 '╍△╍ the same, 10 % off' at screen 0.84,0.978 center textcolor linetype 4
-set yrange [0:*]
+set logscale y
 set xrange [0:*]
 do for [i=1:|scenes|] {
   if (i == |scenes|) { set xlabel 'round trip  [ms]' } else { unset xlabel }
   do for [q=0:1] {
+    if (q == 0) { set yrange [0.05:1000] } else { set yrange [0.002:50] }
     set ylabel (q == 0 ? scenes[i].': force  [%]' : 'seen away  [mm]') noenhanced
     plot $errors index i-1 using 1:(column(2 + 4 * q)) with linespoints linetype 2 pointtype 7 pointsize 0.6 notitle, \
          $errors index i-1 using 1:(column(3 + 4 * q)) with linespoints linetype 3 pointtype 5 pointsize 0.6 notitle, \

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A scene in place of a recording: simulated without delay, with its virtual hands; and what its objects yield by.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <tactus/sim/deformable/stiffness_map.h>
+#include <tactus/sim/scene/scene.h>
+#include <tactus/sim/simulation.h>
+#include "cli/report/messages.h"
+
+namespace tactus::cli {
+
+class TolerableScene {
+ public:
+  /// Whether the argument of a command means a scene: a .toml file, or the name of one that comes with Tactus.
+  static bool is_meant(const std::string& argument);
+  /// err  of load_scene(), Simulation::create(), stiffness_map(); the scene has no users
+  static tl::expected<TolerableScene, Failure> create(const std::string& name, std::uint64_t seed);
+
+  TraceInfo info() const { return simulation_.info(); }
+  std::int64_t ticks() const noexcept { return simulation_.ticks(); }
+  /// The next tick; valid until the next call.   err  of Simulation::step
+  tl::expected<const TraceFrame*, Failure> next();
+  /// K: share of the device's way that what a user touches follows (thesis eq. 4.54); 1 for rigid objects.
+  double follows(const UserSample& user) const noexcept;
+
+ private:
+  TolerableScene(std::string name, sim::Scene scene, sim::Simulation simulation)
+      : name_(std::move(name)), scene_(std::move(scene)), simulation_(std::move(simulation)) {}
+
+  std::string name_;
+  sim::Scene scene_;
+  sim::Simulation simulation_;
+  std::vector<sim::StiffnessMap> maps_;  // one per deformable object
+};
+
+}  // namespace tactus::cli
