@@ -57,8 +57,10 @@ class Client {
   double stiffness(std::size_t user) const noexcept { return stiffness_[user]; }
   const Vec3& felt(std::size_t user) const noexcept { return felt_[user]; }  ///< [N] rendered in the last touch()
   std::span<const Pose> poses() const noexcept { return poses_; }            ///< as shown, one per object of the trace
-  const Pose& watched(std::size_t user) const noexcept;                      ///< pose of the object that this user looks at
-  Replica& replica() noexcept { return receiver_->replica(); }               ///< pre  there is a codec
+  /// What it received for the tick that it shows: the same, unless it simulates itself.
+  std::span<const Pose> received() const noexcept { return prediction_ ? prediction_->heard() : poses_; }
+  const Pose& watched(std::size_t user) const noexcept;         ///< pose of the object that this user looks at
+  Replica& replica() noexcept { return receiver_->replica(); }  ///< pre  there is a codec
 
  private:
   Client(Server& server, std::optional<Receiver> receiver);

@@ -140,7 +140,7 @@ tl::expected<std::span<const Packet>, Diagnostic> Simulation::step(std::span<con
 
 const TraceFrame& Simulation::frame() const noexcept { return impl_->server->frame(); }
 std::span<const Pose> Simulation::client_poses() const noexcept { return impl_->client(0).poses(); }
-std::span<const Pose> Simulation::client_poses(std::size_t user) const noexcept { return impl_->client(user).poses(); }
+std::span<const Pose> Simulation::received_poses(std::size_t user) const noexcept { return impl_->client(user).received(); }
 const Pose& Simulation::watched(std::size_t user) const noexcept { return impl_->client(user).watched(user); }
 std::int64_t Simulation::shown_tick(std::size_t user) const noexcept {
   return impl_->network ? impl_->shown[user] : impl_->server->frame().tick;

@@ -69,10 +69,10 @@ class Simulation {
   /// The same with one user's device, and the hands of the others.   pre  user < users of the scene
   tl::expected<std::span<const Packet>, Diagnostic> step(std::size_t user, const DeviceSample& device);
 
-  const TraceFrame& frame() const noexcept;                             ///< pre  step() was called
-  std::span<const Pose> client_poses() const noexcept;                  ///< as shown at the client in that tick, one per object
-  std::span<const Pose> client_poses(std::size_t user) const noexcept;  ///< at the client of that user
-  const Pose& watched(std::size_t user) const noexcept;                 ///< pose of the object that this user looks at, as shown
+  const TraceFrame& frame() const noexcept;                               ///< pre  step() was called
+  std::span<const Pose> client_poses() const noexcept;                    ///< as shown at the client in that tick, one per object
+  std::span<const Pose> received_poses(std::size_t user) const noexcept;  ///< at that user's client, of shown_tick()
+  const Pose& watched(std::size_t user) const noexcept;  ///< pose of the object that this user looks at, as shown
   /// The tick whose state the user's client shows: with a network one of the past, -1 before the first.
   std::int64_t shown_tick(std::size_t user) const noexcept;
   double share_rendered(std::size_t user) const noexcept;  ///< of the force: less than 1 while the data are old

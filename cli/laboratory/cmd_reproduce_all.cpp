@@ -56,18 +56,22 @@ constexpr std::array kChapters{
 /// Drawn by `tactus reproduce FIGURE -o`; the others are tables.
 bool is_drawn(std::string_view figure) { return figure.starts_with("fig4.") || figure == "fig3.3" || figure == "fig3.11"; }
 
+/// " --seeds 3", unless they are as many as without the option.
+std::string seeds_option(const ReproduceOptions& options) {
+  return options.seeds == ReproduceOptions().seeds ? "" : fmt::format(" --seeds {}", options.seeds);
+}
+
 std::string heading(const ReproduceOptions& options) {
   return fmt::format(
       "# The thesis, figure by figure\n\n"
-      "Made by `tactus reproduce all --seeds {} -o DIR`, each section by the command in it: what comes out here beside the "
-      "numbers of the "
+      "Made by `tactus reproduce all{} -o DIR`, each section by the command in it: what comes out here beside the numbers of the "
       "thesis, where it gives any. Everything is deterministic. Differences are told where they are: "
       "[rates](../../README.md), [delay](../delay/README.md).\n\n"
-      "Reproduced elsewhere: figure 2.2 and eqs. 4.37 and 4.38 ([stability](../stability/report.md)), figures 3.19 to 3.26 "
-      "([deformable objects](../deformable/README.md)), accuracy of the physics ([precision](../precision/README.md)). What "
-      "needs people is not "
-      "reproduced: the ratings of figures 3.10, 3.14, 3.26, 4.8 and 4.26, and tables 4.1 and 4.2.\n",
-      options.seeds);
+      "Reproduced elsewhere: figure 2.2 and eqs. 4.37 and 4.38 ([stability](../stability/report.md)), figures 3.18 and 3.20 "
+      "([deformable objects](../deformable/README.md)). What needs people is not reproduced: the ratings of chapter 3, figures "
+      "4.8 and "
+      "4.26, and tables 4.1 and 4.2.\n",
+      seeds_option(options));
 }
 
 tl::expected<std::string, Failure> section(const Chapter& chapter, const ReproduceOptions& options) {
@@ -78,9 +82,8 @@ tl::expected<std::string, Failure> section(const Chapter& chapter, const Reprodu
   if (!done) return refuse_arguments(fmt::format("{}: {}", chapter.figure, done.error().message()), "Run the command again.");
   if (done->status != 0)
     return refuse_arguments(fmt::format("{}: {}", chapter.figure, done->error), "Run this figure alone to see more.");
-  std::string out =
-      fmt::format("\n## Figure {}: {}\n\n`tactus reproduce {}{}`\n", chapter.figure + 3, chapter.title, chapter.figure,
-                  options.seeds == ReproduceOptions().seeds ? "" : fmt::format(" --seeds {}", options.seeds));
+  std::string out = fmt::format("\n## Figure {}: {}\n\n`tactus reproduce {}{}`\n", chapter.figure + 3, chapter.title,
+                                chapter.figure, seeds_option(options));
   if (*chapter.remark != '\0') out += fmt::format("\n{}\n", chapter.remark);
   out += fmt::format("\n```\n{}```\n", done->out);
   const std::string picture = std::string(chapter.figure) + ".svg";

@@ -42,7 +42,7 @@ void NetworkJudge::add(const sim::Simulation& simulation, sim::SessionNetwork& n
       continue;
     }
     for (PlayedShapes& shapes : user.shapes) shapes.look(network.client(i).receiver()->replica(), truth->tick);
-    if (std::exchange(user.judged, truth->tick) < truth->tick) report.errors.add(*truth, simulation.client_poses(i));
+    if (std::exchange(user.judged, truth->tick) < truth->tick) report.errors.add(*truth, simulation.received_poses(i));
     report.delay_sum += 1e-3 * static_cast<double>(now.tick - truth->tick);
     ++report.shown;
   }

@@ -47,6 +47,7 @@ class Prediction {
   /// Correct the state of this tick by what was heard.   in  delay  [ticks] R; 0: not known, the state is that of the server
   /// no allocation
   void correct(std::uint32_t delay) noexcept;
+  std::span<const Pose> heard() const noexcept { return heard_; }  ///< poses, as they were told
   std::span<const Pose> poses() const noexcept { return poses_; }  ///< of this tick, one per rigid and one-dimensional object
   /// The shape of a deformable object that is new in this tick [2^-PastShapes::kExp m]; none: empty.
   Shape new_shape(std::size_t mesh) const noexcept { return meshes_[mesh].is_new ? meshes_[mesh].past.shown() : Shape(); }

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # $errors: a set per scene: round trip [ms], then for the four kinds of clients the error of the force [%] and the distance at which the
 # touched point is seen from its place [mm]. scenes: their names.
-set multiplot layout |scenes|,2 margins 0.09,0.98,0.055,0.945 spacing 0.10,0.045
+set multiplot layout |scenes|,2 margins 0.105,0.98,0.055,0.945 spacing 0.125,0.045
 unset key
 set label 1 '━●━ nothing' at screen 0.17,0.978 center textcolor linetype 2
 set label 2 '━■━ softer' at screen 0.36,0.978 center textcolor linetype 3
