@@ -237,12 +237,15 @@ constexpr std::size_t kDrawn = 4;  // every so many ticks, which no eye tells fr
 /// Two users at the object of figure 4.18.
 constexpr std::array kTwoRoundTrips{80U, 60U};  // [ms]
 
-const std::array<std::vector<sim::Press>, 2> kTwoPresses{std::vector<sim::Press>{{0.5, 1, 4, 0.03}, {5.5, 6, 7.5, 0.03}},
-                                                         std::vector<sim::Press>{{2, 2.5, 6.8, 0.03}}};
+const std::array<std::vector<sim::Press>, 2>& both_presses() {
+  static const std::array<std::vector<sim::Press>, 2> presses{std::vector<sim::Press>{{0.5, 1, 4, 0.03}, {5.5, 6, 7.5, 0.03}},
+                                                              std::vector<sim::Press>{{2, 2.5, 6.8, 0.03}}};
+  return presses;
+}
 
 tactus::Result<std::vector<sim::Felt>> press_both(bool delays, std::optional<double> lambda) {
   std::vector<sim::PressingUser> users;
-  for (std::size_t i = 0; i < 2; ++i) users.push_back(user_with(kTwoPresses[i], delays ? kTwoRoundTrips[i] : 0));
+  for (std::size_t i = 0; i < 2; ++i) users.push_back(user_with(both_presses()[i], delays ? kTwoRoundTrips[i] : 0));
   sim::Pressing pressing = pressing_of(std::move(users), 8.5);
   pressing.compensation = lambda;
   return sim::press(pressing);
@@ -315,7 +318,7 @@ tl::expected<DelayFigure, Failure> two_users_delayed() {
   for (std::size_t i = 0; i < (*reference)[0].client.size(); ++i) {
     const double time = 1e-3 * static_cast<double>(i);
     std::vector<double> row{time};
-    for (const auto& presses : kTwoPresses) row.push_back(1e3 * std::max(0.0, sim::depth_of(presses, time, kFrequency)));
+    for (const auto& presses : both_presses()) row.push_back(1e3 * std::max(0.0, sim::depth_of(presses, time, kFrequency)));
     for (std::size_t user = 0; user < 2; ++user)
       row.insert(row.end(), {(*reference)[user].client[i], (*delayed)[user].client[i]});
     out.table += fmt::format("{:.6g}\n", fmt::join(row, ","));

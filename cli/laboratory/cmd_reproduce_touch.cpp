@@ -22,8 +22,8 @@ namespace {
 
 namespace study = sim::study;
 
-constexpr double kWeber = 0.1;              // c
-const sim::SceneCompensation kStiffness{};  // with the thesis's adaptation
+constexpr double kWeber = 0.1;                  // c
+constexpr sim::SceneCompensation kStiffness{};  // with the thesis's adaptation
 
 /// A figure that runs a scene.
 struct TouchFigure {

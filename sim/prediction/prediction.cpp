@@ -9,7 +9,7 @@ namespace tactus::sim {
 namespace {
 
 constexpr double kSettle = 0.1, kSettleYielding = 0.02;  // tau [s]: a rigid object, and those that yield
-const double kShare = 1 - std::exp(-kTick / kSettle), kShareYielding = 1 - std::exp(-kTick / kSettleYielding);
+constexpr double kShare = kTick / kSettle, kShareYielding = kTick / kSettleYielding;
 constexpr double kClose = 1e-4, kCloseTurn = 2e-3;  // [m, rad]
 constexpr double kFar = 0.3, kFarTurn = 1.0;        // [m, rad] then the object is put to its place
 

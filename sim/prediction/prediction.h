@@ -6,7 +6,7 @@
 /// got there. What the server tells is R old, as an answer to the device, and is compared with the own state of R ago:
 ///
 ///   rigid objects  e = server's pose - own pose of R ago, with all that was corrected since. In each tick the own pose follows by the
-///                  share 1 - exp(-T_s / 0.1 s) of e: no force jumps. Less than 0.1 mm and 2 mrad are the codec's, and left alone.
+///                  share T_s / 0.1 s of e: no force jumps. Less than 0.1 mm and 2 mrad are the codec's, and left alone.
 ///   others         shown = own shape + mean of (server's shape - own shape of R ago), over 0.02 s: elastic objects keep no error
 ///
 /// The user feels what is shown. The own simulation takes the device, not the force of the client, so that nothing but the hand goes round

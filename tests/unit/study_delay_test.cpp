@@ -13,7 +13,7 @@ namespace tactus::sim::study {
 namespace {
 
 constexpr double kWeber = 0.1;
-const SceneCompensation kStiffness{}, kSimulation{.method = CompensationMethod::simulation};
+constexpr SceneCompensation kStiffness{}, kSimulation{.method = CompensationMethod::simulation};
 
 Scene scene(const std::string& name) { return load_scene(*find_scene(name)).value(); }
 
