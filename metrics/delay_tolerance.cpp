@@ -62,7 +62,7 @@ void DelayTolerance::add(const TraceFrame& frame, const Follows& follows) {
     const auto velocity = users_[i].velocity(tick_);
     if (!velocity) continue;
     const auto add_to = [&](const Pair& pair, double k) {
-      const double share = follows ? follows(user) : 1;
+      const double share = follows ? follows(pair, user) : 1;
       touches_[pair].add(tolerable_round_trip(user.server_force, *velocity, share * k, weber_), share);
     };
     if (user.contact.kind != ContactKind::none) add_to({i, false, user.contact.object}, user.contact.stiffness);

@@ -30,12 +30,6 @@ class DelayTolerance {
   /// in   weber  c, above 0
   DelayTolerance(const TraceInfo& info, double weber) : weber_(weber), tick_(1.0 / info.tick_rate), users_(info.users.size()) {}
 
-  /// K of what a user touches, above 0 to 1.
-  using Follows = std::function<double(const UserSample&)>;
-  /// in   follows  none: K is 1, also of what is deformable
-  /// pre  ticks increase.   time O(users)
-  void add(const TraceFrame& frame, const Follows& follows = {});
-
   /// What touches what.
   struct Pair {
     std::uint32_t user = 0;
@@ -45,6 +39,12 @@ class DelayTolerance {
       return std::tie(a.user, a.is_mesh, a.object) < std::tie(b.user, b.is_mesh, b.object);
     }
   };
+  /// K of what a user touches, 0 to 1.
+  using Follows = std::function<double(const Pair&, const UserSample&)>;
+  /// in   follows  none: K is 1, also of what is deformable
+  /// pre  ticks increase.   time O(users)
+  void add(const TraceFrame& frame, const Follows& follows = {});
+
   class Touch {
    public:
     void add(std::optional<double> most, double follows);

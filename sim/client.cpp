@@ -126,9 +126,10 @@ std::span<const GridForce> Client::load(std::uint32_t object) const noexcept {
 
 /// Show what the client's own simulation makes of it.   pre  prediction_
 void Client::predict(std::size_t user, std::uint32_t delay) noexcept {
-  for (std::uint32_t i = 0; i < scene_.objects.size(); ++i)
-    if (const auto known = load(i); !known.empty())
-      prediction_->push(i, others_push(known, user, shown_by_->scene()->loads->force_exp));
+  for (std::uint32_t i = 0; i < scene_.objects.size(); ++i) {
+    const auto known = load(i);
+    prediction_->push(i, known.empty() ? Vec3{} : others_push(known, user, shown_by_->scene()->loads->force_exp));
+  }
   prediction_->correct(delay);
   for (std::uint32_t i = 0; i < poses_.size(); ++i) show_pose(i, prediction_->poses()[i]);
   for (std::size_t i = 0; i < shown_.size(); ++i)

@@ -48,7 +48,10 @@ class Client {
     double share = 1;         ///< of it
     std::uint32_t delay = 0;  ///< [ticks] of what is shown; 0: there is none to make up for
   };
-  /// Move one user's probe, and render its force.   no allocation
+  /// A network shows nothing any more: the receiver of the last show() is gone, or not to be read. What was shown stays.
+  void show_nothing() noexcept { shown_by_ = nullptr; }
+  /// Move one user's probe, and render its force.   pre  the receiver of the last show() lives, or show_nothing() was called
+  /// no allocation, but by physics of its own (CompensationMethod::simulation) in its first ticks; it takes one call per tick
   void touch(std::size_t user, const DeviceSample& device, const Rendering& how) noexcept;
   /// What the user's device felt in the last touch(), if anything.
   const std::optional<DeviceContact>& contact(std::size_t user) const noexcept { return contacts_[user]; }

@@ -114,6 +114,7 @@ void Simulation::Impl::render(std::span<const DeviceSample> at_clients) noexcept
     shares[i] = view.force_share;
     delays[i] = view.delay;
     if (view.tick >= 0) clients[i]->show(*view.receiver, view.tick);
+    else clients[i]->show_nothing();
     clients[i]->touch(i, at_clients[i], {view.force_share, view.delay});
     contacts[i] = clients[i]->contact(i);
   }

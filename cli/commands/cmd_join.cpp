@@ -236,6 +236,7 @@ Outcome Visit::render(std::uint64_t now) {
   Receiver& receiver = *session_.receiver();
   shown_ = session_.shown_tick(now);
   if (shown_ >= 0) own.client->show(receiver, shown_);
+  else own.client->show_nothing();
   const auto delay =
       static_cast<std::uint32_t>((session_.round_trip_shown(now).value_or(0) * sim::kTickRate + 500'000) / 1'000'000);
   own.client->touch(own.user, own.sample, {session_.force_share(now), delay});

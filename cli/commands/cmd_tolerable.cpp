@@ -125,7 +125,7 @@ Outcome run_scene(const TolerableOptions& options) {
   Progress progress("tolerable", static_cast<std::uint64_t>(scene.ticks()), options.common.progress());
   for (std::int64_t tick = 0; tick < scene.ticks(); ++tick) {
     TACTUS_TRY(const TraceFrame* frame, scene.next());
-    tolerance.add(*frame, [&](const UserSample& user) { return scene.follows(user); });
+    tolerance.add(*frame, [&](const Pair& pair, const UserSample& user) { return scene.follows(pair, user); });
     progress.update(static_cast<std::uint64_t>(tick) + 1);
   }
   return report(options, info, tolerance, true);

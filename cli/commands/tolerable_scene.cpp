@@ -2,13 +2,15 @@
 #include "cli/commands/tolerable_scene.h"
 
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 namespace tactus::cli {
 
 bool TolerableScene::is_meant(const std::string& argument) {
   if (argument.ends_with(".toml")) return true;
-  return !std::filesystem::exists(argument) && sim::find_scene(argument).has_value();
+  std::error_code ignored;
+  return !std::filesystem::exists(argument, ignored) && sim::find_scene(argument).has_value();
 }
 
 tl::expected<TolerableScene, Failure> TolerableScene::create(const std::string& name, std::uint64_t seed) {
@@ -34,9 +36,11 @@ tl::expected<const TraceFrame*, Failure> TolerableScene::next() {
   return &simulation_.frame();
 }
 
-double TolerableScene::follows(const UserSample& user) const noexcept {
-  if (const auto& at = user.surface_contact)
-    return at->stiffness / (at->stiffness + maps_[at->mesh].at(at->triangle, at->weights));
+double TolerableScene::follows(const DelayTolerance::Pair& pair, const UserSample& user) const noexcept {
+  if (pair.is_mesh) {
+    const SurfaceContact& at = *user.surface_contact;
+    return at.stiffness / (at.stiffness + maps_[at.mesh].at(at.triangle, at.weights));
+  }
   if (user.contact.object < scene_.objects.size()) return 1;
   const double object = scene_.msds[user.contact.object - scene_.objects.size()].object.stiffness;
   return user.contact.stiffness / (user.contact.stiffness + object);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <tactus/metrics/delay_tolerance.h>
 #include <tactus/sim/deformable/stiffness_map.h>
 #include <tactus/sim/scene/scene.h>
 #include <tactus/sim/simulation.h>
@@ -25,7 +26,7 @@ class TolerableScene {
   /// The next tick; valid until the next call.   err  of Simulation::step
   tl::expected<const TraceFrame*, Failure> next();
   /// K: share of the device's way that what a user touches follows (thesis eq. 4.54); 1 for rigid objects.
-  double follows(const UserSample& user) const noexcept;
+  double follows(const DelayTolerance::Pair& pair, const UserSample& user) const noexcept;
 
  private:
   TolerableScene(std::string name, sim::Scene scene, sim::Simulation simulation)

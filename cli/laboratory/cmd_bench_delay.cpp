@@ -313,7 +313,7 @@ Outcome run(const DelayBenchOptions& options) {
   const bool writes = !options.directory.empty();
   if (writes) {
     TACTUS_CHECK(make_folder(options.directory));
-    for (const char* file : {"/report.md", "/delay.csv"})
+    for (const char* file : {"/report.md", "/delay.csv", "/delay.svg"})
       TACTUS_CHECK(OutputFile::check_free(options.directory + file, options.common.existing()));
   }
   TACTUS_TRY(const auto scenes, load(options));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <utility>
 
 namespace tactus::sim {
@@ -82,7 +83,7 @@ void Prediction::hear(std::size_t mesh, Shape displacements, unsigned position_e
 }
 
 void Prediction::correct(std::uint32_t delay) noexcept {
-  if (is_broken_) return follow();
+  if (is_broken_) return tell_heard();
   own_->observe();
   const TraceFrame& own = own_->frame();
   for (std::uint32_t i = 0; i < poses_.size(); ++i) pasts_[i].add(own.tick, without_corrections(i));
@@ -119,6 +120,10 @@ void Prediction::follow() noexcept {
     const Pose& own = own_->frame().objects[i].pose;
     move(i, heard_[i].position - own.position, turn_of(heard_[i].rotation * conjugate(own.rotation)));
   }
+  tell_heard();
+}
+
+void Prediction::tell_heard() noexcept {
   std::ranges::copy(heard_, poses_.begin());
   for (Mesh& mesh : meshes_) {
     mesh.is_new = mesh.past.heard_age() >= 0;
@@ -162,12 +167,14 @@ void Prediction::correct_shape(std::size_t number, std::int64_t then) noexcept {
   if (is_new) past.show();
 }
 
-void Prediction::step(const DeviceSample& device) noexcept {
+void Prediction::step(const DeviceSample& device) noexcept try {
   if (is_broken_) return;
   own_->touch({&device, 1});
   for (std::uint32_t i = 0; i < rigid_; ++i)
     if (pushes_[i] != Vec3{}) own_->rigid().push_centre(i, pushes_[i]);
   is_broken_ = !own_->step();
+} catch (const std::bad_alloc&) {
+  is_broken_ = true;
 }
 
 }  // namespace tactus::sim

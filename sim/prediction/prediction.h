@@ -51,7 +51,7 @@ class Prediction {
   std::span<const Pose> poses() const noexcept { return poses_; }  ///< of this tick, one per rigid and one-dimensional object
   /// The shape of a deformable object that is new in this tick [2^-PastShapes::kExp m]; none: empty.
   Shape new_shape(std::size_t mesh) const noexcept { return meshes_[mesh].is_new ? meshes_[mesh].past.shown() : Shape(); }
-  /// Advance by one tick. Where the physics breaks down the state is from then on that of the server.
+  /// Advance by one tick. Where the physics breaks down, or memory runs out, the state is from then on that of the server.
   void step(const DeviceSample& device) noexcept;
 
  private:
@@ -63,6 +63,7 @@ class Prediction {
   Prediction(const Scene& scene, std::unique_ptr<Server> own);
   void show_own() noexcept;
   void follow() noexcept;
+  void tell_heard() noexcept;
   void correct_rigid(std::uint32_t object, std::int64_t then) noexcept;
   void correct_yielding(std::size_t object, std::int64_t then) noexcept;
   void correct_shape(std::size_t number, std::int64_t then) noexcept;

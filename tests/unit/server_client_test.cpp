@@ -88,6 +88,30 @@ TEST(ServerAndClient, WithOneDimensionalObjectsToo) {
   expect_the_same(scene, 3000);
 }
 
+/// A session's epoch ends, and its receiver with it: the client goes on with what it has, and pushes of others are over.
+TEST(RemoteClient, ReadsNoReceiverThatIsGone) {
+  for (const CompensationMethod method : {CompensationMethod::stiffness, CompensationMethod::simulation}) {
+    Scene scene = shipped("push-cube");
+    scene.compensation.emplace().method = method;
+    ServerOptions options;
+    options.codec.emplace().sessions = true;
+    const auto server = Server::create(scene, options).value();
+    const auto client = Client::create_remote(*server, 0, scene).value();
+    auto receiver = std::make_unique<Receiver>(
+        Receiver::create(server->stream_scene(), {.replica = {.interpolation = Interpolation::playout}, .limits = {}}).value());
+    const DeviceSample device{.position = {-0.018, 0, 0.02}};
+    const auto touch = [&] { client->touch(0, device, {.share = 1, .delay = 50}); };
+    for (std::int64_t tick = 0; tick < 100; ++tick) {
+      client->show(*receiver, tick);
+      touch();
+    }
+    client->show_nothing();
+    receiver.reset();
+    for (int tick = 0; tick < 100; ++tick) touch();
+    EXPECT_TRUE(is_finite(client->felt(0)));
+  }
+}
+
 /// What a client shows and lets feel needs nothing of the physics: a square, then the same square 2 mm lower.
 TEST(DeformableView, ShowsAndIsFeltWithoutFiniteElements) {
   Scene scene;
