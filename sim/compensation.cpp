@@ -2,6 +2,7 @@
 #include <tactus/sim/compensation.h>
 
 #include <cmath>
+#include <utility>
 
 #include <tactus/load/load_state.h>
 
@@ -15,14 +16,11 @@ Vec3 others_push(std::span<const GridForce> load, std::size_t user, unsigned for
 }
 
 Result<Compensation> Compensation::create(const Scene& scene) {
-  Compensation out(scene);
+  TACTUS_TRY(auto stiffness, LocalStiffness::create(scene));
+  Compensation out(scene, std::move(stiffness));
   for (std::size_t i = 0; i < scene.users.size(); ++i) {
     TACTUS_TRY(auto reduction, StiffnessReduction::create({.filter = scene.compensation->filter}));
     out.reductions_.push_back(std::move(reduction));
-  }
-  for (const SceneDeformable& object : scene.deformables) {
-    TACTUS_TRY(auto map, stiffness_map(object));
-    out.maps_.push_back(std::move(map));
   }
   return out;
 }
@@ -33,16 +31,14 @@ double Compensation::reduced(std::size_t user, const Touch& touch, const Vec3& s
   StiffnessReduction& reduction = reductions_[user];
   if (touch.surface) {
     const SurfaceContact& at = *touch.surface;
-    const double yields = maps_[at.mesh].at(at.triangle, at.weights);
+    const double yields = local_.at(at);
     if (!std::isfinite(yields)) return at.stiffness;
     return reduction.reduced(StiffnessReduction::DeformableTouch{stretch, at.normal, at.stiffness, yields}, delay);
   }
   const Contact& contact = touch.contact;
   const Vec3 normal = rotate(shown.pose.rotation, contact.normal);
-  if (const std::size_t rigid = scene_->objects.size(); contact.object >= rigid) {
-    const double yields = scene_->msds[contact.object - rigid].object.stiffness;
-    return reduction.reduced(StiffnessReduction::DeformableTouch{stretch, normal, contact.stiffness, yields}, delay);
-  }
+  if (const auto yields = local_.at(contact))
+    return reduction.reduced(StiffnessReduction::DeformableTouch{stretch, normal, contact.stiffness, *yields}, delay);
   if (shown.load.empty()) return contact.stiffness;
   const auto force = [&](std::size_t vector) { return to_force(shown.load[vector], shown.force_exp); };
   return reduction.reduced(StiffnessReduction::RigidTouch{.stretch = stretch,

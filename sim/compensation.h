@@ -7,11 +7,12 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <tactus/client/stiffness_reduction.h>
 #include <tactus/receiver.h>
-#include <tactus/sim/deformable/stiffness_map.h>
+#include <tactus/sim/local_stiffness.h>
 #include <tactus/sim/scene/scene.h>
 #include <tactus/sim/touchable.h>
 
@@ -24,8 +25,8 @@ Vec3 others_push(std::span<const GridForce> load, std::size_t user, unsigned for
 class Compensation {
  public:
   /// pre  scene.compensation, and the scene outlives this.
-  /// err  R-API-4: its filter; of stiffness_map()
-  /// time one stiffness_map() for each deformable object
+  /// err  R-API-4: its filter; of LocalStiffness::create()
+  /// time that of LocalStiffness::create()
   static Result<Compensation> create(const Scene& scene);
 
   /// The user's device in this tick, before what it touches.   no allocation
@@ -48,12 +49,11 @@ class Compensation {
   double stiffness(std::size_t user) const noexcept { return stiffness_[user]; }
 
  private:
-  explicit Compensation(const Scene& scene) : scene_(&scene), stiffness_(scene.users.size()) {}
+  Compensation(const Scene& scene, LocalStiffness local) : local_(std::move(local)), stiffness_(scene.users.size()) {}
   double reduced(std::size_t user, const Touch& touch, const Vec3& stretch, const Shown& shown, std::uint32_t delay) noexcept;
 
-  const Scene* scene_;
+  LocalStiffness local_;
   std::vector<StiffnessReduction> reductions_;  // one per user
-  std::vector<StiffnessMap> maps_;              // one per deformable object
   std::vector<double> stiffness_;               // [N/m] one per user
 };
 

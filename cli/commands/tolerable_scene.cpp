@@ -21,13 +21,10 @@ tl::expected<TolerableScene, Failure> TolerableScene::create(const std::string& 
   if (scene->users.empty()) return refuse(name + ": nobody is in this scene", "Give one with a user.");
   auto simulation = sim::Simulation::create(*scene, {.seed = seed, .grip = {}, .channel = {}});
   if (!simulation) return refuse(name, simulation.error());
-  TolerableScene out(name, std::move(*scene), std::move(*simulation));
-  for (const sim::SceneDeformable& object : out.scene_.deformables) {
-    auto map = sim::stiffness_map(object);
-    if (!map) return refuse(name, object.name, map.error());
-    out.maps_.push_back(std::move(*map));
-  }
-  return out;
+  auto kept = std::make_unique<sim::Scene>(std::move(*scene));
+  auto local = sim::LocalStiffness::create(*kept);
+  if (!local) return refuse(name, local.error());
+  return TolerableScene(name, std::move(kept), std::move(*simulation), std::move(*local));
 }
 
 tl::expected<const TraceFrame*, Failure> TolerableScene::next() {
@@ -37,13 +34,9 @@ tl::expected<const TraceFrame*, Failure> TolerableScene::next() {
 }
 
 double TolerableScene::follows(const DelayTolerance::Pair& pair, const UserSample& user) const noexcept {
-  if (pair.is_mesh) {
-    const SurfaceContact& at = *user.surface_contact;
-    return at.stiffness / (at.stiffness + maps_[at.mesh].at(at.triangle, at.weights));
-  }
-  if (user.contact.object < scene_.objects.size()) return 1;
-  const double object = scene_.msds[user.contact.object - scene_.objects.size()].object.stiffness;
-  return user.contact.stiffness / (user.contact.stiffness + object);
+  if (pair.is_mesh) return sim::share_followed(local_.at(*user.surface_contact), user.surface_contact->stiffness);
+  const auto yields = local_.at(user.contact);
+  return yields ? sim::share_followed(*yields, user.contact.stiffness) : 1;
 }
 
 }  // namespace tactus::cli

@@ -83,6 +83,7 @@ enum class CompensationMethod : std::uint8_t {
   simulation,  ///< they simulate it themselves, and the server corrects them (sim/prediction/prediction.h; thesis 5.2)
 };
 
+/// Clients make up for delay.
 struct SceneCompensation {
   CompensationMethod method = CompensationMethod::stiffness;
   double filter = 0.1;  ///< lambda of StiffnessReduction
