@@ -2,7 +2,6 @@
 #include <tactus/sim/client.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include <tactus/sim/tets/tet_mesh.h>
@@ -109,13 +108,13 @@ void Client::show_shape(Receiver& receiver, std::int64_t tick, std::size_t mesh)
   const auto displacements = receiver.replica().displacements(mesh, tick);
   const unsigned exp = receiver.scene()->grid.position;
   if (!prediction_) return deformables_->show(mesh, displacements, exp);
-  prediction_->hear(mesh, displacements, exp, std::fmod(static_cast<double>(tick), shown_[mesh].period));
+  prediction_->hear(mesh, displacements, exp, tick);
 }
 
 void Client::show_poses(Receiver& receiver, std::int64_t tick) noexcept {
   for (std::uint32_t i = 0; i < poses_.size(); ++i) {
     const Pose pose = to_pose(receiver.replica().pose(i, tick), receiver.scene()->grid.position);
-    if (prediction_) prediction_->hear(i, pose);
+    if (prediction_) prediction_->hear(i, pose, tick);
     else show_pose(i, pose);
   }
 }

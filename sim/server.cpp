@@ -34,7 +34,7 @@ Result<void> Server::add_objects(const ServerOptions& options) {
     objects_.push_back(std::move(msds));
   }
   if (scene_.deformables.empty()) return {};
-  TACTUS_TRY(auto deformables, make_deformable_objects(scene_, {.true_views = !options.codec,
+  TACTUS_TRY(auto deformables, make_deformable_objects(scene_, {.true_views = !options.codec && options.has_clients,
                                                                 .estimate_every = options.estimate_every,
                                                                 .report_at_rest = options.mesh_noise != 0}));
   for (const TraceDeformable& mesh : deformables->meshes())

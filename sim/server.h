@@ -31,6 +31,7 @@ struct ServerOptions {
   std::optional<ServerCodec> codec;  ///< none: nothing is sent, clients see the truth
   double mesh_noise = 0;             ///< [m] RMS per axis of white noise on every vertex of a shape that the server reports
   std::uint32_t estimate_every = 0;  ///< estimate the error of every n-th deformation, 0: of none
+  bool has_clients = true;           ///< without a codec: there is somebody who sees the truth
 };
 
 class Server {

@@ -9,15 +9,16 @@ namespace {
 
 std::int32_t in_steps(float metres) noexcept {
   constexpr float kSteps = 1U << PastShapes::kExp;
-  return static_cast<std::int32_t>(std::clamp(kSteps * metres, -1e9F, 1e9F));
+  return static_cast<std::int32_t>(std::lround(std::clamp(kSteps * metres, -1e9F, 1e9F)));
 }
 
 }  // namespace
 
 PastShapes::PastShapes(std::size_t vertices, double ticks, double period)
     : size_(3 * vertices),
-      shapes_(size_ * static_cast<std::size_t>(std::ceil(ticks / period) + 2)),
-      ticks_(shapes_.size() / std::max<std::size_t>(1, size_), INT64_MIN / 2),
+      period_(period),
+      ticks_(static_cast<std::size_t>(std::ceil(ticks / period)) + 2, INT64_MIN / 2),
+      shapes_(size_ * ticks_.size()),
       offset_(size_),
       heard_(size_),
       shown_(vertices) {}
@@ -38,8 +39,8 @@ void PastShapes::compare(double tick, double share) noexcept {
   std::size_t before = 0;
   while (before + 1 < ticks_.size() && static_cast<double>(tick_back(before)) > tick) ++before;
   const std::size_t after = before > 0 ? before - 1 : 0;
-  const double gap = static_cast<double>(tick_back(after) - tick_back(before));
-  const double way = gap > 0 ? std::clamp((tick - static_cast<double>(tick_back(before))) / gap, 0.0, 1.0) : 0;
+  // Between two shapes it moves; after a longer rest, in the last period of it.
+  const double way = std::clamp(1 - (static_cast<double>(tick_back(after)) - tick) / period_, 0.0, 1.0);
   const auto part = static_cast<float>(way), taken = static_cast<float>(share);
   const float *a = back(before), *b = back(after);
   for (std::size_t i = 0; i < size_; ++i) {

@@ -43,8 +43,9 @@ class PastShapes {
   std::int64_t tick_back(std::size_t i) const noexcept { return ticks_[(next_ + ticks_.size() - i) % ticks_.size()]; }
 
   std::size_t size_;                 // 3 V
-  std::vector<float> shapes_;        // [m] ring of own shapes
-  std::vector<std::int64_t> ticks_;  // of them
+  double period_;                    // [ticks]
+  std::vector<std::int64_t> ticks_;  // of the own shapes
+  std::vector<float> shapes_;        // [m] ring
   std::size_t next_ = 0;             // the newest
   std::vector<float> offset_;        // [m] mean of server's - own
   std::vector<float> heard_;         // [m]

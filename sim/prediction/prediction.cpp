@@ -41,6 +41,12 @@ Vec3 part(const Vec3& error, double close) noexcept {
   return size > close ? (kShare * (1 - close / size)) * error : Vec3{};
 }
 
+/// Components along the axes whose bits are set, from bit `first` on.
+Vec3 along_free(const Vec3& v, unsigned dof, unsigned first) noexcept {
+  const auto free = [&](unsigned axis, double component) { return (dof >> (first + axis) & 1) != 0 ? component : 0.0; };
+  return {free(0, v.x), free(1, v.y), free(2, v.z)};
+}
+
 /// The scene as one user is alone in it.
 Scene own_scene(const Scene& scene, std::size_t user) {
   Scene own = scene;
@@ -52,14 +58,16 @@ Scene own_scene(const Scene& scene, std::size_t user) {
 }  // namespace
 
 Prediction::Prediction(const Scene& scene, std::unique_ptr<Server> own)
-    : rigid_(scene.objects.size()), own_(std::move(own)), pushes_(rigid_), corrections_(rigid_), offsets_(scene.msds.size()) {
+    : rigid_(scene.objects.size()), own_(std::move(own)), pushes_(rigid_), corrections_(rigid_) {
   for (const SceneObject& object : scene.objects) {
     poses_.push_back(object.pose);
+    free_.push_back(object.dof);
     pasts_.emplace_back(object.pose, object.dof == Dof::none ? 1 : kMostDelay + 1);
   }
   for (const SceneMsd& msd : scene.msds) {
     poses_.push_back({msd.position, {}});
     pasts_.emplace_back(poses_.back(), kMostDelay + 1);
+    yielding_.push_back({.period = msd.rate});
   }
   heard_ = poses_;
   if (own_->deformables() == nullptr) return;
@@ -68,17 +76,18 @@ Prediction::Prediction(const Scene& scene, std::unique_ptr<Server> own)
 }
 
 Result<std::unique_ptr<Prediction>> Prediction::create(const Scene& scene, std::size_t user) {
-  TACTUS_TRY(auto own, Server::create(own_scene(scene, user), {}));
+  TACTUS_TRY(auto own, Server::create(own_scene(scene, user), {.codec = {}, .has_clients = false}));
   return std::unique_ptr<Prediction>(new Prediction(scene, std::move(own)));
 }
 
-void Prediction::hear(std::uint32_t object, const Pose& pose) noexcept {
+void Prediction::hear(std::uint32_t object, const Pose& pose, std::int64_t tick) noexcept {
   heard_[object] = pose;
+  if (object >= rigid_) yielding_[object - rigid_].age = tick % yielding_[object - rigid_].period;
   has_heard_ = true;
 }
 
-void Prediction::hear(std::size_t mesh, Shape displacements, unsigned position_exp, double age) noexcept {
-  meshes_[mesh].past.hear(displacements, position_exp, age);
+void Prediction::hear(std::size_t mesh, Shape displacements, unsigned position_exp, std::int64_t tick) noexcept {
+  meshes_[mesh].past.hear(displacements, position_exp, std::fmod(static_cast<double>(tick), meshes_[mesh].period));
   has_heard_ = true;
 }
 
@@ -91,7 +100,7 @@ void Prediction::correct(std::uint32_t delay) noexcept {
     if (own.meshes[i].updated) meshes_[i].past.add(own.tick, own.meshes[i].displacements);
   if (!has_heard_) return show_own();
   if (delay == 0) return follow();
-  const std::int64_t then = own.tick - std::min(delay, kMostDelay);
+  const std::int64_t then = own.tick - std::min(delay, kMostDelay) + 1;  // a sample is answered by the state after it
   for (std::uint32_t i = 0; i < rigid_; ++i) correct_rigid(i, then);
   for (std::size_t i = rigid_; i < poses_.size(); ++i) correct_yielding(i, then);
   for (std::size_t i = 0; i < meshes_.size(); ++i) correct_shape(i, then);
@@ -131,10 +140,11 @@ void Prediction::tell_heard() noexcept {
   }
 }
 
-/// Correct the own pose of this tick.   in  turn  rotation vector [rad]
-void Prediction::move(std::uint32_t object, const Vec3& way, const Vec3& turn) noexcept {
+/// Correct the own pose of this tick, as far as the object can move.   in  turn  rotation vector [rad]
+void Prediction::move(std::uint32_t object, const Vec3& by, const Vec3& turn_by) noexcept {
   const Pose& own = own_->frame().objects[object].pose;
   poses_[object] = own;
+  const Vec3 way = along_free(by, free_[object], 0), turn = along_free(turn_by, free_[object], 3);
   if (way == Vec3{} && turn == Vec3{}) return;
   const Quat rotation = quaternion_of(turn);
   Pose& sum = corrections_[object];
@@ -151,10 +161,15 @@ void Prediction::correct_rigid(std::uint32_t object, std::int64_t then) noexcept
   move(object, is_far ? way : part(way, kClose), is_far ? turn : part(turn, kCloseTurn));
 }
 
+/// The surface stays for a period, and server and own simulation begin theirs at different times: between two own places lies that which
+/// it would have had when the server's began. What is shown stays for a period, too: forces approach a new surface from there.
 void Prediction::correct_yielding(std::size_t object, std::int64_t then) noexcept {
-  Vec3& offset = offsets_[object - rigid_];
-  offset = offset + kShareYielding * (heard_[object].position - pasts_[object].at(then).position - offset);
-  poses_[object].position = own_->frame().objects[object].pose.position + offset;
+  auto& [period, age, offset] = yielding_[object - rigid_];
+  const std::int64_t began = then - age, into = (began % period + period) % period;
+  const Vec3 &a = pasts_[object].at(began).position, &b = pasts_[object].at(began + period).position;
+  const Vec3 own = a + (static_cast<double>(into) / static_cast<double>(period)) * (b - a);
+  offset = offset + kShareYielding * (heard_[object].position - own - offset);
+  if (own_->frame().tick % period == 0) poses_[object].position = own_->frame().objects[object].pose.position + offset;
 }
 
 void Prediction::correct_shape(std::size_t number, std::int64_t then) noexcept {

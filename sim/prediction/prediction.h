@@ -7,6 +7,7 @@
 ///
 ///   rigid objects  e = server's pose - own pose of R ago, with all that was corrected since. In each tick the own pose follows by the
 ///                  share T_s / 0.1 s of e: no force jumps. Less than 0.1 mm and 2 mrad are the codec's, and left alone.
+///                  What cannot move stays where the scene has it.
 ///   others         shown = own shape + mean of (server's shape - own shape of R ago), over 0.02 s: elastic objects keep no error
 ///
 /// The user feels what is shown. The own simulation takes the device, not the force of the client, so that nothing but the hand goes round
@@ -38,9 +39,10 @@ class Prediction {
 
   using Shape = std::span<const std::array<std::int32_t, 3>>;  ///< V x 3
   /// What the server's state at the client is in this tick. What is not told stays.   no allocation
-  void hear(std::uint32_t object, const Pose& pose) noexcept;
-  /// The newest shape of a deformable object.   in  age  [ticks] of it against the poses; displacements  [2^-position_exp m]
-  void hear(std::size_t mesh, Shape displacements, unsigned position_exp, double age) noexcept;
+  /// in   tick  of the server
+  void hear(std::uint32_t object, const Pose& pose, std::int64_t tick) noexcept;
+  /// The newest shape of a deformable object.   in  displacements  [2^-position_exp m]
+  void hear(std::size_t mesh, Shape displacements, unsigned position_exp, std::int64_t tick) noexcept;
   /// What other users push a rigid object with [N], in every tick.
   void push(std::uint32_t object, const Vec3& force) noexcept { pushes_[object] = force; }
 
@@ -55,6 +57,11 @@ class Prediction {
   void step(const DeviceSample& device) noexcept;
 
  private:
+  struct Yielding {
+    std::int64_t period;   // [ticks] from one place of the surface to the next
+    std::int64_t age = 0;  // [ticks] of the place that was heard
+    Vec3 offset{};         // [m] mean of server's - own
+  };
   struct Mesh {
     PastShapes past;
     double period;  // [ticks]
@@ -67,16 +74,17 @@ class Prediction {
   void correct_rigid(std::uint32_t object, std::int64_t then) noexcept;
   void correct_yielding(std::size_t object, std::int64_t then) noexcept;
   void correct_shape(std::size_t number, std::int64_t then) noexcept;
-  void move(std::uint32_t object, const Vec3& way, const Vec3& turn) noexcept;
+  void move(std::uint32_t object, const Vec3& by, const Vec3& turn_by) noexcept;
   Pose without_corrections(std::size_t object) const noexcept;
 
   std::size_t rigid_;  // objects; those that follow are one-dimensional
   std::unique_ptr<Server> own_;
   std::vector<Pose> heard_, poses_;
-  std::vector<PastPoses> pasts_;   // one per object; of rigid ones without the corrections
-  std::vector<Vec3> pushes_;       // [N] per rigid object
-  std::vector<Pose> corrections_;  // likewise, sum
-  std::vector<Vec3> offsets_;      // [m] per one-dimensional object
+  std::vector<PastPoses> pasts_;    // one per object; of rigid ones without the corrections
+  std::vector<std::uint8_t> free_;  // Dof per rigid object
+  std::vector<Vec3> pushes_;        // [N] likewise
+  std::vector<Pose> corrections_;   // likewise, sum
+  std::vector<Yielding> yielding_;  // one per one-dimensional object
   std::vector<Mesh> meshes_;
   bool has_heard_ = false, is_broken_ = false;
 };

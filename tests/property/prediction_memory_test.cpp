@@ -16,7 +16,7 @@ TEST(PredictionMemory, NothingIsAllocatedWhileACubeIsPushedAndCorrected) {
   for (std::int64_t tick = 0; tick < 3000; ++tick) {
     if (tick == 300) before = testing::allocated_bytes();  // ODE has its arenas
     const double x = 2e-5 * static_cast<double>(tick);
-    own->hear(0, {{tick < 1000 ? 0 : x / 2, 0, 0.02}, {}});
+    own->hear(0, {{tick < 1000 ? 0 : x / 2, 0, 0.02}, {}}, tick);
     own->push(0, {0, tick % 2 == 0 ? 0.1 : 0.0, 0});
     own->correct(50);
     own->step({.position = {-0.03 + x, 0, 0.02}});
