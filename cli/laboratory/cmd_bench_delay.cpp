@@ -27,10 +27,18 @@ using Json = nlohmann::ordered_json;
 namespace study = sim::study;
 using study::DelayNumbers;
 
+std::vector<std::string> all_scenes() {
+  return {"push-cube", "rotate-6dof", "rotate-push-lift", "jenga-press", "jenga-together", "jenga-against", "msd-1d",
+#ifdef TACTUS_HAS_FEM
+          "membrane"
+#endif
+  };
+}
+
 struct DelayBenchOptions {
-  std::vector<std::string> scenes{"push-cube", "jenga-press", "jenga-together", "jenga-against", "msd-1d", "membrane"};
+  std::vector<std::string> scenes = all_scenes();
   std::string round_trips = "25ms,50ms,75ms,100ms,150ms,200ms,300ms";
-  std::uint32_t seeds = 3;
+  std::uint32_t seeds = 3, first_seed = 1;
   double duration = 8;  // [s]
   std::string directory;
   CommonOptions common;
@@ -38,9 +46,7 @@ struct DelayBenchOptions {
 
 /// What a job yields.
 struct Run {
-  bool failed = false;
-  Errc code = Errc::internal;
-  char rule[16]{};
+  FlatError failure{};
   study::DelayResult result{};
 };
 
@@ -137,8 +143,8 @@ std::vector<Job> jobs_of(const DelayBenchOptions& options, const std::vector<sim
   for (std::size_t scene = 0; scene < options.scenes.size(); ++scene)
     for (const bool varies : {false, true})
       for (const sim::Microseconds round_trip : round_trips)
-        for (std::uint64_t seed = 1; seed <= options.seeds; ++seed)
-          out.push_back({scene, {.round_trip = round_trip, .varies = varies, .seed = seed}});
+        for (std::uint64_t seed = 0; seed < options.seeds; ++seed)
+          out.push_back({scene, {.round_trip = round_trip, .varies = varies, .seed = options.first_seed + seed}});
   return out;
 }
 
@@ -149,16 +155,8 @@ tl::expected<std::vector<Row>, Failure> run_all(const std::vector<sim::Scene>& s
   const auto runs = run_in_workers<Run>(
       jobs.size(),
       [&](std::size_t i) {
-        Run out;
-        if (const auto result = study::run_point(scenes[jobs[i].scene], jobs[i].point)) {
-          out.result = *result;
-        } else {
-          out.failed = true;
-          out.code = result.error().error.code;
-          const std::string_view rule = result.error().error.rule;
-          std::copy_n(rule.begin(), std::min(rule.size(), sizeof out.rule - 1), out.rule);
-        }
-        return out;
+        const auto result = study::run_point(scenes[jobs[i].scene], jobs[i].point);
+        return result ? Run{{}, *result} : Run{FlatError::of(result.error().error, result.error().step), {}};
       },
       [&](std::size_t done) { progress.update(done); });
   if (!runs)
@@ -171,7 +169,8 @@ tl::expected<std::vector<Row>, Failure> run_all(const std::vector<sim::Scene>& s
         Row row{scene.name, scene.users[user].name, jobs[i].point.round_trip, jobs[i].point.varies, study::kClients[c]};
         for (std::size_t seed = 0; seed < options.seeds; ++seed) {
           const Run& run = (*runs)[i + seed];
-          if (run.failed) return refuse(options.scenes[jobs[i].scene], Error{run.code, run.rule});
+          if (run.failure.failed)
+            return refuse(options.scenes[jobs[i].scene], place_of_tick(run.failure.tick), run.failure.error());
           row.seeds.push_back(run.result[c][user]);
         }
         rows.push_back(std::move(row));
@@ -219,14 +218,14 @@ void print_table(const std::vector<Row>& rows) {
   table.print(stdout);
 }
 
-std::string to_csv(const std::vector<Row>& rows) {
+std::string to_csv(const std::vector<Row>& rows, std::uint32_t first_seed) {
   std::string out = "scene,user,round_trip_ms,network,clients,seed";
   for (const Quantity& q : kQuantities) out += fmt::format(",{}", q.name);
   out += "\n";
   for (const Row& row : rows)
     for (std::size_t seed = 0; seed < row.seeds.size(); ++seed) {
       out += fmt::format("{},{},{},{},{},{}", csv_field(row.scene), csv_field(row.user), ms(row.round_trip), network_of(row),
-                         csv_field(study::name(row.clients)), seed + 1);
+                         csv_field(study::name(row.clients)), first_seed + seed);
       for (const Quantity& q : kQuantities) out += fmt::format(",{:.5g}", q.scale * static_cast<double>(row.seeds[seed].*q.of));
       out += "\n";
     }
@@ -248,11 +247,23 @@ Json to_json(const std::vector<Row>& rows) {
   return out;
 }
 
+/// The command that makes the same report.
+std::string command_of(const DelayBenchOptions& options) {
+  const DelayBenchOptions usual;
+  std::string out = "tactus bench delay";
+  if (options.scenes != usual.scenes) out += fmt::format(" {}", fmt::join(options.scenes, " "));
+  if (options.round_trips != usual.round_trips) out += fmt::format(" --round-trip {}", options.round_trips);
+  if (options.seeds != usual.seeds) out += fmt::format(" --seeds {}", options.seeds);
+  if (options.first_seed != usual.first_seed) out += fmt::format(" --first-seed {}", options.first_seed);
+  if (options.duration != usual.duration) out += fmt::format(" --duration {:g}s", options.duration);
+  return out;
+}
+
 std::string to_markdown(const std::vector<Row>& rows, const DelayBenchOptions& options, bool has_figure) {
   const auto context = bench_context();
   std::string out = fmt::format(
       "# Delay, and three kinds of clients\n\n"
-      "`tactus bench delay{} --seeds {}` ({}, {} build). All of it is deterministic.\n\n"
+      "`{} -o DIR` ({}, {} build). All of it is deterministic.\n\n"
       "Each user is behind a network of their own, *constant* or *gamma* (half of the round trip gamma distributed, a new value "
       "each "
       "0.5 s, behind adaptive playout); every state and device sample is sent, so that only the delay differs. Clients: *none* "
@@ -269,8 +280,7 @@ std::string to_markdown(const std::vector<Row>& rows, const DelayBenchOptions& o
       "without delay the touched point is *seen* (RMS, 95th percentile); how far *apart* two users see the object (95th "
       "percentile). The same rows, "
       "seed by seed, are in `delay.csv`.\n",
-      options.scenes == DelayBenchOptions{}.scenes ? "" : " " + fmt::format("{}", fmt::join(options.scenes, " ")), options.seeds,
-      context.at("compiler"), context.at("build"));
+      command_of(options), context.at("compiler"), context.at("build"));
   if (has_figure) out += "\n![error of the force and of what is seen, over the round trip](delay.svg)\n";
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (begins(rows, i)) {
@@ -322,7 +332,7 @@ Outcome run(const DelayBenchOptions& options) {
   if (writes) {
     TACTUS_TRY(const auto figure, draw(plot_of(rows, options), options.directory, options.common.existing()));
     if (figure == Drawn::no) fmt::print(stderr, "note: {}\n", kNoGnuplot);
-    TACTUS_CHECK(write_file(options.directory + "/delay.csv", to_csv(rows), options.common.existing()));
+    TACTUS_CHECK(write_file(options.directory + "/delay.csv", to_csv(rows, options.first_seed), options.common.existing()));
     TACTUS_CHECK(write_file(options.directory + "/report.md", to_markdown(rows, options, figure == Drawn::yes),
                             options.common.existing()));
   }
@@ -336,10 +346,14 @@ Outcome run(const DelayBenchOptions& options) {
 void setup_bench_delay(Command& group, Action& action) {
   auto options = std::make_shared<DelayBenchOptions>();
   Command& command = group.add_command("delay", "What delay does to force and picture, and what clients can do about it");
-  command.add_option("SCENE", options->scenes, "Scenes of one or two users [six that come with Tactus]")->type_name("");
+  command.add_option("SCENE", options->scenes, "Scenes of one or two users [those that come with Tactus]")->type_name("");
   command.add_option("--round-trip", options->round_trips, "Round trips")->show_default()->type_name("TIME,..");
-  command.add_option("--seeds", options->seeds, "Hands and networks: seeds 1 to N")
+  command.add_option("--seeds", options->seeds, "Hands and networks: so many seeds")
       ->check(whole_number(1, 1000))
+      ->show_default()
+      ->type_name("N");
+  command.add_option("--first-seed", options->first_seed, "The first of them")
+      ->check(whole_number(0, 1'000'000))
       ->show_default()
       ->type_name("N");
   add_quantity(command, "--duration", options->duration, Dimension::time, "At most so much of each scene [8s]")

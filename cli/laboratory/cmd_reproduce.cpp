@@ -69,10 +69,7 @@ RigidTriggers triggers_of(const Setting& s, double length_unit) {
 
 /// What one run yields; small and flat, so that it passes through a pipe.
 struct Measured {
-  bool failed = false;
-  Errc code = Errc::internal;  ///< of the failure, as are rule and tick
-  char rule[16] = {};
-  std::int64_t tick = 0;
+  FlatError failure{};
   double packets_per_s = 0, bytes_per_update = 0, bit_per_s = 0;
   std::uint64_t rule_violations = 0;    ///< ticks in which the predicted state breaks the haptic rule
   std::uint64_t visual_violations = 0;  ///< the same for the visual thresholds
@@ -82,11 +79,7 @@ struct Measured {
   double contact = 0;                   ///< share of all ticks
 };
 
-Measured failed_at(std::int64_t tick, const Error& error) {
-  Measured out{.failed = true, .code = error.code, .tick = tick};
-  std::copy_n(error.rule, std::min(std::string_view(error.rule).size(), sizeof out.rule - 1), out.rule);
-  return out;
-}
+Measured failed_at(std::int64_t tick, const Error& error) { return {.failure = FlatError::of(error, tick)}; }
 
 double share(std::uint64_t part, std::uint64_t whole) {
   return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
@@ -273,7 +266,7 @@ Outcome reproduce_settings(const ReproduceOptions& options) {
   std::vector<Row> rows;
   for (std::size_t i = 0; i < jobs; ++i) {
     const Measured& m = (*results)[i];
-    if (m.failed) return refuse(kSettings[i / options.seeds].name, place_of_tick(m.tick), Error{m.code, m.rule, 0});
+    if (m.failure.failed) return refuse(kSettings[i / options.seeds].name, place_of_tick(m.failure.tick), m.failure.error());
     if (i % options.seeds == 0)
       rows.push_back(summarise(kSettings[i / options.seeds], std::span(*results).subspan(i, options.seeds)));
   }

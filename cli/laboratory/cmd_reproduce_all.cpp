@@ -2,8 +2,10 @@
 /// All figures of the thesis in one report. Each is made by this program in a process of its own, as its command would make it.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
+#include <iterator>
 
 #include "cli/laboratory/child_process.h"
 #include "cli/laboratory/cmd_bench.h"
@@ -53,37 +55,57 @@ constexpr std::array kChapters{
     Chapter{"fig4.27", "a hand on the membrane", ""},
 };
 
+/// Shown on the membrane, which needs finite elements.
+bool can_make([[maybe_unused]] std::string_view figure) {
+#ifdef TACTUS_HAS_FEM
+  return true;
+#else
+  return figure != "fig4.2" && figure != "fig4.23" && figure != "fig4.27";
+#endif
+}
+
 /// Drawn by `tactus reproduce FIGURE -o`; the others are tables.
 bool is_drawn(std::string_view figure) { return figure.starts_with("fig4.") || figure == "fig3.3" || figure == "fig3.11"; }
 
-/// " --seeds 3", unless they are as many as without the option.
-std::string seeds_option(const ReproduceOptions& options) {
-  return options.seeds == ReproduceOptions().seeds ? "" : fmt::format(" --seeds {}", options.seeds);
+/// Options that are not as usual, as they are typed.
+std::vector<std::string> settings_of(const ReproduceOptions& options) {
+  const ReproduceOptions usual;
+  std::vector<std::string> out;
+  if (options.seeds != usual.seeds) out.insert(out.end(), {"--seeds", std::to_string(options.seeds)});
+  if (options.grip != usual.grip) out.insert(out.end(), {"--grip", options.grip});
+  if (options.length_unit != usual.length_unit) out.insert(out.end(), {"--length-unit", fmt::format("{}m", options.length_unit)});
+  return out;
+}
+std::string typed(const char* figure, const ReproduceOptions& options) {
+  std::string out = fmt::format("tactus reproduce {}", figure);
+  for (const std::string& setting : settings_of(options)) out += " " + setting;
+  return out;
 }
 
 std::string heading(const ReproduceOptions& options) {
   return fmt::format(
       "# The thesis, figure by figure\n\n"
-      "Made by `tactus reproduce all{} -o DIR`, each section by the command in it: what comes out here beside the numbers of the "
+      "Made by `{} -o DIR`, each section by the command in it: what comes out here beside the numbers of the "
       "thesis, where it gives any. Everything is deterministic. Differences are told where they are: "
       "[rates](../../README.md), [delay](../delay/README.md).\n\n"
       "Reproduced elsewhere: figure 2.2 and eqs. 4.37 and 4.38 ([stability](../stability/report.md)), figures 3.18 and 3.20 "
-      "([deformable objects](../deformable/README.md)). What needs people is not reproduced: the ratings of chapter 3, figures "
-      "4.8 and "
-      "4.26, and tables 4.1 and 4.2.\n",
-      seeds_option(options));
+      "([deformable objects](../deformable/README.md)). What needs people is not reproduced: the ratings of chapter 3 and of "
+      "figures "
+      "4.8 and 4.26, and tables 4.1 and 4.2.\n",
+      typed("all", options));
 }
 
 tl::expected<std::string, Failure> section(const Chapter& chapter, const ReproduceOptions& options) {
-  std::vector<std::string> command{own_program(), "reproduce", chapter.figure, "-q", "--seeds", std::to_string(options.seeds)};
+  std::vector<std::string> command{own_program(), "reproduce", chapter.figure, "-q"};
+  std::ranges::copy(settings_of(options), std::back_inserter(command));
   if (is_drawn(chapter.figure)) command.insert(command.end(), {"-o", options.directory});
   if (options.common.existing() == OutputFile::Existing::replace) command.emplace_back("-f");
   const auto done = run_child(command);
   if (!done) return refuse_arguments(fmt::format("{}: {}", chapter.figure, done.error().message()), "Run the command again.");
   if (done->status != 0)
     return refuse_arguments(fmt::format("{}: {}", chapter.figure, done->error), "Run this figure alone to see more.");
-  std::string out = fmt::format("\n## Figure {}: {}\n\n`tactus reproduce {}{}`\n", chapter.figure + 3, chapter.title,
-                                chapter.figure, seeds_option(options));
+  std::string out =
+      fmt::format("\n## Figure {}: {}\n\n`{}`\n", chapter.figure + 3, chapter.title, typed(chapter.figure, options));
   if (*chapter.remark != '\0') out += fmt::format("\n{}\n", chapter.remark);
   out += fmt::format("\n```\n{}```\n", done->out);
   const std::string picture = std::string(chapter.figure) + ".svg";
@@ -102,12 +124,17 @@ Outcome reproduce_all(const ReproduceOptions& options) {
   std::string text = heading(options);
   Progress progress("reproduce all", kChapters.size(), options.common.progress());
   for (std::size_t i = 0; i < kChapters.size(); ++i) {
-    TACTUS_TRY(const std::string made, section(kChapters[i], options));
-    text += made;
+    if (can_make(kChapters[i].figure)) {
+      TACTUS_TRY(const std::string made, section(kChapters[i], options));
+      text += made;
+    } else {
+      fmt::print(stderr, "note: {}: left out, as this program was built without finite elements\n", kChapters[i].figure);
+    }
     progress.update(i + 1);
   }
   TACTUS_CHECK(write_file(report, text, options.common.existing()));
-  if (!options.common.quiet) fmt::print("{}: {} figures\n", report, kChapters.size());
+  if (!options.common.quiet)
+    fmt::print("{}: {} figures\n", report, std::ranges::count_if(kChapters, [](const Chapter& c) { return can_make(c.figure); }));
   return {};
 }
 

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <vector>
 
 #include <tactus/sim/deformable/stiffness_map.h>
@@ -20,23 +22,30 @@ namespace {
 
 namespace study = sim::study;
 
-/// Round trips [ms] of datagrams sent each millisecond, over the network of thesis 4.2.4.3.
+/// Round trips [ms] of datagrams sent each 10 ms for an hour and answered at once.
 tactus::Result<std::vector<double>> round_trips(const sim::LinkOptions& way) {
-  constexpr sim::Microseconds kEnd = 3'600'000'000, kStep = 10'000;
-  std::vector<double> out;
+  constexpr sim::Microseconds kStep = 10'000, kNever = INT64_MAX;
+  constexpr std::uint32_t kSent = 360'000;
   sim::LinkOptions back = way;
   back.seed = way.seed + 1;
   TACTUS_TRY(auto up, sim::Link::create(way));
   TACTUS_TRY(auto down, sim::Link::create(back));
-  for (sim::Microseconds now = 0; now < kEnd; now += kStep) {
-    const std::uint8_t byte = 0;
-    up.send(now, {&byte, 1});
-    const sim::Microseconds there = up.next().value_or(now);
-    static_cast<void>(up.poll(there));
-    down.send(now, {&byte, 1});
-    const sim::Microseconds here = down.next().value_or(now);
-    static_cast<void>(down.poll(here));
-    out.push_back(1e-3 * static_cast<double>(there - now + here - now));
+  std::vector<double> out;
+  for (std::uint32_t sent = 0; out.size() < kSent;) {
+    const sim::Microseconds send = sent < kSent ? kStep * sent : kNever;
+    const sim::Microseconds now = std::min({send, up.next().value_or(kNever), down.next().value_or(kNever)});
+    if (now == kNever) break;
+    while (const auto arrival = down.poll(now)) {
+      std::uint32_t number = 0;
+      std::memcpy(&number, arrival->bytes.data(), sizeof number);
+      out.push_back(1e-3 * static_cast<double>(now - kStep * number));
+    }
+    while (const auto arrival = up.poll(now)) down.send(now, arrival->bytes);
+    if (now < send) continue;
+    std::array<std::uint8_t, sizeof sent> bytes{};
+    std::memcpy(bytes.data(), &sent, sizeof sent);
+    up.send(now, bytes);
+    ++sent;
   }
   return out;
 }
@@ -84,15 +93,14 @@ tl::expected<DelayFigure, Failure> varying_delay() {
 
 /// Of a study of stability, what one figure shows.
 tl::expected<DelayFigure, Failure> of_study(const char* figure, const char* title, const study::Study& made, const char* plot,
-                                            const char* subjects, double scale, const char* unit) {
+                                            const char* subjects, const char* unit) {
   DelayFigure out{.figure = figure, .title = title};
   out.columns = {"here"};
   for (const study::Row& row : made.rows) {
     if (!row.subject.starts_with(subjects) || !row.measured) continue;
     std::string name = row.subject;
     for (const study::Parameter& p : row.parameters) name += fmt::format(", {} {:g} {}", p.name, p.value, p.unit);
-    out.quantities.push_back(
-        {fmt::format("{}: {}, {}", name, study::name(row.verdict), row.quantity), unit, {scale * *row.measured}});
+    out.quantities.push_back({fmt::format("{}: {}, {}", name, study::name(row.verdict), row.quantity), unit, {*row.measured}});
   }
   for (StabilityPlot& found : stability_plots({&made, 1}))
     if (found.plot.name == plot) out.plot = std::move(found.plot);
@@ -154,9 +162,9 @@ Outcome reproduce_limits(const ReproduceOptions& options) {
       is_jury ? study::study_jury(study::Extent::brief, quiet) : study::study_client(study::Extent::brief, quiet);
   TACTUS_TRY(const DelayFigure figure,
              is_jury ? of_study("fig4.16", "two users step onto an object near the critical stiffness of eq. 4.38, 700 N/m", made,
-                                "jury-figure-4.16", "figure 4.16", 1, "1")
+                                "jury-figure-4.16", "figure 4.16", "1")
                      : of_study("fig4.17", "grip, damping and object stiffness: force and energy at a client, 100 ms", made,
-                                "client-figure-4.17", "(", 1, "mJ"));
+                                "client-figure-4.17", "(", "mJ"));
   return finish(options, figure);
 }
 

@@ -8,13 +8,34 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <exception>
 #include <optional>
+#include <string_view>
 #include <thread>
 #include <type_traits>
 #include <vector>
 
+#include <tactus/base/result.h>
+
 namespace tactus::cli {
+
+/// What went wrong in a job, small and flat.
+struct FlatError {
+  bool failed = false;
+  Errc code = Errc::internal;
+  char rule[16] = {};
+  std::int64_t tick = 0;
+
+  static FlatError of(const Error& error, std::int64_t tick) {
+    FlatError out{.failed = true, .code = error.code, .rule = {}, .tick = tick};
+    const std::string_view rule = error.rule;
+    std::copy_n(rule.begin(), std::min(rule.size(), sizeof out.rule - 1), out.rule);
+    return out;
+  }
+  /// Valid as long as this is.
+  Error error() const { return {code, rule, 0}; }
+};
 
 /// Job i yields job(i), for i below `count`; `on_done` is told how many are ready. Nothing when a worker died.
 /// pre  no thread is running; job writes no files and prints nothing.

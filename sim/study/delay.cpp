@@ -68,6 +68,13 @@ tl::expected<DelayRun, Diagnostic> run_delayed(const Scene& scene, const DelayCa
   return out;
 }
 
+double quantile(std::vector<double>& values, double share) {
+  if (values.empty()) return NAN;
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::ranges::nth_element(values, at);
+  return *at;
+}
+
 DelayEffect effect_of(const std::vector<DelayTick>& delayed, const std::vector<DelayTick>& reference, double weber) {
   DelayEffect out;
   std::vector<double> felt, wanted;
@@ -88,18 +95,13 @@ DelayEffect effect_of(const std::vector<DelayTick>& delayed, const std::vector<D
     for (const double f : v) sum += f;
     return v.empty() ? 0 : sum / static_cast<double>(v.size());
   };
-  const auto peak = [](std::vector<double>& v) {
-    if (v.empty()) return 0.0;
-    const auto at = v.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(v.size() - 1));
-    std::nth_element(v.begin(), at, v.end());
-    return *at;
-  };
+  const auto peak = [](std::vector<double>& v) { return v.empty() ? 0 : quantile(v, 0.99); };
   out.mean = mean(felt);
   out.reference_mean = mean(wanted);
   out.peak = peak(felt);
   out.reference_peak = peak(wanted);
   out.outside = wanted.empty() ? 0 : static_cast<double>(outside) / static_cast<double>(wanted.size());
-  out.rms = square > 0 ? std::sqrt(error / square) : 0;
+  out.rms = square > 0 ? std::sqrt(error / square) : NAN;
   return out;
 }
 

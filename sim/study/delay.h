@@ -50,9 +50,12 @@ struct DelayEffect {
   double mean = 0, reference_mean = 0;  ///< [N] over the contact of either
   double peak = 0, reference_peak = 0;  ///< [N] 99th percentile of it
   double outside = 0;                   ///< share of the reference's contact in which the force is more than `weber` off
-  double rms = 0;                       ///< RMS of the error over RMS of the reference
+  double rms = 0;                       ///< RMS of the error over RMS of the reference; nan: there is no reference
   double lowest_energy = 0;             ///< [J] least of the run
 };
+
+/// The value that a share of them does not exceed; nan: there are none.   in  values  put into another order
+double quantile(std::vector<double>& values, double share);
 
 /// pre  of the same scene and length
 DelayEffect effect_of(const std::vector<DelayTick>& delayed, const std::vector<DelayTick>& reference, double weber);

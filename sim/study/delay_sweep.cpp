@@ -32,13 +32,6 @@ Scene misread(const Scene& scene) {
   return out;
 }
 
-double percentile_95(std::vector<double>& values) {
-  if (values.empty()) return 0;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
 /// [m] Where the touched point is shown, from where it would be without delay, while it is touched in both.
 std::vector<double> seen_away(const std::vector<DelayTick>& delayed, const std::vector<DelayTick>& reference) {
   std::vector<double> out;
@@ -51,6 +44,7 @@ std::vector<double> seen_away(const std::vector<DelayTick>& delayed, const std::
 std::vector<double> seen_apart(const Scene& scene, const DelayRun& run) {
   std::vector<double> out;
   if (scene.users.size() < 2 || scene.users[0].object != scene.users[1].object) return out;
+  if (scene.users[0].object >= scene.objects.size() + scene.msds.size()) return out;  // its shape is seen, not its place
   for (std::size_t i = 0; i < run.users[0].size(); ++i)
     out.push_back(norm(run.users[0][i].shown.position - run.users[1][i].shown.position));
   return out;
@@ -59,7 +53,7 @@ std::vector<double> seen_apart(const Scene& scene, const DelayRun& run) {
 double rms(const std::vector<double>& values) {
   double sum = 0;
   for (const double v : values) sum += v * v;
-  return values.empty() ? 0 : std::sqrt(sum / static_cast<double>(values.size()));
+  return values.empty() ? NAN : std::sqrt(sum / static_cast<double>(values.size()));
 }
 
 double over(double value, double reference) { return reference > 0 ? value / reference - 1 : NAN; }
@@ -71,23 +65,15 @@ DelayNumbers numbers(const DelayEffect& felt, const DelayEffect& played, std::ve
           .energy = static_cast<float>(felt.lowest_energy),
           .force_error = static_cast<float>(played.rms),
           .seen = static_cast<float>(rms(away)),
-          .most_seen = static_cast<float>(percentile_95(away)),
-          .apart = static_cast<float>(apart.empty() ? NAN : percentile_95(apart))};
+          .most_seen = static_cast<float>(quantile(away, 0.95)),
+          .apart = static_cast<float>(quantile(apart, 0.95))};
 }
 
 }  // namespace
 
 const char* name(Clients clients) noexcept {
-  switch (clients) {
-    case Clients::stiffness:
-      return "stiffness";
-    case Clients::simulation:
-      return "simulation";
-    case Clients::misled:
-      return "simulation, 10 % off";
-    default:
-      return "none";
-  }
+  constexpr std::array kNames{"none", "stiffness", "simulation", "simulation, 10 % off"};
+  return kNames[static_cast<std::size_t>(clients)];
 }
 
 tl::expected<DelayResult, Diagnostic> run_point(const Scene& scene, const DelayPoint& point) {

@@ -29,18 +29,18 @@ struct DelayPoint {
   std::uint64_t seed = 1;
 };
 
-/// Of a user. Small and flat, so that it passes through a pipe.
+/// Of a user; nan: there is nothing to measure, as nothing is touched, or no other user looks there. Small and flat, so that it passes
+/// through a pipe.
 struct DelayNumbers {
   // Hands that feel the force, against the same hand without delay.
-  float mean = 0, peak = 0;  ///< of the force, over that without delay: 0.1 is 10 % more; nan: nothing is touched
+  float mean = 0, peak = 0;  ///< of the force, over that without delay: 0.1 is 10 % more
   float outside = 0;         ///< share of the contact in which it is more than 10 % off
   float energy = 0;          ///< [J] least that the device has put in
   // The devices of the run without delay, played back: the same motion.
   float force_error = 0;  ///< RMS of the error over RMS of the force
-  float seen = 0,
-        most_seen = 0;  ///< [m] RMS and 95th percentile: where the touched point is shown, from where it would be without delay
-  float apart =
-      0;  ///< [m] 95th percentile: where two users see the object that this one looks at, from each other; nan: there is one user, or they look at different ones
+  float seen = 0;         ///< [m] where the touched point is shown, from where it would be without delay: RMS
+  float most_seen = 0;    ///< [m] 95th percentile of it
+  float apart = 0;  ///< [m] where the other user sees the object that both look at, from where this one does: 95th percentile
 };
 
 inline constexpr std::size_t kMostSweepUsers = 2;

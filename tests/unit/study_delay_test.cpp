@@ -91,6 +91,30 @@ TEST(DelayStudy, WhatAClientSimulatesIsFeltAndSeenAtOnce) {
   }
 }
 
+TEST(DelayStudy, AOneDimensionalObjectThatAClientSimulatesIsFeltAndSeenAtOnce) {
+  Scene msd = scene("msd-1d");
+  msd.users.resize(1);
+  const DelayRun reference = run_delayed(msd, {.is_local = true}).value();
+  const DelayRun run = run_delayed(msd, {.link = delayed(100'000), .compensation = kSimulation}).value();
+  const DelayRun plain = run_delayed(msd, {.link = delayed(100'000)}).value();
+  EXPECT_LT(effect_of(run.users[0], reference.users[0], kWeber).rms, 0.01);
+  EXPECT_LT(seen_away(run, reference), 1e-5);
+  EXPECT_GT(seen_away(plain, reference), 2e-3);
+}
+
+#ifdef TACTUS_WITH_FEM
+TEST(DelayStudy, AMembraneThatAClientSimulatesIsFeltAndSeenAtOnce) {
+  Scene membrane = scene("membrane-small");
+  membrane.duration = 3;
+  const DelayRun reference = run_delayed(membrane, {.is_local = true}).value();
+  const DelayRun run = run_delayed(membrane, {.link = delayed(200'000), .compensation = kSimulation}).value();
+  const DelayRun plain = run_delayed(membrane, {.link = delayed(200'000)}).value();
+  EXPECT_LT(effect_of(run.users[0], reference.users[0], kWeber).rms, 0.02);
+  EXPECT_LT(seen_away(run, reference), 1e-4);
+  EXPECT_GT(seen_away(plain, reference), 5e-4);
+}
+#endif
+
 TEST(DelayStudy, ClientsOfDifferentModelsArePulledToTheServer) {
   const Scene jenga = scene("jenga-press");
   Scene wrong = jenga;
