@@ -8,11 +8,10 @@ Runs the same scene with each kind of client and looks which functions were ente
 loads, of softer rendering and of clients that simulate; with it they are those of the kind that was asked for, or nothing was compared.
 Exits with 77 (skipped) where valgrind is missing, and with instrumented programs.
 """
-import pathlib
 import re
-import shutil
-import subprocess
 import sys
+
+import callgrind
 
 KINDS = {
     "loads": r"tactus::(LoadEncoder|LoadDecoder)::|tactus::sim::.*tell_loads",
@@ -24,22 +23,17 @@ WANTED = {"none": set(), "stiffness": {"loads", "stiffness"}, "simulation": {"lo
 
 def entered(tactus, folder, clients):
     counts = folder / f"{clients}.counts"
-    subprocess.run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={counts}", str(tactus), "sim", "push-cube", "--duration", "800ms",
-                    "--link", "delay=20ms", "--compensation", clients, "-o", str(folder / f"{clients}.mcap"), "-f", "-q"],
-                   check=True, capture_output=True, text=True)
+    callgrind.run(counts, tactus, "sim", "push-cube", "--duration", "800ms", "--link", "delay=20ms", "--compensation", clients, "-o",
+                  folder / f"{clients}.mcap", "-f", "-q")
     functions = re.findall(r"^c?fn=\(\d+\) (.+)$", counts.read_text(), re.MULTILINE)
     return {kind: sorted({f for f in functions if re.search(pattern, f)}) for kind, pattern in KINDS.items()}
 
 
 def main(arguments):
-    if len(arguments) != 2:
-        print(__doc__, file=sys.stderr)
-        return 2
-    if shutil.which("valgrind") is None:
-        print("skipped: valgrind not found")
-        return 77
-    tactus, folder = map(pathlib.Path, arguments)
-    folder.mkdir(parents=True, exist_ok=True)
+    ready = callgrind.program_and_folder(arguments, __doc__)
+    if isinstance(ready, int):
+        return ready
+    tactus, folder = ready
     failed = False
     for clients, wanted in WANTED.items():
         found = entered(tactus, folder, clients)

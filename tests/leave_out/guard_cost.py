@@ -7,21 +7,14 @@
 The guard is what a step takes beside the integrator's part of it. Exits with 77 (skipped) where valgrind is missing, and in builds
 that are instrumented or not optimised.
 """
-import re
 import shutil
-import subprocess
 import sys
+
+import callgrind
 
 STEPS = 200
 MOST = 0.05
 PARTS = {"step": "tactus::sim::CheckedIntegrator::step*", "integrator": "tactus::sim::VelocityVerlet::advance*", "forces": "tactus::sim::FemModel::internal_forces*"}
-
-
-def instructions(program, function):
-    """Executed inside a function, and in what it calls."""
-    done = subprocess.run(["valgrind", "--tool=callgrind", f"--toggle-collect={function}", "--callgrind-out-file=/dev/null", program,
-                           str(STEPS)], check=True, capture_output=True, text=True)
-    return int(re.search(r"Collected : (\d+)", done.stderr).group(1))
 
 
 def main(arguments):
@@ -34,7 +27,7 @@ def main(arguments):
     if any("-fsanitize" in a or a == "-DCMAKE_BUILD_TYPE=Debug" for a in arguments):
         print("skipped: instructions of such a build tell nothing")
         return 77
-    count = {part: instructions(arguments[0], function) for part, function in PARTS.items()}
+    count = {part: callgrind.instructions("/dev/null", function, arguments[0], STEPS)[0] for part, function in PARTS.items()}
     share = (count["step"] - count["integrator"]) / count["forces"] if count["forces"] else 1
     print(*(f"{part}: {n / STEPS:.0f} instructions per step" for part, n in count.items()), sep="\n")
     print(f"guard: {100 * share:.1f} % of the forces, at most {100 * MOST:.0f} %")

@@ -16,6 +16,8 @@ import shutil
 import subprocess
 import sys
 
+import callgrind
+
 SCENES = {"push-1dof": 300, "rotate-push-lift": 300}  # ticks
 TOLERANCE = 1e-3
 FEM_SYMBOL = re.compile(r"Eigen::|tactus::sim::(FemModel|Integrator|DeformableBody|ErrorEstimate)\b")
@@ -32,13 +34,6 @@ def build_without(source, build, arguments):
     return build / "tests" / "leave_out" / "rigid_scene"
 
 
-def instructions(program, scene, ticks, scratch):
-    """Executed inside run_scene(), and what the program printed."""
-    done = subprocess.run(["valgrind", "--tool=callgrind", "--toggle-collect=run_scene", f"--callgrind-out-file={scratch}",
-                           str(program), str(scene), str(ticks)], check=True, capture_output=True, text=True)
-    return int(re.search(r"Collected : (\d+)", done.stderr).group(1)), done.stdout.strip()
-
-
 def libraries(program):
     return {line.split()[0] for line in output("ldd", str(program)).splitlines()}
 
@@ -50,7 +45,7 @@ def fem_symbols(program):
 def compare(with_fem, without_fem, scenes, scratch):
     problems = []
     for name, ticks in SCENES.items():
-        (a, hash_a), (b, hash_b) = (instructions(p, scenes / f"{name}.toml", ticks, scratch) for p in (with_fem, without_fem))
+        (a, hash_a), (b, hash_b) = (callgrind.instructions(scratch, "run_scene", p, scenes / f"{name}.toml", ticks) for p in (with_fem, without_fem))
         print(f"{name}, {ticks} ticks: {a} instructions with FEM, {b} without, difference {100 * (a - b) / b:+.5f} %")
         if abs(a - b) > TOLERANCE * b:
             problems.append(f"{name}: {a} and {b} instructions")

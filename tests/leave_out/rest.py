@@ -9,11 +9,9 @@ into FOLDER. Each row of ROWS says how many more the one may take than the other
 one that moves 170 000.
 Exits with 77 (skipped) where valgrind is missing.
 """
-import pathlib
-import re
-import shutil
-import subprocess
 import sys
+
+import callgrind
 
 TICKS = 200
 HEAD = """name = "{name}"
@@ -77,20 +75,14 @@ ROWS = [  # scene, the same without, how many more at most
 
 
 def instructions(program, scene, folder):
-    done = subprocess.run(["valgrind", "--tool=callgrind", "--toggle-collect=counted_ticks", f"--callgrind-out-file={folder}/counts",
-                           str(program), str(scene)], check=True, capture_output=True, text=True)
-    return int(re.search(r"Collected : (\d+)", done.stderr).group(1)) / TICKS
+    return callgrind.instructions(folder / "counts", "counted_ticks", program, scene)[0] / TICKS
 
 
 def main(arguments):
-    if len(arguments) != 2:
-        print(__doc__, file=sys.stderr)
-        return 2
-    if shutil.which("valgrind") is None:
-        print("skipped: valgrind not found")
-        return 77
-    program, folder = map(pathlib.Path, arguments)
-    folder.mkdir(parents=True, exist_ok=True)
+    ready = callgrind.program_and_folder(arguments, __doc__)
+    if isinstance(ready, int):
+        return ready
+    program, folder = ready
     counts = {}
     for name, (gravity, text) in SCENES.items():
         scene = folder / f"{name}.toml"
