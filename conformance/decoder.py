@@ -55,7 +55,8 @@ def describe_declaration(scene: Declaration) -> dict:
             "objects": [{"name": item.name, "dof": item.dof} for item in scene.objects]}
     if scene.deformables:
         said["meshes"] = [{"name": d.name, "profile": d.profile, "vertices": len(d.rest), "triangles": len(d.triangles),
-                           "modes": len(d.modes)} for d in scene.deformables]
+                           "modes": len(d.modes), **({} if d.stiffness is None else {"stiffness": f"{fnv1a(d.stiffness):016x}"})}
+                          for d in scene.deformables]
     if scene.loads:
         said["loads"] = list(scene.loads)
     if scene.bounds:

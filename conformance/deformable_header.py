@@ -29,6 +29,7 @@ class DeformableObject:
     rest: list[tuple] = field(default_factory=list)
     triangles: list[tuple] = field(default_factory=list)
     modes: list[Mode] = field(default_factory=list)         # main
+    stiffness: Optional[bytes] = None                       # levels, if told
 
 
 def read_deformable_objects(body: Cursor, most: int, vertices_left: int, triangles_left: int) -> list[DeformableObject]:

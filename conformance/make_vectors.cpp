@@ -14,6 +14,7 @@ Catalogue all() {
   add_scene(catalogue);
   add_scene_bounds(catalogue);
   add_scene_orders(catalogue);
+  add_scene_stiffness(catalogue);
   catalogue.begin("file", "Stream files: records around packets.");
   add_file(catalogue);
   catalogue.begin("packet", "What packets of every kind have in common: sequence numbers, baselines, outages, substreams.");

@@ -55,7 +55,13 @@ void write_deformables(const std::vector<DeformableObject>& deformables, std::os
   for (const DeformableObject& mesh : deformables) {
     out << comma << R"({"name":)" << quoted(mesh.name) << R"(,"profile":)" << int{static_cast<std::uint8_t>(mesh.profile)}
         << R"(,"vertices":)" << mesh.rest.size() << R"(,"triangles":)" << mesh.triangles.size() << R"(,"modes":)"
-        << mesh.basis.steps.size() << '}';
+        << mesh.basis.steps.size();
+    if (!mesh.stiffness.empty()) {
+      Fnv1a levels;
+      for (const std::uint8_t level : mesh.stiffness) levels.add_byte(level);
+      out << R"(,"stiffness":)" << quoted(hex(levels.value(), 16));
+    }
+    out << '}';
     comma = ",";
   }
   out << ']';

@@ -74,7 +74,7 @@ class Declaration:
 
 
 STR_16 = ("malformed", "R-STR-16")
-BOUNDS = 2                                                  # type of an extension record
+BOUNDS, STIFFNESS = 2, 3                                                  # types of extension records
 
 
 def read_declaration(data: bytes, limits: Limits = Limits()) -> tuple[Declaration, int]:
@@ -110,6 +110,8 @@ def read_declaration(data: bytes, limits: Limits = Limits()) -> tuple[Declaratio
         if kind == BOUNDS:
             require(scene.bounds is None, "invalid", "R-STR-17")
             scene.bounds = read_bounds(Cursor(content, 0, len(content)), scene)
+        if kind == STIFFNESS:
+            read_stiffness(content, scene.deformables)
     names = [item.name for item in (*scene.objects, *scene.deformables)]
     require(len(set(names)) == len(names), "invalid", "R-STR-11")
     require(state_bytes(scene) <= limits.state_bytes, "limit_exceeded", "R-STR-18")
@@ -175,3 +177,11 @@ def read_bounds(data: Cursor, scene: Declaration) -> Bounds:
         promise = choice()
         deformables.append([promise, *f64s(3 if promise & 2 else 1)])
     return Bounds(rigid, deformables, f64s(2) if scene.loads else None)
+
+
+def read_stiffness(data: bytes, deformables: list[DeformableObject]) -> None:
+    require(len(data) >= 1, "truncated", "R-STR-20")
+    require(data[0] < len(deformables) and deformables[data[0]].stiffness is None, "invalid", "R-STR-20")
+    of = deformables[data[0]]
+    require(len(data) > len(of.rest), "truncated", "R-STR-20")
+    of.stiffness = data[1:1 + len(of.rest)]

@@ -142,7 +142,10 @@ void Client::touch(std::span<const DeviceSample> devices) noexcept {
 /// What a user feels of an object, in spite of the delay.   pre  compensation_
 Vec3 Client::soften(std::size_t user, const Touch& touch, const Vec3& device, std::uint32_t delay) noexcept {
   Compensation::Shown shown;
-  if (!touch.surface) {
+  if (touch.surface) {
+    const DeformableObject* declared = shown_by_ != nullptr ? &shown_by_->scene()->deformables[touch.surface->mesh] : nullptr;
+    if (declared != nullptr && !declared->stiffness.empty()) shown.deformable = declared;
+  } else {
     const std::uint32_t object = touch.contact.object;
     shown.load = load(object);
     if (!shown.load.empty()) shown.force_exp = shown_by_->scene()->loads->force_exp;

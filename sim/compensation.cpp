@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/sim/compensation.h>
 
-#include <cmath>
 #include <utility>
 
 #include <tactus/load/load_state.h>
@@ -16,8 +15,7 @@ Vec3 others_push(std::span<const GridForce> load, std::size_t user, unsigned for
 }
 
 Result<Compensation> Compensation::create(const Scene& scene) {
-  TACTUS_TRY(auto stiffness, LocalStiffness::create(scene));
-  Compensation out(scene, std::move(stiffness));
+  Compensation out(scene);
   for (std::size_t i = 0; i < scene.users.size(); ++i) {
     TACTUS_TRY(auto reduction, StiffnessReduction::create({.filter = scene.compensation->filter}));
     out.reductions_.push_back(std::move(reduction));
@@ -31,14 +29,16 @@ double Compensation::reduced(std::size_t user, const Touch& touch, const Vec3& s
   StiffnessReduction& reduction = reductions_[user];
   if (touch.surface) {
     const SurfaceContact& at = *touch.surface;
-    const double yields = local_.at(at);
-    if (!std::isfinite(yields)) return at.stiffness;
+    if (shown.deformable == nullptr) return at.stiffness;
+    const double yields = stiffness_at(*shown.deformable, at.triangle, at.weights);
     return reduction.reduced(StiffnessReduction::DeformableTouch{stretch, at.normal, at.stiffness, yields}, delay);
   }
   const Contact& contact = touch.contact;
   const Vec3 normal = rotate(shown.pose.rotation, contact.normal);
-  if (const auto yields = local_.at(contact))
-    return reduction.reduced(StiffnessReduction::DeformableTouch{stretch, normal, contact.stiffness, *yields}, delay);
+  if (const std::size_t rigid = scene_->objects.size(); contact.object >= rigid) {
+    const double yields = scene_->msds[contact.object - rigid].object.stiffness;
+    return reduction.reduced(StiffnessReduction::DeformableTouch{stretch, normal, contact.stiffness, yields}, delay);
+  }
   if (shown.load.empty()) return contact.stiffness;
   const auto force = [&](std::size_t vector) { return to_force(shown.load[vector], shown.force_exp); };
   return reduction.reduced(StiffnessReduction::RigidTouch{.stretch = stretch,

@@ -7,12 +7,10 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include <tactus/client/stiffness_reduction.h>
 #include <tactus/receiver.h>
-#include <tactus/sim/local_stiffness.h>
 #include <tactus/sim/scene/scene.h>
 #include <tactus/sim/touchable.h>
 
@@ -25,22 +23,21 @@ Vec3 others_push(std::span<const GridForce> load, std::size_t user, unsigned for
 class Compensation {
  public:
   /// pre  scene.compensation, and the scene outlives this.
-  /// err  R-API-4: its filter; of LocalStiffness::create()
-  /// time that of LocalStiffness::create()
+  /// err  R-API-4: its filter
   static Result<Compensation> create(const Scene& scene);
 
   /// The user's device in this tick, before what it touches.   no allocation
   void move(std::size_t user, const DeviceSample& device) noexcept { reductions_[user].move(device.position); }
   /// What the object that a user touches is shown as.
   struct Shown {
-    std::span<const GridForce> load{};  ///< Receiver::load
+    const DeformableObject* deformable = nullptr;  ///< as declared, of touch.surface; none: its stiffness is not told
+    std::span<const GridForce> load{};             ///< Receiver::load, of touch.contact.object
     unsigned force_exp = 0;
     Pose pose;
     bool moves = false;
   };
   /// The force [N] to render in place of that of a touch.
-  /// in   shown  of touch.contact.object, if any
-  ///      delay  [ticks] of what is shown
+  /// in   delay  [ticks] of what is shown
   /// no allocation
   Vec3 soften(std::size_t user, const Touch& touch, const Vec3& device, const Shown& shown, std::uint32_t delay) noexcept;
   /// The user touches nothing in this tick.
@@ -49,10 +46,10 @@ class Compensation {
   double stiffness(std::size_t user) const noexcept { return stiffness_[user]; }
 
  private:
-  Compensation(const Scene& scene, LocalStiffness local) : local_(std::move(local)), stiffness_(scene.users.size()) {}
+  explicit Compensation(const Scene& scene) : scene_(&scene), stiffness_(scene.users.size()) {}
   double reduced(std::size_t user, const Touch& touch, const Vec3& stretch, const Shown& shown, std::uint32_t delay) noexcept;
 
-  LocalStiffness local_;
+  const Scene* scene_;
   std::vector<StiffnessReduction> reductions_;  // one per user
   std::vector<double> stiffness_;               // [N/m] one per user
 };

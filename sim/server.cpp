@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include <tactus/sim/deformable/stiffness_map.h>
 #include <tactus/sim/msd/msd_objects.h>
 
 namespace tactus::sim {
@@ -46,8 +47,14 @@ Result<void> Server::add_objects(const ServerOptions& options) {
 
 Result<void> Server::add_codec(const ServerCodec& codec) {
   SceneBuilder builder = scene_builder(scene_);
-  if (deformables_)
-    for (const TraceDeformable& mesh : deformables_->meshes()) TACTUS_CHECK(add_deformable(builder, mesh, codec.coding));
+  for (std::size_t i = 0; i < scene_.deformables.size(); ++i) {
+    TraceCoding coding = codec.coding;
+    if (scene_.compensation && scene_.compensation->method == CompensationMethod::stiffness) {
+      TACTUS_TRY(auto map, stiffness_map(scene_.deformables[i]));
+      coding.deformable.stiffness = std::move(map.stiffness);
+    }
+    TACTUS_CHECK(add_deformable(builder, deformables_->meshes()[i], coding));
+  }
   builder.promise(codec.sender.triggers, codec.sender.deformable.thresholds, codec.sender.load);
   constexpr std::uint8_t kBaselines = 64;
   if (codec.sessions) builder.baselines(kBaselines);

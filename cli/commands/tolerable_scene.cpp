@@ -5,6 +5,8 @@
 #include <system_error>
 #include <utility>
 
+#include <tactus/client/stiffness_reduction.h>
+
 namespace tactus::cli {
 
 bool TolerableScene::is_meant(const std::string& argument) {
@@ -22,9 +24,13 @@ tl::expected<TolerableScene, Failure> TolerableScene::create(const std::string& 
   auto simulation = sim::Simulation::create(*scene, {.seed = seed, .grip = {}, .channel = {}});
   if (!simulation) return refuse(name, simulation.error());
   auto kept = std::make_unique<sim::Scene>(std::move(*scene));
-  auto local = sim::LocalStiffness::create(*kept);
-  if (!local) return refuse(name, local.error());
-  return TolerableScene(name, std::move(kept), std::move(*simulation), std::move(*local));
+  std::vector<sim::StiffnessMap> maps;
+  for (const sim::SceneDeformable& object : kept->deformables) {
+    auto map = sim::stiffness_map(object);
+    if (!map) return refuse(name + ": " + object.name, map.error());
+    maps.push_back(std::move(*map));
+  }
+  return TolerableScene(name, std::move(kept), std::move(*simulation), std::move(maps));
 }
 
 tl::expected<const TraceFrame*, Failure> TolerableScene::next() {
@@ -34,9 +40,13 @@ tl::expected<const TraceFrame*, Failure> TolerableScene::next() {
 }
 
 double TolerableScene::follows(const DelayTolerance::Pair& pair, const UserSample& user) const noexcept {
-  if (pair.is_mesh) return sim::share_followed(local_.at(*user.surface_contact), user.surface_contact->stiffness);
-  const auto yields = local_.at(user.contact);
-  return yields ? sim::share_followed(*yields, user.contact.stiffness) : 1;
+  if (pair.is_mesh) {
+    const SurfaceContact& at = *user.surface_contact;
+    return share_followed(maps_[at.mesh].at(at.triangle, at.weights), at.stiffness);
+  }
+  const std::size_t rigid = scene_->objects.size();
+  if (user.contact.object < rigid) return 1;
+  return share_followed(scene_->msds[user.contact.object - rigid].object.stiffness, user.contact.stiffness);
 }
 
 }  // namespace tactus::cli

@@ -5,9 +5,10 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <tactus/metrics/delay_tolerance.h>
-#include <tactus/sim/local_stiffness.h>
+#include <tactus/sim/deformable/stiffness_map.h>
 #include <tactus/sim/scene/scene.h>
 #include <tactus/sim/simulation.h>
 #include "cli/report/messages.h"
@@ -18,7 +19,7 @@ class TolerableScene {
  public:
   /// Whether the argument of a command means a scene: a .toml file, or the name of one that comes with Tactus.
   static bool is_meant(const std::string& argument);
-  /// err  of load_scene(), Simulation::create(), LocalStiffness::create(); the scene has no users
+  /// err  of load_scene(), Simulation::create(), stiffness_map(); the scene has no users
   static tl::expected<TolerableScene, Failure> create(const std::string& name, std::uint64_t seed);
 
   TraceInfo info() const { return simulation_.info(); }
@@ -29,13 +30,14 @@ class TolerableScene {
   double follows(const DelayTolerance::Pair& pair, const UserSample& user) const noexcept;
 
  private:
-  TolerableScene(std::string name, std::unique_ptr<sim::Scene> scene, sim::Simulation simulation, sim::LocalStiffness local)
-      : name_(std::move(name)), scene_(std::move(scene)), simulation_(std::move(simulation)), local_(std::move(local)) {}
+  TolerableScene(std::string name, std::unique_ptr<sim::Scene> scene, sim::Simulation simulation,
+                 std::vector<sim::StiffnessMap> maps)
+      : name_(std::move(name)), scene_(std::move(scene)), simulation_(std::move(simulation)), maps_(std::move(maps)) {}
 
   std::string name_;
   std::unique_ptr<sim::Scene> scene_;
   sim::Simulation simulation_;
-  sim::LocalStiffness local_;
+  std::vector<sim::StiffnessMap> maps_;  // one per deformable object
 };
 
 }  // namespace tactus::cli

@@ -4,8 +4,10 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <ctime>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "cli/report/figures.h"
 #include "cli/report/report_json.h"
@@ -31,6 +33,16 @@ Json dof_json(std::uint8_t dof) {
 
 double step_of(std::uint8_t exponent) { return 1.0 / static_cast<double>(std::uint64_t{1} << exponent); }
 
+/// Range of the stiffness of the vertices that move.
+Json stiffness_json(const DeformableObject& mesh) {
+  const auto is_fixed = [](std::uint8_t level) { return level == 0; };
+  std::vector<std::uint8_t> levels = mesh.stiffness;
+  std::erase_if(levels, is_fixed);
+  if (levels.empty()) return nullptr;
+  const auto [least, largest] = std::ranges::minmax_element(levels);
+  return {{"least", stiffness_of_level(*least)}, {"largest", stiffness_of_level(*largest)}};
+}
+
 Json mesh_header_json(const DeformableObject& mesh, std::uint32_t tick_rate) {
   const bool is_main = mesh.profile == DeformableProfile::main;
   Json out{{"name", mesh.name},
@@ -39,6 +51,7 @@ Json mesh_header_json(const DeformableObject& mesh, std::uint32_t tick_rate) {
            {"triangles", mesh.triangles.size()},
            {"rings", mesh.rings},
            {"modes", mesh.basis.steps.size()}};
+  if (!mesh.stiffness.empty()) out["stiffness_N_per_m"] = stiffness_json(mesh);
   if (is_main) {
     out["layered"] = mesh.layered;
     out["frame_period_s"] = mesh.frame_period / 256.0 / tick_rate;

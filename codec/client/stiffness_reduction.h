@@ -36,6 +36,9 @@
 
 namespace tactus {
 
+/// K: share of the device's way that an object of k_o follows behind a coupling k, both in N/m. Equation 4.54.
+constexpr double share_followed(double object, double coupling) noexcept { return coupling / (object + coupling); }
+
 class StiffnessReduction {
  public:
   static constexpr std::uint32_t kMostDelay = 10'000;  ///< [ticks]
@@ -48,7 +51,7 @@ class StiffnessReduction {
     Vec3 stretch;                 ///< [m] from the proxy on the surface to the device
     Vec3 normal{0, 0, 1};         ///< of the surface there, outward, unit length
     double coupling = 0;          ///< k [N/m] of proxy and device, > 0
-    double object_stiffness = 0;  ///< k_o [N/m] at the touched point, > 0
+    double object_stiffness = 0;  ///< k_o [N/m] at the touched point, > 0, infinite where it does not move (stiffness_at())
   };
 
   struct RigidTouch {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <tactus/base/out_of_memory.h>
@@ -23,7 +24,28 @@ bool has_areas(const DeformableObject& object) noexcept {
   });
 }
 
+constexpr double kLevelsPerOctave = 10, kFirstOctave = -6;  // of stiffness in N/m
+
 }  // namespace
+
+Result<std::uint8_t> stiffness_level(double stiffness) noexcept {
+  if (!(stiffness > 0)) return fail(Errc::invalid_argument, "R-API-4");
+  if (std::isinf(stiffness)) return std::uint8_t{0};
+  const double level = std::floor(kLevelsPerOctave * (std::log2(stiffness) - kFirstOctave) + 0.5) + 1;
+  return static_cast<std::uint8_t>(std::clamp(level, 1.0, 255.0));
+}
+
+double stiffness_of_level(std::uint8_t level) noexcept {
+  if (level == 0) return std::numeric_limits<double>::infinity();
+  return std::exp2((level - 1) / kLevelsPerOctave + kFirstOctave);
+}
+
+double stiffness_at(const DeformableObject& object, std::uint32_t triangle, const std::array<double, 3>& weights) noexcept {
+  double sum = 0;
+  for (std::size_t k = 0; k < weights.size(); ++k)
+    if (weights[k] != 0) sum += weights[k] * stiffness_of_level(object.stiffness[object.triangles[triangle][k]]);
+  return sum;
+}
 
 Result<ModeBasis> make_mode_basis(std::span<const double> vectors, std::size_t modes, double coarseness) try {
   if (modes > ModeBasis::kMaxModes || modes == 0 || vectors.size() % (3 * modes) != 0)

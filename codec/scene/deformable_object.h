@@ -52,8 +52,20 @@ struct DeformableObject {
   std::vector<std::array<std::int32_t, 3>> rest;  ///< vertices, x 2^-position_exp m
   std::vector<Triangle> triangles;
   ModeBasis basis;  ///< main
+  std::vector<std::uint8_t>
+      stiffness;  ///< levels (stiffness_level), one per vertex: what clients with delay need; empty: not told
   friend bool operator==(const DeformableObject&, const DeformableObject&) = default;
 };
+
+/// Level of the stiffness [N/m] of a vertex: the nearest, within 3.6 % from 0.016 N/m to 690 kN/m, else the first or last of them;
+/// 0 for an infinite one, a vertex that does not move. spec/20-scene.md section 7
+/// err  invalid_argument R-API-4: not above 0
+Result<std::uint8_t> stiffness_level(double stiffness) noexcept;
+/// [N/m]
+double stiffness_of_level(std::uint8_t level) noexcept;
+/// [N/m] At a point of a triangle, by barycentric weights; infinite where a corner that does not move has one.   time O(1)
+/// pre  the object tells its stiffness
+double stiffness_at(const DeformableObject& object, std::uint32_t triangle, const std::array<double, 3>& weights) noexcept;
 
 /// A surface on a scene's grid; all other fields keep their defaults.
 /// err  invalid_argument R-API-1 a coordinate is not finite; R-API-2 it leaves the grid's range; R-API-10 a triangle has no area

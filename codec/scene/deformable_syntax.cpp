@@ -124,7 +124,8 @@ RuleName broken_deformable_rule(const DeformableObject& object) noexcept {
   const bool triangles = std::all_of(object.triangles.begin(), object.triangles.end(),
                                      [&](const Triangle& t) { return is_triangle(t, object.rest.size()); });
   if (!triangles) return "R-DEF-6";
-  return is_basis(object) ? RuleName() : RuleName("R-DEF-7");
+  if (!is_basis(object)) return "R-DEF-7";
+  return object.stiffness.empty() || object.stiffness.size() == object.rest.size() ? RuleName() : RuleName("R-STR-20");
 }
 
 void write_deformable(ByteWriter& out, const DeformableObject& object) {
@@ -178,6 +179,23 @@ Result<DeformableObject> parse_deformable(ByteReader& in, const DeformableRoom& 
   TACTUS_CHECK(parse_triangles(in, triangles, object));
   if (object.profile == DeformableProfile::main) TACTUS_CHECK(parse_basis(in, object));
   return object;
+}
+
+void write_stiffness(ByteWriter& out, std::uint8_t object, const DeformableObject& of) {
+  out.varint(kStiffnessRecord);
+  out.varint(1 + of.stiffness.size());
+  out.u8(object);
+  out.bytes(of.stiffness);
+}
+
+Result<void> parse_stiffness(ByteReader& in, std::span<DeformableObject> objects) {
+  const std::uint8_t object = in.u8();
+  if (!in.ok()) return fail(Errc::truncated, "R-STR-20", in.bit_offset());
+  if (object >= objects.size() || !objects[object].stiffness.empty()) return fail(Errc::invalid, "R-STR-20", in.bit_offset());
+  const auto levels = in.bytes(objects[object].rest.size());
+  if (!in.ok()) return fail(Errc::truncated, "R-STR-20", in.bit_offset());
+  objects[object].stiffness.assign(levels.begin(), levels.end());
+  return {};
 }
 
 }  // namespace tactus

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Deformable objects in a scene declaration. spec/60-object.md section 2. Internal to the library.
+/// Deformable objects in a scene declaration. spec/20-scene.md sections 4 and 7. Internal to the library.
 #pragma once
+
+#include <cstdint>
+#include <span>
 
 #include <tactus/base/bytes.h>
 #include <tactus/base/result.h>
@@ -20,5 +23,14 @@ struct DeformableRoom {
 /// err  truncated, malformed R-STR-5; unsupported R-DEF-2; invalid R-DEF-3..7; limit_exceeded R-STR-14: more than the limits
 ///      leave.
 Result<DeformableObject> parse_deformable(ByteReader& in, const DeformableRoom& room);
+
+inline constexpr std::uint64_t kStiffnessRecord = 3;  ///< type of the extension record
+
+/// The whole record.   pre  the object tells its stiffness
+void write_stiffness(ByteWriter& out, std::uint8_t object, const DeformableObject& of);
+/// Into the object that the record names.
+/// in   in  the record's data; bytes after the known elements are skipped
+/// err  truncated, invalid R-STR-20
+Result<void> parse_stiffness(ByteReader& in, std::span<DeformableObject> objects);
 
 }  // namespace tactus

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The scene declaration: everything that both ends know before the first packet. spec/20-scene.md sections 2 to 7.
+/// The scene declaration: everything that both ends know before the first packet. spec/20-scene.md sections 2 to 8.
 ///
 /// A SceneSpec is plain data that the caller fills in. A Scene is checked, immutable, and shared by sender, receiver, file and
 /// threads. SceneBuilder makes one from SI units (scene_builder.h), parse_scene() from bytes (scene_syntax.h).
@@ -86,7 +86,7 @@ using SharedScene = std::shared_ptr<const Scene>;
 /// The rule that a declaration breaks, if any.   err  as Scene::create
 Result<void> check_scene(const SceneSpec& spec, const DecodeLimits& limits = {});
 
-/// Memory of the states that the decoders of all substreams keep [bytes]. spec/20-scene.md section 8
+/// Memory of the states that the decoders of all substreams keep [bytes]. spec/20-scene.md section 9
 std::uint64_t state_bytes(const SceneSpec& spec) noexcept;
 
 /// Bounds of a stream whose sender uses these thresholds. Deformable objects of profile thesis only aim at theirs.

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kExtrapolation = 2;  // [s]
 
-void apply(DeformableCoding& coding, DeformableObject& object) {
+Result<void> apply(DeformableCoding& coding, DeformableObject& object) {
   object.profile = coding.profile;
   object.rings = coding.rings;
   object.quant_bits = coding.quant_bits;
@@ -24,6 +24,11 @@ void apply(DeformableCoding& coding, DeformableObject& object) {
   object.frame_period = static_cast<std::uint32_t>(
       std::clamp(std::floor(256 * coding.frame_period + 0.5), 1.0, double{DeformableObject::kMaxFramePeriod}));
   if (coding.profile == DeformableProfile::main) object.basis = std::move(coding.basis);
+  for (const double stiffness : coding.stiffness) {
+    TACTUS_TRY(const std::uint8_t level, stiffness_level(stiffness));
+    object.stiffness.push_back(level);
+  }
+  return {};
 }
 
 }  // namespace
@@ -86,7 +91,7 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build() try {
   for (Deformable& of : taken.deformables_) {
     auto object = make_deformable_object(of.name, of.surface, spec.grid.position);
     if (!object) return refuse(object.error(), of.name);
-    apply(of.coding, *object);
+    if (const auto applied = apply(of.coding, *object); !applied) return refuse(applied.error(), of.name);
     if (!is_name(of.name) || !names.insert(of.name).second) return refuse({Errc::invalid, RuleName("R-STR-11"), 0}, of.name);
     if (const RuleName rule = broken_deformable_rule(*object)) return refuse({Errc::invalid, rule, 0}, of.name);
     spec.deformables.push_back(std::move(*object));

@@ -22,6 +22,8 @@ struct DeformableCoding {
   double frame_period = 1;      ///< main: [ticks] from shape to shape, > 0
   bool layered = false;         ///< main: separate packets for the haptic and the visual layer
   ModeBasis basis{};            ///< main
+  /// [N/m] of each vertex, infinite where it does not move; empty: not told. What clients with delay render by (StiffnessReduction).
+  std::vector<double> stiffness{};
 };
 
 /// What went wrong, and with which object.
@@ -51,7 +53,7 @@ class SceneBuilder {
   /// Declare the bounds that hold at a client that gets every packet.
   SceneBuilder& promise(const RigidTriggers& rigid, const DeformableThresholds& deformables, const LoadThresholds& loads = {});
 
-  /// err  invalid_argument R-API-1..3, R-API-10 a pose or surface does not fit the grid; those of Scene::create
+  /// err  invalid_argument R-API-1..4, R-API-10 a pose, surface or stiffness does not fit its grid; those of Scene::create
   tl::expected<SharedScene, SceneFinding> build();
 
  private:

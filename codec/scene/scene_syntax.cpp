@@ -45,6 +45,7 @@ Result<void> parse_extensions(ByteReader& body, SceneSpec& spec) {
     const std::uint64_t type = body.varint();
     ByteReader data = body.sub(body.varint());
     if (!body.ok()) return fail(Errc::malformed, "R-STR-16", body.bit_offset());
+    if (type == kStiffnessRecord) TACTUS_CHECK(parse_stiffness(data, spec.deformables));
     if (type != kBoundsRecord) continue;
     if (spec.bounds) return fail(Errc::invalid, "R-STR-17", data.bit_offset());
     TACTUS_TRY(spec.bounds, parse_bounds(data, spec));
@@ -140,6 +141,9 @@ Result<std::vector<std::uint8_t>> write_scene(const Scene& scene) try {
     b.varint(bounds.size());
     b.bytes(bounds);
   }
+  for (std::size_t i = 0; i < scene.deformables.size(); ++i)
+    if (const auto& object = scene.deformables[i]; !object.stiffness.empty())
+      write_stiffness(b, static_cast<std::uint8_t>(i), object);
   std::vector<std::uint8_t> out;
   out.reserve(kFixedSize + body.size() + 4);
   ByteWriter w(out);

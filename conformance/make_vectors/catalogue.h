@@ -85,6 +85,7 @@ class Catalogue {
 void add_scene(Catalogue& catalogue);
 void add_scene_bounds(Catalogue& catalogue);
 void add_scene_orders(Catalogue& catalogue);
+void add_scene_stiffness(Catalogue& catalogue);
 void add_file(Catalogue& catalogue);
 void add_packet_rigid(Catalogue& catalogue);
 void add_packet_deformable(Catalogue& catalogue);

@@ -6,6 +6,7 @@ namespace tactus::conformance::section {
 
 inline constexpr const char* kDeclaration = "20 Layout";
 inline constexpr const char* kBounds = "20 Bounds";
+inline constexpr const char* kStiffness = "20 Stiffness";
 inline constexpr const char* kLimits = "20 Limits and memory";
 inline constexpr const char* kSubstreams = "25 Substreams";
 inline constexpr const char* kBaselines = "25 Baselines";

@@ -76,6 +76,27 @@ TEST(SceneBuilder, DeformableObjectsAndTheirCoding) {
   EXPECT_TRUE(b.basis.steps.empty()) << "of profile main alone";
 }
 
+TEST(SceneBuilder, StiffnessIsToldByLevels) {
+  const TriMesh mesh = testing::sheet(1, 1);
+  const double fixed = std::numeric_limits<double>::infinity();
+  const auto built = SceneBuilder().deformable("a", mesh, {.stiffness = {0.01, 100, 1e9, fixed}}).build();
+  ASSERT_TRUE(built);
+  EXPECT_EQ((*built)->deformables[0].stiffness, (std::vector<std::uint8_t>{1, 127, 255, 0}));
+  const auto refused = [&](std::vector<double> stiffness) {
+    return std::string(SceneBuilder().deformable("a", mesh, {.stiffness = std::move(stiffness)}).build().error().error.rule);
+  };
+  EXPECT_EQ(refused({1, 1, 1}), "R-STR-20") << "four vertices";
+  EXPECT_EQ(refused({1, 1, 1, 0}), "R-API-4");
+  EXPECT_EQ(refused({1, 1, 1, std::numeric_limits<double>::quiet_NaN()}), "R-API-4");
+}
+
+TEST(StiffnessLevels, AreNearAndInOrder) {
+  for (double stiffness = 0.016; stiffness < 690e3; stiffness *= 1.003)
+    EXPECT_NEAR(stiffness_of_level(stiffness_level(stiffness).value()) / stiffness, 1, 0.036) << stiffness;
+  for (int level = 0; level < 256; ++level)
+    EXPECT_EQ(stiffness_level(stiffness_of_level(static_cast<std::uint8_t>(level))).value(), level);
+}
+
 TEST(SceneBuilder, PromisesAreBoundsOfItsObjects) {
   const TriMesh mesh = testing::sheet(1, 1);
   const RigidTriggers rigid{.visual_position = 0.011};

@@ -35,6 +35,23 @@ TEST(SceneDeformables, RoundTrip) {
   EXPECT_EQ(write_scene(*parsed->scene).value(), bytes);
 }
 
+TEST(SceneDeformables, StiffnessCostsAByteForEachVertexAndNothingWhereItIsNotTold) {
+  SceneSpec spec = two_deformables();
+  const auto without = write_scene(*testing::shared(spec)).value();
+  spec.deformables[1].stiffness = {0, 1, 97, 255};
+  const auto bytes = write_scene(*testing::shared(spec)).value();
+  EXPECT_EQ(bytes.size(), without.size() + 3 + 4);  // type, size, object; levels
+  const auto parsed = parse_scene(bytes);
+  ASSERT_TRUE(parsed) << parsed.error().rule;
+  EXPECT_EQ(parsed->scene->deformables, spec.deformables);
+  EXPECT_TRUE(parsed->scene->deformables[0].stiffness.empty());
+  const DeformableObject& told = parsed->scene->deformables[1];
+  const Triangle& corners = told.triangles[0];
+  const double between =
+      0.25 * stiffness_of_level(told.stiffness[corners[1]]) + 0.75 * stiffness_of_level(told.stiffness[corners[2]]);
+  EXPECT_EQ(stiffness_at(told, 0, {0, 0.25, 0.75}), between);
+}
+
 TEST(SceneDeformables, ASceneWithoutThemHasNoByteAboutThem) {
   SceneSpec spec = two_deformables();
   spec.deformables.clear();

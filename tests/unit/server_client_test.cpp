@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include <tactus/sim/client.h>
+#include <tactus/sim/deformable/stiffness_map.h>
 #include <tactus/sim/link/perfect_link.h>
 #include <tactus/sim/server.h>
 #include <tactus/sim/simulation.h>
@@ -111,6 +113,26 @@ TEST(RemoteClient, ReadsNoReceiverThatIsGone) {
     EXPECT_TRUE(is_finite(client->felt(0)));
   }
 }
+
+#ifdef TACTUS_WITH_FEM
+/// The map that clients render by is in the declaration, once, if they do, and in no other stream.
+TEST(Server, TellsTheStiffnessToClientsThatRenderByIt) {
+  Scene scene = shipped("membrane-small");
+  ServerOptions options;
+  options.codec.emplace();
+  const auto told = [&] { return Server::create(scene, options).value()->stream_scene()->deformables[0].stiffness; };
+  EXPECT_TRUE(told().empty());
+  scene.compensation.emplace().method = CompensationMethod::simulation;
+  EXPECT_TRUE(told().empty());
+  scene.compensation->method = CompensationMethod::stiffness;
+  const auto levels = told();
+  const auto map = stiffness_map(scene.deformables[0]).value().stiffness;
+  ASSERT_EQ(levels.size(), map.size());
+  for (std::size_t v = 0; v < map.size(); ++v)
+    if (std::isinf(map[v])) EXPECT_EQ(levels[v], 0);
+    else EXPECT_NEAR(stiffness_of_level(levels[v]) / map[v], 1, 0.036) << v;
+}
+#endif
 
 /// What a client shows and lets feel needs nothing of the physics: a square, then the same square 2 mm lower.
 TEST(DeformableView, ShowsAndIsFeltWithoutFiniteElements) {
