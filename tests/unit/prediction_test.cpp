@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <vector>
 
 namespace tactus::sim {
 namespace {
@@ -203,6 +206,91 @@ TEST(Prediction, PutsWhatIsFarAwayToItsPlace) {
     own->step({.position = {-0.05, 0, 0.02}});
   }
 }
+
+TEST(Prediction, TurnsAtOnceWhatIsTurnedFarAway) {
+  const Scene scene = cube();
+  const auto own = Prediction::create(scene, 0).value();
+  const Pose there{scene.objects[0].pose.position, {std::cos(0.6), 0, 0, std::sin(0.6)}};
+  own->hear(0, there, 0);
+  own->correct(kAge);
+  EXPECT_LT(angle_between(own->poses()[0].rotation, there.rotation), 1e-6);
+}
+
+/// Corrections about one axis after the other, far apart in time, add up to the pose of the server and not to another.
+TEST(Prediction, AddsTurnsAboutSeveralAxes) {
+  Scene scene = cube();
+  scene.gravity = {};
+  scene.floor.reset();
+  const auto own = Prediction::create(scene, 0).value();
+  const Vec3 place = scene.objects[0].pose.position;
+  const Quat about_x{std::cos(0.4), std::sin(0.4), 0, 0}, about_y{std::cos(0.4), 0, std::sin(0.4), 0};
+  for (const Quat& server : {about_x, about_y * about_x}) {
+    double before = 0.8;
+    for (std::int64_t tick = 0; tick < 1500; ++tick) {
+      own->hear(0, {place, server}, tick);
+      own->correct(kAge);
+      const double now = angle_between(own->poses()[0].rotation, server);
+      ASSERT_LE(now, before + 1e-9) << "no way further than to it, in tick " << tick;
+      before = now;
+      own->step(kAway);
+    }
+    EXPECT_LT(before, 2.1e-3);
+  }
+}
+
+#ifdef TACTUS_WITH_FEM
+/// Presses into the membrane, slowly, from tick 50 on.
+DeviceSample pressing(std::int64_t tick) {
+  return {.position = {0.012, 0, 0.001 - 1e-5 * static_cast<double>(std::clamp<std::int64_t>(tick - 50, 0, 600))}};
+}
+
+std::vector<PastShapes::Displacement> kept(std::span<const PastShapes::Displacement> shape) {
+  return {shape.begin(), shape.end()};
+}
+
+/// A shape that is heard some ticks after its frame began is compared with the own one of that time.
+TEST(Prediction, ComparesShapesByTheirAge) {
+  const Scene scene = load_scene(*find_scene("membrane-small")).value();
+  const std::int64_t period = scene.deformables[0].rate, late = 5;
+  const auto server = Prediction::create(scene, 0).value(), own = Prediction::create(scene, 0).value();
+  std::map<std::int64_t, std::vector<PastShapes::Displacement>> shapes;  // of the server, by tick
+  std::int32_t deepest = 0, farthest = 0;
+  for (std::int64_t tick = 0; tick < 800; ++tick) {
+    server->correct(0);
+    if (const auto shape = server->new_shape(0); !shape.empty()) shapes[tick] = kept(shape);
+    server->step(pressing(tick));
+    const std::int64_t began = tick + 1 - kAge - late;
+    if (shapes.contains(began)) own->hear(0, shapes[began], PastShapes::kExp, began + late);
+    own->correct(kAge);
+    if (const auto shape = own->new_shape(0); !shape.empty() && shapes.contains(tick))
+      for (std::size_t v = 0; v < shape.size(); ++v) {
+        deepest = std::max(deepest, std::abs(shapes[tick][v][2]));
+        farthest = std::max(farthest, std::abs(shape[v][2] - shapes[tick][v][2]));
+      }
+    own->step(pressing(tick));
+  }
+  EXPECT_GT(shapes.size(), static_cast<std::size_t>(600 / period));
+  EXPECT_GT(deepest, 3000) << "x 2^-20 m";
+  EXPECT_LE(farthest, 2);
+}
+
+/// An object that sleeps at the client takes over what the server makes of it, frame by frame.
+TEST(Prediction, ShowsWhatIsHeardOfAShapeThatSleeps) {
+  const Scene scene = load_scene(*find_scene("membrane-small")).value();
+  const auto own = Prediction::create(scene, 0).value();
+  const std::int64_t period = scene.deformables[0].rate;
+  std::vector<PastShapes::Displacement> dent(std::size_t{17 * 21 * 2});
+  dent[100][2] = -1000;
+  std::int32_t seen = 0;
+  for (std::int64_t tick = 0; tick < 600; ++tick) {
+    if (tick % period == 0) own->hear(0, dent, PastShapes::kExp, tick);
+    own->correct(kAge);
+    if (const auto shape = own->new_shape(0); !shape.empty()) seen = shape[100][2];
+    own->step(kAway);
+  }
+  EXPECT_NEAR(seen, -1000, 2);
+}
+#endif
 
 TEST(Prediction, FollowsTheServerWhileTheDelayIsNotKnown) {
   const Scene scene = cube();
