@@ -52,6 +52,7 @@ constexpr std::array kNeeds{
     Need{"--force-floor", Subject::rigid},
     Need{"--heartbeat", Subject::rigid},
     Need{"--no-reduction", Subject::rigid},
+    Need{"--lean", Subject::rigid},
     Need{"--interpolate", Subject::rigid},
     Need{"--deformable-visual", Subject::mesh},
     Need{"--profile", Subject::mesh},

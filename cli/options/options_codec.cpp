@@ -140,7 +140,11 @@ void TriggerArguments::add_encoder_to(Command& app) {
   options_.push_back(add_quantity(app, "--key-interval", key_interval_, Dimension::time,
                                   "Time between key packets, at which decoding can start; 0: the first only [5s]")
                          ->check(within(Dimension::time, "0s", "86400s")));
-  options_.push_back(app.add_flag("--no-reduction", no_reduction_, "Send every object at every tick"));
+  auto* every_tick = app.add_flag("--no-reduction", no_reduction_, "Send every object at every tick");
+  auto* lean =
+      app.add_flag("--lean", lean_, "Tell velocities that lean towards the acceleration, so that an update lasts longer");
+  options_.push_back(every_tick);
+  options_.push_back(lean->excludes(every_tick));
 }
 
 std::optional<double> TriggerArguments::weber_fraction(std::optional<double> otherwise) const {
@@ -153,7 +157,7 @@ bool TriggerArguments::any_given() const {
 }
 
 RigidTriggers TriggerArguments::over(RigidTriggers out) const {
-  out.reduction = no_reduction_ ? Reduction::none : Reduction::dead_reckoning;
+  out.reduction = no_reduction_ ? Reduction::none : lean_ ? Reduction::leaning : Reduction::dead_reckoning;
   out.heartbeat = triggers_.heartbeat;
   if (haptic_->count() > 0) out.haptic = triggers_.haptic;
   if (deadband_->count() > 0) out.weber_fraction = triggers_.weber_fraction;

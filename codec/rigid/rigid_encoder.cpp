@@ -113,6 +113,7 @@ RigidEncoder::RigidEncoder(const Scene& scene, const RigidTriggers& triggers, Ba
       early_(baseline == Baseline::acknowledged ? kEarly : 1),
       heartbeat_(static_cast<std::int64_t>(std::ceil(triggers.heartbeat * scene.tick_rate))),
       truth_(initial_states(scene).objects) {
+  if (triggers.reduction == Reduction::leaning) leaning_.emplace(scene);
   pending_.reserve(scene.moving().size());
   before_.reserve(scene.moving().size());
   for (const RigidState& state : truth_) sent_.push_back({.state = state});
@@ -147,6 +148,7 @@ Result<void> RigidEncoder::read(std::int64_t tick, std::span<const RigidSample> 
   }
   samples_ = samples;
   contacts_ = contacts;
+  if (leaning_) leaning_->read(tick, samples);
   return {};
 }
 
@@ -217,11 +219,23 @@ void RigidEncoder::collect(const EncodeRequest<RigidStates>& request) noexcept {
   std::ranges::sort(pending_, {}, &Pending::object);
 }
 
+/// The true state, with the velocities that an update is to tell.
+RigidState RigidEncoder::told(std::uint32_t object) const noexcept {
+  const RigidState& truth = truth_[object];
+  if (!leaning_) return truth;
+  RigidTriggers widened = triggers_;
+  for (double* bound : {&widened.visual_position, &widened.visual_rotation, &widened.weber_fraction, &widened.fixed_position,
+                        &widened.fixed_rotation})
+    *bound *= widening_;
+  return to_grid(leaning_->lean(object, samples_, contacts_, widened), truth.tick, scene_.grid).value_or(truth);
+}
+
 /// The coarsest level whose rounding leaves room inside every bound; without one, the finest that keeps them; where the grid is too
 /// coarse for the permitted force error, the nearest place on it.
 Result<CodedUpdate> RigidEncoder::quantise(Pending& update, const Prediction& prediction) const noexcept {
   const std::uint32_t object = update.object;
   const RigidState& truth = truth_[object];
+  const RigidState told = this->told(object);
   const std::uint8_t dof = scene_.objects[object].dof;
   std::optional<CodedUpdate> finest;
   const unsigned coarsest = triggers_.haptic == HapticRule::fixed && is_touched(object) ? fixed_.level : visual_.level;
@@ -229,7 +243,7 @@ Result<CodedUpdate> RigidEncoder::quantise(Pending& update, const Prediction& pr
     const unsigned level = levels - 1;
     CodedUpdate coded{update.reason, static_cast<std::uint8_t>(level),
                       quantise_pose(prediction.pose, truth, dof, level, scene_.grid)};
-    quantise_motion(predictor_, prediction, truth, dof, coded);
+    quantise_motion(predictor_, prediction, told, dof, coded);
     const auto state = reconstruct(predictor_, prediction, truth.tick, coded, scene_.grid);
     if (!state) return fail(Errc::internal, "R-RIG-6");
     const RigidPose shown{state->position, state->rotation};

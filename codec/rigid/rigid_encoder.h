@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -18,6 +19,7 @@
 #include <tactus/base/result.h>
 #include <tactus/packet/substream_encoder.h>
 #include <tactus/rigid/contact.h>
+#include <tactus/rigid/leaning.h>
 #include <tactus/rigid/rigid_syntax.h>
 #include <tactus/rigid/trigger.h>
 
@@ -73,6 +75,7 @@ class RigidEncoder {
   bool is_follow_up_due(std::uint32_t object) const noexcept;
   bool joins(std::uint32_t object, const EncodeRequest<RigidStates>& request) const noexcept;
   void collect(const EncodeRequest<RigidStates>& request) noexcept;
+  RigidState told(std::uint32_t object) const noexcept;
   Result<CodedUpdate> quantise(Pending& update, const Prediction& prediction) const noexcept;
 
   const Scene& scene_;
@@ -83,6 +86,7 @@ class RigidEncoder {
   double early_ = 1;                              // share of its bounds over which an object joins a packet
   std::array<std::int64_t, 3> follow_up_{};  // [ticks] without an acknowledgement before the first, the second and later; 0: none
   std::int64_t heartbeat_ = 0;               // [ticks], 0: off
+  std::optional<Leaning> leaning_;           // if asked for
   std::vector<RigidState> truth_;            // this tick, on the grid
   std::span<const RigidSample> samples_;     // this tick, as given
   std::span<const Contact> contacts_;

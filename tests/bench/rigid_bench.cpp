@@ -80,9 +80,9 @@ void encode_update(benchmark::State& state) {
 BENCHMARK(encode_update)->Repetitions(5)->ReportAggregatesOnly();
 
 /// One touched update per tick: the grid level is searched with the haptic rule.
-void encode_touched_update(benchmark::State& state) {
+void encode_touched_update(benchmark::State& state, Reduction reduction) {
   SenderOptions options = every_tick();
-  options.triggers.reduction = Reduction::dead_reckoning;
+  options.triggers.reduction = reduction;
   options.triggers.weber_fraction = 0.001;
   auto sender = Sender::create(testing::scene_of(1), options).value();
   const auto samples = record(1, 10000);
@@ -95,7 +95,8 @@ void encode_touched_update(benchmark::State& state) {
   }
   state.counters["packets_share"] = benchmark::Counter(static_cast<double>(packets), benchmark::Counter::kAvgIterations);
 }
-BENCHMARK(encode_touched_update)->Repetitions(5)->ReportAggregatesOnly();
+BENCHMARK_CAPTURE(encode_touched_update, dead_reckoning, Reduction::dead_reckoning)->Repetitions(5)->ReportAggregatesOnly();
+BENCHMARK_CAPTURE(encode_touched_update, leaning, Reduction::leaning)->Repetitions(5)->ReportAggregatesOnly();
 
 void decode_update(benchmark::State& state) {
   const SharedScene scene = testing::scene_of(1);

@@ -27,7 +27,7 @@ TEST(Allocation, TheCounterCounts) {
 TEST(Allocation, EncodeDecodeAndShowAllocateNothing) {
   constexpr std::size_t kObjects = 20;
   const SharedScene scene = testing::scene_of(kObjects);
-  auto sender = Sender::create(scene, {.triggers = {}, .deformable = {}, .policy = {.key_interval = 0.2}}).value();
+  auto sender = Sender::create(scene, {.triggers = {.reduction = Reduction::leaning}, .policy = {.key_interval = 0.2}}).value();
   auto receiver = Receiver::create(scene, {.replica = {.interpolation = Interpolation::linear}, .limits = {}}).value();
   std::vector<testing::Motion> motions;
   for (std::size_t i = 0; i < kObjects; ++i) motions.emplace_back(i);

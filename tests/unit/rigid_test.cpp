@@ -131,16 +131,16 @@ Outcome run(const SharedScene& scene, const RigidTriggers& triggers, std::uint64
 }
 
 TEST(Rigid, BoundsHoldOnWhatIsShownForEveryRule) {
-  for (const HapticRule rule : {HapticRule::off, HapticRule::isotropic, HapticRule::cone}) {
-    for (const double p : {0.01, 0.04, 0.3}) {
-      RigidTriggers triggers;
-      triggers.haptic = rule;
-      triggers.weber_fraction = p;
-      const Outcome result = run(scene_of(3), triggers, 1, 4000, rule != HapticRule::off);
-      EXPECT_GT(result.packets, 20);
-      EXPECT_EQ(result.visual_violations, 0);
-      EXPECT_EQ(result.haptic_violations, 0) << "p = " << p;
-      EXPECT_EQ(result.reasons[3] > 0, rule != HapticRule::off);
+  for (const Reduction reduction : {Reduction::dead_reckoning, Reduction::leaning}) {
+    for (const HapticRule rule : {HapticRule::off, HapticRule::isotropic, HapticRule::cone}) {
+      for (const double p : {0.01, 0.04, 0.3}) {
+        RigidTriggers triggers{.reduction = reduction, .haptic = rule, .weber_fraction = p};
+        const Outcome result = run(scene_of(3), triggers, 1, 4000, rule != HapticRule::off);
+        EXPECT_GT(result.packets, 20);
+        EXPECT_EQ(result.visual_violations, 0);
+        EXPECT_EQ(result.haptic_violations, 0) << "p = " << p;
+        EXPECT_EQ(result.reasons[3] > 0, rule != HapticRule::off);
+      }
     }
   }
 }

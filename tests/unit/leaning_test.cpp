@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/rigid/leaning.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/unit/rigid_fixture.h"
+
+namespace tactus {
+namespace {
+
+using testing::only;
+using testing::scene_of;
+
+constexpr double kTick = 1e-3;
+
+/// At tick t an object under a constant acceleration along x.
+RigidSample falling(double acceleration, std::int64_t tick) {
+  const double t = kTick * static_cast<double>(tick);
+  return {{{0.5 * acceleration * t * t, 0, 0}, {}}, {acceleration * t, 0, 0}, {}};
+}
+
+SenderOptions with(Reduction reduction) {
+  SenderOptions out;
+  out.triggers.reduction = reduction;
+  out.triggers.heartbeat = 0;
+  out.policy.key_interval = 0;
+  return out;
+}
+
+template <class Samples>
+int packets(Reduction reduction, std::int64_t ticks, const Samples& sample_at) {
+  auto sender = Sender::create(scene_of(1), with(reduction)).value();
+  int out = 0;
+  for (std::int64_t tick = 0; tick < ticks; ++tick) {
+    const RigidSample sample = sample_at(tick);
+    if (!only(sender.encode(tick, {.objects = {&sample, 1}})).bytes.empty()) ++out;
+  }
+  return out;
+}
+
+/// The velocity that is told leads to an error of 0.6 of the bound on the one side, if the acceleration fades as is taken.
+TEST(Leaning, LeadsToTheShareOfTheBoundThatIsTaken) {
+  constexpr double kTau = 0.03, kMargin = 0.6;
+  RigidTriggers triggers;
+  triggers.haptic = HapticRule::off;
+  for (const double acceleration : {0.3, 1.0, 3.0, 10.0, 40.0}) {
+    const SharedScene scene = scene_of(1);
+    Leaning leaning(*scene);
+    for (std::int64_t tick = 0; tick < 3; ++tick) {
+      const RigidSample sample = falling(acceleration, tick);
+      leaning.read(tick, {&sample, 1});
+    }
+    const RigidSample now = falling(acceleration, 2);
+    const double s = (leaning.lean(0, {&now, 1}, {}, triggers).velocity.x - now.velocity.x) / acceleration;
+    ASSERT_GT(s, 0) << acceleration;
+    ASSERT_LE(s, kTau * 1.0001) << acceleration;
+    double largest = 0;
+    for (double t = 0; t < 1; t += 1e-4)
+      largest = std::max(largest, acceleration * (s * t - kTau * (t - kTau * (1 - std::exp(-t / kTau)))));
+    if (acceleration * kTau * kTau > kMargin * triggers.visual_position)
+      EXPECT_NEAR(largest / triggers.visual_position, kMargin, 0.07 * kMargin) << acceleration;
+    else EXPECT_LT(largest, kMargin * triggers.visual_position) << acceleration;
+  }
+}
+
+TEST(Leaning, AnUpdateUnderAnAccelerationLastsLonger) {
+  for (const double acceleration : {5.0, 20.0}) {
+    const auto at = [&](std::int64_t tick) { return falling(acceleration, tick); };
+    EXPECT_GT(packets(Reduction::dead_reckoning, 400, at), 1.7 * packets(Reduction::leaning, 400, at)) << acceleration;
+  }
+}
+
+/// What is touched leans as the force permits, along the normal.
+TEST(Leaning, TheForceBoundCountsWhereItIsTheNarrowest) {
+  const SharedScene scene = scene_of(1);
+  Leaning leaning(*scene);
+  for (std::int64_t tick = 0; tick < 3; ++tick) {
+    const RigidSample sample = falling(2, tick);
+    leaning.read(tick, {&sample, 1});
+  }
+  const RigidSample now = falling(2, 2);
+  const auto lead = [&](const Vec3& normal, ContactKind kind) {
+    const Contact contact{kind, 0, {}, normal, now.pose.position - 1e-3 * normal, 700};
+    return leaning.lean(0, {&now, 1}, {&contact, 1}, RigidTriggers{.weber_fraction = 0.04}).velocity.x - now.velocity.x;
+  };
+  const double free = leaning.lean(0, {&now, 1}, {}, RigidTriggers{}).velocity.x - now.velocity.x;
+  EXPECT_LT(lead({1, 0, 0}, ContactKind::surface), 0.5 * free);
+  EXPECT_EQ(lead({0, 0, 1}, ContactKind::surface), free) << "the force does not change when it slides along the face";
+  EXPECT_LT(lead({0, 0, 1}, ContactKind::spring), 0.5 * free) << "that of a spring does";
+  EXPECT_EQ(lead({1, 0, 0}, ContactKind::none), free);
+}
+
+/// A kick, a pause and noise that turns around in every tick say nothing of the velocity to come.
+TEST(Leaning, WhatTheLastTwoTicksDoNotAgreeOnIsLeftAlone) {
+  const SharedScene scene = scene_of(1);
+  const auto lead = [&](std::array<std::int64_t, 3> ticks, std::array<double, 3> velocities) {
+    Leaning leaning(*scene);
+    RigidSample sample;
+    for (std::size_t i = 0; i < 3; ++i) {
+      sample.velocity = {velocities[i], 0, 0};
+      leaning.read(ticks[i], {&sample, 1});
+    }
+    return leaning.lean(0, {&sample, 1}, {}, RigidTriggers{}).velocity.x - sample.velocity.x;
+  };
+  EXPECT_GT(lead({7, 8, 9}, {0, 0.01, 0.02}), 0);
+  EXPECT_EQ(lead({7, 8, 9}, {0, 0, 0.02}), 0);
+  EXPECT_EQ(lead({7, 8, 9}, {0, 0.02, 0.01}), 0);
+  EXPECT_EQ(lead({7, 8, 90}, {0, 0.01, 0.02}), 0);
+  EXPECT_EQ(lead({0, 5, 10}, {0, 0.01, 0.02}), lead({0, 5, 10}, {0, 0.01, 0.03})) << "the smaller of both";
+  Leaning fresh(*scene);
+  const RigidSample first = falling(5, 100);
+  fresh.read(100, {&first, 1});
+  EXPECT_EQ(fresh.lean(0, {&first, 1}, {}, RigidTriggers{}).velocity, first.velocity);
+}
+
+TEST(Leaning, MotionWithoutAccelerationIsCodedAsWithoutIt) {
+  const auto steady = [](std::int64_t tick) {
+    RigidSample out = falling(0, tick);
+    out.velocity = {0.3, 0, 0};
+    out.pose.position.x = 0.3 * kTick * static_cast<double>(tick);
+    return out;
+  };
+  auto plain = Sender::create(scene_of(1), with(Reduction::dead_reckoning)).value();
+  auto leaning = Sender::create(scene_of(1), with(Reduction::leaning)).value();
+  for (std::int64_t tick = 0; tick < 500; ++tick) {
+    const RigidSample sample = steady(tick);
+    const Packet a = only(plain.encode(tick, {.objects = {&sample, 1}})),
+                 b = only(leaning.encode(tick, {.objects = {&sample, 1}}));
+    ASSERT_TRUE(std::ranges::equal(a.bytes, b.bytes)) << tick;
+  }
+}
+
+/// A call that is refused leaves no acceleration behind.
+TEST(Leaning, RefusedTruthIsForgotten) {
+  auto undisturbed = Sender::create(scene_of(1), with(Reduction::leaning)).value();
+  auto disturbed = Sender::create(scene_of(1), with(Reduction::leaning)).value();
+  for (std::int64_t tick = 0; tick < 600; tick += 2) {
+    const RigidSample sample = falling(8, tick);
+    RigidSample wrong = sample;
+    wrong.velocity.x = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(disturbed.encode(tick, {.objects = {&wrong, 1}}));
+    const Packet a = only(undisturbed.encode(tick, {.objects = {&sample, 1}}));
+    const Packet b = only(disturbed.encode(tick, {.objects = {&sample, 1}}));
+    ASSERT_TRUE(std::ranges::equal(a.bytes, b.bytes)) << tick;
+  }
+}
+
+}  // namespace
+}  // namespace tactus
