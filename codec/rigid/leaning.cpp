@@ -39,8 +39,8 @@ Leaning::Leaning(const Scene& scene) : scene_(scene) {
 }
 
 void Leaning::read(std::int64_t tick, std::span<const RigidSample> samples) noexcept {
-  std::ranges::rotate(ticks_, ticks_.end() - 1);
-  std::ranges::rotate(motions_, motions_.end() - 1);
+  std::rotate(ticks_.begin(), ticks_.end() - 1, ticks_.end());
+  std::rotate(motions_.begin(), motions_.end() - 1, motions_.end());
   ticks_[0] = tick;
   for (const std::uint32_t i : scene_.moving()) motions_[0][i] = {samples[i].velocity, samples[i].angular_velocity};
 }
