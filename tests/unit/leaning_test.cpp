@@ -95,6 +95,43 @@ TEST(Leaning, TheForceBoundCountsWhereItIsTheNarrowest) {
   EXPECT_EQ(lead({1, 0, 0}, ContactKind::none), free);
 }
 
+/// About z, from rest; the contact is 20 mm away from the axis.
+TEST(Leaning, WhatTurnsLeansAsRotationAndForcePermit) {
+  const SharedScene scene = scene_of(1);
+  Leaning leaning(*scene);
+  RigidSample now;
+  for (std::int64_t tick = 0; tick < 3; ++tick) {
+    now.angular_velocity = {0, 0, 0.08 * static_cast<double>(tick)};
+    leaning.read(tick, {&now, 1});
+  }
+  const Contact contact{ContactKind::surface, 0, {0.02, 0, 0}, {0, 1, 0}, {0.02, -1e-3, 0}, 700};
+  const auto lead = [&](const RigidTriggers& triggers, bool is_touched) {
+    return leaning.lean(0, {&now, 1}, {&contact, is_touched ? 1u : 0u}, triggers).angular_velocity.z - now.angular_velocity.z;
+  };
+  const double free = lead({}, false);
+  EXPECT_GT(free, 0);
+  EXPECT_LT(lead({.visual_rotation = 0.005}, false), 0.7 * free);
+  EXPECT_LT(lead({.weber_fraction = 0.01}, true), 0.7 * free) << "the lever moves along the normal";
+  EXPECT_LT(lead({.haptic = HapticRule::fixed, .fixed_rotation = 0.005}, true), 0.7 * free);
+  EXPECT_EQ(lead({.haptic = HapticRule::off, .weber_fraction = 0.01}, true), free);
+}
+
+TEST(Leaning, FixedThresholdsOfWhatIsTouchedCount) {
+  const SharedScene scene = scene_of(1);
+  Leaning leaning(*scene);
+  for (std::int64_t tick = 0; tick < 3; ++tick) {
+    const RigidSample sample = falling(2, tick);
+    leaning.read(tick, {&sample, 1});
+  }
+  const RigidSample now = falling(2, 2);
+  const Contact contact{ContactKind::surface, 0, {}, {0, 0, 1}, {}, 700};
+  const auto lead = [&](double fixed) {
+    const RigidTriggers triggers{.haptic = HapticRule::fixed, .fixed_position = fixed};
+    return leaning.lean(0, {&now, 1}, {&contact, 1}, triggers).velocity.x - now.velocity.x;
+  };
+  EXPECT_LT(lead(1e-4), 0.7 * lead(5e-3));
+}
+
 /// A kick, a pause and noise that turns around in every tick say nothing of the velocity to come.
 TEST(Leaning, WhatTheLastTwoTicksDoNotAgreeOnIsLeftAlone) {
   const SharedScene scene = scene_of(1);
