@@ -24,6 +24,16 @@ RigidSample falling(double acceleration, std::int64_t tick) {
   return {{{0.5 * acceleration * t * t, 0, 0}, {}}, {acceleration * t, 0, 0}, {}};
 }
 
+/// Who has read three ticks of that, up to now = falling(acceleration, 2).
+Leaning after_three_ticks(const Scene& scene, double acceleration) {
+  Leaning out(scene);
+  for (std::int64_t tick = 0; tick < 3; ++tick) {
+    const RigidSample sample = falling(acceleration, tick);
+    out.read(tick, {&sample, 1});
+  }
+  return out;
+}
+
 SenderOptions with(Reduction reduction) {
   SenderOptions out;
   out.triggers.reduction = reduction;
@@ -50,11 +60,7 @@ TEST(Leaning, LeadsToTheShareOfTheBoundThatIsTaken) {
   triggers.haptic = HapticRule::off;
   for (const double acceleration : {0.3, 1.0, 3.0, 10.0, 40.0}) {
     const SharedScene scene = scene_of(1);
-    Leaning leaning(*scene);
-    for (std::int64_t tick = 0; tick < 3; ++tick) {
-      const RigidSample sample = falling(acceleration, tick);
-      leaning.read(tick, {&sample, 1});
-    }
+    const Leaning leaning = after_three_ticks(*scene, acceleration);
     const RigidSample now = falling(acceleration, 2);
     const double s = (leaning.lean(0, {&now, 1}, {}, triggers).velocity.x - now.velocity.x) / acceleration;
     ASSERT_GT(s, 0) << acceleration;
@@ -78,11 +84,7 @@ TEST(Leaning, AnUpdateUnderAnAccelerationLastsLonger) {
 /// What is touched leans as the force permits, along the normal.
 TEST(Leaning, TheForceBoundCountsWhereItIsTheNarrowest) {
   const SharedScene scene = scene_of(1);
-  Leaning leaning(*scene);
-  for (std::int64_t tick = 0; tick < 3; ++tick) {
-    const RigidSample sample = falling(2, tick);
-    leaning.read(tick, {&sample, 1});
-  }
+  const Leaning leaning = after_three_ticks(*scene, 2);
   const RigidSample now = falling(2, 2);
   const auto lead = [&](const Vec3& normal, ContactKind kind) {
     const Contact contact{kind, 0, {}, normal, now.pose.position - 1e-3 * normal, 700};
@@ -118,11 +120,7 @@ TEST(Leaning, WhatTurnsLeansAsRotationAndForcePermit) {
 
 TEST(Leaning, FixedThresholdsOfWhatIsTouchedCount) {
   const SharedScene scene = scene_of(1);
-  Leaning leaning(*scene);
-  for (std::int64_t tick = 0; tick < 3; ++tick) {
-    const RigidSample sample = falling(2, tick);
-    leaning.read(tick, {&sample, 1});
-  }
+  const Leaning leaning = after_three_ticks(*scene, 2);
   const RigidSample now = falling(2, 2);
   const Contact contact{ContactKind::surface, 0, {}, {0, 0, 1}, {}, 700};
   const auto lead = [&](double fixed) {
