@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include <tactus/sim/client.h>
+#include <tactus/sim/compensation.h>
 #include <tactus/sim/deformable/stiffness_map.h>
 #include <tactus/sim/link/perfect_link.h>
 #include <tactus/sim/server.h>
@@ -133,6 +135,33 @@ TEST(Server, TellsTheStiffnessToClientsThatRenderByIt) {
     else EXPECT_NEAR(stiffness_of_level(levels[v]) / map[v], 1, 0.036) << v;
 }
 #endif
+
+/// A surface that stays where it was while the device goes 2 mm deeper in 20 ms: softer by what the declaration tells of it.
+TEST(Compensation, RendersASurfaceByTheStiffnessThatIsTold) {
+  Scene scene;
+  scene.users.resize(1);
+  scene.compensation.emplace();
+  DeformableObject soft = make_deformable_object("a", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, 22).value(), fixed = soft;
+  soft.stiffness.assign(3, stiffness_level(100).value());
+  fixed.stiffness.assign(3, stiffness_level(std::numeric_limits<double>::infinity()).value());
+  const auto rendered = [&](const DeformableObject* declared) {
+    auto compensation = Compensation::create(scene).value();
+    const SurfaceContact at{.proxy = {0, 0, 0}, .stiffness = 300};
+    Vec3 device;
+    for (int tick = 0; tick <= 40; ++tick) {
+      device = {0, 0, -1e-4 * tick};
+      compensation.move(0, {.position = device});
+    }
+    const Touch touch{.contact = {}, .surface = at, .proxy = {}, .force = {0, 0, 300 * -device.z}};
+    Compensation::Shown shown;
+    shown.deformable = declared;
+    return compensation.soften(0, touch, device, shown, 20).z;
+  };
+  const double whole = 300 * 4e-3;
+  EXPECT_NEAR(rendered(&soft), whole * (1 - 0.75 * 0.5), 0.02 * whole) << "K = 300/400 of the way of 20 ms, half of the stretch";
+  EXPECT_NEAR(rendered(&fixed), whole, 1e-12) << "it does not move";
+  EXPECT_NEAR(rendered(nullptr), whole, 1e-12) << "nothing is told";
+}
 
 /// What a client shows and lets feel needs nothing of the physics: a square, then the same square 2 mm lower.
 TEST(DeformableView, ShowsAndIsFeltWithoutFiniteElements) {
