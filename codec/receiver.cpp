@@ -55,7 +55,7 @@ Receiver::~Receiver() = default;
 
 Result<Receiver> Receiver::create(SharedScene scene, const ReceiverOptions& options) try {
   TACTUS_CHECK(check_scene(*scene, options.limits));
-  TACTUS_CHECK(Replica::check(options.replica));
+  TACTUS_CHECK(Replica::check(options.replica, *scene));
   return Receiver(std::make_unique<Impl>(std::move(scene), options));
 } catch (const std::bad_alloc&) {
   return out_of_memory();

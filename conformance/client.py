@@ -19,6 +19,7 @@ from typing import Optional
 
 from conventions import StreamError
 from range_encoder import RangeEncoder
+from rigid import NEAR
 from session import Client
 from start_models import Models
 
@@ -38,16 +39,16 @@ class Device:
         encoder.bit(models["KEY"][1], 1)
         encoder.magnitude(models["TICK"], int((now - self.start) * self.tick_rate))
         encoder.tree(models["REASON"], 2, 0)
-        encoder.tree(models["LEVEL"], 3, 0)
-        context = 0                                         # the reason: request
-        for q in range(4):                                  # position, velocity, rotation, angular velocity
-            context, largest = 0 if q == 2 else context, 0
+        encoder.tree(models["LEVEL"], 4, 0)
+        for k in range(2):                                  # position and velocity, rotation and angular velocity
+            pose = [round(c * self.scale) for c in place] if k == 0 else [0, 0, 0]
+            largest = 0
             for a in range(3):
-                value = round(place[a] * self.scale) if q == 0 else 0
-                encoder.signed(models[f"RESIDUAL[{q}][{context}]"], value)
-                largest = max(largest, abs(value))
-                width = largest.bit_length()
-                context = 4 if width == 0 else 5 if width <= 2 else 6 if width <= 5 else 7
+                encoder.signed(models[f"POSE[{k}][{0 if a == 0 else 4 + min(largest.bit_length(), 7)}]"], pose[a])
+                largest = max(largest, abs(pose[a]))
+            for a in range(3):                              # no velocity
+                near = NEAR[min(abs(pose[a]).bit_length(), 6)]
+                encoder.signed(models[f"MOTION[{k}][{near if a == 0 else 5 + near}]"], 0)
         return encoder.finish()
 
 

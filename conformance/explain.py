@@ -21,7 +21,7 @@ from start_models import Models
 NAMES: dict = {}                                            # by identity of a model: the model, its name
 ELEMENTS = {                                                # models, and the element of the specification that they code
     "KEY": "key", "BASELINE": "baseline_delta", "TICK": "tick_delta", "COUNT": "count", "GAP": "gap", "REASON": "reason",
-    "LEVEL": "level", "LAYER": "layer", "SAME_FRAME": "same_frame", "LATE": "late",
+    "LEVEL": "level", "EASE": "ease", "KEEP": "keep", "LAYER": "layer", "SAME_FRAME": "same_frame", "LATE": "late",
     "TOUCHED": "touched", "SAME_TRIANGLE": "same triangle", "NEAR_TRIANGLE": "near triangle", "NEAR_PLACE": "entry of near",
     "HAPTIC": "haptic_change", "SAME_VISUAL": "same_visual", "VISUAL": "visual", "DENSITY": "density",
     "CHANGED": "changed", "STEP": "step", "COEFFICIENT": "coefficient", "SIGNIFICANT": "significant", "COMPONENT": "component of r", "ERROR": "symbol",
@@ -94,6 +94,9 @@ class Narrator(RangeDecoder):
     def signed(self, models):
         return self.whole("signed", models, super().signed)
 
+    def signed_like(self, models, model, like):
+        return self.whole("signed_like", models, super().signed_like, model, like)
+
     def whole(self, function, models, decode, *arguments):
         self.inside += 1
         value = decode(models, *arguments)
@@ -102,8 +105,9 @@ class Narrator(RangeDecoder):
 
     def symbol(self, function, name, value):
         element = ELEMENTS.get(name.split("[")[0], "part of the triangle's number")
-        if name.startswith("RESIDUAL"):
-            element = f"component of r{name[8:11]}"
+        kind, *indices = name.replace("]", "").split("[")
+        if kind in ("POSE", "MOTION"):
+            element = f"component of r[{2 * int(indices[0]) + (kind == 'MOTION')}]"
         self.symbols.append(f"| {element} | {function}({name}) | {' '.join(self.bits)} | **{value}** |")
         self.bits.clear()
         return value

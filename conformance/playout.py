@@ -7,6 +7,7 @@ from math import isqrt
 from typing import NamedTuple
 
 from conventions import (FNV_START, ONE, asin30, axis_angle, conj, fnv1a, mul, renorm, round_div, round_shift, sat32)
+from easing import Offset, add, offset
 from rigid import HALF_RADIAN, Packet, predict
 from scene import Declaration, State
 
@@ -48,12 +49,27 @@ class Playout:
         before = [u for u in known if u.tick <= s]
         a = before[-1] if before else known[0]
         s = max(s, a.tick)
-        after = known[known.index(a) + 1:]
-        if not after or a.number == 0 or after[0].tick - a.tick > self.reach:
+        k = known.index(a)
+        path = self.between(known, k, s)
+        return add(path, a.state, self.left(known, k), s) if self.scene.eased else path
+
+    def between(self, known: list[KnownUpdate], k: int, s: int) -> tuple[tuple, tuple]:
+        """The way from update k to the next one."""
+        a, after = known[k], known[k + 1:k + 2]
+        if not after or a.number == 0 or not 0 < after[0].tick - a.tick <= self.reach:
             return predict(self.scene, a.state, s)
         if all(number in self.heard for number in range(a.number + 1, after[0].number)):
             return predict(self.scene, a.state, s)
         return self.bend(a.state, after[0].state, s)
+
+    def left(self, known: list[KnownUpdate], k: int) -> Offset:
+        """What is left to go at update k."""
+        if k == 0:
+            return Offset()
+        a, z = known[k].state, known[k - 1].state
+        path = self.between(known, k - 1, a.tick)
+        counts = z.ease > 0 and a.tick < z.tick + (1 << z.ease)
+        return offset(add(path, z, self.left(known, k - 1), a.tick) if counts else path, a)
 
     def bend(self, a: State, b: State, s: int) -> tuple[tuple, tuple]:
         scene, whole = self.scene, b.tick - a.tick

@@ -77,6 +77,17 @@ class RangeDecoder:
         require(m < 1 << 31, "malformed", "R-RNG-4")
         return -m if negative else m
 
+    def signed_like(self, models: list, model: list[int], like: int) -> int:
+        """A number that often has the sign of `like`."""
+        if like == 0:
+            return self.signed(models)
+        m = self.magnitude(models)
+        if m == 0:
+            return 0
+        negative = bool(self.bit(model)) != (like < 0)
+        require(m < 1 << 31, "malformed", "R-RNG-4")
+        return -m if negative else m
+
     def check_end(self) -> None:
         """After the last symbol."""
         require(len(self.payload) <= self.position, "malformed", "R-RNG-2")

@@ -8,6 +8,7 @@ from math import isqrt
 from typing import Optional
 
 from conventions import FNV_START, ONE, asin30, axis_angle, clamp, conj, fnv1a, mul, renorm, round_div, sat32
+from easing import Offset, add, offset
 from rigid import Packet, predict
 from scene import Declaration, State
 
@@ -24,7 +25,7 @@ class ReplicaObject:
     u: tuple
 
     def __init__(self, state: State):
-        self.state = state
+        self.state, self.offset = state, Offset()           # `offset` is of an eased scene
         self.number = 0                                     # of the packet of the newest update
         self.begin = self.end = 0
         self.arrival: Optional[int] = None
@@ -55,6 +56,8 @@ class Replica:
         running = now < o.end
         if o.arrival is not None:
             o.gaps.append(min(now - o.arrival, LONGEST_GAP))
+        if state.ease > 0:
+            o.offset = offset(self.eased(o, max(state.tick, o.state.tick)), state)
         o.arrival, o.state = now, state
         o.begin = o.end = now
         if self.mode == "none" or running or not o.gaps:
@@ -72,10 +75,13 @@ class Replica:
         else:
             o.half, o.u = asin30(min(s, ONE)), tuple(round_div(c << 30, s) for c in d[1:])
 
+    def eased(self, o: ReplicaObject, t: int) -> tuple[tuple, tuple]:
+        return add(predict(self.scene, o.state, t), o.state, o.offset, t)
+
     def pose(self, o: ReplicaObject, now: int) -> tuple[tuple, tuple]:
         now = max(now, o.begin)
         if now >= o.end:
-            return predict(self.scene, o.state, now)
+            return self.eased(o, now)
         part, whole = now - o.begin, o.end - o.begin
         position = tuple(sat32(a + round_div((b - a) * part, whole)) for a, b in zip(o.start[0], o.target[0]))
         h = round_div(o.half * part, whole)

@@ -17,6 +17,7 @@ from start_models import Models
 HAPTIC = 3
 LARGEST_ANGULAR = 1 << 25
 HALF_RADIAN = 341782638                                     # 2^32 / (4 pi), a binary angle
+SIZE, NEAR = (0, 1, 1, 2, 2, 2, 3), (0, 1, 2, 2, 3, 3, 4)   # by width, at most 6
 
 
 def included(dof: int, q: int) -> list[int]:
@@ -26,16 +27,19 @@ def included(dof: int, q: int) -> list[int]:
 
 def residual(decoder: RangeDecoder, models: Models, dof: int, reason: int) -> list[list[int]]:
     r = [[0, 0, 0] for _ in range(4)]
-    context = reason
-    for q in range(4):
-        if q == 2:
-            context = reason
+    for k in range(2):
+        pose, motion = r[2 * k], r[2 * k + 1]
+        axes = included(dof, 2 * k)
         largest = 0
-        for a in included(dof, q):
-            r[q][a] = decoder.signed(models[f"RESIDUAL[{q}][{context}]"])
-            largest = max(largest, abs(r[q][a]))
-            w = largest.bit_length()
-            context = 4 if w == 0 else 5 if w <= 2 else 6 if w <= 5 else 7
+        for a in axes:
+            c = reason if a == axes[0] else 4 + min(largest.bit_length(), 7)
+            pose[a] = decoder.signed(models[f"POSE[{k}][{c}]"])
+            largest = max(largest, abs(pose[a]))
+        largest = 0
+        for a in axes:
+            c = 5 * (0 if a == axes[0] else 1 + SIZE[min(largest.bit_length(), 6)]) + NEAR[min(abs(pose[a]).bit_length(), 6)]
+            motion[a] = decoder.signed_like(models[f"MOTION[{k}][{c}]"], models[f"SIGN[{k}][{reason}]"][1], pose[a])
+            largest = max(largest, abs(motion[a]))
     return r
 
 
@@ -156,18 +160,25 @@ class RigidDecoder:
     def read_update(self, decoder: RangeDecoder, models: Models, moment: Moment, index: int) -> Update:
         """Replaces the baseline's state of an object in `moment` by its new state."""
         reason = decoder.tree(models["REASON"], 2)
-        level = decoder.tree(models["LEVEL"], 3)
+        level = decoder.tree(models["LEVEL"], 4)
+        ease = 0
+        if self.scene.eased:
+            usual = max(0, min(self.scene.tick_rate // 62, 255).bit_length() - 1)
+            ease = (usual - decoder.tree(models["EASE"], 3)) % 8
+        keep = decoder.tree(models["KEEP"], 2) if ease > 0 else 0
         r = residual(decoder, models, self.scene.objects[index].dof, reason)
-        base, s = moment.states[index], 2 * level
+        base, s = moment.states[index], level
         position, rotation = reconstruct_pose(self.scene, base, moment.tick, r, s)
         velocity, angular = reconstruct_motion(self.scene, base, moment.tick, r, s, reason)
-        moment.states[index] = State(moment.tick, position, rotation, velocity, angular)
+        moment.states[index] = State(moment.tick, position, rotation, velocity, angular, ease, keep)
         return Update(index, reason, level)
 
     def state_hash(self) -> int:
         states = self.receiver.current.states
         h = FNV_START
         for i in self.moving:
-            tick, *vectors = states[i]
+            tick, *vectors, ease, keep = states[i]
             h = fnv1a(struct.pack("<Q13i", tick, *(c for vector in vectors for c in vector)), h)
+            if self.scene.eased:
+                h = fnv1a(struct.pack("<I", ease + 8 * keep), h)
         return h

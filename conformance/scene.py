@@ -23,7 +23,7 @@ class Limits(NamedTuple):
 
 MAGIC = b"\x89TCT"
 SMALLEST_OBJECT = 32
-HAS_DEFORMABLES, HAS_LOADS = 1, 2                           # bits 0 and 1 of `flags`
+HAS_DEFORMABLES, HAS_LOADS, IS_EASED = 1, 2, 4              # bits 0, 1 and 2 of `flags`
 
 
 class State(NamedTuple):                                    # chapter 40
@@ -32,6 +32,8 @@ class State(NamedTuple):                                    # chapter 40
     rotation: tuple
     velocity: tuple = (0, 0, 0)
     angular_velocity: tuple = (0, 0, 0)
+    ease: int = 0
+    keep: int = 0
 
 
 class Object(NamedTuple):
@@ -63,6 +65,7 @@ class Declaration:
     angular_exp: int
     max_extrapolation: int
     baseline_span: int
+    eased: bool = False
     objects: list[Object] = field(default_factory=list)
     deformables: list[DeformableObject] = field(default_factory=list)
     loads: Optional[LoadDeclaration] = None
@@ -86,14 +89,14 @@ def read_declaration(data: bytes, limits: Limits = Limits()) -> tuple[Declaratio
     require(version == 1, "unsupported", "R-STR-2")
     require(profile <= 1, "malformed", "R-STR-3")
     require(profile == 0, "unsupported", "R-STR-3")
-    require(flags <= HAS_DEFORMABLES + HAS_LOADS, "malformed", "R-STR-4")
+    require(flags <= HAS_DEFORMABLES + HAS_LOADS + IS_EASED, "malformed", "R-STR-4")
     require(body_size <= limits.body_size, "limit_exceeded", "R-STR-14")
     end = 12 + body_size
     require(len(data) >= end + 4, *STR_5)
     require(zlib.crc32(data[:end]) == int.from_bytes(data[end:end + 4], "little"), "checksum", "R-STR-15")
 
     body = Cursor(data, 12, end)
-    scene = Declaration(version, profile, *struct.unpack("<IBBBBHB", body.take(11, STR_5)))
+    scene = Declaration(version, profile, *struct.unpack("<IBBBBHB", body.take(11, STR_5)), bool(flags & IS_EASED))
     object_count = body.varint(STR_5, STR_5_VARINT)
     check_numbers(scene)
     require(object_count <= limits.objects, "limit_exceeded", "R-STR-14")

@@ -21,7 +21,7 @@ def device_scene(scene: Declaration) -> Declaration:
     """65, section 2."""
     device = Object("device", 63, State(0, (0, 0, 0), (1 << 30, 0, 0, 0)))
     return Declaration(scene.version, scene.profile, scene.tick_rate, scene.position_exp, scene.velocity_exp, scene.rotation_exp,
-                       scene.angular_exp, (scene.tick_rate + 5) // 10, 64, [device])
+                       scene.angular_exp, (scene.tick_rate + 5) // 10, 64, objects=[device])
 
 
 # ---- Section 6: the server's end of an epoch ------------------------------------------------------------------------

@@ -103,9 +103,9 @@ class Payload:
             value, left = value << n | self.raw(n), left - n
         return value
 
-    def signed(self, name):
+    def signed(self, name, sign=None, like=0):              # signed_like with a `like` that is not 0
         m = self.magnitude(name)
-        negative = m > 0 and self.raw(1)
+        negative = m > 0 and (self.bit(sign) != (like < 0) if like else self.raw(1))
         require(m < 1 << 31, "R-RNG-4")
         return -m if negative else m
 
@@ -116,7 +116,7 @@ class Scene:
         version, profile, flags, body_size = file.numbers("4xBBHI")
         require(version == 1, "R-STR-2")
         require(profile == 0, "R-STR-3")
-        require(flags <= 3, "R-STR-4")
+        require(flags <= 7, "R-STR-4")
         body = Bytes(file.take(body_size), "R-STR-5")
         require((zlib.crc32(file.data[:file.at]),) == file.numbers("I"), "R-STR-15")
         (self.tick_rate, self.position_exp, velocity_exp, self.rotation_exp, self.angular_exp, self.max_extrapolation,
@@ -132,7 +132,8 @@ class Scene:
         require(32 * object_count <= len(body.data) - body.at, "R-STR-5")
         self.names, self.dof, self.initial = [], [], []     # a state: tick, position, rotation, velocity, angular velocity
         for _ in range(object_count): self.add_object(body)
-        require(flags == 0, "deformable objects (20, section 4) and loads (45) are left out of this example")
+        self.eased = flags == 4
+        require(flags in (0, 4), "deformable objects (20, section 4) and loads (45) are left out of this example")
         self.moving = [i for i, dof in enumerate(self.dof) if dof]
 
     def add_object(self, body):                             # 20, 3
@@ -148,14 +149,19 @@ class Scene:
 
 # ---- Rigid objects (40) ---------------------------------------------------------------------------------------------
 def residual(payload, dof, reason):                         # 40, 3
-    r, context = [[0, 0, 0] for _ in range(4)], reason
-    for q in range(4):
-        context, largest = reason if q == 2 else context, 0
-        for a in range(3):
-            if dof >> (a if q < 2 else 3 + a) & 1:
-                r[q][a] = payload.signed(f"RESIDUAL[{q}][{context}]")
-                largest = max(largest, abs(r[q][a]))
-                context = 4 if largest == 0 else 5 if largest < 4 else 6 if largest < 32 else 7
+    r = [[0, 0, 0] for _ in range(4)]
+    for k in range(2):
+        (pose, motion), axes, largest = r[2 * k:2 * k + 2], [a for a in range(3) if dof >> 3 * k + a & 1], 0
+        for a in axes:
+            context = reason if a == axes[0] else 4 + min(largest.bit_length(), 7)
+            pose[a] = payload.signed(f"POSE[{k}][{context}]")
+            largest = max(largest, abs(pose[a]))
+        largest = 0
+        for a in axes:
+            size, near = (0, 1, 1, 2, 2, 2, 3)[min(largest.bit_length(), 6)], (0, 1, 2, 2, 3, 3, 4)[min(abs(pose[a]).bit_length(), 6)]
+            context = near if a == axes[0] else 5 + 5 * size + near
+            motion[a] = payload.signed(f"MOTION[{k}][{context}]", f"SIGN[{k}][{reason}][1]", pose[a])
+            largest = max(largest, abs(motion[a]))
     return r
 
 def predict(scene, state, t):                               # 40, 4
@@ -172,7 +178,7 @@ def predict(scene, state, t):                               # 40, 4
 def update(scene, base, t, reason, level, r):               # 40, 5
     p, rotation = predict(scene, base, t)
     tick, _, _, v, o = base
-    s, dt, axes, length = 2 * level, t - tick, range(3), 1 << scene.rotation_exp
+    s, dt, axes, length = level, t - tick, range(3), 1 << scene.rotation_exp
     e, m = [sat32(c << s) for c in r[0]], [c << s for c in r[2]]
     n = sum(c * c for c in m)
     require(n <= length * length, "R-RIG-6")
@@ -214,7 +220,9 @@ class Decoder:
         for _ in range(count):
             i += 1 + (payload.magnitude("GAP") if several else 0)
             require(i < len(moving), "R-RIG-4")
-            reason, level = payload.tree("REASON", 2), payload.tree("LEVEL", 3)
+            reason, level = payload.tree("REASON", 2), payload.tree("LEVEL", 4)
+            usual = max(0, min(scene.tick_rate // 62, 255).bit_length() - 1)
+            if scene.eased and (usual - payload.tree("EASE", 3)) % 8: payload.tree("KEEP", 2)    # of what is shown (60, 8): left out
             r = residual(payload, scene.dof[moving[i]], reason)
             states[moving[i]] = update(scene, states[moving[i]], tick, reason, level, r)
             named.append(moving[i])

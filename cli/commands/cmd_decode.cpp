@@ -133,6 +133,9 @@ Outcome run(const DecodeOptions& options) {
   TACTUS_TRY(const auto bytes, read_file(options.input));
   const std::span file(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
   auto player = Player::open(file, {.replica = options.replica, .limits = {}});
+  if (!player && std::string_view(player.error().rule) == "R-API-4")
+    return refuse(shown_path(options.input) + ": the stream tells how a client passes over to its updates",
+                  "Leave out --interpolate, or encode with --profile thesis.");
   if (!player) return refuse(options.input, player.error());
   TACTUS_CHECK(check_length(file, options));
   TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing(), {options.input, options.like}));
@@ -182,7 +185,7 @@ void setup_decode(Command& app, Action& action) {
   command.footer(
       "Examples:\n"
       "  tactus decode push.tct -o replica.mcap --like push.mcap\n"
-      "  tactus decode push.tct -o smooth.mcap --interpolate");
+      "  tactus decode thesis.tct -o smooth.mcap --interpolate");
   on_chosen<DecodeOptions>(command, action, options, run);
 }
 

@@ -36,7 +36,7 @@ bool has_moving(const TraceInfo& info) {
 }
 
 Result<Session> start(const TraceInfo& info, const TraceFrame& first, const EncodeOptions& options, std::ostream& out) {
-  TACTUS_TRY(SceneBuilder builder, scene_builder(info, first, options.meshes.coding()));
+  TACTUS_TRY(SceneBuilder builder, scene_builder(info, first, options.meshes.coding(options.triggers)));
   const SenderOptions wanted = options.meshes.sender(options.triggers);
   TACTUS_TRY(const SharedScene scene, builder.promise(wanted.triggers, wanted.deformable.thresholds).build());
   TACTUS_TRY(StreamFileWriter writer, StreamFileWriter::create(out, *scene));
@@ -137,7 +137,7 @@ Outcome run(const EncodeOptions& options) {
     report.timings = {{"encode", "encode, per tick"}, {"decode", "decode, per packet"}};
   }
   add_meshes(reader->info(), options.meshes, options.triggers, report);
-  for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.coding().deformable.profile == DeformableProfile::main;
+  for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.is_main();
   TACTUS_CHECK(encode_all(*reader, *session, frame, options, report));
   TACTUS_CHECK(check_ending(options.input, *reader, report.ticks.count()));
   if (reader->cut_short())

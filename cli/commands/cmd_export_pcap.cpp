@@ -48,7 +48,7 @@ bool are_participants(const ExportPcapOptions& options, const TraceInfo& info) {
 Result<std::unique_ptr<sim::SessionNetwork>> connect(const TraceInfo& info, const TraceFrame& first,
                                                      const ExportPcapOptions& options, SessionCapture& capture) {
   const SenderOptions sender = options.meshes.sender(options.triggers);
-  TACTUS_TRY(SceneBuilder builder, scene_builder(info, first, options.meshes.coding()));
+  TACTUS_TRY(SceneBuilder builder, scene_builder(info, first, options.meshes.coding(options.triggers)));
   TACTUS_TRY(SharedScene scene, builder.promise(sender.triggers, sender.deformable.thresholds).baselines(kBaselines).build());
   sim::NetworkOptions network;
   network.downlink = options.link;

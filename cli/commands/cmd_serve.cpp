@@ -218,9 +218,9 @@ tl::expected<std::unique_ptr<sim::Server>, Failure> make_world(const ServeOption
   if (!path) return refuse(path.error());
   const auto scene = sim::load_scene(*path);
   if (!scene) return refuse(scene.error());
-  auto world = sim::Server::create(
-      *scene,
-      {.seed = options.seed, .codec = sim::ServerCodec{options.meshes.sender(options.triggers), options.meshes.coding(), true}});
+  auto world = sim::Server::create(*scene, {.seed = options.seed,
+                                            .codec = sim::ServerCodec{options.meshes.sender(options.triggers),
+                                                                      options.meshes.coding(options.triggers), true}});
   if (!world) return refuse(options.scene, world.error());
   return std::move(*world);
 }

@@ -223,7 +223,7 @@ Report make_report(const SimOptions& options, const TraceInfo& info) {
   if (report.moving > 0 || info.meshes.empty()) report.traffic.emplace();
   report.fidelity.emplace(info, options.triggers.triggers());
   add_meshes(info, options.meshes, options.triggers, report);
-  for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.coding().deformable.profile == DeformableProfile::main;
+  for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.is_main();
   report.client = options.replica.interpolation;
   // A client that smooths what it shows leaves the bounds that the encoder keeps.
   if (report.client == Interpolation::none)
@@ -375,7 +375,8 @@ Outcome run(const SimOptions& options) {
                                   .mesh_noise = options.mesh_noise,
                                   .estimate_every = kEstimateEvery};
   if (options.has_channel())
-    settings.channel = sim::ChannelOptions{options.meshes.sender(options.triggers), options.replica, options.meshes.coding(), {}};
+    settings.channel = sim::ChannelOptions{
+        options.meshes.sender(options.triggers), options.replica, options.meshes.coding(options.triggers), {}};
   Networked networked;
   if (options.has_network()) TACTUS_CHECK(add_network(options, scene, networked, *settings.channel));
   auto simulation = sim::Simulation::create(scene, settings);
@@ -488,7 +489,7 @@ void setup_sim(Command& app, Action& action) {
       "Examples:\n"
       "  tactus sim push-1dof -o push.mcap --seed 7\n"
       "  tactus sim membrane -o membrane.mcap --rate 1\n"
-      "  tactus sim rotate-push-lift -o felt.mcap --stream felt.tct -p 4% --interpolate\n"
+      "  tactus sim rotate-push-lift -o felt.mcap --stream felt.tct -p 4% --profile thesis --interpolate\n"
       "  tactus sim rotate-push-lift -o far.mcap -p 4% --link delay=20ms,jitter=5ms,loss=1%\n"
       "\n" +
       std::string(link_help()));

@@ -58,7 +58,7 @@ tl::expected<Motion, Failure> read_motion(const std::string& path, const Session
              .info = reader->info(),
              .frames = {},
              .sender = options.meshes.sender(options.triggers),
-             .coding = options.meshes.coding()};
+             .coding = options.meshes.coding(options.triggers)};
   out.name = out.name.substr(out.name.rfind('/') + 1);
   if (out.info.objects.empty() && out.info.meshes.empty())
     return refuse_arguments(path + ": no object moves", "Give a trace with rigid or deformable objects.");

@@ -27,6 +27,7 @@ constexpr std::array kAgreements{
     Agreement{"--force-floor", "--haptic", "isotropic", {"isotropic", "cone"}},
     Agreement{"--layered", "--haptic", "isotropic", {"isotropic", "cone", "fixed"}},
     Agreement{"--rings", "--haptic", "isotropic", {"isotropic", "cone", "fixed"}},
+    Agreement{"--interpolate", "--profile", "main", {"thesis"}},
     Agreement{"--haptic-share", "--haptic", "isotropic", {"isotropic", "cone", "fixed"}},
     Agreement{"--haptic-share", "--profile", "main", {"main"}},
     Agreement{"--visual-share", "--profile", "main", {"main"}},
@@ -52,10 +53,8 @@ constexpr std::array kNeeds{
     Need{"--force-floor", Subject::rigid},
     Need{"--heartbeat", Subject::rigid},
     Need{"--no-reduction", Subject::rigid},
-    Need{"--lean", Subject::rigid},
     Need{"--interpolate", Subject::rigid},
     Need{"--deformable-visual", Subject::mesh},
-    Need{"--profile", Subject::mesh},
     Need{"--basis", Subject::mesh},
     Need{"--visual-share", Subject::mesh},
     Need{"--quant-bits", Subject::mesh},
@@ -127,7 +126,7 @@ std::set<Subject> subjects_of(const TraceInfo& info) {
 
 void check_options_agree(const Command& command) {
   for (const Agreement& a : kAgreements) {
-    if (!typed(command, a.option)) continue;
+    if (!typed(command, a.option) || command.find(a.other) == nullptr) continue;
     const Option* other = typed(command, a.other);
     const std::string value = other ? other->last() : a.otherwise;
     if (std::find(a.values.begin(), a.values.end(), value) == a.values.end())

@@ -141,10 +141,7 @@ void TriggerArguments::add_encoder_to(Command& app) {
                                   "Time between key packets, at which decoding can start; 0: the first only [5s]")
                          ->check(within(Dimension::time, "0s", "86400s")));
   auto* every_tick = app.add_flag("--no-reduction", no_reduction_, "Send every object at every tick");
-  auto* lean =
-      app.add_flag("--lean", lean_, "Tell velocities that lean towards the acceleration, so that an update lasts longer");
   options_.push_back(every_tick);
-  options_.push_back(lean->excludes(every_tick));
 }
 
 std::optional<double> TriggerArguments::weber_fraction(std::optional<double> otherwise) const {
@@ -157,7 +154,7 @@ bool TriggerArguments::any_given() const {
 }
 
 RigidTriggers TriggerArguments::over(RigidTriggers out) const {
-  out.reduction = no_reduction_ ? Reduction::none : lean_ ? Reduction::leaning : Reduction::dead_reckoning;
+  out.reduction = no_reduction_ ? Reduction::none : Reduction::dead_reckoning;
   out.heartbeat = triggers_.heartbeat;
   if (haptic_->count() > 0) out.haptic = triggers_.haptic;
   if (deadband_->count() > 0) out.weber_fraction = triggers_.weber_fraction;
@@ -195,7 +192,11 @@ void MeshArguments::add_encoder_to(Command& app) {
                       ->type_name("K");
   options_.insert(
       options_.end(),
-      {app.add_option("--profile", profile, "Coding tools of deformable objects: thesis or main [main]")
+      {app.add_option(
+              "--profile", profile,
+              "Coding tools: thesis (of rigid objects dead reckoning, their true velocities, and jumps that a client may smooth "
+              "by "
+              "--interpolate) or main (velocities that lean towards the acceleration, updates that clients ease into) [main]")
            ->check(one_of({"thesis", "main"}))
            ->type_name("NAME"),
        modes,
@@ -226,13 +227,15 @@ DeformableThresholds MeshArguments::over(DeformableThresholds out, const Trigger
 }
 
 SenderOptions MeshArguments::sender(const TriggerArguments& triggers) const {
-  return {.triggers = triggers.triggers(),
+  RigidTriggers rigid = triggers.triggers();
+  if (is_main() && triggers.reduces()) rigid.reduction = Reduction::leaning;
+  return {.triggers = rigid,
           .deformable = {thresholds(triggers), visual_share_, haptic_share_, coding_.layered},
           .policy = {.key_interval = triggers.key_interval()}};
 }
 
-TraceCoding MeshArguments::coding() const {
-  TraceCoding out{coding_, {}};
+TraceCoding MeshArguments::coding(const TriggerArguments& triggers) const {
+  TraceCoding out{.deformable = coding_, .is_eased = is_main() && triggers.reduces()};
   if (modes_ > 0) out.basis = [modes = modes_](const TraceDeformable& mesh) { return spring_basis(mesh, modes); };
   return out;
 }

@@ -36,6 +36,7 @@ class TriggerArguments {
   void add_encoder_to(Command& app);
   bool any_given() const;
   RigidTriggers triggers() const { return over({}); }
+  bool reduces() const { return !no_reduction_; }
   /// The bounds that were typed, for the others those of `out`.
   RigidTriggers over(RigidTriggers out) const;
   /// For meshes: what -p says, `otherwise` if it was not given; none if --haptic is off.
@@ -53,7 +54,7 @@ class TriggerArguments {
   PoseBound fixed_{{triggers_.fixed_position, false}, {triggers_.fixed_rotation, false}};
   double length_unit_ = 1;
   double key_interval_ = SenderPolicy{}.key_interval;
-  bool no_reduction_ = false, lean_ = false;
+  bool no_reduction_ = false;
   const Option *deadband_ = nullptr, *haptic_ = nullptr, *alpha_ = nullptr, *floor_ = nullptr, *visual_option_ = nullptr,
                *fixed_option_ = nullptr, *length_unit_option_ = nullptr;
   std::vector<const Option*> options_;
@@ -73,7 +74,8 @@ class MeshArguments {
   /// What a sender takes, with the triggers.
   SenderOptions sender(const TriggerArguments& triggers) const;
   std::uint8_t rings() const { return coding_.rings; }
-  TraceCoding coding() const;
+  TraceCoding coding(const TriggerArguments& triggers) const;
+  bool is_main() const { return coding_.profile == DeformableProfile::main; }
 
  private:
   DeformableThresholds thresholds_;

@@ -35,6 +35,10 @@ using TreeModel = std::array<BitModel, (1u << Bits) - 1>;
 /// Class of a magnitude: 0 for 0, else the number of bits, capped at 15.
 using MagnitudeModel = TreeModel<4>;
 
+constexpr std::uint32_t magnitude_of(std::int32_t value) noexcept {
+  return static_cast<std::uint32_t>(value < 0 ? -static_cast<std::int64_t>(value) : value);
+}
+
 namespace detail {
 /// Syntax elements above the single bit; `Coder` supplies bit(model, value) and raw(count, value), each of which returns the value
 /// that was coded or decoded.
@@ -67,18 +71,28 @@ class SymbolCoder {
 
   /// Magnitude, then for non-zero values one raw bit, 1 for negative. |value| < 2^31.
   std::int32_t signed_value(MagnitudeModel& model, std::int32_t value) noexcept {
-    const std::uint32_t size =
-        magnitude(model, static_cast<std::uint32_t>(value < 0 ? -static_cast<std::int64_t>(value) : value));
+    const std::uint32_t size = magnitude(model, magnitude_of(value));
     if (size == 0) return 0;
-    const bool negative = self().raw(1, value < 0 ? 1u : 0u) != 0;
-    const auto bounded = static_cast<std::int32_t>(size <= 0x7fffffffu ? size : refuse());
-    return negative ? -bounded : bounded;
+    return with_sign(size, self().raw(1, value < 0 ? 1u : 0u) != 0);
+  }
+
+  /// The same with a model of whether the sign is that of `like`, if there is one.
+  std::int32_t signed_value(MagnitudeModel& model, BitModel& sign, std::int32_t like, std::int32_t value) noexcept {
+    if (like == 0) return signed_value(model, value);
+    const std::uint32_t size = magnitude(model, magnitude_of(value));
+    if (size == 0) return 0;
+    const bool differs = self().bit(sign, (value < 0) != (like < 0) ? 1u : 0u);
+    return with_sign(size, differs != (like < 0));
   }
 
   /// R-RNG-4: a magnitude had more than 32 bits, or a signed one more than 31. Never set while encoding.
   bool too_wide() const noexcept { return too_wide_; }
 
  private:
+  std::int32_t with_sign(std::uint32_t size, bool negative) noexcept {
+    const auto bounded = static_cast<std::int32_t>(size <= 0x7fffffffu ? size : refuse());
+    return negative ? -bounded : bounded;
+  }
   std::uint32_t refuse() noexcept {
     too_wide_ = true;
     return 0;

@@ -13,9 +13,9 @@
 
 namespace tactus {
 
-Result<void> Replica::check(const ReplicaOptions& options) noexcept {
+Result<void> Replica::check(const ReplicaOptions& options, const Scene& scene) noexcept {
   const bool valid = options.share > 0 && options.share <= 1 && options.shortest >= 0 && options.shortest <= options.longest &&
-                     options.longest <= 10;
+                     options.longest <= 10 && !(scene.is_eased && options.interpolation == Interpolation::linear);
   if (!valid) return fail(Errc::invalid_argument, "R-API-4");
   return {};
 }
@@ -33,8 +33,8 @@ Replica::Replica(const Scene& scene, const ReplicaOptions& options, std::vector<
       shapes_(std::move(shapes)) {
   reset_timelines();
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    tracks_[i].state.position = scene.objects[i].initial.position;
-    tracks_[i].state.rotation = scene.objects[i].initial.rotation;
+    tracks_[i].path.state.position = scene.objects[i].initial.position;
+    tracks_[i].path.state.rotation = scene.objects[i].initial.rotation;
   }
 }
 
@@ -76,7 +76,7 @@ void Replica::apply(const DecodedPacket& packet, std::span<const RigidState> obj
       track.gap_count = std::min<std::uint8_t>(static_cast<std::uint8_t>(track.gap_count + 1), kArrivals);
     }
     track.last_arrival = now;
-    track.state = objects[update.object];
+    track.path.follow(predictor_, objects[update.object]);
     track.begin = track.end = now;
     if (interpolation_ == Interpolation::none || running) continue;
     track.end = now + interval(track);
@@ -87,32 +87,48 @@ void Replica::apply(const DecodedPacket& packet, std::span<const RigidState> obj
 /// Remember both ends and the turn between them, so that pose() needs one sine pair per call.
 void Replica::begin_interpolation(Track& track, const RigidPose& shown) const noexcept {
   track.from = shown;
-  track.to = predictor_.pose(track.state, track.end);
-  Quat30 turn = multiply(track.to.rotation, conjugate(shown.rotation));
-  if (turn[0] < 0) turn = {-turn[0], -turn[1], -turn[2], -turn[3]};
-  std::int64_t square = 0;
-  for (std::size_t i = 1; i < 4; ++i) square += static_cast<std::int64_t>(turn[i]) * turn[i];
-  const std::int64_t sine = isqrt(static_cast<std::uint64_t>(square));
-  track.half_angle = sine == 0 ? 0 : asin30(static_cast<std::int32_t>(std::min<std::int64_t>(sine, kOne30)));
-  for (std::size_t i = 0; i < 3; ++i) {
-    track.axis[i] = sine == 0 ? 0 : static_cast<std::int32_t>(round_div(static_cast<std::int64_t>(turn[i + 1]) << 30, sine));
+  track.to = predictor_.pose(track.path.state, track.end);
+  const Turn30 turn = turn_of(multiply(track.to.rotation, conjugate(shown.rotation)));
+  track.axis = turn.axis;
+  track.half_angle = turn.half;
+}
+
+/// spec 60-client 7.   pre  a.state.tick <= tick, and tick <= b->state.tick if there is a b
+RigidPose Replica::path_between(const Timeline::Update& a, const Timeline::Update* b, std::int64_t tick) const noexcept {
+  const bool is_whole = b == nullptr || a.number == 0 || b->state.tick == a.state.tick || b->state.tick - a.state.tick > reach_ ||
+                        heard_.all_between(a.number, b->number);
+  return is_whole ? predictor_.pose(a.state, tick) : bend(scene_, a.state, b->state, tick);
+}
+
+/// What was left to go at the tick of an update: from the updates before it, back to one whose own easing was over when the next came.
+PoseOffset Replica::past_offset(const Timeline& timeline, const Timeline::Update& update) const noexcept {
+  const Timeline::Update* at = &update;
+  for (const auto* z = timeline.previous(*at); z != nullptr && is_easing(z->state, at->state.tick); z = timeline.previous(*at))
+    at = z;
+  PoseOffset out;
+  for (;; ++at) {
+    const Timeline::Update* z = timeline.previous(*at);
+    const std::int64_t tick = at->state.tick;
+    if (z == nullptr) out = {};
+    else out = offset_of(eased(path_between(*z, at, tick), z->state, out, tick), at->state);
+    if (at == &update) return out;
   }
 }
 
-/// spec 60-client 7
+/// spec 60-client 7 and 8
 RigidPose Replica::past_pose(std::uint32_t object, std::int64_t tick) const noexcept {
-  const auto [a, b] = timelines_[object].around(tick);
+  const Timeline& timeline = timelines_[object];
+  const auto [a, b] = timeline.around(tick);
   tick = std::max(tick, a.state.tick);
-  if (b == nullptr || a.number == 0 || b->state.tick - a.state.tick > reach_ || heard_.all_between(a.number, b->number))
-    return predictor_.pose(a.state, tick);
-  return bend(scene_, a.state, b->state, tick);
+  const RigidPose path = path_between(a, b, tick);
+  return is_easing(a.state, tick) ? eased(path, a.state, past_offset(timeline, a), tick) : path;
 }
 
 RigidPose Replica::pose(std::uint32_t object, std::int64_t now) const noexcept {
   if (interpolation_ == Interpolation::playout) return past_pose(object, now);
   const Track& track = tracks_[object];
   now = std::max(now, track.begin);
-  if (now >= track.end) return predictor_.pose(track.state, now);
+  if (now >= track.end) return track.path.pose(predictor_, now);
   const std::int64_t part = now - track.begin, whole = track.end - track.begin;
   RigidPose out = track.from;
   for (std::size_t i = 0; i < 3; ++i) {

@@ -10,6 +10,7 @@
 
 #include <tactus/client/timeline.h>
 #include <tactus/packet/packet.h>
+#include <tactus/rigid/easing.h>
 #include <tactus/rigid/rigid_predictor.h>
 #include <tactus/scene/scene.h>
 
@@ -34,8 +35,8 @@ class DeformableDecoder;
 
 class Replica {
  public:
-  /// R-API-4: not 0 < share <= 1, or not 0 <= shortest <= longest <= 10 s.
-  static Result<void> check(const ReplicaOptions& options) noexcept;
+  /// R-API-4: not 0 < share <= 1, not 0 <= shortest <= longest <= 10 s, or linear in an eased scene.
+  static Result<void> check(const ReplicaOptions& options, const Scene& scene) noexcept;
   /// pre  check(); scene and decoders outlive the replica.   in  shapes  one per deformable object
   Replica(const Scene& scene, const ReplicaOptions& options, std::vector<DeformableDecoder*> shapes);
 
@@ -51,7 +52,8 @@ class Replica {
 
   /// Pose of one object as shown at tick `now`. Before the object's newest update, the pose shown when that was applied. With
   /// Interpolation::playout `now` is the tick that is shown, not before any shown so far.
-  /// pre  object < scene.objects.size().   time O(1), about 50 ns (100 ns while interpolating, 0.5 us over a gap), no allocation.
+  /// pre  object < scene.objects.size().   time O(1), about 50 ns (100 ns while interpolating or easing, 0.5 us over a gap; with playout and
+  ///      easing 1 us for each update within 2^ease ticks of the next), no allocation.
   RigidPose pose(std::uint32_t object, std::int64_t now) const noexcept;
 
   /// Displacements of a deformable object's vertices as shown at tick `now`, V x 3, x 2^-position_exp m. Valid until the next call.
@@ -63,7 +65,7 @@ class Replica {
  private:
   static constexpr std::size_t kArrivals = 5;  // M
   struct Track {
-    RigidState state;                    // target: the newest state
+    EasedPath path;                      // target: the newest state
     std::uint64_t number = 0;            // of its packet
     RigidPose from;                      // shown when the interpolation began
     RigidPose to;                        // predicted for its end
@@ -76,6 +78,8 @@ class Replica {
   };
   void add_to_timelines(const DecodedPacket& packet, std::span<const RigidState> objects) noexcept;
   void reset_timelines() noexcept;
+  RigidPose path_between(const Timeline::Update& a, const Timeline::Update* b, std::int64_t tick) const noexcept;
+  PoseOffset past_offset(const Timeline& timeline, const Timeline::Update& update) const noexcept;
   RigidPose past_pose(std::uint32_t object, std::int64_t tick) const noexcept;
   std::int64_t interval(const Track& track) const noexcept;
   void begin_interpolation(Track& track, const RigidPose& shown) const noexcept;

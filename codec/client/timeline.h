@@ -29,6 +29,8 @@ class Timeline {
   /// Add an update; without room, in place of the first one, which may be this.   time O(1) for updates in order
   void add(const Update& update) noexcept;
   Around around(std::int64_t tick) const noexcept;  ///< time O(updates after `tick`)
+  /// The update before one of around(); null: there is none.
+  const Update* previous(const Update& update) const noexcept { return &update == updates_.data() ? nullptr : &update - 1; }
 
  private:
   std::array<Update, kMost> updates_;  // ordered by (tick, number)

@@ -162,7 +162,6 @@ inline void keep_motion(const MainState& base, MainState& next) noexcept {
 }
 
 constexpr std::size_t size_class(std::uint32_t magnitude) noexcept { return magnitude == 0 ? 0 : magnitude == 1 ? 1 : 2; }
-constexpr std::uint32_t magnitude_of(std::int32_t v) noexcept { return static_cast<std::uint32_t>(v < 0 ? -std::int64_t{v} : v); }
 
 /// One coefficient per mode, in units of its step.
 template <class Coder>

@@ -12,42 +12,12 @@
 /// with s = 0. What the truth really does decides how long it lasts, never whether a bound holds.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <span>
-#include <vector>
-
-#include <tactus/rigid/contact.h>
-#include <tactus/rigid/rigid_state.h>
-#include <tactus/rigid/trigger.h>
-#include <tactus/scene/scene.h>
+#include <tactus/rigid/acceleration.h>
+#include <tactus/rigid/error_share.h>
 
 namespace tactus {
 
-class Leaning {
- public:
-  /// pre  `scene` outlives this
-  explicit Leaning(const Scene& scene);
-
-  /// The truth of a tick, after those before it.   time O(moving objects), no allocation
-  void read(std::int64_t tick, std::span<const RigidSample> samples) noexcept;
-  /// The object's sample of the last read(), with the velocities to tell.
-  /// in   triggers  widened
-  /// time O(contacts), about 50 ns, no allocation
-  RigidSample lean(std::uint32_t object, std::span<const RigidSample> samples, std::span<const Contact> contacts,
-                   const RigidTriggers& triggers) const noexcept;
-
- private:
-  struct Motion {
-    Vec3 velocity, angular_velocity;
-  };
-  /// [m/s^2, rad/s^2] Zero where the last two differences of the velocities do not agree.
-  Motion acceleration(std::uint32_t object) const noexcept;
-  double seconds(std::size_t from, std::size_t to) const noexcept;
-
-  const Scene& scene_;
-  std::array<std::int64_t, 3> ticks_;           // of the past, newest first
-  std::array<std::vector<Motion>, 3> motions_;  // by object
-};
+/// The velocities to tell, less the true ones [m/s, rad/s].   time about 30 ns
+Acceleration::Motion leaning(const Acceleration::Motion& acceleration, const ErrorShare& share) noexcept;
 
 }  // namespace tactus

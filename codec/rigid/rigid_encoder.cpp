@@ -8,13 +8,15 @@
 #include <optional>
 
 #include <tactus/base/rule.h>
+#include <tactus/rigid/leaning.h>
 
 namespace tactus {
 namespace {
 
 // Shares of a bound that the quantisation of an update may use up; the rest is left for the motion until the next update.
-constexpr double kVisualShare = 0.125;
-constexpr double kHapticShare = 0.35;
+constexpr unsigned kCoarsestLevel = 15;
+constexpr double kVisualShare = 0.18;
+constexpr double kHapticShare = 0.2;
 // Baseline::acknowledged: objects near their bounds join a packet that goes out anyway, and what is not acknowledged goes again.
 constexpr double kEarly = 0.5, kEarlyAtHeavyLoss = 0.3;  // shares of a bound
 constexpr double kSomeLoss = 0.003, kHeavyLoss = 0.15;   // shares of packets
@@ -34,8 +36,9 @@ Result<PoseThresholds> make_thresholds(double distance, double angle, const Grid
   const std::int64_t sine = sin30(half) - 8;
   out.half_angle_squared = sine * sine;
   const double worst = std::sqrt(0.75);
-  while (out.level < 7 && worst * unit * std::ldexp(4.0, 2 * static_cast<int>(out.level)) <= kVisualShare * distance &&
-         worst * turn_unit * std::ldexp(4.0, 2 * static_cast<int>(out.level)) <= kVisualShare * angle) {
+  const auto fits = [worst](double step, double bound) { return worst * step <= kVisualShare * bound; };
+  while (out.level < kCoarsestLevel && fits(std::ldexp(unit, static_cast<int>(out.level) + 1), distance) &&
+         fits(std::ldexp(turn_unit, static_cast<int>(out.level) + 1), angle)) {
     ++out.level;
   }
   return out;
@@ -68,6 +71,17 @@ bool within(const PoseThresholds& t, const RigidPose& shown, const RigidState& t
   for (std::size_t i = 1; i < 4; ++i) half += static_cast<double>(turn[i]) * turn[i];
   const double length_squared = (half + static_cast<double>(turn[0]) * turn[0]) * 0x1p-60;  // 1 but for rounding
   return half <= static_cast<double>(t.half_angle_squared) * length_squared;
+}
+
+Vec3 to_vector(const Vec3i& v, unsigned exponent) noexcept {
+  const double unit = std::ldexp(1.0, -static_cast<int>(exponent));
+  return {unit * v[0], unit * v[1], unit * v[2]};
+}
+
+/// From the true pose to a shown one that is near it.
+SmallError error_of(const Pose& truth, const Pose& shown) noexcept {
+  const Quat turn = shown.rotation * conjugate(truth.rotation);
+  return {shown.position - truth.position, (turn.w < 0 ? -2.0 : 2.0) * Vec3{turn.x, turn.y, turn.z}};
 }
 
 /// Does the truth keep to the axes that the header declares?
@@ -113,10 +127,10 @@ RigidEncoder::RigidEncoder(const Scene& scene, const RigidTriggers& triggers, Ba
       early_(baseline == Baseline::acknowledged ? kEarly : 1),
       heartbeat_(static_cast<std::int64_t>(std::ceil(triggers.heartbeat * scene.tick_rate))),
       truth_(initial_states(scene).objects) {
-  if (triggers.reduction == Reduction::leaning) leaning_.emplace(scene);
+  if (triggers.reduction == Reduction::leaning || scene.is_eased) acceleration_.emplace(scene);
   pending_.reserve(scene.moving().size());
   before_.reserve(scene.moving().size());
-  for (const RigidState& state : truth_) sent_.push_back({.state = state});
+  for (const RigidState& state : truth_) sent_.push_back({.path = {.state = state}});
   set_widening(1);
 }
 
@@ -148,7 +162,7 @@ Result<void> RigidEncoder::read(std::int64_t tick, std::span<const RigidSample> 
   }
   samples_ = samples;
   contacts_ = contacts;
-  if (leaning_) leaning_->read(tick, samples);
+  if (acceleration_) acceleration_->read(tick, samples);
   return {};
 }
 
@@ -176,28 +190,31 @@ bool RigidEncoder::can_improve(std::uint32_t object, const RigidPose& shown) con
   return rest.of != Residual{}.of;
 }
 
-Reason RigidEncoder::reason_for(std::uint32_t object, const RigidState& held) const noexcept {
+Reason RigidEncoder::reason_for(std::uint32_t object) const noexcept {
+  const EasedPath& path = sent_[object].path;
   const std::int64_t tick = truth_[object].tick;
-  const RigidPose shown = predictor_.pose(held, tick);
+  const RigidPose course = predictor_.pose(path.state, tick);
+  const RigidPose shown = eased(course, path.state, path.offset, tick);
   if (!haptic_within(object, shown, 1.0) && can_improve(object, shown)) return Reason::haptic;
   if (!within(visual_, shown, truth_[object])) return Reason::visual;
-  if (heartbeat_ > 0 && tick - held.tick >= heartbeat_) return Reason::heartbeat;
+  if (is_easing(path.state, tick) && !within(visual_, course, truth_[object])) return Reason::visual;
+  if (heartbeat_ > 0 && tick - path.state.tick >= heartbeat_) return Reason::heartbeat;
   return Reason::request;
 }
 
 bool RigidEncoder::is_follow_up_due(std::uint32_t object) const noexcept {
   const Sent& sent = sent_[object];
   const std::int64_t wait = follow_up_[std::min<std::size_t>(sent.follow_ups, follow_up_.size() - 1)];
-  return !sent.acknowledged && wait > 0 && truth_[object].tick - sent.state.tick >= wait;
+  return !sent.acknowledged && wait > 0 && truth_[object].tick - sent.path.state.tick >= wait;
 }
 
 /// Whether an object whose trigger did not fire is named in a packet that others have caused: in a key packet if it has left its
 /// initial state; else if it would soon cause a packet of its own.
 bool RigidEncoder::joins(std::uint32_t object, const EncodeRequest<RigidStates>& request) const noexcept {
-  const RigidState& held = sent_[object].state;
-  if (request.head.key && held != request.base.objects[object]) return true;
+  const EasedPath& path = sent_[object].path;
+  if (request.head.key && path.state != request.base.objects[object]) return true;
   if (early_ == 1) return false;
-  const RigidPose shown = predictor_.pose(held, request.tick);
+  const RigidPose shown = path.pose(predictor_, request.tick);
   return !within(early_visual_, shown, truth_[object]) || (!haptic_within(object, shown, early_) && can_improve(object, shown));
 }
 
@@ -205,7 +222,7 @@ bool RigidEncoder::joins(std::uint32_t object, const EncodeRequest<RigidStates>&
 void RigidEncoder::collect(const EncodeRequest<RigidStates>& request) noexcept {
   pending_.clear();
   for (const std::uint32_t i : scene_.moving()) {
-    const Reason reason = reason_for(i, sent_[i].state);
+    const Reason reason = reason_for(i);
     const bool fires = reason != Reason::request || triggers_.reduction == Reduction::none;
     if (fires || is_follow_up_due(i)) pending_.push_back({i, reason, {}, !fires});
   }
@@ -219,30 +236,78 @@ void RigidEncoder::collect(const EncodeRequest<RigidStates>& request) noexcept {
   std::ranges::sort(pending_, {}, &Pending::object);
 }
 
-/// The true state, with the velocities that an update is to tell.
-RigidState RigidEncoder::told(std::uint32_t object) const noexcept {
-  const RigidState& truth = truth_[object];
-  if (!leaning_) return truth;
-  RigidTriggers widened = triggers_;
-  for (double* bound : {&widened.visual_position, &widened.visual_rotation, &widened.weber_fraction, &widened.fixed_position,
-                        &widened.fixed_rotation})
+RigidTriggers RigidEncoder::widened_triggers() const noexcept {
+  RigidTriggers out = triggers_;
+  for (double* bound :
+       {&out.visual_position, &out.visual_rotation, &out.weber_fraction, &out.fixed_position, &out.fixed_rotation})
     *bound *= widening_;
-  return to_grid(leaning_->lean(object, samples_, contacts_, widened), truth.tick, scene_.grid).value_or(truth);
+  return out;
+}
+
+/// The true state, with the velocities that an update is to tell.
+RigidState RigidEncoder::told(std::uint32_t object, const Acceleration::Motion& acceleration,
+                              const ErrorShare& share) const noexcept {
+  const RigidState& truth = truth_[object];
+  if (triggers_.reduction != Reduction::leaning) return truth;
+  RigidSample sample = samples_[object];
+  const Acceleration::Motion more = leaning(acceleration, share);
+  sample.velocity = sample.velocity + more.linear;
+  sample.angular_velocity = sample.angular_velocity + more.angular;
+  return to_grid(sample, truth.tick, scene_.grid).value_or(truth);
+}
+
+/// In the ticks after an update whose offset leads to `kept` now.
+UpdateCourse RigidEncoder::course_of(const RigidState& state, const RigidPose& kept, const RigidSample& truth,
+                                     const Acceleration::Motion& acceleration) const noexcept {
+  const Pose own = to_pose({state.position, state.rotation}, scene_.grid.position);
+  const Acceleration::Motion drift{to_vector(state.velocity, scene_.grid.velocity) - truth.velocity,
+                                   to_vector(state.angular_velocity, scene_.grid.angular_velocity) - truth.angular_velocity};
+  return {error_of(own, to_pose(kept, scene_.grid.position)), error_of(truth.pose, own), drift, acceleration};
+}
+
+/// As much of the pose shown so far as the bounds permit, for as long as they are likely to.
+void RigidEncoder::choose_ease(Pending& update, CodedUpdate& coded, const Acceleration::Motion& acceleration,
+                               const ErrorShare& share) const noexcept {
+  const std::uint32_t object = update.object;
+  const RigidPose shown = sent_[object].path.pose(predictor_, truth_[object].tick);
+  RigidState tried = update.state;
+  for (tried.ease = 1; tried.keep < 4; ++tried.keep) {
+    const RigidPose kept = eased({tried.position, tried.rotation}, tried, offset_of(shown, tried), tried.tick);
+    if (!within(visual_, kept, truth_[object]) || !haptic_within(object, kept, 1.0)) continue;
+    tried.ease = longest_ease(course_of(tried, kept, samples_[object], acceleration), share, scene_.tick_rate);
+    if (tried.ease == 0) return;
+    update.state = tried;
+    coded.ease = tried.ease;
+    coded.keep = tried.keep;
+    return;
+  }
+}
+
+/// The update of one object, and the state after it.
+Result<CodedUpdate> RigidEncoder::code(Pending& update, const RigidState& base, std::int64_t tick) const noexcept {
+  const Prediction prediction{base, predictor_.pose(base, tick)};
+  const std::uint32_t object = update.object;
+  if (!acceleration_) return quantise(update, prediction, truth_[object]);
+  const Acceleration::Motion acceleration = acceleration_->of(object);
+  const ErrorShare share(object, samples_[object].pose, contacts_, widened_triggers());
+  TACTUS_TRY(CodedUpdate coded, quantise(update, prediction, told(object, acceleration, share)));
+  if (scene_.is_eased) choose_ease(update, coded, acceleration, share);
+  return coded;
 }
 
 /// The coarsest level whose rounding leaves room inside every bound; without one, the finest that keeps them; where the grid is too
 /// coarse for the permitted force error, the nearest place on it.
-Result<CodedUpdate> RigidEncoder::quantise(Pending& update, const Prediction& prediction) const noexcept {
+Result<CodedUpdate> RigidEncoder::quantise(Pending& update, const Prediction& prediction, const RigidState& told) const noexcept {
   const std::uint32_t object = update.object;
   const RigidState& truth = truth_[object];
-  const RigidState told = this->told(object);
   const std::uint8_t dof = scene_.objects[object].dof;
   std::optional<CodedUpdate> finest;
   const unsigned coarsest = triggers_.haptic == HapticRule::fixed && is_touched(object) ? fixed_.level : visual_.level;
   for (unsigned levels = coarsest + 1; levels > 0; --levels) {
     const unsigned level = levels - 1;
-    CodedUpdate coded{update.reason, static_cast<std::uint8_t>(level),
-                      quantise_pose(prediction.pose, truth, dof, level, scene_.grid)};
+    CodedUpdate coded{.reason = update.reason,
+                      .level = static_cast<std::uint8_t>(level),
+                      .residual = quantise_pose(prediction.pose, truth, dof, level, scene_.grid)};
     quantise_motion(predictor_, prediction, told, dof, coded);
     const auto state = reconstruct(predictor_, prediction, truth.tick, coded, scene_.grid);
     if (!state) return fail(Errc::internal, "R-RIG-6");
@@ -273,8 +338,8 @@ Result<Payload> RigidEncoder::encode(const EncodeRequest<RigidStates>& request, 
     if (moving.size() > 1) coder.magnitude(models.gap, at - next);
     next = at + 1;
     const RigidState& base = request.base.objects[update.object];
-    TACTUS_TRY(CodedUpdate coded, quantise(update, {base, predictor_.pose(base, request.tick)}));
-    code_update(coder, models, scene_.objects[update.object].dof, coded);
+    TACTUS_TRY(CodedUpdate coded, code(update, base, request.tick));
+    code_update(coder, models, scene_, scene_.objects[update.object].dof, coded);
     strongest = std::max(strongest, update.reason);
   }
   const std::size_t size = coder.finish();
@@ -290,7 +355,10 @@ void RigidEncoder::commit(const RigidStates& base, RigidStates& next) noexcept {
     Sent& sent = sent_[update.object];
     before_.emplace_back(update.object, sent);
     const auto follow_ups = static_cast<std::uint8_t>(update.follow_up ? std::min(sent.follow_ups + 1, 255) : 0);
-    sent = {update.state, number_, follow_ups, false};
+    sent.path.follow(predictor_, update.state);
+    sent.number = number_;
+    sent.follow_ups = follow_ups;
+    sent.acknowledged = false;
   }
 }
 

@@ -2,8 +2,9 @@
 /// Codes true states of the rigid objects into payloads: a function of truth and baseline. Internal to the library; Sender is the
 /// way in.
 ///
-/// After every tick a decoder's prediction obeys, for every object and contact given,
+/// After every tick what a decoder shows obeys, for every object and contact given,
 ///   |x^ - x| <= visual_position,  angle(q^, q) <= visual_rotation,  haptic_ratio(f, f^) <= 1.
+/// In an eased scene that is the eased path.
 /// A bound finer than the grid (a small force_floor, a stiff contact) means the nearest grid point.
 /// The encoder picks for every update the coarsest grid level that keeps the quantised state well inside these bounds. It
 /// evaluates the haptic error in floating point, which is an encoder's choice; decoding is in integers.
@@ -18,8 +19,11 @@
 
 #include <tactus/base/result.h>
 #include <tactus/packet/substream_encoder.h>
+#include <tactus/rigid/acceleration.h>
 #include <tactus/rigid/contact.h>
-#include <tactus/rigid/leaning.h>
+#include <tactus/rigid/ease_choice.h>
+#include <tactus/rigid/easing.h>
+#include <tactus/rigid/error_share.h>
 #include <tactus/rigid/rigid_syntax.h>
 #include <tactus/rigid/trigger.h>
 
@@ -56,7 +60,7 @@ class RigidEncoder {
  private:
   /// What a receiver of every packet shows of an object.
   struct Sent {
-    RigidState state;
+    EasedPath path;
     std::uint64_t number = 0;     // of the packet that said so
     std::uint8_t follow_ups = 0;  // since a trigger asked for it
     bool acknowledged = true;
@@ -68,15 +72,21 @@ class RigidEncoder {
     bool follow_up = false;
   };
 
-  Reason reason_for(std::uint32_t object, const RigidState& held) const noexcept;
+  Reason reason_for(std::uint32_t object) const noexcept;
   bool can_improve(std::uint32_t object, const RigidPose& shown) const noexcept;
   bool haptic_within(std::uint32_t object, const RigidPose& shown, double share) const noexcept;
   bool is_touched(std::uint32_t object) const noexcept;
   bool is_follow_up_due(std::uint32_t object) const noexcept;
   bool joins(std::uint32_t object, const EncodeRequest<RigidStates>& request) const noexcept;
   void collect(const EncodeRequest<RigidStates>& request) noexcept;
-  RigidState told(std::uint32_t object) const noexcept;
-  Result<CodedUpdate> quantise(Pending& update, const Prediction& prediction) const noexcept;
+  RigidTriggers widened_triggers() const noexcept;
+  RigidState told(std::uint32_t object, const Acceleration::Motion& acceleration, const ErrorShare& share) const noexcept;
+  UpdateCourse course_of(const RigidState& state, const RigidPose& kept, const RigidSample& truth,
+                         const Acceleration::Motion& acceleration) const noexcept;
+  void choose_ease(Pending& update, CodedUpdate& coded, const Acceleration::Motion& acceleration,
+                   const ErrorShare& share) const noexcept;
+  Result<CodedUpdate> quantise(Pending& update, const Prediction& prediction, const RigidState& told) const noexcept;
+  Result<CodedUpdate> code(Pending& update, const RigidState& base, std::int64_t tick) const noexcept;
 
   const Scene& scene_;
   RigidTriggers triggers_;
@@ -86,9 +96,9 @@ class RigidEncoder {
   double early_ = 1;                              // share of its bounds over which an object joins a packet
   std::array<std::int64_t, 3> follow_up_{};  // [ticks] without an acknowledgement before the first, the second and later; 0: none
   std::int64_t heartbeat_ = 0;               // [ticks], 0: off
-  std::optional<Leaning> leaning_;           // if asked for
-  std::vector<RigidState> truth_;            // this tick, on the grid
-  std::span<const RigidSample> samples_;     // this tick, as given
+  std::optional<Acceleration> acceleration_;  // where updates lean or are eased
+  std::vector<RigidState> truth_;             // this tick, on the grid
+  std::span<const RigidSample> samples_;      // this tick, as given
   std::span<const Contact> contacts_;
   std::vector<Pending> pending_;
   std::uint64_t number_ = 0;                            // of the pending packet

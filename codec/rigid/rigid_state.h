@@ -26,6 +26,8 @@ struct RigidState {
   std::array<std::int32_t, 4> rotation{1 << 30, 0, 0, 0};  ///< x 2^-30, Hamilton w, x, y, z
   std::array<std::int32_t, 3> velocity{};                  ///< x 2^-velocity m/s
   std::array<std::int32_t, 3> angular_velocity{};          ///< x 2^-angular_velocity rad/s, world frame
+  std::uint8_t ease = 0;  ///< clients pass over to this path within 2^ease ticks; 0: at once (easing.h)
+  std::uint8_t keep = 0;  ///< ... and begin with 16, 15, 12 or 8 sixteenths of what they were off it
   friend bool operator==(const RigidState&, const RigidState&) = default;
 };
 
@@ -45,7 +47,7 @@ RigidStates initial_states(const Scene& scene);
 ///      R-API-3 the quaternion's length differs from 1 by more than 1e-3.
 Result<RigidState> to_grid(const RigidSample& sample, std::int64_t tick, const GridExponents& grid) noexcept;
 
-/// FNV-1a (64 bit) over tick, position, rotation, velocity and angular velocity of every object that can move. spec 40-rigid 6
+/// FNV-1a (64 bit) over the states of all objects that can move. spec 40-rigid 6
 std::uint64_t state_hash(const Scene& scene, const RigidStates& states) noexcept;
 
 }  // namespace tactus

@@ -28,8 +28,8 @@ RigidMotion expected_motion(const RigidPredictor& predictor, const RigidState& b
   PoseError error;
   if (update.reason != Reason::haptic) return predictor.motion(base, tick, error);
   for (std::size_t i = 0; i < 3; ++i) {
-    error.position[i] = saturate32(static_cast<std::int64_t>(update.residual.of[0][i]) << (2 * update.level));
-    error.rotation[i] = saturate32(static_cast<std::int64_t>(update.residual.of[2][i]) << (2 * update.level));
+    error.position[i] = saturate32(static_cast<std::int64_t>(update.residual.of[0][i]) << update.level);
+    error.rotation[i] = saturate32(static_cast<std::int64_t>(update.residual.of[2][i]) << update.level);
   }
   return predictor.motion(base, tick, error);
 }
@@ -53,9 +53,9 @@ std::optional<RigidPose> add_pose(const RigidPose& predicted, const Residual& re
   std::array<std::int64_t, 3> quarter{};
   std::int64_t square = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    const std::int64_t moved = static_cast<std::int64_t>(residual.of[0][i]) << (2 * level);
+    const std::int64_t moved = static_cast<std::int64_t>(residual.of[0][i]) << level;
     out.position[i] = saturate32(predicted.position[i] + moved);
-    quarter[i] = static_cast<std::int64_t>(residual.of[2][i]) << (2 * level);
+    quarter[i] = static_cast<std::int64_t>(residual.of[2][i]) << level;
     if (quarter[i] > limit || quarter[i] < -limit) return std::nullopt;
     square += quarter[i] * quarter[i];
   }
@@ -74,7 +74,7 @@ Residual quantise_pose(const RigidPose& predicted, const RigidState& truth, std:
   Residual out;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::int64_t difference = static_cast<std::int64_t>(truth.position[i]) - predicted.position[i];
-    if (dof >> i & 1u) out.of[0][i] = codable(round_shift(difference, 2 * level));
+    if (dof >> i & 1u) out.of[0][i] = codable(round_shift(difference, level));
   }
   if (dof >> 3 == 0) return out;
   const Quat30 turn = multiply(truth.rotation, conjugate(predicted.rotation));
@@ -84,11 +84,11 @@ Residual quantise_pose(const RigidPose& predicted, const RigidState& truth, std:
     // v / (1 + w) = tan(angle / 4) * axis, of the quaternion of the pair (q, -q) whose w is not negative
     const std::int64_t v = turn[0] < 0 ? -static_cast<std::int64_t>(turn[i + 1]) : turn[i + 1];
     const std::int64_t w = kOne30 + std::abs(static_cast<std::int64_t>(turn[0]));
-    out.of[2][i] = static_cast<std::int32_t>(round_div(v << grid.rotation, w << (2 * level)));
+    out.of[2][i] = static_cast<std::int32_t>(round_div(v << grid.rotation, w << level));
     square += static_cast<std::int64_t>(out.of[2][i]) * out.of[2][i];
   }
   // A half turn may round to just over length 1: take the longest component back.
-  while (square << (4 * level) > std::int64_t{1} << (2 * grid.rotation)) {
+  while (square << (2 * level) > std::int64_t{1} << (2 * grid.rotation)) {
     auto& v = out.of[2];
     auto& longest =
         *std::max_element(v.begin(), v.end(), [](std::int32_t a, std::int32_t b) { return std::abs(a) < std::abs(b); });
@@ -101,7 +101,7 @@ Residual quantise_pose(const RigidPose& predicted, const RigidState& truth, std:
 void quantise_motion(const RigidPredictor& predictor, const Prediction& prediction, const RigidState& truth, std::uint8_t dof,
                      CodedUpdate& update) noexcept {
   const RigidMotion expected = expected_motion(predictor, prediction.base, truth.tick, update);
-  const auto steps = [shift = 2u * update.level](std::int32_t value, std::int32_t guess) {
+  const auto steps = [shift = unsigned{update.level}](std::int32_t value, std::int32_t guess) {
     return codable(round_shift(value, shift) - round_shift(guess, shift));
   };
   Residual& residual = update.residual;
@@ -116,8 +116,8 @@ std::optional<RigidState> reconstruct(const RigidPredictor& predictor, const Pre
   const auto pose = add_pose(prediction.pose, update.residual, update.level, grid);
   if (!pose) return std::nullopt;
   const RigidMotion motion = expected_motion(predictor, prediction.base, tick, update);
-  RigidState out{tick, pose->position, pose->rotation, motion.velocity, motion.angular_velocity};
-  const unsigned shift = 2u * update.level;
+  RigidState out{tick, pose->position, pose->rotation, motion.velocity, motion.angular_velocity, update.ease, update.keep};
+  const unsigned shift = update.level;
   for (std::size_t i = 0; i < 3; ++i) {
     out.velocity[i] = saturate32((round_shift(motion.velocity[i], shift) + update.residual.of[1][i]) << shift);
     const std::int64_t turning = (round_shift(motion.angular_velocity[i], shift) + update.residual.of[3][i]) << shift;

@@ -2,6 +2,7 @@
 /// Syntax and reconstruction of a rigid packet: shared by encoder and decoder, internal to the library. spec/40-rigid.md 2, 3 and 5.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -17,7 +18,14 @@
 namespace tactus {
 
 inline constexpr std::size_t kQuantities = 4;  // position, velocity, rotation, angular velocity
-inline constexpr std::size_t kContexts = 8;    // 0..3: the reason, 4..7: how large the components before were
+inline constexpr std::size_t kPoseContexts = 12, kMotionContexts = 25;
+
+/// Of a pose residual and the motion residual beside it.
+struct ResidualModels {
+  std::array<MagnitudeModel, kPoseContexts> pose;
+  std::array<MagnitudeModel, kMotionContexts> motion;
+  std::array<BitModel, 4> sign;  // of a motion: not that of the pose; by reason
+};
 
 /// Every adaptive model of a packet. Restarted from start_models() for each packet, so that a packet depends on its baseline
 /// only.
@@ -28,8 +36,10 @@ struct RigidModels {
   MagnitudeModel count;
   MagnitudeModel gap;
   TreeModel<2> reason;
-  TreeModel<3> level;
-  std::array<std::array<MagnitudeModel, kContexts>, kQuantities> residual;
+  TreeModel<4> level;
+  TreeModel<3> ease;
+  TreeModel<2> keep;
+  std::array<ResidualModels, 2> residual;  // position and velocity; rotation and angular velocity
 };
 
 /// Start probabilities, spec/40-rigid.md table 2.
@@ -39,7 +49,7 @@ struct RigidHead : PacketHead {
   std::uint32_t count = 1;  ///< updates
 };
 
-/// Quantised differences from the prediction, in units of 4^level grid steps; components an object lacks stay 0.
+/// Quantised differences from the prediction, in units of 2^level grid steps; components an object lacks stay 0.
 struct Residual {
   std::array<Vec3i, kQuantities> of{};
 };
@@ -47,6 +57,7 @@ struct Residual {
 struct CodedUpdate {
   Reason reason = Reason::request;
   std::uint8_t level = 0;
+  std::uint8_t ease = 0, keep = 0;  ///< as in RigidState; 0 in a scene that is not eased
   Residual residual;
 };
 
@@ -57,31 +68,59 @@ void code_head(Coder& coder, RigidModels& models, const Scene& scene, RigidHead&
   if (scene.moving().size() > 1) head.count = coder.magnitude(models.count, head.count);
 }
 
-/// Magnitude context of the next component: how large its predecessors were.
-constexpr std::size_t size_context(std::uint32_t magnitude) noexcept {
-  const auto width = static_cast<unsigned>(std::bit_width(magnitude));
-  return width == 0 ? 4 : width < 3 ? 5 : width < 6 ? 6 : 7;
+/// Context of a component of position or rotation: the reason, then how large the components before were.
+constexpr std::size_t pose_context(Reason reason, bool is_first, std::uint32_t largest) noexcept {
+  if (is_first) return static_cast<std::size_t>(reason);
+  return 4 + std::min(static_cast<std::size_t>(std::bit_width(largest)), std::size_t{7});
+}
+
+/// Context of a component of a velocity: how large the components before were, and that of the pose on the same axis.
+constexpr std::size_t motion_context(bool is_first, std::uint32_t largest, std::uint32_t pose) noexcept {
+  constexpr std::array<std::size_t, 6> kBefore{1, 2, 2, 3, 3, 3}, kPose{0, 1, 2, 2, 3, 3};  // by width
+  const auto before = static_cast<std::size_t>(std::bit_width(largest)), of_pose = static_cast<std::size_t>(std::bit_width(pose));
+  return 5 * (is_first ? 0 : before < 6 ? kBefore[before] : 4) + (of_pose < 6 ? kPose[of_pose] : 4);
+}
+
+/// Position and velocity, or rotation and angular velocity.
+template <class Coder>
+void code_residual(Coder& coder, ResidualModels& models, unsigned axes, Reason reason, Vec3i& pose, Vec3i& motion) noexcept {
+  bool is_first = true;
+  std::uint32_t largest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!(axes >> axis & 1u)) continue;
+    pose[axis] = coder.signed_value(models.pose[pose_context(reason, is_first, largest)], pose[axis]);
+    largest = std::max(largest, magnitude_of(pose[axis]));
+    is_first = false;
+  }
+  is_first = true;
+  largest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!(axes >> axis & 1u)) continue;
+    MagnitudeModel& model = models.motion[motion_context(is_first, largest, magnitude_of(pose[axis]))];
+    motion[axis] = coder.signed_value(model, models.sign[static_cast<std::size_t>(reason)], pose[axis], motion[axis]);
+    largest = std::max(largest, magnitude_of(motion[axis]));
+    is_first = false;
+  }
+}
+
+/// What an eased update mostly has: the longest of at most 1/62 s, so that its symbol is the same at every tick rate.
+constexpr std::uint8_t usual_ease(std::uint32_t tick_rate) noexcept {
+  const auto width = static_cast<unsigned>(std::bit_width(std::min(tick_rate / 62, 255u)));
+  return static_cast<std::uint8_t>(width > 0 ? width - 1 : 0);
 }
 
 template <class Coder>
-void code_update(Coder& coder, RigidModels& models, std::uint8_t dof, CodedUpdate& update) noexcept {
+void code_update(Coder& coder, RigidModels& models, const Scene& scene, std::uint8_t dof, CodedUpdate& update) noexcept {
   update.reason = static_cast<Reason>(coder.template tree<2>(models.reason, static_cast<std::uint32_t>(update.reason)));
-  update.level = static_cast<std::uint8_t>(coder.template tree<3>(models.level, update.level));
-  std::size_t context = static_cast<std::size_t>(update.reason);
-  for (std::size_t quantity = 0; quantity < kQuantities; ++quantity) {
-    const unsigned axes = quantity < 2 ? dof & 7u : static_cast<unsigned>(dof >> 3);
-    if (axes == 0) continue;
-    if (quantity == 2) context = static_cast<std::size_t>(update.reason);
-    std::uint32_t largest = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (!(axes >> axis & 1u)) continue;
-      std::int32_t& value = update.residual.of[quantity][axis];
-      value = coder.signed_value(models.residual[quantity][context], value);
-      const std::uint32_t size = static_cast<std::uint32_t>(value < 0 ? -value : value);
-      if (size > largest) largest = size;
-      context = size_context(largest);
-    }
+  update.level = static_cast<std::uint8_t>(coder.template tree<4>(models.level, update.level));
+  if (scene.is_eased) {
+    const std::uint32_t usual = usual_ease(scene.tick_rate);
+    update.ease = static_cast<std::uint8_t>((usual - coder.template tree<3>(models.ease, (usual - update.ease) & 7u)) & 7u);
   }
+  if (update.ease > 0) update.keep = static_cast<std::uint8_t>(coder.template tree<2>(models.keep, update.keep));
+  auto& of = update.residual.of;
+  code_residual(coder, models.residual[0], dof & 7u, update.reason, of[0], of[1]);
+  code_residual(coder, models.residual[1], dof >> 3, update.reason, of[2], of[3]);
 }
 
 /// State of one object before a packet, and its predicted pose at the packet's tick.

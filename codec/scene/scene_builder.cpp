@@ -58,6 +58,11 @@ SceneBuilder& SceneBuilder::baselines(std::uint8_t count) {
   return *this;
 }
 
+SceneBuilder& SceneBuilder::eased() {
+  spec_.is_eased = true;
+  return *this;
+}
+
 SceneBuilder& SceneBuilder::loads(const LoadSpec& loads) {
   spec_.loads = loads;
   return *this;

@@ -48,6 +48,8 @@ class SceneBuilder {
   SceneBuilder& extrapolate(double seconds);
   /// How many states a receiver keeps as baselines, 1..64. Losing fewer packets than that in a row interrupts nothing.
   SceneBuilder& baselines(std::uint8_t count);
+  /// Updates of rigid objects tell how clients pass over to them: what is shown and felt does not jump, and the bounds hold on the way.
+  SceneBuilder& eased();
   /// Tell the forces on all objects that can move: of their surroundings, and of so many users.
   SceneBuilder& loads(const LoadSpec& loads);
   /// Declare the bounds that hold at a client that gets every packet.

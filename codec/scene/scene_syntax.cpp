@@ -21,8 +21,8 @@ constexpr std::array<std::uint8_t, 4> kMagic{0x89, 'T', 'C', 'T'};
 constexpr std::uint8_t kVersion = 1;
 constexpr std::uint8_t kRigid = 1;
 constexpr std::uint8_t kProfile = 0;
-constexpr std::uint16_t kHasDeformables = 1, kHasLoads = 2;  // flags
-constexpr std::size_t kFixedSize = 12;                       // magic, version, profile, flags, body_size
+constexpr std::uint16_t kHasDeformables = 1, kHasLoads = 2, kIsEased = 4;  // flags
+constexpr std::size_t kFixedSize = 12;                                     // magic, version, profile, flags, body_size
 
 Result<RigidObject> parse_object(ByteReader& body) {
   const std::uint64_t start = body.bit_offset();
@@ -83,6 +83,7 @@ Result<void> parse_loads(ByteReader& body, SceneSpec& spec) {
 
 Result<SceneSpec> parse_body(ByteReader body, std::uint16_t flags, const DecodeLimits& limits) {
   SceneSpec spec;
+  spec.is_eased = (flags & kIsEased) != 0;
   const std::uint64_t start = body.bit_offset();
   spec.tick_rate = body.u32();
   spec.grid.position = body.u8();
@@ -150,7 +151,8 @@ Result<std::vector<std::uint8_t>> write_scene(const Scene& scene) try {
   for (const std::uint8_t byte : kMagic) w.u8(byte);
   w.u8(kVersion);
   w.u8(kProfile);
-  w.u16(static_cast<std::uint16_t>((scene.deformables.empty() ? 0 : kHasDeformables) | (scene.loads ? kHasLoads : 0)));
+  w.u16(static_cast<std::uint16_t>((scene.deformables.empty() ? 0 : kHasDeformables) | (scene.loads ? kHasLoads : 0) |
+                                   (scene.is_eased ? kIsEased : 0)));
   w.u32(static_cast<std::uint32_t>(body.size()));
   w.bytes(body);
   w.u32(crc32(out));
@@ -172,7 +174,7 @@ Result<ParsedScene> parse_scene(std::span<const std::uint8_t> bytes, const Decod
   if (version != kVersion) return fail(Errc::unsupported, "R-STR-2", 32);
   if (profile > kProfile + 1) return fail(Errc::malformed, "R-STR-3", 40);
   if (profile != kProfile) return fail(Errc::unsupported, "R-STR-3", 40);
-  if (flags > (kHasDeformables | kHasLoads)) return fail(Errc::malformed, "R-STR-4", 48);
+  if (flags > (kHasDeformables | kHasLoads | kIsEased)) return fail(Errc::malformed, "R-STR-4", 48);
   if (body_size > limits.header_bytes) return fail(Errc::limit_exceeded, "R-STR-14", 64);
   ByteReader body = in.sub(body_size);
   const std::uint32_t crc = in.u32();

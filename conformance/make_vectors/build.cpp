@@ -85,7 +85,7 @@ Bytes raw_packet(const Scene& header, std::uint16_t sequence, RigidHead head, st
     for (RawUpdate update : updates) {
       if (moving.size() > 1) next += coder.magnitude(models.gap, update.gap);
       if (next >= moving.size()) return;  // a decoder that obeys R-RIG-4 stops here
-      code_update(coder, models, header.objects[moving[next++]].dof, update.coded);
+      code_update(coder, models, header, header.objects[moving[next++]].dof, update.coded);
     }
   });
 }
@@ -103,7 +103,8 @@ Bytes Stream::packet(const Step& step) {
   std::size_t next = 0;
   for (const Update& update : step.updates) {
     const auto at = static_cast<std::size_t>(std::ranges::find(moving, update.object) - moving.begin());
-    updates.push_back({static_cast<std::uint32_t>(at - next), {update.reason, update.level, {update.residual}}});
+    updates.push_back(
+        {static_cast<std::uint32_t>(at - next), {update.reason, update.level, update.ease, update.keep, {update.residual}}});
     next = at + 1;
   }
   ticks_[sequence] = step.tick;
@@ -148,10 +149,10 @@ std::int32_t Random::integer(unsigned max_width) {
 
 Update random_update(Random& random, const Scene& header, std::uint32_t object) {
   const std::uint8_t dof = header.objects[object].dof;
-  const auto level = static_cast<std::uint8_t>(random.below(4) == 0 ? random.below(8) : random.below(3));
+  const auto level = static_cast<std::uint8_t>(random.below(4) == 0 ? random.below(16) : random.below(6));
   Update out{object, static_cast<Reason>(random.below(4)), level, {}};
   // Three rotation components of this width stay below length 1.
-  const unsigned turn_width = header.grid.rotation > 2u * level + 1 ? header.grid.rotation - 2u * level - 1 : 0;
+  const unsigned turn_width = header.grid.rotation > level + 1u ? header.grid.rotation - level - 1u : 0;
   const std::array<unsigned, kQuantities> widths{12, 10, std::min(turn_width, 16u), 8};
   for (std::size_t quantity = 0; quantity < kQuantities; ++quantity) {
     for (std::size_t axis = 0; axis < 3; ++axis) {

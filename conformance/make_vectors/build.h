@@ -113,6 +113,7 @@ struct Update {
   Reason reason = Reason::visual;
   std::uint8_t level = 0;
   std::array<Vec3i, kQuantities> residual{};  ///< position, velocity, rotation, angular velocity
+  std::uint8_t ease = 0, keep = 0;            ///< of an eased scene
 };
 
 struct Step {

@@ -99,6 +99,7 @@ void add_rigid_orders(Catalogue& catalogue);
 void add_load(Catalogue& catalogue);
 void add_client(Catalogue& catalogue);
 void add_client_playout(Catalogue& catalogue);
+void add_client_eased(Catalogue& catalogue);
 void add_session(Catalogue& catalogue);
 void add_session_server(Catalogue& catalogue);
 void add_deformable_header(Catalogue& catalogue);

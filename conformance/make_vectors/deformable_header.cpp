@@ -54,9 +54,9 @@ void add_valid(Catalogue& c) {
 
 void add_counts(Catalogue& c) {
   const Rejection cut{"truncated", "R-STR-5"}, overlong{"malformed", "R-STR-5"};
-  c.invalid("flag-2", "The third flag is set.", {"malformed", "R-STR-4"}, [] {
+  c.invalid("flag-16", "The fifth flag is set.", {"malformed", "R-STR-4"}, [] {
     RawHeader header = only({});
-    header.flags = 4;
+    header.flags = 16;
     return header.bytes();
   }());
   c.invalid("no-deformable-count", "The flag is set and the body ends.", cut, around({}));

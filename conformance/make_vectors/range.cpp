@@ -115,7 +115,7 @@ Bytes padded_packet(const RawHeader& header) {
   RigidHead head;
   CodedUpdate update;
   code_head(coder, models, *scene, head);
-  code_update(coder, models, scene->objects[0].dof, update);
+  code_update(coder, models, *scene, scene->objects[0].dof, update);
   return packet + Bytes(coder.position() - (packet.size() - 2), 0);
 }
 
@@ -172,8 +172,8 @@ void add_range_faults(Catalogue& c) {
     return [size](RangeEncoder& coder, RigidModels& models) {
       coder.magnitude(models.tick_delta, 0);
       coder.tree<2>(models.reason, 2);
-      coder.tree<3>(models.level, 0);
-      coder.magnitude(models.residual[0][2], size);
+      coder.tree<4>(models.level, 0);
+      coder.magnitude(models.residual[0].pose[2], size);
       coder.raw(1, 0);
     };
   };

@@ -73,7 +73,7 @@ Bytes reasons_and_levels() {
   Stream stream(with_objects({{"cube"}}));
   std::int64_t tick = 0;
   for (int reason = 0; reason < 4; ++reason) {
-    for (std::uint8_t level = 0; level < 8; ++level) {
+    for (std::uint8_t level = 0; level < 16; ++level) {
       const Update update{0, static_cast<Reason>(reason), level, {{{3, -2, 1}, {-9, 8, -1}, {4, 0, -5}, {1, 1, -2}}}};
       stream.add({.tick = tick, .updates = {update}, .key = tick == 0});
       tick += 11;
@@ -115,7 +115,7 @@ Bytes saturated_position() {
     return std::vector<Update>{{0, Reason::visual, level, {{position, velocity}}}};
   };
   stream.add({.tick = 0, .updates = by({1, -1, 0}, {kLargest, -kLargest, 100}, 0), .key = true});
-  stream.add({.tick = 2000, .updates = by({0, 0, kLargest}, {0, 0, 0}, 7)});
+  stream.add({.tick = 2000, .updates = by({0, 0, kLargest}, {0, 0, 0}, 14)});
   stream.add({.tick = 2001, .updates = by({-kLargest, kLargest, -kLargest}, {0, 0, 0}, 0)});
   stream.add({.tick = 2002, .updates = by({-kLargest, kLargest, -kLargest}, {0, 0, 0}, 0)});
   return stream.finish().bytes();
@@ -128,10 +128,10 @@ Bytes saturated_motion() {
   const auto add = [&](std::int64_t tick, Reason reason, std::uint8_t level, const std::array<Vec3i, kQuantities>& residual) {
     stream.add({.tick = tick, .updates = {{0, reason, level, residual}}, .key = tick == 0});
   };
-  add(0, Reason::visual, 7, {{{0, 0, 0}, {kLargest, -kLargest, 131072}, {0, 0, 0}, {kLargest, -kLargest, 2049}}});
-  add(0 + 1, Reason::haptic, 7, {{{kLargest, -kLargest, 3}, {0, 0, 0}, {16, 0, -3}, {0, 0, 0}}});
+  add(0, Reason::visual, 14, {{{0, 0, 0}, {kLargest, -kLargest, 131072}, {0, 0, 0}, {kLargest, -kLargest, 2049}}});
+  add(0 + 1, Reason::haptic, 14, {{{kLargest, -kLargest, 3}, {0, 0, 0}, {16, 0, -3}, {0, 0, 0}}});
   add(2, Reason::haptic, 0, {{{1, -1, 0}, {-1, 1, 0}, {1, -1, 0}, {1, -1, 1}}});
-  add(3, Reason::visual, 2, {{{0, 0, 0}, {-kLargest, kLargest, 1}, {0, 0, 0}, {-kLargest, kLargest, 1}}});
+  add(3, Reason::visual, 4, {{{0, 0, 0}, {-kLargest, kLargest, 1}, {0, 0, 0}, {-kLargest, kLargest, 1}}});
   add(3, Reason::haptic, 1, {{{5, 0, 0}, {1, 2, 3}, {0, 5, 0}, {1, 2, 3}}});
   return stream.finish().bytes();
 }
@@ -143,10 +143,10 @@ Bytes half_circles() {
   };
   stream.add({.tick = 0, .updates = turn({kHalfCircle, 0, 0}, 0), .key = true});
   stream.add({.tick = 1, .updates = turn({0, -kHalfCircle, 0}, 0)});
-  stream.add({.tick = 2, .updates = turn({0, 0, kHalfCircle >> 6}, 3)});
+  stream.add({.tick = 2, .updates = turn({0, 0, kHalfCircle >> 6}, 6)});
   stream.add({.tick = 3, .updates = turn({kHalfCircle - 1, 1447, 0}, 0)});
   stream.add({.tick = 4, .updates = turn({605395, -605395, 605395}, 0)});
-  stream.add({.tick = 5, .updates = turn({-(kHalfCircle >> 14), 0, 0}, 7)});
+  stream.add({.tick = 5, .updates = turn({-(kHalfCircle >> 14), 0, 0}, 14)});
   stream.add({.tick = 6, .updates = turn({1, 0, 0}, 0)});
   return stream.finish().bytes();
 }

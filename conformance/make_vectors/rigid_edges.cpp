@@ -61,7 +61,7 @@ Bytes haptic_residual_of_45_bits() {
   header.grid = {30, 18, kRotationExp, 12};
   Stream stream(header);
   stream.add({.tick = 0, .key = true});
-  stream.add({.tick = 1 << 16, .updates = {{0, Reason::haptic, 7, {{{kLargest, -kLargest, 1}}}}}});
+  stream.add({.tick = 1 << 16, .updates = {{0, Reason::haptic, 14, {{{kLargest, -kLargest, 1}}}}}});
   return stream.finish().bytes();
 }
 
@@ -74,13 +74,18 @@ Bytes every_residual() {
   header.grid = {22, 17, 28, 20};
   Stream stream(header);
   std::int64_t tick = 0;
-  const auto add = [&](Reason reason, const Vec3i& r) {
-    stream.add({.tick = tick, .updates = {{0, reason, 0, {r, r, r, r}}}, .key = tick == 0});
+  const auto add = [&](Reason reason, const Vec3i& pose, const Vec3i& motion) {
+    stream.add({.tick = tick, .updates = {{0, reason, 0, {pose, motion, pose, motion}}}, .key = tick == 0});
     ++tick;
   };
   for (int width = 0; width <= 15; ++width) {
-    for (int reason = 0; reason < 4; ++reason) add(static_cast<Reason>(reason), {of_width(width), 0, 0});
-    for (const std::int32_t first : {0, 1, 4, 100}) add(Reason::visual, {first, -of_width(width), 0});
+    const std::int32_t value = of_width(width);
+    for (int reason = 0; reason < 4; ++reason) add(static_cast<Reason>(reason), {value, 0, 0}, {value, 0, 0});
+    for (int before = 0; before <= 7; ++before) add(Reason::visual, {of_width(before), -value, 0}, {});
+    for (const std::int32_t near : {0, 1, 3, -15, -63}) {
+      add(Reason::visual, {near, 0, 0}, {value, 0, 0});
+      for (const std::int32_t before : {0, 2, 30, 63}) add(Reason::haptic, {0, near, 0}, {before, -value, 0});
+    }
   }
   return stream.finish().bytes();
 }

@@ -77,32 +77,31 @@ void add_rigid_orders(Catalogue& c) {
               coder.magnitude(models.count, 1);
               coder.magnitude(models.gap, 2);
               coder.tree<2>(models.reason, 0);
-              coder.tree<3>(models.level, 0);
-              too_wide(coder, models.residual[0][0]);
+              coder.tree<4>(models.level, 0);
+              too_wide(coder, models.residual[0].pose[0]);
             }));
   c.invalid("residual-before-length", "A rotation that is too long, then an angular velocity of 33 bits.",
             {"malformed", "R-RNG-4", "R-RIG-6"}, then_coded([](RangeEncoder& coder, RigidModels& models) {
               coder.magnitude(models.count, 1);
               coder.magnitude(models.gap, 0);
               coder.tree<2>(models.reason, 0);
-              coder.tree<3>(models.level, 0);
-              coder.signed_value(models.residual[0][0], 0);
-              for (int i = 0; i < 2; ++i) coder.signed_value(models.residual[0][4], 0);
-              for (int i = 0; i < 3; ++i) coder.signed_value(models.residual[1][4], 0);
-              coder.signed_value(models.residual[2][0], kHalfCircle + 1);
-              for (int i = 0; i < 2; ++i) coder.signed_value(models.residual[2][7], 0);
-              too_wide(coder, models.residual[3][7]);
+              coder.tree<4>(models.level, 0);
+              Vec3i pose{}, motion{};
+              code_residual(coder, models.residual[0], 7, Reason::request, pose, motion);
+              coder.signed_value(models.residual[1].pose[0], kHalfCircle + 1);
+              for (int i = 0; i < 2; ++i) coder.signed_value(models.residual[1].pose[11], 0);
+              too_wide(coder, models.residual[1].motion[4]);
             }));
   c.invalid("length-before-next-gap", "A rotation that is too long, then a gap beyond the objects.",
-            {"invalid", "R-RIG-6", "R-RIG-4"}, then_coded([](RangeEncoder& coder, RigidModels& models) {
+            {"invalid", "R-RIG-6", "R-RIG-4"}, then_coded([&two](RangeEncoder& coder, RigidModels& models) {
               coder.magnitude(models.count, 2);
               coder.magnitude(models.gap, 0);
-              CodedUpdate too_far{Reason::request, 0, {{{{}, {}, {kHalfCircle + 1, 0, 0}, {}}}}};
-              code_update(coder, models, Dof::all, too_far);
+              CodedUpdate too_far{.residual = {{{{}, {}, {kHalfCircle + 1, 0, 0}, {}}}}};
+              code_update(coder, models, *two.parsed(), Dof::all, too_far);
               coder.magnitude(models.gap, 1);
             }));
   c.invalid("end-before-record-tick", "Bytes left over, and a record of another tick.", {"malformed", "R-RNG-2", "R-FIL-7"},
-            then_packet(raw_packet(*two.parsed(), 2, {{false, 1, 0}, 1}, std::vector<RawUpdate>(1)) + Bytes(8, 1), 40));
+            then_packet(raw_packet(*two.parsed(), 2, {{false, 1, 0}, 1}, std::vector<RawUpdate>(1)) + Bytes(16, 1), 40));
 }
 
 }  // namespace tactus::conformance

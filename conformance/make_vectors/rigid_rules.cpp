@@ -91,8 +91,8 @@ void add_rotation_rule(Catalogue& c) {
             turned(Dof::all, {0, -(kHalfCircle + 1), 0}, 0));
   c.invalid("rotation-length", "No component is too long; together they are, by the least there is.", length,
             turned(Dof::all, {kHalfCircle, 0, 1}, 0));
-  c.invalid("rotation-at-level-7", "The largest residual at the coarsest level: 45 bits.", length,
-            turned(Dof::all, {0, 0, kLargest}, 7));
+  c.invalid("rotation-at-level-15", "The largest residual at the coarsest level: 46 bits.", length,
+            turned(Dof::all, {0, 0, kLargest}, 15));
 }
 
 }  // namespace

@@ -34,6 +34,7 @@ inline constexpr const char* kDeformableStartModels = "50 Start models";
 inline constexpr const char* kClient = "60 Applying an update";
 inline constexpr const char* kShownPose = "60 Shown pose";
 inline constexpr const char* kPlayout = "60 Playout";
+inline constexpr const char* kEased = "60 Eased paths";
 inline constexpr const char* kDatagram = "70 Datagram";
 inline constexpr const char* kJoining = "70 Joining and leaving";
 inline constexpr const char* kAcknowledgements = "70 Numbers and acknowledgements";

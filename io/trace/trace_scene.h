@@ -14,10 +14,11 @@
 
 namespace tactus {
 
-/// Coding options of a trace's deformable objects; the trace sets their frame periods.
+/// Coding options of a trace's objects; the trace sets the frame periods of the deformable ones.
 struct TraceCoding {
   DeformableCoding deformable{};
   std::function<Result<ModeBasis>(const TraceDeformable&)> basis{};  ///< main: makes each object's basis; empty: without
+  bool is_eased = false;                                             ///< SceneBuilder::eased()
 };
 
 /// Declares a deformable object.   err  those of the basis

@@ -80,11 +80,13 @@ void encode_update(benchmark::State& state) {
 BENCHMARK(encode_update)->Repetitions(5)->ReportAggregatesOnly();
 
 /// One touched update per tick: the grid level is searched with the haptic rule.
-void encode_touched_update(benchmark::State& state, Reduction reduction) {
+void encode_touched_update(benchmark::State& state, Reduction reduction, bool is_eased) {
   SenderOptions options = every_tick();
   options.triggers.reduction = reduction;
   options.triggers.weber_fraction = 0.001;
-  auto sender = Sender::create(testing::scene_of(1), options).value();
+  SceneSpec spec = testing::spec_of(1);
+  spec.is_eased = is_eased;
+  auto sender = Sender::create(testing::shared(spec), options).value();
   const auto samples = record(1, 10000);
   std::int64_t tick = 0;
   std::uint64_t packets = 0;
@@ -95,8 +97,11 @@ void encode_touched_update(benchmark::State& state, Reduction reduction) {
   }
   state.counters["packets_share"] = benchmark::Counter(static_cast<double>(packets), benchmark::Counter::kAvgIterations);
 }
-BENCHMARK_CAPTURE(encode_touched_update, dead_reckoning, Reduction::dead_reckoning)->Repetitions(5)->ReportAggregatesOnly();
-BENCHMARK_CAPTURE(encode_touched_update, leaning, Reduction::leaning)->Repetitions(5)->ReportAggregatesOnly();
+BENCHMARK_CAPTURE(encode_touched_update, dead_reckoning, Reduction::dead_reckoning, false)
+    ->Repetitions(5)
+    ->ReportAggregatesOnly();
+BENCHMARK_CAPTURE(encode_touched_update, leaning, Reduction::leaning, false)->Repetitions(5)->ReportAggregatesOnly();
+BENCHMARK_CAPTURE(encode_touched_update, leaning_eased, Reduction::leaning, true)->Repetitions(5)->ReportAggregatesOnly();
 
 void decode_update(benchmark::State& state) {
   const SharedScene scene = testing::scene_of(1);

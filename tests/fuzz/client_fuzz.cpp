@@ -10,11 +10,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace tactus;
   SceneSpec spec;
   spec.objects.push_back({"o", Dof::all, {}});
+  spec.is_eased = size > 0 && data[0] / 3 % 2 == 1;
   const SharedScene scene = Scene::create(std::move(spec)).value();
   const RigidPredictor predictor(*scene);
   ReplicaOptions options;
   constexpr Interpolation kWays[] = {Interpolation::none, Interpolation::linear, Interpolation::playout};
   if (size > 0) options.interpolation = kWays[data[0] % 3];
+  if (!Replica::check(options, *scene)) options.interpolation = Interpolation::none;
   Replica replica(*scene, options, {});
   constexpr std::size_t kStep = 40;
   std::int64_t now = 0;
@@ -25,6 +27,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     RigidState state;
     state.tick = now += static_cast<std::uint16_t>(v[0]) % 3000;
     now += v[0] & 0x70000 ? 0 : 7;  // applied late
+    if (scene->is_eased)
+      state.ease = static_cast<std::uint8_t>(v[0] >> 22 & 7), state.keep = static_cast<std::uint8_t>(v[0] >> 25 & 3);
     state.position = {v[1], v[2], v[3]};
     state.velocity = {v[4], v[5], v[6]};
     state.angular_velocity = {v[7] % kAngularVelocityLimit, v[8] % kAngularVelocityLimit, v[9] % kAngularVelocityLimit};

@@ -31,12 +31,14 @@ void check_bounds(const RigidTriggers& t, Receiver& receiver, std::int64_t tick,
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   ByteReader in({data, size});
   SceneSpec spec;
-  spec.baseline_span = static_cast<std::uint8_t>(1 + in.u8() % 64);
+  const unsigned span = in.u8();
+  spec.baseline_span = static_cast<std::uint8_t>(1 + span % 64);
+  spec.is_eased = span >= 128;
   spec.objects.push_back({"o", Dof::all, {}});
   const SharedScene scene = Scene::create(std::move(spec)).value();
   SenderOptions options;
   options.triggers.haptic = static_cast<HapticRule>(in.u8() % 4);
-  options.triggers.reduction = static_cast<Reduction>(in.u8() % 2);
+  options.triggers.reduction = static_cast<Reduction>(in.u8() % 3);
   options.triggers.weber_fraction = 0.001 * in.u8();
   options.triggers.visual_position = 1e-5 * in.u16();
   options.triggers.visual_rotation = 1e-4 * in.u16();

@@ -68,6 +68,7 @@ struct Case {
   HapticRule rule;
   double p;
   Reduction reduction = Reduction::dead_reckoning;
+  bool is_eased = false;
 };
 
 /// Three lines per case, or nothing and false when a codec call failed.
@@ -78,6 +79,7 @@ bool run(const Case& c) {
     builder.rigid("body " + std::to_string(i), {}, c.dofs[i]);
     bodies.emplace_back(1000 + i, c.dofs[i]);
   }
+  if (c.is_eased) builder.eased();
   const auto scene = std::move(builder).build();
   if (!scene) return false;
   SenderOptions options;
@@ -85,7 +87,7 @@ bool run(const Case& c) {
   options.triggers.weber_fraction = c.p;
   options.triggers.reduction = c.reduction;
   ReceiverOptions smooth;
-  smooth.replica.interpolation = Interpolation::linear;
+  smooth.replica.interpolation = c.is_eased ? Interpolation::none : Interpolation::linear;
   auto sender = Sender::create(*scene, options);
   auto receiver = Receiver::create(*scene, smooth);
   if (!sender || !receiver) return false;
@@ -126,6 +128,7 @@ int main() {
       {"visual", {Dof::all, Dof::none, Dof::all}, HapticRule::off, 0.08},
       {"crowd", std::vector<std::uint8_t>(40, Dof::all), HapticRule::isotropic, 0.04},
       {"every-tick", {Dof::all, Dof::translation}, HapticRule::off, 0.08, Reduction::none},
+      {"eased", {Dof::all, Dof::x}, HapticRule::isotropic, 0.04, Reduction::leaning, true},
   };
   for (const Case& c : cases) {
     if (!run(c)) {

@@ -23,6 +23,7 @@ rigid_streams() {
   stream visual --haptic off --visual 0.3mm,2deg
   stream coarse -p 4% --visual 6mm,2deg
   stream coarse-visual --haptic off --visual 6mm,2deg
+  stream thesis -p 4% --visual 0.3mm,2deg --profile thesis
 }
 
 mesh_streams() {

@@ -21,7 +21,7 @@ bool count_packet(std::span<const std::uint8_t> packet, const Scene& scene, Coun
     if (moving.size() > 1) next += coder.magnitude(models.gap, 0);
     if (next >= moving.size()) return false;
     CodedUpdate update;
-    code_update(coder, models, scene.objects[moving[next++]].dof, update);
+    code_update(coder, models, scene, scene.objects[moving[next++]].dof, update);
   }
   return true;
 }
@@ -45,8 +45,13 @@ int main(int argc, char** argv) {
   table.tree("KEY", 1);
   for (const char* name : {"BASELINE", "TICK", "COUNT", "GAP"}) table.magnitude(name);
   table.tree("REASON", 3);
-  table.tree("LEVEL", 7);
-  for (std::size_t q = 0; q < kQuantities; ++q)
-    for (std::size_t context = 0; context < kContexts; ++context) table.magnitude(indexed("RESIDUAL", {q, context}));
+  table.tree("LEVEL", 15);
+  table.tree("EASE", 7);
+  table.tree("KEEP", 3);
+  for (std::size_t kind = 0; kind < 2; ++kind) {
+    for (std::size_t context = 0; context < kPoseContexts; ++context) table.magnitude(indexed("POSE", {kind, context}));
+    for (std::size_t context = 0; context < kMotionContexts; ++context) table.magnitude(indexed("MOTION", {kind, context}));
+    for (std::size_t reason = 0; reason < 4; ++reason) table.tree(indexed("SIGN", {kind, reason}), 1);
+  }
   return table.complete() ? 0 : 1;
 }

@@ -26,32 +26,36 @@ TEST(Allocation, TheCounterCounts) {
 
 TEST(Allocation, EncodeDecodeAndShowAllocateNothing) {
   constexpr std::size_t kObjects = 20;
-  const SharedScene scene = testing::scene_of(kObjects);
-  auto sender = Sender::create(scene, {.triggers = {.reduction = Reduction::leaning}, .policy = {.key_interval = 0.2}}).value();
-  auto receiver = Receiver::create(scene, {.replica = {.interpolation = Interpolation::linear}, .limits = {}}).value();
-  std::vector<testing::Motion> motions;
-  for (std::size_t i = 0; i < kObjects; ++i) motions.emplace_back(i);
-  std::vector<RigidSample> samples(kObjects);
-  std::vector<Contact> contacts(2);
-  std::uint64_t packets = 0, hash = 0;
-  const std::uint64_t counted = count_of([&] {
-    for (std::int64_t tick = 0; tick < 1000; ++tick) {
-      for (std::size_t i = 0; i < kObjects; ++i) samples[i] = motions[i].step(1e-3);
-      contacts[0] = testing::touch(3, samples[3].pose, 0.001);
-      contacts[1] = testing::touch(7, samples[7].pose, 0.002);
-      if (tick % 97 == 0) sender.request_key();
-      const auto sent = sender.encode(tick, {samples, contacts});
-      if (!sent) return;
-      for (const Packet& packet : *sent) {
-        if (!receiver.push(packet.bytes, tick)) return;
-        ++packets;
+  for (const Interpolation way : {Interpolation::linear, Interpolation::none, Interpolation::playout}) {
+    SceneSpec spec = testing::spec_of(kObjects);
+    spec.is_eased = way != Interpolation::linear;
+    const SharedScene scene = testing::shared(spec);
+    auto sender = Sender::create(scene, {.triggers = {.reduction = Reduction::leaning}, .policy = {.key_interval = 0.2}}).value();
+    auto receiver = Receiver::create(scene, {.replica = {.interpolation = way}, .limits = {}}).value();
+    std::vector<testing::Motion> motions;
+    for (std::size_t i = 0; i < kObjects; ++i) motions.emplace_back(i);
+    std::vector<RigidSample> samples(kObjects);
+    std::vector<Contact> contacts(2);
+    std::uint64_t packets = 0, hash = 0;
+    const std::uint64_t counted = count_of([&] {
+      for (std::int64_t tick = 0; tick < 1000; ++tick) {
+        for (std::size_t i = 0; i < kObjects; ++i) samples[i] = motions[i].step(1e-3);
+        contacts[0] = testing::touch(3, samples[3].pose, 0.001);
+        contacts[1] = testing::touch(7, samples[7].pose, 0.002);
+        if (tick % 97 == 0) sender.request_key();
+        const auto sent = sender.encode(tick, {samples, contacts});
+        if (!sent) return;
+        for (const Packet& packet : *sent) {
+          if (!receiver.push(packet.bytes, tick)) return;
+          ++packets;
+        }
+        hash ^= receiver.replica().pose_hash(tick);
       }
-      hash ^= receiver.replica().pose_hash(tick);
-    }
-  });
-  EXPECT_EQ(counted, 0u);
-  EXPECT_GT(packets, 100u);
-  EXPECT_NE(hash, 0u);
+    });
+    EXPECT_EQ(counted, 0u);
+    EXPECT_GT(packets, 100u);
+    EXPECT_NE(hash, 0u);
+  }
 }
 
 /// Every substream at once, with acknowledgements, forgotten packets, wrong calls and damaged packets.

@@ -161,7 +161,7 @@ TEST(ClientReplica, RotationTakesTheShortWay) {
 TEST(ClientReplica, OptionsOutsideTheirRangeAreRefused) {
   const auto refused = [](ReplicaOptions options) {
     const auto receiver = Receiver::create(scene_of(1), {.replica = options, .limits = {}});
-    EXPECT_EQ(receiver.has_value(), Replica::check(options).has_value());
+    EXPECT_EQ(receiver.has_value(), Replica::check(options, *scene_of(1)).has_value());
     return !receiver && std::string_view(receiver.error().rule) == "R-API-4";
   };
   EXPECT_TRUE(refused({Interpolation::linear, 0, 0.005, 0.1}));

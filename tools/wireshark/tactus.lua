@@ -264,10 +264,10 @@ end
 
 -- ---- Packets (25, section 9; 40, section 2) --------------------------------------------------------------------------
 -- Each model is used at most once up to tick_delta, so that start values are enough (spec/tables/rigid-start-models.csv).
-local KEY = { 32036 }
+local KEY = { 32064 }
 local BASELINE = {}
 for i = 1, 15 do BASELINE[i] = 16384 end
-local TICK = { 29280, 3818, 29617, 234, 20439, 16757, 9383, 894, 2924, 14341, 25080, 18879, 32704, 231, 15225 }
+local TICK = { 29740, 1753, 29291, 8329, 20115, 16417, 9485, 64, 4657, 11763, 23792, 17719, 32704, 212, 14543 }
 
 local Range = {}
 Range.__index = Range

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/rigid/ease_choice.h>
+
+#include <gtest/gtest.h>
+
+namespace tactus {
+namespace {
+
+const RigidTriggers kTriggers{.visual_position = 0.001, .visual_rotation = 0.05};
+const ErrorShare kShare(0, {}, {}, kTriggers);
+
+UpdateCourse course(double offset, double drift, double acceleration) {
+  return {{{offset, 0, 0}, {}}, {}, {{drift, 0, 0}, {}}, {{acceleration, 0, 0}, {}}};
+}
+
+TEST(EaseChoice, TakesSixteenMillisecondsWhereTheNewPathIsRight) {
+  EXPECT_EQ(longest_ease(course(-0.001, 0, 0), kShare, 1000), 4);
+  EXPECT_EQ(longest_ease(course(-0.001, 0, 0), kShare, 8000), 7) << "the longest there is";
+  EXPECT_EQ(longest_ease(course(-0.001, 0, 0), kShare, 148), 1);
+  EXPECT_EQ(longest_ease(course(-0.001, 0, 0), kShare, 60), 0) << "two ticks are longer than that";
+  EXPECT_EQ(longest_ease(course(-0.001, 0, 0), kShare, 1), 0);
+}
+
+/// The error that grows and the offset that shrinks are on the same side, or on different ones.
+TEST(EaseChoice, IsShorterWhereTheErrorGrowsOnTheSideOfTheOffset) {
+  const auto ease = [](double drift) { return longest_ease(course(-0.001, drift, 0), kShare, 1000); };
+  EXPECT_EQ(ease(0.05), 4);
+  int before = 4;
+  for (const double drift : {-0.02, -0.05, -0.1, -0.2, -0.5}) {
+    EXPECT_LE(ease(drift), before) << drift;
+    before = ease(drift);
+  }
+  EXPECT_EQ(before, 0);
+  EXPECT_LT(longest_ease(course(-0.001, 0, 10), kShare, 1000), 4) << "the truth runs away from where it is shown";
+  EXPECT_EQ(longest_ease(course(-0.001, 0, -10), kShare, 1000), 4);
+}
+
+TEST(EaseChoice, RotationCountsAsWell) {
+  const UpdateCourse turned{{{}, {0, 0.05, 0}}, {}, {{}, {0, 40, 0}}, {}};
+  EXPECT_LT(longest_ease(turned, kShare, 1000), 2);
+}
+
+}  // namespace
+}  // namespace tactus
