@@ -34,6 +34,7 @@ Catalogue all() {
   catalogue.begin("client", "What a client shows of rigid objects, at every tick.");
   add_client(catalogue);
   add_client_playout(catalogue);
+  add_client_curves(catalogue);
   catalogue.begin("session", "What the client's end of a session does with datagrams.");
   add_session(catalogue);
   add_session_server(catalogue);

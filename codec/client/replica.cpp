@@ -69,6 +69,7 @@ void Replica::apply(const DecodedPacket& packet, std::span<const RigidState> obj
     track.number = packet.number;
     const std::int64_t now = std::max({arrival, packet.tick, track.last_arrival});
     const RigidPose shown = pose(update.object, now);
+    const RigidMotion before = motion(track, now);
     const bool running = now < track.end;
     if (track.last_arrival >= 0) {
       track.gaps[track.gap_next] = saturate32(now - track.last_arrival);
@@ -80,23 +81,16 @@ void Replica::apply(const DecodedPacket& packet, std::span<const RigidState> obj
     track.begin = track.end = now;
     if (interpolation_ == Interpolation::none || running) continue;
     track.end = now + interval(track);
-    if (track.end > now) begin_interpolation(track, shown);
+    track.error = offset_between(predictor_.pose(track.state, now), shown);
+    if (interpolation_ != Interpolation::linear)
+      track.change = change_between(scene_, before, motion(track, now), track.end - now);
   }
 }
 
-/// Remember both ends and the turn between them, so that pose() needs one sine pair per call.
-void Replica::begin_interpolation(Track& track, const RigidPose& shown) const noexcept {
-  track.from = shown;
-  track.to = predictor_.pose(track.state, track.end);
-  Quat30 turn = multiply(track.to.rotation, conjugate(shown.rotation));
-  if (turn[0] < 0) turn = {-turn[0], -turn[1], -turn[2], -turn[3]};
-  std::int64_t square = 0;
-  for (std::size_t i = 1; i < 4; ++i) square += static_cast<std::int64_t>(turn[i]) * turn[i];
-  const std::int64_t sine = isqrt(static_cast<std::uint64_t>(square));
-  track.half_angle = sine == 0 ? 0 : asin30(static_cast<std::int32_t>(std::min<std::int64_t>(sine, kOne30)));
-  for (std::size_t i = 0; i < 3; ++i) {
-    track.axis[i] = sine == 0 ? 0 : static_cast<std::int32_t>(round_div(static_cast<std::int64_t>(turn[i + 1]) << 30, sine));
-  }
+/// Velocities of dead reckoning at `now`: none once it has come to rest.
+RigidMotion Replica::motion(const Track& track, std::int64_t now) const noexcept {
+  if (now - track.state.tick >= scene_.max_extrapolation) return {};
+  return {track.state.velocity, track.state.angular_velocity};
 }
 
 /// spec 60-client 7
@@ -113,15 +107,10 @@ RigidPose Replica::pose(std::uint32_t object, std::int64_t now) const noexcept {
   const Track& track = tracks_[object];
   now = std::max(now, track.begin);
   if (now >= track.end) return predictor_.pose(track.state, now);
-  const std::int64_t part = now - track.begin, whole = track.end - track.begin;
-  RigidPose out = track.from;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::int64_t way = static_cast<std::int64_t>(track.to.position[i]) - track.from.position[i];
-    out.position[i] = saturate32(track.from.position[i] + round_div(way * part, whole));
-  }
-  const auto half = static_cast<std::uint32_t>(round_div(track.half_angle * part, whole));
-  if (half != 0) out.rotation = renormalise(multiply(axis_turn(track.axis, half), track.from.rotation));
-  return out;
+  const std::int64_t left = round_div((track.end - now) << 30, track.end - track.begin);
+  const Cubic curve = cubic(left);
+  const std::int64_t faded = interpolation_ == Interpolation::hermite ? curve.error : left;
+  return displaced(predictor_.pose(track.state, now), track.error, track.change, {faded, faded, curve.change});
 }
 
 std::span<const Vec3i> Replica::displacements(std::size_t object, std::int64_t now) noexcept {

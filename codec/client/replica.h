@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include <tactus/client/curve.h>
 #include <tactus/client/timeline.h>
 #include <tactus/packet/packet.h>
 #include <tactus/rigid/rigid_predictor.h>
@@ -16,9 +17,11 @@
 namespace tactus {
 
 enum class Interpolation : std::uint8_t {
-  none,     ///< a new state is applied at once (NI)
-  linear,   ///< straight line and SLERP towards the predicted state, over t_N (WI); thesis eqs. 3.4-3.6
-  playout,  ///< the client shows ticks in the past, by a playout delay of its choice, and bends over gaps that losses leave
+  none,      ///< a new state is applied at once (NI)
+  linear,    ///< over t_N, the difference to the new state fades at constant rate (WI): a straight line; thesis eqs. 3.4-3.6
+  hermite,   ///< the same on a cubic that keeps the velocity at both ends; thesis eq. 3.7
+  blending,  ///< the difference fades at constant rate, the old velocity in a cubic (projective velocity blending); thesis eq. 3.8
+  playout,   ///< the client shows ticks in the past, by a playout delay of its choice, and bends over gaps that losses leave
 };
 
 /// The heuristic for t_N: `share` of the mean of the last 5 inter-arrival times, clipped. An update during a running interpolation
@@ -51,7 +54,7 @@ class Replica {
 
   /// Pose of one object as shown at tick `now`. Before the object's newest update, the pose shown when that was applied. With
   /// Interpolation::playout `now` is the tick that is shown, not before any shown so far.
-  /// pre  object < scene.objects.size().   time O(1), about 50 ns (100 ns while interpolating, 0.5 us over a gap), no allocation.
+  /// pre  object < scene.objects.size().   time O(1), about 50 ns (150 ns while interpolating, 0.5 us over a gap), no allocation.
   RigidPose pose(std::uint32_t object, std::int64_t now) const noexcept;
 
   /// Displacements of a deformable object's vertices as shown at tick `now`, V x 3, x 2^-position_exp m. Valid until the next call.
@@ -63,13 +66,11 @@ class Replica {
  private:
   static constexpr std::size_t kArrivals = 5;  // M
   struct Track {
-    RigidState state;                    // target: the newest state
-    std::uint64_t number = 0;            // of its packet
-    RigidPose from;                      // shown when the interpolation began
-    RigidPose to;                        // predicted for its end
-    std::int64_t begin = 0, end = 0;     // [begin, end); empty: none is running
-    std::array<std::int32_t, 3> axis{};  // of the turn from `from` to `to`, x 2^-30
-    std::uint32_t half_angle = 0;        // half its angle, 2^32 to the full circle
+    RigidState state;                 // target: the newest state
+    std::uint64_t number = 0;         // of its packet
+    std::int64_t begin = 0, end = 0;  // [begin, end); empty: no interpolation is running
+    PoseOffset error;                 // from where the newest state is at `begin` to what was shown there
+    PoseOffset change;                // what the velocities of both states differ by until `end`; none with linear
     std::int64_t last_arrival = -1;
     std::array<std::int32_t, kArrivals> gaps{};
     std::uint8_t gap_count = 0, gap_next = 0;
@@ -78,7 +79,7 @@ class Replica {
   void reset_timelines() noexcept;
   RigidPose past_pose(std::uint32_t object, std::int64_t tick) const noexcept;
   std::int64_t interval(const Track& track) const noexcept;
-  void begin_interpolation(Track& track, const RigidPose& shown) const noexcept;
+  RigidMotion motion(const Track& track, std::int64_t now) const noexcept;
 
   const Scene& scene_;
   RigidPredictor predictor_;

@@ -93,8 +93,8 @@ bool is_valid(const Contact& c, const Scene& scene) noexcept {
 
 bool are_valid(const RigidTriggers& t) noexcept {
   return std::isfinite(t.heartbeat) && t.heartbeat >= 0 && t.heartbeat <= 3600 && std::isfinite(t.weber_fraction) &&
-         t.weber_fraction > 0 && std::isfinite(t.force_floor) && t.force_floor > 0 && std::isfinite(t.cone_angle) &&
-         t.cone_angle > 0 && t.cone_angle <= std::numbers::pi;
+         t.weber_fraction > 0 && std::isfinite(t.perceptual_share) && t.perceptual_share > 0 && std::isfinite(t.force_floor) &&
+         t.force_floor > 0 && std::isfinite(t.cone_angle) && t.cone_angle > 0 && t.cone_angle <= std::numbers::pi;
 }
 
 }  // namespace
@@ -224,8 +224,8 @@ RigidState RigidEncoder::told(std::uint32_t object) const noexcept {
   const RigidState& truth = truth_[object];
   if (!leaning_) return truth;
   RigidTriggers widened = triggers_;
-  for (double* bound : {&widened.visual_position, &widened.visual_rotation, &widened.weber_fraction, &widened.fixed_position,
-                        &widened.fixed_rotation})
+  for (double* bound : {&widened.visual_position, &widened.visual_rotation, &widened.weber_fraction, &widened.perceptual_share,
+                        &widened.fixed_position, &widened.fixed_rotation})
     *bound *= widening_;
   return to_grid(leaning_->lean(object, samples_, contacts_, widened), truth.tick, scene_.grid).value_or(truth);
 }

@@ -13,8 +13,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const SharedScene scene = Scene::create(std::move(spec)).value();
   const RigidPredictor predictor(*scene);
   ReplicaOptions options;
-  constexpr Interpolation kWays[] = {Interpolation::none, Interpolation::linear, Interpolation::playout};
-  if (size > 0) options.interpolation = kWays[data[0] % 3];
+  constexpr Interpolation kWays[] = {Interpolation::none, Interpolation::linear, Interpolation::playout, Interpolation::hermite,
+                                     Interpolation::blending};
+  if (size > 0) options.interpolation = kWays[data[0] % 5];
   Replica replica(*scene, options, {});
   constexpr std::size_t kStep = 40;
   std::int64_t now = 0;
