@@ -323,10 +323,10 @@ sim::Scene with_faster_hand(sim::Scene scene, const ReproduceOptions& options) {
 
 std::string about_faster_hand(const ReproduceOptions& options) {
   return fmt::format(
-      "The faster hand takes {:g} of the time for each movement and has a tremor of {:g} mm: by default a fit of these two "
-      "numbers to "
-      "three rates of\nfigure 3.14, which is no evidence of how the thesis's people moved.",
-      options.pace, 1e3 * options.tremor);
+      "The faster hand takes {:g} of the time for each movement and has a tremor of {:g} mm. The usual {:g} and {:g} mm are a "
+      "fit to three\n"
+      "rates of figure 3.14, no evidence of how the thesis's people moved.",
+      options.pace, 1e3 * options.tremor, ReproduceOptions{}.pace, 1e3 * ReproduceOptions{}.tremor);
 }
 
 void setup_reproduce(Command& app, Action& action) {

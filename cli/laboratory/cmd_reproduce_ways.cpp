@@ -140,7 +140,7 @@ void print(const std::vector<Case>& cases, const ReproduceOptions& options) {
       options.seeds);
   Table table;
   table.heading({"scene", "p", "packets/s", "way", "out of the rule", "worst", "force step p50", "p99", "max",
-                 "acceleration p50 [m/s2]", "p99"});
+                 "acceleration p90 [m/s2]", "p99"});
   for (const Case& c : cases) {
     double rate = 0;
     for (const double r : c.rates) rate += r / static_cast<double>(c.rates.size());
@@ -150,7 +150,7 @@ void print(const std::vector<Case>& cases, const ReproduceOptions& options) {
                  i == 0 ? fmt::format("{:.1f}", rate) : "", kNames[i],
                  percent(static_cast<double>(e.over) / static_cast<double>(std::max<std::uint64_t>(e.ticks, 1))),
                  fmt::format("{:.2f}", e.worst), percent(e.quantile(e.steps, 0.5)), percent(e.quantile(e.steps, 0.99)),
-                 percent(e.quantile(e.steps, 1)), fmt::format("{:.3f}", e.quantile(e.accelerations, 0.5)),
+                 percent(e.quantile(e.steps, 1)), fmt::format("{:.2f}", e.quantile(e.accelerations, 0.9)),
                  fmt::format("{:.2f}", e.quantile(e.accelerations, 0.99))});
     }
   }
@@ -160,7 +160,7 @@ void print(const std::vector<Case>& cases, const ReproduceOptions& options) {
       "permits\n"
       "worst            largest error as a multiple of what is permitted\n"
       "force step       change of the normal force's error in the tick of an update, over the force (above the floor)\n"
-      "acceleration     of the shown object in contact, between updates\n");
+      "acceleration     of the shown object in contact, between updates; a step of the grid in 1 ms is 0.24 m/s2\n");
 }
 
 void print_json(const std::vector<Case>& cases, const ReproduceOptions& options) {
@@ -174,7 +174,7 @@ void print_json(const std::vector<Case>& cases, const ReproduceOptions& options)
                                {"ticks_over", e.over},
                                {"worst_ratio", e.worst},
                                {"force_step", {e.quantile(e.steps, 0.5), e.quantile(e.steps, 0.99), e.quantile(e.steps, 1)}},
-                               {"acceleration_m_per_s2", {e.quantile(e.accelerations, 0.5), e.quantile(e.accelerations, 0.99)}}});
+                               {"acceleration_m_per_s2", {e.quantile(e.accelerations, 0.9), e.quantile(e.accelerations, 0.99)}}});
     }
     out["rows"].push_back(std::move(entry));
   }

@@ -115,8 +115,8 @@ void TriggerArguments::add_to(Command& app) {
           "Largest error of the normal force's direction with --haptic cone [arcsin of -p, what isotropic allows: 4.59deg at 8%]")
           ->check(within(Dimension::angle, "0.001deg", "180deg"));
   share_ = add_quantity(app, "--jnd-share", triggers_.perceptual_share, Dimension::fraction,
-                        "Part of what people notice that --haptic perceptual permits, 1% to 1000% [100%]")
-               ->check(within(Dimension::fraction, "1%", "1000%"));
+                        "Part of what people notice that --haptic perceptual permits, 1% or more [100%]")
+               ->check(within(Dimension::fraction, "1%", "100%"));
   floor_ = add_quantity(app, "--force-floor", triggers_.force_floor, Dimension::force,
                         "Forces below this use the deadband at this force [0.05N]")
                ->check(above_zero(Dimension::force));

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-set xrange [0.78:1.2]
+set xrange [0.8:1.2]
 set yrange [*:*]
 set xlabel 'time  [s]'
 set ylabel 'normal force  [N]'
-set key bottom left reverse Left samplen 2
+set key top right reverse Left samplen 2
 plot $forces using 1:2 with lines linetype 1 dashtype 2 linewidth 1.3 title 'at the server', \
      $forces using 1:3 with lines linetype 2 linewidth 1.3 title 'applied at once', \
      $forces using 1:4 with lines linetype 3 linewidth 1.3 title 'linear', \
