@@ -170,6 +170,15 @@ Row summarise(const Setting& setting, std::span<const Measured> runs) {
   return row;
 }
 
+/// [packets/s]
+std::optional<double> rate_of_thesis(const Setting& setting) {
+  std::string_view text = setting.thesis_rate;  // "42.6", "~25", "-"
+  if (text.starts_with('~')) text.remove_prefix(1);
+  double rate = 0;
+  const bool is_known = std::from_chars(text.data(), text.data() + text.size(), rate).ec == std::errc();
+  return is_known ? std::optional(rate) : std::nullopt;
+}
+
 /// Does a larger deadband cost fewer packets, with and without interpolation?
 bool is_ordered(std::span<const Row> rows, std::size_t first) {
   return rows[first].mean > rows[first + 1].mean && rows[first + 1].mean > rows[first + 2].mean &&
@@ -254,16 +263,31 @@ void print_json(const Hands& hands, const ReproduceOptions& options, const sim::
            {"faster_hand", {{"pace", options.pace}, {"tremor_m", options.tremor}}}};
   for (std::size_t i = 0; i < rows.size(); ++i) {
     Json entry{{"setting", rows[i].setting->name}, {"scene_hand", json_of(rows[i])}, {"faster_hand", json_of(hands[1][i])}};
-    const std::string_view thesis = rows[i].setting->thesis_rate;  // "42.6", "~25", "-"
-    const std::size_t digits = thesis.starts_with('~') ? 1 : 0;
-    double rate = 0;
-    if (std::from_chars(thesis.data() + digits, thesis.data() + thesis.size(), rate).ec == std::errc())
-      entry["thesis"] = {{"packets_per_s", rate}, {"is_approximate", digits > 0}};
+    if (const auto rate = rate_of_thesis(*rows[i].setting))
+      entry["thesis"] = {{"packets_per_s", *rate}, {"is_approximate", rows[i].setting->thesis_rate[0] == '~'}};
     out["settings"].push_back(std::move(entry));
   }
   out["ordered_without_interpolation"] = is_ordered(rows, kFirstWithout);
   out["ordered_with_interpolation"] = is_ordered(rows, kFirstWith);
   fmt::print("{}\n", text_of_json(out));
+}
+
+/// All settings but the reference, whose 1000 packets/s would flatten the rest.
+Plot figure_of(const Hands& hands) {
+  Plot plot{.name = "fig3.14", .program = "settings-figure-3.14", .width = 900, .height = 420};
+  PlotData rates{"hands", {}}, thesis{"thesis", {}};
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < hands[0].size(); ++i) {
+    const Row &scene = hands[0][i], &faster = hands[1][i];
+    if (scene.setting->reduction == Reduction::none) continue;
+    names.emplace_back(scene.setting->name);
+    const auto place = static_cast<double>(names.size());
+    rates.rows.push_back({place, scene.mean, scene.deviation, faster.mean, faster.deviation});
+    if (const auto rate = rate_of_thesis(*scene.setting)) thesis.rows.push_back({place, *rate});
+  }
+  plot.set("names", names);
+  plot.data = {std::move(rates), std::move(thesis)};
+  return plot;
 }
 
 Outcome reproduce_settings(const ReproduceOptions& options) {
@@ -293,14 +317,13 @@ Outcome reproduce_settings(const ReproduceOptions& options) {
       hands[i / of_a_hand].push_back(summarise(setting_of(i), std::span(*results).subspan(i, options.seeds)));
   }
   options.common.json ? print_json(hands, options, *scene) : print_text(hands, options, *scene);
-  return {};
+  return write_figure(options, figure_of(hands), {});
 }
 
 Outcome run(const ReproduceOptions& options) {
   if (options.figure == "all") return reproduce_all(options);
   const bool has_delay = options.figure.starts_with("fig4.");
-  const bool draws = has_delay || options.figure == "fig3.3" || options.figure == "fig3.8" || options.figure == "fig3.11";
-  if (!draws && !options.directory.empty())
+  if (!is_drawn(options.figure) && !options.directory.empty())
     return refuse_arguments("--output: " + options.figure + " is a table, and not drawn", "Leave out --output.");
   if (is_limit_figure(options.figure)) return reproduce_limits(options);
   if (is_touch_figure(options.figure)) return reproduce_touch(options);
@@ -314,6 +337,8 @@ Outcome run(const ReproduceOptions& options) {
 }
 
 }  // namespace
+
+bool is_drawn(std::string_view figure) { return figure != "fig3.6" && figure != "fig3.10"; }
 
 sim::Scene with_faster_hand(sim::Scene scene, const ReproduceOptions& options) {
   sim::set_pace(scene, options.pace);
@@ -354,7 +379,7 @@ void setup_reproduce(Command& app, Action& action) {
   add_grip(command, options->grip, options->grip);
   add_pace(command, options->pace, "0.5; of the faster hand of fig3.10 and fig3.14");
   add_tremor(command, options->tremor, "0.4mm; of the same");
-  command.add_option("-o,--output", options->directory, "Folder for figure and table (fig3.3, fig3.8, fig3.11, fig4, all)")
+  command.add_option("-o,--output", options->directory, "Folder for figure and table; fig3.6 and fig3.10 are tables only")
       ->type_name("DIR");
   add_output_options(command, options->common);
   command.footer(

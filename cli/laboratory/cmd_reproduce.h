@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -31,6 +32,9 @@ struct ReproduceOptions {
 sim::Scene with_faster_hand(sim::Scene scene, const ReproduceOptions& options);
 /// What is told of that hand beside its numbers.
 std::string about_faster_hand(const ReproduceOptions& options);
+
+/// Drawn by `tactus reproduce FIGURE -o`; the others are tables.
+bool is_drawn(std::string_view figure);
 
 /// Write a figure, and tables by their names, to the folder of the options; nothing if there is none.
 Outcome write_figure(const ReproduceOptions& options, const Plot& plot,

@@ -26,7 +26,7 @@ struct Chapter {
 constexpr std::array kChapters{
     Chapter{"fig3.3", "why updates are sent while a cube is pushed", ""},
     Chapter{"fig3.6", "object states or forces", ""},
-    Chapter{"fig3.8", "ways of interpolation", "The figure shows preferences, which need people."},
+    Chapter{"fig3.8", "ways of interpolation", "The figure shows preferences, which need people: they liked linear best."},
     Chapter{"fig3.10", "updates at the deadbands that the subjects chose",
             "The deadbands are those of the thesis's subjects; the rates are ours."},
     Chapter{"fig3.11", "the force with and without interpolation", ""},
@@ -64,11 +64,6 @@ bool can_make([[maybe_unused]] std::string_view figure) {
 #else
   return figure != "fig4.2" && figure != "fig4.23" && figure != "fig4.27";
 #endif
-}
-
-/// Drawn by `tactus reproduce FIGURE -o`; the others are tables.
-bool is_drawn(std::string_view figure) {
-  return figure.starts_with("fig4.") || figure == "fig3.3" || figure == "fig3.8" || figure == "fig3.11";
 }
 
 /// Options that are not as usual, as they are typed.

@@ -25,7 +25,7 @@ enum class HapticRule : std::uint8_t {
   perceptual = 4,  ///< isotropic with the fraction that people notice at this force      thesis 2.1.3, table 2.1
 };
 
-/// When a rigid object must be sent. Defaults are the thesis's (3.2.4.1) with p = 8 %.
+/// When a rigid object must be sent; f is the normal force. Defaults are the thesis's (3.2.4.1) with p = 8 %.
 struct RigidTriggers {
   Reduction reduction = Reduction::dead_reckoning;          ///< not a bound, never transmitted
   double heartbeat = 1.0;                                   ///< [s] 0 switches it off

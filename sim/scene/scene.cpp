@@ -285,7 +285,7 @@ tl::expected<std::string, Diagnostic> find_scene(const std::string& name) {
 }
 
 void set_pace(Scene& scene, double pace) noexcept {
-  for (SceneUser& user : scene.users) user.pace = pace;
+  for (SceneUser& user : scene.users) user.pace *= pace;
   scene.duration *= pace;
 }
 

@@ -164,7 +164,7 @@ tl::expected<Scene, Diagnostic> load_scene(const std::string& path);
 /// Path of a scene: `name` itself if it is a file, else <name>.toml among the scenes that come with Tactus.   err  R-SCN-1
 tl::expected<std::string, Diagnostic> find_scene(const std::string& name);
 
-/// All hands move in `pace` times the time, and the scene lasts as much longer or shorter.   pre  pace > 0
+/// All hands take `pace` times their time, and the scene lasts as much longer or shorter.   pre  pace > 0
 void set_pace(Scene& scene, double pace) noexcept;
 /// [m] RMS per axis, of all hands.
 void set_tremor(Scene& scene, double rms) noexcept;
