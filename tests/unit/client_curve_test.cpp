@@ -106,15 +106,17 @@ TEST(ClientCurve, BlendingIsEquation38) {
 double angle_of(const Pose& pose) { return 2 * std::atan2(pose.rotation.z, pose.rotation.w); }
 
 TEST(ClientCurve, OfOneAxisRotationsFollowTheSameEquations) {
+  constexpr double kRounding =
+      4.0 / 27 * 0x1p-13 + 1e-6;  // what the rates turn is a multiple of 2^-12 rad, of which cubics take 4/27 at most
   const double a0 = 0, a1 = 0.4, w0 = 3 * kTick * kTicks, w1 = -2 * kTick * kTicks;
   const double start = a0 + 3 * 40 * kTick;  // turned by dead reckoning from the second update to the third
   for (std::int64_t tick = 0; tick < kTicks; ++tick) {
     const double i = static_cast<double>(tick) / static_cast<double>(kTicks), i2 = i * i, i3 = i2 * i;
     const double of_rates = (i3 - 2 * i2 + i) * w0 + (2 * i2 - i3) * w1;
-    EXPECT_NEAR(angle_of(Client(Interpolation::linear).shown(kStart + tick)), (1 - i) * start + i * a1 + i * w1, 1e-5);
+    EXPECT_NEAR(angle_of(Client(Interpolation::linear).shown(kStart + tick)), (1 - i) * start + i * a1 + i * w1, kRounding);
     EXPECT_NEAR(angle_of(Client(Interpolation::hermite).shown(kStart + tick)),
-                (2 * i3 - 3 * i2 + 1) * start + (3 * i2 - 2 * i3) * a1 + of_rates, 1e-5);
-    EXPECT_NEAR(angle_of(Client(Interpolation::blending).shown(kStart + tick)), (1 - i) * start + i * a1 + of_rates, 1e-5);
+                (2 * i3 - 3 * i2 + 1) * start + (3 * i2 - 2 * i3) * a1 + of_rates, kRounding);
+    EXPECT_NEAR(angle_of(Client(Interpolation::blending).shown(kStart + tick)), (1 - i) * start + i * a1 + of_rates, kRounding);
   }
 }
 
