@@ -54,7 +54,7 @@ class Replica {
 
   /// Pose of one object as shown at tick `now`. Before the object's newest update, the pose shown when that was applied. With
   /// Interpolation::playout `now` is the tick that is shown, not before any shown so far.
-  /// pre  object < scene.objects.size().   time O(1), about 50 ns (150 ns while interpolating, 0.5 us over a gap), no allocation.
+  /// pre  object < scene.objects.size().   time O(1), about 50 ns (100 ns while interpolating, 0.5 us over a gap), no allocation.
   RigidPose pose(std::uint32_t object, std::int64_t now) const noexcept;
 
   /// Displacements of a deformable object's vertices as shown at tick `now`, V x 3, x 2^-position_exp m. Valid until the next call.
