@@ -121,6 +121,14 @@ Option* Command::add_flag(const std::string& names, const std::function<void()>&
   return keep(app_->add_flag_callback(names, react, help));
 }
 
+Option* Command::add_flag(const std::string& name, const std::string& otherwise,
+                          const std::function<void(const std::string&)>& read, const Check& check, const std::string& help) {
+  CLI::Option* const flag = app_->add_flag(name + "{" + otherwise + "}", help);
+  Option* const kept = keep(flag)->check(check);
+  flag->each(read);
+  return kept;
+}
+
 void Command::footer(const std::string& text) { app_->footer(text); }
 void Command::on_parsed(const std::function<void()>& look) { app_->parse_complete_callback(look); }
 void Command::on_chosen(const std::function<void()>& react) { app_->callback(react); }

@@ -76,6 +76,9 @@ class Command {
   Option* add_option(const std::string& names, const std::function<void(const std::string&)>& read, const std::string& help);
   Option* add_flag(const std::string& names, bool& value, const std::string& help);
   Option* add_flag(const std::string& names, const std::function<void()>& react, const std::string& help);
+  /// A flag that may end in =VALUE; `read` is handed the value, `otherwise` where none was typed.
+  Option* add_flag(const std::string& name, const std::string& otherwise, const std::function<void(const std::string&)>& read,
+                   const Check& check, const std::string& help);
   void footer(const std::string& text);
   void on_parsed(const std::function<void()>& look);   ///< called when all of its options are read
   void on_chosen(const std::function<void()>& react);  ///< called when it was typed, after on_parsed

@@ -37,7 +37,7 @@ struct Truth {
 /// Decides at every tick which states must be sent, and codes them.
 ///
 /// Bounds. After every tick, a receiver that got all packets and does not interpolate satisfies, for every
-/// object, contact and vertex given,
+/// object, contact of normal force f and vertex given,
 ///   |x^ - x| <= visual_position,  angle(q^, q) <= visual_rotation,  haptic_ratio(f, f^) <= 1,
 ///   |u^ - u| <= v, and <= h inside the area of interest,
 ///   |f^ - f| <= p max(|f|, floor) for every vector of a load.

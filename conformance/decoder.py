@@ -3,7 +3,7 @@
 
 Written from spec/ alone and meant to be read beside it: functions carry the names of the specification, and each
 file names its chapter. As a program it is a testee (README.md):
-python3 decoder.py [--replica none|linear|playout] < stream.tct
+python3 decoder.py [--replica none|linear|hermite|blending|playout] < stream.tct
 """
 from __future__ import annotations
 
@@ -138,7 +138,7 @@ def session_lines() -> Iterator[dict]:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description="Decode a Tactus stream file from standard input to JSON lines.")
-    parser.add_argument("--replica", choices=("none", "linear", "playout"), help="also show what a client shows")
+    parser.add_argument("--replica", choices=("none", "linear", "hermite", "blending", "playout"), help="also show what a client shows")
     parser.add_argument("--session", action="store_true", help="read a script for the client's end of a session instead")
     arguments = parser.parse_args()
     try:

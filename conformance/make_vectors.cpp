@@ -35,6 +35,7 @@ Catalogue all() {
   add_client(catalogue);
   add_client_playout(catalogue);
   add_client_eased(catalogue);
+  add_client_curves(catalogue);
   catalogue.begin("session", "What the client's end of a session does with datagrams.");
   add_session(catalogue);
   add_session_server(catalogue);

@@ -12,7 +12,7 @@ from typing import Callable, Iterator, NamedTuple, Optional
 # Modules, and the stems whose vectors are run first against their mutants.
 MODULES = {
     "conventions": ("rigid", "scene"), "scene": ("scene",), "file": ("file",), "packet": ("packet",), "range_coder": ("range",),
-    "rigid": ("rigid",), "load": ("load",), "replica": ("client",), "playout": ("client",), "easing": ("client",),
+    "rigid": ("rigid",), "load": ("load",), "replica": ("client",), "curve": ("client",), "playout": ("client",), "easing": ("client",),
     "start_models": ("rigid", "deformable"),
     "decoder": ("packet", "client"),
     "deformable_header": ("deformable",), "deformable_graph": ("deformable",), "deformable_main": ("deformable",),

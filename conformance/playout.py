@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import struct
-from math import isqrt
 from typing import NamedTuple
 
-from conventions import (FNV_START, ONE, asin30, axis_angle, conj, fnv1a, mul, renorm, round_div, round_shift, sat32)
-from easing import Offset, add, offset
-from rigid import HALF_RADIAN, Packet, predict
+from conventions import FNV_START, fnv1a, round_div
+from curve import NO_OFFSET, Offset, cubic, difference, displaced, offset
+from easing import eased, kept
+from rigid import Packet, predict
 from scene import Declaration, State
 
 MOST_UPDATES = 64
@@ -51,7 +51,7 @@ class Playout:
         s = max(s, a.tick)
         k = known.index(a)
         path = self.between(known, k, s)
-        return add(path, a.state, self.left(known, k), s) if self.scene.eased else path
+        return eased(path, a.state, self.left(known, k), s) if self.scene.eased else path
 
     def between(self, known: list[KnownUpdate], k: int, s: int) -> tuple[tuple, tuple]:
         """The way from update k to the next one."""
@@ -65,41 +65,21 @@ class Playout:
     def left(self, known: list[KnownUpdate], k: int) -> Offset:
         """What is left to go at update k."""
         if k == 0:
-            return Offset()
+            return NO_OFFSET
         a, z = known[k].state, known[k - 1].state
         path = self.between(known, k - 1, a.tick)
         counts = z.ease > 0 and a.tick < z.tick + (1 << z.ease)
-        return offset(add(path, z, self.left(known, k - 1), a.tick) if counts else path, a)
+        return kept(eased(path, z, self.left(known, k - 1), a.tick) if counts else path, a)
 
     def bend(self, a: State, b: State, s: int) -> tuple[tuple, tuple]:
         scene, whole = self.scene, b.tick - a.tick
         u = round_div((s - a.tick) << 30, whole)
-        u2 = round_shift(u * u, 30)
-        u3 = round_shift(u2 * u, 30)
-        cubic, rate = 3 * u2 - 2 * u3, u3 - u2
-        p, q = predict(scene, a, s)
-        end_p, end_q = predict(scene, a, b.tick)
-
-        k = cubic if any(a.velocity) or any(b.velocity) else u
-        position = []
-        for axis in range(3):
-            e = sat32(b.position[axis] - end_p[axis])
-            d = sat32(b.velocity[axis] - a.velocity[axis]) * whole << (scene.position_exp - scene.velocity_exp)
-            d = sat32(round_div(d, scene.tick_rate))
-            position.append(sat32(p[axis] + round_shift(k * e + rate * d, 30)))
-
-        k = cubic if any(a.angular_velocity) or any(b.angular_velocity) else u
-        e = half_vector(mul(b.rotation, conj(end_q)))
-        r = []
-        for axis in range(3):
-            d = round_div((b.angular_velocity[axis] - a.angular_velocity[axis]) * whole, scene.tick_rate)
-            d = sat32(round_shift(d * HALF_RADIAN, scene.angular_exp))
-            r.append(round_shift(k * e[axis] + rate * d, 30))
-        n = isqrt(sum(c * c for c in r))
-        if n == 0:
-            return tuple(position), q
-        axis_of_r = tuple(round_div(c << 30, n) for c in r)
-        return tuple(position), renorm(mul(axis_angle(axis_of_r, n), q))
+        c, rate = cubic(u)
+        i = c if any(a.velocity) or any(b.velocity) else u
+        j = c if any(a.angular_velocity) or any(b.angular_velocity) else u
+        error = offset(predict(scene, a, b.tick), (b.position, b.rotation))
+        change = difference(scene, (a.velocity, a.angular_velocity), (b.velocity, b.angular_velocity), whole)
+        return displaced(predict(scene, a, s), error, change, i, j, rate)
 
     def pose_hash(self, now: int) -> int:
         h = FNV_START
@@ -107,13 +87,3 @@ class Playout:
             position, rotation = self.pose(i, now)
             h = fnv1a(struct.pack("<7i", *position, *rotation), h)
         return h
-
-
-def half_vector(d: tuple) -> tuple[int, int, int]:
-    if d[0] < 0:
-        d = tuple(-c for c in d)
-    s = isqrt(sum(c * c for c in d[1:]))
-    if s == 0:
-        return 0, 0, 0
-    h = asin30(min(s, ONE))
-    return tuple(round_div(c * h, s) for c in d[1:])

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import struct
 from collections import deque
-from math import isqrt
 from typing import Optional
 
-from conventions import FNV_START, ONE, asin30, axis_angle, clamp, conj, fnv1a, mul, renorm, round_div, sat32
-from easing import Offset, add, offset
+from conventions import FNV_START, clamp, fnv1a, round_div
+from curve import AT_REST, NO_OFFSET, Offset, cubic, difference, displaced, offset
+from easing import eased, kept
 from rigid import Packet, predict
 from scene import Declaration, State
 
@@ -18,14 +18,12 @@ LONGEST_GAP = (1 << 31) - 1
 
 
 class ReplicaObject:
-    """From `begin` to `end` an object is shown between two poses, `start` and `target` (`from` and `to` of the chapter)."""
-    start: tuple
-    target: tuple
-    half: int
-    u: tuple
+    """From `begin` to `end` an object is shown beside where its state has it."""
+    error: Offset
+    change: Offset
 
     def __init__(self, state: State):
-        self.state, self.offset = state, Offset()           # `offset` is of an eased scene
+        self.state, self.left = state, NO_OFFSET            # `left` is of an eased scene
         self.number = 0                                     # of the packet of the newest update
         self.begin = self.end = 0
         self.arrival: Optional[int] = None
@@ -33,7 +31,7 @@ class ReplicaObject:
 
 
 class Replica:
-    """What a client shows that applies packets; mode is "none" or "linear"."""
+    """What a client shows that applies packets; mode is "none", "linear", "hermite" or "blending"."""
 
     def __init__(self, scene: Declaration, mode: str):
         self.scene, self.mode = scene, mode
@@ -53,40 +51,38 @@ class Replica:
 
     def apply_state(self, o: ReplicaObject, state: State, now: int) -> None:
         shown = self.pose(o, now)
-        running = now < o.end
+        before, running = self.motion(o.state, now), now < o.end
         if o.arrival is not None:
             o.gaps.append(min(now - o.arrival, LONGEST_GAP))
         if state.ease > 0:
-            o.offset = offset(self.eased(o, max(state.tick, o.state.tick)), state)
+            o.left = kept(self.eased(o, max(state.tick, o.state.tick)), state)
         o.arrival, o.state = now, state
         o.begin = o.end = now
         if self.mode == "none" or running or not o.gaps:
             return
         o.end = now + clamp(round_div(sum(o.gaps) * SHARE, len(o.gaps) << 16), self.shortest, self.longest)
-        if o.end == now:
-            return
-        o.start, o.target = shown, predict(self.scene, state, o.end)
-        d = mul(o.target[1], conj(o.start[1]))
-        if d[0] < 0:
-            d = tuple(-c for c in d)
-        s = isqrt(sum(c * c for c in d[1:]))
-        if s == 0:
-            o.half, o.u = 0, (0, 0, 0)
+        o.error = offset(predict(self.scene, state, now), shown)
+        if self.mode == "linear":
+            o.change = NO_OFFSET
         else:
-            o.half, o.u = asin30(min(s, ONE)), tuple(round_div(c << 30, s) for c in d[1:])
+            o.change = difference(self.scene, before, self.motion(state, now), o.end - now)
+
+    def motion(self, state: State, now: int) -> tuple[tuple, tuple]:
+        if now - state.tick >= self.scene.max_extrapolation:
+            return AT_REST
+        return state.velocity, state.angular_velocity
 
     def eased(self, o: ReplicaObject, t: int) -> tuple[tuple, tuple]:
-        return add(predict(self.scene, o.state, t), o.state, o.offset, t)
+        return eased(predict(self.scene, o.state, t), o.state, o.left, t)
 
     def pose(self, o: ReplicaObject, now: int) -> tuple[tuple, tuple]:
         now = max(now, o.begin)
         if now >= o.end:
             return self.eased(o, now)
-        part, whole = now - o.begin, o.end - o.begin
-        position = tuple(sat32(a + round_div((b - a) * part, whole)) for a, b in zip(o.start[0], o.target[0]))
-        h = round_div(o.half * part, whole)
-        rotation = o.start[1] if h == 0 else renorm(mul(axis_angle(o.u, h), o.start[1]))
-        return position, rotation
+        u = round_div((o.end - now) << 30, o.end - o.begin)
+        c, b = cubic(u)
+        k = c if self.mode == "hermite" else u
+        return displaced(predict(self.scene, o.state, now), o.error, o.change, k, k, b)
 
     def pose_hash(self, now: int) -> int:
         h = FNV_START

@@ -77,6 +77,7 @@ void write_bounds(const StreamBounds& bounds, std::ostream& out) {
         << int{static_cast<std::uint8_t>(t.haptic)};
     const bool weber = t.haptic == HapticRule::isotropic || t.haptic == HapticRule::cone;
     if (weber) out << ',' << bits(t.weber_fraction) << ',' << bits(t.force_floor);
+    if (t.haptic == HapticRule::perceptual) out << ',' << bits(t.perceptual_share) << ',' << bits(t.force_floor);
     if (t.haptic == HapticRule::cone) out << ',' << bits(t.cone_angle);
     if (t.haptic == HapticRule::fixed) out << ',' << bits(t.fixed_position) << ',' << bits(t.fixed_rotation);
     out << "],";

@@ -165,19 +165,19 @@ def read_bounds(data: Cursor, scene: Declaration) -> Bounds:
         require(bits < 0x7FF0000000000000, "invalid", "R-STR-17")
         return f"{bits:016x}"
 
-    def choice() -> int:
+    def choice(most: int) -> int:
         value = data.number(1, ("truncated", "R-STR-17"))
-        require(value <= 3, "invalid", "R-STR-17")
+        require(value <= most, "invalid", "R-STR-17")
         return value
 
     rigid = None
     if scene.moving():
         rigid = f64s(3)
-        haptic = choice()
-        rigid += [haptic, *f64s({0: 0, 1: 2, 2: 3, 3: 2}[haptic])]
+        haptic = choice(4)
+        rigid += [haptic, *f64s({0: 0, 1: 2, 2: 3, 3: 2, 4: 2}[haptic])]
     deformables = []
     for _ in scene.deformables:
-        promise = choice()
+        promise = choice(3)
         deformables.append([promise, *f64s(3 if promise & 2 else 1)])
     return Bounds(rigid, deformables, f64s(2) if scene.loads else None)
 

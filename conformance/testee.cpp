@@ -17,10 +17,14 @@ int main(int argc, char** argv) {
   const std::string_view kind = argc == 3 && std::string_view(argv[1]) == "--replica" ? argv[2] : "";
   if (kind == "none") replica = tactus::Interpolation::none;
   if (kind == "linear") replica = tactus::Interpolation::linear;
+  if (kind == "hermite") replica = tactus::Interpolation::hermite;
+  if (kind == "blending") replica = tactus::Interpolation::blending;
   if (kind == "playout") replica = tactus::Interpolation::playout;
   const bool session = argc == 2 && std::string_view(argv[1]) == "--session";
   if (argc != 1 && !replica && !session) {
-    std::fputs("usage: testee [--replica none|linear|playout] <stream.tct\n       testee --session <datagrams.script\n", stderr);
+    std::fputs(
+        "usage: testee [--replica none|linear|hermite|blending|playout] <stream.tct\n       testee --session <datagrams.script\n",
+        stderr);
     return 2;
   }
   std::ios::sync_with_stdio(false);

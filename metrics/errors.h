@@ -33,7 +33,7 @@ class ErrorSeries {
 };
 
 /// Compares a replica with the truth. Objects that cannot move and forces without contact are left out.
-/// The force error is that of the contact itself: the force at the shown pose against the force at the true pose (contact_force).
+/// The force error is that of the contact itself: the normal force at the shown pose against that at the true pose (contact_force).
 class ErrorMetrics {
  public:
   ErrorMetrics(const TraceInfo& info, const RigidTriggers& bounds);

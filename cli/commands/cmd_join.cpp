@@ -455,7 +455,7 @@ void setup_join(Command& app, Action& action) {
                "Largest error of the device's position that the server is told [0.1mm]")
       ->check(within(Dimension::length, "10um", "1m"));
   add_quantity(command, "--device-deadband", options->weber_fraction, Dimension::fraction,
-               "In contact, largest error of the force that this error causes [4%]")
+               "In contact, largest error of the normal force that this error causes [4%]")
       ->check(within(Dimension::fraction, "0.1%", "100%"));
   add_output_options(command, options->common);
   command.footer(

@@ -19,7 +19,7 @@
 #include "cli/commands/stop.h"
 #include "cli/laboratory/stiffness_map.h"
 #include "cli/options/compensation_option.h"
-#include "cli/options/grip_option.h"
+#include "cli/options/hand_option.h"
 #include "cli/options/option_needs.h"
 #include "cli/options/options_link.h"
 #include "cli/options/options_session.h"
@@ -33,9 +33,9 @@ namespace {
 
 struct SimOptions {
   std::string scene, output, stream, replay;
-  std::string pcap;            // capture to write
-  std::string stiffness_map;   // CSV to write
-  std::string grip;            // empty: the scene's
+  std::string pcap;           // capture to write
+  std::string stiffness_map;  // CSV to write
+  HandArguments hands;
   std::string method, solver;  // of deformable objects, empty: the scene's
   std::uint32_t rate = 0;      // ticks between deformations, 0: the scene's
   std::uint64_t seed = 1;
@@ -243,6 +243,7 @@ tl::expected<sim::Scene, Failure> read_scene(const SimOptions& options) {
   }
   for (sim::SceneMsd& object : scene->msds)
     if (options.rate > 0) object.rate = options.rate;
+  options.hands.apply(*scene);
   compensate(*scene, options.compensation);
   return *scene;
 }
@@ -370,7 +371,7 @@ Outcome run(const SimOptions& options) {
   TACTUS_TRY(const auto scene, read_scene(options));
   note_idle_options(*options.common.command, subjects_of(scene), "scene");
   sim::SimulationOptions settings{.seed = options.seed,
-                                  .grip = options.grip.empty() ? std::nullopt : std::optional(grip_of(options.grip)),
+                                  .grip = options.hands.grip(),
                                   .channel = {},
                                   .mesh_noise = options.mesh_noise,
                                   .estimate_every = kEstimateEvery};
@@ -446,7 +447,7 @@ void setup_sim(Command& app, Action& action) {
   add_quantity(command, "--duration", options->duration, Dimension::time, "Length [the scene's]");
   add_quantity(command, "--deformable-noise", options->mesh_noise, Dimension::length,
                "White noise added to recorded and sent shapes, RMS per axis [0]");
-  add_grip(command, options->grip, "the scene's");
+  options->hands.add_to(command);
   command.add_option("--replay", options->replay, "Replay the device samples of this trace instead of virtual hands")
       ->type_name("TRACE");
   command

@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include <tactus/sim/link/link.h>
+#include <tactus/sim/scene/scene.h>
 #include "cli/command.h"
 #include "cli/laboratory/plot.h"
 #include "cli/options/options_codec.h"
@@ -20,9 +22,19 @@ struct ReproduceOptions {
   std::uint32_t seeds = 5;
   double length_unit = 0.05;  ///< [m]
   std::string grip = "normal";
-  std::string directory;  ///< of figures and tables; empty: none are written
+  double pace = 0.5,
+         tremor = 0.4e-3;  ///< of the faster hand, [m]; both were chosen because they bring our rates near the thesis's
+  std::string directory;   ///< of figures and tables; empty: none are written
   CommonOptions common;
 };
+
+/// The scene with the faster hand.
+sim::Scene with_faster_hand(sim::Scene scene, const ReproduceOptions& options);
+/// What is told of that hand beside its numbers.
+std::string about_faster_hand(const ReproduceOptions& options);
+
+/// Drawn by `tactus reproduce FIGURE -o`; the others are tables.
+bool is_drawn(std::string_view figure);
 
 /// Write a figure, and tables by their names, to the folder of the options; nothing if there is none.
 Outcome write_figure(const ReproduceOptions& options, const Plot& plot,
@@ -32,6 +44,8 @@ Outcome write_figure(const ReproduceOptions& options, const Plot& plot,
 Outcome reproduce_traffic(const ReproduceOptions& options);
 /// Figure 3.11: the rendered force with and without interpolation.
 Outcome reproduce_interpolation(const ReproduceOptions& options);
+/// Figure 3.8: what the ways of interpolation do to force and object.
+Outcome reproduce_ways(const ReproduceOptions& options);
 /// Figure 3.6: packets per second that a client gets when it is sent object states, and when it is sent forces.
 Outcome reproduce_architectures(const ReproduceOptions& options);
 /// Figure 3.10: updates per second in contact, at the deadbands that the subjects chose.

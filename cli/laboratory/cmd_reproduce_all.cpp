@@ -26,11 +26,13 @@ struct Chapter {
 constexpr std::array kChapters{
     Chapter{"fig3.3", "why updates are sent while a cube is pushed", ""},
     Chapter{"fig3.6", "object states or forces", ""},
+    Chapter{"fig3.8", "ways of interpolation", "The figure shows preferences, which need people: they liked linear best."},
     Chapter{"fig3.10", "updates at the deadbands that the subjects chose",
             "The deadbands are those of the thesis's subjects; the rates are ours."},
     Chapter{"fig3.11", "the force with and without interpolation", ""},
     Chapter{"fig3.14", "the traffic settings of table 3.3",
-            "The thesis's people are replaced by virtual hands, which are slower and steadier. The ratings need people."},
+            "The thesis's people are replaced by virtual hands: the scene's, which is slower and steadier, and a faster one. The "
+            "ratings need people."},
     Chapter{"fig4.1", "two users push a block: what delay does", ""},
     Chapter{"fig4.2", "a user presses a membrane: what delay does", ""},
     Chapter{"fig4.6", "a push at constant speed", ""},
@@ -64,15 +66,14 @@ bool can_make([[maybe_unused]] std::string_view figure) {
 #endif
 }
 
-/// Drawn by `tactus reproduce FIGURE -o`; the others are tables.
-bool is_drawn(std::string_view figure) { return figure.starts_with("fig4.") || figure == "fig3.3" || figure == "fig3.11"; }
-
 /// Options that are not as usual, as they are typed.
 std::vector<std::string> settings_of(const ReproduceOptions& options) {
   const ReproduceOptions usual;
   std::vector<std::string> out;
   if (options.seeds != usual.seeds) out.insert(out.end(), {"--seeds", std::to_string(options.seeds)});
   if (options.grip != usual.grip) out.insert(out.end(), {"--grip", options.grip});
+  if (options.pace != usual.pace) out.insert(out.end(), {"--pace", fmt::format("{}", options.pace)});
+  if (options.tremor != usual.tremor) out.insert(out.end(), {"--tremor", fmt::format("{}m", options.tremor)});
   if (options.length_unit != usual.length_unit) out.insert(out.end(), {"--length-unit", fmt::format("{}m", options.length_unit)});
   return out;
 }

@@ -17,18 +17,22 @@ namespace {
 struct Agreement {
   const char *option, *other;
   const char* otherwise;  ///< value of `other` when it was not typed
-  std::array<std::string_view, 3> values;
+  std::array<std::string_view, 4> values;
 };
 
 constexpr std::array kAgreements{
-    Agreement{"--deadband", "--haptic", "isotropic", {"isotropic", "cone", "fixed"}},  // fixed: it is that of meshes
+    Agreement{"--deadband",
+              "--haptic",
+              "isotropic",
+              {"isotropic", "cone", "fixed", "perceptual"}},  // the last two: it is that of meshes
     Agreement{"--alpha", "--haptic", "isotropic", {"cone"}},
     Agreement{"--fixed", "--haptic", "isotropic", {"fixed"}},
-    Agreement{"--force-floor", "--haptic", "isotropic", {"isotropic", "cone"}},
-    Agreement{"--layered", "--haptic", "isotropic", {"isotropic", "cone", "fixed"}},
-    Agreement{"--rings", "--haptic", "isotropic", {"isotropic", "cone", "fixed"}},
+    Agreement{"--jnd-share", "--haptic", "isotropic", {"perceptual"}},
+    Agreement{"--force-floor", "--haptic", "isotropic", {"isotropic", "cone", "perceptual"}},
+    Agreement{"--layered", "--haptic", "isotropic", {"isotropic", "cone", "fixed", "perceptual"}},
+    Agreement{"--rings", "--haptic", "isotropic", {"isotropic", "cone", "fixed", "perceptual"}},
     Agreement{"--interpolate", "--profile", "main", {"thesis"}},
-    Agreement{"--haptic-share", "--haptic", "isotropic", {"isotropic", "cone", "fixed"}},
+    Agreement{"--haptic-share", "--haptic", "isotropic", {"isotropic", "cone", "fixed", "perceptual"}},
     Agreement{"--haptic-share", "--profile", "main", {"main"}},
     Agreement{"--visual-share", "--profile", "main", {"main"}},
     Agreement{"--basis", "--profile", "main", {"main"}},
@@ -48,6 +52,8 @@ constexpr std::array kNeeds{
     Need{"--visual", Subject::rigid},
     Need{"--haptic", Subject::rigid, "cone"},
     Need{"--haptic", Subject::rigid, "fixed"},
+    Need{"--haptic", Subject::rigid, "perceptual"},
+    Need{"--jnd-share", Subject::rigid},
     Need{"--alpha", Subject::rigid},
     Need{"--fixed", Subject::rigid},
     Need{"--force-floor", Subject::rigid},
@@ -63,6 +69,8 @@ constexpr std::array kNeeds{
     Need{"--haptic-share", Subject::touched_mesh},
     Need{"--layered", Subject::touched_mesh},
     // simulation
+    Need{"--pace", Subject::user},
+    Need{"--tremor", Subject::user},
     Need{"--rate", Subject::deformed},
     Need{"--method", Subject::deformable},
     Need{"--solver", Subject::deformable},
@@ -105,7 +113,7 @@ const Option* typed(const Command& command, const char* name) {
   return option != nullptr && option->count() > 0 ? option : nullptr;
 }
 
-std::string list(const std::array<std::string_view, 3>& values) {
+std::string list(const std::array<std::string_view, 4>& values) {
   const auto* last = std::find(values.begin(), values.end(), std::string_view()) - 1;
   if (last == values.begin()) return std::string(*last);
   return fmt::format("{} or {}", fmt::join(values.begin(), last, ", "), *last);

@@ -11,6 +11,7 @@
 #include <string>
 
 #include <tactus/base/rule.h>
+#include <tactus/rigid/trigger.h>
 #ifdef TACTUS_HAS_MODES
 #include <tactus/deformable/displacement.h>
 #include <tactus/sim/modes/spring_modes.h>
@@ -85,11 +86,14 @@ void add_output_options(Command& app, CommonOptions& options) {
 }
 
 void TriggerArguments::add_to(Command& app) {
-  const std::map<std::string, HapticRule> rules{
-      {"isotropic", HapticRule::isotropic}, {"cone", HapticRule::cone}, {"fixed", HapticRule::fixed}, {"off", HapticRule::off}};
+  const std::map<std::string, HapticRule> rules{{"isotropic", HapticRule::isotropic},
+                                                {"cone", HapticRule::cone},
+                                                {"fixed", HapticRule::fixed},
+                                                {"perceptual", HapticRule::perceptual},
+                                                {"off", HapticRule::off}};
   const auto rule = [this, rules](const std::string& name) { triggers_.haptic = rules.at(name); };
   deadband_ = add_quantity(app, "-p,--deadband", triggers_.weber_fraction, Dimension::fraction,
-                           "Weber fraction: largest relative error of the contact force [8%, deformable objects 2.5%]");
+                           "Weber fraction: largest relative error of the normal force in contact [8%, deformable objects 2.5%]");
   visual_option_ =
       add_pose_bound(app, "--visual", visual_, "Visual threshold: largest shown error of position and rotation [6mm,2deg]");
   fixed_option_ = add_pose_bound(app, "--fixed", fixed_, "Largest pose error in contact with --haptic fixed [1.5mm,2deg]");
@@ -99,17 +103,24 @@ void TriggerArguments::add_to(Command& app) {
   haptic_ =
       app.add_option(
              "--haptic", rule,
-             "Haptic threshold: isotropic (bounds the force error in all directions alike), cone (bounds its amount by -p and "
-             "its direction by --alpha), fixed (bounds the pose by --fixed) or off [isotropic]")
-          ->check(one_of({"isotropic", "cone", "fixed", "off"}))
+             "Haptic threshold: isotropic (bounds the error of the normal force in all directions alike), cone (bounds its "
+             "amount by -p "
+             "and its direction by --alpha), fixed (bounds the pose by --fixed), perceptual (isotropic, by the share that people "
+             "notice: 10 % of 2.5 N to 22 % of 0.3 N) or off [isotropic]")
+          ->check(one_of({"isotropic", "cone", "fixed", "perceptual", "off"}))
           ->type_name("RULE");
-  alpha_ = add_quantity(app, "--alpha", triggers_.cone_angle, Dimension::angle,
-                        "Largest error of the force's direction with --haptic cone [2.1deg]")
-               ->check(within(Dimension::angle, "0.001deg", "180deg"));
+  alpha_ =
+      add_quantity(
+          app, "--alpha", triggers_.cone_angle, Dimension::angle,
+          "Largest error of the normal force's direction with --haptic cone [arcsin of -p, what isotropic allows: 4.59deg at 8%]")
+          ->check(within(Dimension::angle, "0.001deg", "180deg"));
+  share_ = add_quantity(app, "--jnd-share", triggers_.perceptual_share, Dimension::fraction,
+                        "Part of what people notice that --haptic perceptual permits, 1% or more [100%]")
+               ->check(within(Dimension::fraction, "1%", "100%"));
   floor_ = add_quantity(app, "--force-floor", triggers_.force_floor, Dimension::force,
                         "Forces below this use the deadband at this force [0.05N]")
                ->check(above_zero(Dimension::force));
-  options_ = {deadband_, visual_option_, haptic_, alpha_, fixed_option_, floor_, length_unit_option_};
+  options_ = {deadband_, visual_option_, haptic_, alpha_, share_, fixed_option_, floor_, length_unit_option_};
   app.on_parsed([this] { check_lengths(); });  // only now --length-unit is known
 }
 
@@ -159,6 +170,8 @@ RigidTriggers TriggerArguments::over(RigidTriggers out) const {
   if (haptic_->count() > 0) out.haptic = triggers_.haptic;
   if (deadband_->count() > 0) out.weber_fraction = triggers_.weber_fraction;
   if (alpha_->count() > 0) out.cone_angle = triggers_.cone_angle;
+  else if (haptic_->count() > 0 && out.haptic == HapticRule::cone) out.cone_angle = isotropic_angle(out.weber_fraction);
+  if (share_->count() > 0) out.perceptual_share = triggers_.perceptual_share;
   if (floor_->count() > 0) out.force_floor = triggers_.force_floor;
   if (visual_option_->count() > 0) {
     out.visual_position = scaled(visual_.length);
@@ -241,9 +254,13 @@ TraceCoding MeshArguments::coding(const TriggerArguments& triggers) const {
 }
 
 Option* add_interpolation(Command& app, ReplicaOptions& options) {
+  const std::map<std::string, Interpolation> ways{
+      {"linear", Interpolation::linear}, {"hermite", Interpolation::hermite}, {"blending", Interpolation::blending}};
   return app.add_flag(
-      "--interpolate", [&options] { options.interpolation = Interpolation::linear; },
-      "Smooth the replica: linear interpolation and SLERP over 75 % of the mean inter-arrival time, 5 to 100 ms");
+      "--interpolate", "linear", [&options, ways](const std::string& way) { options.interpolation = ways.at(way); },
+      one_of({"linear", "hermite", "blending"}),
+      "Smooth the replica over 75 % of the mean inter-arrival time, 5 to 100 ms. With =hermite on cubics that keep the "
+      "velocity, with =blending by projective velocity blending, else linear");
 }
 
 }  // namespace tactus::cli

@@ -55,8 +55,8 @@ class TriggerArguments {
   double length_unit_ = 1;
   double key_interval_ = SenderPolicy{}.key_interval;
   bool no_reduction_ = false;
-  const Option *deadband_ = nullptr, *haptic_ = nullptr, *alpha_ = nullptr, *floor_ = nullptr, *visual_option_ = nullptr,
-               *fixed_option_ = nullptr, *length_unit_option_ = nullptr;
+  const Option *deadband_ = nullptr, *haptic_ = nullptr, *alpha_ = nullptr, *share_ = nullptr, *floor_ = nullptr,
+               *visual_option_ = nullptr, *fixed_option_ = nullptr, *length_unit_option_ = nullptr;
   std::vector<const Option*> options_;
 };
 

@@ -59,6 +59,8 @@ std::string rule_name(const RigidTriggers& b) {
       return fmt::format("{}, {:.3g} deg", percent(b.weber_fraction), b.cone_angle / kDegree);
     case HapticRule::fixed:
       return fmt::format("{:.3g} mm, {:.3g} deg", 1e3 * b.fixed_position, b.fixed_rotation / kDegree);
+    case HapticRule::perceptual:
+      return fmt::format("{:.3g}..{:.3g} %", 10 * b.perceptual_share, 22 * b.perceptual_share);
   }
   return {};
 }

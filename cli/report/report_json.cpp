@@ -89,6 +89,8 @@ const char* name_of(HapticRule rule) {
       return "cone";
     case HapticRule::fixed:
       return "fixed";
+    case HapticRule::perceptual:
+      return "perceptual";
   }
   return "";
 }
@@ -97,10 +99,10 @@ const char* name_of(HapticRule rule) {
 
 Json bounds_json(const RigidTriggers& b) {
   Json out{{"position_m", b.visual_position}, {"rotation_rad", b.visual_rotation}, {"haptic_rule", name_of(b.haptic)}};
-  if (b.haptic == HapticRule::isotropic || b.haptic == HapticRule::cone) {
-    out["haptic_fraction"] = b.weber_fraction;
-    out["force_floor_N"] = b.force_floor;
-  }
+  const bool is_constant = b.haptic == HapticRule::isotropic || b.haptic == HapticRule::cone;
+  if (is_constant) out["haptic_fraction"] = b.weber_fraction;
+  if (b.haptic == HapticRule::perceptual) out["perceptual_share"] = b.perceptual_share;
+  if (is_constant || b.haptic == HapticRule::perceptual) out["force_floor_N"] = b.force_floor;
   if (b.haptic == HapticRule::cone) out["haptic_angle_rad"] = b.cone_angle;
   if (b.haptic == HapticRule::fixed) {
     out["haptic_position_m"] = b.fixed_position;

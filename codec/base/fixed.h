@@ -101,25 +101,6 @@ constexpr Quat30 renormalise(const Quat30& q) noexcept {
   return out;
 }
 
-/// A rotation by twice `half` (2^-32 turn) about `axis` (unit vector x 2^-30, or zero where half is).
-struct Turn30 {
-  Vec3i axis{};
-  std::uint32_t half = 0;
-};
-
-/// The shorter way round.   pre  length 1 but for rounding.   time about 0.4 us.   spec 10-conventions 6
-constexpr Turn30 turn_of(Quat30 q) noexcept {
-  if (q[0] < 0) q = {-q[0], -q[1], -q[2], -q[3]};
-  std::int64_t square = 0;
-  for (std::size_t i = 1; i < 4; ++i) square += static_cast<std::int64_t>(q[i]) * q[i];
-  const std::int64_t sine = isqrt(static_cast<std::uint64_t>(square));
-  if (sine == 0) return {};
-  Turn30 out{{}, asin30(static_cast<std::int32_t>(std::min<std::int64_t>(sine, kOne30)))};
-  for (std::size_t i = 0; i < 3; ++i)
-    out.axis[i] = static_cast<std::int32_t>(round_div(static_cast<std::int64_t>(q[i + 1]) << 30, sine));
-  return out;
-}
-
 /// The rotation by twice `half` (2^-32 turn) about `axis` (unit vector x 2^-30).
 constexpr Quat30 axis_turn(const Vec3i& axis, std::uint32_t half) noexcept {
   const std::int64_t sine = sin30(half);

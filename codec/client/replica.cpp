@@ -15,8 +15,9 @@ namespace tactus {
 
 Result<void> Replica::check(const ReplicaOptions& options, const Scene& scene) noexcept {
   const bool valid = options.share > 0 && options.share <= 1 && options.shortest >= 0 && options.shortest <= options.longest &&
-                     options.longest <= 10 && !(scene.is_eased && options.interpolation == Interpolation::linear);
-  if (!valid) return fail(Errc::invalid_argument, "R-API-4");
+                     options.longest <= 10;
+  const bool smooths = options.interpolation != Interpolation::none && options.interpolation != Interpolation::playout;
+  if (!valid || (smooths && scene.is_eased)) return fail(Errc::invalid_argument, "R-API-4");
   return {};
 }
 
@@ -69,6 +70,7 @@ void Replica::apply(const DecodedPacket& packet, std::span<const RigidState> obj
     track.number = packet.number;
     const std::int64_t now = std::max({arrival, packet.tick, track.last_arrival});
     const RigidPose shown = pose(update.object, now);
+    const RigidMotion before = motion(track, now);
     const bool running = now < track.end;
     if (track.last_arrival >= 0) {
       track.gaps[track.gap_next] = saturate32(now - track.last_arrival);
@@ -80,17 +82,16 @@ void Replica::apply(const DecodedPacket& packet, std::span<const RigidState> obj
     track.begin = track.end = now;
     if (interpolation_ == Interpolation::none || running) continue;
     track.end = now + interval(track);
-    if (track.end > now) begin_interpolation(track, shown);
+    track.error = offset_between(predictor_.pose(track.path.state, now), shown);
+    if (interpolation_ != Interpolation::linear)
+      track.change = change_between(scene_, before, motion(track, now), track.end - now);
   }
 }
 
-/// Remember both ends and the turn between them, so that pose() needs one sine pair per call.
-void Replica::begin_interpolation(Track& track, const RigidPose& shown) const noexcept {
-  track.from = shown;
-  track.to = predictor_.pose(track.path.state, track.end);
-  const Turn30 turn = turn_of(multiply(track.to.rotation, conjugate(shown.rotation)));
-  track.axis = turn.axis;
-  track.half_angle = turn.half;
+/// Velocities of dead reckoning at `now`: none once it has come to rest.
+RigidMotion Replica::motion(const Track& track, std::int64_t now) const noexcept {
+  if (now - track.path.state.tick >= scene_.max_extrapolation) return {};
+  return {track.path.state.velocity, track.path.state.angular_velocity};
 }
 
 /// spec 60-client 7.   pre  a.state.tick <= tick, and tick <= b->state.tick if there is a b
@@ -110,7 +111,7 @@ PoseOffset Replica::past_offset(const Timeline& timeline, const Timeline::Update
     const Timeline::Update* z = timeline.previous(*at);
     const std::int64_t tick = at->state.tick;
     if (z == nullptr) out = {};
-    else out = offset_of(eased(path_between(*z, at, tick), z->state, out, tick), at->state);
+    else out = kept_offset(eased(path_between(*z, at, tick), z->state, out, tick), at->state);
     if (at == &update) return out;
   }
 }
@@ -129,15 +130,10 @@ RigidPose Replica::pose(std::uint32_t object, std::int64_t now) const noexcept {
   const Track& track = tracks_[object];
   now = std::max(now, track.begin);
   if (now >= track.end) return track.path.pose(predictor_, now);
-  const std::int64_t part = now - track.begin, whole = track.end - track.begin;
-  RigidPose out = track.from;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::int64_t way = static_cast<std::int64_t>(track.to.position[i]) - track.from.position[i];
-    out.position[i] = saturate32(track.from.position[i] + round_div(way * part, whole));
-  }
-  const auto half = static_cast<std::uint32_t>(round_div(track.half_angle * part, whole));
-  if (half != 0) out.rotation = renormalise(multiply(axis_turn(track.axis, half), track.from.rotation));
-  return out;
+  const std::int64_t left = round_div((track.end - now) << 30, track.end - track.begin);
+  const Cubic curve = cubic(left);
+  const std::int64_t faded = interpolation_ == Interpolation::hermite ? curve.error : left;
+  return displaced(predictor_.pose(track.path.state, now), track.error, track.change, {faded, faded, curve.change});
 }
 
 std::span<const Vec3i> Replica::displacements(std::size_t object, std::int64_t now) noexcept {

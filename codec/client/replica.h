@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include <tactus/rigid/curve.h>
 #include <tactus/client/timeline.h>
 #include <tactus/packet/packet.h>
 #include <tactus/rigid/easing.h>
@@ -17,9 +18,11 @@
 namespace tactus {
 
 enum class Interpolation : std::uint8_t {
-  none,     ///< a new state is applied at once (NI)
-  linear,   ///< straight line and SLERP towards the predicted state, over t_N (WI); thesis eqs. 3.4-3.6
-  playout,  ///< the client shows ticks in the past, by a playout delay of its choice, and bends over gaps that losses leave
+  none,      ///< a new state is applied at once (NI)
+  linear,    ///< over t_N, the difference to the new state fades at constant rate (WI): a straight line; thesis eqs. 3.4-3.6
+  hermite,   ///< the same on a cubic that keeps the velocity at both ends; thesis eq. 3.7
+  blending,  ///< the difference fades at constant rate, the old velocity in a cubic (projective velocity blending); thesis eq. 3.8
+  playout,   ///< the client shows ticks in the past, by a playout delay of its choice, and bends over gaps that losses leave
 };
 
 /// The heuristic for t_N: `share` of the mean of the last 5 inter-arrival times, clipped. An update during a running interpolation
@@ -35,7 +38,7 @@ class DeformableDecoder;
 
 class Replica {
  public:
-  /// R-API-4: not 0 < share <= 1, not 0 <= shortest <= longest <= 10 s, or linear in an eased scene.
+  /// R-API-4: not 0 < share <= 1, not 0 <= shortest <= longest <= 10 s, or smoothing of the client's own in an eased scene.
   static Result<void> check(const ReplicaOptions& options, const Scene& scene) noexcept;
   /// pre  check(); scene and decoders outlive the replica.   in  shapes  one per deformable object
   Replica(const Scene& scene, const ReplicaOptions& options, std::vector<DeformableDecoder*> shapes);
@@ -65,13 +68,11 @@ class Replica {
  private:
   static constexpr std::size_t kArrivals = 5;  // M
   struct Track {
-    EasedPath path;                      // target: the newest state
-    std::uint64_t number = 0;            // of its packet
-    RigidPose from;                      // shown when the interpolation began
-    RigidPose to;                        // predicted for its end
-    std::int64_t begin = 0, end = 0;     // [begin, end); empty: none is running
-    std::array<std::int32_t, 3> axis{};  // of the turn from `from` to `to`, x 2^-30
-    std::uint32_t half_angle = 0;        // half its angle, 2^32 to the full circle
+    EasedPath path;                   // target: the newest state
+    std::uint64_t number = 0;         // of its packet
+    std::int64_t begin = 0, end = 0;  // [begin, end); empty: no interpolation is running
+    PoseOffset error;                 // from where the newest state is at `begin` to what was shown there
+    PoseOffset change;                // what the velocities of both states differ by until `end`; none with linear
     std::int64_t last_arrival = -1;
     std::array<std::int32_t, kArrivals> gaps{};
     std::uint8_t gap_count = 0, gap_next = 0;
@@ -82,7 +83,7 @@ class Replica {
   PoseOffset past_offset(const Timeline& timeline, const Timeline::Update& update) const noexcept;
   RigidPose past_pose(std::uint32_t object, std::int64_t tick) const noexcept;
   std::int64_t interval(const Track& track) const noexcept;
-  void begin_interpolation(Track& track, const RigidPose& shown) const noexcept;
+  RigidMotion motion(const Track& track, std::int64_t now) const noexcept;
 
   const Scene& scene_;
   RigidPredictor predictor_;

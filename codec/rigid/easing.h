@@ -4,25 +4,19 @@
 /// A function of updates alone, so that every client shows the same and the sender can keep its bounds on it. Integers only.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
+#include <tactus/rigid/curve.h>
 #include <tactus/rigid/rigid_predictor.h>
 #include <tactus/rigid/rigid_state.h>
 
 namespace tactus {
 
-/// What is left to go at the tick of an update.
-struct PoseOffset {
-  std::array<std::int32_t, 3> position{};  ///< grid units
-  std::array<std::int32_t, 3> axis{};      ///< of the rotation, x 2^-30
-  std::uint32_t half = 0;                  ///< half its angle, 2^32 to the full circle
-};
+/// What is left to go at the tick of an update: from its pose to the one that was shown, the part of it that the update lets stay.
+/// time about 0.5 us
+PoseOffset kept_offset(const RigidPose& shown, const RigidState& update) noexcept;
 
-/// From the pose of an update to the one that was shown, the part of it that the update lets stay.   time about 0.5 us
-PoseOffset offset_of(const RigidPose& shown, const RigidState& update) noexcept;
-
-/// `pose` of dead reckoning from `update`, with what is left of the offset at `tick`.   pre  tick >= update.tick.   time about 60 ns
+/// `pose` of dead reckoning from `update`, with what is left of the offset at `tick`.   pre  tick >= update.tick.   time about 100 ns
 RigidPose eased(const RigidPose& pose, const RigidState& update, const PoseOffset& offset, std::int64_t tick) noexcept;
 
 inline bool is_easing(const RigidState& update, std::int64_t tick) noexcept {
@@ -31,8 +25,8 @@ inline bool is_easing(const RigidState& update, std::int64_t tick) noexcept {
 
 /// The path of one object over its updates.
 struct EasedPath {
-  RigidState state;  ///< the newest update
-  PoseOffset offset{};
+  RigidState state;     ///< the newest update
+  PoseOffset offset{};  ///< what was left to go at its tick
 
   /// pre  tick >= state.tick
   RigidPose pose(const RigidPredictor& predictor, std::int64_t tick) const noexcept {

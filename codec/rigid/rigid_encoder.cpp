@@ -107,8 +107,8 @@ bool is_valid(const Contact& c, const Scene& scene) noexcept {
 
 bool are_valid(const RigidTriggers& t) noexcept {
   return std::isfinite(t.heartbeat) && t.heartbeat >= 0 && t.heartbeat <= 3600 && std::isfinite(t.weber_fraction) &&
-         t.weber_fraction > 0 && std::isfinite(t.force_floor) && t.force_floor > 0 && std::isfinite(t.cone_angle) &&
-         t.cone_angle > 0 && t.cone_angle <= std::numbers::pi;
+         t.weber_fraction > 0 && std::isfinite(t.perceptual_share) && t.perceptual_share > 0 && std::isfinite(t.force_floor) &&
+         t.force_floor > 0 && std::isfinite(t.cone_angle) && t.cone_angle > 0 && t.cone_angle <= std::numbers::pi;
 }
 
 }  // namespace
@@ -238,8 +238,8 @@ void RigidEncoder::collect(const EncodeRequest<RigidStates>& request) noexcept {
 
 RigidTriggers RigidEncoder::widened_triggers() const noexcept {
   RigidTriggers out = triggers_;
-  for (double* bound :
-       {&out.visual_position, &out.visual_rotation, &out.weber_fraction, &out.fixed_position, &out.fixed_rotation})
+  for (double* bound : {&out.visual_position, &out.visual_rotation, &out.weber_fraction, &out.perceptual_share,
+                        &out.fixed_position, &out.fixed_rotation})
     *bound *= widening_;
   return out;
 }
@@ -272,7 +272,7 @@ void RigidEncoder::choose_ease(Pending& update, CodedUpdate& coded, const Accele
   const RigidPose shown = sent_[object].path.pose(predictor_, truth_[object].tick);
   RigidState tried = update.state;
   for (tried.ease = 1; tried.keep < 4; ++tried.keep) {
-    const RigidPose kept = eased({tried.position, tried.rotation}, tried, offset_of(shown, tried), tried.tick);
+    const RigidPose kept = eased({tried.position, tried.rotation}, tried, kept_offset(shown, tried), tried.tick);
     if (!within(visual_, kept, truth_[object]) || !haptic_within(object, kept, 1.0)) continue;
     tried.ease = longest_ease(course_of(tried, kept, samples_[object], acceleration), share, scene_.tick_rate);
     if (tried.ease == 0) return;

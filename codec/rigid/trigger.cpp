@@ -4,17 +4,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace tactus {
 
 double force_budget(const RigidTriggers& triggers, double force) noexcept {
-  return triggers.weber_fraction * std::max(force, triggers.force_floor);
+  const double counted = std::max(force, triggers.force_floor);
+  if (triggers.haptic == HapticRule::perceptual) return triggers.perceptual_share * perceptual_fraction(counted) * counted;
+  return triggers.weber_fraction * counted;
 }
 
 double haptic_ratio(const RigidTriggers& triggers, const Vec3& truth, const Vec3& estimate) noexcept {
   const double force = norm(truth);
   const double budget = force_budget(triggers, force);
-  if (triggers.haptic == HapticRule::isotropic) return norm(estimate - truth) / budget;
+  if (triggers.haptic == HapticRule::isotropic || triggers.haptic == HapticRule::perceptual)
+    return norm(estimate - truth) / budget;
   if (triggers.haptic != HapticRule::cone) return 0;
   const double estimated = norm(estimate);
   const double magnitude = std::abs(estimated - force) / budget;
@@ -36,6 +40,10 @@ double perceptual_fraction(double force) noexcept {
     if (force < b.force) return a.fraction + (b.fraction - a.fraction) * (force - a.force) / (b.force - a.force);
   }
   return kCurve.back().fraction;
+}
+
+double isotropic_angle(double weber_fraction) noexcept {
+  return weber_fraction < 1 ? std::asin(weber_fraction) : std::numbers::pi;
 }
 
 }  // namespace tactus

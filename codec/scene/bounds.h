@@ -18,13 +18,14 @@ enum class Reduction : std::uint8_t {
 
 /// Values are wire values.
 enum class HapticRule : std::uint8_t {
-  off = 0,        ///< visual dead reckoning and heartbeat only (S_R1)
-  isotropic = 1,  ///< |f^ - f| > p |f|                                                   thesis eq. 3.1
-  cone = 2,       ///< | |f^| - |f| | > p |f| or angle(f^, f) > alpha_max                 thesis figure 3.12
-  fixed = 3,      ///< position or rotation error over fixed thresholds while in contact  thesis table 3.3, S_DR
+  off = 0,         ///< visual dead reckoning and heartbeat only (S_R1)
+  isotropic = 1,   ///< |f^ - f| > p |f|                                                   thesis eq. 3.1
+  cone = 2,        ///< | |f^| - |f| | > p |f| or angle(f^, f) > alpha_max                 thesis figure 3.12
+  fixed = 3,       ///< position or rotation error over fixed thresholds while in contact  thesis table 3.3, S_DR
+  perceptual = 4,  ///< isotropic with the fraction that people notice at this force      thesis 2.1.3, table 2.1
 };
 
-/// When a rigid object must be sent. Defaults are the thesis's (3.2.4.1) with p = 8 %.
+/// When a rigid object must be sent; f is the normal force. Defaults are the thesis's (3.2.4.1) with p = 8 %.
 struct RigidTriggers {
   Reduction reduction = Reduction::dead_reckoning;          ///< not a bound, never transmitted
   double heartbeat = 1.0;                                   ///< [s] 0 switches it off
@@ -32,10 +33,11 @@ struct RigidTriggers {
   double visual_rotation = 2.0 * std::numbers::pi / 180.0;  ///< [rad]
   HapticRule haptic = HapticRule::isotropic;
   double weber_fraction = 0.08;                            ///< p, traffic control parameter
+  double perceptual_share = 1;                             ///< with `perceptual`: p is this times perceptual_fraction()
   double cone_angle = 2.1 * std::numbers::pi / 180.0;      ///< alpha_max [rad]
   double fixed_position = 0.0015;                          ///< [m]
   double fixed_rotation = 2.0 * std::numbers::pi / 180.0;  ///< [rad]
-  double force_floor = 0.05;                               ///< [N] below this force the threshold stays p * force_floor
+  double force_floor = 0.05;                               ///< [N] below this force the threshold is that at this force
   friend bool operator==(const RigidTriggers&, const RigidTriggers&) = default;
 };
 

@@ -20,11 +20,11 @@ void code_rigid(Coder& coder, RigidTriggers& t) {
   t.heartbeat = coder.number(t.heartbeat);
   t.visual_position = coder.number(t.visual_position);
   t.visual_rotation = coder.number(t.visual_rotation);
-  t.haptic = static_cast<HapticRule>(coder.byte(static_cast<std::uint8_t>(t.haptic), 3));
-  if (t.haptic == HapticRule::isotropic || t.haptic == HapticRule::cone) {
-    t.weber_fraction = coder.number(t.weber_fraction);
-    t.force_floor = coder.number(t.force_floor);
-  }
+  t.haptic = static_cast<HapticRule>(coder.byte(static_cast<std::uint8_t>(t.haptic), 4));
+  const bool is_constant = t.haptic == HapticRule::isotropic || t.haptic == HapticRule::cone;
+  if (is_constant) t.weber_fraction = coder.number(t.weber_fraction);
+  if (t.haptic == HapticRule::perceptual) t.perceptual_share = coder.number(t.perceptual_share);
+  if (is_constant || t.haptic == HapticRule::perceptual) t.force_floor = coder.number(t.force_floor);
   if (t.haptic == HapticRule::cone) t.cone_angle = coder.number(t.cone_angle);
   if (t.haptic == HapticRule::fixed) {
     t.fixed_position = coder.number(t.fixed_position);

@@ -99,6 +99,8 @@ Answer answer(const Case& c) {
   std::optional<Interpolation> replica;
   if (c.replica == "none") replica = Interpolation::none;
   if (c.replica == "linear") replica = Interpolation::linear;
+  if (c.replica == "hermite") replica = Interpolation::hermite;
+  if (c.replica == "blending") replica = Interpolation::blending;
   if (c.replica == "playout") replica = Interpolation::playout;
   const auto done = report(c.input.bytes, replica, out);
   if (!c.rejection) return {out.str(), done.has_value()};

@@ -43,7 +43,7 @@ struct Case {
   std::string section;             ///< of the specification
   std::vector<std::string> rules;  ///< what the vector is for, besides the section
   Input input;
-  std::string replica;                 ///< none, linear, playout or empty
+  std::string replica;                 ///< none, linear, hermite, blending, playout or empty
   std::optional<Rejection> rejection;  ///< nothing: the file is valid
   bool session = false;                ///< the input is a script for an end of a session, not a stream
 };
@@ -100,6 +100,7 @@ void add_load(Catalogue& catalogue);
 void add_client(Catalogue& catalogue);
 void add_client_playout(Catalogue& catalogue);
 void add_client_eased(Catalogue& catalogue);
+void add_client_curves(Catalogue& catalogue);
 void add_session(Catalogue& catalogue);
 void add_session_server(Catalogue& catalogue);
 void add_deformable_header(Catalogue& catalogue);

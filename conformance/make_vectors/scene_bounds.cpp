@@ -54,6 +54,7 @@ void add_scene_bounds(Catalogue& c) {
   c.valid("bounds-cone", "Bounds of a cone; zero, the smallest and the largest number.",
           of_rule(2, f64s({0, 0x1p-1074, 0x1.fffffffffffffp+1023})), {"R-STR-17"});
   c.valid("bounds-fixed", "Bounds fixed in contact.", of_rule(3, f64s({0.0015, 0.03125})), {"R-STR-17"});
+  c.valid("bounds-perceptual", "Bounds by the curve of what is noticed.", of_rule(4, f64s({0.5, 0.05})), {"R-STR-17"});
   c.valid("bounds-longer", "A bounds record with more elements than are known, and an unknown record after it.",
           with(bounds_record(visual() + Bytes{0, 1, 2, 3}) + Bytes{5, 1, 0}), {"R-STR-16", "R-STR-17"});
   RawHeader of_deformables = deformables();
@@ -75,7 +76,9 @@ void add_scene_bounds(Catalogue& c) {
   c.invalid("bounds-without-haptic", "A bounds record ends before haptic.", cut, with(bounds_record(visual())));
   c.invalid("bounds-cut-number", "The last number of a bounds record has seven bytes.", cut,
             with(bounds_record(without_last(visual() + Bytes{1} + f64s({0.08, 0.05}), 1))));
-  c.invalid("bounds-haptic-4", "haptic is 4.", wrong, of_rule(4, f64s({0.08, 0.05})));
+  c.invalid("bounds-haptic-5", "haptic is 5.", wrong, of_rule(5, f64s({0.08, 0.05})));
+  c.invalid("bounds-perceptual-cut", "A bounds record with haptic 4 ends after perceptual_share.", cut, of_rule(4, f64(0.5)));
+  c.invalid("bounds-perceptual-negative", "perceptual_share has its sign bit set.", wrong, of_rule(4, f64s({-0.5, 0.05})));
   c.invalid("bounds-promise-4", "promise is 4.", wrong, [] {
     RawHeader header = deformables();
     header.extensions = bounds_record(Bytes{4} + f64(0) + Bytes{0} + f64(0));

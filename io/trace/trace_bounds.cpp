@@ -13,7 +13,7 @@
 namespace tactus {
 namespace {
 
-constexpr std::array<std::string_view, 4> kRules{"off", "isotropic", "cone", "fixed"};  // index: HapticRule
+constexpr std::array<std::string_view, 5> kRules{"off", "isotropic", "cone", "fixed", "perceptual"};  // index: HapticRule
 
 std::string text_of(double value) {
   std::array<char, 32> digits{};
@@ -69,10 +69,10 @@ void pass_rigid(Entries& entries, RigidTriggers& t) {
   entries.number("visual_position", t.visual_position);
   entries.number("visual_rotation", t.visual_rotation);
   entries.rule("haptic", t.haptic);
-  if (t.haptic == HapticRule::isotropic || t.haptic == HapticRule::cone) {
-    entries.number("weber_fraction", t.weber_fraction);
-    entries.number("force_floor", t.force_floor);
-  }
+  const bool is_constant = t.haptic == HapticRule::isotropic || t.haptic == HapticRule::cone;
+  if (is_constant) entries.number("weber_fraction", t.weber_fraction);
+  if (t.haptic == HapticRule::perceptual) entries.number("perceptual_share", t.perceptual_share);
+  if (is_constant || t.haptic == HapticRule::perceptual) entries.number("force_floor", t.force_floor);
   if (t.haptic == HapticRule::cone) entries.number("cone_angle", t.cone_angle);
   if (t.haptic == HapticRule::fixed) {
     entries.number("fixed_position", t.fixed_position);

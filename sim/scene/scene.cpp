@@ -181,10 +181,11 @@ std::uint32_t read_watched(TomlReader& in, const toml::table& table, const Scene
 
 SceneUser read_user(TomlReader& in, const toml::table& table, const Scene& scene) {
   const std::string path = "user";
-  in.allow(table, path, {"name", "grip", "tremor", "variation", "scatter", "object", "goal", "start", "device", "path"});
+  in.allow(table, path, {"name", "grip", "pace", "tremor", "variation", "scatter", "object", "goal", "start", "device", "path"});
   SceneUser user;
   user.name = in.name(table, path);
   user.grip = static_cast<Grip>(in.word(table, path, "grip", {"loose", "normal", "firm"}, "normal"));
+  user.pace = in.number(table, path, "pace", {0.1, 10}, 1.0);
   user.tremor = in.number(table, path, "tremor", {0, 0.01}, 0.0);
   user.variation = in.number(table, path, "variation", {0, 0.5}, 0.0);
   user.scatter = in.number(table, path, "scatter", {0, 0.1}, 0.0);
@@ -281,6 +282,15 @@ tl::expected<std::string, Diagnostic> find_scene(const std::string& name) {
       Diagnostic{.error = fail(Errc::io, "R-SCN-1").value(),
                  .file = name,
                  .remedy = "no such file, nor a scene of that name; name a file or one of the scenes in sim/scenes"});
+}
+
+void set_pace(Scene& scene, double pace) noexcept {
+  for (SceneUser& user : scene.users) user.pace *= pace;
+  scene.duration *= pace;
+}
+
+void set_tremor(Scene& scene, double rms) noexcept {
+  for (SceneUser& user : scene.users) user.tremor = rms;
 }
 
 bool tells_loads(const Scene& scene) noexcept {

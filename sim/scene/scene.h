@@ -122,6 +122,7 @@ struct PathPhase {
 struct SceneUser {
   std::string name;
   Grip grip = Grip::normal;
+  double pace = 1;           ///< times the duration of every phase: 0.5 is twice as fast
   double tremor = 0;         ///< [m] RMS per axis of the free hand, 8-12 Hz
   double variation = 0;      ///< share by which hand, speed and targets vary with the seed
   double scatter = 0;        ///< [m] by which targets vary with the seed
@@ -162,6 +163,11 @@ tl::expected<Scene, Diagnostic> load_scene(const std::string& path);
 
 /// Path of a scene: `name` itself if it is a file, else <name>.toml among the scenes that come with Tactus.   err  R-SCN-1
 tl::expected<std::string, Diagnostic> find_scene(const std::string& name);
+
+/// All hands take `pace` times their time, and the scene lasts as much longer or shorter.   pre  pace > 0
+void set_pace(Scene& scene, double pace) noexcept;
+/// [m] RMS per axis, of all hands.
+void set_tremor(Scene& scene, double rms) noexcept;
 
 /// Whether clients need the forces on its objects: they make up for delay, and something can be pushed.
 bool tells_loads(const Scene& scene) noexcept;

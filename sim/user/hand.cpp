@@ -118,7 +118,7 @@ Hand::Hand(const SceneUser& user, Grip grip, std::uint64_t seed)
       from_(user.start),
       to_(user.start) {
   for (PathPhase& phase : user_.path) {
-    phase.duration *= random_.uniform(1 - user.variation, 1 + user.variation);
+    phase.duration *= user.pace * random_.uniform(1 - user.variation, 1 + user.variation);
     for (double* part : {&phase.to.x, &phase.to.y, &phase.to.z}) *part += random_.uniform(-user.scatter, user.scatter);
   }
 }

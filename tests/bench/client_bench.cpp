@@ -35,6 +35,7 @@ void show(benchmark::State& state, Interpolation mode, std::int64_t first) {
 }
 BENCHMARK_CAPTURE(show, extrapolated, Interpolation::none, 401)->Repetitions(5)->ReportAggregatesOnly();
 BENCHMARK_CAPTURE(show, interpolated, Interpolation::linear, 401)->Repetitions(5)->ReportAggregatesOnly();
+BENCHMARK_CAPTURE(show, on_a_cubic, Interpolation::hermite, 401)->Repetitions(5)->ReportAggregatesOnly();
 BENCHMARK_CAPTURE(show, past, Interpolation::playout, 401)->Repetitions(5)->ReportAggregatesOnly();
 BENCHMARK_CAPTURE(show, past_over_a_gap, Interpolation::playout, 201)->Repetitions(5)->ReportAggregatesOnly();
 

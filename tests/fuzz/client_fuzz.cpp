@@ -10,12 +10,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace tactus;
   SceneSpec spec;
   spec.objects.push_back({"o", Dof::all, {}});
-  spec.is_eased = size > 0 && data[0] / 3 % 2 == 1;
+  spec.is_eased = size > 0 && data[0] / 5 % 2 == 1;
   const SharedScene scene = Scene::create(std::move(spec)).value();
   const RigidPredictor predictor(*scene);
   ReplicaOptions options;
-  constexpr Interpolation kWays[] = {Interpolation::none, Interpolation::linear, Interpolation::playout};
-  if (size > 0) options.interpolation = kWays[data[0] % 3];
+  constexpr Interpolation kWays[] = {Interpolation::none, Interpolation::linear, Interpolation::playout, Interpolation::hermite,
+                                     Interpolation::blending};
+  if (size > 0) options.interpolation = kWays[data[0] % 5];
   if (!Replica::check(options, *scene)) options.interpolation = Interpolation::none;
   Replica replica(*scene, options, {});
   constexpr std::size_t kStep = 40;

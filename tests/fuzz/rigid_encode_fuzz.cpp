@@ -37,9 +37,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   spec.objects.push_back({"o", Dof::all, {}});
   const SharedScene scene = Scene::create(std::move(spec)).value();
   SenderOptions options;
-  options.triggers.haptic = static_cast<HapticRule>(in.u8() % 4);
+  options.triggers.haptic = static_cast<HapticRule>(in.u8() % 5);
   options.triggers.reduction = static_cast<Reduction>(in.u8() % 3);
   options.triggers.weber_fraction = 0.001 * in.u8();
+  options.triggers.perceptual_share = 10 * options.triggers.weber_fraction;
   options.triggers.visual_position = 1e-5 * in.u16();
   options.triggers.visual_rotation = 1e-4 * in.u16();
   options.policy.key_interval = 0.01 * in.u8();

@@ -125,6 +125,7 @@ int main() {
       {"free", {Dof::all}, HapticRule::isotropic, 0.01},
       {"cone", {Dof::all}, HapticRule::cone, 0.18},
       {"fixed", {Dof::all}, HapticRule::fixed, 0.08},
+      {"perceptual", {Dof::all}, HapticRule::perceptual, 0.08},
       {"visual", {Dof::all, Dof::none, Dof::all}, HapticRule::off, 0.08},
       {"crowd", std::vector<std::uint8_t>(40, Dof::all), HapticRule::isotropic, 0.04},
       {"every-tick", {Dof::all, Dof::translation}, HapticRule::off, 0.08, Reduction::none},

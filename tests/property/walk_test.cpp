@@ -73,6 +73,7 @@ class Walk : public ::testing::TestWithParam<std::tuple<Reduction, HapticRule, d
 TEST_P(Walk, KeepsEveryBoundOnReceiverOutput) {
   SenderOptions options;
   std::tie(options.triggers.reduction, options.triggers.haptic, options.triggers.weber_fraction) = GetParam();
+  options.triggers.perceptual_share = options.triggers.weber_fraction / 0.1;
   for (const double heartbeat : kIntervals) {
     for (const double key_interval : kIntervals) {
       options.triggers.heartbeat = heartbeat;
@@ -89,7 +90,7 @@ TEST_P(Walk, KeepsEveryBoundOnReceiverOutput) {
 
 std::string name_of(const ::testing::TestParamInfo<Walk::ParamType>& setting) {
   static constexpr const char* kReductions[] = {"Every", "Triggered"};
-  static constexpr const char* kRules[] = {"Off", "Isotropic", "Cone", "Fixed"};
+  static constexpr const char* kRules[] = {"Off", "Isotropic", "Cone", "Fixed", "Perceptual"};
   const auto& [reduction, haptic, p] = setting.param;
   return std::string(kReductions[static_cast<int>(reduction)]) + kRules[static_cast<int>(haptic)] +
          std::to_string(static_cast<int>(100 * p));
@@ -98,7 +99,7 @@ std::string name_of(const ::testing::TestParamInfo<Walk::ParamType>& setting) {
 INSTANTIATE_TEST_SUITE_P(Settings, Walk,
                          ::testing::Combine(::testing::Values(Reduction::none, Reduction::dead_reckoning),
                                             ::testing::Values(HapticRule::off, HapticRule::isotropic, HapticRule::cone,
-                                                              HapticRule::fixed),
+                                                              HapticRule::fixed, HapticRule::perceptual),
                                             ::testing::Values(0.02, 0.08, 0.30)),
                          name_of);
 

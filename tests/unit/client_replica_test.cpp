@@ -64,13 +64,15 @@ TEST(ClientReplica, LinearInterpolationReachesThePredictedPlaceAfterTN) {
 }
 
 TEST(ClientReplica, AnUpdateDuringAnInterpolationIsAppliedAtOnce) {
-  Feeder f(Interpolation::linear);
-  f.update(0, {}, {});
-  f.update(40, {}, {});
-  f.update(80, {0.03, 0, 0}, {});
-  f.update(90, {0.06, 0, 0}, {});
-  EXPECT_NEAR(f.shown(90).position.x, 0.06, 1e-6);
-  EXPECT_NEAR(f.shown(95).position.x, 0.06, 1e-6);
+  for (const Interpolation way : {Interpolation::linear, Interpolation::hermite, Interpolation::blending}) {
+    Feeder f(way);
+    f.update(0, {}, {});
+    f.update(40, {}, {});
+    f.update(80, {0.03, 0, 0}, {});
+    f.update(90, {0.06, 0, 0}, {});
+    EXPECT_NEAR(f.shown(90).position.x, 0.06, 1e-6);
+    EXPECT_NEAR(f.shown(95).position.x, 0.06, 1e-6);
+  }
 }
 
 TEST(ClientReplica, TheIntervalIsClippedAndAveragesFiveGaps) {
@@ -93,7 +95,7 @@ TEST(ClientReplica, TheIntervalIsClippedAndAveragesFiveGaps) {
 
 TEST(ClientReplica, TimesBeforeTheNewestUpdateCountAsThatUpdate) {
   constexpr std::int64_t kLongAgo = std::numeric_limits<std::int64_t>::min();
-  for (const Interpolation mode : {Interpolation::none, Interpolation::linear}) {
+  for (const Interpolation mode : {Interpolation::none, Interpolation::linear, Interpolation::hermite, Interpolation::blending}) {
     Feeder f(mode);
     f.update(960, {}, {0.1, 0, 0}, {}, {0, 1, 0});
     f.update(1000, {0.03, 0, 0}, {0.5, 0, 0}, {}, {0, 1, 0});
@@ -246,7 +248,7 @@ TEST(ClientPlayout, ARestartForgetsWhatWasKnown) {
 }
 
 TEST(ClientReplicaOrder, AnOvertakenUpdateIsNotShown) {
-  for (const Interpolation way : {Interpolation::none, Interpolation::linear}) {
+  for (const Interpolation way : {Interpolation::none, Interpolation::linear, Interpolation::hermite, Interpolation::blending}) {
     PlayoutReplica client(way), spared(way);
     for (PlayoutReplica* both : {&client, &spared}) {
       both->take({1, 400}, 400);

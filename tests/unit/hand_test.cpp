@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -123,6 +124,25 @@ TEST(Hand, LockedAxesOfTheDeviceDoNotMove) {
     ASSERT_EQ(hand.position().y, user.start.y);
   }
   EXPECT_NEAR(hand.position().x, 0.2, 1e-3);
+}
+
+TEST(Hand, PaceScalesTheTimeOfMovements) {
+  SceneUser user = still_user(), faster = user;
+  user.path =
+      faster.path = {{"go", PathFrame::world, {0.2, 0.4, 0.1}, 0.8, false}, {"on", PathFrame::world, {0, 0, 0}, 0.4, true}};
+  faster.pace = 0.5;
+  const auto presses = [](const SceneUser& of) {  // first and last tick with the button held, during the second movement
+    Hand hand(of, Grip::firm, 1);
+    std::array<int, 2> out{-1, -1};
+    for (int i = 0; i < 2000; ++i) {
+      if (hand.step({}, {}).buttons == 0) continue;
+      if (out[0] < 0) out[0] = i;
+      out[1] = i;
+    }
+    return out;
+  };
+  EXPECT_EQ(presses(user), (std::array{800, 1199}));
+  EXPECT_EQ(presses(faster), (std::array{400, 599}));
 }
 
 TEST(Hand, SeedsMakeDifferentHandsAndVariationBoundsThem) {

@@ -40,6 +40,36 @@ TEST(RigidTrigger, OtherRulesDoNotLookAtForces) {
   EXPECT_EQ(haptic_ratio(t, {0, 0, 1}, {9, 9, 9}), 0);
 }
 
+TEST(RigidTrigger, PerceptualFollowsTheCurveTimesItsShare) {
+  RigidTriggers t{.haptic = HapticRule::perceptual, .weber_fraction = 1e-6};
+  EXPECT_NEAR(haptic_ratio(t, {0, 0, 2.5}, {0, 0.25, 2.5}), 1, 1e-12);
+  EXPECT_NEAR(haptic_ratio(t, {0, 0, 0.3}, {0, 0, 0.3 * 1.22}), 1, 1e-12);
+  EXPECT_NEAR(haptic_ratio(t, {}, {0.05 * 0.22, 0, 0}), 1, 1e-12) << "at the floor of 0.05 N";
+  t.perceptual_share = 0.5;
+  EXPECT_NEAR(haptic_ratio(t, {0, 0, 1}, {0, 0, 1.07}), 1, 1e-12);
+  t.force_floor = 1;
+  EXPECT_NEAR(haptic_ratio(t, {0, 0, 0.2}, {0, 0, 0.27}), 1, 1e-12) << "a force below the floor is judged as one at it";
+  double before = 0;
+  for (int i = 0; i < 400; ++i) {
+    const double budget = force_budget({.haptic = HapticRule::perceptual}, 0.01 * i);
+    EXPECT_GE(budget, before) << "a larger force never permits a smaller error";
+    before = budget;
+  }
+}
+
+TEST(RigidTrigger, NoForceInsideAnIsotropicDeadzoneLeavesItsAngle) {
+  for (const double p : {0.01, 0.037, 0.187, 0.9}) {
+    const double angle = isotropic_angle(p);
+    const Vec3 tangent{p * std::cos(angle), 0, -p * std::sin(angle)};  // from the tip of the force to where the sphere is touched
+    const Vec3 estimate = Vec3{0, 0, 1} + tangent;
+    EXPECT_NEAR(std::atan2(estimate.x, estimate.z), angle, 1e-12);
+    EXPECT_NEAR(dot(estimate, tangent), 0, 1e-12);
+  }
+  EXPECT_NEAR(isotropic_angle(0.037) * 180 / 3.14159265, 2.1, 0.03) << "thesis 3.2.4.5";
+  EXPECT_NEAR(isotropic_angle(0.187) * 180 / 3.14159265, 10.8, 0.03);
+  EXPECT_GT(isotropic_angle(1), 3.1);
+}
+
 TEST(RigidTrigger, PerceptualCurveFollowsItsPoints) {
   EXPECT_DOUBLE_EQ(perceptual_fraction(0), 0.22);
   EXPECT_DOUBLE_EQ(perceptual_fraction(0.3), 0.22);

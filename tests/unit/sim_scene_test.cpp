@@ -93,6 +93,8 @@ const std::vector<Broken>& broken() {
       {"an unknown method", kHead + "[compensation]\nmethod = \"magic\"\n" + kCube, "R-SCN-7", 5, "compensation.method"},
       {"unknown grip", kHead + kCube + kTouch + "lift_stiffness = 68\n" + kUser + "grip = \"iron\"\n", "R-SCN-7", 18,
        "user.grip"},
+      {"a pace that never ends", kHead + kCube + kTouch + "lift_stiffness = 68\n" + kUser + "pace = 0\n", "R-SCN-6", 18,
+       "user.pace"},
       {"half a filter step", kHead + kCube + kTouch + "lift_stiffness = 68\n" + kUser + "[user.device]\nfilter = 2.5\n",
        "R-SCN-5", 19, "user.device.filter"},
       {"instant movement",
@@ -133,6 +135,17 @@ TEST(Scene, CompensationIsThereWhenAskedFor) {
   EXPECT_EQ(asked.compensation->filter, 0.5);
   EXPECT_EQ(asked.touch->max_damping, 20);
   EXPECT_TRUE(tells_loads(asked));
+}
+
+TEST(Scene, PaceAndTremorAreThoseOfEveryHand) {
+  Scene scene = parse_scene(kHead + kCube + kTouch + "lift_stiffness = 68\n" + kUser + "pace = 2\n", "t.toml").value();
+  EXPECT_EQ(scene.users[0].pace, 2);
+  EXPECT_EQ(scene.duration, 1) << "a file says how long its scene lasts";
+  set_pace(scene, 0.5);
+  set_tremor(scene, 4e-4);
+  EXPECT_EQ(scene.users[0].pace, 0.5 * 2);
+  EXPECT_EQ(scene.users[0].tremor, 4e-4);
+  EXPECT_EQ(scene.duration, 0.5);
 }
 
 TEST(Scene, MissingFileIsAnError) {

@@ -33,7 +33,8 @@ TraceInfo with_meshes(std::size_t count) {
 }
 
 TEST(TraceBounds, RoundTripIsExactToTheBit) {
-  for (const HapticRule rule : {HapticRule::off, HapticRule::isotropic, HapticRule::cone, HapticRule::fixed}) {
+  for (const HapticRule rule :
+       {HapticRule::off, HapticRule::isotropic, HapticRule::cone, HapticRule::fixed, HapticRule::perceptual}) {
     TraceBounds bounds = some_bounds(2);
     bounds.stream.rigid = RigidTriggers{.haptic = rule};
     const auto read = bounds_from(entries_of(bounds), with_meshes(2));
