@@ -52,6 +52,7 @@ struct Setting {
   std::size_t modes = 0;
   double visual = 1e-3, noise = 1e-5;
   bool layered = false;
+  std::uint8_t spring_modes = 0;
 };
 
 /// The sheet's shape, pushed about.
