@@ -142,6 +142,7 @@ class Builder {
 
   ModeBasis rounded(std::size_t modes, std::size_t stage, const Columns& x) const {
     ModeBasis out;
+    out.entries.reserve(modes * 3 * order_.order.size());
     std::vector<double> mode(3 * order_.order.size());
     for (std::size_t k = 0; k < modes; ++k) {
       std::fill(mode.begin(), mode.end(), 0.0);

@@ -132,6 +132,16 @@ void create_receiver(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(scene->deformables[0].rest.size()));
 }
 
+/// The scene's part of it: the basis that both ends compute.
+void compute_basis(benchmark::State& state) {
+  const auto squares = static_cast<std::uint32_t>(state.range(0));
+  SceneSpec spec = testing::sheet_spec(testing::sheet(squares, squares));
+  spec.deformables[0].spring_basis = {static_cast<std::uint8_t>(state.range(1)), {0, squares}};
+  for (auto _ : state) benchmark::DoNotOptimize(Scene::create(spec));
+  state.counters["vertices"] = static_cast<double>(spec.deformables[0].rest.size());
+}
+
+BENCHMARK(compute_basis)->Args({26, 48})->Args({70, 48})->Args({223, 48})->Args({26, 64})->Unit(benchmark::kMillisecond);
 BENCHMARK(create_sender)->Arg(31)->Arg(99)->Arg(315)->Arg(999)->Unit(benchmark::kMillisecond);
 BENCHMARK(create_receiver)->Arg(31)->Arg(99)->Arg(315)->Arg(999)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(encode_frame, thesis, Kind::thesis)->Arg(26)->Arg(99)->Unit(benchmark::kMicrosecond);
