@@ -8,6 +8,7 @@ from typing import NamedTuple, Optional
 from conventions import STR_5, STR_5_VARINT, Cursor, require, text
 
 THESIS, MAIN = 0, 1
+NO_BASIS, DECLARED, COMPUTED = 0, 1, 2
 MOST_VERTICES, MOST_TRIANGLES = 1 << 20, 1 << 21
 LARGEST_ENTRY = 2047
 
@@ -28,7 +29,9 @@ class DeformableObject:
     layered: Optional[int] = None                           # main
     rest: list[tuple] = field(default_factory=list)
     triangles: list[tuple] = field(default_factory=list)
-    modes: list[Mode] = field(default_factory=list)         # main
+    mode_count: int = 0                                     # main
+    modes: list[Mode] = field(default_factory=list)         # main: declared, or computed when the whole declaration is checked
+    fixed: Optional[list[int]] = None                       # main: of a basis to compute
     stiffness: Optional[bytes] = None                       # levels, if told
 
 
@@ -66,7 +69,7 @@ def read_deformable_object(body: Cursor, vertices_left: int, triangles_left: int
     item.rest = read_rest(body, vertex_count)
     item.triangles = read_triangles(body, vertex_count, triangle_count)
     if profile == MAIN:
-        item.modes = read_modes(body, vertex_count)
+        read_basis(body, item)
     item.name = text(name_bytes)
     return item
 
@@ -111,9 +114,35 @@ def read_triangles(body: Cursor, vertex_count: int, count: int) -> list[tuple]:
     return triangles
 
 
-def read_modes(body: Cursor, vertex_count: int) -> list[Mode]:
-    mode_count = body.varint(STR_5, STR_5_VARINT)
-    require(mode_count <= 64, "invalid", "R-DEF-7")
+def read_basis(body: Cursor, item: DeformableObject) -> None:
+    basis = body.number(1, STR_5)
+    require(basis in (NO_BASIS, DECLARED, COMPUTED), "malformed", "R-DEF-7")
+    if basis == NO_BASIS:
+        return
+    item.mode_count = body.varint(STR_5, STR_5_VARINT)
+    require(1 <= item.mode_count <= 64, "invalid", "R-DEF-7")
+    if basis == DECLARED:
+        item.modes = read_modes(body, item.mode_count, len(item.rest))
+    else:
+        item.fixed = read_fixed(body, len(item.rest))
+        require(item.mode_count <= 3 * (len(item.rest) - len(item.fixed)), "invalid", "R-DEF-7")
+
+
+def read_fixed(body: Cursor, vertex_count: int) -> list[int]:
+    run_count = body.varint(STR_5, STR_5_VARINT)
+    require(2 * run_count <= body.left(), *STR_5)
+    fixed = []
+    end = 0
+    for run in range(run_count):
+        gap = body.varint(STR_5, STR_5_VARINT)
+        more = body.varint(STR_5, STR_5_VARINT)
+        require((gap > 0 or run == 0) and end + gap + more < vertex_count, "invalid", "R-DEF-7")
+        fixed += range(end + gap, end + gap + more + 1)
+        end += gap + more + 1
+    return fixed
+
+
+def read_modes(body: Cursor, mode_count: int, vertex_count: int) -> list[Mode]:
     require(mode_count * (3 * vertex_count + 2) <= body.left(), *STR_5)
     modes = []
     for _ in range(mode_count):

@@ -12,7 +12,7 @@ import load
 import rigid
 from conventions import Cursor, StreamError, clamp, round_shift
 from decoder import File, SceneDecoder
-from deformable_header import MAIN, zigzag
+from deformable_header import COMPUTED, MAIN, NO_BASIS, zigzag
 from deformable_motion import FARTHEST, combine, lim
 from packet import Receiver
 from range_coder import RangeDecoder
@@ -356,7 +356,16 @@ def tell_deformable(f, item):
         f.three(f"rest[{v}]", rest)
     for t, corners in enumerate(item.triangles):
         f.three(f"corners of triangle {t}", corners)
-    for k in range(f.varint("mode_count") if main else 0):
+    basis = f.number("basis", "B") if main else NO_BASIS
+    if basis == NO_BASIS:
+        return
+    f.varint("mode_count")
+    if basis == COMPUTED:
+        for run in range(f.varint("run_count")):
+            f.varint(f"gap[{run}]")
+            f.varint(f"more[{run}]")
+        return
+    for k in range(item.mode_count):
         f.number(f"mode_step[{k}]", "H")
         f.take(f"entries of mode {k}", sum(1 if -64 <= e < 64 else 2 for e in item.modes[k].entries))
 

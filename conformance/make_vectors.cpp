@@ -49,6 +49,7 @@ Catalogue all() {
   add_deformable_edges(catalogue);
   add_deformable_start_rows(catalogue);
   add_deformable_orders(catalogue);
+  add_deformable_springs(catalogue);
   return catalogue;
 }
 

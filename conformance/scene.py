@@ -8,17 +8,19 @@ from dataclasses import dataclass, field
 from typing import NamedTuple, Optional
 
 from conventions import ONE, STR_5, STR_5_VARINT, Cursor, require, text
+from deformable_basis import computed_modes, work
 from deformable_header import THESIS, DeformableObject, read_deformable_objects
 
 
 class Limits(NamedTuple):
-    """What this decoder accepts at most (R-STR-14, R-STR-18, R-FIL-4, R-PKT-1)."""
+    """What this decoder accepts at most (R-STR-14, R-STR-18, R-STR-21, R-FIL-4, R-PKT-1)."""
     objects: int = 4096
     body_size: int = 1 << 20
     packet_size: int = 1 << 20
     vertices: int = 1 << 20                                 # of all deformable objects
     triangles: int = 1 << 21                                # the same
     state_bytes: int = 1 << 28                              # R-STR-18
+    basis_work: int = 1 << 22                               # R-STR-21
 
 
 MAGIC = b"\x89TCT"
@@ -118,6 +120,10 @@ def read_declaration(data: bytes, limits: Limits = Limits()) -> tuple[Declaratio
     names = [item.name for item in (*scene.objects, *scene.deformables)]
     require(len(set(names)) == len(names), "invalid", "R-STR-11")
     require(state_bytes(scene) <= limits.state_bytes, "limit_exceeded", "R-STR-18")
+    require(sum(work(item) for item in scene.deformables) <= limits.basis_work, "limit_exceeded", "R-STR-21")
+    for item in scene.deformables:
+        if item.fixed is not None:
+            item.modes = computed_modes(item)
     return scene, end + 4
 
 
@@ -136,7 +142,7 @@ def state_bytes(scene: Declaration) -> int:
     load = 12 * (2 + scene.loads.users) if scene.loads else 0
     total = (64 + load) * states * len(scene.objects)
     for item in scene.deformables:
-        total += states * ((24 if item.layered else 12) * len(item.rest) + 48 * len(item.modes))
+        total += states * ((24 if item.layered else 12) * len(item.rest) + 48 * item.mode_count)
         if item.profile == THESIS:
             total += (states + 2 if item.models_kept else 2) * 4 * (254 + (1 << item.quant_bits))
     return total

@@ -12,10 +12,6 @@
 
 #include <tactus/base/rule.h>
 #include <tactus/rigid/trigger.h>
-#ifdef TACTUS_HAS_MODES
-#include <tactus/deformable/displacement.h>
-#include <tactus/sim/modes/spring_modes.h>
-#endif
 
 namespace tactus::cli {
 namespace {
@@ -23,15 +19,6 @@ namespace {
 // What the grid of every stream can hold (make_thresholds() of the rigid encoder): 8 steps of position and of rotation.
 constexpr double kLeastLength = 2e-6, kMostLength = 1e6;        // [m]
 constexpr double kLeastAngle = 0.002 * std::numbers::pi / 180;  // [rad]
-
-#ifdef TACTUS_HAS_MODES
-Result<ModeBasis> spring_basis(const TraceDeformable& mesh, std::size_t modes) {
-  TACTUS_TRY(const std::vector<double> vectors, sim::spring_modes(mesh.rest, mesh.fixed, modes));
-  return make_mode_basis(vectors, modes);
-}
-#else
-Result<ModeBasis> spring_basis(const TraceDeformable&, std::size_t) { return fail(Errc::unsupported, "R-SIM-4"); }
-#endif
 
 }  // namespace
 
@@ -200,9 +187,10 @@ void MeshArguments::add_encoder_to(Command& app) {
   const std::map<std::string, DeformableProfile> profiles{{"thesis", DeformableProfile::thesis},
                                                           {"main", DeformableProfile::main}};
   const auto profile = [this, profiles](const std::string& name) { coding_.profile = profiles.at(name); };
-  Option* modes = app.add_option("--basis", modes_, "Vibration modes declared to both ends, 0: none (--profile main) [0]")
-                      ->check(whole_number(0, ModeBasis::kMaxModes))
-                      ->type_name("K");
+  Option* modes =
+      app.add_option("--basis", modes_, "Vibration modes that both ends compute from the mesh, 0: none (--profile main) [0]")
+          ->check(whole_number(0, ModeBasis::kMaxModes))
+          ->type_name("K");
   options_.insert(
       options_.end(),
       {app.add_option(
@@ -248,9 +236,7 @@ SenderOptions MeshArguments::sender(const TriggerArguments& triggers) const {
 }
 
 TraceCoding MeshArguments::coding(const TriggerArguments& triggers) const {
-  TraceCoding out{.deformable = coding_, .is_eased = is_main() && triggers.reduces()};
-  if (modes_ > 0) out.basis = [modes = modes_](const TraceDeformable& mesh) { return spring_basis(mesh, modes); };
-  return out;
+  return {.deformable = coding_, .spring_modes = static_cast<std::uint8_t>(modes_), .is_eased = is_main() && triggers.reduces()};
 }
 
 Option* add_interpolation(Command& app, ReplicaOptions& options) {

@@ -47,6 +47,18 @@ double stiffness_at(const DeformableObject& object, std::uint32_t triangle, cons
   return sum;
 }
 
+void append_mode(ModeBasis& basis, std::span<const double> vector, double coarseness) {
+  double largest = 0, square = 0;
+  for (const double c : vector) largest = std::max(largest, std::abs(c));
+  if (largest == 0) largest = 1;
+  for (const double c : vector) {
+    basis.entries.push_back(static_cast<std::int16_t>(std::floor(c / largest * ModeBasis::kMaxEntry + 0.5)));
+    square += (c / largest) * (c / largest);
+  }
+  const double step = coarseness / std::sqrt(std::max(square, 1.0)) * 4096 * 2048 / ModeBasis::kMaxEntry;
+  basis.steps.push_back(static_cast<std::uint16_t>(std::clamp(std::floor(step + 0.5), 1.0, 65535.0)));
+}
+
 Result<ModeBasis> make_mode_basis(std::span<const double> vectors, std::size_t modes, double coarseness) try {
   if (modes > ModeBasis::kMaxModes || modes == 0 || vectors.size() % (3 * modes) != 0)
     return fail(Errc::invalid_argument, "R-API-9");
@@ -55,18 +67,11 @@ Result<ModeBasis> make_mode_basis(std::span<const double> vectors, std::size_t m
   out.entries.reserve(vectors.size());
   for (std::size_t k = 0; k < modes; ++k) {
     const auto mode = vectors.subspan(k * components, components);
-    double largest = 0, square = 0;
-    for (const double c : mode) {
-      if (!std::isfinite(c)) return fail(Errc::invalid_argument, "R-API-1");
-      largest = std::max(largest, std::abs(c));
-    }
-    if (!(largest > 0)) return fail(Errc::invalid_argument, "R-API-1");
-    for (const double c : mode) {
-      out.entries.push_back(static_cast<std::int16_t>(std::floor(c / largest * ModeBasis::kMaxEntry + 0.5)));
-      square += (c / largest) * (c / largest);
-    }
-    const double step = coarseness / std::sqrt(square) * 4096 * 2048 / ModeBasis::kMaxEntry;
-    out.steps.push_back(static_cast<std::uint16_t>(std::clamp(std::floor(step + 0.5), 1.0, 65535.0)));
+    const auto is_finite = [](double c) { return std::isfinite(c); };
+    const auto is_zero = [](double c) { return c == 0; };
+    if (!std::ranges::all_of(mode, is_finite) || std::ranges::all_of(mode, is_zero))
+      return fail(Errc::invalid_argument, "R-API-1");
+    append_mode(out, mode, coarseness);
   }
   return out;
 } catch (const std::bad_alloc&) {

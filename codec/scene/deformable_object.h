@@ -29,6 +29,16 @@ struct ModeBasis {
   friend bool operator==(const ModeBasis&, const ModeBasis&) = default;
 };
 
+/// A basis that nobody declares: both ends compute the slowest modes of a network of springs. spec/50-deformable.md section 10
+struct SpringBasis {
+  std::uint8_t modes = 0;            ///< K, 0: none
+  std::vector<std::uint32_t> fixed;  ///< vertices that do not move, ascending
+  friend bool operator==(const SpringBasis&, const SpringBasis&) = default;
+};
+
+/// Round a vector to the next mode of a basis; scale and step are those of make_mode_basis().   pre  finite
+void append_mode(ModeBasis& basis, std::span<const double> vector, double coarseness = 1.5);
+
 /// Makes a basis from vectors (modes x vertices x 3, any scale). Entries are scaled to the largest one. Quantiser steps are
 /// chosen so that rounding any coefficient moves the mesh by the same root mean square: `coarseness` visual bounds in the norm of
 /// the whole mesh.
@@ -51,7 +61,8 @@ struct DeformableObject {
   bool layered = false;              ///< main: each packet belongs to the haptic or the visual layer
   std::vector<std::array<std::int32_t, 3>> rest;  ///< vertices, x 2^-position_exp m
   std::vector<Triangle> triangles;
-  ModeBasis basis;  ///< main
+  ModeBasis basis;           ///< main
+  SpringBasis spring_basis;  ///< main: in place of `basis`, which a Scene then computes
   std::vector<std::uint8_t>
       stiffness;  ///< levels (stiffness_level), one per vertex: what clients with delay need; empty: not told
   friend bool operator==(const DeformableObject&, const DeformableObject&) = default;

@@ -12,6 +12,7 @@ namespace tactus {
 namespace {
 
 constexpr std::uint32_t kNoVertex = 0xffffffff;
+constexpr std::uint8_t kNoBasis = 0, kDeclared = 1, kComputed = 2;  // basis
 
 bool are_parameters(const DeformableObject& m) noexcept {
   if (m.rings > DeformableObject::kMaxRings) return false;
@@ -23,8 +24,19 @@ bool is_triangle(const Triangle& t, std::size_t vertices) noexcept {
   return t[0] < vertices && t[1] < vertices && t[2] < vertices && t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
 }
 
+/// What has been computed from it does not matter.
+bool is_spring_basis(const DeformableObject& m) noexcept {
+  const SpringBasis& s = m.spring_basis;
+  if (m.profile == DeformableProfile::thesis || s.modes > ModeBasis::kMaxModes) return false;
+  for (std::size_t i = 0; i < s.fixed.size(); ++i)
+    if (s.fixed[i] >= m.rest.size() || (i > 0 && s.fixed[i] <= s.fixed[i - 1])) return false;
+  return s.modes <= 3 * (m.rest.size() - s.fixed.size());
+}
+
 bool is_basis(const DeformableObject& m) noexcept {
   const ModeBasis& b = m.basis;
+  if (m.spring_basis.modes > 0) return is_spring_basis(m);
+  if (!m.spring_basis.fixed.empty()) return false;
   if (b.steps.size() > ModeBasis::kMaxModes || b.entries.size() != 3 * m.rest.size() * b.steps.size()) return false;
   if (m.profile == DeformableProfile::thesis && !b.steps.empty()) return false;
   return std::none_of(b.steps.begin(), b.steps.end(), [](std::uint16_t s) { return s == 0; }) &&
@@ -93,10 +105,7 @@ Result<void> parse_triangles(ByteReader& in, std::uint64_t count, DeformableObje
   return {};
 }
 
-Result<void> parse_basis(ByteReader& in, DeformableObject& object) {
-  const std::uint64_t modes = in.varint();
-  if (!in.ok()) return fail(class_of_overflow(in), "R-STR-5", in.bit_offset());
-  if (modes > ModeBasis::kMaxModes) return fail(Errc::invalid, "R-DEF-7", in.bit_offset());
+Result<void> parse_declared(ByteReader& in, std::uint64_t modes, DeformableObject& object) {
   const std::size_t components = 3 * object.rest.size();
   if (modes * (components + 2) > in.remaining()) return fail(Errc::truncated, "R-STR-5", in.bit_offset());
   object.basis.entries.reserve(static_cast<std::size_t>(modes) * components);
@@ -112,6 +121,68 @@ Result<void> parse_basis(ByteReader& in, DeformableObject& object) {
   }
   if (!in.ok()) return fail(class_of_overflow(in), "R-STR-5", in.bit_offset());
   return {};
+}
+
+/// The fixed vertices, as runs of consecutive ones.
+Result<void> parse_springs(ByteReader& in, std::uint64_t modes, DeformableObject& object) {
+  const std::uint64_t runs = in.varint(), vertices = object.rest.size();
+  if (!in.ok()) return fail(class_of_overflow(in), "R-STR-5", in.bit_offset());
+  if (runs > in.remaining() / 2) return fail(Errc::truncated, "R-STR-5", in.bit_offset());
+  SpringBasis& basis = object.spring_basis;
+  std::uint64_t end = 0;
+  for (std::uint64_t r = 0; r < runs; ++r) {
+    const std::uint64_t gap = in.varint(), more = in.varint();
+    if (!in.ok()) return fail(class_of_overflow(in), "R-STR-5", in.bit_offset());
+    if ((r > 0 && gap == 0) || gap >= vertices - end || more >= vertices - end - gap)
+      return fail(Errc::invalid, "R-DEF-7", in.bit_offset());
+    for (std::uint64_t v = end + gap; v <= end + gap + more; ++v) basis.fixed.push_back(static_cast<std::uint32_t>(v));
+    end += gap + more + 1;
+  }
+  if (modes > 3 * (vertices - basis.fixed.size())) return fail(Errc::invalid, "R-DEF-7", in.bit_offset());
+  basis.modes = static_cast<std::uint8_t>(modes);
+  return {};
+}
+
+Result<void> parse_basis(ByteReader& in, DeformableObject& object) {
+  const std::uint8_t basis = in.u8();
+  if (!in.ok()) return fail(Errc::truncated, "R-STR-5", in.bit_offset());
+  if (basis > kComputed) return fail(Errc::malformed, "R-DEF-7", in.bit_offset());
+  if (basis == kNoBasis) return {};
+  const std::uint64_t modes = in.varint();
+  if (!in.ok()) return fail(class_of_overflow(in), "R-STR-5", in.bit_offset());
+  if (modes < 1 || modes > ModeBasis::kMaxModes) return fail(Errc::invalid, "R-DEF-7", in.bit_offset());
+  return basis == kDeclared ? parse_declared(in, modes, object) : parse_springs(in, modes, object);
+}
+
+void write_springs(ByteWriter& out, const SpringBasis& basis) {
+  const auto& fixed = basis.fixed;
+  const auto begins = [&](std::size_t i) { return i == 0 || fixed[i] != fixed[i - 1] + 1; };
+  std::size_t runs = 0;
+  for (std::size_t i = 0; i < fixed.size(); ++i) runs += begins(i) ? 1u : 0u;
+  out.varint(basis.modes);
+  out.varint(runs);
+  for (std::size_t i = 0, end = 0; i < fixed.size();) {
+    const std::size_t first = i++;
+    while (i < fixed.size() && !begins(i)) ++i;
+    out.varint(fixed[first] - end);
+    out.varint(i - first - 1);
+    end = fixed[i - 1] + std::size_t{1};
+  }
+}
+
+void write_basis(ByteWriter& out, const DeformableObject& object) {
+  if (object.spring_basis.modes > 0) {
+    out.u8(kComputed);
+    return write_springs(out, object.spring_basis);
+  }
+  if (object.basis.steps.empty()) return out.u8(kNoBasis);
+  const std::size_t components = 3 * object.rest.size();
+  out.u8(kDeclared);
+  out.varint(object.basis.steps.size());
+  for (std::size_t k = 0; k < object.basis.steps.size(); ++k) {
+    out.u16(object.basis.steps[k]);
+    for (std::size_t i = 0; i < components; ++i) out.varint(zigzag(object.basis.entries[k * components + i]));
+  }
 }
 
 }  // namespace
@@ -156,13 +227,7 @@ void write_deformable(ByteWriter& out, const DeformableObject& object) {
     }
     first = t[0];
   }
-  if (object.profile == DeformableProfile::thesis) return;
-  const std::size_t components = 3 * object.rest.size();
-  out.varint(object.basis.steps.size());
-  for (std::size_t k = 0; k < object.basis.steps.size(); ++k) {
-    out.u16(object.basis.steps[k]);
-    for (std::size_t i = 0; i < components; ++i) out.varint(zigzag(object.basis.entries[k * components + i]));
-  }
+  if (object.profile == DeformableProfile::main) write_basis(out, object);
 }
 
 Result<DeformableObject> parse_deformable(ByteReader& in, const DeformableRoom& room) {

@@ -10,6 +10,7 @@
 #include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
 #include <tactus/base/shown.h>
+#include <tactus/deformable/spring_basis.h>
 #include <tactus/scene/bounds_syntax.h>
 #include <tactus/scene/scene_rules.h>
 
@@ -97,6 +98,7 @@ Result<void> find_broken_rule(const SceneSpec& spec, const DecodeLimits& limits)
   if (const RuleName rule = broken_load_rule(spec)) return fail(Errc::invalid, rule);
   if (spec.bounds && !are_bounds(spec)) return fail(Errc::invalid, "R-STR-17");
   if (state_bytes(spec) > limits.state_bytes) return fail(Errc::limit_exceeded, "R-STR-18");
+  if (basis_work(spec) > limits.basis_work) return fail(Errc::limit_exceeded, "R-STR-21");
   return {};
 }
 
@@ -111,6 +113,8 @@ Result<void> check_scene(const SceneSpec& spec, const DecodeLimits& limits) try 
 Scene::Scene(SceneSpec&& spec) : SceneSpec(std::move(spec)) {
   for (std::uint32_t i = 0; i < objects.size(); ++i)
     if (objects[i].dof != Dof::none) moving_.push_back(i);
+  for (DeformableObject& object : deformables)
+    if (object.spring_basis.modes > 0) object.basis = spring_basis(object);
 }
 
 Result<SharedScene> Scene::create(SceneSpec spec, const DecodeLimits& limits) try {
@@ -125,9 +129,19 @@ std::uint64_t state_bytes(const SceneSpec& spec) noexcept {
   const std::uint64_t load = spec.loads ? 12 * (2 + std::uint64_t{spec.loads->users}) : 0;
   std::uint64_t sum = (64 + load) * states * spec.objects.size();
   for (const DeformableObject& object : spec.deformables) {
-    sum += states * ((object.layered ? 24 : 12) * object.rest.size() + 48 * object.basis.steps.size());
+    const std::size_t modes = std::max<std::size_t>(object.basis.steps.size(), object.spring_basis.modes);
+    sum += states * ((object.layered ? 24 : 12) * object.rest.size() + 48 * modes);
     if (object.profile == DeformableProfile::thesis)
       sum += (object.models_kept ? states + 2 : 2) * 4 * (254 + (std::uint64_t{1} << object.quant_bits));
+  }
+  return sum;
+}
+
+std::uint64_t basis_work(const SceneSpec& spec) noexcept {
+  std::uint64_t sum = 0;
+  for (const DeformableObject& object : spec.deformables) {
+    const std::uint64_t vertices = object.rest.size();
+    sum += object.spring_basis.modes * (vertices + 15 * std::min<std::uint64_t>(vertices, kBasisCore));
   }
   return sum;
 }

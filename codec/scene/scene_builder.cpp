@@ -23,7 +23,10 @@ Result<void> apply(DeformableCoding& coding, DeformableObject& object) {
   object.layered = coding.profile == DeformableProfile::main && coding.layered;
   object.frame_period = static_cast<std::uint32_t>(
       std::clamp(std::floor(256 * coding.frame_period + 0.5), 1.0, double{DeformableObject::kMaxFramePeriod}));
-  if (coding.profile == DeformableProfile::main) object.basis = std::move(coding.basis);
+  if (coding.profile == DeformableProfile::main) {
+    object.basis = std::move(coding.basis);
+    object.spring_basis = std::move(coding.spring_basis);
+  }
   for (const double stiffness : coding.stiffness) {
     TACTUS_TRY(const std::uint8_t level, stiffness_level(stiffness));
     object.stiffness.push_back(level);

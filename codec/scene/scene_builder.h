@@ -22,6 +22,7 @@ struct DeformableCoding {
   double frame_period = 1;      ///< main: [ticks] from shape to shape, > 0
   bool layered = false;         ///< main: separate packets for the haptic and the visual layer
   ModeBasis basis{};            ///< main
+  SpringBasis spring_basis{};   ///< main: in place of `basis`
   /// [N/m] of each vertex, infinite where it does not move; empty: not told. What clients with delay render by (StiffnessReduction).
   std::vector<double> stiffness{};
 };

@@ -112,5 +112,6 @@ void add_deformable_rules(Catalogue& catalogue);
 void add_deformable_edges(Catalogue& catalogue);
 void add_deformable_start_rows(Catalogue& catalogue);
 void add_deformable_orders(Catalogue& catalogue);
+void add_deformable_springs(Catalogue& catalogue);
 
 }  // namespace tactus::conformance

@@ -52,6 +52,20 @@ Bytes RawDeformable::bytes() const {
     first = t[0];
   }
   if (profile == 0) return out;
+  if (basis) {
+    append(out, *basis);
+    return out;
+  }
+  if (spring_modes > 0) {
+    append(out, Bytes{2} + varint(spring_modes) + varint(runs.size()));
+    for (const auto& [gap, more] : runs) append(out, varint(gap) + varint(more));
+    return out;
+  }
+  if (mode_steps.empty() && !mode_count) {
+    out.push_back(0);
+    return out;
+  }
+  out.push_back(1);
   append(out, mode_count.value_or(varint(mode_steps.size())));
   for (std::size_t k = 0; k < mode_steps.size(); ++k) {
     ByteWriter(out).u16(mode_steps[k]);
@@ -275,7 +289,7 @@ Bytes random_walk(const RawDeformable& item, std::uint64_t seed, int packets, st
     step.haptic = random.below(60);
     step.visual = random.below(3) == 0 ? random.below(1000) : 100;
     step.density = random.below(4);
-    for (std::size_t k = 0; k < item.mode_steps.size(); ++k) step.coefficients.push_back(random.integer(6));
+    for (std::size_t k = 0; k < item.modes(); ++k) step.coefficients.push_back(random.integer(6));
     step.residuals = random_residuals(random, 6, 64 * (step.density + 1) - 1);
     stream.add(step);
     tick += frame * random.below(4);

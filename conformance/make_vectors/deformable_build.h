@@ -47,12 +47,16 @@ struct RawDeformable {
   std::uint32_t frame_period = 256;  ///< main
   std::uint8_t layered = 0;          ///< main
   std::vector<std::uint16_t> mode_steps{};
-  std::vector<std::int32_t> entries{};    ///< modes x vertices x 3
-  std::optional<Bytes> vertex_count{};    ///< in place of the true number
-  std::optional<Bytes> triangle_count{};  ///< in place of the true number
-  std::optional<Bytes> mode_count{};      ///< in place of the true number
+  std::vector<std::int32_t> entries{};               ///< modes x vertices x 3
+  std::uint8_t spring_modes = 0;                     ///< of a computed basis, in place of a declared one
+  std::vector<std::array<std::uint64_t, 2>> runs{};  ///< gap and more of its fixed vertices
+  std::optional<Bytes> basis{};                      ///< in place of everything from the element `basis` on
+  std::optional<Bytes> vertex_count{};               ///< in place of the true number
+  std::optional<Bytes> triangle_count{};             ///< in place of the true number
+  std::optional<Bytes> mode_count{};                 ///< in place of the true number
 
   Bytes bytes() const;
+  std::size_t modes() const { return spring_modes > 0 ? spring_modes : mode_steps.size(); }
 };
 
 Bytes zigzag_varint(std::int64_t value);

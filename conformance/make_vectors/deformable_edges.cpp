@@ -257,7 +257,7 @@ Bytes single_units() {
 Input crowd_of_triangles(std::span<const MainStep> steps) {
   const Shape shape{one_triangle().rest, std::vector<Triangle>(65538, {0, 1, 2})};
   DeformableStream stream(only({.shape = shape, .rings = 0}));
-  const std::size_t end = stream.bytes().size() - 5;  // of the triangles, before mode_count and crc
+  const std::size_t end = stream.bytes().size() - 5;  // of the triangles, before basis and crc
   for (const MainStep& step : steps) stream.add(step);
   const std::size_t triangles = 65537;
   return {stream.finished(), {end - 3 * triangles, {0, 2, 2}, triangles}};

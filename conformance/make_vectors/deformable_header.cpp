@@ -74,7 +74,7 @@ void add_counts(Catalogue& c) {
   c.invalid("no-room-for-2-20", "2^20 vertices announced; none follows.", cut, counted(1 << 20, 0, zeros(3)));
   c.invalid("no-room-for-2-21", "2^21 triangles announced; none follows.", cut, counted(3, 1 << 21, zeros(9)));
   c.invalid("no-room-for-modes", "One byte too few for a mode of one vertex.", cut,
-            counted(1, 0, zeros(3) + Bytes{1} + zeros(4)));
+            counted(1, 0, zeros(3) + Bytes{1, 1} + zeros(4)));
   c.invalid("cut-corner", "The body ends inside the last corner.", cut, counted(3, 1, zeros(9) + Bytes{0, 2, 0x82}));
   c.invalid("overlong-rest", "A rest coordinate's difference 0 is written in two bytes.", overlong,
             counted(1, 0, Bytes{0x80, 0x00} + zeros(3)));
@@ -121,7 +121,7 @@ void add_rules(Catalogue& c) {
   c.invalid("entry-minus-2048", "An entry of a mode is -2048.", basis,
             changed(1, [](RawDeformable& m) { m.entries[0] = -2048; }));
   c.invalid("mode-step-before-cut", "A mode's step is 0, and its last entry is cut.", {"invalid", "R-DEF-7", "R-STR-5"},
-            counted(1, 0, zeros(3) + Bytes{1, 0, 0, 0, 0, 0x80}));
+            counted(1, 0, zeros(3) + Bytes{1, 1, 0, 0, 0, 0, 0x80}));
 }
 
 void add_names(Catalogue& c) {

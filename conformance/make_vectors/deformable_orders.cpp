@@ -41,7 +41,7 @@ void add_declaration(Catalogue& c) {
   c.invalid("cut-before-corner", "A corner is the number 9 of 3 vertices; the body ends inside the triangle's last corner.",
             {"truncated", "R-STR-5", "R-DEF-6"}, counted(3, 1, Bytes(9, 0) + Bytes{18, 2, 0x82}));
   c.invalid("mode-count-before-room", "65 modes; none follows.", {"invalid", "R-DEF-7", "R-STR-5"},
-            counted(1, 0, Bytes{0, 0, 0, 65}));
+            counted(1, 0, Bytes{0, 0, 0, 1, 65}));
 }
 
 void add_names(Catalogue& c) {

@@ -16,7 +16,8 @@ constexpr std::array kFlags{
     Flag{"bounds", "the scene declaration has a bounds record"},
     Flag{"loads", "the scene has loads"},
     Flag{"eased", "the scene is eased"},
-    Flag{"basis", "a deformable object has modes"},
+    Flag{"basis", "a deformable object has modes that are declared"},
+    Flag{"computed_basis", "a deformable object has modes that both ends compute"},
     Flag{"layered", "a deformable object has haptic and visual layers"},
     Flag{"models_kept", "entropy models are part of a deformable object's state"},
     Flag{"client", "runs a client: the testee is called with --replica"},
@@ -73,8 +74,11 @@ void skim_deformable(Skimmer& in, Features& out) {
   in.skip_varints(3 * vertices);
   in.skip_varints(3 * triangles);
   if (profile == 0) return;
+  const unsigned basis = in.u8();
+  if (basis == 0) return;
   const std::uint64_t modes = in.varint();
-  if (modes > 0) out.flags.insert("basis");
+  out.flags.insert(basis == 1 ? "basis" : "computed_basis");
+  if (basis == 2) return in.skip_varints(2 * in.varint());
   for (std::uint64_t k = 0; k < modes && !in.at_end(); ++k) {
     in.skip(2);
     in.skip_varints(3 * vertices);

@@ -14,6 +14,11 @@ Result<void> add_deformable(SceneBuilder& scene, const TraceDeformable& mesh, co
   if (of.profile == DeformableProfile::main && coding.basis) {
     TACTUS_TRY(of.basis, coding.basis(mesh));
   }
+  if (of.profile == DeformableProfile::main && coding.spring_modes > 0) {
+    if (coding.spring_modes >= 3 * (mesh.rest.vertices.size() - mesh.fixed.size()))
+      return fail(Errc::invalid_argument, "R-API-9");
+    of.spring_basis = {coding.spring_modes, mesh.fixed};
+  }
   scene.deformable(mesh.name, mesh.rest, std::move(of));
   return {};
 }

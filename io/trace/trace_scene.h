@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -17,11 +18,12 @@ namespace tactus {
 /// Coding options of a trace's objects; the trace sets the frame periods of the deformable ones.
 struct TraceCoding {
   DeformableCoding deformable{};
+  std::uint8_t spring_modes = 0;  ///< main: modes of the basis that both ends compute for each object
   std::function<Result<ModeBasis>(const TraceDeformable&)> basis{};  ///< main: makes each object's basis; empty: without
   bool is_eased = false;                                             ///< SceneBuilder::eased()
 };
 
-/// Declares a deformable object.   err  those of the basis
+/// Declares a deformable object.   err  those of the basis; R-API-9 spring_modes are not less than the free components
 Result<void> add_deformable(SceneBuilder& scene, const TraceDeformable& mesh, const TraceCoding& coding);
 
 /// The scene of a trace: its objects in order, at rest in the poses of `first`, and its deformable objects.

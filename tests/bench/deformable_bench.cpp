@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Cost of deformable objects per frame: both profiles, with and without a basis, 10^2 to 10^6 vertices. A dent walks over a sheet.
+/// Cost of deformable objects per frame, and of making both ends ready: both profiles, with and without a basis, 10^2 to 10^6
+/// vertices. A dent walks over a sheet.
 #include <benchmark/benchmark.h>
 #include <malloc.h>
 
@@ -117,6 +118,32 @@ void decode_frame(benchmark::State& state, Kind kind) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(vertices_of(recording)));
 }
 
+SharedScene still_sheet(std::uint32_t squares) { return testing::shared(testing::sheet_spec(testing::sheet(squares, squares))); }
+
+void create_sender(benchmark::State& state) {
+  const SharedScene scene = still_sheet(static_cast<std::uint32_t>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(Sender::create(scene));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(scene->deformables[0].rest.size()));
+}
+
+void create_receiver(benchmark::State& state) {
+  const SharedScene scene = still_sheet(static_cast<std::uint32_t>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(Receiver::create(scene));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(scene->deformables[0].rest.size()));
+}
+
+/// The scene's part of it: the basis that both ends compute.
+void compute_basis(benchmark::State& state) {
+  const auto squares = static_cast<std::uint32_t>(state.range(0));
+  SceneSpec spec = testing::sheet_spec(testing::sheet(squares, squares));
+  spec.deformables[0].spring_basis = {static_cast<std::uint8_t>(state.range(1)), {0, squares}};
+  for (auto _ : state) benchmark::DoNotOptimize(Scene::create(spec));
+  state.counters["vertices"] = static_cast<double>(spec.deformables[0].rest.size());
+}
+
+BENCHMARK(compute_basis)->Args({26, 48})->Args({70, 48})->Args({223, 48})->Args({26, 64})->Unit(benchmark::kMillisecond);
+BENCHMARK(create_sender)->Arg(31)->Arg(99)->Arg(315)->Arg(999)->Unit(benchmark::kMillisecond);
+BENCHMARK(create_receiver)->Arg(31)->Arg(99)->Arg(315)->Arg(999)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(encode_frame, thesis, Kind::thesis)->Arg(26)->Arg(99)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(encode_frame, main, Kind::main)->Arg(9)->Arg(26)->Arg(99)->Arg(315)->Arg(1023)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(encode_frame, basis, Kind::basis)->Arg(26)->Arg(99)->Unit(benchmark::kMicrosecond);

@@ -13,6 +13,7 @@ namespace {
 using namespace tactus;
 
 constexpr DecodeLimits kLimits{.state_bytes = 1u << 24};  // few bytes can ask for many states, which take long to make
+constexpr DecodeLimits kParsed{.basis_work = 1u << 14};   // or for a basis
 
 void check_ends(const SharedScene& scene) {
   const auto receiver = Receiver::create(scene, {.replica = {}, .limits = kLimits});
@@ -33,7 +34,7 @@ void check_ends(const SharedScene& scene) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::vector<std::uint8_t> exact(data, data + size);  // an own block, so that one byte too far is seen
-  const auto parsed = parse_scene(exact);
+  const auto parsed = parse_scene(exact, kParsed);
   if (!parsed) {
     require(parsed.error().rule[0] == 'R' && parsed.error().bit_offset <= 8 * size);
     return 0;

@@ -52,6 +52,7 @@ struct Setting {
   std::size_t modes = 0;
   double visual = 1e-3, noise = 1e-5;
   bool layered = false;
+  std::uint8_t spring_modes = 0;
 };
 
 /// The sheet's shape, pushed about.
@@ -105,6 +106,7 @@ SharedScene scene_of(const TriMesh& mesh, const Setting& setting) {
   object.profile = setting.profile;
   object.layered = setting.layered;
   if (setting.modes > 0) object.basis = make_mode_basis(bumps(mesh, setting.modes), setting.modes).value();
+  if (setting.spring_modes > 0) object.spring_basis = {setting.spring_modes, {0, 1, 2, 40}};
   spec.deformables.push_back(std::move(object));
   return Scene::create(std::move(spec)).value();
 }
@@ -146,7 +148,8 @@ bool run(const char* name, const Setting& setting) {
 bool run_meshes() {
   return run("mesh-thesis", {.profile = DeformableProfile::thesis}) && run("mesh-main", {}) &&
          run("mesh-noise", {.visual = 2e-4, .noise = 1e-3}) && run("mesh-basis", {.modes = 8}) &&
-         run("mesh-exact", {.modes = 5, .visual = 0}) && run("mesh-split", {.modes = 8, .layered = true});
+         run("mesh-exact", {.modes = 5, .visual = 0}) && run("mesh-split", {.modes = 8, .layered = true}) &&
+         run("mesh-springs", {.spring_modes = 12});
 }
 
 }  // namespace tactus::golden

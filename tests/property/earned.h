@@ -2,6 +2,7 @@
 /// What a stream may make a receiver allocate.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -21,6 +22,11 @@ inline std::uint64_t earned(std::size_t bytes, const SceneSpec& spec) {
     const bool has_models = object.profile == DeformableProfile::thesis;
     const std::uint64_t models = has_models ? 254 + (std::uint64_t{1} << object.quant_bits) : 0;
     out += 4096 + 256 * span + 4 * (span + 4) * models;
+    if (const std::uint64_t modes = object.spring_basis.modes; modes > 0) {
+      const std::uint64_t vertices = object.rest.size(), columns = modes + 16;
+      out += vertices * (1024 + 6 * modes) + std::min<std::uint64_t>(vertices, 1024) * (8192 + 200 * columns) +
+             512 * columns * columns + 48 * (span + 2) * modes;
+    }
   }
   return out;
 }

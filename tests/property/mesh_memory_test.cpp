@@ -78,8 +78,8 @@ DeformableObject bipartite() {
 }
 
 TEST(MeshMemory, OfMeshesThatTakeMost) {
-  std::vector<DeformableObject> objects{points(1),    points(1),    points(1), points(3000),
-                                        points(3000), points(3000), books(50), bipartite()};
+  std::vector<DeformableObject> objects{points(1), points(1),   points(1), points(3000), points(3000), points(3000),
+                                        books(50), bipartite(), points(1), points(30),   points(1100)};
   objects[0].profile = DeformableProfile::thesis;
   objects[0].quant_bits = 12;
   objects[0].models_kept = true;
@@ -89,6 +89,9 @@ TEST(MeshMemory, OfMeshesThatTakeMost) {
   for (auto& at : objects[3].rest) at = {};  // copies of one vertex: each is a neighbour of the next
   objects[4].layered = true;
   for (std::uint32_t i = 0; i < 3000; ++i) objects[5].triangles.push_back({0, 1, 2});
+  objects[8].spring_basis = {3, {}};
+  objects[9].spring_basis = {64, {}};
+  objects[10].spring_basis = {48, {0, 1, 5}};
   for (const DeformableObject& object : objects) {
     for (const std::uint8_t span : {std::uint8_t{1}, std::uint8_t{64}}) {
       SCOPED_TRACE(&object - objects.data());

@@ -99,6 +99,41 @@ TEST(SceneDeformables, EachRule) {
             "R-DEF-3");
 }
 
+TEST(SceneDeformables, ASpringBasisIsComputedAndNotWritten) {
+  SceneSpec spec = two_deformables();
+  DeformableObject& object = spec.deformables[0];
+  object.basis = {};
+  object.spring_basis = {5, {0, 1, 2, 7, 11}};
+  const SharedScene scene = testing::shared(spec);
+  EXPECT_EQ(scene->deformables[0].basis.steps.size(), 5U);
+  const auto bytes = write_scene(*scene).value();
+  const auto parsed = parse_scene(bytes);
+  ASSERT_TRUE(parsed);
+  EXPECT_EQ(parsed->scene->deformables[0], scene->deformables[0]);
+  spec.deformables[0].spring_basis = {};
+  EXPECT_EQ(bytes.size(), write_scene(*testing::shared(spec)).value().size() + 1 + 1 + 2 * 3) << "mode_count, runs of fixed vertices";
+}
+
+TEST(SceneDeformables, RulesOfASpringBasis) {
+  const auto rule = [](const SpringBasis& basis, const DecodeLimits& limits = {}) {
+    SceneSpec spec = two_deformables();
+    spec.deformables[0].basis = {};
+    spec.deformables[0].spring_basis = basis;
+    const auto scene = Scene::create(std::move(spec), limits);
+    return scene ? std::string_view("none") : std::string_view(scene.error().rule);
+  };
+  EXPECT_EQ(rule({6, {1, 2}}), "none");
+  EXPECT_EQ(rule({0, {1}}), "R-DEF-7") << "fixed vertices of no basis";
+  EXPECT_EQ(rule({65, {}}), "R-DEF-7");
+  EXPECT_EQ(rule({6, {2, 1}}), "R-DEF-7");
+  EXPECT_EQ(rule({6, {1, 1}}), "R-DEF-7");
+  EXPECT_EQ(rule({6, {12}}), "R-DEF-7");
+  EXPECT_EQ(rule({6, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}}), "none");
+  EXPECT_EQ(rule({6, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}}), "R-DEF-7") << "three components are free";
+  EXPECT_EQ(rule({6, {}}, {.basis_work = 6 * 12 * 16}), "none");
+  EXPECT_EQ(rule({6, {}}, {.basis_work = 6 * 12 * 16 - 1}), "R-STR-21");
+}
+
 /// What a writer cannot write: bytes changed by hand.
 TEST(SceneDeformables, EachRuleOfTheReader) {
   DeformableObject mesh;
@@ -116,7 +151,7 @@ TEST(SceneDeformables, EachRuleOfTheReader) {
     const auto parsed = parse_deformable(reader, {1000, 1000});
     return parsed ? std::string_view("none") : std::string_view(parsed.error().rule);
   };
-  // profile, name (2), rings, frame_period (4), layered, vertices, triangles, 9 coordinates, 3 corners, modes
+  // profile, name (2), rings, frame_period (4), layered, vertices, triangles, 9 coordinates, 3 corners, basis
   EXPECT_EQ(rule(0, {1}), "none");
   EXPECT_EQ(rule(0, {2}), "R-DEF-2");
   EXPECT_EQ(rule(3, {33}), "R-DEF-3");
@@ -129,9 +164,19 @@ TEST(SceneDeformables, EachRuleOfTheReader) {
   EXPECT_EQ(rule(11, {0x80, 0x80, 0x80, 0x80, 0x10}), "R-DEF-5");
   EXPECT_EQ(rule(20, {6}), "R-DEF-6");
   EXPECT_EQ(rule(20, {1}), "R-DEF-6");
-  EXPECT_EQ(rule(23, {65}), "R-DEF-7");
+  EXPECT_EQ(rule(23, {3}), "R-DEF-7");
   EXPECT_EQ(rule(23, {1}), "R-STR-5");
-  EXPECT_EQ(rule(23, {0x81, 0}), "R-STR-5");
+  EXPECT_EQ(rule(23, {1, 65}), "R-DEF-7");
+  EXPECT_EQ(rule(23, {1, 0}), "R-DEF-7");
+  EXPECT_EQ(rule(23, {1, 1}), "R-STR-5");
+  EXPECT_EQ(rule(23, {1, 0x81, 0}), "R-STR-5");
+  EXPECT_EQ(rule(23, {2, 1}), "R-STR-5");
+  EXPECT_EQ(rule(23, {2, 1, 0}), "none");
+  EXPECT_EQ(rule(23, {2, 1, 1, 0}), "R-STR-5");
+  EXPECT_EQ(rule(23, {2, 1, 1, 0, 1}), "none");
+  EXPECT_EQ(rule(23, {2, 4, 1, 0, 1}), "R-DEF-7");
+  EXPECT_EQ(rule(23, {2, 1, 1, 0, 3}), "R-DEF-7");
+  EXPECT_EQ(rule(23, {2, 1, 2, 0, 0, 0, 0}), "R-DEF-7");
 }
 
 }  // namespace
