@@ -123,9 +123,10 @@ Option* Command::add_flag(const std::string& names, const std::function<void()>&
 
 Option* Command::add_flag(const std::string& name, const std::string& otherwise,
                           const std::function<void(const std::string&)>& read, const Check& check, const std::string& help) {
-  CLI::Option* const flag = app_->add_flag(name + "{" + otherwise + "}", help);
-  Option* const kept = keep(flag)->check(check);
-  flag->each(read);
+  const auto meant = [otherwise](const std::string& typed) { return typed == "true" ? otherwise : typed; };  // CLI11's for none
+  CLI::Option* const flag = app_->add_flag(name, help);
+  Option* const kept = keep(flag)->check([check, meant](const std::string& typed) { return check(meant(typed)); });
+  flag->each([read, meant](const std::string& typed) { read(meant(typed)); });
   return kept;
 }
 
