@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Thesis figure 3.8 asks people which way of interpolation they prefer. In its place: what each way does to force and object. One run per
-/// seed, whose hand feels the client without interpolation; clients of all ways are sent the same packets.
+/// seed, whose hand feels the client without interpolation; clients of all ways are sent the same packets. A second run per seed, whose
+/// hand feels an eased client (spec 60-client 8), has packets of its own.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +9,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <numeric>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,7 +32,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::array kWays{Interpolation::none, Interpolation::linear, Interpolation::hermite, Interpolation::blending};
-constexpr std::array kNames{"none", "linear", "hermite", "blending"};
+constexpr std::array kEased{Interpolation::none};  // in an eased scene
+constexpr std::array kNames{"none", "linear", "hermite", "blending", "eased"};
 constexpr std::array kScenes{"push-1dof", "rotate-6dof", "rotate-push-lift"};
 constexpr std::array kDeadbands{0.04, 0.25};  // the second is the thesis's (3.2.3.2)
 
@@ -43,7 +47,7 @@ struct Effect {
     return sorted.empty() ? 0 : sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1) + 0.5)];
   }
 };
-using Effects = std::array<Effect, kWays.size()>;
+using Effects = std::array<Effect, kNames.size()>;
 
 /// A client and what it showed last.
 class Watcher {
@@ -92,13 +96,15 @@ class Watcher {
 /// Force along the contact's normal: the truth, and that at what every way shows.
 using Curves = std::vector<std::array<double, 2 + kWays.size()>>;
 
-tl::expected<double, Failure> run_seed(const sim::Scene& scene, const RigidTriggers& triggers, const ReproduceOptions& options,
-                                       std::uint64_t seed, Effects& effects, Curves& curves) {
-  const sim::ChannelOptions channel{.sender = {.triggers = triggers, .deformable = {}, .policy = {}}, .replica = {}};
+/// Packets per second.   in  ways, effects  as many;  curves  of kWays alone, or null
+tl::expected<double, Failure> run_seed(const sim::Scene& scene, const sim::ChannelOptions& channel,
+                                       const ReproduceOptions& options, std::uint64_t seed, std::span<const Interpolation> ways,
+                                       std::span<Effect> effects, Curves* curves) {
+  const RigidTriggers& triggers = channel.sender.triggers;
   auto simulation = sim::Simulation::create(scene, {.seed = seed, .grip = grip_of(options.grip), .channel = channel});
   if (!simulation) return refuse(scene.name, simulation.error());
   std::vector<Watcher> watchers;
-  for (const Interpolation way : kWays) {
+  for (const Interpolation way : ways) {
     auto watcher = Watcher::create(simulation->stream_scene(), way);
     if (!watcher) return refuse(scene.name, watcher.error());
     watchers.push_back(*std::move(watcher));
@@ -110,14 +116,14 @@ tl::expected<double, Failure> run_seed(const sim::Scene& scene, const RigidTrigg
     sent += packets->size();
     const TraceFrame& frame = simulation->frame();
     const Contact& contact = frame.users[0].contact;
-    auto& row = curves.emplace_back();
-    row[0] = sim::kTick * static_cast<double>(tick);
+    Curves::value_type row{sim::kTick * static_cast<double>(tick)};
     if (contact.kind != ContactKind::none) row[1] = norm(contact_force(contact, frame.objects[contact.object].pose));
     for (std::size_t i = 0; i < watchers.size(); ++i) {
       if (const auto taken = watchers[i].take(*packets); !taken) return refuse(scene.name, place_of_tick(tick), taken.error());
       if (contact.kind == ContactKind::none) watchers[i].let_go();
       else row[2 + i] = norm(watchers[i].look(frame, contact, !packets->empty(), triggers, effects[i]));
     }
+    if (curves != nullptr) curves->push_back(row);
   }
   return static_cast<double>(sent) / (sim::kTick * static_cast<double>(simulation->ticks()));
 }
@@ -126,29 +132,32 @@ tl::expected<double, Failure> run_seed(const sim::Scene& scene, const RigidTrigg
 struct Case {
   const char* scene;
   double p;
-  std::vector<double> rates;  ///< [packets/s] by seed
+  std::vector<double> rates, eased_rates;  ///< [packets/s] by seed
   Effects effects;
 };
+
+double mean(const std::vector<double>& of) { return std::accumulate(of.begin(), of.end(), 0.0) / static_cast<double>(of.size()); }
 
 std::string percent(double share) { return fmt::format("{:.2f} %", 100 * share); }
 
 void print(const std::vector<Case>& cases, const ReproduceOptions& options) {
   fmt::print(
-      "Thesis figure 3.8, the part that needs no people: ways of interpolation, seeds 1 to {}. All ways are sent the same "
+      "Thesis figure 3.8, the part that needs no people: ways of interpolation, seeds 1 to {}. All but the last are sent the "
+      "same "
       "packets,\n"
-      "and the hand feels the client without interpolation.\n\n",
+      "and the hand feels the client without interpolation. The last is that of profile main: the hand feels it.\n\n",
       options.seeds);
   Table table;
   table.heading({"scene", "p", "packets/s", "way", "out of the rule", "worst", "force step p50", "p99", "max",
                  "acceleration p90 [m/s2]", "p99"});
   for (const Case& c : cases) {
-    double rate = 0;
-    for (const double r : c.rates) rate += r / static_cast<double>(c.rates.size());
-    for (std::size_t i = 0; i < kWays.size(); ++i) {
+    for (std::size_t i = 0; i < kNames.size(); ++i) {
       const Effect& e = c.effects[i];
       table.row({i == 0 ? c.scene : "", i == 0 ? fmt::format("{:.0f} %", 100 * c.p) : "",
-                 i == 0 ? fmt::format("{:.1f}", rate) : "", kNames[i],
-                 percent(static_cast<double>(e.over) / static_cast<double>(std::max<std::uint64_t>(e.ticks, 1))),
+                 i == 0              ? fmt::format("{:.1f}", mean(c.rates))
+                 : i == kWays.size() ? fmt::format("{:.1f}", mean(c.eased_rates))
+                                     : "",
+                 kNames[i], percent(static_cast<double>(e.over) / static_cast<double>(std::max<std::uint64_t>(e.ticks, 1))),
                  fmt::format("{:.2f}", e.worst), percent(e.quantile(e.steps, 0.5)), percent(e.quantile(e.steps, 0.99)),
                  percent(e.quantile(e.steps, 1)), fmt::format("{:.2f}", e.quantile(e.accelerations, 0.9)),
                  fmt::format("{:.2f}", e.quantile(e.accelerations, 0.99))});
@@ -166,8 +175,8 @@ void print(const std::vector<Case>& cases, const ReproduceOptions& options) {
 void print_json(const std::vector<Case>& cases, const ReproduceOptions& options) {
   Json out{{"schema", "tactus.reproduce_ways/1"}, {"figure", "fig3.8"}, {"seeds", options.seeds}, {"grip", options.grip}};
   for (const Case& c : cases) {
-    Json entry{{"scene", c.scene}, {"deadband", c.p}, {"packets_per_s", c.rates}};
-    for (std::size_t i = 0; i < kWays.size(); ++i) {
+    Json entry{{"scene", c.scene}, {"deadband", c.p}, {"packets_per_s", c.rates}, {"eased_packets_per_s", c.eased_rates}};
+    for (std::size_t i = 0; i < kNames.size(); ++i) {
       const Effect& e = c.effects[i];
       entry["ways"].push_back({{"way", kNames[i]},
                                {"ticks_in_contact", e.ticks},
@@ -207,11 +216,18 @@ Outcome reproduce_ways(const ReproduceOptions& options) {
       triggers.weber_fraction = p;
       triggers.visual_position = 0.01 * options.length_unit;  // thesis table 3.3, with interpolation
       triggers.visual_rotation = 4 * kDegree;
-      Case& c = cases.emplace_back(Case{.scene = name, .p = p, .rates = {}, .effects = {}});
+      Case& c = cases.emplace_back(Case{.scene = name, .p = p, .rates = {}, .eased_rates = {}, .effects = {}});
       for (std::uint64_t seed = 1; seed <= options.seeds; ++seed) {
         Curves curves;
-        TACTUS_TRY(const double rate, run_seed(*scene, triggers, options, seed, c.effects, curves));
+        sim::ChannelOptions channel{.sender = {.triggers = triggers, .deformable = {}, .policy = {}}, .replica = {}};
+        const std::span<Effect> effects(c.effects);
+        TACTUS_TRY(const double rate, run_seed(*scene, channel, options, seed, kWays, effects.first(kWays.size()), &curves));
         c.rates.push_back(rate);
+        channel.sender.triggers.reduction = Reduction::leaning;
+        channel.coding.is_eased = true;
+        TACTUS_TRY(const double eased_rate,
+                   run_seed(*scene, channel, options, seed, kEased, effects.last(kEased.size()), nullptr));
+        c.eased_rates.push_back(eased_rate);
         if (name == kScenes.front() && p == kDeadbands.back() && seed == 1) drawn = std::move(curves);
         progress.update(++done);
       }
