@@ -52,12 +52,13 @@ RigidPose bend(const Scene& scene, const RigidState& a, const RigidState& b, std
   const std::int64_t whole = b.tick - a.tick;
   const Weights w = weights(tick - a.tick, whole);
   const RigidPose end = predictor.pose(a, b.tick);
+  const RigidMotion last = predictor.motion(a, b.tick, {});
   RigidPose out = predictor.pose(a, tick);
   const auto shift = static_cast<unsigned>(scene.grid.position - scene.grid.velocity);
   const std::int64_t moved = a.velocity == Vec3i{} && b.velocity == Vec3i{} ? w.straight : w.error;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::int64_t error = saturate32(std::int64_t{b.position[i]} - end.position[i]);
-    const std::int64_t change = saturate32(std::int64_t{b.velocity[i]} - a.velocity[i]);
+    const std::int64_t change = saturate32(std::int64_t{b.velocity[i]} - last.velocity[i]);
     const std::int64_t motion = saturate32(round_div((change * whole) << shift, scene.tick_rate));
     out.position[i] = saturate32(out.position[i] + round_shift(moved * error + w.motion * motion, 30));
   }
@@ -65,7 +66,7 @@ RigidPose bend(const Scene& scene, const RigidState& a, const RigidState& b, std
   const Vec3i error = half_vector(multiply(b.rotation, conjugate(end.rotation)));
   Vec3i half{};
   for (std::size_t i = 0; i < 3; ++i) {
-    const std::int64_t change = std::int64_t{b.angular_velocity[i]} - a.angular_velocity[i];
+    const std::int64_t change = std::int64_t{b.angular_velocity[i]} - last.angular_velocity[i];
     const std::int64_t radians = round_div(change * whole, scene.tick_rate);
     const std::int64_t motion = saturate32(round_shift(radians * kTurnPerHalfRadian, scene.grid.angular_velocity));
     half[i] = static_cast<std::int32_t>(round_shift(spun * error[i] + w.motion * motion, 30));

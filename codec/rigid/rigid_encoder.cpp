@@ -114,6 +114,7 @@ RigidEncoder::RigidEncoder(const Scene& scene, const RigidTriggers& triggers, Ba
       heartbeat_(static_cast<std::int64_t>(std::ceil(triggers.heartbeat * scene.tick_rate))),
       truth_(initial_states(scene).objects) {
   if (triggers.reduction == Reduction::leaning) leaning_.emplace(scene);
+  if (scene.motion && triggers.reduction != Reduction::none) choice_.emplace(scene);
   pending_.reserve(scene.moving().size());
   before_.reserve(scene.moving().size());
   for (const RigidState& state : truth_) sent_.push_back({.state = state});
@@ -149,6 +150,7 @@ Result<void> RigidEncoder::read(std::int64_t tick, std::span<const RigidSample> 
   samples_ = samples;
   contacts_ = contacts;
   if (leaning_) leaning_->read(tick, samples);
+  if (choice_) choice_->read(tick, truth_);
   return {};
 }
 
@@ -219,15 +221,34 @@ void RigidEncoder::collect(const EncodeRequest<RigidStates>& request) noexcept {
   std::ranges::sort(pending_, {}, &Pending::object);
 }
 
-/// The true state, with the velocities that an update is to tell.
-RigidState RigidEncoder::told(std::uint32_t object) const noexcept {
-  const RigidState& truth = truth_[object];
-  if (!leaning_) return truth;
+RigidTriggers RigidEncoder::widened_triggers() const noexcept {
   RigidTriggers widened = triggers_;
   for (double* bound : {&widened.visual_position, &widened.visual_rotation, &widened.weber_fraction, &widened.fixed_position,
                         &widened.fixed_rotation})
     *bound *= widening_;
-  return to_grid(leaning_->lean(object, samples_, contacts_, widened), truth.tick, scene_.grid).value_or(truth);
+  return widened;
+}
+
+Predictor RigidEncoder::chosen(std::uint32_t object) const noexcept {
+  const RigidTriggers bounds = widened_triggers();
+  PermittedError permitted{bounds.visual_position, bounds.visual_rotation};
+  for (const Contact& contact : contacts_) {
+    if (contact.kind == ContactKind::none || contact.object != object || bounds.haptic == HapticRule::off) continue;
+    const double force = norm(contact_force(contact, samples_[object].pose));
+    const bool fixed = bounds.haptic == HapticRule::fixed;
+    permitted.position =
+        std::min(permitted.position, fixed ? bounds.fixed_position : force_budget(bounds, force) / contact.stiffness);
+    if (fixed) permitted.rotation = std::min(permitted.rotation, bounds.fixed_rotation);
+  }
+  return choice_->choose(object, truth_[object], permitted);
+}
+
+/// The true state, with the predictor and the velocities that an update is to tell.
+RigidState RigidEncoder::told(std::uint32_t object) const noexcept {
+  RigidState out = truth_[object];
+  if (choice_) out.predictor = chosen(object);
+  if (!leaning_ || out.predictor != Predictor::linear) return out;
+  return to_grid(leaning_->lean(object, samples_, contacts_, widened_triggers()), out.tick, scene_.grid).value_or(out);
 }
 
 /// The coarsest level whose rounding leaves room inside every bound; without one, the finest that keeps them; where the grid is too
@@ -242,7 +263,7 @@ Result<CodedUpdate> RigidEncoder::quantise(Pending& update, const Prediction& pr
   for (unsigned levels = coarsest + 1; levels > 0; --levels) {
     const unsigned level = levels - 1;
     CodedUpdate coded{update.reason, static_cast<std::uint8_t>(level),
-                      quantise_pose(prediction.pose, truth, dof, level, scene_.grid)};
+                      quantise_pose(prediction.pose, truth, dof, level, scene_.grid), static_cast<std::uint8_t>(told.predictor)};
     quantise_motion(predictor_, prediction, told, dof, coded);
     const auto state = reconstruct(predictor_, prediction, truth.tick, coded, scene_.grid);
     if (!state) return fail(Errc::internal, "R-RIG-6");
@@ -274,7 +295,7 @@ Result<Payload> RigidEncoder::encode(const EncodeRequest<RigidStates>& request, 
     next = at + 1;
     const RigidState& base = request.base.objects[update.object];
     TACTUS_TRY(CodedUpdate coded, quantise(update, {base, predictor_.pose(base, request.tick)}));
-    code_update(coder, models, scene_.objects[update.object].dof, coded);
+    code_update(coder, models, scene_, update.object, coded);
     strongest = std::max(strongest, update.reason);
   }
   const std::size_t size = coder.finish();

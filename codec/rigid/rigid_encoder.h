@@ -20,6 +20,7 @@
 #include <tactus/packet/substream_encoder.h>
 #include <tactus/rigid/contact.h>
 #include <tactus/rigid/leaning.h>
+#include <tactus/rigid/predictor_choice.h>
 #include <tactus/rigid/rigid_syntax.h>
 #include <tactus/rigid/trigger.h>
 
@@ -75,6 +76,8 @@ class RigidEncoder {
   bool is_follow_up_due(std::uint32_t object) const noexcept;
   bool joins(std::uint32_t object, const EncodeRequest<RigidStates>& request) const noexcept;
   void collect(const EncodeRequest<RigidStates>& request) noexcept;
+  RigidTriggers widened_triggers() const noexcept;
+  Predictor chosen(std::uint32_t object) const noexcept;
   RigidState told(std::uint32_t object) const noexcept;
   Result<CodedUpdate> quantise(Pending& update, const Prediction& prediction) const noexcept;
 
@@ -87,6 +90,7 @@ class RigidEncoder {
   std::array<std::int64_t, 3> follow_up_{};  // [ticks] without an acknowledgement before the first, the second and later; 0: none
   std::int64_t heartbeat_ = 0;               // [ticks], 0: off
   std::optional<Leaning> leaning_;           // if asked for
+  std::optional<PredictorChoice> choice_;    // if there is one
   std::vector<RigidState> truth_;            // this tick, on the grid
   std::span<const RigidSample> samples_;     // this tick, as given
   std::span<const Contact> contacts_;

@@ -30,6 +30,7 @@ struct RigidModels {
   TreeModel<2> reason;
   TreeModel<3> level;
   std::array<std::array<MagnitudeModel, kContexts>, kQuantities> residual;
+  std::array<TreeModel<2>, 4> predictor;  ///< by reason
 };
 
 /// Start probabilities, spec/40-rigid.md table 2.
@@ -48,6 +49,7 @@ struct CodedUpdate {
   Reason reason = Reason::request;
   std::uint8_t level = 0;
   Residual residual;
+  std::uint8_t predictor = 0;
 };
 
 template <class Coder>
@@ -64,10 +66,13 @@ constexpr std::size_t size_context(std::uint32_t magnitude) noexcept {
 }
 
 template <class Coder>
-void code_update(Coder& coder, RigidModels& models, std::uint8_t dof, CodedUpdate& update) noexcept {
+void code_update(Coder& coder, RigidModels& models, const Scene& scene, std::uint32_t object, CodedUpdate& update) noexcept {
+  const std::uint8_t dof = scene.objects[object].dof;
   update.reason = static_cast<Reason>(coder.template tree<2>(models.reason, static_cast<std::uint32_t>(update.reason)));
   update.level = static_cast<std::uint8_t>(coder.template tree<3>(models.level, update.level));
   std::size_t context = static_cast<std::size_t>(update.reason);
+  if (scene.motion)
+    update.predictor = static_cast<std::uint8_t>(coder.template tree<2>(models.predictor[context], update.predictor));
   for (std::size_t quantity = 0; quantity < kQuantities; ++quantity) {
     const unsigned axes = quantity < 2 ? dof & 7u : static_cast<unsigned>(dof >> 3);
     if (axes == 0) continue;
@@ -83,6 +88,9 @@ void code_update(Coder& coder, RigidModels& models, std::uint8_t dof, CodedUpdat
     }
   }
 }
+
+/// Does the scene declare what this predictor needs? (R-RIG-7)
+bool is_declared(const Scene& scene, std::uint8_t predictor) noexcept;
 
 /// State of one object before a packet, and its predicted pose at the packet's tick.
 struct Prediction {

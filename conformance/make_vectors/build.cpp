@@ -85,7 +85,7 @@ Bytes raw_packet(const Scene& header, std::uint16_t sequence, RigidHead head, st
     for (RawUpdate update : updates) {
       if (moving.size() > 1) next += coder.magnitude(models.gap, update.gap);
       if (next >= moving.size()) return;  // a decoder that obeys R-RIG-4 stops here
-      code_update(coder, models, header.objects[moving[next++]].dof, update.coded);
+      code_update(coder, models, header, moving[next++], update.coded);
     }
   });
 }

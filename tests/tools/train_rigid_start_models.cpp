@@ -21,7 +21,7 @@ bool count_packet(std::span<const std::uint8_t> packet, const Scene& scene, Coun
     if (moving.size() > 1) next += coder.magnitude(models.gap, 0);
     if (next >= moving.size()) return false;
     CodedUpdate update;
-    code_update(coder, models, scene.objects[moving[next++]].dof, update);
+    code_update(coder, models, scene, moving[next++], update);
   }
   return true;
 }
@@ -48,5 +48,6 @@ int main(int argc, char** argv) {
   table.tree("LEVEL", 7);
   for (std::size_t q = 0; q < kQuantities; ++q)
     for (std::size_t context = 0; context < kContexts; ++context) table.magnitude(indexed("RESIDUAL", {q, context}));
+  for (std::size_t reason = 0; reason < 4; ++reason) table.tree(indexed("PREDICTOR", {reason}), 3);
   return table.complete() ? 0 : 1;
 }
