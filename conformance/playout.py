@@ -7,7 +7,7 @@ from math import isqrt
 from typing import NamedTuple
 
 from conventions import (FNV_START, ONE, asin30, axis_angle, conj, fnv1a, mul, renorm, round_div, round_shift, sat32)
-from rigid import HALF_RADIAN, Packet, predict
+from rigid import HALF_RADIAN, Packet, motion, predict
 from scene import Declaration, State
 
 MOST_UPDATES = 64
@@ -63,12 +63,13 @@ class Playout:
         cubic, rate = 3 * u2 - 2 * u3, u3 - u2
         p, q = predict(scene, a, s)
         end_p, end_q = predict(scene, a, b.tick)
+        v, o = motion(scene, a, whole)
 
         k = cubic if any(a.velocity) or any(b.velocity) else u
         position = []
         for axis in range(3):
             e = sat32(b.position[axis] - end_p[axis])
-            d = sat32(b.velocity[axis] - a.velocity[axis]) * whole << (scene.position_exp - scene.velocity_exp)
+            d = sat32(b.velocity[axis] - v[axis]) * whole << (scene.position_exp - scene.velocity_exp)
             d = sat32(round_div(d, scene.tick_rate))
             position.append(sat32(p[axis] + round_shift(k * e + rate * d, 30)))
 
@@ -76,7 +77,7 @@ class Playout:
         e = half_vector(mul(b.rotation, conj(end_q)))
         r = []
         for axis in range(3):
-            d = round_div((b.angular_velocity[axis] - a.angular_velocity[axis]) * whole, scene.tick_rate)
+            d = round_div((b.angular_velocity[axis] - o[axis]) * whole, scene.tick_rate)
             d = sat32(round_shift(d * HALF_RADIAN, scene.angular_exp))
             r.append(round_shift(k * e[axis] + rate * d, 30))
         n = isqrt(sum(c * c for c in r))

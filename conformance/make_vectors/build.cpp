@@ -57,6 +57,7 @@ Bytes RawHeader::body() const {
   }
   w.bytes(deformables);
   w.bytes(loads);
+  w.bytes(motion);
   w.bytes(extensions);
   return out;
 }
@@ -103,7 +104,8 @@ Bytes Stream::packet(const Step& step) {
   std::size_t next = 0;
   for (const Update& update : step.updates) {
     const auto at = static_cast<std::size_t>(std::ranges::find(moving, update.object) - moving.begin());
-    updates.push_back({static_cast<std::uint32_t>(at - next), {update.reason, update.level, {update.residual}}});
+    updates.push_back(
+        {static_cast<std::uint32_t>(at - next), {update.reason, update.level, {update.residual}, update.predictor}});
     next = at + 1;
   }
   ticks_[sequence] = step.tick;

@@ -15,6 +15,7 @@ constexpr std::array kFlags{
     Flag{"substreams", "packets begin with a substream byte"},
     Flag{"bounds", "the scene declaration has a bounds record"},
     Flag{"loads", "the scene has loads"},
+    Flag{"motion", "the scene has motion constants"},
     Flag{"basis", "a deformable object has modes"},
     Flag{"layered", "a deformable object has haptic and visual layers"},
     Flag{"models_kept", "entropy models are part of a deformable object's state"},
@@ -84,7 +85,7 @@ void skim_deformable(Skimmer& in, Features& out) {
 std::uint64_t skim_declaration(Skimmer& in, Features& out) {
   in.skip(6);
   const unsigned flags = in.u16();
-  const bool has_deformables = flags & 1u, has_loads = flags == 2 || flags == 3;
+  const bool has_deformables = flags & 1u, known = (flags & ~0xbu) == 0;
   in.skip(4 + 10);  // body_size, tick_rate to max_extrapolation
   if (in.u8() > 1) out.flags.insert("baselines");
   bool moving = false;
@@ -99,11 +100,12 @@ std::uint64_t skim_declaration(Skimmer& in, Features& out) {
     ++substreams;
     skim_deformable(in, out);
   }
-  if (has_loads) {
+  if (known && (flags & 2u)) {
     out.flags.insert("loads");
     ++substreams;
     in.skip(2);
   }
+  if (known && (flags & 8u)) out.flags.insert("motion");
   return substreams;
 }
 

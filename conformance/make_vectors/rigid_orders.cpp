@@ -94,11 +94,11 @@ void add_rigid_orders(Catalogue& c) {
               too_wide(coder, models.residual[3][7]);
             }));
   c.invalid("length-before-next-gap", "A rotation that is too long, then a gap beyond the objects.",
-            {"invalid", "R-RIG-6", "R-RIG-4"}, then_coded([](RangeEncoder& coder, RigidModels& models) {
+            {"invalid", "R-RIG-6", "R-RIG-4"}, then_coded([&](RangeEncoder& coder, RigidModels& models) {
               coder.magnitude(models.count, 2);
               coder.magnitude(models.gap, 0);
               CodedUpdate too_far{Reason::request, 0, {{{{}, {}, {kHalfCircle + 1, 0, 0}, {}}}}};
-              code_update(coder, models, Dof::all, too_far);
+              code_update(coder, models, *two.parsed(), 0, too_far);
               coder.magnitude(models.gap, 1);
             }));
   c.invalid("end-before-record-tick", "Bytes left over, and a record of another tick.", {"malformed", "R-RNG-2", "R-FIL-7"},
