@@ -42,12 +42,14 @@ def residual(decoder: RangeDecoder, models: Models, dof: int, reason: int) -> li
 
 def predict(scene: Declaration, state: State, t: int) -> tuple[tuple, tuple]:
     dt = min(t - state.tick, scene.max_extrapolation)
+    rest = rest_time(scene, state) if state.predictor == SLIDE else 0
+    if state.predictor == SLIDE:
+        dt = min(dt, (rest + 255) >> 8)
     if dt == 0:
         return state.position, state.rotation
     shift = scene.position_exp - scene.velocity_exp
     share = 1 << 15
     if state.predictor == SLIDE:
-        rest = rest_time(scene, state)
         share = (1 << 15) - round_div(dt << 22, rest) if dt << 8 <= rest else round_div(rest << 14, dt << 8)
     moved = [clamp(round_div((v * dt) << shift, scene.tick_rate), -1 << 33, 1 << 33) for v in state.velocity]
     x = tuple(sat32(p + round_shift(m * share, 15)) for p, m in zip(state.position, moved))

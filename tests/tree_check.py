@@ -21,7 +21,7 @@ SHARED = {"base"}  # folders of codec/ that are not subjects of the specificatio
 FLOATS = {"base/device_sample", "base/geometry", "base/quantise", "base/tri_mesh", "scene/bounds", "scene/bounds_syntax",
           "scene/deformable_object", "scene/rigid_object", "scene/scene_builder", "packet/key_policy", "packet/sender_policy",
           "load/load_encoder", "load/load_state",
-          "rigid/contact", "rigid/leaning", "rigid/rigid_encoder", "rigid/rigid_state", "rigid/trigger", "deformable/deformable_encoder",
+          "rigid/contact", "rigid/leaning", "rigid/predictor_choice", "rigid/rigid_encoder", "rigid/rigid_state", "rigid/trigger", "deformable/deformable_encoder",
           "deformable/displacement", "deformable/main_encoder", "deformable/mode_projection", "deformable/thesis_encoder",
           "deformable/trigger", "client/replica", "client/stiffness_reduction", "sender", "signal/device_signal", "signal/force_signal",
           "session/exchange", "session/server_connection", "session/congestion", "session/session_options", "session/session_client", "session/session_server"}
@@ -39,7 +39,6 @@ TESTED_BY = {  # those that have none: the parts of one subject, held against ea
     "codec/load/load_state": "load",
     "codec/rigid/rigid_decoder": "rigid",
     "codec/rigid/rigid_encoder": "rigid",
-    "codec/rigid/rigid_predictor": "rigid",
     "codec/rigid/rigid_state": "rigid",
     "codec/rigid/rigid_syntax": "rigid",
     "codec/scene/bounds_syntax": "scene_bounds",

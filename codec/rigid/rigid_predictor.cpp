@@ -40,7 +40,10 @@ std::int64_t slide_time(const Vec3i& velocity, std::uint32_t tick_rate, std::int
   return round_div((static_cast<std::int64_t>(isqrt(square)) * tick_rate) << 8, deceleration);
 }
 
-/// Share of the way at constant velocity that is left of it after `dt` > 0 ticks of sliding, x 2^-15.
+/// The tick in which a sliding object comes to rest.
+std::int64_t last_tick(std::int64_t rest) noexcept { return (rest + 255) >> 8; }
+
+/// Share of the way at constant velocity that is left of it after `dt` ticks of sliding, x 2^-15.   pre  0 < dt <= last_tick(rest)
 std::int64_t slide_share(std::int64_t dt, std::int64_t rest) noexcept {
   const std::int64_t t = dt << 8;
   return t <= rest ? kWhole - round_div(t << 14, rest) : round_div(rest << 14, t);
@@ -59,12 +62,15 @@ void RigidPredictor::fall(std::int64_t dt, RigidPose& pose) const noexcept {
 }
 
 RigidPose RigidPredictor::pose(const RigidState& state, std::int64_t tick) const noexcept {
-  const std::int64_t dt = std::min<std::int64_t>(tick - state.tick, scene_.max_extrapolation);
-  RigidPose pose{state.position, state.rotation};
-  if (dt == 0) return pose;
+  std::int64_t dt = std::min<std::int64_t>(tick - state.tick, scene_.max_extrapolation);
   std::int64_t share = kWhole;  // of dt
-  if (state.predictor == Predictor::slide)
-    share = slide_share(dt, slide_time(state.velocity, scene_.tick_rate, scene_.motion->slide_deceleration));
+  RigidPose pose{state.position, state.rotation};
+  if (state.predictor == Predictor::slide && dt > 0) {
+    const std::int64_t rest = slide_time(state.velocity, scene_.tick_rate, scene_.motion->slide_deceleration);
+    dt = std::min(dt, last_tick(rest));  // so that it rests to the bit
+    if (dt > 0) share = slide_share(dt, rest);
+  }
+  if (dt == 0) return pose;
   constexpr std::int64_t kFar = std::int64_t{1} << 33;  // half of it is beyond every place
   const unsigned shift = static_cast<unsigned>(scene_.grid.position - scene_.grid.velocity);
   for (std::size_t i = 0; i < 3; ++i) {

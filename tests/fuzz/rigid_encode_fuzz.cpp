@@ -31,7 +31,9 @@ void check_bounds(const RigidTriggers& t, Receiver& receiver, std::int64_t tick,
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   ByteReader in({data, size});
   SceneSpec spec;
-  spec.baseline_span = static_cast<std::uint8_t>(1 + in.u8() % 64);
+  const std::uint8_t choice = in.u8();
+  spec.baseline_span = static_cast<std::uint8_t>(1 + choice % 64);
+  if (choice & 64) spec.motion = {{0, 0, -1285816}, 321454};
   spec.objects.push_back({"o", Dof::all, {}});
   const SharedScene scene = Scene::create(std::move(spec)).value();
   SenderOptions options;

@@ -68,6 +68,7 @@ struct Case {
   HapticRule rule;
   double p;
   Reduction reduction = Reduction::dead_reckoning;
+  MotionPhysics motion{};
 };
 
 /// Three lines per case, or nothing and false when a codec call failed.
@@ -78,6 +79,7 @@ bool run(const Case& c) {
     builder.rigid("body " + std::to_string(i), {}, c.dofs[i]);
     bodies.emplace_back(1000 + i, c.dofs[i]);
   }
+  builder.motion(c.motion);
   const auto scene = std::move(builder).build();
   if (!scene) return false;
   SenderOptions options;
@@ -126,6 +128,7 @@ int main() {
       {"visual", {Dof::all, Dof::none, Dof::all}, HapticRule::off, 0.08},
       {"crowd", std::vector<std::uint8_t>(40, Dof::all), HapticRule::isotropic, 0.04},
       {"every-tick", {Dof::all, Dof::translation}, HapticRule::off, 0.08, Reduction::none},
+      {"predictors", {Dof::all, Dof::translation}, HapticRule::isotropic, 0.3, Reduction::dead_reckoning, {{0.5, 0, -1.5}, 0.25}},
   };
   for (const Case& c : cases) {
     if (!run(c)) {

@@ -26,7 +26,9 @@ TEST(Allocation, TheCounterCounts) {
 
 TEST(Allocation, EncodeDecodeAndShowAllocateNothing) {
   constexpr std::size_t kObjects = 20;
-  const SharedScene scene = testing::scene_of(kObjects);
+  SceneSpec spec = testing::spec_of(kObjects);
+  spec.motion = {{0, 0, -1285816}, 321454};
+  const SharedScene scene = testing::shared(std::move(spec));
   auto sender = Sender::create(scene, {.triggers = {.reduction = Reduction::leaning}, .policy = {.key_interval = 0.2}}).value();
   auto receiver = Receiver::create(scene, {.replica = {.interpolation = Interpolation::linear}, .limits = {}}).value();
   std::vector<testing::Motion> motions;
