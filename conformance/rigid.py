@@ -54,8 +54,7 @@ def predict(scene: Declaration, state: State, t: int) -> tuple[tuple, tuple]:
     moved = [clamp(round_div((v * dt) << shift, scene.tick_rate), -1 << 33, 1 << 33) for v in state.velocity]
     x = tuple(sat32(p + round_shift(m * share, 15)) for p, m in zip(state.position, moved))
     if state.predictor == BALLISTIC:
-        fall = [clamp(round_div(g * dt * dt, scene.tick_rate), -1 << 49, 1 << 49) for g in scene.motion.gravity]
-        x = tuple(sat32(p + round_div(f << shift, 2 * scene.tick_rate)) for p, f in zip(x, fall))
+        x = tuple(sat32(p + round_div((g * dt) << shift, 2 * scene.tick_rate)) for p, g in zip(x, gained(scene, dt)))
     speed = isqrt(sum(c * c for c in state.angular_velocity) << 10)
     if speed == 0:
         return x, state.rotation
@@ -72,11 +71,16 @@ def rest_time(scene: Declaration, state: State) -> int:
     return round_div((isqrt(sum(c * c for c in state.velocity)) * scene.tick_rate) << 8, scene.motion.slide_deceleration)
 
 
+def gained(scene: Declaration, dt: int) -> list[int]:
+    """Velocity, by gravity."""
+    return [sat32(round_div(g * dt, scene.tick_rate)) for g in scene.motion.gravity]
+
+
 def motion(scene: Declaration, state: State, dt: int) -> tuple[list, list]:
     """Velocities after dt ticks."""
     v, o = list(state.velocity), list(state.angular_velocity)
     if state.predictor == BALLISTIC:
-        v = [sat32(c + round_div(g * dt, scene.tick_rate)) for c, g in zip(v, scene.motion.gravity)]
+        v = [sat32(c + g) for c, g in zip(v, gained(scene, dt))]
     if state.predictor == SLIDE and dt > 0:
         rest = rest_time(scene, state)
         left = (1 << 15) - round_div(dt << 23, rest) if dt << 8 < rest else 0

@@ -51,13 +51,15 @@ std::int64_t slide_share(std::int64_t dt, std::int64_t rest) noexcept {
 
 }  // namespace
 
+std::int64_t RigidPredictor::gained(std::size_t axis, std::int64_t dt) const noexcept {
+  return saturate32(round_div(scene_.motion->gravity[axis] * dt, scene_.tick_rate));
+}
+
 void RigidPredictor::fall(std::int64_t dt, RigidPose& pose) const noexcept {
-  constexpr std::int64_t kMost = std::int64_t{1} << 49;  // keeps the shift within 62 bits, and is far beyond every place
   const unsigned shift = static_cast<unsigned>(scene_.grid.position - scene_.grid.velocity);
-  const std::int64_t rate = scene_.tick_rate;
   for (std::size_t i = 0; i < 3; ++i) {
-    const std::int64_t run = std::clamp(round_div(scene_.motion->gravity[i] * dt * dt, rate), -kMost, kMost);
-    pose.position[i] = saturate32(pose.position[i] + round_div(run << shift, 2 * rate));
+    const std::int64_t fallen = round_div((gained(i, dt) * dt) << shift, 2 * std::int64_t{scene_.tick_rate});
+    pose.position[i] = saturate32(pose.position[i] + fallen);
   }
 }
 
@@ -86,8 +88,7 @@ RigidPose RigidPredictor::pose(const RigidState& state, std::int64_t tick) const
 RigidMotion RigidPredictor::free_motion(const RigidState& state, std::int64_t dt) const noexcept {
   RigidMotion out{state.velocity, state.angular_velocity};
   if (state.predictor == Predictor::ballistic) {
-    for (std::size_t i = 0; i < 3; ++i)
-      out.velocity[i] = saturate32(state.velocity[i] + round_div(scene_.motion->gravity[i] * dt, scene_.tick_rate));
+    for (std::size_t i = 0; i < 3; ++i) out.velocity[i] = saturate32(state.velocity[i] + gained(i, dt));
   }
   if (state.predictor == Predictor::slide) {
     const std::int64_t rest = slide_time(state.velocity, scene_.tick_rate, scene_.motion->slide_deceleration);

@@ -41,7 +41,7 @@ class RigidPredictor {
   RigidMotion motion(const RigidState& state, std::int64_t tick, const PoseError& error) const noexcept;
 
  private:
-  /// Adds what gravity does in dt ticks.
+  std::int64_t gained(std::size_t axis, std::int64_t dt) const noexcept;  // velocity, by gravity
   void fall(std::int64_t dt, RigidPose& pose) const noexcept;
   RigidMotion free_motion(const RigidState& state, std::int64_t dt) const noexcept;
 

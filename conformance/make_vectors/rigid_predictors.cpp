@@ -59,7 +59,7 @@ Bytes seen_after(const RawHeader& header, std::uint8_t predictor, const std::arr
   for (const int dt : dts) {
     add(first, true);
     tick += dt;
-    add({}, false);
+    add({{{}, {-700, 700, 0}, {}, {}}}, false);
   }
   return stream.finish().bytes();
 }
@@ -202,7 +202,7 @@ void add_rigid_predictors(Catalogue& c) {
           seen_after(with_motion(with_clock({22, 17, kRotationExp, 12}, 1000000, 65535), {kMost, -kMost, 7}, 0), kBallistic,
                      {{{}, {5, kLargest, 0}, {}, {}}}, {1, 2, 1000, 65535}));
   c.valid("slide-to-rest", "An object that slides, seen before it rests, as it rests, and later.",
-          seen_after(with_motion({}, {}, 100000), kSlide, {{{}, {3000, -4000, 0}, {}, {900, -30000, 5}}},
+          seen_after(with_motion({}, {}, 10000077), kSlide, {{{}, {300000, -400000, 0}, {}, {900, -30000, 5}}},
                      {0, 1, 25, 49, 50, 51, 52, 100, 3000}));
   c.valid("slide-part-of-a-tick", "Objects that rest after parts of a tick.",
           seen_after(with_motion({}, {}, kMost), kSlide, {{{}, {3, 300000, 0}, {}, {0, 70000, 0}}}, {1, 2, 3, 2000}));
