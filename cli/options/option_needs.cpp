@@ -53,6 +53,8 @@ constexpr std::array kNeeds{
     Need{"--heartbeat", Subject::rigid},
     Need{"--no-reduction", Subject::rigid},
     Need{"--lean", Subject::rigid},
+    Need{"--gravity", Subject::rigid},
+    Need{"--friction", Subject::rigid},
     Need{"--interpolate", Subject::rigid},
     Need{"--deformable-visual", Subject::mesh},
     Need{"--profile", Subject::mesh},
