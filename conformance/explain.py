@@ -156,7 +156,8 @@ def tell_rigid(packet, scene):
         rows = [f"| predicted from the baseline, of tick {base.tick} | {vector(position)} | {vector(rotation)} | | |",
                 f"| decoded | {vector(state.position)} | {vector(state.rotation)} | {vector(state.velocity)} | "
                 f"{vector(state.angular_velocity)} |"]
-        print(f"Object {update.object}, reason {update.reason}, level {update.level}:\n")
+        predictor = f", predictor {state.predictor}" if scene.motion else ""
+        print(f"Object {update.object}, reason {update.reason}, level {update.level}{predictor}:\n")
         table("| position | rotation | velocity | angular velocity", rows)
 
 

@@ -177,6 +177,9 @@ void add_scene_motion(Catalogue& c) {
   wrong.loads = {21, 1};
   c.invalid("loads-before-motion", "force_exp is 21, and all motion constants are 0.", {"invalid", "R-STR-19", "R-STR-21"},
             wrong.bytes());
+  still.motion.pop_back();
+  c.invalid("motion-cut-before-nothing-moves", "The body ends inside slide_deceleration, and no object moves.",
+            {"truncated", "R-STR-5", "R-STR-21"}, still.bytes());
   RawHeader extension = with_motion({}, {}, 0);
   extension.extensions = {5};
   c.invalid("motion-before-extension", "All motion constants are 0, then an extension without a size.",
