@@ -59,6 +59,8 @@ def describe_declaration(scene: Declaration) -> dict:
                           for d in scene.deformables]
     if scene.loads:
         said["loads"] = list(scene.loads)
+    if scene.motion:
+        said["motion"] = [*scene.motion.gravity, scene.motion.slide_deceleration]
     if scene.bounds:
         said["bounds"] = {**({"rigid": scene.bounds.rigid} if scene.bounds.rigid else {}), "meshes": scene.bounds.deformables,
                           **({"loads": scene.bounds.loads} if scene.bounds.loads else {})}

@@ -21,7 +21,8 @@ from start_models import Models
 NAMES: dict = {}                                            # by identity of a model: the model, its name
 ELEMENTS = {                                                # models, and the element of the specification that they code
     "KEY": "key", "BASELINE": "baseline_delta", "TICK": "tick_delta", "COUNT": "count", "GAP": "gap", "REASON": "reason",
-    "LEVEL": "level", "EASE": "ease", "KEEP": "keep", "LAYER": "layer", "SAME_FRAME": "same_frame", "LATE": "late",
+    "LEVEL": "level", "EASE": "ease", "KEEP": "keep", "PREDICTOR": "predictor", "LAYER": "layer", "SAME_FRAME": "same_frame",
+    "LATE": "late",
     "TOUCHED": "touched", "SAME_TRIANGLE": "same triangle", "NEAR_TRIANGLE": "near triangle", "NEAR_PLACE": "entry of near",
     "HAPTIC": "haptic_change", "SAME_VISUAL": "same_visual", "VISUAL": "visual", "DENSITY": "density",
     "CHANGED": "changed", "STEP": "step", "COEFFICIENT": "coefficient", "SIGNIFICANT": "significant", "COMPONENT": "component of r", "ERROR": "symbol",
@@ -160,7 +161,8 @@ def tell_rigid(packet, scene):
         rows = [f"| predicted from the baseline, of tick {base.tick} | {vector(position)} | {vector(rotation)} | | |",
                 f"| decoded | {vector(state.position)} | {vector(state.rotation)} | {vector(state.velocity)} | "
                 f"{vector(state.angular_velocity)} |"]
-        print(f"Object {update.object}, reason {update.reason}, level {update.level}:\n")
+        predictor = f", predictor {state.predictor}" if scene.motion else ""
+        print(f"Object {update.object}, reason {update.reason}, level {update.level}{predictor}:\n")
         table("| position | rotation | velocity | angular velocity", rows)
 
 
@@ -332,6 +334,9 @@ def tell_declaration(file, data):
     if file.declaration.loads:
         f.number("force_exp", "B")
         f.number("load_users", "B")
+    if file.declaration.motion:
+        f.number("gravity", "3i")
+        f.number("slide_deceleration", "i")
     if f.cursor.position < end - 4:
         f.take("extension records", end - 4 - f.cursor.position)
     f.number("crc", "I")

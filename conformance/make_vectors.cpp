@@ -15,6 +15,7 @@ Catalogue all() {
   add_scene_bounds(catalogue);
   add_scene_orders(catalogue);
   add_scene_stiffness(catalogue);
+  add_scene_motion(catalogue);
   catalogue.begin("file", "Stream files: records around packets.");
   add_file(catalogue);
   catalogue.begin("packet", "What packets of every kind have in common: sequence numbers, baselines, outages, substreams.");
@@ -29,6 +30,7 @@ Catalogue all() {
   add_rigid_rules(catalogue);
   add_rigid_edges(catalogue);
   add_rigid_orders(catalogue);
+  add_rigid_predictors(catalogue);
   catalogue.begin("load", "Loads: their declaration and packets.");
   add_load(catalogue);
   catalogue.begin("client", "What a client shows of rigid objects, at every tick.");
@@ -36,6 +38,7 @@ Catalogue all() {
   add_client_playout(catalogue);
   add_client_eased(catalogue);
   add_client_curves(catalogue);
+  add_client_predictors(catalogue);
   catalogue.begin("session", "What the client's end of a session does with datagrams.");
   add_session(catalogue);
   add_session_server(catalogue);

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from conventions import FNV_START, fnv1a, round_div
 from curve import NO_OFFSET, Offset, cubic, difference, displaced, offset
 from easing import eased, kept
-from rigid import Packet, predict
+from rigid import Packet, motion, predict
 from scene import Declaration, State
 
 MOST_UPDATES = 64
@@ -78,7 +78,7 @@ class Playout:
         i = c if any(a.velocity) or any(b.velocity) else u
         j = c if any(a.angular_velocity) or any(b.angular_velocity) else u
         error = offset(predict(scene, a, b.tick), (b.position, b.rotation))
-        change = difference(scene, (a.velocity, a.angular_velocity), (b.velocity, b.angular_velocity), whole)
+        change = difference(scene, motion(scene, a, whole), (b.velocity, b.angular_velocity), whole)
         return displaced(predict(scene, a, s), error, change, i, j, rate)
 
     def pose_hash(self, now: int) -> int:

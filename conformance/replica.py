@@ -9,7 +9,7 @@ from typing import Optional
 from conventions import FNV_START, clamp, fnv1a, round_div
 from curve import AT_REST, NO_OFFSET, Offset, cubic, difference, displaced, offset
 from easing import eased, kept
-from rigid import Packet, predict
+from rigid import Packet, motion, predict
 from scene import Declaration, State
 
 SHARE = 49152                                               # P = 75 %, x 2^-16
@@ -51,7 +51,7 @@ class Replica:
 
     def apply_state(self, o: ReplicaObject, state: State, now: int) -> None:
         shown = self.pose(o, now)
-        before, running = self.motion(o.state, now), now < o.end
+        before, running = self.moving(o.state, now), now < o.end
         if o.arrival is not None:
             o.gaps.append(min(now - o.arrival, LONGEST_GAP))
         if state.ease > 0:
@@ -65,12 +65,12 @@ class Replica:
         if self.mode == "linear":
             o.change = NO_OFFSET
         else:
-            o.change = difference(self.scene, before, self.motion(state, now), o.end - now)
+            o.change = difference(self.scene, before, self.moving(state, now), o.end - now)
 
-    def motion(self, state: State, now: int) -> tuple[tuple, tuple]:
+    def moving(self, state: State, now: int) -> tuple[tuple, tuple]:
         if now - state.tick >= self.scene.max_extrapolation:
             return AT_REST
-        return state.velocity, state.angular_velocity
+        return motion(self.scene, state, now - state.tick)
 
     def eased(self, o: ReplicaObject, t: int) -> tuple[tuple, tuple]:
         return eased(predict(self.scene, o.state, t), o.state, o.left, t)

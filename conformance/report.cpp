@@ -107,6 +107,10 @@ void write_header_line(const Scene& h, std::ostream& out) {
   out << ']';
   if (!h.deformables.empty()) write_deformables(h.deformables, out);
   if (h.loads) out << R"(,"loads":[)" << int{h.loads->force_exp} << ',' << int{h.loads->users} << ']';
+  if (h.motion) {
+    const auto& [gravity, slide] = *h.motion;
+    out << R"(,"motion":[)" << gravity[0] << ',' << gravity[1] << ',' << gravity[2] << ',' << slide << ']';
+  }
   if (h.bounds) write_bounds(*h.bounds, out);
   out << "}}\n";
 }

@@ -16,6 +16,7 @@ from start_models import Models
 # ---- Residual, prediction, reconstruction ---------------------------------------------------------------------------
 HAPTIC = 3
 LARGEST_ANGULAR = 1 << 25
+BALLISTIC, SLIDE = 1, 2
 HALF_RADIAN = 341782638                                     # 2^32 / (4 pi), a binary angle
 SIZE, NEAR = (0, 1, 1, 2, 2, 2, 3), (0, 1, 2, 2, 3, 3, 4)   # by width, at most 6
 
@@ -45,19 +46,51 @@ def residual(decoder: RangeDecoder, models: Models, dof: int, reason: int) -> li
 
 def predict(scene: Declaration, state: State, t: int) -> tuple[tuple, tuple]:
     dt = min(t - state.tick, scene.max_extrapolation)
+    rest = rest_time(scene, state) if state.predictor == SLIDE else 0
+    if state.predictor == SLIDE:
+        dt = min(dt, (rest + 255) >> 8)
     if dt == 0:
         return state.position, state.rotation
     shift = scene.position_exp - scene.velocity_exp
-    x = tuple(sat32(p + round_div((v * dt) << shift, scene.tick_rate)) for p, v in zip(state.position, state.velocity))
+    share = 1 << 15
+    if state.predictor == SLIDE:
+        share = (1 << 15) - round_div(dt << 22, rest) if dt << 8 <= rest else round_div(rest << 14, dt << 8)
+    moved = [clamp(round_div((v * dt) << shift, scene.tick_rate), -1 << 33, 1 << 33) for v in state.velocity]
+    x = tuple(sat32(p + round_shift(m * share, 15)) for p, m in zip(state.position, moved))
+    if state.predictor == BALLISTIC:
+        x = tuple(sat32(p + round_div((g * dt) << shift, 2 * scene.tick_rate)) for p, g in zip(x, gained(scene, dt)))
     speed = isqrt(sum(c * c for c in state.angular_velocity) << 10)
     if speed == 0:
         return x, state.rotation
-    angle = round_div(speed * dt, scene.tick_rate)
+    angle = round_shift(round_div(speed * dt, scene.tick_rate) * share, 15)
     half = (((angle * HALF_RADIAN + (1 << (scene.angular_exp + 4))) % (1 << 64)) >> (scene.angular_exp + 5)) % (1 << 32)
     if half == 0:
         return x, state.rotation
     u = tuple(round_div(c << 35, speed) for c in state.angular_velocity)
     return x, renorm(mul(axis_angle(u, half), state.rotation))
+
+
+def rest_time(scene: Declaration, state: State) -> int:
+    """Until a sliding object rests, x 2^-8 ticks."""
+    return round_div((isqrt(sum(c * c for c in state.velocity)) * scene.tick_rate) << 8, scene.motion.slide_deceleration)
+
+
+def gained(scene: Declaration, dt: int) -> list[int]:
+    """Velocity, by gravity."""
+    return [sat32(round_div(g * dt, scene.tick_rate)) for g in scene.motion.gravity]
+
+
+def motion(scene: Declaration, state: State, dt: int) -> tuple[list, list]:
+    """Velocities after dt ticks."""
+    v, o = list(state.velocity), list(state.angular_velocity)
+    if state.predictor == BALLISTIC:
+        v = [sat32(c + g) for c, g in zip(v, gained(scene, dt))]
+    if state.predictor == SLIDE and dt > 0:
+        rest = rest_time(scene, state)
+        left = (1 << 15) - round_div(dt << 23, rest) if dt << 8 < rest else 0
+        v = [round_shift(c * left, 15) for c in v]
+        o = [round_shift(c * left, 15) for c in o]
+    return v, o
 
 
 def reconstruct_pose(scene: Declaration, base: State, t: int, r: list[list[int]], s: int) -> tuple[tuple, tuple]:
@@ -77,7 +110,8 @@ def reconstruct_pose(scene: Declaration, base: State, t: int, r: list[list[int]]
 
 
 def reconstruct_motion(scene: Declaration, base: State, t: int, r: list[list[int]], s: int, reason: int) -> tuple[tuple, tuple]:
-    v, o, dt = list(base.velocity), list(base.angular_velocity), t - base.tick
+    dt = t - base.tick
+    v, o = motion(scene, base, min(dt, scene.max_extrapolation))
     if reason == HAPTIC and dt > 0:
         for a in range(3):
             e, f = sat32(r[0][a] << s), sat32(r[2][a] << s)
@@ -166,19 +200,30 @@ class RigidDecoder:
             usual = max(0, min(self.scene.tick_rate // 62, 255).bit_length() - 1)
             ease = (usual - decoder.tree(models["EASE"], 3)) % 8
         keep = decoder.tree(models["KEEP"], 2) if ease > 0 else 0
+        predictor = decoder.tree(models[f"PREDICTOR[{reason}]"], 2) if self.scene.motion else 0
         r = residual(decoder, models, self.scene.objects[index].dof, reason)
+        require(self.declares(predictor), "invalid", "R-RIG-7")
         base, s = moment.states[index], level
         position, rotation = reconstruct_pose(self.scene, base, moment.tick, r, s)
         velocity, angular = reconstruct_motion(self.scene, base, moment.tick, r, s, reason)
-        moment.states[index] = State(moment.tick, position, rotation, velocity, angular, ease, keep)
+        moment.states[index] = State(moment.tick, position, rotation, velocity, angular, predictor, ease, keep)
         return Update(index, reason, level)
+
+    def declares(self, predictor: int) -> bool:
+        """What a predictor needs."""
+        if predictor == 0:
+            return True
+        needed = {BALLISTIC: any(self.scene.motion.gravity), SLIDE: self.scene.motion.slide_deceleration != 0}
+        return needed.get(predictor, False)
 
     def state_hash(self) -> int:
         states = self.receiver.current.states
         h = FNV_START
         for i in self.moving:
-            tick, *vectors, ease, keep = states[i]
+            tick, *vectors, predictor, ease, keep = states[i]
             h = fnv1a(struct.pack("<Q13i", tick, *(c for vector in vectors for c in vector)), h)
             if self.scene.eased:
                 h = fnv1a(struct.pack("<I", ease + 8 * keep), h)
+            if self.scene.motion:
+                h = fnv1a(struct.pack("<i", predictor), h)
         return h

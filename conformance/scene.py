@@ -25,7 +25,7 @@ class Limits(NamedTuple):
 
 MAGIC = b"\x89TCT"
 SMALLEST_OBJECT = 32
-HAS_DEFORMABLES, HAS_LOADS, IS_EASED = 1, 2, 4              # bits 0, 1 and 2 of `flags`
+HAS_DEFORMABLES, HAS_LOADS, IS_EASED, HAS_MOTION = 1, 2, 4, 8      # bits 0 to 3 of `flags`
 
 
 class State(NamedTuple):                                    # chapter 40
@@ -34,6 +34,7 @@ class State(NamedTuple):                                    # chapter 40
     rotation: tuple
     velocity: tuple = (0, 0, 0)
     angular_velocity: tuple = (0, 0, 0)
+    predictor: int = 0
     ease: int = 0
     keep: int = 0
 
@@ -47,6 +48,11 @@ class Object(NamedTuple):
 class LoadDeclaration(NamedTuple):                          # chapter 45
     force_exp: int
     users: int
+
+
+class MotionConstants(NamedTuple):                          # chapter 40, x 2^-velocity_exp m/s^2
+    gravity: tuple
+    slide_deceleration: int
 
 
 class Bounds(NamedTuple):
@@ -71,6 +77,7 @@ class Declaration:
     objects: list[Object] = field(default_factory=list)
     deformables: list[DeformableObject] = field(default_factory=list)
     loads: Optional[LoadDeclaration] = None
+    motion: Optional[MotionConstants] = None
     bounds: Optional[Bounds] = None
 
     def moving(self) -> list[int]:
@@ -91,7 +98,7 @@ def read_declaration(data: bytes, limits: Limits = Limits()) -> tuple[Declaratio
     require(version == 1, "unsupported", "R-STR-2")
     require(profile <= 1, "malformed", "R-STR-3")
     require(profile == 0, "unsupported", "R-STR-3")
-    require(flags <= HAS_DEFORMABLES + HAS_LOADS + IS_EASED, "malformed", "R-STR-4")
+    require(flags <= HAS_DEFORMABLES + HAS_LOADS + IS_EASED + HAS_MOTION, "malformed", "R-STR-4")
     require(body_size <= limits.body_size, "limit_exceeded", "R-STR-14")
     end = 12 + body_size
     require(len(data) >= end + 4, *STR_5)
@@ -109,6 +116,9 @@ def read_declaration(data: bytes, limits: Limits = Limits()) -> tuple[Declaratio
     if flags & HAS_LOADS:
         scene.loads = LoadDeclaration(*body.take(2, STR_5))
         require(scene.moving() and scene.loads.force_exp <= 20 and scene.loads.users <= 64, "invalid", "R-STR-19")
+    if flags & HAS_MOTION:
+        scene.motion = read_motion(body)
+        require(scene.moving(), "invalid", "R-STR-22")
     while body.left() > 0:
         kind = body.varint(STR_16, STR_16)
         content = body.take(body.varint(STR_16, STR_16), STR_16)
@@ -160,6 +170,14 @@ def read_object(body: Cursor) -> Object:
     require(all(-ONE <= c <= ONE for c in rotation)
             and abs(sum(c * c for c in rotation) - (1 << 60)) <= 1 << 41, "invalid", "R-STR-13")
     return Object(name, dof, State(0, position, rotation))
+
+
+def read_motion(body: Cursor) -> MotionConstants:
+    *gravity, deceleration = struct.unpack("<4i", body.take(16, STR_5))
+    most = 1 << 28
+    require(all(-most <= c <= most for c in gravity) and 0 <= deceleration <= most and (any(gravity) or deceleration),
+            "invalid", "R-STR-22")
+    return MotionConstants(tuple(gravity), deceleration)
 
 
 def read_bounds(data: Cursor, scene: Declaration) -> Bounds:

@@ -19,6 +19,7 @@ struct EncodeOptions {
   std::string input, output;
   TriggerArguments triggers;
   MeshArguments meshes;
+  MotionArguments motion;
   CommonOptions common;
 };
 
@@ -38,6 +39,7 @@ bool has_moving(const TraceInfo& info) {
 Result<Session> start(const TraceInfo& info, const TraceFrame& first, const EncodeOptions& options, std::ostream& out) {
   TACTUS_TRY(SceneBuilder builder, scene_builder(info, first, options.meshes.coding(options.triggers)));
   const SenderOptions wanted = options.meshes.sender(options.triggers);
+  builder.motion(options.motion.physics());
   TACTUS_TRY(const SharedScene scene, builder.promise(wanted.triggers, wanted.deformable.thresholds).build());
   TACTUS_TRY(StreamFileWriter writer, StreamFileWriter::create(out, *scene));
   TACTUS_TRY(Sender sender, Sender::create(scene, wanted));
@@ -157,11 +159,12 @@ void setup_encode(Command& app, Action& action) {
   command.add_option("TRACE", options->input, "Trace to encode (MCAP), - is standard input")->type_name("")->required();
   command.add_option("-o,--output", options->output, "Stream to write, - is standard output")->required()->type_name("FILE");
   add_encoder_options(command, options->triggers, options->meshes);
+  options->motion.add_to(command);
   add_output_options(command, options->common);
   command.footer(
       "Examples:\n"
       "  tactus encode push.mcap -o push.tct -p 4% --visual 6mm,2deg\n"
-      "  tactus encode tosses.mcap -o tosses.tct --visual 5mm,4deg --haptic off\n"
+      "  tactus encode tosses.mcap -o tosses.tct --visual 5mm,4deg --haptic off --gravity 9.81 --friction 0.25\n"
       "  tactus encode membrane.mcap -o membrane.tct -p 2.5% --deformable-visual 0.25mm --basis 48");
   on_chosen<EncodeOptions>(command, action, options, run);
 }

@@ -28,6 +28,7 @@ struct ExportPcapOptions {
   bool observe = false;
   TriggerArguments triggers;
   MeshArguments meshes;
+  MotionArguments motion;
   CommonOptions common;
 };
 
@@ -49,6 +50,7 @@ Result<std::unique_ptr<sim::SessionNetwork>> connect(const TraceInfo& info, cons
                                                      const ExportPcapOptions& options, SessionCapture& capture) {
   const SenderOptions sender = options.meshes.sender(options.triggers);
   TACTUS_TRY(SceneBuilder builder, scene_builder(info, first, options.meshes.coding(options.triggers)));
+  builder.motion(options.motion.physics());
   TACTUS_TRY(SharedScene scene, builder.promise(sender.triggers, sender.deformable.thresholds).baselines(kBaselines).build());
   sim::NetworkOptions network;
   network.downlink = options.link;
@@ -202,6 +204,7 @@ void setup_export_pcap(Command& group, Action& action) {
   command.add_flag("--observe", options->observe,
                    "One client that only looks on; otherwise each user of the trace takes part and sends the recorded device");
   add_encoder_options(command, options->triggers, options->meshes);
+  options->motion.add_to(command);
   add_output_options(command, options->common);
   command.footer(
       "Examples:\n"

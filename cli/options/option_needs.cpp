@@ -59,6 +59,8 @@ constexpr std::array kNeeds{
     Need{"--force-floor", Subject::rigid},
     Need{"--heartbeat", Subject::rigid},
     Need{"--no-reduction", Subject::rigid},
+    Need{"--gravity", Subject::rigid},
+    Need{"--friction", Subject::rigid},
     Need{"--interpolate", Subject::rigid},
     Need{"--deformable-visual", Subject::mesh},
     Need{"--basis", Subject::mesh},

@@ -171,6 +171,21 @@ RigidTriggers TriggerArguments::over(RigidTriggers out) const {
   return out;
 }
 
+void MotionArguments::add_to(Command& app) {
+  const Option* gravity =
+      app.add_option(
+             "--gravity", gravity_,
+             "Gravity of the recording along -z [m/s^2]: updates may then choose free fall as their predictor [0: none does]")
+          ->check(number(0, 1000))
+          ->type_name("G");
+  app.add_option(
+         "--friction", friction_,
+         "Coefficient of friction of the recording: updates may then choose sliding to rest as their predictor [0: none does]")
+      ->check(number(0, 10))
+      ->type_name("MU")
+      ->needs(gravity);
+}
+
 void MeshArguments::add_to(Command& app) {
   visual_ = add_quantity(app, "--deformable-visual", thresholds_.visual, Dimension::length,
                          "Visual threshold of a vertex of a deformable object, 0: exact to the grid [0.25mm]")

@@ -60,6 +60,16 @@ class TriggerArguments {
   std::vector<const Option*> options_;
 };
 
+/// Constants of motion of a recording, as typed.
+class MotionArguments {
+ public:
+  void add_to(Command& app);
+  MotionPhysics physics() const { return {{0, 0, -gravity_}, friction_}; }
+
+ private:
+  double gravity_ = 0, friction_ = 0;
+};
+
 /// How deformable objects are coded and bounded, as typed. The deadband is that of TriggerArguments, its default another.
 class MeshArguments {
  public:

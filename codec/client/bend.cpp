@@ -14,7 +14,7 @@ RigidPose bend(const Scene& scene, const RigidState& a, const RigidState& b, std
   const bool is_moving = a.velocity != Vec3i{} || b.velocity != Vec3i{};
   const bool is_turning = a.angular_velocity != Vec3i{} || b.angular_velocity != Vec3i{};
   const PoseOffset error = offset_between(predictor.pose(a, b.tick), {b.position, b.rotation});
-  const PoseOffset change = change_between(scene, {a.velocity, a.angular_velocity}, {b.velocity, b.angular_velocity}, whole);
+  const PoseOffset change = change_between(scene, predictor.motion(a, b.tick, {}), {b.velocity, b.angular_velocity}, whole);
   return displaced(predictor.pose(a, tick), error, change,
                    {is_moving ? curve.error : share, is_turning ? curve.error : share, curve.change});
 }

@@ -91,7 +91,7 @@ void Replica::apply(const DecodedPacket& packet, std::span<const RigidState> obj
 /// Velocities of dead reckoning at `now`: none once it has come to rest.
 RigidMotion Replica::motion(const Track& track, std::int64_t now) const noexcept {
   if (now - track.path.state.tick >= scene_.max_extrapolation) return {};
-  return {track.path.state.velocity, track.path.state.angular_velocity};
+  return predictor_.motion(track.path.state, now, {});
 }
 
 /// spec 60-client 7.   pre  a.state.tick <= tick, and tick <= b->state.tick if there is a b

@@ -29,8 +29,9 @@ Result<void> RigidDecoder::read_updates(const RigidStates& base, std::int64_t ti
     if (next >= moving.size()) return fail(Errc::invalid, "R-RIG-4", bit());
     const std::uint32_t object = moving[static_cast<std::size_t>(next++)];
     CodedUpdate update;
-    code_update(coder_, models_, scene_, scene_.objects[object].dof, update);
+    code_update(coder_, models_, scene_, object, update);
     if (coder_.too_wide()) return fail(Errc::malformed, "R-RNG-4", bit());
+    if (!is_declared(scene_, update.predictor)) return fail(Errc::invalid, "R-RIG-7", bit());
     const RigidState& state = base.objects[object];
     const auto after = reconstruct(predictor_, {state, predictor_.pose(state, tick)}, tick, update, scene_.grid);
     if (!after) return fail(Errc::invalid, "R-RIG-6", bit());

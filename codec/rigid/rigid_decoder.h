@@ -24,7 +24,7 @@ class RigidDecoder {
 
   /// err  malformed R-RNG-4
   Result<PacketHead> read_head(std::span<const std::uint8_t> payload) noexcept;
-  /// time O(updates), < 2 us for one; no allocation.   err  malformed R-RNG-n; invalid R-RIG-3, R-RIG-4, R-RIG-6
+  /// time O(updates), < 2 us for one; no allocation.   err  malformed R-RNG-n; invalid R-RIG-3, R-RIG-4, R-RIG-6, R-RIG-7
   Result<void> read_body(const RigidStates& base, std::int64_t tick, DecodedPacket& out) noexcept;
   /// time O(updates), and O(objects) where `next` is not `base`
   void commit(const RigidStates& base, RigidStates& next) noexcept;

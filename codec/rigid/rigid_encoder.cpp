@@ -128,6 +128,7 @@ RigidEncoder::RigidEncoder(const Scene& scene, const RigidTriggers& triggers, Ba
       heartbeat_(static_cast<std::int64_t>(std::ceil(triggers.heartbeat * scene.tick_rate))),
       truth_(initial_states(scene).objects) {
   if (triggers.reduction == Reduction::leaning || scene.is_eased) acceleration_.emplace(scene);
+  if (scene.motion && triggers.reduction != Reduction::none) choice_.emplace(scene);
   pending_.reserve(scene.moving().size());
   before_.reserve(scene.moving().size());
   for (const RigidState& state : truth_) sent_.push_back({.path = {.state = state}});
@@ -163,6 +164,7 @@ Result<void> RigidEncoder::read(std::int64_t tick, std::span<const RigidSample> 
   samples_ = samples;
   contacts_ = contacts;
   if (acceleration_) acceleration_->read(tick, samples);
+  if (choice_) choice_->read(tick, truth_);
   return {};
 }
 
@@ -244,9 +246,22 @@ RigidTriggers RigidEncoder::widened_triggers() const noexcept {
   return out;
 }
 
-/// The true state, with the velocities that an update is to tell.
-RigidState RigidEncoder::told(std::uint32_t object, const Acceleration::Motion& acceleration,
-                              const ErrorShare& share) const noexcept {
+Predictor RigidEncoder::chosen(std::uint32_t object, const RigidTriggers& bounds) const noexcept {
+  PermittedError permitted{bounds.visual_position, bounds.visual_rotation};
+  for (const Contact& contact : contacts_) {
+    if (contact.kind == ContactKind::none || contact.object != object || bounds.haptic == HapticRule::off) continue;
+    const double force = norm(contact_force(contact, samples_[object].pose));
+    const bool fixed = bounds.haptic == HapticRule::fixed;
+    permitted.position =
+        std::min(permitted.position, fixed ? bounds.fixed_position : force_budget(bounds, force) / contact.stiffness);
+    if (fixed) permitted.rotation = std::min(permitted.rotation, bounds.fixed_rotation);
+  }
+  return choice_->choose(object, truth_[object], permitted);
+}
+
+/// The true state with the velocities that an update is to tell.   pre  it is predicted linearly
+RigidState RigidEncoder::leaned(std::uint32_t object, const Acceleration::Motion& acceleration,
+                                const ErrorShare& share) const noexcept {
   const RigidState& truth = truth_[object];
   if (triggers_.reduction != Reduction::leaning) return truth;
   RigidSample sample = samples_[object];
@@ -283,15 +298,20 @@ void RigidEncoder::choose_ease(Pending& update, CodedUpdate& coded, const Accele
   }
 }
 
-/// The update of one object, and the state after it.
+/// The update of one object, and the state after it. A predictor other than the linear one counts as knowing the acceleration.
 Result<CodedUpdate> RigidEncoder::code(Pending& update, const RigidState& base, std::int64_t tick) const noexcept {
   const Prediction prediction{base, predictor_.pose(base, tick)};
   const std::uint32_t object = update.object;
-  if (!acceleration_) return quantise(update, prediction, truth_[object]);
-  const Acceleration::Motion acceleration = acceleration_->of(object);
-  const ErrorShare share(object, samples_[object].pose, contacts_, widened_triggers());
-  TACTUS_TRY(CodedUpdate coded, quantise(update, prediction, told(object, acceleration, share)));
-  if (scene_.is_eased) choose_ease(update, coded, acceleration, share);
+  if (!acceleration_ && !choice_) return quantise(update, prediction, truth_[object]);
+  const RigidTriggers bounds = widened_triggers();
+  const Predictor predictor = choice_ ? chosen(object, bounds) : Predictor::linear;
+  const bool is_linear = predictor == Predictor::linear;
+  const ErrorShare share(object, samples_[object].pose, contacts_, bounds);
+  const auto acceleration = acceleration_ && is_linear ? acceleration_->of(object) : Acceleration::Motion{};
+  RigidState told = is_linear ? leaned(object, acceleration, share) : truth_[object];
+  told.predictor = predictor;
+  TACTUS_TRY(CodedUpdate coded, quantise(update, prediction, told));
+  if (scene_.is_eased && triggers_.reduction != Reduction::none) choose_ease(update, coded, acceleration, share);
   return coded;
 }
 
@@ -307,7 +327,8 @@ Result<CodedUpdate> RigidEncoder::quantise(Pending& update, const Prediction& pr
     const unsigned level = levels - 1;
     CodedUpdate coded{.reason = update.reason,
                       .level = static_cast<std::uint8_t>(level),
-                      .residual = quantise_pose(prediction.pose, truth, dof, level, scene_.grid)};
+                      .residual = quantise_pose(prediction.pose, truth, dof, level, scene_.grid),
+                      .predictor = static_cast<std::uint8_t>(told.predictor)};
     quantise_motion(predictor_, prediction, told, dof, coded);
     const auto state = reconstruct(predictor_, prediction, truth.tick, coded, scene_.grid);
     if (!state) return fail(Errc::internal, "R-RIG-6");
@@ -339,7 +360,7 @@ Result<Payload> RigidEncoder::encode(const EncodeRequest<RigidStates>& request, 
     next = at + 1;
     const RigidState& base = request.base.objects[update.object];
     TACTUS_TRY(CodedUpdate coded, code(update, base, request.tick));
-    code_update(coder, models, scene_, scene_.objects[update.object].dof, coded);
+    code_update(coder, models, scene_, update.object, coded);
     strongest = std::max(strongest, update.reason);
   }
   const std::size_t size = coder.finish();

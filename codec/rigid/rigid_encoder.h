@@ -24,6 +24,7 @@
 #include <tactus/rigid/ease_choice.h>
 #include <tactus/rigid/easing.h>
 #include <tactus/rigid/error_share.h>
+#include <tactus/rigid/predictor_choice.h>
 #include <tactus/rigid/rigid_syntax.h>
 #include <tactus/rigid/trigger.h>
 
@@ -80,7 +81,8 @@ class RigidEncoder {
   bool joins(std::uint32_t object, const EncodeRequest<RigidStates>& request) const noexcept;
   void collect(const EncodeRequest<RigidStates>& request) noexcept;
   RigidTriggers widened_triggers() const noexcept;
-  RigidState told(std::uint32_t object, const Acceleration::Motion& acceleration, const ErrorShare& share) const noexcept;
+  Predictor chosen(std::uint32_t object, const RigidTriggers& bounds) const noexcept;
+  RigidState leaned(std::uint32_t object, const Acceleration::Motion& acceleration, const ErrorShare& share) const noexcept;
   UpdateCourse course_of(const RigidState& state, const RigidPose& kept, const RigidSample& truth,
                          const Acceleration::Motion& acceleration) const noexcept;
   void choose_ease(Pending& update, CodedUpdate& coded, const Acceleration::Motion& acceleration,
@@ -97,6 +99,7 @@ class RigidEncoder {
   std::array<std::int64_t, 3> follow_up_{};  // [ticks] without an acknowledgement before the first, the second and later; 0: none
   std::int64_t heartbeat_ = 0;               // [ticks], 0: off
   std::optional<Acceleration> acceleration_;  // where updates lean or are eased
+  std::optional<PredictorChoice> choice_;     // if there is one
   std::vector<RigidState> truth_;             // this tick, on the grid
   std::span<const RigidSample> samples_;      // this tick, as given
   std::span<const Contact> contacts_;

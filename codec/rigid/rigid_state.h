@@ -19,6 +19,14 @@ struct RigidSample {
   Vec3 angular_velocity;  ///< [rad/s] world frame
 };
 
+/// How an object moves until its next update. Values are wire values.
+enum class Predictor : std::uint8_t {
+  linear = 0,     ///< constant velocities
+  ballistic = 1,  ///< gravity accelerates the position
+  slide = 2,      ///< both velocities fall to 0 together, the velocity by a constant deceleration
+};
+inline constexpr std::size_t kPredictors = 3;
+
 /// Integer pose and motion of one rigid object at one tick. This is all that a decoder keeps per object.
 struct RigidState {
   std::int64_t tick = 0;
@@ -26,6 +34,7 @@ struct RigidState {
   std::array<std::int32_t, 4> rotation{1 << 30, 0, 0, 0};  ///< x 2^-30, Hamilton w, x, y, z
   std::array<std::int32_t, 3> velocity{};                  ///< x 2^-velocity m/s
   std::array<std::int32_t, 3> angular_velocity{};          ///< x 2^-angular_velocity rad/s, world frame
+  Predictor predictor = Predictor::linear;
   std::uint8_t ease = 0;  ///< clients pass over to this path within 2^ease ticks; 0: at once (easing.h)
   std::uint8_t keep = 0;  ///< ... and begin with 16, 15, 12 or 8 sixteenths of what they were off it
   friend bool operator==(const RigidState&, const RigidState&) = default;

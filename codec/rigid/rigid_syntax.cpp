@@ -66,6 +66,12 @@ std::optional<RigidPose> add_pose(const RigidPose& predicted, const Residual& re
 
 }  // namespace
 
+bool is_declared(const Scene& scene, std::uint8_t predictor) noexcept {
+  if (predictor == 0) return true;
+  if (predictor == 1) return scene.motion && scene.motion->gravity != Vec3i{};
+  return predictor == 2 && scene.motion && scene.motion->slide_deceleration != 0;
+}
+
 /// What a signed magnitude can carry: 31 bits (R-RNG-4).
 static std::int32_t codable(std::int64_t v) noexcept { return saturate32(std::max<std::int64_t>(v, -0x7fffffff)); }
 
@@ -116,7 +122,14 @@ std::optional<RigidState> reconstruct(const RigidPredictor& predictor, const Pre
   const auto pose = add_pose(prediction.pose, update.residual, update.level, grid);
   if (!pose) return std::nullopt;
   const RigidMotion motion = expected_motion(predictor, prediction.base, tick, update);
-  RigidState out{tick, pose->position, pose->rotation, motion.velocity, motion.angular_velocity, update.ease, update.keep};
+  RigidState out{tick,
+                 pose->position,
+                 pose->rotation,
+                 motion.velocity,
+                 motion.angular_velocity,
+                 static_cast<Predictor>(update.predictor),
+                 update.ease,
+                 update.keep};
   const unsigned shift = update.level;
   for (std::size_t i = 0; i < 3; ++i) {
     out.velocity[i] = saturate32((round_shift(motion.velocity[i], shift) + update.residual.of[1][i]) << shift);

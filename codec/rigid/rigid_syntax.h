@@ -40,6 +40,7 @@ struct RigidModels {
   TreeModel<3> ease;
   TreeModel<2> keep;
   std::array<ResidualModels, 2> residual;  // position and velocity; rotation and angular velocity
+  std::array<TreeModel<2>, 4> predictor;   // by reason
 };
 
 /// Start probabilities, spec/40-rigid.md table 2.
@@ -59,6 +60,7 @@ struct CodedUpdate {
   std::uint8_t level = 0;
   std::uint8_t ease = 0, keep = 0;  ///< as in RigidState; 0 in a scene that is not eased
   Residual residual;
+  std::uint8_t predictor = 0;
 };
 
 template <class Coder>
@@ -110,7 +112,8 @@ constexpr std::uint8_t usual_ease(std::uint32_t tick_rate) noexcept {
 }
 
 template <class Coder>
-void code_update(Coder& coder, RigidModels& models, const Scene& scene, std::uint8_t dof, CodedUpdate& update) noexcept {
+void code_update(Coder& coder, RigidModels& models, const Scene& scene, std::uint32_t object, CodedUpdate& update) noexcept {
+  const std::uint8_t dof = scene.objects[object].dof;
   update.reason = static_cast<Reason>(coder.template tree<2>(models.reason, static_cast<std::uint32_t>(update.reason)));
   update.level = static_cast<std::uint8_t>(coder.template tree<4>(models.level, update.level));
   if (scene.is_eased) {
@@ -118,10 +121,17 @@ void code_update(Coder& coder, RigidModels& models, const Scene& scene, std::uin
     update.ease = static_cast<std::uint8_t>((usual - coder.template tree<3>(models.ease, (usual - update.ease) & 7u)) & 7u);
   }
   if (update.ease > 0) update.keep = static_cast<std::uint8_t>(coder.template tree<2>(models.keep, update.keep));
+  if (scene.motion) {
+    TreeModel<2>& model = models.predictor[static_cast<std::size_t>(update.reason)];
+    update.predictor = static_cast<std::uint8_t>(coder.template tree<2>(model, update.predictor));
+  }
   auto& of = update.residual.of;
   code_residual(coder, models.residual[0], dof & 7u, update.reason, of[0], of[1]);
   code_residual(coder, models.residual[1], dof >> 3, update.reason, of[2], of[3]);
 }
+
+/// Does the scene declare what this predictor needs? (R-RIG-7)
+bool is_declared(const Scene& scene, std::uint8_t predictor) noexcept;
 
 /// State of one object before a packet, and its predicted pose at the packet's tick.
 struct Prediction {

@@ -76,6 +76,16 @@ RuleName broken_load_rule(const SceneSpec& spec) noexcept {
   return moves && fits ? RuleName{} : RuleName{"R-STR-19"};
 }
 
+RuleName broken_motion_rule(const SceneSpec& spec) noexcept {
+  if (!spec.motion) return {};
+  constexpr std::int32_t kMost = MotionConstants::kMost;
+  const MotionConstants& motion = *spec.motion;
+  const bool moves = std::ranges::any_of(spec.objects, [](const RigidObject& object) { return object.dof != Dof::none; });
+  const bool fits = std::ranges::all_of(motion.gravity, [](std::int32_t g) { return g >= -kMost && g <= kMost; }) &&
+                    motion.slide_deceleration >= 0 && motion.slide_deceleration <= kMost;
+  return moves && fits && motion != MotionConstants{} ? RuleName{} : RuleName{"R-STR-22"};
+}
+
 namespace {
 
 Result<void> find_broken_rule(const SceneSpec& spec, const DecodeLimits& limits) {
@@ -96,6 +106,7 @@ Result<void> find_broken_rule(const SceneSpec& spec, const DecodeLimits& limits)
     if (vertices > limits.vertices || triangles > limits.triangles) return fail(Errc::limit_exceeded, "R-STR-14");
   }
   if (const RuleName rule = broken_load_rule(spec)) return fail(Errc::invalid, rule);
+  if (const RuleName rule = broken_motion_rule(spec)) return fail(Errc::invalid, rule);
   if (spec.bounds && !are_bounds(spec)) return fail(Errc::invalid, "R-STR-17");
   if (state_bytes(spec) > limits.state_bytes) return fail(Errc::limit_exceeded, "R-STR-18");
   if (basis_work(spec) > limits.basis_work) return fail(Errc::limit_exceeded, "R-STR-21");

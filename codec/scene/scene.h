@@ -5,6 +5,7 @@
 /// threads. SceneBuilder makes one from SI units (scene_builder.h), parse_scene() from bytes (scene_syntax.h).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -41,6 +42,14 @@ struct LoadSpec {
   friend bool operator==(const LoadSpec&, const LoadSpec&) = default;
 };
 
+/// What predicts the motion of rigid objects beside their velocities. At least one constant is not 0. spec/40-rigid.md section 4
+struct MotionConstants {
+  static constexpr std::int32_t kMost = 1 << 28;
+  std::array<std::int32_t, 3> gravity{};  ///< x 2^-velocity m/s^2, world frame; each within +-kMost
+  std::int32_t slide_deceleration = 0;    ///< x 2^-velocity m/s^2, 0..kMost: of an object that slides to rest
+  friend bool operator==(const MotionConstants&, const MotionConstants&) = default;
+};
+
 struct SceneSpec {
   std::uint32_t tick_rate = 1000;  ///< ticks per second, 1 .. 1 000 000
   GridExponents grid;
@@ -50,6 +59,7 @@ struct SceneSpec {
   std::vector<RigidObject> objects;           ///< order is the wire order
   std::vector<DeformableObject> deformables;  ///< a stream without any spends no byte on them
   std::optional<LoadSpec> loads;              ///< of the objects that can move; none: a stream spends no byte on them
+  std::optional<MotionConstants> motion;      ///< of the objects that can move; none: their velocities alone predict them
   std::optional<StreamBounds> bounds;         ///< error bounds that the sender guarantees; none: not declared
 };
 

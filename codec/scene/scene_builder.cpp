@@ -34,6 +34,19 @@ Result<void> apply(DeformableCoding& coding, DeformableObject& object) {
   return {};
 }
 
+/// err  invalid_argument R-API-4 a constant is not finite, negative, or beyond the grid
+Result<std::optional<MotionConstants>> constants_of(const MotionPhysics& physics, const GridExponents& grid) {
+  const double unit = std::ldexp(1.0, -grid.velocity), most = unit * MotionConstants::kMost;
+  const double deceleration = physics.friction * norm(physics.gravity);
+  const bool fits = std::isfinite(deceleration) && physics.friction >= 0 && deceleration <= most &&
+                    std::max({std::abs(physics.gravity.x), std::abs(physics.gravity.y), std::abs(physics.gravity.z)}) <= most;
+  if (!fits) return fail(Errc::invalid_argument, "R-API-4");
+  const auto units = [unit](double v) { return static_cast<std::int32_t>(std::floor(v / unit + 0.5)); };
+  const MotionConstants out{{units(physics.gravity.x), units(physics.gravity.y), units(physics.gravity.z)}, units(deceleration)};
+  if (out == MotionConstants{}) return std::nullopt;
+  return out;
+}
+
 }  // namespace
 
 SceneBuilder& SceneBuilder::rigid(std::string name, const Pose& initial, std::uint8_t dof) {
@@ -71,6 +84,11 @@ SceneBuilder& SceneBuilder::loads(const LoadSpec& loads) {
   return *this;
 }
 
+SceneBuilder& SceneBuilder::motion(const MotionPhysics& physics) {
+  motion_ = physics;
+  return *this;
+}
+
 SceneBuilder& SceneBuilder::promise(const RigidTriggers& rigid, const DeformableThresholds& deformables,
                                     const LoadThresholds& loads) {
   promise_ = {rigid, deformables, loads};
@@ -87,6 +105,8 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build() try {
   if (!(ticks >= 0)) return refuse({Errc::invalid_argument, RuleName("R-API-4"), 0}, {});
   spec.max_extrapolation = static_cast<std::uint16_t>(std::clamp(ticks, 1.0, 65535.0));
   if (const RuleName rule = broken_parameter_rule(spec)) return refuse({Errc::invalid, rule, 0}, {});  // before the grid is used
+  const auto constants = constants_of(taken.motion_, spec.grid);
+  if (!constants) return refuse(constants.error(), {});
   std::unordered_set<std::string> names;
   for (Rigid& object : taken.rigid_) {
     const auto initial = to_grid(object.initial, spec.grid.position);
@@ -95,6 +115,7 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build() try {
     const RigidObject& made = spec.objects.back();
     if (const RuleName rule = broken_object_rule(made)) return refuse({Errc::invalid, rule, 0}, made.name);
     if (!names.insert(made.name).second) return refuse({Errc::invalid, RuleName("R-STR-11"), 0}, made.name);
+    if (made.dof != Dof::none) spec.motion = *constants;
   }
   for (Deformable& of : taken.deformables_) {
     auto object = make_deformable_object(of.name, of.surface, spec.grid.position);

@@ -27,6 +27,12 @@ struct DeformableCoding {
   std::vector<double> stiffness{};
 };
 
+/// What moves rigid objects that nothing touches. spec/40-rigid.md section 4
+struct MotionPhysics {
+  Vec3 gravity{};       ///< [m/s^2] world frame; 0: not told
+  double friction = 0;  ///< an object that slides is slowed down by this times |gravity|; 0: not told
+};
+
 /// What went wrong, and with which object.
 struct SceneFinding {
   Error error;
@@ -53,6 +59,8 @@ class SceneBuilder {
   SceneBuilder& eased();
   /// Tell the forces on all objects that can move: of their surroundings, and of so many users.
   SceneBuilder& loads(const LoadSpec& loads);
+  /// Let updates choose among predictors that know these constants. Both 0: none does.
+  SceneBuilder& motion(const MotionPhysics& physics);
   /// Declare the bounds that hold at a client that gets every packet.
   SceneBuilder& promise(const RigidTriggers& rigid, const DeformableThresholds& deformables, const LoadThresholds& loads = {});
 
@@ -73,6 +81,7 @@ class SceneBuilder {
 
   SceneSpec spec_;
   std::optional<double> extrapolation_;  // [s]
+  MotionPhysics motion_;
   std::vector<Rigid> rigid_;
   std::vector<Deformable> deformables_;
   struct Promise {

@@ -23,5 +23,6 @@ RuleName broken_object_rule(const RigidObject& object) noexcept;
 RuleName broken_parameter_rule(const SceneSpec& spec) noexcept;
 RuleName broken_deformable_rule(const DeformableObject& object) noexcept;
 RuleName broken_load_rule(const SceneSpec& spec) noexcept;
+RuleName broken_motion_rule(const SceneSpec& spec) noexcept;
 
 }  // namespace tactus

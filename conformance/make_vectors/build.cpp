@@ -57,6 +57,7 @@ Bytes RawHeader::body() const {
   }
   w.bytes(deformables);
   w.bytes(loads);
+  w.bytes(motion);
   w.bytes(extensions);
   return out;
 }
@@ -85,7 +86,7 @@ Bytes raw_packet(const Scene& header, std::uint16_t sequence, RigidHead head, st
     for (RawUpdate update : updates) {
       if (moving.size() > 1) next += coder.magnitude(models.gap, update.gap);
       if (next >= moving.size()) return;  // a decoder that obeys R-RIG-4 stops here
-      code_update(coder, models, header, header.objects[moving[next++]].dof, update.coded);
+      code_update(coder, models, header, moving[next++], update.coded);
     }
   });
 }
@@ -103,8 +104,8 @@ Bytes Stream::packet(const Step& step) {
   std::size_t next = 0;
   for (const Update& update : step.updates) {
     const auto at = static_cast<std::size_t>(std::ranges::find(moving, update.object) - moving.begin());
-    updates.push_back(
-        {static_cast<std::uint32_t>(at - next), {update.reason, update.level, update.ease, update.keep, {update.residual}}});
+    updates.push_back({static_cast<std::uint32_t>(at - next),
+                       {update.reason, update.level, update.ease, update.keep, {update.residual}, update.predictor}});
     next = at + 1;
   }
   ticks_[sequence] = step.tick;

@@ -84,8 +84,8 @@ void add_client_curves(Catalogue& c) {
   both("largest-change", "At 10^6 ticks per second 750 ticks of the largest difference of velocities.",
        one_curve(fastest, 1000, {{{}, {-kLargest, kLargest, 0}}}, {{{}, {kLargest, -kLargest, kLargest}}}, 6000));
   both("fast-spins", "Near the largest angular velocities, of opposite signs.",
-       one_curve({}, 40, {{{}, {}, {}, {33000000, 0, -33000000}}},
-                 {{{}, {}, {500000, -5000, 99}, {-66000000, 777, 66000000}}}, 60));
+       one_curve({}, 40, {{{}, {}, {}, {33000000, 0, -33000000}}}, {{{}, {}, {500000, -5000, 99}, {-66000000, 777, 66000000}}},
+                 60));
 }
 
 }  // namespace tactus::conformance

@@ -23,6 +23,7 @@ Update pushed(std::int32_t i, unsigned ease, unsigned keep, std::uint32_t object
           Reason::haptic,
           0,
           {{{900 + i, -500, 40 * i}, {3000 - 700 * i, 20 * i, -700}, {9000, -3000 * i, 800}, {300 * i, -90, 70 * i}}},
+          0,
           static_cast<std::uint8_t>(ease),
           static_cast<std::uint8_t>(keep)};
 }
@@ -65,8 +66,13 @@ Bytes overlapping() {
 Bytes far_apart() {
   Stream stream(eased_scene({{"cube", Dof::all, {-kLargest, kLargest, 0}}}));
   const auto to = [](Vec3i position, Vec3i rotation, unsigned ease, unsigned keep) {
-    return std::vector<Update>{
-        {0, Reason::visual, 1, {{position, {}, rotation, {}}}, static_cast<std::uint8_t>(ease), static_cast<std::uint8_t>(keep)}};
+    return std::vector<Update>{{0,
+                                Reason::visual,
+                                1,
+                                {{position, {}, rotation, {}}},
+                                0,
+                                static_cast<std::uint8_t>(ease),
+                                static_cast<std::uint8_t>(keep)}};
   };
   stream.add({.tick = 2, .updates = to({kLargest, -kLargest, kLargest}, {0, kHalfCircle >> 1, 0}, 4, 0), .key = true});
   stream.add({.tick = 7, .updates = to({-kLargest, kLargest, -kLargest}, {0, 0, -(kHalfCircle >> 1)}, 4, 0)});

@@ -16,6 +16,7 @@ constexpr std::array kFlags{
     Flag{"bounds", "the scene declaration has a bounds record"},
     Flag{"loads", "the scene has loads"},
     Flag{"eased", "the scene is eased"},
+    Flag{"motion", "the scene has motion constants"},
     Flag{"basis", "a deformable object has modes that are declared"},
     Flag{"computed_basis", "a deformable object has modes that both ends compute"},
     Flag{"layered", "a deformable object has haptic and visual layers"},
@@ -89,7 +90,7 @@ void skim_deformable(Skimmer& in, Features& out) {
 std::uint64_t skim_declaration(Skimmer& in, Features& out) {
   in.skip(6);
   const unsigned flags = in.u16();
-  const bool has_deformables = flags & 1u, has_loads = flags & 2u;
+  const bool has_deformables = flags & 1u, known = flags <= 15;
   if (flags & 4u) out.flags.insert("eased");
   in.skip(4 + 10);  // body_size, tick_rate to max_extrapolation
   if (in.u8() > 1) out.flags.insert("baselines");
@@ -105,11 +106,12 @@ std::uint64_t skim_declaration(Skimmer& in, Features& out) {
     ++substreams;
     skim_deformable(in, out);
   }
-  if (has_loads) {
+  if (known && (flags & 2u)) {
     out.flags.insert("loads");
     ++substreams;
     in.skip(2);
   }
+  if (known && (flags & 8u)) out.flags.insert("motion");
   return substreams;
 }
 

@@ -115,7 +115,7 @@ Bytes padded_packet(const RawHeader& header) {
   RigidHead head;
   CodedUpdate update;
   code_head(coder, models, *scene, head);
-  code_update(coder, models, *scene, scene->objects[0].dof, update);
+  code_update(coder, models, *scene, 0, update);
   return packet + Bytes(coder.position() - (packet.size() - 2), 0);
 }
 

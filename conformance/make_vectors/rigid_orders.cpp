@@ -97,7 +97,7 @@ void add_rigid_orders(Catalogue& c) {
               coder.magnitude(models.count, 2);
               coder.magnitude(models.gap, 0);
               CodedUpdate too_far{.residual = {{{{}, {}, {kHalfCircle + 1, 0, 0}, {}}}}};
-              code_update(coder, models, *two.parsed(), Dof::all, too_far);
+              code_update(coder, models, *two.parsed(), 0, too_far);
               coder.magnitude(models.gap, 1);
             }));
   c.invalid("end-before-record-tick", "Bytes left over, and a record of another tick.", {"malformed", "R-RNG-2", "R-FIL-7"},

@@ -103,6 +103,24 @@ BENCHMARK_CAPTURE(encode_touched_update, dead_reckoning, Reduction::dead_reckoni
 BENCHMARK_CAPTURE(encode_touched_update, leaning, Reduction::leaning, false)->Repetitions(5)->ReportAggregatesOnly();
 BENCHMARK_CAPTURE(encode_touched_update, leaning_eased, Reduction::leaning, true)->Repetitions(5)->ReportAggregatesOnly();
 
+/// A key packet per tick of an object that falls: every predictor is held against the whole past.
+void encode_choosing_update(benchmark::State& state, const MotionPhysics& physics) {
+  SenderOptions options;
+  options.triggers.haptic = HapticRule::off;
+  auto sender = Sender::create(SceneBuilder().rigid("o").motion(physics).build().value(), options).value();
+  std::int64_t tick = 0;
+  std::uint64_t packets = 0;
+  for (auto _ : state) {
+    const double t = 1e-3 * static_cast<double>(tick % 2000);
+    RigidSample s{{{1 + 0.01 * t, 0, -0.05 * t * t}, {}}, {0.01, 0, -0.1 * t}, {0.1, 0, 0}};
+    sender.request_key();
+    packets += sender.encode(tick++, {.objects = {&s, 1}})->size();
+  }
+  state.counters["packets_share"] = benchmark::Counter(static_cast<double>(packets), benchmark::Counter::kAvgIterations);
+}
+BENCHMARK_CAPTURE(encode_choosing_update, linear_alone, MotionPhysics{})->Repetitions(5)->ReportAggregatesOnly();
+BENCHMARK_CAPTURE(encode_choosing_update, of_three, MotionPhysics{{0, 0, -0.1}, 0.25})->Repetitions(5)->ReportAggregatesOnly();
+
 void decode_update(benchmark::State& state) {
   const SharedScene scene = testing::scene_of(1);
   auto sender = Sender::create(scene, every_tick()).value();

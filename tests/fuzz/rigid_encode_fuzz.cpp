@@ -31,9 +31,10 @@ void check_bounds(const RigidTriggers& t, Receiver& receiver, std::int64_t tick,
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   ByteReader in({data, size});
   SceneSpec spec;
-  const unsigned span = in.u8();
-  spec.baseline_span = static_cast<std::uint8_t>(1 + span % 64);
-  spec.is_eased = span >= 128;
+  const std::uint8_t choice = in.u8();
+  spec.baseline_span = static_cast<std::uint8_t>(1 + choice % 64);
+  if (choice & 64) spec.motion = {{0, 0, -1285816}, 321454};
+  spec.is_eased = choice >= 128;
   spec.objects.push_back({"o", Dof::all, {}});
   const SharedScene scene = Scene::create(std::move(spec)).value();
   SenderOptions options;

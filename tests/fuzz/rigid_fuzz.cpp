@@ -18,6 +18,7 @@ SharedScene scene(std::uint8_t choice) {
   for (const std::uint8_t dof : dofs[choice % dofs.size()])
     spec.objects.push_back({"o" + std::to_string(spec.objects.size()), dof, {}});
   if (choice & 4) spec.baseline_span = 5;
+  if (choice & 16) spec.motion = {{-9000, 1 << 20, -(1 << 28)}, choice & 32 ? 1 : 1 << 18};
   if (choice & 8) spec.grid = {30, 18, 28, 16};
   return Scene::create(std::move(spec)).value();
 }

@@ -69,6 +69,7 @@ struct Case {
   double p;
   Reduction reduction = Reduction::dead_reckoning;
   bool is_eased = false;
+  MotionPhysics motion{};
 };
 
 /// Three lines per case, or nothing and false when a codec call failed.
@@ -80,6 +81,7 @@ bool run(const Case& c) {
     bodies.emplace_back(1000 + i, c.dofs[i]);
   }
   if (c.is_eased) builder.eased();
+  builder.motion(c.motion);
   const auto scene = std::move(builder).build();
   if (!scene) return false;
   SenderOptions options;
@@ -130,6 +132,20 @@ int main() {
       {"crowd", std::vector<std::uint8_t>(40, Dof::all), HapticRule::isotropic, 0.04},
       {"every-tick", {Dof::all, Dof::translation}, HapticRule::off, 0.08, Reduction::none},
       {"eased", {Dof::all, Dof::x}, HapticRule::isotropic, 0.04, Reduction::leaning, true},
+      {"predictors",
+       {Dof::all, Dof::translation},
+       HapticRule::isotropic,
+       0.3,
+       Reduction::dead_reckoning,
+       false,
+       {{0.5, 0, -1.5}, 0.25}},
+      {"eased-predictors",
+       {Dof::all, Dof::translation},
+       HapticRule::isotropic,
+       0.3,
+       Reduction::leaning,
+       true,
+       {{0.5, 0, -1.5}, 0.25}},
   };
   for (const Case& c : cases) {
     if (!run(c)) {

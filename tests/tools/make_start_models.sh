@@ -24,6 +24,10 @@ rigid_streams() {
   stream coarse -p 4% --visual 6mm,2deg
   stream coarse-visual --haptic off --visual 6mm,2deg
   stream thesis -p 4% --visual 0.3mm,2deg --profile thesis
+  for p in 4 30; do
+    "$tactus" encode "$scratch/$scene-$seed-p$p.mcap" -q -o "$scratch/$scene-$seed-p$p-motion.tct" -p "$p%" --visual 0.3mm,2deg \
+      --gravity 9.81 --friction 0.7 >/dev/null
+  done
 }
 
 mesh_streams() {

@@ -21,7 +21,7 @@ bool count_packet(std::span<const std::uint8_t> packet, const Scene& scene, Coun
     if (moving.size() > 1) next += coder.magnitude(models.gap, 0);
     if (next >= moving.size()) return false;
     CodedUpdate update;
-    code_update(coder, models, scene, scene.objects[moving[next++]].dof, update);
+    code_update(coder, models, scene, moving[next++], update);
   }
   return true;
 }
@@ -53,5 +53,6 @@ int main(int argc, char** argv) {
     for (std::size_t context = 0; context < kMotionContexts; ++context) table.magnitude(indexed("MOTION", {kind, context}));
     for (std::size_t reason = 0; reason < 4; ++reason) table.tree(indexed("SIGN", {kind, reason}), 1);
   }
+  for (std::size_t reason = 0; reason < 4; ++reason) table.tree(indexed("PREDICTOR", {reason}), 3);
   return table.complete() ? 0 : 1;
 }

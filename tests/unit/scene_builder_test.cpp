@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -49,6 +50,25 @@ TEST(SceneBuilder, WhatIsSaidOfTheStreamIsInTheScene) {
   EXPECT_EQ((*built)->baseline_span, 8);
   EXPECT_EQ(SceneBuilder().extrapolate(0).build().value()->max_extrapolation, 1) << "a tick at least";
   EXPECT_EQ(SceneBuilder().extrapolate(1e9).build().value()->max_extrapolation, 65535) << "and what the field can say";
+}
+
+TEST(SceneBuilder, MotionConstantsAreOnTheGridOfVelocities) {
+  const auto built = [](const MotionPhysics& physics, std::uint8_t dof = Dof::all) {
+    return SceneBuilder().rigid("cube", {}, dof).motion(physics).build();
+  };
+  const auto scene = built({{0, 3, -4}, 0.25});
+  ASSERT_TRUE(scene);
+  EXPECT_EQ((*scene)->motion, (MotionConstants{{0, 3 << 17, -4 << 17}, 5 << 15})) << "0.25 times 5 m/s^2";
+  EXPECT_EQ(built({}).value()->motion, std::nullopt);
+  EXPECT_EQ(built({{0, 0, -9.81}, 0}, Dof::none).value()->motion, std::nullopt) << "nothing moves";
+  EXPECT_TRUE(built({{2048, 0, 0}, 1}));
+  for (const MotionPhysics& wrong :
+       {MotionPhysics{{2049, 0, 0}, 0}, MotionPhysics{{0, 0, -1}, -1}, MotionPhysics{{0, 0, -1}, 2049},
+        MotionPhysics{{0, std::nan(""), 0}, 0}, MotionPhysics{{0, 0, -1}, HUGE_VAL}}) {
+    const auto refused = built(wrong);
+    ASSERT_FALSE(refused);
+    EXPECT_STREQ(refused.error().error.rule, "R-API-4");
+  }
 }
 
 TEST(SceneBuilder, DeformableObjectsAndTheirCoding) {

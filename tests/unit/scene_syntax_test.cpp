@@ -64,6 +64,24 @@ TEST(SceneSyntax, NoSceneIsMadeThatTheReaderWouldRefuse) {
        [](SceneSpec& s) {
          s.objects[0].initial.rotation = {1 << 29, 0, 0, 0};
        }},
+      {"R-STR-22", [](SceneSpec& s) { s.motion.emplace(); }},
+      {"R-STR-22",
+       [](SceneSpec& s) {
+         s.motion = {{0, (1 << 28) + 1, 0}, 0};
+       }},
+      {"R-STR-22",
+       [](SceneSpec& s) {
+         s.motion = {{0, 0, -(1 << 28) - 1}, 0};
+       }},
+      {"R-STR-22",
+       [](SceneSpec& s) {
+         s.motion = {{0, 0, 1}, -1};
+       }},
+      {"R-STR-22",
+       [](SceneSpec& s) {
+         s.motion = {{0, 0, 1}, 1};
+         s.objects[0].dof = Dof::none;
+       }},
   };
   for (const auto& [rule, change] : cases) {
     SceneSpec spec = two_objects();
@@ -84,6 +102,15 @@ Bytes with_extension(Bytes bytes, const Bytes& extension) {
   for (unsigned i = 0; i < 4; ++i) bytes[8 + i] = static_cast<std::uint8_t>(body >> (8 * i));
   ByteWriter(bytes).u32(crc32(bytes));
   return bytes;
+}
+
+TEST(SceneSyntax, MotionConstantsTakeSixteenBytesWhereThereAreAny) {
+  SceneSpec spec = two_objects();
+  const std::size_t without = written(spec).size();
+  spec.motion = {{1, -2, 1 << 28}, 3};
+  const Bytes bytes = written(spec);
+  EXPECT_EQ(bytes.size(), without + 16);
+  EXPECT_EQ(parse_scene(bytes).value().scene->motion, spec.motion);
 }
 
 TEST(SceneSyntax, OtherProfilesAreNotKnown) {

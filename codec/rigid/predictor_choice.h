@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Which predictor an update chooses: the one that would have served longest of late. Each is started from true states of the last 150 ms
+/// and held against the truth of now, from the youngest start back until one would have left its bounds. Informative: an encoder's
+/// choice, which no bound depends on. Internal to the library.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <tactus/rigid/rigid_predictor.h>
+#include <tactus/rigid/rigid_state.h>
+#include <tactus/scene/scene.h>
+
+namespace tactus {
+
+/// The errors of a shown pose that end an update.
+struct PermittedError {
+  double position = 0;  ///< [m]
+  double rotation = 0;  ///< [rad]
+};
+
+class PredictorChoice {
+ public:
+  /// pre  `scene` outlives this, and has motion constants
+  explicit PredictorChoice(const Scene& scene);
+
+  /// The truth of a tick, after those before it.   time O(moving objects), about 10 ns each, no allocation
+  void read(std::int64_t tick, std::span<const RigidState> truth) noexcept;
+  /// in   truth  the object's state of the last read()
+  /// time < 2 us for all predictors, no allocation
+  Predictor choose(std::uint32_t object, const RigidState& truth, const PermittedError& permitted) const noexcept;
+
+ private:
+  static constexpr std::size_t kKept = 32;
+
+  /// What a predictor would have done.
+  struct Record {
+    std::size_t served = 0;  // starts from which the error is within what is permitted
+    double error = 0;        // sum over them
+  };
+
+  Record record_of(Predictor predictor, std::uint32_t object, const RigidState& truth,
+                   const PermittedError& permitted) const noexcept;
+  bool is_candidate(std::uint32_t object, Predictor predictor) const noexcept;
+
+  const Scene& scene_;
+  RigidPredictor predictor_;
+  std::int64_t spacing_;          // [ticks] between states that are kept
+  std::int64_t longest_;          // [ticks] older states say nothing of now
+  std::size_t newest_ = 0;        // of the ring
+  std::size_t count_ = 0;         // kept
+  std::vector<RigidState> past_;  // kKept per object
+};
+
+}  // namespace tactus

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/rigid/predictor_choice.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/unit/rigid_fixture.h"
+
+namespace tactus {
+namespace {
+
+constexpr double kGravity = 9.81, kFriction = 0.25;
+constexpr PermittedError kPermitted{0.001, 0.02};
+
+SharedScene scene_with(const MotionPhysics& physics, std::uint8_t dof = Dof::all) {
+  return SceneBuilder().rigid("o", {}, dof).motion(physics).build().value();
+}
+
+/// Thrown, then sliding to rest on a floor, then thrown anew.
+class Toss {
+ public:
+  RigidSample at(std::int64_t tick) const {
+    const double t = 1e-3 * static_cast<double>(tick % 1000);
+    const double up = 2, flight = 2 * up / kGravity, forward = 0.8, rest = forward / (kFriction * kGravity);
+    RigidSample out;
+    if (t < flight) {
+      out.pose.position = {forward * t, 0, up * t - kGravity / 2 * t * t};
+      out.velocity = {forward, 0, up - kGravity * t};
+      return out;
+    }
+    const double s = std::min(t - flight, rest);
+    out.pose.position = {forward * (flight + s - s * s / (2 * rest)), 0, 0};
+    out.velocity = {forward * (1 - s / rest), 0, 0};
+    return out;
+  }
+};
+
+Predictor chosen_at(std::int64_t now, const SharedScene& scene, std::int64_t step = 1) {
+  const Toss toss;
+  PredictorChoice choice(*scene);
+  RigidState truth;
+  for (std::int64_t tick = now - 200 * step; tick <= now; tick += step) {
+    truth = to_grid(toss.at(tick), tick, scene->grid).value();
+    choice.read(tick, {&truth, 1});
+  }
+  return choice.choose(0, truth, kPermitted);
+}
+
+TEST(PredictorChoice, TakesWhatWouldHaveServedLongest) {
+  const SharedScene scene = scene_with({{0, 0, -kGravity}, kFriction});
+  EXPECT_EQ(chosen_at(1350, scene), Predictor::ballistic);
+  EXPECT_EQ(chosen_at(1600, scene), Predictor::slide);
+  EXPECT_EQ(chosen_at(1999, scene), Predictor::linear) << "at rest all serve alike";
+}
+
+TEST(PredictorChoice, NeverTakesWhatTheSceneDoesNotDeclare) {
+  EXPECT_EQ(chosen_at(1350, scene_with({{0, 0, -kGravity}, 0})), Predictor::ballistic);
+  EXPECT_NE(chosen_at(1600, scene_with({{0, 0, -kGravity}, 0})), Predictor::slide);
+}
+
+/// The residual could not bring it back.
+TEST(PredictorChoice, WhatCannotFallIsNeverBallistic) {
+  const auto rail = static_cast<std::uint8_t>(Dof::all & ~Dof::z);
+  EXPECT_NE(chosen_at(1350, scene_with({{0, 0, -kGravity}, kFriction}, rail)), Predictor::ballistic);
+}
+
+TEST(PredictorChoice, WithoutAPastItIsLinear) {
+  const SharedScene scene = scene_with({{0, 0, -kGravity}, kFriction});
+  PredictorChoice choice(*scene);
+  const RigidState truth = to_grid(Toss().at(1350), 1350, scene->grid).value();
+  EXPECT_EQ(choice.choose(0, truth, kPermitted), Predictor::linear);
+  choice.read(1350, {&truth, 1});
+  EXPECT_EQ(choice.choose(0, truth, kPermitted), Predictor::linear);
+}
+
+struct Outcome {
+  int packets = 0;
+  double error = 0;  // largest, over the bound
+};
+
+Outcome send(const SharedScene& scene, const Toss& toss) {
+  SenderOptions options;
+  options.triggers.haptic = HapticRule::off;
+  options.triggers.visual_position = 0.001;
+  auto sender = Sender::create(scene, options).value();
+  auto receiver = Receiver::create(scene).value();
+  Outcome out;
+  for (std::int64_t tick = 0; tick < 5000; ++tick) {
+    const RigidSample sample = toss.at(tick);
+    const Packet packet = testing::only(sender.encode(tick, {.objects = {&sample, 1}}));
+    if (!packet.bytes.empty()) {
+      ++out.packets;
+      EXPECT_TRUE(receiver.push(packet.bytes));
+      EXPECT_EQ(sender.state_hash(0), receiver.state_hash(0));
+    }
+    const Pose shown = to_pose(receiver.replica().pose(0, tick), scene->grid.position);
+    out.error = std::max(out.error, norm(shown.position - sample.pose.position) / 0.001);
+  }
+  return out;
+}
+
+TEST(PredictorChoice, TossesTakeAFractionOfThePacketsInsideTheSameBounds) {
+  const Toss toss;
+  const Outcome plain = send(scene_with({}), toss), motion = send(scene_with({{0, 0, -kGravity}, kFriction}), toss);
+  EXPECT_LE(plain.error, 1);
+  EXPECT_LE(motion.error, 1);
+  EXPECT_LT(motion.packets, 0.4 * plain.packets);
+}
+
+/// A locked axis would run away for good.
+TEST(PredictorChoice, AnObjectOnARailStaysOnIt) {
+  const SharedScene scene = SceneBuilder().rigid("o", {}, Dof::x).motion({{0, 0, -kGravity}, kFriction}).build().value();
+  auto sender = Sender::create(scene).value();
+  auto receiver = Receiver::create(scene).value();
+  for (std::int64_t tick = 0; tick < 3000; ++tick) {
+    RigidSample sample = Toss().at(tick);
+    sample.pose.position.z = sample.velocity.z = 0;
+    for (const Packet& packet : testing::all(sender.encode(tick, {.objects = {&sample, 1}})))
+      ASSERT_TRUE(receiver.push(packet.bytes));
+    ASSERT_EQ(receiver.replica().pose(0, tick).position[2], 0) << tick;
+  }
+}
+
+}  // namespace
+}  // namespace tactus
