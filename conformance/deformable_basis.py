@@ -183,7 +183,7 @@ def rounded(u: list) -> Mode:
     for c in u:
         square += (c / largest) * (c / largest)
     step = floor(1.5 / sqrt(max(1.0, square)) * 4096 * 2048 / 2047 + 0.5)
-    return Mode(clamp(step, 1, 65535), [floor(c / largest * 2047 + 0.5) for c in u])
+    return Mode(step, [floor(c / largest * 2047 + 0.5) for c in u])
 
 
 def computed_modes(item: DeformableObject) -> list[Mode]:
