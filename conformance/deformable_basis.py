@@ -15,8 +15,11 @@ AXES = range(3)
 
 
 def work(item: DeformableObject) -> int:
-    """As the chapter 20 counts it."""
-    return item.mode_count * (len(item.rest) + 15 * min(len(item.rest), MOST_MEMBERS)) if item.fixed is not None else 0
+    """As chapter 20 counts it."""
+    if item.fixed is None:
+        return 0
+    columns = item.mode_count + SPARE_COLUMNS
+    return columns * (len(item.rest) + 16 * min(len(item.rest), MOST_MEMBERS)) + columns ** 3 // 4
 
 
 def dot(a: list, b: list) -> float:
@@ -180,7 +183,7 @@ def rounded(u: list) -> Mode:
     for c in u:
         square += (c / largest) * (c / largest)
     step = floor(1.5 / sqrt(max(1.0, square)) * 4096 * 2048 / 2047 + 0.5)
-    return Mode(clamp(step, 1, 65535), [floor(c / largest * 2047 + 0.5) for c in u])
+    return Mode(step, [floor(c / largest * 2047 + 0.5) for c in u])
 
 
 def computed_modes(item: DeformableObject) -> list[Mode]:

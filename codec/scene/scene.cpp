@@ -151,8 +151,9 @@ std::uint64_t state_bytes(const SceneSpec& spec) noexcept {
 std::uint64_t basis_work(const SceneSpec& spec) noexcept {
   std::uint64_t sum = 0;
   for (const DeformableObject& object : spec.deformables) {
-    const std::uint64_t vertices = object.rest.size();
-    sum += object.spring_basis.modes * (vertices + 15 * std::min<std::uint64_t>(vertices, kBasisCore));
+    if (object.spring_basis.modes == 0) continue;
+    const std::uint64_t vertices = object.rest.size(), columns = object.spring_basis.modes + std::uint64_t{8};
+    sum += columns * (vertices + 16 * std::min<std::uint64_t>(vertices, kBasisCore)) + columns * columns * columns / 4;
   }
   return sum;
 }

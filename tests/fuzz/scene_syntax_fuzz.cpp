@@ -13,7 +13,7 @@ namespace {
 using namespace tactus;
 
 constexpr DecodeLimits kLimits{.state_bytes = 1u << 24};  // few bytes can ask for many states, which take long to make
-constexpr DecodeLimits kParsed{.basis_work = 1u << 14};   // or for a basis
+constexpr DecodeLimits kParsed{.basis_work = 1u << 12};   // or for a basis
 
 void check_ends(const SharedScene& scene) {
   const auto receiver = Receiver::create(scene, {.replica = {}, .limits = kLimits});
