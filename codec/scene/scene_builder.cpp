@@ -15,7 +15,14 @@ namespace {
 
 constexpr double kExtrapolation = 2;  // [s]
 
-Result<void> apply(DeformableCoding& coding, DeformableObject& object) {
+/// The share that fades per frame, from that per second.
+std::uint16_t fade_of(const DeformableCoding& coding, std::uint32_t tick_rate) noexcept {
+  if (coding.basis.steps.empty()) return 0;
+  const double left = std::pow(1 - std::clamp(coding.fade, 0.0, 1.0), coding.frame_period / tick_rate);
+  return static_cast<std::uint16_t>(std::min(65535.0, std::floor(65536 * (1 - left) + 0.5)));
+}
+
+Result<void> apply(DeformableCoding& coding, std::uint32_t tick_rate, DeformableObject& object) {
   object.profile = coding.profile;
   object.rings = coding.rings;
   object.quant_bits = coding.quant_bits;
@@ -23,7 +30,12 @@ Result<void> apply(DeformableCoding& coding, DeformableObject& object) {
   object.layered = coding.profile == DeformableProfile::main && coding.layered;
   object.frame_period = static_cast<std::uint32_t>(
       std::clamp(std::floor(256 * coding.frame_period + 0.5), 1.0, double{DeformableObject::kMaxFramePeriod}));
-  if (coding.profile == DeformableProfile::main) object.basis = std::move(coding.basis);
+  if (coding.profile == DeformableProfile::main) {
+    if (!(coding.fade >= 0 && coding.fade <= 1)) return fail(Errc::invalid_argument, "R-API-4");
+    object.fade = fade_of(coding, tick_rate);
+    object.weight_sets = coding.weight_sets;
+    object.basis = std::move(coding.basis);
+  }
   for (const double stiffness : coding.stiffness) {
     TACTUS_TRY(const std::uint8_t level, stiffness_level(stiffness));
     object.stiffness.push_back(level);
@@ -91,7 +103,7 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build() try {
   for (Deformable& of : taken.deformables_) {
     auto object = make_deformable_object(of.name, of.surface, spec.grid.position);
     if (!object) return refuse(object.error(), of.name);
-    if (const auto applied = apply(of.coding, *object); !applied) return refuse(applied.error(), of.name);
+    if (const auto applied = apply(of.coding, spec.tick_rate, *object); !applied) return refuse(applied.error(), of.name);
     if (!is_name(of.name) || !names.insert(of.name).second) return refuse({Errc::invalid, RuleName("R-STR-11"), 0}, of.name);
     if (const RuleName rule = broken_deformable_rule(*object)) return refuse({Errc::invalid, rule, 0}, of.name);
     spec.deformables.push_back(std::move(*object));

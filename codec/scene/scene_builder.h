@@ -21,7 +21,10 @@ struct DeformableCoding {
   bool models_kept = false;     ///< thesis: entropy models are part of the state
   double frame_period = 1;      ///< main: [ticks] from shape to shape, > 0
   bool layered = false;         ///< main: separate packets for the haptic and the visual layer
-  ModeBasis basis{};            ///< main
+  /// main, with a basis: share of what corrections added to it that fades per second, 0..1
+  double fade = 0.95;
+  std::uint8_t weight_sets = 1;  ///< main: sets of the parents' weights that packets may name (DeformableObject)
+  ModeBasis basis{};             ///< main
   /// [N/m] of each vertex, infinite where it does not move; empty: not told. What clients with delay render by (StiffnessReduction).
   std::vector<double> stiffness{};
 };

@@ -34,6 +34,8 @@ void add_valid(Catalogue& c) {
                      .rings = 32,
                      .frame_period = 1 << 28,
                      .layered = 1,
+                     .fade = 65535,
+                     .weight_sets = 7,
                      .mode_steps = {1, 65535}};
   for (int i = 0; i < 18; ++i) high.entries.push_back(i % 2 == 0 ? 2047 : -2047);
   high.shape.rest = {{-kTwo31, kTwo31 - 1, 0}, {kTwo31 - 1, -kTwo31, 0}, {-kTwo31, kTwo31 - 1, 1}};
@@ -67,6 +69,8 @@ void add_counts(Catalogue& c) {
   c.invalid("second-object-missing", "deformable_count is 2; one follows.", cut, around(varint(2) + RawDeformable{}.bytes()));
   c.invalid("cut-parameters", "The body ends inside frame_period.", cut, around({1, 1, 1, 'm', 2, 0, 1}));
   c.invalid("cut-before-layered", "The body ends before layered.", cut, around({1, 1, 1, 'm', 2, 0, 1, 0, 0}));
+  c.invalid("cut-fade", "The body ends inside fade.", cut, around({1, 1, 1, 'm', 2, 0, 1, 0, 0, 0, 0}));
+  c.invalid("cut-before-weight-sets", "The body ends before weight_sets.", cut, around({1, 1, 1, 'm', 2, 0, 1, 0, 0, 0, 0, 0}));
   c.invalid("overlong-vertex-count", "vertex_count 3 is written in two bytes.", overlong, changed(1, [](RawDeformable& m) {
               m.vertex_count = Bytes{0x83, 0x00};
             }));
@@ -79,7 +83,7 @@ void add_counts(Catalogue& c) {
   c.invalid("overlong-rest", "A rest coordinate's difference 0 is written in two bytes.", overlong,
             counted(1, 0, Bytes{0x80, 0x00} + zeros(3)));
   c.invalid("overlong-then-cut", "vertex_count is overlong, then the body ends.", {"malformed", "R-STR-5", "R-STR-5"},
-            around({1, 1, 1, 'm', 2, 0, 1, 0, 0, 0, 0x83, 0x00}));
+            around({1, 1, 1, 'm', 2, 0, 1, 0, 0, 0, 0, 0, 1, 0x83, 0x00}));
 }
 
 void add_rules(Catalogue& c) {
@@ -95,6 +99,8 @@ void add_rules(Catalogue& c) {
   c.invalid("frame-period-too-long", "frame_period is 2^28 + 1.", parameter,
             changed(1, [](RawDeformable& m) { m.frame_period = (1 << 28) + 1; }));
   c.invalid("layered-2", "layered is 2.", {"malformed", "R-DEF-3"}, changed(1, [](RawDeformable& m) { m.layered = 2; }));
+  c.invalid("weight-sets-0", "weight_sets is 0.", parameter, changed(1, [](RawDeformable& m) { m.weight_sets = 0; }));
+  c.invalid("weight-sets-8", "weight_sets is 8.", parameter, changed(1, [](RawDeformable& m) { m.weight_sets = 8; }));
   c.invalid("no-vertices", "vertex_count is 0.", count, counted(0, 0, zeros(1)));
   c.invalid("too-many-vertices", "vertex_count is 2^20 + 1.", count, counted((1 << 20) + 1, 0, zeros(1)));
   c.invalid("too-many-triangles", "triangle_count is 2^21 + 1.", count, counted(3, (1 << 21) + 1, zeros(9)));

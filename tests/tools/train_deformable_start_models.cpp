@@ -47,6 +47,7 @@ bool print_table(const Counts& counts) {
   table.tree("SAME_VISUAL", 1);
   table.magnitude("VISUAL");
   for (std::size_t i = 0; i < kDensities; ++i) table.tree(indexed("DENSITY", {i}), 3);
+  for (std::size_t i = 0; i < DeformableObject::kWeightSets; ++i) table.tree(indexed("WEIGHT_SET", {i}), 3);
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t j = 0; j < 3; ++j) table.magnitude(indexed("COEFFICIENT", {i, j}));
   for (std::size_t i = 0; i < kDensities * 4 * 9; ++i)
