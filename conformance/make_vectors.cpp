@@ -47,6 +47,7 @@ Catalogue all() {
   add_deformable_edges(catalogue);
   add_deformable_start_rows(catalogue);
   add_deformable_fade(catalogue);
+  add_deformable_layers_fade(catalogue);
   add_deformable_orders(catalogue);
   return catalogue;
 }

@@ -210,12 +210,12 @@ void MeshArguments::add_encoder_to(Command& app) {
            ->type_name("NAME"),
        modes,
        add_quantity(app, "--fade", coding_.fade, Dimension::fraction,
-                    "Share of the corrections outside the basis that fades per second (--basis) [95%]")
+                    "Share of the corrections outside the basis that fades per second (--basis) [98%]")
            ->check(within(Dimension::fraction, "0%", "100%")),
        app.add_option(
               "--nugget", nugget,
               "How much of a vertex's movement its neighbours do not share: 2%, 5%, 30%, or all for a choice per packet, at "
-              "three times the cost (--profile main) [2%]")
+              "three times the cost (--profile main) [5% with --basis, else 2%]")
            ->check(one_of({"2%", "5%", "30%", "all"}))
            ->type_name("SHARE"),
        shares_[0], shares_[1],

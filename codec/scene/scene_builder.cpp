@@ -33,7 +33,8 @@ Result<void> apply(DeformableCoding& coding, std::uint32_t tick_rate, Deformable
   if (coding.profile == DeformableProfile::main) {
     if (!(coding.fade >= 0 && coding.fade <= 1)) return fail(Errc::invalid_argument, "R-API-4");
     object.fade = fade_of(coding, tick_rate);
-    object.weight_sets = coding.weight_sets;
+    const std::uint8_t smooth = coding.basis.steps.empty() ? 1 : 2;
+    object.weight_sets = coding.weight_sets == 0 ? smooth : coding.weight_sets;
     object.basis = std::move(coding.basis);
   }
   for (const double stiffness : coding.stiffness) {

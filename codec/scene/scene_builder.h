@@ -22,8 +22,9 @@ struct DeformableCoding {
   double frame_period = 1;      ///< main: [ticks] from shape to shape, > 0
   bool layered = false;         ///< main: separate packets for the haptic and the visual layer
   /// main, with a basis: share of what corrections added to it that fades per second, 0..1
-  double fade = 0.95;
-  std::uint8_t weight_sets = 1;  ///< main: sets of the parents' weights that packets may name (DeformableObject)
+  double fade = 0.98;
+  /// main: sets of the parents' weights that packets may name (DeformableObject); 0: the second alone with a basis, else the first
+  std::uint8_t weight_sets = 0;
   ModeBasis basis{};             ///< main
   /// [N/m] of each vertex, infinite where it does not move; empty: not told. What clients with delay render by (StiffnessReduction).
   std::vector<double> stiffness{};

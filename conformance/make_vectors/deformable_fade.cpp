@@ -98,9 +98,19 @@ Bytes reach() {
   return stream.finished();
 }
 
+void add_declared(Catalogue& c) {
+  const Rejection cut{"truncated", "R-STR-5"}, parameter{"invalid", "R-DEF-3"};
+  c.section(section::kDeformable);
+  c.invalid("cut-fade", "The body ends inside fade.", cut, around({1, 1, 1, 'm', 2, 0, 1, 0, 0, 0, 0}));
+  c.invalid("cut-before-weight-sets", "The body ends before weight_sets.", cut, around({1, 1, 1, 'm', 2, 0, 1, 0, 0, 0, 0, 0}));
+  c.invalid("weight-sets-0", "weight_sets is 0.", parameter, only({.weight_sets = 0}).bytes());
+  c.invalid("weight-sets-8", "weight_sets is 8.", parameter, only({.weight_sets = 8}).bytes());
+}
+
 }  // namespace
 
 void add_deformable_fade(Catalogue& c) {
+  add_declared(c);
   add_fades(c);
   add_sets(c);
   c.section(section::kVertexBounds);

@@ -69,8 +69,6 @@ void add_counts(Catalogue& c) {
   c.invalid("second-object-missing", "deformable_count is 2; one follows.", cut, around(varint(2) + RawDeformable{}.bytes()));
   c.invalid("cut-parameters", "The body ends inside frame_period.", cut, around({1, 1, 1, 'm', 2, 0, 1}));
   c.invalid("cut-before-layered", "The body ends before layered.", cut, around({1, 1, 1, 'm', 2, 0, 1, 0, 0}));
-  c.invalid("cut-fade", "The body ends inside fade.", cut, around({1, 1, 1, 'm', 2, 0, 1, 0, 0, 0, 0}));
-  c.invalid("cut-before-weight-sets", "The body ends before weight_sets.", cut, around({1, 1, 1, 'm', 2, 0, 1, 0, 0, 0, 0, 0}));
   c.invalid("overlong-vertex-count", "vertex_count 3 is written in two bytes.", overlong, changed(1, [](RawDeformable& m) {
               m.vertex_count = Bytes{0x83, 0x00};
             }));
@@ -99,8 +97,6 @@ void add_rules(Catalogue& c) {
   c.invalid("frame-period-too-long", "frame_period is 2^28 + 1.", parameter,
             changed(1, [](RawDeformable& m) { m.frame_period = (1 << 28) + 1; }));
   c.invalid("layered-2", "layered is 2.", {"malformed", "R-DEF-3"}, changed(1, [](RawDeformable& m) { m.layered = 2; }));
-  c.invalid("weight-sets-0", "weight_sets is 0.", parameter, changed(1, [](RawDeformable& m) { m.weight_sets = 0; }));
-  c.invalid("weight-sets-8", "weight_sets is 8.", parameter, changed(1, [](RawDeformable& m) { m.weight_sets = 8; }));
   c.invalid("no-vertices", "vertex_count is 0.", count, counted(0, 0, zeros(1)));
   c.invalid("too-many-vertices", "vertex_count is 2^20 + 1.", count, counted((1 << 20) + 1, 0, zeros(1)));
   c.invalid("too-many-triangles", "triangle_count is 2^21 + 1.", count, counted(3, (1 << 21) + 1, zeros(9)));

@@ -98,10 +98,6 @@ void add_valid(Catalogue& c) {
           walk(layered_object(sheet(6, 5), 0, 690), 690, 40));
   c.valid("layers-basis", "The same with a basis: haptic layers leave motion alone, visual layers the area of interest.",
           walk(layered_object(sheet(5, 4), 6, 691), 691, 60));
-  RawDeformable faded = layered_object(sheet(5, 4), 6, 698);
-  faded.fade = 3277;
-  faded.weight_sets = 3;
-  c.valid("layers-fade", "Haptic layers fade nothing, visual layers nothing of what they do not code.", walk(faded, 698, 60));
   RawDeformable wide = layered_object(sheet(4, 3), 2, 692);
   wide.rings = 32;
   c.valid("layers-area-of-all", "All vertices are in the area of interest: a visual layer codes none.", walk(wide, 692, 24));
@@ -232,6 +228,14 @@ void add_invalid(Catalogue& c) {
 void add_deformable_layers(Catalogue& c) {
   add_valid(c);
   add_invalid(c);
+}
+
+void add_deformable_layers_fade(Catalogue& c) {
+  RawDeformable faded = layered_object(sheet(5, 4), 6, 698);
+  faded.fade = 3277;
+  faded.weight_sets = 3;
+  c.section(section::kLayers);
+  c.valid("layers-fade", "Haptic layers fade nothing, visual layers nothing of what they do not code.", walk(faded, 698, 60));
 }
 
 }  // namespace tactus::conformance
