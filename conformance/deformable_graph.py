@@ -10,7 +10,7 @@ from deformable_header import DeformableObject
 
 GREATEST_DEPTH = 23
 Q = 1 << 24
-NUGGET = 335544                                             # 2 %
+NUGGETS = (335544, 838861, 5033165)                         # by set of weights: 2, 5, 30 %
 LEAST_PIVOT = 1 << 18
 
 
@@ -68,7 +68,7 @@ def first_graph(item: DeformableObject) -> list[set]:
 
 
 class Hierarchy:
-    """`order`, and for every vertex `depth`, `parents` and `weights`."""
+    """`order`, and for every vertex `depth`; `parents` and `weights` for every declared set and vertex."""
 
     def __init__(self, item: DeformableObject):
         self.rest = item.rest
@@ -76,8 +76,9 @@ class Hierarchy:
         self.shift = max(0, extent.bit_length() - 18)
         size = len(item.rest)
         self.depth: dict[int, int] = {}
-        self.parents: list[list[int]] = [[] for _ in range(size)]
-        self.weights: list[list[int]] = [[] for _ in range(size)]
+        nuggets = [nugget for i, nugget in enumerate(NUGGETS) if item.weight_sets >> i & 1]
+        self.parents: list[list[list[int]]] = [[[] for _ in range(size)] for _ in nuggets]
+        self.weights: list[list[list[int]]] = [[[] for _ in range(size)] for _ in nuggets]
         vertices = list(range(size))
         neighbours = first_graph(item)
         coded_at = []
@@ -89,8 +90,9 @@ class Hierarchy:
                 self.depth[v] = depth
                 if not roots:
                     candidates = self.candidates(v, neighbours, kept)[:8]
-                    self.weights[v] = self.weigh(v, candidates)
-                    self.parents[v] = candidates[:len(self.weights[v])]
+                    for parents, weights, nugget in zip(self.parents, self.weights, nuggets):
+                        weights[v] = self.weigh(v, candidates, nugget)
+                        parents[v] = candidates[:len(weights[v])]
             coded_at.append(coded)
             if roots:
                 break
@@ -128,13 +130,13 @@ class Hierarchy:
         visits = near + [w for n in near for w in sorted(neighbours[n])]
         return sorted({w for w in visits[:64] if w in kept or w < v}, key=lambda w: (self.distance(v, w), w))
 
-    def weigh(self, v: int, p: list[int]) -> list[int]:
+    def weigh(self, v: int, p: list[int], nugget: int) -> list[int]:
         """The weights of the parents p of v; one weight if the first is the only parent."""
         if self.rest[p[0]] == self.rest[v]:
             return [1 << 15]
         n = len(p)
         support = 94 * sum(self.distance(v, parent) for parent in p) // n
-        m = [[covariance(self.distance(p[i], p[j]), support) for j in range(i)] + [Q + NUGGET] for i in range(n)]
+        m = [[covariance(self.distance(p[i], p[j]), support) for j in range(i)] + [Q + nugget] for i in range(n)]
         a = [covariance(self.distance(v, parent), support) for parent in p]
         b = [Q] * n
         for j in range(n):

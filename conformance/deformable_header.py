@@ -27,6 +27,8 @@ class DeformableObject:
     models_kept: Optional[int] = None                       # thesis
     frame_period: Optional[int] = None                      # main
     layered: Optional[int] = None                           # main
+    fade: int = 0                                           # main: share per frame, x 2^-16
+    weight_sets: int = 1                                    # main: one bit each
     rest: list[tuple] = field(default_factory=list)
     triangles: list[tuple] = field(default_factory=list)
     mode_count: int = 0                                     # main
@@ -60,6 +62,7 @@ def read_deformable_object(body: Cursor, vertices_left: int, triangles_left: int
     else:
         item.frame_period, item.layered = body.number(4, STR_5), body.number(1, STR_5)
         require(item.layered <= 1, "malformed", "R-DEF-3")
+        item.fade, item.weight_sets = body.number(2, STR_5), body.number(1, STR_5)
     vertex_count = body.varint(STR_5, STR_5_VARINT)
     triangle_count = body.varint(STR_5, STR_5_VARINT)
     check_numbers(item)
@@ -79,7 +82,7 @@ def check_numbers(item: DeformableObject) -> None:
     if item.profile == THESIS:
         require(1 <= item.quant_bits <= 12, "invalid", "R-DEF-3")
     else:
-        require(1 <= item.frame_period <= 1 << 28, "invalid", "R-DEF-3")
+        require(1 <= item.frame_period <= 1 << 28 and 1 <= item.weight_sets <= 7, "invalid", "R-DEF-3")
 
 
 def zigzag(z: int) -> int:

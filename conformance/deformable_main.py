@@ -29,18 +29,22 @@ class MainState(NamedTuple):
     density: int = 0
     touched: int = 0
     motion_tick: int = 0
+    weight_set: int = 0
     haptic_correction: Optional[dict[int, tuple]] = None    # if layered; vertices that are not there have 0
+    off_basis: Optional[list[int]] = None                   # if anything fades: 3 for each vertex
 
     def hashed(self) -> bytes:
         """What the state hash is taken of."""
         data = struct.pack(f"<Q{len(self.u)}i4I", self.tick, *self.u, self.visual, self.triangle, self.haptic_index,
-                           self.density + 4 * self.touched)
+                           self.density + 4 * self.touched + 8 * self.weight_set)
         for c in self.motion:
             data += struct.pack("<2i5Q", c.last, c.before, *(s % (1 << 64) for s in c[2:]))
         if self.haptic_correction is not None:
             data += struct.pack("<Q", self.motion_tick)
             for v in range(len(self.u) // 3):
                 data += struct.pack("<3i", *self.haptic_correction.get(v, STILL))
+        if self.off_basis is not None:
+            data += struct.pack(f"<{len(self.off_basis)}i", *self.off_basis)
         return data
 
 
@@ -86,6 +90,14 @@ def haptic_bound(index: int) -> int:
     return 0 if index == 0 else (FINEST_HAPTIC[(index - 1) % 6] << ((index - 1) // 6)) >> 15
 
 
+def mode_unit(mode_step: int, state: MainState) -> int:
+    """What a coefficient of 1 stands for."""
+    reach = state.visual
+    if state.touched:
+        reach = clamp(8 * haptic_bound(state.haptic_index), state.visual >> 2, state.visual)
+    return clamp((mode_step * reach) >> 12, 1, 1 << 28)
+
+
 class MainCodec:
     """Decodes packets of one deformable object; what follows from its surface is worked out once."""
 
@@ -94,7 +106,8 @@ class MainCodec:
         self.hierarchy = Hierarchy(item)
         self.triangles_of = triangles_of_vertices(item)
         self.initial = MainState(0, [0] * (3 * len(item.rest)), [Motion()] * len(item.modes),
-                                 haptic_correction={} if item.layered else None)
+                                 haptic_correction={} if item.layered else None,
+                                 off_basis=[0] * (3 * len(item.rest)) if item.fade > 0 else None)
 
     def decode(self, payload: bytes, receiver: Receiver, number: int) -> tuple[MainState, int, list[int], RangeDecoder]:
         decoder, models = RangeDecoder(payload), Models("deformable-start-models.csv")
@@ -103,18 +116,25 @@ class MainCodec:
         state = self.read_head(decoder, models, start)._replace(tick=tick)
         coefficients = self.read_coefficients(decoder, models) if start.layer != HAPTIC else [0] * len(self.item.modes)
 
-        steps = [clamp((mode.step * state.visual) >> 12, 1, 1 << 28) for mode in self.item.modes]
-        q = [lim(c * s) for c, s in zip(coefficients, steps)]
+        q = [lim(c * mode_unit(mode.step, state)) for mode, c in zip(self.item.modes, coefficients)]
         area = area_of_interest(self.item, self.triangles_of, state.triangle) if state.touched else set()
         expected = self.expect(base, tick)
-        u = list(expected)
         correction = base.haptic_correction if start.same_frame else {}
+        known = Known(start.layer, area, correction)
+        faded = self.fade(base, tick, known, expected)
+        u = list(expected)
         for v in area & correction.keys():
             for axis in range(3):
                 expected[3 * v + axis] -= correction[v][axis]
         combine(self.item.modes, q, expected)
-        corrections, coded = self.read_vertices(decoder, models, state, Known(start.layer, area, correction), expected, u)
+        corrections, coded = self.read_vertices(decoder, models, state, known, expected, u)
         decoder.check_end()
+        if self.item.fade > 0:
+            off_basis = [lim(f + c) for v, c3 in sorted(corrections.items()) for f, c in zip(faded[3 * v:3 * v + 3], c3)]
+            for v in area & correction.keys():
+                for axis in range(3):
+                    off_basis[3 * v + axis] = lim(off_basis[3 * v + axis] - correction[v][axis])
+            state = state._replace(off_basis=off_basis)
         if self.item.layered:
             state = state._replace(haptic_correction={v: corrections[v] for v in area} if start.layer == HAPTIC else {})
         if start.layer != HAPTIC:
@@ -125,6 +145,21 @@ class MainCodec:
 
     def frames(self, state: MainState, tick: int) -> int:
         return round_div((tick - state.motion_tick) << 8, self.item.frame_period)
+
+    def fade(self, base: MainState, tick: int, known: Known, expected: list[int]) -> list[int]:
+        """Takes from `expected` what fades, and returns what is left."""
+        if self.item.fade == 0:
+            return []
+        left = 1 << 16
+        if known.layer != HAPTIC:
+            for _ in range(min(8, self.frames(base, tick))):
+                left = (left * ((1 << 16) - self.item.fade)) >> 16
+        faded = list(base.off_basis)
+        for i, before in enumerate(base.off_basis):
+            if known.codes(i // 3):
+                faded[i] = (abs(before) * left >> 16) * (1 if before > 0 else -1)
+                expected[i] = lim(expected[i] - before + faded[i])
+        return faded
 
     def expect(self, state: MainState, tick: int) -> list[int]:
         """Where the vertices are expected at a later tick."""
@@ -157,9 +192,13 @@ class MainCodec:
         density = state.density
         if start.layer != HAPTIC:
             density = decoder.tree(models[f"DENSITY[{state.density}]"], 2)
+        sets, weight_set = len(self.hierarchy.weights), 0
+        if sets > 1:
+            weight_set = decoder.tree(models[f"WEIGHT_SET[{start.base.weight_set}]"], 2)
         require(not state.touched or state.triangle < len(self.item.triangles), "invalid", "R-DEF-9")
         require(state.haptic_index <= 168 and state.visual <= 1 << 28, "invalid", "R-DEF-10")
-        return state._replace(density=density)
+        require(weight_set < sets, "invalid", "R-DEF-14")
+        return state._replace(density=density, weight_set=weight_set)
 
     def read_bounds(self, decoder: RangeDecoder, models: Models, start: Start) -> MainState:
         base = start.base
@@ -200,12 +239,13 @@ class MainCodec:
         h = haptic_bound(state.haptic_index)
         corrections: dict[int, tuple] = {}
         coded: dict[int, int] = {}
+        parents, weights = self.hierarchy.parents[state.weight_set], self.hierarchy.weights[state.weight_set]
         for v in self.hierarchy.order:
             if known.codes(v):
                 haptic = v in known.area and h < state.visual
                 bound = h if haptic else state.visual
                 bound_ratio = 0 if not haptic else 1 if 3 * h > 2 * state.visual else 2 if 4 * h > state.visual else 3
-                p, w = self.hierarchy.parents[v], self.hierarchy.weights[v]
+                p, w = parents[v], weights[v]
                 depth = min(2, self.hierarchy.depth[v])
                 near = min(2, sum(coded[i] for i in p))
                 r = [0, 0, 0]

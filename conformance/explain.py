@@ -24,7 +24,7 @@ ELEMENTS = {                                                # models, and the el
     "LEVEL": "level", "EASE": "ease", "KEEP": "keep", "PREDICTOR": "predictor", "LAYER": "layer", "SAME_FRAME": "same_frame",
     "LATE": "late",
     "TOUCHED": "touched", "SAME_TRIANGLE": "same triangle", "NEAR_TRIANGLE": "near triangle", "NEAR_PLACE": "entry of near",
-    "HAPTIC": "haptic_change", "SAME_VISUAL": "same_visual", "VISUAL": "visual", "DENSITY": "density",
+    "HAPTIC": "haptic_change", "SAME_VISUAL": "same_visual", "VISUAL": "visual", "DENSITY": "density", "WEIGHT_SET": "weight_set",
     "CHANGED": "changed", "STEP": "step", "COEFFICIENT": "coefficient", "SIGNIFICANT": "significant", "COMPONENT": "component of r", "ERROR": "symbol",
 }
 
@@ -190,13 +190,13 @@ def tell_vertices(packet, codec, state, base):
     """Every step of section 7, worked out again from the states before and after a packet without layers."""
     item, tree = codec.item, codec.hierarchy
     expected = codec.expect(base, state.tick)
-    steps = [clamp((mode.step * state.visual) >> 12, 1, 1 << 28) for mode in item.modes]
-    combine(item.modes, [lim(c * s) for c, s in zip(Found.coefficients, steps)], expected)
+    codec.fade(base, state.tick, deformable_main.Known(deformable_main.ALL, set(), {}), expected)
+    combine(item.modes, [lim(c * deformable_main.mode_unit(mode.step, state)) for mode, c in zip(item.modes, Found.coefficients)], expected)
     area = deformable_main.area_of_interest(item, codec.triangles_of, state.triangle) if state.touched else set()
     correction, rows = {}, []
     for v in tree.order:
         axes = range(3 * v, 3 * v + 3)
-        parents = list(zip(tree.parents[v], tree.weights[v]))
+        parents = list(zip(tree.parents[state.weight_set][v], tree.weights[state.weight_set][v]))
         predicted = [lim(expected[i] + round_shift(sum(w * correction[p][i % 3] for p, w in parents), 15)) for i in axes]
         bound = min(state.visual, deformable_main.haptic_bound(state.haptic_index)) if v in area else state.visual
         step = deformable_main.step(bound)
@@ -343,7 +343,7 @@ def tell_declaration(file, data):
     table("element | bytes | value", f.rows)
     for item in file.declaration.deformables:
         tree = deformable_main.Hierarchy(item)
-        rows = [f"| {v} | {tree.depth[v]} | {vector(tree.parents[v])} | {vector(tree.weights[v])} |" for v in tree.order]
+        rows = [f"| {v} | {tree.depth[v]} | {vector(tree.parents[0][v])} | {vector(tree.weights[0][v])} |" for v in tree.order]
         print("Coding order, parents and weights:\n")
         table("vertex | depth | parents | weights", rows)
 
@@ -353,7 +353,7 @@ def tell_deformable(f, item):
     f.take("name", f.number("name_size", "B"), True)
     f.number("rings", "B")
     main = item.profile == MAIN
-    for name, form in (("frame_period", "I"), ("layered", "B")) if main else (("quant_bits", "B"), ("models_kept", "B")):
+    for name, form in (("frame_period", "I"), ("layered", "B"), ("fade", "H"), ("weight_sets", "B")) if main else (("quant_bits", "B"), ("models_kept", "B")):
         f.number(name, form)
     f.varint("vertex_count")
     f.varint("triangle_count")

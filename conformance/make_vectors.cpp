@@ -51,6 +51,8 @@ Catalogue all() {
   add_deformable_rules(catalogue);
   add_deformable_edges(catalogue);
   add_deformable_start_rows(catalogue);
+  add_deformable_fade(catalogue);
+  add_deformable_layers_fade(catalogue);
   add_deformable_orders(catalogue);
   add_deformable_springs(catalogue);
   return catalogue;

@@ -152,7 +152,8 @@ def state_bytes(scene: Declaration) -> int:
     load = 12 * (2 + scene.loads.users) if scene.loads else 0
     total = (64 + load) * states * len(scene.objects)
     for item in scene.deformables:
-        total += states * ((24 if item.layered else 12) * len(item.rest) + 48 * item.mode_count)
+        per_vertex = 12 + (12 if item.layered else 0) + (12 if item.fade > 0 else 0)
+        total += states * (per_vertex * len(item.rest) + 48 * item.mode_count)
         if item.profile == THESIS:
             total += (states + 2 if item.models_kept else 2) * 4 * (254 + (1 << item.quant_bits))
     return total

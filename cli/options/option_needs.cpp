@@ -36,6 +36,8 @@ constexpr std::array kAgreements{
     Agreement{"--haptic-share", "--profile", "main", {"main"}},
     Agreement{"--visual-share", "--profile", "main", {"main"}},
     Agreement{"--basis", "--profile", "main", {"main"}},
+    Agreement{"--fade", "--profile", "main", {"main"}},
+    Agreement{"--nugget", "--profile", "main", {"main"}},
     Agreement{"--quant-bits", "--profile", "main", {"thesis"}},
     Agreement{"--keep-models", "--profile", "main", {"thesis"}},
 };
@@ -64,6 +66,8 @@ constexpr std::array kNeeds{
     Need{"--interpolate", Subject::rigid},
     Need{"--deformable-visual", Subject::mesh},
     Need{"--basis", Subject::mesh},
+    Need{"--fade", Subject::mesh},
+    Need{"--nugget", Subject::mesh},
     Need{"--visual-share", Subject::mesh},
     Need{"--quant-bits", Subject::mesh},
     Need{"--keep-models", Subject::mesh},

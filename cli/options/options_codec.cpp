@@ -206,6 +206,16 @@ void MeshArguments::add_encoder_to(Command& app) {
       app.add_option("--basis", modes_, "Vibration modes that both ends compute from the mesh, 0: none (--profile main) [0]")
           ->check(whole_number(0, ModeBasis::kMaxModes))
           ->type_name("K");
+  shares_[0] =
+      add_quantity(app, "--visual-share", visual_share_, Dimension::fraction,
+                   "A packet of a deformable object corrects errors above this share of --deformable-visual, 0.1% or more "
+                   "(--profile main) [100%, or 70% for more than 100 shapes/s]")
+          ->check(within(Dimension::fraction, "0.1%", "100%"));
+  shares_[1] = add_quantity(app, "--haptic-share", haptic_share_, Dimension::fraction,
+                            "The same of -p's bound, 0.1% or more (--profile main) [as --visual-share]")
+                   ->check(within(Dimension::fraction, "0.1%", "100%"));
+  const std::map<std::string, std::uint8_t> nuggets{{"2%", 1}, {"5%", 2}, {"30%", 4}, {"all", 7}};
+  const auto nugget = [this, nuggets](const std::string& name) { coding_.weight_sets = nuggets.at(name); };
   options_.insert(
       options_.end(),
       {app.add_option(
@@ -216,12 +226,16 @@ void MeshArguments::add_encoder_to(Command& app) {
            ->check(one_of({"thesis", "main"}))
            ->type_name("NAME"),
        modes,
-       add_quantity(app, "--visual-share", visual_share_, Dimension::fraction,
-                    "Code to this share of --deformable-visual, 0.1% or more (--profile main) [100%]")
-           ->check(within(Dimension::fraction, "0.1%", "100%")),
-       add_quantity(app, "--haptic-share", haptic_share_, Dimension::fraction,
-                    "Code to this share of -p's bound, 0.1% or more (--profile main) [100%]")
-           ->check(within(Dimension::fraction, "0.1%", "100%")),
+       add_quantity(app, "--fade", coding_.fade, Dimension::fraction,
+                    "Share of the corrections outside the basis that fades per second (--basis) [98%]")
+           ->check(within(Dimension::fraction, "0%", "100%")),
+       app.add_option(
+              "--nugget", nugget,
+              "How much of a vertex's movement its neighbours do not share: 2%, 5%, 30%, or all for a choice per packet, at "
+              "three times the cost (--profile main) [5% with --basis, else 2%]")
+           ->check(one_of({"2%", "5%", "30%", "all"}))
+           ->type_name("SHARE"),
+       shares_[0], shares_[1],
        app.add_option("--quant-bits", coding_.quant_bits, "Bits of the quantiser, 1 to 12 (--profile thesis) [8]")
            ->check(whole_number(1, DeformableObject::kMaxQuantBits))
            ->type_name("Q"),
@@ -243,11 +257,15 @@ DeformableThresholds MeshArguments::over(DeformableThresholds out, const Trigger
 }
 
 SenderOptions MeshArguments::sender(const TriggerArguments& triggers) const {
+  const auto typed = [](const Option* option, double value) {
+    return option != nullptr && option->count() > 0 ? std::optional<double>(value) : std::nullopt;
+  };
   RigidTriggers rigid = triggers.triggers();
   if (is_main() && triggers.reduces()) rigid.reduction = Reduction::leaning;
-  return {.triggers = rigid,
-          .deformable = {thresholds(triggers), visual_share_, haptic_share_, coding_.layered},
-          .policy = {.key_interval = triggers.key_interval()}};
+  return {
+      .triggers = rigid,
+      .deformable = {thresholds(triggers), typed(shares_[0], visual_share_), typed(shares_[1], haptic_share_), coding_.layered},
+      .policy = {.key_interval = triggers.key_interval()}};
 }
 
 TraceCoding MeshArguments::coding(const TriggerArguments& triggers) const {

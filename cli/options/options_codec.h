@@ -92,7 +92,7 @@ class MeshArguments {
   DeformableCoding coding_;
   std::uint32_t modes_ = 0;
   double visual_share_ = 1, haptic_share_ = 1;
-  const Option *visual_ = nullptr, *rings_ = nullptr;
+  const Option *visual_ = nullptr, *rings_ = nullptr, *shares_[2]{};  // visual, haptic
   std::vector<const Option*> options_;
 };
 

@@ -84,7 +84,9 @@ Neighbours neighbours(const DeformableObject& object) {
 
 VertexHierarchy vertex_hierarchy(const DeformableObject& object) {
   CodingOrder order = coding_order(object);
-  ListOfLists<VertexParent> parents = weighted_parents(object, order);
+  std::vector<ListOfLists<VertexParent>> parents;
+  for (unsigned set = 0; set < DeformableObject::kWeightSets; ++set)
+    if (object.weight_sets >> set & 1) parents.push_back(weighted_parents(object, order, set));
   return {std::move(order.order), std::move(order.depth), std::move(parents)};
 }
 

@@ -37,9 +37,9 @@ struct VertexHierarchy {
   static constexpr std::size_t kParents = 8;
   static constexpr std::size_t kDepths = 24;
 
-  std::vector<std::uint32_t> order;   ///< every vertex once
-  std::vector<std::uint8_t> depth;    ///< by vertex: 0 finest; roots have the highest
-  ListOfLists<VertexParent> parents;  ///< by place in `order`; roots have none
+  std::vector<std::uint32_t> order;                ///< every vertex once
+  std::vector<std::uint8_t> depth;                 ///< by vertex: 0 finest; roots have the highest
+  std::vector<ListOfLists<VertexParent>> parents;  ///< by declared set of weights, then by place in `order`; roots have none
 };
 
 /// Two vertices are neighbours if they share an edge, or if they are consecutive among the vertices at one rest position.

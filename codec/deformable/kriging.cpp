@@ -19,7 +19,8 @@ using Row = std::array<std::int64_t, kMost>;
 constexpr std::int64_t kOne = 1 << 24;
 constexpr std::int64_t kLeastPivot = 1 << 18;
 constexpr std::int64_t kMostShare = std::int64_t{1} << 34;
-constexpr std::int64_t kNugget = 335544;      // 0.02: how much of a parent's movement is its own
+constexpr std::array<std::int64_t, DeformableObject::kWeightSets> kNuggets{
+    335544, 838861, 5033165};                 // 0.02, 0.05, 0.3: how much of a parent's movement is its own
 constexpr std::uint64_t kSupportRadius = 94;  // squared, in mean squared distances of the parents
 constexpr std::int32_t kWhole = 1 << 15;      // weight of an only parent
 
@@ -104,7 +105,7 @@ bool solve(Equations& e, Size size) noexcept {
 }
 
 /// Weights of best linear prediction whose sum is 1: a + b (1 - sum a) / sum b. Returns how many vertices keep one.
-std::size_t weigh(const RestDistance& distance, const Vec3i& at, std::span<const Vec3i> parents,
+std::size_t weigh(const RestDistance& distance, const Vec3i& at, std::span<const Vec3i> parents, std::int64_t nugget,
                   std::span<std::int32_t, kMost> out) noexcept {
   Equations e;  // not set: 640 bytes for each vertex
   e.size = parents.size();
@@ -114,7 +115,7 @@ std::size_t weigh(const RestDistance& distance, const Vec3i& at, std::span<const
   const Covariance covariance(kSupportRadius * sum / e.size);
   for (std::size_t i = 0; i < e.size; ++i) {
     for (std::size_t j = 0; j < i; ++j) e.matrix[i][j] = covariance(distance(parents[i], parents[j]));
-    e.matrix[i][i] = kOne + kNugget;
+    e.matrix[i][i] = kOne + nugget;
     e.a[i] = covariance(to[i]);
     e.b[i] = kOne;
   }
@@ -140,7 +141,7 @@ std::size_t weigh(const RestDistance& distance, const Vec3i& at, std::span<const
 
 }  // namespace
 
-ListOfLists<VertexParent> weighted_parents(const DeformableObject& object, const CodingOrder& order) {
+ListOfLists<VertexParent> weighted_parents(const DeformableObject& object, const CodingOrder& order, unsigned set) {
   const RestDistance distance(object.rest);
   ListOfLists<VertexParent> out;
   out.first.reserve(order.near.first.size());
@@ -153,7 +154,7 @@ ListOfLists<VertexParent> weighted_parents(const DeformableObject& object, const
     for (std::size_t k = 0; k < near.size(); ++k) places[k] = object.rest[near[k]];
     std::size_t count = near.empty() ? 0 : 1;
     if (count > 0 && places[0] == at) weights[0] = kWhole;
-    else if (count > 0) count = weigh(distance, at, std::span(places).first(near.size()), weights);
+    else if (count > 0) count = weigh(distance, at, std::span(places).first(near.size()), kNuggets[set], weights);
     for (std::size_t k = 0; k < count; ++k) out.items.push_back({near[k], weights[k]});
     out.close();
   }

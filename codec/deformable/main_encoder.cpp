@@ -11,9 +11,9 @@ namespace {
 constexpr double kRounding = 0.8660254038;  // grid units: farthest that a vertex lies from its nearest grid point
 constexpr float kDeadZone = 0.7F;           // coefficients below this many steps are not sent
 
-/// Nearest residual, its components then moved towards zero while the bound allows: short symbols are cheap.
-Vec3i quantise(const Vec3i& truth, const Vec3i& predicted, std::uint32_t bound, std::int64_t step) noexcept {
-  const std::int64_t limit = std::int64_t{bound} * bound;
+/// Nearest residual, its components then moved towards zero while the limit allows: short symbols are cheap.
+Vec3i quantise(const Vec3i& truth, const Vec3i& predicted, std::uint32_t farthest, std::int64_t step) noexcept {
+  const std::int64_t limit = std::int64_t{farthest} * farthest;
   std::array<std::int64_t, 3> error{};
   std::int64_t sum = 0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -40,11 +40,20 @@ Vec3i quantise(const Vec3i& truth, const Vec3i& predicted, std::uint32_t bound, 
   return out;
 }
 
+/// Every packet costs a header. Where shapes come more often than packets, spare accuracy delays the next one.
+double default_share(const Scene& scene, const DeformableObject& object) noexcept {
+  constexpr double kRareShapes = 0.01;  // [s]
+  const double period = object.frame_period / 256.0 / scene.tick_rate;
+  return period < kRareShapes ? 0.7 : 1;
+}
+
 }  // namespace
 
 MainEncoder::MainEncoder(const Scene& scene, const DeformableObject& object, const DeformableOptions& options)
     : object_(object),
-      options_(options),
+      thresholds_(options.thresholds),
+      visual_share_(options.visual_share.value_or(default_share(scene, object))),
+      haptic_share_(options.haptic_share.value_or(default_share(scene, object))),
       unit_(std::ldexp(1.0, -scene.grid.position)),
       baseline_span_(scene.baseline_span),
       hierarchy_(vertex_hierarchy(object)),
@@ -62,20 +71,23 @@ MainEncoder::MainEncoder(const Scene& scene, const DeformableObject& object, con
 }
 
 /// Bounds on the grid, smaller by the truth's own rounding, so that they hold for the unrounded truth.
-MainHead MainEncoder::head_for(const EncodeRequest<MainState>& request) const noexcept {
+MainHead MainEncoder::head_for(const EncodeRequest<MainState>& request) noexcept {
   const auto units = [this](double metres) {
     return static_cast<std::uint32_t>(std::clamp(metres / unit_ - kRounding, 0.0, double{kMaxVisualBound}));
   };
-  const DeformableThresholds& t = options_.thresholds;
   MainHead head{request.head};
   head.layer = request.layer;
   head.same_frame = request.layer == Layer::visual && !head.key && request.base.tick == request.tick;
-  head.visual = units(widening_ * options_.visual_share * t.visual);
-  head.touched = touch_ != nullptr && t.weber_fraction;
+  const double visual = widening_ * thresholds_.visual;
+  trigger_[0] = units(visual);
+  limit_[0] = head.visual = units(visual_share_ * visual);
+  head.touched = touch_ != nullptr && thresholds_.weber_fraction;
   if (!head.touched) return head;
   head.triangle = touch_->triangle;
-  const std::uint32_t haptic = units(widening_ * options_.haptic_share * haptic_threshold(t, *touch_));
-  while (head.haptic < kMaxHapticIndex && haptic_bound(head.haptic + 1) <= haptic) ++head.haptic;
+  const double haptic = widening_ * haptic_threshold(thresholds_, *touch_);
+  trigger_[1] = std::min(trigger_[0], units(haptic));
+  limit_[1] = std::min(limit_[0], units(haptic_share_ * haptic));
+  while (head.haptic < kMaxHapticIndex && haptic_bound(head.haptic + 1) <= limit_[1]) ++head.haptic;
   return head;
 }
 
@@ -84,29 +96,30 @@ bool MainEncoder::bounds_hold(const EncodeRequest<MainState>& request) noexcept 
   predictor_.predict(request.shown, request.tick, expected_);
   for (std::uint32_t v = 0; v < truth_.size(); ++v) {
     if (!request.head.key && !coder_.codes(v)) continue;
-    const std::int64_t bound = coder_.bound_of(v);
+    const std::int64_t bound = trigger_[coder_.is_inside(v)];
     if (squared_distance(truth_[v], expected_[v]) > bound * bound) return false;
   }
   return true;
 }
 
-void MainEncoder::choose_coefficients(std::uint32_t visual) noexcept {
+void MainEncoder::choose_coefficients(const MainHead& head) noexcept {
   if (coefficients_.empty()) return;
   for (std::size_t v = 0; v < truth_.size(); ++v)
     for (std::size_t axis = 0; axis < 3; ++axis) error_[v][axis] = truth_[v][axis] - expected_[v][axis];
   projection_.project(error_, projected_);
+  const std::uint32_t reach = mode_reach(head);
   for (std::size_t k = 0; k < coefficients_.size(); ++k) {
-    const float steps = projected_[k] / static_cast<float>(coefficient_step(object_, visual, k));
+    const float steps = projected_[k] / static_cast<float>(coefficient_step(object_, reach, k));
     const float size = std::min(1e9F, std::abs(steps));
     const auto rounded = size >= kDeadZone ? static_cast<std::int32_t>(std::floor(size + 0.5F)) : 0;
     coefficients_[k] = steps < 0 ? -rounded : rounded;
   }
 }
 
-void MainEncoder::move_modes(std::uint32_t visual) noexcept {
-  choose_coefficients(visual);
+void MainEncoder::move_modes(const MainHead& head) noexcept {
+  choose_coefficients(head);
   std::copy(coefficients_.begin(), coefficients_.end(), scaled_.begin());
-  scale_coefficients(object_, visual, scaled_);
+  scale_coefficients(object_, mode_reach(head), scaled_);
   predictor_.add_modes(scaled_, expected_);
 }
 
@@ -114,14 +127,14 @@ void MainEncoder::move_modes(std::uint32_t visual) noexcept {
 std::uint32_t MainEncoder::choose_residuals() noexcept {
   coded_.clear();
   std::uint32_t updates = 0;
-  coder_.run(expected_, next_.displacement,
-             [&](std::uint32_t v, const VertexContext& context, const Vec3i& predicted, std::uint32_t bound,
-                 std::int64_t step) noexcept {
-               const Vec3i residual = quantise(truth_[v], predicted, bound, step);
-               coded_.push_back({context, residual});
-               updates += residual != Vec3i{} ? 1u : 0u;
-               return residual;
-             });
+  coder_.run(
+      expected_, next_.displacement,
+      [&](std::uint32_t v, const VertexContext& context, const Vec3i& predicted, std::uint32_t, std::int64_t step) noexcept {
+        const Vec3i residual = quantise(truth_[v], predicted, limit_[coder_.is_inside(v)], step);
+        coded_.push_back({context, residual});
+        updates += residual != Vec3i{} ? 1u : 0u;
+        return residual;
+      });
   return updates;
 }
 
@@ -135,29 +148,56 @@ std::size_t MainEncoder::write(MainHead head, const MainState& base, std::span<s
   return coder.finish();
 }
 
+/// Residuals and payload with one set of weights.
+Payload MainEncoder::write_vertices(MainHead& head, const MainState& base, std::span<std::uint8_t> out) noexcept {
+  coder_.use_weights(head.weight_set);
+  const std::uint32_t updates = choose_residuals();
+  const std::uint64_t share = (std::uint64_t{updates} << 8) / coded_.size();
+  head.density = head.layer == Layer::haptic ? base.density : share < 3 ? 0 : share < 15 ? 1 : share < 64 ? 2 : 3;
+  return Payload{.size = write(head, base, out), .updates = updates};
+}
+
+/// The shortest payload of all sets of weights. The baseline's set comes last: it is mostly the best, and then not written again.
+Payload MainEncoder::write_shortest(MainHead& head, const MainState& base, std::span<std::uint8_t> out) noexcept {
+  const auto sets = static_cast<std::uint32_t>(hierarchy_.parents.size());
+  std::size_t least = out.size() + 1;
+  std::uint32_t best = base.weight_set;
+  for (std::uint32_t i = 1; i < sets; ++i) {
+    head.weight_set = (base.weight_set + i) % sets;
+    const std::size_t size = write_vertices(head, base, out).size;
+    if (size >= least) continue;
+    least = size;
+    best = head.weight_set;
+  }
+  head.weight_set = base.weight_set;
+  const Payload last = write_vertices(head, base, out);
+  if (last.size <= least) return last;
+  head.weight_set = best;
+  return write_vertices(head, base, out);
+}
+
 Result<Payload> MainEncoder::encode(const EncodeRequest<MainState>& request, std::span<std::uint8_t> out) noexcept {
   MainHead head = head_for(request);
   if (head.layer == Layer::haptic && !head.touched) return Payload{};
-  coder_.set_bounds(head, rings_, object_.rings);
+  coder_.set_packet(head, rings_, object_.rings);
   if (!request.requested && bounds_hold(request)) return Payload{};
   // What is felt goes first: a key packet of the rest alone would forget it.
   if (head.layer == Layer::visual && head.key && head.touched) return Payload{};
   const MainState& base = request.base;
   if (request.requested || &base != &request.shown) predictor_.predict(base, request.tick, expected_);
+  coder_.fade(object_, base, request.tick, expected_, next_);
   if (object_.layered) coder_.begin_layer(base, head.same_frame, expected_, next_.displacement);
   if (head.layer == Layer::haptic) {
     keep_motion(base, next_);
   } else {
-    move_modes(head.visual);
+    move_modes(head);
     predictor_.update(base, request.tick, next_);
   }
-  const std::uint32_t updates = choose_residuals();
-  const std::uint64_t share = (std::uint64_t{updates} << 8) / coded_.size();
-  head.density = head.layer == Layer::haptic ? base.density : share < 3 ? 0 : share < 15 ? 1 : share < 64 ? 2 : 3;
-  const std::size_t size = write(head, base, out);
+  const Payload payload = write_shortest(head, base, out);
+  coder_.keep_off_basis(base, head.same_frame, next_);
   coder_.keep_haptic_correction(head.layer, next_);
   keep_head(head, base, next_);
-  return Payload{.size = size, .updates = updates};
+  return payload;
 }
 
 }  // namespace tactus

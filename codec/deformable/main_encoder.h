@@ -44,15 +44,18 @@ class MainEncoder {
     Vec3i residual{};
   };
 
-  MainHead head_for(const EncodeRequest<MainState>& request) const noexcept;
+  MainHead head_for(const EncodeRequest<MainState>& request) noexcept;
   bool bounds_hold(const EncodeRequest<MainState>& request) noexcept;
-  void choose_coefficients(std::uint32_t visual) noexcept;
-  void move_modes(std::uint32_t visual) noexcept;
+  void choose_coefficients(const MainHead& head) noexcept;
+  void move_modes(const MainHead& head) noexcept;
   std::uint32_t choose_residuals() noexcept;
+  Payload write_vertices(MainHead& head, const MainState& base, std::span<std::uint8_t> out) noexcept;
+  Payload write_shortest(MainHead& head, const MainState& base, std::span<std::uint8_t> out) noexcept;
   std::size_t write(MainHead head, const MainState& base, std::span<std::uint8_t> out) noexcept;
 
   const DeformableObject& object_;
-  const DeformableOptions options_;
+  const DeformableThresholds thresholds_;
+  const double visual_share_, haptic_share_;
   double widening_ = 1;
   double unit_;  // [m] of the grid
   std::uint8_t baseline_span_;
@@ -69,6 +72,8 @@ class MainEncoder {
   std::vector<std::int32_t> coefficients_, scaled_;  // in steps; in grid units
   std::vector<float> projected_;
   std::vector<CodedVertex> coded_;
+  std::uint32_t trigger_[2]{};  // outside and inside the area of interest: errors that call for a packet, grid units
+  std::uint32_t limit_[2]{};    // errors that a packet corrects: shares of the same
 };
 
 }  // namespace tactus

@@ -33,21 +33,24 @@ class MainReader {
     if (coder.too_wide()) return fail(Errc::malformed, "R-RNG-4");
     if (head.touched && head.triangle >= object_.triangles.size()) return fail(Errc::invalid, "R-DEF-9");
     if (head.haptic > kMaxHapticIndex || head.visual > kMaxVisualBound) return fail(Errc::invalid, "R-DEF-10");
+    if (head.weight_set >= hierarchy_.parents.size()) return fail(Errc::invalid, "R-DEF-14");
     const std::int64_t tick = base.tick + head.tick_delta;
     predictor_.predict(base, tick, expected_);
-    coder_.set_bounds(head, rings_, object_.rings);
+    coder_.set_packet(head, rings_, object_.rings);
+    coder_.fade(object_, base, tick, expected_, next);
     if (object_.layered) coder_.begin_layer(base, head.same_frame, expected_, next.displacement);
     if (head.layer == Layer::haptic) {
       keep_motion(base, next);
     } else {
       code_coefficients(coder, models, coefficients_);
       if (coder.too_wide()) return fail(Errc::malformed, "R-RNG-4");
-      scale_coefficients(object_, head.visual, coefficients_);
+      scale_coefficients(object_, mode_reach(head), coefficients_);
       predictor_.add_modes(coefficients_, expected_);
       predictor_.update(base, tick, next);
     }
     const std::uint32_t updates = read_vertices(coder, models, head, next);
     if (coder.too_wide()) return fail(Errc::malformed, "R-RNG-4");
+    coder_.keep_off_basis(base, head.same_frame, next);
     coder_.keep_haptic_correction(head.layer, next);
     keep_head(head, base, next);
     return updates;

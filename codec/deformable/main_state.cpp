@@ -21,6 +21,7 @@ MainState initial_main_state(const DeformableObject& object) {
   MainState state;
   state.displacement.resize(object.rest.size());
   state.motion = ModeMotion(object.basis.steps.size());
+  if (object.fade > 0) state.off_basis.resize(object.rest.size());
   if (object.layered) state.haptic_correction.resize(object.rest.size());
   return state;
 }
@@ -32,10 +33,11 @@ std::uint64_t state_hash(const DeformableObject& object, const MainState& state)
   hash.add32(state.visual);
   hash.add32(state.triangle);
   hash.add32(state.haptic);
-  hash.add32(state.density | (state.touched ? 4u : 0u));
+  hash.add32(state.density | (state.touched ? 4u : 0u) | state.weight_set << 3);
   state.motion.add_to(hash);
   if (object.layered) hash.add64(static_cast<std::uint64_t>(state.motion_tick));
   add_to(hash, state.haptic_correction);
+  add_to(hash, state.off_basis);
   return hash.value();
 }
 

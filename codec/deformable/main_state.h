@@ -24,11 +24,13 @@ struct MainState {
   ModeMotion motion;                ///< of the basis's coefficients
   std::int64_t motion_tick = 0;     ///< tick of `motion`; packets of the haptic layer do not advance it
   std::vector<Vec3i>
-      haptic_correction;  ///< layered: by vertex, correction of the last packet if that was of the haptic layer, else 0
+      haptic_correction;         ///< layered: by vertex, correction of the last packet if that was of the haptic layer, else 0
+  std::vector<Vec3i> off_basis;  ///< with a fade: by vertex, what corrections have added to the modes' displacement
   std::uint32_t triangle = kNoTriangle;  ///< the last one touched
   std::uint32_t visual = 0;              ///< visual bound, grid units
   std::uint32_t haptic = 0;              ///< index of the last haptic bound
   std::uint32_t density = 0;             ///< of significant vertices in the last packet: context of the next, as is `touched`
+  std::uint32_t weight_set = 0;          ///< of the last packet, counted among those declared: context of the next
   bool touched = false;                  ///< the last packet had a triangle
 };
 
@@ -43,15 +45,15 @@ std::uint32_t haptic_bound(std::uint32_t index) noexcept;
 inline constexpr std::uint32_t kMaxHapticIndex = 168;  ///< 2^27.8
 inline constexpr std::uint32_t kMaxVisualBound = 1u << 28;
 
-inline std::int64_t coefficient_step(const DeformableObject& object, std::uint32_t visual, std::size_t mode) noexcept {
-  return std::clamp<std::int64_t>((std::int64_t{object.basis.steps[mode]} * visual) >> 12, 1, kMaxVisualBound);
+inline std::int64_t coefficient_step(const DeformableObject& object, std::uint32_t reach, std::size_t mode) noexcept {
+  return std::clamp<std::int64_t>((std::int64_t{object.basis.steps[mode]} * reach) >> 12, 1, kMaxVisualBound);
 }
 
-/// Coefficients from quantiser steps to grid units: step k is steps[k] * visual * 2^-12, at least 1.
-inline void scale_coefficients(const DeformableObject& object, std::uint32_t visual,
+/// Coefficients from quantiser steps to grid units: step k is steps[k] * reach * 2^-12, at least 1.
+inline void scale_coefficients(const DeformableObject& object, std::uint32_t reach,
                                std::span<std::int32_t> coefficients) noexcept {
   for (std::size_t k = 0; k < coefficients.size(); ++k)
-    coefficients[k] = limited_displacement(coefficients[k] * coefficient_step(object, visual, k));
+    coefficients[k] = limited_displacement(coefficients[k] * coefficient_step(object, reach, k));
 }
 
 /// Quantiser step for a bound: rounding each component moves a point by at most the bound.

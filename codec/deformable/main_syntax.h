@@ -29,8 +29,9 @@ struct MainModels {
   MagnitudeModel haptic;
   BitModel same_visual;
   MagnitudeModel visual;
-  std::array<TreeModel<2>, kDensities> density;              // context: the baseline's density
-  std::array<std::array<MagnitudeModel, 3>, 4> coefficient;  // by mode, size before
+  std::array<TreeModel<2>, kDensities> density;                        // context: the baseline's density
+  std::array<TreeModel<2>, DeformableObject::kWeightSets> weight_set;  // context: the baseline's set
+  std::array<std::array<MagnitudeModel, 3>, 4> coefficient;            // by mode, size before
   std::array<std::array<std::array<std::array<BitModel, 3>, 3>, 4>, kDensities>
       significant;                                                        // density, bound ratio, parents, depth
   std::array<std::array<std::array<MagnitudeModel, 3>, 3>, 2> component;  // tight, depth, size before
@@ -47,6 +48,7 @@ struct MainHead : PacketHead {
   std::uint32_t haptic = 0;  ///< index, see haptic_bound()
   std::uint32_t visual = 0;  ///< grid units
   std::uint32_t density = 0;
+  std::uint32_t weight_set = 0;  ///< among those declared
 };
 
 /// Which models a vertex's symbols use.
@@ -55,6 +57,13 @@ struct VertexContext {
   std::uint8_t parents = 0;      ///< parents that carried a residual: 0, 1, more
   std::uint8_t depth = 0;        ///< in the hierarchy: 0 finest, 1, coarser
 };
+
+/// Bound that the quantiser steps of the modes follow: a tight haptic bound makes them finer, down to a quarter.
+inline std::uint32_t mode_reach(const MainHead& head) noexcept {
+  if (!head.touched) return head.visual;
+  return static_cast<std::uint32_t>(
+      std::clamp(8 * std::uint64_t{haptic_bound(head.haptic)}, std::uint64_t{head.visual} >> 2, std::uint64_t{head.visual}));
+}
 
 constexpr std::uint8_t bound_ratio_of(std::uint32_t haptic, std::uint32_t visual) noexcept {
   const std::uint64_t h = haptic;
@@ -144,6 +153,8 @@ void code_main_head(Coder& coder, MainModels& models, const DeformableObject& ob
     code_main_bounds(coder, models, object, rings, base, head);
   }
   head.density = head.layer == Layer::haptic ? base.density : coder.template tree<2>(models.density[base.density], head.density);
+  const bool several = std::popcount(object.weight_sets) > 1;
+  head.weight_set = several ? coder.template tree<2>(models.weight_set[base.weight_set], head.weight_set) : 0;
 }
 
 /// Store the fields that predict the next packet's head.
@@ -152,6 +163,7 @@ inline void keep_head(const MainHead& head, const MainState& base, MainState& ne
   next.haptic = head.touched ? head.haptic : base.haptic;
   next.visual = head.visual;
   next.density = head.density;
+  next.weight_set = head.weight_set;
   next.touched = head.touched;
 }
 

@@ -22,8 +22,9 @@ class VertexCoder {
     area_.reserve(vertices);
   }
 
-  /// Set the bounds of the packet: min(visual, haptic) within `reach` rings of the touched triangle, `visual` elsewhere.
-  void set_bounds(const MainHead& head, Rings& rings, std::uint32_t reach) noexcept {
+  /// Set the bounds of the packet, min(visual, haptic) within `reach` rings of the touched triangle and `visual` elsewhere, and its
+  /// weights.
+  void set_packet(const MainHead& head, Rings& rings, std::uint32_t reach) noexcept {
     for (const std::uint32_t v : area_) inside_[v] = 0;
     area_.clear();
     if (head.touched) {
@@ -38,10 +39,35 @@ class VertexCoder {
     for (std::size_t i = 0; i < 2; ++i) step_[i] = step_of(bound_[i]);
     codes_[0] = head.layer != Layer::haptic;
     codes_[1] = head.layer != Layer::visual;
+    use_weights(head.weight_set);
   }
+  void use_weights(std::uint32_t set) noexcept { set_ = set; }
   std::uint32_t bound_of(std::uint32_t vertex) const noexcept { return bound_[inside_[vertex]]; }
+  bool is_inside(std::uint32_t vertex) const noexcept { return inside_[vertex] != 0; }
   /// Whether the packet codes this vertex; the others keep the temporal prediction.
   bool codes(std::uint32_t vertex) const noexcept { return codes_[inside_[vertex]]; }
+
+  /// After predict(): of the vertices that the packet codes, take back what fades of earlier corrections. Packets of the haptic layer
+  /// fade nothing.
+  /// out  next.off_basis  what is left;  expected  less the difference
+  void fade(const DeformableObject& object, const MainState& base, std::int64_t tick, std::span<Vec3i> expected,
+            MainState& next) const noexcept {
+    if (object.fade == 0) return;
+    std::copy(base.off_basis.begin(), base.off_basis.end(), next.off_basis.begin());
+    if (!codes_[0]) return;
+    const std::uint32_t frames = std::min(frame_steps(object, tick - base.motion_tick), ModeMotion::kMaxSteps);
+    std::int64_t left = 1 << 16;
+    for (std::uint32_t n = 0; n < frames; ++n) left = (left * ((1 << 16) - object.fade)) >> 16;
+    for (std::uint32_t v = 0; v < expected.size(); ++v) {
+      const Vec3i& before = base.off_basis[v];
+      if (before == Vec3i{} || !codes(v)) continue;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto after = static_cast<std::int32_t>(before[axis] * left / (1 << 16));
+        next.off_basis[v][axis] = after;
+        expected[v][axis] = limited_displacement(std::int64_t{expected[v][axis]} - before[axis] + after);
+      }
+    }
+  }
 
   /// Before run() of a layered object: vertices that the packet does not code keep the temporal prediction. If the baseline is the
   /// haptic packet of this tick, its corrections are subtracted from `expected`, so that both packets share one prediction.
@@ -61,11 +87,23 @@ class VertexCoder {
     for (const std::uint32_t v : area_) next.haptic_correction[v] = correction_[v];
   }
 
+  /// Add the corrections of the packet to what has faded. A visual packet of a haptic packet's tick replaces those of that packet.
+  void keep_off_basis(const MainState& base, bool same_frame, MainState& next) const noexcept {
+    for (std::size_t v = 0; v < next.off_basis.size(); ++v)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        next.off_basis[v][axis] = limited_displacement(std::int64_t{next.off_basis[v][axis]} + correction_[v][axis]);
+    if (!same_frame || next.off_basis.empty()) return;
+    for (const std::uint32_t v : area_)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        next.off_basis[v][axis] = limited_displacement(std::int64_t{next.off_basis[v][axis]} - base.haptic_correction[v][axis]);
+  }
+
   /// in   expected  displacement by temporal prediction
   /// out  decoded   displacement; may not alias `expected`; of layered objects only of vertices that the packet codes
   ///      residual(vertex, context, predicted, bound, step) returns the vertex's residual in steps
   template <class Residual>
   void run(std::span<const Vec3i> expected, std::span<Vec3i> decoded, Residual&& residual) noexcept {
+    const ListOfLists<VertexParent>& parents_of = hierarchy_.parents[set_];
     for (std::size_t i = 0; i < hierarchy_.order.size(); ++i) {
       const std::uint32_t v = hierarchy_.order[i];
       if (!codes(v)) {
@@ -74,7 +112,7 @@ class VertexCoder {
       }
       std::array<std::int64_t, 3> sum{};
       unsigned parents = 0;
-      for (const VertexParent& p : hierarchy_.parents[i]) {
+      for (const VertexParent& p : parents_of[i]) {
         for (std::size_t axis = 0; axis < 3; ++axis)
           sum[axis] += static_cast<std::int64_t>(p.weight) * correction_[p.vertex][axis];
         parents += coded_[p.vertex];
@@ -105,6 +143,7 @@ class VertexCoder {
   std::int64_t step_[2]{1, 1};
   bool codes_[2]{true, true};  // outside, inside
   std::uint8_t bound_ratio_ = 0;
+  std::uint32_t set_ = 0;  // of weights
 };
 
 }  // namespace tactus

@@ -51,6 +51,7 @@ struct DeformableObject {
   static constexpr std::uint32_t kMaxRings = 32;
   static constexpr unsigned kMaxQuantBits = 12;
   static constexpr std::uint32_t kMaxFramePeriod = 1u << 28;
+  static constexpr unsigned kWeightSets = 3;  ///< of parents: for a nugget of 2, 5 and 30 %
 
   std::string name;  ///< UTF-8, 1..255 bytes, unlike any other object's
   DeformableProfile profile = DeformableProfile::main;
@@ -59,6 +60,8 @@ struct DeformableObject {
   bool models_kept = false;          ///< thesis: entropy models are part of the state and not restarted in every packet
   std::uint32_t frame_period = 256;  ///< main: ticks between frames, x 2^-8; with a basis also the step of motion prediction
   bool layered = false;              ///< main: each packet belongs to the haptic or the visual layer
+  std::uint16_t fade = 0;            ///< main: share of the corrections outside the basis that fades per frame, x 2^-16
+  std::uint8_t weight_sets = 1;      ///< main: bit i: packets may name set i of kWeightSets; at least one
   std::vector<std::array<std::int32_t, 3>> rest;  ///< vertices, x 2^-position_exp m
   std::vector<Triangle> triangles;
   ModeBasis basis;           ///< main

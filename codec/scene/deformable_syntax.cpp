@@ -17,6 +17,7 @@ constexpr std::uint8_t kNoBasis = 0, kDeclared = 1, kComputed = 2;  // basis
 bool are_parameters(const DeformableObject& m) noexcept {
   if (m.rings > DeformableObject::kMaxRings) return false;
   if (m.profile == DeformableProfile::thesis) return m.quant_bits >= 1 && m.quant_bits <= DeformableObject::kMaxQuantBits;
+  if (m.weight_sets < 1 || m.weight_sets >= 1u << DeformableObject::kWeightSets) return false;
   return m.frame_period >= 1 && m.frame_period <= DeformableObject::kMaxFramePeriod;
 }
 
@@ -62,6 +63,8 @@ Result<void> parse_parameters(ByteReader& in, DeformableObject& object) {
     const std::uint8_t layered = in.u8();
     if (in.ok() && layered > 1) return fail(Errc::malformed, "R-DEF-3", in.bit_offset());
     object.layered = layered == 1;
+    object.fade = in.u16();
+    object.weight_sets = in.u8();
   }
   return {};
 }
@@ -210,6 +213,8 @@ void write_deformable(ByteWriter& out, const DeformableObject& object) {
   } else {
     out.u32(object.frame_period);
     out.u8(object.layered ? 1 : 0);
+    out.u16(object.fade);
+    out.u8(object.weight_sets);
   }
   out.varint(object.rest.size());
   out.varint(object.triangles.size());

@@ -15,7 +15,16 @@ namespace {
 
 constexpr double kExtrapolation = 2;  // [s]
 
-Result<void> apply(DeformableCoding& coding, DeformableObject& object) {
+bool has_basis(const DeformableCoding& coding) noexcept { return !coding.basis.steps.empty() || coding.spring_basis.modes > 0; }
+
+/// The share that fades per frame, from that per second.
+std::uint16_t fade_of(const DeformableCoding& coding, std::uint32_t tick_rate) noexcept {
+  if (!has_basis(coding)) return 0;
+  const double left = std::pow(1 - std::clamp(coding.fade, 0.0, 1.0), coding.frame_period / tick_rate);
+  return static_cast<std::uint16_t>(std::min(65535.0, std::floor(65536 * (1 - left) + 0.5)));
+}
+
+Result<void> apply(DeformableCoding& coding, std::uint32_t tick_rate, DeformableObject& object) {
   object.profile = coding.profile;
   object.rings = coding.rings;
   object.quant_bits = coding.quant_bits;
@@ -24,6 +33,9 @@ Result<void> apply(DeformableCoding& coding, DeformableObject& object) {
   object.frame_period = static_cast<std::uint32_t>(
       std::clamp(std::floor(256 * coding.frame_period + 0.5), 1.0, double{DeformableObject::kMaxFramePeriod}));
   if (coding.profile == DeformableProfile::main) {
+    if (!(coding.fade >= 0 && coding.fade <= 1)) return fail(Errc::invalid_argument, "R-API-4");
+    object.fade = fade_of(coding, tick_rate);
+    object.weight_sets = coding.weight_sets != 0 ? coding.weight_sets : has_basis(coding) ? 2 : 1;
     object.basis = std::move(coding.basis);
     object.spring_basis = std::move(coding.spring_basis);
   }
@@ -120,7 +132,7 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build() try {
   for (Deformable& of : taken.deformables_) {
     auto object = make_deformable_object(of.name, of.surface, spec.grid.position);
     if (!object) return refuse(object.error(), of.name);
-    if (const auto applied = apply(of.coding, *object); !applied) return refuse(applied.error(), of.name);
+    if (const auto applied = apply(of.coding, spec.tick_rate, *object); !applied) return refuse(applied.error(), of.name);
     if (!is_name(of.name) || !names.insert(of.name).second) return refuse({Errc::invalid, RuleName("R-STR-11"), 0}, of.name);
     if (const RuleName rule = broken_deformable_rule(*object)) return refuse({Errc::invalid, rule, 0}, of.name);
     spec.deformables.push_back(std::move(*object));

@@ -21,8 +21,12 @@ struct DeformableCoding {
   bool models_kept = false;     ///< thesis: entropy models are part of the state
   double frame_period = 1;      ///< main: [ticks] from shape to shape, > 0
   bool layered = false;         ///< main: separate packets for the haptic and the visual layer
-  ModeBasis basis{};            ///< main
-  SpringBasis spring_basis{};   ///< main: in place of `basis`
+  /// main, with a basis: share of what corrections added to it that fades per second, 0..1
+  double fade = 0.98;
+  /// main: sets of the parents' weights that packets may name (DeformableObject); 0: the second alone with a basis, else the first
+  std::uint8_t weight_sets = 0;
+  ModeBasis basis{};           ///< main
+  SpringBasis spring_basis{};  ///< main: in place of `basis`
   /// [N/m] of each vertex, infinite where it does not move; empty: not told. What clients with delay render by (StiffnessReduction).
   std::vector<double> stiffness{};
 };

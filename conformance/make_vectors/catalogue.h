@@ -114,6 +114,8 @@ void add_deformable_thesis(Catalogue& catalogue);
 void add_deformable_rules(Catalogue& catalogue);
 void add_deformable_edges(Catalogue& catalogue);
 void add_deformable_start_rows(Catalogue& catalogue);
+void add_deformable_fade(Catalogue& catalogue);
+void add_deformable_layers_fade(Catalogue& catalogue);
 void add_deformable_orders(Catalogue& catalogue);
 void add_deformable_springs(Catalogue& catalogue);
 

@@ -2,6 +2,7 @@
 #include "conformance/make_vectors/deformable_build.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <utility>
@@ -39,6 +40,8 @@ Bytes RawDeformable::bytes() const {
   } else {
     w.u32(frame_period);
     w.u8(layered);
+    w.u16(fade);
+    w.u8(weight_sets);
   }
   w.bytes(vertex_count.value_or(varint(shape.rest.size())));
   w.bytes(triangle_count.value_or(varint(shape.triangles.size())));
@@ -106,7 +109,7 @@ Bytes around(const Bytes& items) {
 }
 
 Bytes counted(std::uint64_t vertices, std::uint64_t triangles, const Bytes& rest) {
-  return around(Bytes{1, 1, 1, 'm', 2, 0, 1, 0, 0, 0} + varint(vertices) + varint(triangles) + rest);
+  return around(Bytes{1, 1, 1, 'm', 2, 0, 1, 0, 0, 0, 0, 0, 1} + varint(vertices) + varint(triangles) + rest);
 }
 
 RawDeformable with_modes(RawDeformable item, std::size_t modes, std::uint64_t seed) {
@@ -179,21 +182,23 @@ Bytes DeformableComposer::packet(const MainStep& step) {
   head.haptic = step.triangle ? step.haptic : base.haptic;
   head.visual = step.visual;
   head.density = step.density;
+  head.weight_set = step.weight_set;
   std::vector<std::int32_t> coefficients = step.coefficients;
   coefficients.resize(item.basis.steps.size());
   Bytes packet = with_payload(sequence_, [&](RangeEncoder& coder) {
     MainModels models = main_start_models();
     code_main_start(coder, models, item, fixed_->span, head);
     code_main_head(coder, models, item, fixed_->rings, base, head);
-    fixed_->pass.set_bounds(head, fixed_->rings, item.rings);
+    fixed_->pass.set_packet(head, fixed_->rings, item.rings);
     std::vector<Vec3i> expected(item.rest.size());
     fixed_->predictor.predict(base, step.at.tick, expected);
+    fixed_->pass.fade(item, base, step.at.tick, expected, next);
     if (item.layered) fixed_->pass.begin_layer(base, head.same_frame, expected, next.displacement);
     if (head.layer == Layer::haptic) {
       keep_motion(base, next);
     } else {
       code_coefficients(coder, models, coefficients);
-      scale_coefficients(item, head.visual, coefficients);
+      scale_coefficients(item, mode_reach(head), coefficients);
       fixed_->predictor.add_modes(coefficients, expected);
       fixed_->predictor.update(base, step.at.tick, next);
     }
@@ -204,6 +209,7 @@ Bytes DeformableComposer::packet(const MainStep& step) {
       return r;
     };
     fixed_->pass.run(expected, next.displacement, residual);
+    fixed_->pass.keep_off_basis(base, head.same_frame, next);
     fixed_->pass.keep_haptic_correction(head.layer, next);
     keep_head(head, base, next);
   });
@@ -280,6 +286,7 @@ Residuals towards(std::function<Vec3i(std::uint32_t)> target) {
 Bytes random_walk(const RawDeformable& item, std::uint64_t seed, int packets, std::uint8_t span, std::int64_t frame) {
   DeformableStream stream(only(item, span));
   Random random(seed);
+  const auto sets = static_cast<std::uint32_t>(std::popcount(item.weight_sets));
   const auto triangles = static_cast<std::uint32_t>(item.shape.triangles.size());
   std::int64_t tick = 0;
   for (int i = 0; i < packets; ++i) {
@@ -289,6 +296,7 @@ Bytes random_walk(const RawDeformable& item, std::uint64_t seed, int packets, st
     step.haptic = random.below(60);
     step.visual = random.below(3) == 0 ? random.below(1000) : 100;
     step.density = random.below(4);
+    if (sets > 1) step.weight_set = random.below(sets);
     for (std::size_t k = 0; k < item.modes(); ++k) step.coefficients.push_back(random.integer(6));
     step.residuals = random_residuals(random, 6, 64 * (step.density + 1) - 1);
     stream.add(step);

@@ -46,6 +46,8 @@ struct RawDeformable {
   std::uint8_t models_kept = 0;      ///< thesis
   std::uint32_t frame_period = 256;  ///< main
   std::uint8_t layered = 0;          ///< main
+  std::uint16_t fade = 0;            ///< main
+  std::uint8_t weight_sets = 1;      ///< main
   std::vector<std::uint16_t> mode_steps{};
   std::vector<std::int32_t> entries{};               ///< modes x vertices x 3
   std::uint8_t spring_modes = 0;                     ///< of a computed basis, in place of a declared one
@@ -98,6 +100,7 @@ struct MainStep {
   std::uint32_t haptic = 0;                 ///< level
   std::uint32_t visual = 100;
   std::uint32_t density = 1;
+  std::uint32_t weight_set = 0;
   std::vector<std::int32_t> coefficients{};  ///< empty: all 0
   Residuals residuals{};                     ///< none: all 0
 };

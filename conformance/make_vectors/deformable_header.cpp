@@ -34,6 +34,8 @@ void add_valid(Catalogue& c) {
                      .rings = 32,
                      .frame_period = 1 << 28,
                      .layered = 1,
+                     .fade = 65535,
+                     .weight_sets = 7,
                      .mode_steps = {1, 65535}};
   for (int i = 0; i < 18; ++i) high.entries.push_back(i % 2 == 0 ? 2047 : -2047);
   high.shape.rest = {{-kTwo31, kTwo31 - 1, 0}, {kTwo31 - 1, -kTwo31, 0}, {-kTwo31, kTwo31 - 1, 1}};
@@ -79,7 +81,7 @@ void add_counts(Catalogue& c) {
   c.invalid("overlong-rest", "A rest coordinate's difference 0 is written in two bytes.", overlong,
             counted(1, 0, Bytes{0x80, 0x00} + zeros(3)));
   c.invalid("overlong-then-cut", "vertex_count is overlong, then the body ends.", {"malformed", "R-STR-5", "R-STR-5"},
-            around({1, 1, 1, 'm', 2, 0, 1, 0, 0, 0, 0x83, 0x00}));
+            around({1, 1, 1, 'm', 2, 0, 1, 0, 0, 0, 0, 0, 1, 0x83, 0x00}));
 }
 
 void add_rules(Catalogue& c) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Packets of profile main in haptic and visual layers.
+#include <bit>
+
 #include "conformance/make_vectors/catalogue.h"
 #include "conformance/make_vectors/deformable_build.h"
 #include "conformance/make_vectors/sections.h"
@@ -15,7 +17,10 @@ RawDeformable layered_object(Shape shape, std::size_t modes, std::uint64_t seed)
 class Layers {
  public:
   Layers(const RawDeformable& item, std::uint64_t seed)
-      : random_(seed), triangles_(static_cast<std::uint32_t>(item.shape.triangles.size())), modes_(item.mode_steps.size()) {}
+      : random_(seed),
+        triangles_(static_cast<std::uint32_t>(item.shape.triangles.size())),
+        modes_(item.mode_steps.size()),
+        sets_(static_cast<std::uint32_t>(std::popcount(item.weight_sets))) {}
 
   MainStep haptic(const PacketPlace& at) {
     triangle_ = random_.below(triangles_);
@@ -25,6 +30,7 @@ class Layers {
             .triangle = triangle_,
             .haptic = level_,
             .visual = 200,
+            .weight_set = any_set(),
             .residuals = random_residuals(random_, 5, 160)};
   }
   /// The other layer of the frame that haptic() began last.
@@ -41,6 +47,7 @@ class Layers {
                   .haptic = random_.below(40),
                   .visual = 200,
                   .density = random_.below(4),
+                  .weight_set = any_set(),
                   .residuals = random_residuals(random_, 5, 60)};
     for (std::size_t k = 0; k < modes_; ++k) step.coefficients.push_back(random_.integer(5));
     return step;
@@ -48,9 +55,12 @@ class Layers {
   std::uint32_t any_triangle() { return random_.below(triangles_); }
 
  private:
+  std::uint32_t any_set() { return sets_ > 1 ? random_.below(sets_) : 0; }
+
   Random random_;
   std::uint32_t triangles_, triangle_ = 0, level_ = 0;
   std::size_t modes_;
+  std::uint32_t sets_;
 };
 
 /// Both layers, either alone, neither; key packets of both kinds.
@@ -218,6 +228,14 @@ void add_invalid(Catalogue& c) {
 void add_deformable_layers(Catalogue& c) {
   add_valid(c);
   add_invalid(c);
+}
+
+void add_deformable_layers_fade(Catalogue& c) {
+  RawDeformable faded = layered_object(sheet(5, 4), 6, 698);
+  faded.fade = 3277;
+  faded.weight_sets = 3;
+  c.section(section::kLayers);
+  c.valid("layers-fade", "Haptic layers fade nothing, visual layers nothing of what they do not code.", walk(faded, 698, 60));
 }
 
 }  // namespace tactus::conformance

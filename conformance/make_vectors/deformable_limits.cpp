@@ -40,13 +40,13 @@ Input after_objects(std::size_t objects, Bytes deformables) {
   return {std::move(all), {kObjectsAt, object, objects - 1}};
 }
 
-/// Deformable objects of every kind, whose states take 2^28 bytes if the smallest has one bit; one of 338689 vertices in one place.
+/// Deformable objects of every kind, whose states take 2^28 bytes if the smallest has one bit; one of 338686 vertices in one place.
 Input largest_states(std::uint8_t quant_bits) {
   RawHeader header;
   header.baseline_span = 64;
-  RawDeformable basis{.name = "basis", .layered = 1, .mode_steps = std::vector<std::uint16_t>(12, 1)};
+  RawDeformable basis{.name = "basis", .layered = 1, .fade = 1, .mode_steps = std::vector<std::uint16_t>(12, 1)};
   basis.entries.assign(std::size_t{12} * 9, 0);
-  const Shape large{std::vector<Vec3i>(338689), {}};
+  const Shape large{std::vector<Vec3i>(338686), {}};
   header = with_deformables(header, {basis,
                                      {.name = "plain"},
                                      {.shape = one_vertex(), .profile = 0, .name = "kept", .models_kept = 1},

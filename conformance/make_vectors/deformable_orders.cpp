@@ -33,9 +33,9 @@ void add_declaration(Catalogue& c) {
   c.invalid("models-kept-before-cut", "models_kept is 2, and the body ends after it.", {"malformed", "R-DEF-3", "R-STR-5"},
             around({1, 0, 1, 'm', 2, 8, 2}));
   c.invalid("cut-before-rings", "rings is 33; the body ends before vertex_count.", {"truncated", "R-STR-5", "R-DEF-3"},
-            around({1, 1, 1, 'm', 33, 0, 1, 0, 0, 0}));
+            around({1, 1, 1, 'm', 33, 0, 1, 0, 0, 0, 0, 0, 1}));
   c.invalid("cut-before-triangle-count", "rings is 33; the body ends before triangle_count.", {"truncated", "R-STR-5", "R-DEF-3"},
-            around({1, 1, 1, 'm', 33, 0, 1, 0, 0, 0, 3}));
+            around({1, 1, 1, 'm', 33, 0, 1, 0, 0, 0, 0, 0, 1, 3}));
   c.invalid("room-before-rest", "A byte is missing for 3 vertices and 1 triangle; the first rest position is beyond 32 bits.",
             {"truncated", "R-STR-5", "R-DEF-5"}, counted(3, 1, zigzag_varint(std::int64_t{1} << 31) + Bytes(6, 0)));
   c.invalid("cut-before-corner", "A corner is the number 9 of 3 vertices; the body ends inside the triangle's last corner.",

@@ -2,6 +2,7 @@
 #include "conformance/make_vectors/features.h"
 
 #include <array>
+#include <bit>
 #include <map>
 
 namespace tactus::conformance {
@@ -20,6 +21,8 @@ constexpr std::array kFlags{
     Flag{"basis", "a deformable object has modes that are declared"},
     Flag{"computed_basis", "a deformable object has modes that both ends compute"},
     Flag{"layered", "a deformable object has haptic and visual layers"},
+    Flag{"fade", "corrections outside a deformable object's basis fade"},
+    Flag{"weight_sets", "a deformable object has several sets of weights"},
     Flag{"models_kept", "entropy models are part of a deformable object's state"},
     Flag{"client", "runs a client: the testee is called with --replica"},
     Flag{"session", "runs the client's end of a session: the testee is called with --session and reads a .script file"},
@@ -71,6 +74,10 @@ void skim_deformable(Skimmer& in, Features& out) {
   in.skip(in.u8());
   in.skip(profile == 0 ? 2 : 5);  // rings and quant_bits, or rings and frame_period
   if (in.u8() == 1) out.flags.insert(profile == 0 ? "models_kept" : "layered");
+  if (profile == 1) {
+    if (in.u16() > 0) out.flags.insert("fade");
+    if (std::popcount(in.u8()) > 1) out.flags.insert("weight_sets");
+  }
   const std::uint64_t vertices = in.varint(), triangles = in.varint();
   in.skip_varints(3 * vertices);
   in.skip_varints(3 * triangles);

@@ -30,7 +30,7 @@ rigid_streams() {
   done
 }
 
-mesh_streams() {
+deformable_streams() {
   trace=$scratch/$scene-$seed.mcap
   "$tactus" sim "$scene" --seed "$seed" -q -o "$trace" >/dev/null
   stream() { # NAME OPTION...
@@ -45,6 +45,12 @@ mesh_streams() {
     done
   done
   stream fine --deformable-visual 0.01mm --haptic off
+  for basis in 0 48; do
+    for v in 0.125 0.25 0.5; do
+      for p in 2.5 10; do stream "layered-v$v-p$p-k$basis" --layered --deformable-visual "${v}mm" -p "$p%" --basis "$basis"; done
+      stream "nuggets-v$v-k$basis" --nugget all --deformable-visual "${v}mm" --basis "$basis"
+    done
+  done
 }
 
 case $stem in

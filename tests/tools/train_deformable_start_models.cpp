@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Make spec/tables/deformable-start-models.csv from stream files of one deformable object each, profile main.
 ///   train_deformable_start_models a.tct b.tct ... > deformable-start-models.csv
-/// Every packet has the same weight. Only streams whose packets build on the packet before or on the initial state.
+/// Every packet has the same weight; those in layers count for the choice of the layer only. Only streams whose packets build on the packet before or on the initial state.
+#include <cstddef>
 #include <utility>
 
 #include <tactus/deformable/main_reader.h>
@@ -12,13 +13,14 @@ namespace {
 using namespace tactus;
 
 template <class Packets>
-bool count_file(const Scene& scene, const Packets& packets, Counts& counts) {
+bool count_file(const Scene& scene, const Packets& packets, Counts& total) {
   const bool fits = scene.moving().empty() && scene.deformables.size() == 1;
   if (!fits || scene.deformables[0].profile != DeformableProfile::main) return false;
   const DeformableObject& object = scene.deformables[0];
   MainReader reader(object);
   const MainState initial = initial_main_state(object);
   MainState state = initial, next = initial;
+  Counts counts = no_counts<MainModels>();
   for (const auto& packet : packets) {
     if (packet.size() < 2) return false;
     MainModels models = main_start_models();
@@ -30,6 +32,13 @@ bool count_file(const Scene& scene, const Packets& packets, Counts& counts) {
     next.tick = base.tick + head.tick_delta;
     std::swap(state, next);
   }
+  const auto is_layer = [](std::size_t m) {
+    const std::size_t at = m * sizeof(BitModel);
+    return at == offsetof(MainModels, layer) || at == offsetof(MainModels, same_frame);
+  };
+  for (std::size_t m = 0; m < total.size(); ++m)
+    for (std::size_t bit = 0; bit < 2; ++bit)
+      if (!object.layered || is_layer(m)) total[m][bit] += counts[m][bit];
   return true;
 }
 
@@ -47,6 +56,7 @@ bool print_table(const Counts& counts) {
   table.tree("SAME_VISUAL", 1);
   table.magnitude("VISUAL");
   for (std::size_t i = 0; i < kDensities; ++i) table.tree(indexed("DENSITY", {i}), 3);
+  for (std::size_t i = 0; i < DeformableObject::kWeightSets; ++i) table.tree(indexed("WEIGHT_SET", {i}), 3);
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t j = 0; j < 3; ++j) table.magnitude(indexed("COEFFICIENT", {i, j}));
   for (std::size_t i = 0; i < kDensities * 4 * 9; ++i)

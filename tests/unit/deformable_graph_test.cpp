@@ -19,18 +19,18 @@ TEST(VertexHierarchy, OrderNamesEveryVertexOnceAndParentsComeFirst) {
     const VertexHierarchy h = vertex_hierarchy(mesh);
     std::vector<std::size_t> place(mesh.rest.size(), mesh.rest.size());
     ASSERT_EQ(h.order.size(), mesh.rest.size());
-    ASSERT_EQ(h.parents.size(), mesh.rest.size());
+    ASSERT_EQ(h.parents[0].size(), mesh.rest.size());
     for (std::size_t i = 0; i < h.order.size(); ++i) place[h.order[i]] = i;
     EXPECT_EQ(std::ranges::count(place, mesh.rest.size()), 0);
     std::size_t roots = 0;
     for (std::size_t i = 0; i < h.order.size(); ++i) {
       std::int64_t sum = 0;
-      for (const VertexParent& p : h.parents[i]) {
+      for (const VertexParent& p : h.parents[0][i]) {
         EXPECT_LT(place[p.vertex], i);
         sum += p.weight;
       }
-      roots += h.parents[i].empty() ? 1U : 0U;
-      if (!h.parents[i].empty()) {
+      roots += h.parents[0][i].empty() ? 1U : 0U;
+      if (!h.parents[0][i].empty()) {
         EXPECT_NEAR(static_cast<double>(sum), 32768, VertexHierarchy::kParents);
       }
       if (i > 0) {
@@ -50,7 +50,7 @@ TEST(VertexHierarchy, ComponentsAndLoneVerticesAreRoots) {
   mesh.vertices.push_back({5, 5, 5});
   const VertexHierarchy h = vertex_hierarchy(object_of(mesh));
   std::size_t roots = 0;
-  for (std::size_t i = 0; i < h.order.size(); ++i) roots += h.parents[i].empty() ? 1U : 0U;
+  for (std::size_t i = 0; i < h.order.size(); ++i) roots += h.parents[0][i].empty() ? 1U : 0U;
   EXPECT_EQ(roots, 3U);
 }
 
@@ -68,10 +68,10 @@ TEST(VertexHierarchy, CopiesOfAVertexAreNeighbours) {
   const VertexHierarchy h = vertex_hierarchy(object);
   std::size_t roots = 0, copies = 0;
   for (std::size_t i = 0; i < h.order.size(); ++i) {
-    roots += h.parents[i].empty() ? 1U : 0U;
-    if (h.parents[i].empty() || object.rest[h.parents[i][0].vertex] != object.rest[h.order[i]]) continue;
-    EXPECT_EQ(h.parents[i].size(), 1U);
-    EXPECT_EQ(h.parents[i][0].weight, 32768);
+    roots += h.parents[0][i].empty() ? 1U : 0U;
+    if (h.parents[0][i].empty() || object.rest[h.parents[0][i][0].vertex] != object.rest[h.order[i]]) continue;
+    EXPECT_EQ(h.parents[0][i].size(), 1U);
+    EXPECT_EQ(h.parents[0][i][0].weight, 32768);
     ++copies;
   }
   EXPECT_EQ(roots, 1U);
@@ -87,7 +87,7 @@ TEST(VertexHierarchy, PredictsASlopeInsideTheSheet) {
     const std::uint32_t column = v % 31, row = v / 31;
     if (h.depth[v] > 0 || column < 3 || column > 27 || row < 3 || row > 27) continue;
     double predicted = 0;
-    for (const VertexParent& p : h.parents[i]) predicted += p.weight / 32768.0 * static_cast<double>(p.vertex % 31);
+    for (const VertexParent& p : h.parents[0][i]) predicted += p.weight / 32768.0 * static_cast<double>(p.vertex % 31);
     EXPECT_NEAR(predicted, static_cast<double>(column), 0.2);
   }
 }
