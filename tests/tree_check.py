@@ -23,7 +23,7 @@ FLOATS = {"base/device_sample", "base/geometry", "base/quantise", "base/tri_mesh
           "load/load_encoder", "load/load_state",
           "rigid/contact", "rigid/leaning", "rigid/rigid_encoder", "rigid/rigid_state", "rigid/trigger", "deformable/deformable_encoder",
           "deformable/displacement", "deformable/kriging", "deformable/main_encoder", "deformable/mode_projection", "deformable/thesis_encoder",
-          "deformable/trigger", "client/replica", "client/stiffness_reduction", "sender", "signal/device_signal", "signal/force_signal",
+          "deformable/trigger", "deformable/vertex_coder", "client/replica", "client/stiffness_reduction", "sender", "signal/device_signal", "signal/force_signal",
           "session/exchange", "session/server_connection", "session/congestion", "session/session_options", "session/session_client", "session/session_server"}
 UNITS = ("codec", "codec/*", "io/*", "device/*", "metrics")  # each .cpp in them has a unit test of its name
 TESTED_BY = {  # those that have none: the parts of one subject, held against each other
