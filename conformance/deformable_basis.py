@@ -170,7 +170,7 @@ def start_block(order: list[int], fixed: set, columns: int) -> list:
 def from_parents(tree: Hierarchy, place: dict, v: int, x: list, fixed: set) -> list:
     """The three rows of a vertex."""
     rows = [[0.0] * len(x[0]) for _ in AXES]
-    for parent, weight in zip(tree.parents[v], tree.weights[v]) if v not in fixed else ():
+    for parent, weight in zip(tree.parents[0][v], tree.weights[0][v]) if v not in fixed else ():
         for axis in AXES:
             from_row = x[3 * place[parent] + axis]
             rows[axis] = [a + (weight * 2.0 ** -15) * b for a, b in zip(rows[axis], from_row)]
@@ -187,7 +187,7 @@ def rounded(u: list) -> Mode:
 
 
 def computed_modes(item: DeformableObject) -> list[Mode]:
-    tree = Hierarchy(item)
+    tree = Hierarchy(item, sets=1)                          # set 0
     order, fixed = tree.order, set(item.fixed)
     place = {v: i for i, v in enumerate(order)}
     free = [0]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from itertools import count
 from math import isqrt
+from typing import Optional
 
 from conventions import clamp, round_div, round_shift
 from deformable_header import DeformableObject
@@ -68,15 +69,15 @@ def first_graph(item: DeformableObject) -> list[set]:
 
 
 class Hierarchy:
-    """`order`, and for every vertex `depth`; `parents` and `weights` for every declared set and vertex."""
+    """`order`, and for every vertex `depth`; `parents` and `weights` for every set and vertex: of the declared sets, or of others."""
 
-    def __init__(self, item: DeformableObject):
+    def __init__(self, item: DeformableObject, sets: Optional[int] = None):
         self.rest = item.rest
         extent = max(max(axis) - min(axis) for axis in zip(*item.rest))
         self.shift = max(0, extent.bit_length() - 18)
         size = len(item.rest)
         self.depth: dict[int, int] = {}
-        nuggets = [nugget for i, nugget in enumerate(NUGGETS) if item.weight_sets >> i & 1]
+        nuggets = [nugget for i, nugget in enumerate(NUGGETS) if (item.weight_sets if sets is None else sets) >> i & 1]
         self.parents: list[list[list[int]]] = [[[] for _ in range(size)] for _ in nuggets]
         self.weights: list[list[list[int]]] = [[[] for _ in range(size)] for _ in nuggets]
         vertices = list(range(size))

@@ -65,7 +65,7 @@ class Builder {
   explicit Builder(const DeformableObject& object)
       : object_(object),
         order_(coding_order(object)),
-        parents_(weighted_parents(object, order_)),
+        parents_(weighted_parents(object, order_, 0)),
         place_(object.rest.size()),
         free_(object.rest.size(), 1) {
     for (std::uint32_t i = 0; i < order_.order.size(); ++i) place_[order_.order[i]] = i;

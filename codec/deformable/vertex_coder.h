@@ -51,21 +51,30 @@ class VertexCoder {
   /// fade nothing.
   /// out  next.off_basis  what is left;  expected  less the difference
   void fade(const DeformableObject& object, const MainState& base, std::int64_t tick, std::span<Vec3i> expected,
-            MainState& next) const noexcept {
+            MainState& next) noexcept {
     if (object.fade == 0) return;
-    std::copy(base.off_basis.begin(), base.off_basis.end(), next.off_basis.begin());
-    if (!codes_[0]) return;
+    if (!codes_[0]) {
+      std::copy(base.off_basis.begin(), base.off_basis.end(), next.off_basis.begin());
+      return;
+    }
+    if (!codes_[1])
+      for (const std::uint32_t v : area_) correction_[v] = expected[v];
     const std::uint32_t frames = std::min(frame_steps(object, tick - base.motion_tick), ModeMotion::kMaxSteps);
     std::int64_t left = 1 << 16;
     for (std::uint32_t n = 0; n < frames; ++n) left = (left * ((1 << 16) - object.fade)) >> 16;
-    for (std::uint32_t v = 0; v < expected.size(); ++v) {
-      const Vec3i& before = base.off_basis[v];
-      if (before == Vec3i{} || !codes(v)) continue;
+    const double share = static_cast<double>(left) / 65536;  // its products with 28 bits are exact
+    for (std::size_t v = 0; v < expected.size(); ++v) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto after = static_cast<std::int32_t>(before[axis] * left / (1 << 16));
+        const std::int32_t before = base.off_basis[v][axis];
+        const auto after = static_cast<std::int32_t>(before * share);
         next.off_basis[v][axis] = after;
-        expected[v][axis] = limited_displacement(std::int64_t{expected[v][axis]} - before[axis] + after);
+        expected[v][axis] = std::clamp(expected[v][axis] - before + after, -kMost, kMost);
       }
+    }
+    if (codes_[1]) return;
+    for (const std::uint32_t v : area_) {
+      expected[v] = correction_[v];
+      next.off_basis[v] = base.off_basis[v];
     }
   }
 
@@ -91,11 +100,11 @@ class VertexCoder {
   void keep_off_basis(const MainState& base, bool same_frame, MainState& next) const noexcept {
     for (std::size_t v = 0; v < next.off_basis.size(); ++v)
       for (std::size_t axis = 0; axis < 3; ++axis)
-        next.off_basis[v][axis] = limited_displacement(std::int64_t{next.off_basis[v][axis]} + correction_[v][axis]);
+        next.off_basis[v][axis] = std::clamp(next.off_basis[v][axis] + correction_[v][axis], -kMost, kMost);
     if (!same_frame || next.off_basis.empty()) return;
     for (const std::uint32_t v : area_)
       for (std::size_t axis = 0; axis < 3; ++axis)
-        next.off_basis[v][axis] = limited_displacement(std::int64_t{next.off_basis[v][axis]} - base.haptic_correction[v][axis]);
+        next.off_basis[v][axis] = std::clamp(next.off_basis[v][axis] - base.haptic_correction[v][axis], -kMost, kMost);
   }
 
   /// in   expected  displacement by temporal prediction
@@ -134,6 +143,8 @@ class VertexCoder {
   }
 
  private:
+  static constexpr std::int32_t kMost = DeformableObject::kMaxDisplacement;
+
   const VertexHierarchy& hierarchy_;
   std::vector<Vec3i> correction_;     // decoded - expected
   std::vector<std::uint8_t> coded_;   // had a residual
