@@ -16,7 +16,7 @@ inline constexpr std::size_t kBasisCore = 1024;   ///< vertices among which spri
 inline constexpr std::size_t kBasisAnchors = 64;  ///< fixed vertices that a network takes in beside its own
 
 /// pre  the object breaks no rule, and asks for a computed basis
-/// time 0.3 s for 48 modes of 714 vertices, then 3 us per further vertex; allocates
+/// time 0.1 s for 48 modes of 700 vertices, 0.2 s of 50 000; allocates
 ModeBasis spring_basis(const DeformableObject& object);
 
 }  // namespace tactus
