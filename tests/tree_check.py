@@ -22,17 +22,12 @@ SHARED = {"base"}  # folders of codec/ that are not subjects of the specificatio
 FLOATS = {"base/device_sample", "base/geometry", "base/quantise", "base/tri_mesh", "scene/bounds", "scene/bounds_syntax",
           "scene/deformable_object", "scene/rigid_object", "scene/scene_builder", "packet/key_policy", "packet/sender_policy",
           "load/load_encoder", "load/load_state",
-<<<<<<< HEAD
           "rigid/acceleration", "rigid/contact", "rigid/ease_choice", "rigid/error_share", "rigid/leaning", "rigid/predictor_choice",
           "rigid/rigid_encoder", "rigid/rigid_state", "rigid/trigger", "deformable/deformable_encoder",
           "deformable/displacement", "deformable/kriging", "deformable/main_encoder", "deformable/mode_projection", "deformable/ritz",
           "deformable/spring_basis", "deformable/spring_network", "deformable/thesis_encoder",
-          "deformable/trigger", "client/replica", "client/stiffness_reduction", "sender", "signal/device_signal", "signal/force_signal",
-=======
-          "rigid/contact", "rigid/leaning", "rigid/rigid_encoder", "rigid/rigid_state", "rigid/trigger", "deformable/deformable_encoder",
-          "deformable/displacement", "deformable/kriging", "deformable/main_encoder", "deformable/mode_projection", "deformable/thesis_encoder",
-          "deformable/trigger", "deformable/vertex_coder", "client/replica", "client/stiffness_reduction", "sender", "signal/device_signal", "signal/force_signal",
->>>>>>> wt-mesh
+          "deformable/trigger", "deformable/vertex_coder", "client/replica", "client/stiffness_reduction", "sender",
+          "signal/device_signal", "signal/force_signal",
           "session/exchange", "session/server_connection", "session/congestion", "session/session_options", "session/session_client", "session/session_server"}
 UNITS = ("codec", "codec/*", "io/*", "device/*", "metrics")  # each .cpp in them has a unit test of its name
 TESTED_BY = {  # those that have none: the parts of one subject, held against each other
