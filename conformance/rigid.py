@@ -46,8 +46,8 @@ def residual(decoder: RangeDecoder, models: Models, dof: int, reason: int) -> li
 
 def predict(scene: Declaration, state: State, t: int) -> tuple[tuple, tuple]:
     dt = min(t - state.tick, scene.max_extrapolation)
-    rest = rest_time(scene, state) if state.predictor == SLIDE else 0
     if state.predictor == SLIDE:
+        rest = rest_time(scene, state)
         dt = min(dt, (rest + 255) >> 8)
     if dt == 0:
         return state.position, state.rotation

@@ -8,6 +8,13 @@
 namespace tactus {
 namespace {
 
+constexpr std::int64_t kWhole = 1 << 15;
+
+/// in   share  x 2^-15
+std::int64_t part_of(std::int64_t way, std::int64_t share) noexcept {
+  return share == kWhole ? way : round_shift(way * share, 15);
+}
+
 /// Half the angle turned in `dt` ticks, 2^32 to the full circle, and the axis. spec 40-rigid 4
 struct Turn {
   Vec3i axis{};
@@ -22,7 +29,7 @@ Turn turn_of(const Vec3i& angular_velocity, std::int64_t dt, std::int64_t share,
   const std::int64_t speed = isqrt(static_cast<std::uint64_t>(square) << 10);  // x 2^-(exponent + 5) rad/s
   if (speed == 0) return {};
   constexpr std::uint64_t kTurnPerHalfRadian = 341782638;  // 2^32 / (4 pi)
-  const auto angle = static_cast<std::uint64_t>(round_shift(round_div(speed * dt, tick_rate) * share, 15));
+  const auto angle = static_cast<std::uint64_t>(part_of(round_div(speed * dt, tick_rate), share));
   Turn turn;
   turn.half = static_cast<std::uint32_t>((angle * kTurnPerHalfRadian + (std::uint64_t{1} << (exponent + 4))) >> (exponent + 5));
   for (std::size_t i = 0; i < 3; ++i) {
@@ -30,8 +37,6 @@ Turn turn_of(const Vec3i& angular_velocity, std::int64_t dt, std::int64_t share,
   }
   return turn;
 }
-
-constexpr std::int64_t kWhole = 1 << 15;
 
 /// How long an object slides until it rests [2^-8 ticks].
 std::int64_t slide_time(const Vec3i& velocity, std::uint32_t tick_rate, std::int32_t deceleration) noexcept {
@@ -77,7 +82,7 @@ RigidPose RigidPredictor::pose(const RigidState& state, std::int64_t tick) const
   const unsigned shift = static_cast<unsigned>(scene_.grid.position - scene_.grid.velocity);
   for (std::size_t i = 0; i < 3; ++i) {
     const std::int64_t moved = std::clamp(round_div((state.velocity[i] * dt) << shift, scene_.tick_rate), -kFar, kFar);
-    pose.position[i] = saturate32(state.position[i] + round_shift(moved * share, 15));
+    pose.position[i] = saturate32(state.position[i] + part_of(moved, share));
   }
   if (state.predictor == Predictor::ballistic) fall(dt, pose);
   const Turn turn = turn_of(state.angular_velocity, dt, share, scene_.tick_rate, scene_.grid.angular_velocity);

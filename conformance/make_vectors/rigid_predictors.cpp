@@ -209,6 +209,10 @@ void add_rigid_predictors(Catalogue& c) {
                      {0, 1, 25, 49, 50, 51, 52, 100, 3000}));
   c.valid("slide-part-of-a-tick", "Objects that rest after parts of a tick.",
           seen_after(with_motion({}, {}, kMost), kSlide, {{{}, {3, 300000, 0}, {}, {0, 70000, 0}}}, {1, 2, 3, 2000}));
+  for (const std::int32_t rest : {701, 12801})  // x 2^-8 ticks
+    c.valid(
+        "slide-" + std::to_string(rest), "A fast rotation that ends after " + std::to_string(rest) + " / 256 ticks.",
+        seen_after(with_motion({}, {}, 256000000), kSlide, {{{}, {0, -1000 * rest, 0}, {}, {0, 1 << 25, 77}}}, {1, 2, 3, 90}));
   c.valid("slide-without-velocity", "An object that only turns rests at once.",
           seen_after(with_motion({}, {}, 100000), kSlide, {{{}, {}, {}, {900, -30000, 5}}}, {0, 1, 2, 300}));
   c.valid("slide-extrapolation", "Sliding beyond max_extrapolation.",
