@@ -51,7 +51,7 @@ class Replica:
 
     def apply_state(self, o: ReplicaObject, state: State, now: int) -> None:
         shown = self.pose(o, now)
-        before, running = self.moving(o.state, now), now < o.end
+        before, running = self.velocities(o.state, now), now < o.end
         if o.arrival is not None:
             o.gaps.append(min(now - o.arrival, LONGEST_GAP))
         if state.ease > 0:
@@ -65,9 +65,9 @@ class Replica:
         if self.mode == "linear":
             o.change = NO_OFFSET
         else:
-            o.change = difference(self.scene, before, self.moving(state, now), o.end - now)
+            o.change = difference(self.scene, before, self.velocities(state, now), o.end - now)
 
-    def moving(self, state: State, now: int) -> tuple[tuple, tuple]:
+    def velocities(self, state: State, now: int) -> tuple[tuple, tuple]:
         if now - state.tick >= self.scene.max_extrapolation:
             return AT_REST
         return motion(self.scene, state, now - state.tick)

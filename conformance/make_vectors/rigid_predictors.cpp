@@ -99,7 +99,7 @@ Bytes then(const RawHeader& header, const CodedUpdate& update) {
 }
 
 CodedUpdate choosing(std::uint8_t predictor, std::int32_t turn = 0) {
-  return {Reason::visual, 0, {{{{1, 0, 0}, {}, {turn, 0, 0}, {}}}}, predictor};
+  return {.reason = Reason::visual, .residual = {{{{1, 0, 0}, {}, {turn, 0, 0}, {}}}}, .predictor = predictor};
 }
 
 /// A predictor that is not there, and after it a residual of 33 bits.
@@ -112,9 +112,9 @@ Bytes too_wide_then() {
                                      coder.bit(models.key, 0);
                                      coder.magnitude(models.tick_delta, 0);
                                      coder.tree<2>(models.reason, 0);
-                                     coder.tree<3>(models.level, 0);
+                                     coder.tree<4>(models.level, 0);
                                      coder.tree<2>(models.predictor[0], 3);
-                                     coder.tree<4>(models.residual[0][0], 15);
+                                     coder.tree<4>(models.residual[0].pose[0], 15);
                                      coder.raw(5, 18);
                                    }))
       .bytes();
@@ -147,20 +147,44 @@ Bytes over_a_gap(std::uint8_t predictor, const Vec3i& velocity, std::int64_t end
   return stream.finish().bytes();
 }
 
+/// Every predictor, eased into, some of them before the one before has been.
+Bytes eased_predictors() {
+  RawHeader header = moving();
+  header.flags |= 4;
+  Stream stream(header);
+  std::int64_t tick = 0;
+  for (std::uint8_t i = 0; i < 48; ++i) {
+    const auto ease = static_cast<std::uint8_t>(5 * i % 7);
+    const auto keep = static_cast<std::uint8_t>(ease > 0 ? i % 4 : 0);
+    const auto predictor = static_cast<std::uint8_t>((i + i / 3) % 3);
+    stream.add({.tick = tick,
+                .updates = {{0,
+                             Reason::visual,
+                             2,
+                             {{{300, -200, 9 * i}, {-900, 8000, -100}, {40, 0, -500}, {1, 100, -2}}},
+                             predictor,
+                             ease,
+                             keep}},
+                .key = i == 0});
+    tick += 3 + 7 * (i % 5);
+  }
+  return stream.finish().bytes();
+}
+
 }  // namespace
 
 void add_scene_motion(Catalogue& c) {
   c.section(section::kDeclaration);
-  c.valid("motion", "A scene with motion constants.", moving().bytes(), {"R-STR-4", "R-STR-21"});
-  c.valid("motion-gravity", "Gravity along y, no deceleration.", with_motion({}, {0, 5, 0}, 0).bytes(), {"R-STR-21"});
-  c.valid("motion-slide", "A deceleration, no gravity.", with_motion({}, {}, 1).bytes(), {"R-STR-21"});
+  c.valid("motion", "A scene with motion constants.", moving().bytes(), {"R-STR-4", "R-STR-22"});
+  c.valid("motion-gravity", "Gravity along y, no deceleration.", with_motion({}, {0, 5, 0}, 0).bytes(), {"R-STR-22"});
+  c.valid("motion-slide", "A deceleration, no gravity.", with_motion({}, {}, 1).bytes(), {"R-STR-22"});
   c.valid("motion-limits", "Motion constants at their limits.", with_motion({}, {kMost, -kMost, kMost}, kMost).bytes(),
-          {"R-STR-21"});
+          {"R-STR-22"});
   RawHeader loads = moving();
   loads.flags |= 2;
   loads.loads = {10, 1};
-  c.valid("motion-after-loads", "Loads, then motion constants.", loads.bytes(), {"R-STR-21"});
-  const Rejection rule{"invalid", "R-STR-21"};
+  c.valid("motion-after-loads", "Loads, then motion constants.", loads.bytes(), {"R-STR-22"});
+  const Rejection rule{"invalid", "R-STR-22"};
   c.invalid("gravity-beyond", "gravity is 2^28 + 1 along x.", rule, with_motion({}, {kMost + 1, 0, 0}, 0).bytes());
   c.invalid("gravity-below", "gravity is -2^28 - 1 along z.", rule, with_motion({}, {0, 0, -kMost - 1}, 0).bytes());
   c.invalid("deceleration-beyond", "slide_deceleration is 2^28 + 1.", rule, with_motion({}, kDown, kMost + 1).bytes());
@@ -172,18 +196,17 @@ void add_scene_motion(Catalogue& c) {
   RawHeader cut = moving();
   cut.motion.pop_back();
   c.invalid("motion-cut", "The body ends inside slide_deceleration.", {"truncated", "R-STR-5"}, cut.bytes());
-  c.invalid("flags-16", "The fifth flag is set.", {"malformed", "R-STR-4"}, changed_header([](RawHeader& h) { h.flags = 16; }));
   RawHeader wrong = with_motion(loads, {}, 0);
   wrong.loads = {21, 1};
-  c.invalid("loads-before-motion", "force_exp is 21, and all motion constants are 0.", {"invalid", "R-STR-19", "R-STR-21"},
+  c.invalid("loads-before-motion", "force_exp is 21, and all motion constants are 0.", {"invalid", "R-STR-19", "R-STR-22"},
             wrong.bytes());
   still.motion.pop_back();
   c.invalid("motion-cut-before-nothing-moves", "The body ends inside slide_deceleration, and no object moves.",
-            {"truncated", "R-STR-5", "R-STR-21"}, still.bytes());
+            {"truncated", "R-STR-5", "R-STR-22"}, still.bytes());
   RawHeader extension = with_motion({}, {}, 0);
   extension.extensions = {5};
   c.invalid("motion-before-extension", "All motion constants are 0, then an extension without a size.",
-            {"invalid", "R-STR-21", "R-STR-16"}, extension.bytes());
+            {"invalid", "R-STR-22", "R-STR-16"}, extension.bytes());
 }
 
 void add_rigid_predictors(Catalogue& c) {
@@ -245,6 +268,9 @@ void add_client_predictors(Catalogue& c) {
   playout("playout-ballistic", "A curve that begins in free fall.", over_a_gap(kBallistic, {9000, 0, 30000}));
   playout("playout-slide", "A curve that begins sliding and would rest after 30 of 40 ticks.", over_a_gap(kSlide, {600, 0, 0}));
   playout("playout-slides-on", "A curve that begins sliding and would not rest.", over_a_gap(kSlide, {6000, -70, 0}, 60));
+  c.section(section::kEased);
+  c.valid("eased-predictors", "Updates with every predictor that are eased into.", eased_predictors(), {}, "none");
+  c.valid("eased-predictors-playout", "The same, shown in the past.", eased_predictors(), {}, "playout");
 }
 
 }  // namespace tactus::conformance

@@ -264,10 +264,10 @@ end
 
 -- ---- Packets (25, section 9; 40, section 2) --------------------------------------------------------------------------
 -- Each model is used at most once up to tick_delta, so that start values are enough (spec/tables/rigid-start-models.csv).
-local KEY = { 32064 }
+local KEY = { 32092 }
 local BASELINE = {}
 for i = 1, 15 do BASELINE[i] = 16384 end
-local TICK = { 29740, 1753, 29291, 8329, 20115, 16417, 9485, 64, 4657, 11763, 23792, 17719, 32704, 212, 14543 }
+local TICK = { 29936, 1818, 29159, 10248, 20136, 16001, 9493, 64, 6366, 10949, 23927, 18158, 32704, 179, 14753 }
 
 local Range = {}
 Range.__index = Range
