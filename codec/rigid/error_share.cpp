@@ -20,9 +20,10 @@ ErrorShare::ErrorShare(std::uint32_t object, const Pose& truth, std::span<const 
     if (count_ == kMostContacts) return;
     const bool is_spring = contact.kind == ContactKind::spring;
     const double force = norm(contact_force(contact, truth));
-    const bool has_direction = triggers.haptic == HapticRule::cone && force >= triggers.force_floor;
+    const bool is_cone = triggers.haptic == HapticRule::cone;
     touches_[count_++] = {rotate(truth.rotation, contact.point), is_spring ? Vec3{} : rotate(truth.rotation, contact.normal),
-                          contact.stiffness / force_budget(triggers, force), has_direction ? 1 / triggers.cone_angle : 0};
+                          is_cone ? 0 : force / contact.stiffness, contact.stiffness / force_budget(triggers, force),
+                          is_cone && force >= triggers.force_floor ? 1 / triggers.cone_angle : 0};
   }
 }
 
@@ -31,8 +32,10 @@ double ErrorShare::operator()(const Vec3& moved, const Vec3& turned) const noexc
   for (std::size_t i = 0; i < count_; ++i) {
     const Touch& touch = touches_[i];
     const Vec3 at_point = moved + cross(turned, touch.lever);
-    const double felt = touch.normal == Vec3{} ? norm(at_point) : std::abs(dot(at_point, touch.normal));
-    out = std::max({out, touch.per_metre * felt, touch.per_radian * norm(turned)});
+    const Vec3 felt = touch.normal == Vec3{}
+                          ? at_point
+                          : dot(at_point, touch.normal) * touch.normal + touch.depth * cross(turned, touch.normal);
+    out = std::max({out, touch.per_metre * norm(felt), touch.per_radian * norm(turned)});
   }
   return out;
 }

@@ -28,6 +28,7 @@ class ErrorShare {
   struct Touch {
     Vec3 lever;         // [m] from the object's origin to the point of contact, world frame
     Vec3 normal;        // zero: all directions count
+    double depth;       // [m] of the probe below the face: what a tilt of the face turns
     double per_metre;   // share per metre of error at the point
     double per_radian;  // share per radian of the object
   };

@@ -146,6 +146,7 @@ void RigidEncoder::set_widening(double factor) noexcept {
 void RigidEncoder::set_link(const LinkState& link) noexcept {
   if (early_ == 1) return;
   early_ = link.loss > kHeavyLoss ? kEarlyAtHeavyLoss : kEarly;
+  loses_ = link.loss >= kSomeLoss;
   early_visual_ = scaled(visual_, early_);
   for (std::size_t i = 0; i < follow_up_.size(); ++i) {
     const auto soon = static_cast<std::int64_t>(std::ceil(kFollowUp[i] * scene_.tick_rate));
@@ -263,7 +264,7 @@ Predictor RigidEncoder::chosen(std::uint32_t object, const RigidTriggers& bounds
 RigidState RigidEncoder::leaned(std::uint32_t object, const Acceleration::Motion& acceleration,
                                 const ErrorShare& share) const noexcept {
   const RigidState& truth = truth_[object];
-  if (triggers_.reduction != Reduction::leaning) return truth;
+  if (triggers_.reduction != Reduction::leaning || loses_) return truth;
   RigidSample sample = samples_[object];
   const Acceleration::Motion more = leaning(acceleration, share);
   sample.velocity = sample.velocity + more.linear;

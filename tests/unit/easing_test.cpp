@@ -108,7 +108,7 @@ TEST(Easing, BoundsHoldOnTheWayAndStepsAreSmall) {
   std::vector<double> jumps, steps;
   worst_step(false, plain, jumps);
   worst_step(true, eased, steps);
-  ASSERT_GT(plain, 300);
+  ASSERT_GT(plain, 200);
   EXPECT_LT(eased, 1.1 * plain);
   const auto median = [](std::vector<double>& of) {
     std::nth_element(of.begin(), of.begin() + static_cast<std::ptrdiff_t>(of.size() / 2), of.end());

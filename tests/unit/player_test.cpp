@@ -96,7 +96,7 @@ TEST(Player, OptionsAndLimitsAreTheReceivers) {
   EXPECT_STREQ(Player::open(file, {.replica = {.share = 2}, .limits = {}}).error().rule, "R-API-4");
   EXPECT_STREQ(Player::open(file, {.replica = {}, .limits = {.objects = 1}}).error().rule, "R-STR-14");
   EXPECT_EQ(Player::open(std::span(file).first(10)).error().code, Errc::truncated);
-  auto narrow = Player::open(file, {.replica = {}, .limits = {.packet_bytes = 3}}).value();
+  auto narrow = Player::open(file, {.replica = {}, .limits = {.packet_bytes = 5}}).value();
   EXPECT_STREQ(narrow.play(10).error().rule, "R-PKT-1");
   auto smooth = Player::open(file, {.replica = {.interpolation = Interpolation::linear}, .limits = {}}).value();
   EXPECT_TRUE(*smooth.play(10));

@@ -118,7 +118,7 @@ TEST(Receiver, AfterAnErrorEverythingIsWhatItWas) {
     refuses({kSubstreams, 1, 0, 5}, "R-PKT-6", Advice::drop);
     refuses({good[0], good[1]}, "R-PKT-2", Advice::drop);
     Bytes longer = good;
-    longer.resize(good.size() + 12, 1);
+    longer.resize(good.size() + 60, 1);
     refuses(longer, "", Advice::drop);  // R-RNG-2, if what it says then breaks no other rule
     longer.resize(5000);
     refuses(longer, "R-PKT-1", Advice::drop);

@@ -152,32 +152,34 @@ TEST(SceneDeformables, EachRuleOfTheReader) {
     const auto parsed = parse_deformable(reader, {1000, 1000});
     return parsed ? std::string_view("none") : std::string_view(parsed.error().rule);
   };
-  // profile, name (2), rings, frame_period (4), layered, vertices, triangles, 9 coordinates, 3 corners, basis
+  // profile, name (2), rings, frame_period (4), layered, fade (2), weight_sets, vertices, triangles, 9 coordinates, 3 corners, basis
   EXPECT_EQ(rule(0, {1}), "none");
   EXPECT_EQ(rule(0, {2}), "R-DEF-2");
   EXPECT_EQ(rule(3, {33}), "R-DEF-3");
   EXPECT_EQ(rule(8, {1}), "none");
   EXPECT_EQ(rule(8, {2}), "R-DEF-3");
-  EXPECT_EQ(rule(9, {0}), "R-DEF-4");
-  EXPECT_EQ(rule(9, {0x80, 0x80, 0x80, 1}), "R-DEF-4");
-  EXPECT_EQ(rule(9, {0x80, 0x80, 2}), "R-STR-14");
-  EXPECT_EQ(rule(9, {0xff, 1}), "R-STR-5");
-  EXPECT_EQ(rule(11, {0x80, 0x80, 0x80, 0x80, 0x10}), "R-DEF-5");
-  EXPECT_EQ(rule(20, {6}), "R-DEF-6");
-  EXPECT_EQ(rule(20, {1}), "R-DEF-6");
-  EXPECT_EQ(rule(23, {3}), "R-DEF-7");
-  EXPECT_EQ(rule(23, {1}), "R-STR-5");
-  EXPECT_EQ(rule(23, {1, 65}), "R-DEF-7");
-  EXPECT_EQ(rule(23, {1, 0}), "R-DEF-7");
-  EXPECT_EQ(rule(23, {1, 1}), "R-STR-5");
-  EXPECT_EQ(rule(23, {1, 0x81, 0}), "R-STR-5");
-  EXPECT_EQ(rule(23, {2, 1}), "R-STR-5");
-  EXPECT_EQ(rule(23, {2, 1, 0}), "none");
-  EXPECT_EQ(rule(23, {2, 1, 1, 0}), "R-STR-5");
-  EXPECT_EQ(rule(23, {2, 1, 1, 0, 1}), "none");
-  EXPECT_EQ(rule(23, {2, 4, 1, 0, 1}), "R-DEF-7");
-  EXPECT_EQ(rule(23, {2, 1, 1, 0, 3}), "R-DEF-7");
-  EXPECT_EQ(rule(23, {2, 1, 2, 0, 0, 0, 0}), "R-DEF-7");
+  EXPECT_EQ(rule(11, {0}), "R-DEF-3");
+  EXPECT_EQ(rule(11, {8}), "R-DEF-3");
+  EXPECT_EQ(rule(12, {0}), "R-DEF-4");
+  EXPECT_EQ(rule(12, {0x80, 0x80, 0x80, 1}), "R-DEF-4");
+  EXPECT_EQ(rule(12, {0x80, 0x80, 2}), "R-STR-14");
+  EXPECT_EQ(rule(12, {0xff, 1}), "R-STR-5");
+  EXPECT_EQ(rule(14, {0x80, 0x80, 0x80, 0x80, 0x10}), "R-DEF-5");
+  EXPECT_EQ(rule(23, {6}), "R-DEF-6");
+  EXPECT_EQ(rule(23, {1}), "R-DEF-6");
+  EXPECT_EQ(rule(26, {3}), "R-DEF-7");
+  EXPECT_EQ(rule(26, {1}), "R-STR-5");
+  EXPECT_EQ(rule(26, {1, 65}), "R-DEF-7");
+  EXPECT_EQ(rule(26, {1, 0}), "R-DEF-7");
+  EXPECT_EQ(rule(26, {1, 1}), "R-STR-5");
+  EXPECT_EQ(rule(26, {1, 0x81, 0}), "R-STR-5");
+  EXPECT_EQ(rule(26, {2, 1}), "R-STR-5");
+  EXPECT_EQ(rule(26, {2, 1, 0}), "none");
+  EXPECT_EQ(rule(26, {2, 1, 1, 0}), "R-STR-5");
+  EXPECT_EQ(rule(26, {2, 1, 1, 0, 1}), "none");
+  EXPECT_EQ(rule(26, {2, 4, 1, 0, 1}), "R-DEF-7");
+  EXPECT_EQ(rule(26, {2, 1, 1, 0, 3}), "R-DEF-7");
+  EXPECT_EQ(rule(26, {2, 1, 2, 0, 0, 0, 0}), "R-DEF-7");
 }
 
 }  // namespace
