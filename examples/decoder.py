@@ -130,7 +130,7 @@ class Scene:
         require(self.max_extrapolation >= 1, "R-STR-8")
         require(1 <= self.baseline_span <= 64, "R-STR-9")
         require(32 * object_count <= len(body.data) - body.at, "R-STR-5")
-        self.names, self.dof, self.initial = [], [], []     # a state: tick, position, rotation, velocity, angular velocity
+        self.names, self.dof, self.initial = [], [], []     # a state: tick, position, rotation, velocities, ease and keep
         for _ in range(object_count): self.add_object(body)
         self.eased = flags == 4
         require(flags in (0, 4), "deformable objects (20, 4), loads (45) and motion constants (40, 4) are left out of this example")
@@ -145,7 +145,7 @@ class Scene:
         require(dof >> 3 in (0, 1, 2, 4, 7), "R-STR-12")
         require(max(map(abs, rotation)) <= ONE and abs(sum(c * c for c in rotation) - ONE * ONE) <= 1 << 41, "R-STR-13")
         self.dof.append(dof)
-        self.initial.append((0, position, rotation, (0, 0, 0), (0, 0, 0)))
+        self.initial.append((0, position, rotation, (0, 0, 0), (0, 0, 0), (0, 0)))
 
 # ---- Rigid objects (40) ---------------------------------------------------------------------------------------------
 def residual(payload, dof, reason):                         # 40, 3
@@ -165,7 +165,7 @@ def residual(payload, dof, reason):                         # 40, 3
     return r
 
 def predict(scene, state, t):                               # 40, 4
-    tick, position, rotation, velocity, o = state
+    tick, position, rotation, velocity, o, _ = state
     dt = min(t - tick, scene.max_extrapolation)
     x = [sat32(p + round_div(v * dt << scene.linear, scene.tick_rate)) for p, v in zip(position, velocity)]
     speed = isqrt(sum(c * c for c in o) << 10)
@@ -175,9 +175,9 @@ def predict(scene, state, t):                               # 40, 4
     step = [round_shift(round_div(c << 35, speed) * sin30(half), 30) for c in o]
     return x, turned((sin30(half + ONE), *step), rotation)
 
-def update(scene, base, t, reason, level, r):               # 40, 5
+def update(scene, base, t, reason, level, eased, r):        # 40, 5
     p, rotation = predict(scene, base, t)
-    tick, _, _, v, o = base
+    tick, _, _, v, o, _ = base
     s, dt, axes, length = level, t - tick, range(3), 1 << scene.rotation_exp
     e, m = [sat32(c << s) for c in r[0]], [c << s for c in r[2]]
     n = sum(c * c for c in m)
@@ -191,7 +191,7 @@ def update(scene, base, t, reason, level, r):               # 40, 5
         o = [sat32(o[a] + round_div(6 * m[a] * scene.tick_rate, dt << scene.angular)) for a in axes]
     return (t, [sat32(p[a] + (r[0][a] << s)) for a in axes], rotation,
             [sat32(round_shift(v[a], s) + r[1][a] << s) for a in axes],
-            [clamp(round_shift(o[a], s) + r[3][a] << s, -1 << 25, 1 << 25) for a in axes])
+            [clamp(round_shift(o[a], s) + r[3][a] << s, -1 << 25, 1 << 25) for a in axes], eased)
 
 class Decoder:
     """Turns packets into states (25, 5; 40, 2). Substream 0 is the only one of a scene without deformable objects."""
@@ -222,9 +222,10 @@ class Decoder:
             require(i < len(moving), "R-RIG-4")
             reason, level = payload.tree("REASON", 2), payload.tree("LEVEL", 4)
             usual = max(0, min(scene.tick_rate // 62, 255).bit_length() - 1)
-            if scene.eased and (usual - payload.tree("EASE", 3)) % 8: payload.tree("KEEP", 2)    # of what is shown (60, 8): left out
+            ease = (usual - payload.tree("EASE", 3)) % 8 if scene.eased else 0          # for a client (60, 8), which is left out
+            keep = payload.tree("KEEP", 2) if ease else 0
             r = residual(payload, scene.dof[moving[i]], reason)
-            states[moving[i]] = update(scene, states[moving[i]], tick, reason, level, r)
+            states[moving[i]] = update(scene, states[moving[i]], tick, reason, level, (ease, keep), r)
             named.append(moving[i])
         require(len(payload.data) <= payload.position, "R-RNG-2")
         require(payload.data[-1:] != b"\0", "R-RNG-3")
