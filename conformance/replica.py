@@ -34,7 +34,7 @@ class Replica:
     """What a client shows that applies packets; mode is "none", "linear", "hermite" or "blending"."""
 
     def __init__(self, scene: Declaration, mode: str):
-        self.scene, self.mode = scene, mode
+        self.scene, self.mode = scene, "none" if scene.eased else mode             # section 1
         self.shortest = round_div(5 * scene.tick_rate, 1000)
         self.longest = round_div(100 * scene.tick_rate, 1000)
         self.objects = [ReplicaObject(item.initial) for item in scene.objects]

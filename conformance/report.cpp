@@ -142,10 +142,14 @@ constexpr DecodeLimits kLimits{.header_bytes = 1u << 20, .packet_bytes = 1u << 2
 /// A receiver that gets every packet at its tick and looks at every tick; in playout, at the tick that lies so far back.
 class Client {
  public:
+  /// In an eased scene no client smooths by itself.
+  static Interpolation way_in(const Scene& scene, std::optional<Interpolation> wanted) {
+    const Interpolation way = wanted.value_or(Interpolation::none);
+    return scene.is_eased && way != Interpolation::playout ? Interpolation::none : way;
+  }
   static Result<Client> create(const SharedScene& scene, std::optional<Interpolation> interpolation) {
-    TACTUS_TRY(
-        Receiver receiver,
-        Receiver::create(scene, {.replica = {.interpolation = interpolation.value_or(Interpolation::none)}, .limits = kLimits}));
+    TACTUS_TRY(Receiver receiver,
+               Receiver::create(scene, {.replica = {.interpolation = way_in(*scene, interpolation)}, .limits = kLimits}));
     const std::int64_t delay = interpolation == Interpolation::playout ? kPlayoutDelay : 0;
     return Client(scene, std::move(receiver), interpolation.has_value(), delay);
   }

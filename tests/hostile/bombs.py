@@ -7,9 +7,14 @@ import lzma
 import os
 import pathlib
 import struct
+import sys
 import zlib
 
 from mutate import ATTACHMENT, CHANNEL, MESSAGE, METADATA, SCHEMA, chunk, mcap, record, text, to_varint, unpacked_mcap, zstd
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[2] / "conformance"))
+from range_encoder import RangeEncoder  # noqa: E402  (the second decoder's)
+from start_models import Models  # noqa: E402
 
 INPUTS = pathlib.Path(__file__).parent / "inputs"
 REFUSED = {1}
@@ -72,13 +77,34 @@ def one_topic_of_many(folder):
     yield ["export", "csv", "b.mcap", "-o", "o.csv"], REFUSED
 
 
+def stream_record(kind, payload):
+    data = bytes([kind, len(payload)]) + payload
+    return data + zlib.crc32(data).to_bytes(4, "little")
+
+
+def rigid_key_packet(sequence, tick):
+    """One object at its initial state."""
+    models, encoder = Models("rigid-start-models.csv"), RangeEncoder()
+    encoder.bit(models["KEY"][1], 1)
+    encoder.magnitude(models["TICK"], tick)
+    encoder.tree(models["REASON"], 2, 0)
+    encoder.tree(models["LEVEL"], 4, 0)
+    for k in range(2):
+        for kind, later in (("POSE", 4), ("MOTION", 5)):
+            for axis in range(3):
+                encoder.signed(models[f"{kind}[{k}][{later if axis else 0}]"], 0)
+    return sequence.to_bytes(2, "little") + encoder.finish()
+
+
 def far_tick(folder):
-    """129 lawful bytes that make a replica of 2^32 ticks."""
-    data = bytes.fromhex(
-        "89544354010000002c000000e80300001611140cd0070101013f016f00000000000000000000000000000040000000000000000000000000ee509d92010a"
-        "010100fa480a099d1fa091919c000112efffffff0f0200fffd7cae98ec793c1425205d7c3ee0020902013cefffffff0f10b594a595030864000000000000"
-        "002cdfc4e7")
-    (folder / "b.tct").write_bytes(data)
+    """Some 130 lawful bytes that make a replica of 2^32 ticks."""
+    header = bytes.fromhex(
+        "89544354010000002c000000e80300001611140cd0070101013f016f00000000000000000000000000000040000000000000000000000000ee509d92")
+    near = stream_record(1, b"\x01" + rigid_key_packet(1, 1))
+    far = stream_record(1, b"\xef\xff\xff\xff\x0f" + rigid_key_packet(2, 0xfffffff0))
+    index = stream_record(2, b"\x02\x01\x3c\xef\xff\xff\xff\x0f" + bytes([len(near)]))
+    end = stream_record(3, (len(header) + len(near) + len(far)).to_bytes(8, "little"))
+    (folder / "b.tct").write_bytes(header + near + far + index + end)
     yield ["decode", "b.tct", "-o", "o.mcap"], REFUSED
     yield ["decode", "b.tct", "-o", "p.mcap", "--ticks", "20"], {0}
 

@@ -16,7 +16,7 @@ inline std::uint64_t earned(std::size_t bytes, const SceneSpec& spec) {
   const std::uint64_t span = spec.baseline_span;
   const std::uint64_t vectors = spec.loads ? (2 + std::uint64_t{spec.loads->users}) * spec.objects.size() : 0;
   const std::uint64_t loads = spec.loads ? 1024 + vectors * (40 + 12 * (span + 3)) + 128 * (span + 3) : 0;
-  if (spec.deformables.empty()) return 4096 + bytes * (24 + 3 * span) + loads;
+  if (spec.deformables.empty()) return 8192 + bytes * (24 + 3 * span) + loads;
   std::uint64_t out = bytes * (640 + 10 * span) + loads;
   for (const DeformableObject& object : spec.deformables) {
     const bool has_models = object.profile == DeformableProfile::thesis;
