@@ -149,11 +149,12 @@ def ritz(network: Network, x: list) -> tuple[list, list]:
 def stages_of(item: DeformableObject, tree: Hierarchy, free: list[int]) -> list[int]:
     """`free[m]` are those among the first m of the order."""
     order, stages = tree.order, []
-    for m in range(1, min(len(order), MOST_MEMBERS) + 1):
+    most = min(len(order), MOST_MEMBERS)
+    for m in range(most, 0, -1):
         whole = m == len(order) or tree.depth[order[m]] < tree.depth[order[m - 1]]
-        if whole and 3 * free[m] >= 2 * (item.mode_count + SPARE_COLUMNS):
-            stages.append(m)
-    return stages or [min(MOST_MEMBERS, len(order))]
+        if whole and 3 * free[m] >= 2 * (item.mode_count + SPARE_COLUMNS) and (not stages or 2 * m <= stages[0]):
+            stages.insert(0, m)
+    return stages or [most]
 
 
 def start_block(order: list[int], fixed: set, columns: int) -> list:

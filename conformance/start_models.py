@@ -9,7 +9,7 @@ from pathlib import Path
 
 @functools.lru_cache(maxsize=None)
 def start_models(file: str) -> dict[str, list]:
-    """A table by name without the node: {"TICK": [None, (zero, rate), ...], "RESIDUAL[0][3]": ...}."""
+    """A table by name without the node: {"TICK": [None, (zero, rate), ...], "POSE[0][3]": ...}."""
     here = Path(__file__).resolve().parent
     tables = here / "tables" if (here / "tables").is_dir() else here.parent / "spec" / "tables"
     trees: dict[str, list] = {}

@@ -133,7 +133,7 @@ Outcome run(const DecodeOptions& options) {
   TACTUS_TRY(const auto bytes, read_file(options.input));
   const std::span file(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
   auto player = Player::open(file, {.replica = options.replica, .limits = {}});
-  if (!player && std::string_view(player.error().rule) == "R-API-4")
+  if (!player && options.replica.interpolation != Interpolation::none && std::string_view(player.error().rule) == "R-API-4")
     return refuse(shown_path(options.input) + ": the stream tells how a client passes over to its updates",
                   "Leave out --interpolate, or encode with --profile thesis.");
   if (!player) return refuse(options.input, player.error());
@@ -152,7 +152,7 @@ Outcome run(const DecodeOptions& options) {
   if (player->scene().loads) report.loads.emplace();
   report.timings = {{"decode", "decode and show, per tick"}};
   report.stream = {player->header_bytes(), bytes.size()};
-  if (report.traffic) report.client = options.replica.interpolation;
+  if (report.traffic) report.client = way_of_client(options.replica.interpolation, player->scene().is_eased);
   TACTUS_CHECK(decode_all(*player, *writer, options, report));
   const auto rest = player->next_tick();
   if (!rest && is_cut(rest.error())) {

@@ -66,7 +66,6 @@ constexpr std::array kNeeds{
     Need{"--interpolate", Subject::rigid},
     Need{"--deformable-visual", Subject::mesh},
     Need{"--basis", Subject::mesh},
-    Need{"--fade", Subject::mesh},
     Need{"--nugget", Subject::mesh},
     Need{"--visual-share", Subject::mesh},
     Need{"--quant-bits", Subject::mesh},
@@ -139,6 +138,7 @@ std::set<Subject> subjects_of(const TraceInfo& info) {
 }
 
 void check_options_agree(const Command& command) {
+  if (typed(command, "--fade") && !typed(command, "--basis")) refuse_option("--fade", "needs --basis");
   for (const Agreement& a : kAgreements) {
     if (!typed(command, a.option) || command.find(a.other) == nullptr) continue;
     const Option* other = typed(command, a.other);

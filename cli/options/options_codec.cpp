@@ -232,7 +232,7 @@ void MeshArguments::add_encoder_to(Command& app) {
        app.add_option(
               "--nugget", nugget,
               "How much of a vertex's movement its neighbours do not share: 2%, 5%, 30%, or all for a choice per packet, at "
-              "three times the cost (--profile main) [5% with --basis, else 2%]")
+              "two to four times the cost (--profile main) [5% with --basis, else 2%]")
            ->check(one_of({"2%", "5%", "30%", "all"}))
            ->type_name("SHARE"),
        shares_[0], shares_[1],

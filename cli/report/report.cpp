@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -145,7 +146,8 @@ void note_rows(Table& table, const Report& r) {
     note_row(table, "content", text);
   }
   if (r.seed) note_row(table, "seed", fmt::to_string(*r.seed));
-  if (r.client) note_row(table, "client", *r.client == Interpolation::none ? "applies updates at once" : "interpolates");
+  constexpr std::array kWays{"applies updates at once", "eases into updates", "interpolates"};
+  if (r.client) note_row(table, "client", kWays[static_cast<std::size_t>(*r.client)]);
   for (const DeformableReport& d : r.deformables) {
     note_row(table, "object", fmt::format("{}, {}, deformed every {:g} ms", d.name, counted(d.vertices, "vertex"), 1e3 * d.step));
     note_row(table, "method", fmt::format("{}: {}", d.method, d.reason));

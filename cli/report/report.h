@@ -40,6 +40,14 @@ struct DeformableReport {
   double energy_gained = 0;             ///< without cause, over the whole run; share of all the work of forces
 };
 
+/// How a client passes over to updates.
+enum class ClientWay : std::uint8_t { direct, eased, interpolated };
+
+constexpr ClientWay way_of_client(Interpolation interpolation, bool is_eased) {
+  if (interpolation != Interpolation::none) return ClientWay::interpolated;
+  return is_eased ? ClientWay::eased : ClientWay::direct;
+}
+
 struct Report {
   std::string command;
   std::vector<std::pair<std::string, std::string>> files{};  ///< role, path
@@ -48,7 +56,7 @@ struct Report {
   std::uint64_t moving = 0;                                  ///< objects that can move
   std::size_t objects = 0, users = 0;
   std::optional<std::uint64_t> seed{}, segments{};
-  std::optional<Interpolation> client{};
+  std::optional<ClientWay> client{};
   std::vector<DeformableReport> deformables{};
   std::vector<TouchReport> touches{};  ///< one per user
   std::vector<std::string> warnings{};

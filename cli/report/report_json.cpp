@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -194,7 +195,8 @@ Json deformable_json(const DeformableReport& d) {
 void add_particulars(Json& out, const Report& r) {
   if (r.seed) out["seed"] = *r.seed;
   if (r.segments) out["segments"] = *r.segments;
-  if (r.client) out["client"] = *r.client == Interpolation::none ? "direct" : "interpolated";
+  constexpr std::array kWays{"direct", "eased", "interpolated"};
+  if (r.client) out["client"] = kWays[static_cast<std::size_t>(*r.client)];
   for (const DeformableReport& d : r.deformables) out["solvers"].push_back(deformable_json(d));
   for (const TouchReport& t : r.touches) {
     out["touches"].push_back({{"user", t.user},

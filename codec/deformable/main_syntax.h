@@ -205,7 +205,7 @@ void code_vertex(Coder& coder, MainModels& models, std::uint32_t density, const 
 
 /// Upper bound of the size of any packet, without its substream's number [bytes].
 constexpr std::size_t max_main_packet(std::size_t vertices, std::size_t modes) noexcept {
-  constexpr std::size_t kHead = 96;         // sequence, fields, bounds, tail
+  constexpr std::size_t kHead = 112;        // sequence, fields, bounds, weight set, tail
   constexpr std::size_t kCoefficient = 16;  // a signed value at 15 bits per adaptive bit
   constexpr std::size_t kVertex = 40;       // a flag and three signed values
   return kHead + kCoefficient * modes + kVertex * vertices;

@@ -91,14 +91,16 @@ class Builder {
   }
 
  private:
-  /// How many vertices of the coding order each network takes in.
+  /// How many vertices of the coding order each network takes in: whole depths, each at most half of the next.
   std::vector<std::size_t> stages_for(std::size_t columns) const {
     std::vector<std::size_t> out;
-    for (std::size_t i = 1; i <= order_.order.size(); ++i) {
+    const std::size_t most = std::min(kBasisCore, order_.order.size());
+    for (std::size_t i = most; i > 0 && 3 * free_in(i) >= 2 * columns; --i) {
       const bool whole = i == order_.order.size() || order_.depth[order_.order[i]] != order_.depth[order_.order[i - 1]];
-      if (whole && i <= kBasisCore && 3 * free_in(i) >= 2 * columns) out.push_back(i);
+      if (whole && (out.empty() || 2 * i <= out.back())) out.push_back(i);
     }
-    if (out.empty()) out.push_back(std::min(kBasisCore, order_.order.size()));
+    if (out.empty()) out.push_back(most);
+    std::reverse(out.begin(), out.end());
     return out;
   }
   std::size_t free_in(std::size_t count) const noexcept {

@@ -15,7 +15,7 @@ namespace tactus {
 struct RigidUpdate {
   std::uint32_t object = 0;  ///< index into Scene::objects
   Reason reason = Reason::request;
-  std::uint8_t level = 0;  ///< grid level: residuals were multiples of 4^level grid units
+  std::uint8_t level = 0;  ///< grid level: residuals were multiples of 2^level grid units
 };
 
 /// A packet to send.

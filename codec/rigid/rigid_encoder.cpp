@@ -300,8 +300,10 @@ void RigidEncoder::choose_ease(Pending& update, CodedUpdate& coded, const Accele
 }
 
 /// The update of one object, and the state after it. A predictor other than the linear one counts as knowing the acceleration.
-Result<CodedUpdate> RigidEncoder::code(Pending& update, const RigidState& base, std::int64_t tick) const noexcept {
-  const Prediction prediction{base, predictor_.pose(base, tick)};
+/// A key packet is not eased: a client may begin with it, and has shown nothing of what the path would begin with.
+Result<CodedUpdate> RigidEncoder::code(Pending& update, const EncodeRequest<RigidStates>& request) const noexcept {
+  const RigidState& base = request.base.objects[update.object];
+  const Prediction prediction{base, predictor_.pose(base, request.tick)};
   const std::uint32_t object = update.object;
   if (!acceleration_ && !choice_) return quantise(update, prediction, truth_[object]);
   const RigidTriggers bounds = widened_triggers();
@@ -312,7 +314,8 @@ Result<CodedUpdate> RigidEncoder::code(Pending& update, const RigidState& base, 
   RigidState told = is_linear ? leaned(object, acceleration, share) : truth_[object];
   told.predictor = predictor;
   TACTUS_TRY(CodedUpdate coded, quantise(update, prediction, told));
-  if (scene_.is_eased && triggers_.reduction != Reduction::none) choose_ease(update, coded, acceleration, share);
+  const bool can_ease = scene_.is_eased && triggers_.reduction != Reduction::none && !request.head.key;
+  if (can_ease) choose_ease(update, coded, acceleration, share);
   return coded;
 }
 
@@ -359,8 +362,7 @@ Result<Payload> RigidEncoder::encode(const EncodeRequest<RigidStates>& request, 
     const auto at = static_cast<std::uint32_t>(std::ranges::lower_bound(moving, update.object) - moving.begin());
     if (moving.size() > 1) coder.magnitude(models.gap, at - next);
     next = at + 1;
-    const RigidState& base = request.base.objects[update.object];
-    TACTUS_TRY(CodedUpdate coded, code(update, base, request.tick));
+    TACTUS_TRY(CodedUpdate coded, code(update, request));
     code_update(coder, models, scene_, update.object, coded);
     strongest = std::max(strongest, update.reason);
   }

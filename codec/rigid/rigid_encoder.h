@@ -49,7 +49,7 @@ class RigidEncoder {
 
   /// Take the truth of one tick; changes nothing else.   in, err  Sender::encode
   Result<void> read(std::int64_t tick, std::span<const RigidSample> samples, std::span<const Contact> contacts) noexcept;
-  /// pre  read() took the request's tick.   time O(objects), < 1 us per object; no allocation.
+  /// pre  read() took the request's tick.   time O(objects), < 1 us per object, < 4 us per update; no allocation.
   /// err  invalid_argument R-API-7 the residual from the predicted pose exceeds what an update can code
   Result<Payload> encode(const EncodeRequest<RigidStates>& request, std::span<std::uint8_t> out) noexcept;
   void commit(const RigidStates& base, RigidStates& next) noexcept;
@@ -88,7 +88,7 @@ class RigidEncoder {
   void choose_ease(Pending& update, CodedUpdate& coded, const Acceleration::Motion& acceleration,
                    const ErrorShare& share) const noexcept;
   Result<CodedUpdate> quantise(Pending& update, const Prediction& prediction, const RigidState& told) const noexcept;
-  Result<CodedUpdate> code(Pending& update, const RigidState& base, std::int64_t tick) const noexcept;
+  Result<CodedUpdate> code(Pending& update, const EncodeRequest<RigidStates>& request) const noexcept;
 
   const Scene& scene_;
   RigidTriggers triggers_;

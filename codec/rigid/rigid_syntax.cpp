@@ -142,7 +142,7 @@ std::optional<RigidState> reconstruct(const RigidPredictor& predictor, const Pre
 
 std::size_t max_rigid_packet(const Scene& scene) noexcept {
   constexpr std::size_t kHead = 64;     // sequence, key, baseline, tick, count, tail
-  constexpr std::size_t kUpdate = 192;  // gap, reason, level and 12 components at 15 bits per adaptive bit
+  constexpr std::size_t kUpdate = 208;  // gap, reason, level, predictor, ease, keep and 12 components at 15 bits per adaptive bit
   return kHead + kUpdate * scene.moving().size();
 }
 

@@ -87,7 +87,7 @@ SceneBuilder& SceneBuilder::baselines(std::uint8_t count) {
 }
 
 SceneBuilder& SceneBuilder::eased() {
-  spec_.is_eased = true;
+  is_eased_ = true;
   return *this;
 }
 
@@ -127,7 +127,9 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build() try {
     const RigidObject& made = spec.objects.back();
     if (const RuleName rule = broken_object_rule(made)) return refuse({Errc::invalid, rule, 0}, made.name);
     if (!names.insert(made.name).second) return refuse({Errc::invalid, RuleName("R-STR-11"), 0}, made.name);
-    if (made.dof != Dof::none) spec.motion = *constants;
+    if (made.dof == Dof::none) continue;
+    spec.motion = *constants;
+    spec.is_eased = taken.is_eased_;
   }
   for (Deformable& of : taken.deformables_) {
     auto object = make_deformable_object(of.name, of.surface, spec.grid.position);

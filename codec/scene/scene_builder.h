@@ -26,7 +26,7 @@ struct DeformableCoding {
   /// main: sets of the parents' weights that packets may name (DeformableObject); 0: the second alone with a basis, else the first
   std::uint8_t weight_sets = 0;
   ModeBasis basis{};           ///< main
-  SpringBasis spring_basis{};  ///< main: in place of `basis`
+  SpringBasis spring_basis{};  ///< main; with modes it takes the place of `basis`
   /// [N/m] of each vertex, infinite where it does not move; empty: not told. What clients with delay render by (StiffnessReduction).
   std::vector<double> stiffness{};
 };
@@ -86,6 +86,7 @@ class SceneBuilder {
   SceneSpec spec_;
   std::optional<double> extrapolation_;  // [s]
   MotionPhysics motion_;
+  bool is_eased_ = false;
   std::vector<Rigid> rigid_;
   std::vector<Deformable> deformables_;
   struct Promise {

@@ -19,6 +19,13 @@ Shape dust(std::size_t vertices) {
   return out;
 }
 
+/// Triangles about a centre that has the highest number.
+Shape star() {
+  Shape out = dust(120);
+  for (std::uint32_t v = 0; v + 2 < 120; v += 2) out.triangles.push_back({v, v + 1, 119});
+  return out;
+}
+
 void add_valid(Catalogue& c) {
   c.section(section::kComputedBasis);
   c.valid("spring-modes", "A closed box, four corners fixed: modes in every packet.",
@@ -39,6 +46,17 @@ void add_valid(Catalogue& c) {
                        .spring_modes = 3,
                        .runs = {{3, 0}}},
                       766, 3));
+  constexpr std::uint16_t kFade = 4217;  // 98 % per second at 60 frames/s
+  for (const std::uint8_t sets : {std::uint8_t{2}, std::uint8_t{4}, std::uint8_t{6}})
+    c.valid("spring-modes-weight-sets-" + std::to_string(sets),
+            "Modes are computed with weight set 0, though packets may not name it; what is outside the basis fades.",
+            random_walk({.shape = box(4, 3, 1), .fade = kFade, .weight_sets = sets, .spring_modes = 8, .runs = {{0, 0}, {13, 1}}},
+                        767u + sets, 16, 4));
+  c.valid("spring-modes-in-layers", "Both layers of an object with a computed basis that fades.",
+          random_walk({.shape = sheet(5, 4), .layered = 1, .fade = kFade, .weight_sets = 7, .spring_modes = 6, .runs = {{0, 3}}},
+                      774, 24, 3));
+  c.valid("spring-modes-of-a-star", "Depths that lose one vertex each: few of them have a network of their own.",
+          random_walk({.shape = star(), .spring_modes = 1, .runs = {{5, 0}}}, 775, 2));
 }
 
 void add_faults(Catalogue& c) {

@@ -11,6 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   SceneSpec spec;
   spec.objects.push_back({"o", Dof::all, {}});
   spec.is_eased = size > 0 && data[0] / 5 % 2 == 1;
+  if (size > 0 && data[0] / 10 % 2 == 1) spec.motion = {{-9000, 1 << 20, -(1 << 28)}, 1 << 18};
   const SharedScene scene = Scene::create(std::move(spec)).value();
   const RigidPredictor predictor(*scene);
   ReplicaOptions options;
@@ -30,6 +31,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     now += v[0] & 0x70000 ? 0 : 7;  // applied late
     if (scene->is_eased)
       state.ease = static_cast<std::uint8_t>(v[0] >> 22 & 7), state.keep = static_cast<std::uint8_t>(v[0] >> 25 & 3);
+    if (scene->motion) state.predictor = static_cast<Predictor>((static_cast<std::uint32_t>(v[0]) >> 27) % 3);
     state.position = {v[1], v[2], v[3]};
     state.velocity = {v[4], v[5], v[6]};
     state.angular_velocity = {v[7] % kAngularVelocityLimit, v[8] % kAngularVelocityLimit, v[9] % kAngularVelocityLimit};

@@ -19,6 +19,7 @@ SharedScene scene(std::uint8_t choice) {
     spec.objects.push_back({"o" + std::to_string(spec.objects.size()), dof, {}});
   if (choice & 4) spec.baseline_span = 5;
   if (choice & 16) spec.motion = {{-9000, 1 << 20, -(1 << 28)}, choice & 32 ? 1 : 1 << 18};
+  spec.is_eased = (choice & 64) != 0;
   if (choice & 8) spec.grid = {30, 18, 28, 16};
   return Scene::create(std::move(spec)).value();
 }

@@ -53,6 +53,8 @@ struct Setting {
   double visual = 1e-3, noise = 1e-5;
   bool layered = false;
   std::uint8_t spring_modes = 0;
+  std::uint16_t fade = 0;
+  std::uint8_t weight_sets = 1;
 };
 
 /// The sheet's shape, pushed about.
@@ -105,6 +107,8 @@ SharedScene scene_of(const TriMesh& mesh, const Setting& setting) {
   DeformableObject object = make_deformable_object("sheet", mesh, spec.grid.position).value();
   object.profile = setting.profile;
   object.layered = setting.layered;
+  object.fade = setting.fade;
+  object.weight_sets = setting.weight_sets;
   if (setting.modes > 0) object.basis = make_mode_basis(bumps(mesh, setting.modes), setting.modes).value();
   if (setting.spring_modes > 0) object.spring_basis = {setting.spring_modes, {0, 1, 2, 40}};
   spec.deformables.push_back(std::move(object));
@@ -149,7 +153,10 @@ bool run_meshes() {
   return run("mesh-thesis", {.profile = DeformableProfile::thesis}) && run("mesh-main", {}) &&
          run("mesh-noise", {.visual = 2e-4, .noise = 1e-3}) && run("mesh-basis", {.modes = 8}) &&
          run("mesh-exact", {.modes = 5, .visual = 0}) && run("mesh-split", {.modes = 8, .layered = true}) &&
-         run("mesh-springs", {.spring_modes = 12});
+         run("mesh-springs", {.spring_modes = 12}) &&
+         run("mesh-springs-fade", {.spring_modes = 12, .fade = 4217, .weight_sets = 2}) &&
+         run("mesh-springs-sets", {.spring_modes = 12, .fade = 4217, .weight_sets = 7}) &&
+         run("mesh-springs-layers", {.layered = true, .spring_modes = 12, .fade = 4217, .weight_sets = 7});
 }
 
 }  // namespace tactus::golden

