@@ -2,6 +2,7 @@
 """Captures as tshark reads them with the dissector, and capture files of datagrams that a test makes up."""
 from __future__ import annotations
 
+import functools
 import pathlib
 import shutil
 import struct
@@ -52,10 +53,18 @@ def need_tshark() -> None:
         skip("tshark is not installed (Debian: apt install --no-install-recommends tshark)")
 
 
+@functools.cache
+def other_guessers() -> tuple[str, ...]:
+    """Options that switch off the dissectors which would take some damaged datagrams for their own."""
+    lines = subprocess.run(["tshark", "-G", "heuristic-decodes"], capture_output=True, text=True, check=True).stdout.splitlines()
+    names = [line.split("\t")[1] for line in lines if line.startswith("udp\t") and line.endswith("\tT")]
+    return tuple(word for name in names if name != "dtls" for word in ("--disable-protocol", name))
+
+
 def run_tshark(path, *words: str) -> str:
     """What it prints. Fails when the dissector does."""
     first = ("-o", "udp.try_heuristic_first:TRUE")  # a port that the system picks may be that of another protocol: 44818 is one
-    done = subprocess.run(["tshark", "-X", f"lua_script:{DISSECTOR}", *first, "-r", str(path), *words], capture_output=True,
+    done = subprocess.run(["tshark", "-X", f"lua_script:{DISSECTOR}", *first, *other_guessers(), "-r", str(path), *words], capture_output=True,
                           text=True, errors="replace", check=False,
                           env={"PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "HOME": "/nonexistent", "LC_ALL": "C.UTF-8"})
     assert done.returncode == 0, done.stderr
