@@ -224,7 +224,8 @@ Report make_report(const SimOptions& options, const TraceInfo& info) {
   report.fidelity.emplace(info, options.triggers.triggers());
   add_meshes(info, options.meshes, options.triggers, report);
   for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.is_main();
-  report.client = way_of_client(options.replica.interpolation, report.moving > 0 && options.meshes.coding(options.triggers).is_eased);
+  report.client =
+      way_of_client(options.replica.interpolation, report.moving > 0 && options.meshes.coding(options.triggers).is_eased);
   // A client that smooths what it shows leaves the bounds that the encoder keeps.
   if (report.client != ClientWay::interpolated)
     report.bounds_from = options.triggers.any_given() || options.meshes.any_given() ? "options" : "defaults";

@@ -143,8 +143,7 @@ std::string percent(double share) { return fmt::format("{:.2f} %", 100 * share);
 void print(const std::vector<Case>& cases, const ReproduceOptions& options) {
   fmt::print(
       "Thesis figure 3.8, the part that needs no people: ways of interpolation, seeds 1 to {}. All but the last are sent the "
-      "same "
-      "packets,\n"
+      "same packets,\n"
       "and the hand feels the client without interpolation. The last is that of profile main: the hand feels it.\n\n",
       options.seeds);
   Table table;

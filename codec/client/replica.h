@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include <tactus/rigid/curve.h>
 #include <tactus/client/timeline.h>
 #include <tactus/packet/packet.h>
+#include <tactus/rigid/curve.h>
 #include <tactus/rigid/easing.h>
 #include <tactus/rigid/rigid_predictor.h>
 #include <tactus/scene/scene.h>
@@ -55,8 +55,8 @@ class Replica {
 
   /// Pose of one object as shown at tick `now`. Before the object's newest update, the pose shown when that was applied. With
   /// Interpolation::playout `now` is the tick that is shown, not before any shown so far.
-  /// pre  object < scene.objects.size().   time O(1), about 50 ns (100 ns while interpolating or easing, 0.5 us over a gap; with playout and
-  ///      easing 1 us for each update within 2^ease ticks of the next), no allocation.
+  /// pre  object < scene.objects.size().   time about 50 ns, 100 ns while interpolating or easing, 0.5 us over a gap; with playout and easing
+  ///      1 us for each update that came within 2^ease ticks of the next, at most 64 of them. No allocation.
   RigidPose pose(std::uint32_t object, std::int64_t now) const noexcept;
 
   /// Displacements of a deformable object's vertices as shown at tick `now`, V x 3, x 2^-position_exp m. Valid until the next call.

@@ -2,8 +2,11 @@
 #include <tactus/deformable/ritz.h>
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <numeric>
+
+static_assert(FLT_EVAL_METHOD == 0, "both ends compute the same bits only if no operation has more");
 
 namespace tactus {
 namespace {

@@ -2,9 +2,12 @@
 #include <tactus/deformable/spring_network.h>
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 
 #include <tactus/deformable/rest_distance.h>
+
+static_assert(FLT_EVAL_METHOD == 0, "both ends compute the same bits only if no operation has more");
 
 namespace tactus {
 namespace {

@@ -23,7 +23,8 @@ struct UpdateCourse {
   Acceleration::Motion acceleration;  ///< of the truth
 };
 
-/// `ease`: the longest T = 2^ease ticks, of at most 16 ms, during which the error stays inside its bounds; 0 if even two ticks are too long.
+/// `ease`: the longest T = 2^ease ticks, of at most 16 ms, during which the error stays inside its bounds; 0 if even two ticks are
+/// too long.
 /// time O(contacts), about 0.3 us with one
 std::uint8_t longest_ease(const UpdateCourse& course, const ErrorShare& share, std::uint32_t tick_rate) noexcept;
 

@@ -36,8 +36,8 @@ class RigidPredictor {
   /// pre  tick >= state.tick, and the scene declares the state's predictor.   time O(1), about 50 ns, slide 80 ns; no allocation.
   RigidPose pose(const RigidState& state, std::int64_t tick) const noexcept;
 
-  /// The velocities at `tick` by the state's predictor, corrected for the pose error there. After a steady change of velocity, an error e after dt implies
-  /// a change of 3 e / (2 dt). Without an error they are not corrected.   spec 40-rigid 5.2
+  /// The velocities at `tick` by the state's predictor, corrected for the pose error there. After a steady change of velocity, an
+  /// error e after dt implies a change of 3 e / (2 dt). Without an error they are not corrected.   spec 40-rigid 5.2
   RigidMotion motion(const RigidState& state, std::int64_t tick, const PoseError& error) const noexcept;
 
  private:

@@ -141,7 +141,8 @@ std::uint64_t state_bytes(const SceneSpec& spec) noexcept {
   std::uint64_t sum = (64 + load) * states * spec.objects.size();
   for (const DeformableObject& object : spec.deformables) {
     const std::size_t modes = std::max<std::size_t>(object.basis.steps.size(), object.spring_basis.modes);
-    const std::uint64_t vertex = 12u + (object.layered ? 12u : 0u) + (object.fade > 0 ? 12u : 0u);
+    const bool is_main = object.profile == DeformableProfile::main;
+    const std::uint64_t vertex = 12u + (is_main && object.layered ? 12u : 0u) + (is_main && object.fade > 0 ? 12u : 0u);
     sum += states * (vertex * object.rest.size() + 48 * modes);
     if (object.profile == DeformableProfile::thesis)
       sum += (object.models_kept ? states + 2 : 2) * 4 * (254 + (std::uint64_t{1} << object.quant_bits));
