@@ -162,7 +162,7 @@ def tell_rigid(packet, scene):
                 f"| decoded | {vector(state.position)} | {vector(state.rotation)} | {vector(state.velocity)} | "
                 f"{vector(state.angular_velocity)} |"]
         predictor = f", predictor {state.predictor}" if scene.motion else ""
-        easing = f", ease {state.ease}, keep {state.keep}" if scene.is_eased else ""
+        easing = f", ease {state.ease}, keep {state.keep}" if scene.eased else ""
         print(f"Object {update.object}, reason {update.reason}, level {update.level}{predictor}{easing}:\n")
         table("| position | rotation | velocity | angular velocity", rows)
 
