@@ -164,4 +164,16 @@ Update random_update(Random& random, const Scene& header, std::uint32_t object) 
   return out;
 }
 
+Bytes updated_at(const RawHeader& header, std::initializer_list<std::int64_t> ticks) {
+  Stream stream(header);
+  std::int32_t i = 0;
+  for (const std::int64_t tick : ticks) {
+    const Update pushed{
+        0, Reason::haptic, 0, {{{900 + i, -500, 40 * i}, {3000, 20 * i, -700}, {9000, -3000 * i, 800}, {300, -90, 70 * i}}}};
+    stream.add({.tick = tick, .updates = {pushed}, .key = i == 0});
+    ++i;
+  }
+  return stream.finish().bytes();
+}
+
 }  // namespace tactus::conformance

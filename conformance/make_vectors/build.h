@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <random>
@@ -172,5 +173,8 @@ class Random {
 
 /// A random update that keeps every rule: residuals of any size that the object's axes allow, rotations up to half a circle.
 Update random_update(Random& random, const Scene& header, std::uint32_t object);
+
+/// One object, updated at these ticks: each moves and turns it and leaves it moving and turning.
+Bytes updated_at(const RawHeader& header, std::initializer_list<std::int64_t> ticks);
 
 }  // namespace tactus::conformance

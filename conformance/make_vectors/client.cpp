@@ -17,22 +17,6 @@ RawHeader cube(std::uint32_t tick_rate = 1000) {
   return header;
 }
 
-/// An update that moves and turns the object and leaves it moving and turning.
-Update pushed(std::int32_t i) {
-  return {0, Reason::haptic, 0, {{{900 + i, -500, 40 * i}, {3000, 20 * i, -700}, {9000, -3000 * i, 800}, {300, -90, 70 * i}}}};
-}
-
-/// One object, updated at these ticks.
-Bytes updated_at(const RawHeader& header, std::initializer_list<std::int64_t> ticks) {
-  Stream stream(header);
-  std::int32_t i = 0;
-  for (const std::int64_t tick : ticks) {
-    stream.add({.tick = tick, .updates = {pushed(i)}, .key = i == 0});
-    ++i;
-  }
-  return stream.finish().bytes();
-}
-
 Bytes still_object() {
   Stream stream(cube());
   stream.add({.tick = 0, .updates = {{0, Reason::visual, 2, {{{70, 80, 90}}}}}, .key = true});

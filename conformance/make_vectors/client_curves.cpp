@@ -14,22 +14,6 @@ using Residual = std::array<Vec3i, kQuantities>;
 
 constexpr std::int32_t kLargest = std::numeric_limits<std::int32_t>::max();
 
-/// An update that moves and turns the object and leaves it moving and turning.
-Update pushed(std::int32_t i) {
-  return {0, Reason::haptic, 0, {{{900 + i, -500, 40 * i}, {3000, 20 * i, -700}, {9000, -3000 * i, 800}, {300, -90, 70 * i}}}};
-}
-
-/// One object, updated at these ticks.
-Bytes updated_at(const RawHeader& header, std::initializer_list<std::int64_t> ticks) {
-  Stream stream(header);
-  std::int32_t i = 0;
-  for (const std::int64_t tick : ticks) {
-    stream.add({.tick = tick, .updates = {pushed(i)}, .key = i == 0});
-    ++i;
-  }
-  return stream.finish().bytes();
-}
-
 /// An update at tick 0 and one after `gap` ticks, whose curve is shown for `shown` ticks.
 Bytes one_curve(const RawHeader& header, std::int64_t gap, const Residual& first, const Residual& second, std::int64_t shown) {
   Stream stream(header);
