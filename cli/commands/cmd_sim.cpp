@@ -216,12 +216,9 @@ Report make_report(const SimOptions& options, const TraceInfo& info) {
   if (options.replay.empty()) report.seed = options.seed;
   else report.files.emplace_back("replay", options.replay);
   if (!options.has_channel()) return report;
-  if (options.has_network()) {
-    report.fidelity.emplace(info, options.triggers.triggers());
-    return report;
-  }
-  if (report.moving > 0 || info.meshes.empty()) report.traffic.emplace();
   report.fidelity.emplace(info, options.triggers.triggers());
+  if (options.has_network()) return report;
+  if (report.moving > 0 || info.meshes.empty()) report.traffic.emplace();
   add_meshes(info, options.meshes, options.triggers, report);
   for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.is_main();
   report.client =

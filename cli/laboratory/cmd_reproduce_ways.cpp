@@ -44,7 +44,7 @@ struct Effect {
   std::vector<double> steps;          ///< change of the force error within the tick of an update, over the force
   std::vector<double> accelerations;  ///< [m/s^2] of the shown object between updates, in contact
   double quantile(const std::vector<double>& sorted, double share) const {
-    return sorted.empty() ? 0 : sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1) + 0.5)];
+    return sorted.empty() ? 0 : sorted[static_cast<std::size_t>(std::lround(share * static_cast<double>(sorted.size() - 1)))];
   }
 };
 using Effects = std::array<Effect, kNames.size()>;

@@ -13,6 +13,7 @@
 namespace tactus {
 namespace {
 
+constexpr std::size_t kAxes = 3;
 constexpr std::size_t kSpare = 8;  // columns beside the modes: the last ones of a block converge slowly
 constexpr int kDegree = 8;
 constexpr int kFirstRounds = 8, kRounds = 3;
@@ -125,7 +126,8 @@ class Builder {
     for (std::size_t i = x.rows / 3; i < stage; ++i) {
       from_parents(i, [&](std::uint32_t parent, double weight) {
         for (std::size_t axis = 0; axis < 3; ++axis)
-          for (std::size_t c = 0; c < x.columns; ++c) grown.row(3 * i + axis)[c] += weight * grown.row(3 * parent + axis)[c];
+          for (std::size_t c = 0; c < x.columns; ++c)
+            grown.row(kAxes * i + axis)[c] += weight * grown.row(kAxes * parent + axis)[c];
       });
     }
     x = std::move(grown);
@@ -149,13 +151,13 @@ class Builder {
     for (std::size_t k = 0; k < modes; ++k) {
       std::fill(mode.begin(), mode.end(), 0.0);
       for (std::size_t i = 0; i < order_.order.size(); ++i) {
-        double* at = mode.data() + 3 * order_.order[i];
+        double* at = mode.data() + kAxes * order_.order[i];
         if (i < stage) {
           for (std::size_t axis = 0; axis < 3 && k < x.columns; ++axis) at[axis] = x.row(3 * i + axis)[k];
           continue;
         }
         from_parents(i, [&](std::uint32_t parent, double weight) {
-          for (std::size_t axis = 0; axis < 3; ++axis) at[axis] += weight * mode[3 * order_.order[parent] + axis];
+          for (std::size_t axis = 0; axis < 3; ++axis) at[axis] += weight * mode[kAxes * order_.order[parent] + axis];
         });
       }
       append_mode(out, mode);

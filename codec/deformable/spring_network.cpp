@@ -12,6 +12,7 @@ static_assert(FLT_EVAL_METHOD == 0, "both ends compute the same bits only if no 
 namespace tactus {
 namespace {
 
+constexpr std::size_t kAxes = 3;
 constexpr double kIsotropic = 0x1p-8;  // of a spring's stiffness along its direction
 
 using Pair = std::uint64_t;  // of places, the smaller first
@@ -75,8 +76,8 @@ void SpringNetwork::multiply(const Columns& x, Columns& out) const noexcept {
   std::fill(out.values.begin(), out.values.end(), 0.0);
   for (const Spring& s : springs_) {
     const auto& n = s.direction;
-    const double *a = x.row(3 * s.ends[0]), *b = x.row(3 * s.ends[1]);
-    double *to_a = out.row(3 * s.ends[0]), *to_b = out.row(3 * s.ends[1]);
+    const double *a = x.row(kAxes * s.ends[0]), *b = x.row(kAxes * s.ends[1]);
+    double *to_a = out.row(kAxes * s.ends[0]), *to_b = out.row(kAxes * s.ends[1]);
     for (std::size_t c = 0; c < x.stride; c += kLanes) {
       std::array<std::array<double, kLanes>, 3> d;
       std::array<double, kLanes> along;
@@ -91,7 +92,7 @@ void SpringNetwork::multiply(const Columns& x, Columns& out) const noexcept {
       }
     }
   }
-  for (const std::uint32_t i : fixed_) std::fill(out.row(3 * i), out.row(3 * i + 3), 0.0);
+  for (const std::uint32_t i : fixed_) std::fill(out.row(kAxes * i), out.row(kAxes * i + kAxes), 0.0);
 }
 
 }  // namespace tactus

@@ -46,8 +46,8 @@ Bytes several_objects() {
 
 void add_client_curves(Catalogue& c) {
   const auto both = [&](const std::string& name, const std::string& what, const Bytes& bytes) {
-    c.valid(("hermite-" + name).c_str(), (what + " Hermite curves.").c_str(), bytes, {}, "hermite");
-    c.valid(("blending-" + name).c_str(), (what + " Projective velocity blending.").c_str(), bytes, {}, "blending");
+    c.valid("hermite-" + name, what + " Hermite curves.", bytes, {}, "hermite");
+    c.valid("blending-" + name, what + " Projective velocity blending.", bytes, {}, "blending");
   };
   c.section(section::kShownPose);
   both("curves", "From motion to motion.", updated_at({}, {3, 40, 90, 150, 260}));
