@@ -67,7 +67,7 @@ def cluster_modes(item: DeformableObject) -> list[Mode]:
     modes = []
     for cluster in range(item.mode_count // 12):
         members = [v for v, of in enumerate(shares) if cluster in of]
-        w = [shares[v][cluster] * 2.0 ** -16 for v in members]
+        w = [float(shares[v][cluster]) for v in members]
         for f in functions(item, members, w):
             values = [of * x for of, x in zip(w, f)]
             largest = max((abs(x) for x in values), default=0.0) or 1.0
@@ -76,7 +76,7 @@ def cluster_modes(item: DeformableObject) -> list[Mode]:
                 square += (x / largest) * (x / largest)
             step = floor(3 / sqrt(max(1.0, square)) * 4096 * 2048 / 2047 + 0.5)
             for axis in AXES:
-                entries = [0] * (3 * len(item.rest))
+                entries = [0, 0, 0] * len(item.rest)
                 for v, x in zip(members, values):
                     entries[3 * v + axis] = floor(x / largest * 2047 + 0.5)
                 modes.append(Mode(step, entries))

@@ -75,7 +75,7 @@ class Blender {
 
 struct Member {
   std::uint32_t vertex = 0;
-  double weight = 0;
+  double weight = 0;  // its share
 };
 
 /// The functions 1, x, y, z on a cluster, each made orthogonal to those before it.
@@ -150,7 +150,7 @@ ModeBasis cluster_basis(const DeformableObject& object) {
   for (std::uint32_t v = 0; v < blender.shares().size(); ++v) {
     for (const Share& share : blender.shares()[v]) {
       if (share.weight == 0) continue;
-      members[share.cluster].push_back({v, share.weight * 0x1p-16});
+      members[share.cluster].push_back({v, static_cast<double>(share.weight)});
       places[share.cluster].push_back(place++);
     }
   }
