@@ -42,7 +42,7 @@ tactus_load_bounds bounds_of(const LoadThresholds& bounds) noexcept {
 }
 
 Result<RigidTriggers> bounds_of(const tactus_rigid_bounds* bounds) noexcept {
-  TACTUS_TRY(const tactus_rigid_bounds b, options_of(bounds, bounds_of(RigidTriggers{})));
+  TACTUS_TRY(const tactus_rigid_bounds b, given_or(bounds, bounds_of(RigidTriggers{})));
   if (b.haptic < TACTUS_HAPTIC_OFF || b.haptic > TACTUS_HAPTIC_PERCEPTUAL) return fail(Errc::invalid_argument, "R-API-4");
   return RigidTriggers{.reduction = RigidTriggers{}.reduction,
                        .heartbeat = b.heartbeat,
@@ -58,14 +58,14 @@ Result<RigidTriggers> bounds_of(const tactus_rigid_bounds* bounds) noexcept {
 }
 
 Result<DeformableThresholds> bounds_of(const tactus_deformable_bounds* bounds) noexcept {
-  TACTUS_TRY(const tactus_deformable_bounds b, options_of(bounds, bounds_of(DeformableBounds{})));
+  TACTUS_TRY(const tactus_deformable_bounds b, given_or(bounds, bounds_of(DeformableBounds{})));
   DeformableThresholds out{.visual = b.visual, .weber_fraction = b.weber_fraction, .depth_floor = b.depth_floor};
   if (b.haptic == 0) out.weber_fraction.reset();
   return out;
 }
 
 Result<LoadThresholds> bounds_of(const tactus_load_bounds* bounds) noexcept {
-  TACTUS_TRY(const tactus_load_bounds b, options_of(bounds, bounds_of(LoadThresholds{})));
+  TACTUS_TRY(const tactus_load_bounds b, given_or(bounds, bounds_of(LoadThresholds{})));
   return LoadThresholds{.weber_fraction = b.weber_fraction, .force_floor = b.force_floor};
 }
 

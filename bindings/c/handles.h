@@ -86,7 +86,7 @@ tactus_status init(T* out, std::size_t size, T defaults) noexcept {
 /// The caller's options, or the defaults.
 /// err  R-API-12 its size is that of no version, or an option of a later version is set
 template <class T>
-Result<T> options_of(const T* given, const T& defaults) noexcept {
+Result<T> given_or(const T* given, const T& defaults) noexcept {
   if (given == nullptr) return defaults;
   if (given->size < sizeof(T) || given->size > kLargestStruct) return refuse();
   const auto* bytes = reinterpret_cast<const unsigned char*>(given);

@@ -39,7 +39,7 @@ Result<Receiver*> receiver_of(const tactus_receiver* receiver) noexcept {
 }  // namespace
 
 Result<ReceiverOptions> options_of(const tactus_receiver_options* options) noexcept {
-  TACTUS_TRY(const tactus_receiver_options o, options_of(options, kOptions));
+  TACTUS_TRY(const tactus_receiver_options o, given_or(options, kOptions));
   TACTUS_TRY(const DecodeLimits limits, limits_of(o.limits));
   if (o.interpolation < TACTUS_INTERPOLATION_NONE || o.interpolation > TACTUS_INTERPOLATION_PLAYOUT)
     return fail(Errc::invalid_argument, "R-API-4");

@@ -56,7 +56,7 @@ tactus_scene_info info_of(const Scene& scene) noexcept {
 }  // namespace
 
 Result<DecodeLimits> limits_of(const tactus_limits* limits) noexcept {
-  TACTUS_TRY(const tactus_limits l, options_of(limits, kLimits));
+  TACTUS_TRY(const tactus_limits l, given_or(limits, kLimits));
   return DecodeLimits{.objects = l.objects,
                       .header_bytes = l.header_bytes,
                       .packet_bytes = l.packet_bytes,

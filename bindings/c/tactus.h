@@ -433,6 +433,7 @@ typedef struct tactus_truth {
 } tactus_truth;
 
 TACTUS_API tactus_status tactus_sender_options_init(tactus_sender_options* options, size_t size);
+TACTUS_API tactus_status tactus_truth_init(tactus_truth* truth, size_t size); /* nothing */
 TACTUS_API tactus_status tactus_sender_create(const tactus_scene* scene, const tactus_sender_options* options,
                                               tactus_sender** sender, tactus_error* error);
 TACTUS_API void tactus_sender_destroy(tactus_sender* sender);
