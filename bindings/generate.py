@@ -47,10 +47,11 @@ class Interface:
     """Constants, structs and functions of the headers that hold these parts."""
 
     def __init__(self, parts):
-        text = "".join((HERE / "c" / header).read_text() for header, held in HEADERS.items() if set(held) & set(parts))
+        text = "".join((HERE / "c" / header).read_text() for header, held in HEADERS.items()
+                       if header == "tactus.h" or set(held) & set(parts))
         text = re.sub(r"/\*.*?\*/", " ", text, flags=re.S)
         self.constants, self.structs, self.functions = {}, {}, {}
-        self.constants["TACTUS_VERSION"] = int(re.search(r"#define TACTUS_VERSION (\w+)", (HERE / "c/tactus.h").read_text())[1], 0)
+        self.constants["TACTUS_VERSION"] = int(re.search(r"#define TACTUS_VERSION (\w+)", text)[1], 0)
         for body in re.findall(r"\benum \{(.*?)\}", text, re.S):
             for name, value in re.findall(r"(\w+) = (-?\d+)", body):
                 self.constants[name] = int(value)
@@ -69,11 +70,11 @@ def fields_of(line):
     return [(kind, name, count)] + [split_field(f"{kind} {field}") for field in more]
 
 
-def version_script(names, interface):
+def version_script(names, interface, parts):
     return "TACTUS_0 {\n  global:\n" + "".join(f"    {name};\n" for name in names) + "  local:\n    *;\n};\n"
 
 
-def wasm_exports(names, interface):
+def wasm_exports(names, interface, parts):
     return "".join(f"--export={name}\n" for name in names)
 
 
@@ -90,7 +91,7 @@ def ctype(kind, interface):
     return f"POINTER({CTYPES.get(base, base)})" if base in interface.structs else "c_void_p"
 
 
-def python(names, interface):
+def python(names, interface, parts):
     lines = ["# Made by bindings/generate.py.", "from ctypes import (POINTER, Structure, c_char_p, c_double, c_float, c_int32, c_int64, "
              "c_size_t, c_uint8, c_uint32, c_uint64, c_void_p)", ""]
     lines += [f"{name} = {value}" for name, value in interface.constants.items()]
@@ -99,10 +100,13 @@ def python(names, interface):
         lines += [f'        ("{field}", {ctype(kind, interface)}{f" * {count}" if count else ""}),' for kind, field, count in fields]
         lines += ["    ]"]
     lines += ["", "", "FUNCTIONS = {"]
-    for name in names:
-        result, arguments = interface.functions[name]
-        restype = "None" if result == "void" else ctype(result, interface)
-        lines.append(f'    "{name}": ({restype}, [{", ".join(ctype(kind, interface) for kind, _, _ in arguments)}]),')
+    for part in parts:
+        lines.append(f'    "{part}": {{')
+        for name in names_of([part]):
+            result, arguments = interface.functions[name]
+            restype = "None" if result == "void" else ctype(result, interface)
+            lines.append(f'        "{name}": ({restype}, [{", ".join(ctype(kind, interface) for kind, _, _ in arguments)}]),')
+        lines.append("    },")
     return "\n".join(lines + ["}", ""])
 
 
@@ -124,7 +128,7 @@ def wasm_layout(name, interface):
     return out, -(-at // most) * most, most
 
 
-def javascript(names, interface):
+def javascript(names, interface, parts):
     lines = ["// Made by bindings/generate.py.", "export const constants = {"]
     lines += [f"  {name}: {value}," for name, value in interface.constants.items()] + ["};", "", "export const layouts = {"]
     for name in interface.structs:
@@ -135,7 +139,7 @@ def javascript(names, interface):
     return "\n".join(lines + ["};", ""])
 
 
-def typescript(names, interface):
+def typescript(names, interface, parts):
     def js(kind):
         if "*" in kind:
             return "number"
@@ -166,7 +170,7 @@ def main():
     names, interface = names_of(parts), Interface(parts)
     if missing := [name for name in names if name not in interface.functions]:
         sys.exit(f"no header declares {', '.join(missing)}")
-    sys.stdout.write(FORMS[sys.argv[1]](names, interface))
+    sys.stdout.write(FORMS[sys.argv[1]](names, interface, parts))
 
 
 if __name__ == "__main__":

@@ -84,6 +84,15 @@ typedef struct tactus_pose {
   double rotation[4]; /* unit quaternion w x y z, object to world */
 } tactus_pose;
 
+typedef struct tactus_device_sample {
+  double position[3];    /* m, world */
+  double orientation[4]; /* of the handle, unit quaternion w x y z */
+  double velocity[3];    /* m/s, world; 0 if the device does not measure it */
+  uint32_t buttons;      /* bit i: button i is down */
+  uint32_t reserved;
+  int64_t time; /* ns on the device's clock, not negative */
+} tactus_device_sample;
+
 /* Degrees of freedom of a rigid object: bits. Rotation is about none, one or all axes. None at all: static, never sent. */
 enum {
   TACTUS_DOF_X = 1,

@@ -70,15 +70,6 @@ typedef struct tactus_session_status {
   uint64_t packets_refused, packets_held, lost, ticks_held, wrong_states;
 } tactus_session_status;
 
-typedef struct tactus_device_sample {
-  double position[3];    /* m, world */
-  double orientation[4]; /* of the handle, unit quaternion w x y z */
-  double velocity[3];    /* m/s, world; 0 if the device does not measure it */
-  uint32_t buttons;      /* bit i: button i is down */
-  uint32_t reserved;
-  int64_t time; /* ns on the device's clock, not negative */
-} tactus_device_sample;
-
 /* What the device feels: force = stiffness (proxy - position of the device). */
 typedef struct tactus_device_contact {
   double proxy[3];  /* m, world */
