@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/scene/scene.h>
 
+#include <limits>
 #include <memory>
 
 #include <tactus/packet/substream.h>
@@ -159,6 +160,19 @@ tactus_status tactus_scene_get_triangles(const tactus_scene* scene, uint32_t obj
     if (capacity < 3 * of->triangles.size()) return TACTUS_BUFFER_TOO_SMALL;
     for (const Triangle& triangle : of->triangles)
       for (const std::uint32_t corner : triangle) *out++ = corner;
+    return TACTUS_OK;
+  });
+}
+
+tactus_status tactus_scene_get_stiffness(const tactus_scene* scene, uint32_t object, double* out, size_t capacity,
+                                         tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    TACTUS_TRY(const DeformableObject* of, deformable_of(scene, object));
+    if (out == nullptr) return refuse();
+    if (of->stiffness.empty()) return TACTUS_NOTHING;
+    if (capacity < of->stiffness.size()) return TACTUS_BUFFER_TOO_SMALL;
+    for (const std::uint8_t level : of->stiffness)
+      *out++ = level == 0 ? std::numeric_limits<double>::infinity() : stiffness_of_level(level);
     return TACTUS_OK;
   });
 }

@@ -235,6 +235,9 @@ TACTUS_API tactus_status tactus_scene_get_rest(const tactus_scene* scene, uint32
 /* Corners, counter-clockwise seen from outside.   in  capacity  [numbers] at least 3 triangles */
 TACTUS_API tactus_status tactus_scene_get_triangles(const tactus_scene* scene, uint32_t object, uint32_t* out, size_t capacity,
                                                     tactus_error* error);
+/* Stiffness of each vertex, N/m, infinite where it does not move. TACTUS_NOTHING: not told.   in  capacity  at least the vertices */
+TACTUS_API tactus_status tactus_scene_get_stiffness(const tactus_scene* scene, uint32_t object, double* out, size_t capacity,
+                                                    tactus_error* error);
 /* Bounds that the sender guarantees; TACTUS_NOTHING: not declared. */
 TACTUS_API tactus_status tactus_scene_get_rigid_bounds(const tactus_scene* scene, tactus_rigid_bounds* bounds,
                                                        tactus_error* error);

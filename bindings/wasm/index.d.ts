@@ -89,6 +89,8 @@ export class Scene {
   rest(deformable: number): Float32Array;
   /** Corners, T x 3, counter-clockwise seen from outside. */
   triangles(deformable: number): Uint32Array;
+  /** Of each vertex, N/m, infinite where it does not move; null: not told. */
+  stiffness(deformable: number): Float64Array | null;
   readonly rigidBounds: RigidBounds | null;
   deformableBounds(deformable: number): DeformableBounds | null;
   /** A scene of parseScene; those of receivers and players go with them. */

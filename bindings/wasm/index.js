@@ -170,6 +170,13 @@ export class Scene {
     });
   }
 
+  stiffness(i) {
+    const {memory} = this.#tactus;
+    const count = this.deformables[i].vertices;
+    return memory.with(8 * count, (at) =>
+      this.#tactus.call("tactus_scene_get_stiffness", this.handle, i, at, count) ? memory.doubles(at, count).slice() : null);
+  }
+
   get rigidBounds() {
     const bounds = this.#tactus.ask("tactus_rigid_bounds", "tactus_scene_get_rigid_bounds", this.handle);
     return bounds && {
