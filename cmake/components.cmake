@@ -53,6 +53,21 @@ macro(tactus_find package)
   endif()
 endmacro()
 
+# tactus_debian_packages(OUT name...): Debian packages that bring these, with blanks between.
+function(tactus_debian_packages out)
+  set(packages)
+  foreach(name IN LISTS ARGN)
+    set(row ${TACTUS_PACKAGES})
+    list(FILTER row INCLUDE REGEX "^${name} ")
+    separate_arguments(row UNIX_COMMAND "${row}")
+    list(GET row 1 debian)
+    list(APPEND packages ${debian})
+  endforeach()
+  string(REPLACE "," " " packages "${packages}")
+  string(REPLACE ";" " " packages "${packages}")
+  set(${out} "${packages}" PARENT_SCOPE)
+endfunction()
+
 # tactus_missing(OUT required...): Debian packages or components of ours that are needed and not there; empty when all is well.
 # What is required is a component of ours (trace, net, fem, surface, sim, device, wasm) or a name from TACTUS_PACKAGES.
 function(tactus_missing out)

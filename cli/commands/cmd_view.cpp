@@ -62,7 +62,8 @@ Outcome check_same_scene(const ViewOptions& options, const TraceInfo& truth, con
   if (truth.tick_rate != scene.tick_rate) return differ(fmt::format("the tick rate is not {} Hz", scene.tick_rate));
   if (truth.objects.size() != scene.objects.size()) return differ(fmt::format("there are not {} objects", scene.objects.size()));
   for (std::size_t i = 0; i < truth.objects.size(); ++i)
-    if (truth.objects[i].name != scene.objects[i].name) return differ(fmt::format("object {} does not have the name", i));
+    if (truth.objects[i].name != scene.objects[i].name || truth.objects[i].dof != scene.objects[i].dof)
+      return differ(fmt::format("object {} does not have the name and the degrees of freedom", i));
   if (truth.meshes.size() != scene.deformables.size())
     return differ(fmt::format("there are not {} meshes", scene.deformables.size()));
   for (std::size_t i = 0; i < truth.meshes.size(); ++i)
