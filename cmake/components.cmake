@@ -22,10 +22,10 @@ set(TACTUS_PACKAGES
   "GTest           libgtest-dev            GTest::gtest_main"
   "benchmark       libbenchmark-dev        benchmark::benchmark"
   "Python3         python3                 Python3::Interpreter"
-  "WasmClang       clang-16,lld-16,wasi-libc,libc++-16-dev-wasm32,libc++abi-16-dev-wasm32,libclang-rt-16-dev-wasm32 WasmClang::compiler"
+  "WasmClang clang-16,lld-16,wasi-libc,libc++-16-dev-wasm32,libc++abi-16-dev-wasm32,libclang-rt-16-dev-wasm32 WasmClang::compiler"
   "Node            nodejs,npm              Node::node")
 
-# These come without a CMake file: FindLDL.cmake and FindCHOLMOD.cmake, installed beside ours, FindWasmClang.cmake and FindNode.cmake.
+# These come without a CMake file: FindLDL.cmake and FindCHOLMOD.cmake (installed beside ours), FindWasmClang.cmake, FindNode.cmake.
 list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})
 
 # The packages whose ways differ from `find_package(NAME)`: ODE, libusb and hidapi come without a CMake file, Python needs its component named.

@@ -18,8 +18,9 @@ export class Browser {
     const browser = new Browser();
     browser.home = mkdtempSync(join(tmpdir(), "tactus-browser-"));
     browser.#process = spawn(program, [
-      "--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--remote-debugging-pipe", "--no-first-run",
-      "--disable-background-networking", "--disable-component-update", "--disable-extensions", "--hide-scrollbars", "--force-device-scale-factor=1",
+      "--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--remote-debugging-pipe",
+      "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-extensions", "--hide-scrollbars",
+      "--force-device-scale-factor=1",
       `--user-data-dir=${browser.home}`, ...extra, "about:blank",
     ], {stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"]});
     browser.#process.stdio[4].setEncoding("utf8").on("data", (data) => browser.#hear(data));

@@ -25,5 +25,7 @@ for vector in "$conformance"/vectors/rigid/0[0-2]*.tct "$conformance"/vectors/de
   ! grep -q '"error"' "${vector%.tct}.jsonl" || continue
   node decode_stream.mjs "$vector" "${vector%.tct}.jsonl" >decoded.txt || { echo "$vector: other states"; exit 1; }
 done
-! node decode_stream.mjs "$conformance"/vectors/rigid/002-*.tct "$conformance"/vectors/rigid/003-*.jsonl >decoded.txt 2>&1 || { echo "states of another vector pass"; exit 1; }
-tail -n 1 decoded.txt
+if node decode_stream.mjs "$conformance"/vectors/rigid/002-*.tct "$conformance"/vectors/rigid/003-*.jsonl >decoded.txt 2>&1; then
+  echo 'the states of another vector pass'
+  exit 1
+fi

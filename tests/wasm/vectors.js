@@ -104,7 +104,8 @@ export function check(tactus, {bytes, expected, args = [], repeat}) {
     const [made, wanted] = kind === "packet" ? [lines[i], expected[i]] : [lines[i][kind], expected[i][kind]];
     if (kind === "header") continue;
     for (const [name, value] of Object.entries(made))
-      if ((name in wanted || name !== "part") && JSON.stringify(value) !== JSON.stringify(wanted[name])) return `line ${i}: ${name} is ${JSON.stringify(value)}`;
+      if ((name in wanted || name !== "part") && JSON.stringify(value) !== JSON.stringify(wanted[name]))
+        return `line ${i}: ${name} is ${JSON.stringify(value)}`;
   }
   return null;
 }

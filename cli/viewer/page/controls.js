@@ -3,9 +3,9 @@
 import {speeds} from "./clock.js";
 
 const keys = [
-  ["Space", "play or pause"], ["← →", "one tick; with Shift 0.1 s"], ["[ ]", "packet before, next packet"], ["Home End", "to the begin, to the end"],
-  ["− +", "slower, faster"], ["L", "loop"], ["T D C F", "show truth, device, contact, forces"], ["V", "next colour of the mesh"], ["0", "see all of the scene"],
-  ["?", "this help"],
+  ["Space", "play or pause"], ["← →", "one tick; with Shift 0.1 s"], ["[ ]", "packet before, next packet"],
+  ["Home End", "to the start, to the end"], ["− +", "slower, faster"], ["L", "loop"], ["T D C F", "show truth, device, contact, forces"],
+  ["V", "next colour of the mesh"], ["0", "see all of the scene"], ["?", "this help"],
 ];
 const layerKeys = {t: "truth", d: "device", c: "contact", f: "forces"};
 
@@ -66,10 +66,10 @@ export class Controls {
       row.insertCell().textContent = what;
     }
     const note = document.createElement("p");
-    note.textContent = "Drag the scene to turn it, with the right button to move it; the wheel or two fingers zoom. Click or drag on the time line to go there. "
-      + "An address that ends in #t=3.25 opens the page at 3.25 s. A packet has the colour and the row of its strictest reason. "
-      + "Strips show the largest error of all moving objects and all touches; dashed is the bound that the stream declares, red what is over it. "
-      + "What is drawn and counted is decoded in this page from the packets of the stream.";
+    note.textContent = "Drag the scene to turn it, with the right button to move it; the wheel or two fingers zoom. Click or drag on the "
+      + "time line to go there. An address that ends in #t=3.25 opens the page at 3.25 s. A packet has the colour and the row of its "
+      + "strictest reason. Strips show the largest error of all moving objects and all touches; dashed is the bound that the stream "
+      + "declares, red what is over it. What is drawn is decoded in this page from the packets of the stream.";
     byId("help-text").append(table, note);
   }
 

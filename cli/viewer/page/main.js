@@ -10,7 +10,7 @@ import {Readings} from "./readings.js";
 import {lanesOf, rowsOf} from "./strips.js";
 import {colour, map, onThemeChange} from "./theme.js";
 import {Timeline} from "./timeline.js";
-import {inUnit, units} from "./units.js";
+import {inUnit, plain, units} from "./units.js";
 
 const byId = (id) => document.getElementById(id);
 
@@ -78,10 +78,12 @@ class Page {
     const parts = [`${model.duration.toFixed(2)} s at ${model.tickRate} Hz`];
     if (rigid.length > 0) parts.push(count(rigid.length, "rigid object"));
     if (deformables.length > 0) parts.push(`${count(deformables.length, "mesh").replace("meshs", "meshes")} of ${vertices} vertices`);
-    parts.push(count(model.packets.ticks.length, "packet"), `${((8 * payload) / 1000 / Math.max(model.duration, 1e-9)).toFixed(2)} kbit/s payload`);
+    const rate = (8 * payload) / 1000 / Math.max(model.duration, 1e-9);
+    parts.push(count(model.packets.ticks.length, "packet"), `${rate.toFixed(2)} kbit/s payload`);
     if (model.truth) parts.push(`truth: ${model.truth.name}`);
     byId("facts").textContent = parts.join(" · ");
-    byId("scale").textContent = picture ? [picture.view.scale, picture.forceScale].filter(Boolean).join(" · ") : "";
+    const unknown = picture?.objects?.areKnown === false ? "axes stand for objects whose shapes nobody told (--truth, --scene)" : "";
+    byId("scale").textContent = picture ? [picture.view.scale, picture.forceScale, unknown].filter(Boolean).join(" · ") : "";
     if (picture) this.#fillLegend();
   }
 
@@ -89,7 +91,8 @@ class Page {
     const {truth, scene} = this.model;
     const entries = [];
     if (scene.rigid.length > 0) entries.push(["", "object", "decoded"]);
-    if (truth) entries.push(["frame", "ghost", `truth (within ${inUnit(scene.rigid.length > 0 ? truth.ghostPosition : truth.ghostVertex, "length")} mm)`]);
+    const within = scene.rigid.length > 0 ? truth?.ghostPosition : truth?.ghostVertex;
+    if (truth) entries.push(["frame", "ghost", `truth (drawn within ${plain(within, "length")})`]);
     if (truth?.users.length > 0) {
       entries.push(["dot", "device", "device"], ["", "server", truth.users.some(({felt}) => felt) ? "force of the server" : "force felt"]);
       if (truth.users.some(({felt}) => felt)) entries.push(["", "felt", "force felt"]);
@@ -197,8 +200,9 @@ class Page {
       bar.fillRect(x, 0, 1, 1);
     });
     const most = Math.max(...this.model.scene.deformables.map((_, i) => colouring.most(i)));
-    const ends = [0, 1].map((share) => Object.assign(document.createElement("span"), {textContent: `${inUnit(share * most, colouring.kind)} ${units[colouring.kind].name}`}));
-    byId("colour-range").replaceChildren(...ends);
+    const {name: unit} = units[colouring.kind];
+    const end = (value) => Object.assign(document.createElement("span"), {textContent: `${inUnit(value, colouring.kind)} ${unit}`});
+    byId("colour-range").replaceChildren(end(0), end(most));
   }
 }
 

@@ -53,7 +53,8 @@ export class MeshPart {
     this.#colours = new BufferAttribute(new Float32Array(this.#rest.length), 3);
     this.#geometry.setAttribute("normal", this.#normals);
     this.#geometry.setAttribute("color", this.#colours);
-    const surface = new Mesh(this.#geometry, new MeshStandardMaterial({vertexColors: true, side: DoubleSide, roughness: 0.65, metalness: 0}));
+    const material = new MeshStandardMaterial({vertexColors: true, side: DoubleSide, roughness: 0.65, metalness: 0});
+    const surface = new Mesh(this.#geometry, material);
     surface.frustumCulled = false;
     this.group.add(surface);
   }

@@ -27,6 +27,7 @@ export class ObjectsPart {
     this.ghost = ghost;
     this.#poses = new Float64Array(7 * scene.rigid.length);
     const known = new Map(shapes.map((shape) => [shape.name, shape]));
+    this.areKnown = scene.rigid.every(({name}) => known.has(name));
     this.#bodies = scene.rigid.map(({name}) => this.#body(geometryOf(known.get(name)), size));
     this.paint();
   }
@@ -35,7 +36,8 @@ export class ObjectsPart {
     const body = new Group();
     if (geometry === null) body.add(new AxesHelper(size));
     if (geometry !== null && !this.ghost) {
-      body.add(new Mesh(geometry, new MeshStandardMaterial({roughness: 0.75, metalness: 0, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1})));
+      const behindEdges = {polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1};
+      body.add(new Mesh(geometry, new MeshStandardMaterial({roughness: 0.75, metalness: 0, ...behindEdges})));
     }
     if (geometry !== null) {
       const material = this.ghost ? new LineDashedMaterial({dashSize: size / 12, gapSize: size / 16}) : new LineBasicMaterial();

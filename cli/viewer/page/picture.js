@@ -48,7 +48,7 @@ export class Picture {
     const {truth, tickRate} = this.#model;
     let most = 0;
     for (const user of truth.users)
-      for (const columns of [user.server, user.felt ?? user.server]) for (let i = 0; i < truth.ticks.length; ++i) most = Math.max(most, norm(columns, i));
+      for (let i = 0; i < truth.ticks.length; ++i) most = Math.max(most, norm(user.server, i), norm(user.felt ?? user.server, i));
     const perNewton = most > 0 ? (0.22 * this.view.extent) / most : 1;
     this.#users = new UsersPart(truth, {size: this.view.extent / 90, perNewton, tickRate});
     this.view.add(this.#users);
@@ -75,10 +75,14 @@ export class Picture {
   #colouringsOf(displacement) {
     const {scene, ghost} = this.#model;
     if (scene.deformables.length === 0) return [];
-    const out = [{name: "displacement", kind: "length", most: () => displacement, fill: (i, values) => fillLengths(this.#meshes[i].displacements, values)}];
+    const moved = (parts, i) => parts[i].displacements;
+    const out = [{
+      name: "displacement", kind: "length", most: () => displacement, fill: (i, values) => fillLengths(moved(this.#meshes, i), values),
+    }];
     if (ghost) {
       const visual = (i) => scene.deformableBounds(i)?.visual ?? 2.5e-4;
-      out.push({name: "error", kind: "length", most: visual, fill: (i, values) => fillDifferences(this.#meshes[i].displacements, this.#ghosts[i].displacements, values)});
+      const fill = (i, values) => fillDifferences(moved(this.#meshes, i), moved(this.#ghosts, i), values);
+      out.push({name: "error", kind: "length", most: visual, fill});
     }
     const stiffness = scene.deformables.map((_, i) => scene.stiffness(i));
     if (stiffness.every((values) => values !== null)) {

@@ -5,7 +5,6 @@ import {lastUpTo, readColumns} from "./read_columns.js";
 export class Replay {
   #tactus;
   #bytes;
-  #scene;
   #done = 0;  // packets decoded
   #receiver = null;
 
@@ -13,16 +12,15 @@ export class Replay {
     this.#tactus = tactus;
     this.#bytes = bytes;
     this.packets = readColumns(packets);
-    this.#scene = tactus.parseScene(bytes);
+    this.scene = tactus.parseScene(bytes);
     this.#restart();
-    this.scene = this.#receiver.scene;
     this.tick = 0;
     this.moveTo(0);
   }
 
   #restart() {
     this.#receiver?.close();
-    this.#receiver = this.#tactus.createReceiver(this.#scene);
+    this.#receiver = this.#tactus.createReceiver(this.scene);
     this.#done = 0;
   }
 

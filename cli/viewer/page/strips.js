@@ -39,17 +39,19 @@ export function rowsOf(model) {
     const times = model.seconds(truth.ticks);
     const {errors} = truth;
     const bounds = scene.rigidBounds;
-    if (errors) rows.push(strip("position error", "length", times, errors.position, {bound: bounds?.visualPosition ?? null}));
-    if (errors) rows.push(strip("rotation error", "angle", times, errors.rotation, {bound: bounds?.visualRotation ?? null}));
-    if (errors?.force) rows.push(strip("normal force error", "force", times, errors.force, {bound: errors.force_bound ?? null, colour: "haptic"}));
+    const add = (name, kind, values, options) => rows.push(strip(name, kind, times, values, options));
+    if (errors) add("position error", "length", errors.position, {bound: bounds?.visualPosition ?? null});
+    if (errors) add("rotation error", "angle", errors.rotation, {bound: bounds?.visualRotation ?? null});
+    if (errors?.force) add("normal force error", "force", errors.force, {bound: errors.force_bound ?? null, colour: "haptic"});
     truth.meshes.forEach(({ticks, error}, i) => {
       const bound = scene.deformableBounds(i);
-      rows.push(strip(truth.meshes.length > 1 ? `vertex error, ${short(scene.deformables[i].name)}` : "vertex error", "length", model.seconds(ticks), error,
-        {bound: bound?.kept ? bound.visual : null, colour: "deformable"}));
+      const name = truth.meshes.length > 1 ? `vertex error, ${short(scene.deformables[i].name)}` : "vertex error";
+      rows.push(strip(name, "length", model.seconds(ticks), error, {bound: bound?.kept ? bound.visual : null, colour: "deformable"}));
     });
     truth.users.forEach((user) => {
       const force = Float64Array.from(truth.ticks, (_, row) => norm(user.felt ?? user.server, row));
-      rows.push(strip(truth.users.length > 1 ? `force felt, ${short(user.name)}` : "force felt", "force", times, force, {colour: user.felt ? "felt" : "server"}));
+      const name = truth.users.length > 1 ? `force felt, ${short(user.name)}` : "force felt";
+      add(name, "force", force, {colour: user.felt ? "felt" : "server"});
     });
   }
   rows.push(rateRow(model));

@@ -17,5 +17,6 @@ export const mapSteps = 256;
 export const map = Array.from({length: mapSteps}, (_, i) => {
   const place = (i / (mapSteps - 1)) * (stops.length - 1);
   const low = Math.min(Math.floor(place), stops.length - 2);
-  return [16, 8, 0].map((shift) => Math.round(((stops[low] >> shift) & 255) * (low + 1 - place) + ((stops[low + 1] >> shift) & 255) * (place - low)));
+  const part = (stop, shift) => (stops[stop] >> shift) & 255;
+  return [16, 8, 0].map((shift) => Math.round(part(low, shift) * (low + 1 - place) + part(low + 1, shift) * (place - low)));
 });
