@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Installs missing packages, builds and runs Tactus on Debian 12. Needs root or sudo only to install packages.
 #   ./go demo     simulate a touch, encode, decode and compare; report and figure in out/demo/ (under 3 minutes on 2 cores, 300 MB)
-#   ./go view     the same demo as a page for a browser, out/demo/stream.html (1 minute more, 700 MB of tools)
+#   ./go view     the same, and a page that shows it in a browser, out/demo/stream.html (1 minute and 500 MB more)
 #   ./go test     build with g++ and clang, run every test (55 minutes on 2 cores, 4 GB)
 #   ./go bench    build and run the benchmarks; JSON in build/bench/
 #   ./go devices  capture a device of the kernel's own making in an emulated machine, from /dev/uhid to the trace (30 s after the build)
@@ -18,6 +18,7 @@ view_packages='nodejs clang-16 lld-16 wasi-libc libc++-16-dev-wasm32 libc++abi-1
 test_packages="$bench_packages ccache clang libclang-rt-dev clang-tidy clang-format tetgen tshark umockdev libumockdev-dev valgrind zstd chromium"
 
 bounds='-p 4% --visual 0.3mm,2deg' # of the demo
+with_view=                         # a build that has the page of `tactus view` keeps it
 
 as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi
@@ -91,7 +92,7 @@ run_test() {
 # Only the components that the demo needs: rigid objects.
 build_demo() {
   cmake -S . -B build/demo -G Ninja -DCMAKE_BUILD_TYPE=Release -DTACTUS_WITH_CLI=ON -DTACTUS_WITH_SIM=ON -DTACTUS_WITH_STUDY=OFF \
-    -DTACTUS_WITH_VIEW="${1-OFF}" -DTACTUS_WITH_SEAL=OFF -DTACTUS_WITH_FEM=OFF -DTACTUS_WITH_SURFACE=OFF -DTACTUS_WITH_MODES=OFF -DTACTUS_WITH_CONFORMANCE=OFF -DTACTUS_WITH_TESTS=OFF &&
+    $with_view -DTACTUS_WITH_SEAL=OFF -DTACTUS_WITH_FEM=OFF -DTACTUS_WITH_SURFACE=OFF -DTACTUS_WITH_MODES=OFF -DTACTUS_WITH_CONFORMANCE=OFF -DTACTUS_WITH_TESTS=OFF &&
     cmake --build build/demo
 }
 
@@ -109,13 +110,18 @@ run_demo() {
   "$tactus" encode "$out/truth.mcap" -o "$out/stream.tct" -f $bounds --json >"$out/encode.json"
   held='every bound held at every tick'
   "$tactus" compare "$out/truth.mcap" "$out/replica.mcap" --json >"$out/compare.json" || held='a bound was BROKEN, see compare.json'
+  if "$tactus" view "$out/stream.tct" --truth "$out/truth.mcap" -o "$out/stream.html" -f -q 2>/dev/null; then
+    see="$out/stream.html in a browser: cube, hand, forces, packets and errors over time, decoded by the page itself"
+  else
+    see='./go view: the same as a page for a browser, which needs 500 MB of tools'
+  fi
   cat <<END
 
 Result at the decoder: $held.
+See       $see
 Look at   $out/sweep/deadband.svg: packet rate and error of the force over the deadband
           $out/truth.mcap, $out/replica.mcap in Foxglove or PlotJuggler
 Reports   $out/report.txt, encode.json, compare.json, sweep/points.csv
-See it    ./go view: a page that decodes the stream in a browser and shows cube, hand, forces and errors over time
 Next      PATH=\$PWD/build/demo/cli:\$PATH; tactus --help
           tactus sim push-1dof -o push.mcap; tactus encode push.mcap -o push.tct -p 8%
           For deformable objects build all components; see "Use the library" in README.md
@@ -124,18 +130,9 @@ END
 }
 
 run_view() {
-  install $demo_packages
   install_view_tools
-  step 'build the program with its page' build_demo ON
-  out=out/demo
-  tactus=build/demo/cli/tactus
-  mkdir -p "$out"
-  if [ ! -e "$out/truth.mcap" ]; then
-    step 'simulate a hand that turns, pushes and lifts a cube' "$tactus" sim rotate-push-lift -o "$out/truth.mcap"
-  fi
-  "$tactus" encode "$out/truth.mcap" -o "$out/stream.tct" -f -q $bounds
-  "$tactus" view "$out/stream.tct" --truth "$out/truth.mcap" -o "$out/stream.html" -f
-  printf '\nOpen %s in a browser.\n' "$PWD/$out/stream.html"
+  with_view=-DTACTUS_WITH_VIEW=ON
+  run_demo
 }
 
 run_bench() {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include <tactus/sim/scene/scene.h>
+#include <tactus/sim/scene/toml_text.h>
 
 namespace tactus::cli {
 namespace {
@@ -29,7 +30,7 @@ nlohmann::ordered_json box_of(const toml::table& object) {
 
 nlohmann::ordered_json attached_shapes(const std::string& text) {
   nlohmann::ordered_json out{{"objects", nlohmann::ordered_json::array()}};
-  if (text.size() > kMostText) return out;
+  if (text.size() > kMostText || sim::too_nested_line(text)) return out;
   toml::table scene;
   try {
     scene = toml::parse(text);

@@ -2,7 +2,7 @@
 // test_page.mjs TACTUS CHROMIUM CONFORMANCE WORK: pages of `tactus view` in a real browser.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
-import {mkdirSync, readFileSync, writeFileSync} from "node:fs";
+import {mkdirSync, readFileSync, readdirSync, writeFileSync} from "node:fs";
 import {join, resolve} from "node:path";
 import {pathToFileURL} from "node:url";
 import {readVectors} from "../wasm/read_vectors.mjs";
@@ -160,6 +160,23 @@ const tests = {
     assert.equal(await tab.run("document.images.length"), 0);
     assert.equal(await tab.run("globalThis.broken"), undefined);
     await tab.close();
+  },
+
+  async "odd streams"(browser) {
+    for (const stream of ["client/001-empty", "rigid/002-free-object", "load/001", "deformable/001", "scene/001"]) {
+      const [stem, number] = stream.split("/");
+      const name = readdirSync(join(conformance, "vectors", stem)).find((entry) => entry.startsWith(number) && entry.endsWith(".tct"));
+      run("view", join(resolve(conformance), "vectors", stem, name), "-o", "odd.html", "-f", "-q");
+      const tab = await ready(browser, "odd.html");
+      const tick = await tab.run(`(() => {
+        const {page} = tactusView;
+        for (const time of [1e9, 0]) page.clock.seek(time), page.frame(performance.now());
+        return page.controls.tick;
+      })()`);
+      assert.equal(tick, 0, stream);
+      assert.equal(await tab.run("document.getElementById('message').hidden"), true, stream);
+      await tab.close();
+    }
   },
 
   async "a phone, and the dark"(browser) {

@@ -40,6 +40,19 @@ export function expand(bytes, repeat) {
   return out;
 }
 
+// What of the declaration the interface tells.
+function headerOf(scene) {
+  const header = {tick_rate: scene.tickRate, objects: scene.rigid.map(({name, dof}) => ({name, dof}))};
+  if (scene.deformables.length > 0) {
+    header.meshes = scene.deformables.map(({name, profile, vertices, triangles, modes}, i) => {
+      const mesh = {name, profile: profile === "main" ? 1 : 0, vertices, triangles, modes};
+      if (scene.stiffness(i) !== null) mesh.stiffness = "told";
+      return mesh;
+    });
+  }
+  return header;
+}
+
 /** Lines as the testee contract has them, but for the state of the range decoder.   out  lines, and the error if any */
 export function decode(tactus, bytes, args) {
   const wanted = args[0] === "--replica" ? args[1] : null;
@@ -55,7 +68,7 @@ export function decode(tactus, bytes, args) {
     lines.push(...play(player, wanted !== null, past ? playoutDelay : 0));
   } catch (error) {
     if (error.rule === undefined) throw error;
-    lines.push(...(error.lines ?? (player ? [{header: player.scene.tickRate}] : [])));
+    lines.push(...(error.lines ?? (player ? [{header: headerOf(player.scene)}] : [])));
     lines.push({error: {errc: error.errorClass, rule: error.rule}});
   } finally {
     player?.close();
@@ -65,7 +78,7 @@ export function decode(tactus, bytes, args) {
 
 function play(player, looks, delay) {
   const {receiver, scene} = player;
-  const lines = [{header: scene.tickRate}];
+  const lines = [{header: headerOf(scene)}];
   const all = new Fnv();
   let looked = 0;
   const lookUntil = (tick) => {
@@ -101,8 +114,8 @@ export function check(tactus, {bytes, expected, args = [], repeat}) {
   for (let i = 0; i < lines.length; ++i) {
     const [kind] = Object.keys(lines[i]);
     if (!(kind in expected[i])) return `line ${i} is a ${kind}`;
+    for (const mesh of expected[i].header?.meshes ?? []) if (mesh.stiffness) mesh.stiffness = "told";
     const [made, wanted] = kind === "packet" ? [lines[i], expected[i]] : [lines[i][kind], expected[i][kind]];
-    if (kind === "header") continue;
     for (const [name, value] of Object.entries(made))
       if ((name in wanted || name !== "part") && JSON.stringify(value) !== JSON.stringify(wanted[name]))
         return `line ${i}: ${name} is ${JSON.stringify(value)}`;

@@ -36,6 +36,7 @@ class Page {
   }
 
   #makePicture() {
+    byId("message").hidden = true;
     try {
       return new Picture(byId("scene"), this.model);
     } catch (error) {

@@ -8,7 +8,7 @@ import {SceneView} from "./scene_view.js";
 import {UsersPart} from "./users_part.js";
 import {plain, roundStep} from "./units.js";
 
-const samples = 24;  // ticks that are looked at to find out how much room all of it takes
+const mostSamples = 24;  // ticks that are looked at to find out how much room all of it takes; fewer of large meshes
 
 export class Picture {
   #model;
@@ -136,6 +136,8 @@ function roomOf(model) {
     const rest = scene.rest(i);
     for (let v = 0; v < rest.length; v += 3) box.expandByPoint(point.set(rest[v], rest[v + 1], rest[v + 2]));
   });
+  const vertices = scene.deformables.reduce((sum, mesh) => sum + mesh.vertices, 0);
+  const samples = Math.round(Math.min(mostSamples, Math.max(4, 5e5 / (vertices + 1))));
   let displacement = 0;
   for (let k = 0; k < samples; ++k) {
     replay.moveTo(Math.floor((k / (samples - 1)) * model.lastTick));

@@ -60,9 +60,9 @@ export function rowsOf(model) {
 
 const short = (name) => (name.length > 14 ? `${name.slice(0, 13)}…` : name);
 
-// Payload of tenths of a second.
+// Payload of tenths of a second, of longer spans in a long stream.
 function rateRow(model) {
-  const window = 0.1;
+  const window = Math.max(0.1, model.duration / 10000);
   const count = Math.max(1, Math.ceil(model.duration / window));
   const rate = new Float64Array(count);
   model.packets.ticks.forEach((tick, i) => {

@@ -4,7 +4,7 @@ import {colour} from "./theme.js";
 import {digits, roundStep} from "./units.js";
 
 const laneHeight = 13;
-const stripHeight = 46;
+const stripHeights = [30, 46];  // in low and in high windows
 const axisHeight = 22;
 const gap = 5;
 
@@ -16,6 +16,7 @@ export class Timeline {
   #rows;
   #duration;
   #width = 0;
+  #strip = stripHeights[1];
   #left = 0;
 
   // in  duration [s];  lanes  {name, colour, times};  rows  {name, unit, times, series: [{colour, values, dashed}]}
@@ -28,12 +29,14 @@ export class Timeline {
   }
 
   get #height() {
-    return 4 + this.#lanes.length * laneHeight + this.#rows.length * (stripHeight + gap) + axisHeight;
+    return 4 + this.#lanes.length * laneHeight + this.#rows.length * (this.#strip + gap) + axisHeight;
   }
 
   resize() {
     this.#width = this.#element.clientWidth;
     this.#left = this.#width < 600 ? 8 : 190;
+    const room = 0.45 * innerHeight - this.#lanes.length * laneHeight - axisHeight;
+    this.#strip = Math.min(Math.max(room / this.#rows.length - gap, stripHeights[0]), stripHeights[1]);
     this.#element.style.height = `${this.#height}px`;
     for (const canvas of [this.#strips, this.#cursor]) {
       canvas.style.height = `${this.#height}px`;
@@ -67,7 +70,7 @@ export class Timeline {
     for (const row of this.#rows) {
       y += gap;
       this.#drawRow(c, row, y, narrow);
-      y += stripHeight;
+      y += this.#strip;
     }
     this.#drawAxis(c, y);
   }
@@ -101,11 +104,11 @@ export class Timeline {
     let most = 0;
     for (const {values} of series) for (const value of values) if (value > most) most = value;
     const top = most > 0 ? most * 1.08 : 1;
-    const bottom = y + stripHeight - 1;
-    const heightOf = (value) => ((value / top) * (stripHeight - 4));
+    const bottom = y + this.#strip - 1;
+    const heightOf = (value) => (value / top) * (this.#strip - 4);
     c.strokeStyle = colour("line");
     c.lineWidth = 1;
-    c.strokeRect(this.#left - 0.5, y + 0.5, right - this.#left + 1, stripHeight - 1);
+    c.strokeRect(this.#left - 0.5, y + 0.5, right - this.#left + 1, this.#strip - 1);
     for (const line of series) {
       if (line.dashed) this.#drawLine(c, times, line, bottom, heightOf);
       else this.#drawArea(c, times, line, bottom, heightOf);
@@ -113,10 +116,9 @@ export class Timeline {
     this.#label(c, narrow ? `${name} [${unit}], to ${digits(most)}` : `${name} [${unit}]`, y + 9, narrow, colour("ink"));
     if (narrow) return;
     c.fillStyle = colour("soft");
-    c.fillText(`largest ${digits(largest(series[0].values))}`, this.#left - 10, y + 24);
     const bound = series.find(({dashed}) => dashed);
-    if (bound?.fixed) c.fillText(`bound ${digits(bound.values[0])}`, this.#left - 10, y + 38);
-    else if (bound) c.fillText("dashed: bound", this.#left - 10, y + 38);
+    const limit = bound?.fixed ? `, bound ${digits(bound.values[0])}` : bound ? ", dashed: bound" : "";
+    c.fillText(`largest ${digits(largest(series[0].values))}${limit}`, this.#left - 10, y + 23);
   }
 
   // The largest value of each pixel.
