@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Installs missing packages, builds and runs Tactus on Debian 12. Needs root or sudo only to install packages.
 #   ./go demo     simulate a touch, encode, decode and compare; report and figure in out/demo/ (under 3 minutes on 2 cores, 300 MB)
+#   ./go view     the same, and a page that shows it in a browser, out/demo/stream.html (1 minute and 500 MB more)
 #   ./go test     build with g++ and clang, run every test (55 minutes on 2 cores, 4 GB)
 #   ./go bench    build and run the benchmarks; JSON in build/bench/
 #   ./go devices  capture a device of the kernel's own making in an emulated machine, from /dev/uhid to the trace (30 s after the build)
@@ -13,7 +14,11 @@ cd "$(dirname "$0")"
 demo_packages='g++ cmake ninja-build pkgconf libexpected-dev libzstd-dev libode-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev gnuplot-nox'
 build_packages="$demo_packages libgnutls28-dev libeigen3-dev libsuitesparse-dev libspectra-dev libopenmesh-dev libusb-1.0-0-dev libhidapi-dev libboost-dev"
 bench_packages='libbenchmark-dev libgtest-dev python3 libbullet-dev'
-test_packages="$bench_packages ccache clang libclang-rt-dev clang-tidy clang-format tetgen tshark umockdev libumockdev-dev valgrind zstd"
+view_packages='nodejs clang-16 lld-16 wasi-libc libc++-16-dev-wasm32 libc++abi-16-dev-wasm32 libclang-rt-16-dev-wasm32'
+test_packages="$bench_packages ccache clang libclang-rt-dev clang-tidy clang-format tetgen tshark umockdev libumockdev-dev valgrind zstd chromium"
+
+bounds='-p 4% --visual 0.3mm,2deg' # of the demo
+with_view=                         # a build that has the page of `tactus view` keeps it
 
 as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi
@@ -30,6 +35,12 @@ install() { # PACKAGE...
 
 apt_install() {
   as_root apt-get update && as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $missing
+}
+
+# Some packages of Node bring npm, others refuse the package npm.
+install_view_tools() {
+  install $view_packages
+  command -v npm >/dev/null || install npm
 }
 
 # Run a command quietly and show its progress on a terminal. If it fails, show the end of its log and how to run it again.
@@ -65,6 +76,7 @@ progress() { # PID LOG
 
 run_test() {
   install $build_packages $test_packages
+  install_view_tools
   step 'g++: build without warnings' tests/check.sh build gcc
   step 'g++: all tests' tests/check.sh test gcc
   step 'clang: build without warnings, with AddressSanitizer and UndefinedBehaviorSanitizer' tests/check.sh build asan
@@ -80,7 +92,7 @@ run_test() {
 # Only the components that the demo needs: rigid objects.
 build_demo() {
   cmake -S . -B build/demo -G Ninja -DCMAKE_BUILD_TYPE=Release -DTACTUS_WITH_CLI=ON -DTACTUS_WITH_SIM=ON -DTACTUS_WITH_STUDY=OFF \
-    -DTACTUS_WITH_SEAL=OFF -DTACTUS_WITH_FEM=OFF -DTACTUS_WITH_SURFACE=OFF -DTACTUS_WITH_MODES=OFF -DTACTUS_WITH_CONFORMANCE=OFF -DTACTUS_WITH_TESTS=OFF &&
+    $with_view -DTACTUS_WITH_SEAL=OFF -DTACTUS_WITH_FEM=OFF -DTACTUS_WITH_SURFACE=OFF -DTACTUS_WITH_MODES=OFF -DTACTUS_WITH_CONFORMANCE=OFF -DTACTUS_WITH_TESTS=OFF &&
     cmake --build build/demo
 }
 
@@ -90,7 +102,6 @@ run_demo() {
   out=out/demo
   tactus=build/demo/cli/tactus
   mkdir -p "$out"
-  bounds='-p 4% --visual 0.3mm,2deg'
   step 'simulate a hand that turns, pushes and lifts a cube' "$tactus" sim rotate-push-lift -o "$out/truth.mcap" -f
   step 'encode the trace into a stream' "$tactus" encode "$out/truth.mcap" -o "$out/stream.tct" -f $bounds
   step 'decode the stream as a client does' "$tactus" decode "$out/stream.tct" -o "$out/replica.mcap" --like "$out/truth.mcap" -f
@@ -99,9 +110,15 @@ run_demo() {
   "$tactus" encode "$out/truth.mcap" -o "$out/stream.tct" -f $bounds --json >"$out/encode.json"
   held='every bound held at every tick'
   "$tactus" compare "$out/truth.mcap" "$out/replica.mcap" --json >"$out/compare.json" || held='a bound was BROKEN, see compare.json'
+  if "$tactus" view "$out/stream.tct" --truth "$out/truth.mcap" -o "$out/stream.html" -f -q 2>/dev/null; then
+    see="$out/stream.html in a browser: cube, hand, forces, packets and errors over time, decoded by the page itself"
+  else
+    see='./go view: the same as a page for a browser, which needs 500 MB of tools'
+  fi
   cat <<END
 
 Result at the decoder: $held.
+See       $see
 Look at   $out/sweep/deadband.svg: packet rate and error of the force over the deadband
           $out/truth.mcap, $out/replica.mcap in Foxglove or PlotJuggler
 Reports   $out/report.txt, encode.json, compare.json, sweep/points.csv
@@ -110,6 +127,12 @@ Next      PATH=\$PWD/build/demo/cli:\$PATH; tactus --help
           For deformable objects build all components; see "Use the library" in README.md
 END
   [ "$held" = 'every bound held at every tick' ]
+}
+
+run_view() {
+  install_view_tools
+  with_view=-DTACTUS_WITH_VIEW=ON
+  run_demo
 }
 
 run_bench() {
@@ -133,8 +156,8 @@ run_format() {
 }
 
 case ${1-help} in
-  demo | test | bench | devices | format) "run_$1" ;;
-  help | -h | --help) sed -n '3,8s/^# \{0,1\}//p' "$0" ;;
+  demo | view | test | bench | devices | format) "run_$1" ;;
+  help | -h | --help) sed -n '3,9s/^# \{0,1\}//p' "$0" ;;
   *)
     echo "go: no such command: $1 (try ./go help)" >&2
     exit 2

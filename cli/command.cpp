@@ -69,7 +69,7 @@ void Command::leave_out(const std::string& name, const std::string& needs, Actio
   const std::string whole = (app_->get_parent() != nullptr ? app_->get_name() + " " : "") + name;
   command.on_chosen([&action, whole, needs] {
     action = [whole, needs] {
-      return refuse_arguments("this program was built without " + whole, "Build it with " + needs + "=ON.");
+      return refuse_arguments("this program was built without " + whole, "Build it with " + needs + ".");
     };
   });
 }

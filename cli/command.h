@@ -62,7 +62,7 @@ class Command {
 
   Command& add_command(const std::string& name, const std::string& help);
   Command& command(std::string_view name);  ///< pre  it was added
-  /// A command that this program was built without: it is in no help, and says that it wants TACTUS_WITH_...=ON.
+  /// A command that this program was built without: it is in no help, and says what it wants: "TACTUS_WITH_...=ON".
   void leave_out(const std::string& name, const std::string& needs, Action& action);
   Option* add_option(const std::string& names, std::string& value, const std::string& help);
   Option* add_option(const std::string& names, std::vector<std::string>& values, const std::string& help);

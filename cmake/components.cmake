@@ -21,9 +21,11 @@ set(TACTUS_PACKAGES
   "fmt             libfmt-dev              fmt::fmt"
   "GTest           libgtest-dev            GTest::gtest_main"
   "benchmark       libbenchmark-dev        benchmark::benchmark"
-  "Python3         python3                 Python3::Interpreter")
+  "Python3         python3                 Python3::Interpreter"
+  "WasmClang clang-16,lld-16,wasi-libc,libc++-16-dev-wasm32,libc++abi-16-dev-wasm32,libclang-rt-16-dev-wasm32 WasmClang::compiler"
+  "Node            nodejs,npm              Node::node")
 
-# LDL and CHOLMOD come without a CMake file: FindLDL.cmake and FindCHOLMOD.cmake, installed beside ours.
+# These come without a CMake file: FindLDL.cmake and FindCHOLMOD.cmake (installed beside ours), FindWasmClang.cmake, FindNode.cmake.
 list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})
 
 # The packages whose ways differ from `find_package(NAME)`: ODE, libusb and hidapi come without a CMake file, Python needs its component named.
@@ -51,12 +53,27 @@ macro(tactus_find package)
   endif()
 endmacro()
 
+# tactus_debian_packages(OUT name...): Debian packages that bring these, with blanks between.
+function(tactus_debian_packages out)
+  set(packages)
+  foreach(name IN LISTS ARGN)
+    set(row ${TACTUS_PACKAGES})
+    list(FILTER row INCLUDE REGEX "^${name} ")
+    separate_arguments(row UNIX_COMMAND "${row}")
+    list(GET row 1 debian)
+    list(APPEND packages ${debian})
+  endforeach()
+  string(REPLACE "," " " packages "${packages}")
+  string(REPLACE ";" " " packages "${packages}")
+  set(${out} "${packages}" PARENT_SCOPE)
+endfunction()
+
 # tactus_missing(OUT required...): Debian packages or components of ours that are needed and not there; empty when all is well.
-# What is required is a component of ours (trace, net, fem, surface, sim, device) or a name from TACTUS_PACKAGES.
+# What is required is a component of ours (trace, net, fem, surface, sim, device, wasm) or a name from TACTUS_PACKAGES.
 function(tactus_missing out)
   set(missing)
   foreach(required IN LISTS ARGN)
-    if(required MATCHES "^(trace|net|seal|tets|fem|surface|sim|device)$")
+    if(required MATCHES "^(trace|net|seal|tets|fem|surface|sim|device|wasm)$")
       if(NOT TARGET tactus_${required})
         string(TOUPPER ${required} upper)
         list(APPEND missing "TACTUS_WITH_${upper}")

@@ -14,6 +14,7 @@ void setup_import_mesh(Command& group, Action& action);
 void setup_encode(Command& app, Action& action);
 void setup_decode(Command& app, Action& action);
 void setup_compare(Command& app, Action& action);
+void setup_view(Command& app, Action& action);
 void setup_info(Command& app, Action& action);
 void setup_tolerable(Command& app, Action& action);
 void setup_capture(Command& app, Action& action);

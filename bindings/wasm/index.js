@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: Apache-2.0
+// The decoder of Tactus. index.d.ts tells what each part does; the names are those of the C interface, bindings/c/tactus.h.
+import {constants, layouts} from "./interface.js";
+import {Memory} from "./memory.js";
+
+export {constants};
+
+const interpolations = ["none", "linear", "hermite", "blending", "playout"];
+const kinds = ["rigid", "deformable", "load"];
+const layers = ["haptic", "visual", "all"];
+const reasons = ["request", "heartbeat", "visual", "haptic"];
+const advices = ["none", "drop", "request key", "close"];
+const hapticRules = ["off", "isotropic", "cone", "fixed", "perceptual"];
+const profiles = ["thesis", "main"];
+
+export class TactusError extends Error {
+  constructor({status, name, rule, text, remedy, advice, bitOffset}) {
+    super(`${text} (${name}, ${rule})`);
+    this.name = "TactusError";
+    Object.assign(this, {status, errorClass: name, rule, remedy, advice, bitOffset});
+  }
+}
+
+/** Instantiate the module. */
+export async function load(source = new URL("./tactus.wasm", import.meta.url)) {
+  const module = source instanceof WebAssembly.Module ? source : await WebAssembly.compile(await bytesOf(source));
+  const instance = await WebAssembly.instantiate(module, {});
+  instance.exports._initialize();
+  return new Tactus(instance.exports);
+}
+
+async function bytesOf(source) {
+  if (!(source instanceof URL)) return source;
+  if (source.protocol !== "file:") return (await fetch(source)).arrayBuffer();
+  const {readFile} = await import("node:fs/promises");
+  return readFile(source);
+}
+
+class Tactus {
+  constructor(exports) {
+    this.exports = exports;
+    this.memory = new Memory(exports);
+  }
+
+  get version() {
+    const version = this.exports.tactus_version();
+    return `${version >> 16}.${(version >> 8) & 255}.${version & 255}`;
+  }
+
+  openPlayer(file, options = {}) {
+    return new Player(this, file, options);
+  }
+
+  parseScene(bytes, limits = undefined) {
+    return withLimits(this, limits, (limitsAt) => this.memory.with(bytes.length + 8, (at) => {
+      this.memory.bytes(at + 8, bytes.length).set(bytes);
+      this.call("tactus_scene_parse", at + 8, bytes.length, limitsAt, at, at + 4);
+      return new Scene(this, this.memory.view.getUint32(at, true), this.memory.view.getUint32(at + 4, true));
+    }));
+  }
+
+  createReceiver(scene, options = {}) {
+    return withOptions(this, options, (optionsAt) => this.memory.with(4, (at) => {
+      this.call("tactus_receiver_create", scene.handle, optionsAt, at);
+      return new Receiver(this, this.memory.view.getUint32(at, true), true);
+    }));
+  }
+
+  // Call a function that can fail; the error is thrown. Returns whether something was there.
+  call(name, ...args) {
+    return this.memory.with(layouts.tactus_error.size, (error) => {
+      const status = this.exports[name](...args, error);
+      if (status === constants.TACTUS_OK) return true;
+      if (status === constants.TACTUS_NOTHING) return false;
+      throw this.error(error);
+    });
+  }
+
+  error(at) {
+    const {status, rule, bit_offset: bitOffset} = this.memory.struct("tactus_error", at);
+    return new TactusError({
+      status, bitOffset, rule: this.memory.text(rule),
+      name: this.memory.text(this.exports.tactus_status_name(status)),
+      text: this.memory.text(this.exports.tactus_error_text(at)),
+      remedy: this.memory.text(this.exports.tactus_error_remedy(at)),
+      advice: advices[this.exports.tactus_error_advice(at)],
+    });
+  }
+
+  // The answer of a function that fills a struct, or null.
+  ask(struct, name, ...args) {
+    return this.memory.withAnswer(struct, (at) => (this.call(name, ...args, at) ? this.memory.struct(struct, at) : null));
+  }
+}
+
+function withLimits(tactus, limits, body) {
+  if (limits === undefined) return body(0);
+  return tactus.memory.with(layouts.tactus_limits.size, (at) => {
+    tactus.exports.tactus_limits_init(at, layouts.tactus_limits.size);
+    for (const [name, value] of Object.entries(limits)) tactus.memory.set("tactus_limits", name, at, value);
+    return body(at);
+  });
+}
+
+function withOptions(tactus, {interpolation = "none", limits = undefined}, body) {
+  const {size} = layouts.tactus_receiver_options;
+  return withLimits(tactus, limits, (limitsAt) => tactus.memory.with(size, (at) => {
+    tactus.exports.tactus_receiver_options_init(at, size);
+    tactus.memory.set("tactus_receiver_options", "interpolation", at, interpolations.indexOf(interpolation));
+    tactus.memory.set("tactus_receiver_options", "limits", at, limitsAt);
+    return body(at);
+  }));
+}
+
+function packetOf(info) {
+  const {tick, number, bytes, offset, substream, kind, sequence, key, layer, reason, updates, restarts} = info;
+  return {
+    tick: Number(tick), number: Number(number), bytes, offset: Number(offset), substream, kind: kinds[kind], sequence, key: key !== 0,
+    layer: layers[layer], reason: reasons[reason], updates, restarts: restarts !== 0,
+  };
+}
+
+export class Scene {
+  #tactus;
+  #own;
+
+  constructor(tactus, handle, used = null) {
+    this.#tactus = tactus;
+    this.#own = used !== null;
+    this.handle = handle;
+    this.bytes = used;
+    const info = tactus.ask("tactus_scene_info", "tactus_scene_get", handle);
+    this.tickRate = info.tick_rate;
+    this.substreams = info.substreams;
+    this.positionExp = info.position_exp;
+    this.eased = info.eased !== 0;
+    this.loadUsers = info.has_loads ? info.load_users : null;
+    this.rigid = Array.from({length: info.rigid}, (_, i) => this.#rigid(i));
+    this.deformables = Array.from({length: info.deformables}, (_, i) => this.#deformable(i));
+  }
+
+  #rigid(i) {
+    const {name, dof, initial} = this.#tactus.ask("tactus_rigid_info", "tactus_scene_get_rigid", this.handle, i);
+    return {name: this.#tactus.memory.text(name), dof, initial};
+  }
+
+  #deformable(i) {
+    const info = this.#tactus.ask("tactus_deformable_info", "tactus_scene_get_deformable", this.handle, i);
+    return {
+      name: this.#tactus.memory.text(info.name), vertices: info.vertices, triangles: info.triangles, modes: info.modes,
+      profile: profiles[info.profile], layered: info.layered !== 0, framePeriod: info.frame_period,
+    };
+  }
+
+  rest(i) {
+    const {memory} = this.#tactus;
+    const count = 3 * this.deformables[i].vertices;
+    return memory.with(4 * count, (at) => {
+      this.#tactus.call("tactus_scene_get_rest", this.handle, i, at, count);
+      return memory.floats(at, count).slice();
+    });
+  }
+
+  triangles(i) {
+    const {memory} = this.#tactus;
+    const count = 3 * this.deformables[i].triangles;
+    return memory.with(4 * count, (at) => {
+      this.#tactus.call("tactus_scene_get_triangles", this.handle, i, at, count);
+      return memory.numbers(at, count).slice();
+    });
+  }
+
+  stiffness(i) {
+    const {memory} = this.#tactus;
+    const count = this.deformables[i].vertices;
+    return memory.with(8 * count, (at) =>
+      this.#tactus.call("tactus_scene_get_stiffness", this.handle, i, at, count) ? memory.doubles(at, count).slice() : null);
+  }
+
+  get rigidBounds() {
+    const bounds = this.#tactus.ask("tactus_rigid_bounds", "tactus_scene_get_rigid_bounds", this.handle);
+    return bounds && {
+      haptic: hapticRules[bounds.haptic], heartbeat: bounds.heartbeat, visualPosition: bounds.visual_position,
+      visualRotation: bounds.visual_rotation, weberFraction: bounds.weber_fraction, perceptualShare: bounds.perceptual_share,
+      coneAngle: bounds.cone_angle, fixedPosition: bounds.fixed_position, fixedRotation: bounds.fixed_rotation,
+      forceFloor: bounds.force_floor,
+    };
+  }
+
+  deformableBounds(i) {
+    const bounds = this.#tactus.ask("tactus_deformable_bounds", "tactus_scene_get_deformable_bounds", this.handle, i);
+    return bounds && {
+      visual: bounds.visual, weberFraction: bounds.haptic ? bounds.weber_fraction : null, depthFloor: bounds.depth_floor,
+      kept: bounds.kept !== 0,
+    };
+  }
+
+  close() {
+    if (this.#own) this.#tactus.exports.tactus_scene_destroy(this.handle);
+    this.#own = false;
+  }
+}
+
+export class Receiver {
+  #tactus;
+  #handle;
+  #own;
+
+  constructor(tactus, handle, own) {
+    this.#tactus = tactus;
+    this.#handle = handle;
+    this.#own = own;
+    this.scene = new Scene(tactus, tactus.exports.tactus_receiver_scene(handle));
+  }
+
+  push(packet, now = null) {
+    const {memory} = this.#tactus;
+    const arrival = now === null ? -(2n ** 63n) : BigInt(now);  // TACTUS_NO_CLOCK
+    return memory.with(packet.length, (at) => {
+      memory.bytes(at, packet.length).set(packet);
+      return packetOf(this.#tactus.memory.withAnswer("tactus_packet_info", (info) => {
+        this.#tactus.call("tactus_receiver_push", this.#handle, at, packet.length, arrival, info);
+        return memory.struct("tactus_packet_info", info);
+      }));
+    });
+  }
+
+  updates() {
+    const {size} = layouts.tactus_update;
+    const room = Math.max(1, this.scene.rigid.length);
+    return this.#tactus.memory.with(size * room + 4, (at) => {
+      this.#tactus.call("tactus_receiver_updates", this.#handle, at + 4, room, at);
+      return Array.from({length: this.#tactus.memory.view.getUint32(at, true)}, (_, i) => {
+        const {object, reason, level} = this.#tactus.memory.struct("tactus_update", at + 4 + size * i);
+        return {object, reason: reasons[reason], level};
+      });
+    });
+  }
+
+  poses(tick, out = new Float64Array(7 * this.scene.rigid.length)) {
+    const count = this.scene.rigid.length;
+    return this.#tactus.memory.with(8 * 7 * count, (at) => {
+      this.#tactus.call("tactus_receiver_poses", this.#handle, BigInt(tick), 0, count, at);
+      out.set(this.#tactus.memory.doubles(at, 7 * count));
+      return out;
+    });
+  }
+
+  displacements(object, tick, out = new Float32Array(3 * this.scene.deformables[object].vertices)) {
+    const count = 3 * this.scene.deformables[object].vertices;
+    return this.#tactus.memory.with(4 * count, (at) => {
+      this.#tactus.call("tactus_receiver_displacements", this.#handle, object, BigInt(tick), at, count);
+      out.set(this.#tactus.memory.floats(at, count));
+      return out;
+    });
+  }
+
+  loads(object, tick) {
+    const count = 3 * (2 + (this.scene.loadUsers ?? 0));
+    return this.#tactus.memory.with(8 * count, (at) =>
+      this.#tactus.call("tactus_receiver_loads", this.#handle, object, BigInt(tick), at, count)
+        ? this.#tactus.memory.doubles(at, count).slice()
+        : null);
+  }
+
+  stateHash(substream) {
+    return this.#hash("tactus_receiver_state_hash", substream);
+  }
+
+  poseHash(tick) {
+    return this.#hash("tactus_receiver_pose_hash", BigInt(tick));
+  }
+
+  #hash(name, of) {
+    return this.#tactus.memory.with(8, (at) => {
+      this.#tactus.call(name, this.#handle, of, at);
+      return this.#tactus.memory.view.getBigUint64(at, true).toString(16).padStart(16, "0");
+    });
+  }
+
+  close() {
+    if (this.#own) this.#tactus.exports.tactus_receiver_destroy(this.#handle);
+    this.#own = false;
+  }
+}
+
+export class Player {
+  #tactus;
+  #file;
+  #handle;
+
+  constructor(tactus, file, options) {
+    this.#tactus = tactus;
+    this.#file = tactus.memory.copy(file);
+    try {
+      this.#handle = withOptions(tactus, options, (optionsAt) => tactus.memory.with(4, (at) => {
+        tactus.call("tactus_player_open", this.#file, file.length, optionsAt, at);
+        return tactus.memory.view.getUint32(at, true);
+      }));
+    } catch (error) {
+      tactus.memory.release(this.#file);
+      throw error;
+    }
+    this.receiver = new Receiver(tactus, tactus.exports.tactus_player_receiver(this.#handle), false);
+    this.scene = this.receiver.scene;
+  }
+
+  play(tick) {
+    const info = this.#tactus.ask("tactus_packet_info", "tactus_player_play", this.#handle, BigInt(tick));
+    return info && packetOf(info);
+  }
+
+  nextTick() {
+    return this.#tactus.memory.with(8, (at) =>
+      this.#tactus.call("tactus_player_next_tick", this.#handle, at) ? Number(this.#tactus.memory.view.getBigInt64(at, true)) : null);
+  }
+
+  get headerBytes() {
+    return Number(this.#tactus.exports.tactus_player_header_bytes(this.#handle));
+  }
+
+  get complete() {
+    return this.#tactus.exports.tactus_player_complete(this.#handle) !== 0;
+  }
+
+  close() {
+    if (this.#handle === 0) return;
+    this.#tactus.exports.tactus_player_destroy(this.#handle);
+    this.#tactus.memory.release(this.#file);
+    this.#handle = 0;
+  }
+}

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page of `tactus view`: decodes a stream with the WebAssembly decoder and shows it over time.
+import {load} from "@tactus-codec/decoder";
+import {Clock, timeOfLink} from "./clock.js";
+import {Controls} from "./controls.js";
+import {Model, norm} from "./model.js";
+import {Picture} from "./picture.js";
+import {bytesOf} from "./read_columns.js";
+import {Readings} from "./readings.js";
+import {lanesOf, rowsOf} from "./strips.js";
+import {colour, map, onThemeChange} from "./theme.js";
+import {Timeline} from "./timeline.js";
+import {inUnit, plain, units} from "./units.js";
+
+const byId = (id) => document.getElementById(id);
+
+class Page {
+  #stale = true;
+  #shown = -1;
+
+  constructor(model) {
+    this.model = model;
+    this.clock = new Clock(model.duration, () => this.redraw());
+    this.picture = this.#makePicture();
+    this.timeline = new Timeline(byId("timeline"), {duration: model.duration, lanes: lanesOf(model), rows: rowsOf(model)});
+    const redraw = () => this.redraw();
+    this.controls = new Controls({clock: this.clock, model, picture: this.picture, timeline: this.timeline, redraw});
+    this.readings = this.#makeReadings();
+    this.#describe();
+    this.picture?.view.controls.addEventListener("change", () => (this.#stale = true));
+    new ResizeObserver(() => this.#resize()).observe(document.body);
+    onThemeChange(() => this.#paint());
+    addEventListener("hashchange", () => this.#followLink());
+    this.#resize();
+    this.#followLink();
+  }
+
+  #makePicture() {
+    byId("message").hidden = true;
+    try {
+      return new Picture(byId("scene"), this.model);
+    } catch (error) {
+      byId("message").textContent = /WebGL/.test(error.message)
+        ? "This browser has no WebGL 2, so the scene cannot be drawn. The time line and the numbers work without it. "
+          + "Browsers switch it off without a graphics driver; a current Firefox or Chrome has it."
+        : `The scene cannot be drawn: ${error.message}`;
+      byId("message").hidden = false;
+      return null;
+    }
+  }
+
+  #makeReadings() {
+    const {truth, scene} = this.model;
+    const readings = new Readings(byId("readings"));
+    readings.add("packets", "packets so far");
+    readings.add("bytes", "payload so far");
+    if (truth?.errors || truth?.meshes.length > 0) readings.group("Error against the truth");
+    if (truth?.errors) readings.add("position", "position", "length");
+    if (truth?.errors) readings.add("rotation", "rotation", "angle");
+    if (truth?.errors?.force) readings.add("force", "normal force", "force");
+    truth?.meshes.forEach((_, i) => readings.add(`mesh-${i}`, scene.deformables[i].name, "length"));
+    truth?.users.forEach((user, i) => {
+      readings.group(truth.users.length > 1 ? `Force on ${user.name}` : "Force");
+      readings.add(`server-${i}`, "server", "force");
+      if (user.felt) readings.add(`felt-${i}`, "felt by the hand", "force");
+      if (user.shown) readings.add(`shown-${i}`, "normal, decoded", "force");
+    });
+    return readings;
+  }
+
+  #describe() {
+    const {model, picture} = this;
+    const {rigid, deformables} = model.scene;
+    document.title = `${model.name} – Tactus`;
+    byId("title").textContent = model.name;
+    const count = (n, one) => `${n} ${one}${n === 1 ? "" : "s"}`;
+    const vertices = deformables.reduce((sum, mesh) => sum + mesh.vertices, 0);
+    const payload = model.packets.sizes.reduce((sum, size) => sum + size, 0);
+    const parts = [`${model.duration.toFixed(2)} s at ${model.tickRate} Hz`];
+    if (rigid.length > 0) parts.push(count(rigid.length, "rigid object"));
+    if (deformables.length > 0) parts.push(`${count(deformables.length, "mesh").replace("meshs", "meshes")} of ${vertices} vertices`);
+    const rate = (8 * payload) / 1000 / Math.max(model.duration, 1e-9);
+    parts.push(count(model.packets.ticks.length, "packet"), `${rate.toFixed(2)} kbit/s payload`);
+    if (model.truth) parts.push(`truth: ${model.truth.name}`);
+    byId("facts").textContent = parts.join(" · ");
+    const unknown = picture?.objects?.areKnown === false ? "axes stand for objects whose shapes nobody told (--truth, --scene)" : "";
+    byId("scale").textContent = picture ? [picture.view.scale, picture.forceScale, unknown].filter(Boolean).join(" · ") : "";
+    if (picture) this.#fillLegend();
+  }
+
+  #fillLegend() {
+    const {truth, scene} = this.model;
+    const entries = [];
+    if (scene.rigid.length > 0) entries.push(["", "object", "decoded"]);
+    const within = scene.rigid.length > 0 ? truth?.ghostPosition : truth?.ghostVertex;
+    if (truth) entries.push(["frame", "ghost", `truth (drawn within ${plain(within, "length")})`]);
+    if (truth?.users.length > 0) {
+      entries.push(["dot", "device", "device"], ["", "server", truth.users.some(({felt}) => felt) ? "force of the server" : "force felt"]);
+      if (truth.users.some(({felt}) => felt)) entries.push(["", "felt", "force felt"]);
+      if (truth.users.some(({shown}) => shown)) entries.push(["", "shown", "normal force, as decoded"]);
+    }
+    byId("legend").replaceChildren(...entries.map(([shape, named, text]) => {
+      const row = document.createElement("div");
+      const sample = document.createElement("i");
+      sample.className = shape;
+      sample.style.background = sample.style.borderColor = colour(named);
+      row.append(sample, text);
+      return row;
+    }));
+  }
+
+  #paint() {
+    this.picture?.view.paint();
+    if (this.picture) this.#fillLegend();
+    this.timeline.draw();
+    this.redraw();
+  }
+
+  #resize() {
+    this.timeline.resize();
+    this.picture?.view.resize();
+    this.redraw();
+  }
+
+  #followLink() {
+    const time = timeOfLink(location.hash);
+    if (time !== null) this.clock.seek(time);
+  }
+
+  redraw() {
+    this.#stale = true;
+    this.#shown = -1;
+  }
+
+  // Called for each picture of the screen.
+  frame(now) {
+    this.clock.advance(now);
+    this.picture?.view.controls.update();
+    if (!this.#stale) return;
+    this.#stale = false;
+    const {tick} = this.controls;
+    if (tick !== this.#shown) this.#showTick(tick);
+    this.picture?.view.draw();
+  }
+
+  #showTick(tick) {
+    this.#shown = tick;
+    if (this.picture) this.picture.show(tick);
+    else this.model.moveTo(tick);
+    this.timeline.moveTo(this.clock.time);
+    this.#tell(tick);
+    if (!this.clock.plays) history.replaceState(null, "", `#t=${this.clock.time.toFixed(3)}`);
+  }
+
+  #tell(tick) {
+    const {model, clock, picture} = this;
+    byId("play").textContent = clock.plays ? "Pause" : "Play";
+    byId("clock").textContent = `${clock.time.toFixed(3)} s of ${model.duration.toFixed(3)} s`;
+    const line = byId("timeline");
+    line.setAttribute("aria-valuemin", "0");
+    line.setAttribute("aria-valuemax", String(model.duration));
+    line.setAttribute("aria-valuenow", clock.time.toFixed(3));
+    line.setAttribute("aria-valuetext", `${clock.time.toFixed(3)} s`);
+    const count = model.packetsUpTo(tick);
+    this.readings.set("packets", String(count));
+    this.readings.set("bytes", `${(model.packets.sizes.subarray(0, count).reduce((sum, size) => sum + size, 0) / 1000).toFixed(2)} kB`);
+    this.#tellTruth(tick);
+    if (picture?.colouring) this.#tellColours();
+  }
+
+  #tellTruth(tick) {
+    const {truth, scene} = this.model;
+    const row = this.model.rowAt(tick);
+    if (row < 0) return;
+    const {errors} = truth;
+    const bounds = scene.rigidBounds;
+    if (errors) this.readings.set("position", errors.position[row], bounds && errors.position[row] > bounds.visualPosition);
+    if (errors) this.readings.set("rotation", errors.rotation[row], bounds && errors.rotation[row] > bounds.visualRotation);
+    if (errors?.force) {
+      const touches = truth.users.some(({kind}) => kind[row] === 1 || kind[row] === 2);
+      const bound = errors.force_bound?.[row] ?? 0;
+      this.readings.set("force", touches ? errors.force[row] : null, bound > 0 && errors.force[row] > bound * (1 + 1e-9));
+    }
+    truth.meshes.forEach(({ticks, error}, i) => {
+      let at = ticks.length - 1;
+      while (at >= 0 && ticks[at] > tick) --at;
+      this.readings.set(`mesh-${i}`, at >= 0 ? error[at] : null);
+    });
+    truth.users.forEach((user, i) => {
+      for (const kind of ["server", "felt", "shown"]) {
+        if (user[kind]) this.readings.set(`${kind}-${i}`, user.kind[row] > 0 || norm(user[kind], row) > 0 ? norm(user[kind], row) : null);
+      }
+    });
+  }
+
+  #tellColours() {
+    const {colouring} = this.picture;
+    const bar = byId("colour-bar").getContext("2d");
+    map.forEach((rgb, x) => {
+      bar.fillStyle = `rgb(${rgb.join(" ")})`;
+      bar.fillRect(x, 0, 1, 1);
+    });
+    const most = Math.max(...this.model.scene.deformables.map((_, i) => colouring.most(i)));
+    const {name: unit} = units[colouring.kind];
+    const end = (value) => Object.assign(document.createElement("span"), {textContent: `${inUnit(value, colouring.kind)} ${unit}`});
+    byId("colour-range").replaceChildren(end(0), end(most));
+  }
+}
+
+async function start() {
+  const begin = performance.now();
+  const data = JSON.parse(byId("tactus-data").textContent);
+  const tactus = await load(bytesOf(byId("tactus-wasm").textContent));
+  const page = new Page(new Model(tactus, data));
+  const next = (now) => {
+    page.frame(now);
+    requestAnimationFrame(next);
+  };
+  page.frame(performance.now());
+  requestAnimationFrame(next);
+  // For tests and scripts.
+  globalThis.tactusView = {
+    page, tactus, opened: performance.now() - begin,
+    seek: (time) => page.clock.seek(time),
+    hashes: () => page.model.replay.stateHashes(),
+    project: (point) => page.picture.view.project(point),
+  };
+}
+
+start().catch((error) => {
+  byId("message").textContent = `This page cannot show the stream: ${error.message}`;
+  byId("message").hidden = false;
+});

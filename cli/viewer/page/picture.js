@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+// The model in three dimensions: which parts it has, where all of it is, and how it looks at a tick.
+import {Box3, Vector3} from "three";
+import {MeshPart} from "./mesh_part.js";
+import {norm} from "./model.js";
+import {ObjectsPart} from "./objects_part.js";
+import {SceneView} from "./scene_view.js";
+import {UsersPart} from "./users_part.js";
+import {plain, roundStep} from "./units.js";
+
+const mostSamples = 24;  // ticks that are looked at to find out how much room all of it takes; fewer of large meshes
+
+export class Picture {
+  #model;
+  #meshes;
+  #ghosts;
+  #users = null;
+  #values;
+
+  constructor(canvas, model) {
+    this.#model = model;
+    const {box, displacement} = roomOf(model);
+    this.view = new SceneView(canvas, box);
+    const size = this.view.extent / 9;
+    this.layers = new Map();
+    this.#addObjects(size);
+    this.#meshes = model.scene.deformables.map((_, i) => new MeshPart(model.scene, i, {ghost: false}));
+    this.#ghosts = model.ghost ? model.scene.deformables.map((_, i) => new MeshPart(model.scene, i, {ghost: true})) : [];
+    this.#meshes.forEach((part) => this.view.add(part));
+    this.#addLayer("truth", this.#ghosts);
+    if (model.truth && model.truth.users.length > 0) this.#addUsers();
+    this.colourings = this.#colouringsOf(displacement);
+    this.colouring = this.colourings[0] ?? null;
+    this.#values = this.#meshes.map((part) => new Float32Array(part.count));
+  }
+
+  #addObjects(size) {
+    const {scene, shapes, ghost} = this.#model;
+    if (scene.rigid.length === 0) return;
+    this.objects = new ObjectsPart(scene, shapes.objects, {ghost: false, size});
+    this.view.add(this.objects);
+    if (!ghost) return;
+    this.ghosts = new ObjectsPart(scene, shapes.objects, {ghost: true, size});
+    this.#addLayer("truth", [this.ghosts]);
+  }
+
+  #addUsers() {
+    const {truth, tickRate} = this.#model;
+    let most = 0;
+    for (const user of truth.users)
+      for (let i = 0; i < truth.ticks.length; ++i) most = Math.max(most, norm(user.server, i), norm(user.felt ?? user.server, i));
+    const perNewton = most > 0 ? (0.22 * this.view.extent) / most : 1;
+    this.#users = new UsersPart(truth, {size: this.view.extent / 90, perNewton, tickRate});
+    this.view.add(this.#users);
+    const force = roundStep((0.1 * this.view.extent) / perNewton);
+    this.forceScale = `an arrow of ${plain(force * perNewton, "length")} is ${plain(force, "force")}`;
+    for (const [name, group] of Object.entries(this.#users.layers)) this.layers.set(name, [group]);
+  }
+
+  #addLayer(name, parts) {
+    if (parts.length === 0) return;
+    for (const part of parts) if (part !== undefined) this.view.add(part);
+    this.layers.set(name, [...(this.layers.get(name) ?? []), ...parts.map(({group}) => group)]);
+  }
+
+  setVisible(layer, visible) {
+    for (const group of this.layers.get(layer)) group.visible = visible;
+  }
+
+  setMeshes(visible) {
+    for (const {group} of this.#meshes) group.visible = visible;
+  }
+
+  // What meshes can be coloured by: values of the vertices and the range of the colours.
+  #colouringsOf(displacement) {
+    const {scene, ghost} = this.#model;
+    if (scene.deformables.length === 0) return [];
+    const moved = (parts, i) => parts[i].displacements;
+    const out = [{
+      name: "displacement", kind: "length", most: () => displacement, fill: (i, values) => fillLengths(moved(this.#meshes, i), values),
+    }];
+    if (ghost) {
+      const visual = (i) => scene.deformableBounds(i)?.visual ?? 2.5e-4;
+      const fill = (i, values) => fillDifferences(moved(this.#meshes, i), moved(this.#ghosts, i), values);
+      out.push({name: "error", kind: "length", most: visual, fill});
+    }
+    const stiffness = scene.deformables.map((_, i) => scene.stiffness(i));
+    if (stiffness.every((values) => values !== null)) {
+      const most = (i) => stiffness[i].reduce((largest, value) => (value < Infinity ? Math.max(largest, value) : largest), 0);
+      out.push({name: "stiffness", kind: "stiffness", most, fill: (i, values) => values.set(stiffness[i])});
+    }
+    return out;
+  }
+
+  show(tick) {
+    const {replay, ghost} = this.#model;
+    this.#model.moveTo(tick);
+    this.objects?.show(replay);
+    this.#meshes.forEach((part) => part.show(replay));
+    if (ghost) {
+      this.ghosts?.show(ghost);
+      this.#ghosts.forEach((part) => part.show(ghost));
+    }
+    const row = this.#model.rowAt(tick);
+    if (this.#users) {
+      this.#users.group.visible = row >= 0;
+      if (row >= 0) this.#users.show(row, this.view.camera);
+    }
+    this.#meshes.forEach((part, i) => {
+      this.colouring.fill(i, this.#values[i]);
+      part.colourBy(this.#values[i], this.colouring.most(i));
+    });
+  }
+
+  vertex(mesh, i) {
+    return this.#meshes[mesh].vertex(i);
+  }
+}
+
+function fillLengths(vectors, out) {
+  for (let i = 0; i < out.length; ++i) out[i] = Math.hypot(vectors[3 * i], vectors[3 * i + 1], vectors[3 * i + 2]);
+}
+
+function fillDifferences(a, b, out) {
+  for (let i = 0; i < out.length; ++i) out[i] = Math.hypot(a[3 * i] - b[3 * i], a[3 * i + 1] - b[3 * i + 1], a[3 * i + 2] - b[3 * i + 2]);
+}
+
+// A box around all that there ever is, and the largest displacement, by looking at some ticks.
+function roomOf(model) {
+  const {scene, replay, shapes, truth} = model;
+  const box = new Box3();
+  const point = new Vector3();
+  const known = new Map(shapes.objects.map((shape) => [shape.name, shape]));
+  const reach = scene.rigid.map(({name}) => (known.has(name) ? Math.hypot(...known.get(name).size) / 2 : 0));
+  scene.deformables.forEach((_, i) => {
+    const rest = scene.rest(i);
+    for (let v = 0; v < rest.length; v += 3) box.expandByPoint(point.set(rest[v], rest[v + 1], rest[v + 2]));
+  });
+  const vertices = scene.deformables.reduce((sum, mesh) => sum + mesh.vertices, 0);
+  const samples = Math.round(Math.min(mostSamples, Math.max(4, 5e5 / (vertices + 1))));
+  let displacement = 0;
+  for (let k = 0; k < samples; ++k) {
+    replay.moveTo(Math.floor((k / (samples - 1)) * model.lastTick));
+    const poses = scene.rigid.length > 0 ? replay.poses() : [];
+    reach.forEach((radius, i) => {
+      point.set(poses[7 * i], poses[7 * i + 1], poses[7 * i + 2]);
+      box.expandByPoint(point.clone().addScalar(radius)).expandByPoint(point.addScalar(-radius));
+    });
+    scene.deformables.forEach((_, i) => {
+      const moved = replay.displacements(i);
+      for (let v = 0; v < moved.length; v += 3) displacement = Math.max(displacement, Math.hypot(moved[v], moved[v + 1], moved[v + 2]));
+    });
+  }
+  for (const {device} of truth?.users ?? [])
+    for (let i = 0; i < truth.ticks.length; i += 10) box.expandByPoint(point.set(device[0][i], device[1][i], device[2][i]));
+  if (shapes.floor !== undefined) box.min.z = Math.min(shapes.floor, box.max.z);
+  if (box.isEmpty() || box.getSize(point).length() < 1e-6) box.expandByScalar(0.05);
+  return {box, displacement};
+}

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// A stream at any tick: packets are decoded as time goes on; going elsewhere begins at key packets.
+import {lastUpTo, readColumns} from "./read_columns.js";
+
+export class Replay {
+  #tactus;
+  #bytes;
+  #done = 0;  // packets decoded
+  #receiver = null;
+
+  constructor(tactus, bytes, packets) {
+    this.#tactus = tactus;
+    this.#bytes = bytes;
+    this.packets = readColumns(packets);
+    this.scene = tactus.parseScene(bytes);
+    this.#restart();
+    this.tick = 0;
+    this.moveTo(0);
+  }
+
+  #restart() {
+    this.#receiver?.close();
+    this.#receiver = this.#tactus.createReceiver(this.scene);
+    this.#done = 0;
+  }
+
+  moveTo(tick) {
+    const end = lastUpTo(this.packets.ticks, tick) + 1;
+    this.tick = tick;
+    if (end < this.#done || end - this.#done > 64) {
+      const first = this.#keysBefore(end);
+      const nearest = Math.min(...first);
+      if (end < this.#done || nearest > this.#done) {
+        this.#restart();
+        for (let i = nearest; i < end; ++i) if (i >= first[this.packets.substreams[i]]) this.#push(i);
+        this.#done = end;
+        return;
+      }
+    }
+    for (; this.#done < end; ++this.#done) this.#push(this.#done);
+  }
+
+  // For each substream the packet to begin with.
+  #keysBefore(end) {
+    const first = new Array(this.scene.substreams).fill(0);
+    let left = new Set(first.keys());
+    for (let i = end - 1; i >= 0 && left.size > 0; --i)
+      if (this.packets.keys[i] && left.delete(this.packets.substreams[i])) first[this.packets.substreams[i]] = i;
+    const seen = new Set(this.packets.substreams.subarray(0, end));
+    return first.map((at, substream) => (seen.has(substream) ? at : end));
+  }
+
+  #push(i) {
+    const {offsets, sizes} = this.packets;
+    this.#receiver.push(this.#bytes.subarray(offsets[i], offsets[i] + sizes[i]));
+  }
+
+  poses(out) {
+    return this.#receiver.poses(this.tick, out);
+  }
+
+  displacements(mesh, out) {
+    return this.#receiver.displacements(mesh, this.tick, out);
+  }
+
+  stateHashes() {
+    return Array.from({length: this.scene.substreams}, (_, i) => this.#receiver.stateHash(i));
+  }
+}

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/viewer/truth_data.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <tactus/deformable/displacement.h>
+#include <tactus/rigid/trigger.h>
+#include "cli/viewer/packet_table.h"
+
+namespace tactus::cli {
+namespace {
+
+constexpr double kShare = 0.05;  // of the stream's bounds
+// What the grid of every stream can hold.
+constexpr double kLeastLength = 4e-6, kLeastAngle = 1e-4;  // [m], [rad]
+
+enum class Touch : std::uint8_t { none = 0, surface = 1, spring = 2, mesh = 3 };
+
+Touch touch_of(const UserSample& user) {
+  if (user.contact.kind == ContactKind::surface) return Touch::surface;
+  if (user.contact.kind == ContactKind::spring) return Touch::spring;
+  return user.surface_contact ? Touch::mesh : Touch::none;
+}
+
+/// Where a user touches.
+Vec3 place_of(const UserSample& user, const TraceFrame& frame, Touch touch) {
+  if (touch == Touch::mesh) return user.surface_contact->proxy;
+  return to_world(frame.objects[user.contact.object].pose, user.contact.point);
+}
+
+bool has_weber_bound(const RigidTriggers& bounds) {
+  return bounds.haptic == HapticRule::isotropic || bounds.haptic == HapticRule::perceptual;
+}
+
+/// Where the packets of the ghost are.
+Result<nlohmann::ordered_json> packets_json(std::string_view file) {
+  TACTUS_TRY(Player player, Player::open({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}));
+  PacketTable packets;
+  while (true) {
+    TACTUS_TRY(const auto tick, player.next_tick());
+    if (!tick) return packets.json();
+    TACTUS_TRY(const auto played, player.play(*tick));
+    packets.add(*played);
+  }
+}
+
+}  // namespace
+
+GhostBounds ghost_bounds(const Scene& scene) {
+  GhostBounds ghost;
+  const RigidTriggers rigid = scene.bounds && scene.bounds->rigid ? *scene.bounds->rigid : RigidTriggers{};
+  ghost.rigid.visual_position = std::max(kLeastLength, kShare * rigid.visual_position);
+  ghost.rigid.visual_rotation = std::max(kLeastAngle, kShare * rigid.visual_rotation);
+  ghost.rigid.haptic = HapticRule::off;
+  double visual = DeformableThresholds{}.visual;
+  if (scene.bounds)
+    for (const DeformableBounds& mesh : scene.bounds->deformables) visual = std::min(visual, mesh.thresholds.visual);
+  ghost.deformable = {.visual = std::max(kLeastLength, kShare * visual), .weber_fraction = {}};
+  return ghost;
+}
+
+Result<TruthData> TruthData::create(const TraceInfo& info, const TraceFrame& first, const Scene& scene) {
+  const GhostBounds ghost = ghost_bounds(scene);
+  TACTUS_TRY(SceneBuilder builder, scene_builder(info, first));
+  const auto shared = builder.promise(ghost.rigid, ghost.deformable).build();
+  if (!shared) return tl::unexpected(shared.error().error);
+  const SenderOptions options{.triggers = ghost.rigid, .deformable = {.thresholds = ghost.deformable}};
+  TACTUS_TRY(Sender sender, Sender::create(*shared, options));
+  TruthData data(info, scene, ghost, *shared, std::move(sender));
+  TACTUS_TRY(data.writer_, StreamFileWriter::create(*data.stream_, **shared));
+  return data;
+}
+
+TruthData::TruthData(const TraceInfo& info, const Scene& scene, const GhostBounds& ghost, SharedScene shared, Sender sender)
+    : info_(info),
+      scene_(&scene),
+      ghost_(ghost),
+      shared_(std::move(shared)),
+      sender_(std::move(sender)),
+      truth_(info),
+      users_(info.users.size()),
+      meshes_(info.meshes.size()) {
+  if (scene.bounds) promised_ = scene.bounds->rigid;
+}
+
+Result<void> TruthData::add(const TraceFrame& frame, Player& player) {
+  TACTUS_TRY(const auto packets, sender_.encode(frame.tick, truth_.of(frame)));
+  for (const Packet& packet : packets) TACTUS_CHECK(writer_->add(frame.tick, packet.bytes, packet.key));
+  std::vector<Pose> shown;
+  for (std::uint32_t i = 0; i < frame.objects.size(); ++i)
+    shown.push_back(to_pose(player.replica().pose(i, frame.tick), scene_->grid.position));
+  ticks_.add(frame.tick);
+  add_users(frame, shown);
+  add_errors(frame, shown);
+  add_shapes(frame, player.replica());
+  return {};
+}
+
+void TruthData::add_users(const TraceFrame& frame, const std::vector<Pose>& shown) {
+  for (std::size_t i = 0; i < users_.size(); ++i) {
+    const UserSample& user = frame.users[i];
+    const Touch touch = touch_of(user);
+    users_[i].device.add(user.device.position);
+    users_[i].kind.add(static_cast<std::int64_t>(touch));
+    users_[i].contact.add(touch == Touch::none ? user.device.position : place_of(user, frame, touch));
+    users_[i].server.add(user.server_force);
+    users_[i].felt.add(user.force);
+    const bool is_rigid = touch == Touch::surface || touch == Touch::spring;
+    users_[i].shown.add(is_rigid ? contact_force(user.contact, shown[user.contact.object]) : Vec3{});
+    felt_differs_ = felt_differs_ || norm(user.force - user.server_force) > 1e-3;
+  }
+}
+
+/// The largest of all moving objects, and of the contact that is nearest to its bound.
+void TruthData::add_errors(const TraceFrame& frame, const std::vector<Pose>& shown) {
+  double position = 0, rotation = 0, error = 0, bound = 0, ratio = -1;
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    if (info_.objects[i].dof == Dof::none) continue;
+    const Pose& truth = frame.objects[i].pose;
+    position = std::max(position, norm(shown[i].position - truth.position));
+    rotation = std::max(rotation, angle_between(truth.rotation, shown[i].rotation));
+  }
+  for (const UserSample& user : frame.users) {
+    if (user.contact.kind == ContactKind::none) continue;
+    const Vec3 force = contact_force(user.contact, frame.objects[user.contact.object].pose);
+    const double off = norm(contact_force(user.contact, shown[user.contact.object]) - force);
+    const double budget = promised_ && has_weber_bound(*promised_) ? force_budget(*promised_, norm(force)) : 0;
+    const double share = budget > 0 ? off / budget : off;
+    if (share > ratio) ratio = share, error = off, bound = budget;
+  }
+  position_.add_real(position);
+  rotation_.add_real(rotation);
+  force_error_.add_real(error);
+  force_bound_.add_real(bound);
+}
+
+void TruthData::add_shapes(const TraceFrame& frame, Replica& replica) {
+  for (std::size_t i = 0; i < meshes_.size(); ++i) {
+    if (!frame.meshes[i].updated) continue;
+    const std::vector<float>& truth = frame.meshes[i].displacements;
+    const auto shown = replica.displacements(i, frame.tick);
+    double worst = 0;
+    for (std::size_t v = 0; v < shown.size(); ++v) {
+      const Vec3 there{truth[3 * v], truth[3 * v + 1], truth[3 * v + 2]};
+      worst = std::max(worst, norm(to_metres(shown[v], scene_->grid.position) - there));
+    }
+    meshes_[i].ticks.add(frame.tick);
+    meshes_[i].error.add_real(worst);
+  }
+}
+
+std::size_t TruthData::bytes() const {
+  std::size_t sum = static_cast<std::size_t>(writer_->bytes()) + ticks_.bytes() + position_.bytes() + rotation_.bytes() +
+                    force_error_.bytes() + force_bound_.bytes();
+  for (const User& user : users_)
+    sum += user.kind.bytes() + user.device.bytes() + user.contact.bytes() + user.server.bytes() + user.felt.bytes() +
+           user.shown.bytes();
+  for (const Mesh& mesh : meshes_) sum += mesh.ticks.bytes() + mesh.error.bytes();
+  return sum;
+}
+
+Result<nlohmann::ordered_json> TruthData::json() {
+  TACTUS_CHECK(writer_->finish());
+  TACTUS_TRY(auto packets, packets_json(stream_->view()));
+  nlohmann::ordered_json out{{"source", info_.source},
+                             {"stream", base64(stream_->view())},
+                             {"packets", std::move(packets)},
+                             {"ghost_position", ghost_.rigid.visual_position},
+                             {"ghost_rotation", ghost_.rigid.visual_rotation},
+                             {"ghost_vertex", ghost_.deformable.visual},
+                             {"ticks", ticks_.json()}};
+  const bool moves = std::ranges::any_of(info_.objects, [](const TraceObject& object) { return object.dof != Dof::none; });
+  if (moves) out["errors"] = {{"position", position_.json()}, {"rotation", rotation_.json()}};
+  if (moves && !users_.empty()) {
+    out["errors"]["force"] = force_error_.json();
+    if (promised_ && has_weber_bound(*promised_)) out["errors"]["force_bound"] = force_bound_.json();
+  }
+  out["users"] = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < users_.size(); ++i) {
+    User& user = users_[i];
+    nlohmann::ordered_json entry{{"name", info_.users[i].name},
+                                 {"kind", user.kind.json()},
+                                 {"device", user.device.json()},
+                                 {"contact", user.contact.json()},
+                                 {"server", user.server.json()}};
+    if (felt_differs_) entry["felt"] = user.felt.json();
+    if (moves) entry["shown"] = user.shown.json();
+    out["users"].push_back(std::move(entry));
+  }
+  out["meshes"] = nlohmann::ordered_json::array();
+  for (Mesh& mesh : meshes_) out["meshes"].push_back({{"ticks", mesh.ticks.json()}, {"error", mesh.error.json()}});
+  return out;
+}
+
+}  // namespace tactus::cli

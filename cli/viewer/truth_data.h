@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The truth as the page holds it: objects and meshes as a second stream with fine bounds, users and errors as columns.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <tactus/file/stream_file.h>
+#include <tactus/metrics/errors.h>
+#include <tactus/player.h>
+#include <tactus/sender.h>
+#include <tactus/trace/trace_file.h>
+#include <tactus/trace/trace_scene.h>
+#include "cli/report/messages.h"
+#include "cli/viewer/columns.h"
+
+namespace tactus::cli {
+
+/// How far the ghost may be off the truth.
+struct GhostBounds {
+  RigidTriggers rigid;
+  DeformableThresholds deformable;
+};
+/// A twentieth of the bounds that the stream declares, or of the defaults.
+GhostBounds ghost_bounds(const Scene& scene);
+
+/// The errors of all ticks are those of `tactus compare`: of what the player shows, against the trace.
+class TruthData {
+ public:
+  /// in   first  frame of the trace   err  those of scene_builder(), SceneBuilder::build(), Sender::create()
+  static Result<TruthData> create(const TraceInfo& info, const TraceFrame& first, const Scene& scene);
+  /// pre  the player has played up to the frame's tick   err  those of Sender::encode
+  Result<void> add(const TraceFrame& frame, Player& player);
+  std::size_t bytes() const;  ///< so far, of all that the page will hold
+  Result<nlohmann::ordered_json> json();
+
+ private:
+  struct User {
+    Column kind{1};
+    VectorColumn device{1e-5}, contact{1e-5}, server{1e-3}, felt{1e-3}, shown{1e-3};
+  };
+  struct Mesh {
+    Column ticks{1}, error{1e-8};
+  };
+
+  TruthData(const TraceInfo& info, const Scene& scene, const GhostBounds& ghost, SharedScene shared, Sender sender);
+  void add_users(const TraceFrame& frame, const std::vector<Pose>& shown);
+  void add_errors(const TraceFrame& frame, const std::vector<Pose>& shown);
+  void add_shapes(const TraceFrame& frame, Replica& replica);
+
+  TraceInfo info_;
+  const Scene* scene_;
+  GhostBounds ghost_;
+  std::optional<RigidTriggers> promised_;
+  std::unique_ptr<std::ostringstream> stream_ = std::make_unique<std::ostringstream>();
+  std::optional<StreamFileWriter> writer_;
+  SharedScene shared_;
+  Sender sender_;
+  FrameTruth truth_;
+  Column ticks_{1};
+  std::vector<User> users_;
+  std::vector<Mesh> meshes_;
+  Column position_{1e-7}, rotation_{1e-6}, force_error_{1e-5}, force_bound_{1e-5};
+  bool felt_differs_ = false;
+};
+
+}  // namespace tactus::cli
