@@ -24,6 +24,7 @@ void setup_merge(Command& app, Action& action);
 void setup_recover(Command& app, Action& action);
 void setup_resample(Command& app, Action& action);
 void setup_export(Command& app, Action& action);
+void setup_export_foxglove(Command& group, Action& action);
 void setup_export_mesh(Command& group, Action& action);
 void setup_export_pcap(Command& group, Action& action);
 void setup_link(Command& app, Action& action);

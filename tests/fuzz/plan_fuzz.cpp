@@ -27,11 +27,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   require(plan->points() > 0 && !plan->command.empty());
   for (const std::size_t point : {std::size_t{0}, plan->points() / 2, plan->points() - 1}) {
     require(plan->values(point).size() == plan->parameters.size());
-    for (const auto& [file, input] : plan->files_of(point)) {
-      require(file.find('/') == std::string::npos);
-      (void)plan->words(*input, point, file);
+    for (const auto& [made, input] : plan->files_of(point)) {
+      require(made.find('/') == std::string::npos);
+      (void)plan->words(*input, point, made);
     }
-    (void)plan->words(point, [](const std::string& file) { return "folder/" + file; });
+    (void)plan->words(point, [](const std::string& input) { return "folder/" + input; });
     require(plan->is_of(point, {1, 2}) != plan->is_of(point, {2, 2}));
   }
   return 0;

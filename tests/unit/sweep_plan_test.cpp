@@ -56,9 +56,9 @@ TEST(SweepPlan, ShardsAreAPartition) {
   ASSERT_TRUE(plan);
   for (std::size_t count = 1; count <= 8; ++count)
     for (std::size_t point = 0; point < plan->points(); ++point) {
-      std::size_t owners = 0;
+      int owners = 0;
       for (std::size_t index = 1; index <= count; ++index) owners += plan->is_of(point, {index, count}) ? 1 : 0;
-      EXPECT_EQ(owners, 1u) << point << " of " << count;
+      EXPECT_EQ(owners, 1) << point << " of " << count;
     }
   EXPECT_TRUE(plan->is_of(0, {1, 3}) && plan->is_of(5, {1, 3})) << "each part gets several values of the last axis";
 }
