@@ -31,6 +31,7 @@ void setup_link(Command& app, Action& action);
 void setup_serve(Command& app, Action& action);
 void setup_join(Command& app, Action& action);
 void setup_key(Command& app, Action& action);
+void setup_plot(Command& app, Action& action);
 void setup_sweep(Command& app, Action& action);
 void setup_reproduce(Command& app, Action& action);
 void setup_bench(Command& app, Action& action);

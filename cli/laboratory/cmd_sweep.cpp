@@ -12,7 +12,7 @@
 #include <thread>
 
 #include <tactus/base/shown.h>
-#include "cli/laboratory/plot.h"
+#include "cli/figure/plot.h"
 #include "cli/laboratory/sweep_plan.h"
 #include "cli/laboratory/sweep_plots.h"
 #include "cli/laboratory/sweep_results.h"

@@ -9,7 +9,7 @@
 #include <set>
 
 #include <tactus/base/shown.h>
-#include "cli/laboratory/plot.h"
+#include "cli/figure/plot.h"
 #include "cli/laboratory/sweep_table.h"
 
 namespace tactus::cli {
@@ -111,6 +111,7 @@ Plot figure(const SweepPlot& wanted, const std::vector<Series>& series, bool has
   plot.set("log_x", scale_of(wanted.log_x, x_ends));
   plot.set("log_y", log_y);
   plot.set("spread", has_spread ? 1 : 0);
+  plot.set("marked", 1);
   plot.set("panels", static_cast<double>(panels));
   plot.set("y_label", wanted.y_label);
   plot.set("y_range", ranges);

@@ -14,7 +14,7 @@
 #include <thread>
 
 #include <tactus/base/shown.h>
-#include "cli/laboratory/child_process.h"
+#include "cli/figure/child_process.h"
 
 namespace tactus::cli {
 namespace {

@@ -2,6 +2,7 @@
 # A figure of a sweep: one panel for each y below the other, one line for each series.
 #   heading, x_label, x_range, series_label   texts; a range is "[low:high]"
 #   log_x, log_y        1: logarithmic, 2: also with numbers at 2 and 5
+#   marked              1: at every point; 0: lines alone
 #   spread              1: bars from the least to the largest of the repetitions
 #   panels              at least 1;   y_label[], y_range[] of each
 #   series              how many;     name[] of each
@@ -29,13 +30,16 @@ do for [panel=1:panels] {
   set ylabel y_label[panel] noenhanced
   eval 'set yrange '.y_range[panel]
   y = 3*panel - 1
-  if (series == 0) {
-    plot NaN notitle
-  } else { if (spread) {
+  if (series == 0) { plot NaN notitle }
+  if (series > 0 && !marked) {
+    plot for [i=1:series] $data index i-1 using 1:y with lines linetype i title name[i] noenhanced
+  }
+  if (series > 0 && marked && !spread) {
+    plot for [i=1:series] $data index i-1 using 1:y with linespoints linetype i title name[i] noenhanced
+  }
+  if (series > 0 && marked && spread) {
     plot for [i=1:series] $data index i-1 using 1:y:y+1:y+2 with yerrorbars linetype i dashtype solid linewidth 1 notitle, \
          for [i=1:series] $data index i-1 using 1:y with linespoints linetype i title name[i] noenhanced
-  } else {
-    plot for [i=1:series] $data index i-1 using 1:y with linespoints linetype i title name[i] noenhanced
-  } }
+  }
 }
 if (panels > 1) { unset multiplot }
