@@ -200,7 +200,8 @@ tl::expected<SweepResults::Digests, Failure> SweepInputs::make(const SweepPlan& 
   std::mutex mutex;
   std::size_t done = 0;
   run_side_by_side(list.size(), jobs, [&](std::size_t i) {
-    const auto& [file, made] = list[i];
+    const std::string& file = list[i].first;
+    const Made& made = list[i].second;
     const auto digest = guarded({}, [&]() -> tl::expected<std::string, Failure> {
       TACTUS_CHECK(make_one(*made.input, file, plan, made.point));
       return digest_of_file(path_of(file));

@@ -1,25 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/trace/foxglove_messages.h>
 
+#include <algorithm>
 #include <cmath>
-#include <initializer_list>
 
 #include <tactus/trace/cdr.h>
+#include <tactus/trace/ros_definitions.h>
 
 namespace tactus::foxglove {
 namespace {
 
 constexpr std::uint64_t kNanoseconds = 1'000'000'000;
 
-struct Definition {
-  std::string_view name, fields;
-};
+using ros::Definition, ros::kPoint, ros::kPose, ros::kQuaternion, ros::kTime, ros::kVector3;
 
-constexpr Definition kPose{"geometry_msgs/Pose", "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n"};
-constexpr Definition kPoint{"geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n"};
-constexpr Definition kVector3{"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"};
-constexpr Definition kQuaternion{"geometry_msgs/Quaternion", "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"};
-constexpr Definition kTime{"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"};
 constexpr Definition kDuration{"builtin_interfaces/Duration", "int32 sec\nuint32 nanosec\n"};
 constexpr Definition kColour{"foxglove_msgs/Color", "float64 r\nfloat64 g\nfloat64 b\nfloat64 a\n"};
 constexpr Definition kDeletion{"foxglove_msgs/SceneEntityDeletion",
@@ -58,13 +52,6 @@ constexpr Definition kModel{
 constexpr Definition kTransform{"foxglove_msgs/FrameTransform",
                                 "builtin_interfaces/Time timestamp\nstring parent_frame_id\nstring child_frame_id\n"
                                 "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n"};
-
-std::string schema(std::string_view fields, std::initializer_list<Definition> dependencies) {
-  std::string text(fields);
-  for (const Definition& definition : dependencies)
-    text.append(80, '=').append("\nMSG: ").append(definition.name).append("\n").append(definition.fields);
-  return text;
-}
 
 /// Rotation of the x axis to a direction.
 Quat turn_to(const Vec3& direction) noexcept {
@@ -144,13 +131,14 @@ void put(CdrWriter& out, std::uint64_t time, const Entity& entity) {
 }  // namespace
 
 std::string scene_update_schema() {
-  return schema("foxglove_msgs/SceneEntityDeletion[] deletions\nfoxglove_msgs/SceneEntity[] entities\n",
-                {kDeletion, kEntity, kTime, kDuration, kKeyValue, kArrow, kPose, kPoint, kQuaternion, kColour, kCube, kVector3,
-                 kSphere, kCylinder, kLine, kTriangles, kText, kModel});
+  constexpr Definition kAll[]{kDeletion, kEntity, kTime,    kDuration, kKeyValue, kArrow, kPose,      kPoint, kQuaternion,
+                              kColour,   kCube,   kVector3, kSphere,   kCylinder, kLine,  kTriangles, kText,  kModel};
+  return ros::definition_text("foxglove_msgs/SceneEntityDeletion[] deletions\nfoxglove_msgs/SceneEntity[] entities\n", kAll);
 }
 
 std::string frame_transforms_schema() {
-  return schema("foxglove_msgs/FrameTransform[] transforms\n", {kTransform, kTime, kVector3, kQuaternion});
+  constexpr Definition kAll[]{kTransform, kTime, kVector3, kQuaternion};
+  return ros::definition_text("foxglove_msgs/FrameTransform[] transforms\n", kAll);
 }
 
 void encode_scene_update(std::vector<std::uint8_t>& message, std::uint64_t time, std::span<const Entity> entities) {
