@@ -32,14 +32,14 @@ do for [panel=1:panels] {
   y = 3*panel - 1
   if (series == 0) { plot NaN notitle }
   if (series > 0 && !marked) {
-    plot for [i=1:series] $data index i-1 using 1:y with lines linetype i title name[i] noenhanced
+    plot for [i=1:series] $data index i-1 using 1:y with lines linetype i dashtype dash_of(i) title name[i] noenhanced
   }
   if (series > 0 && marked && !spread) {
-    plot for [i=1:series] $data index i-1 using 1:y with linespoints linetype i title name[i] noenhanced
+    plot for [i=1:series] $data index i-1 using 1:y with linespoints linetype i dashtype dash_of(i) title name[i] noenhanced
   }
   if (series > 0 && marked && spread) {
     plot for [i=1:series] $data index i-1 using 1:y:y+1:y+2 with yerrorbars linetype i dashtype solid linewidth 1 notitle, \
-         for [i=1:series] $data index i-1 using 1:y with linespoints linetype i title name[i] noenhanced
+         for [i=1:series] $data index i-1 using 1:y with linespoints linetype i dashtype dash_of(i) title name[i] noenhanced
   }
 }
 if (panels > 1) { unset multiplot }

@@ -17,10 +17,10 @@ do for [panel=1:panels] {
   to = first[panel] + lines[panel]
   if (lines[panel] == 1 && bound[panel] != bound[panel]) { unset key } else { set key }
   if (bound[panel] == bound[panel]) {
-    plot for [i=from:to] $data index i-1 using 1:2 with lines linetype i-from+1 linewidth (i == from ? 1.8 : 1.4) title name[i] noenhanced, \
+    plot for [i=from:to] $data index i-1 using 1:2 with lines linetype i-from+1 dashtype dash_of(i-from+1) linewidth (i == from ? 1.8 : 1.4) title name[i] noenhanced, \
          bound[panel] with lines linecolor rgb '#444444' linewidth 1.2 dashtype 3 title 'bound'
   } else {
-    plot for [i=from:to] $data index i-1 using 1:2 with lines linetype i-from+1 linewidth (i == from ? 1.8 : 1.4) title name[i] noenhanced
+    plot for [i=from:to] $data index i-1 using 1:2 with lines linetype i-from+1 dashtype dash_of(i-from+1) linewidth (i == from ? 1.8 : 1.4) title name[i] noenhanced
   }
 }
 unset multiplot
