@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include <tactus/base/shown.h>
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_scene.h>
+#include "cli/figure/error_figure.h"
 #include "cli/report/figures.h"
 #include "cli/report/report.h"
 #include "cli/report/trace_ending.h"
@@ -14,7 +17,7 @@ namespace tactus::cli {
 namespace {
 
 struct CompareOptions {
-  std::string truth, replica;
+  std::string truth, replica, plot;
   TriggerArguments triggers;
   MeshArguments meshes;
   CommonOptions common;
@@ -67,11 +70,14 @@ struct Shown {
   }
 };
 
-void add(const TraceFrame& truth, const Shown& shown, Report& report) {
+void add(const TraceFrame& truth, const Shown& shown, Report& report, std::optional<ErrorFigure>& figure) {
   report.fidelity->add(truth, shown.poses);
-  for (std::size_t i = 0; i < shown.shapes.size(); ++i)
-    if (truth.meshes[i].updated)
-      report.meshes[i].fidelity->add(truth.meshes[i].displacements, shown.shapes[i], touch_of(truth, i));
+  if (figure) figure->add(truth, shown.poses);
+  for (std::size_t i = 0; i < shown.shapes.size(); ++i) {
+    if (!truth.meshes[i].updated) continue;
+    report.meshes[i].fidelity->add(truth.meshes[i].displacements, shown.shapes[i], touch_of(truth, i));
+    if (figure) figure->add_shape(truth, i, shown.shapes[i]);
+  }
 }
 
 /// One of the two traces, at its next frame.
@@ -97,7 +103,8 @@ struct Side {
 
 /// Both traces side by side; ticks that only one of them has are counted and passed over. A client that shows a tick for longer is held
 /// against it each time.
-Outcome compare_all(Side& truth, Side& replica, const CompareOptions& options, Report& report) {
+Outcome compare_all(Side& truth, Side& replica, const CompareOptions& options, Report& report,
+                    std::optional<ErrorFigure>& figure) {
   Progress progress("compare", truth.reader.frame_count(), options.common.progress());
   Shown shown(truth.reader.info());
   TACTUS_CHECK(truth.advance());
@@ -106,7 +113,7 @@ Outcome compare_all(Side& truth, Side& replica, const CompareOptions& options, R
     const bool has_truth = !replica.is_before(truth), has_replica = !truth.is_before(replica);
     if (has_replica) shown.take(replica.frame);
     if (has_truth && has_replica) {
-      report.timings[0].times.measure([&] { return add(truth.frame, shown, report), true; });
+      report.timings[0].times.measure([&] { return add(truth.frame, shown, report, figure), true; });
       report.ticks.add(replica.frame.tick);
       progress.update(report.ticks.count());
     } else {
@@ -157,6 +164,7 @@ void set_bounds(const CompareOptions& options, const TraceInfo& info, const std:
 }
 
 Outcome run(const CompareOptions& options) {
+  TACTUS_CHECK(check_plot_option(options.plot, options.common, {options.truth, options.replica}));
   TACTUS_TRY(auto truth, open(options.truth));
   TACTUS_TRY(auto replica, open(options.replica));
   const TraceInfo& info = truth.reader.info();
@@ -168,11 +176,16 @@ Outcome run(const CompareOptions& options) {
   report.describe(info);
   set_bounds(options, info, replica.reader.info().bounds, report);
   report.timings = {{"compare", "compare, per tick"}};
-  TACTUS_CHECK(compare_all(truth, replica, options, report));
+  std::optional<ErrorFigure> figure;
+  if (!options.plot.empty()) figure.emplace(info);
+  TACTUS_CHECK(compare_all(truth, replica, options, report, figure));
   if (report.ticks.count() == 0)
     return refuse(shown_path(options.replica) + ": shares no tick with " + shown_path(options.truth),
                   "Decode with --like " + shown_path(options.truth) + ".");
   note_unmatched(truth, replica, report);
+  if (figure)
+    TACTUS_CHECK(draw_over_time(options.plot, "Error of " + std::filesystem::path(options.replica).filename().string(),
+                                figure->panels(report), options.common));
   print(report, options.common, Destination::standard_output);
   return report.bounds_from == "defaults" ? Outcome() : verdict(report, options.replica);  // nobody asked for those
 }
@@ -188,14 +201,15 @@ void setup_compare(Command& app, Action& action) {
       ->required();
   options->triggers.add_to(command);
   options->meshes.add_to(command);
-  add_report_options(command, options->common);
+  add_plot_option(command, options->plot, "the errors beside their bounds, over time");
+  add_output_options(command, options->common);
   command.footer(
       "The bounds are those that the stream of the replica declares; options override them. Exit status 3: a bound is broken.\n"
       "Ticks that only one of the traces has are left out; a warning gives their number. What a client of `tactus join` shows is "
       "held\n"
       "against the tick that it is of.\n"
       "Examples:\n"
-      "  tactus compare push.mcap replica.mcap -p 4% --visual 6mm,2deg\n"
+      "  tactus compare push.mcap replica.mcap -p 4% --visual 6mm,2deg --plot errors.svg\n"
       "  tactus compare server.mcap felt.mcap -p 4%");
   on_chosen<CompareOptions>(command, action, options, run);
 }

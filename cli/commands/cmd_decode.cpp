@@ -11,6 +11,7 @@
 #include <tactus/player.h>
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_replica.h>
+#include "cli/commands/motion_source.h"
 #include "cli/report/report.h"
 #include "cli/report/trace_ending.h"
 
@@ -23,9 +24,6 @@ struct DecodeOptions {
   ReplicaOptions replica;
   CommonOptions common;
 };
-
-/// Like a trace that was cut, such a stream is decoded up to there.
-bool is_cut(const Error& error) { return error.rule == std::string_view("R-FIL-2"); }
 
 /// The ticks to write, one after the other: those of another trace, a number of them, or all up to the last packet's.
 class TickSource {
@@ -48,7 +46,7 @@ class TickSource {
     }
     if (options_->ticks) return tick_ < *options_->ticks ? std::optional(tick_++) : std::nullopt;
     const auto waiting = player.next_tick();
-    if (!waiting && is_cut(waiting.error()) && tick_ > 0) return std::nullopt;
+    if (!waiting && is_cut_stream(waiting.error()) && tick_ > 0) return std::nullopt;
     if (!waiting) return refuse(options_->input, waiting.error());
     return *waiting ? std::optional(tick_++) : std::nullopt;
   }
@@ -61,26 +59,6 @@ class TickSource {
   std::uint64_t frames_ = 0;
   std::int64_t tick_ = 0;
 };
-
-/// Without --ticks or --like, decoding runs to the last packet's tick, and a few bytes can name a tick that is hours away. Ten minutes
-/// are free, shared among all objects and vertices; beyond that every byte of a packet earns half a second. A stream at rest takes ten
-/// bytes a second.
-Outcome check_length(std::span<const std::uint8_t> file, const DecodeOptions& options) {
-  constexpr std::uint64_t kFreeTicks = 600000, kTicksByByte = 512;
-  if (options.ticks || !options.like.empty()) return {};
-  auto reader = StreamFileReader::open(file);
-  if (!reader) return refuse(options.input, reader.error());
-  std::uint64_t last = 0, packets = 0, elements = reader->scene()->objects.size();
-  while (const auto packet = reader->next().value_or(std::nullopt)) {
-    last = static_cast<std::uint64_t>(packet->tick);
-    packets += packet->bytes.size();
-  }
-  for (const DeformableObject& object : reader->scene()->deformables) elements += object.rest.size();
-  if (last <= kFreeTicks / std::max<std::uint64_t>(elements, 1) + kTicksByByte * packets) return {};
-  return refuse(fmt::format("{}: its last packet is at tick {}, implausibly far for packets of {} bytes in all",
-                            shown_path(options.input), last, packets),
-                "If that is right, give the number of ticks to write with --ticks N.");
-}
 
 void count(const PlayedPacket& played, Report& report) {
   if (played.substream > report.meshes.size()) report.loads->add(played.bytes, played.loads);
@@ -117,7 +95,7 @@ Outcome decode_all(Player& player, TraceWriter& writer, const DecodeOptions& opt
     TACTUS_TRY(const auto tick, ticks.next(player));
     if (!tick) break;
     const auto decoded = report.timings[0].times.measure([&] { return decode_tick(player, *tick, frame, report); });
-    if (!decoded && is_cut(decoded.error()) && report.ticks.count() > 0) break;
+    if (!decoded && is_cut_stream(decoded.error()) && report.ticks.count() > 0) break;
     if (!decoded) return refuse_at(*tick, decoded.error(), options);
     if (const auto written = writer.write(frame); !written)
       return refuse(options.output, place_of_tick(frame.tick), written.error());
@@ -137,7 +115,9 @@ Outcome run(const DecodeOptions& options) {
     return refuse(shown_path(options.input) + ": the stream tells how a client passes over to its updates",
                   "Leave out --interpolate, or encode with --profile thesis.");
   if (!player) return refuse(options.input, player.error());
-  TACTUS_CHECK(check_length(file, options));
+  if (!options.ticks && options.like.empty())
+    TACTUS_CHECK(
+        check_plausible_length(options.input, file, "If that is right, give the number of ticks to write with --ticks N."));
   TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing(), {options.input, options.like}));
   const TraceInfo info = replica_info(player->scene(), "decode " + options.input);
   note_idle_options(*options.common.command, subjects_of(info), "stream");
@@ -155,7 +135,7 @@ Outcome run(const DecodeOptions& options) {
   if (report.traffic) report.client = way_of_client(options.replica.interpolation, player->scene().is_eased);
   TACTUS_CHECK(decode_all(*player, *writer, options, report));
   const auto rest = player->next_tick();
-  if (!rest && is_cut(rest.error())) {
+  if (!rest && is_cut_stream(rest.error())) {
     warn_cut_stream(options.input, rest.error());
     report.warnings.emplace_back("the stream ends inside a record; everything before the cut was decoded");
   }

@@ -2,6 +2,7 @@
 #include "cli/commands/commands.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <utility>
@@ -13,6 +14,7 @@
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_scene.h>
 #include "cli/commands/rereadable_input.h"
+#include "cli/figure/error_figure.h"
 #include "cli/options/option_needs.h"
 #include "cli/report/report.h"
 #include "cli/report/trace_ending.h"
@@ -21,7 +23,7 @@ namespace tactus::cli {
 namespace {
 
 struct EncodeOptions {
-  std::string input, output;
+  std::string input, output, plot;
   TriggerArguments triggers;
   MeshArguments meshes;
   MotionArguments motion;
@@ -36,7 +38,10 @@ struct Session {
   Receiver receiver;
   FrameTruth truth;
   std::vector<Pose> shown;
+  std::optional<ErrorFigure> figure{};
 };
+
+constexpr const char* kReasons[] = {"key or unconditional", "heartbeat", "visual bound", "haptic bound"};  // index: Reason
 
 using Clusters = std::map<std::string, ClusterBasis>;
 
@@ -72,6 +77,12 @@ Result<Session> start(const TraceInfo& info, const TraceFrame& first, const Enco
 Result<void> send(Session& s, const Packet& packet, std::int64_t tick, Report& report) {
   TACTUS_CHECK(s.writer.add(tick, packet.bytes, packet.key));
   const auto decode = [&] { return s.receiver.push(packet.bytes); };
+  if (s.figure) {
+    const bool is_rigid = packet.substream == 0;
+    const std::string line =
+        is_rigid ? kReasons[static_cast<std::size_t>(packet.reason)] : report.meshes[packet.substream - 1].name;
+    s.figure->add_packet(tick, line, packet.bytes.size());
+  }
   if (packet.substream == 0) {
     report.traffic->add(packet.reason, packet.updates, packet.bytes.size(), packet.key);
     TACTUS_CHECK(report.timings[1].times.measure(decode));
@@ -89,10 +100,13 @@ void judge(Session& s, const TraceFrame& frame, Report& report) {
   for (std::uint32_t i = 0; i < s.shown.size(); ++i)
     s.shown[i] = to_pose(replica.pose(i, frame.tick), s.receiver.scene()->grid.position);
   if (report.fidelity) report.fidelity->add(frame, s.shown);
+  if (s.figure) s.figure->add(frame, s.shown);
   for (std::size_t i = 0; i < frame.meshes.size(); ++i) {
     if (!frame.meshes[i].updated) continue;
     ++report.meshes[i].traffic->frames;
-    report.meshes[i].fidelity->add(frame.meshes[i].displacements, replica.displacements(i, frame.tick), touch_of(frame, i));
+    const auto displacements = replica.displacements(i, frame.tick);
+    report.meshes[i].fidelity->add(frame.meshes[i].displacements, displacements, touch_of(frame, i));
+    if (s.figure) s.figure->add_shape(frame, i, displacements, s.receiver.scene()->grid.position);
   }
 }
 
@@ -152,12 +166,14 @@ Outcome run(const EncodeOptions& options) {
     return refuse(shown_path(options.input) + ": the trace has no frames", "Record or simulate at least one tick.");
   }
   note_idle_options(*options.common.command, subjects_of(reader->info()), "trace");
+  TACTUS_CHECK(check_plot_option(options.plot, options.common, {options.input, options.output}));
   TACTUS_TRY(Clusters clusters, clusters_of(path, options));
-  TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing(), {options.input}));
+  TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing(), {options.input, options.plot}));
   TACTUS_TRY(const auto stream, output.open());
 
   auto session = start(reader->info(), frame, options, std::move(clusters), *stream);
   if (!session) return refuse(to_blame(session.error(), options), session.error());
+  if (!options.plot.empty()) session->figure.emplace(reader->info());
   Report report{.command = "encode", .files = {{"trace", options.input}, {"stream", options.output}}};
   report.describe(reader->info());
   if (has_moving(reader->info()) || reader->info().meshes.empty()) {
@@ -174,6 +190,9 @@ Outcome run(const EncodeOptions& options) {
   TACTUS_CHECK(output.keep());
   report.stream = {session->writer.header_bytes(), session->writer.bytes()};
   report.bounds_from = options.triggers.any_given() || options.meshes.any_given() ? "options" : "defaults";
+  if (session->figure)
+    TACTUS_CHECK(draw_over_time(options.plot, "Encoded: " + std::filesystem::path(options.input).filename().string(),
+                                session->figure->panels(report), options.common));
   print(report, options.common, beside(options.output));
   return verdict(report, options.output);
 }
@@ -194,12 +213,13 @@ void setup_encode(Command& app, Action& action) {
       ->type_name("N")
       ->excludes(command.find("--basis"));
   options->motion.add_to(command);
+  add_plot_option(command, options->plot, "packets by their reasons and errors beside their bounds, over time");
   add_output_options(command, options->common);
   command.footer(
       "Examples:\n"
       "  tactus encode push.mcap -o push.tct -p 4% --visual 6mm,2deg\n"
       "  tactus encode tosses.mcap -o tosses.tct --visual 5mm,4deg --haptic off --gravity 9.81 --friction 0.25\n"
-      "  tactus encode membrane.mcap -o membrane.tct -p 2.5% --deformable-visual 0.25mm --basis 48\n"
+      "  tactus encode membrane.mcap -o membrane.tct -p 2.5% --deformable-visual 0.25mm --basis 48 --plot membrane.svg\n"
       "  tactus encode dance.mcap -o dance.tct --haptic off --deformable-visual 1mm --clusters 40");
   on_chosen<EncodeOptions>(command, action, options, run);
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -12,6 +13,7 @@
 #ifdef TACTUS_HAS_SIM
 #include "cli/commands/tolerable_scene.h"
 #endif
+#include "cli/figure/plot_option.h"
 #include "cli/options/options_codec.h"
 #include "cli/options/units.h"
 #include "cli/output.h"
@@ -29,7 +31,7 @@ using Pair = DelayTolerance::Pair;
 using Touch = DelayTolerance::Touch;
 
 struct TolerableOptions {
-  std::string input;
+  std::string input, plot;
   std::uint64_t seed = 1;
   double weber = 0.1;
   CommonOptions common;
@@ -93,6 +95,41 @@ void print_text(const TolerableOptions& options, const TraceInfo& info, const De
     fmt::print("\nA deformable object gives way and bears more than that; give its scene to see how much.\n");
 }
 
+/// Over the round trip, how much of the time in contact it is felt: a line for each touch.
+Plot share_plot(const TolerableOptions& options, const TraceInfo& info, const DelayTolerance& tolerance) {
+  constexpr int kSteps = 100;
+  Plot plot{.name = {}, .program = "sweep"};
+  PlotData data{"data", {}};
+  std::vector<std::string> names;
+  double shortest = 1e3, longest = 1;
+  for (const auto& [pair, touch] : tolerance.touches()) {
+    if (!names.empty()) data.rows.insert(data.rows.end(), 2, {});
+    names.push_back(fmt::format("{}, {}", info.users[pair.user].name, name_of(info, pair)));
+    const double pressing =
+        100.0 * static_cast<double>(touch.pressing()) / static_cast<double>(std::max<std::uint64_t>(touch.ticks(), 1));
+    for (int step = 1; step < kSteps; ++step) {
+      const auto most = touch.quantile(static_cast<double>(step) / kSteps);
+      if (!most) break;
+      data.rows.push_back({1e3 * *most, pressing * step / kSteps});
+      shortest = std::min(shortest, 1e3 * *most);
+      longest = std::max(longest, 1e3 * *most);
+    }
+  }
+  plot.data.push_back(std::move(data));
+  plot.set("heading", fmt::format("{}: round trips that are felt as {:g} % more force", options.input, 100 * options.weber));
+  plot.set("series_label", names.size() == 1 ? "" : "user, object");
+  plot.set("x_label", "round trip [ms]");
+  plot.set("x_range", fmt::format("[{:.6g}:{:.6g}]", shortest, longest));
+  plot.set("y_label", std::vector<std::string>{"share of the time in contact [%]"});
+  plot.set("y_range", std::vector<std::string>{"[0:100]"});
+  plot.set("name", names);
+  plot.set("series", static_cast<double>(names.size()));
+  plot.set("panels", 1);
+  plot.set("log_x", 2);
+  for (const char* off : {"log_y", "spread", "marked"}) plot.set(off, 0);
+  return plot;
+}
+
 tl::expected<DelayTolerance, Failure> of_trace(const TolerableOptions& options, TraceReader& reader) {
   DelayTolerance out(reader.info(), options.weber);
   Progress progress("tolerable", reader.frame_count(), options.common.progress());
@@ -112,6 +149,7 @@ tl::expected<DelayTolerance, Failure> of_trace(const TolerableOptions& options, 
 Outcome report(const TolerableOptions& options, const TraceInfo& info, const DelayTolerance& tolerance, bool is_scene) {
   if (tolerance.touches().empty())
     return refuse(shown_path(options.input) + ": nobody touches anything", "Give a recording or a scene with contacts.");
+  if (!options.plot.empty()) TACTUS_CHECK(draw_at(options.plot, share_plot(options, info, tolerance), options.common));
   if (options.common.json) fmt::print("{}\n", text_of_json(to_json(options, info, tolerance)));
   else if (!options.common.quiet) print_text(options, info, tolerance, is_scene);
   return {};
@@ -133,6 +171,7 @@ Outcome run_scene(const TolerableOptions& options) {
 #endif
 
 Outcome run(const TolerableOptions& options) {
+  TACTUS_CHECK(check_plot_option(options.plot, options.common, {options.input}));
 #ifdef TACTUS_HAS_SIM
   if (TolerableScene::is_meant(options.input)) return run_scene(options);
 #endif
@@ -162,7 +201,8 @@ void setup_tolerable(Command& app, Action& action) {
       ->show_default()
       ->type_name("N");
 #endif
-  add_report_options(command, options->common);
+  add_plot_option(command, options->plot, "the share of the time in contact over the round trip that is felt");
+  add_output_options(command, options->common);
   command.footer(
       "A client learns of an object's motion a round trip late. Meanwhile a hand that presses goes further into what the client\n"
       "shows, and feels more than at the server (thesis eqs. 4.17 to 4.20, 4.31). What is deformable follows only a share of "

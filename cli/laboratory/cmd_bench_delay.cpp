@@ -11,7 +11,7 @@
 #include <tactus/trace/csv_reader.h>
 #include "cli/commands/commands.h"
 #include "cli/laboratory/cmd_bench.h"
-#include "cli/laboratory/plot.h"
+#include "cli/figure/plot.h"
 #include "cli/laboratory/workers.h"
 #include "cli/options/options_codec.h"
 #include "cli/options/units.h"

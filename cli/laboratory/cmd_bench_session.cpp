@@ -10,7 +10,7 @@
 #include <tactus/trace/trace_file.h>
 #include "cli/commands/commands.h"
 #include "cli/laboratory/cmd_bench.h"
-#include "cli/laboratory/plot.h"
+#include "cli/figure/plot.h"
 #include "cli/options/options_codec.h"
 #include "cli/output.h"
 #include "cli/progress.h"

@@ -11,7 +11,7 @@
 #include <tactus/sim/link/link.h>
 #include <tactus/sim/scene/scene.h>
 #include "cli/command.h"
-#include "cli/laboratory/plot.h"
+#include "cli/figure/plot.h"
 #include "cli/options/options_codec.h"
 #include "cli/report/messages.h"
 

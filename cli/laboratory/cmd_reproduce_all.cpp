@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <iterator>
 
-#include "cli/laboratory/child_process.h"
+#include "cli/figure/child_process.h"
 #include "cli/laboratory/cmd_bench.h"
 #include "cli/laboratory/cmd_reproduce.h"
 #include "cli/output.h"

@@ -4,22 +4,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
+#include <charconv>
+#include <chrono>
 #include <cstdlib>
-#include <filesystem>
-#include <map>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <system_error>
 #include <thread>
 
 #include <tactus/base/shown.h>
-#include "cli/laboratory/child_process.h"
-#include "cli/laboratory/plot.h"
+#include "cli/figure/plot.h"
 #include "cli/laboratory/sweep_plan.h"
 #include "cli/laboratory/sweep_plots.h"
 #include "cli/laboratory/sweep_results.h"
+#include "cli/laboratory/sweep_run.h"
+#include "cli/laboratory/sweep_table.h"
 #include "cli/options/options_codec.h"
 #include "cli/report/json_parts.h"
 #include "cli/report/table.h"
@@ -27,191 +25,98 @@
 namespace tactus::cli {
 namespace {
 
-namespace fs = std::filesystem;
-using Json = nlohmann::json;
-
-constexpr int kBoundsBroken = 3;                             // exit status
 constexpr const char* kInsideSweep = "TACTUS_INSIDE_SWEEP";  // variable of the environment that a sweep's commands see
 
 struct SweepOptions {
   std::string plan, folder;
+  std::vector<std::string> inputs;
+  std::optional<SweepShard> shard;
   unsigned jobs = 0;  // 0: one per core
-  bool list = false;
+  bool list = false, merge = false;
   CommonOptions common;
 };
 
-/// A word as a POSIX shell takes it.
-std::string quoted(const std::string& word) {
-  constexpr std::string_view kBare = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./,:=%+-";
-  if (!word.empty() && word.find_first_not_of(kBare) == std::string::npos) return word;
-  std::string out = "'";
-  for (const char c : word) {
-    if (c == '\'') out += "'\\''";
-    else out += c;
-  }
-  return out + '\'';
-}
-
-/// A command as it can be typed, whole; only control characters are escaped, for the terminal.
-std::string as_typed(const std::vector<std::string>& words) {
-  std::string out = "tactus";
-  for (const std::string& word : words) out += ' ' + quoted(word);
-  return shown(out, std::string::npos);
-}
-
-/// What a command said on standard error, its error not as JSON.
-std::string in_words(std::string said) {
-  while (!said.empty() && said.back() == '\n') said.pop_back();
-  const std::size_t start = said.starts_with('{') ? 0 : said.find("\n{\n");
-  if (start == std::string::npos) return said;
-  const Json report = Json::parse(said.begin() + static_cast<std::ptrdiff_t>(start), said.end(), nullptr, false);
-  if (report.is_discarded() || !report.contains("error")) return said;
-  const Json& error = report["error"];
-  std::string out = said.substr(0, start) + (start > 0 ? "\n" : "") + "error: " + error.value("text", "");
-  if (error.contains("remedy")) out += "\n       " + error.value("remedy", "");
-  return out;
-}
-
-/// Run a command of this program. A report of broken bounds is one.   err  it failed: the command and what it said
-tl::expected<std::string, Failure> run_command(const std::vector<std::string>& words) {
-  std::vector<std::string> arguments{own_program()};
-  arguments.insert(arguments.end(), words.begin(), words.end());
-  auto done = run_child(arguments);
-  if (!done)
-    return refuse(arguments[0] + ": the program cannot be started: " + done.error().message(), "Check the installation.");
-  if (done->status == 0 || done->status == kBoundsBroken) return std::move(done->out);
-  return refuse(as_typed(words) + "\n" + in_words(done->error), "");
-}
-
-/// Inputs that are not there yet. Made aside and moved, so that a file with the right name is whole.
-Outcome make_inputs(const SweepPlan& plan, const std::string& folder, Visibility visibility) {
-  std::error_code failed;
-  Progress progress("inputs", plan.inputs.size(), visibility);
-  for (std::size_t i = 0; i < plan.inputs.size(); ++i) {
-    const SweepInput& input = plan.inputs[i];
-    const fs::path file = fs::path(folder) / input.file;
-    progress.update(i);
-    if (fs::exists(file, failed)) continue;
-    TACTUS_TRY(const auto aside, AsideFolder::create(folder, "unfinished"));
-    const fs::path made = fs::path(aside.path()) / input.file;
-    TACTUS_CHECK(run_command(input.words(made.string())));
-    fs::rename(made, file, failed);
-    if (failed) {
-      return refuse(fmt::format("input {}: the command left no file: {}", input.name, failed.message()),
-                    "Let the command write to {file}.");
-    }
-  }
-  return {};
-}
-
-/// The plan's measures out of a command's report.
-tl::expected<std::vector<std::string>, Failure> measure(const SweepPlan& plan, const std::vector<std::string>& words,
-                                                        const std::string& text) {
-  const Json report = Json::parse(text, nullptr, false);
-  if (report.is_discarded())
-    return refuse(as_typed(words) + "\n       printed no JSON report", "Sweep a command that takes --json.");
-  std::vector<std::string> out;
-  for (const SweepMeasure& wanted : plan.measures) {
-    const Json::json_pointer place(wanted.place);
-    if (!report.contains(place) || report[place].is_structured()) {
-      return refuse(fmt::format("{}\n       its report has no value at {}", as_typed(words), wanted.place),
-                    "Look at what the command prints with --json.");
-    }
-    const Json& value = report[place];
-    out.push_back(value.is_string() ? value.get<std::string>() : value.dump());
-  }
-  return out;
-}
-
-/// The points that are still missing, spread over threads that each wait for one process at a time.
-class Workers {
- public:
-  Workers(const SweepPlan& plan, SweepResults& results, Progress& progress)
-      : plan_(plan), results_(results), progress_(progress) {
-    for (std::size_t point = 0; point < plan.points(); ++point)
-      if (!results.has(plan.values(point))) missing_.push_back(point);
-  }
-
-  std::size_t missing() const { return missing_.size(); }
-  std::size_t failed() const { return failures_.size(); }
-  const Failure& first_failure() const { return failures_.begin()->second; }  ///< in the plan's order.   pre  failed() > 0
-
-  void run(unsigned jobs) {
-    std::vector<std::thread> threads;
-    for (unsigned i = 0; i < std::min<std::size_t>(jobs, missing_.size()); ++i) threads.emplace_back([this] { work(); });
-    for (std::thread& thread : threads) thread.join();
-  }
-
- private:
-  void work() {
-    for (std::size_t i = next_++; i < missing_.size() && !stop_; i = next_++) {
-      const auto words = plan_.words(missing_[i], results_.folder());
-      auto arguments = words;
-      arguments.insert(arguments.end(), {"--json", "--quiet"});
-      auto measured = computed(words, arguments);
-      const std::lock_guard lock(mutex_);
-      if (!measured) failures_.emplace(missing_[i], measured.error());
-      else if (auto kept = results_.add(plan_.values(missing_[i]), *measured); !kept) {
-        failures_.emplace(missing_[i], kept.error());
-        stop_ = true;
-      }
-      progress_.update(++done_);
-    }
-  }
-
-  /// No exception leaves a thread: it would end the program.
-  tl::expected<std::vector<std::string>, Failure> computed(const std::vector<std::string>& words,
-                                                           const std::vector<std::string>& arguments) const {
-    try {
-      return run_command(arguments).and_then([&](const std::string& text) { return measure(plan_, words, text); });
-    } catch (const std::exception& e) {
-      return refuse(as_typed(words) + "\n       " + e.what(), "");
-    }
-  }
-
-  const SweepPlan& plan_;
-  SweepResults& results_;
-  Progress& progress_;
-  std::vector<std::size_t> missing_;
-  std::atomic<std::size_t> next_ = 0;
-  std::atomic<bool> stop_ = false;
-  std::mutex mutex_;                         // for what follows, and for results_ and progress_
-  std::map<std::size_t, Failure> failures_;  // point
-  std::size_t done_ = 0;
-};
-
-void print_commands(const SweepPlan& plan, const std::string& folder) {
-  for (const SweepInput& input : plan.inputs) fmt::print("{}\n", as_typed(input.words(folder + "/" + input.file)));
-  for (std::size_t point = 0; point < plan.points(); ++point) fmt::print("{}\n", as_typed(plan.words(point, folder)));
+/// "3/8"
+std::optional<SweepShard> parse_shard(const std::string& typed) {
+  SweepShard out;
+  const char* end = typed.data() + typed.size();
+  const auto index = std::from_chars(typed.data(), end, out.index);
+  if (index.ec != std::errc() || index.ptr == end || *index.ptr != '/') return std::nullopt;
+  const auto count = std::from_chars(index.ptr + 1, end, out.count);
+  const bool is_whole = count.ec == std::errc() && count.ptr == end;
+  return is_whole && out.index >= 1 && out.index <= out.count ? std::optional(out) : std::nullopt;
 }
 
 struct Summary {
   std::size_t points = 0, computed = 0, failed = 0;
   double seconds = 0;
-  std::vector<std::string> files;
+  double point_seconds = 0;     // of the command of a point, the middle one; 0: none was computed
+  std::size_t points_left = 0;  // of the whole plan
+  std::vector<std::string> files{};
+
+  double seconds_left() const { return point_seconds * static_cast<double>(points_left); }
 };
 
 void print_summary(const SweepOptions& options, const SweepPlan& plan, const Summary& s) {
   if (options.common.json) {
-    fmt::print("{}\n", text_of_json(nlohmann::ordered_json{{"schema", "tactus.sweep-summary/2"},
+    fmt::print("{}\n", text_of_json(nlohmann::ordered_json{{"schema", "tactus.sweep-summary/3"},
                                                            {"plan", plan.name},
                                                            {"points", s.points},
                                                            {"computed", s.computed},
                                                            {"failed", s.failed},
                                                            {"time_s", s.seconds},
+                                                           {"point_p50_s", s.point_seconds},
+                                                           {"points_left", s.points_left},
+                                                           {"work_left_s", s.seconds_left()},
                                                            {"files", s.files}}));
     return;
   }
   if (options.common.quiet) return;
   Table table;
   table.heading({"sweep " + plan.name, "number"});
-  table.row({"  points of the plan", fmt::to_string(s.points)});
+  table.row({options.shard ? "  points of the shard" : "  points of the plan", fmt::to_string(s.points)});
   table.row({"  there before", fmt::to_string(s.points - s.computed - s.failed)});
   table.row({"  computed now", fmt::to_string(s.computed)});
   table.row({"  failed", fmt::to_string(s.failed)});
   table.row({"  time [s]", fmt::format("{:.1f}", s.seconds)});
+  table.row({"  time of a point, median [s]", fmt::format("{:.2f}", s.point_seconds)});
+  if (s.points_left > 0) {
+    table.row({"  points of the plan that are missing here", fmt::to_string(s.points_left)});
+    table.row({"  time of these on one core, estimated [s]", fmt::format("{:.0f}", s.seconds_left())});
+  }
   table.print(stdout);
   for (const std::string& file : s.files) fmt::print("  {}\n", shown_path(file));
+}
+
+std::vector<std::size_t> points_of(const SweepPlan& plan, const std::optional<SweepShard>& shard) {
+  std::vector<std::size_t> out;
+  for (std::size_t point = 0; point < plan.points(); ++point)
+    if (!shard || plan.is_of(point, *shard)) out.push_back(point);
+  return out;
+}
+
+void print_commands(const SweepPlan& plan, const SweepInputs& inputs, const std::vector<std::size_t>& points) {
+  for (const auto& words : inputs.commands(plan, points)) fmt::print("{}\n", as_typed(words));
+  for (const std::size_t point : points)
+    fmt::print("{}\n", as_typed(plan.words(point, [&](const std::string& file) { return inputs.path_of(file); })));
+}
+
+Outcome refuse_missing(const SweepPlan& plan, const std::string& folder, const std::vector<std::size_t>& missing) {
+  const auto values = plan.values(missing.front());
+  return refuse(fmt::format("{}: {} of {} points are missing, the first one is {}", shown_path(folder), missing.size(),
+                            plan.points(), shown(fmt::format("{}", fmt::join(values, ", ")))),
+                "Run the shards that were stopped again, or leave --merge out: the missing points are then computed here.");
+}
+
+/// Tables in the plan's order, and figures: of whole sweeps alone.
+Outcome finish(const SweepPlan& plan, SweepResults& results, Summary& summary) {
+  TACTUS_CHECK(results.sort(plan));
+  TACTUS_TRY(const auto tables, write_table(plan, results));
+  TACTUS_TRY(const auto drawn, draw_plots(plan, results));
+  summary.files.insert(summary.files.end(), tables.begin(), tables.end());
+  summary.files.insert(summary.files.end(), drawn.files.begin(), drawn.files.end());
+  for (const std::string& note : drawn.notes) fmt::print(stderr, "note: {}\n", note);
+  return {};
 }
 
 Outcome run(const SweepOptions& options) {
@@ -219,37 +124,36 @@ Outcome run(const SweepOptions& options) {
     return refuse("a sweep cannot run within a sweep", "Use other commands than sweep in the plan.");
   TACTUS_TRY(const auto plan, load_plan(options.plan));
   const std::string folder = options.folder.empty() ? "out/" + plan.name : options.folder;
+  TACTUS_TRY(const auto inputs, SweepInputs::open(plan, folder, options.inputs));
+  const auto points = points_of(plan, options.shard);
   if (options.list) {
-    print_commands(plan, folder);
+    print_commands(plan, inputs, points);
     return {};
   }
   const auto begin = std::chrono::steady_clock::now();
   setenv(kInsideSweep, "1", 1);  // for the commands of the plan; no thread is running yet
-  TACTUS_TRY(auto results, SweepResults::open(folder, plan));
-  TACTUS_CHECK(make_inputs(plan, folder, options.common.progress()));
+  TACTUS_TRY(auto results, SweepResults::open(options.shard ? shard_folder(folder, *options.shard) : folder, plan));
+  if (!options.shard) TACTUS_CHECK(results.absorb_shards(plan));
+  auto missing = points;
+  std::erase_if(missing, [&](std::size_t point) { return results.has(plan.values(point)); });
+  if (options.merge && !missing.empty()) return refuse_missing(plan, folder, missing);
 
-  Summary summary{.points = plan.points(), .files = {folder + "/points.csv", folder + "/context.json"}};
-  std::optional<Failure> first;
-  {
-    const std::size_t before = results.rows(plan).size();
-    Progress progress("sweep " + plan.name, plan.points() - before, options.common.progress());
-    Workers workers(plan, results, progress);
-    workers.run(options.jobs > 0 ? options.jobs : std::max(1u, std::thread::hardware_concurrency()));
-    summary.failed = workers.failed();
-    summary.computed = workers.missing() - summary.failed;
-    if (summary.failed > 0) first = workers.first_failure();
-  }
-  if (!first) {  // plots are of whole tables
-    TACTUS_CHECK(results.sort(plan));
-    TACTUS_TRY(auto drawn, draw_plots(plan, results));
-    summary.files.insert(summary.files.end(), drawn.begin(), drawn.end());
-    if (drawn.size() < plan.plots.size()) fmt::print(stderr, "note: {}\n", kNoGnuplot);
-  }
+  const unsigned jobs = options.jobs > 0 ? options.jobs : std::max(1u, std::thread::hardware_concurrency());
+  TACTUS_TRY(const auto digests, inputs.make(plan, missing, jobs, options.common.progress()));
+  TACTUS_CHECK(results.bind_inputs(plan, digests));
+  const auto failures = compute(plan, inputs, missing, results, jobs, options.common.progress());
+
+  Summary summary{.points = points.size(), .computed = missing.size() - failures.size(), .failed = failures.size()};
+  for (const char* file : {"/points.csv", "/times.csv", "/context.json"}) summary.files.push_back(results.folder() + file);
+  if (const auto seconds = results.seconds(); !seconds.empty()) summary.point_seconds = spread_of(seconds).median;
+  summary.points_left = plan.points() - points.size() + failures.size();
+  if (failures.empty() && !options.shard) TACTUS_CHECK(finish(plan, results, summary));
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   print_summary(options, plan, summary);
-  if (!first) return {};
-  return refuse(fmt::format("{} of {} points failed, the first one:\n       {}", summary.failed, summary.points, first->text),
-                first->remedy.empty() ? "Correct the cause and run the sweep again; finished points are kept." : first->remedy);
+  if (failures.empty()) return {};
+  const Failure& first = failures.begin()->second;
+  return refuse(fmt::format("{} of {} points failed, the first one:\n       {}", summary.failed, summary.points, first.text),
+                first.remedy.empty() ? "Correct the cause and run the sweep again; finished points are kept." : first.remedy);
 }
 
 }  // namespace
@@ -263,14 +167,32 @@ void setup_sweep(Command& app, Action& action) {
   command.add_option("-j,--jobs", options->jobs, "Points computed in parallel [one per core]; give 1 where times matter")
       ->check(whole_number(1, 1024))
       ->type_name("N");
+  command
+      .add_option("--inputs", options->inputs,
+                  "Inputs that are there already: a folder with files of the plan, or NAME=FILE; may be repeated")
+      ->one_value()
+      ->type_name("DIR|NAME=FILE");
+  Option* shard = command
+                      .add_option(
+                          "--shard", [options](const std::string& typed) { options->shard = parse_shard(typed); },
+                          "Compute the I-th of N parts of the points, from 1, into DIR/shards: one per machine")
+                      ->check([](const std::string& typed) {
+                        return parse_shard(typed) ? "" : shown(typed) + ": give I/N, I from 1 to N: 3/8";
+                      })
+                      ->type_name("I/N");
+  command.add_flag("--merge", options->merge, "Compute nothing: put what the shards computed into one table, once all is there")
+      ->excludes(shard);
   command.add_flag("--list", options->list, "Print the commands without running them");
   add_report_options(command, options->common);
   command.footer(
-      "A stopped sweep resumes when it is started again; finished points are kept.\n"
+      "A stopped sweep or shard resumes when it is started again; finished points are kept.\n"
       "A plan is a program: its commands may write any file. Check a plan that you did not write with --list first.\n"
       "Examples:\n"
       "  tactus sweep reports/plans/deadband.toml\n"
-      "  tactus sweep reports/plans/deadband.toml -o results/deadband -j 1");
+      "  tactus sweep reports/plans/deadband.toml -o results/deadband -j 1\n"
+      "  tactus sweep reports/plans/deadband.toml --inputs my-recordings\n"
+      "  parallel tactus sweep reports/plans/deadband.toml -j 1 --shard {}/8 ::: $(seq 8)\n"
+      "  tactus sweep reports/plans/deadband.toml --merge");
   on_chosen<SweepOptions>(command, action, options, run);
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cli/laboratory/cmd_reproduce.h"
-#include "cli/laboratory/plot.h"
+#include "cli/figure/plot.h"
 
 namespace tactus::cli {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/laboratory/plot.h"
+#include "cli/figure/plot.h"
 #include "cli/laboratory/precision_results.h"
 
 namespace tactus::cli {

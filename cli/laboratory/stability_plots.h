@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "cli/laboratory/plot.h"
+#include "cli/figure/plot.h"
 #include "cli/laboratory/study_report.h"
 
 namespace tactus::cli {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <tactus/sim/scene/scene.h>
-#include "cli/laboratory/plot.h"
+#include "cli/figure/plot.h"
 #include "cli/output.h"
 
 namespace tactus::cli {

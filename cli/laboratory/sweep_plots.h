@@ -10,7 +10,11 @@
 
 namespace tactus::cli {
 
-/// The plan's figures from the rows that are there, into the sweep's folder.   out  files made
-tl::expected<std::vector<std::string>, Failure> draw_plots(const SweepPlan& plan, const SweepResults& results);
+struct DrawnPlots {
+  std::vector<std::string> files, notes;  ///< notes: why there are not more
+};
+
+/// The plan's figures from the rows that are there, into the sweep's folder.
+tl::expected<DrawnPlots, Failure> draw_plots(const SweepPlan& plan, const SweepResults& results);
 
 }  // namespace tactus::cli

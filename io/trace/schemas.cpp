@@ -4,21 +4,14 @@
 #include <array>
 #include <vector>
 
+#include <tactus/trace/ros_definitions.h>
+
 namespace tactus {
 namespace {
 
-struct Definition {
-  std::string_view name;
-  std::string_view fields;
-};
+using ros::Definition, ros::definition_text, ros::kPoint, ros::kPose, ros::kQuaternion, ros::kTime, ros::kVector3;
 
-// Without "/msg/", as recorders of ROS 2 write them and as fields refer to them.
-constexpr Definition kTime{"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"};
 constexpr Definition kHeader{"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"};
-constexpr Definition kPoint{"geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n"};
-constexpr Definition kVector3{"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"};
-constexpr Definition kQuaternion{"geometry_msgs/Quaternion", "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"};
-constexpr Definition kPose{"geometry_msgs/Pose", "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n"};
 constexpr Definition kMeshTriangle{"shape_msgs/MeshTriangle", "uint32[3] vertex_indices\n"};
 constexpr Definition kTwist{"geometry_msgs/Twist", "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n"};
 
@@ -140,12 +133,7 @@ std::string_view schema_name(MessageType type) noexcept {
 
 std::string schema_text(MessageType type) {
   const Message message = message_of(type);
-  std::string text(message.fields);
-  for (const Definition& definition : message.dependencies) {
-    text.append(80, '=').append("\nMSG: ").append(definition.name).append("\n");
-    text.append(definition.fields);
-  }
-  return text;
+  return definition_text(message.fields, message.dependencies);
 }
 
 }  // namespace tactus

@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(plan.error().text.find("R-SCN-") != std::string::npos && plan.error().cause == tactus::cli::Failure::Cause::work);
     return 0;
   }
-  const auto columns = plan->columns();
+  const auto columns = plan->all_columns();
   const auto names_column = [&](const std::string& name) { return std::ranges::find(columns, name) != columns.end(); };
   for (const auto& plot : plan->plots) {
     require(names_column(plot.x) && names_column(plot.series) && std::ranges::all_of(plot.y, names_column));
@@ -27,7 +27,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   require(plan->points() > 0 && !plan->command.empty());
   for (const std::size_t point : {std::size_t{0}, plan->points() / 2, plan->points() - 1}) {
     require(plan->values(point).size() == plan->parameters.size());
-    (void)plan->words(point, "folder");
+    for (const auto& [made, input] : plan->files_of(point)) {
+      require(made.find('/') == std::string::npos);
+      (void)plan->words(*input, point, made);
+    }
+    (void)plan->words(point, [](const std::string& input) { return "folder/" + input; });
+    require(plan->is_of(point, {1, 2}) != plan->is_of(point, {2, 2}));
   }
   return 0;
 }

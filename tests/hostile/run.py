@@ -143,10 +143,11 @@ def commands(kind, name, rng):
     """What the table of kinds and commands asks for; one of it."""
     table = {
         "streams": [["info", name], ["info", name, "--packets", "--json"], ["decode", name, "-o", "o.mcap", "--interpolate", "--ticks", "200"],
-                    ["decode", name, "-o", "o.mcap"]],
+                    ["decode", name, "-o", "o.mcap"], ["export", "foxglove", name, "-o", "o.mcap"]],
         "traces": [["info", name], ["encode", name, "-o", "o.tct"], ["encode", name, "-o", "o.tct", "--profile", "thesis"],
                    ["encode", name, "-o", "o.tct", "--basis", "4"], ["encode", name, "-o", "o.tct", "--layered"],
-                   ["export", "csv", name, "-o", "o.csv"], ["export", "mesh", name, "-o", "o"], ["compare", name, name],
+                   ["export", "csv", name, "-o", "o.csv"], ["export", "mesh", name, "-o", "o"], ["export", "foxglove", name, "-o", "o.mcap"],
+                   ["compare", name, name],
                    ["decode", "seed.tct", "-o", "o.mcap", "--like", name], ["sim", "push-1dof", "-o", "o.mcap", "--replay", name],
                    ["cut", name, "-o", "o.mcap", "--from", "10ms", "--rebase"], ["resample", name, "-o", "o.mcap", "--rate", "333"],
                    ["merge", name, name, "-o", "o.mcap"], ["recover", name, "-o", "o.mcap"]],

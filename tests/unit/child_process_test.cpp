@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/laboratory/child_process.h"
+#include "cli/figure/child_process.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/laboratory/plot.h"
+#include "cli/figure/plot.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <iterator>
 
 #include <tactus/base/shown.h>
-#include "cli/laboratory/child_process.h"
+#include "cli/figure/child_process.h"
 
 namespace tactus::cli {
 namespace {
@@ -49,12 +49,29 @@ std::string array(const std::string& name, const std::vector<Value>& values) {
   return fmt::format("array {}[{}] = [{}]\n", name, values.size(), list);
 }
 
+/// The figure with its heading as the title that readers of screens tell; gnuplot writes its own name.
+std::string titled(std::string svg, const std::string& title) {
+  constexpr std::string_view kOwn = "<title>Gnuplot</title>";
+  const std::size_t at = svg.find(kOwn);
+  if (at == std::string::npos) return svg;
+  std::string text;
+  for (const char c : title) {
+    if (c == '&') text += "&amp;";
+    else if (c == '<') text += "&lt;";
+    else text += c;
+  }
+  return svg.replace(at, kOwn.size(), "<title>" + text + "</title>");
+}
+
 std::string file_of(const Plot& plot, const std::string& directory) { return directory + "/" + plot.name + ".svg"; }
 
 }  // namespace
 
 void Plot::set(const std::string& variable, double value) { settings += variable + " = " + in_gnuplot(value) + '\n'; }
-void Plot::set(const std::string& variable, std::string_view text) { settings += variable + " = " + in_gnuplot(text) + '\n'; }
+void Plot::set(const std::string& variable, std::string_view text) {
+  settings += variable + " = " + in_gnuplot(text) + '\n';
+  if (variable == "heading") title = shown(text, kLongestText);
+}
 void Plot::set(const std::string& variable, const std::vector<double>& values) { settings += array(variable, values); }
 void Plot::set(const std::string& variable, const std::vector<std::string>& texts) { settings += array(variable, texts); }
 
@@ -79,7 +96,7 @@ Outcome check_plot(const Plot& plot, const std::string& directory, OutputFile::E
 tl::expected<Drawn, Failure> draw(const Plot& plot, const std::string& directory, OutputFile::Existing existing) {
   TACTUS_CHECK(check_plot(plot, directory, existing));
   const std::string figure = shown_path(file_of(plot, directory)), remedy = "Check the installation of gnuplot.";
-  const auto done = run_child({"gnuplot", "-d", "/dev/stdin"}, plot.script(), kLongestRun);
+  auto done = run_child({"gnuplot", "-d", "/dev/stdin"}, plot.script(), kLongestRun);
   if (!done && done.error() == std::errc::no_such_file_or_directory) return Drawn::no;
   if (!done && done.error() == std::errc::timed_out)
     return refuse(fmt::format("{}: gnuplot did not end within {} s", figure, kLongestRun.count()), remedy);
@@ -87,7 +104,7 @@ tl::expected<Drawn, Failure> draw(const Plot& plot, const std::string& directory
   if (done->status != 0)
     return refuse(fmt::format("{}: gnuplot ended with status {}: {}", figure, done->status, shown(done->error, kMostOfWords)),
                   remedy);
-  TACTUS_CHECK(write_file(file_of(plot, directory), done->out, existing));
+  TACTUS_CHECK(write_file(file_of(plot, directory), titled(std::move(done->out), plot.title), existing));
   return Drawn::yes;
 }
 

@@ -23,6 +23,7 @@ struct Plot {
   int width = 900, height = 560;  ///< [pixels]
   std::vector<PlotData> data{};
   std::string settings{};  ///< made by set()
+  std::string title{};     ///< the text of the variable "heading"
 
   /// Variables of the program; arrays, which gnuplot counts from 1, are none where they are empty.
   void set(const std::string& variable, double value);

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/trace/foxglove_writer.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include <tactus/base/out_of_memory.h>
+#include <tactus/base/rule.h>
+#include <tactus/trace/foxglove_messages.h>
+#include <tactus/trace/mcap_writer.h>
+#include <tactus/trace/messages.h>
+#include <tactus/trace/schemas.h>
+
+namespace tactus {
+namespace {
+
+using foxglove::Colour;
+using foxglove::Entity;
+
+constexpr std::size_t kChunkBytes = 1u << 20;
+constexpr std::uint64_t kChunkTime = 1'000'000'000;  // [ns]
+
+// Okabe and Ito, as in the figures.
+constexpr Colour kObject{0.60, 0.66, 0.72, 1}, kFelt{0.835, 0.369, 0, 1}, kServer{0, 0.447, 0.698, 1},
+    kTouched{0, 0.62, 0.451, 1}, kDevice{0.15, 0.15, 0.15, 1}, kRest{0.80, 0.84, 0.88, 1};
+constexpr std::array<Colour, 3> kAxes{Colour{0.8, 0.2, 0.2, 1}, Colour{0.2, 0.6, 0.2, 1}, Colour{0.2, 0.3, 0.8, 1}};
+constexpr double kAxisLength = 0.03, kDeviceSize = 0.008, kTouchedSize = 0.005, kThickness = 0.002;  // [m]
+constexpr double kLeastArrow = 1e-4;                                                                 // [m]
+constexpr double kFullColour = 0.1;  // displacement of a vertex in units of its mesh's diagonal that has the full colour
+
+constexpr std::size_t kSteps = 32;  // of the colour: bytes that repeat are compressed well
+
+enum Schemas : std::uint16_t { kSceneSchema = 1, kTransformSchema, kPoseSchema, kPointSchema, kVectorSchema };
+
+Vec3 ball(double size) { return {size, size, size}; }
+
+double diagonal_of(const TriMesh& mesh) {
+  Vec3 low = mesh.vertices.front(), high = low;
+  for (const Vec3& v : mesh.vertices) {
+    low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+    high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+  }
+  return norm(high - low);
+}
+
+/// Half of the bytes are then zero.
+Vec3 in_single_precision(const Vec3& v) {
+  return {static_cast<double>(static_cast<float>(v.x)), static_cast<double>(static_cast<float>(v.y)),
+          static_cast<double>(static_cast<float>(v.z))};
+}
+
+Colour mixed(const Colour& a, const Colour& b, double share) {
+  return {a.r + share * (b.r - a.r), a.g + share * (b.g - a.g), a.b + share * (b.b - a.b), 1};
+}
+
+Entity entity_of(const std::string& frame, const FoxgloveShape* shape) {
+  Entity out{.frame = frame, .id = frame, .moves_with_frame = true};
+  if (shape && !shape->surface.triangles.empty()) {
+    out.triangles.push_back({shape->surface.vertices, shape->surface.triangles, kObject, {}});
+  } else if (shape && shape->box != Vec3{}) {
+    out.cubes.push_back({Pose{}, shape->box, kObject});
+  } else {
+    const std::array<Vec3, 3> axes{Vec3{kAxisLength, 0, 0}, Vec3{0, kAxisLength, 0}, Vec3{0, 0, kAxisLength}};
+    for (std::size_t i = 0; i < axes.size(); ++i) out.arrows.push_back({Vec3{}, axes[i], kThickness, kAxes[i]});
+  }
+  return out;
+}
+
+/// Where a user's probe is held on what it touches.
+std::optional<Vec3> touched_point(const UserSample& user, const TraceFrame& frame) {
+  if (user.surface_contact) return user.surface_contact->proxy;
+  const Contact& contact = user.contact;
+  if (contact.kind == ContactKind::none) return std::nullopt;
+  const Pose& pose = frame.objects[contact.object].pose;
+  const Vec3 point = to_world(pose, contact.point);
+  if (contact.kind == ContactKind::spring) return point;
+  const Vec3 normal = rotate(pose.rotation, contact.normal);
+  return user.device.position + dot(point - user.device.position, normal) * normal;
+}
+
+}  // namespace
+
+struct FoxgloveWriter::Impl {
+  Impl(mcap::Writer writer, const TraceInfo& trace_info, std::vector<FoxgloveShape> object_shapes, const FoxgloveOptions& chosen)
+      : mcap(std::move(writer)),
+        info(trace_info),
+        shapes(std::move(object_shapes)),
+        options(chosen),
+        is_new(info.meshes.size(), true) {}
+
+  Result<void> declare();
+  Result<std::uint16_t> add_channel(std::uint16_t schema, std::string topic);
+  void send(std::uint16_t channel);
+  bool is_due(std::uint64_t at) const;
+  void write_transforms(const TraceFrame& frame);
+  void write_objects(const TraceFrame& frame);
+  void write_mesh(std::size_t i, const TraceFrame& frame);
+  void write_user(std::size_t i, const TraceFrame& frame);
+
+  struct UserChannels {
+    std::uint16_t scene, device, force, server_force;
+  };
+
+  mcap::Writer mcap;
+  TraceInfo info;
+  std::vector<FoxgloveShape> shapes;
+  FoxgloveOptions options;
+  std::uint16_t channels = 0, transforms = 0, objects = 0;
+  std::vector<std::uint16_t> poses, meshes;
+  std::vector<UserChannels> users;
+  std::vector<std::string> frames;  // of objects, users, meshes
+  std::vector<double> diagonals;    // of meshes
+  std::vector<bool> is_new;         // mesh: its shape is not yet written
+  std::vector<std::uint8_t> message;
+  std::uint64_t time = 0, count = 0, due = 0;  // due: how many periods have begun
+  std::uint32_t sequence = 0;
+};
+
+Result<std::uint16_t> FoxgloveWriter::Impl::add_channel(std::uint16_t schema, std::string topic) {
+  if (channels == UINT16_MAX) return fail(Errc::invalid_argument, "R-TRC-17");
+  TACTUS_CHECK(mcap.add(mcap::Channel{++channels, schema, std::move(topic), "cdr", {}}));
+  return channels;
+}
+
+Result<void> FoxgloveWriter::Impl::declare() {
+  const auto add = [&](std::uint16_t id, std::string_view name, std::string text) {
+    return mcap.add(mcap::Schema{id, std::string(name), "ros2msg", std::move(text)});
+  };
+  const auto add_known = [&](std::uint16_t id, MessageType type) { return add(id, schema_name(type), schema_text(type)); };
+  TACTUS_CHECK(add(kSceneSchema, foxglove::kSceneUpdate, foxglove::scene_update_schema()));
+  TACTUS_CHECK(add(kTransformSchema, foxglove::kFrameTransforms, foxglove::frame_transforms_schema()));
+  TACTUS_CHECK(add_known(kPoseSchema, MessageType::pose));
+  TACTUS_CHECK(add_known(kPointSchema, MessageType::point));
+  TACTUS_CHECK(add_known(kVectorSchema, MessageType::vector));
+  TACTUS_TRY(transforms, add_channel(kTransformSchema, "/tf"));
+  if (!info.objects.empty()) {
+    TACTUS_TRY(objects, add_channel(kSceneSchema, "/scene/objects"));
+  }
+  for (const TraceObject& object : info.objects) {
+    frames.push_back("objects/" + object.name);
+    TACTUS_TRY(poses.emplace_back(), add_channel(kPoseSchema, "/objects/" + object.name + "/pose"));
+  }
+  for (const TraceUser& user : info.users) {
+    frames.push_back("users/" + user.name);
+    UserChannels& own = users.emplace_back();
+    TACTUS_TRY(own.scene, add_channel(kSceneSchema, "/scene/users/" + user.name));
+    TACTUS_TRY(own.device, add_channel(kPointSchema, "/users/" + user.name + "/device"));
+    TACTUS_TRY(own.force, add_channel(kVectorSchema, "/users/" + user.name + "/force"));
+    TACTUS_TRY(own.server_force, add_channel(kVectorSchema, "/users/" + user.name + "/server_force"));
+  }
+  for (const TraceDeformable& mesh : info.meshes) {
+    frames.push_back("meshes/" + mesh.name);
+    diagonals.push_back(diagonal_of(mesh.rest));
+    TACTUS_TRY(meshes.emplace_back(), add_channel(kSceneSchema, "/scene/meshes/" + mesh.name));
+  }
+  return {};
+}
+
+void FoxgloveWriter::Impl::send(std::uint16_t channel) {
+  ++count;
+  mcap.add(mcap::Message{channel, sequence, time, time, message});
+}
+
+/// One frame in each period of the rate.
+bool FoxgloveWriter::Impl::is_due(std::uint64_t at) const {
+  return static_cast<double>(at) * 1e-9 * options.rate >= static_cast<double>(due);
+}
+
+void FoxgloveWriter::Impl::write_transforms(const TraceFrame& frame) {
+  std::vector<foxglove::Transform> list;
+  std::size_t next = 0;
+  for (const RigidSample& object : frame.objects) list.push_back({frames[next++], object.pose});
+  for (const UserSample& user : frame.users) list.push_back({frames[next++], {user.device.position, user.device.orientation}});
+  while (next < frames.size()) list.push_back({frames[next++], Pose{}});
+  foxglove::encode_frame_transforms(message, time, list);
+  send(transforms);
+}
+
+void FoxgloveWriter::Impl::write_objects(const TraceFrame& frame) {
+  for (std::size_t i = 0; i < frame.objects.size(); ++i) {
+    encode_pose(message, time, frame.objects[i].pose);
+    send(poses[i]);
+  }
+  if (info.objects.empty() || due > 0) return;
+  std::vector<Entity> entities;
+  for (std::size_t i = 0; i < info.objects.size(); ++i)
+    entities.push_back(entity_of(frames[i], i < shapes.size() ? &shapes[i] : nullptr));
+  foxglove::encode_scene_update(message, time, entities);
+  send(objects);
+}
+
+void FoxgloveWriter::Impl::write_mesh(std::size_t i, const TraceFrame& frame) {
+  const TriMesh& rest = info.meshes[i].rest;
+  const std::vector<float>& u = frame.meshes[i].displacements;
+  std::vector<Vec3> points(rest.vertices.size());
+  std::vector<Colour> colours(points.size());
+  std::array<Colour, kSteps + 1> ramp;
+  for (std::size_t k = 0; k < ramp.size(); ++k) ramp[k] = mixed(kRest, kFelt, static_cast<double>(k) / kSteps);
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    const Vec3 moved{u[3 * v], u[3 * v + 1], u[3 * v + 2]};
+    points[v] = in_single_precision(rest.vertices[v] + moved);
+    colours[v] = ramp[static_cast<std::size_t>(std::min(1.0, norm(moved) / (kFullColour * diagonals[i])) * kSteps)];
+  }
+  Entity entity{.frame = frames[info.objects.size() + info.users.size() + i], .id = "meshes/" + info.meshes[i].name};
+  entity.triangles.push_back({points, rest.triangles, kRest, colours});
+  foxglove::encode_scene_update(message, time, {&entity, 1});
+  send(meshes[i]);
+}
+
+void FoxgloveWriter::Impl::write_user(std::size_t i, const TraceFrame& frame) {
+  const UserSample& user = frame.users[i];
+  const Vec3 hand = user.device.position;
+  Entity entity{.frame = std::string(foxglove::kWorld), .id = "users/" + info.users[i].name};
+  entity.spheres.push_back({{hand, {}}, ball(kDeviceSize), kDevice});
+  if (const auto point = touched_point(user, frame)) entity.spheres.push_back({{*point, {}}, ball(kTouchedSize), kTouched});
+  const auto add_arrow = [&](const Vec3& force, double thickness, const Colour& colour) {
+    const Vec3 along = options.metres_per_newton * force;
+    if (norm(along) > kLeastArrow) entity.arrows.push_back({hand, along, thickness, colour});
+  };
+  add_arrow(user.force, kThickness, kFelt);
+  add_arrow(user.server_force, kThickness / 2, kServer);
+  foxglove::encode_scene_update(message, time, {&entity, 1});
+  send(users[i].scene);
+  const std::pair<std::uint16_t, Vec3> vectors[] = {
+      {users[i].device, hand}, {users[i].force, user.force}, {users[i].server_force, user.server_force}};
+  for (const auto& [channel, vector] : vectors) {
+    encode_vector(message, time, vector);
+    send(channel);
+  }
+}
+
+Result<FoxgloveWriter> FoxgloveWriter::create(const std::string& path, const TraceInfo& info, std::vector<FoxgloveShape> shapes,
+                                              const FoxgloveOptions& options) try {
+  const bool is_positive = options.rate > 0 && options.metres_per_newton > 0;
+  if (!is_positive || !std::isfinite(options.rate) || !std::isfinite(options.metres_per_newton))
+    return fail(Errc::invalid_argument, "R-TRC-17");
+  TACTUS_TRY(auto mcap, mcap::Writer::create(path, ""));
+  auto impl = std::make_unique<Impl>(std::move(mcap), info, std::move(shapes), options);
+  TACTUS_CHECK(impl->declare());
+  return FoxgloveWriter(std::move(impl));
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
+
+Result<void> FoxgloveWriter::write(const TraceFrame& frame) try {
+  Impl& w = *impl_;
+  for (std::size_t i = 0; i < frame.meshes.size(); ++i) w.is_new[i] = w.is_new[i] || frame.meshes[i].updated;
+  const std::uint64_t at = time_of_tick(frame.tick, w.info.tick_rate);
+  if (w.due > 0 && !w.is_due(at)) return {};
+  if (w.mcap.chunk_size() >= kChunkBytes || (w.mcap.chunk_size() > 0 && at - w.mcap.chunk_start_time() >= kChunkTime))
+    TACTUS_CHECK(w.mcap.end_chunk());
+  w.time = at;
+  w.write_transforms(frame);
+  w.write_objects(frame);
+  for (std::size_t i = 0; i < frame.meshes.size(); ++i)
+    if (w.is_new[i]) w.write_mesh(i, frame);
+  w.is_new.assign(frame.meshes.size(), false);
+  for (std::size_t i = 0; i < frame.users.size(); ++i) w.write_user(i, frame);
+  ++w.sequence;
+  w.due = static_cast<std::uint64_t>(static_cast<double>(at) * 1e-9 * w.options.rate) + 1;
+  return {};
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
+
+Result<void> FoxgloveWriter::finish() { return impl_->mcap.finish(); }
+std::uint64_t FoxgloveWriter::messages() const noexcept { return impl_->count; }
+
+FoxgloveWriter::FoxgloveWriter(std::unique_ptr<Impl> impl) noexcept : impl_(std::move(impl)) {}
+FoxgloveWriter::FoxgloveWriter(FoxgloveWriter&&) noexcept = default;
+FoxgloveWriter& FoxgloveWriter::operator=(FoxgloveWriter&&) noexcept = default;
+FoxgloveWriter::~FoxgloveWriter() = default;
+
+}  // namespace tactus

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/trace/foxglove_writer.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <string>
+
+#include <tactus/trace/byte_source.h>
+#include <tactus/trace/mcap_reader.h>
+
+namespace tactus {
+namespace {
+
+TraceInfo info_of() {
+  TraceInfo info{.tick_rate = 1000, .objects = {{"cube"}}, .users = {{"hand"}}, .source = {}, .scene = {}};
+  info.meshes.push_back({"patch", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}});
+  return info;
+}
+
+TraceFrame frame_of(std::int64_t tick) {
+  TraceFrame frame{.tick = tick, .objects = {{}}, .users = {{}}};
+  frame.objects[0].pose.position = {0.001 * static_cast<double>(tick), 0, 0};
+  frame.users[0].force = {0, 0, -2};
+  frame.meshes.push_back({tick == 50, std::vector<float>(9, 0.25F)});
+  return frame;
+}
+
+/// Times of the messages of each topic [ms], of 100 ticks.
+std::map<std::string, std::vector<std::uint64_t>> written(const FoxgloveOptions& options) {
+  const std::string path = testing::TempDir() + "view.mcap";
+  auto writer = FoxgloveWriter::create(path, info_of(), {{.box = {0.1, 0.1, 0.1}}}, options);
+  EXPECT_TRUE(writer);
+  for (std::int64_t tick = 0; tick < 100; ++tick) EXPECT_TRUE(writer->write(frame_of(tick)));
+  EXPECT_TRUE(writer->finish());
+  auto reader = mcap::Reader::open(*ByteSource::open_file(path));
+  EXPECT_TRUE(reader);
+  std::map<std::string, std::vector<std::uint64_t>> out;
+  std::uint64_t count = 0;
+  for (auto item = reader->next(); item && *item != mcap::Item::end; item = reader->next()) {
+    if (*item != mcap::Item::message) continue;
+    out[reader->channels().at(reader->message().channel_id).topic].push_back(reader->message().log_time / 1000000);
+    ++count;
+  }
+  EXPECT_FALSE(reader->cut_short());
+  EXPECT_EQ(count, writer->messages());
+  std::remove(path.c_str());
+  return out;
+}
+
+TEST(FoxgloveWriter, KeepsToItsRate) {
+  const auto times = written({.rate = 20});
+  using Times = std::vector<std::uint64_t>;
+  EXPECT_EQ(times.at("/tf"), (Times{0, 50}));
+  EXPECT_EQ(times.at("/scene/objects"), Times{0}) << "once: it moves with its frame";
+  EXPECT_EQ(times.at("/scene/meshes/patch"), (Times{0, 50})) << "at rest first, then when it is new";
+  EXPECT_EQ(times.at("/scene/users/hand"), (Times{0, 50}));
+  EXPECT_EQ(times.at("/users/hand/force"), (Times{0, 50}));
+  EXPECT_EQ(times.at("/objects/cube/pose"), (Times{0, 50}));
+}
+
+TEST(FoxgloveWriter, ShowsAShapeThatCameBetweenItsFrames) {
+  EXPECT_EQ(written({.rate = 16}).at("/scene/meshes/patch"), (std::vector<std::uint64_t>{0, 63}));
+  EXPECT_EQ(written({.rate = 1e5}).at("/tf").size(), 100u) << "never more often than there are ticks";
+}
+
+TEST(FoxgloveWriter, RefusesWhatIsNoRate) {
+  for (const double wrong : {0.0, -1.0, 1e300 * 1e300, std::nan("")}) {
+    EXPECT_FALSE(FoxgloveWriter::create("/dev/null", info_of(), {}, {.rate = wrong})) << wrong;
+    EXPECT_FALSE(FoxgloveWriter::create("/dev/null", info_of(), {}, {.metres_per_newton = wrong})) << wrong;
+  }
+}
+
+}  // namespace
+}  // namespace tactus
