@@ -102,6 +102,25 @@ const tests = {
     await tab.close();
   },
 
+  async "colours of the error are within what was measured"(browser) {
+    const tab = await ready(browser, "membrane.html");
+    for (let i = 0; i < 2; ++i) await tab.key("v");
+    assert.equal(await tab.run("tactusView.page.picture.colouring.name"), "displacement");  // the stream tells no stiffness
+    await tab.key("v");
+    const off = await tab.run(`(() => {
+      const {picture, model} = tactusView.page;
+      const {ticks, error} = model.truth.meshes[0];
+      const values = new Float32Array(714);
+      return [2000, 1003, 1500, 2998].map((tick) => {
+        picture.show(tick);
+        picture.colouring.fill(0, values);
+        return Math.max(...values) - error[ticks.findLastIndex((one) => one <= tick)];
+      });
+    })()`);
+    for (const difference of off) near(difference, 0, 1.25e-5 + 1e-7);  // how far the ghost may be off
+    await tab.close();
+  },
+
   async "keys"(browser) {
     const tab = await ready(browser, "evil.html");
     const plays = () => tab.run("tactusView.page.clock.plays");

@@ -13,7 +13,8 @@ function computeNormals(positions, triangles, normals) {
     const ux = positions[b] - positions[a], uy = positions[b + 1] - positions[a + 1], uz = positions[b + 2] - positions[a + 2];
     const vx = positions[c] - positions[a], vy = positions[c + 1] - positions[a + 1], vz = positions[c + 2] - positions[a + 2];
     const nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
-    for (const corner of [a, b, c]) {
+    for (let k = 0; k < 3; ++k) {
+      const corner = 3 * triangles[t + k];
       normals[corner] += nx;
       normals[corner + 1] += ny;
       normals[corner + 2] += nz;

@@ -4,6 +4,7 @@ import {Box3, Vector3} from "three";
 import {MeshPart} from "./mesh_part.js";
 import {norm} from "./model.js";
 import {ObjectsPart} from "./objects_part.js";
+import {lastUpTo} from "./read_columns.js";
 import {SceneView} from "./scene_view.js";
 import {UsersPart} from "./users_part.js";
 import {plain, roundStep} from "./units.js";
@@ -16,6 +17,7 @@ export class Picture {
   #ghosts;
   #users = null;
   #values;
+  #errors;  // of each mesh at the tick of its newest true shape
 
   constructor(canvas, model) {
     this.#model = model;
@@ -32,6 +34,7 @@ export class Picture {
     this.colourings = this.#colouringsOf(displacement);
     this.colouring = this.colourings[0] ?? null;
     this.#values = this.#meshes.map((part) => new Float32Array(part.count));
+    this.#errors = this.#meshes.map((part) => ({tick: -1, values: new Float32Array(part.count)}));
   }
 
   #addObjects(size) {
@@ -81,8 +84,7 @@ export class Picture {
     }];
     if (ghost) {
       const visual = (i) => scene.deformableBounds(i)?.visual ?? 2.5e-4;
-      const fill = (i, values) => fillDifferences(moved(this.#meshes, i), moved(this.#ghosts, i), values);
-      out.push({name: "error", kind: "length", most: visual, fill});
+      out.push({name: "error", kind: "length", most: visual, fill: (i, values) => values.set(this.#errors[i].values), needsErrors: true});
     }
     const stiffness = scene.deformables.map((_, i) => scene.stiffness(i));
     if (stiffness.every((values) => values !== null)) {
@@ -94,6 +96,7 @@ export class Picture {
 
   show(tick) {
     const {replay, ghost} = this.#model;
+    if (this.colouring?.needsErrors) this.#judge(tick);
     this.#model.moveTo(tick);
     this.objects?.show(replay);
     this.#meshes.forEach((part) => part.show(replay));
@@ -110,6 +113,18 @@ export class Picture {
       this.colouring.fill(i, this.#values[i]);
       part.colourBy(this.#values[i], this.colouring.most(i));
     });
+  }
+
+  // A client moves on between true shapes: the two are compared at the ticks of these.
+  #judge(tick) {
+    const {replay, ghost, truth} = this.#model;
+    const newest = (ticks) => ticks[lastUpTo(ticks, tick)] ?? 0;
+    const due = this.#errors.map((error, i) => ({error, i, at: newest(truth.meshes[i].ticks)}));
+    for (const {error, i, at} of due.filter((one) => one.error.tick !== one.at).sort((a, b) => a.at - b.at)) {
+      this.#model.moveTo(at);
+      fillDifferences(replay.displacements(i), ghost.displacements(i), error.values);
+      error.tick = at;
+    }
   }
 
   vertex(mesh, i) {
