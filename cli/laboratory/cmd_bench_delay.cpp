@@ -10,8 +10,8 @@
 #include <tactus/sim/study/delay_sweep.h>
 #include <tactus/trace/csv_reader.h>
 #include "cli/commands/commands.h"
-#include "cli/laboratory/cmd_bench.h"
 #include "cli/figure/plot.h"
+#include "cli/laboratory/cmd_bench.h"
 #include "cli/laboratory/workers.h"
 #include "cli/options/options_codec.h"
 #include "cli/options/units.h"

@@ -9,8 +9,8 @@
 #include <tactus/trace/csv_reader.h>
 #include <tactus/trace/trace_file.h>
 #include "cli/commands/commands.h"
-#include "cli/laboratory/cmd_bench.h"
 #include "cli/figure/plot.h"
+#include "cli/laboratory/cmd_bench.h"
 #include "cli/options/options_codec.h"
 #include "cli/output.h"
 #include "cli/progress.h"

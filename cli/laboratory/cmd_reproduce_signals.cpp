@@ -10,9 +10,9 @@
 #include <vector>
 
 #include <tactus/sim/simulation.h>
+#include "cli/figure/plot.h"
 #include "cli/laboratory/cmd_bench.h"
 #include "cli/laboratory/cmd_reproduce.h"
-#include "cli/figure/plot.h"
 #include "cli/options/grip_option.h"
 #include "cli/output.h"
 #include "cli/report/figures.h"

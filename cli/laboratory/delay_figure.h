@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "cli/laboratory/cmd_reproduce.h"
 #include "cli/figure/plot.h"
+#include "cli/laboratory/cmd_reproduce.h"
 
 namespace tactus::cli {
 

@@ -155,7 +155,7 @@ tl::expected<SweepInputs, Failure> SweepInputs::open(const SweepPlan& plan, std:
   for (const std::string& one : given) {
     if (fs::is_directory(one, failed)) {
       for (const auto& [file, made] : files)
-        if (const std::string path = one + "/" + file; fs::exists(path, failed)) out.given_[file] = path;
+        if (const std::string path = fmt::format("{}/{}", one, file); fs::exists(path, failed)) out.given_[file] = path;
       continue;
     }
     const std::size_t equals = std::min(one.find('='), one.size());

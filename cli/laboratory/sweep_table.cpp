@@ -82,7 +82,7 @@ tl::expected<std::vector<std::string>, Failure> write_table(const SweepPlan& pla
   const auto numbers = tabled(plan);
   const std::size_t parameters = plan.parameters.size() - (plan.repeats ? 1 : 0);
   std::vector<std::string> cells(columns.begin(), columns.begin() + static_cast<std::ptrdiff_t>(parameters));
-  if (plan.repeats) cells.push_back("repetitions");
+  if (plan.repeats) cells.emplace_back("repetitions");
   for (const std::size_t i : numbers) {
     if (!plan.repeats) cells.push_back(columns[i]);
     else

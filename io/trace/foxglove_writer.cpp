@@ -33,7 +33,7 @@ constexpr double kFullColour = 0.1;  // displacement of a vertex in units of its
 
 constexpr std::size_t kSteps = 32;  // of the colour: bytes that repeat are compressed well
 
-enum Schemas : std::uint16_t { kSceneSchema = 1, kTransformSchema, kPoseSchema, kPointSchema, kVectorSchema };
+constexpr std::uint16_t kSceneSchema = 1, kTransformSchema = 2, kPoseSchema = 3, kPointSchema = 4, kVectorSchema = 5;
 
 Vec3 ball(double size) { return {size, size, size}; }
 
@@ -84,9 +84,9 @@ std::optional<Vec3> touched_point(const UserSample& user, const TraceFrame& fram
 }  // namespace
 
 struct FoxgloveWriter::Impl {
-  Impl(mcap::Writer writer, const TraceInfo& trace_info, std::vector<FoxgloveShape> object_shapes, const FoxgloveOptions& chosen)
+  Impl(mcap::Writer writer, TraceInfo trace_info, std::vector<FoxgloveShape> object_shapes, const FoxgloveOptions& chosen)
       : mcap(std::move(writer)),
-        info(trace_info),
+        info(std::move(trace_info)),
         shapes(std::move(object_shapes)),
         options(chosen),
         is_new(info.meshes.size(), true) {}
