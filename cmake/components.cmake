@@ -52,11 +52,11 @@ macro(tactus_find package)
 endmacro()
 
 # tactus_missing(OUT required...): Debian packages or components of ours that are needed and not there; empty when all is well.
-# What is required is a component of ours (trace, net, fem, surface, sim, device) or a name from TACTUS_PACKAGES.
+# What is required is a component of ours (trace, net, fem, surface, sim, device, c) or a name from TACTUS_PACKAGES.
 function(tactus_missing out)
   set(missing)
   foreach(required IN LISTS ARGN)
-    if(required MATCHES "^(trace|net|seal|tets|fem|surface|sim|device)$")
+    if(required MATCHES "^(trace|net|seal|tets|fem|surface|sim|device|c)$")
       if(NOT TARGET tactus_${required})
         string(TOUPPER ${required} upper)
         list(APPEND missing "TACTUS_WITH_${upper}")
