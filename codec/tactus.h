@@ -35,6 +35,7 @@
 #include <tactus/base/result.h>
 #include <tactus/client/replica.h>
 #include <tactus/deformable/displacement.h>
+#include <tactus/deformable/motion_clusters.h>
 #include <tactus/deformable/trigger.h>
 #include <tactus/file/stream_file.h>
 #include <tactus/load/load_state.h>

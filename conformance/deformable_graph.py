@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from itertools import count
 from math import isqrt
-from typing import Optional
+from typing import TYPE_CHECKING, Optional
 
 from conventions import clamp, round_div, round_shift
-from deformable_header import DeformableObject
+
+if TYPE_CHECKING:
+    from deformable_header import DeformableObject
 
 GREATEST_DEPTH = 23
 Q = 1 << 24

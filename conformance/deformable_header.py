@@ -6,9 +6,11 @@ from dataclasses import dataclass, field
 from typing import NamedTuple, Optional
 
 from conventions import STR_5, STR_5_VARINT, Cursor, require, text
+from deformable_graph import first_graph
 
 THESIS, MAIN = 0, 1
-NO_BASIS, DECLARED, COMPUTED = 0, 1, 2
+NO_BASIS, DECLARED, COMPUTED, CLUSTERS = 0, 1, 2, 3
+MOST_CLUSTERS, MOST_BLEND = 64, 32
 MOST_VERTICES, MOST_TRIANGLES = 1 << 20, 1 << 21
 LARGEST_ENTRY = 2047
 
@@ -34,6 +36,8 @@ class DeformableObject:
     mode_count: int = 0                                     # main
     modes: list[Mode] = field(default_factory=list)         # main: declared, or computed when the whole declaration is checked
     fixed: Optional[list[int]] = None                       # main: of a basis to compute
+    clusters: Optional[list[int]] = None                    # main: of a basis of clusters, by vertex
+    blend: int = 0                                          # with clusters
     stiffness: Optional[bytes] = None                       # levels, if told
 
 
@@ -119,8 +123,11 @@ def read_triangles(body: Cursor, vertex_count: int, count: int) -> list[tuple]:
 
 def read_basis(body: Cursor, item: DeformableObject) -> None:
     basis = body.number(1, STR_5)
-    require(basis in (NO_BASIS, DECLARED, COMPUTED), "malformed", "R-DEF-7")
+    require(basis in (NO_BASIS, DECLARED, COMPUTED, CLUSTERS), "malformed", "R-DEF-7")
     if basis == NO_BASIS:
+        return
+    if basis == CLUSTERS:
+        read_clusters(body, item)
         return
     item.mode_count = body.varint(STR_5, STR_5_VARINT)
     require(1 <= item.mode_count <= 64, "invalid", "R-DEF-7")
@@ -129,6 +136,39 @@ def read_basis(body: Cursor, item: DeformableObject) -> None:
     else:
         item.fixed = read_fixed(body, len(item.rest))
         require(item.mode_count <= 3 * (len(item.rest) - len(item.fixed)), "invalid", "R-DEF-7")
+
+
+def read_clusters(body: Cursor, item: DeformableObject) -> None:
+    count = body.varint(STR_5, STR_5_VARINT)
+    item.blend = body.number(1, STR_5)
+    surprise_count = body.varint(STR_5, STR_5_VARINT)
+    require(1 <= count <= MOST_CLUSTERS and item.blend <= MOST_BLEND, "invalid", "R-DEF-7")
+    require(2 * surprise_count <= body.left(), *STR_5)
+    item.mode_count = 12 * count
+    item.clusters = []
+    graph = first_graph(item)
+    for _ in range(surprise_count):
+        gap = body.varint(STR_5, STR_5_VARINT)
+        cluster = body.varint(STR_5, STR_5_VARINT)
+        require(len(item.clusters) + gap < len(item.rest) and cluster < count, "invalid", "R-DEF-7")
+        expect_clusters(item, graph, gap)
+        require(cluster != expected_cluster(item, graph), "invalid", "R-DEF-7")
+        item.clusters.append(cluster)
+    expect_clusters(item, graph, len(item.rest) - len(item.clusters))
+
+
+def expect_clusters(item: DeformableObject, graph: list[set], number: int) -> None:
+    for _ in range(number):
+        item.clusters.append(expected_cluster(item, graph))
+
+
+def expected_cluster(item: DeformableObject, graph: list[set]) -> int:
+    """Of the vertex after those whose cluster is known."""
+    v = len(item.clusters)
+    lowest = min(graph[v], default=v)
+    if lowest < v:
+        return item.clusters[lowest]
+    return item.clusters[v - 1] if v > 0 else 0
 
 
 def read_fixed(body: Cursor, vertex_count: int) -> list[int]:

@@ -12,7 +12,7 @@ import load
 import rigid
 from conventions import Cursor, StreamError, clamp, round_shift
 from decoder import File, SceneDecoder
-from deformable_header import COMPUTED, MAIN, NO_BASIS, zigzag
+from deformable_header import CLUSTERS, COMPUTED, MAIN, NO_BASIS, zigzag
 from deformable_motion import FARTHEST, combine, lim
 from packet import Receiver
 from range_coder import RangeDecoder
@@ -364,6 +364,13 @@ def tell_deformable(f, item):
         f.three(f"corners of triangle {t}", corners)
     basis = f.number("basis", "B") if main else NO_BASIS
     if basis == NO_BASIS:
+        return
+    if basis == CLUSTERS:
+        f.varint("cluster_count")
+        f.number("blend", "B")
+        for i in range(f.varint("surprise_count")):
+            f.varint(f"gap[{i}]")
+            f.varint(f"cluster[{i}]")
         return
     f.varint("mode_count")
     if basis == COMPUTED:

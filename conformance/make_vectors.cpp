@@ -55,6 +55,7 @@ Catalogue all() {
   add_deformable_layers_fade(catalogue);
   add_deformable_orders(catalogue);
   add_deformable_springs(catalogue);
+  add_deformable_clusters(catalogue);
   return catalogue;
 }
 

@@ -15,7 +15,7 @@ MODULES = {
     "rigid": ("rigid",), "load": ("load",), "replica": ("client",), "curve": ("client",), "playout": ("client",), "easing": ("client",),
     "start_models": ("rigid", "deformable"),
     "decoder": ("packet", "client"),
-    "deformable_basis": ("deformable",), "deformable_header": ("deformable",), "deformable_graph": ("deformable",), "deformable_main": ("deformable",),
+    "deformable_basis": ("deformable",), "deformable_clusters": ("deformable",), "deformable_header": ("deformable",), "deformable_graph": ("deformable",), "deformable_main": ("deformable",),
     "deformable_motion": ("deformable",), "deformable_thesis": ("deformable",), "deformable_decoder": ("deformable", "packet")}
 LEFT_ALONE = {"main", "session_lines"}                                       # functions
 KINDS = ("constant", "index", "comparison", "clamp", "arithmetic", "rounding", "condition", "check", "order")

@@ -7,8 +7,9 @@ import zlib
 from dataclasses import dataclass, field
 from typing import NamedTuple, Optional
 
+import deformable_basis
+import deformable_clusters
 from conventions import ONE, STR_5, STR_5_VARINT, Cursor, require, text
-from deformable_basis import computed_modes, work
 from deformable_header import THESIS, DeformableObject, read_deformable_objects
 
 
@@ -130,10 +131,13 @@ def read_declaration(data: bytes, limits: Limits = Limits()) -> tuple[Declaratio
     names = [item.name for item in (*scene.objects, *scene.deformables)]
     require(len(set(names)) == len(names), "invalid", "R-STR-11")
     require(state_bytes(scene) <= limits.state_bytes, "limit_exceeded", "R-STR-18")
-    require(sum(work(item) for item in scene.deformables) <= limits.basis_work, "limit_exceeded", "R-STR-21")
+    work = sum(deformable_basis.work(item) + deformable_clusters.work(item) for item in scene.deformables)
+    require(work <= limits.basis_work, "limit_exceeded", "R-STR-21")
     for item in scene.deformables:
         if item.fixed is not None:
-            item.modes = computed_modes(item)
+            item.modes = deformable_basis.computed_modes(item)
+        if item.clusters is not None:
+            item.modes = deformable_clusters.cluster_modes(item)
     return scene, end + 4
 
 

@@ -2,12 +2,17 @@
 #include "cli/commands/commands.h"
 
 #include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
 
 #include <tactus/base/shown.h>
 #include <tactus/file/stream_file.h>
 #include <tactus/receiver.h>
+#include <tactus/trace/trace_clusters.h>
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_scene.h>
+#include "cli/commands/rereadable_input.h"
 #include "cli/options/option_needs.h"
 #include "cli/report/report.h"
 #include "cli/report/trace_ending.h"
@@ -20,6 +25,7 @@ struct EncodeOptions {
   TriggerArguments triggers;
   MeshArguments meshes;
   MotionArguments motion;
+  unsigned clusters = 0;
   CommonOptions common;
 };
 
@@ -32,12 +38,27 @@ struct Session {
   std::vector<Pose> shown;
 };
 
+using Clusters = std::map<std::string, ClusterBasis>;
+
+/// Those of all meshes, for which the trace is read once more.
+tl::expected<Clusters, Failure> clusters_of(const std::string& path, const EncodeOptions& options) {
+  if (options.clusters == 0) return Clusters{};
+  auto reader = TraceReader::open(path);
+  if (!reader) return refuse(options.input, reader.error());
+  auto found = find_clusters(*reader, options.clusters);
+  if (!found) return refuse(options.input, found.error());
+  return std::move(*found);
+}
+
 bool has_moving(const TraceInfo& info) {
   return std::ranges::any_of(info.objects, [](const TraceObject& o) { return o.dof != Dof::none; });
 }
 
-Result<Session> start(const TraceInfo& info, const TraceFrame& first, const EncodeOptions& options, std::ostream& out) {
-  TACTUS_TRY(SceneBuilder builder, scene_builder(info, first, options.meshes.coding(options.triggers)));
+Result<Session> start(const TraceInfo& info, const TraceFrame& first, const EncodeOptions& options, Clusters clusters,
+                      std::ostream& out) {
+  TraceCoding coding = options.meshes.coding(options.triggers);
+  coding.clusters = std::move(clusters);
+  TACTUS_TRY(SceneBuilder builder, scene_builder(info, first, coding));
   const SenderOptions wanted = options.meshes.sender(options.triggers);
   builder.motion(options.motion.physics());
   TACTUS_TRY(const SharedScene scene, builder.promise(wanted.triggers, wanted.deformable.thresholds).build());
@@ -116,7 +137,12 @@ Outcome encode_all(TraceReader& reader, Session& session, TraceFrame& frame, con
 
 Outcome run(const EncodeOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
-  auto reader = TraceReader::open(options.input);
+  std::optional<RereadableInput> again;
+  if (options.clusters > 0) {
+    TACTUS_TRY(again, RereadableInput::open(options.input));
+  }
+  const std::string& path = again ? again->path() : options.input;
+  auto reader = TraceReader::open(path);
   if (!reader) return refuse(options.input, reader.error());
   TraceFrame frame;
   const auto any = reader->next(frame);
@@ -126,10 +152,11 @@ Outcome run(const EncodeOptions& options) {
     return refuse(shown_path(options.input) + ": the trace has no frames", "Record or simulate at least one tick.");
   }
   note_idle_options(*options.common.command, subjects_of(reader->info()), "trace");
+  TACTUS_TRY(Clusters clusters, clusters_of(path, options));
   TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing(), {options.input}));
   TACTUS_TRY(const auto stream, output.open());
 
-  auto session = start(reader->info(), frame, options, *stream);
+  auto session = start(reader->info(), frame, options, std::move(clusters), *stream);
   if (!session) return refuse(to_blame(session.error(), options), session.error());
   Report report{.command = "encode", .files = {{"trace", options.input}, {"stream", options.output}}};
   report.describe(reader->info());
@@ -159,13 +186,21 @@ void setup_encode(Command& app, Action& action) {
   command.add_option("TRACE", options->input, "Trace to encode (MCAP), - is standard input")->type_name("")->required();
   command.add_option("-o,--output", options->output, "Stream to write, - is standard output")->required()->type_name("FILE");
   add_encoder_options(command, options->triggers, options->meshes);
+  command
+      .add_option("--clusters", options->clusters,
+                  "Clusters of vertices that move alike, found on the trace, as the basis of bodies that turn and walk; 0: none "
+                  "(--profile main) [0]")
+      ->check(whole_number(0, ClusterBasis::kMaxClusters))
+      ->type_name("N")
+      ->excludes(command.find("--basis"));
   options->motion.add_to(command);
   add_output_options(command, options->common);
   command.footer(
       "Examples:\n"
       "  tactus encode push.mcap -o push.tct -p 4% --visual 6mm,2deg\n"
       "  tactus encode tosses.mcap -o tosses.tct --visual 5mm,4deg --haptic off --gravity 9.81 --friction 0.25\n"
-      "  tactus encode membrane.mcap -o membrane.tct -p 2.5% --deformable-visual 0.25mm --basis 48");
+      "  tactus encode membrane.mcap -o membrane.tct -p 2.5% --deformable-visual 0.25mm --basis 48\n"
+      "  tactus encode dance.mcap -o dance.tct --haptic off --deformable-visual 1mm --clusters 40");
   on_chosen<EncodeOptions>(command, action, options, run);
 }
 

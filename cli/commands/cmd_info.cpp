@@ -142,6 +142,7 @@ Json mesh_json(const DeformableObject& mesh, const Scene& scene, const Deformabl
           {"triangles", mesh.triangles.size()},
           {"rings", mesh.rings},
           {"modes", mesh.basis.steps.size()},
+          {"clusters", mesh.cluster_basis.count},
           {"frame [ms]", is_main ? Json(1e3 / 256 * mesh.frame_period / scene.tick_rate) : Json("-")},
           {"packets", t.sizes.size()},
           {"keys", t.keys},

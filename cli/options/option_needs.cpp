@@ -36,6 +36,7 @@ constexpr std::array kAgreements{
     Agreement{"--haptic-share", "--profile", "main", {"main"}},
     Agreement{"--visual-share", "--profile", "main", {"main"}},
     Agreement{"--basis", "--profile", "main", {"main"}},
+    Agreement{"--clusters", "--profile", "main", {"main"}},
     Agreement{"--fade", "--profile", "main", {"main"}},
     Agreement{"--nugget", "--profile", "main", {"main"}},
     Agreement{"--quant-bits", "--profile", "main", {"thesis"}},
@@ -66,6 +67,7 @@ constexpr std::array kNeeds{
     Need{"--interpolate", Subject::rigid},
     Need{"--deformable-visual", Subject::mesh},
     Need{"--basis", Subject::mesh},
+    Need{"--clusters", Subject::mesh},
     Need{"--nugget", Subject::mesh},
     Need{"--visual-share", Subject::mesh},
     Need{"--quant-bits", Subject::mesh},
@@ -138,7 +140,8 @@ std::set<Subject> subjects_of(const TraceInfo& info) {
 }
 
 void check_options_agree(const Command& command) {
-  if (typed(command, "--fade") && !typed(command, "--basis")) refuse_option("--fade", "needs --basis");
+  if (typed(command, "--fade") && !typed(command, "--basis") && !typed(command, "--clusters"))
+    refuse_option("--fade", command.find("--clusters") != nullptr ? "needs --basis or --clusters" : "needs --basis");
   for (const Agreement& a : kAgreements) {
     if (!typed(command, a.option) || command.find(a.other) == nullptr) continue;
     const Option* other = typed(command, a.other);

@@ -51,6 +51,7 @@ Json mesh_header_json(const DeformableObject& mesh, std::uint32_t tick_rate) {
            {"triangles", mesh.triangles.size()},
            {"rings", mesh.rings},
            {"modes", mesh.basis.steps.size()}};
+  if (mesh.cluster_basis.count > 0) out["clusters"] = mesh.cluster_basis.count;
   if (!mesh.stiffness.empty()) out["stiffness_N_per_m"] = stiffness_json(mesh);
   if (is_main) {
     out["layered"] = mesh.layered;

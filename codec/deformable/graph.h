@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include <tactus/base/list_of_lists.h>
 #include <tactus/scene/deformable_object.h>
 
 namespace tactus {
@@ -15,19 +16,6 @@ namespace tactus {
 struct VertexParent {
   std::uint32_t vertex = 0;
   std::int32_t weight = 0;  ///< x 2^-15
-};
-
-/// Lists of lists in one array: list i begins at items[first[i]].
-template <class T>
-struct ListOfLists {
-  std::vector<std::uint32_t> first{0};
-  std::vector<T> items;
-
-  std::span<const T> operator[](std::size_t i) const noexcept {
-    return std::span<const T>(items).subspan(first[i], first[i + 1] - first[i]);
-  }
-  std::size_t size() const noexcept { return first.size() - 1; }
-  void close() { first.push_back(static_cast<std::uint32_t>(items.size())); }
 };
 
 using Neighbours = ListOfLists<std::uint32_t>;

@@ -55,7 +55,24 @@ ShapePredictor::ShapePredictor(const DeformableObject& object)
     : object_(object),
       increments_(object.basis.steps.size()),
       extrapolated_(increments_.size()),
-      sum_(increments_.empty() ? 0 : 3 * object.rest.size()) {}
+      rounded_(object.basis.shares.size() == 0 ? 0 : increments_.size()),
+      sum_(object.basis.entries.empty() ? 0 : 3 * object.rest.size()) {}
+
+/// The same where most entries are 0.
+void ShapePredictor::combine_shares(std::span<const std::int32_t> coefficients, unsigned shift, std::span<Vec3i> out) noexcept {
+  for (std::size_t k = 0; k < coefficients.size(); ++k)
+    rounded_[k] = static_cast<std::int32_t>(round_shift(coefficients[k], shift));
+  for (std::size_t v = 0; v < out.size(); ++v) {
+    std::array<std::int64_t, 3> sum{};
+    for (const ClusterShare& share : object_.basis.shares[v]) {
+      const std::int32_t* g = rounded_.data() + ModeBasis::kClusterModes * share.cluster;
+      for (const std::int16_t value : share.values)
+        for (std::int64_t& s : sum) s += std::int64_t{value} * *g++;
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      out[v][axis] = limited_displacement(out[v][axis] + round_shift(sum[axis] << shift, 11));
+  }
+}
 
 /// out += modes * coefficients, all coefficients brought to 14 bits by one shift.
 void ShapePredictor::combine(std::span<const std::int32_t> coefficients, std::span<Vec3i> out) noexcept {
@@ -64,6 +81,7 @@ void ShapePredictor::combine(std::span<const std::int32_t> coefficients, std::sp
   if (largest == 0) return;
   const auto width = static_cast<unsigned>(std::bit_width(largest));
   const unsigned shift = width > 14 ? width - 14 : 0;
+  if (object_.basis.shares.size() > 0) return combine_shares(coefficients, shift, out);
   std::fill(sum_.begin(), sum_.end(), 0);
   for (std::size_t k = 0; k < coefficients.size(); ++k) {
     const auto g = static_cast<std::int16_t>(round_shift(coefficients[k], shift));

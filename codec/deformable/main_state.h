@@ -76,11 +76,13 @@ class ShapePredictor {
 
  private:
   void combine(std::span<const std::int32_t> coefficients, std::span<Vec3i> out) noexcept;
+  void combine_shares(std::span<const std::int32_t> coefficients, unsigned shift, std::span<Vec3i> out) noexcept;
 
   const DeformableObject& object_;
   std::vector<std::int32_t> increments_;    // by mode, of the current packet, since motion_tick
   std::vector<std::int32_t> extrapolated_;  // by mode, since the state's tick if that differs from motion_tick
-  std::vector<std::int32_t> sum_;           // by component
+  std::vector<std::int32_t> rounded_;       // by mode of clusters
+  std::vector<std::int32_t> sum_;           // by component, but for clusters
 };
 
 }  // namespace tactus

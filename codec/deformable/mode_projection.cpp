@@ -12,13 +12,15 @@ constexpr std::size_t kLanes = 8;  // sums in a fixed order that a compiler can 
 
 constexpr double kRidge = 1e-3;  // dependent modes share what they have in common instead of cancelling each other
 
-/// L L^T = gram, in place. The pivot of a mode that is zero everywhere is raised.
+/// L L^T = gram with its ridge, in place. The pivot of a mode that is zero everywhere is raised.
 void factorise(std::vector<double>& gram, std::size_t n) {
+  for (std::size_t k = 0; k < n; ++k) gram[k * n + k] *= 1 + kRidge;
   for (std::size_t j = 0; j < n; ++j) {
     for (std::size_t k = 0; k < j; ++k)
       for (std::size_t i = j; i < n; ++i) gram[i * n + j] -= gram[i * n + k] * gram[j * n + k];
     const double pivot = std::sqrt(std::max(gram[j * n + j], 1e-9));
-    for (std::size_t i = j; i < n; ++i) gram[i * n + j] /= pivot;
+    gram[j * n + j] = pivot;
+    for (std::size_t i = j + 1; i < n; ++i) gram[i * n + j] /= pivot;
   }
 }
 
@@ -36,16 +38,18 @@ void solve(const std::vector<double>& factor, std::vector<double>& x) {
 
 }  // namespace
 
-ModeProjection::ModeProjection(const ModeBasis& basis) {
-  const std::size_t modes = basis.steps.size();
-  if (modes == 0) return;
-  const std::size_t components = basis.entries.size() / modes;
-  const auto entry = [&](std::size_t k, std::size_t i) { return basis.entries[k * components + i] / 2048.0; };
+ModeProjection::ModeProjection(const ModeBasis& basis) : basis_(basis) {
+  if (!basis.entries.empty()) invert_entries();
+  if (basis.shares.size() > 0) factorise_shares();
+}
+
+void ModeProjection::invert_entries() {
+  const std::size_t modes = basis_.steps.size(), components = basis_.entries.size() / modes;
+  const auto entry = [&](std::size_t k, std::size_t i) { return basis_.entries[k * components + i] / 2048.0; };
   std::vector<double> gram(modes * modes, 0.0);
   for (std::size_t a = 0; a < modes; ++a)
     for (std::size_t b = 0; b <= a; ++b)
       for (std::size_t i = 0; i < components; ++i) gram[a * modes + b] += entry(a, i) * entry(b, i);
-  for (std::size_t k = 0; k < modes; ++k) gram[k * modes + k] *= 1 + kRidge;
   factorise(gram, modes);
   const std::size_t padded = (components + kLanes - 1) / kLanes * kLanes;
   error_.assign(padded, 0.0F);
@@ -58,7 +62,32 @@ ModeProjection::ModeProjection(const ModeBasis& basis) {
   }
 }
 
+void ModeProjection::factorise_shares() {
+  const std::size_t functions = basis_.steps.size() / 3;
+  factor_.assign(functions * functions, 0.0);
+  for (std::size_t v = 0; v < basis_.shares.size(); ++v)
+    for (const ClusterShare& a : basis_.shares[v])
+      for (const ClusterShare& b : basis_.shares[v])
+        for (std::size_t i = 0; i < 4; ++i)
+          for (std::size_t j = 0; j < 4; ++j)
+            factor_[(4u * a.cluster + i) * functions + 4u * b.cluster + j] += a.values[i] / 2048.0 * (b.values[j] / 2048.0);
+  factorise(factor_, functions);
+  for (std::vector<double>& sum : sum_) sum.resize(functions);
+}
+
+void ModeProjection::project_on_shares(std::span<const Vec3i> error, std::span<float> coefficients) noexcept {
+  for (std::vector<double>& sum : sum_) std::ranges::fill(sum, 0.0);
+  for (std::size_t v = 0; v < error.size(); ++v)
+    for (const ClusterShare& share : basis_.shares[v])
+      for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          sum_[axis][4u * share.cluster + i] += share.values[i] / 2048.0 * error[v][axis];
+  for (std::vector<double>& sum : sum_) solve(factor_, sum);
+  for (std::size_t k = 0; k < coefficients.size(); ++k) coefficients[k] = static_cast<float>(sum_[k % 3][k / 3]);
+}
+
 void ModeProjection::project(std::span<const Vec3i> error, std::span<float> coefficients) noexcept {
+  if (!factor_.empty()) return project_on_shares(error, coefficients);
   for (std::size_t v = 0; v < error.size(); ++v)
     for (std::size_t axis = 0; axis < 3; ++axis) error_[3 * v + axis] = static_cast<float>(error[v][axis]);
   for (std::size_t k = 0; k < coefficients.size(); ++k) {

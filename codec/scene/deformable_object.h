@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include <tactus/base/list_of_lists.h>
 #include <tactus/base/result.h>
 #include <tactus/base/tri_mesh.h>
 
@@ -19,13 +20,22 @@ enum class DeformableProfile : std::uint8_t { thesis = 0, main = 1 };
 /// Which vertices a packet codes: those in the area of interest, the rest, or all.
 enum class Layer : std::uint8_t { haptic = 0, visual = 1, all = 2 };
 
-/// Basis vectors of displacements, known to both ends (vibration modes, principal components).
+/// Where a cluster has a share of a vertex: the values there of its four functions, which it has for each axis.
+struct ClusterShare {
+  std::uint8_t cluster = 0;
+  std::array<std::int16_t, 4> values{};  ///< x 2^-11: entries of the modes 12 * cluster + 3 * i + axis
+  friend bool operator==(const ClusterShare&, const ClusterShare&) = default;
+};
+
+/// Basis vectors of displacements, known to both ends (vibration modes, principal components, maps of clusters).
 struct ModeBasis {
-  static constexpr std::size_t kMaxModes = 64;
+  static constexpr std::size_t kMaxModes = 64;  ///< but for clusters, which have kClusterModes each
+  static constexpr std::size_t kClusterModes = 12;
   static constexpr std::int32_t kMaxEntry = 2047;  ///< so that a sum of 64 products with 15-bit factors fits 32 bits
 
-  std::vector<std::int16_t> entries;  ///< modes x vertices x 3, x 2^-11, |entry| <= kMaxEntry; empty: no basis
-  std::vector<std::uint16_t> steps;   ///< one per mode: quantiser step of its coefficient, x 2^-12 of the visual bound; >= 1
+  std::vector<std::int16_t> entries;   ///< modes x vertices x 3, x 2^-11, |entry| <= kMaxEntry; empty: no basis
+  ListOfLists<ClusterShare> shares{};  ///< by vertex, in place of `entries`, which are mostly 0
+  std::vector<std::uint16_t> steps;    ///< one per mode: quantiser step of its coefficient, x 2^-12 of the visual bound; >= 1
   friend bool operator==(const ModeBasis&, const ModeBasis&) = default;
 };
 
@@ -34,6 +44,17 @@ struct SpringBasis {
   std::uint8_t modes = 0;            ///< K, 0: none
   std::vector<std::uint32_t> fixed;  ///< vertices that do not move, ascending
   friend bool operator==(const SpringBasis&, const SpringBasis&) = default;
+};
+
+/// A basis for bodies that turn and walk: both ends compute it from the cluster of each vertex. spec/50-deformable.md section 11
+struct ClusterBasis {
+  static constexpr std::size_t kMaxClusters = 64;
+  static constexpr std::uint8_t kMaxBlend = 32;
+
+  std::uint8_t count = 0;              ///< 0: none
+  std::uint8_t blend = 0;              ///< rounds of blending: clusters reach about sqrt(blend) edges into each other
+  std::vector<std::uint8_t> clusters;  ///< by vertex, each below `count`
+  friend bool operator==(const ClusterBasis&, const ClusterBasis&) = default;
 };
 
 /// Round a vector to the next mode of a basis; scale and step are those of make_mode_basis().   pre  finite
@@ -64,8 +85,9 @@ struct DeformableObject {
   std::uint8_t weight_sets = 1;      ///< main: bit i: packets may name set i of kWeightSets; at least one
   std::vector<std::array<std::int32_t, 3>> rest;  ///< vertices, x 2^-position_exp m
   std::vector<Triangle> triangles;
-  ModeBasis basis;           ///< main
-  SpringBasis spring_basis;  ///< main: in place of `basis`, which a Scene then computes
+  ModeBasis basis;             ///< main
+  SpringBasis spring_basis;    ///< main: in place of `basis`, which a Scene then computes
+  ClusterBasis cluster_basis;  ///< main: the same
   std::vector<std::uint8_t>
       stiffness;  ///< levels (stiffness_level), one per vertex: what clients with delay need; empty: not told
   friend bool operator==(const DeformableObject&, const DeformableObject&) = default;

@@ -6,13 +6,14 @@
 #include <utility>
 
 #include <tactus/base/rule.h>
+#include <tactus/deformable/cluster_basis.h>
 #include <tactus/scene/scene_rules.h>
 
 namespace tactus {
 namespace {
 
 constexpr std::uint32_t kNoVertex = 0xffffffff;
-constexpr std::uint8_t kNoBasis = 0, kDeclared = 1, kComputed = 2;  // basis
+constexpr std::uint8_t kNoBasis = 0, kDeclared = 1, kComputed = 2, kClusters = 3;  // basis
 
 bool are_parameters(const DeformableObject& m) noexcept {
   if (m.rings > DeformableObject::kMaxRings) return false;
@@ -34,8 +35,17 @@ bool is_spring_basis(const DeformableObject& m) noexcept {
   return s.modes <= 3 * (m.rest.size() - s.fixed.size());
 }
 
+bool is_cluster_basis(const DeformableObject& m) noexcept {
+  const ClusterBasis& c = m.cluster_basis;
+  if (m.profile == DeformableProfile::thesis || m.spring_basis.modes > 0) return false;
+  return c.count <= ClusterBasis::kMaxClusters && c.blend <= ClusterBasis::kMaxBlend && c.clusters.size() == m.rest.size() &&
+         std::ranges::all_of(c.clusters, [&](std::uint8_t cluster) { return cluster < c.count; });
+}
+
 bool is_basis(const DeformableObject& m) noexcept {
   const ModeBasis& b = m.basis;
+  if (m.cluster_basis.count > 0) return is_cluster_basis(m);
+  if (!m.cluster_basis.clusters.empty() || !b.shares.items.empty()) return false;
   if (m.spring_basis.modes > 0) return is_spring_basis(m);
   if (!m.spring_basis.fixed.empty()) return false;
   if (b.steps.size() > ModeBasis::kMaxModes || b.entries.size() != 3 * m.rest.size() * b.steps.size()) return false;
@@ -146,11 +156,44 @@ Result<void> parse_springs(ByteReader& in, std::uint64_t modes, DeformableObject
   return {};
 }
 
+/// The cluster of every vertex, told where it is not as expected.
+Result<void> parse_clusters(ByteReader& in, DeformableObject& object) {
+  const std::uint64_t count = in.varint();
+  const std::uint8_t blend = in.u8();
+  const std::uint64_t surprises = in.varint(), vertices = object.rest.size();
+  if (!in.ok()) return fail(class_of_overflow(in), "R-STR-5", in.bit_offset());
+  if (count < 1 || count > ClusterBasis::kMaxClusters || blend > ClusterBasis::kMaxBlend)
+    return fail(Errc::invalid, "R-DEF-7", in.bit_offset());
+  if (surprises > in.remaining() / 2) return fail(Errc::truncated, "R-STR-5", in.bit_offset());
+  const Neighbours near = neighbours(object);
+  object.cluster_basis = {static_cast<std::uint8_t>(count), blend, std::vector<std::uint8_t>(vertices)};
+  std::vector<std::uint8_t>& clusters = object.cluster_basis.clusters;
+  std::uint64_t end = 0;
+  const auto expect_until = [&](std::uint64_t vertex) {
+    for (; end < vertex; ++end) {
+      const auto v = static_cast<std::uint32_t>(end);
+      clusters[v] = expected_cluster(near[v], clusters, v);
+    }
+  };
+  for (std::uint64_t i = 0; i < surprises; ++i) {
+    const std::uint64_t gap = in.varint(), cluster = in.varint();
+    if (!in.ok()) return fail(class_of_overflow(in), "R-STR-5", in.bit_offset());
+    if (gap >= vertices - end || cluster >= count) return fail(Errc::invalid, "R-DEF-7", in.bit_offset());
+    expect_until(end + gap);
+    const auto v = static_cast<std::uint32_t>(end++);
+    if (expected_cluster(near[v], clusters, v) == cluster) return fail(Errc::invalid, "R-DEF-7", in.bit_offset());
+    clusters[v] = static_cast<std::uint8_t>(cluster);
+  }
+  expect_until(vertices);
+  return {};
+}
+
 Result<void> parse_basis(ByteReader& in, DeformableObject& object) {
   const std::uint8_t basis = in.u8();
   if (!in.ok()) return fail(Errc::truncated, "R-STR-5", in.bit_offset());
-  if (basis > kComputed) return fail(Errc::malformed, "R-DEF-7", in.bit_offset());
+  if (basis > kClusters) return fail(Errc::malformed, "R-DEF-7", in.bit_offset());
   if (basis == kNoBasis) return {};
+  if (basis == kClusters) return parse_clusters(in, object);
   const std::uint64_t modes = in.varint();
   if (!in.ok()) return fail(class_of_overflow(in), "R-STR-5", in.bit_offset());
   if (modes < 1 || modes > ModeBasis::kMaxModes) return fail(Errc::invalid, "R-DEF-7", in.bit_offset());
@@ -173,7 +216,28 @@ void write_springs(ByteWriter& out, const SpringBasis& basis) {
   }
 }
 
+void write_clusters(ByteWriter& out, const DeformableObject& object) {
+  const ClusterBasis& basis = object.cluster_basis;
+  const Neighbours near = neighbours(object);
+  std::vector<std::uint32_t> surprises;
+  for (std::uint32_t v = 0; v < basis.clusters.size(); ++v)
+    if (expected_cluster(near[v], basis.clusters, v) != basis.clusters[v]) surprises.push_back(v);
+  out.varint(basis.count);
+  out.u8(basis.blend);
+  out.varint(surprises.size());
+  std::uint32_t end = 0;
+  for (const std::uint32_t v : surprises) {
+    out.varint(v - end);
+    out.varint(basis.clusters[v]);
+    end = v + 1;
+  }
+}
+
 void write_basis(ByteWriter& out, const DeformableObject& object) {
+  if (object.cluster_basis.count > 0) {
+    out.u8(kClusters);
+    return write_clusters(out, object);
+  }
   if (object.spring_basis.modes > 0) {
     out.u8(kComputed);
     return write_springs(out, object.spring_basis);

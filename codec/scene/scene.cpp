@@ -10,6 +10,7 @@
 #include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
 #include <tactus/base/shown.h>
+#include <tactus/deformable/cluster_basis.h>
 #include <tactus/deformable/spring_basis.h>
 #include <tactus/scene/bounds_syntax.h>
 #include <tactus/scene/scene_rules.h>
@@ -124,8 +125,10 @@ Result<void> check_scene(const SceneSpec& spec, const DecodeLimits& limits) try 
 Scene::Scene(SceneSpec&& spec) : SceneSpec(std::move(spec)) {
   for (std::uint32_t i = 0; i < objects.size(); ++i)
     if (objects[i].dof != Dof::none) moving_.push_back(i);
-  for (DeformableObject& object : deformables)
+  for (DeformableObject& object : deformables) {
     if (object.spring_basis.modes > 0) object.basis = spring_basis(object);
+    if (object.cluster_basis.count > 0) object.basis = cluster_basis(object);
+  }
 }
 
 Result<SharedScene> Scene::create(SceneSpec spec, const DecodeLimits& limits) try {
@@ -140,7 +143,8 @@ std::uint64_t state_bytes(const SceneSpec& spec) noexcept {
   const std::uint64_t load = spec.loads ? 12 * (2 + std::uint64_t{spec.loads->users}) : 0;
   std::uint64_t sum = (64 + load) * states * spec.objects.size();
   for (const DeformableObject& object : spec.deformables) {
-    const std::size_t modes = std::max<std::size_t>(object.basis.steps.size(), object.spring_basis.modes);
+    const std::size_t modes = std::max({object.basis.steps.size(), std::size_t{object.spring_basis.modes},
+                                        ModeBasis::kClusterModes * object.cluster_basis.count});
     const bool is_main = object.profile == DeformableProfile::main;
     const std::uint64_t vertex = 12u + (is_main && object.layered ? 12u : 0u) + (is_main && object.fade > 0 ? 12u : 0u);
     sum += states * (vertex * object.rest.size() + 48 * modes);
@@ -153,8 +157,10 @@ std::uint64_t state_bytes(const SceneSpec& spec) noexcept {
 std::uint64_t basis_work(const SceneSpec& spec) noexcept {
   std::uint64_t sum = 0;
   for (const DeformableObject& object : spec.deformables) {
+    const std::uint64_t vertices = object.rest.size();
+    if (object.cluster_basis.count > 0) sum += vertices * (object.cluster_basis.blend + std::uint64_t{4}) / 4;
     if (object.spring_basis.modes == 0) continue;
-    const std::uint64_t vertices = object.rest.size(), columns = object.spring_basis.modes + std::uint64_t{8};
+    const std::uint64_t columns = object.spring_basis.modes + std::uint64_t{8};
     sum += columns * (vertices + 16 * std::min<std::uint64_t>(vertices, kBasisCore)) + columns * columns * columns / 4;
   }
   return sum;

@@ -15,7 +15,9 @@ namespace {
 
 constexpr double kExtrapolation = 2;  // [s]
 
-bool has_basis(const DeformableCoding& coding) noexcept { return !coding.basis.steps.empty() || coding.spring_basis.modes > 0; }
+bool has_basis(const DeformableCoding& coding) noexcept {
+  return !coding.basis.steps.empty() || coding.spring_basis.modes > 0 || coding.cluster_basis.count > 0;
+}
 
 /// The share that fades per frame, from that per second.
 std::uint16_t fade_of(const DeformableCoding& coding, std::uint32_t tick_rate) noexcept {
@@ -38,6 +40,7 @@ Result<void> apply(DeformableCoding& coding, std::uint32_t tick_rate, Deformable
     object.weight_sets = coding.weight_sets != 0 ? coding.weight_sets : has_basis(coding) ? 2 : 1;
     object.basis = std::move(coding.basis);
     object.spring_basis = std::move(coding.spring_basis);
+    object.cluster_basis = std::move(coding.cluster_basis);
   }
   for (const double stiffness : coding.stiffness) {
     TACTUS_TRY(const std::uint8_t level, stiffness_level(stiffness));

@@ -25,8 +25,9 @@ struct DeformableCoding {
   double fade = 0.98;
   /// main: sets of the parents' weights that packets may name (DeformableObject); 0: the second alone with a basis, else the first
   std::uint8_t weight_sets = 0;
-  ModeBasis basis{};           ///< main
-  SpringBasis spring_basis{};  ///< main; with modes it takes the place of `basis`
+  ModeBasis basis{};             ///< main
+  SpringBasis spring_basis{};    ///< main; with modes it takes the place of `basis`
+  ClusterBasis cluster_basis{};  ///< main; with clusters it takes the place of both
   /// [N/m] of each vertex, infinite where it does not move; empty: not told. What clients with delay render by (StiffnessReduction).
   std::vector<double> stiffness{};
 };

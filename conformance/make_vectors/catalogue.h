@@ -118,5 +118,6 @@ void add_deformable_fade(Catalogue& catalogue);
 void add_deformable_layers_fade(Catalogue& catalogue);
 void add_deformable_orders(Catalogue& catalogue);
 void add_deformable_springs(Catalogue& catalogue);
+void add_deformable_clusters(Catalogue& catalogue);
 
 }  // namespace tactus::conformance

@@ -59,6 +59,11 @@ Bytes RawDeformable::bytes() const {
     append(out, *basis);
     return out;
   }
+  if (clusters.count > 0) {
+    append(out, Bytes{3, clusters.count, clusters.blend} + varint(clusters.surprises.size()));
+    for (const auto& [gap, cluster] : clusters.surprises) append(out, varint(gap) + varint(cluster));
+    return out;
+  }
   if (spring_modes > 0) {
     append(out, Bytes{2} + varint(spring_modes) + varint(runs.size()));
     for (const auto& [gap, more] : runs) append(out, varint(gap) + varint(more));

@@ -52,13 +52,21 @@ struct RawDeformable {
   std::vector<std::int32_t> entries{};               ///< modes x vertices x 3
   std::uint8_t spring_modes = 0;                     ///< of a computed basis, in place of a declared one
   std::vector<std::array<std::uint64_t, 2>> runs{};  ///< gap and more of its fixed vertices
-  std::optional<Bytes> basis{};                      ///< in place of everything from the element `basis` on
-  std::optional<Bytes> vertex_count{};               ///< in place of the true number
-  std::optional<Bytes> triangle_count{};             ///< in place of the true number
-  std::optional<Bytes> mode_count{};                 ///< in place of the true number
+  struct Clusters {
+    std::uint8_t count = 0;
+    std::uint8_t blend = 0;
+    std::vector<std::array<std::uint64_t, 2>> surprises{};  ///< gap and cluster
+  };
+  Clusters clusters{};
+  std::optional<Bytes> basis{};           ///< in place of everything from the element `basis` on
+  std::optional<Bytes> vertex_count{};    ///< in place of the true number
+  std::optional<Bytes> triangle_count{};  ///< in place of the true number
+  std::optional<Bytes> mode_count{};      ///< in place of the true number
 
   Bytes bytes() const;
-  std::size_t modes() const { return spring_modes > 0 ? spring_modes : mode_steps.size(); }
+  std::size_t modes() const {
+    return clusters.count > 0 ? std::size_t{12} * clusters.count : spring_modes > 0 ? spring_modes : mode_steps.size();
+  }
 };
 
 Bytes zigzag_varint(std::int64_t value);

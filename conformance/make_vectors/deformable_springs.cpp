@@ -63,7 +63,7 @@ void add_faults(Catalogue& c) {
   const Rejection cut{"truncated", "R-STR-5"}, overlong{"malformed", "R-STR-5"}, basis{"invalid", "R-DEF-7"};
   const auto with = [](const Bytes& bytes) { return only({.basis = bytes}).bytes(); };  // one triangle
   c.section(section::kDeformable);
-  c.invalid("basis-3", "basis is 3.", {"malformed", "R-DEF-7"}, with({3, 1, 0}));
+  c.invalid("basis-4", "basis is 4.", {"malformed", "R-DEF-7"}, with({4, 1, 0}));
   c.invalid("no-basis", "The body ends before basis.", cut, with({}));
   c.invalid("basis-without-modes", "The body ends before mode_count.", cut, with({2}));
   c.invalid("declared-mode-count-0", "A declared basis of no mode.", basis, with({1, 0}));

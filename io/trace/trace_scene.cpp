@@ -19,6 +19,8 @@ Result<void> add_deformable(SceneBuilder& scene, const TraceDeformable& mesh, co
       return fail(Errc::invalid_argument, "R-API-9");
     of.spring_basis = {coding.spring_modes, mesh.fixed};
   }
+  if (const auto found = coding.clusters.find(mesh.name); of.profile == DeformableProfile::main && found != coding.clusters.end())
+    of.cluster_basis = found->second;
   scene.deformable(mesh.name, mesh.rest, std::move(of));
   return {};
 }

@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <tactus/base/result.h>
@@ -20,6 +22,7 @@ struct TraceCoding {
   DeformableCoding deformable{};
   std::uint8_t spring_modes = 0;  ///< main: modes of the basis that both ends compute for each object
   std::function<Result<ModeBasis>(const TraceDeformable&)> basis{};  ///< main: makes each object's basis; empty: without
+  std::map<std::string, ClusterBasis> clusters{};                    ///< main: of the objects of these names, see find_clusters()
   bool is_eased = false;                                             ///< SceneBuilder::eased()
 };
 

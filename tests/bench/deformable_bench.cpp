@@ -141,6 +141,19 @@ void compute_basis(benchmark::State& state) {
   state.counters["vertices"] = static_cast<double>(spec.deformables[0].rest.size());
 }
 
+/// The same of clusters: stripes across the sheet, blended so often.
+void blend_clusters(benchmark::State& state) {
+  const auto squares = static_cast<std::uint32_t>(state.range(0));
+  SceneSpec spec = testing::sheet_spec(testing::sheet(squares, squares));
+  ClusterBasis& basis = spec.deformables[0].cluster_basis;
+  basis = {40, static_cast<std::uint8_t>(state.range(1)), {}};
+  const std::size_t vertices = spec.deformables[0].rest.size();
+  for (std::size_t v = 0; v < vertices; ++v) basis.clusters.push_back(static_cast<std::uint8_t>(40 * v / vertices));
+  for (auto _ : state) benchmark::DoNotOptimize(Scene::create(spec));
+  state.counters["vertices"] = static_cast<double>(vertices);
+}
+
+BENCHMARK(blend_clusters)->Args({70, 8})->Args({223, 32})->Args({999, 12})->Unit(benchmark::kMillisecond);
 BENCHMARK(compute_basis)->Args({26, 48})->Args({70, 48})->Args({223, 48})->Args({26, 64})->Unit(benchmark::kMillisecond);
 BENCHMARK(create_sender)->Arg(31)->Arg(99)->Arg(315)->Arg(999)->Unit(benchmark::kMillisecond);
 BENCHMARK(create_receiver)->Arg(31)->Arg(99)->Arg(315)->Arg(999)->Unit(benchmark::kMillisecond);

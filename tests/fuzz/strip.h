@@ -14,7 +14,7 @@
 
 namespace tactus {
 
-/// in   choice  bits: 1 profile thesis, 2 models kept (thesis) or a basis (main), 4 several baselines, 128 layered (main)
+/// in   choice  bits: 1 profile thesis, 2 models kept (thesis) or a basis (main), 4 several baselines, 8 clusters (main, in place of a basis), 128 layered (main)
 inline SceneSpec strip(std::uint8_t choice) {
   TriMesh shape;
   for (std::uint32_t i = 0; i < 24; ++i) shape.vertices.push_back({0.01 * (i / 2), 0.01 * (i % 2), 0});
@@ -25,7 +25,11 @@ inline SceneSpec strip(std::uint8_t choice) {
   DeformableObject object = make_deformable_object("m", shape, spec.grid.position).value();
   if (choice & 1) object.profile = DeformableProfile::thesis;
   object.models_kept = (choice & 2) != 0;
-  if ((choice & 3) == 2) {
+  if ((choice & 9) == 8) {
+    object.cluster_basis = {3, 2, {}};
+    for (std::uint8_t v = 0; v < 24; ++v) object.cluster_basis.clusters.push_back(v / 8);
+    object.fade = 7000;
+  } else if ((choice & 3) == 2) {
     std::vector<double> ramp(72);
     for (std::size_t i = 0; i < ramp.size(); ++i) ramp[i] = static_cast<double>(i) - 20;
     object.basis = make_mode_basis(ramp, 1).value();

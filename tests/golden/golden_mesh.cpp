@@ -55,6 +55,7 @@ struct Setting {
   std::uint8_t spring_modes = 0;
   std::uint16_t fade = 0;
   std::uint8_t weight_sets = 1;
+  std::uint8_t clusters = 0;
 };
 
 /// The sheet's shape, pushed about.
@@ -111,6 +112,11 @@ SharedScene scene_of(const TriMesh& mesh, const Setting& setting) {
   object.weight_sets = setting.weight_sets;
   if (setting.modes > 0) object.basis = make_mode_basis(bumps(mesh, setting.modes), setting.modes).value();
   if (setting.spring_modes > 0) object.spring_basis = {setting.spring_modes, {0, 1, 2, 40}};
+  if (setting.clusters > 0) {
+    object.cluster_basis = {setting.clusters, 5, {}};
+    for (std::size_t v = 0; v < object.rest.size(); ++v)
+      object.cluster_basis.clusters.push_back(static_cast<std::uint8_t>(v * setting.clusters / object.rest.size()));
+  }
   spec.deformables.push_back(std::move(object));
   return Scene::create(std::move(spec)).value();
 }
@@ -156,7 +162,8 @@ bool run_meshes() {
          run("mesh-springs", {.spring_modes = 12}) &&
          run("mesh-springs-fade", {.spring_modes = 12, .fade = 4217, .weight_sets = 2}) &&
          run("mesh-springs-sets", {.spring_modes = 12, .fade = 4217, .weight_sets = 7}) &&
-         run("mesh-springs-layers", {.layered = true, .spring_modes = 12, .fade = 4217, .weight_sets = 7});
+         run("mesh-springs-layers", {.layered = true, .spring_modes = 12, .fade = 4217, .weight_sets = 7}) &&
+         run("mesh-clusters", {.fade = 7000, .clusters = 7});
 }
 
 }  // namespace tactus::golden

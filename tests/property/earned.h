@@ -22,6 +22,7 @@ inline std::uint64_t earned(std::size_t bytes, const SceneSpec& spec) {
     const bool has_models = object.profile == DeformableProfile::thesis;
     const std::uint64_t models = has_models ? 254 + (std::uint64_t{1} << object.quant_bits) : 0;
     out += 4096 + 256 * span + 4 * (span + 4) * models;
+    out += 48 * (span + 4) * ModeBasis::kClusterModes * object.cluster_basis.count;
     if (const std::uint64_t modes = object.spring_basis.modes; modes > 0) {
       const std::uint64_t vertices = object.rest.size(), columns = modes + 16;
       out += vertices * (1024 + 6 * modes) + std::min<std::uint64_t>(vertices, 1024) * (8192 + 200 * columns) +

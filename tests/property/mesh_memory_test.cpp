@@ -78,8 +78,8 @@ DeformableObject bipartite() {
 }
 
 TEST(MeshMemory, OfMeshesThatTakeMost) {
-  std::vector<DeformableObject> objects{points(1), points(1),   points(1), points(3000), points(3000), points(3000),
-                                        books(50), bipartite(), points(1), points(30),   points(1100)};
+  std::vector<DeformableObject> objects{points(1),   points(1), points(1),  points(3000), points(3000), points(3000), books(50),
+                                        bipartite(), points(1), points(30), points(1100), points(1),    points(3000), books(50)};
   objects[0].profile = DeformableProfile::thesis;
   objects[0].quant_bits = 12;
   objects[0].models_kept = true;
@@ -92,6 +92,10 @@ TEST(MeshMemory, OfMeshesThatTakeMost) {
   objects[8].spring_basis = {3, {}};
   objects[9].spring_basis = {64, {}};
   objects[10].spring_basis = {48, {0, 1, 5}};
+  for (std::size_t i = 11; i < objects.size(); ++i) {
+    objects[i].cluster_basis = {64, 32, {}};
+    for (std::size_t v = 0; v < objects[i].rest.size(); ++v) objects[i].cluster_basis.clusters.push_back(v % 64);
+  }
   for (const DeformableObject& object : objects) {
     for (const std::uint8_t span : {std::uint8_t{1}, std::uint8_t{64}}) {
       SCOPED_TRACE(&object - objects.data());

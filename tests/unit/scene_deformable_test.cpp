@@ -115,6 +115,46 @@ TEST(SceneDeformables, ASpringBasisIsComputedAndNotWritten) {
       << "mode_count, runs of fixed vertices";
 }
 
+TEST(SceneDeformables, ClustersAreToldWhereTheyAreNotExpected) {
+  SceneSpec spec = two_deformables();
+  DeformableObject& object = spec.deformables[0];
+  object.basis = {};
+  object.cluster_basis = {3, 2, std::vector<std::uint8_t>(object.rest.size(), 1)};
+  object.cluster_basis.clusters.back() = 2;
+  const SharedScene scene = testing::shared(spec);
+  EXPECT_EQ(scene->deformables[0].basis.steps.size(), 36U);
+  const auto bytes = write_scene(*scene).value();
+  const auto parsed = parse_scene(bytes);
+  ASSERT_TRUE(parsed);
+  EXPECT_EQ(parsed->scene->deformables[0], scene->deformables[0]);
+  spec.deformables[0].cluster_basis = {};
+  EXPECT_EQ(bytes.size(), write_scene(*testing::shared(spec)).value().size() + 1 + 1 + 1 + 2 * 2)
+      << "cluster_count, blend, surprises of the first and the last vertex";
+}
+
+TEST(SceneDeformables, RulesOfClusters) {
+  const auto rule = [](const ClusterBasis& basis, std::uint8_t springs = 0, const DecodeLimits& limits = {}) {
+    SceneSpec spec = two_deformables();
+    spec.deformables[0].basis = {};
+    spec.deformables[0].cluster_basis = basis;
+    spec.deformables[0].spring_basis.modes = springs;
+    const auto scene = Scene::create(std::move(spec), limits);
+    return scene ? std::string_view("none") : std::string_view(scene.error().rule);
+  };
+  const std::size_t vertices = two_deformables().deformables[0].rest.size();
+  const std::vector<std::uint8_t> all(vertices, 1);
+  EXPECT_EQ(rule({2, 32, all}), "none");
+  EXPECT_EQ(rule({64, 0, all}), "none");
+  EXPECT_EQ(rule({0, 0, all}), "R-DEF-7") << "clusters of no basis";
+  EXPECT_EQ(rule({65, 0, all}), "R-DEF-7");
+  EXPECT_EQ(rule({2, 33, all}), "R-DEF-7");
+  EXPECT_EQ(rule({1, 0, all}), "R-DEF-7");
+  EXPECT_EQ(rule({2, 0, std::vector<std::uint8_t>(vertices - 1, 1)}), "R-DEF-7");
+  EXPECT_EQ(rule({2, 0, all}, 4), "R-DEF-7") << "two bases";
+  EXPECT_EQ(rule({2, 12, all}, 0, {.basis_work = 4 * vertices - 1}), "R-STR-21");
+  EXPECT_EQ(rule({2, 12, all}, 0, {.basis_work = 4 * vertices}), "none");
+}
+
 TEST(SceneDeformables, RulesOfASpringBasis) {
   const auto rule = [](const SpringBasis& basis, const DecodeLimits& limits = {}) {
     SceneSpec spec = two_deformables();
@@ -167,7 +207,7 @@ TEST(SceneDeformables, EachRuleOfTheReader) {
   EXPECT_EQ(rule(14, {0x80, 0x80, 0x80, 0x80, 0x10}), "R-DEF-5");
   EXPECT_EQ(rule(23, {6}), "R-DEF-6");
   EXPECT_EQ(rule(23, {1}), "R-DEF-6");
-  EXPECT_EQ(rule(26, {3}), "R-DEF-7");
+  EXPECT_EQ(rule(26, {4}), "R-DEF-7");
   EXPECT_EQ(rule(26, {1}), "R-STR-5");
   EXPECT_EQ(rule(26, {1, 65}), "R-DEF-7");
   EXPECT_EQ(rule(26, {1, 0}), "R-DEF-7");

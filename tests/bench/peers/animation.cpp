@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <span>
 
 #include <tactus/deformable/graph.h>
 #include <tactus/trace/trace_file.h>
@@ -16,14 +17,21 @@ namespace {
 
 using Shape = std::vector<Vec3>;
 
-double diagonal(const Shape& shape) {
-  Vec3 low = shape[0], high = shape[0];
-  for (const Vec3& p : shape) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+double diagonal(std::span<const Shape> shapes) {
+  Vec3 low = shapes[0][0], high = low;
+  for (const Shape& shape : shapes) {
+    for (const Vec3& p : shape) {
+      low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+      high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
   }
   return norm(high - low);
 }
+
+struct Grid {
+  GridBox box;
+  unsigned bits;
+};
 
 std::vector<Vec3i> on_grid(const Shape& shape, double unit) {
   const auto nearest = [unit](double x) { return static_cast<std::int32_t>(std::floor(x / unit + 0.5)); };
@@ -34,8 +42,9 @@ std::vector<Vec3i> on_grid(const Shape& shape, double unit) {
 }
 
 tl::expected<Animation, std::string> make_animation(std::vector<Triangle> triangles, const Shape& rest,
-                                                    const std::vector<Shape>& frames, unsigned bits) {
-  const double unit = diagonal(rest) / std::ldexp(1.0, static_cast<int>(bits));
+                                                    const std::vector<Shape>& frames, const Grid& grid) {
+  const double size = grid.box == GridBox::rest ? diagonal({&rest, 1}) : diagonal(frames);
+  const double unit = size / std::ldexp(1.0, static_cast<int>(grid.bits));
   if (!(unit > 0)) return tl::unexpected<std::string>("the rest shape is a point");
   Animation out{{}, std::move(triangles), on_grid(rest, unit), {}, {}};
   for (const Shape& frame : frames) {
@@ -48,7 +57,7 @@ tl::expected<Animation, std::string> make_animation(std::vector<Triangle> triang
   return out;
 }
 
-tl::expected<Animation, std::string> read_md3(const std::string& path, const std::string& surface, unsigned bits,
+tl::expected<Animation, std::string> read_md3(const std::string& path, const std::string& surface, const Grid& grid,
                                               std::size_t limit) {
   std::ifstream in(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
@@ -56,10 +65,10 @@ tl::expected<Animation, std::string> read_md3(const std::string& path, const std
   auto model = parse_md3(bytes, surface);
   if (!model) return tl::unexpected(model.error());
   model->frames.resize(std::min(limit, model->frames.size()));
-  return make_animation(std::move(model->triangles), model->frames[0], model->frames, bits);
+  return make_animation(std::move(model->triangles), model->frames[0], model->frames, grid);
 }
 
-tl::expected<Animation, std::string> read_trace(const std::string& path, unsigned bits, std::size_t limit) {
+tl::expected<Animation, std::string> read_trace(const std::string& path, const Grid& grid, std::size_t limit) {
   auto reader = TraceReader::open(path);
   if (!reader) return tl::unexpected<std::string>(reader.error().rule);
   if (reader->info().meshes.empty()) return tl::unexpected<std::string>("no mesh in the trace");
@@ -76,7 +85,8 @@ tl::expected<Animation, std::string> read_trace(const std::string& path, unsigne
     for (std::size_t v = 0; v < shape.size(); ++v) shape[v] = shape[v] + Vec3{u[3 * v], u[3 * v + 1], u[3 * v + 2]};
     frames.push_back(std::move(shape));
   }
-  return make_animation(rest.triangles, rest.vertices, frames, bits);
+  if (frames.empty()) return tl::unexpected<std::string>("no shape in the trace");
+  return make_animation(rest.triangles, rest.vertices, frames, grid);
 }
 
 /// Vertex with the longest path.
@@ -93,12 +103,12 @@ std::uint32_t liveliest(const Animation& animation) {
 
 }  // namespace
 
-tl::expected<Animation, std::string> read_animation(const std::string& input, unsigned bits, std::size_t limit) {
+tl::expected<Animation, std::string> read_animation(const std::string& input, GridBox box, unsigned bits, std::size_t limit) {
   const std::size_t colon = input.rfind(':');
   const std::string path = input.substr(0, colon);
   const std::string surface = colon == std::string::npos ? "" : input.substr(colon + 1);
   const bool md3 = std::filesystem::path(path).extension() == ".md3";
-  auto out = md3 ? read_md3(path, surface, bits, limit) : read_trace(input, bits, limit);
+  auto out = md3 ? read_md3(path, surface, {box, bits}, limit) : read_trace(input, {box, bits}, limit);
   if (!out) return tl::unexpected(input + ": " + out.error());
   if (out->frames.size() < 16) return tl::unexpected(input + ": fewer than 16 frames");
   out->name = std::filesystem::path(path).stem().string() + (surface.empty() ? "" : ":" + surface);

@@ -22,11 +22,13 @@ inline constexpr int kFineBits = 6, kFine = 1 << kFineBits;
 /// What rounding to the grid may cost: half a diagonal of its cells [units].
 inline constexpr double kRounding = 0.8660254037844386;
 
-/// Grid: the diagonal of the rest shape's bounding box is 2^`bits` units.
+/// The box whose diagonal is 2^bits units of the grid: that of the rest shape, or of all frames together.
+enum class GridBox { rest, frames };
+
 ///   x.mcap            the first mesh of a trace, at the ticks at which its shape is new
 ///   x.md3, x.md3:NAME all surfaces of an MD3 model, or one; its first frame is the rest shape
 /// At most `limit` frames are taken.   err  why not, for a person
-tl::expected<Animation, std::string> read_animation(const std::string& input, unsigned bits, std::size_t limit);
+tl::expected<Animation, std::string> read_animation(const std::string& input, GridBox box, unsigned bits, std::size_t limit);
 
 /// The `count` vertices nearest along edges to the one that moves farthest, with the triangles between them; all of it if there are no more.
 Animation patch_of(const Animation& whole, std::size_t count);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include <tactus/deformable/motion_clusters.h>
 #include <tactus/receiver.h>
 #include <tactus/sender.h>
 
@@ -50,13 +51,31 @@ const double kStep = std::ldexp(1.0, -GridExponents{}.position);
 
 struct OurSetting {
   DeformableProfile profile = DeformableProfile::main;
-  bool models_kept = false;  ///< thesis
-  bool chained = true;       ///< false: every packet is a key packet
-  bool lossy = false;        ///< main: given what the grid rounded, and allowed the error of that rounding
+  bool models_kept = false;      ///< thesis
+  bool chained = true;           ///< false: every packet is a key packet
+  bool lossy = false;            ///< main: given what the grid rounded, and allowed the error of that rounding
+  std::uint8_t weight_sets = 1;  ///< main
+  std::size_t clusters = 0;      ///< main
+  std::size_t known = 1;         ///< early: clusters are found on the first of so many parts of the frames
 };
 
 /// Steps of the stream's grid to a unit of the table's.
 std::int32_t units_of(const OurSetting& setting) { return setting.lossy ? kFine : 1; }
+
+ClusterBasis clusters_of(const Animation& animation, const OurSetting& setting) {
+  TriMesh rest{.vertices = {}, .triangles = animation.triangles};
+  for (const Vec3i& p : animation.rest) rest.vertices.push_back({1.0 * p[0], 1.0 * p[1], 1.0 * p[2]});
+  std::vector<std::vector<float>> shapes;
+  const std::size_t frames = animation.frames.size() / setting.known;
+  const std::size_t stride = (frames + kClusterShapes - 1) / kClusterShapes;
+  for (std::size_t f = 0; f < frames; f += stride) {
+    std::vector<float>& shape = shapes.emplace_back();
+    for (std::size_t v = 0; v < animation.rest.size(); ++v)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        shape.push_back(static_cast<float>(animation.frames[f][v][axis] - animation.rest[v][axis]));
+  }
+  return motion_clusters(rest, shapes, setting.clusters).value();
+}
 
 SharedScene scene_of(const Animation& animation, const OurSetting& setting) {
   SceneSpec spec;
@@ -69,6 +88,11 @@ SharedScene scene_of(const Animation& animation, const OurSetting& setting) {
   for (Vec3i& v : object.rest)
     for (std::int32_t& c : v) c *= units_of(setting);
   object.triangles = animation.triangles;
+  object.weight_sets = setting.weight_sets;
+  if (setting.clusters > 0) {
+    object.cluster_basis = clusters_of(animation, setting);
+    object.fade = 8000;  // 98 % per second at 30 frames/s
+  }
   spec.deformables.push_back(std::move(object));
   return Scene::create(std::move(spec)).value();
 }
@@ -166,8 +190,13 @@ std::vector<std::string> absent_peers() {
 std::vector<Scheme> all_schemes() {
   std::vector<Scheme> out;
   out.push_back(ours("tactus main", "key packets", {.chained = false}));
-  out.push_back(ours("tactus main", "", {}));
-  out.push_back(ours("tactus main, same largest error", "lossy", {.lossy = true}));
+  for (const bool lossy : {false, true}) {
+    const char* name = lossy ? "tactus main, same largest error" : "tactus main";
+    out.push_back(ours(name, "nugget 2%", {.lossy = lossy}));
+    out.push_back(ours(name, "nugget all", {.lossy = lossy, .weight_sets = 7}));
+    out.push_back(ours(name, "40 clusters", {.lossy = lossy, .weight_sets = 2, .clusters = 40}));
+    out.push_back(ours(name, "40 early clusters", {.lossy = lossy, .weight_sets = 2, .clusters = 40, .known = 4}));
+  }
   out.push_back(ours("tactus thesis (8 bits)", "key packets", {.profile = DeformableProfile::thesis, .chained = false}));
   out.push_back(ours("tactus thesis (8 bits)", "models restarted", {.profile = DeformableProfile::thesis}));
   out.push_back(ours("tactus thesis (8 bits)", "models kept", {.profile = DeformableProfile::thesis, .models_kept = true}));

@@ -4,6 +4,7 @@
 #include <time.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace tactus::peers {
 namespace {
@@ -28,6 +29,23 @@ double largest_error(std::span<const Vec3i> truth, std::span<const Vec3i> shown)
   }
   return out;
 }
+
+/// Sums of squares: of the errors, and of the vertices about their mean, over all frames.
+struct Squares {
+  double error = 0, spread = 0;
+
+  void add(std::span<const Vec3i> truth, std::span<const Vec3i> shown) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      double mean = 0;
+      for (const Vec3i& p : truth) mean += p[axis];
+      mean /= static_cast<double>(truth.size());
+      for (std::size_t v = 0; v < truth.size(); ++v) {
+        error += std::pow(truth[v][axis] - shown[v][axis], 2);
+        spread += std::pow(truth[v][axis] - mean, 2);
+      }
+    }
+  }
+};
 
 struct Recording {
   std::vector<Bytes> packets;
@@ -56,6 +74,7 @@ std::optional<Measurement> measure(const Animation& animation, const Scheme& sch
   Recording recording;
   std::vector<double> encode_us, decode_us;
   Measurement out;
+  Squares squares;
   for (std::size_t f = 0; f < animation.frames.size(); ++f) {
     std::vector<Vec3i> shown(animation.rest.size());
     const double start = cpu_us();
@@ -65,12 +84,14 @@ std::optional<Measurement> measure(const Animation& animation, const Scheme& sch
     decode_us.push_back(cpu_us() - middle);
     encode_us.push_back(middle - start);
     if (f > 0) out.bytes += static_cast<double>(packet.size());
+    squares.add(animation.fine[f], shown);
     out.error = std::max(out.error, largest_error(animation.fine[f], shown));
     recording.packets.push_back(std::move(packet));
     recording.shown.push_back(std::move(shown));
   }
   out.bytes /= static_cast<double>(animation.frames.size() - 1);
   out.bits_per_vertex = 8 * out.bytes / static_cast<double>(animation.rest.size());
+  out.kg_percent = 100 * std::sqrt(squares.error / squares.spread);
   out.encode_us = median(encode_us);
   out.decode_us = median(decode_us);
   out.survives = survives_loss(animation, scheme, recording);

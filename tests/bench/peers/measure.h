@@ -12,7 +12,8 @@ struct Measurement {
   double bytes = 0;                     ///< per frame, mean over all but the first
   double bits_per_vertex = 0;           ///< the same, per vertex
   double encode_us = 0, decode_us = 0;  ///< CPU time per frame, median
-  double error = 0;                     ///< largest distance of a shown vertex from the position before rounding, grid units
+  double kg_percent = 0;  ///< root mean square error over that of the vertices about the mean of each frame (Karni and Gotsman)
+  double error = 0;       ///< largest distance of a shown vertex from the position before rounding, grid units
   std::optional<bool>
       survives;  ///< after one packet was lost the next one decodes to the same; none: no two in a row that change something
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Our profiles beside codecs made by others, all vertices of every frame, on one grid, one packet per frame.
-///   peers_bench [--bits N] [--frames N] [--csv FILE] INPUT...      INPUT as in animation.h
+///   peers_bench [--bits N] [--grid rest|frames] [--frames N] [--csv FILE] INPUT...      INPUT as in animation.h
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
@@ -15,6 +15,7 @@ namespace {
 using namespace tactus::peers;
 
 struct Options {
+  GridBox box = GridBox::rest;
   unsigned bits = 10;
   std::size_t frames = 2000;
   std::string csv;
@@ -29,7 +30,7 @@ struct Row {
 };
 
 int usage() {
-  std::fputs("usage: peers_bench [--bits N] [--frames N] [--csv FILE] INPUT...\n", stderr);
+  std::fputs("usage: peers_bench [--bits N] [--grid rest|frames] [--frames N] [--csv FILE] INPUT...\n", stderr);
   return 2;
 }
 
@@ -47,6 +48,8 @@ bool parse(int argc, char** argv, Options& out) {
       return error == std::errc{} && end == value.data() + value.size();
     };
     if (name == "--csv") out.csv = value;
+    else if (name == "--grid" && (value == "rest" || value == "frames"))
+      out.box = value == "rest" ? GridBox::rest : GridBox::frames;
     else if (name == "--bits" ? !number(out.bits) || out.bits > 16 : name != "--frames" || !number(out.frames)) return false;
   }
   return !out.inputs.empty();
@@ -75,8 +78,9 @@ void print_table(const std::vector<Row>& rows) {
     std::printf("  %-33s %-10s %-17s ", s.name.c_str(), s.predicted ? "predicted" : "plain", s.setting.c_str());
     if (!row->result) std::puts("cannot carry this mesh");
     else
-      std::printf("%9.1f %9.3f %10.1f %10.1f %6.3f %9s\n", row->result->bytes, row->result->bits_per_vertex,
-                  row->result->encode_us, row->result->decode_us, row->result->error, survives(*row->result).c_str());
+      std::printf("%9.1f %9.3f %10.1f %10.1f %6.3f %7.3f %9s\n", row->result->bytes, row->result->bits_per_vertex,
+                  row->result->encode_us, row->result->decode_us, row->result->error, row->result->kg_percent,
+                  survives(*row->result).c_str());
   }
 }
 
@@ -86,8 +90,9 @@ void write_csv(std::ofstream& out, const std::vector<Row>& rows) {
         << ',' << (row.scheme->predicted ? "predicted" : "plain");
     if (row.result)
       out << ',' << row.result->bytes << ',' << row.result->bits_per_vertex << ',' << row.result->encode_us << ','
-          << row.result->decode_us << ',' << row.result->error << ',' << survives(*row.result) << '\n';
-    else out << ",,,,,,\n";
+          << row.result->decode_us << ',' << row.result->error << ',' << row.result->kg_percent << ',' << survives(*row.result)
+          << '\n';
+    else out << ",,,,,,,\n";
   }
 }
 
@@ -99,11 +104,11 @@ int main(int argc, char** argv) {
   std::ofstream csv;
   if (!options.csv.empty()) {
     csv.open(options.csv);
-    csv << "data,vertices,frames,codec,setting,values,bytes,bits_per_vertex,encode_us,decode_us,error,survives_loss\n";
+    csv << "data,vertices,frames,codec,setting,values,bytes,bits_per_vertex,encode_us,decode_us,error,kg_percent,survives_loss\n";
   }
   const auto schemes = all_schemes();
   for (const std::string& input : options.inputs) {
-    const auto whole = read_animation(input, options.bits, options.frames);
+    const auto whole = read_animation(input, options.box, options.bits, options.frames);
     if (!whole) {
       std::fprintf(stderr, "error: %s\n", whole.error().c_str());
       return 1;

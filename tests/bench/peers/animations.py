@@ -1,0 +1,140 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Rate against error of meshes that move freely, with and without clusters, beside MPEG-4 FAMC.
+
+    tests/bench/peers/animations.py TACTUS FOLDER... [-o OUT]
+
+A FOLDER holds one OBJ file per frame and is named after its clip. It is read by `tactus import mesh` so that the diagonal of the box
+of all frames is 1024 mm: a unit, its 1024th part, is 1 mm. Writes points.csv and, if gnuplot is there, a figure for each clip to OUT.
+Prints at which share of FAMC's bits ours has the same KG error. famc.csv holds what FAMC's reference software made of four clips.
+"""
+import argparse
+import csv
+import json
+import math
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+BOUNDS = "0.125", "0.25", "0.5", "1", "2", "4", "8"          # largest error [units]
+SETTINGS = {"no basis": [], "24 clusters": ["--clusters", "24"], "40 clusters": ["--clusters", "40"], "64 clusters": ["--clusters", "64"]}
+COLUMNS = ("clip", "vertices", "frames", "setting", "bound_units", "bits_per_vertex", "basis_bytes", "kg_percent", "largest_units", "over",
+           "encode_us", "decode_us")
+FAMC = pathlib.Path(__file__).with_name("famc.csv")
+PLOT = """set terminal svg size 760,520 font "sans,14" background "white"
+set output "{out}"
+set datafile separator ","
+set logscale xy
+set xlabel "root mean square error, KG [%]"
+set ylabel "bits per vertex and frame"
+set title "{clip}: {vertices} vertices, {frames} frames"
+set key top right
+set grid
+plot {curves}
+"""
+
+
+def frames_of(folder):
+    number = lambda path: int(re.findall(r"\d+", path.stem)[-1])
+    for path in sorted(folder.glob("*.obj"), key=number):
+        with path.open() as lines:
+            yield [tuple(map(float, line.split()[1:4])) for line in lines if line.startswith("v ")]
+
+
+def measure_clip(folder):
+    """Vertices, frames, diagonal of the box of all frames, and the spread of the vertices about the mean of each frame, both in file units."""
+    low, high, spread, count, frames = [math.inf] * 3, [-math.inf] * 3, 0.0, 0, 0
+    for points in frames_of(folder):
+        frames, count = frames + 1, len(points)
+        for axis, values in enumerate(zip(*points)):
+            low[axis], high[axis] = min(low[axis], *values), max(high[axis], *values)
+            mean = sum(values) / count
+            spread += sum((x - mean) ** 2 for x in values)
+    return count, frames, math.dist(low, high), math.sqrt(spread / (count * frames))
+
+
+def encode(tactus, trace, stream, bound, options):
+    command = [tactus, "encode", trace, "-o", stream, "-f", "--json", "--haptic", "off", "--key-interval", "0",
+               "--deformable-visual", bound + "mm", *options]
+    return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+
+
+def points_of(tactus, folder, scratch):
+    vertices, frames, diagonal, spread = measure_clip(folder)
+    unit = 1.024 / diagonal                                              # [m] per unit of the files
+    trace, stream = scratch / "clip.mcap", scratch / "clip.tct"
+    subprocess.run([tactus, "import", "mesh", folder, "--rate", "30", "--length-unit", f"{unit:.9g}m", "-o", trace, "-f", "-q"], check=True)
+    headers = {}
+    for setting, options in SETTINGS.items():
+        for bound in BOUNDS:
+            report = encode(tactus, trace, stream, bound, options)
+            headers.setdefault(setting, report["stream"]["header_bytes"])
+            basis = headers[setting] - headers["no basis"]               # the rest shape is known to both sides, its clusters are not
+            mesh = report["deformables"][0]
+            error = mesh["error"]["position_m"]
+            yield dict(zip(COLUMNS, (
+                folder.name, vertices, frames, setting, bound,
+                f"{8 * (mesh['traffic']['bytes'] + basis) / vertices / (frames - 1):.4f}", basis,
+                f"{100 * error['rms'] / (spread * unit):.4f}", f"{1000 * error['max']:.4f}", error["over"],
+                *(f"{1e6 * mesh['time'][end]['p50_s']:.0f}" for end in ("encode", "decode")))))
+
+
+def rate_at(points, kg):
+    """Between two points, on straight lines of the logarithms; none beyond the first and the last."""
+    curve = sorted((math.log(float(p["kg_percent"])), math.log(float(p["bits_per_vertex"]))) for p in points)
+    for (x, y), (right, above) in zip(curve, curve[1:]):
+        if x <= math.log(kg) <= right:
+            return math.exp(y + (above - y) * (math.log(kg) - x) / (right - x))
+    return None
+
+
+def draw(clip, points, famc, out):
+    data = out / "plot.csv"
+    series = {name: [(p["kg_percent"], p["bits_per_vertex"]) for p in points if p["setting"] == name] for name in ("no basis", "40 clusters")}
+    for name, wanted in (("FAMC, the whole clip known", True), ("FAMC, 8 to 57 frames known", False)):
+        series[name] = [(p["kg_percent"], p["bits_per_vertex"]) for p in famc if (p["segment"] == "whole") == wanted]
+    series = {name: values for name, values in series.items() if values}
+    data.write_text("\n\n\n".join("\n".join(f"{x},{y}" for x, y in values) for values in series.values()))
+    styles = {"no basis": "with linespoints dashtype 2 pointtype 4 linecolor rgb '#555555'",
+              "40 clusters": "with linespoints dashtype 1 linewidth 2 pointtype 7 linecolor rgb '#0060a0'"}
+    marks = iter(("with points pointtype 9 pointsize 1.2 linecolor rgb '#b04000'", "with points pointtype 10 pointsize 1.2 linecolor rgb '#b04000'"))
+    curves = ", ".join(f"'{data}' index {i} {styles.get(name) or next(marks)} title '{name}'" for i, name in enumerate(series))
+    script = PLOT.format(out=out / f"{clip}.svg", clip=clip, vertices=points[0]["vertices"], frames=points[0]["frames"], curves=curves)
+    subprocess.run(["gnuplot"], input=script, text=True, check=True)
+    data.unlink()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tactus", type=pathlib.Path, metavar="TACTUS", help="the program")
+    parser.add_argument("folders", type=pathlib.Path, nargs="+", metavar="FOLDER")
+    parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("out/animation"), metavar="OUT", help="[out/animation]")
+    args = parser.parse_args()
+    for folder in args.folders:
+        if not re.fullmatch(r"[A-Za-z0-9_-]+", folder.name) or not any(folder.glob("*.obj")):
+            parser.error(f"{folder}: must be a folder of OBJ files with a name of letters, digits, _ and -")
+    args.output.mkdir(parents=True, exist_ok=True)
+    with FAMC.open() as file:
+        famc = list(csv.DictReader(file))
+    all_points = []
+    for folder in args.folders:
+        with tempfile.TemporaryDirectory() as scratch:
+            points = list(points_of(args.tactus, folder, pathlib.Path(scratch)))
+        all_points += points
+        others = [p for p in famc if p["clip"] == folder.name]
+        draw(folder.name, points, others, args.output)
+        for p in others:
+            shares = [(s, rate_at([q for q in points if q["setting"] == s], float(p["kg_percent"]))) for s in SETTINGS]
+            text = ", ".join(f"{s} {rate / float(p['bits_per_vertex']):.2f}" for s, rate in shares if rate)
+            print(f"{folder.name:8} FAMC {p['segment']:5} {p['mode']:8} KG {p['kg_percent']:>6} %  {p['bits_per_vertex']:>6} bits   ours: {text or '-'}")
+    with (args.output / "points.csv").open("w", newline="") as file:
+        table = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        table.writeheader()
+        table.writerows(all_points)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
