@@ -5,6 +5,7 @@
 #   ./go test     build with g++ and clang, run every test (55 minutes on 2 cores, 4 GB)
 #   ./go bench    build and run the benchmarks; JSON in build/bench/
 #   ./go devices  capture a device of the kernel's own making in an emulated machine, from /dev/uhid to the trace (30 s after the build)
+#   ./go site     write the documentation as one static site: examples, libraries, specification, reports (30 s)
 #   ./go format   format the sources with clang-format
 # shellcheck disable=SC2086 # lists of packages are words
 set -eu
@@ -13,7 +14,8 @@ cd "$(dirname "$0")"
 demo_packages='g++ cmake ninja-build pkgconf libexpected-dev libzstd-dev libode-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev gnuplot-nox'
 build_packages="$demo_packages libgnutls28-dev libeigen3-dev libsuitesparse-dev libspectra-dev libopenmesh-dev libusb-1.0-0-dev libhidapi-dev libboost-dev"
 bench_packages='libbenchmark-dev libgtest-dev python3 libbullet-dev'
-test_packages="$bench_packages ccache clang libclang-rt-dev clang-tidy clang-format tetgen tshark umockdev libumockdev-dev valgrind zstd"
+site_packages='python3 doxygen cmark-gfm'
+test_packages="$bench_packages $site_packages ccache clang libclang-rt-dev clang-tidy clang-format tetgen tshark umockdev libumockdev-dev valgrind zstd"
 
 as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi
@@ -127,14 +129,20 @@ run_devices() {
   tests/qemu/run.py build/gcc/cli/tactus build/gcc/tests/qemu/uhid_device build/qemu
 }
 
+run_site() {
+  install $site_packages
+  step 'write the site and check its links' tools/site/make_site.py out/site
+  echo "Open $PWD/out/site/index.html"
+}
+
 run_format() {
   install clang-format
   find codec io metrics sim device cli conformance tests \( -name '*.h' -o -name '*.cpp' \) -exec clang-format -i {} +
 }
 
 case ${1-help} in
-  demo | test | bench | devices | format) "run_$1" ;;
-  help | -h | --help) sed -n '3,8s/^# \{0,1\}//p' "$0" ;;
+  demo | test | bench | devices | site | format) "run_$1" ;;
+  help | -h | --help) sed -n '3,9s/^# \{0,1\}//p' "$0" ;;
   *)
     echo "go: no such command: $1 (try ./go help)" >&2
     exit 2
