@@ -7,8 +7,8 @@
 
 #include "cli/commands/commands.h"
 #include "cli/output.h"
-#include "cli/progress.h"
 #include "cli/report/json_parts.h"
+#include "cli/terminal.h"
 
 namespace tactus::cli {
 namespace {

@@ -2,7 +2,6 @@
 #include "cli/options/options_codec.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
@@ -12,6 +11,7 @@
 
 #include <tactus/base/rule.h>
 #include <tactus/rigid/trigger.h>
+#include "cli/terminal.h"
 
 namespace tactus::cli {
 namespace {
@@ -55,7 +55,7 @@ Check one_of(const std::vector<std::string>& names) {
 }
 
 Outcome check_no_terminal(const std::string& output) {
-  if (output != "-" || isatty(STDOUT_FILENO) == 0) return {};
+  if (output != "-" || !is_terminal(kStandardOutput)) return {};
   return refuse_arguments("-o -: standard output is a terminal, and the output is binary",
                           "Name a file, or redirect the output to a file or to another command.");
 }
