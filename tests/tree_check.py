@@ -43,6 +43,7 @@ SYSTEM = {
     "cli/live/ticker.cpp": "to wait for a time or a datagram",
     "cli/output.cpp": "files that appear whole or not at all, and go when a signal comes",
     "cli/terminal.cpp": "terminals",
+    "conformance/binary_streams.h": "standard streams without changed line ends",
     "device/falcon/falcon_usb.cpp": "the rights to a device",
     "device/guardian.cpp": "a process that outlives ours",
     "device/guardian.h": "a process that outlives ours",
