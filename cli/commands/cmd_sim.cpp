@@ -452,12 +452,12 @@ void setup_sim(Command& app, Action& action) {
       .add_option("--method", options->method,
                   "Time integration of deformable objects: auto, velocity-verlet, backward-euler, newmark, tr-bdf2 or projective "
                   "[the scene's]")
-      ->check(one_of({"auto", "velocity-verlet", "backward-euler", "newmark", "tr-bdf2", "projective"}))
+      ->one_of({"auto", "velocity-verlet", "backward-euler", "newmark", "tr-bdf2", "projective"})
       ->type_name("NAME");
   command
       .add_option("--solver", options->solver,
                   "Linear solver of implicit methods: auto, cg, cholesky or prefactored [the scene's]")
-      ->check(one_of({"auto", "cg", "cholesky", "prefactored"}))
+      ->one_of({"auto", "cg", "cholesky", "prefactored"})
       ->type_name("NAME");
   command.add_option("--rate", options->rate, "Ticks between deformation steps, 1 to 1000 [the scene's]")
       ->check(whole_number(1, 1000))
@@ -466,6 +466,7 @@ void setup_sim(Command& app, Action& action) {
       .add_option("--stiffness-map", options->stiffness_map,
                   "Also write the local stiffness of deformable objects (CSV, and a plot beside it)")
       ->type_name("FILE");
+  const std::string own = command.group("Closed loop");
   command.add_flag("--codec", options->codec,
                    "Close the loop through encoder, decoder and replica; every option from --stream to --layered implies it");
   command.add_option("--stream", options->stream, "Also write the packets")->type_name("FILE");
@@ -482,6 +483,7 @@ void setup_sim(Command& app, Action& action) {
                   "With --link: also write the datagrams at the clients' network interfaces (pcap; see `tactus export pcap`)")
       ->type_name("FILE");
 #endif
+  command.group(own);
   add_encoder_options(command, options->triggers, options->meshes);
   add_output_options(command, options->common);
   command.footer(

@@ -30,6 +30,9 @@ void setup_link(Command& app, Action& action);
 void setup_serve(Command& app, Action& action);
 void setup_join(Command& app, Action& action);
 void setup_key(Command& app, Action& action);
+void setup_help(Command& app, Action& action);
+void setup_completion(Command& app, Action& action);
+void setup_completion(Command& app, Action& action);
 void setup_sweep(Command& app, Action& action);
 void setup_reproduce(Command& app, Action& action);
 void setup_bench(Command& app, Action& action);
@@ -38,5 +41,7 @@ void setup_bench_stability(Command& group, Action& action);
 void setup_bench_delay(Command& group, Action& action);
 void setup_bench_session(Command& group, Action& action);
 void setup_bench_signals(Command& group, Action& action);
+void setup_help(Command& app, Action& action);
+void setup_completion(Command& app, Action& action);
 
 }  // namespace tactus::cli

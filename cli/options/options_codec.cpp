@@ -47,13 +47,6 @@ Check number(double low, double high) {
   };
 }
 
-Check one_of(const std::vector<std::string>& names) {
-  return [names](const std::string& text) {
-    const bool known = std::find(names.begin(), names.end(), text) != names.end();
-    return known ? std::string() : fmt::format("{} not in {{{}}}", text, fmt::join(names, ","));
-  };
-}
-
 Outcome check_no_terminal(const std::string& output) {
   if (output != "-" || isatty(STDOUT_FILENO) == 0) return {};
   return refuse_arguments("-o -: standard output is a terminal, and the output is binary",
@@ -61,10 +54,12 @@ Outcome check_no_terminal(const std::string& output) {
 }
 
 void add_report_options(Command& app, CommonOptions& options) {
+  const std::string own = app.group("Report");
   options.command = &app;
   app.add_flag("--json", options.json, "Report as JSON, in SI units");
   app.add_flag("-q,--quiet", options.quiet, "Print no progress and no table; --json still reports");
   app.add_flag("--no-progress", options.no_progress, "No progress bar");
+  app.group(own);
 }
 
 void add_output_options(Command& app, CommonOptions& options) {
@@ -73,6 +68,7 @@ void add_output_options(Command& app, CommonOptions& options) {
 }
 
 void TriggerArguments::add_to(Command& app) {
+  const std::string own = app.group("Thresholds");
   const std::map<std::string, HapticRule> rules{{"isotropic", HapticRule::isotropic},
                                                 {"cone", HapticRule::cone},
                                                 {"fixed", HapticRule::fixed},
@@ -94,7 +90,7 @@ void TriggerArguments::add_to(Command& app) {
              "amount by -p "
              "and its direction by --alpha), fixed (bounds the pose by --fixed), perceptual (isotropic, by the share that people "
              "notice: 10 % of 2.5 N to 22 % of 0.3 N) or off [isotropic]")
-          ->check(one_of({"isotropic", "cone", "fixed", "perceptual", "off"}))
+          ->one_of({"isotropic", "cone", "fixed", "perceptual", "off"})
           ->type_name("RULE");
   alpha_ =
       add_quantity(
@@ -109,6 +105,7 @@ void TriggerArguments::add_to(Command& app) {
                ->check(above_zero(Dimension::force));
   options_ = {deadband_, visual_option_, haptic_, alpha_, share_, fixed_option_, floor_, length_unit_option_};
   app.on_parsed([this] { check_lengths(); });  // only now --length-unit is known
+  app.group(own);
 }
 
 void TriggerArguments::check_lengths() const {
@@ -132,6 +129,7 @@ void TriggerArguments::check_bound(const Option& option, const PoseBound& bound)
 }
 
 void TriggerArguments::add_encoder_to(Command& app) {
+  const std::string own = app.group("Coding");
   options_.push_back(add_quantity(app, "--heartbeat", triggers_.heartbeat, Dimension::time,
                                   "An object that was not sent for this long is sent again, as a sign of life; 0: never [1s]")
                          ->check(within(Dimension::time, "0s", "3600s")));
@@ -140,6 +138,7 @@ void TriggerArguments::add_encoder_to(Command& app) {
                          ->check(within(Dimension::time, "0s", "86400s")));
   auto* every_tick = app.add_flag("--no-reduction", no_reduction_, "Send every object at every tick");
   options_.push_back(every_tick);
+  app.group(own);
 }
 
 std::optional<double> TriggerArguments::weber_fraction(std::optional<double> otherwise) const {
@@ -172,6 +171,7 @@ RigidTriggers TriggerArguments::over(RigidTriggers out) const {
 }
 
 void MotionArguments::add_to(Command& app) {
+  const std::string own = app.group("Coding");
   const Option* gravity =
       app.add_option(
              "--gravity", gravity_,
@@ -184,9 +184,11 @@ void MotionArguments::add_to(Command& app) {
       ->check(number(0, 10))
       ->type_name("MU")
       ->needs(gravity);
+  app.group(own);
 }
 
 void MeshArguments::add_to(Command& app) {
+  const std::string own = app.group("Thresholds");
   visual_ = add_quantity(app, "--deformable-visual", thresholds_.visual, Dimension::length,
                          "Visual threshold of a vertex of a deformable object, 0: exact to the grid [0.25mm]")
                 ->check(within(Dimension::length, "0m", "1000000m"));
@@ -196,9 +198,11 @@ void MeshArguments::add_to(Command& app) {
           ->check(whole_number(0, DeformableObject::kMaxRings))
           ->type_name("M");
   options_ = {visual_, rings_};
+  app.group(own);
 }
 
 void MeshArguments::add_encoder_to(Command& app) {
+  const std::string own = app.group("Coding");
   const std::map<std::string, DeformableProfile> profiles{{"thesis", DeformableProfile::thesis},
                                                           {"main", DeformableProfile::main}};
   const auto profile = [this, profiles](const std::string& name) { coding_.profile = profiles.at(name); };
@@ -223,7 +227,7 @@ void MeshArguments::add_encoder_to(Command& app) {
               "Coding tools: thesis (of rigid objects dead reckoning, their true velocities, and jumps that a client may smooth "
               "by "
               "--interpolate) or main (velocities that lean towards the acceleration, updates that clients ease into) [main]")
-           ->check(one_of({"thesis", "main"}))
+           ->one_of({"thesis", "main"})
            ->type_name("NAME"),
        modes,
        add_quantity(app, "--fade", coding_.fade, Dimension::fraction,
@@ -233,7 +237,7 @@ void MeshArguments::add_encoder_to(Command& app) {
               "--nugget", nugget,
               "How much of a vertex's movement its neighbours do not share: 2%, 5%, 30%, or all for a choice per packet, at "
               "two to four times the cost (--profile main) [5% with --basis, else 2%]")
-           ->check(one_of({"2%", "5%", "30%", "all"}))
+           ->one_of({"2%", "5%", "30%", "all"})
            ->type_name("SHARE"),
        shares_[0], shares_[1],
        app.add_option("--quant-bits", coding_.quant_bits, "Bits of the quantiser, 1 to 12 (--profile thesis) [8]")
@@ -244,6 +248,7 @@ void MeshArguments::add_encoder_to(Command& app) {
        app.add_flag("--layered", coding_.layered,
                     "Touched deformable objects: send the haptic layer in its own packet before the visual layer. Costs "
                     "a second header per update and 3 to 30 % of the bits")});
+  app.group(own);
 }
 
 bool MeshArguments::any_given() const {
@@ -277,7 +282,7 @@ Option* add_interpolation(Command& app, ReplicaOptions& options) {
       {"linear", Interpolation::linear}, {"hermite", Interpolation::hermite}, {"blending", Interpolation::blending}};
   return app.add_flag(
       "--interpolate", "linear", [&options, ways](const std::string& way) { options.interpolation = ways.at(way); },
-      one_of({"linear", "hermite", "blending"}),
+      {"linear", "hermite", "blending"},
       "Smooth the replica over 75 % of the mean inter-arrival time, 5 to 100 ms. With =hermite on cubics that keep the "
       "velocity, with =blending by projective velocity blending, else linear");
 }
