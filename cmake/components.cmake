@@ -97,7 +97,7 @@ function(tactus_component name dir)
 endfunction()
 
 # Our libraries, each before those that use it.
-set(TACTUS_LIBRARIES codec trace net seal metrics tets modes surface fem sim device falcon hid openhaptics inverse3)
+set(TACTUS_LIBRARIES codec trace net seal metrics tets modes surface fem sim device falcon hid openhaptics inverse3 c c_trace)
 
 # tactus_components(BUILT WITHOUT): the libraries that are built so far, and the others.
 function(tactus_components built without)
@@ -114,7 +114,7 @@ function(tactus_components built without)
 endfunction()
 
 # The components that are libraries, in the order in which they build on one another.
-set(TACTUS_LIBRARIES codec trace net seal metrics tets modes surface fem sim device falcon hid openhaptics inverse3)
+set(TACTUS_LIBRARIES codec trace net seal metrics tets modes surface fem sim device falcon hid openhaptics inverse3 c c_trace)
 
 # tactus_components(BUILT LEFT_OUT): the libraries that are there and those that are not.
 function(tactus_components built left_out)
