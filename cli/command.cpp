@@ -8,7 +8,6 @@
 #include <string>
 #include <string_view>
 
-#include "cli/manual/suggestion.h"
 #include "cli/options/headings.h"
 #include "cli/options/suggestion.h"
 
@@ -27,13 +26,7 @@ Option* Option::required() {
   return this;
 }
 
-std::string OneOf::operator()(const std::string& typed) const {
-  const bool known = std::find(names.begin(), names.end(), typed) != names.end();
-  return known ? std::string() : fmt::format("{} not in {{{}}}", typed, fmt::join(names, ","));
-}
-
 Option* Option::check(const Check& check) {
-  if (const auto* names = check.target<OneOf>()) values_ = names->names;
   option_->check(CLI::Validator([check](const std::string& typed) { return check(typed); }, ""));
   return this;
 }
@@ -85,25 +78,6 @@ OptionText Option::text() const {
   return text;
 }
 
-OptionText Option::text() const {
-  OptionText out;
-  for (const std::string& letter : option_->get_snames()) out.names.push_back("-" + letter);
-  for (const std::string& word : option_->get_lnames()) out.names.push_back("--" + word);
-  if (out.names.empty()) out.names.push_back(option_->get_name(true));
-  out.is_positional = option_->get_positional();
-  out.is_required = option_->get_required();
-  out.is_repeated = option_->get_expected_max() > 1;
-  if (option_->get_type_size() > 0 && option_->get_expected_min() > 0) out.value = option_->get_type_name();
-  out.help = option_->get_description();
-  out.group = option_->get_group();
-  out.otherwise = option_->get_default_str();
-  for (const CLI::Option* other : option_->get_needs()) out.needs.push_back(other->get_name());
-  for (const CLI::Option* other : option_->get_excludes()) out.excludes.push_back(other->get_name());
-  for (auto* names : {&out.needs, &out.excludes}) std::sort(names->begin(), names->end());  // CLI11 orders them by address
-  out.values = values_;
-  return out;
-}
-
 Command& Command::add_command(const std::string& name, const std::string& help) {
   return commands_.emplace_back(*app_->add_subcommand(name, help));
 }
@@ -114,19 +88,24 @@ Command& Command::command(std::string_view name) {
 
 void Command::leave_out(const std::string& name, const std::string& needs, Action& action) {
   Command& command = add_command(name, "");
+  command.needs_ = needs;
   command.app_->group("")->set_help_flag();
   command.app_->prefix_command();  // whatever follows its name
-  command.needs_ = needs;
-  command.on_chosen(
-      [&action, this, name] { action = [this, name]() -> Outcome { return tl::unexpected(find_command(name).error()); }; });
+  command.on_chosen([&action, &command] { action = [&command]() -> Outcome { return tl::unexpected(command.lack()); }; });
 }
+
+Failure Command::lack() const {
+  const bool is_in_group = app_->get_parent()->get_parent() != nullptr;
+  return {"this program was built without " + (is_in_group ? app_->get_parent()->get_name() + " " : "") + app_->get_name(),
+          "Build it with " + needs_ + "=ON.", Failure::Cause::arguments};
+}
+
+void Command::heading(const std::string& heading) { app_->group(heading); }
 
 Option* Command::keep(CLI::Option* option) {
-  option->group(group_);
+  option->group(heading_of(option->get_name()));
   return &options_.emplace_back(*option);
 }
-
-std::string Command::group(const std::string& title) { return std::exchange(group_, title); }
 
 Option* Command::add_option(const std::string& names, std::string& value, const std::string& help) {
   return keep(app_->add_option(names, value, help));
@@ -201,38 +180,6 @@ std::string Command::help_of_typed() const {
   return groups.empty() ? app_->help() : groups.front()->help(app_->get_name());
 }
 
-std::string Command::help() const { return app_->get_formatter()->make_help(app_, whole_name(), CLI::AppFormatMode::Normal); }
-
-std::string Command::whole_name() const {
-  std::string whole = app_->get_name();
-  for (const CLI::App* above = app_->get_parent(); above != nullptr; above = above->get_parent())
-    whole = above->get_name() + " " + whole;
-  return whole;
-}
-
-CommandText Command::text() const {
-  CommandText out{whole_name(), app_->get_description(), app_->get_footer(), {}, {}};
-  if (const CLI::Option* help = app_->get_help_ptr()) out.options.push_back(Option(*app_->get_option(help->get_name())).text());
-  for (const Option& option : options_) out.options.push_back(option.text());
-  for (const Command& command : commands_)
-    if (command.needs_.empty()) out.commands.push_back(command.text());
-  return out;
-}
-
-tl::expected<const Command*, Failure> Command::find_command(const std::string& name) const {
-  std::vector<std::string> names;
-  for (const Command& command : commands_) {
-    if (command.app_->get_name() == name) {
-      if (command.needs_.empty()) return &command;
-      const std::string whole = command.whole_name();
-      return refuse_arguments("this program was built without " + whole.substr(whole.find(' ') + 1),
-                              "Build it with " + command.needs_ + "=ON.");
-    }
-    if (command.needs_.empty()) names.push_back(command.app_->get_name());
-  }
-  return refuse_arguments(fmt::format("{} has no command '{}'", whole_name(), name), did_you_mean(name, names) + kSeeHelp);
-}
-
 namespace {
 
 /// The command that was typed: the innermost.
@@ -284,8 +231,11 @@ Failure wrong_use(const CLI::ParseError& error, const CLI::App& app) {
 
 tl::expected<std::string, Failure> Command::help_of(std::span<const std::string> words) const {
   if (words.empty()) return app_->help(app_->get_parent() != nullptr ? words_of(*app_->get_parent()) : "");
-  for (const Command& command : commands_)
-    if (command.app_->get_name() == words.front() && !command.app_->get_group().empty()) return command.help_of(words.subspan(1));
+  for (const Command& command : commands_) {
+    if (command.app_->get_name() != words.front()) continue;
+    if (!command.needs_.empty()) return tl::unexpected(command.lack());
+    return command.help_of(words.subspan(1));
+  }
   return tl::unexpected(unknown_command(words.front(), *app_));
 }
 
@@ -295,7 +245,7 @@ CommandText Command::text() const {
     text.words.insert(text.words.begin(), app->get_name());
   for (const Option& option : options_) text.options.push_back(option.text());
   for (const Command& command : commands_)
-    if (!command.app_->get_group().empty()) text.commands.push_back(command.text());
+    if (command.needs_.empty()) text.commands.push_back(command.text());
   return text;
 }
 

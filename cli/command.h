@@ -14,7 +14,6 @@
 #include <string_view>
 #include <vector>
 
-#include "cli/manual/command_text.h"
 #include "cli/options/option_needs.h"
 #include "cli/report/messages.h"
 
@@ -28,30 +27,24 @@ namespace tactus::cli {
 /// What was typed is looked at before it is stored.   out  empty, or a sentence that names it and says what is wrong
 using Check = std::function<std::string(const std::string& typed)>;
 
-/// A check that accepts these names only. Shells offer them.
-struct OneOf {
-  std::vector<std::string> names;
-  std::string operator()(const std::string& typed) const;
-};
-
 /// End the parsing: what was typed for an option (or was not) is a wrong use of the command.
 [[noreturn]] void refuse_option(const std::string& option, const std::string& why);
 [[noreturn]] void miss_option(const std::string& option);
 
 /// What the help says of an option or a positional argument.
 struct OptionText {
-  std::vector<std::string> names;    ///< "-o", "--output"; of an argument its name
-  std::string value, help, heading;  ///< value: how it is called, empty for flags and arguments
-  std::vector<std::string> choices;  ///< all values there are; empty: any
+  std::vector<std::string> names{};        ///< "-o", "--output"; of an argument its name
+  std::string value{}, help{}, heading{};  ///< value: how it is called, empty for flags and arguments
+  std::vector<std::string> choices{};      ///< all values there are; empty: any
   bool is_argument = false, is_required = false, takes_value = false, is_repeated = false;
 };
 
 /// What the help says of a command: man pages and shell completion are made from it.
 struct CommandText {
-  std::vector<std::string> words;  ///< "tactus", "import", "csv"
-  std::string help, heading, footer;
-  std::vector<OptionText> options;
-  std::vector<CommandText> commands;
+  std::vector<std::string> words{};  ///< "tactus", "import", "csv"
+  std::string help{}, heading{}, footer{};
+  std::vector<OptionText> options{};
+  std::vector<CommandText> commands{};
 };
 
 /// An option or a positional argument. Its methods return it, so that they can be chained.
@@ -74,7 +67,7 @@ class Option {
 
  private:
   CLI::Option* option_;
-  std::vector<std::string> values_;  // of OneOf
+  std::vector<std::string> choices_;
 };
 
 /// What a command does once it was chosen.
@@ -106,50 +99,41 @@ class Command {
   Option* add_flag(const std::string& names, const std::function<void()>& react, const std::string& help);
   /// A flag that may end in =VALUE; `read` is handed the value, `otherwise` where none was typed.
   Option* add_flag(const std::string& name, const std::string& otherwise, const std::function<void(const std::string&)>& read,
-                   const Check& check, const std::string& help);
-  /// Options to come stand under this title in the help. What commands share restores it with the title that it returns.
-  std::string group(const std::string& title);
+                   const std::vector<std::string>& choices, const std::string& help);
   void footer(const std::string& text);
   void on_parsed(const std::function<void()>& look);   ///< called when all of its options are read
   void on_chosen(const std::function<void()>& react);  ///< called when it was typed, after on_parsed
 
   const Option* find(const std::string& name) const;  ///< nullptr: it has no such option
   std::string help_of_typed() const;                  ///< of the group of commands that was typed, or its own
-  /// in   words  of a command below this one: "import", "csv";   err  there is no such command
+  /// in   words  of a command below this one: "import", "csv";   err  there is no such command, or it was left out
   tl::expected<std::string, Failure> help_of(std::span<const std::string> words) const;
-  CommandText text() const;
-  std::string help() const;        ///< its own
-  std::string whole_name() const;  ///< "tactus import mesh"
-  CommandText text() const;        ///< of it and of all below it that this program was built with
-  /// err  it has no command of this name, or was built without it
-  tl::expected<const Command*, Failure> find_command(const std::string& name) const;
+  CommandText text() const;  ///< of it and of all below it
 
  protected:
   CLI::App* app_;
 
  private:
   Option* keep(CLI::Option* option);
+  Failure lack() const;  ///< of one that is left out
 
   std::deque<Option> options_;
   std::deque<Command> commands_;
-  std::string group_ = "Options";
-  std::string needs_;  // the option of CMake that would bring it; empty: it is there
+  std::string needs_;  ///< the option of CMake that would bring it, empty: it is there
 };
 
 /// The program's own command line.
 class Program : public Command {
  public:
-  /// in  version  prints what --version tells, as text or as JSON
-  Program(const std::string& name, const std::string& help, const std::function<std::string(bool as_json)>& version);
+  Program(const std::string& name, const std::string& help);
   ~Program();
-  enum class Parsed { go_on, done, wrong };  ///< done: help or version was asked for and printed; wrong: said on standard error
-  /// Wrong use is told as JSON where --json stands among the arguments.
-  Parsed parse(int argc, char** argv);
-  bool wants_json() const { return wants_json_; }
+  enum class Parsed { go_on, done };  ///< done: help was asked for and printed
+  /// err  a wrong use, with the command or option that was probably meant
+  tl::expected<Parsed, Failure> parse(int argc, char** argv);
+  bool wants_json() const { return wants_json_; }  ///< --json stands among the arguments
 
  private:
   explicit Program(std::unique_ptr<CLI::App> app);
-  Failure wrong_use(const std::string& text) const;
 
   std::unique_ptr<CLI::App> owned_;
   bool wants_json_ = false;

@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "cli/commands/commands.h"
-#include "cli/manual/program_info.h"
 #include "cli/options/headings.h"
 #include "cli/output.h"
 #include "cli/progress.h"

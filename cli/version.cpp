@@ -33,9 +33,9 @@ std::string version_table() {
       "commit      {}\n"
       "compiler    {}, {}\n"
       "components  {}\n"
-      "without     {}\n",
+      "left out    {}\n",
       TACTUS_VERSION, commit.empty() ? "not known" : commit, kCompiler, TACTUS_BUILD_TYPE,
-      fmt::join(words_of(TACTUS_COMPONENTS), " "), *TACTUS_WITHOUT ? TACTUS_WITHOUT : "-");
+      fmt::join(words_of(TACTUS_COMPONENTS), " "), *TACTUS_LEFT_OUT ? TACTUS_LEFT_OUT : "-");
 }
 
 std::string version_json() {
@@ -44,7 +44,7 @@ std::string version_json() {
   out["compiler"] = kCompiler;
   out["build"] = TACTUS_BUILD_TYPE;
   out["components"] = words_of(TACTUS_COMPONENTS);
-  out["without"] = words_of(TACTUS_WITHOUT);
+  out["left_out"] = words_of(TACTUS_LEFT_OUT);
   return text_of_json(out) + "\n";
 }
 

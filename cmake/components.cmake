@@ -96,23 +96,6 @@ function(tactus_component name dir)
   endif()
 endfunction()
 
-# Our libraries, each before those that use it.
-set(TACTUS_LIBRARIES codec trace net seal metrics tets modes surface fem sim device falcon hid openhaptics inverse3 c c_trace)
-
-# tactus_components(BUILT WITHOUT): the libraries that are built so far, and the others.
-function(tactus_components built without)
-  set(found ${TACTUS_LIBRARIES})
-  set(missing)
-  foreach(component IN LISTS TACTUS_LIBRARIES)
-    if(NOT TARGET tactus_${component})
-      list(REMOVE_ITEM found ${component})
-      list(APPEND missing ${component})
-    endif()
-  endforeach()
-  set(${built} ${found} PARENT_SCOPE)
-  set(${without} ${missing} PARENT_SCOPE)
-endfunction()
-
 # The components that are libraries, in the order in which they build on one another.
 set(TACTUS_LIBRARIES codec trace net seal metrics tets modes surface fem sim device falcon hid openhaptics inverse3 c c_trace)
 

@@ -466,7 +466,6 @@ void setup_sim(Command& app, Action& action) {
       .add_option("--stiffness-map", options->stiffness_map,
                   "Also write the local stiffness of deformable objects (CSV, and a plot beside it)")
       ->type_name("FILE");
-  const std::string own = command.group("Closed loop");
   command.add_flag("--codec", options->codec,
                    "Close the loop through encoder, decoder and replica; every option from --stream to --layered implies it");
   command.add_option("--stream", options->stream, "Also write the packets")->type_name("FILE");
@@ -483,7 +482,6 @@ void setup_sim(Command& app, Action& action) {
                   "With --link: also write the datagrams at the clients' network interfaces (pcap; see `tactus export pcap`)")
       ->type_name("FILE");
 #endif
-  command.group(own);
   add_encoder_options(command, options->triggers, options->meshes);
   add_output_options(command, options->common);
   command.footer(

@@ -54,12 +54,10 @@ Outcome check_no_terminal(const std::string& output) {
 }
 
 void add_report_options(Command& app, CommonOptions& options) {
-  const std::string own = app.group("Report");
   options.command = &app;
   app.add_flag("--json", options.json, "Report as JSON, in SI units");
   app.add_flag("-q,--quiet", options.quiet, "Print no progress and no table; --json still reports");
   app.add_flag("--no-progress", options.no_progress, "No progress bar");
-  app.group(own);
 }
 
 void add_output_options(Command& app, CommonOptions& options) {
@@ -68,7 +66,6 @@ void add_output_options(Command& app, CommonOptions& options) {
 }
 
 void TriggerArguments::add_to(Command& app) {
-  const std::string own = app.group("Thresholds");
   const std::map<std::string, HapticRule> rules{{"isotropic", HapticRule::isotropic},
                                                 {"cone", HapticRule::cone},
                                                 {"fixed", HapticRule::fixed},
@@ -105,7 +102,6 @@ void TriggerArguments::add_to(Command& app) {
                ->check(above_zero(Dimension::force));
   options_ = {deadband_, visual_option_, haptic_, alpha_, share_, fixed_option_, floor_, length_unit_option_};
   app.on_parsed([this] { check_lengths(); });  // only now --length-unit is known
-  app.group(own);
 }
 
 void TriggerArguments::check_lengths() const {
@@ -129,7 +125,6 @@ void TriggerArguments::check_bound(const Option& option, const PoseBound& bound)
 }
 
 void TriggerArguments::add_encoder_to(Command& app) {
-  const std::string own = app.group("Coding");
   options_.push_back(add_quantity(app, "--heartbeat", triggers_.heartbeat, Dimension::time,
                                   "An object that was not sent for this long is sent again, as a sign of life; 0: never [1s]")
                          ->check(within(Dimension::time, "0s", "3600s")));
@@ -138,7 +133,6 @@ void TriggerArguments::add_encoder_to(Command& app) {
                          ->check(within(Dimension::time, "0s", "86400s")));
   auto* every_tick = app.add_flag("--no-reduction", no_reduction_, "Send every object at every tick");
   options_.push_back(every_tick);
-  app.group(own);
 }
 
 std::optional<double> TriggerArguments::weber_fraction(std::optional<double> otherwise) const {
@@ -171,7 +165,6 @@ RigidTriggers TriggerArguments::over(RigidTriggers out) const {
 }
 
 void MotionArguments::add_to(Command& app) {
-  const std::string own = app.group("Coding");
   const Option* gravity =
       app.add_option(
              "--gravity", gravity_,
@@ -184,11 +177,9 @@ void MotionArguments::add_to(Command& app) {
       ->check(number(0, 10))
       ->type_name("MU")
       ->needs(gravity);
-  app.group(own);
 }
 
 void MeshArguments::add_to(Command& app) {
-  const std::string own = app.group("Thresholds");
   visual_ = add_quantity(app, "--deformable-visual", thresholds_.visual, Dimension::length,
                          "Visual threshold of a vertex of a deformable object, 0: exact to the grid [0.25mm]")
                 ->check(within(Dimension::length, "0m", "1000000m"));
@@ -198,11 +189,9 @@ void MeshArguments::add_to(Command& app) {
           ->check(whole_number(0, DeformableObject::kMaxRings))
           ->type_name("M");
   options_ = {visual_, rings_};
-  app.group(own);
 }
 
 void MeshArguments::add_encoder_to(Command& app) {
-  const std::string own = app.group("Coding");
   const std::map<std::string, DeformableProfile> profiles{{"thesis", DeformableProfile::thesis},
                                                           {"main", DeformableProfile::main}};
   const auto profile = [this, profiles](const std::string& name) { coding_.profile = profiles.at(name); };
@@ -248,7 +237,6 @@ void MeshArguments::add_encoder_to(Command& app) {
        app.add_flag("--layered", coding_.layered,
                     "Touched deformable objects: send the haptic layer in its own packet before the visual layer. Costs "
                     "a second header per update and 3 to 30 % of the bits")});
-  app.group(own);
 }
 
 bool MeshArguments::any_given() const {
