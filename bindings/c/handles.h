@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What the functions of tactus.h share: the objects behind the handles, errors, and structs that carry their size.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <new>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <utility>
+
+#include <tactus/base/out_of_memory.h>
+#include <tactus/base/rule.h>
+#include <tactus/deformable/displacement.h>
+#include <tactus/receiver.h>
+
+#include "tactus.h"
+
+struct tactus_scene {
+  tactus::SharedScene shared;
+};
+
+struct tactus_receiver {
+  std::optional<tactus::Receiver> own;  // none: borrowed from a player or a session
+  tactus::Receiver* at = nullptr;
+  tactus_scene scene{};
+  std::span<const tactus::RigidUpdate> updates{};  // of the packet decoded last
+
+  void borrow(tactus::Receiver* receiver) {
+    at = receiver;
+    scene.shared = receiver != nullptr ? receiver->scene() : nullptr;
+    updates = {};
+  }
+};
+
+namespace tactus::c {
+
+inline constexpr std::size_t kLargestStruct = 4096;                 ///< [bytes] no version of a struct is larger
+inline constexpr std::int64_t kLastTick = std::int64_t{1} << 40;    ///< ticks of packets end at 2^32
+inline constexpr std::uint64_t kLastTime = std::uint64_t{1} << 60;  ///< [us]
+
+tactus_status report(const Error& error, tactus_error* out) noexcept;
+
+inline tl::unexpected<Error> refuse() noexcept { return fail(Errc::invalid_argument, "R-API-12"); }
+
+/// Outcome of a function that succeeded: TACTUS_OK, TACTUS_NOTHING or TACTUS_BUFFER_TOO_SMALL.
+using Outcome = Result<tactus_status>;
+
+/// Run the body of a function of the interface: its error is told, and nothing is thrown.
+template <class Body>
+tactus_status call(tactus_error* error, Body&& body) noexcept try {
+  const Outcome outcome = std::forward<Body>(body)();
+  if (!outcome) return report(outcome.error(), error);
+  if (*outcome == TACTUS_BUFFER_TOO_SMALL && error != nullptr) *error = {*outcome, RuleName("R-API-13"), 0};
+  return *outcome;
+} catch (const std::bad_alloc&) {
+  return report(out_of_memory().value(), error);
+} catch (const std::length_error&) {
+  return report(out_of_memory().value(), error);
+}
+
+inline Result<void> check_tick(std::int64_t tick) noexcept {
+  if (tick < -kLastTick || tick > kLastTick) return refuse();
+  return {};
+}
+
+/// Bytes of the caller.   err  R-API-12 they are null, but there are some
+template <class T>
+Result<std::span<const T>> span_of(const T* data, std::size_t count) noexcept {
+  if (data == nullptr && count > 0) return refuse();
+  return std::span(data, count);
+}
+
+/// Fill the caller's struct with defaults.
+template <class T>
+tactus_status init(T* out, std::size_t size, T defaults) noexcept {
+  if (out == nullptr || size < sizeof(T) || size > kLargestStruct) return TACTUS_INVALID_ARGUMENT;
+  std::memset(out, 0, size);
+  defaults.size = static_cast<std::uint32_t>(size);
+  *out = defaults;
+  return TACTUS_OK;
+}
+
+/// The caller's options, or the defaults.
+/// err  R-API-12 its size is that of no version, or an option of a later version is set
+template <class T>
+Result<T> given_or(const T* given, const T& defaults) noexcept {
+  if (given == nullptr) return defaults;
+  if (given->size < sizeof(T) || given->size > kLargestStruct) return refuse();
+  const auto* bytes = reinterpret_cast<const unsigned char*>(given);
+  for (std::size_t i = sizeof(T); i < given->size; ++i)
+    if (bytes[i] != 0) return refuse();
+  return *given;
+}
+
+/// err  R-API-12 there is no struct for the answer, or its size is that of no version
+template <class T>
+Result<void> check_answer(const T* out) noexcept {
+  if (out == nullptr || out->size < sizeof(T) || out->size > kLargestStruct) return refuse();
+  return {};
+}
+
+/// pre  check_answer()
+template <class T>
+void answer(T* out, T value) noexcept {
+  const std::uint32_t size = out->size;
+  std::memset(out, 0, size);
+  value.size = size;
+  *out = value;
+}
+
+/// Copy to the caller's buffer if it is large enough.   out  size  needed or written
+template <class T>
+Outcome copy_out(std::span<const T> from, T* to, std::size_t capacity, std::size_t* size) noexcept {
+  if (size == nullptr || (to == nullptr && capacity > 0)) return refuse();
+  *size = from.size();
+  if (from.size() > capacity) return TACTUS_BUFFER_TOO_SMALL;
+  if (!from.empty()) std::memcpy(to, from.data(), from.size_bytes());
+  return TACTUS_OK;
+}
+
+inline tactus_pose pose_of(const Pose& pose) noexcept {
+  const auto& [p, q] = pose;
+  return {{p.x, p.y, p.z}, {q.w, q.x, q.y, q.z}};
+}
+
+/// Vectors of the grid to metres, x y z of the first one first.   pre  `out` has room for 3 per vector
+inline void metres_of(std::span<const std::array<std::int32_t, 3>> vectors, unsigned position_exp, float* out) noexcept {
+  for (const auto& vector : vectors) {
+    const Vec3 v = to_metres(vector, position_exp);
+    for (const double component : {v.x, v.y, v.z}) *out++ = static_cast<float>(component);
+  }
+}
+
+inline Vec3 vec_of(const double (&v)[3]) noexcept { return {v[0], v[1], v[2]}; }
+inline Pose pose_of(const tactus_pose& pose) noexcept {
+  const double* q = pose.rotation;
+  return {vec_of(pose.position), {q[0], q[1], q[2], q[3]}};
+}
+
+Result<DecodeLimits> limits_of(const tactus_limits* limits) noexcept;
+Result<ReceiverOptions> options_of(const tactus_receiver_options* options) noexcept;
+tactus_packet_info info_of(const Scene& scene, const DecodedPacket& packet) noexcept;
+std::uint32_t kind_of(const Scene& scene, std::size_t substream) noexcept;
+
+inline std::size_t substreams_of(const Scene& scene) noexcept { return scene.deformables.size() + (scene.loads ? 2u : 1u); }
+
+}  // namespace tactus::c

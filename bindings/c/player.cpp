@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/player.h>
+
+#include <memory>
+
+#include "handles.h"
+
+struct tactus_player {
+  tactus::Player player;
+  tactus_receiver receiver{};
+};
+
+using namespace tactus;
+using namespace tactus::c;
+
+tactus_status tactus_player_open(const uint8_t* file, size_t size, const tactus_receiver_options* options, tactus_player** player,
+                                 tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (player == nullptr) return refuse();
+    TACTUS_TRY(const auto bytes, span_of(file, size));
+    TACTUS_TRY(const ReceiverOptions chosen, options_of(options));
+    TACTUS_TRY(Player opened, Player::open(bytes, chosen));
+    auto out = std::make_unique<tactus_player>(tactus_player{std::move(opened)});
+    out->receiver.borrow(&out->player.receiver());
+    *player = out.release();
+    return TACTUS_OK;
+  });
+}
+
+void tactus_player_destroy(tactus_player* player) { delete player; }
+
+tactus_receiver* tactus_player_receiver(tactus_player* player) { return player != nullptr ? &player->receiver : nullptr; }
+
+tactus_status tactus_player_play(tactus_player* player, int64_t tick, tactus_packet_info* info, tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (player == nullptr) return refuse();
+    if (info != nullptr) TACTUS_CHECK(check_answer(info));
+    player->receiver.updates = {};
+    TACTUS_TRY(const auto played, player->player.play(tick));
+    if (!played) return TACTUS_NOTHING;
+    player->receiver.updates = played->updates;
+    if (info == nullptr) return TACTUS_OK;
+    tactus_packet_info told = info_of(player->player.scene(), *played);
+    told.bytes = static_cast<std::uint32_t>(played->bytes);
+    told.offset = played->offset;
+    answer(info, told);
+    return TACTUS_OK;
+  });
+}
+
+tactus_status tactus_player_next_tick(tactus_player* player, int64_t* tick, tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (player == nullptr || tick == nullptr) return refuse();
+    TACTUS_TRY(const auto next, player->player.next_tick());
+    if (!next) return TACTUS_NOTHING;
+    *tick = *next;
+    return TACTUS_OK;
+  });
+}
+
+uint64_t tactus_player_header_bytes(const tactus_player* player) { return player != nullptr ? player->player.header_bytes() : 0; }
+
+int32_t tactus_player_complete(const tactus_player* player) { return player != nullptr && player->player.complete() ? 1 : 0; }

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/scene/scene_builder.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "bounds.h"
+#include "handles.h"
+
+struct tactus_scene_builder {
+  tactus::SceneBuilder builder;
+  std::string culprit{};
+};
+
+namespace tactus::c {
+namespace {
+
+static_assert(TACTUS_DOF_X == Dof::x && TACTUS_DOF_Y == Dof::y && TACTUS_DOF_Z == Dof::z && TACTUS_DOF_RX == Dof::rx &&
+              TACTUS_DOF_RY == Dof::ry && TACTUS_DOF_RZ == Dof::rz && TACTUS_DOF_ALL == Dof::all);
+
+constexpr tactus_scene_options kSceneOptions{.size = sizeof(tactus_scene_options),
+                                             .tick_rate = 1000,
+                                             .position_exp = GridExponents{}.position,
+                                             .velocity_exp = GridExponents{}.velocity,
+                                             .rotation_exp = GridExponents{}.rotation,
+                                             .angular_velocity_exp = GridExponents{}.angular_velocity,
+                                             .baselines = 1,
+                                             .eased = 0,
+                                             .has_loads = 0,
+                                             .load_users = LoadSpec{}.users,
+                                             .force_exp = LoadSpec{}.force_exp,
+                                             .reserved = 0,
+                                             .extrapolation = 2,
+                                             .gravity = {},
+                                             .friction = 0};
+
+tactus_deformable_options deformable_options() noexcept {
+  const DeformableCoding coding;
+  return {.size = sizeof(tactus_deformable_options),
+          .profile = static_cast<std::uint32_t>(coding.profile),
+          .rings = coding.rings,
+          .quant_bits = coding.quant_bits,
+          .models_kept = coding.models_kept,
+          .layered = coding.layered,
+          .weight_sets = coding.weight_sets,
+          .spring_modes = coding.spring_basis.modes,
+          .frame_period = coding.frame_period,
+          .fade = coding.fade,
+          .fixed = nullptr,
+          .fixed_count = 0,
+          .vectors = nullptr,
+          .modes = 0,
+          .stiffness = nullptr,
+          .stiffness_count = 0};
+}
+
+bool are_bytes(std::initializer_list<std::uint32_t> values) noexcept {
+  return std::ranges::all_of(values, [](std::uint32_t value) { return value <= 0xff; });
+}
+
+/// Options that the builder takes as they are; it checks them.
+void apply(const tactus_scene_options& o, SceneBuilder& builder) {
+  builder
+      .grid({.position = static_cast<std::uint8_t>(o.position_exp),
+             .velocity = static_cast<std::uint8_t>(o.velocity_exp),
+             .rotation = static_cast<std::uint8_t>(o.rotation_exp),
+             .angular_velocity = static_cast<std::uint8_t>(o.angular_velocity_exp)})
+      .extrapolate(o.extrapolation)
+      .baselines(static_cast<std::uint8_t>(o.baselines))
+      .motion({.gravity = vec_of(o.gravity), .friction = o.friction});
+  if (o.eased != 0) builder.eased();
+  if (o.has_loads != 0)
+    builder.loads({.force_exp = static_cast<std::uint8_t>(o.force_exp), .users = static_cast<std::uint8_t>(o.load_users)});
+}
+
+/// pre  checked counts
+TriMesh mesh_of(std::span<const double> vertices, std::span<const std::uint32_t> corners) {
+  TriMesh mesh;
+  mesh.vertices.reserve(vertices.size() / 3);
+  for (std::size_t i = 0; i < vertices.size(); i += 3) mesh.vertices.push_back({vertices[i], vertices[i + 1], vertices[i + 2]});
+  mesh.triangles.reserve(corners.size() / 3);
+  for (std::size_t i = 0; i < corners.size(); i += 3) mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+  return mesh;
+}
+
+/// err  R-SRF rules; R-API-4 an option is out of range; R-API-1, 9 the basis
+Result<DeformableCoding> coding_of(const tactus_deformable_options& o, std::size_t vertices) {
+  if (o.profile > 1 || !are_bytes({o.rings, o.quant_bits, o.weight_sets, o.spring_modes}) || !std::isfinite(o.frame_period) ||
+      !(o.frame_period > 0))
+    return fail(Errc::invalid_argument, "R-API-4");
+  TACTUS_TRY(const auto fixed, span_of(o.fixed, o.fixed_count));
+  TACTUS_TRY(const auto stiffness, span_of(o.stiffness, o.stiffness_count));
+  if (stiffness.size() > vertices || fixed.size() > vertices) return fail(Errc::invalid_argument, "R-API-5");
+  if (o.modes > ModeBasis::kMaxModes) return fail(Errc::invalid_argument, "R-API-9");
+  TACTUS_TRY(const auto vectors, span_of(o.vectors, o.modes * vertices * 3));
+  DeformableCoding out{
+      .profile = static_cast<DeformableProfile>(o.profile),
+      .rings = static_cast<std::uint8_t>(o.rings),
+      .quant_bits = static_cast<std::uint8_t>(o.quant_bits),
+      .models_kept = o.models_kept != 0,
+      .frame_period = o.frame_period,
+      .layered = o.layered != 0,
+      .fade = o.fade,
+      .weight_sets = static_cast<std::uint8_t>(o.weight_sets),
+      .basis = {},
+      .spring_basis = {.modes = static_cast<std::uint8_t>(o.spring_modes), .fixed = {fixed.begin(), fixed.end()}},
+      .stiffness = {stiffness.begin(), stiffness.end()}};
+  if (o.modes > 0) {
+    TACTUS_TRY(out.basis, make_mode_basis(vectors, o.modes));
+  }
+  return out;
+}
+
+}  // namespace
+}  // namespace tactus::c
+
+using namespace tactus;
+using namespace tactus::c;
+
+tactus_status tactus_scene_options_init(tactus_scene_options* options, size_t size) { return init(options, size, kSceneOptions); }
+
+tactus_status tactus_deformable_options_init(tactus_deformable_options* options, size_t size) {
+  return init(options, size, deformable_options());
+}
+
+tactus_status tactus_scene_builder_create(const tactus_scene_options* options, tactus_scene_builder** builder,
+                                          tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (builder == nullptr) return refuse();
+    TACTUS_TRY(const tactus_scene_options o, given_or(options, kSceneOptions));
+    if (!are_bytes(
+            {o.position_exp, o.velocity_exp, o.rotation_exp, o.angular_velocity_exp, o.baselines, o.load_users, o.force_exp}))
+      return fail(Errc::invalid_argument, "R-API-4");
+    auto made = std::make_unique<tactus_scene_builder>(tactus_scene_builder{SceneBuilder(o.tick_rate)});
+    apply(o, made->builder);
+    *builder = made.release();
+    return TACTUS_OK;
+  });
+}
+
+void tactus_scene_builder_destroy(tactus_scene_builder* builder) { delete builder; }
+
+tactus_status tactus_scene_builder_rigid(tactus_scene_builder* builder, const char* name, const tactus_pose* initial,
+                                         uint32_t dof, tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (builder == nullptr || name == nullptr || dof > Dof::all) return refuse();
+    builder->builder.rigid(name, initial != nullptr ? pose_of(*initial) : Pose{}, static_cast<std::uint8_t>(dof));
+    return TACTUS_OK;
+  });
+}
+
+tactus_status tactus_scene_builder_deformable(tactus_scene_builder* builder, const char* name, const double* vertices,
+                                              size_t vertex_count, const uint32_t* triangles, size_t triangle_count,
+                                              const tactus_deformable_options* options, tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (builder == nullptr || name == nullptr) return refuse();
+    if (vertex_count > kMaxMeshVertices || triangle_count > kMaxMeshTriangles) return fail(Errc::limit_exceeded, "R-SRF-14");
+    TACTUS_TRY(const auto coordinates, span_of(vertices, 3 * vertex_count));
+    TACTUS_TRY(const auto corners, span_of(triangles, 3 * triangle_count));
+    TACTUS_TRY(const tactus_deformable_options o, given_or(options, deformable_options()));
+    TACTUS_TRY(DeformableCoding coding, coding_of(o, vertex_count));
+    TriMesh mesh = mesh_of(coordinates, corners);
+    if (const auto sound = check(mesh); !sound) return tl::make_unexpected(sound.error().error);
+    builder->builder.deformable(name, std::move(mesh), std::move(coding));
+    return TACTUS_OK;
+  });
+}
+
+tactus_status tactus_scene_builder_promise(tactus_scene_builder* builder, const tactus_rigid_bounds* rigid,
+                                           const tactus_deformable_bounds* deformable, const tactus_load_bounds* load,
+                                           tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (builder == nullptr) return refuse();
+    TACTUS_TRY(const RigidTriggers triggers, bounds_of(rigid));
+    TACTUS_TRY(const DeformableThresholds thresholds, bounds_of(deformable));
+    TACTUS_TRY(const LoadThresholds loads, bounds_of(load));
+    builder->builder.promise(triggers, thresholds, loads);
+    return TACTUS_OK;
+  });
+}
+
+tactus_status tactus_scene_builder_build(tactus_scene_builder* builder, tactus_scene** scene, tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (builder == nullptr || scene == nullptr) return refuse();
+    auto built = builder->builder.build();
+    builder->culprit.clear();
+    if (!built) {
+      builder->culprit = std::move(built.error().object);
+      return tl::make_unexpected(built.error().error);
+    }
+    *scene = new tactus_scene{*std::move(built)};
+    return TACTUS_OK;
+  });
+}
+
+const char* tactus_scene_builder_culprit(const tactus_scene_builder* builder) {
+  return builder != nullptr ? builder->culprit.c_str() : "";
+}

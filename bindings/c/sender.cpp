@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/sender.h>
+
+#include <memory>
+
+#include "bounds.h"
+#include "handles.h"
+#include "truth.h"
+
+struct tactus_sender {
+  tactus::Sender sender;
+  tactus::c::TruthBuffer truth;
+  std::int64_t tick = 0;
+  std::span<const tactus::Packet> packets{};  // of this tick
+};
+
+namespace tactus::c {
+namespace {
+
+static_assert(TACTUS_REDUCTION_NONE == static_cast<int>(Reduction::none) &&
+              TACTUS_REDUCTION_DEAD_RECKONING == static_cast<int>(Reduction::dead_reckoning) &&
+              TACTUS_REDUCTION_LEANING == static_cast<int>(Reduction::leaning));
+static_assert(TACTUS_BASELINE_PREVIOUS == static_cast<int>(Baseline::previous) &&
+              TACTUS_BASELINE_ACKNOWLEDGED == static_cast<int>(Baseline::acknowledged));
+
+constexpr tactus_sender_options kOptions{.size = sizeof(tactus_sender_options),
+                                         .reduction = static_cast<std::int32_t>(RigidTriggers{}.reduction),
+                                         .baseline = static_cast<std::int32_t>(SenderPolicy{}.baseline),
+                                         .first_sequence = SenderPolicy{}.first_sequence,
+                                         .key_interval = SenderPolicy{}.key_interval,
+                                         .visual_share = 0,
+                                         .haptic_share = 0,
+                                         .layered = 0,
+                                         .reserved = 0,
+                                         .rigid = nullptr,
+                                         .deformable = nullptr,
+                                         .load = nullptr};
+
+std::optional<double> share_of(double share) noexcept { return share == 0 ? std::nullopt : std::optional(share); }
+
+tactus_packet_info info_of(const Scene& scene, const Packet& packet, std::int64_t tick) noexcept {
+  return {.size = 0,
+          .bytes = static_cast<std::uint32_t>(packet.bytes.size()),
+          .tick = tick,
+          .number = packet.number,
+          .offset = 0,
+          .substream = static_cast<std::uint32_t>(packet.substream),
+          .kind = kind_of(scene, packet.substream),
+          .sequence = packet.sequence,
+          .key = packet.key,
+          .layer = static_cast<std::uint32_t>(packet.layer),
+          .reason = static_cast<std::uint32_t>(packet.reason),
+          .updates = packet.updates,
+          .restarts = 0};
+}
+
+}  // namespace
+
+Result<SenderOptions> options_of(const tactus_sender_options* options) noexcept {
+  TACTUS_TRY(const tactus_sender_options o, given_or(options, kOptions));
+  if (o.reduction < TACTUS_REDUCTION_NONE || o.reduction > TACTUS_REDUCTION_LEANING || o.baseline < TACTUS_BASELINE_PREVIOUS ||
+      o.baseline > TACTUS_BASELINE_ACKNOWLEDGED || o.first_sequence > 0xffff)
+    return fail(Errc::invalid_argument, "R-API-4");
+  SenderOptions out;
+  TACTUS_TRY(out.triggers, bounds_of(o.rigid));
+  out.triggers.reduction = static_cast<Reduction>(o.reduction);
+  TACTUS_TRY(out.deformable.thresholds, bounds_of(o.deformable));
+  out.deformable.visual_share = share_of(o.visual_share);
+  out.deformable.haptic_share = share_of(o.haptic_share);
+  out.deformable.layered = o.layered != 0;
+  TACTUS_TRY(out.load, bounds_of(o.load));
+  out.policy = {.key_interval = o.key_interval,
+                .first_sequence = static_cast<std::uint16_t>(o.first_sequence),
+                .baseline = static_cast<Baseline>(o.baseline)};
+  return out;
+}
+
+}  // namespace tactus::c
+
+using namespace tactus;
+using namespace tactus::c;
+
+tactus_status tactus_sender_options_init(tactus_sender_options* options, size_t size) { return init(options, size, kOptions); }
+
+tactus_status tactus_truth_init(tactus_truth* truth, size_t size) { return init(truth, size, tactus_truth{}); }
+
+tactus_status tactus_sender_create(const tactus_scene* scene, const tactus_sender_options* options, tactus_sender** sender,
+                                   tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (scene == nullptr || !scene->shared || sender == nullptr) return refuse();
+    TACTUS_TRY(const SenderOptions chosen, options_of(options));
+    TACTUS_TRY(Sender made, Sender::create(scene->shared, chosen));
+    *sender = new tactus_sender{std::move(made), TruthBuffer(*scene->shared)};
+    return TACTUS_OK;
+  });
+}
+
+void tactus_sender_destroy(tactus_sender* sender) { delete sender; }
+
+tactus_status tactus_sender_encode(tactus_sender* sender, int64_t tick, const tactus_truth* truth, size_t* packets,
+                                   tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (sender == nullptr || packets == nullptr) return refuse();
+    sender->packets = {};
+    TACTUS_TRY(const Truth taken, sender->truth.of(truth));
+    TACTUS_TRY(sender->packets, sender->sender.encode(tick, taken));
+    sender->tick = tick;
+    *packets = sender->packets.size();
+    return TACTUS_OK;
+  });
+}
+
+tactus_status tactus_sender_packet(const tactus_sender* sender, size_t index, tactus_packet_info* info, uint8_t* bytes,
+                                   size_t capacity, size_t* size, tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (sender == nullptr || index >= sender->packets.size()) return refuse();
+    const Packet& packet = sender->packets[index];
+    if (info != nullptr) TACTUS_CHECK(check_answer(info));
+    TACTUS_TRY(const tactus_status copied, copy_out(packet.bytes, bytes, capacity, size));
+    if (info != nullptr) answer(info, info_of(*sender->sender.scene(), packet, sender->tick));
+    return copied;
+  });
+}
+
+tactus_status tactus_sender_request_key(tactus_sender* sender, tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (sender == nullptr) return refuse();
+    sender->sender.request_key();
+    return TACTUS_OK;
+  });
+}
+
+tactus_status tactus_sender_acknowledge(tactus_sender* sender, uint32_t substream, uint32_t sequence, tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (sender == nullptr || substream >= substreams_of(*sender->sender.scene()) || sequence > 0xffff) return refuse();
+    sender->sender.acknowledge(substream, static_cast<std::uint16_t>(sequence));
+    return TACTUS_OK;
+  });
+}
+
+tactus_status tactus_sender_set_link(tactus_sender* sender, int64_t answer, double loss, tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (sender == nullptr) return refuse();
+    if (answer < 0 || answer > kLastTick || !(loss >= 0 && loss <= 1)) return fail(Errc::invalid_argument, "R-API-4");
+    sender->sender.set_link({.answer = answer, .loss = loss});
+    return TACTUS_OK;
+  });
+}
+
+tactus_status tactus_sender_state_hash(const tactus_sender* sender, uint32_t substream, uint64_t* hash, tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (sender == nullptr || hash == nullptr || substream >= substreams_of(*sender->sender.scene())) return refuse();
+    *hash = sender->sender.state_hash(substream);
+    return TACTUS_OK;
+  });
+}

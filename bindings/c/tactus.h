@@ -1,0 +1,484 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * Tactus in C: scenes, packets and streams; tactus_session.h has sessions. The functions wrap those of the C++ library: <tactus/tactus.h>
+ * and the specification tell more about what they do. SI units, right-handed world frame, quaternions w x y z, time in integer
+ * ticks of the scene.
+ *
+ * Errors    Functions that can fail return TACTUS_OK, TACTUS_NOTHING (no error: none is there) or the class of an error. The last
+ *           argument takes the error, with the rule of the specification that was broken; it may be NULL, and is written when there
+ *           is an error. After an error outputs and objects are unchanged unless the function's comment says otherwise.
+ *           NULL, unknown sizes and indices that name nothing give TACTUS_INVALID_ARGUMENT R-API-12.
+ * Objects   are made by _create, _open, _parse or _build, and destroyed by _destroy, which takes NULL. What a function returns as
+ *           `const` or calls borrowed belongs to the object that it came from.
+ * Options   are structs with their size, filled with the defaults by _init; NULL stands for all of the defaults. Structs for
+ *           answers need their size alone: tactus_packet_info info = {.size = sizeof info}. Structs with a size grow at their end in
+ *           later versions, the others never change. Options that the library does not know must be 0.
+ * Buffers   belong to the caller. Bytes that a function reads are not needed after it returns, except those of tactus_player_open.
+ *           Where a buffer is too small the function returns TACTUS_BUFFER_TOO_SMALL R-API-13 and nothing is lost.
+ * Threads   A scene never changes and may be shared. Any other object is used by one thread at a time.
+ * Memory    Senders, receivers and players allocate when they are made, and not in each tick.
+ */
+#ifndef TACTUS_H
+#define TACTUS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(_WIN32) && !defined(TACTUS_STATIC)
+#define TACTUS_API __declspec(dllimport)
+#elif defined(__GNUC__)
+#define TACTUS_API __attribute__((visibility("default")))
+#else
+#define TACTUS_API
+#endif
+
+#define TACTUS_VERSION 0x000100 /* of this header: major, minor, patch, a byte each */
+
+/* ---------------------------------------------------------------- errors */
+
+typedef int32_t tactus_status;
+enum {
+  TACTUS_OK = 0,
+  TACTUS_TRUNCATED = 2,      /* the input ends inside an element. 2 to 12: error classes of the specification, spec/registry.md */
+  TACTUS_MALFORMED = 3,      /* syntax */
+  TACTUS_INVALID = 4,        /* semantics: a value outside its declared range */
+  TACTUS_UNSUPPORTED = 5,    /* a version, profile or option that this build does not know */
+  TACTUS_LIMIT_EXCEEDED = 6, /* valid, but larger than the limits, or than the memory */
+  TACTUS_CHECKSUM = 7,       /* a check value does not match */
+  TACTUS_STATE = 8,          /* protocol order: baseline not held, packet stale */
+  TACTUS_INVALID_ARGUMENT = 10, /* an argument of the call */
+  TACTUS_IO = 11,               /* the operating system refused to read or write */
+  TACTUS_INTERNAL = 12,         /* a defect of this library */
+  TACTUS_NOTHING = 64,          /* no error: no packet is due, no datagram waits, nothing was declared */
+  TACTUS_BUFFER_TOO_SMALL = 65
+};
+
+typedef struct tactus_error {
+  tactus_status status;
+  const char* rule;    /* name in spec/rules.csv, such as "R-STR-4"; static */
+  uint64_t bit_offset; /* place in the input, in bits; 0 when there is none */
+} tactus_error;
+
+/* How a receiver reacts to what it cannot decode. */
+enum {
+  TACTUS_ADVICE_NONE = 0,
+  TACTUS_ADVICE_DROP = 1,        /* ignore the packet */
+  TACTUS_ADVICE_REQUEST_KEY = 2, /* ask the sender for a key packet */
+  TACTUS_ADVICE_CLOSE = 3        /* neither the scene nor the packets after it can be used */
+};
+
+TACTUS_API uint32_t tactus_version(void);                              /* of the library, as TACTUS_VERSION */
+TACTUS_API const char* tactus_status_name(tactus_status status);       /* "malformed"; static, as the two texts below */
+TACTUS_API const char* tactus_error_text(const tactus_error* error);   /* "the check value of a record does not match" */
+TACTUS_API const char* tactus_error_remedy(const tactus_error* error); /* a sentence on how to fix it, may be empty */
+TACTUS_API int32_t tactus_error_advice(const tactus_error* error);     /* TACTUS_ADVICE_... */
+
+/* ---------------------------------------------------------------- values */
+
+typedef struct tactus_pose {
+  double position[3]; /* m, world */
+  double rotation[4]; /* unit quaternion w x y z, object to world */
+} tactus_pose;
+
+typedef struct tactus_device_sample {
+  double position[3];    /* m, world */
+  double orientation[4]; /* of the handle, unit quaternion w x y z */
+  double velocity[3];    /* m/s, world; 0 if the device does not measure it */
+  uint32_t buttons;      /* bit i: button i is down */
+  uint32_t reserved;
+  int64_t time; /* ns on the device's clock, not negative */
+} tactus_device_sample;
+
+/* Degrees of freedom of a rigid object: bits. Rotation is about none, one or all axes. None at all: static, never sent. */
+enum {
+  TACTUS_DOF_X = 1,
+  TACTUS_DOF_Y = 2,
+  TACTUS_DOF_Z = 4,
+  TACTUS_DOF_RX = 8,
+  TACTUS_DOF_RY = 16,
+  TACTUS_DOF_RZ = 32,
+  TACTUS_DOF_NONE = 0,
+  TACTUS_DOF_ALL = 63
+};
+
+/* When the force error of a rigid object is too large. */
+enum {
+  TACTUS_HAPTIC_OFF = 0,
+  TACTUS_HAPTIC_ISOTROPIC = 1, /* |f^ - f| > p |f| */
+  TACTUS_HAPTIC_CONE = 2,      /* ||f^| - |f|| > p |f|, or an angle over cone_angle */
+  TACTUS_HAPTIC_FIXED = 3,     /* position or rotation over fixed_..., in contact */
+  TACTUS_HAPTIC_PERCEPTUAL = 4 /* isotropic, with the fraction that people notice at this force */
+};
+
+typedef struct tactus_rigid_bounds {
+  uint32_t size;
+  int32_t haptic;          /* TACTUS_HAPTIC_...; isotropic */
+  double heartbeat;        /* s; 1; 0: off */
+  double visual_position;  /* m; 0.006 */
+  double visual_rotation;  /* rad; 2 deg */
+  double weber_fraction;   /* p; 0.08 */
+  double perceptual_share; /* 1 */
+  double cone_angle;       /* rad; 2.1 deg */
+  double fixed_position;   /* m; 0.0015 */
+  double fixed_rotation;   /* rad; 2 deg */
+  double force_floor;      /* N; 0.05: below it the bound is that at this force */
+} tactus_rigid_bounds;
+
+typedef struct tactus_deformable_bounds {
+  uint32_t size;
+  int32_t haptic;        /* 1; 0: no haptic threshold */
+  double visual;         /* m; 2.5e-4: v of every vertex */
+  double weber_fraction; /* 0.025: p of h = p f / k_c around a touch */
+  double depth_floor;    /* m; 2e-4: lower limit of f / k_c */
+  int32_t kept;          /* answers only: 0: the stream aims at its bounds (profile thesis) */
+  int32_t reserved;
+} tactus_deformable_bounds;
+
+typedef struct tactus_load_bounds {
+  uint32_t size;
+  uint32_t reserved;
+  double weber_fraction; /* 0.1 */
+  double force_floor;    /* N; 0.5 */
+} tactus_load_bounds;
+
+TACTUS_API tactus_status tactus_rigid_bounds_init(tactus_rigid_bounds* bounds, size_t size);
+TACTUS_API tactus_status tactus_deformable_bounds_init(tactus_deformable_bounds* bounds, size_t size);
+TACTUS_API tactus_status tactus_load_bounds_init(tactus_load_bounds* bounds, size_t size);
+
+/* What a decoder accepts, checked before it allocates. */
+typedef struct tactus_limits {
+  uint32_t size;
+  uint32_t objects;      /* 4096 */
+  uint32_t header_bytes; /* 2^26 */
+  uint32_t packet_bytes; /* 2^26 */
+  uint32_t vertices;     /* 2^20, of all deformable objects */
+  uint32_t triangles;    /* 2^21 */
+  uint64_t state_bytes;  /* 2^28, of all states that are kept */
+  uint64_t basis_work;   /* 2^22, units of about 0.3 us */
+} tactus_limits;
+TACTUS_API tactus_status tactus_limits_init(tactus_limits* limits, size_t size);
+
+enum { TACTUS_KIND_RIGID = 0, TACTUS_KIND_DEFORMABLE = 1, TACTUS_KIND_LOAD = 2 };
+enum { TACTUS_LAYER_HAPTIC = 0, TACTUS_LAYER_VISUAL = 1, TACTUS_LAYER_ALL = 2 };
+enum { TACTUS_REASON_REQUEST = 0, TACTUS_REASON_HEARTBEAT = 1, TACTUS_REASON_VISUAL = 2, TACTUS_REASON_HAPTIC = 3 };
+
+/* A packet, as it was sent or decoded. */
+typedef struct tactus_packet_info {
+  uint32_t size;
+  uint32_t bytes; /* of the packet */
+  int64_t tick;
+  uint64_t number;    /* in its substream, from 1 */
+  uint64_t offset;    /* in the file; 0 elsewhere */
+  uint32_t substream; /* 0: rigid objects; i + 1: deformable object i; the next: loads */
+  uint32_t kind;      /* TACTUS_KIND_... */
+  uint32_t sequence;  /* the number as packets carry it, 16 bits */
+  uint32_t key;       /* 1: builds on the initial state */
+  uint32_t layer;     /* TACTUS_LAYER_..., deformable objects */
+  uint32_t reason;    /* TACTUS_REASON_..., rigid objects: strongest among the updates */
+  uint32_t updates;   /* objects named, or vertices with a residual of their own */
+  uint32_t restarts;  /* decoded: 1: of another or restarted sender, or after a long outage */
+} tactus_packet_info;
+
+/* ---------------------------------------------------------------- scene */
+
+typedef struct tactus_scene tactus_scene; /* immutable */
+
+typedef struct tactus_scene_info {
+  uint32_t size;
+  uint32_t tick_rate; /* per second */
+  uint32_t rigid, deformables, substreams;
+  uint32_t position_exp;  /* positions are multiples of 2^-position_exp m */
+  uint32_t extrapolation; /* ticks after which an object without updates stops */
+  uint32_t baselines;
+  uint32_t eased;
+  uint32_t has_bounds;
+  uint32_t has_loads, load_users;
+} tactus_scene_info;
+
+typedef struct tactus_rigid_info {
+  uint32_t size;
+  uint32_t dof;     /* TACTUS_DOF_... */
+  const char* name; /* UTF-8; lives as long as the scene */
+  tactus_pose initial;
+} tactus_rigid_info;
+
+typedef struct tactus_deformable_info {
+  uint32_t size;
+  uint32_t vertices, triangles;
+  uint32_t profile; /* 0 thesis, 1 main */
+  uint32_t layered;
+  uint32_t modes;      /* of its basis; 0: none */
+  double frame_period; /* ticks from shape to shape */
+  const char* name;    /* UTF-8; lives as long as the scene */
+} tactus_deformable_info;
+
+/* Parse a scene declaration from the front of `bytes`.   out  used  bytes that it took; may be NULL
+   err  R-STR, R-DEF */
+TACTUS_API tactus_status tactus_scene_parse(const uint8_t* bytes, size_t size, const tactus_limits* limits, tactus_scene** scene,
+                                            size_t* used, tactus_error* error);
+/* The declaration as bytes. Equal scenes give equal bytes.   out  size  needed or written */
+TACTUS_API tactus_status tactus_scene_write(const tactus_scene* scene, uint8_t* bytes, size_t capacity, size_t* size,
+                                            tactus_error* error);
+TACTUS_API void tactus_scene_destroy(tactus_scene* scene); /* senders and receivers of it live on */
+TACTUS_API tactus_status tactus_scene_get(const tactus_scene* scene, tactus_scene_info* info, tactus_error* error);
+TACTUS_API tactus_status tactus_scene_get_rigid(const tactus_scene* scene, uint32_t object, tactus_rigid_info* info,
+                                                tactus_error* error);
+TACTUS_API tactus_status tactus_scene_get_deformable(const tactus_scene* scene, uint32_t object, tactus_deformable_info* info,
+                                                     tactus_error* error);
+/* Vertices at rest, x y z of vertex 0 first, m, world.   in  capacity  [floats] at least 3 vertices */
+TACTUS_API tactus_status tactus_scene_get_rest(const tactus_scene* scene, uint32_t object, float* out, size_t capacity,
+                                               tactus_error* error);
+/* Corners, counter-clockwise seen from outside.   in  capacity  [numbers] at least 3 triangles */
+TACTUS_API tactus_status tactus_scene_get_triangles(const tactus_scene* scene, uint32_t object, uint32_t* out, size_t capacity,
+                                                    tactus_error* error);
+/* Bounds that the sender guarantees; TACTUS_NOTHING: not declared. */
+TACTUS_API tactus_status tactus_scene_get_rigid_bounds(const tactus_scene* scene, tactus_rigid_bounds* bounds,
+                                                       tactus_error* error);
+TACTUS_API tactus_status tactus_scene_get_deformable_bounds(const tactus_scene* scene, uint32_t object,
+                                                            tactus_deformable_bounds* bounds, tactus_error* error);
+TACTUS_API tactus_status tactus_scene_get_load_bounds(const tactus_scene* scene, tactus_load_bounds* bounds, tactus_error* error);
+
+/* ---------------------------------------------------------------- receiver: packets in, replica out */
+
+typedef struct tactus_receiver tactus_receiver;
+
+enum {
+  TACTUS_INTERPOLATION_NONE = 0,
+  TACTUS_INTERPOLATION_LINEAR = 1,
+  TACTUS_INTERPOLATION_HERMITE = 2,
+  TACTUS_INTERPOLATION_BLENDING = 3,
+  TACTUS_INTERPOLATION_PLAYOUT = 4 /* the client shows the past and bends over the gaps that losses leave */
+};
+
+typedef struct tactus_receiver_options {
+  uint32_t size;
+  int32_t interpolation;       /* TACTUS_INTERPOLATION_...; none */
+  double share;                /* 0.75 of the mean of the last 5 inter-arrival times */
+  double shortest;             /* s; 0.005 */
+  double longest;              /* s; 0.1 */
+  const tactus_limits* limits; /* NULL: defaults */
+} tactus_receiver_options;
+
+/* One object of the packet decoded last. */
+typedef struct tactus_update {
+  uint32_t object;
+  uint32_t reason; /* TACTUS_REASON_... */
+  uint32_t level;  /* grid level */
+} tactus_update;
+
+#define TACTUS_NO_CLOCK INT64_MIN /* each packet counts as arriving in its own tick */
+
+TACTUS_API tactus_status tactus_receiver_options_init(tactus_receiver_options* options, size_t size);
+TACTUS_API tactus_status tactus_receiver_create(const tactus_scene* scene, const tactus_receiver_options* options,
+                                                tactus_receiver** receiver, tactus_error* error);
+TACTUS_API void tactus_receiver_destroy(tactus_receiver* receiver); /* does nothing to a borrowed one */
+TACTUS_API const tactus_scene* tactus_receiver_scene(const tactus_receiver* receiver);
+/* Decode a packet.   in  now  [ticks] time of arrival on the receiver's clock, or TACTUS_NO_CLOCK;  info  may be NULL
+   err  tactus_error_advice() tells how to react: R-PKT, R-RIG, R-DEF, R-RNG */
+TACTUS_API tactus_status tactus_receiver_push(tactus_receiver* receiver, const uint8_t* packet, size_t size, int64_t now,
+                                              tactus_packet_info* info, tactus_error* error);
+/* Objects that the packet decoded last named.   out  count  needed or written */
+TACTUS_API tactus_status tactus_receiver_updates(const tactus_receiver* receiver, tactus_update* out, size_t capacity,
+                                                 size_t* count, tactus_error* error);
+/* Poses as shown at a tick, of rigid objects `first` to `first + count - 1`.   time about 50 ns each */
+TACTUS_API tactus_status tactus_receiver_poses(const tactus_receiver* receiver, int64_t tick, uint32_t first, size_t count,
+                                               tactus_pose* out, tactus_error* error);
+/* Displacements from rest as shown at a tick, x y z of vertex 0 first, m.   in  capacity  [floats] at least 3 vertices */
+TACTUS_API tactus_status tactus_receiver_displacements(tactus_receiver* receiver, uint32_t object, int64_t tick, float* out,
+                                                       size_t capacity, tactus_error* error);
+/* Forces on a rigid object, N, world: external, hold, then one per user. TACTUS_NOTHING: the scene tells none of it.
+   in  capacity  [doubles] at least 3 (2 + load_users) */
+TACTUS_API tactus_status tactus_receiver_loads(const tactus_receiver* receiver, uint32_t object, int64_t tick, double* out,
+                                               size_t capacity, tactus_error* error);
+/* Hash of the newest state of a substream; equals that of the sender. */
+TACTUS_API tactus_status tactus_receiver_state_hash(const tactus_receiver* receiver, uint32_t substream, uint64_t* hash,
+                                                    tactus_error* error);
+/* Hash of every pose as shown at a tick. */
+TACTUS_API tactus_status tactus_receiver_pose_hash(const tactus_receiver* receiver, int64_t tick, uint64_t* hash,
+                                                   tactus_error* error);
+
+/* ---------------------------------------------------------------- player: a stream file, tick by tick */
+
+typedef struct tactus_player tactus_player;
+
+/* in   file  stays valid and unchanged until the player is destroyed
+   err  R-STR, R-DEF, R-FIL */
+TACTUS_API tactus_status tactus_player_open(const uint8_t* file, size_t size, const tactus_receiver_options* options,
+                                            tactus_player** player, tactus_error* error);
+TACTUS_API void tactus_player_destroy(tactus_player* player);
+TACTUS_API tactus_receiver* tactus_player_receiver(tactus_player* player); /* borrowed */
+/* Apply the next packet that is due at `tick`; TACTUS_NOTHING when none is. Call it until then.   in  info  may be NULL
+   err  R-FIL and those of tactus_receiver_push, with places in the file */
+TACTUS_API tactus_status tactus_player_play(tactus_player* player, int64_t tick, tactus_packet_info* info, tactus_error* error);
+/* Tick of the next packet; TACTUS_NOTHING at the end. */
+TACTUS_API tactus_status tactus_player_next_tick(tactus_player* player, int64_t* tick, tactus_error* error);
+TACTUS_API uint64_t tactus_player_header_bytes(const tactus_player* player);
+TACTUS_API int32_t tactus_player_complete(const tactus_player* player); /* 1: the file has its end; valid after the last packet */
+
+/* ---------------------------------------------------------------- scene builder */
+
+typedef struct tactus_scene_builder tactus_scene_builder;
+
+typedef struct tactus_scene_options {
+  uint32_t size;
+  uint32_t tick_rate;                                                      /* per second; 1000 */
+  uint32_t position_exp, velocity_exp, rotation_exp, angular_velocity_exp; /* grids; 22 17 20 12 */
+  uint32_t baselines;  /* states that a receiver keeps, 1 to 64; 1. A session wants 64 */
+  uint32_t eased;      /* 1: updates tell how clients pass over to them, so that nothing jumps; 0 */
+  uint32_t has_loads;  /* 1: tell the forces on rigid objects; 0 */
+  uint32_t load_users; /* whose forces are told; 1 */
+  uint32_t force_exp;  /* forces are multiples of 2^-force_exp N; 10 */
+  uint32_t reserved;
+  double extrapolation; /* s after which an object without updates stops; 2 */
+  double gravity[3];    /* m/s^2, world: updates may choose to fall; 0 */
+  double friction;      /* ... or to slide to rest; 0 */
+} tactus_scene_options;
+
+typedef struct tactus_deformable_options {
+  uint32_t size;
+  uint32_t profile;      /* 0 thesis, 1 main; main */
+  uint32_t rings;        /* around the touched triangle; 3 */
+  uint32_t quant_bits;   /* thesis; 8 */
+  uint32_t models_kept;  /* thesis; 0 */
+  uint32_t layered;      /* main: separate packets for the haptic and the visual layer; 0 */
+  uint32_t weight_sets;  /* main; 0: chosen */
+  uint32_t spring_modes; /* main: modes of a network of springs that both ends compute; 0 */
+  double frame_period;   /* main: ticks from shape to shape; 1 */
+  double fade;           /* main, with a basis: share of corrections that fades per second; 0.98 */
+  const uint32_t* fixed; /* spring_modes: vertices that do not move, ascending */
+  size_t fixed_count;
+  const double* vectors;   /* a basis to declare: modes x vertices x 3, any scale; NULL */
+  size_t modes;            /* 0 to 64 */
+  const double* stiffness; /* N/m of each vertex, infinite where it does not move; NULL: not told */
+  size_t stiffness_count;  /* vertices */
+} tactus_deformable_options;
+
+TACTUS_API tactus_status tactus_scene_options_init(tactus_scene_options* options, size_t size);
+TACTUS_API tactus_status tactus_deformable_options_init(tactus_deformable_options* options, size_t size);
+TACTUS_API tactus_status tactus_scene_builder_create(const tactus_scene_options* options, tactus_scene_builder** builder,
+                                                     tactus_error* error);
+TACTUS_API void tactus_scene_builder_destroy(tactus_scene_builder* builder);
+/* in   initial  pose at rest, NULL: the origin;  dof  TACTUS_DOF_... */
+TACTUS_API tactus_status tactus_scene_builder_rigid(tactus_scene_builder* builder, const char* name, const tactus_pose* initial,
+                                                    uint32_t dof, tactus_error* error);
+/* in   vertices  x y z of each [m] at rest, world;  triangles  3 corners of each, counter-clockwise seen from outside */
+TACTUS_API tactus_status tactus_scene_builder_deformable(tactus_scene_builder* builder, const char* name, const double* vertices,
+                                                         size_t vertex_count, const uint32_t* triangles, size_t triangle_count,
+                                                         const tactus_deformable_options* options, tactus_error* error);
+/* Declare the bounds that hold at a client: those of its sender. NULL: defaults. */
+TACTUS_API tactus_status tactus_scene_builder_promise(tactus_scene_builder* builder, const tactus_rigid_bounds* rigid,
+                                                      const tactus_deformable_bounds* deformable, const tactus_load_bounds* load,
+                                                      tactus_error* error);
+/* Check everything and make the scene. The builder is empty then, also after an error. */
+TACTUS_API tactus_status tactus_scene_builder_build(tactus_scene_builder* builder, tactus_scene** scene, tactus_error* error);
+/* Name of the object that the last error of _build concerns; "" none. Lives until the next call of the builder. */
+TACTUS_API const char* tactus_scene_builder_culprit(const tactus_scene_builder* builder);
+
+/* ---------------------------------------------------------------- sender: truth in, packets out */
+
+typedef struct tactus_sender tactus_sender;
+
+enum { TACTUS_REDUCTION_NONE = 0, TACTUS_REDUCTION_DEAD_RECKONING = 1, TACTUS_REDUCTION_LEANING = 2 };
+enum { TACTUS_BASELINE_PREVIOUS = 0, TACTUS_BASELINE_ACKNOWLEDGED = 1 };
+
+typedef struct tactus_sender_options {
+  uint32_t size;
+  int32_t reduction;       /* TACTUS_REDUCTION_...; dead reckoning. Leaning, in an eased scene, is profile main of the commands */
+  int32_t baseline;        /* TACTUS_BASELINE_...; previous */
+  uint32_t first_sequence; /* 1 */
+  double key_interval;     /* s; 5; 0: never */
+  double visual_share;     /* deformable, main: a packet corrects errors over this share of v; 0: chosen */
+  double haptic_share;     /* the same of h */
+  uint32_t layered;        /* deformable, thesis: separate packets for the layers; 0 */
+  uint32_t reserved;
+  const tactus_rigid_bounds* rigid; /* NULL: defaults, as the next two */
+  const tactus_deformable_bounds* deformable;
+  const tactus_load_bounds* load;
+} tactus_sender_options;
+
+typedef struct tactus_rigid_sample {
+  tactus_pose pose;
+  double velocity[3];         /* m/s, world */
+  double angular_velocity[3]; /* rad/s, world */
+} tactus_rigid_sample;
+
+enum { TACTUS_CONTACT_NONE = 0, TACTUS_CONTACT_SURFACE = 1, TACTUS_CONTACT_SPRING = 2 };
+
+/* A user touches a rigid object. */
+typedef struct tactus_contact {
+  int32_t kind; /* TACTUS_CONTACT_...: below a face, or tied to a point of the object */
+  uint32_t object;
+  double point[3];  /* m, object: of the face, or the spring's anchor */
+  double normal[3]; /* object, outward, unit length; unused by a spring */
+  double device[3]; /* m, world */
+  double stiffness; /* N/m */
+} tactus_contact;
+
+/* A deformable object at one tick. */
+typedef struct tactus_shape {
+  const float* displacements; /* x y z of each vertex, m, from rest; NULL: no new shape */
+  size_t vertices;
+  int32_t touched;   /* 1: the next three count */
+  uint32_t triangle; /* nearest to the probe */
+  double force;      /* N */
+  double stiffness;  /* N/m, of the client's rendering */
+} tactus_shape;
+
+typedef struct tactus_truth {
+  uint32_t size;
+  uint32_t reserved;
+  const tactus_rigid_sample* objects; /* one per rigid object of the scene */
+  size_t object_count;
+  const tactus_contact* contacts; /* any number */
+  size_t contact_count;
+  const tactus_shape* shapes; /* one per deformable object, or none */
+  size_t shape_count;
+  const double* loads; /* N, world: per rigid object external, hold, then one per user, x y z each; NULL without loads */
+  size_t load_count;   /* objects */
+} tactus_truth;
+
+TACTUS_API tactus_status tactus_sender_options_init(tactus_sender_options* options, size_t size);
+TACTUS_API tactus_status tactus_truth_init(tactus_truth* truth, size_t size); /* nothing */
+TACTUS_API tactus_status tactus_sender_create(const tactus_scene* scene, const tactus_sender_options* options,
+                                              tactus_sender** sender, tactus_error* error);
+TACTUS_API void tactus_sender_destroy(tactus_sender* sender);
+/* Evaluate a tick and code the packets it needs.   in  tick  rising   out  packets  how many, mostly 0   err  R-API-1 to 7 */
+TACTUS_API tactus_status tactus_sender_encode(tactus_sender* sender, int64_t tick, const tactus_truth* truth, size_t* packets,
+                                              tactus_error* error);
+/* Packet `index` of the last tick.   in  info  may be NULL   out  size  needed or written */
+TACTUS_API tactus_status tactus_sender_packet(const tactus_sender* sender, size_t index, tactus_packet_info* info, uint8_t* bytes,
+                                              size_t capacity, size_t* size, tactus_error* error);
+/* A receiver asks for a key packet. */
+TACTUS_API tactus_status tactus_sender_request_key(tactus_sender* sender, tactus_error* error);
+/* A receiver has decoded a packet: TACTUS_BASELINE_ACKNOWLEDGED builds on it. */
+TACTUS_API tactus_status tactus_sender_acknowledge(tactus_sender* sender, uint32_t substream, uint32_t sequence,
+                                                   tactus_error* error);
+/* in   answer  [ticks] until a packet is acknowledged, 0: not known;  loss  share of packets */
+TACTUS_API tactus_status tactus_sender_set_link(tactus_sender* sender, int64_t answer, double loss, tactus_error* error);
+TACTUS_API tactus_status tactus_sender_state_hash(const tactus_sender* sender, uint32_t substream, uint64_t* hash,
+                                                  tactus_error* error);
+
+/* ---------------------------------------------------------------- writer: packets into a stream file */
+
+typedef struct tactus_writer tactus_writer;
+
+TACTUS_API tactus_status tactus_writer_create(const tactus_scene* scene, tactus_writer** writer, tactus_error* error);
+TACTUS_API void tactus_writer_destroy(tactus_writer* writer);
+/* in   tick  not falling;  key  as tactus_packet_info tells */
+TACTUS_API tactus_status tactus_writer_add(tactus_writer* writer, int64_t tick, const uint8_t* packet, size_t size, uint32_t key,
+                                           tactus_error* error);
+/* Add the index and the end of the file. */
+TACTUS_API tactus_status tactus_writer_finish(tactus_writer* writer, tactus_error* error);
+/* Take what was written since the last call.   out  size  needed or taken */
+TACTUS_API tactus_status tactus_writer_take(tactus_writer* writer, uint8_t* bytes, size_t capacity, size_t* size,
+                                            tactus_error* error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * Traces in C, of a library of their own (libtactus-trace): recordings in MCAP, and the error of what a client shows against them. What
+ * this library and libtactus hand to each other are structs and bytes, never objects. See tactus.h, whose rules hold here too, and
+ * <tactus/trace/trace_file.h>.
+ */
+#ifndef TACTUS_TRACE_H
+#define TACTUS_TRACE_H
+
+#include "tactus.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---------------------------------------------------------------- trace */
+
+typedef struct tactus_trace tactus_trace;
+
+typedef struct tactus_trace_info {
+  uint32_t size;
+  uint32_t tick_rate; /* per second */
+  uint32_t objects, users, meshes;
+  uint32_t has_frames; /* 1: the file tells how many frames it has */
+  uint64_t frames;
+  const char* source; /* "sim push-1dof seed 1"; UTF-8, like all names; they live as long as the trace */
+} tactus_trace_info;
+
+typedef struct tactus_trace_object {
+  uint32_t size;
+  uint32_t dof; /* TACTUS_DOF_... */
+  const char* name;
+} tactus_trace_object;
+
+typedef struct tactus_trace_user {
+  uint32_t size;
+  uint32_t senses; /* of the device, beside its position: 1 orientation, 2 velocity, 4 buttons, 8 time */
+  const char* name;
+} tactus_trace_user;
+
+typedef struct tactus_trace_mesh {
+  uint32_t size;
+  uint32_t vertices, triangles;
+  uint32_t fixed; /* vertices that cannot move */
+  double period;  /* nominal ticks from shape to shape */
+  const char* name;
+} tactus_trace_mesh;
+
+/* A user at one tick. */
+typedef struct tactus_user_sample {
+  tactus_device_sample device;
+  tactus_contact contact; /* with a rigid object */
+  double force[3];        /* N, world: what the hand felt at the client */
+  double server_force[3]; /* N, world: of the true state */
+  int32_t touches_mesh;   /* 1: the next ones count */
+  uint32_t mesh, triangle;
+  uint32_t reserved;
+  double weights[3];     /* of the triangle's corners at the touched point */
+  double proxy[3];       /* m, world */
+  double mesh_normal[3]; /* world, outward */
+  double mesh_stiffness; /* N/m */
+} tactus_user_sample;
+
+/* How a trace becomes a scene. */
+typedef struct tactus_trace_coding {
+  uint32_t size;
+  uint32_t eased;                   /* 0; as tactus_scene_options */
+  uint32_t baselines;               /* 1 */
+  uint32_t spring_modes;            /* 0; as tactus_deformable_options */
+  const tactus_rigid_bounds* rigid; /* that the scene declares; NULL: defaults */
+  const tactus_deformable_bounds* deformable;
+} tactus_trace_coding;
+
+/* in   path  "-": standard input   err  R-TRC */
+TACTUS_API tactus_status tactus_trace_open(const char* path, tactus_trace** trace, tactus_error* error);
+TACTUS_API void tactus_trace_destroy(tactus_trace* trace);
+TACTUS_API tactus_status tactus_trace_get(const tactus_trace* trace, tactus_trace_info* info, tactus_error* error);
+TACTUS_API tactus_status tactus_trace_get_object(const tactus_trace* trace, uint32_t object, tactus_trace_object* info,
+                                                 tactus_error* error);
+TACTUS_API tactus_status tactus_trace_get_user(const tactus_trace* trace, uint32_t user, tactus_trace_user* info,
+                                               tactus_error* error);
+TACTUS_API tactus_status tactus_trace_get_mesh(const tactus_trace* trace, uint32_t mesh, tactus_trace_mesh* info,
+                                               tactus_error* error);
+/* Vertices at rest, x y z of vertex 0 first, m, world.   in  capacity  [doubles] at least 3 vertices */
+TACTUS_API tactus_status tactus_trace_get_rest(const tactus_trace* trace, uint32_t mesh, double* out, size_t capacity,
+                                               tactus_error* error);
+/* in   capacity  [numbers] at least 3 triangles */
+TACTUS_API tactus_status tactus_trace_get_triangles(const tactus_trace* trace, uint32_t mesh, uint32_t* out, size_t capacity,
+                                                    tactus_error* error);
+/* The scene of the trace, as bytes for tactus_scene_parse. Before the first call of tactus_trace_next.   out  size  needed or written */
+TACTUS_API tactus_status tactus_trace_scene(const tactus_trace* trace, const tactus_trace_coding* coding, uint8_t* bytes,
+                                            size_t capacity, size_t* size, tactus_error* error);
+TACTUS_API tactus_status tactus_trace_coding_init(tactus_trace_coding* coding, size_t size);
+/* Go to the next frame; TACTUS_NOTHING at the end.   in  counts  those of the trace, or 0 for what is not wanted */
+TACTUS_API tactus_status tactus_trace_next(tactus_trace* trace, int64_t* tick, tactus_rigid_sample* objects, size_t object_count,
+                                           tactus_user_sample* users, size_t user_count, tactus_error* error);
+/* The mesh in this frame, as tactus_sender_encode takes it. Displacements are NULL when the shape is not new; they live until the next
+   call of tactus_trace_next. */
+TACTUS_API tactus_status tactus_trace_shape(const tactus_trace* trace, uint32_t mesh, tactus_shape* shape, tactus_error* error);
+TACTUS_API int32_t tactus_trace_cut_short(const tactus_trace* trace); /* 1: the file ends early; valid at the end */
+
+/* ---------------------------------------------------------------- errors of what a client shows */
+
+typedef struct tactus_errors tactus_errors;
+
+typedef struct tactus_errors_options {
+  uint32_t size;
+  uint32_t rings;        /* deformable: 3: size of the area of interest around the touched triangle */
+  uint32_t position_exp; /* deformable: 22: grid of the stream */
+  uint32_t reserved;
+  const tactus_rigid_bounds* rigid; /* to compare with; NULL: defaults */
+  const tactus_deformable_bounds* deformable;
+} tactus_errors_options;
+
+enum {
+  TACTUS_ERROR_POSITION = 0, /* m, against visual_position */
+  TACTUS_ERROR_ROTATION = 1, /* rad, against visual_rotation */
+  TACTUS_ERROR_FORCE = 2,    /* N, of the contact itself, against the haptic rule */
+  TACTUS_ERROR_PERCEIVED = 3 /* N, the same errors against what people notice */
+};
+
+typedef struct tactus_error_summary {
+  uint32_t size;
+  uint32_t reserved;
+  uint64_t ticks;       /* with a sample */
+  uint64_t ticks_over;  /* with one over its bound */
+  uint64_t longest_run; /* ticks: of such ticks */
+  double rms, max;
+  double worst_ratio; /* force: largest error over the permitted one; else 0 */
+} tactus_error_summary;
+
+typedef struct tactus_mesh_summary {
+  uint32_t size;
+  uint32_t reserved;
+  uint64_t frames;
+  uint64_t vertices;   /* compared, in all frames */
+  uint64_t violations; /* of them over their bound */
+  double rms, max;     /* m */
+  double worst_ratio;  /* largest error over its bound */
+} tactus_mesh_summary;
+
+TACTUS_API tactus_status tactus_errors_options_init(tactus_errors_options* options, size_t size);
+TACTUS_API tactus_status tactus_errors_create(const tactus_trace* truth, const tactus_errors_options* options,
+                                              tactus_errors** errors, tactus_error* error);
+TACTUS_API void tactus_errors_destroy(tactus_errors* errors);
+/* Compare with the trace's frame.   in  shown  one pose per object */
+TACTUS_API tactus_status tactus_errors_add(tactus_errors* errors, const tactus_trace* truth, const tactus_pose* shown,
+                                           size_t count, tactus_error* error);
+/* Compare a mesh with that of the trace's frame; TACTUS_NOTHING when it is not new there.   in  shown  displacements, m */
+TACTUS_API tactus_status tactus_errors_add_shape(tactus_errors* errors, const tactus_trace* truth, uint32_t mesh,
+                                                 const float* shown, size_t vertices, tactus_error* error);
+/* in   quantity  TACTUS_ERROR_... */
+TACTUS_API tactus_status tactus_errors_get(const tactus_errors* errors, uint32_t quantity, tactus_error_summary* summary,
+                                           tactus_error* error);
+TACTUS_API tactus_status tactus_errors_get_mesh(const tactus_errors* errors, uint32_t mesh, tactus_mesh_summary* summary,
+                                                tactus_error* error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

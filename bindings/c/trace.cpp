@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <memory>
+#include <string>
+
+#include <tactus/scene/scene_syntax.h>
+#include <tactus/trace/trace_scene.h>
+
+#include "bounds.h"
+#include "trace_handle.h"
+
+namespace tactus::c {
+namespace {
+
+constexpr tactus_trace_coding kCoding{
+    .size = sizeof(tactus_trace_coding), .eased = 0, .baselines = 1, .spring_modes = 0, .rigid = nullptr, .deformable = nullptr};
+
+Result<const TraceDeformable*> mesh_of(const tactus_trace* trace, std::uint32_t mesh) noexcept {
+  TACTUS_TRY(const TraceInfo* info, info_of(trace));
+  if (mesh >= info->meshes.size()) return refuse();
+  return &info->meshes[mesh];
+}
+
+tactus_rigid_sample sample_of(const RigidSample& s) noexcept {
+  const auto& [pose, v, w] = s;
+  return {.pose = pose_of(pose), .velocity = {v.x, v.y, v.z}, .angular_velocity = {w.x, w.y, w.z}};
+}
+
+void put(const Vec3& v, double (&out)[3]) noexcept {
+  out[0] = v.x;
+  out[1] = v.y;
+  out[2] = v.z;
+}
+
+tactus_user_sample sample_of(const UserSample& s) noexcept {
+  tactus_user_sample out{};
+  put(s.device.position, out.device.position);
+  const auto& [qw, qx, qy, qz] = s.device.orientation;
+  out.device.orientation[0] = qw;
+  out.device.orientation[1] = qx;
+  out.device.orientation[2] = qy;
+  out.device.orientation[3] = qz;
+  put(s.device.velocity, out.device.velocity);
+  out.device.buttons = s.device.buttons;
+  out.device.time = s.device.time;
+  out.contact.kind = static_cast<std::int32_t>(s.contact.kind);
+  out.contact.object = s.contact.object;
+  put(s.contact.point, out.contact.point);
+  put(s.contact.normal, out.contact.normal);
+  put(s.contact.device, out.contact.device);
+  out.contact.stiffness = s.contact.stiffness;
+  put(s.force, out.force);
+  put(s.server_force, out.server_force);
+  if (!s.surface_contact) return out;
+  const SurfaceContact& touch = *s.surface_contact;
+  out.touches_mesh = 1;
+  out.mesh = touch.mesh;
+  out.triangle = touch.triangle;
+  for (std::size_t i = 0; i < 3; ++i) out.weights[i] = touch.weights[i];
+  put(touch.proxy, out.proxy);
+  put(touch.normal, out.mesh_normal);
+  out.mesh_stiffness = touch.stiffness;
+  return out;
+}
+
+/// Copy to the caller's array, which has room for all or is not wanted.
+template <class From, class To>
+void copy_samples(const std::vector<From>& from, To* to, std::size_t count) noexcept {
+  if (count == 0) return;
+  for (const From& sample : from) *to++ = sample_of(sample);
+}
+
+Result<std::vector<std::uint8_t>> declaration(const tactus_trace& trace, const tactus_trace_coding& coding) {
+  if (coding.baselines > 0xff || coding.spring_modes > ModeBasis::kMaxModes) return fail(Errc::invalid_argument, "R-API-4");
+  TACTUS_TRY(const RigidTriggers rigid, bounds_of(coding.rigid));
+  TACTUS_TRY(const DeformableThresholds deformable, bounds_of(coding.deformable));
+  TraceFrame none;
+  none.objects.resize(trace.reader.info().objects.size());
+  const TraceFrame& first = trace.has_frame ? trace.frame : none;
+  TACTUS_TRY(SceneBuilder builder, scene_builder(trace.reader.info(), first,
+                                                 {.deformable = {},
+                                                  .spring_modes = static_cast<std::uint8_t>(coding.spring_modes),
+                                                  .basis = {},
+                                                  .is_eased = coding.eased != 0}));
+  builder.baselines(static_cast<std::uint8_t>(coding.baselines)).promise(rigid, deformable);
+  TACTUS_TRY(const SharedScene scene, std::move(builder).build());
+  return write_scene(*scene);
+}
+
+}  // namespace
+}  // namespace tactus::c
+
+using namespace tactus;
+using namespace tactus::c;
+
+tactus_status tactus_trace_coding_init(tactus_trace_coding* coding, size_t size) { return init(coding, size, kCoding); }
+
+tactus_status tactus_trace_open(const char* path, tactus_trace** trace, tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (path == nullptr || trace == nullptr) return refuse();
+    TACTUS_TRY(TraceReader reader, TraceReader::open(path));
+    auto out = std::make_unique<tactus_trace>(tactus_trace{std::move(reader)});
+    TACTUS_TRY(out->has_frame, out->reader.next(out->frame));
+    *trace = out.release();
+    return TACTUS_OK;
+  });
+}
+
+void tactus_trace_destroy(tactus_trace* trace) { delete trace; }
+
+tactus_status tactus_trace_get(const tactus_trace* trace, tactus_trace_info* info, tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    TACTUS_TRY(const TraceInfo* of, info_of(trace));
+    TACTUS_CHECK(check_answer(info));
+    const auto frames = trace->reader.frame_count();
+    answer(info, {.size = 0,
+                  .tick_rate = of->tick_rate,
+                  .objects = static_cast<std::uint32_t>(of->objects.size()),
+                  .users = static_cast<std::uint32_t>(of->users.size()),
+                  .meshes = static_cast<std::uint32_t>(of->meshes.size()),
+                  .has_frames = frames.has_value(),
+                  .frames = frames.value_or(0),
+                  .source = of->source.c_str()});
+    return TACTUS_OK;
+  });
+}
+
+tactus_status tactus_trace_get_object(const tactus_trace* trace, uint32_t object, tactus_trace_object* info,
+                                      tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    TACTUS_TRY(const TraceInfo* of, info_of(trace));
+    if (object >= of->objects.size()) return refuse();
+    TACTUS_CHECK(check_answer(info));
+    answer(info, {.size = 0, .dof = of->objects[object].dof, .name = of->objects[object].name.c_str()});
+    return TACTUS_OK;
+  });
+}
+
+tactus_status tactus_trace_get_user(const tactus_trace* trace, uint32_t user, tactus_trace_user* info, tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    TACTUS_TRY(const TraceInfo* of, info_of(trace));
+    if (user >= of->users.size()) return refuse();
+    TACTUS_CHECK(check_answer(info));
+    const DeviceSenses& senses = of->users[user].senses;
+    const unsigned bits =
+        (senses.orientation ? 1u : 0) | (senses.velocity ? 2u : 0) | (senses.buttons ? 4u : 0) | (senses.time ? 8u : 0);
+    answer(info, {.size = 0, .senses = bits, .name = of->users[user].name.c_str()});
+    return TACTUS_OK;
+  });
+}
+
+tactus_status tactus_trace_get_mesh(const tactus_trace* trace, uint32_t mesh, tactus_trace_mesh* info, tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    TACTUS_TRY(const TraceDeformable* of, mesh_of(trace, mesh));
+    TACTUS_CHECK(check_answer(info));
+    answer(info, {.size = 0,
+                  .vertices = static_cast<std::uint32_t>(of->rest.vertices.size()),
+                  .triangles = static_cast<std::uint32_t>(of->rest.triangles.size()),
+                  .fixed = static_cast<std::uint32_t>(of->fixed.size()),
+                  .period = of->period,
+                  .name = of->name.c_str()});
+    return TACTUS_OK;
+  });
+}
+
+tactus_status tactus_trace_get_rest(const tactus_trace* trace, uint32_t mesh, double* out, size_t capacity, tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    TACTUS_TRY(const TraceDeformable* of, mesh_of(trace, mesh));
+    if (out == nullptr) return refuse();
+    if (capacity < 3 * of->rest.vertices.size()) return TACTUS_BUFFER_TOO_SMALL;
+    for (const Vec3& v : of->rest.vertices)
+      for (const double component : {v.x, v.y, v.z}) *out++ = component;
+    return TACTUS_OK;
+  });
+}
+
+tactus_status tactus_trace_get_triangles(const tactus_trace* trace, uint32_t mesh, uint32_t* out, size_t capacity,
+                                         tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    TACTUS_TRY(const TraceDeformable* of, mesh_of(trace, mesh));
+    if (out == nullptr) return refuse();
+    if (capacity < 3 * of->rest.triangles.size()) return TACTUS_BUFFER_TOO_SMALL;
+    for (const Triangle& triangle : of->rest.triangles)
+      for (const std::uint32_t corner : triangle) *out++ = corner;
+    return TACTUS_OK;
+  });
+}
+
+tactus_status tactus_trace_scene(const tactus_trace* trace, const tactus_trace_coding* coding, uint8_t* bytes, size_t capacity,
+                                 size_t* size, tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (trace == nullptr || !trace->is_first) return refuse();
+    TACTUS_TRY(const tactus_trace_coding chosen, given_or(coding, kCoding));
+    TACTUS_TRY(const std::vector<std::uint8_t> written, declaration(*trace, chosen));
+    return copy_out(std::span(written), bytes, capacity, size);
+  });
+}
+
+tactus_status tactus_trace_next(tactus_trace* trace, int64_t* tick, tactus_rigid_sample* objects, size_t object_count,
+                                tactus_user_sample* users, size_t user_count, tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (trace == nullptr || tick == nullptr) return refuse();
+    const TraceInfo& info = trace->reader.info();
+    const auto fits = [](std::size_t count, std::size_t all, const void* out) {
+      return count == 0 || (count == all && out != nullptr);
+    };
+    if (!fits(object_count, info.objects.size(), objects) || !fits(user_count, info.users.size(), users)) return refuse();
+    if (!trace->has_frame) return TACTUS_NOTHING;
+    if (!trace->is_first) {
+      trace->has_frame = false;  // also after an error
+      TACTUS_TRY(trace->has_frame, trace->reader.next(trace->frame));
+    }
+    trace->is_first = false;
+    if (!trace->has_frame) return TACTUS_NOTHING;
+    *tick = trace->frame.tick;
+    copy_samples(trace->frame.objects, objects, object_count);
+    copy_samples(trace->frame.users, users, user_count);
+    return TACTUS_OK;
+  });
+}
+
+tactus_status tactus_trace_shape(const tactus_trace* trace, uint32_t mesh, tactus_shape* shape, tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    TACTUS_TRY(const TraceFrame* frame, frame_of(trace));
+    if (mesh >= frame->meshes.size() || shape == nullptr) return refuse();
+    const DeformableSample& of = frame->meshes[mesh];
+    const auto touch = touch_of(*frame, mesh);
+    *shape = {.displacements = of.updated ? of.displacements.data() : nullptr,
+              .vertices = of.displacements.size() / 3,
+              .touched = touch.has_value(),
+              .triangle = touch ? touch->triangle : 0,
+              .force = touch ? touch->force : 0,
+              .stiffness = touch ? touch->stiffness : 0};
+    return TACTUS_OK;
+  });
+}
+
+int32_t tactus_trace_cut_short(const tactus_trace* trace) { return trace != nullptr && trace->reader.cut_short() ? 1 : 0; }

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+/// A trace that is read, at its frame.
+#pragma once
+
+#include <tactus/trace/trace_file.h>
+
+#include "handles.h"
+#include "tactus_trace.h"
+
+struct tactus_trace {
+  tactus::TraceReader reader;
+  tactus::TraceFrame frame{};
+  bool has_frame = false;  // `frame` is one
+  bool is_first = true;    // ... which was read when the trace was opened, and not told yet
+};
+
+namespace tactus::c {
+
+/// err  R-API-12 null
+inline Result<const TraceInfo*> info_of(const tactus_trace* trace) noexcept {
+  if (trace == nullptr) return refuse();
+  return &trace->reader.info();
+}
+
+/// err  R-API-12 null, or before the first frame or after the last
+inline Result<const TraceFrame*> frame_of(const tactus_trace* trace) noexcept {
+  if (trace == nullptr || trace->is_first || !trace->has_frame) return refuse();
+  return &trace->frame;
+}
+
+}  // namespace tactus::c

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "truth.h"
+
+namespace tactus::c {
+namespace {
+
+static_assert(TACTUS_CONTACT_NONE == static_cast<int>(ContactKind::none) &&
+              TACTUS_CONTACT_SURFACE == static_cast<int>(ContactKind::surface) &&
+              TACTUS_CONTACT_SPRING == static_cast<int>(ContactKind::spring));
+
+}  // namespace
+
+TruthBuffer::TruthBuffer(const Scene& scene)
+    : users_(scene.loads ? scene.loads->users : 0u),
+      objects_(scene.objects.size()),
+      shapes_(scene.deformables.size()),
+      loads_(scene.loads ? scene.objects.size() : 0),
+      pushes_(users_ * loads_.size()) {
+  for (std::size_t i = 0; i < loads_.size(); ++i) loads_[i].pushes = std::span(pushes_).subspan(i * users_, users_);
+}
+
+Result<Truth> TruthBuffer::of(const tactus_truth* truth) {
+  if (truth == nullptr) return refuse();
+  TACTUS_TRY(const tactus_truth t, given_or(truth, tactus_truth{}));
+  TACTUS_TRY(const auto objects, span_of(t.objects, t.object_count));
+  TACTUS_TRY(const auto contacts, span_of(t.contacts, t.contact_count));
+  TACTUS_TRY(const auto shapes, span_of(t.shapes, t.shape_count));
+  TACTUS_CHECK(span_of(t.loads, t.load_count));
+  const auto fits = [](std::size_t count, std::size_t all) { return count == 0 || count == all; };
+  if (!fits(objects.size(), objects_.size()) || !fits(shapes.size(), shapes_.size()) || !fits(t.load_count, loads_.size()))
+    return fail(Errc::invalid_argument, "R-API-5");
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const tactus_rigid_sample& s = objects[i];
+    objects_[i] = {pose_of(s.pose), vec_of(s.velocity), vec_of(s.angular_velocity)};
+  }
+  contacts_.clear();
+  for (const tactus_contact& contact : contacts) TACTUS_CHECK(take(contact));
+  for (std::size_t i = 0; i < shapes.size(); ++i) TACTUS_CHECK(take(shapes[i], shapes_[i]));
+  if (t.load_count > 0) take_loads(t.loads);
+  return Truth{.objects = std::span(objects_).first(objects.size()),
+               .contacts = contacts_,
+               .deformables = std::span(shapes_).first(shapes.size()),
+               .loads = std::span(loads_).first(t.load_count)};
+}
+
+Result<void> TruthBuffer::take(const tactus_contact& contact) {
+  if (contact.kind < TACTUS_CONTACT_NONE || contact.kind > TACTUS_CONTACT_SPRING) return fail(Errc::invalid_argument, "R-API-5");
+  contacts_.push_back({.kind = static_cast<ContactKind>(contact.kind),
+                       .object = contact.object,
+                       .point = vec_of(contact.point),
+                       .normal = vec_of(contact.normal),
+                       .device = vec_of(contact.device),
+                       .stiffness = contact.stiffness});
+  return {};
+}
+
+Result<void> TruthBuffer::take(const tactus_shape& shape, DeformableTruth& out) noexcept {
+  if (shape.vertices > kMaxMeshVertices) return fail(Errc::invalid_argument, "R-API-5");
+  const std::size_t vertices = shape.displacements == nullptr ? 0 : shape.vertices;
+  out.displacements = std::span(shape.displacements, 3 * vertices);
+  out.touch.reset();
+  if (shape.touched != 0) out.touch = {.triangle = shape.triangle, .force = shape.force, .stiffness = shape.stiffness};
+  return {};
+}
+
+void TruthBuffer::take_loads(const double* vectors) noexcept {
+  const auto next = [&vectors]() {
+    const Vec3 out{vectors[0], vectors[1], vectors[2]};
+    vectors += 3;
+    return out;
+  };
+  for (std::size_t i = 0; i < loads_.size(); ++i) {
+    loads_[i].external = next();
+    loads_[i].hold = next();
+    for (std::size_t user = 0; user < users_; ++user) pushes_[i * users_ + user] = next();
+  }
+}
+
+}  // namespace tactus::c
