@@ -10,12 +10,13 @@ import subprocess
 
 import pages
 
+C = "C interface"  # of its headers c/tactus.h is included as <tactus.h>
 PARTS = {"in": "In", "out": "Out", "pre": "Before the call", "err": "Errors", "time": "Cost", "cost": "Cost"}
 PART = re.compile(r"(\s*)(in|out|pre|err|time|cost) {2,}(\S.*)$")
 INNER = re.compile(r"(?:^|\s{2,})(in|out|pre|err|time|cost) {2,}(?=\S)")
 DOXYFILE = """
 PROJECT_NAME = "Tactus libraries"
-INPUT = tactus
+INPUT = main.dox tactus {c}
 RECURSIVE = YES
 FILE_PATTERNS = *.h *.dox
 STRIP_FROM_PATH = .
@@ -68,12 +69,14 @@ def public_headers(root):
         for component, folder, prefix, names in re.findall(r"^\s*tactus_headers\(\s*tactus_(\w+)\s+(\S+)\s+(\S+)([^)]*)\)", text, re.M):
             for name in names.split():
                 found.setdefault(component, {})["/".join(filter(None, ("tactus", prefix.strip('"'), name)))] = root / folder / name
+        for headers in re.findall(r"^\s*tactus_c_library\(.*?HEADERS ([\w. ]+)", text, re.M):
+            found.setdefault(C, {}).update({"c/" + name: listing.parent / name for name in headers.split()})
     return found
 
 
 def first_sentence(text):
-    comment = re.search(r"^///(?: (.*)(?:\n///.*)*)", text, re.M)
-    words = " ".join(line.lstrip("/ ") for line in comment[0].splitlines()) if comment else ""
+    comment = re.search(r"^///.*(?:\n///.*)*", text, re.M) or re.search(r"^/\*\n.*?\*/", text, re.M | re.S)
+    words = " ".join(line.strip("/* ") for line in comment[0].splitlines()).strip() if comment else ""
     return re.split(r"(?<=[.:]) (?=[A-Z#])", words, maxsplit=1)[0].rstrip(":").removesuffix(".")
 
 
@@ -81,7 +84,7 @@ def main_page(headers):
     """A table per component: what to include, and what it is for."""
     out = ["/** @mainpage Libraries", "Start with tactus/tactus.h, which shows a whole program. Each component is a target of CMake, "
            "<code>tactus\\::codec</code> and so on, and is built where its packages are there."]
-    for component, files in sorted(headers.items(), key=lambda item: (item[0] != "codec", item[0])):
+    for component, files in sorted(headers.items(), key=lambda item: (item[0] != "codec", item[0] != C, item[0])):
         rows = "".join(f"<tr><td>{name}</td><td>{escaped(first_sentence(file.read_text(encoding='utf-8')))}</td></tr>\n"
                        for name, file in sorted(files.items()))
         out.append(f"<h2>{component}</h2>\n<table>\n{rows}</table>")
@@ -162,13 +165,35 @@ def converted(text):
     return "\n".join(out) + "\n"
 
 
+def converted_c(text):
+    """A header in C: comments before a declaration and behind it become doxygen's, the first one that of the file."""
+    def comment(match):
+        before, words = match[1], match[2]
+        if "SPDX" in words or words.strip().startswith("---"):
+            return before
+        lines = [re.sub(r"^ ?\* ?", "", line) for line in words.splitlines()]
+        if before.strip():
+            return f"{before}/**< {escaped(' '.join(line.strip() for line in lines))} */"
+        is_file = comment.is_first
+        comment.is_first = False
+        if not is_file:
+            return f"{before}/** {escaped(' '.join(line.strip() for line in lines)).strip()} */"
+        plain, table = [line for line in lines if line.strip()], []
+        while plain and not re.match(r"\w+ {2,}", plain[0]):
+            table.append(escaped(plain.pop(0)))
+        return "\n".join(["/** @file", *table, *(["@code{.unparsed}", *plain, "@endcode"] if plain else []), "*/"])
+    comment.is_first = True
+    return re.sub(r"^([^\n]*?)/\*(.*?)\*/", comment, text, flags=re.M | re.S)
+
+
 def write(root, out, scratch):
     headers = public_headers(root)
     for name, source in (pair for files in headers.values() for pair in files.items()):
         (scratch / name).parent.mkdir(parents=True, exist_ok=True)
-        (scratch / name).write_text(converted(source.read_text(encoding="utf-8")), encoding="utf-8")
-    (scratch / "tactus" / "main.dox").write_text(main_page(headers), encoding="utf-8")
-    (scratch / "Doxyfile").write_text(DOXYFILE.format(out=out.resolve()), encoding="utf-8")
+        text = source.read_text(encoding="utf-8")
+        (scratch / name).write_text(converted_c(text) if name.startswith("c/") else converted(text), encoding="utf-8")
+    (scratch / "main.dox").write_text(main_page(headers), encoding="utf-8")
+    (scratch / "Doxyfile").write_text(DOXYFILE.format(out=out.resolve(), c="c" if C in headers else ""), encoding="utf-8")
     subprocess.run(["doxygen", "-w", "html", "header.html", "unused.html", "unused.css"], cwd=scratch, check=True, capture_output=True)
     header = (scratch / "header.html").read_text(encoding="utf-8")
     (scratch / "header.html").write_text(re.sub(r"(<body[^>]*>)", rf"\1\n{pages.bar('$relpath^../')}", header, count=1), encoding="utf-8")
@@ -178,10 +203,11 @@ def write(root, out, scratch):
     done = subprocess.run(["doxygen", "Doxyfile"], cwd=scratch, capture_output=True, text=True, check=False)
     if done.returncode:
         raise SystemExit("doxygen: " + done.stderr[-4000:].replace(str(scratch), ""))
-    for path in out.glob("*.html"):  # a class with private classes only is said to have a list of them
-        text = path.read_text(encoding="utf-8")
-        if '<a href="#nested-classes">' in text and 'name="nested-classes"' not in text:
-            path.write_text(re.sub(r'<a href="#nested-classes">Classes</a>( &#124;)?', "", text), encoding="utf-8")
+    for path in out.glob("*.html"):
+        text = path.read_text(encoding="utf-8").replace("#include &lt;c/", "#include &lt;")
+        if 'name="nested-classes"' not in text:  # a class with private classes only is said to have a list of them
+            text = re.sub(r'<a href="#nested-classes">Classes</a>( &#124;)?', "", text)
+        path.write_text(text, encoding="utf-8")
 
 
 def self_test():
