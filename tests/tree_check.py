@@ -30,8 +30,8 @@ FLOATS = {"base/device_sample", "base/geometry", "base/quantise", "base/tri_mesh
           "deformable/trigger", "deformable/vertex_coder", "client/replica", "client/stiffness_reduction", "sender",
           "signal/device_signal", "signal/force_signal",
           "session/exchange", "session/server_connection", "session/congestion", "session/session_options", "session/session_client", "session/session_server"}
-# Everything that is the operating system's stands in these files, one per need; the others are C++ alone. The codec, the traces, the
-# metrics and the simulation are not among them.
+# Everything that is the operating system's stands in these files, one per need; the others are C++ alone. The codec, the traces and
+# the metrics are not among them; of the simulation only what runs the program that fills meshes.
 SYSTEM = {
     "cli/commands/cmd_link.cpp": "to wait for datagrams of many sockets",
     "cli/laboratory/child_process.cpp": "programs that are started, with their output",

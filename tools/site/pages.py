@@ -8,33 +8,19 @@ import subprocess
 
 from tools.book import Book
 from tools.markdown import slug
-from tools.page import html_page
+from tools.page import SHARED_STYLE, html_page
 
 START = ("README.md", "SECURITY.md", "LICENSE", "conformance/README.md", "sim/scenes/README.md", "examples", "reports")
 SPECIFICATION = pathlib.PurePosixPath("spec/index.html")
 COPIED = {".svg", ".png", ".csv", ".json", ".toml", ".txt", ".tct"}  # shown or saved by the browser as they are
 NAV = (("index.html", "Tactus"), ("examples/index.html", "Examples"), ("api/index.html", "Libraries"),
        (str(SPECIFICATION), "Specification"), ("reports/index.html", "Reports"))
-STYLE = """
-:root { color-scheme: light dark; --text: #1c1e21; --paper: #fff; --soft: #5c6370; --line: #d7dae0; --tint: #f5f6f8; --link: #0b57a4; }
-@media (prefers-color-scheme: dark) {
-  :root { --text: #d9dce1; --paper: #16181b; --soft: #9aa1ac; --line: #33373d; --tint: #1f2226; --link: #7fb4f2; } }
-* { box-sizing: border-box; }
-body { margin: 0; color: var(--text); background: var(--paper); font: 1rem/1.55 system-ui, sans-serif; }
+STYLE = SHARED_STYLE + """
 main { max-width: 62rem; margin: 0 auto; padding: 1rem 1rem 6rem; overflow-wrap: break-word; }
-main a { color: var(--link); text-decoration: none; }
-main a:hover { text-decoration: underline; }
-h1, h2, h3, h4 { line-height: 1.25; margin: 1.8em 0 .6em; }
 h1 { font-size: 1.8rem; margin-top: 1rem; }
 h2 { font-size: 1.35rem; border-bottom: 1px solid var(--line); padding-bottom: .2rem; }
 h3 { font-size: 1.1rem; }
-code, pre { font-family: ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monospace; font-size: .86em; }
-code { background: var(--tint); border-radius: 3px; padding: .05em .25em; }
-pre { background: var(--tint); border: 1px solid var(--line); border-radius: 4px; padding: .7rem .9rem; overflow-x: auto; line-height: 1.4; }
-pre code { background: none; padding: 0; font-size: 1em; }
-table { border-collapse: collapse; font-size: .92rem; display: block; overflow-x: auto; }
-th, td { border-bottom: 1px solid var(--line); padding: .3rem .9rem .3rem 0; text-align: left; vertical-align: top; }
-th { border-bottom-width: 2px; }
+table { display: block; overflow-x: auto; }
 img { max-width: 100%; background: #fff; border-radius: 4px; }
 """
 # The bar stands on every page, those of doxygen and the specification too: its rules name nothing but itself.
@@ -42,8 +28,8 @@ BAR_STYLE = """
 .site-bar { display: flex; flex-wrap: wrap; gap: .2rem 1.4rem; padding: .7rem 1.2rem; background: #1f2a38; font: 1rem/1.4 system-ui, sans-serif;
   grid-column: 1 / -1; }
 .site-bar a { color: #c9d6e6; text-decoration: none; }
-.site-bar a:hover { color: #fff; text-decoration: underline; }
-.site-bar a:first-child { color: #fff; font-weight: 600; }
+.site-bar a:hover, .site-bar a:first-child { color: #fff; }
+.site-bar a:first-child { font-weight: 600; }
 @media print { .site-bar { display: none; } }
 """
 
