@@ -6,6 +6,7 @@
 #   ./go test     build with g++ and clang, run every test (55 minutes on 2 cores, 4 GB)
 #   ./go bench    build and run the benchmarks; JSON in build/bench/
 #   ./go devices  capture a device of the kernel's own making in an emulated machine, from /dev/uhid to the trace (30 s after the build)
+#   ./go site     write the documentation as one static site: examples, libraries, specification, reports (30 s)
 #   ./go format   format the sources with clang-format
 # shellcheck disable=SC2086 # lists of packages are words
 set -eu
@@ -15,7 +16,8 @@ demo_packages='g++ cmake ninja-build pkgconf libexpected-dev libzstd-dev libode-
 build_packages="$demo_packages libgnutls28-dev libeigen3-dev libsuitesparse-dev libspectra-dev libopenmesh-dev libusb-1.0-0-dev libhidapi-dev libboost-dev"
 bench_packages='libbenchmark-dev libgtest-dev python3 libbullet-dev'
 view_packages='nodejs clang-16 lld-16 wasi-libc libc++-16-dev-wasm32 libc++abi-16-dev-wasm32 libclang-rt-16-dev-wasm32 python3'
-test_packages="$bench_packages ccache clang libclang-rt-dev clang-tidy clang-format munge parallel slurm-wlm tetgen tshark umockdev libumockdev-dev valgrind zstd chromium"
+site_packages='python3 doxygen cmark-gfm'
+test_packages="$bench_packages $site_packages ccache clang libclang-rt-dev clang-tidy clang-format munge parallel slurm-wlm tetgen tshark umockdev libumockdev-dev valgrind zstd chromium"
 
 bounds='-p 4% --visual 0.3mm,2deg' # of the demo
 with_view=                         # a build that has the page of `tactus view` keeps it
@@ -150,14 +152,20 @@ run_devices() {
   tests/qemu/run.py build/gcc/cli/tactus build/gcc/tests/qemu/uhid_device build/qemu
 }
 
+run_site() {
+  install $site_packages
+  step 'write the site and check its links' tools/site/make_site.py out/site
+  echo "Open $PWD/out/site/index.html"
+}
+
 run_format() {
   install clang-format
   find codec io metrics sim device cli conformance tests \( -name '*.h' -o -name '*.cpp' \) -exec clang-format -i {} +
 }
 
 case ${1-help} in
-  demo | view | test | bench | devices | format) "run_$1" ;;
-  help | -h | --help) sed -n '3,9s/^# \{0,1\}//p' "$0" ;;
+  demo | view | test | bench | devices | site | format) "run_$1" ;;
+  help | -h | --help) sed -n '3,10s/^# \{0,1\}//p' "$0" ;;
   *)
     echo "go: no such command: $1 (try ./go help)" >&2
     exit 2

@@ -8,7 +8,8 @@
 #include <string>
 #include <string_view>
 
-#include "cli/report/json_parts.h"
+#include "cli/options/headings.h"
+#include "cli/options/suggestion.h"
 
 namespace tactus::cli {
 
@@ -28,6 +29,14 @@ Option* Option::required() {
 Option* Option::check(const Check& check) {
   option_->check(CLI::Validator([check](const std::string& typed) { return check(typed); }, ""));
   return this;
+}
+
+Option* Option::one_of(const std::vector<std::string>& names) {
+  choices_ = names;
+  return check([names](const std::string& typed) {
+    const bool known = std::find(names.begin(), names.end(), typed) != names.end();
+    return known ? std::string() : fmt::format("{} not in {{{}}}{}", typed, fmt::join(names, ","), did_you_mean(typed, names));
+  });
 }
 
 Option* Option::needs(const Option* other) {
@@ -54,6 +63,21 @@ std::size_t Option::count() const { return option_->count(); }
 std::string Option::last() const { return option_->results().back(); }
 std::string Option::name() const { return option_->get_name(); }
 
+OptionText Option::text() const {
+  OptionText text{.value = option_->get_type_name(),
+                  .help = option_->get_description(),
+                  .heading = option_->get_group(),
+                  .choices = choices_,
+                  .is_argument = option_->get_positional(),
+                  .is_required = option_->get_required(),
+                  .takes_value = option_->get_items_expected_min() > 0 || !choices_.empty(),
+                  .is_repeated = option_->get_items_expected_max() > 1};
+  for (const std::string& name : option_->get_snames()) text.names.push_back("-" + name);
+  for (const std::string& name : option_->get_lnames()) text.names.push_back("--" + name);
+  if (text.is_argument) text.names = {option_->get_name(true)};
+  return text;
+}
+
 Command& Command::add_command(const std::string& name, const std::string& help) {
   return commands_.emplace_back(*app_->add_subcommand(name, help));
 }
@@ -64,17 +88,24 @@ Command& Command::command(std::string_view name) {
 
 void Command::leave_out(const std::string& name, const std::string& needs, Action& action) {
   Command& command = add_command(name, "");
+  command.needs_ = needs;
   command.app_->group("")->set_help_flag();
   command.app_->prefix_command();  // whatever follows its name
-  const std::string whole = (app_->get_parent() != nullptr ? app_->get_name() + " " : "") + name;
-  command.on_chosen([&action, whole, needs] {
-    action = [whole, needs] {
-      return refuse_arguments("this program was built without " + whole, "Build it with " + needs + ".");
-    };
-  });
+  command.on_chosen([&action, &command] { action = [&command]() -> Outcome { return tl::unexpected(command.lack()); }; });
 }
 
-Option* Command::keep(CLI::Option* option) { return &options_.emplace_back(*option); }
+Failure Command::lack() const {
+  const bool is_in_group = app_->get_parent()->get_parent() != nullptr;
+  return {"this program was built without " + (is_in_group ? app_->get_parent()->get_name() + " " : "") + app_->get_name(),
+          "Build it with " + needs_ + ".", Failure::Cause::arguments};
+}
+
+void Command::heading(const std::string& heading) { app_->group(heading); }
+
+Option* Command::keep(CLI::Option* option) {
+  option->group(heading_of(option->get_name()));
+  return &options_.emplace_back(*option);
+}
 
 Option* Command::add_option(const std::string& names, std::string& value, const std::string& help) {
   return keep(app_->add_option(names, value, help));
@@ -122,11 +153,13 @@ Option* Command::add_flag(const std::string& names, const std::function<void()>&
 }
 
 Option* Command::add_flag(const std::string& name, const std::string& otherwise,
-                          const std::function<void(const std::string&)>& read, const Check& check, const std::string& help) {
-  const auto meant = [otherwise](const std::string& typed) { return typed == "true" ? otherwise : typed; };  // CLI11's for none
+                          const std::function<void(const std::string&)>& read, const std::vector<std::string>& choices,
+                          const std::string& help) {
   CLI::Option* const flag = app_->add_flag(name, help);
-  Option* const kept = keep(flag)->check([check, meant](const std::string& typed) { return check(meant(typed)); });
-  flag->each([read, meant](const std::string& typed) { read(meant(typed)); });
+  // CLI11 says "true" where no value was typed.
+  flag->transform([otherwise](const std::string& typed) { return typed == "true" ? otherwise : typed; });
+  Option* const kept = keep(flag)->one_of(choices);
+  flag->each(read);
   return kept;
 }
 
@@ -147,27 +180,94 @@ std::string Command::help_of_typed() const {
   return groups.empty() ? app_->help() : groups.front()->help(app_->get_name());
 }
 
-Program::Program(const std::string& name, const std::string& help, const std::string& version)
-    : Program(std::make_unique<CLI::App>(help, name)) {
-  app_->set_version_flag("--version", version);
+namespace {
+
+/// The command that was typed: the innermost.
+const CLI::App& innermost(const CLI::App& app) {
+  const auto chosen = app.get_subcommands();
+  return chosen.empty() ? app : innermost(*chosen.front());
+}
+
+std::string words_of(const CLI::App& app) {
+  return (app.get_parent() != nullptr ? words_of(*app.get_parent()) + " " : "") + app.get_name();
+}
+
+std::vector<std::string> names_of_options(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+/// Commands of a group; those that are left out have no heading.
+std::vector<std::string> names_of_commands(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App* c) { return !c->get_group().empty(); }))
+    names.push_back(command->get_name());
+  return names;
+}
+
+Failure wrong_use(std::string text, const CLI::App& app) {
+  return {std::move(text), fmt::format("`{} --help` lists what it takes.", words_of(app)), Failure::Cause::arguments};
+}
+
+Failure unknown_command(const std::string& word, const CLI::App& group) {
+  return wrong_use(
+      fmt::format("'{}' is not a command of {}{}", word, words_of(group), did_you_mean(word, names_of_commands(group))), group);
+}
+
+Failure wrong_use(const CLI::ParseError& error, const CLI::App& app) {
+  const auto left = app.remaining();
+  const auto option = std::find_if(left.begin(), left.end(), [](const std::string& word) { return word.starts_with("--"); });
+  if (option != left.end())
+    return wrong_use(fmt::format("{} has no option {}{}", words_of(app), *option,
+                                 did_you_mean(option->substr(0, option->find('=')), names_of_options(app))),
+                     app);
+  if (!left.empty() && !names_of_commands(app).empty()) return unknown_command(left.front(), app);
+  return wrong_use(error.what(), app);
+}
+
+}  // namespace
+
+tl::expected<std::string, Failure> Command::help_of(std::span<const std::string> words) const {
+  if (words.empty()) return app_->help(app_->get_parent() != nullptr ? words_of(*app_->get_parent()) : "");
+  for (const Command& command : commands_) {
+    if (command.app_->get_name() != words.front()) continue;
+    if (!command.needs_.empty()) return tl::unexpected(command.lack());
+    return command.help_of(words.subspan(1));
+  }
+  return tl::unexpected(unknown_command(words.front(), *app_));
+}
+
+CommandText Command::text() const {
+  CommandText text{.help = app_->get_description(), .heading = app_->get_group(), .footer = app_->get_footer()};
+  for (const CLI::App* app = app_; app != nullptr; app = app->get_parent())
+    text.words.insert(text.words.begin(), app->get_name());
+  for (const Option& option : options_) text.options.push_back(option.text());
+  for (const Command& command : commands_)
+    if (command.needs_.empty()) text.commands.push_back(command.text());
+  return text;
+}
+
+Program::Program(const std::string& name, const std::string& help) : Program(std::make_unique<CLI::App>(help, name)) {
   app_->get_formatter()->column_width(34);
-  app_->failure_message([](const CLI::App* app, const CLI::Error& e) { return printable(CLI::FailureMessage::simple(app, e)); });
+  app_->get_formatter()->label("SUBCOMMAND", "COMMAND");
+  app_->get_formatter()->label("Positionals", "Arguments");
 }
 
 Program::Program(std::unique_ptr<CLI::App> app) : Command(*app), owned_(std::move(app)) {}
 
 Program::~Program() = default;
 
-Program::Parsed Program::parse(int argc, char** argv) {
+tl::expected<Program::Parsed, Failure> Program::parse(int argc, char** argv) {
   wants_json_ = std::any_of(argv, argv + argc, [](std::string_view word) { return word == "--json"; });
   try {
     app_->parse(argc, argv);
+  } catch (const CLI::CallForHelp&) {
+    fmt::print("{}", app_->help());
+    return Parsed::done;
   } catch (const CLI::ParseError& e) {
-    if (wants_json_ && e.get_exit_code() != 0) {
-      fmt::print(stderr, "{}\n", error_json({e.what(), "Run with --help for more information.", Failure::Cause::arguments}));
-      return Parsed::wrong;
-    }
-    return app_->exit(e) == 0 ? Parsed::done : Parsed::wrong;
+    return tl::unexpected(wrong_use(e, innermost(*app_)));
   }
   return Parsed::go_on;
 }

@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,6 +31,22 @@ using Check = std::function<std::string(const std::string& typed)>;
 [[noreturn]] void refuse_option(const std::string& option, const std::string& why);
 [[noreturn]] void miss_option(const std::string& option);
 
+/// What the help says of an option or a positional argument.
+struct OptionText {
+  std::vector<std::string> names{};        ///< "-o", "--output"; of an argument its name
+  std::string value{}, help{}, heading{};  ///< value: how it is called, empty for flags and arguments
+  std::vector<std::string> choices{};      ///< all values there are; empty: any
+  bool is_argument = false, is_required = false, takes_value = false, is_repeated = false;
+};
+
+/// What the help says of a command: man pages and shell completion are made from it.
+struct CommandText {
+  std::vector<std::string> words{};  ///< "tactus", "import", "csv"
+  std::string help{}, heading{}, footer{};
+  std::vector<OptionText> options{};
+  std::vector<CommandText> commands{};
+};
+
 /// An option or a positional argument. Its methods return it, so that they can be chained.
 class Option {
  public:
@@ -37,6 +54,7 @@ class Option {
   Option* type_name(const std::string& name);  ///< of its value in the help; "" for positional arguments
   Option* required();
   Option* check(const Check& check);
+  Option* one_of(const std::vector<std::string>& names);  ///< accept these only; its help names them
   Option* needs(const Option* other);
   Option* excludes(const Option* other);
   Option* show_default();  ///< the help names the value that its variable holds now
@@ -45,9 +63,11 @@ class Option {
   std::size_t count() const;  ///< how often it was typed
   std::string last() const;   ///< as typed.   pre  count() > 0
   std::string name() const;   ///< the long one: "--deadband"
+  OptionText text() const;
 
  private:
   CLI::Option* option_;
+  std::vector<std::string> choices_;
 };
 
 /// What a command does once it was chosen.
@@ -61,7 +81,8 @@ class Command {
   Command& operator=(const Command&) = delete;
 
   Command& add_command(const std::string& name, const std::string& help);
-  Command& command(std::string_view name);  ///< pre  it was added
+  Command& command(std::string_view name);   ///< pre  it was added
+  void heading(const std::string& heading);  ///< of the commands among which its group's help names it
   /// A command that this program was built without: it is in no help, and says what it wants: "TACTUS_WITH_...=ON".
   void leave_out(const std::string& name, const std::string& needs, Action& action);
   Option* add_option(const std::string& names, std::string& value, const std::string& help);
@@ -78,33 +99,38 @@ class Command {
   Option* add_flag(const std::string& names, const std::function<void()>& react, const std::string& help);
   /// A flag that may end in =VALUE; `read` is handed the value, `otherwise` where none was typed.
   Option* add_flag(const std::string& name, const std::string& otherwise, const std::function<void(const std::string&)>& read,
-                   const Check& check, const std::string& help);
+                   const std::vector<std::string>& choices, const std::string& help);
   void footer(const std::string& text);
   void on_parsed(const std::function<void()>& look);   ///< called when all of its options are read
   void on_chosen(const std::function<void()>& react);  ///< called when it was typed, after on_parsed
 
   const Option* find(const std::string& name) const;  ///< nullptr: it has no such option
   std::string help_of_typed() const;                  ///< of the group of commands that was typed, or its own
+  /// in   words  of a command below this one: "import", "csv";   err  there is no such command, or it was left out
+  tl::expected<std::string, Failure> help_of(std::span<const std::string> words) const;
+  CommandText text() const;  ///< of it and of all below it
 
  protected:
   CLI::App* app_;
 
  private:
   Option* keep(CLI::Option* option);
+  Failure lack() const;  ///< of one that is left out
 
   std::deque<Option> options_;
   std::deque<Command> commands_;
+  std::string needs_;  ///< the option of CMake that would bring it, empty: it is there
 };
 
 /// The program's own command line.
 class Program : public Command {
  public:
-  Program(const std::string& name, const std::string& help, const std::string& version);
+  Program(const std::string& name, const std::string& help);
   ~Program();
-  enum class Parsed { go_on, done, wrong };  ///< done: help or version was asked for and printed; wrong: said on standard error
-  /// Wrong use is told as JSON where --json stands among the arguments.
-  Parsed parse(int argc, char** argv);
-  bool wants_json() const { return wants_json_; }
+  enum class Parsed { go_on, done };  ///< done: help was asked for and printed
+  /// err  a wrong use, with the command or option that was probably meant
+  tl::expected<Parsed, Failure> parse(int argc, char** argv);
+  bool wants_json() const { return wants_json_; }  ///< --json stands among the arguments
 
  private:
   explicit Program(std::unique_ptr<CLI::App> app);

@@ -6,9 +6,11 @@
 #include <string_view>
 
 #include "cli/commands/commands.h"
+#include "cli/options/headings.h"
 #include "cli/output.h"
-#include "cli/progress.h"
 #include "cli/report/json_parts.h"
+#include "cli/terminal.h"
+#include "cli/version.h"
 
 namespace tactus::cli {
 namespace {
@@ -69,37 +71,54 @@ Outcome run(const Action& action) {
   }
 }
 
+void add(Command& app, const Entry& entry, Action& action) {
+  const std::size_t split = entry.name.find('_');
+  const bool is_own = split == std::string_view::npos;
+  Command& group = is_own ? app : app.command(entry.name.substr(0, split));
+  if (entry.setup == nullptr) {
+    group.leave_out(std::string(entry.name.substr(split + 1)), entry.needs, action);
+    return;
+  }
+  entry.setup(group, action);
+  if (is_own) app.command(entry.name).heading(heading_of_command(entry.name));
+}
+
+int finish(Outcome outcome, bool as_json) {
+  if (outcome) outcome = check_standard_output();
+  return outcome ? kOk : report_failure(outcome.error(), as_json);
+}
+
 }  // namespace
 }  // namespace tactus::cli
 
 int main(int argc, char** argv) {
   using namespace tactus::cli;
-  Program app("tactus", "Codec for shared haptic virtual environments: which object states to send, and in how few bits",
-              "tactus " TACTUS_VERSION);
+  Program app("tactus", "Codec for shared haptic virtual environments: which object states to send, and in how few bits");
   app.footer(
       "First steps:\n"
       "  tactus sim push-1dof -o push.mcap                        simulate a touch and record it\n"
       "  tactus encode push.mcap -o push.tct -p 4%                encode it into packets\n"
       "  tactus decode push.tct -o replica.mcap --like push.mcap  decode what a client shows\n"
       "  tactus compare push.mcap replica.mcap -p 4%              measure the error\n"
-      "`tactus COMMAND --help` lists all options. Quantities take units: 2deg, 5mm, 4%, 100ms, 0.05N.\n"
+      "`tactus help COMMAND` lists all options. Quantities take units: 2deg, 5mm, 4%, 100ms, 0.05N.\n"
       "Exit status: 0 done, 1 an input was refused or the work failed, 2 the arguments are wrong,\n"
       "3 done, but a bound that the stream declares or an option sets is broken,\n"
       "128 + n stopped by signal n, such as 130 by Ctrl-C.");
   Action action;
-  for (const Entry& entry : kCommands) {
-    const std::size_t split = entry.name.find('_');
-    Command& group = split == std::string_view::npos ? app : app.command(entry.name.substr(0, split));
-    if (entry.setup != nullptr) entry.setup(group, action);
-    else group.leave_out(std::string(entry.name.substr(split + 1)), entry.needs, action);
+  bool wants_version = false, as_json = false;
+  app.add_flag("--version", wants_version, "Print version, commit, compiler and components");
+  app.add_flag("--json", as_json, "Print the version as JSON");
+  for (const Entry& entry : kCommands) add(app, entry, action);
+  const auto parsed = app.parse(argc, argv);
+  if (!parsed) return report_failure(parsed.error(), app.wants_json());
+  if (*parsed == Program::Parsed::done) return finish({}, false);
+  if (wants_version) {
+    fmt::print("{}", as_json ? version_json() : version_table());
+    return finish({}, false);
   }
-  if (const auto parsed = app.parse(argc, argv); parsed != Program::Parsed::go_on)
-    return parsed == Program::Parsed::done ? kOk : kUsage;
   if (!action) {
     fmt::print(stderr, "{}", app.help_of_typed());
     return kUsage;
   }
-  Outcome outcome = run(action);
-  if (outcome) outcome = check_standard_output();
-  return outcome ? kOk : report_failure(outcome.error(), app.wants_json());
+  return finish(run(action), app.wants_json());
 }

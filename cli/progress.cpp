@@ -2,13 +2,11 @@
 #include "cli/progress.h"
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
-#include <string_view>
+
+#include "cli/terminal.h"
 
 namespace tactus::cli {
 namespace {
@@ -19,29 +17,17 @@ constexpr std::chrono::milliseconds kPeriod{100};
 
 /// Cells of a bar that leaves room for the rest of its line: a line that wraps cannot be drawn over.
 std::size_t width_beside(const std::string& label) {
-  winsize size{};
-  const bool is_known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-  const std::size_t columns = is_known ? size.ws_col : 80, taken = label.size() + kBeside;
+  const std::size_t columns = columns_of(kStandardError), taken = label.size() + kBeside;
   return std::clamp(columns > taken ? columns - taken : 0, kLeastWidth, kWidth);
 }
 
 }  // namespace
 
-bool is_capable_terminal(int stream) {
-  const char* term = std::getenv("TERM");
-  return isatty(stream) != 0 && term != nullptr && std::string_view(term) != "dumb";
-}
-
-bool is_coloured(int stream) {
-  const char* refused = std::getenv("NO_COLOR");
-  return is_capable_terminal(stream) && (refused == nullptr || *refused == '\0');
-}
-
 Progress::Progress(std::string label, std::optional<std::uint64_t> total, Visibility visibility)
     : label_(std::move(label)),
       total_(total),
-      visible_(visibility == Visibility::shown && is_capable_terminal(STDERR_FILENO)),
-      coloured_(is_coloured(STDERR_FILENO)),
+      visible_(visibility == Visibility::shown && is_capable_terminal(kStandardError)),
+      coloured_(is_coloured(kStandardError)),
       start_(Clock::now()),
       next_(start_ + kPeriod) {}
 

@@ -32,9 +32,4 @@ class Progress {
   Clock::time_point start_, next_;
 };
 
-/// A terminal on which lines can be drawn again.
-bool is_capable_terminal(int stream);
-/// May text on this stream (a POSIX file number) be emphasised: a terminal, and NO_COLOR is not set.
-bool is_coloured(int stream);
-
 }  // namespace tactus::cli

@@ -112,3 +112,21 @@ function(tactus_component name dir)
     message(FATAL_ERROR "TACTUS_WITH_${name}=${TACTUS_WITH_${name}}: ${dir}/ needs ${missing}")
   endif()
 endfunction()
+
+# The components that are libraries, in the order in which they build on one another.
+set(TACTUS_LIBRARIES codec trace net seal metrics tets modes surface fem sim device falcon hid openhaptics inverse3 c c_trace)
+
+# tactus_components(BUILT LEFT_OUT): the libraries that are there and those that are not.
+function(tactus_components built left_out)
+  set(there)
+  set(missing)
+  foreach(component IN LISTS TACTUS_LIBRARIES)
+    if(TARGET tactus_${component})
+      list(APPEND there ${component})
+    else()
+      list(APPEND missing ${component})
+    endif()
+  endforeach()
+  set(${built} "${there}" PARENT_SCOPE)
+  set(${left_out} "${missing}" PARENT_SCOPE)
+endfunction()

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "conformance/binary_streams.h"
 #include "conformance/report.h"
 #include "conformance/session_report.h"
 
@@ -28,6 +29,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   std::ios::sync_with_stdio(false);
+  tactus::conformance::use_binary_streams();
   if (session) {
     const std::string script{std::istreambuf_iterator<char>(std::cin), {}};
     return tactus::conformance::report_session(script, std::cout) ? 0 : 2;

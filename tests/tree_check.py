@@ -30,6 +30,33 @@ FLOATS = {"base/device_sample", "base/geometry", "base/quantise", "base/tri_mesh
           "deformable/trigger", "deformable/vertex_coder", "client/replica", "client/stiffness_reduction", "sender",
           "signal/device_signal", "signal/force_signal",
           "session/exchange", "session/server_connection", "session/congestion", "session/session_options", "session/session_client", "session/session_server"}
+# Everything that is the operating system's stands in these files, one per need; the others are C++ alone. The codec, the traces and
+# the metrics are not among them; of the simulation only what runs the program that fills meshes.
+SYSTEM = {
+    "cli/commands/cmd_link.cpp": "to wait for datagrams of many sockets",
+    "cli/laboratory/child_process.cpp": "programs that are started, with their output",
+    "cli/laboratory/growing_table.cpp": "rows that are on the disk",
+    "cli/laboratory/sweep_results.cpp": "a folder that one process holds",
+    "cli/laboratory/workers.h": "processes beside this one",
+    "cli/live/keyboard.cpp": "single keys",
+    "cli/live/keyboard.h": "single keys",
+    "cli/live/ticker.cpp": "to wait for a time or a datagram",
+    "cli/output.cpp": "files that appear whole or not at all, and go when a signal comes",
+    "cli/terminal.cpp": "terminals",
+    "conformance/binary_streams.h": "standard streams without changed line ends",
+    "device/falcon/falcon_usb.cpp": "the rights to a device",
+    "device/guardian.cpp": "a process that outlives ours",
+    "device/guardian.h": "a process that outlives ours",
+    "device/hid/hid_raw.cpp": "reports of HID devices",
+    "device/real_time.cpp": "priorities, memory that stays",
+    "device/shared_library.cpp": "libraries that are looked for when they are needed",
+    "io/net/udp.cpp": "sockets",
+    "io/seal/key.cpp": "a file that its owner alone reads",
+    "sim/surface/program.cpp": "a program that fills meshes",
+}
+SYSTEM_HEADER = re.compile(r"^\s*#\s*include\s+<((?:sys|net|netinet|arpa|linux)/[^>]+|unistd\.h|fcntl\.h|poll\.h|termios\.h|spawn\.h|dlfcn\.h|"
+                           r"pthread\.h|sched\.h|netdb\.h|ifaddrs\.h|pwd\.h|dirent\.h|signal\.h|windows\.h)>", re.M)
+OURS = ("codec", "io", "metrics", "sim", "device", "cli", "bindings", "conformance")  # not the tests, which also test what only one system does
 UNITS = ("codec", "codec/*", "io/*", "device/*", "metrics")  # each .cpp in them has a unit test of its name
 TESTED_BY = {  # those that have none: the parts of one subject, held against each other
     "codec/deformable/coding_order": "deformable_graph",
@@ -136,6 +163,16 @@ def check_integers(root):
             yield f"{path.relative_to(root)}: floating point, and the file is not in FLOATS"
 
 
+def check_system(root):
+    """Headers of the operating system are included where SYSTEM says, and each file there still needs it."""
+    for path in sorted(p for folder in OURS for p in (root / folder).rglob("*") if p.suffix in CODE):
+        name, used = path.relative_to(root).as_posix(), SYSTEM_HEADER.findall(path.read_text(encoding="utf-8"))
+        if used and name not in SYSTEM:
+            yield f"{name}: <{used[0]}> is the operating system's, and the file is not in SYSTEM"
+        elif name in SYSTEM and not used:
+            yield f"{name}: stands in SYSTEM and includes nothing of the operating system's"
+
+
 def check_units(root):
     """Each source file has the unit test that bears its name, or that of its folder before it, or the one in TESTED_BY."""
     for path in sorted(p for pattern in UNITS for p in root.glob(f"{pattern}/*.cpp")):
@@ -187,7 +224,7 @@ def check_readme(root):
             yield f"README.md: the tree names {path.relative_to(root)}, which is not there"
 
 
-CHECKS = (check_sources, check_integers, check_sides, check_units, check_stems, check_readme)
+CHECKS = (check_sources, check_integers, check_system, check_sides, check_units, check_stems, check_readme)
 
 
 def findings(root):
@@ -213,7 +250,9 @@ def self_test():
     bad = {  # what is changed (None: left out) and a word of the finding that must follow
         "codec/rigid/rigid.h": [("int x;\n", "licence"), (spdx + "\n" * MAX_LINES, "501 lines"),
                                 (spdx + '#include <tactus/rigid/rigid_decoder.h>\n', "the encoder includes codec/rigid/rigid_decoder.h")],
-        "codec/rigid/rigid_decoder.cpp": [(spdx + "double x;\n", "floating point"), (spdx + "#include <cmath>\n", "floating point")],
+        "codec/rigid/rigid_decoder.cpp": [(spdx + "#include <unistd.h>\n", "not in SYSTEM"), (spdx + "double x;\n", "floating point"),
+                                            (spdx + "#include <cmath>\n", "floating point")],
+        "cli/terminal.cpp": [(spdx, "includes nothing of the operating system's")],
         "codec/rigid/rigid_decoder.h": [(spdx + '#include <tactus/rigid/rigid_encoder.h>\n', "the decoder includes")],
         "spec/40-rigid.md": [(None, "no spec/NN-rigid.md")],
         "tests/unit/rigid_test.cpp": [(None, "rigid.cpp: no tests/unit"), (None, "TESTED_BY names tests/unit/rigid_test.cpp")],

@@ -99,7 +99,7 @@ void setup_export_mesh(Command& group, Action& action) {
   command.add_option("-o,--output", options->output, "Folder to create")->type_name("FOLDER")->required();
   command.add_option("--mesh", options->mesh, "Name of the mesh [the only one]")->type_name("NAME");
   command.add_option("--format", options->format, "Kind of files: obj or ply [obj]")
-      ->check(one_of({"obj", "ply"}))
+      ->one_of({"obj", "ply"})
       ->type_name("");
   add_report_options(command, options->common);
   command.footer("Example:\n  tactus export mesh replica.mcap --format ply -o shapes");

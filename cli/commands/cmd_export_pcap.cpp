@@ -199,7 +199,7 @@ void setup_export_pcap(Command& group, Action& action) {
   command
       .add_option("--at", options->at,
                   "Whose network interface is captured: client (what clients send, and what reaches them) or server [client]")
-      ->check(one_of({"client", "server"}))
+      ->one_of({"client", "server"})
       ->type_name("");
   command.add_flag("--observe", options->observe,
                    "One client that only looks on; otherwise each user of the trace takes part and sends the recorded device");

@@ -190,7 +190,7 @@ void setup_import(Command& app, Action& action) {
             frame = name == "body" ? AngularVelocityFrame::body : AngularVelocityFrame::world;
           },
           "Frame of the angular velocities: world or body [the preset's, or world]")
-      ->check(one_of({"world", "body"}))
+      ->one_of({"world", "body"})
       ->type_name("FRAME");
   add_output_options(command, options->common);
   command.footer(

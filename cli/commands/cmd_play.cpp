@@ -118,7 +118,7 @@ void setup_play(Command& app, Action& action) {
             exerted = name == "path" ? Exerted::path : name == "force" ? Exerted::force : Exerted::nothing;
           },
           "What the device does: nothing, path (a spring draws the hand along), or force (what that hand felt) [nothing]")
-      ->check(one_of({"nothing", "path", "force"}))
+      ->one_of({"nothing", "path", "force"})
       ->type_name("WHAT");
   command.add_option("--stiffness", options->stiffness, "Of the spring, in newtons per metre")
       ->check(number(1, 10'000))

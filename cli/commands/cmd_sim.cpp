@@ -452,12 +452,12 @@ void setup_sim(Command& app, Action& action) {
       .add_option("--method", options->method,
                   "Time integration of deformable objects: auto, velocity-verlet, backward-euler, newmark, tr-bdf2 or projective "
                   "[the scene's]")
-      ->check(one_of({"auto", "velocity-verlet", "backward-euler", "newmark", "tr-bdf2", "projective"}))
+      ->one_of({"auto", "velocity-verlet", "backward-euler", "newmark", "tr-bdf2", "projective"})
       ->type_name("NAME");
   command
       .add_option("--solver", options->solver,
                   "Linear solver of implicit methods: auto, cg, cholesky or prefactored [the scene's]")
-      ->check(one_of({"auto", "cg", "cholesky", "prefactored"}))
+      ->one_of({"auto", "cg", "cholesky", "prefactored"})
       ->type_name("NAME");
   command.add_option("--rate", options->rate, "Ticks between deformation steps, 1 to 1000 [the scene's]")
       ->check(whole_number(1, 1000))

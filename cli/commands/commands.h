@@ -41,5 +41,7 @@ void setup_bench_stability(Command& group, Action& action);
 void setup_bench_delay(Command& group, Action& action);
 void setup_bench_session(Command& group, Action& action);
 void setup_bench_signals(Command& group, Action& action);
+void setup_help(Command& app, Action& action);
+void setup_completion(Command& app, Action& action);
 
 }  // namespace tactus::cli

@@ -179,7 +179,7 @@ void setup_bench_precision(Command& group, Action& action) {
   Command& command = group.add_command("precision", "Error against run time: methods, solvers and step sizes");
   const std::vector<std::string> names(std::begin(sim::study::kPrecisionScenes), std::end(sim::study::kPrecisionScenes));
   command.add_option("--scene", options->scenes, "membrane, membrane-stiff or cantilever; may be repeated [all]")
-      ->check(one_of(names))
+      ->one_of(names)
       ->type_name("SCENE");
   command.add_option("-o,--output", options->folder, "Folder for report, tables and plots; a stopped run is resumed")
       ->required()

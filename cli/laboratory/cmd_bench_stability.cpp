@@ -100,7 +100,7 @@ void setup_bench_stability(Command& group, Action& action) {
   auto options = std::make_shared<StabilityOptions>();
   Command& command = group.add_command("stability", "Stability limits of each part beside theory");
   command.add_option("--case", options->cases, "Only this: " + fmt::format("{}", fmt::join(case_names(), ", ")) + " [all]")
-      ->check(one_of(case_names()))
+      ->one_of(case_names())
       ->type_name("CASE");
   command.add_flag("--short", options->brief, "Run a selection: about 10 s of CPU time instead of 10 minutes");
   command.add_option("-o,--output", options->directory, "Folder for report.md, CSV, JSON and plots")->type_name("DIR");

@@ -2,11 +2,12 @@
 #include "cli/live/meter.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
+
+#include "cli/terminal.h"
 
 namespace tactus::cli {
 
-Meter::Meter(Visibility visibility) : visible_(visibility == Visibility::shown && is_capable_terminal(STDERR_FILENO)) {}
+Meter::Meter(Visibility visibility) : visible_(visibility == Visibility::shown && is_capable_terminal(kStandardError)) {}
 
 Meter::~Meter() {
   if (drawn_) fmt::print(stderr, "\r\x1b[K");

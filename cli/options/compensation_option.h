@@ -23,7 +23,7 @@ inline Option* add_compensation(Command& command, std::string& clients) {
           "--compensation", clients,
           "What clients do about delay: none, stiffness (render what they touch softer) or simulation (simulate the scene "
           "themselves; the server corrects them) [the scene's]")
-      ->check(one_of({"none", "stiffness", "simulation"}))
+      ->one_of({"none", "stiffness", "simulation"})
       ->type_name("CLIENTS");
 }
 

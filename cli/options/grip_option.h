@@ -17,7 +17,7 @@ inline sim::Grip grip_of(const std::string& name) {
 /// in  otherwise  what holds without it, for the help
 inline Option* add_grip(Command& command, std::string& grip, const std::string& otherwise) {
   return command.add_option("--grip", grip, "Grip of the hand on the device: loose, normal or firm [" + otherwise + "]")
-      ->check(one_of({"loose", "normal", "firm"}))
+      ->one_of({"loose", "normal", "firm"})
       ->type_name("GRIP");
 }
 

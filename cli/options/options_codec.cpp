@@ -2,7 +2,6 @@
 #include "cli/options/options_codec.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
@@ -12,6 +11,7 @@
 
 #include <tactus/base/rule.h>
 #include <tactus/rigid/trigger.h>
+#include "cli/terminal.h"
 
 namespace tactus::cli {
 namespace {
@@ -47,15 +47,8 @@ Check number(double low, double high) {
   };
 }
 
-Check one_of(const std::vector<std::string>& names) {
-  return [names](const std::string& text) {
-    const bool known = std::find(names.begin(), names.end(), text) != names.end();
-    return known ? std::string() : fmt::format("{} not in {{{}}}", text, fmt::join(names, ","));
-  };
-}
-
 Outcome check_no_terminal(const std::string& output) {
-  if (output != "-" || isatty(STDOUT_FILENO) == 0) return {};
+  if (output != "-" || !is_terminal(kStandardOutput)) return {};
   return refuse_arguments("-o -: standard output is a terminal, and the output is binary",
                           "Name a file, or redirect the output to a file or to another command.");
 }
@@ -94,7 +87,7 @@ void TriggerArguments::add_to(Command& app) {
              "amount by -p "
              "and its direction by --alpha), fixed (bounds the pose by --fixed), perceptual (isotropic, by the share that people "
              "notice: 10 % of 2.5 N to 22 % of 0.3 N) or off [isotropic]")
-          ->check(one_of({"isotropic", "cone", "fixed", "perceptual", "off"}))
+          ->one_of({"isotropic", "cone", "fixed", "perceptual", "off"})
           ->type_name("RULE");
   alpha_ =
       add_quantity(
@@ -223,7 +216,7 @@ void MeshArguments::add_encoder_to(Command& app) {
               "Coding tools: thesis (of rigid objects dead reckoning, their true velocities, and jumps that a client may smooth "
               "by "
               "--interpolate) or main (velocities that lean towards the acceleration, updates that clients ease into) [main]")
-           ->check(one_of({"thesis", "main"}))
+           ->one_of({"thesis", "main"})
            ->type_name("NAME"),
        modes,
        fade_ = add_quantity(app, "--fade", coding_.fade, Dimension::fraction,
@@ -234,7 +227,7 @@ void MeshArguments::add_encoder_to(Command& app) {
               "--nugget", nugget,
               "How much of a vertex's movement its neighbours do not share: 2%, 5%, 30%, or all for a choice per packet, at "
               "two to four times the cost (--profile main) [5% with --basis and a --deformable-visual above 0.01mm, else 2%]")
-           ->check(one_of({"2%", "5%", "30%", "all"}))
+           ->one_of({"2%", "5%", "30%", "all"})
            ->type_name("SHARE"),
        shares_[0], shares_[1],
        app.add_option("--quant-bits", coding_.quant_bits, "Bits of the quantiser, 1 to 12 (--profile thesis) [8]")
@@ -290,7 +283,7 @@ Option* add_interpolation(Command& app, ReplicaOptions& options) {
       {"linear", Interpolation::linear}, {"hermite", Interpolation::hermite}, {"blending", Interpolation::blending}};
   return app.add_flag(
       "--interpolate", "linear", [&options, ways](const std::string& way) { options.interpolation = ways.at(way); },
-      one_of({"linear", "hermite", "blending"}),
+      {"linear", "hermite", "blending"},
       "Smooth the replica over 75 % of the mean inter-arrival time, 5 to 100 ms. With =hermite on cubics that keep the "
       "velocity, with =blending by projective velocity blending, else linear");
 }

@@ -105,8 +105,6 @@ void add_encoder_options(Command& app, TriggerArguments& triggers, MeshArguments
 Check whole_number(std::uint64_t low, std::uint64_t high);
 /// Accept numbers from `low` to `high` only.
 Check number(double low, double high);
-/// Accept these names only; the help text of the option lists them.
-Check one_of(const std::vector<std::string>& names);
 
 /// --interpolate
 Option* add_interpolation(Command& app, ReplicaOptions& options);

@@ -7,7 +7,7 @@
 #include <cctype>
 
 #include <tactus/base/shown.h>
-#include "cli/progress.h"
+#include "cli/terminal.h"
 
 namespace tactus::cli {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/device/openhaptics/openhaptics_device.h>
 
-#include <unistd.h>
 #include <clocale>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <string_view>
 #include <utility>
 
@@ -213,7 +213,8 @@ bool is_installed(std::string_view library) {
   for (std::size_t begin = 0; begin <= folders.size();) {
     const std::size_t end = std::min(folders.find(':', begin), folders.size());
     std::string file = folders.substr(begin, end - begin);
-    if (!file.empty() && access(file.append("/").append(library).c_str(), R_OK) == 0) return true;
+    std::error_code ignored;
+    if (!file.empty() && std::filesystem::exists(file.append("/").append(library), ignored)) return true;
     begin = end + 1;
   }
   return false;

@@ -6,32 +6,34 @@ import re
 from tools.book import NUMBER, Book, Chapter
 from tools.markdown import Renderer, slug
 
-STYLE = """
+# What the pages of the site (tools/site) look like too.
+SHARED_STYLE = """
 :root { color-scheme: light dark; --text: #1c1e21; --paper: #fff; --soft: #5c6370; --line: #d7dae0; --tint: #f5f6f8; --link: #0b57a4; }
 @media (prefers-color-scheme: dark) {
   :root { --text: #d9dce1; --paper: #16181b; --soft: #9aa1ac; --line: #33373d; --tint: #1f2226; --link: #7fb4f2; } }
 * { box-sizing: border-box; }
-html { scroll-padding-top: 1rem; -webkit-text-size-adjust: 100%; }
 body { margin: 0; color: var(--text); background: var(--paper); font: 1rem/1.55 system-ui, sans-serif; }
-main { max-width: 54rem; margin: 0 auto; padding: 1rem 1rem 6rem; overflow-wrap: break-word; }
 a { color: var(--link); text-decoration: none; }
 a:hover { text-decoration: underline; }
 h1, h2, h3 { line-height: 1.25; margin: 2.2em 0 .6em; }
+code, pre { font-family: ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monospace; font-size: .86em; }
+code { background: var(--tint); border-radius: 3px; padding: .05em .25em; }
+pre { background: var(--tint); border: 1px solid var(--line); border-radius: 4px; padding: .7rem .9rem; overflow-x: auto; line-height: 1.4; }
+pre code { background: none; padding: 0; font-size: 1em; }
+table { border-collapse: collapse; font-size: .92rem; }
+th, td { border-bottom: 1px solid var(--line); padding: .3rem .9rem .3rem 0; text-align: left; vertical-align: top; }
+th { border-bottom-width: 2px; }
+"""
+STYLE = SHARED_STYLE + """html { scroll-padding-top: 1rem; -webkit-text-size-adjust: 100%; }
+main { max-width: 54rem; margin: 0 auto; padding: 1rem 1rem 6rem; overflow-wrap: break-word; }
 h1 { font-size: 1.7rem; border-bottom: 1px solid var(--line); padding-bottom: .3rem; margin-top: 4rem; }
 h2 { font-size: 1.3rem; }
 h3 { font-size: 1.08rem; }
 header h1 { border: 0; margin: 1.5rem 0 0; font-size: 2rem; }
 header p { color: var(--soft); margin: .2rem 0 1.5rem; }
-code, pre { font-family: ui-monospace, "DejaVu Sans Mono", Menlo, Consolas, monospace; font-size: .86em; }
-code { background: var(--tint); border-radius: 3px; padding: .05em .25em; }
-pre { background: var(--tint); border: 1px solid var(--line); border-radius: 4px; padding: .7rem .9rem; overflow-x: auto; line-height: 1.4; }
-pre code { background: none; padding: 0; font-size: 1em; }
 pre a { color: inherit; text-decoration: underline dotted; }
 aside { border-left: 3px solid var(--line); color: var(--soft); margin: 1rem 0; padding: .1rem 0 .1rem 1rem; }
 .table { overflow-x: auto; margin: 1rem 0; }
-table { border-collapse: collapse; font-size: .92rem; }
-th, td { border-bottom: 1px solid var(--line); padding: .3rem .9rem .3rem 0; text-align: left; vertical-align: top; }
-th { border-bottom-width: 2px; }
 td:first-child { min-width: 5.5rem; }
 .rules td:nth-child(2) { min-width: 13rem; }
 td code { overflow-wrap: normal; }

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/commands/commands.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "cli/manual/man_page.h"
+#include "cli/output.h"
+
+namespace tactus::cli {
+namespace {
+
+struct HelpOptions {
+  std::vector<std::string> words;
+  std::string man_pages;
+};
+
+Outcome write_pages(const CommandText& command, const std::filesystem::path& folder) {
+  TACTUS_TRY(OutputFile file, OutputFile::create((folder / man_page_name(command)).string(), OutputFile::Existing::replace));
+  TACTUS_TRY(const auto out, file.open());
+  *out << man_page(command);
+  TACTUS_CHECK(file.keep());
+  for (const CommandText& inner : command.commands) TACTUS_CHECK(write_pages(inner, folder));
+  return {};
+}
+
+Outcome run(const Command& app, const HelpOptions& options) {
+  if (!options.man_pages.empty()) return write_pages(app.text(), options.man_pages);
+  TACTUS_TRY(const std::string help, app.help_of(options.words));
+  fmt::print("{}", help);
+  return {};
+}
+
+}  // namespace
+
+void setup_help(Command& app, Action& action) {
+  auto options = std::make_shared<HelpOptions>();
+  Command& command = app.add_command("help", "Show the help of a command");
+  Option* words = command.add_option("COMMAND", options->words, "Its name; in a group such as `import` two words")->type_name("");
+  command.add_option("--man", options->man_pages, "Write the man pages of all commands into this folder")
+      ->type_name("FOLDER")
+      ->excludes(words);
+  command.footer(
+      "Examples:\n"
+      "  tactus help encode\n"
+      "  tactus help import csv");
+  command.on_chosen([&action, &app, options] { action = [&app, options] { return run(app, *options); }; });
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/options/headings.h"
+
+#include <algorithm>
+#include <array>
+
+namespace tactus::cli {
+namespace {
+
+struct Row {
+  std::string_view name, heading;
+};
+
+constexpr std::string_view kBounds = "Bounds", kCoding = "Coding", kRigid = "Coding of rigid objects",
+                           kDeformable = "Coding of deformable objects", kDeformation = "Simulation of deformable objects",
+                           kHand = "Virtual hand", kDevice = "Device", kNetwork = "Network", kRecording = "Recording",
+                           kOutput = "Output";
+
+constexpr std::array kOptions{
+    Row{"--deadband", kBounds},
+    Row{"--haptic", kBounds},
+    Row{"--alpha", kBounds},
+    Row{"--jnd-share", kBounds},
+    Row{"--fixed", kBounds},
+    Row{"--force-floor", kBounds},
+    Row{"--visual", kBounds},
+    Row{"--deformable-visual", kBounds},
+    Row{"--rings", kBounds},
+    Row{"--length-unit", kBounds},
+    Row{"--profile", kCoding},
+    Row{"--key-interval", kCoding},
+    Row{"--codec", kCoding},
+    Row{"--interpolate", kRigid},
+    Row{"--heartbeat", kRigid},
+    Row{"--no-reduction", kRigid},
+    Row{"--gravity", kRigid},
+    Row{"--friction", kRigid},
+    Row{"--basis", kDeformable},
+    Row{"--clusters", kDeformable},
+    Row{"--fade", kDeformable},
+    Row{"--nugget", kDeformable},
+    Row{"--visual-share", kDeformable},
+    Row{"--haptic-share", kDeformable},
+    Row{"--quant-bits", kDeformable},
+    Row{"--keep-models", kDeformable},
+    Row{"--layered", kDeformable},
+    Row{"--method", kDeformation},
+    Row{"--solver", kDeformation},
+    Row{"--deformable-noise", kDeformation},
+    Row{"--grip", kHand},
+    Row{"--pace", kHand},
+    Row{"--tremor", kHand},
+    Row{"--replay", kHand},
+    Row{"--device", kDevice},
+    Row{"--service", kDevice},
+    Row{"--runtime", kDevice},
+    Row{"--firmware", kDevice},
+    Row{"--force-limit", kDevice},
+    Row{"--device-error", kDevice},
+    Row{"--device-deadband", kDevice},
+    Row{"--listen", kNetwork},
+    Row{"--to", kNetwork},
+    Row{"--link", kNetwork},
+    Row{"--uplink", kNetwork},
+    Row{"--playout", kNetwork},
+    Row{"--compensation", kNetwork},
+    Row{"--clients", kNetwork},
+    Row{"--key", kNetwork},
+    Row{"--subject", kRecording},
+    Row{"--remarks", kRecording},
+    Row{"--output", kOutput},
+    Row{"--stream", kOutput},
+    Row{"--pcap", kOutput},
+    Row{"--stiffness-map", kOutput},
+    Row{"--json", kOutput},
+    Row{"--quiet", kOutput},
+    Row{"--no-progress", kOutput},
+    Row{"--force", kOutput},
+};
+
+constexpr std::string_view kCodec = "Codec", kScenes = "Scenes", kTraces = "Traces", kLive = "Devices and sessions",
+                           kStudies = "Studies", kHelp = "Help";
+
+constexpr std::array kCommands{
+    Row{"sim", kScenes},       Row{"mesh", kScenes},       Row{"encode", kCodec},    Row{"decode", kCodec},
+    Row{"compare", kCodec},    Row{"info", kCodec},        Row{"import", kTraces},   Row{"export", kTraces},
+    Row{"cut", kTraces},       Row{"merge", kTraces},      Row{"resample", kTraces}, Row{"recover", kTraces},
+    Row{"tolerable", kTraces}, Row{"devices", kLive},      Row{"capture", kLive},    Row{"play", kLive},
+    Row{"serve", kLive},       Row{"join", kLive},         Row{"link", kLive},       Row{"key", kLive},
+    Row{"sweep", kStudies},    Row{"reproduce", kStudies}, Row{"bench", kStudies},   Row{"help", kHelp},
+    Row{"completion", kHelp},
+};
+
+template <std::size_t N>
+std::string find(const std::array<Row, N>& rows, std::string_view name, std::string_view otherwise) {
+  const auto* row = std::find_if(rows.begin(), rows.end(), [&](const Row& r) { return r.name == name; });
+  return std::string(row == rows.end() ? otherwise : row->heading);
+}
+
+}  // namespace
+
+std::string heading_of(std::string_view option) { return find(kOptions, option, "Options"); }
+std::string heading_of_command(std::string_view command) { return find(kCommands, command, "More commands"); }
+
+}  // namespace tactus::cli

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/version.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <vector>
+
+#include "cli/report/json_parts.h"
+#include "commit.h"
+
+namespace tactus::cli {
+namespace {
+
+#ifdef __clang__
+constexpr const char* kCompiler = "clang " __clang_version__;
+#else
+constexpr const char* kCompiler = "g++ " __VERSION__;
+#endif
+
+std::vector<std::string> words_of(const char* text) {
+  std::istringstream in(text);
+  return {std::istream_iterator<std::string>(in), {}};
+}
+
+}  // namespace
+
+std::string version_table() {
+  const std::string commit = TACTUS_COMMIT;
+  return fmt::format(
+      "tactus {}\n"
+      "commit      {}\n"
+      "compiler    {}, {}\n"
+      "components  {}\n"
+      "left out    {}\n",
+      TACTUS_VERSION, commit.empty() ? "not known" : commit, kCompiler, TACTUS_BUILD_TYPE,
+      fmt::join(words_of(TACTUS_COMPONENTS), " "), *TACTUS_LEFT_OUT ? TACTUS_LEFT_OUT : "-");
+}
+
+std::string version_json() {
+  nlohmann::ordered_json out{{"schema", "tactus.version/1"}, {"version", TACTUS_VERSION}};
+  if (*TACTUS_COMMIT) out["commit"] = TACTUS_COMMIT;
+  out["compiler"] = kCompiler;
+  out["build"] = TACTUS_BUILD_TYPE;
+  out["components"] = words_of(TACTUS_COMPONENTS);
+  out["left_out"] = words_of(TACTUS_LEFT_OUT);
+  return text_of_json(out) + "\n";
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What this program is: its version, the commit, the compiler, the components.
+#pragma once
+
+#include <string>
+
+namespace tactus::cli {
+
+std::string version_table();
+std::string version_json();  ///< schema version.json
+
+}  // namespace tactus::cli

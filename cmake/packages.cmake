@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+# `cpack` in a finished build makes Debian packages, one for each part of an installation that the build has:
+#   libtactus0     the C interface (library)
+#   libtactus-dev  headers, libraries, files for CMake and pkg-config, specification, examples (development)
+#   tactus         the program with its manual, completion, scenes and plans (tools)
+#   python3-tactus the Python package (python)
+set(doc_dir ${CMAKE_INSTALL_DATADIR}/doc)
+
+# The packages whose headers and libraries our libraries need, and no other.
+set(dev_depends)
+set(dev_packages zstd ode GnuTLS tomlplusplus Eigen3 LDL Spectra OpenMesh)
+foreach(row IN LISTS TACTUS_PACKAGES)
+  separate_arguments(words UNIX_COMMAND "${row}")
+  list(GET words 0 package)
+  list(GET words 1 debian)
+  list(GET words 2 target)
+  if(package IN_LIST dev_packages AND TARGET ${target})
+    string(REPLACE "," ";" debian "${debian}")
+    list(APPEND dev_depends ${debian})
+  endif()
+endforeach()
+list(REMOVE_DUPLICATES dev_depends)
+list(JOIN dev_depends ", " dev_depends)
+
+set(parts development)
+if(TARGET tactus_c)
+  list(APPEND parts library)
+  set(library_depends ", libtactus${PROJECT_VERSION_MAJOR} (= ${PROJECT_VERSION})")
+endif()
+if(TARGET tactus)
+  list(APPEND parts tools)
+endif()
+if(TARGET tactus_c AND EXISTS ${PROJECT_SOURCE_DIR}/bindings/python)
+  list(APPEND parts python)
+endif()
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_COMPONENTS_ALL ${parts})
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_PACKAGE_NAME tactus)
+set(CPACK_PACKAGE_VENDOR "Tactus")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_OUTPUT_FILE_PREFIX ${PROJECT_BINARY_DIR}/packages)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_MAINTAINER "Tactus maintainers <maintainers@tactus.invalid>" CACHE STRING "Who answers for the packages")
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libtactus-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libexpected-dev, ${dev_depends}${library_depends}")
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Codec for shared haptic environments, files for development
+ Headers and libraries of the codec and of the components beside it, with files for CMake and pkg-config, the specification of the
+ format and examples.")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libtactus${PROJECT_VERSION_MAJOR})
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "Codec for shared haptic environments, C interface
+ Encodes and decodes streams of object states at 1 kHz, within bounds that people feel and see.")
+set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME tactus)
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS "gnuplot-nox, tetgen")
+set(CPACK_COMPONENT_TOOLS_DESCRIPTION "Codec for shared haptic environments, command line
+ Simulates touches, encodes them into packets, decodes them and measures the error; records haptic devices and runs sessions over
+ a network.")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-tactus)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS OFF)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, python3-numpy, libtactus${PROJECT_VERSION_MAJOR} (>= ${PROJECT_VERSION})")
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Codec for shared haptic environments, Python package
+ Traces, streams and reports as arrays of NumPy.")
+
+# What Debian wants of every package: the licence and the changes.
+set(changes ${PROJECT_BINARY_DIR}/changelog)
+string(TIMESTAMP day "%a, %d %b %Y %H:%M:%S +0000" UTC)
+file(CONFIGURE OUTPUT changelog @ONLY CONTENT
+  "tactus (@PROJECT_VERSION@) unstable; urgency=medium\n\n  * See the history of the repository.\n\n -- @CPACK_DEBIAN_PACKAGE_MAINTAINER@  @day@\n")
+file(CONFIGURE OUTPUT copyright @ONLY CONTENT [[
+Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
+Upstream-Name: Tactus
+
+Files: *
+Copyright: the contributors of Tactus
+License: Apache-2.0
+ On Debian systems, the full text of the Apache License, Version 2.0 is in
+ /usr/share/common-licenses/Apache-2.0.
+]])
+find_program(GZIP gzip REQUIRED)
+execute_process(COMMAND ${GZIP} -9nkf ${changes} COMMAND_ERROR_IS_FATAL ANY)
+foreach(part IN LISTS parts)
+  string(TOUPPER ${part} upper)
+  set(folder ${doc_dir}/${CPACK_DEBIAN_${upper}_PACKAGE_NAME})
+  install(FILES ${PROJECT_BINARY_DIR}/copyright DESTINATION ${folder} COMPONENT ${part})
+  install(FILES ${changes}.gz DESTINATION ${folder} COMPONENT ${part})
+endforeach()
+include(CPack)
