@@ -23,14 +23,14 @@ CTYPES = {"int32_t": "c_int32", "uint32_t": "c_uint32", "tactus_status": "c_int3
 
 
 def names_of(parts):
-    """Functions of these parts, in order."""
+    """Functions of these parts, in order; of all without parts."""
     out, part, known = [], None, set()
     for line in (HERE / "names.txt").read_text().splitlines():
         line = line.split("#")[0].strip()
         if line.startswith("["):
             part = line.strip("[]")
             known.add(part)
-        elif line and part in parts:
+        elif line and (part in parts or not parts):
             out.append(line)
     if unknown := set(parts) - known:
         sys.exit(f"names.txt has no part {', '.join(sorted(unknown))}")
@@ -88,7 +88,15 @@ def ctype(kind, interface):
         return "c_void_p" if stars == 1 else "POINTER(c_void_p)"
     if base == "char":
         return "c_char_p"
-    return f"POINTER({CTYPES.get(base, base)})" if base in interface.structs else "c_void_p"
+    fields = interface.structs.get(base)
+    is_one = base == "tactus_error" or (fields and fields[0][1] == "size")  # else the pointer may be to an array
+    return f"POINTER({base})" if is_one else "c_void_p"
+
+
+def field_ctype(kind, count, interface):
+    if "*" in kind:
+        return "c_char_p" if "char" in kind else "c_void_p"
+    return ctype(kind, interface) + (f" * {count}" if count else "")
 
 
 def python(names, interface, parts):
@@ -97,7 +105,7 @@ def python(names, interface, parts):
     lines += [f"{name} = {value}" for name, value in interface.constants.items()]
     for name, fields in interface.structs.items():
         lines += ["", "", f"class {name}(Structure):", "    _fields_ = ["]
-        lines += [f'        ("{field}", {ctype(kind, interface)}{f" * {count}" if count else ""}),' for kind, field, count in fields]
+        lines += [f'        ("{field}", {field_ctype(kind, count, interface)}),' for kind, field, count in fields]
         lines += ["    ]"]
     lines += ["", "", "FUNCTIONS = {"]
     for part in parts:
@@ -170,6 +178,8 @@ def main():
     names, interface = names_of(parts), Interface(parts)
     if missing := [name for name in names if name not in interface.functions]:
         sys.exit(f"no header declares {', '.join(missing)}")
+    if unlisted := set(interface.functions) - set(names_of([])):
+        sys.exit(f"names.txt lacks {', '.join(sorted(unlisted))}")
     sys.stdout.write(FORMS[sys.argv[1]](names, interface, parts))
 
 

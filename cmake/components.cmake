@@ -69,11 +69,11 @@ function(tactus_debian_packages out)
 endfunction()
 
 # tactus_missing(OUT required...): Debian packages or components of ours that are needed and not there; empty when all is well.
-# What is required is a component of ours (trace, net, fem, surface, sim, device, wasm) or a name from TACTUS_PACKAGES.
+# What is required is a component of ours (trace, net, fem, surface, sim, device, wasm, c) or a name from TACTUS_PACKAGES.
 function(tactus_missing out)
   set(missing)
   foreach(required IN LISTS ARGN)
-    if(required MATCHES "^(trace|net|seal|tets|fem|surface|sim|device|wasm)$")
+    if(required MATCHES "^(trace|net|seal|tets|fem|surface|sim|device|wasm|c)$")
       if(NOT TARGET tactus_${required})
         string(TOUPPER ${required} upper)
         list(APPEND missing "TACTUS_WITH_${upper}")

@@ -136,7 +136,9 @@ tactus_status tactus_scene_get_deformable(const tactus_scene* scene, uint32_t ob
                   .layered = of->layered,
                   .modes = static_cast<std::uint32_t>(modes),
                   .frame_period = of->frame_period / 256.0,
-                  .name = of->name.c_str()});
+                  .name = of->name.c_str(),
+                  .rings = of->rings,
+                  .reserved = 0});
     return TACTUS_OK;
   });
 }

@@ -214,6 +214,8 @@ typedef struct tactus_deformable_info {
   uint32_t modes;      /* of its basis; 0: none */
   double frame_period; /* ticks from shape to shape */
   const char* name;    /* UTF-8; lives as long as the scene */
+  uint32_t rings;      /* size of the area of interest around a touched triangle */
+  uint32_t reserved;
 } tactus_deformable_info;
 
 /* Parse a scene declaration from the front of `bytes`.   out  used  bytes that it took; may be NULL

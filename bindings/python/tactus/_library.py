@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The C libraries: where they are, their functions, and their errors as exceptions."""
+from __future__ import annotations
+
+import ctypes
+import pathlib
+from typing import Any
+
+from . import _abi
+
+OK, NOTHING, BUFFER_TOO_SMALL = _abi.TACTUS_OK, _abi.TACTUS_NOTHING, _abi.TACTUS_BUFFER_TOO_SMALL
+NO_CLOCK = -(1 << 63)
+
+
+class Error(Exception):
+    """What a call, a stream or a trace did wrong.
+
+    name        class of the error as the specification writes it, such as "checksum"
+    code        its number (spec/registry.md)
+    rule        rule that was broken, such as "R-FIL-5" (spec/rules.md)
+    bit_offset  place in the input [bits]; 0: none
+    remedy      a sentence on how to fix it; may be empty
+    advice      how a receiver reacts: "none", "drop", "request_key" or "close"
+    subject     file or object that it concerns; may be empty
+    """
+
+    def __init__(self, error: Any, subject: str = "") -> None:
+        library = core()
+        told = ctypes.byref(error)
+        self.name: str = library.tactus_status_name(error.status).decode()
+        self.code: int = error.status
+        self.rule: str = (error.rule or b"").decode()
+        self.bit_offset: int = error.bit_offset
+        self.remedy: str = library.tactus_error_remedy(told).decode()
+        self.advice: str = ("none", "drop", "request_key", "close")[library.tactus_error_advice(told)]
+        self.subject = subject
+        place = f" at byte {self.bit_offset // 8}" if self.bit_offset else ""
+        text = library.tactus_error_text(told).decode()
+        subject = f"{subject}: " if subject else ""
+        super().__init__(f"{subject}{text}{place} ({self.name}, {self.rule}). {self.remedy}".rstrip())
+
+
+class _Library:
+    """A shared library whose functions are attributes; those with a tactus_error raise Error."""
+
+    def __init__(self, name: str, parts: tuple[str, ...], needs: str) -> None:
+        beside = pathlib.Path(__file__).with_name(name)
+        try:
+            library = ctypes.CDLL(str(beside) if beside.exists() else name)
+        except OSError as why:
+            raise ImportError(f"{name} cannot be loaded: {why}. {needs}") from why
+        for part in parts:
+            for function, (result, arguments) in _abi.FUNCTIONS[part].items():
+                entry = getattr(library, function)
+                entry.restype, entry.argtypes = result, arguments
+                setattr(self, function, entry)
+
+    def __getattr__(self, name: str) -> Any:  # for type checkers: __init__ sets all of them
+        raise AttributeError(name)
+
+
+_loaded: dict[str, _Library] = {}
+
+
+def core() -> _Library:
+    """libtactus."""
+    if "core" not in _loaded:
+        library = _loaded["core"] = _Library("libtactus.so.0", ("decoder", "encoder"), "Install Tactus with its component C.")
+        ours, theirs = _abi.TACTUS_VERSION, library.tactus_version()
+        if theirs >> 8 != ours >> 8:
+            del _loaded["core"]
+            raise ImportError(f"libtactus has version {theirs >> 16}.{theirs >> 8 & 255}, this package {ours >> 16}.{ours >> 8 & 255}. "
+                              "Install both from the same build.")
+    return _loaded["core"]
+
+
+def traces() -> _Library:
+    """libtactus-trace."""
+    if "traces" not in _loaded:
+        _loaded["traces"] = _Library("libtactus-trace.so.0", ("trace",), "Install Tactus with its components C and TRACE.")
+    return _loaded["traces"]
+
+
+def call(function: Any, *arguments: Any, subject: str = "") -> bool:
+    """Call a function whose last argument is the error. True: done; False: nothing is there.   raises  Error"""
+    error = _abi.tactus_error()
+    status = function(*arguments, error)
+    if status == OK:
+        return True
+    if status == NOTHING:
+        return False
+    raise Error(error, subject)
+
+
+def read_bytes(function: Any, *arguments: Any) -> bytes:
+    """All bytes that a function writes into the caller's buffer."""
+    size, error = ctypes.c_size_t(), _abi.tactus_error()
+    status = function(*arguments, None, 0, ctypes.byref(size), error)
+    if status not in (OK, BUFFER_TOO_SMALL):
+        raise Error(error)
+    buffer = (ctypes.c_uint8 * size.value)()
+    call(function, *arguments, buffer, size.value, ctypes.byref(size))
+    return bytes(buffer)
+
+
+class Handle:
+    """An object of the library, destroyed by close(), at the end of a `with` block, or with the Python object."""
+
+    _destroy = ""  # name of its function
+    _library = staticmethod(core)
+
+    def __init__(self) -> None:
+        self._handle = ctypes.c_void_p()
+
+    @property
+    def handle(self) -> ctypes.c_void_p:
+        """For calls of the library.   raises  ValueError  closed"""
+        if not self._handle:
+            raise ValueError(f"this {type(self).__name__} is closed")
+        return self._handle
+
+    def close(self) -> None:
+        """Give the memory back; the object is of no use then."""
+        if getattr(self, "_handle", None):
+            getattr(self._library(), self._destroy)(self._handle)
+            self._handle = ctypes.c_void_p()
+
+    def __enter__(self) -> Any:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __del__(self) -> None:
+        self.close()
+
+
+def answer(structure: Any) -> Any:
+    """An empty struct for an answer, which knows its size."""
+    out = structure()
+    out.size = ctypes.sizeof(structure)
+    return out

@@ -1,0 +1,294 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Truth in, packets out; packets in, a replica out; stream files."""
+from __future__ import annotations
+
+import ctypes
+import dataclasses
+import os
+from typing import Any, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _abi
+from ._library import NO_CLOCK, Handle, answer, call, core, read_bytes
+from .options import ReceiverOptions, SenderOptions
+from .scene import Scene
+
+KINDS = ("rigid", "deformable", "load")
+LAYERS = ("haptic", "visual", "all")
+REASONS = ("request", "heartbeat", "visual", "haptic")
+
+CONTACT = np.dtype(_abi.tactus_contact)  #: kind, object, point (3) [m] object frame, normal (3), device (3) [m] world, stiffness [N/m]
+
+
+@dataclasses.dataclass(frozen=True)
+class Packet:
+    """A packet that was sent or decoded.
+
+    data       its bytes; empty for one that was decoded
+    size       [bytes]
+    kind       "rigid", "deformable" or "load"
+    key        it builds on the initial state
+    reason     of rigid objects: the strongest among the updates
+    layer      of deformable objects
+    updates    objects named, or vertices with a residual of their own
+    substream  0: rigid objects; i + 1: mesh i; the next: loads
+    offset     in the file that it was played from
+    """
+    data: bytes
+    size: int
+    tick: int
+    number: int
+    kind: str
+    key: bool
+    reason: str
+    layer: str
+    updates: int
+    substream: int
+    sequence: int
+    offset: int
+
+    @classmethod
+    def _of(cls, info: Any, data: bytes = b"") -> Packet:
+        return cls(data, info.bytes, info.tick, info.number, KINDS[info.kind], bool(info.key), REASONS[info.reason],
+                   LAYERS[info.layer], info.updates, info.substream, info.sequence, info.offset)
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Shape:
+    """A mesh at one tick.
+
+    displacements  (V, 3) float32 [m] from rest, world; None: no new shape
+    triangle       that is touched, None: none;  force [N] and stiffness [N/m] of the touch
+    """
+    displacements: npt.NDArray[np.float32] | None
+    triangle: int | None = None
+    force: float = 0
+    stiffness: float = 500
+
+
+def _array(values: npt.ArrayLike | None, columns: int, what: str) -> npt.NDArray[np.float64]:
+    out = np.ascontiguousarray(values if values is not None else np.empty((0, columns)), np.float64)
+    if out.ndim != 2 or out.shape[1] != columns:
+        raise ValueError(f"{what} have shape {out.shape}, not (objects, {columns})")
+    return out
+
+
+class Sender(Handle):
+    """Decides at every tick which states must be sent, and codes them. Options: keyword arguments of SenderOptions."""
+
+    _destroy = "tactus_sender_destroy"
+
+    def __init__(self, scene: Scene, **options: Any) -> None:
+        super().__init__()
+        self._options = SenderOptions(**options)
+        self._buffer = (ctypes.c_uint8 * 2048)()
+        call(core().tactus_sender_create, scene.handle, self._options, ctypes.byref(self._handle))
+
+    def encode(self, tick: int, objects: npt.ArrayLike | None = None, contacts: npt.NDArray[np.void] | None = None,
+               shapes: Sequence[Shape] = ()) -> list[Packet]:
+        """Evaluate a tick and code the packets it needs, mostly none.
+
+        tick      rising
+        objects   (N, 13) float64, one row per rigid object of the scene: position 3 [m], rotation 4 (w x y z), velocity 3 [m/s],
+                  angular velocity 3 [rad/s]; world frame
+        contacts  (C,) of dtype CONTACT, of rigid objects, any number
+        shapes    one per mesh of the scene, or none
+        raises    Error
+        """
+        states = _array(objects, 13, "objects")
+        touched = np.ascontiguousarray(contacts if contacts is not None else np.empty(0, CONTACT), CONTACT)
+        forms = (_abi.tactus_shape * len(shapes))()
+        kept = [_fill_shape(form, shape) for form, shape in zip(forms, shapes)]
+        truth = answer(_abi.tactus_truth)
+        truth.objects, truth.object_count = states.ctypes.data, len(states)
+        truth.contacts, truth.contact_count = touched.ctypes.data, len(touched)
+        truth.shapes, truth.shape_count = ctypes.addressof(forms), len(forms)
+        count = ctypes.c_size_t()
+        call(core().tactus_sender_encode, self.handle, tick, truth, ctypes.byref(count))
+        del kept
+        return [self._packet(i) for i in range(count.value)]
+
+    def _packet(self, index: int) -> Packet:
+        info, size = answer(_abi.tactus_packet_info), ctypes.c_size_t()
+        error = _abi.tactus_error()
+        status = core().tactus_sender_packet(self.handle, index, info, self._buffer, len(self._buffer), ctypes.byref(size), error)
+        if status == _abi.TACTUS_BUFFER_TOO_SMALL:
+            self._buffer = (ctypes.c_uint8 * size.value)()
+        if status:
+            call(core().tactus_sender_packet, self.handle, index, info, self._buffer, len(self._buffer), ctypes.byref(size))
+        return Packet._of(info, ctypes.string_at(self._buffer, size.value))
+
+    def request_key(self) -> None:
+        """A receiver asks for a key packet."""
+        call(core().tactus_sender_request_key, self.handle)
+
+    def acknowledge(self, packet: Packet) -> None:
+        """A receiver has decoded this packet."""
+        call(core().tactus_sender_acknowledge, self.handle, packet.substream, packet.sequence)
+
+    def set_link(self, answer_ticks: int, loss: float) -> None:
+        """The way to the receiver: ticks until a packet is acknowledged (0: not known), and the share that is lost."""
+        call(core().tactus_sender_set_link, self.handle, answer_ticks, loss)
+
+    def state_hash(self, substream: int = 0) -> int:
+        """Hash of the newest state; equals that of the receiver."""
+        out = ctypes.c_uint64()
+        call(core().tactus_sender_state_hash, self.handle, substream, ctypes.byref(out))
+        return out.value
+
+
+def _fill_shape(form: Any, shape: Shape) -> npt.NDArray[np.float32] | None:
+    """Fill the struct; what is returned must live as long as it is used."""
+    if shape.triangle is not None:
+        form.touched, form.triangle, form.force, form.stiffness = 1, shape.triangle, shape.force, shape.stiffness
+    if shape.displacements is None:
+        return None
+    values = np.ascontiguousarray(shape.displacements, np.float32)
+    if values.ndim != 2 or values.shape[1] != 3:
+        raise ValueError(f"displacements have shape {values.shape}, not (V, 3)")
+    form.displacements, form.vertices = values.ctypes.data, len(values)
+    return values
+
+
+class _Shown:
+    """What a client shows."""
+
+    def _receiver(self) -> Any:
+        raise NotImplementedError
+
+    @property
+    def scene(self) -> Scene:
+        """A copy of its own."""
+        return Scene._borrowed(core().tactus_receiver_scene(self._receiver()), self)
+
+    def _count_of(self) -> _abi.tactus_scene_info:
+        info = answer(_abi.tactus_scene_info)
+        call(core().tactus_scene_get, core().tactus_receiver_scene(self._receiver()), info)
+        return info
+
+    def poses(self, tick: int) -> npt.NDArray[np.float64]:
+        """(N, 7) float64 at this tick, one row per rigid object: position 3 [m], rotation 4 (w x y z); world frame."""
+        out = np.empty((self._rigid, 7))
+        call(core().tactus_receiver_poses, self._receiver(), tick, 0, len(out), out.ctypes.data)
+        return out
+
+    def displacements(self, mesh: int, tick: int) -> npt.NDArray[np.float32]:
+        """(V, 3) float32 [m] from rest at this tick, world frame."""
+        if not 0 <= mesh < len(self._vertices):
+            raise IndexError(f"there are {len(self._vertices)} meshes")
+        out = np.empty((self._vertices[mesh], 3), np.float32)
+        call(core().tactus_receiver_displacements, self._receiver(), mesh, tick, out.ctypes.data, out.size)
+        return out
+
+    def state_hash(self, substream: int = 0) -> int:
+        """Hash of the newest state of a substream; equals that of the sender."""
+        out = ctypes.c_uint64()
+        call(core().tactus_receiver_state_hash, self._receiver(), substream, ctypes.byref(out))
+        return out.value
+
+    def pose_hash(self, tick: int) -> int:
+        """Hash of every pose as shown at a tick."""
+        out = ctypes.c_uint64()
+        call(core().tactus_receiver_pose_hash, self._receiver(), tick, ctypes.byref(out))
+        return out.value
+
+    def _count(self) -> None:
+        info = self._count_of()
+        self._rigid: int = info.rigid
+        self._vertices: list[int] = []
+        for i in range(info.deformables):
+            mesh = answer(_abi.tactus_deformable_info)
+            call(core().tactus_scene_get_deformable, core().tactus_receiver_scene(self._receiver()), i, mesh)
+            self._vertices.append(mesh.vertices)
+
+
+class Receiver(Handle, _Shown):
+    """Packets in, a replica out. Options: keyword arguments of ReceiverOptions."""
+
+    _destroy = "tactus_receiver_destroy"
+
+    def __init__(self, scene: Scene, **options: Any) -> None:
+        super().__init__()
+        call(core().tactus_receiver_create, scene.handle, ReceiverOptions(**options), ctypes.byref(self._handle))
+        self._count()
+
+    def _receiver(self) -> Any:
+        return self.handle
+
+    def push(self, packet: bytes, now: int | None = None) -> Packet:
+        """Decode a packet.
+
+        now     [ticks] time of arrival on the receiver's clock; None: each packet counts as arriving in its own tick
+        raises  Error, whose `advice` tells how to react; the receiver is then unchanged
+        """
+        info = answer(_abi.tactus_packet_info)
+        call(core().tactus_receiver_push, self.handle, packet, len(packet), NO_CLOCK if now is None else now, info)
+        return Packet._of(info)
+
+
+class Player(Handle, _Shown):
+    """A stream file, tick by tick. Options: keyword arguments of ReceiverOptions.
+
+    file  a path, or the bytes of a file
+    """
+
+    _destroy = "tactus_player_destroy"
+
+    def __init__(self, file: str | os.PathLike[str] | bytes, **options: Any) -> None:
+        super().__init__()
+        self._subject = "" if isinstance(file, bytes) else os.fspath(file)
+        self._bytes = file if isinstance(file, bytes) else open(file, "rb").read()  # the player reads it in place
+        call(core().tactus_player_open, self._bytes, len(self._bytes), ReceiverOptions(**options), ctypes.byref(self._handle),
+             subject=self._subject)
+        self._count()
+
+    def _receiver(self) -> Any:
+        return core().tactus_player_receiver(self.handle)
+
+    def play(self, tick: int) -> list[Packet]:
+        """Apply all packets that are due at this tick.   raises  Error"""
+        out = []
+        info = answer(_abi.tactus_packet_info)
+        while call(core().tactus_player_play, self.handle, tick, info, subject=self._subject):
+            out.append(Packet._of(info))
+        return out
+
+    def next_tick(self) -> int | None:
+        """Tick of the next packet; None at the end.   raises  Error"""
+        out = ctypes.c_int64()
+        return out.value if call(core().tactus_player_next_tick, self.handle, ctypes.byref(out), subject=self._subject) else None
+
+    @property
+    def header_bytes(self) -> int:
+        """[bytes] of the scene declaration."""
+        return core().tactus_player_header_bytes(self.handle)
+
+    @property
+    def complete(self) -> bool:
+        """The file has its end. Valid after the last packet."""
+        return bool(core().tactus_player_complete(self.handle))
+
+
+class StreamWriter(Handle):
+    """Packets into the bytes of a stream file."""
+
+    _destroy = "tactus_writer_destroy"
+
+    def __init__(self, scene: Scene) -> None:
+        super().__init__()
+        call(core().tactus_writer_create, scene.handle, ctypes.byref(self._handle))
+
+    def add(self, packet: Packet) -> None:
+        """Ticks must not fall."""
+        call(core().tactus_writer_add, self.handle, packet.tick, packet.data, len(packet.data), packet.key)
+
+    def take(self) -> bytes:
+        """What was written since the last call."""
+        return read_bytes(core().tactus_writer_take, self.handle)
+
+    def finish(self) -> bytes:
+        """Add the index and the end of the file; returns what was not taken yet."""
+        call(core().tactus_writer_finish, self.handle)
+        return self.take()

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Options and bounds: the structs of tactus.h, with its defaults. Fields are keyword arguments, SI units."""
+from __future__ import annotations
+
+import ctypes
+from typing import Any
+
+from . import _abi, _library
+
+
+def _fill(self: Any, init: Any, fields: dict[str, Any]) -> None:
+    init(self, ctypes.sizeof(self))
+    known = {name for name, *_ in self._fields_ if name not in ("size", "reserved")}
+    for name, value in fields.items():
+        if name not in known:
+            raise TypeError(f"{type(self).__name__} has no field {name!r}; it has {', '.join(sorted(known))}")
+        setattr(self, name, value)
+
+
+def _text(self: Any) -> str:
+    fields = [f"{name}={getattr(self, name)!r}" for name, *_ in type(self).__mro__[1]._fields_ if name not in ("size", "reserved")]
+    return f"{type(self).__name__}({', '.join(fields)})"
+
+
+class RigidBounds(_abi.tactus_rigid_bounds):
+    """Errors of rigid objects that call for an update.
+
+    haptic            HAPTIC_OFF, _ISOTROPIC (default), _CONE, _FIXED or _PERCEPTUAL
+    heartbeat         [s] 1
+    visual_position   [m] 0.006
+    visual_rotation   [rad] 2 deg
+    weber_fraction    p of the normal force, 0.08
+    perceptual_share, cone_angle [rad], fixed_position [m], fixed_rotation [rad], force_floor [N]   see tactus.h
+    """
+
+    def __init__(self, **fields: float) -> None:
+        super().__init__()
+        _fill(self, _library.core().tactus_rigid_bounds_init, fields)
+
+    __repr__ = _text
+
+
+class DeformableBounds(_abi.tactus_deformable_bounds):
+    """Errors of deformable objects that call for an update.
+
+    visual          v of every vertex [m], 2.5e-4
+    haptic          1; 0: no haptic threshold
+    weber_fraction  p of h = p f / k_c around a touch, 0.025
+    depth_floor     [m] lower limit of f / k_c, 2e-4
+    """
+
+    def __init__(self, **fields: float) -> None:
+        super().__init__()
+        _fill(self, _library.core().tactus_deformable_bounds_init, fields)
+
+    __repr__ = _text
+
+
+class SceneOptions(_abi.tactus_scene_options):
+    """tick_rate [1/s], the four ..._exp of the grids, baselines, eased, extrapolation [s], gravity [m/s^2], friction: see tactus.h."""
+
+    def __init__(self, **fields: Any) -> None:
+        super().__init__()
+        if "gravity" in fields:
+            fields["gravity"] = (ctypes.c_double * 3)(*fields["gravity"])
+        _fill(self, _library.core().tactus_scene_options_init, fields)
+
+
+class SenderOptions(_abi.tactus_sender_options):
+    """reduction, baseline, first_sequence, key_interval [s], visual_share, haptic_share, layered; rigid and deformable: bounds."""
+
+    def __init__(self, rigid: RigidBounds | None = None, deformable: DeformableBounds | None = None, **fields: Any) -> None:
+        super().__init__()
+        _fill(self, _library.core().tactus_sender_options_init, fields)
+        self._kept = (rigid, deformable)  # the struct only points to them
+        self.rigid = ctypes.addressof(rigid) if rigid is not None else None
+        self.deformable = ctypes.addressof(deformable) if deformable is not None else None
+
+
+class ReceiverOptions(_abi.tactus_receiver_options):
+    """interpolation: INTERPOLATION_NONE (default), _LINEAR, _HERMITE, _BLENDING, _PLAYOUT; share, shortest [s], longest [s]."""
+
+    def __init__(self, **fields: Any) -> None:
+        super().__init__()
+        _fill(self, _library.core().tactus_receiver_options_init, fields)
+
+
+class Limits(_abi.tactus_limits):
+    """What a decoder accepts: objects, header_bytes, packet_bytes, vertices, triangles, state_bytes, basis_work."""
+
+    def __init__(self, **fields: int) -> None:
+        super().__init__()
+        _fill(self, _library.core().tactus_limits_init, fields)

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What both ends know before the first packet."""
+from __future__ import annotations
+
+import ctypes
+import dataclasses
+from typing import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _abi
+from ._library import Error, Handle, answer, call, core, read_bytes
+from .options import DeformableBounds, Limits, RigidBounds, SceneOptions
+
+
+@dataclasses.dataclass(frozen=True)
+class RigidObject:
+    """A rigid object at rest.
+
+    position  (3,) [m] world;  rotation  (4,) unit quaternion w x y z, object to world
+    dof       bits of the axes it may move along (1 2 4) and turn about (8 16 32); 0: static, never sent
+    """
+    name: str
+    position: Sequence[float] = (0, 0, 0)
+    rotation: Sequence[float] = (1, 0, 0, 0)
+    dof: int = _abi.TACTUS_DOF_ALL
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Mesh:
+    """A deformable object at rest.
+
+    vertices      (V, 3) float64 [m] world
+    triangles     (F, 3) uint32, counter-clockwise seen from outside
+    frame_period  [ticks] from shape to shape
+    modes         of its vibration basis, which both ends compute; 0: none
+    rings         around a touched triangle: the area of interest, where the haptic bound holds
+    """
+    name: str
+    vertices: npt.NDArray[np.float64]
+    triangles: npt.NDArray[np.uint32]
+    frame_period: float = 1
+    modes: int = 0
+    rings: int = 3
+
+
+class Scene(Handle):
+    """Immutable. From bytes (a declaration, as in the head of a stream), by build_scene(), or of a trace or player."""
+
+    _destroy = "tactus_scene_destroy"
+
+    def __init__(self, declaration: bytes | None = None, limits: Limits | None = None) -> None:
+        super().__init__()
+        if declaration is not None:
+            call(core().tactus_scene_parse, declaration, len(declaration), limits, ctypes.byref(self._handle), None)
+
+    @classmethod
+    def _borrowed(cls, handle: int, owner: object) -> Scene:
+        """A scene that belongs to a receiver, as one of its own."""
+        del owner  # alive as long as the call
+        return cls(read_bytes(core().tactus_scene_write, handle))
+
+    def to_bytes(self) -> bytes:
+        """The declaration. Equal scenes give equal bytes."""
+        return read_bytes(core().tactus_scene_write, self.handle)
+
+    @property
+    def info(self) -> _abi.tactus_scene_info:
+        """tick_rate [1/s], rigid, deformables, substreams (counts), position_exp, extrapolation [ticks], baselines, eased, .."""
+        info = answer(_abi.tactus_scene_info)
+        call(core().tactus_scene_get, self.handle, info)
+        return info
+
+    @property
+    def tick_rate(self) -> int:
+        """Ticks per second."""
+        return self.info.tick_rate
+
+    @property
+    def objects(self) -> list[RigidObject]:
+        """Rigid objects, in wire order."""
+        out = []
+        for i in range(self.info.rigid):
+            info = answer(_abi.tactus_rigid_info)
+            call(core().tactus_scene_get_rigid, self.handle, i, info)
+            out.append(RigidObject(info.name.decode(), tuple(info.initial.position), tuple(info.initial.rotation), info.dof))
+        return out
+
+    @property
+    def meshes(self) -> list[Mesh]:
+        """Deformable objects, in wire order."""
+        return [self._mesh(i) for i in range(self.info.deformables)]
+
+    def _mesh(self, index: int) -> Mesh:
+        info = answer(_abi.tactus_deformable_info)
+        call(core().tactus_scene_get_deformable, self.handle, index, info)
+        rest = np.empty((info.vertices, 3), np.float32)
+        triangles = np.empty((info.triangles, 3), np.uint32)
+        call(core().tactus_scene_get_rest, self.handle, index, rest.ctypes.data, rest.size)
+        call(core().tactus_scene_get_triangles, self.handle, index, triangles.ctypes.data, triangles.size)
+        return Mesh(info.name.decode(), rest.astype(np.float64), triangles, info.frame_period, info.modes, info.rings)
+
+    @property
+    def rigid_bounds(self) -> RigidBounds | None:
+        """That the sender guarantees for rigid objects; None: not declared."""
+        bounds = RigidBounds()
+        return bounds if call(core().tactus_scene_get_rigid_bounds, self.handle, bounds) else None
+
+    def deformable_bounds(self, mesh: int = 0) -> DeformableBounds | None:
+        """That the sender guarantees for a mesh; None: not declared."""
+        bounds = DeformableBounds()
+        return bounds if call(core().tactus_scene_get_deformable_bounds, self.handle, mesh, bounds) else None
+
+
+class _Builder(Handle):
+    _destroy = "tactus_scene_builder_destroy"
+
+    def __init__(self, options: SceneOptions) -> None:
+        super().__init__()
+        call(core().tactus_scene_builder_create, options, ctypes.byref(self._handle))
+
+    def add_rigid(self, of: RigidObject) -> None:
+        pose = _abi.tactus_pose((ctypes.c_double * 3)(*of.position), (ctypes.c_double * 4)(*of.rotation))
+        call(core().tactus_scene_builder_rigid, self.handle, of.name.encode(), ctypes.byref(pose), of.dof, subject=of.name)
+
+    def add_mesh(self, of: Mesh) -> None:
+        vertices = np.ascontiguousarray(of.vertices, np.float64)
+        triangles = np.ascontiguousarray(of.triangles, np.uint32)
+        if vertices.ndim != 2 or vertices.shape[1] != 3 or triangles.ndim != 2 or triangles.shape[1] != 3:
+            raise ValueError(f"{of.name}: vertices have shape {vertices.shape} and triangles {triangles.shape}, not (V, 3) and (F, 3)")
+        options = _abi.tactus_deformable_options()
+        core().tactus_deformable_options_init(options, ctypes.sizeof(options))
+        options.frame_period, options.spring_modes, options.rings = of.frame_period, of.modes, of.rings
+        call(core().tactus_scene_builder_deformable, self.handle, of.name.encode(), vertices.ctypes.data, len(vertices),
+             triangles.ctypes.data, len(triangles), options, subject=of.name)
+
+    def build(self) -> Scene:
+        scene, error = Scene(), _abi.tactus_error()
+        if core().tactus_scene_builder_build(self.handle, ctypes.byref(scene._handle), error):
+            raise Error(error, core().tactus_scene_builder_culprit(self.handle).decode())
+        return scene
+
+
+def build_scene(objects: Sequence[RigidObject] = (), meshes: Sequence[Mesh] = (), rigid_bounds: RigidBounds | None = None,
+                deformable_bounds: DeformableBounds | None = None, **options: float) -> Scene:
+    """Make a scene.
+
+    rigid_bounds, deformable_bounds   that the sender will keep: given either, the scene declares both. Give the sender the same
+    options                           fields of SceneOptions
+    raises  Error
+    """
+    with _Builder(SceneOptions(**options)) as builder:
+        for rigid in objects:
+            builder.add_rigid(rigid)
+        for mesh in meshes:
+            builder.add_mesh(mesh)
+        if rigid_bounds is not None or deformable_bounds is not None:
+            call(core().tactus_scene_builder_promise, builder.handle, rigid_bounds, deformable_bounds, None)
+        return builder.build()
