@@ -26,7 +26,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t kMostPage = 96U << 20;              // [bytes] of data, before base64
-constexpr std::int64_t kMostTicks = std::int64_t{1} << 31;  // of a stream
+constexpr std::int64_t kMostTicks = std::int64_t{1} << 32;  // of a stream
 constexpr const char* kShorter = "Cut a piece out of the trace with `tactus cut` and encode that.";
 
 struct ViewOptions {
@@ -38,16 +38,14 @@ tl::unexpected<Failure> too_large(const std::string& path, const std::string& wh
   return refuse(shown_path(path) + ": " + what + ", more than a page can hold", kShorter);
 }
 
-/// Play what is due at a tick.   out  false: the stream ends inside a record
-tl::expected<bool, Failure> play(Player& player, std::int64_t tick, PacketTable& packets, const ViewOptions& options) {
+/// Play what is due at a tick.   out  the stream ends inside a record: where
+tl::expected<std::optional<Error>, Failure> play(Player& player, std::int64_t tick, PacketTable& packets,
+                                                 const ViewOptions& options) {
   while (true) {
     const auto played = player.play(tick);
-    if (!played && std::string_view(played.error().rule) == "R-FIL-2") {
-      warn_cut_stream(options.input, played.error());
-      return false;
-    }
+    if (!played && std::string_view(played.error().rule) == "R-FIL-2") return std::optional(played.error());
     if (!played) return refuse(options.input, played.error());
-    if (!*played) return true;
+    if (!*played) return std::optional<Error>();
     packets.add(**played);
   }
 }
@@ -88,8 +86,8 @@ tl::expected<Json, Failure> truth_json(const ViewOptions& options, TraceReader& 
       if (!created) return refuse(options.truth, created.error());
       data.emplace(std::move(*created));
     }
-    TACTUS_TRY(const bool is_whole, play(player, frame.tick, packets, options));
-    if (!is_whole) break;
+    TACTUS_TRY(const auto cut, play(player, frame.tick, packets, options));
+    if (cut) break;
     if (const auto added = data->add(frame, player); !added)
       return refuse(options.truth, place_of_tick(frame.tick), added.error());
     if (data->bytes() > kMostPage) return too_large(options.truth, "is too long to lie beside the stream");
@@ -135,7 +133,8 @@ tl::expected<Json, Failure> page_data(const ViewOptions& options, const std::str
     TACTUS_TRY(truth, truth_json(options, *reader, *player, packets, report));
     truth["name"] = file_name(options.truth);
   }
-  TACTUS_CHECK(play(*player, kMostTicks, packets, options));
+  TACTUS_TRY(const auto cut, play(*player, kMostTicks, packets, options));
+  if (cut) warn_cut_stream(options.input, *cut);
   data["last_tick"] = std::max(packets.last_tick(), report.ticks.count() > 0 ? report.ticks.last() : 0);
   data["packets"] = packets.json();
   TACTUS_TRY(data["shapes"], shapes_json(options, attached));

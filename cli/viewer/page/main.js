@@ -187,8 +187,10 @@ class Page {
       this.readings.set(`mesh-${i}`, at >= 0 ? error[at] : null);
     });
     truth.users.forEach((user, i) => {
+      const touch = user.kind[row];  // 1, 2: of a rigid object, which alone has a force as decoded
       for (const kind of ["server", "felt", "shown"]) {
-        if (user[kind]) this.readings.set(`${kind}-${i}`, user.kind[row] > 0 || norm(user[kind], row) > 0 ? norm(user[kind], row) : null);
+        const tells = kind === "shown" ? touch === 1 || touch === 2 : touch > 0;
+        if (user[kind]) this.readings.set(`${kind}-${i}`, tells ? norm(user[kind], row) : null);
       }
     });
   }

@@ -34,7 +34,7 @@ export class Timeline {
 
   resize() {
     this.#width = this.#element.clientWidth;
-    this.#left = this.#width < 600 ? 8 : 190;
+    this.#left = this.#width < 600 ? 8 : 208;
     const room = 0.45 * innerHeight - this.#lanes.length * laneHeight - axisHeight;
     this.#strip = Math.min(Math.max(room / this.#rows.length - gap, stripHeights[0]), stripHeights[1]);
     this.#element.style.height = `${this.#height}px`;
