@@ -13,8 +13,10 @@ import pytest
 import tactus
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-LIMITS = {"R-STR-14", "R-STR-18", "R-FIL-4", "R-PKT-1"}  # vectors about limits of a receiver of their own
-VECTORS = ROOT / "conformance" / "vectors"
+CONFORMANCE = ROOT / "conformance"
+VECTORS = CONFORMANCE / "vectors"
+sys.path.insert(0, str(CONFORMANCE))
+from run import load_cases, read_input  # noqa: E402
 PROGRAM = os.environ.get("TACTUS_PROGRAM")
 needs_program = pytest.mark.skipif(PROGRAM is None, reason="needs the program tactus with its simulation")
 BOUNDS = {"weber_fraction": 0.04, "visual_position": 3e-4, "visual_rotation": math.radians(2)}
@@ -95,37 +97,28 @@ def test_errors_have_class_and_rule(tmp_path):
         player.play(0)
 
 
-def vectors_with_states():
-    return [path for path in sorted(VECTORS.glob("*/*.jsonl")) if path.with_suffix(".tct").exists()]
-
-
 def test_states_are_those_of_the_conformance_vectors():
     """The state hash after each packet, and the rule that a damaged stream breaks."""
     states = rules = 0
-    for path in vectors_with_states():
-        lines = [json.loads(line) for line in path.read_text().splitlines()]
-        packets = [line for line in lines if "packet" in line and "state" in line]
-        errors = [line["error"]["rule"] for line in lines if "error" in line]
-        if LIMITS & set(errors):
-            continue
-        try:
-            player = tactus.Player(path.with_suffix(".tct"))
-        except tactus.Error as refused:
-            assert errors == [refused.rule], path
-            rules += 1
-            continue
+    cases, faults = load_cases(CONFORMANCE)
+    assert not faults
+    for case in cases:
+        if "session" in case.traits:
+            continue  # no stream
+        packets = [line for line in map(json.loads, case.output.read_text("ascii").splitlines()) if "packet" in line]
         seen = []
         try:
-            while (tick := player.next_tick()) is not None:
-                before = len(seen)
-                for packet in player.play(tick):
-                    seen.append((packet.tick, packet.substream))
-                last = {packet[1]: i for i, packet in enumerate(seen[before:], before)}
-                for substream, i in last.items():  # earlier ones of this tick have passed
-                    assert f"{player.state_hash(substream):016x}" == packets[i]["state"], path
-                    states += 1
+            with tactus.Player(read_input(case), limits=tactus.Limits(header_bytes=1 << 20, packet_bytes=1 << 20)) as player:
+                while (tick := player.next_tick()) is not None:
+                    played = player.play(tick)
+                    for i, packet in enumerate(played, len(seen)):
+                        if packet.substream not in [later.substream for later in played[i + 1 - len(seen):]]:
+                            assert f"{player.state_hash(packet.substream):016x}" == packets[i]["state"], case.id
+                            states += 1
+                    seen += played
+            assert not case.error, case.id
         except tactus.Error as refused:
-            assert errors == [refused.rule], path
+            assert case.error and refused.rule == case.error["rule"], (case.id, str(refused))
             rules += 1
     assert states > 500 and rules > 50, (states, rules)
 
@@ -149,7 +142,7 @@ def test_comparison_equals_that_of_the_program(traces, tmp_path):
     assert f"{found.position.max:.9g}" in {f"{number:.9g}" for number in numbers_of(told)}
     assert f"{found.force.rms:.9g}" in {f"{number:.9g}" for number in numbers_of(told)}
     mesh = tactus.compare(traces / "mesh.mcap", tactus.encode(traces / "mesh.mcap")).meshes[0]
-    assert mesh.violations == 0 and mesh.frames > 50 and 0.9 < mesh.worst_ratio <= 1
+    assert mesh.violations == 0 and mesh.frames > 40 and 0.9 < mesh.worst_ratio <= 1
     assert not tactus.compare(traces / "rigid.mcap", stream, tactus.RigidBounds(visual_position=1e-5)).holds
 
 
