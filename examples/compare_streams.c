@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* Play two streams of one scene side by side: packets, hash of the last state, and how far apart the first object is shown. In C; compare_streams.py
-   is the same program.   usage: compare_streams A.tct B.tct */
+/* Play two streams of one scene side by side: packets, hash of the last state, and how far apart the first object is shown.
+   compare_streams.py is the same program.   usage: compare_streams A.tct B.tct */
 #include <math.h>
 #include <stdio.h>
 #include <tactus.h>

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Play two streams of one scene side by side: packets, hash of the last state, and how far apart they are shown. In Python;
+"""Play two streams of one scene side by side: packets, hash of the last state, and how far apart the first object is shown. In Python;
 compare_streams.c is the same program.   usage: compare_streams.py A.tct B.tct"""
 import sys
 
@@ -14,8 +14,7 @@ def main(paths):
         while True:
             for player, played in zip((a, b), packets):
                 played += player.play(tick)
-            distances = np.linalg.norm(a.poses(tick)[:, :3] - b.poses(tick)[:, :3], axis=1)
-            farthest = max(farthest, distances.max(initial=0))
+            farthest = max(farthest, np.linalg.norm(a.poses(tick)[0, :3] - b.poses(tick)[0, :3]))
             if a.next_tick() is None and b.next_tick() is None:
                 break
             tick += 1
