@@ -10,7 +10,7 @@ import re
 import sys
 import tempfile
 
-SOURCE_DIRS = (".ci", "spec", "codec", "io", "metrics", "sim", "device", "cli", "conformance", "bindings", "tests", "tools", "cmake")
+SOURCE_DIRS = (".ci", "spec", "codec", "io", "metrics", "sim", "device", "bindings", "cli", "conformance", "tests", "tools", "cmake")
 CODE = {".h", ".cpp"}
 SOURCES = CODE | {".py", ".sh", ".cmake", ".gp", ".mjs", ".js", ".lua"}
 MAX_LINES = 500

@@ -20,12 +20,14 @@ struct tactus_errors {
 namespace tactus::c {
 namespace {
 
-constexpr tactus_errors_options kOptions{.size = sizeof(tactus_errors_options),
-                                         .rings = DeformableObject{}.rings,
-                                         .position_exp = GridExponents{}.position,
-                                         .reserved = 0,
-                                         .rigid = nullptr,
-                                         .deformable = nullptr};
+tactus_errors_options errors_options() noexcept {
+  return {.size = sizeof(tactus_errors_options),
+          .rings = DeformableCoding{}.rings,
+          .position_exp = GridExponents{}.position,
+          .reserved = 0,
+          .rigid = nullptr,
+          .deformable = nullptr};
+}
 
 tactus_error_summary summary_of(const ErrorSeries& series) noexcept {
   return {.size = 0,
@@ -53,14 +55,16 @@ Result<const TraceFrame*> truth_of(const tactus_errors* errors, const tactus_tra
 using namespace tactus;
 using namespace tactus::c;
 
-tactus_status tactus_errors_options_init(tactus_errors_options* options, size_t size) { return init(options, size, kOptions); }
+tactus_status tactus_errors_options_init(tactus_errors_options* options, size_t size) {
+  return init(options, size, errors_options());
+}
 
 tactus_status tactus_errors_create(const tactus_trace* truth, const tactus_errors_options* options, tactus_errors** errors,
                                    tactus_error* error) {
   return call(error, [&]() -> Outcome {
     TACTUS_TRY(const TraceInfo* info, info_of(truth));
     if (errors == nullptr) return refuse();
-    TACTUS_TRY(const tactus_errors_options o, given_or(options, kOptions));
+    TACTUS_TRY(const tactus_errors_options o, given_or(options, errors_options()));
     TACTUS_TRY(const RigidTriggers rigid, bounds_of(o.rigid));
     TACTUS_TRY(const DeformableThresholds deformable, bounds_of(o.deformable));
     if (o.rings > DeformableObject::kMaxRings || o.position_exp > 30) return fail(Errc::invalid_argument, "R-API-4");

@@ -77,17 +77,19 @@ class SenderOptions(_abi.tactus_sender_options):
         self.deformable = ctypes.addressof(deformable) if deformable is not None else None
 
 
-class ReceiverOptions(_abi.tactus_receiver_options):
-    """interpolation: INTERPOLATION_NONE (default), _LINEAR, _HERMITE, _BLENDING, _PLAYOUT; share, shortest [s], longest [s]."""
-
-    def __init__(self, **fields: Any) -> None:
-        super().__init__()
-        _fill(self, _library.core().tactus_receiver_options_init, fields)
-
-
 class Limits(_abi.tactus_limits):
     """What a decoder accepts: objects, header_bytes, packet_bytes, vertices, triangles, state_bytes, basis_work."""
 
     def __init__(self, **fields: int) -> None:
         super().__init__()
         _fill(self, _library.core().tactus_limits_init, fields)
+
+
+class ReceiverOptions(_abi.tactus_receiver_options):
+    """interpolation: INTERPOLATION_NONE (default), _LINEAR, _HERMITE, _BLENDING, _PLAYOUT; share, shortest [s], longest [s]; limits."""
+
+    def __init__(self, limits: Limits | None = None, **fields: Any) -> None:
+        super().__init__()
+        _fill(self, _library.core().tactus_receiver_options_init, fields)
+        self._kept = limits  # the struct only points to it
+        self.limits = ctypes.addressof(limits) if limits is not None else None

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+/// The C interface from tests: handles that destroy themselves, and small scenes and streams.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <tactus.h>
+
+namespace tactus::c_test {
+
+template <auto destroy>
+struct Destroy {
+  template <class T>
+  void operator()(T* handle) const {
+    destroy(handle);
+  }
+};
+
+using Scene = std::unique_ptr<tactus_scene, Destroy<tactus_scene_destroy>>;
+using Builder = std::unique_ptr<tactus_scene_builder, Destroy<tactus_scene_builder_destroy>>;
+using Sender = std::unique_ptr<tactus_sender, Destroy<tactus_sender_destroy>>;
+using Receiver = std::unique_ptr<tactus_receiver, Destroy<tactus_receiver_destroy>>;
+using Player = std::unique_ptr<tactus_player, Destroy<tactus_player_destroy>>;
+using Writer = std::unique_ptr<tactus_writer, Destroy<tactus_writer_destroy>>;
+
+/// A struct that knows its size.
+template <class T>
+T sized() {
+  T out{};
+  out.size = sizeof(T);
+  return out;
+}
+
+/// Options with the defaults.
+template <auto init, class T>
+T filled() {
+  T out;
+  EXPECT_EQ(init(&out, sizeof out), TACTUS_OK);
+  return out;
+}
+
+/// The function refuses, with this rule.
+#define EXPECT_REFUSED(rule_name, function, ...)                                                            \
+  do {                                                                                                      \
+    tactus_error error{};                                                                                   \
+    EXPECT_NE(function(__VA_ARGS__, &error), TACTUS_OK) << #function;                                       \
+    EXPECT_STREQ(error.rule == nullptr ? "none" : error.rule, rule_name) << #function "(" #__VA_ARGS__ ")"; \
+    EXPECT_EQ(function(__VA_ARGS__, nullptr), error.status) << #function;                                   \
+  } while (false)
+
+/// Two boxes, of which one can move; with a sheet of two triangles if asked for.
+inline Scene make_scene(bool with_sheet = false, const tactus_scene_options* options = nullptr) {
+  tactus_scene_builder* raw = nullptr;
+  EXPECT_EQ(tactus_scene_builder_create(options, &raw, nullptr), TACTUS_OK);
+  const Builder builder(raw);
+  const tactus_pose above{{0, 0, 0.05}, {1, 0, 0, 0}};
+  EXPECT_EQ(tactus_scene_builder_rigid(raw, "table", nullptr, TACTUS_DOF_NONE, nullptr), TACTUS_OK);
+  EXPECT_EQ(tactus_scene_builder_rigid(raw, "cube", &above, TACTUS_DOF_ALL, nullptr), TACTUS_OK);
+  if (with_sheet) {
+    const double corners[] = {0, 0, 0, 0.1, 0, 0, 0.1, 0.1, 0, 0, 0.1, 0};
+    const std::uint32_t triangles[] = {0, 1, 2, 0, 2, 3};
+    EXPECT_EQ(tactus_scene_builder_deformable(raw, "sheet", corners, 4, triangles, 2, nullptr, nullptr), TACTUS_OK);
+  }
+  EXPECT_EQ(tactus_scene_builder_promise(raw, nullptr, nullptr, nullptr, nullptr), TACTUS_OK);
+  tactus_scene* scene = nullptr;
+  EXPECT_EQ(tactus_scene_builder_build(raw, &scene, nullptr), TACTUS_OK) << tactus_scene_builder_culprit(raw);
+  return Scene(scene);
+}
+
+/// The cube swings.
+struct Truth {
+  tactus_rigid_sample objects[2]{};
+  float displacements[12]{};
+  tactus_shape shape{};
+  tactus_truth truth = sized<tactus_truth>();
+
+  explicit Truth(bool with_sheet = false) {
+    truth.objects = objects;
+    truth.object_count = 2;
+    truth.shapes = &shape;
+    truth.shape_count = with_sheet ? 1 : 0;
+    at(0);
+  }
+  Truth(const Truth&) = delete;
+  Truth& operator=(const Truth&) = delete;
+  const tactus_truth* at(std::int64_t tick) {
+    const double t = 1e-3 * static_cast<double>(tick), w = 6.28;
+    objects[0] = {{{0, 0, 0}, {1, 0, 0, 0}}, {}, {}};
+    objects[1] = {{{0.1 * std::sin(w * t), 0, 0.05}, {1, 0, 0, 0}}, {0.1 * w * std::cos(w * t), 0, 0}, {}};
+    for (std::size_t i = 0; i < 12; ++i) displacements[i] = i % 3 == 2 ? static_cast<float>(-0.01 * std::sin(w * t)) : 0;
+    shape = {displacements, 4, 0, 0, 0, 0};
+    return &truth;
+  }
+};
+
+inline Sender make_sender(const Scene& scene, const tactus_sender_options* options = nullptr) {
+  tactus_sender* raw = nullptr;
+  EXPECT_EQ(tactus_sender_create(scene.get(), options, &raw, nullptr), TACTUS_OK);
+  return Sender(raw);
+}
+
+inline Receiver make_receiver(const Scene& scene, const tactus_receiver_options* options = nullptr) {
+  tactus_receiver* raw = nullptr;
+  EXPECT_EQ(tactus_receiver_create(scene.get(), options, &raw, nullptr), TACTUS_OK);
+  return Receiver(raw);
+}
+
+struct Packet {
+  tactus_packet_info info = sized<tactus_packet_info>();
+  std::vector<std::uint8_t> bytes = std::vector<std::uint8_t>(4096);
+};
+
+inline std::vector<Packet> encode(const Sender& sender, std::int64_t tick, const tactus_truth* truth) {
+  std::size_t count = 0;
+  tactus_error error{};
+  EXPECT_EQ(tactus_sender_encode(sender.get(), tick, truth, &count, &error), TACTUS_OK) << error.rule;
+  std::vector<Packet> out(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::size_t size = 0;
+    EXPECT_EQ(tactus_sender_packet(sender.get(), i, &out[i].info, out[i].bytes.data(), out[i].bytes.size(), &size, nullptr),
+              TACTUS_OK);
+    out[i].bytes.resize(size);
+    EXPECT_EQ(out[i].info.bytes, size);
+  }
+  return out;
+}
+
+inline std::vector<std::uint8_t> take(const Writer& writer) {
+  std::size_t size = 0;
+  EXPECT_NE(tactus_writer_take(writer.get(), nullptr, 0, &size, nullptr), TACTUS_INVALID_ARGUMENT);
+  std::vector<std::uint8_t> out(size);
+  EXPECT_EQ(tactus_writer_take(writer.get(), out.data(), out.size(), &size, nullptr), TACTUS_OK);
+  return out;
+}
+
+/// A stream file of so many ticks.
+inline std::vector<std::uint8_t> make_stream(bool with_sheet = false, std::int64_t ticks = 500) {
+  const Scene scene = make_scene(with_sheet);
+  const Sender sender = make_sender(scene);
+  tactus_writer* raw = nullptr;
+  EXPECT_EQ(tactus_writer_create(scene.get(), &raw, nullptr), TACTUS_OK);
+  const Writer writer(raw);
+  Truth truth(with_sheet);
+  for (std::int64_t tick = 0; tick < ticks; ++tick)
+    for (const Packet& packet : encode(sender, tick, truth.at(tick)))
+      EXPECT_EQ(tactus_writer_add(raw, tick, packet.bytes.data(), packet.bytes.size(), packet.info.key, nullptr), TACTUS_OK);
+  EXPECT_EQ(tactus_writer_finish(raw, nullptr), TACTUS_OK);
+  return take(writer);
+}
+
+}  // namespace tactus::c_test

@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The Python package against the program, the conformance vectors and itself."""
+import json
+import math
+import os
+import pathlib
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import tactus
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+CONFORMANCE = ROOT / "conformance"
+VECTORS = CONFORMANCE / "vectors"
+sys.path.insert(0, str(CONFORMANCE))
+from run import load_cases, read_input  # noqa: E402
+PROGRAM = os.environ.get("TACTUS_PROGRAM")
+needs_program = pytest.mark.skipif(PROGRAM is None, reason="needs the program tactus with its simulation")
+BOUNDS = {"weber_fraction": 0.04, "visual_position": 3e-4, "visual_rotation": math.radians(2)}
+
+
+def program(*arguments):
+    return subprocess.run([PROGRAM, *map(str, arguments)], check=True, capture_output=True, text=True).stdout
+
+
+@pytest.fixture(scope="session")
+def traces(tmp_path_factory):
+    """A rigid and a deformable trace of the simulation."""
+    folder = tmp_path_factory.mktemp("traces")
+    program("sim", "rotate-push-lift", "--duration", "3s", "-o", folder / "rigid.mcap", "-q")
+    program("sim", "membrane", "--duration", "2s", "-o", folder / "mesh.mcap", "-q")
+    return folder
+
+
+def swing(tick):
+    """(1, 13): a cube on a spring."""
+    w, t = 6.28, tick * 1e-3
+    return [[0.1 * math.sin(w * t), 0, 0, 1, 0, 0, 0, 0.1 * w * math.cos(w * t), 0, 0, 0, 0, 0]]
+
+
+def test_sender_and_receiver_agree():
+    with tactus.build_scene([tactus.RigidObject("cube")]) as scene:
+        sender, receiver = tactus.Sender(scene), tactus.Receiver(scene)
+        sent = 0
+        for tick in range(1000):
+            for packet in sender.encode(tick, swing(tick)):
+                assert packet.kind == "rigid" and packet.size == len(packet.data) and packet.tick == tick
+                assert receiver.push(packet.data).updates == 1
+                sent += 1
+            assert np.abs(receiver.poses(tick)[0, :3] - swing(tick)[0][:3]).max() <= 0.006
+        assert 5 < sent < 200
+        assert sender.state_hash() == receiver.state_hash()
+        assert receiver.scene.objects[0].name == "cube"
+
+
+def test_a_mesh_keeps_its_bound():
+    vertices = np.array([[0, 0, 0], [0.1, 0, 0], [0.1, 0.1, 0], [0, 0.1, 0]])
+    triangles = np.array([[0, 1, 2], [0, 2, 3]], np.uint32)
+    scene = tactus.build_scene(meshes=[tactus.Mesh("sheet", vertices, triangles)])
+    sender, receiver = tactus.Sender(scene), tactus.Receiver(scene)
+    for tick in range(200):
+        shape = np.zeros((4, 3), np.float32)
+        shape[:, 2] = 0.01 * math.sin(0.02 * tick)
+        for packet in sender.encode(tick, shapes=[tactus.Shape(shape, triangle=0, force=1, stiffness=500)]):
+            assert packet.kind == "deformable"
+            receiver.push(packet.data)
+        assert np.linalg.norm(receiver.displacements(0, tick) - shape, axis=1).max() <= 2.6e-4
+    assert np.allclose(scene.meshes[0].vertices, vertices, atol=1e-6) and (scene.meshes[0].triangles == triangles).all()
+
+
+def test_errors_have_class_and_rule(tmp_path):
+    with pytest.raises(tactus.Error) as refused:
+        tactus.build_scene([tactus.RigidObject("twin"), tactus.RigidObject("twin")])
+    assert refused.value.rule == "R-STR-11" and refused.value.name == "invalid" and refused.value.subject == "twin"
+    with pytest.raises(tactus.Error) as refused:
+        tactus.Player(b"no stream")
+    assert refused.value.rule == "R-STR-1" and refused.value.remedy
+    with pytest.raises(tactus.Error) as refused:
+        tactus.read_trace(tmp_path / "nowhere.mcap")
+    assert refused.value.rule == "R-TRC-1" and "nowhere.mcap" in str(refused.value)
+    scene = tactus.build_scene([tactus.RigidObject("cube")])
+    with pytest.raises(tactus.Error) as refused:
+        tactus.Sender(scene).encode(0, [[math.nan] * 13])
+    assert refused.value.rule == "R-API-1"
+    with pytest.raises(ValueError):
+        tactus.Sender(scene).encode(0, [[0, 0, 0]])
+    with pytest.raises(TypeError):
+        tactus.RigidBounds(colour=1)
+    with pytest.raises(IndexError):
+        tactus.Receiver(scene).displacements(0, 0)
+    player = tactus.Player(next(VECTORS.glob("client/*.tct")))
+    player.close()
+    with pytest.raises(ValueError, match="closed"):
+        player.play(0)
+
+
+def test_states_are_those_of_the_conformance_vectors():
+    """The state hash after each packet, and the rule that a damaged stream breaks."""
+    states = rules = 0
+    cases, faults = load_cases(CONFORMANCE)
+    assert not faults
+    for case in cases:
+        if "session" in case.traits:
+            continue  # no stream
+        packets = [line for line in map(json.loads, case.output.read_text("ascii").splitlines()) if "packet" in line]
+        seen = []
+        try:
+            with tactus.Player(read_input(case), limits=tactus.Limits(header_bytes=1 << 20, packet_bytes=1 << 20)) as player:
+                while (tick := player.next_tick()) is not None:
+                    played = player.play(tick)
+                    for i, packet in enumerate(played, len(seen)):
+                        if packet.substream not in [later.substream for later in played[i + 1 - len(seen):]]:
+                            assert f"{player.state_hash(packet.substream):016x}" == packets[i]["state"], case.id
+                            states += 1
+                    seen += played
+            assert not case.error, case.id
+        except tactus.Error as refused:
+            assert case.error and refused.rule == case.error["rule"], (case.id, str(refused))
+            rules += 1
+    assert states > 500 and rules > 50, (states, rules)
+
+
+@needs_program
+def test_encoding_equals_that_of_the_program(traces, tmp_path):
+    program("encode", traces / "rigid.mcap", "-o", tmp_path / "rigid.tct", "-p", "4%", "--visual", "0.3mm,2deg", "-q")
+    assert tactus.encode(traces / "rigid.mcap", tactus.RigidBounds(**BOUNDS)) == (tmp_path / "rigid.tct").read_bytes()
+    program("encode", traces / "mesh.mcap", "-o", tmp_path / "mesh.tct", "-q")
+    assert tactus.encode(traces / "mesh.mcap") == (tmp_path / "mesh.tct").read_bytes()
+
+
+@needs_program
+def test_comparison_equals_that_of_the_program(traces, tmp_path):
+    stream, replica = tmp_path / "s.tct", tmp_path / "r.mcap"
+    stream.write_bytes(tactus.encode(traces / "rigid.mcap", tactus.RigidBounds(**BOUNDS)))
+    program("decode", stream, "-o", replica, "--like", traces / "rigid.mcap", "-q")
+    told = json.loads(program("compare", traces / "rigid.mcap", replica, "--json"))
+    found = tactus.compare(traces / "rigid.mcap", stream)
+    assert found.holds and found.position.ticks == 3000
+    assert f"{found.position.max:.9g}" in {f"{number:.9g}" for number in numbers_of(told)}
+    assert f"{found.force.rms:.9g}" in {f"{number:.9g}" for number in numbers_of(told)}
+    mesh = tactus.compare(traces / "mesh.mcap", tactus.encode(traces / "mesh.mcap")).meshes[0]
+    assert mesh.violations == 0 and mesh.frames > 40 and 0.9 < mesh.worst_ratio <= 1
+    assert not tactus.compare(traces / "rigid.mcap", stream, tactus.RigidBounds(visual_position=1e-5)).holds
+
+
+def numbers_of(value):
+    """All numbers of a JSON document."""
+    if isinstance(value, dict):
+        value = list(value.values())
+    if isinstance(value, list):
+        return [number for item in value for number in numbers_of(item)]
+    return [value] if isinstance(value, (int, float)) else []
+
+
+@needs_program
+def test_traces_are_arrays(traces):
+    trace = tactus.read_trace(traces / "rigid.mcap")
+    assert trace.position.shape == (3000, 1, 3) and trace.force.shape == (3000, 1, 3) and trace.tick_rate == 1000
+    assert trace.object_names == ["cube"] and np.allclose(np.linalg.norm(trace.rotation, axis=2), 1)
+    replica = tactus.decode(tactus.encode(traces / "rigid.mcap", tactus.RigidBounds(**BOUNDS)), trace.ticks)
+    assert np.linalg.norm(replica.position - trace.position, axis=2).max() <= 3e-4
+    mesh = tactus.read_trace(traces / "mesh.mcap")
+    ticks, shapes = mesh.shapes[0]
+    assert shapes.shape == (len(ticks), 714, 3) and np.isfinite(shapes).all()
+    shown = tactus.decode(tactus.encode(traces / "mesh.mcap"), ticks, shapes=True)
+    assert np.linalg.norm(shown.displacements[0] - shapes, axis=2).max() <= 2.6e-4
+
+
+@needs_program
+def test_the_same_program_in_c_and_python(traces, tmp_path):
+    for name, p in (("a.tct", 0.04), ("b.tct", 0.3)):
+        (tmp_path / name).write_bytes(tactus.encode(traces / "rigid.mcap", tactus.RigidBounds(**{**BOUNDS, "weber_fraction": p})))
+    script = [sys.executable, str(ROOT / "examples/compare_streams.py")]
+    outputs = [subprocess.run([*command, "a.tct", "b.tct"], check=True, capture_output=True, text=True, cwd=tmp_path).stdout
+               for command in (script, [os.environ["TACTUS_C_EXAMPLE"]])]
+    assert outputs[0] == outputs[1] and "state" in outputs[0] and not outputs[0].endswith(" 0.000 mm apart\n")
+    (tmp_path / "bad.tct").write_bytes(b"no stream")
+    for command in (script, [os.environ["TACTUS_C_EXAMPLE"]]):
+        refused = subprocess.run([*command, "a.tct", "bad.tct"], capture_output=True, text=True, cwd=tmp_path)
+        assert refused.returncode == 1 and "R-STR-1" in refused.stderr
+
+
+def test_tables(tmp_path):
+    table = tactus.read_table(ROOT / "reports/deformable/equal/points.csv")
+    assert table["payload_bit_per_s"].dtype == np.float64 and len(table["v"] if "v" in table else table["max_m"]) > 0
+    (tmp_path / "t.csv").write_text("p,name,x\n2.5%,a,1\n5%,b,\n")
+    table = tactus.read_table(tmp_path / "t.csv")
+    assert table["p"].tolist() == [0.025, 0.05] and table["name"].tolist() == ["a", "b"] and math.isnan(table["x"][1])
+
+
+def test_everything_public_is_documented():
+    for name in tactus.__all__:
+        thing = getattr(tactus, name)
+        if callable(thing):
+            assert thing.__doc__, name
+    assert (pathlib.Path(tactus.__file__).parent / "py.typed").exists()
