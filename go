@@ -15,7 +15,8 @@ demo_packages='g++ cmake ninja-build pkgconf libexpected-dev libzstd-dev libode-
 build_packages="$demo_packages libgnutls28-dev libeigen3-dev libsuitesparse-dev libspectra-dev libopenmesh-dev libusb-1.0-0-dev libhidapi-dev libboost-dev"
 bench_packages='libbenchmark-dev libgtest-dev python3 libbullet-dev'
 site_packages='python3 doxygen cmark-gfm'
-test_packages="$bench_packages $site_packages ccache clang libclang-rt-dev clang-tidy clang-format tetgen tshark umockdev libumockdev-dev valgrind zstd"
+test_packages="$bench_packages $site_packages ccache clang libclang-rt-dev clang-tidy clang-format tetgen tshark umockdev libumockdev-dev valgrind zstd
+  mandoc groff-base bsdextrautils zsh fish lintian dpkg-dev make"
 
 as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi

@@ -30,7 +30,7 @@ endif()
 if(TARGET tactus)
   list(APPEND parts tools)
 endif()
-if(TARGET tactus_c AND EXISTS ${PROJECT_SOURCE_DIR}/bindings/python)
+if(TARGET tactus_python)
   list(APPEND parts python)
 endif()
 
