@@ -219,13 +219,14 @@ void MeshArguments::add_encoder_to(Command& app) {
            ->one_of({"thesis", "main"})
            ->type_name("NAME"),
        modes,
-       add_quantity(app, "--fade", coding_.fade, Dimension::fraction,
-                    "Share of the corrections outside the basis that fades per second (--basis) [98%]")
-           ->check(within(Dimension::fraction, "0%", "100%")),
+       fade_ = add_quantity(app, "--fade", coding_.fade, Dimension::fraction,
+                            "Share of the corrections outside the basis that fades per second (with a basis) [98%, or 0% for a "
+                            "--deformable-visual of 0.01mm and less]")
+                   ->check(within(Dimension::fraction, "0%", "100%")),
        app.add_option(
               "--nugget", nugget,
               "How much of a vertex's movement its neighbours do not share: 2%, 5%, 30%, or all for a choice per packet, at "
-              "two to four times the cost (--profile main) [5% with --basis, else 2%]")
+              "two to four times the cost (--profile main) [5% with --basis and a --deformable-visual above 0.01mm, else 2%]")
            ->one_of({"2%", "5%", "30%", "all"})
            ->type_name("SHARE"),
        shares_[0], shares_[1],
@@ -261,8 +262,20 @@ SenderOptions MeshArguments::sender(const TriggerArguments& triggers) const {
       .policy = {.key_interval = triggers.key_interval()}};
 }
 
+/// Where nearly every vertex is coded in every packet, what fades is sent again, and vertices follow their parents closely.
+DeformableCoding MeshArguments::deformable_coding() const {
+  constexpr double kNearlyExact = 1e-5;  // [m]
+  DeformableCoding out = coding_;
+  if (thresholds_.visual > kNearlyExact) return out;
+  if (fade_->count() == 0) out.fade = 0;
+  if (out.weight_sets == 0) out.weight_sets = 1;
+  return out;
+}
+
 TraceCoding MeshArguments::coding(const TriggerArguments& triggers) const {
-  return {.deformable = coding_, .spring_modes = static_cast<std::uint8_t>(modes_), .is_eased = is_main() && triggers.reduces()};
+  return {.deformable = deformable_coding(),
+          .spring_modes = static_cast<std::uint8_t>(modes_),
+          .is_eased = is_main() && triggers.reduces()};
 }
 
 Option* add_interpolation(Command& app, ReplicaOptions& options) {

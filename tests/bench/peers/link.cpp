@@ -56,7 +56,7 @@ struct OurSetting {
   bool lossy = false;            ///< main: given what the grid rounded, and allowed the error of that rounding
   std::uint8_t weight_sets = 1;  ///< main
   std::size_t clusters = 0;      ///< main
-  std::size_t known = 1;         ///< clusters are found on the first of so many parts of the frames
+  std::size_t known = 1;         ///< early: clusters are found on the first of so many parts of the frames
 };
 
 /// Steps of the stream's grid to a unit of the table's.
@@ -195,7 +195,7 @@ std::vector<Scheme> all_schemes() {
     out.push_back(ours(name, "nugget 2%", {.lossy = lossy}));
     out.push_back(ours(name, "nugget all", {.lossy = lossy, .weight_sets = 7}));
     out.push_back(ours(name, "40 clusters", {.lossy = lossy, .weight_sets = 2, .clusters = 40}));
-    out.push_back(ours(name, "40, first quarter", {.lossy = lossy, .weight_sets = 2, .clusters = 40, .known = 4}));
+    out.push_back(ours(name, "40 early clusters", {.lossy = lossy, .weight_sets = 2, .clusters = 40, .known = 4}));
   }
   out.push_back(ours("tactus thesis (8 bits)", "key packets", {.profile = DeformableProfile::thesis, .chained = false}));
   out.push_back(ours("tactus thesis (8 bits)", "models restarted", {.profile = DeformableProfile::thesis}));
