@@ -70,7 +70,7 @@ OptionText Option::text() const {
                   .choices = choices_,
                   .is_argument = option_->get_positional(),
                   .is_required = option_->get_required(),
-                  .takes_value = option_->get_items_expected_min() > 0 || !choices_.empty(),
+                  .takes_value = option_->get_items_expected_min() > 0,
                   .is_repeated = option_->get_items_expected_max() > 1};
   for (const std::string& name : option_->get_snames()) text.names.push_back("-" + name);
   for (const std::string& name : option_->get_lnames()) text.names.push_back("--" + name);
@@ -103,7 +103,7 @@ Failure Command::lack() const {
 void Command::heading(const std::string& heading) { app_->group(heading); }
 
 Option* Command::keep(CLI::Option* option) {
-  option->group(heading_of(option->get_name()));
+  option->group(app_->get_parent() != nullptr ? heading_of(option->get_name()) : "Options");
   return &options_.emplace_back(*option);
 }
 
@@ -230,7 +230,7 @@ Failure wrong_use(const CLI::ParseError& error, const CLI::App& app) {
 }  // namespace
 
 tl::expected<std::string, Failure> Command::help_of(std::span<const std::string> words) const {
-  if (words.empty()) return app_->help(app_->get_parent() != nullptr ? words_of(*app_->get_parent()) : "");
+  if (words.empty()) return app_->get_formatter()->make_help(app_, words_of(*app_), CLI::AppFormatMode::Normal);
   for (const Command& command : commands_) {
     if (command.app_->get_name() != words.front()) continue;
     if (!command.needs_.empty()) return tl::unexpected(command.lack());
@@ -243,6 +243,7 @@ CommandText Command::text() const {
   CommandText text{.help = app_->get_description(), .heading = app_->get_group(), .footer = app_->get_footer()};
   for (const CLI::App* app = app_; app != nullptr; app = app->get_parent())
     text.words.insert(text.words.begin(), app->get_name());
+  if (CLI::Option* help = app_->get_help_ptr()) text.options.push_back(Option(*help).text());
   for (const Option& option : options_) text.options.push_back(option.text());
   for (const Command& command : commands_)
     if (command.needs_.empty()) text.commands.push_back(command.text());
@@ -261,8 +262,12 @@ Program::~Program() = default;
 
 tl::expected<Program::Parsed, Failure> Program::parse(int argc, char** argv) {
   wants_json_ = std::any_of(argv, argv + argc, [](std::string_view word) { return word == "--json"; });
+  std::vector<std::string> words(argv + 1, argv + argc);
+  if (words.size() > 1 && words.front() == "help" && !words[1].starts_with('-'))
+    words.insert(words.begin() + 1, "--");  // what follows is the name of a command, and does not run it
+  std::ranges::reverse(words);              // as CLI11 takes them
   try {
-    app_->parse(argc, argv);
+    app_->parse(std::move(words));
   } catch (const CLI::CallForHelp&) {
     fmt::print("{}", app_->help());
     return Parsed::done;

@@ -38,17 +38,22 @@ std::string brief(const std::string& help) {
   return help.substr(0, end);
 }
 
-const OptionText kHelp{.names = {"-h", "--help"}, .help = "Print the help"};
-
 std::vector<OptionText> options_of(const CommandText& command) {
-  std::vector<OptionText> out{kHelp};
+  std::vector<OptionText> out;
   std::copy_if(command.options.begin(), command.options.end(), std::back_inserter(out),
                [](const OptionText& option) { return !option.is_argument; });
   return out;
 }
 
-/// What stands before the values of an option: its name, or with `=` of a flag that may end in one.
-std::string values_after(const OptionText& option, const std::string& name) { return option.takes_value ? name : name + "="; }
+/// What may stand where no option does: commands inside, or the values of an argument.
+std::vector<std::pair<std::string, std::string>> words_of(const CommandText& command) {
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const CommandText& inner : command.commands) out.emplace_back(inner.words.back(), inner.help);
+  for (const OptionText& option : command.options)
+    for (const std::string& choice : option.choices)
+      if (option.is_argument) out.emplace_back(choice, "");
+  return out;
+}
 
 /// Patterns of `case` for "COMMAND WORD", the word being one that goes on to a command inside.
 std::string steps(const CommandText& program) {
@@ -67,8 +72,11 @@ std::string value_lines(const CommandText& program, const std::function<std::str
     for (const OptionText& option : command.options) {
       if (option.is_argument || (!option.takes_value && option.choices.empty())) continue;
       std::vector<std::string> patterns;
-      for (const std::string& name : option.names)
-        patterns.push_back(quoted(path_of(command) + " " + values_after(option, name), "'\\''"));
+      for (const std::string& name : option.names) {
+        const std::string typed = path_of(command) + " " + name;
+        if (option.takes_value) patterns.push_back(quoted(typed, "'\\''"));
+        if (name.starts_with("--")) patterns.push_back(quoted(typed + "=", "'\\''"));
+      }
       out += fmt::format("    {}) {} ;;\n", fmt::join(patterns, " | "), list(option));
     }
   });
@@ -82,7 +90,7 @@ std::string bash_completion(const CommandText& program) {
   for_each(program, [&](const CommandText& command) {
     std::string names, commands;
     for (const OptionText& option : options_of(command)) names += fmt::format(" {}", option.names.back());
-    for (const CommandText& inner : command.commands) commands += " " + inner.words.back();
+    for (const auto& [word, help] : words_of(command)) commands += " " + word;
     lines += fmt::format("    {}) options='{}' commands='{}' ;;\n", quoted(path_of(command), "'\\''"), names.substr(1),
                          commands.empty() ? "" : commands.substr(1));
   });
@@ -131,7 +139,7 @@ std::string zsh_completion(const CommandText& program) {
   for_each(program, [&](const CommandText& command) {
     std::vector<std::string> names, commands;
     for (const OptionText& option : options_of(command)) names.push_back(described(option.names.back(), option.help));
-    for (const CommandText& inner : command.commands) commands.push_back(described(inner.words.back(), inner.help));
+    for (const auto& [word, help] : words_of(command)) commands.push_back(described(word, help));
     lines += fmt::format("    {})\n      options=({})\n      commands=({}) ;;\n", quoted(path_of(command), "'\\''"),
                          fmt::join(names, " "), fmt::join(commands, " "));
   });
@@ -193,8 +201,8 @@ end
       }()));
   for_each(program, [&](const CommandText& command) {
     const std::string at = fmt::format("complete -c tactus -n '__tactus_at \"{}\"'", path_of(command));
-    for (const CommandText& inner : command.commands)
-      out += fmt::format("{} -f -a {} -d {}\n", at, inner.words.back(), quoted(brief(inner.help), "\\'"));
+    for (const auto& [word, help] : words_of(command))
+      out += fmt::format("{} -f -a {} -d {}\n", at, word, quoted(brief(help), "\\'"));
     for (const OptionText& option : options_of(command)) {
       out += at;
       for (const std::string& name : option.names)
