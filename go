@@ -13,7 +13,8 @@ cd "$(dirname "$0")"
 demo_packages='g++ cmake ninja-build pkgconf libexpected-dev libzstd-dev libode-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev gnuplot-nox'
 build_packages="$demo_packages libgnutls28-dev libeigen3-dev libsuitesparse-dev libspectra-dev libopenmesh-dev libusb-1.0-0-dev libhidapi-dev libboost-dev"
 bench_packages='libbenchmark-dev libgtest-dev python3 libbullet-dev'
-test_packages="$bench_packages ccache clang libclang-rt-dev clang-tidy clang-format tetgen tshark umockdev libumockdev-dev valgrind zstd"
+test_packages="$bench_packages ccache clang libclang-rt-dev clang-tidy clang-format tetgen tshark umockdev libumockdev-dev valgrind zstd
+  mandoc groff-base bsdextrautils zsh fish lintian dpkg-dev make"
 
 as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi

@@ -70,7 +70,7 @@ OptionText Option::text() const {
                   .choices = choices_,
                   .is_argument = option_->get_positional(),
                   .is_required = option_->get_required(),
-                  .takes_value = option_->get_items_expected_min() > 0 || !choices_.empty(),
+                  .takes_value = option_->get_items_expected_min() > 0,
                   .is_repeated = option_->get_items_expected_max() > 1};
   for (const std::string& name : option_->get_snames()) text.names.push_back("-" + name);
   for (const std::string& name : option_->get_lnames()) text.names.push_back("--" + name);
@@ -230,7 +230,7 @@ Failure wrong_use(const CLI::ParseError& error, const CLI::App& app) {
 }  // namespace
 
 tl::expected<std::string, Failure> Command::help_of(std::span<const std::string> words) const {
-  if (words.empty()) return app_->help(app_->get_parent() != nullptr ? words_of(*app_->get_parent()) : "");
+  if (words.empty()) return app_->get_formatter()->make_help(app_, words_of(*app_), CLI::AppFormatMode::Normal);
   for (const Command& command : commands_) {
     if (command.app_->get_name() != words.front()) continue;
     if (!command.needs_.empty()) return tl::unexpected(command.lack());
@@ -250,6 +250,7 @@ CommandText Command::text() const {
 }
 
 Program::Program(const std::string& name, const std::string& help) : Program(std::make_unique<CLI::App>(help, name)) {
+  app_->require_subcommand(0, 1);  // so that `help sim` has an argument, not a second command
   app_->get_formatter()->column_width(34);
   app_->get_formatter()->label("SUBCOMMAND", "COMMAND");
   app_->get_formatter()->label("Positionals", "Arguments");

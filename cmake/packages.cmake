@@ -30,7 +30,7 @@ endif()
 if(TARGET tactus)
   list(APPEND parts tools)
 endif()
-if(TARGET tactus_c AND EXISTS ${PROJECT_SOURCE_DIR}/bindings/python)
+if(TARGET tactus_python)
   list(APPEND parts python)
 endif()
 
@@ -54,19 +54,22 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libexpected-dev, ${dev_depends}${library_depends}")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Codec for shared haptic environments, files for development
- Headers and libraries of the codec and of the components beside it, with files for CMake and pkg-config, the specification of the
- format and examples.")
+ Headers and libraries of the codec and of the components beside it, files
+ for CMake and pkg-config, the specification of the format, and examples.")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libtactus${PROJECT_VERSION_MAJOR})
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+file(CONFIGURE OUTPUT triggers CONTENT "activate-noawait ldconfig\n" @ONLY)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/triggers)
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "Codec for shared haptic environments, C interface
- Encodes and decodes streams of object states at 1 kHz, within bounds that people feel and see.")
+ Encodes and decodes streams of object states at 1 kHz, within bounds that
+ people feel and see.")
 set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME tactus)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS "gnuplot-nox, tetgen")
 set(CPACK_COMPONENT_TOOLS_DESCRIPTION "Codec for shared haptic environments, command line
- Simulates touches, encodes them into packets, decodes them and measures the error; records haptic devices and runs sessions over
- a network.")
+ Simulates touches, encodes them into packets, decodes them and measures the
+ error; records haptic devices and runs sessions over a network.")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-tactus)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
@@ -85,13 +88,12 @@ Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
 Upstream-Name: Tactus
 
 Files: *
-Copyright: the contributors of Tactus
+Copyright: 2026 the contributors of Tactus
 License: Apache-2.0
  On Debian systems, the full text of the Apache License, Version 2.0 is in
  /usr/share/common-licenses/Apache-2.0.
 ]])
-find_program(GZIP gzip REQUIRED)
-execute_process(COMMAND ${GZIP} -9nkf ${changes} COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND gzip -9nkf ${changes} COMMAND_ERROR_IS_FATAL ANY)
 foreach(part IN LISTS parts)
   string(TOUPPER ${part} upper)
   set(folder ${doc_dir}/${CPACK_DEBIAN_${upper}_PACKAGE_NAME})

@@ -47,6 +47,16 @@ std::vector<OptionText> options_of(const CommandText& command) {
   return out;
 }
 
+/// What may stand where no option does: commands inside, or the values of an argument.
+std::vector<std::pair<std::string, std::string>> words_of(const CommandText& command) {
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const CommandText& inner : command.commands) out.emplace_back(inner.words.back(), inner.help);
+  for (const OptionText& option : command.options)
+    for (const std::string& choice : option.choices)
+      if (option.is_argument) out.emplace_back(choice, "");
+  return out;
+}
+
 /// What stands before the values of an option: its name, or with `=` of a flag that may end in one.
 std::string values_after(const OptionText& option, const std::string& name) { return option.takes_value ? name : name + "="; }
 
@@ -82,7 +92,7 @@ std::string bash_completion(const CommandText& program) {
   for_each(program, [&](const CommandText& command) {
     std::string names, commands;
     for (const OptionText& option : options_of(command)) names += fmt::format(" {}", option.names.back());
-    for (const CommandText& inner : command.commands) commands += " " + inner.words.back();
+    for (const auto& [word, help] : words_of(command)) commands += " " + word;
     lines += fmt::format("    {}) options='{}' commands='{}' ;;\n", quoted(path_of(command), "'\\''"), names.substr(1),
                          commands.empty() ? "" : commands.substr(1));
   });
@@ -131,7 +141,7 @@ std::string zsh_completion(const CommandText& program) {
   for_each(program, [&](const CommandText& command) {
     std::vector<std::string> names, commands;
     for (const OptionText& option : options_of(command)) names.push_back(described(option.names.back(), option.help));
-    for (const CommandText& inner : command.commands) commands.push_back(described(inner.words.back(), inner.help));
+    for (const auto& [word, help] : words_of(command)) commands.push_back(described(word, help));
     lines += fmt::format("    {})\n      options=({})\n      commands=({}) ;;\n", quoted(path_of(command), "'\\''"),
                          fmt::join(names, " "), fmt::join(commands, " "));
   });
@@ -193,8 +203,8 @@ end
       }()));
   for_each(program, [&](const CommandText& command) {
     const std::string at = fmt::format("complete -c tactus -n '__tactus_at \"{}\"'", path_of(command));
-    for (const CommandText& inner : command.commands)
-      out += fmt::format("{} -f -a {} -d {}\n", at, inner.words.back(), quoted(brief(inner.help), "\\'"));
+    for (const auto& [word, help] : words_of(command))
+      out += fmt::format("{} -f -a {} -d {}\n", at, word, quoted(brief(help), "\\'"));
     for (const OptionText& option : options_of(command)) {
       out += at;
       for (const std::string& name : option.names)

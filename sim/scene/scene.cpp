@@ -270,18 +270,36 @@ tl::expected<Scene, Diagnostic> load_scene(const std::string& path) {
   return parse_scene(text, path);
 }
 
+namespace {
+
+constexpr const char* kSceneFolders[] = {TACTUS_SCENES_SOURCE, TACTUS_SCENES_INSTALLED};
+
+/// Those that come with Tactus.
+std::string names_of_scenes() {
+  std::set<std::string> names;
+  std::error_code ignored;
+  for (const char* folder : kSceneFolders)
+    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+      if (entry.path().extension() == ".toml") names.insert(" " + entry.path().stem().string());
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ",") + name;
+  return out;
+}
+
+}  // namespace
+
 tl::expected<std::string, Diagnostic> find_scene(const std::string& name) {
   namespace fs = std::filesystem;
   std::error_code ignored;
   if (fs::is_regular_file(name, ignored)) return name;
-  for (const char* folder : {TACTUS_SCENES_SOURCE, TACTUS_SCENES_INSTALLED}) {
+  for (const char* folder : kSceneFolders) {
     const fs::path path = fs::path(folder) / (name + ".toml");
     if (name.find('/') == std::string::npos && fs::is_regular_file(path, ignored)) return path.string();
   }
   return tl::unexpected(
       Diagnostic{.error = fail(Errc::io, "R-SCN-1").value(),
                  .file = name,
-                 .remedy = "no such file, nor a scene of that name; name a file or one of the scenes in sim/scenes"});
+                 .remedy = "no such file, nor a scene of that name; name a file, or one of" + names_of_scenes()});
 }
 
 void set_pace(Scene& scene, double pace) noexcept {
