@@ -251,6 +251,7 @@ CommandText Command::text() const {
 }
 
 Program::Program(const std::string& name, const std::string& help) : Program(std::make_unique<CLI::App>(help, name)) {
+  app_->require_subcommand(0, 1);  // so that `help sim` has an argument, not a second command
   app_->get_formatter()->column_width(34);
   app_->get_formatter()->label("SUBCOMMAND", "COMMAND");
   app_->get_formatter()->label("Positionals", "Arguments");
@@ -262,12 +263,8 @@ Program::~Program() = default;
 
 tl::expected<Program::Parsed, Failure> Program::parse(int argc, char** argv) {
   wants_json_ = std::any_of(argv, argv + argc, [](std::string_view word) { return word == "--json"; });
-  std::vector<std::string> words(argv + 1, argv + argc);
-  if (words.size() > 1 && words.front() == "help" && !words[1].starts_with('-'))
-    words.insert(words.begin() + 1, "--");  // what follows is the name of a command, and does not run it
-  std::ranges::reverse(words);              // as CLI11 takes them
   try {
-    app_->parse(std::move(words));
+    app_->parse(argc, argv);
   } catch (const CLI::CallForHelp&) {
     fmt::print("{}", app_->help());
     return Parsed::done;

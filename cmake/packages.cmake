@@ -54,16 +54,13 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libexpected-dev, ${dev_depends}${library_depends}")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Codec for shared haptic environments, files for development
- Headers and libraries of the codec and of the components beside it, with
- files for CMake and pkg-config, the specification of the format and examples.")
+ Headers and libraries of the codec and of the components beside it, files
+ for CMake and pkg-config, the specification of the format, and examples.")
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libtactus${PROJECT_VERSION_MAJOR})
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
-# As dpkg-shlibdeps of others and the linker's cache want it.
-file(CONFIGURE OUTPUT control/triggers CONTENT "activate-noawait ldconfig\n")
-string(JOIN "\n" shlibs "libtactus @PROJECT_VERSION_MAJOR@ @CPACK_DEBIAN_LIBRARY_PACKAGE_NAME@ (>= @PROJECT_VERSION@)"
-  "libtactus-trace @PROJECT_VERSION_MAJOR@ @CPACK_DEBIAN_LIBRARY_PACKAGE_NAME@ (>= @PROJECT_VERSION@)" "")
-file(CONFIGURE OUTPUT control/shlibs CONTENT "${shlibs}" @ONLY)
-set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/control/triggers ${PROJECT_BINARY_DIR}/control/shlibs)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+file(CONFIGURE OUTPUT triggers CONTENT "activate-noawait ldconfig\n" @ONLY)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/triggers)
 set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "Codec for shared haptic environments, C interface
  Encodes and decodes streams of object states at 1 kHz, within bounds that
  people feel and see.")
@@ -96,8 +93,7 @@ License: Apache-2.0
  On Debian systems, the full text of the Apache License, Version 2.0 is in
  /usr/share/common-licenses/Apache-2.0.
 ]])
-find_program(GZIP gzip REQUIRED)
-execute_process(COMMAND ${GZIP} -9nkf ${changes} COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND gzip -9nkf ${changes} COMMAND_ERROR_IS_FATAL ANY)
 foreach(part IN LISTS parts)
   string(TOUPPER ${part} upper)
   set(folder ${doc_dir}/${CPACK_DEBIAN_${upper}_PACKAGE_NAME})

@@ -98,9 +98,7 @@ void setup_export_mesh(Command& group, Action& action) {
   command.add_option("TRACE", options->input, "Trace to export (MCAP), - is standard input")->type_name("")->required();
   command.add_option("-o,--output", options->output, "Folder to create")->type_name("FOLDER")->required();
   command.add_option("--mesh", options->mesh, "Name of the mesh [the only one]")->type_name("NAME");
-  command.add_option("--format", options->format, "Kind of files: obj or ply [obj]")
-      ->one_of({"obj", "ply"})
-      ->type_name("");
+  command.add_option("--format", options->format, "Kind of files: obj or ply [obj]")->one_of({"obj", "ply"})->type_name("");
   add_report_options(command, options->common);
   command.footer("Example:\n  tactus export mesh replica.mcap --format ply -o shapes");
   on_chosen<ExportMeshOptions>(command, action, options, run);
