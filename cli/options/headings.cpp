@@ -82,13 +82,13 @@ constexpr std::string_view kCodec = "Codec", kScenes = "Scenes", kTraces = "Trac
                            kStudies = "Studies", kHelp = "Help";
 
 constexpr std::array kCommands{
-    Row{"sim", kScenes},       Row{"mesh", kScenes},       Row{"encode", kCodec},    Row{"decode", kCodec},
-    Row{"compare", kCodec},    Row{"info", kCodec},        Row{"import", kTraces},   Row{"export", kTraces},
-    Row{"cut", kTraces},       Row{"merge", kTraces},      Row{"resample", kTraces}, Row{"recover", kTraces},
-    Row{"tolerable", kTraces}, Row{"devices", kLive},      Row{"capture", kLive},    Row{"play", kLive},
-    Row{"serve", kLive},       Row{"join", kLive},         Row{"link", kLive},       Row{"key", kLive},
-    Row{"sweep", kStudies},    Row{"reproduce", kStudies}, Row{"bench", kStudies},   Row{"help", kHelp},
-    Row{"completion", kHelp},
+    Row{"sim", kScenes},       Row{"mesh", kScenes},  Row{"encode", kCodec},    Row{"decode", kCodec},
+    Row{"compare", kCodec},    Row{"info", kCodec},   Row{"import", kTraces},   Row{"export", kTraces},
+    Row{"cut", kTraces},       Row{"merge", kTraces}, Row{"resample", kTraces}, Row{"recover", kTraces},
+    Row{"tolerable", kTraces}, Row{"view", kTraces},  Row{"plot", kTraces},     Row{"devices", kLive},
+    Row{"capture", kLive},     Row{"play", kLive},    Row{"serve", kLive},      Row{"join", kLive},
+    Row{"link", kLive},        Row{"key", kLive},     Row{"sweep", kStudies},   Row{"reproduce", kStudies},
+    Row{"bench", kStudies},    Row{"help", kHelp},    Row{"completion", kHelp},
 };
 
 template <std::size_t N>
