@@ -73,7 +73,9 @@ class Runner:
             yield "no error: on standard error"
         left = {str(p.relative_to(folder)) for p in folder.rglob("*") if p.name not in before}
         wanted = {words[i + 1] for i, word in enumerate(words[:-1]) if word == "-o" and words[i + 1] != "/dev/null"}
-        hidden = [name for name in left if pathlib.Path(name).name.startswith(".") or name.endswith(".part")]
+        locks = {".lock"} if words[0] == "sweep" else set()  # of its folder of results
+        hidden = [name for name in left
+                  if pathlib.Path(name).name.startswith(".") and pathlib.Path(name).name not in locks or name.endswith(".part")]
         if hidden:
             yield f"left behind: {sorted(hidden)}"
         if done.returncode == 0 and any(not (folder / name).exists() for name in wanted):

@@ -78,7 +78,8 @@ TEST(Command, TextsHoldWhatTheHelpHolds) {
   csv.add_option("-w,--way", way, "How")->one_of({"up", "down"})->type_name("WAY");
   const CommandText text = program.text().commands.at(0).commands.at(0);
   EXPECT_EQ(text.words, (std::vector<std::string>{"tactus", "import", "csv"}));
-  const OptionText& option = text.options.at(0);
+  EXPECT_EQ(text.options.at(0).names, (std::vector<std::string>{"-h", "--help"}));
+  const OptionText& option = text.options.at(1);
   EXPECT_EQ(option.names, (std::vector<std::string>{"-w", "--way"}));
   EXPECT_EQ(option.value, "WAY");
   EXPECT_EQ(option.choices, (std::vector<std::string>{"up", "down"}));
