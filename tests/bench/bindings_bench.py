@@ -4,7 +4,7 @@
 
   bindings_bench.py FOLDER    writes into FOLDER the streams that it pushes, rigid.tct and mesh.tct, for bindings_bench.mjs
 
-PYTHONPATH and LD_LIBRARY_PATH name the package and the libraries of a build: bindings/README.md has the command.
+PYTHONPATH names the package of a build: bindings/README.md has the command.
 """
 import math
 import pathlib
