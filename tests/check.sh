@@ -57,7 +57,7 @@ consumer() { # BUILD_DIR
   rm -rf "$scratch"
   cmake --install "$1" --prefix "$prefix" >/dev/null
   check_headers "$prefix/include/tactus"
-  for component in codec seal modes surface fem sim falcon hid; do
+  for component in codec seal modes surface fem sim falcon hid c c_trace; do
     installed "$component" || continue
     cmake -S tests/consumer/installed -B "$scratch/$component" -DCOMPONENT="$component" -DCMAKE_PREFIX_PATH="$prefix"
     cmake --build "$scratch/$component"
@@ -83,6 +83,8 @@ installed() { # COMPONENT
 codec_only() {
   build codec-only
   consumer "$PWD/build/codec-only"
+  bindings=$(find build/codec-only/consumer/prefix -name '*.so*' -o -name 'tactus_session.h' -o -path '*/tactus/c.cmake' -o -path '*/dist-packages/*')
+  [ -z "$bindings" ] || die "the codec alone comes with $bindings"
   needed=$(readelf -d build/codec-only/consumer/codec/consumer | sed -n 's/.*NEEDED.*\[\(.*\)\]/\1/p' | sort | tr '\n' ' ')
   echo "run-time libraries: $needed"
   for library in $needed; do
