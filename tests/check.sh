@@ -35,7 +35,7 @@ run_tests() { # PRESET
   ctest --preset "$1" -j "$jobs"
 }
 
-sources() { find codec io metrics sim device cli conformance tests \( -name '*.h' -o -name '*.cpp' \) -print | LC_ALL=C sort; }
+sources() { find codec io metrics sim device cli bindings examples conformance tests \( -name '*.h' -o -name '*.cpp' -o -name '*.c' \) -print | LC_ALL=C sort; }
 
 # Every installed header must stand alone: it includes what it needs, and only what is installed.
 check_headers() { # INCLUDE_DIR
@@ -111,7 +111,7 @@ exact() {
 
 tidy() {
   cmake --preset clang >/dev/null
-  run-clang-tidy -quiet -p build/clang -j "$jobs" "^$PWD/(codec|io|metrics|sim|device|cli|conformance)/" >build/clang/tidy.txt 2>&1 ||
+  run-clang-tidy -quiet -p build/clang -j "$jobs" "^$PWD/(codec|io|metrics|sim|device|cli|bindings|conformance)/" >build/clang/tidy.txt 2>&1 ||
     { grep -E '(warning|error):' build/clang/tidy.txt | sort -u; die "clang-tidy has findings; the whole text is in build/clang/tidy.txt"; }
 }
 
