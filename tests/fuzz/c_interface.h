@@ -1,34 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The C interface from fuzz targets: handles that destroy themselves, and what every status must come with.
+/// The C interface from fuzz targets: what every status must come with.
 #pragma once
 
-#include <tactus.h>
-
 #include <cstdint>
-#include <memory>
 #include <string_view>
 
+#include "tests/bindings/handles.h"
 #include "tests/fuzz/require.h"
 
 namespace tactus::c_fuzz {
 
-template <auto destroy>
-struct Destroy {
-  void operator()(auto* handle) const { destroy(handle); }
-};
-using Scene = std::unique_ptr<tactus_scene, Destroy<tactus_scene_destroy>>;
-using Builder = std::unique_ptr<tactus_scene_builder, Destroy<tactus_scene_builder_destroy>>;
-using Sender = std::unique_ptr<tactus_sender, Destroy<tactus_sender_destroy>>;
-using Receiver = std::unique_ptr<tactus_receiver, Destroy<tactus_receiver_destroy>>;
-using Player = std::unique_ptr<tactus_player, Destroy<tactus_player_destroy>>;
-using Writer = std::unique_ptr<tactus_writer, Destroy<tactus_writer_destroy>>;
+using namespace c_test;
 
-template <class T>
-T sized() {
-  T out{};
-  out.size = sizeof(T);
-  return out;
-}
 template <auto init, class T>
 T filled() {
   T out;
