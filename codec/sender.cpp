@@ -90,7 +90,9 @@ Result<Sender> Sender::create(SharedScene scene, const SenderOptions& options) t
   if (!scene->moving().empty()) TACTUS_CHECK(RigidEncoder::check(options.triggers, scene->grid));
   if (!scene->deformables.empty()) TACTUS_CHECK(DeformableEncoder::check(options.deformable));
   if (scene->loads) TACTUS_CHECK(LoadEncoder::check(options.load));
-  return Sender(std::make_unique<Impl>(std::move(scene), options));
+  SenderOptions used = options;
+  if (scene->moving().empty()) used.triggers = {};  // they may be anything
+  return Sender(std::make_unique<Impl>(std::move(scene), used));
 } catch (const std::bad_alloc&) {
   return out_of_memory();
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* Play two streams of one scene side by side: packets, hash of the last state, and how far apart the first object is shown.
-   compare_streams.py is the same program.   usage: compare_streams A.tct B.tct */
+   compare_streams.py and compare_streams.mjs are the same program.   usage: compare_streams A.tct B.tct */
 #include <math.h>
 #include <stdio.h>
 #include <tactus.h>
@@ -24,7 +24,8 @@ int main(int argc, char** argv) {
       tactus_packet_info info = {.size = sizeof info};
       for (; tactus_player_play(players[i], tick, &info, &error) == TACTUS_OK; ++packets[i]) bytes[i] += info.bytes;
       if (tactus_player_next_tick(players[i], &next[i], &error) != TACTUS_OK) next[i] = INT64_MAX;
-      if (tactus_receiver_poses(tactus_player_receiver(players[i]), tick, 0, 1, &shown[i], &error) != TACTUS_OK) return 1;
+      if (tactus_receiver_poses(tactus_player_receiver(players[i]), tick, 0, 1, &shown[i], &error) != TACTUS_OK)
+        return fprintf(stderr, "%s: no rigid object\n", argv[i + 1]), 1;
     }
     const double *a = shown[0].position, *b = shown[1].position;
     farthest = fmax(farthest, hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]));

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Play two streams of one scene side by side: packets, hash of the last state, and how far apart the first object is shown. In Python;
-compare_streams.c is the same program.   usage: compare_streams.py A.tct B.tct"""
+compare_streams.c and compare_streams.mjs are the same program.   usage: compare_streams.py A.tct B.tct"""
 import sys
 
 import numpy as np

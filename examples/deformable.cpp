@@ -9,10 +9,10 @@
 
 namespace {
 
-constexpr std::uint32_t kSide = 20;      // squares
-constexpr double kEdge = 0.005;          // [m]
-constexpr std::int64_t kFrame = 17;      // ticks
-constexpr double kStiffness = 500;       // [N/m] of the coupling between probe and surface
+constexpr std::uint32_t kSide = 20;  // squares
+constexpr double kEdge = 0.005;      // [m]
+constexpr std::int64_t kFrame = 17;  // ticks
+constexpr double kStiffness = 500;   // [N/m] of the coupling between probe and surface
 
 tactus::TriMesh sheet() {
   tactus::TriMesh mesh;

@@ -35,7 +35,7 @@ run_tests() { # PRESET
   ctest --preset "$1" -j "$jobs"
 }
 
-sources() { find codec io metrics sim device cli conformance tests \( -name '*.h' -o -name '*.cpp' \) -print | LC_ALL=C sort; }
+sources() { find codec io metrics sim device cli bindings examples conformance tests \( -name '*.h' -o -name '*.cpp' -o -name '*.c' \) -print | LC_ALL=C sort; }
 
 # Every installed header must stand alone: it includes what it needs, and only what is installed.
 check_headers() { # INCLUDE_DIR
@@ -57,7 +57,7 @@ consumer() { # BUILD_DIR
   rm -rf "$scratch"
   cmake --install "$1" --prefix "$prefix" >/dev/null
   check_headers "$prefix/include/tactus"
-  for component in codec seal modes surface fem sim falcon hid; do
+  for component in codec seal modes surface fem sim falcon hid c c_trace; do
     installed "$component" || continue
     cmake -S tests/consumer/installed -B "$scratch/$component" -DCOMPONENT="$component" -DCMAKE_PREFIX_PATH="$prefix"
     cmake --build "$scratch/$component"
@@ -83,6 +83,8 @@ installed() { # COMPONENT
 codec_only() {
   build codec-only
   consumer "$PWD/build/codec-only"
+  bindings=$(find build/codec-only/consumer/prefix -name '*.so*' -o -name 'tactus_session.h' -o -path '*/tactus/c.cmake' -o -path '*/dist-packages/*')
+  [ -z "$bindings" ] || die "the codec alone comes with $bindings"
   needed=$(readelf -d build/codec-only/consumer/codec/consumer | sed -n 's/.*NEEDED.*\[\(.*\)\]/\1/p' | sort | tr '\n' ' ')
   echo "run-time libraries: $needed"
   for library in $needed; do
@@ -109,7 +111,7 @@ exact() {
 
 tidy() {
   cmake --preset clang >/dev/null
-  run-clang-tidy -quiet -p build/clang -j "$jobs" "^$PWD/(codec|io|metrics|sim|device|cli|conformance)/" >build/clang/tidy.txt 2>&1 ||
+  run-clang-tidy -quiet -p build/clang -j "$jobs" "^$PWD/(codec|io|metrics|sim|device|cli|bindings|conformance)/" >build/clang/tidy.txt 2>&1 ||
     { grep -E '(warning|error):' build/clang/tidy.txt | sort -u; die "clang-tidy has findings; the whole text is in build/clang/tidy.txt"; }
 }
 

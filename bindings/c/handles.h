@@ -116,8 +116,8 @@ template <class T>
 Outcome copy_out(std::span<const T> from, T* to, std::size_t capacity, std::size_t* size) noexcept {
   if (size == nullptr || (to == nullptr && capacity > 0)) return refuse();
   *size = from.size();
-  if (from.size() > capacity) return TACTUS_BUFFER_TOO_SMALL;
-  if (!from.empty()) std::memcpy(to, from.data(), from.size_bytes());
+  if (to == nullptr || from.size() > capacity) return from.empty() ? TACTUS_OK : TACTUS_BUFFER_TOO_SMALL;
+  std::memcpy(to, from.data(), from.size_bytes());
   return TACTUS_OK;
 }
 

@@ -128,7 +128,7 @@ tactus_status tactus_receiver_updates(const tactus_receiver* receiver, tactus_up
     TACTUS_CHECK(receiver_of(receiver));
     if (count == nullptr || (out == nullptr && capacity > 0)) return refuse();
     *count = receiver->updates.size();
-    if (capacity < *count) return TACTUS_BUFFER_TOO_SMALL;
+    if (out == nullptr || capacity < *count) return *count == 0 ? TACTUS_OK : TACTUS_BUFFER_TOO_SMALL;
     for (const RigidUpdate& update : receiver->updates)
       *out++ = {update.object, static_cast<std::uint32_t>(update.reason), update.level};
     return TACTUS_OK;

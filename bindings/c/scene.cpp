@@ -158,6 +158,7 @@ tactus_status tactus_scene_get_triangles(const tactus_scene* scene, uint32_t obj
                                          tactus_error* error) {
   return call(error, [&]() -> Outcome {
     TACTUS_TRY(const DeformableObject* of, deformable_of(scene, object));
+    if (of->triangles.empty()) return TACTUS_OK;
     if (out == nullptr) return refuse();
     if (capacity < 3 * of->triangles.size()) return TACTUS_BUFFER_TOO_SMALL;
     for (const Triangle& triangle : of->triangles)

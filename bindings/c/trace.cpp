@@ -177,6 +177,7 @@ tactus_status tactus_trace_get_triangles(const tactus_trace* trace, uint32_t mes
                                          tactus_error* error) {
   return call(error, [&]() -> Outcome {
     TACTUS_TRY(const TraceDeformable* of, mesh_of(trace, mesh));
+    if (of->rest.triangles.empty()) return TACTUS_OK;
     if (out == nullptr) return refuse();
     if (capacity < 3 * of->rest.triangles.size()) return TACTUS_BUFFER_TOO_SMALL;
     for (const Triangle& triangle : of->rest.triangles)

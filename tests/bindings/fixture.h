@@ -1,41 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The C interface from tests: handles that destroy themselves, and small scenes and streams.
+/// The C interface from tests: small scenes and streams.
 #pragma once
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include <tactus.h>
+#include "tests/bindings/handles.h"
 
 namespace tactus::c_test {
-
-template <auto destroy>
-struct Destroy {
-  template <class T>
-  void operator()(T* handle) const {
-    destroy(handle);
-  }
-};
-
-using Scene = std::unique_ptr<tactus_scene, Destroy<tactus_scene_destroy>>;
-using Builder = std::unique_ptr<tactus_scene_builder, Destroy<tactus_scene_builder_destroy>>;
-using Sender = std::unique_ptr<tactus_sender, Destroy<tactus_sender_destroy>>;
-using Receiver = std::unique_ptr<tactus_receiver, Destroy<tactus_receiver_destroy>>;
-using Player = std::unique_ptr<tactus_player, Destroy<tactus_player_destroy>>;
-using Writer = std::unique_ptr<tactus_writer, Destroy<tactus_writer_destroy>>;
-
-/// A struct that knows its size.
-template <class T>
-T sized() {
-  T out{};
-  out.size = sizeof(T);
-  return out;
-}
 
 /// Options with the defaults.
 template <auto init, class T>

@@ -4,6 +4,7 @@ import json
 import math
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 
@@ -181,6 +182,19 @@ def test_the_same_program_in_c_and_python(traces, tmp_path):
     for command in (script, [os.environ["TACTUS_C_EXAMPLE"]]):
         refused = subprocess.run([*command, "a.tct", "bad.tct"], capture_output=True, text=True, cwd=tmp_path)
         assert refused.returncode == 1 and "R-STR-1" in refused.stderr
+
+
+@needs_program
+@pytest.mark.skipif(shutil.which("gnuplot") is None, reason="needs gnuplot: apt-get install gnuplot-nox")
+def test_figure_of_the_thesis(traces, tmp_path):
+    command = [sys.executable, str(ROOT / "examples/figure_3_14.py")]
+    told = subprocess.run([*command, "figure.svg", traces / "rigid.mcap"], check=True, capture_output=True, text=True, cwd=tmp_path).stdout
+    rate = {line.split()[0]: float(line.split()[1]) for line in told.splitlines()[1:-1]}
+    assert len(rate) == 11 and rate["S4_NI"] > rate["S8_NI"] > rate["S30_NI"] and rate["S4_WI"] > rate["S30_WI"] > 0
+    drawn = (tmp_path / "figure.svg").read_text()
+    assert "<svg" in drawn and all(name in drawn for name in rate)
+    refused = subprocess.run([*command, "figure.pdf", traces / "rigid.mcap"], capture_output=True, text=True, cwd=tmp_path)
+    assert refused.returncode == 1 and "figures are .svg or .png" in refused.stderr
 
 
 def test_tables(tmp_path):

@@ -59,7 +59,7 @@ if has libtactus-dev; then
 fi
 if [ -e /usr/include/tactus.h ]; then
   step 'a program in C'
-  cc -std=c99 -Wall -Wextra -Wpedantic -Werror library.c $(pkg-config --cflags --libs tactus-c) -o library
+  cc -std=c99 -Wall -Wextra -Wpedantic -Werror c.c $(pkg-config --cflags --libs tactus-c) -o library
   ./library
 fi
 if has python3-tactus; then

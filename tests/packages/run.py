@@ -61,7 +61,7 @@ def provide(root, packages, build):
     inside.mkdir(parents=True)
     for package in packages:
         shutil.copy(package, inside)
-    for source in [HERE / "inside.sh", build / "examples/umbrella.cpp", *(SOURCE / "tests/consumer").glob("*.cpp"), HERE / "library.c"]:
+    for source in [HERE / "inside.sh", build / "examples/umbrella.cpp", *(SOURCE / "tests/consumer").glob("*.c*")]:
         shutil.copy(source, inside)
     shutil.copytree(SOURCE / "tests/consumer/installed", inside / "installed")
 
