@@ -257,8 +257,8 @@ TEST(Scene, OfATraceNamesNoPaths) {
   const std::string head = "name = \"t\"\nduration = 1\ngravity = [0, 0, 0]\n";
   const std::string body = "\nyoung = 1e4\npoisson = 0.3\ndensity = 1000\nposition = [0, 0, 0]\n";
   for (const char* file : {"/etc/hostname", "../scenes/bracket.obj", "./x"}) {
-    const std::string solid = "[[object]]\nname = \"o\"\nsurface = \"" + std::string(file) +
-                              "\"\nmass = 1\nfriction = 0\nposition = [0, 0, 0]\n";
+    const std::string solid =
+        "[[object]]\nname = \"o\"\nsurface = \"" + std::string(file) + "\"\nmass = 1\nfriction = 0\nposition = [0, 0, 0]\n";
     const std::string soft = "[[deformable]]\nname = \"o\"\nmesh = \"" + std::string(file) + "\"" + body;
     for (const std::string& text : {head + solid, head + soft}) {
       const auto scene = parse_attached_scene(text);
