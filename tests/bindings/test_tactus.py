@@ -100,7 +100,7 @@ def test_errors_have_class_and_rule(tmp_path):
         player.play(0)
 
 
-def test_what_c_would_misread_is_refused(tmp_path):
+def test_what_c_would_misread_is_refused():
     """Handles of another class, copies, numbers that would wrap, texts that would end early, and packets without bytes."""
     scene = tactus.build_scene([tactus.RigidObject("cube")])
     sender, receiver = tactus.Sender(scene), tactus.Receiver(scene)
