@@ -93,7 +93,7 @@ export class Scene {
   stiffness(deformable: number): Float64Array | null;
   readonly rigidBounds: RigidBounds | null;
   deformableBounds(deformable: number): DeformableBounds | null;
-  /** A scene of parseScene; those of receivers and players go with them. */
+  /** A scene of parseScene; those of receivers and players go with them. What is closed throws. */
   close(): void;
 }
 

@@ -36,6 +36,10 @@ async function bytesOf(source) {
   return readFile(source);
 }
 
+function checkBytes(bytes) {
+  if (!ArrayBuffer.isView(bytes) || bytes.BYTES_PER_ELEMENT !== 1) throw new TypeError("tactus: give bytes as a Uint8Array");
+}
+
 class Tactus {
   constructor(exports) {
     this.exports = exports;
@@ -52,6 +56,7 @@ class Tactus {
   }
 
   parseScene(bytes, limits = undefined) {
+    checkBytes(bytes);
     return withLimits(this, limits, (limitsAt) => this.memory.with(bytes.length + 8, (at) => {
       this.memory.bytes(at + 8, bytes.length).set(bytes);
       this.call("tactus_scene_parse", at + 8, bytes.length, limitsAt, at, at + 4);
@@ -198,6 +203,7 @@ export class Scene {
   close() {
     if (this.#own) this.#tactus.exports.tactus_scene_destroy(this.handle);
     this.#own = false;
+    this.handle = 0;  // the module refuses it
   }
 }
 
@@ -214,6 +220,7 @@ export class Receiver {
   }
 
   push(packet, now = null) {
+    checkBytes(packet);
     const {memory} = this.#tactus;
     const arrival = now === null ? -(2n ** 63n) : BigInt(now);  // TACTUS_NO_CLOCK
     return memory.with(packet.length, (at) => {
@@ -281,6 +288,8 @@ export class Receiver {
   close() {
     if (this.#own) this.#tactus.exports.tactus_receiver_destroy(this.#handle);
     this.#own = false;
+    this.#handle = 0;
+    this.scene.close();
   }
 }
 
@@ -290,6 +299,7 @@ export class Player {
   #handle;
 
   constructor(tactus, file, options) {
+    checkBytes(file);
     this.#tactus = tactus;
     this.#file = tactus.memory.copy(file);
     try {
@@ -325,6 +335,7 @@ export class Player {
 
   close() {
     if (this.#handle === 0) return;
+    this.receiver.close();
     this.#tactus.exports.tactus_player_destroy(this.#handle);
     this.#tactus.memory.release(this.#file);
     this.#handle = 0;

@@ -25,7 +25,8 @@ struct DecodeOptions {
   CommonOptions common;
 };
 
-/// The ticks to write, one after the other: those of another trace, a number of them, or all up to the last packet's.
+/// The ticks to write, one after the other: those of another trace, a number of them, or all up to the last packet's, which are one at
+/// least: without a packet all stays where it began.
 class TickSource {
  public:
   static tl::expected<TickSource, Failure> create(const DecodeOptions& options) {
@@ -48,7 +49,7 @@ class TickSource {
     const auto waiting = player.next_tick();
     if (!waiting && is_cut_stream(waiting.error()) && tick_ > 0) return std::nullopt;
     if (!waiting) return refuse(options_->input, waiting.error());
-    return *waiting ? std::optional(tick_++) : std::nullopt;
+    return *waiting || tick_ == 0 ? std::optional(tick_++) : std::nullopt;
   }
 
  private:

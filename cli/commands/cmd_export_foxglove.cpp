@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include <tactus/base/shown.h>
 #include <tactus/trace/foxglove_writer.h>
 #include "cli/commands/commands.h"
@@ -41,7 +39,7 @@ Shapes shapes_of(const sim::Scene& scene, const TraceInfo& info) {
   return out;
 }
 
-/// Of the scene that was named, or that of the trace, whose files are looked for beside the scenes that come with Tactus.
+/// Of the scene that was named, or that of the trace.
 tl::expected<Shapes, Failure> shapes_of(const ExportFoxgloveOptions& options, const TraceInfo& info) {
   if (!options.scene.empty()) {
     const auto path = sim::find_scene(options.scene);
@@ -51,9 +49,7 @@ tl::expected<Shapes, Failure> shapes_of(const ExportFoxgloveOptions& options, co
     return shapes_of(*scene, info);
   }
   if (info.scene.empty() || info.objects.empty()) return Shapes();
-  const auto known = sim::find_scene("push-1dof");
-  const std::string beside = known ? std::filesystem::path(*known).parent_path().string() : ".";
-  const auto scene = sim::parse_scene(info.scene, beside + "/scene.toml");
+  const auto scene = sim::parse_attached_scene(info.scene);
   if (scene) return shapes_of(*scene, info);
   fmt::print(stderr, "note: the shapes of the objects are not known: {}\n", refuse(scene.error()).value().text);
   return Shapes();

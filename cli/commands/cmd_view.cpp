@@ -87,6 +87,7 @@ tl::expected<Json, Failure> truth_json(const ViewOptions& options, TraceReader& 
       data.emplace(std::move(*created));
     }
     TACTUS_TRY(const auto cut, play(player, frame.tick, packets, options));
+    if (cut && report.ticks.count() == 0) return refuse(options.input, *cut);
     if (cut) break;
     if (const auto added = data->add(frame, player); !added)
       return refuse(options.truth, place_of_tick(frame.tick), added.error());

@@ -80,7 +80,7 @@ tl::expected<bool, Failure> MotionSource::next_of_stream(TraceFrame& frame) {
   };
   const auto waiting = player_->next_tick();
   if (!waiting) return end(waiting.error());
-  if (!*waiting) return false;
+  if (!*waiting && frames_ > 0) return false;
   while (true) {
     const auto played = player_->play(tick_);
     if (!played) return end(played.error());

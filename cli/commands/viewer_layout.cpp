@@ -75,13 +75,14 @@ Json scene_of(const TraceInfo& info) {
           {"scene", {{"transforms", {{"axisScale", 0.02}, {"showLabel", false}}}}}};
 }
 
-/// As XML has it in an attribute.
+/// As XML has it in an attribute. It has neither U+FFFE nor U+FFFF, which become U+FFFD.
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
     if (c == '&') out += "&amp;";
     else if (c == '<') out += "&lt;";
     else if (c == '"') out += "&quot;";
+    else if ((c == '\xBE' || c == '\xBF') && out.ends_with("\xEF\xBF")) out += '\xBD';
     else out += c;
   }
   return out;

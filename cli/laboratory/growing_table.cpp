@@ -70,7 +70,7 @@ tl::expected<GrowingTable, Failure> GrowingTable::open(std::string path, Row col
   std::error_code failed;
   std::string text;
   if (std::filesystem::exists(out.path_, failed)) {
-    auto found = read_file(out.path_);
+    auto found = read_regular_file(out.path_);
     if (!found) return tl::unexpected(found.error());
     text = *std::move(found);
   }
@@ -87,6 +87,8 @@ tl::expected<GrowingTable, Failure> GrowingTable::open(std::string path, Row col
     if (out.rows_.back().size() != out.columns_.size()) return out.refuse_row(out.rows_.size() - 1);
   }
   if (at == text.size()) return out;
+  if (text.find('\n', at) != std::string::npos)
+    return out.refuse_row(out.rows_.size());  // it holds others: its quotes are damaged
   const Descriptor table = open_table(out.path_, 0);
   const bool cut = table.is_open() && ftruncate(table.number(), static_cast<off_t>(at)) == 0;  // a row that was cut off
   if (!cut) return refuse_write(out.path_, errno);

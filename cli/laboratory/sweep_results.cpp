@@ -61,8 +61,10 @@ Json context(const SweepPlan& plan, const SweepResults::Digests& digests) {
 
 /// The digests that a folder's context.json names.   err  it is of another sweep or program
 tl::expected<SweepResults::Digests, Failure> digests_of(const std::string& path, const SweepPlan& plan) {
-  TACTUS_TRY(const auto text, read_file(path));
-  const Json before = Json::parse(text, nullptr, false);
+  constexpr int kDeepest = 32;  // what lies deeper is left out: copies of it would take the whole stack
+  TACTUS_TRY(const auto text, read_regular_file(path));
+  const Json before = Json::parse(
+      text, [](int depth, auto, const Json&) { return depth <= kDeepest; }, false);
   if (!before.is_object() || before.value("sweep", Json()) != identity(plan)) {
     return refuse(shown_path(path) + ": this folder holds a sweep with another command, other inputs, parameters or measures",
                   kOtherFolder);

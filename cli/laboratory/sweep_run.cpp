@@ -36,6 +36,9 @@ std::string quoted(const std::string& word) {
   return out + '\'';
 }
 
+/// A path that no command takes for an option.
+std::string as_argument(const std::string& path) { return path.starts_with('-') ? "./" + path : path; }
+
 /// What a command said on standard error, its error not as JSON.
 std::string in_words(std::string said) {
   while (!said.empty() && said.back() == '\n') said.pop_back();
@@ -147,23 +150,29 @@ std::string as_typed(const std::vector<std::string>& words) {
 
 tl::expected<SweepInputs, Failure> SweepInputs::open(const SweepPlan& plan, std::string folder,
                                                      const std::vector<std::string>& given) {
-  SweepInputs out(std::move(folder));
+  SweepInputs out(as_argument(folder));
   std::vector<std::size_t> all(plan.points());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
   const auto files = files_of(plan, all);
   std::error_code failed;
   for (const std::string& one : given) {
     if (fs::is_directory(one, failed)) {
+      const std::size_t before = out.given_.size();
       for (const auto& [file, made] : files)
-        if (const std::string path = fmt::format("{}/{}", one, file); fs::exists(path, failed)) out.given_[file] = path;
-      continue;
+        if (const std::string path = as_argument(one) + "/" + file; fs::exists(path, failed)) out.given_[file] = path;
+      if (out.given_.size() > before) continue;
+      return refuse_arguments(fmt::format("--inputs {}: holds no file of an input of the plan", shown(one)),
+                              "Give one with the files that the points use, named as `--list` shows them.");
     }
     const std::size_t equals = std::min(one.find('='), one.size());
     const SweepInput* input = plan.input_named(one.substr(0, equals));
     if (equals == one.size() || !input)
       return refuse_arguments(fmt::format("--inputs {}: is no folder, and no input of the plan with its file", shown(one)),
                               "Give a folder, or NAME=FILE with the name of an [[input]].");
-    out.given_[input->file] = one.substr(equals + 1);
+    if (!files.contains(input->file))
+      return refuse_arguments(fmt::format("--inputs {}: no point uses a file {}", shown(one), input->file),
+                              "Give a folder with the files that the points use, named as `--list` shows them.");
+    out.given_[input->file] = as_argument(one.substr(equals + 1));
   }
   return out;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include <tactus/base/shown.h>
 #include <tactus/sim/scene/scene.h>
 #include <tactus/sim/scene/toml_text.h>
 
@@ -13,6 +14,7 @@ namespace {
 
 constexpr double kLargest = 1e6;  // [m]
 constexpr std::size_t kMostText = std::size_t{4} << 20;
+constexpr std::size_t kMostNumbers = std::size_t{1} << 23;  // of surfaces: 500 MB while the page is written
 
 std::optional<double> length_of(const toml::node_view<const toml::node>& node) {
   const auto value = node.value<double>();
@@ -51,6 +53,11 @@ tl::expected<nlohmann::ordered_json, Failure> scene_shapes(const std::string& na
   if (!path) return refuse(path.error());
   const auto scene = sim::load_scene(*path);
   if (!scene) return refuse(scene.error());
+  std::size_t numbers = 0;
+  for (const sim::SceneObject& object : scene->objects)
+    numbers += 3 * (object.surface.vertices.size() + object.surface.triangles.size());
+  if (numbers > kMostNumbers)
+    return refuse(shown_path(*path) + ": its surfaces are more than a page can hold", "Give a scene with coarser surfaces.");
   nlohmann::ordered_json out{{"objects", nlohmann::ordered_json::array()}};
   if (scene->floor) out["floor"] = *scene->floor;
   for (const sim::SceneObject& object : scene->objects) {

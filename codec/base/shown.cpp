@@ -12,14 +12,16 @@ constexpr std::string_view kCut = "...";
 
 std::uint8_t byte_of(std::string_view text, std::size_t i) noexcept { return static_cast<std::uint8_t>(text[i]); }
 
-/// U+0000 to U+001F, U+007F to U+009F, U+061C, U+200E, U+200F, U+2028 to U+202E, U+2066 to U+2069.   pre  one UTF-8 sequence
+/// U+0000 to U+001F, U+007F to U+009F, U+061C, U+200E, U+200F, U+2028 to U+202E, U+2066 to U+2069; U+FFFE and U+FFFF, which no XML may
+/// have.   pre  one UTF-8 sequence
 bool has_power(std::string_view c) noexcept {
   const std::uint8_t lead = byte_of(c, 0);
   if (c.size() == 1) return lead < 0x20 || lead == 0x7F;
   const std::uint8_t second = byte_of(c, 1);
   if (c.size() == 2) return (lead == 0xC2 && second < 0xA0) || (lead == 0xD8 && second == 0x9C);
-  if (c.size() > 3 || lead != 0xE2) return false;
+  if (c.size() > 3) return false;
   const std::uint8_t third = byte_of(c, 2);
+  if (lead != 0xE2) return lead == 0xEF && second == 0xBF && third >= 0xBE;
   if (second == 0x80) return third == 0x8E || third == 0x8F || (third >= 0xA8 && third <= 0xAE);
   return second == 0x81 && third >= 0xA6 && third <= 0xA9;
 }

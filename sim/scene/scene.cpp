@@ -248,16 +248,35 @@ void read_scene(TomlReader& in, const toml::table& root, const std::filesystem::
     in.fail_at(root.source(), Errc::invalid, "R-SCN-4", "touch", "users need a [touch] table that says what they feel");
 }
 
-}  // namespace
-
-tl::expected<Scene, Diagnostic> parse_scene(std::string_view text, std::string_view file) {
+/// Files that the scene names are looked for in `folder`, once `check` has found nothing.
+template <class Check>
+tl::expected<Scene, Diagnostic> parse_beside(std::string_view text, std::string_view file, const std::filesystem::path& folder,
+                                             Check check) {
   TomlReader in(file);
   Scene scene;
   scene.text = text;
-  in.parse(text, kMostSceneBytes,
-           [&](const toml::table& root) { read_scene(in, root, std::filesystem::path(file).parent_path(), scene); });
+  in.parse(text, kMostSceneBytes, [&](const toml::table& root) {
+    check(in, root);
+    if (!in.failed()) read_scene(in, root, folder, scene);
+  });
   if (in.failed()) return tl::unexpected(in.error());
   return scene;
+}
+
+void refuse_paths(TomlReader& in, const toml::table& root) {
+  constexpr std::pair<const char*, const char*> kNamingFiles[] = {{"object", "surface"}, {"deformable", "mesh"}};
+  for (const auto& [list, key] : kNamingFiles)
+    for (const toml::table* table : in.tables(root, "", list))
+      if (const toml::node* node = table->get(key);
+          node && node->value_or(std::string_view()).find('/') != std::string_view::npos)
+        in.fail_at(node->source(), Errc::invalid, "R-SCN-8", TomlReader::join(list, key),
+                   "the scene in a trace names only files that come with Tactus; give the scene itself");
+}
+
+}  // namespace
+
+tl::expected<Scene, Diagnostic> parse_scene(std::string_view text, std::string_view file) {
+  return parse_beside(text, file, std::filesystem::path(file).parent_path(), [](TomlReader&, const toml::table&) {});
 }
 
 tl::expected<Scene, Diagnostic> load_scene(const std::string& path) {
@@ -300,6 +319,13 @@ tl::expected<std::string, Diagnostic> find_scene(const std::string& name) {
       Diagnostic{.error = fail(Errc::io, "R-SCN-1").value(),
                  .file = name,
                  .remedy = "no such file, nor a scene of that name; name a file, or one of" + names_of_scenes()});
+}
+
+tl::expected<Scene, Diagnostic> parse_attached_scene(std::string_view text) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const auto folder = std::ranges::find_if(kSceneFolders, [&](const char* path) { return fs::is_directory(path, ignored); });
+  return parse_beside(text, "scene of the trace", folder != std::end(kSceneFolders) ? *folder : "/nowhere", refuse_paths);
 }
 
 void set_pace(Scene& scene, double pace) noexcept {

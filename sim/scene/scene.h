@@ -160,6 +160,9 @@ struct Scene {
 /// err  R-SCN-1..9; `file` names the place in errors; other files are looked for beside it.
 tl::expected<Scene, Diagnostic> parse_scene(std::string_view text, std::string_view file);
 tl::expected<Scene, Diagnostic> load_scene(const std::string& path);
+/// The scene that a trace carries, which a stranger may have written: it names files that come with Tactus, no paths.
+/// err  R-SCN-2..9
+tl::expected<Scene, Diagnostic> parse_attached_scene(std::string_view text);
 
 /// Path of a scene: `name` itself if it is a file, else <name>.toml among the scenes that come with Tactus.   err  R-SCN-1
 tl::expected<std::string, Diagnostic> find_scene(const std::string& name);

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The Python package against the program, the conformance vectors and itself."""
+import copy
+import ctypes
 import json
 import math
 import os
 import pathlib
 import shutil
+import pickle
 import subprocess
 import sys
 
@@ -96,6 +99,53 @@ def test_errors_have_class_and_rule(tmp_path):
     player.close()
     with pytest.raises(ValueError, match="closed"):
         player.play(0)
+
+
+def test_what_c_would_misread_is_refused():
+    """Handles of another class, copies, numbers that would wrap, texts that would end early, and packets without bytes."""
+    scene = tactus.build_scene([tactus.RigidObject("cube")])
+    sender, receiver = tactus.Sender(scene), tactus.Receiver(scene)
+    for make in (tactus.Sender, tactus.Receiver, tactus.StreamWriter):
+        for wrong in (sender, receiver, 5, None):
+            with pytest.raises(TypeError, match="Scene is wanted"):
+                make(wrong)
+    for again in (copy.copy, copy.deepcopy, pickle.dumps):
+        with pytest.raises(TypeError, match="cannot be copied"):
+            again(receiver)
+    with pytest.raises(ctypes.ArgumentError, match="out of range"):
+        sender.encode(1 << 64, swing(0))
+    with pytest.raises(ctypes.ArgumentError, match="out of range"):
+        receiver.state_hash(1 << 32)
+    with pytest.raises(OverflowError):
+        tactus.SenderOptions(baseline=1 << 32)
+    assert (receiver.poses(np.int64(3)) == receiver.poses(3)).all()
+    with pytest.raises(ValueError, match="null byte"):
+        tactus.build_scene([tactus.RigidObject("a\0b")])
+    with pytest.raises(ValueError, match="null byte"):
+        tactus.TraceReader("a\0b")
+    for corner in (-1, 0.5, (1 << 32) + 1):
+        with pytest.raises(ValueError, match="whole numbers"):
+            tactus.build_scene(meshes=[tactus.Mesh("m", np.eye(3), np.array([[0, 1, corner]]))])
+    with pytest.raises(ValueError, match="contacts"):
+        sender.encode(0, swing(0), np.zeros((1, 1), tactus.CONTACT))
+    writer, packets = tactus.StreamWriter(scene), [p for tick in range(200) for p in sender.encode(tick, swing(tick))]
+    decoded = receiver.push(bytearray(packets[0].data))
+    with pytest.raises(TypeError):
+        receiver.push("packet")
+    with pytest.raises(ValueError, match="no bytes"):
+        writer.add(decoded)
+
+
+def test_a_few_bytes_do_not_ask_for_all_memory():
+    scene = tactus.build_scene([tactus.RigidObject("cube")])
+    sender, writer = tactus.Sender(scene), tactus.StreamWriter(scene)
+    for tick in (0, 100, (1 << 32) - 100):
+        for packet in sender.encode(tick, swing(tick)):
+            writer.add(packet)
+    stream = writer.finish()
+    with pytest.raises(ValueError, match="implausibly far"):
+        tactus.decode(stream)
+    assert len(tactus.decode(stream, ticks=[0, 100, (1 << 32) - 100]).poses) == 3
 
 
 def test_states_are_those_of_the_conformance_vectors():

@@ -199,7 +199,7 @@ def mutated_mcap(parts, rng):
         target.insert(rng.randrange(len(target) + 1), target[rng.randrange(len(target))])
     out = []
     for opcode, content in parts:
-        if opcode != CHUNK:
+        if isinstance(content, bytes):  # also of an opcode that became that of a chunk
             out.append(record(opcode, content[:-4] + bytes(4) if opcode == ATTACHMENT else content))
             continue
         records = b"".join(record(op, c) for op, c in content if isinstance(c, bytes))

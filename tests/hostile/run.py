@@ -14,6 +14,7 @@ Right is: an end within 10 s of CPU time and 1 GiB of memory, by no signal, with
 (but for what `sim` says it leaves), and then one that is there.
 """
 import argparse
+import functools
 import os
 import pathlib
 import random
@@ -116,13 +117,14 @@ def make_seeds(program, folder):
     tactus("import", "mesh", "frames", "-o", "mesh.mcap", "-q")
     tactus("encode", "mesh.mcap", "-o", "mesh.tct", "-q", "--haptic", "off")
     tactus("encode", "mesh.mcap", "-o", "thesis.tct", "-q", "--haptic", "off", "--profile", "thesis")
+    tactus("encode", "mesh.mcap", "-o", "clusters.tct", "-q", "--haptic", "off", "--clusters", "2")
     tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
     off = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n"
     ply = ("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 4\n"
            "property list uchar int vertex_indices\nend_header\n" + off.split("\n", 2)[2])
     bombs.plan(folder, bombs.PLOT)
     scenes = pathlib.Path(__file__).parents[2] / "sim" / "scenes"
-    return {"streams": [("tct", read(f"{n}.tct")) for n in ("rigid", "mesh", "thesis")],
+    return {"streams": [("tct", read(f"{n}.tct")) for n in ("rigid", "mesh", "thesis", "clusters")],
             "traces": [("mcap", read("rigid.mcap")), ("mcap", read("mesh.mcap"))],
             "tables": [("csv", read("rigid.csv")[:20000]), ("csv", b"t,x,y,z,s\n" + b"".join(b"%g,%d,2,3,a\n" % (i / 10, i) for i in range(20)))],
             "scenes": [("toml", (scenes / f"{n}.toml").read_bytes()) for n in ("push-1dof", "rotate-push-lift", "membrane-small", "msd-1d")],
@@ -141,15 +143,29 @@ def damaged(kind, form, data, rng):
     return mutate.zstd(["-1"], data) if kind == "tables" and rng.randrange(3) == 0 else data
 
 
-def commands(kind, name, rng):
+@functools.cache
+def can(program, command):
+    """Whether a program has a command that it may have been built without."""
+    return subprocess.run([program, command, "--help"], capture_output=True, check=False).returncode == 0
+
+
+def drawn(program, name, truth=None):
+    """As figures and pages, where they can be made."""
+    plot = [["plot", name, "-o", "o.svg"]] if truth is None and shutil.which("gnuplot") else []
+    view = [["view", name, "-o", "o.html", *(["--truth", truth] if truth else [])]] if can(program, "view") else []
+    return plot + view
+
+
+def commands(kind, name, rng, program):
     """What the table of kinds and commands asks for; one of it."""
     table = {
         "streams": [["info", name], ["info", name, "--packets", "--json"], ["decode", name, "-o", "o.mcap", "--interpolate", "--ticks", "200"],
-                    ["decode", name, "-o", "o.mcap"], ["export", "foxglove", name, "-o", "o.mcap"]],
+                    ["decode", name, "-o", "o.mcap"], ["export", "foxglove", name, "-o", "o.mcap"], *drawn(program, name)],
         "traces": [["info", name], ["encode", name, "-o", "o.tct"], ["encode", name, "-o", "o.tct", "--profile", "thesis"],
                    ["encode", name, "-o", "o.tct", "--basis", "4"], ["encode", name, "-o", "o.tct", "--layered"],
-                   ["export", "csv", name, "-o", "o.csv"], ["export", "mesh", name, "-o", "o"], ["export", "foxglove", name, "-o", "o.mcap"],
-                   ["compare", name, name],
+                   ["encode", name, "-o", "o.tct", "--clusters", "3"], *drawn(program, name), *drawn(program, "seed.tct", name),
+                   ["export", "csv", name, "-o", "o.csv"], ["export", "mesh", name, "-o", "o"], ["compare", name, name],
+                   ["export", "foxglove", name, "-o", "o.mcap", "--layout", "o.json"],
                    ["decode", "seed.tct", "-o", "o.mcap", "--like", name], ["sim", "push-1dof", "-o", "o.mcap", "--replay", name],
                    ["cut", name, "-o", "o.mcap", "--from", "10ms", "--rebase"], ["resample", name, "-o", "o.mcap", "--rate", "333"],
                    ["merge", name, name, "-o", "o.mcap"], ["recover", name, "-o", "o.mcap"]],
@@ -196,7 +212,7 @@ def run_damaged(runner, seeds, kinds, runs, seed, folders):
                     if form == form_2:
                         shutil.copy(seeds["home"] / f"slab.{other}", folder / f"in.{other}")
                 (folder / "seed.tct").write_bytes(seeds["streams"][0][1])
-                words = commands(kind, name, rng)
+                words = commands(kind, name, rng, runner.program)
                 folders.judge(f"{kind} {seed} {i}", folder, words, runner.findings(folder, words, {0, 1, 3}))
 
 

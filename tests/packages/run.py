@@ -32,11 +32,22 @@ def run(*words, **options):
     return subprocess.run([str(w) for w in words], check=True, text=True, **options)
 
 
+def check_modes(package):
+    """Everybody may read what is installed, and only root may write it."""
+    for line in run("dpkg-deb", "-c", package, stdout=subprocess.PIPE).stdout.splitlines():
+        mode, owner = line.split()[:2]
+        if owner != "root/root" or mode not in ("drwxr-xr-x", "-rw-r--r--", "-rwxr-xr-x", "lrwxrwxrwx"):
+            sys.exit(f"{package.name}: {line}")
+
+
 def make_packages(build, folder):
+    os.umask(0o077)  # that of a careful person
     run("cpack", "--config", build / "CPackConfig.cmake", "-B", folder, "-D", f"CPACK_OUTPUT_FILE_PREFIX={folder}", stdout=subprocess.DEVNULL)
+    os.umask(0o022)
     found = sorted(folder.glob("*.deb"))
     for package in found:
         fields = run("dpkg-deb", "-f", package, "Package", "Installed-Size", stdout=subprocess.PIPE).stdout.split()
+        check_modes(package)
         print(f"{fields[1]:16} {package.stat().st_size / 1e6:6.2f} MB, installed {int(fields[3]) / 1e3:6.1f} MB")
     if not found:
         sys.exit("no package was made")

@@ -22,7 +22,7 @@ TEST(Shown, ControlCharactersStandAsBytes) {
 TEST(Shown, DirectionsAndSeparatorsStandAsBytes) {
   EXPECT_EQ(shown("a\u202Eb"), R"(a\xe2\x80\xaeb)");
   for (const char* c : {"\u061C", "\u200E", "\u200F", "\u2028", "\u2029", "\u202A", "\u202B", "\u202C", "\u202D", "\u202E",
-                        "\u2066", "\u2067", "\u2068", "\u2069"})
+                        "\u2066", "\u2067", "\u2068", "\u2069", "\uFFFE", "\uFFFF"})
     EXPECT_EQ(shown(c).substr(0, 2), "\\x") << shown(c);
   for (const char* c : {"\u061B", "\u200D", "\u2027", "\u202F", "\u2065", "\u206A"}) EXPECT_EQ(shown(c), c);
 }

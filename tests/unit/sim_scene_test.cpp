@@ -252,6 +252,29 @@ TEST(Scene, NamesOnlyRegularFiles) {
   EXPECT_NE(mesh.error().remedy.find("regular file"), std::string::npos) << mesh.error().remedy;
 }
 
+/// Who opens a stranger's trace opens no other file of the machine.
+TEST(Scene, OfATraceNamesNoPaths) {
+  const std::string head = "name = \"t\"\nduration = 1\ngravity = [0, 0, 0]\n";
+  const std::string body = "\nyoung = 1e4\npoisson = 0.3\ndensity = 1000\nposition = [0, 0, 0]\n";
+  for (const char* file : {"/etc/hostname", "../scenes/bracket.obj", "./x"}) {
+    const std::string solid =
+        "[[object]]\nname = \"o\"\nsurface = \"" + std::string(file) + "\"\nmass = 1\nfriction = 0\nposition = [0, 0, 0]\n";
+    const std::string soft = "[[deformable]]\nname = \"o\"\nmesh = \"" + std::string(file) + "\"" + body;
+    for (const std::string& text : {head + solid, head + soft}) {
+      const auto scene = parse_attached_scene(text);
+      ASSERT_FALSE(scene) << text;
+      EXPECT_STREQ(scene.error().error.rule, "R-SCN-8");
+      EXPECT_NE(scene.error().remedy.find("come with Tactus"), std::string::npos) << scene.error().remedy;
+    }
+  }
+  EXPECT_TRUE(parse_attached_scene(kHead + kCube));
+  const auto shipped = load_scene(find_scene("bracket-and-pad").value());
+  if (!shipped) GTEST_SKIP() << "without the components that it needs";
+  const auto again = parse_attached_scene(shipped->text);
+  ASSERT_TRUE(again) << to_string(again.error());
+  EXPECT_EQ(again->objects.at(0).surface.triangles, shipped->objects.at(0).surface.triangles);
+}
+
 TEST(Scene, ItsStreamStartsFromTheFirstPoses) {
   const auto scene = parse_scene(kHead + kCube + "dof = [\"x\", \"rz\"]\n", "t.toml");
   ASSERT_TRUE(scene);

@@ -48,6 +48,13 @@ receiver.close();
 scene.close();
 player.close();
 
+// What was closed is refused, and so is what lived in it; memory that somebody else may have is not read.
+for (const closed of [() => receiver.poses(0), () => receiver.stateHash(0), () => receiver.scene.rigidBounds, () => scene.rigidBounds,
+  () => tactus.createReceiver(scene), () => player.nextTick(), () => player.receiver.poses(0), () => player.scene.rigidBounds])
+  assert.throws(closed, (error) => error instanceof TactusError && error.rule === "R-API-12", String(closed));
+for (const wrong of [bytes.buffer, new Uint16Array(4), "abc", [1, 2], {length: 4}, null, undefined])
+  for (const take of ["openPlayer", "parseScene"]) assert.throws(() => tactus[take](wrong), TypeError);
+
 // Nothing is kept: memory does not grow with use.
 const size = () => tactus.exports.memory.buffer.byteLength;
 for (let i = 0; i < 20; ++i) tactus.openPlayer(bytes).close();

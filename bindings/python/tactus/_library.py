@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import operator
 import pathlib
 from typing import Any
 
@@ -40,6 +41,36 @@ class Error(Exception):
         super().__init__(f"{subject}{text}{place} ({self.name}, {self.rule}). {self.remedy}".rstrip())
 
 
+def _whole(kind: Any) -> Any:
+    """A type of arguments that takes what `kind` can hold, integers of NumPy too; ctypes alone would wrap."""
+
+    class Whole(kind):  # type: ignore[misc]
+        @classmethod
+        def from_param(cls, value: Any) -> Any:
+            number = operator.index(value)
+            out = kind(number)
+            if out.value != number:
+                raise OverflowError(f"{number} is out of range")
+            return out
+
+    return Whole
+
+
+_WHOLE = {kind: _whole(kind) for kind in (ctypes.c_int32, ctypes.c_uint32, ctypes.c_int64, ctypes.c_uint64)}
+
+
+def text_of(text: bytes) -> bytes:
+    """For C, where a text ends at its first null byte."""
+    if b"\0" in text:
+        raise ValueError(f"{text!r} has a null byte")
+    return text
+
+
+def bytes_of(data: Any) -> bytes:
+    """Of bytes and whatever else holds some, in one row."""
+    return data if isinstance(data, bytes) else bytes(memoryview(data).cast("B"))
+
+
 class _Library:
     """A shared library whose functions are attributes; those with a tactus_error raise Error."""
 
@@ -52,7 +83,7 @@ class _Library:
         for part in parts:
             for function, (result, arguments) in _abi.FUNCTIONS[part].items():
                 entry = getattr(library, function)
-                entry.restype, entry.argtypes = result, arguments
+                entry.restype, entry.argtypes = result, [_WHOLE.get(kind, kind) for kind in arguments]
                 setattr(self, function, entry)
 
     def __getattr__(self, name: str) -> Any:  # for type checkers: __init__ sets all of them
@@ -119,6 +150,9 @@ class Handle:
             raise ValueError(f"this {type(self).__name__} is closed")
         return self._handle
 
+    def __reduce_ex__(self, _: Any) -> Any:  # two owners of one handle would both destroy it
+        raise TypeError(f"a {type(self).__name__} cannot be copied or pickled")
+
     def close(self) -> None:
         """Give the memory back; the object is of no use then."""
         if getattr(self, "_handle", None):
@@ -133,6 +167,13 @@ class Handle:
 
     def __del__(self) -> None:
         self.close()
+
+
+def handle_of(value: Any, kind: type[Handle]) -> ctypes.c_void_p:
+    """The handle of an object of this class; for C all handles are alike."""
+    if not isinstance(value, kind):
+        raise TypeError(f"a {kind.__name__} is wanted, not a {type(value).__name__}")
+    return value.handle
 
 
 def answer(structure: Any) -> Any:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import ctypes
 import dataclasses
 import os
+import pathlib
 from typing import Any, Sequence
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _abi
-from ._library import NO_CLOCK, Handle, answer, call, core, read_bytes
+from ._library import NO_CLOCK, Handle, answer, bytes_of, call, core, handle_of, read_bytes
 from .options import ReceiverOptions, SenderOptions
 from .scene import Scene
 
@@ -84,7 +85,7 @@ class Sender(Handle):
         super().__init__()
         self._options = SenderOptions(**options)
         self._buffer = (ctypes.c_uint8 * 2048)()
-        call(core().tactus_sender_create, scene.handle, self._options, ctypes.byref(self._handle))
+        call(core().tactus_sender_create, handle_of(scene, Scene), self._options, ctypes.byref(self._handle))
 
     def encode(self, tick: int, objects: npt.ArrayLike | None = None, contacts: npt.NDArray[np.void] | None = None,
                shapes: Sequence[Shape] = ()) -> list[Packet]:
@@ -99,6 +100,8 @@ class Sender(Handle):
         """
         states = _array(objects, 13, "objects")
         touched = np.ascontiguousarray(contacts if contacts is not None else np.empty(0, CONTACT), CONTACT)
+        if touched.ndim != 1:
+            raise ValueError(f"contacts have shape {touched.shape}, not (C,)")
         forms = (_abi.tactus_shape * len(shapes))()
         kept = [_fill_shape(form, shape) for form, shape in zip(forms, shapes)]
         truth = answer(_abi.tactus_truth)
@@ -211,7 +214,7 @@ class Receiver(Handle, _Shown):
 
     def __init__(self, scene: Scene, **options: Any) -> None:
         super().__init__()
-        call(core().tactus_receiver_create, scene.handle, ReceiverOptions(**options), ctypes.byref(self._handle))
+        call(core().tactus_receiver_create, handle_of(scene, Scene), ReceiverOptions(**options), ctypes.byref(self._handle))
         self._count()
 
     def _receiver(self) -> Any:
@@ -223,8 +226,8 @@ class Receiver(Handle, _Shown):
         now     [ticks] time of arrival on the receiver's clock; None: each packet counts as arriving in its own tick
         raises  Error, whose `advice` tells how to react; the receiver is then unchanged
         """
-        info = answer(_abi.tactus_packet_info)
-        call(core().tactus_receiver_push, self.handle, packet, len(packet), NO_CLOCK if now is None else now, info)
+        info, data = answer(_abi.tactus_packet_info), bytes_of(packet)
+        call(core().tactus_receiver_push, self.handle, data, len(data), NO_CLOCK if now is None else now, info)
         return Packet._of(info)
 
 
@@ -239,7 +242,7 @@ class Player(Handle, _Shown):
     def __init__(self, file: str | os.PathLike[str] | bytes, **options: Any) -> None:
         super().__init__()
         self._subject = "" if isinstance(file, bytes) else os.fspath(file)
-        self._bytes = file if isinstance(file, bytes) else open(file, "rb").read()  # the player reads it in place
+        self._bytes = file if isinstance(file, bytes) else pathlib.Path(file).read_bytes()  # the player reads it in place
         call(core().tactus_player_open, self._bytes, len(self._bytes), ReceiverOptions(**options), ctypes.byref(self._handle),
              subject=self._subject)
         self._count()
@@ -278,10 +281,12 @@ class StreamWriter(Handle):
 
     def __init__(self, scene: Scene) -> None:
         super().__init__()
-        call(core().tactus_writer_create, scene.handle, ctypes.byref(self._handle))
+        call(core().tactus_writer_create, handle_of(scene, Scene), ctypes.byref(self._handle))
 
     def add(self, packet: Packet) -> None:
-        """Ticks must not fall."""
+        """Ticks must not fall.   raises  ValueError  a packet that was decoded, which has no bytes"""
+        if len(packet.data) != packet.size:
+            raise ValueError("this packet has no bytes: give one that a Sender coded, or replace its data")
         call(core().tactus_writer_add, self.handle, packet.tick, packet.data, len(packet.data), packet.key)
 
     def take(self) -> bytes:

@@ -15,6 +15,8 @@ def _fill(self: Any, init: Any, fields: dict[str, Any]) -> None:
         if name not in known:
             raise TypeError(f"{type(self).__name__} has no field {name!r}; it has {', '.join(sorted(known))}")
         setattr(self, name, value)
+        if isinstance(value, int) and getattr(self, name) != value:
+            raise OverflowError(f"{name}: {value} is out of range")
 
 
 def _text(self: Any) -> str:

@@ -69,7 +69,7 @@ class Replica:
 def decode(stream: str | os.PathLike[str] | bytes, ticks: npt.ArrayLike | None = None, shapes: bool = False, **options: Any) -> Replica:
     """Play a stream, a path or the bytes of a file.
 
-    ticks    rising, at which it is shown; None: every tick up to that of the last packet
+    ticks    rising, at which it is shown; None: every tick up to that of the last packet, unless it is implausibly far for their bytes
     shapes   keep the displacements of meshes, too (T x V x 12 bytes)
     options  of the receiver: see ReceiverOptions
     raises   Error
@@ -89,11 +89,13 @@ def decode(stream: str | os.PathLike[str] | bytes, ticks: npt.ArrayLike | None =
 
 
 def _all_ticks(stream: str | os.PathLike[str] | bytes) -> npt.NDArray[np.int64]:
-    last = -1
+    last, size = 0, 0
     with Player(stream) as player:
         while (tick := player.next_tick()) is not None:
-            player.play(tick)
+            size += sum(packet.size for packet in player.play(tick))
             last = tick
+    if last > 600_000 + 512 * size:  # as `tactus decode`: a few bytes must not ask for gigabytes
+        raise ValueError(f"the last packet is at tick {last}, implausibly far for packets of {size} bytes in all; tell the ticks")
     return np.arange(last + 1, dtype=np.int64)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abi
-from ._library import Error, Handle, answer, call, core, read_bytes
+from ._library import Error, Handle, answer, bytes_of, call, core, read_bytes, text_of
 from .options import DeformableBounds, Limits, RigidBounds, SceneOptions
 
 
@@ -53,7 +53,8 @@ class Scene(Handle):
     def __init__(self, declaration: bytes | None = None, limits: Limits | None = None) -> None:
         super().__init__()
         if declaration is not None:
-            call(core().tactus_scene_parse, declaration, len(declaration), limits, ctypes.byref(self._handle), None)
+            data = bytes_of(declaration)
+            call(core().tactus_scene_parse, data, len(data), limits, ctypes.byref(self._handle), None)
 
     @classmethod
     def _borrowed(cls, handle: int, owner: object) -> Scene:
@@ -122,17 +123,19 @@ class _Builder(Handle):
 
     def add_rigid(self, of: RigidObject) -> None:
         pose = _abi.tactus_pose((ctypes.c_double * 3)(*of.position), (ctypes.c_double * 4)(*of.rotation))
-        call(core().tactus_scene_builder_rigid, self.handle, of.name.encode(), ctypes.byref(pose), of.dof, subject=of.name)
+        call(core().tactus_scene_builder_rigid, self.handle, text_of(of.name.encode()), ctypes.byref(pose), of.dof, subject=of.name)
 
     def add_mesh(self, of: Mesh) -> None:
         vertices = np.ascontiguousarray(of.vertices, np.float64)
         triangles = np.ascontiguousarray(of.triangles, np.uint32)
         if vertices.ndim != 2 or vertices.shape[1] != 3 or triangles.ndim != 2 or triangles.shape[1] != 3:
             raise ValueError(f"{of.name}: vertices have shape {vertices.shape} and triangles {triangles.shape}, not (V, 3) and (F, 3)")
+        if not np.array_equal(triangles, of.triangles):
+            raise ValueError(f"{of.name}: triangles are whole numbers from 0")
         options = _abi.tactus_deformable_options()
         core().tactus_deformable_options_init(options, ctypes.sizeof(options))
         options.frame_period, options.spring_modes, options.rings = of.frame_period, of.modes, of.rings
-        call(core().tactus_scene_builder_deformable, self.handle, of.name.encode(), vertices.ctypes.data, len(vertices),
+        call(core().tactus_scene_builder_deformable, self.handle, text_of(of.name.encode()), vertices.ctypes.data, len(vertices),
              triangles.ctypes.data, len(triangles), options, subject=of.name)
 
     def build(self) -> Scene:

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abi
-from ._library import Handle, answer, call, read_bytes, traces
+from ._library import Handle, answer, call, read_bytes, text_of, traces
 from .codec import Shape
 from .options import DeformableBounds, RigidBounds
 from .scene import Mesh, Scene
@@ -52,7 +52,7 @@ class TraceReader(Handle):
     def __init__(self, path: str | os.PathLike[str]) -> None:
         super().__init__()
         self._subject = os.fspath(path)
-        call(traces().tactus_trace_open, os.fsencode(path), ctypes.byref(self._handle), subject=self._subject)
+        call(traces().tactus_trace_open, text_of(os.fsencode(path)), ctypes.byref(self._handle), subject=self._subject)
         info = answer(_abi.tactus_trace_info)
         call(traces().tactus_trace_get, self.handle, info)
         self.tick_rate: int = info.tick_rate  #: ticks per second

@@ -7,5 +7,8 @@
 set -eu
 parts=$1
 shift
-seq "$parts" | parallel --quote tactus sweep "$@" -j 1 --shard "{}/$parts"
+# Each line is a whole command: in the words of its own command GNU parallel runs {= what stands in such brackets =}.
+line='tactus sweep'
+for word in "$@"; do line="$line '$(printf '%s\n' "$word" | sed "s/'/'\\\\''/g")'"; done
+seq "$parts" | while read -r part; do printf '%s\0' "$line -j 1 --shard $part/$parts"; done | parallel -0
 tactus sweep "$@" --merge
