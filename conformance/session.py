@@ -211,17 +211,19 @@ class Epoch:
     def take_fragment(self, now: int, number: int, back: int, substream: int, index: int, count: int, data: bytes) -> bool:
         sound = 2 <= count <= MOST_FRAGMENTS and index < count and back < number and 0 < len(data) <= FRAGMENT_SIZE
         require(sound and (index == count - 1 or len(data) == FRAGMENT_SIZE), "invalid", "R-SES-7")
-        have = self.fragments.setdefault((number - back, substream), {"count": count, "data": {}, "numbers": []})
-        require(have["count"] == count, "invalid", "R-SES-7")
-        have["data"][index] = data
-        have["numbers"].append(number)
-        while len(self.fragments) > MOST_IN_PIECES:
+        name = number - back, substream
+        have = self.fragments.setdefault(name, {"count": count, "data": {}, "decoded": None})
+        if len(self.fragments) > MOST_IN_PIECES:
             del self.fragments[min(self.fragments)]
-        if len(have["data"]) == count and self.decode(number - back, b"".join(have["data"][i] for i in range(count))):
-            for n in have["numbers"]:
-                self.accept(now, n, True)
-            self.fragments.pop((number - back, substream), None)
-        return False
+            if name not in self.fragments:
+                return False                                # older than all
+        require(have["count"] == count, "invalid", "R-SES-7")
+        have["data"].setdefault(index, data)
+        if len(have["data"]) < count:
+            return True
+        if have["decoded"] is None:
+            have["decoded"] = self.decode(number - back, b"".join(have["data"][i] for i in range(count)))
+        return have["decoded"]
 
     def decode(self, number: int, packet: bytes) -> bool:
         if number < 1 or not self.decoders:

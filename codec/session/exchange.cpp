@@ -5,7 +5,10 @@
 #include <cmath>
 #include <utility>
 
+#include <tactus/deformable/deformable_encoder.h>
+#include <tactus/load/load_syntax.h>
 #include <tactus/packet/substream.h>
+#include <tactus/rigid/rigid_syntax.h>
 
 namespace tactus {
 namespace {
@@ -17,15 +20,22 @@ constexpr std::uint32_t kHeavyLoss = 65536 / 20;   // from here on, what is lost
 constexpr std::int64_t kSlowestCopy = 80'000;      // [us] until the other end has it
 constexpr std::uint64_t kFirstPatience = 250'000;  // [us] while no round trip is known
 
+std::size_t largest_packet(const Scene& scene) {
+  std::size_t out = scene.moving().empty() ? 0 : max_rigid_packet(scene);
+  for (const DeformableObject& object : scene.deformables) out = std::max(out, max_packet(object));
+  if (scene.loads) out = std::max(out, max_load_packet(scene));
+  return out + 1;  // the number of its substream
+}
+
 }  // namespace
 
 void Exchange::send_with(Sender coder) {
-  if (!coder.scene()->deformables.empty()) resends_.emplace();
+  if (!coder.scene()->deformables.empty()) resends_.emplace(largest_packet(*coder.scene()));
   sender.emplace(std::move(coder));
 }
 
-void Exchange::receive_with(Receiver decoder, std::size_t largest) {
-  fragments_ = Fragments(largest);
+void Exchange::receive_with(Receiver decoder) {
+  fragments_ = Fragments(largest_packet(*decoder.scene()));
   receiver.emplace(std::move(decoder));
 }
 
@@ -81,7 +91,10 @@ Result<void> Exchange::acknowledged(const Acknowledgement& said, Reading& readin
     if (pieces) pieces->arrived(number);
     const Slot& slot = slots_[number % slots_.size()];
     if (!sender || slot.number != number) return;
-    for (std::size_t i = 0; i < slot.count; ++i) sender->acknowledge(slot.packets[i].substream, slot.packets[i].sequence);
+    const bool waits = slot.fragment.number != 0 &&
+                       !sent_fragments_.arrived(slot.fragment.number, slot.packets[0].substream, slot.fragment.index);
+    for (std::size_t i = 0; i < slot.count && !waits; ++i)
+      sender->acknowledge(slot.packets[i].substream, slot.packets[i].sequence);
   };
   const auto lost = [&](std::uint64_t number) {
     ++traffic_.lost;
@@ -118,20 +131,20 @@ bool Exchange::decode(std::uint64_t number, std::span<const std::uint8_t> packet
 }
 
 Result<void> Exchange::take(const FragmentPart& fragment, Reading& reading) noexcept {
-  reading.waits = true;
-  TACTUS_TRY(const auto whole, fragments_.take(reading.heard.number, fragment));
-  if (!whole || !decode(whole->number, whole->packet, reading)) return {};
-  for (const std::uint64_t datagram : whole->datagrams) accept(datagram, reading);
+  TACTUS_TRY(const auto taken, fragments_.take(reading.heard.number, fragment));
+  reading.complete = taken.kept;
+  reading.waits = taken.kept;
+  if (!taken.complete || !decode(taken.complete->number, taken.complete->packet, reading)) return {};
+  fragments_.decoded(*taken.complete);
+  reading.complete = true;
+  for (const std::uint64_t datagram : taken.complete->datagrams) receiver->skip_number(datagram);
   return {};
 }
 
-void Exchange::accept(std::uint64_t number, const Reading& reading) noexcept {
-  received_.accept(number, reading.now, reading.asks);
-  if (receiver) receiver->skip_number(number);
-}
-
 void Exchange::finish(const Reading& reading) noexcept {
-  if (reading.complete && !reading.waits) accept(reading.heard.number, reading);
+  if (!reading.complete) return;
+  received_.accept(reading.heard.number, reading.now, reading.asks);
+  if (receiver && !reading.waits) receiver->skip_number(reading.heard.number);
 }
 
 // Out
@@ -197,17 +210,31 @@ std::optional<std::uint64_t> Exchange::begin(std::uint64_t now, bool wanted) noe
   return number;
 }
 
-/// A piece of a packet that is too large for one datagram.
-bool Exchange::add_fragment(const Packet& packet, std::uint64_t number) noexcept {
-  const std::size_t count = (packet.bytes.size() + kFragmentSize - 1) / kFragmentSize, begin = next_fragment_ * kFragmentSize;
-  const auto bytes = packet.bytes.subspan(begin, std::min(kFragmentSize, packet.bytes.size() - begin));
-  if (!writer_.add(FragmentPart{number - packet.number, packet.substream, next_fragment_, count, bytes})) return false;
-  traffic_.payload_sent += bytes.size();
-  if (++next_fragment_ == count) {
-    ++next_packet_;
-    next_fragment_ = 0;
-  }
+bool Exchange::add_whole(const Packet& packet, std::uint64_t number, std::uint64_t now) noexcept {
+  if (!writer_.add(PacketPart{number - packet.number, packet.bytes})) return false;
+  keep(number, packet, {.bytes = packet.bytes}, now);
+  ++next_packet_;
   return true;
+}
+
+/// A piece of a packet that is too large for one datagram.
+bool Exchange::add_fragment(const Packet& packet, std::uint64_t number, std::uint64_t now) noexcept {
+  const std::size_t count = (packet.bytes.size() + kFragmentSize - 1) / kFragmentSize, index = next_fragment_;
+  const std::size_t begin = index * kFragmentSize;
+  const auto bytes = packet.bytes.subspan(begin, std::min(kFragmentSize, packet.bytes.size() - begin));
+  if (!writer_.add(FragmentPart{number - packet.number, packet.substream, index, count, bytes})) return false;
+  if (index == 0) sent_fragments_.send(packet, count);
+  slots_[number % slots_.size()].fragment = {packet.number, static_cast<std::uint16_t>(index)};
+  keep(number, packet, {index, count, bytes}, now);
+  next_fragment_ = (index + 1) % count;
+  if (next_fragment_ == 0) ++next_packet_;
+  return true;
+}
+
+void Exchange::keep(std::uint64_t number, const Packet& packet, const Resends::Portion& portion, std::uint64_t now) noexcept {
+  traffic_.payload_sent += portion.bytes.size();
+  const bool may_come_again = is_of_deformable(*sender->scene(), packet.substream) && packet.layer == Layer::all;
+  if (resends_ && may_come_again) resends_->keep(number, packet, portion, now);
 }
 
 /// Or else clients would show the past for nothing.
@@ -221,20 +248,31 @@ const Resends::Kept* Exchange::next_copy(std::uint64_t now) noexcept {
   return resends_->next(now, static_cast<std::uint64_t>(sent_.round_trip()->least / 2));
 }
 
-/// As many as fit of the packets that are lost and not too old.
+/// As many as fit of the packets that are lost and not too old, or one fragment.
 bool Exchange::add_copies(std::uint64_t number, std::uint64_t now) noexcept {
   Slot& slot = slots_[number % slots_.size()];
   bool added = false;
-  while (slot.count < slot.packets.size()) {
+  while (slot.count < slot.packets.size() && slot.fragment.number == 0) {
     const Resends::Kept* const copy = next_copy(now);
-    if (copy == nullptr || !writer_.add(PacketPart{number - copy->number, copy->bytes})) break;
+    if (copy == nullptr || (copy->count > 1 && slot.count > 0) || !add_copy(*copy, number)) break;
     traffic_.payload_sent += copy->bytes.size();
-    ++traffic_.packets_sent;
     slot.packets[slot.count++] = {copy->substream, copy->sequence};
     resends_->sent(*copy, now);
     added = true;
   }
   return added;
+}
+
+bool Exchange::add_copy(const Resends::Kept& copy, std::uint64_t number) noexcept {
+  const std::uint64_t back = number - copy.number;
+  if (copy.count == 1) {
+    if (!writer_.add(PacketPart{back, copy.bytes})) return false;
+    ++traffic_.packets_sent;
+    return true;
+  }
+  if (!writer_.add(FragmentPart{back, copy.substream, copy.index, copy.count, copy.bytes})) return false;
+  slots_[number % slots_.size()].fragment = {copy.number, copy.index};
+  return true;
 }
 
 /// As many of the waiting packets as fit, or one fragment.
@@ -248,16 +286,8 @@ bool Exchange::add_packets(std::uint64_t number, std::uint64_t now) noexcept {
       ++next_packet_;
       continue;
     }
-    if (packet.bytes.size() > kFragmentSize) {
-      if (added || !add_fragment(packet, number)) break;
-    } else {
-      if (!writer_.add(PacketPart{number - packet.number, packet.bytes})) break;
-      traffic_.payload_sent += packet.bytes.size();
-      if (resends_ && is_of_deformable(*sender->scene(), packet.substream) && packet.layer == Layer::all)
-        resends_->keep(number, packet, now);
-      ++next_packet_;
-    }
     cut = packet.bytes.size() > kFragmentSize;
+    if (cut ? added || !add_fragment(packet, number, now) : !add_whole(packet, number, now)) break;
     if (next_fragment_ == 0) ++traffic_.packets_sent;
     slot.packets[slot.count++] = {static_cast<std::uint16_t>(packet.substream), packet.sequence};
     slot.layered = slot.layered || packet.layer != Layer::all;

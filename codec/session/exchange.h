@@ -16,6 +16,7 @@
 #include <tactus/session/pieces.h>
 #include <tactus/session/received_numbers.h>
 #include <tactus/session/resends.h>
+#include <tactus/session/sent_fragments.h>
 #include <tactus/session/sent_numbers.h>
 #include <tactus/session/traffic.h>
 
@@ -37,8 +38,8 @@ class Exchange {
   std::optional<Receiver> receiver;   ///< of those that come; none: all are refused
   std::optional<PieceSender> pieces;  ///< of the declaration, until all have arrived
 
-  void send_with(Sender coder);                              ///< allocates if the scene has deformable objects
-  void receive_with(Receiver decoder, std::size_t largest);  ///< allocates for the fragments of the `largest` packet [bytes]
+  void send_with(Sender coder);         ///< allocates if the scene has deformable objects
+  void receive_with(Receiver decoder);  ///< allocates if the largest packet of the scene needs fragments
 
   // In
 
@@ -108,14 +109,19 @@ class Exchange {
     std::uint64_t now = 0;
     Asks asks = Asks::never;
     bool complete = true;  // all packets in it are decoded
-    bool waits = false;    // for other fragments
+    bool waits = false;    // for the rest of its packet, or in vain
   };
   struct PacketName {
     std::uint16_t substream = 0, sequence = 0;
   };
+  struct FragmentName {
+    std::uint64_t number = 0;  // of the packet; 0: no fragment
+    std::uint16_t index = 0;
+  };
   struct Slot {
     std::uint64_t number = 0;
     std::array<PacketName, 8> packets{};
+    FragmentName fragment{};  // of the only packet
     std::uint8_t count = 0;
     bool layered = false;
   };
@@ -135,10 +141,13 @@ class Exchange {
   void skip_number(std::uint64_t now) noexcept;
   bool misses_layers(std::uint64_t now) const noexcept;
   bool add_packets(std::uint64_t number, std::uint64_t now) noexcept;
-  bool add_fragment(const Packet& packet, std::uint64_t number) noexcept;
+  bool add_whole(const Packet& packet, std::uint64_t number, std::uint64_t now) noexcept;
+  bool add_fragment(const Packet& packet, std::uint64_t number, std::uint64_t now) noexcept;
+  void keep(std::uint64_t number, const Packet& packet, const Resends::Portion& portion, std::uint64_t now) noexcept;
   bool copies_come_in_time() const noexcept;
   const Resends::Kept* next_copy(std::uint64_t now) noexcept;
   bool add_copies(std::uint64_t number, std::uint64_t now) noexcept;
+  bool add_copy(const Resends::Kept& copy, std::uint64_t number) noexcept;
   std::span<const std::uint8_t> end(std::uint64_t now, bool asks) noexcept;
 
   Direction direction_;
@@ -148,6 +157,7 @@ class Exchange {
   SentNumbers sent_;
   Fragments fragments_{0};
   std::array<Slot, SentNumbers::kRemembered> slots_{};
+  SentFragments sent_fragments_;
   std::optional<Resends> resends_;   // none: no packet goes twice
   std::span<const Packet> packets_;  // of the last submit()
   std::size_t next_packet_ = 0, next_fragment_ = 0;

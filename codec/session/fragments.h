@@ -26,22 +26,28 @@ class Fragments {
 
   /// A packet that is complete, and the datagrams that brought it. Valid until the next call.
   struct Complete {
-    std::uint64_t number = 0;
+    std::uint64_t number = 0, substream = 0;
     std::span<const std::uint8_t> packet;
     std::span<const std::uint64_t> datagrams;
   };
+  struct Taken {
+    bool kept = false;                 ///< to be acknowledged: it is held for its packet, or that is decoded
+    std::optional<Complete> complete;  ///< the packet, once, when this was the last fragment that it lacked
+  };
   /// in   datagram  its number
-  /// out  the packet, once, when this was the last fragment that it lacked
   /// err  invalid R-SES-7: index, count or length; the packet's number is below 1, or it is larger than any of the scene
-  Result<std::optional<Complete>> take(std::uint64_t datagram, const FragmentPart& fragment) noexcept;
+  Result<Taken> take(std::uint64_t datagram, const FragmentPart& fragment) noexcept;
+  void decoded(const Complete& packet) noexcept;  ///< pre  take() has just returned it
 
  private:
   struct Packet {
     std::uint64_t number = 0, substream = 0;  // number 0: empty
     std::size_t count = 0, have = 0, size = 0;
+    bool is_decoded = false;
     std::vector<std::uint8_t> bytes;
     std::vector<std::uint64_t> datagrams;  // by fragment; 0: missing
   };
+  Packet* find(std::uint64_t number, std::uint64_t substream) noexcept;
   Packet* place_for(std::uint64_t number, const FragmentPart& fragment) noexcept;
 
   std::size_t largest_;

@@ -43,12 +43,13 @@ void ReceivedNumbers::accept(std::uint64_t number, std::uint64_t now, Asks asks)
   if (number > accepted_.newest()) newest_at_ = now;
   accepted_.add(number);
   if (asks == Asks::never) return;
-  const std::uint64_t due = asks == Asks::now ? now : now + patience_;
+  const std::uint64_t due = asks == Asks::now || ++untold_ >= kUntold ? now : now + patience_;
   due_ = std::min(due_.value_or(due), due);
 }
 
 Acknowledgement ReceivedNumbers::acknowledge(std::uint64_t now) noexcept {
   due_.reset();
+  untold_ = 0;
   Acknowledgement out;
   const std::uint64_t newest = accepted_.newest();
   out.newest = static_cast<std::uint16_t>(newest);

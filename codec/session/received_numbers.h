@@ -58,7 +58,10 @@ class ReceivedNumbers {
   bool can_acknowledge() const noexcept { return accepted_.newest() > 0; }
 
  private:
+  static constexpr unsigned kUntold = 32;  // of the 65 that an acknowledgement tells of: so one of them may be lost
+
   NumberWindow received_, accepted_;
+  unsigned untold_ = 0;          // accepted since the last acknowledgement
   std::uint64_t newest_at_ = 0;  // [us] when accepted_.newest() came
   std::uint64_t patience_;
   std::optional<std::uint64_t> due_;

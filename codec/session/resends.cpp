@@ -13,21 +13,23 @@ constexpr std::uint64_t kApart = 10'000;    // [us]
 
 }  // namespace
 
-Resends::Resends() : kept_(kKept) {
+Resends::Resends(std::size_t largest) : kept_(kKept + std::min((largest + kFragmentSize - 1) / kFragmentSize, kMostFragments)) {
   for (Kept& kept : kept_) kept.bytes.reserve(kFragmentSize);
 }
 
-void Resends::keep(std::uint64_t datagram, const Packet& packet, std::uint64_t now) noexcept {
+void Resends::keep(std::uint64_t datagram, const Packet& packet, const Portion& portion, std::uint64_t now) noexcept {
   Kept& kept = kept_[next_];
-  next_ = (next_ + 1) % kKept;
+  next_ = (next_ + 1) % kept_.size();
   waiting_ -= kept.copies;
   kept.datagram = datagram;
   kept.number = packet.number;
   kept.time = now;
   kept.substream = static_cast<std::uint16_t>(packet.substream);
   kept.sequence = packet.sequence;
+  kept.index = static_cast<std::uint16_t>(portion.index);
+  kept.count = static_cast<std::uint16_t>(portion.count);
   kept.copies = 0;
-  kept.bytes.assign(packet.bytes.begin(), packet.bytes.end());
+  kept.bytes.assign(portion.bytes.begin(), portion.bytes.end());
 }
 
 void Resends::lost(std::uint64_t datagram, std::uint64_t now, unsigned copies) noexcept {

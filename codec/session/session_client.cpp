@@ -8,9 +8,6 @@
 
 #include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
-#include <tactus/deformable/deformable_encoder.h>
-#include <tactus/load/load_syntax.h>
-#include <tactus/rigid/rigid_syntax.h>
 #include <tactus/scene/scene_syntax.h>
 #include <tactus/session/clock_offset.h>
 #include <tactus/session/exchange.h>
@@ -28,13 +25,6 @@ constexpr std::uint32_t kSomeLoss = 65536 / 50;
 constexpr std::uint64_t kRecent = 1'000'000;     // [us]: what counts as now
 constexpr std::uint64_t kButtonsEvery = 20'000;  // [us] until they are acknowledged
 constexpr unsigned kLeaves = 3;                  // one of them should arrive
-
-std::size_t largest_packet(const Scene& scene) {
-  std::size_t out = scene.moving().empty() ? 0 : max_rigid_packet(scene);
-  for (const DeformableObject& object : scene.deformables) out = std::max(out, max_packet(object));
-  if (scene.loads) out = std::max(out, max_load_packet(scene));
-  return out + 1;  // the number of its substream
-}
 
 /// An epoch, from its welcome on.
 struct Epoch {
@@ -207,7 +197,7 @@ Result<void> SessionClient::Impl::complete(std::uint64_t now) noexcept try {
     const SharedScene& scene = parsed.scene;
     TACTUS_TRY(Receiver receiver,
                Receiver::create(scene, {.replica = {.interpolation = Interpolation::playout}, .limits = options.limits}));
-    current->exchange.receive_with(std::move(receiver), largest_packet(*scene));
+    current->exchange.receive_with(std::move(receiver));
     current->playout.emplace(scene->tick_rate, options.playout);
     if (options.role == Role::observer) return {};
     TACTUS_TRY(SharedScene device, device_scene(*scene));

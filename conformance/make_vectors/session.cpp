@@ -291,7 +291,7 @@ void add_fragments(Catalogue& catalogue) {
     make(s);
     catalogue.session(name, what, s.text(), std::move(rules));
   };
-  script("fragments", "A packet in fragments: none is acknowledged before the last.", [](Script& s) {
+  script("fragments", "A packet in fragments: each is acknowledged, the last as the packet is decoded.", [](Script& s) {
     const auto pieces = cut(s.large(20, 1));
     for (std::size_t i = 0; i < pieces.size(); ++i) s.parts(20 + i, fragment(i, i, pieces.size(), pieces[i]));
   });
@@ -301,7 +301,7 @@ void add_fragments(Catalogue& catalogue) {
       s.parts(20 + i, fragment(i, i, a.size(), a[i])).parts(30 + i, fragment(i, i, b.size(), b[i]));
     s.parts(40, fragment(10, 0, b.size(), b[0]));
   });
-  script("fragments-of-five", "Five packets at a time: the oldest gives way.", [](Script& s) {
+  script("fragments-of-five", "Five packets at a time: the oldest gives way, and nothing of it is kept any more.", [](Script& s) {
     std::vector<std::vector<Bytes>> all;
     for (std::uint64_t n = 0; n < 5; ++n) all.push_back(cut(s.large(20 + 10 * n, n)));
     for (std::uint64_t n = 0; n < 5; ++n) s.parts(20 + 10 * n, fragment(0, 0, all[n].size(), all[n][0]));
@@ -338,9 +338,27 @@ void add_fragments(Catalogue& catalogue) {
              s.parts(22 + i, clock() + fragment(2 + i, i, pieces.size(), pieces[i]) + part(64, {9}));
          },
          {"R-SES-5"});
+  script("fragments-of-nothing",
+         "A whole packet in fragments that no decoder takes: what completes it is not acknowledged, nor what comes again.",
+         [](Script& s) {
+           const Bytes first(kFragmentSize, 0xff), last(9, 0xff);
+           s.parts(20, fragment(0, 0, 2, first)).parts(21, fragment(1, 1, 2, last));
+           s.parts(22, fragment(2, 1, 2, last)).parts(23, fragment(3, 0, 2, first)).packet(24, s.moved(24, 1, true));
+         });
   script(
-      "fragments-of-nothing", "A whole packet in fragments that no decoder takes: none of them is acknowledged.",
-      [](Script& s) { s.parts(20, fragment(0, 0, 2, Bytes(kFragmentSize, 0xff))).parts(21, fragment(1, 1, 2, Bytes(9, 0xff))); });
+      "fragments-again", "Fragments that come again, before their packet is whole and after; one with other bytes.",
+      [](Script& s) {
+        const auto pieces = cut(s.large(20, 8));
+        s.parts(20, fragment(0, 0, pieces.size(), pieces[0])).parts(22, fragment(2, 0, pieces.size(), Bytes(kFragmentSize, 1)));
+        for (std::size_t i = pieces.size(); i-- > 0;) s.parts(40 - i, fragment(20 - i, i, pieces.size(), pieces[i]));
+        for (std::size_t i = 0; i < pieces.size(); ++i) s.parts(41 + i, fragment(21 + i, i, pieces.size(), pieces[i]));
+      });
+  script("fragments-of-one-number",
+         "Packets of one number: that of the lowest substream gives way, and an older one has no place.", [](Script& s) {
+           const Bytes first(kFragmentSize, 0xff);
+           for (std::uint64_t i = 0; i < 5; ++i) s.parts(20 + i, fragment(i, 0, 2, first, i));
+           s.parts(25, fragment(5, 0, 2, first, 0)).parts(26, fragment(6, 0, 2, first, 1)).parts(27, fragment(8, 0, 2, first, 9));
+         });
 }
 
 void add_pieces(Catalogue& catalogue) {

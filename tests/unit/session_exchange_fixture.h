@@ -47,9 +47,7 @@ struct Ends {
     options.triggers.reduction = Reduction::none;  // a packet of the bodies in every tick
     options.policy = {.key_interval = 0, .baseline = Baseline::acknowledged};
     server->send_with(Sender::create(scene, options).value());
-    std::size_t largest = max_rigid_packet(*scene);
-    for (const DeformableObject& object : scene->deformables) largest = std::max(largest, max_packet(object));
-    client->receive_with(Receiver::create(scene).value(), largest + 1);
+    client->receive_with(Receiver::create(scene).value());
     samples.resize(objects);
   }
 

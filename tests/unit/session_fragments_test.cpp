@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <numeric>
 #include <random>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/property/allocated.h"
@@ -33,10 +35,11 @@ struct Cut {
   Bytes bytes;
 };
 
-void expect_whole(const Result<std::optional<Fragments::Complete>>& taken, const Cut& cut) {
+void expect_whole(const Result<Fragments::Taken>& taken, const Cut& cut) {
   ASSERT_TRUE(taken) << taken.error().rule;
-  ASSERT_TRUE(*taken);
-  const Fragments::Complete& whole = **taken;
+  ASSERT_TRUE(taken->complete);
+  EXPECT_FALSE(taken->kept) << "not before it is decoded";
+  const Fragments::Complete& whole = *taken->complete;
   EXPECT_EQ(whole.number, cut.number);
   EXPECT_TRUE(std::ranges::equal(whole.packet, cut.bytes));
   std::vector<std::uint64_t> numbers(cut.count());
@@ -44,10 +47,13 @@ void expect_whole(const Result<std::optional<Fragments::Complete>>& taken, const
   EXPECT_TRUE(std::ranges::equal(whole.datagrams, numbers)) << "every datagram that brought a fragment, by fragment";
 }
 
-void expect_nothing(const Result<std::optional<Fragments::Complete>>& taken) {
+void expect_only(bool kept, const Result<Fragments::Taken>& taken) {
   ASSERT_TRUE(taken) << taken.error().rule;
-  EXPECT_FALSE(*taken);
+  EXPECT_FALSE(taken->complete);
+  EXPECT_EQ(taken->kept, kept);
 }
+void expect_kept(const Result<Fragments::Taken>& taken) { expect_only(true, taken); }
+void expect_nothing(const Result<Fragments::Taken>& taken) { expect_only(false, taken); }
 
 TEST(Fragments, InEveryOrderAndDoubledThePacketComesOnce) {
   for (const std::size_t size : {kFragmentSize + 1, 2 * kFragmentSize, 3 * kFragmentSize + 7, 4 * kFragmentSize}) {
@@ -57,9 +63,12 @@ TEST(Fragments, InEveryOrderAndDoubledThePacketComesOnce) {
     do {
       Fragments fragments(10'000);
       for (std::size_t i = 0; i + 1 < order.size(); ++i)
-        for (int twice = 0; twice < 2; ++twice) expect_nothing(cut.give(fragments, order[i]));
-      expect_whole(cut.give(fragments, order.back()), cut);
+        for (int twice = 0; twice < 2; ++twice) expect_kept(cut.give(fragments, order[i]));
+      const auto last = cut.give(fragments, order.back());
+      expect_whole(last, cut);
       for (const std::size_t i : order) expect_nothing(cut.give(fragments, i));
+      fragments.decoded(*last->complete);
+      for (const std::size_t i : order) expect_kept(cut.give(fragments, i));
     } while (std::ranges::next_permutation(order).found);
   }
 }
@@ -102,14 +111,14 @@ TEST(Fragments, WrongOnesAreRefused) {
 TEST(Fragments, OfOnePacketAgreeInTheirCount) {
   Fragments fragments(5 * kFragmentSize);
   const Cut three(10, 3 * kFragmentSize);
-  expect_nothing(three.give(fragments, 0));
+  expect_kept(three.give(fragments, 0));
   FragmentPart other = three.part(1);
   other.count = 4;
   const auto taken = fragments.take(11, other);
   ASSERT_FALSE(taken);
   EXPECT_STREQ(taken.error().rule, "R-SES-7");
   EXPECT_EQ(taken.error().code, Errc::invalid);
-  expect_nothing(three.give(fragments, 1));
+  expect_kept(three.give(fragments, 1));
   expect_whole(three.give(fragments, 2), three);
 }
 
@@ -119,30 +128,52 @@ TEST(Fragments, FourPacketsAtATimeAndTheOldestGoesFirst) {
   for (std::uint64_t i = 0; i < 4; ++i)
     cuts.emplace_back(10 + i / 2 * 10, 2 * kFragmentSize + 1 + i, i % 2);  // two share a number
   for (std::size_t index = 0; index < 2; ++index)
-    for (const Cut& cut : cuts) expect_nothing(cut.give(fragments, index));
+    for (const Cut& cut : cuts) expect_kept(cut.give(fragments, index));
   const Cut older(5, 2 * kFragmentSize), newer(30, 2 * kFragmentSize);
   expect_nothing(older.give(fragments, 0));
   expect_nothing(older.give(fragments, 1));  // there was no place for it
-  expect_nothing(newer.give(fragments, 0));  // in the place of one of number 10
+  expect_kept(newer.give(fragments, 0));     // in the place of number 10, substream 0
+  expect_nothing(cuts[0].give(fragments, 0));
+  expect_nothing(cuts[0].give(fragments, 2));
   expect_whole(cuts[2].give(fragments, 2), cuts[2]);
   expect_whole(cuts[3].give(fragments, 2), cuts[3]);
   expect_whole(newer.give(fragments, 1), newer);
-  EXPECT_TRUE(cuts[1].give(fragments, 2).value());
-  expect_nothing(cuts[0].give(fragments, 2));
+  expect_whole(cuts[1].give(fragments, 2), cuts[1]);
+}
+
+/// What was acknowledged of a packet that gave way is gone: were another fragment of it kept, the sender would think that all are here.
+TEST(Fragments, APacketThatGaveWayNeverComesBack) {
+  std::mt19937_64 random(5);
+  Fragments fragments(3 * kFragmentSize);
+  std::set<std::pair<std::uint64_t, std::uint64_t>> gone, held;
+  std::uint64_t newest = 1000;
+  for (int i = 0; i < 20'000; ++i) {
+    newest += random() % 3 == 0 ? 1u : 0u;
+    const std::pair name(newest - random() % 8, random() % 3);
+    const Cut cut(name.first, 3 * kFragmentSize, name.second);
+    const auto taken = cut.give(fragments, random() % 2);
+    ASSERT_TRUE(taken);
+    ASSERT_FALSE(taken->complete) << "the third is never given";
+    if (!taken->kept) continue;
+    EXPECT_FALSE(gone.contains(name));
+    held.insert(name);
+    if (held.size() > Fragments::kMost) gone.insert(held.extract(held.begin()).value());
+  }
+  EXPECT_GT(gone.size(), 1000u);
 }
 
 TEST(Fragments, APlaceThatIsUsedAgainForgetsAll) {
   Fragments fragments(3 * kFragmentSize);
-  for (std::uint64_t n = 10; n < 200; n += 10) expect_nothing(Cut(n, 3 * kFragmentSize).give(fragments, n / 10 % 3));
+  for (std::uint64_t n = 10; n < 200; n += 10) expect_kept(Cut(n, 3 * kFragmentSize).give(fragments, n / 10 % 3));
   const Cut last(300, 2 * kFragmentSize + 5);
-  for (const std::size_t index : {2u, 0u}) expect_nothing(last.give(fragments, index));
+  for (const std::size_t index : {2u, 0u}) expect_kept(last.give(fragments, index));
   expect_whole(last.give(fragments, 1), last);
 }
 
 TEST(Fragments, TheLargestPacketOfAll) {
   const Cut cut(1, kFragmentSize * kMostFragments);
   Fragments fragments(~std::size_t{0} / 2);
-  for (std::size_t i = 0; i + 1 < cut.count(); ++i) expect_nothing(cut.give(fragments, i));
+  for (std::size_t i = 0; i + 1 < cut.count(); ++i) expect_kept(cut.give(fragments, i));
   expect_whole(cut.give(fragments, cut.count() - 1), cut);
 }
 

@@ -82,5 +82,22 @@ TEST(ReceivedNumbers, WhatIsNotAcceptedIsMissing) {
   for (std::uint64_t i = 0; i < 64; ++i) EXPECT_EQ(said.missing >> i & 1u, (199 - 1 - i) % 5 == 0 ? 1u : 0u);
 }
 
+/// So that each number is told in two acknowledgements at least, though one tells of 65.
+TEST(ReceivedNumbers, AfterThirtyTwoTheAcknowledgementIsDueAtOnce) {
+  ReceivedNumbers numbers(10'000);
+  for (std::uint64_t n = 1; n <= 31; ++n) {
+    numbers.receive(n);
+    numbers.accept(n, 100 * n, Asks::soon);
+  }
+  EXPECT_EQ(numbers.due(), 100 + 10'000);
+  numbers.accept(32, 3200, Asks::never);
+  EXPECT_EQ(numbers.due(), 100 + 10'000) << "clocks do not count";
+  numbers.accept(33, 3300, Asks::soon);
+  EXPECT_EQ(numbers.due(), 3300);
+  numbers.acknowledge(3400);
+  numbers.accept(34, 3500, Asks::soon);
+  EXPECT_EQ(numbers.due(), 3500 + 10'000);
+}
+
 }  // namespace
 }  // namespace tactus

@@ -19,13 +19,16 @@ struct Sent {
   Packet packet(std::uint64_t number) const {
     return {.bytes = bytes, .substream = 2, .sequence = static_cast<std::uint16_t>(number), .number = number};
   }
+  void keep(Resends& in, std::uint64_t datagram, std::uint64_t number, std::uint64_t now) const {
+    in.keep(datagram, packet(number), {.bytes = bytes}, now);
+  }
   std::vector<std::uint8_t> bytes;
 };
 
 TEST(Resends, WhatIsLostGoesAgainOnce) {
-  Resends resends;
+  Resends resends(0);
   const Sent sent;
-  for (std::uint64_t n = 1; n <= 5; ++n) resends.keep(n + 100, sent.packet(n), n * kMillisecond);
+  for (std::uint64_t n = 1; n <= 5; ++n) sent.keep(resends, n + 100, n, n * kMillisecond);
   EXPECT_EQ(resends.next(10 * kMillisecond, kWay), nullptr);
   EXPECT_FALSE(resends.due());
   resends.lost(103, 50 * kMillisecond, 1);
@@ -43,9 +46,9 @@ TEST(Resends, WhatIsLostGoesAgainOnce) {
 }
 
 TEST(Resends, TheSecondCopyGoesTenMillisecondsLater) {
-  Resends resends;
+  Resends resends(0);
   const Sent sent;
-  resends.keep(1, sent.packet(1), 0);
+  sent.keep(resends, 1, 1, 0);
   resends.lost(1, 50 * kMillisecond, 2);
   resends.sent(*resends.next(52 * kMillisecond, kWay), 52 * kMillisecond);
   EXPECT_EQ(resends.next(62 * kMillisecond - 1, kWay), nullptr);
@@ -55,9 +58,9 @@ TEST(Resends, TheSecondCopyGoesTenMillisecondsLater) {
 }
 
 TEST(Resends, OldPacketsDoNotGo) {
-  Resends resends;
+  Resends resends(0);
   const Sent sent;
-  resends.keep(1, sent.packet(1), 0);
+  sent.keep(resends, 1, 1, 0);
   resends.lost(1, 50 * kMillisecond, 2);
   Resends late = resends;
   EXPECT_NE(resends.next(100 * kMillisecond, kWay), nullptr) << "it arrives 120 ms after the first";
@@ -66,11 +69,11 @@ TEST(Resends, OldPacketsDoNotGo) {
 }
 
 TEST(Resends, AllPacketsOfADatagramGoTheOldestFirst) {
-  Resends resends;
+  Resends resends(0);
   const Sent sent;
-  resends.keep(9, sent.packet(12), 0);
-  resends.keep(9, sent.packet(11), 0);
-  resends.keep(8, sent.packet(10), 0);
+  sent.keep(resends, 9, 12, 0);
+  sent.keep(resends, 9, 11, 0);
+  sent.keep(resends, 8, 10, 0);
   resends.lost(9, kMillisecond, 1);
   for (const std::uint64_t number : {11u, 12u}) {
     const auto* copy = resends.next(kMillisecond, kWay);
@@ -81,9 +84,25 @@ TEST(Resends, AllPacketsOfADatagramGoTheOldestFirst) {
   EXPECT_EQ(resends.next(kMillisecond, kWay), nullptr);
 }
 
+TEST(Resends, FragmentsGoByThemselves) {
+  Resends resends(5 * 1150);
+  const Sent sent(2 * 1150 + 7);
+  for (std::size_t i = 0; i < 3; ++i)
+    resends.keep(20 + i, sent.packet(4), {i, 3, std::span(sent.bytes).subspan(i * 1150, i < 2 ? 1150 : 7)}, 0);
+  resends.lost(22, kMillisecond, 1);
+  const auto* copy = resends.next(kMillisecond, kWay);
+  ASSERT_NE(copy, nullptr);
+  EXPECT_EQ(copy->number, 4u);
+  EXPECT_EQ(copy->index, 2u);
+  EXPECT_EQ(copy->count, 3u);
+  EXPECT_EQ(copy->bytes, std::vector<std::uint8_t>(7, 7));
+  resends.sent(*copy, kMillisecond);
+  EXPECT_EQ(resends.next(kMillisecond, kWay), nullptr);
+}
+
 /// Against a list of what should go; nothing is allocated.
 TEST(Resends, ForgetsTheOldestAndAllocatesNothing) {
-  Resends resends;
+  Resends resends(0);
   std::mt19937_64 random(1);
   const Sent large(1150);
   const std::uint64_t before = testing::allocated_bytes();
@@ -91,7 +110,7 @@ TEST(Resends, ForgetsTheOldestAndAllocatesNothing) {
   for (int i = 0; i < 20'000; ++i) {
     now += random() % 5'000;
     ++number;
-    resends.keep(number, large.packet(number), now);
+    large.keep(resends, number, number, now);
     if (random() % 2) resends.lost(number - std::min<std::uint64_t>(number - 1, random() % 100), now, 1 + random() % 2);
     while (const auto* copy = random() % 4 ? resends.next(now, kWay) : nullptr) {
       ASSERT_GT(copy->number + 64, number);
