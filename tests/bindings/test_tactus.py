@@ -6,8 +6,8 @@ import json
 import math
 import os
 import pathlib
-import shutil
 import pickle
+import shutil
 import subprocess
 import sys
 
