@@ -97,7 +97,7 @@ TEST(TickQueue, OfferAllocatesNothing) {
   queue.begin_watch();
   TraceFrame frame = make_frame(1);
   frame.meshes[0].updated = true;
-  frame.changed.emplace({0});
+  frame.changed = std::vector<std::uint32_t>{0};
   const std::uint64_t before = testing::allocated_bytes();
   for (std::size_t i = 0; i <= queue.room(); ++i) queue.offer(frame, {});
   EXPECT_EQ(testing::allocated_bytes(), before);
@@ -159,7 +159,7 @@ TEST(Outbox, HoldsSoManyBytesButAlwaysOneMessage) {
   EXPECT_TRUE(outbox.push(message(40)));
 }
 
-WebRequest page_request() { return {.method = "GET", .target = "/", .host = "127.0.0.1:8080", .hosts = 1}; }
+WebRequest page_request() { return {.method = "GET", .target = "/", .host = "127.0.0.1:8080", .origin = {}, .hosts = 1}; }
 WebRequest live_request() {
   WebRequest request = page_request();
   request.target = "/live";

@@ -121,7 +121,7 @@ TEST_F(ObservedStreamTest, WhoBeginsLateHasTheServersStates) {
     EXPECT_EQ(batch["hashes"], nlohmann::json::array({fmt::format("{:016x}", late.state_hash(0))}));
     ++checked;
   }
-  EXPECT_EQ(checked, 3);
+  EXPECT_EQ(checked, 4);
 }
 
 TEST_F(ObservedStreamTest, ABatchHasTheTruthOfItsTicksAlone) {
