@@ -29,9 +29,10 @@ using namespace std::chrono_literals;
 constexpr std::size_t kMostVisitors = 32, kMostObservers = 8;
 constexpr std::uint32_t kMostHeader = 8192;                       // [bytes] of a request
 constexpr std::size_t kMostHeard = 125;                           // [bytes] of a message from an observer
+constexpr int kSystemBuffer = 1 << 17;                            // [bytes] what the system may hold beside that
 constexpr std::size_t kMostWaiting = 90, kMostBytes = 16U << 20;  // messages and bytes for one observer: three seconds
-constexpr auto kPatience = 5s, kPagePatience = 15s,
-               kIdle = 20s;  // for a request, for the page to be taken, without a sign of life
+// For a request, for the page to be taken, and without a sign of life.
+constexpr auto kPatience = 5s, kPagePatience = 15s, kIdle = 20s;
 
 std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -79,6 +80,8 @@ class Observer : public std::enable_shared_from_this<Observer> {
   Observer(WebDoor::Impl& door, Visit visit, beast::tcp_stream stream)
       : door_(door), visit_(std::move(visit)), stream_(std::move(stream)) {
     stream_.next_layer().expires_never();
+    error_code ignored;
+    stream_.next_layer().socket().set_option(asio::socket_base::send_buffer_size(kSystemBuffer), ignored);
     stream_.set_option(timeouts());
     stream_.read_message_max(kMostHeard);
     stream_.text(true);
