@@ -18,6 +18,7 @@
 #include "cli/live/meter.h"
 #include "cli/live/ticker.h"
 #include "cli/live/wire.h"
+#include "cli/observe/observation.h"
 #include "cli/options/option_needs.h"
 #include "cli/options/options_codec.h"
 #include "cli/options/options_link.h"
@@ -37,8 +38,9 @@ using Json = nlohmann::ordered_json;
 struct ServeOptions {
   std::string scene, listen = "7447", key, output;
   std::uint32_t clients = 8;
-  double duration = 0;  // [s], 0: until interrupted
-  double rate = 0;      // [bit/s] to each client
+  std::optional<std::uint32_t> observe;  // port
+  double duration = 0;                   // [s], 0: until interrupted
+  double rate = 0;                       // [bit/s] to each client
   std::uint64_t seed = 1;
   TriggerArguments triggers;
   MeshArguments meshes;
@@ -48,8 +50,9 @@ struct ServeOptions {
 /// Serves a simulated world in real time.
 class Service {
  public:
-  Service(sim::Server& world, SessionServer& sessions, ServerWire& wire)
-      : world_(world), sessions_(sessions), wire_(wire), players_(world.scene().users.size()) {
+  /// in   observation  may be null: nobody observes
+  Service(sim::Server& world, SessionServer& sessions, ServerWire& wire, Observation* observation)
+      : world_(world), sessions_(sessions), wire_(wire), observation_(observation), players_(world.scene().users.size()) {
     for (const sim::SceneUser& user : world.scene().users) devices_.push_back({.position = user.start});
   }
 
@@ -71,6 +74,7 @@ class Service {
   sim::Server& world_;
   SessionServer& sessions_;
   ServerWire& wire_;
+  Observation* observation_;
   std::vector<std::optional<std::uint16_t>> players_;  // the client that plays each user of the scene
   std::vector<DeviceSample> devices_;
   std::uint64_t refused_ = 0;
@@ -130,9 +134,11 @@ Outcome Service::step(std::uint64_t now, std::optional<TraceWriter>& trace, cons
   world_.observe();
   world_.touch(devices_);
   const TraceFrame& frame = world_.frame();
-  if (const auto sent = sessions_.submit(now, frame.tick, world_.truth()); !sent)
+  const Truth truth = world_.truth();
+  if (const auto sent = sessions_.submit(now, frame.tick, truth); !sent)
     return refuse("session", place_of_tick(frame.tick), sent.error());
   say(now);
+  if (observation_ != nullptr) observation_->offer(frame, truth.loads);
   if (trace)
     if (const auto written = trace->write(frame); !written) return refuse(output, place_of_tick(frame.tick), written.error());
   if (auto stepped = world_.step(); !stepped) return refuse(stepped.error());
@@ -167,6 +173,27 @@ Json hashes_json(const SessionServer& sessions, const tactus::Scene& scene, std:
   return out;
 }
 
+Json observers_json(const ObservationReport& observed) {
+  Json out{{"address", observed.address},
+           {"came", observed.observers},
+           {"most_at_a_time", observed.most_at_a_time},
+           {"too_slow", observed.too_slow},
+           {"requests_refused", observed.requests_refused},
+           {"ticks_left_out", observed.ticks_left_out}};
+  if (!observed.failure.empty()) out["failure"] = observed.failure;
+  return out;
+}
+
+/// One line.
+std::string observers_text(const ObservationReport& observed) {
+  std::string text = counted(observed.observers, "page") + " observed";
+  if (observed.too_slow > 0) text += fmt::format(", {} too slow", observed.too_slow);
+  if (observed.ticks_left_out > 0) text += fmt::format(", {} left out", counted(observed.ticks_left_out, "tick"));
+  if (observed.requests_refused > 0) text += fmt::format(", {} refused", counted(observed.requests_refused, "request"));
+  if (!observed.failure.empty()) text += "; ended early: " + observed.failure;
+  return text;
+}
+
 Json to_json(const ServeOptions& options, const SessionServer& sessions, const tactus::Scene& scene, const Service& service,
              const Ticker& ticker, double seconds, const std::optional<SealUse>& seal) {
   Json out{{"schema", "tactus.serve/1"}, {"scene", options.scene}, {"listen", options.listen}, {"seconds", seconds}};
@@ -191,7 +218,7 @@ Json to_json(const ServeOptions& options, const SessionServer& sessions, const t
 }
 
 void print_text(const ServeOptions& options, const SessionServer& sessions, const Service& service, const Ticker& ticker,
-                double seconds, const std::optional<SealUse>& seal) {
+                double seconds, const std::optional<SealUse>& seal, const std::optional<ObservationReport>& observed) {
   Table head;
   head.heading({"serve"});
   head.row({fmt::format("  {:<8} {}", "scene", options.scene)});
@@ -199,6 +226,7 @@ void print_text(const ServeOptions& options, const SessionServer& sessions, cons
   head.row({fmt::format("  {:<8} {:.3f} s", "time", seconds)});
   if (service.refused() > 0) head.row({fmt::format("  {:<8} {}", "refused", counted(service.refused(), "datagram"))});
   if (seal) head.row({fmt::format("  {:<8} {}", "seal", seal_text(seal->counters))});
+  if (observed) head.row({fmt::format("  {:<8} {}", "observe", observers_text(*observed))});
   head.print(stdout);
   fmt::print("\n");
   Table table;
@@ -250,6 +278,19 @@ tl::expected<Recording, Failure> make_recording(const ServeOptions& options, con
   return out;
 }
 
+tl::expected<std::unique_ptr<Observation>, Failure> make_observation(const ServeOptions& options, const sim::Server& world) {
+  if (!options.observe) return nullptr;
+  TraceInfo info = world.info();
+  info.source = "serve " + world.scene().name;
+  return Observation::create({.port = static_cast<std::uint16_t>(*options.observe),
+                              .scene = options.scene,
+                              .name = world.scene().name,
+                              .info = std::move(info),
+                              .declared = world.stream_scene(),
+                              .sender = options.meshes.sender(options.triggers),
+                              .like = &world.frame()});
+}
+
 tl::expected<std::unique_ptr<ServerWire>, Failure> make_wire(const ServeOptions& options, net::UdpSocket& socket) {
   if (options.key.empty()) return plain_wire_of_server(socket, options.clients);
   return sealed_wire_of_server(socket, options.clients, options.key);
@@ -288,19 +329,23 @@ Outcome run(const ServeOptions& typed) {
   auto sessions = SessionServer::create(world->stream_scene(), settings, system_entropy(), microseconds_now());
   if (!sessions) return refuse(options.scene, sessions.error());
   TACTUS_TRY(auto recording, make_recording(options, *world));
+  TACTUS_TRY(const auto observation, make_observation(options, *world));
   if (!options.common.quiet) fmt::print(stderr, "serving {} at {}\n", options.scene, options.listen);
+  if (!options.common.quiet && observation) fmt::print(stderr, "observe it at {}\n", observation->address());
 
-  Service service(*world, *sessions, *wire);
+  Service service(*world, *sessions, *wire, observation.get());
   Ticker ticker(1'000'000 / sim::kTickRate);
   const Outcome worked = serve(options, *world, *sessions, service, ticker, *socket, recording.trace);
   const double seconds = static_cast<double>(ticker.ticks()) / sim::kTickRate;
-  const Json report = to_json(options, *sessions, *world->stream_scene(), service, ticker, seconds, wire->seal());
+  Json report = to_json(options, *sessions, *world->stream_scene(), service, ticker, seconds, wire->seal());
   service.close(microseconds_now());
+  std::optional<ObservationReport> observed;
+  if (observation) report["observers"] = observers_json(observed.emplace(observation->finish()));
   const Outcome finished = recording.finish(options.output);
   TACTUS_CHECK(worked);
   TACTUS_CHECK(finished);
   if (options.common.json) fmt::print("{}\n", text_of_json(report));
-  else if (!options.common.quiet) print_text(options, *sessions, service, ticker, seconds, wire->seal());
+  else if (!options.common.quiet) print_text(options, *sessions, service, ticker, seconds, wire->seal(), observed);
   return {};
 }
 
@@ -319,14 +364,23 @@ void setup_serve(Command& app, Action& action) {
       ->check(whole_number(1, 1024))
       ->show_default()
       ->type_name("N");
+  command
+      .add_option(
+          "--observe", [options](const std::string& port) { options->observe = static_cast<std::uint32_t>(std::stoul(port)); },
+          "Also show the session in browsers on this machine, at http://127.0.0.1:PORT/; 0: any free one")
+      ->check(whole_number(0, 65535))
+      ->type_name("PORT");
   add_bit_rate(command, "--rate", options->rate, "Most that each client is sent, headers included [no limit]");
   add_quantity(command, "--duration", options->duration, Dimension::time, "End after this long [until Ctrl-C]");
   add_encoder_options(command, options->triggers, options->meshes);
   add_output_options(command, options->common);
   command.footer(
       "A participant plays the first user of the scene whom nobody plays; others and observers look on.\n\n"
-      "Example, in three terminals:\n"
-      "  tactus serve rotate-push-lift -p 4%\n"
+      "A browser that observes sees a stream of its own under the same bounds, beside the truth; it takes no time from the "
+      "session. From\n"
+      "another machine: ssh -L 8080:127.0.0.1:8080 SERVER, then the same address.\n"
+      "Example, in three terminals, and http://127.0.0.1:8080/ in a browser:\n"
+      "  tactus serve rotate-push-lift -p 4% --observe 8080\n"
       "  tactus link --listen 4001 --to 7447 --link delay=20ms,loss=1%\n"
       "  tactus join 4001 --scene rotate-push-lift\n"
       "For other machines, sealed (29 bytes per datagram more):\n"

@@ -89,7 +89,7 @@ tl::expected<Json, Failure> truth_json(const ViewOptions& options, TraceReader& 
     TACTUS_TRY(const auto cut, play(player, frame.tick, packets, options));
     if (cut && report.ticks.count() == 0) return refuse(options.input, *cut);
     if (cut) break;
-    if (const auto added = data->add(frame, player); !added)
+    if (const auto added = data->add(frame, player.replica()); !added)
       return refuse(options.truth, place_of_tick(frame.tick), added.error());
     if (data->bytes() > kMostPage) return too_large(options.truth, "is too long to lie beside the stream");
     report.ticks.add(frame.tick);
@@ -97,8 +97,9 @@ tl::expected<Json, Failure> truth_json(const ViewOptions& options, TraceReader& 
   }
   TACTUS_CHECK(check_ending(options.truth, reader, report.ticks.count()));
   if (!data) return refuse(shown_path(options.truth) + ": has no tick", "Give the trace that the stream was encoded from.");
-  auto json = data->json();
+  auto json = data->declare();
   if (!json) return refuse(options.truth, json.error());
+  json->update(data->take());
   return std::move(*json);
 }
 
@@ -137,7 +138,7 @@ tl::expected<Json, Failure> page_data(const ViewOptions& options, const std::str
   TACTUS_TRY(const auto cut, play(*player, kMostTicks, packets, options));
   if (cut) warn_cut_stream(options.input, *cut);
   data["last_tick"] = std::max(packets.last_tick(), report.ticks.count() > 0 ? report.ticks.last() : 0);
-  data["packets"] = packets.json();
+  data["packets"] = packets.take();
   TACTUS_TRY(data["shapes"], shapes_json(options, attached));
   if (!truth.is_null()) data["truth"] = std::move(truth);
   data["stream"] = base64(bytes);

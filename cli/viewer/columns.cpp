@@ -42,9 +42,11 @@ void Column::put(std::uint64_t value) {
   data_ += static_cast<char>(value);
 }
 
-nlohmann::ordered_json Column::json() {
+nlohmann::ordered_json Column::take() {
   end_run();
-  return {{"step", step_}, {"count", count_}, {"data", base64(data_)}};
+  nlohmann::ordered_json out{{"step", step_}, {"count", count_}, {"data", base64(data_)}};
+  *this = Column(step_);
+  return out;
 }
 
 }  // namespace tactus::cli

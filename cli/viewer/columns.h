@@ -26,8 +26,8 @@ class Column {
   void add_real(double value) { add(std::llround(std::fmin(std::fmax(value / step_, -0x1p52), 0x1p52))); }
   std::size_t size() const noexcept { return count_; }
   std::size_t bytes() const noexcept { return data_.size(); }
-  /// Ends the column.
-  nlohmann::ordered_json json();
+  /// The column so far; it begins anew.
+  nlohmann::ordered_json take();
 
  private:
   void put(std::uint64_t value);
@@ -50,7 +50,7 @@ class VectorColumn {
     z_.add_real(v.z);
   }
   std::size_t bytes() const noexcept { return x_.bytes() + y_.bytes() + z_.bytes(); }
-  nlohmann::ordered_json json() { return {x_.json(), y_.json(), z_.json()}; }
+  nlohmann::ordered_json take() { return {x_.take(), y_.take(), z_.take()}; }
 
  private:
   Column x_, y_, z_;

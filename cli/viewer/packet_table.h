@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The packets of a stream file in their order: where they are, and why they were sent.
+/// Packets in their order: where they are, and why they were sent.
 #pragma once
 
 #include <algorithm>
@@ -26,10 +26,11 @@ class PacketTable {
     last_ = packet.tick;
   }
   std::int64_t last_tick() const noexcept { return last_; }
-  nlohmann::ordered_json json() {
-    return {{"ticks", ticks_.json()},           {"offsets", offsets_.json()}, {"sizes", sizes_.json()},
-            {"substreams", substreams_.json()}, {"keys", keys_.json()},       {"reasons", reasons_.json()},
-            {"updates", updates_.json()}};
+  /// The packets so far; it begins anew.
+  nlohmann::ordered_json take() {
+    return {{"ticks", ticks_.take()},           {"offsets", offsets_.take()}, {"sizes", sizes_.take()},
+            {"substreams", substreams_.take()}, {"keys", keys_.take()},       {"reasons", reasons_.take()},
+            {"updates", updates_.take()}};
   }
 
  private:

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/viewer/page.h"
 
-#include <ostream>
+#include <fmt/format.h>
+
+#include <sstream>
 
 // Of page.S.
 extern "C" const char tactus_page_begin[], tactus_page_end[];
@@ -9,7 +11,7 @@ extern "C" const char tactus_page_begin[], tactus_page_end[];
 namespace tactus::cli {
 namespace {
 
-constexpr std::string_view kPlace = "<!--tactus-data-->";
+constexpr std::string_view kPlace = "<!--tactus-data-->", kConnect = "connect-src 'none'";
 
 }  // namespace
 
@@ -35,6 +37,15 @@ void write_page(std::ostream& out, std::string_view data) {
   const std::size_t at = page.find(kPlace);
   out << page.substr(0, at) << R"(<script id="tactus-data" type="application/json">)" << data << "</script>"
       << page.substr(at + kPlace.size());
+}
+
+std::string live_page(std::uint16_t port) {
+  std::ostringstream page;
+  write_page(page, R"({"live":true})");
+  std::string text = page.str();
+  const std::string places = fmt::format("connect-src ws://127.0.0.1:{0} ws://localhost:{0}", port);
+  text.replace(text.find(kConnect), kConnect.size(), places);
+  return text;
 }
 
 }  // namespace tactus::cli

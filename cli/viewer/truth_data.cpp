@@ -34,18 +34,6 @@ bool has_weber_bound(const RigidTriggers& bounds) {
   return bounds.haptic == HapticRule::isotropic || bounds.haptic == HapticRule::perceptual;
 }
 
-/// Where the packets of the ghost are.
-Result<nlohmann::ordered_json> packets_json(std::string_view file) {
-  TACTUS_TRY(Player player, Player::open({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}));
-  PacketTable packets;
-  while (true) {
-    TACTUS_TRY(const auto tick, player.next_tick());
-    if (!tick) return packets.json();
-    TACTUS_TRY(const auto played, player.play(*tick));
-    packets.add(*played);
-  }
-}
-
 }  // namespace
 
 GhostBounds ghost_bounds(const Scene& scene) {
@@ -62,39 +50,35 @@ GhostBounds ghost_bounds(const Scene& scene) {
 }
 
 Result<TruthData> TruthData::create(const TraceInfo& info, const TraceFrame& first, const Scene& scene) {
-  const GhostBounds ghost = ghost_bounds(scene);
+  const GhostBounds bounds = ghost_bounds(scene);
   TACTUS_TRY(SceneBuilder builder, scene_builder(info, first));
-  const auto shared = builder.promise(ghost.rigid, ghost.deformable).build();
+  const auto shared = builder.promise(bounds.rigid, bounds.deformable).build();
   if (!shared) return tl::unexpected(shared.error().error);
-  const SenderOptions options{.triggers = ghost.rigid, .deformable = {.thresholds = ghost.deformable}};
-  TACTUS_TRY(Sender sender, Sender::create(*shared, options));
-  TruthData data(info, scene, ghost, *shared, std::move(sender));
-  TACTUS_TRY(data.writer_, StreamFileWriter::create(*data.stream_, **shared));
-  return data;
+  const SenderOptions options{.triggers = bounds.rigid, .deformable = {.thresholds = bounds.deformable}};
+  TACTUS_TRY(PacketLog ghost, PacketLog::create(*shared, options));
+  return TruthData(info, scene, bounds, std::move(ghost));
 }
 
-TruthData::TruthData(const TraceInfo& info, const Scene& scene, const GhostBounds& ghost, SharedScene shared, Sender sender)
+TruthData::TruthData(const TraceInfo& info, const Scene& scene, const GhostBounds& bounds, PacketLog ghost)
     : info_(info),
       scene_(&scene),
-      ghost_(ghost),
-      shared_(std::move(shared)),
-      sender_(std::move(sender)),
+      bounds_(bounds),
+      ghost_(std::move(ghost)),
       truth_(info),
       users_(info.users.size()),
       meshes_(info.meshes.size()) {
   if (scene.bounds) promised_ = scene.bounds->rigid;
 }
 
-Result<void> TruthData::add(const TraceFrame& frame, Player& player) {
-  TACTUS_TRY(const auto packets, sender_.encode(frame.tick, truth_.of(frame)));
-  for (const Packet& packet : packets) TACTUS_CHECK(writer_->add(frame.tick, packet.bytes, packet.key));
-  std::vector<Pose> shown;
+Result<void> TruthData::add(const TraceFrame& frame, Replica& shown) {
+  TACTUS_CHECK(ghost_.add(frame.tick, truth_.of(frame)));
+  std::vector<Pose> poses;
   for (std::uint32_t i = 0; i < frame.objects.size(); ++i)
-    shown.push_back(to_pose(player.replica().pose(i, frame.tick), scene_->grid.position));
+    poses.push_back(to_pose(shown.pose(i, frame.tick), scene_->grid.position));
   ticks_.add(frame.tick);
-  add_users(frame, shown);
-  add_errors(frame, shown);
-  add_shapes(frame, player.replica());
+  add_users(frame, poses);
+  add_errors(frame, poses);
+  add_shapes(frame, shown);
   return {};
 }
 
@@ -152,8 +136,8 @@ void TruthData::add_shapes(const TraceFrame& frame, Replica& replica) {
 }
 
 std::size_t TruthData::bytes() const {
-  std::size_t sum = static_cast<std::size_t>(writer_->bytes()) + ticks_.bytes() + position_.bytes() + rotation_.bytes() +
-                    force_error_.bytes() + force_bound_.bytes();
+  std::size_t sum =
+      ghost_.bytes() + ticks_.bytes() + position_.bytes() + rotation_.bytes() + force_error_.bytes() + force_bound_.bytes();
   for (const User& user : users_)
     sum += user.kind.bytes() + user.device.bytes() + user.contact.bytes() + user.server.bytes() + user.felt.bytes() +
            user.shown.bytes();
@@ -161,36 +145,38 @@ std::size_t TruthData::bytes() const {
   return sum;
 }
 
-Result<nlohmann::ordered_json> TruthData::json() {
-  TACTUS_CHECK(writer_->finish());
-  TACTUS_TRY(auto packets, packets_json(stream_->view()));
-  nlohmann::ordered_json out{{"source", info_.source},
-                             {"stream", base64(stream_->view())},
-                             {"packets", std::move(packets)},
-                             {"ghost_position", ghost_.rigid.visual_position},
-                             {"ghost_rotation", ghost_.rigid.visual_rotation},
-                             {"ghost_vertex", ghost_.deformable.visual},
-                             {"ticks", ticks_.json()}};
+Result<nlohmann::ordered_json> TruthData::declare() const {
+  TACTUS_TRY(auto scene, declaration_of(ghost_.scene()));
+  return nlohmann::ordered_json{{"source", info_.source},
+                                {"scene", std::move(scene)},
+                                {"ghost_position", bounds_.rigid.visual_position},
+                                {"ghost_rotation", bounds_.rigid.visual_rotation},
+                                {"ghost_vertex", bounds_.deformable.visual}};
+}
+
+nlohmann::ordered_json TruthData::take() {
+  nlohmann::ordered_json out = ghost_.take();
+  out["ticks"] = ticks_.take();
   const bool moves = std::ranges::any_of(info_.objects, [](const TraceObject& object) { return object.dof != Dof::none; });
-  if (moves) out["errors"] = {{"position", position_.json()}, {"rotation", rotation_.json()}};
+  if (moves) out["errors"] = {{"position", position_.take()}, {"rotation", rotation_.take()}};
   if (moves && !users_.empty()) {
-    out["errors"]["force"] = force_error_.json();
-    if (promised_ && has_weber_bound(*promised_)) out["errors"]["force_bound"] = force_bound_.json();
+    out["errors"]["force"] = force_error_.take();
+    if (promised_ && has_weber_bound(*promised_)) out["errors"]["force_bound"] = force_bound_.take();
   }
   out["users"] = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < users_.size(); ++i) {
     User& user = users_[i];
     nlohmann::ordered_json entry{{"name", info_.users[i].name},
-                                 {"kind", user.kind.json()},
-                                 {"device", user.device.json()},
-                                 {"contact", user.contact.json()},
-                                 {"server", user.server.json()}};
-    if (felt_differs_) entry["felt"] = user.felt.json();
-    if (moves) entry["shown"] = user.shown.json();
+                                 {"kind", user.kind.take()},
+                                 {"device", user.device.take()},
+                                 {"contact", user.contact.take()},
+                                 {"server", user.server.take()}};
+    if (felt_differs_) entry["felt"] = user.felt.take();
+    if (moves) entry["shown"] = user.shown.take();
     out["users"].push_back(std::move(entry));
   }
   out["meshes"] = nlohmann::ordered_json::array();
-  for (Mesh& mesh : meshes_) out["meshes"].push_back({{"ticks", mesh.ticks.json()}, {"error", mesh.error.json()}});
+  for (Mesh& mesh : meshes_) out["meshes"].push_back({{"ticks", mesh.ticks.take()}, {"error", mesh.error.take()}});
   return out;
 }
 

@@ -3,21 +3,18 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <vector>
 
-#include <tactus/file/stream_file.h>
+#include <tactus/client/replica.h>
 #include <tactus/metrics/errors.h>
-#include <tactus/player.h>
-#include <tactus/sender.h>
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_scene.h>
 #include "cli/report/messages.h"
 #include "cli/viewer/columns.h"
+#include "cli/viewer/packet_log.h"
 
 namespace tactus::cli {
 
@@ -29,15 +26,20 @@ struct GhostBounds {
 /// A twentieth of the bounds that the stream declares, or of the defaults.
 GhostBounds ghost_bounds(const Scene& scene);
 
-/// The errors of all ticks are those of `tactus compare`: of what the player shows, against the trace.
+/// The errors of all ticks are those of `tactus compare`: of what a client shows, against the trace.
 class TruthData {
  public:
-  /// in   first  frame of the trace   err  those of scene_builder(), SceneBuilder::build(), Sender::create()
+  /// in   first  frame of the trace;  scene  that the client shows, outlives this
+  /// err  those of scene_builder(), SceneBuilder::build(), PacketLog::create()
   static Result<TruthData> create(const TraceInfo& info, const TraceFrame& first, const Scene& scene);
-  /// pre  the player has played up to the frame's tick   err  those of Sender::encode
-  Result<void> add(const TraceFrame& frame, Player& player);
+  /// in   shown  at the frame's tick   err  those of PacketLog::add
+  Result<void> add(const TraceFrame& frame, Replica& shown);
   std::size_t bytes() const;  ///< so far, of all that the page will hold
-  Result<nlohmann::ordered_json> json();
+  void request_key() noexcept { ghost_.request_key(); }
+  /// What the page must know before the ticks: the ghost's scene and how close it is.   err  of declaration_of()
+  Result<nlohmann::ordered_json> declare() const;
+  /// The ticks so far; it begins anew.
+  nlohmann::ordered_json take();
 
  private:
   struct User {
@@ -48,19 +50,16 @@ class TruthData {
     Column ticks{1}, error{1e-8};
   };
 
-  TruthData(const TraceInfo& info, const Scene& scene, const GhostBounds& ghost, SharedScene shared, Sender sender);
+  TruthData(const TraceInfo& info, const Scene& scene, const GhostBounds& bounds, PacketLog ghost);
   void add_users(const TraceFrame& frame, const std::vector<Pose>& shown);
   void add_errors(const TraceFrame& frame, const std::vector<Pose>& shown);
   void add_shapes(const TraceFrame& frame, Replica& replica);
 
   TraceInfo info_;
   const Scene* scene_;
-  GhostBounds ghost_;
+  GhostBounds bounds_;
   std::optional<RigidTriggers> promised_;
-  std::unique_ptr<std::ostringstream> stream_ = std::make_unique<std::ostringstream>();
-  std::optional<StreamFileWriter> writer_;
-  SharedScene shared_;
-  Sender sender_;
+  PacketLog ghost_;
   FrameTruth truth_;
   Column ticks_{1};
   std::vector<User> users_;

@@ -21,11 +21,13 @@ TEST(Viewer, Base64IsThatOfRfc4648) {
 TEST(Viewer, AColumnCodesDifferencesAndRunsOfZeros) {
   Column column(0.5);
   for (const std::int64_t value : {0, 0, 0, 1, -1, -1, 200}) column.add(value);
-  const auto json = column.json();
+  const auto json = column.take();
   EXPECT_EQ(json["count"], 7);
   EXPECT_EQ(json["step"], 0.5);
   // Three zeros; +1, -2; one zero; +201 in two bytes.
   EXPECT_EQ(json["data"], base64(std::string_view("\x00\x02\x02\x03\x00\x00\x92\x03", 8)));
+  column.add(1);  // begun anew
+  EXPECT_EQ(column.take()["data"], base64("\x02"));
 }
 
 TEST(Viewer, AColumnOfRealsRoundsToItsStepAndStaysInRange) {

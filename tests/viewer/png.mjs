@@ -29,11 +29,11 @@ function paeth(a, b, c) {
   return pa <= pb && pa <= pc ? a : pb <= pc ? b : c;
 }
 
-// Smallest box around the pixels in which two pictures differ: [left, top, right, bottom].
-export function differingBox(one, other) {
+// Smallest box around the pixels in which two pictures differ: [left, top, right, bottom].   in  within  the box to look at
+export function differingBox(one, other, within = [0, 0, one.width, one.height]) {
   let box = [Infinity, Infinity, -1, -1];
-  for (let y = 0; y < one.height; ++y) {
-    for (let x = 0; x < one.width; ++x) {
+  for (let y = within[1]; y < within[3]; ++y) {
+    for (let x = within[0]; x < within[2]; ++x) {
       const [a, b] = [one.at(x, y), other.at(x, y)];
       if (a.every((value, k) => Math.abs(value - b[k]) < 8)) continue;
       box = [Math.min(box[0], x), Math.min(box[1], y), Math.max(box[2], x), Math.max(box[3], y)];

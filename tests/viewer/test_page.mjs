@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// test_page.mjs TACTUS CHROMIUM CONFORMANCE WORK: pages of `tactus view` in a real browser.
+// test_page.mjs TACTUS CHROMIUM WORK CONFORMANCE: pages of `tactus view` in a real browser.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
 import {mkdirSync, readFileSync, readdirSync, writeFileSync} from "node:fs";
@@ -8,8 +8,9 @@ import {pathToFileURL} from "node:url";
 import {readVectors} from "../wasm/read_vectors.mjs";
 import {Browser} from "./browser.mjs";
 import {differingBox, readPng} from "./png.mjs";
+import {near, runTests} from "./runner.mjs";
 
-const [tactus, chromium, conformance, work] = process.argv.slice(2);
+const [tactus, chromium, work, conformance] = process.argv.slice(2);
 const evil = "<img src=x onerror=globalThis.broken=1>";
 mkdirSync(work, {recursive: true});
 const file = (name) => resolve(work, name);
@@ -33,7 +34,6 @@ async function ready(browser, name, options) {
 }
 
 const time = (tab) => tab.run("tactusView.page.clock.time");
-const near = (value, wanted, within) => assert.ok(Math.abs(value - wanted) <= within, `${value} is not within ${within} of ${wanted}`);
 
 const tests = {
   async "the state hashes of all vectors, in the page"(browser) {
@@ -228,16 +228,5 @@ const tests = {
 
 makePages();
 const browser = await Browser.launch(chromium);
-let failed = 0;
-for (const [name, test] of Object.entries(tests)) {
-  const begin = Date.now();
-  try {
-    const note = await test(browser);
-    console.log(`ok      ${name} (${((Date.now() - begin) / 1000).toFixed(1)} s${note ? `, ${note}` : ""})`);
-  } catch (error) {
-    ++failed;
-    console.log(`FAILED  ${name}: ${error.stack}`);
-  }
-}
+await runTests(tests, browser);
 await browser.close();
-process.exitCode = failed > 0 ? 1 : 0;

@@ -4,7 +4,7 @@ import {speeds} from "./clock.js";
 
 const keys = [
   ["Space", "play or pause"], ["← →", "one tick; with Shift 0.1 s"], ["[ ]", "packet before, next packet"],
-  ["Home End", "to the start, to the end"], ["− +", "slower, faster"], ["L", "loop"], ["T D C F", "show truth, device, contact, forces"],
+  ["Home End", "to the start, to the end (of a running session: now)"], ["− +", "slower, faster"], ["L", "loop"], ["T D C F", "show truth, device, contact, forces"],
   ["V", "next colour of the mesh"], ["0", "see all of the scene"], ["?", "this help"],
 ];
 const layerKeys = {t: "truth", d: "device", c: "contact", f: "forces"};
@@ -78,6 +78,7 @@ export class Controls {
     byId("back").addEventListener("click", () => this.stepPacket(-1));
     byId("next").addEventListener("click", () => this.stepPacket(1));
     byId("loop").addEventListener("change", ({target}) => (this.clock.loops = target.checked));
+    byId("follow").addEventListener("click", () => this.clock.follow());
     byId("help-button").addEventListener("click", () => byId("help").showModal());
     byId("link").addEventListener("click", () => this.#copyLink());
     document.addEventListener("keydown", (event) => this.#key(event));
@@ -122,7 +123,7 @@ export class Controls {
       "[": () => this.stepPacket(-1),
       "]": () => this.stepPacket(1),
       Home: () => this.clock.seek(0),
-      End: () => this.clock.seek(this.clock.duration),
+      End: () => (this.clock.isLive ? this.clock.follow() : this.clock.seek(this.clock.duration)),
       "-": () => this.#changeSpeed(-1),
       "+": () => this.#changeSpeed(1),
       "=": () => this.#changeSpeed(1),

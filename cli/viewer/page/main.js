@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page of `tactus view`: decodes a stream with the WebAssembly decoder and shows it over time.
+// The page of `tactus view` and of a server that is observed: decodes a stream with the WebAssembly decoder and shows it over time.
 import {load} from "@tactus-codec/decoder";
 import {Clock, timeOfLink} from "./clock.js";
 import {Controls} from "./controls.js";
+import {Feed} from "./feed.js";
+import {keptSeconds, LiveModel} from "./live_model.js";
 import {Model, norm} from "./model.js";
 import {Picture} from "./picture.js";
 import {bytesOf} from "./read_columns.js";
@@ -12,17 +14,20 @@ import {colour, map, onThemeChange} from "./theme.js";
 import {Timeline} from "./timeline.js";
 import {inUnit, plain, units} from "./units.js";
 
+const stripSpacing = 125;  // ms between two drawings of strips that move
+
 const byId = (id) => document.getElementById(id);
 
 class Page {
   #stale = true;
   #shown = -1;
+  #stripsDue = 0;
 
   constructor(model) {
     this.model = model;
     this.clock = new Clock(model.duration, () => this.redraw());
     this.picture = this.#makePicture();
-    this.timeline = new Timeline(byId("timeline"), {duration: model.duration, lanes: lanesOf(model), rows: rowsOf(model)});
+    this.timeline = new Timeline(byId("timeline"), this.#content());
     const redraw = () => this.redraw();
     this.controls = new Controls({clock: this.clock, model, picture: this.picture, timeline: this.timeline, redraw});
     this.readings = this.#makeReadings();
@@ -30,9 +35,36 @@ class Page {
     this.picture?.view.controls.addEventListener("change", () => (this.#stale = true));
     new ResizeObserver(() => this.#resize()).observe(document.body);
     onThemeChange(() => this.#paint());
-    addEventListener("hashchange", () => this.#followLink());
     this.#resize();
+    if (model.isLive) this.#beginLive();
+    else this.#beginLinks();
+  }
+
+  #beginLinks() {
+    addEventListener("hashchange", () => this.#followLink());
     this.#followLink();
+  }
+
+  #beginLive() {
+    this.clock.isLive = true;
+    for (const id of ["loop-label", "link"]) byId(id).hidden = true;
+    byId("follow").hidden = false;
+    this.clock.move(this.model.start, this.model.duration);
+    this.clock.follow();
+  }
+
+  // The model of a live page has grown.
+  grow() {
+    this.clock.move(this.model.start, this.model.duration);
+  }
+
+  // What the time line shows; of a live page the last half a minute.
+  #content() {
+    const {model} = this;
+    const content = {lanes: lanesOf(model), rows: rowsOf(model)};
+    if (!model.isLive) return {...content, begin: 0, end: model.duration};
+    const begin = Math.max(model.start, model.duration - keptSeconds);
+    return {...content, begin, end: begin + keptSeconds};
   }
 
   #makePicture() {
@@ -52,8 +84,9 @@ class Page {
   #makeReadings() {
     const {truth, scene} = this.model;
     const readings = new Readings(byId("readings"));
-    readings.add("packets", "packets so far");
-    readings.add("bytes", "payload so far");
+    readings.add("packets", this.model.isLive ? "packets" : "packets so far");
+    readings.add("bytes", this.model.isLive ? "payload" : "payload so far");
+    if (this.model.isLive) readings.add("checked", "server's state");
     if (truth?.errors || truth?.meshes.length > 0) readings.group("Error against the truth");
     if (truth?.errors) readings.add("position", "position", "length");
     if (truth?.errors) readings.add("rotation", "rotation", "angle");
@@ -75,27 +108,31 @@ class Page {
     byId("title").textContent = model.name;
     const count = (n, one) => `${n} ${one}${n === 1 ? "" : "s"}`;
     const vertices = deformables.reduce((sum, mesh) => sum + mesh.vertices, 0);
-    const payload = model.packets.sizes.reduce((sum, size) => sum + size, 0);
-    const parts = [`${model.duration.toFixed(2)} s at ${model.tickRate} Hz`];
+    const parts = [model.isLive ? `live, ${model.tickRate} Hz` : `${model.duration.toFixed(2)} s at ${model.tickRate} Hz`];
     if (rigid.length > 0) parts.push(count(rigid.length, "rigid object"));
     if (deformables.length > 0) parts.push(`${count(deformables.length, "mesh").replace("meshs", "meshes")} of ${vertices} vertices`);
-    const rate = (8 * payload) / 1000 / Math.max(model.duration, 1e-9);
-    parts.push(count(model.packets.ticks.length, "packet"), `${rate.toFixed(2)} kbit/s payload`);
-    if (model.truth) parts.push(`truth: ${model.truth.name}`);
+    if (!model.isLive) {
+      const rate = (8 * this.#payload(0, Infinity)) / 1000 / Math.max(model.duration, 1e-9);
+      parts.push(count(model.packets.ticks.length, "packet"), `${rate.toFixed(2)} kbit/s payload`);
+    }
+    if (model.truth && !model.isLive) parts.push(`truth: ${model.truth.name}`);
     byId("facts").textContent = parts.join(" · ");
-    const unknown = picture?.objects?.areKnown === false ? "axes stand for objects whose shapes nobody told (--truth, --scene)" : "";
-    byId("scale").textContent = picture ? [picture.view.scale, picture.forceScale, unknown].filter(Boolean).join(" · ") : "";
     if (picture) this.#fillLegend();
   }
 
+  #payload(first, end) {
+    return this.model.packets.sizes.subarray(first, end).reduce((sum, size) => sum + size, 0);
+  }
+
   #fillLegend() {
-    const {truth, scene} = this.model;
+    const {truth, scene, isLive} = this.model;
     const entries = [];
     if (scene.rigid.length > 0) entries.push(["", "object", "decoded"]);
     const within = scene.rigid.length > 0 ? truth?.ghostPosition : truth?.ghostVertex;
     if (truth) entries.push(["frame", "ghost", `truth (drawn within ${plain(within, "length")})`]);
     if (truth?.users.length > 0) {
-      entries.push(["dot", "device", "device"], ["", "server", truth.users.some(({felt}) => felt) ? "force of the server" : "force felt"]);
+      const isFelt = !isLive && !truth.users.some(({felt}) => felt);
+      entries.push(["dot", "device", "device"], ["", "server", isFelt ? "force felt" : "force of the server"]);
       if (truth.users.some(({felt}) => felt)) entries.push(["", "felt", "force felt"]);
       if (truth.users.some(({shown}) => shown)) entries.push(["", "shown", "normal force, as decoded"]);
     }
@@ -135,6 +172,11 @@ class Page {
   // Called for each picture of the screen.
   frame(now) {
     this.clock.advance(now);
+    if (this.model.isLive && now >= this.#stripsDue) {
+      this.#stripsDue = now + stripSpacing;
+      this.timeline.hold(this.#content());
+      this.timeline.draw();
+    }
     this.picture?.view.controls.update();
     if (!this.#stale) return;
     this.#stale = false;
@@ -149,23 +191,58 @@ class Page {
     else this.model.moveTo(tick);
     this.timeline.moveTo(this.clock.time);
     this.#tell(tick);
-    if (!this.clock.plays) history.replaceState(null, "", `#t=${this.clock.time.toFixed(3)}`);
+    const isPlace = !this.clock.plays && !this.model.isLive;
+    if (isPlace) history.replaceState(null, "", `#t=${this.clock.time.toFixed(3)}`);
   }
 
   #tell(tick) {
     const {model, clock, picture} = this;
-    byId("play").textContent = clock.plays ? "Pause" : "Play";
-    byId("clock").textContent = `${clock.time.toFixed(3)} s of ${model.duration.toFixed(3)} s`;
+    byId("play").textContent = clock.plays || clock.follows ? "Pause" : "Play";
+    byId("follow").disabled = clock.follows;
+    byId("clock").textContent = model.isLive ? this.#liveClock() : `${clock.time.toFixed(3)} s of ${model.duration.toFixed(3)} s`;
+    this.#tellScales();
     const line = byId("timeline");
-    line.setAttribute("aria-valuemin", "0");
+    line.setAttribute("aria-valuemin", String(clock.start));
     line.setAttribute("aria-valuemax", String(model.duration));
     line.setAttribute("aria-valuenow", clock.time.toFixed(3));
     line.setAttribute("aria-valuetext", `${clock.time.toFixed(3)} s`);
     const count = model.packetsUpTo(tick);
-    this.readings.set("packets", String(count));
-    this.readings.set("bytes", `${(model.packets.sizes.subarray(0, count).reduce((sum, size) => sum + size, 0) / 1000).toFixed(2)} kB`);
+    if (model.isLive) this.#tellRates(model.packetsUpTo(tick - model.tickRate), count);
+    else this.#tellTotals(count);
+    if (model.checked) this.#tellChecked(model.checked);
     this.#tellTruth(tick);
     if (picture?.colouring) this.#tellColours();
+  }
+
+  #tellTotals(count) {
+    this.readings.set("packets", String(count));
+    this.readings.set("bytes", `${(this.#payload(0, count) / 1000).toFixed(2)} kB`);
+  }
+
+  // Of the last second.
+  #tellRates(first, end) {
+    this.readings.set("packets", `${end - first} /s`);
+    this.readings.set("bytes", `${((8 * this.#payload(first, end)) / 1000).toFixed(2)} kbit/s`);
+  }
+
+  #liveClock() {
+    const {time, duration, follows} = this.clock;
+    return follows ? `${time.toFixed(2)} s, now` : `${time.toFixed(3)} s, ${(duration - time).toFixed(1)} s ago`;
+  }
+
+  // Once a second the server tells its hashes.
+  #tellChecked({tick, isEqual}) {
+    const at = `${(tick / this.model.tickRate).toFixed(1)} s`;
+    this.readings.set("checked", isEqual ? `equal, ${at}` : `NOT equal, ${at}`, !isEqual);
+  }
+
+  #tellScales() {
+    const {picture, model} = this;
+    if (!picture) return;
+    const unknown = picture.objects?.areKnown === false ? ["axes stand for objects whose shapes nobody told (--truth, --scene)"] : [];
+    const lost = model.leftOut > 0 ? [`${model.leftOut} ticks were left out: the server was too busy`] : [];
+    const text = [...picture.scales, ...unknown, ...lost].join(" · ");
+    if (byId("scale").textContent !== text) byId("scale").textContent = text;
   }
 
   #tellTruth(tick) {
@@ -209,11 +286,40 @@ class Page {
   }
 }
 
+function tellStatus(text, isOver) {
+  const status = byId("status");
+  status.hidden = false;
+  status.textContent = text;
+  status.className = isOver ? "over" : "";
+}
+
+// What comes after an end is another run, or another program: the page begins anew with it.
+function observe(tactus, begin) {
+  byId("message").textContent = "Waiting for the server.";
+  let hello = null;
+  let page = null;
+  new Feed(`ws://${location.host}/live`, {
+    open: () => tellStatus("live", false),
+    closed: (text) => tellStatus(`${text}; asking again`, true),
+    message(message) {
+      if (page && message.version) location.reload();
+      else if (page) page.model.append(message, page.clock.follows), page.grow();
+      else if (hello) page = show(tactus, new LiveModel(tactus, hello, message), begin);
+      else hello = message;
+    },
+  });
+}
+
 async function start() {
   const begin = performance.now();
   const data = JSON.parse(byId("tactus-data").textContent);
   const tactus = await load(bytesOf(byId("tactus-wasm").textContent));
-  const page = new Page(new Model(tactus, data));
+  if (data.live) observe(tactus, begin);
+  else show(tactus, new Model(tactus, data), begin);
+}
+
+function show(tactus, model, begin) {
+  const page = new Page(model);
   const next = (now) => {
     page.frame(now);
     requestAnimationFrame(next);
@@ -227,6 +333,7 @@ async function start() {
     hashes: () => page.model.replay.stateHashes(),
     project: (point) => page.picture.view.project(point),
   };
+  return page;
 }
 
 start().catch((error) => {

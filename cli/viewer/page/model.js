@@ -7,15 +7,24 @@ export class Model {
   constructor(tactus, data) {
     this.name = data.name;
     this.shapes = data.shapes;
-    this.bytes = bytesOf(data.stream);
-    this.replay = new Replay(tactus, this.bytes, data.packets);
+    this.isLive = false;
+    const bytes = bytesOf(data.stream);
+    this.replay = new Replay(tactus, data.scene ? bytesOf(data.scene) : bytes, bytes, data.packets);
     this.scene = this.replay.scene;
     this.packets = this.replay.packets;
     this.lastTick = data.last_tick;
     this.tickRate = this.scene.tickRate;
-    this.duration = this.lastTick / this.tickRate;
     this.truth = data.truth ? readTruth(data.truth) : null;
-    this.ghost = data.truth ? new Replay(tactus, bytesOf(data.truth.stream), data.truth.packets) : null;
+    this.ghost = data.truth ? ghostOf(tactus, data.truth) : null;
+  }
+
+  // Seconds between which all is known.
+  get start() {
+    return 0;
+  }
+
+  get duration() {
+    return this.lastTick / this.tickRate;
   }
 
   moveTo(tick) {
@@ -33,13 +42,15 @@ export class Model {
   }
 
   seconds(ticks) {
-    return Float64Array.from(ticks, (tick) => tick / this.tickRate);
+    return ticks.map((tick) => tick / this.tickRate);
   }
 }
 
 const readVector = (columns) => columns.map(readColumn);
 
-function readTruth(truth) {
+const ghostOf = (tactus, {scene, stream, packets}) => new Replay(tactus, bytesOf(scene), bytesOf(stream), packets);
+
+export function readTruth(truth) {
   const readUser = ({name, kind, ...vectors}) =>
     ({name, kind: readColumn(kind), ...Object.fromEntries(Object.entries(vectors).map(([key, columns]) => [key, readVector(columns)]))});
   return {

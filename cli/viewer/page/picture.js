@@ -18,10 +18,13 @@ export class Picture {
   #users = null;
   #values;
   #errors;  // of each mesh at the tick of its newest true shape
+  #displacement;  // [m] and
+  #force = 0;  // [N], the largest seen
 
   constructor(canvas, model) {
     this.#model = model;
     const {box, displacement} = roomOf(model);
+    this.#displacement = displacement;
     this.view = new SceneView(canvas, box);
     const size = this.view.extent / 9;
     this.layers = new Map();
@@ -31,7 +34,7 @@ export class Picture {
     this.#meshes.forEach((part) => this.view.add(part));
     this.#addLayer("truth", this.#ghosts);
     if (model.truth && model.truth.users.length > 0) this.#addUsers();
-    this.colourings = this.#colouringsOf(displacement);
+    this.colourings = this.#colourings();
     this.colouring = this.colourings[0] ?? null;
     this.#values = this.#meshes.map((part) => new Float32Array(part.count));
     this.#errors = this.#meshes.map((part) => ({tick: -1, values: new Float32Array(part.count)}));
@@ -49,15 +52,22 @@ export class Picture {
 
   #addUsers() {
     const {truth, tickRate} = this.#model;
-    let most = 0;
-    for (const user of truth.users)
-      for (let i = 0; i < truth.ticks.length; ++i) most = Math.max(most, norm(user.server, i), norm(user.felt ?? user.server, i));
-    const perNewton = most > 0 ? (0.22 * this.view.extent) / most : 1;
-    this.#users = new UsersPart(truth, {size: this.view.extent / 90, perNewton, tickRate});
+    for (let i = 0; i < truth.ticks.length; ++i) this.#force = Math.max(this.#force, forceAt(truth, i));
+    if (this.#model.isLive) this.#force = powerOfTwo(this.#force);
+    this.#users = new UsersPart(truth, {size: this.view.extent / 90, perNewton: this.#perNewton, tickRate});
     this.view.add(this.#users);
-    const force = roundStep((0.1 * this.view.extent) / perNewton);
-    this.forceScale = `an arrow of ${plain(force * perNewton, "length")} is ${plain(force, "force")}`;
     for (const [name, group] of Object.entries(this.#users.layers)) this.layers.set(name, [group]);
+  }
+
+  get #perNewton() {
+    return this.#force > 0 ? (0.22 * this.view.extent) / this.#force : 1;
+  }
+
+  // What lengths in the picture mean.
+  get scales() {
+    if (!this.#users) return [this.view.scale];
+    const force = roundStep((0.1 * this.view.extent) / this.#perNewton);
+    return [this.view.scale, `an arrow of ${plain(force * this.#perNewton, "length")} is ${plain(force, "force")}`];
   }
 
   #addLayer(name, parts) {
@@ -75,12 +85,12 @@ export class Picture {
   }
 
   // What meshes can be coloured by: values of the vertices and the range of the colours.
-  #colouringsOf(displacement) {
+  #colourings() {
     const {scene, ghost} = this.#model;
     if (scene.deformables.length === 0) return [];
     const moved = (parts, i) => parts[i].displacements;
     const out = [{
-      name: "displacement", kind: "length", most: () => displacement, fill: (i, values) => fillLengths(moved(this.#meshes, i), values),
+      name: "displacement", kind: "length", most: () => this.#displacement, fill: (i, values) => fillLengths(moved(this.#meshes, i), values),
     }];
     if (ghost) {
       const visual = (i) => scene.deformableBounds(i)?.visual ?? 2.5e-4;
@@ -105,6 +115,7 @@ export class Picture {
       this.#ghosts.forEach((part) => part.show(ghost));
     }
     const row = this.#model.rowAt(tick);
+    if (this.#model.isLive) this.#widen(row);
     if (this.#users) {
       this.#users.group.visible = row >= 0;
       if (row >= 0) this.#users.show(row, this.view.camera);
@@ -113,6 +124,20 @@ export class Picture {
       this.colouring.fill(i, this.#values[i]);
       part.colourBy(this.#values[i], this.colouring.most(i));
     });
+  }
+
+  // Nobody knows what will come: scales and room follow what is seen.
+  #widen(row) {
+    const {truth, replay, scene} = this.#model;
+    const {box} = this.view;
+    if (row >= 0 && forceAt(truth, row) > this.#force) {
+      this.#force = powerOfTwo(forceAt(truth, row));
+      this.#users.perNewton = this.#perNewton;
+    }
+    for (const {device} of row >= 0 ? truth.users : []) box.expandByPoint(new Vector3(device[0][row], device[1][row], device[2][row]));
+    const poses = scene.rigid.length > 0 ? replay.poses() : [];
+    for (let i = 0; i < poses.length; i += 7) box.expandByPoint(new Vector3(poses[i], poses[i + 1], poses[i + 2]));
+    for (const {displacements} of this.#meshes) this.#displacement = Math.max(this.#displacement, largestLength(displacements));
   }
 
   // A client moves on between true shapes: the two are compared at the ticks of these.
@@ -135,6 +160,16 @@ export class Picture {
 function fillLengths(vectors, out) {
   for (let i = 0; i < out.length; ++i) out[i] = Math.hypot(vectors[3 * i], vectors[3 * i + 1], vectors[3 * i + 2]);
 }
+
+function largestLength(vectors) {
+  let most = 0;
+  for (let i = 0; i < vectors.length; i += 3) most = Math.max(most, Math.hypot(vectors[i], vectors[i + 1], vectors[i + 2]));
+  return most;
+}
+
+const forceAt = ({users}, row) => Math.max(0, ...users.map(({server, felt}) => Math.max(norm(server, row), norm(felt ?? server, row))));
+
+const powerOfTwo = (value) => 2 ** Math.ceil(Math.log2(Math.max(1, value)));
 
 function fillDifferences(a, b, out) {
   for (let i = 0; i < out.length; ++i) out[i] = Math.hypot(a[3 * i] - b[3 * i], a[3 * i + 1] - b[3 * i + 1], a[3 * i + 2] - b[3 * i + 2]);
@@ -161,13 +196,11 @@ function roomOf(model) {
       point.set(poses[7 * i], poses[7 * i + 1], poses[7 * i + 2]);
       box.expandByPoint(point.clone().addScalar(radius)).expandByPoint(point.addScalar(-radius));
     });
-    scene.deformables.forEach((_, i) => {
-      const moved = replay.displacements(i);
-      for (let v = 0; v < moved.length; v += 3) displacement = Math.max(displacement, Math.hypot(moved[v], moved[v + 1], moved[v + 2]));
-    });
+    scene.deformables.forEach((_, i) => (displacement = Math.max(displacement, largestLength(replay.displacements(i)))));
   }
   for (const {device} of truth?.users ?? [])
     for (let i = 0; i < truth.ticks.length; i += 10) box.expandByPoint(point.set(device[0][i], device[1][i], device[2][i]));
+  if (model.isLive) box.expandByVector(box.getSize(point).multiplyScalar(0.2));  // for what is to come
   if (shapes.floor !== undefined) box.min.z = Math.min(shapes.floor, box.max.z);
   if (box.isEmpty() || box.getSize(point).length() < 1e-6) box.expandByScalar(0.05);
   return {box, displacement};

@@ -1,21 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
 // A stream at any tick: packets are decoded as time goes on; going elsewhere begins at key packets.
+import {Growing, GrowingTable} from "./growing.js";
 import {lastUpTo, readColumns} from "./read_columns.js";
 
 export class Replay {
   #tactus;
   #bytes;
+  #offset = 0;  // of the first byte that is still there
+  #table;
   #done = 0;  // packets decoded
   #receiver = null;
 
-  constructor(tactus, bytes, packets) {
+  constructor(tactus, declaration, bytes, packets) {
     this.#tactus = tactus;
-    this.#bytes = bytes;
-    this.packets = readColumns(packets);
-    this.scene = tactus.parseScene(bytes);
+    this.#bytes = new Growing(bytes);
+    this.#table = new GrowingTable(readColumns(packets));
+    this.packets = this.#table.value;
+    this.scene = tactus.parseScene(declaration);
     this.#restart();
     this.tick = 0;
     this.moveTo(0);
+  }
+
+  get length() {
+    return this.packets.ticks.length;
+  }
+
+  get bytes() {
+    return this.#bytes.length;
+  }
+
+  // in  packets  with offsets into `bytes`
+  append(bytes, packets) {
+    const columns = readColumns(packets);
+    const end = this.#offset + this.#bytes.length;
+    columns.offsets = columns.offsets.map((offset) => end + offset);
+    this.#bytes.add(bytes);
+    this.#table.add(columns);
+  }
+
+  // The first packets are forgotten.   pre  what follows them can be decoded without
+  drop(count) {
+    const offset = this.packets.offsets[count] ?? this.#offset + this.#bytes.length;
+    this.#bytes.drop(offset - this.#offset);
+    this.#offset = offset;
+    this.#table.drop(count);
+    if (this.#done < count) this.#restart();  // what was decoded is gone
+    else this.#done -= count;
   }
 
   #restart() {
@@ -52,7 +83,8 @@ export class Replay {
 
   #push(i) {
     const {offsets, sizes} = this.packets;
-    this.#receiver.push(this.#bytes.subarray(offsets[i], offsets[i] + sizes[i]));
+    const at = offsets[i] - this.#offset;
+    this.#receiver.push(this.#bytes.view.subarray(at, at + sizes[i]));
   }
 
   poses(out) {

@@ -9,11 +9,12 @@ export function lanesOf(model) {
   const {packets, scene} = model;
   const {length} = packets.ticks;
   const times = (matches) => Float64Array.from([...Array(length).keys()].filter(matches), (i) => packets.ticks[i] / model.tickRate);
+  const isExpected = (reason) => model.isLive && (reasons[reason] !== "heartbeat" || scene.rigidBounds?.heartbeat > 0);
   const lanes = [];
   const rigid = scene.rigid.some(({dof}) => dof !== 0);
   for (let reason = 3; rigid && reason >= 0; --reason) {
     const found = times((i) => packets.substreams[i] === 0 && packets.reasons[i] === reason);
-    if (found.length > 0) lanes.push({name: `packets, ${reasons[reason]}`, colour: reasons[reason], times: found});
+    if (found.length > 0 || isExpected(reason)) lanes.push({name: `packets, ${reasons[reason]}`, colour: reasons[reason], times: found});
   }
   const meshes = times((i) => packets.substreams[i] > 0 && packets.substreams[i] <= scene.deformables.length);
   if (meshes.length > 0) lanes.push({name: "packets, shapes", colour: "deformable", times: meshes});
@@ -24,7 +25,7 @@ export function lanesOf(model) {
 
 function strip(name, kind, times, values, {bound = null, colour = "visual"}) {
   const {factor, name: unit} = units[kind];
-  const scaled = (column) => Float64Array.from(column, (value) => value * factor);
+  const scaled = (column) => column.map((value) => value * factor);
   const fixed = typeof bound === "number";
   const limit = bound === null ? null : fixed ? new Float64Array(values.length).fill(bound * factor) : scaled(bound);
   const series = [{colour, values: scaled(values), over: limit}];
@@ -49,8 +50,9 @@ export function rowsOf(model) {
       rows.push(strip(name, "length", model.seconds(ticks), error, {bound: bound?.kept ? bound.visual : null, colour: "deformable"}));
     });
     truth.users.forEach((user) => {
-      const force = Float64Array.from(truth.ticks, (_, row) => norm(user.felt ?? user.server, row));
-      const name = truth.users.length > 1 ? `force felt, ${short(user.name)}` : "force felt";
+      const force = truth.ticks.map((_, row) => norm(user.felt ?? user.server, row));
+      const kind = model.isLive ? "force" : "force felt";
+      const name = truth.users.length > 1 ? `${kind}, ${short(user.name)}` : kind;
       add(name, "force", force, {colour: user.felt ? "felt" : "server"});
     });
   }
@@ -62,12 +64,13 @@ const short = (name) => (name.length > 14 ? `${name.slice(0, 13)}…` : name);
 
 // Payload of tenths of a second, of longer spans in a long stream.
 function rateRow(model) {
-  const window = Math.max(0.1, model.duration / 10000);
-  const count = Math.max(1, Math.ceil(model.duration / window));
+  const window = Math.max(0.1, (model.duration - model.start) / 10000);
+  const first = Math.floor(model.start / window);
+  const count = Math.max(1, Math.ceil(model.duration / window) - first);
   const rate = new Float64Array(count);
   model.packets.ticks.forEach((tick, i) => {
-    rate[Math.min(count - 1, Math.floor(tick / model.tickRate / window))] += (8 * model.packets.sizes[i]) / window / 1000;
+    rate[Math.min(count - 1, Math.floor(tick / model.tickRate / window) - first)] += (8 * model.packets.sizes[i]) / window / 1000;
   });
-  const times = Float64Array.from(rate, (_, i) => i * window);
+  const times = rate.map((_, i) => (first + i) * window);
   return {name: "payload", unit: "kbit/s", times, series: [{colour: "soft", values: rate, over: null}]};
 }

@@ -14,16 +14,22 @@ export class Timeline {
   #cursor;
   #lanes;
   #rows;
-  #duration;
+  #begin = 0;
+  #end = 1;
   #width = 0;
   #strip = stripHeights[1];
   #left = 0;
 
-  // in  duration [s];  lanes  {name, colour, times};  rows  {name, unit, times, series: [{colour, values, dashed}]}
-  constructor(element, {duration, lanes, rows}) {
+  constructor(element, content) {
     this.#element = element;
     [this.#strips, this.#cursor] = element.querySelectorAll("canvas");
-    this.#duration = Math.max(duration, 1e-9);
+    this.hold(content);
+  }
+
+  // in  begin, end [s];  lanes  {name, colour, times};  rows  {name, unit, times, series: [{colour, values, dashed}]}
+  hold({begin, end, lanes, rows}) {
+    this.#begin = begin;
+    this.#end = Math.max(end, begin + 1e-9);
     this.#lanes = lanes;
     this.#rows = rows;
   }
@@ -48,12 +54,14 @@ export class Timeline {
   }
 
   xOf(time) {
-    return this.#left + (time / this.#duration) * (this.#width - this.#left - 14);
+    const share = Math.min(Math.max((time - this.#begin) / (this.#end - this.#begin), 0), 1);
+    return this.#left + share * (this.#width - this.#left - 14);
   }
 
   timeAt(clientX) {
     const x = clientX - this.#element.getBoundingClientRect().left;
-    return Math.min(Math.max((x - this.#left) / (this.#width - this.#left - 14), 0), 1) * this.#duration;
+    const share = Math.min(Math.max((x - this.#left) / (this.#width - this.#left - 14), 0), 1);
+    return this.#begin + share * (this.#end - this.#begin);
   }
 
   draw() {
@@ -79,6 +87,7 @@ export class Timeline {
     c.fillStyle = colour(named);
     let last = -1;
     for (const time of times) {
+      if (time < this.#begin) continue;
       const x = Math.round(this.xOf(time));
       if (x !== last) c.fillRect(x, y + 1, 1, laneHeight - 3);
       last = x;
@@ -162,19 +171,21 @@ export class Timeline {
 
   #drawAxis(c, y) {
     const pixels = this.#width - this.#left - 14;
-    const step = roundStep(Math.max(this.#duration / Math.max(2, pixels / 80), 1e-3));
-    const spacing = this.#duration / step > pixels / 45 ? 2 * step : step;
+    const length = this.#end - this.#begin;
+    const step = roundStep(Math.max(length / Math.max(2, pixels / 80), 1e-3));
+    const spacing = length / step > pixels / 45 ? 2 * step : step;
+    const first = Math.ceil(this.#begin / spacing - 1e-9);
     c.fillStyle = colour("soft");
     c.strokeStyle = colour("line");
     c.textAlign = "center";
-    for (let i = 0; i * spacing <= this.#duration * (1 + 1e-9); ++i) {
+    for (let i = first; i * spacing <= this.#end * (1 + 1e-9); ++i) {
       const x = Math.round(this.xOf(i * spacing)) + 0.5;
       c.beginPath();
       c.moveTo(x, y + 1);
       c.lineTo(x, y + 5);
       c.stroke();
       const text = `${+(i * spacing).toPrecision(6)}`;
-      c.fillText(i === 0 ? "0 s" : text, x, y + 13);
+      c.fillText(i === first ? `${text} s` : text, x, y + 13);
     }
   }
 

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/observe/web_door.h"
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "cli/observe/web_request.h"
+
+namespace tactus::cli {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using boost::system::error_code;
+using namespace std::chrono_literals;
+
+constexpr std::size_t kMostVisitors = 32, kMostObservers = 8;
+constexpr std::uint32_t kMostHeader = 8192;                       // [bytes] of a request
+constexpr std::size_t kMostHeard = 125;                           // [bytes] of a message from an observer
+constexpr int kSystemBuffer = 1 << 17;                            // [bytes] what the system may hold beside that
+constexpr std::size_t kMostWaiting = 90, kMostBytes = 16U << 20;  // messages and bytes for one observer: three seconds
+// For a request, for the page to be taken, and without a sign of life.
+constexpr auto kPatience = 5s, kPagePatience = 15s, kIdle = 20s;
+
+std::string_view view_of(beast::string_view text) { return {text.data(), text.size()}; }
+
+websocket::stream_base::timeout timeouts() { return {kPatience, kIdle, true}; }
+
+class Observer;
+
+}  // namespace
+
+struct WebDoor::Impl {
+  explicit Impl(asio::io_context& context) : acceptor(context), pause(context) {}
+
+  void accept();
+  void leave(const Observer* observer);
+
+  asio::ip::tcp::acceptor acceptor;
+  asio::steady_timer pause;  // after a failure to accept
+  std::uint16_t port = 0;
+  std::string page;
+  std::shared_ptr<std::size_t> visitors = std::make_shared<std::size_t>();  // connections, those of observers too
+  std::vector<std::shared_ptr<Observer>> observers;
+  bool is_closed = false;
+  Counts counts;
+};
+
+namespace {
+
+/// One connection of those that the door counts; it may outlive the door.
+class Visit {
+ public:
+  explicit Visit(std::shared_ptr<std::size_t> visitors) : visitors_(std::move(visitors)) { ++*visitors_; }
+  Visit(Visit&&) noexcept = default;
+  Visit& operator=(Visit&&) = delete;
+  ~Visit() {
+    if (visitors_) --*visitors_;
+  }
+
+ private:
+  std::shared_ptr<std::size_t> visitors_;
+};
+
+/// A page that observes.
+class Observer : public std::enable_shared_from_this<Observer> {
+ public:
+  Observer(WebDoor::Impl& door, Visit visit, beast::tcp_stream stream)
+      : door_(door), visit_(std::move(visit)), stream_(std::move(stream)) {
+    stream_.next_layer().expires_never();
+    error_code ignored;
+    stream_.next_layer().socket().set_option(asio::socket_base::send_buffer_size(kSystemBuffer), ignored);
+    stream_.set_option(timeouts());
+    stream_.read_message_max(kMostHeard);
+    stream_.text(true);
+  }
+
+  void begin(const http::request<http::empty_body>& request) {
+    stream_.async_accept(request, [self = shared_from_this()](const error_code& error) {
+      if (error) return self->door_.leave(self.get());
+      self->is_open_ = true;
+      self->listen();
+    });
+  }
+
+  void send(const Outbox::Message& message, bool is_key, const std::string& hello) {
+    if (!is_open_ || farewell_ || (!has_begun_ && !is_key)) return;
+    bool has_room = true;
+    if (!std::exchange(has_begun_, true)) has_room = outbox_.push(std::make_shared<const std::string>(hello));
+    if (has_room && outbox_.push(message)) return write();
+    ++door_.counts.too_slow;
+    outbox_.clear();
+    close({websocket::close_code::try_again_later, "too slow"});
+  }
+
+  /// After what waits to be sent.
+  void close(const websocket::close_reason& reason) {
+    if (farewell_) return;
+    farewell_ = reason;
+    if (is_open_) return write();
+    error_code ignored;
+    stream_.next_layer().socket().close(ignored);
+  }
+  void close_after(const Outbox::Message& last) {
+    if (has_begun_ && !farewell_) outbox_.push(last);
+    close({websocket::close_code::going_away, "the server has ended"});
+  }
+
+ private:
+  /// For signs of life and the end; an observer has nothing to say.
+  void listen() {
+    stream_.async_read(buffer_, [self = shared_from_this()](const error_code& error, std::size_t) {
+      if (error) return self->door_.leave(self.get());
+      self->outbox_.clear();
+      self->close({websocket::close_code::policy_error, "an observer has nothing to say"});
+    });
+  }
+
+  void write() {
+    if (is_writing_) return;
+    is_writing_ = true;
+    if (outbox_.is_empty() && farewell_) {
+      stream_.async_close(*farewell_, [self = shared_from_this()](const error_code&) { self->door_.leave(self.get()); });
+      return;
+    }
+    on_the_way_ = outbox_.pop();
+    stream_.async_write(asio::buffer(*on_the_way_), [self = shared_from_this()](const error_code& error, std::size_t) {
+      if (error) return self->door_.leave(self.get());
+      self->is_writing_ = false;
+      if (!self->outbox_.is_empty() || self->farewell_) self->write();
+    });
+  }
+
+  WebDoor::Impl& door_;
+  Visit visit_;
+  websocket::stream<beast::tcp_stream> stream_;
+  beast::flat_buffer buffer_;
+  Outbox outbox_{kMostWaiting, kMostBytes};
+  Outbox::Message on_the_way_;
+  std::optional<websocket::close_reason> farewell_;
+  bool is_open_ = false, has_begun_ = false, is_writing_ = false;
+};
+
+/// A request and its answer.
+class Knock : public std::enable_shared_from_this<Knock> {
+ public:
+  Knock(WebDoor::Impl& door, asio::ip::tcp::socket socket) : door_(door), visit_(door.visitors), stream_(std::move(socket)) {
+    parser_.header_limit(kMostHeader);
+    parser_.body_limit(0);
+  }
+
+  void begin() {
+    stream_.expires_after(kPatience);
+    http::async_read(stream_, buffer_, parser_, [self = shared_from_this()](const error_code& error, std::size_t) {
+      if (!error) return self->answer();
+      const bool is_gone = error == beast::error::timeout || error == http::error::end_of_stream || error == asio::error::eof ||
+                           error == asio::error::connection_reset || error == asio::error::operation_aborted;
+      if (is_gone) return self->end();
+      if (error == http::error::header_limit || error == http::error::buffer_overflow)
+        return self->refuse({431, "The request is too long.\n"});
+      self->refuse({400, "This is no request without a body.\n"});
+    });
+  }
+
+ private:
+  void answer() {
+    const auto& request = parser_.get();
+    const WebAnswer answer = judge({.method = view_of(request.method_string()),
+                                    .target = view_of(request.target()),
+                                    .host = view_of(request[http::field::host]),
+                                    .origin = view_of(request[http::field::origin]),
+                                    .hosts = request.count(http::field::host),
+                                    .origins = request.count(http::field::origin),
+                                    .upgrades = websocket::is_upgrade(request)},
+                                   door_.port);
+    if (answer.status == kPageAnswer) return say(answer.status, door_.page, "text/html; charset=utf-8");
+    if (answer.status != kLiveAnswer) return refuse(answer);
+    if (door_.is_closed || door_.observers.size() >= kMostObservers) return refuse({503, "So many observe already.\n"});
+    const auto observer = std::make_shared<Observer>(door_, std::move(visit_), std::move(stream_));
+    door_.observers.push_back(observer);
+    ++door_.counts.observers;
+    door_.counts.most_at_a_time = std::max<std::uint64_t>(door_.counts.most_at_a_time, door_.observers.size());
+    observer->begin(request);
+  }
+
+  void refuse(const WebAnswer& answer) {
+    ++door_.counts.requests_refused;
+    say(answer.status, std::string(answer.text), "text/plain; charset=utf-8");
+  }
+
+  void say(unsigned status, std::string text, const char* type) {
+    response_.result(status);
+    response_.version(11);
+    response_.keep_alive(false);
+    response_.set(http::field::content_type, type);
+    response_.set(http::field::cache_control, "no-store");
+    response_.set("X-Content-Type-Options", "nosniff");
+    response_.set("X-Frame-Options", "DENY");
+    response_.set("Content-Security-Policy", "frame-ancestors 'none'");
+    response_.set("Cross-Origin-Resource-Policy", "same-origin");
+    response_.set("Cross-Origin-Opener-Policy", "same-origin");
+    response_.set("Referrer-Policy", "no-referrer");
+    response_.body() = std::move(text);
+    response_.prepare_payload();
+    stream_.expires_after(kPagePatience);
+    http::async_write(stream_, response_, [self = shared_from_this()](const error_code&, std::size_t) { self->end(); });
+  }
+
+  void end() {
+    error_code ignored;
+    stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+  }
+
+  WebDoor::Impl& door_;
+  Visit visit_;
+  beast::tcp_stream stream_;
+  beast::flat_buffer buffer_{kMostHeader};
+  http::request_parser<http::empty_body> parser_;
+  http::response<http::string_body> response_;
+};
+
+}  // namespace
+
+void WebDoor::Impl::accept() {
+  acceptor.async_accept([this](const error_code& error, asio::ip::tcp::socket socket) {
+    if (error == asio::error::operation_aborted) return;
+    if (error) {  // of this machine: no descriptor is left
+      pause.expires_after(100ms);
+      pause.async_wait([this](const error_code& stopped) {
+        if (!stopped) accept();
+      });
+      return;
+    }
+    error_code ignored;
+    socket.set_option(asio::ip::tcp::no_delay(true), ignored);
+    if (*visitors < kMostVisitors) std::make_shared<Knock>(*this, std::move(socket))->begin();
+    else ++counts.requests_refused;  // and the socket closes
+    accept();
+  });
+}
+
+void WebDoor::Impl::leave(const Observer* observer) {
+  std::erase_if(observers, [observer](const auto& one) { return one.get() == observer; });
+}
+
+WebDoor::WebDoor(asio::io_context& context) : impl_(std::make_unique<Impl>(context)) {}
+WebDoor::~WebDoor() = default;
+
+std::uint16_t WebDoor::open(std::uint16_t port) {
+  const asio::ip::tcp::endpoint place(asio::ip::address_v4::loopback(), port);
+  impl_->acceptor.open(place.protocol());
+  impl_->acceptor.set_option(asio::socket_base::reuse_address(true));
+  impl_->acceptor.bind(place);
+  impl_->acceptor.listen();
+  impl_->port = impl_->acceptor.local_endpoint().port();
+  return impl_->port;
+}
+
+void WebDoor::serve(std::string page) {
+  impl_->page = std::move(page);
+  impl_->accept();
+}
+
+bool WebDoor::has_observers() const noexcept { return !impl_->observers.empty(); }
+
+void WebDoor::send(const Outbox::Message& message, bool is_key, const std::string& hello) {
+  for (const auto& observer : std::vector(impl_->observers)) observer->send(message, is_key, hello);
+}
+
+void WebDoor::close(const Outbox::Message& last) {
+  impl_->is_closed = true;
+  error_code ignored;
+  impl_->acceptor.close(ignored);
+  impl_->pause.cancel();
+  for (const auto& observer : std::vector(impl_->observers)) observer->close_after(last);
+}
+
+const WebDoor::Counts& WebDoor::counts() const noexcept { return impl_->counts; }
+
+}  // namespace tactus::cli

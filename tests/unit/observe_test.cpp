@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/observe/outbox.h"
+#include "cli/observe/tick_queue.h"
+#include "cli/observe/web_request.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <thread>
+
+#include "tests/property/allocated.h"
+
+namespace tactus::cli {
+namespace {
+
+TraceFrame make_frame(std::int64_t tick = 0) {
+  TraceFrame frame;
+  frame.tick = tick;
+  frame.objects.resize(2);
+  frame.objects[1].pose.position.x = static_cast<double>(tick);
+  frame.users.resize(1);
+  frame.users[0].server_force = {0, 0, static_cast<double>(tick)};
+  frame.meshes.push_back({false, std::vector<float>(300, static_cast<float>(tick))});
+  return frame;
+}
+
+TEST(TickQueue, NothingIsKeptWhileNobodyWatches) {
+  TickQueue queue(make_frame(), 0, 0);
+  queue.offer(make_frame(1), {});
+  EXPECT_EQ(queue.front(), nullptr);
+  EXPECT_EQ(queue.left_out(), 0u);
+}
+
+TEST(TickQueue, TicksComeInOrderWithWhatIsTrue) {
+  TickQueue queue(make_frame(), 0, 0);
+  queue.begin_watch();
+  for (std::int64_t tick = 1; tick <= 3; ++tick) queue.offer(make_frame(tick), {});
+  for (std::int64_t tick = 1; tick <= 3; ++tick) {
+    ASSERT_NE(queue.front(), nullptr);
+    const TraceFrame& frame = queue.front()->frame;
+    EXPECT_EQ(frame.tick, tick);
+    EXPECT_EQ(frame.objects[1].pose.position.x, static_cast<double>(tick));
+    EXPECT_EQ(frame.users[0].force.z, static_cast<double>(tick));  // felt, as far as the server knows
+    EXPECT_EQ(frame.meshes[0].updated, tick == 1);                 // the first has all shapes
+    if (tick == 1) {
+      EXPECT_EQ(frame.meshes[0].displacements[299], 1.0f);
+    }
+    queue.pop();
+  }
+  EXPECT_EQ(queue.front(), nullptr);
+}
+
+TEST(TickQueue, AShapeThatWasLeftOutComesWithTheNextTick) {
+  TickQueue queue(make_frame(), 0, 0);
+  queue.begin_watch();
+  std::int64_t tick = 1;
+  for (std::size_t i = 0; i < queue.room(); ++i) queue.offer(make_frame(tick++), {});
+  TraceFrame shape = make_frame(tick++);
+  shape.meshes[0].updated = true;
+  queue.offer(shape, {});  // no room
+  EXPECT_EQ(queue.left_out(), 1u);
+  queue.pop();
+  queue.offer(make_frame(tick), {});
+  while (queue.front()->frame.tick != tick) queue.pop();
+  EXPECT_TRUE(queue.front()->frame.meshes[0].updated);
+  EXPECT_EQ(queue.front()->frame.meshes[0].displacements[0], static_cast<float>(tick));
+}
+
+TEST(TickQueue, AnotherWatchBeginsWithAllShapes) {
+  TickQueue queue(make_frame(), 0, 0);
+  for (int watch = 0; watch < 2; ++watch) {
+    queue.begin_watch();
+    queue.offer(make_frame(1), {});
+    queue.offer(make_frame(2), {});
+    EXPECT_TRUE(queue.front()->frame.meshes[0].updated) << watch;
+    queue.end_watch();
+    queue.offer(make_frame(3), {});
+  }
+  queue.begin_watch();
+  EXPECT_EQ(queue.front(), nullptr);  // what was left of the watch before is gone
+}
+
+TEST(TickQueue, LoadsAreCopiedWithTheirPushes) {
+  std::vector<Vec3> pushes{{1, 0, 0}, {0, 2, 0}};
+  const std::array loads{ObjectLoad{.external = {0, 0, -1}, .hold = {}, .pushes = pushes}};
+  TickQueue queue(make_frame(), 1, 2);
+  queue.begin_watch();
+  queue.offer(make_frame(1), loads);
+  pushes.assign(2, {});
+  EXPECT_EQ(queue.front()->loads[0].external.z, -1);
+  ASSERT_EQ(queue.front()->loads[0].pushes.size(), 2u);
+  EXPECT_EQ(queue.front()->loads[0].pushes[1].y, 2);
+}
+
+TEST(TickQueue, OfferAllocatesNothing) {
+  TickQueue queue(make_frame(), 0, 0);
+  queue.begin_watch();
+  TraceFrame frame = make_frame(1);
+  frame.meshes[0].updated = true;
+  frame.changed = std::vector<std::uint32_t>{0};
+  const std::uint64_t before = testing::allocated_bytes();
+  for (std::size_t i = 0; i <= queue.room(); ++i) queue.offer(frame, {});
+  EXPECT_EQ(testing::allocated_bytes(), before);
+  EXPECT_EQ(queue.left_out(), 1u);
+}
+
+TEST(TickQueue, TwoThreadsLoseAndMixNothing) {
+  TickQueue queue(make_frame(), 0, 0);
+  queue.begin_watch();
+  constexpr std::int64_t kTicks = 20000;
+  std::thread server([&queue] {
+    for (std::int64_t tick = 1; tick <= kTicks; ++tick) {
+      TraceFrame frame = make_frame(tick);
+      frame.meshes[0].updated = true;
+      queue.offer(frame, {});
+    }
+  });
+  std::uint64_t seen = 0;
+  std::int64_t last = 0;
+  bool is_whole = true, rises = true;
+  const auto take = [&] {
+    while (const ObservedTick* tick = queue.front()) {
+      rises = rises && tick->frame.tick > last;
+      last = tick->frame.tick;
+      for (const float u : tick->frame.meshes[0].displacements) is_whole = is_whole && u == static_cast<float>(last);
+      ++seen;
+      queue.pop();
+    }
+  };
+  while (seen + queue.left_out() < kTicks) take();
+  server.join();
+  take();
+  EXPECT_TRUE(rises);
+  EXPECT_TRUE(is_whole);
+  EXPECT_EQ(seen + queue.left_out(), static_cast<std::uint64_t>(kTicks));
+}
+
+Outbox::Message message(std::size_t size) { return std::make_shared<const std::string>(size, 'x'); }
+
+TEST(Outbox, HoldsSoManyMessages) {
+  Outbox outbox(2, 1000);
+  EXPECT_TRUE(outbox.push(message(1)));
+  EXPECT_TRUE(outbox.push(message(2)));
+  EXPECT_FALSE(outbox.push(message(3)));
+  EXPECT_EQ(outbox.pop()->size(), 1u);
+  EXPECT_TRUE(outbox.push(message(4)));
+  EXPECT_EQ(outbox.pop()->size(), 2u);
+  EXPECT_EQ(outbox.pop()->size(), 4u);
+  EXPECT_TRUE(outbox.is_empty());
+}
+
+TEST(Outbox, HoldsSoManyBytesButAlwaysOneMessage) {
+  Outbox outbox(10, 100);
+  EXPECT_TRUE(outbox.push(message(5000)));
+  EXPECT_FALSE(outbox.push(message(1)));
+  outbox.clear();
+  EXPECT_TRUE(outbox.push(message(60)));
+  EXPECT_FALSE(outbox.push(message(41)));
+  EXPECT_TRUE(outbox.push(message(40)));
+}
+
+WebRequest page_request() { return {.method = "GET", .target = "/", .host = "127.0.0.1:8080", .origin = {}, .hosts = 1}; }
+WebRequest live_request() {
+  WebRequest request = page_request();
+  request.target = "/live";
+  request.origin = "http://127.0.0.1:8080";
+  request.origins = 1;
+  request.upgrades = true;
+  return request;
+}
+
+TEST(WebRequest, ThePageAndItsSocketAreAnswered) {
+  EXPECT_EQ(judge(page_request(), 8080).status, kPageAnswer);
+  EXPECT_EQ(judge(live_request(), 8080).status, kLiveAnswer);
+  WebRequest named = live_request();
+  named.host = "localhost:8080";
+  named.origin = "http://localhost:8080";
+  EXPECT_EQ(judge(named, 8080).status, kLiveAnswer);
+}
+
+TEST(WebRequest, AnotherHostIsRefused) {
+  for (const std::string_view host :
+       {"", "evil.example", "evil.example:8080", "127.0.0.1", "127.0.0.1:80", "127.0.0.1:8080.evil.example", "localhost",
+        "localhost:80800", "LOCALHOST:8080", "127.0.0.2:8080", "[::1]:8080", " 127.0.0.1:8080"})
+    for (WebRequest request : {page_request(), live_request()}) {
+      request.host = host;
+      EXPECT_EQ(judge(request, 8080).status, 421u) << host;
+    }
+  WebRequest twice = page_request();
+  twice.hosts = 2;
+  EXPECT_EQ(judge(twice, 8080).status, 421u);
+  twice.hosts = 0;
+  EXPECT_EQ(judge(twice, 8080).status, 421u);
+}
+
+TEST(WebRequest, AnotherPageMayNotObserve) {
+  for (const std::string_view origin : {"", "null", "http://evil.example", "https://127.0.0.1:8080", "http://127.0.0.1:8081",
+                                        "http://localhost:8080", "file://"}) {
+    WebRequest request = live_request();
+    request.origin = origin;
+    EXPECT_EQ(judge(request, 8080).status, 403u) << origin;
+  }
+  WebRequest nameless = live_request();
+  nameless.origins = 0;
+  EXPECT_EQ(judge(nameless, 8080).status, 403u);
+}
+
+TEST(WebRequest, ThereIsNothingElse) {
+  for (const std::string_view target :
+       {"", "*", "//", "/index.html", "/live/", "/../etc/passwd", "http://127.0.0.1:8080/", "/?a"}) {
+    WebRequest request = page_request();
+    request.target = target;
+    EXPECT_EQ(judge(request, 8080).status, 404u) << target;
+  }
+  for (const std::string_view method : {"HEAD", "POST", "OPTIONS", "get"}) {
+    WebRequest request = page_request();
+    request.method = method;
+    EXPECT_EQ(judge(request, 8080).status, 405u) << method;
+  }
+  WebRequest plain = live_request();
+  plain.upgrades = false;
+  EXPECT_EQ(judge(plain, 8080).status, 426u);
+}
+
+}  // namespace
+}  // namespace tactus::cli
