@@ -42,11 +42,11 @@ class TickQueue {
  private:
   void copy(const TraceFrame& frame, std::span<const ObjectLoad> loads, ObservedTick& to) noexcept;
 
+  alignas(64) std::atomic<std::size_t> offered_{0};
+  std::atomic<std::uint64_t> left_out_{0};
   std::vector<ObservedTick> slots_;
   std::vector<bool> owed_;  // of the server's thread: shapes that were left out
   std::uint32_t seen_ = 0;  // likewise: the watch of the last tick
-  alignas(64) std::atomic<std::size_t> offered_{0};
-  std::atomic<std::uint64_t> left_out_{0};
   alignas(64) std::atomic<std::size_t> taken_{0};
   std::atomic<std::uint32_t> watch_{0};  // its number; an even one: nobody watches
 };
