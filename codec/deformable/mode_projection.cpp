@@ -70,7 +70,8 @@ void ModeProjection::factorise_shares() {
       for (const ClusterShare& b : basis_.shares[v])
         for (std::size_t i = 0; i < 4; ++i)
           for (std::size_t j = 0; j < 4; ++j)
-            factor_[(4u * a.cluster + i) * functions + 4u * b.cluster + j] += a.values[i] / 2048.0 * (b.values[j] / 2048.0);
+            factor_[(std::size_t{4} * a.cluster + i) * functions + std::size_t{4} * b.cluster + j] +=
+                a.values[i] / 2048.0 * (b.values[j] / 2048.0);
   factorise(factor_, functions);
   for (std::vector<double>& sum : sum_) sum.resize(functions);
 }
@@ -81,7 +82,7 @@ void ModeProjection::project_on_shares(std::span<const Vec3i> error, std::span<f
     for (const ClusterShare& share : basis_.shares[v])
       for (std::size_t i = 0; i < 4; ++i)
         for (std::size_t axis = 0; axis < 3; ++axis)
-          sum_[axis][4u * share.cluster + i] += share.values[i] / 2048.0 * error[v][axis];
+          sum_[axis][std::size_t{4} * share.cluster + i] += share.values[i] / 2048.0 * error[v][axis];
   for (std::vector<double>& sum : sum_) solve(factor_, sum);
   for (std::size_t k = 0; k < coefficients.size(); ++k) coefficients[k] = static_cast<float>(sum_[k % 3][k / 3]);
 }
