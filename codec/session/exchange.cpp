@@ -133,18 +133,16 @@ bool Exchange::decode(std::uint64_t number, std::span<const std::uint8_t> packet
 Result<void> Exchange::take(const FragmentPart& fragment, Reading& reading) noexcept {
   TACTUS_TRY(const auto taken, fragments_.take(reading.heard.number, fragment));
   reading.complete = taken.kept;
-  reading.waits = taken.kept;
   if (!taken.complete || !decode(taken.complete->number, taken.complete->packet, reading)) return {};
   fragments_.decoded(*taken.complete);
   reading.complete = true;
-  for (const std::uint64_t datagram : taken.complete->datagrams) receiver->skip_number(datagram);
   return {};
 }
 
 void Exchange::finish(const Reading& reading) noexcept {
   if (!reading.complete) return;
   received_.accept(reading.heard.number, reading.now, reading.asks);
-  if (receiver && !reading.waits) receiver->skip_number(reading.heard.number);
+  if (receiver) receiver->skip_number(reading.heard.number);
 }
 
 // Out
@@ -252,7 +250,7 @@ const Resends::Kept* Exchange::next_copy(std::uint64_t now) noexcept {
 bool Exchange::add_copies(std::uint64_t number, std::uint64_t now) noexcept {
   Slot& slot = slots_[number % slots_.size()];
   bool added = false;
-  while (slot.count < slot.packets.size() && slot.fragment.number == 0) {
+  while (slot.count < slot.packets.size()) {
     const Resends::Kept* const copy = next_copy(now);
     if (copy == nullptr || (copy->count > 1 && slot.count > 0) || !add_copy(*copy, number)) break;
     traffic_.payload_sent += copy->bytes.size();

@@ -108,8 +108,7 @@ class Exchange {
     Heard heard;
     std::uint64_t now = 0;
     Asks asks = Asks::never;
-    bool complete = true;  // all packets in it are decoded
-    bool waits = false;    // for the rest of its packet, or in vain
+    bool complete = true;  // all packets in it are decoded, or its fragment is kept
   };
   struct PacketName {
     std::uint16_t substream = 0, sequence = 0;

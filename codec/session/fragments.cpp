@@ -11,10 +11,7 @@ namespace tactus {
 Fragments::Fragments(std::size_t largest) : largest_(std::min(largest, kFragmentSize * kMostFragments)) {
   if (largest_ <= kFragmentSize) return;
   packets_.resize(kMost);
-  for (Packet& packet : packets_) {
-    packet.bytes.resize(largest_);
-    packet.datagrams.resize((largest_ + kFragmentSize - 1) / kFragmentSize);
-  }
+  for (Packet& packet : packets_) packet.bytes.resize(largest_);
 }
 
 Fragments::Packet* Fragments::find(std::uint64_t number, std::uint64_t substream) noexcept {
@@ -35,7 +32,7 @@ Fragments::Packet* Fragments::place_for(std::uint64_t number, const FragmentPart
   oldest.count = static_cast<std::size_t>(fragment.count);
   oldest.have = oldest.size = 0;
   oldest.is_decoded = false;
-  std::ranges::fill(oldest.datagrams, 0);
+  oldest.has.reset();
   return &oldest;
 }
 
@@ -50,14 +47,13 @@ Result<Fragments::Taken> Fragments::take(std::uint64_t datagram, const FragmentP
   if (packet == nullptr) return Taken{};
   const auto index = static_cast<std::size_t>(fragment.index);
   if (packet->count != fragment.count) return fail(Errc::invalid, "R-SES-7");
-  if (packet->datagrams[index] != 0) return Taken{packet->have < packet->count || packet->is_decoded, {}};
-  packet->datagrams[index] = datagram;
+  if (packet->has[index]) return Taken{packet->have < packet->count || packet->is_decoded, {}};
+  packet->has[index] = true;
   std::ranges::copy(fragment.bytes, packet->bytes.begin() + static_cast<std::ptrdiff_t>(index * kFragmentSize));
   if (is_last) packet->size = index * kFragmentSize + fragment.bytes.size();
   if (++packet->have < packet->count) return Taken{true, {}};
   return Taken{false,
-               Complete{packet->number, packet->substream, std::span<const std::uint8_t>(packet->bytes).first(packet->size),
-                        std::span<const std::uint64_t>(packet->datagrams).first(packet->count)}};
+               Complete{packet->number, packet->substream, std::span<const std::uint8_t>(packet->bytes).first(packet->size)}};
 }
 
 void Fragments::decoded(const Complete& packet) noexcept { find(packet.number, packet.substream)->is_decoded = true; }

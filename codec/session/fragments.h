@@ -2,7 +2,7 @@
 /// Packets that do not fit into one datagram, put together again. spec/70-session.md section 5. Internal to the library.
 #pragma once
 
-#include <array>
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -24,11 +24,10 @@ class Fragments {
   /// Nothing is allocated if no packet is larger than a fragment.   in  largest  packet [bytes]
   explicit Fragments(std::size_t largest);
 
-  /// A packet that is complete, and the datagrams that brought it. Valid until the next call.
+  /// A packet that is complete. Valid until the next call.
   struct Complete {
     std::uint64_t number = 0, substream = 0;
     std::span<const std::uint8_t> packet;
-    std::span<const std::uint64_t> datagrams;
   };
   struct Taken {
     bool kept = false;                 ///< to be acknowledged: it is held for its packet, or that is decoded
@@ -45,7 +44,7 @@ class Fragments {
     std::size_t count = 0, have = 0, size = 0;
     bool is_decoded = false;
     std::vector<std::uint8_t> bytes;
-    std::vector<std::uint64_t> datagrams;  // by fragment; 0: missing
+    std::bitset<kMostFragments> has;  // by fragment
   };
   Packet* find(std::uint64_t number, std::uint64_t substream) noexcept;
   Packet* place_for(std::uint64_t number, const FragmentPart& fragment) noexcept;

@@ -23,6 +23,17 @@ namespace tactus::testing {
 using Bytes = std::vector<std::uint8_t>;
 inline constexpr std::uint64_t kEpoch = 7, kMillisecond = 1000;
 
+/// Of the parts of a datagram.
+inline std::vector<std::size_t> types_of(const Bytes& bytes, Direction direction = Direction::down) {
+  const auto read = read_datagram(bytes, direction).value();
+  PartReader parts = std::get<Numbered>(read).parts(direction);
+  std::vector<std::size_t> out;
+  while (const auto part = parts.next().value()) out.push_back(part->index() + 1);
+  return out;
+}
+
+inline constexpr std::size_t kIsClock = 2, kIsFragment = 7, kIsPacket = 8;
+
 struct Meshes {
   std::uint32_t squares = 4;
   std::size_t count = 0;

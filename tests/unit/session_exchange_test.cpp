@@ -24,18 +24,11 @@ namespace {
 using testing::Bytes;
 using testing::Ends;
 using testing::kEpoch;
+using testing::kIsClock;
+using testing::kIsPacket;
 using testing::kMillisecond;
 using testing::Meshes;
-
-std::vector<std::size_t> types_of(const Bytes& bytes, Direction direction = Direction::down) {
-  const auto read = read_datagram(bytes, direction).value();
-  PartReader parts = std::get<Numbered>(read).parts(direction);
-  std::vector<std::size_t> out;
-  while (const auto part = parts.next().value()) out.push_back(part->index() + 1);
-  return out;
-}
-
-constexpr std::size_t kIsClock = 2, kIsFragment = 7, kIsPacket = 8;
+using testing::types_of;
 
 TEST(Exchange, PacketsGoAreDecodedAndAcknowledged) {
   Ends ends;
@@ -135,121 +128,6 @@ TEST(Exchange, OneRefusedPacketLeavesItsDatagramUnacknowledged) {
   EXPECT_EQ(ends.client->traffic().packets_refused, 1u);
   EXPECT_EQ(ends.client->traffic().packets_heard, 3u) << "the others count";
   EXPECT_EQ(ends.client->due(), std::nullopt);
-}
-
-TEST(Exchange, ALargePacketComesInFragments) {
-  Ends ends({.squares = 40, .count = 1, .noise = 5e-3});
-  const auto packets = ends.submit();
-  ASSERT_EQ(packets.size(), 2u);
-  const std::size_t size = packets[1].bytes.size(), count = (size + 1149) / 1150;
-  ASSERT_GT(count, 3u);
-  auto down = ends.drain(*ends.server);
-  ASSERT_GE(down.size(), count);
-  for (const Bytes& bytes : down) EXPECT_LE(bytes.size(), kLargestDatagram);
-  EXPECT_EQ(types_of(down[0]), std::vector<std::size_t>{kIsPacket});
-  EXPECT_EQ(types_of(down[2]), std::vector<std::size_t>{kIsFragment});
-  std::mt19937_64 random(3);
-  std::ranges::shuffle(down, random);
-  for (std::size_t i = 0; i < down.size(); ++i) {
-    EXPECT_LT(ends.client->traffic().packets_heard, 2u);
-    EXPECT_TRUE(ends.hear(*ends.client, down[i]));
-  }
-  EXPECT_EQ(ends.client->traffic().packets_heard, 2u);
-  ends.expect_same();
-  ends.answer();
-  EXPECT_EQ(ends.server->sent().highest_acknowledged(), down.size());
-  EXPECT_EQ(ends.server->sent().loss(), 0u);
-  EXPECT_EQ(ends.server->traffic().packets_sent, 2u);
-}
-
-/// Layers never come again: later packets must do without the one that lacks a fragment.
-TEST(Exchange, WithoutAllItsFragmentsAPacketIsNoBaseline) {
-  Ends ends({.squares = 40, .count = 1, .layered = true, .noise = 5e-3}, 0);
-  ends.submit();
-  auto down = ends.drain(*ends.server);
-  ASSERT_GT(down.size(), 3u);
-  down.erase(down.begin() + 1);
-  ends.give(down);
-  EXPECT_EQ(ends.client->traffic().packets_heard, 0u);
-  ends.answer();
-  EXPECT_EQ(ends.server->sent().highest_acknowledged(), down.size() + 1) << "fragments are acknowledged one by one";
-  for (int i = 0; i < 30; ++i) {
-    ends.submit();
-    ends.give(ends.drain(*ends.server));
-    ends.answer();
-  }
-  ends.expect_same();
-  EXPECT_EQ(ends.client->traffic().packets_refused, 0u);
-  EXPECT_GT(ends.client->traffic().packets_heard, 10u);
-  EXPECT_EQ(ends.server->traffic().lost, 1u);
-}
-
-TEST(Exchange, ALostFragmentComesAgainAlone) {
-  Ends ends({.squares = 40, .count = 1, .noise = 5e-3}, 0);
-  for (int i = 0; i < 3; ++i) {  // until the round trip is known
-    ends.submit();
-    ends.give(ends.drain(*ends.server));
-    ends.answer();
-  }
-  const std::uint64_t before = ends.client->traffic().packets_heard;
-  ends.submit();
-  auto down = ends.drain(*ends.server);
-  ASSERT_GT(down.size(), 3u);
-  down.erase(down.begin() + 1);
-  ends.give(down);
-  EXPECT_EQ(ends.client->traffic().packets_heard, before);
-  ends.now += 5 * kMillisecond;
-  ends.answer();
-  EXPECT_EQ(ends.server->traffic().lost, 1u);
-  const auto copies = ends.drain(*ends.server);
-  ASSERT_EQ(copies.size(), 1u);
-  EXPECT_EQ(types_of(copies[0]).back(), kIsFragment);
-  ends.give(copies);
-  EXPECT_EQ(ends.client->traffic().packets_heard, before + 1) << "the packet is whole";
-  ends.expect_same();
-}
-
-/// An acknowledgement tells of 65 numbers: one of a packet in more fragments than that must go before all have come.
-TEST(Exchange, APacketOfManyFragmentsIsAcknowledgedOnTheWay) {
-  Ends ends({.squares = 160, .count = 1, .noise = 2e-2}, 0);
-  ends.submit();
-  const auto down = ends.drain(*ends.server);
-  ASSERT_GT(down.size(), 65u);
-  for (const Bytes& bytes : down) {
-    EXPECT_TRUE(ends.hear(*ends.client, bytes));
-    for (const Bytes& said : ends.drain(*ends.client)) EXPECT_TRUE(ends.hear(*ends.server, said));
-  }
-  EXPECT_EQ(ends.server->traffic().lost, 0u);
-  EXPECT_EQ(ends.server->sent().highest_acknowledged(), down.size());
-  ends.expect_same();
-}
-
-/// A datagram is acknowledged as a whole.
-TEST(Exchange, AFragmentSharesItsDatagramWithNoOtherPacket) {
-  Ends ends({.squares = 40, .count = 3, .noise = 2e-3});
-  std::size_t fragments = 0;
-  for (int i = 0; i < 30; ++i) {
-    ends.submit();
-    const auto down = ends.drain(*ends.server);
-    for (const Bytes& bytes : down) {
-      const auto types = types_of(bytes);
-      if (std::ranges::find(types, kIsFragment) == types.end()) continue;
-      ++fragments;
-      EXPECT_EQ(std::ranges::count_if(types, [](std::size_t type) { return type >= kIsFragment; }), 1);
-    }
-    ends.give(down);
-    ends.answer();
-    ends.expect_same();
-  }
-  EXPECT_GT(fragments, 100u);
-  const Bytes some(20, 1);
-  for (const bool is_packet : {false, true}) {
-    DatagramWriter writer(Direction::down);
-    writer.begin(1);
-    ASSERT_TRUE(writer.add(FragmentPart{0, 1, 1, 2, some}));
-    EXPECT_FALSE(writer.add(is_packet ? Part(PacketPart{0, some}) : Part(FragmentPart{0, 2, 1, 2, some})));
-    EXPECT_TRUE(read_datagram(writer.finish(kEpoch), Direction::down));
-  }
 }
 
 /// The layers of a mesh build on each other: the second has the next number, and goes in the next datagram.

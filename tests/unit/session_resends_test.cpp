@@ -98,6 +98,10 @@ TEST(Resends, FragmentsGoByThemselves) {
   EXPECT_EQ(copy->bytes, std::vector<std::uint8_t>(7, 7));
   resends.sent(*copy, kMillisecond);
   EXPECT_EQ(resends.next(kMillisecond, kWay), nullptr);
+  const Sent small;
+  for (std::uint64_t n = 0; n < 64; ++n) small.keep(resends, 100 + n, 50 + n, kMillisecond);
+  resends.lost(22, 2 * kMillisecond, 1);
+  EXPECT_NE(resends.next(2 * kMillisecond, kWay), nullptr) << "a packet in fragments costs the others no place";
 }
 
 /// Against a list of what should go; nothing is allocated.
