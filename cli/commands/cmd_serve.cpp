@@ -376,10 +376,8 @@ void setup_serve(Command& app, Action& action) {
   add_output_options(command, options->common);
   command.footer(
       "A participant plays the first user of the scene whom nobody plays; others and observers look on.\n\n"
-      "A browser that observes sees a stream of its own under the same bounds, beside the truth. A thread of its own makes it; "
-      "the "
-      "session\n"
-      "only hands over a copy of each tick. From another machine: ssh -L 8080:127.0.0.1:8080 SERVER, then the same address.\n"
+      "A browser that observes sees a stream of its own under the same bounds, beside the truth, made by a thread of its own.\n"
+      "From another machine: ssh -L 8080:127.0.0.1:8080 SERVER, then the same address.\n"
       "Example, in three terminals, and http://127.0.0.1:8080/ in a browser:\n"
       "  tactus serve rotate-push-lift -p 4% --observe 8080\n"
       "  tactus link --listen 4001 --to 7447 --link delay=20ms,loss=1%\n"
