@@ -42,6 +42,7 @@ class EvenShapes {
 Result<std::map<std::string, ClusterBasis>> find_clusters(TraceReader& reader, std::size_t count) try {
   const std::vector<TraceDeformable>& meshes = reader.info().meshes;
   std::vector<EvenShapes> shapes;
+  shapes.reserve(meshes.size());
   for (const TraceDeformable& mesh : meshes) shapes.emplace_back(shapes_of(mesh));
   TraceFrame frame;
   while (true) {
