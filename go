@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Installs missing packages, builds and runs Tactus on Debian 12. Needs root or sudo only to install packages.
 #   ./go demo     simulate a touch, encode, decode and compare; report and figure in out/demo/ (under 3 minutes on 2 cores, 300 MB)
-#   ./go view     the same, and a page that shows it in a browser, out/demo/stream.html (1 minute and 500 MB more)
+#   ./go view     the same, and a page that shows it in a browser, out/demo/stream.html (2 minutes and 500 MB more)
 #   ./go test     build with g++ and clang, run every test (55 minutes on 2 cores, 4 GB)
 #   ./go bench    build and run the benchmarks; JSON in build/bench/
 #   ./go devices  capture a device of the kernel's own making in an emulated machine, from /dev/uhid to the trace (30 s after the build)
@@ -40,7 +40,8 @@ apt_install() {
   as_root apt-get update && as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $missing
 }
 
-# Some packages of Node bring npm, others refuse the package npm.
+# Why the demo does without them: on a machine that has none of them they take 110 s to install, 70 of which are npm's, and the demo would
+# no longer be done in 3 minutes. Some packages of Node bring npm, others refuse the package npm.
 install_view_tools() {
   install $view_packages
   command -v npm >/dev/null || install npm
