@@ -12,6 +12,7 @@
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_replica.h>
 #include "cli/commands/motion_source.h"
+#include "cli/figure/motion_figure.h"
 #include "cli/report/report.h"
 #include "cli/report/trace_ending.h"
 
@@ -19,7 +20,7 @@ namespace tactus::cli {
 namespace {
 
 struct DecodeOptions {
-  std::string input, output, like;
+  std::string input, output, like, plot;
   std::optional<std::int64_t> ticks;
   ReplicaOptions replica;
   CommonOptions common;
@@ -69,11 +70,12 @@ void count(const PlayedPacket& played, Report& report) {
 }
 
 /// Bring the player to `tick` and take over what it shows there.
-Result<void> decode_tick(Player& player, std::int64_t tick, TraceFrame& frame, Report& report) {
+Result<void> decode_tick(Player& player, std::int64_t tick, TraceFrame& frame, Report& report, MotionFigure* figure) {
   while (true) {
     TACTUS_TRY(const auto played, player.play(tick));
     if (!played) break;
     count(*played, report);
+    if (figure != nullptr) figure->add_packet(tick, played->bytes);
   }
   frame.tick = tick;
   take_shown(player.replica(), player.scene(), tick, frame);
@@ -87,7 +89,8 @@ tl::unexpected<Failure> refuse_at(std::int64_t tick, const Error& error, const D
   return refused;
 }
 
-Outcome decode_all(Player& player, TraceWriter& writer, const DecodeOptions& options, Report& report) {
+/// in   figure  may be null
+Outcome decode_all(Player& player, TraceWriter& writer, const DecodeOptions& options, Report& report, MotionFigure* figure) {
   TACTUS_TRY(auto ticks, TickSource::create(options));
   TraceFrame frame = replica_frame(player.scene());
   const auto total = options.ticks ? std::optional(static_cast<std::uint64_t>(*options.ticks)) : std::nullopt;
@@ -95,11 +98,12 @@ Outcome decode_all(Player& player, TraceWriter& writer, const DecodeOptions& opt
   while (true) {
     TACTUS_TRY(const auto tick, ticks.next(player));
     if (!tick) break;
-    const auto decoded = report.timings[0].times.measure([&] { return decode_tick(player, *tick, frame, report); });
+    const auto decoded = report.timings[0].times.measure([&] { return decode_tick(player, *tick, frame, report, figure); });
     if (!decoded && is_cut_stream(decoded.error()) && report.ticks.count() > 0) break;
     if (!decoded) return refuse_at(*tick, decoded.error(), options);
     if (const auto written = writer.write(frame); !written)
       return refuse(options.output, place_of_tick(frame.tick), written.error());
+    if (figure != nullptr) figure->add(frame);
     report.ticks.add(*tick);
     progress.update(report.ticks.count());
   }
@@ -119,6 +123,7 @@ Outcome run(const DecodeOptions& options) {
   if (!options.ticks && options.like.empty())
     TACTUS_CHECK(
         check_plausible_length(options.input, file, "If that is right, give the number of ticks to write with --ticks N."));
+  TACTUS_CHECK(check_plot_option(options.plot, options.common, {options.input, options.output, options.like}));
   TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing(), {options.input, options.like}));
   const TraceInfo info = replica_info(player->scene(), "decode " + options.input);
   note_idle_options(*options.common.command, subjects_of(info), "stream");
@@ -134,7 +139,9 @@ Outcome run(const DecodeOptions& options) {
   report.timings = {{"decode", "decode and show, per tick"}};
   report.stream = {player->header_bytes(), bytes.size()};
   if (report.traffic) report.client = way_of_client(options.replica.interpolation, player->scene().is_eased);
-  TACTUS_CHECK(decode_all(*player, *writer, options, report));
+  std::optional<MotionFigure> figure;
+  if (!options.plot.empty()) figure.emplace(info);
+  TACTUS_CHECK(decode_all(*player, *writer, options, report, figure ? &*figure : nullptr));
   const auto rest = player->next_tick();
   if (!rest && is_cut_stream(rest.error())) {
     warn_cut_stream(options.input, rest.error());
@@ -144,6 +151,7 @@ Outcome run(const DecodeOptions& options) {
     report.warnings.emplace_back("the stream has no trailer: its writer did not finish");
   }
   TACTUS_CHECK(output.keep());
+  if (figure) TACTUS_CHECK(draw_over_time(options.plot, shown_path(options.input), figure->panels(), options.common));
   print(report, options.common, beside(options.output));
   return {};
 }
@@ -162,6 +170,7 @@ void setup_decode(Command& app, Action& action) {
   command.add_option("--ticks", options->ticks, "Number of ticks to write [up to the last packet]")
       ->check(whole_number(1, 0xffffffff))
       ->excludes(like);
+  add_plot_option(command, options->plot, "what the client shows, and the packets, over time");
   add_output_options(command, options->common);
   command.footer(
       "Examples:\n"

@@ -17,6 +17,7 @@
 #endif
 #include "cli/commands/replay.h"
 #include "cli/commands/stop.h"
+#include "cli/figure/motion_figure.h"
 #include "cli/laboratory/stiffness_map.h"
 #include "cli/options/compensation_option.h"
 #include "cli/options/hand_option.h"
@@ -34,6 +35,7 @@ namespace {
 struct SimOptions {
   std::string scene, output, stream, replay;
   std::string pcap;           // capture to write
+  std::string plot;           // figure to draw
   std::string stiffness_map;  // CSV to write
   HandArguments hands;
   std::string method, solver;  // of deformable objects, empty: the scene's
@@ -85,17 +87,8 @@ struct Run {
   std::vector<DeviceSample> devices;  // of this tick, recorded
   std::optional<NetworkJudge> judge;  // with a network
   sim::SessionNetwork* network = nullptr;
+  std::optional<MotionFigure> figure;
 };
-
-/// If the recording has no buttons, button 0 counts as pressed during a spring contact.
-std::vector<DeviceSample> recorded_devices(const TraceReader& recording, const TraceFrame& frame) {
-  std::vector<DeviceSample> devices;
-  for (std::size_t i = 0; i < frame.users.size(); ++i) {
-    DeviceSample& device = devices.emplace_back(frame.users[i].device);
-    if (!recording.info().users[i].senses.buttons) device.buttons = frame.users[i].contact.kind == ContactKind::spring ? 1 : 0;
-  }
-  return devices;
-}
 
 /// One tick, by the scene's hands or by the recording.
 tl::expected<std::span<const Packet>, Failure> step(Run& run, const SimOptions& options, StepTimes& times) {
@@ -117,6 +110,7 @@ Outcome record_packets(Run& run, std::span<const Packet> packets, const SimOptio
     else if (packet.substream > 0)
       report.meshes[packet.substream - 1].traffic->add(packet.bytes.size(), packet.updates, packet.key, packet.layer);
     else if (report.traffic) report.traffic->add(packet.reason, packet.updates, packet.bytes.size(), packet.key);
+    if (run.figure) run.figure->add_packet(run.simulation.frame().tick, packet.bytes.size());
     if (!run.stream) continue;
     const auto added = run.stream->writer.add(run.simulation.frame().tick, packet.bytes, packet.key);
     if (!added) return refuse(options.stream, added.error());
@@ -140,6 +134,7 @@ Outcome record(Run& run, std::span<const Packet> packets, const SimOptions& opti
   if (const auto written = run.trace.write(frame); !written)
     return refuse(options.output, place_of_tick(frame.tick), written.error());
   TACTUS_CHECK(record_packets(run, packets, options, report));
+  if (run.figure) run.figure->add(frame);
   if (run.judge) {
     run.judge->add(run.simulation, *run.network);
   } else if (report.fidelity) {
@@ -385,6 +380,8 @@ Outcome run(const SimOptions& options) {
     TACTUS_TRY(auto reader, open_replay(options.replay));
     recording.emplace(std::move(reader));
   }
+  TACTUS_CHECK(
+      check_plot_option(options.plot, options.common, {options.output, options.stream, options.stiffness_map, options.pcap}));
   TACTUS_TRY(auto output,
              OutputFile::create_growing(options.output, options.common.existing(),
                                         {options.stream, options.stiffness_map, options.scene, options.replay, options.pcap}));
@@ -402,7 +399,9 @@ Outcome run(const SimOptions& options) {
   Report report = make_report(options, info);
   describe_deformables(*simulation, report);
   if (options.has_channel() && !options.has_network() && simulation->stream_scene()->loads) report.loads.emplace();
-  Run session{std::move(*simulation), std::move(output), std::move(*trace), std::move(stream), std::move(recording), {}, {}, {}};
+  Run session{
+      std::move(*simulation), std::move(output), std::move(*trace), std::move(stream), std::move(recording), {}, {}, {}, {}, {}};
+  if (!options.plot.empty()) session.figure.emplace(info);
   if (networked.network != nullptr) {
     session.judge.emplace(info, options.triggers, options.meshes);
     session.network = networked.network;
@@ -420,6 +419,7 @@ Outcome run(const SimOptions& options) {
   report_errors(session.simulation, report);
   report.timings.push_back(std::move(map));
   print(report, options.common, beside(options.output));
+  if (session.figure) TACTUS_CHECK(draw_over_time(options.plot, options.scene, session.figure->panels(), options.common));
   if (const int signal = StopOnSignal::caught(); signal != 0) return stopped(signal, report, options);
   return report.bounds_from.empty() ? Outcome() : verdict(report, options.output);
 }
@@ -483,6 +483,7 @@ void setup_sim(Command& app, Action& action) {
       ->type_name("FILE");
 #endif
   add_encoder_options(command, options->triggers, options->meshes);
+  add_plot_option(command, options->plot, "motion, forces and packets over time");
   add_output_options(command, options->common);
   command.footer(
       "Examples:\n"

@@ -21,4 +21,13 @@ tl::expected<TraceReader, Failure> open_replay(const std::string& path) {
   return std::move(*reader);
 }
 
+std::vector<DeviceSample> recorded_devices(const TraceReader& recording, const TraceFrame& frame) {
+  std::vector<DeviceSample> devices;
+  for (std::size_t i = 0; i < frame.users.size(); ++i) {
+    DeviceSample& device = devices.emplace_back(frame.users[i].device);
+    if (!recording.info().users[i].senses.buttons) device.buttons = frame.users[i].contact.kind == ContactKind::spring ? 1 : 0;
+  }
+  return devices;
+}
+
 }  // namespace tactus::cli
