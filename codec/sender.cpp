@@ -33,6 +33,7 @@ struct Sender::Impl {
   }
 
   SharedScene scene;
+  std::shared_ptr<const DevicePath> path;
   SubstreamEncoder<RigidEncoder> rigid;
   std::vector<std::unique_ptr<DeformableEncoder>> deformables;
   std::optional<SubstreamEncoder<LoadEncoder>> loads;
@@ -109,6 +110,11 @@ void Sender::request_key() noexcept {
   impl_->rigid.request_key();
   for (auto& object : impl_->deformables) object->request_key();
   if (impl_->loads) impl_->loads->request_key();
+}
+
+void Sender::know(std::shared_ptr<const DevicePath> path) {
+  impl_->path = std::move(path);
+  impl_->rigid.codec().know(*impl_->path);
 }
 
 void Sender::acknowledge(std::size_t substream, std::uint16_t sequence) noexcept {

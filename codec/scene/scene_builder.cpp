@@ -62,6 +62,31 @@ Result<std::optional<MotionConstants>> constants_of(const MotionPhysics& physics
   return out;
 }
 
+/// x 2^-exponent, 1..kMost
+Result<std::uint32_t> body_constant(double value, int exponent) {
+  const double units = std::floor(std::ldexp(value, exponent) + 0.5);
+  if (!(units >= 1 && units <= DrivenConstants::Body::kMost)) return fail(Errc::invalid_argument, "R-API-4");
+  return static_cast<std::uint32_t>(units);
+}
+
+Result<void> drive(SceneSpec& spec, const DrivenPhysics& physics) {
+  const double friction = std::floor(256 * physics.friction + 0.5);
+  const double damping = std::floor(std::ldexp(physics.damping / spec.tick_rate, 20) + 0.5);
+  if (!(friction >= 0 && friction <= 65535 && damping >= 0 && damping <= 65535)) return fail(Errc::invalid_argument, "R-API-4");
+  if (!spec.driven) spec.driven = {static_cast<std::uint16_t>(friction), static_cast<std::uint16_t>(damping), {}};
+  spec.driven->bodies.resize(spec.objects.size());
+  DrivenConstants::Body& body = spec.driven->bodies.back();
+  TACTUS_TRY(body.coupling, body_constant(physics.stiffness / physics.mass, 8));
+  if (physics.hold != 0) {
+    TACTUS_TRY(body.hold, body_constant(physics.hold / physics.mass, 8));
+  }
+  const std::array inertia{physics.inertia.x, physics.inertia.y, physics.inertia.z};
+  for (std::size_t i = 0; i < 3; ++i) {
+    TACTUS_TRY(body.inertia[i], body_constant(inertia[i] / physics.mass, 30));
+  }
+  return {};
+}
+
 }  // namespace
 
 SceneBuilder& SceneBuilder::rigid(std::string name, const Pose& initial, std::uint8_t dof) {
@@ -104,6 +129,11 @@ SceneBuilder& SceneBuilder::motion(const MotionPhysics& physics) {
   return *this;
 }
 
+SceneBuilder& SceneBuilder::driven(const DrivenPhysics& physics) {
+  if (!rigid_.empty()) rigid_.back().driven = physics;
+  return *this;
+}
+
 SceneBuilder& SceneBuilder::promise(const RigidTriggers& rigid, const DeformableThresholds& deformables,
                                     const LoadThresholds& loads) {
   promise_ = {rigid, deformables, loads};
@@ -130,10 +160,14 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build() try {
     const RigidObject& made = spec.objects.back();
     if (const RuleName rule = broken_object_rule(made)) return refuse({Errc::invalid, rule, 0}, made.name);
     if (!names.insert(made.name).second) return refuse({Errc::invalid, RuleName("R-STR-11"), 0}, made.name);
+    if (object.driven) {
+      if (const auto driven = drive(spec, *object.driven); !driven) return refuse(driven.error(), made.name);
+    }
     if (made.dof == Dof::none) continue;
     spec.motion = *constants;
     spec.is_eased = taken.is_eased_;
   }
+  if (spec.driven) spec.driven->bodies.resize(spec.objects.size());
   for (Deformable& of : taken.deformables_) {
     auto object = make_deformable_object(of.name, of.surface, spec.grid.position);
     if (!object) return refuse(object.error(), of.name);
