@@ -100,6 +100,9 @@ void Receiver::know(std::shared_ptr<const DevicePath> path) {
 
 Replica& Receiver::replica() noexcept { return impl_->replica; }
 const SharedScene& Receiver::scene() const noexcept { return impl_->scene; }
+std::span<const RigidState> Receiver::objects_after(const DecodedPacket& packet) const noexcept {
+  return impl_->rigid.after(packet).objects;
+}
 std::span<const RigidState> Receiver::objects() const noexcept { return impl_->rigid.newest().objects; }
 
 std::span<const std::array<std::int32_t, 3>> Receiver::displacements(std::size_t object) const noexcept {

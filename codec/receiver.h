@@ -71,6 +71,8 @@ class Receiver {
   Replica& replica() noexcept;
 
   const SharedScene& scene() const noexcept;
+  /// State of every rigid object after a packet of them.   pre  push() or push_numbered() has just returned it
+  std::span<const RigidState> objects_after(const DecodedPacket& packet) const noexcept;
   /// Newest state of every rigid object, scene order.
   std::span<const RigidState> objects() const noexcept;
   /// Newest decoded displacements of a deformable object, V x 3, x 2^-position_exp m.   pre  object < scene.deformables.size()

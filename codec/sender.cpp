@@ -142,6 +142,7 @@ void Sender::forget_last(std::size_t substream) noexcept {
 }
 
 const SharedScene& Sender::scene() const noexcept { return impl_->scene; }
+std::span<const RigidState> Sender::objects() const noexcept { return impl_->rigid.newest().objects; }
 
 std::uint64_t Sender::state_hash(std::size_t substream) const noexcept {
   if (substream == 0) return tactus::state_hash(*impl_->scene, impl_->rigid.newest());

@@ -104,6 +104,8 @@ class Sender {
   void know(std::shared_ptr<const DevicePath> path);
 
   const SharedScene& scene() const noexcept;
+  /// State of every rigid object as a receiver of all packets has it, scene order.
+  std::span<const RigidState> objects() const noexcept;
   /// Hash of a substream's state; equals the receiver's after the same packets.   pre  the substream exists
   std::uint64_t state_hash(std::size_t substream) const noexcept;
 

@@ -88,7 +88,7 @@ void DrivenBody::start(const Scene& scene, std::uint32_t object, const RigidStat
     place_[i] = static_cast<std::int64_t>(state.position[i]) << (32 - scene.grid.position);
     point_[i] = limited(static_cast<std::int64_t>(state.contact.point[i]) << (28 - DrivenContact::kPoint), 28);
     normal_[i] = limited(static_cast<std::int64_t>(state.contact.normal[i]) << (30 - DrivenContact::kNormal), 30);
-    gravity_[i] = limited(scaled(scene.motion->gravity[i], scene.grid.velocity, 16), 30);
+    gravity_[i] = scene.motion ? limited(scaled(scene.motion->gravity[i], scene.grid.velocity, 16), 30) : 0;
     velocity_[i] = limited(scaled(state.velocity[i], scene.grid.velocity, 27), 30);
     angular_[i] = limited(scaled(state.angular_velocity[i], scene.grid.angular_velocity, 22), 30);
   }
@@ -121,13 +121,16 @@ void DrivenBody::start_screw(const Scene& scene, const DrivenConstants::Body& bo
   const std::int64_t fall = round_shift(dot(way, down_), 30);
   Vec level;
   for (std::size_t i = 0; i < 3; ++i) level[i] = way[i] - round_shift(fall * down_[i], 30);
-  const std::int64_t slide = limited(scaled(scene.motion->slide_deceleration, scene.grid.velocity, 16), 30);
-  rub_ = weight > 0 ? limited(round_div(length(level) * slide, weight), 30) : 0;
+  rub_ = 0;
+  if (weight > 0) {
+    const std::int64_t slide = limited(scaled(scene.motion->slide_deceleration, scene.grid.velocity, 16), 30);
+    rub_ = limited(round_div(length(level) * slide, weight), 30);
+  }
   first_load_ = -1;  // known at the first step
 }
 
 /// The proxy follows the device on its face; it slides where the push leaves the cone of friction.
-void DrivenBody::slide(const Scene& scene, const Vec& device) noexcept {
+void DrivenBody::slide(const DrivenConstants::Body& body, const Vec& device) noexcept {
   Vec gap;
   for (std::size_t i = 0; i < 3; ++i) gap[i] = point_[i] - device[i];
   const std::int64_t depth = round_shift(dot(gap, normal_), 30);
@@ -140,7 +143,7 @@ void DrivenBody::slide(const Scene& scene, const Vec& device) noexcept {
     foot[i] = device[i] + round_shift(depth * normal_[i], 30);
     lag[i] = limited(point_[i] - foot[i], 30);
   }
-  const std::int64_t far = length(lag), rim = round_shift(scene.driven->friction * depth, 8);
+  const std::int64_t far = length(lag), rim = round_shift(body.friction * depth, 8);
   if (far <= rim) return;
   for (std::size_t i = 0; i < 3; ++i) point_[i] = limited(foot[i] + round_div(lag[i] * rim, far), 28);
 }
@@ -159,7 +162,7 @@ Vec DrivenBody::pull(const Scene& scene, const DrivenConstants::Body& body, cons
   }
   if (!is_touching_) return {};
   device = turned_back(rows, device);
-  if (!from_.contact.is_held) slide(scene, device);
+  if (!from_.contact.is_held) slide(body, device);
   if (!is_touching_) return {};
   const std::int64_t coupling = from_.contact.is_held ? body.hold : body.coupling;
   Vec out;
@@ -168,7 +171,7 @@ Vec DrivenBody::pull(const Scene& scene, const DrivenConstants::Body& body, cons
 }
 
 void DrivenBody::hold(const Scene& scene, const DrivenConstants::Body& body, const Rows& rows, const Vec& pull) noexcept {
-  const std::int64_t rate = scene.tick_rate, damping = scene.driven->damping;
+  const std::int64_t rate = scene.tick_rate, damping = body.damping;
   const Vec acceleration = turned(rows, pull), moment = cross(point_, pull);
   Vec spin;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -195,7 +198,7 @@ std::int64_t DrivenBody::load(const Vec& pull) const noexcept {
   return std::max<std::int64_t>(0, round_shift(dot(sum, down_), 30));
 }
 
-void DrivenBody::push(const Scene& scene, const Rows& rows, const Vec& pull) noexcept {
+void DrivenBody::push(const Scene& scene, const DrivenConstants::Body& body, const Rows& rows, const Vec& pull) noexcept {
   if (speed_ == 0) return;
   const Vec acceleration = turned(rows, pull), way = turned(rows, along_), lever = cross(about_, point_);
   const std::int64_t loaded = load(acceleration);
@@ -214,7 +217,7 @@ void DrivenBody::push(const Scene& scene, const Rows& rows, const Vec& pull) noe
     half[i] = round_shift(step * about_[i], 22);
   }
   rotation_ = renormalise(multiply(rotation_, small_turn(half)));
-  speed_ -= round_shift(speed_ * scene.driven->damping, 20);
+  speed_ -= round_shift(speed_ * body.damping, 20);
 }
 
 void DrivenBody::step(const Scene& scene, std::uint32_t object, const DevicePath& path) noexcept {
@@ -222,7 +225,7 @@ void DrivenBody::step(const Scene& scene, std::uint32_t object, const DevicePath
   const Rows rows = rows_of(rotation_);
   const Vec pulled = pull(scene, body, path, rows);
   if (from_.contact.is_held) hold(scene, body, rows, pulled);
-  else push(scene, rows, pulled);
+  else push(scene, body, rows, pulled);
 }
 
 /// Axes that are locked stay where they were.

@@ -33,9 +33,9 @@ class DrivenBody {
   void start_screw(const Scene& scene, const DrivenConstants::Body& body) noexcept;
   void step(const Scene& scene, std::uint32_t object, const DevicePath& path) noexcept;
   Vec pull(const Scene& scene, const DrivenConstants::Body& body, const DevicePath& path, const Rows& rows) noexcept;
-  void slide(const Scene& scene, const Vec& device) noexcept;
+  void slide(const DrivenConstants::Body& body, const Vec& device) noexcept;
   void hold(const Scene& scene, const DrivenConstants::Body& body, const Rows& rows, const Vec& pull) noexcept;
-  void push(const Scene& scene, const Rows& rows, const Vec& pull) noexcept;
+  void push(const Scene& scene, const DrivenConstants::Body& body, const Rows& rows, const Vec& pull) noexcept;
   std::int64_t load(const Vec& pull) const noexcept;
   RigidPose shown(const Scene& scene, std::uint32_t object) const noexcept;
 

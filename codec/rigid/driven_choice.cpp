@@ -29,6 +29,7 @@ Vec3 times(const Vec3& a, const Vec3& b) noexcept { return {a.x * b.x, a.y * b.y
 DrivenChoice::DrivenChoice(const Scene& scene, const DevicePath& path)
     : scene_(scene), path_(path), moments_((kWindow + 1) * scene.objects.size()) {
   const double unit = std::ldexp(1.0, -scene.grid.velocity);
+  if (!scene.motion) return;
   const auto& g = scene.motion->gravity;
   gravity_ = {unit * g[0], unit * g[1], unit * g[2]};
 }
@@ -59,7 +60,7 @@ double DrivenChoice::drag_of(std::uint32_t object, const RigidSample& now) const
   const double gained = dot(last->velocity - first->velocity, last->velocity) +
                         dot(times(inertia, last->angular - first->angular), last->angular);
   const double rate = static_cast<double>(scene_.tick_rate);
-  const double damping = std::ldexp(scene_.driven->damping, -20) * rate * speed;
+  const double damping = std::ldexp(scene_.driven->bodies[object].damping, -20) * rate * speed;
   return (drive + dot(gravity_, now.velocity) - gained * rate / kWindow) / speed - damping;
 }
 

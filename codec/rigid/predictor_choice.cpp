@@ -42,9 +42,10 @@ void PredictorChoice::read(std::int64_t tick, std::span<const RigidState> truth)
 }
 
 bool PredictorChoice::is_candidate(std::uint32_t object, const RigidState& truth, Predictor predictor) const noexcept {
-  const MotionConstants& motion = *scene_.motion;
   if (predictor == Predictor::linear) return true;
   if (predictor == Predictor::driven) return predictor_.knows_device() && truth.contact != DrivenContact{};
+  if (!scene_.motion) return false;
+  const MotionConstants& motion = *scene_.motion;
   if (predictor == Predictor::slide) return motion.slide_deceleration != 0;
   for (std::size_t i = 0; i < 3; ++i)
     if (motion.gravity[i] != 0 && !(scene_.objects[object].dof >> i & 1u)) return false;
@@ -52,9 +53,9 @@ bool PredictorChoice::is_candidate(std::uint32_t object, const RigidState& truth
 }
 
 PredictorChoice::Record PredictorChoice::record_of(Predictor predictor, std::uint32_t object, const RigidState& truth,
-                                                   const PermittedError& permitted) const noexcept {
+                                                   const PermittedError& permitted, std::size_t enough) const noexcept {
   Record out;
-  for (std::size_t age = 0; age < count_; age += 1 + age / 2) {
+  for (std::size_t age = 0; age < count_ && out.served < enough; age += 1 + age / 2) {
     RigidState from = past_[object * kKept + (newest_ + kKept - age) % kKept];
     if (from.tick == truth.tick) continue;
     if (truth.tick - from.tick > longest_) break;
@@ -70,10 +71,11 @@ PredictorChoice::Record PredictorChoice::record_of(Predictor predictor, std::uin
 
 Predictor PredictorChoice::choose(std::uint32_t object, const RigidState& truth, const PermittedError& permitted) const noexcept {
   Predictor best = Predictor::linear;
-  Record most = record_of(best, object, truth, permitted);
+  Record most = record_of(best, object, truth, permitted, kKept);
   for (const Predictor predictor : {Predictor::ballistic, Predictor::slide, Predictor::driven}) {
     if (!is_candidate(object, truth, predictor)) continue;
-    const Record record = record_of(predictor, object, truth, permitted);
+    const std::size_t enough = predictor == Predictor::driven ? most.served + 1 : kKept;  // it takes its time
+    const Record record = record_of(predictor, object, truth, permitted, enough);
     if (record.served < most.served || (record.served == most.served && record.error >= most.error)) continue;
     best = predictor;
     most = record;

@@ -128,7 +128,7 @@ RigidEncoder::RigidEncoder(const Scene& scene, const RigidTriggers& triggers, Ba
       heartbeat_(static_cast<std::int64_t>(std::ceil(triggers.heartbeat * scene.tick_rate))),
       truth_(initial_states(scene).objects) {
   if (triggers.reduction == Reduction::leaning || scene.is_eased) acceleration_.emplace(scene);
-  if (scene.motion && triggers.reduction != Reduction::none) choice_.emplace(scene);
+  if (has_predictors(scene) && triggers.reduction != Reduction::none) choice_.emplace(scene);
   pending_.reserve(scene.moving().size());
   before_.reserve(scene.moving().size());
   for (std::uint32_t i = 0; i < truth_.size(); ++i) sent_.push_back({.path = {.object = i, .state = truth_[i]}});

@@ -66,6 +66,9 @@ struct CodedUpdate {
   std::array<std::int32_t, 7> contact{};        ///< driven: differences of point, normal and drag from those of the baseline
 };
 
+/// Updates choose among them.
+inline bool has_predictors(const Scene& scene) noexcept { return scene.motion || scene.driven; }
+
 template <class Coder>
 void code_head(Coder& coder, RigidModels& models, const Scene& scene, RigidHead& head) noexcept {
   code_baseline(coder, models, scene.baseline_span, head);
@@ -132,7 +135,7 @@ void code_update(Coder& coder, RigidModels& models, const Scene& scene, std::uin
     update.ease = static_cast<std::uint8_t>((usual - coder.template tree<3>(models.ease, (usual - update.ease) & 7u)) & 7u);
   }
   if (update.ease > 0) update.keep = static_cast<std::uint8_t>(coder.template tree<2>(models.keep, update.keep));
-  if (scene.motion) {
+  if (has_predictors(scene)) {
     TreeModel<2>& model = models.predictor[static_cast<std::size_t>(update.reason) + (scene.driven ? 4 : 0)];
     update.predictor = static_cast<std::uint8_t>(coder.template tree<2>(model, update.predictor));
   }

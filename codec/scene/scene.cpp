@@ -91,7 +91,7 @@ RuleName broken_driven_rule(const SceneSpec& spec) noexcept {
   if (!spec.driven) return {};
   using Body = DrivenConstants::Body;
   const auto fits = [](std::uint32_t value) { return value >= 1 && value <= Body::kMost; };
-  if (!spec.motion || spec.driven->bodies.size() != spec.objects.size()) return "R-STR-23";
+  if (spec.driven->bodies.size() != spec.objects.size()) return "R-STR-23";
   bool any = false;
   for (std::size_t i = 0; i < spec.objects.size(); ++i) {
     const Body& body = spec.driven->bodies[i];

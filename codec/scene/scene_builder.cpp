@@ -62,29 +62,23 @@ Result<std::optional<MotionConstants>> constants_of(const MotionPhysics& physics
   return out;
 }
 
-/// x 2^-exponent, 1..kMost
-Result<std::uint32_t> body_constant(double value, int exponent) {
-  const double units = std::floor(std::ldexp(value, exponent) + 0.5);
-  if (!(units >= 1 && units <= DrivenConstants::Body::kMost)) return fail(Errc::invalid_argument, "R-API-4");
-  return static_cast<std::uint32_t>(units);
-}
-
-Result<void> drive(SceneSpec& spec, const DrivenPhysics& physics) {
-  const double friction = std::floor(256 * physics.friction + 0.5);
-  const double damping = std::floor(std::ldexp(physics.damping / spec.tick_rate, 20) + 0.5);
-  if (!(friction >= 0 && friction <= 65535 && damping >= 0 && damping <= 65535)) return fail(Errc::invalid_argument, "R-API-4");
-  if (!spec.driven) spec.driven = {static_cast<std::uint16_t>(friction), static_cast<std::uint16_t>(damping), {}};
-  spec.driven->bodies.resize(spec.objects.size());
-  DrivenConstants::Body& body = spec.driven->bodies.back();
-  TACTUS_TRY(body.coupling, body_constant(physics.stiffness / physics.mass, 8));
-  if (physics.hold != 0) {
-    TACTUS_TRY(body.hold, body_constant(physics.hold / physics.mass, 8));
-  }
+/// Nothing: a constant cannot be told.
+std::optional<DrivenConstants::Body> body_of(const DrivenPhysics& physics, std::uint32_t tick_rate) noexcept {
+  constexpr double kMost = DrivenConstants::Body::kMost, kMost16 = 65535;
+  bool fits = true;
+  const auto units = [&fits](double value, double least, double most) {
+    const double rounded = std::floor(value + 0.5);
+    const bool is_in = rounded >= least && rounded <= most;
+    fits = fits && is_in;
+    return is_in ? static_cast<std::uint32_t>(rounded) : 0u;
+  };
+  DrivenConstants::Body out{.coupling = units(std::ldexp(physics.stiffness / physics.mass, 8), 1, kMost),
+                            .hold = units(std::ldexp(physics.hold / physics.mass, 8), 0, kMost)};
   const std::array inertia{physics.inertia.x, physics.inertia.y, physics.inertia.z};
-  for (std::size_t i = 0; i < 3; ++i) {
-    TACTUS_TRY(body.inertia[i], body_constant(inertia[i] / physics.mass, 30));
-  }
-  return {};
+  for (std::size_t i = 0; i < 3; ++i) out.inertia[i] = units(std::ldexp(inertia[i] / physics.mass, 30), 1, kMost);
+  out.friction = static_cast<std::uint16_t>(units(std::ldexp(physics.friction, 8), 0, kMost16));
+  out.damping = static_cast<std::uint16_t>(units(std::ldexp(physics.damping / tick_rate, 20), 0, kMost16));
+  return fits ? std::optional(out) : std::nullopt;
 }
 
 }  // namespace
@@ -129,6 +123,10 @@ SceneBuilder& SceneBuilder::motion(const MotionPhysics& physics) {
   return *this;
 }
 
+bool SceneBuilder::can_drive(const DrivenPhysics& physics, std::uint32_t tick_rate) noexcept {
+  return body_of(physics, tick_rate).has_value();
+}
+
 SceneBuilder& SceneBuilder::driven(const DrivenPhysics& physics) {
   if (!rigid_.empty()) rigid_.back().driven = physics;
   return *this;
@@ -161,7 +159,11 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build() try {
     if (const RuleName rule = broken_object_rule(made)) return refuse({Errc::invalid, rule, 0}, made.name);
     if (!names.insert(made.name).second) return refuse({Errc::invalid, RuleName("R-STR-11"), 0}, made.name);
     if (object.driven) {
-      if (const auto driven = drive(spec, *object.driven); !driven) return refuse(driven.error(), made.name);
+      const auto body = body_of(*object.driven, spec.tick_rate);
+      if (!body) return refuse({Errc::invalid_argument, RuleName("R-API-4"), 0}, made.name);
+      if (!spec.driven) spec.driven.emplace();
+      spec.driven->bodies.resize(spec.objects.size());
+      spec.driven->bodies.back() = *body;
     }
     if (made.dof == Dof::none) continue;
     spec.motion = *constants;

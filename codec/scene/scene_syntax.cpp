@@ -94,14 +94,14 @@ Result<void> parse_motion(ByteReader& body, SceneSpec& spec) {
 Result<void> parse_driven(ByteReader& body, SceneSpec& spec) {
   const std::uint64_t start = body.bit_offset();
   DrivenConstants& driven = spec.driven.emplace();
-  driven.friction = body.u16();
-  driven.damping = body.u16();
   driven.bodies.resize(spec.objects.size());
   for (std::size_t i = 0; i < spec.objects.size(); ++i) {
     if (spec.objects[i].dof == Dof::none) continue;
     driven.bodies[i].coupling = body.u32();
     driven.bodies[i].hold = body.u32();
     for (std::uint32_t& c : driven.bodies[i].inertia) c = body.u32();
+    driven.bodies[i].friction = body.u16();
+    driven.bodies[i].damping = body.u16();
   }
   if (!body.ok()) return fail(Errc::truncated, "R-STR-5", body.bit_offset());
   if (const RuleName rule = broken_driven_rule(spec)) return fail(Errc::invalid, rule, start);
@@ -109,12 +109,12 @@ Result<void> parse_driven(ByteReader& body, SceneSpec& spec) {
 }
 
 void write_driven(ByteWriter& b, const Scene& scene) {
-  b.u16(scene.driven->friction);
-  b.u16(scene.driven->damping);
   for (const std::uint32_t i : scene.moving()) {
     b.u32(scene.driven->bodies[i].coupling);
     b.u32(scene.driven->bodies[i].hold);
     for (const std::uint32_t c : scene.driven->bodies[i].inertia) b.u32(c);
+    b.u16(scene.driven->bodies[i].friction);
+    b.u16(scene.driven->bodies[i].damping);
   }
 }
 

@@ -104,6 +104,8 @@ Result<void> Exchange::acknowledged(const Acknowledgement& said, Reading& readin
     if (resends_ && copies_come_in_time()) resends_->lost(number, reading.now, sent_.loss() > kHeavyLoss ? 2 : 1);
   };
   TACTUS_CHECK(sent_.acknowledge(said, reading.now, arrived, lost));
+  if (path && direction_ == Direction::up)
+    path->settle(sent_.highest_acknowledged(), [this](std::uint64_t number) { return sent_.has_arrived(number); });
   reading.heard.round_trip = sent_.sample();
   if (sent_.sample()) report_link();
   return {};
@@ -116,6 +118,13 @@ bool Exchange::decode(std::uint64_t number, std::span<const std::uint8_t> packet
     if (receiver && number > 0 && receiver->holds(number, packet)) return true;  // it came before
     ++traffic_.packets_refused;
     return false;
+  }
+  if (path && direction_ == Direction::down) {
+    reading.heard.ahead = path->add(number, receiver->objects_after(*decoded)[0]);
+    if (*reading.heard.ahead <= 0) {
+      ++traffic_.packets_refused;
+      return false;
+    }
   }
   ++traffic_.packets_heard;
   traffic_.payload_heard += packet.size();
@@ -196,6 +205,7 @@ Result<std::span<const Packet>> Exchange::submit(std::uint64_t now, std::int64_t
     key_wanted_at_ = now;
   }
   TACTUS_TRY(packets_, sender->encode_numbered(*number, tick, truth));
+  if (path && direction_ == Direction::up && !packets_.empty()) path->add(packets_[0].number, sender->objects()[0]);
   return packets_;
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -19,6 +20,7 @@
 #include <tactus/session/sent_fragments.h>
 #include <tactus/session/sent_numbers.h>
 #include <tactus/session/traffic.h>
+#include <tactus/signal/device_path.h>
 
 namespace tactus {
 
@@ -37,6 +39,7 @@ class Exchange {
   std::optional<Sender> sender;       ///< of the packets that go; none: no packets go. Set by send_with()
   std::optional<Receiver> receiver;   ///< of those that come; none: all are refused
   std::optional<PieceSender> pieces;  ///< of the declaration, until all have arrived
+  std::shared_ptr<DevicePath> path;   ///< of the device whose packets go up; none: it drives nothing
 
   void send_with(Sender coder);         ///< allocates if the scene has deformable objects
   void receive_with(Receiver decoder);  ///< allocates if the largest packet of the scene needs fragments
@@ -50,6 +53,7 @@ class Exchange {
     std::optional<std::int64_t> oldest;      ///< oldest of them
     std::optional<HashPart> hash;            ///< to be told to the sender
     std::optional<std::int64_t> round_trip;  ///< [us] that its acknowledgement measured
+    std::optional<std::int64_t> ahead;       ///< ticks until a packet of the device acts; 0 or less: it came too late
   };
   /// in   take  Result<void>(const Part&, const Heard&), for the parts that are not acknowledgements, fragments and packets, in order
   /// err  state R-SES-4 an old number; invalid R-SES-6, R-SES-7; what `take` returns. Parts before it have taken effect. A packet that
@@ -57,7 +61,7 @@ class Exchange {
   template <class Take>
   Result<Heard> handle(std::uint64_t now, const Numbered& datagram, Take&& take) noexcept {
     TACTUS_TRY(const std::uint64_t number, receive(now, datagram));
-    Reading reading{{.number = number, .tick = {}, .oldest = {}, .hash = {}, .round_trip = {}}, now};
+    Reading reading{{.number = number, .tick = {}, .oldest = {}, .hash = {}, .round_trip = {}, .ahead = {}}, now};
     PartReader parts = datagram.parts(direction_ == Direction::up ? Direction::down : Direction::up);
     for (;;) {
       TACTUS_TRY(const std::optional<Part> part, parts.next());
