@@ -30,7 +30,7 @@ class PredictorChoice {
   /// The truth of a tick, after those before it.   time O(moving objects), about 10 ns each, no allocation; memory 2 kB per object
   void read(std::int64_t tick, std::span<const RigidState> truth) noexcept;
   /// in   truth  the object's state of the last read(); where a device drives it, its contact is told
-  /// time < 2 us for all predictors, 10 us where a device drives the object; no allocation
+  /// time < 2 us for all predictors, 8 us where a device drives the object; no allocation
   Predictor choose(std::uint32_t object, const RigidState& truth, const PermittedError& permitted) const noexcept;
 
  private:
