@@ -8,20 +8,14 @@ from typing import Iterator, Optional
 
 from conventions import Cursor, StreamError, fnv1a, require
 from decoder import SceneDecoder
-from scene import Declaration, Object, State, read_declaration, state_bytes
+from device_path import Paces, device_scene
+from scene import Declaration, read_declaration, state_bytes
 from session import (ACK, BUTTONS, BYE, CUT, DOWN, FRAGMENT, FULL, HANDSHAKE, JOIN, LEAVE, MS, PARTS, PIECE, PIECE_SIZE, REFUSAL, SILENCE, SPARE,
                      STATE, TOO_LARGE, UP, WELCOME, WINDOW, WRONG_VERSION, Epoch, head, is_of_epoch, part, reason_of, sealed, varint)
 
 LEAST_JOIN = 80                                             # bytes
 WELCOME_EVERY, UNPROVEN, MOST_SILENCE = 250 * MS, 10_000 * MS, 120_000 * MS
 ROLES = "observer", "participant"
-
-
-def device_scene(scene: Declaration) -> Declaration:
-    """65, section 2."""
-    device = Object("device", 63, State(0, (0, 0, 0), (1 << 30, 0, 0, 0)))
-    return Declaration(scene.version, scene.profile, scene.tick_rate, scene.position_exp, scene.velocity_exp, scene.rotation_exp,
-                       scene.angular_exp, (scene.tick_rate + 5) // 10, 64, objects=[device])
 
 
 # ---- Section 6: the server's end of an epoch ------------------------------------------------------------------------

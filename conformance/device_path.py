@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Chapter 65 of the specification, sections 2 and 4: the scene of a device, and its path in the ticks of the server."""
+from __future__ import annotations
+
+from typing import Optional
+
+from conventions import round_div
+from rigid import predict
+from scene import Declaration, Object, State
+
+
+def device_scene(scene: Declaration) -> Declaration:
+    device = Object("device", 63, State(0, (0, 0, 0), (1 << 30, 0, 0, 0)))
+    return Declaration(scene.version, scene.profile, scene.tick_rate, scene.position_exp, scene.velocity_exp, scene.rotation_exp,
+                       scene.angular_exp, round_div(scene.tick_rate, 10), 64, objects=[device])
+
+
+class Paces:
+    """How the ticks of a device follow those of the server."""
+
+    def __init__(self) -> None:
+        self.offsets: dict[int, int] = {}                   # by the tick from which they hold
+
+    def device_tick(self, t: int) -> Optional[int]:
+        tick = None
+        begun = sorted(begin for begin in self.offsets if begin <= t)
+        for begin, after in zip(begun, begun[1:] + [t + 1]):
+            reached = after - 1 - self.offsets[begin]
+            tick = reached if tick is None else max(tick, reached)
+        return tick
+
+
+class DevicePath(Paces):
+    """The states of a device, by the numbers of their packets, and which of these act."""
+
+    def __init__(self, scene: Declaration):
+        super().__init__()
+        self.scene = device_scene(scene)
+        self.states: dict[int, State] = {}
+        self.accepted: set[int] = set()
+        self.acknowledged = 0                               # the highest
+
+    def acts(self, number: int) -> bool:
+        return number > self.acknowledged or number in self.accepted
+
+    def place(self, t: int) -> Optional[tuple]:
+        tick = self.device_tick(t)
+        acting = [n for n, state in self.states.items() if tick is not None and state.tick <= tick and self.acts(n)]
+        return predict(self.scene, self.states[max(acting)], tick)[0] if acting else None
