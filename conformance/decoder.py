@@ -111,7 +111,7 @@ def lines(data: bytes, mode: Optional[str]) -> Iterator[dict]:
 class Viewer:
     """A client that applies every packet at its tick and looks at every tick, or in playout at the tick `delay` before.
 
-    In the mode device it shows as in none, and the first moving object is its device, in the ticks of the server.
+    In the mode device it shows as in none, and the first moving object is its device, in this scene and in the ticks of the server.
     """
 
     def __init__(self, scene: Declaration, decoders: SceneDecoder, mode: str):
@@ -119,7 +119,7 @@ class Viewer:
         self.delay = PLAYOUT_DELAY if self.playout else 0
         self.path = DevicePath(scene) if mode == "device" else None
         if self.path:
-            self.path.offsets[0] = 0
+            self.path.begin(0, 0)
         self.replica = Playout(scene) if self.playout else Replica(scene, "none" if self.path else mode, self.path)
         self.deformables = [decoders.substreams[i + 1] for i in range(len(scene.deformables))]
         self.tick, self.all = 0, FNV_START
@@ -128,7 +128,7 @@ class Viewer:
         if not isinstance(packet, Packet):
             return
         if self.path and any(update.object == self.replica.moving[0] for update in packet.updates):
-            self.path.states[packet.number] = packet.moment.states[self.replica.moving[0]]
+            self.path.add(packet.number, packet.moment.states[self.replica.moving[0]])
         self.replica.apply(packet, tick)
 
     def look_until(self, tick: int) -> None:

@@ -8,6 +8,8 @@ from conventions import round_div
 from rigid import predict
 from scene import Declaration, Object, State
 
+MOST_PACKETS = 1024                                         # that are remembered
+
 
 def device_scene(scene: Declaration) -> Declaration:
     device = Object("device", 63, State(0, (0, 0, 0), (1 << 30, 0, 0, 0)))
@@ -15,30 +17,36 @@ def device_scene(scene: Declaration) -> Declaration:
                        scene.angular_exp, round_div(scene.tick_rate, 10), 64, objects=[device])
 
 
-class Paces:
-    """How the ticks of a device follow those of the server."""
+class DevicePath:
+    """The states of a device in its scene, by the numbers of their packets, which of these act, and its paces."""
 
-    def __init__(self) -> None:
-        self.offsets: dict[int, int] = {}                   # by the tick from which they hold
+    def __init__(self, scene: Declaration):
+        self.scene = scene
+        self.states: dict[int, State] = {}
+        self.accepted: set[int] = set()
+        self.acknowledged = 0                               # the highest
+        self.offsets: dict[int, int] = {}                   # of paces, by the tick of the server from which they hold
+
+    def begin(self, tick: int, offset: int) -> None:
+        if tick > max(self.offsets, default=-1):
+            self.offsets[tick] = offset
 
     def device_tick(self, t: int) -> Optional[int]:
         tick = None
-        begun = sorted(begin for begin in self.offsets if begin <= t)
+        begun = [begin for begin in self.offsets if begin <= t]
         for begin, after in zip(begun, begun[1:] + [t + 1]):
             reached = after - 1 - self.offsets[begin]
             tick = reached if tick is None else max(tick, reached)
         return tick
 
+    def add(self, number: int, state: State) -> None:
+        self.states[number] = state
+        self.states = {n: kept for n, kept in self.states.items() if n > number - MOST_PACKETS}
 
-class DevicePath(Paces):
-    """The states of a device, by the numbers of their packets, and which of these act."""
-
-    def __init__(self, scene: Declaration):
-        super().__init__()
-        self.scene = device_scene(scene)
-        self.states: dict[int, State] = {}
-        self.accepted: set[int] = set()
-        self.acknowledged = 0                               # the highest
+    def acknowledge(self, numbers: set[int]) -> None:
+        """These packets act, and others below the highest do not as far as is known."""
+        self.acknowledged = max(self.acknowledged, *numbers)
+        self.accepted = {n for n in self.accepted | numbers if n > self.acknowledged - MOST_PACKETS}
 
     def acts(self, number: int) -> bool:
         return number > self.acknowledged or number in self.accepted
