@@ -152,7 +152,8 @@ def session_lines() -> Iterator[dict]:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description="Decode a Tactus stream file from standard input to JSON lines.")
-    parser.add_argument("--replica", choices=("none", "device", "linear", "hermite", "blending", "playout"), help="also show what a client shows")
+    parser.add_argument("--replica", choices=("none", "device", "linear", "hermite", "blending", "playout"),
+                        help="also show what a client shows")
     parser.add_argument("--session", action="store_true", help="read a script for the client's end of a session instead")
     arguments = parser.parse_args()
     try:
