@@ -25,11 +25,13 @@ class DevicePath:
         self.states: dict[int, State] = {}
         self.accepted: set[int] = set()
         self.acknowledged = 0                               # the highest
+        self.revision = 0                                   # of what is known of the past
         self.offsets: dict[int, int] = {}                   # of paces, by the tick of the server from which they hold
 
     def begin(self, tick: int, offset: int) -> None:
         if tick > max(self.offsets, default=-1):
             self.offsets[tick] = offset
+            self.revision += 1
 
     def device_tick(self, t: int) -> Optional[int]:
         tick = None
@@ -45,6 +47,7 @@ class DevicePath:
 
     def acknowledge(self, numbers: set[int]) -> None:
         """These packets act, and others below the highest do not as far as is known."""
+        self.revision += 1
         self.acknowledged = max(self.acknowledged, *numbers)
         self.accepted = {n for n in self.accepted | numbers if n > self.acknowledged - MOST_PACKETS}
 

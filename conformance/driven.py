@@ -73,6 +73,7 @@ class DrivenBody:
 
     def __init__(self, scene: Declaration, index: int, state: State):
         self.scene, self.state, self.dof = scene, state, scene.objects[index].dof
+        self.tick = state.tick
         self.constants, self.held = scene.driven[index], state.contact.held
         self.x = tuple(c << (32 - scene.position_exp) for c in state.position)
         self.q = state.rotation
@@ -170,16 +171,15 @@ class DrivenBody:
         if far > rim:
             self.c = tuple(lim(f + round_div(c * rim, far), 28) for f, c in zip(foot, lag))
 
-    def pose(self) -> tuple[tuple, tuple]:
+    def pose(self, t: int, place: Place) -> tuple[tuple, tuple]:
+        """What a client with a device shows in place of predict(); t never falls."""
+        while self.tick < min(t, self.state.tick + self.scene.max_extrapolation):
+            self.step(place(self.tick))
+            self.tick += 1
+        return self.shown()
+
+    def shown(self) -> tuple[tuple, tuple]:
         shift = 32 - self.scene.position_exp
         position = tuple(sat32(round_shift(x, shift)) if self.dof >> a & 1 else p
                          for a, (x, p) in enumerate(zip(self.x, self.state.position)))
         return position, self.q if self.dof >> 3 else self.state.rotation
-
-
-def driven_pose(scene: Declaration, index: int, state: State, t: int, place: Place) -> tuple[tuple, tuple]:
-    """What a client with a device shows of a driven object, in place of predict()."""
-    body = DrivenBody(scene, index, state)
-    for tick in range(state.tick, state.tick + min(t - state.tick, scene.max_extrapolation)):
-        body.step(place(tick))
-    return body.pose()

@@ -9,7 +9,7 @@ from typing import Optional
 from conventions import FNV_START, clamp, fnv1a, round_div
 from curve import AT_REST, NO_OFFSET, Offset, cubic, difference, displaced, offset
 from device_path import DevicePath
-from driven import driven_pose
+from driven import DrivenBody
 from easing import eased, kept
 from rigid import DRIVEN, Packet, motion, predict
 from scene import Declaration, State
@@ -26,6 +26,8 @@ class ReplicaObject:
 
     def __init__(self, index: int, state: State):
         self.index = index
+        self.body: Optional[DrivenBody] = None              # of `state`, by the path as it was then known
+        self.known = 0
         self.state, self.left = state, NO_OFFSET            # `left` is of an eased scene
         self.number = 0                                     # of the packet of the newest update
         self.begin = self.end = 0
@@ -81,9 +83,11 @@ class Replica:
 
     def expected(self, o: ReplicaObject, t: int) -> tuple[tuple, tuple]:
         """By dead reckoning, or by the device of this client."""
-        if self.path and o.state.predictor == DRIVEN:
-            return driven_pose(self.scene, o.index, o.state, t, self.path.place)
-        return predict(self.scene, o.state, t)
+        if not self.path or o.state.predictor != DRIVEN:
+            return predict(self.scene, o.state, t)
+        if o.body is None or o.body.state is not o.state or o.known != self.path.revision or t < o.body.tick:
+            o.body, o.known = DrivenBody(self.scene, o.index, o.state), self.path.revision
+        return o.body.pose(t, self.path.place)
 
     def pose(self, o: ReplicaObject, now: int) -> tuple[tuple, tuple]:
         now = max(now, o.begin)
