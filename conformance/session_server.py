@@ -10,8 +10,10 @@ from conventions import Cursor, StreamError, fnv1a, require
 from decoder import SceneDecoder
 from device_path import DevicePath, device_scene
 from scene import Declaration, read_declaration, state_bytes
-from session import (ACK, BUTTONS, BYE, CUT, DOWN, FRAGMENT, FULL, HANDSHAKE, JOIN, LEAVE, MS, PACE, PARTS, PIECE, PIECE_SIZE, REFUSAL, SILENCE, SPARE,
-                     STATE, TOO_LARGE, UP, WELCOME, WINDOW, WRONG_VERSION, Epoch, head, is_of_epoch, part, reason_of, sealed, varint)
+from session import (ACK, BUTTONS, BYE, CUT, DOWN, FRAGMENT, FULL, HANDSHAKE, JOIN, LEAVE, MS, PACE, PARTS, PIECE, PIECE_SIZE, REFUSAL,
+                     SILENCE, SPARE, STATE, TOO_LARGE, UP, WELCOME, WINDOW, WRONG_VERSION, Epoch, head, is_of_epoch, part, reason_of,
+                     sealed, varint)
+
 
 LEAST_JOIN = 80                                             # bytes
 WELCOME_EVERY, UNPROVEN, MOST_SILENCE = 250 * MS, 10_000 * MS, 120_000 * MS
