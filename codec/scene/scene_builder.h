@@ -40,12 +40,12 @@ struct MotionPhysics {
 
 /// A box or anything like it that a client's device pushes or holds.
 struct DrivenPhysics {
-  double mass = 0;          ///< [kg]
-  Vec3 inertia{};           ///< [kg m^2] about the axes of the object's frame
-  double stiffness = 0;     ///< [N/m] of the coupling between device and proxy
-  double hold = 0;          ///< [N/m] of that between device and an object that it holds; 0: it holds none
-  double friction = 0;      ///< of the proxy on it
-  double damping = 0;       ///< [1/s] rate at which its velocities die away by themselves
+  double mass = 0;       ///< [kg]
+  Vec3 inertia{};        ///< [kg m^2] about the axes of the object's frame
+  double stiffness = 0;  ///< [N/m] of the coupling between device and proxy
+  double hold = 0;       ///< [N/m] of that between device and an object that it holds; 0: it holds none
+  double friction = 0;   ///< of the proxy on it
+  double damping = 0;    ///< [1/s] rate at which its velocities die away by themselves
 };
 
 /// What went wrong, and with which object.
