@@ -88,7 +88,7 @@ void Server::touch(std::span<const DeviceSample> devices) noexcept {
       user.server_force = user.server_force + touch.force;
     }
     shares_[i] = share_rendered(user.server_force, scene_.users[i].device.max_force);
-    user.server_force = shares_[i] * user.server_force;
+    user.force = user.server_force = shares_[i] * user.server_force;
     if (!user.surface_contact) continue;
     // A user who touches a sleeping object needs its shape at haptic, not visual, accuracy.
     DeformableSample& mesh = frame_.meshes[user.surface_contact->mesh];
