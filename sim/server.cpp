@@ -47,7 +47,7 @@ Result<void> Server::add_objects(const ServerOptions& options) {
 
 Result<void> Server::add_codec(const ServerCodec& codec) {
   SceneBuilder builder = scene_builder(scene_);
-  if (codec.coding.is_eased) builder.eased();
+  builder.rigid_profile(codec.coding.rigid);
   for (std::size_t i = 0; i < scene_.deformables.size(); ++i) {
     TraceCoding coding = codec.coding;
     if (scene_.compensation && scene_.compensation->method == CompensationMethod::stiffness) {

@@ -22,7 +22,7 @@ namespace tactus::sim {
 /// What is coded, and how.
 struct ServerCodec {
   SenderOptions sender;
-  TraceCoding coding{};   ///< of deformable objects
+  TraceCoding coding{};   ///< of the scene's objects
   bool sessions = false;  ///< clients have sessions of their own, which code for them
 };
 
