@@ -173,8 +173,7 @@ TEST(CEncoder, AClusterBeyondTheirCountIsRefused) {
 /// The defaults of both are those of the library, for scenes of all kinds of objects.
 TEST(CEncoder, WhatIsNotAskedForIsCodedAsByTheLibrary) {
   const std::vector<std::uint8_t> bytes = written(make_scene(true));
-  const tactus::Scene& scene = *parse_scene(bytes).value().scene;
-  EXPECT_TRUE(scene.is_eased);
+  EXPECT_TRUE(parse_scene(bytes).value().scene->is_eased);
   TriMesh sheet;
   sheet.vertices = {{0, 0, 0}, {0.1, 0, 0}, {0.1, 0.1, 0}, {0, 0.1, 0}};
   sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
