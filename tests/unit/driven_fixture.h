@@ -25,10 +25,9 @@ inline DrivenPhysics cube_physics() {
           .damping = 1000 * kLoss};
 }
 
-inline SharedScene driven_scene(std::uint8_t dof = Dof::all, const Vec3& gravity = {0, 0, -kWeight}, bool eased = true) {
+inline SharedScene driven_scene(std::uint8_t dof = Dof::all, const Vec3& gravity = {0, 0, -kWeight}) {
   SceneBuilder builder;
   builder.rigid("cube", {}, dof).driven(cube_physics()).motion({gravity, kGround}).baselines(64);
-  if (eased) builder.eased();
   return builder.build().value();
 }
 

@@ -107,8 +107,7 @@ Course course(const char* name, bool drives, const sim::LinkOptions& link, std::
   sim::SessionNetwork* network = nullptr;
   sim::ChannelOptions channel;
   channel.sender.triggers.visual_position = 3e-4;
-  channel.sender.triggers.reduction = Reduction::leaning;
-  channel.coding.is_eased = drives;
+  channel.coding.rigid = drives ? RigidProfile::main : RigidProfile::thesis;
   channel.network = [&](SharedScene declared, std::size_t users,
                         const SenderOptions& sender) -> Result<std::unique_ptr<sim::Network>> {
     EXPECT_EQ(declared->driven.has_value(), drives);
