@@ -25,7 +25,8 @@ int main(int argc, char** argv) {
   const bool session = argc == 2 && std::string_view(argv[1]) == "--session";
   if (argc != 1 && !replica && !session) {
     std::fputs(
-        "usage: testee [--replica none|device|linear|hermite|blending|playout] <stream.tct\n       testee --session <datagrams.script\n",
+        "usage: testee [--replica none|device|linear|hermite|blending|playout] <stream.tct\n       testee --session "
+        "<datagrams.script\n",
         stderr);
     return 2;
   }

@@ -82,7 +82,8 @@ class Replica {
   };
   void add_to_timelines(const DecodedPacket& packet, std::span<const RigidState> objects) noexcept;
   void reset_timelines() noexcept;
-  RigidPose path_between(std::uint32_t object, const Timeline::Update& a, const Timeline::Update* b, std::int64_t tick) const noexcept;
+  RigidPose path_between(std::uint32_t object, const Timeline::Update& a, const Timeline::Update* b,
+                         std::int64_t tick) const noexcept;
   PoseOffset past_offset(std::uint32_t object, const Timeline::Update& update) const noexcept;
   RigidPose past_pose(std::uint32_t object, std::int64_t tick) const noexcept;
   std::int64_t interval(const Track& track) const noexcept;

@@ -62,7 +62,7 @@ std::int64_t length(const Vec& v) noexcept {  // pre  |v[i]| <= 2^31
 Quat30 small_turn(const Vec& half) noexcept {
   Quat30 out{kOne30, 0, 0, 0};
   for (std::size_t i = 0; i < 3; ++i) out[i + 1] = static_cast<std::int32_t>(limited(half[i], 28));
-  return out;
+  return renormalise(renormalise(out));
 }
 
 }  // namespace
@@ -109,7 +109,8 @@ void DrivenBody::start_screw(const Scene& scene, const DrivenConstants::Body& bo
     const std::int64_t radius = isqrt(static_cast<std::uint64_t>(body.inertia[i]) << 30);  // x 2^-30 m
     rim[i] = limited(round_shift(radius * angular[i], 25), 30);
   }
-  const std::int64_t speed = isqrt(static_cast<std::uint64_t>(dot(velocity, velocity)) + static_cast<std::uint64_t>(dot(rim, rim)));
+  const std::int64_t speed =
+      isqrt(static_cast<std::uint64_t>(dot(velocity, velocity)) + static_cast<std::uint64_t>(dot(rim, rim)));
   speed_ = speed < bit(10) ? 0 : speed;
   if (speed_ == 0) return;
   for (std::size_t i = 0; i < 3; ++i) {

@@ -43,17 +43,18 @@ class DrivenBody {
   std::int64_t tick_ = -1;  // that was reached; below that of from_: none
   std::uint64_t revision_ = 0;
   bool is_touching_ = false;
-  Vec place_{};            // x 2^-32 m
+  Vec place_{};  // x 2^-32 m
   std::array<std::int32_t, 4> rotation_{};
-  Vec point_{};            // where the spring pulls, object frame, x 2^-28 m
-  Vec normal_{};           // x 2^-30
-  Vec gravity_{};          // x 2^-16 m/s^2
-  Vec down_{};             // its direction, x 2^-30
-  Vec velocity_{};         // held: x 2^-27 m/s
-  Vec angular_{};          // held: x 2^-22 rad/s
-  Vec along_{}, about_{};  // pushed: the screw at speed 1 in the object's frame, x 2^-24, x 2^-19 rad/m
-  std::int64_t speed_ = 0;                  // pushed: x 2^-27 m/s
-  std::int64_t rub_ = 0, first_load_ = 0;  // pushed: friction of the ground on the way, x 2^-24; its load at the start, x 2^-16 m/s^2
+  Vec point_{};             // where the spring pulls, object frame, x 2^-28 m
+  Vec normal_{};            // x 2^-30
+  Vec gravity_{};           // x 2^-16 m/s^2
+  Vec down_{};              // its direction, x 2^-30
+  Vec velocity_{};          // held: x 2^-27 m/s
+  Vec angular_{};           // held: x 2^-22 rad/s
+  Vec along_{}, about_{};   // pushed: the screw at speed 1 in the object's frame, x 2^-24, x 2^-19 rad/m
+  std::int64_t speed_ = 0;  // pushed: x 2^-27 m/s
+  std::int64_t rub_ = 0,
+               first_load_ = 0;  // pushed: friction of the ground on the way, x 2^-24; its load at the start, x 2^-16 m/s^2
 };
 
 }  // namespace tactus

@@ -57,8 +57,8 @@ double DrivenChoice::drag_of(std::uint32_t object, const RigidSample& now) const
     if (&moment == &*last) continue;
     drive += dot(moment.pull, now.velocity + cross(now.angular_velocity, moment.arm)) / kWindow;
   }
-  const double gained = dot(last->velocity - first->velocity, last->velocity) +
-                        dot(times(inertia, last->angular - first->angular), last->angular);
+  const double gained =
+      dot(last->velocity - first->velocity, last->velocity) + dot(times(inertia, last->angular - first->angular), last->angular);
   const double rate = static_cast<double>(scene_.tick_rate);
   const double damping = std::ldexp(scene_.driven->bodies[object].damping, -20) * rate * speed;
   return (drive + dot(gravity_, now.velocity) - gained * rate / kWindow) / speed - damping;
@@ -84,7 +84,8 @@ void DrivenChoice::read(std::int64_t tick, std::span<const RigidSample> samples,
     DrivenContact told{.is_held = contact->kind == ContactKind::spring, .point = on_grid(contact->point, DrivenContact::kPoint)};
     if (!told.is_held) {
       const auto window = std::span(moments_).subspan((kWindow + 1) * i, kWindow + 1);
-      const bool whole = std::ranges::all_of(window, [&](const Moment& m) { return m.tick > tick - 1 - static_cast<std::int64_t>(kWindow); });
+      const bool whole =
+          std::ranges::all_of(window, [&](const Moment& m) { return m.tick > tick - 1 - static_cast<std::int64_t>(kWindow); });
       if (!whole) continue;
       told.normal = on_grid(contact->normal, DrivenContact::kNormal);
       told.drag = on_grid({drag_of(i, sample), 0, 0}, DrivenContact::kDrag)[0];

@@ -43,8 +43,8 @@ class PredictorChoice {
   };
 
   /// in   enough  starts that have served
-  Record record_of(Predictor predictor, std::uint32_t object, const RigidState& truth,
-                   const PermittedError& permitted, std::size_t enough) const noexcept;
+  Record record_of(Predictor predictor, std::uint32_t object, const RigidState& truth, const PermittedError& permitted,
+                   std::size_t enough) const noexcept;
   bool is_candidate(std::uint32_t object, const RigidState& truth, Predictor predictor) const noexcept;
 
   const Scene& scene_;

@@ -62,8 +62,8 @@ struct CodedUpdate {
   std::uint8_t ease = 0, keep = 0;  ///< as in RigidState; 0 in a scene that is not eased
   Residual residual;
   std::uint8_t predictor = 0;
-  bool is_held = false;                         ///< driven: as in DrivenContact
-  std::array<std::int32_t, 7> contact{};        ///< driven: differences of point, normal and drag from those of the baseline
+  bool is_held = false;                   ///< driven: as in DrivenContact
+  std::array<std::int32_t, 7> contact{};  ///< driven: differences of point, normal and drag from those of the baseline
 };
 
 /// Updates choose among them.

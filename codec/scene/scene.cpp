@@ -96,7 +96,9 @@ RuleName broken_driven_rule(const SceneSpec& spec) noexcept {
   for (std::size_t i = 0; i < spec.objects.size(); ++i) {
     const Body& body = spec.driven->bodies[i];
     if (body == Body{}) continue;
-    if (spec.objects[i].dof == Dof::none || !fits(body.coupling) || body.hold > Body::kMost || !std::ranges::all_of(body.inertia, fits)) return "R-STR-23";
+    if (spec.objects[i].dof == Dof::none || !fits(body.coupling) || body.hold > Body::kMost ||
+        !std::ranges::all_of(body.inertia, fits))
+      return "R-STR-23";
     any = true;
   }
   return any ? RuleName{} : RuleName{"R-STR-23"};

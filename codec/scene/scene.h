@@ -62,7 +62,8 @@ struct DrivenConstants {
     std::uint16_t damping = 0;               ///< share of its velocities that it loses per tick, x 2^-20
     friend bool operator==(const Body&, const Body&) = default;
   };
-  std::vector<Body> bodies;  ///< one per rigid object; those of static objects are 0, that of a moving one is not for at least one
+  std::vector<Body>
+      bodies;  ///< one per rigid object; those of static objects are 0, that of a moving one is not for at least one
   friend bool operator==(const DrivenConstants&, const DrivenConstants&) = default;
 };
 

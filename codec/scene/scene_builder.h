@@ -13,6 +13,13 @@
 
 namespace tactus {
 
+/// How rigid objects are coded. What is declared of it decides how a sender codes, and what clients show.
+enum class RigidProfile : std::uint8_t {
+  thesis,  ///< linear dead reckoning from true velocities; clients jump to an update, or smooth what they show (Interpolation)
+  main,  ///< updates tell velocities that lean towards the acceleration, to last longer, and how clients pass over to them: what is
+         ///< shown and felt does not jump, and the bounds hold on the way
+};
+
 /// How the stream of a deformable object is coded.
 struct DeformableCoding {
   DeformableProfile profile = DeformableProfile::main;
@@ -21,9 +28,11 @@ struct DeformableCoding {
   bool models_kept = false;     ///< thesis: entropy models are part of the state
   double frame_period = 1;      ///< main: [ticks] from shape to shape, > 0
   bool layered = false;         ///< main: separate packets for the haptic and the visual layer
-  /// main, with a basis: share of what corrections added to it that fades per second, 0..1
-  double fade = 0.98;
-  /// main: sets of the parents' weights that packets may name (DeformableObject); 0: the second alone with a basis, else the first
+  /// main, with a basis: share of what corrections added to it that fades per second, 0..1; none: 0.98, or 0 where nearly every vertex
+  /// is coded in every packet, as for a promised visual bound of 0.01 mm and less
+  std::optional<double> fade{};
+  /// main: sets of the parents' weights that packets may name (DeformableObject); 0: the second alone with a basis, else the first, and
+  /// the first for such a bound
   std::uint8_t weight_sets = 0;
   ModeBasis basis{};             ///< main
   SpringBasis spring_basis{};    ///< main; with modes it takes the place of `basis`
@@ -40,12 +49,12 @@ struct MotionPhysics {
 
 /// A box or anything like it that a client's device pushes or holds.
 struct DrivenPhysics {
-  double mass = 0;          ///< [kg]
-  Vec3 inertia{};           ///< [kg m^2] about the axes of the object's frame
-  double stiffness = 0;     ///< [N/m] of the coupling between device and proxy
-  double hold = 0;          ///< [N/m] of that between device and an object that it holds; 0: it holds none
-  double friction = 0;      ///< of the proxy on it
-  double damping = 0;       ///< [1/s] rate at which its velocities die away by themselves
+  double mass = 0;       ///< [kg]
+  Vec3 inertia{};        ///< [kg m^2] about the axes of the object's frame
+  double stiffness = 0;  ///< [N/m] of the coupling between device and proxy
+  double hold = 0;       ///< [N/m] of that between device and an object that it holds; 0: it holds none
+  double friction = 0;   ///< of the proxy on it
+  double damping = 0;    ///< [1/s] rate at which its velocities die away by themselves
 };
 
 /// What went wrong, and with which object.
@@ -55,7 +64,8 @@ struct SceneFinding {
   operator Error() const noexcept { return error; }
 };
 
-/// Collects a scene's objects without checking them. build() checks and takes them, and leaves the builder empty.
+/// Collects a scene's objects without checking them. build() checks and takes them, and leaves the builder empty. What is not set is coded
+/// as the commands of Tactus do by themselves: profile main, rigid and deformable.
 ///   auto scene = SceneBuilder().rigid("cube", {{0, 0, 0.05}, {}}).baselines(8).build();
 class SceneBuilder {
  public:
@@ -70,8 +80,7 @@ class SceneBuilder {
   SceneBuilder& extrapolate(double seconds);
   /// How many states a receiver keeps as baselines, 1..64. Losing fewer packets than that in a row interrupts nothing.
   SceneBuilder& baselines(std::uint8_t count);
-  /// Updates of rigid objects tell how clients pass over to them: what is shown and felt does not jump, and the bounds hold on the way.
-  SceneBuilder& eased();
+  SceneBuilder& rigid_profile(RigidProfile profile);
   /// Tell the forces on all objects that can move: of their surroundings, and of so many users.
   SceneBuilder& loads(const LoadSpec& loads);
   /// Let updates choose among predictors that know these constants. Both 0: none does.
@@ -102,7 +111,7 @@ class SceneBuilder {
   SceneSpec spec_;
   std::optional<double> extrapolation_;  // [s]
   MotionPhysics motion_;
-  bool is_eased_ = false;
+  RigidProfile rigid_profile_ = RigidProfile::main;
   std::vector<Rigid> rigid_;
   std::vector<Deformable> deformables_;
   struct Promise {

@@ -196,7 +196,8 @@ Result<std::vector<std::uint8_t>> write_scene(const Scene& scene) try {
   w.u8(kVersion);
   w.u8(kProfile);
   w.u16(static_cast<std::uint16_t>((scene.deformables.empty() ? 0 : kHasDeformables) | (scene.loads ? kHasLoads : 0) |
-                                   (scene.is_eased ? kIsEased : 0) | (scene.motion ? kHasMotion : 0) | (scene.driven ? kIsDriven : 0)));
+                                   (scene.is_eased ? kIsEased : 0) | (scene.motion ? kHasMotion : 0) |
+                                   (scene.driven ? kIsDriven : 0)));
   w.u32(static_cast<std::uint32_t>(body.size()));
   w.bytes(body);
   w.u32(crc32(out));

@@ -14,7 +14,8 @@ constexpr std::uint16_t kHandshake = 0, kParts = 1, kPacket = 2;
 // Kinds of handshakes.
 constexpr std::uint16_t kJoin = 0, kWelcome = 1, kRefusal = 2, kLeave = 3, kFirstUnknownKind = 4;
 // Types of parts.
-constexpr std::uint8_t kAcknowledgement = 1, kClock = 2, kButtons = 3, kPace = 3, kPiece = 4, kState = 5, kHash = 6, kFragment = 7,
+constexpr std::uint8_t kAcknowledgement = 1, kClock = 2, kButtons = 3, kPace = 3, kPiece = 4, kState = 5, kHash = 6,
+                       kFragment = 7,
                        kFirstUnknown = 9;  // 3: buttons up, pace down; 8: packet
 
 constexpr std::uint32_t kMagic = 0x53544354;  // "TCTS"
@@ -22,8 +23,8 @@ constexpr std::uint8_t kVersion = 1;
 constexpr std::size_t kHeadSize = 2, kCheckSize = 4;
 constexpr std::uint64_t kEndOfTime = std::uint64_t{1} << 53;  // [us] of any clock
 constexpr std::int64_t kEndOfTicks = std::int64_t{1} << 32, kFarthest = std::int64_t{1} << 33;
-constexpr std::size_t kLeastJoin = 80;                        // [bytes]: answers are shorter
-constexpr std::uint8_t kFirstSkipped = 64;                    // part types for later or private use
+constexpr std::size_t kLeastJoin = 80;      // [bytes]: answers are shorter
+constexpr std::uint8_t kFirstSkipped = 64;  // part types for later or private use
 constexpr LeaveReason kLastReason = LeaveReason::protocol;
 
 bool kind_comes(std::uint16_t kind, Direction direction) noexcept {

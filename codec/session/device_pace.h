@@ -17,7 +17,8 @@ namespace tactus {
 
 class DevicePace {
  public:
-  explicit DevicePace(std::uint32_t tick_rate) noexcept : period_(2 * std::int64_t{tick_rate}), margin_((tick_rate + 499) / 500) {}
+  explicit DevicePace(std::uint32_t tick_rate) noexcept
+      : period_(2 * std::int64_t{tick_rate}), margin_((tick_rate + 499) / 500) {}
 
   /// A packet came.   in  ahead  ticks until it acts; 0 or less: it was too late
   void heard(std::int64_t ahead) noexcept { least_ = std::min(least_, ahead); }

@@ -144,7 +144,10 @@ Bytes random_contacts(std::uint64_t seed) {
   header.flags |= 4;
   std::vector<Constants> all{kNone};
   for (int i = 0; i < 2; ++i)
-    all.push_back({constant(), constant(), {constant(), constant(), constant()}, static_cast<std::uint16_t>(random.below(65536)),
+    all.push_back({constant(),
+                   constant(),
+                   {constant(), constant(), constant()},
+                   static_cast<std::uint16_t>(random.below(65536)),
                    static_cast<std::uint16_t>(random.below(65536))});
   Stream stream(with_driven(with_gravity(header, {random.integer(28), random.integer(28), random.integer(28)}, 12345), all));
   std::int64_t tick = 0;
@@ -211,11 +214,13 @@ void add_scene_driven(Catalogue& c) {
 
 void add_rigid_driven(Catalogue& c) {
   c.section(section::kDriven);
-  c.valid("contacts", "Updates that tell contacts, as differences from those of the baseline; one of another predictor between them.",
+  c.valid("contacts",
+          "Updates that tell contacts, as differences from those of the baseline; one of another predictor between them.",
           contacts(), {"R-RIG-7"});
   c.valid("far-contacts", "Contacts at their limits and beyond.", far_contacts());
   c.valid("driven-beside-others", "A driven object beside one that falls, in an eased scene.", beside_others());
-  c.valid("driven-unseen", "What a client without a device shows: constant velocities.", pushed(touched(), {0, 0, 900}), {}, "none");
+  c.valid("driven-unseen", "What a client without a device shows: constant velocities.", pushed(touched(), {0, 0, 900}), {},
+          "none");
   c.valid("driven-unseen-playout", "The same in the way playout.", pushed(touched(), {0, 0, 900}), {}, "playout");
   const Rejection rule{"invalid", "R-RIG-7"};
   CodedUpdate driven{.reason = Reason::visual, .residual = {}, .predictor = kDriven};
@@ -247,7 +252,9 @@ void add_rigid_driven(Catalogue& c) {
 
 void add_client_driven(Catalogue& c) {
   c.section(section::kDriven);
-  const auto device = [&](const char* name, const char* what, Bytes bytes) { c.valid(name, what, std::move(bytes), {}, "device"); };
+  const auto device = [&](const char* name, const char* what, Bytes bytes) {
+    c.valid(name, what, std::move(bytes), {}, "device");
+  };
   device("pushed", "The client's device pushes a cube along a line, loses it, and pushes again.", pushed(touched(), {}));
   device("pushed-and-turned", "The same about a screw.", pushed(touched(), {200, -300, 4000}));
   device("pushed-on-a-rail", "The same, the cube moves along x alone.", pushed(touched({}, Dof::x), {}));

@@ -237,10 +237,7 @@ void add_parts(Catalogue& catalogue) {
   Script order;
   const auto key = [&order](std::uint64_t n) { return order.moved(n, 1, true); };
   order.live().parts(2, packet_part(key(2), 0) + clock()).parts(3, part(0, {1})).parts(4, part(9, {1})).parts(5, part(63, {1}));
-  order.parts(7, part(5, {1}))
-      .parts(8, part(6, Bytes(7, 0)))
-      .parts(9, {})
-      .parts(10, packet_part(key(10), 0));
+  order.parts(7, part(5, {1})).parts(8, part(6, Bytes(7, 0))).parts(9, {}).parts(10, packet_part(key(10), 0));
   order.parts(11, part(64, {}) + clock())
       .parts(12, clock() + clock() + packet_part(key(12), 0))
       .parts(13, part(70, {}) + part(69, {}));
@@ -254,8 +251,8 @@ void add_parts(Catalogue& catalogue) {
   paces.parts(5, pace(kEnd, 0)).parts(6, pace(0, kFar + 1)).parts(7, pace(0, kFar + 2)).parts(8, part(3, {1}));
   paces.parts(9, part(3, {1, 1, 1})).parts(10, part(3, {1, 0x80, 0})).parts(11, part(3, Bytes(8, 0)));
   paces.parts(12, clock() + pace(3, 4) + packet_part(paces.moved(12, 1, true), 0)).parts(13, pace(1, 2) + clock());
-  catalogue.session("paces", "Paces of a device, at their limits and beyond, cut, out of order, and before a packet.", paces.text(),
-                    {"R-SES-3", "R-SES-5"});
+  catalogue.session("paces", "Paces of a device, at their limits and beyond, cut, out of order, and before a packet.",
+                    paces.text(), {"R-SES-3", "R-SES-5"});
 
   Script cut_parts;
   cut_parts.live()
