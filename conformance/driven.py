@@ -65,7 +65,7 @@ def back(m: tuple, v: tuple) -> tuple:
 
 
 def small(h: tuple) -> tuple:
-    return (1 << 30,) + tuple(lim(c, 28) for c in h)
+    return renorm(renorm((1 << 30,) + tuple(lim(c, 28) for c in h)))
 
 
 class DrivenBody:
