@@ -20,13 +20,17 @@ class DevicePace {
   explicit DevicePace(std::uint32_t tick_rate) noexcept
       : period_(2 * std::int64_t{tick_rate}), margin_((tick_rate + 499) / 500) {}
 
-  /// A packet came.   in  ahead  ticks until it acts; 0 or less: it was too late
-  void heard(std::int64_t ahead) noexcept { least_ = std::min(least_, ahead); }
+  /// A packet came.   in  device  its tick. Whether it is late is a matter of the pace: it may be held, and a packet too late to act
+  ///                             though the pace is slow enough already
+  void heard(std::int64_t device) noexcept {
+    if (offset_) least_ = std::min(least_, device - (tick_ - *offset_));
+  }
 
   /// What changes from this tick of the server on, if anything does.
   /// in   device  tick of the device that the fastest packets bring now
   std::optional<PacePart> step(std::int64_t tick, std::int64_t device) noexcept {
     const std::int64_t before = offset_.value_or(std::numeric_limits<std::int64_t>::min());
+    tick_ = tick;
     if (!offset_) offset_ = tick - device + margin_;
     else if (least_ <= 0) *offset_ += 1 - least_;
     else if (tick < until_) return std::nullopt;
@@ -68,7 +72,8 @@ class DevicePace {
 
   std::int64_t period_, margin_;  // [ticks]
   std::optional<std::int64_t> offset_;
-  std::int64_t least_ = kNone;  // since the last change
+  std::int64_t tick_ = 0;       // of the last step
+  std::int64_t least_ = kNone;  // [ticks] until a packet acts that came since the last change; 0 or less: too late
   std::int64_t until_ = 0;      // before this tick the pace does not get faster
   std::array<Told, 8> told_{};  // a ring
   std::size_t next_ = 0, waiting_ = 0;

@@ -119,16 +119,13 @@ bool Exchange::decode(std::uint64_t number, std::span<const std::uint8_t> packet
     ++traffic_.packets_refused;
     return false;
   }
-  if (path && direction_ == Direction::down) {
-    reading.heard.ahead = path->add(number, receiver->objects_after(*decoded)[0]);
-    if (*reading.heard.ahead <= 0) {
-      ++traffic_.packets_refused;
-      return false;
-    }
+  reading.heard.tick = std::max(reading.heard.tick.value_or(decoded->tick), decoded->tick);
+  if (path && direction_ == Direction::down && path->add(number, receiver->objects_after(*decoded)[0]) <= 0) {
+    ++traffic_.packets_refused;
+    return false;
   }
   ++traffic_.packets_heard;
   traffic_.payload_heard += packet.size();
-  reading.heard.tick = std::max(reading.heard.tick.value_or(decoded->tick), decoded->tick);
   if (is_of_deformable(*receiver->scene(), decoded->substream)) reading.asks = Asks::now;
   reading.heard.oldest = std::min(reading.heard.oldest.value_or(decoded->tick), decoded->tick);
   const bool newest = receiver->tick(decoded->substream) == decoded->tick;

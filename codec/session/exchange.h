@@ -53,7 +53,6 @@ class Exchange {
     std::optional<std::int64_t> oldest;      ///< oldest of them
     std::optional<HashPart> hash;            ///< to be told to the sender
     std::optional<std::int64_t> round_trip;  ///< [us] that its acknowledgement measured
-    std::optional<std::int64_t> ahead;       ///< ticks until a packet of the device acts; 0 or less: it came too late
   };
   /// in   take  Result<void>(const Part&, const Heard&), for the parts that are not acknowledgements, fragments and packets, in order
   /// err  state R-SES-4 an old number; invalid R-SES-6, R-SES-7; what `take` returns. Parts before it have taken effect. A packet that
@@ -61,7 +60,7 @@ class Exchange {
   template <class Take>
   Result<Heard> handle(std::uint64_t now, const Numbered& datagram, Take&& take) noexcept {
     TACTUS_TRY(const std::uint64_t number, receive(now, datagram));
-    Reading reading{{.number = number, .tick = {}, .oldest = {}, .hash = {}, .round_trip = {}, .ahead = {}}, now};
+    Reading reading{{.number = number, .tick = {}, .oldest = {}, .hash = {}, .round_trip = {}}, now};
     PartReader parts = datagram.parts(direction_ == Direction::up ? Direction::down : Direction::up);
     for (;;) {
       TACTUS_TRY(const std::optional<Part> part, parts.next());

@@ -111,7 +111,7 @@ Result<void> ServerConnection::handle_datagram(std::uint64_t now, std::span<cons
   }
   if (heard->round_trip) measured(*heard->round_trip, now);
   if (device_clock_) device_clock_->heard(heard->number, heard->tick, now);
-  if (pace_ && heard->ahead) pace_->heard(*heard->ahead);
+  if (pace_ && heard->tick) pace_->heard(*heard->tick);
   if (pace_) pace_->acknowledged(exchange_->sent().highest_acknowledged());
   return {};
 }
@@ -250,7 +250,7 @@ std::optional<std::uint64_t> ServerConnection::next_timeout() const noexcept {
 
 std::optional<DeviceSample> ServerConnection::device(std::uint64_t now) noexcept {
   if (state_ != SessionState::live || !device_clock_) return std::nullopt;
-  if (pace_) return driving_device(now);
+  if (pace_ && next_tick_ > 0) return driving_device(now);  // before the first submit() the tick is not known
   const std::int64_t tick = device_clock_->shown(now);
   if (tick < 0) return std::nullopt;
   return device_at(*exchange_->receiver, tick, buttons_.mask);

@@ -33,14 +33,27 @@ TEST(DevicePace, TheFastestPacketActsTwoMillisecondsAfterItCame) {
 TEST(DevicePace, WhatIsLateSlowsItDownAtOnce) {
   DevicePace pace(1000);
   pace.step(500, 430);
-  pace.heard(3);
+  pace.heard(500 - 72 + 3);
   EXPECT_FALSE(pace.step(501, 431));
-  pace.heard(-4);
-  pace.heard(0);
+  pace.heard(501 - 72 - 4);
+  pace.heard(501 - 72);
   const auto slower = pace.step(502, 432);
   ASSERT_TRUE(slower);
   EXPECT_EQ(slower->offset, 72 + 5);
   EXPECT_FALSE(pace.step(503, 433)) << "once";
+}
+
+/// The way gets longer by 100 ms, with a packet every 10 ms: until the device's tick goes on, all are too late to act, and the pace does not
+/// get slower for it.
+TEST(DevicePace, AJumpOfTheDelaySlowsItDownByAsMuch) {
+  DevicePace pace(1000);
+  std::int64_t offset = pace.step(0, -5)->offset;
+  for (std::int64_t tick = 1; tick < 2000; ++tick) {
+    if (tick % 10 == 0) pace.heard(tick - (tick < 500 ? 5 : 105));
+    if (const auto change = pace.step(tick, tick - 5)) offset = change->offset;
+  }
+  EXPECT_GE(offset, 105);
+  EXPECT_LE(offset, 108);
 }
 
 TEST(DevicePace, ItGetsFasterWhereAllComeEarly) {
@@ -48,7 +61,7 @@ TEST(DevicePace, ItGetsFasterWhereAllComeEarly) {
   pace.step(0, -50);
   std::int64_t offset = 52, faster = 0;
   for (std::int64_t tick = 1; tick <= 10'000; ++tick) {
-    pace.heard(5 - (52 - offset));
+    pace.heard(tick - 1 - 47);  // of a way that always takes as long
     if (const auto change = pace.step(tick, tick - 50)) {
       EXPECT_EQ(change->offset, offset - 1) << "a tick at a time";
       offset = change->offset;
@@ -70,7 +83,7 @@ TEST(DevicePace, ChangesAreToldUntilTheyAreAcknowledged) {
   pace.step(500, 430);
   EXPECT_TRUE(pace.waits());
   EXPECT_EQ(told(pace, 10).size(), 1u);
-  pace.heard(-1);
+  pace.heard(427);
   pace.step(600, 530);
   const auto both = told(pace, 11);
   ASSERT_EQ(both.size(), 2u);
@@ -90,7 +103,7 @@ TEST(DevicePace, TheNewestChangesAreTold) {
   DevicePace pace(1000);
   pace.step(0, 0);
   for (std::int64_t tick = 1; tick < 20; ++tick) {
-    pace.heard(0);
+    pace.heard(-100 * tick);
     pace.step(tick, tick);
   }
   const auto all = told(pace, 3);
