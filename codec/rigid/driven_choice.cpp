@@ -84,8 +84,8 @@ void DrivenChoice::read(std::int64_t tick, std::span<const RigidSample> samples,
     DrivenContact told{.is_held = contact->kind == ContactKind::spring, .point = on_grid(contact->point, DrivenContact::kPoint)};
     if (!told.is_held) {
       const auto window = std::span(moments_).subspan((kWindow + 1) * i, kWindow + 1);
-      const bool whole =
-          std::ranges::all_of(window, [&](const Moment& m) { return m.tick > tick - 1 - static_cast<std::int64_t>(kWindow); });
+      const std::int64_t first = std::max<std::int64_t>(0, tick - static_cast<std::int64_t>(kWindow));
+      const bool whole = std::ranges::all_of(window, [first](const Moment& m) { return m.tick >= first; });
       if (!whole) continue;
       told.normal = on_grid(contact->normal, DrivenContact::kNormal);
       told.drag = on_grid({drag_of(i, sample), 0, 0}, DrivenContact::kDrag)[0];

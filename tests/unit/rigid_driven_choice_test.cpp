@@ -49,7 +49,9 @@ TEST(DrivenChoice, TheDragExplainsTheMotion) {
     DrivenContact told;
     for (int i = 0; i < 20; ++i) {
       told = pushing.step();
-      if (i < 4) EXPECT_EQ(told, DrivenContact{}) << "too little was seen";
+      if (i < 4) {
+        EXPECT_EQ(told, DrivenContact{}) << "too little was seen";
+      }
     }
     EXPECT_NEAR(std::ldexp(told.drag, -DrivenContact::kDrag), drag, 0.1);
     EXPECT_EQ(told.point, (Vec3i{-164, 0, 0}));
