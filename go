@@ -109,6 +109,7 @@ run_demo() {
   step 'simulate a hand that turns, pushes and lifts a cube' "$tactus" sim rotate-push-lift -o "$out/truth.mcap" -f
   step 'encode the trace into a stream' "$tactus" encode "$out/truth.mcap" -o "$out/stream.tct" -f $bounds
   step 'decode the stream as a client does' "$tactus" decode "$out/stream.tct" -o "$out/replica.mcap" --like "$out/truth.mcap" -f
+  rm -rf "$out/sweep" # of an earlier build
   step 'draw packet rate and error over the deadband' "$tactus" sweep reports/plans/demo.toml -o "$out/sweep"
   "$tactus" encode "$out/truth.mcap" -o "$out/stream.tct" -f $bounds | tee "$out/report.txt"
   "$tactus" encode "$out/truth.mcap" -o "$out/stream.tct" -f $bounds --json >"$out/encode.json"
