@@ -291,15 +291,26 @@ tl::expected<Scene, Diagnostic> load_scene(const std::string& path) {
 
 namespace {
 
-constexpr const char* kSceneFolders[] = {TACTUS_SCENES_SOURCE, TACTUS_SCENES_INSTALLED};
+/// Of the scenes that come with Tactus: share/tactus/scenes near the running program, as in an installation or a build, or else where the
+/// library is installed.
+std::filesystem::path folder_of_scenes() {
+  namespace fs = std::filesystem;
+  constexpr int kNear = 4;  // a build's programs lie up to three folders below it
+  std::error_code ignored;
+  fs::path at = fs::read_symlink("/proc/self/exe", ignored);
+  for (int i = 0; i < kNear && at.has_relative_path(); ++i) {
+    at = at.parent_path();
+    if (fs::path folder = at / "share/tactus/scenes"; fs::is_directory(folder, ignored)) return folder;
+  }
+  return TACTUS_SCENES_INSTALLED;
+}
 
 /// Those that come with Tactus.
 std::string names_of_scenes() {
   std::set<std::string> names;
   std::error_code ignored;
-  for (const char* folder : kSceneFolders)
-    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
-      if (entry.path().extension() == ".toml") names.insert(" " + entry.path().stem().string());
+  for (const auto& entry : std::filesystem::directory_iterator(folder_of_scenes(), ignored))
+    if (entry.path().extension() == ".toml") names.insert(" " + entry.path().stem().string());
   std::string out;
   for (const std::string& name : names) out += (out.empty() ? "" : ",") + name;
   return out;
@@ -311,10 +322,8 @@ tl::expected<std::string, Diagnostic> find_scene(const std::string& name) {
   namespace fs = std::filesystem;
   std::error_code ignored;
   if (fs::is_regular_file(name, ignored)) return name;
-  for (const char* folder : kSceneFolders) {
-    const fs::path path = fs::path(folder) / (name + ".toml");
-    if (name.find('/') == std::string::npos && fs::is_regular_file(path, ignored)) return path.string();
-  }
+  const fs::path path = folder_of_scenes() / (name + ".toml");
+  if (name.find('/') == std::string::npos && fs::is_regular_file(path, ignored)) return path.string();
   return tl::unexpected(
       Diagnostic{.error = fail(Errc::io, "R-SCN-1").value(),
                  .file = name,
@@ -322,10 +331,7 @@ tl::expected<std::string, Diagnostic> find_scene(const std::string& name) {
 }
 
 tl::expected<Scene, Diagnostic> parse_attached_scene(std::string_view text) {
-  namespace fs = std::filesystem;
-  std::error_code ignored;
-  const auto folder = std::ranges::find_if(kSceneFolders, [&](const char* path) { return fs::is_directory(path, ignored); });
-  return parse_beside(text, "scene of the trace", folder != std::end(kSceneFolders) ? *folder : "/nowhere", refuse_paths);
+  return parse_beside(text, "scene of the trace", folder_of_scenes(), refuse_paths);
 }
 
 void set_pace(Scene& scene, double pace) noexcept {
