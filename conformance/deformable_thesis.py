@@ -85,7 +85,7 @@ class ThesisCodec:
         rest = Cursor(payload, 0, len(payload))
         key = rest.number(1, DEF_11)
         require(key <= 1, *DEF_11_VALUE)
-        baseline_delta = rest.number(1, DEF_11) if not key and span > 1 else 1
+        baseline_delta = rest.varint(DEF_11, DEF_11_VALUE) if not key and span > 1 else 1
         tick_delta, count, list_bytes, lowest, extent = (rest.varint(DEF_11, DEF_11_VALUE) for _ in range(5))
         require(tick_delta < 1 << 32 and 1 <= count <= len(self.item.rest) and lowest <= 1 << 29 and extent <= 1 << 29,
                 "invalid", "R-DEF-12")

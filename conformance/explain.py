@@ -210,10 +210,9 @@ def tell_vertices(packet, codec, state, base):
 
 def tell_thesis(packet, data, span):
     rest = Cursor(data, 2, len(data))
-    sizes = [("key", 1)] + ([("baseline_delta", 1)] if not data[2] and span > 1 else [])
-    rows = [f"| {name} | `{data[rest.position:rest.position + size].hex(' ')}` | {rest.take(size, ('', ''))[0]} |"
-            for name, size in sizes]
-    for name in ("tick_delta", "count", "list_bytes", "lowest", "range"):
+    rows = [f"| key | `{data[2:3].hex()}` | {rest.take(1, ('', ''))[0]} |"]
+    baseline = ["baseline_delta"] if not data[2] and span > 1 else []
+    for name in (*baseline, "tick_delta", "count", "list_bytes", "lowest", "range"):
         start = rest.position
         value = rest.varint(("", ""), ("", ""))
         rows.append(f"| {name} | `{data[start:rest.position].hex(' ')}` | {zigzag(value) if name == 'lowest' else value} |")

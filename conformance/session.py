@@ -113,7 +113,7 @@ class NumberedReceiver(Receiver):
         return self.given
 
     def baseline(self, number: int, key: int, baseline_delta: int):
-        require(1 <= baseline_delta <= self.span, "invalid", "R-PKT-3")
+        require(1 <= baseline_delta <= (4095 if self.span > 1 else 1), "invalid", "R-PKT-3")
         require(key or number - baseline_delta in self.kept, "state", "R-PKT-4")
         return self.initial if key else self.kept[number - baseline_delta]
 

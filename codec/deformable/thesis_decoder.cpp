@@ -21,7 +21,8 @@ Result<PacketHead> ThesisDecoder::read_head(std::span<const std::uint8_t> payloa
   const std::uint8_t key = in_.u8();
   if (key > 1) return fail(Errc::malformed, "R-DEF-11", bit());
   head_.key = key == 1;
-  if (!head_.key && baseline_span_ > 1) head_.baseline_delta = in_.u8();
+  if (!head_.key && baseline_span_ > 1)
+    head_.baseline_delta = static_cast<std::uint32_t>(std::min<std::uint64_t>(in_.varint(), 0xffffffff));
   const std::uint64_t tick_delta = in_.varint(), count = in_.varint(), list_bytes = in_.varint(), lowest = in_.varint(),
                       range = in_.varint();
   if (in_.overrun()) return fail(Errc::truncated, "R-DEF-11", bit());

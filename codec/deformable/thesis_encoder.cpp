@@ -84,7 +84,7 @@ std::size_t ThesisEncoder::write_head(const ThesisHead& head, std::span<std::uin
     out[at++] = static_cast<std::uint8_t>(value);
   };
   out[at++] = head.key ? 1 : 0;
-  if (!head.key && baseline_span_ > 1) out[at++] = static_cast<std::uint8_t>(head.baseline_delta);
+  if (!head.key && baseline_span_ > 1) varint(head.baseline_delta);
   varint(head.tick_delta);
   varint(head.count);
   varint(head.list_bytes);

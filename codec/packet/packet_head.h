@@ -10,9 +10,14 @@ inline constexpr std::int64_t kTickLimit = 0xffffffff;  ///< ticks of packets ar
 
 struct PacketHead {
   bool key = false;
-  std::uint32_t baseline_delta = 1;  ///< sequence numbers back, 1..baseline_span; unused by key packets
+  std::uint32_t baseline_delta = 1;  ///< numbers back, 1..farthest_baseline(); unused by key packets
   std::uint32_t tick_delta = 0;      ///< from the baseline's tick
 };
+
+/// Largest baseline_delta.   in  span  of the scene;  numbered  packets have given numbers, which need not be consecutive
+constexpr std::uint32_t farthest_baseline(std::uint32_t span, bool numbered) noexcept {
+  return numbered && span > 1 ? 4095 : span;
+}
 
 /// Key and baseline, as range-coded payloads have them.   in  models  with members key and baseline
 template <class Coder, class Models>

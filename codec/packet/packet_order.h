@@ -33,6 +33,7 @@ class PacketOrder {
     numbered_ = true;
     newest_ = number - 1;
   }
+  bool is_numbered() const noexcept { return numbered_; }
   /// True for a repeated packet, and for one that others sent after it came before.
   bool is_overtaken(std::uint64_t number) const noexcept { return number <= newest_; }
   /// True for a number that one sender cannot reach: another sender, or a long outage at the receiver (R-PKT-7).

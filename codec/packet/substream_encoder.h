@@ -71,7 +71,7 @@ class SubstreamEncoder {
   /// out  a packet without bytes: no packet is needed
   Result<Packet> encode(std::int64_t tick, Layer layer, std::optional<std::uint64_t> number = {}) noexcept {
     if (number) next_ = *number;
-    const State* base = key_.is_due(tick, number ? tick : states_.newest().tick) ? nullptr : baseline();
+    const State* base = key_.is_due(tick, number ? tick : states_.newest().tick) ? nullptr : baseline(number.has_value());
     PacketHead head{base == nullptr, static_cast<std::uint32_t>(next_ - base_), 0};
     if (head.key) base = &states_.initial();
     head.tick_delta = static_cast<std::uint32_t>(tick - base->tick);
@@ -131,7 +131,9 @@ class SubstreamEncoder {
 
  private:
   /// Baseline of the next packet; null: the initial state.
-  const State* baseline() const noexcept { return next_ - base_ > span_ ? nullptr : states_.find(base_); }
+  const State* baseline(bool numbered) const noexcept {
+    return next_ - base_ > farthest_baseline(span_, numbered) ? nullptr : states_.find(base_);
+  }
 
   struct Before {
     KeyPolicy key;

@@ -200,8 +200,8 @@ void add_numbers(Catalogue& catalogue) {
   wide.live();
   for (std::uint64_t n = 4000; n <= 72'000; n += 4000) wide.packet(n, wide.moved(n, 1, true));
   wide.packet(72'001, wide.moved(72'001)).packet(72'064, wide.moved(72'064, 64)).packet(72'065, wide.moved(72'065, 65));
-  wide.packet(72'128, wide.moved(72'128, 64));
-  catalogue.session("wide-numbers", "Numbers of more than 16 bits, hashes among them, and baselines 64 and 65 back.",
+  wide.packet(72'128, wide.moved(72'128, 64)).packet(76'160, wide.moved(76'160, 4095)).packet(76'161, wide.moved(76'161, 4096));
+  catalogue.session("wide-numbers", "Numbers of more than 16 bits, hashes among them, and baselines 64, 65, 4095 and 4096 back.",
                     wide.text());
 
   Script both;
