@@ -57,6 +57,13 @@ def check_files(package, build, time):
                 sys.exit(f"{package.name}: {member.name} names the folder in which it was built")
 
 
+def check_linked(build):
+    """Before debug information is stripped, which leaves its trace in the build id."""
+    for file in [*build.glob("bindings/c/*.so"), build / "cli/tactus"]:
+        if file.exists() and any(str(place).encode() in file.read_bytes() for place in (build, SOURCE)):
+            sys.exit(f"{file} names the folder in which it was built")
+
+
 def run_cpack(build, folder):
     folder.mkdir()
     before = os.umask(0o077)  # that of a careful person
@@ -67,6 +74,7 @@ def run_cpack(build, folder):
 
 def make_packages(build, scratch):
     time = commit_time()
+    check_linked(build)
     found = run_cpack(build, scratch / "packages")
     again = run_cpack(build, scratch / "elsewhere")
     if not found or [package.name for package in found] != [package.name for package in again]:
