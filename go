@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Installs missing packages, builds and runs Tactus on Debian 12. Needs root or sudo only to install packages.
-#   ./go demo     simulate a touch, encode, decode and compare; report and figure in out/demo/ (under 3 minutes on 2 cores, 300 MB)
+#   ./go demo     simulate a touch, encode, decode and compare; report and figure in out/demo/ (3 to 4 minutes on 2 cores, 300 MB)
 #   ./go view     the same, and a page that shows it in a browser, out/demo/stream.html (2 minutes and 500 MB more)
 #   ./go test     build with g++ and clang, run every test (55 minutes on 2 cores, 4 GB)
 #   ./go bench    build and run the benchmarks; JSON in build/bench/
@@ -41,7 +41,7 @@ apt_install() {
 }
 
 # Why the demo does without them: on a machine that has none of them they take 110 s to install, 70 of which are npm's, and the demo would
-# no longer be done in 3 minutes. Some packages of Node bring npm, others refuse the package npm.
+# take half as long again. Some packages of Node bring npm, others refuse the package npm.
 install_view_tools() {
   install $view_packages
   command -v npm >/dev/null || install npm
