@@ -15,7 +15,7 @@ import re
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
-HEADERS = {"tactus.h": ("decoder", "encoder"), "tactus_session.h": ("session",), "tactus_trace.h": ("trace",)}
+HEADERS = {"tactus.h": ("decoder",), "tactus_encoder.h": ("encoder",), "tactus_session.h": ("session",), "tactus_trace.h": ("trace",)}
 SIZES = {"int32_t": 4, "uint32_t": 4, "tactus_status": 4, "int64_t": 8, "uint64_t": 8, "float": 4, "double": 8,
          "size_t": 4, "uint8_t": 1, "pointer": 4}  # of wasm32
 CTYPES = {"int32_t": "c_int32", "uint32_t": "c_uint32", "tactus_status": "c_int32", "int64_t": "c_int64", "uint64_t": "c_uint64",

@@ -14,7 +14,10 @@ const packets = [0, 0], bytes = [0, 0];
 let at = 0, farthest = 0;
 try {
   const players = [];
-  for (; at < 2; ++at) players.push(tactus.openPlayer(await readFile(paths[at])));
+  for (; at < 2; ++at) {
+    players.push(tactus.openPlayer(await readFile(paths[at])));
+    if (players[at].receiver.scene.rigid.length === 0) throw new Error("no rigid object");
+  }
   for (let tick = 0, more = true; more; ++tick) {
     const [a, b] = players.map((player, i) => {
       for (let packet; (packet = player.play(tick)) !== null; ++packets[i]) bytes[i] += packet.bytes;

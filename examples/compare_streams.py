@@ -11,6 +11,9 @@ import tactus
 def main(paths):
     packets, farthest, tick = [[], []], 0.0, 0
     with tactus.Player(paths[0]) as a, tactus.Player(paths[1]) as b:
+        for path, player in zip(paths, (a, b)):
+            if not player.scene.objects:
+                sys.exit(f"{path}: no rigid object")
         while True:
             for player, played in zip((a, b), packets):
                 played += player.play(tick)

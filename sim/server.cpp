@@ -47,7 +47,7 @@ Result<void> Server::add_objects(const ServerOptions& options) {
 
 Result<void> Server::add_codec(const ServerCodec& codec) {
   SceneBuilder builder = scene_builder(scene_);
-  if (codec.coding.is_eased) builder.eased();
+  builder.rigid_profile(codec.coding.rigid);
   for (std::size_t i = 0; i < scene_.deformables.size(); ++i) {
     TraceCoding coding = codec.coding;
     if (scene_.compensation && scene_.compensation->method == CompensationMethod::stiffness) {
@@ -88,7 +88,7 @@ void Server::touch(std::span<const DeviceSample> devices) noexcept {
       user.server_force = user.server_force + touch.force;
     }
     shares_[i] = share_rendered(user.server_force, scene_.users[i].device.max_force);
-    user.server_force = shares_[i] * user.server_force;
+    user.force = user.server_force = shares_[i] * user.server_force;
     if (!user.surface_contact) continue;
     // A user who touches a sleeping object needs its shape at haptic, not visual, accuracy.
     DeformableSample& mesh = frame_.meshes[user.surface_contact->mesh];

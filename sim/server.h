@@ -22,7 +22,7 @@ namespace tactus::sim {
 /// What is coded, and how.
 struct ServerCodec {
   SenderOptions sender;
-  TraceCoding coding{};   ///< of deformable objects
+  TraceCoding coding{};   ///< of the scene's objects
   bool sessions = false;  ///< clients have sessions of their own, which code for them
 };
 
@@ -43,7 +43,8 @@ class Server {
 
   /// Write the state of this tick, before its forces act, to frame().   no allocation
   void observe() noexcept;
-  /// Move every user's probe; write contacts and forces to frame().   in  devices  one per user   no allocation
+  /// Move every user's probe; write contacts and forces to frame(). The force that a hand felt is the server's there, until whoever has
+  /// clients that tell theirs writes it.   in  devices  one per user   no allocation
   void touch(std::span<const DeviceSample> devices) noexcept;
   /// Packets of this tick for the clients; valid until the next call.   err  errors of Sender::encode   no allocation
   Result<std::span<const Packet>> encode() noexcept;

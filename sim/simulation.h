@@ -34,7 +34,7 @@ namespace tactus::sim {
 struct ChannelOptions {
   SenderOptions sender;
   ReplicaOptions replica;
-  TraceCoding coding{};        ///< of deformable objects
+  TraceCoding coding{};        ///< of the scene's objects
   const Scene* own = nullptr;  ///< what clients simulate themselves, if they do; null: the scene
   NetworkMaker network{};      ///< each user has a client behind it; none: one client, and no time passes
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What the functions of tactus.h share: the objects behind the handles, errors, and structs that carry their size.
+/// What the functions of tactus.h share: the objects behind the handles, and errors.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 #include <tactus/deformable/displacement.h>
 #include <tactus/receiver.h>
 
-#include "tactus.h"
+#include "sizes.h"
 
 struct tactus_scene {
   tactus::SharedScene shared;
@@ -37,13 +37,10 @@ struct tactus_receiver {
 
 namespace tactus::c {
 
-inline constexpr std::size_t kLargestStruct = 4096;                 ///< [bytes] no version of a struct is larger
 inline constexpr std::int64_t kLastTick = std::int64_t{1} << 40;    ///< ticks of packets end at 2^32
 inline constexpr std::uint64_t kLastTime = std::uint64_t{1} << 60;  ///< [us]
 
 tactus_status report(const Error& error, tactus_error* out) noexcept;
-
-inline tl::unexpected<Error> refuse() noexcept { return fail(Errc::invalid_argument, "R-API-12"); }
 
 /// Outcome of a function that succeeded: TACTUS_OK, TACTUS_NOTHING or TACTUS_BUFFER_TOO_SMALL.
 using Outcome = Result<tactus_status>;
@@ -71,44 +68,6 @@ template <class T>
 Result<std::span<const T>> span_of(const T* data, std::size_t count) noexcept {
   if (data == nullptr && count > 0) return refuse();
   return std::span(data, count);
-}
-
-/// Fill the caller's struct with defaults.
-template <class T>
-tactus_status init(T* out, std::size_t size, T defaults) noexcept {
-  if (out == nullptr || size < sizeof(T) || size > kLargestStruct) return TACTUS_INVALID_ARGUMENT;
-  std::memset(out, 0, size);
-  defaults.size = static_cast<std::uint32_t>(size);
-  *out = defaults;
-  return TACTUS_OK;
-}
-
-/// The caller's options, or the defaults.
-/// err  R-API-12 its size is that of no version, or an option of a later version is set
-template <class T>
-Result<T> given_or(const T* given, const T& defaults) noexcept {
-  if (given == nullptr) return defaults;
-  if (given->size < sizeof(T) || given->size > kLargestStruct) return refuse();
-  const auto* bytes = reinterpret_cast<const unsigned char*>(given);
-  for (std::size_t i = sizeof(T); i < given->size; ++i)
-    if (bytes[i] != 0) return refuse();
-  return *given;
-}
-
-/// err  R-API-12 there is no struct for the answer, or its size is that of no version
-template <class T>
-Result<void> check_answer(const T* out) noexcept {
-  if (out == nullptr || out->size < sizeof(T) || out->size > kLargestStruct) return refuse();
-  return {};
-}
-
-/// pre  check_answer()
-template <class T>
-void answer(T* out, T value) noexcept {
-  const std::uint32_t size = out->size;
-  std::memset(out, 0, size);
-  value.size = size;
-  *out = value;
 }
 
 /// Copy to the caller's buffer if it is large enough.   out  size  needed or written

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/scene/scene.h>
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 
@@ -138,6 +139,8 @@ tactus_status tactus_scene_get_deformable(const tactus_scene* scene, uint32_t ob
                   .frame_period = of->frame_period / 256.0,
                   .name = of->name.c_str(),
                   .rings = of->rings,
+                  .clusters = of->cluster_basis.count,
+                  .blend = of->cluster_basis.blend,
                   .reserved = 0});
     return TACTUS_OK;
   });
@@ -176,6 +179,19 @@ tactus_status tactus_scene_get_stiffness(const tactus_scene* scene, uint32_t obj
     if (capacity < of->stiffness.size()) return TACTUS_BUFFER_TOO_SMALL;
     for (const std::uint8_t level : of->stiffness)
       *out++ = level == 0 ? std::numeric_limits<double>::infinity() : stiffness_of_level(level);
+    return TACTUS_OK;
+  });
+}
+
+tactus_status tactus_scene_get_clusters(const tactus_scene* scene, uint32_t object, uint8_t* out, size_t capacity,
+                                        tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    TACTUS_TRY(const DeformableObject* of, deformable_of(scene, object));
+    if (out == nullptr) return refuse();
+    const std::vector<std::uint8_t>& clusters = of->cluster_basis.clusters;
+    if (clusters.empty()) return TACTUS_NOTHING;
+    if (capacity < clusters.size()) return TACTUS_BUFFER_TOO_SMALL;
+    std::ranges::copy(clusters, out);
     return TACTUS_OK;
   });
 }

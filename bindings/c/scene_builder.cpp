@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <tactus/deformable/motion_clusters.h>
 #include <tactus/scene/scene_builder.h>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "bounds.h"
 #include "handles.h"
@@ -20,6 +22,11 @@ namespace {
 static_assert(TACTUS_DOF_X == Dof::x && TACTUS_DOF_Y == Dof::y && TACTUS_DOF_Z == Dof::z && TACTUS_DOF_RX == Dof::rx &&
               TACTUS_DOF_RY == Dof::ry && TACTUS_DOF_RZ == Dof::rz && TACTUS_DOF_ALL == Dof::all);
 
+static_assert(TACTUS_PROFILE_THESIS == static_cast<int>(RigidProfile::thesis) &&
+              TACTUS_PROFILE_MAIN == static_cast<int>(RigidProfile::main) &&
+              TACTUS_PROFILE_THESIS == static_cast<int>(DeformableProfile::thesis) &&
+              TACTUS_PROFILE_MAIN == static_cast<int>(DeformableProfile::main));
+
 constexpr tactus_scene_options kSceneOptions{.size = sizeof(tactus_scene_options),
                                              .tick_rate = 1000,
                                              .position_exp = GridExponents{}.position,
@@ -27,7 +34,7 @@ constexpr tactus_scene_options kSceneOptions{.size = sizeof(tactus_scene_options
                                              .rotation_exp = GridExponents{}.rotation,
                                              .angular_velocity_exp = GridExponents{}.angular_velocity,
                                              .baselines = 1,
-                                             .eased = 0,
+                                             .rigid_profile = TACTUS_PROFILE_MAIN,
                                              .has_loads = 0,
                                              .load_users = LoadSpec{}.users,
                                              .force_exp = LoadSpec{}.force_exp,
@@ -35,6 +42,9 @@ constexpr tactus_scene_options kSceneOptions{.size = sizeof(tactus_scene_options
                                              .extrapolation = 2,
                                              .gravity = {},
                                              .friction = 0};
+
+constexpr double kChosen = -1;
+constexpr std::size_t kMostShapes = 1 << 16;  ///< to find clusters on
 
 tactus_deformable_options deformable_options() noexcept {
   const DeformableCoding coding;
@@ -47,13 +57,16 @@ tactus_deformable_options deformable_options() noexcept {
           .weight_sets = coding.weight_sets,
           .spring_modes = coding.spring_basis.modes,
           .frame_period = coding.frame_period,
-          .fade = coding.fade,
+          .fade = kChosen,
           .fixed = nullptr,
           .fixed_count = 0,
           .vectors = nullptr,
           .modes = 0,
           .stiffness = nullptr,
-          .stiffness_count = 0};
+          .stiffness_count = 0,
+          .clusters = nullptr,
+          .cluster_count = 0,
+          .blend = 0};
 }
 
 bool are_bytes(std::initializer_list<std::uint32_t> values) noexcept {
@@ -69,31 +82,37 @@ void apply(const tactus_scene_options& o, SceneBuilder& builder) {
              .angular_velocity = static_cast<std::uint8_t>(o.angular_velocity_exp)})
       .extrapolate(o.extrapolation)
       .baselines(static_cast<std::uint8_t>(o.baselines))
+      .rigid_profile(static_cast<RigidProfile>(o.rigid_profile))
       .motion({.gravity = vec_of(o.gravity), .friction = o.friction});
-  if (o.eased != 0) builder.eased();
   if (o.has_loads != 0)
     builder.loads({.force_exp = static_cast<std::uint8_t>(o.force_exp), .users = static_cast<std::uint8_t>(o.load_users)});
 }
 
-/// pre  checked counts
-TriMesh mesh_of(std::span<const double> vertices, std::span<const std::uint32_t> corners) {
+/// err  R-SRF-14 too large; R-API-12 null; the other R-SRF rules
+Result<TriMesh> mesh_of(const double* points, std::size_t point_count, const std::uint32_t* triangles,
+                        std::size_t triangle_count) {
+  if (point_count > kMaxMeshVertices || triangle_count > kMaxMeshTriangles) return fail(Errc::limit_exceeded, "R-SRF-14");
+  TACTUS_TRY(const auto vertices, span_of(points, 3 * point_count));
+  TACTUS_TRY(const auto corners, span_of(triangles, 3 * triangle_count));
   TriMesh mesh;
   mesh.vertices.reserve(vertices.size() / 3);
   for (std::size_t i = 0; i < vertices.size(); i += 3) mesh.vertices.push_back({vertices[i], vertices[i + 1], vertices[i + 2]});
   mesh.triangles.reserve(corners.size() / 3);
   for (std::size_t i = 0; i < corners.size(); i += 3) mesh.triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+  if (const auto sound = check(mesh); !sound) return tl::make_unexpected(sound.error().error);
   return mesh;
 }
 
 /// err  R-SRF rules; R-API-4 an option is out of range; R-API-1, 9 the basis
 Result<DeformableCoding> coding_of(const tactus_deformable_options& o, std::size_t vertices) {
-  if (o.profile > 1 || !are_bytes({o.rings, o.quant_bits, o.weight_sets, o.spring_modes}) || !std::isfinite(o.frame_period) ||
-      !(o.frame_period > 0))
+  if (o.profile > TACTUS_PROFILE_MAIN || !are_bytes({o.rings, o.quant_bits, o.weight_sets, o.spring_modes, o.blend}) ||
+      !std::isfinite(o.frame_period) || !(o.frame_period > 0))
     return fail(Errc::invalid_argument, "R-API-4");
   TACTUS_TRY(const auto fixed, span_of(o.fixed, o.fixed_count));
   TACTUS_TRY(const auto stiffness, span_of(o.stiffness, o.stiffness_count));
   if (stiffness.size() > vertices || fixed.size() > vertices) return fail(Errc::invalid_argument, "R-API-5");
   if (o.modes > ModeBasis::kMaxModes) return fail(Errc::invalid_argument, "R-API-9");
+  if (o.cluster_count > ClusterBasis::kMaxClusters) return fail(Errc::invalid_argument, "R-API-4");
   TACTUS_TRY(const auto vectors, span_of(o.vectors, o.modes * vertices * 3));
   DeformableCoding out{
       .profile = static_cast<DeformableProfile>(o.profile),
@@ -102,13 +121,19 @@ Result<DeformableCoding> coding_of(const tactus_deformable_options& o, std::size
       .models_kept = o.models_kept != 0,
       .frame_period = o.frame_period,
       .layered = o.layered != 0,
-      .fade = o.fade,
+      .fade = o.fade == kChosen ? std::nullopt : std::optional(o.fade),
       .weight_sets = static_cast<std::uint8_t>(o.weight_sets),
       .basis = {},
       .spring_basis = {.modes = static_cast<std::uint8_t>(o.spring_modes), .fixed = {fixed.begin(), fixed.end()}},
       .stiffness = {stiffness.begin(), stiffness.end()}};
   if (o.modes > 0) {
     TACTUS_TRY(out.basis, make_mode_basis(vectors, o.modes));
+  }
+  if (o.cluster_count > 0) {
+    TACTUS_TRY(const auto clusters, span_of(o.clusters, vertices));
+    out.cluster_basis = {.count = static_cast<std::uint8_t>(o.cluster_count),
+                         .blend = static_cast<std::uint8_t>(o.blend),
+                         .clusters = {clusters.begin(), clusters.end()}};
   }
   return out;
 }
@@ -130,6 +155,7 @@ tactus_status tactus_scene_builder_create(const tactus_scene_options* options, t
   return call(error, [&]() -> Outcome {
     if (builder == nullptr) return refuse();
     TACTUS_TRY(const tactus_scene_options o, given_or(options, kSceneOptions));
+    if (o.rigid_profile > TACTUS_PROFILE_MAIN) return fail(Errc::invalid_argument, "R-API-4");
     if (!are_bytes(
             {o.position_exp, o.velocity_exp, o.rotation_exp, o.angular_velocity_exp, o.baselines, o.load_users, o.force_exp}))
       return fail(Errc::invalid_argument, "R-API-4");
@@ -156,14 +182,32 @@ tactus_status tactus_scene_builder_deformable(tactus_scene_builder* builder, con
                                               const tactus_deformable_options* options, tactus_error* error) {
   return call(error, [&]() -> Outcome {
     if (builder == nullptr || name == nullptr) return refuse();
-    if (vertex_count > kMaxMeshVertices || triangle_count > kMaxMeshTriangles) return fail(Errc::limit_exceeded, "R-SRF-14");
-    TACTUS_TRY(const auto coordinates, span_of(vertices, 3 * vertex_count));
-    TACTUS_TRY(const auto corners, span_of(triangles, 3 * triangle_count));
+    TACTUS_TRY(TriMesh mesh, mesh_of(vertices, vertex_count, triangles, triangle_count));
     TACTUS_TRY(const tactus_deformable_options o, given_or(options, deformable_options()));
     TACTUS_TRY(DeformableCoding coding, coding_of(o, vertex_count));
-    TriMesh mesh = mesh_of(coordinates, corners);
-    if (const auto sound = check(mesh); !sound) return tl::make_unexpected(sound.error().error);
     builder->builder.deformable(name, std::move(mesh), std::move(coding));
+    return TACTUS_OK;
+  });
+}
+
+tactus_status tactus_find_clusters(const double* vertices, size_t vertex_count, const uint32_t* triangles, size_t triangle_count,
+                                   const float* shapes, size_t shape_count, uint32_t most, uint8_t* clusters, uint32_t* count,
+                                   uint32_t* blend, tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (clusters == nullptr || count == nullptr || blend == nullptr) return refuse();
+    TACTUS_TRY(const TriMesh mesh, mesh_of(vertices, vertex_count, triangles, triangle_count));
+    if (shape_count > kMostShapes) return fail(Errc::invalid_argument, "R-API-5");
+    const std::size_t width = 3 * vertex_count;
+    TACTUS_TRY(const auto numbers, span_of(shapes, shape_count * width));
+    std::vector<std::vector<float>> given;
+    for (std::size_t i = 0; i < shape_count; ++i) {
+      const auto shape = numbers.subspan(i * width, width);
+      given.emplace_back(shape.begin(), shape.end());
+    }
+    TACTUS_TRY(const ClusterBasis found, motion_clusters(mesh, given, most));
+    std::ranges::copy(found.clusters, clusters);
+    *count = found.count;
+    *blend = found.blend;
     return TACTUS_OK;
   });
 }

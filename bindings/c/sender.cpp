@@ -18,8 +18,7 @@ namespace tactus::c {
 namespace {
 
 static_assert(TACTUS_REDUCTION_NONE == static_cast<int>(Reduction::none) &&
-              TACTUS_REDUCTION_DEAD_RECKONING == static_cast<int>(Reduction::dead_reckoning) &&
-              TACTUS_REDUCTION_LEANING == static_cast<int>(Reduction::leaning));
+              TACTUS_REDUCTION_DEAD_RECKONING == static_cast<int>(Reduction::dead_reckoning));
 static_assert(TACTUS_BASELINE_PREVIOUS == static_cast<int>(Baseline::previous) &&
               TACTUS_BASELINE_ACKNOWLEDGED == static_cast<int>(Baseline::acknowledged));
 
@@ -58,8 +57,8 @@ tactus_packet_info info_of(const Scene& scene, const Packet& packet, std::int64_
 
 Result<SenderOptions> options_of(const tactus_sender_options* options) noexcept {
   TACTUS_TRY(const tactus_sender_options o, given_or(options, kOptions));
-  if (o.reduction < TACTUS_REDUCTION_NONE || o.reduction > TACTUS_REDUCTION_LEANING || o.baseline < TACTUS_BASELINE_PREVIOUS ||
-      o.baseline > TACTUS_BASELINE_ACKNOWLEDGED || o.first_sequence > 0xffff)
+  if (o.reduction < TACTUS_REDUCTION_NONE || o.reduction > TACTUS_REDUCTION_DEAD_RECKONING ||
+      o.baseline < TACTUS_BASELINE_PREVIOUS || o.baseline > TACTUS_BASELINE_ACKNOWLEDGED || o.first_sequence > 0xffff)
     return fail(Errc::invalid_argument, "R-API-4");
   SenderOptions out;
   TACTUS_TRY(out.triggers, bounds_of(o.rigid));

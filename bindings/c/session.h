@@ -7,7 +7,6 @@
 #include <tactus/session/traffic.h>
 
 #include "handles.h"
-#include "tactus_session.h"
 
 namespace tactus::c {
 

@@ -1,18 +1,22 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /*
- * Tactus in C: scenes, packets and streams; tactus_session.h has sessions. The functions wrap those of the C++ library: <tactus/tactus.h>
- * and the specification tell more about what they do. SI units, right-handed world frame, quaternions w x y z, time in integer
- * ticks of the scene.
+ * Tactus in C: scenes, and what receives packets and plays streams; tactus_encoder.h has what makes them, tactus_session.h sessions. The
+ * functions wrap those of the C++ library: <tactus/tactus.h> and the specification tell more about what they do. SI units, right-handed
+ * world frame, quaternions w x y z, time in integer ticks of the scene.
  *
  * Errors    Functions that can fail return TACTUS_OK, TACTUS_NOTHING (no error: none is there) or the class of an error. The last
  *           argument takes the error, with the rule of the specification that was broken; it may be NULL, and is written when there
  *           is an error. After an error outputs and objects are unchanged unless the function's comment says otherwise.
- *           NULL, unknown sizes and indices that name nothing give TACTUS_INVALID_ARGUMENT R-API-12.
+ *           NULL and indices that name nothing give TACTUS_INVALID_ARGUMENT R-API-12.
  * Objects   are made by _create, _open, _parse or _build, and destroyed by _destroy, which takes NULL. What a function returns as
  *           `const` or calls borrowed belongs to the object that it came from.
  * Options   are structs with their size, filled with the defaults by _init; NULL stands for all of the defaults. Structs for
- *           answers need their size alone: tactus_packet_info info = {.size = sizeof info}. Structs with a size grow at their end in
- *           later versions, the others never change. Options that the library does not know must be 0.
+ *           answers need their size alone: tactus_packet_info info = {.size = sizeof info}.
+ * Versions  Structs with a size grow at their end in later versions; the others never change. So a program may be older or newer than the
+ *           library. Where its struct is
+ *             shorter   options beyond its end have their defaults, and answers end where it ends;
+ *             longer    options that the library does not know must be 0, and answers that it does not know become 0.
+ *           A size that no version had, or above 4096, and an option that the library does not know give TACTUS_INVALID_ARGUMENT R-API-12.
  * Buffers   belong to the caller. Bytes that a function reads are not needed after it returns, except those of tactus_player_open.
  *           Where a buffer is too small the function returns TACTUS_BUFFER_TOO_SMALL R-API-13 and nothing is lost.
  * Threads   A scene never changes and may be shared. Any other object is used by one thread at a time.
@@ -162,6 +166,7 @@ typedef struct tactus_limits {
 } tactus_limits;
 TACTUS_API tactus_status tactus_limits_init(tactus_limits* limits, size_t size);
 
+enum { TACTUS_PROFILE_THESIS = 0, TACTUS_PROFILE_MAIN = 1 };
 enum { TACTUS_KIND_RIGID = 0, TACTUS_KIND_DEFORMABLE = 1, TACTUS_KIND_LOAD = 2 };
 enum { TACTUS_LAYER_HAPTIC = 0, TACTUS_LAYER_VISUAL = 1, TACTUS_LAYER_ALL = 2 };
 enum { TACTUS_REASON_REQUEST = 0, TACTUS_REASON_HEARTBEAT = 1, TACTUS_REASON_VISUAL = 2, TACTUS_REASON_HAPTIC = 3 };
@@ -194,7 +199,7 @@ typedef struct tactus_scene_info {
   uint32_t position_exp;  /* positions are multiples of 2^-position_exp m */
   uint32_t extrapolation; /* ticks after which an object without updates stops */
   uint32_t baselines;
-  uint32_t eased;
+  uint32_t eased; /* 1: rigid objects are of profile main */
   uint32_t has_bounds;
   uint32_t has_loads, load_users;
 } tactus_scene_info;
@@ -209,12 +214,14 @@ typedef struct tactus_rigid_info {
 typedef struct tactus_deformable_info {
   uint32_t size;
   uint32_t vertices, triangles;
-  uint32_t profile; /* 0 thesis, 1 main */
+  uint32_t profile; /* TACTUS_PROFILE_... */
   uint32_t layered;
   uint32_t modes;      /* of its basis; 0: none */
   double frame_period; /* ticks from shape to shape */
   const char* name;    /* UTF-8; lives as long as the scene */
   uint32_t rings;      /* size of the area of interest around a touched triangle */
+  uint32_t clusters;   /* of vertices that move alike, which make 12 modes each; 0: none */
+  uint32_t blend;      /* rounds in which the clusters are blended where they meet */
   uint32_t reserved;
 } tactus_deformable_info;
 
@@ -240,6 +247,9 @@ TACTUS_API tactus_status tactus_scene_get_triangles(const tactus_scene* scene, u
 /* Stiffness of each vertex, N/m, infinite where it does not move. TACTUS_NOTHING: not told.   in  capacity  at least the vertices */
 TACTUS_API tactus_status tactus_scene_get_stiffness(const tactus_scene* scene, uint32_t object, double* out, size_t capacity,
                                                     tactus_error* error);
+/* Cluster of each vertex; TACTUS_NOTHING: it has none.   in  capacity  at least the vertices */
+TACTUS_API tactus_status tactus_scene_get_clusters(const tactus_scene* scene, uint32_t object, uint8_t* out, size_t capacity,
+                                                   tactus_error* error);
 /* Bounds that the sender guarantees; TACTUS_NOTHING: not declared. */
 TACTUS_API tactus_status tactus_scene_get_rigid_bounds(const tactus_scene* scene, tactus_rigid_bounds* bounds,
                                                        tactus_error* error);
@@ -323,164 +333,6 @@ TACTUS_API tactus_status tactus_player_play(tactus_player* player, int64_t tick,
 TACTUS_API tactus_status tactus_player_next_tick(tactus_player* player, int64_t* tick, tactus_error* error);
 TACTUS_API uint64_t tactus_player_header_bytes(const tactus_player* player);
 TACTUS_API int32_t tactus_player_complete(const tactus_player* player); /* 1: the file has its end; valid after the last packet */
-
-/* ---------------------------------------------------------------- scene builder */
-
-typedef struct tactus_scene_builder tactus_scene_builder;
-
-typedef struct tactus_scene_options {
-  uint32_t size;
-  uint32_t tick_rate;                                                      /* per second; 1000 */
-  uint32_t position_exp, velocity_exp, rotation_exp, angular_velocity_exp; /* grids; 22 17 20 12 */
-  uint32_t baselines;  /* states that a receiver keeps, 1 to 64; 1. A session wants 64 */
-  uint32_t eased;      /* 1: updates tell how clients pass over to them, so that nothing jumps; 0 */
-  uint32_t has_loads;  /* 1: tell the forces on rigid objects; 0 */
-  uint32_t load_users; /* whose forces are told; 1 */
-  uint32_t force_exp;  /* forces are multiples of 2^-force_exp N; 10 */
-  uint32_t reserved;
-  double extrapolation; /* s after which an object without updates stops; 2 */
-  double gravity[3];    /* m/s^2, world: updates may choose to fall; 0 */
-  double friction;      /* ... or to slide to rest; 0 */
-} tactus_scene_options;
-
-typedef struct tactus_deformable_options {
-  uint32_t size;
-  uint32_t profile;      /* 0 thesis, 1 main; main */
-  uint32_t rings;        /* around the touched triangle; 3 */
-  uint32_t quant_bits;   /* thesis; 8 */
-  uint32_t models_kept;  /* thesis; 0 */
-  uint32_t layered;      /* main: separate packets for the haptic and the visual layer; 0 */
-  uint32_t weight_sets;  /* main; 0: chosen */
-  uint32_t spring_modes; /* main: modes of a network of springs that both ends compute; 0 */
-  double frame_period;   /* main: ticks from shape to shape; 1 */
-  double fade;           /* main, with a basis: share of corrections that fades per second; 0.98 */
-  const uint32_t* fixed; /* spring_modes: vertices that do not move, ascending */
-  size_t fixed_count;
-  const double* vectors;   /* a basis to declare: modes x vertices x 3, any scale; NULL */
-  size_t modes;            /* 0 to 64 */
-  const double* stiffness; /* N/m of each vertex, infinite where it does not move; NULL: not told */
-  size_t stiffness_count;  /* vertices */
-} tactus_deformable_options;
-
-TACTUS_API tactus_status tactus_scene_options_init(tactus_scene_options* options, size_t size);
-TACTUS_API tactus_status tactus_deformable_options_init(tactus_deformable_options* options, size_t size);
-TACTUS_API tactus_status tactus_scene_builder_create(const tactus_scene_options* options, tactus_scene_builder** builder,
-                                                     tactus_error* error);
-TACTUS_API void tactus_scene_builder_destroy(tactus_scene_builder* builder);
-/* in   initial  pose at rest, NULL: the origin;  dof  TACTUS_DOF_... */
-TACTUS_API tactus_status tactus_scene_builder_rigid(tactus_scene_builder* builder, const char* name, const tactus_pose* initial,
-                                                    uint32_t dof, tactus_error* error);
-/* in   vertices  x y z of each [m] at rest, world;  triangles  3 corners of each, counter-clockwise seen from outside */
-TACTUS_API tactus_status tactus_scene_builder_deformable(tactus_scene_builder* builder, const char* name, const double* vertices,
-                                                         size_t vertex_count, const uint32_t* triangles, size_t triangle_count,
-                                                         const tactus_deformable_options* options, tactus_error* error);
-/* Declare the bounds that hold at a client: those of its sender. NULL: defaults. */
-TACTUS_API tactus_status tactus_scene_builder_promise(tactus_scene_builder* builder, const tactus_rigid_bounds* rigid,
-                                                      const tactus_deformable_bounds* deformable, const tactus_load_bounds* load,
-                                                      tactus_error* error);
-/* Check everything and make the scene. The builder is empty then, also after an error. */
-TACTUS_API tactus_status tactus_scene_builder_build(tactus_scene_builder* builder, tactus_scene** scene, tactus_error* error);
-/* Name of the object that the last error of _build concerns; "" none. Lives until the next call of the builder. */
-TACTUS_API const char* tactus_scene_builder_culprit(const tactus_scene_builder* builder);
-
-/* ---------------------------------------------------------------- sender: truth in, packets out */
-
-typedef struct tactus_sender tactus_sender;
-
-enum { TACTUS_REDUCTION_NONE = 0, TACTUS_REDUCTION_DEAD_RECKONING = 1, TACTUS_REDUCTION_LEANING = 2 };
-enum { TACTUS_BASELINE_PREVIOUS = 0, TACTUS_BASELINE_ACKNOWLEDGED = 1 };
-
-typedef struct tactus_sender_options {
-  uint32_t size;
-  int32_t reduction;       /* TACTUS_REDUCTION_...; dead reckoning. Leaning, in an eased scene, is profile main of the commands */
-  int32_t baseline;        /* TACTUS_BASELINE_...; previous */
-  uint32_t first_sequence; /* 1 */
-  double key_interval;     /* s; 5; 0: never */
-  double visual_share;     /* deformable, main: a packet corrects errors over this share of v; 0: chosen */
-  double haptic_share;     /* the same of h */
-  uint32_t layered;        /* deformable, thesis: separate packets for the layers; 0 */
-  uint32_t reserved;
-  const tactus_rigid_bounds* rigid; /* NULL: defaults, as the next two */
-  const tactus_deformable_bounds* deformable;
-  const tactus_load_bounds* load;
-} tactus_sender_options;
-
-typedef struct tactus_rigid_sample {
-  tactus_pose pose;
-  double velocity[3];         /* m/s, world */
-  double angular_velocity[3]; /* rad/s, world */
-} tactus_rigid_sample;
-
-enum { TACTUS_CONTACT_NONE = 0, TACTUS_CONTACT_SURFACE = 1, TACTUS_CONTACT_SPRING = 2 };
-
-/* A user touches a rigid object. */
-typedef struct tactus_contact {
-  int32_t kind; /* TACTUS_CONTACT_...: below a face, or tied to a point of the object */
-  uint32_t object;
-  double point[3];  /* m, object: of the face, or the spring's anchor */
-  double normal[3]; /* object, outward, unit length; unused by a spring */
-  double device[3]; /* m, world */
-  double stiffness; /* N/m */
-} tactus_contact;
-
-/* A deformable object at one tick. */
-typedef struct tactus_shape {
-  const float* displacements; /* x y z of each vertex, m, from rest; NULL: no new shape */
-  size_t vertices;
-  int32_t touched;   /* 1: the next three count */
-  uint32_t triangle; /* nearest to the probe */
-  double force;      /* N */
-  double stiffness;  /* N/m, of the client's rendering */
-} tactus_shape;
-
-typedef struct tactus_truth {
-  uint32_t size;
-  uint32_t reserved;
-  const tactus_rigid_sample* objects; /* one per rigid object of the scene */
-  size_t object_count;
-  const tactus_contact* contacts; /* any number */
-  size_t contact_count;
-  const tactus_shape* shapes; /* one per deformable object, or none */
-  size_t shape_count;
-  const double* loads; /* N, world: per rigid object external, hold, then one per user, x y z each; NULL without loads */
-  size_t load_count;   /* objects */
-} tactus_truth;
-
-TACTUS_API tactus_status tactus_sender_options_init(tactus_sender_options* options, size_t size);
-TACTUS_API tactus_status tactus_truth_init(tactus_truth* truth, size_t size); /* nothing */
-TACTUS_API tactus_status tactus_sender_create(const tactus_scene* scene, const tactus_sender_options* options,
-                                              tactus_sender** sender, tactus_error* error);
-TACTUS_API void tactus_sender_destroy(tactus_sender* sender);
-/* Evaluate a tick and code the packets it needs.   in  tick  rising   out  packets  how many, mostly 0   err  R-API-1 to 7 */
-TACTUS_API tactus_status tactus_sender_encode(tactus_sender* sender, int64_t tick, const tactus_truth* truth, size_t* packets,
-                                              tactus_error* error);
-/* Packet `index` of the last tick.   in  info  may be NULL   out  size  needed or written */
-TACTUS_API tactus_status tactus_sender_packet(const tactus_sender* sender, size_t index, tactus_packet_info* info, uint8_t* bytes,
-                                              size_t capacity, size_t* size, tactus_error* error);
-/* A receiver asks for a key packet. */
-TACTUS_API tactus_status tactus_sender_request_key(tactus_sender* sender, tactus_error* error);
-/* A receiver has decoded a packet: TACTUS_BASELINE_ACKNOWLEDGED builds on it. */
-TACTUS_API tactus_status tactus_sender_acknowledge(tactus_sender* sender, uint32_t substream, uint32_t sequence,
-                                                   tactus_error* error);
-/* in   answer  [ticks] until a packet is acknowledged, 0: not known;  loss  share of packets */
-TACTUS_API tactus_status tactus_sender_set_link(tactus_sender* sender, int64_t answer, double loss, tactus_error* error);
-TACTUS_API tactus_status tactus_sender_state_hash(const tactus_sender* sender, uint32_t substream, uint64_t* hash,
-                                                  tactus_error* error);
-
-/* ---------------------------------------------------------------- writer: packets into a stream file */
-
-typedef struct tactus_writer tactus_writer;
-
-TACTUS_API tactus_status tactus_writer_create(const tactus_scene* scene, tactus_writer** writer, tactus_error* error);
-TACTUS_API void tactus_writer_destroy(tactus_writer* writer);
-/* in   tick  not falling;  key  as tactus_packet_info tells */
-TACTUS_API tactus_status tactus_writer_add(tactus_writer* writer, int64_t tick, const uint8_t* packet, size_t size, uint32_t key,
-                                           tactus_error* error);
-/* Add the index and the end of the file. */
-TACTUS_API tactus_status tactus_writer_finish(tactus_writer* writer, tactus_error* error);
-/* Take what was written since the last call.   out  size  needed or taken */
-TACTUS_API tactus_status tactus_writer_take(tactus_writer* writer, uint8_t* bytes, size_t capacity, size_t* size,
-                                            tactus_error* error);
 
 #ifdef __cplusplus
 }

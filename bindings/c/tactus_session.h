@@ -10,7 +10,7 @@
 #ifndef TACTUS_SESSION_H
 #define TACTUS_SESSION_H
 
-#include "tactus.h"
+#include "tactus_encoder.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -7,7 +7,7 @@
 #ifndef TACTUS_TRACE_H
 #define TACTUS_TRACE_H
 
-#include "tactus.h"
+#include "tactus_encoder.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -64,9 +64,11 @@ typedef struct tactus_user_sample {
 /* How a trace becomes a scene. */
 typedef struct tactus_trace_coding {
   uint32_t size;
-  uint32_t eased;                   /* 0; as tactus_scene_options */
-  uint32_t baselines;               /* 1 */
-  uint32_t spring_modes;            /* 0; as tactus_deformable_options */
+  uint32_t rigid_profile;      /* main; as tactus_scene_options */
+  uint32_t deformable_profile; /* main; as tactus_deformable_options */
+  uint32_t baselines;          /* 1 */
+  uint32_t spring_modes;       /* 0; as tactus_deformable_options */
+  uint32_t clusters;           /* of each mesh at most, found on the trace, which is read once more: not from a pipe; 0: none */
   const tactus_rigid_bounds* rigid; /* that the scene declares; NULL: defaults */
   const tactus_deformable_bounds* deformable;
 } tactus_trace_coding;

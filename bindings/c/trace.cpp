@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
+#include <system_error>
 
 #include <tactus/scene/scene_syntax.h>
+#include <tactus/trace/trace_clusters.h>
 #include <tactus/trace/trace_scene.h>
 
 #include "bounds.h"
@@ -11,8 +15,14 @@
 namespace tactus::c {
 namespace {
 
-constexpr tactus_trace_coding kCoding{
-    .size = sizeof(tactus_trace_coding), .eased = 0, .baselines = 1, .spring_modes = 0, .rigid = nullptr, .deformable = nullptr};
+constexpr tactus_trace_coding kCoding{.size = sizeof(tactus_trace_coding),
+                                      .rigid_profile = TACTUS_PROFILE_MAIN,
+                                      .deformable_profile = TACTUS_PROFILE_MAIN,
+                                      .baselines = 1,
+                                      .spring_modes = 0,
+                                      .clusters = 0,
+                                      .rigid = nullptr,
+                                      .deformable = nullptr};
 
 Result<const TraceDeformable*> mesh_of(const tactus_trace* trace, std::uint32_t mesh) noexcept {
   TACTUS_TRY(const TraceInfo* info, info_of(trace));
@@ -69,18 +79,32 @@ void copy_samples(const std::vector<From>& from, To* to, std::size_t count) noex
   for (const From& sample : from) *to++ = sample_of(sample);
 }
 
+/// err  R-TRC-1 it is no file that can be read once more; those of find_clusters()
+Result<std::map<std::string, ClusterBasis>> clusters_of(const tactus_trace& trace, std::size_t most) {
+  if (most == 0) return {};
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(trace.path, ignored)) return fail(Errc::io, "R-TRC-1");
+  TACTUS_TRY(TraceReader reader, TraceReader::open(trace.path));
+  return find_clusters(reader, most);
+}
+
 Result<std::vector<std::uint8_t>> declaration(const tactus_trace& trace, const tactus_trace_coding& coding) {
-  if (coding.baselines > 0xff || coding.spring_modes > ModeBasis::kMaxModes) return fail(Errc::invalid_argument, "R-API-4");
+  if (coding.rigid_profile > TACTUS_PROFILE_MAIN || coding.deformable_profile > TACTUS_PROFILE_MAIN || coding.baselines > 0xff ||
+      coding.spring_modes > ModeBasis::kMaxModes)
+    return fail(Errc::invalid_argument, "R-API-4");
   TACTUS_TRY(const RigidTriggers rigid, bounds_of(coding.rigid));
   TACTUS_TRY(const DeformableThresholds deformable, bounds_of(coding.deformable));
+  TACTUS_TRY(auto clusters, clusters_of(trace, coding.clusters));
   TraceFrame none;
   none.objects.resize(trace.reader.info().objects.size());
   const TraceFrame& first = trace.has_frame ? trace.frame : none;
-  TACTUS_TRY(SceneBuilder builder, scene_builder(trace.reader.info(), first,
-                                                 {.deformable = {},
-                                                  .spring_modes = static_cast<std::uint8_t>(coding.spring_modes),
-                                                  .basis = {},
-                                                  .is_eased = coding.eased != 0}));
+  TACTUS_TRY(SceneBuilder builder,
+             scene_builder(trace.reader.info(), first,
+                           {.deformable = {.profile = static_cast<DeformableProfile>(coding.deformable_profile)},
+                            .spring_modes = static_cast<std::uint8_t>(coding.spring_modes),
+                            .basis = {},
+                            .clusters = std::move(clusters),
+                            .rigid = static_cast<RigidProfile>(coding.rigid_profile)}));
   builder.baselines(static_cast<std::uint8_t>(coding.baselines)).promise(rigid, deformable);
   TACTUS_TRY(const SharedScene scene, std::move(builder).build());
   return write_scene(*scene);
@@ -98,7 +122,7 @@ tactus_status tactus_trace_open(const char* path, tactus_trace** trace, tactus_e
   return call(error, [&]() -> Outcome {
     if (path == nullptr || trace == nullptr) return refuse();
     TACTUS_TRY(TraceReader reader, TraceReader::open(path));
-    auto out = std::make_unique<tactus_trace>(tactus_trace{std::move(reader)});
+    auto out = std::make_unique<tactus_trace>(tactus_trace{std::move(reader), path});
     TACTUS_TRY(out->has_frame, out->reader.next(out->frame));
     *trace = out.release();
     return TACTUS_OK;

@@ -2,13 +2,15 @@
 /// A trace that is read, at its frame.
 #pragma once
 
+#include <string>
+
 #include <tactus/trace/trace_file.h>
 
 #include "handles.h"
-#include "tactus_trace.h"
 
 struct tactus_trace {
   tactus::TraceReader reader;
+  std::string path;
   tactus::TraceFrame frame{};
   bool has_frame = false;  // `frame` is one
   bool is_first = true;    // ... which was read when the trace was opened, and not told yet

@@ -84,6 +84,7 @@ export class Scene {
   readonly deformables: readonly {
     readonly name: string; readonly vertices: number; readonly triangles: number; readonly modes: number;
     readonly profile: "thesis" | "main"; readonly layered: boolean; readonly framePeriod: number;
+    readonly clusters: number;    // of vertices that move alike; 0: none
   }[];
   /** Vertices at rest, V x 3, m. */
   rest(deformable: number): Float32Array;

@@ -153,7 +153,7 @@ export class Scene {
     const info = this.#tactus.ask("tactus_deformable_info", "tactus_scene_get_deformable", this.handle, i);
     return {
       name: this.#tactus.memory.text(info.name), vertices: info.vertices, triangles: info.triangles, modes: info.modes,
-      profile: profiles[info.profile], layered: info.layered !== 0, framePeriod: info.frame_period,
+      profile: profiles[info.profile], layered: info.layered !== 0, framePeriod: info.frame_period, clusters: info.clusters,
     };
   }
 

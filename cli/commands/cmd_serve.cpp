@@ -359,7 +359,10 @@ void setup_serve(Command& app, Action& action) {
       ->show_default()
       ->type_name("PORT");
   add_key(command, options->key);
-  command.add_option("-o,--output", options->output, "Also write a trace (MCAP)")->type_name("FILE");
+  command
+      .add_option("-o,--output", options->output,
+                  "Also write a trace (MCAP); the force felt is the server's, as clients tell none")
+      ->type_name("FILE");
   command.add_option("--clients", options->clients, "Most clients at a time")
       ->check(whole_number(1, 1024))
       ->show_default()

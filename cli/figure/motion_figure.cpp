@@ -52,6 +52,7 @@ void MotionFigure::add(UserLines& lines, const UserSample& user, double time) {
   for (std::size_t k = 0; k < parts.size(); ++k) lines.device[k].add(time, kMillimetres * parts[k]);
   lines.felt.add(time, norm(user.force));
   lines.server.add(time, norm(user.server_force));
+  lines.differ = lines.differ || user.force != user.server_force;
 }
 
 void MotionFigure::add_packet(std::int64_t tick, std::size_t bytes) {
@@ -72,7 +73,8 @@ std::vector<TimePanel> MotionFigure::panels() const {
     const std::string& name = info_.users[i].name;
     out.push_back(axes_of("device of " + name + " [mm]", users_[i].device));
     TimePanel& forces = out.emplace_back(TimePanel{"force on " + name + " [N]"});
-    forces.lines = {{"felt", users_[i].felt.points()}, {"of the server", users_[i].server.points()}};
+    forces.lines = {{users_[i].differ ? "felt" : "force", users_[i].felt.points()}};
+    if (users_[i].differ) forces.lines.push_back({"of the server", users_[i].server.points()});
   }
   for (std::size_t i = 0; i < meshes_.size(); ++i)
     if (!meshes_[i].is_empty()) bends.lines.push_back({info_.meshes[i].name, meshes_[i].points()});

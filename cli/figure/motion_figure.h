@@ -31,6 +31,7 @@ class MotionFigure {
   struct UserLines {
     std::array<TimeLine, 3> device{};
     TimeLine felt{}, server{};
+    bool differ = false;  // else the trace knows one force
   };
 
   double time_of(std::int64_t tick) const { return static_cast<double>(tick) / info_.tick_rate; }

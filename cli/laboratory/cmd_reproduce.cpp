@@ -112,7 +112,8 @@ Measured summary(const RateMetrics& traffic, const ErrorMetrics& predicted, cons
 Measured measure(const sim::Scene& scene, const Setting& setting, const RigidTriggers& triggers, sim::Grip grip,
                  std::uint64_t seed) {
   const sim::ChannelOptions channel{.sender = {.triggers = triggers, .deformable = {}, .policy = {}},
-                                    .replica = {.interpolation = setting.interpolation}};
+                                    .replica = {.interpolation = setting.interpolation},
+                                    .coding = {.rigid = RigidProfile::thesis}};
   auto simulation = sim::Simulation::create(scene, {.seed = seed, .grip = grip, .channel = channel});
   if (!simulation) return failed_at(0, simulation.error());
   auto predicting = Receiver::create(simulation->stream_scene());

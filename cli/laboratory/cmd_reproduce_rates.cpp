@@ -77,6 +77,7 @@ RigidTriggers triggers_of(double p, const ReproduceOptions& options) {
 tl::expected<Rates, Failure> with_states(const sim::Scene& scene, const RigidTriggers& triggers, Interpolation interpolation,
                                          const ReproduceOptions& options, std::uint64_t seed) {
   sim::ChannelOptions channel;
+  channel.coding.rigid = RigidProfile::thesis;
   channel.sender.triggers = triggers;
   channel.replica.interpolation = interpolation;
   auto simulation = sim::Simulation::create(scene, {.seed = seed, .grip = grip_of(options.grip), .channel = channel});

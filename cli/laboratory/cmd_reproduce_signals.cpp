@@ -40,6 +40,7 @@ tl::expected<std::vector<Tick>, Failure> push(double p, Interpolation interpolat
   const auto scene = sim::load_scene(*path);
   if (!scene) return refuse(scene.error());
   sim::ChannelOptions channel;
+  channel.coding.rigid = RigidProfile::thesis;
   channel.sender.triggers.weber_fraction = p;
   channel.sender.triggers.visual_position = 0.01 * options.length_unit;  // thesis 3.2.4.1
   channel.sender.triggers.visual_rotation = 4 * kDegree;

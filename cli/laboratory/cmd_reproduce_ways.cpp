@@ -218,12 +218,13 @@ Outcome reproduce_ways(const ReproduceOptions& options) {
       Case& c = cases.emplace_back(Case{.scene = name, .p = p, .rates = {}, .eased_rates = {}, .effects = {}});
       for (std::uint64_t seed = 1; seed <= options.seeds; ++seed) {
         Curves curves;
-        sim::ChannelOptions channel{.sender = {.triggers = triggers, .deformable = {}, .policy = {}}, .replica = {}};
+        sim::ChannelOptions channel{.sender = {.triggers = triggers, .deformable = {}, .policy = {}},
+                                    .replica = {},
+                                    .coding = {.rigid = RigidProfile::thesis}};
         const std::span<Effect> effects(c.effects);
         TACTUS_TRY(const double rate, run_seed(*scene, channel, options, seed, kWays, effects.first(kWays.size()), &curves));
         c.rates.push_back(rate);
-        channel.sender.triggers.reduction = Reduction::leaning;
-        channel.coding.is_eased = true;
+        channel.coding.rigid = RigidProfile::main;
         TACTUS_TRY(const double eased_rate,
                    run_seed(*scene, channel, options, seed, kEased, effects.last(kEased.size()), nullptr));
         c.eased_rates.push_back(eased_rate);

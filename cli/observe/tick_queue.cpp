@@ -50,7 +50,7 @@ void TickQueue::copy(const TraceFrame& frame, std::span<const ObjectLoad> loads,
     const UserSample& user = frame.users[i];
     to.frame.users[i] = {.device = user.device,
                          .contact = user.contact,
-                         .force = user.server_force,
+                         .force = user.force,
                          .server_force = user.server_force,
                          .surface_contact = user.surface_contact};
   }

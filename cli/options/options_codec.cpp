@@ -219,7 +219,7 @@ void MeshArguments::add_encoder_to(Command& app) {
            ->one_of({"thesis", "main"})
            ->type_name("NAME"),
        modes,
-       fade_ = add_quantity(app, "--fade", coding_.fade, Dimension::fraction,
+       fade_ = add_quantity(app, "--fade", fade_share_, Dimension::fraction,
                             "Share of the corrections outside the basis that fades per second (with a basis) [98%, or 0% for a "
                             "--deformable-visual of 0.01mm and less]")
                    ->check(within(Dimension::fraction, "0%", "100%")),
@@ -254,28 +254,17 @@ SenderOptions MeshArguments::sender(const TriggerArguments& triggers) const {
   const auto typed = [](const Option* option, double value) {
     return option != nullptr && option->count() > 0 ? std::optional<double>(value) : std::nullopt;
   };
-  RigidTriggers rigid = triggers.triggers();
-  if (is_main() && triggers.reduces()) rigid.reduction = Reduction::leaning;
   return {
-      .triggers = rigid,
+      .triggers = triggers.triggers(),
       .deformable = {thresholds(triggers), typed(shares_[0], visual_share_), typed(shares_[1], haptic_share_), coding_.layered},
       .policy = {.key_interval = triggers.key_interval()}};
 }
 
-/// Where nearly every vertex is coded in every packet, what fades is sent again, and vertices follow their parents closely.
-DeformableCoding MeshArguments::deformable_coding() const {
-  constexpr double kNearlyExact = 1e-5;  // [m]
-  DeformableCoding out = coding_;
-  if (thresholds_.visual > kNearlyExact) return out;
-  if (fade_->count() == 0) out.fade = 0;
-  if (out.weight_sets == 0) out.weight_sets = 1;
-  return out;
-}
-
 TraceCoding MeshArguments::coding(const TriggerArguments& triggers) const {
-  return {.deformable = deformable_coding(),
-          .spring_modes = static_cast<std::uint8_t>(modes_),
-          .is_eased = is_main() && triggers.reduces()};
+  TraceCoding out{.deformable = coding_, .spring_modes = static_cast<std::uint8_t>(modes_)};
+  if (fade_ != nullptr && fade_->count() > 0) out.deformable.fade = fade_share_;
+  if (!is_main() || !triggers.reduces()) out.rigid = RigidProfile::thesis;  // what goes out at every tick needs no easing
+  return out;
 }
 
 Option* add_interpolation(Command& app, ReplicaOptions& options) {

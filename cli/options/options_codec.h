@@ -88,12 +88,10 @@ class MeshArguments {
   bool is_main() const { return coding_.profile == DeformableProfile::main; }
 
  private:
-  DeformableCoding deformable_coding() const;
-
   DeformableThresholds thresholds_;
   DeformableCoding coding_;
   std::uint32_t modes_ = 0;
-  double visual_share_ = 1, haptic_share_ = 1;
+  double visual_share_ = 1, haptic_share_ = 1, fade_share_ = 0;
   const Option *visual_ = nullptr, *rings_ = nullptr, *fade_ = nullptr, *shares_[2]{};  // visual, haptic
   std::vector<const Option*> options_;
 };

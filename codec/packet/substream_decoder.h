@@ -92,7 +92,8 @@ class SubstreamDecoder {
 
   Result<const State*> baseline_of(const PacketHead& head, std::uint64_t number) noexcept {
     if (head.key) return &states_.initial();
-    if (head.baseline_delta < 1 || head.baseline_delta > farthest_baseline(span_, order_.is_numbered())) return fail(Errc::invalid, "R-PKT-3");
+    if (head.baseline_delta < 1 || head.baseline_delta > farthest_baseline(span_, order_.is_numbered()))
+      return fail(Errc::invalid, "R-PKT-3");
     if (!states_.empty() && order_.is_foreign(number)) {
       states_.clear();
       return fail(Errc::state, "R-PKT-7");

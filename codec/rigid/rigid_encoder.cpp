@@ -127,8 +127,10 @@ RigidEncoder::RigidEncoder(const Scene& scene, const RigidTriggers& triggers, Ba
       early_(baseline == Baseline::acknowledged ? kEarly : 1),
       heartbeat_(static_cast<std::int64_t>(std::ceil(triggers.heartbeat * scene.tick_rate))),
       truth_(initial_states(scene).objects) {
-  if (triggers.reduction == Reduction::leaning || scene.is_eased) acceleration_.emplace(scene);
-  if (scene.motion && triggers.reduction != Reduction::none) choice_.emplace(scene);
+  if (triggers.reduction != Reduction::none) {
+    if (scene.is_eased) acceleration_.emplace(scene);
+    if (scene.motion) choice_.emplace(scene);
+  }
   pending_.reserve(scene.moving().size());
   before_.reserve(scene.moving().size());
   for (const RigidState& state : truth_) sent_.push_back({.path = {.state = state}});
@@ -264,7 +266,7 @@ Predictor RigidEncoder::chosen(std::uint32_t object, const RigidTriggers& bounds
 RigidState RigidEncoder::leaned(std::uint32_t object, const Acceleration::Motion& acceleration,
                                 const ErrorShare& share) const noexcept {
   const RigidState& truth = truth_[object];
-  if (triggers_.reduction != Reduction::leaning || loses_) return truth;
+  if (!acceleration_ || loses_) return truth;
   RigidSample sample = samples_[object];
   const Acceleration::Motion more = leaning(acceleration, share);
   sample.velocity = sample.velocity + more.linear;
@@ -314,8 +316,7 @@ Result<CodedUpdate> RigidEncoder::code(Pending& update, const EncodeRequest<Rigi
   RigidState told = is_linear ? leaned(object, acceleration, share) : truth_[object];
   told.predictor = predictor;
   TACTUS_TRY(CodedUpdate coded, quantise(update, prediction, told));
-  const bool can_ease = scene_.is_eased && triggers_.reduction != Reduction::none && !request.head.key;
-  if (can_ease) choose_ease(update, coded, acceleration, share);
+  if (acceleration_ && !request.head.key) choose_ease(update, coded, acceleration, share);
   return coded;
 }
 

@@ -13,7 +13,6 @@ namespace tactus {
 enum class Reduction : std::uint8_t {
   none,            ///< every object, every tick (reference setting S_R7)
   dead_reckoning,  ///< only when a trigger fires
-  leaning,         ///< the same, and updates tell velocities that lean towards the acceleration, to last longer
 };
 
 /// Values are wire values.

@@ -13,19 +13,29 @@
 namespace tactus {
 namespace {
 
-constexpr double kExtrapolation = 2;  // [s]
+constexpr double kExtrapolation = 2;   // [s]
+constexpr double kFade = 0.98;         // per second
+constexpr double kNearlyExact = 1e-5;  // [m] visual bound at which nearly every vertex is coded in every packet
 
 bool has_basis(const DeformableCoding& coding) noexcept {
   return !coding.basis.steps.empty() || coding.spring_basis.modes > 0 || coding.cluster_basis.count > 0;
 }
 
+/// What was left open. Where nearly every vertex is coded in every packet, what fades is sent again, and vertices follow their parents
+/// closely.
+void choose(DeformableCoding& coding, bool is_nearly_exact) noexcept {
+  if (!coding.fade) coding.fade = is_nearly_exact ? 0 : kFade;
+  if (coding.weight_sets == 0) coding.weight_sets = has_basis(coding) && !is_nearly_exact ? 2 : 1;
+}
+
 /// The share that fades per frame, from that per second.
 std::uint16_t fade_of(const DeformableCoding& coding, std::uint32_t tick_rate) noexcept {
   if (!has_basis(coding)) return 0;
-  const double left = std::pow(1 - std::clamp(coding.fade, 0.0, 1.0), coding.frame_period / tick_rate);
+  const double left = std::pow(1 - *coding.fade, coding.frame_period / tick_rate);
   return static_cast<std::uint16_t>(std::min(65535.0, std::floor(65536 * (1 - left) + 0.5)));
 }
 
+/// pre  nothing is left open
 Result<void> apply(DeformableCoding& coding, std::uint32_t tick_rate, DeformableObject& object) {
   object.profile = coding.profile;
   object.rings = coding.rings;
@@ -35,9 +45,9 @@ Result<void> apply(DeformableCoding& coding, std::uint32_t tick_rate, Deformable
   object.frame_period = static_cast<std::uint32_t>(
       std::clamp(std::floor(256 * coding.frame_period + 0.5), 1.0, double{DeformableObject::kMaxFramePeriod}));
   if (coding.profile == DeformableProfile::main) {
-    if (!(coding.fade >= 0 && coding.fade <= 1)) return fail(Errc::invalid_argument, "R-API-4");
+    if (!(*coding.fade >= 0 && *coding.fade <= 1)) return fail(Errc::invalid_argument, "R-API-4");
     object.fade = fade_of(coding, tick_rate);
-    object.weight_sets = coding.weight_sets != 0 ? coding.weight_sets : has_basis(coding) ? 2 : 1;
+    object.weight_sets = coding.weight_sets;
     object.basis = std::move(coding.basis);
     object.spring_basis = std::move(coding.spring_basis);
     object.cluster_basis = std::move(coding.cluster_basis);
@@ -89,8 +99,8 @@ SceneBuilder& SceneBuilder::baselines(std::uint8_t count) {
   return *this;
 }
 
-SceneBuilder& SceneBuilder::eased() {
-  is_eased_ = true;
+SceneBuilder& SceneBuilder::rigid_profile(RigidProfile profile) {
+  rigid_profile_ = profile;
   return *this;
 }
 
@@ -132,9 +142,11 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build() try {
     if (!names.insert(made.name).second) return refuse({Errc::invalid, RuleName("R-STR-11"), 0}, made.name);
     if (made.dof == Dof::none) continue;
     spec.motion = *constants;
-    spec.is_eased = taken.is_eased_;
+    spec.is_eased = taken.rigid_profile_ == RigidProfile::main;
   }
+  const bool is_nearly_exact = taken.promise_ && taken.promise_->deformables.visual <= kNearlyExact;
   for (Deformable& of : taken.deformables_) {
+    choose(of.coding, is_nearly_exact);
     auto object = make_deformable_object(of.name, of.surface, spec.grid.position);
     if (!object) return refuse(object.error(), of.name);
     if (const auto applied = apply(of.coding, spec.tick_rate, *object); !applied) return refuse(applied.error(), of.name);

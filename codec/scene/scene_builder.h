@@ -13,6 +13,13 @@
 
 namespace tactus {
 
+/// How rigid objects are coded. What is declared of it decides how a sender codes, and what clients show.
+enum class RigidProfile : std::uint8_t {
+  thesis,  ///< linear dead reckoning from true velocities; clients jump to an update, or smooth what they show (Interpolation)
+  main,  ///< updates tell velocities that lean towards the acceleration, to last longer, and how clients pass over to them: what is
+         ///< shown and felt does not jump, and the bounds hold on the way
+};
+
 /// How the stream of a deformable object is coded.
 struct DeformableCoding {
   DeformableProfile profile = DeformableProfile::main;
@@ -21,9 +28,11 @@ struct DeformableCoding {
   bool models_kept = false;     ///< thesis: entropy models are part of the state
   double frame_period = 1;      ///< main: [ticks] from shape to shape, > 0
   bool layered = false;         ///< main: separate packets for the haptic and the visual layer
-  /// main, with a basis: share of what corrections added to it that fades per second, 0..1
-  double fade = 0.98;
-  /// main: sets of the parents' weights that packets may name (DeformableObject); 0: the second alone with a basis, else the first
+  /// main, with a basis: share of what corrections added to it that fades per second, 0..1; none: 0.98, or 0 where nearly every vertex
+  /// is coded in every packet, as for a promised visual bound of 0.01 mm and less
+  std::optional<double> fade{};
+  /// main: sets of the parents' weights that packets may name (DeformableObject); 0: the second alone with a basis, else the first, and
+  /// the first for such a bound
   std::uint8_t weight_sets = 0;
   ModeBasis basis{};             ///< main
   SpringBasis spring_basis{};    ///< main; with modes it takes the place of `basis`
@@ -45,7 +54,8 @@ struct SceneFinding {
   operator Error() const noexcept { return error; }
 };
 
-/// Collects a scene's objects without checking them. build() checks and takes them, and leaves the builder empty.
+/// Collects a scene's objects without checking them. build() checks and takes them, and leaves the builder empty. What is not set is coded
+/// as the commands of Tactus do by themselves: profile main, rigid and deformable.
 ///   auto scene = SceneBuilder().rigid("cube", {{0, 0, 0.05}, {}}).baselines(8).build();
 class SceneBuilder {
  public:
@@ -60,8 +70,7 @@ class SceneBuilder {
   SceneBuilder& extrapolate(double seconds);
   /// How many states a receiver keeps as baselines, 1..64. Losing fewer packets than that in a row interrupts nothing.
   SceneBuilder& baselines(std::uint8_t count);
-  /// Updates of rigid objects tell how clients pass over to them: what is shown and felt does not jump, and the bounds hold on the way.
-  SceneBuilder& eased();
+  SceneBuilder& rigid_profile(RigidProfile profile);
   /// Tell the forces on all objects that can move: of their surroundings, and of so many users.
   SceneBuilder& loads(const LoadSpec& loads);
   /// Let updates choose among predictors that know these constants. Both 0: none does.
@@ -87,7 +96,7 @@ class SceneBuilder {
   SceneSpec spec_;
   std::optional<double> extrapolation_;  // [s]
   MotionPhysics motion_;
-  bool is_eased_ = false;
+  RigidProfile rigid_profile_ = RigidProfile::main;
   std::vector<Rigid> rigid_;
   std::vector<Deformable> deformables_;
   struct Promise {

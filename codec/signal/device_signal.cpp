@@ -10,7 +10,13 @@ namespace tactus {
 
 Result<SharedScene> device_scene(const SceneSpec& scene) {
   constexpr double kReach = 0.1;  // [s]: a device that is not heard of stands still then
-  auto built = SceneBuilder(scene.tick_rate).rigid("device").grid(scene.grid).extrapolate(kReach).baselines(64).build();
+  auto built = SceneBuilder(scene.tick_rate)
+                   .rigid("device")
+                   .rigid_profile(RigidProfile::thesis)
+                   .grid(scene.grid)
+                   .extrapolate(kReach)
+                   .baselines(64)
+                   .build();
   if (!built) return tl::unexpected(built.error().error);
   return *built;
 }

@@ -28,7 +28,7 @@ Result<void> add_deformable(SceneBuilder& scene, const TraceDeformable& mesh, co
 Result<SceneBuilder> scene_builder(const TraceInfo& info, const TraceFrame& first, const TraceCoding& coding) try {
   if (first.objects.size() != info.objects.size()) return fail(Errc::invalid_argument, "R-API-5");
   SceneBuilder scene(info.tick_rate);
-  if (coding.is_eased) scene.eased();
+  scene.rigid_profile(coding.rigid);
   for (std::size_t i = 0; i < info.objects.size(); ++i)
     scene.rigid(info.objects[i].name, first.objects[i].pose, info.objects[i].dof);
   for (const TraceDeformable& mesh : info.meshes) TACTUS_CHECK(add_deformable(scene, mesh, coding));

@@ -17,13 +17,13 @@
 
 namespace tactus {
 
-/// Coding options of a trace's objects; the trace sets the frame periods of the deformable ones.
+/// Coding options of a trace's objects, with the defaults of SceneBuilder; the trace sets the frame periods of the deformable ones.
 struct TraceCoding {
   DeformableCoding deformable{};
   std::uint8_t spring_modes = 0;  ///< main: modes of the basis that both ends compute for each object
   std::function<Result<ModeBasis>(const TraceDeformable&)> basis{};  ///< main: makes each object's basis; empty: without
   std::map<std::string, ClusterBasis> clusters{};                    ///< main: of the objects of these names, see find_clusters()
-  bool is_eased = false;                                             ///< SceneBuilder::eased()
+  RigidProfile rigid = RigidProfile::main;
 };
 
 /// Declares a deformable object.   err  those of the basis; R-API-9 spring_modes are not less than the free components

@@ -291,25 +291,19 @@ tl::expected<Scene, Diagnostic> load_scene(const std::string& path) {
 
 namespace {
 
-/// Of the scenes that come with Tactus: share/tactus/scenes near the running program, as in an installation or a build, or else where the
-/// library is installed.
-std::filesystem::path folder_of_scenes() {
+/// Where the scenes are that come with Tactus: from the program that runs, or where the library was installed.
+std::filesystem::path scene_folder() {
   namespace fs = std::filesystem;
-  constexpr int kNear = 4;  // a build's programs lie up to three folders below it
   std::error_code ignored;
-  fs::path at = fs::read_symlink("/proc/self/exe", ignored);
-  for (int i = 0; i < kNear && at.has_relative_path(); ++i) {
-    at = at.parent_path();
-    if (fs::path folder = at / "share/tactus/scenes"; fs::is_directory(folder, ignored)) return folder;
-  }
-  return TACTUS_SCENES_INSTALLED;
+  const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
+  const fs::path folder = (program.parent_path() / TACTUS_SCENES_FROM_PROGRAM).lexically_normal();
+  return !program.empty() && fs::is_directory(folder, ignored) ? folder : fs::path(TACTUS_SCENES_INSTALLED);
 }
 
-/// Those that come with Tactus.
 std::string names_of_scenes() {
   std::set<std::string> names;
   std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(folder_of_scenes(), ignored))
+  for (const auto& entry : std::filesystem::directory_iterator(scene_folder(), ignored))
     if (entry.path().extension() == ".toml") names.insert(" " + entry.path().stem().string());
   std::string out;
   for (const std::string& name : names) out += (out.empty() ? "" : ",") + name;
@@ -322,7 +316,7 @@ tl::expected<std::string, Diagnostic> find_scene(const std::string& name) {
   namespace fs = std::filesystem;
   std::error_code ignored;
   if (fs::is_regular_file(name, ignored)) return name;
-  const fs::path path = folder_of_scenes() / (name + ".toml");
+  const fs::path path = scene_folder() / (name + ".toml");
   if (name.find('/') == std::string::npos && fs::is_regular_file(path, ignored)) return path.string();
   return tl::unexpected(
       Diagnostic{.error = fail(Errc::io, "R-SCN-1").value(),
@@ -331,7 +325,7 @@ tl::expected<std::string, Diagnostic> find_scene(const std::string& name) {
 }
 
 tl::expected<Scene, Diagnostic> parse_attached_scene(std::string_view text) {
-  return parse_beside(text, "scene of the trace", folder_of_scenes(), refuse_paths);
+  return parse_beside(text, "scene of the trace", scene_folder(), refuse_paths);
 }
 
 void set_pace(Scene& scene, double pace) noexcept {

@@ -19,6 +19,7 @@ SimulationOptions options_of(const DelayCase& one) {
   if (one.is_local) return options;
   ChannelOptions& channel = options.channel.emplace();
   channel.own = one.own;
+  channel.coding.rigid = RigidProfile::thesis;
   channel.sender.triggers.reduction = Reduction::none;
   channel.sender.load = {.weber_fraction = 0.02, .force_floor = 0.5};
   channel.network = [link = one.link](SharedScene scene, std::size_t users,

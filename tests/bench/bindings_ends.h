@@ -3,7 +3,7 @@
 /// engine's own arrays, as the C functions do.
 #pragma once
 
-#include <tactus.h>
+#include <tactus_encoder.h>
 #include <tactus_session.h>
 
 #include <algorithm>

@@ -80,9 +80,9 @@ void encode_update(benchmark::State& state) {
 BENCHMARK(encode_update)->Repetitions(5)->ReportAggregatesOnly();
 
 /// One touched update per tick: the grid level is searched with the haptic rule.
-void encode_touched_update(benchmark::State& state, Reduction reduction, bool is_eased) {
+void encode_touched_update(benchmark::State& state, bool is_eased) {
   SenderOptions options = every_tick();
-  options.triggers.reduction = reduction;
+  options.triggers.reduction = Reduction::dead_reckoning;
   options.triggers.weber_fraction = 0.001;
   SceneSpec spec = testing::spec_of(1);
   spec.is_eased = is_eased;
@@ -97,11 +97,8 @@ void encode_touched_update(benchmark::State& state, Reduction reduction, bool is
   }
   state.counters["packets_share"] = benchmark::Counter(static_cast<double>(packets), benchmark::Counter::kAvgIterations);
 }
-BENCHMARK_CAPTURE(encode_touched_update, dead_reckoning, Reduction::dead_reckoning, false)
-    ->Repetitions(5)
-    ->ReportAggregatesOnly();
-BENCHMARK_CAPTURE(encode_touched_update, leaning, Reduction::leaning, false)->Repetitions(5)->ReportAggregatesOnly();
-BENCHMARK_CAPTURE(encode_touched_update, leaning_eased, Reduction::leaning, true)->Repetitions(5)->ReportAggregatesOnly();
+BENCHMARK_CAPTURE(encode_touched_update, thesis, false)->Repetitions(5)->ReportAggregatesOnly();
+BENCHMARK_CAPTURE(encode_touched_update, main, true)->Repetitions(5)->ReportAggregatesOnly();
 
 /// A key packet per tick of an object that falls: every predictor is held against the whole past.
 void encode_choosing_update(benchmark::State& state, const MotionPhysics& physics) {

@@ -26,48 +26,9 @@ TEST(CErrors, TextsComeWithTheRule) {
   EXPECT_EQ(tactus_version(), std::uint32_t{TACTUS_VERSION});
 }
 
-template <auto init, class T>
-void check_init() {
-  T out;
-  EXPECT_EQ(init(nullptr, sizeof(T)), TACTUS_INVALID_ARGUMENT);
-  EXPECT_EQ(init(&out, 0), TACTUS_INVALID_ARGUMENT);
-  EXPECT_EQ(init(&out, sizeof(T) - 1), TACTUS_INVALID_ARGUMENT);
-  EXPECT_EQ(init(&out, 1u << 20), TACTUS_INVALID_ARGUMENT);
-  EXPECT_EQ(init(&out, sizeof(T)), TACTUS_OK);
-  EXPECT_EQ(out.size, sizeof(T));
-  std::vector<unsigned char> later(sizeof(T) + 8, 0xee);  // of a later version
-  EXPECT_EQ(init(reinterpret_cast<T*>(later.data()), later.size()), TACTUS_OK);
-  for (std::size_t i = sizeof(T); i < later.size(); ++i) EXPECT_EQ(later[i], 0);
-}
-
-TEST(CErrors, InitWritesWithinTheSizeGiven) {
-  check_init<tactus_rigid_bounds_init, tactus_rigid_bounds>();
-  check_init<tactus_deformable_bounds_init, tactus_deformable_bounds>();
-  check_init<tactus_load_bounds_init, tactus_load_bounds>();
-  check_init<tactus_limits_init, tactus_limits>();
-  check_init<tactus_receiver_options_init, tactus_receiver_options>();
-  check_init<tactus_scene_options_init, tactus_scene_options>();
-  check_init<tactus_deformable_options_init, tactus_deformable_options>();
-  check_init<tactus_sender_options_init, tactus_sender_options>();
-  check_init<tactus_truth_init, tactus_truth>();
-  check_init<tactus_server_options_init, tactus_server_options>();
-  check_init<tactus_client_options_init, tactus_client_options>();
-}
-
-TEST(CErrors, OptionsOfALaterVersionMustBeUnset) {
-  struct {
-    tactus_receiver_options options;
-    std::uint64_t later;
-  } given{filled<tactus_receiver_options_init, tactus_receiver_options>(), 0};
-  given.options.size = sizeof given;
+TEST(CErrors, OptionsAreChecked) {
   const Scene scene = make_scene();
   tactus_receiver* raw = nullptr;
-  ASSERT_EQ(tactus_receiver_create(scene.get(), &given.options, &raw, nullptr), TACTUS_OK);
-  tactus_receiver_destroy(raw);
-  given.later = 1;
-  EXPECT_REFUSED(kBad, tactus_receiver_create, scene.get(), &given.options, &raw);
-  given.options.size = 0;
-  EXPECT_REFUSED(kBad, tactus_receiver_create, scene.get(), &given.options, &raw);
   auto options = filled<tactus_receiver_options_init, tactus_receiver_options>();
   options.interpolation = 77;
   EXPECT_REFUSED("R-API-4", tactus_receiver_create, scene.get(), &options, &raw);
@@ -99,6 +60,7 @@ TEST(CErrors, SceneRefuses) {
   auto bounds = sized<tactus_rigid_bounds>();
   float rest[12];
   std::uint32_t triangles[6];
+  std::uint8_t clusters[4];
   std::size_t size = 0;
   EXPECT_REFUSED(kBad, tactus_scene_parse, nullptr, 5, nullptr, &out, nullptr);
   EXPECT_REFUSED(kBad, tactus_scene_parse, nullptr, 0, nullptr, nullptr, nullptr);
@@ -115,6 +77,9 @@ TEST(CErrors, SceneRefuses) {
   EXPECT_REFUSED("R-API-13", tactus_scene_get_rest, scene.get(), 0, rest, 11);
   EXPECT_REFUSED("R-API-13", tactus_scene_get_triangles, scene.get(), 0, triangles, 5);
   EXPECT_REFUSED(kBad, tactus_scene_get_triangles, scene.get(), 1, triangles, 6);
+  EXPECT_REFUSED(kBad, tactus_scene_get_clusters, scene.get(), 0, nullptr, 4);
+  EXPECT_REFUSED(kBad, tactus_scene_get_clusters, scene.get(), 1, clusters, 4);
+  EXPECT_EQ(tactus_scene_get_clusters(scene.get(), 0, clusters, 4, nullptr), TACTUS_NOTHING);
   EXPECT_REFUSED(kBad, tactus_scene_get_rigid_bounds, nullptr, &bounds);
 }
 
@@ -124,6 +89,9 @@ TEST(CErrors, BuilderRefusesAndNamesTheCulprit) {
   EXPECT_REFUSED(kBad, tactus_scene_builder_create, nullptr, nullptr);
   auto options = filled<tactus_scene_options_init, tactus_scene_options>();
   options.position_exp = 300;
+  EXPECT_REFUSED("R-API-4", tactus_scene_builder_create, &options, &raw);
+  options = filled<tactus_scene_options_init, tactus_scene_options>();
+  options.rigid_profile = 2;
   EXPECT_REFUSED("R-API-4", tactus_scene_builder_create, &options, &raw);
   ASSERT_EQ(tactus_scene_builder_create(nullptr, &raw, nullptr), TACTUS_OK);
   const Builder builder(raw);
@@ -141,6 +109,11 @@ TEST(CErrors, BuilderRefusesAndNamesTheCulprit) {
   coding = filled<tactus_deformable_options_init, tactus_deformable_options>();
   coding.modes = 65;
   EXPECT_REFUSED("R-API-9", tactus_scene_builder_deformable, raw, "sheet", corners, 3, right, 1, &coding);
+  coding = filled<tactus_deformable_options_init, tactus_deformable_options>();
+  coding.cluster_count = 1;
+  EXPECT_REFUSED(kBad, tactus_scene_builder_deformable, raw, "sheet", corners, 3, right, 1, &coding);
+  coding.cluster_count = 65;
+  EXPECT_REFUSED("R-API-4", tactus_scene_builder_deformable, raw, "sheet", corners, 3, right, 1, &coding);
   ASSERT_EQ(tactus_scene_builder_rigid(raw, "twin", nullptr, 63, nullptr), TACTUS_OK);
   ASSERT_EQ(tactus_scene_builder_rigid(raw, "twin", nullptr, 63, nullptr), TACTUS_OK);
   tactus_error error{};
@@ -212,8 +185,10 @@ TEST(CErrors, SenderRefuses) {
   rigid.haptic = 9;
   EXPECT_REFUSED("R-API-4", tactus_sender_create, scene.get(), &options, &out);
   options.rigid = nullptr;
-  options.reduction = -1;
-  EXPECT_REFUSED("R-API-4", tactus_sender_create, scene.get(), &options, &out);
+  for (const std::int32_t reduction : {-1, 2}) {
+    options.reduction = reduction;
+    EXPECT_REFUSED("R-API-4", tactus_sender_create, scene.get(), &options, &out);
+  }
   const Sender sender = make_sender(scene);
   Truth truth(true);
   EXPECT_REFUSED(kBad, tactus_sender_encode, sender.get(), 0, nullptr, &count);

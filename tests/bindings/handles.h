@@ -2,7 +2,7 @@
 /// Objects of the C interface that destroy themselves, and structs that know their size.
 #pragma once
 
-#include <tactus.h>
+#include <tactus_encoder.h>
 
 #include <memory>
 

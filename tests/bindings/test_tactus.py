@@ -2,6 +2,7 @@
 """The Python package against the program, the conformance vectors and itself."""
 import copy
 import ctypes
+import dataclasses
 import json
 import math
 import os
@@ -176,10 +177,59 @@ def test_states_are_those_of_the_conformance_vectors():
 
 @needs_program
 def test_encoding_equals_that_of_the_program(traces, tmp_path):
-    program("encode", traces / "rigid.mcap", "-o", tmp_path / "rigid.tct", "-p", "4%", "--visual", "0.3mm,2deg", "-q")
-    assert tactus.encode(traces / "rigid.mcap", tactus.RigidBounds(**BOUNDS)) == (tmp_path / "rigid.tct").read_bytes()
-    program("encode", traces / "mesh.mcap", "-o", tmp_path / "mesh.tct", "-q")
-    assert tactus.encode(traces / "mesh.mcap") == (tmp_path / "mesh.tct").read_bytes()
+    def encoded(name, *options):
+        program("encode", traces / name, "-o", tmp_path / "s.tct", "-q", "-f", *options)
+        return (tmp_path / "s.tct").read_bytes()
+    rigid, mesh = traces / "rigid.mcap", traces / "mesh.mcap"
+    assert tactus.encode(rigid) == encoded("rigid.mcap")
+    assert tactus.encode(rigid, tactus.RigidBounds(**BOUNDS)) == encoded("rigid.mcap", "-p", "4%", "--visual", "0.3mm,2deg")
+    assert tactus.encode(rigid, profile="thesis") == encoded("rigid.mcap", "--profile", "thesis") != encoded("rigid.mcap")
+    assert tactus.encode(rigid, reduction=tactus.REDUCTION_NONE) == encoded("rigid.mcap", "--no-reduction")
+    assert tactus.encode(mesh) == encoded("mesh.mcap")
+    assert tactus.encode(mesh, profile="thesis") == encoded("mesh.mcap", "--profile", "thesis")
+    assert tactus.encode(mesh, modes=12) == encoded("mesh.mcap", "--basis", "12")
+    fine = tactus.DeformableBounds(visual=1e-5)  # at which what is not asked for differs
+    assert tactus.encode(mesh, None, fine, modes=12) == encoded("mesh.mcap", "--basis", "12", "--deformable-visual", "0.01mm")
+    assert tactus.encode(mesh, clusters=8) == encoded("mesh.mcap", "--clusters", "8") != encoded("mesh.mcap")
+    with pytest.raises(ValueError, match="one basis"):
+        tactus.encode(mesh, modes=12, clusters=8)
+
+
+@needs_program
+def test_what_is_built_by_hand_is_coded_as_by_the_program(traces, tmp_path):
+    """Scene builder and sender of the C interface, with what they do when nothing is asked for."""
+    for name in ("rigid.mcap", "mesh.mcap"):
+        program("encode", traces / name, "-o", tmp_path / "s.tct", "-q", "-f")
+        with tactus.Player(tmp_path / "s.tct") as player:
+            like = player.scene
+        with tactus.TraceReader(traces / name) as reader:
+            meshes = reader.meshes
+            scene = tactus.build_scene(like.objects, meshes, tactus.RigidBounds(), tactus.DeformableBounds(), tick_rate=reader.tick_rate)
+            sender, writer = tactus.Sender(scene), tactus.StreamWriter(scene)
+            for frame in reader:
+                for packet in sender.encode(frame.tick, frame.objects, frame.contacts, frame.shapes):
+                    writer.add(packet)
+            assert writer.finish() == (tmp_path / "s.tct").read_bytes(), name
+
+
+@needs_program
+def test_clusters_of_a_mesh(traces):
+    trace = tactus.read_trace(traces / "mesh.mcap")
+    mesh = tactus.find_clusters(trace.meshes[0], trace.shapes[0][1][:40], 8)
+    assert mesh.clusters.shape == (714,) and 1 < mesh.clusters.max() + 1 <= 8 and mesh.blend > 0
+    told = tactus.build_scene(meshes=[mesh]).meshes[0]
+    assert (told.clusters == mesh.clusters).all() and told.blend == mesh.blend and told.modes == 0
+    assert tactus.build_scene(meshes=trace.meshes).meshes[0].clusters is None
+    with pytest.raises(ValueError, match="not \\(S, 714, 3\\)"):
+        tactus.find_clusters(mesh, np.zeros((2, 713, 3)), 8)
+    for wrong in (np.zeros(3), np.full(714, 300), np.full(714, 0.5)):
+        with pytest.raises(ValueError, match="clusters are"):
+            tactus.build_scene(meshes=[dataclasses.replace(mesh, clusters=wrong)])
+    with pytest.raises(tactus.Error) as refused:
+        tactus.find_clusters(mesh, trace.shapes[0][1][:2], 65)
+    assert refused.value.rule == "R-API-4"
+    with tactus.TraceReader(traces / "mesh.mcap") as reader, pytest.raises(TypeError, match="no argument"):
+        reader.scene(eased=1)
 
 
 @needs_program
@@ -229,9 +279,11 @@ def test_the_same_program_in_c_and_python(traces, tmp_path):
                for command in (script, [os.environ["TACTUS_C_EXAMPLE"]])]
     assert outputs[0] == outputs[1] and "state" in outputs[0] and not outputs[0].endswith(" 0.000 mm apart\n")
     (tmp_path / "bad.tct").write_bytes(b"no stream")
+    (tmp_path / "mesh.tct").write_bytes(tactus.encode(traces / "mesh.mcap"))
     for command in (script, [os.environ["TACTUS_C_EXAMPLE"]]):
-        refused = subprocess.run([*command, "a.tct", "bad.tct"], capture_output=True, text=True, cwd=tmp_path)
-        assert refused.returncode == 1 and "R-STR-1" in refused.stderr
+        for name, why in (("bad.tct", "R-STR-1"), ("mesh.tct", "mesh.tct: no rigid object")):
+            refused = subprocess.run([*command, "a.tct", name], capture_output=True, text=True, cwd=tmp_path)
+            assert refused.returncode == 1 and why in refused.stderr and "Traceback" not in refused.stderr
 
 
 @needs_program

@@ -5,8 +5,11 @@
 #include <tactus/metrics/deformable_errors.h>
 #include <tactus/metrics/errors.h>
 #include <tactus/scene/scene_syntax.h>
+#include <tactus/trace/trace_clusters.h>
 
-#include "tests/bindings/fixture.h"
+#include <filesystem>
+
+#include "tests/bindings/sizes.h"
 #include "tests/unit/trace_fixture.h"
 
 namespace tactus::c_test {
@@ -134,23 +137,50 @@ TEST_F(CTrace, BecomesASceneThatDeclaresBounds) {
   auto rigid = filled<tactus_rigid_bounds_init, tactus_rigid_bounds>();
   rigid.visual_position = 0.001;
   coding.rigid = &rigid;
-  coding.eased = 1;
+  coding.rigid_profile = TACTUS_PROFILE_THESIS;
+  coding.deformable_profile = TACTUS_PROFILE_THESIS;
   coding.baselines = 7;
   std::size_t size = 0;
   ASSERT_EQ(tactus_trace_scene(trace.get(), &coding, nullptr, 0, &size, nullptr), TACTUS_BUFFER_TOO_SMALL);
   std::vector<std::uint8_t> bytes(size);
   ASSERT_EQ(tactus_trace_scene(trace.get(), &coding, bytes.data(), size, &size, nullptr), TACTUS_OK);
   const auto scene = parse_scene(bytes).value().scene;
-  EXPECT_TRUE(scene->is_eased);
+  EXPECT_FALSE(scene->is_eased);
+  EXPECT_EQ(scene->deformables.at(0).profile, DeformableProfile::thesis);
   EXPECT_EQ(scene->baseline_span, 7);
   ASSERT_TRUE(scene->bounds && scene->bounds->rigid);
   EXPECT_EQ(scene->bounds->rigid->visual_position, 0.001);
   EXPECT_EQ(scene->deformables.at(0).name, "sheet");
   coding.baselines = 256;
   EXPECT_REFUSED("R-API-4", tactus_trace_scene, trace.get(), &coding, nullptr, 0, &size);
+  coding = filled<tactus_trace_coding_init, tactus_trace_coding>();
+  coding.rigid_profile = 2;
+  EXPECT_REFUSED("R-API-4", tactus_trace_scene, trace.get(), &coding, nullptr, 0, &size);
   std::int64_t tick = 0;
   ASSERT_TRUE(go_on(trace, tick));
   EXPECT_REFUSED("R-API-12", tactus_trace_scene, trace.get(), nullptr, nullptr, 0, &size);  // the first frame is gone
+}
+
+/// As `tactus encode --clusters` does: found on the whole trace, which is then read from its front.
+TEST_F(CTrace, ClustersAreFoundOnIt) {
+  const Trace trace = open(file.path());
+  auto coding = filled<tactus_trace_coding_init, tactus_trace_coding>();
+  coding.clusters = 1;
+  std::vector<std::uint8_t> bytes(1 << 12);
+  std::size_t size = 0;
+  ASSERT_EQ(tactus_trace_scene(trace.get(), &coding, bytes.data(), bytes.size(), &size, nullptr), TACTUS_OK);
+  const auto scene = parse_scene(std::span(bytes).first(size)).value().scene;
+  TraceReader reader = TraceReader::open(file.path()).value();
+  EXPECT_EQ(scene->deformables.at(0).cluster_basis, find_clusters(reader, 1).value().at("sheet"));
+  std::int64_t tick = -1;
+  ASSERT_TRUE(go_on(trace, tick));
+  EXPECT_EQ(tick, recording.frames[0].tick);
+  const Trace again = open(file.path());
+  coding.clusters = 65;
+  EXPECT_REFUSED("R-API-4", tactus_trace_scene, again.get(), &coding, nullptr, 0, &size);
+  coding.clusters = 1;
+  std::filesystem::remove(file.path());
+  EXPECT_REFUSED("R-TRC-1", tactus_trace_scene, again.get(), &coding, nullptr, 0, &size);
 }
 
 TEST_F(CTrace, ErrorsAreThoseOfTheLibrary) {
@@ -254,12 +284,51 @@ TEST_F(CTrace, Refuses) {
   tactus_trace_destroy(nullptr);
   tactus_errors_destroy(nullptr);
   EXPECT_EQ(tactus_trace_cut_short(nullptr), 0);
-  for (std::size_t size : {std::size_t{0}, sizeof(tactus_trace_coding) - 1, std::size_t{1} << 20}) {
-    EXPECT_EQ(tactus_trace_coding_init(nullptr, size), TACTUS_INVALID_ARGUMENT);
-    tactus_trace_coding coding;
-    EXPECT_EQ(tactus_trace_coding_init(&coding, size), TACTUS_INVALID_ARGUMENT);
-  }
 }
+
+#if SIZE_MAX == UINT64_MAX
+TEST_F(CTrace, StructsMayBeOfAnotherVersion) {
+  const Trace trace = open(file.path());
+  const auto declare = [&](auto* coding, auto* error) {
+    std::size_t size = 0;
+    const tactus_status status = tactus_trace_scene(trace.get(), coding, nullptr, 0, &size, error);
+    return status == TACTUS_BUFFER_TOO_SMALL ? TACTUS_OK : status;
+  };
+  const auto judge = [&](auto* options, auto* error) {
+    tactus_errors* out = nullptr;
+    const tactus_status status = tactus_errors_create(trace.get(), options, &out, error);
+    tactus_errors_destroy(out);
+    return status;
+  };
+  tactus_errors* raw = nullptr;
+  ASSERT_EQ(tactus_errors_create(trace.get(), nullptr, &raw, nullptr), TACTUS_OK);
+  const Errors errors(raw);
+  for (const SizedCall& call : std::vector<SizedCall>{
+           {"trace_info", 40, Direction::answer, {}, taking<tactus_trace_info>([&](auto*i, auto*e) {
+              return tactus_trace_get(trace.get(), i, e);
+            })},
+           {"trace_object", 16, Direction::answer, {}, taking<tactus_trace_object>([&](auto*i, auto*e) {
+              return tactus_trace_get_object(trace.get(), 0, i, e);
+            })},
+           {"trace_user", 16, Direction::answer, {}, taking<tactus_trace_user>([&](auto*i, auto*e) {
+              return tactus_trace_get_user(trace.get(), 0, i, e);
+            })},
+           {"trace_mesh", 32, Direction::answer, {}, taking<tactus_trace_mesh>([&](auto*i, auto*e) {
+              return tactus_trace_get_mesh(trace.get(), 0, i, e);
+            })},
+           {"trace_coding", 40, Direction::option, initialised<tactus_trace_coding_init, tactus_trace_coding>(),
+            taking<tactus_trace_coding>(declare)},
+           {"errors_options", 32, Direction::option, initialised<tactus_errors_options_init, tactus_errors_options>(),
+            taking<tactus_errors_options>(judge)},
+           {"error_summary", 56, Direction::answer, {}, taking<tactus_error_summary>([&](auto*s, auto*e) {
+              return tactus_errors_get(raw, 0, s, e);
+            })},
+           {"mesh_summary", 56, Direction::answer, {}, taking<tactus_mesh_summary>([&](auto*s, auto*e) {
+              return tactus_errors_get_mesh(raw, 0, s, e);
+            })}})
+    check_sizes(call);
+}
+#endif
 
 TEST_F(CTrace, ACutFileIsReadAsFarAsItGoes) {
   const Bytes whole = file.bytes();

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* What a user of the installed C library writes: a cube that moves, its packets, and a receiver that shows where it is. */
 #include <stdio.h>
-#include <tactus.h>
+#include <tactus_encoder.h>
 #include <tactus_session.h>
 
 static int failed(const char* call, const tactus_error* error) {

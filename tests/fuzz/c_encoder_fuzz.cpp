@@ -35,7 +35,7 @@ void change(ByteReader& in, auto&... fields) {
 
 Builder make_builder(ByteReader& in) {
   auto o = filled<tactus_scene_options_init, tactus_scene_options>();
-  change(in, o.tick_rate, o.position_exp, o.velocity_exp, o.rotation_exp, o.angular_velocity_exp, o.baselines, o.eased,
+  change(in, o.tick_rate, o.position_exp, o.velocity_exp, o.rotation_exp, o.angular_velocity_exp, o.baselines, o.rigid_profile,
          o.has_loads, o.load_users, o.force_exp, o.extrapolation, o.gravity[2], o.friction);
   tactus_scene_builder* made = nullptr;
   call(tactus_scene_builder_create, &o, &made);
@@ -69,6 +69,13 @@ void add_mesh(ByteReader& in, tactus_scene_builder* builder) {
   if (what & 1) o.spring_modes = 1, o.fixed = fixed.data(), o.fixed_count = fixed.size();
   if (what & 2) o.vectors = vectors.data(), o.modes = 1;
   if (what & 4) o.stiffness = stiffness.data(), o.stiffness_count = stiffness.size();
+  const std::vector<float> shapes(vertices.begin(), vertices.end());
+  std::vector<std::uint8_t> clusters(count);
+  if (what & 8 && call(tactus_find_clusters, vertices.data(), vertices.size() / 3, triangles.data(), triangles.size() / 3,
+                       shapes.data(), std::size_t{1}, in.u8(), clusters.data(), &o.cluster_count, &o.blend)) {
+    o.clusters = clusters.data();
+    change(in, clusters[0], o.cluster_count, o.blend);
+  }
   (void)call(tactus_scene_builder_deformable, builder, "m", vertices.data(), vertices.size() / 3, triangles.data(),
              triangles.size() / 3, &o);
 }

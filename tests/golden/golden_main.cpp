@@ -68,7 +68,7 @@ struct Case {
   HapticRule rule;
   double p;
   Reduction reduction = Reduction::dead_reckoning;
-  bool is_eased = false;
+  RigidProfile profile = RigidProfile::thesis;
   MotionPhysics motion{};
 };
 
@@ -80,7 +80,7 @@ bool run(const Case& c) {
     builder.rigid("body " + std::to_string(i), {}, c.dofs[i]);
     bodies.emplace_back(1000 + i, c.dofs[i]);
   }
-  if (c.is_eased) builder.eased();
+  builder.rigid_profile(c.profile);
   builder.motion(c.motion);
   const auto scene = std::move(builder).build();
   if (!scene) return false;
@@ -89,7 +89,7 @@ bool run(const Case& c) {
   options.triggers.weber_fraction = c.p;
   options.triggers.reduction = c.reduction;
   ReceiverOptions smooth;
-  smooth.replica.interpolation = c.is_eased ? Interpolation::none : Interpolation::linear;
+  smooth.replica.interpolation = c.profile == RigidProfile::main ? Interpolation::none : Interpolation::linear;
   auto sender = Sender::create(*scene, options);
   auto receiver = Receiver::create(*scene, smooth);
   if (!sender || !receiver) return false;
@@ -131,20 +131,20 @@ int main() {
       {"visual", {Dof::all, Dof::none, Dof::all}, HapticRule::off, 0.08},
       {"crowd", std::vector<std::uint8_t>(40, Dof::all), HapticRule::isotropic, 0.04},
       {"every-tick", {Dof::all, Dof::translation}, HapticRule::off, 0.08, Reduction::none},
-      {"eased", {Dof::all, Dof::x}, HapticRule::isotropic, 0.04, Reduction::leaning, true},
+      {"eased", {Dof::all, Dof::x}, HapticRule::isotropic, 0.04, Reduction::dead_reckoning, RigidProfile::main},
       {"predictors",
        {Dof::all, Dof::translation},
        HapticRule::isotropic,
        0.3,
        Reduction::dead_reckoning,
-       false,
+       RigidProfile::thesis,
        {{0.5, 0, -1.5}, 0.25}},
       {"eased-predictors",
        {Dof::all, Dof::translation},
        HapticRule::isotropic,
        0.3,
-       Reduction::leaning,
-       true,
+       Reduction::dead_reckoning,
+       RigidProfile::main,
        {{0.5, 0, -1.5}, 0.25}},
   };
   for (const Case& c : cases) {

@@ -31,7 +31,7 @@ TEST(Allocation, EncodeDecodeAndShowAllocateNothing) {
     spec.is_eased = way != Interpolation::linear;
     spec.motion = {{0, 0, -1285816}, 321454};
     const SharedScene scene = testing::shared(spec);
-    auto sender = Sender::create(scene, {.triggers = {.reduction = Reduction::leaning}, .policy = {.key_interval = 0.2}}).value();
+    auto sender = Sender::create(scene, {.policy = {.key_interval = 0.2}}).value();
     auto receiver = Receiver::create(scene, {.replica = {.interpolation = way}, .limits = {}}).value();
     std::vector<testing::Motion> motions;
     for (std::size_t i = 0; i < kObjects; ++i) motions.emplace_back(i);
@@ -72,7 +72,7 @@ TEST(Allocation, ASceneOfSeveralSubstreamsAllocatesNothing) {
   for (const Baseline baseline : {Baseline::previous, Baseline::acknowledged}) {
     auto sender = Sender::create(scene, {.triggers = {}, .deformable = {}, .policy = {.baseline = baseline}}).value();
     sender.set_link({.answer = 5, .loss = 0.1});
-    const Interpolation way = baseline == Baseline::previous ? Interpolation::linear : Interpolation::playout;
+    const Interpolation way = baseline == Baseline::previous ? Interpolation::none : Interpolation::playout;
     auto receiver = Receiver::create(scene, {.replica = {.interpolation = way}, .limits = {}}).value();
     testing::Motion motion(1);
     testing::DentedSheet sheet(mesh, 6);

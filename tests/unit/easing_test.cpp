@@ -79,8 +79,7 @@ TEST(Easing, RotationsShrinkByTheirAngle) {
 
 /// Eventful motion: what is shown keeps the bounds at every tick and does not jump where it would without easing.
 TEST(Easing, BoundsHoldOnTheWayAndStepsAreSmall) {
-  RigidTriggers triggers{
-      .reduction = Reduction::leaning, .visual_position = 0.001, .visual_rotation = 0.02, .haptic = HapticRule::off};
+  RigidTriggers triggers{.visual_position = 0.001, .visual_rotation = 0.02, .haptic = HapticRule::off};
   const auto worst_step = [&](bool is_eased, int& packets, std::vector<double>& steps) {
     SceneSpec spec = testing::spec_of(1);
     spec.is_eased = is_eased;
@@ -169,7 +168,7 @@ TEST(Easing, ALinearClientIsRefused) {
 /// All packets build on the first one, so that they can be decoded in any order.
 TEST(Easing, PlayoutShowsThePathWhateverTheOrderOfArrival) {
   const SharedScene scene = eased_scene(64);
-  const RigidTriggers triggers{.reduction = Reduction::leaning, .visual_position = 0.0005, .haptic = HapticRule::off};
+  const RigidTriggers triggers{.visual_position = 0.0005, .haptic = HapticRule::off};
   auto sender =
       Sender::create(scene, {.triggers = triggers, .policy = {.key_interval = 0, .baseline = Baseline::acknowledged}}).value();
   auto direct = Receiver::create(scene).value();

@@ -19,7 +19,7 @@ TraceFrame make_frame(std::int64_t tick = 0) {
   frame.objects.resize(2);
   frame.objects[1].pose.position.x = static_cast<double>(tick);
   frame.users.resize(1);
-  frame.users[0].server_force = {0, 0, static_cast<double>(tick)};
+  frame.users[0].force = {0, 0, static_cast<double>(tick)};
   frame.meshes.push_back({false, std::vector<float>(300, static_cast<float>(tick))});
   return frame;
 }
@@ -40,8 +40,8 @@ TEST(TickQueue, TicksComeInOrderWithWhatIsTrue) {
     const TraceFrame& frame = queue.front()->frame;
     EXPECT_EQ(frame.tick, tick);
     EXPECT_EQ(frame.objects[1].pose.position.x, static_cast<double>(tick));
-    EXPECT_EQ(frame.users[0].force.z, static_cast<double>(tick));  // felt, as far as the server knows
-    EXPECT_EQ(frame.meshes[0].updated, tick == 1);                 // the first has all shapes
+    EXPECT_EQ(frame.users[0].force.z, static_cast<double>(tick));
+    EXPECT_EQ(frame.meshes[0].updated, tick == 1);  // the first has all shapes
     if (tick == 1) {
       EXPECT_EQ(frame.meshes[0].displacements[299], 1.0f);
     }

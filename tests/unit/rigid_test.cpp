@@ -131,11 +131,13 @@ Outcome run(const SharedScene& scene, const RigidTriggers& triggers, std::uint64
 }
 
 TEST(Rigid, BoundsHoldOnWhatIsShownForEveryRule) {
-  for (const Reduction reduction : {Reduction::dead_reckoning, Reduction::leaning}) {
+  for (const bool is_eased : {false, true}) {
+    SceneSpec spec = testing::spec_of(3);
+    spec.is_eased = is_eased;
     for (const HapticRule rule : {HapticRule::off, HapticRule::isotropic, HapticRule::cone}) {
       for (const double p : {0.01, 0.04, 0.3}) {
-        RigidTriggers triggers{.reduction = reduction, .haptic = rule, .weber_fraction = p};
-        const Outcome result = run(scene_of(3), triggers, 1, 4000, rule != HapticRule::off);
+        RigidTriggers triggers{.haptic = rule, .weber_fraction = p};
+        const Outcome result = run(testing::shared(spec), triggers, 1, 4000, rule != HapticRule::off);
         EXPECT_GT(result.packets, 20);
         EXPECT_EQ(result.visual_violations, 0);
         EXPECT_EQ(result.haptic_violations, 0) << "p = " << p;

@@ -52,6 +52,33 @@ TEST(SceneBuilder, WhatIsSaidOfTheStreamIsInTheScene) {
   EXPECT_EQ(SceneBuilder().extrapolate(1e9).build().value()->max_extrapolation, 65535) << "and what the field can say";
 }
 
+TEST(SceneBuilder, RigidObjectsAreOfProfileMainUnlessItIsSaid) {
+  EXPECT_TRUE(SceneBuilder().rigid("cube").build().value()->is_eased);
+  EXPECT_FALSE(SceneBuilder().rigid("cube").rigid_profile(RigidProfile::thesis).build().value()->is_eased);
+  EXPECT_FALSE(SceneBuilder().rigid("wall", {}, Dof::none).build().value()->is_eased) << "nothing moves";
+}
+
+/// What fades per frame, and the sets of weights, where they are left open.
+TEST(SceneBuilder, WhatIsLeftOpenSuitsTheBasisAndTheBoundThatIsPromised) {
+  const TriMesh mesh = testing::sheet(3, 2);
+  const auto coded = [&](DeformableCoding coding, double visual) {
+    const auto built = SceneBuilder().deformable("a", mesh, std::move(coding)).promise({}, {.visual = visual}).build();
+    return std::pair((*built)->deformables[0].fade, (*built)->deformables[0].weight_sets);
+  };
+  const DeformableCoding with_basis{.frame_period = 1000, .basis = testing::wave_basis(mesh, 3, 4)};
+  EXPECT_EQ(coded(with_basis, 2.5e-4), std::pair(std::uint16_t{64225}, std::uint8_t{2})) << "98 % in a second";
+  EXPECT_EQ(coded(with_basis, 1e-5), std::pair(std::uint16_t{0}, std::uint8_t{1}));
+  EXPECT_EQ(coded({}, 2.5e-4), std::pair(std::uint16_t{0}, std::uint8_t{1})) << "nothing fades without a basis";
+  DeformableCoding asked = with_basis;
+  asked.fade = 0.5;
+  asked.weight_sets = 4;
+  EXPECT_EQ(coded(asked, 1e-5), std::pair(std::uint16_t{32768}, std::uint8_t{4}));
+  const auto unpromised = SceneBuilder().deformable("a", mesh, with_basis).build();
+  EXPECT_EQ((*unpromised)->deformables[0].fade, 64225);
+  asked.fade = 1.01;
+  EXPECT_STREQ(SceneBuilder().deformable("a", mesh, asked).build().error().error.rule, "R-API-4");
+}
+
 TEST(SceneBuilder, MotionConstantsAreOnTheGridOfVelocities) {
   const auto built = [](const MotionPhysics& physics, std::uint8_t dof = Dof::all) {
     return SceneBuilder().rigid("cube", {}, dof).motion(physics).build();

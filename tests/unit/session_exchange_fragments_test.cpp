@@ -132,7 +132,8 @@ TEST(Exchange, APacketOfManyFragmentsIsABaseline) {
   for (int tick = 0; tick < 3; ++tick) {
     const auto packets = ends.submit();
     ASSERT_EQ(packets.size(), 2u);
-    for (const Packet& packet : packets) EXPECT_EQ(packet.key, tick == 0) << "substream " << packet.substream << ", tick " << tick;
+    for (const Packet& packet : packets)
+      EXPECT_EQ(packet.key, tick == 0) << "substream " << packet.substream << ", tick " << tick;
     const auto down = ends.drain(*ends.server);
     EXPECT_GT(down.size(), 64u);
     give_and_answer(ends, down);

@@ -34,3 +34,6 @@ done
 if grep -q ' 0.000 mm apart' javascript.txt; then echo 'two streams show the same'; exit 1; fi
 if node compare_streams.mjs "$other" bad.tct 2>refused.txt; then echo 'no stream is taken for one'; exit 1; fi
 grep -q 'bad.tct.*R-STR-1' refused.txt
+mesh=$conformance/vectors/deformable/063-closed.tct
+if node compare_streams.mjs "$other" "$mesh" 2>refused.txt; then echo 'a mesh alone is taken for a rigid object'; exit 1; fi
+grep -q 'no rigid object' refused.txt

@@ -14,7 +14,7 @@ from ._library import Error
 from .codec import CONTACT, Packet, Player, Receiver, Sender, Shape, StreamWriter
 from .options import DeformableBounds, Limits, ReceiverOptions, RigidBounds, SceneOptions, SenderOptions
 from .run import Comparison, ErrorSummary, MeshErrors, Replica, compare, decode, encode, read_table
-from .scene import Mesh, RigidObject, Scene, build_scene
+from .scene import Mesh, RigidObject, Scene, build_scene, find_clusters
 from .trace import USER, Frame, Trace, TraceReader, read_trace
 
 __version__ = f"{_abi.TACTUS_VERSION >> 16}.{_abi.TACTUS_VERSION >> 8 & 255}.{_abi.TACTUS_VERSION & 255}"
@@ -22,7 +22,7 @@ __version__ = f"{_abi.TACTUS_VERSION >> 16}.{_abi.TACTUS_VERSION >> 8 & 255}.{_a
 HAPTIC_OFF, HAPTIC_ISOTROPIC, HAPTIC_CONE = _abi.TACTUS_HAPTIC_OFF, _abi.TACTUS_HAPTIC_ISOTROPIC, _abi.TACTUS_HAPTIC_CONE
 HAPTIC_FIXED, HAPTIC_PERCEPTUAL = _abi.TACTUS_HAPTIC_FIXED, _abi.TACTUS_HAPTIC_PERCEPTUAL
 REDUCTION_NONE, REDUCTION_DEAD_RECKONING = _abi.TACTUS_REDUCTION_NONE, _abi.TACTUS_REDUCTION_DEAD_RECKONING
-REDUCTION_LEANING = _abi.TACTUS_REDUCTION_LEANING
+PROFILE_THESIS, PROFILE_MAIN = _abi.TACTUS_PROFILE_THESIS, _abi.TACTUS_PROFILE_MAIN
 BASELINE_PREVIOUS, BASELINE_ACKNOWLEDGED = _abi.TACTUS_BASELINE_PREVIOUS, _abi.TACTUS_BASELINE_ACKNOWLEDGED
 INTERPOLATION_NONE, INTERPOLATION_LINEAR = _abi.TACTUS_INTERPOLATION_NONE, _abi.TACTUS_INTERPOLATION_LINEAR
 INTERPOLATION_HERMITE, INTERPOLATION_BLENDING = _abi.TACTUS_INTERPOLATION_HERMITE, _abi.TACTUS_INTERPOLATION_BLENDING
@@ -32,7 +32,8 @@ __all__ = [
     "BASELINE_ACKNOWLEDGED", "BASELINE_PREVIOUS", "CONTACT", "Comparison", "DeformableBounds", "Error", "ErrorSummary", "Frame",
     "HAPTIC_CONE", "HAPTIC_FIXED", "HAPTIC_ISOTROPIC", "HAPTIC_OFF", "HAPTIC_PERCEPTUAL", "INTERPOLATION_BLENDING",
     "INTERPOLATION_HERMITE", "INTERPOLATION_LINEAR", "INTERPOLATION_NONE", "INTERPOLATION_PLAYOUT", "Limits", "Mesh",
-    "MeshErrors", "Packet", "Player", "REDUCTION_DEAD_RECKONING", "REDUCTION_LEANING", "REDUCTION_NONE", "Receiver",
+    "MeshErrors", "PROFILE_MAIN", "PROFILE_THESIS", "Packet", "Player", "REDUCTION_DEAD_RECKONING", "REDUCTION_NONE", "Receiver",
     "ReceiverOptions", "Replica", "RigidBounds", "RigidObject", "Scene", "SceneOptions", "Sender", "SenderOptions", "Shape",
-    "StreamWriter", "Trace", "TraceReader", "USER", "build_scene", "compare", "decode", "encode", "read_table", "read_trace",
+    "StreamWriter", "Trace", "TraceReader", "USER", "build_scene", "compare", "decode", "encode", "find_clusters", "read_table",
+    "read_trace",
 ]

@@ -123,14 +123,14 @@ def call(function: Any, *arguments: Any, subject: str = "") -> bool:
     raise Error(error, subject)
 
 
-def read_bytes(function: Any, *arguments: Any) -> bytes:
+def read_bytes(function: Any, *arguments: Any, subject: str = "") -> bytes:
     """All bytes that a function writes into the caller's buffer."""
     size, error = ctypes.c_size_t(), _abi.tactus_error()
     status = function(*arguments, None, 0, ctypes.byref(size), error)
     if status not in (OK, BUFFER_TOO_SMALL):
-        raise Error(error)
+        raise Error(error, subject)
     buffer = (ctypes.c_uint8 * size.value)()
-    call(function, *arguments, buffer, size.value, ctypes.byref(size))
+    call(function, *arguments, buffer, size.value, ctypes.byref(size), subject=subject)
     return bytes(buffer)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Options and bounds: the structs of tactus.h, with its defaults. Fields are keyword arguments, SI units."""
+"""Options and bounds: the structs of tactus.h and tactus_encoder.h, with their defaults. Fields are keyword arguments, SI units."""
 from __future__ import annotations
 
 import ctypes
@@ -59,7 +59,8 @@ class DeformableBounds(_abi.tactus_deformable_bounds):
 
 
 class SceneOptions(_abi.tactus_scene_options):
-    """tick_rate [1/s], the four ..._exp of the grids, baselines, eased, extrapolation [s], gravity [m/s^2], friction: see tactus.h."""
+    """tick_rate [1/s], the four ..._exp of the grids, baselines, rigid_profile (PROFILE_MAIN or _THESIS), extrapolation [s], gravity
+    [m/s^2], friction: see tactus_encoder.h."""
 
     def __init__(self, **fields: Any) -> None:
         super().__init__()

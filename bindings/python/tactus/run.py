@@ -20,19 +20,25 @@ from .trace import TraceReader
 
 
 def encode(trace: str | os.PathLike[str], rigid_bounds: RigidBounds | None = None, deformable_bounds: DeformableBounds | None = None,
-           profile: str = "main", **options: Any) -> bytes:
-    """Encode a trace file; returns the bytes of a stream file, which declares the bounds.
+           profile: str = "main", modes: int = 0, clusters: int = 0, **options: Any) -> bytes:
+    """Encode a trace file as `tactus encode` does; returns the bytes of a stream file, which declares the bounds.
 
-    profile  "main": updates lean towards the acceleration, and clients ease into them; "thesis": linear dead reckoning
-    options  of the sender: see SenderOptions
-    raises   Error
+    profile   "main": velocities lean towards the acceleration, and clients ease into updates; "thesis": linear dead reckoning; and the
+              profile of meshes
+    modes     vibration modes that both ends compute from each mesh, its basis; 0: none
+    clusters  of vertices that move alike, of each mesh at most, found on the trace: the basis of bodies that turn and walk; 0: none
+    options   of the sender: see SenderOptions
+    raises    Error
     """
-    if profile not in ("main", "thesis"):
+    profiles = {"main": _abi.TACTUS_PROFILE_MAIN, "thesis": _abi.TACTUS_PROFILE_THESIS}
+    if profile not in profiles:
         raise ValueError(f"there is no profile {profile!r}, but main and thesis")
-    is_main = profile == "main"
-    if is_main:
-        options.setdefault("reduction", _abi.TACTUS_REDUCTION_LEANING)
-    with TraceReader(trace) as reader, reader.scene(rigid_bounds, deformable_bounds, eased=is_main) as scene:
+    if modes and clusters:
+        raise ValueError("a mesh has one basis: modes or clusters")
+    is_reduced = options.get("reduction") != _abi.TACTUS_REDUCTION_NONE  # what goes out at every tick needs no easing
+    coding = {"rigid_profile": profiles[profile if is_reduced else "thesis"], "deformable_profile": profiles[profile],
+              "spring_modes": modes, "clusters": clusters}
+    with TraceReader(trace) as reader, reader.scene(rigid_bounds, deformable_bounds, **coding) as scene:
         with Sender(scene, rigid=rigid_bounds, deformable=deformable_bounds, **options) as sender, StreamWriter(scene) as writer:
             for frame in reader:
                 for packet in sender.encode(frame.tick, frame.objects, frame.contacts, frame.shapes):

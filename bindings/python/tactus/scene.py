@@ -36,6 +36,8 @@ class Mesh:
     frame_period  [ticks] from shape to shape
     modes         of its vibration basis, which both ends compute; 0: none
     rings         around a touched triangle: the area of interest, where the haptic bound holds
+    clusters      (V,) uint8: of vertices that move alike, its basis in place of modes; None: none
+    blend         rounds in which clusters are blended where they meet, 0 to 32
     """
     name: str
     vertices: npt.NDArray[np.float64]
@@ -43,6 +45,8 @@ class Mesh:
     frame_period: float = 1
     modes: int = 0
     rings: int = 3
+    clusters: npt.NDArray[np.uint8] | None = None
+    blend: int = 0
 
 
 class Scene(Handle):
@@ -100,7 +104,11 @@ class Scene(Handle):
         triangles = np.empty((info.triangles, 3), np.uint32)
         call(core().tactus_scene_get_rest, self.handle, index, rest.ctypes.data, rest.size)
         call(core().tactus_scene_get_triangles, self.handle, index, triangles.ctypes.data, triangles.size)
-        return Mesh(info.name.decode(), rest.astype(np.float64), triangles, info.frame_period, info.modes, info.rings)
+        clusters = np.empty(info.vertices, np.uint8) if info.clusters else None
+        if clusters is not None:
+            call(core().tactus_scene_get_clusters, self.handle, index, clusters.ctypes.data, clusters.size)
+        modes = 0 if info.clusters else info.modes
+        return Mesh(info.name.decode(), rest.astype(np.float64), triangles, info.frame_period, modes, info.rings, clusters, info.blend)
 
     @property
     def rigid_bounds(self) -> RigidBounds | None:
@@ -112,6 +120,33 @@ class Scene(Handle):
         """That the sender guarantees for a mesh; None: not declared."""
         bounds = DeformableBounds()
         return bounds if call(core().tactus_scene_get_deformable_bounds, self.handle, mesh, bounds) else None
+
+
+def _arrays(of: Mesh) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.uint32]]:
+    """Vertices and triangles as C takes them."""
+    vertices = np.ascontiguousarray(of.vertices, np.float64)
+    triangles = np.ascontiguousarray(of.triangles, np.uint32)
+    if vertices.ndim != 2 or vertices.shape[1] != 3 or triangles.ndim != 2 or triangles.shape[1] != 3:
+        raise ValueError(f"{of.name}: vertices have shape {vertices.shape} and triangles {triangles.shape}, not (V, 3) and (F, 3)")
+    if not np.array_equal(triangles, of.triangles):
+        raise ValueError(f"{of.name}: triangles are whole numbers from 0")
+    return vertices, triangles
+
+
+def find_clusters(mesh: Mesh, shapes: npt.ArrayLike, most: int) -> Mesh:
+    """The mesh with at most so many clusters of vertices that move alike.
+
+    shapes  (S, V, 3) [m] displacements from rest, of a recording: 40 are enough, if they are spread over it
+    raises  Error
+    """
+    vertices, triangles = _arrays(mesh)
+    given = np.ascontiguousarray(shapes, np.float32)
+    if given.ndim != 3 or given.shape[1:] != vertices.shape:
+        raise ValueError(f"{mesh.name}: shapes have shape {given.shape}, not (S, {len(vertices)}, 3)")
+    clusters, count, blend = np.empty(len(vertices), np.uint8), ctypes.c_uint32(), ctypes.c_uint32()
+    call(core().tactus_find_clusters, vertices.ctypes.data, len(vertices), triangles.ctypes.data, len(triangles), given.ctypes.data,
+         len(given), most, clusters.ctypes.data, ctypes.addressof(count), ctypes.addressof(blend), subject=mesh.name)
+    return dataclasses.replace(mesh, clusters=clusters, blend=blend.value)
 
 
 class _Builder(Handle):
@@ -126,15 +161,15 @@ class _Builder(Handle):
         call(core().tactus_scene_builder_rigid, self.handle, text_of(of.name.encode()), ctypes.byref(pose), of.dof, subject=of.name)
 
     def add_mesh(self, of: Mesh) -> None:
-        vertices = np.ascontiguousarray(of.vertices, np.float64)
-        triangles = np.ascontiguousarray(of.triangles, np.uint32)
-        if vertices.ndim != 2 or vertices.shape[1] != 3 or triangles.ndim != 2 or triangles.shape[1] != 3:
-            raise ValueError(f"{of.name}: vertices have shape {vertices.shape} and triangles {triangles.shape}, not (V, 3) and (F, 3)")
-        if not np.array_equal(triangles, of.triangles):
-            raise ValueError(f"{of.name}: triangles are whole numbers from 0")
+        vertices, triangles = _arrays(of)
         options = _abi.tactus_deformable_options()
         core().tactus_deformable_options_init(options, ctypes.sizeof(options))
         options.frame_period, options.spring_modes, options.rings = of.frame_period, of.modes, of.rings
+        clusters = np.ascontiguousarray(of.clusters if of.clusters is not None else [], np.uint8)
+        if clusters.size:
+            if clusters.shape != (len(vertices),) or not np.array_equal(clusters, of.clusters):
+                raise ValueError(f"{of.name}: clusters are (V,) whole numbers from 0 to 63")
+            options.clusters, options.cluster_count, options.blend = clusters.ctypes.data, int(clusters.max()) + 1, of.blend
         call(core().tactus_scene_builder_deformable, self.handle, text_of(of.name.encode()), vertices.ctypes.data, len(vertices),
              triangles.ctypes.data, len(triangles), options, subject=of.name)
 

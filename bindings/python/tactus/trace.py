@@ -82,17 +82,17 @@ class TraceReader(Handle):
         """The scene of the trace, before the first frame is read.
 
         rigid_bounds, deformable_bounds   that the scene declares
-        coding                            eased (1: updates tell how clients pass over to them), baselines, spring_modes
+        coding                            rigid_profile and deformable_profile (PROFILE_MAIN or _THESIS), baselines, spring_modes, clusters
         """
         options = _abi.tactus_trace_coding()
         traces().tactus_trace_coding_init(options, ctypes.sizeof(options))
         for name, value in coding.items():
-            if name not in ("eased", "baselines", "spring_modes"):
+            if name not in ("rigid_profile", "deformable_profile", "baselines", "spring_modes", "clusters"):
                 raise TypeError(f"scene() has no argument {name!r}")
             setattr(options, name, value)
         rigid, deformable = rigid_bounds or RigidBounds(), deformable_bounds or DeformableBounds()
         options.rigid, options.deformable = ctypes.addressof(rigid), ctypes.addressof(deformable)
-        return Scene(read_bytes(traces().tactus_trace_scene, self.handle, options))
+        return Scene(read_bytes(traces().tactus_trace_scene, self.handle, options, subject=self._subject))
 
     def __iter__(self) -> Iterator[Frame]:
         tick = ctypes.c_int64()

@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/*
+ * Tactus in C: what declares a scene, turns its true states into packets, and writes them into a stream file. What is not asked for is coded
+ * as by `tactus encode`. See tactus.h, whose rules hold here too, <tactus/scene/scene_builder.h> and <tactus/sender.h>.
+ */
+#ifndef TACTUS_ENCODER_H
+#define TACTUS_ENCODER_H
+
+#include "tactus.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---------------------------------------------------------------- scene builder */
+
+typedef struct tactus_scene_builder tactus_scene_builder;
+
+typedef struct tactus_scene_options {
+  uint32_t size;
+  uint32_t tick_rate;                                                      /* per second; 1000 */
+  uint32_t position_exp, velocity_exp, rotation_exp, angular_velocity_exp; /* grids; 22 17 20 12 */
+  uint32_t baselines;     /* states that a receiver keeps, 1 to 64; 1. A session wants 64 */
+  uint32_t rigid_profile; /* TACTUS_PROFILE_...; main: velocities lean towards the acceleration, and clients ease into updates */
+  uint32_t has_loads;     /* 1: tell the forces on rigid objects; 0 */
+  uint32_t load_users;    /* whose forces are told; 1 */
+  uint32_t force_exp;     /* forces are multiples of 2^-force_exp N; 10 */
+  uint32_t reserved;
+  double extrapolation; /* s after which an object without updates stops; 2 */
+  double gravity[3];    /* m/s^2, world: updates may choose to fall; 0 */
+  double friction;      /* ... or to slide to rest; 0 */
+} tactus_scene_options;
+
+typedef struct tactus_deformable_options {
+  uint32_t size;
+  uint32_t profile;      /* TACTUS_PROFILE_...; main */
+  uint32_t rings;        /* around the touched triangle; 3 */
+  uint32_t quant_bits;   /* thesis; 8 */
+  uint32_t models_kept;  /* thesis; 0 */
+  uint32_t layered;      /* main: separate packets for the haptic and the visual layer; 0 */
+  uint32_t weight_sets;  /* main; 0: chosen */
+  uint32_t spring_modes; /* main: modes of a network of springs that both ends compute; 0 */
+  double frame_period;   /* main: ticks from shape to shape; 1 */
+  double fade;           /* main, with a basis: share of corrections that fades per second; -1: chosen */
+  const uint32_t* fixed; /* spring_modes: vertices that do not move, ascending */
+  size_t fixed_count;
+  const double* vectors;   /* a basis to declare: modes x vertices x 3, any scale; NULL */
+  size_t modes;            /* 0 to 64 */
+  const double* stiffness; /* N/m of each vertex, infinite where it does not move; NULL: not told */
+  size_t stiffness_count;  /* vertices */
+  const uint8_t* clusters; /* a basis of vertices that move alike (tactus_find_clusters): cluster of each vertex; NULL */
+  uint32_t cluster_count;  /* 0 to 64: each is below it; 0: none. In place of a basis of other kinds */
+  uint32_t blend;          /* rounds in which the clusters are blended where they meet, 0 to 32 */
+} tactus_deformable_options;
+
+TACTUS_API tactus_status tactus_scene_options_init(tactus_scene_options* options, size_t size);
+TACTUS_API tactus_status tactus_deformable_options_init(tactus_deformable_options* options, size_t size);
+TACTUS_API tactus_status tactus_scene_builder_create(const tactus_scene_options* options, tactus_scene_builder** builder,
+                                                     tactus_error* error);
+TACTUS_API void tactus_scene_builder_destroy(tactus_scene_builder* builder);
+/* in   initial  pose at rest, NULL: the origin;  dof  TACTUS_DOF_... */
+TACTUS_API tactus_status tactus_scene_builder_rigid(tactus_scene_builder* builder, const char* name, const tactus_pose* initial,
+                                                    uint32_t dof, tactus_error* error);
+/* in   vertices  x y z of each [m] at rest, world;  triangles  3 corners of each, counter-clockwise seen from outside */
+TACTUS_API tactus_status tactus_scene_builder_deformable(tactus_scene_builder* builder, const char* name, const double* vertices,
+                                                         size_t vertex_count, const uint32_t* triangles, size_t triangle_count,
+                                                         const tactus_deformable_options* options, tactus_error* error);
+/* Clusters of vertices that move alike, found on shapes of a recording: 40 are enough, if they are spread over it.
+   in   shapes  displacements [m], x y z of vertex 0 first, one shape after the other;  most  1 to 64
+   out  clusters  of each vertex, as tactus_deformable_options takes them, like  count, blend
+   time about 0.1 us per vertex, shape and cluster   err  R-API-1, 4, 5; R-SRF */
+TACTUS_API tactus_status tactus_find_clusters(const double* vertices, size_t vertex_count, const uint32_t* triangles,
+                                              size_t triangle_count, const float* shapes, size_t shape_count, uint32_t most,
+                                              uint8_t* clusters, uint32_t* count, uint32_t* blend, tactus_error* error);
+/* Declare the bounds that hold at a client: those of its sender. NULL: defaults. */
+TACTUS_API tactus_status tactus_scene_builder_promise(tactus_scene_builder* builder, const tactus_rigid_bounds* rigid,
+                                                      const tactus_deformable_bounds* deformable, const tactus_load_bounds* load,
+                                                      tactus_error* error);
+/* Check everything and make the scene. The builder is empty then, also after an error. */
+TACTUS_API tactus_status tactus_scene_builder_build(tactus_scene_builder* builder, tactus_scene** scene, tactus_error* error);
+/* Name of the object that the last error of _build concerns; "" none. Lives until the next call of the builder. */
+TACTUS_API const char* tactus_scene_builder_culprit(const tactus_scene_builder* builder);
+
+/* ---------------------------------------------------------------- sender: truth in, packets out */
+
+typedef struct tactus_sender tactus_sender;
+
+enum { TACTUS_REDUCTION_NONE = 0 /* every object at every tick */, TACTUS_REDUCTION_DEAD_RECKONING = 1 };
+enum { TACTUS_BASELINE_PREVIOUS = 0, TACTUS_BASELINE_ACKNOWLEDGED = 1 };
+
+typedef struct tactus_sender_options {
+  uint32_t size;
+  int32_t reduction;       /* TACTUS_REDUCTION_...; dead reckoning */
+  int32_t baseline;        /* TACTUS_BASELINE_...; previous */
+  uint32_t first_sequence; /* 1 */
+  double key_interval;     /* s; 5; 0: never */
+  double visual_share;     /* deformable, main: a packet corrects errors over this share of v; 0: chosen */
+  double haptic_share;     /* the same of h */
+  uint32_t layered;        /* deformable, thesis: separate packets for the layers; 0 */
+  uint32_t reserved;
+  const tactus_rigid_bounds* rigid; /* NULL: defaults, as the next two */
+  const tactus_deformable_bounds* deformable;
+  const tactus_load_bounds* load;
+} tactus_sender_options;
+
+typedef struct tactus_rigid_sample {
+  tactus_pose pose;
+  double velocity[3];         /* m/s, world */
+  double angular_velocity[3]; /* rad/s, world */
+} tactus_rigid_sample;
+
+enum { TACTUS_CONTACT_NONE = 0, TACTUS_CONTACT_SURFACE = 1, TACTUS_CONTACT_SPRING = 2 };
+
+/* A user touches a rigid object. */
+typedef struct tactus_contact {
+  int32_t kind; /* TACTUS_CONTACT_...: below a face, or tied to a point of the object */
+  uint32_t object;
+  double point[3];  /* m, object: of the face, or the spring's anchor */
+  double normal[3]; /* object, outward, unit length; unused by a spring */
+  double device[3]; /* m, world */
+  double stiffness; /* N/m */
+} tactus_contact;
+
+/* A deformable object at one tick. */
+typedef struct tactus_shape {
+  const float* displacements; /* x y z of each vertex, m, from rest; NULL: no new shape */
+  size_t vertices;
+  int32_t touched;   /* 1: the next three count */
+  uint32_t triangle; /* nearest to the probe */
+  double force;      /* N */
+  double stiffness;  /* N/m, of the client's rendering */
+} tactus_shape;
+
+typedef struct tactus_truth {
+  uint32_t size;
+  uint32_t reserved;
+  const tactus_rigid_sample* objects; /* one per rigid object of the scene */
+  size_t object_count;
+  const tactus_contact* contacts; /* any number */
+  size_t contact_count;
+  const tactus_shape* shapes; /* one per deformable object, or none */
+  size_t shape_count;
+  const double* loads; /* N, world: per rigid object external, hold, then one per user, x y z each; NULL without loads */
+  size_t load_count;   /* objects */
+} tactus_truth;
+
+TACTUS_API tactus_status tactus_sender_options_init(tactus_sender_options* options, size_t size);
+TACTUS_API tactus_status tactus_truth_init(tactus_truth* truth, size_t size); /* nothing */
+TACTUS_API tactus_status tactus_sender_create(const tactus_scene* scene, const tactus_sender_options* options,
+                                              tactus_sender** sender, tactus_error* error);
+TACTUS_API void tactus_sender_destroy(tactus_sender* sender);
+/* Evaluate a tick and code the packets it needs.   in  tick  rising   out  packets  how many, mostly 0   err  R-API-1 to 7 */
+TACTUS_API tactus_status tactus_sender_encode(tactus_sender* sender, int64_t tick, const tactus_truth* truth, size_t* packets,
+                                              tactus_error* error);
+/* Packet `index` of the last tick.   in  info  may be NULL   out  size  needed or written */
+TACTUS_API tactus_status tactus_sender_packet(const tactus_sender* sender, size_t index, tactus_packet_info* info, uint8_t* bytes,
+                                              size_t capacity, size_t* size, tactus_error* error);
+/* A receiver asks for a key packet. */
+TACTUS_API tactus_status tactus_sender_request_key(tactus_sender* sender, tactus_error* error);
+/* A receiver has decoded a packet: TACTUS_BASELINE_ACKNOWLEDGED builds on it. */
+TACTUS_API tactus_status tactus_sender_acknowledge(tactus_sender* sender, uint32_t substream, uint32_t sequence,
+                                                   tactus_error* error);
+/* in   answer  [ticks] until a packet is acknowledged, 0: not known;  loss  share of packets */
+TACTUS_API tactus_status tactus_sender_set_link(tactus_sender* sender, int64_t answer, double loss, tactus_error* error);
+TACTUS_API tactus_status tactus_sender_state_hash(const tactus_sender* sender, uint32_t substream, uint64_t* hash,
+                                                  tactus_error* error);
+
+/* ---------------------------------------------------------------- writer: packets into a stream file */
+
+typedef struct tactus_writer tactus_writer;
+
+TACTUS_API tactus_status tactus_writer_create(const tactus_scene* scene, tactus_writer** writer, tactus_error* error);
+TACTUS_API void tactus_writer_destroy(tactus_writer* writer);
+/* in   tick  not falling;  key  as tactus_packet_info tells */
+TACTUS_API tactus_status tactus_writer_add(tactus_writer* writer, int64_t tick, const uint8_t* packet, size_t size, uint32_t key,
+                                           tactus_error* error);
+/* Add the index and the end of the file. */
+TACTUS_API tactus_status tactus_writer_finish(tactus_writer* writer, tactus_error* error);
+/* Take what was written since the last call.   out  size  needed or taken */
+TACTUS_API tactus_status tactus_writer_take(tactus_writer* writer, uint8_t* bytes, size_t capacity, size_t* size,
+                                            tactus_error* error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Calls that take a struct with a size, called with structs of other versions.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <vector>
+
+#include "tests/bindings/fixture.h"
+
+namespace tactus::c_test {
+
+enum class Direction { option, answer };
+
+/// A struct of the interface: its size in the first version, which never changes, and a call that takes it.
+struct SizedCall {
+  const char* name;
+  std::size_t first;
+  Direction direction;
+  std::function<tactus_status(void* given, std::size_t size)> init;  ///< of options: their _init
+  std::function<tactus_status(void* given, tactus_error* error)> call;
+};
+
+template <class T, class Call>
+auto taking(Call call) {
+  return [call](void* given, tactus_error* error) { return call(static_cast<T*>(given), error); };
+}
+template <auto init, class T>
+auto initialised() {
+  return [](void* given, std::size_t size) { return init(static_cast<T*>(given), size); };
+}
+
+/// A struct of this size and, behind it, what is not the library's to touch.
+class Block {
+ public:
+  Block(const SizedCall& of, std::size_t size) : bytes_(std::max(size, sizeof(std::uint32_t)) + kGuard, kTouched) {
+    std::fill(bytes_.begin(), bytes_.end() - kGuard, std::uint8_t{0});
+    const bool is_made = of.init && of.init(data(), size) == TACTUS_OK;
+    const auto told = static_cast<std::uint32_t>(size);
+    if (!is_made) std::memcpy(data(), &told, sizeof told);
+  }
+  std::uint8_t* data() { return bytes_.data(); }
+  bool is_whole() const {
+    return std::all_of(bytes_.end() - kGuard, bytes_.end(), [](std::uint8_t byte) { return byte == kTouched; });
+  }
+
+ private:
+  static constexpr std::uint8_t kTouched = 0xa5;
+  static constexpr std::ptrdiff_t kGuard = 64;
+  std::vector<std::uint8_t> bytes_;
+};
+
+inline void expect_status(const SizedCall& of, std::size_t size, tactus_status wanted, std::uint8_t last) {
+  Block block(of, size);
+  if (size > of.first) block.data()[size - 1] = last;
+  tactus_error error{};
+  const tactus_status status = of.call(block.data(), &error);
+  EXPECT_EQ(status, wanted) << of.name << " of " << size << " bytes, the last " << int{last};
+  EXPECT_TRUE(block.is_whole()) << of.name << " of " << size << " bytes";
+  if (wanted != TACTUS_OK) {
+    EXPECT_STREQ(error.rule == nullptr ? "none" : error.rule, "R-API-12") << of.name << " of " << size << " bytes";
+  } else if (of.direction == Direction::answer && size > of.first) {
+    EXPECT_EQ(block.data()[size - 1], 0) << of.name << ": what the library does not know is 0";
+  }
+}
+
+inline void check_sizes(const SizedCall& of) {
+  constexpr std::size_t kMost = 4096;
+  for (const std::size_t size : {of.first, of.first + 1, of.first + 8, kMost}) expect_status(of, size, TACTUS_OK, 0);
+  for (const std::size_t size : {std::size_t{0}, std::size_t{4}, of.first - 8, of.first - 1, kMost + 1})
+    expect_status(of, size, TACTUS_INVALID_ARGUMENT, 0);
+  const bool is_option = of.direction == Direction::option;
+  for (const std::size_t size : {of.first + 1, of.first + 8, kMost})
+    expect_status(of, size, is_option ? TACTUS_INVALID_ARGUMENT : TACTUS_OK, 1);
+  if (!of.init) return;
+  EXPECT_EQ(of.init(nullptr, of.first), TACTUS_INVALID_ARGUMENT) << of.name;
+  for (const std::size_t size : {of.first - 1, of.first, of.first + 8, kMost, kMost + 1}) {
+    std::vector<std::uint8_t> bytes(size + 8, 0xee);
+    const bool fits = size >= of.first && size <= kMost;
+    EXPECT_EQ(of.init(bytes.data(), size), fits ? TACTUS_OK : TACTUS_INVALID_ARGUMENT) << of.name << " of " << size;
+    EXPECT_TRUE(std::all_of(bytes.end() - 8, bytes.end(), [](std::uint8_t byte) { return byte == 0xee; })) << of.name;
+    if (!fits) continue;
+    std::uint32_t told = 0;
+    std::memcpy(&told, bytes.data(), sizeof told);
+    EXPECT_EQ(told, size) << of.name;
+    for (std::size_t i = of.first; i < size; ++i) ASSERT_EQ(bytes[i], 0) << of.name;
+  }
+}
+
+}  // namespace tactus::c_test
