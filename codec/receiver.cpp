@@ -42,6 +42,7 @@ struct Receiver::Impl {
                                std::optional<std::int64_t> now) noexcept;
 
   SharedScene scene;
+  std::shared_ptr<const DevicePath> path;
   SubstreamDecoder<RigidDecoder> rigid;
   Decoders deformables;
   std::optional<SubstreamDecoder<LoadDecoder>> loads;
@@ -92,8 +93,16 @@ Result<DecodedPacket> Receiver::push_numbered(std::uint64_t number, std::span<co
 
 void Receiver::skip_number(std::uint64_t number) noexcept { impl_->replica.skip_number(number); }
 
+void Receiver::know(std::shared_ptr<const DevicePath> path) {
+  impl_->path = std::move(path);
+  impl_->replica.know(*impl_->path);
+}
+
 Replica& Receiver::replica() noexcept { return impl_->replica; }
 const SharedScene& Receiver::scene() const noexcept { return impl_->scene; }
+std::span<const RigidState> Receiver::objects_after(const DecodedPacket& packet) const noexcept {
+  return impl_->rigid.after(packet).objects;
+}
 std::span<const RigidState> Receiver::objects() const noexcept { return impl_->rigid.newest().objects; }
 
 std::span<const std::array<std::int32_t, 3>> Receiver::displacements(std::size_t object) const noexcept {

@@ -17,6 +17,8 @@
 
 namespace tactus {
 
+class DevicePath;
+
 struct ReceiverOptions {
   ReplicaOptions replica{};
   DecodeLimits limits{};
@@ -62,10 +64,15 @@ class Receiver {
   /// This number of a session is not lost, and no packet of rigid objects has it: the replica need not bend over it.
   void skip_number(std::uint64_t number) noexcept;
 
+  /// Know the device of this client, as its server does: objects that it drives are shown where it has moved them.   allocates
+  void know(std::shared_ptr<const DevicePath> path);
+
   /// What the client shows.
   Replica& replica() noexcept;
 
   const SharedScene& scene() const noexcept;
+  /// State of every rigid object after a packet of them.   pre  push() or push_numbered() has just returned it
+  std::span<const RigidState> objects_after(const DecodedPacket& packet) const noexcept;
   /// Newest state of every rigid object, scene order.
   std::span<const RigidState> objects() const noexcept;
   /// Newest decoded displacements of a deformable object, V x 3, x 2^-position_exp m.   pre  object < scene.deformables.size()

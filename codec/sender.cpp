@@ -33,6 +33,7 @@ struct Sender::Impl {
   }
 
   SharedScene scene;
+  std::shared_ptr<const DevicePath> path;
   SubstreamEncoder<RigidEncoder> rigid;
   std::vector<std::unique_ptr<DeformableEncoder>> deformables;
   std::optional<SubstreamEncoder<LoadEncoder>> loads;
@@ -111,6 +112,11 @@ void Sender::request_key() noexcept {
   if (impl_->loads) impl_->loads->request_key();
 }
 
+void Sender::know(std::shared_ptr<const DevicePath> path) {
+  impl_->path = std::move(path);
+  impl_->rigid.codec().know(*impl_->path);
+}
+
 void Sender::acknowledge(std::size_t substream, std::uint16_t sequence) noexcept {
   if (substream == 0) impl_->rigid.acknowledge(sequence);
   else if (substream <= impl_->deformables.size()) impl_->deformables[substream - 1]->acknowledge(sequence);
@@ -136,6 +142,7 @@ void Sender::forget_last(std::size_t substream) noexcept {
 }
 
 const SharedScene& Sender::scene() const noexcept { return impl_->scene; }
+std::span<const RigidState> Sender::objects() const noexcept { return impl_->rigid.newest().objects; }
 
 std::uint64_t Sender::state_hash(std::size_t substream) const noexcept {
   if (substream == 0) return tactus::state_hash(*impl_->scene, impl_->rigid.newest());

@@ -19,6 +19,8 @@
 
 namespace tactus {
 
+class DevicePath;
+
 struct SenderOptions {
   RigidTriggers triggers{};
   DeformableOptions deformable{};
@@ -96,7 +98,14 @@ class Sender {
   /// per packet.
   void forget_last(std::size_t substream) noexcept;
 
+  /// Know the device of the one receiver, which may drive objects then (SceneBuilder::driven()): those that it pushes or holds are sent when
+  /// they leave the way that the receiver works out from its own device. Without it the scene's driven objects are coded as any other.
+  /// in   path  where the device is at each tick that is encoded, with all packets up to then.   allocates
+  void know(std::shared_ptr<const DevicePath> path);
+
   const SharedScene& scene() const noexcept;
+  /// State of every rigid object as a receiver of all packets has it, scene order.
+  std::span<const RigidState> objects() const noexcept;
   /// Hash of a substream's state; equals the receiver's after the same packets.   pre  the substream exists
   std::uint64_t state_hash(std::size_t substream) const noexcept;
 

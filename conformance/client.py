@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A client written from the specification alone: joins `tactus serve` over UDP and moves a device about.
 
-  client.py PORT [--seconds S] [--observe]    prints one line of JSON at the end: packets, round trip, hash of each substream's state
+  client.py PORT [--seconds S] [--observe]    prints one line of JSON at the end: packets, round trip, hash of each substream's state;
+                                              in a driven scene also the paces of the device, and how many of its packets did not act
 
 It ends when the server leaves, or after S seconds.
 """
@@ -89,8 +90,11 @@ def main() -> int:
     if epoch is None or epoch.decoders is None:
         print("no session", file=sys.stderr)
         return 1
-    print(json.dumps({"client": epoch.client, "packets": epoch.packets, "round_trip_us": epoch.round_trip,
-                      "state_hashes": [f"{d.state_hash():016x}" for d in epoch.decoders.substreams.values()]}))
+    said = {"client": epoch.client, "packets": epoch.packets, "round_trip_us": epoch.round_trip,
+            "state_hashes": [f"{d.state_hash():016x}" for d in epoch.decoders.substreams.values()]}
+    if epoch.path:
+        said.update({"paces": len(epoch.path.offsets), "without_effect": sum(not epoch.path.acts(n) for n in epoch.path.states)})
+    print(json.dumps(said))
     return 0
 
 

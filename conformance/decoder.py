@@ -3,7 +3,7 @@
 
 Written from spec/ alone and meant to be read beside it: functions carry the names of the specification, and each
 file names its chapter. As a program it is a testee (README.md):
-python3 decoder.py [--replica none|linear|hermite|blending|playout] < stream.tct
+python3 decoder.py [--replica none|device|linear|hermite|blending|playout] < stream.tct
 """
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ import sys
 from typing import Iterator, Optional, Union
 
 from conventions import FNV_START, StreamError, fnv1a, require
+from device_path import DevicePath
 from deformable_decoder import DeformableDecoder, DeformablePacket
 from file import File
 from load import LoadDecoder, LoadPacket
@@ -61,6 +62,8 @@ def describe_declaration(scene: Declaration) -> dict:
         said["loads"] = list(scene.loads)
     if scene.motion:
         said["motion"] = [*scene.motion.gravity, scene.motion.slide_deceleration]
+    if scene.driven:
+        said["driven"] = [[d.coupling, d.hold, *d.inertia, d.friction, d.damping] for d in scene.driven.values()]
     if scene.bounds:
         said["bounds"] = {**({"rigid": scene.bounds.rigid} if scene.bounds.rigid else {}), "meshes": scene.bounds.deformables,
                           **({"loads": scene.bounds.loads} if scene.bounds.loads else {})}
@@ -106,18 +109,27 @@ def lines(data: bytes, mode: Optional[str]) -> Iterator[dict]:
 
 
 class Viewer:
-    """A client that applies every packet at its tick and looks at every tick, or in playout at the tick `delay` before."""
+    """A client that applies every packet at its tick and looks at every tick, or in playout at the tick `delay` before.
+
+    In the mode device it shows as in none, and the first moving object is its device, in this scene and in the ticks of the server.
+    """
 
     def __init__(self, scene: Declaration, decoders: SceneDecoder, mode: str):
         self.playout = mode == "playout"
         self.delay = PLAYOUT_DELAY if self.playout else 0
-        self.replica = Playout(scene) if self.playout else Replica(scene, mode)
+        self.path = DevicePath(scene) if mode == "device" else None
+        if self.path:
+            self.path.begin(0, 0)
+        self.replica = Playout(scene) if self.playout else Replica(scene, "none" if self.path else mode, self.path)
         self.deformables = [decoders.substreams[i + 1] for i in range(len(scene.deformables))]
         self.tick, self.all = 0, FNV_START
 
     def apply(self, packet: Union[Packet, DeformablePacket, LoadPacket], tick: int) -> None:
-        if isinstance(packet, Packet):
-            self.replica.apply(packet, tick)
+        if not isinstance(packet, Packet):
+            return
+        if self.path and any(update.object == self.replica.moving[0] for update in packet.updates):
+            self.path.add(packet.number, packet.moment.states[self.replica.moving[0]])
+        self.replica.apply(packet, tick)
 
     def look_until(self, tick: int) -> None:
         while self.tick < tick:
@@ -140,7 +152,8 @@ def session_lines() -> Iterator[dict]:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description="Decode a Tactus stream file from standard input to JSON lines.")
-    parser.add_argument("--replica", choices=("none", "linear", "hermite", "blending", "playout"), help="also show what a client shows")
+    parser.add_argument("--replica", choices=("none", "device", "linear", "hermite", "blending", "playout"),
+                        help="also show what a client shows")
     parser.add_argument("--session", action="store_true", help="read a script for the client's end of a session instead")
     arguments = parser.parse_args()
     try:

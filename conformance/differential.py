@@ -126,7 +126,7 @@ def make_case(vectors: Vectors, seed: int, number: int) -> tuple[bytes, Optional
         data = damaged_section(data, other, rng) if rng.randrange(4) else damaged_bytes(data, other, rng)
     if rng.randrange(8):
         data = mended(data)
-    mode = rng.choice([None, None, "none", "linear", "hermite", "blending", "playout"])
+    mode = rng.choice([None, None, "none", "device", "linear", "hermite", "blending", "playout"])
     return data, mode if last_tick(data) <= LATEST_TICK else None
 
 

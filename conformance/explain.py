@@ -21,7 +21,7 @@ from start_models import Models
 NAMES: dict = {}                                            # by identity of a model: the model, its name
 ELEMENTS = {                                                # models, and the element of the specification that they code
     "KEY": "key", "BASELINE": "baseline_delta", "TICK": "tick_delta", "COUNT": "count", "GAP": "gap", "REASON": "reason",
-    "LEVEL": "level", "EASE": "ease", "KEEP": "keep", "PREDICTOR": "predictor", "LAYER": "layer", "SAME_FRAME": "same_frame",
+    "LEVEL": "level", "EASE": "ease", "KEEP": "keep", "PREDICTOR": "predictor", "CONTACT": "component of contact", "LAYER": "layer", "SAME_FRAME": "same_frame",
     "LATE": "late",
     "TOUCHED": "touched", "SAME_TRIANGLE": "same triangle", "NEAR_TRIANGLE": "near triangle", "NEAR_PLACE": "entry of near",
     "HAPTIC": "haptic_change", "SAME_VISUAL": "same_visual", "VISUAL": "visual", "DENSITY": "density", "WEIGHT_SET": "weight_set",
@@ -106,6 +106,8 @@ class Narrator(RangeDecoder):
 
     def symbol(self, function, name, value):
         element = ELEMENTS.get(name.split("[")[0], "part of the triangle's number")
+        if function == "raw" and self.symbols and self.symbols[-1].startswith("| predictor"):
+            element = "held"
         kind, *indices = name.replace("]", "").split("[")
         if kind in ("POSE", "MOTION"):
             element = f"component of r[{2 * int(indices[0]) + (kind == 'MOTION')}]"
@@ -161,10 +163,13 @@ def tell_rigid(packet, scene):
         rows = [f"| predicted from the baseline, of tick {base.tick} | {vector(position)} | {vector(rotation)} | | |",
                 f"| decoded | {vector(state.position)} | {vector(state.rotation)} | {vector(state.velocity)} | "
                 f"{vector(state.angular_velocity)} |"]
-        predictor = f", predictor {state.predictor}" if scene.motion else ""
+        predictor = f", predictor {state.predictor}" if scene.motion or scene.driven else ""
         easing = f", ease {state.ease}, keep {state.keep}" if scene.eased else ""
         print(f"Object {update.object}, reason {update.reason}, level {update.level}{predictor}{easing}:\n")
         table("| position | rotation | velocity | angular velocity", rows)
+        if state.predictor == rigid.DRIVEN:
+            held, point, normal, drag = state.contact
+            table("held | point | normal | drag", [f"| {held} | {vector(point)} | {vector(normal)} | {drag} |"])
 
 
 def tell_load(packet, scene):
@@ -337,6 +342,9 @@ def tell_declaration(file, data):
     if file.declaration.motion:
         f.number("gravity", "3i")
         f.number("slide_deceleration", "i")
+    for i in file.declaration.driven:
+        for name, form in (("coupling", "I"), ("hold", "I"), ("inertia", "3I"), ("friction", "H"), ("damping", "H")):
+            f.number(f"{name} of object {i}", form)
     if f.cursor.position < end - 4:
         f.take("extension records", end - 4 - f.cursor.position)
     f.number("crc", "I")

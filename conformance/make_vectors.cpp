@@ -16,6 +16,7 @@ Catalogue all() {
   add_scene_orders(catalogue);
   add_scene_stiffness(catalogue);
   add_scene_motion(catalogue);
+  add_scene_driven(catalogue);
   catalogue.begin("file", "Stream files: records around packets.");
   add_file(catalogue);
   catalogue.begin("packet", "What packets of every kind have in common: sequence numbers, baselines, outages, substreams.");
@@ -31,6 +32,7 @@ Catalogue all() {
   add_rigid_edges(catalogue);
   add_rigid_orders(catalogue);
   add_rigid_predictors(catalogue);
+  add_rigid_driven(catalogue);
   catalogue.begin("load", "Loads: their declaration and packets.");
   add_load(catalogue);
   catalogue.begin("client", "What a client shows of rigid objects, at every tick.");
@@ -39,6 +41,7 @@ Catalogue all() {
   add_client_eased(catalogue);
   add_client_curves(catalogue);
   add_client_predictors(catalogue);
+  add_client_driven(catalogue);
   catalogue.begin("session", "What the client's end of a session does with datagrams.");
   add_session(catalogue);
   add_session_server(catalogue);

@@ -8,8 +8,10 @@ from typing import Optional
 
 from conventions import FNV_START, clamp, fnv1a, round_div
 from curve import AT_REST, NO_OFFSET, Offset, cubic, difference, displaced, offset
+from device_path import DevicePath
+from driven import DrivenBody
 from easing import eased, kept
-from rigid import Packet, motion, predict
+from rigid import DRIVEN, Packet, motion, predict
 from scene import Declaration, State
 
 SHARE = 49152                                               # P = 75 %, x 2^-16
@@ -22,7 +24,10 @@ class ReplicaObject:
     error: Offset
     change: Offset
 
-    def __init__(self, state: State):
+    def __init__(self, index: int, state: State):
+        self.index = index
+        self.body: Optional[DrivenBody] = None              # of `state`, by the path as it was then known
+        self.known = 0
         self.state, self.left = state, NO_OFFSET            # `left` is of an eased scene
         self.number = 0                                     # of the packet of the newest update
         self.begin = self.end = 0
@@ -31,13 +36,14 @@ class ReplicaObject:
 
 
 class Replica:
-    """What a client shows that applies packets; mode is "none", "linear", "hermite" or "blending"."""
+    """What a client shows that applies packets; mode is "none", "linear", "hermite" or "blending". It may know its device."""
 
-    def __init__(self, scene: Declaration, mode: str):
+    def __init__(self, scene: Declaration, mode: str, path: Optional[DevicePath] = None):
         self.scene, self.mode = scene, "none" if scene.eased else mode             # section 1
+        self.path = path
         self.shortest = round_div(5 * scene.tick_rate, 1000)
         self.longest = round_div(100 * scene.tick_rate, 1000)
-        self.objects = [ReplicaObject(item.initial) for item in scene.objects]
+        self.objects = [ReplicaObject(i, item.initial) for i, item in enumerate(scene.objects)]
         self.moving = scene.moving()
 
     def apply(self, packet: Packet, now: int) -> None:
@@ -61,7 +67,7 @@ class Replica:
         if self.mode == "none" or running or not o.gaps:
             return
         o.end = now + clamp(round_div(sum(o.gaps) * SHARE, len(o.gaps) << 16), self.shortest, self.longest)
-        o.error = offset(predict(self.scene, state, now), shown)
+        o.error = offset(self.expected(o, now), shown)
         if self.mode == "linear":
             o.change = NO_OFFSET
         else:
@@ -73,7 +79,15 @@ class Replica:
         return motion(self.scene, state, now - state.tick)
 
     def eased(self, o: ReplicaObject, t: int) -> tuple[tuple, tuple]:
-        return eased(predict(self.scene, o.state, t), o.state, o.left, t)
+        return eased(self.expected(o, t), o.state, o.left, t)
+
+    def expected(self, o: ReplicaObject, t: int) -> tuple[tuple, tuple]:
+        """By dead reckoning, or by the device of this client."""
+        if not self.path or o.state.predictor != DRIVEN:
+            return predict(self.scene, o.state, t)
+        if o.body is None or o.body.state is not o.state or o.known != self.path.revision or t < o.body.tick:
+            o.body, o.known = DrivenBody(self.scene, o.index, o.state), self.path.revision
+        return o.body.pose(t, self.path.place)
 
     def pose(self, o: ReplicaObject, now: int) -> tuple[tuple, tuple]:
         now = max(now, o.begin)
@@ -82,7 +96,7 @@ class Replica:
         u = round_div((o.end - now) << 30, o.end - o.begin)
         c, b = cubic(u)
         k = c if self.mode == "hermite" else u
-        return displaced(predict(self.scene, o.state, now), o.error, o.change, k, k, b)
+        return displaced(self.expected(o, now), o.error, o.change, k, k, b)
 
     def pose_hash(self, now: int) -> int:
         h = FNV_START

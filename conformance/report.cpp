@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <memory>
 #include <ostream>
 #include <string>
 #include <string_view>
@@ -14,6 +15,7 @@
 #include <tactus/file/stream_file.h>
 #include <tactus/packet/substream.h>
 #include <tactus/receiver.h>
+#include <tactus/signal/device_path.h>
 
 namespace tactus::conformance {
 namespace {
@@ -95,6 +97,18 @@ void write_bounds(const StreamBounds& bounds, std::ostream& out) {
   out << '}';
 }
 
+void write_driven(const Scene& scene, std::ostream& out) {
+  out << R"(,"driven":[)";
+  const char* comma = "";
+  for (const std::uint32_t i : scene.moving()) {
+    const auto& [coupling, hold, inertia, friction, damping] = scene.driven->bodies[i];
+    out << comma << '[' << coupling << ',' << hold << ',' << inertia[0] << ',' << inertia[1] << ',' << inertia[2] << ','
+        << friction << ',' << damping << ']';
+    comma = ",";
+  }
+  out << ']';
+}
+
 void write_header_line(const Scene& h, std::ostream& out) {
   out << R"({"header":{"version":1,"profile":0,"tick_rate":)" << h.tick_rate << R"(,"grid":[)" << int{h.grid.position} << ','
       << int{h.grid.velocity} << ',' << int{h.grid.rotation} << ',' << int{h.grid.angular_velocity} << R"(],"max_extrapolation":)"
@@ -111,6 +125,7 @@ void write_header_line(const Scene& h, std::ostream& out) {
     const auto& [gravity, slide] = *h.motion;
     out << R"(,"motion":[)" << gravity[0] << ',' << gravity[1] << ',' << gravity[2] << ',' << slide << ']';
   }
+  if (h.driven) write_driven(h, out);
   if (h.bounds) write_bounds(*h.bounds, out);
   out << "}}\n";
 }
@@ -154,11 +169,21 @@ class Client {
     return Client(scene, std::move(receiver), interpolation.has_value(), delay);
   }
 
+  /// The first moving object is the client's device, in the server's own ticks.
+  void has_device() {
+    path_ = std::make_shared<DevicePath>(scene_);
+    path_->shift(0, 0);
+    receiver_.know(path_);
+  }
+
   /// Decodes the packet of a record and writes its line.
   Result<void> decode(std::uint64_t number, const FilePacket& record, std::ostream& out) {
     if (looks_) look_until(record.tick);
     TACTUS_TRY(const DecodedPacket packet, receiver_.push(record.bytes));
     if (packet.tick != record.tick) return fail(Errc::invalid, "R-FIL-7");
+    const std::uint32_t first = scene_->moving().empty() ? 0 : scene_->moving()[0];
+    for (const RigidUpdate& update : packet.updates)
+      if (path_ && update.object == first) path_->add(packet.number, receiver_.objects_after(packet)[first]);
     out << R"({"packet":)" << number << ',';
     if (has_substream_number(*scene_)) out << R"("part":)" << packet.substream << ',';
     write_packet(packet, receiver_.state_hash(packet.substream), out);
@@ -213,15 +238,17 @@ class Client {
   Receiver receiver_;
   bool looks_;
   std::int64_t delay_;
+  std::shared_ptr<DevicePath> path_;  // null: no device is known
   std::int64_t tick_ = 0;
   Fnv1a all_;
 };
 
 }  // namespace
 
-Result<void> report(std::span<const std::uint8_t> file, std::optional<Interpolation> replica, std::ostream& out) {
+Result<void> report(std::span<const std::uint8_t> file, std::optional<Interpolation> replica, bool device, std::ostream& out) {
   TACTUS_TRY(auto reader, StreamFileReader::open(file, kLimits));
   TACTUS_TRY(auto client, Client::create(reader.scene(), replica));
+  if (device) client.has_device();
   write_header_line(*reader.scene(), out);
   for (std::uint64_t number = 0;; ++number) {
     TACTUS_TRY(const auto record, reader.next());

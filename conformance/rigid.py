@@ -10,13 +10,13 @@ from conventions import (FNV_START, ONE, axis_angle, clamp, fnv1a, mul, renorm, 
                          sat32)
 from packet import Receiver
 from range_coder import RangeDecoder
-from scene import Declaration, Limits, State
+from scene import Contact, Declaration, Limits, State
 from start_models import Models
 
 # ---- Residual, prediction, reconstruction ---------------------------------------------------------------------------
 HAPTIC = 3
 LARGEST_ANGULAR = 1 << 25
-BALLISTIC, SLIDE = 1, 2
+BALLISTIC, SLIDE, DRIVEN = 1, 2, 3
 HALF_RADIAN = 341782638                                     # 2^32 / (4 pi), a binary angle
 SIZE, NEAR = (0, 1, 1, 2, 2, 2, 3), (0, 1, 2, 2, 3, 3, 4)   # by width, at most 6
 
@@ -124,6 +124,18 @@ def reconstruct_motion(scene: Declaration, base: State, t: int, r: list[list[int
     return velocity, angular
 
 
+def read_contact(decoder: RangeDecoder, models: Models, base: Contact) -> Contact:
+    def beside(k: int, before: int) -> int:
+        return clamp(before + decoder.signed(models[f"CONTACT[{k}]"]), -1 << 20, 1 << 20)
+
+    held = decoder.raw(1)
+    point = tuple(beside(0, c) for c in base.point)
+    if held:
+        return Contact(held, point)
+    normal = tuple(beside(1, c) for c in base.normal)
+    return Contact(held, point, normal, beside(2, base.drag))
+
+
 # ---- Packets --------------------------------------------------------------------------------------------------------
 class Moment(NamedTuple):
     """The state of all objects."""
@@ -200,30 +212,40 @@ class RigidDecoder:
             usual = max(0, min(self.scene.tick_rate // 62, 255).bit_length() - 1)
             ease = (usual - decoder.tree(models["EASE"], 3)) % 8
         keep = decoder.tree(models["KEEP"], 2) if ease > 0 else 0
-        predictor = decoder.tree(models[f"PREDICTOR[{reason}]"], 2) if self.scene.motion else 0
+        context = reason + (4 if self.scene.driven else 0)
+        predictor = decoder.tree(models[f"PREDICTOR[{context}]"], 2) if self.scene.motion or self.scene.driven else 0
+        contact = moment.states[index].contact
+        if self.scene.driven and predictor == DRIVEN:
+            contact = read_contact(decoder, models, contact)
         r = residual(decoder, models, self.scene.objects[index].dof, reason)
-        require(self.declares(predictor), "invalid", "R-RIG-7")
+        require(self.declares(predictor, index), "invalid", "R-RIG-7")
         base, s = moment.states[index], level
         position, rotation = reconstruct_pose(self.scene, base, moment.tick, r, s)
         velocity, angular = reconstruct_motion(self.scene, base, moment.tick, r, s, reason)
-        moment.states[index] = State(moment.tick, position, rotation, velocity, angular, predictor, ease, keep)
+        moment.states[index] = State(moment.tick, position, rotation, velocity, angular, predictor, ease, keep, contact)
         return Update(index, reason, level)
 
-    def declares(self, predictor: int) -> bool:
+    def declares(self, predictor: int, index: int) -> bool:
         """What a predictor needs."""
-        if predictor == 0:
-            return True
-        needed = {BALLISTIC: any(self.scene.motion.gravity), SLIDE: self.scene.motion.slide_deceleration != 0}
-        return needed.get(predictor, False)
+        motion = self.scene.motion
+        if predictor == BALLISTIC:
+            return motion is not None and any(motion.gravity)
+        if predictor == SLIDE:
+            return motion is not None and motion.slide_deceleration != 0
+        if predictor == DRIVEN:
+            return index in self.scene.driven and self.scene.driven[index].coupling != 0
+        return True
 
     def state_hash(self) -> int:
         states = self.receiver.current.states
         h = FNV_START
         for i in self.moving:
-            tick, *vectors, predictor, ease, keep = states[i]
+            tick, *vectors, predictor, ease, keep, (held, point, normal, drag) = states[i]
             h = fnv1a(struct.pack("<Q13i", tick, *(c for vector in vectors for c in vector)), h)
             if self.scene.eased:
                 h = fnv1a(struct.pack("<I", ease + 8 * keep), h)
-            if self.scene.motion:
+            if self.scene.motion or self.scene.driven:
                 h = fnv1a(struct.pack("<i", predictor), h)
+            if self.scene.driven:
+                h = fnv1a(struct.pack("<8i", held, *point, *normal, drag), h)
         return h

@@ -26,7 +26,14 @@ class Limits(NamedTuple):
 
 MAGIC = b"\x89TCT"
 SMALLEST_OBJECT = 32
-HAS_DEFORMABLES, HAS_LOADS, IS_EASED, HAS_MOTION = 1, 2, 4, 8      # bits 0 to 3 of `flags`
+HAS_DEFORMABLES, HAS_LOADS, IS_EASED, HAS_MOTION, IS_DRIVEN = 1, 2, 4, 8, 16      # bits 0 to 4 of `flags`
+
+
+class Contact(NamedTuple):                                  # chapter 40, section 4.1
+    held: int = 0
+    point: tuple = (0, 0, 0)                                # x 2^-13 m, object's frame
+    normal: tuple = (0, 0, 0)                               # x 2^-10
+    drag: int = 0                                           # x 2^-4 m/s^2
 
 
 class State(NamedTuple):                                    # chapter 40
@@ -38,6 +45,7 @@ class State(NamedTuple):                                    # chapter 40
     predictor: int = 0
     ease: int = 0
     keep: int = 0
+    contact: Contact = Contact()
 
 
 class Object(NamedTuple):
@@ -54,6 +62,14 @@ class LoadDeclaration(NamedTuple):                          # chapter 45
 class MotionConstants(NamedTuple):                          # chapter 40, x 2^-velocity_exp m/s^2
     gravity: tuple
     slide_deceleration: int
+
+
+class DrivenConstants(NamedTuple):                          # chapter 40, section 4.1; all 0: the object is never driven
+    coupling: int                                           # x 2^-8 s^-2
+    hold: int
+    inertia: tuple                                          # x 2^-30 m^2
+    friction: int                                           # x 2^-8
+    damping: int                                            # x 2^-20
 
 
 class Bounds(NamedTuple):
@@ -79,6 +95,7 @@ class Declaration:
     deformables: list[DeformableObject] = field(default_factory=list)
     loads: Optional[LoadDeclaration] = None
     motion: Optional[MotionConstants] = None
+    driven: dict[int, DrivenConstants] = field(default_factory=dict)         # of all moving objects, if the scene is driven
     bounds: Optional[Bounds] = None
 
     def moving(self) -> list[int]:
@@ -99,7 +116,7 @@ def read_declaration(data: bytes, limits: Limits = Limits()) -> tuple[Declaratio
     require(version == 1, "unsupported", "R-STR-2")
     require(profile <= 1, "malformed", "R-STR-3")
     require(profile == 0, "unsupported", "R-STR-3")
-    require(flags <= HAS_DEFORMABLES + HAS_LOADS + IS_EASED + HAS_MOTION, "malformed", "R-STR-4")
+    require(flags <= HAS_DEFORMABLES + HAS_LOADS + IS_EASED + HAS_MOTION + IS_DRIVEN, "malformed", "R-STR-4")
     require(body_size <= limits.body_size, "limit_exceeded", "R-STR-14")
     end = 12 + body_size
     require(len(data) >= end + 4, *STR_5)
@@ -120,6 +137,10 @@ def read_declaration(data: bytes, limits: Limits = Limits()) -> tuple[Declaratio
     if flags & HAS_MOTION:
         scene.motion = read_motion(body)
         require(scene.moving(), "invalid", "R-STR-22")
+    if flags & IS_DRIVEN:
+        scene.driven = {i: read_driven(body) for i in scene.moving()}
+        sound = all(is_sound(item) for item in scene.driven.values())
+        require(sound and any(item.coupling for item in scene.driven.values()), "invalid", "R-STR-23")
     while body.left() > 0:
         kind = body.varint(STR_16, STR_16)
         content = body.take(body.varint(STR_16, STR_16), STR_16)
@@ -183,6 +204,18 @@ def read_motion(body: Cursor) -> MotionConstants:
     require(all(-most <= c <= most for c in gravity) and 0 <= deceleration <= most and (any(gravity) or deceleration),
             "invalid", "R-STR-22")
     return MotionConstants(tuple(gravity), deceleration)
+
+
+def read_driven(body: Cursor) -> DrivenConstants:
+    coupling, hold, *inertia, friction, damping = struct.unpack("<5I2H", body.take(24, STR_5))
+    return DrivenConstants(coupling, hold, tuple(inertia), friction, damping)
+
+
+def is_sound(item: DrivenConstants) -> bool:
+    most = 1 << 30
+    if item == DrivenConstants(0, 0, (0, 0, 0), 0, 0):
+        return True
+    return all(1 <= c <= most for c in (item.coupling, *item.inertia)) and item.hold <= most
 
 
 def read_bounds(data: Cursor, scene: Declaration) -> Bounds:

@@ -9,13 +9,17 @@ from typing import Callable, Iterator, Optional
 
 from conventions import Cursor, StreamError, fnv1a, require
 from decoder import SceneDecoder
+from deformable_header import zigzag
+from device_path import DevicePath, device_scene
 from packet import Receiver
+from rigid import RigidDecoder
 from scene import Declaration, read_declaration
 
 UP, DOWN = 0, 1
 HANDSHAKE, PARTS, PACKET = range(3)                         # forms
 JOIN, WELCOME, REFUSAL, LEAVE = range(4)                    # kinds of handshakes
 ACK, CLOCK, BUTTONS, PIECE, STATE, HASH, FRAGMENT, PACKET_PART = range(1, 9)
+PACE = BUTTONS                                              # down
 LARGEST_DATAGRAM = 1200
 PIECE_SIZE, WINDOW = 1024, 64
 FRAGMENT_SIZE, MOST_FRAGMENTS, MOST_IN_PIECES = 1150, 1024, 4
@@ -23,6 +27,7 @@ MS = 1000                                                   # us
 BYE, WRONG_VERSION, FULL, TOO_LARGE, SILENCE, NO_SCENE, LAST_REASON = 0, 1, 2, 3, 4, 5, 6
 STATE_LIMIT, HEADER_LIMIT = 1 << 28, 1 << 20                # bytes
 NO_TIMING, END_OF_TIME = 65535, 1 << 53
+END_OF_TICKS, FARTHEST_PACE = 1 << 32, 1 << 33
 
 CUT, SPARE = ("truncated", "R-SES-3"), ("malformed", "R-SES-3")
 
@@ -57,14 +62,17 @@ def part(kind: int, data: bytes) -> bytes:
     return bytes([kind]) + varint(len(data)) + data
 
 
-COMES = {UP: (ACK, BUTTONS, STATE, HASH, FRAGMENT, PACKET_PART), DOWN: (ACK, CLOCK, PIECE, FRAGMENT, PACKET_PART)}
+COMES = {UP: (ACK, BUTTONS, STATE, HASH, FRAGMENT, PACKET_PART), DOWN: (ACK, CLOCK, PACE, PIECE, FRAGMENT, PACKET_PART)}
 
 
-def elements_of(kind: int, e: Cursor) -> tuple:
+def elements_of(kind: int, direction: int, e: Cursor) -> tuple:
     if kind == ACK:
         out = e.number(2, CUT), e.number(2, CUT), e.varint(CUT, SPARE)
     elif kind == CLOCK:
         out = (e.varint(CUT, SPARE),)
+    elif kind == PACE and direction == DOWN:
+        out = e.varint(CUT, SPARE), zigzag(e.varint(CUT, SPARE))
+        require(out[0] < END_OF_TICKS and abs(out[1]) <= FARTHEST_PACE, *SPARE)
     elif kind == BUTTONS:
         out = e.number(4, CUT), e.number(4, CUT)
     elif kind == STATE:
@@ -95,7 +103,7 @@ def read_parts(body: bytes, direction: int) -> Iterator[tuple[int, tuple]]:
         require(kind >= 64 or last < FRAGMENT or last == kind == PACKET_PART, "malformed", "R-SES-5")
         last, count = kind, count + 1
         if kind < 64:
-            yield kind, elements_of(kind, Cursor(data, 0, len(data)))
+            yield kind, elements_of(kind, direction, Cursor(data, 0, len(data)))
     alone = count == 1 and last == PACKET_PART and data[:1] == b"\0"
     require(count > 0 and not alone, "malformed", "R-SES-5")
 
@@ -143,6 +151,8 @@ class Epoch:
         self.fragments: dict[tuple, dict] = {}
         self.hash: Optional[bytes] = None
         self.packets = 0
+        self.path: Optional[DevicePath] = None              # of the device, where it moves objects
+        self.own: Optional[RigidDecoder] = None             # its packets
 
     def extend(self, value: int) -> int:
         number = self.newest + (value + 12287 - self.newest) % (1 << 14) - 12287
@@ -182,12 +192,29 @@ class Epoch:
         elif kind == PACKET_PART:
             back, packet = elements
             return self.decode(number - back, packet)
+        elif kind == PACE and self.direction == UP:
+            self.take_pace(*elements)
         else:
             self.take_said(kind, elements)
         return True
 
     def take_acknowledged(self, newest: int, missing: int) -> None:
-        """At the server, which repeats pieces."""
+        """Of the client: which packets of its device act."""
+        if self.path:
+            number = self.next - 1 - (self.next - 1 - newest) % (1 << 16)
+            self.path.acknowledge({number} | {number - 1 - i for i in range(64) if not missing >> i & 1})
+
+    def take_pace(self, begin: int, offset: int) -> None:
+        if self.path:
+            self.path.begin(begin, offset)
+
+    def drives(self) -> None:
+        """A device whose packets go up moves objects."""
+        self.path = DevicePath(device_scene(self.scene))
+        self.own = RigidDecoder(self.path.scene)
+
+    def keep_device(self, number: int, packet: bytes) -> None:
+        self.path.add(number, decode_numbered(self.own, number, packet).moment.states[0])
 
     def take_said(self, kind: int, elements: tuple) -> None:
         """What comes up only."""
@@ -320,6 +347,8 @@ class Client:
         try:
             if self.epoch.begin():
                 self.state, self.sign_at = "live", 0
+                if self.device and self.epoch.scene.driven:
+                    self.epoch.drives()
         except StreamError as error:
             self.leave(TOO_LARGE if error.errc == "limit_exceeded" else NO_SCENE)
             raise
@@ -345,6 +374,8 @@ class Client:
         if live and self.device and now >= self.device_at:
             self.device_at = now + 10 * MS
             packet = self.device(self.epoch.next)
+            if self.epoch.path:
+                self.epoch.keep_device(self.epoch.next, packet)
         due = self.epoch.ack_due is not None and now >= self.epoch.ack_due
         datagram = self.epoch.write(now, parts, packet) if parts or packet or due else None
         if datagram:

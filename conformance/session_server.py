@@ -8,20 +8,16 @@ from typing import Iterator, Optional
 
 from conventions import Cursor, StreamError, fnv1a, require
 from decoder import SceneDecoder
-from scene import Declaration, Object, State, read_declaration, state_bytes
-from session import (ACK, BUTTONS, BYE, CUT, DOWN, FRAGMENT, FULL, HANDSHAKE, JOIN, LEAVE, MS, PARTS, PIECE, PIECE_SIZE, REFUSAL, SILENCE, SPARE,
-                     STATE, TOO_LARGE, UP, WELCOME, WINDOW, WRONG_VERSION, Epoch, head, is_of_epoch, part, reason_of, sealed, varint)
+from device_path import DevicePath, device_scene
+from scene import Declaration, read_declaration, state_bytes
+from session import (ACK, BUTTONS, BYE, CUT, DOWN, FRAGMENT, FULL, HANDSHAKE, JOIN, LEAVE, MS, PACE, PARTS, PIECE, PIECE_SIZE, REFUSAL,
+                     SILENCE, SPARE, STATE, TOO_LARGE, UP, WELCOME, WINDOW, WRONG_VERSION, Epoch, head, is_of_epoch, part, reason_of,
+                     sealed, varint)
+
 
 LEAST_JOIN = 80                                             # bytes
 WELCOME_EVERY, UNPROVEN, MOST_SILENCE = 250 * MS, 10_000 * MS, 120_000 * MS
 ROLES = "observer", "participant"
-
-
-def device_scene(scene: Declaration) -> Declaration:
-    """65, section 2."""
-    device = Object("device", 63, State(0, (0, 0, 0), (1 << 30, 0, 0, 0)))
-    return Declaration(scene.version, scene.profile, scene.tick_rate, scene.position_exp, scene.velocity_exp, scene.rotation_exp,
-                       scene.angular_exp, (scene.tick_rate + 5) // 10, 64, objects=[device])
 
 
 # ---- Section 6: the server's end of an epoch ------------------------------------------------------------------------
@@ -29,6 +25,7 @@ class ServedEpoch(Epoch):
     direction, patience = DOWN, 25 * MS
     live = False
     buttons = (0, 0)                                        # tick, mask
+    reached = -1                                            # tick of the device, in the simulation
 
     def offer(self, declaration: bytes, participates: bool) -> None:
         self.offered = [declaration[i:i + PIECE_SIZE] for i in range(0, len(declaration), PIECE_SIZE)]
@@ -48,9 +45,33 @@ class ServedEpoch(Epoch):
         if kind == STATE and elements[0] == 1 and len(self.arrived) == len(self.offered) and not self.live:
             self.live = True
             if self.participates:
-                self.decoders = SceneDecoder(device_scene(self.scene))
+                device = device_scene(self.scene)
+                self.decoders = SceneDecoder(device)
+                self.path = DevicePath(device) if self.scene.driven else None
         elif kind == BUTTONS and elements[0] >= self.buttons[0]:
             self.buttons = elements
+
+    def decode(self, number: int, packet: bytes) -> bool:
+        """False also for a packet that comes too late to act (65, section 4)."""
+        if not super().decode(number, packet):
+            return False
+        if not self.path or number in self.path.states:
+            return True
+        state = self.decoders.substreams[0].receiver.kept[number].states[0]
+        if state.tick <= self.reached:
+            return False
+        self.path.add(number, state)
+        return True
+
+    def begin_pace(self, tick: int, offset: int) -> bytes:
+        """The part that tells it."""
+        self.path.begin(tick, offset)
+        return part(PACE, varint(tick) + varint(2 * offset if offset >= 0 else -2 * offset - 1))
+
+    def simulate(self, tick: int) -> None:
+        device = self.path.device_tick(tick)
+        if device is not None:
+            self.reached = device
 
     def poll(self, now: int) -> Iterator[bytes]:
         first = next((i for i in range(len(self.offered)) if i not in self.arrived), len(self.offered))

@@ -6,6 +6,7 @@ import contextlib
 import hashlib
 import io
 import json
+import random
 import shlex
 import struct
 import sys
@@ -17,6 +18,10 @@ from unittest import mock
 
 import differential
 import run
+from client import Device
+from scene import read_declaration
+from session import STATE, Epoch
+from session_server import ServedEpoch
 
 HERE = Path(__file__).resolve().parent
 
@@ -31,7 +36,7 @@ VALID = with_crc(b"\x89TCT" + struct.pack("<BBHI", 1, 0, 0, len(BODY)) + BODY)
 HEADER_LINE = ('{"header":{"version":1,"profile":0,"tick_rate":1000,"grid":[22,17,19,12],"max_extrapolation":2000,'
                '"baseline_span":1,"objects":[]}}\n')
 VALID_REPLY = HEADER_LINE + '{"end":{"complete":false,"packets":0,"state":"cbf29ce484222325"}}\n'
-WITH_FLAG = VALID[:6] + b"\x10" + VALID[7:]
+WITH_FLAG = VALID[:6] + b"\x20" + VALID[7:]
 WITH_UNKNOWN_RECORD = VALID + with_crc(b"\x04\x00")
 
 
@@ -270,6 +275,61 @@ class DifferentialTest(unittest.TestCase):
         self.assertEqual(differential.mended(VALID), VALID)
         self.assertEqual(differential.expected(bytes(damaged), None)[0], 1)
         self.assertEqual(differential.expected(differential.mended(bytes(damaged)), None)[0], 0)
+
+
+class DevicePathTest(unittest.TestCase):
+    """65, section 4: a client and a server over a network that delays and loses datagrams of the device. A tick is 1 ms."""
+
+    TICKS, EVERY = 2000, 5
+
+    def setUp(self) -> None:
+        cube = b"\x01\x3f\x01a" + struct.pack("<7i", 0, 0, 0, 1 << 30, 0, 0, 0)
+        body = struct.pack("<IBBBBHBB", 1000, 22, 17, 19, 12, 2000, 64, 1) + cube + struct.pack("<5I2H", 1000, 0, 1, 1, 1, 0, 0)
+        self.scene, _ = read_declaration(with_crc(b"\x89TCT" + struct.pack("<BBHI", 1, 0, 16, len(body)) + body))
+        self.client, self.server = Epoch(1, 0, 0, 0, 0, 0), ServedEpoch(1, 0, 0, 0, 0, 0)
+        self.client.scene = self.server.scene = self.scene
+        self.client.drives()
+        self.server.offer(b"", True)
+        self.server.take_said(STATE, (1,))
+        self.rng = random.Random(65)
+        self.device = Device(self.scene.position_exp, self.scene.tick_rate, 0.0)
+        self.way: list[tuple] = []                          # when, to whom, datagram
+
+    def send(self, tick: int, to: Epoch, datagram: bytes) -> None:
+        self.way.append((tick + self.rng.randrange(5, 25), len(self.way), to, datagram))
+
+    def step(self, tick: int, moves: bool) -> None:
+        now = 1000 * tick
+        if moves and tick % self.EVERY == 0:
+            packet = self.device.packet(tick / 1000)
+            self.client.keep_device(self.client.next, packet)
+            datagram = self.client.write(now, [], packet)
+            if self.rng.random() > 0.1:
+                self.send(tick, self.server, datagram)
+        for end, other in ((self.client, self.server), (self.server, self.client)):
+            if end.ack_due is not None and now >= end.ack_due:
+                self.send(tick, other, end.write(now, []))
+        for item in sorted(item for item in self.way if item[0] == tick):
+            item[2].take(now, item[3])
+
+    def test_both_ends_know_the_same_path(self) -> None:
+        self.server.simulate(0)
+        offset, acted = 12, []
+        for tick in range(self.TICKS):
+            if tick % 200 == 30:
+                self.send(tick, self.client, self.server.write(1000 * tick, [self.server.begin_pace(tick, offset)]))
+                offset = self.rng.randrange(5, 40)
+            self.step(tick, True)
+            self.server.simulate(tick)
+            acted.append(self.server.path.place(tick))
+        for tick in range(self.TICKS, self.TICKS + 200):
+            self.step(tick, False)
+        self.assertEqual([self.server.path.place(t) for t in range(self.TICKS)], acted, "the past has changed")
+        self.assertEqual([self.client.path.place(t) for t in range(self.TICKS)], acted)
+        self.assertEqual(acted[:31].count(None), 30, "a place before any pace")
+        decoded = set(self.server.decoders.substreams[0].receiver.kept)
+        self.assertTrue(decoded - set(self.server.path.states), "no packet came too late")
+        self.assertGreater(len({self.server.path.device_tick(t + 1) - self.server.path.device_tick(t) for t in range(30, 1900)}), 2)
 
 
 if __name__ == "__main__":

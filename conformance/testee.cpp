@@ -16,7 +16,8 @@
 int main(int argc, char** argv) {
   std::optional<tactus::Interpolation> replica;
   const std::string_view kind = argc == 3 && std::string_view(argv[1]) == "--replica" ? argv[2] : "";
-  if (kind == "none") replica = tactus::Interpolation::none;
+  const bool device = kind == "device";
+  if (kind == "none" || device) replica = tactus::Interpolation::none;
   if (kind == "linear") replica = tactus::Interpolation::linear;
   if (kind == "hermite") replica = tactus::Interpolation::hermite;
   if (kind == "blending") replica = tactus::Interpolation::blending;
@@ -24,7 +25,8 @@ int main(int argc, char** argv) {
   const bool session = argc == 2 && std::string_view(argv[1]) == "--session";
   if (argc != 1 && !replica && !session) {
     std::fputs(
-        "usage: testee [--replica none|linear|hermite|blending|playout] <stream.tct\n       testee --session <datagrams.script\n",
+        "usage: testee [--replica none|device|linear|hermite|blending|playout] <stream.tct\n       testee --session "
+        "<datagrams.script\n",
         stderr);
     return 2;
   }
@@ -36,7 +38,7 @@ int main(int argc, char** argv) {
   }
   const std::vector<char> file{std::istreambuf_iterator<char>(std::cin), {}};
   const auto done =
-      tactus::conformance::report({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, replica, std::cout);
+      tactus::conformance::report({reinterpret_cast<const std::uint8_t*>(file.data()), file.size()}, replica, device, std::cout);
   if (!done) tactus::conformance::report_error(tactus::errc_name(done.error().code), done.error().rule, std::cout);
   return done ? 0 : 1;
 }

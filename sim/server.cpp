@@ -45,8 +45,35 @@ Result<void> Server::add_objects(const ServerOptions& options) {
   return {};
 }
 
+/// What the clients know of the objects that their devices push or hold.
+Server::Driven Server::driven_objects() const {
+  Driven out(scene_.objects.size());
+  for (std::uint32_t i = 0; i < scene_.objects.size(); ++i) {
+    const SceneObject& object = scene_.objects[i];
+    if (object.dof == Dof::none || !scene_.touch) continue;
+    const DrivenPhysics physics{.mass = object.mass,
+                                .inertia = rigid_->inertia(i),
+                                .stiffness = scene_.touch->stiffness,
+                                .hold = scene_.touch->lift_stiffness,
+                                .friction = scene_.touch->friction,
+                                .damping = kTickRate * (1 - object.damping)};
+    if (SceneBuilder::can_drive(physics, kTickRate)) out[i] = physics;
+  }
+  return out;
+}
+
+/// Gravity, and the friction of the objects on the floor.
+MotionPhysics Server::motion_physics() const {
+  MotionPhysics out{.gravity = scene_.gravity};
+  for (const SceneObject& object : scene_.objects)
+    if (object.dof != Dof::none) out.friction = std::max(out.friction, object.friction);
+  return out;
+}
+
 Result<void> Server::add_codec(const ServerCodec& codec) {
-  SceneBuilder builder = scene_builder(scene_);
+  const bool drives = codec.sessions && codec.coding.rigid == RigidProfile::main;
+  SceneBuilder builder = scene_builder(scene_, drives ? driven_objects() : Driven{});
+  if (drives) builder.motion(motion_physics());
   builder.rigid_profile(codec.coding.rigid);
   for (std::size_t i = 0; i < scene_.deformables.size(); ++i) {
     TraceCoding coding = codec.coding;

@@ -65,6 +65,9 @@ class Server {
  private:
   Server(const Scene& scene, const ServerOptions& options);
   Result<void> add_objects(const ServerOptions& options);
+  using Driven = std::vector<std::optional<DrivenPhysics>>;
+  Driven driven_objects() const;
+  MotionPhysics motion_physics() const;
   Result<void> add_codec(const ServerCodec& codec);
   void add_noise() noexcept;
 

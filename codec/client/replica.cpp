@@ -34,6 +34,7 @@ Replica::Replica(const Scene& scene, const ReplicaOptions& options, std::vector<
       shapes_(std::move(shapes)) {
   reset_timelines();
   for (std::size_t i = 0; i < tracks_.size(); ++i) {
+    tracks_[i].path.object = static_cast<std::uint32_t>(i);
     tracks_[i].path.state.position = scene.objects[i].initial.position;
     tracks_[i].path.state.rotation = scene.objects[i].initial.rotation;
   }
@@ -82,7 +83,7 @@ void Replica::apply(const DecodedPacket& packet, std::span<const RigidState> obj
     track.begin = track.end = now;
     if (interpolation_ == Interpolation::none || running) continue;
     track.end = now + interval(track);
-    track.error = offset_between(predictor_.pose(track.path.state, now), shown);
+    track.error = offset_between(predictor_.shown(update.object, track.path.state, now), shown);
     if (interpolation_ != Interpolation::linear)
       track.change = change_between(scene_, before, motion(track, now), track.end - now);
   }
@@ -95,14 +96,16 @@ RigidMotion Replica::motion(const Track& track, std::int64_t now) const noexcept
 }
 
 /// spec 60-client 7.   pre  a.state.tick <= tick, and tick <= b->state.tick if there is a b
-RigidPose Replica::path_between(const Timeline::Update& a, const Timeline::Update* b, std::int64_t tick) const noexcept {
+RigidPose Replica::path_between(std::uint32_t object, const Timeline::Update& a, const Timeline::Update* b,
+                                std::int64_t tick) const noexcept {
   const bool is_whole = b == nullptr || a.number == 0 || b->state.tick == a.state.tick || b->state.tick - a.state.tick > reach_ ||
                         heard_.all_between(a.number, b->number);
-  return is_whole ? predictor_.pose(a.state, tick) : bend(scene_, a.state, b->state, tick);
+  return is_whole ? predictor_.shown(object, a.state, tick) : bend(scene_, a.state, b->state, tick);
 }
 
 /// What was left to go at the tick of an update: from the updates before it, back to one whose own easing was over when the next came.
-PoseOffset Replica::past_offset(const Timeline& timeline, const Timeline::Update& update) const noexcept {
+PoseOffset Replica::past_offset(std::uint32_t object, const Timeline::Update& update) const noexcept {
+  const Timeline& timeline = timelines_[object];
   const Timeline::Update* at = &update;
   for (const auto* z = timeline.previous(*at); z != nullptr && is_easing(z->state, at->state.tick); z = timeline.previous(*at))
     at = z;
@@ -111,18 +114,17 @@ PoseOffset Replica::past_offset(const Timeline& timeline, const Timeline::Update
     const Timeline::Update* z = timeline.previous(*at);
     const std::int64_t tick = at->state.tick;
     if (z == nullptr) out = {};
-    else out = kept_offset(eased(path_between(*z, at, tick), z->state, out, tick), at->state);
+    else out = kept_offset(eased(path_between(object, *z, at, tick), z->state, out, tick), at->state);
     if (at == &update) return out;
   }
 }
 
 /// spec 60-client 7 and 8
 RigidPose Replica::past_pose(std::uint32_t object, std::int64_t tick) const noexcept {
-  const Timeline& timeline = timelines_[object];
-  const auto [a, b] = timeline.around(tick);
+  const auto [a, b] = timelines_[object].around(tick);
   tick = std::max(tick, a.state.tick);
-  const RigidPose path = path_between(a, b, tick);
-  return is_easing(a.state, tick) ? eased(path, a.state, past_offset(timeline, a), tick) : path;
+  const RigidPose path = path_between(object, a, b, tick);
+  return is_easing(a.state, tick) ? eased(path, a.state, past_offset(object, a), tick) : path;
 }
 
 RigidPose Replica::pose(std::uint32_t object, std::int64_t now) const noexcept {
@@ -133,7 +135,7 @@ RigidPose Replica::pose(std::uint32_t object, std::int64_t now) const noexcept {
   const std::int64_t left = round_div((track.end - now) << 30, track.end - track.begin);
   const Cubic curve = cubic(left);
   const std::int64_t faded = interpolation_ == Interpolation::hermite ? curve.error : left;
-  return displaced(predictor_.pose(track.path.state, now), track.error, track.change, {faded, faded, curve.change});
+  return displaced(predictor_.shown(object, track.path.state, now), track.error, track.change, {faded, faded, curve.change});
 }
 
 std::span<const Vec3i> Replica::displacements(std::size_t object, std::int64_t now) noexcept {

@@ -43,6 +43,9 @@ class Replica {
   /// pre  check(); scene and decoders outlive the replica.   in  shapes  one per deformable object
   Replica(const Scene& scene, const ReplicaOptions& options, std::vector<DeformableDecoder*> shapes);
 
+  /// Know the device of this client, which may drive objects.   in  path  outlives the replica
+  void know(const DevicePath& path) { predictor_.know(path); }
+
   /// Apply a decoded packet of the rigid objects at tick `arrival`: its own, or later when the network delayed it. An earlier
   /// arrival counts as the packet's tick, or as that of the object's last update, if that is later. With Interpolation::playout the
   /// arrival does not matter. Packets may come in any order.
@@ -79,8 +82,9 @@ class Replica {
   };
   void add_to_timelines(const DecodedPacket& packet, std::span<const RigidState> objects) noexcept;
   void reset_timelines() noexcept;
-  RigidPose path_between(const Timeline::Update& a, const Timeline::Update* b, std::int64_t tick) const noexcept;
-  PoseOffset past_offset(const Timeline& timeline, const Timeline::Update& update) const noexcept;
+  RigidPose path_between(std::uint32_t object, const Timeline::Update& a, const Timeline::Update* b,
+                         std::int64_t tick) const noexcept;
+  PoseOffset past_offset(std::uint32_t object, const Timeline::Update& update) const noexcept;
   RigidPose past_pose(std::uint32_t object, std::int64_t tick) const noexcept;
   std::int64_t interval(const Track& track) const noexcept;
   RigidMotion motion(const Track& track, std::int64_t now) const noexcept;

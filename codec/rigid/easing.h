@@ -25,12 +25,13 @@ inline bool is_easing(const RigidState& update, std::int64_t tick) noexcept {
 
 /// The path of one object over its updates.
 struct EasedPath {
+  std::uint32_t object = 0;
   RigidState state;     ///< the newest update
   PoseOffset offset{};  ///< what was left to go at its tick
 
   /// pre  tick >= state.tick
   RigidPose pose(const RigidPredictor& predictor, std::int64_t tick) const noexcept {
-    return eased(predictor.pose(state, tick), state, offset, tick);
+    return eased(predictor.shown(object, state, tick), state, offset, tick);
   }
   /// Go on with an update.   time O(1), about 0.6 us where it is eased
   void follow(const RigidPredictor& predictor, const RigidState& update) noexcept;

@@ -41,9 +41,11 @@ void PredictorChoice::read(std::int64_t tick, std::span<const RigidState> truth)
   for (const std::uint32_t i : scene_.moving()) past_[i * kKept + newest_] = truth[i];
 }
 
-bool PredictorChoice::is_candidate(std::uint32_t object, Predictor predictor) const noexcept {
-  const MotionConstants& motion = *scene_.motion;
+bool PredictorChoice::is_candidate(std::uint32_t object, const RigidState& truth, Predictor predictor) const noexcept {
   if (predictor == Predictor::linear) return true;
+  if (predictor == Predictor::driven) return predictor_.knows_device() && truth.contact != DrivenContact{};
+  if (!scene_.motion) return false;
+  const MotionConstants& motion = *scene_.motion;
   if (predictor == Predictor::slide) return motion.slide_deceleration != 0;
   for (std::size_t i = 0; i < 3; ++i)
     if (motion.gravity[i] != 0 && !(scene_.objects[object].dof >> i & 1u)) return false;
@@ -51,14 +53,15 @@ bool PredictorChoice::is_candidate(std::uint32_t object, Predictor predictor) co
 }
 
 PredictorChoice::Record PredictorChoice::record_of(Predictor predictor, std::uint32_t object, const RigidState& truth,
-                                                   const PermittedError& permitted) const noexcept {
+                                                   const PermittedError& permitted, std::size_t enough) const noexcept {
   Record out;
-  for (std::size_t age = 0; age < count_; age += 1 + age / 2) {
+  for (std::size_t age = 0; age < count_ && out.served < enough; age += 1 + age / 2) {
     RigidState from = past_[object * kKept + (newest_ + kKept - age) % kKept];
     if (from.tick == truth.tick) continue;
     if (truth.tick - from.tick > longest_) break;
+    if (predictor == Predictor::driven && from.contact == DrivenContact{}) break;
     from.predictor = predictor;
-    const double e = error(predictor_.pose(from, truth.tick), truth, permitted, scene_.grid.position);
+    const double e = error(predictor_.shown(object, from, truth.tick), truth, permitted, scene_.grid.position);
     if (e > 1) break;
     out.error += e;
     ++out.served;
@@ -68,10 +71,11 @@ PredictorChoice::Record PredictorChoice::record_of(Predictor predictor, std::uin
 
 Predictor PredictorChoice::choose(std::uint32_t object, const RigidState& truth, const PermittedError& permitted) const noexcept {
   Predictor best = Predictor::linear;
-  Record most = record_of(best, object, truth, permitted);
-  for (const Predictor predictor : {Predictor::ballistic, Predictor::slide}) {
-    if (!is_candidate(object, predictor)) continue;
-    const Record record = record_of(predictor, object, truth, permitted);
+  Record most = record_of(best, object, truth, permitted, kKept);
+  for (const Predictor predictor : {Predictor::ballistic, Predictor::slide, Predictor::driven}) {
+    if (!is_candidate(object, truth, predictor)) continue;
+    const std::size_t enough = predictor == Predictor::driven ? most.served + 1 : kKept;  // it takes its time
+    const Record record = record_of(predictor, object, truth, permitted, enough);
     if (record.served < most.served || (record.served == most.served && record.error >= most.error)) continue;
     best = predictor;
     most = record;

@@ -31,7 +31,7 @@ Result<void> RigidDecoder::read_updates(const RigidStates& base, std::int64_t ti
     CodedUpdate update;
     code_update(coder_, models_, scene_, object, update);
     if (coder_.too_wide()) return fail(Errc::malformed, "R-RNG-4", bit());
-    if (!is_declared(scene_, update.predictor)) return fail(Errc::invalid, "R-RIG-7", bit());
+    if (!is_declared(scene_, object, update.predictor)) return fail(Errc::invalid, "R-RIG-7", bit());
     const RigidState& state = base.objects[object];
     const auto after = reconstruct(predictor_, {state, predictor_.pose(state, tick)}, tick, update, scene_.grid);
     if (!after) return fail(Errc::invalid, "R-RIG-6", bit());

@@ -129,12 +129,19 @@ RigidEncoder::RigidEncoder(const Scene& scene, const RigidTriggers& triggers, Ba
       truth_(initial_states(scene).objects) {
   if (triggers.reduction != Reduction::none) {
     if (scene.is_eased) acceleration_.emplace(scene);
-    if (scene.motion) choice_.emplace(scene);
+    if (has_predictors(scene)) choice_.emplace(scene);
   }
   pending_.reserve(scene.moving().size());
   before_.reserve(scene.moving().size());
-  for (const RigidState& state : truth_) sent_.push_back({.path = {.state = state}});
+  for (std::uint32_t i = 0; i < truth_.size(); ++i) sent_.push_back({.path = {.object = i, .state = truth_[i]}});
   set_widening(1);
+}
+
+void RigidEncoder::know(const DevicePath& path) {
+  if (!scene_.driven || !choice_) return;
+  predictor_.know(path);
+  choice_->know(path);
+  driven_.emplace(scene_, path);
 }
 
 void RigidEncoder::set_widening(double factor) noexcept {
@@ -167,6 +174,7 @@ Result<void> RigidEncoder::read(std::int64_t tick, std::span<const RigidSample> 
   samples_ = samples;
   contacts_ = contacts;
   if (acceleration_) acceleration_->read(tick, samples);
+  if (driven_) driven_->read(tick, samples, contacts, truth_);
   if (choice_) choice_->read(tick, truth_);
   return {};
 }
@@ -198,7 +206,7 @@ bool RigidEncoder::can_improve(std::uint32_t object, const RigidPose& shown) con
 Reason RigidEncoder::reason_for(std::uint32_t object) const noexcept {
   const EasedPath& path = sent_[object].path;
   const std::int64_t tick = truth_[object].tick;
-  const RigidPose course = predictor_.pose(path.state, tick);
+  const RigidPose course = predictor_.shown(object, path.state, tick);
   const RigidPose shown = eased(course, path.state, path.offset, tick);
   if (!haptic_within(object, shown, 1.0) && can_improve(object, shown)) return Reason::haptic;
   if (!within(visual_, shown, truth_[object])) return Reason::visual;
@@ -334,6 +342,7 @@ Result<CodedUpdate> RigidEncoder::quantise(Pending& update, const Prediction& pr
                       .level = static_cast<std::uint8_t>(level),
                       .residual = quantise_pose(prediction.pose, truth, dof, level, scene_.grid),
                       .predictor = static_cast<std::uint8_t>(told.predictor)};
+    if (told.predictor == Predictor::driven) tell_contact(prediction.base, told.contact, coded);
     quantise_motion(predictor_, prediction, told, dof, coded);
     const auto state = reconstruct(predictor_, prediction, truth.tick, coded, scene_.grid);
     if (!state) return fail(Errc::internal, "R-RIG-6");

@@ -21,6 +21,7 @@
 #include <tactus/packet/substream_encoder.h>
 #include <tactus/rigid/acceleration.h>
 #include <tactus/rigid/contact.h>
+#include <tactus/rigid/driven_choice.h>
 #include <tactus/rigid/ease_choice.h>
 #include <tactus/rigid/easing.h>
 #include <tactus/rigid/error_share.h>
@@ -52,6 +53,7 @@ class RigidEncoder {
   /// pre  read() took the request's tick.   time O(objects), < 1 us per object, < 4 us per update; no allocation.
   /// err  invalid_argument R-API-7 the residual from the predicted pose exceeds what an update can code
   Result<Payload> encode(const EncodeRequest<RigidStates>& request, std::span<std::uint8_t> out) noexcept;
+  void know(const DevicePath& path);  ///< of the receiver's device.   pre  it outlives the encoder.   allocates
   void commit(const RigidStates& base, RigidStates& next) noexcept;
   void acknowledge(std::uint64_t number) noexcept;
   void forget_last() noexcept;
@@ -101,6 +103,7 @@ class RigidEncoder {
   std::int64_t heartbeat_ = 0;               // [ticks], 0: off
   std::optional<Acceleration> acceleration_;  // where updates lean or are eased
   std::optional<PredictorChoice> choice_;     // if there is one
+  std::optional<DrivenChoice> driven_;        // if the receiver's device may drive objects
   std::vector<RigidState> truth_;             // this tick, on the grid
   std::span<const RigidSample> samples_;      // this tick, as given
   std::span<const Contact> contacts_;

@@ -90,6 +90,17 @@ RigidPose RigidPredictor::pose(const RigidState& state, std::int64_t tick) const
   return pose;
 }
 
+void RigidPredictor::know(const DevicePath& path) {
+  if (!scene_.driven) return;
+  bodies_.resize(scene_.objects.size());
+  path_ = &path;
+}
+
+RigidPose RigidPredictor::shown(std::uint32_t object, const RigidState& state, std::int64_t tick) const noexcept {
+  if (state.predictor != Predictor::driven || path_ == nullptr) return pose(state, tick);
+  return bodies_[object].pose(scene_, object, *path_, state, tick);
+}
+
 RigidMotion RigidPredictor::free_motion(const RigidState& state, std::int64_t dt) const noexcept {
   RigidMotion out{state.velocity, state.angular_velocity};
   if (state.predictor == Predictor::ballistic) {

@@ -24,8 +24,19 @@ enum class Predictor : std::uint8_t {
   linear = 0,     ///< constant velocities
   ballistic = 1,  ///< gravity accelerates the position
   slide = 2,      ///< both velocities fall to 0 together, the velocity by a constant deceleration
+  driven = 3,     ///< the device of the client pushes or holds it; for who does not know the device, constant velocities
 };
-inline constexpr std::size_t kPredictors = 3;
+inline constexpr std::size_t kPredictors = 4;
+
+/// Where the device of a client touches an object, in the object's frame. spec/40-rigid.md section 4.1
+struct DrivenContact {
+  static constexpr int kPoint = 13, kNormal = 10, kDrag = 4;  ///< exponents of the grids
+  bool is_held = false;                                       ///< coupled to `point`; else the proxy lies on a face through it
+  std::array<std::int32_t, 3> point{};                        ///< x 2^-13 m
+  std::array<std::int32_t, 3> normal{};                       ///< x 2^-10, outward; 0 if it is held
+  std::int32_t drag = 0;  ///< x 2^-4 m/s^2: what slows down the object that is pushed, besides its weight; 0 if it is held
+  friend bool operator==(const DrivenContact&, const DrivenContact&) = default;
+};
 
 /// Integer pose and motion of one rigid object at one tick. This is all that a decoder keeps per object.
 struct RigidState {
@@ -35,8 +46,9 @@ struct RigidState {
   std::array<std::int32_t, 3> velocity{};                  ///< x 2^-velocity m/s
   std::array<std::int32_t, 3> angular_velocity{};          ///< x 2^-angular_velocity rad/s, world frame
   Predictor predictor = Predictor::linear;
-  std::uint8_t ease = 0;  ///< clients pass over to this path within 2^ease ticks; 0: at once (easing.h)
-  std::uint8_t keep = 0;  ///< ... and begin with 16, 15, 12 or 8 sixteenths of what they were off it
+  std::uint8_t ease = 0;    ///< clients pass over to this path within 2^ease ticks; 0: at once (easing.h)
+  std::uint8_t keep = 0;    ///< ... and begin with 16, 15, 12 or 8 sixteenths of what they were off it
+  DrivenContact contact{};  ///< of the newest update that was driven
   friend bool operator==(const RigidState&, const RigidState&) = default;
 };
 

@@ -66,10 +66,36 @@ std::optional<RigidPose> add_pose(const RigidPose& predicted, const Residual& re
 
 }  // namespace
 
-bool is_declared(const Scene& scene, std::uint8_t predictor) noexcept {
+bool is_declared(const Scene& scene, std::uint32_t object, std::uint8_t predictor) noexcept {
   if (predictor == 0) return true;
+  if (predictor == 3) return scene.driven && scene.driven->bodies[object].coupling != 0;
   if (predictor == 1) return scene.motion && scene.motion->gravity != Vec3i{};
   return predictor == 2 && scene.motion && scene.motion->slide_deceleration != 0;
+}
+
+namespace {
+
+std::array<std::int32_t, 7> numbers_of(const DrivenContact& c) noexcept {
+  return {c.point[0], c.point[1], c.point[2], c.normal[0], c.normal[1], c.normal[2], c.drag};
+}
+
+}  // namespace
+
+void tell_contact(const RigidState& base, const DrivenContact& contact, CodedUpdate& update) noexcept {
+  const auto before = numbers_of(base.contact), now = numbers_of(contact);
+  update.is_held = contact.is_held;
+  for (std::size_t i = 0; i < now.size(); ++i) update.contact[i] = contact.is_held && i >= 3 ? 0 : now[i] - before[i];
+}
+
+DrivenContact contact_of(const RigidState& base, const CodedUpdate& update) noexcept {
+  constexpr std::int64_t kMost = 1 << 20;
+  const auto before = numbers_of(base.contact);
+  const auto number = [&](std::size_t i) {
+    return static_cast<std::int32_t>(std::clamp<std::int64_t>(std::int64_t{before[i]} + update.contact[i], -kMost, kMost));
+  };
+  DrivenContact out{.is_held = update.is_held, .point = {number(0), number(1), number(2)}};
+  if (!out.is_held) out.normal = {number(3), number(4), number(5)}, out.drag = number(6);
+  return out;
 }
 
 /// What a signed magnitude can carry: 31 bits (R-RNG-4).
@@ -129,7 +155,9 @@ std::optional<RigidState> reconstruct(const RigidPredictor& predictor, const Pre
                  motion.angular_velocity,
                  static_cast<Predictor>(update.predictor),
                  update.ease,
-                 update.keep};
+                 update.keep,
+                 prediction.base.contact};
+  if (out.predictor == Predictor::driven) out.contact = contact_of(prediction.base, update);
   const unsigned shift = update.level;
   for (std::size_t i = 0; i < 3; ++i) {
     out.velocity[i] = saturate32((round_shift(motion.velocity[i], shift) + update.residual.of[1][i]) << shift);
@@ -143,7 +171,8 @@ std::optional<RigidState> reconstruct(const RigidPredictor& predictor, const Pre
 std::size_t max_rigid_packet(const Scene& scene) noexcept {
   constexpr std::size_t kHead = 64;     // sequence, key, baseline, tick, count, tail
   constexpr std::size_t kUpdate = 208;  // gap, reason, level, predictor, ease, keep and 12 components at 15 bits per adaptive bit
-  return kHead + kUpdate * scene.moving().size();
+  const std::size_t contact = scene.driven ? 88 : 0;  // 7 more
+  return kHead + (kUpdate + contact) * scene.moving().size();
 }
 
 }  // namespace tactus

@@ -40,7 +40,8 @@ struct RigidModels {
   TreeModel<3> ease;
   TreeModel<2> keep;
   std::array<ResidualModels, 2> residual;  // position and velocity; rotation and angular velocity
-  std::array<TreeModel<2>, 4> predictor;   // by reason
+  std::array<TreeModel<2>, 8> predictor;   // by reason; in driven scenes by 4 + reason
+  std::array<MagnitudeModel, 3> contact;   // of point, normal and drag
 };
 
 /// Start probabilities, spec/40-rigid.md table 2.
@@ -61,7 +62,12 @@ struct CodedUpdate {
   std::uint8_t ease = 0, keep = 0;  ///< as in RigidState; 0 in a scene that is not eased
   Residual residual;
   std::uint8_t predictor = 0;
+  bool is_held = false;                   ///< driven: as in DrivenContact
+  std::array<std::int32_t, 7> contact{};  ///< driven: differences of point, normal and drag from those of the baseline
 };
+
+/// Updates choose among them.
+inline bool has_predictors(const Scene& scene) noexcept { return scene.motion || scene.driven; }
 
 template <class Coder>
 void code_head(Coder& coder, RigidModels& models, const Scene& scene, RigidHead& head) noexcept {
@@ -111,6 +117,14 @@ constexpr std::uint8_t usual_ease(std::uint32_t tick_rate) noexcept {
   return static_cast<std::uint8_t>(width > 0 ? width - 1 : 0);
 }
 
+/// Where the device touches the object.
+template <class Coder>
+void code_contact(Coder& coder, RigidModels& models, CodedUpdate& update) noexcept {
+  update.is_held = coder.raw(1, update.is_held ? 1u : 0u) != 0;
+  const std::size_t count = update.is_held ? 3 : 7;
+  for (std::size_t i = 0; i < count; ++i) update.contact[i] = coder.signed_value(models.contact[i / 3], update.contact[i]);
+}
+
 template <class Coder>
 void code_update(Coder& coder, RigidModels& models, const Scene& scene, std::uint32_t object, CodedUpdate& update) noexcept {
   const std::uint8_t dof = scene.objects[object].dof;
@@ -121,17 +135,23 @@ void code_update(Coder& coder, RigidModels& models, const Scene& scene, std::uin
     update.ease = static_cast<std::uint8_t>((usual - coder.template tree<3>(models.ease, (usual - update.ease) & 7u)) & 7u);
   }
   if (update.ease > 0) update.keep = static_cast<std::uint8_t>(coder.template tree<2>(models.keep, update.keep));
-  if (scene.motion) {
-    TreeModel<2>& model = models.predictor[static_cast<std::size_t>(update.reason)];
+  if (has_predictors(scene)) {
+    TreeModel<2>& model = models.predictor[static_cast<std::size_t>(update.reason) + (scene.driven ? 4 : 0)];
     update.predictor = static_cast<std::uint8_t>(coder.template tree<2>(model, update.predictor));
   }
+  if (update.predictor == static_cast<std::uint8_t>(Predictor::driven) && scene.driven) code_contact(coder, models, update);
   auto& of = update.residual.of;
   code_residual(coder, models.residual[0], dof & 7u, update.reason, of[0], of[1]);
   code_residual(coder, models.residual[1], dof >> 3, update.reason, of[2], of[3]);
 }
 
 /// Does the scene declare what this predictor needs? (R-RIG-7)
-bool is_declared(const Scene& scene, std::uint8_t predictor) noexcept;
+bool is_declared(const Scene& scene, std::uint32_t object, std::uint8_t predictor) noexcept;
+
+/// The differences that tell `contact`.
+void tell_contact(const RigidState& base, const DrivenContact& contact, CodedUpdate& update) noexcept;
+/// What they tell.
+DrivenContact contact_of(const RigidState& base, const CodedUpdate& update) noexcept;
 
 /// State of one object before a packet, and its predicted pose at the packet's tick.
 struct Prediction {

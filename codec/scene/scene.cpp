@@ -87,6 +87,23 @@ RuleName broken_motion_rule(const SceneSpec& spec) noexcept {
   return moves && fits && motion != MotionConstants{} ? RuleName{} : RuleName{"R-STR-22"};
 }
 
+RuleName broken_driven_rule(const SceneSpec& spec) noexcept {
+  if (!spec.driven) return {};
+  using Body = DrivenConstants::Body;
+  const auto fits = [](std::uint32_t value) { return value >= 1 && value <= Body::kMost; };
+  if (spec.driven->bodies.size() != spec.objects.size()) return "R-STR-23";
+  bool any = false;
+  for (std::size_t i = 0; i < spec.objects.size(); ++i) {
+    const Body& body = spec.driven->bodies[i];
+    if (body == Body{}) continue;
+    if (spec.objects[i].dof == Dof::none || !fits(body.coupling) || body.hold > Body::kMost ||
+        !std::ranges::all_of(body.inertia, fits))
+      return "R-STR-23";
+    any = true;
+  }
+  return any ? RuleName{} : RuleName{"R-STR-23"};
+}
+
 namespace {
 
 Result<void> find_broken_rule(const SceneSpec& spec, const DecodeLimits& limits) {
@@ -108,6 +125,7 @@ Result<void> find_broken_rule(const SceneSpec& spec, const DecodeLimits& limits)
   }
   if (const RuleName rule = broken_load_rule(spec)) return fail(Errc::invalid, rule);
   if (const RuleName rule = broken_motion_rule(spec)) return fail(Errc::invalid, rule);
+  if (const RuleName rule = broken_driven_rule(spec)) return fail(Errc::invalid, rule);
   if (spec.bounds && !are_bounds(spec)) return fail(Errc::invalid, "R-STR-17");
   if (state_bytes(spec) > limits.state_bytes) return fail(Errc::limit_exceeded, "R-STR-18");
   if (basis_work(spec) > limits.basis_work) return fail(Errc::limit_exceeded, "R-STR-21");

@@ -50,6 +50,23 @@ struct MotionConstants {
   friend bool operator==(const MotionConstants&, const MotionConstants&) = default;
 };
 
+/// What predicts an object that the client's own device moves. spec/40-rigid.md section 4.1
+struct DrivenConstants {
+  /// Of one rigid object. All 0: no device drives it.
+  struct Body {
+    static constexpr std::uint32_t kMost = 1u << 30;
+    std::uint32_t coupling = 0;              ///< stiffness between device and proxy over the object's mass, x 2^-8 s^-2; 1..kMost
+    std::uint32_t hold = 0;                  ///< the same while the device holds the object; 0: it never does; ..kMost
+    std::array<std::uint32_t, 3> inertia{};  ///< moments about the axes of its frame over its mass, x 2^-30 m^2; 1..kMost
+    std::uint16_t friction = 0;              ///< of the proxy on it, x 2^-8
+    std::uint16_t damping = 0;               ///< share of its velocities that it loses per tick, x 2^-20
+    friend bool operator==(const Body&, const Body&) = default;
+  };
+  std::vector<Body>
+      bodies;  ///< one per rigid object; those of static objects are 0, that of a moving one is not for at least one
+  friend bool operator==(const DrivenConstants&, const DrivenConstants&) = default;
+};
+
 struct SceneSpec {
   std::uint32_t tick_rate = 1000;  ///< ticks per second, 1 .. 1 000 000
   GridExponents grid;
@@ -60,6 +77,7 @@ struct SceneSpec {
   std::vector<DeformableObject> deformables;  ///< a stream without any spends no byte on them
   std::optional<LoadSpec> loads;              ///< of the objects that can move; none: a stream spends no byte on them
   std::optional<MotionConstants> motion;      ///< of the objects that can move; none: their velocities alone predict them
+  std::optional<DrivenConstants> driven;      ///< of objects that a client's device moves; none: it predicts nothing
   std::optional<StreamBounds> bounds;         ///< error bounds that the sender guarantees; none: not declared
 };
 

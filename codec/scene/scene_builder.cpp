@@ -72,6 +72,25 @@ Result<std::optional<MotionConstants>> constants_of(const MotionPhysics& physics
   return out;
 }
 
+/// Nothing: a constant cannot be told.
+std::optional<DrivenConstants::Body> body_of(const DrivenPhysics& physics, std::uint32_t tick_rate) noexcept {
+  constexpr double kMost = DrivenConstants::Body::kMost, kMost16 = 65535;
+  bool fits = true;
+  const auto units = [&fits](double value, double least, double most) {
+    const double rounded = std::floor(value + 0.5);
+    const bool is_in = rounded >= least && rounded <= most;
+    fits = fits && is_in;
+    return is_in ? static_cast<std::uint32_t>(rounded) : 0u;
+  };
+  DrivenConstants::Body out{.coupling = units(std::ldexp(physics.stiffness / physics.mass, 8), 1, kMost),
+                            .hold = units(std::ldexp(physics.hold / physics.mass, 8), 0, kMost)};
+  const std::array inertia{physics.inertia.x, physics.inertia.y, physics.inertia.z};
+  for (std::size_t i = 0; i < 3; ++i) out.inertia[i] = units(std::ldexp(inertia[i] / physics.mass, 30), 1, kMost);
+  out.friction = static_cast<std::uint16_t>(units(std::ldexp(physics.friction, 8), 0, kMost16));
+  out.damping = static_cast<std::uint16_t>(units(std::ldexp(physics.damping / tick_rate, 20), 0, kMost16));
+  return fits ? std::optional(out) : std::nullopt;
+}
+
 }  // namespace
 
 SceneBuilder& SceneBuilder::rigid(std::string name, const Pose& initial, std::uint8_t dof) {
@@ -114,6 +133,15 @@ SceneBuilder& SceneBuilder::motion(const MotionPhysics& physics) {
   return *this;
 }
 
+bool SceneBuilder::can_drive(const DrivenPhysics& physics, std::uint32_t tick_rate) noexcept {
+  return body_of(physics, tick_rate).has_value();
+}
+
+SceneBuilder& SceneBuilder::driven(const DrivenPhysics& physics) {
+  if (!rigid_.empty()) rigid_.back().driven = physics;
+  return *this;
+}
+
 SceneBuilder& SceneBuilder::promise(const RigidTriggers& rigid, const DeformableThresholds& deformables,
                                     const LoadThresholds& loads) {
   promise_ = {rigid, deformables, loads};
@@ -140,10 +168,18 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build() try {
     const RigidObject& made = spec.objects.back();
     if (const RuleName rule = broken_object_rule(made)) return refuse({Errc::invalid, rule, 0}, made.name);
     if (!names.insert(made.name).second) return refuse({Errc::invalid, RuleName("R-STR-11"), 0}, made.name);
+    if (object.driven) {
+      const auto body = body_of(*object.driven, spec.tick_rate);
+      if (!body) return refuse({Errc::invalid_argument, RuleName("R-API-4"), 0}, made.name);
+      if (!spec.driven) spec.driven.emplace();
+      spec.driven->bodies.resize(spec.objects.size());
+      spec.driven->bodies.back() = *body;
+    }
     if (made.dof == Dof::none) continue;
     spec.motion = *constants;
     spec.is_eased = taken.rigid_profile_ == RigidProfile::main;
   }
+  if (spec.driven) spec.driven->bodies.resize(spec.objects.size());
   const bool is_nearly_exact = taken.promise_ && taken.promise_->deformables.visual <= kNearlyExact;
   for (Deformable& of : taken.deformables_) {
     choose(of.coding, is_nearly_exact);

@@ -47,6 +47,16 @@ struct MotionPhysics {
   double friction = 0;  ///< an object that slides is slowed down by this times |gravity|; 0: not told
 };
 
+/// A box or anything like it that a client's device pushes or holds.
+struct DrivenPhysics {
+  double mass = 0;       ///< [kg]
+  Vec3 inertia{};        ///< [kg m^2] about the axes of the object's frame
+  double stiffness = 0;  ///< [N/m] of the coupling between device and proxy
+  double hold = 0;       ///< [N/m] of that between device and an object that it holds; 0: it holds none
+  double friction = 0;   ///< of the proxy on it
+  double damping = 0;    ///< [1/s] rate at which its velocities die away by themselves
+};
+
 /// What went wrong, and with which object.
 struct SceneFinding {
   Error error;
@@ -75,6 +85,10 @@ class SceneBuilder {
   SceneBuilder& loads(const LoadSpec& loads);
   /// Let updates choose among predictors that know these constants. Both 0: none does.
   SceneBuilder& motion(const MotionPhysics& physics);
+  /// Let a client predict from its own device where the rigid object added last goes. In sessions alone.
+  SceneBuilder& driven(const DrivenPhysics& physics);
+  /// Whether these constants can be told: the coupling over the mass up to 4.2e6 s^-2, radii of inertia of 31 um to 1 m.
+  static bool can_drive(const DrivenPhysics& physics, std::uint32_t tick_rate) noexcept;
   /// Declare the bounds that hold at a client that gets every packet.
   SceneBuilder& promise(const RigidTriggers& rigid, const DeformableThresholds& deformables, const LoadThresholds& loads = {});
 
@@ -86,6 +100,7 @@ class SceneBuilder {
     std::string name;
     Pose initial;
     std::uint8_t dof;
+    std::optional<DrivenPhysics> driven{};
   };
   struct Deformable {
     std::string name;

@@ -24,5 +24,6 @@ RuleName broken_parameter_rule(const SceneSpec& spec) noexcept;
 RuleName broken_deformable_rule(const DeformableObject& object) noexcept;
 RuleName broken_load_rule(const SceneSpec& spec) noexcept;
 RuleName broken_motion_rule(const SceneSpec& spec) noexcept;
+RuleName broken_driven_rule(const SceneSpec& spec) noexcept;
 
 }  // namespace tactus

@@ -21,7 +21,7 @@ constexpr std::array<std::uint8_t, 4> kMagic{0x89, 'T', 'C', 'T'};
 constexpr std::uint8_t kVersion = 1;
 constexpr std::uint8_t kRigid = 1;
 constexpr std::uint8_t kProfile = 0;
-constexpr std::uint16_t kHasDeformables = 1, kHasLoads = 2, kIsEased = 4, kHasMotion = 8;  // flags
+constexpr std::uint16_t kHasDeformables = 1, kHasLoads = 2, kIsEased = 4, kHasMotion = 8, kIsDriven = 16;  // flags
 constexpr std::size_t kFixedSize = 12;  // magic, version, profile, flags, body_size
 
 Result<RigidObject> parse_object(ByteReader& body) {
@@ -91,6 +91,33 @@ Result<void> parse_motion(ByteReader& body, SceneSpec& spec) {
   return {};
 }
 
+Result<void> parse_driven(ByteReader& body, SceneSpec& spec) {
+  const std::uint64_t start = body.bit_offset();
+  DrivenConstants& driven = spec.driven.emplace();
+  driven.bodies.resize(spec.objects.size());
+  for (std::size_t i = 0; i < spec.objects.size(); ++i) {
+    if (spec.objects[i].dof == Dof::none) continue;
+    driven.bodies[i].coupling = body.u32();
+    driven.bodies[i].hold = body.u32();
+    for (std::uint32_t& c : driven.bodies[i].inertia) c = body.u32();
+    driven.bodies[i].friction = body.u16();
+    driven.bodies[i].damping = body.u16();
+  }
+  if (!body.ok()) return fail(Errc::truncated, "R-STR-5", body.bit_offset());
+  if (const RuleName rule = broken_driven_rule(spec)) return fail(Errc::invalid, rule, start);
+  return {};
+}
+
+void write_driven(ByteWriter& b, const Scene& scene) {
+  for (const std::uint32_t i : scene.moving()) {
+    b.u32(scene.driven->bodies[i].coupling);
+    b.u32(scene.driven->bodies[i].hold);
+    for (const std::uint32_t c : scene.driven->bodies[i].inertia) b.u32(c);
+    b.u16(scene.driven->bodies[i].friction);
+    b.u16(scene.driven->bodies[i].damping);
+  }
+}
+
 Result<SceneSpec> parse_body(ByteReader body, std::uint16_t flags, const DecodeLimits& limits) {
   SceneSpec spec;
   spec.is_eased = (flags & kIsEased) != 0;
@@ -116,6 +143,7 @@ Result<SceneSpec> parse_body(ByteReader body, std::uint16_t flags, const DecodeL
   if (flags & kHasDeformables) TACTUS_CHECK(parse_deformables(body, limits, spec));
   if (flags & kHasLoads) TACTUS_CHECK(parse_loads(body, spec));
   if (flags & kHasMotion) TACTUS_CHECK(parse_motion(body, spec));
+  if (flags & kIsDriven) TACTUS_CHECK(parse_driven(body, spec));
   TACTUS_CHECK(parse_extensions(body, spec));
   return spec;
 }
@@ -151,6 +179,7 @@ Result<std::vector<std::uint8_t>> write_scene(const Scene& scene) try {
     for (const std::int32_t c : scene.motion->gravity) b.i32(c);
     b.i32(scene.motion->slide_deceleration);
   }
+  if (scene.driven) write_driven(b, scene);
   if (scene.bounds) {
     const auto bounds = write_bounds(*scene.bounds);
     b.varint(kBoundsRecord);
@@ -167,7 +196,8 @@ Result<std::vector<std::uint8_t>> write_scene(const Scene& scene) try {
   w.u8(kVersion);
   w.u8(kProfile);
   w.u16(static_cast<std::uint16_t>((scene.deformables.empty() ? 0 : kHasDeformables) | (scene.loads ? kHasLoads : 0) |
-                                   (scene.is_eased ? kIsEased : 0) | (scene.motion ? kHasMotion : 0)));
+                                   (scene.is_eased ? kIsEased : 0) | (scene.motion ? kHasMotion : 0) |
+                                   (scene.driven ? kIsDriven : 0)));
   w.u32(static_cast<std::uint32_t>(body.size()));
   w.bytes(body);
   w.u32(crc32(out));
@@ -189,7 +219,7 @@ Result<ParsedScene> parse_scene(std::span<const std::uint8_t> bytes, const Decod
   if (version != kVersion) return fail(Errc::unsupported, "R-STR-2", 32);
   if (profile > kProfile + 1) return fail(Errc::malformed, "R-STR-3", 40);
   if (profile != kProfile) return fail(Errc::unsupported, "R-STR-3", 40);
-  if (flags > (kHasDeformables | kHasLoads | kIsEased | kHasMotion)) return fail(Errc::malformed, "R-STR-4", 48);
+  if (flags > (kHasDeformables | kHasLoads | kIsEased | kHasMotion | kIsDriven)) return fail(Errc::malformed, "R-STR-4", 48);
   if (body_size > limits.header_bytes) return fail(Errc::limit_exceeded, "R-STR-14", 64);
   ByteReader body = in.sub(body_size);
   const std::uint32_t crc = in.u32();

@@ -14,23 +14,29 @@ constexpr std::uint16_t kHandshake = 0, kParts = 1, kPacket = 2;
 // Kinds of handshakes.
 constexpr std::uint16_t kJoin = 0, kWelcome = 1, kRefusal = 2, kLeave = 3, kFirstUnknownKind = 4;
 // Types of parts.
-constexpr std::uint8_t kAcknowledgement = 1, kClock = 2, kButtons = 3, kPiece = 4, kState = 5, kHash = 6, kFragment = 7,
-                       kFirstUnknown = 9;  // 8: packet
+constexpr std::uint8_t kAcknowledgement = 1, kClock = 2, kButtons = 3, kPace = 3, kPiece = 4, kState = 5, kHash = 6,
+                       kFragment = 7,
+                       kFirstUnknown = 9;  // 3: buttons up, pace down; 8: packet
 
 constexpr std::uint32_t kMagic = 0x53544354;  // "TCTS"
 constexpr std::uint8_t kVersion = 1;
 constexpr std::size_t kHeadSize = 2, kCheckSize = 4;
 constexpr std::uint64_t kEndOfTime = std::uint64_t{1} << 53;  // [us] of any clock
-constexpr std::size_t kLeastJoin = 80;                        // [bytes]: answers are shorter
-constexpr std::uint8_t kFirstSkipped = 64;                    // part types for later or private use
+constexpr std::int64_t kEndOfTicks = std::int64_t{1} << 32, kFarthest = std::int64_t{1} << 33;
+constexpr std::size_t kLeastJoin = 80;      // [bytes]: answers are shorter
+constexpr std::uint8_t kFirstSkipped = 64;  // part types for later or private use
 constexpr LeaveReason kLastReason = LeaveReason::protocol;
 
 bool kind_comes(std::uint16_t kind, Direction direction) noexcept {
   return kind == kLeave || (kind < kFirstUnknownKind && (kind == kJoin) == (direction == Direction::up));
 }
 bool part_comes(std::uint8_t type, Direction direction) noexcept {
-  if (type == kButtons || type == kState || type == kHash) return direction == Direction::up;
+  if (type == kState || type == kHash) return direction == Direction::up;
   return (type != kClock && type != kPiece) || direction == Direction::down;
+}
+
+bool is_pace(const PacePart& pace) noexcept {
+  return pace.from < kEndOfTicks && pace.offset >= -kFarthest && pace.offset <= kFarthest;
 }
 
 /// CRC-32 of epoch, direction and body.
@@ -157,6 +163,9 @@ void put(Put&, const Numbered&) noexcept {}
 std::size_t size_of(const Acknowledgement& a) noexcept { return 4 + varint_size(a.missing); }
 std::size_t size_of(const ClockPart& c) noexcept { return varint_size(c.time); }
 std::size_t size_of(const ButtonsPart&) noexcept { return 8; }
+std::size_t size_of(const PacePart& p) noexcept {
+  return varint_size(static_cast<std::uint64_t>(p.from)) + varint_size(zigzag(p.offset));
+}
 std::size_t size_of(const PiecePart& p) noexcept { return varint_size(p.index) + p.bytes.size(); }
 std::size_t size_of(const StatePart&) noexcept { return 1; }
 std::size_t size_of(const HashPart&) noexcept { return 7; }
@@ -168,6 +177,7 @@ std::size_t size_of(const PacketPart& p) noexcept { return varint_size(p.back) +
 void put(Put& to, const Acknowledgement& a) noexcept { to.integer(a.newest, 2).integer(a.held, 2).varint(a.missing); }
 void put(Put& to, const ClockPart& c) noexcept { to.varint(c.time); }
 void put(Put& to, const ButtonsPart& b) noexcept { to.integer(b.tick, 4).integer(b.mask, 4); }
+void put(Put& to, const PacePart& p) noexcept { to.varint(static_cast<std::uint64_t>(p.from)).varint(zigzag(p.offset)); }
 void put(Put& to, const PiecePart& p) noexcept { to.varint(p.index).bytes(p.bytes); }
 void put(Put& to, const StatePart& s) noexcept { to.integer(s.live, 1); }
 void put(Put& to, const HashPart& h) noexcept { to.integer(h.substream, 1).integer(h.number, 2).integer(h.hash, 4); }
@@ -176,8 +186,17 @@ void put(Put& to, const FragmentPart& f) noexcept {
 }
 void put(Put& to, const PacketPart& p) noexcept { to.varint(p.back).bytes(p.bytes); }
 
+/// Of a part on the wire.
+std::uint8_t type_of(const Part& part) noexcept {
+  return std::holds_alternative<PacePart>(part) ? kPace : static_cast<std::uint8_t>(part.index() + 1);
+}
+
 /// The elements of a part; the reader says whether they were all there.
-Part read_part(std::uint8_t type, ByteReader& r) noexcept {
+Part read_part(std::uint8_t type, Direction direction, ByteReader& r) noexcept {
+  if (type == kPace && direction == Direction::down) {
+    const auto from = static_cast<std::int64_t>(std::min<std::uint64_t>(r.varint(), kEndOfTicks));
+    return PacePart{from, unzigzag(r.varint())};
+  }
   switch (type) {
     case kAcknowledgement: {
       Acknowledgement a;
@@ -250,11 +269,13 @@ Result<std::optional<Part>> PartReader::next() noexcept {
 }
 
 Result<std::optional<Part>> PartReader::read(std::uint8_t type, ByteReader part) noexcept {
-  const Part out = read_part(type, part);
+  const Part out = read_part(type, direction_, part);
   TACTUS_CHECK(finished(part));
   const auto* state = std::get_if<StatePart>(&out);
   const auto* clock = std::get_if<ClockPart>(&out);
   if ((state != nullptr && state->live > 1) || (clock != nullptr && clock->time >= kEndOfTime))
+    return fail(Errc::malformed, "R-SES-3", part.bit_offset());
+  if (const auto* pace = std::get_if<PacePart>(&out); pace != nullptr && !is_pace(*pace))
     return fail(Errc::malformed, "R-SES-3", part.bit_offset());
   const auto* packet = std::get_if<PacketPart>(&out);
   only_packet_ = parts_ == 1 && packet != nullptr && packet->back == 0;
@@ -307,10 +328,11 @@ void DatagramWriter::begin(std::uint64_t number) noexcept {
 }
 
 bool DatagramWriter::add(const Part& part) noexcept {
-  if (fragment_ && part.index() + 1 >= kFragment) return false;
+  const std::uint8_t type = type_of(part);
+  if (fragment_ && type >= kFragment) return false;
   const std::size_t size = std::visit([](const auto& p) { return size_of(p); }, part);
   Put to(std::span<std::uint8_t>(bytes_).first(kLargestDatagram - kCheckSize), size_);
-  to.integer(part.index() + 1, 1).varint(size);
+  to.integer(type, 1).varint(size);
   if (!to.fits() || size > kLargestDatagram - kCheckSize - to.at()) return false;
   std::visit([&](const auto& p) { put(to, p); }, part);
   size_ = to.at();

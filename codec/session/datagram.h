@@ -72,6 +72,12 @@ struct ButtonsPart {
   friend bool operator==(const ButtonsPart&, const ButtonsPart&) = default;
 };
 
+/// How the device's ticks follow those of the server. spec/65-signal.md section 4
+struct PacePart {
+  std::int64_t from = 0;    ///< tick of the server, 0 to 2^32 - 1
+  std::int64_t offset = 0;  ///< from then on the device's tick is the server's less this; within +-2^33
+};
+
 struct PiecePart {
   std::uint64_t index = 0;
   std::span<const std::uint8_t> bytes;
@@ -99,8 +105,9 @@ struct PacketPart {
   std::span<const std::uint8_t> bytes;
 };
 
-/// In the order of their types, 1..8.
-using Part = std::variant<Acknowledgement, ClockPart, ButtonsPart, PiecePart, StatePart, HashPart, FragmentPart, PacketPart>;
+/// In the order of their types, 1..8; but PacePart has that of ButtonsPart, in the other direction.
+using Part =
+    std::variant<Acknowledgement, ClockPart, ButtonsPart, PiecePart, StatePart, HashPart, FragmentPart, PacketPart, PacePart>;
 
 /// Parts one after the other. Those for later versions are skipped.
 class PartReader {

@@ -104,6 +104,8 @@ Result<void> Exchange::acknowledged(const Acknowledgement& said, Reading& readin
     if (resends_ && copies_come_in_time()) resends_->lost(number, reading.now, sent_.loss() > kHeavyLoss ? 2 : 1);
   };
   TACTUS_CHECK(sent_.acknowledge(said, reading.now, arrived, lost));
+  if (path && direction_ == Direction::up)
+    path->settle(sent_.highest_acknowledged(), [this](std::uint64_t number) { return sent_.has_arrived(number); });
   reading.heard.round_trip = sent_.sample();
   if (sent_.sample()) report_link();
   return {};
@@ -117,9 +119,13 @@ bool Exchange::decode(std::uint64_t number, std::span<const std::uint8_t> packet
     ++traffic_.packets_refused;
     return false;
   }
+  reading.heard.tick = std::max(reading.heard.tick.value_or(decoded->tick), decoded->tick);
+  if (path && direction_ == Direction::down && path->add(number, receiver->objects_after(*decoded)[0]) <= 0) {
+    ++traffic_.packets_refused;
+    return false;
+  }
   ++traffic_.packets_heard;
   traffic_.payload_heard += packet.size();
-  reading.heard.tick = std::max(reading.heard.tick.value_or(decoded->tick), decoded->tick);
   if (is_of_deformable(*receiver->scene(), decoded->substream)) reading.asks = Asks::now;
   reading.heard.oldest = std::min(reading.heard.oldest.value_or(decoded->tick), decoded->tick);
   const bool newest = receiver->tick(decoded->substream) == decoded->tick;
@@ -196,6 +202,7 @@ Result<std::span<const Packet>> Exchange::submit(std::uint64_t now, std::int64_t
     key_wanted_at_ = now;
   }
   TACTUS_TRY(packets_, sender->encode_numbered(*number, tick, truth));
+  if (path && direction_ == Direction::up && !packets_.empty()) path->add(packets_[0].number, sender->objects()[0]);
   return packets_;
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -19,6 +20,7 @@
 #include <tactus/session/sent_fragments.h>
 #include <tactus/session/sent_numbers.h>
 #include <tactus/session/traffic.h>
+#include <tactus/signal/device_path.h>
 
 namespace tactus {
 
@@ -37,6 +39,7 @@ class Exchange {
   std::optional<Sender> sender;       ///< of the packets that go; none: no packets go. Set by send_with()
   std::optional<Receiver> receiver;   ///< of those that come; none: all are refused
   std::optional<PieceSender> pieces;  ///< of the declaration, until all have arrived
+  std::shared_ptr<DevicePath> path;   ///< of the device whose packets go up; none: it drives nothing
 
   void send_with(Sender coder);         ///< allocates if the scene has deformable objects
   void receive_with(Receiver decoder);  ///< allocates if the largest packet of the scene needs fragments

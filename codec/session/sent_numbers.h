@@ -48,6 +48,10 @@ class SentNumbers {
   std::optional<std::int64_t> sample() const noexcept { return sample_; }
   std::uint32_t loss() const noexcept;  ///< share of the newest 256 numbers whose fate is known, x 2^-16
   std::uint64_t highest_acknowledged() const noexcept { return highest_; }
+  bool has_arrived(std::uint64_t number) const noexcept {
+    const Slot& slot = slots_[number % kRemembered];
+    return slot.number == number && slot.fate == Fate::arrived;
+  }
 
  private:
   enum class Fate : std::uint8_t { open, arrived, lost };

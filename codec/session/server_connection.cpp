@@ -16,6 +16,7 @@ constexpr std::uint64_t kPieceEvery = 500;        // [us]: 16 Mbit/s
 constexpr std::int64_t kPieceQueue = 80'000;      // [us] that a piece may wait on its way
 constexpr std::uint64_t kJammedEvery = 50'000;    // [us]: packets through a long queue
 constexpr std::uint64_t kUnproven = 10'000'000;   // [us] for the first datagram in the epoch
+constexpr std::uint64_t kPaceEvery = 20'000;      // [us] until the client knows
 constexpr unsigned kMostFaults = 100;
 constexpr unsigned kLeaves = 3;  // one of them should arrive
 
@@ -63,6 +64,8 @@ void ServerConnection::begin_epoch(const ServedScene& served, std::uint64_t epoc
   hashes_ = {};
   held_ = false;
   device_clock_.reset();
+  pace_.reset();
+  next_tick_ = 0;
   buttons_ = {};
 }
 
@@ -108,6 +111,8 @@ Result<void> ServerConnection::handle_datagram(std::uint64_t now, std::span<cons
   }
   if (heard->round_trip) measured(*heard->round_trip, now);
   if (device_clock_) device_clock_->heard(heard->number, heard->tick, now);
+  if (pace_ && heard->tick) pace_->heard(*heard->tick);
+  if (pace_) pace_->acknowledged(exchange_->sent().highest_acknowledged());
   return {};
 }
 
@@ -139,6 +144,11 @@ Result<void> ServerConnection::go_live(std::uint64_t now) noexcept try {
   if (join_.role == Role::participant) {
     TACTUS_TRY(exchange_->receiver, Receiver::create(served_.device));
     device_clock_.emplace(served_.scene->tick_rate, PlayoutOptions{.fixed = 0});
+    if (served_.scene->driven) {
+      exchange_->path = std::make_shared<DevicePath>(served_.device);
+      exchange_->sender->know(exchange_->path);
+      pace_.emplace(served_.scene->tick_rate);
+    }
   }
   exchange_->pieces.reset();
   state_ = *next;
@@ -160,6 +170,8 @@ void ServerConnection::compare(const HashPart& said) noexcept {
 }
 
 Result<void> ServerConnection::submit(std::uint64_t now, std::int64_t tick, const Truth& truth) noexcept {
+  next_tick_ = tick + 1;
+  if (exchange_->path) exchange_->path->pass(tick);
   const bool jammed = congestion_.is_jammed() && now < exchange_->sent_at() + kJammedEvery;
   held_ = !bucket_.is_open(now) || jammed;
   if (congestion_.tick(held_, now)) exchange_->sender->set_widening(widening());
@@ -201,12 +213,17 @@ std::optional<std::span<const std::uint8_t>> ServerConnection::poll(std::uint64_
   if (held_) return std::nullopt;  // an acknowledgement would say that what the client has is new
   if (now >= piece_at_) piece_at_ = exchange_->next_send(now);
   const bool piece = wants_piece(now);
-  const auto datagram = exchange_->poll(now, piece, [&](DatagramWriter& writer, std::uint64_t number) {
+  const auto datagram = exchange_->poll(now, piece || wants_pace(now), [&](DatagramWriter& writer, std::uint64_t number) {
     if (now >= clock_at_ && !writer.empty()) {  // together with an acknowledgement
       writer.add(ClockPart{now});
       clock_at_ = now + kClockEvery;
     }
-    if (!piece) return false;
+    const bool pace = pace_ && pace_->waits();
+    if (pace) {
+      pace_->tell(writer, number);
+      pace_at_ = now + kPaceEvery;
+    }
+    if (!piece) return pace;
     const std::uint64_t index = *exchange_->pieces->next(now, exchange_->patience());
     if (!writer.add(PiecePart{index, exchange_->pieces->bytes(index)})) return false;
     exchange_->pieces->sent(index, number, now);
@@ -223,6 +240,7 @@ std::optional<std::uint64_t> ServerConnection::next_timeout() const noexcept {
   if (repeats_welcome_ && state_ == SessionState::receiving) due = std::min(due, welcome_at_);
   if (held_ || !exchange_->sent().next()) return due;  // nothing else may be said, or there is no number left
   if (const auto acknowledgement = exchange_->due()) due = std::min(due, *acknowledgement);
+  if (pace_ && pace_->waits()) due = std::min(due, pace_at_);
   if (proven_ && exchange_->pieces) {
     if (exchange_->pieces->next(piece_at_, exchange_->patience())) due = std::min(due, piece_at_);
     else if (const auto lost = exchange_->pieces->due(exchange_->patience())) due = std::min(due, *lost);
@@ -232,9 +250,21 @@ std::optional<std::uint64_t> ServerConnection::next_timeout() const noexcept {
 
 std::optional<DeviceSample> ServerConnection::device(std::uint64_t now) noexcept {
   if (state_ != SessionState::live || !device_clock_) return std::nullopt;
+  if (pace_ && next_tick_ > 0) return driving_device(now);  // before the first submit() the tick is not known
   const std::int64_t tick = device_clock_->shown(now);
   if (tick < 0) return std::nullopt;
   return device_at(*exchange_->receiver, tick, buttons_.mask);
+}
+
+/// In the tick that is simulated next, as the client will know it.
+std::optional<DeviceSample> ServerConnection::driving_device(std::uint64_t now) noexcept {
+  DevicePath& path = *exchange_->path;
+  if (const std::int64_t device = device_clock_->shown(now); device >= 0)
+    if (const auto change = pace_->step(next_tick_, device)) path.shift(change->from, change->offset);
+  path.pass(next_tick_);
+  const auto place = path.place(next_tick_);
+  if (!place) return std::nullopt;
+  return device_of(*path.scene(), place->state, place->tick, buttons_.mask);
 }
 
 ClientStatus ServerConnection::status() const noexcept {

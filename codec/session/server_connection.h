@@ -11,6 +11,7 @@
 #include <vector>
 
 #include <tactus/session/congestion.h>
+#include <tactus/session/device_pace.h>
 #include <tactus/session/exchange.h>
 #include <tactus/session/playout_clock.h>
 #include <tactus/session/session_server.h>
@@ -81,6 +82,8 @@ class ServerConnection {
   Result<void> go_live(std::uint64_t now) noexcept;
   void measured(std::int64_t sample, std::uint64_t now) noexcept;
   void compare(const HashPart& said) noexcept;
+  std::optional<DeviceSample> driving_device(std::uint64_t now) noexcept;
+  bool wants_pace(std::uint64_t now) const noexcept { return pace_ && pace_->waits() && now >= pace_at_; }
   bool wants_piece(std::uint64_t now) const noexcept;
   bool wants_welcome(std::uint64_t now) const noexcept;
 
@@ -109,6 +112,9 @@ class ServerConnection {
   std::size_t next_hash_ = 0;
   std::uint64_t wrong_states_ = 0;
   std::optional<PlayoutClock> device_clock_;
+  std::optional<DevicePace> pace_;  // if the device may drive objects
+  std::int64_t next_tick_ = 0;      // of submit()
+  std::uint64_t pace_at_ = 0;       // [us] when its changes go again
   ButtonsPart buttons_;
 };
 

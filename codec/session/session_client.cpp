@@ -185,6 +185,8 @@ Result<void> SessionClient::Impl::take(const Part& part, const Exchange::Heard& 
     if (heard.round_trip) offset.add(clock->time, *heard.round_trip, now);
   } else if (const auto* piece = std::get_if<PiecePart>(&part)) {
     return current->pieces.take(piece->index, piece->bytes);
+  } else if (const auto* pace = std::get_if<PacePart>(&part)) {
+    if (current->exchange.path) current->exchange.path->shift(pace->from, pace->offset);
   }
   return {};
 }
@@ -202,6 +204,10 @@ Result<void> SessionClient::Impl::complete(std::uint64_t now) noexcept try {
     if (options.role == Role::observer) return {};
     TACTUS_TRY(SharedScene device, device_scene(*scene));
     TACTUS_TRY(auto sender, Sender::create(std::move(device), device_sender_options(options.device)));
+    if (scene->driven) {
+      current->exchange.path = std::make_shared<DevicePath>(sender.scene());
+      current->exchange.receiver->know(current->exchange.path);
+    }
     current->exchange.send_with(std::move(sender));
     current->device.emplace(scene->tick_rate, options.senses_velocity);
     current->device_start = now;

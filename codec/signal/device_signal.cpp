@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <tactus/rigid/rigid_predictor.h>
 #include <tactus/scene/scene_builder.h>
 
 namespace tactus {
@@ -74,15 +75,18 @@ Truth DeviceTruth::of(std::int64_t tick, const DeviceSample& sample, const std::
   return {.objects = {&sample_, 1}, .contacts = {&contact_, contact ? 1u : 0u}, .deformables = {}};
 }
 
-DeviceSample device_at(Receiver& receiver, std::int64_t tick, std::uint32_t buttons) noexcept {
-  const GridExponents& grid = receiver.scene()->grid;
-  const Pose pose = to_pose(receiver.replica().pose(0, tick), grid.position);
+DeviceSample device_of(const Scene& scene, const RigidState& state, std::int64_t tick, std::uint32_t buttons) noexcept {
+  const Pose pose = to_pose(RigidPredictor(scene).pose(state, tick), scene.grid.position);
   DeviceSample out{.position = pose.position, .orientation = pose.rotation, .buttons = buttons};
-  const RigidState& state = receiver.objects()[0];
-  if (tick >= state.tick + receiver.scene()->max_extrapolation) return out;  // it stands still
-  const double unit = std::ldexp(1.0, -grid.velocity);
+  if (tick >= state.tick + scene.max_extrapolation) return out;  // it stands still
+  const double unit = std::ldexp(1.0, -scene.grid.velocity);
   out.velocity = {unit * state.velocity[0], unit * state.velocity[1], unit * state.velocity[2]};
   return out;
+}
+
+DeviceSample device_at(Receiver& receiver, std::int64_t tick, std::uint32_t buttons) noexcept {
+  const RigidState& state = receiver.objects()[0];
+  return device_of(*receiver.scene(), state, std::max(tick, state.tick), buttons);
 }
 
 }  // namespace tactus

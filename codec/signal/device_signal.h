@@ -62,6 +62,10 @@ class DeviceTruth {
   Contact contact_;
 };
 
+/// A device whose newest packet brought this state.
+/// pre  tick >= state.tick
+DeviceSample device_of(const Scene& scene, const RigidState& state, std::int64_t tick, std::uint32_t buttons) noexcept;
+
 /// The device as its Receiver shows it.
 /// in   buttons  as of that tick
 DeviceSample device_at(Receiver& receiver, std::int64_t tick, std::uint32_t buttons) noexcept;

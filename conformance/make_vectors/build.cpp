@@ -58,6 +58,7 @@ Bytes RawHeader::body() const {
   w.bytes(deformables);
   w.bytes(loads);
   w.bytes(motion);
+  w.bytes(driven);
   w.bytes(extensions);
   return out;
 }
@@ -105,7 +106,14 @@ Bytes Stream::packet(const Step& step) {
   for (const Update& update : step.updates) {
     const auto at = static_cast<std::size_t>(std::ranges::find(moving, update.object) - moving.begin());
     updates.push_back({static_cast<std::uint32_t>(at - next),
-                       {update.reason, update.level, update.ease, update.keep, {update.residual}, update.predictor}});
+                       {update.reason,
+                        update.level,
+                        update.ease,
+                        update.keep,
+                        {update.residual},
+                        update.predictor,
+                        update.is_held,
+                        update.contact}});
     next = at + 1;
   }
   ticks_[sequence] = step.tick;

@@ -50,6 +50,7 @@ struct RawHeader {
   Bytes deformables{};  ///< all about deformable objects, if flags say so
   Bytes loads{};        ///< force_exp and load_users, if flags say so
   Bytes motion{};       ///< gravity and slide_deceleration, if flags say so
+  Bytes driven{};       ///< constants of driven objects, if flags say so
   Bytes extensions{};
   std::array<std::uint8_t, 4> magic{0x89, 0x54, 0x43, 0x54};
   std::uint8_t version = 1;
@@ -117,6 +118,8 @@ struct Update {
   std::array<Vec3i, kQuantities> residual{};  ///< position, velocity, rotation, angular velocity
   std::uint8_t predictor = 0;                 ///< coded if the header has motion constants
   std::uint8_t ease = 0, keep = 0;            ///< of an eased scene
+  bool is_held = false;                       ///< of a driven scene, as the differences of the contact
+  std::array<std::int32_t, 7> contact{};
 };
 
 struct Step {

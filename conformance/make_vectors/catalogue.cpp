@@ -97,12 +97,12 @@ Answer answer(const Case& c) {
     return {out.str(), read};
   }
   std::optional<Interpolation> replica;
-  if (c.replica == "none") replica = Interpolation::none;
+  if (c.replica == "none" || c.replica == "device") replica = Interpolation::none;
   if (c.replica == "linear") replica = Interpolation::linear;
   if (c.replica == "hermite") replica = Interpolation::hermite;
   if (c.replica == "blending") replica = Interpolation::blending;
   if (c.replica == "playout") replica = Interpolation::playout;
-  const auto done = report(c.input.bytes, replica, out);
+  const auto done = report(c.input.bytes, replica, c.replica == "device", out);
   if (!c.rejection) return {out.str(), done.has_value()};
   report_error(c.rejection->errc.c_str(), c.rejection->rule.c_str(), out);
   return {out.str(), !done && errc_name(done.error().code) == c.rejection->errc && done.error().rule == c.rejection->rule};

@@ -43,7 +43,7 @@ struct Case {
   std::string section;             ///< of the specification
   std::vector<std::string> rules;  ///< what the vector is for, besides the section
   Input input;
-  std::string replica;                 ///< none, linear, hermite, blending, playout or empty
+  std::string replica;                 ///< none, device, linear, hermite, blending, playout or empty
   std::optional<Rejection> rejection;  ///< nothing: the file is valid
   bool session = false;                ///< the input is a script for an end of a session, not a stream
 };
@@ -87,6 +87,7 @@ void add_scene_bounds(Catalogue& catalogue);
 void add_scene_orders(Catalogue& catalogue);
 void add_scene_stiffness(Catalogue& catalogue);
 void add_scene_motion(Catalogue& catalogue);
+void add_scene_driven(Catalogue& catalogue);
 void add_file(Catalogue& catalogue);
 void add_packet_rigid(Catalogue& catalogue);
 void add_packet_deformable(Catalogue& catalogue);
@@ -98,12 +99,14 @@ void add_rigid_rules(Catalogue& catalogue);
 void add_rigid_edges(Catalogue& catalogue);
 void add_rigid_orders(Catalogue& catalogue);
 void add_rigid_predictors(Catalogue& catalogue);
+void add_rigid_driven(Catalogue& catalogue);
 void add_load(Catalogue& catalogue);
 void add_client(Catalogue& catalogue);
 void add_client_playout(Catalogue& catalogue);
 void add_client_eased(Catalogue& catalogue);
 void add_client_curves(Catalogue& catalogue);
 void add_client_predictors(Catalogue& catalogue);
+void add_client_driven(Catalogue& catalogue);
 void add_session(Catalogue& catalogue);
 void add_session_server(Catalogue& catalogue);
 void add_deformable_header(Catalogue& catalogue);

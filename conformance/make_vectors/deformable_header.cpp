@@ -56,9 +56,9 @@ void add_valid(Catalogue& c) {
 
 void add_counts(Catalogue& c) {
   const Rejection cut{"truncated", "R-STR-5"}, overlong{"malformed", "R-STR-5"};
-  c.invalid("flag-16", "The fifth flag is set.", {"malformed", "R-STR-4"}, [] {
+  c.invalid("flag-32", "The sixth flag is set.", {"malformed", "R-STR-4"}, [] {
     RawHeader header = only({});
-    header.flags = 16;
+    header.flags = 32;
     return header.bytes();
   }());
   c.invalid("no-deformable-count", "The flag is set and the body ends.", cut, around({}));

@@ -18,6 +18,7 @@ constexpr std::array kFlags{
     Flag{"loads", "the scene has loads"},
     Flag{"eased", "the scene is eased"},
     Flag{"motion", "the scene has motion constants"},
+    Flag{"driven", "the scene is driven"},
     Flag{"basis", "a deformable object has modes that are declared"},
     Flag{"computed_basis", "a deformable object has modes that both ends compute"},
     Flag{"layered", "a deformable object has haptic and visual layers"},
@@ -97,7 +98,7 @@ void skim_deformable(Skimmer& in, Features& out) {
 std::uint64_t skim_declaration(Skimmer& in, Features& out) {
   in.skip(6);
   const unsigned flags = in.u16();
-  const bool has_deformables = flags & 1u, known = flags <= 15;
+  const bool has_deformables = flags & 1u, known = flags <= 31;
   if (flags & 4u) out.flags.insert("eased");
   in.skip(4 + 10);  // body_size, tick_rate to max_extrapolation
   if (in.u8() > 1) out.flags.insert("baselines");
@@ -119,6 +120,7 @@ std::uint64_t skim_declaration(Skimmer& in, Features& out) {
     in.skip(2);
   }
   if (known && (flags & 8u)) out.flags.insert("motion");
+  if (known && (flags & 16u)) out.flags.insert("driven");
   return substreams;
 }
 

@@ -15,6 +15,7 @@ inline constexpr const char* kSymbols = "30 Symbols";
 inline constexpr const char* kRigidPacket = "40 Packet";
 inline constexpr const char* kPrediction = "40 Prediction";
 inline constexpr const char* kPose = "40 Pose";
+inline constexpr const char* kDriven = "40 Driven objects";
 inline constexpr const char* kMotion = "40 Motion";
 inline constexpr const char* kStartModels = "40 Start models";
 inline constexpr const char* kLoadPacket = "45 Packet";

@@ -237,16 +237,22 @@ void add_parts(Catalogue& catalogue) {
   Script order;
   const auto key = [&order](std::uint64_t n) { return order.moved(n, 1, true); };
   order.live().parts(2, packet_part(key(2), 0) + clock()).parts(3, part(0, {1})).parts(4, part(9, {1})).parts(5, part(63, {1}));
-  order.parts(6, part(3, Bytes(8, 0)))
-      .parts(7, part(5, {1}))
-      .parts(8, part(6, Bytes(7, 0)))
-      .parts(9, {})
-      .parts(10, packet_part(key(10), 0));
+  order.parts(7, part(5, {1})).parts(8, part(6, Bytes(7, 0))).parts(9, {}).parts(10, packet_part(key(10), 0));
   order.parts(11, part(64, {}) + clock())
       .parts(12, clock() + clock() + packet_part(key(12), 0))
       .parts(13, part(70, {}) + part(69, {}));
   catalogue.session("orders", "Parts out of order, unknown, for the other direction, none, and a single packet that has form 2.",
                     order.text(), {"R-SES-5"});
+
+  Script paces;
+  const auto pace = [](std::uint64_t from, std::uint64_t offset) { return part(3, varint(from) + varint(offset)); };
+  constexpr std::uint64_t kEnd = std::uint64_t{1} << 32, kFar = std::uint64_t{1} << 34;  // of `from`; of `offset`, as zigzag
+  paces.live().parts(2, pace(0, 0)).parts(3, pace(7, 1) + pace(9, kFar)).parts(4, pace(kEnd - 1, kFar - 1));
+  paces.parts(5, pace(kEnd, 0)).parts(6, pace(0, kFar + 1)).parts(7, pace(0, kFar + 2)).parts(8, part(3, {1}));
+  paces.parts(9, part(3, {1, 1, 1})).parts(10, part(3, {1, 0x80, 0})).parts(11, part(3, Bytes(8, 0)));
+  paces.parts(12, clock() + pace(3, 4) + packet_part(paces.moved(12, 1, true), 0)).parts(13, pace(1, 2) + clock());
+  catalogue.session("paces", "Paces of a device, at their limits and beyond, cut, out of order, and before a packet.",
+                    paces.text(), {"R-SES-3", "R-SES-5"});
 
   Script cut_parts;
   cut_parts.live()

@@ -30,6 +30,8 @@ class RigidObjects final : public Simulated {
   /// Push an object at its centre with a force [N] in this tick.   no allocation
   void push_centre(std::uint32_t object, const Vec3& force) noexcept { world_.push(object, force, poses_[object].position); }
 
+  Vec3 inertia(std::uint32_t object) const noexcept { return world_.inertia(object); }  ///< RigidWorld::inertia
+
   /// Forces of the last step on every rigid and one-dimensional object of the scene, those on the latter zero; empty unless
   /// tells_loads(scene).
   std::span<const ObjectLoad> loads() const noexcept { return loads_; }

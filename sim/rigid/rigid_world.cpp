@@ -296,6 +296,12 @@ RigidSample RigidWorld::sample(std::uint32_t object) const noexcept { return imp
 
 const RigidWorld::Load& RigidWorld::load(std::uint32_t object) const noexcept { return impl_->bodies[object].load; }
 
+Vec3 RigidWorld::inertia(std::uint32_t object) const noexcept {
+  const Body& body = impl_->bodies[object];
+  if (body.handle == nullptr) return {};
+  return {1 / body.inverse_inertia.x.x, 1 / body.inverse_inertia.y.y, 1 / body.inverse_inertia.z.z};
+}
+
 std::int64_t RigidWorld::tick() const noexcept { return impl_->tick; }
 
 }  // namespace tactus::sim

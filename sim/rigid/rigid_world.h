@@ -55,6 +55,8 @@ class RigidWorld {
     Vec3 hold;      ///< along the normal of its contacts, as long as the sum of mu |f_n| [N]   spec/45-load.md 3
   };
   const Load& load(std::uint32_t object) const noexcept;  ///< zero unless tells_loads(scene)
+  /// [kg m^2] Moments of inertia about the axes of an object's frame; zero: it is static.
+  Vec3 inertia(std::uint32_t object) const noexcept;
   std::int64_t tick() const noexcept;
 
   RigidWorld(RigidWorld&&) noexcept;

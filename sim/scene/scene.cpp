@@ -342,9 +342,13 @@ bool tells_loads(const Scene& scene) noexcept {
          std::ranges::any_of(scene.objects, [](const SceneObject& object) { return object.dof != Dof::none; });
 }
 
-SceneBuilder scene_builder(const Scene& scene) {
+SceneBuilder scene_builder(const Scene& scene, std::span<const std::optional<DrivenPhysics>> driven) {
   SceneBuilder out(kTickRate);
-  for (const SceneObject& object : scene.objects) out.rigid(object.name, object.pose, object.dof);
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    const SceneObject& object = scene.objects[i];
+    out.rigid(object.name, object.pose, object.dof);
+    if (i < driven.size() && driven[i]) out.driven(*driven[i]);
+  }
   for (const SceneMsd& msd : scene.msds) out.rigid(msd.name, {msd.position, {}}, msd.dof());
   if (tells_loads(scene)) out.loads({.users = static_cast<std::uint8_t>(scene.users.size())});
   return out;

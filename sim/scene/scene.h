@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -176,6 +177,7 @@ void set_tremor(Scene& scene, double rms) noexcept;
 bool tells_loads(const Scene& scene) noexcept;
 
 /// The rigid objects of this scene for a sender: in order, at rest in their first poses; with loads if clients make up for delay.
-SceneBuilder scene_builder(const Scene& scene);
+/// in   driven  what a client's device may move, one per rigid object; empty: nothing
+SceneBuilder scene_builder(const Scene& scene, std::span<const std::optional<DrivenPhysics>> driven = {});
 
 }  // namespace tactus::sim

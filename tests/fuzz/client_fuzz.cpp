@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include <tactus/client/replica.h>
+#include <tactus/signal/device_signal.h>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace tactus;
@@ -12,14 +13,19 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   spec.objects.push_back({"o", Dof::all, {}});
   spec.is_eased = size > 0 && data[0] / 5 % 2 == 1;
   if (size > 0 && data[0] / 10 % 2 == 1) spec.motion = {{-9000, 1 << 20, -(1 << 28)}, 1 << 18};
+  const bool knows_device = size > 0 && data[0] / 20 % 2 == 1;
+  if (knows_device) spec.driven = {{{1075200, 116053, {286331, 286331, 1}, 128, 1049}}};
   const SharedScene scene = Scene::create(std::move(spec)).value();
-  const RigidPredictor predictor(*scene);
+  RigidPredictor predictor(*scene);
+  DevicePath path(device_scene(*scene).value());
+  path.shift(0, 3);
   ReplicaOptions options;
   constexpr Interpolation kWays[] = {Interpolation::none, Interpolation::linear, Interpolation::playout, Interpolation::hermite,
                                      Interpolation::blending};
   if (size > 0) options.interpolation = kWays[data[0] % 5];
   if (!Replica::check(options, *scene)) options.interpolation = Interpolation::none;
   Replica replica(*scene, options, {});
+  if (knows_device) predictor.know(path), replica.know(path);
   constexpr std::size_t kStep = 40;
   std::int64_t now = 0;
   std::uint64_t number = 1;
@@ -32,9 +38,18 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (scene->is_eased)
       state.ease = static_cast<std::uint8_t>(v[0] >> 22 & 7), state.keep = static_cast<std::uint8_t>(v[0] >> 25 & 3);
     if (scene->motion) state.predictor = static_cast<Predictor>((static_cast<std::uint32_t>(v[0]) >> 27) % 3);
+    if (knows_device) state.predictor = static_cast<Predictor>(scene->motion ? v[1] & 3 : 3 * (v[1] & 1));
     state.position = {v[1], v[2], v[3]};
     state.velocity = {v[4], v[5], v[6]};
     state.angular_velocity = {v[7] % kAngularVelocityLimit, v[8] % kAngularVelocityLimit, v[9] % kAngularVelocityLimit};
+    if (scene->driven) {
+      state.contact = {(v[2] & 1) != 0, {v[4] >> 20, v[5] >> 20, v[6] >> 20}, {v[7] >> 11, v[8] >> 11, v[9] >> 11}, v[3] >> 20};
+      RigidState device = state;
+      device.position[0] ^= v[9] & 0x1ffff;
+      path.add(number + 1, device);
+      if (v[0] & 1)
+        path.settle(number + 1, [&](std::uint64_t of) { return (static_cast<std::uint64_t>(v[5]) >> of % 32 & 1) != 0; });
+    }
     const RigidUpdate update{0, Reason::visual, 0};
     DecodedPacket packet;
     packet.tick = state.tick;
@@ -47,7 +62,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       for (const std::int32_t c : shown.rotation) square += static_cast<double>(c) * c;
       if (square < 0.999 * 1152921504606846976.0 || square > 1.001 * 1152921504606846976.0) std::abort();
     }
-    if (replica.pose(0, now + 5000) != predictor.pose(state, now + 5000)) std::abort();
+    if (replica.pose(0, now + 5000) != predictor.shown(0, state, now + 5000)) std::abort();
   }
   return 0;
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include <tactus/signal/device_path.h>
+#include <tactus/signal/device_signal.h>
 #include <tactus/tactus.h>
 #include "tests/fuzz/motions.h"
 #include "tests/fuzz/require.h"
@@ -35,6 +37,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   spec.baseline_span = static_cast<std::uint8_t>(1 + choice % 64);
   if (choice & 64) spec.motion = {{0, 0, -1285816}, 321454};
   spec.is_eased = choice >= 128;
+  if ((choice & 96) == 96) spec.driven = {{{1075200, 116053, {286331, 286331, 286331}, 128, 1049}}};
   spec.objects.push_back({"o", Dof::all, {}});
   const SharedScene scene = Scene::create(std::move(spec)).value();
   SenderOptions options;
@@ -48,12 +51,18 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   auto sender = Sender::create(scene, options);
   if (!sender) return 0;
   auto receiver = Receiver::create(scene).value();
+  const auto path = std::make_shared<DevicePath>(device_scene(*scene).value());
+  path->shift(0, 0);
+  if (scene->driven) sender->know(path), receiver.know(path);
   RigidSample sample;
   for (std::int64_t tick = 0; in.ok(); tick += 1 + in.u8() % 8) {
     RigidSample next = sample;
     move(in, next);
     std::vector<Contact> contacts;
     if (in.u8() & 1) contacts.push_back(contact(in, next.pose));
+    if (scene->driven && !contacts.empty())
+      if (const auto device = to_grid({{contacts[0].device, {}}, {}, {}}, tick, scene->grid))
+        path->add(static_cast<std::uint64_t>(tick) + 1, *device);
     const std::uint64_t before = sender->state_hash(0);
     const auto packets = sender->encode(tick, {.objects = {&next, 1}, .contacts = contacts});
     if (!packets) {

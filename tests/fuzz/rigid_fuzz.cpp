@@ -20,6 +20,10 @@ SharedScene scene(std::uint8_t choice) {
   if (choice & 4) spec.baseline_span = 5;
   if (choice & 16) spec.motion = {{-9000, 1 << 20, -(1 << 28)}, choice & 32 ? 1 : 1 << 18};
   spec.is_eased = (choice & 64) != 0;
+  if (choice & 128) {
+    spec.driven.emplace().bodies.resize(spec.objects.size());
+    spec.driven->bodies[0] = {1, 0, {1, 1, 1}, 0, 0};
+  }
   if (choice & 8) spec.grid = {30, 18, 28, 16};
   return Scene::create(std::move(spec)).value();
 }

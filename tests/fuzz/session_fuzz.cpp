@@ -29,8 +29,12 @@ struct Play : World {
     const unsigned what = op % 16;
     if (what == 0) now += first * std::uint64_t{first} * 50;
     else if (what == 1) now += first * std::uint64_t{50'000};
-    else if (what == 2) static_cast<void>(server.submit(now += 1000, tick++, {samples, {}, shapes}));
-    else if (what == 3) static_cast<void>(client.submit(now, {{v[0], v[1], v[2]}, {}, {}, first, 0}, contact));
+    else if (what == 2) {
+      const auto device = server.device(0, now += 1000);
+      const Contact pushes{ContactKind::surface, 0, {v[3], v[4], v[5]}, {0, 0, 1}, device.value_or(DeviceSample{}).position, 500};
+      const bool touches = scene->driven && device && is_finite(pushes.point);
+      static_cast<void>(server.submit(now, tick++, {samples, {&pushes, touches ? 1u : 0u}, shapes}));
+    } else if (what == 3) static_cast<void>(client.submit(now, {{v[0], v[1], v[2]}, {}, {}, first, 0}, contact));
     else if (what < 6) drain(what == 4);
     else if (what < 8) hostile(Bytes(bytes.begin(), bytes.end()), what == 7, direction, peer);
     else if (what < 10) hostile(numbered(newest, ahead, what - 7, bytes), false, direction, peer);
@@ -39,7 +43,7 @@ struct Play : World {
     else if (what == 12 && ++joins < kMostJoins) to_server(2, join);
     else if (what == 13) op & 16u ? client.close() : server.close(first % 2, LeaveReason::bye);
     else if (what == 14 && ++joins < kMostJoins) client.open(now, first);
-    else if (what == 15 && ++scenes < kMostScenes) replace(kScenes[first % 2]);
+    else if (what == 15 && ++scenes < kMostScenes) replace(kScenes[first % 3]);
     server.handle_timeout(now);
     client.handle_timeout(now);
     if (what > 5) drain(op & 16u);

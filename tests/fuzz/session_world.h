@@ -20,12 +20,13 @@ namespace tactus::testing {
 using Bytes = std::vector<std::uint8_t>;
 using Input = std::span<const std::uint8_t>;
 
-inline const std::array<SharedScene, 2> kScenes = [] {
+inline const std::array<SharedScene, 3> kScenes = [] {
   const TriMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 3, 2}}};
-  SceneBuilder plain(1000), layered(60);
+  SceneBuilder plain(1000), layered(60), driven(1000);
   plain.rigid("a").rigid("b").baselines(64);
   layered.rigid("a").deformable("m", mesh, {.layered = true}).deformable("n", mesh).baselines(4);
-  return std::array{plain.build().value(), layered.build().value()};
+  driven.rigid("a").driven({0.1, {1e-5, 1e-5, 1e-5}, 500, 50, 0.5, 1}).baselines(64);
+  return std::array{plain.build().value(), layered.build().value(), driven.build().value()};
 }();
 
 /// A numbered datagram after the newest of its direction.

@@ -4,11 +4,14 @@
 #include <cinttypes>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <random>
 #include <string>
 #include <vector>
 
 #include <tactus/base/hash.h>
+#include <tactus/signal/device_path.h>
+#include <tactus/signal/device_signal.h>
 #include <tactus/tactus.h>
 #include "tests/golden/golden.h"
 
@@ -70,7 +73,10 @@ struct Case {
   Reduction reduction = Reduction::dead_reckoning;
   RigidProfile profile = RigidProfile::thesis;
   MotionPhysics motion{};
+  bool is_driven = false;
 };
+
+constexpr DrivenPhysics kDriven{0.25, {1e-4, 2e-4, 1.5e-4}, 630, 68, 0.5, 1};
 
 /// Three lines per case, or nothing and false when a codec call failed.
 bool run(const Case& c) {
@@ -78,6 +84,7 @@ bool run(const Case& c) {
   std::vector<Body> bodies;
   for (std::size_t i = 0; i < c.dofs.size(); ++i) {
     builder.rigid("body " + std::to_string(i), {}, c.dofs[i]);
+    if (c.is_driven) builder.driven(kDriven);
     bodies.emplace_back(1000 + i, c.dofs[i]);
   }
   builder.rigid_profile(c.profile);
@@ -93,6 +100,9 @@ bool run(const Case& c) {
   auto sender = Sender::create(*scene, options);
   auto receiver = Receiver::create(*scene, smooth);
   if (!sender || !receiver) return false;
+  const auto path = std::make_shared<DevicePath>(device_scene(**scene).value());
+  path->shift(0, 0);
+  if (c.is_driven) sender->know(path), receiver->know(path);
   Fnv1a stream, states, shown;
   std::vector<RigidSample> samples(bodies.size());
   std::mt19937_64 random(7);
@@ -101,6 +111,9 @@ bool run(const Case& c) {
     for (std::size_t i = 0; i < bodies.size(); ++i) samples[i] = bodies[i].step();
     depth = 0.99 * depth + 0.01 * (0.001 + 0.0009 * uniform(random));
     const Contact contact = press(0, samples[0].pose, depth);
+    const auto device = to_grid({{contact.device, {}}, {}, {}}, tick, (*scene)->grid);
+    if (!device) return false;
+    path->add(static_cast<std::uint64_t>(tick) + 1, *device);
     const auto packets = sender->encode(tick, {.objects = samples, .contacts = {&contact, tick % 1500 < 1000 ? 1u : 0u}});
     if (!packets) return false;
     for (const Packet& packet : *packets) {
@@ -146,6 +159,14 @@ int main() {
        Reduction::dead_reckoning,
        RigidProfile::main,
        {{0.5, 0, -1.5}, 0.25}},
+      {"driven",
+       {Dof::all, Dof::translation},
+       HapticRule::isotropic,
+       0.08,
+       Reduction::dead_reckoning,
+       RigidProfile::main,
+       {{0.5, 0, -1.5}, 0.25},
+       true},
   };
   for (const Case& c : cases) {
     if (!run(c)) {

@@ -53,6 +53,7 @@ int main(int argc, char** argv) {
     for (std::size_t context = 0; context < kMotionContexts; ++context) table.magnitude(indexed("MOTION", {kind, context}));
     for (std::size_t reason = 0; reason < 4; ++reason) table.tree(indexed("SIGN", {kind, reason}), 1);
   }
-  for (std::size_t reason = 0; reason < 4; ++reason) table.tree(indexed("PREDICTOR", {reason}), 3);
+  for (std::size_t context = 0; context < 8; ++context) table.tree(indexed("PREDICTOR", {context}), 3);
+  for (std::size_t of = 0; of < 3; ++of) table.magnitude(indexed("CONTACT", {of}));
   return table.complete() ? 0 : 1;
 }

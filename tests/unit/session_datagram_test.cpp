@@ -144,6 +144,7 @@ Bytes of_all_parts(Direction direction) {
   EXPECT_TRUE(writer.add(Acknowledgement{65000, 17, kLarge}));
   if (direction == Direction::down) {
     EXPECT_TRUE(writer.add(ClockPart{1'000'000'000'000}));
+    EXPECT_TRUE(writer.add(PacePart{4'294'967'295, -(std::int64_t{1} << 33)}));
     EXPECT_TRUE(writer.add(PiecePart{70000, payload}));
     EXPECT_TRUE(writer.add(PiecePart{0, {}}));
     EXPECT_TRUE(writer.add(PacketPart{300, payload}));
@@ -173,7 +174,7 @@ TEST(Datagram, PartsAreReadAsWritten) {
   EXPECT_EQ(std::get<Numbered>(read_datagram(up, Direction::up).value()).number, 0xabcd % 16384);
   const auto sent = parts_of(up, Direction::up), got = parts_of(down, Direction::down);
   ASSERT_EQ(sent.size(), 5u);
-  ASSERT_EQ(got.size(), 6u);
+  ASSERT_EQ(got.size(), 7u);
   EXPECT_EQ(std::get<Acknowledgement>(sent[0]), (Acknowledgement{65000, 17, kLarge}));
   EXPECT_EQ(std::get<ButtonsPart>(sent[1]), (ButtonsPart{4'000'000'000, 5}));
   EXPECT_EQ(std::get<StatePart>(sent[2]).live, 1);
@@ -184,12 +185,14 @@ TEST(Datagram, PartsAreReadAsWritten) {
   EXPECT_EQ(std::get<FragmentPart>(sent[4]).index, 3u);
   EXPECT_EQ(std::get<FragmentPart>(sent[4]).count, 200u);
   EXPECT_EQ(std::get<FragmentPart>(sent[4]).bytes.size(), 4u);
-  EXPECT_EQ(std::get<PacketPart>(got[4]).back, 300u);
-  EXPECT_EQ(copy(std::get<PacketPart>(got[5]).bytes), (Bytes{1, 2, 3, 250}));
+  EXPECT_EQ(std::get<PacketPart>(got[5]).back, 300u);
+  EXPECT_EQ(copy(std::get<PacketPart>(got[6]).bytes), (Bytes{1, 2, 3, 250}));
   EXPECT_EQ(std::get<ClockPart>(got[1]).time, 1'000'000'000'000u);
-  EXPECT_EQ(std::get<PiecePart>(got[2]).index, 70000u);
-  EXPECT_TRUE(std::get<PiecePart>(got[3]).bytes.empty());
-  EXPECT_EQ(rule_of(up, Direction::down), "R-SES-5");
+  EXPECT_EQ(std::get<PiecePart>(got[3]).index, 70000u);
+  EXPECT_TRUE(std::get<PiecePart>(got[4]).bytes.empty());
+  EXPECT_EQ(std::get<PacePart>(got[2]).from, 4'294'967'295);
+  EXPECT_EQ(std::get<PacePart>(got[2]).offset, -(std::int64_t{1} << 33));
+  EXPECT_EQ(rule_of(up, Direction::down), "R-SES-3") << "buttons are no pace";
   EXPECT_EQ(rule_of(down, Direction::up), "R-SES-5");
 }
 

@@ -78,7 +78,7 @@ class Reference:
         assert number == row.number("tactus.number"), row
         for kind, e in parts_of(body):
             if kind in (session.PIECE, session.FRAGMENT, session.PACKET_PART):
-                way.take_part(0, number, kind, session.elements_of(kind, e))
+                way.take_part(0, number, kind, session.elements_of(kind, direction, e))
         self.epoch.begin()
         if self.epoch.scene and not self.ways[UP].decoders:
             self.ways[UP].decoders = SceneDecoder(device_scene(self.epoch.scene))

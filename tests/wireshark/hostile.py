@@ -23,17 +23,21 @@ from session import CUT, SPARE  # noqa: E402
 UP, DOWN = session.UP, session.DOWN
 SYNTAX = ("R-SES-1", "R-SES-2", "R-SES-3", "R-SES-5", "R-SES-9")
 ORDER = ("malformed", "R-SES-5")
-ONLY = {session.CLOCK: DOWN, session.PIECE: DOWN, session.BUTTONS: UP, session.STATE: UP, session.HASH: UP}
+ONLY = {session.CLOCK: DOWN, session.PIECE: DOWN, session.STATE: UP, session.HASH: UP}
 REASONS = 7
 
 
 # ---- 70, sections 2 to 5: syntax of one datagram of either direction -------------------------------------------------
-def read_part(kind: int, e: Cursor) -> None:
+def read_part(kind: int, direction: int, e: Cursor) -> None:
     if kind == session.STATE and e.left() == 1:
         require(e.number(1, CUT) < 2, *SPARE)
         return
     if kind == session.CLOCK:
         require(e.varint(CUT, SPARE) < session.END_OF_TIME and e.left() == 0, *SPARE)
+        return
+    if kind == session.PACE and direction == DOWN:
+        begin, offset = e.varint(CUT, SPARE), e.varint(CUT, SPARE)
+        require(begin < session.END_OF_TICKS and offset <= 2 * session.FARTHEST_PACE and e.left() == 0, *SPARE)
         return
     sizes = {session.ACK: (2, 2), session.BUTTONS: (4, 4), session.STATE: (1,), session.HASH: (1, 2, 4)}
     varints = {session.ACK: 1, session.CLOCK: 1, session.PIECE: 1, session.FRAGMENT: 4, session.PACKET_PART: 1}
@@ -57,7 +61,7 @@ def read_numbered(body: bytes, direction: int) -> None:
         require(not (fragment and kind in (session.FRAGMENT, session.PACKET_PART)), *ORDER)
         last, fragment = kind, fragment or kind == session.FRAGMENT
         if kind < 64:
-            read_part(kind, Cursor(data, 0, size))
+            read_part(kind, direction, Cursor(data, 0, size))
         kinds.append(kind)
         back = Cursor(data, 0, size).varint(CUT, SPARE) if kind == session.PACKET_PART else None
     require(kinds not in ([], [session.PACKET_PART]) or (kinds != [] and back != 0), *ORDER)
@@ -148,6 +152,8 @@ def bases(rows: list[Row], rng: random.Random) -> list[list[tuple[int, bytes]]]:
     kinds["join"] = [(UP, join[:at] + byte + join[at + 1:]) for at, byte in ((2, b"t"), (6, b"\2"), (7, b"\2"))]  # magic, version, role
     kinds["refusal"] = [(DOWN, session.head(session.HANDSHAKE, session.REFUSAL) + rng.randbytes(8) + b"\x02")]
     kinds["said"] = [(UP, parts + ack + part(session.BUTTONS, bytes(8)) + part(session.STATE, b"\1") + part(session.HASH, bytes(7)))]
+    paces = part(session.PACE, b"\x07\x03") + part(session.PACE, b"\xff\xff\xff\xff\x0f\xff\xff\xff\xff\x3f")
+    kinds["paces"] = [(DOWN, parts + ack + part(session.CLOCK, b"\x05") + paces + part(session.PACKET_PART, b"\1abc"))]
     kinds["fragment"] = [(d, parts + ack + part(session.FRAGMENT, b"\x01\x00\x02\x03" + bytes(n))) for d in (UP, DOWN) for n in (5, 1150)]
     kinds["skipped"] = [(DOWN, parts + part(session.PACKET_PART, b"\0abc") + part(64, b"later") + part(255, b""))]
     return list(kinds.values())

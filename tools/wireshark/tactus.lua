@@ -12,11 +12,13 @@
 -- Fields in [brackets] are computed from the conversation, as seen where the capture was taken: tactus.number (not modulo 2^14),
 -- tactus.ack.frame (the datagram that is acknowledged), tactus.ack.sample (70, section 7), tactus.packet.baseline, tactus.packet.tick.
 local VERSION = 1
-local END_OF_TIME = 2 ^ 53
+local END_OF_TIME, END_OF_TICKS = 2 ^ 53, 2 ^ 32
+local FARTHEST_PACE = 2 ^ 34 -- as zigzag
 local LARGEST, PIECE, FRAGMENT = 1200, 1024, 1150
 local HANDSHAKE, PARTS, PACKET = 0, 1, 2
 local JOIN, WELCOME, REFUSAL, LEAVE = 0, 1, 2, 3
 local ACK, CLOCK, BUTTONS, PIECES, STATE, HASH, FRAGMENTS, PACKETS = 1, 2, 3, 4, 5, 6, 7, 8
+local PACE = BUTTONS -- down
 local UP, DOWN = 0, 1
 local MOST_EPOCHS = 8 -- of a conversation that checks are tried for, the newest ones
 
@@ -26,7 +28,7 @@ tactus.prefs.port = Pref.uint("UDP port of servers", 7447, "For captures that be
 -- ---- Fields and rules ------------------------------------------------------------------------------------------------
 local forms = { [0] = "handshake", "parts", "packet", "reserved" }
 local kinds = { [0] = "join", "welcome", "refusal", "leave" }
-local part_names = { "acknowledgement", "clock", "buttons", "piece", "state", "hash", "fragment", "packet" }
+local part_names = { "acknowledgement", "clock", "buttons or pace", "piece", "state", "hash", "fragment", "packet" }
 local reasons = { [0] = "bye", "version", "full", "limits", "silence", "scene", "protocol" }
 local statuses = { [0] = "bad", "good", "unverified" }
 local directions = { [0] = "up", "down" }
@@ -77,6 +79,8 @@ field("ack.sample", u64, "Round trip from here, without the hold time [us]", bas
 field("clock.time", u64, "Server's clock [us]", base.DEC)
 field("buttons.tick", u32, "Since tick of the device")
 field("buttons.mask", u32, "Buttons that are down", base.HEX)
+field("pace.from", u64, "From this tick of the server on", base.DEC)
+field("pace.offset", ProtoField.int64, "Ticks of the server less those of the device", base.DEC)
 field("piece.index", u64, "Index", base.DEC)
 field("piece.data", raw, "Bytes of the declaration")
 field("piece.received", u64, "Bytes of the declaration so far", base.DEC)
@@ -395,10 +399,21 @@ add_part[CLOCK] = function(r, tree)
   return "clock"
 end
 
-add_part[BUTTONS] = function(r, tree)
-  r:add(tree, "buttons.tick", 4)
-  r:add(tree, "buttons.mask", 4)
-  return "buttons"
+add_part[BUTTONS] = function(r, tree, d)
+  if d.direction == UP then
+    r:add(tree, "buttons.tick", 4)
+    r:add(tree, "buttons.mask", 4)
+    return "buttons"
+  end
+  local from, range, zigzag = r:add_varint(tree, "pace.from"), r:varint()
+  if not zigzag then return "pace" end
+  if from >= END_OF_TICKS or zigzag > FARTHEST_PACE then
+    r.broken = true
+    return "pace"
+  end
+  local offset = zigzag % 2 == 0 and zigzag / 2 or -(zigzag + 1) / 2
+  tree:add(f["pace.offset"], range, Int64.new(floor(offset)))
+  return string.format("pace from %.0f, offset %.0f", from, offset)
 end
 
 add_part[PIECES] = function(r, tree, d)
@@ -467,7 +482,7 @@ add_part[PACKETS] = function(r, tree, d)
   return add_packet(tree, range, d.epoch, d.direction, number, d.fresh)
 end
 
-local only = { [CLOCK] = DOWN, [PIECES] = DOWN, [BUTTONS] = UP, [STATE] = UP, [HASH] = UP }
+local only = { [CLOCK] = DOWN, [PIECES] = DOWN, [STATE] = UP, [HASH] = UP }
 
 local function add_parts(tree, d)
   local r, last, words = reader(d.tvb, 2, d.stop), 0, {}
@@ -483,7 +498,7 @@ local function add_parts(tree, d)
     end
     local kind = type_range:uint()
     local part = tree:add(f.part, d.tvb:range(from, r.at + size - from))
-    part:append_text(": " .. (types[kind] or "reserved"))
+    part:append_text(": " .. (kind == PACE and (d.direction == UP and "buttons" or "pace") or types[kind] or "reserved"))
     part:add(f["part.type"], type_range)
     part:add(f["part.size"], size_range, exact)
     if kind < last or kind == 0 or (kind > 8 and kind < 64) or (only[kind] and only[kind] ~= d.direction) or

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// Driven objects in sessions: what both ends know of the device, and what the client shows.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include <tactus/session/device_pace.h>
+#include <tactus/sim/link/session_network.h>
+#include <tactus/sim/simulation.h>
+#include "tests/unit/driven_fixture.h"
+#include "tests/unit/session_exchange_fixture.h"
+
+namespace tactus {
+namespace {
+
+using testing::Bytes;
+using testing::kEpoch;
+using testing::kMillisecond;
+
+/// Both ends of a device's packets, over a network that loses and delays.
+struct DeviceEnds {
+  explicit DeviceEnds(double loss_share) : loss(loss_share) {
+    const SharedScene device = device_scene(*testing::driven_scene()).value();
+    client.send_with(Sender::create(device, device_sender_options({})).value());
+    server.receive_with(Receiver::create(device).value());
+    for (Exchange* end : {&client, &server}) end->path = std::make_shared<DevicePath>(device);
+  }
+
+  /// A millisecond at both ends.
+  void tick(std::int64_t tick) {
+    now += kMillisecond;
+    const double t = 1e-3 * static_cast<double>(tick);
+    const DeviceSample sample{.position = {0.05 * std::sin(6 * t), 0.02 * std::sin(11 * t), 0}, .orientation = {}};
+    EXPECT_TRUE(client.submit(now, tick, truth.of(tick, sample, {})));
+    say(client, up, 20 * kMillisecond);
+    hear(server, up, Direction::up);
+    if (const auto change = pace.step(tick, tick - 20)) {  // known to both at once
+      server.path->shift(change->from, change->offset);
+      client.path->shift(change->from, change->offset);
+    }
+    server.path->pass(tick);
+    say(server, down, 20 * kMillisecond);
+    hear(client, down, Direction::down);
+  }
+
+  void say(Exchange& from, std::multimap<std::uint64_t, Bytes>& to, std::uint64_t delay) {
+    while (const auto datagram = from.poll(now, false, [](DatagramWriter&, std::uint64_t) { return false; })) {
+      if (static_cast<double>(random() % 1000) < 1000 * loss) continue;
+      to.emplace(now + delay + random() % (4 * kMillisecond), Bytes(datagram->begin(), datagram->end()));
+    }
+  }
+  void hear(Exchange& to, std::multimap<std::uint64_t, Bytes>& from, Direction direction) {
+    for (; !from.empty() && from.begin()->first <= now; from.erase(from.begin())) {
+      const auto read = read_datagram(from.begin()->second, direction).value();
+      const auto heard = to.handle(now, std::get<Numbered>(read), [](const Part&, const auto&) { return Result<void>(); });
+      if (heard && heard->tick && direction == Direction::up) pace.heard(*heard->tick);
+    }
+  }
+
+  double loss;
+  Exchange client{Direction::up, kEpoch, 0}, server{Direction::down, kEpoch, 0};
+  DeviceTruth truth{1000, false};
+  DevicePace pace{1000};
+  std::multimap<std::uint64_t, Bytes> up, down;
+  std::mt19937_64 random{3};
+  std::uint64_t now = kMillisecond;
+};
+
+/// Whatever is lost, late or overtaken: a round trip later the client knows where the device was for the server, to the bit.
+TEST(Driven, BothEndsKnowTheSamePath) {
+  for (const double loss : {0.0, 0.05, 0.3}) {
+    DeviceEnds ends(loss);
+    for (std::int64_t tick = 0; tick < 4000; ++tick) {
+      ends.tick(tick);
+      if (tick % 500 != 499) continue;
+      ends.loss = 0;  // so that what is not known yet gets known
+      for (int i = 0; i < 150; ++i) ends.tick(++tick);
+      std::size_t known = 0;
+      for (std::int64_t past = tick - 600; past < tick - 100; ++past) {
+        const auto at = ends.server.path->at(past);
+        ASSERT_EQ(ends.client.path->at(past), at) << "tick " << past << ", loss " << loss;
+        known += at ? 1u : 0u;
+      }
+      EXPECT_GT(known, tick > 1000 ? 400u : 0u);
+      ends.loss = loss;
+    }
+    const std::uint64_t late = ends.server.traffic().packets_refused;
+    EXPECT_GT(late, 0u) << "a jitter of 4 ms is more than the pace begins with";
+    EXPECT_LT(late, 20u) << "it has got slower";
+  }
+}
+
+struct Course {
+  std::size_t shown = 0, outside = 0, driven = 0;
+  std::uint64_t packets = 0;
+};
+
+/// A shipped scene over a network, with or without driven objects.
+Course course(const char* name, bool drives, const sim::LinkOptions& link, std::int64_t ticks) {
+  const sim::Scene scene = sim::load_scene(*sim::find_scene(name)).value();
+  sim::SessionNetwork* network = nullptr;
+  sim::ChannelOptions channel;
+  channel.sender.triggers.visual_position = 3e-4;
+  channel.coding.rigid = drives ? RigidProfile::main : RigidProfile::thesis;
+  channel.network = [&](SharedScene declared, std::size_t users,
+                        const SenderOptions& sender) -> Result<std::unique_ptr<sim::Network>> {
+    EXPECT_EQ(declared->driven.has_value(), drives);
+    TACTUS_TRY(auto made, sim::SessionNetwork::create(std::move(declared), users, sender, {.uplink = link, .downlink = link}));
+    network = made.get();
+    return made;
+  };
+  auto simulation = sim::Simulation::create(scene, {.seed = 1, .grip = {}, .channel = channel});
+  EXPECT_TRUE(simulation) << simulation.error().rule;
+  std::vector<Vec3> truth;
+  Course out;
+  for (std::int64_t tick = 0; tick < ticks; ++tick) {
+    EXPECT_TRUE(simulation->step());
+    truth.push_back(simulation->frame().objects[0].pose.position);
+    const std::int64_t shown = simulation->shown_tick(0);
+    if (shown < 0) continue;
+    ++out.shown;
+    const double error = norm(simulation->received_poses(0)[0].position - truth[static_cast<std::size_t>(shown)]);
+    out.outside += error > 3e-4 ? 1u : 0u;
+    out.driven += network->client(0).receiver()->objects()[0].predictor == Predictor::driven ? 1u : 0u;
+  }
+  out.packets = network->sent_to(0).packets_sent;
+  return out;
+}
+
+TEST(Driven, TheClientShowsWhereItsDeviceHasMovedAnObject) {
+  for (const char* scene : {"push-1dof", "rotate-6dof"}) {
+    const Course driven = course(scene, true, {.delay = 10'000}, 3000);
+    EXPECT_GT(driven.shown, 1900u) << "from the first packet on";
+    EXPECT_EQ(driven.outside, 0u) << scene;
+    EXPECT_GT(driven.driven, 300u);
+    const Course coded = course(scene, false, {.delay = 10'000}, 3000);
+    EXPECT_EQ(coded.driven, 0u);
+    EXPECT_LT(driven.packets, coded.packets) << scene;
+  }
+}
+
+/// What is lost leads both ends apart for a moment; no longer than packets are in other sessions.
+TEST(Driven, LossesEndWithTheNextPackets) {
+  const Course lost = course("rotate-6dof", true, {.delay = 10'000, .jitter = 3'000, .loss = 0.05}, 5000);
+  EXPECT_GT(lost.driven, 300u);
+  EXPECT_LT(lost.outside, lost.shown / 50);
+}
+
+}  // namespace
+}  // namespace tactus
