@@ -64,7 +64,7 @@ const tests = {
     return `${vectors.length} vectors`;
   },
 
-  async "the answers to all scripts of sessions, in the page"(browser) {
+  async "the answers to all sessions and of clients with a device, in the page"(browser) {
     const tab = await ready(browser, "evil.html");
     const bytes = readFileSync(sessionsModule).toString("base64");
     await tab.run(`(async () => {
@@ -80,7 +80,7 @@ const tests = {
     const [[, problem]] = await tab.run(`check(${JSON.stringify([wrong])})`);
     assert.match(problem, /line \d+ is/);  // the check itself can fail
     await tab.close();
-    return `${sessions.length} sessions`;
+    return `${sessions.length} vectors`;
   },
 
   async "going anywhere shows what playing to there shows"(browser) {

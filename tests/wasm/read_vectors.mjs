@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The vectors of streams, for the decoder, and those of sessions, for both ends of one.
+// The vectors of streams, for the decoder, and those of sessions and of clients with a device, for sessions.js.
 import {readFileSync} from "node:fs";
 import {join} from "node:path";
 
@@ -7,7 +7,7 @@ function casesOf(folder, isWanted) {
   const {stems} = JSON.parse(readFileSync(join(folder, "manifest.json")));
   return Object.keys(stems).filter(isWanted).flatMap((stem) => {
     const {cases} = JSON.parse(readFileSync(join(folder, "vectors", `${stem}.json`)));
-    return cases.map((one) => ({...one, id: `${stem}/${one.name}`, file: join(folder, "vectors", stem, one.name)}));
+    return cases.map((one) => ({...one, stem, id: `${stem}/${one.name}`, file: join(folder, "vectors", stem, one.name)}));
   });
 }
 
@@ -21,6 +21,9 @@ export function readVectors(folder) {
 }
 
 export function readSessions(folder) {
-  const text = (name) => readFileSync(name, "utf8");
-  return casesOf(folder, isSession).map(({id, file}) => ({id, script: text(`${file}.script`), expected: text(`${file}.jsonl`)}));
+  const hasDevice = ({args}) => args?.[1] === "device";
+  return casesOf(folder, () => true).filter((one) => isSession(one.stem) || hasDevice(one)).map(({id, stem, file}) => {
+    const input = readFileSync(`${file}.${isSession(stem) ? "script" : "tct"}`, "base64");
+    return {id, isSession: isSession(stem), input, expected: readFileSync(`${file}.jsonl`, "utf8")};
+  });
 }
