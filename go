@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Installs missing packages, builds and runs Tactus on Debian 12. Needs root or sudo only to install packages.
-#   ./go demo     simulate a touch, encode, decode and compare; report and figure in out/demo/ (under 3 minutes on 2 cores, 300 MB)
+#   ./go demo     simulate a touch, encode, decode and compare; report and figure in out/demo/ (3 to 4 minutes on 2 cores, 300 MB)
 #   ./go view     the same, and a page that shows it in a browser, out/demo/stream.html (2 minutes and 500 MB more)
 #   ./go test     build with g++ and clang, run every test (55 minutes on 2 cores, 4 GB)
 #   ./go bench    build and run the benchmarks; JSON in build/bench/
@@ -15,7 +15,7 @@ cd "$(dirname "$0")"
 demo_packages='g++ cmake ninja-build pkgconf libexpected-dev libzstd-dev libode-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libfmt-dev gnuplot-nox'
 build_packages="$demo_packages libgnutls28-dev libeigen3-dev libsuitesparse-dev libspectra-dev libopenmesh-dev libusb-1.0-0-dev libhidapi-dev libboost-dev"
 bench_packages='libbenchmark-dev libgtest-dev python3 libbullet-dev'
-view_packages='nodejs clang-16 lld-16 wasi-libc libc++-16-dev-wasm32 libc++abi-16-dev-wasm32 libclang-rt-16-dev-wasm32 python3'
+view_packages='nodejs clang-16 lld-16 binaryen wasi-libc libc++-16-dev-wasm32 libc++abi-16-dev-wasm32 libclang-rt-16-dev-wasm32 python3'
 site_packages='python3 doxygen cmark-gfm'
 test_packages="$bench_packages $site_packages ccache clang libclang-rt-dev clang-tidy clang-format munge parallel slurm-wlm tetgen tshark umockdev libumockdev-dev valgrind zstd chromium abigail-tools python3-numpy python3-pytest python3-venv
   mandoc groff-base bsdextrautils zsh fish lintian dpkg-dev make"
@@ -41,7 +41,7 @@ apt_install() {
 }
 
 # Why the demo does without them: on a machine that has none of them they take 110 s to install, 70 of which are npm's, and the demo would
-# no longer be done in 3 minutes. Some packages of Node bring npm, others refuse the package npm.
+# take half as long again. Some packages of Node bring npm, others refuse the package npm.
 install_view_tools() {
   install $view_packages
   command -v npm >/dev/null || install npm
@@ -109,6 +109,7 @@ run_demo() {
   step 'simulate a hand that turns, pushes and lifts a cube' "$tactus" sim rotate-push-lift -o "$out/truth.mcap" -f
   step 'encode the trace into a stream' "$tactus" encode "$out/truth.mcap" -o "$out/stream.tct" -f $bounds
   step 'decode the stream as a client does' "$tactus" decode "$out/stream.tct" -o "$out/replica.mcap" --like "$out/truth.mcap" -f
+  rm -rf "$out/sweep" # of an earlier build
   step 'draw packet rate and error over the deadband' "$tactus" sweep reports/plans/demo.toml -o "$out/sweep"
   "$tactus" encode "$out/truth.mcap" -o "$out/stream.tct" -f $bounds | tee "$out/report.txt"
   "$tactus" encode "$out/truth.mcap" -o "$out/stream.tct" -f $bounds --json >"$out/encode.json"

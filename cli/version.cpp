@@ -26,6 +26,8 @@ std::vector<std::string> words_of(const char* text) {
 
 }  // namespace
 
+std::string version_and_commit() { return *TACTUS_COMMIT ? TACTUS_VERSION ", commit " TACTUS_COMMIT : TACTUS_VERSION; }
+
 std::string version_table() {
   const std::string commit = TACTUS_COMMIT;
   return fmt::format(

@@ -22,7 +22,7 @@ set(TACTUS_PACKAGES
   "GTest           libgtest-dev            GTest::gtest_main"
   "benchmark       libbenchmark-dev        benchmark::benchmark"
   "Python3         python3                 Python3::Interpreter"
-  "WasmClang clang-16,lld-16,wasi-libc,libc++-16-dev-wasm32,libc++abi-16-dev-wasm32,libclang-rt-16-dev-wasm32 WasmClang::compiler"
+  "WasmClang clang-16,lld-16,binaryen,wasi-libc,libc++-16-dev-wasm32,libc++abi-16-dev-wasm32,libclang-rt-16-dev-wasm32 WasmClang::compiler"
   "Node            nodejs,npm              Node::node")
 
 # These come without a CMake file: FindLDL.cmake and FindCHOLMOD.cmake (installed beside ours), FindWasmClang.cmake, FindNode.cmake.

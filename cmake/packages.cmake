@@ -4,7 +4,6 @@
 #   libtactus-dev  headers, libraries, files for CMake and pkg-config, specification, examples (development)
 #   tactus         the program with its manual, completion, scenes and plans (tools)
 #   python3-tactus the Python package (python)
-set(doc_dir ${CMAKE_INSTALL_DATADIR}/doc)
 
 # The packages whose headers and libraries our libraries need, and no other.
 set(dev_depends)
@@ -43,18 +42,17 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_OUTPUT_FILE_PREFIX ${PROJECT_BINARY_DIR}/packages)
 set(CPACK_STRIP_FILES ON)
-# Folders that everybody may read, whatever the umask of who makes the packages: CPack sets their modes for a umask of 022 only.
-file(CONFIGURE OUTPUT package_folders.cmake @ONLY CONTENT [[
-file(GLOB_RECURSE entries LIST_DIRECTORIES true ${CPACK_TEMPORARY_DIRECTORY}/*)
-foreach(entry IN LISTS entries)
-  if(IS_DIRECTORY ${entry} AND NOT IS_SYMLINK ${entry})
-    file(CHMOD ${entry} PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
-  endif()
-endforeach()
-]])
-set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_CURRENT_BINARY_DIR}/package_folders.cmake)
+# Two scripts of cpack: when the packages are from, and what is in them beside what is installed.
+set(CPACK_PACKAGE_SOURCE ${PROJECT_SOURCE_DIR})
+set(CPACK_PROJECT_CONFIG_FILE ${PROJECT_SOURCE_DIR}/cmake/package_date.cmake)
+set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/package_files.cmake)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
-set(CPACK_DEBIAN_PACKAGE_MAINTAINER "Tactus maintainers <maintainers@tactus.invalid>" CACHE STRING "Who answers for the packages")
+# Who makes the packages answers for them, and says so as in Debian's own tools.
+set(maintainer "Local build <nobody@tactus.invalid>")
+if(DEFINED ENV{DEBFULLNAME} AND DEFINED ENV{DEBEMAIL})
+  set(maintainer "$ENV{DEBFULLNAME} <$ENV{DEBEMAIL}>")
+endif()
+set(CPACK_DEBIAN_PACKAGE_MAINTAINER ${maintainer} CACHE STRING "Who answers for the packages; DEBFULLNAME and DEBEMAIL are the default")
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
@@ -90,26 +88,4 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/prerm)
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Codec for shared haptic environments, Python package
  Traces, streams and reports as arrays of NumPy.")
 
-# What Debian wants of every package: the licence and the changes.
-set(changes ${PROJECT_BINARY_DIR}/changelog)
-string(TIMESTAMP day "%a, %d %b %Y %H:%M:%S +0000" UTC)
-file(CONFIGURE OUTPUT changelog @ONLY CONTENT
-  "tactus (@PROJECT_VERSION@) unstable; urgency=medium\n\n  * See the history of the repository.\n\n -- @CPACK_DEBIAN_PACKAGE_MAINTAINER@  @day@\n")
-file(CONFIGURE OUTPUT copyright @ONLY CONTENT [[
-Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
-Upstream-Name: Tactus
-
-Files: *
-Copyright: 2026 the contributors of Tactus
-License: Apache-2.0
- On Debian systems, the full text of the Apache License, Version 2.0 is in
- /usr/share/common-licenses/Apache-2.0.
-]])
-execute_process(COMMAND gzip -9nkf ${changes} COMMAND_ERROR_IS_FATAL ANY)
-foreach(part IN LISTS parts)
-  string(TOUPPER ${part} upper)
-  set(folder ${doc_dir}/${CPACK_DEBIAN_${upper}_PACKAGE_NAME})
-  install(FILES ${PROJECT_BINARY_DIR}/copyright DESTINATION ${folder} COMPONENT ${part})
-  install(FILES ${changes}.gz DESTINATION ${folder} COMPONENT ${part})
-endforeach()
 include(CPack)

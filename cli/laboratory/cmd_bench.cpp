@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "cli/commands/commands.h"
+#include "cli/version.h"
 
 namespace tactus::cli {
 namespace {
@@ -52,7 +53,7 @@ std::string compiler() {
 }  // namespace
 
 std::map<std::string, std::string> bench_context() {
-  return {{"machine", machine()}, {"compiler", compiler()}, {"build", TACTUS_BUILD_TYPE}, {"tactus", TACTUS_VERSION}};
+  return {{"machine", machine()}, {"compiler", compiler()}, {"build", TACTUS_BUILD_TYPE}, {"tactus", version_and_commit()}};
 }
 
 Outcome make_folder(const std::string& directory) {

@@ -17,6 +17,7 @@
 #include <tactus/base/hash.h>
 #include <tactus/base/shown.h>
 #include "cli/report/json_parts.h"
+#include "cli/version.h"
 
 namespace tactus::cli {
 namespace {
@@ -24,8 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kSchema = "tactus.sweep/2";
-constexpr const char* kProgram = "tactus " TACTUS_VERSION;
+constexpr const char* kSchema = "tactus.sweep/3";
 constexpr const char* kOtherFolder = "Give another folder with -o, or remove this one.";
 
 /// The folder, held by this sweep alone until it ends. A file, because network file systems lock no folders.
@@ -38,6 +38,8 @@ tl::expected<Descriptor, Failure> hold(const std::string& folder) {
     return refuse(shown_path(folder) + ": another sweep is writing here", "Wait until it ends, or give another folder with -o.");
   return refuse(shown_path(path) + ": cannot be locked: " + std::generic_category().message(why), "Give another folder with -o.");
 }
+
+std::string program() { return "tactus " + version_and_commit(); }
 
 /// What must not change between two runs into one folder.
 Json identity(const SweepPlan& plan) {
@@ -54,9 +56,10 @@ Json identity(const SweepPlan& plan) {
 }
 
 Json context(const SweepPlan& plan, const SweepResults::Digests& digests) {
-  return {
-      {"schema", kSchema},       {"program", kProgram}, {"compiler", __VERSION__}, {"cores", std::thread::hardware_concurrency()},
-      {"sweep", identity(plan)}, {"inputs", digests},   {"plan", plan.text}};
+  return {{"schema", kSchema},       {"program", program()},
+          {"compiler", __VERSION__}, {"cores", std::thread::hardware_concurrency()},
+          {"sweep", identity(plan)}, {"inputs", digests},
+          {"plan", plan.text}};
 }
 
 /// The digests that a folder's context.json names.   err  it is of another sweep or program
@@ -65,14 +68,19 @@ tl::expected<SweepResults::Digests, Failure> digests_of(const std::string& path,
   TACTUS_TRY(const auto text, read_regular_file(path));
   const Json before = Json::parse(
       text, [](int depth, auto, const Json&) { return depth <= kDeepest; }, false);
+  if (const Json schema = before.is_object() ? before.value("schema", Json()) : Json(); schema.is_string() && schema != kSchema) {
+    return refuse(fmt::format("{}: is of the format {}, and this program writes {}", shown_path(path),
+                              shown(schema.get<std::string>()), kSchema),
+                  kOtherFolder);
+  }
   if (!before.is_object() || before.value("sweep", Json()) != identity(plan)) {
     return refuse(shown_path(path) + ": this folder holds a sweep with another command, other inputs, parameters or measures",
                   kOtherFolder);
   }
   const Json by = before.value("program", Json());
-  if (by != kProgram) {
+  if (by != program()) {
     return refuse(fmt::format("{}: this folder was computed by {}, and this is {}", shown_path(path),
-                              shown(by.is_string() ? by.get<std::string>() : by.dump()), kProgram),
+                              shown(by.is_string() ? by.get<std::string>() : by.dump()), program()),
                   kOtherFolder);
   }
   SweepResults::Digests out;

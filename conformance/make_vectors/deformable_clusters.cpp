@@ -139,12 +139,21 @@ void add_limits(Catalogue& c) {
             much_work(325442, 31));
 }
 
+/// What is small beside its distance from the origin.
+void add_far(Catalogue& c) {
+  c.section(section::kClusters);
+  const Shape far = moved(sheet(3, 2), {2000000000, -2000000000, 1900000000});
+  c.valid("clusters-far-from-the-origin", "Functions count from the first vertex of a cluster: none is lost beside the distance.",
+          random_walk(in_clusters({.shape = far}, 2, 1, [](int v) { return v / 6; }), 793, 6));
+}
+
 }  // namespace
 
 void add_deformable_clusters(Catalogue& c) {
   add_valid(c);
   add_faults(c);
   add_limits(c);
+  add_far(c);
 }
 
 }  // namespace tactus::conformance

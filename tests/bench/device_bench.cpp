@@ -82,7 +82,7 @@ void Guard(benchmark::State& state) {
 }
 BENCHMARK(Guard);
 
-void TickServo(benchmark::State& state) {
+void tick_servo(benchmark::State& state) {
   NotingDevice device;
   HastyClock clock;
   const auto servo = Servo::start(device, {}, clock).value();
@@ -91,7 +91,7 @@ void TickServo(benchmark::State& state) {
     benchmark::DoNotOptimize(servo->exert({1, 0, 0}));
   }
 }
-BENCHMARK(TickServo);
+BENCHMARK(tick_servo);
 
 /// What a capture of motion alone writes, and that many bytes of reports each tick.
 class Captured {
@@ -127,7 +127,7 @@ class Captured {
 };
 
 /// From the device to the ring of the thread that writes.   in  range(0) [bytes] of reports
-void CaptureTick(benchmark::State& state) {
+void capture_tick(benchmark::State& state) {
   constexpr std::int64_t kWait = 2048;  // ticks; the ring holds twice as many
   NotingDevice device;
   HastyClock clock;
@@ -149,10 +149,10 @@ void CaptureTick(benchmark::State& state) {
   state.counters["lost"] = static_cast<double>(recorder.status().lost);
   if (!recorder.finish()) state.SkipWithError("the trace cannot be written");
 }
-BENCHMARK(CaptureTick)->Arg(0)->Arg(64);
+BENCHMARK(capture_tick)->Arg(0)->Arg(64);
 
 /// What the writing thread does with a tick.   in  range(0) [bytes] of reports
-void CaptureWrite(benchmark::State& state) {
+void capture_write(benchmark::State& state) {
   Captured captured(static_cast<std::size_t>(state.range(0)));
   auto writer = TraceWriter::create(captured.path, captured.info, {.chunk_time = 0.08}).value();
   ServoTick tick;
@@ -164,7 +164,7 @@ void CaptureWrite(benchmark::State& state) {
   if (!writer.finish()) return state.SkipWithError("the trace cannot be written");
   state.counters["bytes_per_tick"] = captured.bytes_per_tick();
 }
-BENCHMARK(CaptureWrite)->Arg(0)->Arg(64);
+BENCHMARK(capture_write)->Arg(0)->Arg(64);
 
 /// A loop that pushes for 20 ms.
 std::unique_ptr<Servo> pushing(NotingDevice& device) {
@@ -202,7 +202,7 @@ void measure(benchmark::State& state, Fail fail) {
   report(state, times);
 }
 
-void RestAfterHang(benchmark::State& state) {
+void rest_after_hang(benchmark::State& state) {
   measure(state, [](NotingDevice& device) {
     const auto servo = pushing(device);
     const Time begin = monotonic_clock().now();
@@ -211,7 +211,7 @@ void RestAfterHang(benchmark::State& state) {
   });
 }
 
-void RestAfterException(benchmark::State& state) {
+void rest_after_exception(benchmark::State& state) {
   measure(state, [](NotingDevice& device) {
     Time begin = 0;
     try {
@@ -224,7 +224,7 @@ void RestAfterException(benchmark::State& state) {
   });
 }
 
-void RestAfterLostDevice(benchmark::State& state) {
+void rest_after_lost_device(benchmark::State& state) {
   measure(state, [](NotingDevice& device) {
     const auto servo = pushing(device);
     const Time begin = monotonic_clock().now();
@@ -234,7 +234,7 @@ void RestAfterLostDevice(benchmark::State& state) {
   });
 }
 
-void RestAfterForceThatIsNoNumber(benchmark::State& state) {
+void rest_after_force_that_is_no_number(benchmark::State& state) {
   measure(state, [](NotingDevice& device) {
     const auto servo = pushing(device);
     const Time begin = monotonic_clock().now();
@@ -255,7 +255,7 @@ pid_t guarded_process(std::atomic<Time>& acted) {
 }
 
 /// Until the guardian acts; what it then does takes as long as the device needs to be opened.
-void ActAfterKill(benchmark::State& state) {
+void act_after_kill(benchmark::State& state) {
   void* const shared = mmap(nullptr, sizeof(std::atomic<Time>), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (shared == MAP_FAILED) return state.SkipWithError("no shared memory");
   auto& acted = *new (shared) std::atomic<Time>(0);
@@ -275,11 +275,11 @@ void ActAfterKill(benchmark::State& state) {
   report(state, times);
 }
 
-BENCHMARK(RestAfterHang)->Iterations(kFailures)->UseManualTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(RestAfterException)->Iterations(kFailures)->UseManualTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(RestAfterLostDevice)->Iterations(kFailures)->UseManualTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(RestAfterForceThatIsNoNumber)->Iterations(kFailures)->UseManualTime()->Unit(benchmark::kMillisecond);
-BENCHMARK(ActAfterKill)->Iterations(kFailures)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(rest_after_hang)->Iterations(kFailures)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(rest_after_exception)->Iterations(kFailures)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(rest_after_lost_device)->Iterations(kFailures)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(rest_after_force_that_is_no_number)->Iterations(kFailures)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(act_after_kill)->Iterations(kFailures)->UseManualTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace tactus::device

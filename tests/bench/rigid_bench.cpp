@@ -63,7 +63,7 @@ void decide(benchmark::State& state) {
   }
   state.counters["packets_share"] = benchmark::Counter(static_cast<double>(packets), benchmark::Counter::kAvgIterations);
 }
-BENCHMARK(decide)->Iterations(900 * 1000)->Repetitions(5)->ReportAggregatesOnly();
+BENCHMARK(decide)->Iterations(900'000)->Repetitions(5)->ReportAggregatesOnly();
 
 /// One update per tick, decision included.
 void encode_update(benchmark::State& state) {

@@ -8,11 +8,13 @@
 Prints sizes, what was done inside, and what lintian finds. Ends with 77, and says why, where the machine cannot do it.
 """
 import argparse
+import io
 import os
 import pathlib
 import shutil
 import subprocess
 import sys
+import tarfile
 import tempfile
 
 SKIPPED = 77
@@ -32,25 +34,57 @@ def run(*words, **options):
     return subprocess.run([str(w) for w in words], check=True, text=True, **options)
 
 
-def check_modes(package):
-    """Everybody may read what is installed, and only root may write it."""
-    for line in run("dpkg-deb", "-c", package, stdout=subprocess.PIPE).stdout.splitlines():
-        mode, owner = line.split()[:2]
-        if owner != "root/root" or mode not in ("drwxr-xr-x", "-rw-r--r--", "-rwxr-xr-x", "lrwxrwxrwx"):
-            sys.exit(f"{package.name}: {line}")
+def commit_time():
+    """Of the sources [s]; None outside of a checkout."""
+    if not (SOURCE / ".git").exists():
+        return None
+    return int(run("git", "-C", SOURCE, "log", "-1", "--format=%ct", stdout=subprocess.PIPE).stdout)
 
 
-def make_packages(build, folder):
-    os.umask(0o077)  # that of a careful person
+def check_files(package, build, time):
+    """Everybody may read what is installed, and only root may write it; nothing tells where it was built, or when."""
+    modes = {tarfile.DIRTYPE: (0o755,), tarfile.REGTYPE: (0o644, 0o755), tarfile.SYMTYPE: (0o777,)}
+    places = [str(place).encode() for place in (build, SOURCE)]
+    data = subprocess.run(["dpkg-deb", "--fsys-tarfile", package], check=True, stdout=subprocess.PIPE).stdout
+    with tarfile.open(fileobj=io.BytesIO(data)) as archive:
+        for member in archive:
+            if member.mode not in modes[member.type] or (member.uname, member.gname) != ("root", "root"):
+                sys.exit(f"{package.name}: {member.name} has mode {member.mode:o} and belongs to {member.uname}:{member.gname}")
+            if time is not None and member.mtime != time:
+                sys.exit(f"{package.name}: {member.name} is of {member.mtime}, and the commit of {time}")
+            content = archive.extractfile(member).read() if member.isreg() else b""
+            if any(place in content for place in places):
+                sys.exit(f"{package.name}: {member.name} names the folder in which it was built")
+
+
+def check_linked(build):
+    """Before debug information is stripped, which leaves its trace in the build id."""
+    for file in [*build.glob("bindings/c/*.so"), build / "cli/tactus"]:
+        if file.exists() and any(str(place).encode() in file.read_bytes() for place in (build, SOURCE)):
+            sys.exit(f"{file} names the folder in which it was built")
+
+
+def run_cpack(build, folder):
+    folder.mkdir()
+    before = os.umask(0o077)  # that of a careful person
     run("cpack", "--config", build / "CPackConfig.cmake", "-B", folder, "-D", f"CPACK_OUTPUT_FILE_PREFIX={folder}", stdout=subprocess.DEVNULL)
-    os.umask(0o022)
-    found = sorted(folder.glob("*.deb"))
-    for package in found:
+    os.umask(before)
+    return sorted(folder.glob("*.deb"))
+
+
+def make_packages(build, scratch):
+    time = commit_time()
+    check_linked(build)
+    found = run_cpack(build, scratch / "packages")
+    again = run_cpack(build, scratch / "elsewhere")
+    if not found or [package.name for package in found] != [package.name for package in again]:
+        sys.exit(f"made {[package.name for package in found]}, then {[package.name for package in again]}")
+    for package, other in zip(found, again):
         fields = run("dpkg-deb", "-f", package, "Package", "Installed-Size", stdout=subprocess.PIPE).stdout.split()
-        check_modes(package)
+        check_files(package, build, time)
+        if time is not None and package.read_bytes() != other.read_bytes():
+            sys.exit(f"{package.name} differs when it is made again, in another folder")
         print(f"{fields[1]:16} {package.stat().st_size / 1e6:6.2f} MB, installed {int(fields[3]) / 1e3:6.1f} MB")
-    if not found:
-        sys.exit("no package was made")
     return found
 
 
@@ -107,9 +141,7 @@ def main():
     if options.root is None and not can_layer():
         skip("this kernel, or the container around this, allows no overlay in a mount namespace")
     with tempfile.TemporaryDirectory() as scratch:
-        folder = pathlib.Path(scratch, "packages")
-        folder.mkdir()
-        packages = make_packages(options.build.resolve(), folder)
+        packages = make_packages(options.build.resolve(), pathlib.Path(scratch))
         if options.root:
             provide(options.root, packages, options.build)
             run("chroot", options.root, "sh", "/srv/tactus-test/inside.sh", "apt")

@@ -98,9 +98,10 @@ inline ModeBasis wave_basis(const TriMesh& mesh, std::uint32_t squares, std::siz
   std::vector<double> vectors;
   const double width = squares * 0.004;
   for (std::size_t k = 0; k < modes; ++k) {
+    const std::size_t along = 1 + k % 4, across = 1 + k / 4;
     for (const Vec3& x : mesh.vertices) {
-      const double z = std::sin(3.1 * (1 + static_cast<double>(k % 4)) * x.x / width) *
-                       std::sin(3.2 * (1 + static_cast<double>(k / 4)) * x.y / width);
+      const double z =
+          std::sin(3.1 * static_cast<double>(along) * x.x / width) * std::sin(3.2 * static_cast<double>(across) * x.y / width);
       vectors.insert(vectors.end(), {0.1 * z, 0.05 * z, z});
     }
   }

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# tests/viewer/run.sh TEST TACTUS WORK [CONFORMANCE]: pages in Chromium. Exits with 77 (skipped) without Chromium or Node.
+# tests/viewer/run.sh TEST TACTUS WORK [CONFORMANCE SESSIONS_WASM]: pages in Chromium. Exits with 77 (skipped) without Chromium or Node.
 set -eu
 for program in node chromium; do
   command -v "$program" >/dev/null || { echo "skipped: $program not found"; exit 77; }

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// test_page.mjs TACTUS CHROMIUM WORK CONFORMANCE: pages of `tactus view` in a real browser.
+// test_page.mjs TACTUS CHROMIUM WORK CONFORMANCE SESSIONS_WASM: pages of `tactus view` in a real browser.
 import assert from "node:assert/strict";
 import {execFileSync} from "node:child_process";
 import {mkdirSync, readFileSync, readdirSync, writeFileSync} from "node:fs";
 import {join, resolve} from "node:path";
 import {pathToFileURL} from "node:url";
-import {readVectors} from "../wasm/read_vectors.mjs";
+import {readSessions, readVectors} from "../wasm/read_vectors.mjs";
 import {Browser} from "./browser.mjs";
 import {differingBox, readPng} from "./png.mjs";
 import {near, runTests} from "./runner.mjs";
 
-const [tactus, chromium, work, conformance] = process.argv.slice(2);
+const [tactus, chromium, work, conformance, sessionsModule] = process.argv.slice(2);
 const evil = "<img src=x onerror=globalThis.broken=1>";
 mkdirSync(work, {recursive: true});
 const file = (name) => resolve(work, name);
@@ -27,6 +27,12 @@ function makePages() {
   }
 }
 
+// An expression: what a file beside the tests of the npm package exports.
+function library(name, exported) {
+  const source = readFileSync(new URL(`../wasm/${name}`, import.meta.url), "utf8").replaceAll(/^export /gm, "");
+  return `(() => {${source}; return ${exported};})()`;
+}
+
 async function ready(browser, name, options) {
   const tab = await browser.open(url(name), options);
   await tab.until("globalThis.tactusView");
@@ -38,8 +44,7 @@ const time = (tab) => tab.run("tactusView.page.clock.time");
 const tests = {
   async "the state hashes of all vectors, in the page"(browser) {
     const tab = await ready(browser, "evil.html");
-    const source = readFileSync(new URL("../wasm/vectors.js", import.meta.url), "utf8").replaceAll(/^export /gm, "");
-    await tab.run(`globalThis.check = (() => {${source}; return check;})(); 0`);
+    await tab.run(`globalThis.check = ${library("vectors.js", "check")}; 0`);
     const vectors = readVectors(conformance).map((vector) => ({...vector, bytes: Buffer.from(vector.bytes).toString("base64")}));
     const checked = (some) => `${JSON.stringify(some)}.map((vector) => {
       const bytes = Uint8Array.from(atob(vector.bytes), (c) => c.charCodeAt(0));
@@ -57,6 +62,25 @@ const tests = {
     assert.match(problem, /state is/);  // the check itself can fail
     await tab.close();
     return `${vectors.length} vectors`;
+  },
+
+  async "the answers to all sessions and of clients with a device, in the page"(browser) {
+    const tab = await ready(browser, "evil.html");
+    const bytes = readFileSync(sessionsModule).toString("base64");
+    await tab.run(`(async () => {
+      const {loadSessions, checkSession} = ${library("sessions.js", "{loadSessions, checkSession}")};
+      const answer = await loadSessions(Uint8Array.from(atob("${bytes}"), (c) => c.charCodeAt(0)));
+      globalThis.check = (sessions) => sessions.map((one) => [one.id, checkSession(answer, one)]).filter(([, problem]) => problem !== null);
+    })()`);
+    const sessions = readSessions(conformance);
+    assert.deepEqual(await tab.run(`check(${JSON.stringify(sessions)})`), []);
+    assert.ok(sessions.length > 60);
+    const [one] = sessions.filter(({expected}) => expected.includes('"states"'));
+    const wrong = {...one, expected: one.expected.replace(/("states":\[")./, "$1x")};
+    const [[, problem]] = await tab.run(`check(${JSON.stringify([wrong])})`);
+    assert.match(problem, /line \d+ is/);  // the check itself can fail
+    await tab.close();
+    return `${sessions.length} vectors`;
   },
 
   async "going anywhere shows what playing to there shows"(browser) {

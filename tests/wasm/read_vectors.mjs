@@ -1,18 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// The vectors of streams; those of sessions need a client, which the decoder is not.
+// The vectors of streams, for the decoder, and those of sessions and of clients with a device, for sessions.js.
 import {readFileSync} from "node:fs";
 import {join} from "node:path";
 
-export function readVectors(folder) {
+function casesOf(folder, isWanted) {
   const {stems} = JSON.parse(readFileSync(join(folder, "manifest.json")));
-  const vectors = [];
-  for (const stem of Object.keys(stems).filter((name) => name !== "session")) {
+  return Object.keys(stems).filter(isWanted).flatMap((stem) => {
     const {cases} = JSON.parse(readFileSync(join(folder, "vectors", `${stem}.json`)));
-    for (const {name, args, repeat} of cases) {
-      const file = join(folder, "vectors", stem, name);
-      const expected = readFileSync(`${file}.jsonl`, "utf8").split("\n").filter(Boolean).map((line) => JSON.parse(line));
-      vectors.push({id: `${stem}/${name}`, bytes: new Uint8Array(readFileSync(`${file}.tct`)), expected, args, repeat});
-    }
-  }
-  return vectors;
+    return cases.map((one) => ({...one, stem, id: `${stem}/${one.name}`, file: join(folder, "vectors", stem, one.name)}));
+  });
+}
+
+const isSession = (stem) => stem === "session";
+
+export function readVectors(folder) {
+  return casesOf(folder, (stem) => !isSession(stem)).map(({id, file, args, repeat}) => {
+    const expected = readFileSync(`${file}.jsonl`, "utf8").split("\n").filter(Boolean).map((line) => JSON.parse(line));
+    return {id, bytes: new Uint8Array(readFileSync(`${file}.tct`)), expected, args, repeat};
+  });
+}
+
+export function readSessions(folder) {
+  const hasDevice = ({args}) => args?.[1] === "device";
+  return casesOf(folder, () => true).filter((one) => isSession(one.stem) || hasDevice(one)).map(({id, stem, file}) => {
+    const input = readFileSync(`${file}.${isSession(stem) ? "script" : "tct"}`, "base64");
+    return {id, isSession: isSession(stem), input, expected: readFileSync(`${file}.jsonl`, "utf8")};
+  });
 }

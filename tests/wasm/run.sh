@@ -1,9 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# tests/wasm/run.sh PACKAGE CONFORMANCE BUILD_DIR [C_EXAMPLE]: pack the npm package, install its tarball in BUILD_DIR and use it from there.
+# tests/wasm/run.sh PACKAGE CONFORMANCE SESSIONS_WASM BUILD_DIR [C_EXAMPLE]: pack the npm package, install its tarball in BUILD_DIR and use it
+# from there; then the sessions' module.
 # Exits with 77 (skipped) where Node, npm or the pinned packages are not to be had.
 set -eu
-package=$1 conformance=$2 work=$3 c_example=${4-}
+package=$1 conformance=$2 sessions=$3 work=$4 c_example=${5-}
 source=$(cd "${0%/*}" && pwd)
 
 skip() { echo "skipped: $*"; exit 77; }
@@ -21,6 +22,7 @@ npm install --no-save --offline --ignore-scripts --no-audit --no-fund ./*.tgz >n
 
 node_modules/.bin/tsc --strict --noEmit --target es2022 --module nodenext --lib es2022,dom types_test.ts
 node package_test.mjs "$conformance" "$conformance"/vectors/rigid/001-*.tct
+node sessions_test.mjs "$conformance" "$sessions"
 
 # The example prints what the same program in C prints, and refuses what that refuses.
 vectors=$conformance/vectors/rigid

@@ -116,6 +116,7 @@ int main(int argc, char** argv) {
     for (const std::size_t count : {std::size_t{10}, std::size_t{50}, std::size_t{100}, whole->rest.size()}) {
       const Animation animation = patch_of(*whole, count);
       std::vector<Row> rows;
+      rows.reserve(schemes.size());
       for (const Scheme& scheme : schemes)
         rows.push_back({animation.name, animation.rest.size(), animation.frames.size(), &scheme, measure(animation, scheme)});
       print_table(rows);
