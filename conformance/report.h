@@ -16,8 +16,7 @@ namespace tactus::conformance {
 /// in  replica  also run a client of this kind: adds the hashes of the poses it shows
 ///     device   the first moving object is that client's device
 /// err  the rule that the file breaks; the lines written before it stand.
-Result<void> report(std::span<const std::uint8_t> file, std::optional<Interpolation> replica, bool device,
-                    std::ostream& out);
+Result<void> report(std::span<const std::uint8_t> file, std::optional<Interpolation> replica, bool device, std::ostream& out);
 
 /// The line that ends the output for a rejected file.
 void report_error(const char* errc, const char* rule, std::ostream& out);
