@@ -91,17 +91,15 @@ RuleName broken_driven_rule(const SceneSpec& spec) noexcept {
   if (!spec.driven) return {};
   using Body = DrivenConstants::Body;
   const auto fits = [](std::uint32_t value) { return value >= 1 && value <= Body::kMost; };
-  if (spec.driven->bodies.size() != spec.objects.size()) return "R-STR-23";
-  bool any = false;
-  for (std::size_t i = 0; i < spec.objects.size(); ++i) {
+  bool any = false, sound = spec.driven->bodies.size() == spec.objects.size();
+  for (std::size_t i = 0; sound && i < spec.objects.size(); ++i) {
     const Body& body = spec.driven->bodies[i];
     if (body == Body{}) continue;
-    if (spec.objects[i].dof == Dof::none || !fits(body.coupling) || body.hold > Body::kMost ||
-        !std::ranges::all_of(body.inertia, fits))
-      return "R-STR-23";
     any = true;
+    sound = spec.objects[i].dof != Dof::none && fits(body.coupling) && body.hold <= Body::kMost &&
+            std::ranges::all_of(body.inertia, fits);
   }
-  return any ? RuleName{} : RuleName{"R-STR-23"};
+  return any && sound ? RuleName{} : RuleName{"R-STR-23"};
 }
 
 namespace {
