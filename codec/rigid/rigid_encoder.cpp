@@ -18,10 +18,10 @@ constexpr unsigned kCoarsestLevel = 15;
 constexpr double kVisualShare = 0.18;
 constexpr double kHapticShare = 0.2;
 // Baseline::acknowledged: objects near their bounds join a packet that goes out anyway, and what is not acknowledged goes again.
-constexpr double kEarly = 0.5, kEarlyAtHeavyLoss = 0.3;  // shares of a bound
-constexpr double kSomeLoss = 0.003, kHeavyLoss = 0.15;   // shares of packets
-constexpr std::array kFollowUp{0.020, 0.040, 0.060};     // [s] since the last sending
-constexpr std::int32_t kDofTolerance = 64;               // x 2^-30: a locked axis may be off by rounding only
+constexpr double kEarly = 0.5, kEarlyAtHeavyLoss = 0.3;                   // shares of a bound
+constexpr double kSomeLoss = 0.003, kMoreLoss = 0.01, kHeavyLoss = 0.15;  // shares of packets
+constexpr std::array kFollowUp{0.020, 0.040, 0.060};                      // [s] since the last sending
+constexpr std::int32_t kDofTolerance = 64;                                // x 2^-30: a locked axis may be off by rounding only
 
 Result<PoseThresholds> make_thresholds(double distance, double angle, const GridExponents& grid) {
   const double unit = std::ldexp(1.0, -grid.position);
@@ -156,6 +156,7 @@ void RigidEncoder::set_link(const LinkState& link) noexcept {
   if (early_ == 1) return;
   early_ = link.loss > kHeavyLoss ? kEarlyAtHeavyLoss : kEarly;
   loses_ = link.loss >= kSomeLoss;
+  loses_more_ = link.loss >= kMoreLoss;
   early_visual_ = scaled(visual_, early_);
   for (std::size_t i = 0; i < follow_up_.size(); ++i) {
     const auto soon = static_cast<std::int64_t>(std::ceil(kFollowUp[i] * scene_.tick_rate));
@@ -174,7 +175,7 @@ Result<void> RigidEncoder::read(std::int64_t tick, std::span<const RigidSample> 
   samples_ = samples;
   contacts_ = contacts;
   if (acceleration_) acceleration_->read(tick, samples);
-  if (driven_) driven_->read(tick, samples, contacts, truth_);
+  if (driven_ && !loses_more_) driven_->read(tick, samples, contacts, truth_);
   if (choice_) choice_->read(tick, truth_);
   return {};
 }

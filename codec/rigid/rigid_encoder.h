@@ -98,7 +98,9 @@ class RigidEncoder {
   double widening_ = 1;
   PoseThresholds visual_, fixed_, early_visual_;  // widened
   double early_ = 1;                              // share of its bounds over which an object joins a packet
-  bool loses_ = false;                            // packets get lost: velocities do not lean, as curves over gaps end with them
+  // Packets get lost: velocities do not lean, as curves over gaps end with them. More do: no device drives, as what the client does not
+  // know of it lasts for a round trip.
+  bool loses_ = false, loses_more_ = false;
   std::array<std::int64_t, 3> follow_up_{};  // [ticks] without an acknowledgement before the first, the second and later; 0: none
   std::int64_t heartbeat_ = 0;               // [ticks], 0: off
   std::optional<Acceleration> acceleration_;  // where updates lean or are eased
