@@ -149,12 +149,14 @@ Bytes random_contacts(std::uint64_t seed) {
                    {constant(), constant(), constant()},
                    static_cast<std::uint16_t>(random.below(65536)),
                    static_cast<std::uint16_t>(random.below(65536))});
-  Stream stream(with_driven(with_gravity(header, {random.integer(28), random.integer(28), random.integer(28)}, 12345), all));
+  const Vec3i gravity{random.integer(28), random.integer(28), random.integer(28)};
+  Stream stream(with_driven(with_gravity(header, gravity, 12345), all));
   std::int64_t tick = 0;
   for (int i = 0; i < 60; ++i) {
     Step step{.tick = tick, .updates = {}, .key = i % 16 == 0};
-    step.updates.push_back(device_at({random.integer(18), random.integer(18), random.integer(18)},
-                                     {random.integer(14), random.integer(14), random.integer(14)}));
+    const Vec3i place{random.integer(18), random.integer(18), random.integer(18)};  // arguments have no order
+    const Vec3i velocity{random.integer(14), random.integer(14), random.integer(14)};
+    step.updates.push_back(device_at(place, velocity));
     const std::uint32_t object = 1 + random.below(2);
     Update update = random_update(random, stream.header(), object);
     update.predictor = random.below(4) == 0 ? 0 : kDriven;
