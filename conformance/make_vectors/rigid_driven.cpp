@@ -135,34 +135,38 @@ Bytes before_the_device() {
   return stream.add({.tick = 60, .updates = {told}}).add({.tick = 90, .updates = {device_at({}, {})}}).finish().bytes();
 }
 
-/// Any constants, contacts, velocities and places.
+/// Any constants, grids, contacts, velocities and places.
 Bytes random_contacts(std::uint64_t seed) {
   Random random(seed);
-  const auto constant = [&] { return 1 + random.below(1u << random.below(30)); };
-  RawHeader header{.objects = {{"device"}, {"cube"}, {"rail", Dof::x | Dof::rz}}};
+  const auto constant = [&] { return 1 + random.below(1u << random.below(31)); };
+  RawHeader header{.objects = {{"device"}, {"cube"}, {"rail", Dof::x | Dof::rz}, {"axle", Dof::rx}}};
   header.tick_rate = 1 + random.below(3000);
+  header.grid.position = static_cast<std::uint8_t>(14 + random.below(17));
+  header.grid.velocity = static_cast<std::uint8_t>(header.grid.position - random.below(13));
+  header.grid.angular_velocity = static_cast<std::uint8_t>(8 + random.below(13));
+  const unsigned near = header.grid.position - 5u;  // width of 31 mm
   header.flags |= 4;
   std::vector<Constants> all{kNone};
-  for (int i = 0; i < 2; ++i)
+  for (int i = 0; i < 3; ++i)
     all.push_back({constant(),
                    constant(),
                    {constant(), constant(), constant()},
                    static_cast<std::uint16_t>(random.below(65536)),
                    static_cast<std::uint16_t>(random.below(65536))});
   const Vec3i gravity{random.integer(28), random.integer(28), random.integer(28)};
-  Stream stream(with_driven(with_gravity(header, gravity, 12345), all));
+  Stream stream(with_driven(with_gravity(header, gravity, static_cast<std::int32_t>(random.below(1u << random.below(29)))), all));
   std::int64_t tick = 0;
   for (int i = 0; i < 60; ++i) {
     Step step{.tick = tick, .updates = {}, .key = i % 16 == 0};
-    const Vec3i place{random.integer(18), random.integer(18), random.integer(18)};  // arguments have no order
+    const Vec3i place{random.integer(near), random.integer(near), random.integer(near)};  // arguments have no order
     const Vec3i velocity{random.integer(14), random.integer(14), random.integer(14)};
     step.updates.push_back(device_at(place, velocity));
-    const std::uint32_t object = 1 + random.below(2);
+    const std::uint32_t object = 1 + random.below(3);
     Update update = random_update(random, stream.header(), object);
     update.predictor = random.below(4) == 0 ? 0 : kDriven;
     update.is_held = random.below(3) == 0;
-    for (std::int32_t& c : update.contact) c = random.integer(11);
-    if (random.below(4) > 0) update.residual[0] = {random.integer(16), 0, 0};
+    for (std::int32_t& c : update.contact) c = random.integer(random.below(8) == 0 ? 16 : 11);
+    if (random.below(4) > 0) update.residual[0] = {object < 3 ? random.integer(near) : 0, 0, 0};
     if (update.predictor == 0) update.contact = {};
     step.updates.push_back(update);
     stream.add(step);
