@@ -175,6 +175,79 @@ Bytes random_contacts(std::uint64_t seed) {
   return stream.finish().bytes();
 }
 
+/// The device stands where the last word of it was, and the cube is told to be pushed from there, time and again.
+Bytes pushes(const RawHeader& header, const Vec3i& device, const std::vector<Update>& told, int ticks) {
+  Stream stream(header);
+  stream.add({.tick = 1, .updates = {device_at(device, {})}, .key = true});
+  std::int64_t tick = 5;
+  for (Update update : told) {
+    update.object = 1;
+    Step step{.tick = tick, .updates = {device_at({}, {}), update}, .key = true};
+    step.updates[0].residual[0] = device;
+    stream.add(step);
+    tick += ticks;
+  }
+  return stream.add({.tick = tick, .updates = {device_at({}, {})}}).finish().bytes();
+}
+
+/// The least speeds that make a screw, on the finest grid.
+Bytes slowest() {
+  RawHeader header = touched();
+  header.grid.position = 30;
+  header.grid.velocity = 27;
+  std::vector<Update> told;
+  for (const std::int32_t speed : {511, 512, 1023, 1024, 1025, 2047, 2048})
+    told.push_back(telling({-164, 0, 0, -1024, 0, 0, 0}, false, {speed, 0, 0}));
+  return pushes(header, {-(18 << 20), 1 << 18, 0}, told, 12);
+}
+
+/// The device at the face, and 2^-28 m to either side.
+Bytes at_the_face() {
+  RawHeader header = touched();
+  header.grid.position = 28;
+  const Update told = telling({-164, 0, 0, -1024, 0, 0, 0}, false, {900, 0, 0});
+  Stream stream(header);
+  std::int64_t tick = 1;
+  for (const int beyond : {-2, -1, 0, 1, 2}) {
+    Update update = told;
+    update.object = 1;
+    stream.add({.tick = tick, .updates = {device_at({-(164 << 15) + beyond, 0, 0}, {}), update}, .key = true});
+    tick += 9;
+  }
+  return stream.add({.tick = tick, .updates = {device_at({}, {})}}).finish().bytes();
+}
+
+/// A device 1 m off, along an axis and along two at once of a cube that is turned by 45 degrees: the proxy slides as far as it may.
+Bytes far_off(const Constants& constants) {
+  std::vector<Update> told;
+  for (const std::int32_t turn : {0, 208567, 90000}) {
+    Update update = telling({0, 0, 0, 0, 0, 1024, 9}, false, {900, 400, 0});
+    update.residual[2] = {0, 0, turn};
+    told.push_back(update);
+  }
+  return pushes(touched(constants), {(1 << 22) - 9000, 1 << 22, -50}, told, 8);
+}
+
+/// Weight and friction of the ground at their ends; the device lifts the cube.
+Bytes on_the_ground(const Vec3i& gravity, std::int32_t slide, std::uint8_t velocity_exp) {
+  RawHeader header{.objects = {{"device"}, {"cube"}}};
+  header.grid.velocity = velocity_exp;
+  header = with_driven(with_gravity(header, gravity, slide), {kNone, {}});
+  const std::int32_t speed = 1 << (velocity_exp - 4);
+  const std::vector<Update> told(2, telling({-164, 8, 0, -1024, 0, 300, 0}, false, {speed, speed / 3, speed / 7}));
+  return pushes(header, {-18 * kMillimetre, kMillimetre, kMillimetre}, told, 15);
+}
+
+/// A tick in a second: the longest steps.
+Bytes slow_clock() {
+  RawHeader header = touched();
+  header.tick_rate = 1;
+  return pushes(header, {-18 * kMillimetre, 0, 0},
+                {telling({-164, 8, 0, -1024, 0, 0, 0}, false, {kLargest, 0, 0}),
+                 telling({-164, 8, 0, -1024, 0, 0, -9}, false, {300000, 0, 0}, {0, 9, 0})},
+                4);
+}
+
 Bytes then(const RawHeader& header, const CodedUpdate& update) {
   Stream stream(header);
   stream.add({.tick = 10, .updates = {Update{}}, .key = true});
@@ -273,6 +346,21 @@ void add_client_driven(Catalogue& c) {
   device("held-stiffly", "The same with the stiffest coupling.", held(touched({.hold = kMost})));
   device("held-on-a-rail", "The same, the cube moves along z alone.", held(touched({}, Dof::z)));
   device("before-the-device", "An update before anything is known of the device, and one after.", before_the_device());
+  RawHeader brief = touched();
+  brief.max_extrapolation = 30;
+  device("pushed-for-30-ms", "The same, with max_extrapolation 30.", pushed(brief, {}));
+  device("slowest-screw", "Velocities of 2^-18 to 2^-16 m/s: 2^-17 is the least that makes a screw.", slowest());
+  device("at-the-face", "The device at the face, and 2^-28 m to either side.", at_the_face());
+  device("far-off", "A device 1 m off: the proxy slides to the end of its range.", far_off({.friction = 0}));
+  device("far-off-rough", "The same with the roughest proxy.", far_off({.friction = 65535}));
+  device("lightest", "A gravity of 2^-16 m/s^2, and the strongest friction of the ground.",
+         on_the_ground({0, 0, -1}, kMost / 4, 16));
+  device("weightless", "A gravity of 2^-17 m/s^2, which is none here.", on_the_ground({0, 0, -1}, 4, 18));
+  device("heaviest", "The strongest gravity along all axes, on a coarse grid.",
+         on_the_ground({1 << 28, -(1 << 28), 1 << 28}, 1 << 28, 10));
+  device("lifted", "Little weight and much friction: the device takes all of the load.",
+         on_the_ground({100, 0, -60000}, 1 << 26, 17));
+  device("slow-clock", "A tick in a second: the longest steps there are.", slow_clock());
   for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u, 6u})
     device(("driven-" + std::to_string(seed)).c_str(), "Any constants, contacts and velocities, eased.", random_contacts(seed));
 }
