@@ -23,7 +23,7 @@ class DevicePath {
   /// in   device  scene of the device
   explicit DevicePath(SharedScene device) : scene_(std::move(device)) {}
 
-  /// A packet brought a state, perhaps one that others have overtaken.   in  number  of it, not added before
+  /// A packet of the device brought a state, perhaps one that others have overtaken.   in  number  of it, not added before
   /// out  ticks until it acts; 0 or less: it comes too late to act, and is left out.   time O(packets that overtook it)
   std::int64_t add(std::uint64_t number, const RigidState& state) noexcept;
   /// Packets below `newest` that did not arrive do not act; those above may have.   in  arrived  bool(number)

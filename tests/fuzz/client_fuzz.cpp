@@ -47,6 +47,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       state.contact = {(v[2] & 1) != 0, {v[4] >> 20, v[5] >> 20, v[6] >> 20}, {v[7] >> 11, v[8] >> 11, v[9] >> 11}, v[3] >> 20};
       RigidState device = state;
       device.position[0] ^= v[9] & 0x1ffff;
+      device.predictor = Predictor::linear;  // its scene declares no other
       path.add(number + 1, device);
       if (v[0] & 1)
         path.settle(number + 1, [&](std::uint64_t of) { return (static_cast<std::uint64_t>(v[5]) >> of % 32 & 1) != 0; });
