@@ -34,12 +34,11 @@ DrivenChoice::DrivenChoice(const Scene& scene, const DevicePath& path)
   gravity_ = {unit * g[0], unit * g[1], unit * g[2]};
 }
 
-/// The contact of the device that the path is of: there, and as stiff as the scene says.
+/// The contact whose device is where the path is; null: there is none.
 const Contact* DrivenChoice::own_contact(std::uint32_t object, std::span<const Contact> contacts,
                                          const Vec3i& device) const noexcept {
-  const Vec3i& grid = device;
   const double unit = std::ldexp(1.0, -scene_.grid.position);
-  const Vec3 at{unit * grid[0], unit * grid[1], unit * grid[2]};
+  const Vec3 at{unit * device[0], unit * device[1], unit * device[2]};
   for (const Contact& contact : contacts)
     if (contact.kind != ContactKind::none && contact.object == object && norm(contact.device - at) <= 2 * unit) return &contact;
   return nullptr;
