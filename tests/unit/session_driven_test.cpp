@@ -154,6 +154,27 @@ TEST(Driven, WherePacketsAreLostNothingIsDriven) {
   EXPECT_LT(clean.outside, clean.shown / 1000);
 }
 
+/// Who joins a server that has been running for a minute is at its tick from the first packet on.
+TEST(Driven, APaceBeginsAtTheTickOfTheServer) {
+  auto server = SessionServer::create(testing::driven_scene(), {.clients = 1}, 7, kMillisecond).value();
+  auto client = SessionClient::create({.role = Role::participant}).value();
+  std::uint64_t now = kMillisecond;
+  client.open(now, 3);
+  const RigidSample cube;
+  std::size_t known = 0;
+  for (std::int64_t tick = 60'000; tick < 61'000; ++tick, now += kMillisecond) {
+    EXPECT_TRUE(client.submit(now, {.position = {1e-4 * static_cast<double>(tick % 500), 0, 0.1}, .orientation = {}}, {}));
+    while (const auto datagram = client.poll_datagram(now)) EXPECT_TRUE(server.handle_datagram(now, 1, *datagram));
+    if (server.device(0, now)) ++known;  // a program asks before it has a tick for this client
+    EXPECT_TRUE(server.submit(now, tick, {.objects = {&cube, 1}, .contacts = {}, .deformables = {}}));
+    while (const auto datagram = server.poll_datagram(now)) EXPECT_TRUE(client.handle_datagram(now, datagram->bytes));
+    client.handle_timeout(now);
+    server.handle_timeout(now);
+  }
+  EXPECT_GT(known, 800u);
+  EXPECT_LT(server.status(0).traffic.packets_refused, 3u);
+}
+
 struct Cost {
   double packets = 0, bytes = 0;  // per second, per packet
   std::size_t outside = 0;        // ticks
