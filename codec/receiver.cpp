@@ -96,6 +96,7 @@ void Receiver::skip_number(std::uint64_t number) noexcept { impl_->replica.skip_
 void Receiver::know(std::shared_ptr<const DevicePath> path) {
   impl_->path = std::move(path);
   impl_->replica.know(*impl_->path);
+  for (auto& object : impl_->deformables) object->know(*impl_->path);
 }
 
 Replica& Receiver::replica() noexcept { return impl_->replica; }

@@ -115,6 +115,7 @@ void Sender::request_key() noexcept {
 void Sender::know(std::shared_ptr<const DevicePath> path) {
   impl_->path = std::move(path);
   impl_->rigid.codec().know(*impl_->path);
+  for (auto& object : impl_->deformables) object->know(*impl_->path);
 }
 
 void Sender::acknowledge(std::size_t substream, std::uint16_t sequence) noexcept {

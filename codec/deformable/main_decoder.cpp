@@ -26,4 +26,15 @@ Result<void> MainDecoder::read_body(const MainState& base, std::int64_t, Decoded
   return {};
 }
 
+void MainDecoder::know(const DevicePath& path) {
+  if (!object_.body) return;
+  driven_.emplace(scene_, object_, path);
+  shown_.resize(object_.rest.size());
+}
+
+std::span<const Vec3i> MainDecoder::predict(const MainState& state, std::int64_t tick) noexcept {
+  if (state.following != Following::none && driven_ && driven_->show(state, tick, shown_)) return shown_;
+  return reader_.predict(state, tick);
+}
+
 }  // namespace tactus

@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include <tactus/base/range_coder.h>
 #include <tactus/base/rule.h>
 #include <tactus/deformable/main_reader.h>
+#include <tactus/elastic/driven_shape.h>
 #include <tactus/packet/packet.h>
 #include <tactus/scene/scene.h>
 
@@ -24,7 +27,7 @@ class MainDecoder {
 
   /// pre  `scene` outlives the decoder
   MainDecoder(const Scene& scene, const DeformableObject& object)
-      : object_(object), baseline_span_(scene.baseline_span), reader_(object), next_(initial_main_state(object)) {}
+      : scene_(scene), object_(object), baseline_span_(scene.baseline_span), reader_(object), next_(initial_main_state(object)) {}
 
   /// err  malformed R-RNG-4
   Result<PacketHead> read_head(std::span<const std::uint8_t> payload) noexcept;
@@ -33,10 +36,13 @@ class MainDecoder {
   void commit(const MainState&, MainState& next) noexcept { std::swap(next_, next); }
   std::uint64_t bit() const noexcept { return 8 * std::min<std::uint64_t>(coder_.position(), payload_); }
 
-  /// Predicted displacements at a tick not before the state's. Valid until the next call.
-  std::span<const Vec3i> predict(const MainState& state, std::int64_t tick) noexcept { return reader_.predict(state, tick); }
+  /// Know the device of this client, which may deform the object.   pre  it outlives this.   allocates
+  void know(const DevicePath& path);
+  /// Displacements shown at a tick not before the state's. Valid until the next call.
+  std::span<const Vec3i> predict(const MainState& state, std::int64_t tick) noexcept;
 
  private:
+  const Scene& scene_;
   const DeformableObject& object_;
   std::uint8_t baseline_span_;
   MainReader reader_;
@@ -45,6 +51,8 @@ class MainDecoder {
   MainModels models_;
   MainHead head_;
   MainState next_;  // pending: no state changes before the whole packet has proved valid
+  std::optional<DrivenShape> driven_;
+  std::vector<Vec3i> shown_;  // of a driven state
 };
 
 }  // namespace tactus

@@ -7,7 +7,9 @@
 #include <utility>
 
 #include <tactus/base/out_of_memory.h>
+#include <tactus/base/quantise.h>
 #include <tactus/base/rule.h>
+#include <tactus/elastic/elimination.h>
 #include <tactus/scene/scene_rules.h>
 
 namespace tactus {
@@ -91,6 +93,19 @@ std::optional<DrivenConstants::Body> body_of(const DrivenPhysics& physics, std::
   return fits ? std::optional(out) : std::nullopt;
 }
 
+/// err  invalid_argument R-API-1, 2 an inner vertex
+Result<ElasticBody> on_grid(ElasticPhysics physics, unsigned position_exp) {
+  constexpr double kLimit = 2147483647.0;
+  for (const Vec3& p : physics.inner) {
+    if (!is_finite(p)) return fail(Errc::invalid_argument, "R-API-1");
+    Vec3i& out = physics.body.inner.emplace_back();
+    if (!quantise(p.x, position_exp, kLimit, out[0]) || !quantise(p.y, position_exp, kLimit, out[1]) ||
+        !quantise(p.z, position_exp, kLimit, out[2]))
+      return fail(Errc::invalid_argument, "R-API-2");
+  }
+  return std::move(physics.body);
+}
+
 }  // namespace
 
 SceneBuilder& SceneBuilder::rigid(std::string name, const Pose& initial, std::uint8_t dof) {
@@ -142,6 +157,15 @@ SceneBuilder& SceneBuilder::driven(const DrivenPhysics& physics) {
   return *this;
 }
 
+SceneBuilder& SceneBuilder::elastic(ElasticPhysics physics) {
+  if (!deformables_.empty()) deformables_.back().elastic = std::move(physics);
+  return *this;
+}
+
+bool SceneBuilder::can_work_out(const ElasticPhysics& physics, std::size_t vertices) {
+  return elastic_work(elimination(physics.body, vertices + physics.inner.size())) <= DecodeLimits().elastic_work;
+}
+
 SceneBuilder& SceneBuilder::promise(const RigidTriggers& rigid, const DeformableThresholds& deformables,
                                     const LoadThresholds& loads) {
   promise_ = {rigid, deformables, loads};
@@ -186,6 +210,11 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build() try {
     auto object = make_deformable_object(of.name, of.surface, spec.grid.position);
     if (!object) return refuse(object.error(), of.name);
     if (const auto applied = apply(of.coding, spec.tick_rate, *object); !applied) return refuse(applied.error(), of.name);
+    if (of.elastic) {
+      auto body = on_grid(std::move(*of.elastic), spec.grid.position);
+      if (!body) return refuse(body.error(), of.name);
+      object->body = std::move(*body);
+    }
     if (!is_name(of.name) || !names.insert(of.name).second) return refuse({Errc::invalid, RuleName("R-STR-11"), 0}, of.name);
     if (const RuleName rule = broken_deformable_rule(*object)) return refuse({Errc::invalid, rule, 0}, of.name);
     spec.deformables.push_back(std::move(*object));

@@ -204,7 +204,7 @@ Result<void> SessionClient::Impl::complete(std::uint64_t now) noexcept try {
     if (options.role == Role::observer) return {};
     TACTUS_TRY(SharedScene device, device_scene(*scene));
     TACTUS_TRY(auto sender, Sender::create(std::move(device), device_sender_options(options.device)));
-    if (scene->driven) {
+    if (scene->is_driven()) {
       current->exchange.path = std::make_shared<DevicePath>(sender.scene());
       current->exchange.receiver->know(current->exchange.path);
     }
