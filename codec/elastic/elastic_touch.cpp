@@ -95,6 +95,11 @@ ElasticTouch::Foot ElasticTouch::descend(const Vec3& place, std::uint32_t triang
   return at;
 }
 
+bool ElasticTouch::is_inside(const Vec3& place, const Foot& foot, std::span<const Vec3> vertices) const noexcept {
+  const auto& [a, b, c] = object_.triangles[foot.triangle];
+  return dot(place - foot.point, cross(vertices[b] - vertices[a], vertices[c] - vertices[a])) < 0;
+}
+
 /// Where friction holds the proxy, given where it would be without.
 ElasticTouch::Foot ElasticTouch::hold(const Foot& goal, std::span<const Vec3> vertices,
                                       const State& state) const noexcept {
@@ -110,12 +115,13 @@ ElasticTouch::Foot ElasticTouch::hold(const Foot& goal, std::span<const Vec3> ve
 std::optional<ElasticTouch::Push> ElasticTouch::move(const Vec3& place, bool anew, std::span<const Vec3> vertices,
                                                      State& state) const noexcept {
   if (object_.triangles.empty()) return std::nullopt;
-  const bool looks = !state.touches && (anew || !state.triangle);
-  Foot at = descend(place, looks ? nearest(place, vertices).triangle : *state.triangle, vertices);
-  const Triangle& corners = object_.triangles[at.triangle];
-  const Vec3 normal = cross(vertices[corners[1]] - vertices[corners[0]], vertices[corners[2]] - vertices[corners[0]]);
   const bool touched = state.touches;
-  state.touches = dot(place - at.point, normal) < 0;
+  Foot at = descend(place, state.triangle ? *state.triangle : nearest(place, vertices).triangle, vertices);
+  state.touches = is_inside(place, at, vertices);
+  if (anew && !touched && !state.touches && state.triangle) {
+    at = descend(place, nearest(place, vertices).triangle, vertices);
+    state.touches = is_inside(place, at, vertices);
+  }
   if (touched && state.touches && object_.body->friction > 0) at = hold(at, vertices, state);
   state.triangle = at.triangle;
   state.weights = at.weights;

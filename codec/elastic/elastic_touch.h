@@ -36,7 +36,7 @@ class ElasticTouch {
   /// pre  `object` outlives this and has a body.   allocates
   explicit ElasticTouch(const DeformableObject& object);
 
-  /// Move the device. Where it is free, `anew` looks for the nearest triangle among all.
+  /// Move the device. With `anew` one that is free is also held against the nearest triangle of all.
   /// in   place     [m]
   ///      vertices  [m] of the object, where they are now
   /// time 0.1 us, anew 15 ns per triangle; no allocation
@@ -53,6 +53,7 @@ class ElasticTouch {
   Foot nearest(const Vec3& place, std::span<const Vec3> vertices) const noexcept;
   Foot descend(const Vec3& place, std::uint32_t triangle, std::span<const Vec3> vertices) const noexcept;
   bool meets(std::uint32_t triangle, const Foot& foot) const noexcept;
+  bool is_inside(const Vec3& place, const Foot& foot, std::span<const Vec3> vertices) const noexcept;
   Foot hold(const Foot& goal, std::span<const Vec3> vertices, const State& state) const noexcept;
 
   const DeformableObject& object_;

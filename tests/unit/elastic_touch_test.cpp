@@ -82,12 +82,17 @@ TEST_F(OnTheSlab, FrictionHoldsTheProxyWithinItsCone) {
   EXPECT_NEAR(slides->force.z, -0.002 * kCoupling, 1e-12);
 }
 
-/// Where it is free, it does not find another part of the surface unless it looks for it.
-TEST_F(OnTheSlab, LooksForTheNearestTriangleWhereItIsFree) {
+/// What goes through the whole slab in one tick touches the side that it came from.
+TEST_F(OnTheSlab, DoesNotPassThrough) {
   move({0.03, 0.03, kCell + 0.001});
-  const auto above = state.triangle;
-  move({0.03, 0.03, -0.001}, true);
-  EXPECT_NE(state.triangle, above);
+  const auto push = move({0.03, 0.03, -0.005}, true);
+  ASSERT_TRUE(push);
+  EXPECT_NEAR(push->force.z, -0.015 * kCoupling, 1e-12);
+}
+
+TEST_F(OnTheSlab, LooksForTheNearestTriangleWhereItIsFree) {
+  for (const Vec3& around : {Vec3{0.03, 0.03, kCell + 0.001}, Vec3{0.1, 0.03, 0.02}, Vec3{0.1, 0.03, -0.02}, Vec3{0.03, 0.03, -0.001}})
+    EXPECT_FALSE(move(around, true));
   const auto push = move({0.03, 0.03, 0.001});
   ASSERT_TRUE(push);
   EXPECT_GT(push->force.z, 0) << "from below";

@@ -22,7 +22,9 @@ TEST(Elimination, HasEveryFreeVertexOnce) {
   for (std::uint32_t v = 0; v < vertices; ++v) {
     const bool is_fixed = std::ranges::binary_search(body.fixed, v);
     ASSERT_EQ(found.place[v] == Elimination::kFixed, is_fixed);
-    if (!is_fixed) EXPECT_EQ(found.order[found.place[v]], v);
+    if (!is_fixed) {
+      EXPECT_EQ(found.order[found.place[v]], v);
+    }
   }
 }
 
@@ -39,16 +41,16 @@ TEST(Elimination, RowsBeginAtTheLowestNeighbour) {
   EXPECT_EQ(found.first, lowest);
 }
 
-/// The order keeps what is not 0 together: two layers of five vertices, and what shares a tetrahedron with one.
+/// The order keeps what is not 0 together: there are 50 free vertices, 10 in each cut through the slab.
 TEST(Elimination, KeepsNeighboursClose) {
   const Elimination found = elimination(slab_physics().body, slab_mesh().vertices.size());
-  for (std::uint32_t i = 0; i < found.first.size(); ++i) EXPECT_LE(i - found.first[i], 2 * (testing::kCells - 1) + 6);
+  for (std::uint32_t i = 0; i < found.first.size(); ++i) EXPECT_LT(i - found.first[i], 20u);
 }
 
 TEST(Elimination, CountsItsWork) {
   const Elimination two{.order = {4, 7}, .place = {}, .first = {0, 0}};
   std::uint64_t sum = 0;
-  for (const std::uint64_t width : {0, 1, 2, 3, 4, 5}) sum += (width + 64) * (width + 64);
+  for (std::uint64_t width = 0; width < 6; ++width) sum += (width + 64) * (width + 64);
   EXPECT_EQ(elastic_work(two), sum);
 }
 
@@ -56,7 +58,7 @@ TEST(Elimination, PartsComeOneAfterTheOther) {
   ElasticBody body;
   body.tets = {{0, 1, 2, 3}, {4, 5, 6, 7}};
   const Elimination found = elimination(body, 8);
-  EXPECT_EQ(found.order, (std::vector<std::uint32_t>{4, 6, 5, 7, 0, 2, 1, 3}));
+  EXPECT_EQ(found.order, (std::vector<std::uint32_t>{6, 5, 4, 7, 2, 1, 0, 3}));
   EXPECT_EQ(found.first, (std::vector<std::uint32_t>{0, 0, 0, 0, 4, 4, 4, 4}));
 }
 
