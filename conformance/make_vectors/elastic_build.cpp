@@ -102,6 +102,11 @@ Block tangle(std::uint32_t vertices, std::uint32_t tets, std::uint64_t seed) {
   return out;
 }
 
+ElasticItem heaviest(std::uint32_t tets) {
+  const Block any = tangle(500, tets, 3);
+  return {{.shape = any.shape}, loose(any)};
+}
+
 std::vector<std::array<std::uint64_t, 2>> runs_of(const std::vector<std::uint32_t>& vertices) {
   std::vector<std::array<std::uint64_t, 2>> out;
   std::uint32_t end = 0;  // of the run before
@@ -161,9 +166,7 @@ Bytes ElasticStream::of_substream(std::size_t number, const Bytes& packet) const
 }
 
 ElasticStream& ElasticStream::device(std::int64_t tick, const Vec3i& place, const Vec3i& velocity) {
-  const Step step{.tick = tick, .updates = {{.residual = {{place, velocity}}}}, .key = true};
-  stream_.add_packet(tick, of_substream(0, stream_.packet(step)), true);
-  return *this;
+  return add_device({.tick = tick, .updates = {{.residual = {{place, velocity}}}}, .key = true});
 }
 
 ElasticStream& ElasticStream::add(std::size_t object, const MainStep& step) {

@@ -44,21 +44,24 @@ struct Block {
   }
 };
 
+struct ElasticItem {
+  RawDeformable object{};
+  std::optional<RawBody> body{};
+};
+
 /// nx x ny x nz cubes `size` grid units wide, of six tetrahedra each. The surface is that of box().
 Block block(int nx, int ny, int nz, std::int32_t size = 42000);
 /// So many tetrahedra between any vertices of a cloud, which overlap; no triangles.
 Block tangle(std::uint32_t vertices, std::uint32_t tets, std::uint64_t seed);
+/// So many of the tetrahedra of a cloud of 500 vertices: with kMostTets of them the work is just below the limit of 2^30.
+ElasticItem heaviest(std::uint32_t tets);
+inline constexpr std::uint32_t kMostTets = 1500;
 /// Runs of these vertices, ascending.
 std::vector<std::array<std::uint64_t, 2>> runs_of(const std::vector<std::uint32_t>& vertices);
 /// Of the vertices with z = 0, which are fixed.
 RawBody standing(const Block& block);
 /// No vertex is fixed.
 RawBody loose(const Block& block);
-
-struct ElasticItem {
-  RawDeformable object{};
-  std::optional<RawBody> body{};
-};
 
 /// `header` with these objects, and the flags that say so.
 RawHeader with_elastic(RawHeader header, const std::vector<ElasticItem>& items);
@@ -75,11 +78,11 @@ class ElasticStream {
   /// A packet of the device: at a place [position grid], with a velocity [velocity grid].
   ElasticStream& device(std::int64_t tick, const Vec3i& place, const Vec3i& velocity = {});
   ElasticStream& add(std::size_t object, const MainStep& step);
-  /// The packet is lost.
-  ElasticStream& lose(std::size_t object, const MainStep& step) {
-    composers_[object].packet(step);
+  ElasticStream& add_device(const Step& step) {
+    stream_.add_packet(step.tick, of_substream(0, stream_.packet(step)), step.key);
     return *this;
   }
+  const Bytes& bytes() const { return stream_.bytes(); }
   Bytes finished() { return stream_.finish().bytes(); }
 
  private:

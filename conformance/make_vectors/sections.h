@@ -35,7 +35,7 @@ inline constexpr const char* kDeformableStartModels = "50 Start models";
 inline constexpr const char* kComputedBasis = "50 Computed basis";
 inline constexpr const char* kClusters = "50 Clusters";
 inline constexpr const char* kElastic = "20 Elastic bodies";
-inline constexpr const char* kFollowing = "50 Packet of profile main";
+
 inline constexpr const char* kTouch = "55 Touch";
 inline constexpr const char* kStep = "55 Step";
 inline constexpr const char* kShown = "55 Shown";
