@@ -33,6 +33,7 @@ void MainDecoder::know(const DevicePath& path) {
 }
 
 std::span<const Vec3i> MainDecoder::predict(const MainState& state, std::int64_t tick) noexcept {
+  if (driven_) driven_->follow(tick);
   if (state.following != Following::none && driven_ && driven_->show(state, tick, shown_)) return shown_;
   return reader_.predict(state, tick);
 }

@@ -124,6 +124,7 @@ Following MainEncoder::choose_following(const EncodeRequest<MainState>& request)
 /// What the receiver shows, if it got every packet.
 void MainEncoder::predict_shown(const EncodeRequest<MainState>& request) noexcept {
   const MainState& shown = request.shown;
+  if (driven_) driven_->follow(request.tick);
   if (shown.following != Following::none && driven_ && driven_->show(shown, request.tick, expected_)) return;
   predictor_.predict(shown, request.tick, expected_);
 }

@@ -120,7 +120,7 @@ void DrivenShape::step() noexcept {
 bool DrivenShape::advance(std::int64_t number) noexcept {
   if (!path_.begins()) return false;
   const std::int64_t origin = *path_.begins() / solver_.ticks();
-  if (newest_ < first_ || newest_ + kFarthest < number) begin(std::max(origin, number - kFarthest));
+  if (newest_ < first_ || (newest_ + kFarthest < number && !is_broken_)) begin(std::max(origin, number - kFarthest));
   if (revision_ != path_.revision()) forget_what_changed();
   while (newest_ < number && !is_broken_) step();
   return true;

@@ -32,7 +32,8 @@ class DrivenShape {
   bool show(const MainState& state, std::int64_t tick, std::span<Vec3i> shown) noexcept;
   /// The shape alone, on the grid.
   bool body_at(std::int64_t tick, std::span<Vec3i> shape) noexcept;
-
+  /// Go on to this tick. To be called at each shape that is not shown either: who is more than 64 behind begins anew at rest.
+  void follow(std::int64_t tick) noexcept { advance(tick / solver_.ticks()); }
 
  private:
   using Place = std::optional<Vec3i>;

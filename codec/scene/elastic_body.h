@@ -22,7 +22,8 @@ struct ElasticMaterial {
 struct ElasticBody {
   using Tet = std::array<std::uint32_t, 4>;
   static constexpr std::size_t kMaxMaterials = 255;
-  static constexpr double kLargest = 1e15;  ///< of any constant
+  static constexpr double kLargest = 1e15;           ///< of any constant
+  static constexpr std::uint32_t kMostTicks = 1024;  ///< of a frame
 
   std::vector<Vec3i> inner;                ///< at rest, x 2^-position_exp m; their numbers follow those of the object's vertices
   std::vector<Tet> tets;                   ///< (b - a) x (c - a) . (d - a) > 0

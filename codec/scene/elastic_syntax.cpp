@@ -17,7 +17,8 @@ namespace {
 constexpr std::uint32_t kNoVertex = 0xffffffff;
 
 bool can_have_body(const DeformableObject& object) noexcept {
-  return object.profile == DeformableProfile::main && !object.layered && object.frame_period % 256 == 0;
+  return object.profile == DeformableProfile::main && !object.layered && object.frame_period % 256 == 0 &&
+         object.frame_period <= 256 * ElasticBody::kMostTicks;
 }
 
 bool are_constants(const ElasticBody& body) noexcept {

@@ -58,6 +58,8 @@ void add_objects(Catalogue& c) {
   for (const std::uint32_t period : {1u, 255u, 257u, 16640u + 128u})
     c.invalid("elastic-frame-period-" + std::to_string(period), "A body whose frames are not whole ticks.", rule,
               changed([&](RawDeformable& o, RawBody&) { o.frame_period = period; }));
+  c.invalid("elastic-frame-of-1025-ticks", "A body whose frames are too long.", rule,
+            changed([](RawDeformable& o, RawBody&) { o.frame_period = (1u << 18) + 256; }));
   c.invalid("elastic-nothing", "The flag is set, and no object has a body.", rule, with({0}));
   RawHeader none;
   none.flags = 32;

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Any constants, materials and tetrahedra as an elastic body, any device that touches it: both ends work out the same, and nothing breaks.
 #include <bit>
+#include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
+#include <tactus/base/bytes.h>
 #include <tactus/deformable/main_state.h>
 #include <tactus/elastic/driven_shape.h>
 #include <tactus/scene/scene_builder.h>

@@ -69,6 +69,8 @@ TEST(ElasticSyntax, OnlyWholeFramesOfOneLayerHaveABody) {
   EXPECT_EQ(broken([](DeformableObject&) {}), "none");
   EXPECT_EQ(broken([](DeformableObject& o) { o.layered = true; }), "R-ELA-1");
   EXPECT_EQ(broken([](DeformableObject& o) { o.frame_period = 300; }), "R-ELA-1");
+  EXPECT_EQ(broken([](DeformableObject& o) { o.frame_period = 256 * 1024; }), "none");
+  EXPECT_EQ(broken([](DeformableObject& o) { o.frame_period = 256 * 1025; }), "R-ELA-1");
   EXPECT_EQ(broken([](DeformableObject& o) { o.profile = DeformableProfile::thesis; }), "R-ELA-1");
 }
 
