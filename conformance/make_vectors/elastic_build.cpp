@@ -10,12 +10,11 @@ namespace {
 
 void append(Bytes& to, const Bytes& bytes) { to.insert(to.end(), bytes.begin(), bytes.end()); }
 
-/// Six times the volume, exact for places of 20 bits.
+/// Six times the volume, exact for differences of 20 bits.
 std::int64_t six_volumes(const Block& of, const Corners& tet) {
   std::array<std::array<std::int64_t, 3>, 3> e{};
   for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      e[i][axis] = std::int64_t{of.rest(tet[i + 1])[axis]} - of.rest(tet[0])[axis];
+    for (std::size_t axis = 0; axis < 3; ++axis) e[i][axis] = std::int64_t{of.rest(tet[i + 1])[axis]} - of.rest(tet[0])[axis];
   return e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) - e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
          e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
 }
@@ -75,7 +74,8 @@ Block block(int nx, int ny, int nz, std::int32_t size) {
             ++at[way[i]];
             tet[i + 1] = number(at);
           }
-          if (six_volumes(out, tet) < 0) std::swap(tet[1], tet[2]);
+          const bool is_left_handed = way[1] != (way[0] + 1) % 3;
+          if (is_left_handed) std::swap(tet[1], tet[2]);
           out.tets.push_back(tet);
         }
       }

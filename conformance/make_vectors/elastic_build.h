@@ -55,7 +55,7 @@ Block block(int nx, int ny, int nz, std::int32_t size = 42000);
 Block tangle(std::uint32_t vertices, std::uint32_t tets, std::uint64_t seed);
 /// So many of the tetrahedra of a cloud of 500 vertices: with kMostTets of them the work is just below the limit of 2^30.
 ElasticItem heaviest(std::uint32_t tets);
-inline constexpr std::uint32_t kMostTets = 1500;
+inline constexpr std::uint32_t kMostTets = 2013;
 /// Runs of these vertices, ascending.
 std::vector<std::array<std::uint64_t, 2>> runs_of(const std::vector<std::uint32_t>& vertices);
 /// Of the vertices with z = 0, which are fixed.

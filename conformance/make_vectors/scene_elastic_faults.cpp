@@ -71,8 +71,9 @@ void add_constants(Catalogue& c) {
     const char* what;
     double value;
   };
-  const Wrong nan{"nan", "NaN", kNan}, infinite{"infinite", "infinite", kInfinite}, beyond{"beyond", "the next above 10^15", kBeyond},
-      negative{"negative", "-2^-1074", -kTiny}, zero{"0", "0", 0}, below{"below", "the next below -10^15", -kBeyond};
+  const Wrong nan{"nan", "NaN", kNan}, infinite{"infinite", "infinite", kInfinite},
+      beyond{"beyond", "the next above 10^15", kBeyond}, negative{"negative", "-2^-1074", -kTiny}, zero{"0", "0", 0},
+      below{"below", "the next below -10^15", -kBeyond};
   const auto of = [&](const std::string& name, const std::vector<Wrong>& values, auto set) {
     std::string dashed = name;
     for (char& ch : dashed)
@@ -82,9 +83,7 @@ void add_constants(Catalogue& c) {
                 changed_body([&](RawBody& b) { set(b, wrong.value); }));
   };
   const auto constant = [](Constant which) { return [which](RawBody& b, double value) { b.constants[which] = value; }; };
-  const auto material = [](std::size_t which) {
-    return [which](RawBody& b, double value) { b.materials[0][which] = value; };
-  };
+  const auto material = [](std::size_t which) { return [which](RawBody& b, double value) { b.materials[0][which] = value; }; };
   of("mass_damping", {negative, nan, infinite, beyond}, constant(kMassDamping));
   of("stiffness_damping", {negative, nan, infinite, beyond}, constant(kStiffnessDamping));
   of("gravity.x", {below, beyond, nan}, constant(kGravityX));
@@ -144,7 +143,8 @@ void add_parts(Catalogue& c) {
   c.invalid("elastic-run-after-all", "A run after one that ends at the last vertex.", rule, runs({{4, 3}, {1, 0}}));
   c.invalid("elastic-gap-of-64-bits", "gap is 2^64 - 1: in 64-bit arithmetic the run would end at vertex 0.", rule,
             runs({{kAll, 1}}));
-  c.invalid("elastic-inner-fixed-too-far", "With an inner vertex a run ends at vertex 9 of 9.", rule, changed_body([](RawBody& b) {
+  c.invalid("elastic-inner-fixed-too-far", "With an inner vertex a run ends at vertex 9 of 9.", rule,
+            changed_body([](RawBody& b) {
               b.inner = {{1, 2, 3}};
               b.runs = {{8, 1}};
             }));
@@ -165,16 +165,19 @@ void add_solids(Catalogue& c) {
   c.invalid("elastic-inverted", "The last tetrahedron is inside out.", rule,
             changed_body([](RawBody& b) { std::swap(b.tets[5][2], b.tets[5][3]); }));
   c.invalid("elastic-flat-when-rounded", "A tetrahedron whose volume is above 0, but rounds to 0.", rule, [] {
-    ElasticItem item{
-        {.shape = {{{0, 0, 0}, {248440060, -412319174, -75810074}, {-456349588, -352300627, 394376109}}, {}}}, RawBody{}};
+    ElasticItem item{{.shape = {{{0, 0, 0}, {248440060, -412319174, -75810074}, {-456349588, -352300627, 394376109}}, {}}},
+                     RawBody{}};
     item.body->inner = {{-143601821, -253654104, 156929886}};
     item.body->tets = {{0, 1, 2, 3}};
     return only(item).bytes();
   }());
   c.invalid("elastic-vertex-in-none", "A free vertex of the object is in no tetrahedron.", rule,
-            changed([](RawDeformable& o, RawBody&) { o.shape.rest.push_back({5, 5, 5}); }));
-  c.invalid("elastic-inner-in-none", "An inner vertex is in no tetrahedron, and free.", rule,
-            changed_body([](RawBody& b) { b.inner = {{5, 5, 5}}; }));
+            changed([](RawDeformable& o, RawBody&) {
+              o.shape.rest.push_back({5, 5, 5});
+            }));
+  c.invalid("elastic-inner-in-none", "An inner vertex is in no tetrahedron, and free.", rule, changed_body([](RawBody& b) {
+              b.inner = {{5, 5, 5}};
+            }));
   c.invalid("elastic-inner-beyond-32-bits", "A coordinate of the second inner vertex is 2^31.", {"invalid", "R-DEF-5"},
             with(constants() + varint(2) + varint(1) + zigzag_varint(1) + zigzag_varint(kLargest) + zigzag_varint(0) +
                  zigzag_varint(1) + zigzag_varint(1) + Bytes(20, 0)));
@@ -186,8 +189,7 @@ void add_cuts(Catalogue& c) {
   const struct {
     const char* where;
     std::size_t size;
-  } cuts[]{{"mass_damping", 5},  {"friction", 56},  {"material_count", 57}, {"young", 60},
-           {"density", 81},      {"inner_count", 82}};
+  } cuts[]{{"mass_damping", 5}, {"friction", 56}, {"material_count", 57}, {"young", 60}, {"density", 81}, {"inner_count", 82}};
   for (const auto& [where, size] : cuts)
     c.invalid(std::string("elastic-cut-at-") + std::to_string(size), std::string("The body ends inside or before ") + where + '.',
               kCut, with(first(all, size)));
