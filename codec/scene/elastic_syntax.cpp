@@ -156,7 +156,8 @@ RuleName broken_elastic_rule(const DeformableObject& object) noexcept {
   if (!object.body) return {};
   if (!can_have_body(object)) return "R-ELA-1";
   if (!are_constants(*object.body) || !are_materials(*object.body)) return "R-ELA-2";
-  return are_tets(object) ? RuleName{} : RuleName{"R-ELA-3"};
+  if (!are_tets(object)) return "R-ELA-3";
+  return {};
 }
 
 bool is_solid(const DeformableObject& object, unsigned position_exp) {

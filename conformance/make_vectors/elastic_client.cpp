@@ -202,21 +202,21 @@ Bytes any(std::uint64_t seed) {
   const Block mesh = block(nx, ny, nz, size);
   ElasticItem item{{.shape = mesh.shape}, standing(mesh)};
   RawBody& body = *item.body;
-  const auto pick = [&](std::initializer_list<double> of) {
-    return of.begin()[random.below(static_cast<std::uint32_t>(of.size()))];
-  };
   const auto part = [&] { return (1 + random.below(1000)) * 0.001; };
+  const auto some = [&](std::initializer_list<double> of) {  // operands have no order
+    const double whole = of.begin()[random.below(static_cast<std::uint32_t>(of.size()))];
+    return part() * whole;
+  };
   body.materials.clear();
   for (std::uint32_t m = 1 + random.below(3); m > 0; --m) {
-    const double young = part() * pick({1e3, 1e4, 1e5}), poisson = part() * 1.4 - 0.91, density = part() * pick({1e3, 1e4});
+    const double young = some({1e3, 1e4, 1e5}), poisson = part() * 1.4 - 0.91, density = some({1e3, 1e4});
     body.materials.push_back({young, poisson, density});
   }
   for (std::uint64_t left = mesh.tets.size(); body.materials.size() > 1 && left > 0; left -= body.lengths.back().first)
     body.lengths.push_back({std::min<std::uint64_t>(left, 1 + random.below(9)),
                             static_cast<std::uint8_t>(random.below(static_cast<std::uint32_t>(body.materials.size())))});
   const bool has_weight = random.below(3) == 0;
-  body.constants = {part() * pick({0, 10, 100}),    part() * pick({0, 0.001, 0.03}), 0, 0, 0,
-                    part() * pick({50, 500, 5000}), part() * pick({0, 0.5, 3})};
+  body.constants = {some({0, 10, 100}), some({0, 0.001, 0.03}), 0, 0, 0, some({50, 500, 5000}), some({0, 0.5, 3})};
   for (std::size_t axis = kGravityX; axis <= kGravityZ && has_weight; ++axis) body.constants[axis] = (part() - 0.5) * 20;
   const std::uint32_t ticks = 1 + random.below(20);
   RawHeader header = scene(item, ticks);
