@@ -13,7 +13,8 @@ from typing import Callable, Iterator, NamedTuple, Optional
 MODULES = {
     "conventions": ("rigid", "scene"), "scene": ("scene",), "file": ("file",), "packet": ("packet",), "range_coder": ("range",),
     "rigid": ("rigid",), "load": ("load",), "replica": ("client",), "curve": ("client",), "playout": ("client",), "easing": ("client",),
-    "driven": ("client",),
+    "driven": ("client",), "elastic": ("client",), "elastic_step": ("client",), "elastic_touch": ("client",), "elastic_matrix": ("client", "scene"),
+    "elastic_header": ("scene",),
     "start_models": ("rigid", "deformable"),
     "decoder": ("packet", "client"),
     "deformable_basis": ("deformable",), "deformable_clusters": ("deformable",), "deformable_header": ("deformable",), "deformable_graph": ("deformable",), "deformable_main": ("deformable",),

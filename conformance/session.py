@@ -347,7 +347,7 @@ class Client:
         try:
             if self.epoch.begin():
                 self.state, self.sign_at = "live", 0
-                if self.device and self.epoch.scene.driven:
+                if self.device and self.epoch.scene.follows_devices():
                     self.epoch.drives()
         except StreamError as error:
             self.leave(TOO_LARGE if error.errc == "limit_exceeded" else NO_SCENE)
