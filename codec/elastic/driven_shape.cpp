@@ -111,7 +111,7 @@ void DrivenShape::step() noexcept {
   if (pushed || now.moves) {
     is_broken_ = !solver_.step(load_, next.state);
     if (is_broken_) return;
-    next.moves = solver_.moves(next.state);
+    next.moves = pushed || solver_.moves(next.state);  // what was held still moves once it is let go
   }
   ++newest_;
 }

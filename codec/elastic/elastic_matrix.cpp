@@ -71,11 +71,15 @@ void ElasticMatrix::solve(std::span<double> b) const noexcept {
     b[i + 2] = sum[2] - rows[2][i - from] * b[i] - rows[2][i + 1 - from] * b[i + 1];
   }
   for (std::size_t i = 0; i < b.size(); ++i) b[i] /= diagonal_[i];
-  for (std::size_t i = b.size(); i-- > 0;) {
-    const double known = b[i];
-    const double* own = row(i);
+  for (std::size_t i = b.size(); i > 0;) {
+    i -= 3;
+    const std::size_t width = i - first_[i];
+    const double *x = row(i), *y = row(i + 1), *z = row(i + 2);
+    const double at_z = b[i + 2];
+    const double at_y = b[i + 1] -= z[width + 1] * at_z;
+    const double at_x = b[i] = b[i] - z[width] * at_z - y[width] * at_y;
     double* out = b.data() + first_[i];
-    for (std::size_t j = 0; j < i - first_[i]; ++j) out[j] -= own[j] * known;
+    for (std::size_t j = 0; j < width; ++j) out[j] = out[j] - z[j] * at_z - y[j] * at_y - x[j] * at_x;
   }
 }
 

@@ -65,7 +65,7 @@ ElasticTouch::Foot ElasticTouch::foot(const Vec3& place, std::uint32_t triangle,
 ElasticTouch::Foot ElasticTouch::nearest(const Vec3& place, std::span<const Vec3> vertices) const noexcept {
   Foot best = foot(place, 0, vertices);
   for (std::uint32_t t = 1; t < object_.triangles.size(); ++t)
-    if (const Foot other = foot(place, t, vertices); other.distance2 < best.distance2) best = other;
+    if (const Foot other = foot(place, t, vertices); other.distance2 < best.distance2 || std::isnan(best.distance2)) best = other;
   return best;
 }
 

@@ -142,7 +142,7 @@ Result<void> check_scene(const SceneSpec& spec, const DecodeLimits& limits) try 
   return out_of_memory();
 }
 
-Scene::Scene(SceneSpec&& spec) : SceneSpec(std::move(spec)), is_driven_(driven || has_elastic_body(deformables)) {
+Scene::Scene(SceneSpec&& spec) : SceneSpec(std::move(spec)), has_paths_(driven || has_elastic_body(deformables)) {
   for (std::uint32_t i = 0; i < objects.size(); ++i)
     if (objects[i].dof != Dof::none) moving_.push_back(i);
   for (DeformableObject& object : deformables) {

@@ -101,8 +101,8 @@ class Scene : public SceneSpec {
   /// err  invalid, limit_exceeded, with the R-STR or R-DEF rule that the declaration breaks
   static Result<std::shared_ptr<const Scene>> create(SceneSpec spec, const DecodeLimits& limits = {});
 
-  /// Whether a client that knows its own device can work out what it moves.
-  bool is_driven() const noexcept { return is_driven_; }
+  /// Whether both ends of a session know the path of a device: it drives objects or deforms elastic bodies.
+  bool has_paths() const noexcept { return has_paths_; }
 
   /// Rigid objects that can move, ascending: the only ones that packets name.
   std::span<const std::uint32_t> moving() const noexcept { return moving_; }
@@ -114,7 +114,7 @@ class Scene : public SceneSpec {
   explicit Scene(SceneSpec&& spec);
 
   std::vector<std::uint32_t> moving_;
-  bool is_driven_ = false;
+  bool has_paths_ = false;
 };
 
 using SharedScene = std::shared_ptr<const Scene>;

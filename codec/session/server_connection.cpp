@@ -143,7 +143,7 @@ Result<void> ServerConnection::go_live(std::uint64_t now) noexcept try {
   if (join_.role == Role::participant) {
     TACTUS_TRY(exchange_->receiver, Receiver::create(served_.device));
     device_clock_.emplace(served_.scene->tick_rate, PlayoutOptions{.fixed = 0});
-    if (served_.scene->is_driven()) {
+    if (served_.scene->has_paths()) {
       exchange_->path = std::make_shared<DevicePath>(served_.device);
       exchange_->sender->know(exchange_->path);
       pace_.emplace(served_.scene->tick_rate);

@@ -205,8 +205,8 @@ Result<void> SessionClient::Impl::complete(std::uint64_t now) noexcept try {
     if (options.role == Role::observer) return {};
     TACTUS_TRY(SharedScene device, device_scene(*scene));
     TACTUS_TRY(auto sender, Sender::create(std::move(device), device_sender_options(options.device)));
-    fade.set_limits(scene->is_driven() ? ForceFade::kDriven : ForceFade::kUsual);
-    if (scene->is_driven()) {
+    fade.set_limits(scene->has_paths() ? ForceFade::kDriven : ForceFade::kUsual);
+    if (scene->has_paths()) {
       current->exchange.path = std::make_shared<DevicePath>(sender.scene());
       current->exchange.receiver->know(current->exchange.path);
     }

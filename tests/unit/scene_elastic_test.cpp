@@ -29,14 +29,14 @@ TEST(ElasticSyntax, IsReadAsItWasWritten) {
   ASSERT_TRUE(parsed) << parsed.error().rule;
   EXPECT_EQ(parsed->scene->deformables, scene->deformables);
   EXPECT_EQ(parsed->size, bytes.size());
-  EXPECT_TRUE(parsed->scene->is_driven());
+  EXPECT_TRUE(parsed->scene->has_paths());
 }
 
 /// What a scene does not need costs nothing.
 TEST(ElasticSyntax, WithoutABodyNoByteIsThere) {
   const auto surface = sim::surface(testing::slab_mesh()).mesh;
   const auto plain = SceneBuilder().deformable("slab", surface, {.frame_period = testing::kFrame}).baselines(64).build().value();
-  EXPECT_FALSE(plain->is_driven());
+  EXPECT_FALSE(plain->has_paths());
   EXPECT_EQ(write_scene(*plain).value()[6], 1) << "flags";
   const std::size_t body = write_scene(*elastic_scene()).value().size() - write_scene(*plain).value().size();
   EXPECT_LT(body, 9 * body_of(elastic_scene()).tets.size() + 200);
