@@ -347,6 +347,30 @@ void add_client_elastic(Catalogue& c) {
                  kMixed));
   for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u, 10u, 11u, 12u})
     device("elastic-" + std::to_string(seed), "Any body, materials, constants, clock and way of the device.", any(920 + seed));
+  const auto damped = [](RawDeformable&, RawBody& b) {
+    b.constants[kMassDamping] = 200;
+    b.constants[kStiffnessDamping] = 0.1;
+  };
+  const Vec3i above{4 * kMm, 4 * kMm, kSize + kMm}, below{4 * kMm, 4 * kMm, kSize - 3 * kMm};
+  device("elastic-let-go", "The device holds the body until it is still, and leaves: the dent goes.",
+         played(scene(changed(damped, pad(1, 1, 1)), 20), {{0, above}, {30, below}, {1500, above}}, kFades, 1900));
+  device("elastic-not-followed", "No packet follows for 80 frames; then one does.",
+         played(scene(pad(1, 1, 1), 1), over({4 * kMm, 4 * kMm, kSize}), {{2, Following::none, 5}, {83, Following::kept, 5}}, 160));
+  device("elastic-after-the-end", "A body that has ended, 80 frames later.",
+         played(scene(changed([](RawDeformable&, RawBody& b) { b.constants[kCoupling] = 1e12; }, pad(1, 1, 1)), 1),
+                over({4 * kMm, 4 * kMm, kSize}), kMixed, 190));
+  device("elastic-deep", "In one tick the device goes deeper than half of the body, and comes out below.",
+         played(scene(pad(1, 1, 1), 5), {{0, above}, {31, {4 * kMm, 5 * kMm, 3 * kMm}}, {90, {4 * kMm, 5 * kMm, -4 * kMm}}}, kFades,
+                150));
+  device("elastic-first-triangle-of-no-area", "The first triangle has no nearest point.",
+         pressed(changed([](RawDeformable& o, RawBody& b) {
+           const std::size_t copy = o.shape.rest.size();  // fixed, and in no tetrahedron
+           o.shape.rest.push_back(o.shape.rest[0]);
+           o.shape.triangles.insert(o.shape.triangles.begin(), {0, static_cast<std::uint32_t>(copy), 1});
+           std::uint64_t end = 0;
+           for (const auto& [gap, more] : b.runs) end += gap + more + 1;
+           b.runs.push_back({copy - end, 0});
+         })));
 }
 
 }  // namespace tactus::conformance
