@@ -85,7 +85,7 @@ class Shapes:
             return
         u, w = self.stepper.step(shape.u, shape.w, self.stepper.load(pushes))
         if all(abs(c) <= self.farthest for c in u):
-            self.shapes.append(Shape(u, w, any(abs(c) >= STILL for c in w), proxy))
+            self.shapes.append(Shape(u, w, bool(pushes) or any(abs(c) >= STILL for c in w), proxy))
         else:
             self.ended = True
 

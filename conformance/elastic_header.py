@@ -12,6 +12,7 @@ from deformable_header import MAIN, DeformableObject, read_fixed, read_rest, rea
 from elastic_matrix import Order, edges, order_of, six_volumes, work
 
 MOST = 1e15
+LONGEST_FRAME = 1 << 18                                     # 1/256 ticks
 MOST_VERTICES, MOST_TETRAHEDRA = 1 << 20, 1 << 21
 
 
@@ -48,7 +49,8 @@ def read_elastic_bodies(body: Cursor, deformables: list[DeformableObject], posit
         has_body = body.number(1, STR_5)
         require(has_body <= 1, "malformed", "R-ELA-1")
         if has_body:
-            require(item.profile == MAIN and item.layered == 0 and item.frame_period % 256 == 0, "invalid", "R-ELA-1")
+            require(item.profile == MAIN and item.layered == 0, "invalid", "R-ELA-1")
+            require(item.frame_period % 256 == 0 and item.frame_period <= LONGEST_FRAME, "invalid", "R-ELA-1")
             item.body = read_elastic_body(body, item, position_exp)
     require(any(item.body for item in deformables), "invalid", "R-ELA-1")
 

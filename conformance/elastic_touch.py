@@ -40,9 +40,9 @@ class Surface:
         a, b, c = (self.s[v] for v in self.triangles[triangle])
         return tuple(weights[0] * a[i] + weights[1] * b[i] + weights[2] * c[i] for i in AXES)
 
-    def normal(self, triangle: int) -> tuple:
-        a, b, c = (self.s[v] for v in self.triangles[triangle])
-        return cross(minus(b, a), minus(c, a))
+    def inside(self, p: tuple, q: Foot) -> bool:
+        a, b, c = (self.s[v] for v in self.triangles[q.triangle])
+        return dot(minus(p, q.point), cross(minus(b, a), minus(c, a))) < 0
 
     def foot(self, p: tuple, triangle: int) -> Foot:
         weights = self.weights(p, *(self.s[v] for v in self.triangles[triangle]))
@@ -80,7 +80,7 @@ class Surface:
         best = self.foot(p, 0)
         for triangle in range(1, len(self.triangles)):
             q = self.foot(p, triangle)
-            if q.far < best.far:
+            if q.far < best.far or best.far != best.far:    # a NaN gives way
                 best = q
         return best.triangle
 
@@ -119,11 +119,11 @@ class Surface:
         """`p` is where the device is; `first_tick`: of its frame."""
         if not self.triangles:
             return proxy, None
-        if not proxy.touches and (first_tick or proxy.triangle is None):
+        q = self.descend(p, self.nearest(p) if proxy.triangle is None else proxy.triangle)
+        touches = self.inside(p, q)
+        if first_tick and proxy.triangle is not None and not proxy.touches and not touches:
             q = self.descend(p, self.nearest(p))
-        else:
-            q = self.descend(p, proxy.triangle)
-        touches = dot(minus(p, q.point), self.normal(q.triangle)) < 0
+            touches = self.inside(p, q)
         if proxy.touches and touches and friction > 0:
             q = self.hold(q, proxy, friction)
         proxy = Proxy(touches, q.triangle, q.weights)

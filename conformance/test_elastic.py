@@ -13,7 +13,7 @@ from typing import Optional
 from conventions import StreamError
 from deformable_main import FADING, KEPT, MainState
 from device_path import DevicePath, device_scene
-from elastic import Shapes
+from elastic import STILL, Shapes
 from elastic_matrix import quotient
 from elastic_step import Stepper, turn
 from elastic_touch import Proxy, Surface
@@ -110,6 +110,8 @@ class RulesTest(unittest.TestCase):
         self.assert_refused("R-ELA-1", declaration(b"\x00"))
         self.assert_refused("R-ELA-1", declaration(b"\x01", frame_period=257))
         self.assert_refused("R-ELA-1", declaration(b"\x01", layered=1))
+        self.assert_refused("R-ELA-1", declaration(b"\x01", frame_period=(1 << 18) + 256))
+        self.assertEqual(read_declaration(declaration(b"\x01" + body_bytes(), 1 << 18))[0].deformables[0].frame_period, 1 << 18)
         self.assert_refused("R-STR-5", declaration(b"\x01" + body_bytes()[:-1]), "truncated")
 
     def test_constants(self) -> None:
@@ -232,6 +234,21 @@ class ShapesTest(unittest.TestCase):
         self.assertLess(max(map(abs, self.top(shapes, 200))), 60)
         self.assertFalse(any(shapes.grid(600)))
 
+    def test_what_was_held_still_moves_once_it_is_let_go(self) -> None:
+        shapes = self.shapes(mass_damping=200.0)
+        shapes.path.begin(0, 0)
+        self.at(shapes, 0, (0.0156, 0.0156, 0.04))
+        self.at(shapes, 50, (0.0156, 0.0156, 0.026))
+        self.at(shapes, 600, (0.0156, 0.0156, 0.04))
+        held, rest = shapes.shape(119), shapes.shape(120)
+        self.assertLess(self.top(shapes, 120)[2], -2000)
+        self.assertLess(max(map(abs, rest.w)), STILL)
+        self.assertEqual(shapes.grid(119), shapes.grid(120))
+        self.assertTrue(held.moves and rest.moves)
+        self.assertGreater(self.top(shapes, 122)[2], self.top(shapes, 120)[2] + 100)
+        self.assertFalse(any(shapes.grid(300)))
+        self.assertFalse(shapes.shape(300).moves)
+
     def test_friction_drags(self) -> None:
         along = []
         for friction in (0.0, 5.0):
@@ -303,6 +320,31 @@ class TouchTest(unittest.TestCase):
         proxy, push = surface.touch((4.75, 0.5, -0.1), Proxy(), True, 100.0, 0.0)
         self.assertEqual(proxy.triangle, 9)
         self.assertAlmostEqual(push.force[2], -10.0)
+
+    def test_a_device_that_goes_through_a_thin_body_stays_on_its_side(self) -> None:
+        s = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, -0.1), (1.0, 0.0, -0.1), (0.0, 1.0, -0.1)]
+        surface = Surface([(0, 1, 2), (3, 5, 4)], [[0], [0], [0], [1], [1], [1]], s)
+        above, _ = surface.touch((0.25, 0.25, 0.1), Proxy(), True, 100.0, 0.0)
+        self.assertEqual((above.triangle, above.touches), (0, False))
+        for first_tick in (False, True):
+            proxy, push = surface.touch((0.25, 0.25, -0.08), above, first_tick, 100.0, 0.0)
+            self.assertEqual((proxy.triangle, proxy.touches), (0, True))
+            self.assertAlmostEqual(push.force[2], -8.0)
+        below = Proxy(False, 1, (0.5, 0.25, 0.25))
+        self.assertEqual(surface.touch((0.25, 0.25, 0.1), below, False, 100.0, 0.0)[0].triangle, 1)
+
+    def test_nearest_looks_again_in_the_first_tick_only(self) -> None:
+        s = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (5.0, 0.0, 0.0), (6.0, 0.0, 0.0), (5.0, 1.0, 0.0)]
+        surface = Surface([(0, 1, 2), (3, 4, 5)], [[0], [0], [0], [1], [1], [1]], s)
+        before = Proxy(False, 0, (1.0, 0.0, 0.0))
+        self.assertEqual(surface.touch((5.2, 0.2, 0.1), before, False, 100.0, 0.0)[0].triangle, 0)
+        self.assertEqual(surface.touch((5.2, 0.2, 0.1), before, True, 100.0, 0.0)[0].triangle, 1)
+        self.assertTrue(surface.touch((0.2, 0.2, -0.1), before, True, 100.0, 0.0)[0].touches)
+
+    def test_what_is_no_number_gives_way(self) -> None:
+        s = [(math.nan,) * 3, (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (5.0, 0.0, 0.0), (6.0, 0.0, 0.0), (5.0, 1.0, 0.0)]
+        surface = Surface([(0, 1, 2), (3, 4, 5), (0, 2, 1)], [[0, 2], [0, 2], [0, 2], [1], [1], [1]], s)
+        self.assertEqual(surface.nearest((0.2, 0.2, 0.1)), 1)
 
 
 if __name__ == "__main__":
