@@ -15,7 +15,7 @@
 
 namespace tactus {
 
-class DevicePath;
+class FollowedShape;
 
 class DeformableDecoder {
  public:
@@ -33,7 +33,8 @@ class DeformableDecoder {
   virtual std::span<const std::array<std::int32_t, 3>> displacements_at(std::int64_t tick) noexcept = 0;
   /// The same from the newest state held that is not later than the tick, for a client that shows the past. spec/60-client.md 6
   virtual std::span<const std::array<std::int32_t, 3>> displacements_of(std::int64_t tick) noexcept = 0;
-  virtual void know(const DevicePath& path) = 0;  ///< Receiver::know.   pre  it outlives this
+  /// Show what the device of the client does (Receiver::know).   pre  the object has a body
+  virtual void know(std::unique_ptr<FollowedShape> shape) noexcept = 0;
   virtual bool holds(std::uint64_t number) const noexcept = 0;  ///< the state after the packet of this number
   virtual std::int64_t tick() const noexcept = 0;               ///< of the newest packet, 0 before the first
   virtual std::uint64_t state_hash() const noexcept = 0;

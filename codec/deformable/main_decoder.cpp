@@ -26,12 +26,6 @@ Result<void> MainDecoder::read_body(const MainState& base, std::int64_t, Decoded
   return {};
 }
 
-void MainDecoder::know(const DevicePath& path) {
-  if (!object_.body) return;
-  driven_.emplace(scene_, object_, path);
-  shown_.resize(object_.rest.size());
-}
-
 std::span<const Vec3i> MainDecoder::predict(const MainState& state, std::int64_t tick) noexcept {
   if (driven_) driven_->follow(tick);
   if (state.following != Following::none && driven_ && driven_->show(state, tick, shown_)) return shown_;

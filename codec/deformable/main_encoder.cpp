@@ -50,8 +50,7 @@ double default_share(const Scene& scene, const DeformableObject& object) noexcep
 }  // namespace
 
 MainEncoder::MainEncoder(const Scene& scene, const DeformableObject& object, const DeformableOptions& options)
-    : scene_(scene),
-      object_(object),
+    : object_(object),
       thresholds_(options.thresholds),
       visual_share_(options.visual_share.value_or(default_share(scene, object))),
       haptic_share_(options.haptic_share.value_or(default_share(scene, object))),
@@ -90,10 +89,6 @@ MainHead MainEncoder::head_for(const EncodeRequest<MainState>& request) noexcept
   limit_[1] = std::min(limit_[0], units(haptic_share_ * haptic));
   while (head.haptic < kMaxHapticIndex && haptic_bound(head.haptic + 1) <= limit_[1]) ++head.haptic;
   return head;
-}
-
-void MainEncoder::know(const DevicePath& path) {
-  if (object_.body) driven_.emplace(scene_, object_, path);
 }
 
 /// Of what is in `expected_`.

@@ -9,15 +9,15 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include <tactus/deformable/followed_shape.h>
 #include <tactus/deformable/main_syntax.h>
 #include <tactus/deformable/mode_projection.h>
 #include <tactus/deformable/trigger.h>
 #include <tactus/deformable/vertex_coder.h>
-#include <tactus/elastic/driven_shape.h>
 #include <tactus/packet/substream_encoder.h>
 
 namespace tactus {
@@ -36,8 +36,7 @@ class MainEncoder {
     touch_ = touch;
   }
   void set_widening(double factor) noexcept { widening_ = factor; }
-  /// Know the device of the receiver, which may deform the object.   pre  it outlives this.   allocates
-  void know(const DevicePath& path);
+  void know(std::unique_ptr<FollowedShape> shape) noexcept { driven_ = std::move(shape); }  ///< pre  the object has a body
   /// time O(vertices * (1 + modes)), no allocation
   Result<Payload> encode(const EncodeRequest<MainState>& request, std::span<std::uint8_t> out) noexcept;
   void commit(const MainState&, MainState& next) noexcept { std::swap(next_, next); }
@@ -60,7 +59,6 @@ class MainEncoder {
   Payload write_shortest(MainHead& head, const MainState& base, std::span<std::uint8_t> out) noexcept;
   std::size_t write(MainHead head, const MainState& base, std::span<std::uint8_t> out) noexcept;
 
-  const Scene& scene_;
   const DeformableObject& object_;
   const DeformableThresholds thresholds_;
   const double visual_share_, haptic_share_;
@@ -80,9 +78,9 @@ class MainEncoder {
   std::vector<std::int32_t> coefficients_, scaled_;  // in steps; in grid units
   std::vector<float> projected_;
   std::vector<CodedVertex> coded_;
-  std::optional<DrivenShape> driven_;
-  std::uint32_t trigger_[2]{};  // outside and inside the area of interest: errors that call for a packet, grid units
-  std::uint32_t limit_[2]{};    // errors that a packet corrects: shares of the same
+  std::unique_ptr<FollowedShape> driven_;  // null: no device is known
+  std::uint32_t trigger_[2]{};             // outside and inside the area of interest: errors that call for a packet, grid units
+  std::uint32_t limit_[2]{};               // errors that a packet corrects: shares of the same
 };
 
 }  // namespace tactus

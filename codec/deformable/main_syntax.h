@@ -144,8 +144,7 @@ void code_main_bounds(Coder& coder, MainModels& models, const DeformableObject& 
 
 template <class Coder>
 void code_following(Coder& coder, MainModels& models, Following base, Following& following) noexcept {
-  const bool follows =
-      coder.bit(models.driven[base != Following::none ? 1 : 0], following != Following::none ? 1u : 0u) != 0;
+  const bool follows = coder.bit(models.driven[base != Following::none ? 1 : 0], following != Following::none ? 1u : 0u) != 0;
   if (!follows) {
     following = Following::none;
     return;

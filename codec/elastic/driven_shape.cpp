@@ -6,7 +6,6 @@
 #include <cstdlib>
 
 #include <tactus/deformable/displacement.h>
-#include <tactus/deformable/main_state.h>
 #include <tactus/signal/device_path.h>
 
 namespace tactus {

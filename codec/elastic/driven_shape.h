@@ -11,29 +11,24 @@
 #include <vector>
 
 #include <tactus/base/fixed.h>
+#include <tactus/deformable/followed_shape.h>
 #include <tactus/elastic/elastic_solver.h>
 #include <tactus/elastic/elastic_touch.h>
 
 namespace tactus {
 
 class DevicePath;
-struct MainState;
 
-class DrivenShape {
+class DrivenShape final : public FollowedShape {
  public:
   /// pre  the object has a body; all outlive this.   allocates, the last 32 shapes or so
   DrivenShape(const Scene& scene, const DeformableObject& object, const DevicePath& path);
 
-  /// What a state shows that follows the device: the shape at a tick, and what the state differed by from the shape at its own, or what is
-  /// left of it.
-  /// out  false: one of the two is not known, and nothing is written
   /// time O(vertices) if the path has not changed and no shape is new; else a step (ElasticSolver) for each new shape, and for each whose
   ///      past has changed. No allocation
-  bool show(const MainState& state, std::int64_t tick, std::span<Vec3i> shown) noexcept;
-  /// The shape alone, on the grid.
-  bool body_at(std::int64_t tick, std::span<Vec3i> shape) noexcept;
-  /// Go on to this tick. To be called at each shape that is not shown either: who is more than 64 behind begins anew at rest.
-  void follow(std::int64_t tick) noexcept { advance(tick / solver_.ticks()); }
+  bool show(const MainState& state, std::int64_t tick, std::span<Vec3i> shown) noexcept override;
+  bool body_at(std::int64_t tick, std::span<Vec3i> shape) noexcept override;
+  void follow(std::int64_t tick) noexcept override { advance(tick / solver_.ticks()); }
 
  private:
   using Place = std::optional<Vec3i>;
@@ -56,13 +51,13 @@ class DrivenShape {
   const DevicePath& path_;
   ElasticSolver solver_;
   ElasticTouch touch_;
-  std::vector<Frame> frames_;              // a ring, by number
-  std::int64_t first_ = 0, newest_ = -1;   // numbers of the shapes since the last begin(); newest_ < first_: there was none
-  bool is_broken_ = false;                 // the newest is the last
-  std::uint64_t revision_ = 0;             // of the path
-  std::vector<Vec3> surface_;              // [m] of a shape
-  std::vector<double> load_;               // [N] 3 per vertex
-  std::vector<Vec3i> from_, shape_;        // on the grid: that at a state's tick; the one asked for
+  std::vector<Frame> frames_;             // a ring, by number
+  std::int64_t first_ = 0, newest_ = -1;  // numbers of the shapes since the last begin(); newest_ < first_: there was none
+  bool is_broken_ = false;                // the newest is the last
+  std::uint64_t revision_ = 0;            // of the path
+  std::vector<Vec3> surface_;             // [m] of a shape
+  std::vector<double> load_;              // [N] 3 per vertex
+  std::vector<Vec3i> from_, shape_;       // on the grid: that at a state's tick; the one asked for
   std::int64_t from_number_ = -1;
 };
 

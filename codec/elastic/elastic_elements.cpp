@@ -152,8 +152,8 @@ Rotation ElasticElements::stiffness(std::size_t element, std::size_t row, std::s
     return -(block.gradient[axis][l] + block.gradient[3 + axis][l] + block.gradient[6 + axis][l]);
   };
   const double mu = 0.5 * block.two_mu[l];
-  const double along = gradient(row, 0) * gradient(column, 0) + gradient(row, 1) * gradient(column, 1) +
-                       gradient(row, 2) * gradient(column, 2);
+  const double along =
+      gradient(row, 0) * gradient(column, 0) + gradient(row, 1) * gradient(column, 1) + gradient(row, 2) * gradient(column, 2);
   Rotation out;
   for (std::size_t a = 0; a < 3; ++a)
     for (std::size_t c = 0; c < 3; ++c)

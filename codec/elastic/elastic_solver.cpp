@@ -81,7 +81,7 @@ void ElasticSolver::precondition() noexcept {
 
 /// along = A way; returns way . along.   pre  `ahead_` is 0 at fixed vertices
 double ElasticSolver::product() noexcept {
-  for (std::size_t i = 0; i < way_.size(); ++i) ahead_[3 * elimination_.order[i / 3] + i % 3] = way_[i];
+  for (std::size_t i = 0; i < way_.size(); ++i) ahead_[3 * std::size_t{elimination_.order[i / 3]} + i % 3] = way_[i];
   elements_.multiply(ahead_, force_);
   double sum = 0;
   for (std::size_t i = 0; i < way_.size(); ++i) {
@@ -116,7 +116,7 @@ void ElasticSolver::solve_round(const ElasticState& from, std::span<const double
     for (std::size_t i = 0; i < way_.size(); ++i) way_[i] = z_[i] + back * way_[i];
     const double far = now / product();
     for (std::size_t i = 0; i < way_.size(); ++i) {
-      u_[3 * elimination_.order[i / 3] + i % 3] += far * way_[i];
+      u_[3 * std::size_t{elimination_.order[i / 3]} + i % 3] += far * way_[i];
       residual_[i] -= far * along_[i];
     }
   }

@@ -101,8 +101,7 @@ bool ElasticTouch::is_inside(const Vec3& place, const Foot& foot, std::span<cons
 }
 
 /// Where friction holds the proxy, given where it would be without.
-ElasticTouch::Foot ElasticTouch::hold(const Foot& goal, std::span<const Vec3> vertices,
-                                      const State& state) const noexcept {
+ElasticTouch::Foot ElasticTouch::hold(const Foot& goal, std::span<const Vec3> vertices, const State& state) const noexcept {
   const Triangle& corners = object_.triangles[*state.triangle];
   Foot held{.triangle = *state.triangle, .weights = state.weights, .point = {}};
   held.point = blend(held.weights, vertices[corners[0]], vertices[corners[1]], vertices[corners[2]]);

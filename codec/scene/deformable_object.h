@@ -91,7 +91,7 @@ struct DeformableObject {
   SpringBasis spring_basis;    ///< main: in place of `basis`, which a Scene then computes
   ClusterBasis cluster_basis;  ///< main: the same
   std::vector<std::uint8_t>
-      stiffness;  ///< levels (stiffness_level), one per vertex: what clients with delay need; empty: not told
+      stiffness;                    ///< levels (stiffness_level), one per vertex: what clients with delay need; empty: not told
   std::optional<ElasticBody> body;  ///< main, not layered: what it is made of; none: not told
   friend bool operator==(const DeformableObject&, const DeformableObject&) = default;
 };

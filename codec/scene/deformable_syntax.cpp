@@ -120,8 +120,7 @@ Result<void> parse_declared(ByteReader& in, std::uint64_t modes, DeformableObjec
 
 Result<void> parse_springs(ByteReader& in, std::uint64_t modes, DeformableObject& object) {
   TACTUS_TRY(object.spring_basis.fixed, parse_runs(in, object.rest.size(), "R-DEF-7"));
-  if (modes > 3 * (object.rest.size() - object.spring_basis.fixed.size()))
-    return fail(Errc::invalid, "R-DEF-7", in.bit_offset());
+  if (modes > 3 * (object.rest.size() - object.spring_basis.fixed.size())) return fail(Errc::invalid, "R-DEF-7", in.bit_offset());
   object.spring_basis.modes = static_cast<std::uint8_t>(modes);
   return {};
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <tactus/base/fixed.h>
 #include <tactus/base/tri_mesh.h>
 #include <tactus/scene/scene_rules.h>
 #include <tactus/scene/vertex_syntax.h>
@@ -75,7 +76,8 @@ Result<void> parse_tets(ByteReader& in, std::uint64_t count, std::size_t vertice
     ElasticBody::Tet tet{};
     std::int64_t last = first;
     for (std::uint32_t& corner : tet) {
-      constexpr std::uint64_t kFarthest = 4 * kMaxMeshVertices;  // a difference so large leads to no vertex, nor do those after it
+      constexpr std::uint64_t kFarthest =
+          4 * kMaxMeshVertices;  // a difference so large leads to no vertex, nor do those after it
       last += unzigzag(std::min(in.varint(), kFarthest));
       corner = last < 0 || last >= std::int64_t{kMaxMeshVertices} ? kNoVertex : static_cast<std::uint32_t>(last);
     }
@@ -119,8 +121,8 @@ Result<void> parse_body(ByteReader& in, DeformableObject& object) {
 }
 
 void write_body(ByteWriter& out, const ElasticBody& body) {
-  for (const double v : {body.mass_damping, body.stiffness_damping, body.gravity.x, body.gravity.y, body.gravity.z, body.coupling,
-                         body.friction})
+  for (const double v :
+       {body.mass_damping, body.stiffness_damping, body.gravity.x, body.gravity.y, body.gravity.z, body.coupling, body.friction})
     write_number(out, v);
   out.u8(static_cast<std::uint8_t>(body.materials.size()));
   for (const ElasticMaterial& m : body.materials)

@@ -87,10 +87,10 @@ struct DecodeLimits {
   std::uint32_t objects = 4096;
   std::uint32_t header_bytes = 1u << 26;
   std::uint32_t packet_bytes = 1u << 26;
-  std::uint32_t vertices = 1u << 20;       ///< of all deformable objects
-  std::uint32_t triangles = 1u << 21;      ///< of all deformable objects
-  std::uint64_t state_bytes = 1ull << 28;  ///< of all states that the stream's decoders keep
-  std::uint64_t basis_work = 1ull << 22;   ///< of all bases to compute: 57 000 vertices with 48 modes, or 5 of 700
+  std::uint32_t vertices = 1u << 20;        ///< of all deformable objects
+  std::uint32_t triangles = 1u << 21;       ///< of all deformable objects
+  std::uint64_t state_bytes = 1ull << 28;   ///< of all states that the stream's decoders keep
+  std::uint64_t basis_work = 1ull << 22;    ///< of all bases to compute: 57 000 vertices with 48 modes, or 5 of 700
   std::uint64_t elastic_work = 1ull << 30;  ///< of all elastic bodies: thin ones of 10 000 vertices, or a cube of 1300
 };
 

@@ -24,7 +24,7 @@ constexpr std::uint8_t kRigid = 1;
 constexpr std::uint8_t kProfile = 0;
 constexpr std::uint16_t kHasDeformables = 1, kHasLoads = 2, kIsEased = 4, kHasMotion = 8, kIsDriven = 16,
                         kIsElastic = 32;  // flags
-constexpr std::size_t kFixedSize = 12;  // magic, version, profile, flags, body_size
+constexpr std::size_t kFixedSize = 12;    // magic, version, profile, flags, body_size
 
 Result<RigidObject> parse_object(ByteReader& body) {
   const std::uint64_t start = body.bit_offset();

@@ -63,8 +63,8 @@ class ReceivedNumbers {
   static constexpr unsigned kUntold = 32;  // of the 65 that an acknowledgement tells of: so one of them may be lost
 
   NumberWindow received_, accepted_;
-  unsigned untold_ = 0;          // accepted since the last acknowledgement
-  std::uint64_t newest_at_ = 0;  // [us] when accepted_.newest() came
+  unsigned untold_ = 0;                          // accepted since the last acknowledgement
+  std::uint64_t newest_at_ = 0;                  // [us] when accepted_.newest() came
   std::optional<std::uint64_t> due_, asked_at_;  // asked_at_: by the first that asks since the last acknowledgement
   std::uint64_t told_ = 0, above_told_ = 0;      // newest of the last acknowledgement; how many above it were accepted
   bool changes_told_ = false;                    // one below it was accepted since

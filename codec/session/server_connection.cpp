@@ -10,12 +10,12 @@
 namespace tactus {
 namespace {
 
-constexpr std::uint64_t kWelcomeEvery = 250'000;  // [us] of a new epoch, until the client has heard
+constexpr std::uint64_t kWelcomeEvery = 250'000;                             // [us] of a new epoch, until the client has heard
 constexpr std::uint64_t kClockEvery = 100'000, kDrivenClockEvery = 500'000;  // [us]
-constexpr std::uint64_t kPieceEvery = 500;        // [us]: 16 Mbit/s
-constexpr std::int64_t kPieceQueue = 80'000;      // [us] that a piece may wait on its way
-constexpr std::uint64_t kJammedEvery = 50'000;    // [us]: packets through a long queue
-constexpr std::uint64_t kUnproven = 10'000'000;   // [us] for the first datagram in the epoch
+constexpr std::uint64_t kPieceEvery = 500;                                   // [us]: 16 Mbit/s
+constexpr std::int64_t kPieceQueue = 80'000;                                 // [us] that a piece may wait on its way
+constexpr std::uint64_t kJammedEvery = 50'000;                               // [us]: packets through a long queue
+constexpr std::uint64_t kUnproven = 10'000'000;                              // [us] for the first datagram in the epoch
 constexpr unsigned kMostFaults = 100;
 constexpr unsigned kLeaves = 3;  // one of them should arrive
 

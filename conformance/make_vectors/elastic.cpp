@@ -35,7 +35,7 @@ Bytes on_older_packets() {
   ElasticStream stream(header);
   Random random(901);
   for (std::uint32_t i = 0; i < 40; ++i) {
-    MainStep step{.at = {.tick = 7 * i, .key = i % 17 == 0}, .following = static_cast<Following>(random.below(3))};
+    MainStep step{.at = {.tick = 7 * std::int64_t{i}, .key = i % 17 == 0}, .following = static_cast<Following>(random.below(3))};
     step.at.baseline = i % 17 == 0 ? 1 : 1 + random.below(std::min(i % 17, 16u));
     step.residuals = random_residuals(random, 3, 60);
     stream.add(0, step);

@@ -136,6 +136,7 @@ RawBody standing(const Block& block) {
 
 RawHeader with_elastic(RawHeader header, const std::vector<ElasticItem>& items) {
   std::vector<RawDeformable> objects;
+  objects.reserve(items.size());
   for (const ElasticItem& item : items) objects.push_back(item.object);
   const std::uint16_t flags = header.flags;
   header = with_deformables(std::move(header), objects);

@@ -31,7 +31,8 @@ struct RawBody {
 
   Bytes bytes() const;
 };
-enum Constant : std::uint8_t { kMassDamping, kStiffnessDamping, kGravityX, kGravityY, kGravityZ, kCoupling, kFriction };
+inline constexpr std::size_t kMassDamping = 0, kStiffnessDamping = 1, kGravityX = 2, kGravityY = 3, kGravityZ = 4, kCoupling = 5,
+                             kFriction = 6;
 
 /// A surface, and what fills it.
 struct Block {

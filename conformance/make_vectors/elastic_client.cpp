@@ -71,9 +71,9 @@ ElasticItem pad(int nx = 2, int ny = 1, int nz = 1) {
   return {{.shape = mesh.shape}, standing(mesh)};
 }
 constexpr Vec3i kTop{7 * kMm, 4 * kMm, kSize};
-const std::vector<Told> kFades{{0}};
-const std::vector<Told> kMixed{{3, Following::fading, 6}, {48, Following::kept, 5},    {77, Following::none, 4},
-                               {93, Following::kept, 6},  {120, Following::fading, 7}, {131, Following::fading, 0}};
+const std::vector<Told> fades{{0}};
+const std::vector<Told> mixed{{3, Following::fading, 6}, {48, Following::kept, 5},    {77, Following::none, 4},
+                              {93, Following::kept, 6},  {120, Following::fading, 7}, {131, Following::fading, 0}};
 
 /// The pad after one change.
 template <class Change>
@@ -82,7 +82,7 @@ ElasticItem changed(Change change, ElasticItem item = pad()) {
   return item;
 }
 
-Bytes pressed(const ElasticItem& item, const std::vector<Told>& told = kFades, std::uint32_t ticks = 5) {
+Bytes pressed(const ElasticItem& item, const std::vector<Told>& told = fades, std::uint32_t ticks = 5) {
   return played(scene(item, ticks), over(kTop), told, 190);
 }
 
@@ -210,11 +210,11 @@ Bytes any(std::uint64_t seed) {
   body.materials.clear();
   for (std::uint32_t m = 1 + random.below(3); m > 0; --m) {
     const double young = some({1e3, 1e4, 1e5}), poisson = part() * 1.4 - 0.91, density = some({1e3, 1e4});
-    body.materials.push_back({young, poisson, density});
+    body.materials.emplace_back(young, poisson, density);
   }
   for (std::uint64_t left = mesh.tets.size(); body.materials.size() > 1 && left > 0; left -= body.lengths.back().first)
-    body.lengths.push_back({std::min<std::uint64_t>(left, 1 + random.below(9)),
-                            static_cast<std::uint8_t>(random.below(static_cast<std::uint32_t>(body.materials.size())))});
+    body.lengths.emplace_back(std::min<std::uint64_t>(left, 1 + random.below(9)),
+                              static_cast<std::uint8_t>(random.below(static_cast<std::uint32_t>(body.materials.size()))));
   const bool has_weight = random.below(3) == 0;
   body.constants = {some({0, 10, 100}), some({0, 0.001, 0.03}), 0, 0, 0, some({50, 500, 5000}), some({0, 0.5, 3})};
   for (std::size_t axis = kGravityX; axis <= kGravityZ && has_weight; ++axis) body.constants[axis] = (part() - 0.5) * 20;
@@ -238,7 +238,7 @@ Bytes any(std::uint64_t seed) {
   from[2] = (nz * size * 9) / 8;
   bool key = true;
   for (std::int64_t tick = 0; tick < end;) {
-    const auto time = static_cast<std::int64_t>(1 + random.below(7 * ticks));
+    const std::int64_t time = 1 + std::int64_t{random.below(7 * ticks)};
     const Vec3i to = place();
     Vec3i velocity{};
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -258,119 +258,141 @@ Bytes any(std::uint64_t seed) {
   return stream.add(0, {.at = {.tick = end}, .following = Following::kept}).finished();
 }
 
-}  // namespace
+void add_device(Catalogue& c, const std::string& name, const char* what, Bytes bytes) {
+  c.valid(name, what, std::move(bytes), {}, "device");
+}
 
-void add_client_elastic(Catalogue& c) {
-  const auto device = [&](const std::string& name, const char* what, Bytes bytes) {
-    c.valid(name, what, std::move(bytes), {}, "device");
-  };
+void add_shown(Catalogue& c) {
   c.section(section::kShown);
-  device("elastic", "A device presses on a body, slides over it and leaves; what is shown follows it.", pressed(pad()));
-  device("elastic-in-turn", "The same; packets follow, fading or kept, or do not.", pressed(pad(), kMixed));
-  device("elastic-not-told", "The same; no packet follows.", pressed(pad(), {{3, Following::none, 5}, {60, Following::none, 5}}));
-  c.valid("elastic-unknown", "What a client without a device shows of it.", pressed(pad(), kMixed), {}, "none");
-  c.valid("elastic-unknown-playout", "The same in the way playout.", pressed(pad(), kMixed), {}, "playout");
-  device("elastic-frames-of-1-tick", "Frames of one tick.",
-         played(scene(pad(1, 1, 1), 1), over({4 * kMm, 4 * kMm, kSize}), kMixed, 160));
-  device("elastic-frames-of-20-ticks", "Frames of 20 ticks; packets come between their ends.", pressed(pad(), kMixed, 20));
-  device("elastic-fades-away", "What differs fades to 0; then it is kept, and is limited.", faded());
-  device("elastic-old-state", "A state that is kept for 100 frames.",
-         played(scene(pad(1, 1, 1), 1), over({4 * kMm, 4 * kMm, kSize}), {{0}, {40, Following::kept, 5}}, 140));
-  device("elastic-late-device", "The device is told of at tick 40.", [] {
+  add_device(c, "elastic", "A device presses on a body, slides over it and leaves; what is shown follows it.", pressed(pad()));
+  add_device(c, "elastic-in-turn", "The same; packets follow, fading or kept, or do not.", pressed(pad(), mixed));
+  add_device(c, "elastic-not-told", "The same; no packet follows.",
+             pressed(pad(), {{3, Following::none, 5}, {60, Following::none, 5}}));
+  c.valid("elastic-unknown", "What a client without a device shows of it.", pressed(pad(), mixed), {}, "none");
+  c.valid("elastic-unknown-playout", "The same in the way playout.", pressed(pad(), mixed), {}, "playout");
+  add_device(c, "elastic-frames-of-1-tick", "Frames of one tick.",
+             played(scene(pad(1, 1, 1), 1), over({4 * kMm, 4 * kMm, kSize}), mixed, 160));
+  add_device(c, "elastic-frames-of-20-ticks", "Frames of 20 ticks; packets come between their ends.", pressed(pad(), mixed, 20));
+  add_device(c, "elastic-fades-away", "What differs fades to 0; then it is kept, and is limited.", faded());
+  add_device(c, "elastic-old-state", "A state that is kept for 100 frames.",
+             played(scene(pad(1, 1, 1), 1), over({4 * kMm, 4 * kMm, kSize}), {{0}, {40, Following::kept, 5}}, 140));
+  add_device(c, "elastic-late-device", "The device is told of at tick 40.", [] {
     std::vector<Move> moves = over(kTop);
     moves.erase(moves.begin());
-    return played(scene(pad(), 5), moves, kFades, 150);
+    return played(scene(pad(), 5), moves, fades, 150);
   }());
-  device("elastic-overtaken", "A packet of the device that another one of the same tick has overtaken.", overtaken());
-  device("elastic-several", "Two bodies, one with a push and weight, a sheet, and a driven rigid object, eased.", several());
+  add_device(c, "elastic-overtaken", "A packet of the device that another one of the same tick has overtaken.", overtaken());
+  add_device(c, "elastic-several", "Two bodies, one with a push and weight, a sheet, and a driven rigid object, eased.",
+             several());
+}
+
+void add_touches(Catalogue& c) {
   c.section(section::kTouch);
-  device("elastic-friction", "Friction holds the proxy, and lets it slide behind the device.",
-         pressed(changed([](RawDeformable&, RawBody& b) { b.constants[kFriction] = 0.4; })));
-  device("elastic-rough", "Friction holds the proxy where it touched first.",
-         pressed(changed([](RawDeformable&, RawBody& b) { b.constants[kFriction] = 1e15; })));
-  device("elastic-odd-triangles", "Triangles that do not cover the surface, cross the inside, lie twice or have no area.",
-         pressed(odd_triangles()));
-  device("elastic-odd-and-rough", "The same with friction.",
-         pressed(changed([](RawDeformable&, RawBody& b) { b.constants[kFriction] = 0.7; }, odd_triangles()), kMixed));
-  device("elastic-swept", "A device that crosses several triangles in a tick.", swept(0));
-  device("elastic-swept-and-rough", "The same with friction: the proxy comes after it.", swept(0.8));
-  device("elastic-no-triangles", "A body without a surface, which has weight.", pressed(changed([](RawDeformable& o, RawBody& b) {
-           o.shape.triangles.clear();
-           b.constants[kGravityZ] = -9.81;
-         })));
+  add_device(c, "elastic-friction", "Friction holds the proxy, and lets it slide behind the device.",
+             pressed(changed([](RawDeformable&, RawBody& b) { b.constants[kFriction] = 0.4; })));
+  add_device(c, "elastic-rough", "Friction holds the proxy where it touched first.",
+             pressed(changed([](RawDeformable&, RawBody& b) { b.constants[kFriction] = 1e15; })));
+  add_device(c, "elastic-odd-triangles", "Triangles that do not cover the surface, cross the inside, lie twice or have no area.",
+             pressed(odd_triangles()));
+  add_device(c, "elastic-odd-and-rough", "The same with friction.",
+             pressed(changed([](RawDeformable&, RawBody& b) { b.constants[kFriction] = 0.7; }, odd_triangles()), mixed));
+  add_device(c, "elastic-swept", "A device that crosses several triangles in a tick.", swept(0));
+  add_device(c, "elastic-swept-and-rough", "The same with friction: the proxy comes after it.", swept(0.8));
+  add_device(c, "elastic-no-triangles", "A body without a surface, which has weight.",
+             pressed(changed([](RawDeformable& o, RawBody& b) {
+               o.shape.triangles.clear();
+               b.constants[kGravityZ] = -9.81;
+             })));
+}
+
+void add_steps(Catalogue& c) {
   c.section(section::kStep);
-  device("elastic-with-inner", "An inner vertex, two materials and friction.",
-         played(scene(with_inner(), 8), over({7 * kMm, 8 * kMm, 2 * kSize}), kMixed, 190));
-  device("elastic-weight", "A body that sways by its weight, and is pressed upon.",
-         pressed(changed([](RawDeformable&, RawBody& b) {
-                   b.constants[kGravityX] = 40;
-                   b.constants[kGravityZ] = -9.81;
-                 }),
-                 kMixed));
-  device("elastic-falls", "A body that nothing holds falls, and the device is in its way.",
-         played(scene(changed(
-                          [](RawDeformable&, RawBody& b) {
-                            b.runs.clear();
-                            b.constants[kGravityZ] = -9.81;
-                            b.constants[kMassDamping] = 0;
-                            b.constants[kCoupling] = 8;
-                          },
-                          pad(1, 1, 1)),
-                      5),
-                {{0, {4 * kMm, 6 * kMm, -6 * kMm}}}, kFades, 160));
-  device("elastic-turns-over", "A soft body that the device pushes over and turns.",
-         played(scene(changed(
-                          [](RawDeformable&, RawBody& b) {
-                            b.runs = {{0, 0}};
-                            b.materials = {{3000, 0.2, 500}};
-                            b.constants[kFriction] = 1;
-                            b.constants[kCoupling] = 10;
-                          },
-                          pad(1, 1, 1)),
-                      5),
-                {{0, {9 * kMm, 5 * kMm, 11 * kMm}, {0, 0, -100 * kSpeed}},
-                 {40, {9 * kMm, 5 * kMm, 7 * kMm}, {-400 * kSpeed, 0, -100 * kSpeed}},
-                 {100, {-15 * kMm, 5 * kMm, kMm}, {0, 300 * kSpeed, 200 * kSpeed}}},
-                kMixed, 160));
-  device("elastic-alone", "No object moves: no device, but weight.",
-         played(scene(changed([](RawDeformable&, RawBody& b) { b.constants[kGravityY] = 9.81; }), 5, false), {},
-                {{3, Following::fading, 5}, {50, Following::kept, 5}}, 150));
+  add_device(c, "elastic-with-inner", "An inner vertex, two materials and friction.",
+             played(scene(with_inner(), 8), over({7 * kMm, 8 * kMm, 2 * kSize}), mixed, 190));
+  add_device(c, "elastic-weight", "A body that sways by its weight, and is pressed upon.",
+             pressed(changed([](RawDeformable&, RawBody& b) {
+                       b.constants[kGravityX] = 40;
+                       b.constants[kGravityZ] = -9.81;
+                     }),
+                     mixed));
+  add_device(c, "elastic-falls", "A body that nothing holds falls, and the device is in its way.",
+             played(scene(changed(
+                              [](RawDeformable&, RawBody& b) {
+                                b.runs.clear();
+                                b.constants[kGravityZ] = -9.81;
+                                b.constants[kMassDamping] = 0;
+                                b.constants[kCoupling] = 8;
+                              },
+                              pad(1, 1, 1)),
+                          5),
+                    {{0, {4 * kMm, 6 * kMm, -6 * kMm}}}, fades, 160));
+  add_device(c, "elastic-turns-over", "A soft body that the device pushes over and turns.",
+             played(scene(changed(
+                              [](RawDeformable&, RawBody& b) {
+                                b.runs = {{0, 0}};
+                                b.materials = {{3000, 0.2, 500}};
+                                b.constants[kFriction] = 1;
+                                b.constants[kCoupling] = 10;
+                              },
+                              pad(1, 1, 1)),
+                          5),
+                    {{0, {9 * kMm, 5 * kMm, 11 * kMm}, {0, 0, -100 * kSpeed}},
+                     {40, {9 * kMm, 5 * kMm, 7 * kMm}, {-400 * kSpeed, 0, -100 * kSpeed}},
+                     {100, {-15 * kMm, 5 * kMm, kMm}, {0, 300 * kSpeed, 200 * kSpeed}}},
+                    mixed, 160));
+  add_device(c, "elastic-alone", "No object moves: no device, but weight.",
+             played(scene(changed([](RawDeformable&, RawBody& b) { b.constants[kGravityY] = 9.81; }), 5, false), {},
+                    {{3, Following::fading, 5}, {50, Following::kept, 5}}, 150));
   const char* ends = "A body that ends: what is shown does not follow the device any more.";
-  device("elastic-ends-by-coupling", ends,
-         pressed(changed([](RawDeformable&, RawBody& b) { b.constants[kCoupling] = 1e12; }), kMixed));
-  device("elastic-ends-by-weight", ends,
-         pressed(changed([](RawDeformable&, RawBody& b) { b.constants[kGravityX] = 1e12; }), kMixed));
-  device("elastic-next-to-nothing", "The least stiffness and density: no step finds a way.",
-         pressed(changed([](RawDeformable&, RawBody& b) {
-                   b.materials = {{5e-324, 0.4, 5e-324}};
-                 }),
-                 kMixed));
+  add_device(c, "elastic-ends-by-coupling", ends,
+             pressed(changed([](RawDeformable&, RawBody& b) { b.constants[kCoupling] = 1e12; }), mixed));
+  add_device(c, "elastic-ends-by-weight", ends,
+             pressed(changed([](RawDeformable&, RawBody& b) { b.constants[kGravityX] = 1e12; }), mixed));
+  add_device(c, "elastic-next-to-nothing", "The least stiffness and density: no step finds a way.",
+             pressed(changed([](RawDeformable&, RawBody& b) {
+                       b.materials = {{5e-324, 0.4, 5e-324}};
+                     }),
+                     mixed));
+}
+
+void add_others(Catalogue& c) {
   for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u, 10u, 11u, 12u})
-    device("elastic-" + std::to_string(seed), "Any body, materials, constants, clock and way of the device.", any(920 + seed));
+    add_device(c, "elastic-" + std::to_string(seed), "Any body, materials, constants, clock and way of the device.",
+               any(920 + seed));
   const auto damped = [](RawDeformable&, RawBody& b) {
     b.constants[kMassDamping] = 200;
     b.constants[kStiffnessDamping] = 0.1;
   };
   const Vec3i above{4 * kMm, 4 * kMm, kSize + kMm}, below{4 * kMm, 4 * kMm, kSize - 3 * kMm};
-  device("elastic-let-go", "The device holds the body until it is still, and leaves: the dent goes.",
-         played(scene(changed(damped, pad(1, 1, 1)), 20), {{0, above}, {30, below}, {1500, above}}, kFades, 1900));
-  device("elastic-not-followed", "No packet follows for 80 frames; then one does.",
-         played(scene(pad(1, 1, 1), 1), over({4 * kMm, 4 * kMm, kSize}), {{2, Following::none, 5}, {83, Following::kept, 5}}, 160));
-  device("elastic-after-the-end", "A body that has ended, 80 frames later.",
-         played(scene(changed([](RawDeformable&, RawBody& b) { b.constants[kCoupling] = 1e12; }, pad(1, 1, 1)), 1),
-                over({4 * kMm, 4 * kMm, kSize}), kMixed, 190));
-  device("elastic-deep", "In one tick the device goes deeper than half of the body, and comes out below.",
-         played(scene(pad(1, 1, 1), 5), {{0, above}, {31, {4 * kMm, 5 * kMm, 3 * kMm}}, {90, {4 * kMm, 5 * kMm, -4 * kMm}}}, kFades,
-                150));
-  device("elastic-first-triangle-of-no-area", "The first triangle has no nearest point.",
-         pressed(changed([](RawDeformable& o, RawBody& b) {
-           const std::size_t copy = o.shape.rest.size();  // fixed, and in no tetrahedron
-           o.shape.rest.push_back(o.shape.rest[0]);
-           o.shape.triangles.insert(o.shape.triangles.begin(), {0, static_cast<std::uint32_t>(copy), 1});
-           std::uint64_t end = 0;
-           for (const auto& [gap, more] : b.runs) end += gap + more + 1;
-           b.runs.push_back({copy - end, 0});
-         })));
+  add_device(c, "elastic-let-go", "The device holds the body until it is still, and leaves: the dent goes.",
+             played(scene(changed(damped, pad(1, 1, 1)), 20), {{0, above}, {30, below}, {1500, above}}, fades, 1900));
+  add_device(
+      c, "elastic-not-followed", "No packet follows for 80 frames; then one does.",
+      played(scene(pad(1, 1, 1), 1), over({4 * kMm, 4 * kMm, kSize}), {{2, Following::none, 5}, {83, Following::kept, 5}}, 160));
+  add_device(c, "elastic-after-the-end", "A body that has ended, 80 frames later.",
+             played(scene(changed([](RawDeformable&, RawBody& b) { b.constants[kCoupling] = 1e12; }, pad(1, 1, 1)), 1),
+                    over({4 * kMm, 4 * kMm, kSize}), mixed, 190));
+  add_device(c, "elastic-deep", "In one tick the device goes deeper than half of the body, and comes out below.",
+             played(scene(pad(1, 1, 1), 5), {{0, above}, {31, {4 * kMm, 5 * kMm, 3 * kMm}}, {90, {4 * kMm, 5 * kMm, -4 * kMm}}},
+                    fades, 150));
+  add_device(c, "elastic-first-triangle-of-no-area", "The first triangle has no nearest point.",
+             pressed(changed([](RawDeformable& o, RawBody& b) {
+               const std::size_t copy = o.shape.rest.size();  // fixed, and in no tetrahedron
+               o.shape.rest.push_back(o.shape.rest[0]);
+               o.shape.triangles.insert(o.shape.triangles.begin(), {0, static_cast<std::uint32_t>(copy), 1});
+               std::uint64_t end = 0;
+               for (const auto& [gap, more] : b.runs) end += gap + more + 1;
+               b.runs.push_back({copy - end, 0});
+             })));
+}
+
+}  // namespace
+
+void add_client_elastic(Catalogue& c) {
+  add_shown(c);
+  add_touches(c);
+  add_steps(c);
+  add_others(c);
 }
 
 }  // namespace tactus::conformance

@@ -17,7 +17,7 @@ constexpr double kTiny = std::numeric_limits<double>::denorm_min();
 constexpr std::int32_t kLargest = std::numeric_limits<std::int32_t>::max();
 constexpr std::uint64_t kAll = ~std::uint64_t{0};
 
-const Rejection kCut{"truncated", "R-STR-5"}, kOverlong{"malformed", "R-STR-5"};
+const Rejection cut{"truncated", "R-STR-5"}, overlong{"malformed", "R-STR-5"};
 
 /// The cube after one change. Its vertices are 0 to 7, and 8 if there is an inner one; 0 to 3 are fixed.
 template <class Change>
@@ -187,43 +187,43 @@ void add_solids(Catalogue& c) {
 
 void add_cuts(Catalogue& c) {
   const Bytes all = constants();
-  c.invalid("elastic-empty", "The body ends before has_body.", kCut, with({}));
+  c.invalid("elastic-empty", "The body ends before has_body.", cut, with({}));
   const struct {
     const char* where;
     std::size_t size;
   } cuts[]{{"mass_damping", 5}, {"friction", 56}, {"material_count", 57}, {"young", 60}, {"density", 81}, {"inner_count", 82}};
   for (const auto& [where, size] : cuts)
     c.invalid(std::string("elastic-cut-at-") + std::to_string(size), std::string("The body ends inside or before ") + where + '.',
-              kCut, with(first(all, size)));
-  c.invalid("elastic-before-tet-count", "The body ends before tet_count.", kCut, with(all + varint(0)));
-  c.invalid("elastic-overlong-inner-count", "inner_count 0 is written in two bytes.", kOverlong,
+              cut, with(first(all, size)));
+  c.invalid("elastic-before-tet-count", "The body ends before tet_count.", cut, with(all + varint(0)));
+  c.invalid("elastic-overlong-inner-count", "inner_count 0 is written in two bytes.", overlong,
             with(all + Bytes{0x80, 0x00, 1} + Bytes(9, 0)));
-  c.invalid("elastic-overlong-tet-count", "tet_count 1 is written in two bytes.", kOverlong,
+  c.invalid("elastic-overlong-tet-count", "tet_count 1 is written in two bytes.", overlong,
             with(all + Bytes{0, 0x81, 0x00} + Bytes(9, 0)));
-  c.invalid("elastic-no-room-for-tets", "One byte too few for two inner vertices and three tetrahedra.", kCut,
+  c.invalid("elastic-no-room-for-tets", "One byte too few for two inner vertices and three tetrahedra.", cut,
             with(all + Bytes{2, 3} + Bytes(17, 2)));
-  c.invalid("elastic-most-vertices", "2^20 vertices and 2^21 tetrahedra, but no room for them.", kCut,
+  c.invalid("elastic-most-vertices", "2^20 vertices and 2^21 tetrahedra, but no room for them.", cut,
             with(all + varint((1u << 20) - 8) + varint(1u << 21) + Bytes(40, 0)));
-  c.invalid("elastic-cut-inner", "The body ends inside an inner vertex.", kCut,
+  c.invalid("elastic-cut-inner", "The body ends inside an inner vertex.", cut,
             with(all + Bytes{1, 1} + zigzag_varint(1 << 20) + zigzag_varint(1 << 20) + Bytes{0x80}));
-  c.invalid("elastic-overlong-inner", "A coordinate 0 is written in two bytes.", kOverlong,
+  c.invalid("elastic-overlong-inner", "A coordinate 0 is written in two bytes.", overlong,
             with(all + Bytes{1, 1, 2, 0x80, 0x00, 2} + Bytes(9, 0)));
-  c.invalid("elastic-cut-tet", "The body ends inside the second tetrahedron.", kCut,
+  c.invalid("elastic-cut-tet", "The body ends inside the second tetrahedron.", cut,
             with(all + Bytes{0, 2, 0x00, 0x0e, 0x01, 0x01, 0x02, 0x02, 0x02 | 0x80, 0x80}));
-  c.invalid("elastic-overlong-corner", "A corner's difference 1 is written in two bytes.", kOverlong,
+  c.invalid("elastic-overlong-corner", "A corner's difference 1 is written in two bytes.", overlong,
             with(all + Bytes{0, 1, 0, 0x82, 0x00, 2, 2, 0}));
-  c.invalid("elastic-before-length", "The body ends before length.", kCut, one_tet(2, {}));
-  c.invalid("elastic-before-material", "The body ends before material.", kCut, one_tet(2, {1}));
-  c.invalid("elastic-overlong-length", "length 1 is written in two bytes.", kOverlong, one_tet(2, {0x81, 0x00, 0, 0}));
-  c.invalid("elastic-before-run-count", "The body ends before run_count.", kCut, one_tet(1, {}));
-  c.invalid("elastic-no-room-for-runs", "One byte too few for two runs.", kCut, one_tet(1, {2, 0, 0, 1}));
-  c.invalid("elastic-cut-run", "The body ends inside more.", kCut, one_tet(1, {1, 0, 0x80}));
-  c.invalid("elastic-overlong-gap", "gap 0 is written in two bytes.", kOverlong, one_tet(1, {1, 0x80, 0x00, 0}));
+  c.invalid("elastic-before-length", "The body ends before length.", cut, one_tet(2, {}));
+  c.invalid("elastic-before-material", "The body ends before material.", cut, one_tet(2, {1}));
+  c.invalid("elastic-overlong-length", "length 1 is written in two bytes.", overlong, one_tet(2, {0x81, 0x00, 0, 0}));
+  c.invalid("elastic-before-run-count", "The body ends before run_count.", cut, one_tet(1, {}));
+  c.invalid("elastic-no-room-for-runs", "One byte too few for two runs.", cut, one_tet(1, {2, 0, 0, 1}));
+  c.invalid("elastic-cut-run", "The body ends inside more.", cut, one_tet(1, {1, 0, 0x80}));
+  c.invalid("elastic-overlong-gap", "gap 0 is written in two bytes.", overlong, one_tet(1, {1, 0x80, 0x00, 0}));
   RawHeader two;
   two.objects.clear();
   two = with_elastic(two, {cube(), {{.name = "plain"}}});
   two.elastic.pop_back();
-  c.invalid("elastic-second-missing", "The body ends before the second object's has_body.", kCut, two.bytes());
+  c.invalid("elastic-second-missing", "The body ends before the second object's has_body.", cut, two.bytes());
 }
 
 }  // namespace

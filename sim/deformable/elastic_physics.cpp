@@ -56,7 +56,7 @@ std::optional<ElasticPhysics> elastic_physics(const SceneDeformable& object, con
     for (std::uint32_t& corner : tet) corner = number[corner];
   for (const std::uint32_t v : object.fixed) out.body.fixed.push_back(number[v]);
   std::ranges::sort(out.body.fixed);
-  out.body.fixed.erase(std::ranges::unique(out.body.fixed).begin(), out.body.fixed.end());
+  out.body.fixed.erase(std::unique(out.body.fixed.begin(), out.body.fixed.end()), out.body.fixed.end());
   if (!SceneBuilder::can_work_out(out, surface.vertex.size())) return std::nullopt;
   return out;
 }

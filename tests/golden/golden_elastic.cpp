@@ -23,7 +23,8 @@ std::uint32_t number(std::uint32_t i, std::uint32_t j, std::uint32_t k) { return
 
 /// Cubes of six tetrahedra around a diagonal.
 std::vector<ElasticBody::Tet> tets() {
-  constexpr std::array<std::array<std::uint32_t, 3>, 6> kOrders{{{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {1, 0, 2}, {0, 2, 1}, {2, 1, 0}}};
+  constexpr std::array<std::array<std::uint32_t, 3>, 6> kOrders{
+      {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {1, 0, 2}, {0, 2, 1}, {2, 1, 0}}};
   std::vector<ElasticBody::Tet> out;
   for (std::uint32_t k = 0; k + 1 < kLayers; ++k)
     for (std::uint32_t j = 0; j + 1 < kSide; ++j)

@@ -25,7 +25,9 @@ class OnTheSlab : public ::testing::Test {
     surface = sim::surface(testing::slab_mesh()).mesh.vertices;
     state = {};
   }
-  std::optional<ElasticTouch::Push> move(const Vec3& place, bool anew = false) { return touch->move(place, anew, surface, state); }
+  std::optional<ElasticTouch::Push> move(const Vec3& place, bool anew = false) {
+    return touch->move(place, anew, surface, state);
+  }
 
   SharedScene scene;
   std::optional<ElasticTouch> touch;
@@ -91,7 +93,8 @@ TEST_F(OnTheSlab, DoesNotPassThrough) {
 }
 
 TEST_F(OnTheSlab, LooksForTheNearestTriangleWhereItIsFree) {
-  for (const Vec3& around : {Vec3{0.03, 0.03, kCell + 0.001}, Vec3{0.1, 0.03, 0.02}, Vec3{0.1, 0.03, -0.02}, Vec3{0.03, 0.03, -0.001}})
+  for (const Vec3& around :
+       {Vec3{0.03, 0.03, kCell + 0.001}, Vec3{0.1, 0.03, 0.02}, Vec3{0.1, 0.03, -0.02}, Vec3{0.03, 0.03, -0.001}})
     EXPECT_FALSE(move(around, true));
   const auto push = move({0.03, 0.03, 0.001});
   ASSERT_TRUE(push);
