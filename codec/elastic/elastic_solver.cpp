@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <tactus/base/fixed.h>
+
 namespace tactus {
 namespace {
 

@@ -210,7 +210,7 @@ Bytes any(std::uint64_t seed) {
   body.materials.clear();
   for (std::uint32_t m = 1 + random.below(3); m > 0; --m) {
     const double young = some({1e3, 1e4, 1e5}), poisson = part() * 1.4 - 0.91, density = some({1e3, 1e4});
-    body.materials.emplace_back(young, poisson, density);
+    body.materials.push_back({young, poisson, density});
   }
   for (std::uint64_t left = mesh.tets.size(); body.materials.size() > 1 && left > 0; left -= body.lengths.back().first)
     body.lengths.emplace_back(std::min<std::uint64_t>(left, 1 + random.below(9)),

@@ -84,7 +84,7 @@ void add_constants(Catalogue& c) {
       c.invalid("elastic-" + dashed + '-' + wrong.name, name + " is " + wrong.what + '.', rule,
                 changed_body([&](RawBody& b) { set(b, wrong.value); }));
   };
-  const auto constant = [](Constant which) { return [which](RawBody& b, double value) { b.constants[which] = value; }; };
+  const auto constant = [](std::size_t which) { return [which](RawBody& b, double value) { b.constants[which] = value; }; };
   const auto material = [](std::size_t which) { return [which](RawBody& b, double value) { b.materials[0][which] = value; }; };
   of("mass_damping", {negative, nan, infinite, beyond}, constant(kMassDamping));
   of("stiffness_damping", {negative, nan, infinite, beyond}, constant(kStiffnessDamping));
