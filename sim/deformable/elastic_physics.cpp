@@ -26,7 +26,7 @@ std::vector<std::uint32_t> numbers(const TetMesh& mesh, const TetSurface& surfac
 bool add_materials(const SceneDeformable& object, ElasticBody& body) {
   for (std::size_t t = 0; t < object.mesh.tets.size(); ++t) {
     const SceneMaterial& m = object.materials[object.materials.size() == 1 ? 0 : t];
-    const ElasticMaterial material{m.young, m.poisson, m.density};
+    const ElasticMaterial material{m.young * object.told_young, m.poisson, m.density};
     const auto known = std::ranges::find(body.materials, material);
     if (known == body.materials.end() && body.materials.size() == ElasticBody::kMaxMaterials) return false;
     body.material.push_back(static_cast<std::uint8_t>(known - body.materials.begin()));
@@ -38,7 +38,7 @@ bool add_materials(const SceneDeformable& object, ElasticBody& body) {
 }  // namespace
 
 std::optional<ElasticPhysics> elastic_physics(const SceneDeformable& object, const Vec3& gravity) {
-  if (!object.corotated) return std::nullopt;
+  if (!object.corotated || object.told_young == 0) return std::nullopt;
   const TetSurface surface = tactus::sim::surface(object.mesh);
   ElasticPhysics out{.body = {.inner = {},
                               .tets = object.mesh.tets,

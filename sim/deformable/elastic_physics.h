@@ -9,7 +9,7 @@
 
 namespace tactus::sim {
 
-/// Nothing: its elements do not turn, it has more than 255 materials, or it is too much for a client.
+/// Nothing: the scene says so, its elements do not turn, it has more than 255 materials, or it is too much for a client.
 std::optional<ElasticPhysics> elastic_physics(const SceneDeformable& object, const Vec3& gravity);
 
 }  // namespace tactus::sim
