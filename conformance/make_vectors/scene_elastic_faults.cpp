@@ -10,8 +10,7 @@
 namespace tactus::conformance {
 namespace {
 
-constexpr double kMost = 1e15;
-constexpr double kBeyond = 1000000000000000.125;  // the next one
+constexpr double kBeyond = 1000000000000000.125;  // the double after 10^15, the largest allowed
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kTiny = std::numeric_limits<double>::denorm_min();
 constexpr std::int32_t kLargest = std::numeric_limits<std::int32_t>::max();
