@@ -153,12 +153,14 @@ bool SceneBuilder::can_drive(const DrivenPhysics& physics, std::uint32_t tick_ra
 }
 
 SceneBuilder& SceneBuilder::driven(const DrivenPhysics& physics) {
-  if (!rigid_.empty()) rigid_.back().driven = physics;
+  if (rigid_.empty()) is_of_nothing_ = true;
+  else rigid_.back().driven = physics;
   return *this;
 }
 
 SceneBuilder& SceneBuilder::elastic(ElasticPhysics physics) {
-  if (!deformables_.empty()) deformables_.back().elastic = std::move(physics);
+  if (deformables_.empty()) is_of_nothing_ = true;
+  else deformables_.back().elastic = std::move(physics);
   return *this;
 }
 
@@ -177,6 +179,7 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build() try {
     return tl::make_unexpected(SceneFinding{error, std::move(object)});
   };
   SceneBuilder taken = std::exchange(*this, SceneBuilder(spec_.tick_rate));
+  if (taken.is_of_nothing_) return refuse({Errc::invalid_argument, RuleName("R-API-5"), 0}, {});
   SceneSpec& spec = taken.spec_;
   const double ticks = std::floor(taken.extrapolation_.value_or(kExtrapolation) * spec.tick_rate + 0.5);
   if (!(ticks >= 0)) return refuse({Errc::invalid_argument, RuleName("R-API-4"), 0}, {});

@@ -102,7 +102,8 @@ class SceneBuilder {
   /// Declare the bounds that hold at a client that gets every packet.
   SceneBuilder& promise(const RigidTriggers& rigid, const DeformableThresholds& deformables, const LoadThresholds& loads = {});
 
-  /// err  invalid_argument R-API-1..4, R-API-10 a pose, surface or stiffness does not fit its grid; those of Scene::create
+  /// err  invalid_argument R-API-1..4, R-API-10 a pose, surface or stiffness does not fit its grid; R-API-5 driven() or
+  ///      elastic() before any such object; those of Scene::create
   tl::expected<SharedScene, SceneFinding> build();
 
  private:
@@ -125,6 +126,7 @@ class SceneBuilder {
   RigidProfile rigid_profile_ = RigidProfile::main;
   std::vector<Rigid> rigid_;
   std::vector<Deformable> deformables_;
+  bool is_of_nothing_ = false;  // driven() or elastic() came before any such object
   struct Promise {
     RigidTriggers rigid;
     DeformableThresholds deformables;
