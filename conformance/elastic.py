@@ -15,7 +15,6 @@ from elastic_touch import Proxy, Push, Surface
 from scene import Declaration
 
 STILL = 2.0 ** -30                                          # m/s
-CHECKED = 64                                                # shapes that may rest on a path which was another one
 
 
 class Shape(NamedTuple):
@@ -37,49 +36,27 @@ class Shapes:
         self.farthest = 2.0 ** (27 - scene.position_exp)
         self.stepper = Stepper(self.body, self.ticks, scene.tick_rate)
         self.triangles_of = triangles_of_vertices(item)
-        self.begin: Optional[int] = None                    # the frame in which the body begins
-        self.shapes: list[Shape] = []                       # from that frame on
-        self.places: list[list] = []                        # of the ticks of each frame that was worked out
+        still = self.stepper.still
+        self.shapes = [Shape(still, still, any(self.body.gravity), Proxy())]  # from the frame on in which the body begins
         self.ended = False
-        self.known = 0                                      # revision of the path
 
     def shape(self, n: int) -> Optional[Shape]:
         """Shape n; none without a pace or after the end, and the first one for frames before."""
-        self.learn()
-        if self.begin is None:
+        if not self.path.offsets:
             return None
-        while not self.ended and len(self.shapes) <= n - self.begin:
-            self.advance()
-        i = max(0, n - self.begin)
+        begin = min(self.path.offsets) // self.ticks
+        while not self.ended and len(self.shapes) <= n - begin:
+            self.advance(begin + len(self.shapes) - 1)
+        i = max(0, n - begin)
         return self.shapes[i] if i < len(self.shapes) else None
 
     def reach(self, t: int) -> None:
         self.shape(t // self.ticks)
 
-    def learn(self) -> None:
-        """Drops what rests on a path that was another one."""
-        if self.begin is None and self.path.offsets:
-            still = self.stepper.still
-            self.begin = min(self.path.offsets) // self.ticks
-            self.shapes = [Shape(still, still, any(self.body.gravity), Proxy())]
-        if self.begin is None or self.known == self.path.revision:
-            return
-        self.known = self.path.revision
-        for i in range(max(0, len(self.places) - CHECKED), len(self.places)):
-            if self.places[i] != self.places_in(self.begin + i):
-                del self.places[i:], self.shapes[i + 1:]
-                self.ended = False
-                return
-
-    def places_in(self, n: int) -> list:
-        return [self.path.place(t) for t in range(n * self.ticks, (n + 1) * self.ticks)]
-
-    def advance(self) -> None:
-        """Works out the shape after the newest."""
-        places = self.places_in(self.begin + len(self.places))
-        self.places.append(places)
+    def advance(self, n: int) -> None:
+        """Works out shape n + 1, the next one."""
         shape = self.shapes[-1]
-        pushes, proxy = self.pushes(shape, places)
+        pushes, proxy = self.pushes(shape, n)
         if not pushes and not shape.moves:
             self.shapes.append(shape._replace(proxy=proxy))
             return
@@ -89,13 +66,14 @@ class Shapes:
         else:
             self.ended = True
 
-    def pushes(self, shape: Shape, places: list) -> tuple[list[Push], Proxy]:
-        """Of the ticks of a frame."""
+    def pushes(self, shape: Shape, n: int) -> tuple[list[Push], Proxy]:
+        """Of the ticks of frame n."""
         u, rest = shape.u, self.body.rest
         s = [(x + u[3 * v], y + u[3 * v + 1], z + u[3 * v + 2]) for v, (x, y, z) in enumerate(rest[:len(self.item.rest)])]
         surface = Surface(self.item.triangles, self.triangles_of, s)
         pushes, proxy = [], shape.proxy
-        for i, place in enumerate(places):
+        for i in range(self.ticks):
+            place = self.path.place(n * self.ticks + i)
             if place is None:
                 proxy = Proxy()
                 continue

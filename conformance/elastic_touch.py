@@ -99,11 +99,8 @@ class Surface:
 
     def beside(self, q: Foot) -> list[int]:
         """The other triangles that hold the foot."""
-        corners = [c for c, weight in zip(self.triangles[q.triangle], q.weights) if weight != 0]
-        found = set(range(len(self.triangles)) if not corners else self.triangles_of[corners[0]])
-        for c in corners[1:]:
-            found.intersection_update(self.triangles_of[c])
-        return sorted(found - {q.triangle})
+        held = [set(self.triangles_of[c]) for c, weight in zip(self.triangles[q.triangle], q.weights) if weight != 0]
+        return sorted(set.intersection(*held) - {q.triangle})
 
     def hold(self, q: Foot, proxy: Proxy, friction: float) -> Foot:
         point = self.point(proxy.triangle, proxy.weights)

@@ -269,20 +269,6 @@ class ShapesTest(unittest.TestCase):
         self.assertEqual(shapes.grid(2000), shapes.grid(2010))
         self.assertFalse(shapes.shape(2000).moves)
 
-    def test_another_path_is_worked_out_anew(self) -> None:
-        shapes, other = self.shapes(), self.shapes()
-        for one in (shapes, other):
-            one.path.begin(0, 0)
-            self.at(one, 0, (0.0156, 0.0156, 0.04))
-            self.at(one, 50, (0.0156, 0.0156, 0.026))
-        self.assertEqual(shapes.grid(40), other.grid(40))
-        for one in (shapes, other):
-            one.path.begin(100, 60)                         # the device waits
-            self.at(one, 60, (0.01, 0.0156, 0.027))
-        self.assertEqual(self.top(shapes, 40), self.top(other, 40))
-        fresh = Shapes(self.scene, self.scene.deformables[0], shapes.path)
-        self.assertEqual([shapes.shape(n) for n in range(41)], [fresh.shape(n) for n in range(41)])
-
     def test_what_a_packet_left_fades_or_stays(self) -> None:
         shapes = self.shapes()
         shapes.path.begin(0, 0)

@@ -175,4 +175,41 @@ ElasticStream& ElasticStream::add(std::size_t object, const MainStep& step) {
   return *this;
 }
 
+RawHeader scene(const ElasticItem& item, std::uint32_t ticks, bool has_device) {
+  RawHeader header;
+  if (has_device) header.objects = {{"device"}};
+  else header.objects.clear();
+  ElasticItem own = item;
+  own.object.frame_period = 256 * ticks;
+  return with_elastic(header, {own});
+}
+
+Bytes played(const RawHeader& header, const std::vector<Move>& moves, const std::vector<Told>& told, std::int64_t end,
+             std::uint64_t seed) {
+  ElasticStream stream(header);
+  Random random(seed);
+  auto move = moves.begin();
+  const auto move_until = [&](std::int64_t tick) {
+    for (; move != moves.end() && move->tick <= tick; ++move) stream.device(move->tick, move->place, move->velocity);
+  };
+  for (const auto& [tick, following, width] : told) {
+    move_until(tick);
+    MainStep step{.at = {.tick = tick, .key = &told[0].tick == &tick}, .following = following};
+    if (width > 0) step.residuals = random_residuals(random, width, 120);
+    stream.add(0, step);
+  }
+  move_until(end);
+  MainStep last{.at = {.tick = end}, .following = told.empty() ? Following::none : told.back().following};
+  last.at.key = told.empty();
+  return stream.add(0, last).finished();
+}
+
+ElasticItem pad(int nx, int ny, int nz) {
+  const Block mesh = block(nx, ny, nz, kSize);
+  return {{.shape = mesh.shape}, standing(mesh)};
+}
+void add_device(Catalogue& c, const std::string& name, const char* what, Bytes bytes) {
+  c.valid(name, what, std::move(bytes), {}, "device");
+}
+
 }  // namespace tactus::conformance

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "conformance/make_vectors/build.h"
+#include "conformance/make_vectors/catalogue.h"
 #include "conformance/make_vectors/deformable_build.h"
 
 namespace tactus::conformance {
@@ -93,5 +94,40 @@ class ElasticStream {
   std::vector<DeformableComposer> composers_;
   bool has_device_ = false;
 };
+
+// ---- What a device does to them ----
+
+inline constexpr std::int32_t kMm = 4194;    // a millimetre on the grid
+inline constexpr std::int32_t kSpeed = 131;  // 1 mm/s
+inline constexpr std::int32_t kSize = 10 * kMm;
+
+/// A device at a tick.
+struct Move {
+  std::int64_t tick;
+  Vec3i place;
+  Vec3i velocity{};
+};
+/// A packet of the object.
+struct Told {
+  std::int64_t tick;
+  Following following = Following::fading;
+  unsigned width = 0;  ///< of its residuals
+};
+
+/// With a device, and frames of so many ticks.
+RawHeader scene(const ElasticItem& item, std::uint32_t ticks, bool has_device = true);
+/// The device's packets and those of the object, by tick; one more of the device at the end.
+Bytes played(const RawHeader& header, const std::vector<Move>& moves, const std::vector<Told>& told, std::int64_t end,
+             std::uint64_t seed = 910);
+/// Blocks of kSize that stand.
+ElasticItem pad(int nx = 2, int ny = 1, int nz = 1);
+/// An item after one change.
+template <class Change>
+ElasticItem changed(Change change, ElasticItem item) {
+  change(item.object, *item.body);
+  return item;
+}
+/// A vector of a client that knows its device.
+void add_device(Catalogue& c, const std::string& name, const char* what, Bytes bytes);
 
 }  // namespace tactus::conformance
