@@ -46,8 +46,9 @@ Bytes strip() {
     edge = next;
   }
   std::vector<Move> moves;
-  for (std::int32_t i = 0; i < 9; ++i) {
-    moves.push_back({10 * i, {kSize + 29 * kWidth + (2 * i + 1) * kWidth / 4, kSize / 2, kSize + kMm}});
+  for (std::int64_t i = 0; i < 9; ++i) {
+    moves.push_back(
+        {10 * i, {static_cast<std::int32_t>(kSize + 29 * kWidth + (2 * i + 1) * kWidth / 4), kSize / 2, kSize + kMm}});
     moves.push_back({10 * i + 7, kBelow});
   }
   return played(scene(item, 5), moves, fades, 110);
