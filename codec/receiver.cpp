@@ -8,6 +8,7 @@
 #include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
 #include <tactus/deformable/deformable_decoder.h>
+#include <tactus/elastic/driven_shape.h>
 #include <tactus/load/load_decoder.h>
 #include <tactus/packet/substream.h>
 #include <tactus/packet/substream_decoder.h>
@@ -96,6 +97,10 @@ void Receiver::skip_number(std::uint64_t number) noexcept { impl_->replica.skip_
 void Receiver::know(std::shared_ptr<const DevicePath> path) {
   impl_->path = std::move(path);
   impl_->replica.know(*impl_->path);
+  const Scene& scene = *impl_->scene;
+  for (std::size_t i = 0; i < scene.deformables.size(); ++i)
+    if (const DeformableObject& object = scene.deformables[i]; object.body)
+      impl_->deformables[i]->know(std::make_unique<DrivenShape>(scene, object, *impl_->path));
 }
 
 Replica& Receiver::replica() noexcept { return impl_->replica; }

@@ -64,7 +64,7 @@ class Receiver {
   /// This number of a session is not lost, and no packet of rigid objects has it: the replica need not bend over it.
   void skip_number(std::uint64_t number) noexcept;
 
-  /// Know the device of this client, as its server does: objects that it drives are shown where it has moved them.   allocates
+  /// Know the device of this client, as its server does: what it drives is shown where it moves it, packet or none.   allocates
   void know(std::shared_ptr<const DevicePath> path);
 
   /// What the client shows.

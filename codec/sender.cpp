@@ -8,6 +8,7 @@
 #include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
 #include <tactus/deformable/deformable_encoder.h>
+#include <tactus/elastic/driven_shape.h>
 #include <tactus/load/load_encoder.h>
 #include <tactus/rigid/rigid_encoder.h>
 
@@ -115,6 +116,10 @@ void Sender::request_key() noexcept {
 void Sender::know(std::shared_ptr<const DevicePath> path) {
   impl_->path = std::move(path);
   impl_->rigid.codec().know(*impl_->path);
+  const Scene& scene = *impl_->scene;
+  for (std::size_t i = 0; i < scene.deformables.size(); ++i)
+    if (const DeformableObject& object = scene.deformables[i]; object.body)
+      impl_->deformables[i]->know(std::make_unique<DrivenShape>(scene, object, *impl_->path));
 }
 
 void Sender::acknowledge(std::size_t substream, std::uint16_t sequence) noexcept {

@@ -16,6 +16,7 @@ from typing import Iterator, Optional, Union
 from conventions import FNV_START, StreamError, fnv1a, require
 from device_path import DevicePath
 from deformable_decoder import DeformableDecoder, DeformablePacket
+from elastic import Shapes
 from file import File
 from load import LoadDecoder, LoadPacket
 from playout import Playout
@@ -64,6 +65,9 @@ def describe_declaration(scene: Declaration) -> dict:
         said["motion"] = [*scene.motion.gravity, scene.motion.slide_deceleration]
     if scene.driven:
         said["driven"] = [[d.coupling, d.hold, *d.inertia, d.friction, d.damping] for d in scene.driven.values()]
+    if any(d.body for d in scene.deformables):
+        bodies = [(i, d.body) for i, d in enumerate(scene.deformables) if d.body]
+        said["elastic"] = [[i, len(b.rest), len(b.tetrahedra), len(b.materials), len(b.fixed), b.work] for i, b in bodies]
     if scene.bounds:
         said["bounds"] = {**({"rigid": scene.bounds.rigid} if scene.bounds.rigid else {}), "meshes": scene.bounds.deformables,
                           **({"loads": scene.bounds.loads} if scene.bounds.loads else {})}
@@ -122,6 +126,7 @@ class Viewer:
             self.path.begin(0, 0)
         self.replica = Playout(scene) if self.playout else Replica(scene, "none" if self.path else mode, self.path)
         self.deformables = [decoders.substreams[i + 1] for i in range(len(scene.deformables))]
+        self.shapes = [Shapes(scene, item, self.path) if self.path and item.body else None for item in scene.deformables]
         self.tick, self.all = 0, FNV_START
 
     def apply(self, packet: Union[Packet, DeformablePacket, LoadPacket], tick: int) -> None:
@@ -141,7 +146,9 @@ class Viewer:
         shown = self.replica.pose_hash(tick)
         if not self.deformables:
             return shown
-        displacements = [c for item in self.deformables for c in item.shown(tick, self.playout)]
+        for shapes in filter(None, self.shapes):
+            shapes.reach(tick)                              # while the path remembers
+        displacements = [c for item, shapes in zip(self.deformables, self.shapes) for c in item.shown(tick, self.playout, shapes)]
         return fnv1a(struct.pack(f"<Q{len(displacements)}i", shown, *displacements))
 
 

@@ -2,7 +2,7 @@
 """Chapter 50 of the specification: decoder of one deformable object, of either profile."""
 from __future__ import annotations
 
-from typing import NamedTuple, Optional, Union
+from typing import TYPE_CHECKING, NamedTuple, Optional, Union
 
 from conventions import fnv1a, require
 from deformable_header import MAIN, DeformableObject
@@ -10,6 +10,9 @@ from deformable_main import MainCodec, MainState
 from deformable_thesis import ThesisCodec, ThesisState
 from packet import Receiver
 from scene import Declaration, Limits
+
+if TYPE_CHECKING:
+    from elastic import Shapes
 
 
 class DeformablePacket(NamedTuple):
@@ -38,10 +41,15 @@ class DeformableDecoder:
         self.receiver.accept(number, key, state, now)
         return DeformablePacket(number % (1 << 16), key, vertices, decoder.range, decoder.code, state)
 
-    def shown(self, tick: int, playout: bool = False) -> list[int]:
-        """The displacements that a client shows at a tick; one before the state's counts as that."""
+    def shown(self, tick: int, playout: bool = False, shapes: Optional[Shapes] = None) -> list[int]:
+        """The displacements that a client shows at a tick; one before the state's counts as that.
+
+        `shapes` are those that the client's own device gives the object.
+        """
         state = self.receiver.at(tick) if playout else self.receiver.current
-        return self.codec.expect(state, max(tick, state.tick))
+        tick = max(tick, state.tick)
+        following = shapes.shown(state, tick) if shapes and state.following else None
+        return self.codec.expect(state, tick) if following is None else following
 
     def state_hash(self) -> int:
         return fnv1a(self.receiver.current.hashed())

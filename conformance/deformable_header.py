@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import NamedTuple, Optional
+from typing import TYPE_CHECKING, NamedTuple, Optional
 
 from conventions import STR_5, STR_5_VARINT, Cursor, require, text
 from deformable_graph import first_graph
+
+if TYPE_CHECKING:
+    from elastic_header import ElasticBody
 
 THESIS, MAIN = 0, 1
 NO_BASIS, DECLARED, COMPUTED, CLUSTERS = 0, 1, 2, 3
@@ -39,6 +42,7 @@ class DeformableObject:
     clusters: Optional[list[int]] = None                    # main: of a basis of clusters, by vertex
     blend: int = 0                                          # with clusters
     stiffness: Optional[bytes] = None                       # levels, if told
+    body: Optional[ElasticBody] = None                      # main
 
 
 def read_deformable_objects(body: Cursor, most: int, vertices_left: int, triangles_left: int) -> list[DeformableObject]:
@@ -134,7 +138,7 @@ def read_basis(body: Cursor, item: DeformableObject) -> None:
     if basis == DECLARED:
         item.modes = read_modes(body, item.mode_count, len(item.rest))
     else:
-        item.fixed = read_fixed(body, len(item.rest))
+        item.fixed = read_fixed(body, len(item.rest), "R-DEF-7")
         require(item.mode_count <= 3 * (len(item.rest) - len(item.fixed)), "invalid", "R-DEF-7")
 
 
@@ -171,7 +175,7 @@ def expected_cluster(item: DeformableObject, graph: list[set]) -> int:
     return item.clusters[v - 1] if v > 0 else 0
 
 
-def read_fixed(body: Cursor, vertex_count: int) -> list[int]:
+def read_fixed(body: Cursor, vertex_count: int, rule: str) -> list[int]:
     run_count = body.varint(STR_5, STR_5_VARINT)
     require(2 * run_count <= body.left(), *STR_5)
     fixed = []
@@ -179,7 +183,7 @@ def read_fixed(body: Cursor, vertex_count: int) -> list[int]:
     for run in range(run_count):
         gap = body.varint(STR_5, STR_5_VARINT)
         more = body.varint(STR_5, STR_5_VARINT)
-        require((gap > 0 or run == 0) and end + gap + more < vertex_count, "invalid", "R-DEF-7")
+        require((gap > 0 or run == 0) and end + gap + more < vertex_count, "invalid", rule)
         fixed += range(end + gap, end + gap + more + 1)
         end += gap + more + 1
     return fixed

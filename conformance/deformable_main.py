@@ -15,6 +15,7 @@ from start_models import Models
 
 NONE = (1 << 32) - 1
 STILL = (0, 0, 0)
+KEPT, FADING = 1, 2                                         # values of `following`
 ALL, HAPTIC, VISUAL = "all", "haptic", "visual"             # layers
 FINEST_HAPTIC = (32768, 36781, 41285, 46341, 52016, 58386)  # H
 
@@ -30,13 +31,14 @@ class MainState(NamedTuple):
     touched: int = 0
     motion_tick: int = 0
     weight_set: int = 0
+    following: int = 0
     haptic_correction: Optional[dict[int, tuple]] = None    # if layered; vertices that are not there have 0
     off_basis: Optional[list[int]] = None                   # if anything fades: 3 for each vertex
 
     def hashed(self) -> bytes:
         """What the state hash is taken of."""
         data = struct.pack(f"<Q{len(self.u)}i4I", self.tick, *self.u, self.visual, self.triangle, self.haptic_index,
-                           self.density + 4 * self.touched + 8 * self.weight_set)
+                           self.density + 4 * self.touched + 8 * self.weight_set + 32 * self.following)
         for c in self.motion:
             data += struct.pack("<2i5Q", c.last, c.before, *(s % (1 << 64) for s in c[2:]))
         if self.haptic_correction is not None:
@@ -195,10 +197,17 @@ class MainCodec:
         sets, weight_set = len(self.hierarchy.weights), 0
         if sets > 1:
             weight_set = decoder.tree(models[f"WEIGHT_SET[{start.base.weight_set}]"], 2)
+        following = self.read_following(decoder, models, start.base) if self.item.body else 0
         require(not state.touched or state.triangle < len(self.item.triangles), "invalid", "R-DEF-9")
         require(state.haptic_index <= 168 and state.visual <= 1 << 28, "invalid", "R-DEF-10")
         require(weight_set < sets, "invalid", "R-DEF-14")
-        return state._replace(density=density, weight_set=weight_set)
+        return state._replace(density=density, weight_set=weight_set, following=following)
+
+    @staticmethod
+    def read_following(decoder: RangeDecoder, models: Models, base: MainState) -> int:
+        if not decoder.bit(models[f"DRIVEN[{int(base.following > 0)}]"][1]):
+            return 0
+        return KEPT + decoder.bit(models[f"FADES[{int(base.following == FADING)}]"][1])
 
     def read_bounds(self, decoder: RangeDecoder, models: Models, start: Start) -> MainState:
         base = start.base

@@ -8,7 +8,7 @@ from conventions import round_div
 from rigid import predict
 from scene import Declaration, Object, State
 
-MOST_PACKETS = 1024                                         # that are remembered
+MOST_PACKETS = 2048                                         # that are remembered
 
 
 def device_scene(scene: Declaration) -> Declaration:
@@ -56,5 +56,8 @@ class DevicePath:
 
     def place(self, t: int) -> Optional[tuple]:
         tick = self.device_tick(t)
-        acting = [n for n, state in self.states.items() if tick is not None and state.tick <= tick and self.acts(n)]
-        return predict(self.scene, self.states[max(acting)], tick)[0] if acting else None
+        if tick is None:
+            return None
+        acting = (n for n in sorted(self.states, reverse=True) if self.states[n].tick <= tick and self.acts(n))
+        number = next(acting, None)
+        return None if number is None else predict(self.scene, self.states[number], tick)[0]

@@ -24,7 +24,7 @@ ELEMENTS = {                                                # models, and the el
     "LEVEL": "level", "EASE": "ease", "KEEP": "keep", "PREDICTOR": "predictor", "CONTACT": "component of contact", "LAYER": "layer", "SAME_FRAME": "same_frame",
     "LATE": "late",
     "TOUCHED": "touched", "SAME_TRIANGLE": "same triangle", "NEAR_TRIANGLE": "near triangle", "NEAR_PLACE": "entry of near",
-    "HAPTIC": "haptic_change", "SAME_VISUAL": "same_visual", "VISUAL": "visual", "DENSITY": "density", "WEIGHT_SET": "weight_set",
+    "HAPTIC": "haptic_change", "SAME_VISUAL": "same_visual", "VISUAL": "visual", "DENSITY": "density", "WEIGHT_SET": "weight_set", "DRIVEN": "driven", "FADES": "fades",
     "CHANGED": "changed", "STEP": "step", "COEFFICIENT": "coefficient", "SIGNIFICANT": "significant", "COMPONENT": "component of r", "ERROR": "symbol",
 }
 
@@ -313,10 +313,13 @@ class Fields:
         start = self.cursor.position
         return self.add(name, start, self.cursor.varint(("", ""), ("", "")))
 
-    def three(self, name, value):
+    def differences(self, name, count, value=None):
         start = self.cursor.position
-        differences = [zigzag(self.cursor.varint(("", ""), ("", ""))) for _ in range(3)]
-        self.add(name, start, f"differences {vector(differences)}: {vector(value)}")
+        differences = [zigzag(self.cursor.varint(("", ""), ("", ""))) for _ in range(count)]
+        self.add(name, start, f"differences {vector(differences)}" + (f": {vector(value)}" if value else ""))
+
+    def three(self, name, value):
+        self.differences(name, 3, value)
 
 
 def tell_declaration(file, data):
@@ -345,6 +348,10 @@ def tell_declaration(file, data):
     for i in file.declaration.driven:
         for name, form in (("coupling", "I"), ("hold", "I"), ("inertia", "3I"), ("friction", "H"), ("damping", "H")):
             f.number(f"{name} of object {i}", form)
+    if any(item.body for item in file.declaration.deformables):
+        for item in file.declaration.deformables:
+            if f.number("has_body", "B"):
+                tell_elastic(f, item)
     if f.cursor.position < end - 4:
         f.take("extension records", end - 4 - f.cursor.position)
     f.number("crc", "I")
@@ -388,6 +395,26 @@ def tell_deformable(f, item):
     for k in range(item.mode_count):
         f.number(f"mode_step[{k}]", "H")
         f.take(f"entries of mode {k}", sum(1 if -64 <= e < 64 else 2 for e in item.modes[k].entries))
+
+
+def tell_elastic(f, item):
+    for name, form in (("mass_damping", "d"), ("stiffness_damping", "d"), ("gravity", "3d"), ("coupling", "d"), ("friction", "d")):
+        f.number(name, form)
+    for i in range(f.number("material_count", "B")):
+        for name in ("young", "poisson", "density"):
+            f.number(f"{name}[{i}]", "d")
+    inner_count, tet_count = f.varint("inner_count"), f.varint("tet_count")
+    for i in range(inner_count):
+        f.differences(f"inner[{i}]", 3)
+    for i in range(tet_count):
+        f.differences(f"corners of tetrahedron {i}", 4, item.body.tetrahedra[i])
+    left = tet_count if len(item.body.materials) > 1 else 0
+    while left > 0:
+        left -= f.varint("length")
+        f.number("material", "B")
+    for run in range(f.varint("run_count")):
+        f.varint(f"gap[{run}]")
+        f.varint(f"more[{run}]")
 
 
 if __name__ == "__main__":

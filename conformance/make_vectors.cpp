@@ -17,6 +17,10 @@ Catalogue all() {
   add_scene_stiffness(catalogue);
   add_scene_motion(catalogue);
   add_scene_driven(catalogue);
+  add_scene_elastic(catalogue);
+  add_scene_elastic_faults(catalogue);
+  add_scene_elastic_orders(catalogue);
+  add_scene_elastic_edges(catalogue);
   catalogue.begin("file", "Stream files: records around packets.");
   add_file(catalogue);
   catalogue.begin("packet", "What packets of every kind have in common: sequence numbers, baselines, outages, substreams.");
@@ -42,6 +46,8 @@ Catalogue all() {
   add_client_curves(catalogue);
   add_client_predictors(catalogue);
   add_client_driven(catalogue);
+  add_client_elastic(catalogue);
+  add_client_elastic_edges(catalogue);
   catalogue.begin("session", "What the client's end of a session does with datagrams.");
   add_session(catalogue);
   add_session_server(catalogue);
@@ -59,6 +65,7 @@ Catalogue all() {
   add_deformable_orders(catalogue);
   add_deformable_springs(catalogue);
   add_deformable_clusters(catalogue);
+  add_deformable_following(catalogue);
   return catalogue;
 }
 

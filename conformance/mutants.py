@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Mutants of the second decoder: programs that differ from it in one place (mutate.py).
 
-A mutation replaces nodes of a module's syntax tree. Annotations, strings and the command line of decoder.py are left alone.
+A mutation replaces nodes of a module's syntax tree. Annotations, what is imported for them, strings and the command line of decoder.py are
+left alone.
 """
 from __future__ import annotations
 
@@ -13,7 +14,8 @@ from typing import Callable, Iterator, NamedTuple, Optional
 MODULES = {
     "conventions": ("rigid", "scene"), "scene": ("scene",), "file": ("file",), "packet": ("packet",), "range_coder": ("range",),
     "rigid": ("rigid",), "load": ("load",), "replica": ("client",), "curve": ("client",), "playout": ("client",), "easing": ("client",),
-    "driven": ("client",),
+    "driven": ("client",), "elastic": ("client",), "elastic_step": ("client",), "elastic_touch": ("client",), "elastic_matrix": ("client", "scene"),
+    "elastic_header": ("scene",),
     "start_models": ("rigid", "deformable"),
     "decoder": ("packet", "client"),
     "deformable_basis": ("deformable",), "deformable_clusters": ("deformable",), "deformable_header": ("deformable",), "deformable_graph": ("deformable",), "deformable_main": ("deformable",),
@@ -99,7 +101,7 @@ class Module:
                         yield from self.of_expression(s, (s.args.defaults, k), default, inner)
                 yield from self.of_body(s, "body", inner)
             return
-        if isinstance(s, ast.If) and ast.unparse(s.test).startswith("__name__"):
+        if isinstance(s, ast.If) and ast.unparse(s.test).startswith(("__name__", "TYPE_CHECKING")):
             return
         if isinstance(s, ast.Raise) or calls(s) == "require":
             yield Mutation("check", s.lineno, where, f"{short(s)} -> none", [(body, i, ast.copy_location(ast.Pass(), s))])

@@ -12,9 +12,11 @@
 
 #include <tactus/base/hash.h>
 #include <tactus/base/rule.h>
+#include <tactus/elastic/elimination.h>
 #include <tactus/file/stream_file.h>
 #include <tactus/packet/substream.h>
 #include <tactus/receiver.h>
+#include <tactus/scene/elastic_syntax.h>
 #include <tactus/signal/device_path.h>
 
 namespace tactus::conformance {
@@ -109,6 +111,21 @@ void write_driven(const Scene& scene, std::ostream& out) {
   out << ']';
 }
 
+/// Of all bodies.
+void write_elastic(const std::vector<DeformableObject>& deformables, std::ostream& out) {
+  out << R"(,"elastic":[)";
+  const char* comma = "";
+  for (std::size_t i = 0; i < deformables.size(); ++i) {
+    if (!deformables[i].body) continue;
+    const ElasticBody& body = *deformables[i].body;
+    const std::size_t vertices = deformables[i].rest.size() + body.inner.size();
+    out << comma << '[' << i << ',' << vertices << ',' << body.tets.size() << ',' << body.materials.size() << ','
+        << body.fixed.size() << ',' << elastic_work(elimination(body, vertices)) << ']';
+    comma = ",";
+  }
+  out << ']';
+}
+
 void write_header_line(const Scene& h, std::ostream& out) {
   out << R"({"header":{"version":1,"profile":0,"tick_rate":)" << h.tick_rate << R"(,"grid":[)" << int{h.grid.position} << ','
       << int{h.grid.velocity} << ',' << int{h.grid.rotation} << ',' << int{h.grid.angular_velocity} << R"(],"max_extrapolation":)"
@@ -126,6 +143,7 @@ void write_header_line(const Scene& h, std::ostream& out) {
     out << R"(,"motion":[)" << gravity[0] << ',' << gravity[1] << ',' << gravity[2] << ',' << slide << ']';
   }
   if (h.driven) write_driven(h, out);
+  if (has_elastic_body(h.deformables)) write_elastic(h.deformables, out);
   if (h.bounds) write_bounds(*h.bounds, out);
   out << "}}\n";
 }

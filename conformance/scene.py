@@ -11,10 +11,11 @@ import deformable_basis
 import deformable_clusters
 from conventions import ONE, STR_5, STR_5_VARINT, Cursor, require, text
 from deformable_header import THESIS, DeformableObject, read_deformable_objects
+from elastic_header import read_elastic_bodies
 
 
 class Limits(NamedTuple):
-    """What this decoder accepts at most (R-STR-14, R-STR-18, R-STR-21, R-FIL-4, R-PKT-1)."""
+    """What this decoder accepts at most (R-STR-14, R-STR-18, R-STR-21, R-STR-24, R-FIL-4, R-PKT-1)."""
     objects: int = 4096
     body_size: int = 1 << 20
     packet_size: int = 1 << 20
@@ -22,11 +23,12 @@ class Limits(NamedTuple):
     triangles: int = 1 << 21                                # the same
     state_bytes: int = 1 << 28                              # R-STR-18
     basis_work: int = 1 << 22                               # R-STR-21
+    body_work: int = 1 << 30                                # R-STR-24
 
 
 MAGIC = b"\x89TCT"
 SMALLEST_OBJECT = 32
-HAS_DEFORMABLES, HAS_LOADS, IS_EASED, HAS_MOTION, IS_DRIVEN = 1, 2, 4, 8, 16      # bits 0 to 4 of `flags`
+HAS_DEFORMABLES, HAS_LOADS, IS_EASED, HAS_MOTION, IS_DRIVEN, HAS_BODIES = 1, 2, 4, 8, 16, 32               # bits 0 to 5 of `flags`
 
 
 class Contact(NamedTuple):                                  # chapter 40, section 4.1
@@ -102,6 +104,10 @@ class Declaration:
         """The moving objects M, as indices into `objects`."""
         return [i for i, item in enumerate(self.objects) if item.dof != 0]
 
+    def follows_devices(self) -> bool:
+        """Whether both ends know the paths of devices (65, section 4)."""
+        return bool(self.driven) or any(item.body for item in self.deformables)
+
 
 STR_16 = ("malformed", "R-STR-16")
 BOUNDS, STIFFNESS = 2, 3                                                  # types of extension records
@@ -116,7 +122,7 @@ def read_declaration(data: bytes, limits: Limits = Limits()) -> tuple[Declaratio
     require(version == 1, "unsupported", "R-STR-2")
     require(profile <= 1, "malformed", "R-STR-3")
     require(profile == 0, "unsupported", "R-STR-3")
-    require(flags <= HAS_DEFORMABLES + HAS_LOADS + IS_EASED + HAS_MOTION + IS_DRIVEN, "malformed", "R-STR-4")
+    require(flags <= HAS_DEFORMABLES + HAS_LOADS + IS_EASED + HAS_MOTION + IS_DRIVEN + HAS_BODIES, "malformed", "R-STR-4")
     require(body_size <= limits.body_size, "limit_exceeded", "R-STR-14")
     end = 12 + body_size
     require(len(data) >= end + 4, *STR_5)
@@ -141,6 +147,8 @@ def read_declaration(data: bytes, limits: Limits = Limits()) -> tuple[Declaratio
         scene.driven = {i: read_driven(body) for i in scene.moving()}
         sound = all(is_sound(item) for item in scene.driven.values())
         require(sound and any(item.coupling for item in scene.driven.values()), "invalid", "R-STR-23")
+    if flags & HAS_BODIES:
+        read_elastic_bodies(body, scene.deformables, scene.position_exp)
     while body.left() > 0:
         kind = body.varint(STR_16, STR_16)
         content = body.take(body.varint(STR_16, STR_16), STR_16)
@@ -154,6 +162,8 @@ def read_declaration(data: bytes, limits: Limits = Limits()) -> tuple[Declaratio
     require(state_bytes(scene) <= limits.state_bytes, "limit_exceeded", "R-STR-18")
     work = sum(deformable_basis.work(item) + deformable_clusters.work(item) for item in scene.deformables)
     require(work <= limits.basis_work, "limit_exceeded", "R-STR-21")
+    work = sum(item.body.work for item in scene.deformables if item.body)
+    require(work <= limits.body_work, "limit_exceeded", "R-STR-24")
     for item in scene.deformables:
         if item.fixed is not None:
             item.modes = deformable_basis.computed_modes(item)

@@ -9,6 +9,7 @@ from typing import Callable, Iterator, Optional
 
 from conventions import Cursor, StreamError, fnv1a, require
 from decoder import SceneDecoder
+from deformable_decoder import DeformableDecoder
 from deformable_header import zigzag
 from device_path import DevicePath, device_scene
 from packet import Receiver
@@ -21,6 +22,7 @@ JOIN, WELCOME, REFUSAL, LEAVE = range(4)                    # kinds of handshake
 ACK, CLOCK, BUTTONS, PIECE, STATE, HASH, FRAGMENT, PACKET_PART = range(1, 9)
 PACE = BUTTONS                                              # down
 LARGEST_DATAGRAM = 1200
+MOST_UNTOLD = 32                                            # numbers that are accepted until an acknowledgement is due at once
 PIECE_SIZE, WINDOW = 1024, 64
 FRAGMENT_SIZE, MOST_FRAGMENTS, MOST_IN_PIECES = 1150, 1024, 4
 MS = 1000                                                   # us
@@ -145,6 +147,7 @@ class Epoch:
         self.newest, self.received = 0, set()               # numbers of datagrams, down
         self.accepted: dict[int, int] = {}                  # when each came
         self.ack_due: Optional[int] = None
+        self.untold = 0                                     # accepted since the last acknowledgement
         self.next, self.acknowledged = 1, 0                 # own numbers
         self.sent_at: dict[int, int] = {}
         self.round_trip: Optional[int] = None
@@ -168,12 +171,11 @@ class Epoch:
         self.received.add(number)
         self.newest = max(self.newest, number)
         self.received = {n for n in self.received if n > self.newest - 1024}
-        complete, asks = True, False
+        complete = True
         for kind, elements in parts:
-            asks |= kind not in (ACK, CLOCK)
             complete &= self.take_part(now, number, kind, elements)
         if complete:
-            self.accept(now, number, asks)
+            self.accept(now, number, parts)
 
     def take_part(self, now: int, number: int, kind: int, elements: tuple) -> bool:
         if kind == ACK:
@@ -268,17 +270,25 @@ class Epoch:
             self.hash = struct.pack("<BHI", substream, number % (1 << 16), decoder.state_hash() % (1 << 32))
         return True
 
-    def accept(self, now: int, number: int, asks: bool) -> None:
+    def accept(self, now: int, number: int, parts: list[tuple]) -> None:
         self.accepted[number] = now
-        if asks and self.ack_due is None:
+        self.untold += 1
+        if self.ack_due is None and any(kind not in (ACK, CLOCK) for kind, _ in parts):
             self.ack_due = now + self.patience
+        if self.ack_due is not None and (self.untold >= MOST_UNTOLD or any(self.is_urgent(*p) for p in parts)):
+            self.ack_due = min(self.ack_due, now)
+
+    def is_urgent(self, kind: int, elements: tuple) -> bool:
+        if kind != PACKET_PART:
+            return kind == STATE
+        return isinstance(self.decoders.substreams[self.decoders.split(elements[1])[0]], DeformableDecoder)
 
     def acknowledgement(self, now: int) -> bytes:
         newest = max(self.accepted)
         held = min((now - self.accepted[newest]) // 16, NO_TIMING)
         missing = sum(1 << i for i in range(64) if newest - 1 - i > 0 and newest - 1 - i not in self.accepted)
         self.accepted = {n: at for n, at in self.accepted.items() if n > newest - 1024}
-        self.ack_due = None
+        self.ack_due, self.untold = None, 0
         return part(ACK, struct.pack("<HH", newest % (1 << 16), held) + varint(missing))
 
     def write(self, now: int, parts: list[bytes], packet: bytes = b"") -> Optional[bytes]:
@@ -307,6 +317,7 @@ class Client:
         self.epoch: Optional[Epoch] = None
         self.retry_at, self.retry = 0, 250 * MS
         self.sign_at = self.device_at = 0
+        self.first_live: Optional[int] = None               # number of the first datagram that said so
 
     def handle(self, now: int, datagram: bytes) -> None:
         """Raises StreamError if the datagram is dropped."""
@@ -336,7 +347,7 @@ class Client:
         if nonce != self.nonce or self.state == "closed" or again:
             return
         self.epoch = Epoch(epoch, client, serial, size, digest, start)
-        self.state, self.sign_at = "receiving", 0
+        self.state, self.sign_at, self.first_live = "receiving", 0, None
         if size > HEADER_LIMIT:
             self.leave(TOO_LARGE)
 
@@ -347,7 +358,7 @@ class Client:
         try:
             if self.epoch.begin():
                 self.state, self.sign_at = "live", 0
-                if self.device and self.epoch.scene.driven:
+                if self.device and self.epoch.scene.follows_devices():
                     self.epoch.drives()
         except StreamError as error:
             self.leave(TOO_LARGE if error.errc == "limit_exceeded" else NO_SCENE)
@@ -366,8 +377,9 @@ class Client:
             return
         live, parts, packet = self.state == "live", [], b""
         if now >= self.sign_at:
-            self.sign_at = now + (50 * MS if self.device else 100 * MS)
+            self.sign_at = now + self.silence()
             parts.append(part(STATE, bytes([live])))
+            self.first_live = self.epoch.next if live and self.first_live is None else self.first_live
         if self.epoch.hash:
             parts.append(part(HASH, self.epoch.hash))
             self.epoch.hash = None
@@ -380,6 +392,13 @@ class Client:
         datagram = self.epoch.write(now, parts, packet) if parts or packet or due else None
         if datagram:
             yield datagram
+
+    def silence(self) -> int:
+        """Until the next sign of life."""
+        heard_live = self.first_live is not None and self.epoch.acknowledged >= self.first_live
+        if self.state == "live" and not heard_live:
+            return 50 * MS
+        return 50 * MS if self.device and not self.epoch.path else 100 * MS
 
     def leave(self, reason: int = BYE) -> None:
         """poll() tells the server."""

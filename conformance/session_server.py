@@ -47,7 +47,7 @@ class ServedEpoch(Epoch):
             if self.participates:
                 device = device_scene(self.scene)
                 self.decoders = SceneDecoder(device)
-                self.path = DevicePath(device) if self.scene.driven else None
+                self.path = DevicePath(device) if self.scene.follows_devices() else None
         elif kind == BUTTONS and elements[0] >= self.buttons[0]:
             self.buttons = elements
 

@@ -116,7 +116,7 @@ class Scene:
         version, profile, flags, body_size = file.numbers("4xBBHI")
         require(version == 1, "R-STR-2")
         require(profile == 0, "R-STR-3")
-        require(flags <= 31, "R-STR-4")
+        require(flags <= 63, "R-STR-4")
         body = Bytes(file.take(body_size), "R-STR-5")
         require((zlib.crc32(file.data[:file.at]),) == file.numbers("I"), "R-STR-15")
         (self.tick_rate, self.position_exp, velocity_exp, self.rotation_exp, self.angular_exp, self.max_extrapolation,

@@ -95,7 +95,8 @@ void Client::show(Receiver& receiver, std::int64_t tick) noexcept {
     ShownMesh& mesh = shown_[i];
     const auto frame = static_cast<std::int64_t>(static_cast<double>(tick) / mesh.period);
     const double rests = static_cast<double>(receiver.tick(i + 1) + receiver.scene()->max_extrapolation) + mesh.period;
-    if (frame == mesh.frame || static_cast<double>(tick) > rests) continue;
+    const bool follows = receiver.scene()->deformables[i].body.has_value();  // the device, without a packet
+    if (frame == mesh.frame || (!follows && static_cast<double>(tick) > rests)) continue;
     mesh.frame = frame;
     show_shape(receiver, tick, i);
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include <tactus/sim/deformable/elastic_physics.h>
 #include <tactus/sim/deformable/stiffness_map.h>
 #include <tactus/sim/msd/msd_objects.h>
 
@@ -82,6 +83,8 @@ Result<void> Server::add_codec(const ServerCodec& codec) {
       coding.deformable.stiffness = std::move(map.stiffness);
     }
     TACTUS_CHECK(add_deformable(builder, deformables_->meshes()[i], coding));
+    if (!codec.sessions || coding.deformable.profile != DeformableProfile::main || coding.deformable.layered) continue;
+    if (auto physics = elastic_physics(scene_.deformables[i], scene_.gravity)) builder.elastic(std::move(*physics));
   }
   builder.promise(codec.sender.triggers, codec.sender.deformable.thresholds, codec.sender.load);
   constexpr std::uint8_t kBaselines = 64;

@@ -18,7 +18,7 @@ ONE_FILE = {".lua"}  # what users copy to install it: may be longer
 SHARED = {"base"}  # folders of codec/ that are not subjects of the specification
 # Everything else in codec/ is integers: what both ends compute is the same on every machine. These files are doors: SI units come in
 # or go out, a sender decides what to send, options are read once, a quotient of integers is estimated and then corrected, and the
-# basis that both ends compute is binary64 in a written order.
+# basis and the elastic bodies that both ends compute are binary64 in a written order.
 FLOATS = {"base/device_sample", "base/geometry", "base/quantise", "base/tri_mesh", "scene/bounds", "scene/bounds_syntax",
           "scene/deformable_object", "scene/rigid_object", "scene/scene_builder", "packet/key_policy", "packet/sender_policy",
           "load/load_encoder", "load/load_state",
@@ -29,6 +29,8 @@ FLOATS = {"base/device_sample", "base/geometry", "base/quantise", "base/tri_mesh
           "deformable/spring_basis", "deformable/spring_network", "deformable/thesis_encoder",
           "deformable/trigger", "deformable/vertex_coder", "client/replica", "client/stiffness_reduction", "sender",
           "signal/device_signal", "signal/force_signal",
+          "elastic/driven_shape", "elastic/elastic_elements", "elastic/elastic_matrix", "elastic/elastic_solver", "elastic/elastic_touch",
+          "scene/elastic_body", "scene/elastic_syntax",
           "session/exchange", "session/server_connection", "session/congestion", "session/session_options", "session/session_client", "session/session_server"}
 # Everything that is the operating system's stands in these files, one per need; the others are C++ alone. The codec, the traces and
 # the metrics are not among them; of the simulation only what runs the program that fills meshes.
@@ -71,6 +73,7 @@ TESTED_BY = {  # those that have none: the parts of one subject, held against ea
     "codec/deformable/thesis_decoder": "deformable_decoder",
     "codec/deformable/thesis_encoder": "deformable_encoder",
     "codec/deformable/thesis_syntax": "deformable_encoder",
+    "codec/elastic/elastic_matrix": "elastic_elements",
     "codec/load/load_decoder": "load",
     "codec/load/load_encoder": "load",
     "codec/load/load_state": "load",
@@ -81,6 +84,7 @@ TESTED_BY = {  # those that have none: the parts of one subject, held against ea
     "codec/scene/bounds_syntax": "scene_bounds",
     "codec/scene/deformable_object": "scene_deformable",
     "codec/scene/deformable_syntax": "scene_deformable",
+    "codec/scene/elastic_syntax": "scene_elastic",
     "codec/scene/rigid_object": "rigid",
     "codec/scene/scene": "scene_syntax",
     "device/falcon/falcon_usb": "falcon_device",

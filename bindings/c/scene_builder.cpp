@@ -69,6 +69,31 @@ tactus_deformable_options deformable_options() noexcept {
           .blend = 0};
 }
 
+constexpr tactus_driven_physics kDrivenPhysics{.size = sizeof(tactus_driven_physics),
+                                               .reserved = 0,
+                                               .mass = 0,
+                                               .inertia = {},
+                                               .stiffness = 0,
+                                               .hold = 0,
+                                               .friction = 0,
+                                               .damping = 0};
+
+constexpr tactus_elastic_physics kElasticPhysics{.size = sizeof(tactus_elastic_physics),
+                                                 .material_count = 0,
+                                                 .materials = nullptr,
+                                                 .inner = nullptr,
+                                                 .inner_count = 0,
+                                                 .tets = nullptr,
+                                                 .tet_count = 0,
+                                                 .material = nullptr,
+                                                 .fixed = nullptr,
+                                                 .fixed_count = 0,
+                                                 .mass_damping = 0,
+                                                 .stiffness_damping = 0,
+                                                 .gravity = {},
+                                                 .coupling = 0,
+                                                 .friction = 0};
+
 bool are_bytes(std::initializer_list<std::uint32_t> values) noexcept {
   return std::ranges::all_of(values, [](std::uint32_t value) { return value <= 0xff; });
 }
@@ -138,6 +163,35 @@ Result<DeformableCoding> coding_of(const tactus_deformable_options& o, std::size
   return out;
 }
 
+/// err  R-ELA-2, 3 there is too much of it; R-API-12 null
+Result<ElasticPhysics> physics_of(const tactus_elastic_physics& p) {
+  if (p.material_count > ElasticBody::kMaxMaterials) return fail(Errc::invalid, "R-ELA-2");
+  if (p.inner_count > kMaxMeshVertices || p.fixed_count > kMaxMeshVertices || p.tet_count > kMaxMeshTriangles)
+    return fail(Errc::invalid, "R-ELA-3");
+  TACTUS_TRY(const auto materials, span_of(p.materials, std::size_t{3} * p.material_count));
+  TACTUS_TRY(const auto inner, span_of(p.inner, 3 * p.inner_count));
+  TACTUS_TRY(const auto corners, span_of(p.tets, 4 * p.tet_count));
+  TACTUS_TRY(const auto fixed, span_of(p.fixed, p.fixed_count));
+  ElasticPhysics out{.body = {.inner = {},
+                              .tets = {},
+                              .materials = {},
+                              .material = std::vector<std::uint8_t>(p.tet_count),
+                              .fixed = {fixed.begin(), fixed.end()},
+                              .mass_damping = p.mass_damping,
+                              .stiffness_damping = p.stiffness_damping,
+                              .gravity = vec_of(p.gravity),
+                              .coupling = p.coupling,
+                              .friction = p.friction}};
+  if (p.material != nullptr) std::copy_n(p.material, p.tet_count, out.body.material.begin());
+  for (std::size_t i = 0; i < materials.size(); i += 3)
+    out.body.materials.push_back({materials[i], materials[i + 1], materials[i + 2]});
+  for (std::size_t i = 0; i < inner.size(); i += 3) out.inner.push_back({inner[i], inner[i + 1], inner[i + 2]});
+  out.body.tets.reserve(p.tet_count);
+  for (std::size_t i = 0; i < corners.size(); i += 4)
+    out.body.tets.push_back({corners[i], corners[i + 1], corners[i + 2], corners[i + 3]});
+  return out;
+}
+
 }  // namespace
 }  // namespace tactus::c
 
@@ -186,6 +240,40 @@ tactus_status tactus_scene_builder_deformable(tactus_scene_builder* builder, con
     TACTUS_TRY(const tactus_deformable_options o, given_or(options, deformable_options()));
     TACTUS_TRY(DeformableCoding coding, coding_of(o, vertex_count));
     builder->builder.deformable(name, std::move(mesh), std::move(coding));
+    return TACTUS_OK;
+  });
+}
+
+tactus_status tactus_driven_physics_init(tactus_driven_physics* physics, size_t size) {
+  return init(physics, size, kDrivenPhysics);
+}
+
+tactus_status tactus_elastic_physics_init(tactus_elastic_physics* physics, size_t size) {
+  return init(physics, size, kElasticPhysics);
+}
+
+tactus_status tactus_scene_builder_driven(tactus_scene_builder* builder, const tactus_driven_physics* physics,
+                                          tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (builder == nullptr || physics == nullptr) return refuse();
+    TACTUS_TRY(const tactus_driven_physics p, given_or(physics, kDrivenPhysics));
+    builder->builder.driven({.mass = p.mass,
+                             .inertia = vec_of(p.inertia),
+                             .stiffness = p.stiffness,
+                             .hold = p.hold,
+                             .friction = p.friction,
+                             .damping = p.damping});
+    return TACTUS_OK;
+  });
+}
+
+tactus_status tactus_scene_builder_elastic(tactus_scene_builder* builder, const tactus_elastic_physics* physics,
+                                           tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    if (builder == nullptr || physics == nullptr) return refuse();
+    TACTUS_TRY(const tactus_elastic_physics p, given_or(physics, kElasticPhysics));
+    TACTUS_TRY(ElasticPhysics told, physics_of(p));
+    builder->builder.elastic(std::move(told));
     return TACTUS_OK;
   });
 }

@@ -45,6 +45,8 @@ TACTUS_SIZED(tactus_deformable_info, TACTUS_UP_TO(tactus_deformable_info, reserv
 TACTUS_SIZED(tactus_receiver_options, TACTUS_UP_TO(tactus_receiver_options, limits));
 TACTUS_SIZED(tactus_scene_options, TACTUS_UP_TO(tactus_scene_options, friction));
 TACTUS_SIZED(tactus_deformable_options, TACTUS_UP_TO(tactus_deformable_options, blend));
+TACTUS_SIZED(tactus_driven_physics, TACTUS_UP_TO(tactus_driven_physics, damping));
+TACTUS_SIZED(tactus_elastic_physics, TACTUS_UP_TO(tactus_elastic_physics, friction));
 TACTUS_SIZED(tactus_sender_options, TACTUS_UP_TO(tactus_sender_options, load));
 TACTUS_SIZED(tactus_truth, TACTUS_UP_TO(tactus_truth, load_count));
 TACTUS_SIZED(tactus_event, TACTUS_UP_TO(tactus_event, widening));

@@ -53,6 +53,37 @@ typedef struct tactus_deformable_options {
   uint32_t blend;          /* rounds in which the clusters are blended where they meet, 0 to 32 */
 } tactus_deformable_options;
 
+/* A rigid object that a participant's device pushes or holds. */
+typedef struct tactus_driven_physics {
+  uint32_t size;
+  uint32_t reserved;
+  double mass;       /* kg */
+  double inertia[3]; /* kg m^2, about the axes of the object's frame */
+  double stiffness;  /* N/m, of the coupling between device and proxy */
+  double hold;       /* N/m, of that to an object that it holds; 0: it holds none */
+  double friction;   /* of the proxy on it; 0 */
+  double damping;    /* 1/s: rate at which its velocities die away; 0 */
+} tactus_driven_physics;
+
+/* What a deformable object is made of, that a participant's device deforms. Vertices are those of the surface, then those inside. */
+typedef struct tactus_elastic_physics {
+  uint32_t size;
+  uint32_t material_count; /* 1 to 255 */
+  const double* materials; /* Young's modulus N/m^2, Poisson's ratio, density kg/m^3 of each */
+  const double* inner;     /* x y z [m] of the vertices inside, at rest, world; NULL: there are none */
+  size_t inner_count;      /* vertices */
+  const uint32_t* tets;    /* 4 corners a b c d of each, (b - a) x (c - a) . (d - a) > 0 */
+  size_t tet_count;        /* tetrahedra */
+  const uint8_t* material; /* of each tetrahedron; NULL: the first */
+  const uint32_t* fixed;   /* vertices that do not move, ascending; NULL: there are none */
+  size_t fixed_count;
+  double mass_damping;      /* 1/s; 0 */
+  double stiffness_damping; /* s; 0 */
+  double gravity[3];        /* m/s^2, world; 0 */
+  double coupling;          /* N/m, between device and proxy */
+  double friction;          /* of the proxy on the surface; 0 */
+} tactus_elastic_physics;
+
 TACTUS_API tactus_status tactus_scene_options_init(tactus_scene_options* options, size_t size);
 TACTUS_API tactus_status tactus_deformable_options_init(tactus_deformable_options* options, size_t size);
 TACTUS_API tactus_status tactus_scene_builder_create(const tactus_scene_options* options, tactus_scene_builder** builder,
@@ -65,6 +96,16 @@ TACTUS_API tactus_status tactus_scene_builder_rigid(tactus_scene_builder* builde
 TACTUS_API tactus_status tactus_scene_builder_deformable(tactus_scene_builder* builder, const char* name, const double* vertices,
                                                          size_t vertex_count, const uint32_t* triangles, size_t triangle_count,
                                                          const tactus_deformable_options* options, tactus_error* error);
+TACTUS_API tactus_status tactus_driven_physics_init(tactus_driven_physics* physics, size_t size);
+TACTUS_API tactus_status tactus_elastic_physics_init(tactus_elastic_physics* physics, size_t size);
+/* In sessions, let a participant work out from its own device where the rigid object added last goes. Packets tell what that gets wrong.
+   _build checks it: err  R-API-4 a constant cannot be told; R-API-5 no object was added */
+TACTUS_API tactus_status tactus_scene_builder_driven(tactus_scene_builder* builder, const tactus_driven_physics* physics,
+                                                     tactus_error* error);
+/* The same of how the deformable object added last deforms: profile main, not layered, frame_period a whole number up to 1024.
+   _build checks it: err  R-ELA; R-STR-24 it is too much for a client; R-API-1, 2 an inner vertex; R-API-5 */
+TACTUS_API tactus_status tactus_scene_builder_elastic(tactus_scene_builder* builder, const tactus_elastic_physics* physics,
+                                                      tactus_error* error);
 /* Clusters of vertices that move alike, found on shapes of a recording: 40 are enough, if they are spread over it.
    in   shapes  displacements [m], x y z of vertex 0 first, one shape after the other;  most  1 to 64
    out  clusters  of each vertex, as tactus_deformable_options takes them, like  count, blend

@@ -15,6 +15,8 @@
 
 namespace tactus {
 
+class FollowedShape;
+
 class DeformableDecoder {
  public:
   /// The one place that chooses by profile.   pre  object < scene.deformables.size(), and `scene` outlives the decoder
@@ -31,6 +33,8 @@ class DeformableDecoder {
   virtual std::span<const std::array<std::int32_t, 3>> displacements_at(std::int64_t tick) noexcept = 0;
   /// The same from the newest state held that is not later than the tick, for a client that shows the past. spec/60-client.md 6
   virtual std::span<const std::array<std::int32_t, 3>> displacements_of(std::int64_t tick) noexcept = 0;
+  /// Show what the device of the client does (Receiver::know).   pre  the object has a body
+  virtual void know(std::unique_ptr<FollowedShape> shape) noexcept = 0;
   virtual bool holds(std::uint64_t number) const noexcept = 0;  ///< the state after the packet of this number
   virtual std::int64_t tick() const noexcept = 0;               ///< of the newest packet, 0 before the first
   virtual std::uint64_t state_hash() const noexcept = 0;

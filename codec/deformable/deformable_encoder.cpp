@@ -38,6 +38,9 @@ class Of final : public DeformableEncoder {
   }
   bool is_layered() const noexcept override { return layered_; }
   void set_widening(double factor) noexcept override { stream_.codec().set_widening(factor); }
+  void know(std::unique_ptr<FollowedShape> shape) noexcept override {
+    if constexpr (requires { stream_.codec().know(std::move(shape)); }) stream_.codec().know(std::move(shape));
+  }
   void request_key() noexcept override { stream_.request_key(); }
   void forget_last() noexcept override { stream_.forget_last(); }
   void acknowledge(std::uint16_t sequence) noexcept override { stream_.acknowledge(sequence); }

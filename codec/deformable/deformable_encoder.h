@@ -16,6 +16,8 @@
 
 namespace tactus {
 
+class FollowedShape;
+
 /// Largest packet of an object, without the number of its substream [bytes].
 std::size_t max_packet(const DeformableObject& object) noexcept;
 
@@ -36,6 +38,8 @@ class DeformableEncoder {
   virtual Packet encode(std::int64_t tick, Layer layer, std::optional<std::uint64_t> number) noexcept = 0;
   virtual bool is_layered() const noexcept = 0;
   virtual void set_widening(double factor) noexcept = 0;  ///< of all thresholds.   pre  factor >= 1
+  /// Show what the device of the client does (Sender::know).   pre  the object has a body
+  virtual void know(std::unique_ptr<FollowedShape> shape) noexcept = 0;
   virtual void request_key() noexcept = 0;
   virtual void forget_last() noexcept = 0;
   virtual void acknowledge(std::uint16_t sequence) noexcept = 0;

@@ -26,4 +26,10 @@ Result<void> MainDecoder::read_body(const MainState& base, std::int64_t, Decoded
   return {};
 }
 
+std::span<const Vec3i> MainDecoder::predict(const MainState& state, std::int64_t tick) noexcept {
+  if (driven_) driven_->follow(tick);
+  if (state.following != Following::none && driven_ && driven_->show(state, tick, shown_)) return shown_;
+  return reader_.predict(state, tick);
+}
+
 }  // namespace tactus

@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include <tactus/base/range_coder.h>
 #include <tactus/base/rule.h>
+#include <tactus/deformable/followed_shape.h>
 #include <tactus/deformable/main_reader.h>
 #include <tactus/packet/packet.h>
 #include <tactus/scene/scene.h>
@@ -24,7 +27,11 @@ class MainDecoder {
 
   /// pre  `scene` outlives the decoder
   MainDecoder(const Scene& scene, const DeformableObject& object)
-      : object_(object), baseline_span_(scene.baseline_span), reader_(object), next_(initial_main_state(object)) {}
+      : object_(object),
+        baseline_span_(scene.baseline_span),
+        reader_(object),
+        next_(initial_main_state(object)),
+        shown_(object.body ? object.rest.size() : 0) {}
 
   /// err  malformed R-RNG-4
   Result<PacketHead> read_head(std::span<const std::uint8_t> payload) noexcept;
@@ -33,8 +40,9 @@ class MainDecoder {
   void commit(const MainState&, MainState& next) noexcept { std::swap(next_, next); }
   std::uint64_t bit() const noexcept { return 8 * std::min<std::uint64_t>(coder_.position(), payload_); }
 
-  /// Predicted displacements at a tick not before the state's. Valid until the next call.
-  std::span<const Vec3i> predict(const MainState& state, std::int64_t tick) noexcept { return reader_.predict(state, tick); }
+  void know(std::unique_ptr<FollowedShape> shape) noexcept { driven_ = std::move(shape); }  ///< pre  the object has a body
+  /// Displacements shown at a tick not before the state's. Valid until the next call.
+  std::span<const Vec3i> predict(const MainState& state, std::int64_t tick) noexcept;
 
  private:
   const DeformableObject& object_;
@@ -44,7 +52,9 @@ class MainDecoder {
   std::uint64_t payload_ = 0;  // [bytes]
   MainModels models_;
   MainHead head_;
-  MainState next_;  // pending: no state changes before the whole packet has proved valid
+  MainState next_;                         // pending: no state changes before the whole packet has proved valid
+  std::unique_ptr<FollowedShape> driven_;  // null: no device is known
+  std::vector<Vec3i> shown_;               // of a state that follows the device
 };
 
 }  // namespace tactus

@@ -91,9 +91,42 @@ MainHead MainEncoder::head_for(const EncodeRequest<MainState>& request) noexcept
   return head;
 }
 
+/// Of what is in `expected_`.
+bool MainEncoder::is_within_bounds() const noexcept {
+  for (std::uint32_t v = 0; v < truth_.size(); ++v) {
+    const std::int64_t bound = trigger_[coder_.is_inside(v)];
+    if (squared_distance(truth_[v], expected_[v]) > bound * bound) return false;
+  }
+  return true;
+}
+
+/// The body alone if it is within the bounds; else with what it differs by now, if the device's way has told this shape better than the
+/// motion so far.
+Following MainEncoder::choose_following(const EncodeRequest<MainState>& request) noexcept {
+  const MainState& shown = request.shown;
+  if (!driven_ || !driven_->body_at(request.tick, expected_)) return Following::none;
+  if (is_within_bounds()) return Following::fading;
+  if (!driven_->show(shown, request.tick, error_)) return Following::none;
+  predictor_.predict(shown, request.tick, expected_);
+  double by_device = 0, alone = 0;
+  for (std::size_t v = 0; v < truth_.size(); ++v) {
+    by_device += static_cast<double>(squared_distance(truth_[v], error_[v]));
+    alone += static_cast<double>(squared_distance(truth_[v], expected_[v]));
+  }
+  return by_device <= alone ? Following::kept : Following::none;
+}
+
+/// What the receiver shows, if it got every packet.
+void MainEncoder::predict_shown(const EncodeRequest<MainState>& request) noexcept {
+  const MainState& shown = request.shown;
+  if (driven_) driven_->follow(request.tick);
+  if (shown.following != Following::none && driven_ && driven_->show(shown, request.tick, expected_)) return;
+  predictor_.predict(shown, request.tick, expected_);
+}
+
 /// A key packet forgets the whole shape, and so is due as soon as any bound is broken.
 bool MainEncoder::bounds_hold(const EncodeRequest<MainState>& request) noexcept {
-  predictor_.predict(request.shown, request.tick, expected_);
+  predict_shown(request);
   for (std::uint32_t v = 0; v < truth_.size(); ++v) {
     if (!request.head.key && !coder_.codes(v)) continue;
     const std::int64_t bound = trigger_[coder_.is_inside(v)];
@@ -184,7 +217,8 @@ Result<Payload> MainEncoder::encode(const EncodeRequest<MainState>& request, std
   // What is felt goes first: a key packet of the rest alone would forget it.
   if (head.layer == Layer::visual && head.key && head.touched) return Payload{};
   const MainState& base = request.base;
-  if (request.requested || &base != &request.shown) predictor_.predict(base, request.tick, expected_);
+  head.following = choose_following(request);
+  predictor_.predict(base, request.tick, expected_);
   coder_.fade(object_, base, request.tick, expected_, next_);
   if (object_.layered) coder_.begin_layer(base, head.same_frame, expected_, next_.displacement);
   if (head.layer == Layer::haptic) {

@@ -9,9 +9,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include <tactus/deformable/followed_shape.h>
 #include <tactus/deformable/main_syntax.h>
 #include <tactus/deformable/mode_projection.h>
 #include <tactus/deformable/trigger.h>
@@ -34,6 +36,7 @@ class MainEncoder {
     touch_ = touch;
   }
   void set_widening(double factor) noexcept { widening_ = factor; }
+  void know(std::unique_ptr<FollowedShape> shape) noexcept { driven_ = std::move(shape); }  ///< pre  the object has a body
   /// time O(vertices * (1 + modes)), no allocation
   Result<Payload> encode(const EncodeRequest<MainState>& request, std::span<std::uint8_t> out) noexcept;
   void commit(const MainState&, MainState& next) noexcept { std::swap(next_, next); }
@@ -45,6 +48,9 @@ class MainEncoder {
   };
 
   MainHead head_for(const EncodeRequest<MainState>& request) noexcept;
+  bool is_within_bounds() const noexcept;
+  Following choose_following(const EncodeRequest<MainState>& request) noexcept;
+  void predict_shown(const EncodeRequest<MainState>& request) noexcept;
   bool bounds_hold(const EncodeRequest<MainState>& request) noexcept;
   void choose_coefficients(const MainHead& head) noexcept;
   void move_modes(const MainHead& head) noexcept;
@@ -72,8 +78,9 @@ class MainEncoder {
   std::vector<std::int32_t> coefficients_, scaled_;  // in steps; in grid units
   std::vector<float> projected_;
   std::vector<CodedVertex> coded_;
-  std::uint32_t trigger_[2]{};  // outside and inside the area of interest: errors that call for a packet, grid units
-  std::uint32_t limit_[2]{};    // errors that a packet corrects: shares of the same
+  std::unique_ptr<FollowedShape> driven_;  // null: no device is known
+  std::uint32_t trigger_[2]{};             // outside and inside the area of interest: errors that call for a packet, grid units
+  std::uint32_t limit_[2]{};               // errors that a packet corrects: shares of the same
 };
 
 }  // namespace tactus

@@ -33,7 +33,8 @@ std::uint64_t state_hash(const DeformableObject& object, const MainState& state)
   hash.add32(state.visual);
   hash.add32(state.triangle);
   hash.add32(state.haptic);
-  hash.add32(state.density | (state.touched ? 4u : 0u) | state.weight_set << 3);
+  hash.add32(state.density | (state.touched ? 4u : 0u) | state.weight_set << 3 |
+             static_cast<std::uint32_t>(state.following) << 5);
   state.motion.add_to(hash);
   if (object.layered) hash.add64(static_cast<std::uint64_t>(state.motion_tick));
   add_to(hash, state.haptic_correction);

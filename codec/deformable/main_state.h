@@ -16,6 +16,10 @@
 
 namespace tactus {
 
+/// Whether what is shown follows the device, for who knows it (elastic/driven_shape.h), and what becomes of what it differs by from the
+/// body that both ends work out.
+enum class Following : std::uint8_t { none = 0, kept = 1, fading = 2 };
+
 inline constexpr std::uint32_t kNoTriangle = 0xffffffff;
 
 struct MainState {
@@ -32,6 +36,7 @@ struct MainState {
   std::uint32_t density = 0;             ///< of significant vertices in the last packet: context of the next, as is `touched`
   std::uint32_t weight_set = 0;          ///< of the last packet, counted among those declared: context of the next
   bool touched = false;                  ///< the last packet had a triangle
+  Following following = Following::none;
 };
 
 MainState initial_main_state(const DeformableObject& object);

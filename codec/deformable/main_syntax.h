@@ -31,6 +31,7 @@ struct MainModels {
   MagnitudeModel visual;
   std::array<TreeModel<2>, kDensities> density;                        // context: the baseline's density
   std::array<TreeModel<2>, DeformableObject::kWeightSets> weight_set;  // context: the baseline's set
+  std::array<BitModel, 2> driven, fades;                               // context: the baseline's packet did
   std::array<std::array<MagnitudeModel, 3>, 4> coefficient;            // by mode, size before
   std::array<std::array<std::array<std::array<BitModel, 3>, 3>, 4>, kDensities>
       significant;                                                        // density, bound ratio, parents, depth
@@ -49,6 +50,7 @@ struct MainHead : PacketHead {
   std::uint32_t visual = 0;  ///< grid units
   std::uint32_t density = 0;
   std::uint32_t weight_set = 0;  ///< among those declared
+  Following following = Following::none;
 };
 
 /// Which models a vertex's symbols use.
@@ -140,6 +142,17 @@ void code_main_bounds(Coder& coder, MainModels& models, const DeformableObject& 
   head.visual = same ? base.visual : coder.magnitude(models.visual, head.visual);
 }
 
+template <class Coder>
+void code_following(Coder& coder, MainModels& models, Following base, Following& following) noexcept {
+  const bool follows = coder.bit(models.driven[base != Following::none ? 1 : 0], following != Following::none ? 1u : 0u) != 0;
+  if (!follows) {
+    following = Following::none;
+    return;
+  }
+  const bool fades = coder.bit(models.fades[base == Following::fading ? 1 : 0], following == Following::fading ? 1u : 0u) != 0;
+  following = fades ? Following::fading : Following::kept;
+}
+
 /// The rest of the head, given the baseline.
 template <class Coder>
 void code_main_head(Coder& coder, MainModels& models, const DeformableObject& object, Rings& rings, const MainState& base,
@@ -155,6 +168,7 @@ void code_main_head(Coder& coder, MainModels& models, const DeformableObject& ob
   head.density = head.layer == Layer::haptic ? base.density : coder.template tree<2>(models.density[base.density], head.density);
   const bool several = std::popcount(object.weight_sets) > 1;
   head.weight_set = several ? coder.template tree<2>(models.weight_set[base.weight_set], head.weight_set) : 0;
+  if (object.body) code_following(coder, models, base.following, head.following);
 }
 
 /// Store the fields that predict the next packet's head.
@@ -165,6 +179,7 @@ inline void keep_head(const MainHead& head, const MainState& base, MainState& ne
   next.density = head.density;
   next.weight_set = head.weight_set;
   next.touched = head.touched;
+  next.following = head.following;
 }
 
 /// Keep the baseline's motion: only visual packets advance it.

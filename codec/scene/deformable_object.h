@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include <tactus/base/list_of_lists.h>
 #include <tactus/base/result.h>
 #include <tactus/base/tri_mesh.h>
+#include <tactus/scene/elastic_body.h>
 
 namespace tactus {
 
@@ -89,7 +91,8 @@ struct DeformableObject {
   SpringBasis spring_basis;    ///< main: in place of `basis`, which a Scene then computes
   ClusterBasis cluster_basis;  ///< main: the same
   std::vector<std::uint8_t>
-      stiffness;  ///< levels (stiffness_level), one per vertex: what clients with delay need; empty: not told
+      stiffness;                    ///< levels (stiffness_level), one per vertex: what clients with delay need; empty: not told
+  std::optional<ElasticBody> body;  ///< main, not layered: what it is made of; none: not told
   friend bool operator==(const DeformableObject&, const DeformableObject&) = default;
 };
 

@@ -7,7 +7,9 @@
 
 #include <tactus/base/rule.h>
 #include <tactus/deformable/cluster_basis.h>
+#include <tactus/scene/elastic_syntax.h>
 #include <tactus/scene/scene_rules.h>
+#include <tactus/scene/vertex_syntax.h>
 
 namespace tactus {
 namespace {
@@ -30,9 +32,7 @@ bool is_triangle(const Triangle& t, std::size_t vertices) noexcept {
 bool is_spring_basis(const DeformableObject& m) noexcept {
   const SpringBasis& s = m.spring_basis;
   if (m.profile == DeformableProfile::thesis || s.modes > ModeBasis::kMaxModes) return false;
-  for (std::size_t i = 0; i < s.fixed.size(); ++i)
-    if (s.fixed[i] >= m.rest.size() || (i > 0 && s.fixed[i] <= s.fixed[i - 1])) return false;
-  return s.modes <= 3 * (m.rest.size() - s.fixed.size());
+  return are_runs(s.fixed, m.rest.size()) && s.modes <= 3 * (m.rest.size() - s.fixed.size());
 }
 
 bool is_cluster_basis(const DeformableObject& m) noexcept {
@@ -79,24 +79,6 @@ Result<void> parse_parameters(ByteReader& in, DeformableObject& object) {
   return {};
 }
 
-/// Differences from the vertex before.   err  invalid R-DEF-5 a coordinate leaves 32 bits
-Result<void> parse_rest(ByteReader& in, std::uint64_t count, DeformableObject& object) {
-  object.rest.reserve(static_cast<std::size_t>(count));
-  std::array<std::int64_t, 3> at{};
-  for (std::uint64_t v = 0; v < count; ++v) {
-    for (std::int64_t& c : at) {
-      const std::uint64_t step = in.varint();
-      if (step >= std::uint64_t{1} << 34) return fail(Errc::invalid, "R-DEF-5", in.bit_offset());
-      c += unzigzag(step);
-      if (c < std::numeric_limits<std::int32_t>::min() || c > std::numeric_limits<std::int32_t>::max())
-        return fail(Errc::invalid, "R-DEF-5", in.bit_offset());
-    }
-    if (!in.ok()) return fail(class_of_overflow(in), "R-STR-5", in.bit_offset());
-    object.rest.push_back({static_cast<std::int32_t>(at[0]), static_cast<std::int32_t>(at[1]), static_cast<std::int32_t>(at[2])});
-  }
-  return {};
-}
-
 /// First corner as a difference from the first corner before, the others from the corner before.
 Result<void> parse_triangles(ByteReader& in, std::uint64_t count, DeformableObject& object) {
   object.triangles.reserve(static_cast<std::size_t>(count));
@@ -136,23 +118,10 @@ Result<void> parse_declared(ByteReader& in, std::uint64_t modes, DeformableObjec
   return {};
 }
 
-/// The fixed vertices, as runs of consecutive ones.
 Result<void> parse_springs(ByteReader& in, std::uint64_t modes, DeformableObject& object) {
-  const std::uint64_t runs = in.varint(), vertices = object.rest.size();
-  if (!in.ok()) return fail(class_of_overflow(in), "R-STR-5", in.bit_offset());
-  if (runs > in.remaining() / 2) return fail(Errc::truncated, "R-STR-5", in.bit_offset());
-  SpringBasis& basis = object.spring_basis;
-  std::uint64_t end = 0;
-  for (std::uint64_t r = 0; r < runs; ++r) {
-    const std::uint64_t gap = in.varint(), more = in.varint();
-    if (!in.ok()) return fail(class_of_overflow(in), "R-STR-5", in.bit_offset());
-    if ((r > 0 && gap == 0) || gap >= vertices - end || more >= vertices - end - gap)
-      return fail(Errc::invalid, "R-DEF-7", in.bit_offset());
-    for (std::uint64_t v = end + gap; v <= end + gap + more; ++v) basis.fixed.push_back(static_cast<std::uint32_t>(v));
-    end += gap + more + 1;
-  }
-  if (modes > 3 * (vertices - basis.fixed.size())) return fail(Errc::invalid, "R-DEF-7", in.bit_offset());
-  basis.modes = static_cast<std::uint8_t>(modes);
+  TACTUS_TRY(object.spring_basis.fixed, parse_runs(in, object.rest.size(), "R-DEF-7"));
+  if (modes > 3 * (object.rest.size() - object.spring_basis.fixed.size())) return fail(Errc::invalid, "R-DEF-7", in.bit_offset());
+  object.spring_basis.modes = static_cast<std::uint8_t>(modes);
   return {};
 }
 
@@ -200,22 +169,6 @@ Result<void> parse_basis(ByteReader& in, DeformableObject& object) {
   return basis == kDeclared ? parse_declared(in, modes, object) : parse_springs(in, modes, object);
 }
 
-void write_springs(ByteWriter& out, const SpringBasis& basis) {
-  const auto& fixed = basis.fixed;
-  const auto begins = [&](std::size_t i) { return i == 0 || fixed[i] != fixed[i - 1] + 1; };
-  std::size_t runs = 0;
-  for (std::size_t i = 0; i < fixed.size(); ++i) runs += begins(i) ? 1u : 0u;
-  out.varint(basis.modes);
-  out.varint(runs);
-  for (std::size_t i = 0, end = 0; i < fixed.size();) {
-    const std::size_t first = i++;
-    while (i < fixed.size() && !begins(i)) ++i;
-    out.varint(fixed[first] - end);
-    out.varint(i - first - 1);
-    end = fixed[i - 1] + std::size_t{1};
-  }
-}
-
 void write_clusters(ByteWriter& out, const DeformableObject& object) {
   const ClusterBasis& basis = object.cluster_basis;
   const Neighbours near = neighbours(object);
@@ -240,7 +193,8 @@ void write_basis(ByteWriter& out, const DeformableObject& object) {
   }
   if (object.spring_basis.modes > 0) {
     out.u8(kComputed);
-    return write_springs(out, object.spring_basis);
+    out.varint(object.spring_basis.modes);
+    return write_runs(out, object.spring_basis.fixed);
   }
   if (object.basis.steps.empty()) return out.u8(kNoBasis);
   const std::size_t components = 3 * object.rest.size();
@@ -254,6 +208,31 @@ void write_basis(ByteWriter& out, const DeformableObject& object) {
 
 }  // namespace
 
+Result<void> parse_positions(ByteReader& in, std::uint64_t count, std::vector<std::array<std::int32_t, 3>>& out) {
+  out.reserve(static_cast<std::size_t>(count));
+  std::array<std::int64_t, 3> at{};
+  for (std::uint64_t v = 0; v < count; ++v) {
+    for (std::int64_t& c : at) {
+      const std::uint64_t step = in.varint();
+      if (step >= std::uint64_t{1} << 34) return fail(Errc::invalid, "R-DEF-5", in.bit_offset());
+      c += unzigzag(step);
+      if (c < std::numeric_limits<std::int32_t>::min() || c > std::numeric_limits<std::int32_t>::max())
+        return fail(Errc::invalid, "R-DEF-5", in.bit_offset());
+    }
+    if (!in.ok()) return fail(class_of_overflow(in), "R-STR-5", in.bit_offset());
+    out.push_back({static_cast<std::int32_t>(at[0]), static_cast<std::int32_t>(at[1]), static_cast<std::int32_t>(at[2])});
+  }
+  return {};
+}
+
+void write_positions(ByteWriter& out, std::span<const std::array<std::int32_t, 3>> positions) {
+  std::array<std::int32_t, 3> before{};
+  for (const auto& p : positions) {
+    for (std::size_t axis = 0; axis < 3; ++axis) out.varint(zigzag(std::int64_t{p[axis]} - before[axis]));
+    before = p;
+  }
+}
+
 RuleName broken_deformable_rule(const DeformableObject& object) noexcept {
   if (object.profile > DeformableProfile::main) return "R-DEF-2";
   if (!are_parameters(object)) return "R-DEF-3";
@@ -263,6 +242,7 @@ RuleName broken_deformable_rule(const DeformableObject& object) noexcept {
                                      [&](const Triangle& t) { return is_triangle(t, object.rest.size()); });
   if (!triangles) return "R-DEF-6";
   if (!is_basis(object)) return "R-DEF-7";
+  if (const RuleName rule = broken_elastic_rule(object)) return rule;
   return object.stiffness.empty() || object.stiffness.size() == object.rest.size() ? RuleName() : RuleName("R-STR-20");
 }
 
@@ -282,11 +262,7 @@ void write_deformable(ByteWriter& out, const DeformableObject& object) {
   }
   out.varint(object.rest.size());
   out.varint(object.triangles.size());
-  std::array<std::int32_t, 3> before{};
-  for (const auto& p : object.rest) {
-    for (std::size_t axis = 0; axis < 3; ++axis) out.varint(zigzag(std::int64_t{p[axis]} - before[axis]));
-    before = p;
-  }
+  write_positions(out, object.rest);
   std::uint32_t first = 0;
   for (const Triangle& t : object.triangles) {
     std::uint32_t last = first;
@@ -309,7 +285,7 @@ Result<DeformableObject> parse_deformable(ByteReader& in, const DeformableRoom& 
     return fail(Errc::invalid, "R-DEF-4", in.bit_offset());
   if (vertices > room.vertices || triangles > room.triangles) return fail(Errc::limit_exceeded, "R-STR-14", in.bit_offset());
   if (3 * (vertices + triangles) > in.remaining()) return fail(Errc::truncated, "R-STR-5", in.bit_offset());
-  TACTUS_CHECK(parse_rest(in, vertices, object));
+  TACTUS_CHECK(parse_positions(in, vertices, object.rest));
   TACTUS_CHECK(parse_triangles(in, triangles, object));
   if (object.profile == DeformableProfile::main) TACTUS_CHECK(parse_basis(in, object));
   return object;

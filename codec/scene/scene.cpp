@@ -12,7 +12,9 @@
 #include <tactus/base/shown.h>
 #include <tactus/deformable/cluster_basis.h>
 #include <tactus/deformable/spring_basis.h>
+#include <tactus/elastic/elimination.h>
 #include <tactus/scene/bounds_syntax.h>
+#include <tactus/scene/elastic_syntax.h>
 #include <tactus/scene/scene_rules.h>
 
 namespace tactus {
@@ -117,6 +119,7 @@ Result<void> find_broken_rule(const SceneSpec& spec, const DecodeLimits& limits)
   for (const DeformableObject& object : spec.deformables) {
     if (!is_name(object.name) || !names.insert(object.name).second) return fail(Errc::invalid, "R-STR-11");
     if (const RuleName rule = broken_deformable_rule(object)) return fail(Errc::invalid, rule);
+    if (object.body && !is_solid(object, spec.grid.position)) return fail(Errc::invalid, "R-ELA-4");
     vertices += object.rest.size();
     triangles += object.triangles.size();
     if (vertices > limits.vertices || triangles > limits.triangles) return fail(Errc::limit_exceeded, "R-STR-14");
@@ -127,6 +130,7 @@ Result<void> find_broken_rule(const SceneSpec& spec, const DecodeLimits& limits)
   if (spec.bounds && !are_bounds(spec)) return fail(Errc::invalid, "R-STR-17");
   if (state_bytes(spec) > limits.state_bytes) return fail(Errc::limit_exceeded, "R-STR-18");
   if (basis_work(spec) > limits.basis_work) return fail(Errc::limit_exceeded, "R-STR-21");
+  if (elastic_work(spec) > limits.elastic_work) return fail(Errc::limit_exceeded, "R-STR-24");
   return {};
 }
 
@@ -138,7 +142,7 @@ Result<void> check_scene(const SceneSpec& spec, const DecodeLimits& limits) try 
   return out_of_memory();
 }
 
-Scene::Scene(SceneSpec&& spec) : SceneSpec(std::move(spec)) {
+Scene::Scene(SceneSpec&& spec) : SceneSpec(std::move(spec)), has_paths_(driven || has_elastic_body(deformables)) {
   for (std::uint32_t i = 0; i < objects.size(); ++i)
     if (objects[i].dof != Dof::none) moving_.push_back(i);
   for (DeformableObject& object : deformables) {
@@ -179,6 +183,13 @@ std::uint64_t basis_work(const SceneSpec& spec) noexcept {
     const std::uint64_t columns = object.spring_basis.modes + std::uint64_t{8};
     sum += columns * (vertices + 16 * std::min<std::uint64_t>(vertices, kBasisCore)) + columns * columns * columns / 4;
   }
+  return sum;
+}
+
+std::uint64_t elastic_work(const SceneSpec& spec) {
+  std::uint64_t sum = 0;
+  for (const DeformableObject& object : spec.deformables)
+    if (object.body) sum += elastic_work(elimination(*object.body, object.rest.size() + object.body->inner.size()));
   return sum;
 }
 

@@ -87,10 +87,11 @@ struct DecodeLimits {
   std::uint32_t objects = 4096;
   std::uint32_t header_bytes = 1u << 26;
   std::uint32_t packet_bytes = 1u << 26;
-  std::uint32_t vertices = 1u << 20;       ///< of all deformable objects
-  std::uint32_t triangles = 1u << 21;      ///< of all deformable objects
-  std::uint64_t state_bytes = 1ull << 28;  ///< of all states that the stream's decoders keep
-  std::uint64_t basis_work = 1ull << 22;   ///< of all bases to compute: 57 000 vertices with 48 modes, or 5 of 700
+  std::uint32_t vertices = 1u << 20;        ///< of all deformable objects
+  std::uint32_t triangles = 1u << 21;       ///< of all deformable objects
+  std::uint64_t state_bytes = 1ull << 28;   ///< of all states that the stream's decoders keep
+  std::uint64_t basis_work = 1ull << 22;    ///< of all bases to compute: 57 000 vertices with 48 modes, or 5 of 700
+  std::uint64_t elastic_work = 1ull << 30;  ///< of all elastic bodies: thin ones of 10 000 vertices, or a cube of 1300
 };
 
 /// A checked scene, its spring bases computed. Never changes after it is made, so that threads may share it.
@@ -99,6 +100,9 @@ class Scene : public SceneSpec {
   /// time 80 ms more for a basis of 48 modes of 700 vertices, 160 ms of 50 000
   /// err  invalid, limit_exceeded, with the R-STR or R-DEF rule that the declaration breaks
   static Result<std::shared_ptr<const Scene>> create(SceneSpec spec, const DecodeLimits& limits = {});
+
+  /// Whether both ends of a session know the path of a device: it drives objects or deforms elastic bodies.
+  bool has_paths() const noexcept { return has_paths_; }
 
   /// Rigid objects that can move, ascending: the only ones that packets name.
   std::span<const std::uint32_t> moving() const noexcept { return moving_; }
@@ -110,6 +114,7 @@ class Scene : public SceneSpec {
   explicit Scene(SceneSpec&& spec);
 
   std::vector<std::uint32_t> moving_;
+  bool has_paths_ = false;
 };
 
 using SharedScene = std::shared_ptr<const Scene>;
@@ -122,6 +127,9 @@ std::uint64_t state_bytes(const SceneSpec& spec) noexcept;
 
 /// Work that computing the bases takes, in units of about 0.3 us. spec/20-scene.md section 9
 std::uint64_t basis_work(const SceneSpec& spec) noexcept;
+
+/// Work that factoring the matrices of all elastic bodies takes, in units of about 0.5 ns. spec/20-scene.md section 9
+std::uint64_t elastic_work(const SceneSpec& spec);
 
 /// Bounds of a stream whose sender uses these thresholds. Deformable objects of profile thesis only aim at theirs.
 StreamBounds bounds_of(const SceneSpec& spec, const RigidTriggers& rigid, const DeformableThresholds& deformables,

@@ -7,7 +7,9 @@
 #include <utility>
 
 #include <tactus/base/out_of_memory.h>
+#include <tactus/base/quantise.h>
 #include <tactus/base/rule.h>
+#include <tactus/elastic/elimination.h>
 #include <tactus/scene/scene_rules.h>
 
 namespace tactus {
@@ -91,6 +93,19 @@ std::optional<DrivenConstants::Body> body_of(const DrivenPhysics& physics, std::
   return fits ? std::optional(out) : std::nullopt;
 }
 
+/// err  invalid_argument R-API-1, 2 an inner vertex
+Result<ElasticBody> on_grid(ElasticPhysics physics, unsigned position_exp) {
+  constexpr double kLimit = 2147483647.0;
+  for (const Vec3& p : physics.inner) {
+    if (!is_finite(p)) return fail(Errc::invalid_argument, "R-API-1");
+    Vec3i& out = physics.body.inner.emplace_back();
+    if (!quantise(p.x, position_exp, kLimit, out[0]) || !quantise(p.y, position_exp, kLimit, out[1]) ||
+        !quantise(p.z, position_exp, kLimit, out[2]))
+      return fail(Errc::invalid_argument, "R-API-2");
+  }
+  return std::move(physics.body);
+}
+
 }  // namespace
 
 SceneBuilder& SceneBuilder::rigid(std::string name, const Pose& initial, std::uint8_t dof) {
@@ -138,8 +153,19 @@ bool SceneBuilder::can_drive(const DrivenPhysics& physics, std::uint32_t tick_ra
 }
 
 SceneBuilder& SceneBuilder::driven(const DrivenPhysics& physics) {
-  if (!rigid_.empty()) rigid_.back().driven = physics;
+  if (rigid_.empty()) is_of_nothing_ = true;
+  else rigid_.back().driven = physics;
   return *this;
+}
+
+SceneBuilder& SceneBuilder::elastic(ElasticPhysics physics) {
+  if (deformables_.empty()) is_of_nothing_ = true;
+  else deformables_.back().elastic = std::move(physics);
+  return *this;
+}
+
+bool SceneBuilder::can_work_out(const ElasticPhysics& physics, std::size_t vertices) {
+  return elastic_work(elimination(physics.body, vertices + physics.inner.size())) <= DecodeLimits().elastic_work;
 }
 
 SceneBuilder& SceneBuilder::promise(const RigidTriggers& rigid, const DeformableThresholds& deformables,
@@ -153,6 +179,7 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build() try {
     return tl::make_unexpected(SceneFinding{error, std::move(object)});
   };
   SceneBuilder taken = std::exchange(*this, SceneBuilder(spec_.tick_rate));
+  if (taken.is_of_nothing_) return refuse({Errc::invalid_argument, RuleName("R-API-5"), 0}, {});
   SceneSpec& spec = taken.spec_;
   const double ticks = std::floor(taken.extrapolation_.value_or(kExtrapolation) * spec.tick_rate + 0.5);
   if (!(ticks >= 0)) return refuse({Errc::invalid_argument, RuleName("R-API-4"), 0}, {});
@@ -186,6 +213,11 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build() try {
     auto object = make_deformable_object(of.name, of.surface, spec.grid.position);
     if (!object) return refuse(object.error(), of.name);
     if (const auto applied = apply(of.coding, spec.tick_rate, *object); !applied) return refuse(applied.error(), of.name);
+    if (of.elastic) {
+      auto body = on_grid(std::move(*of.elastic), spec.grid.position);
+      if (!body) return refuse(body.error(), of.name);
+      object->body = std::move(*body);
+    }
     if (!is_name(of.name) || !names.insert(of.name).second) return refuse({Errc::invalid, RuleName("R-STR-11"), 0}, of.name);
     if (const RuleName rule = broken_deformable_rule(*object)) return refuse({Errc::invalid, rule, 0}, of.name);
     spec.deformables.push_back(std::move(*object));

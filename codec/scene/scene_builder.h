@@ -57,6 +57,12 @@ struct DrivenPhysics {
   double damping = 0;    ///< [1/s] rate at which its velocities die away by themselves
 };
 
+/// What a deformable object is made of, that a client's device deforms.
+struct ElasticPhysics {
+  ElasticBody body{};         ///< but for its inner vertices
+  std::vector<Vec3> inner{};  ///< [m] at rest, world frame
+};
+
 /// What went wrong, and with which object.
 struct SceneFinding {
   Error error;
@@ -89,10 +95,15 @@ class SceneBuilder {
   SceneBuilder& driven(const DrivenPhysics& physics);
   /// Whether these constants can be told: the coupling over the mass up to 4.2e6 s^-2, radii of inertia of 31 um to 1 m.
   static bool can_drive(const DrivenPhysics& physics, std::uint32_t tick_rate) noexcept;
+  /// Let a client work out from its own device how the deformable object added last deforms. In sessions alone.
+  SceneBuilder& elastic(ElasticPhysics physics);
+  /// Whether every client accepts a body with so many vertices on its surface: about 10 000 in all if it is thin, 1300 of a cube.
+  static bool can_work_out(const ElasticPhysics& physics, std::size_t vertices);
   /// Declare the bounds that hold at a client that gets every packet.
   SceneBuilder& promise(const RigidTriggers& rigid, const DeformableThresholds& deformables, const LoadThresholds& loads = {});
 
-  /// err  invalid_argument R-API-1..4, R-API-10 a pose, surface or stiffness does not fit its grid; those of Scene::create
+  /// err  invalid_argument R-API-1..4, R-API-10 a pose, surface or stiffness does not fit its grid; R-API-5 driven() or
+  ///      elastic() before any such object; those of Scene::create
   tl::expected<SharedScene, SceneFinding> build();
 
  private:
@@ -106,6 +117,7 @@ class SceneBuilder {
     std::string name;
     TriMesh surface;
     DeformableCoding coding;
+    std::optional<ElasticPhysics> elastic{};
   };
 
   SceneSpec spec_;
@@ -114,6 +126,7 @@ class SceneBuilder {
   RigidProfile rigid_profile_ = RigidProfile::main;
   std::vector<Rigid> rigid_;
   std::vector<Deformable> deformables_;
+  bool is_of_nothing_ = false;  // driven() or elastic() came before any such object
   struct Promise {
     RigidTriggers rigid;
     DeformableThresholds deformables;

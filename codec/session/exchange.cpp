@@ -17,6 +17,7 @@ constexpr std::uint64_t kSilence = 1'000'000;      // [us] without acknowledgeme
 constexpr std::uint64_t kSeldom = 50'000;          // [us] from datagram to datagram then
 constexpr std::uint64_t kSparing = 1024;           // the wait is this part of the silence at least: numbers last for 17 minutes
 constexpr std::uint32_t kHeavyLoss = 65536 / 20;   // from here on, what is lost goes twice again
+constexpr std::uint32_t kSomeLoss = 65536 / 100;   // above, no acknowledgement waits long
 constexpr std::int64_t kSlowestCopy = 80'000;      // [us] until the other end has it
 constexpr std::uint64_t kFirstPatience = 250'000;  // [us] while no round trip is known
 
@@ -55,7 +56,8 @@ Result<bool> Exchange::handle(const Part& part, Reading& reading) noexcept {
     TACTUS_CHECK(acknowledged(*said, reading));
     return true;
   }
-  const Asks asks = std::holds_alternative<StatePart>(part)   ? Asks::now
+  const bool drives = path && direction_ == Direction::down;
+  const Asks asks = std::holds_alternative<StatePart>(part)   ? drives ? Asks::soon : Asks::now
                     : std::holds_alternative<ClockPart>(part) ? Asks::never
                                                               : Asks::soon;
   reading.asks = std::max(reading.asks, asks);
@@ -74,8 +76,13 @@ Result<bool> Exchange::handle(const Part& part, Reading& reading) noexcept {
 std::uint64_t Exchange::patience() const noexcept {
   if (!sent_.round_trip()) return kFirstPatience;
   const RoundTrip& trip = *sent_.round_trip();
-  const std::uint64_t held = direction_ == Direction::up ? kDownPatience : kUpPatience;  // by the other end
+  const std::uint64_t held = direction_ == Direction::down ? kUpPatience : path ? kDrivenPatience : kDownPatience;
   return static_cast<std::uint64_t>(trip.smoothed + 4 * trip.variation) + held;
+}
+
+ReceivedNumbers::Patience Exchange::own_patience() const noexcept {
+  if (direction_ == Direction::up) return {kUpPatience, kUpPatience};
+  return {kDownPatience, path && sent_.loss() <= kSomeLoss ? kDrivenPatience : kDownPatience};
 }
 
 void Exchange::report_link() noexcept {
@@ -147,7 +154,7 @@ Result<void> Exchange::take(const FragmentPart& fragment, Reading& reading) noex
 
 void Exchange::finish(const Reading& reading) noexcept {
   if (!reading.complete) return;
-  received_.accept(reading.heard.number, reading.now, reading.asks);
+  received_.accept(reading.heard.number, reading.now, reading.asks, own_patience());
   if (receiver) receiver->skip_number(reading.heard.number);
 }
 

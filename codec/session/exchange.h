@@ -25,7 +25,8 @@
 namespace tactus {
 
 inline constexpr std::uint64_t kHashEvery = 64;  ///< packets with a number that this divides: clients tell the hash of the state
-inline constexpr std::uint64_t kUpPatience = 10'000, kDownPatience = 25'000;  ///< [us] of acknowledgements in these directions
+/// [us] of acknowledgements in these directions; of a device whose path both ends know, while they tell of nothing that is missing
+inline constexpr std::uint64_t kUpPatience = 10'000, kDownPatience = 25'000, kDrivenPatience = 140'000;
 
 /// pre  `now` [us] never decreases.   Only receive_with() allocates.
 class Exchange {
@@ -136,6 +137,7 @@ class Exchange {
   void accept(std::uint64_t number, const Reading& reading) noexcept;
   void finish(const Reading& reading) noexcept;
   void report_link() noexcept;
+  ReceivedNumbers::Patience own_patience() const noexcept;
 
   bool is_acknowledgement_due(std::uint64_t now) const noexcept { return received_.due() && *received_.due() <= now; }
   std::optional<std::uint64_t> begin(std::uint64_t now, bool wanted) noexcept;
@@ -155,7 +157,7 @@ class Exchange {
   Direction direction_;
   std::uint64_t epoch_;
   DatagramWriter writer_;
-  ReceivedNumbers received_{direction_ == Direction::up ? kUpPatience : kDownPatience};
+  ReceivedNumbers received_;
   SentNumbers sent_;
   Fragments fragments_{0};
   std::array<Slot, SentNumbers::kRemembered> slots_{};

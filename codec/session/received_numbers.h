@@ -37,18 +37,20 @@ enum class Asks : std::uint8_t {
 
 class ReceivedNumbers {
  public:
-  /// in   patience  [us] an acknowledgement waits for a datagram to ride on
-  explicit ReceivedNumbers(std::uint64_t patience) noexcept : patience_(patience) {}
-
   /// The number that 14 bits of it stand for: the one nearest to the newest.
   /// err  state R-SES-4: it was received before, or is too old
   Result<std::uint64_t> extend(std::uint16_t wire) const noexcept;
   std::uint64_t newest() const noexcept { return received_.newest(); }    ///< highest number received, 0: none
   void receive(std::uint64_t number) noexcept { received_.add(number); }  ///< pre  extend()
 
+  /// [us] that an acknowledgement waits for a datagram to ride on: `all_is_well` if every number that the last one did not tell of has
+  /// come, and none that it said was missing; else `usual`.
+  struct Patience {
+    std::uint64_t usual = 0, all_is_well = 0;
+  };
   /// A received datagram, all of whose packets are decoded, is to be acknowledged.
   /// in   now  [us]
-  void accept(std::uint64_t number, std::uint64_t now, Asks asks) noexcept;
+  void accept(std::uint64_t number, std::uint64_t now, Asks asks, const Patience& patience) noexcept;
 
   bool has_news() const noexcept { return due_.has_value(); }
   /// [us] when an acknowledgement should go even if nothing else does
@@ -61,10 +63,11 @@ class ReceivedNumbers {
   static constexpr unsigned kUntold = 32;  // of the 65 that an acknowledgement tells of: so one of them may be lost
 
   NumberWindow received_, accepted_;
-  unsigned untold_ = 0;          // accepted since the last acknowledgement
-  std::uint64_t newest_at_ = 0;  // [us] when accepted_.newest() came
-  std::uint64_t patience_;
-  std::optional<std::uint64_t> due_;
+  unsigned untold_ = 0;                          // accepted since the last acknowledgement
+  std::uint64_t newest_at_ = 0;                  // [us] when accepted_.newest() came
+  std::optional<std::uint64_t> due_, asked_at_;  // asked_at_: by the first that asks since the last acknowledgement
+  std::uint64_t told_ = 0, above_told_ = 0;      // newest of the last acknowledgement; how many above it were accepted
+  bool changes_told_ = false;                    // one below it was accepted since
 };
 
 }  // namespace tactus

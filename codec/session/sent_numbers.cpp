@@ -83,7 +83,8 @@ void SentNumbers::count(bool lost) noexcept {
 std::uint32_t SentNumbers::loss() const noexcept {
   std::uint32_t lost = 0;
   for (const std::uint64_t word : fates_) lost += static_cast<std::uint32_t>(std::popcount(word));
-  return fate_count_ == 0 ? 0 : (lost << 16) / static_cast<std::uint32_t>(fate_count_);
+  constexpr std::size_t kLeast = 128;  // one of a few that is lost says little
+  return (lost << 16) / static_cast<std::uint32_t>(std::max(fate_count_, kLeast));
 }
 
 }  // namespace tactus

@@ -10,13 +10,12 @@
 namespace tactus {
 namespace {
 
-constexpr std::uint64_t kWelcomeEvery = 250'000;  // [us] of a new epoch, until the client has heard
-constexpr std::uint64_t kClockEvery = 100'000;    // [us]
-constexpr std::uint64_t kPieceEvery = 500;        // [us]: 16 Mbit/s
-constexpr std::int64_t kPieceQueue = 80'000;      // [us] that a piece may wait on its way
-constexpr std::uint64_t kJammedEvery = 50'000;    // [us]: packets through a long queue
-constexpr std::uint64_t kUnproven = 10'000'000;   // [us] for the first datagram in the epoch
-constexpr std::uint64_t kPaceEvery = 20'000;      // [us] until the client knows
+constexpr std::uint64_t kWelcomeEvery = 250'000;                             // [us] of a new epoch, until the client has heard
+constexpr std::uint64_t kClockEvery = 100'000, kDrivenClockEvery = 500'000;  // [us]
+constexpr std::uint64_t kPieceEvery = 500;                                   // [us]: 16 Mbit/s
+constexpr std::int64_t kPieceQueue = 80'000;                                 // [us] that a piece may wait on its way
+constexpr std::uint64_t kJammedEvery = 50'000;                               // [us]: packets through a long queue
+constexpr std::uint64_t kUnproven = 10'000'000;                              // [us] for the first datagram in the epoch
 constexpr unsigned kMostFaults = 100;
 constexpr unsigned kLeaves = 3;  // one of them should arrive
 
@@ -144,7 +143,7 @@ Result<void> ServerConnection::go_live(std::uint64_t now) noexcept try {
   if (join_.role == Role::participant) {
     TACTUS_TRY(exchange_->receiver, Receiver::create(served_.device));
     device_clock_.emplace(served_.scene->tick_rate, PlayoutOptions{.fixed = 0});
-    if (served_.scene->driven) {
+    if (served_.scene->has_paths()) {
       exchange_->path = std::make_shared<DevicePath>(served_.device);
       exchange_->sender->know(exchange_->path);
       pace_.emplace(served_.scene->tick_rate);
@@ -216,12 +215,12 @@ std::optional<std::span<const std::uint8_t>> ServerConnection::poll(std::uint64_
   const auto datagram = exchange_->poll(now, piece || wants_pace(now), [&](DatagramWriter& writer, std::uint64_t number) {
     if (now >= clock_at_ && !writer.empty()) {  // together with an acknowledgement
       writer.add(ClockPart{now});
-      clock_at_ = now + kClockEvery;
+      clock_at_ = now + (exchange_->path ? kDrivenClockEvery : kClockEvery);
     }
     const bool pace = pace_ && pace_->waits();
     if (pace) {
       pace_->tell(writer, number);
-      pace_at_ = now + kPaceEvery;
+      pace_at_ = now + exchange_->patience();
     }
     if (!piece) return pace;
     const std::uint64_t index = *exchange_->pieces->next(now, exchange_->patience());

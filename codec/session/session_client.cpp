@@ -21,6 +21,7 @@ constexpr std::uint64_t kFirstRetry = 250'000, kLastRetry = 2'000'000, kJoinFor 
 // [us] from one sign of life to the next: of a participant who feels something, over a network that loses or not; of another
 // participant; of an observer while packets come, and at rest.
 constexpr std::uint64_t kFeltAtLoss = 12'000, kFelt = 25'000, kParticipant = 50'000, kServed = 100'000, kIdle = 1'000'000;
+constexpr std::uint64_t kSeldom = 2;  // times these, of a client that works out what its device does
 constexpr std::uint32_t kSomeLoss = 65536 / 50;
 constexpr std::uint64_t kRecent = 1'000'000;     // [us]: what counts as now
 constexpr std::uint64_t kButtonsEvery = 20'000;  // [us] until they are acknowledged
@@ -204,7 +205,8 @@ Result<void> SessionClient::Impl::complete(std::uint64_t now) noexcept try {
     if (options.role == Role::observer) return {};
     TACTUS_TRY(SharedScene device, device_scene(*scene));
     TACTUS_TRY(auto sender, Sender::create(std::move(device), device_sender_options(options.device)));
-    if (scene->driven) {
+    fade.set_limits(scene->has_paths() ? ForceFade::kDriven : ForceFade::kUsual);
+    if (scene->has_paths()) {
       current->exchange.path = std::make_shared<DevicePath>(sender.scene());
       current->exchange.receiver->know(current->exchange.path);
     }
@@ -235,8 +237,9 @@ std::uint64_t SessionClient::Impl::sign_due() const noexcept {
     return current->exchange.next_send(sign_at + kParticipant);
   const std::uint64_t sent = std::max(sign_at, current->exchange.asked_at());
   const bool served = state == SessionState::receiving || sent < packet_at + kRecent;
-  const std::uint64_t felt = current->exchange.sent().loss() > kSomeLoss ? kFeltAtLoss : kFelt;
-  const std::uint64_t pause = feels ? felt : options.role == Role::participant ? kParticipant : served ? kServed : kIdle;
+  const std::uint64_t times = current->exchange.path ? kSeldom : 1;
+  const std::uint64_t felt = current->exchange.sent().loss() > kSomeLoss ? kFeltAtLoss : times * kFelt;
+  const std::uint64_t pause = feels ? felt : options.role == Role::participant ? times * kParticipant : served ? kServed : kIdle;
   return current->exchange.next_send(sent + pause);
 }
 

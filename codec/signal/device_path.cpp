@@ -25,6 +25,7 @@ void DevicePath::shift(std::int64_t from, std::int64_t offset) noexcept {
   if (shift_count_ > 0 && shifts_[(shift_count_ - 1) % kShifts].from >= from) return;
   const std::int64_t least = device_tick(from - 1).value_or(std::numeric_limits<std::int64_t>::min());
   shifts_[shift_count_++ % kShifts] = {from, offset, least};
+  if (!begins_) begins_ = from;
   ++revision_;
 }
 

@@ -44,6 +44,9 @@ class DevicePath {
     passed_ = device_tick(tick).value_or(passed_);
   }  ///< up to here nothing is added any more
 
+  /// Tick of the server from which on it may be known; nothing: no pace was told yet.
+  std::optional<std::int64_t> begins() const noexcept { return begins_; }
+
   /// The state that the device has at a tick of the server, and its own tick then.
   struct Place {
     const RigidState& state;
@@ -74,6 +77,7 @@ class DevicePath {
   std::array<Shift, kShifts> shifts_{};     // a ring
   std::size_t next_ = 0, count_ = 0, shift_count_ = 0;
   std::int64_t passed_ = -1;  // tick of the device
+  std::optional<std::int64_t> begins_;
   std::uint64_t revision_ = 0;
 };
 

@@ -59,6 +59,7 @@ Bytes RawHeader::body() const {
   w.bytes(loads);
   w.bytes(motion);
   w.bytes(driven);
+  w.bytes(elastic);
   w.bytes(extensions);
   return out;
 }

@@ -51,6 +51,7 @@ struct RawHeader {
   Bytes loads{};        ///< force_exp and load_users, if flags say so
   Bytes motion{};       ///< gravity and slide_deceleration, if flags say so
   Bytes driven{};       ///< constants of driven objects, if flags say so
+  Bytes elastic{};      ///< elastic bodies, if flags say so
   Bytes extensions{};
   std::array<std::uint8_t, 4> magic{0x89, 0x54, 0x43, 0x54};
   std::uint8_t version = 1;

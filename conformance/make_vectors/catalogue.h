@@ -88,6 +88,10 @@ void add_scene_orders(Catalogue& catalogue);
 void add_scene_stiffness(Catalogue& catalogue);
 void add_scene_motion(Catalogue& catalogue);
 void add_scene_driven(Catalogue& catalogue);
+void add_scene_elastic(Catalogue& catalogue);
+void add_scene_elastic_faults(Catalogue& catalogue);
+void add_scene_elastic_orders(Catalogue& catalogue);
+void add_scene_elastic_edges(Catalogue& catalogue);
 void add_file(Catalogue& catalogue);
 void add_packet_rigid(Catalogue& catalogue);
 void add_packet_deformable(Catalogue& catalogue);
@@ -107,6 +111,8 @@ void add_client_eased(Catalogue& catalogue);
 void add_client_curves(Catalogue& catalogue);
 void add_client_predictors(Catalogue& catalogue);
 void add_client_driven(Catalogue& catalogue);
+void add_client_elastic(Catalogue& catalogue);
+void add_client_elastic_edges(Catalogue& catalogue);
 void add_session(Catalogue& catalogue);
 void add_session_server(Catalogue& catalogue);
 void add_deformable_header(Catalogue& catalogue);
@@ -122,5 +128,6 @@ void add_deformable_layers_fade(Catalogue& catalogue);
 void add_deformable_orders(Catalogue& catalogue);
 void add_deformable_springs(Catalogue& catalogue);
 void add_deformable_clusters(Catalogue& catalogue);
+void add_deformable_following(Catalogue& catalogue);
 
 }  // namespace tactus::conformance

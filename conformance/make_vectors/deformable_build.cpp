@@ -188,6 +188,7 @@ Bytes DeformableComposer::packet(const MainStep& step) {
   head.visual = step.visual;
   head.density = step.density;
   head.weight_set = step.weight_set;
+  head.following = step.following;
   std::vector<std::int32_t> coefficients = step.coefficients;
   coefficients.resize(item.basis.steps.size());
   Bytes packet = with_payload(sequence_, [&](RangeEncoder& coder) {

@@ -109,6 +109,7 @@ struct MainStep {
   std::uint32_t visual = 100;
   std::uint32_t density = 1;
   std::uint32_t weight_set = 0;
+  Following following = Following::none;     ///< of an object with an elastic body
   std::vector<std::int32_t> coefficients{};  ///< empty: all 0
   Residuals residuals{};                     ///< none: all 0
 };

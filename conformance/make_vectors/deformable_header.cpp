@@ -56,9 +56,9 @@ void add_valid(Catalogue& c) {
 
 void add_counts(Catalogue& c) {
   const Rejection cut{"truncated", "R-STR-5"}, overlong{"malformed", "R-STR-5"};
-  c.invalid("flag-32", "The sixth flag is set.", {"malformed", "R-STR-4"}, [] {
+  c.invalid("flag-64", "The seventh flag is set.", {"malformed", "R-STR-4"}, [] {
     RawHeader header = only({});
-    header.flags = 32;
+    header.flags = 64;
     return header.bytes();
   }());
   c.invalid("no-deformable-count", "The flag is set and the body ends.", cut, around({}));

@@ -19,6 +19,7 @@ constexpr std::array kFlags{
     Flag{"eased", "the scene is eased"},
     Flag{"motion", "the scene has motion constants"},
     Flag{"driven", "the scene is driven"},
+    Flag{"elastic", "a deformable object has an elastic body"},
     Flag{"basis", "a deformable object has modes that are declared"},
     Flag{"computed_basis", "a deformable object has modes that both ends compute"},
     Flag{"layered", "a deformable object has haptic and visual layers"},
@@ -98,7 +99,7 @@ void skim_deformable(Skimmer& in, Features& out) {
 std::uint64_t skim_declaration(Skimmer& in, Features& out) {
   in.skip(6);
   const unsigned flags = in.u16();
-  const bool has_deformables = flags & 1u, known = flags <= 31;
+  const bool has_deformables = flags & 1u, known = flags <= 63;
   if (flags & 4u) out.flags.insert("eased");
   in.skip(4 + 10);  // body_size, tick_rate to max_extrapolation
   if (in.u8() > 1) out.flags.insert("baselines");
@@ -121,6 +122,7 @@ std::uint64_t skim_declaration(Skimmer& in, Features& out) {
   }
   if (known && (flags & 8u)) out.flags.insert("motion");
   if (known && (flags & 16u)) out.flags.insert("driven");
+  if (known && (flags & 32u)) out.flags.insert("elastic");
   return substreams;
 }
 

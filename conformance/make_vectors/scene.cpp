@@ -121,7 +121,7 @@ void add_frame_faults(Catalogue& c) {
   c.invalid("profile-2", "profile is 2.", {"malformed", "R-STR-3"}, changed_header([](RawHeader& h) { h.profile = 2; }));
   c.invalid("profile-1", "profile is 1: reserved.", {"unsupported", "R-STR-3"},
             changed_header([](RawHeader& h) { h.profile = 1; }));
-  c.invalid("flags-32", "The sixth flag is set.", {"malformed", "R-STR-4"}, changed_header([](RawHeader& h) { h.flags = 32; }));
+  c.invalid("flags-64", "The seventh flag is set.", {"malformed", "R-STR-4"}, changed_header([](RawHeader& h) { h.flags = 64; }));
   c.invalid("flags", "The highest flag is set.", {"malformed", "R-STR-4"},
             changed_header([](RawHeader& h) { h.flags = 0x8000; }));
   c.invalid("huge-body", "body_size is one over the limit of 2^20; no body follows.", {"limit_exceeded", "R-STR-14"},

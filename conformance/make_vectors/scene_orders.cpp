@@ -10,18 +10,18 @@ void add_frame(Catalogue& c) {
             first(changed_header([](RawHeader& h) { h.version = 2; }), 11));
   c.invalid("version-before-profile", "version and profile are 2.", {"unsupported", "R-STR-2", "R-STR-3"},
             changed_header([](RawHeader& h) { h.version = h.profile = 2; }));
-  c.invalid("profile-before-flags", "profile is 2, flags are 16.", {"malformed", "R-STR-3", "R-STR-4"},
+  c.invalid("profile-before-flags", "profile is 2, flags are 64.", {"malformed", "R-STR-3", "R-STR-4"},
             changed_header([](RawHeader& h) {
               h.profile = 2;
-              h.flags = 32;
+              h.flags = 64;
             }));
-  c.invalid("profile-1-before-flags", "profile is 1, flags are 16.", {"unsupported", "R-STR-3", "R-STR-4"},
+  c.invalid("profile-1-before-flags", "profile is 1, flags are 64.", {"unsupported", "R-STR-3", "R-STR-4"},
             changed_header([](RawHeader& h) {
               h.profile = 1;
-              h.flags = 32;
+              h.flags = 64;
             }));
-  c.invalid("flags-before-size", "flags are 32, and the body is too large.", {"malformed", "R-STR-4", "R-STR-14"},
-            first(changed_header([](RawHeader& h) { h.flags = 32; }), 8) + Bytes{0x01, 0x00, 0x10, 0x00});
+  c.invalid("flags-before-size", "flags are 64, and the body is too large.", {"malformed", "R-STR-4", "R-STR-14"},
+            first(changed_header([](RawHeader& h) { h.flags = 64; }), 8) + Bytes{0x01, 0x00, 0x10, 0x00});
   c.invalid("magic-before-cut", "Five bytes, the first of which is not the magic's.", {"malformed", "R-STR-1", "R-STR-5"},
             first(changed_header([](RawHeader& h) { h.magic[0] = 0x88; }), 5));
   c.invalid("crc-before-body", "tick_rate is 0, and the check value is wrong.", {"checksum", "R-STR-15", "R-STR-6"},

@@ -34,6 +34,11 @@ inline constexpr const char* kThesis = "50 Packet of profile thesis";
 inline constexpr const char* kDeformableStartModels = "50 Start models";
 inline constexpr const char* kComputedBasis = "50 Computed basis";
 inline constexpr const char* kClusters = "50 Clusters";
+inline constexpr const char* kElastic = "20 Elastic bodies";
+
+inline constexpr const char* kTouch = "55 Touch";
+inline constexpr const char* kStep = "55 Step";
+inline constexpr const char* kShown = "55 Shown";
 inline constexpr const char* kClient = "60 Applying an update";
 inline constexpr const char* kShownPose = "60 Shown pose";
 inline constexpr const char* kPlayout = "60 Playout";

@@ -31,9 +31,10 @@ namespace {
 using Sized =
     ::testing::Types<tactus_rigid_bounds, tactus_deformable_bounds, tactus_load_bounds, tactus_limits, tactus_packet_info,
                      tactus_scene_info, tactus_rigid_info, tactus_deformable_info, tactus_receiver_options, tactus_scene_options,
-                     tactus_deformable_options, tactus_sender_options, tactus_truth, tactus_event, tactus_session_status,
-                     tactus_server_options, tactus_client_options, tactus_trace_info, tactus_trace_object, tactus_trace_user,
-                     tactus_trace_mesh, tactus_trace_coding, tactus_errors_options, tactus_error_summary, tactus_mesh_summary>;
+                     tactus_deformable_options, tactus_driven_physics, tactus_elastic_physics, tactus_sender_options,
+                     tactus_truth, tactus_event, tactus_session_status, tactus_server_options, tactus_client_options,
+                     tactus_trace_info, tactus_trace_object, tactus_trace_user, tactus_trace_mesh, tactus_trace_coding,
+                     tactus_errors_options, tactus_error_summary, tactus_mesh_summary>;
 
 /// On the heap, where a sanitizer sees what goes beyond.
 std::vector<std::uint8_t> block(std::size_t size, std::uint8_t filling) {
@@ -212,6 +213,14 @@ TEST_F(CSizes, OfAnEncoder) {
     const std::uint32_t triangle[] = {0, 1, 2};
     return tactus_scene_builder_deformable(out, "sheet", corners, 3, triangle, 1, options, error);
   };
+  const auto made_of = [](auto add) {
+    return [add](auto* physics, auto* error) {
+      tactus_scene_builder* out = nullptr;
+      EXPECT_EQ(tactus_scene_builder_create(nullptr, &out, nullptr), TACTUS_OK);
+      const Builder builder(out);
+      return add(out, physics, error);
+    };
+  };
   const auto send = [&](auto* options, auto* error) {
     tactus_sender* out = nullptr;
     const tactus_status status = tactus_sender_create(plain.get(), options, &out, error);
@@ -234,6 +243,10 @@ TEST_F(CSizes, OfAnEncoder) {
             taking<tactus_scene_options>(build)},
            {"deformable_options", 112, Direction::option,
             initialised<tactus_deformable_options_init, tactus_deformable_options>(), taking<tactus_deformable_options>(deform)},
+           {"driven_physics", 72, Direction::option, initialised<tactus_driven_physics_init, tactus_driven_physics>(),
+            taking<tactus_driven_physics>(made_of(tactus_scene_builder_driven))},
+           {"elastic_physics", 128, Direction::option, initialised<tactus_elastic_physics_init, tactus_elastic_physics>(),
+            taking<tactus_elastic_physics>(made_of(tactus_scene_builder_elastic))},
            {"sender_options", 72, Direction::option, initialised<tactus_sender_options_init, tactus_sender_options>(),
             taking<tactus_sender_options>(send)},
            {"truth", 72, Direction::option, initialised<tactus_truth_init, tactus_truth>(), taking<tactus_truth>(encode_nothing)},

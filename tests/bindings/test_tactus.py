@@ -212,6 +212,30 @@ def test_what_is_built_by_hand_is_coded_as_by_the_program(traces, tmp_path):
             assert writer.finish() == (tmp_path / "s.tct").read_bytes(), name
 
 
+def test_what_a_device_drives_and_deforms():
+    box = tactus.RigidObject("box", driven=tactus.Driven(mass=0.2, inertia=(1e-4, 2e-4, 3e-4), stiffness=400, friction=0.3))
+    corners = 0.05 * np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    body = tactus.Elastic(tets=[[0, 1, 2, 4], [0, 3, 1, 4], [0, 2, 3, 4], [1, 3, 2, 4]], materials=[[1e4, 0.4, 1000], [2e4, 0.4, 1000]],
+                          coupling=300, inner=[[0.0125, 0.0125, 0.0125]], material=[0, 1, 0, 1], fixed=[0, 2], gravity=(0, 0, -9.81))
+    soft = tactus.Mesh("soft", corners, faces, frame_period=5, elastic=body)
+    plain = [tactus.build_scene([dataclasses.replace(box, driven=d)], [dataclasses.replace(soft, elastic=e)]).to_bytes()
+             for d, e in ((None, None), (box.driven, None), (None, body), (box.driven, body))]
+    assert len(set(plain)) == 4 and len(plain[0]) < len(plain[1]) < len(plain[2]) < len(plain[3])
+    assert tactus.Scene(plain[3]).to_bytes() == plain[3]
+    for change, said in (({"material": [0, 1]}, "2 numbers of materials for 4"), ({"tets": [[0, 1, 2, 0.5]]}, "tets are whole"),
+                         ({"fixed": [1.5]}, "fixed are whole")):
+        with pytest.raises(ValueError, match=said):
+            tactus.build_scene(meshes=[dataclasses.replace(soft, elastic=dataclasses.replace(body, **change))])
+    for change, rule in (({"coupling": 0}, "R-ELA-2"), ({"fixed": [5]}, "R-ELA-3"), ({"tets": [[0, 2, 1, 4], *body.tets[1:]]}, "R-ELA-4")):
+        with pytest.raises(tactus.Error) as refused:
+            tactus.build_scene(meshes=[dataclasses.replace(soft, elastic=dataclasses.replace(body, **change))])
+        assert refused.value.rule == rule
+    with pytest.raises(tactus.Error) as refused:
+        tactus.build_scene([dataclasses.replace(box, driven=tactus.Driven(0, (1, 1, 1), 1))])
+    assert refused.value.rule == "R-API-4"
+
+
 @needs_program
 def test_clusters_of_a_mesh(traces):
     trace = tactus.read_trace(traces / "mesh.mcap")

@@ -4,5 +4,6 @@
 namespace tactus::golden {
 
 bool run_meshes();  ///< false: the codec refused its input
+bool run_bodies();  ///< the same of elastic bodies
 
 }  // namespace tactus::golden

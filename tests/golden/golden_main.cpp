@@ -178,5 +178,9 @@ int main() {
     std::fputs("meshes: the codec refused its input\n", stderr);
     return 1;
   }
+  if (!golden::run_bodies()) {
+    std::fputs("bodies: the codec refused its input\n", stderr);
+    return 1;
+  }
   return 0;
 }

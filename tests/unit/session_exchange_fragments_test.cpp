@@ -107,10 +107,7 @@ TEST(Exchange, ALostFragmentComesAgainAlone) {
   EXPECT_EQ(ends.client->traffic().packets_heard, before + 1) << "the packet is whole";
   ends.expect_same();
   ends.answer();
-  const auto again = ends.drain(*ends.server);
-  ASSERT_EQ(again.size(), 1u) << "losses are many: it goes twice";
-  ends.give(again);
-  ends.answer();
+  EXPECT_TRUE(ends.drain(*ends.server).empty()) << "one loss is not many: it goes once";
   EXPECT_EQ(ends.server->sent().highest_acknowledged(), ends.server->sent().newest()) << "what comes again is acknowledged, too";
 }
 

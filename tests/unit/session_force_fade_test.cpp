@@ -28,6 +28,15 @@ TEST(ForceFade, FallsFrom70To100MillisecondsWithoutNews) {
   for (const std::uint64_t age : {101u, 1000u, 1'000'000u}) EXPECT_EQ(fade.share(kStart + age * kMillisecond, kStart), 0);
 }
 
+/// A client that works out what its device does waits longer for news.
+TEST(ForceFade, FallsFrom300To400MillisecondsInADrivenScene) {
+  ForceFade fade = risen();
+  fade.set_limits(ForceFade::kDriven);
+  EXPECT_EQ(fade.share(kStart + 300 * kMillisecond, kStart), ForceFade::kAll);
+  EXPECT_EQ(fade.share(kStart + 350 * kMillisecond, kStart), ForceFade::kAll / 2);
+  EXPECT_EQ(fade.share(kStart + 400 * kMillisecond, kStart), 0);
+}
+
 TEST(ForceFade, ReturnsOverHalfASecond) {
   for (const std::uint64_t step : {100u, 1000u, 10'000u}) {  // however often one looks
     ForceFade fade = risen();

@@ -82,7 +82,7 @@ TEST(SentNumbers, TheRoundTripLeavesOutWhatTheOtherEndHeld) {
 /// Both ends over a way that loses and delays: what is said to be lost was, and the share is right.
 TEST(SentNumbers, LossIsFoundOut) {
   SentNumbers sent;
-  ReceivedNumbers received(10'000);
+  ReceivedNumbers received;
   std::mt19937_64 random(5);
   std::multimap<std::uint64_t, std::uint64_t> on_the_way;
   std::multimap<std::uint64_t, Acknowledgement> back;
@@ -99,7 +99,7 @@ TEST(SentNumbers, LossIsFoundOut) {
       const std::uint64_t number = received.extend(static_cast<std::uint16_t>(on_the_way.begin()->second)).value();
       ASSERT_EQ(number, on_the_way.begin()->second);
       received.receive(number);
-      received.accept(number, on_the_way.begin()->first, Asks::soon);
+      received.accept(number, on_the_way.begin()->first, Asks::soon, {10'000, 10'000});
     }
     if (received.due().value_or(now + 1) <= now) back.emplace(now + 20000, received.acknowledge(now));
     for (; !back.empty() && back.begin()->first <= now; back.erase(back.begin())) {
@@ -131,6 +131,15 @@ TEST(WindowedMinimum, ForgetsWhatIsOld) {
   EXPECT_EQ(least.value(), 90);
   least.add(20, 900000);
   EXPECT_EQ(least.value(), 20);
+}
+
+/// One of the first few that is lost is no loss of ten per cent.
+TEST(SentNumbers, FewNumbersSayLittleOfLosses) {
+  SentNumbers sent;
+  for (int i = 0; i < 10; ++i) sent.send(1000);
+  tell(sent, {5, 0, 0}, 41'000);
+  tell(sent, {10, Acknowledgement::kNoTiming, 0b1}, 500'000);
+  EXPECT_EQ(sent.loss(), 65536 / 128);
 }
 
 }  // namespace

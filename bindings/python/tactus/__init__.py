@@ -14,7 +14,7 @@ from ._library import Error
 from .codec import CONTACT, Packet, Player, Receiver, Sender, Shape, StreamWriter
 from .options import DeformableBounds, Limits, ReceiverOptions, RigidBounds, SceneOptions, SenderOptions
 from .run import Comparison, ErrorSummary, MeshErrors, Replica, compare, decode, encode, read_table
-from .scene import Mesh, RigidObject, Scene, build_scene, find_clusters
+from .scene import Driven, Elastic, Mesh, RigidObject, Scene, build_scene, find_clusters
 from .trace import USER, Frame, Trace, TraceReader, read_trace
 
 __version__ = f"{_abi.TACTUS_VERSION >> 16}.{_abi.TACTUS_VERSION >> 8 & 255}.{_abi.TACTUS_VERSION & 255}"
@@ -29,7 +29,8 @@ INTERPOLATION_HERMITE, INTERPOLATION_BLENDING = _abi.TACTUS_INTERPOLATION_HERMIT
 INTERPOLATION_PLAYOUT = _abi.TACTUS_INTERPOLATION_PLAYOUT
 
 __all__ = [
-    "BASELINE_ACKNOWLEDGED", "BASELINE_PREVIOUS", "CONTACT", "Comparison", "DeformableBounds", "Error", "ErrorSummary", "Frame",
+    "BASELINE_ACKNOWLEDGED", "BASELINE_PREVIOUS", "CONTACT", "Comparison", "DeformableBounds", "Driven", "Elastic", "Error",
+    "ErrorSummary", "Frame",
     "HAPTIC_CONE", "HAPTIC_FIXED", "HAPTIC_ISOTROPIC", "HAPTIC_OFF", "HAPTIC_PERCEPTUAL", "INTERPOLATION_BLENDING",
     "INTERPOLATION_HERMITE", "INTERPOLATION_LINEAR", "INTERPOLATION_NONE", "INTERPOLATION_PLAYOUT", "Limits", "Mesh",
     "MeshErrors", "PROFILE_MAIN", "PROFILE_THESIS", "Packet", "Player", "REDUCTION_DEAD_RECKONING", "REDUCTION_NONE", "Receiver",

@@ -15,16 +15,59 @@ from .options import DeformableBounds, Limits, RigidBounds, SceneOptions
 
 
 @dataclasses.dataclass(frozen=True)
+class Driven:
+    """What a participant's device needs to know of a rigid object that it pushes or holds, in a session.
+
+    mass       [kg];  inertia  (3,) [kg m^2] about the axes of the object's frame
+    stiffness  [N/m] of the coupling between device and proxy
+    hold       [N/m] of that to an object that it holds; 0: it holds none
+    friction   of the proxy on the object;  damping  [1/s] rate at which its velocities die away
+    """
+    mass: float
+    inertia: Sequence[float]
+    stiffness: float
+    hold: float = 0
+    friction: float = 0
+    damping: float = 0
+
+
+@dataclasses.dataclass(frozen=True)
 class RigidObject:
     """A rigid object at rest.
 
     position  (3,) [m] world;  rotation  (4,) unit quaternion w x y z, object to world
     dof       bits of the axes it may move along (1 2 4) and turn about (8 16 32); 0: static, never sent
+    driven    declare how a device drives it; None: do not. Not read back from a scene
     """
     name: str
     position: Sequence[float] = (0, 0, 0)
     rotation: Sequence[float] = (1, 0, 0, 0)
     dof: int = _abi.TACTUS_DOF_ALL
+    driven: Driven | None = None
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Elastic:
+    """What a mesh is made of, for a participant whose device deforms it in a session. Vertices are those of the mesh, then the inner ones.
+
+    tets        (T, 4) uint32 corners a b c d, (b - a) x (c - a) . (d - a) > 0
+    materials   (M, 3) Young's modulus [N/m^2], Poisson's ratio, density [kg/m^3]
+    coupling    [N/m] between device and proxy
+    inner       (I, 3) [m] world, at rest
+    material    (T,) of each tetrahedron; None: the first of all
+    fixed       vertices that do not move, ascending
+    mass_damping [1/s], stiffness_damping [s], gravity (3,) [m/s^2], friction of the proxy
+    """
+    tets: npt.NDArray[np.uint32]
+    materials: Sequence[Sequence[float]]
+    coupling: float
+    inner: npt.ArrayLike = ()
+    material: npt.NDArray[np.uint8] | None = None
+    fixed: Sequence[int] = ()
+    mass_damping: float = 0
+    stiffness_damping: float = 0
+    gravity: Sequence[float] = (0, 0, 0)
+    friction: float = 0
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -38,6 +81,7 @@ class Mesh:
     rings         around a touched triangle: the area of interest, where the haptic bound holds
     clusters      (V,) uint8: of vertices that move alike, its basis in place of modes; None: none
     blend         rounds in which clusters are blended where they meet, 0 to 32
+    elastic       declare what it is made of; None: do not. Not read back from a scene
     """
     name: str
     vertices: npt.NDArray[np.float64]
@@ -47,6 +91,7 @@ class Mesh:
     rings: int = 3
     clusters: npt.NDArray[np.uint8] | None = None
     blend: int = 0
+    elastic: Elastic | None = None
 
 
 class Scene(Handle):
@@ -133,6 +178,15 @@ def _arrays(of: Mesh) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.uint32]]:
     return vertices, triangles
 
 
+def _whole(name: str, what: str, values: npt.ArrayLike, dtype: type, width: int = 0) -> npt.NDArray:
+    """Whole numbers as C takes them, in rows of `width`; 0: in none."""
+    given = np.asarray(values).reshape((-1, width) if width else -1)
+    out = np.ascontiguousarray(given, dtype)
+    if not np.array_equal(out, given):
+        raise ValueError(f"{name}: {what} are whole numbers from 0 to {np.iinfo(dtype).max}")
+    return out
+
+
 def find_clusters(mesh: Mesh, shapes: npt.ArrayLike, most: int) -> Mesh:
     """The mesh with at most so many clusters of vertices that move alike.
 
@@ -159,6 +213,13 @@ class _Builder(Handle):
     def add_rigid(self, of: RigidObject) -> None:
         pose = _abi.tactus_pose((ctypes.c_double * 3)(*of.position), (ctypes.c_double * 4)(*of.rotation))
         call(core().tactus_scene_builder_rigid, self.handle, text_of(of.name.encode()), ctypes.byref(pose), of.dof, subject=of.name)
+        if of.driven is not None:
+            told = _abi.tactus_driven_physics()
+            core().tactus_driven_physics_init(told, ctypes.sizeof(told))
+            for field in dataclasses.fields(of.driven):
+                value = getattr(of.driven, field.name)
+                setattr(told, field.name, (ctypes.c_double * 3)(*value) if field.name == "inertia" else value)
+            call(core().tactus_scene_builder_driven, self.handle, told, subject=of.name)
 
     def add_mesh(self, of: Mesh) -> None:
         vertices, triangles = _arrays(of)
@@ -172,6 +233,28 @@ class _Builder(Handle):
             options.clusters, options.cluster_count, options.blend = clusters.ctypes.data, int(clusters.max()) + 1, of.blend
         call(core().tactus_scene_builder_deformable, self.handle, text_of(of.name.encode()), vertices.ctypes.data, len(vertices),
              triangles.ctypes.data, len(triangles), options, subject=of.name)
+        if of.elastic is not None:
+            self._add_elastic(of.name, of.elastic)
+
+    def _add_elastic(self, name: str, of: Elastic) -> None:
+        tets = _whole(name, "tets", of.tets, np.uint32, 4)
+        inner = np.ascontiguousarray(of.inner, np.float64).reshape(-1, 3)
+        materials = np.ascontiguousarray(of.materials, np.float64).reshape(-1, 3)
+        fixed = _whole(name, "fixed", of.fixed, np.uint32)
+        material = None if of.material is None else _whole(name, "material", of.material, np.uint8)
+        if material is not None and len(material) != len(tets):
+            raise ValueError(f"{name}: {len(material)} numbers of materials for {len(tets)} tetrahedra")
+        told = _abi.tactus_elastic_physics()
+        core().tactus_elastic_physics_init(told, ctypes.sizeof(told))
+        told.materials, told.material_count = materials.ctypes.data, len(materials)
+        told.inner, told.inner_count = inner.ctypes.data, len(inner)
+        told.tets, told.tet_count = tets.ctypes.data, len(tets)
+        told.fixed, told.fixed_count = fixed.ctypes.data, len(fixed)
+        told.material = None if material is None else material.ctypes.data
+        told.gravity = (ctypes.c_double * 3)(*of.gravity)
+        for part in ("mass_damping", "stiffness_damping", "coupling", "friction"):
+            setattr(told, part, getattr(of, part))
+        call(core().tactus_scene_builder_elastic, self.handle, told, subject=name)
 
     def build(self) -> Scene:
         scene, error = Scene(), _abi.tactus_error()

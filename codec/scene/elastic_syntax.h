@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Elastic bodies in a scene declaration. spec/20-scene.md section 4.1. Internal to the library.
+#pragma once
+
+#include <span>
+
+#include <tactus/base/bytes.h>
+#include <tactus/base/result.h>
+#include <tactus/base/rule.h>
+#include <tactus/scene/deformable_object.h>
+
+namespace tactus {
+
+bool has_elastic_body(std::span<const DeformableObject> objects) noexcept;
+
+/// The rule that the body of an object breaks, if it has one: R-ELA-1..3.   time O(tets)
+/// pre  the rest of the object breaks none
+RuleName broken_elastic_rule(const DeformableObject& object) noexcept;
+/// Of a body that breaks no other rule: every tetrahedron has a volume, every free vertex a tetrahedron, and there is one (R-ELA-4).
+/// time O(tets); allocates
+bool is_solid(const DeformableObject& object, unsigned position_exp);
+
+/// Of all deformable objects.   pre  one has a body
+void write_elastic(ByteWriter& out, std::span<const DeformableObject> objects);
+/// Allocates in proportion to the bytes received.
+/// err  truncated, malformed R-STR-5; malformed, invalid R-ELA-1; invalid R-ELA-2..4, R-DEF-5
+Result<void> parse_elastic(ByteReader& in, std::span<DeformableObject> objects, unsigned position_exp);
+
+}  // namespace tactus

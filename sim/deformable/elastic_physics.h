@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What a client is told of a deformable object, so that it can work out what its own device does to it. spec/55-elastic.md
+#pragma once
+
+#include <optional>
+
+#include <tactus/scene/scene_builder.h>
+#include <tactus/sim/scene/scene.h>
+
+namespace tactus::sim {
+
+/// Nothing: the scene says so, its elements do not turn, it has more than 255 materials, or it is too much for a client.
+std::optional<ElasticPhysics> elastic_physics(const SceneDeformable& object, const Vec3& gravity);
+
+}  // namespace tactus::sim
