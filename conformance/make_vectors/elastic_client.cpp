@@ -159,9 +159,11 @@ Bytes any(std::uint64_t seed) {
     const double young = some({1e3, 1e4, 1e5}), poisson = part() * 1.4 - 0.91, density = some({1e3, 1e4});
     body.materials.push_back({young, poisson, density});
   }
-  for (std::uint64_t left = mesh.tets.size(); body.materials.size() > 1 && left > 0; left -= body.lengths.back().first)
-    body.lengths.emplace_back(std::min<std::uint64_t>(left, 1 + random.below(9)),
-                              static_cast<std::uint8_t>(random.below(static_cast<std::uint32_t>(body.materials.size()))));
+  for (std::uint64_t left = mesh.tets.size(); body.materials.size() > 1 && left > 0; left -= body.lengths.back().first) {
+    const std::uint64_t length = std::min<std::uint64_t>(left, 1 + random.below(9));  // arguments have no order
+    const std::uint32_t material = random.below(static_cast<std::uint32_t>(body.materials.size()));
+    body.lengths.emplace_back(length, static_cast<std::uint8_t>(material));
+  }
   const bool has_weight = random.below(3) == 0;
   body.constants = {some({0, 10, 100}), some({0, 0.001, 0.03}), 0, 0, 0, some({50, 500, 5000}), some({0, 0.5, 3})};
   for (std::size_t axis = kGravityX; axis <= kGravityZ && has_weight; ++axis) body.constants[axis] = (part() - 0.5) * 20;
