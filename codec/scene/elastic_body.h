@@ -24,8 +24,8 @@ struct ElasticBody {
   static constexpr double kLargest = 1e15;           ///< of any constant
   static constexpr std::uint32_t kMostTicks = 1024;  ///< of a frame
 
-  std::vector<std::array<std::int32_t, 3>>
-      inner;                               ///< at rest, x 2^-position_exp m; their numbers follow those of the object's vertices
+  /// At rest, x 2^-position_exp m. Their numbers follow those of the object's vertices.
+  std::vector<std::array<std::int32_t, 3>> inner;
   std::vector<Tet> tets;                   ///< (b - a) x (c - a) . (d - a) > 0
   std::vector<ElasticMaterial> materials;  ///< 1..kMaxMaterials
   std::vector<std::uint8_t> material;      ///< of each tetrahedron

@@ -76,8 +76,7 @@ Result<void> parse_tets(ByteReader& in, std::uint64_t count, std::size_t vertice
     ElasticBody::Tet tet{};
     std::int64_t last = first;
     for (std::uint32_t& corner : tet) {
-      constexpr std::uint64_t kFarthest =
-          4 * kMaxMeshVertices;  // a difference so large leads to no vertex, nor do those after it
+      constexpr std::uint64_t kFarthest = 4 * kMaxMeshVertices;  // leads to no vertex, nor do the differences after it
       last += unzigzag(std::min(in.varint(), kFarthest));
       corner = last < 0 || last >= std::int64_t{kMaxMeshVertices} ? kNoVertex : static_cast<std::uint32_t>(last);
     }

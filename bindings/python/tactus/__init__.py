@@ -30,11 +30,10 @@ INTERPOLATION_PLAYOUT = _abi.TACTUS_INTERPOLATION_PLAYOUT
 
 __all__ = [
     "BASELINE_ACKNOWLEDGED", "BASELINE_PREVIOUS", "CONTACT", "Comparison", "DeformableBounds", "Driven", "Elastic", "Error",
-    "ErrorSummary", "Frame",
-    "HAPTIC_CONE", "HAPTIC_FIXED", "HAPTIC_ISOTROPIC", "HAPTIC_OFF", "HAPTIC_PERCEPTUAL", "INTERPOLATION_BLENDING",
-    "INTERPOLATION_HERMITE", "INTERPOLATION_LINEAR", "INTERPOLATION_NONE", "INTERPOLATION_PLAYOUT", "Limits", "Mesh",
-    "MeshErrors", "PROFILE_MAIN", "PROFILE_THESIS", "Packet", "Player", "REDUCTION_DEAD_RECKONING", "REDUCTION_NONE", "Receiver",
-    "ReceiverOptions", "Replica", "RigidBounds", "RigidObject", "Scene", "SceneOptions", "Sender", "SenderOptions", "Shape",
-    "StreamWriter", "Trace", "TraceReader", "USER", "build_scene", "compare", "decode", "encode", "find_clusters", "read_table",
-    "read_trace",
+    "ErrorSummary", "Frame", "HAPTIC_CONE", "HAPTIC_FIXED", "HAPTIC_ISOTROPIC", "HAPTIC_OFF", "HAPTIC_PERCEPTUAL",
+    "INTERPOLATION_BLENDING", "INTERPOLATION_HERMITE", "INTERPOLATION_LINEAR", "INTERPOLATION_NONE", "INTERPOLATION_PLAYOUT",
+    "Limits", "Mesh", "MeshErrors", "PROFILE_MAIN", "PROFILE_THESIS", "Packet", "Player", "REDUCTION_DEAD_RECKONING",
+    "REDUCTION_NONE", "Receiver", "ReceiverOptions", "Replica", "RigidBounds", "RigidObject", "Scene", "SceneOptions", "Sender",
+    "SenderOptions", "Shape", "StreamWriter", "Trace", "TraceReader", "USER", "build_scene", "compare", "decode", "encode",
+    "find_clusters", "read_table", "read_trace",
 ]
