@@ -3,7 +3,7 @@
 # Installs missing packages, builds and runs Tactus on Debian 12. Needs root or sudo only to install packages.
 #   ./go demo     simulate a touch, encode, decode and compare; report and figure in out/demo/ (3 to 4 minutes on 2 cores, 300 MB)
 #   ./go view     the same, and a page that shows it in a browser, out/demo/stream.html (2 minutes and 500 MB more)
-#   ./go test     build with g++ and clang, run every test (55 minutes on 2 cores, 4 GB)
+#   ./go test     build with g++ and clang, run every test (an hour on 2 cores, 4 GB)
 #   ./go bench    build and run the benchmarks; JSON in build/bench/
 #   ./go devices  capture a device of the kernel's own making in an emulated machine, from /dev/uhid to the trace (30 s after the build)
 #   ./go site     write the documentation as one static site: examples, libraries, specification, reports (30 s)
@@ -87,9 +87,9 @@ run_test() {
   step 'sanitizers: all tests' tests/check.sh test asan
   step 'codec alone: no package needed, nothing else linked' tests/check.sh codec-only
   step 'codec: MemorySanitizer over all fuzz corpora' tests/check.sh msan
-  step 'same bits from every compiler and optimisation level' tests/check.sh exact
+  step 'same bits from both compilers, without and with optimisation' tests/check.sh exact
   step 'clang-format' tests/check.sh format
-  step 'clang-tidy' tests/check.sh tidy
+  step 'clang-tidy: codec, files, devices, bindings' tests/check.sh tidy codec io metrics device bindings
   cat build/log/*.log | awk '/tests failed out of/ { failed += $4; all += $NF } END { printf "%d passed, %d failed\n", all - failed, failed }'
 }
 
