@@ -4,12 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <string>
 
 #include <tactus/trace/byte_source.h>
 #include <tactus/trace/mcap_reader.h>
+#include "tests/unit/temp_file.h"
 
 namespace tactus {
 namespace {
@@ -30,7 +30,8 @@ TraceFrame frame_of(std::int64_t tick) {
 
 /// Times of the messages of each topic [ms], of 100 ticks.
 std::map<std::string, std::vector<std::uint64_t>> written(const FoxgloveOptions& options) {
-  const std::string path = testing::TempDir() + "view.mcap";
+  const TempFile file;
+  const std::string& path = file.path();
   auto writer = FoxgloveWriter::create(path, info_of(), {{.box = {0.1, 0.1, 0.1}}}, options);
   EXPECT_TRUE(writer);
   for (std::int64_t tick = 0; tick < 100; ++tick) EXPECT_TRUE(writer->write(frame_of(tick)));
@@ -46,7 +47,6 @@ std::map<std::string, std::vector<std::uint64_t>> written(const FoxgloveOptions&
   }
   EXPECT_FALSE(reader->cut_short());
   EXPECT_EQ(count, writer->messages());
-  std::remove(path.c_str());
   return out;
 }
 

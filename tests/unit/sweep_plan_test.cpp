@@ -3,20 +3,20 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdio>
 #include <fstream>
 #include <string>
+
+#include "tests/unit/temp_file.h"
 
 namespace tactus::cli {
 namespace {
 
 /// A plan of a command with places for `a`, `b` and `c`, and these tables.
 tl::expected<SweepPlan, Failure> plan_with(const std::string& tables) {
-  const std::string path = testing::TempDir() + "plan.toml";
-  std::ofstream(path) << "name = \"p\"\ncommand = [\"x\", \"{a}\", \"{b}\", \"{c}\"]\n" << tables << "\n[measure]\nm = \"/m\"\n";
-  auto plan = load_plan(path);
-  std::remove(path.c_str());
-  return plan;
+  const TempFile file(".toml");
+  std::ofstream(file.path()) << "name = \"p\"\ncommand = [\"x\", \"{a}\", \"{b}\", \"{c}\"]\n"
+                             << tables << "\n[measure]\nm = \"/m\"\n";
+  return load_plan(file.path());
 }
 
 std::string error(const std::string& tables) {

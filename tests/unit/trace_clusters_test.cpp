@@ -11,6 +11,7 @@
 #include <tactus/receiver.h>
 #include <tactus/trace/trace_scene.h>
 #include "tests/unit/deformable_fixture.h"
+#include "tests/unit/temp_file.h"
 
 namespace tactus {
 namespace {
@@ -33,8 +34,7 @@ std::vector<float> walking(const TriMesh& rest, std::int64_t frame) {
   return out;
 }
 
-std::string recording(const TriMesh& rest) {
-  const std::string path = (std::filesystem::path(::testing::TempDir()) / "tactus-clusters.mcap").string();
+void record(const TriMesh& rest, const std::string& path) {
   TraceInfo info{.tick_rate = 30,
                  .objects = {},
                  .users = {},
@@ -49,7 +49,6 @@ std::string recording(const TriMesh& rest) {
     EXPECT_TRUE(writer.write(frame));
   }
   EXPECT_TRUE(writer.finish());
-  return path;
 }
 
 /// Bytes of the packets; the bound is checked on what the receiver shows.
@@ -79,10 +78,10 @@ std::size_t coded(const TriMesh& rest, const ClusterBasis& clusters) {
 
 TEST(TraceClusters, OfABodyThatWalksTakeHalfOfItsBits) {
   const TriMesh rest = testing::sheet(kSquares, kSquares);
-  const std::string path = recording(rest);
-  auto reader = TraceReader::open(path).value();
+  const TempFile file;
+  record(rest, file.path());
+  auto reader = TraceReader::open(file.path()).value();
   const auto found = find_clusters(reader, 4);
-  std::filesystem::remove(path);
   ASSERT_TRUE(found);
   ASSERT_EQ(found->size(), 1U) << "a mesh without a shape has no clusters";
   const ClusterBasis& clusters = found->at("walker");
@@ -93,15 +92,15 @@ TEST(TraceClusters, OfABodyThatWalksTakeHalfOfItsBits) {
 
 TEST(TraceClusters, TellWhatIsWrong) {
   const TriMesh rest = testing::sheet(2, 2);
-  const std::string path = recording(rest);
-  auto reader = TraceReader::open(path).value();
+  const TempFile file;
+  record(rest, file.path());
+  auto reader = TraceReader::open(file.path()).value();
   EXPECT_STREQ(find_clusters(reader, 65).error().rule, "R-API-4");
-  std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
-  auto cut = TraceReader::open(path);
+  std::filesystem::resize_file(file.path(), std::filesystem::file_size(file.path()) / 2);
+  auto cut = TraceReader::open(file.path());
   if (cut) {
     EXPECT_TRUE(find_clusters(*cut, 2)) << "what is whole is used";
   }
-  std::filesystem::remove(path);
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <optional>
@@ -15,30 +14,11 @@
 #include <vector>
 
 #include <tactus/trace/trace_file.h>
+#include "tests/unit/temp_file.h"
 
 namespace tactus {
 
 using Bytes = std::vector<std::uint8_t>;
-
-class TempFile {
- public:
-  TempFile() {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    static int count = 0;
-    path_ = ::testing::TempDir() + "tactus_" + test->name() + std::to_string(count++) + ".mcap";
-  }
-  ~TempFile() { std::filesystem::remove(path_); }
-  TempFile(const TempFile&) = delete;
-  TempFile& operator=(const TempFile&) = delete;
-  const std::string& path() const { return path_; }
-  Bytes bytes() const {
-    std::ifstream in(path_, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-
- private:
-  std::string path_;
-};
 
 /// Bits, not values: -0 is not 0.
 inline std::string image(const TraceFrame& frame) {
