@@ -110,6 +110,7 @@ exact() {
   done
 }
 
+# `./go test` names what others link, the codec and its bindings: all of it takes as long as building and testing with one compiler.
 # Without tests/: tests/bench alone takes two minutes of a core, and each `for (auto _ : state)` in it is a finding, as is a leak in the header
 # of Google Benchmark.
 tidy() { # [FOLDER...]
