@@ -24,6 +24,7 @@ struct ServerCodec {
   SenderOptions sender;
   TraceCoding coding{};   ///< of the scene's objects
   bool sessions = false;  ///< clients have sessions of their own, which code for them
+  double told = 1;  ///< with sessions: mass and Young's modulus that clients are told, times the true ones; 0: they are told none
 };
 
 struct ServerOptions {
@@ -66,7 +67,7 @@ class Server {
   Server(const Scene& scene, const ServerOptions& options);
   Result<void> add_objects(const ServerOptions& options);
   using Driven = std::vector<std::optional<DrivenPhysics>>;
-  Driven driven_objects() const;
+  Driven driven_objects(double told) const;
   MotionPhysics motion_physics() const;
   Result<void> add_codec(const ServerCodec& codec);
   void add_noise() noexcept;

@@ -42,7 +42,8 @@ struct Simulation::Impl {
 Result<Simulation> Simulation::create(const Scene& scene, const SimulationOptions& options) {
   ServerOptions of_server{options.seed, {}, options.mesh_noise, options.estimate_every};
   const bool is_remote = options.channel && options.channel->network;
-  if (options.channel) of_server.codec = ServerCodec{options.channel->sender, options.channel->coding, is_remote};
+  if (options.channel)
+    of_server.codec = ServerCodec{options.channel->sender, options.channel->coding, is_remote, options.channel->told};
   auto impl = std::make_unique<Impl>();
   impl->seed = options.seed;
   TACTUS_TRY(impl->server, Server::create(scene, of_server));

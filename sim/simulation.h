@@ -35,6 +35,7 @@ struct ChannelOptions {
   SenderOptions sender;
   ReplicaOptions replica;
   TraceCoding coding{};        ///< of the scene's objects
+  double told = 1;             ///< with a network: as ServerCodec::told
   const Scene* own = nullptr;  ///< what clients simulate themselves, if they do; null: the scene
   NetworkMaker network{};      ///< each user has a client behind it; none: one client, and no time passes
 };

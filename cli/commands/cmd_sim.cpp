@@ -45,6 +45,7 @@ struct SimOptions {
   double mesh_noise = 0;  // [m] RMS per axis
   bool codec = false;
   std::string compensation;  // empty: the scene's
+  double told = 1;           // of what devices move, times the true
   TriggerArguments triggers;
   MeshArguments meshes;
   ReplicaOptions replica;
@@ -339,13 +340,12 @@ Outcome add_network(const SimOptions& options, const sim::Scene& scene, Networke
 }
 
 /// The sessions end, and the capture is whole.
-Outcome keep_capture(const Networked& networked) {
+Outcome keep_capture([[maybe_unused]] const Networked& networked) {
 #ifdef TACTUS_HAS_NET
   if (!networked.capture) return {};
   networked.network->leave();
   return networked.capture->keep();
 #else
-  static_cast<void>(networked);
   return {};
 #endif
 }
@@ -359,8 +359,9 @@ Outcome run(const SimOptions& options) {
                             fmt::format("Give at most {:.0f}s.", std::floor(kMostTicks / sim::kTickRate)));
   if (!options.pcap.empty() && !options.has_network())
     return refuse_arguments("--pcap: without a network there are no datagrams", "Give a network with --link.");
-  if (!options.has_network() && options.common.command->find("--playout")->count() > 0)
-    return refuse_arguments("--playout: without a network nothing is late", "Give --link or --uplink, or leave out --playout.");
+  for (const auto& [name, why] : {std::pair{"--playout", "nothing is late"}, {"--told", "nobody is told anything"}})
+    if (!options.has_network() && options.common.command->find(name)->count() > 0)
+      return refuse_arguments(fmt::format("{}: without a network {}", name, why), "Give --link or --uplink, or leave it out.");
   TACTUS_TRY(const auto scene, read_scene(options));
   note_idle_options(*options.common.command, subjects_of(scene), "scene");
   sim::SimulationOptions settings{.seed = options.seed,
@@ -369,8 +370,8 @@ Outcome run(const SimOptions& options) {
                                   .mesh_noise = options.mesh_noise,
                                   .estimate_every = kEstimateEvery};
   if (options.has_channel())
-    settings.channel = sim::ChannelOptions{
-        options.meshes.sender(options.triggers), options.replica, options.meshes.coding(options.triggers), {}};
+    settings.channel = sim::ChannelOptions{options.meshes.sender(options.triggers), options.replica,
+                                           options.meshes.coding(options.triggers), options.told};
   Networked networked;
   if (options.has_network()) TACTUS_CHECK(add_network(options, scene, networked, *settings.channel));
   auto simulation = sim::Simulation::create(scene, settings);
@@ -395,7 +396,6 @@ Outcome run(const SimOptions& options) {
   const TraceInfo info = simulation->info();
   auto trace = TraceWriter::create(output.working_path(), info);
   if (!trace) return refuse(options.output, trace.error());
-
   Report report = make_report(options, info);
   describe_deformables(*simulation, report);
   if (options.has_channel() && !options.has_network() && simulation->stream_scene()->loads) report.loads.emplace();
@@ -476,6 +476,7 @@ void setup_sim(Command& app, Action& action) {
   add_link(command, "--uplink", options->uplink, "Network from the clients to the server, if it differs");
   add_playout(command, options->playout);
   add_compensation(command, options->compensation);
+  add_told(command, options->told);
 #ifdef TACTUS_HAS_NET
   command
       .add_option("--pcap", options->pcap,

@@ -64,6 +64,7 @@ constexpr std::array kOptions{
     Row{"--uplink", kNetwork},
     Row{"--playout", kNetwork},
     Row{"--compensation", kNetwork},
+    Row{"--told", kNetwork},
     Row{"--clients", kNetwork},
     Row{"--key", kNetwork},
     Row{"--subject", kRecording},

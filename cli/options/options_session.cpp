@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "cli/options/options_codec.h"
 #include "cli/options/units.h"
 
 namespace tactus::cli {
@@ -26,6 +27,15 @@ Option* add_playout(Command& app, std::string& value) {
 std::optional<std::uint32_t> playout_of(const std::string& value) {
   if (value == "adaptive") return std::nullopt;
   return static_cast<std::uint32_t>(std::llround(1e6 * parse_quantity(value, Dimension::time)->value));
+}
+
+Option* add_told(Command& app, double& value) {
+  return app
+      .add_option("--told", value,
+                  "Mass and stiffness that clients are told of what their devices move, times the true ones, to see what a wrong "
+                  "model costs; 0: they are told none [1]")
+      ->check(number(0, 1e3))
+      ->type_name("FACTOR");
 }
 
 Option* add_key(Command& app, std::string& value) {

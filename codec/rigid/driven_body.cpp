@@ -58,6 +58,9 @@ std::int64_t length(const Vec& v) noexcept {  // pre  |v[i]| <= 2^31
                static_cast<std::uint64_t>(v[2] * v[2]));
 }
 
+/// length(v) <= limit, without the root.   pre  |v[i]| <= 2^30, limit >= 0
+bool is_within(const Vec& v, std::int64_t limit) noexcept { return limit >= bit(31) || dot(v, v) < (limit + 1) * (limit + 1); }
+
 /// A small turn; its half-angle vector x 2^-30.
 Quat30 small_turn(const Vec& half) noexcept {
   Quat30 out{kOne30, 0, 0, 0};
@@ -144,8 +147,9 @@ void DrivenBody::slide(const DrivenConstants::Body& body, const Vec& device) noe
     foot[i] = device[i] + round_shift(depth * normal_[i], 30);
     lag[i] = limited(point_[i] - foot[i], 30);
   }
-  const std::int64_t far = length(lag), rim = round_shift(body.friction * depth, 8);
-  if (far <= rim) return;
+  const std::int64_t rim = round_shift(body.friction * depth, 8);
+  if (is_within(lag, rim)) return;
+  const std::int64_t far = length(lag);
   for (std::size_t i = 0; i < 3; ++i) point_[i] = limited(foot[i] + round_div(lag[i] * rim, far), 28);
 }
 

@@ -8,15 +8,19 @@
 
 namespace tactus {
 
-PoseOffset kept_offset(const RigidPose& shown, const RigidState& update) noexcept {
+PoseOffset part_kept(const PoseOffset& whole, std::uint8_t keep) noexcept {
   constexpr std::array kSixteenths{16, 15, 12, 8};
-  const std::int64_t kept = kSixteenths[update.keep];
-  PoseOffset out = offset_between({update.position, update.rotation}, shown);
+  const std::int64_t kept = kSixteenths[keep];
+  PoseOffset out;
   for (std::size_t i = 0; i < 3; ++i) {
-    out.position[i] = static_cast<std::int32_t>(round_shift(out.position[i] * kept, 4));
-    out.rotation[i] = static_cast<std::int32_t>(round_shift(out.rotation[i] * kept, 4));
+    out.position[i] = static_cast<std::int32_t>(round_shift(whole.position[i] * kept, 4));
+    out.rotation[i] = static_cast<std::int32_t>(round_shift(whole.rotation[i] * kept, 4));
   }
   return out;
+}
+
+PoseOffset kept_offset(const RigidPose& shown, const RigidState& update) noexcept {
+  return part_kept(offset_between({update.position, update.rotation}, shown), update.keep);
 }
 
 RigidPose eased(const RigidPose& pose, const RigidState& update, const PoseOffset& offset, std::int64_t tick) noexcept {

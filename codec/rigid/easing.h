@@ -12,8 +12,10 @@
 
 namespace tactus {
 
+/// The part of an offset that an update lets stay.
+PoseOffset part_kept(const PoseOffset& whole, std::uint8_t keep) noexcept;
 /// What is left to go at the tick of an update: from its pose to the one that was shown, the part of it that the update lets stay.
-/// time about 0.5 us
+/// time about 0.2 us
 PoseOffset kept_offset(const RigidPose& shown, const RigidState& update) noexcept;
 
 /// `pose` of dead reckoning from `update`, with what is left of the offset at `tick`.   pre  tick >= update.tick.   time about 100 ns

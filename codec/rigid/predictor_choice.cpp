@@ -41,9 +41,7 @@ void PredictorChoice::read(std::int64_t tick, std::span<const RigidState> truth)
   for (const std::uint32_t i : scene_.moving()) past_[i * kKept + newest_] = truth[i];
 }
 
-bool PredictorChoice::is_candidate(std::uint32_t object, const RigidState& truth, Predictor predictor) const noexcept {
-  if (predictor == Predictor::linear) return true;
-  if (predictor == Predictor::driven) return predictor_.knows_device() && truth.contact != DrivenContact{};
+bool PredictorChoice::is_declared_for(std::uint32_t object, Predictor predictor) const noexcept {
   if (!scene_.motion) return false;
   const MotionConstants& motion = *scene_.motion;
   if (predictor == Predictor::slide) return motion.slide_deceleration != 0;
@@ -52,16 +50,26 @@ bool PredictorChoice::is_candidate(std::uint32_t object, const RigidState& truth
   return motion.gravity != Vec3i{};
 }
 
+const RigidState* PredictorChoice::start(std::uint32_t object, std::int64_t now, std::size_t n) const noexcept {
+  constexpr std::array<std::size_t, 8> kAges{0, 1, 2, 4, 7, 11, 17, 26};
+  const auto kept = [&](std::size_t age) { return &past_[object * kKept + (newest_ + kKept - age) % kKept]; };
+  if (count_ > 0 && kept(0)->tick == now) ++n;
+  if (n >= kAges.size() || kAges[n] >= count_) return nullptr;
+  const RigidState* const out = kept(kAges[n]);
+  return now - out->tick > longest_ ? nullptr : out;
+}
+
+double PredictorChoice::error_of(Predictor predictor, std::uint32_t object, RigidState from, const RigidState& truth,
+                                 const PermittedError& permitted) const noexcept {
+  from.predictor = predictor;
+  return error(predictor_.shown(object, from, truth.tick), truth, permitted, scene_.grid.position);
+}
+
 PredictorChoice::Record PredictorChoice::record_of(Predictor predictor, std::uint32_t object, const RigidState& truth,
-                                                   const PermittedError& permitted, std::size_t enough) const noexcept {
+                                                   const PermittedError& permitted) const noexcept {
   Record out;
-  for (std::size_t age = 0; age < count_ && out.served < enough; age += 1 + age / 2) {
-    RigidState from = past_[object * kKept + (newest_ + kKept - age) % kKept];
-    if (from.tick == truth.tick) continue;
-    if (truth.tick - from.tick > longest_) break;
-    if (predictor == Predictor::driven && from.contact == DrivenContact{}) break;
-    from.predictor = predictor;
-    const double e = error(predictor_.shown(object, from, truth.tick), truth, permitted, scene_.grid.position);
+  while (const RigidState* const from = start(object, truth.tick, out.served)) {
+    const double e = error_of(predictor, object, *from, truth, permitted);
     if (e > 1) break;
     out.error += e;
     ++out.served;
@@ -69,18 +77,30 @@ PredictorChoice::Record PredictorChoice::record_of(Predictor predictor, std::uin
   return out;
 }
 
-Predictor PredictorChoice::choose(std::uint32_t object, const RigidState& truth, const PermittedError& permitted) const noexcept {
+bool PredictorChoice::is_driven(std::uint32_t object, const RigidState& truth, const PermittedError& permitted, Predictor other,
+                                std::size_t served) const noexcept {
+  for (std::size_t n = served + 1; n-- > 0;) {
+    const RigidState* const from = start(object, truth.tick, n);
+    if (from == nullptr || from->contact == DrivenContact{}) continue;
+    return error_of(Predictor::driven, object, *from, truth, permitted) < error_of(other, object, *from, truth, permitted);
+  }
+  return false;
+}
+
+Predictor PredictorChoice::choose(std::uint32_t object, const RigidState& truth, const PermittedError& permitted,
+                                  bool is_touched) const noexcept {
+  const bool may_be_driven = predictor_.knows_device() && truth.contact != DrivenContact{};
   Predictor best = Predictor::linear;
-  Record most = record_of(best, object, truth, permitted, kKept);
-  for (const Predictor predictor : {Predictor::ballistic, Predictor::slide, Predictor::driven}) {
-    if (!is_candidate(object, truth, predictor)) continue;
-    const std::size_t enough = predictor == Predictor::driven ? most.served + 1 : kKept;  // it takes its time
-    const Record record = record_of(predictor, object, truth, permitted, enough);
+  if (is_touched && !may_be_driven) return best;
+  Record most = record_of(best, object, truth, permitted);
+  for (const Predictor predictor : {Predictor::ballistic, Predictor::slide}) {
+    if (is_touched || !is_declared_for(object, predictor)) continue;
+    const Record record = record_of(predictor, object, truth, permitted);
     if (record.served < most.served || (record.served == most.served && record.error >= most.error)) continue;
     best = predictor;
     most = record;
   }
-  return best;
+  return may_be_driven && is_driven(object, truth, permitted, best, most.served) ? Predictor::driven : best;
 }
 
 }  // namespace tactus

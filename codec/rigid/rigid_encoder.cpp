@@ -268,7 +268,7 @@ Predictor RigidEncoder::chosen(std::uint32_t object, const RigidTriggers& bounds
         std::min(permitted.position, fixed ? bounds.fixed_position : force_budget(bounds, force) / contact.stiffness);
     if (fixed) permitted.rotation = std::min(permitted.rotation, bounds.fixed_rotation);
   }
-  return choice_->choose(object, truth_[object], permitted);
+  return choice_->choose(object, truth_[object], permitted, is_touched(object));
 }
 
 /// The true state with the velocities that an update is to tell.   pre  it is predicted linearly
@@ -298,8 +298,10 @@ void RigidEncoder::choose_ease(Pending& update, CodedUpdate& coded, const Accele
   const std::uint32_t object = update.object;
   const RigidPose shown = sent_[object].path.pose(predictor_, truth_[object].tick);
   RigidState tried = update.state;
+  const RigidPose own{tried.position, tried.rotation};
+  const PoseOffset offset = offset_between(own, shown);
   for (tried.ease = 1; tried.keep < 4; ++tried.keep) {
-    const RigidPose kept = eased({tried.position, tried.rotation}, tried, kept_offset(shown, tried), tried.tick);
+    const RigidPose kept = eased(own, tried, part_kept(offset, tried.keep), tried.tick);
     if (!within(visual_, kept, truth_[object]) || !haptic_within(object, kept, 1.0)) continue;
     tried.ease = longest_ease(course_of(tried, kept, samples_[object], acceleration), share, scene_.tick_rate);
     if (tried.ease == 0) return;

@@ -48,9 +48,13 @@ std::optional<DevicePath::Place> DevicePath::place(std::int64_t tick) const noex
 }
 
 std::optional<std::array<std::int32_t, 3>> DevicePath::at(std::int64_t tick) const noexcept {
+  Known& known = known_[static_cast<std::size_t>(tick) % known_.size()];
+  if (known.tick == tick && known.revision == revision_) return known.position;
   const auto found = place(tick);
   if (!found) return std::nullopt;
-  return RigidPredictor(*scene_).pose(found->state, found->tick).position;
+  const Vec3i out = RigidPredictor(*scene_).pose(found->state, found->tick).position;
+  if (found->tick <= passed_) known = {tick, revision_, out};
+  return out;
 }
 
 }  // namespace tactus

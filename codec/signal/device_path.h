@@ -53,7 +53,7 @@ class DevicePath {
     std::int64_t tick = 0;
   };
   std::optional<Place> place(std::int64_t tick) const noexcept;  ///< nothing: not known, or no longer.   time O(packets after it)
-  /// [position grid] where the device is.   time that of place() and RigidPredictor::pose()
+  /// [position grid] where the device is.   time that of place() and RigidPredictor::pose(); of the last 256 ticks that are past, once
   std::optional<std::array<std::int32_t, 3>> at(std::int64_t tick) const noexcept;
   std::uint64_t revision() const noexcept { return revision_; }  ///< changes when the past does
   const SharedScene& scene() const noexcept { return scene_; }
@@ -68,6 +68,12 @@ class DevicePath {
   struct Shift {
     std::int64_t from = 0, offset = 0, least = 0;
   };
+  /// What at() has found of a tick that is past.
+  struct Known {
+    std::int64_t tick = -1;
+    std::uint64_t revision = 0;
+    std::array<std::int32_t, 3> position{};
+  };
   std::optional<std::int64_t> device_tick(std::int64_t tick) const noexcept;
   Packet& packet_at(std::size_t back) noexcept { return packets_[(next_ + kPackets - back) % kPackets]; }
   const Packet& packet_at(std::size_t back) const noexcept { return packets_[(next_ + kPackets - back) % kPackets]; }
@@ -75,6 +81,7 @@ class DevicePath {
   SharedScene scene_;
   std::array<Packet, kPackets> packets_{};  // a ring, by number
   std::array<Shift, kShifts> shifts_{};     // a ring
+  mutable std::array<Known, 256> known_{};  // by tick
   std::size_t next_ = 0, count_ = 0, shift_count_ = 0;
   std::int64_t passed_ = -1;  // tick of the device
   std::optional<std::int64_t> begins_;

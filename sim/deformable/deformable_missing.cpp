@@ -11,7 +11,7 @@ Result<std::unique_ptr<DeformableObjects>> make_deformable_objects(const Scene&,
   return fail(Errc::unsupported, "R-SIM-2");
 }
 
-std::optional<ElasticPhysics> elastic_physics(const SceneDeformable&, const Vec3&) { return std::nullopt; }
+std::optional<ElasticPhysics> elastic_physics(const SceneDeformable&, const Vec3&, double) { return std::nullopt; }
 
 Result<StiffnessMap> stiffness_map(const SceneDeformable&) { return fail(Errc::unsupported, "R-SIM-2"); }
 

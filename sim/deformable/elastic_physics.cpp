@@ -23,10 +23,10 @@ std::vector<std::uint32_t> numbers(const TetMesh& mesh, const TetSurface& surfac
 }
 
 /// Each material once.   out  false: there are too many
-bool add_materials(const SceneDeformable& object, ElasticBody& body) {
+bool add_materials(const SceneDeformable& object, double told, ElasticBody& body) {
   for (std::size_t t = 0; t < object.mesh.tets.size(); ++t) {
     const SceneMaterial& m = object.materials[object.materials.size() == 1 ? 0 : t];
-    const ElasticMaterial material{m.young * object.told_young, m.poisson, m.density};
+    const ElasticMaterial material{told * m.young, m.poisson, m.density};
     const auto known = std::ranges::find(body.materials, material);
     if (known == body.materials.end() && body.materials.size() == ElasticBody::kMaxMaterials) return false;
     body.material.push_back(static_cast<std::uint8_t>(known - body.materials.begin()));
@@ -37,8 +37,8 @@ bool add_materials(const SceneDeformable& object, ElasticBody& body) {
 
 }  // namespace
 
-std::optional<ElasticPhysics> elastic_physics(const SceneDeformable& object, const Vec3& gravity) {
-  if (!object.corotated || object.told_young == 0) return std::nullopt;
+std::optional<ElasticPhysics> elastic_physics(const SceneDeformable& object, const Vec3& gravity, double told) {
+  if (!object.corotated || told == 0) return std::nullopt;
   const TetSurface surface = tactus::sim::surface(object.mesh);
   ElasticPhysics out{.body = {.inner = {},
                               .tets = object.mesh.tets,
@@ -50,7 +50,7 @@ std::optional<ElasticPhysics> elastic_physics(const SceneDeformable& object, con
                               .gravity = gravity,
                               .coupling = object.stiffness,
                               .friction = object.friction}};
-  if (!add_materials(object, out.body)) return std::nullopt;
+  if (!add_materials(object, told, out.body)) return std::nullopt;
   const std::vector<std::uint32_t> number = numbers(object.mesh, surface, out.inner);
   for (Tet& tet : out.body.tets)
     for (std::uint32_t& corner : tet) corner = number[corner];

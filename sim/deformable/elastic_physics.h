@@ -9,7 +9,8 @@
 
 namespace tactus::sim {
 
-/// Nothing: the scene says so, its elements do not turn, it has more than 255 materials, or it is too much for a client.
-std::optional<ElasticPhysics> elastic_physics(const SceneDeformable& object, const Vec3& gravity);
+/// in   told  times the true Young's modulus; 0: nothing is told
+/// out  nothing: as told, its elements do not turn, it has more than 255 materials, or it is too much for a client.
+std::optional<ElasticPhysics> elastic_physics(const SceneDeformable& object, const Vec3& gravity, double told = 1);
 
 }  // namespace tactus::sim

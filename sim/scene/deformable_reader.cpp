@@ -164,7 +164,7 @@ SceneDeformable read_deformable(TomlReader& in, const toml::table& table, const 
   const std::string path = "deformable";
   in.allow(table, path,
            {"name", "mesh", "cells", "cell", "position", "young", "poisson", "density", "region", "fixed", "elasticity",
-            "mass_damping", "stiffness_damping", "stiffness", "friction", "method", "solver", "rate", "told_young"});
+            "mass_damping", "stiffness_damping", "stiffness", "friction", "method", "solver", "rate"});
   SceneDeformable body;
   body.name = in.name(table, path);
   body.mesh = read_mesh(in, table, path, folder);
@@ -175,7 +175,6 @@ SceneDeformable read_deformable(TomlReader& in, const toml::table& table, const 
   body.stiffness = in.number(table, path, "stiffness", {1e-3, 1e5}, touch.stiffness);
   body.friction = in.number(table, path, "friction", {0, 100}, touch.friction);
   body.rate = in.whole(table, path, "rate", {1, 1000}, 1);
-  body.told_young = in.number(table, path, "told_young", {0, 1e3}, 1.0);
   body.method = kMethods.at(in.word(table, path, "method", kMethods, "auto"));
   body.solver = kSolvers.at(in.word(table, path, "solver", kSolvers, "auto"));
   const Vec3 position = in.vector(table, path, "position", kPlace);

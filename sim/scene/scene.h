@@ -55,7 +55,6 @@ struct SceneDeformable {
   double friction = 0;                           ///< of the virtual proxies
   std::string method = "auto", solver = "auto";  ///< of time integration; auto: chosen by the scene's stiffness
   std::uint32_t rate = 1;                        ///< N: deformed every N ticks (thesis figure 4.14), 1..1000
-  double told_young = 1;  ///< Young's modulus that clients are told, times the true one; 0: they are told no body
 };
 
 /// A mass on a spring and a damper that yields along one axis (thesis 4.3.1): an infinite plane, pressed from its outer side.

@@ -23,10 +23,11 @@ struct Course {
   double felt = 0;  // [N] mean difference between the force felt and the server's, from its own state
 };
 
-/// A scene over a network.
-Course course(const sim::Scene& scene, const sim::LinkOptions& link, std::int64_t ticks) {
+/// A scene over a network.   in  told  times the true Young's modulus: what clients are told
+Course course(const sim::Scene& scene, const sim::LinkOptions& link, std::int64_t ticks, double told = 1) {
   sim::SessionNetwork* network = nullptr;
   sim::ChannelOptions channel;
+  channel.told = told;
   channel.sender.deformable.thresholds = {.visual = kVisual, .weber_fraction = 0.025, .depth_floor = 2e-4};
   channel.coding.spring_modes = 48;
   channel.network = [&](SharedScene declared, std::size_t users,
@@ -66,19 +67,14 @@ Course course(const sim::Scene& scene, const sim::LinkOptions& link, std::int64_
   return out;
 }
 
-/// A shipped scene whose clients are told so many times Young's modulus, or no body.
-sim::Scene membrane(double told_young = 1) {
-  sim::Scene scene = sim::load_scene(*sim::find_scene("membrane-large")).value();
-  scene.deformables[0].told_young = told_young;
-  return scene;
-}
+sim::Scene membrane() { return sim::load_scene(*sim::find_scene("membrane-large")).value(); }
 
 TEST(Elastic, OneWhoKnowsTheBodyNeedsHardlyAPacket) {
   const Course knows = course(membrane(), {.delay = 10'000}, 4000);
   EXPECT_GT(knows.frames, 150u);
   EXPECT_EQ(knows.outside, 0u);
   EXPECT_LE(knows.packets, 4u);
-  const Course ignorant = course(membrane(0), {.delay = 10'000}, 4000);
+  const Course ignorant = course(membrane(), {.delay = 10'000}, 4000, 0);
   EXPECT_EQ(ignorant.outside, 0u);
   EXPECT_GT(ignorant.packets, 20 * knows.packets);
   EXPECT_LT(knows.datagrams, ignorant.datagrams / 3);
@@ -87,8 +83,8 @@ TEST(Elastic, OneWhoKnowsTheBodyNeedsHardlyAPacket) {
 
 /// Young's modulus is 10 % off: the bounds hold, and packets are fewer than without a body.
 TEST(Elastic, AWrongBodyKeepsTheBounds) {
-  const Course wrong = course(membrane(1.1), {.delay = 10'000}, 4000);
-  const Course ignorant = course(membrane(0), {.delay = 10'000}, 4000);
+  const Course wrong = course(membrane(), {.delay = 10'000}, 4000, 1.1);
+  const Course ignorant = course(membrane(), {.delay = 10'000}, 4000, 0);
   EXPECT_EQ(wrong.outside, 0u);
   EXPECT_LT(wrong.packets, ignorant.packets);
   EXPECT_LT(wrong.felt, 1.02 * ignorant.felt);

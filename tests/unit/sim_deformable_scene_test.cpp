@@ -49,7 +49,6 @@ TEST(DeformableScene, DefaultsAreWhatTheHeaderSays) {
   EXPECT_TRUE(slab.corotated);
   EXPECT_EQ(slab.mass_damping, 0);
   EXPECT_EQ(slab.stiffness_damping, 0);
-  EXPECT_EQ(slab.told_young, 1);
   EXPECT_EQ(slab.stiffness, 20) << "that of [touch]";
   EXPECT_EQ(slab.friction, 0.3);
   EXPECT_EQ(slab.method, "auto");
@@ -156,7 +155,6 @@ TEST(DeformableScene, EveryRuleNamesItsPlace) {
       {"never deformed", body + "rate = 0\n", "R-SCN-6", 12, "deformable.rate"},
       {"half a tick", body + "rate = 1.5\n", "R-SCN-5", 12, "deformable.rate"},
       {"negative damping", body + "mass_damping = -1\n", "R-SCN-6", 12, "deformable.mass_damping"},
-      {"told the opposite", body + "told_young = -1\n", "R-SCN-6", 12, "deformable.told_young"},
       {"unknown method", body + "method = \"euler\"\n", "R-SCN-7", 12, "deformable.method"},
       {"unknown solver", body + "solver = \"lu\"\n", "R-SCN-7", 12, "deformable.solver"},
       {"unknown word", body + "fixed = \"edges\"\n", "R-SCN-7", 12, "deformable.fixed"},
