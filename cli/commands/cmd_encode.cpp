@@ -63,10 +63,9 @@ Result<Session> start(const TraceInfo& info, const TraceFrame& first, const Enco
                       std::ostream& out) {
   TraceCoding coding = options.meshes.coding(options.triggers);
   coding.clusters = std::move(clusters);
-  TACTUS_TRY(SceneBuilder builder, scene_builder(info, first, coding));
   const SenderOptions wanted = options.meshes.sender(options.triggers);
-  builder.motion(options.motion.physics());
-  TACTUS_TRY(const SharedScene scene, builder.promise(wanted.triggers, wanted.deformable.thresholds).build());
+  TACTUS_TRY(SceneBuilder builder, scene_builder(info, first, coding, wanted));
+  TACTUS_TRY(const SharedScene scene, builder.motion(options.motion.physics()).build());
   TACTUS_TRY(StreamFileWriter writer, StreamFileWriter::create(out, *scene));
   TACTUS_TRY(Sender sender, Sender::create(scene, wanted));
   TACTUS_TRY(Receiver receiver, Receiver::create(scene));

@@ -51,11 +51,10 @@ GhostBounds ghost_bounds(const Scene& scene) {
 
 Result<TruthData> TruthData::create(const TraceInfo& info, const TraceFrame& first, const Scene& scene) {
   const GhostBounds bounds = ghost_bounds(scene);
-  TACTUS_TRY(SceneBuilder builder, scene_builder(info, first));
-  const auto shared = builder.promise(bounds.rigid, bounds.deformable).build();
-  if (!shared) return tl::unexpected(shared.error().error);
   const SenderOptions options{.triggers = bounds.rigid, .deformable = {.thresholds = bounds.deformable}};
-  TACTUS_TRY(PacketLog ghost, PacketLog::create(*shared, options));
+  TACTUS_TRY(SceneBuilder builder, scene_builder(info, first, {}, options));
+  TACTUS_TRY(const SharedScene shared, builder.build());
+  TACTUS_TRY(PacketLog ghost, PacketLog::create(shared, options));
   return TruthData(info, scene, bounds, std::move(ghost));
 }
 
