@@ -205,6 +205,29 @@ const tests = {
     await tab.close();
   },
 
+  async "a force is named after whose it is"(browser) {
+    const named = async (source) => {
+      run("encode", `${source}.mcap`, "-o", "forces.tct", "-f", "-q");
+      run("view", "forces.tct", "--truth", `${source}.mcap`, "-f", "-q");
+      const tab = await ready(browser, "forces.html");
+      const drawn = await tab.run(`(() => {
+        const texts = [];
+        const draw = CanvasRenderingContext2D.prototype.fillText;
+        CanvasRenderingContext2D.prototype.fillText = function (text, ...place) { texts.push(text), draw.call(this, text, ...place); };
+        tactusView.page.timeline.draw();
+        return texts.filter((text) => /^force/.test(text));
+      })()`);
+      const legend = await tab.run("[...document.querySelectorAll('#legend div')].map((row) => row.textContent)");
+      await tab.close();
+      return [drawn, legend.filter((text) => text.startsWith("force"))];
+    };
+    run("serve", "push-1dof", "--listen", "0", "--duration", "300ms", "-o", "served.mcap", "-f", "-q");
+    assert.deepEqual(await named("served"), [["force of the server [N]"], ["force of the server"]]);
+    run("sim", "push-1dof", "--duration", "300ms", "-o", "played.mcap", "-f", "-q");
+    assert.deepEqual(await named("played"), [["force felt [N]"], ["force felt"]]);
+    assert.deepEqual(await named("membrane"), [["force felt [N]"], ["force of the server", "force felt"]]);
+  },
+
   async "odd streams"(browser) {
     for (const stream of ["client/001-empty", "rigid/002-free-object", "load/001", "deformable/001", "scene/001"]) {
       const [stem, number] = stream.split("/");
