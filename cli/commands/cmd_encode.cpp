@@ -206,8 +206,8 @@ void setup_encode(Command& app, Action& action) {
   add_encoder_options(command, options->triggers, options->meshes);
   command
       .add_option("--clusters", options->clusters,
-                  "Clusters of vertices that move alike, found on the trace, as the basis of bodies that turn and walk; 0: none "
-                  "(--profile main) [0]")
+                  "Clusters of vertices that move alike, as the basis of bodies that turn and walk; 0: none. The trace is read "
+                  "twice for it, one from a pipe from a temporary copy (--profile main) [0]")
       ->check(whole_number(0, ClusterBasis::kMaxClusters))
       ->type_name("N")
       ->excludes(command.find("--basis"));
