@@ -99,11 +99,11 @@ TACTUS_API tactus_status tactus_scene_builder_deformable(tactus_scene_builder* b
 TACTUS_API tactus_status tactus_driven_physics_init(tactus_driven_physics* physics, size_t size);
 TACTUS_API tactus_status tactus_elastic_physics_init(tactus_elastic_physics* physics, size_t size);
 /* In sessions, let a participant work out from its own device where the rigid object added last goes. Packets tell what that gets wrong.
-   _build checks it: err  R-API-4 a constant cannot be told; R-API-5 no object was added */
+   _build checks it: err  R-API-4 a constant cannot be told; R-API-14 no rigid object was added */
 TACTUS_API tactus_status tactus_scene_builder_driven(tactus_scene_builder* builder, const tactus_driven_physics* physics,
                                                      tactus_error* error);
 /* The same of how the deformable object added last deforms: profile main, not layered, frame_period a whole number up to 1024.
-   _build checks it: err  R-ELA; R-STR-24 it is too much for a client; R-API-1, 2 an inner vertex; R-API-5 */
+   _build checks it: err  R-ELA; R-STR-24 it is too much for a client; R-API-1, 2 an inner vertex; R-API-14 */
 TACTUS_API tactus_status tactus_scene_builder_elastic(tactus_scene_builder* builder, const tactus_elastic_physics* physics,
                                                       tactus_error* error);
 /* Clusters of vertices that move alike, found on shapes of a recording: 40 are enough, if they are spread over it.

@@ -50,8 +50,8 @@ typedef struct tactus_trace_mesh {
 typedef struct tactus_user_sample {
   tactus_device_sample device;
   tactus_contact contact; /* with a rigid object */
-  double force[3];        /* N, world: what the hand felt at the client */
-  double server_force[3]; /* N, world: of the true state */
+  double force[3];        /* N, world: what the hand felt; in the trace of a server, which is not told, its own */
+  double server_force[3]; /* N, world: of the true state; 0 in the trace of a client, which is not told */
   int32_t touches_mesh;   /* 1: the next ones count */
   uint32_t mesh, triangle;
   uint32_t reserved;

@@ -63,10 +63,9 @@ Result<Session> start(const TraceInfo& info, const TraceFrame& first, const Enco
                       std::ostream& out) {
   TraceCoding coding = options.meshes.coding(options.triggers);
   coding.clusters = std::move(clusters);
-  TACTUS_TRY(SceneBuilder builder, scene_builder(info, first, coding));
   const SenderOptions wanted = options.meshes.sender(options.triggers);
-  builder.motion(options.motion.physics());
-  TACTUS_TRY(const SharedScene scene, builder.promise(wanted.triggers, wanted.deformable.thresholds).build());
+  TACTUS_TRY(SceneBuilder builder, scene_builder(info, first, coding, wanted));
+  TACTUS_TRY(const SharedScene scene, builder.motion(options.motion.physics()).build());
   TACTUS_TRY(StreamFileWriter writer, StreamFileWriter::create(out, *scene));
   TACTUS_TRY(Sender sender, Sender::create(scene, wanted));
   TACTUS_TRY(Receiver receiver, Receiver::create(scene));
@@ -207,8 +206,8 @@ void setup_encode(Command& app, Action& action) {
   add_encoder_options(command, options->triggers, options->meshes);
   command
       .add_option("--clusters", options->clusters,
-                  "Clusters of vertices that move alike, found on the trace, as the basis of bodies that turn and walk; 0: none "
-                  "(--profile main) [0]")
+                  "Clusters of vertices that move alike, as the basis of bodies that turn and walk; 0: none. The trace is read "
+                  "twice for it, one from a pipe from a temporary copy (--profile main) [0]")
       ->check(whole_number(0, ClusterBasis::kMaxClusters))
       ->type_name("N")
       ->excludes(command.find("--basis"));

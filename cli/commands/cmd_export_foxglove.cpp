@@ -131,9 +131,8 @@ void setup_export_foxglove(Command& group, Action& action) {
   command.footer(
       "It holds the surfaces of rigid and deformable objects (their colour tells the displacement), each user's device (black), "
       "the point\n"
-      "that it touches (green), the force felt (orange) and that of the server (blue), and what plots need of them. Import the "
-      "layout in the\n"
-      "viewer, which otherwise shows no topic of the scene at first.\n"
+      "that it touches (green), the force felt (orange) and that of the server (blue), as far as they are known, and what plots\n"
+      "need of them. Import the layout in the viewer, which otherwise shows no topic of the scene at first.\n"
       "Examples:\n"
       "  tactus export foxglove membrane.mcap -o membrane-3d.mcap --layout membrane.json\n"
       "  tactus export foxglove push.tct --scene push-1dof -o push-3d.mcap");

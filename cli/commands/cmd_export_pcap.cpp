@@ -49,9 +49,8 @@ bool are_participants(const ExportPcapOptions& options, const TraceInfo& info) {
 Result<std::unique_ptr<sim::SessionNetwork>> connect(const TraceInfo& info, const TraceFrame& first,
                                                      const ExportPcapOptions& options, SessionCapture& capture) {
   const SenderOptions sender = options.meshes.sender(options.triggers);
-  TACTUS_TRY(SceneBuilder builder, scene_builder(info, first, options.meshes.coding(options.triggers)));
-  builder.motion(options.motion.physics());
-  TACTUS_TRY(SharedScene scene, builder.promise(sender.triggers, sender.deformable.thresholds).baselines(kBaselines).build());
+  TACTUS_TRY(SceneBuilder builder, scene_builder(info, first, options.meshes.coding(options.triggers), sender));
+  TACTUS_TRY(SharedScene scene, builder.motion(options.motion.physics()).baselines(kBaselines).build());
   sim::NetworkOptions network;
   network.downlink = options.link;
   network.uplink = options.uplink.value_or(options.link);

@@ -159,7 +159,8 @@ Outcome Visit::arrive() {
   if (body) {
     DeviceSenses senses = body->chosen.device->capabilities().senses;
     senses.buttons = true;
-    info.users.push_back({.name = body->shapes->scene().users[body->user].name, .senses = senses, .has_servo = true});
+    info.users.push_back(
+        {.name = body->shapes->scene().users[body->user].name, .senses = senses, .has_servo = true, .forces = KnownForces::felt});
   }
   frame_ = replica_frame(scene);
   frame_.users.resize(info.users.size());

@@ -265,14 +265,19 @@ struct Recording {
   }
 };
 
+TraceInfo info_of(const sim::Server& world) {
+  TraceInfo out = world.info();
+  out.source = "serve " + world.scene().name;
+  for (TraceUser& user : out.users) user.forces = KnownForces::server;  // clients tell none
+  return out;
+}
+
 tl::expected<Recording, Failure> make_recording(const ServeOptions& options, const sim::Server& world) {
   Recording out;
   if (options.output.empty()) return out;
   TACTUS_TRY(auto file, OutputFile::create_growing(options.output, options.common.existing(), {options.scene, options.key}));
   out.output.emplace(std::move(file));
-  TraceInfo info = world.info();
-  info.source = "serve " + world.scene().name;
-  auto writer = TraceWriter::create(out.output->working_path(), info);
+  auto writer = TraceWriter::create(out.output->working_path(), info_of(world));
   if (!writer) return refuse(options.output, writer.error());
   out.trace.emplace(std::move(*writer));
   return out;
@@ -280,12 +285,10 @@ tl::expected<Recording, Failure> make_recording(const ServeOptions& options, con
 
 tl::expected<std::unique_ptr<Observation>, Failure> make_observation(const ServeOptions& options, const sim::Server& world) {
   if (!options.observe) return nullptr;
-  TraceInfo info = world.info();
-  info.source = "serve " + world.scene().name;
   return Observation::create({.port = static_cast<std::uint16_t>(*options.observe),
                               .scene = options.scene,
                               .name = world.scene().name,
-                              .info = std::move(info),
+                              .info = info_of(world),
                               .declared = world.stream_scene(),
                               .sender = options.meshes.sender(options.triggers),
                               .like = &world.frame()});
@@ -361,7 +364,7 @@ void setup_serve(Command& app, Action& action) {
   add_key(command, options->key);
   command
       .add_option("-o,--output", options->output,
-                  "Also write a trace (MCAP); the force felt is the server's, as clients tell none")
+                  "Also write a trace (MCAP); its forces are the server's, as clients do not tell what is felt")
       ->type_name("FILE");
   command.add_option("--clients", options->clients, "Most clients at a time")
       ->check(whole_number(1, 1024))

@@ -60,6 +60,13 @@ void MotionFigure::add_packet(std::int64_t tick, std::size_t bytes) {
   kilobits_.add(time_of(tick), kKilobits * static_cast<double>(bytes));
 }
 
+std::vector<TimePanel::Line> MotionFigure::force_lines(const UserLines& of, KnownForces known) {
+  if (known == KnownForces::server) return {{"of the server", of.server.points()}};
+  if (known == KnownForces::felt) return {{"felt", of.felt.points()}};
+  if (!of.differ) return {{"force", of.felt.points()}};
+  return {{"felt", of.felt.points()}, {"of the server", of.server.points()}};
+}
+
 std::vector<TimePanel> MotionFigure::panels() const {
   std::vector<TimePanel> out;
   TimePanel speeds{"speed [mm/s]"}, bends{"largest displacement [mm]"};
@@ -72,9 +79,7 @@ std::vector<TimePanel> MotionFigure::panels() const {
   for (std::size_t i = 0; i < users_.size(); ++i) {
     const std::string& name = info_.users[i].name;
     out.push_back(axes_of("device of " + name + " [mm]", users_[i].device));
-    TimePanel& forces = out.emplace_back(TimePanel{"force on " + name + " [N]"});
-    forces.lines = {{users_[i].differ ? "felt" : "force", users_[i].felt.points()}};
-    if (users_[i].differ) forces.lines.push_back({"of the server", users_[i].server.points()});
+    out.push_back({"force on " + name + " [N]", force_lines(users_[i], info_.users[i].forces)});
   }
   for (std::size_t i = 0; i < meshes_.size(); ++i)
     if (!meshes_[i].is_empty()) bends.lines.push_back({info_.meshes[i].name, meshes_[i].points()});

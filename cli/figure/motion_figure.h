@@ -31,12 +31,13 @@ class MotionFigure {
   struct UserLines {
     std::array<TimeLine, 3> device{};
     TimeLine felt{}, server{};
-    bool differ = false;  // else the trace knows one force
+    bool differ = false;  // felt and server
   };
 
   double time_of(std::int64_t tick) const { return static_cast<double>(tick) / info_.tick_rate; }
   static void add(ObjectLines& lines, const RigidSample& sample, double time);
   static void add(UserLines& lines, const UserSample& user, double time);
+  static std::vector<TimePanel::Line> force_lines(const UserLines& of, KnownForces known);
 
   TraceInfo info_;
   std::vector<ObjectLines> objects_;

@@ -5,7 +5,7 @@ namespace tactus::cli {
 
 TraceInfo FeltNothing::info() const {
   TraceInfo info;
-  info.users.push_back({"hand"});
+  info.users.push_back({.name = "hand", .forces = KnownForces::felt});
   return info;
 }
 

@@ -20,7 +20,7 @@ FeltRecording::FeltRecording(device::Recording recording, Exerted exerted, doubl
 
 TraceInfo FeltRecording::info() const {
   TraceInfo info;
-  info.users.push_back({recording_.user().name});
+  info.users.push_back({.name = recording_.user().name, .forces = KnownForces::felt});
   return info;
 }
 

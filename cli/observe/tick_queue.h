@@ -15,7 +15,7 @@ namespace tactus::cli {
 
 /// What is true at one tick.
 struct ObservedTick {
-  TraceFrame frame;  ///< a force felt is that of the server: it knows no other
+  TraceFrame frame;
   std::vector<ObjectLoad> loads;
   std::vector<Vec3> pushes;  // of the loads
 };

@@ -16,6 +16,8 @@ constexpr double kShare = 0.05;  // of the stream's bounds
 // What the grid of every stream can hold.
 constexpr double kLeastLength = 4e-6, kLeastAngle = 1e-4;  // [m], [rad]
 
+constexpr const char* kKnown[] = {"both", "felt", "server"};  // index: KnownForces
+
 enum class Touch : std::uint8_t { none = 0, surface = 1, spring = 2, mesh = 3 };
 
 Touch touch_of(const UserSample& user) {
@@ -51,11 +53,10 @@ GhostBounds ghost_bounds(const Scene& scene) {
 
 Result<TruthData> TruthData::create(const TraceInfo& info, const TraceFrame& first, const Scene& scene) {
   const GhostBounds bounds = ghost_bounds(scene);
-  TACTUS_TRY(SceneBuilder builder, scene_builder(info, first));
-  const auto shared = builder.promise(bounds.rigid, bounds.deformable).build();
-  if (!shared) return tl::unexpected(shared.error().error);
   const SenderOptions options{.triggers = bounds.rigid, .deformable = {.thresholds = bounds.deformable}};
-  TACTUS_TRY(PacketLog ghost, PacketLog::create(*shared, options));
+  TACTUS_TRY(SceneBuilder builder, scene_builder(info, first, {}, options));
+  TACTUS_TRY(const SharedScene shared, builder.build());
+  TACTUS_TRY(PacketLog ghost, PacketLog::create(shared, options));
   return TruthData(info, scene, bounds, std::move(ghost));
 }
 
@@ -93,7 +94,7 @@ void TruthData::add_users(const TraceFrame& frame, const std::vector<Pose>& show
     users_[i].felt.add(user.force);
     const bool is_rigid = touch == Touch::surface || touch == Touch::spring;
     users_[i].shown.add(is_rigid ? contact_force(user.contact, shown[user.contact.object]) : Vec3{});
-    felt_differs_ = felt_differs_ || norm(user.force - user.server_force) > 1e-3;
+    users_[i].differ = users_[i].differ || norm(user.force - user.server_force) > 1e-3;
   }
 }
 
@@ -166,12 +167,14 @@ nlohmann::ordered_json TruthData::take() {
   out["users"] = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < users_.size(); ++i) {
     User& user = users_[i];
+    const KnownForces known = info_.users[i].forces;
     nlohmann::ordered_json entry{{"name", info_.users[i].name},
+                                 {"knows", kKnown[static_cast<std::size_t>(known)]},
                                  {"kind", user.kind.take()},
                                  {"device", user.device.take()},
-                                 {"contact", user.contact.take()},
-                                 {"server", user.server.take()}};
-    if (felt_differs_) entry["felt"] = user.felt.take();
+                                 {"contact", user.contact.take()}};
+    if (known != KnownForces::felt) entry["server"] = user.server.take();
+    if (known == KnownForces::felt || (known == KnownForces::both && user.differ)) entry["felt"] = user.felt.take();
     if (moves) entry["shown"] = user.shown.take();
     out["users"].push_back(std::move(entry));
   }

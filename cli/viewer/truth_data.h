@@ -45,6 +45,7 @@ class TruthData {
   struct User {
     Column kind{1};
     VectorColumn device{1e-5}, contact{1e-5}, server{1e-3}, felt{1e-3}, shown{1e-3};
+    bool differ = false;  // what is felt and the server's force
   };
   struct Mesh {
     Column ticks{1}, error{1e-8};
@@ -65,7 +66,6 @@ class TruthData {
   std::vector<User> users_;
   std::vector<Mesh> meshes_;
   Column position_{1e-7}, rotation_{1e-6}, force_error_{1e-5}, force_bound_{1e-5};
-  bool felt_differs_ = false;
 };
 
 }  // namespace tactus::cli

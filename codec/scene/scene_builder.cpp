@@ -179,7 +179,7 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build() try {
     return tl::make_unexpected(SceneFinding{error, std::move(object)});
   };
   SceneBuilder taken = std::exchange(*this, SceneBuilder(spec_.tick_rate));
-  if (taken.is_of_nothing_) return refuse({Errc::invalid_argument, RuleName("R-API-5"), 0}, {});
+  if (taken.is_of_nothing_) return refuse({Errc::invalid_argument, RuleName("R-API-14"), 0}, {});
   SceneSpec& spec = taken.spec_;
   const double ticks = std::floor(taken.extrapolation_.value_or(kExtrapolation) * spec.tick_rate + 0.5);
   if (!(ticks >= 0)) return refuse({Errc::invalid_argument, RuleName("R-API-4"), 0}, {});

@@ -102,8 +102,8 @@ class SceneBuilder {
   /// Declare the bounds that hold at a client that gets every packet.
   SceneBuilder& promise(const RigidTriggers& rigid, const DeformableThresholds& deformables, const LoadThresholds& loads = {});
 
-  /// err  invalid_argument R-API-1..4, R-API-10 a pose, surface or stiffness does not fit its grid; R-API-5 driven() or
-  ///      elastic() before any such object; those of Scene::create
+  /// err  invalid_argument R-API-1..4, R-API-10 a pose, surface or stiffness does not fit its grid; R-API-14 driven()
+  ///      before any rigid object or elastic() before any deformable one; those of Scene::create
   tl::expected<SharedScene, SceneFinding> build();
 
  private:

@@ -101,7 +101,7 @@ struct FoxgloveWriter::Impl {
   void write_user(std::size_t i, const TraceFrame& frame);
 
   struct UserChannels {
-    std::uint16_t scene, device, force, server_force;
+    std::uint16_t scene = 0, device = 0, force = 0, server_force = 0;  // 0: not known
   };
 
   mcap::Writer mcap;
@@ -148,8 +148,12 @@ Result<void> FoxgloveWriter::Impl::declare() {
     UserChannels& own = users.emplace_back();
     TACTUS_TRY(own.scene, add_channel(kSceneSchema, "/scene/users/" + user.name));
     TACTUS_TRY(own.device, add_channel(kPointSchema, "/users/" + user.name + "/device"));
-    TACTUS_TRY(own.force, add_channel(kVectorSchema, "/users/" + user.name + "/force"));
-    TACTUS_TRY(own.server_force, add_channel(kVectorSchema, "/users/" + user.name + "/server_force"));
+    if (user.forces != KnownForces::server) {
+      TACTUS_TRY(own.force, add_channel(kVectorSchema, "/users/" + user.name + "/force"));
+    }
+    if (user.forces != KnownForces::felt) {
+      TACTUS_TRY(own.server_force, add_channel(kVectorSchema, "/users/" + user.name + "/server_force"));
+    }
   }
   for (const TraceDeformable& mesh : info.meshes) {
     frames.push_back("meshes/" + mesh.name);
@@ -220,13 +224,14 @@ void FoxgloveWriter::Impl::write_user(std::size_t i, const TraceFrame& frame) {
     const Vec3 along = options.metres_per_newton * force;
     if (norm(along) > kLeastArrow) entity.arrows.push_back({hand, along, thickness, colour});
   };
-  add_arrow(user.force, kThickness, kFelt);
-  add_arrow(user.server_force, kThickness / 2, kServer);
+  if (users[i].force > 0) add_arrow(user.force, kThickness, kFelt);
+  if (users[i].server_force > 0) add_arrow(user.server_force, kThickness / 2, kServer);
   foxglove::encode_scene_update(message, time, {&entity, 1});
   send(users[i].scene);
   const std::pair<std::uint16_t, Vec3> vectors[] = {
       {users[i].device, hand}, {users[i].force, user.force}, {users[i].server_force, user.server_force}};
   for (const auto& [channel, vector] : vectors) {
+    if (channel == 0) continue;
     encode_vector(message, time, vector);
     send(channel);
   }

@@ -132,6 +132,17 @@ Result<void> TactusAssembler::read_rest(mcap::Reader& mcap) {
   return ahead_ ? Result<void>() : refuse(mcap, Errc::truncated, "R-TRC-3");
 }
 
+/// None: the channels say that neither is known.
+std::optional<KnownForces> known_forces(const std::map<std::string_view, const mcap::Channel*>& by_topic,
+                                        const std::string& user) {
+  const auto is_known = [&](const char* force) {
+    const auto found = by_topic.find("/users/" + user + force);
+    return found == by_topic.end() || entry(found->second->metadata, "known") != "no";
+  };
+  if (is_known("/server_force")) return is_known("/force") ? KnownForces::both : KnownForces::server;
+  return is_known("/force") ? std::optional(KnownForces::felt) : std::nullopt;
+}
+
 /// Channels are found by topic: ids may change when other tools rewrite a file.
 Result<void> TactusAssembler::find_channels(const mcap::Reader& mcap, Errc missing) {
   const RuleName rule = missing == Errc::truncated ? RuleName("R-TRC-3") : RuleName("R-TRC-12");
@@ -155,6 +166,9 @@ Result<void> TactusAssembler::find_channels(const mcap::Reader& mcap, Errc missi
     const auto has = [&](const char* channel) { return by_topic.contains("/users/" + user.name + channel); };
     user.senses = {has("/device_orientation"), has("/device_velocity"), has("/device_buttons"), has("/device_time")};
     user.has_servo = has("/servo");
+    const auto forces = known_forces(by_topic, user.name);
+    if (!forces) return refuse(mcap, Errc::invalid, "R-TRC-12");
+    user.forces = *forces;
     if (!has("/device_reports")) continue;
     const mcap::Channel& reports = *by_topic.at("/users/" + user.name + "/device_reports");
     user.report_descriptor = bytes_of_hex(entry(reports.metadata, "report_descriptor"));

@@ -37,6 +37,13 @@ Result<SceneBuilder> scene_builder(const TraceInfo& info, const TraceFrame& firs
   return out_of_memory();
 }
 
+Result<SceneBuilder> scene_builder(const TraceInfo& info, const TraceFrame& first, const TraceCoding& coding,
+                                   const SenderOptions& sender) {
+  TACTUS_TRY(SceneBuilder scene, scene_builder(info, first, coding));
+  scene.promise(sender.triggers, sender.deformable.thresholds, sender.load);
+  return scene;
+}
+
 std::optional<SurfaceTouch> touch_of(const TraceFrame& frame, std::size_t deformable) noexcept {
   std::optional<SurfaceTouch> lightest;
   for (const UserSample& user : frame.users) {

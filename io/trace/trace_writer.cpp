@@ -104,6 +104,11 @@ mcap::TextMap metadata_of(const TraceDeformable& mesh) {
   return metadata;
 }
 
+bool is_unknown(const TraceChannel& channel, const TraceInfo& info) {
+  if (channel.role == Role::force) return info.users[channel.index].forces == KnownForces::server;
+  return channel.role == Role::server_force && info.users[channel.index].forces == KnownForces::felt;
+}
+
 /// How ROS 2 is to offer a channel, as rosbag2 writes it: profile "ros2" wants it of every channel. What is sent once must still reach
 /// who comes later.
 std::string quality_of_service(Occurs occurs) {
@@ -183,6 +188,7 @@ Result<void> TraceWriter::Impl::declare() {
     mcap::TextMap metadata;
     if (channel.role == Role::pose) metadata["dof"] = std::to_string(info.objects[channel.index].dof);
     if (channel.role == Role::rest) metadata = metadata_of(info.meshes[channel.index]);
+    if (is_unknown(channel, info)) metadata["known"] = "no";
     if (channel.role == Role::reports) metadata["report_descriptor"] = hex_of(*info.users[channel.index].report_descriptor);
     metadata["offered_qos_profiles"] = quality_of_service(channel.occurs);
     TACTUS_CHECK(mcap.add(mcap::Channel{static_cast<std::uint16_t>(i + 1), schema_id, channel.topic, "cdr", metadata}));

@@ -17,7 +17,7 @@ constexpr std::int64_t kWarm = 1;    // [s] after which is judged
 constexpr std::int64_t kTimed = 16;  // each such tick's coding is timed
 
 Result<SharedScene> scene_of(const Motion& motion, std::uint8_t baselines) {
-  TACTUS_TRY(SceneBuilder builder, scene_builder(motion.info, motion.frames.front(), motion.coding));
+  TACTUS_TRY(SceneBuilder builder, scene_builder(motion.info, motion.frames.front(), motion.coding, motion.sender));
   TACTUS_TRY(SharedScene scene, builder.baselines(baselines).build());
   return scene;
 }

@@ -181,7 +181,7 @@ TEST(CDevicePhysics, BuildingRefusesWhatIsWrong) {
   tactus_driven_physics push = driven();
   EXPECT_EQ(tactus_scene_builder_driven(builder.get(), &push, nullptr), TACTUS_OK);
   EXPECT_EQ(tactus_scene_builder_rigid(builder.get(), "box", nullptr, TACTUS_DOF_ALL, nullptr), TACTUS_OK);
-  EXPECT_EQ(refusal(builder), "R-API-5") << "before any object";
+  EXPECT_EQ(refusal(builder), "R-API-14") << "before any object";
   push.mass = 0;
   EXPECT_EQ(tactus_scene_builder_rigid(builder.get(), "box", nullptr, TACTUS_DOF_ALL, nullptr), TACTUS_OK);
   EXPECT_EQ(tactus_scene_builder_driven(builder.get(), &push, nullptr), TACTUS_OK);

@@ -29,10 +29,10 @@ TraceFrame frame_of(std::int64_t tick) {
 }
 
 /// Times of the messages of each topic [ms], of 100 ticks.
-std::map<std::string, std::vector<std::uint64_t>> written(const FoxgloveOptions& options) {
+std::map<std::string, std::vector<std::uint64_t>> written(const FoxgloveOptions& options, const TraceInfo& info = info_of()) {
   const TempFile file;
   const std::string& path = file.path();
-  auto writer = FoxgloveWriter::create(path, info_of(), {{.box = {0.1, 0.1, 0.1}}}, options);
+  auto writer = FoxgloveWriter::create(path, info, {{.box = {0.1, 0.1, 0.1}}}, options);
   EXPECT_TRUE(writer);
   for (std::int64_t tick = 0; tick < 100; ++tick) EXPECT_TRUE(writer->write(frame_of(tick)));
   EXPECT_TRUE(writer->finish());
@@ -64,6 +64,16 @@ TEST(FoxgloveWriter, KeepsToItsRate) {
 TEST(FoxgloveWriter, ShowsAShapeThatCameBetweenItsFrames) {
   EXPECT_EQ(written({.rate = 16}).at("/scene/meshes/patch"), (std::vector<std::uint64_t>{0, 63}));
   EXPECT_EQ(written({.rate = 1e5}).at("/tf").size(), 100u) << "never more often than there are ticks";
+}
+
+TEST(FoxgloveWriter, AForceThatIsNotKnownHasNoTopic) {
+  TraceInfo info = info_of();
+  for (const KnownForces known : {KnownForces::both, KnownForces::felt, KnownForces::server}) {
+    info.users[0].forces = known;
+    const auto times = written({.rate = 20}, info);
+    EXPECT_EQ(times.contains("/users/hand/force"), known != KnownForces::server);
+    EXPECT_EQ(times.contains("/users/hand/server_force"), known != KnownForces::felt);
+  }
 }
 
 TEST(FoxgloveWriter, RefusesWhatIsNoRate) {

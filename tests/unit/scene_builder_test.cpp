@@ -210,8 +210,8 @@ TEST(SceneBuilder, WhatIsWrongWithNoObjectNamesNone) {
   EXPECT_EQ(refusal(SceneBuilder(0).rigid("a")), "R-STR-6 of ''");
   EXPECT_EQ(refusal(SceneBuilder().rigid("a").grid({31, 17, 20, 12})), "R-STR-7 of ''");
   EXPECT_EQ(refusal(SceneBuilder().rigid("a").grid({200, 17, 20, 12})), "R-STR-7 of ''");
-  EXPECT_EQ(refusal(SceneBuilder().driven({}).rigid("a")), "R-API-5 of ''");
-  EXPECT_EQ(refusal(SceneBuilder().rigid("a").elastic({})), "R-API-5 of ''");
+  EXPECT_EQ(refusal(SceneBuilder().driven({}).rigid("a")), "R-API-14 of ''");
+  EXPECT_EQ(refusal(SceneBuilder().rigid("a").elastic({})), "R-API-14 of ''");
   EXPECT_EQ(refusal(SceneBuilder().rigid("a").extrapolate(-1)), "R-API-4 of ''");
   EXPECT_EQ(refusal(SceneBuilder().rigid("a").extrapolate(kNan)), "R-API-4 of ''");
   EXPECT_EQ(refusal(SceneBuilder().rigid("a").baselines(0)), "R-STR-9 of ''");

@@ -2,6 +2,8 @@
 // From a scene and a replica to a trace: io/trace/trace_replica.h, and the ticks that a client shows.
 #include <tactus/trace/trace_replica.h>
 
+#include <tuple>
+
 #include <tactus/base/rule.h>
 #include <tactus/receiver.h>
 #include <tactus/trace/mcap_writer.h>
@@ -78,6 +80,44 @@ TEST(TraceReplica, AWriterRefusesAClientThatStepsBack) {
     ASSERT_FALSE(written);
     EXPECT_STREQ(written.error().rule, "R-API-5");
   }
+}
+
+TEST(TraceReplica, AForceThatNobodyToldIsMarked) {
+  Recording recording = make_recording(3);
+  for (const KnownForces left : {KnownForces::both, KnownForces::felt, KnownForces::server}) {
+    recording.info.users[0].forces = left;
+    const TempFile file;
+    const auto reader = TraceReader::open_memory(write_recording(recording, file.path()));
+    ASSERT_TRUE(reader);
+    EXPECT_EQ(reader->info().users[0].forces, left);
+    EXPECT_EQ(reader->info().users[1].forces, KnownForces::both);
+  }
+}
+
+/// A user of whose two forces the channels say this.
+std::string rule_of_forces(const char* felt, const char* server) {
+  const TempFile file;
+  auto out = mcap::Writer::create(file.path(), "ros2").value();
+  EXPECT_TRUE(out.add(mcap::Metadata{"tactus", {{"format_version", "2"}, {"tick_rate", "1000"}, {"users", "hand"}}}));
+  const std::tuple<const char*, MessageType, const char*> channels[]{{"/users/hand/device", MessageType::point, ""},
+                                                                     {"/users/hand/force", MessageType::vector, felt},
+                                                                     {"/users/hand/server_force", MessageType::vector, server},
+                                                                     {"/users/hand/contact", MessageType::contact, ""}};
+  std::uint16_t id = 0;
+  for (const auto& [topic, type, known] : channels) {
+    ++id;
+    EXPECT_TRUE(out.add(mcap::Schema{id, std::string(schema_name(type)), "ros2msg", schema_text(type)}));
+    EXPECT_TRUE(out.add(mcap::Channel{id, id, topic, "cdr", {{"known", known}}}));
+  }
+  EXPECT_TRUE(out.finish());
+  const Reading reading = read_bytes(file.bytes());
+  return reading.error ? reading.error->rule : "";
+}
+
+TEST(TraceReplica, AReaderRefusesAUserOfWhomNoForceIsKnown) {
+  EXPECT_EQ(rule_of_forces("", ""), "");
+  EXPECT_EQ(rule_of_forces("no", "anything"), "");
+  EXPECT_EQ(rule_of_forces("no", "no"), "R-TRC-12");
 }
 
 /// Two frames of a cube, and the times of what they show.

@@ -89,8 +89,8 @@ TEST(TraceScene, TakesFirstPosesAtRest) {
 TEST(TraceScene, PromisesWhatTheSenderIsTold) {
   SheetTrace trace;
   trace.move(0);
-  auto builder = scene_builder(trace.info, trace.frame).value();
-  const auto scene = builder.promise({.visual_position = 0.01}, {.visual = 1e-3}).build();
+  const SenderOptions sender{.triggers = {.visual_position = 0.01}, .deformable = {.thresholds = {.visual = 1e-3}}};
+  const auto scene = scene_builder(trace.info, trace.frame, {}, sender)->build();
   ASSERT_TRUE(scene);
   ASSERT_TRUE((*scene)->bounds && (*scene)->bounds->rigid);
   EXPECT_EQ((*scene)->bounds->rigid->visual_position, 0.01);

@@ -7,6 +7,8 @@
 
 #include <sstream>
 
+#include <tactus/receiver.h>
+
 namespace tactus::cli {
 namespace {
 
@@ -69,6 +71,30 @@ TEST(Viewer, TheGhostIsWithinATwentiethOfTheBounds) {
   const auto fine = SceneBuilder().rigid("cube").promise({.visual_position = 1e-5, .visual_rotation = 1e-4}, {}).build();
   ASSERT_TRUE(fine);
   EXPECT_GE(ghost_bounds(**fine).rigid.visual_position, 4e-6);  // the grid can hold it
+}
+
+/// What the page is told of a user whose hand feels nothing while the server renders so much.
+nlohmann::ordered_json user_of(KnownForces known, double server) {
+  TraceInfo info{.objects = {{"cube"}}, .users = {{.name = "hand", .forces = known}}, .source = {}, .scene = {}};
+  TraceFrame frame{.objects = {{}}, .users = {{}}};
+  frame.users[0].server_force = {0, 0, server};
+  const auto scene = SceneBuilder().rigid("cube").build();
+  auto receiver = Receiver::create(*scene);
+  auto truth = TruthData::create(info, frame, **scene);
+  EXPECT_TRUE(truth && truth->add(frame, receiver->replica()));
+  return truth->take()["users"][0];
+}
+
+TEST(Viewer, ThePageIsToldWhichForcesAreKnown) {
+  EXPECT_EQ(user_of(KnownForces::both, 0)["knows"], "both");
+  EXPECT_FALSE(user_of(KnownForces::both, 0).contains("felt"));
+  EXPECT_TRUE(user_of(KnownForces::both, 1).contains("felt"));
+  EXPECT_EQ(user_of(KnownForces::server, 1)["knows"], "server");
+  EXPECT_FALSE(user_of(KnownForces::server, 1).contains("felt"));
+  EXPECT_TRUE(user_of(KnownForces::server, 1).contains("server"));
+  EXPECT_EQ(user_of(KnownForces::felt, 0)["knows"], "felt");
+  EXPECT_FALSE(user_of(KnownForces::felt, 0).contains("server"));
+  EXPECT_TRUE(user_of(KnownForces::felt, 0).contains("felt"));
 }
 
 }  // namespace

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// frame_rate.mjs TACTUS CHROMIUM WORK: how fast a page shows deforming meshes of 10^3, 10^4 and 10^5 vertices, with software WebGL.
+// frame_rate.mjs TACTUS BROWSER WORK: how fast a page shows deforming meshes of 10^3, 10^4 and 10^5 vertices, with software WebGL.
 import {execFileSync} from "node:child_process";
 import {mkdirSync, statSync, writeFileSync} from "node:fs";
 import {resolve} from "node:path";
 import {pathToFileURL} from "node:url";
-import {Browser} from "./browser.mjs";
+import {launch} from "./browser.mjs";
 
-const [tactus, chromium, work] = process.argv.slice(2);
+const [tactus, program, work] = process.argv.slice(2);
 const frames = 20;
 
 // A wave runs over a square sheet of side 0.2 m.
@@ -35,7 +35,7 @@ function writeFrames(folder, side) {
 const run = (...args) => execFileSync(tactus, args, {cwd: work, stdio: "inherit"});
 
 mkdirSync(work, {recursive: true});
-const browser = await Browser.launch(chromium);
+const browser = await launch(program);
 for (const side of [32, 100, 316]) {
   const name = `sheet-${side}`;
   writeFrames(`${work}/${name}`, side);

@@ -1,10 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# tests/viewer/run.sh TEST TACTUS WORK [CONFORMANCE SESSIONS_WASM]: pages in Chromium. Exits with 77 (skipped) without Chromium or Node.
+# tests/viewer/run.sh TEST BROWSER TACTUS WORK [CONFORMANCE SESSIONS_WASM]: pages in chromium or firefox-esr. Exits with 77 (skipped) without
+# the browser, Node, or the screen that Firefox needs.
 set -eu
-for program in node chromium; do
+test=$1 browser=$2 tactus=$3
+shift 3
+screen=
+[ "$browser" = chromium ] || screen=Xvfb
+for program in node "$browser" $screen; do
   command -v "$program" >/dev/null || { echo "skipped: $program not found"; exit 77; }
 done
-test=$1 tactus=$2
-shift 2
-exec node "${0%/*}/$test" "$tactus" chromium "$@"
+exec node "${0%/*}/$test" "$tactus" "$browser" "$@"

@@ -17,7 +17,7 @@ from .options import DeformableBounds, RigidBounds
 from .scene import Mesh, Scene
 
 #: One user at one tick: device (position (3) [m], orientation (4), velocity (3) [m/s], buttons, time [ns]); contact as CONTACT;
-#: force (3) [N] as felt; server_force (3) [N] of the true state; touches_mesh, mesh, triangle, weights (3), proxy (3) [m],
+#: force (3) [N] as felt, in the trace of a server its own; server_force (3) [N] of the true state, 0 in that of a client; touches_mesh, mesh, triangle, weights (3), proxy (3) [m],
 #: mesh_normal (3), mesh_stiffness [N/m]. World frame.
 USER = np.dtype(_abi.tactus_user_sample)
 
@@ -166,7 +166,7 @@ class Trace:
 
     @property
     def force(self) -> npt.NDArray[np.float64]:
-        """(T, U, 3) [N] as the hands felt it, world"""
+        """(T, U, 3) [N] as the hands felt it, world; in the trace of a server, which is not told, its own"""
         return self.users["force"]
 
     @property

@@ -94,7 +94,7 @@ class Page {
     truth?.meshes.forEach((_, i) => readings.add(`mesh-${i}`, scene.deformables[i].name, "length"));
     truth?.users.forEach((user, i) => {
       readings.group(truth.users.length > 1 ? `Force on ${user.name}` : "Force");
-      readings.add(`server-${i}`, "server", "force");
+      if (user.server) readings.add(`server-${i}`, "server", "force");
       if (user.felt) readings.add(`felt-${i}`, "felt by the hand", "force");
       if (user.shown) readings.add(`shown-${i}`, "normal, decoded", "force");
     });
@@ -125,15 +125,17 @@ class Page {
   }
 
   #fillLegend() {
-    const {truth, scene, isLive} = this.model;
+    const {truth, scene} = this.model;
     const entries = [];
     if (scene.rigid.length > 0) entries.push(["", "object", "decoded"]);
     const within = scene.rigid.length > 0 ? truth?.ghostPosition : truth?.ghostVertex;
     if (truth) entries.push(["frame", "ghost", `truth (drawn within ${plain(within, "length")})`]);
     if (truth?.users.length > 0) {
-      const isFelt = !isLive && !truth.users.some(({felt}) => felt);
-      entries.push(["dot", "device", "device"], ["", "server", isFelt ? "force felt" : "force of the server"]);
-      if (truth.users.some(({felt}) => felt)) entries.push(["", "felt", "force felt"]);
+      const tellsFelt = truth.users.some(({felt}) => felt);
+      const areFelt = !tellsFelt && truth.users.every(({knows}) => knows === "both");
+      entries.push(["dot", "device", "device"]);
+      if (truth.users.some(({server}) => server)) entries.push(["", "server", areFelt ? "force felt" : "force of the server"]);
+      if (tellsFelt) entries.push(["", "felt", "force felt"]);
       if (truth.users.some(({shown}) => shown)) entries.push(["", "shown", "normal force, as decoded"]);
     }
     byId("legend").replaceChildren(...entries.map(([shape, named, text]) => {

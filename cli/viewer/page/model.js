@@ -51,13 +51,17 @@ const readVector = (columns) => columns.map(readColumn);
 const ghostOf = (tactus, {scene, stream, packets}) => new Replay(tactus, bytesOf(scene), bytesOf(stream), packets);
 
 export function readTruth(truth) {
-  const readUser = ({name, kind, ...vectors}) =>
-    ({name, kind: readColumn(kind), ...Object.fromEntries(Object.entries(vectors).map(([key, columns]) => [key, readVector(columns)]))});
+  const readUser = ({name, knows, kind, ...vectors}) =>
+    ({name, knows, kind: readColumn(kind), ...Object.fromEntries(Object.entries(vectors).map(([key, columns]) => [key, readVector(columns)]))});
   return {
     name: truth.name, source: truth.source, ticks: readColumn(truth.ticks), errors: truth.errors ? readColumns(truth.errors) : null,
     ghostPosition: truth.ghost_position, ghostRotation: truth.ghost_rotation, ghostVertex: truth.ghost_vertex,
     users: truth.users.map(readUser), meshes: truth.meshes.map(readColumns),
   };
 }
+
+// The force that is drawn over time. A user tells those that the truth knows, and what was felt only if it is not the server's.
+export const forceOf = ({felt, server}) => felt ?? server;
+export const nameOfForce = ({knows}) => (knows === "server" ? "force of the server" : "force felt");
 
 export const norm = (columns, row) => Math.hypot(columns[0][row], columns[1][row], columns[2][row]);

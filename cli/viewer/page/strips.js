@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the time line shows of a model.
-import {norm} from "./model.js";
+import {forceOf, nameOfForce, norm} from "./model.js";
 import {units} from "./units.js";
 
 const reasons = ["request", "heartbeat", "visual", "haptic"];
@@ -50,8 +50,8 @@ export function rowsOf(model) {
       rows.push(strip(name, "length", model.seconds(ticks), error, {bound: bound?.kept ? bound.visual : null, colour: "deformable"}));
     });
     truth.users.forEach((user) => {
-      const force = truth.ticks.map((_, row) => norm(user.felt ?? user.server, row));
-      const kind = model.isLive ? "force" : "force felt";
+      const force = truth.ticks.map((_, row) => norm(forceOf(user), row));
+      const kind = nameOfForce(user);
       const name = truth.users.length > 1 ? `${kind}, ${short(user.name)}` : kind;
       add(name, "force", force, {colour: user.felt ? "felt" : "server"});
     });
