@@ -94,7 +94,7 @@ Predictor PredictorChoice::choose(std::uint32_t object, const RigidState& truth,
   if (is_touched && !may_be_driven) return best;
   Record most = record_of(best, object, truth, permitted);
   for (const Predictor predictor : {Predictor::ballistic, Predictor::slide}) {
-    if (is_touched || !is_declared_for(object, predictor)) continue;
+    if (!is_declared_for(object, predictor)) continue;
     const Record record = record_of(predictor, object, truth, permitted);
     if (record.served < most.served || (record.served == most.served && record.error >= most.error)) continue;
     best = predictor;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Which predictor an update chooses: the one that would have served longest of late. Each is started from true states of the last 150 ms
 /// and held against the truth of now, from the youngest start back until one would have left its bounds; the device's motion, which takes
-/// longer to work out, from where the best of the others would have left them. What is touched neither falls nor slides freely.
+/// longer to work out, from where the best of the others would have left them. What a device touches that is not known is predicted linearly.
 /// Informative: an encoder's choice, which no bound depends on. Internal to the library.
 #pragma once
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include <tactus/base/fixed.h>
 #include <tactus/rigid/rigid_predictor.h>
 
 namespace tactus {

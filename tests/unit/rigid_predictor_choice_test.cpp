@@ -37,7 +37,7 @@ class Toss {
   }
 };
 
-Predictor chosen_at(std::int64_t now, const SharedScene& scene, std::int64_t step = 1) {
+Predictor chosen_at(std::int64_t now, const SharedScene& scene, std::int64_t step = 1, bool is_touched = false) {
   const Toss toss;
   PredictorChoice choice(*scene);
   RigidState truth;
@@ -45,7 +45,7 @@ Predictor chosen_at(std::int64_t now, const SharedScene& scene, std::int64_t ste
     truth = to_grid(toss.at(tick), tick, scene->grid).value();
     choice.read(tick, {&truth, 1});
   }
-  return choice.choose(0, truth, kPermitted);
+  return choice.choose(0, truth, kPermitted, is_touched);
 }
 
 TEST(PredictorChoice, TakesWhatWouldHaveServedLongest) {
@@ -53,6 +53,12 @@ TEST(PredictorChoice, TakesWhatWouldHaveServedLongest) {
   EXPECT_EQ(chosen_at(1350, scene), Predictor::ballistic);
   EXPECT_EQ(chosen_at(1600, scene), Predictor::slide);
   EXPECT_EQ(chosen_at(1999, scene), Predictor::linear) << "at rest all serve alike";
+}
+
+TEST(PredictorChoice, WhatAnUnknownDeviceTouchesIsPredictedLinearly) {
+  const SharedScene scene = scene_with({{0, 0, -kGravity}, kFriction});
+  EXPECT_EQ(chosen_at(1350, scene, 1, true), Predictor::linear);
+  EXPECT_EQ(chosen_at(1600, scene, 1, true), Predictor::linear);
 }
 
 TEST(PredictorChoice, NeverTakesWhatTheSceneDoesNotDeclare) {
@@ -70,9 +76,9 @@ TEST(PredictorChoice, WithoutAPastItIsLinear) {
   const SharedScene scene = scene_with({{0, 0, -kGravity}, kFriction});
   PredictorChoice choice(*scene);
   const RigidState truth = to_grid(Toss().at(1350), 1350, scene->grid).value();
-  EXPECT_EQ(choice.choose(0, truth, kPermitted), Predictor::linear);
+  EXPECT_EQ(choice.choose(0, truth, kPermitted, false), Predictor::linear);
   choice.read(1350, {&truth, 1});
-  EXPECT_EQ(choice.choose(0, truth, kPermitted), Predictor::linear);
+  EXPECT_EQ(choice.choose(0, truth, kPermitted, false), Predictor::linear);
 }
 
 struct Outcome {
