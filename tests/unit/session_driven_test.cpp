@@ -96,6 +96,19 @@ TEST(Driven, BothEndsKnowTheSamePath) {
   }
 }
 
+TEST(Driven, APlaceIsLookedUpAgainOnceThePastHasChanged) {
+  const SharedScene scene = testing::driven_scene();
+  DevicePath path(device_scene(*scene).value());
+  path.shift(0, 0);
+  path.add(1, testing::device_state(*scene, 0, {}));
+  path.add(2, testing::device_state(*scene, 10, {0.1, 0, 0}));
+  path.pass(20);
+  const auto before = path.at(15);
+  EXPECT_EQ(path.at(15), before);
+  path.settle(3, [](std::uint64_t) { return false; });
+  EXPECT_NE(path.at(15), before) << "the second packet was lost";
+}
+
 struct Course {
   std::size_t shown = 0, outside = 0, driven = 0;
   std::uint64_t packets = 0;
