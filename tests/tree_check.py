@@ -22,7 +22,7 @@ SHARED = {"base"}  # folders of codec/ that are not subjects of the specificatio
 FLOATS = {"base/device_sample", "base/geometry", "base/quantise", "base/tri_mesh", "scene/bounds", "scene/bounds_syntax",
           "scene/deformable_object", "scene/rigid_object", "scene/scene_builder", "packet/key_policy", "packet/sender_policy",
           "load/load_encoder", "load/load_state",
-          "rigid/acceleration", "rigid/contact", "rigid/driven_choice", "rigid/ease_choice", "rigid/error_share", "rigid/leaning", "rigid/predictor_choice",
+          "rigid/acceleration", "rigid/contact", "rigid/driven_choice", "rigid/ease_choice", "rigid/error_share", "rigid/force_trend", "rigid/leaning", "rigid/predictor_choice",
           "rigid/rigid_encoder", "rigid/rigid_state", "rigid/trigger", "deformable/deformable_encoder",
           "deformable/cluster_basis", "deformable/displacement", "deformable/kriging", "deformable/main_encoder", "deformable/mode_projection",
           "deformable/motion_clusters", "deformable/ritz",

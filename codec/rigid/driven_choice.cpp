@@ -18,6 +18,10 @@ Vec3i on_grid(const Vec3& v, int exponent) noexcept {
   return {units(v.x), units(v.y), units(v.z)};
 }
 
+Vec3 off_grid(const Vec3i& v, int exponent) noexcept {
+  return std::ldexp(1.0, -exponent) * Vec3{static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
+}
+
 Vec3 inertia_of(const DrivenConstants::Body& body) noexcept {
   return {std::ldexp(body.inertia[0], -30), std::ldexp(body.inertia[1], -30), std::ldexp(body.inertia[2], -30)};
 }
@@ -28,33 +32,35 @@ Vec3 times(const Vec3& a, const Vec3& b) noexcept { return {a.x * b.x, a.y * b.y
 
 DrivenChoice::DrivenChoice(const Scene& scene, const DevicePath& path)
     : scene_(scene), path_(path), moments_((kWindow + 1) * scene.objects.size()) {
-  const double unit = std::ldexp(1.0, -scene.grid.velocity);
-  if (!scene.motion) return;
-  const auto& g = scene.motion->gravity;
-  gravity_ = {unit * g[0], unit * g[1], unit * g[2]};
+  if (scene.motion) gravity_ = off_grid(scene.motion->gravity, static_cast<int>(scene.grid.velocity));
 }
 
 /// The contact whose device is where the path is; null: there is none.
 const Contact* DrivenChoice::own_contact(std::uint32_t object, std::span<const Contact> contacts,
                                          const Vec3i& device) const noexcept {
-  const double unit = std::ldexp(1.0, -scene_.grid.position);
-  const Vec3 at{unit * device[0], unit * device[1], unit * device[2]};
+  const auto exponent = static_cast<int>(scene_.grid.position);
+  const Vec3 at = off_grid(device, exponent);
   for (const Contact& contact : contacts)
-    if (contact.kind != ContactKind::none && contact.object == object && norm(contact.device - at) <= 2 * unit) return &contact;
+    if (contact.kind != ContactKind::none && contact.object == object && norm(contact.device - at) <= std::ldexp(2.0, -exponent))
+      return &contact;
   return nullptr;
 }
 
-/// Deceleration along the screw that neither the device nor gravity explains [m/s^2].   pre  the moments of the window are there
-double DrivenChoice::drag_of(std::uint32_t object, const RigidSample& now) const noexcept {
+/// Deceleration along the screw that neither the device nor gravity explains [m/s^2].
+/// pre  the moments of the window are there.   in  rounding  what the pull of a receiver has over the true one [m/s^2], world frame
+double DrivenChoice::drag_of(std::uint32_t object, const RigidSample& now, const Vec3& rounding) const noexcept {
   const std::span<const Moment> moments = std::span(moments_).subspan((kWindow + 1) * object, kWindow + 1);
   const auto [first, last] = std::ranges::minmax_element(moments, {}, &Moment::tick);
   const Vec3 inertia = inertia_of(scene_.driven->bodies[object]);
   const double speed = std::sqrt(dot(last->velocity, last->velocity) + dot(times(inertia, last->angular), last->angular));
   if (speed < kSlowest) return 0;
-  double drive = 0;
+  const auto along = [&now](const Vec3& pull, const Vec3& arm) {
+    return dot(pull, now.velocity + cross(now.angular_velocity, arm));
+  };
+  double drive = along(rounding, last->arm);
   for (const Moment& moment : moments) {
     if (&moment == &*last) continue;
-    drive += dot(moment.pull, now.velocity + cross(now.angular_velocity, moment.arm)) / kWindow;
+    drive += along(moment.pull, moment.arm) / kWindow;
   }
   const double gained =
       dot(last->velocity - first->velocity, last->velocity) + dot(times(inertia, last->angular - first->angular), last->angular);
@@ -87,7 +93,9 @@ void DrivenChoice::read(std::int64_t tick, std::span<const RigidSample> samples,
       const bool whole = std::ranges::all_of(window, [first](const Moment& m) { return m.tick >= first; });
       if (!whole) continue;
       told.normal = on_grid(contact->normal, DrivenContact::kNormal);
-      told.drag = on_grid({drag_of(i, sample), 0, 0}, DrivenContact::kDrag)[0];
+      const Vec3 off = contact->point - off_grid(told.point, DrivenContact::kPoint);
+      const Vec3 rounding = std::ldexp(body.coupling, -8) * rotate(sample.pose.rotation, off);
+      told.drag = on_grid({drag_of(i, sample, rounding), 0, 0}, DrivenContact::kDrag)[0];
     }
     truth[i].contact = told;
   }

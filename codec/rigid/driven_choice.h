@@ -39,7 +39,7 @@ class DrivenChoice {
   };
 
   const Contact* own_contact(std::uint32_t object, std::span<const Contact> contacts, const Vec3i& device) const noexcept;
-  double drag_of(std::uint32_t object, const RigidSample& now) const noexcept;
+  double drag_of(std::uint32_t object, const RigidSample& now, const Vec3& rounding) const noexcept;
 
   const Scene& scene_;
   const DevicePath& path_;

@@ -16,7 +16,7 @@ bool stays_inside(const UpdateCourse& c, const ErrorShare& share, double duratio
     const double t = part * duration, left = 1 - part, gone = Acceleration::departure(t);
     const Vec3 moved = left * c.offset.moved + c.error.moved + t * c.drift.linear - gone * c.acceleration.linear;
     const Vec3 turned = left * c.offset.turned + c.error.turned + t * c.drift.angular - gone * c.acceleration.angular;
-    if (!(share(moved, turned) <= 1 - (1 - kInside) * part)) return false;
+    if (!(share(moved, turned, t) <= 1 - (1 - kInside) * part)) return false;
   }
   return true;
 }

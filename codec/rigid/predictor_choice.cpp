@@ -77,6 +77,15 @@ PredictorChoice::Record PredictorChoice::record_of(Predictor predictor, std::uin
   return out;
 }
 
+bool PredictorChoice::drives_on(std::uint32_t object, const RigidState& truth, const PermittedError& permitted,
+                                const RigidState& current) const noexcept {
+  if (current.predictor != Predictor::driven) return false;
+  std::size_t n = 0;
+  const RigidState* from = start(object, truth.tick, n);
+  while (from != nullptr && from->tick > current.tick) from = start(object, truth.tick, ++n);
+  return from != nullptr && error_of(Predictor::linear, object, *from, truth, permitted) > 1;
+}
+
 bool PredictorChoice::is_driven(std::uint32_t object, const RigidState& truth, const PermittedError& permitted, Predictor other,
                                 std::size_t served) const noexcept {
   for (std::size_t n = served + 1; n-- > 0;) {
@@ -87,14 +96,15 @@ bool PredictorChoice::is_driven(std::uint32_t object, const RigidState& truth, c
   return false;
 }
 
-Predictor PredictorChoice::choose(std::uint32_t object, const RigidState& truth, const PermittedError& permitted,
-                                  bool is_touched) const noexcept {
+Predictor PredictorChoice::choose(std::uint32_t object, const RigidState& truth, const PermittedError& permitted, bool is_touched,
+                                  const RigidState& current) const noexcept {
   const bool may_be_driven = predictor_.knows_device() && truth.contact != DrivenContact{};
   Predictor best = Predictor::linear;
   if (is_touched && !may_be_driven) return best;
+  if (may_be_driven && drives_on(object, truth, permitted, current)) return Predictor::driven;
   Record most = record_of(best, object, truth, permitted);
   for (const Predictor predictor : {Predictor::ballistic, Predictor::slide}) {
-    if (!is_declared_for(object, predictor)) continue;
+    if (is_touched || !is_declared_for(object, predictor)) continue;
     const Record record = record_of(predictor, object, truth, permitted);
     if (record.served < most.served || (record.served == most.served && record.error >= most.error)) continue;
     best = predictor;

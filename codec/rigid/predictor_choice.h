@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Which predictor an update chooses: the one that would have served longest of late. Each is started from true states of the last 150 ms
 /// and held against the truth of now, from the youngest start back until one would have left its bounds; the device's motion, which takes
-/// longer to work out, from where the best of the others would have left them. What a device touches that is not known is predicted linearly.
-/// Informative: an encoder's choice, which no bound depends on. Internal to the library.
+/// longer to work out, from where the linear one would have left them, and not at all where it has in fact served for longer than that.
+/// What a device touches is predicted by it or linearly. Informative: an encoder's choice, which no bound depends on. Internal to the library.
 #pragma once
 
 #include <cstdint>
@@ -31,10 +31,10 @@ class PredictorChoice {
   /// The truth of a tick, after those before it.   time O(moving objects), about 10 ns each, no allocation; memory 2 kB per object
   void read(std::int64_t tick, std::span<const RigidState> truth) noexcept;
   /// in   truth       the object's state of the last read(); where a device drives it, its contact is told
-  /// in   is_touched  by a device, known or not
+  /// in   is_touched  by a device, known or not;  current  the update that it replaces
   /// time < 2 us; where a device drives the object 0.1 us more for each tick of the path looked at, most often 50; no allocation
-  Predictor choose(std::uint32_t object, const RigidState& truth, const PermittedError& permitted,
-                   bool is_touched) const noexcept;
+  Predictor choose(std::uint32_t object, const RigidState& truth, const PermittedError& permitted, bool is_touched,
+                   const RigidState& current) const noexcept;
 
  private:
   static constexpr std::size_t kKept = 32;
@@ -52,6 +52,9 @@ class PredictorChoice {
   Record record_of(Predictor predictor, std::uint32_t object, const RigidState& truth,
                    const PermittedError& permitted) const noexcept;
   bool is_declared_for(std::uint32_t object, Predictor predictor) const noexcept;  // ballistic or slide
+  /// Whether the device has driven the object for longer than a steady motion would have served.
+  bool drives_on(std::uint32_t object, const RigidState& truth, const PermittedError& permitted,
+                 const RigidState& current) const noexcept;
   /// Whether the device explains more than the best of the others, from the first start on that this one does not serve.
   bool is_driven(std::uint32_t object, const RigidState& truth, const PermittedError& permitted, Predictor other,
                  std::size_t served) const noexcept;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -129,6 +130,7 @@ RigidEncoder::RigidEncoder(const Scene& scene, const RigidTriggers& triggers, Ba
       truth_(initial_states(scene).objects) {
   if (triggers.reduction != Reduction::none) {
     if (scene.is_eased) acceleration_.emplace(scene);
+    if (scene.is_eased && triggers.haptic != HapticRule::off) force_trend_.emplace(scene);
     if (has_predictors(scene)) choice_.emplace(scene);
   }
   pending_.reserve(scene.moving().size());
@@ -175,6 +177,7 @@ Result<void> RigidEncoder::read(std::int64_t tick, std::span<const RigidSample> 
   samples_ = samples;
   contacts_ = contacts;
   if (acceleration_) acceleration_->read(tick, samples);
+  if (force_trend_) force_trend_->read(tick, samples, contacts);
   if (driven_ && !loses_more_) driven_->read(tick, samples, contacts, truth_);
   if (choice_) choice_->read(tick, truth_);
   return {};
@@ -185,17 +188,20 @@ bool RigidEncoder::is_touched(std::uint32_t object) const noexcept {
          std::ranges::any_of(contacts_, [object](const Contact& c) { return c.kind != ContactKind::none && c.object == object; });
 }
 
-/// Haptic rule for every contact on the object, at `share` of the permitted error.
-bool RigidEncoder::haptic_within(std::uint32_t object, const RigidPose& shown, double share) const noexcept {
-  if (triggers_.haptic == HapticRule::off) return true;
+/// The largest haptic_ratio() of the contacts on the object; with the rule `fixed` 0 or infinite.
+double RigidEncoder::haptic_ratio_of(std::uint32_t object, const RigidPose& shown) const noexcept {
+  constexpr double kOutside = std::numeric_limits<double>::infinity();
+  double out = 0;
+  if (triggers_.haptic == HapticRule::off) return out;
   for (const Contact& contact : contacts_) {
     if (contact.kind == ContactKind::none || contact.object != object) continue;
-    if (triggers_.haptic == HapticRule::fixed) return within(fixed_, shown, truth_[object]);
+    if (triggers_.haptic == HapticRule::fixed) return within(fixed_, shown, truth_[object]) ? 0 : kOutside;
     const Vec3 estimate = contact_force(contact, to_pose(shown, scene_.grid.position));
     const double ratio = haptic_ratio(triggers_, contact_force(contact, samples_[object].pose), estimate);
-    if (!(ratio <= share * widening_)) return false;  // forces too large to compare are outside, too
+    if (std::isnan(ratio)) return kOutside;  // forces too large to compare
+    out = std::max(out, ratio);
   }
-  return true;
+  return out;
 }
 
 /// An update would bring the shown pose nearer to the truth: they are not at the same place of the grid.
@@ -209,7 +215,7 @@ Reason RigidEncoder::reason_for(std::uint32_t object) const noexcept {
   const std::int64_t tick = truth_[object].tick;
   const RigidPose course = predictor_.shown(object, path.state, tick);
   const RigidPose shown = eased(course, path.state, path.offset, tick);
-  if (!haptic_within(object, shown, 1.0) && can_improve(object, shown)) return Reason::haptic;
+  if (haptic_ratio_of(object, shown) > widening_ && can_improve(object, shown)) return Reason::haptic;
   if (!within(visual_, shown, truth_[object])) return Reason::visual;
   if (is_easing(path.state, tick) && !within(visual_, course, truth_[object])) return Reason::visual;
   if (heartbeat_ > 0 && tick - path.state.tick >= heartbeat_) return Reason::heartbeat;
@@ -229,7 +235,8 @@ bool RigidEncoder::joins(std::uint32_t object, const EncodeRequest<RigidStates>&
   if (request.head.key && path.state != request.base.objects[object]) return true;
   if (early_ == 1) return false;
   const RigidPose shown = path.pose(predictor_, request.tick);
-  return !within(early_visual_, shown, truth_[object]) || (!haptic_within(object, shown, early_) && can_improve(object, shown));
+  return !within(early_visual_, shown, truth_[object]) ||
+         (haptic_ratio_of(object, shown) > early_ * widening_ && can_improve(object, shown));
 }
 
 /// Nothing is pending without at least one trigger, follow-up or request.
@@ -268,7 +275,7 @@ Predictor RigidEncoder::chosen(std::uint32_t object, const RigidTriggers& bounds
         std::min(permitted.position, fixed ? bounds.fixed_position : force_budget(bounds, force) / contact.stiffness);
     if (fixed) permitted.rotation = std::min(permitted.rotation, bounds.fixed_rotation);
   }
-  return choice_->choose(object, truth_[object], permitted, is_touched(object));
+  return choice_->choose(object, truth_[object], permitted, is_touched(object), sent_[object].path.state);
 }
 
 /// The true state with the velocities that an update is to tell.   pre  it is predicted linearly
@@ -300,9 +307,11 @@ void RigidEncoder::choose_ease(Pending& update, CodedUpdate& coded, const Accele
   RigidState tried = update.state;
   const RigidPose own{tried.position, tried.rotation};
   const PoseOffset offset = offset_between(own, shown);
-  for (tried.ease = 1; tried.keep < 4; ++tried.keep) {
+  tried.ease = 1;
+  tried.keep = update.reason == Reason::haptic ? 1 : 0;  // all of it is what is felt
+  for (; tried.keep < 4; ++tried.keep) {
     const RigidPose kept = eased(own, tried, part_kept(offset, tried.keep), tried.tick);
-    if (!within(visual_, kept, truth_[object]) || !haptic_within(object, kept, 1.0)) continue;
+    if (!within(visual_, kept, truth_[object]) || haptic_ratio_of(object, kept) > widening_) continue;
     tried.ease = longest_ease(course_of(tried, kept, samples_[object], acceleration), share, scene_.tick_rate);
     if (tried.ease == 0) return;
     update.state = tried;
@@ -322,7 +331,7 @@ Result<CodedUpdate> RigidEncoder::code(Pending& update, const EncodeRequest<Rigi
   const RigidTriggers bounds = widened_triggers();
   const Predictor predictor = choice_ ? chosen(object, bounds) : Predictor::linear;
   const bool is_linear = predictor == Predictor::linear;
-  const ErrorShare share(object, samples_[object].pose, contacts_, bounds);
+  const ErrorShare share(object, samples_[object].pose, contacts_, bounds, force_trend_ ? force_trend_->sinking(object) : 0);
   const auto acceleration = acceleration_ && is_linear ? acceleration_->of(object) : Acceleration::Motion{};
   RigidState told = is_linear ? leaned(object, acceleration, share) : truth_[object];
   told.predictor = predictor;
@@ -351,9 +360,10 @@ Result<CodedUpdate> RigidEncoder::quantise(Pending& update, const Prediction& pr
     if (!state) return fail(Errc::internal, "R-RIG-6");
     const RigidPose shown{state->position, state->rotation};
     if (!within(visual_, shown, truth)) continue;
-    if ((level > 0 || finest) && !haptic_within(object, shown, 1.0)) continue;
+    const double felt = haptic_ratio_of(object, shown);
+    if ((level > 0 || finest) && felt > widening_) continue;
     update.state = *state;
-    if (haptic_within(object, shown, kHapticShare)) return coded;
+    if (felt <= kHapticShare * widening_) return coded;
     finest = coded;
   }
   if (!finest) return fail(Errc::invalid_argument, "R-API-7");

@@ -25,6 +25,7 @@
 #include <tactus/rigid/ease_choice.h>
 #include <tactus/rigid/easing.h>
 #include <tactus/rigid/error_share.h>
+#include <tactus/rigid/force_trend.h>
 #include <tactus/rigid/predictor_choice.h>
 #include <tactus/rigid/rigid_syntax.h>
 #include <tactus/rigid/trigger.h>
@@ -77,7 +78,7 @@ class RigidEncoder {
 
   Reason reason_for(std::uint32_t object) const noexcept;
   bool can_improve(std::uint32_t object, const RigidPose& shown) const noexcept;
-  bool haptic_within(std::uint32_t object, const RigidPose& shown, double share) const noexcept;
+  double haptic_ratio_of(std::uint32_t object, const RigidPose& shown) const noexcept;
   bool is_touched(std::uint32_t object) const noexcept;
   bool is_follow_up_due(std::uint32_t object) const noexcept;
   bool joins(std::uint32_t object, const EncodeRequest<RigidStates>& request) const noexcept;
@@ -104,6 +105,7 @@ class RigidEncoder {
   std::array<std::int64_t, 3> follow_up_{};  // [ticks] without an acknowledgement before the first, the second and later; 0: none
   std::int64_t heartbeat_ = 0;               // [ticks], 0: off
   std::optional<Acceleration> acceleration_;  // where updates lean or are eased
+  std::optional<ForceTrend> force_trend_;     // where they are eased and forces count
   std::optional<PredictorChoice> choice_;     // if there is one
   std::optional<DrivenChoice> driven_;        // if the receiver's device may drive objects
   std::vector<RigidState> truth_;             // this tick, on the grid

@@ -35,6 +35,20 @@ TEST(EaseChoice, IsShorterWhereTheErrorGrowsOnTheSideOfTheOffset) {
   EXPECT_EQ(longest_ease(course(-0.001, 0, -5), kShare, 1000), 4);
 }
 
+/// An offset that the force permits now is gone before the force is.
+TEST(EaseChoice, IsShorterWhereTheForceSinks) {
+  const Contact contact{ContactKind::surface, 0, {}, {1, 0, 0}, {-0.001, 0, 0}, 1000};
+  const auto ease = [&](double sinking) {
+    const ErrorShare share(0, {}, {&contact, 1}, {.weber_fraction = 0.04}, sinking);
+    return longest_ease(course(-0.000036, 0, 0), share, 1000);
+  };
+  EXPECT_EQ(ease(0), 4);
+  EXPECT_EQ(ease(20), 4) << "a third in 16 ms";
+  EXPECT_LT(ease(60), 4);
+  EXPECT_GT(ease(60), 0);
+  EXPECT_LT(ease(200), ease(60));
+}
+
 TEST(EaseChoice, RotationCountsAsWell) {
   const UpdateCourse turned{{{}, {0, 0.05, 0}}, {}, {{}, {0, 40, 0}}, {}};
   EXPECT_LT(longest_ease(turned, kShare, 1000), 2);

@@ -53,6 +53,20 @@ TEST(ErrorShare, TheNarrowestBoundCounts) {
   EXPECT_LT(ErrorShare(0, {}, contacts, {.haptic = HapticRule::off})({0, 0, 0.0005}, {}), 0.1);
 }
 
+/// What is permitted at a force that sinks by a tenth per 10 ms, down to what is permitted at the floor; what is seen stays.
+TEST(ErrorShare, AForceThatSinksLeavesLessLater) {
+  const Contact contact{ContactKind::surface, 0, {}, {0, 0, 1}, {0, 0, -0.001}, 1000};
+  const RigidTriggers triggers{.visual_position = 0.01, .weber_fraction = 0.1, .force_floor = 0.2};
+  const ErrorShare share(0, {}, {&contact, 1}, triggers, 10);
+  const Vec3 wrong{0, 0, 0.00005};
+  EXPECT_NEAR(share(wrong, {}), 0.5, 1e-9);
+  EXPECT_NEAR(share(wrong, {}, 0.01), 0.5 / 0.9, 1e-9);
+  EXPECT_NEAR(share(wrong, {}, 0.05), 1, 1e-9);
+  EXPECT_NEAR(share(wrong, {}, 0.2), 0.5 / 0.2, 1e-9);
+  EXPECT_EQ(share({0.001, 0, 0}, {}, 0.2), share({0.001, 0, 0}, {}));
+  EXPECT_EQ(ErrorShare(0, {}, {&contact, 1}, triggers)(wrong, {}, 0.2), share(wrong, {}));
+}
+
 TEST(ErrorShare, LooksAtEightContacts) {
   std::vector<Contact> contacts(9, {ContactKind::surface, 0, {}, {0, 0, 1}, {0, 0, -0.01}, 100});
   const auto share = [&] { return ErrorShare(0, {}, contacts, {.weber_fraction = 0.04})({0, 0, 0.0001}, {}); };

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/unit/driven_fixture.h"
 #include "tests/unit/rigid_fixture.h"
 
 namespace tactus {
@@ -45,7 +46,7 @@ Predictor chosen_at(std::int64_t now, const SharedScene& scene, std::int64_t ste
     truth = to_grid(toss.at(tick), tick, scene->grid).value();
     choice.read(tick, {&truth, 1});
   }
-  return choice.choose(0, truth, kPermitted, is_touched);
+  return choice.choose(0, truth, kPermitted, is_touched, {});
 }
 
 TEST(PredictorChoice, TakesWhatWouldHaveServedLongest) {
@@ -76,9 +77,36 @@ TEST(PredictorChoice, WithoutAPastItIsLinear) {
   const SharedScene scene = scene_with({{0, 0, -kGravity}, kFriction});
   PredictorChoice choice(*scene);
   const RigidState truth = to_grid(Toss().at(1350), 1350, scene->grid).value();
-  EXPECT_EQ(choice.choose(0, truth, kPermitted, false), Predictor::linear);
+  EXPECT_EQ(choice.choose(0, truth, kPermitted, false, {}), Predictor::linear);
   choice.read(1350, {&truth, 1});
-  EXPECT_EQ(choice.choose(0, truth, kPermitted, false), Predictor::linear);
+  EXPECT_EQ(choice.choose(0, truth, kPermitted, false, {}), Predictor::linear);
+}
+
+/// Of a cube that has moved with this acceleration for 150 ms, at a device that explains none of it.
+Predictor chosen_after(double acceleration, const RigidState& current) {
+  const SharedScene scene = testing::driven_scene(Dof::all, {});
+  const auto path = testing::path_along(scene, 151, [](std::int64_t) { return Vec3{-1, 0, 0}; });
+  PredictorChoice choice(*scene);
+  choice.know(*path);
+  RigidState truth;
+  for (std::int64_t tick = 0; tick <= 150; ++tick) {
+    const double t = 1e-3 * static_cast<double>(tick);
+    truth = to_grid({{{acceleration / 2 * t * t, 0, 0}, {}}, {acceleration * t, 0, 0}, {}}, tick, scene->grid).value();
+    truth.contact = testing::contact_at({-0.02, 0, 0}, {-1, 0, 0});
+    choice.read(tick, {&truth, 1});
+  }
+  return choice.choose(0, truth, kPermitted, true, current);
+}
+
+/// It has served longer than a steady motion would have.
+TEST(PredictorChoice, WhatTheDeviceHasDrivenLongerThanAnotherWouldServeItDrivesOn) {
+  const RigidState driven{.tick = 90, .predictor = Predictor::driven}, linear{.tick = 90};
+  EXPECT_EQ(chosen_after(2, driven), Predictor::driven) << "3.6 mm beside a steady motion since then";
+  EXPECT_EQ(chosen_after(2, linear), Predictor::linear);
+  EXPECT_EQ(chosen_after(0.1, driven), Predictor::linear) << "0.2 mm: a steady motion would have served as well";
+  RigidState young = driven;
+  young.tick = 140;
+  EXPECT_EQ(chosen_after(2, young), Predictor::linear) << "0.1 mm";
 }
 
 struct Outcome {
