@@ -55,7 +55,7 @@ TACTUS_SIZED(tactus_server_options, TACTUS_UP_TO(tactus_server_options, sender))
 TACTUS_SIZED(tactus_client_options, TACTUS_UP_TO(tactus_client_options, limits));
 TACTUS_SIZED(tactus_trace_info, TACTUS_UP_TO(tactus_trace_info, source));
 TACTUS_SIZED(tactus_trace_object, TACTUS_UP_TO(tactus_trace_object, name));
-TACTUS_SIZED(tactus_trace_user, TACTUS_UP_TO(tactus_trace_user, name));
+TACTUS_SIZED(tactus_trace_user, TACTUS_UP_TO(tactus_trace_user, name), TACTUS_UP_TO(tactus_trace_user, reserved));
 TACTUS_SIZED(tactus_trace_mesh, TACTUS_UP_TO(tactus_trace_mesh, name));
 TACTUS_SIZED(tactus_trace_coding, TACTUS_UP_TO(tactus_trace_coding, deformable));
 TACTUS_SIZED(tactus_errors_options, TACTUS_UP_TO(tactus_errors_options, deformable));

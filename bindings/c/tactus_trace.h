@@ -32,10 +32,15 @@ typedef struct tactus_trace_object {
   const char* name;
 } tactus_trace_object;
 
+/* Forces of a user that a trace knows, bits. A server is not told what a hand felt, nor a client what the server rendered. */
+enum { TACTUS_FORCE_FELT = 1, TACTUS_FORCE_SERVER = 2 };
+
 typedef struct tactus_trace_user {
   uint32_t size;
   uint32_t senses; /* of the device, beside its position: 1 orientation, 2 velocity, 4 buttons, 8 time */
   const char* name;
+  uint32_t forces; /* that are known: TACTUS_FORCE_..., one or both */
+  uint32_t reserved;
 } tactus_trace_user;
 
 typedef struct tactus_trace_mesh {
@@ -50,8 +55,8 @@ typedef struct tactus_trace_mesh {
 typedef struct tactus_user_sample {
   tactus_device_sample device;
   tactus_contact contact; /* with a rigid object */
-  double force[3];        /* N, world: what the hand felt; in the trace of a server, which is not told, its own */
-  double server_force[3]; /* N, world: of the true state; 0 in the trace of a client, which is not told */
+  double force[3];        /* N, world: what the hand felt; without TACTUS_FORCE_FELT the server's */
+  double server_force[3]; /* N, world: rendered at the server from the true state; without TACTUS_FORCE_SERVER 0 */
   int32_t touches_mesh;   /* 1: the next ones count */
   uint32_t mesh, triangle;
   uint32_t reserved;

@@ -35,6 +35,15 @@ tactus_rigid_sample sample_of(const RigidSample& s) noexcept {
   return {.pose = pose_of(pose), .velocity = {v.x, v.y, v.z}, .angular_velocity = {w.x, w.y, w.z}};
 }
 
+std::uint32_t bits_of(const DeviceSenses& senses) noexcept {
+  return (senses.orientation ? 1u : 0) | (senses.velocity ? 2u : 0) | (senses.buttons ? 4u : 0) | (senses.time ? 8u : 0);
+}
+
+std::uint32_t bits_of(KnownForces forces) noexcept {
+  if (forces == KnownForces::both) return TACTUS_FORCE_FELT | TACTUS_FORCE_SERVER;
+  return forces == KnownForces::felt ? TACTUS_FORCE_FELT : TACTUS_FORCE_SERVER;
+}
+
 void put(const Vec3& v, double (&out)[3]) noexcept {
   out[0] = v.x;
   out[1] = v.y;
@@ -164,10 +173,9 @@ tactus_status tactus_trace_get_user(const tactus_trace* trace, uint32_t user, ta
     TACTUS_TRY(const TraceInfo* of, info_of(trace));
     if (user >= of->users.size()) return refuse();
     TACTUS_CHECK(check_answer(info));
-    const DeviceSenses& senses = of->users[user].senses;
-    const unsigned bits =
-        (senses.orientation ? 1u : 0) | (senses.velocity ? 2u : 0) | (senses.buttons ? 4u : 0) | (senses.time ? 8u : 0);
-    answer(info, {.size = 0, .senses = bits, .name = of->users[user].name.c_str()});
+    const TraceUser& told = of->users[user];
+    answer(info,
+           {.size = 0, .senses = bits_of(told.senses), .name = told.name.c_str(), .forces = bits_of(told.forces), .reserved = 0});
     return TACTUS_OK;
   });
 }

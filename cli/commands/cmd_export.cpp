@@ -41,7 +41,10 @@ void setup_export(Command& app, Action& action) {
   command.add_option("TRACE", options->input, "Trace to export (MCAP), - is standard input")->type_name("")->required();
   command.add_option("-o,--output", options->output, "CSV to write [standard output]")->type_name("FILE");
   add_output_options(command, options->common);
-  command.footer("Example:\n  tactus export csv push.mcap -o push.csv");
+  command.footer(
+      "A force that the trace does not know has no columns: serve is not told what a hand felt; join, capture and play know\n"
+      "nothing else.\n"
+      "Example:\n  tactus export csv push.mcap -o push.csv");
   on_chosen<ExportOptions>(command, action, options, run);
 }
 

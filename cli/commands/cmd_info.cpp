@@ -35,6 +35,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* kForces[] = {"felt, of the server", "felt", "of the server"};  // index: KnownForces
+
 struct InfoOptions {
   std::string input;
   std::string readable;  // where to read it, again and again
@@ -369,7 +371,8 @@ Outcome info_trace(const InfoOptions& options) {
                                    {"period [ticks]", trace.meshes[i].period},
                                    {"new shapes", shapes[i]}});
   }
-  for (const TraceUser& user : trace.users) info["users"].push_back({{"user", user.name}});
+  for (const TraceUser& user : trace.users)
+    info["users"].push_back({{"user", user.name}, {"known forces", kForces[static_cast<std::size_t>(user.forces)]}});
   info["channels"] = std::move(channels);
   print_info(info);
   return check_ending(options.input, *reader, frames);

@@ -9,11 +9,10 @@
 
 #include <tactus/base/shown.h>
 #include <tactus/trace/byte_source.h>
-#include "cli/output.h"
 
 namespace tactus::cli {
 
-tl::expected<RereadableInput, Failure> RereadableInput::open(const std::string& path) {
+tl::expected<RereadableInput, Failure> RereadableInput::open(const std::string& path, std::uint64_t most) {
   RereadableInput input;
   input.path_ = path;
   std::error_code ignored;
@@ -30,10 +29,8 @@ tl::expected<RereadableInput, Failure> RereadableInput::open(const std::string& 
     if (!count) return refuse(path, count.error());
     if (*count == 0) break;
     copied += *count;
-    if (copied > kMostRead) {
-      return refuse(fmt::format("{}: more than {} MiB from a pipe", shown_path(path), kMostRead >> 20),
-                    "Write it to a file first.");
-    }
+    if (copied > most)
+      return refuse(fmt::format("{}: more than {} MiB from a pipe", shown_path(path), most >> 20), "Write it to a file first.");
     if (std::fwrite(piece.data(), 1, *count, input.copy_.get()) != *count)
       return refuse_io("a temporary file", "cannot be written", errno);
   }

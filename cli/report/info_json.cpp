@@ -84,6 +84,13 @@ Json without_shares(Json traffic) {
   return traffic;
 }
 
+Json forces_json(KnownForces known) {
+  Json out = Json::array();
+  if (known != KnownForces::server) out.push_back("felt");
+  if (known != KnownForces::felt) out.push_back("server");
+  return out;
+}
+
 Json capture_json(const TraceCapture& capture) {
   return {{"started_ns", capture.started},    {"started", text_of_wall_time(capture.started)},
           {"device", capture.device},         {"backend", capture.backend},
@@ -191,7 +198,7 @@ Json trace_info_json(const TraceInfo& trace, const TraceTotals& totals) {
                                   {"shapes", totals.shapes[i]}});
   }
   out["users"] = Json::array();
-  for (const TraceUser& user : trace.users) out["users"].push_back({{"name", user.name}});
+  for (const TraceUser& user : trace.users) out["users"].push_back({{"name", user.name}, {"forces", forces_json(user.forces)}});
   if (trace.capture) out["capture"] = capture_json(*trace.capture);
   return out;
 }

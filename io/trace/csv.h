@@ -29,7 +29,8 @@ namespace tactus {
 
 enum class CsvLayout : std::uint8_t {
   named_columns,  ///< one object, one user, columns as the mapping names them
-  tactus,         ///< columns of export_csv(): any objects and users; only tick_rate of the mapping is used
+  tactus,         ///< columns of export_csv(): any objects and users; only tick_rate of the mapping is used. A force without
+                  ///< columns is not known (KnownForces)
 };
 
 /// Frame of the recorded angular velocities. A gyroscope on the object measures in the body frame.
@@ -85,7 +86,8 @@ struct CsvImport {
 tl::expected<CsvImport, Diagnostic> import_csv(const std::string& path, const CsvMapping& mapping, const std::string& out_path);
 
 /// One row per tick: tick, time_s, then of each object and user the columns of csv_columns.h, named by their topics
-/// ("/objects/cube/qw"). Numbers are the shortest decimals that read back to the same bits. Returns the ticks of the rows.
+/// ("/objects/cube/qw"). A force that the trace does not know (KnownForces) has no columns. Numbers are the shortest decimals that
+/// read back to the same bits. Returns the ticks of the rows.
 /// err  io R-TRC-1: the stream refused; whatever TraceReader::next() reports.
 Result<TickSpan> export_csv(TraceReader& reader, std::ostream& out);
 

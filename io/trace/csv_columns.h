@@ -2,6 +2,7 @@
 /// Columns of an object and of a user, in order, and the fields that they fill. Shared by import and export.
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include <tactus/trace/frame.h>
@@ -31,17 +32,25 @@ inline constexpr std::array<CsvColumn<RigidSample>, 13> kObjectColumns{{
     {"wz", [](RigidSample& s) -> double& { return s.angular_velocity.z; }},
 }};
 
-// device [m], forces [N], then fields that are valid in contact only: point [m] and normal (object frame), stiffness [N/m]
-inline constexpr std::array<CsvColumn<UserSample>, 16> kUserColumns{{
+// device [m], forces [N]
+inline constexpr std::array<CsvColumn<UserSample>, 3> kDeviceColumns{{
     {"device_x", [](UserSample& u) -> double& { return u.device.position.x; }},
     {"device_y", [](UserSample& u) -> double& { return u.device.position.y; }},
     {"device_z", [](UserSample& u) -> double& { return u.device.position.z; }},
+}};
+inline constexpr std::array<CsvColumn<UserSample>, 3> kForceColumns{{
     {"force_x", [](UserSample& u) -> double& { return u.force.x; }},
     {"force_y", [](UserSample& u) -> double& { return u.force.y; }},
     {"force_z", [](UserSample& u) -> double& { return u.force.z; }},
+}};
+inline constexpr std::array<CsvColumn<UserSample>, 3> kServerForceColumns{{
     {"server_force_x", [](UserSample& u) -> double& { return u.server_force.x; }},
     {"server_force_y", [](UserSample& u) -> double& { return u.server_force.y; }},
     {"server_force_z", [](UserSample& u) -> double& { return u.server_force.z; }},
+}};
+
+// Valid in contact only: point [m] and normal (object frame), stiffness [N/m].
+inline constexpr std::array<CsvColumn<UserSample>, 7> kTouchColumns{{
     {"point_x", [](UserSample& u) -> double& { return u.contact.point.x; }},
     {"point_y", [](UserSample& u) -> double& { return u.contact.point.y; }},
     {"point_z", [](UserSample& u) -> double& { return u.contact.point.z; }},
@@ -63,6 +72,17 @@ inline constexpr std::array<CsvColumn<UserSample>, 3> kDeviceVelocityColumns{{
     {"device_vy", [](UserSample& u) -> double& { return u.device.velocity.y; }},
     {"device_vz", [](UserSample& u) -> double& { return u.device.velocity.z; }},
 }};
+
+/// Columns of real numbers that a user has, in order.
+template <class Visit>
+void for_each_column(const TraceUser& user, Visit visit) {
+  std::ranges::for_each(kDeviceColumns, visit);
+  if (user.forces != KnownForces::server) std::ranges::for_each(kForceColumns, visit);
+  if (user.forces != KnownForces::felt) std::ranges::for_each(kServerForceColumns, visit);
+  std::ranges::for_each(kTouchColumns, visit);
+  if (user.senses.orientation) std::ranges::for_each(kOrientationColumns, visit);
+  if (user.senses.velocity) std::ranges::for_each(kDeviceVelocityColumns, visit);
+}
 
 // Reports of a device at this tick: each in hexadecimal digits, blanks between. What they mean is not in a table.
 inline constexpr const char* kReportsColumn = "device_reports";

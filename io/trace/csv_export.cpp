@@ -22,16 +22,11 @@ std::string header_row(const TraceInfo& info) {
   }
   for (const TraceUser& user : info.users) {
     const std::string path = "/users/" + user.name + "/";
-    const DeviceSenses& senses = user.senses;
     add(path, kContactColumn);
     add(path, kContactObjectColumn);
-    for (const auto& column : kUserColumns) add(path, column.name);
-    if (senses.orientation)
-      for (const auto& column : kOrientationColumns) add(path, column.name);
-    if (senses.velocity)
-      for (const auto& column : kDeviceVelocityColumns) add(path, column.name);
-    if (senses.buttons) add(path, kButtonsColumn);
-    if (senses.time) add(path, kDeviceTimeColumn);
+    for_each_column(user, [&](const auto& column) { add(path, column.name); });
+    if (user.senses.buttons) add(path, kButtonsColumn);
+    if (user.senses.time) add(path, kDeviceTimeColumn);
     if (user.has_servo)
       for (const char* column : kServoColumns) add(path, column);
     if (user.report_descriptor) add(path, kReportsColumn);
@@ -71,11 +66,7 @@ void write_row(std::string& row, const TraceInfo& info, TraceFrame& frame) {
     const DeviceSenses& senses = info.users[i].senses;
     add_number(row, static_cast<unsigned>(user.contact.kind));
     add_number(row, user.contact.object);
-    for (const auto& column : kUserColumns) add_number(row, column.field(user));
-    if (senses.orientation)
-      for (const auto& column : kOrientationColumns) add_number(row, column.field(user));
-    if (senses.velocity)
-      for (const auto& column : kDeviceVelocityColumns) add_number(row, column.field(user));
+    for_each_column(info.users[i], [&](const auto& column) { add_number(row, column.field(user)); });
     if (senses.buttons) add_number(row, user.device.buttons);
     if (senses.time) add_number(row, user.device.time);
     if (info.users[i].has_servo) {

@@ -14,9 +14,8 @@
 namespace tactus {
 namespace {
 
-// First rows of a quantity in kObjectColumns and kUserColumns.
+// First rows of a quantity in kObjectColumns.
 constexpr std::size_t kPosition = 0, kRotation = 3, kVelocity = 7, kAngularVelocity = 10;
-constexpr std::size_t kDevice = 0, kForce = 3, kServerForce = 6;
 
 template <class T, std::size_t N>
 std::vector<std::string> all_columns(const std::string& path, const std::array<CsvColumn<T>, N>& columns) {
@@ -48,13 +47,15 @@ class Planner {
   void plan_tactus();
   void plan_tactus_object(const std::string& path);
   void plan_tactus_user(const std::string& path);
+  void plan_forces(const std::string& path);
   bool has_group(std::span<const std::string> columns);
+  template <std::size_t N>
+  bool has_any(const std::string& path, const std::array<CsvColumn<UserSample>, N>& columns) const;
   template <std::size_t N>
   bool bind_sense(const std::string& path, const std::array<CsvColumn<UserSample>, N>& columns);
   std::optional<std::size_t> column_if_there(const std::string& name);
   void bind_object(std::span<const std::string> columns, std::size_t first, double scale);
-  void bind_user(std::span<const std::string> columns, std::span<const CsvColumn<UserSample>> fields, std::size_t first,
-                 double scale);
+  void bind_user(std::span<const std::string> columns, std::span<const CsvColumn<UserSample>> fields, double scale);
 
   std::size_t column(const std::string& name) {
     const auto found = columns_.find(name);
@@ -95,11 +96,10 @@ void Planner::bind_object(std::span<const std::string> columns, std::size_t firs
       plan_.bindings.push_back({column(columns[i]), object, scale, kObjectColumns[first + i].field, nullptr});
 }
 
-void Planner::bind_user(std::span<const std::string> columns, std::span<const CsvColumn<UserSample>> fields, std::size_t first,
-                        double scale) {
+void Planner::bind_user(std::span<const std::string> columns, std::span<const CsvColumn<UserSample>> fields, double scale) {
   const auto user = static_cast<std::uint32_t>(plan_.info.users.size() - 1);
   for (std::size_t i = 0; i < columns.size(); ++i)
-    if (!is_zero(columns[i])) plan_.bindings.push_back({column(columns[i]), user, scale, nullptr, fields[first + i].field});
+    if (!is_zero(columns[i])) plan_.bindings.push_back({column(columns[i]), user, scale, nullptr, fields[i].field});
 }
 
 void Planner::plan_named() {
@@ -125,10 +125,10 @@ void Planner::plan_named() {
   const bool has_device = has_group(m.device), has_force = has_group(m.force);
   if (!has_device && !has_force) return;
   plan_.info.users.push_back({m.user});
-  if (has_device) bind_user(m.device, kUserColumns, kDevice, m.length_scale);
+  if (has_device) bind_user(m.device, kDeviceColumns, m.length_scale);
   if (!has_force) return;
-  bind_user(m.force, kUserColumns, kForce, 1.0);
-  bind_user(m.force, kUserColumns, kServerForce, 1.0);
+  bind_user(m.force, kForceColumns, 1.0);
+  bind_user(m.force, kServerForceColumns, 1.0);
 }
 
 void Planner::plan_tactus() {
@@ -151,13 +151,25 @@ void Planner::plan_tactus() {
   }
 }
 
+template <std::size_t N>
+bool Planner::has_any(const std::string& path, const std::array<CsvColumn<UserSample>, N>& columns) const {
+  return std::ranges::any_of(all_columns(path, columns), [&](const std::string& name) { return columns_.contains(name); });
+}
+
 /// What only some devices sense: all of its columns, or none.
 template <std::size_t N>
 bool Planner::bind_sense(const std::string& path, const std::array<CsvColumn<UserSample>, N>& columns) {
-  const std::vector<std::string> names = all_columns(path, columns);
-  if (std::ranges::none_of(names, [&](const std::string& name) { return columns_.contains(name); })) return false;
-  bind_user(names, columns, 0, 1.0);
+  if (!has_any(path, columns)) return false;
+  bind_user(all_columns(path, columns), columns, 1.0);
   return true;
+}
+
+/// One force at least, with all of its columns. The server's stands for what was felt where nobody told that.
+void Planner::plan_forces(const std::string& path) {
+  const bool has_server = has_any(path, kServerForceColumns), has_felt = !has_server || has_any(path, kForceColumns);
+  plan_.info.users.back().forces = !has_server ? KnownForces::felt : has_felt ? KnownForces::both : KnownForces::server;
+  bind_user(all_columns(path, has_felt ? kForceColumns : kServerForceColumns), kForceColumns, 1.0);
+  if (has_server) bind_user(all_columns(path, kServerForceColumns), kServerForceColumns, 1.0);
 }
 
 std::optional<std::size_t> Planner::column_if_there(const std::string& name) {
@@ -175,7 +187,9 @@ void Planner::plan_tactus_user(const std::string& path) {
   constexpr std::size_t kRoot = std::string_view("/users/").size();
   plan_.info.users.push_back({path.substr(kRoot, path.size() - kRoot - 1)});
   plan_.users.push_back({column(path + kContactColumn), column(path + kContactObjectColumn), {}, {}, {}, {}});
-  bind_user(all_columns(path, kUserColumns), kUserColumns, 0, 1.0);
+  bind_user(all_columns(path, kDeviceColumns), kDeviceColumns, 1.0);
+  plan_forces(path);
+  bind_user(all_columns(path, kTouchColumns), kTouchColumns, 1.0);
   CsvUserColumns& columns = plan_.users.back();
   columns.buttons = column_if_there(path + kButtonsColumn);
   columns.time = column_if_there(path + kDeviceTimeColumn);

@@ -16,13 +16,16 @@ namespace tactus::c_test {
 
 enum class Direction { option, answer };
 
-/// A struct of the interface: its size in the first version, which never changes, and a call that takes it.
+/// A struct of the interface: its sizes in all versions, which never change, and a call that takes it.
 struct SizedCall {
   const char* name;
   std::size_t first;
   Direction direction;
   std::function<tactus_status(void* given, std::size_t size)> init;  ///< of options: their _init
   std::function<tactus_status(void* given, tactus_error* error)> call;
+  std::vector<std::size_t> later{};  ///< of versions in which it has grown, rising
+
+  std::size_t now() const { return later.empty() ? first : later.back(); }
 };
 
 template <class T, class Call>
@@ -56,38 +59,43 @@ class Block {
 
 inline void expect_status(const SizedCall& of, std::size_t size, tactus_status wanted, std::uint8_t last) {
   Block block(of, size);
-  if (size > of.first) block.data()[size - 1] = last;
+  if (size > of.now()) block.data()[size - 1] = last;
   tactus_error error{};
   const tactus_status status = of.call(block.data(), &error);
   EXPECT_EQ(status, wanted) << of.name << " of " << size << " bytes, the last " << int{last};
   EXPECT_TRUE(block.is_whole()) << of.name << " of " << size << " bytes";
   if (wanted != TACTUS_OK) {
     EXPECT_STREQ(error.rule == nullptr ? "none" : error.rule, "R-API-12") << of.name << " of " << size << " bytes";
-  } else if (of.direction == Direction::answer && size > of.first) {
+  } else if (of.direction == Direction::answer && size > of.now()) {
     EXPECT_EQ(block.data()[size - 1], 0) << of.name << ": what the library does not know is 0";
   }
 }
 
 inline void check_sizes(const SizedCall& of) {
   constexpr std::size_t kMost = 4096;
-  for (const std::size_t size : {of.first, of.first + 1, of.first + 8, kMost}) expect_status(of, size, TACTUS_OK, 0);
-  for (const std::size_t size : {std::size_t{0}, std::size_t{4}, of.first - 8, of.first - 1, kMost + 1})
+  const std::size_t first = of.first, now = of.now();
+  for (const std::size_t size : {first, now, now + 1, now + 8, kMost}) expect_status(of, size, TACTUS_OK, 0);
+  for (const std::size_t size : of.later) {
+    expect_status(of, size, TACTUS_OK, 0);
+    expect_status(of, size - 1, TACTUS_INVALID_ARGUMENT, 0);
+  }
+  for (const std::size_t size : {std::size_t{0}, std::size_t{4}, first - 8, first - 1, kMost + 1})
     expect_status(of, size, TACTUS_INVALID_ARGUMENT, 0);
   const bool is_option = of.direction == Direction::option;
-  for (const std::size_t size : {of.first + 1, of.first + 8, kMost})
+  for (const std::size_t size : {now + 1, now + 8, kMost})
     expect_status(of, size, is_option ? TACTUS_INVALID_ARGUMENT : TACTUS_OK, 1);
   if (!of.init) return;
-  EXPECT_EQ(of.init(nullptr, of.first), TACTUS_INVALID_ARGUMENT) << of.name;
-  for (const std::size_t size : {of.first - 1, of.first, of.first + 8, kMost, kMost + 1}) {
+  EXPECT_EQ(of.init(nullptr, now), TACTUS_INVALID_ARGUMENT) << of.name;
+  for (const std::size_t size : {first - 1, first, now, now + 8, kMost, kMost + 1}) {
     std::vector<std::uint8_t> bytes(size + 8, 0xee);
-    const bool fits = size >= of.first && size <= kMost;
+    const bool fits = size >= first && size <= kMost;
     EXPECT_EQ(of.init(bytes.data(), size), fits ? TACTUS_OK : TACTUS_INVALID_ARGUMENT) << of.name << " of " << size;
     EXPECT_TRUE(std::all_of(bytes.end() - 8, bytes.end(), [](std::uint8_t byte) { return byte == 0xee; })) << of.name;
     if (!fits) continue;
     std::uint32_t told = 0;
     std::memcpy(&told, bytes.data(), sizeof told);
     EXPECT_EQ(told, size) << of.name;
-    for (std::size_t i = of.first; i < size; ++i) ASSERT_EQ(bytes[i], 0) << of.name;
+    for (std::size_t i = now; i < size; ++i) ASSERT_EQ(bytes[i], 0) << of.name;
   }
 }
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The Python package against the program, the conformance vectors and itself."""
 import copy
+import csv
 import ctypes
 import dataclasses
 import json
@@ -292,6 +293,21 @@ def test_traces_are_arrays(traces):
     assert shapes.shape == (len(ticks), 714, 3) and np.isfinite(shapes).all()
     shown = tactus.decode(tactus.encode(traces / "mesh.mcap"), ticks, shapes=True)
     assert np.linalg.norm(shown.displacements[0] - shapes, axis=2).max() <= 2.6e-4
+
+
+@needs_program
+def test_which_forces_a_trace_knows(traces, tmp_path):
+    both = tactus.read_trace(traces / "rigid.mcap")
+    assert both.known_forces == [{"felt", "server"}]
+    rows = list(csv.reader(program("export", "csv", traces / "rigid.mcap").splitlines()))
+    for unknown, known, seen in (("force", "server", both.users["server_force"]), ("server_force", "felt", both.force)):
+        kept = [i for i, name in enumerate(rows[0]) if f"/{unknown}_" not in name]
+        assert len(kept) == len(rows[0]) - 3
+        (tmp_path / "t.csv").write_text("".join(",".join(row[i] for i in kept) + "\n" for row in rows))
+        program("import", "csv", tmp_path / "t.csv", "-o", tmp_path / "t.mcap", "-q", "-f")
+        trace = tactus.read_trace(tmp_path / "t.mcap")
+        assert trace.known_forces == [{known}]
+        assert (trace.force == seen).all() and (trace.users["server_force"] == (seen if known == "server" else 0)).all()
 
 
 @needs_program

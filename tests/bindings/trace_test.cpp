@@ -94,6 +94,21 @@ TEST_F(CTrace, TellsWhatTheTraceHolds) {
   EXPECT_EQ(corners[5], 3u);
 }
 
+TEST_F(CTrace, TellsWhichForcesOfAUserItKnows) {
+  const std::pair<KnownForces, std::uint32_t> cases[] = {{KnownForces::both, TACTUS_FORCE_FELT | TACTUS_FORCE_SERVER},
+                                                         {KnownForces::felt, TACTUS_FORCE_FELT},
+                                                         {KnownForces::server, TACTUS_FORCE_SERVER}};
+  for (const auto& [known, told] : cases) {
+    recording.info.users[1].forces = known;
+    const TempFile again;
+    write_recording(recording, again.path());
+    const Trace trace = open(again.path());
+    auto user = sized<tactus_trace_user>();
+    ASSERT_EQ(tactus_trace_get_user(trace.get(), 1, &user, nullptr), TACTUS_OK);
+    EXPECT_EQ(user.forces, told);
+  }
+}
+
 TEST_F(CTrace, ReadsEveryFrame) {
   const Trace trace = open(file.path());
   tactus_rigid_sample objects[2];
@@ -310,9 +325,12 @@ TEST_F(CTrace, StructsMayBeOfAnotherVersion) {
            {"trace_object", 16, Direction::answer, {}, taking<tactus_trace_object>([&](auto*i, auto*e) {
               return tactus_trace_get_object(trace.get(), 0, i, e);
             })},
-           {"trace_user", 16, Direction::answer, {}, taking<tactus_trace_user>([&](auto*i, auto*e) {
-              return tactus_trace_get_user(trace.get(), 0, i, e);
-            })},
+           {"trace_user",
+            16,
+            Direction::answer,
+            {},
+            taking<tactus_trace_user>([&](auto*i, auto*e) { return tactus_trace_get_user(trace.get(), 0, i, e); }),
+            {24}},
            {"trace_mesh", 32, Direction::answer, {}, taking<tactus_trace_mesh>([&](auto*i, auto*e) {
               return tactus_trace_get_mesh(trace.get(), 0, i, e);
             })},

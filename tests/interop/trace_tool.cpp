@@ -36,13 +36,18 @@ TraceFrame make_frame(std::int64_t tick) {
   frame.objects[0].pose.rotation = turn(tick);
   frame.objects[1].pose.rotation = turn(1);
   const bool touches = tick % 3 == 1;
-  for (std::size_t k = 0; k < (touches ? kUserColumns.size() : 9); ++k)
-    kUserColumns[k].field(frame.users[0]) = number(tick, 200 + k);
+  const auto fill = [&](const auto& columns, std::size_t slot) {
+    for (const auto& column : columns) column.field(frame.users[0]) = number(tick, slot++);
+  };
+  fill(kDeviceColumns, 200);
+  fill(kForceColumns, 203);
+  fill(kServerForceColumns, 206);
+  if (touches) fill(kTouchColumns, 209);
   frame.users[0].contact.device = frame.users[0].device.position;
   frame.users[0].contact.kind = touches ? ContactKind::spring : ContactKind::none;
   if (touches) frame.users[0].contact.stiffness = 630;
   frame.users[0].device.orientation = turn(tick + 2);
-  for (std::size_t k = 0; k < 3; ++k) kDeviceVelocityColumns[k].field(frame.users[0]) = number(tick, 230 + k);
+  fill(kDeviceVelocityColumns, 230);
   frame.users[0].device.buttons = static_cast<std::uint32_t>(tick / 4 % 4);
   frame.users[0].device.time = 1'000'003 * tick;
   const auto at = [&](std::size_t slot) { return Vec3{number(tick, slot), number(tick, slot + 1), number(tick, slot + 2)}; };

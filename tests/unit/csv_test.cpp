@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -171,6 +172,60 @@ TEST(Csv, ExportReadsBackToTheSameBits) {
   EXPECT_EQ(outcome.info.objects[1].dof, Dof::none);
   ASSERT_EQ(outcome.frames.size(), recording.frames.size());
   for (std::size_t i = 0; i < outcome.frames.size(); ++i) ASSERT_EQ(image(outcome.frames[i]), image(recording.frames[i])) << i;
+}
+
+TEST(Csv, AForceThatTheTraceDoesNotKnowHasNoColumns) {
+  for (const KnownForces known : {KnownForces::felt, KnownForces::server}) {
+    Recording recording = make_recording(3);
+    recording.info.users[0].forces = known;
+    for (TraceFrame& frame : recording.frames) {
+      UserSample& user = frame.users[0];
+      if (known == KnownForces::felt) user.server_force = {};
+      else user.force = user.server_force;
+    }
+    const TempFile trace;
+    write_recording(recording, trace.path());
+    auto reader = TraceReader::open(trace.path());
+    std::ostringstream text;
+    ASSERT_TRUE(export_csv(*reader, text));
+    const std::string names = text.str().substr(0, text.str().find('\n'));
+    for (const char axis : {'x', 'y', 'z'}) {
+      const auto has = [&](const char* column) { return names.find(std::string(column) + axis) != std::string::npos; };
+      EXPECT_EQ(has("/users/left/force_"), known == KnownForces::felt);
+      EXPECT_EQ(has("/users/left/server_force_"), known == KnownForces::server);
+      EXPECT_TRUE(has("/users/right/force_") && has("/users/right/server_force_"));
+    }
+    const Outcome outcome = import(text.str(), preset("tactus"));
+    ASSERT_EQ(outcome.rule, "") << to_string(outcome.error);
+    EXPECT_EQ(outcome.info.users, recording.info.users);
+    ASSERT_EQ(outcome.frames.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(image(outcome.frames[i]), image(recording.frames[i])) << i;
+  }
+}
+
+TEST(Csv, AUserHasOneForceAtLeastAndAllOfIt) {
+  const auto place = [](std::string_view forces) {
+    std::string names = "tick,time_s", row = "0,0";
+    for (const char* column : {"contact", "contact_object", "device_x", "device_y", "device_z", "point_x", "point_y", "point_z",
+                               "normal_x", "normal_y", "normal_z", "stiffness"}) {
+      names += std::string(",/users/u/") + column;
+      row += ",0";
+    }
+    for (; !forces.empty(); forces.remove_prefix(1)) {
+      names += std::string(forces[0] < 'a' ? ",/users/u/server_force_" : ",/users/u/force_") +
+               static_cast<char>(std::tolower(forces[0]));
+      row += ",1";
+    }
+    const Outcome outcome = import(names + '\n' + row + '\n', preset("tactus"));
+    return outcome.rule + (outcome.rule.empty() ? "" : ", " + place_of(outcome.error));
+  };
+  EXPECT_EQ(place("xyz"), "");
+  EXPECT_EQ(place("XYZ"), "");
+  EXPECT_EQ(place("xyzXYZ"), "");
+  EXPECT_EQ(place(""), "R-CSV-2, line 1, column /users/u/force_x");
+  EXPECT_EQ(place("xz"), "R-CSV-2, line 1, column /users/u/force_y");
+  EXPECT_EQ(place("xyzXZ"), "R-CSV-2, line 1, column /users/u/server_force_y");
+  EXPECT_EQ(place("yzXYZ"), "R-CSV-2, line 1, column /users/u/force_x");
 }
 
 TEST(Csv, KinaestheticLayout) {

@@ -17,8 +17,8 @@ from .options import DeformableBounds, RigidBounds
 from .scene import Mesh, Scene
 
 #: One user at one tick: device (position (3) [m], orientation (4), velocity (3) [m/s], buttons, time [ns]); contact as CONTACT;
-#: force (3) [N] as felt, in the trace of a server its own; server_force (3) [N] of the true state, 0 in that of a client; touches_mesh, mesh, triangle, weights (3), proxy (3) [m],
-#: mesh_normal (3), mesh_stiffness [N/m]. World frame.
+#: force (3) [N] as felt and server_force (3) [N] of the true state: see TraceReader.known_forces; touches_mesh, mesh, triangle,
+#: weights (3), proxy (3) [m], mesh_normal (3), mesh_stiffness [N/m]. World frame.
 USER = np.dtype(_abi.tactus_user_sample)
 
 
@@ -43,6 +43,10 @@ class Frame:
         return contacts[contacts["kind"] != _abi.TACTUS_CONTACT_NONE]
 
 
+def _names_of_forces(bits: int) -> frozenset[str]:
+    return frozenset(name for name, bit in (("felt", _abi.TACTUS_FORCE_FELT), ("server", _abi.TACTUS_FORCE_SERVER)) if bits & bit)
+
+
 class TraceReader(Handle):
     """Reads a trace file frame by frame, in little memory: `for frame in reader`, once. "-" is standard input."""
 
@@ -58,16 +62,19 @@ class TraceReader(Handle):
         self.tick_rate: int = info.tick_rate  #: ticks per second
         self.source: str = info.source.decode()  #: "sim push-1dof seed 1"
         self.frames: int | None = info.frames if info.has_frames else None  #: how many, if the file tells
-        self.objects: list[str] = self._names(traces().tactus_trace_get_object, _abi.tactus_trace_object, info.objects)
-        self.users: list[str] = self._names(traces().tactus_trace_get_user, _abi.tactus_trace_user, info.users)
+        objects = self._told(traces().tactus_trace_get_object, _abi.tactus_trace_object, info.objects)
+        users = self._told(traces().tactus_trace_get_user, _abi.tactus_trace_user, info.users)
+        self.objects: list[str] = [told.name.decode() for told in objects]
+        self.users: list[str] = [told.name.decode() for told in users]
+        #: per user: "felt", if it is known what the hand felt, else `force` is the server's; "server", if the server's force is
+        #: known, else `server_force` is 0. A server is not told the one, a client not the other
+        self.known_forces: list[frozenset[str]] = [_names_of_forces(told.forces) for told in users]
         self.meshes: list[Mesh] = [self._mesh(i) for i in range(info.meshes)]
 
-    def _names(self, function: Any, structure: Any, count: int) -> list[str]:
-        out = []
-        for i in range(count):
-            info = answer(structure)
+    def _told(self, function: Any, structure: Any, count: int) -> list[Any]:
+        out = [answer(structure) for _ in range(count)]
+        for i, info in enumerate(out):
             call(function, self.handle, i, info)
-            out.append(info.name.decode())
         return out
 
     def _mesh(self, index: int) -> Mesh:
@@ -123,11 +130,12 @@ class TraceReader(Handle):
 class Trace:
     """A whole trace as arrays; T ticks, N rigid objects, U users, V vertices.
 
-    tick_rate  ticks per second
-    ticks      (T,) int64, rising
-    objects    (T, N, 13) float64, as Frame.objects
-    users      (T, U) of dtype USER
-    shapes     per mesh: ticks (F,) int64 at which its shape is new, and displacements (F, V, 3) float32 [m] from rest
+    tick_rate     ticks per second
+    ticks         (T,) int64, rising
+    objects       (T, N, 13) float64, as Frame.objects
+    users         (T, U) of dtype USER
+    shapes        per mesh: ticks (F,) int64 at which its shape is new, and displacements (F, V, 3) float32 [m] from rest
+    known_forces  per user, as TraceReader.known_forces
     """
     source: str
     tick_rate: int
@@ -138,6 +146,7 @@ class Trace:
     objects: npt.NDArray[np.float64]
     users: npt.NDArray[np.void]
     shapes: list[tuple[npt.NDArray[np.int64], npt.NDArray[np.float32]]]
+    known_forces: list[frozenset[str]]
 
     @property
     def time(self) -> npt.NDArray[np.float64]:
@@ -166,7 +175,7 @@ class Trace:
 
     @property
     def force(self) -> npt.NDArray[np.float64]:
-        """(T, U, 3) [N] as the hands felt it, world; in the trace of a server, which is not told, its own"""
+        """(T, U, 3) [N] as the hands felt it, world; the server's of users without "felt" in known_forces"""
         return self.users["force"]
 
     @property
@@ -192,4 +201,5 @@ def read_trace(path: str | os.PathLike[str]) -> Trace:
                      np.array(objects).reshape(len(ticks), len(reader.objects), 13),
                      np.array(users, USER).reshape(len(ticks), len(reader.users)),
                      [(np.array(at, np.int64), np.array(kept, np.float32).reshape(len(at), len(mesh.vertices), 3))
-                      for (at, kept), mesh in zip(shapes, reader.meshes)])
+                      for (at, kept), mesh in zip(shapes, reader.meshes)],
+                     reader.known_forces)
