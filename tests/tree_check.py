@@ -24,7 +24,7 @@ FLOATS = {"base/device_sample", "base/geometry", "base/quantise", "base/tri_mesh
           "load/load_encoder", "load/load_state",
           "rigid/acceleration", "rigid/contact", "rigid/driven_choice", "rigid/ease_choice", "rigid/error_share", "rigid/force_trend", "rigid/leaning", "rigid/predictor_choice",
           "rigid/rigid_encoder", "rigid/rigid_state", "rigid/trigger", "deformable/deformable_encoder",
-          "deformable/cluster_basis", "deformable/displacement", "deformable/kriging", "deformable/main_encoder", "deformable/mode_projection",
+          "deformable/area_fit", "deformable/cluster_basis", "deformable/displacement", "deformable/kriging", "deformable/main_encoder", "deformable/mode_projection",
           "deformable/motion_clusters", "deformable/ritz",
           "deformable/spring_basis", "deformable/spring_network", "deformable/thesis_encoder",
           "deformable/trigger", "deformable/vertex_coder", "client/replica", "client/stiffness_reduction", "sender",

@@ -16,6 +16,9 @@ using Quat30 = std::array<std::int32_t, 4>;  ///< w, x, y, z; x 2^-30
 
 inline constexpr std::int32_t kOne30 = 1 << 30;
 
+/// Faster in a loop than a comparison, which calls memcmp.
+constexpr bool is_zero(const Vec3i& v) noexcept { return (v[0] | v[1] | v[2]) == 0; }
+
 /// round(v / 2^s), halves toward +infinity.   pre  0 <= s < 63, |v| < 2^62
 constexpr std::int64_t round_shift(std::int64_t v, unsigned s) noexcept {
   return s == 0 ? v : (v + (std::int64_t{1} << (s - 1))) >> s;

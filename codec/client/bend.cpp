@@ -11,8 +11,8 @@ RigidPose bend(const Scene& scene, const RigidState& a, const RigidState& b, std
   const std::int64_t whole = b.tick - a.tick;
   const std::int64_t share = round_div((tick - a.tick) << 30, whole);
   const Cubic curve = cubic(share);
-  const bool is_moving = a.velocity != Vec3i{} || b.velocity != Vec3i{};
-  const bool is_turning = a.angular_velocity != Vec3i{} || b.angular_velocity != Vec3i{};
+  const bool is_moving = !is_zero(a.velocity) || !is_zero(b.velocity);
+  const bool is_turning = !is_zero(a.angular_velocity) || !is_zero(b.angular_velocity);
   const PoseOffset error = offset_between(predictor.pose(a, b.tick), {b.position, b.rotation});
   const PoseOffset change = change_between(scene, predictor.motion(a, b.tick, {}), {b.velocity, b.angular_velocity}, whole);
   return displaced(predictor.pose(a, tick), error, change,

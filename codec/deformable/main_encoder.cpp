@@ -61,6 +61,7 @@ MainEncoder::MainEncoder(const Scene& scene, const DeformableObject& object, con
       predictor_(object),
       coder_(hierarchy_, object.rest.size()),
       projection_(object.basis),
+      area_fit_(object.basis, projection_.gram()),
       next_(initial_main_state(object)),
       expected_(object.rest.size()),
       error_(object.rest.size()),
@@ -140,6 +141,8 @@ void MainEncoder::choose_coefficients(const MainHead& head) noexcept {
   for (std::size_t v = 0; v < truth_.size(); ++v)
     for (std::size_t axis = 0; axis < 3; ++axis) error_[v][axis] = truth_[v][axis] - expected_[v][axis];
   projection_.project(error_, projected_);
+  if (head.touched)
+    area_fit_.improve(error_, {coder_.area(), static_cast<float>(limit_[1]), static_cast<float>(limit_[0])}, projected_);
   const std::uint32_t reach = mode_reach(head);
   for (std::size_t k = 0; k < coefficients_.size(); ++k) {
     const float steps = projected_[k] / static_cast<float>(coefficient_step(object_, reach, k));
@@ -165,7 +168,7 @@ std::uint32_t MainEncoder::choose_residuals() noexcept {
       [&](std::uint32_t v, const VertexContext& context, const Vec3i& predicted, std::uint32_t, std::int64_t step) noexcept {
         const Vec3i residual = quantise(truth_[v], predicted, limit_[coder_.is_inside(v)], step);
         coded_.push_back({context, residual});
-        updates += residual != Vec3i{} ? 1u : 0u;
+        updates += is_zero(residual) ? 0u : 1u;
         return residual;
       });
   return updates;
@@ -218,7 +221,8 @@ Result<Payload> MainEncoder::encode(const EncodeRequest<MainState>& request, std
   if (head.layer == Layer::visual && head.key && head.touched) return Payload{};
   const MainState& base = request.base;
   head.following = choose_following(request);
-  predictor_.predict(base, request.tick, expected_);
+  // Without an own motion of what is shown, bounds_hold() has just predicted the same.
+  if (&base != &request.shown || request.requested || driven_) predictor_.predict(base, request.tick, expected_);
   coder_.fade(object_, base, request.tick, expected_, next_);
   if (object_.layered) coder_.begin_layer(base, head.same_frame, expected_, next_.displacement);
   if (head.layer == Layer::haptic) {

@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include <tactus/deformable/area_fit.h>
 #include <tactus/deformable/followed_shape.h>
 #include <tactus/deformable/main_syntax.h>
 #include <tactus/deformable/mode_projection.h>
@@ -72,6 +73,7 @@ class MainEncoder {
   ShapePredictor predictor_;
   VertexCoder coder_;
   ModeProjection projection_;
+  AreaFit area_fit_;
   MainState next_;               // pending until commit()
   std::vector<Vec3i> expected_;  // temporal prediction
   std::vector<Vec3i> error_;

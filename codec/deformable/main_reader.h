@@ -71,7 +71,7 @@ class MainReader {
                [&](std::uint32_t, const VertexContext& context, const Vec3i&, std::uint32_t, std::int64_t) noexcept {
                  Vec3i residual{};
                  if (!coder.too_wide()) code_vertex(coder, models, head.density, context, residual);
-                 updates += residual != Vec3i{} ? 1u : 0u;
+                 updates += is_zero(residual) ? 0u : 1u;
                  return residual;
                });
     return updates;

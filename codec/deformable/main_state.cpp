@@ -75,6 +75,28 @@ void ShapePredictor::combine_shares(std::span<const std::int32_t> coefficients, 
   }
 }
 
+/// sum_ = modes * rounded coefficients. Four modes at a time, because to read and write the sum takes as long as to add one.
+void ShapePredictor::sum_modes(std::span<const std::int32_t> coefficients, unsigned shift) noexcept {
+  std::fill(sum_.begin(), sum_.end(), 0);
+  std::array<std::int16_t, 4> g{};
+  std::array<const std::int16_t*, 4> mode{};
+  mode.fill(object_.basis.entries.data());
+  std::size_t pending = 0;
+  const auto add_pending = [&]() noexcept {
+    for (std::size_t i = 0; i < sum_.size(); ++i)
+      sum_[i] += (mode[0][i] * g[0] + mode[1][i] * g[1]) + (mode[2][i] * g[2] + mode[3][i] * g[3]);
+    g.fill(0);
+    pending = 0;
+  };
+  for (std::size_t k = 0; k < coefficients.size(); ++k) {
+    g[pending] = static_cast<std::int16_t>(round_shift(coefficients[k], shift));
+    if (g[pending] == 0) continue;
+    mode[pending] = object_.basis.entries.data() + k * sum_.size();
+    if (++pending == g.size()) add_pending();
+  }
+  if (pending > 0) add_pending();
+}
+
 /// out += modes * coefficients, all coefficients brought to 14 bits by one shift.
 void ShapePredictor::combine(std::span<const std::int32_t> coefficients, std::span<Vec3i> out) noexcept {
   std::uint32_t largest = 0;
@@ -83,13 +105,7 @@ void ShapePredictor::combine(std::span<const std::int32_t> coefficients, std::sp
   const auto width = static_cast<unsigned>(std::bit_width(largest));
   const unsigned shift = width > 14 ? width - 14 : 0;
   if (object_.basis.shares.size() > 0) return combine_shares(coefficients, shift, out);
-  std::fill(sum_.begin(), sum_.end(), 0);
-  for (std::size_t k = 0; k < coefficients.size(); ++k) {
-    const auto g = static_cast<std::int16_t>(round_shift(coefficients[k], shift));
-    if (g == 0) continue;
-    const std::int16_t* mode = object_.basis.entries.data() + k * sum_.size();
-    for (std::size_t i = 0; i < sum_.size(); ++i) sum_[i] += mode[i] * g;
-  }
+  sum_modes(coefficients, shift);
   for (std::size_t v = 0; v < out.size(); ++v)
     for (std::size_t axis = 0; axis < 3; ++axis)
       out[v][axis] = limited_displacement(out[v][axis] + round_shift(static_cast<std::int64_t>(sum_[3 * v + axis]) << shift, 11));

@@ -81,6 +81,7 @@ class ShapePredictor {
 
  private:
   void combine(std::span<const std::int32_t> coefficients, std::span<Vec3i> out) noexcept;
+  void sum_modes(std::span<const std::int32_t> coefficients, unsigned shift) noexcept;
   void combine_shares(std::span<const std::int32_t> coefficients, unsigned shift, std::span<Vec3i> out) noexcept;
 
   const DeformableObject& object_;

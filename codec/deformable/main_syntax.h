@@ -205,7 +205,7 @@ void code_coefficients(Coder& coder, MainModels& models, std::span<std::int32_t>
 template <class Coder>
 void code_vertex(Coder& coder, MainModels& models, std::uint32_t density, const VertexContext& context,
                  Vec3i& residual) noexcept {
-  const bool any = residual != Vec3i{};
+  const bool any = !is_zero(residual);
   if (!coder.bit(models.significant[density][context.bound_ratio][context.parents][context.depth], any ? 1u : 0u)) {
     residual = {};
     return;

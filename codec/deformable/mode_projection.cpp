@@ -46,18 +46,19 @@ ModeProjection::ModeProjection(const ModeBasis& basis) : basis_(basis) {
 void ModeProjection::invert_entries() {
   const std::size_t modes = basis_.steps.size(), components = basis_.entries.size() / modes;
   const auto entry = [&](std::size_t k, std::size_t i) { return basis_.entries[k * components + i] / 2048.0; };
-  std::vector<double> gram(modes * modes, 0.0);
+  gram_.assign(modes * modes, 0.0);
   for (std::size_t a = 0; a < modes; ++a)
     for (std::size_t b = 0; b <= a; ++b)
-      for (std::size_t i = 0; i < components; ++i) gram[a * modes + b] += entry(a, i) * entry(b, i);
-  factorise(gram, modes);
+      for (std::size_t i = 0; i < components; ++i) gram_[a * modes + b] += entry(a, i) * entry(b, i);
+  std::vector<double> factor = gram_;
+  factorise(factor, modes);
   const std::size_t padded = (components + kLanes - 1) / kLanes * kLanes;
   error_.assign(padded, 0.0F);
   dual_.assign(modes * padded, 0.0F);
   std::vector<double> column(modes);
   for (std::size_t i = 0; i < components; ++i) {
     for (std::size_t k = 0; k < modes; ++k) column[k] = entry(k, i);
-    solve(gram, column);
+    solve(factor, column);
     for (std::size_t k = 0; k < modes; ++k) dual_[k * padded + i] = static_cast<float>(column[k]);
   }
 }

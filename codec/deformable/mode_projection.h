@@ -22,6 +22,8 @@ class ModeProjection {
   /// Coefficients of least squared error [grid units at a mode's entry of 1].
   /// time O(modes * vertices), with clusters O(vertices + clusters^2); no allocation
   void project(std::span<const Vec3i> error, std::span<float> coefficients) noexcept;
+  /// Of the entries: lower triangle, modes x modes; empty for clusters.
+  std::span<const double> gram() const noexcept { return gram_; }
 
  private:
   void invert_entries();
@@ -29,6 +31,7 @@ class ModeProjection {
   void project_on_shares(std::span<const Vec3i> error, std::span<float> coefficients) noexcept;
 
   const ModeBasis& basis_;
+  std::vector<double> gram_;
   std::vector<float> dual_;  // modes x components
   std::vector<float> error_;
   std::vector<double> factor_;              // of clusters: of the Gram matrix of their functions, alike for every axis

@@ -42,6 +42,7 @@ class VertexCoder {
     use_weights(head.weight_set);
   }
   void use_weights(std::uint32_t set) noexcept { set_ = set; }
+  std::span<const std::uint32_t> area() const noexcept { return area_; }  ///< of interest, from the touched triangle outwards
   std::uint32_t bound_of(std::uint32_t vertex) const noexcept { return bound_[inside_[vertex]]; }
   bool is_inside(std::uint32_t vertex) const noexcept { return inside_[vertex] != 0; }
   /// Whether the packet codes this vertex; the others keep the temporal prediction.
@@ -86,7 +87,7 @@ class VertexCoder {
     if (!same_frame) return;
     for (const std::uint32_t v : area_) {
       for (std::size_t axis = 0; axis < 3; ++axis) expected[v][axis] -= base.haptic_correction[v][axis];
-      coded_[v] = base.haptic_correction[v] != Vec3i{} ? 1 : 0;
+      coded_[v] = is_zero(base.haptic_correction[v]) ? 0 : 1;
     }
   }
   /// Store the haptic correction for the visual packet of the same tick.
@@ -134,7 +135,7 @@ class VertexCoder {
                                   static_cast<std::uint8_t>(std::min(parents, 2u)),
                                   std::min<std::uint8_t>(hierarchy_.depth[v], 2)};
       const Vec3i r = residual(v, context, predicted, bound_[inside], step_[inside]);
-      coded_[v] = r != Vec3i{} ? 1 : 0;
+      coded_[v] = is_zero(r) ? 0 : 1;
       for (std::size_t axis = 0; axis < 3; ++axis) {
         decoded[v][axis] = limited_displacement(predicted[axis] + r[axis] * step_[inside]);
         correction_[v][axis] = decoded[v][axis] - expected[v][axis];

@@ -47,7 +47,7 @@ bool PredictorChoice::is_declared_for(std::uint32_t object, Predictor predictor)
   if (predictor == Predictor::slide) return motion.slide_deceleration != 0;
   for (std::size_t i = 0; i < 3; ++i)
     if (motion.gravity[i] != 0 && !(scene_.objects[object].dof >> i & 1u)) return false;
-  return motion.gravity != Vec3i{};
+  return !is_zero(motion.gravity);
 }
 
 const RigidState* PredictorChoice::start(std::uint32_t object, std::int64_t now, std::size_t n) const noexcept {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Which predictor an update chooses: the one that would have served longest of late. Each is started from true states of the last 150 ms
 /// and held against the truth of now, from the youngest start back until one would have left its bounds; the device's motion, which takes
-/// longer to work out, from where the linear one would have left them, and not at all where it has in fact served for longer than that.
-/// What a device touches is predicted by it or linearly. Informative: an encoder's choice, which no bound depends on. Internal to the library.
+/// longer to work out, from where the best of the others would have left them, and not at all where it has in fact served for longer than
+/// that. What a device touches is predicted by it or linearly. Informative: an encoder's choice, which no bound depends on. Internal to the
+/// library.
 #pragma once
 
 #include <cstdint>
@@ -52,7 +53,7 @@ class PredictorChoice {
   Record record_of(Predictor predictor, std::uint32_t object, const RigidState& truth,
                    const PermittedError& permitted) const noexcept;
   bool is_declared_for(std::uint32_t object, Predictor predictor) const noexcept;  // ballistic or slide
-  /// Whether the device has driven the object for longer than a steady motion would have served.
+  /// Whether the device has driven the object for longer than a linear motion would have served.
   bool drives_on(std::uint32_t object, const RigidState& truth, const PermittedError& permitted,
                  const RigidState& current) const noexcept;
   /// Whether the device explains more than the best of the others, from the first start on that this one does not serve.

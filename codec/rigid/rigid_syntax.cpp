@@ -69,7 +69,7 @@ std::optional<RigidPose> add_pose(const RigidPose& predicted, const Residual& re
 bool is_declared(const Scene& scene, std::uint32_t object, std::uint8_t predictor) noexcept {
   if (predictor == 0) return true;
   if (predictor == 3) return scene.driven && scene.driven->bodies[object].coupling != 0;
-  if (predictor == 1) return scene.motion && scene.motion->gravity != Vec3i{};
+  if (predictor == 1) return scene.motion && !is_zero(scene.motion->gravity);
   return predictor == 2 && scene.motion && scene.motion->slide_deceleration != 0;
 }
 
