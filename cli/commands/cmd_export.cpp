@@ -37,7 +37,8 @@ void setup_export(Command& app, Action& action) {
   auto options = std::make_shared<ExportOptions>();
   Command& group = app.add_command("export", "Write a trace in another format");
   group.footer("Example:\n  tactus export csv push.mcap -o push.csv");
-  Command& command = group.add_command("csv", "One row per tick, numbers in the shortest digits that read back equal; rigid objects and users, no meshes");
+  Command& command = group.add_command(
+      "csv", "One row per tick, numbers in the shortest digits that read back equal; rigid objects and users, no meshes");
   command.add_option("TRACE", options->input, "Trace to export (MCAP), - is standard input")->type_name("")->required();
   command.add_option("-o,--output", options->output, "CSV to write [standard output]")->type_name("FILE");
   add_output_options(command, options->common);
