@@ -13,7 +13,6 @@ constexpr double kNone = std::numeric_limits<double>::infinity();
 }  // namespace
 
 ForceTrend::ForceTrend(const Scene& scene) : scene_(scene) {
-  ticks_.fill(std::numeric_limits<std::int64_t>::min() / 4);
   for (auto& forces : forces_) forces.assign(scene.objects.size(), kNone);
 }
 

@@ -26,7 +26,7 @@ class ForceTrend {
 
  private:
   const Scene& scene_;
-  std::array<std::int64_t, 3> ticks_;          // of the past, newest first
+  std::array<std::int64_t, 3> ticks_{};        // of the past, newest first
   std::array<std::vector<double>, 3> forces_;  // [N] the least by object; infinite: nothing touches it
 };
 
