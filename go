@@ -17,7 +17,7 @@ build_packages="$demo_packages libgnutls28-dev libeigen3-dev libsuitesparse-dev 
 bench_packages='libbenchmark-dev libgtest-dev python3 libbullet-dev'
 view_packages='nodejs clang-16 lld-16 binaryen wasi-libc libc++-16-dev-wasm32 libc++abi-16-dev-wasm32 libclang-rt-16-dev-wasm32 python3'
 site_packages='python3 doxygen cmark-gfm'
-test_packages="$bench_packages $site_packages ccache clang libclang-rt-dev clang-tidy clang-format munge parallel slurm-wlm tetgen tshark umockdev libumockdev-dev valgrind zstd chromium abigail-tools python3-numpy python3-pytest python3-venv
+test_packages="$bench_packages $site_packages ccache clang libclang-rt-dev clang-tidy clang-format munge parallel slurm-wlm tetgen tshark umockdev libumockdev-dev valgrind zstd chromium firefox-esr xvfb abigail-tools python3-numpy python3-pytest python3-venv
   mandoc groff-base bsdextrautils zsh fish lintian dpkg-dev make"
 
 bounds='-p 4% --visual 0.3mm,2deg' # of the demo

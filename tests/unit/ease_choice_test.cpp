@@ -52,6 +52,17 @@ TEST(EaseChoice, IsShorterWhereTheForceSinks) {
 TEST(EaseChoice, RotationCountsAsWell) {
   const UpdateCourse turned{{{}, {0, 0.05, 0}}, {}, {{}, {0, 40, 0}}, {}};
   EXPECT_LT(longest_ease(turned, kShare, 1000), 2);
+  const auto ease = [](double acceleration) {
+    return longest_ease({{{}, {0, -0.05, 0}}, {}, {}, {{}, {0, acceleration, 0}}}, kShare, 1000);
+  };
+  EXPECT_LT(ease(500), 4) << "the truth turns away from where it is shown";
+  EXPECT_EQ(ease(-250), 4);
+}
+
+/// The error leaves its bounds in the first quarter of 16 ms and is back before the half.
+TEST(EaseChoice, LooksAtTheFirstQuarter) {
+  EXPECT_LT(longest_ease(course(0.001, 0.08, 16), kShare, 1000), 4);
+  EXPECT_EQ(longest_ease(course(0.001, 0.07, 16), kShare, 1000), 4);
 }
 
 }  // namespace
