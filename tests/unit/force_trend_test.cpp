@@ -30,6 +30,7 @@ double sinking(std::array<std::int64_t, 3> ticks, std::array<double, 3> forces) 
 TEST(ForceTrend, IsWhatTheLastTwoTicksTook) {
   EXPECT_NEAR(sinking({7, 8, 9}, {0.5, 0.46, 0.4}), 0.1 / 0.4 / 0.002, 1e-6);
   EXPECT_NEAR(sinking({1, 5, 9}, {0.5, 0.5, 0.4}), 0.1 / 0.4 / 0.008, 1e-6) << "ticks between count";
+  EXPECT_NEAR(sinking({0, 5, 10}, {0.5, 0.5, 0.4}), 0.1 / 0.4 / 0.01, 1e-6) << "the longest that counts";
 }
 
 TEST(ForceTrend, IsNothingWhereTheForceGrowsBeginsOrWasLongAgo) {
@@ -37,7 +38,7 @@ TEST(ForceTrend, IsNothingWhereTheForceGrowsBeginsOrWasLongAgo) {
   EXPECT_EQ(sinking({7, 8, 9}, {-1, 0.5, 0.4}), 0);
   EXPECT_EQ(sinking({7, 8, 9}, {0.5, 0.4, -1}), 0);
   EXPECT_EQ(sinking({7, 8, 9}, {0.5, 0.4, 0}), 0) << "nothing is left to sink";
-  EXPECT_EQ(sinking({7, 8, 90}, {0.5, 0.45, 0.4}), 0);
+  EXPECT_EQ(sinking({0, 5, 11}, {0.5, 0.45, 0.4}), 0);
   EXPECT_EQ(ForceTrend(*testing::scene_of(1)).sinking(0), 0);
 }
 

@@ -62,6 +62,35 @@ TEST(DrivenChoice, TheDragExplainsTheMotion) {
   }
 }
 
+/// What is remembered of an object is its own.
+TEST(DrivenChoice, ObjectsThatTheDeviceMovesInTurnsAreToldAlike) {
+  constexpr std::size_t kCubes = 3;
+  SceneBuilder builder;
+  for (std::size_t i = 0; i < kCubes; ++i) builder.rigid("cube" + std::to_string(i), {}).driven(testing::cube_physics());
+  const SharedScene scene = builder.motion({{0, 0, -testing::kWeight}, testing::kGround}).baselines(64).build().value();
+  DevicePath path(device_scene(*scene).value());
+  path.shift(0, 0);
+  DrivenChoice choice(*scene, path);
+  std::vector<RigidState> truth(kCubes);
+  std::vector<RigidSample> cubes(kCubes);
+  for (std::int64_t tick = 0; tick < 60; ++tick) {
+    const auto pushed = static_cast<std::uint32_t>(tick / 20);
+    const Vec3 device{1e-4 * static_cast<double>(tick), 0, 0};
+    path.add(static_cast<std::uint64_t>(tick) + 1, testing::device_state(*scene, tick, device));
+    // Pushed at a constant speed: the drag is what the spring pulls.
+    for (RigidSample& cube : cubes) cube = {{device + Vec3{0.0185, 0, 0}, {}}, {0.1, 0, 0}, {}};
+    const Contact contact{ContactKind::surface, pushed, {-0.02, 0, 0}, {-1, 0, 0}, device, kPush};
+    choice.read(tick, cubes, {&contact, 1}, truth);
+    for (std::uint32_t i = 0; i < kCubes; ++i) {
+      EXPECT_EQ(truth[i].contact == DrivenContact{}, i != pushed || tick % 20 < 4) << tick << ' ' << i;
+    }
+    if (tick % 20 == 19) {
+      EXPECT_NEAR(std::ldexp(truth[pushed].contact.drag, -DrivenContact::kDrag),
+                  kPush / kMass * 0.0015 - 0.1 * 1000 * testing::kLoss, 0.15);
+    }
+  }
+}
+
 TEST(DrivenChoice, WhatIsHeldIsToldAtOnce) {
   Pushing pushing(0);
   pushing.contact.kind = ContactKind::spring;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "tests/unit/driven_fixture.h"
@@ -71,6 +72,27 @@ TEST(PredictorChoice, NeverTakesWhatTheSceneDoesNotDeclare) {
 TEST(PredictorChoice, WhatCannotFallIsNeverBallistic) {
   const auto rail = static_cast<std::uint8_t>(Dof::all & ~Dof::z);
   EXPECT_NE(chosen_at(1350, scene_with({{0, 0, -kGravity}, kFriction}, rail)), Predictor::ballistic);
+}
+
+/// Whichever way that is.
+TEST(PredictorChoice, ARailAgainstGravityIsSeenOnEveryAxis) {
+  const auto choose = [](std::size_t axis, std::uint8_t dof) {
+    const auto along = [axis](double v) { return Vec3{axis == 0 ? v : 0, axis == 1 ? v : 0, axis == 2 ? v : 0}; };
+    const SharedScene scene = scene_with({along(-kGravity), 0}, dof);
+    PredictorChoice choice(*scene);
+    RigidState truth;
+    for (std::int64_t tick = 0; tick <= 200; ++tick) {
+      const double t = 1e-3 * static_cast<double>(tick);
+      truth = to_grid({{along(-kGravity / 2 * t * t), {}}, along(-kGravity * t), {}}, tick, scene->grid).value();
+      choice.read(tick, {&truth, 1});
+    }
+    return choice.choose(0, truth, kPermitted, false, {});
+  };
+  const std::array axes{Dof::x, Dof::y, Dof::z};
+  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+    EXPECT_EQ(choose(axis, Dof::all), Predictor::ballistic) << axis;
+    EXPECT_EQ(choose(axis, static_cast<std::uint8_t>(Dof::all & ~axes[axis])), Predictor::linear) << axis;
+  }
 }
 
 TEST(PredictorChoice, WithoutAPastItIsLinear) {
