@@ -53,9 +53,9 @@ TEST(EaseChoice, RotationCountsAsWell) {
   const UpdateCourse turned{{{}, {0, 0.05, 0}}, {}, {{}, {0, 40, 0}}, {}};
   EXPECT_LT(longest_ease(turned, kShare, 1000), 2);
   const auto ease = [](double acceleration) {
-    return longest_ease({{{}, {0, -0.05, 0}}, {}, {}, {{}, {0, acceleration, 0}}}, kShare, 1000);
+    return longest_ease({{{}, {0, -0.02, 0}}, {{}, {0, -0.02, 0}}, {}, {{}, {0, acceleration, 0}}}, kShare, 1000);
   };
-  EXPECT_LT(ease(500), 4) << "the truth turns away from where it is shown";
+  EXPECT_LT(ease(250), 4) << "the truth turns away from where it is shown";
   EXPECT_EQ(ease(-250), 4);
 }
 
