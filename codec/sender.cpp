@@ -130,6 +130,7 @@ void Sender::acknowledge(std::size_t substream, std::uint16_t sequence) noexcept
 
 void Sender::set_link(const LinkState& link) noexcept {
   impl_->rigid.codec().set_link(link);
+  for (auto& object : impl_->deformables) object->set_link(link);
   if (impl_->loads) impl_->loads->codec().set_link(link);
 }
 

@@ -85,8 +85,8 @@ class Sender {
   /// in  substream, sequence  as in Packet
   void acknowledge(std::size_t substream, std::uint16_t sequence) noexcept;
 
-  /// Report what the way to the receiver and back does. With Baseline::acknowledged the newest state of a rigid object is sent again,
-  /// made anew, while no acknowledgement names a packet that held it.
+  /// Report what the way to the receiver and back does. With Baseline::acknowledged the newest state of an object is sent again, made
+  /// anew, while no acknowledgement names a packet that held it; of a deformable object without layers, where packets get lost.
   void set_link(const LinkState& link) noexcept;
 
   /// Multiply all bounds but the heartbeat, from the next tick on: less to send where the way does not carry what they ask for.

@@ -14,6 +14,8 @@
 namespace tactus {
 namespace {
 
+constexpr double kSomeLoss = 0.003;  // share of packets
+
 template <class Codec>
 class Of final : public DeformableEncoder {
  public:
@@ -37,6 +39,8 @@ class Of final : public DeformableEncoder {
     return stream_.encode(tick, layer, number).value_or(Packet{});
   }
   bool is_layered() const noexcept override { return layered_; }
+  /// Where nothing is lost an acknowledgement is late at most.
+  void set_link(const LinkState& link) noexcept override { stream_.set_answer(link.loss >= kSomeLoss ? link.answer : 0); }
   void set_widening(double factor) noexcept override { stream_.codec().set_widening(factor); }
   void know(std::unique_ptr<FollowedShape> shape) noexcept override {
     if constexpr (requires { stream_.codec().know(std::move(shape)); }) stream_.codec().know(std::move(shape));

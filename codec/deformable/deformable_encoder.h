@@ -37,7 +37,8 @@ class DeformableEncoder {
   /// in   number  as in SubstreamEncoder::encode
   virtual Packet encode(std::int64_t tick, Layer layer, std::optional<std::uint64_t> number) noexcept = 0;
   virtual bool is_layered() const noexcept = 0;
-  virtual void set_widening(double factor) noexcept = 0;  ///< of all thresholds.   pre  factor >= 1
+  virtual void set_link(const LinkState& link) noexcept = 0;  ///< nothing without Baseline::acknowledged, or with layers
+  virtual void set_widening(double factor) noexcept = 0;      ///< of all thresholds.   pre  factor >= 1
   /// Show what the device of the client does (Sender::know).   pre  the object has a body
   virtual void know(std::unique_ptr<FollowedShape> shape) noexcept = 0;
   virtual void request_key() noexcept = 0;

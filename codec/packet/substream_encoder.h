@@ -77,12 +77,15 @@ class SubstreamEncoder {
     head.tick_delta = static_cast<std::uint32_t>(tick - base->tick);
     std::vector<std::uint8_t>& buffer = buffers_[layer == Layer::visual ? 1 : 0];
     const std::size_t start = start_ + (number ? 0 : 2);
-    TACTUS_TRY(const Payload payload, codec_.encode({tick, next_, head, key_.is_requested(), layer, states_.newest(), *base},
-                                                    std::span(buffer).subspan(start)));
+    TACTUS_TRY(const Payload payload,
+               codec_.encode({tick, next_, head, key_.is_requested() || is_overdue(tick), layer, states_.newest(), *base},
+                             std::span(buffer).subspan(start)));
     if (payload.size == 0) return Packet{};
     const auto sequence = static_cast<std::uint16_t>(next_);
     for (std::size_t i = start_; i < start; ++i) buffer[i] = static_cast<std::uint8_t>(sequence >> 8 * (i - start_));
     before_ = {key_, base_};
+    repeats_ = is_overdue(tick) ? std::min(repeats_ + 1, kMostRepeats) : 0;
+    newest_ = next_;
     states_.put(next_, [&](State& next) {
       codec_.commit(*base, next);
       next.tick = tick;
@@ -115,6 +118,7 @@ class SubstreamEncoder {
     key_ = before_.key;
     if (requested) key_.request();
     base_ = before_.base < oldest_ ? 0 : before_.base;
+    newest_ = 0;
   }
 
   /// Report that the receiver holds the state after packet `sequence`.
@@ -126,6 +130,13 @@ class SubstreamEncoder {
     if (number > base_ && states_.find(number) != nullptr) base_ = number;
   }
 
+  /// The newest state is sent again, made anew, when no acknowledgement has named it for `answer` ticks, then for twice as long, and so
+  /// on up to 64 times: another packet may never come. Nothing without Baseline::acknowledged.   in   ticks  0: never
+  void set_answer(std::int64_t ticks) noexcept {
+    constexpr std::int64_t kMost = 1 << 24;
+    answer_ = baseline_ == Baseline::acknowledged ? std::clamp<std::int64_t>(ticks, 0, kMost) : 0;
+  }
+
   const State& newest() const noexcept { return states_.newest(); }
   Codec& codec() noexcept { return codec_; }
 
@@ -134,6 +145,12 @@ class SubstreamEncoder {
   const State* baseline(bool numbered) const noexcept {
     return next_ - base_ > farthest_baseline(span_, numbered) ? nullptr : states_.find(base_);
   }
+
+  bool is_overdue(std::int64_t tick) const noexcept {
+    return answer_ > 0 && newest_ > base_ && tick - states_.newest().tick > answer_ << repeats_;
+  }
+
+  static constexpr unsigned kMostRepeats = 6;
 
   struct Before {
     KeyPolicy key;
@@ -152,6 +169,9 @@ class SubstreamEncoder {
   std::uint64_t oldest_ = 0;                        // lowest base_ allowed: a receiver that asked for a key holds none before
   Before before_{key_, 0};                          // the last packet
   bool can_forget_ = false;
+  std::uint64_t newest_ = 0;  // number of the newest state; 0: of none
+  std::int64_t answer_ = 0;   // [ticks] until it is acknowledged, if it arrived; 0: not known
+  unsigned repeats_ = 0;      // of it so far, at most kMostRepeats
 };
 
 }  // namespace tactus
