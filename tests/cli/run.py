@@ -6,12 +6,13 @@
                                                ends with 77 when all of them are skipped
   run.py --self-test                           check that each kind of difference is found
 
-A case is a folder NNN-name:
-  cmd                          shell script (sh -eu), run in an empty folder; `tactus` is the program, $CASE the case's folder
-  stdout.exact | stdout.glob   what must be printed; in a glob `*` stands for any text and nothing else is special
-  stderr.exact | stderr.glob   the same for messages; without a file the stream must be empty
-  exit                         exit status, 0 without the file
-  needs                        parts of the program without which there is nothing to see, one a line: the case is skipped
+A case is a file NNN-name: a shell script, then sections, each below a line of its own:
+  (no line)                           the script (sh -eu), run in an empty folder; `tactus` is the program, $TESTS this folder, $ROOT the sources
+  ---- file NAME                      a file that lies in that folder
+  ---- stdout exact | stdout glob     what must be printed; in a glob `*` stands for any text and nothing else is special
+  ---- stderr exact | stderr glob     the same for messages; without the section the stream must be empty
+  ---- exit STATUS                    exit status, 0 without the line
+  ---- needs PART...                  parts of the program without which there is nothing to see: the case is skipped
 A case that ends with 77 is skipped too, for the reason that it prints: the machine lacks what it needs.
 """
 import os
@@ -21,19 +22,38 @@ import subprocess
 import sys
 import tempfile
 
+HERE = pathlib.Path(__file__).resolve().parent
 FAILED, SKIPPED = 1, 77
 TIMEOUT_S = 300  # against cases that hang: with sanitizers on a busy machine the longest takes two minutes
 
 
-def stream_difference(case, stream, text):
-    exact, glob = case / f"{stream}.exact", case / f"{stream}.glob"
-    if glob.is_file():
-        wanted = glob.read_text(encoding="utf-8")
-        same = re.fullmatch(".*".join(re.escape(part) for part in wanted.split("*")), text, re.S) is not None
-    else:
-        wanted = exact.read_text(encoding="utf-8") if exact.is_file() else ""
-        same = text == wanted
-    return None if same else f"{stream} is\n{text}--- expected\n{wanted}---"
+SECTION = re.compile(r"^---- (file \S+|(?:stdout|stderr) (?:exact|glob)|exit \d+|needs [a-z ]+)\n", re.M)
+
+
+class Case:
+    def __init__(self, path):
+        self.name = path.name
+        self.script, *rest = SECTION.split(path.read_text(encoding="utf-8"))
+        self.files, self.streams, self.status, self.needs = {}, {}, 0, set()
+        for title, text in zip(rest[::2], rest[1::2]):
+            kind, *words = title.split()
+            if kind == "file":
+                self.files[words[0]] = text
+            elif kind in ("stdout", "stderr"):
+                self.streams[kind] = (words[0], text)
+            elif kind == "exit":
+                self.status = int(words[0])
+            else:
+                self.needs = set(words)
+
+    def difference(self, stream, text):
+        kind, wanted = self.streams.get(stream, ("exact", ""))
+        if kind == "glob":
+            wanted = wanted[:-1] if wanted.endswith("*\n") else wanted  # the last `*` stands for the end of the line too
+            same = re.fullmatch(".*".join(re.escape(part) for part in wanted.split("*")), text, re.S) is not None
+        else:
+            same = text == wanted
+        return None if same else f"{stream} is\n{text}--- expected\n{wanted}---"
 
 
 def run_case(program, case):
@@ -43,30 +63,27 @@ def run_case(program, case):
         bin_dir.mkdir()
         work.mkdir()
         (bin_dir / "tactus").symlink_to(program.resolve())
-        env = {"PATH": f"{bin_dir}:{os.environ['PATH']}", "HOME": str(work), "LC_ALL": "C.UTF-8", "CASE": str(case.resolve())}
+        script = pathlib.Path(scratch, "script")
+        script.write_text(case.script, encoding="utf-8")
+        for name, text in case.files.items():
+            (work / name).write_text(text, encoding="utf-8")
+        env = {"PATH": f"{bin_dir}:{os.environ['PATH']}", "HOME": str(work), "LC_ALL": "C.UTF-8", "TESTS": str(HERE), "ROOT": str(HERE.parents[1])}
         try:
-            done = subprocess.run(["sh", "-eu", str(case.resolve() / "cmd")], cwd=work, env=env, capture_output=True, text=True,
+            done = subprocess.run(["sh", "-eu", str(script)], cwd=work, env=env, capture_output=True, text=True,
                                   stdin=subprocess.DEVNULL, timeout=TIMEOUT_S, check=False)
         except subprocess.TimeoutExpired:
             return [f"still running after {TIMEOUT_S} s"]
     if done.returncode == SKIPPED:
         return [f"skipped: {done.stdout.strip()}"]
-    status = case / "exit"
-    wanted = int(status.read_text()) if status.is_file() else 0
-    differences = [] if done.returncode == wanted else [f"exit status is {done.returncode}, expected {wanted}"]
-    differences += [stream_difference(case, "stdout", done.stdout), stream_difference(case, "stderr", done.stderr)]
+    differences = [] if done.returncode == case.status else [f"exit status is {done.returncode}, expected {case.status}"]
+    differences += [case.difference("stdout", done.stdout), case.difference("stderr", done.stderr)]
     return [d for d in differences if d]
-
-
-def lacks(case, without):
-    needs = case / "needs"
-    return needs.is_file() and not without.isdisjoint(needs.read_text(encoding="utf-8").split())
 
 
 def run_cases(program, cases, without):
     failed = skipped = 0
     for case in cases:
-        if lacks(case, without):
+        if case.needs & without:
             skipped += 1
             print(f"skipped {case.name}")
             continue
@@ -82,27 +99,26 @@ def run_cases(program, cases, without):
 
 
 def self_test():
-    base = {"cmd": "tactus", "stdout.exact": "out 12\n", "stderr.glob": "warning: * [x]\n", "exit": "3"}
-    changes = [({}, True), ({"stdout.exact": "out 1\n"}, False), ({"stdout.exact": None}, False), ({"stderr.glob": "*error*"}, False),
-               ({"stderr.glob": "warning: * [y]\n"}, False), ({"exit": None}, False), ({"cmd": "echo more; tactus"}, False),
-               ({"cmd": "echo no; exit 77"}, False), ({"stdout.exact": None, "stdout.glob": "out *\n"}, True), ({"cmd": "not-a-program"}, False)]
+    base = {"script": "tactus", "stdout exact": "out 12\n", "stderr glob": "warning: * [x]\n", "exit 3": ""}
+    changes = [({}, True), ({"stdout exact": "out 1\n"}, False), ({"stdout exact": None}, False), ({"stderr glob": "*error*\n"}, False),
+               ({"stderr glob": "warning: * [y]\n"}, False), ({"stderr glob": "warning: *\n"}, True), ({"exit 3": None}, False),
+               ({"script": "echo more; tactus"}, False), ({"script": "echo no; exit 77"}, False), ({"script": "not-a-program"}, False),
+               ({"stdout exact": None, "stdout glob": "out *\n"}, True),
+               ({"script": "cat a.txt; tactus", "file a.txt": "a\n", "stdout exact": "a\nout 12\n"}, True)]
     wrong = 0
     with tempfile.TemporaryDirectory() as scratch:
-        program = pathlib.Path(scratch, "program")
+        program, path = pathlib.Path(scratch, "program"), pathlib.Path(scratch, "001-case")
         program.write_text("#!/bin/sh\necho out 12\necho 'warning: deep water [x]' >&2\nexit 3\n", encoding="utf-8")
         program.chmod(0o755)
-        for number, (change, passes) in enumerate(changes):
-            case = pathlib.Path(scratch, f"{number:03}-case")
-            case.mkdir()
-            for name, text in {**base, **change}.items():
-                if text is not None:
-                    (case / name).write_text(text, encoding="utf-8")
-            if (run_case(program, case) == []) != passes:
+        for change, passes in changes:
+            sections = {title: text for title, text in {**base, **change}.items() if text is not None}
+            script = sections.pop("script")
+            path.write_text(script + "\n" + "".join(f"---- {title}\n{text}" for title, text in sections.items()), encoding="utf-8")
+            if (run_case(program, Case(path)) == []) != passes:
                 print(f"self-test: {change}: expected to {'pass' if passes else 'fail'}")
                 wrong += 1
-            if number == 0:
-                (case / "needs").write_text("fem\nsurface\n", encoding="utf-8")
-                wrong += [lacks(case, set(parts)) for parts in ([], ["mesh"], ["fem"], ["mesh", "surface"])] != [False, False, True, True]
+        path.write_text("tactus\n---- needs fem surface\n", encoding="utf-8")
+        wrong += Case(path).needs != {"fem", "surface"}
     print(f"self-test: {len(changes)} cases, {wrong} wrong")
     return wrong == 0
 
@@ -117,9 +133,8 @@ def main(args):
     if not args or args[0].startswith("-"):
         print(__doc__, file=sys.stderr)
         return 2
-    here = pathlib.Path(__file__).resolve().parent
-    cases = [here / name for name in args[1:]] or sorted(p.parent for p in here.glob("[0-9]*/cmd"))
-    return run_cases(pathlib.Path(args[0]), cases, without)
+    paths = [HERE / name for name in args[1:]] or sorted(HERE.glob("[0-9]*"))
+    return run_cases(pathlib.Path(args[0]), [Case(path) for path in paths], without)
 
 
 if __name__ == "__main__":
