@@ -3,7 +3,9 @@
 # Installs missing packages, builds and runs Tactus on Debian 12. Needs root or sudo only to install packages.
 #   ./go demo     simulate a touch, encode, decode and compare; report and figure in out/demo/ (3 to 4 minutes on 2 cores, 300 MB)
 #   ./go view     the same, and a page that shows it in a browser, out/demo/stream.html (2 minutes and 500 MB more)
-#   ./go test     build with g++ and clang, run every test (an hour on 2 cores, 4 GB)
+#   ./go test     build with g++ and test: codec, library, program, Python, fuzz corpora, conformance (12 minutes on 2 cores)
+#   ./go test all       and with sanitizers, other compilers, clang-tidy of what changed, a browser (40 minutes)
+#   ./go test nightly   what is left: packages, mutants, other builds, fuzzing, Slurm, an emulated machine (hours)
 #   ./go bench    build and run the benchmarks; JSON in build/bench/
 #   ./go devices  capture a device of the kernel's own making in an emulated machine, from /dev/uhid to the trace (30 s after the build)
 #   ./go site     write the documentation as one static site: examples, libraries, specification, reports (30 s)
@@ -17,11 +19,15 @@ build_packages="$demo_packages libgnutls28-dev libeigen3-dev libsuitesparse-dev 
 bench_packages='libbenchmark-dev libgtest-dev python3 libbullet-dev'
 view_packages='nodejs clang-16 lld-16 binaryen wasi-libc libc++-16-dev-wasm32 libc++abi-16-dev-wasm32 libclang-rt-16-dev-wasm32 python3'
 site_packages='python3 doxygen cmark-gfm'
-test_packages="$bench_packages $site_packages ccache clang libclang-rt-dev clang-tidy clang-format munge parallel slurm-wlm tetgen tshark umockdev libumockdev-dev valgrind zstd chromium firefox-esr xvfb abigail-tools python3-numpy python3-pytest python3-venv
-  mandoc groff-base bsdextrautils zsh fish lintian dpkg-dev make"
+test_packages='libgtest-dev python3-numpy python3-pytest tetgen'
+all_packages='ccache git clang libclang-rt-dev clang-tidy clang-format chromium'
+nightly_packages="$bench_packages $site_packages munge parallel slurm-wlm tshark umockdev libumockdev-dev valgrind zstd firefox-esr xvfb abigail-tools python3-venv
+  mandoc groff-base bsdextrautils zsh fish lintian dpkg-dev make openssl qemu-system-x86 linux-image-amd64 busybox-static cpio kmod"
 
 bounds='-p 4% --visual 0.3mm,2deg' # of the demo
 with_view=                         # a build that has the page of `tactus view` keeps it
+
+die() { echo "$*" >&2; exit 2; }
 
 as_root() {
   if [ "$(id -u)" = 0 ]; then "$@"; else sudo "$@"; fi
@@ -64,6 +70,7 @@ step() { # TITLE COMMAND...
     echo FAILED
     tail -n 40 "$log"
     printf '\nThis step failed: %s\nFull log: %s\nRun it again with: %s\n' "$title" "$log" "$*"
+    total
     exit 1
   fi
 }
@@ -78,30 +85,63 @@ progress() { # PID LOG
   printf '\033[K'
 }
 
-run_test() {
+run_test() { # [all | nightly]
+  case ${1-} in
+    '' | all) ;;
+    nightly)
+      run_nightly
+      return
+      ;;
+    *) die "go: no such test: $1 (all, nightly or nothing)" ;;
+  esac
+  rm -f build/log/*.log
   install $build_packages $test_packages
-  install_view_tools
-  step 'g++: build without warnings' tests/check.sh build gcc
-  step 'g++: all tests' tests/check.sh test gcc
-  step 'clang: build without warnings, with AddressSanitizer and UndefinedBehaviorSanitizer' tests/check.sh build asan
-  step 'sanitizers: all tests' tests/check.sh test asan
-  step 'codec alone: no package needed, nothing else linked' tests/check.sh codec-only
-  step 'codec: MemorySanitizer over all fuzz corpora' tests/check.sh msan
-  step 'same bits from both compilers, without and with optimisation' tests/check.sh exact
-  step 'clang-format' tests/check.sh format
-  step 'clang-tidy: codec and bindings' tests/check.sh tidy codec bindings
-  cat build/log/*.log | awk '/tests failed out of/ { failed += $4; all += $NF } END { printf "%d passed, %d failed\n", all - failed, failed }'
+  step 'g++: build' tests/check.sh build test
+  step 'g++: tests' tests/check.sh run test
+  [ -z "${1-}" ] || run_all
+  total
 }
 
-# Only the components that the demo needs: rigid objects.
+run_all() {
+  install $all_packages
+  install_view_tools
+  step 'clang: build with AddressSanitizer and UndefinedBehaviorSanitizer' tests/check.sh build asan
+  step 'sanitizers: tests' tests/check.sh run asan
+  step 'codec alone: no package needed, nothing else linked' tests/check.sh codec-only
+  step 'same bits: g++ -O0, clang -O3 -march=native' tests/check.sh exact
+  step 'clang-format' tests/check.sh format
+  step 'clang-tidy of changed folders' tests/check.sh tidy-changed
+  step 'page of tactus view in chromium' tests/check.sh browser
+}
+
+run_nightly() {
+  rm -f build/log/*.log
+  install $build_packages $test_packages $all_packages $nightly_packages
+  install_view_tools
+  step 'g++: build each file on its own, without warnings' tests/check.sh build gcc
+  step 'g++: all tests, also those that build or test a test' tests/check.sh run gcc
+  step 'codec: MemorySanitizer over all fuzz corpora' tests/check.sh msan
+  step 'same bits from both compilers, without and with optimisation' tests/check.sh exact all
+  step 'libFuzzer: 30 s for each reader' tests/check.sh fuzz 30
+  step 'clang-tidy of everything' tests/check.sh tidy
+  step 'a device of the emulated kernel' tests/qemu/run.py build/gcc/cli/tactus build/gcc/tests/qemu/uhid_device build/qemu
+  total
+}
+
+total() {
+  cat build/log/*.log | awk '/^[0-9]+ passed, [0-9]+ failed$/ { passed += $1; failed += $3 } END { printf "%d passed, %d failed\n", passed, failed }'
+}
+
+# Everything that apt serves, several files as one compilation; without the studies and the page of `tactus view`, which wants other tools.
 build_demo() {
-  cmake -S . -B build/demo -G Ninja -DCMAKE_BUILD_TYPE=Release -DTACTUS_WITH_CLI=ON -DTACTUS_WITH_SIM=ON -DTACTUS_WITH_STUDY=OFF \
-    $with_view -DTACTUS_WITH_SEAL=OFF -DTACTUS_WITH_FEM=OFF -DTACTUS_WITH_SURFACE=OFF -DTACTUS_WITH_MODES=OFF -DTACTUS_WITH_CONFORMANCE=OFF -DTACTUS_WITH_TESTS=OFF &&
-    cmake --build build/demo
+  cmake -S . -B build/demo -G Ninja -DCMAKE_BUILD_TYPE=Release -DTACTUS_UNITY=20 -DTACTUS_WITH_CLI=ON -DTACTUS_WITH_SIM=ON -DTACTUS_WITH_FEM=ON \
+    -DTACTUS_WITH_SURFACE=ON -DTACTUS_WITH_SEAL=ON -DTACTUS_WITH_NET=ON -DTACTUS_WITH_DEVICE=ON $with_view \
+    -DTACTUS_WITH_C=OFF -DTACTUS_WITH_CONFORMANCE=OFF -DTACTUS_WITH_TESTS=OFF &&
+    cmake --build build/demo --target tactus
 }
 
 run_demo() {
-  install $demo_packages
+  install $build_packages
   step 'build the codec, the simulator and the program' build_demo
   out=out/demo
   tactus=build/demo/cli/tactus
@@ -129,7 +169,6 @@ Look at   $out/sweep/deadband.svg: packet rate and error of the force over the d
 Reports   $out/report.txt, encode.json, compare.json, sweep/points.csv
 Next      PATH=\$PWD/build/demo/cli:\$PATH; tactus --help
           tactus sim push-1dof -o push.mcap; tactus encode push.mcap -o push.tct -p 8%
-          For deformable objects build all components; see "Use the library" in README.md
 END
   [ "$held" = 'every bound held at every tick' ]
 }
@@ -167,10 +206,11 @@ run_format() {
 }
 
 case ${1-help} in
-  demo | view | test | bench | devices | site | format) "run_$1" ;;
-  help | -h | --help) sed -n '3,10s/^# \{0,1\}//p' "$0" ;;
-  *)
-    echo "go: no such command: $1 (try ./go help)" >&2
-    exit 2
+  test)
+    shift
+    run_test "$@"
     ;;
+  demo | view | bench | devices | site | format) "run_$1" ;;
+  help | -h | --help) sed -n '3,12s/^# \{0,1\}//p' "$0" ;;
+  *) die "go: no such command: $1 (try ./go help)" ;;
 esac

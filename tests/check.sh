@@ -2,13 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 # One check of the project. `./go test` calls those that make up a full test; each builds below build/ and can be run alone.
 #   tests/check.sh CHECK
-#     debug release gcc clang asan tsan   build the preset with warnings as errors and run its tests
-#     build PRESET | test PRESET          one half of that
+#     debug release test gcc clang asan tsan   build the preset with warnings as errors and run its tests
+#     build PRESET | run PRESET           one half of that
+#     browser         the page of `tactus view`: build it beside the preset test, open it in chromium
 #     codec-only      build the codec without any other package; what links it needs nothing but the C++ run-time library
 #     consumer [DIR]  install a build, then build and run projects that use it (DIR: a finished build; else codec-only)
 #     conformance     build and run the conformance suite
-#     exact           same hashes from g++ and clang, at -O0 and at -O3 with the machine's own instructions
+#     exact [all]     same hashes from g++ -O0 and clang -O3 with the machine's own instructions; all: and the other two of each
 #     tidy [FOLDER...]  clang-tidy, over everything but tests/ and examples/ if no folder is named
+#     tidy-changed    clang-tidy of the folders in which a file differs from the last landing
 #     format          clang-format
 #     fuzz SECONDS    every libFuzzer target for so long
 #     msan            MemorySanitizer: the codec over all its fuzz corpora, the vectors and the golden motions
@@ -32,8 +34,24 @@ build() { # PRESET [TARGET...]
   cmake --build --preset "$preset" -j "$jobs" ${1:+--target "$@"}
 }
 
+# Ends with a line `N passed, N failed` of tests: those within a suite of GoogleTest are counted one by one.
 run_tests() { # PRESET
-  ctest --preset "$1" -j "$jobs"
+  status=0
+  log=build/ctest-$1.log
+  ctest --preset "$1" -j "$jobs" --output-log "$log" --verbose >/dev/null || status=$?
+  sed -n '/tests passed, .* tests failed out of/,$p' "$log"
+  sed -n '/^The following tests FAILED/,$d; s/^ *[0-9]*: //; /\*\*\*Failed\|\*\*\*Timeout\|\*\*\*Exception\|FAILED/p' "$log"
+  awk '/^ *[0-9]+: \[  PASSED  \] / { ok[$1 + 0] = $5 }
+       /^ *[0-9]+: \[  FAILED  \] .*listed below/ { bad[$1 + 0] = $5 }
+       /^ *[0-9]+\/[0-9]+ Test +#[0-9]+: / {
+         number = $0
+         sub(/^[^#]*#/, "", number)
+         number += 0
+         if (/ Passed /) passed += number in ok ? ok[number] : 1
+         else if (!/Skipped/) { passed += ok[number]; failed += number in bad ? bad[number] : 1 }
+       }
+       END { printf "%d passed, %d failed\n", passed, failed }' "$log"
+  return $status
 }
 
 sources() { find codec io metrics sim device cli bindings examples conformance tests \( -name '*.h' -o -name '*.cpp' -o -name '*.c' \) -print | LC_ALL=C sort; }
@@ -96,9 +114,13 @@ codec_only() {
   done
 }
 
-exact() {
+exact() { # [all]
   for compiler in g++ clang++; do
     for flags in -O0 '-O3 -march=native'; do
+      case ${1-}$compiler$flags in
+        all* | g++-O0 | clang++-O3*) ;;
+        *) continue ;;
+      esac
       dir=build/exact/$compiler$(echo "$flags" | tr -d ' ')
       cmake --preset codec-only -B "$dir" -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_CXX_FLAGS="$flags" -DCMAKE_BUILD_TYPE=None \
         -DTACTUS_WERROR=OFF -DTACTUS_WITH_TESTS=ON >/dev/null
@@ -110,7 +132,6 @@ exact() {
   done
 }
 
-# `./go test` names what others link, the codec and its bindings: all of it takes as long as building and testing with one compiler.
 # Without tests/: tests/bench alone takes two minutes of a core, and each `for (auto _ : state)` in it is a finding, as is a leak in the header
 # of Google Benchmark.
 tidy() { # [FOLDER...]
@@ -118,6 +139,28 @@ tidy() { # [FOLDER...]
   cmake --preset clang >/dev/null
   run-clang-tidy -quiet -p build/clang -j "$jobs" "^$PWD/($(echo "$*" | tr ' ' '|'))/" >build/clang/tidy.txt 2>&1 ||
     { grep -E '(warning|error):' build/clang/tidy.txt | sort -u; die "clang-tidy has findings; the whole text is in build/clang/tidy.txt"; }
+}
+
+# The last landing is where this branch left main, on main itself the commit before. Unknown: everything.
+tidy_changed() {
+  base=$(git merge-base HEAD origin/main 2>/dev/null || git merge-base HEAD main 2>/dev/null) || base=
+  [ "$base" != "$(git rev-parse HEAD 2>/dev/null)" ] || base=$(git rev-parse 'HEAD^1' 2>/dev/null) || base=
+  if [ -z "$base" ]; then
+    echo 'no history to compare with: all folders'
+    tidy
+    return
+  fi
+  # Files that are there still; their folders.
+  folders=$(git diff --name-only --diff-filter=d "$base" -- codec io metrics sim device cli bindings conformance | sed -n 's,/[^/]*[.]\(h\|cpp\)$,,p' | sort -u)
+  # shellcheck disable=SC2086 # a list of folders
+  if [ -n "$folders" ]; then echo "since $base:" $folders; tidy $folders; else echo "no source changed since $base"; fi
+}
+
+# The program and the page of the preset test, with what else a browser needs.
+browser() {
+  cmake --preset test -DTACTUS_WITH_WASM=ON -DTACTUS_WITH_VIEW=ON
+  cmake --build --preset test -j "$jobs" --target all
+  run_tests browser
 }
 
 fuzz() { # SECONDS
@@ -181,12 +224,12 @@ case ${1-} in
     build dev
     run_tests dev
     ;;
-  release | gcc | clang | asan | tsan)
+  release | test | gcc | clang | asan | tsan)
     build "$1"
     run_tests "$1"
     ;;
   build) build "${2:?which preset?}" ;;
-  test) run_tests "${2:?which preset?}" ;;
+  run) run_tests "${2:?which preset?}" ;;
   codec-only) codec_only ;;
   consumer)
     [ -n "${2-}" ] || build codec-only
@@ -197,11 +240,12 @@ case ${1-} in
     ctest --preset gcc -R '^conformance'
     ;;
   tidy) "$@" ;;
-  exact | msan | windows | bench) "$1" ;;
+  tidy-changed) tidy_changed ;;
+  exact | browser | msan | windows | bench) "$@" ;;
   format) sources | xargs clang-format --dry-run --Werror ;;
   fuzz) fuzz "${2:?how many seconds?}" ;;
   *)
-    sed -n '3,17s/^# \{0,1\}//p' "$0" >&2
+    sed -n '3,20s/^# \{0,1\}//p' "$0" >&2
     exit 2
     ;;
 esac
