@@ -89,7 +89,7 @@ std::string heading(const ReproduceOptions& options) {
       "Made by `{} -o DIR`, each section by the command in it: what comes out here beside the numbers of the "
       "thesis, where it gives any. Everything is deterministic. Differences are told where they are: "
       "[rates](../../README.md), [delay](../delay/README.md).\n\n"
-      "Reproduced elsewhere: figure 2.2 and eqs. 4.37 and 4.38 ([stability](../stability/report.md)), figures 3.18 and 3.20 "
+      "Reproduced elsewhere: figure 2.2 and eqs. 4.37 and 4.38 ([stability](../stability/README.md)), figures 3.18 and 3.20 "
       "([deformable objects](../deformable/README.md)). What needs people is not reproduced: the ratings of chapter 3 and of "
       "figures "
       "4.8 and 4.26, and tables 4.1 and 4.2.\n",

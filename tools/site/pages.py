@@ -74,7 +74,7 @@ def with_anchors(body):
 def title_of(path):
     """What a file or a folder is about, in its own words: a heading, or the first comment of a source after the licence."""
     if path.is_dir():
-        return next((title_of(path / name) for name in ("README.md", "report.md") if (path / name).is_file()), "")
+        return title_of(path / "README.md") if (path / "README.md").is_file() else ""
     if path.suffix == ".md":
         found = re.search(r"^# (.*)$", path.read_text(encoding="utf-8"), re.M)
     elif path.suffix in {".cpp", ".h", ".py"}:
