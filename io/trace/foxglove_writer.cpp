@@ -33,7 +33,7 @@ constexpr double kFullColour = 0.1;  // displacement of a vertex in units of its
 
 constexpr std::size_t kSteps = 32;  // of the colour: bytes that repeat are compressed well
 
-constexpr std::uint16_t kSceneSchema = 1, kTransformSchema = 2, kPoseSchema = 3, kPointSchema = 4, kVectorSchema = 5;
+constexpr std::uint16_t kSceneSchema = 1, kFrameSchema = 2, kPoseSchema = 3, kPointSchema = 4, kVectorSchema = 5;
 
 Vec3 ball(double size) { return {size, size, size}; }
 
@@ -131,11 +131,11 @@ Result<void> FoxgloveWriter::Impl::declare() {
   };
   const auto add_known = [&](std::uint16_t id, MessageType type) { return add(id, schema_name(type), schema_text(type)); };
   TACTUS_CHECK(add(kSceneSchema, foxglove::kSceneUpdate, foxglove::scene_update_schema()));
-  TACTUS_CHECK(add(kTransformSchema, foxglove::kFrameTransforms, foxglove::frame_transforms_schema()));
+  TACTUS_CHECK(add(kFrameSchema, foxglove::kFrameTransforms, foxglove::frame_transforms_schema()));
   TACTUS_CHECK(add_known(kPoseSchema, MessageType::pose));
   TACTUS_CHECK(add_known(kPointSchema, MessageType::point));
   TACTUS_CHECK(add_known(kVectorSchema, MessageType::vector));
-  TACTUS_TRY(transforms, add_channel(kTransformSchema, "/tf"));
+  TACTUS_TRY(transforms, add_channel(kFrameSchema, "/tf"));
   if (!info.objects.empty()) {
     TACTUS_TRY(objects, add_channel(kSceneSchema, "/scene/objects"));
   }
