@@ -129,7 +129,7 @@ run_nightly() {
 }
 
 total() {
-  cat build/log/*.log | awk '/^[0-9]+ passed, [0-9]+ failed$/ { passed += $1; failed += $3 } END { printf "%d passed, %d failed\n", passed, failed }'
+  cat build/log/*.log | awk '/^[0-9]+ passed, [0-9]+ failed$/ { passed += $1; failed += $3 } END { if (passed + failed) printf "%d passed, %d failed\n", passed, failed }'
 }
 
 # Everything that apt serves, several files as one compilation; without the page of `tactus view`, whose tools take two minutes more.

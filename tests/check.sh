@@ -233,8 +233,8 @@ case ${1-} in
     consumer "${2:-$PWD/build/codec-only}"
     ;;
   conformance)
-    build gcc
-    ctest --preset gcc -R '^conformance'
+    build test
+    ctest --preset test -R '^conformance'
     ;;
   tidy) "$@" ;;
   tidy-changed) tidy_changed ;;
