@@ -37,20 +37,17 @@ build() { # PRESET [TARGET...]
 # Ends with a line `N passed, N failed` of tests: those within a suite of GoogleTest are counted one by one.
 run_tests() { # PRESET
   status=0
-  log=build/ctest-$1.log
-  ctest --preset "$1" -j "$jobs" --output-log "$log" --verbose >/dev/null || status=$?
-  sed -n '/tests passed, .* tests failed out of/,$p' "$log"
-  sed -n '/^The following tests FAILED/,$d; s/^ *[0-9]*: //; /\*\*\*Failed\|\*\*\*Timeout\|\*\*\*Exception\|FAILED/p' "$log"
-  awk '/^ *[0-9]+: \[  PASSED  \] / { ok[$1 + 0] = $5 }
-       /^ *[0-9]+: \[  FAILED  \] .*listed below/ { bad[$1 + 0] = $5 }
-       /^ *[0-9]+\/[0-9]+ Test +#[0-9]+: / {
-         number = $0
-         sub(/^[^#]*#/, "", number)
-         number += 0
-         if (/ Passed /) passed += number in ok ? ok[number] : 1
-         else if (!/Skipped/) { passed += ok[number]; failed += number in bad ? bad[number] : 1 }
+  results=$PWD/build/results-$1.xml
+  ctest --preset "$1" -j "$jobs" --output-junit "$results" --test-output-size-passed 1000000 || status=$?
+  awk '/<testcase / { state = $0; sub(/.* status="/, "", state); sub(/".*/, "", state); ok = bad = 0 }
+       /\[  PASSED  \] [0-9]+ test/ { ok = $4 }
+       /\[  FAILED  \] [0-9]+ tests?, listed/ { bad = $4 }
+       /<skipped/ && !/Unable to find executable/ { state = "skipped" }
+       /<\/testcase>/ {
+         if (state == "run") passed += ok ? ok : 1
+         else if (state != "skipped") { passed += ok; failed += bad ? bad : 1 }
        }
-       END { printf "%d passed, %d failed\n", passed, failed }' "$log"
+       END { printf "%d passed, %d failed\n", passed, failed }' "$results"
   return $status
 }
 
@@ -236,8 +233,8 @@ case ${1-} in
     consumer "${2:-$PWD/build/codec-only}"
     ;;
   conformance)
-    build gcc
-    ctest --preset gcc -R '^conformance'
+    build test
+    ctest --preset test -R '^conformance'
     ;;
   tidy) "$@" ;;
   tidy-changed) tidy_changed ;;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "cli/live/wire.h"
 #include "cli/report/figures.h"
 #include "cli/report/traffic_layers.h"
 
@@ -35,7 +36,7 @@ tl::expected<net::Address, Failure> session_address(const std::string& what, con
   TACTUS_TRY(const auto address, any_address(what, typed));
   if (key.empty() && !address.is_loopback())
     return refuse_arguments(what + " " + typed + ": not on the loopback, and there is no --key",
-                            "Beyond this machine sessions are sealed: make a key with `tactus key`, and give it to both ends.");
+                            "Beyond this machine sessions are sealed. " + how_to_seal());
   return address;
 }
 

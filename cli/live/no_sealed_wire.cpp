@@ -5,12 +5,11 @@
 namespace tactus::cli {
 namespace {
 
-tl::unexpected<Failure> no_seal() {
-  return refuse_arguments("--key: this program was built without the seal",
-                          "Install libgnutls28-dev and build it with TACTUS_WITH_SEAL=ON.");
-}
+tl::unexpected<Failure> no_seal() { return refuse_arguments("--key: this program was built without the seal", how_to_seal()); }
 
 }  // namespace
+
+std::string how_to_seal() { return "Install libgnutls28-dev and build it with TACTUS_WITH_SEAL=ON."; }
 
 tl::expected<std::unique_ptr<ServerWire>, Failure> sealed_wire_of_server(net::UdpSocket& /*socket*/, std::uint32_t /*clients*/,
                                                                          const std::string& /*key*/) {

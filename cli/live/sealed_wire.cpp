@@ -103,6 +103,8 @@ tl::expected<seal::Key, Failure> read_key(const std::string& path) {
 
 }  // namespace
 
+std::string how_to_seal() { return "Make a key with `tactus key`, and give it to both ends."; }
+
 tl::expected<std::unique_ptr<ServerWire>, Failure> sealed_wire_of_server(net::UdpSocket& socket, std::uint32_t clients,
                                                                          const std::string& key) {
   TACTUS_TRY(auto read, read_key(key));

@@ -67,4 +67,7 @@ tl::expected<std::unique_ptr<ServerWire>, Failure> sealed_wire_of_server(net::Ud
                                                                          const std::string& key);
 tl::expected<std::unique_ptr<ClientWire>, Failure> sealed_wire_of_client(net::UdpSocket& socket, const std::string& key);
 
+/// What a user must do for a session that is sealed.
+std::string how_to_seal();
+
 }  // namespace tactus::cli

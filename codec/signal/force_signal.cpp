@@ -12,7 +12,7 @@ namespace tactus {
 namespace {
 
 constexpr std::int64_t kLargestForce = std::int64_t{4096} << kForceExp, kLargestSlope = std::int64_t{1} << 30;
-constexpr std::int64_t kLastTick = 0xffffffff;
+constexpr std::int64_t kTickLimit = 0xffffffff;
 constexpr unsigned kSlopeShift = 10;  // slopes are per 1024 ticks
 
 constexpr std::int64_t reach(std::uint32_t tick_rate) noexcept { return std::max<std::int64_t>(1, tick_rate / 20); }
@@ -60,7 +60,7 @@ bool ForceSender::is_within(const Vec3& force, const Vec3& shown) const noexcept
 Result<std::span<const std::uint8_t>> ForceSender::encode(std::int64_t tick, const Vec3& force) noexcept {
   if (!is_finite(force)) return fail(Errc::invalid_argument, "R-API-1");
   if (!(norm(force) <= 4096)) return fail(Errc::invalid_argument, "R-API-2");
-  if (tick <= last_tick_ || tick >= kLastTick) return fail(Errc::invalid_argument, "R-API-5");
+  if (tick <= last_tick_ || tick >= kTickLimit) return fail(Errc::invalid_argument, "R-API-5");
   last_tick_ = tick;
   const std::array<std::int32_t, 3> wanted = to_grid(force);
   const std::array<std::int32_t, 3> shown = shown_at(state_, tick, tick_rate_);
@@ -91,7 +91,7 @@ Result<void> ForceReceiver::push(std::span<const std::uint8_t> sample) noexcept 
   ByteReader reader(sample);
   const std::uint64_t head = reader.varint();
   ForceState next{.tick = static_cast<std::int64_t>(head / 2)};
-  bool within = head / 2 < static_cast<std::uint64_t>(kLastTick), flat = true;
+  bool within = head / 2 < static_cast<std::uint64_t>(kTickLimit), flat = true;
   const auto read = [&](std::int64_t limit) {
     const std::int64_t value = unzigzag(reader.varint());
     within = within && value >= -limit && value <= limit;
