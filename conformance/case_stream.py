@@ -103,10 +103,9 @@ def packet_of(decoders: Decoders, text: str, before: list[bytes]) -> bytes:
             decoder.receiver.__dict__.update(kept)
             decoders.follow(data)
     before.append(data)
-    after = over.get("after", packet.tick - decoders.tick if packet else None)
-    if after is None or not isinstance(after, int):
-        raw = bytes_of(after) if after is not None else b""
-        return record(PACKET, raw + data, over)
+    after = over.get("after", packet.tick - decoders.tick if packet else 0)
+    if not isinstance(after, int):
+        return record(PACKET, bytes_of(after) + data, over)
     decoders.tick += after
     return record(PACKET, varint_bytes(after) + data, over)
 
