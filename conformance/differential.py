@@ -19,7 +19,7 @@ from typing import Optional
 import decoder
 from conventions import StreamError
 from file import File
-from run import Crash, run_testee
+from run import Crash, load_cases, run_testee
 
 FIXED = 12                                                  # bytes of the declaration before its body
 LATEST_TICK = 5000                                          # a client looks at every tick up to the last packet's
@@ -103,15 +103,13 @@ def damaged_section(data: bytes, other: bytes, rng: random.Random) -> bytes:
 class Vectors:
     """Files to damage. Those with a fault are the smaller part: most damage hides behind it."""
 
-    def __init__(self, folder: Path):
-        self.every, self.valid = [], []
-        for stem in sorted(folder.glob("*.json")):
-            for case in json.loads(stem.read_text("utf-8"))["cases"]:
-                if "session" in case["flags"]:
-                    continue                                # no stream
-                self.every.append((folder / stem.stem / f"{case['name']}.tct").read_bytes())
-                if case["result"] == "valid":
-                    self.valid.append(self.every[-1])
+    def __init__(self, root: Path):
+        cases, faults = load_cases(root)
+        if faults:
+            raise ValueError(f"{faults[0].id}: {faults[0].detail}")
+        streams = [case for case in cases if "session" not in case.traits]
+        self.every = [case.input.read() for case in streams]
+        self.valid = [case.input.read() for case in streams if not case.error]
 
     def choose(self, rng: random.Random) -> bytes:
         return rng.choice(self.valid if rng.randrange(4) else self.every)
@@ -193,7 +191,7 @@ def main(arguments: list[str], root: Path) -> int:
     parser.add_argument("--keep", metavar="DIR", help="write files with differences there")
     options = parser.parse_args(arguments)
     try:
-        vectors = Vectors(root / "vectors")
+        vectors = Vectors(root)
         if not vectors.valid or options.cases < 1:
             raise ValueError("no vectors or no cases")
         return compare(options, vectors)

@@ -16,6 +16,7 @@ from deformable_header import CLUSTERS, COMPUTED, MAIN, NO_BASIS, zigzag
 from deformable_motion import FARTHEST, combine, lim
 from packet import Receiver
 from range_coder import RangeDecoder
+from run import load_cases, read_input
 from start_models import Models
 
 NAMES: dict = {}                                            # by identity of a model: the model, its name
@@ -417,16 +418,25 @@ def tell_elastic(f, item):
         f.varint(f"more[{run}]")
 
 
+def content_of(name: str) -> bytes:
+    """A file, or the input of a vector."""
+    if not Path(name).exists():
+        for case in load_cases(Path(__file__).resolve().parent)[0]:
+            if case.id == name:
+                return read_input(case)
+    return Path(name).read_bytes()
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("stream", metavar="STREAM", help="stream file (.tct)")
+    parser.add_argument("stream", metavar="STREAM", help="stream file (.tct), or the id of a vector, as rigid/001-one-axis")
     parser.add_argument("number", metavar="NUMBER", type=int, nargs="?", default=0, help="of the packet, from 0 [0]")
     parser.add_argument("--symbols", action="store_true", help="leave out the table of single bits")
     parser.add_argument("--declaration", action="store_true", help="the scene declaration instead of a packet")
     parser.add_argument("--lose", metavar="N", type=int, nargs="+", help="play all packets but these, and tell what is refused")
     arguments = parser.parse_args()
     try:
-        content = Path(arguments.stream).read_bytes()
+        content = content_of(arguments.stream)
         stream = File(content)
         if arguments.declaration:
             tell_declaration(stream, content)

@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Callable, NamedTuple, Optional, TextIO
 
 from mutants import KINDS, MODULES, Module, Mutant, all_mutants
-from run import Case, Mismatch, load_cases, read_input
+from run import Case, Mismatch, answer_lines, load_cases, read_input
 
 MEMORY = 2 << 30                                            # bytes; a mutant that asks for more crashes
 SLOWEST = 2.0                                               # seconds for a vector, besides ten times what decoder.py takes
@@ -163,7 +163,7 @@ class Suite:
         cases, faults = load_cases(root)
         if faults:
             raise ValueError(f"{faults[0].id}: {faults[0].detail}")
-        everything = (Vector(case, read_input(case), case.output.read_text("ascii").splitlines()) for case in cases)
+        everything = (Vector(case, read_input(case), answer_lines(case)) for case in cases)
         self.vectors = [vector for vector in everything if largest is None or len(vector.data) <= largest]
         self.digests = {case.id: case.sha256[:12] for case in cases}
         self.caught: dict[str, dict[str, int]] = {}         # by function: how many mutants a vector has caught there

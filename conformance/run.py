@@ -19,6 +19,8 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import NamedTuple, Optional
 
+from packs import Part, unpack, with_repeat
+
 TIMEOUT = 10.0                                              # seconds; per case, each case is a process of its own
 LARGEST_OUTPUT = 64 << 20                                   # bytes; a testee that writes more is stopped
 
@@ -32,12 +34,12 @@ class Mismatch(Exception):
 
 
 class Case(NamedTuple):
-    """What a stem's list says of a case, and where its files are."""
+    """What a stem's list says of a case, and where its input and answer are."""
     id: str
-    input: Path
-    output: Path
+    input: Part
+    answer: Part
     sha256: str
-    repeat: Optional[dict]                                  # bytes of the input that are not in its file
+    repeat: Optional[dict]                                  # bytes of the input that are not in the pack
     args: list[str]
     error: Optional[dict]                                   # class and rule; None: the input is valid
     traits: set[str]                                        # profiles and flags
@@ -105,18 +107,19 @@ def json_lines(output: bytes) -> list[str]:
 
 # ---- Cases ----------------------------------------------------------------------------------------------------------
 def read_input(case: Case) -> bytes:
-    data = case.input.read_bytes()
-    if case.repeat:
-        at, more = case.repeat["at"], bytes.fromhex(case.repeat["bytes"]) * case.repeat["times"]
-        data = data[:at] + more + data[at:]
+    data = with_repeat(case.input.read(), case.repeat)
     if hashlib.sha256(data).hexdigest() != case.sha256:
-        raise Mismatch(f"{case.input} is not the published file: the SHA-256 of the input differs")
+        raise Mismatch(f"{case.input.file.name} is not the published file: the SHA-256 of the input differs")
     return data
+
+
+def answer_lines(case: Case) -> list[str]:
+    return case.answer.read().decode("ascii").splitlines()
 
 
 def expected_lines(case: Case) -> list[str]:
     """The lines of a valid case, or those of an invalid one before its error."""
-    lines = case.output.read_text("ascii").splitlines()
+    lines = answer_lines(case)
     if case.error and lines and "error" in json.loads(lines[-1]):
         lines.pop()
     return lines
@@ -142,15 +145,28 @@ def check_reply(case: Case, status: int, lines: list[str]) -> None:
 def make_case(root: Path, stem: str, said: dict) -> Case:
     if said["result"] not in ("valid", "invalid"):
         raise ValueError("result is neither valid nor invalid")
-    base = root / "vectors" / stem / said["name"]
+    base = root / "vectors" / stem
     error = {"errc": said["errc"], "rule": said["rule"]} if said["result"] == "invalid" else None
-    suffix = ".script" if "session" in said["flags"] else ".tct"
-    case = Case(f"{stem}/{said['name']}", base.with_name(base.name + suffix), base.with_name(base.name + ".jsonl"), said["sha256"],
-                said.get("repeat"), said.get("args", []), error, {*said["profile"], *said["flags"]})
-    for file in (case.input, case.output):
-        if not file.is_file():
-            raise FileNotFoundError(f"{file} is missing")
+    case = Case(f"{stem}/{said['name']}", Part(base.with_suffix(".pack"), *said["input"]), Part(base.with_suffix(".answers"), *said["answer"]),
+                said["sha256"], said.get("repeat"), said.get("args", []), error, {*said["profile"], *said["flags"]})
+    for part in (case.input, case.answer):
+        if part.offset < 0 or part.size < 0 or part.file.stat().st_size < part.offset + part.size:
+            raise ValueError(f"{part.file.name} has no bytes {part.offset} to {part.offset + part.size}")
     return case
+
+
+def gaps(cases: list[Case], stem: str) -> list[Result]:
+    """Bytes of a stem's pack or answers that belong to no case, or to two."""
+    faults = []
+    for parts in ([case.input for case in cases], [case.answer for case in cases]):
+        at = 0
+        for part in parts:
+            if part.offset != at:
+                faults.append(Result(f"{stem}", "fail", f"{part.file.name}: a case begins at byte {part.offset}; must be {at}"))
+            at = part.offset + part.size
+        if parts and parts[0].file.stat().st_size != at:
+            faults.append(Result(f"{stem}", "fail", f"{parts[0].file.name}: bytes from {at} on belong to no case"))
+    return faults
 
 
 def load_stem(root: Path, stem: str, manifest: dict) -> tuple[list[Case], list[Result]]:
@@ -166,7 +182,7 @@ def load_stem(root: Path, stem: str, manifest: dict) -> tuple[list[Case], list[R
             cases.append(make_case(root, stem, said))
         except (OSError, ValueError, KeyError, TypeError) as error:
             faults.append(Result(f"{stem}/{said.get('name')}", "fail", f"cannot be read: {error!r}"))
-    return cases, faults
+    return cases, faults or gaps(cases, stem)
 
 
 def load_cases(root: Path) -> tuple[list[Case], list[Result]]:
@@ -178,17 +194,16 @@ def load_cases(root: Path) -> tuple[list[Case], list[Result]]:
     except (OSError, ValueError, KeyError, TypeError) as error:
         return [], [Result("manifest.json", "fail", f"cannot be read: {error!r}")]
     for stem, manifest in stems.items():
-        unlisted.discard(root / "vectors" / f"{stem}.json")
+        unlisted.difference_update(root / "vectors" / f"{stem}{suffix}" for suffix in (".json", ".pack", ".answers"))
         try:
             more, bad = load_stem(root, stem, manifest)
             cases += more
             faults += bad
         except (OSError, ValueError, KeyError, TypeError) as error:
             faults.append(Result(f"vectors/{stem}.json", "fail", f"cannot be read: {error!r}"))
-    unlisted.difference_update(file for case in cases for file in (case.input, case.output))
     ids = [case.id for case in cases]
     faults += [Result(i, "fail", "listed twice") for i in sorted(set(ids)) if ids.count(i) > 1]
-    faults += [Result(str(path.relative_to(root)), "fail", "belongs to no case") for path in sorted(unlisted)]
+    faults += [Result(str(path.relative_to(root)), "fail", "belongs to no stem") for path in sorted(unlisted)]
     if not cases:
         faults.append(Result("manifest.json", "fail", "no case"))
     return cases, faults
@@ -229,12 +244,16 @@ def main(arguments: list[str], root: Path) -> int:
     parser.add_argument("--without", metavar="NAME", action="append", default=[],
                         help="leave out the cases with this flag or profile, as 'layered' (may be repeated)")
     parser.add_argument("--json", action="store_true", help="print the results as one JSON object, the counts on standard error")
+    parser.add_argument("--unpack", metavar="DIR", type=Path, help="write every input and answer as a file of its own, and run nothing")
     options = parser.parse_args(arguments)
     here = Path(__file__).resolve().parent
     try:
+        if options.unpack:
+            print(f"{unpack(root, options.unpack)} cases written to {options.unpack}")
+            return 0
         command = shlex.split(options.testee) if options.testee else [sys.executable, str(here / "decoder.py")]
         results = run_suite(root, command, options.only, set(options.without))
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, KeyError) as error:
         print(f"run.py: {error}", file=sys.stderr)
         return 2
     number = {kind: sum(r.result == kind for r in results) for kind in ("pass", "fail", "skip")}

@@ -45,27 +45,31 @@ class RunnerTest(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.root = Path(folder.name)
-        (self.root / "vectors" / "scene").mkdir(parents=True)
+        self.vectors = self.root / "vectors"
+        self.vectors.mkdir()
         self.cases = [self.case("001-empty", VALID, VALID_REPLY), self.case("002-flag", WITH_FLAG, "", "malformed", "R-STR-4"),
                       self.case("003-record", WITH_UNKNOWN_RECORD, HEADER_LINE, "unsupported", "R-FIL-3")]
         self.write_lists(self.cases)
 
     def case(self, name: str, data: bytes, reply: str, errc: str = "", rule: str = "") -> dict:
-        """Writes the files of a case and returns what the stem's list says of it."""
-        base = self.root / "vectors" / "scene" / name
-        said = {"name": name, "result": "valid", "profile": [], "flags": [], "sha256": hashlib.sha256(data).hexdigest()}
+        """Adds a case to the pack and the answers, and returns what the stem's list says of it."""
         if errc:
             reply += json.dumps({"error": {"errc": errc, "rule": rule}}, separators=(",", ":")) + "\n"
-            said.update({"result": "invalid", "errc": errc, "rule": rule})
-        base.with_suffix(".tct").write_bytes(data)
-        base.with_suffix(".jsonl").write_text(reply, "ascii")
-        return said
+        said = {"name": name, "result": "valid", "profile": [], "flags": [], "sha256": hashlib.sha256(data).hexdigest(),
+                "input": self.append(".pack", data), "answer": self.append(".answers", reply.encode("ascii"))}
+        return {**said, "result": "invalid", "errc": errc, "rule": rule} if errc else said
 
-    def write_lists(self, cases: list[dict]) -> None:
-        content = json.dumps({"cases": cases}).encode("ascii")
+    def append(self, suffix: str, data: bytes) -> list[int]:
+        with open(self.vectors / f"scene{suffix}", "ab") as file:
+            place = [file.tell(), len(data)]
+            file.write(data)
+        return place
+
+    def write_lists(self, cases: list[dict], of_list: dict = {}, of_manifest: dict = {}) -> None:
+        content = json.dumps({**of_list, "cases": cases}).encode("ascii")
         (self.root / "vectors" / "scene.json").write_bytes(content)
         stems = {"scene": {"cases": len(cases), "sha256": hashlib.sha256(content).hexdigest()}} if cases else {}
-        (self.root / "manifest.json").write_text(json.dumps({"stems": stems}), "ascii")
+        (self.root / "manifest.json").write_text(json.dumps({**of_manifest, "stems": stems}), "ascii")
 
     def run_main(self, *arguments: str) -> tuple[int, str, str]:
         out, err = io.StringIO(), io.StringIO()
@@ -168,34 +172,66 @@ sys.exit(reply.returncode)""")
     # ---- suites ----
 
     def test_missing_files(self) -> None:
-        for suffix in (".tct", ".jsonl"):
+        for suffix in (".pack", ".answers"):
             with self.subTest(suffix):
-                file = self.root / "vectors" / "scene" / ("002-flag" + suffix)
+                file = self.vectors / f"scene{suffix}"
                 content = file.read_bytes()
                 file.unlink()
-                status, out, _ = self.run_main()
-                self.assertEqual(status, 1, out)
-                self.assertIn("2 passed", out)
+                out = self.expect(1, "0 passed, 4 failed, 0 skipped")
+                self.assertIn("scene/001-empty: cannot be read", out)
                 file.write_bytes(content)
+
+    def test_short_files(self) -> None:
+        for suffix in (".pack", ".answers"):
+            with self.subTest(suffix):
+                file = self.vectors / f"scene{suffix}"
+                content = file.read_bytes()
+                file.write_bytes(content[:-1])
+                out = self.expect(1, "2 passed, 1 failed, 0 skipped")
+                self.assertIn(f"scene{suffix} has no bytes", out)
+                file.write_bytes(content)
+
+    def test_bytes_of_no_case(self) -> None:
+        for suffix in (".pack", ".answers"):
+            with self.subTest(suffix):
+                file = self.vectors / f"scene{suffix}"
+                content = file.read_bytes()
+                file.write_bytes(content + b"\n")
+                out = self.expect(1, "3 passed, 1 failed, 0 skipped")
+                self.assertIn(f"scene{suffix}: bytes from {len(content)} on belong to no case", out)
+                file.write_bytes(content)
+
+    def test_unpack(self) -> None:
+        self.write_lists([{**case, "what": "A case."} for case in self.cases], {"stem": "scene", "what": "Scenes."}, {"flags": {}})
+        folder = self.root / "files"
+        status, out, _ = self.run_main("--unpack", str(folder))
+        self.assertEqual((status, out.split()[0]), (0, "3"))
+        self.assertEqual((folder / "vectors" / "scene" / "001-empty.tct").read_bytes(), VALID)
+        self.assertEqual((folder / "vectors" / "scene" / "001-empty.jsonl").read_text("ascii"), VALID_REPLY)
+        listed = (folder / "vectors" / "scene.json").read_bytes()
+        self.assertEqual([case["name"] for case in json.loads(listed)["cases"]], [case["name"] for case in self.cases])
+        manifest = json.loads((folder / "manifest.json").read_text("ascii"))
+        self.assertEqual(manifest["stems"]["scene"], {"cases": 3, "sha256": hashlib.sha256(listed).hexdigest()})
 
     def test_missing_list(self) -> None:
         (self.root / "vectors" / "scene.json").unlink()
-        out = self.expect(1, "0 passed, 8 failed, 0 skipped")
+        out = self.expect(1, "0 passed, 2 failed, 0 skipped")
         self.assertIn("vectors/scene.json: cannot be read", out)
 
     def test_changed_list(self) -> None:
         file = self.root / "vectors" / "scene.json"
         file.write_bytes(file.read_bytes() + b"\n")
-        out = self.expect(1, "0 passed, 8 failed, 0 skipped")
+        out = self.expect(1, "0 passed, 2 failed, 0 skipped")
         self.assertIn("its SHA-256 is not that of the manifest", out)
 
-    def test_file_that_no_case_names(self) -> None:
-        (self.root / "vectors" / "scene" / "004-more.tct").write_bytes(VALID)
+    def test_file_that_no_stem_has(self) -> None:
+        (self.vectors / "004-more.tct").write_bytes(VALID)
         out = self.expect(1, "3 passed, 1 failed, 0 skipped")
         self.assertIn("004-more.tct", out)
 
     def test_changed_input(self) -> None:
-        (self.root / "vectors" / "scene" / "001-empty.tct").write_bytes(VALID + b"\x04")
+        file = self.vectors / "scene.pack"
+        file.write_bytes(bytes([file.read_bytes()[0] ^ 1]) + file.read_bytes()[1:])
         self.expect(1, "2 passed, 1 failed, 0 skipped")
 
     def test_no_manifest(self) -> None:
@@ -203,21 +239,21 @@ sys.exit(reply.returncode)""")
         self.expect(1, "0 passed, 1 failed, 0 skipped")
 
     def test_case_listed_twice(self) -> None:
-        self.write_lists([*self.cases, self.cases[0]])
+        self.write_lists([*self.cases, {**self.cases[0], **{key: self.append(suffix, data) for key, suffix, data in (
+            ("input", ".pack", VALID), ("answer", ".answers", VALID_REPLY.encode("ascii")))}}])
         self.expect(1, "4 passed, 1 failed, 0 skipped")
 
     def test_no_stem(self) -> None:
-        for path in (self.root / "vectors").rglob("*.*"):
-            path.unlink()
         self.write_lists([])
-        (self.root / "vectors" / "scene.json").unlink()
+        for path in self.vectors.iterdir():
+            path.unlink()
         self.expect(1, "0 passed, 1 failed, 0 skipped")
 
     def test_repeated_bytes(self) -> None:
         record = b"\x80\xe8\x07" + bytes(1000)
         whole = VALID + with_crc(record)
-        case = self.case("004-repeat", whole, VALID_REPLY)
-        (self.root / "vectors" / "scene" / "004-repeat.tct").write_bytes(VALID + with_crc(record)[:3] + whole[-4:])
+        case = self.case("004-repeat", VALID + with_crc(record)[:3] + whole[-4:], VALID_REPLY)
+        case["sha256"] = hashlib.sha256(whole).hexdigest()
         case["repeat"] = {"at": len(VALID) + 3, "bytes": "0000", "times": 500}
         self.write_lists([*self.cases, case])
         self.expect(0, "4 passed, 0 failed, 0 skipped")

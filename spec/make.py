@@ -75,9 +75,18 @@ def table_findings(book: Book):
             yield f"90: {name} has the SHA-256 {digest}"
 
 
+def vector_findings(book: Book):
+    """Chapter 90 has a line for every rule of the format: its vectors, or why there is none."""
+    named = re.findall(r"^\| (R-[A-Z]+-\d+) \|", book.by_short["90"].text, re.M)
+    of_format = [rule for rule, row in book.rules.items() if row["chapter"] != "-"]
+    yield from (f"90: {rule} has no vector, and nothing says why" for rule in of_format if rule not in named)
+    yield from (f"90: {rule} is no rule of the format" for rule in named if rule not in of_format)
+
+
 def findings(book: Book):
     yield from book.findings()
     yield from table_findings(book)
+    yield from vector_findings(book)
     yield from sources.findings(ROOT, book.rules, book.classes)
     if index_of_rules(book) != book.by_short["rules"].text:
         yield "rules.md is not what rules.csv says: run spec/make.py index"

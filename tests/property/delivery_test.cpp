@@ -6,7 +6,7 @@
 #include <set>
 
 #include <tactus/receiver.h>
-#include "conformance/make_vectors/build.h"
+#include "raw_stream.h"
 
 namespace tactus {
 namespace {
