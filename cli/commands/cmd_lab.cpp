@@ -24,7 +24,9 @@ struct Script {
   std::string_view command;
   const char* help;
 };
-constexpr std::array<Script, 0> kScripts{};
+constexpr Script kScripts[] = {
+    {"sweep", "Run a command over a grid of parameters into a table and figures"},
+};
 
 fs::path own_program() {
   std::error_code ignored;
