@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <new>
 #include <string_view>
@@ -18,7 +19,7 @@ namespace {
 /// A command, "import_mesh" one of the group "import".
 struct Entry {
   std::string_view name;
-  void (*setup)(Command& group, Action& action);  ///< nullptr: not built
+  void (*setup)(Command& group, Action& action);  ///< nullptr: not built, or a script
   const char* needs;                              ///< the option of CMake that brings it then
 };
 constexpr Entry kCommands[] = {
@@ -75,6 +76,11 @@ void add(Command& app, const Entry& entry, Action& action) {
   const std::size_t split = entry.name.find('_');
   const bool is_own = split == std::string_view::npos;
   Command& group = is_own ? app : app.command(entry.name.substr(0, split));
+  if (is_script(entry.name)) {
+    setup_script(app, entry.name, action);
+    app.command(entry.name).heading(heading_of_command(entry.name));
+    return;
+  }
   if (entry.setup == nullptr) {
     group.leave_out(std::string(entry.name.substr(split + 1)), entry.needs, action);
     return;
@@ -93,6 +99,10 @@ int finish(Outcome outcome, bool as_json) {
 
 int main(int argc, char** argv) {
   using namespace tactus::cli;
+  if (argc > 1 && is_script(argv[1])) {
+    const bool wants_json = std::any_of(argv, argv + argc, [](std::string_view word) { return word == "--json"; });
+    return finish(run_script(argv[1], {argv + 2, argv + argc}), wants_json);
+  }
   Program app("tactus", "Codec for shared haptic virtual environments: which object states to send, and in how few bits");
   app.footer(
       "First steps:\n"

@@ -10,7 +10,7 @@ import re
 import sys
 import tempfile
 
-SOURCE_DIRS = (".ci", "spec", "codec", "io", "metrics", "sim", "device", "bindings", "cli", "conformance", "tests", "tools", "cmake")
+SOURCE_DIRS = (".ci", "spec", "codec", "io", "metrics", "sim", "device", "bindings", "cli", "conformance", "lab", "tests", "tools", "cmake")
 CODE = {".h", ".cpp"}
 SOURCES = CODE | {".py", ".sh", ".cmake", ".gp", ".mjs", ".js", ".lua"}
 MAX_LINES = 500
@@ -35,6 +35,7 @@ FLOATS = {"base/device_sample", "base/geometry", "base/quantise", "base/tri_mesh
 # Everything that is the operating system's stands in these files, one per need; the others are C++ alone. The codec, the traces and
 # the metrics are not among them; of the simulation only what runs the program that fills meshes.
 SYSTEM = {
+    "cli/commands/cmd_lab.cpp": "scripts in the place of the program",
     "cli/commands/cmd_link.cpp": "to wait for datagrams of many sockets",
     "cli/figure/child_process.cpp": "programs that are started, with their output",
     "cli/laboratory/growing_table.cpp": "rows that are on the disk",

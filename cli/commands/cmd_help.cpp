@@ -27,6 +27,11 @@ Outcome write_pages(const CommandText& command, const std::filesystem::path& fol
 
 Outcome run(const Command& app, const HelpOptions& options) {
   if (!options.man_pages.empty()) return write_pages(app.text(), options.man_pages);
+  if (!options.words.empty() && is_script(options.words.front())) {
+    std::vector<std::string> words(options.words.begin() + 1, options.words.end());
+    words.emplace_back("--help");
+    return run_script(options.words.front(), words);
+  }
   TACTUS_TRY(const std::string help, app.help_of(options.words));
   fmt::print("{}", help);
   return {};

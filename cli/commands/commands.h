@@ -3,6 +3,10 @@
 /// them a program has.
 #pragma once
 
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include "cli/command.h"
 
 namespace tactus::cli {
@@ -43,5 +47,12 @@ void setup_bench_session(Command& group, Action& action);
 void setup_bench_signals(Command& group, Action& action);
 void setup_help(Command& app, Action& action);
 void setup_completion(Command& app, Action& action);
+
+/// Whether a command is a script of lab/, which takes all that follows its name.
+bool is_script(std::string_view command);
+/// Name it in the help, the manual and the completion.   pre  is_script(name)
+void setup_script(Command& app, std::string_view name, Action& action);
+/// Run it in the place of this program.   out  never;   err  the script or Python is missing
+Outcome run_script(const std::string& command, const std::vector<std::string>& arguments);
 
 }  // namespace tactus::cli

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Figures as in a paper: one style, readable without colour, as SVG, PNG or PDF by the ending of the file.
+
+    fig, axes = figure.panels(2)                      # one below the other, one axis of x
+    figure.line(axes[0], x, y, 0, label="no haptic bound", low=least, high=largest)
+    figure.save(fig, "rate.svg")                      # or save_all(fig, "folder/rate"): .svg, .png and .pdf
+
+matplotlib is imported where the first figure is drawn: scripts that draw nothing do without it.
+"""
+import io
+import os
+import sys
+
+from .arguments import USAGE, Refusal
+from .table import write_whole
+
+ENDINGS = (".svg", ".png", ".pdf")
+# Told apart by everybody (Okabe and Ito); in grey by dashes and markers.
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+DASHES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)), (0, (1, 1)))
+MARKERS = ("o", "s", "^", "D", "v", "P", "X")
+STYLE = {
+    "font.family": "DejaVu Sans", "font.size": 9, "axes.titlesize": 10, "axes.labelsize": 9, "legend.fontsize": 8,
+    "xtick.labelsize": 8, "ytick.labelsize": 8, "lines.linewidth": 1.4, "lines.markersize": 4.5,
+    "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "grid.color": "#dddddd", "grid.linewidth": 0.6,
+    "axes.axisbelow": True, "legend.frameon": False, "legend.handlelength": 3.2, "figure.dpi": 100, "savefig.dpi": 200,
+    "svg.hashsalt": "tactus", "svg.fonttype": "path", "pdf.fonttype": 42, "text.usetex": False, "text.parse_math": False,
+    "axes.formatter.useoffset": False, "figure.constrained_layout.use": True,
+}
+WIDTH, PANEL_HEIGHT = 6.3, 2.0  # [inch]: the text of a page of A4
+
+
+def pyplot():
+    """matplotlib.pyplot in this style, without a display."""
+    try:
+        import matplotlib
+    except ImportError:
+        raise Refusal(f"figures need matplotlib, which {sys.executable} does not find",
+                      "Install it: apt-get install python3-matplotlib", missing="matplotlib") from None
+    matplotlib.use("agg")
+    import matplotlib.pyplot
+    matplotlib.pyplot.rcParams.update(STYLE)
+    return matplotlib.pyplot
+
+
+def check_name(path):
+    """Before the work: the ending is one that can be drawn, and what draws is installed."""
+    if os.path.splitext(path)[1] not in ENDINGS:
+        raise Refusal(f"{path}: give a file that ends in .svg, .png or .pdf", status=USAGE)
+    pyplot()
+
+
+def panels(count=1, height=None, width=WIDTH, shared=True):
+    """A figure with `count` panels below each other that share the axis of x.   out  figure, [axes]"""
+    size = (width, height or (3.4 if count == 1 else 0.8 + PANEL_HEIGHT * count))
+    fig, axes = pyplot().subplots(count, 1, sharex=shared, squeeze=False, figsize=size)
+    return fig, list(axes[:, 0])
+
+
+def style_of(number, marked=True):
+    """The n-th of lines of equal standing."""
+    return {"color": COLOURS[number % len(COLOURS)], "linestyle": DASHES[number % len(DASHES)],
+            "marker": MARKERS[number % len(MARKERS)] if marked else None}
+
+
+def line(axes, x, y, number, label=None, low=None, high=None, marked=True):
+    """A line with its spread: bars from the least to the largest where it is marked, else a band."""
+    style = style_of(number, marked)
+    if low is not None and marked:
+        below, above = [b - a for a, b in zip(low, y)], [b - a for a, b in zip(y, high)]
+        return axes.errorbar(x, y, yerr=[below, above], label=label, capsize=2.5, elinewidth=0.8, **style)
+    if low is not None:
+        axes.fill_between(x, low, high, color=style["color"], alpha=0.2, linewidth=0)
+    return axes.plot(x, y, label=label, **style)[0]
+
+
+def legend(fig, axes, title=None, beside=True):
+    """One legend for all panels: to the right of them, or above."""
+    handles, labels = [], []
+    for one in axes:
+        for handle, label in zip(*one.get_legend_handles_labels()):
+            if label not in labels:
+                handles.append(handle)
+                labels.append(label)
+    if not labels:
+        return
+    if beside:
+        axes[0].legend(handles, labels, title=title, loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0, alignment="left")
+    else:
+        fig.legend(handles, labels, title=title, loc="outside upper center" if _outside() else "upper center", ncol=min(len(labels), 4))
+
+
+def _outside():
+    import matplotlib
+    return tuple(map(int, matplotlib.__version__.split(".")[:2])) >= (3, 7)
+
+
+def drawn(fig, ending):
+    """The figure's bytes; the same figure gives the same bytes."""
+    out = io.BytesIO()
+    metadata = {".svg": {"Date": None, "Creator": None}, ".pdf": {"CreationDate": None, "Creator": None, "Producer": None},
+                ".png": {"Software": None}}[ending]
+    if ending == ".svg" and fig.texts or fig._suptitle is not None:
+        metadata = metadata | ({"Title": fig._suptitle.get_text()} if fig._suptitle and ending != ".png" else {})
+    fig.savefig(out, format=ending[1:], metadata=metadata)
+    return out.getvalue()
+
+
+def save(fig, path, replace=True):
+    """Write it by the ending of its name."""
+    ending = os.path.splitext(path)[1]
+    if ending not in ENDINGS:
+        raise Refusal(f"{path}: give a file that ends in .svg, .png or .pdf", status=USAGE)
+    write_whole(path, drawn(fig, ending), replace)
+    pyplot().close(fig)
+
+
+def save_all(fig, stem, replace=True):
+    """Write STEM.svg, STEM.png and STEM.pdf.   out  their names"""
+    paths = [stem + ending for ending in ENDINGS]
+    for path in paths:
+        write_whole(path, drawn(fig, os.path.splitext(path)[1]), replace)
+    pyplot().close(fig)
+    return paths
