@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include <tactus/sim/study/delay_sweep.h>
 #include <tactus/trace/csv_reader.h>
 #include "cli/commands/commands.h"
 #include "cli/figure/plot.h"
@@ -19,6 +18,7 @@
 #include "cli/progress.h"
 #include "cli/report/json_parts.h"
 #include "cli/report/table.h"
+#include "lab/study/delay_sweep.h"
 
 namespace tactus::cli {
 namespace {

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include <tactus/sim/study/session.h>
 #include <tactus/trace/csv_reader.h>
 #include <tactus/trace/trace_file.h>
 #include "cli/commands/commands.h"
@@ -18,6 +17,7 @@
 #include "cli/report/json_parts.h"
 #include "cli/report/table.h"
 #include "cli/report/traffic_layers.h"
+#include "lab/study/session.h"
 
 namespace tactus::cli {
 namespace {

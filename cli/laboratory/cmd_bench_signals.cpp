@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include <tactus/sim/study/signals.h>
 #include <tactus/trace/csv_reader.h>
 #include <tactus/trace/trace_file.h>
 #include "cli/commands/commands.h"
@@ -15,6 +14,7 @@
 #include "cli/report/figures.h"
 #include "cli/report/json_parts.h"
 #include "cli/report/table.h"
+#include "lab/study/signals.h"
 
 namespace tactus::cli {
 namespace {

@@ -7,13 +7,13 @@
 #include <memory>
 #include <vector>
 
-#include <tactus/sim/study/stability.h>
 #include "cli/laboratory/cmd_bench.h"
 #include "cli/laboratory/stability_plots.h"
 #include "cli/laboratory/study_report.h"
 #include "cli/options/options_codec.h"
+#include "lab/study/stability.h"
 #ifdef TACTUS_HAS_FEM
-#include <tactus/sim/study/stability_fem.h>
+#include "lab/study/stability_fem.h"
 #endif
 
 namespace tactus::cli {

@@ -11,11 +11,11 @@
 
 #include <tactus/sim/deformable/stiffness_map.h>
 #include <tactus/sim/link/link.h>
-#include <tactus/sim/study/stability.h>
 #include "cli/laboratory/cmd_bench.h"
 #include "cli/laboratory/delay_figure.h"
 #include "cli/laboratory/stability_plots.h"
 #include "cli/laboratory/stiffness_map.h"
+#include "lab/study/stability.h"
 
 namespace tactus::cli {
 namespace {

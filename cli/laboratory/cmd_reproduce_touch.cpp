@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include <tactus/sim/study/delay.h>
 #include <tactus/sim/transparency/rigid_transparency.h>
 #include "cli/laboratory/delay_figure.h"
 #include "cli/progress.h"
+#include "lab/study/delay.h"
 
 namespace tactus::cli {
 namespace {

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include <tactus/sim/study/precision.h>
-#include <tactus/sim/study/precision_space.h>
 #include "cli/laboratory/growing_table.h"
 #include "cli/output.h"
+#include "lab/study/precision.h"
+#include "lab/study/precision_space.h"
 
 namespace tactus::cli {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <tactus/sim/study/study.h>
+#include "lab/study/study.h"
 
 namespace tactus::cli {
 
