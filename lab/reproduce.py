@@ -9,6 +9,7 @@ import json
 import math
 import os
 import re
+import sys
 import typing
 
 from common import arguments, figure, program, table
@@ -152,7 +153,7 @@ def one(options):
     made = FIGURES[name].make(options)
     if options.json:
         print(json.dumps(made.report, indent=2, ensure_ascii=False))
-    elif not options.quiet or not options.output:
+    elif not options.quiet:
         print(made.text)
     if options.output:
         write(name, made, options)
@@ -188,14 +189,10 @@ def every(options):
 
 
 def can_make(name, one):
-    if not one.needs_fem or "fem" in components():
+    if not one.needs_fem or "fem" in program.version()["components"]:
         return True
-    print(f"note: {name}: left out, as this program was built without finite elements")
+    print(f"note: {name}: left out, as this program was built without finite elements", file=sys.stderr)
     return False
-
-
-def components():
-    return [part if isinstance(part, str) else part.get("name") for part in program.version().get("components", [])]
 
 
 def work(options):

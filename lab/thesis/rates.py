@@ -150,7 +150,8 @@ FIXED_LENGTH = 0.0015  # [virtual length units] of S_DR
 def bounds(options, of):
     """Options of `tactus sim` and `tactus compare`."""
     length, angle = (0.010, 4) if of["interpolates"] else (0.006, 2)
-    words = ["-p", repr(of["deadband"]), "--haptic", of["rule"], "--visual", f"{length * options.length_unit!r}m,{angle}deg"]
+    words = ["--haptic", of["rule"], "--visual", f"{length * options.length_unit!r}m,{angle}deg"]
+    words += ["-p", repr(of["deadband"])] if of["rule"] != "off" else []
     if of["rule"] == "fixed":
         words += ["--fixed", f"{FIXED_LENGTH * options.length_unit!r}m,2deg"]
     return words + [word for word in of["options"] if word != "--no-reduction"]
