@@ -26,11 +26,16 @@ def tactus():
 
 
 def study():
-    """The path of lab/study's program, which only a build tree has."""
+    """The path of tactus-study (lab/study), which only a build tree has."""
     found = os.environ.get("TACTUS_STUDY")
     if not found or not os.path.exists(found):
-        raise Refusal("this needs the program lab/study, which is not here", "Build it with TACTUS_WITH_STUDY=ON.")
+        raise Refusal("this needs the program tactus-study, which is not here", "Build it with TACTUS_WITH_STUDY=ON.")
     return found
+
+
+def point(name, **request):
+    """The JSON object of one point of one study: lab/study/README.md."""
+    return json.loads(run([name, json.dumps(request)], study()))
 
 
 def as_typed(words, name="tactus"):
