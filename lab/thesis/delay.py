@@ -3,8 +3,9 @@
 import math
 
 from common import figure
+from common.program import point
 
-from .made import WEBER, Numbers, percent_over, six, study
+from .made import WEBER, Numbers, percent_over, six
 
 PI = math.pi
 FREQUENCY = 0.5  # [Hz] of the hand
@@ -24,7 +25,7 @@ def omega(frequency):
 
 
 def rigid(round_trip, omegas):
-    return study("impedance", object="rigid", omega_rad_per_s=omegas, round_trip_s=round_trip, mass_kg=MASS,
+    return point("impedance", object="rigid", omega_rad_per_s=omegas, round_trip_s=round_trip, mass_kg=MASS,
                  damping_Ns_per_m=FRICTION, stiffness_N_per_m=STIFFNESS)
 
 
@@ -65,7 +66,7 @@ def finish_impedance(fig, panels, titles):
 
 
 def deformable(round_trip, client_stiffness, omegas, client_damping=5):
-    return study("impedance", object="deformable", msd=OBJECT, stiffness_N_per_m=340, client_stiffness_N_per_m=client_stiffness,
+    return point("impedance", object="deformable", msd=OBJECT, stiffness_N_per_m=340, client_stiffness_N_per_m=client_stiffness,
                  client_damping_Ns_per_m=client_damping, omega_rad_per_s=omegas, round_trip_s=round_trip, weber=WEBER)
 
 
@@ -131,7 +132,7 @@ def with_compensation(options):
 def press(duration, users, compensation=None):
     """`users`: (presses, round trip [ms]) of each; a press is begin, hold, end [s] and depth [m]."""
     more = {} if compensation is None else {"compensation": compensation}
-    return study("press", msd=OBJECT, stiffness_N_per_m=340, client_damping_Ns_per_m=5, frequency_Hz=FREQUENCY, duration_s=duration,
+    return point("press", msd=OBJECT, stiffness_N_per_m=340, client_damping_Ns_per_m=5, frequency_Hz=FREQUENCY, duration_s=duration,
                  users=[{"presses": presses, "round_trip_ms": round_trip} for presses, round_trip in users], **more)["users"]
 
 

@@ -5,9 +5,10 @@ import math
 import statistics
 
 from common import figure
+from common.program import point
 
-from .made import Numbers, six, study
-from .touch import VARYING, added
+from .made import Numbers, added, six
+from .touch import VARYING
 
 BIN, FIRST, LAST = 2, 50, 130  # [ms] of the histogram
 
@@ -20,7 +21,7 @@ def gamma_density(x, shape, scale, start):
 
 def varying_delay(options):
     """Figure 4.13a: round trips of datagrams sent each 10 ms for an hour and answered at once."""
-    times = study("round-trips", link=VARYING, count=360_000)["round_trip_ms"]
+    times = point("round-trips", link=VARYING, count=360_000)["round_trip_ms"]
     fixed, mean = 2e-3 * VARYING["delay_us"], 2e-3 * VARYING["gamma_mean_us"]
     shape = 2 * (VARYING["gamma_mean_us"] / VARYING["gamma_deviation_us"]) ** 2  # of the sum of two
     scale = mean / shape
@@ -52,7 +53,7 @@ def draw_histogram(rows):
 
 def stability(name, title, case, subjects, unit, series, draw):
     """A figure of a study of stability: numbers of the rows whose subject begins so, and series."""
-    made = study("stability", case=case, short=True)
+    made = point("stability", case=case, short=True)
     out = Numbers(name, title, ("here",))
     for row in made["rows"]:
         if row["subject"].startswith(subjects) and row["measured"] is not None:
@@ -111,7 +112,7 @@ def draw_client(found):
 
 def stiffness(options):
     """Figure 4.23: the stiffness of the membrane."""
-    membrane = study("stiffness-map", scene="membrane")["deformables"][0]
+    membrane = point("stiffness-map", scene="membrane")["deformables"][0]
     at, values = membrane["vertices_m"], membrane["stiffness_N_per_m"]
     known = [(v, k) for v, k in zip(at, values) if k is not None]
     left, right = ([k for v, k in known if (v[0] < 0) == is_left] for is_left in (True, False))

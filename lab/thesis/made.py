@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a figure of the thesis is made of: a report, the same as text, tables, and a drawing that is made only when it is asked for."""
 import dataclasses
-import json
 import math
-import statistics
 import typing
 
 from common import program, table
@@ -20,23 +18,27 @@ class Made:
     tables: dict = dataclasses.field(default_factory=dict)  # name of the file without .csv -> (head, rows)
 
 
-def study(name, **request):
-    """One point of lab/study's program."""
-    return json.loads(program.run([name, json.dumps(request)], program.study()))
-
-
 def points(options, label, name, requests):
     """Many points side by side, in the order of the requests."""
     bar = program.Progress(label, len(requests), not options.quiet and not options.no_progress)
-    return program.side_by_side(lambda request: study(name, **request), requests, options.jobs, bar)
+    return program.side_by_side(lambda request: program.point(name, **request), requests, options.jobs, bar)
+
+
+def added(values):
+    """In their order and without compensation for rounding, as opposed to sum() of later Pythons."""
+    out = 0.0
+    for value in values:
+        out += value
+    return out
 
 
 def mean(values):
-    return sum(value / len(values) for value in values)
+    return added(value / len(values) for value in values)
 
 
 def deviation(values):
-    return statistics.stdev(values) if len(values) > 1 else 0.0
+    middle = mean(values)
+    return math.sqrt(added((v - middle) * (v - middle) for v in values) / (len(values) - 1)) if len(values) > 1 else 0.0
 
 
 def plus_minus(values, digits=1):

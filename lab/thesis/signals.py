@@ -3,15 +3,16 @@
 import statistics
 
 from common import figure, table
+from common.program import point
 
-from .made import DEGREE, Made, lines, study
+from .made import DEGREE, Made, lines
 
 TICK = 1e-3  # [s]
 
 
 def push(options, deadband, interpolation):
     """Of the scene push-1dof, and 1.5 s of standing still for the heartbeat."""
-    return study("push", scene="push-1dof", deadband=deadband, interpolation=interpolation, visual_position_m=0.01 * options.length_unit,
+    return point("push", scene="push-1dof", deadband=deadband, interpolation=interpolation, visual_position_m=0.01 * options.length_unit,
                  visual_rotation_rad=4 * DEGREE, grip=options.grip, seed=1, ticks_more=1500)  # bounds: 3.2.4.1
 
 

@@ -5,7 +5,7 @@ Hands are virtual and feel what is rendered, so that a motion is not the same wi
 """
 from common import figure
 
-from .made import WEBER, Numbers, percent_over, points, six
+from .made import WEBER, Numbers, added, percent_over, points, six
 
 TICK = 1e-3
 
@@ -66,14 +66,6 @@ def effects(runs):
 
 def average(values):
     return added(values) / len(values) if values else 0
-
-
-def added(values):
-    """In their order, as opposed to sum() of later Pythons, which compensates for rounding."""
-    out = 0.0
-    for value in values:
-        out += value
-    return out
 
 
 def farthest(values):

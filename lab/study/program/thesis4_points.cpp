@@ -184,6 +184,7 @@ Json touch_point(Request& request) {
   library::DevicePaths paths;
   if (is_constant) {
     if (scene.objects.empty()) refuse_request(scene.name + ": there is no rigid object", "Leave \"unnoticed_round_trip_s\" out.");
+    scene.duration = request.get("duration_s", scene.duration);  // longer than the scene, too: there are no hands
     speed = unnoticed_speed(scene, request.get<double>("unnoticed_round_trip_s"), weber);
     paths = constant_speed(scene, speed);
   }
