@@ -79,7 +79,7 @@ def length(typed):
     except ValueError:
         value = math.nan
     if not (math.isfinite(value) and value > 0):
-        raise argparse.ArgumentTypeError(f"{typed}: give a length above zero with its unit: m, cm, mm or um")
+        raise argparse.ArgumentTypeError(f"{typed!r}: a length needs its unit: m, cm, mm or um")
     return value
 
 

@@ -106,7 +106,7 @@ def draw_client(found):
         other.grid(False)
         other.spines["right"].set_visible(True)
     panels[-1].set_xlabel("time [s]")
-    figure.legend(fig, panels[:1], beside=False)
+    panels[0].legend(loc="lower right")
     return fig
 
 

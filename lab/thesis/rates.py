@@ -70,8 +70,10 @@ def draw_architectures(rows):
         figure.line(axes, [100 * row[0] for row in rows], list(map(mean, found)), number, name, list(map(min, found)), list(map(max, found)))
     axes.set(xscale="log", yscale="log", xlabel="deadband p [%]", ylabel="packets per second")
     ticks = [100 * row[0] for row in rows]
-    axes.set_xticks(ticks, [f"{t:g}" for t in ticks], minor=False)
+    axes.set_xticks(ticks, [f"{t:g}" for t in ticks])
     axes.set_xticks([], minor=True)
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.yaxis.set_minor_formatter("{x:g}")
     axes.legend(title="the client is sent")
     return fig
 
@@ -106,11 +108,12 @@ def with_or_without(way):
 
 
 def draw_adjusted(rows):
-    names = [f"{scene}\n{with_or_without(way)} interpolation\np = {100 * p:g} %" for (scene, way, p, _), *_ in rows]
+    names = [f"{scene}, p = {100 * p:g} %\n{with_or_without(way)} interpolation" for (scene, way, p, _), *_ in rows]
     groups = [(label, [of["packets_per_s_in_contact"] for of in column])
               for label, column in (("the scene's hand", [r[1] for r in rows]), ("a faster hand", [r[2] for r in rows]))]
     fig, axes = bars(names, groups, [setting[3] for setting, *_ in rows])
-    axes.set(yscale="log", ylabel="updates per second in contact")
+    axes.set(yscale="log", ylabel="updates per second in contact", ylim=(5, 500))
+    axes.yaxis.set_major_formatter("{x:g}")
     return fig
 
 
@@ -126,7 +129,7 @@ def bars(names, groups, thesis):
               markerfacecolor="white", label="thesis")
     axes.set_xticks(range(len(names)), names)
     axes.grid(False, axis="x")
-    axes.legend(title="bars: mean and standard deviation of the seeds")
+    axes.legend(loc="upper left", ncol=3, title="bars: mean and standard deviation of the seeds")
     return fig, axes
 
 
@@ -285,5 +288,5 @@ def draw_settings(options, runs):
     groups = [(label, [[runs[name, hand, seed]["packets_per_s"] for seed in range(1, options.seeds + 1)] for name in names])
               for label, hand in (("the scene's hand", "scene_hand"), ("a faster hand", "faster_hand"))]
     fig, axes = bars(names, groups, [SETTINGS[name]["thesis"] for name in names])
-    axes.set(xlabel="setting of table 3.3", ylabel="packets per second")
+    axes.set(xlabel="setting of table 3.3", ylabel="packets per second", ylim=(0, 70))
     return fig
