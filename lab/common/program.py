@@ -14,7 +14,7 @@ import subprocess
 import sys
 import time
 
-from .arguments import BROKEN, OK, Refusal
+from .arguments import BROKEN, FAILED, OK, Refusal
 
 
 def tactus():
@@ -35,7 +35,11 @@ def study():
 
 def point(name, **request):
     """The JSON object of one point of one study: lab/study/README.md."""
-    return json.loads(run([name, json.dumps(request)], study()))
+    done = subprocess.run([study(), name, json.dumps(request)], capture_output=True, stdin=subprocess.DEVNULL, check=False)
+    if done.returncode != OK:
+        text, _, remedy = done.stderr.decode(errors="replace").removeprefix("error: ").rstrip().partition("\n       ")
+        raise Refusal(text or f"tactus-study {name} ended with status {done.returncode}", remedy, max(done.returncode, FAILED))
+    return json.loads(done.stdout)
 
 
 def as_typed(words, name="tactus"):

@@ -8,6 +8,7 @@
 
 #include <tactus/trace/trace_file.h>
 #include "cli/command.h"
+#include "cli/options/option_needs.h"
 #include "cli/options/options_codec.h"
 #include "cli/report/traffic_layers.h"
 #include "lab/study/program/points.h"
@@ -66,6 +67,7 @@ Motion motion_of(Request& request) {
   EncoderOptions options;  // they look at the parser, which has to stay as long as they are used
   cli::Program parser("tactus", "Options of the encoder");
   cli::add_encoder_options(parser, options.triggers, options.meshes);
+  parser.on_chosen([&parser] { cli::check_options_agree(parser); });
   std::vector<std::string> line{"tactus"};
   line.insert(line.end(), words.begin(), words.end());
   std::vector<char*> arguments;
