@@ -72,8 +72,8 @@ def draw_architectures(rows):
     ticks = [100 * row[0] for row in rows]
     axes.set_xticks(ticks, [f"{t:g}" for t in ticks])
     axes.set_xticks([], minor=True)
-    axes.yaxis.set_major_formatter("{x:g}")
-    axes.yaxis.set_minor_formatter("{x:g}")
+    axes.set_yticks((10, 20, 50, 100, 200, 500), ("10", "20", "50", "100", "200", "500"))
+    axes.set_yticks([], minor=True)
     axes.legend(title="the client is sent")
     return fig
 
