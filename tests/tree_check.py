@@ -39,8 +39,6 @@ SYSTEM = {
     "cli/commands/cmd_link.cpp": "to wait for datagrams of many sockets",
     "cli/figure/child_process.cpp": "programs that are started, with their output",
     "cli/laboratory/growing_table.cpp": "rows that are on the disk",
-    "cli/laboratory/sweep_run.cpp": "a lock that one process holds",
-    "cli/laboratory/sweep_results.cpp": "a folder that one process holds",
     "cli/laboratory/workers.h": "processes beside this one",
     "cli/live/keyboard.cpp": "single keys",
     "cli/live/keyboard.h": "single keys",

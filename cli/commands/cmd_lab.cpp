@@ -24,8 +24,9 @@ struct Script {
   std::string_view command;
   const char* help;
 };
-constexpr std::array kScripts{
-    Script{"reproduce", "Run an experiment of the thesis and compare the figures"},
+constexpr Script kScripts[] = {
+    {"sweep", "Run a command over a grid of parameters into a table and figures"},
+    {"reproduce", "Run an experiment of the thesis and compare the figures"},
 };
 
 fs::path own_program() {

@@ -87,21 +87,17 @@ def legend(fig, axes, title=None, beside=True):
     if beside:
         axes[0].legend(handles, labels, title=title, loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0, alignment="left")
     else:
-        fig.legend(handles, labels, title=title, loc="outside upper center" if _outside() else "upper center", ncol=min(len(labels), 4))
-
-
-def _outside():
-    import matplotlib
-    return tuple(map(int, matplotlib.__version__.split(".")[:2])) >= (3, 7)
+        axes[0].legend(handles, labels, title=title, loc="lower right", bbox_to_anchor=(1.0, 1.01), borderaxespad=0, ncol=min(len(labels), 4))
 
 
 def drawn(fig, ending):
     """The figure's bytes; the same figure gives the same bytes."""
     out = io.BytesIO()
+    fig.align_ylabels()
     metadata = {".svg": {"Date": None, "Creator": None}, ".pdf": {"CreationDate": None, "Creator": None, "Producer": None},
                 ".png": {"Software": None}}[ending]
-    if ending == ".svg" and fig.texts or fig._suptitle is not None:
-        metadata = metadata | ({"Title": fig._suptitle.get_text()} if fig._suptitle and ending != ".png" else {})
+    if fig._suptitle is not None:
+        metadata["Title"] = fig._suptitle.get_text()  # what readers of screens tell
     fig.savefig(out, format=ending[1:], metadata=metadata)
     return out.getvalue()
 
@@ -122,3 +118,25 @@ def save_all(fig, stem, replace=True):
         write_whole(path, drawn(fig, os.path.splitext(path)[1]), replace)
     pyplot().close(fig)
     return paths
+
+
+def scale(axes, log_x=False, log_y=False):
+    """Axes that begin at 0 where what they show is not negative, or logarithmic ones with numbers in plain digits."""
+    from matplotlib import ticker
+    for is_log, axis, limits in ((log_x, axes.xaxis, axes.set_xlim), (log_y, axes.yaxis, axes.set_ylim)):
+        low, high = axis.get_view_interval() if axes.has_data() else (0, 1)
+        if not is_log:
+            seen = axis.get_data_interval()
+            if 0 <= seen[0] < seen[1] / 2:
+                limits(0, high)
+            continue
+        (axes.set_xscale if axis is axes.xaxis else axes.set_yscale)("log")
+        low, high = axis.get_data_interval()
+        few = low > 0 and high / low < 200
+        axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5) if few else (1,)))
+        axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g}"))
+        axis.set_minor_formatter(ticker.NullFormatter())
+
+
+def title(fig, text):
+    fig.suptitle(text, fontsize=10, x=0.02, ha="left")

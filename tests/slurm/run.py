@@ -144,7 +144,7 @@ class Slurm:
 
 
 def rows(at):
-    return sum(max(0, table.read_bytes().count(b"\n") - 1) for table in at.glob("parts/shards/*/points.csv"))
+    return sum(1 for _ in at.glob("parts/points/*.json"))
 
 
 def check(slurm, at):
