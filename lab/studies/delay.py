@@ -208,13 +208,12 @@ def draw(rows):
                 points = [(x, [max(abs(v), least) for v in values]) for x, values in points if values]
                 means = [sum(values) / len(values) for _, values in points]
                 figure.line(panel, [x for x, _ in points], means, number, title, [min(v) for _, v in points], [max(v) for _, v in points])
-            panel.set_yscale("log")
+            figure.logarithmic(panel, "y")
             panel.set_ylim(bottom=least)
             panel.set_ylabel(label)
         axes[0].set_title(scene, loc="left")
     for panel in grid[-1]:
         panel.set_xlabel("round trip [ms]")
-    grid[0][1].set_title("bars: least and largest seed", loc="right", fontsize=8)
-    handles, labels = grid[0][0].get_legend_handles_labels()
-    fig.legend(handles, labels, loc="lower center", ncol=4, bbox_to_anchor=(0.5, 1.0))
+    fig.suptitle(" \n ")  # room for the legend
+    fig.legend(*grid[0][0].get_legend_handles_labels(), loc="upper center", ncol=4, title="what clients do; bars: least and largest seed")
     return fig

@@ -216,8 +216,7 @@ def time_figure(time, quantity):
     axes.plot([p[quantity + "_error"] for p in ringed], [p["seconds_per_second"] for p in ringed], linestyle="none", marker="o",
               markersize=9, markerfacecolor="none", color="#222222", label="h = 1 ms")
     axes.axhline(1, color="#222222", linewidth=1, label="real time; at 1 kHz, 1 ms per step")
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    figure.logarithmic(axes)
     axes.set_title(time["plan"]["title"] + "; numbers: h in ms", loc="left")
     axes.set_xlabel(f"{DRAWN[quantity]} (the reference is off by {scientific(time['reference'][quantity + '_error'])})")
     axes.set_ylabel("seconds of one core per simulated second")
@@ -239,8 +238,7 @@ def space_figure(spaces):
         if transient:
             axes.plot([x for x, _ in transient], [y for _, y in transient], color=style["color"], linestyle="--", marker="v",
                       label=f"linear in time, {nu}, against the finest")
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    figure.logarithmic(axes)
     axes.set_title(f"{spaces[0]['scene']}: deflection of the loaded patch", loc="left")
     axes.set_xlabel("tetrahedra")
     axes.set_ylabel("relative error of the deflection")

@@ -35,8 +35,7 @@ def jury_limit(series):
         theory_and_points(axes, series[name], number, label)
     axes.axvline(1000 / 60, color="#888888", linestyle="--", linewidth=0.8)
     axes.annotate("60 Hz", (1000 / 60, 0.03), xycoords=("data", "axes fraction"), ha="right", fontsize=8, color="#666666")
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    figure.logarithmic(axes)
     ticks = [1, 2, 3, 5, 10, 20, 50]
     axes.set_xticks(ticks, [str(tick) for tick in ticks], minor=False)
     axes.minorticks_off()
@@ -68,8 +67,7 @@ def device_damping(series):
         style = figure.style_of(number)
         theory_and_points(axes, series[name], number, f"b_d = k_o T / 2 at {rate}; marks: passivity observer")
         axes.plot(*columns(series[name], 0, 3), color=style["color"], linestyle="none", marker="x", label=f"device alone stable, {rate}")
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    figure.logarithmic(axes)
     axes.set_xlim(0.04, 12)
     axes.set_ylim(3, 50000)
     axes.set_xlabel("damping of the device b_d [N s/m]")
@@ -92,7 +90,7 @@ def z_width(series):
         points = [(row[0], row[column]) for row in rows if row[column] is not None and row[column] > 0]
         axes.plot([x for x, _ in points], [y for _, y in points], color=style["color"], marker=style["marker"],
                   linestyle=style["linestyle"] if joined else "none", label=label)
-    axes.set_yscale("log")
+    figure.logarithmic(axes, "y")
     axes.set_xlim(0, 8)
     axes.set_ylim(100, 200000)
     axes.set_xlabel("damping of the wall b_o [N s/m]")
@@ -132,8 +130,7 @@ def fem_map(series):
             axes.plot([row[0] for row in points], [row[1] for row in points], linestyle="none", color=figure.COLOURS[colour], marker=marker,
                       markersize=2.8, label=label)
         axes.plot(*columns(series["map-limit"], 0, 1), color="black", label="h ω_max = 2")
-        axes.set_xscale("log")
-        axes.set_yscale("log")
+        figure.logarithmic(axes)
         axes.set_title(method, loc="left")
         axes.set_xlim(50, 2e10)
         axes.set_ylim(5e-7, 0.2)
