@@ -24,7 +24,9 @@ struct Script {
   std::string_view command;
   const char* help;
 };
-constexpr std::array<Script, 0> kScripts{};
+constexpr std::array kScripts{
+    Script{"bench", "Measure the simulation, sessions and signals"},
+};
 
 fs::path own_program() {
   std::error_code ignored;

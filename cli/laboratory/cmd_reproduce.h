@@ -36,6 +36,8 @@ std::string about_faster_hand(const ReproduceOptions& options);
 /// Drawn by `tactus reproduce FIGURE -o`; the others are tables.
 bool is_drawn(std::string_view figure);
 
+/// Make the folder of a figure.   err  it cannot be made
+Outcome make_folder(const std::string& directory);
 /// Write a figure, and tables by their names, to the folder of the options; nothing if there is none.
 Outcome write_figure(const ReproduceOptions& options, const Plot& plot,
                      const std::vector<std::pair<std::string, std::string>>& tables);

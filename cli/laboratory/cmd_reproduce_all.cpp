@@ -8,7 +8,6 @@
 #include <iterator>
 
 #include "cli/figure/child_process.h"
-#include "cli/laboratory/cmd_bench.h"
 #include "cli/laboratory/cmd_reproduce.h"
 #include "cli/output.h"
 #include "cli/progress.h"

@@ -11,7 +11,6 @@
 
 #include <tactus/sim/deformable/stiffness_map.h>
 #include <tactus/sim/link/link.h>
-#include "cli/laboratory/cmd_bench.h"
 #include "cli/laboratory/delay_figure.h"
 #include "cli/laboratory/stability_plots.h"
 #include "cli/laboratory/stiffness_map.h"

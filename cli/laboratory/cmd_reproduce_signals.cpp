@@ -4,14 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <tactus/sim/simulation.h>
 #include "cli/figure/plot.h"
-#include "cli/laboratory/cmd_bench.h"
 #include "cli/laboratory/cmd_reproduce.h"
 #include "cli/options/grip_option.h"
 #include "cli/output.h"
@@ -105,6 +106,13 @@ Jumps jumps_of(const std::vector<Tick>& ticks) {
 }
 
 }  // namespace
+
+Outcome make_folder(const std::string& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error) return refuse(directory + ": the folder cannot be made: " + error.message(), "Check the path and your permissions.");
+  return {};
+}
 
 Outcome write_figure(const ReproduceOptions& options, const Plot& plot,
                      const std::vector<std::pair<std::string, std::string>>& tables) {

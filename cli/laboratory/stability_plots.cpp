@@ -21,32 +21,11 @@ struct Recipe {
 
 constexpr Recipe kRecipes[] = {
     {"jury",
-     "limit",
-     "Largest sum of server stiffnesses over the deformation rate: measured by step responses (points), Jury's criterion "
-     "(lines).",
-     {"over-n-figure", "over-n-linear", "over-n-heavy", "over-n-vertex"},
-     900,
-     560},
-    {"jury",
      "figure-4.16",
      "Step responses of thesis figure 4.16: above and below the critical sum of 700 N/m; the second user begins at 320 ms.",
      {"figure-4.16-a", "figure-4.16-b"},
      900,
      620},
-    {"wall",
-     "device-damping",
-     "Largest wall stiffness over the damping of the device, eq. 2.3 (lines), with the passivity observer (points); crosses: "
-     "the device alone against the wall, stable.",
-     {"damping-1khz", "damping-60hz"},
-     900,
-     560},
-    {"wall",
-     "z-width",
-     "Which stiffness and damping a wall may have at 1 kHz with a device of 0.35 N s/m: measured (points), eqs. 2.3 and 2.4 "
-     "(lines).",
-     {"z-width"},
-     900,
-     560},
     {"client",
      "figure-4.17",
      "Thesis figure 4.17: force on the hand and energy at the client's port. (a) no delay; (b) 100 ms; (c) 100 ms, damped by "
@@ -54,12 +33,6 @@ constexpr Recipe kRecipes[] = {
      {"a", "b", "c", "d", "e"},
      1000,
      1100},
-    {"fem",
-     "map",
-     "Which step size each method gets through over 1000 steps, as the material stiffens: a slab displaced by 2 mm and let go.",
-     {"map-limit", "map-velocity-verlet", "map-backward-euler", "map-newmark", "map-tr-bdf2", "map-projective"},
-     1100,
-     720},
 };
 
 const Series* find(const Study& study, const std::string& name) {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cli/figure/plot.h"
-#include "cli/laboratory/study_report.h"
+#include "lab/study/study.h"
 
 namespace tactus::cli {
 

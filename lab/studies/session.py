@@ -180,5 +180,5 @@ def draw(motion):
     axes.set_ylim(bottom=0)
     axes.set_xlabel("datagrams lost, each way [%]")
     axes.set_ylabel("ticks with a bound broken [%]")
-    axes.legend(loc="upper left")
+    axes.legend(loc="best")
     return fig
