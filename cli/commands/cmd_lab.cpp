@@ -24,9 +24,10 @@ struct Script {
   std::string_view command;
   const char* help;
 };
-constexpr Script kScripts[] = {
-    {"sweep", "Run a command over a grid of parameters into a table and figures"},
-    {"reproduce", "Run an experiment of the thesis and compare the figures"},
+constexpr std::array kScripts{
+    Script{"sweep", "Run a command over a grid of parameters into a table and figures"},
+    Script{"reproduce", "Run an experiment of the thesis and compare the figures"},
+    Script{"bench", "Measure the simulation, sessions and signals"},
 };
 
 fs::path own_program() {

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`tactus bench delay [SCENE...]`: force and picture of each user behind a round trip, by kind of client, against those without delay."""
+"""`tactus bench delay [SCENE...]`: force and picture of each user behind a round trip, by kind of client.
+
+They are held against those without delay.
+"""
 import argparse
 import shlex
 
@@ -20,16 +23,21 @@ QUANTITIES = [
     ("seen_away_95_m", "same_motion_seen_away_95_mm", "95 % of it", 1e3, 2),
     ("users_apart_95_m", "same_motion_users_apart_95_mm", "users apart [mm]", 1e3, 2),
 ]
-CLIENTS = {"none": "nothing", "stiffness": "softer rendering", "simulation": "own simulation", "simulation, 10 % off": "the same, 10 % off"}
+CLIENTS = {"none": "nothing", "stiffness": "softer rendering", "simulation": "own simulation",
+           "simulation, 10 % off": "the same, 10 % off"}
 
 
 def parser(what):
-    made = arguments.parser("bench delay", what, "Example:\n  tactus bench delay push-cube --round-trip 50ms,100ms,200ms -o delay")
+    made = arguments.parser("bench delay", what, "Example:\n  tactus bench delay push-cube --round-trip 50ms,100ms,200ms -o "
+                                                 "delay")
     made.add_argument("scenes", metavar="SCENE", nargs="*", help="Scenes of one or two users [those that come with Tactus]")
-    made.add_argument("--round-trip", default=ROUND_TRIPS, type=round_trips, metavar="TIME,..", help=f"Round trips [{ROUND_TRIPS}]")
-    made.add_argument("--seeds", default=3, type=arguments.whole(1, 1000), metavar="N", help="Hands and networks: so many seeds [3]")
+    made.add_argument("--round-trip", default=ROUND_TRIPS, type=round_trips, metavar="TIME,..", help=f"Round trips "
+                                                                                                     f"[{ROUND_TRIPS}]")
+    made.add_argument("--seeds", default=3, type=arguments.whole(1, 1000), metavar="N", help="Hands and networks: so many seeds "
+                                                                                             "[3]")
     made.add_argument("--first-seed", default=1, type=arguments.whole(0, 1_000_000), metavar="N", help="The first of them [1]")
-    made.add_argument("--duration", default=8.0, type=duration, metavar="TIME", help="At most so much of each scene, 100ms to 3600s [8s]")
+    made.add_argument("--duration", default=8.0, type=duration, metavar="TIME", help="At most so much of each scene, 100ms to "
+                                                                                     "3600s [8s]")
     arguments.add_report_options(made, output_help="Folder for report.md, CSV and figure", force=True)
     arguments.add_jobs(made)
     return made
@@ -83,7 +91,8 @@ def default_scenes():
 def run(options, scenes):
     """A row for each user, network, round trip and kind of client, with the numbers of every seed."""
     seeds = range(options.first_seed, options.first_seed + options.seeds)
-    points = [(scene, varies, time, seed) for scene in scenes for varies in (False, True) for time in options.round_trip for seed in seeds]
+    points = [(scene, varies, time, seed) for scene in scenes for varies in (False, True) for time in options.round_trip
+              for seed in seeds]
 
     def compute(point):
         scene, varies, time, seed = point
@@ -129,7 +138,8 @@ def heading(row):
 
 
 def cells(row):
-    return [f"{row['round_trip_ms']:g} ms", row["clients"], *(cell(row, key, scale, digits) for key, _, _, scale, digits in QUANTITIES)]
+    return [f"{row['round_trip_ms']:g} ms", row["clients"], *(cell(row, key, scale, digits) for key, _, _, scale,
+                                                              digits in QUANTITIES)]
 
 
 def tables(rows):
@@ -173,16 +183,24 @@ def command_of(options, scenes):
 
 def markdown(rows, options, scenes, drawn):
     context = report.context()
-    out = (f"# Delay, and three kinds of clients\n\n`{command_of(options, scenes)} -o DIR` ({context['compiler']}, {context['build']} build). "
+    out = (f"# Delay, and three kinds of clients\n\n`{command_of(options, scenes)} -o DIR` ({context['compiler']}, "
+           f"{context['build']} build). "
            "All of it is deterministic.\n\n"
-           "Each user is behind a network of their own, *constant* or *gamma* (half of the round trip gamma distributed, a new value each "
-           "0.5 s, behind adaptive playout); every state and device sample is sent, so that only the delay differs. Clients: *none* show the "
-           "past as it comes; *stiffness* render it softer (thesis 4.2.3, 4.3.3); *simulation* simulate the scene themselves, and the server "
+           "Each user is behind a network of their own, *constant* or *gamma* (half of the round trip gamma distributed, a new "
+           "value each "
+           "0.5 s, behind adaptive playout); every state and device sample is sent, so that only the delay differs. Clients: "
+           "*none* show the "
+           "past as it comes; *stiffness* render it softer (thesis 4.2.3, 4.3.3); *simulation* simulate the scene themselves, "
+           "and the server "
            "corrects them; *10 % off* do so with a mass, friction, stiffness and Young's modulus 10 % too high.\n\n"
-           "Mean over the seeds and, in parentheses, the seed farthest from zero. Hands that feel the force, against the same hands without "
-           "delay: *mean* and *peak* (99 %) *force* over that without delay, time *outside* of +-10 % of it, least *energy* that the device "
-           "has put in. The same motion, that of the hands without delay: RMS of the *force error* over RMS of the force; how far *away* "
-           "from its place without delay the touched point is *seen* (RMS, 95th percentile); how far *apart* two users see the object (95th "
+           "Mean over the seeds and, in parentheses, the seed farthest from zero. Hands that feel the force, against the same "
+           "hands without "
+           "delay: *mean* and *peak* (99 %) *force* over that without delay, time *outside* of +-10 % of it, least *energy* "
+           "that the device "
+           "has put in. The same motion, that of the hands without delay: RMS of the *force error* over RMS of the force; how "
+           "far *away* "
+           "from its place without delay the touched point is *seen* (RMS, 95th percentile); how far *apart* two users see the "
+           "object (95th "
            "percentile). The same rows, seed by seed, are in `delay.csv`.\n")
     if drawn:
         out += "\n![error of the force and of what is seen, over the round trip](delay.svg)\n"
@@ -192,29 +210,32 @@ def markdown(rows, options, scenes, drawn):
 
 
 def draw(rows):
-    """Of the first user of each scene, constant delay: error of the force and how far away the touched point is seen, by clients."""
+    """Of the first user of each scene, constant delay: error of the force, and how far away what is touched is seen."""
     rows = [row for row in rows if row["network"] == "constant"]
     scenes = list(dict.fromkeys(row["scene"] for row in rows))
     first_users = {scene: next(row["user"] for row in rows if row["scene"] == scene) for scene in scenes}
     pyplot = figure.pyplot()
     fig, grid = pyplot.subplots(len(scenes), 2, squeeze=False, sharex=True, figsize=(figure.WIDTH, 0.9 + 1.7 * len(scenes)))
-    panels = [("same_motion_force_error_percent", "force error [%]", 0.05), ("same_motion_seen_away_95_mm", "seen away, 95 % [mm]", 0.002)]
+    panels = [("same_motion_force_error_percent", "force error [%]", 0.05), ("same_motion_seen_away_95_mm", "seen away, 95 % "
+                                                                                                            "[mm]", 0.002)]
     for scene, axes in zip(scenes, grid):
         for panel, (name, label, least) in zip(axes, panels):
             key, _, _, scale, _ = next(q for q in QUANTITIES if q[1] == name)
             for number, (clients, title) in enumerate(CLIENTS.items()):
-                same = [row for row in rows if (row["scene"], row["user"], row["clients"]) == (scene, first_users[scene], clients)]
+                same = [row for row in rows if (row["scene"], row["user"], row["clients"]) == (scene, first_users[scene],
+                    clients)]
                 points = [(row["round_trip_ms"], [scale * n[key] for n in row["seeds"] if n[key] is not None]) for row in same]
                 points = [(x, [max(abs(v), least) for v in values]) for x, values in points if values]
                 means = [sum(values) / len(values) for _, values in points]
-                figure.line(panel, [x for x, _ in points], means, number, title, [min(v) for _, v in points], [max(v) for _, v in points])
-            panel.set_yscale("log")
+                figure.line(panel, [x for x, _ in points], means, number, title, [min(v) for _, v in points], [max(v) for _,
+                    v in points])
+            figure.logarithmic(panel, "y")
             panel.set_ylim(bottom=least)
             panel.set_ylabel(label)
         axes[0].set_title(scene, loc="left")
     for panel in grid[-1]:
         panel.set_xlabel("round trip [ms]")
-    grid[0][1].set_title("bars: least and largest seed", loc="right", fontsize=8)
-    handles, labels = grid[0][0].get_legend_handles_labels()
-    fig.legend(handles, labels, loc="lower center", ncol=4, bbox_to_anchor=(0.5, 1.0))
+    fig.suptitle(" \n ")  # room for the legend
+    fig.legend(*grid[0][0].get_legend_handles_labels(), loc="upper center", ncol=4, title="what clients do; bars: least and "
+                                                                                          "largest seed")
     return fig

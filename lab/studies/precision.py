@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`tactus bench precision -o DIR`: error against run time of methods, solvers and step sizes, and the error of meshes under refinement.
+"""`tactus bench precision -o DIR`: error against run time of methods, solvers and steps; the error of meshes.
 
-time.csv and space.csv in the folder grow by a row per finished point, and context.json says what they are of: a stopped run goes on there.
-Points are timed one after the other.
+time.csv and space.csv in the folder grow by a row per finished point, and context.json says what they are of: a stopped run
+goes on there. Points are timed one after the other.
 """
 import csv
 import io
@@ -18,11 +18,14 @@ from studies import precision_report, report
 SCENES = ["membrane", "membrane-stiff", "cantilever"]
 TOO_SLOW, ALWAYS = 2, 1e-3 * (1 - 1e-9)  # steps below 1 ms of a method so many times slower than real time are left out
 TIME_COLUMNS = ["scene", "method", "steps_per_sample", "step_s", "displacement_end_error", "displacement_error", "velocity_error",
-                "force_error", "energy_error", "weight_error", "push_error", "seconds_per_second", "setup_s", "runs", "newton_per_step",
+                "force_error", "energy_error", "weight_error", "push_error", "seconds_per_second", "setup_s", "runs",
+                "newton_per_step",
                 "solver_per_step", "unconverged_steps", "taken", "remark"]
-SPACE_COLUMNS = ["scene", "poisson", "refinement", "vertices", "tets", "deflection_m_per_n", "solve_s", "quadratic_m_per_n", "step_s",
+SPACE_COLUMNS = ["scene", "poisson", "refinement", "vertices", "tets", "deflection_m_per_n", "solve_s", "quadratic_m_per_n",
+                 "step_s",
                  "seconds_per_second", "transient_m"]
-WHOLE, TEXT = {"steps_per_sample", "runs", "unconverged_steps", "refinement", "vertices", "tets"}, {"scene", "method", "taken", "remark"}
+WHOLE, TEXT = {"steps_per_sample", "runs", "unconverged_steps", "refinement", "vertices", "tets"}, {"scene", "method", "taken",
+    "remark"}
 
 
 def parser(what):
@@ -31,7 +34,8 @@ def parser(what):
                       help="membrane, membrane-stiff or cantilever; may be repeated [all]")
     made.add_argument("--short", action="store_true",
                       help="Coarse meshes and few steps: about 30 s of CPU time with --runs 1 instead of half an hour")
-    made.add_argument("--runs", default=5, type=arguments.whole(1, 1000), metavar="N", help="Runs per measured time; the median is reported [5]")
+    made.add_argument("--runs", default=5, type=arguments.whole(1, 1000), metavar="N", help="Runs per measured time; the median "
+                                                                                            "is reported [5]")
     arguments.add_report_options(made, output_help="Folder for report, tables and figures; a stopped run is resumed", force=True)
     return made
 
@@ -78,8 +82,8 @@ def take_up(folder, context, replace):
 
 
 class Growing:
-    """A CSV file that grows by a row per finished point. A row is on the disk before add() returns; one that was cut off is dropped.
-    Rows are kept as they are read back, so that a report made now and one made later from the file are the same."""
+    """A CSV file that grows by a row per finished point. A row is on the disk before add() returns; one that was cut off is
+    dropped. Rows are kept as they are read back, so that a report made now and one made later from the file are the same."""
 
     def __init__(self, path, columns):
         self.path, self.columns, self.rows = path, columns, []
@@ -93,12 +97,14 @@ class Growing:
             table.write_whole(path, whole.encode())
         lines = list(csv.reader(io.StringIO(whole)))
         if not lines or lines[0] != columns:
-            raise Refusal(f"{path}: other columns than those of this study", "Give another folder, or -f to replace the results in this one.")
+            raise Refusal(f"{path}: other columns than those of this study", "Give another folder, or -f to replace the results "
+                                                                             "in this one.")
         for number, cells in enumerate(lines[1:], 2):
             try:
                 self.rows.append(self.read(cells))
             except ValueError:
-                raise Refusal(f"{path}: row {number} makes no sense", "Give another folder, or -f to replace the results in this one.") from None
+                raise Refusal(f"{path}: row {number} makes no sense", "Give another folder, or -f to replace the results in "
+                                                                      "this one.") from None
 
     def read(self, cells):
         if len(cells) != len(self.columns):
@@ -166,7 +172,8 @@ class Study:
                     continue
                 points.append(self.time_point(plan, method["name"], steps))
                 cost = points[-1]["seconds_per_second"]
-        reference = self.time_table.find(scene=plan["scene"], method="reference", steps_per_sample=plan["reference_steps_per_sample"])
+        reference = self.time_table.find(scene=plan["scene"], method="reference",
+                                         steps_per_sample=plan["reference_steps_per_sample"])
         self.times.append({"plan": plan, "reference": reference, "points": points})
         self.progress.step()
 
@@ -189,7 +196,8 @@ class Study:
             json.dump(made, file)
         self.reference_scene = plan["scene"]
         if not self.time_table.find(scene=plan["scene"], method="reference", steps_per_sample=made["steps_per_sample"]):
-            self.time_table.add(made | {"scene": plan["scene"], "method": "reference", "setup_s": 0, "runs": 1, "newton_per_step": 0,
+            self.time_table.add(made | {"scene": plan["scene"], "method": "reference", "setup_s": 0, "runs": 1,
+                                        "newton_per_step": 0,
                                         "solver_per_step": 0, "unconverged_steps": 0, "taken": "",
                                         "remark": f"observed order {made['observed_order']:.2f}"})
 
@@ -207,7 +215,8 @@ class Study:
 
 
 def extrapolate(coarse, middle, fine):
-    """Limit (Aitken) of a value at refinements r, 2r and 4r, its observed order, and how far the limit moves when the order is taken as 2."""
+    """Limit (Aitken) of a value at refinements r, 2r and 4r, its observed order, and how far the limit moves
+    when the order is taken as 2."""
     first, second = middle - coarse, fine - middle
     limit = fine + second * second / (first - second)
     return limit, math.log2(first / second), abs(limit - (fine + second / 3))
@@ -227,5 +236,6 @@ def space_errors(points):
 
     return {"limit": limit, "order": order, "uncertainty": uncertainty,
             "static_error": [abs(point["deflection_m_per_n"] / limit - 1) for point in points],
-            "quadratic_error": [abs(point["quadratic_m_per_n"] / limit - 1) if point["quadratic_m_per_n"] > 0 else None for point in points],
+            "quadratic_error": [abs(point["quadratic_m_per_n"] / limit - 1) if point["quadratic_m_per_n"] > 0 else None
+                                for point in points],
             "transient_error": [in_time(point) for point in points]}

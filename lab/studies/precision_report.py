@@ -3,8 +3,10 @@
 from common import figure, table
 from studies import report
 
-ERRORS = ["displacement_error", "displacement_end_error", "velocity_error", "force_error", "energy_error", "weight_error", "push_error"]
-TIME_HEAD = ["method", "h [ms]", "u", "u, end", "v", "force", "energy", "weight", "push", "ms/step", "s/s", "setup [ms]", "Newton", "solver"]
+ERRORS = ["displacement_error", "displacement_end_error", "velocity_error", "force_error", "energy_error", "weight_error",
+          "push_error"]
+TIME_HEAD = ["method", "h [ms]", "u", "u, end", "v", "force", "energy", "weight", "push", "ms/step", "s/s", "setup [ms]",
+             "Newton", "solver"]
 SPACE_HEAD = ["edge", "tets", "static [mm/N]", "error", "quadratic [mm/N]", "error", "in time, error", "h [ms]", "s/s"]
 DRAWN = {"displacement": "relative error of displacements", "force": "relative error of the force at the probe",
          "energy": "relative error of energy", "weight": "relative error of displacements under a weight that is there at once"}
@@ -44,14 +46,16 @@ def time_cells(point):
     if point["displacement_error"] is None:
         return cells + ["stopped"] + [""] * (len(TIME_HEAD) - 3)
     return cells + [scientific(point[error]) for error in ERRORS] + [
-        milliseconds(per_step(point)), plain(point["seconds_per_second"]), milliseconds(point["setup_s"]), plain(point["newton_per_step"]),
+        milliseconds(per_step(point)), plain(point["seconds_per_second"]), milliseconds(point["setup_s"]),
+        plain(point["newton_per_step"]),
         plain(point["solver_per_step"])]
 
 
 def space_cells(space, i):
     point = space["points"][i]
     in_time, quadratic = point["step_s"] > 0, point["quadratic_m_per_n"] > 0
-    return [f"1/{point['refinement']}", str(point["tets"]), f"{1e3 * point['deflection_m_per_n']:.4g}", percent(space["static_error"][i]),
+    return [f"1/{point['refinement']}", str(point["tets"]), f"{1e3 * point['deflection_m_per_n']:.4g}",
+            percent(space["static_error"][i]),
             f"{1e3 * point['quadratic_m_per_n']:.4g}" if quadratic else "-", percent(space["quadratic_error"][i]),
             percent(space["transient_error"][i]), milliseconds(point["step_s"]) if in_time else "-",
             plain(point["seconds_per_second"]) if in_time else "-"]
@@ -111,7 +115,8 @@ def as_json(made):
     def of_point(point):
         out = {"method": point["method"], "step_s": point["step_s"]} | {error: point[error] for error in ERRORS} | {
             "seconds_per_second": point["seconds_per_second"], "seconds_per_step": per_step(point), "setup_s": point["setup_s"],
-            "runs": point["runs"], "newton_per_step": point["newton_per_step"], "solver_iterations_per_step": point["solver_per_step"],
+            "runs": point["runs"], "newton_per_step": point["newton_per_step"],
+            "solver_iterations_per_step": point["solver_per_step"],
             "unconverged_steps": point["unconverged_steps"]}
         return out | {key: point[key] for key in ("taken", "remark") if point[key]}
 
@@ -123,7 +128,8 @@ def as_json(made):
     def of_space(space):
         points = [{key: point[key] for key in ("refinement", "vertices", "tets", "deflection_m_per_n")} | {
             "static_error": space["static_error"][i], "quadratic_error": space["quadratic_error"][i],
-            "transient_error": space["transient_error"][i], "step_s": point["step_s"], "seconds_per_second": point["seconds_per_second"]}
+            "transient_error": space["transient_error"][i], "step_s": point["step_s"],
+            "seconds_per_second": point["seconds_per_second"]}
             for i, point in enumerate(space["points"])]
         return {"scene": space["scene"], "poisson": space["points"][0]["poisson"], "limit_m_per_n": space["limit"],
                 "limit_uncertainty_m_per_n": space["uncertainty"], "observed_order": space["order"], "points": points}
@@ -144,7 +150,8 @@ def at_one_millisecond(made):
         for time in made["times"]:
             at = next((p for p in time["points"] if p["method"] == method["name"] and abs(p["step_s"] - 1e-3) < 1e-9), None)
             finished = at is not None and at["displacement_error"] is not None
-            row += [scientific(at["displacement_error"]), scientific(at["weight_error"]), milliseconds(per_step(at))] if finished else [
+            row += [scientific(at["displacement_error"]), scientific(at["weight_error"]),
+                    milliseconds(per_step(at))] if finished else [
                 "stopped", "", ""]
         rows.append(row)
     return report.markdown(head, rows)
@@ -152,16 +159,21 @@ def at_one_millisecond(made):
 
 def markdown(made):
     out = ("# Error against run time\n\n"
-           "Made by `tactus bench precision`. The columns are relative errors over all sample times: of displacement (`u`; `u, end` only at "
-           "the\nlast one), velocity (`v`) and energy under a load that grows from zero, of the force of a probe, and of the displacements "
-           "under self weight\n(`weight`) and load (`push`) applied at once; then processor time per step, seconds of one core per simulated "
-           "second (`s/s`; below 1:\nfaster than real time), time up to the second step (`setup`), Newton and solver iterations per step. "
+           "Made by `tactus bench precision`. The columns are relative errors over all sample times: of displacement (`u`; `u, "
+           "end` only at "
+           "the\nlast one), velocity (`v`) and energy under a load that grows from zero, of the force of a probe, and of the "
+           "displacements "
+           "under self weight\n(`weight`) and load (`push`) applied at once; then processor time per step, seconds of one core "
+           "per simulated "
+           "second (`s/s`; below 1:\nfaster than real time), time up to the second step (`setup`), Newton and solver iterations "
+           "per step. "
            "Times are medians. `chosen` is the\nmethod that `tactus sim` takes.\n\n")
     out += "".join(f"* {key}: {value}\n" for key, value in made["context"].items())
     out += "\n## At 1 kHz\n\n" + at_one_millisecond(made)
     for time in made["times"]:
         plan = time["plan"]
-        out += (f"\n## {plan['scene']}\n\n{plan['title']}, {plan['vertices']} vertices, {plan['tets']} tetrahedra, {plan['seconds']:g} s.\n"
+        out += (f"\n## {plan['scene']}\n\n{plan['title']}, {plan['vertices']} vertices, {plan['tets']} tetrahedra, "
+                f"{plan['seconds']:g} s.\n"
                 f"{reference_text(time)}.\n\n")
         out += "".join(f"![{plan['scene']}: run time against error of {name}]({plan['scene']}-{name}.svg)\n" for name in DRAWN)
         out += "\n" + report.markdown(TIME_HEAD, [time_cells(point) for point in time["points"]])
@@ -169,7 +181,8 @@ def markdown(made):
             out += "\n### Omissions\n\n" + "".join(f"* {text}\n" for text in omissions(time))
     if not made["spaces"]:
         return out
-    out += "\n## Space error\n\nError of the loaded patch's mean deflection against its limit under refinement. No time step reduces it.\n\n"
+    out += ("\n## Space error\n\n"
+            "Error of the loaded patch's mean deflection against its limit under refinement. No time step reduces it.\n\n")
     for scene in dict.fromkeys(space["scene"] for space in made["spaces"]):
         out += f"![{scene}: space error](space-{scene}.svg)\n"
     for space in made["spaces"]:
@@ -211,13 +224,13 @@ def time_figure(time, quantity):
                   markerfacecolor=colour if variant == 0 else "white", linewidth=2 if name == "chosen" else 1.2, label=name)
         if not method["is_linear"]:  # linear elasticity is off by the same at every step
             for p, a, b in zip(points, x, y):
-                axes.annotate(milliseconds(p["step_s"]), (a, b), xytext=(3, 3), textcoords="offset points", fontsize=6, color=colour)
+                axes.annotate(milliseconds(p["step_s"]), (a, b), xytext=(3, 3), textcoords="offset points", fontsize=6,
+                              color=colour)
     ringed = [p for p in time["points"] if is_usable(p[quantity + "_error"]) and abs(p["step_s"] - 1e-3) < 1e-9]
     axes.plot([p[quantity + "_error"] for p in ringed], [p["seconds_per_second"] for p in ringed], linestyle="none", marker="o",
               markersize=9, markerfacecolor="none", color="#222222", label="h = 1 ms")
     axes.axhline(1, color="#222222", linewidth=1, label="real time; at 1 kHz, 1 ms per step")
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    figure.logarithmic(axes)
     axes.set_title(time["plan"]["title"] + "; numbers: h in ms", loc="left")
     axes.set_xlabel(f"{DRAWN[quantity]} (the reference is off by {scientific(time['reference'][quantity + '_error'])})")
     axes.set_ylabel("seconds of one core per simulated second")
@@ -233,14 +246,14 @@ def space_figure(spaces):
         style = figure.style_of(number)
         axes.plot(tets, space["static_error"], label=f"linear, {nu}", **style)
         quadratic = [(x, y) for x, y in zip(tets, space["quadratic_error"]) if y]
-        axes.plot([x for x, _ in quadratic], [y for _, y in quadratic], color=style["color"], marker=style["marker"], linestyle="none",
+        axes.plot([x for x, _ in quadratic], [y for _, y in quadratic], color=style["color"], marker=style["marker"],
+                  linestyle="none",
                   markerfacecolor="white", label=f"quadratic, {nu}")
         transient = [(x, y) for x, y in zip(tets, space["transient_error"]) if y]
         if transient:
             axes.plot([x for x, _ in transient], [y for _, y in transient], color=style["color"], linestyle="--", marker="v",
                       label=f"linear in time, {nu}, against the finest")
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+    figure.logarithmic(axes)
     axes.set_title(f"{spaces[0]['scene']}: deflection of the loaded patch", loc="left")
     axes.set_xlabel("tetrahedra")
     axes.set_ylabel("relative error of the deflection")

@@ -30,7 +30,7 @@ class Folder:
         table.write_csv(self.of(name), head, rows, self.replace)
 
     def draw(self, name, make):
-        """make() yields the figure. Without matplotlib the report stays without figures, and a note says so.   out  whether it was drawn"""
+        """make() yields the figure. Without matplotlib there is none, and a note says so.   out  whether it was drawn"""
         try:
             made = make()
         except Refusal as refusal:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`tactus bench session [TRACE...]`: what a client shows over networks that lose, delay and reorder, against the truth, and what it costs."""
+"""`tactus bench session [TRACE...]`: what a client shows over networks that lose, delay and reorder, and its cost."""
 import argparse
 import os
 
@@ -10,12 +10,15 @@ from studies.report import per
 TICKS, FEW_TICKS = 120_000, 10_000  # of the bodies that swing
 COLUMNS = ["over a bound", "longest [ms]", "mean [ms]", "shown behind [ms]", "payload [kbit/s]", "x chain", "session", "UDP/IPv4",
            "all down", "all up"]
-HEAD = ["motion", "group", "case", "ticks", "over", "over_position", "over_rotation", "over_force", "over_shape", "longest_s", "mean_s",
+HEAD = ["motion", "group", "case", "ticks", "over", "over_position", "over_rotation", "over_force", "over_shape", "longest_s",
+        "mean_s",
         "behind_s", "down_payload_bit_per_s", "chain_payload_bit_per_s", "down_session_bit_per_s", "down_udp_ipv4_bit_per_s",
         "up_bit_per_s", "recovery_s", "bounds_widest", "bounds_widened_s", "wrong_states"]
 # Options of `tactus encode`, handed on as they are typed.
-VALUES = ["-p/--deadband", "--visual", "--fixed", "--length-unit", "--haptic", "--alpha", "--jnd-share", "--force-floor", "--heartbeat",
-          "--key-interval", "--deformable-visual", "--rings", "--basis", "--visual-share", "--haptic-share", "--profile", "--fade", "--nugget"]
+VALUES = ["-p/--deadband", "--visual", "--fixed", "--length-unit", "--haptic", "--alpha", "--jnd-share", "--force-floor",
+          "--heartbeat",
+          "--key-interval", "--deformable-visual", "--rings", "--basis", "--visual-share", "--haptic-share", "--profile",
+          "--fade", "--nugget"]
 FLAGS = ["--no-reduction"]
 LOSSES = [("loss", "each for itself"), ("loss, jitter up to 30 ms", "with jitter up to 30 ms"),
           ("loss in bursts of 5", "in bursts of 5 on average")]
@@ -29,7 +32,8 @@ class AsTyped(argparse.Action):
 
 
 def parser(what):
-    made = arguments.parser("bench session", what, "Example:\n  tactus bench session truth.mcap -p 4% --visual 0.3mm,2deg -o session")
+    made = arguments.parser("bench session", what, "Example:\n  tactus bench session truth.mcap -p 4% --visual 0.3mm,2deg -o "
+                                                   "session")
     made.add_argument("traces", metavar="TRACE", nargs="*", help="Also study these recordings, at the bounds given by options")
     made.add_argument("--short", action="store_true", help="Run two cases over 10 s")
     made.add_argument("--seed", default=1, type=arguments.whole(0, 2**64 - 1), metavar="N", help="Seed of the networks [1]")
@@ -97,7 +101,8 @@ def cells(motion, case):
     down = case["down_bit_per_s"]
     payload, session, headers = (1e-3 * down[key] for key in ("payload", "session", "udp_ipv4"))
     return [f"{100 * over(case):.3f} %", f"{1e3 * case['longest_run_s']:.1f}", f"{1e3 * case['mean_run_s']:.1f}",
-            f"{1e3 * case['shown_behind_s']:.1f}", f"{payload:.2f}", f"{per(down['payload'], motion['chain_payload_bit_per_s']):.2f}",
+            f"{1e3 * case['shown_behind_s']:.1f}", f"{payload:.2f}",
+            f"{per(down['payload'], motion['chain_payload_bit_per_s']):.2f}",
             f"{session:.2f}", f"{headers:.2f}", f"{payload + session + headers:.2f}", f"{1e-3 * case['up_bit_per_s']:.2f}"]
 
 
@@ -106,7 +111,8 @@ def remarks(case):
     out = f"; mended {1e3 * case['recovery_s']:.0f} ms after it" if case.get("recovery_s") else ""
     widened = case["bounds_widened"]
     if widened["for_s"] > 0:
-        out += f"; bounds up to {widened['widest']:.1f} times as wide for {100 * per(widened['for_s'], case['seconds']):.0f} % of the time"
+        share = 100 * per(widened["for_s"], case["seconds"])
+        out += f"; bounds up to {widened['widest']:.1f} times as wide for {share:.0f} % of the time"
     return out
 
 
@@ -116,7 +122,8 @@ def csv_rows(motions):
         rates = [down["payload"], motion["chain_payload_bit_per_s"], down["session"], down["udp_ipv4"], case["up_bit_per_s"]]
         times = [case["longest_run_s"], case["mean_run_s"], case["shown_behind_s"]]
         return [motion["name"], case["group"], case["case"], case["ticks"],
-                *(broken[key] for key in ("any", "position", "rotation", "force", "shape")), *(f"{value:.6g}" for value in times + rates),
+                *(broken[key] for key in ("any", "position", "rotation", "force", "shape")), *(f"{value:.6g}"
+                    for value in times + rates),
                 f"{case.get('recovery_s', 0):.6g}", f"{widened['widest']:.4g}", f"{widened['for_s']:.6g}", case["wrong_states"]]
     return [row(motion, case) for motion in motions for case in motion["results"]]
 
@@ -133,24 +140,33 @@ def markdown(motions, options, drawn):
     context = report.context()
     wrong = sum(case["wrong_states"] for motion in motions for case in motion["results"])
     out = ("# Sessions over networks that delay, lose and reorder\n\n"
-           f"`tactus bench session{' --short' if options.short else ''}` on {context['machine']} ({context['compiler']}, {context['build']} "
+           f"`tactus bench session{' --short' if options.short else ''}` on {context['machine']} ({context['compiler']}, "
+           f"{context['build']} "
            f"build), seed {options.seed}. All but the times is deterministic.\n\n"
-           "A client looks on over the network of each row: round trip 40 ms and 5 % duplicates unless said, the same network up and down. "
-           "What it shows is judged against the truth of the tick that it shows. *Over a bound*: share of the ticks in which a position, "
-           "rotation, contact force or vertex is off by more than its bound as given, however wide it was at the time (of deformable "
-           "objects without rigid ones, share of the ticks with a new shape); *longest*, *mean*: runs of such ticks; *shown behind*: how "
-           "far the tick shown lies behind the server's, delay of the network included. *x chain*: the payload as a multiple of that of "
-           "packets that build on the one before over a network that loses nothing. The same rows are in `session.csv`. Of the hashes of "
+           "A client looks on over the network of each row: round trip 40 ms and 5 % duplicates unless said, the same network "
+           "up and down. "
+           "What it shows is judged against the truth of the tick that it shows. *Over a bound*: share of the ticks in which a "
+           "position, "
+           "rotation, contact force or vertex is off by more than its bound as given, however wide it was at the time (of "
+           "deformable "
+           "objects without rigid ones, share of the ticks with a new shape); *longest*, *mean*: runs of such ticks; *shown "
+           "behind*: how "
+           "far the tick shown lies behind the server's, delay of the network included. *x chain*: the payload as a multiple of "
+           "that of "
+           "packets that build on the one before over a network that loses nothing. The same rows are in `session.csv`. Of the "
+           "hashes of "
            f"states that the clients told, {wrong} were not those of the server.\n")
     if drawn:
         out += "\n![share of ticks over a bound, over loss](session-loss.svg)\n"
     for motion in motions:
         coding = max((case["coding_cpu_s"] for case in motion["results"]), default=0)
         out += (f"\n## {motion['name']}\n\n{motion['ticks']} ticks at {motion['tick_rate_hz']:g} Hz; chain "
-                f"{1e-3 * motion['chain_payload_bit_per_s']:.2f} kbit/s. Coding a tick and its datagrams takes {report.duration(coding)} "
+                f"{1e-3 * motion['chain_payload_bit_per_s']:.2f} kbit/s. Coding a tick and its datagrams takes "
+                f"{report.duration(coding)} "
                 "(median, CPU).\n")
         for group, cases in groups(motion):
-            out += "\n" + report.markdown([group, *COLUMNS], [[case["case"] + remarks(case), *cells(motion, case)] for case in cases])
+            out += "\n" + report.markdown([group, *COLUMNS], [[case["case"] + remarks(case), *cells(motion, case)]
+                                                              for case in cases])
     return out
 
 
@@ -164,5 +180,5 @@ def draw(motion):
     axes.set_ylim(bottom=0)
     axes.set_xlabel("datagrams lost, each way [%]")
     axes.set_ylabel("ticks with a bound broken [%]")
-    axes.legend(loc="upper left")
+    axes.legend(loc="best")
     return fig

@@ -7,12 +7,14 @@ from studies import report
 from studies.report import per, significant
 
 TITLES = {"device": "position within", "contact": "force in contact and position within", "force": "force within"}
-HEAD = "recording,user,signal,within,samples,seconds,packets,payload_bytes,largest_error,rms_error,share_of_permitted,samples_over"
+HEAD = ("recording,user,signal,within,samples,seconds,packets,payload_bytes,"
+        "largest_error,rms_error,share_of_permitted,samples_over")
 
 
 def parser(what):
     made = arguments.parser("bench signals", what, "Examples:\n  tactus bench signals truth.mcap\n"
-                            "  tactus import csv pen.csv --time t --map device=x,y,0 -o pen.mcap && tactus bench signals pen.mcap -o signals")
+                            "  tactus import csv pen.csv --time t --map device=x,y,0 -o pen.mcap && tactus bench signals "
+                            "pen.mcap -o signals")
     made.add_argument("traces", metavar="TRACE", nargs="+", help="Recordings with users")
     arguments.add_report_options(made, output_help="Folder for report.md and CSV", force=True)
     arguments.add_jobs(made, "Recordings studied in parallel")
@@ -33,20 +35,23 @@ def work(options):
         for recording in recordings:
             for first, rows in tables(recording):
                 head = columns(first)
-                report.show([f"{recording['name']}: {first['user']}, {head[0]}", *head[1:]], [["  " + row[0], *row[1:]] for row in rows])
+                report.show([f"{recording['name']}: {first['user']}, {head[0]}", *head[1:]], [["  " + row[0], *row[1:]]
+                    for row in rows])
                 print()
 
 
 def columns(signal):
     unit = "N" if signal["signal"] == "force" else "mm"
-    return [TITLES[signal["signal"]], "packets/s", "payload [kbit/s]", f"largest error [{unit}]", f"RMS [{unit}]", "of the permitted",
+    return [TITLES[signal["signal"]], "packets/s", "payload [kbit/s]", f"largest error [{unit}]", f"RMS [{unit}]",
+            "of the permitted",
             "samples over", "time per sample"]
 
 
 def cells(recording, signal):
     scale, seconds = 1 if signal["signal"] == "force" else 1e3, recording["seconds"]
     return [signal["within"], f"{per(signal['packets'], seconds):.1f}", f"{8e-3 * per(signal['bytes'], seconds):.2f}",
-            significant(scale * signal["largest_error"]), significant(scale * signal["rms_error"]), f"{signal['share_of_permitted']:.3f}",
+            significant(scale * signal["largest_error"]), significant(scale * signal["rms_error"]),
+            f"{signal['share_of_permitted']:.3f}",
             str(signal["samples_over"]), report.duration(signal["time_per_sample_s"])]
 
 
@@ -80,11 +85,16 @@ def as_json(recordings):
 def markdown(recordings):
     context = report.context()
     out = (f"# Devices and forces on their way\n\n"
-           f"`tactus bench signals` on {context['machine']} ({context['compiler']}, {context['build']} build). All but the times is "
-           f"deterministic.\n\nEach sample goes through the coders of [spec/65](../../spec/65-signal.md), over a network that loses nothing; "
-           f"devices are acknowledged {1e3 * recordings[0]['round_trip_s']:.0f} ms later. What the other end shows is compared with the "
-           "sample at once. *Of the permitted*: the largest error as a share of what is permitted at that sample; *samples over*: those off "
-           "by more; *every sample*: each is sent, and the grid is what is permitted; *time per sample*: at the sender, median. The same "
+           f"`tactus bench signals` on {context['machine']} ({context['compiler']}, {context['build']} build). All but the "
+           f"times is "
+           f"deterministic.\n\nEach sample goes through the coders of [spec/65](../../spec/65-signal.md), over a network that "
+           f"loses nothing; "
+           f"devices are acknowledged {1e3 * recordings[0]['round_trip_s']:.0f} ms later. What the other end shows is compared "
+           f"with the "
+           "sample at once. *Of the permitted*: the largest error as a share of what is permitted at that sample; *samples "
+           "over*: those off "
+           "by more; *every sample*: each is sent, and the grid is what is permitted; *time per sample*: at the sender, median. "
+           "The same "
            "rows are in `signals.csv`, in SI units.\n")
     for r in recordings:
         out += f"\n## {r['name']}\n\n{r['samples']} samples at {r['tick_rate_hz']:g} Hz, {r['seconds']:.1f} s.\n"

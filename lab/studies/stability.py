@@ -22,7 +22,8 @@ def work(options):
     there = CASES if "fem" in program.version()["components"] else CASES[:-1]
     asked = [case for case in there if not options.case or case in options.case]
     progress = program.Progress("bench stability", len(asked), not (options.quiet or options.no_progress))
-    studies = program.side_by_side(lambda case: program.point("stability", case=case, short=options.short), asked, options.jobs, progress)
+    studies = program.side_by_side(lambda case: program.point("stability", case=case, short=options.short), asked, options.jobs,
+                                   progress)
     if options.output:
         figures = []
         for name, caption, make in stability_figures.of(studies):
@@ -53,7 +54,8 @@ def parameters(row, between):
 
 
 def cells(row):
-    return [row["subject"], parameters(row, ", "), row["quantity"], value(row["measured"], row["unit"]), value(row["analytic"], row["unit"]),
+    return [row["subject"], parameters(row, ", "), row["quantity"], value(row["measured"], row["unit"]), value(row["analytic"],
+        row["unit"]),
             deviation(row), row["verdict"], row["remark"]]
 
 
@@ -76,16 +78,19 @@ def summed(study):
 def csv_rows(studies):
     exact = lambda number: "" if number is None else f"{number:.9g}"
     return [[study["study"], row["subject"], parameters(row, "; "), row["verdict"], row["quantity"], exact(row["measured"]),
-             exact(row["analytic"]), row["unit"], exact(row["deviation"]), row["remark"]] for study in studies for row in study["rows"]]
+             exact(row["analytic"]), row["unit"], exact(row["deviation"]), row["remark"]] for study in studies
+             for row in study["rows"]]
 
 
 def as_json(studies, is_short):
     def of_row(row):
-        out = {"subject": row["subject"], "parameters": {p["name"]: {"value": p["value"], "unit": p["unit"]} for p in row["parameters"]}}
+        out = {"subject": row["subject"], "parameters": {p["name"]: {"value": p["value"], "unit": p["unit"]}
+                                                         for p in row["parameters"]}}
         return out | {key: row[key] for key in ("verdict", "quantity", "unit", "measured", "analytic", "deviation", "remark")}
 
     def of(study):
-        verdicts = {verdict: sum(row["verdict"] == verdict for row in study["rows"]) for verdict in ("stable", "limit", "diverges")}
+        verdicts = {verdict: sum(row["verdict"] == verdict for row in study["rows"]) for verdict in ("stable", "limit",
+            "diverges")}
         return {"study": study["study"], "title": study["title"]} | verdicts | {"rows": [of_row(row) for row in study["rows"]]}
 
     return {"schema": "tactus.stability/1", "extent": "short" if is_short else "full", "context": report.context(),
@@ -95,10 +100,13 @@ def as_json(studies, is_short):
 def markdown(studies, figures, is_short):
     context = report.context()
     out = ("# Where the simulation stops being stable\n\n"
-           f"`tactus bench stability{' --short' if is_short else ''}` on {context['machine']} ({context['compiler']}, {context['build']} "
+           f"`tactus bench stability{' --short' if is_short else ''}` on {context['machine']} ({context['compiler']}, "
+           f"{context['build']} "
            "build). Every study is deterministic; no figure here is a time.\n\n"
-           "*stable*: what was disturbed comes to rest, or stays within what the disturbance explains. *limit*: a limit was measured, or the "
-           "motion goes on within bounds. *diverges*: the motion grows without bound, or a step was refused with an error and the state "
+           "*stable*: what was disturbed comes to rest, or stays within what the disturbance explains. *limit*: a limit was "
+           "measured, or the "
+           "motion goes on within bounds. *diverges*: the motion grows without bound, or a step was refused with an error and "
+           "the state "
            "before it was kept. The same rows are in `stability.csv` and `stability.json`.\n")
     for study in studies:
         out += f"\n## {study['title']}\n\n{study['text']}\n"
@@ -107,8 +115,10 @@ def markdown(studies, figures, is_short):
                 out += f"\n![{caption}]({name}.svg)\n\n*{caption}*\n"
         matrix = study["matrix"]
         if matrix["rows"]:
-            out += "\n" + report.markdown([matrix["corner"], *matrix["columns"]], [[row["label"], *row["cells"]] for row in matrix["rows"]],
+            out += "\n" + report.markdown([matrix["corner"], *matrix["columns"]], [[row["label"], *row["cells"]]
+                                                                                   for row in matrix["rows"]],
                                           left=1 + len(matrix["columns"]))
-        out += "\n| what | with | quantity | measured | theory | off by | verdict | remark |\n|---|---|---|---:|---:|---:|---|---|\n"
+        out += ("\n| what | with | quantity | measured | theory | off by | verdict | remark |\n"
+                "|---|---|---|---:|---:|---:|---|---|\n")
         out += "".join(f"| {' | '.join(cells(row))} |\n" for row in summed(study))
     return out

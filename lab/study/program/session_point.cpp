@@ -65,7 +65,7 @@ Motion motion_of(Request& request) {
   const auto path = request.get<std::string>("trace");
   const auto words = request.get<std::vector<std::string>>("encoder", {});
   EncoderOptions options;  // they look at the parser, which has to stay as long as they are used
-  cli::Program parser("tactus", "Options of the encoder");
+  cli::Program parser("tactus bench session", "Options of the encoder");
   cli::add_encoder_options(parser, options.triggers, options.meshes);
   parser.on_chosen([&parser] { cli::check_options_agree(parser); });
   std::vector<std::string> line{"tactus"};

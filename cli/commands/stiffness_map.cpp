@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/laboratory/stiffness_map.h"
+#include "cli/commands/stiffness_map.h"
 
 #include <fmt/format.h>
 
