@@ -146,12 +146,12 @@ def scale(axes, log_x=False, log_y=False):
         low, high = axis.get_view_interval() if axes.has_data() else (0, 1)
         if not is_log:
             seen = axis.get_data_interval()
-            if 0 <= seen[0] < seen[1] / 2:
+            if 0 <= seen[0] < seen[1] / 2 and (axis is axes.yaxis or seen[0] > 0):  # a marker at x = 0 stays whole
                 limits(0, high)
             continue
         (axes.set_xscale if axis is axes.xaxis else axes.set_yscale)("log")
         low, high = axis.get_data_interval()
-        few = low > 0 and high / low < 200
+        few = axes.has_data() and 0 < low and high < 200 * low
         axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5) if few else (1,)))
         axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g}"))
         axis.set_minor_formatter(ticker.NullFormatter())
