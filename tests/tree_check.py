@@ -38,8 +38,6 @@ SYSTEM = {
     "cli/commands/cmd_lab.cpp": "scripts in the place of the program",
     "cli/commands/cmd_link.cpp": "to wait for datagrams of many sockets",
     "cli/figure/child_process.cpp": "programs that are started, with their output",
-    "cli/laboratory/growing_table.cpp": "rows that are on the disk",
-    "cli/laboratory/workers.h": "processes beside this one",
     "cli/live/keyboard.cpp": "single keys",
     "cli/live/keyboard.h": "single keys",
     "cli/live/ticker.cpp": "to wait for a time or a datagram",

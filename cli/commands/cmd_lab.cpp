@@ -24,8 +24,10 @@ struct Script {
   std::string_view command;
   const char* help;
 };
-constexpr Script kScripts[] = {
-    {"sweep", "Run a command over a grid of parameters into a table and figures"},
+constexpr std::array kScripts{
+    Script{"sweep", "Run a command over a grid of parameters into a table and figures"},
+    Script{"reproduce", "Run an experiment of the thesis and compare the figures"},
+    Script{"bench", "Measure the simulation, sessions and signals"},
 };
 
 fs::path own_program() {
@@ -52,7 +54,7 @@ Outcome run_script(const std::string& command, const std::vector<std::string>& a
     return refuse(fmt::format("tactus {}: its script is missing: {}", command, shown_path(script.string())),
                   "Install the scripts with the program, or name their folder in the variable TACTUS_LAB of the environment.");
   setenv("TACTUS", program.c_str(), 1);
-  if (const fs::path study = program.parent_path().parent_path() / "lab/study/study"; fs::exists(study, failed))
+  if (const fs::path study = program.parent_path() / "tactus-study"; fs::exists(study, failed))
     setenv("TACTUS_STUDY", study.c_str(), 1);
   std::vector<std::string> words{"python3", "-B", script.string()};
   words.insert(words.end(), arguments.begin(), arguments.end());

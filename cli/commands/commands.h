@@ -37,13 +37,6 @@ void setup_serve(Command& app, Action& action);
 void setup_join(Command& app, Action& action);
 void setup_key(Command& app, Action& action);
 void setup_plot(Command& app, Action& action);
-void setup_reproduce(Command& app, Action& action);
-void setup_bench(Command& app, Action& action);
-void setup_bench_precision(Command& group, Action& action);
-void setup_bench_stability(Command& group, Action& action);
-void setup_bench_delay(Command& group, Action& action);
-void setup_bench_session(Command& group, Action& action);
-void setup_bench_signals(Command& group, Action& action);
 void setup_help(Command& app, Action& action);
 void setup_completion(Command& app, Action& action);
 

@@ -8,6 +8,7 @@
 matplotlib is imported where the first figure is drawn: scripts that draw nothing do without it.
 """
 import io
+import math
 import os
 import sys
 
@@ -27,6 +28,7 @@ STYLE = {
     "svg.hashsalt": "tactus", "svg.fonttype": "path", "pdf.fonttype": 42, "text.usetex": False, "text.parse_math": False,
     "axes.formatter.useoffset": False, "figure.constrained_layout.use": True,
 }
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 WIDTH, PANEL_HEIGHT = 6.3, 2.0  # [inch]: the text of a page of A4
 
 
@@ -72,6 +74,23 @@ def line(axes, x, y, number, label=None, low=None, high=None, marked=True):
     if low is not None:
         axes.fill_between(x, low, high, color=style["color"], alpha=0.2, linewidth=0)
     return axes.plot(x, y, label=label, **style)[0]
+
+
+def logarithmic(axes, which="xy"):
+    """Logarithmic scales whose powers of ten need no mathematical text, which the style leaves off so that names stay as they are."""
+    import matplotlib.ticker
+
+    def power(value, _):
+        exponent = round(math.log10(value))
+        if abs(value / 10 ** exponent - 1) > 1e-6:
+            return ""
+        return f"{value:g}" if -3 <= exponent <= 3 else "10" + str(exponent).translate(SUPERSCRIPTS)
+
+    for letter in which:
+        getattr(axes, f"set_{letter}scale")("log")
+        axis = getattr(axes, letter + "axis")
+        axis.set_major_formatter(matplotlib.ticker.FuncFormatter(power))
+        axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
 
 
 def legend(fig, axes, title=None, beside=True):

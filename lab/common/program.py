@@ -14,7 +14,7 @@ import subprocess
 import sys
 import time
 
-from .arguments import BROKEN, OK, Refusal
+from .arguments import BROKEN, FAILED, OK, Refusal
 
 
 def tactus():
@@ -26,11 +26,20 @@ def tactus():
 
 
 def study():
-    """The path of lab/study's program, which only a build tree has."""
+    """The path of tactus-study (lab/study), which only a build tree has."""
     found = os.environ.get("TACTUS_STUDY")
     if not found or not os.path.exists(found):
-        raise Refusal("this needs the program lab/study, which is not here", "Build it with TACTUS_WITH_STUDY=ON.")
+        raise Refusal("this needs the program tactus-study, which is not here", "Build it with TACTUS_WITH_STUDY=ON.")
     return found
+
+
+def point(name, **request):
+    """The JSON object of one point of one study: lab/study/README.md."""
+    done = subprocess.run([study(), name, json.dumps(request)], capture_output=True, stdin=subprocess.DEVNULL, check=False)
+    if done.returncode != OK:
+        text, _, remedy = done.stderr.decode(errors="replace").removeprefix("error: ").rstrip().partition("\n       ")
+        raise Refusal(text or f"tactus-study {name} ended with status {done.returncode}", remedy, max(done.returncode, FAILED))
+    return json.loads(done.stdout)
 
 
 def as_typed(words, name="tactus"):

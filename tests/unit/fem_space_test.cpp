@@ -9,8 +9,8 @@
 #include <cstdio>
 #include <numbers>
 
-#include <tactus/sim/study/precision_space.h>
-#include <tactus/sim/study/quadratic_tets.h>
+#include "lab/study/precision_space.h"
+#include "lab/study/quadratic_tets.h"
 
 namespace tactus::sim {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `tactus bench precision` measures is what it says: orders, the reference's own error, and stops that are told.
-#include <tactus/sim/study/precision.h>
+#include "lab/study/precision.h"
 
 #include <gtest/gtest.h>
 

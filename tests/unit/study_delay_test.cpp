@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// What users feel behind a network, closed loop: thesis 4.2.4 and 4.3.4.
-#include <tactus/sim/study/delay.h>
+#include "lab/study/delay.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The study of `tactus bench signals` finds what is known of made-up signals.
-#include <tactus/sim/study/signals.h>
+#include "lab/study/signals.h"
 
 #include <gtest/gtest.h>
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The studies of `tactus bench stability`: what they measure must be what theory says, where it says something.
-#include <tactus/sim/study/study.h>
+#include "lab/study/study.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include <tactus/sim/study/sampled_mass.h>
-#include <tactus/sim/study/server_loop.h>
-#include <tactus/sim/study/stability.h>
-#include <tactus/sim/study/wall.h>
+#include "lab/study/sampled_mass.h"
+#include "lab/study/server_loop.h"
+#include "lab/study/stability.h"
+#include "lab/study/wall.h"
 
 namespace tactus::sim::study {
 namespace {

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Studies of lab/studies without the programs: what is computed in Python from points, resumption, errors."""
+import csv
+import os
+import pathlib
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "lab"))
+from common.arguments import Refusal  # noqa: E402
+from studies import delay, precision, precision_report, session, signals, stability, stability_figures  # noqa: E402
+
+
+def numbers(force):
+    return {key: None for key, *_ in delay.QUANTITIES} | {"force_error": force}
+
+
+class Delay(unittest.TestCase):
+    def row(self, *forces):
+        return {"scene": "s", "user": "u", "round_trip_ms": 50.0, "network": "constant", "clients": "none",
+                "seeds": [numbers(force) for force in forces]}
+
+    def test_spread_is_mean_and_farthest_from_zero_of_what_was_measured(self):
+        self.assertEqual(delay.spread(self.row(0.25, -0.5, None), "force_error", 100), (-12.5, -50))
+        self.assertEqual(delay.spread(self.row(None), "force_error", 100), (None, None))
+
+    def test_cells(self):
+        self.assertEqual(delay.cell(self.row(0.25, -0.5), "force_error", 100, 1), "-12.5 (-50.0)")
+        self.assertEqual(delay.cell(self.row(-1e-5), "force_error", 100, 1), "0.0")
+        self.assertEqual(delay.cell(self.row(None), "force_error", 100, 1), "-")
+        self.assertEqual(list(delay.as_json(self.row(0.25)))[5:], ["same_motion_force_error_percent"])
+
+    def test_times(self):
+        parser = delay.parser("")
+        self.assertEqual(parser.parse_args(["--round-trip", "25ms,0.1s"]).round_trip, [25_000, 100_000])
+        for wrong in (["--round-trip", "100"], ["--round-trip", "2s"], ["--duration", "10ms"], ["--seeds", "0"]):
+            with self.assertRaises(Refusal) as refused:
+                parser.parse_args(wrong)
+            self.assertEqual(refused.exception.status, 2)
+
+    def test_the_command_is_named_as_typed(self):
+        parse = delay.parser("").parse_args
+        self.assertEqual(delay.command_of(parse([]), delay.SCENES), "tactus bench delay")
+        self.assertEqual(delay.command_of(parse(["msd-1d", "--round-trip", "50ms", "--duration", "3s"]), ["msd-1d"]),
+                         "tactus bench delay msd-1d --round-trip 50ms --duration 3s")
+
+
+class Precision(unittest.TestCase):
+    def test_extrapolation_of_order_two_is_exact(self):
+        limit, order, uncertainty = precision.extrapolate(*(3 + 0.5 * h * h for h in (1, 1 / 2, 1 / 4)))
+        self.assertAlmostEqual(limit, 3, 12)
+        self.assertAlmostEqual(order, 2, 12)
+        self.assertAlmostEqual(uncertainty, 0, 12)
+
+    def test_space_errors(self):
+        points = [{"refinement": r, "quadratic_m_per_n": 3 + 0.5 / r**2, "deflection_m_per_n": 3 * (1 - 0.1 / r),
+                   "transient_m": t}
+                  for r, t in ((1, [3.0, 8.0]), (2, []), (4, [3.0, 4.0]))]
+        errors = precision.space_errors(points)
+        for error, wanted in zip(errors["static_error"], (0.1, 0.05, 0.025)):
+            self.assertAlmostEqual(error, wanted, 12)
+        self.assertEqual(errors["transient_error"], [0.8, None, None])
+
+    def test_a_row_that_was_cut_off_is_dropped_and_whole_ones_stay(self):
+        row = dict.fromkeys(precision.TIME_COLUMNS, 0.1) | {"scene": "s", "method": "a, b", "steps_per_sample": 5, "runs": 1,
+                                                          "unconverged_steps": 0, "taken": "", "remark": "", "force_error": None}
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "time.csv")
+            table = precision.Growing(path, precision.TIME_COLUMNS)
+            kept = table.add(row | {"step_s": 1 / 3})
+            self.assertEqual((kept["step_s"], kept["force_error"]), (0.3333333, None))
+            table.add(row)
+            text = pathlib.Path(path).read_text(encoding="utf8")
+            pathlib.Path(path).write_text(text[:-4], encoding="utf8")
+            again = precision.Growing(path, precision.TIME_COLUMNS)
+            self.assertEqual(again.rows, [kept])
+            self.assertEqual(again.find(method="a, b", steps_per_sample=5), kept)
+            with open(path, encoding="utf8", newline="") as file:
+                self.assertEqual(len(list(csv.reader(file))), 2)
+            with self.assertRaises(Refusal):
+                precision.Growing(path, precision.SPACE_COLUMNS)
+
+    def test_results_of_another_context_are_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            precision.take_up(folder, {"machine": "one"}, False)
+            precision.take_up(folder, {"machine": "one"}, False)
+            with self.assertRaises(Refusal):
+                precision.take_up(folder, {"machine": "another"}, False)
+            precision.take_up(folder, {"machine": "another"}, True)
+
+    def test_usable(self):
+        self.assertEqual([precision_report.is_usable(error) for error in (None, 0, 0.5, 1.5)], [False, False, True, False])
+
+
+class Others(unittest.TestCase):
+    def test_options_of_the_encoder_are_handed_on(self):
+        options = session.parser("").parse_args(["a.mcap", "-p", "4%", "--no-reduction", "--visual", "1mm,2deg", "--short"])
+        self.assertEqual(options.encoder, ["-p", "4%", "--no-reduction", "--visual", "1mm,2deg"])
+        self.assertEqual((options.traces, options.short), (["a.mcap"], True))
+        self.assertEqual(session.parser("").parse_args([]).encoder, [])
+
+    def test_remarks_of_a_session(self):
+        case = {"recovery_s": 0.2, "seconds": 10, "bounds_widened": {"widest": 2.04, "for_s": 5}}
+        self.assertEqual(session.remarks(case), "; mended 200 ms after it; bounds up to 2.0 times as wide for 50 % of the time")
+
+    def test_tables_of_signals_begin_with_each_user_and_signal(self):
+        base = {"within": "1 mm", "packets": 1, "bytes": 2, "largest_error": 0, "rms_error": 0, "share_of_permitted": 0,
+                "samples_over": 0, "time_per_sample_s": 1e-6}
+        kinds = [("a", "device"), ("a", "device"), ("a", "force"), ("b", "force")]
+        recording = {"seconds": 2, "signals": [base | {"user": user, "signal": signal} for user, signal in kinds]}
+        self.assertEqual([len(rows) for _, rows in signals.tables(recording)], [2, 1, 1])
+
+    def test_stability(self):
+        row = {"deviation": -1e-6, "parameters": [{"name": "k", "value": 100.0, "unit": "N/m"}, {"name": "N", "value": 2.0,
+            "unit": ""}]}
+        self.assertEqual(stability.deviation(row), "0.00 %")
+        self.assertEqual(stability.parameters(row, "; "), "k 100 N/m; N 2")
+        found = stability_figures.of([{"study": "jury", "series": {"figure-4.16-a": {"rows": []},
+                                                                   "figure-4.16-b": {"rows": []}}}])
+        self.assertEqual([name for name, _, _ in found], ["jury-figure-4.16"])
+
+
+if __name__ == "__main__":
+    unittest.main()
