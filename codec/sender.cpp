@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
 #include <tactus/deformable/deformable_encoder.h>
 #include <tactus/elastic/driven_shape.h>

@@ -8,11 +8,10 @@
 #include <span>
 
 #include <tactus/base/result.h>
-#include <tactus/deformable/trigger.h>
+#include <tactus/deformable/displacement.h>
 #include <tactus/load/load_state.h>
 #include <tactus/packet/packet.h>
 #include <tactus/packet/sender_policy.h>
-#include <tactus/rigid/contact.h>
 #include <tactus/rigid/rigid_state.h>
 #include <tactus/rigid/trigger.h>
 #include <tactus/scene/scene.h>

@@ -36,13 +36,11 @@
 #include <tactus/client/replica.h>
 #include <tactus/deformable/displacement.h>
 #include <tactus/deformable/motion_clusters.h>
-#include <tactus/deformable/trigger.h>
 #include <tactus/file/stream_file.h>
 #include <tactus/load/load_state.h>
 #include <tactus/packet/packet.h>
 #include <tactus/player.h>
 #include <tactus/receiver.h>
-#include <tactus/rigid/contact.h>
 #include <tactus/rigid/rigid_state.h>
 #include <tactus/rigid/trigger.h>
 #include <tactus/scene/scene.h>

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include <tactus/base/hash.h>
+#include <tactus/base/bytes.h>
 #include <tactus/base/rule.h>
 #include <tactus/elastic/elimination.h>
 #include <tactus/file/stream_file.h>

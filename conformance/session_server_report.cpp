@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include <tactus/base/hash.h>
+#include <tactus/base/bytes.h>
 #include <tactus/base/rule.h>
 #include <tactus/scene/scene_syntax.h>
 #include <tactus/session/datagram.h>

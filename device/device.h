@@ -12,8 +12,8 @@
 #include <tl/expected.hpp>
 #include <vector>
 
-#include <tactus/base/device_sample.h>
 #include <tactus/base/diagnostic.h>
+#include <tactus/base/geometry.h>
 #include <tactus/trace/device_reports.h>
 
 namespace tactus::device {

@@ -13,7 +13,7 @@
 #include <exception>
 #include <new>
 
-#include <tactus/base/out_of_memory.h>
+#include <tactus/base/rule.h>
 
 namespace tactus::device {
 namespace {

@@ -6,7 +6,6 @@
 #include <new>
 #include <utility>
 
-#include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
 #include <tactus/trace/trace_file.h>
 

@@ -7,7 +7,6 @@
 #include <new>
 #include <system_error>
 
-#include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
 
 namespace tactus::device {

@@ -9,7 +9,7 @@
 #include <optional>
 #include <span>
 
-#include <tactus/deformable/trigger.h>
+#include <tactus/deformable/displacement.h>
 #include <tactus/trace/frame.h>
 
 namespace tactus {

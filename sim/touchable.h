@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <optional>
 
-#include <tactus/base/device_sample.h>
 #include <tactus/base/diagnostic.h>
-#include <tactus/rigid/contact.h>
+#include <tactus/base/geometry.h>
+#include <tactus/rigid/trigger.h>
 #include <tactus/trace/frame.h>
 
 namespace tactus::sim {

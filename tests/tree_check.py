@@ -13,25 +13,20 @@ import tempfile
 SOURCE_DIRS = (".ci", "spec", "codec", "io", "metrics", "sim", "device", "bindings", "cli", "conformance", "lab", "tests", "tools", "cmake")
 CODE = {".h", ".cpp"}
 SOURCES = CODE | {".py", ".sh", ".cmake", ".gp", ".mjs", ".js", ".lua"}
-MAX_LINES = 500
+MAX_LINES = 600
 ONE_FILE = {".lua"}  # what users copy to install it: may be longer
 SHARED = {"base"}  # folders of codec/ that are not subjects of the specification
 # Everything else in codec/ is integers: what both ends compute is the same on every machine. These files are doors: SI units come in
 # or go out, a sender decides what to send, options are read once, a quotient of integers is estimated and then corrected, and the
 # basis and the elastic bodies that both ends compute are binary64 in a written order.
-FLOATS = {"base/device_sample", "base/geometry", "base/quantise", "base/tri_mesh", "scene/bounds", "scene/bounds_syntax",
-          "scene/deformable_object", "scene/rigid_object", "scene/scene_builder", "packet/key_policy", "packet/sender_policy",
-          "load/load_encoder", "load/load_state",
-          "rigid/acceleration", "rigid/contact", "rigid/driven_choice", "rigid/ease_choice", "rigid/error_share", "rigid/force_trend", "rigid/leaning", "rigid/predictor_choice",
-          "rigid/rigid_encoder", "rigid/rigid_state", "rigid/trigger", "deformable/deformable_encoder",
-          "deformable/area_fit", "deformable/cluster_basis", "deformable/displacement", "deformable/kriging", "deformable/main_encoder", "deformable/mode_projection",
-          "deformable/motion_clusters", "deformable/ritz",
-          "deformable/spring_basis", "deformable/spring_network", "deformable/thesis_encoder",
-          "deformable/trigger", "deformable/vertex_coder", "client/replica", "client/stiffness_reduction", "sender",
-          "signal/device_signal", "signal/force_signal",
-          "elastic/driven_shape", "elastic/elastic_elements", "elastic/elastic_matrix", "elastic/elastic_solver", "elastic/elastic_touch",
-          "scene/elastic_body", "scene/elastic_syntax",
-          "session/exchange", "session/server_connection", "session/congestion", "session/session_options", "session/session_client", "session/session_server"}
+FLOATS = {"base/geometry", "base/quantise", "base/tri_mesh", "client/replica", "client/stiffness_reduction", "deformable/basis",
+          "deformable/deformable_encoder", "deformable/displacement", "deformable/encoder_fit", "deformable/kriging",
+          "deformable/motion_clusters", "deformable/thesis_encoder", "deformable/vertex_coder", "elastic/driven_shape",
+          "elastic/elastic_solver", "elastic/elastic_touch", "load/load_encoder", "load/load_state", "packet/sender_policy",
+          "packet/substream_encoder", "rigid/encoder_choices", "rigid/rigid_encoder", "rigid/rigid_state", "rigid/trigger",
+          "scene/elastic_syntax", "scene/scene_builder", "scene/scene_objects", "sender", "session/congestion", "session/exchange",
+          "session/server_connection", "session/session_client", "session/session_options", "session/session_server",
+          "signal/device_signal", "signal/force_signal"}
 # Everything that is the operating system's stands in these files, one per need; the others are C++ alone. The codec, the traces and
 # the metrics are not among them; of the simulation only what runs the program that fills meshes.
 SYSTEM = {
@@ -59,31 +54,29 @@ SYSTEM_HEADER = re.compile(r"^\s*#\s*include\s+<((?:sys|net|netinet|arpa|linux)/
 OURS = ("codec", "io", "metrics", "sim", "device", "cli", "bindings", "conformance")  # not the tests, which also test what only one system does
 UNITS = ("codec", "codec/*", "io/*", "device/*", "metrics")  # each .cpp in them has a unit test of its name
 TESTED_BY = {  # those that have none: the parts of one subject, held against each other
-    "codec/deformable/coding_order": "deformable_graph",
+    "codec/deformable/basis": "deformable_spring_basis",
+    "codec/deformable/encoder_fit": "deformable_mode_projection",
     "codec/deformable/kriging": "deformable_graph",
-    "codec/deformable/main_decoder": "deformable_decoder",
-    "codec/deformable/main_encoder": "deformable_encoder",
     "codec/deformable/main_state": "deformable_layers",
     "codec/deformable/main_syntax": "deformable_encoder",
-    "codec/deformable/ritz": "deformable_spring_basis",
-    "codec/deformable/spring_network": "deformable_spring_basis",
     "codec/deformable/thesis_decoder": "deformable_decoder",
     "codec/deformable/thesis_encoder": "deformable_encoder",
     "codec/deformable/thesis_syntax": "deformable_encoder",
-    "codec/elastic/elastic_matrix": "elastic_elements",
     "codec/load/load_decoder": "load",
     "codec/load/load_encoder": "load",
     "codec/load/load_state": "load",
+    "codec/rigid/encoder_choices": "acceleration",
     "codec/rigid/rigid_decoder": "rigid",
     "codec/rigid/rigid_encoder": "rigid",
     "codec/rigid/rigid_state": "rigid",
     "codec/rigid/rigid_syntax": "rigid",
-    "codec/scene/bounds_syntax": "scene_bounds",
-    "codec/scene/deformable_object": "scene_deformable",
     "codec/scene/deformable_syntax": "scene_deformable",
     "codec/scene/elastic_syntax": "scene_elastic",
-    "codec/scene/rigid_object": "rigid",
     "codec/scene/scene": "scene_syntax",
+    "codec/scene/scene_objects": "scene_bounds",
+    "codec/session/numbers": "session_sent_numbers",
+    "codec/session/session_options": "session_state",
+    "codec/session/timing": "session_clock_offset",
     "device/falcon/falcon_usb": "falcon_device",
     "device/falcon/libusb_library": "device_shared_library",
     "device/hid/hid_raw": "hid_device",
@@ -250,7 +243,7 @@ def self_test():
         "tests/bench/rigid_bench.cpp": spdx + '#include <tactus/rigid/rigid_decoder.h>\n',
     }
     bad = {  # what is changed (None: left out) and a word of the finding that must follow
-        "codec/rigid/rigid.h": [("int x;\n", "licence"), (spdx + "\n" * MAX_LINES, "501 lines"),
+        "codec/rigid/rigid.h": [("int x;\n", "licence"), (spdx + "\n" * MAX_LINES, "601 lines"),
                                 (spdx + '#include <tactus/rigid/rigid_decoder.h>\n', "the encoder includes codec/rigid/rigid_decoder.h")],
         "codec/rigid/rigid_decoder.cpp": [(spdx + "#include <unistd.h>\n", "not in SYSTEM"), (spdx + "double x;\n", "floating point"),
                                             (spdx + "#include <cmath>\n", "floating point")],

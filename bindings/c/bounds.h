@@ -2,7 +2,7 @@
 /// Bounds in C and in C++.
 #pragma once
 
-#include <tactus/scene/bounds.h>
+#include <tactus/scene/scene_objects.h>
 
 #include "handles.h"
 

@@ -11,7 +11,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
 #include <tactus/deformable/displacement.h>
 #include <tactus/receiver.h>

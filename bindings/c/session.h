@@ -3,8 +3,6 @@
 #pragma once
 
 #include <tactus/session/session_options.h>
-#include <tactus/session/session_state.h>
-#include <tactus/session/traffic.h>
 
 #include "handles.h"
 

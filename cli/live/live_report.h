@@ -8,8 +8,6 @@
 
 #include <tactus/net/udp.h>
 #include <tactus/session/session_options.h>
-#include <tactus/session/session_state.h>
-#include <tactus/session/traffic.h>
 #include "cli/command.h"
 #include "cli/live/ticker.h"
 #include "cli/live/wire.h"

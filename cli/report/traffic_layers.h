@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include <tactus/session/traffic.h>
+#include <tactus/session/session_options.h>
 #include "cli/report/figures.h"
 
 namespace tactus::cli {

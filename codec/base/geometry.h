@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Vectors, unit quaternions and poses in SI units, for the API side of the codec (never inside the prediction loop).
-/// Right-handed world frame, column vectors, Hamilton quaternions (w, x, y, z) that turn object axes into world axes.
+/// Vectors, rotations and poses in SI units, and what a haptic device reports in them.
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 
 namespace tactus {
+
+// ==== geometry ====
+// Vectors, unit quaternions and poses in SI units, for the API side of the codec (never inside the prediction loop).
+// Right-handed world frame, column vectors, Hamilton quaternions (w, x, y, z) that turn object axes into world axes.
 
 struct Vec3 {
   double x = 0, y = 0, z = 0;
@@ -56,5 +60,41 @@ struct Pose {
 /// p_world = x + R p_object
 constexpr Vec3 to_world(const Pose& pose, const Vec3& p) noexcept { return pose.position + rotate(pose.rotation, p); }
 constexpr Vec3 to_object(const Pose& pose, const Vec3& p) noexcept { return rotate(conjugate(pose.rotation), p - pose.position); }
+
+// ==== device sample ====
+// One sample of a force-feedback device. Virtual hands, recordings and real devices deliver it. Quantities that a device does
+// not sense keep their defaults.
+
+/// symbol       shape  unit  frame
+/// position     3      m     world: x_d
+/// orientation  4      1     world: of the handle, unit length
+/// velocity     3      m/s   world: as the device measures it
+/// buttons             1     bit i is set while button i is down
+/// time                ns    on the device's own clock, from any origin, not negative
+struct DeviceSample {
+  Vec3 position;
+  Quat orientation{};
+  Vec3 velocity{};
+  std::uint32_t buttons = 0;
+  std::int64_t time = 0;
+
+  bool is_down(unsigned button) const noexcept { return (buttons >> button & 1u) != 0; }
+};
+
+/// Which quantities a device senses besides its position.
+struct DeviceSenses {
+  bool orientation = false;
+  bool velocity = false;
+  bool buttons = false;
+  bool time = false;
+  friend bool operator==(const DeviceSenses&, const DeviceSenses&) = default;
+};
+
+/// Finite, not before the clock's origin, and the orientation of unit length within what single precision and printed digits lose.
+inline bool is_valid(const DeviceSample& sample) noexcept {
+  const auto& [w, x, y, z] = sample.orientation;
+  const double off_unit = w * w + x * x + y * y + z * z - 1;
+  return is_finite(sample.position) && is_finite(sample.velocity) && off_unit >= -1e-3 && off_unit <= 1e-3 && sample.time >= 0;
+}
 
 }  // namespace tactus

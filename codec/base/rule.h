@@ -2,11 +2,16 @@
 /// Creates errors. A rule name that is not in spec/rules.csv does not compile. Internal to the libraries.
 #pragma once
 
+#include <new>
 #include <string_view>
 
 #include <tactus/base/result.h>
 
 namespace tactus {
+
+// ==== rule ====
+// Creates errors. A rule name that is not in spec/rules.csv does not compile.
+
 namespace detail {
 
 #define TACTUS_RULE(name, action, fault, remedy) name,
@@ -46,5 +51,12 @@ inline tl::unexpected<Error> fail(Errc code, RuleName rule, std::uint64_t bit_of
 inline tl::unexpected<Error> fail_at(const Error& error, std::uint64_t bit_offset) noexcept {
   return tl::unexpected<Error>(Error{error.code, error.rule, bit_offset});
 }
+
+// ==== out of memory ====
+// Allocation failure as an error. Functions that return a Result never throw: those that allocate catch std::bad_alloc and
+// return this error. They leak nothing and leave existing objects unchanged. Constructors, copies and functions with any other
+// return type throw.
+
+inline tl::unexpected<Error> out_of_memory() noexcept { return fail(Errc::limit_exceeded, "R-API-11"); }
 
 }  // namespace tactus

@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Triangle meshes: the visible and touchable surface of an object. Open or closed, several components, boundary allowed.
-///
-/// rule      class           element   broken when
-/// R-SRF-8   invalid         vertex    a coordinate is NaN or infinite, or larger than 1e6 m
-/// R-SRF-9   invalid         triangle  an index is not that of a vertex
-/// R-SRF-10  invalid         triangle  two of its corners are the same vertex, or its area is zero in double precision
-/// R-SRF-11  invalid         triangle  an edge belongs to a third triangle
-/// R-SRF-12  invalid         triangle  a neighbour across an edge is oriented the other way round (or the triangle stands there twice)
-/// R-SRF-13  invalid         vertex    its triangles form more than one fan
-/// R-SRF-14  limit_exceeded  0         more than 2^20 vertices or 2^21 triangles
+/// Triangle meshes, and lists of lists in one block of memory.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -20,6 +12,34 @@
 #include <tactus/base/geometry.h>
 
 namespace tactus {
+
+// ==== list of lists ====
+
+/// Lists of lists in one array: list i begins at items[first[i]].
+template <class T>
+struct ListOfLists {
+  std::vector<std::uint32_t> first{0};
+  std::vector<T> items;
+
+  std::span<const T> operator[](std::size_t i) const noexcept {
+    return std::span<const T>(items).subspan(first[i], first[i + 1] - first[i]);
+  }
+  std::size_t size() const noexcept { return first.size() - 1; }
+  void close() { first.push_back(static_cast<std::uint32_t>(items.size())); }
+  friend bool operator==(const ListOfLists&, const ListOfLists&) = default;
+};
+
+// ==== tri mesh ====
+// Triangle meshes: the visible and touchable surface of an object. Open or closed, several components, boundary allowed.
+//
+// rule      class           element   broken when
+// R-SRF-8   invalid         vertex    a coordinate is NaN or infinite, or larger than 1e6 m
+// R-SRF-9   invalid         triangle  an index is not that of a vertex
+// R-SRF-10  invalid         triangle  two of its corners are the same vertex, or its area is zero in double precision
+// R-SRF-11  invalid         triangle  an edge belongs to a third triangle
+// R-SRF-12  invalid         triangle  a neighbour across an edge is oriented the other way round (or the triangle stands there twice)
+// R-SRF-13  invalid         vertex    its triangles form more than one fan
+// R-SRF-14  limit_exceeded  0         more than 2^20 vertices or 2^21 triangles
 
 using Triangle = std::array<std::uint32_t, 3>;  ///< corners counter-clockwise seen from outside
 

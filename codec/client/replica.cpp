@@ -5,10 +5,10 @@
 #include <cmath>
 #include <utility>
 
+#include <tactus/base/bytes.h>
 #include <tactus/base/fixed.h>
-#include <tactus/base/hash.h>
 #include <tactus/base/rule.h>
-#include <tactus/client/bend.h>
+#include <tactus/client/timeline.h>
 #include <tactus/deformable/deformable_decoder.h>
 
 namespace tactus {

@@ -11,7 +11,6 @@
 #include <tactus/client/timeline.h>
 #include <tactus/packet/packet.h>
 #include <tactus/rigid/curve.h>
-#include <tactus/rigid/easing.h>
 #include <tactus/rigid/rigid_predictor.h>
 #include <tactus/scene/scene.h>
 

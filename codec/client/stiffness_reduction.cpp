@@ -6,7 +6,6 @@
 #include <new>
 #include <numbers>
 
-#include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
 
 namespace tactus {

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What a client that shows the past knows of one object: its newest updates, in the order of their ticks. spec/60-client.md section 7.
+/// What a client that shows the past keeps of each object, and how it bends over gaps. Integers. spec/60-client.md.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 
+#include <tactus/rigid/rigid_predictor.h>
 #include <tactus/rigid/rigid_state.h>
 
 namespace tactus {
+
+// ==== timeline ====
+// What a client that shows the past knows of one object: its newest updates, in the order of their ticks. spec/60-client.md section 7.
 
 class Timeline {
  public:
@@ -56,5 +60,13 @@ class HeardPackets {
   std::array<std::uint64_t, kReach / 64> bits_{};
   std::uint64_t newest_ = 0;  // 0: none
 };
+
+// ==== bend ====
+// The way of an object between two updates when a packet between them is missing. spec/60-client.md section 7.
+
+/// A cubic that leaves `a` and meets `b` with their velocities; a straight line where these are 0.
+/// Its error grows with the fourth power of the time between, that of dead reckoning with the second.
+/// pre  a.tick <= tick <= b.tick, a.tick < b.tick, b.tick - a.tick <= max_extrapolation.   time about 0.5 us, no allocation.
+RigidPose bend(const Scene& scene, const RigidState& a, const RigidState& b, std::int64_t tick) noexcept;
 
 }  // namespace tactus

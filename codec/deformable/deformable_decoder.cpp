@@ -4,11 +4,43 @@
 #include <algorithm>
 #include <utility>
 
-#include <tactus/deformable/main_decoder.h>
+#include <tactus/base/rule.h>
 #include <tactus/deformable/thesis_decoder.h>
 #include <tactus/packet/substream_decoder.h>
 
 namespace tactus {
+
+// ==== main decoder ====
+
+Result<PacketHead> MainDecoder::read_head(std::span<const std::uint8_t> payload) noexcept {
+  coder_ = RangeDecoder(payload);
+  payload_ = payload.size();
+  models_ = main_start_models();
+  head_ = {};
+  code_main_start(coder_, models_, object_, baseline_span_, head_);
+  if (coder_.too_wide()) return fail(Errc::malformed, "R-RNG-4", bit());
+  return head_;
+}
+
+Result<void> MainDecoder::read_body(const MainState& base, std::int64_t, DecodedPacket& out) noexcept {
+  const auto updates = reader_.read(coder_, models_, head_, base, next_);
+  if (!updates) return fail_at(updates.error(), bit());
+  if (const RuleName rule = coder_.broken_rule()) return fail(Errc::malformed, rule, bit());
+  out.layer = head_.layer;
+  out.vertices = *updates;
+  out.final_range = coder_.range();
+  out.final_code = coder_.code();
+  return {};
+}
+
+std::span<const Vec3i> MainDecoder::predict(const MainState& state, std::int64_t tick) noexcept {
+  if (driven_) driven_->follow(tick);
+  if (state.following != Following::none && driven_ && driven_->show(state, tick, shown_)) return shown_;
+  return reader_.predict(state, tick);
+}
+
+// ==== deformable decoder ====
+
 namespace {
 
 template <class Codec>

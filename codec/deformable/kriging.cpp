@@ -8,7 +8,7 @@
 #include <type_traits>
 
 #include <tactus/base/fixed.h>
-#include <tactus/deformable/rest_distance.h>
+#include <tactus/deformable/graph.h>
 
 namespace tactus {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Profile main: the baseline of packets and the prediction between packets. spec/50-deformable.md sections 3, 5 and 6. Integers
-/// only.
+/// State of a deformable object, profile main, and how its motion goes on. Internal to the library.
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -11,10 +11,50 @@
 #include <tactus/base/fixed.h>
 #include <tactus/deformable/displacement.h>
 #include <tactus/deformable/graph.h>
-#include <tactus/deformable/motion.h>
-#include <tactus/scene/deformable_object.h>
+#include <tactus/scene/scene_objects.h>
 
 namespace tactus {
+
+// ==== motion ====
+// Temporal prediction of a few channels, each from its own past: recursive least squares with two coefficients on their
+// increments.
+// spec/50-deformable.md section 6. Integers only; part of the state that packets build on.
+
+class ModeMotion {
+ public:
+  static constexpr std::uint32_t kMaxSteps = 8;  ///< after so many frames without a packet the motion stops
+
+  ModeMotion() = default;
+  explicit ModeMotion(std::size_t channels) : channels_(channels) {}
+
+  std::size_t size() const noexcept { return channels_.size(); }
+
+  /// Sum of the next `steps` increments of every channel; beyond kMaxSteps there are none.   pre  out.size() == size()
+  void predict(std::uint32_t steps, std::span<std::int32_t> out) const noexcept;
+  /// Learn the increments of a packet that lies `steps` frames after its baseline.
+  void update(std::uint32_t steps, std::span<const std::int32_t> increments) noexcept;
+
+  /// Everything a later prediction depends on, for the state hash.
+  template <class Hash>
+  void add_to(Hash& hash) const noexcept {
+    for (const Channel& c : channels_) {
+      hash.add32(c.last);
+      hash.add32(c.before);
+      for (const std::int64_t s : c.correlations) hash.add64(static_cast<std::uint64_t>(s));
+    }
+  }
+
+ private:
+  struct Channel {
+    std::int32_t last = 0, before = 0;           // increments per frame
+    std::array<std::int64_t, 5> correlations{};  // fading correlations of products: 11, 12, 22, 01, 02; 0 now, 1 last, 2 before
+  };
+  std::vector<Channel> channels_;
+};
+
+// ==== main state ====
+// Profile main: the baseline of packets and the prediction between packets. spec/50-deformable.md sections 3, 5 and 6. Integers
+// only.
 
 /// Whether what is shown follows the device, for who knows it (elastic/driven_shape.h), and what becomes of what it differs by from the
 /// body that both ends work out.
@@ -89,6 +129,23 @@ class ShapePredictor {
   std::vector<std::int32_t> extrapolated_;  // by mode, since the state's tick if that differs from motion_tick
   std::vector<std::int32_t> rounded_;       // by mode of clusters
   std::vector<std::int32_t> sum_;           // by component, but for clusters
+};
+
+// ==== followed shape ====
+// The shape of an object as the device of a client makes it, for the codec of deformable objects (elastic/driven_shape.h has it). An
+// interface, so that a program that knows no device links nothing of elastic bodies.
+
+class FollowedShape {
+ public:
+  virtual ~FollowedShape() = default;
+
+  /// What a state shows that follows the device: the shape at a tick, and what the state differed by from the shape at its own, or what is
+  /// left of it.   out  false: one of the two is not known, and nothing is written
+  virtual bool show(const MainState& state, std::int64_t tick, std::span<Vec3i> shown) noexcept = 0;
+  /// The shape alone, on the grid.   out  false: it is not known
+  virtual bool body_at(std::int64_t tick, std::span<Vec3i> shape) noexcept = 0;
+  /// Go on to this tick. To be called at each shape that is not shown either: who is more than 64 behind begins anew at rest.
+  virtual void follow(std::int64_t tick) noexcept = 0;
 };
 
 }  // namespace tactus

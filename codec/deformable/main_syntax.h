@@ -11,8 +11,8 @@
 #include <tactus/base/range_coder.h>
 #include <tactus/deformable/graph.h>
 #include <tactus/deformable/main_state.h>
-#include <tactus/packet/packet_head.h>
-#include <tactus/scene/deformable_object.h>
+#include <tactus/packet/substream.h>
+#include <tactus/scene/scene_objects.h>
 
 namespace tactus {
 

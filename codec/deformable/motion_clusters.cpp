@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
 #include <tactus/deformable/graph.h>
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <tactus/base/tri_mesh.h>
-#include <tactus/scene/deformable_object.h>
+#include <tactus/scene/scene_objects.h>
 
 namespace tactus {
 

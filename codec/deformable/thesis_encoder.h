@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
+#include <tactus/deformable/displacement.h>
 #include <tactus/deformable/graph.h>
 #include <tactus/deformable/thesis_syntax.h>
-#include <tactus/deformable/trigger.h>
 #include <tactus/packet/substream_encoder.h>
 
 namespace tactus {

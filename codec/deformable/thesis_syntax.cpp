@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/deformable/thesis_syntax.h>
 
-#include <tactus/base/hash.h>
+#include <tactus/base/bytes.h>
 
 namespace tactus {
 

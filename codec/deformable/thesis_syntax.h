@@ -10,8 +10,8 @@
 
 #include <tactus/base/fixed.h>
 #include <tactus/base/range_coder.h>
-#include <tactus/packet/packet_head.h>
-#include <tactus/scene/deformable_object.h>
+#include <tactus/packet/substream.h>
+#include <tactus/scene/scene_objects.h>
 
 namespace tactus {
 

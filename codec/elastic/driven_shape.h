@@ -11,7 +11,7 @@
 #include <vector>
 
 #include <tactus/base/fixed.h>
-#include <tactus/deformable/followed_shape.h>
+#include <tactus/deformable/main_state.h>
 #include <tactus/elastic/elastic_solver.h>
 #include <tactus/elastic/elastic_touch.h>
 

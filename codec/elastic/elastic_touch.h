@@ -11,9 +11,8 @@
 #include <span>
 
 #include <tactus/base/geometry.h>
-#include <tactus/base/list_of_lists.h>
 #include <tactus/base/tri_mesh.h>
-#include <tactus/scene/deformable_object.h>
+#include <tactus/scene/scene_objects.h>
 
 namespace tactus {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <utility>
 
-#include <tactus/base/list_of_lists.h>
+#include <tactus/base/tri_mesh.h>
 
 namespace tactus {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <tactus/scene/elastic_body.h>
+#include <tactus/scene/scene_objects.h>
 
 namespace tactus {
 

@@ -4,10 +4,8 @@
 #include <ostream>
 
 #include <tactus/base/bytes.h>
-#include <tactus/base/hash.h>
-#include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
-#include <tactus/packet/packet_head.h>
+#include <tactus/packet/substream.h>
 #include <tactus/scene/scene_syntax.h>
 
 namespace tactus {

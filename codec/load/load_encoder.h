@@ -14,7 +14,7 @@
 #include <tactus/load/load_syntax.h>
 #include <tactus/packet/sender_policy.h>
 #include <tactus/packet/substream_encoder.h>
-#include <tactus/scene/bounds.h>
+#include <tactus/scene/scene_objects.h>
 
 namespace tactus {
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include <tactus/base/hash.h>
+#include <tactus/base/bytes.h>
 #include <tactus/base/quantise.h>
 #include <tactus/base/rule.h>
 

@@ -11,7 +11,7 @@
 #include <tactus/base/fixed.h>
 #include <tactus/base/range_coder.h>
 #include <tactus/load/load_state.h>
-#include <tactus/packet/packet_head.h>
+#include <tactus/packet/substream.h>
 
 namespace tactus {
 

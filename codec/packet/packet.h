@@ -1,15 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Packets as a sender gives them and as a receiver reports them. spec/40-rigid.md section 2, spec/25-packet.md section 1.
+/// Packets and why they were sent. spec/30-packet.md.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
-#include <tactus/packet/reason.h>
-#include <tactus/scene/deformable_object.h>
+#include <tactus/scene/scene_objects.h>
 
 namespace tactus {
+
+// ==== reason ====
+
+/// Why an object's state was sent. Values are wire values (spec/40-rigid.md table 1).
+enum class Reason : std::uint8_t {
+  request = 0,    ///< no trigger: a key packet or a stream without data reduction
+  heartbeat = 1,  ///< time-out since the last update
+  visual = 2,     ///< position or rotation error over the visual threshold (visual dead reckoning)
+  haptic = 3,     ///< force error over the haptic threshold (haptic dead reckoning, thesis eq. 3.1)
+};
+
+// ==== packet ====
+// Packets as a sender gives them and as a receiver reports them. spec/40-rigid.md section 2, spec/25-packet.md section 1.
 
 /// One object in a packet of the rigid objects.
 struct RigidUpdate {

@@ -16,10 +16,8 @@
 #include <utility>
 
 #include <tactus/base/rule.h>
-#include <tactus/packet/baseline_ring.h>
 #include <tactus/packet/packet.h>
-#include <tactus/packet/packet_head.h>
-#include <tactus/packet/packet_order.h>
+#include <tactus/packet/substream.h>
 #include <tactus/scene/scene.h>
 
 namespace tactus {

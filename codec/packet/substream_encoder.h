@@ -1,16 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-/// One substream at a sender: numbers, key packets, and the state that each packet builds on. Internal to the library.
-///
-/// A `Codec` knows nothing of sequence numbers, loss or acknowledgements:
-///   State                                            has a member tick
-///   Result<Payload> encode(request, out)             a payload in `out` if one is needed, and the pending state after it
-///   void commit(base, next)                          writes the pending state to `next`, which may be `base`
-/// and, if it wants to know what receivers may lack:
-///   void acknowledge(number)                         the receiver holds the state after this packet
-///   void forget_last()                               the last packet will not be decoded
+/// The sender's side of a substream: when key packets go, and on what a packet builds. Internal to the library.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -19,14 +12,51 @@
 #include <vector>
 
 #include <tactus/base/result.h>
-#include <tactus/packet/baseline_ring.h>
-#include <tactus/packet/key_policy.h>
 #include <tactus/packet/packet.h>
-#include <tactus/packet/packet_head.h>
 #include <tactus/packet/sender_policy.h>
 #include <tactus/packet/substream.h>
 
 namespace tactus {
+
+// ==== key policy ====
+// When a sender codes a key packet. Informative: a choice of the encoder.
+
+class KeyPolicy {
+ public:
+  /// in   interval  [s] between key packets; 0: only the necessary ones
+  KeyPolicy(double interval, std::uint32_t tick_rate) noexcept
+      : interval_(static_cast<std::int64_t>(std::ceil(interval * tick_rate))), silence_(forget_ticks(tick_rate)) {}
+
+  /// True for the first packet, once per interval, on request, and after a pause so long that receivers may soon drop their
+  /// states.
+  /// in   last  tick of the last packet
+  bool is_due(std::int64_t tick, std::int64_t last) const noexcept {
+    return requested_ || key_tick_ < 0 || (interval_ > 0 && tick - key_tick_ >= interval_) || 2 * (tick - last) > silence_;
+  }
+  void request() noexcept { requested_ = true; }
+  /// True if the next packet must be sent even if every bound holds.
+  bool is_requested() const noexcept { return requested_; }
+  void sent(std::int64_t tick, bool key) noexcept {
+    requested_ = false;
+    if (key) key_tick_ = tick;
+  }
+
+ private:
+  std::int64_t interval_, silence_;
+  std::int64_t key_tick_ = -1;  // of the last key packet; -1: none yet
+  bool requested_ = false;
+};
+
+// ==== substream encoder ====
+// One substream at a sender: numbers, key packets, and the state that each packet builds on.
+//
+// A `Codec` knows nothing of sequence numbers, loss or acknowledgements:
+//   State                                            has a member tick
+//   Result<Payload> encode(request, out)             a payload in `out` if one is needed, and the pending state after it
+//   void commit(base, next)                          writes the pending state to `next`, which may be `base`
+// and, if it wants to know what receivers may lack:
+//   void acknowledge(number)                         the receiver holds the state after this packet
+//   void forget_last()                               the last packet will not be decoded
 
 template <class State>
 struct EncodeRequest {

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include <tactus/base/rule.h>
-#include <tactus/rigid/leaning.h>
+#include <tactus/rigid/encoder_choices.h>
 
 namespace tactus {
 namespace {

@@ -19,14 +19,8 @@
 
 #include <tactus/base/result.h>
 #include <tactus/packet/substream_encoder.h>
-#include <tactus/rigid/acceleration.h>
-#include <tactus/rigid/contact.h>
-#include <tactus/rigid/driven_choice.h>
-#include <tactus/rigid/ease_choice.h>
-#include <tactus/rigid/easing.h>
-#include <tactus/rigid/error_share.h>
-#include <tactus/rigid/force_trend.h>
-#include <tactus/rigid/predictor_choice.h>
+#include <tactus/rigid/curve.h>
+#include <tactus/rigid/encoder_choices.h>
 #include <tactus/rigid/rigid_syntax.h>
 #include <tactus/rigid/trigger.h>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/rigid/rigid_state.h>
 
+#include <tactus/base/bytes.h>
 #include <tactus/base/fixed.h>
-#include <tactus/base/hash.h>
 #include <tactus/base/quantise.h>
 #include <tactus/base/rule.h>
 

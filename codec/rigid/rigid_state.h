@@ -46,7 +46,7 @@ struct RigidState {
   std::array<std::int32_t, 3> velocity{};                  ///< x 2^-velocity m/s
   std::array<std::int32_t, 3> angular_velocity{};          ///< x 2^-angular_velocity rad/s, world frame
   Predictor predictor = Predictor::linear;
-  std::uint8_t ease = 0;    ///< clients pass over to this path within 2^ease ticks; 0: at once (easing.h)
+  std::uint8_t ease = 0;    ///< clients pass over to this path within 2^ease ticks; 0: at once (curve.h)
   std::uint8_t keep = 0;    ///< ... and begin with 16, 15, 12 or 8 sixteenths of what they were off it
   DrivenContact contact{};  ///< of the newest update that was driven
   friend bool operator==(const RigidState&, const RigidState&) = default;

@@ -10,8 +10,8 @@
 
 #include <tactus/base/fixed.h>
 #include <tactus/base/range_coder.h>
-#include <tactus/packet/packet_head.h>
-#include <tactus/packet/reason.h>
+#include <tactus/packet/packet.h>
+#include <tactus/packet/substream.h>
 #include <tactus/rigid/rigid_predictor.h>
 #include <tactus/scene/scene.h>
 

@@ -6,10 +6,9 @@
 #include <utility>
 
 #include <tactus/base/rule.h>
-#include <tactus/deformable/cluster_basis.h>
+#include <tactus/deformable/basis.h>
 #include <tactus/scene/elastic_syntax.h>
 #include <tactus/scene/scene_rules.h>
-#include <tactus/scene/vertex_syntax.h>
 
 namespace tactus {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <tactus/base/bytes.h>
 #include <tactus/base/result.h>
-#include <tactus/scene/deformable_object.h>
+#include <tactus/scene/scene_objects.h>
 
 namespace tactus {
 

@@ -1,15 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Elastic bodies in a scene declaration. spec/20-scene.md section 4.1. Internal to the library.
+/// Declaration elements with real numbers: elastic bodies and bounds. Internal to the library.
 #pragma once
 
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include <tactus/base/bytes.h>
 #include <tactus/base/result.h>
 #include <tactus/base/rule.h>
-#include <tactus/scene/deformable_object.h>
+#include <tactus/scene/scene.h>
+#include <tactus/scene/scene_objects.h>
 
 namespace tactus {
+
+// ==== bounds syntax ====
+// The extension record of a scene declaration that holds the stream's bounds. spec/20-scene.md section 6.
+
+inline constexpr std::uint64_t kBoundsRecord = 2;  ///< type of the record
+
+/// R-STR-17: the bounds match the scene's objects, their numbers are finite and carry no sign.   pre  there are bounds
+bool are_bounds(const SceneSpec& spec) noexcept;
+
+/// Data of the record.   pre  are_bounds()
+std::vector<std::uint8_t> write_bounds(StreamBounds bounds);
+
+/// in   in      the record's data; bytes after the known elements are skipped
+///      spec  with its objects
+/// err  truncated, invalid R-STR-17
+Result<StreamBounds> parse_bounds(ByteReader& in, const SceneSpec& spec);
+
+// ==== elastic syntax ====
+// Elastic bodies in a scene declaration. spec/20-scene.md section 4.1.
 
 bool has_elastic_body(std::span<const DeformableObject> objects) noexcept;
 

@@ -7,13 +7,10 @@
 #include <utility>
 
 #include <tactus/base/fixed.h>
-#include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
 #include <tactus/base/shown.h>
-#include <tactus/deformable/cluster_basis.h>
-#include <tactus/deformable/spring_basis.h>
+#include <tactus/deformable/basis.h>
 #include <tactus/elastic/elimination.h>
-#include <tactus/scene/bounds_syntax.h>
 #include <tactus/scene/elastic_syntax.h>
 #include <tactus/scene/scene_rules.h>
 

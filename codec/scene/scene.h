@@ -14,9 +14,7 @@
 #include <vector>
 
 #include <tactus/base/result.h>
-#include <tactus/scene/bounds.h>
-#include <tactus/scene/deformable_object.h>
-#include <tactus/scene/rigid_object.h>
+#include <tactus/scene/scene_objects.h>
 
 namespace tactus {
 

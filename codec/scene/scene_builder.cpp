@@ -6,7 +6,6 @@
 #include <unordered_set>
 #include <utility>
 
-#include <tactus/base/out_of_memory.h>
 #include <tactus/base/quantise.h>
 #include <tactus/base/rule.h>
 #include <tactus/elastic/elimination.h>

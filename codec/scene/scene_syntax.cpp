@@ -7,10 +7,7 @@
 
 #include <tactus/base/bytes.h>
 #include <tactus/base/fixed.h>
-#include <tactus/base/hash.h>
-#include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
-#include <tactus/scene/bounds_syntax.h>
 #include <tactus/scene/deformable_syntax.h>
 #include <tactus/scene/elastic_syntax.h>
 #include <tactus/scene/scene_rules.h>

@@ -1,15 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How far the bounds widen while the way to a client does not carry what they ask for. spec/70-session.md section 9. Internal to the
-/// library.
+/// How fast an end may send. Internal to the library.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 
+#include <tactus/session/numbers.h>
 #include <tactus/session/session_options.h>
-#include <tactus/session/windowed_minimum.h>
 
 namespace tactus {
+
+// ==== token bucket ====
+// The rate at which an end sends. spec/70-session.md section 9.
+
+/// Fills at `rate`, holds what 50 ms bring, and may be overdrawn by one datagram.
+class TokenBucket {
+ public:
+  static constexpr std::int64_t kHolds = 50'000;  ///< [us]
+
+  /// in   rate  [bit/s], at most 10^12; 0: no limit
+  explicit TokenBucket(std::uint64_t rate) noexcept : rate_(static_cast<std::int64_t>(rate)), level_(rate_ * kHolds) {}
+
+  bool is_open(std::uint64_t now) noexcept {
+    if (rate_ == 0) return true;
+    const auto passed = static_cast<std::int64_t>(std::min<std::uint64_t>(now - filled_at_, kHolds));
+    level_ = std::min(level_ + passed * rate_, rate_ * kHolds);
+    filled_at_ = now;
+    return level_ > 0;
+  }
+  void take(std::int64_t bits) noexcept { level_ -= rate_ == 0 ? 0 : bits * 1'000'000; }
+
+ private:
+  std::int64_t rate_, level_;  // [bit/s], [1e-6 bit]
+  std::uint64_t filled_at_ = 0;
+};
+
+// ==== congestion ====
+// How far the bounds widen while the way to a client does not carry what they ask for. spec/70-session.md section 9. Internal to the
+// library.
 
 /// Looks at half a second at a time: a step wider if one tick in ten was held back, or if even the fastest datagram waited in a queue that
 /// does not get shorter; a step narrower after 2 s without either, and after twice as long each time that this was too early.

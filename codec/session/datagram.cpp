@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include <tactus/base/hash.h>
+#include <tactus/base/bytes.h>
 #include <tactus/base/rule.h>
 
 namespace tactus {

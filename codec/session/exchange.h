@@ -14,12 +14,8 @@
 #include <tactus/sender.h>
 #include <tactus/session/datagram.h>
 #include <tactus/session/fragments.h>
-#include <tactus/session/pieces.h>
-#include <tactus/session/received_numbers.h>
-#include <tactus/session/resends.h>
-#include <tactus/session/sent_fragments.h>
-#include <tactus/session/sent_numbers.h>
-#include <tactus/session/traffic.h>
+#include <tactus/session/numbers.h>
+#include <tactus/session/session_options.h>
 #include <tactus/signal/device_path.h>
 
 namespace tactus {

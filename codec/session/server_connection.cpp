@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
 
 namespace tactus {

@@ -11,11 +11,9 @@
 #include <vector>
 
 #include <tactus/session/congestion.h>
-#include <tactus/session/device_pace.h>
 #include <tactus/session/exchange.h>
-#include <tactus/session/playout_clock.h>
 #include <tactus/session/session_server.h>
-#include <tactus/session/token_bucket.h>
+#include <tactus/session/timing.h>
 
 namespace tactus {
 

@@ -6,13 +6,10 @@
 #include <cmath>
 #include <utility>
 
-#include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
 #include <tactus/scene/scene_syntax.h>
-#include <tactus/session/clock_offset.h>
 #include <tactus/session/exchange.h>
-#include <tactus/session/force_fade.h>
-#include <tactus/session/playout_clock.h>
+#include <tactus/session/timing.h>
 
 namespace tactus {
 namespace {

@@ -9,12 +9,10 @@
 #include <optional>
 #include <span>
 
-#include <tactus/base/device_sample.h>
+#include <tactus/base/geometry.h>
 #include <tactus/base/result.h>
 #include <tactus/receiver.h>
 #include <tactus/session/session_options.h>
-#include <tactus/session/session_state.h>
-#include <tactus/session/traffic.h>
 #include <tactus/signal/device_signal.h>
 
 namespace tactus {

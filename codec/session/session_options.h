@@ -1,16 +1,69 @@
 // SPDX-License-Identifier: Apache-2.0
-/// What both ends of a session and those who look at it share.
+/// Options and states of a session, and what went over it.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include <tactus/scene/scene.h>
 #include <tactus/sender.h>
 #include <tactus/signal/device_signal.h>
 
 namespace tactus {
+
+// ==== session state ====
+// Where a session is, at the client and, for each client, at the server: tables of what leads where. spec/70-session.md section 3.
+
+enum class SessionState : std::uint8_t {
+  closed,     ///< not begun, or over
+  joining,    ///< client: a join is on its way
+  receiving,  ///< client: the scene declaration comes in pieces;  server: it goes
+  live,       ///< packets travel
+};
+
+enum class SessionEvent : std::uint8_t {
+  open,       ///< client: the program joins;  server: a join was accepted
+  welcomed,   ///< client: an epoch begins
+  refused,    ///< client: the server has refused the join
+  completed,  ///< the declaration is complete and accepted
+  replaced,   ///< server: the scene is another one, a new epoch begins
+  rejected,   ///< client: the declaration breaks a rule or a limit
+  left,       ///< the other end has left
+  silent,     ///< nothing was heard for too long
+  close,      ///< the program leaves
+};
+
+struct SessionTransition {
+  SessionState from;
+  SessionEvent event;
+  SessionState to;
+};
+
+std::span<const SessionTransition> client_transitions() noexcept;
+std::span<const SessionTransition> server_transitions() noexcept;  ///< of one client at the server
+
+/// Nothing: the event does not occur in this state, and is ignored.
+std::optional<SessionState> next_state(std::span<const SessionTransition> table, SessionState state, SessionEvent event) noexcept;
+
+// ==== traffic ====
+
+/// What an end of a session sent and heard. Sizes are those of datagrams with their check, without seal and headers of the network.
+struct Traffic {
+  std::uint64_t datagrams_sent = 0, bytes_sent = 0;
+  std::uint64_t packets_sent = 0, payload_sent = 0;  ///< packets, and their bytes
+  std::uint64_t datagrams_heard = 0, bytes_heard = 0;
+  std::uint64_t packets_heard = 0, payload_heard = 0;
+  std::uint64_t packets_refused = 0;  ///< could not be decoded
+  std::uint64_t packets_held = 0;     ///< too large, or the program did not take their datagrams before the next tick
+  std::uint64_t lost = 0;             ///< of the datagrams sent, as far as is known
+  std::uint64_t ticks_held = 0;    ///< in which nothing was coded, as the rate or the missing acknowledgements did not permit it
+  std::uint64_t wrong_states = 0;  ///< hashes that the other end told and that are not those of the sender
+};
+
+// ==== session options ====
+// What both ends of a session and those who look at it share.
 
 enum class Role : std::uint8_t {
   observer,     ///< only looks

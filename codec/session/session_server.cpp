@@ -6,8 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include <tactus/base/hash.h>
-#include <tactus/base/out_of_memory.h>
+#include <tactus/base/bytes.h>
 #include <tactus/base/rule.h>
 #include <tactus/scene/scene_syntax.h>
 #include <tactus/session/server_connection.h>

@@ -17,12 +17,10 @@
 #include <optional>
 #include <span>
 
-#include <tactus/base/device_sample.h>
+#include <tactus/base/geometry.h>
 #include <tactus/base/result.h>
 #include <tactus/sender.h>
 #include <tactus/session/session_options.h>
-#include <tactus/session/session_state.h>
-#include <tactus/session/traffic.h>
 
 namespace tactus {
 

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <optional>
 
-#include <tactus/base/device_sample.h>
+#include <tactus/base/geometry.h>
 #include <tactus/base/result.h>
 #include <tactus/receiver.h>
 #include <tactus/sender.h>

@@ -14,7 +14,7 @@
 #include <memory>
 #include <utility>
 
-#include <tactus/base/hash.h>
+#include <tactus/base/bytes.h>
 #include <tactus/base/rule.h>
 
 namespace tactus::net {

@@ -6,7 +6,6 @@
 #include <cstring>
 #include <new>
 
-#include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
 
 namespace tactus::seal {

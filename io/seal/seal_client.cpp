@@ -3,7 +3,6 @@
 
 #include <array>
 
-#include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
 #include <tactus/seal/association.h>
 

@@ -6,7 +6,6 @@
 #include <deque>
 #include <vector>
 
-#include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
 #include <tactus/seal/association.h>
 #include <tactus/seal/cookies.h>

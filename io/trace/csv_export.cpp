@@ -2,7 +2,6 @@
 #include <charconv>
 #include <ostream>
 
-#include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
 #include <tactus/trace/csv.h>
 #include <tactus/trace/csv_columns.h>

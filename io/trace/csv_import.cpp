@@ -6,7 +6,6 @@
 #include <numbers>
 #include <optional>
 
-#include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
 #include <tactus/trace/csv.h>
 #include <tactus/trace/csv_plan.h>

@@ -7,7 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
 #include <tactus/trace/foxglove_messages.h>
 #include <tactus/trace/mcap_writer.h>

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include <tactus/base/device_sample.h>
+#include <tactus/base/geometry.h>
 #include <tactus/base/tri_mesh.h>
-#include <tactus/rigid/contact.h>
 #include <tactus/rigid/rigid_state.h>
-#include <tactus/scene/bounds.h>
+#include <tactus/rigid/trigger.h>
+#include <tactus/scene/scene_objects.h>
 #include <tactus/trace/device_reports.h>
 
 namespace tactus {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include <tactus/base/hash.h>
+#include <tactus/base/bytes.h>
 #include <tactus/trace/compression.h>
 #include <tactus/trace/text.h>
 

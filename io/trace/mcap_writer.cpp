@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include <tactus/base/bytes.h>
-#include <tactus/base/hash.h>
 #include <tactus/base/rule.h>
 
 namespace tactus::mcap {

@@ -11,7 +11,7 @@
 
 #include <tactus/base/geometry.h>
 #include <tactus/base/result.h>
-#include <tactus/rigid/contact.h>
+#include <tactus/rigid/trigger.h>
 #include <tactus/trace/cdr.h>
 #include <tactus/trace/frame.h>
 

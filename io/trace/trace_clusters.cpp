@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include <tactus/base/out_of_memory.h>
+#include <tactus/base/rule.h>
 #include <tactus/deformable/motion_clusters.h>
 
 namespace tactus {

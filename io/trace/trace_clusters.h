@@ -7,7 +7,7 @@
 #include <string>
 
 #include <tactus/base/result.h>
-#include <tactus/scene/deformable_object.h>
+#include <tactus/scene/scene_objects.h>
 #include <tactus/trace/trace_file.h>
 
 namespace tactus {

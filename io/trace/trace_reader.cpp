@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/base/out_of_memory.h>
+#include <tactus/base/rule.h>
 #include <tactus/trace/frame_assembler.h>
 #include <tactus/trace/trace_bounds.h>
 #include <tactus/trace/trace_capture.h>

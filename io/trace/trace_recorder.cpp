@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
 #include <tactus/trace/text.h>
 

@@ -3,7 +3,6 @@
 
 #include <utility>
 
-#include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
 
 namespace tactus {

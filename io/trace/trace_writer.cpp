@@ -7,7 +7,6 @@
 #include <set>
 #include <string_view>
 
-#include <tactus/base/out_of_memory.h>
 #include <tactus/base/rule.h>
 #include <tactus/trace/mcap_writer.h>
 #include <tactus/trace/messages.h>

@@ -26,7 +26,7 @@ FemOptions fem_options(const SceneDeformable& object);
 /// The scene's method, or the one that suits it, and why.
 Choice chosen_method(const SceneDeformable& object, const FemModel& model);
 
-inline constexpr std::uint32_t kRestSteps = 32;  ///< longer than a client predicts motion (codec/deformable/motion.h)
+inline constexpr std::uint32_t kRestSteps = 32;  ///< longer than a client predicts motion (codec/deformable/main_state.h)
 
 class DeformableBody {
  public:

@@ -10,7 +10,7 @@
 #include <optional>
 #include <span>
 
-#include <tactus/base/device_sample.h>
+#include <tactus/base/geometry.h>
 #include <tactus/receiver.h>
 #include <tactus/sender.h>
 #include <tactus/signal/device_signal.h>

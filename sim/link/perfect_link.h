@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include <tactus/base/device_sample.h>
+#include <tactus/base/geometry.h>
 #include <tactus/packet/packet.h>
 
 namespace tactus::sim {

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include <tactus/base/device_sample.h>
+#include <tactus/base/geometry.h>
 #include <tactus/session/session_client.h>
 #include <tactus/session/session_server.h>
 #include <tactus/sim/link/link.h>

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include <tactus/base/geometry.h>
-#include <tactus/rigid/contact.h>
+#include <tactus/rigid/trigger.h>
 #include <tactus/sim/contact/surface_proxy.h>
 #include <tactus/sim/scene/scene.h>
 #include <tactus/sim/touchable.h>

@@ -12,7 +12,6 @@
 #include <string_view>
 #include <vector>
 
-#include <tactus/base/device_sample.h>
 #include <tactus/base/diagnostic.h>
 #include <tactus/base/geometry.h>
 #include <tactus/scene/scene_builder.h>

@@ -10,7 +10,6 @@
 #include <optional>
 #include <vector>
 
-#include <tactus/base/device_sample.h>
 #include <tactus/base/geometry.h>
 #include <tactus/sim/random.h>
 #include <tactus/sim/scene/scene.h>

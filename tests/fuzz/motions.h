@@ -9,8 +9,8 @@
 #include <vector>
 
 #include <tactus/base/bytes.h>
-#include <tactus/rigid/contact.h>
 #include <tactus/rigid/rigid_state.h>
+#include <tactus/rigid/trigger.h>
 
 namespace tactus {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include <tactus/base/hash.h>
+#include <tactus/base/bytes.h>
 #include <tactus/packet/substream.h>
 #include <tactus/receiver.h>
 #include "tests/fuzz/require.h"

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include <tactus/base/bytes.h>
-#include <tactus/base/hash.h>
 
 namespace tactus::testing {
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include <tactus/base/hash.h>
+#include <tactus/base/bytes.h>
 #include <tactus/scene/scene_builder.h>
 #include <tactus/session/datagram.h>
 #include <tactus/session/session_client.h>

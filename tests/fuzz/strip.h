@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
+#include <tactus/deformable/displacement.h>
 #include <tactus/deformable/graph.h>
-#include <tactus/deformable/trigger.h>
 #include <tactus/scene/scene.h>
 
 namespace tactus {

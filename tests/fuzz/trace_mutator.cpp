@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include <tactus/base/bytes.h>
-#include <tactus/base/hash.h>
 #include <tactus/trace/mcap.h>
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include <tactus/base/hash.h>
+#include <tactus/base/bytes.h>
 #include <tactus/elastic/driven_shape.h>
 #include <tactus/scene/scene_builder.h>
 #include <tactus/signal/device_path.h>

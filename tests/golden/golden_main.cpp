@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <tactus/base/hash.h>
+#include <tactus/base/bytes.h>
 #include <tactus/signal/device_path.h>
 #include <tactus/signal/device_signal.h>
 #include <tactus/tactus.h>

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include <tactus/base/hash.h>
+#include <tactus/base/bytes.h>
 #include <tactus/tactus.h>
 #include "tests/golden/golden.h"
 

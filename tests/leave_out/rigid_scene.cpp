@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include <tactus/base/hash.h>
+#include <tactus/base/bytes.h>
 #include <tactus/sim/simulation.h>
 
 /// From set-up to the last tick; the name is what callgrind is told to count.

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include <tactus/base/hash.h>
+#include <tactus/base/bytes.h>
 #include <tactus/tactus.h>
 #include "tests/fuzz/sections.h"
 #include "tests/property/allocated.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <tactus/base/hash.h>
+#include <tactus/base/bytes.h>
 
 namespace tactus::conformance {
 

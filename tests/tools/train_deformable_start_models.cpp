@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <utility>
 
-#include <tactus/deformable/main_reader.h>
+#include <tactus/deformable/deformable_decoder.h>
 #include "tests/tools/start_models.h"
 
 namespace {

@@ -6,8 +6,6 @@
 #include <limits>
 #include <string_view>
 
-#include <tactus/base/hash.h>
-
 namespace tactus {
 namespace {
 

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/deformable/area_fit.h>
+#include <tactus/deformable/encoder_fit.h>
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 #include <vector>
-
-#include <tactus/deformable/mode_projection.h>
 
 namespace tactus {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/deformable/cluster_basis.h>
+#include <tactus/deformable/basis.h>
 
 #include <gtest/gtest.h>
 

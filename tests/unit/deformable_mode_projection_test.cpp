@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/deformable/mode_projection.h>
+#include <tactus/deformable/encoder_fit.h>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/deformable/motion.h>
+#include <tactus/deformable/main_state.h>
 
 #include <gtest/gtest.h>
 

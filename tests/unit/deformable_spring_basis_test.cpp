@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/deformable/spring_basis.h>
+#include <tactus/deformable/basis.h>
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,6 @@
 #include <cstdlib>
 #include <utility>
 
-#include <tactus/deformable/ritz.h>
-#include <tactus/deformable/spring_network.h>
 #include "tests/unit/deformable_fixture.h"
 
 namespace tactus {

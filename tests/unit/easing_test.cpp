@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/rigid/easing.h>
+#include <tactus/rigid/curve.h>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/elastic/elastic_elements.h>
+#include <tactus/elastic/elastic_solver.h>
 
 #include <cmath>
 #include <random>
@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include <tactus/elastic/elastic_matrix.h>
 #include "tests/unit/elastic_fixture.h"
 
 namespace tactus {

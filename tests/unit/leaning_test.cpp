@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/rigid/leaning.h>
+#include <tactus/rigid/encoder_choices.h>
 
 #include <gtest/gtest.h>
 

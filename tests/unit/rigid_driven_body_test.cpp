@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/rigid/driven_body.h>
+#include <tactus/rigid/rigid_predictor.h>
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 #include <random>
 
 #include <tactus/base/fixed.h>
-#include <tactus/rigid/rigid_predictor.h>
 #include "tests/property/allocated.h"
 #include "tests/unit/driven_fixture.h"
 

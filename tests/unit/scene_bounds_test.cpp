@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/scene/bounds.h>
+#include <tactus/scene/scene_objects.h>
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include <tactus/base/bytes.h>
-#include <tactus/base/hash.h>
 
 namespace tactus {
 namespace {

@@ -12,7 +12,6 @@
 #include <string_view>
 
 #include <tactus/receiver.h>
-#include <tactus/rigid/contact.h>
 #include <tactus/rigid/trigger.h>
 #include "tests/unit/deformable_fixture.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/session/clock_offset.h>
+#include <tactus/session/timing.h>
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <tuple>
 #include <vector>
 
-#include <tactus/session/device_pace.h>
+#include <tactus/session/timing.h>
 #include <tactus/sim/link/session_network.h>
 #include <tactus/sim/server.h>
 #include <tactus/sim/simulation.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/session/playout_clock.h>
+#include <tactus/session/timing.h>
 
 #include <gtest/gtest.h>
 

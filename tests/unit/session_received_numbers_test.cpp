@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/session/received_numbers.h>
+#include <tactus/session/numbers.h>
 
 #include <gtest/gtest.h>
 

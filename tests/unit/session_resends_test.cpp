@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/session/resends.h>
+#include <tactus/session/fragments.h>
 
 #include <gtest/gtest.h>
 

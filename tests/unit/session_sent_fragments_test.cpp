@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/session/sent_fragments.h>
+#include <tactus/session/fragments.h>
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/session/sent_numbers.h>
+#include <tactus/session/numbers.h>
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,6 @@
 #include <random>
 #include <set>
 #include <vector>
-
-#include <tactus/session/received_numbers.h>
 
 namespace tactus {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <tactus/base/hash.h>
+#include <tactus/base/bytes.h>
 #include <tactus/scene/scene_builder.h>
 #include <tactus/scene/scene_syntax.h>
 #include "tests/unit/deformable_fixture.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/session/session_state.h>
+#include <tactus/session/session_options.h>
 
 #include <gtest/gtest.h>
 

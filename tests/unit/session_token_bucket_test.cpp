@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/session/token_bucket.h>
+#include <tactus/session/congestion.h>
 
 #include <gtest/gtest.h>
 

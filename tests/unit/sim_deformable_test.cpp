@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include <tactus/base/hash.h>
+#include <tactus/base/bytes.h>
 #include <tactus/sim/simulation.h>
 #include "tests/property/allocated.h"
 

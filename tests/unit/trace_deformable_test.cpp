@@ -6,7 +6,6 @@
 #include <map>
 
 #include <tactus/base/bytes.h>
-#include <tactus/base/hash.h>
 #include <tactus/trace/mcap_reader.h>
 #include <tactus/trace/mcap_writer.h>
 #include <tactus/trace/messages.h>

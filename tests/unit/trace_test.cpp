@@ -6,7 +6,6 @@
 #include <limits>
 
 #include <tactus/base/bytes.h>
-#include <tactus/base/hash.h>
 #include <tactus/trace/cdr.h>
 #include <tactus/trace/compression.h>
 #include <tactus/trace/mcap_reader.h>

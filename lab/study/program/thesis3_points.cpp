@@ -8,7 +8,7 @@
 
 #include <tactus/metrics/errors.h>
 #include <tactus/receiver.h>
-#include <tactus/rigid/contact.h>
+#include <tactus/rigid/trigger.h>
 #include <tactus/signal/force_signal.h>
 #include <tactus/sim/random.h>
 #include <tactus/sim/simulation.h>

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What is shown and sent when: clocks of both ends, playout, the device's pace, forces that fade. Integers. Internal to the library.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include <tactus/session/datagram.h>
+#include <tactus/session/numbers.h>
+#include <tactus/session/session_options.h>
+
+namespace tactus {
+
+// ==== clock offset ====
+
+/// The other end's clock less our own [us], from the fastest way there and the fastest way back of the last 10 s: these count as equally
+/// long. spec/70-session.md section 7. Internal to the library.
+class ClockOffset {
+ public:
+  /// in   time  [us] of the other end, when it sent what came at `now` [us];  round_trip  [us], without what the other end waited
+  void add(std::uint64_t time, std::int64_t round_trip, std::uint64_t now) noexcept {
+    const auto back = static_cast<std::int64_t>(now) - static_cast<std::int64_t>(time);
+    back_.add(back, now);
+    there_.add(round_trip - back, now);
+  }
+  std::optional<std::int64_t> value() const noexcept {
+    const auto there = there_.value(), back = back_.value();
+    if (!there) return std::nullopt;
+    return (*there - *back) / 2;
+  }
+
+ private:
+  static constexpr std::uint64_t kWindow = 10'000'000;
+  WindowedMinimum there_{kWindow}, back_{kWindow};  // both contain the offset
+};
+
+// ==== loss bursts ====
+// Datagrams that are lost one after the other, and how long they leave the client without a state. spec/70-session.md section 8.
+
+class LossBursts {
+ public:
+  /// A datagram came.   in   tick  highest of its packets, if it has any   pre  `now` [us] never decreases
+  void heard(std::uint64_t number, std::optional<std::int64_t> tick, std::uint64_t now) noexcept;
+  /// Ticks from the state before to the state after two thirds of the bursts, at most; 0: most losses are single ones.
+  /// in   longest  [ticks]; longer ones are outages, which no delay bridges      time O(1024)
+  std::int64_t bridge(std::int64_t longest, std::uint64_t now) noexcept;
+
+ private:
+  static constexpr std::size_t kRemembered = 1024;
+  struct Datagram {
+    std::uint64_t number = 0, at = 0;  // at [us]
+    std::optional<std::int64_t> tick;
+  };
+  std::uint64_t newest_old(std::uint64_t now) const noexcept;
+
+  std::array<Datagram, kRemembered> datagrams_{};
+  std::array<std::int64_t, kRemembered> spans_{};
+  std::uint64_t newest_ = 0;
+};
+
+// ==== playout clock ====
+// Which tick of the other end to show now. spec/70-session.md section 8.
+
+class PlayoutClock {
+ public:
+  PlayoutClock(std::uint32_t tick_rate, const PlayoutOptions& options) noexcept : tick_rate_(tick_rate), options_(options) {}
+
+  /// A datagram came.   in   tick  highest of its packets, if it has any   time O(1), but 25 us each 100 ms
+  void heard(std::uint64_t number, std::optional<std::int64_t> tick, std::uint64_t now) noexcept;
+  /// A packet of an older tick came as well.   time O(1)
+  void late(std::int64_t tick, std::uint64_t now) noexcept;
+  /// The tick to show; it never falls, nor below that of the first packet. -1: nothing was heard.
+  std::int64_t shown(std::uint64_t now) noexcept;
+  /// [us] since the fastest packet would have brought the tick shown last; nothing: none was shown.
+  std::optional<std::int64_t> behind(std::uint64_t now) const noexcept;
+  std::int64_t delay() const noexcept { return delay_; }  ///< [us] behind the fastest packet of the last 10 s
+
+ private:
+  static constexpr std::size_t kRemembered = 2048;      // leads
+  static constexpr std::uint64_t kRecent = 60'000'000;  // [us]: clocks drift
+  void add(std::int64_t lead, std::uint64_t now) noexcept;
+  void adapt(std::uint64_t now) noexcept;
+  std::int64_t time_of(std::int64_t tick) const noexcept;
+
+  std::uint32_t tick_rate_;
+  PlayoutOptions options_;
+  WindowedMinimum base_{10'000'000};  // of the leads
+  LossBursts bursts_;
+  struct Lead {
+    std::int64_t lead = 0;
+    std::uint64_t at = 0;
+  };
+  std::array<Lead, kRemembered> leads_{};
+  std::array<std::int64_t, kRemembered> sorted_{};
+  std::size_t next_ = 0, count_ = 0;
+  std::int64_t delay_ = 0;
+  std::uint64_t adapted_at_ = 0;  // [us]; 0: never
+  std::int64_t shown_ = -1;
+};
+
+// ==== device pace ====
+// How the ticks of a client's device follow those of the server, so that its packets arrive before they act: a policy of the server.
+// spec/65-signal.md section 4, informative part.
+
+class DevicePace {
+ public:
+  explicit DevicePace(std::uint32_t tick_rate) noexcept
+      : period_(2 * std::int64_t{tick_rate}), margin_((tick_rate + 499) / 500) {}
+
+  /// A packet came.   in  device  its tick. Whether it is late is a matter of the pace: it may be held, and a packet too late to act
+  ///                             though the pace is slow enough already
+  void heard(std::int64_t device) noexcept {
+    if (offset_) least_ = std::min(least_, device - (tick_ - *offset_));
+  }
+
+  /// What changes from this tick of the server on, if anything does.
+  /// in   device  tick of the device that the fastest packets bring now
+  std::optional<PacePart> step(std::int64_t tick, std::int64_t device) noexcept {
+    const std::int64_t before = offset_.value_or(std::numeric_limits<std::int64_t>::min());
+    tick_ = tick;
+    if (!offset_) offset_ = tick - device + margin_;
+    else if (least_ <= 0) *offset_ += 1 - least_;
+    else if (tick < until_) return std::nullopt;
+    else if (least_ > margin_ && least_ != kNone) --*offset_;
+    until_ = tick + period_;
+    least_ = kNone;
+    if (*offset_ == before) return std::nullopt;
+    const PacePart out{tick, *offset_};
+    told_[next_++ % told_.size()] = {out, 0};
+    waiting_ = std::min(waiting_ + 1, told_.size());
+    return out;
+  }
+
+  /// Whether there are changes that the client may not know.
+  bool waits() const noexcept { return waiting_ > 0; }
+  /// Tell them in the datagram of this number.
+  void tell(DatagramWriter& writer, std::uint64_t number) noexcept {
+    for (std::size_t back = waiting_; back > 0; --back) {
+      Told& told = told_[(next_ - back) % told_.size()];
+      if (!writer.add(told.part)) return;
+      if (told.number == 0) told.number = number;
+    }
+  }
+  /// in   highest  number that the client has acknowledged
+  void acknowledged(std::uint64_t highest) noexcept {
+    while (waiting_ > 0) {
+      const Told& oldest = told_[(next_ - waiting_) % told_.size()];
+      if (oldest.number == 0 || oldest.number > highest) return;
+      --waiting_;
+    }
+  }
+
+ private:
+  static constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
+  struct Told {
+    PacePart part;
+    std::uint64_t number = 0;  // of the first datagram that told it; every one since did, too
+  };
+
+  std::int64_t period_, margin_;  // [ticks]
+  std::optional<std::int64_t> offset_;
+  std::int64_t tick_ = 0;       // of the last step
+  std::int64_t least_ = kNone;  // [ticks] until a packet acts that came since the last change; 0 or less: too late
+  std::int64_t until_ = 0;      // before this tick the pace does not get faster
+  std::array<Told, 8> told_{};  // a ring
+  std::size_t next_ = 0, waiting_ = 0;
+};
+
+// ==== force fade ====
+// Old data pushes nobody. spec/70-session.md section 10.
+
+/// Share of a force that a client may render, by the age of its news: all of it up to `fresh`, none from `stale` on, straight between.
+/// When news come again, or share() is called again after a pause, it returns over `kReturn`.
+class ForceFade {
+ public:
+  struct Limits {
+    std::uint64_t fresh = 0, stale = 0;  ///< [us]
+  };
+  static constexpr Limits kUsual{70'000, 100'000};
+  static constexpr Limits kDriven{300'000, 400'000};  ///< of a client that works out what its device does
+  static constexpr std::uint64_t kReturn = 500'000;   ///< [us]
+  static constexpr std::int64_t kAll = 65536;
+
+  void set_limits(const Limits& limits) noexcept { limits_ = limits; }
+
+  /// The device feels nothing: a new contact need not rise slowly.
+  void release(std::uint64_t now) noexcept {
+    share_ = kAll;
+    looked_at_ = now;
+  }
+
+  /// in   now >= heard  [us]; `now` never decreases.   out  x 2^-16
+  std::int64_t share(std::uint64_t now, std::uint64_t heard) noexcept {
+    const auto [fresh, stale] = limits_;
+    const std::uint64_t age = std::clamp(now - heard, fresh, stale);
+    const auto most = static_cast<std::int64_t>((stale - age) * static_cast<std::uint64_t>(kAll) / (stale - fresh));
+    if (now - looked_at_ > stale) {  // nobody looked: what was felt meanwhile is not known
+      share_ = 0;
+      looked_at_ = now;
+    }
+    const std::uint64_t passed = now - looked_at_;
+    const auto risen = share_ + static_cast<std::int64_t>(passed * static_cast<std::uint64_t>(kAll) / kReturn);
+    if (risen > share_ || most < share_) looked_at_ = now;
+    share_ = std::min(most, risen);
+    return share_;
+  }
+
+ private:
+  Limits limits_ = kUsual;
+  std::int64_t share_ = 0;
+  std::uint64_t looked_at_ = 0;
+};
+
+}  // namespace tactus
