@@ -8,7 +8,7 @@ function(tactus_unity_names defined used file)
   file(READ ${file} text)
   string(REGEX REPLACE "[;[]|\\]" "(" text "\n${text}")  # which CMake's lists take for their own
   string(REGEX MATCHALL "[A-Z][A-Za-z0-9_]*|k[A-Z][A-Za-z0-9]*" uses "${text}")
-  string(REGEX MATCHALL "\n(struct|class|enum class|enum|#define) +[A-Za-z_0-9]+[^A-Za-z_0-9:]|\nusing +[A-Za-z_0-9]+ =|\n[a-z][^\n(={]*[ &*>][A-Za-z_0-9]+ ?[({=]" lines "${text}")
+  string(REGEX MATCHALL "\n(struct|class|enum class|enum|#define) +[A-Za-z_0-9]+[^A-Za-z_0-9:]|\nusing +[A-Za-z_0-9]+ =|\n[A-Za-z][^\n(={]*[ &*>][A-Za-z_0-9]+ ?[({=]" lines "${text}")
   set(names)
   foreach(line IN LISTS lines)
     if(NOT line MATCHES "^\n(return|else|namespace)" AND line MATCHES "([A-Za-z_0-9]+) ?[^A-Za-z_0-9]$")
