@@ -13,6 +13,7 @@ import os
 import sys
 
 OK, FAILED, USAGE, BROKEN, SIGNALLED = 0, 1, 2, 3, 128
+LONGEST_TEXT = 1500
 WHOLE_LINE = argparse.RawDescriptionHelpFormatter
 
 
@@ -61,7 +62,9 @@ def whole(least, most):
 
 
 def printable(text):
-    """The text with its control characters escaped, for terminals."""
+    """The text with its control characters escaped, for terminals, and without the middle of what nobody reads to the end."""
+    if len(text) > LONGEST_TEXT:
+        text = f"{text[:LONGEST_TEXT // 2]} ... {text[-LONGEST_TEXT // 4:]}"
     return "".join(c if c == "\n" or (c.isprintable() and c != "\x7f") else c.encode("unicode_escape").decode() for c in text)
 
 
@@ -98,6 +101,9 @@ def run(made, work, words=None):
         status = FAILED
     except OSError as refused:
         complain(Refusal(f"{refused.filename or 'a file'}: {refused.strerror}", "Check the path and the rights to it."), "--json" in words)
+        status = FAILED
+    except MemoryError:
+        complain(Refusal("there is not enough memory", "Give smaller inputs, or run it on a larger machine."), "--json" in words)
         status = FAILED
     except KeyboardInterrupt:
         status = SIGNALLED + 2

@@ -15,6 +15,7 @@ from .formula import LEADING, Formula, NotAFormula
 MOST_POINTS, MOST_IN_RANGE, MOST_ENTRIES = 1_000_000, 1000, 256
 LONGEST_WORD = 65536  # [bytes] of a command with its values: Linux passes twice as much
 LONGEST_PATH = 4096
+DEEP = re.compile(r"(?:[\w-]+ *\. *){64}")  # a dotted key of so many parts
 MOST_BYTES = 1 << 20
 MOST_SAID, LONGEST_SAID = 20, 200  # findings; characters of a part of one
 SIMPLE = re.compile(r"[A-Za-z0-9_-][A-Za-z0-9_.-]*\Z")
@@ -113,6 +114,8 @@ def load(path):
         raise Refusal(f"{path}: has more than {MOST_BYTES} bytes", "Give a plan, not a table.", file=str(path))
     try:
         text = raw.decode()
+        if DEEP.search(text):
+            raise RecursionError  # found at once: the parser takes a time that grows with the square of the depth
         root = tomllib.loads(text)
     except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as wrong:
         raise Refusal(f"{path}: is no TOML: {wrong or 'nested too deep'}", "Correct it: reports/plans/README.md lists the keys.",
