@@ -51,7 +51,7 @@ run_tests() { # PRESET
   return $status
 }
 
-sources() { find codec io metrics sim device cli bindings examples conformance tests \( -name '*.h' -o -name '*.cpp' -o -name '*.c' \) -print | LC_ALL=C sort; }
+sources() { find codec io metrics sim device cli bindings lab examples conformance tests \( -name '*.h' -o -name '*.cpp' -o -name '*.c' \) -print | LC_ALL=C sort; }
 
 # Every installed header must stand alone: it includes what it needs, and only what is installed.
 check_headers() { # INCLUDE_DIR
@@ -119,7 +119,7 @@ exact() { # [all]
         *) continue ;;
       esac
       dir=build/exact/$compiler$(echo "$flags" | tr -d ' ')
-      cmake --preset codec-only -B "$dir" -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_CXX_FLAGS="$flags" -DCMAKE_BUILD_TYPE=None \
+      cmake --preset codec-only -B "$dir" -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_C_COMPILER="$(echo "$compiler" | sed "s,g++,gcc,; s,clang++,clang,")" -DCMAKE_CXX_FLAGS="$flags" -DCMAKE_BUILD_TYPE=None \
         -DTACTUS_WERROR=OFF -DTACTUS_WITH_TESTS=ON >/dev/null
       cmake --build "$dir" --target tactus_golden -j "$jobs" >/dev/null
       "$dir/tests/golden/tactus_golden" >"$dir/hashes.txt"

@@ -16,9 +16,9 @@
 #include "cli/commands/session_capture.h"
 #endif
 #include "cli/commands/replay.h"
+#include "cli/commands/stiffness_map.h"
 #include "cli/commands/stop.h"
 #include "cli/figure/motion_figure.h"
-#include "cli/commands/stiffness_map.h"
 #include "cli/options/compensation_option.h"
 #include "cli/options/hand_option.h"
 #include "cli/options/option_needs.h"

@@ -108,10 +108,10 @@ void ModeProjection::project(std::span<const Vec3i> error, std::span<float> coef
 
 namespace {
 
-constexpr std::size_t kAreaLanes = 4;    // sums in a fixed order that a compiler can vectorise
-constexpr float kMostWeight = 64;    // beyond it the rest of the shape would be given up
-constexpr int kSteps = 6;            // of conjugate gradients; more of them save no bits
-constexpr float kConverged = 1e-6F;  // of the first gradient's square: the rest is rounding
+constexpr std::size_t kAreaLanes = 4;  // sums in a fixed order that a compiler can vectorise
+constexpr float kMostWeight = 64;      // beyond it the rest of the shape would be given up
+constexpr int kSteps = 6;              // of conjugate gradients; more of them save no bits
+constexpr float kConverged = 1e-6F;    // of the first gradient's square: the rest is rounding
 
 float dot(const float* a, const float* b, std::size_t n) noexcept {
   std::array<float, kAreaLanes> sum{};
