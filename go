@@ -4,7 +4,7 @@
 #   ./go demo     simulate a touch, encode, decode and compare; report and figure in out/demo/ (4 minutes on 2 cores)
 #   ./go view     the same, and a page that shows it in a browser, out/demo/stream.html (2 minutes and 500 MB more)
 #   ./go test     build with g++ and test: codec, library, program, Python, fuzz corpora, conformance (12 minutes on 2 cores)
-#   ./go test all       and with sanitizers, other compilers, clang-tidy of what changed, a browser (40 minutes)
+#   ./go test all       and with sanitizers, other compilers, clang-tidy of what changed, a browser (an hour)
 #   ./go test nightly   what is left: packages, mutants, other builds, fuzzing, Slurm, an emulated machine (hours)
 #   ./go bench    build and run the benchmarks; JSON in build/bench/
 #   ./go devices  capture a device of the kernel's own making in an emulated machine, from /dev/uhid to the trace (30 s after the build)
