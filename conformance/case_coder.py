@@ -12,7 +12,7 @@ import rigid
 from case_text import CaseError, Element, Elements, bytes_of
 from conventions import Cursor, StreamError, require
 from declaration_syntax import varint_bytes, zigzagged
-from deformable_header import THESIS, zigzag
+from deformable_header import zigzag
 from range_coder import RangeDecoder
 from range_encoder import RangeEncoder
 from start_models import Models
