@@ -12,12 +12,12 @@
 
 #include <tactus/base/bytes.h>
 #include <tactus/base/rule.h>
-#include <tactus/elastic/elimination.h>
+#include <tactus/elastic/elastic_solver.h>
 #include <tactus/file/stream_file.h>
 #include <tactus/packet/substream.h>
 #include <tactus/receiver.h>
 #include <tactus/scene/elastic_syntax.h>
-#include <tactus/signal/device_path.h>
+#include <tactus/signal/device_signal.h>
 
 namespace tactus::conformance {
 namespace {

@@ -7,10 +7,41 @@
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
-
+#include <cerrno>
 #include <cstdint>
+#include <ctime>
 
 namespace tactus::device {
+
+// ==== clock ====
+
+namespace {
+
+constexpr Time kSecond = 1000 * kMillisecond;
+
+class MonotonicClock final : public Clock {
+ public:
+  Time now() noexcept override {
+    timespec time{};
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return time.tv_sec * kSecond + time.tv_nsec;
+  }
+  void sleep_until(Time time) noexcept override {
+    const timespec until{time / kSecond, time % kSecond};
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
+    }
+  }
+};
+
+}  // namespace
+
+Clock& monotonic_clock() noexcept {
+  static MonotonicClock clock;
+  return clock;
+}
+
+// ==== real time ====
+
 namespace {
 
 constexpr int kPriority = 80;  // of 1..99: above interrupts' threads (50), below the kernel's own

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+/// What a device did, recorded and replayed.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
@@ -12,6 +14,8 @@
 #include <tactus/trace/frame.h>
 
 namespace tactus::device {
+
+// ==== recording ====
 
 struct RecordingOptions {
   std::string user{};  ///< empty: the first
@@ -60,5 +64,12 @@ class Recording {
   Vec3 low_, high_;
   std::size_t next_ = 0;  // the first sample behind the last moment
 };
+
+// ==== replay device ====
+
+/// A recording as a device; it takes no force. The time of a sample is the recording's.
+/// in   path  a trace; its frame of coordinates is taken as the device's
+/// err  those of Recording::read
+tl::expected<std::unique_ptr<Device>, Diagnostic> open_replay_device(const std::string& path, const RecordingOptions& options);
 
 }  // namespace tactus::device

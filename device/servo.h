@@ -20,10 +20,9 @@
 #include <optional>
 #include <thread>
 
-#include <tactus/device/clock.h>
 #include <tactus/device/device.h>
 #include <tactus/device/force_guard.h>
-#include <tactus/device/histogram.h>
+#include <tactus/device/real_time.h>
 
 namespace tactus::device {
 

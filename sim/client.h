@@ -3,22 +3,69 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include <tactus/client/stiffness_reduction.h>
 #include <tactus/receiver.h>
 #include <tactus/signal/device_signal.h>
-#include <tactus/sim/compensation.h>
-#include <tactus/sim/deformable/deformable_view.h>
+#include <tactus/sim/deformable/deformable_probes.h>
 #include <tactus/sim/msd/msd_objects.h>
 #include <tactus/sim/prediction/prediction.h>
 #include <tactus/sim/rigid/rigid_objects.h>
+#include <tactus/sim/scene/scene.h>
 #include <tactus/sim/server.h>
+#include <tactus/sim/touchable.h>
 #include <tactus/sim/user/passivity.h>
 
 namespace tactus::sim {
+
+// ==== compensation ====
+// What a client makes of the delay of what it shows: it renders what its users touch softer, as much as keeps their forces right
+// (thesis algorithm 1 for rigid objects, 4.52 to 4.56 for those that yield). codec/client/stiffness_reduction.h
+
+/// [N] What all users but this one push an object with.   in  load  of Receiver::load
+Vec3 others_push(std::span<const GridForce> load, std::size_t user, unsigned force_exp) noexcept;
+
+/// Of all users of one client.
+class Compensation {
+ public:
+  /// pre  scene.compensation, and the scene outlives this.
+  /// err  R-API-4: its filter
+  static Result<Compensation> create(const Scene& scene);
+
+  /// The user's device in this tick, before what it touches.   no allocation
+  void move(std::size_t user, const DeviceSample& device) noexcept { reductions_[user].move(device.position); }
+  /// What the object that a user touches is shown as.
+  struct Shown {
+    const DeformableObject* deformable = nullptr;  ///< as declared, of touch.surface; none: its stiffness is not told
+    std::span<const GridForce> load{};             ///< Receiver::load, of touch.contact.object
+    unsigned force_exp = 0;
+    Pose pose;
+    bool moves = false;
+  };
+  /// The force [N] to render in place of that of a touch.
+  /// in   delay  [ticks] of what is shown
+  /// no allocation
+  Vec3 soften(std::size_t user, const Touch& touch, const Vec3& device, const Shown& shown, std::uint32_t delay) noexcept;
+  /// The user touches nothing in this tick.
+  void release(std::size_t user) noexcept { reductions_[user].release(); }
+  /// [N/m] rendered in the last soften() of the user.
+  double stiffness(std::size_t user) const noexcept { return stiffness_[user]; }
+
+ private:
+  explicit Compensation(const Scene& scene) : scene_(&scene), stiffness_(scene.users.size()) {}
+  double reduced(std::size_t user, const Touch& touch, const Vec3& stretch, const Shown& shown, std::uint32_t delay) noexcept;
+
+  const Scene* scene_;
+  std::vector<StiffnessReduction> reductions_;  // one per user
+  std::vector<double> stiffness_;               // [N/m] one per user
+};
+
+// ==== client ====
 
 /// The client end of a simulation: with all users of the scene, or with one, behind a network.
 class Client {

@@ -8,10 +8,10 @@
 
 #include <tactus/base/rule.h>
 #include <tactus/sim/client.h>
-#include <tactus/sim/link/perfect_link.h>
+#include <tactus/sim/link/link.h>
 #include <tactus/sim/server.h>
 #include <tactus/sim/user/hand.h>
-#include <tactus/sim/user/sampled_limit.h>
+#include <tactus/sim/user/passivity.h>
 
 namespace tactus::sim {
 

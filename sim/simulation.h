@@ -3,7 +3,7 @@
 ///
 ///   1 hand     feels the client's force of the last tick and moves; the device reports x_d                sim/user/hand.h
 ///   2 server   proxy on the true state: contact, force f                                                  sim/server.h
-///   3 link     truth -> Sender -> packets -> Receiver -> Replica         (left out without a codec)       sim/link/perfect_link.h
+///   3 link     truth -> Sender -> packets -> Receiver -> Replica         (left out without a codec)       sim/link/link.h
 ///   4 client   proxy on what the replica shows, same x_d: force f_c, which the hand will feel             sim/client.h
 ///   5 physics  -f acts on the touched object at the proxy; state of the next tick                         sim/server.h
 ///
@@ -22,10 +22,10 @@
 #include <tactus/receiver.h>
 #include <tactus/sender.h>
 #include <tactus/sim/deformable/deformable_objects.h>
-#include <tactus/sim/link/network.h>
+#include <tactus/sim/link/link.h>
 #include <tactus/sim/scene/scene.h>
 #include <tactus/sim/touchable.h>
-#include <tactus/sim/user/touch_record.h>
+#include <tactus/sim/user/passivity.h>
 #include <tactus/trace/frame.h>
 #include <tactus/trace/trace_scene.h>
 
@@ -87,7 +87,7 @@ class Simulation {
   SharedScene stream_scene() const noexcept;                     ///< of the packets.   pre  there is a channel
   const DeformableObjects* deformables() const noexcept;         ///< null: the scene has none
   const TouchSummary& touched(std::size_t user) const noexcept;  ///< all ticks so far
-  /// [N/m] largest stable stiffness of a coupling to a fixed point (sampled_limit.h)
+  /// [N/m] largest stable stiffness of a coupling to a fixed point (passivity.h)
   double bears(std::size_t user) const noexcept;
 
   Simulation(Simulation&&) noexcept;

@@ -6,7 +6,6 @@
 #include <system_error>
 
 #include <tactus/scene/scene_syntax.h>
-#include <tactus/trace/trace_clusters.h>
 #include <tactus/trace/trace_scene.h>
 
 #include "bounds.h"

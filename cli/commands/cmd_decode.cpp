@@ -10,7 +10,7 @@
 #include <tactus/file/stream_file.h>
 #include <tactus/player.h>
 #include <tactus/trace/trace_file.h>
-#include <tactus/trace/trace_replica.h>
+#include <tactus/trace/trace_scene.h>
 #include "cli/commands/motion_source.h"
 #include "cli/figure/motion_figure.h"
 #include "cli/report/report.h"

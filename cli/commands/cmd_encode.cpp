@@ -10,7 +10,6 @@
 #include <tactus/base/shown.h>
 #include <tactus/file/stream_file.h>
 #include <tactus/receiver.h>
-#include <tactus/trace/trace_clusters.h>
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_scene.h>
 #include "cli/commands/rereadable_input.h"

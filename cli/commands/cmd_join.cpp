@@ -17,7 +17,7 @@
 #include <tactus/session/session_client.h>
 #include <tactus/sim/client.h>
 #include <tactus/trace/trace_recorder.h>
-#include <tactus/trace/trace_replica.h>
+#include <tactus/trace/trace_scene.h>
 #include "cli/commands/stop.h"
 #include "cli/live/device_choice.h"
 #include "cli/live/guard_report.h"

@@ -11,7 +11,7 @@
 
 #include <tactus/base/shown.h>
 #include <tactus/sim/tets/tet_files.h>
-#include <tactus/sim/tets/tet_quality.h>
+#include <tactus/sim/tets/tet_mesh.h>
 #include "cli/report/json_parts.h"
 #include "cli/report/report.h"
 #include "cli/report/table.h"

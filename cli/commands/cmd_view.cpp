@@ -9,7 +9,7 @@
 
 #include <tactus/base/shown.h>
 #include <tactus/player.h>
-#include <tactus/trace/trace_replica.h>
+#include <tactus/trace/trace_scene.h>
 #include "cli/report/figures.h"
 #include "cli/report/report.h"
 #include "cli/report/trace_ending.h"

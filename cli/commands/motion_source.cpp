@@ -10,7 +10,7 @@
 
 #include <tactus/base/shown.h>
 #include <tactus/file/stream_file.h>
-#include <tactus/trace/trace_replica.h>
+#include <tactus/trace/trace_scene.h>
 #include "cli/output.h"
 #include "cli/report/trace_ending.h"
 

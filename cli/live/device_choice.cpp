@@ -19,7 +19,7 @@
 #ifdef TACTUS_HAS_OPENHAPTICS
 #include <tactus/device/openhaptics/openhaptics_device.h>
 #endif
-#include <tactus/device/replay_device.h>
+#include <tactus/device/recording.h>
 #include "cli/options/options_codec.h"
 #include "cli/options/units.h"
 

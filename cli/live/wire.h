@@ -11,7 +11,7 @@
 #include <string>
 
 #include <tactus/net/udp.h>
-#include <tactus/seal/counters.h>
+#include <tactus/seal/key.h>
 #include "cli/report/messages.h"
 
 namespace tactus::cli {

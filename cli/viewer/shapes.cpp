@@ -7,7 +7,7 @@
 
 #include <tactus/base/shown.h>
 #include <tactus/sim/scene/scene.h>
-#include <tactus/sim/scene/toml_text.h>
+#include <tactus/sim/scene/toml_reader.h>
 
 namespace tactus::cli {
 namespace {

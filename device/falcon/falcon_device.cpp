@@ -8,7 +8,6 @@
 #include <tactus/base/rule.h>
 #include <tactus/device/falcon/falcon_frame.h>
 #include <tactus/device/falcon/falcon_kinematics.h>
-#include <tactus/device/falcon/falcon_start.h>
 #include <tactus/trace/text.h>
 
 namespace tactus::device::falcon {

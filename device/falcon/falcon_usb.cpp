@@ -9,9 +9,9 @@
 #include <cstdio>
 #include <thread>
 
-#include <tactus/device/clock.h>
 #include <tactus/device/falcon/libusb_library.h>
 #include <tactus/device/guardian.h>
+#include <tactus/device/real_time.h>
 
 namespace tactus::device::falcon {
 namespace {

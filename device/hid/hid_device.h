@@ -16,6 +16,16 @@
 
 namespace tactus::device::hid {
 
+// ==== report device ====
+// A HID device of any kind, whose reports are handed on as they come.
+
+Capabilities report_capabilities(const RawListing& listing);
+
+/// What comes beyond a tick's room is left in the system, which keeps 64 reports.
+std::unique_ptr<Device> make_report_device(std::unique_ptr<RawPort> port, const RawListing& listing);
+
+// ==== hid device ====
+
 inline constexpr double kDefaultReach = 0.05;  ///< [m]
 inline constexpr double kDefaultTurn = 0.5;    ///< [rad]
 

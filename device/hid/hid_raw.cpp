@@ -11,8 +11,8 @@
 #include <fstream>
 #include <iterator>
 
-#include <tactus/device/clock.h>
 #include <tactus/device/hid/hidapi_library.h>
+#include <tactus/device/real_time.h>
 
 namespace tactus::device::hid {
 namespace {

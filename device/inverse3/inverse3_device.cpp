@@ -6,9 +6,9 @@
 #include <utility>
 
 #include <tactus/base/rule.h>
-#include <tactus/device/clock.h>
 #include <tactus/device/inverse3/inverse3_messages.h>
 #include <tactus/device/inverse3/web_socket.h>
+#include <tactus/device/real_time.h>
 
 namespace tactus::device::inverse3 {
 namespace {

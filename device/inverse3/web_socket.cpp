@@ -13,7 +13,7 @@
 #include <optional>
 #include <utility>
 
-#include <tactus/device/clock.h>
+#include <tactus/device/real_time.h>
 
 namespace tactus::device::inverse3 {
 namespace {

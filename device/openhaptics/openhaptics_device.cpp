@@ -12,9 +12,8 @@
 #include <utility>
 
 #include <tactus/base/rule.h>
-#include <tactus/device/clock.h>
-#include <tactus/device/openhaptics/hd_exchange.h>
 #include <tactus/device/openhaptics/hd_runtime.h>
+#include <tactus/device/real_time.h>
 
 namespace tactus::device::openhaptics {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Touch, Touch X and Phantom through the vendor's runtime. Its thread calls us at the device's rate; between it and us stand
-/// hd_exchange.h. When the program hangs, that thread itself lets the force fade; when it dies, the thread dies with it, and the device
+/// hd_runtime.h. When the program hangs, that thread itself lets the force fade; when it dies, the thread dies with it, and the device
 /// is left to its own watchdog.
 #pragma once
 

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// One DTLS association: datagrams in, datagrams out, without socket and clock. spec/70-session.md section 11. Internal to the library.
-///
-/// GnuTLS never repeats a flight here, as its timers know the machine's clock only: who owns the association sends flight() again.
+/// One DTLS association, and the cookies by which an address proves itself. Internal to the library.
 #pragma once
 
 #include <gnutls/dtls.h>
 #include <gnutls/gnutls.h>
-
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -14,10 +12,43 @@
 #include <span>
 #include <vector>
 
-#include <tactus/seal/counters.h>
+#include <tactus/base/result.h>
 #include <tactus/seal/key.h>
 
 namespace tactus::seal {
+
+// ==== cookies ====
+// Cookies by which an address proves itself, without any memory of it. spec/70-session.md section 11.3.
+
+class Cookies {
+ public:
+  /// err  internal R-SEA-6: the system has no random bits
+  static Result<Cookies> create(std::uint64_t now);
+
+  enum class Verdict { proven, unproven, no_hello };
+  struct Look {
+    Verdict verdict = Verdict::no_hello;
+    gnutls_dtls_prestate_st state{};  ///< for the association, if proven
+  };
+  /// in   who  bytes of the sender's address;  wire  a datagram that begins with a ClientHello
+  Look look(std::uint64_t now, std::span<const std::uint8_t> who, std::span<const std::uint8_t> wire) noexcept;
+  /// A HelloVerifyRequest; empty: GnuTLS refuses.   out  valid until the next call
+  std::span<const std::uint8_t> answer(std::span<const std::uint8_t> who) noexcept;
+
+ private:
+  using Key = std::array<std::uint8_t, GNUTLS_COOKIE_KEY_SIZE>;
+  void renew(std::uint64_t now) noexcept;
+
+  Key current_{}, before_{};
+  std::uint64_t renewed_ = 0;  // [us]
+  std::array<std::uint8_t, 64> answer_{};
+  std::size_t answer_size_ = 0;
+};
+
+// ==== association ====
+// One DTLS association: datagrams in, datagrams out, without socket and clock. spec/70-session.md section 11.
+//
+// GnuTLS never repeats a flight here, as its timers know the machine's clock only: who owns the association sends flight() again.
 
 enum class Content : std::uint8_t { change_cipher_spec = 20, alert = 21, handshake = 22, application_data = 23 };
 constexpr std::uint8_t kClientHello = 1, kHelloVerifyRequest = 3, kClientKeyExchange = 16;  // types of handshake messages

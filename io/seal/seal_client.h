@@ -14,7 +14,6 @@
 #include <optional>
 #include <span>
 
-#include <tactus/seal/counters.h>
 #include <tactus/seal/key.h>
 
 namespace tactus::seal {

@@ -8,7 +8,6 @@
 
 #include <tactus/base/rule.h>
 #include <tactus/seal/association.h>
-#include <tactus/seal/cookies.h>
 
 namespace tactus::seal {
 namespace {

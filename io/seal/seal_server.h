@@ -16,7 +16,6 @@
 #include <span>
 
 #include <tactus/net/udp.h>
-#include <tactus/seal/counters.h>
 #include <tactus/seal/key.h>
 
 namespace tactus::seal {

@@ -85,7 +85,7 @@ struct CsvImport {
 ///      written file is removed.
 tl::expected<CsvImport, Diagnostic> import_csv(const std::string& path, const CsvMapping& mapping, const std::string& out_path);
 
-/// One row per tick: tick, time_s, then of each object and user the columns of csv_columns.h, named by their topics
+/// One row per tick: tick, time_s, then of each object and user the columns of csv_plan.h, named by their topics
 /// ("/objects/cube/qw"). A force that the trace does not know (KnownForces) has no columns. Numbers are the shortest decimals that
 /// read back to the same bits. Returns the ticks of the rows.
 /// err  io R-TRC-1: the stream refused; whatever TraceReader::next() reports.

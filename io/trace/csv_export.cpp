@@ -4,7 +4,7 @@
 
 #include <tactus/base/rule.h>
 #include <tactus/trace/csv.h>
-#include <tactus/trace/csv_columns.h>
+#include <tactus/trace/csv_plan.h>
 #include <tactus/trace/csv_reader.h>
 
 namespace tactus {

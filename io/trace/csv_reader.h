@@ -14,7 +14,6 @@
 
 #include <tactus/base/result.h>
 #include <tactus/trace/byte_source.h>
-#include <tactus/trace/compression.h>
 #include <tactus/trace/input_budget.h>
 
 namespace tactus {

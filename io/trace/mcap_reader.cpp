@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include <tactus/base/bytes.h>
-#include <tactus/trace/compression.h>
+#include <tactus/trace/byte_source.h>
 #include <tactus/trace/text.h>
 
 namespace tactus::mcap {

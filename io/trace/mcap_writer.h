@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <tactus/base/result.h>
-#include <tactus/trace/compression.h>
+#include <tactus/trace/byte_source.h>
 #include <tactus/trace/input_budget.h>
 #include <tactus/trace/mcap.h>
 

@@ -2,12 +2,250 @@
 #include <tactus/trace/messages.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include <tactus/base/rule.h>
+#include <tactus/trace/ros_definitions.h>
 #include <tactus/trace/text.h>
 
 namespace tactus {
+
+// ==== cdr ====
+
+namespace {
+
+constexpr std::array<std::uint8_t, 4> kLittleEndian{0x00, 0x01, 0x00, 0x00};
+
+constexpr std::size_t padding(std::size_t position, std::size_t size) noexcept { return (size - position % size) % size; }
+
+}  // namespace
+
+CdrWriter::CdrWriter(std::vector<std::uint8_t>& out) : bytes_(out), out_(out) {
+  out.assign(kLittleEndian.begin(), kLittleEndian.end());
+}
+
+void CdrWriter::align(std::size_t size) { bytes_.insert(bytes_.end(), padding(bytes_.size() - kLittleEndian.size(), size), 0); }
+
+void CdrWriter::u32(std::uint32_t value) {
+  align(sizeof value);
+  out_.u32(value);
+}
+
+void CdrWriter::i64(std::int64_t value) {
+  align(sizeof value);
+  out_.u64(static_cast<std::uint64_t>(value));
+}
+
+void CdrWriter::f64(double value) { i64(std::bit_cast<std::int64_t>(value)); }
+
+void CdrWriter::text(std::string_view value) {
+  u32(static_cast<std::uint32_t>(value.size() + 1));
+  out_.bytes({reinterpret_cast<const std::uint8_t*>(value.data()), value.size()});
+  u8(0);
+}
+
+void CdrWriter::vec3(const Vec3& value) {
+  f64(value.x);
+  f64(value.y);
+  f64(value.z);
+}
+
+void CdrWriter::quat(const Quat& value) {
+  f64(value.x);
+  f64(value.y);
+  f64(value.z);
+  f64(value.w);
+}
+
+CdrReader::CdrReader(std::span<const std::uint8_t> message) noexcept
+    : supported_(message.size() >= kLittleEndian.size() &&
+                 std::equal(kLittleEndian.begin(), kLittleEndian.begin() + 2, message.begin())),
+      body_(message.subspan(std::min(message.size(), kLittleEndian.size()))) {}
+
+void CdrReader::align(std::size_t size) noexcept { body_.bytes(padding(body_.position(), size)); }
+
+std::uint32_t CdrReader::u32() noexcept {
+  align(sizeof(std::uint32_t));
+  return body_.u32();
+}
+
+std::int64_t CdrReader::i64() noexcept {
+  align(sizeof(std::int64_t));
+  return static_cast<std::int64_t>(body_.u64());
+}
+
+double CdrReader::f64() noexcept { return std::bit_cast<double>(i64()); }
+
+std::uint32_t CdrReader::count(std::size_t item_size) noexcept {
+  const std::uint32_t items = u32();
+  if (items <= body_.remaining() / item_size) return items;
+  malformed_ = true;
+  return 0;
+}
+
+std::string_view CdrReader::text() noexcept {
+  const auto raw = body_.bytes(u32());
+  if (raw.empty() || raw.back() != 0) {
+    malformed_ = true;
+    return {};
+  }
+  return {reinterpret_cast<const char*>(raw.data()), raw.size() - 1};
+}
+
+Vec3 CdrReader::vec3() noexcept {
+  const double x = f64(), y = f64();
+  return {x, y, f64()};
+}
+
+Quat CdrReader::quat() noexcept {
+  Quat q;
+  q.x = f64();
+  q.y = f64();
+  q.z = f64();
+  q.w = f64();
+  return q;
+}
+
+Pose CdrReader::pose() noexcept {
+  const Vec3 position = vec3();
+  return {position, quat()};
+}
+
+// ==== schemas ====
+
+namespace {
+
+using ros::Definition, ros::definition_text, ros::kPoint, ros::kPose, ros::kQuaternion, ros::kTime, ros::kVector3;
+
+constexpr Definition kHeader{"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"};
+constexpr Definition kMeshTriangle{"shape_msgs/MeshTriangle", "uint32[3] vertex_indices\n"};
+constexpr Definition kTwist{"geometry_msgs/Twist", "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n"};
+
+struct Message {
+  std::string_view fields;
+  std::vector<Definition> dependencies;
+};
+
+Message contact_message() {
+  return {
+      "# A user's probe touches one object. No message at a tick: no contact.\n"
+      "uint8 SURFACE=1\n"
+      "uint8 SPRING=2\n"
+      "std_msgs/Header header\n"
+      "# SURFACE: force along the face's normal only. SPRING: probe tied to a point, whole vector.\n"
+      "uint8 kind\n"
+      "# The object touched, by its place in the trace and by its name.\n"
+      "uint32 object_index\n"
+      "string object\n"
+      "# [m] in the object's frame: a point of the face, or the spring's anchor.\n"
+      "geometry_msgs/Point point\n"
+      "# In the object's frame, outward, unit length.\n"
+      "geometry_msgs/Vector3 normal\n"
+      "# [N/m]\n"
+      "float64 stiffness\n",
+      {kHeader, kTime, kPoint, kVector3}};
+}
+
+Message message_of(MessageType type) {
+  switch (type) {
+    case MessageType::pose:
+      return {"std_msgs/Header header\ngeometry_msgs/Pose pose\n", {kHeader, kTime, kPose, kPoint, kQuaternion}};
+    case MessageType::twist:
+      return {"std_msgs/Header header\ngeometry_msgs/Twist twist\n", {kHeader, kTime, kTwist, kVector3}};
+    case MessageType::point:
+      return {"std_msgs/Header header\ngeometry_msgs/Point point\n", {kHeader, kTime, kPoint}};
+    case MessageType::vector:
+      return {"std_msgs/Header header\ngeometry_msgs/Vector3 vector\n", {kHeader, kTime, kVector3}};
+    case MessageType::mesh:
+      return {"shape_msgs/MeshTriangle[] triangles\ngeometry_msgs/Point[] vertices\n", {kMeshTriangle, kPoint}};
+    case MessageType::displacements:
+      return {
+          "# How far every vertex of a mesh is from its place at rest. No message at a tick: as before.\n"
+          "std_msgs/Header header\n"
+          "# [m] x, y, z of the first vertex, then of the second\n"
+          "float32[] data\n",
+          {kHeader, kTime}};
+    case MessageType::contact:
+      return contact_message();
+    case MessageType::quaternion:
+      return {"std_msgs/Header header\ngeometry_msgs/Quaternion quaternion\n", {kHeader, kTime, kQuaternion}};
+    case MessageType::buttons:
+      return {
+          "# Buttons of a device. No message at a tick: as before.\n"
+          "std_msgs/Header header\n"
+          "# Bit i is set while button i is down.\n"
+          "uint32 down\n",
+          {kHeader, kTime}};
+    case MessageType::time_reference:
+      return {"std_msgs/Header header\nbuiltin_interfaces/Time time_ref\nstring source\n", {kHeader, kTime}};
+    case MessageType::servo:
+      return {
+          "# How a tick of a captured device went.\n"
+          "std_msgs/Header header\n"
+          "# [ns] The tick began so long after its time; the device's sample was so old then.\n"
+          "int64 lateness\n"
+          "int64 age\n"
+          "# Ticks left out before this one.\n"
+          "uint32 missed\n"
+          "# What was done to the force: 1 not finite, 2 stale, 4 sample not valid, 8 clamp, 16 passivity, 32 slew.\n"
+          "uint32 guard\n",
+          {kHeader, kTime}};
+    case MessageType::log:
+      return {
+          "byte DEBUG=10\nbyte INFO=20\nbyte WARN=30\nbyte ERROR=40\nbyte FATAL=50\n"
+          "builtin_interfaces/Time stamp\nuint8 level\nstring name\nstring msg\nstring file\nstring function\nuint32 line\n",
+          {kTime}};
+    case MessageType::reports:
+      return {
+          "# Input reports of a device that came since the tick before, as it sent them. No message at a tick: none came.\n"
+          "std_msgs/Header header\n"
+          "# [bytes] of each report, the oldest first\n"
+          "uint32[] sizes\n"
+          "# One report behind the other.\n"
+          "uint8[] data\n",
+          {kHeader, kTime}};
+    case MessageType::surface_contact:
+      break;
+  }
+  return {
+      "# A user's probe touches one mesh. No message at a tick: no contact.\n"
+      "std_msgs/Header header\n"
+      "# The mesh touched, by its place in the trace and by its name, and the triangle.\n"
+      "uint32 mesh_index\n"
+      "string mesh\n"
+      "uint32 triangle\n"
+      "# Of the triangle's corners at the touched point, sum 1.\n"
+      "float64[3] weights\n"
+      "# [m] where the probe is held on the surface, in the world.\n"
+      "geometry_msgs/Point proxy\n"
+      "# Of the surface there, in the world, outward, unit length.\n"
+      "geometry_msgs/Vector3 normal\n"
+      "# [N/m]\n"
+      "float64 stiffness\n",
+      {kHeader, kTime, kPoint, kVector3}};
+}
+
+}  // namespace
+
+std::string_view schema_name(MessageType type) noexcept {
+  constexpr std::array<std::string_view, 14> kNames{
+      "geometry_msgs/msg/PoseStamped",    "geometry_msgs/msg/TwistStamped", "geometry_msgs/msg/PointStamped",
+      "geometry_msgs/msg/Vector3Stamped", "tactus_msgs/msg/Contact",        "shape_msgs/msg/Mesh",
+      "tactus_msgs/msg/Displacements",    "tactus_msgs/msg/MeshContact",    "geometry_msgs/msg/QuaternionStamped",
+      "tactus_msgs/msg/Buttons",          "sensor_msgs/msg/TimeReference",  "tactus_msgs/msg/Servo",
+      "rcl_interfaces/msg/Log",           "tactus_msgs/msg/Reports"};
+  return kNames[static_cast<std::size_t>(type)];
+}
+
+std::string schema_text(MessageType type) {
+  const Message message = message_of(type);
+  return definition_text(message.fields, message.dependencies);
+}
+
+// ==== messages ====
+
 namespace {
 
 constexpr std::uint64_t kNanoseconds = 1'000'000'000;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include <tactus/base/rule.h>
-#include <tactus/trace/cdr.h>
+#include <tactus/trace/messages.h>
 
 namespace tactus {
 namespace {

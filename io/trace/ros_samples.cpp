@@ -3,7 +3,7 @@
 
 #include <tactus/base/rule.h>
 #include <tactus/trace/frame_assembler.h>
-#include <tactus/trace/schemas.h>
+#include <tactus/trace/messages.h>
 
 namespace tactus {
 namespace {

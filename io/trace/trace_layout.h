@@ -9,7 +9,7 @@
 #include <vector>
 
 #include <tactus/trace/frame.h>
-#include <tactus/trace/schemas.h>
+#include <tactus/trace/messages.h>
 
 namespace tactus {
 

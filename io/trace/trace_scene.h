@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Converts a trace into a scene, and its frames into a sender's input.
+/// A trace as a scene, its frames as a sender's input, and what a client shows as a trace.
 #pragma once
 
 #include <cstddef>
@@ -11,11 +11,18 @@
 #include <vector>
 
 #include <tactus/base/result.h>
+#include <tactus/client/replica.h>
+#include <tactus/scene/scene.h>
 #include <tactus/scene/scene_builder.h>
+#include <tactus/scene/scene_objects.h>
 #include <tactus/sender.h>
 #include <tactus/trace/frame.h>
+#include <tactus/trace/trace_file.h>
 
 namespace tactus {
+
+// ==== trace scene ====
+// Converts a trace into a scene, and its frames into a sender's input.
 
 /// Coding options of a trace's objects, with the defaults of SceneBuilder; the trace sets the frame periods of the deformable ones.
 struct TraceCoding {
@@ -55,5 +62,27 @@ class FrameTruth {
   std::vector<Contact> contacts_;
   std::vector<DeformableTruth> deformables_;
 };
+
+// ==== trace clusters ====
+// The clusters of a trace's meshes: a basis for bodies that turn and walk.
+
+/// Reads the whole trace and finds the clusters of each mesh that moves, by name, on shapes that are spread over it evenly.
+/// err  those of the reader and of motion_clusters()
+/// time of reading, and that of motion_clusters() for up to twice kClusterShapes shapes, fewer of a mesh of more than 100 000 vertices
+Result<std::map<std::string, ClusterBasis>> find_clusters(TraceReader& reader, std::size_t count);
+
+// ==== trace replica ====
+// What a client shows, as a trace: the other way round than trace_scene.h.
+
+/// The objects of a scene, and the bounds that it tells; no users.
+TraceInfo replica_info(const Scene& scene, std::string source);
+
+/// A frame with room for the objects of a scene; shapes are at rest.
+TraceFrame replica_frame(const Scene& scene);
+
+/// Poses and shapes that a replica shows at a tick; a shape is new if any vertex is elsewhere than in the frame. A replica has no
+/// velocities of its own.
+/// pre  all are of the same scene   time O(objects + vertices)
+void take_shown(Replica& replica, const Scene& scene, std::int64_t tick, TraceFrame& frame);
 
 }  // namespace tactus

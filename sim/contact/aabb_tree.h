@@ -24,6 +24,8 @@
 
 namespace tactus::sim {
 
+// ==== aabb tree ====
+
 enum class Feature : std::uint8_t { vertex = 1, edge = 2, face = 3 };
 
 /// A point on a mesh.
@@ -160,5 +162,27 @@ void AabbTree::visit_sphere(const Vec3& centre, double radius, std::span<const V
     return true;
   });
 }
+
+// ==== inside ====
+// Tests which points lie inside a mesh: those below the closest point of a closed component. An open component has no inside.
+//
+// "Below" refers to the normals around the closest point, each weighted by the angle of its triangle there. Only this weighting
+// gives the right sign at every edge and corner (Baerentzen and Aanaes 2005).
+
+class InsideTest {
+ public:
+  /// pre  both outlive this object.   time O(n); allocates
+  InsideTest(const TriMesh& mesh, const MeshTopology& topology);
+
+  /// Normal at a point of the mesh, of unit length, outward; zero where triangles have no area.   time O(triangles there)
+  Vec3 normal(const SurfacePoint& at, std::span<const Vec3> vertices) const noexcept;
+  /// in  closest  the point of the mesh that is closest to `point`
+  bool contains(const Vec3& point, const SurfacePoint& closest, std::span<const Vec3> vertices) const noexcept;
+
+ private:
+  const TriMesh& mesh_;
+  const MeshTopology& topology_;
+  std::vector<bool> closed_;  // per triangle: no boundary anywhere in its component
+};
 
 }  // namespace tactus::sim

@@ -26,8 +26,6 @@
 #include <span>
 
 #include <tactus/sim/contact/aabb_tree.h>
-#include <tactus/sim/contact/constraints.h>
-#include <tactus/sim/contact/inside.h>
 #include <tactus/sim/contact/surroundings.h>
 
 namespace tactus::sim {

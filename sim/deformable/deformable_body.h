@@ -13,9 +13,7 @@
 #include <vector>
 
 #include <tactus/sim/contact/aabb_tree.h>
-#include <tactus/sim/contact/inside.h>
 #include <tactus/sim/deformable/deformable_objects.h>
-#include <tactus/sim/fem/energy_balance.h>
 #include <tactus/sim/fem/error_estimate.h>
 #include <tactus/sim/fem/integrator.h>
 

@@ -42,7 +42,7 @@ struct DeformationTime {
 struct DeformableError {
   double p50 = 0, max = 0;
   std::int64_t samples = 0;
-  double energy = 0;  ///< gained without cause, relative to all energy that moved (sim/fem/energy_balance.h); negative: lost
+  double energy = 0;  ///< gained without cause, relative to all energy that moved (sim/fem/error_estimate.h); negative: lost
 };
 
 class DeformableObjects : public Simulated {

@@ -6,7 +6,6 @@
 #include <tactus/sim/fem/implicit.h>
 #include <tactus/sim/fem/linear_solver.h>
 #include <tactus/sim/fem/modal.h>
-#include <tactus/sim/fem/prefactored.h>
 
 namespace tactus::sim {
 namespace {

@@ -14,7 +14,6 @@
 #include <tactus/session/session_client.h>
 #include <tactus/session/session_server.h>
 #include <tactus/sim/link/link.h>
-#include <tactus/sim/link/network.h>
 
 namespace tactus::sim {
 

@@ -14,18 +14,109 @@
 /// the loop with the delay in it. Nothing of this is coded, sent or bounded: bounds are those of the server's state.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
-#include <tactus/sim/prediction/past_poses.h>
-#include <tactus/sim/prediction/past_shapes.h>
+#include <tactus/base/geometry.h>
 #include <tactus/sim/scene/scene.h>
 #include <tactus/sim/server.h>
 
 namespace tactus::sim {
+
+// ==== past poses ====
+// Where an object was in the last ticks. One that does not move takes no time.
+
+class PastPoses {
+ public:
+  /// in   first  pose at all ticks before the first add()
+  ///      ticks  how many poses are kept
+  PastPoses(const Pose& first, std::size_t ticks) : entries_(std::max<std::size_t>(1, ticks)) {
+    entries_[0] = {INT64_MIN, first};
+  }
+
+  /// The pose of a tick, later than all before; nothing if it is the last one.   time O(1), no allocation
+  void add(std::int64_t tick, const Pose& pose) noexcept {
+    const Pose& last = back(0).pose;
+    if (pose.position == last.position && pose.rotation == last.rotation) return;
+    next_ = (next_ + 1) % entries_.size();
+    count_ = std::min(count_ + 1, entries_.size());
+    entries_[next_] = {tick, pose};
+  }
+  /// The pose at a tick, or the oldest that is kept.   time O(log ticks)
+  const Pose& at(std::int64_t tick) const noexcept {
+    std::size_t newer = 0, older = count_ - 1;  // back(older) is not later than the tick, or the oldest
+    while (newer < older) {
+      const std::size_t middle = (newer + older) / 2;
+      if (back(middle).tick <= tick) older = middle;
+      else newer = middle + 1;
+    }
+    return back(older).pose;
+  }
+
+ private:
+  struct Entry {
+    std::int64_t tick = 0;
+    Pose pose;
+  };
+  const Entry& back(std::size_t i) const noexcept { return entries_[(next_ + entries_.size() - i) % entries_.size()]; }
+
+  std::vector<Entry> entries_;  // ring
+  std::size_t next_ = 0;        // the newest
+  std::size_t count_ = 1;
+};
+
+// ==== past shapes ====
+// Shapes of a client's own simulation of a deformable object, and what the server's shapes say of them.
+
+class PastShapes {
+ public:
+  using Displacement = std::array<std::int32_t, 3>;
+  static constexpr unsigned kExp = 20;  ///< shapes are shown in steps of 2^-kExp m
+
+  /// in   ticks   how far back shapes are kept
+  ///      period  [ticks] from shape to shape
+  PastShapes(std::size_t vertices, double ticks, double period);
+
+  /// A new shape of the own simulation.   in  displacements  V x 3 [m]   time O(V), no allocation
+  void add(std::int64_t tick, std::span<const float> displacements) noexcept;
+  /// The server's newest shape, until compare().   in  displacements  [2^-position_exp m]   time O(V), no allocation
+  void hear(std::span<const Displacement> displacements, unsigned position_exp, double age) noexcept;
+  /// [ticks] age of a shape that was heard and not compared; none: negative
+  double heard_age() const noexcept { return age_; }
+  /// Compare what was heard with the own shape of that tick, between those before and after it; forget it.
+  /// in   share  of the difference that is taken over
+  /// time O(V), no allocation
+  void compare(double tick, double share) noexcept;
+  /// The own newest shape and what the server's add to it.   time O(V), no allocation
+  void show() noexcept;
+  /// Instead: what was heard, as it is.
+  void show_heard() noexcept;
+  std::span<const Displacement> shown() const noexcept { return shown_; }
+  std::int64_t newest() const noexcept { return ticks_[next_]; }  ///< tick of the own newest shape
+
+ private:
+  const float* back(std::size_t i) const noexcept {
+    return shapes_.data() + ((next_ + ticks_.size() - i) % ticks_.size()) * size_;
+  }
+  std::int64_t tick_back(std::size_t i) const noexcept { return ticks_[(next_ + ticks_.size() - i) % ticks_.size()]; }
+
+  std::size_t size_;                 // 3 V
+  double period_;                    // [ticks]
+  std::vector<std::int64_t> ticks_;  // of the own shapes
+  std::vector<float> shapes_;        // [m] ring
+  std::size_t next_ = 0;             // the newest
+  std::vector<float> offset_;        // [m] mean of server's - own
+  std::vector<float> heard_;         // [m]
+  std::vector<Displacement> shown_;
+  double age_ = -1;
+};
+
+// ==== prediction ====
 
 class Prediction {
  public:

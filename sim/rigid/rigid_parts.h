@@ -9,9 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include <tactus/sim/rigid/box_tree.h>
-#include <tactus/sim/rigid/ode_mesh.h>
-#include <tactus/sim/rigid/rest_watch.h>
+#include <tactus/sim/rigid/collision.h>
+#include <tactus/sim/rigid/rigid_objects.h>
 #include <tactus/sim/rigid/rigid_world.h>
 
 namespace tactus::sim {

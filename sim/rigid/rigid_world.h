@@ -9,7 +9,7 @@
 ///                   creep by the solver's residual.
 /// Sleep             a group of touching objects, or a single one, is left out of steps when no bit of its state changed in 16
 ///                   ticks, until one of them is pushed or hit. Results are the same bit for bit: each group of touching objects
-///                   is solved on its own. A pile that jitters sleeps, too (rest_watch.h), and then loses its velocities.
+///                   is solved on its own. A pile that jitters sleeps, too (rigid_objects.h), and then loses its velocities.
 /// Locked axes       an object keeps the exact bits of its first position along them, and of its first rotation.
 #pragma once
 

@@ -79,7 +79,7 @@ struct SceneTouch {
 
 /// How clients make up for the delay of what they show.
 enum class CompensationMethod : std::uint8_t {
-  stiffness,   ///< they render it softer (sim/compensation.h; thesis 4.2.3 and 4.3.3)
+  stiffness,   ///< they render it softer (sim/client.h; thesis 4.2.3 and 4.3.3)
   simulation,  ///< they simulate it themselves, and the server corrects them (sim/prediction/prediction.h; thesis 5.2)
 };
 

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <initializer_list>
@@ -19,10 +21,21 @@
 
 #include <tactus/base/rule.h>
 #include <tactus/sim/scene/scene.h>
-#include <tactus/sim/scene/toml_text.h>
 #include <tactus/trace/text.h>
 
 namespace tactus::sim {
+
+// ==== toml text ====
+// Limits the nesting of a TOML file before it is parsed. The parser recurses for every nested table, in any notation, and does
+// not limit the parts of a dotted key.
+
+inline constexpr std::size_t kMostTomlNesting = 32;  ///< parts of one dotted key; brackets within brackets
+
+/// The first line that exceeds this limit. Strings and comments are skipped by the rules of TOML 1.0; text that is not TOML is
+/// checked up to its first mistake.   time O(size), no allocation
+std::optional<std::uint32_t> too_nested_line(std::string_view text) noexcept;
+
+// ==== toml reader ====
 
 struct Range {
   double low, high;

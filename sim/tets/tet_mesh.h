@@ -21,6 +21,8 @@
 
 namespace tactus::sim {
 
+// ==== tet mesh ====
+
 /// Corners a b c d with (b-a) x (c-a) . (d-a) > 0.
 using Tet = std::array<std::uint32_t, 4>;
 
@@ -60,5 +62,24 @@ TetMesh make_slab(std::uint32_t nx, std::uint32_t ny, std::uint32_t nz, double c
 /// ones follow; tetrahedron t becomes 8 t .. 8 t + 7, the four inner ones around the shortest diagonal.
 /// pre  the mesh passed check().   time O(n log n) of the result
 TetMesh refined(const TetMesh& mesh, unsigned times);
+
+// ==== tet quality ====
+// How well shaped tetrahedra are: flat ones make a simulation inaccurate and its highest frequency large.
+
+struct TetQuality {
+  /// A figure and the tetrahedron it belongs to, the first of equals.
+  struct Worst {
+    double value = 0;
+    std::uint32_t tet = 0;
+  };
+  Worst smallest_angle;  ///< [rad] between two faces; regular: 1.231 (70.5 degrees)
+  Worst largest_angle;   ///< [rad]
+  /// 12 (3 V)^(2/3) / (sum of the six squared edges): 1 regular, 0 flat. [Liu and Joe 1994, mean ratio]
+  Worst shape;
+  double mean_shape = 0;
+};
+
+/// pre  the mesh passed check() and is not empty.   time O(n)
+TetQuality quality(const TetMesh& mesh);
 
 }  // namespace tactus::sim

@@ -1,7 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/sim/user/passivity.h>
 
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+
 namespace tactus::sim {
+
+// ==== passivity ====
 
 void PassivityObserver::arrive(const Vec3& position) noexcept {
   step_ = arrived_ ? position - position_ : Vec3{};
@@ -24,6 +32,85 @@ Vec3 PassivityController::limit(const Vec3& position, const Vec3& force) noexcep
   const Vec3 shown = force - (damping_ / options_.tick) * step;
   port_.hold(shown);
   return shown;
+}
+
+// ==== sampled limit ====
+
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+
+/// The loop at z = e^jw: the hand without the spring, and the factor of k.
+struct Response {
+  std::complex<double> hand, filter;
+};
+
+Response at(double w, const HandImpedance& hand, double samples) {
+  const std::complex<double> step = 1.0 - std::polar(1.0, -w);
+  return {hand.mass * 2 * (std::cos(w) - 1) / (kTick * kTick) + hand.stiffness + hand.damping * step / kTick,
+          (1.0 - std::polar(1.0, -w * samples)) / (samples * step)};
+}
+
+/// The k that makes the imaginary part zero, and the real part that remains.
+struct Crossing {
+  double stiffness, rest;
+};
+
+Crossing crossing(double w, const HandImpedance& hand, double samples) {
+  const Response r = at(w, hand, samples);
+  const double k = -r.hand.imag() / r.filter.imag();
+  return {k, r.hand.real() + k * r.filter.real()};
+}
+
+}  // namespace
+
+double sampled_limit(const HandImpedance& hand, const SceneDevice& device) noexcept {
+  const double n = device.filter;
+  // z = -1, where no delay turns the phase
+  const Response fastest = at(std::numbers::pi, hand, n);
+  double limit = device.filter % 2 == 1 ? -fastest.hand.real() / fastest.filter.real() : kNone;
+  const int steps = 500 + 32 * static_cast<int>(device.filter);  // the mean's response has a zero at every 2 pi / N
+  Crossing last{kNone, kNone};
+  double from = 0;
+  for (int i = 1; i < steps && device.filter > 1; ++i) {
+    const double w = std::numbers::pi * i / steps;
+    const Crossing now = crossing(w, hand, n);
+    if (last.stiffness > 0 && now.stiffness > 0 && last.rest > 0 && now.rest <= 0) {
+      double low = from, high = w;
+      for (int k = 0; k < 50; ++k) (crossing((low + high) / 2, hand, n).rest > 0 ? low : high) = (low + high) / 2;
+      limit = std::min(limit, crossing(low, hand, n).stiffness);
+    }
+    last = now;
+    from = w;
+  }
+  return std::max(0.0, limit);
+}
+
+// ==== touch record ====
+
+void TouchRecord::add(const UserSample& sample) noexcept {
+  const bool touches = sample.contact.kind != ContactKind::none || sample.surface_contact;
+  const bool begins = touches && !touching_;
+  touching_ = touches;
+  port_.arrive(sample.device.position);
+  if (begins) port_.reset();
+  port_.hold(sample.force);
+  summary_.lowest_energy = port_.lowest();
+  summary_.largest_force = std::max(summary_.largest_force, norm(sample.force));
+  summary_.ticks += touches ? 1 : 0;
+  summary_.contacts += begins ? 1 : 0;
+  in_a_second_ += (begins ? 1U : 0U) - (began_[tick_] ? 1U : 0U);
+  began_[tick_] = begins;
+  tick_ = (tick_ + 1) % began_.size();
+  summary_.most_in_a_second = std::max(summary_.most_in_a_second, in_a_second_);
+
+  if (sample.contact.kind != ContactKind::none) summary_.stiffest = std::max(summary_.stiffest, sample.contact.stiffness);
+  if (!sample.surface_contact) return;
+  summary_.stiffest = std::max(summary_.stiffest, sample.surface_contact->stiffness);
+  const double pressed = norm(sample.server_force);
+  if (summary_.hardest && pressed <= hardest_) return;
+  hardest_ = pressed;
+  summary_.hardest = sample.surface_contact;
 }
 
 }  // namespace tactus::sim

@@ -1,23 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Energy that a sampled environment gives away, and the damping that takes it back: passivity observer and controller
-/// (Hannaford and Ryu 2002). Thesis 2.2.2, eq. 2.2, figures 2.2b and 2.2c.
-///
-/// sign   f is the force on the hand, held from one tick to the next; the hand puts energy into the environment against it:
-///          E(n) = E(n-1) - f(n-1) . (x(n) - x(n-1))
-///        passive as long as E >= 0. A spring of stiffness k that is pressed to depth X and released at d metres per tick gives
-///        away k d X: the hold is one tick late, too weak on the way in and too strong on the way out.
-/// damping  before f(n) is rendered, the controller assumes that the hand moves on as in the last tick, and adds just enough of
-///          -alpha (x(n) - x(n-1)) / T, alpha <= max_damping, to keep E(n+1) from being negative.
-/// tests    tests/unit/passivity_test.cpp
+/// What a touch shows: energy, the stability of a sampled wall, contacts.
 #pragma once
 
 #include <algorithm>
+#include <bitset>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include <tactus/base/geometry.h>
+#include <tactus/sim/scene/scene.h>
+#include <tactus/sim/user/hand.h>
+#include <tactus/trace/frame.h>
 
 namespace tactus::sim {
+
+// ==== passivity ====
+// Energy that a sampled environment gives away, and the damping that takes it back: passivity observer and controller
+// (Hannaford and Ryu 2002). Thesis 2.2.2, eq. 2.2, figures 2.2b and 2.2c.
+//
+// sign   f is the force on the hand, held from one tick to the next; the hand puts energy into the environment against it:
+//          E(n) = E(n-1) - f(n-1) . (x(n) - x(n-1))
+//        passive as long as E >= 0. A spring of stiffness k that is pressed to depth X and released at d metres per tick gives
+//        away k d X: the hold is one tick late, too weak on the way in and too strong on the way out.
+// damping  before f(n) is rendered, the controller assumes that the hand moves on as in the last tick, and adds just enough of
+//          -alpha (x(n) - x(n-1)) / T, alpha <= max_damping, to keep E(n+1) from being negative.
+// tests    tests/unit/passivity_test.cpp
 
 /// Watches the energy at the port between device and environment.
 class PassivityObserver {
@@ -70,6 +78,51 @@ class PassivityController {
   PassivityObserver port_;
   double damping_ = 0;
   double free_for_ = 0;  // [s]
+};
+
+// ==== sampled limit ====
+// Stability limit of a virtual hand on a coupling: sampling and smoothing of the device delay the force felt.
+
+/// Largest stable stiffness k [N/m] of a spring from hand and device to a fixed point. For the simulated loop
+///   m (x+ - 2 x + x-) / T^2 = -k_h x - b (x - x-) / T - k F x,   F the device's mean of N samples,
+/// it is the least k with a pole on the unit circle, about b / ((N - 1) T / 2) where that is far above k_h. An object that yields
+/// allows more.
+/// time 40 us for N = 8, 2 ms for 1000
+double sampled_limit(const HandImpedance& hand, const SceneDevice& device) noexcept;
+
+// ==== touch record ====
+// Summary of a run at one user's hand: contacts, forces, and the energy of the port between device and scene (thesis 2.2.2).
+
+struct TouchSummary {
+  std::uint64_t ticks = 0;     ///< in contact with anything, at the server
+  std::uint64_t contacts = 0;  ///< begun
+  std::uint32_t most_in_a_second =
+      0;                     ///< contacts begun within one second: more than about ten is chattering, not the hand's motion
+  double largest_force = 0;  ///< [N] felt
+  /// [J] least net energy that the hand had put into the scene since a contact began, at most 0. A negative value means that the
+  /// scene gave away more than it had taken. Sampling and delay cause this (eq. 2.2), and so do weight and other users, which
+  /// have energy of their own. Each contact begins at 0, because energy taken by earlier ones would hide energy given by this
+  /// one.
+  double lowest_energy = 0;
+  double stiffest = 0;                      ///< [N/m] largest stiffness of the couplings that held the hand
+  std::optional<SurfaceContact> hardest{};  ///< where a deformable object was pressed with most force
+};
+
+class TouchRecord {
+ public:
+  /// One tick, as in the trace.   time O(1), no allocation
+  void add(const UserSample& sample) noexcept;
+
+  const TouchSummary& summary() const noexcept { return summary_; }
+
+ private:
+  TouchSummary summary_;
+  PassivityObserver port_;
+  bool touching_ = false;
+  double hardest_ = 0;            // [N]
+  std::bitset<kTickRate> began_;  // in each tick of the last second
+  std::size_t tick_ = 0;          // of that second
+  std::uint32_t in_a_second_ = 0;
 };
 
 }  // namespace tactus::sim

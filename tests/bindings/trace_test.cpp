@@ -5,7 +5,7 @@
 #include <tactus/metrics/deformable_errors.h>
 #include <tactus/metrics/errors.h>
 #include <tactus/scene/scene_syntax.h>
-#include <tactus/trace/trace_clusters.h>
+#include <tactus/trace/trace_scene.h>
 
 #include <filesystem>
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <tactus/trace/compression.h>
+#include <tactus/trace/byte_source.h>
 #include <tactus/trace/csv.h>
 #include "tests/fuzz/require.h"
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <vector>
 
-#include <tactus/signal/device_path.h>
 #include <tactus/signal/device_signal.h>
 #include <tactus/tactus.h>
 #include "tests/fuzz/motions.h"

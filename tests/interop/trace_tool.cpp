@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include <tactus/trace/csv.h>
-#include <tactus/trace/csv_columns.h>
+#include <tactus/trace/csv_plan.h>
 #include <tactus/trace/trace_file.h>
 
 namespace {

@@ -8,7 +8,6 @@
 #include <random>
 #include <string_view>
 
-#include <tactus/client/timeline.h>
 #include "tests/unit/rigid_fixture.h"
 #include "tests/unit/smooth_motion.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/client/timeline.h>
+#include <tactus/client/replica.h>
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,6 @@
 
 #include <tactus/base/tri_mesh.h>
 #include <tactus/sim/contact/aabb_tree.h>
-#include <tactus/sim/contact/inside.h>
 #include <tactus/sim/random.h>
 
 namespace tactus::testing {

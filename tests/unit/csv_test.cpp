@@ -10,7 +10,7 @@
 #include <fstream>
 #include <sstream>
 
-#include <tactus/trace/compression.h>
+#include <tactus/trace/byte_source.h>
 #include "tests/unit/trace_fixture.h"
 
 namespace tactus {

@@ -6,8 +6,8 @@
 #include <functional>
 #include <vector>
 
-#include <tactus/device/clock.h>
 #include <tactus/device/device.h>
+#include <tactus/device/real_time.h>
 
 namespace tactus::device::testing {
 

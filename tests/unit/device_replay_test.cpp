@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/device/replay_device.h>
+#include <tactus/device/recording.h>
 
 #include <gtest/gtest.h>
 

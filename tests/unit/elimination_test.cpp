@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/elastic/elimination.h>
+#include <tactus/elastic/elastic_solver.h>
 
 #include <algorithm>
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/device/falcon/falcon_start.h>
+#include <tactus/device/falcon/falcon_frame.h>
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <tactus/sim/fem/energy_balance.h>
+#include <tactus/sim/fem/error_estimate.h>
 #include <tactus/sim/fem/integrator.h>
 #include "tests/unit/fem_fixture.h"
 

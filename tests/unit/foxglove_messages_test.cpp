@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/trace/foxglove_messages.h>
+#include <tactus/trace/foxglove_writer.h>
 
 #include <gtest/gtest.h>
 
-#include <tactus/trace/cdr.h>
+#include <tactus/trace/messages.h>
 
 namespace tactus {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/device/openhaptics/hd_exchange.h>
+#include <tactus/device/openhaptics/hd_runtime.h>
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <thread>
 
-#include <tactus/device/clock.h>
+#include <tactus/device/real_time.h>
 
 namespace tactus::device::openhaptics {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/device/hid/report_device.h>
+#include <tactus/device/hid/hid_device.h>
 
 #include <gtest/gtest.h>
 

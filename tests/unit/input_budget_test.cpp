@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include <tactus/trace/compression.h>
+#include <tactus/trace/byte_source.h>
 #include <tactus/trace/csv.h>
 #include <tactus/trace/mcap_reader.h>
 #include "tests/unit/trace_fixture.h"

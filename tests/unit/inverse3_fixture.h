@@ -15,7 +15,7 @@
 #include <thread>
 #include <utility>
 
-#include <tactus/device/clock.h>
+#include <tactus/device/real_time.h>
 
 namespace tactus::device::inverse3::testing {
 

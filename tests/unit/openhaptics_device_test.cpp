@@ -13,7 +13,7 @@
 #include <thread>
 #include <utility>
 
-#include <tactus/device/openhaptics/hd_exchange.h>
+#include <tactus/device/openhaptics/hd_runtime.h>
 #include <tactus/device/servo.h>
 #include "tests/property/stub_libhd.h"
 

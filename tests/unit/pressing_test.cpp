@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/sim/transparency/pressing.h>
+#include <tactus/sim/transparency/transparency.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-
-#include <tactus/sim/transparency/deformable_transparency.h>
 
 namespace tactus::sim {
 namespace {

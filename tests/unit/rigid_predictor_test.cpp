@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include <tactus/base/fixed.h>
-#include <tactus/client/timeline.h>
+#include <tactus/client/replica.h>
 #include "tests/unit/rigid_fixture.h"
 
 namespace tactus {

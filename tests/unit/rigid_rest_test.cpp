@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include <tactus/sim/random.h>
-#include <tactus/sim/rigid/box_tree.h>
+#include <tactus/sim/rigid/collision.h>
 #include <tactus/sim/rigid/rigid_world.h>
 
 namespace tactus::sim {

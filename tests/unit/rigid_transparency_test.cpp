@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/sim/transparency/rigid_transparency.h>
+#include <tactus/sim/transparency/transparency.h>
 
 #include <gtest/gtest.h>
 

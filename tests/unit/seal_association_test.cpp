@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/seal/association.h>
 
-#include <tactus/seal/cookies.h>
-
 #include "tests/unit/seal_fixture.h"
 
 namespace tactus::seal {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/seal/cookies.h>
-
 #include <tactus/seal/association.h>
 
 #include "tests/unit/seal_fixture.h"

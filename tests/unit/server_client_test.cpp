@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Server, link, client and hands taken apart: sim/server.h, sim/client.h, sim/link/perfect_link.h, sim/deformable/deformable_view.h.
+// Server, link, client and hands taken apart: sim/server.h, sim/client.h, sim/link/link.h, sim/deformable/deformable_probes.h.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,9 +10,8 @@
 #include <vector>
 
 #include <tactus/sim/client.h>
-#include <tactus/sim/compensation.h>
 #include <tactus/sim/deformable/stiffness_map.h>
-#include <tactus/sim/link/perfect_link.h>
+#include <tactus/sim/link/link.h>
 #include <tactus/sim/server.h>
 #include <tactus/sim/simulation.h>
 #include <tactus/sim/user/hand.h>

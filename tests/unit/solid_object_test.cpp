@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rigid objects of any shape: sim/contact/surface_proxy.h, sim/rigid/ode_mesh.h.
+// Rigid objects of any shape: sim/contact/surface_proxy.h, sim/rigid/collision.h.
 #include <gtest/gtest.h>
 
 #include <algorithm>

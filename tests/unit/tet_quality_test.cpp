@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/sim/tets/tet_quality.h>
+#include <tactus/sim/tets/tet_mesh.h>
 
 #include <gtest/gtest.h>
 

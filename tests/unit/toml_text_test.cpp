@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/sim/scene/toml_text.h>
+#include <tactus/sim/scene/toml_reader.h>
 
 #include <gtest/gtest.h>
 

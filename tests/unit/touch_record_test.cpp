@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run was like at a hand, and what a hand bears: sim/user/touch_record.h, sim/user/sampled_limit.h.
-#include <tactus/sim/user/touch_record.h>
+// What a run was like at a hand, and what a hand bears: sim/user/passivity.h, sim/user/passivity.h.
+#include <tactus/sim/user/passivity.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-
-#include <tactus/sim/user/sampled_limit.h>
 
 namespace tactus::sim {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/trace/trace_clusters.h>
+#include <tactus/trace/trace_scene.h>
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,6 @@
 
 #include <tactus/deformable/displacement.h>
 #include <tactus/receiver.h>
-#include <tactus/trace/trace_scene.h>
 #include "tests/unit/deformable_fixture.h"
 #include "tests/unit/temp_file.h"
 

@@ -9,7 +9,6 @@
 #include <tactus/trace/mcap_reader.h>
 #include <tactus/trace/mcap_writer.h>
 #include <tactus/trace/messages.h>
-#include <tactus/trace/schemas.h>
 #include "tests/unit/trace_fixture.h"
 
 namespace tactus {

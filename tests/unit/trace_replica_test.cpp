@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a scene and a replica to a trace: io/trace/trace_replica.h, and the ticks that a client shows.
-#include <tactus/trace/trace_replica.h>
+// From a scene and a replica to a trace: io/trace/trace_scene.h, and the ticks that a client shows.
+#include <tactus/trace/trace_scene.h>
 
 #include <tuple>
 
@@ -8,8 +8,6 @@
 #include <tactus/receiver.h>
 #include <tactus/trace/mcap_writer.h>
 #include <tactus/trace/messages.h>
-#include <tactus/trace/schemas.h>
-#include <tactus/trace/trace_scene.h>
 #include "tests/unit/trace_fixture.h"
 
 namespace tactus {

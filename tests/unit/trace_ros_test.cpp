@@ -6,11 +6,9 @@
 #include <map>
 #include <numbers>
 
-#include <tactus/trace/cdr.h>
 #include <tactus/trace/mcap_writer.h>
 #include <tactus/trace/messages.h>
 #include <tactus/trace/ros_messages.h>
-#include <tactus/trace/schemas.h>
 #include "tests/unit/trace_fixture.h"
 
 namespace tactus {

@@ -12,9 +12,7 @@
 
 #include <tactus/sim/deformable/stiffness_map.h>
 #include <tactus/sim/link/link.h>
-#include <tactus/sim/transparency/deformable_transparency.h>
-#include <tactus/sim/transparency/pressing.h>
-#include <tactus/sim/transparency/rigid_transparency.h>
+#include <tactus/sim/transparency/transparency.h>
 #include "lab/study/delay.h"
 #include "lab/study/program/points.h"
 

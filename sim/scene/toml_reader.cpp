@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/sim/scene/toml_text.h>
+#include <tactus/sim/scene/toml_reader.h>
 
 #include <algorithm>
 
 namespace tactus::sim {
+
 namespace {
 
 /// Bytes of the string at the front of `text`. It ends with its line at the latest, unless it is in three quotes.
