@@ -94,7 +94,6 @@ TESTED_BY = {  # those that have none: the parts of one subject, held against ea
     "io/trace/ros_messages": "trace_ros",
     "io/trace/ros_samples": "trace_ros",
     "io/trace/tactus_assembler": "trace",
-    "io/trace/text": "trace",
     "io/trace/trace_reader": "trace",
     "io/trace/trace_writer": "trace",
     "metrics/deformable_errors": "metrics",

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include <tactus/trace/csv_reader.h>
-#include <tactus/trace/text.h>
+#include <tactus/base/text.h>
 #include "cli/options/units.h"
 
 namespace tactus::cli {

@@ -8,7 +8,7 @@
 #include <tactus/base/rule.h>
 #include <tactus/device/falcon/falcon_frame.h>
 #include <tactus/device/falcon/falcon_kinematics.h>
-#include <tactus/trace/text.h>
+#include <tactus/base/text.h>
 
 namespace tactus::device::falcon {
 namespace {

@@ -12,7 +12,7 @@
 
 #include <tactus/base/rule.h>
 #include <tactus/device/hid/report_descriptor.h>
-#include <tactus/trace/text.h>
+#include <tactus/base/text.h>
 
 namespace tactus::device::hid {
 

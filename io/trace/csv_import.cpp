@@ -11,7 +11,7 @@
 #include <tactus/trace/csv_plan.h>
 #include <tactus/trace/csv_reader.h>
 #include <tactus/trace/differences.h>
-#include <tactus/trace/text.h>
+#include <tactus/base/text.h>
 
 namespace tactus {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include <tactus/base/rule.h>
-#include <tactus/trace/text.h>
+#include <tactus/base/text.h>
 
 namespace tactus {
 namespace {

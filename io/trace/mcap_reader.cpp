@@ -6,7 +6,7 @@
 
 #include <tactus/base/bytes.h>
 #include <tactus/trace/byte_source.h>
-#include <tactus/trace/text.h>
+#include <tactus/base/text.h>
 
 namespace tactus::mcap {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <tactus/base/rule.h>
 #include <tactus/trace/ros_definitions.h>
-#include <tactus/trace/text.h>
+#include <tactus/base/text.h>
 
 namespace tactus {
 

@@ -8,7 +8,7 @@
 #include <tactus/trace/differences.h>
 #include <tactus/trace/frame_assembler.h>
 #include <tactus/trace/ros_samples.h>
-#include <tactus/trace/text.h>
+#include <tactus/base/text.h>
 
 namespace tactus {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include <tactus/trace/text.h>
+#include <tactus/base/text.h>
 
 namespace tactus {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include <tactus/trace/text.h>
+#include <tactus/base/text.h>
 
 namespace tactus {
 namespace {

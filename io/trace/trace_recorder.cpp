@@ -13,7 +13,7 @@
 #include <vector>
 
 #include <tactus/base/rule.h>
-#include <tactus/trace/text.h>
+#include <tactus/base/text.h>
 
 namespace tactus {
 namespace {

@@ -21,7 +21,7 @@
 
 #include <tactus/base/rule.h>
 #include <tactus/sim/scene/scene.h>
-#include <tactus/trace/text.h>
+#include <tactus/base/text.h>
 
 namespace tactus::sim {
 

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/report/notes.h"
+
+#include <fmt/format.h>
+
+#include <tactus/base/shown.h>
+
+namespace tactus::cli {
+
+void tell(const std::vector<ReadNote>& notes, const std::string& file, Report& report) {
+  for (const ReadNote& note : notes) {
+    std::string text = note.where.empty() ? note.what : note.where + ": " + note.what;
+    if (note.count > 1) text += fmt::format(" ({} times{}{})", note.count, note.first.empty() ? "" : ", the first ", note.first);
+    else if (!note.first.empty()) text += " (" + note.first + ")";
+    fmt::print(stderr, "note: {}: {}\n", shown_path(file), shown(text));
+    report.warnings.push_back(std::move(text));
+  }
+}
+
+}  // namespace tactus::cli

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What a reader of foreign files decided, because the file leaves it open or says it badly: which clock it took, what it interpolated, which
+/// samples are missing, what it left out. Every decision that changes a number is told; nothing is decided in silence.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace tactus {
+
+struct ReadNote {
+  std::string where;        ///< topic, frame, column or file; empty: the whole recording
+  std::string what;         ///< a sentence without a full stop: "not a number; held from the sample before"
+  std::string first;        ///< where it was seen first: "at 3.021 s", "line 12"; may be empty
+  std::uint64_t count = 1;  ///< how often
+};
+
+/// Notes of one recording, each place and sentence once.
+class ReadNotes {
+ public:
+  /// time O(notes): few; memory bounded by kMost notes, what comes after is counted in the last
+  void add(std::string_view where, std::string_view what, std::string first = {}) {
+    const auto same = [&](const ReadNote& note) { return note.where == where && note.what == what; };
+    const auto found = std::find_if(notes_.begin(), notes_.end(), same);
+    if (found != notes_.end()) ++found->count;
+    else if (notes_.size() < kMost) notes_.push_back({std::string(where), std::string(what), std::move(first)});
+    else if (notes_.size() == kMost) notes_.push_back({"", "more notes than are kept", std::move(first)});
+    else ++notes_.back().count;
+  }
+  const std::vector<ReadNote>& all() const noexcept { return notes_; }
+
+ private:
+  static constexpr std::size_t kMost = 100;
+  std::vector<ReadNote> notes_;
+};
+
+}  // namespace tactus
