@@ -57,6 +57,7 @@ def command_line():
                       help="Of the first FILE in the legend, then of the next one [the file's name]")
     made.add_argument("--title", metavar="TEXT", help="Above the figure [of one FILE its name]; '' for none")
     made.add_argument("--check", action="store_true", help="Only look whether figures can be drawn here")
+    made.parse_args = made.parse_intermixed_args  # files on both sides of an option
     return made
 
 
