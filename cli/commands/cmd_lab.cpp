@@ -71,6 +71,7 @@ tl::expected<std::vector<std::string>, Failure> words_of(const std::string& comm
 
 std::vector<char*> pointers_to(std::vector<std::string>& words) {
   std::vector<char*> out;
+  out.reserve(words.size() + 1);
   for (std::string& word : words) out.push_back(word.data());
   out.push_back(nullptr);
   return out;
