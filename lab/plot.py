@@ -18,7 +18,7 @@ from common import arguments, figure, program, surface
 from common.arguments import Refusal, printable
 
 SCHEMA = "tactus.figure/1"
-MOST_PANELS, MOST_RUNS, LONGEST_NAME, LABEL_WIDTH, LEGEND_WIDTH = 60, 6, 40, 22, 92  # the last three in characters
+MOST_PANELS, MOST_RUNS, LONGEST_NAME, LABEL_WIDTH, LEGEND_WIDTH = 40, 6, 40, 22, 92  # the last three in characters
 LEGEND_LINE, LEGEND_EDGE = 12.5, 8  # [points]
 MARKS = 12  # along a line
 GREY, BOUND = "#444444", "bound"
@@ -66,6 +66,14 @@ def short(name):
     return name if len(name) <= LONGEST_NAME else name[:LONGEST_NAME - 1] + "…"
 
 
+def points_of(pairs):
+    """out   x and y, not a number where there is none"""
+    points = [(float(x), math.nan if y is None else float(y)) for x, y in pairs]
+    if not all(math.isfinite(x) for x, _ in points):
+        raise ValueError("a point has no place on the axis of x")
+    return tuple(zip(*points)) or ((), ())
+
+
 def understood(text, name):
     """A run of a document.   raises Refusal"""
     try:
@@ -73,10 +81,10 @@ def understood(text, name):
         if document["schema"] != SCHEMA:
             raise ValueError(f"its schema is not {SCHEMA}")
         if "surface" in document:
-            return Run(name, str(document["heading"]), surface=document["surface"])
+            return Run(name, str(document["heading"]), surface=surface.checked(document["surface"]))
         panels = {}
         for panel in document["panels"]:
-            lines = {str(line["name"]): tuple(zip(*[(float(x), float(y)) for x, y in line["points"]])) or ((), ()) for line in panel["lines"]}
+            lines = {str(line["name"]): points_of(line["points"]) for line in panel["lines"]}
             panels[str(panel["label"])] = Panel(lines, float(panel["bound"]) if "bound" in panel else None)
         if not panels:
             raise ValueError("it has no panels")
@@ -206,14 +214,16 @@ def draw_panel(axes, label, of_runs, overlaid):
     return key
 
 
+def panels_of(runs):
+    """Labels of those that are drawn."""
+    return list(dict.fromkeys(label for run in runs for label in run.panels))[:MOST_PANELS]
+
+
 def draw(runs, title):
     """Panels of the same quantity lie over each other."""
     from matplotlib.lines import Line2D
     overlaid = len(runs) > 1
-    labels = list(dict.fromkeys(label for run in runs for label in run.panels))
-    if len(labels) > MOST_PANELS:
-        print(f"note: of {len(labels)} panels the first {MOST_PANELS} are drawn", file=sys.stderr)
-    labels = labels[:MOST_PANELS]
+    labels = panels_of(runs)
     fig, panels = figure.panels(len(labels))
     keys = [draw_panel(axes, label, [(i, run.panels[label]) for i, run in enumerate(runs) if label in run.panels], overlaid)
             for axes, label in zip(panels, labels)]
@@ -231,6 +241,8 @@ def set_x(axes, runs):
     known = [v for run in runs for panel in run.panels.values() for x, _ in panel.lines.values() for v in x]
     if runs[0].is_log:
         figure.scale(axes, log_x=True)
+        if not any(v > 0 for v in known):
+            axes.set_xlim(1, 1000)
     else:
         axes.set_xlim(0, max(known, default=0) or 1)
 
@@ -263,7 +275,10 @@ def work(options):
     title = options.title if options.title is not None else "" if len(runs) > 1 else printable(runs[0].heading)
     drawn = surface.draw(runs[0].surface, title) if runs[0].surface else draw(runs, title)
     figure.save(drawn, options.output, options.force)
-    panels = list(dict.fromkeys(label for run in runs for label in run.panels))
+    panels = panels_of(runs)
+    left_out = len({label for run in runs for label in run.panels}) - len(panels)
+    if left_out:
+        print(f"note: {left_out} panels are left out after the first {MOST_PANELS}", file=sys.stderr)
     if options.json:
         print(json.dumps({"schema": "tactus.plot/1", "figure": options.output, "panels": panels,
                           "files": [{"file": path, "label": run.name} for path, run in zip(options.files, runs)]}, indent=2, ensure_ascii=False))

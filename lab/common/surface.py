@@ -8,6 +8,19 @@ TICKS = [digit * 10 ** power for power in range(-3, 9) for digit in (1, 1.5, 2, 
 FLAT = 0.2  # height to length: what is flatter is seen from above
 
 
+def checked(of):
+    """A surface of a document.   raises ValueError, TypeError, KeyError"""
+    vertices, triangles = ([list(map(kind, part)) for part in of[name]] for kind, name in ((float, "vertices_m"), (int, "triangles")))
+    stiffness = [None if value is None else float(value) for value in of["stiffness_N_per_m"]]
+    if not triangles or any(len(part) != 3 for part in vertices + triangles) or len(stiffness) != len(vertices):
+        raise ValueError("a surface has triangles, three coordinates and one stiffness for each vertex")
+    if not all(0 <= v < len(vertices) for face in triangles for v in face):
+        raise ValueError("a triangle has a vertex that is not there")
+    if not all(math.isfinite(value) for part in vertices for value in part) or any(not 0 < v < math.inf for v in stiffness if v is not None):
+        raise ValueError("a number of the surface is not finite, or a stiffness not above 0")
+    return {"vertices_m": vertices, "triangles": triangles, "stiffness_N_per_m": stiffness}
+
+
 def draw(of, title):
     """Vertices that are held, whose stiffness is None, are crosses. A few beside one are far stiffer than all the rest: the colours span
     98 of 100 vertices.   in   of   vertices_m, triangles, stiffness_N_per_m"""

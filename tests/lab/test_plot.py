@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """lab/plot: what it makes of documents, and how figures look: nothing overlaps, nothing is cut, and grey tells everything apart."""
 import json
+import math
 import os
 import pathlib
 import sys
@@ -41,12 +42,18 @@ class Documents(unittest.TestCase):
         self.assertEqual(got.x_label, "time [s]")
         self.assertEqual(got.panels["force [N]"], ({"a": ((0.0, 0.25), (1.5, -2.0)), "b": ((0.0, 0.25), (1.5, -2.0))}, 3.0))
         self.assertEqual(got.panels["empty [m]"], ({"none": ((), ())}, None))
+        missing = run(panel("y [m]", ["a"], [[0, None], [1, 2]])).panels["y [m]"].lines["a"][1]
+        self.assertTrue(math.isnan(missing[0]) and missing[1] == 2.0)
 
     def test_what_is_no_figure_is_refused_with_the_reason(self):
         for text, why in (("[", "Expecting value"), ("{}", "'schema' is missing"), (document([]), "it has no panels"),
                           (json.dumps({"schema": "tactus.report/3"}), "its schema is not tactus.figure/1"),
                           (document([panel("y", ["a"], [[1]])]), "unpack"), (document([panel("y", ["a"], [["x", 1]])]), "could not convert"),
-                          (document([panel("y", ["a"], 7)]), "int"), (document([{"label": "y"}]), "'lines' is missing")):
+                          (document([panel("y", ["a"], 7)]), "int"), (document([{"label": "y"}]), "'lines' is missing"), (document([panel("y", ["a"], [[float("inf"), 1]])]), "no place"),
+                          (document([], surface={"vertices_m": []}), "'triangles' is missing"),
+                          (document([], surface={"vertices_m": [[0, 0, 0]], "triangles": [[0, 0, 1]], "stiffness_N_per_m": [1]}), "not there"),
+                          (document([], surface={"vertices_m": [[0, 0, 0]], "triangles": [[0, 0, 0]], "stiffness_N_per_m": [0]}), "not above 0"),
+                          (document([], surface={"vertices_m": [[0, 0]], "triangles": [[0, 0, 0]], "stiffness_N_per_m": [1]}), "three")):
             with self.assertRaises(Refusal) as refused:
                 plot.understood(text, "x.json")
             self.assertIn(why, refused.exception.text)
@@ -177,11 +184,16 @@ class Looks(unittest.TestCase):
                 self.assertTrue(first.startswith(begin))
                 self.assertEqual(first, second, "equal figures, equal bytes")
 
-    def test_too_many_panels_are_cut_and_said(self):
+    def test_no_more_panels_than_can_be_drawn(self):
         many = run(*[panel(f"y{i} [m]", ["a"]) for i in range(4)])
         most, plot.MOST_PANELS = plot.MOST_PANELS, 3
         self.addCleanup(setattr, plot, "MOST_PANELS", most)
-        self.assertEqual(len(self.drawn(many).axes), 3)
+        self.assertEqual([axes.get_ylabel() for axes in self.drawn(many).axes], ["y0 [m]", "y1 [m]", "y2 [m]"])
+
+    def test_a_logarithmic_axis_without_a_line(self):
+        for points in ([], [[0.5, 1], [80, 2]]):
+            fig = self.drawn(run(panel("share [%]", ["a, b"], points))._replace(x_label="round trip [ms]", is_log=True))
+            self.assertEqual((fig.axes[0].get_xscale(), fig.axes[0].get_xlabel()), ("log", "round trip [ms]"))
 
 
 @unittest.skipIf(HIDDEN, HIDDEN)
