@@ -36,7 +36,8 @@ def draw(of, title):
     held = {v for v, k in enumerate(values) if k is None}
     draw_it = from_above if sizes[2] < FLAT * max(sizes) else in_space
     fig, axes = draw_it(at, of["triangles"], shown, held, colours)
-    bar = fig.colorbar(colours, ax=axes, label=f"stiffness [N/m], {low:.3g} to {known[-1]:.3g}", extend="max", shrink=0.8, pad=0.05 if draw_it == from_above else 0.15)
+    bar = fig.colorbar(colours, ax=axes, label=f"stiffness [N/m], {low:.3g} to {known[-1]:.3g}", extend="max", shrink=0.8,
+                       pad=0.05 if draw_it == from_above else 0.15)
     ticks = [t for t in TICKS if low <= t <= top]
     bar.set_ticks(ticks, labels=[f"{t:g}" for t in ticks])
     bar.ax.minorticks_off()

@@ -49,7 +49,8 @@ class Documents(unittest.TestCase):
         for text, why in (("[", "Expecting value"), ("{}", "'schema' is missing"), (document([]), "it has no panels"),
                           (json.dumps({"schema": "tactus.report/3"}), "its schema is not tactus.figure/1"),
                           (document([panel("y", ["a"], [[1]])]), "unpack"), (document([panel("y", ["a"], [["x", 1]])]), "could not convert"),
-                          (document([panel("y", ["a"], 7)]), "int"), (document([{"label": "y"}]), "'lines' is missing"), (document([panel("y", ["a"], [[float("inf"), 1]])]), "no place"),
+                          (document([panel("y", ["a"], 7)]), "int"), (document([{"label": "y"}]), "'lines' is missing"),
+                          (document([panel("y", ["a"], [[float("inf"), 1]])]), "no place"),
                           (document([], surface={"vertices_m": []}), "'triangles' is missing"),
                           (document([], surface={"vertices_m": [[0, 0, 0]], "triangles": [[0, 0, 1]], "stiffness_N_per_m": [1]}), "not there"),
                           (document([], surface={"vertices_m": [[0, 0, 0]], "triangles": [[0, 0, 0]], "stiffness_N_per_m": [0]}), "not above 0"),
@@ -119,7 +120,8 @@ class Looks(unittest.TestCase):
         boxes += [axes.yaxis.label.get_window_extent(renderer) for axes in fig.axes] + [fig.axes[-1].xaxis.label.get_window_extent(renderer)]
         boxes += [fig._suptitle.get_window_extent(renderer)] if fig._suptitle else []
         for i, box in enumerate(boxes):
-            self.assertTrue(page.x0 - 1 <= box.x0 and box.x1 <= page.x1 + 1 and page.y0 - 1 <= box.y0 and box.y1 <= page.y1 + 1, f"{box} leaves the page")
+            inside = page.x0 - 1 <= box.x0 and box.x1 <= page.x1 + 1 and page.y0 - 1 <= box.y0 and box.y1 <= page.y1 + 1
+            self.assertTrue(inside, f"{box} leaves the page")
             for other in boxes[:i] + [axes.bbox for axes in fig.axes]:
                 self.assertFalse(box.padded(-1).overlaps(other), f"{box} over {other}")
 
