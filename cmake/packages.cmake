@@ -75,7 +75,7 @@ set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME tactus)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION science)
 # Scripts of lab/ are Python, their figures matplotlib's.
 set(CPACK_DEBIAN_TOOLS_PACKAGE_RECOMMENDS "python3, python3-numpy, python3-matplotlib")
-set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS "gnuplot-nox, tetgen")
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS "tetgen")
 set(CPACK_COMPONENT_TOOLS_DESCRIPTION "Codec for shared haptic environments, command line
  Simulates touches, encodes them into packets, decodes them and measures the
  error; records haptic devices and runs sessions over a network.")

@@ -11,9 +11,10 @@ object; `tactus reproduce fig3.14` closes that loop.
 # %% What is compared: name, packets per second in the text of the thesis, interpolation at the client, reduction, bounds.
 import math
 import pathlib
-import subprocess
 import sys
 
+import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
 
 import tactus
@@ -38,6 +39,10 @@ SETTINGS = [setting("S_R1", None, NI, tactus.HAPTIC_OFF),
 if len(sys.argv) < 3:
     sys.exit(__doc__)
 figure, traces = pathlib.Path(sys.argv[1]), sys.argv[2:]
+if figure.suffix not in (".svg", ".png", ".pdf"):
+    sys.exit(f"{figure}: figures are .svg, .png or .pdf")
+matplotlib.use("agg")
+matplotlib.rcParams["svg.fonttype"] = "none"  # words stay words
 
 
 # %% Each recording is encoded with each setting, and what its client shows is held against the truth.
@@ -58,31 +63,20 @@ print(f"{'setting':8} {'packets/s':>16} {'thesis':>7} {'error noticed [%]':>18}"
 for (name, rate, *_), (packets, noticed), (s_packets, s_noticed) in zip(SETTINGS, mean, spread):
     print(f"{name:8} {packets:9.1f} +- {s_packets:<4.1f} {rate or '-':>6} {noticed:12.2f} +- {s_noticed:.2f}")
 
-# %% The figure, drawn by gnuplot: mean and standard deviation over the recordings.
+# %% The figure: mean and standard deviation over the recordings.
 KINDS = {"reference": slice(0, 1), "without interpolation": slice(1, 5), "with interpolation": slice(5, 9), "other rules": slice(9, 11)}
-STYLES = ("7 pointsize 1.2 linecolor 'black'", "9 pointsize 1.4 linecolor '#d55e00'", "7 pointsize 1.2 linecolor '#0072b2'",
-          "6 pointsize 1.4 linecolor '#0072b2'")
-blocks, plots = [], []
-for i, ((kind, part), style) in enumerate(zip(KINDS.items(), STYLES)):
-    rows = zip(SETTINGS[part], mean[part], spread[part])
-    text = "\n".join(f'{x:.6g} {y:.6g} {sx:.6g} {sy:.6g} "{name}"' for (name, *_), (x, y), (sx, sy) in rows)
-    blocks.append(f"$part{i} << end\n{text}\nend")
-    plots.append(f"$part{i} with xyerrorbars pointtype {style} title '{kind}'")
-    place = "right offset -1.2,0.7" if i in (0, 2) else "left offset 1.2,-0.7"
-    plots.append(f"$part{i} using 1:2:5 with labels {place} noenhanced notitle")
-    if len(SETTINGS[part]) == 4:
-        plots.append(f"$part{i} with lines linewidth 1.5 dashtype {i} linecolor {style.split()[-1]} notitle")
-terminal = {".svg": "svg", ".png": "pngcairo"}.get(figure.suffix)
-if terminal is None:
-    sys.exit(f"{figure}: figures are .svg or .png")
-most = max(mean[:, 1].max(), 1e-3)
-script = "\n".join([f"set terminal {terminal} size 900,520 font 'sans,12' background 'white'", *blocks,
-                    "set xlabel 'packets per second'", "set ylabel 'force error that people notice, % of the time'",
-                    f"set yrange [{1.15 * most:.6g}:{-0.1 * most:.6g}]", "set ytics 0,2" if most > 4 else "",
-                    "set offsets graph 0.06, graph 0.06", "set grid",
-                    "set key bottom right Left reverse", f"plot {', '.join(plots)}"])
-try:
-    figure.write_bytes(subprocess.run(["gnuplot"], input=script.encode(), check=True, capture_output=True).stdout)
-except FileNotFoundError:
-    sys.exit("no gnuplot: apt-get install gnuplot-nox")
+STYLES = (("o", "none", "black"), ("^", "--", "#d55e00"), ("o", "-", "#0072b2"), ("s", "none", "#009e73"))
+drawing, axes = plt.subplots(figsize=(7.5, 4.4), constrained_layout=True)
+for i, ((kind, part), (marker, line, colour)) in enumerate(zip(KINDS.items(), STYLES)):
+    (x, y), (dx, dy) = mean[part].T, spread[part].T
+    axes.errorbar(x, y, xerr=dx, yerr=dy, marker=marker, linestyle=line, color=colour, label=kind, capsize=2.5, elinewidth=0.8)
+    for (name, *_), place in zip(SETTINGS[part], zip(x, y)):
+        side = -1 if i in (0, 2) else 1
+        axes.annotate(name, place, xytext=(side * 8, -side * 8), textcoords="offset points", ha="right" if side < 0 else "left", va="center")
+axes.set(xlabel="packets per second", ylabel="force error that people notice, % of the time")
+axes.margins(0.12)
+axes.invert_yaxis()
+axes.grid(color="#dddddd")
+axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncol=4, frameon=False)
+drawing.savefig(figure)
 print(f"{figure} is written")

@@ -12,7 +12,7 @@ import tempfile
 
 SOURCE_DIRS = (".ci", "spec", "codec", "io", "metrics", "sim", "device", "bindings", "cli", "conformance", "lab", "tests", "tools", "cmake")
 CODE = {".h", ".cpp"}
-SOURCES = CODE | {".py", ".sh", ".cmake", ".gp", ".mjs", ".js", ".lua"}
+SOURCES = CODE | {".py", ".sh", ".cmake", ".mjs", ".js", ".lua"}
 MAX_LINES = 600
 ONE_FILE = {".lua"}  # what users copy to install it: may be longer
 SHARED = {"base"}  # folders of codec/ that are not subjects of the specification
@@ -30,9 +30,8 @@ FLOATS = {"base/geometry", "base/quantise", "base/tri_mesh", "client/replica", "
 # Everything that is the operating system's stands in these files, one per need; the others are C++ alone. The codec, the traces and
 # the metrics are not among them; of the simulation only what runs the program that fills meshes.
 SYSTEM = {
-    "cli/commands/cmd_lab.cpp": "scripts in the place of the program",
+    "cli/commands/cmd_lab.cpp": "scripts in the place of the program, or fed by it",
     "cli/commands/cmd_link.cpp": "to wait for datagrams of many sockets",
-    "cli/figure/child_process.cpp": "programs that are started, with their output",
     "cli/live/keyboard.cpp": "single keys",
     "cli/live/keyboard.h": "single keys",
     "cli/live/ticker.cpp": "to wait for a time or a datagram",

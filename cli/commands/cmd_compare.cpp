@@ -184,8 +184,9 @@ Outcome run(const CompareOptions& options) {
                   "Decode with --like " + shown_path(options.truth) + ".");
   note_unmatched(truth, replica, report);
   if (figure)
-    TACTUS_CHECK(draw_over_time(options.plot, "Error of " + std::filesystem::path(options.replica).filename().string(),
-                                figure->panels(report), options.common));
+    TACTUS_CHECK(draw(options.plot,
+                      Figure{"Error of " + std::filesystem::path(options.replica).filename().string(), figure->panels(report)},
+                      options.common));
   print(report, options.common, Destination::standard_output);
   return report.bounds_from == "defaults" ? Outcome() : verdict(report, options.replica);  // nobody asked for those
 }

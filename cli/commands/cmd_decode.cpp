@@ -151,7 +151,7 @@ Outcome run(const DecodeOptions& options) {
     report.warnings.emplace_back("the stream has no trailer: its writer did not finish");
   }
   TACTUS_CHECK(output.keep());
-  if (figure) TACTUS_CHECK(draw_over_time(options.plot, shown_path(options.input), figure->panels(), options.common));
+  if (figure) TACTUS_CHECK(draw(options.plot, Figure{shown_path(options.input), figure->panels()}, options.common));
   print(report, options.common, beside(options.output));
   return {};
 }

@@ -189,8 +189,10 @@ Outcome run(const EncodeOptions& options) {
   report.stream = {session->writer.header_bytes(), session->writer.bytes()};
   report.bounds_from = options.triggers.any_given() || options.meshes.any_given() ? "options" : "defaults";
   if (session->figure)
-    TACTUS_CHECK(draw_over_time(options.plot, "Encoded: " + std::filesystem::path(options.input).filename().string(),
-                                session->figure->panels(report), options.common));
+    TACTUS_CHECK(
+        draw(options.plot,
+             Figure{"Encoded: " + std::filesystem::path(options.input).filename().string(), session->figure->panels(report)},
+             options.common));
   print(report, options.common, beside(options.output));
   return verdict(report, options.output);
 }

@@ -280,12 +280,10 @@ std::set<Subject> subjects_of(const sim::Scene& scene) {
 
 Outcome draw_stiffness(const sim::Scene& scene, const SimOptions& options, StepTimes& times) {
   if (options.stiffness_map.empty() || scene.deformables.empty()) return {};
-  TACTUS_TRY(const auto drawn, times.measure([&] {
+  return times.measure([&] {
     return write_stiffness_map(scene, options.scene, options.stiffness_map, options.common.existing(),
                                {options.scene, options.output, options.stream, options.replay, options.pcap});
-  }));
-  if (drawn == Drawn::no) fmt::print(stderr, "note: {}\n", kNoGnuplot);
-  return {};
+  });
 }
 
 /// All was closed in order, but not all was done.
@@ -419,7 +417,7 @@ Outcome run(const SimOptions& options) {
   report_errors(session.simulation, report);
   report.timings.push_back(std::move(map));
   print(report, options.common, beside(options.output));
-  if (session.figure) TACTUS_CHECK(draw_over_time(options.plot, options.scene, session.figure->panels(), options.common));
+  if (session.figure) TACTUS_CHECK(draw(options.plot, Figure{options.scene, session.figure->panels()}, options.common));
   if (const int signal = StopOnSignal::caught(); signal != 0) return stopped(signal, report, options);
   return report.bounds_from.empty() ? Outcome() : verdict(report, options.output);
 }
@@ -464,7 +462,7 @@ void setup_sim(Command& app, Action& action) {
       ->type_name("N");
   command
       .add_option("--stiffness-map", options->stiffness_map,
-                  "Also write the local stiffness of deformable objects (CSV, and a plot beside it)")
+                  "Also write the local stiffness of deformable objects (CSV, and a figure beside it)")
       ->type_name("FILE");
   command.add_flag("--codec", options->codec,
                    "Close the loop through encoder, decoder and replica; every option from --stream to --layered implies it");

@@ -13,7 +13,7 @@
 #ifdef TACTUS_HAS_SIM
 #include "cli/commands/tolerable_scene.h"
 #endif
-#include "cli/figure/plot_option.h"
+#include "cli/figure/figure.h"
 #include "cli/options/options_codec.h"
 #include "cli/options/units.h"
 #include "cli/output.h"
@@ -96,38 +96,24 @@ void print_text(const TolerableOptions& options, const TraceInfo& info, const De
 }
 
 /// Over the round trip, how much of the time in contact it is felt: a line for each touch.
-Plot share_plot(const TolerableOptions& options, const TraceInfo& info, const DelayTolerance& tolerance) {
+Figure share_figure(const TolerableOptions& options, const TraceInfo& info, const DelayTolerance& tolerance) {
   constexpr int kSteps = 100;
-  Plot plot{.name = {}, .program = "sweep"};
-  PlotData data{"data", {}};
-  std::vector<std::string> names;
-  double shortest = 1e3, longest = 1;
+  Panel panel{"share of the time in contact [%]"};
   for (const auto& [pair, touch] : tolerance.touches()) {
-    if (!names.empty()) data.rows.insert(data.rows.end(), 2, {});
-    names.push_back(fmt::format("{}, {}", info.users[pair.user].name, name_of(info, pair)));
+    Panel::Line& line =
+        panel.lines.emplace_back(Panel::Line{fmt::format("{}, {}", info.users[pair.user].name, name_of(info, pair)), {}});
     const double pressing =
         100.0 * static_cast<double>(touch.pressing()) / static_cast<double>(std::max<std::uint64_t>(touch.ticks(), 1));
     for (int step = 1; step < kSteps; ++step) {
       const auto most = touch.quantile(static_cast<double>(step) / kSteps);
       if (!most) break;
-      data.rows.push_back({1e3 * *most, pressing * step / kSteps});
-      shortest = std::min(shortest, 1e3 * *most);
-      longest = std::max(longest, 1e3 * *most);
+      line.points.push_back({1e3 * *most, pressing * step / kSteps});
     }
   }
-  plot.data.push_back(std::move(data));
-  plot.set("heading", fmt::format("{}: round trips that are felt as {:g} % more force", options.input, 100 * options.weber));
-  plot.set("series_label", names.size() == 1 ? "" : "user, object");
-  plot.set("x_label", "round trip [ms]");
-  plot.set("x_range", fmt::format("[{:.6g}:{:.6g}]", shortest, longest));
-  plot.set("y_label", std::vector<std::string>{"share of the time in contact [%]"});
-  plot.set("y_range", std::vector<std::string>{"[0:100]"});
-  plot.set("name", names);
-  plot.set("series", static_cast<double>(names.size()));
-  plot.set("panels", 1);
-  plot.set("log_x", 2);
-  for (const char* off : {"log_y", "spread", "marked"}) plot.set(off, 0);
-  return plot;
+  return {.heading = fmt::format("{}: round trips that are felt as {:g} % more force", options.input, 100 * options.weber),
+          .panels = {std::move(panel)},
+          .x_label = "round trip [ms]",
+          .logarithmic_x = true};
 }
 
 tl::expected<DelayTolerance, Failure> of_trace(const TolerableOptions& options, TraceReader& reader) {
@@ -149,7 +135,7 @@ tl::expected<DelayTolerance, Failure> of_trace(const TolerableOptions& options, 
 Outcome report(const TolerableOptions& options, const TraceInfo& info, const DelayTolerance& tolerance, bool is_scene) {
   if (tolerance.touches().empty())
     return refuse(shown_path(options.input) + ": nobody touches anything", "Give a recording or a scene with contacts.");
-  if (!options.plot.empty()) TACTUS_CHECK(draw_at(options.plot, share_plot(options, info, tolerance), options.common));
+  TACTUS_CHECK(draw(options.plot, share_figure(options, info, tolerance), options.common));
   if (options.common.json) fmt::print("{}\n", text_of_json(to_json(options, info, tolerance)));
   else if (!options.common.quiet) print_text(options, info, tolerance, is_scene);
   return {};

@@ -29,6 +29,7 @@ void setup_merge(Command& app, Action& action);
 void setup_recover(Command& app, Action& action);
 void setup_resample(Command& app, Action& action);
 void setup_export(Command& app, Action& action);
+void setup_export_figure(Command& group, Action& action);
 void setup_export_foxglove(Command& group, Action& action);
 void setup_export_mesh(Command& group, Action& action);
 void setup_export_pcap(Command& group, Action& action);
@@ -36,7 +37,6 @@ void setup_link(Command& app, Action& action);
 void setup_serve(Command& app, Action& action);
 void setup_join(Command& app, Action& action);
 void setup_key(Command& app, Action& action);
-void setup_plot(Command& app, Action& action);
 void setup_help(Command& app, Action& action);
 void setup_completion(Command& app, Action& action);
 
@@ -46,5 +46,7 @@ bool is_script(std::string_view command);
 void setup_script(Command& app, std::string_view name, Action& action);
 /// Run it in the place of this program.   out  never;   err  the script or Python is missing
 Outcome run_script(const std::string& command, const std::vector<std::string>& arguments);
+/// Run it beside this program, with a text as its standard input.   err  as run_script(); what the script refuses
+Outcome feed_script(const std::string& command, std::vector<std::string> arguments, const std::string& input);
 
 }  // namespace tactus::cli

@@ -2,18 +2,19 @@
 /// The local stiffness of deformable objects as a table and a picture (thesis figure 4.23).
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include <tactus/sim/scene/scene.h>
-#include "cli/figure/plot.h"
 #include "cli/output.h"
 
 namespace tactus::cli {
 
-/// Write place at rest and stiffness of every vertex of the surfaces to FILE (CSV), and one plot per object beside it: as FILE is
-/// called for the first, with the object's name added for the others.
+/// Write place at rest and stiffness of every vertex of the surfaces to FILE (CSV), and one figure per object beside it: as FILE is
+/// called for the first, with the object's name added for the others. Where figures cannot be drawn a note says so.
 /// in   others  files that the command needs besides
-/// out  Drawn::no: there is no gnuplot
 /// err  a file cannot be written, or is there and to be kept; errors of stiffness_map() with the object
-tl::expected<Drawn, Failure> write_stiffness_map(const sim::Scene& scene, const std::string& scene_file, const std::string& file,
-                                                 OutputFile::Existing existing, std::initializer_list<std::string> others);
+Outcome write_stiffness_map(const sim::Scene& scene, const std::string& scene_file, const std::string& file,
+                            OutputFile::Existing existing, const std::vector<std::string>& others);
 
 }  // namespace tactus::cli

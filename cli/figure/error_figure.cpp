@@ -76,20 +76,20 @@ void ErrorFigure::add_packet(std::int64_t tick, const std::string& line, std::si
 }
 
 /// Of several users the largest force and the largest error are shown, which need not be of the same one: then there is no bound.
-void ErrorFigure::add_force_panels(const Report& report, std::vector<TimePanel>& out) const {
+void ErrorFigure::add_force_panels(const Report& report, std::vector<Panel>& out) const {
   out.push_back({"contact force [N]", {{"force", force_.points()}}});
-  TimePanel& errors = out.emplace_back(TimePanel{"force error [N]", {{"error", force_error_.points()}}});
+  Panel& errors = out.emplace_back(Panel{"force error [N]", {{"error", force_error_.points()}}});
   const RigidTriggers& bounds = report.fidelity->bounds();
   if (info_.users.size() > 1 || bounds.haptic != HapticRule::isotropic) return;
-  TimePanel::Line& bound = errors.lines.emplace_back(TimePanel::Line{"bound", force_.points()});
+  Panel::Line& bound = errors.lines.emplace_back(Panel::Line{"bound", force_.points()});
   for (auto& point : bound.points) point[1] = point[1] > 0 ? bounds.weber_fraction * std::max(point[1], bounds.force_floor) : 0;
 }
 
-std::vector<TimePanel> ErrorFigure::panels(const Report& report) const {
-  std::vector<TimePanel> out;
+std::vector<Panel> ErrorFigure::panels(const Report& report) const {
+  std::vector<Panel> out;
   const double width = width_of_rates(end_);
   if (!bytes_.is_empty()) {
-    TimePanel& packets = out.emplace_back(TimePanel{"packets per second"});
+    Panel& packets = out.emplace_back(Panel{"packets per second"});
     for (const auto& [name, line] : packets_) packets.lines.push_back({name, line.points(width, end_)});
     out.push_back({"payload [kbit/s]", {{"payload", bytes_.points(width, end_)}}});
   }

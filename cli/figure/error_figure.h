@@ -29,11 +29,11 @@ class ErrorFigure {
   void add_packet(std::int64_t tick, const std::string& line, std::size_t bytes);
 
   /// With the bounds that the report was judged by.
-  std::vector<TimePanel> panels(const Report& report) const;
+  std::vector<Panel> panels(const Report& report) const;
 
  private:
   double time_of(std::int64_t tick) const { return static_cast<double>(tick) / info_.tick_rate; }
-  void add_force_panels(const Report& report, std::vector<TimePanel>& out) const;
+  void add_force_panels(const Report& report, std::vector<Panel>& out) const;
   void add_forces(const TraceFrame& truth, std::span<const Pose> shown, double time);
 
   TraceInfo info_;

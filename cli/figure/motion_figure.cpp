@@ -19,8 +19,8 @@ double largest(const std::vector<float>& u) {
   return most;
 }
 
-TimePanel axes_of(std::string label, const std::array<TimeLine, 3>& lines) {
-  TimePanel out{std::move(label)};
+Panel axes_of(std::string label, const std::array<TimeLine, 3>& lines) {
+  Panel out{std::move(label)};
   for (std::size_t k = 0; k < lines.size(); ++k) out.lines.push_back({kAxes[k], lines[k].points()});
   return out;
 }
@@ -60,16 +60,16 @@ void MotionFigure::add_packet(std::int64_t tick, std::size_t bytes) {
   kilobits_.add(time_of(tick), kKilobits * static_cast<double>(bytes));
 }
 
-std::vector<TimePanel::Line> MotionFigure::force_lines(const UserLines& of, KnownForces known) {
+std::vector<Panel::Line> MotionFigure::force_lines(const UserLines& of, KnownForces known) {
   if (known == KnownForces::server) return {{"of the server", of.server.points()}};
   if (known == KnownForces::felt) return {{"felt", of.felt.points()}};
   if (!of.differ) return {{"force", of.felt.points()}};
   return {{"felt", of.felt.points()}, {"of the server", of.server.points()}};
 }
 
-std::vector<TimePanel> MotionFigure::panels() const {
-  std::vector<TimePanel> out;
-  TimePanel speeds{"speed [mm/s]"}, bends{"largest displacement [mm]"};
+std::vector<Panel> MotionFigure::panels() const {
+  std::vector<Panel> out;
+  Panel speeds{"speed [mm/s]"}, bends{"largest displacement [mm]"};
   for (const ObjectLines& lines : objects_) {
     const std::string& name = info_.objects[lines.object].name;
     out.push_back(axes_of("position of " + name + " [mm]", lines.position));

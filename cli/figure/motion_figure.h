@@ -19,7 +19,7 @@ class MotionFigure {
 
   void add(const TraceFrame& frame);
   void add_packet(std::int64_t tick, std::size_t bytes);
-  std::vector<TimePanel> panels() const;
+  std::vector<Panel> panels() const;
 
  private:
   struct ObjectLines {
@@ -37,7 +37,7 @@ class MotionFigure {
   double time_of(std::int64_t tick) const { return static_cast<double>(tick) / info_.tick_rate; }
   static void add(ObjectLines& lines, const RigidSample& sample, double time);
   static void add(UserLines& lines, const UserSample& user, double time);
-  static std::vector<TimePanel::Line> force_lines(const UserLines& of, KnownForces known);
+  static std::vector<Panel::Line> force_lines(const UserLines& of, KnownForces known);
 
   TraceInfo info_;
   std::vector<ObjectLines> objects_;

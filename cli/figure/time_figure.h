@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Figures of a recording over its time: panels one below the other.
+/// Quantities over the time of a recording, as figures show them.
 #pragma once
 
 #include <cstdint>
-#include <limits>
-#include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "cli/figure/plot_option.h"
+#include "cli/figure/figure.h"
 
 namespace tactus::cli {
 
@@ -22,7 +19,7 @@ class TimeLine {
   void add(double time, double value);
   bool is_empty() const noexcept { return pieces_.empty(); }
   /// Time and value; of a piece with several samples its least and its largest one, in the order in which they came.
-  std::vector<std::vector<double>> points() const;
+  std::vector<Point> points() const;
 
  private:
   struct Sample {
@@ -42,7 +39,7 @@ class RateLine {
   void add(double time, double amount = 1) { events_.emplace_back(time, amount); }
   bool is_empty() const noexcept { return events_.empty(); }
   /// Steps of amount per second, in `width` s each.   pre  width > 0
-  std::vector<std::vector<double>> points(double width, double end) const;
+  std::vector<Point> points(double width, double end) const;
 
  private:
   std::vector<std::pair<double, double>> events_;
@@ -50,20 +47,5 @@ class RateLine {
 
 /// [s] 1, 2 or 5 times a power of ten, so that some 60 of them fill the duration.
 double width_of_rates(double duration);
-
-struct TimePanel {
-  struct Line {
-    std::string name;
-    std::vector<std::vector<double>> points;  ///< time [s], value
-  };
-
-  std::string label;  ///< quantity and unit
-  std::vector<Line> lines{};
-  double bound = std::numeric_limits<double>::quiet_NaN();  ///< drawn as a level, if there is one
-};
-
-/// Draw the panels that have lines into FILE.svg, if a path was asked for.   err  none has one; as draw_at()
-Outcome draw_over_time(const std::string& path, const std::string& heading, const std::vector<TimePanel>& panels,
-                       const CommonOptions& common);
 
 }  // namespace tactus::cli

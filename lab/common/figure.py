@@ -11,6 +11,7 @@ import io
 import math
 import os
 import sys
+import textwrap
 
 from .arguments import USAGE, Refusal
 from .table import write_whole
@@ -36,11 +37,13 @@ def pyplot():
     """matplotlib.pyplot in this style, without a display."""
     try:
         import matplotlib
-    except ImportError:
-        raise Refusal(f"figures need matplotlib, which {sys.executable} does not find",
-                      "Install it: apt-get install python3-matplotlib", missing="matplotlib") from None
+        import matplotlib.pyplot
+    except ImportError as refused:
+        name = (refused.name or "matplotlib").partition(".")[0]
+        raise Refusal(f"figures need {name}, which {sys.executable} does not find",
+                      "Install it: apt-get install " + ("python3-matplotlib" if name == "matplotlib" else "python3-numpy python3-matplotlib"),
+                      missing="matplotlib") from None
     matplotlib.use("agg")
-    import matplotlib.pyplot
     matplotlib.pyplot.rcParams.update(STYLE)
     return matplotlib.pyplot
 
@@ -157,5 +160,11 @@ def scale(axes, log_x=False, log_y=False):
         axis.set_minor_formatter(ticker.NullFormatter())
 
 
+def wrapped(text, width, most):
+    """At most `most` lines of some `width` characters."""
+    return textwrap.wrap(text, width, max_lines=most, placeholder=" …") or [""]
+
+
 def title(fig, text):
-    fig.suptitle(text, fontsize=10, x=0.02, ha="left")
+    if text:
+        fig.suptitle("\n".join(wrapped(text, 78, 2)), fontsize=10, x=0.02, ha="left")

@@ -4,7 +4,7 @@ surface (4.23)."""
 import math
 import statistics
 
-from common import figure
+from common import figure, surface
 from common.program import point
 
 from .made import Numbers, added, six
@@ -122,29 +122,4 @@ def stiffness(options):
     out.add("softest", "N/m", min(left + right))
     rows = [[membrane["name"], i, *map(repr, v), "inf" if k is None else repr(k)] for i, (v, k) in enumerate(zip(at, values))]
     head = ["deformable", "vertex", "x_m", "y_m", "z_m", "stiffness_N_per_m"]
-    return out.made(lambda: draw_stiffness(membrane, left + right), {"fig4.23": (head, rows)})
-
-
-def draw_stiffness(membrane, known):
-    """Seen from above, faces that look up; vertices that are held are crosses. A few beside a held one are far stiffer than all the rest."""
-    at, values, top = membrane["vertices_m"], membrane["stiffness_N_per_m"], sorted(known)[len(known) * 98 // 100]
-    shown = [top if k is None else min(k, top) for k in values]
-    xy = [[1e3 * c for c in v[:2]] for v in at]
-    area = lambda a, b, c: (xy[b][0] - xy[a][0]) * (xy[c][1] - xy[a][1]) - (xy[b][1] - xy[a][1]) * (xy[c][0] - xy[a][0])
-    faces = [face for face in membrane["triangles"] if area(*face) > 0]
-    fig, (axes,) = figure.panels(height=4.6)
-    import matplotlib.colors
-    patches = axes.tripcolor([p[0] for p in xy], [p[1] for p in xy], shown, triangles=faces, shading="gouraud", cmap="cividis",
-                             norm=matplotlib.colors.LogNorm(min(known), top))
-    used = {v for face in faces for v in face}
-    held = [xy[v] for v in used if values[v] is None]
-    if held:
-        axes.plot([p[0] for p in held], [p[1] for p in held], "kx", markersize=4, label="held")
-        axes.legend(loc="upper left", bbox_to_anchor=(0, 1.1))
-    axes.set(xlabel="x [mm]", ylabel="y [mm]", aspect="equal")
-    axes.grid(False)
-    bar = fig.colorbar(patches, ax=axes, label=f"stiffness [N/m], {min(known):.3g} to {max(known):.3g}", extend="max")
-    ticks = [t for t in (1, 2, 3, 5, 7, 10, 15, 20, 30, 50, 70, 100, 150, 200, 300, 500, 700, 1000, 2000, 5000) if min(known) <= t <= top]
-    bar.set_ticks(ticks, labels=[f"{t:g}" for t in ticks])
-    bar.ax.minorticks_off()
-    return fig
+    return out.made(lambda: surface.draw(membrane, ""), {"fig4.23": (head, rows)})

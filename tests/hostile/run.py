@@ -150,8 +150,8 @@ def can(program, command):
 
 
 def drawn(program, name, truth=None):
-    """As figures and pages, where they can be made."""
-    plot = [["plot", name, "-o", "o.svg"]] if truth is None and shutil.which("gnuplot") else []
+    """As figures, and as pages where they can be made."""
+    plot = [["export", "figure", name, "-o", "o.json"]] if truth is None else []
     view = [["view", name, "-o", "o.html", *(["--truth", truth] if truth else [])]] if can(program, "view") else []
     return plot + view
 

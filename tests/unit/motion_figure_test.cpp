@@ -16,9 +16,9 @@ Names lines_of(KnownForces known, const Vec3& felt, const Vec3& server) {
   frame.users[0].server_force = server;
   figure.add(frame);
   Names out;
-  for (const TimePanel& panel : figure.panels())
+  for (const Panel& panel : figure.panels())
     if (panel.label == "force on hand [N]")
-      for (const TimePanel::Line& line : panel.lines) out.push_back(line.name);
+      for (const Panel::Line& line : panel.lines) out.push_back(line.name);
   return out;
 }
 

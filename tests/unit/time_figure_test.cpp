@@ -14,7 +14,7 @@ TEST(TimeLine, KeepsEverySampleOfAShortRecording) {
   for (int i = 0; i < 100; ++i) line.add(0.1 * i, i % 7);
   const auto points = line.points();
   ASSERT_EQ(points.size(), 100u);
-  EXPECT_EQ(points[10], (std::vector<double>{1.0, 3}));
+  EXPECT_EQ(points[10], (Point{1.0, 3}));
 }
 
 TEST(TimeLine, KeepsTheExtremesOfALongOne) {
@@ -25,7 +25,7 @@ TEST(TimeLine, KeepsTheExtremesOfALongOne) {
   EXPECT_LE(points.size(), 2 * TimeLine::kMost);
   EXPECT_GE(points.size(), TimeLine::kMost / 2);
   EXPECT_TRUE(std::ranges::is_sorted(points, {}, [](const auto& point) { return point[0]; }));
-  const auto has = [&](double time, double value) { return std::ranges::find(points, std::vector{time, value}) != points.end(); };
+  const auto has = [&](double time, double value) { return std::ranges::find(points, Point{time, value}) != points.end(); };
   EXPECT_TRUE(has(1e-3 * 123456, 50));
   EXPECT_TRUE(has(1e-3 * 987654, -70));
   EXPECT_LT(points.front()[0], 2.0);
@@ -36,7 +36,7 @@ TEST(RateLine, CountsPerSecond) {
   RateLine line;
   for (const double time : {0.1, 0.2, 0.3, 1.7, 2.05}) line.add(time, 2);
   const auto points = line.points(0.5, 2.1);
-  const std::vector<std::vector<double>> wanted{{0, 12}, {0.5, 12}, {0.5, 0}, {1, 0}, {1, 0}, {1.5, 0}, {1.5, 4}, {2, 4}};
+  const std::vector<Point> wanted{{0, 12}, {0.5, 12}, {0.5, 0}, {1, 0}, {1, 0}, {1.5, 0}, {1.5, 4}, {2, 4}};
   EXPECT_EQ(points, wanted) << "the last 0.1 s are too short for a rate";
   EXPECT_EQ(line.points(1, 0).size(), 2u) << "a recording of one tick";
 }

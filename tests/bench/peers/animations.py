@@ -5,7 +5,8 @@
     tests/bench/peers/animations.py TACTUS FOLDER... [-o OUT]
 
 A FOLDER holds one OBJ file per frame and is named after its clip. It is read by `tactus import mesh` so that the diagonal of the box
-of all frames is 1024 mm: a unit, its 1024th part, is 1 mm. Writes points.csv and, if gnuplot is there, a figure for each clip to OUT.
+of all frames is 1024 mm: a unit, its 1024th part, is 1 mm. Writes points.csv and a figure for each clip to OUT, for which it
+needs matplotlib.
 Prints at which share of FAMC's bits ours has the same KG error. famc.csv holds what FAMC's reference software made of four clips.
 """
 import argparse
@@ -18,22 +19,14 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "lab"))
+from common import figure  # noqa: E402
+
 BOUNDS = "0.125", "0.25", "0.5", "1", "2", "4", "8"          # largest error [units]
 SETTINGS = {"no basis": [], "24 clusters": ["--clusters", "24"], "40 clusters": ["--clusters", "40"], "64 clusters": ["--clusters", "64"]}
 COLUMNS = ("clip", "vertices", "frames", "setting", "bound_units", "bits_per_vertex", "basis_bytes", "kg_percent", "largest_units", "over",
            "encode_us", "decode_us")
 FAMC = pathlib.Path(__file__).with_name("famc.csv")
-PLOT = """set terminal svg size 760,520 font "sans,14" background "white"
-set output "{out}"
-set datafile separator ","
-set logscale xy
-set xlabel "root mean square error, KG [%]"
-set ylabel "bits per vertex and frame"
-set title "{clip}: {vertices} vertices, {frames} frames"
-set key top right
-set grid
-plot {curves}
-"""
 
 
 def frames_of(folder):
@@ -91,19 +84,20 @@ def rate_at(points, kg):
 
 
 def draw(clip, points, famc, out):
-    data = out / "plot.csv"
-    series = {name: [(p["kg_percent"], p["bits_per_vertex"]) for p in points if p["setting"] == name] for name in ("no basis", "40 clusters")}
-    for name, wanted in (("FAMC, the whole clip known", True), ("FAMC, 8 to 57 frames known", False)):
-        series[name] = [(p["kg_percent"], p["bits_per_vertex"]) for p in famc if (p["segment"] == "whole") == wanted]
-    series = {name: values for name, values in series.items() if values}
-    data.write_text("\n\n\n".join("\n".join(f"{x},{y}" for x, y in values) for values in series.values()))
-    styles = {"no basis": "with linespoints dashtype 2 pointtype 4 linecolor rgb '#555555'",
-              "40 clusters": "with linespoints dashtype 1 linewidth 2 pointtype 7 linecolor rgb '#0060a0'"}
-    marks = iter(("with points pointtype 9 pointsize 1.2 linecolor rgb '#b04000'", "with points pointtype 10 pointsize 1.2 linecolor rgb '#b04000'"))
-    curves = ", ".join(f"'{data}' index {i} {styles.get(name) or next(marks)} title '{name}'" for i, name in enumerate(series))
-    script = PLOT.format(out=out / f"{clip}.svg", clip=clip, vertices=points[0]["vertices"], frames=points[0]["frames"], curves=curves)
-    subprocess.run(["gnuplot"], input=script, text=True, check=True)
-    data.unlink()
+    """Beside points of ours, lines, those of FAMC."""
+    of = lambda rows: ([float(p["kg_percent"]) for p in rows], [float(p["bits_per_vertex"]) for p in rows])
+    fig, (axes,) = figure.panels()
+    for i, name in enumerate(("40 clusters", "no basis")):
+        figure.line(axes, *of([p for p in points if p["setting"] == name]), i, label=name)
+    for i, (name, is_whole) in enumerate({"FAMC, the whole clip known": True, "FAMC, 8 to 57 frames known": False}.items(), 2):
+        rows = [p for p in famc if (p["segment"] == "whole") == is_whole]
+        if rows:
+            axes.plot(*of(rows), label=name, **figure.style_of(i) | {"linestyle": "none"})
+    figure.logarithmic(axes)
+    axes.set(xlabel="root mean square error, KG [%]", ylabel="bits per vertex and frame [bit]")
+    axes.legend(loc="upper right")
+    figure.title(fig, f"{clip}: {points[0]['vertices']} vertices, {points[0]['frames']} frames")
+    figure.save(fig, out / f"{clip}.svg")
 
 
 def main():
