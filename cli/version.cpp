@@ -3,11 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <vector>
 
-#include "cli/report/json_parts.h"
+#include "cli/report/json.h"
 #include "commit.h"
 
 namespace tactus::cli {

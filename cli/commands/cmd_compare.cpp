@@ -175,7 +175,7 @@ Outcome run(const CompareOptions& options) {
   Report report{.command = "compare", .files = {{"truth", options.truth}, {"replica", options.replica}}};
   report.describe(info);
   set_bounds(options, info, replica.reader.info().bounds, report);
-  report.timings = {{"compare", "compare, per tick"}};
+  report.timings = {{"compare"}};
   std::optional<ErrorFigure> figure;
   if (!options.plot.empty()) figure.emplace(info);
   TACTUS_CHECK(compare_all(truth, replica, options, report, figure));

@@ -70,7 +70,7 @@ Outcome run(const CutOptions& options) {
   auto writer = TraceWriter::create(output.working_path(), info);
   if (!writer) return refuse(options.output, writer.error());
   Report report{.command = "cut", .files = {{"trace", options.input}, {"cut", options.output}}};
-  report.timings = {{"read", "read, per tick"}};
+  report.timings = {{"read"}};
   TACTUS_CHECK(copy(*reader, *writer, options, report));
   if (report.ticks.count() == 0)
     return refuse(shown_path(options.input) + ": no tick lies between --from and --to",

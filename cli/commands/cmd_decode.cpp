@@ -136,7 +136,7 @@ Outcome run(const DecodeOptions& options) {
   for (const TraceDeformable& mesh : info.meshes)
     report.meshes.push_back({.name = mesh.name, .vertices = mesh.rest.vertices.size(), .traffic = DeformableRates{}});
   if (player->scene().loads) report.loads.emplace();
-  report.timings = {{"decode", "decode and show, per tick"}};
+  report.timings = {{"decode"}};
   report.stream = {player->header_bytes(), bytes.size()};
   if (report.traffic) report.client = way_of_client(options.replica.interpolation, player->scene().is_eased);
   std::optional<MotionFigure> figure;

@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 
 #include <tactus/device/real_time.h>
 #include "cli/commands/commands.h"
 #include "cli/live/device_choice.h"
 #include "cli/options/options_codec.h"
-#include "cli/report/json_parts.h"
+#include "cli/report/json.h"
 #include "cli/report/table.h"
 
 namespace tactus::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct DevicesOptions {
   CommonOptions common;

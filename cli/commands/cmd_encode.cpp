@@ -178,7 +178,7 @@ Outcome run(const EncodeOptions& options) {
   if (has_moving(reader->info()) || reader->info().meshes.empty()) {
     report.traffic.emplace();
     report.fidelity.emplace(reader->info(), options.triggers.triggers());
-    report.timings = {{"encode", "encode, per tick"}, {"decode", "decode, per packet"}};
+    report.timings = {{"encode"}, {"decode"}};
   }
   add_meshes(reader->info(), options.meshes, options.triggers, report);
   for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.is_main();

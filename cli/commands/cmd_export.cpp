@@ -20,7 +20,7 @@ Outcome run(const ExportOptions& options) {
   TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing(), {options.input}));
   TACTUS_TRY(const auto stream, output.open());
   Report report{.command = "export csv", .files = {{"trace", options.input}, {"table", options.output}}};
-  report.timings = {{"export", "export, whole file"}};
+  report.timings = {{"export"}};
   const auto rows = report.timings[0].times.measure([&] { return export_csv(*reader, *stream); });
   if (!rows) return refuse(stream->fail() ? options.output : options.input, rows.error());
   TACTUS_CHECK(check_ending(options.input, *reader, rows->count()));

@@ -96,7 +96,7 @@ Outcome run(const ExportFoxgloveOptions& options) {
   Report report{.command = "export foxglove",
                 .files = {{source.is_stream() ? "stream" : "trace", options.input}, {"view", options.output}}};
   report.describe(source.info());
-  report.timings = {{"write", "write, per tick"}};
+  report.timings = {{"write"}};
   TACTUS_CHECK(write_all(source, *writer, options, report));
   TACTUS_CHECK(output.keep());
   TACTUS_CHECK(write_layout(options, source.info()));

@@ -59,7 +59,7 @@ Outcome run(const ExportMeshOptions& options) {
   TriMesh shape = rest;
   TraceFrame frame;
   Report report{.command = "export mesh", .files = {{"trace", options.input}, {"frames", options.output}}};
-  report.timings = {{"write", "write, per frame"}};
+  report.timings = {{"write"}};
   std::uint64_t count = 0;
   while (true) {
     const auto more = reader->next(frame);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 
 #include <tactus/base/shown.h>
 #include <tactus/trace/trace_file.h>
@@ -11,15 +10,13 @@
 #include "cli/live/live_report.h"
 #include "cli/options/option_needs.h"
 #include "cli/options/options_link.h"
-#include "cli/report/json_parts.h"
+#include "cli/report/json.h"
 #include "cli/report/report.h"
 #include "cli/report/table.h"
 #include "cli/report/trace_ending.h"
 
 namespace tactus::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct ExportPcapOptions {
   std::string input, output, at = "client";

@@ -88,7 +88,7 @@ Outcome run(const ImportMeshOptions& options) {
   auto writer = TraceWriter::create(output.working_path(), info);
   if (!writer) return refuse(options.output, writer.error());
   Report report{.command = "import mesh", .files = {{"frames", options.input}, {"trace", options.output}}};
-  report.timings = {{"read", "read, per frame"}};
+  report.timings = {{"read"}};
   TACTUS_CHECK(write_frames(*sequence, rest, options, clock, *writer, report));
   if (const auto finished = writer->finish(); !finished) return refuse(options.output, finished.error());
   report.describe(info);

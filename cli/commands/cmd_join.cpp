@@ -7,7 +7,6 @@
 #include <array>
 #include <cerrno>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include <tactus/base/shown.h>
@@ -29,14 +28,12 @@
 #include "cli/options/options_session.h"
 #include "cli/options/units.h"
 #include "cli/output.h"
-#include "cli/report/json_parts.h"
+#include "cli/report/json.h"
 #include "cli/report/messages.h"
 #include "cli/report/trace_ending.h"
 
 namespace tactus::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct JoinOptions {
   std::string server, scene, user, key, output;

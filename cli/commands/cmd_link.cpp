@@ -10,21 +10,19 @@
 #include <chrono>
 #include <cmath>
 #include <deque>
-#include <nlohmann/json.hpp>
 
 #include <tactus/net/udp.h>
 #include "cli/commands/stop.h"
 #include "cli/live/live_report.h"
 #include "cli/options/options_link.h"
 #include "cli/options/units.h"
-#include "cli/report/json_parts.h"
+#include "cli/report/json.h"
 #include "cli/report/report.h"
 #include "cli/report/table.h"
 
 namespace tactus::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using sim::Microseconds;
 
 constexpr std::size_t kMostClients = 64;

@@ -126,7 +126,7 @@ Outcome run(const MergeOptions& options) {
   TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing(), options.inputs));
   auto writer = TraceWriter::create(output.working_path(), all);
   if (!writer) return refuse(options.output, writer.error());
-  report.timings = {{"write", "write, per tick"}};
+  report.timings = {{"write"}};
   TACTUS_CHECK(merge(parts, *writer, options, report));
   if (report.ticks.count() == 0) return refuse("there is no tick that all traces have", "`tactus cut --rebase` moves one.");
   if (const auto finished = writer->finish(); !finished) return refuse(options.output, finished.error());

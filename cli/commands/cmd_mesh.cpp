@@ -6,12 +6,12 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include <tactus/base/shown.h>
 #include <tactus/sim/tets/tet_files.h>
 #include <tactus/sim/tets/tet_quality.h>
+#include "cli/report/json.h"
 #include "cli/report/json_parts.h"
 #include "cli/report/report.h"
 #include "cli/report/table.h"
@@ -22,8 +22,6 @@
 
 namespace tactus::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -164,7 +162,7 @@ Json to_json(const MeshOptions& options, const TetMeshReport& report) {
   out["smallest_angle_rad"] = {{"value", q.smallest_angle.value}, {"tetrahedron", q.smallest_angle.tet}};
   out["largest_angle_rad"] = {{"value", q.largest_angle.value}, {"tetrahedron", q.largest_angle.tet}};
   out["shape"] = {{"worst", q.shape.value}, {"tetrahedron", q.shape.tet}, {"mean", q.mean_shape}};
-  for (const auto& [step, time] : report.times) out["time"][step] = time_json(time, 0);
+  for (const auto& [step, time] : report.times) out["time"][step] = time_value(time, 0);
   return out;
 }
 

@@ -11,7 +11,7 @@
 #include "cli/live/felt_recording.h"
 #include "cli/options/units.h"
 #include "cli/output.h"
-#include "cli/report/json_parts.h"
+#include "cli/report/json.h"
 
 namespace tactus::cli {
 namespace {

@@ -61,7 +61,7 @@ Outcome run(const RecoverOptions& options) {
   auto writer = TraceWriter::create(output.working_path(), reader->info());
   if (!writer) return refuse(options.output, writer.error());
   Report report{.command = "recover", .files = {{"trace", options.input}, {"recovered", options.output}}};
-  report.timings = {{"read", "read, per tick"}};
+  report.timings = {{"read"}};
   TACTUS_TRY(const Rescue rescue, copy(*reader, *writer, options, report));
   if (report.ticks.count() == 0 && rescue.damage) return refuse(options.input, *rescue.damage);
   if (report.ticks.count() == 0)

@@ -61,7 +61,7 @@ Outcome run(const ResampleOptions& options) {
   auto writer = TraceWriter::create(output.working_path(), resampler.info());
   if (!writer) return refuse(options.output, writer.error());
   Report report{.command = "resample", .files = {{"trace", options.input}, {"resampled", options.output}}};
-  report.timings = {{"resample", "resample, per tick read"}};
+  report.timings = {{"resample"}};
   TACTUS_CHECK(resample(*reader, resampler, *writer, options, report));
   if (report.ticks.count() == 0)
     return refuse(shown_path(options.input) + ": too short for a tick at this rate", "Give a higher --rate.");

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include <tactus/net/udp.h>
@@ -26,14 +25,13 @@
 #include "cli/options/units.h"
 #include "cli/output.h"
 #include "cli/report/figures.h"
+#include "cli/report/json.h"
 #include "cli/report/json_parts.h"
 #include "cli/report/messages.h"
 #include "cli/report/network_report.h"
 
 namespace tactus::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct ServeOptions {
   std::string scene, listen = "7447", key, output;
@@ -208,7 +206,7 @@ Json to_json(const ServeOptions& options, const SessionServer& sessions, const t
                 {"state", name_of(status.state)},
                 {"role", status.role == Role::observer ? "observer" : "participant"},
                 {"loss", status.loss},
-                {"bounds_widened", widening_json(status.widened)},
+                {"bounds_widened", widening_value(status.widened)},
                 {"traffic", traffic_json(status.traffic, seconds, seal)}};
     if (status.round_trip) client["round_trip"] = round_trip_json(*status.round_trip);
     if (status.state == SessionState::live) client["state_hashes"] = hashes_json(sessions, scene, i);

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include <tactus/base/shown.h>
@@ -18,7 +17,7 @@
 #include "cli/options/units.h"
 #include "cli/output.h"
 #include "cli/progress.h"
-#include "cli/report/json_parts.h"
+#include "cli/report/json.h"
 #include "cli/report/messages.h"
 #include "cli/report/table.h"
 #include "cli/report/trace_ending.h"
@@ -26,7 +25,6 @@
 namespace tactus::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Pair = DelayTolerance::Pair;
 using Touch = DelayTolerance::Touch;
 

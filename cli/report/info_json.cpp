@@ -6,19 +6,17 @@
 
 #include <algorithm>
 #include <ctime>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "cli/report/figures.h"
-#include "cli/report/report_json.h"
+#include "cli/report/json.h"
+#include "cli/report/json_parts.h"
 #ifdef TACTUS_HAS_SIM
 #include <tactus/sim/scene/scene.h>
 #endif
 
 namespace tactus::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr const char* kSchema = "tactus.info/3";
 
@@ -63,19 +61,6 @@ Json mesh_header_json(const DeformableObject& mesh, std::uint32_t tick_rate) {
   return out;
 }
 
-Json promised_json(const DeformableBounds& bounds, std::uint8_t rings) {
-  const DeformableThresholds& b = bounds.thresholds;
-  Json out{{"position_m", b.visual},
-           {"haptic_rule", b.weber_fraction ? "isotropic" : "off"},
-           {"rings", rings},
-           {"promised", bounds.kept}};
-  if (b.weber_fraction) {
-    out["haptic_fraction"] = *b.weber_fraction;
-    out["depth_floor_m"] = b.depth_floor;
-  }
-  return out;
-}
-
 /// Shares of what would be sent without reduction need the trace.
 Json without_shares(Json traffic) {
   for (const char* name : {"payload", "with_udp_ipv4"})
@@ -91,6 +76,11 @@ Json forces_json(KnownForces known) {
   return out;
 }
 
+/// "2026-01-31 09:30:00 UTC"   in  time  [ns] since 1970-01-01 UTC
+std::string text_of_wall_time(std::int64_t time) {
+  return fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(static_cast<std::time_t>(time / 1'000'000'000)));
+}
+
 Json capture_json(const TraceCapture& capture) {
   return {{"started_ns", capture.started},    {"started", text_of_wall_time(capture.started)},
           {"device", capture.device},         {"backend", capture.backend},
@@ -100,9 +90,13 @@ Json capture_json(const TraceCapture& capture) {
 
 }  // namespace
 
-Json packet_info_json(const PlayedPacket& played) {
+Value packet_info_value(const PlayedPacket& played, const Scene& scene) {
   Json out{{"tick", played.tick},   {"byte", played.offset}, {"sequence", played.sequence},
            {"bytes", played.bytes}, {"key", played.key},     {"substream", played.substream}};
+  if (!scene.deformables.empty() || scene.loads)
+    out["content"] = played.substream == 0                         ? "rigid objects"
+                     : played.substream > scene.deformables.size() ? "loads"
+                                                                   : scene.deformables[played.substream - 1].name;
   if (played.loads > 0) {
     out["loads"] = played.loads;
     return out;
@@ -118,7 +112,7 @@ Json packet_info_json(const PlayedPacket& played) {
   return out;
 }
 
-Json stream_info_json(const Player& player, const StreamTotals& totals, std::uint64_t file_bytes, const StreamEnd& end) {
+Value stream_info_value(const Player& player, const StreamTotals& totals, std::uint64_t file_bytes, const StreamEnd& end) {
   const Scene& h = player.scene();
   Report report{.command = "info", .tick_rate = h.tick_rate, .stream = StreamSize{player.header_bytes(), file_bytes}};
   report.ticks.add(0);
@@ -138,19 +132,19 @@ Json stream_info_json(const Player& player, const StreamTotals& totals, std::uin
            {"rotation_grid_rad", 4 * step_of(h.grid.rotation)},
            {"max_extrapolation_ticks", h.max_extrapolation},
            {"baseline_span", h.baseline_span},
-           {"stream", stream_json(report)}};
+           {"stream", stream_value(report)}};
   if (end.error) out["broken"] = {{"byte", end.error->bit_offset / 8}, {"rule", end.error->rule}};
   if (report.traffic) {
     out["profile"] = "thesis";
-    out["traffic"] = without_shares(rigid_traffic_json(report));
+    out["traffic"] = without_shares(Json(rigid_traffic_value(report)));
     out["grid_levels"] = totals.levels;
     if (totals.rigid.packets > 0) {
       out["traffic"]["min_bytes"] = totals.rigid.smallest;
       out["traffic"]["max_bytes"] = totals.rigid.largest;
     }
   }
-  if (h.loads) out["loads"] = load_traffic_json(totals.loads, report.seconds());
-  if (h.bounds && h.bounds->rigid) out["bounds"] = bounds_json(*h.bounds->rigid);
+  if (h.loads) out["loads"] = load_traffic_value(totals.loads, report.seconds());
+  if (h.bounds && h.bounds->rigid) out["bounds"] = bounds_value(*h.bounds->rigid);
   out["objects"] = Json::array();
   for (const RigidObject& o : h.objects) {
     const Pose pose = to_pose(o.initial, h.grid.position);
@@ -163,17 +157,15 @@ Json stream_info_json(const Player& player, const StreamTotals& totals, std::uin
   out["deformables"] = Json::array();
   for (std::size_t i = 0; i < h.deformables.size(); ++i) {
     out["deformables"].push_back(mesh_header_json(h.deformables[i], h.tick_rate));
-    if (h.bounds) out["deformables"].back()["bounds"] = promised_json(h.bounds->deformables[i], h.deformables[i].rings);
-    out["deformables"].back()["traffic"] = mesh_traffic_json(report.meshes[i], report.seconds());
+    if (h.bounds)
+      out["deformables"].back()["bounds"] =
+          mesh_bounds_value(h.bounds->deformables[i].thresholds, h.deformables[i].rings, h.bounds->deformables[i].kept);
+    out["deformables"].back()["traffic"] = mesh_traffic_value(report.meshes[i], report.seconds());
   }
   return out;
 }
 
-std::string text_of_wall_time(std::int64_t time) {
-  return fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(static_cast<std::time_t>(time / 1'000'000'000)));
-}
-
-Json trace_info_json(const TraceInfo& trace, const TraceTotals& totals) {
+Value trace_info_value(const TraceInfo& trace, const TraceTotals& totals) {
   const auto length = static_cast<double>(totals.last - totals.first + (totals.frames > 0 ? 1 : 0));
   Json out{{"schema", kSchema},
            {"kind", "trace"},
@@ -204,7 +196,7 @@ Json trace_info_json(const TraceInfo& trace, const TraceTotals& totals) {
 }
 
 #ifdef TACTUS_HAS_SIM
-Json scene_info_json(const sim::Scene& scene) {
+Value scene_info_value(const sim::Scene& scene) {
   Json out{{"schema", kSchema}, {"kind", "scene"}, {"name", scene.name}, {"seconds", scene.duration}};
   if (scene.floor) out["floor_m"] = *scene.floor;
   if (scene.touch) out["touch_stiffness_N_per_m"] = scene.touch->stiffness;

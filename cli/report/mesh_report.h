@@ -8,7 +8,6 @@
 #include <tactus/metrics/deformable_errors.h>
 #include <tactus/metrics/rates.h>
 #include "cli/report/step_times.h"
-#include "cli/report/table.h"
 
 namespace tactus::cli {
 
@@ -22,9 +21,6 @@ struct MeshReport {
   bool promised = true;      ///< the bounds are: false where they only decide what is sent
   StepTimes encode{}, decode{};
 };
-
-/// in   where  of the errors: at which client
-void mesh_rows(Table& table, const MeshReport& mesh, double seconds, const std::string& where = {});
 
 /// With `header` bytes below each packet.
 inline double bytes_of(const DeformableRates& t, std::uint64_t header) {

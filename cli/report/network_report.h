@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -31,11 +30,5 @@ struct NetworkReport {
   Widening widened{};  ///< of the bounds, by the server
   DirectionReport up{}, down{};
 };
-
-nlohmann::ordered_json widening_json(const Widening& widened);
-std::string widening_text(const Widening& widened);  ///< to go on with; empty: the bounds were never widened
-std::string network_note(const NetworkReport& user);
-void network_rows(Table& table, const NetworkReport& user, double seconds);
-nlohmann::ordered_json network_json(const NetworkReport& user, double seconds);
 
 }  // namespace tactus::cli

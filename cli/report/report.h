@@ -13,13 +13,13 @@
 #include "cli/options/options_codec.h"
 #include "cli/report/mesh_report.h"
 #include "cli/report/network_report.h"
+#include "cli/report/printer.h"
 #include "cli/report/touch_report.h"
 
 namespace tactus::cli {
 
 struct Timing {
-  std::string key;    ///< in JSON: "encode"
-  std::string label;  ///< in the table: "encode, per tick"
+  std::string step;  ///< "encode"
   StepTimes times{};
 };
 
@@ -80,20 +80,10 @@ struct Report {
 /// Make place for what is sent of a trace's meshes and how far it is off.
 void add_meshes(const TraceInfo& info, const MeshArguments& meshes, const TriggerArguments& triggers, Report& report);
 
-/// Rates of rigid objects' packets; `header` bytes go below each.   pre  there is traffic
-struct RigidRates {
-  double bits_per_s, bytes_per_packet, bytes_per_update, saved_24, saved_48;
-};
-RigidRates rigid_rates(const Report& report, std::uint64_t header);
-
 /// Which bounds are broken, where and how often: "position in 12 of 1000 ticks"; empty when all hold.
 std::string broken_bounds(const Report& report);
 /// A failure that says so.   in  file  that was judged
 Outcome verdict(const Report& report, const std::string& file);
-
-bool has_errors(const ErrorMetrics& fidelity);
-/// Schema report.json: numbers in SI units.
-std::string to_json(const Report& report);
 
 enum class Destination { standard_output, standard_error };
 /// Print as the options say: JSON, text, or nothing when quiet.

@@ -35,6 +35,10 @@ struct StreamTotals {
   std::vector<DeformableRates> meshes;
   LoadRates loads;
 
+  bool is_empty() const {
+    return rigid.packets + loads.packets == 0 &&
+           std::ranges::all_of(meshes, [](const DeformableRates& m) { return m.sizes.empty(); });
+  }
   void add(const PlayedPacket& p) {
     last_tick = p.tick;
     if (p.substream > meshes.size()) return loads.add(p.bytes, p.loads);
