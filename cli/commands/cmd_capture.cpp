@@ -87,13 +87,9 @@ Outcome run(const CaptureOptions& options) {
     return failed(worked.error(), run);
   }
   TACTUS_CHECK(output.keep());
-  if (options.common.json) {
-    nlohmann::ordered_json out{{"schema", "tactus.capture/1"}};
-    add_to(out, run);
-    fmt::print("{}\n", text_of_json(out));
-  } else if (!options.common.quiet) {
-    print_text(run, "capture", {});
-  }
+  Value report = Json{{"schema", "tactus.capture/1"}};
+  add_to(report, run);
+  print(report, "capture", options.common);
   return check_complete(run);
 }
 

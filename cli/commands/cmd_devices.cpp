@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
-
 #include <tactus/device/real_time.h>
 #include "cli/commands/commands.h"
 #include "cli/live/device_choice.h"
 #include "cli/options/options_codec.h"
 #include "cli/report/json.h"
-#include "cli/report/table.h"
-
 namespace tactus::cli {
 namespace {
 
@@ -29,7 +24,7 @@ std::vector<Kind> look() {
   return kinds;
 }
 
-Json to_json(const std::vector<Kind>& kinds, const device::RealTime& real_time) {
+Value value_of(const std::vector<Kind>& kinds, const device::RealTime& real_time) {
   Json out{{"schema", "tactus.devices/1"}, {"backends", Json::array()}, {"privileges", Json::array()}};
   for (const Kind& kind : kinds) {
     Json devices = Json::array();
@@ -49,27 +44,10 @@ Json to_json(const std::vector<Kind>& kinds, const device::RealTime& real_time) 
   return out;
 }
 
-void print_text(const std::vector<Kind>& kinds, const device::RealTime& real_time) {
-  Table table;
-  table.heading({"backend", "what it is"});
-  for (const Kind& kind : kinds) {
-    table.row({"  " + kind.name, kind.title});
-    for (const device::Capabilities& can : kind.listing.devices)
-      table.row({"    " + can.name, fmt::format("{}{}{}{}", can.model, can.serial.empty() ? "" : ", serial ", can.serial,
-                                                can.report_descriptor ? ", recorded report by report" : "")});
-    for (const std::string& missing : kind.listing.missing) table.row({"", "missing: " + missing});
-  }
-  table.heading({"real time", ""});
-  for (const device::Privilege& privilege : real_time.privileges())
-    table.row({"  " + privilege.name, privilege.granted ? "granted" : "not granted: " + privilege.remedy});
-  table.print(stdout);
-}
-
 Outcome run(const DevicesOptions& options) {
   const device::RealTime real_time;
   const std::vector<Kind> kinds = look();
-  if (options.common.json) fmt::print("{}\n", text_of_json(to_json(kinds, real_time)));
-  else if (!options.common.quiet) print_text(kinds, real_time);
+  print(value_of(kinds, real_time), "devices", options.common);
   return {};
 }
 

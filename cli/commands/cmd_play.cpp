@@ -53,21 +53,13 @@ tl::unexpected<Failure> refuse_recording(const PlayOptions& options, const Diagn
                           "`tactus info` names those of a trace.");
 }
 
-void report(const PlayOptions& options, const DeviceRun& run, const FeltRecording::Distance& distance) {
-  if (options.common.json) {
-    nlohmann::ordered_json out{{"schema", "tactus.play/1"},
-                               {"recording", options.trace},
-                               {"exerted", name_of(options.exerted)},
-                               {"distance", {{"mean_m", distance.mean}, {"largest_m", distance.largest}}}};
-    add_to(out, run);
-    fmt::print("{}\n", text_of_json(out));
-  } else if (!options.common.quiet) {
-    print_text(
-        run, "play",
-        {{"recording", options.trace},
-         {"exerted", name_of(options.exerted)},
-         {"distance", fmt::format("{:.2f} mm on average, at most {:.2f} mm", 1e3 * distance.mean, 1e3 * distance.largest)}});
-  }
+Value value_of(const PlayOptions& options, const DeviceRun& run, const FeltRecording::Distance& distance) {
+  Value out = Json{{"schema", "tactus.play/1"},
+                   {"recording", options.trace},
+                   {"exerted", name_of(options.exerted)},
+                   {"distance", {{"mean_m", distance.mean}, {"largest_m", distance.largest}}}};
+  add_to(out, run);
+  return out;
 }
 
 Outcome run(const PlayOptions& options) {
@@ -99,7 +91,7 @@ Outcome run(const PlayOptions& options) {
     return failed(worked.error(), run);
   }
   if (output) TACTUS_CHECK(output->keep());
-  report(options, run, felt.distance());
+  print(value_of(options, run, felt.distance()), "play", options.common);
   return check_complete(run);
 }
 

@@ -13,12 +13,12 @@
 #include "cli/live/keyboard.h"
 #include "cli/live/meter.h"
 #include "cli/live/ticker.h"
+#include "cli/report/json.h"
 #include "cli/report/table.h"
 
 namespace tactus::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using device::Reading;
 using device::Time;
 
@@ -88,7 +88,8 @@ Outcome run_attended(DeviceLoop& loop, const CommonOptions& common) {
   return worked;
 }
 
-void add_to(Json& out, const DeviceRun& run) {
+void add_to(Value& report, const DeviceRun& run) {
+  Json& out = report.json;
   const DeviceLoop::Outcomes& of = run.outcomes;
   if (!run.trace.empty()) out["trace"] = run.trace;
   out["device"] = {{"name", run.device.name},
@@ -108,39 +109,7 @@ void add_to(Json& out, const DeviceRun& run) {
   if (!run.trace.empty()) out["most_waiting_frames"] = of.recorder.most_waiting;
   if (!of.guard) return;
   out["largest_force_N"] = of.largest_force;
-  out["guard"] = to_json(*of.guard);
-}
-
-void print_text(const DeviceRun& run, const std::string& title, const std::vector<std::pair<std::string, std::string>>& rows) {
-  const DeviceLoop::Outcomes& of = run.outcomes;
-  Table head;
-  head.heading({title});
-  const auto row = [&](const std::string& name, const std::string& text) { head.row({fmt::format("  {:<9} {}", name, text)}); };
-  for (const auto& [name, text] : rows) row(name, text);
-  row("device", fmt::format("{} ({})", run.device.model, run.device.name));
-  if (!run.trace.empty()) row("trace", run.trace);
-  row("time", fmt::format("{:.3f} s, {}", run.seconds(), counted(of.ticks, "tick")));
-  row("lost", fmt::format("{} missed, {} at the device{}", counted(of.missed, "tick"), of.device_lost,
-                          run.trace.empty() ? "" : fmt::format(", {} at the file", of.recorder.lost)));
-  if (run.device.report_descriptor) row("reports", std::to_string(of.reports));
-  row("loop", of.privileges);
-  if (of.guard) {
-    row("force", fmt::format("at most {:.2f} N; gave the hand {:.2g} J", of.largest_force, std::max(0.0, of.guard->energy)));
-    row("guard", to_text(*of.guard));
-  }
-  head.print(stdout);
-  fmt::print("\n");
-  Table table;
-  table.heading({"time [us]", "p50", "p99", "p99.9", "max"});
-  const auto times = [&](const char* name, const device::Histogram& values) {
-    table.row({std::string("  ") + name, fmt::format("{:.0f}", us(values.quantile(0.5))),
-               fmt::format("{:.0f}", us(values.quantile(0.99))), fmt::format("{:.0f}", us(values.quantile(0.999))),
-               fmt::format("{:.0f}", us(values.longest()))});
-  };
-  times("late", of.times.lateness);
-  times("age of the sample", of.times.age);
-  times("busy", of.times.busy);
-  table.print(stdout);
+  out["guard"] = value_of(*of.guard);
 }
 
 tl::unexpected<Failure> failed(Failure failure, const DeviceRun& run) {

@@ -2,15 +2,14 @@
 /// What a person sees while a device runs and afterwards, whatever its hand felt.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "cli/live/device_loop.h"
 #include "cli/options/options_codec.h"
 
 namespace tactus::cli {
+
+struct Value;
 
 /// Run the loop on a thread of its own until it ends. Keys become markers, q and a signal end it, and a meter shows how it goes.
 Outcome run_attended(DeviceLoop& loop, const CommonOptions& common);
@@ -26,10 +25,7 @@ struct DeviceRun {
   std::uint64_t lost() const { return outcomes.recorder.lost + outcomes.device_lost; }
 };
 /// Adds what there is to say of every run: `trace` to `privileges`, and `guard` of a device that takes a force.
-void add_to(nlohmann::ordered_json& out, const DeviceRun& run);
-/// in   title, rows  that stand above all others
-void print_text(const DeviceRun& run, const std::string& title, const std::vector<std::pair<std::string, std::string>>& rows);
-
+void add_to(Value& report, const DeviceRun& run);
 /// A failure, and what the trace holds after it.
 tl::unexpected<Failure> failed(Failure failure, const DeviceRun& run);
 /// err  a sample was lost

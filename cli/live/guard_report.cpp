@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/live/guard_report.h"
 
-#include <fmt/format.h>
-
-#include <nlohmann/json.hpp>
-
-#include "cli/report/table.h"
+#include "cli/report/json.h"
 
 namespace tactus::cli {
 
-using Json = nlohmann::ordered_json;
 using device::GuardAction;
 
 std::optional<GuardReport> guard_report(device::Servo& servo, device::Time begin) {
@@ -22,7 +17,7 @@ std::optional<GuardReport> guard_report(device::Servo& servo, device::Time begin
   return report;
 }
 
-Json to_json(const GuardReport& report) {
+Value value_of(const GuardReport& report) {
   Json ticks = Json::object(), log = Json::array();
   for (std::size_t i = 0; i < report.ticks.size(); ++i) ticks[name_of(static_cast<GuardAction>(i))] = report.ticks[i];
   const auto vector = [](const Vec3& v) { return Json{v.x, v.y, v.z}; };
@@ -31,17 +26,7 @@ Json to_json(const GuardReport& report) {
                    {"action", name_of(entry.action)},
                    {"asked_N", is_finite(entry.asked) ? vector(entry.asked) : Json(nullptr)},
                    {"passed_N", vector(entry.passed)}});
-  return {{"energy_given_J", report.energy}, {"halted", report.halted}, {"ticks", std::move(ticks)}, {"log", std::move(log)}};
-}
-
-std::string to_text(const GuardReport& report) {
-  std::string text;
-  for (std::size_t i = 0; i < report.ticks.size(); ++i)
-    if (report.ticks[i] > 0)
-      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", counted(report.ticks[i], "tick"),
-                          name_of(static_cast<GuardAction>(i)));
-  if (report.halted > 0) text += fmt::format("{}halted {}", text.empty() ? "" : "; ", counted(report.halted, "time"));
-  return text.empty() ? "changed nothing" : text;
+  return Json{{"energy_given_J", report.energy}, {"halted", report.halted}, {"ticks", std::move(ticks)}, {"log", std::move(log)}};
 }
 
 }  // namespace tactus::cli

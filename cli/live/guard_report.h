@@ -4,14 +4,14 @@
 
 #include <array>
 #include <cstdint>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include <tactus/device/servo.h>
 
 namespace tactus::cli {
+
+struct Value;
 
 struct GuardReport {
   std::array<std::uint64_t, device::kGuardActions> ticks{};  ///< changed, per device::GuardAction
@@ -24,8 +24,5 @@ struct GuardReport {
 /// out  none: the device takes no force
 std::optional<GuardReport> guard_report(device::Servo& servo, device::Time begin);
 
-nlohmann::ordered_json to_json(const GuardReport& report);
-/// "12 clamp, 3 slew; halted 1 time"
-std::string to_text(const GuardReport& report);
-
+Value value_of(const GuardReport& report);
 }  // namespace tactus::cli

@@ -83,7 +83,7 @@ std::string text_of(const Json& value, const Json& schema, const Json& root, Wit
   else if (value.is_boolean()) text = value.get<bool>() ? "yes" : "no";
   else if (value.is_string()) text = value.get<std::string>();
   else if (value.is_number()) text = number_text(value, schema);
-  else text = joined(value, schema, root, with);
+  else text = joined(value, schema, root, text_at(schema, "x-as") == "cell" ? With::unit : with);
   const std::string plain = value.is_boolean() ? value.dump() : text;
   if (const auto words = schema.find("x-words"); words != schema.end() && words->contains(plain)) return (*words)[plain];
   if (with == With::unit && value.is_number() && schema.contains("x-count"))
@@ -95,25 +95,31 @@ std::string text_of(const Json& value, const Json& schema, const Json& root, Wit
 /// A table: cells by row and column. Without columns, words and values.
 struct Block {
   struct Row {
-    std::string key, label;
+    std::string label;
     std::map<std::string, std::string> cells{};  // by column
   };
-  std::string key, title = key;
+  explicit Block(const std::string& name) : key(name), title(name) {}
+  std::string key, title;
   std::vector<std::string> columns{};
   std::vector<Row> rows{};
 
   bool is_list() const { return columns.size() == 1 && columns[0].empty(); }
-  Row* row(const std::string& sought) {
-    const auto found = std::ranges::find(rows, sought, &Row::key);
-    return found == rows.end() ? nullptr : &*found;
-  }
-  void add(const std::string& to, const std::string& label, const std::string& column, const std::string& text,
-           bool first = false) {
-    if (row(to) == nullptr) rows.push_back({to, label});
-    if (std::ranges::find(columns, column) == columns.end()) columns.insert(first ? columns.begin() : columns.end(), column);
-    std::string& cell = row(to)->cells[column];
+  bool has_row(const std::string& sought) const { return places_.contains(sought); }
+  void add(const std::string& row, const std::string& label, const std::string& column, const std::string& text) {
+    if (std::ranges::find(columns, column) == columns.end()) columns.push_back(column);
+    const auto [place, is_new] = places_.try_emplace(row, rows.size());
+    if (is_new) rows.push_back({label});
+    std::string& cell = rows[place->second].cells[column];
     cell += (cell.empty() || text.starts_with(' ') ? "" : ", ") + text;
   }
+  /// To a row that is there, in a column before the others.
+  void join(const std::string& row, const std::string& column, const std::string& text) {
+    if (std::ranges::find(columns, column) == columns.end()) columns.insert(columns.begin(), column);
+    add(row, row, column, text);
+  }
+
+ private:
+  std::map<std::string, std::size_t> places_{};  // of rows
 };
 
 /// Where what is walked over stands.
@@ -133,17 +139,19 @@ class Layout {
 
  private:
   void member(const Json& value, const Json& schema, const Place& place);
+  void texts(const Json& value, const Json& schema, Block& to, const std::string& title);
   void rows(const Json& value, const Json& schema, const Place& place);
   void elements(const Json& value, const Json& schema, const Place& place);
   void leaf(const Json& value, const Json& schema, const Place& place, const std::string& title);
   Block& block(const std::string& title) {
     const auto found = std::ranges::find(blocks_, title, &Block::key);
-    return found == blocks_.end() ? blocks_.emplace_back(Block{title}) : *found;
+    return found == blocks_.end() ? blocks_.emplace_back(title) : *found;
   }
   /// Calls look(member, its schema) in the order of the schema.
   template <class Look>
   void for_each_member(const Json& value, const Json& schema, Look look) {
-    const Json known = schema.value("properties", Json::object());
+    static const Json kNone = Json::object();
+    const Json& known = schema.contains("properties") ? schema["properties"] : kNone;
     for (const auto& [key, property] : known.items())
       if (value.contains(key)) look(value[key], resolved(property, root_));
     for (const auto& [key, part] : value.items()) {
@@ -157,7 +165,7 @@ class Layout {
 
   const Json& root_;
   std::vector<Block> blocks_;
-  std::vector<std::string> sentences_;
+  std::vector<std::string> sentences_, notes_;
 };
 
 /// Of several possible, the schema whose constants are those of the value.
@@ -179,12 +187,9 @@ void Layout::object(const Json& value, const Json& schema, const Place& place) {
 void Layout::member(const Json& value, const Json& schema, const Place& place) {
   const std::string as = text_at(schema, "x-as"), title = filled(text_at(schema, "title"), place.name);
   if (schema.value("x-hidden", false) || as == "name" || (schema.contains("x-omit") && schema["x-omit"] == value)) return;
-  if (as == "heading") block(place.block).title = value;
-  if (as == "sentence")
-    for (const Json& text : value.is_array() ? value : Json::array({value})) sentences_.push_back(text);
-  if (as == "lines")
-    for (std::size_t i = 0; i < value.size(); ++i) block(place.block).add(title + std::to_string(i), title, "", value[i]);
-  if (as == "heading" || as == "sentence" || as == "lines") return;
+  if (const std::string note = text_at(schema, "x-note"); !note.empty() && std::ranges::find(notes_, note) == notes_.end())
+    notes_.push_back(note);
+  if (as == "heading" || as == "sentence" || as == "lines") return texts(value, schema, block(place.block), title);
   Place inner = place;
   if (schema.contains("x-block")) inner.block = filled(schema["x-block"], place.name);
   const bool is_cell = as == "cell" || !value.is_structured();
@@ -206,6 +211,15 @@ void Layout::member(const Json& value, const Json& schema, const Place& place) {
   if (value.is_array()) elements(value, schema, inner);
   else if (as == "rows") rows(value, schema, inner);
   else object(value, schema, inner);
+}
+
+void Layout::texts(const Json& value, const Json& schema, Block& to, const std::string& title) {
+  const std::string as = schema["x-as"];
+  if (as == "heading") to.title = text_of(value, schema, root_, With::unit);
+  if (as == "sentence")
+    for (const Json& text : value.is_array() ? value : Json::array({value})) sentences_.push_back(text);
+  if (as == "lines")
+    for (std::size_t i = 0; i < value.size(); ++i) to.add(title + std::to_string(i), title, "", value[i]);
 }
 
 void Layout::rows(const Json& value, const Json& schema, const Place& place) {
@@ -233,7 +247,7 @@ void Layout::elements(const Json& value, const Json& schema, const Place& place)
       at.block = filled(title, at.name);
     } else {
       if (!title.empty() && !schema.contains("x-block")) at.block = filled(title, place.name);
-      at.row = std::to_string(number++);
+      at.row = fmt::format("{}/{}", place.row.value_or(""), number++);
       at.row_label = name;
       at.row_schema = schema;
     }
@@ -249,9 +263,9 @@ Json in_unit_of_row(Json schema, const Json& row) {
 
 void Layout::leaf(const Json& value, const Json& schema, const Place& place, const std::string& title) {
   if (place.joins) {
-    if (const auto found = std::ranges::find(blocks_, place.block, &Block::key);
-        found != blocks_.end() && found->row(title) != nullptr)
-      found->add(title, title, *place.column, text_of(value, schema, root_, With::unit), true);
+    const auto found = std::ranges::find(blocks_, place.block, &Block::key);
+    if (found != blocks_.end() && found->has_row(title))
+      found->join(title, *place.column, text_of(value, schema, root_, With::unit));
     return;
   }
   const std::string own = text_at(schema, "x-row"), column = text_at(schema, "x-column");
@@ -259,8 +273,9 @@ void Layout::leaf(const Json& value, const Json& schema, const Place& place, con
   const auto plain = [&] { return text_of(value, in_unit_of_row(schema, place.row_schema), root_, With::nothing); };
   Block& to = block(place.block);
   if (place.row && place.column) return to.add(*place.row, place.row_label, *place.column, plain());
-  if (place.row)
-    return to.add(*place.row, place.row_label, column.empty() ? place.prefix + labelled(title, schema) : column, plain());
+  if (place.row && schema.contains("x-column"))
+    return to.add(*place.row, place.row_label, column, column.empty() ? text_of(value, schema, root_, With::unit) : plain());
+  if (place.row) return to.add(*place.row, place.row_label, place.prefix + labelled(title, schema), plain());
   if (place.column) return to.add(row, labelled(row, schema), *place.column, plain());
   const bool is_count = !column.empty() && schema.contains("x-count");
   to.add(row, row, column, is_count ? plain() : text_of(value, schema, root_, With::unit));
@@ -328,7 +343,9 @@ void Layout::print(std::FILE* out) const {
     print_heading(out, shown(block.title));
     print_list(block, out);
   }
-  for (const std::string& sentence : sentences_) fmt::print(out, "\n{}\n", fmt::join(lines_of(shown(sentence, kLongest)), "\n"));
+  for (const auto* sentences : {&sentences_, &notes_})
+    for (const std::string& sentence : *sentences)
+      fmt::print(out, "\n{}\n", fmt::join(lines_of(shown(sentence, kLongest)), "\n"));
 }
 
 }  // namespace
@@ -356,7 +373,8 @@ std::vector<std::pair<std::string, std::string>> cells_of(const Json& element, c
   std::vector<std::pair<std::string, std::string>> cells;
   for (const auto& [key, property] : schema["properties"].items()) {
     if (!element.contains(key)) continue;
-    const Json of_cell = resolved(property, root);
+    Json followed;
+    const Json& of_cell = property.contains("$ref") ? followed = resolved(property, root) : property;
     cells.emplace_back(labelled(text_at(of_cell, "title"), of_cell), text_of(element[key], of_cell, root, With::nothing));
   }
   return cells;

@@ -9,6 +9,7 @@
 ///   x-text              what is printed, with {} for the value; after a space: no comma before it
 ///   x-omit              a value that is not worth a row
 ///   x-hidden            only in JSON
+///   x-note              a sentence below all tables, if the property is there
 ///   x-block, x-row, x-column    where it stands, instead of a place of its own; values in one place are joined
 ///   x-as                of objects   "rows": one for each member; "row", "column": one for it as a whole; "cell": all in one place;
 ///                                    "joins": a first column, of rows that are there

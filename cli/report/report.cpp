@@ -136,11 +136,6 @@ void add_verdict(Json& out, const Report& r) {
     out["bounds_held"] = broken.empty();
     out["verdict"] = broken.empty() ? "All bounds hold." : "Bounds are broken: " + broken + ".";
   }
-  if (r.fidelity && r.fidelity->rendered().ticks() > 0)
-    out["notes"] = {
-        "Rendered force: the force at the hand compared with the server's force. Errors of more than 10..22 % may be "
-        "perceptible. "
-        "No rule of the codec limits this error, because the hand moves under the force that it feels."};
 }
 
 Value value_of(const Report& r) {

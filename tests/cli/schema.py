@@ -13,7 +13,7 @@ TYPES = {"object": dict, "array": list, "string": str, "boolean": bool, "null": 
 KNOWN = {"$schema", "$id", "$defs", "$ref", "title", "description", "type", "const", "enum", "minimum", "maximum", "properties", "required",
          "additionalProperties", "items", "minItems", "maxItems", "oneOf",
          # for the table that a person sees (cli/report/printer.h)
-         "x-unit", "x-scale", "x-count", "x-format", "x-words", "x-text", "x-omit", "x-hidden", "x-block", "x-row", "x-column", "x-as"}
+         "x-unit", "x-scale", "x-count", "x-format", "x-words", "x-text", "x-omit", "x-hidden", "x-note", "x-block", "x-row", "x-column", "x-as"}
 PARTS = pathlib.Path(__file__).resolve().parents[2] / "cli/schemas/parts.json"  # what "urn:tactus:parts" names
 
 
