@@ -9,8 +9,8 @@
 #include "cli/commands/commands.h"
 #include "cli/options/headings.h"
 #include "cli/output.h"
-#include "cli/report/json_parts.h"
-#include "cli/terminal.h"
+#include "cli/progress.h"
+#include "cli/report/report.h"
 #include "cli/version.h"
 
 namespace tactus::cli {

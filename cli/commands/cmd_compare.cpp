@@ -8,10 +8,10 @@
 #include <tactus/base/shown.h>
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_scene.h>
+#include "cli/commands/input.h"
 #include "cli/figure/error_figure.h"
-#include "cli/report/figures.h"
 #include "cli/report/report.h"
-#include "cli/report/trace_ending.h"
+#include "cli/report/table.h"
 
 namespace tactus::cli {
 namespace {

@@ -11,10 +11,9 @@
 #include <tactus/player.h>
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_replica.h>
-#include "cli/commands/motion_source.h"
+#include "cli/commands/input.h"
 #include "cli/figure/motion_figure.h"
 #include "cli/report/report.h"
-#include "cli/report/trace_ending.h"
 
 namespace tactus::cli {
 namespace {

@@ -13,11 +13,10 @@
 #include <tactus/trace/trace_clusters.h>
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_scene.h>
-#include "cli/commands/rereadable_input.h"
+#include "cli/commands/input.h"
 #include "cli/figure/error_figure.h"
 #include "cli/options/option_needs.h"
 #include "cli/report/report.h"
-#include "cli/report/trace_ending.h"
 
 namespace tactus::cli {
 namespace {

@@ -5,13 +5,13 @@
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_scene.h>
 #include "cli/commands/commands.h"
+#include "cli/commands/input.h"
 #include "cli/commands/session_capture.h"
 #include "cli/live/live_report.h"
 #include "cli/options/option_needs.h"
 #include "cli/options/options_codec.h"
 #include "cli/options/options_link.h"
 #include "cli/report/json.h"
-#include "cli/report/trace_ending.h"
 
 namespace tactus::cli {
 namespace {

@@ -15,13 +15,12 @@
 #include <tactus/base/shown.h>
 #include <tactus/trace/mcap_reader.h>
 #include <tactus/trace/trace_file.h>
-#include "cli/commands/rereadable_input.h"
+#include "cli/commands/input.h"
 #include "cli/options/options_codec.h"
 #include "cli/output.h"
-#include "cli/report/info_json.h"
+#include "cli/report/info.h"
 #include "cli/report/json.h"
 #include "cli/report/table.h"
-#include "cli/report/trace_ending.h"
 #ifdef TACTUS_HAS_SIM
 #include <tactus/sim/scene/scene.h>
 #endif

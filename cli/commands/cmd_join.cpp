@@ -17,21 +17,19 @@
 #include <tactus/sim/client.h>
 #include <tactus/trace/trace_recorder.h>
 #include <tactus/trace/trace_replica.h>
-#include "cli/commands/stop.h"
+#include "cli/commands/input.h"
 #include "cli/live/device_choice.h"
-#include "cli/live/guard_report.h"
+#include "cli/live/device_loop.h"
 #include "cli/live/live_report.h"
-#include "cli/live/meter.h"
 #include "cli/live/ticker.h"
 #include "cli/live/wire.h"
 #include "cli/options/options_codec.h"
-#include "cli/options/options_session.h"
+#include "cli/options/options_link.h"
 #include "cli/options/units.h"
 #include "cli/output.h"
 #include "cli/report/json.h"
 #include "cli/report/messages.h"
 #include "cli/report/table.h"
-#include "cli/report/trace_ending.h"
 
 namespace tactus::cli {
 namespace {

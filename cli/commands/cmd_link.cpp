@@ -12,8 +12,8 @@
 #include <deque>
 
 #include <tactus/net/udp.h>
-#include "cli/commands/stop.h"
 #include "cli/live/live_report.h"
+#include "cli/live/ticker.h"
 #include "cli/options/options_codec.h"
 #include "cli/options/options_link.h"
 #include "cli/options/units.h"

@@ -12,7 +12,6 @@
 #include <tactus/sim/tets/tet_files.h>
 #include <tactus/sim/tets/tet_quality.h>
 #include "cli/report/json.h"
-#include "cli/report/json_parts.h"
 #include "cli/report/report.h"
 #ifdef TACTUS_HAS_SURFACE
 #include <tactus/sim/surface/surface_file.h>

@@ -5,7 +5,7 @@
 
 #include <tactus/base/shown.h>
 #include "cli/commands/commands.h"
-#include "cli/commands/motion_source.h"
+#include "cli/commands/input.h"
 #include "cli/figure/motion_figure.h"
 #include "cli/report/report.h"
 

@@ -12,23 +12,18 @@
 #include <tactus/session/session_server.h>
 #include <tactus/sim/server.h>
 #include <tactus/trace/trace_file.h>
-#include "cli/commands/stop.h"
 #include "cli/live/live_report.h"
-#include "cli/live/meter.h"
 #include "cli/live/ticker.h"
 #include "cli/live/wire.h"
 #include "cli/observe/observation.h"
 #include "cli/options/option_needs.h"
 #include "cli/options/options_codec.h"
 #include "cli/options/options_link.h"
-#include "cli/options/options_session.h"
 #include "cli/options/units.h"
 #include "cli/output.h"
-#include "cli/report/figures.h"
 #include "cli/report/json.h"
-#include "cli/report/json_parts.h"
 #include "cli/report/messages.h"
-#include "cli/report/network_report.h"
+#include "cli/report/report.h"
 #include "cli/report/table.h"
 
 namespace tactus::cli {

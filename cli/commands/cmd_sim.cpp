@@ -15,19 +15,16 @@
 #ifdef TACTUS_HAS_NET
 #include "cli/commands/session_capture.h"
 #endif
-#include "cli/commands/replay.h"
+#include "cli/commands/input.h"
+#include "cli/commands/scene_run.h"
 #include "cli/commands/stiffness_map.h"
-#include "cli/commands/stop.h"
 #include "cli/figure/motion_figure.h"
-#include "cli/options/compensation_option.h"
-#include "cli/options/hand_option.h"
+#include "cli/live/ticker.h"
 #include "cli/options/option_needs.h"
 #include "cli/options/options_link.h"
-#include "cli/options/options_session.h"
-#include "cli/report/network_judge.h"
 #include "cli/report/report.h"
+#include "cli/report/sim_report.h"
 #include "cli/report/table.h"
-#include "cli/report/trace_ending.h"
 
 namespace tactus::cli {
 namespace {

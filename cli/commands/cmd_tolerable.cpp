@@ -10,8 +10,9 @@
 #include <tactus/metrics/delay_tolerance.h>
 #include <tactus/trace/trace_file.h>
 #ifdef TACTUS_HAS_SIM
-#include "cli/commands/tolerable_scene.h"
+#include "cli/commands/scene_run.h"
 #endif
+#include "cli/commands/input.h"
 #include "cli/figure/plot_option.h"
 #include "cli/options/options_codec.h"
 #include "cli/options/units.h"
@@ -19,7 +20,6 @@
 #include "cli/progress.h"
 #include "cli/report/json.h"
 #include "cli/report/messages.h"
-#include "cli/report/trace_ending.h"
 
 namespace tactus::cli {
 namespace {

@@ -6,9 +6,9 @@
 #include <random>
 
 #include "cli/live/wire.h"
-#include "cli/report/figures.h"
 #include "cli/report/json.h"
-#include "cli/report/traffic_layers.h"
+#include "cli/report/report.h"
+#include "cli/report/table.h"
 
 namespace tactus::cli {
 namespace {

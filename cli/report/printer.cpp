@@ -9,7 +9,6 @@
 
 #include <tactus/base/shown.h>
 #include "cli/options/options_codec.h"
-#include "cli/report/figures.h"
 #include "cli/report/json.h"
 #include "cli/report/table.h"
 
