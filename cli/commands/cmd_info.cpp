@@ -60,9 +60,6 @@ std::optional<Error> for_each_packet(Player& player, OnPacket on_packet) {
 /// One line of the list of packets. Columns that no packet has are left out.
 class PacketTable {
  public:
-  PacketTable()
-      : items_(resolved(resolved(schema("info")["oneOf"][0]["properties"]["packet_list"], schema("info"))["items"],
-                        schema("info"))) {}
   void note(const Json& packet) {
     for (const auto& item : packet.items()) seen_.insert(item.key());
   }
@@ -73,17 +70,18 @@ class PacketTable {
     return out;
   }
   std::vector<std::string> row(const Json& packet) const {
-    const auto cells = cells_of(packet, items_, schema("info"));
     std::vector<std::string> out;
-    for (const std::string& column : heading()) {
-      const auto found = std::ranges::find(cells, column, [](const auto& cell) { return cell.first; });
-      out.push_back(found == cells.end() || found->second.empty() ? "-" : found->second);
+    for (const auto& [key, property] : items_["properties"].items()) {
+      if (!seen_.contains(key)) continue;
+      const std::string cell = packet.contains(key) ? cell_of(packet[key], property, root_) : "";
+      out.push_back(cell.empty() ? "-" : cell);
     }
     return shown_cells(std::move(out));
   }
 
  private:
-  Json items_;
+  const Json& root_ = schema("info");
+  const Json& items_ = root_["oneOf"][0]["properties"]["packet_list"]["items"];
   std::set<std::string> seen_;
 };
 

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "cli/report/printer.h"
 
@@ -29,7 +28,7 @@ const Json& schema(const std::string& name);
 Json resolved(const Json& property, const Json& root);
 /// A table as a person sees it.
 void print_table(const Json& value, const Json& schema, std::FILE* out);
-/// The columns of an element of an array, each with its cell.
-std::vector<std::pair<std::string, std::string>> cells_of(const Json& element, const Json& schema, const Json& root);
+/// A value as it stands in a table whose head says its unit.   in  property  what the schema says of it
+std::string cell_of(const Json& value, const Json& property, const Json& root);
 
 }  // namespace tactus::cli

@@ -351,8 +351,11 @@ void Layout::print(std::FILE* out) const {
 
 const Json& schema(const std::string& name) {
   static std::map<std::string, Json> parsed;
-  const auto known = std::ranges::find(kSchemas, name, [](const auto& row) { return std::string(row.first); });
-  return parsed.try_emplace(name, Json()).first->second.is_null() ? parsed[name] = Json::parse(known->second) : parsed[name];
+  const auto [place, is_new] = parsed.try_emplace(name);
+  if (is_new)
+    place->second =
+        Json::parse(std::ranges::find(kSchemas, std::string_view(name), &std::pair<const char*, const char*>::first)->second);
+  return place->second;
 }
 
 Json resolved(const Json& property, const Json& root) {
@@ -368,15 +371,8 @@ Json resolved(const Json& property, const Json& root) {
 
 void print_table(const Json& value, const Json& schema, std::FILE* out) { Layout(value, schema).print(out); }
 
-std::vector<std::pair<std::string, std::string>> cells_of(const Json& element, const Json& schema, const Json& root) {
-  std::vector<std::pair<std::string, std::string>> cells;
-  for (const auto& [key, property] : schema["properties"].items()) {
-    if (!element.contains(key)) continue;
-    Json followed;
-    const Json& of_cell = property.contains("$ref") ? followed = resolved(property, root) : property;
-    cells.emplace_back(labelled(text_at(of_cell, "title"), of_cell), text_of(element[key], of_cell, root, With::nothing));
-  }
-  return cells;
+std::string cell_of(const Json& value, const Json& property, const Json& root) {
+  return text_of(value, property, root, With::nothing);
 }
 
 std::string text_of_json(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace); }
