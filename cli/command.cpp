@@ -9,7 +9,6 @@
 #include <string_view>
 
 #include "cli/options/headings.h"
-#include "cli/options/suggestion.h"
 
 namespace tactus::cli {
 

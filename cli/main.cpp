@@ -9,8 +9,8 @@
 #include "cli/commands/commands.h"
 #include "cli/options/headings.h"
 #include "cli/output.h"
-#include "cli/report/json_parts.h"
-#include "cli/terminal.h"
+#include "cli/progress.h"
+#include "cli/report/report.h"
 #include "cli/version.h"
 
 namespace tactus::cli {
@@ -123,7 +123,7 @@ int main(int argc, char** argv) {
   if (!parsed) return report_failure(parsed.error(), app.wants_json());
   if (*parsed == Program::Parsed::done) return finish({}, false);
   if (wants_version) {
-    fmt::print("{}", as_json ? version_json() : version_table());
+    print_version(as_json);
     return finish({}, false);
   }
   if (!action) {

@@ -2,13 +2,36 @@
 #include "cli/progress.h"
 
 #include <fmt/format.h>
-
+#include <sys/ioctl.h>
+#include <unistd.h>
 #include <algorithm>
 #include <cstdio>
-
-#include "cli/terminal.h"
+#include <cstdlib>
+#include <string_view>
 
 namespace tactus::cli {
+
+// ==== terminal ====
+
+bool is_terminal(int stream) { return isatty(stream) != 0; }
+
+bool is_capable_terminal(int stream) {
+  const char* term = std::getenv("TERM");
+  return is_terminal(stream) && term != nullptr && std::string_view(term) != "dumb";
+}
+
+bool is_coloured(int stream) {
+  const char* refused = std::getenv("NO_COLOR");
+  return is_capable_terminal(stream) && (refused == nullptr || *refused == '\0');
+}
+
+std::size_t columns_of(int stream) {
+  winsize size{};
+  return ioctl(stream, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+// ==== progress ====
+
 namespace {
 
 constexpr std::size_t kWidth = 30, kLeastWidth = 5;

@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <vector>
 
-#include "cli/report/json_parts.h"
+#include "cli/options/options_codec.h"
+#include "cli/report/json.h"
 #include "commit.h"
 
 namespace tactus::cli {
@@ -28,26 +28,16 @@ std::vector<std::string> words_of(const char* text) {
 
 std::string version_and_commit() { return *TACTUS_COMMIT ? TACTUS_VERSION ", commit " TACTUS_COMMIT : TACTUS_VERSION; }
 
-std::string version_table() {
-  const std::string commit = TACTUS_COMMIT;
-  return fmt::format(
-      "tactus {}\n"
-      "commit      {}\n"
-      "compiler    {}, {}\n"
-      "components  {}\n"
-      "left out    {}\n",
-      TACTUS_VERSION, commit.empty() ? "not known" : commit, kCompiler, TACTUS_BUILD_TYPE,
-      fmt::join(words_of(TACTUS_COMPONENTS), " "), *TACTUS_LEFT_OUT ? TACTUS_LEFT_OUT : "-");
-}
-
-std::string version_json() {
-  nlohmann::ordered_json out{{"schema", "tactus.version/1"}, {"version", TACTUS_VERSION}};
+void print_version(bool as_json) {
+  Json out{{"schema", "tactus.version/1"}, {"version", TACTUS_VERSION}};
   if (*TACTUS_COMMIT) out["commit"] = TACTUS_COMMIT;
   out["compiler"] = kCompiler;
   out["build"] = TACTUS_BUILD_TYPE;
   out["components"] = words_of(TACTUS_COMPONENTS);
   out["left_out"] = words_of(TACTUS_LEFT_OUT);
-  return text_of_json(out) + "\n";
+  CommonOptions options;
+  options.json = as_json;
+  print(out, "version", options);
 }
 
 }  // namespace tactus::cli

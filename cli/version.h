@@ -7,7 +7,6 @@
 namespace tactus::cli {
 
 std::string version_and_commit();  ///< "0.1.0, commit 0123456789ab-dirty-89abcdef"; without the commit where none is known
-std::string version_table();
-std::string version_json();  ///< schema version.json
+void print_version(bool as_json);  ///< schema version.json
 
 }  // namespace tactus::cli

@@ -8,10 +8,10 @@
 #include <tactus/base/shown.h>
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_scene.h>
+#include "cli/commands/input.h"
 #include "cli/figure/error_figure.h"
-#include "cli/report/figures.h"
 #include "cli/report/report.h"
-#include "cli/report/trace_ending.h"
+#include "cli/report/table.h"
 
 namespace tactus::cli {
 namespace {
@@ -175,7 +175,7 @@ Outcome run(const CompareOptions& options) {
   Report report{.command = "compare", .files = {{"truth", options.truth}, {"replica", options.replica}}};
   report.describe(info);
   set_bounds(options, info, replica.reader.info().bounds, report);
-  report.timings = {{"compare", "compare, per tick"}};
+  report.timings = {{"compare"}};
   std::optional<ErrorFigure> figure;
   if (!options.plot.empty()) figure.emplace(info);
   TACTUS_CHECK(compare_all(truth, replica, options, report, figure));

@@ -11,10 +11,9 @@
 #include <tactus/player.h>
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_scene.h>
-#include "cli/commands/motion_source.h"
+#include "cli/commands/input.h"
 #include "cli/figure/motion_figure.h"
 #include "cli/report/report.h"
-#include "cli/report/trace_ending.h"
 
 namespace tactus::cli {
 namespace {
@@ -136,7 +135,7 @@ Outcome run(const DecodeOptions& options) {
   for (const TraceDeformable& mesh : info.meshes)
     report.meshes.push_back({.name = mesh.name, .vertices = mesh.rest.vertices.size(), .traffic = DeformableRates{}});
   if (player->scene().loads) report.loads.emplace();
-  report.timings = {{"decode", "decode and show, per tick"}};
+  report.timings = {{"decode"}};
   report.stream = {player->header_bytes(), bytes.size()};
   if (report.traffic) report.client = way_of_client(options.replica.interpolation, player->scene().is_eased);
   std::optional<MotionFigure> figure;

@@ -12,11 +12,10 @@
 #include <tactus/receiver.h>
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_scene.h>
-#include "cli/commands/rereadable_input.h"
+#include "cli/commands/input.h"
 #include "cli/figure/error_figure.h"
 #include "cli/options/option_needs.h"
 #include "cli/report/report.h"
-#include "cli/report/trace_ending.h"
 
 namespace tactus::cli {
 namespace {
@@ -177,7 +176,7 @@ Outcome run(const EncodeOptions& options) {
   if (has_moving(reader->info()) || reader->info().meshes.empty()) {
     report.traffic.emplace();
     report.fidelity.emplace(reader->info(), options.triggers.triggers());
-    report.timings = {{"encode", "encode, per tick"}, {"decode", "decode, per packet"}};
+    report.timings = {{"encode"}, {"decode"}};
   }
   add_meshes(reader->info(), options.meshes, options.triggers, report);
   for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.is_main();

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands/commands.h"
-#include "cli/commands/motion_source.h"
+#include "cli/commands/input.h"
 #include "cli/figure/motion_figure.h"
 #include "cli/report/report.h"
 

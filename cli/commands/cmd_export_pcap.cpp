@@ -1,25 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include <tactus/base/shown.h>
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_scene.h>
 #include "cli/commands/commands.h"
+#include "cli/commands/input.h"
 #include "cli/commands/session_capture.h"
 #include "cli/live/live_report.h"
 #include "cli/options/option_needs.h"
+#include "cli/options/options_codec.h"
 #include "cli/options/options_link.h"
-#include "cli/report/json_parts.h"
-#include "cli/report/report.h"
-#include "cli/report/table.h"
-#include "cli/report/trace_ending.h"
+#include "cli/report/json.h"
 
 namespace tactus::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct ExportPcapOptions {
   std::string input, output, at = "client";
@@ -98,7 +93,7 @@ Outcome play_all(Playback& play, const ExportPcapOptions& options, TickSpan& tic
 
 Json count_json(const SessionCapture::Count& count) { return {{"datagrams", count.datagrams}, {"bytes", count.bytes}}; }
 
-Json to_json(const ExportPcapOptions& options, const Playback& play, const SessionCapture& capture, const TickSpan& ticks) {
+Value value_of(const ExportPcapOptions& options, const Playback& play, const SessionCapture& capture, const TickSpan& ticks) {
   const TraceInfo& info = play.reader.info();
   const double seconds = static_cast<double>(ticks.length()) / info.tick_rate;
   const bool participants = are_participants(options, info);
@@ -119,32 +114,11 @@ Json to_json(const ExportPcapOptions& options, const Playback& play, const Sessi
                 {"address", SessionCapture::text_of(SessionCapture::client(i))},
                 {"captured", {{"up", count_json(captured.up)}, {"down", count_json(captured.down)}}},
                 {"declaration_bytes", status.declaration},
-                {"traffic", traffic_json(status.traffic, seconds, {})}};
-    if (status.round_trip) client["round_trip"] = round_trip_json(*status.round_trip);
+                {"traffic", traffic_value(status.traffic, seconds, {})}};
+    if (status.round_trip) client["round_trip"] = round_trip_value(*status.round_trip);
     out["clients"].push_back(std::move(client));
   }
   return out;
-}
-
-void print_text(const Json& r, std::FILE* to) {
-  Table table;
-  table.heading({"export pcap"});
-  table.row({fmt::format("  trace    {}", r["trace"].get<std::string>())});
-  table.row({fmt::format("  capture  {}, at the {}", r["capture"].get<std::string>(), r["at"].get<std::string>())});
-  table.row(
-      {fmt::format("  server   {}, tick 0 at {:.6f} s", r["server"].get<std::string>(), 1e-6 * r["start_us"].get<double>())});
-  table.print(to);
-  fmt::print(to, "\n");
-  Table counts;
-  counts.heading({"client", "datagrams up", "bytes", "down", "bytes"});
-  for (const Json& client : r["clients"]) {
-    std::vector<std::string> cells{fmt::format("  {} {} {}", client["address"].get<std::string>(),
-                                               client["role"].get<std::string>(), client["user"].get<std::string>())};
-    for (const char* way : {"up", "down"})
-      for (const auto& [name, count] : client["captured"][way].items()) cells.push_back(count.dump());
-    counts.row(cells);
-  }
-  counts.print(to);
 }
 
 Outcome run(const ExportPcapOptions& options) {
@@ -174,11 +148,7 @@ Outcome run(const ExportPcapOptions& options) {
   TACTUS_CHECK(play_all(play, options, ticks));
   TACTUS_CHECK(check_ending(options.input, play.reader, ticks.count()));
   TACTUS_CHECK(capture->keep());
-  if (options.common.quiet && !options.common.json) return {};
-  std::FILE* const to = options.output == "-" ? stderr : stdout;
-  const Json report = to_json(options, play, *capture, ticks);
-  if (options.common.json) fmt::print(to, "{}\n", text_of_json(report));
-  else print_text(report, to);
+  print(value_of(options, play, *capture, ticks), "pcap", options.common, options.output == "-" ? stderr : stdout);
   return {};
 }
 

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/commands/commands.h"
-
 #include <fmt/format.h>
-
 #include <filesystem>
 
-#include "cli/manual/man_page.h"
+#include "cli/commands/commands.h"
+#include "cli/manual/manual.h"
 #include "cli/output.h"
 
 namespace tactus::cli {
+
+// ==== cmd help ====
+
 namespace {
 
 struct HelpOptions {
@@ -51,6 +52,26 @@ void setup_help(Command& app, Action& action) {
       "  tactus help encode\n"
       "  tactus help import csv");
   command.on_chosen([&action, &app, options] { action = [&app, options] { return run(app, *options); }; });
+}
+
+// ==== cmd completion ====
+
+void setup_completion(Command& app, Action& action) {
+  auto shell = std::make_shared<std::string>();
+  Command& command = app.add_command("completion", "Print a script by which a shell completes commands and options");
+  command.add_option("SHELL", *shell, "bash, zsh or fish")->one_of({"bash", "zsh", "fish"})->type_name("")->required();
+  command.footer(
+      "Examples, for the shell in which they are typed:\n"
+      "  source <(tactus completion bash)\n"
+      "  tactus completion fish | source\n"
+      "An installed package brings the scripts to where each shell looks for them.");
+  command.on_chosen([&action, &app, shell] {
+    action = [&app, shell]() -> Outcome {
+      const auto script = *shell == "bash" ? bash_completion : *shell == "zsh" ? zsh_completion : fish_completion;
+      fmt::print("{}", script(app.text()));
+      return {};
+    };
+  });
 }
 
 }  // namespace tactus::cli

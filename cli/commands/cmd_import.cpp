@@ -138,7 +138,7 @@ Outcome run(const ImportOptions& options) {
   TACTUS_TRY(const auto mapping, make_mapping(options));
   TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing(), {options.input}));
   Report report{.command = "import csv", .files = {{"table", options.input}, {"trace", options.output}}};
-  report.timings = {{"import", "import, whole file"}};
+  report.timings = {{"import"}};
   const auto imported =
       report.timings[0].times.measure([&] { return import_csv(options.input, mapping, output.working_path()); });
   if (!imported) return refuse_csv(options, mapping, imported.error());

@@ -7,7 +7,6 @@
 #include <array>
 #include <cerrno>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include <tactus/base/shown.h>
@@ -18,25 +17,22 @@
 #include <tactus/sim/client.h>
 #include <tactus/trace/trace_recorder.h>
 #include <tactus/trace/trace_scene.h>
-#include "cli/commands/stop.h"
+#include "cli/commands/input.h"
 #include "cli/live/device_choice.h"
-#include "cli/live/guard_report.h"
+#include "cli/live/device_loop.h"
 #include "cli/live/live_report.h"
-#include "cli/live/meter.h"
 #include "cli/live/ticker.h"
 #include "cli/live/wire.h"
 #include "cli/options/options_codec.h"
-#include "cli/options/options_session.h"
+#include "cli/options/options_link.h"
 #include "cli/options/units.h"
 #include "cli/output.h"
-#include "cli/report/json_parts.h"
+#include "cli/report/json.h"
 #include "cli/report/messages.h"
-#include "cli/report/trace_ending.h"
+#include "cli/report/table.h"
 
 namespace tactus::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct JoinOptions {
   std::string server, scene, user, key, output;
@@ -303,51 +299,25 @@ Json hashes_json(SessionClient& session) {
   return out;
 }
 
-Json to_json(const JoinOptions& options, SessionClient& session, const Visit& visit, const Pace& pace, double seconds,
-             const std::optional<SealUse>& seal) {
+Value value_of(const JoinOptions& options, SessionClient& session, const Visit& visit, const Pace& pace, double seconds,
+               const std::optional<SealUse>& seal) {
   const SessionStatus status = session.status();
   Json out{{"schema", "tactus.join/1"},
            {"server", options.server},
            {"role", options.participates() ? "participant" : "observer"},
            {"seconds", seconds},
-           {"pace", pace_json(pace)},
+           {"pace", pace_value(pace)},
            {"playout_delay_us", status.playout_delay},
            {"loss", status.loss},
            {"datagrams_refused", visit.refused},
-           {"traffic", traffic_json(status.traffic, seconds, seal)},
+           {"traffic", traffic_value(status.traffic, seconds, seal)},
            {"state_hashes", hashes_json(session)}};
-  if (status.round_trip) out["round_trip"] = round_trip_json(*status.round_trip);
+  if (status.round_trip) out["round_trip"] = round_trip_value(*status.round_trip);
   if (status.clock_offset) out["clock_offset_us"] = *status.clock_offset;
-  if (seal) out["seal"] = seal_json(seal->counters);
+  if (seal) out["seal"] = seal_value(seal->counters);
   if (options.participates()) out["largest_force_N"] = visit.largest_force;
-  if (const auto guard = visit.guard()) out["guard"] = to_json(*guard);
+  if (const auto guard = visit.guard()) out["guard"] = value_of(*guard);
   return out;
-}
-
-void print_text(const JoinOptions& options, SessionClient& session, const Visit& visit, const Pace& pace, double seconds,
-                const std::optional<SealUse>& seal) {
-  const SessionStatus status = session.status();
-  Table head;
-  head.heading({"join"});
-  const auto row = [&](const char* name, const std::string& text) { head.row({fmt::format("  {:<8} {}", name, text)}); };
-  row("server", options.server);
-  row("role", options.participates() ? "participant" : "observer");
-  row("time", fmt::format("{:.3f} s live", seconds));
-  if (status.round_trip)
-    row("trip", fmt::format("{:.2f} ms there and back, least {:.2f} ms", 1e-3 * static_cast<double>(status.round_trip->smoothed),
-                            1e-3 * static_cast<double>(status.round_trip->least)));
-  row("playout", fmt::format("{:.2f} ms after the fastest packet", 1e-3 * static_cast<double>(status.playout_delay)));
-  if (options.participates()) row("touch", fmt::format("at most {:.2f} N", visit.largest_force));
-  if (const auto guard = visit.guard()) row("guard", to_text(*guard));
-  if (seal) row("seal", seal_text(seal->counters));
-  for (const Json& hash : hashes_json(session)) row("state", hash.get<std::string>());
-  head.print(stdout);
-  fmt::print("\n");
-  Table table;
-  traffic_heading(table, seal);
-  traffic_row(table, "to the server", status.traffic, seconds, seal);
-  pace_rows(table, pace);
-  table.print(stdout);
 }
 
 tl::expected<std::unique_ptr<ClientWire>, Failure> make_wire(const JoinOptions& options, net::UdpSocket& socket) {
@@ -421,9 +391,7 @@ Outcome run(const JoinOptions& typed) {
     return tl::unexpected(
         Failure{fmt::format("{}: no session: {}", options.server, why), "Is `tactus serve` running there?" + seal});
   }
-  if (options.common.json)
-    fmt::print("{}\n", text_of_json(to_json(options, *session, visit, visit.pace(ticker), seconds, wire->seal())));
-  else if (!options.common.quiet) print_text(options, *session, visit, visit.pace(ticker), seconds, wire->seal());
+  print(value_of(options, *session, visit, visit.pace(ticker), seconds, wire->seal()), "join", options.common);
   if (visit.lost > 0) {
     Failure failure{fmt::format("{}: {} lost", options.output, counted(visit.lost, "tick")), "Write to a faster disk."};
     failure.cause = Failure::Cause::bound;

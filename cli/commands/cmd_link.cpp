@@ -10,21 +10,17 @@
 #include <chrono>
 #include <cmath>
 #include <deque>
-#include <nlohmann/json.hpp>
 
 #include <tactus/net/udp.h>
-#include "cli/commands/stop.h"
 #include "cli/live/live_report.h"
+#include "cli/live/ticker.h"
+#include "cli/options/options_codec.h"
 #include "cli/options/options_link.h"
 #include "cli/options/units.h"
-#include "cli/report/json_parts.h"
-#include "cli/report/report.h"
-#include "cli/report/table.h"
-
+#include "cli/report/json.h"
 namespace tactus::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using sim::Microseconds;
 
 constexpr std::size_t kMostClients = 64;
@@ -144,7 +140,7 @@ Json direction_json(const sim::LinkCounters& c) {
           {"overtaken", c.overtaken}};
 }
 
-Json to_json(const ForwardOptions& options, const Forwarder& forwarder, double seconds) {
+Value value_of(const ForwardOptions& options, const Forwarder& forwarder, double seconds) {
   Json out{{"schema", "tactus.link/1"}, {"listen", options.listen}, {"to", options.to}, {"seconds", seconds}};
   out["clients"] = Json::array();
   for (const Path& path : forwarder.paths())
@@ -163,32 +159,6 @@ Json to_json(const ForwardOptions& options, const Forwarder& forwarder, double s
   return out;
 }
 
-void print_text(const Json& r) {
-  Table table;
-  table.heading({"link"});
-  table.row({fmt::format("  {:<8} {}", "listen", r["listen"].get<std::string>())});
-  table.row({fmt::format("  {:<8} {}", "to", r["to"].get<std::string>())});
-  table.row({fmt::format("  {:<8} {:.3f} s", "time", r["seconds"].get<double>())});
-  table.print(stdout);
-  fmt::print("\n");
-  Table counts;
-  counts.heading({"datagrams", "sent", "arrived", "lost", "in outages", "overflowed", "duplicated", "overtaken"});
-  for (const Json& client : r["clients"]) {
-    for (const char* way : {"up", "down"}) {
-      std::vector<std::string> cells{fmt::format("  {}, {}", client["address"].get<std::string>(), way)};
-      for (const auto& [name, count] : client[way].items()) cells.push_back(count.dump());
-      counts.row(cells);
-    }
-  }
-  if (r.contains("lateness")) {
-    counts.heading({"handed on late [ms]", "p50", "p99", "max"});
-    std::vector<std::string> cells{"  all"};
-    for (const auto& [name, seconds] : r["lateness"].items()) cells.push_back(fmt::format("{:.3f}", 1e3 * seconds.get<double>()));
-    counts.row(cells);
-  }
-  counts.print(stdout);
-}
-
 Outcome run(const ForwardOptions& options) {
   TACTUS_TRY(const net::Address listen, loopback_address("--listen", options.listen));
   TACTUS_TRY(const net::Address to, loopback_address("--to", options.to));
@@ -203,9 +173,7 @@ Outcome run(const ForwardOptions& options) {
   constexpr Microseconds kLook = 100'000;  // for a signal that came just before waiting
   const Microseconds end = options.duration > 0 ? std::llround(1e6 * options.duration) : INT64_MAX;
   while (StopOnSignal::caught() == 0 && forwarder.now() < end) forwarder.step(std::min(end, forwarder.now() + kLook));
-  const Json report = to_json(shown, forwarder, 1e-6 * static_cast<double>(forwarder.now()));
-  if (options.common.json) fmt::print("{}\n", text_of_json(report));
-  else if (!options.common.quiet) print_text(report);
+  print(value_of(shown, forwarder, 1e-6 * static_cast<double>(forwarder.now())), "link", options.common);
   return {};
 }
 

@@ -6,15 +6,13 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include <tactus/base/shown.h>
 #include <tactus/sim/tets/tet_files.h>
 #include <tactus/sim/tets/tet_mesh.h>
-#include "cli/report/json_parts.h"
+#include "cli/report/json.h"
 #include "cli/report/report.h"
-#include "cli/report/table.h"
 #ifdef TACTUS_HAS_SURFACE
 #include <tactus/sim/surface/surface_file.h>
 #include <tactus/sim/surface/tetgen.h>
@@ -22,10 +20,6 @@
 
 namespace tactus::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-constexpr double kDegree = std::numbers::pi / 180;
 
 struct MeshOptions {
   std::string input, slab, output;
@@ -41,11 +35,7 @@ struct MeshOptions {
 /// What became of the input, and how long each part took.
 struct TetMeshReport {
   sim::TetMesh mesh;
-  struct Note {
-    std::string key, name, text;
-    std::uint64_t number;
-  };
-  std::vector<Note> notes;
+  std::vector<std::pair<std::string, std::uint64_t>> notes;  // field of the report, number
   std::vector<std::pair<std::string, StepTimes>> times;
 
   template <class Work>
@@ -83,9 +73,7 @@ Outcome read_tets(const MeshOptions& options, TetMeshReport& report) {
   note_idle_options(*options.common.command, {}, "file");
   auto file = report.measure("read", [&] { return sim::read_tet_mesh(options.input); });
   if (!file) return refuse(file.error());
-  if (file->ignored_elements > 0)
-    report.notes.push_back({"ignored_elements", "left out", counted(file->ignored_elements, "element") + " other than tetrahedra",
-                            file->ignored_elements});
+  if (file->ignored_elements > 0) report.notes.emplace_back("ignored_elements", file->ignored_elements);
   report.mesh = std::move(file->mesh);
   scale(report.mesh.vertices, options.length_unit);
   return {};
@@ -98,11 +86,8 @@ double volume_of_edge(double edge) { return edge * edge * edge / (6 * std::numbe
 Outcome fill_surface(const MeshOptions& options, TetMeshReport& report) {
   auto file = report.measure("read", [&] { return sim::read_surface(options.input); });
   if (!file) return refuse(file.error());
-  if (file->polygons > 0)
-    report.notes.push_back({"cut_polygons", "cut", counted(file->polygons, "polygon") + " into triangles", file->polygons});
-  if (file->unused_vertices > 0)
-    report.notes.push_back(
-        {"unused_vertices", "left out", counted(file->unused_vertices, "vertex") + " of no triangle", file->unused_vertices});
+  if (file->polygons > 0) report.notes.emplace_back("cut_polygons", file->polygons);
+  if (file->unused_vertices > 0) report.notes.emplace_back("unused_vertices", file->unused_vertices);
   scale(file->mesh.vertices, options.length_unit);
   const sim::FillOptions settings{.boundary = options.split_surface ? sim::Boundary::split : sim::Boundary::keep,
                                   .max_volume = volume_of_edge(options.edge),
@@ -145,7 +130,7 @@ Outcome write_mesh(const MeshOptions& options, const sim::TetMesh& mesh) {
   return ele_file.keep();
 }
 
-Json to_json(const MeshOptions& options, const TetMeshReport& report) {
+Value value_of(const MeshOptions& options, const TetMeshReport& report) {
   const sim::TetQuality q = quality(report.mesh);
   const sim::TetSurface outside = surface(report.mesh);
   const sim::Bounds box = sim::bounds(report.mesh.vertices);
@@ -154,7 +139,7 @@ Json to_json(const MeshOptions& options, const TetMeshReport& report) {
   Json out{{"schema", "tactus.mesh/2"}, {"files", {{"output", options.output}}}};
   if (options.slab.empty()) out["files"]["input"] = options.input;
   else out["slab"] = options.slab;
-  for (const TetMeshReport::Note& note : report.notes) out[note.key] = note.number;
+  for (const auto& [key, number] : report.notes) out[key] = number;
   out["vertices"] = report.mesh.vertices.size();
   out["tetrahedra"] = report.mesh.tets.size();
   out["surface_vertices"] = outside.mesh.vertices.size();
@@ -164,44 +149,8 @@ Json to_json(const MeshOptions& options, const TetMeshReport& report) {
   out["smallest_angle_rad"] = {{"value", q.smallest_angle.value}, {"tetrahedron", q.smallest_angle.tet}};
   out["largest_angle_rad"] = {{"value", q.largest_angle.value}, {"tetrahedron", q.largest_angle.tet}};
   out["shape"] = {{"worst", q.shape.value}, {"tetrahedron", q.shape.tet}, {"mean", q.mean_shape}};
-  for (const auto& [step, time] : report.times) out["time"][step] = time_json(time, 0);
+  for (const auto& [step, time] : report.times) out["time"][step] = time_value(time, 0);
   return out;
-}
-
-void print_text(const Json& r, const TetMeshReport& report, const MeshOptions& options) {
-  Table head;
-  head.heading({"mesh"});
-  head.row({fmt::format("  {:<8} {}", "from", options.slab.empty() ? options.input : "slab " + options.slab)});
-  head.row({fmt::format("  {:<8} {}", "to", options.output)});
-  for (const TetMeshReport::Note& note : report.notes) head.row({fmt::format("  {:<8} {}", note.name, note.text)});
-  head.print(stdout);
-  fmt::print("\n");
-
-  Table figures;
-  figures.heading({"size", "all", "on the surface"});
-  figures.row({"  vertices", r["vertices"].dump(), r["surface_vertices"].dump()});
-  figures.row({"  triangles", "", r["surface_triangles"].dump()});
-  figures.row({"  tetrahedra", r["tetrahedra"].dump()});
-  figures.row({"  volume [m3]", fmt::format("{:.6g}", r["volume_m3"].get<double>())});
-  figures.heading({"box [m]", "from", "to", "size"});
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double low = r["box_m"][0][i], high = r["box_m"][1][i];
-    figures.row({fmt::format("  {}", "xyz"[i]), fmt::format("{:.6g}", low), fmt::format("{:.6g}", high),
-                 fmt::format("{:.6g}", high - low)});
-  }
-  figures.heading({"quality", "worst", "tetrahedron", "mean"});
-  const auto angle = [&](const char* name, const Json& worst) {
-    figures.row({name, fmt::format("{:.4g}", worst["value"].get<double>() / kDegree), worst["tetrahedron"].dump()});
-  };
-  angle("  smallest angle between faces [deg]", r["smallest_angle_rad"]);
-  angle("  largest angle between faces [deg]", r["largest_angle_rad"]);
-  figures.row({"  shape, 1 is regular, 0 is flat", fmt::format("{:.4g}", r["shape"]["worst"].get<double>()),
-               r["shape"]["tetrahedron"].dump(), fmt::format("{:.4g}", r["shape"]["mean"].get<double>())});
-  figures.heading({"time", "ms", "CPU ms"});
-  for (const auto& [step, time] : report.times)
-    figures.row({"  " + step, fmt::format("{:.1f}", 1e3 * time.total(TimeOf::wall)),
-                 fmt::format("{:.1f}", 1e3 * time.total(TimeOf::cpu))});
-  figures.print(stdout);
 }
 
 Outcome run(const MeshOptions& options) {
@@ -217,10 +166,7 @@ Outcome run(const MeshOptions& options) {
     return refuse(checked.error());
   }
   TACTUS_CHECK(report.measure("write", [&] { return write_mesh(options, report.mesh); }));
-  if (options.common.quiet && !options.common.json) return {};
-  const Json figures = to_json(options, report);
-  if (options.common.json) fmt::print("{}\n", text_of_json(figures));
-  else print_text(figures, report, options);
+  print(value_of(options, report), "mesh", options.common);
   return {};
 }
 

@@ -6,34 +6,28 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include <tactus/net/udp.h>
 #include <tactus/session/session_server.h>
 #include <tactus/sim/server.h>
 #include <tactus/trace/trace_file.h>
-#include "cli/commands/stop.h"
 #include "cli/live/live_report.h"
-#include "cli/live/meter.h"
 #include "cli/live/ticker.h"
 #include "cli/live/wire.h"
 #include "cli/observe/observation.h"
 #include "cli/options/option_needs.h"
 #include "cli/options/options_codec.h"
 #include "cli/options/options_link.h"
-#include "cli/options/options_session.h"
 #include "cli/options/units.h"
 #include "cli/output.h"
-#include "cli/report/figures.h"
-#include "cli/report/json_parts.h"
+#include "cli/report/json.h"
 #include "cli/report/messages.h"
-#include "cli/report/network_report.h"
+#include "cli/report/report.h"
+#include "cli/report/table.h"
 
 namespace tactus::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct ServeOptions {
   std::string scene, listen = "7447", key, output;
@@ -184,22 +178,12 @@ Json observers_json(const ObservationReport& observed) {
   return out;
 }
 
-/// One line.
-std::string observers_text(const ObservationReport& observed) {
-  std::string text = counted(observed.observers, "page") + " observed";
-  if (observed.too_slow > 0) text += fmt::format(", {} too slow", observed.too_slow);
-  if (observed.ticks_left_out > 0) text += fmt::format(", {} left out", counted(observed.ticks_left_out, "tick"));
-  if (observed.requests_refused > 0) text += fmt::format(", {} refused", counted(observed.requests_refused, "request"));
-  if (!observed.failure.empty()) text += "; ended early: " + observed.failure;
-  return text;
-}
-
 Json to_json(const ServeOptions& options, const SessionServer& sessions, const tactus::Scene& scene, const Service& service,
              const Ticker& ticker, double seconds, const std::optional<SealUse>& seal) {
   Json out{{"schema", "tactus.serve/1"}, {"scene", options.scene}, {"listen", options.listen}, {"seconds", seconds}};
-  out["pace"] = pace_json(pace_of(ticker));
+  out["pace"] = pace_value(pace_of(ticker));
   out["datagrams_refused"] = service.refused();
-  if (seal) out["seal"] = seal_json(seal->counters);
+  if (seal) out["seal"] = seal_value(seal->counters);
   out["clients"] = Json::array();
   for (std::uint16_t i = 0; i < sessions.clients(); ++i) {
     const ClientStatus status = sessions.status(i);
@@ -208,37 +192,13 @@ Json to_json(const ServeOptions& options, const SessionServer& sessions, const t
                 {"state", name_of(status.state)},
                 {"role", status.role == Role::observer ? "observer" : "participant"},
                 {"loss", status.loss},
-                {"bounds_widened", widening_json(status.widened)},
-                {"traffic", traffic_json(status.traffic, seconds, seal)}};
-    if (status.round_trip) client["round_trip"] = round_trip_json(*status.round_trip);
+                {"bounds_widened", widening_value(status.widened)},
+                {"traffic", traffic_value(status.traffic, seconds, seal)}};
+    if (status.round_trip) client["round_trip"] = round_trip_value(*status.round_trip);
     if (status.state == SessionState::live) client["state_hashes"] = hashes_json(sessions, scene, i);
     out["clients"].push_back(std::move(client));
   }
   return out;
-}
-
-void print_text(const ServeOptions& options, const SessionServer& sessions, const Service& service, const Ticker& ticker,
-                double seconds, const std::optional<SealUse>& seal, const std::optional<ObservationReport>& observed) {
-  Table head;
-  head.heading({"serve"});
-  head.row({fmt::format("  {:<8} {}", "scene", options.scene)});
-  head.row({fmt::format("  {:<8} {}", "listen", options.listen)});
-  head.row({fmt::format("  {:<8} {:.3f} s", "time", seconds)});
-  if (service.refused() > 0) head.row({fmt::format("  {:<8} {}", "refused", counted(service.refused(), "datagram"))});
-  if (seal) head.row({fmt::format("  {:<8} {}", "seal", seal_text(seal->counters))});
-  if (observed) head.row({fmt::format("  {:<8} {}", "observe", observers_text(*observed))});
-  head.print(stdout);
-  fmt::print("\n");
-  Table table;
-  traffic_heading(table, seal);
-  for (std::uint16_t i = 0; i < sessions.clients(); ++i) {
-    const ClientStatus status = sessions.status(i);
-    if (status.traffic.datagrams_sent == 0) continue;
-    traffic_row(table, fmt::format("to client {}, {}", i, status.role == Role::observer ? "observer" : "participant"),
-                status.traffic, seconds, seal);
-  }
-  pace_rows(table, pace_of(ticker));
-  table.print(stdout);
 }
 
 tl::expected<std::unique_ptr<sim::Server>, Failure> make_world(const ServeOptions& options) {
@@ -342,13 +302,11 @@ Outcome run(const ServeOptions& typed) {
   const double seconds = static_cast<double>(ticker.ticks()) / sim::kTickRate;
   Json report = to_json(options, *sessions, *world->stream_scene(), service, ticker, seconds, wire->seal());
   service.close(microseconds_now());
-  std::optional<ObservationReport> observed;
-  if (observation) report["observers"] = observers_json(observed.emplace(observation->finish()));
+  if (observation) report["observers"] = observers_json(observation->finish());
   const Outcome finished = recording.finish(options.output);
   TACTUS_CHECK(worked);
   TACTUS_CHECK(finished);
-  if (options.common.json) fmt::print("{}\n", text_of_json(report));
-  else if (!options.common.quiet) print_text(options, *sessions, service, ticker, seconds, wire->seal(), observed);
+  print(report, "serve", options.common);
   return {};
 }
 

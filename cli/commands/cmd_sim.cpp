@@ -15,19 +15,16 @@
 #ifdef TACTUS_HAS_NET
 #include "cli/commands/session_capture.h"
 #endif
-#include "cli/commands/replay.h"
+#include "cli/commands/input.h"
+#include "cli/commands/scene_run.h"
 #include "cli/commands/stiffness_map.h"
-#include "cli/commands/stop.h"
 #include "cli/figure/motion_figure.h"
-#include "cli/options/compensation_option.h"
-#include "cli/options/hand_option.h"
+#include "cli/live/ticker.h"
 #include "cli/options/option_needs.h"
 #include "cli/options/options_link.h"
-#include "cli/options/options_session.h"
-#include "cli/report/network_judge.h"
 #include "cli/report/report.h"
+#include "cli/report/sim_report.h"
 #include "cli/report/table.h"
-#include "cli/report/trace_ending.h"
 
 namespace tactus::cli {
 namespace {
@@ -208,7 +205,7 @@ Report make_report(const SimOptions& options, const TraceInfo& info) {
   Report report{.command = "sim", .files = {{"scene", options.scene}, {"trace", options.output}}};
   if (!options.stream.empty()) report.files.emplace_back("stream", options.stream);
   report.describe(info);
-  report.timings = {{"simulate", options.has_channel() ? "simulate, encode, decode, per tick" : "simulate, per tick"}};
+  report.timings = {{"simulate"}};
   if (options.replay.empty()) report.seed = options.seed;
   else report.files.emplace_back("replay", options.replay);
   if (!options.has_channel()) return report;
@@ -251,7 +248,7 @@ void describe_deformables(const sim::Simulation& simulation, Report& report) {
                                   .vertices = object.vertices,
                                   .step = object.step,
                                   .h_omega = object.step * object.largest_frequency});
-  report.timings.push_back({"deform", "deform, per step"});
+  report.timings.push_back({"deform"});
 }
 
 void report_errors(const sim::Simulation& simulation, Report& report) {
@@ -389,7 +386,7 @@ Outcome run(const SimOptions& options) {
     TACTUS_TRY(auto opened, open_stream(options, *simulation->stream_scene()));
     stream.emplace(std::move(opened));
   }
-  Timing map{"stiffness_map", "stiffness map, once"};
+  Timing map{"stiffness_map"};
   TACTUS_CHECK(draw_stiffness(scene, options, map.times));
   const TraceInfo info = simulation->info();
   auto trace = TraceWriter::create(output.working_path(), info);

@@ -4,32 +4,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include <tactus/base/shown.h>
 #include <tactus/metrics/delay_tolerance.h>
 #include <tactus/trace/trace_file.h>
 #ifdef TACTUS_HAS_SIM
-#include "cli/commands/tolerable_scene.h"
+#include "cli/commands/scene_run.h"
 #endif
+#include "cli/commands/input.h"
 #include "cli/figure/figure.h"
 #include "cli/options/options_codec.h"
 #include "cli/options/units.h"
 #include "cli/output.h"
 #include "cli/progress.h"
-#include "cli/report/json_parts.h"
+#include "cli/report/json.h"
 #include "cli/report/messages.h"
-#include "cli/report/table.h"
-#include "cli/report/trace_ending.h"
 
 namespace tactus::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Pair = DelayTolerance::Pair;
-using Touch = DelayTolerance::Touch;
-
 struct TolerableOptions {
   std::string input, plot;
   std::uint64_t seed = 1;
@@ -43,7 +38,7 @@ const std::string& name_of(const TraceInfo& info, const Pair& pair) {
 
 double seconds(const TraceInfo& info, std::uint64_t ticks) { return static_cast<double>(ticks) / info.tick_rate; }
 
-Json to_json(const TolerableOptions& options, const TraceInfo& info, const DelayTolerance& tolerance) {
+Value value_of(const TolerableOptions& options, const TraceInfo& info, const DelayTolerance& tolerance, bool is_scene) {
   Json out{
       {"schema", "tactus.tolerable/1"}, {"trace", options.input}, {"weber_fraction", options.weber}, {"touches", Json::array()}};
   for (const auto& [pair, touch] : tolerance.touches()) {
@@ -61,38 +56,9 @@ Json to_json(const TolerableOptions& options, const TraceInfo& info, const Delay
       entry["felt"].push_back({{"round_trip_s", DelayTolerance::kRoundTrips[i]}, {"share", touch.felt(i)}});
     out["touches"].push_back(std::move(entry));
   }
-  return out;
-}
-
-std::string milliseconds(const Touch& touch, double share) {
-  const auto most = touch.quantile(share);
-  if (most) return fmt::format("{:.1f}", 1e3 * *most);
-  return touch.pressing() == 0 ? "-" : fmt::format("> {:.0f}", 1e3 * Touch::kLongest);
-}
-
-void print_text(const TolerableOptions& options, const TraceInfo& info, const DelayTolerance& tolerance, bool is_scene) {
-  fmt::print(
-      "Round trips that the touches of {} bear until {:g} % more force is felt, and the share of the time in contact in which\n"
-      "a round trip is felt\n\n",
-      shown_path(options.input), 100 * options.weber);
-  Table table;
-  std::vector<std::string> heading{"user, object", "contact [s]", "pressing [s]", "follows", "bears, 5 % [ms]", "median [ms]"};
-  for (const double round_trip : DelayTolerance::kRoundTrips) heading.push_back(fmt::format("{:g} ms", 1e3 * round_trip));
-  table.heading(std::move(heading));
-  for (const auto& [pair, touch] : tolerance.touches()) {
-    std::vector<std::string> row{fmt::format("{}, {}", shown(info.users[pair.user].name), shown(name_of(info, pair))),
-                                 fmt::format("{:.2f}", seconds(info, touch.ticks())),
-                                 fmt::format("{:.2f}", seconds(info, touch.pressing())),
-                                 fmt::format("{:.1f} %", 100 * touch.follows()),
-                                 milliseconds(touch, 0.05),
-                                 milliseconds(touch, 0.5)};
-    for (std::size_t i = 0; i < DelayTolerance::kRoundTrips.size(); ++i)
-      row.push_back(fmt::format("{:.1f} %", 100 * touch.felt(i)));
-    table.row(std::move(row));
-  }
-  table.print(stdout);
   if (!is_scene && !info.meshes.empty())
-    fmt::print("\nA deformable object gives way and bears more than that; give its scene to see how much.\n");
+    out["notes"] = {"A deformable object gives way and bears more than that; give its scene to see how much."};
+  return out;
 }
 
 /// Over the round trip, how much of the time in contact it is felt: a line for each touch.
@@ -136,8 +102,7 @@ Outcome report(const TolerableOptions& options, const TraceInfo& info, const Del
   if (tolerance.touches().empty())
     return refuse(shown_path(options.input) + ": nobody touches anything", "Give a recording or a scene with contacts.");
   TACTUS_CHECK(draw(options.plot, share_figure(options, info, tolerance), options.common));
-  if (options.common.json) fmt::print("{}\n", text_of_json(to_json(options, info, tolerance)));
-  else if (!options.common.quiet) print_text(options, info, tolerance, is_scene);
+  print(value_of(options, info, tolerance, is_scene), "tolerable", options.common);
   return {};
 }
 

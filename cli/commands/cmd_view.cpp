@@ -10,12 +10,11 @@
 #include <tactus/base/shown.h>
 #include <tactus/player.h>
 #include <tactus/trace/trace_scene.h>
-#include "cli/report/figures.h"
+#include "cli/commands/input.h"
 #include "cli/report/report.h"
-#include "cli/report/trace_ending.h"
-#include "cli/viewer/packet_table.h"
+#include "cli/report/table.h"
+#include "cli/viewer/columns.h"
 #include "cli/viewer/page.h"
-#include "cli/viewer/truth_data.h"
 #ifdef TACTUS_HAS_SIM
 #include "cli/viewer/shapes.h"
 #endif

@@ -4,15 +4,12 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <nlohmann/json.hpp>
 #include <vector>
 
-#include "cli/report/json_parts.h"
+#include "cli/report/json.h"
 
 namespace tactus::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::array<const char*, 3> kAxes{"x", "y", "z"};
 constexpr std::array<const char*, 6> kColours{"#0072b2", "#d55e00", "#009e73",

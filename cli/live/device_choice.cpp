@@ -2,28 +2,81 @@
 #include "cli/live/device_choice.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <utility>
 
-#ifdef TACTUS_HAS_FALCON
-#include <tactus/device/falcon/falcon_device.h>
-#endif
-#ifdef TACTUS_HAS_HID
-#include <tactus/device/hid/hid_device.h>
-#endif
-#ifdef TACTUS_HAS_INVERSE3
-#include <tactus/device/inverse3/inverse3_device.h>
-#endif
-#ifdef TACTUS_HAS_OPENHAPTICS
-#include <tactus/device/openhaptics/openhaptics_device.h>
-#endif
 #include <tactus/device/recording.h>
 #include "cli/options/options_codec.h"
 #include "cli/options/units.h"
 
+#ifdef TACTUS_HAS_FALCON
+#include <tactus/device/falcon/falcon_device.h>
+#endif
+
+#ifdef TACTUS_HAS_HID
+#include <tactus/device/hid/hid_device.h>
+#endif
+
+#ifdef TACTUS_HAS_INVERSE3
+#include <tactus/device/inverse3/inverse3_device.h>
+#endif
+
+#ifdef TACTUS_HAS_OPENHAPTICS
+#include <tactus/device/openhaptics/openhaptics_device.h>
+#endif
+
 namespace tactus::cli {
+
+// ==== virtual device ====
+
+namespace {
+
+using device::kMillisecond;
+
+constexpr double kReach = 0.1;            // [m] of its workspace round the start: what the path needs, and more
+constexpr std::int64_t kMostSteps = 100;  // at once: after a longer pause the hand goes on where it was
+
+device::Capabilities capabilities_of(const sim::SceneUser& user) {
+  const Vec3 reach{kReach, kReach, kReach};
+  device::Capabilities out;
+  out.name = "virtual";
+  out.model = "virtual hand";
+  out.senses = {.velocity = false, .buttons = user.senses().buttons};
+  out.buttons = out.senses.buttons ? 1 : 0;
+  out.force_axes = 3;
+  out.low = user.start - reach;
+  out.high = user.start + reach;
+  out.nominal_force = out.peak_force = user.device.max_force;
+  out.rate = sim::kTickRate;
+  return out;
+}
+
+}  // namespace
+
+VirtualDevice::VirtualDevice(const sim::Scene& scene, std::size_t user, std::uint64_t seed)
+    : capabilities_(capabilities_of(scene.users[user])),
+      hand_(scene.users[user], scene.users[user].grip, sim::hand_seed(seed, user)),
+      watched_(scene.users[user].object < scene.objects.size() ? scene.objects[scene.users[user].object].pose : Pose{}) {
+  sample_.position = scene.users[user].start;
+}
+
+Result<device::Reading> VirtualDevice::read(device::Time deadline) noexcept {
+  if (begin_ < 0) begin_ = deadline - kMillisecond;
+  const std::int64_t due = (deadline - begin_) / kMillisecond;
+  ticks_ = std::max(ticks_, due - kMostSteps);
+  for (; ticks_ < due; ++ticks_) sample_ = hand_.step(is_halted_ ? Vec3{} : felt_, watched_);
+  return device::Reading{.sample = sample_, .taken = begin_ + ticks_ * kMillisecond};
+}
+
+Result<void> VirtualDevice::write(const device::GuardedForce& force) noexcept {
+  felt_ = force.value();
+  is_halted_ = false;
+  return {};
+}
+
+// ==== device choice ====
+
 namespace {
 
 constexpr const char* kVirtual = "virtual";

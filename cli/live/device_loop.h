@@ -1,23 +1,64 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The thread of a device: sample, what the hand feels, force, trace, 1000 times per second. What it does between two ticks allocates
-/// nothing, waits for no file and prints nothing.
+/// A device at work: its loop, its guard, and what a person sees of both.
 #pragma once
 
+#include <termios.h>
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <tactus/device/force_guard.h>
 #include <tactus/device/real_time.h>
 #include <tactus/device/servo.h>
 #include <tactus/trace/trace_recorder.h>
 #include "cli/live/felt.h"
-#include "cli/live/guard_report.h"
+#include "cli/options/options_codec.h"
 #include "cli/report/messages.h"
 
 namespace tactus::cli {
+
+// ==== guard report ====
+// What the guard of a device did to the forces of a run.
+
+struct Value;
+
+struct GuardReport {
+  std::array<std::uint64_t, device::kGuardActions> ticks{};  ///< changed, per device::GuardAction
+  std::vector<device::GuardEntry> log{};                     ///< actions that began; time since the run began
+  double energy = 0;                                         ///< [J] that the hand was given
+  std::uint64_t halted = 0;                                  ///< times that the loop hung
+};
+
+/// in   begin  of the run
+/// out  none: the device takes no force
+std::optional<GuardReport> guard_report(device::Servo& servo, device::Time begin);
+
+Value value_of(const GuardReport& report);
+
+// ==== keyboard ====
+
+/// Keys as they are pressed, without Enter, where standard input is a terminal; nothing elsewhere, or in the background.
+class Keyboard {
+ public:
+  Keyboard() noexcept;
+  ~Keyboard();  ///< the terminal is as it was before
+  Keyboard(const Keyboard&) = delete;
+  Keyboard& operator=(const Keyboard&) = delete;
+
+  bool is_there() const noexcept { return before_.has_value(); }
+  std::optional<char> pressed() noexcept;  ///< the next key that waits; never blocks
+
+ private:
+  std::optional<termios> before_;
+};
+
+// ==== device loop ====
+// The thread of a device: sample, what the hand feels, force, trace, 1000 times per second. What it does between two ticks allocates
+// nothing, waits for no file and prints nothing.
 
 struct DevicePlan {
   std::string path{}, shown_path{};  ///< of the trace: to write to, and to name in messages; empty: none
@@ -82,5 +123,28 @@ class DeviceLoop {
   std::atomic<device::Time> worst_{0};
   std::atomic<device::Reading::State> state_{device::Reading::State::valid};
 };
+
+// ==== device report ====
+// What a person sees while a device runs and afterwards, whatever its hand felt.
+
+/// Run the loop on a thread of its own until it ends. Keys become markers, q and a signal end it, and a meter shows how it goes.
+Outcome run_attended(DeviceLoop& loop, const CommonOptions& common);
+
+/// After run_attended().
+struct DeviceRun {
+  const device::Capabilities& device;
+  const DeviceLoop::Outcomes& outcomes;
+  const std::string& trace;  ///< as typed; empty: none
+  double rate = 0;           ///< [Hz]
+
+  double seconds() const { return static_cast<double>(outcomes.last_tick + 1) / rate; }
+  std::uint64_t lost() const { return outcomes.recorder.lost + outcomes.device_lost; }
+};
+/// Adds what there is to say of every run: `trace` to `privileges`, and `guard` of a device that takes a force.
+void add_to(Value& report, const DeviceRun& run);
+/// A failure, and what the trace holds after it.
+tl::unexpected<Failure> failed(Failure failure, const DeviceRun& run);
+/// err  a sample was lost
+Outcome check_complete(const DeviceRun& run);
 
 }  // namespace tactus::cli

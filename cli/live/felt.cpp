@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/live/felt.h"
 
+#include <algorithm>
+#include <utility>
+
 namespace tactus::cli {
+
+// ==== felt ====
 
 TraceInfo FeltNothing::info() const {
   TraceInfo info;
@@ -12,6 +17,91 @@ TraceInfo FeltNothing::info() const {
 tl::expected<Vec3, Failure> FeltNothing::step(const device::ServoTick& tick, TraceFrame& frame) {
   frame.users.front().device = tick.reading.sample;
   return Vec3{};
+}
+
+// ==== felt recording ====
+
+namespace {
+
+using device::Time;
+
+constexpr Time kGrowth = 1000 * device::kMillisecond;  // until the spring has its whole stiffness
+constexpr double kDamping = 2;                         // [N s/m] too little to make a device with coarse steps hum
+constexpr double kSmoothing = 0.1;                     // of the speed, per tick
+
+}  // namespace
+
+FeltRecording::FeltRecording(device::Recording recording, Exerted exerted, double stiffness)
+    : recording_(std::move(recording)), exerted_(exerted), stiffness_(stiffness) {}
+
+TraceInfo FeltRecording::info() const {
+  TraceInfo info;
+  info.users.push_back({.name = recording_.user().name, .forces = KnownForces::felt});
+  return info;
+}
+
+tl::expected<Vec3, Failure> FeltRecording::step(const device::ServoTick& tick, TraceFrame& frame) {
+  DeviceSample sample = tick.reading.sample;
+  if (begin_ < 0 && tick.reading.state == device::Reading::State::valid) {
+    begin_ = tick.due;
+    origin_ = recording_.begin() - sample.position;
+    place_ = recording_.begin();
+    placed_ = tick.due;
+  }
+  sample.position = sample.position + origin_;
+  frame.users.front().device = sample;
+  if (begin_ < 0) return Vec3{};
+  const device::Recording::Moment moment = recording_.at(tick.due - begin_);
+  is_over_ = moment.is_over;
+  const Vec3 way = moment.sample.position - sample.position;
+  const double distance = norm(way);
+  sum_ += distance;
+  largest_ = std::max(largest_, distance);
+  ++ticks_;
+  if (exerted_ == Exerted::path) return spring(way, sample.position, moment.into, tick.due);
+  return exerted_ == Exerted::force ? moment.force : Vec3{};
+}
+
+/// It grows from nothing, also when the recording begins again and the hand is far away.
+Vec3 FeltRecording::spring(const Vec3& way, const Vec3& hand, Time into, Time now) noexcept {
+  if (now > placed_) {
+    const Vec3 speed = (1e9 / static_cast<double>(now - placed_)) * (hand - place_);
+    speed_ = speed_ + kSmoothing * (speed - speed_);
+    place_ = hand;
+    placed_ = now;
+  }
+  const double share = std::min(static_cast<double>(into) / static_cast<double>(kGrowth), 1.0);
+  return share * (stiffness_ * way - kDamping * speed_);
+}
+
+FeltRecording::Distance FeltRecording::distance() const noexcept {
+  return {ticks_ > 0 ? sum_ / static_cast<double>(ticks_) : 0, largest_};
+}
+
+// ==== felt scene ====
+
+FeltScene::FeltScene(const sim::Scene& scene, std::size_t user, std::uint64_t seed, const ChosenDevice& device)
+    : scene_(scene), user_(user), seed_(seed), hand_(device.hand), origin_(device.in_world ? Vec3{} : scene.users[user].start) {}
+
+Outcome FeltScene::begin() {
+  auto simulation = sim::Simulation::create(scene_, {.seed = seed_, .grip = {}, .channel = {}});
+  if (!simulation) return refuse(scene_.name, simulation.error());
+  simulation_.emplace(std::move(*simulation));
+  show();
+  return {};
+}
+
+tl::expected<Vec3, Failure> FeltScene::step(const device::ServoTick& tick, TraceFrame& frame) {
+  DeviceSample sample = tick.reading.sample;
+  sample.position = sample.position + origin_;
+  if (const auto stepped = simulation_->step(user_, sample); !stepped) return refuse(stepped.error());
+  frame = simulation_->frame();
+  show();
+  return frame.users[user_].force;
+}
+
+void FeltScene::show() noexcept {
+  if (hand_ != nullptr) hand_->watch(simulation_->watched(user_));
 }
 
 }  // namespace tactus::cli

@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
+/// What the hand on a device feels: nothing, a scene, a recording.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <tl/expected.hpp>
 
+#include <tactus/device/recording.h>
 #include <tactus/device/servo.h>
+#include <tactus/sim/simulation.h>
 #include <tactus/trace/frame.h>
+#include "cli/live/device_choice.h"
 #include "cli/report/messages.h"
 
 namespace tactus::cli {
+
+// ==== felt ====
 
 /// What the hand on a device feels, tick by tick, and what a trace says of it.
 class Felt {
@@ -33,6 +41,70 @@ class FeltNothing final : public Felt {
  public:
   TraceInfo info() const override;
   tl::expected<Vec3, Failure> step(const device::ServoTick& tick, TraceFrame& frame) override;
+};
+
+// ==== felt recording ====
+
+enum class Exerted : std::uint8_t {
+  nothing,
+  force,  ///< what the hand of the recording felt
+  path,   ///< a spring draws the hand to where that of the recording was
+};
+
+/// A recording, played from the first sample on that the device has of its hand; both hands begin at the same place. The trace is in the
+/// recording's frame.
+class FeltRecording final : public Felt {
+ public:
+  /// in   stiffness  [N/m] of the spring
+  FeltRecording(device::Recording recording, Exerted exerted, double stiffness);
+
+  TraceInfo info() const override;
+  tl::expected<Vec3, Failure> step(const device::ServoTick& tick, TraceFrame& frame) override;
+  bool is_over() const noexcept override { return is_over_; }
+
+  /// How far the hands were from each other [m].
+  struct Distance {
+    double mean = 0, largest = 0;
+  };
+  Distance distance() const noexcept;
+
+ private:
+  Vec3 spring(const Vec3& way, const Vec3& hand, device::Time into, device::Time now) noexcept;
+
+  device::Recording recording_;
+  Exerted exerted_;
+  double stiffness_;
+  device::Time begin_ = -1;  // of the recording
+  bool is_over_ = false;
+  Vec3 origin_{};                 // [m] of the device's frame in the recording's
+  Vec3 place_{}, speed_{};        // [m], [m/s] of the hand at the tick before; the speed is smoothed
+  device::Time placed_ = 0;       // when the hand was there
+  double sum_ = 0, largest_ = 0;  // [m]
+  std::uint64_t ticks_ = 0;
+};
+
+// ==== felt scene ====
+
+/// A scene, simulated here, that one of its users touches by the device; the others have virtual hands.
+class FeltScene final : public Felt {
+ public:
+  /// in   scene, device  outlive it
+  FeltScene(const sim::Scene& scene, std::size_t user, std::uint64_t seed, const ChosenDevice& device);
+
+  Outcome begin() override;
+  TraceInfo info() const override { return simulation_->info(); }
+  std::size_t user() const noexcept override { return user_; }
+  tl::expected<Vec3, Failure> step(const device::ServoTick& tick, TraceFrame& frame) override;
+
+ private:
+  void show() noexcept;
+
+  const sim::Scene& scene_;
+  std::size_t user_;
+  std::uint64_t seed_;
+  VirtualDevice* hand_;
+  Vec3 origin_{};  // [m] of the device's frame in the world
+  std::optional<sim::Simulation> simulation_;
 };
 
 }  // namespace tactus::cli

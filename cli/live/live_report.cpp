@@ -3,17 +3,15 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 #include <random>
 
 #include "cli/live/wire.h"
-#include "cli/report/figures.h"
-#include "cli/report/traffic_layers.h"
+#include "cli/report/json.h"
+#include "cli/report/report.h"
+#include "cli/report/table.h"
 
 namespace tactus::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 tl::expected<net::Address, Failure> any_address(const std::string& what, const std::string& typed) {
   const std::string full = typed.find(':') == std::string::npos ? "127.0.0.1:" + typed : typed;
@@ -58,7 +56,7 @@ const char* name_of(LeaveReason reason) {
   return kNames[static_cast<std::size_t>(reason)];
 }
 
-Json traffic_json(const Traffic& t, double seconds, const std::optional<SealUse>& seal) {
+Value traffic_value(const Traffic& t, double seconds, const std::optional<SealUse>& seal) {
   const TrafficLayers sent = sent_layers(t, seconds, seal ? seal->overhead : 0);
   Json out{{"sent",
             {{"packets", t.packets_sent},
@@ -66,6 +64,7 @@ Json traffic_json(const Traffic& t, double seconds, const std::optional<SealUse>
              {"payload_bit_per_s", sent.payload},
              {"session_bit_per_s", sent.session},
              {"udp_ipv4_bit_per_s", sent.headers},
+             {"all_bit_per_s", sent.all()},
              {"lost", t.lost}}},
            {"heard",
             {{"packets", t.packets_heard},
@@ -78,49 +77,19 @@ Json traffic_json(const Traffic& t, double seconds, const std::optional<SealUse>
   return out;
 }
 
-Json seal_json(const seal::Counters& c) {
-  return {{"handshakes", c.handshakes},   {"cookies", c.cookies},   {"sealed", c.sealed},      {"opened", c.opened},
-          {"unauthentic", c.unauthentic}, {"replayed", c.replayed}, {"strangers", c.strangers}};
+Value seal_value(const seal::Counters& c) {
+  return Json{{"handshakes", c.handshakes},   {"cookies", c.cookies},   {"sealed", c.sealed},      {"opened", c.opened},
+              {"unauthentic", c.unauthentic}, {"replayed", c.replayed}, {"strangers", c.strangers}};
 }
 
-std::string seal_text(const seal::Counters& c) {
-  return fmt::format("{}; dropped: {} not authentic, {} replayed, {} of strangers", counted(c.handshakes, "handshake"),
-                     c.unauthentic, c.replayed, c.strangers);
-}
-
-Json round_trip_json(const RoundTrip& trip) {
-  return {{"smoothed_us", trip.smoothed}, {"variation_us", trip.variation}, {"least_us", trip.least}};
+Value round_trip_value(const RoundTrip& trip) {
+  return Json{{"smoothed_us", trip.smoothed}, {"variation_us", trip.variation}, {"least_us", trip.least}};
 }
 
 Pace pace_of(const Ticker& ticker) { return {ticker.ticks(), ticker.missed(), ticker.lateness(0.5), ticker.lateness(0.99)}; }
 
-Json pace_json(const Pace& pace) {
-  return {{"ticks", pace.ticks}, {"missed", pace.missed}, {"lateness_p50_us", pace.p50}, {"lateness_p99_us", pace.p99}};
-}
-
-void traffic_heading(Table& table, const std::optional<SealUse>& seal) {
-  std::vector<std::string> cells{"sent", "packets/s", "datagrams/s", "payload [bit/s]", "session"};
-  if (seal) cells.emplace_back("seal");
-  for (const char* name : {"UDP/IPv4", "all [bit/s]", "lost"}) cells.emplace_back(name);
-  table.heading(cells);
-}
-
-void traffic_row(Table& table, const std::string& name, const Traffic& t, double seconds, const std::optional<SealUse>& seal) {
-  const TrafficLayers sent = sent_layers(t, seconds, seal ? seal->overhead : 0);
-  const auto whole = [](double bits) { return fmt::format("{:.0f}", bits); };
-  std::vector<std::string> cells{"  " + name, fmt::format("{:.1f}", sent.packets), fmt::format("{:.1f}", sent.datagrams),
-                                 whole(sent.payload), whole(sent.session)};
-  if (seal) cells.push_back(whole(sent.seal));
-  cells.push_back(whole(sent.headers));
-  cells.push_back(whole(sent.all()));
-  cells.push_back(percent(per(static_cast<double>(t.lost), static_cast<double>(t.datagrams_sent))));
-  table.row(cells);
-}
-
-void pace_rows(Table& table, const Pace& pace) {
-  table.heading({"ticks", "begun", "missed", "late p50", "late p99"});
-  table.row({"  1 kHz", fmt::to_string(pace.ticks), fmt::to_string(pace.missed), fmt::format("{:.2f} ms", 1e-3 * pace.p50),
-             fmt::format("{:.2f} ms", 1e-3 * pace.p99)});
+Value pace_value(const Pace& pace) {
+  return Json{{"ticks", pace.ticks}, {"missed", pace.missed}, {"lateness_p50_us", pace.p50}, {"lateness_p99_us", pace.p99}};
 }
 
 }  // namespace tactus::cli

@@ -1,12 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Ticks in real time.
+/// Work in real time: ticks, a line that shows how it goes, an end by a signal.
 #pragma once
 
+#include <array>
 #include <chrono>
+#include <csignal>
 #include <cstdint>
+#include <string>
 #include <vector>
 
+#include "cli/progress.h"
+
 namespace tactus::cli {
+
+// ==== stop ====
+
+/// While it lives, an interrupt or a request to end is noted instead of obeyed, so that a command can close its files. The second one
+/// is obeyed.
+class StopOnSignal {
+ public:
+  StopOnSignal();
+  ~StopOnSignal();
+  StopOnSignal(const StopOnSignal&) = delete;
+  StopOnSignal& operator=(const StopOnSignal&) = delete;
+
+  static int caught() noexcept;  ///< the signal, 0: none
+};
+
+// ==== meter ====
+
+/// One line on standard error that tells how a session does; drawn only on a terminal, five times per second, gone afterwards.
+class Meter {
+ public:
+  explicit Meter(Visibility visibility);
+  ~Meter();
+  Meter(const Meter&) = delete;
+  Meter& operator=(const Meter&) = delete;
+
+  bool is_due(std::uint64_t now) const noexcept { return visible_ && now >= next_; }  ///< [us]
+  void draw(std::uint64_t now, const std::string& text);
+
+ private:
+  bool visible_, drawn_ = false;
+  std::uint64_t next_ = 0;
+};
+
+// ==== ticker ====
+// Ticks in real time.
 
 /// The time of this machine since some origin; it never steps back.
 std::uint64_t microseconds_now() noexcept;

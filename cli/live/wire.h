@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// How datagrams of sessions travel: as they are, on the loopback, or sealed.
+/// How datagrams of a session travel: plain on this machine, sealed beyond it.
 #pragma once
 
 #include <cstddef>
@@ -9,12 +9,40 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <tactus/net/udp.h>
 #include <tactus/seal/key.h>
 #include "cli/report/messages.h"
 
 namespace tactus::cli {
+
+// ==== peers ====
+
+/// Who sent datagrams: a session names addresses by their keys. Only those with a session are remembered, so that strangers push nobody
+/// out.
+class Peers {
+ public:
+  using HasSession = std::function<bool(std::uint64_t peer)>;
+  /// in   most  sessions at a time
+  explicit Peers(std::size_t most) : most_(most) {}
+
+  /// The sender of the newest datagram.
+  std::uint64_t name(const net::Address& from);
+  /// Remember the sender of the newest datagram, if it has a session.
+  void settle(const HasSession& has_session);
+  /// Null: unknown. The sender of the newest datagram is known.
+  const net::Address* find(std::uint64_t peer) const;
+  std::size_t size() const noexcept { return known_.size(); }
+
+ private:
+  std::size_t most_;
+  std::vector<net::Address> known_;
+  net::Address newest_;
+};
+
+// ==== wire ====
+// How datagrams of sessions travel: as they are, on the loopback, or sealed.
 
 /// What the seal did, for the report.
 struct SealUse {

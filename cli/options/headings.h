@@ -1,11 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Headings of the help: which option and which command stands under which.
+/// What the help says beside the options: headings, and what was probably meant.
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
 namespace tactus::cli {
+
+// ==== suggestion ====
+// What was probably meant by a word that is not known.
+
+/// ". Did you mean NAME?" with the name nearest to `typed`, or empty when none is near.
+///   near: at most a third of its letters are missing, superfluous, other ones or swapped with the next
+std::string did_you_mean(std::string_view typed, std::span<const std::string> names);
+
+// ==== headings ====
+// Headings of the help: which option and which command stands under which.
 
 /// in   option  its long name: "--deadband";   out  "Options" for what only one command has
 std::string heading_of(std::string_view option);

@@ -11,7 +11,7 @@
 
 #include <tactus/base/rule.h>
 #include <tactus/rigid/trigger.h>
-#include "cli/terminal.h"
+#include "cli/progress.h"
 
 namespace tactus::cli {
 namespace {

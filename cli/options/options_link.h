@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-/// An emulated network as people type it: delay=20ms,jitter=5ms,loss=1%
+/// Options of simulations and sessions: networks, hands, compensation.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
 
 #include <tactus/sim/link/link.h>
+#include <tactus/sim/scene/scene.h>
+#include <tactus/sim/simulation.h>
 #include "cli/command.h"
+#include "cli/options/options_codec.h"
 
 namespace tactus::cli {
+
+// ==== options link ====
+// An emulated network as people type it: delay=20ms,jitter=5ms,loss=1%
 
 /// err  a sentence that names the part, what is wrong and what would be right
 tl::expected<sim::LinkOptions, std::string> parse_link(std::string_view text);
@@ -24,5 +31,92 @@ Option* add_bit_rate(Command& app, const std::string& name, double& value, const
 
 /// The parts and their units, for the end of a help text.
 const char* link_help();
+
+// ==== options session ====
+// Options of what takes part in a session.
+
+/// `--playout adaptive` or a time.
+Option* add_playout(Command& app, std::string& value);
+/// [us]; nothing: adaptive.   pre  checked by add_playout()
+std::optional<std::uint32_t> playout_of(const std::string& value);
+
+/// `--told FACTOR`.
+Option* add_told(Command& app, double& value);
+
+/// `--key FILE`.
+Option* add_key(Command& app, std::string& value);
+
+// ==== grip option ====
+// The option --grip of commands that simulate.
+
+/// pre  add_grip() took this name
+inline sim::Grip grip_of(const std::string& name) {
+  return name == "loose" ? sim::Grip::loose : name == "firm" ? sim::Grip::firm : sim::Grip::normal;
+}
+
+/// in  otherwise  what holds without it, for the help
+inline Option* add_grip(Command& command, std::string& grip, const std::string& otherwise) {
+  return command.add_option("--grip", grip, "Grip of the hand on the device: loose, normal or firm [" + otherwise + "]")
+      ->one_of({"loose", "normal", "firm"})
+      ->type_name("GRIP");
+}
+
+// ==== hand option ====
+// The options --grip, --pace and --tremor of commands that simulate.
+
+/// in  otherwise  what holds without it, for the help
+inline Option* add_pace(Command& command, double& pace, const std::string& otherwise) {
+  return command
+      .add_option("--pace", pace,
+                  "Time that hands take for each movement, times the scene's: 0.5 is twice as fast [" + otherwise + "]")
+      ->check(number(0.1, 10))
+      ->type_name("FACTOR");
+}
+inline Option* add_tremor(Command& command, double& rms, const std::string& otherwise) {
+  return add_quantity(command, "--tremor", rms, Dimension::length,
+                      "Tremor of free hands at 8 to 12 Hz, RMS per axis [" + otherwise + "]")
+      ->check(within(Dimension::length, "0m", "10mm"));
+}
+
+/// Hands of a scene, as typed.
+class HandArguments {
+ public:
+  void add_to(Command& command) {
+    add_grip(command, grip_, "the scene's");
+    pace_option_ = add_pace(command, pace_, "1");
+    tremor_option_ = add_tremor(command, tremor_, "the scene's");
+  }
+  void apply(sim::Scene& scene) const {
+    if (pace_option_->count() > 0) sim::set_pace(scene, pace_);
+    if (tremor_option_->count() > 0) sim::set_tremor(scene, tremor_);
+  }
+  std::optional<sim::Grip> grip() const { return grip_.empty() ? std::nullopt : std::optional(grip_of(grip_)); }
+
+ private:
+  std::string grip_;
+  double pace_ = 1, tremor_ = 0;  // [m]
+  const Option *pace_option_ = nullptr, *tremor_option_ = nullptr;
+};
+
+// ==== compensation option ====
+// The option --compensation of commands that simulate.
+
+/// in   clients  none, stiffness, simulation; empty: what the scene says
+inline void compensate(sim::Scene& scene, const std::string& clients) {
+  if (clients.empty()) return;
+  if (clients == "none") return scene.compensation.reset();
+  if (!scene.compensation) scene.compensation.emplace();
+  scene.compensation->method = clients == "stiffness" ? sim::CompensationMethod::stiffness : sim::CompensationMethod::simulation;
+}
+
+inline Option* add_compensation(Command& command, std::string& clients) {
+  return command
+      .add_option(
+          "--compensation", clients,
+          "What clients do about delay: none, stiffness (render what they touch softer) or simulation (simulate the scene "
+          "themselves; the server corrects them) [the scene's]")
+      ->one_of({"none", "stiffness", "simulation"})
+      ->type_name("CLIENTS");
+}
 
 }  // namespace tactus::cli

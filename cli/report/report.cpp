@@ -2,219 +2,219 @@
 #include "cli/report/report.h"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
-#include <utility>
+#include <ctime>
+#include <numeric>
 
 #include <tactus/base/shown.h>
-#include "cli/report/figures.h"
+#include "cli/report/json.h"
 #include "cli/report/table.h"
 
 namespace tactus::cli {
+
+// ==== step times ====
+
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
+std::int64_t cpu_now() noexcept {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return std::int64_t{1'000'000'000} * now.tv_sec + now.tv_nsec;
+}
 
-void traffic_rows(Table& table, const Report& r) {
-  const RateMetrics& t = *r.traffic;
-  table.heading({"packets", "number", "per second"});
-  for (std::size_t i = kReasons.size(); i-- > 0;) {
-    table.row({fmt::format("  {}", kReasons[i]), fmt::to_string(t.packets[i]),
-               fmt::format("{:.2f}", per(static_cast<double>(t.packets[i]), r.seconds()))});
+/// Reading the CPU clock is a system call, longer than the shortest steps that are measured.
+std::int64_t cost_of_reading() noexcept {
+  std::int64_t least = INT64_MAX;
+  for (int i = 0; i < 100; ++i) {
+    const std::int64_t before = cpu_now();
+    least = std::min(least, cpu_now() - before);
   }
-  const auto all = static_cast<double>(t.all_packets());
-  table.row({"  all", fmt::to_string(t.all_packets()), fmt::format("{:.2f}", per(all, r.seconds()))});
-  table.row({"  object updates in them", fmt::to_string(t.updates),
-             fmt::format("{:.2f}", per(static_cast<double>(t.updates), r.seconds()))});
-  // Every tick that the recording has is what would be sent without reduction.
-  const std::string all_updates = r.ticks.left_out() == 0 ? fmt::format("{} /s", r.tick_rate) : "recorded ticks";
-  table.row({fmt::format("  update reduction vs {}", all_updates),
-             percent(1 - per(static_cast<double>(t.updates), static_cast<double>(r.ticks.count() * r.moving)))});
-  const RigidRates payload = rigid_rates(r, 0), datagram = rigid_rates(r, kUdpHeader);
-  table.heading({"size", "payload", "with UDP/IPv4"});
-  table.row({"  bit/s", fmt::format("{:.0f}", payload.bits_per_s), fmt::format("{:.0f}", datagram.bits_per_s)});
-  table.row(
-      {"  bytes per packet", fmt::format("{:.2f}", payload.bytes_per_packet), fmt::format("{:.2f}", datagram.bytes_per_packet)});
-  table.row(
-      {"  bytes per update", fmt::format("{:.2f}", payload.bytes_per_update), fmt::format("{:.2f}", datagram.bytes_per_update)});
-  table.row({"  compression vs 24-byte states", percent(payload.saved_24), percent(datagram.saved_24)});
-  table.row({"  compression vs 48-byte states", percent(payload.saved_48), percent(datagram.saved_48)});
+  return least;
 }
 
-void load_rows(Table& table, const LoadRates& t, double seconds) {
-  table.heading({"loads", "number", "per second", "payload [bit/s]"});
-  table.row({"  packets", fmt::to_string(t.packets), fmt::format("{:.2f}", per(static_cast<double>(t.packets), seconds)),
-             fmt::format("{:.0f}", 8 * per(static_cast<double>(t.bytes), seconds))});
+}  // namespace
+
+Stopwatch::Stopwatch() noexcept : cpu_(cpu_now()), wall_(Clock::now()) {}
+
+Cost Stopwatch::elapsed() const noexcept {
+  const auto wall = Clock::now();
+  const std::int64_t cpu = cpu_now();
+  static const std::int64_t reading = cost_of_reading();
+  return {std::chrono::duration_cast<std::chrono::nanoseconds>(wall - wall_).count(),
+          std::max<std::int64_t>(0, cpu - cpu_ - reading)};
 }
 
-std::string rule_name(const RigidTriggers& b) {
-  switch (b.haptic) {
-    case HapticRule::off:
-      return "off";
-    case HapticRule::isotropic:
-      return percent(b.weber_fraction);
-    case HapticRule::cone:
-      return fmt::format("{}, {:.3g} deg", percent(b.weber_fraction), b.cone_angle / kDegree);
-    case HapticRule::fixed:
-      return fmt::format("{:.3g} mm, {:.3g} deg", 1e3 * b.fixed_position, b.fixed_rotation / kDegree);
-    case HapticRule::perceptual:
-      return fmt::format("{:.3g}..{:.3g} %", 10 * b.perceptual_share, 22 * b.perceptual_share);
-  }
-  return {};
+void StepTimes::add(Cost cost) {
+  wall_ns_.push_back(cost.wall_ns);
+  cpu_ns_.push_back(cost.cpu_ns);
 }
 
-void error_row(Table& table, const Report& r, const std::string& name, const std::string& bound, const ErrorSeries& s,
-               double unit) {
-  // five digits: a maximum just inside its bound must not read as the bound
-  table.row({name, bound, significant(s.rms() / unit), significant(s.max() / unit, 5), fmt::to_string(s.ticks_over()),
-             percent(per(static_cast<double>(s.ticks_over()), static_cast<double>(s.ticks()))),
-             fmt::format("{:.0f}", 1e3 * static_cast<double>(s.longest_run()) / r.tick_rate)});
+double StepTimes::quantile(TimeOf which, double share) const {
+  std::vector<std::int64_t> sorted = times(which);
+  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size())));
+  const auto at = sorted.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
+  std::nth_element(sorted.begin(), at, sorted.end());
+  return 1e-9 * static_cast<double>(*at);
 }
 
-void error_rows(Table& table, const Report& r, const ErrorMetrics& f, const std::string& of) {
-  const RigidTriggers& b = f.bounds();
-  table.heading({"error" + of, "bound", "RMS", "max", "ticks over", "share", "longest [ms]"});
+double StepTimes::total(TimeOf which) const noexcept {
+  std::int64_t sum = 0;
+  for (const std::int64_t t : times(which)) sum += t;
+  return 1e-9 * static_cast<double>(sum);
+}
+
+// ==== report ====
+
+namespace {
+
+bool has_errors(const ErrorMetrics& f) { return f.position().ticks() > 0 || f.rendered().ticks() > 0; }
+
+/// Errors of one quantity: of ticks, or of vertices in all frames.
+Json series_json(std::uint64_t samples, std::uint64_t over, double mse, double max) {
+  return {{"samples", samples},    {"over", over}, {"share_over", per(static_cast<double>(over), static_cast<double>(samples))},
+          {"rms", std::sqrt(mse)}, {"mse", mse},   {"max", max}};
+}
+
+Json series_json(const Report& r, const ErrorSeries& s) {
+  Json out = series_json(s.ticks(), s.ticks_over(), s.rms() * s.rms(), s.max());
+  out["longest_run_s"] = static_cast<double>(s.longest_run()) / r.tick_rate;
+  return out;
+}
+
+Json series_json(const VertexErrors& e) { return series_json(e.vertices, e.violations, e.mse(), e.max); }
+
+Json errors_json(const Report& r, const ErrorMetrics& f) {
+  Json out;
   if (f.position().ticks() > 0) {
-    error_row(table, r, "  position [mm]", significant(1e3 * b.visual_position), f.position(), 1e-3);
-    error_row(table, r, "  rotation [deg]", significant(b.visual_rotation / kDegree), f.rotation(), kDegree);
+    out["position_m"] = series_json(r, f.position());
+    out["rotation_rad"] = series_json(r, f.rotation());
   }
   if (f.force().ticks() > 0) {
-    if (b.haptic != HapticRule::off) error_row(table, r, "  contact force [N]", rule_name(b), f.force(), 1);
-    error_row(table, r, "  contact force, perception [N]", "10..22 %", f.perceived(), 1);
+    if (f.bounds().haptic != HapticRule::off) {
+      out["contact_force_N"] = series_json(r, f.force());
+      out["contact_force_N"]["worst_ratio"] = f.worst_haptic_ratio();
+    }
+    out["contact_force_perception_N"] = series_json(r, f.perceived());
   }
-  if (f.rendered().ticks() > 0) error_row(table, r, "  rendered force, perception [N]", "10..22 %", f.rendered(), 1);
+  if (f.rendered().ticks() > 0) out["rendered_force_perception_N"] = series_json(r, f.rendered());
+  return out;
 }
 
-void time_row(Table& table, const Report& r, const std::string& step, const StepTimes& times) {
-  if (times.empty()) return;
-  std::vector<std::string> cells{"  " + step};
-  for (const TimeOf which : {TimeOf::wall, TimeOf::cpu})
-    for (const double share : {0.5, 0.99, 1.0}) cells.push_back(duration(times.quantile(which, share)));
-  cells.push_back(fmt::format("{:.0f}", per(r.seconds(), times.total(TimeOf::wall))));
-  table.row(std::move(cells));
-}
-
-void time_rows(Table& table, const Report& r) {
-  table.heading({"time", "p50", "p99", "max", "CPU p50", "CPU p99", "CPU max", "times real time"});
-  for (const Timing& t : r.timings) time_row(table, r, t.label, t.times);
-  for (const MeshReport& mesh : r.meshes) {
-    time_row(table, r, "encode " + mesh.name + ", per frame", mesh.encode);
-    time_row(table, r, "decode " + mesh.name + ", per packet", mesh.decode);
+Json mesh_json(const MeshReport& mesh, double seconds) {
+  Json out{{"name", mesh.name}, {"vertices", mesh.vertices}};
+  if (mesh.triangles > 0) out["triangles"] = mesh.triangles;
+  if (mesh.frames > 0) {
+    out["frames"] = mesh.frames;
+    out["frame_period_s"] = mesh.frame_period;
   }
-}
-
-/// The stream as a whole: its header is sent once.
-void stream_rows(Table& table, const Report& r) {
-  const auto [bytes, packets] = r.bytes_and_packets();
-  const std::uint64_t header = r.stream->header_bytes;
-  table.heading({"stream", "payload", "with UDP/IPv4"});
-  table.row({"  header bytes", fmt::to_string(header)});
-  if (r.stream->file_bytes) table.row({"  file bytes", fmt::to_string(*r.stream->file_bytes)});
-  const auto rate = [&](std::uint64_t all) { return fmt::format("{:.0f}", 8 * per(static_cast<double>(all), r.seconds())); };
-  table.row({"  bit/s with the header, over this length", rate(bytes + header), rate(bytes + header + packets * kUdpHeader)});
-}
-
-/// Long texts go on below, between words.
-void note_row(Table& table, std::string name, std::string text) {
-  constexpr std::size_t kWidth = 120;
-  while (text.size() > kWidth) {
-    const std::size_t end = text.rfind(' ', kWidth);
-    if (end == std::string::npos || end == 0) break;
-    table.row({fmt::format("  {:<8} {}", std::exchange(name, ""), text.substr(0, end))});
-    text.erase(0, end + 1);
+  if (mesh.traffic) out["traffic"] = mesh_traffic_value(mesh, seconds);
+  if (mesh.fidelity) {
+    const DeformableErrors& f = *mesh.fidelity;
+    out["bounds"] = mesh_bounds_value(f.bounds(), f.rings(), mesh.promised);
+    out["error"] = {{"frames", f.frames()}, {"worst_ratio", f.worst_ratio()}, {"position_m", series_json(f.all())}};
+    out["error"]["haptic_area_m"] = series_json(f.area());
+    out["error"]["haptic_area_m"]["mean_bound"] = f.mean_haptic();
   }
-  table.row({fmt::format("  {:<8} {}", name, text)});
+  if (!mesh.encode.empty()) out["time"]["encode"] = time_value(mesh.encode, seconds);
+  if (!mesh.decode.empty()) out["time"]["decode"] = time_value(mesh.decode, seconds);
+  return out;
 }
 
-std::string step_error(const DeformableReport& d) {
+Json solver_json(const DeformableReport& d) {
   constexpr std::uint64_t kFew = 10;
-  if (d.samples < kFew) return fmt::format("of one step: n = {} is too few to tell", d.samples);
-  return fmt::format("{:.2g} of one step, relative (median of {}), at most {:.2g}", d.error_p50, d.samples, d.error_max);
+  Json out{{"name", d.name}, {"vertices", d.vertices}, {"step_s", d.step}, {"method", d.method}, {"reason", d.reason}};
+  if (d.h_omega > 0) out["h_omega"] = d.h_omega;
+  if (d.samples > 0) {
+    out["step_error"] = {{"samples", d.samples}, {"p50", d.error_p50}, {"max", d.error_max}};
+    if (d.samples < kFew) out["step_error"]["note"] = "too few to tell";
+    out["energy_gained"] = d.energy_gained;
+  }
+  return out;
 }
 
-void note_rows(Table& table, const Report& r) {
-  if (r.segments)
-    note_row(table, "content", fmt::format("{} in {}", counted(r.ticks.count(), "row"), counted(*r.segments, "segment")));
-  for (const MeshReport& mesh : r.meshes) {
-    if (mesh.triangles == 0) continue;
-    std::string text =
-        fmt::format("{}: {}, {}", mesh.name, counted(mesh.vertices, "vertex"), counted(mesh.triangles, "triangle"));
-    if (mesh.frames > 0) text += fmt::format(", {}, one every {:.6g} ms", counted(mesh.frames, "frame"), 1e3 * mesh.frame_period);
-    note_row(table, "content", text);
-  }
-  if (r.seed) note_row(table, "seed", fmt::to_string(*r.seed));
-  constexpr std::array kWays{"applies updates at once", "eases into updates", "interpolates"};
-  if (r.client) note_row(table, "client", kWays[static_cast<std::size_t>(*r.client)]);
-  for (const DeformableReport& d : r.deformables) {
-    note_row(table, "object", fmt::format("{}, {}, deformed every {:g} ms", d.name, counted(d.vertices, "vertex"), 1e3 * d.step));
-    note_row(table, "method", fmt::format("{}: {}", d.method, d.reason));
-    if (d.samples == 0) continue;
-    note_row(table, "error", step_error(d));
-    note_row(table, "energy",
-             fmt::format("spurious gain over the whole run: {:+.2g} % of the work of all forces", 100 * d.energy_gained));
-  }
+Json direction_json(const DirectionReport& direction, double seconds) {
+  const TrafficLayers l = sent_layers(direction.traffic, seconds);
+  return {{"packets_per_s", l.packets},      {"datagrams_per_s", l.datagrams},  {"payload_bit_per_s", l.payload},
+          {"session_bit_per_s", l.session},  {"udp_ipv4_bit_per_s", l.headers}, {"all_bit_per_s", l.all()},
+          {"datagrams", direction.sent},     {"lost", direction.lost},          {"duplicated", direction.duplicated},
+          {"overtaken", direction.overtaken}};
+}
+
+Json network_json(const Report& r, const NetworkReport& user) {
+  const auto seconds_of = [](auto microseconds) { return 1e-6 * static_cast<double>(microseconds); };
+  Json out{{"user", user.user},
+           {"up", direction_json(user.up, r.seconds())},
+           {"down", direction_json(user.down, r.seconds())},
+           {"shown_behind_s", per(user.delay_sum, static_cast<double>(user.shown))},
+           {"ticks_not_shown", user.not_shown},
+           {"ticks_without_full_force", user.without_force},
+           {"packets_refused", user.status.traffic.packets_refused},
+           {"wrong_states", user.down.traffic.wrong_states},
+           {"bounds_widened", widening_value(user.widened)}};
+  if (const auto& trip = user.status.round_trip)
+    out["round_trip_s"] = {
+        {"smoothed", seconds_of(trip->smoothed)}, {"variation", seconds_of(trip->variation)}, {"least", seconds_of(trip->least)}};
+  if (user.status.clock_offset) out["clock_offset_s"] = seconds_of(*user.status.clock_offset);
+  out["bounds"] = bounds_value(user.errors.bounds());
+  if (has_errors(user.errors)) out["error"] = errors_json(r, user.errors);
+  for (const MeshReport& mesh : user.meshes) out["deformables"].push_back(mesh_json(mesh, r.seconds()));
+  return out;
+}
+
+/// What only some commands know.
+void add_particulars(Json& out, const Report& r) {
+  if (r.seed) out["seed"] = *r.seed;
+  if (r.segments) out["segments"] = *r.segments;
+  constexpr std::array kWays{"direct", "eased", "interpolated"};
+  if (r.client) out["client"] = kWays[static_cast<std::size_t>(*r.client)];
+  for (const DeformableReport& d : r.deformables) out["solvers"].push_back(solver_json(d));
   for (const TouchReport& t : r.touches) {
-    note_row(table, "touch",
-             fmt::format("{}: {}, {:.1f} % of the ticks, at most {:.2f} N, least energy of a contact {:.2g} mJ", t.user,
-                         counted(t.contacts, "contact"), 100 * t.share, t.largest_force, 1e3 * t.lowest_energy));
+    out["touches"].push_back({{"user", t.user},
+                              {"share", t.share},
+                              {"contacts", t.contacts},
+                              {"contacts_most_in_a_second", t.most_in_a_second},
+                              {"largest_force_N", t.largest_force},
+                              {"lowest_energy_J", t.lowest_energy}});
   }
-  for (const NetworkReport& user : r.networks) note_row(table, "network", network_note(user));
-  if (!r.bounds_from.empty())
-    note_row(table, "bounds",
-             r.bounds_from == "stream"    ? "declared by the stream"
-             : r.bounds_from == "options" ? "as typed"
-                                          : "the defaults");
-  for (const std::string& warning : r.warnings) note_row(table, "warning", warning);
+  for (const std::string& warning : r.warnings) out["warnings"].push_back(warning);
 }
 
-Table summary(const Report& r) {
-  Table table;
-  table.heading({r.command});
-  for (const auto& [role, path] : r.files) table.row({fmt::format("  {:<8} {}", role, path)});
-  if (r.tick_rate == 0) return table;
-  const std::uint64_t left_out = r.ticks.left_out();
-  const std::string some_of = left_out == 0 ? "" : fmt::format("{} of ", r.ticks.count());
-  std::string scope = fmt::format("  {:<8} {}{} at {} Hz ({:.3f} s), {}", "scope", some_of, counted(r.ticks.length(), "tick"),
-                                  r.tick_rate, r.seconds(), counted(r.objects, "object"));
-  if (r.users > 0) scope += ", " + counted(r.users, "user");
-  table.row({scope});
-  if (left_out > 0) {
-    table.row({fmt::format("  {:<8} no sample at {} between the first and the last; seconds and rates include their time", "gaps",
-                           counted(left_out, "tick"))});
-  }
-  note_rows(table, r);
-  return table;
-}
-
-void print_text(const Report& r, std::FILE* out) {
-  summary(r).print(out);
-  fmt::print(out, "\n");
-  Table figures;
-  if (r.traffic) traffic_rows(figures, r);
-  if (r.loads) load_rows(figures, *r.loads, r.seconds());
-  if (r.fidelity && has_errors(*r.fidelity)) error_rows(figures, r, *r.fidelity, "");
-  for (const NetworkReport& user : r.networks) {
-    network_rows(figures, user, r.seconds());
-    const std::string where = " at " + user.user + ", against the tick shown";
-    if (has_errors(user.errors)) error_rows(figures, r, user.errors, where);
-    for (const MeshReport& mesh : user.meshes) mesh_rows(figures, mesh, r.seconds(), where);
-  }
-  for (const MeshReport& mesh : r.meshes) mesh_rows(figures, mesh, r.seconds());
-  if (r.stream) stream_rows(figures, r);
-  if (!r.timings.empty() || !r.meshes.empty()) time_rows(figures, r);
-  figures.print(out);
+void add_verdict(Json& out, const Report& r) {
   if (!r.bounds_from.empty()) {
     const std::string broken = broken_bounds(r);
-    fmt::print(out, "\n{}\n", broken.empty() ? "All bounds hold." : "Bounds are broken: " + broken + ".");
+    out["bounds_from"] = r.bounds_from;
+    out["bounds_held"] = broken.empty();
+    out["verdict"] = broken.empty() ? "All bounds hold." : "Bounds are broken: " + broken + ".";
   }
-  if (r.fidelity && r.fidelity->rendered().ticks() > 0) {
-    fmt::print(out,
-               "\nRendered force: the force at the hand compared with the server's force. Errors of more than 10..22 % may be "
-               "perceptible.\nNo rule of the codec limits this error, because the hand moves under the force that it feels.\n");
+}
+
+Value value_of(const Report& r) {
+  Json out{{"schema", "tactus.report/3"}, {"command", r.command}};
+  for (const auto& [role, path] : r.files) out["files"][role] = path;
+  if (r.tick_rate > 0) {
+    out["tick_rate"] = r.tick_rate;
+    out["ticks"] = r.ticks.count();
+    out["ticks_left_out"] = r.ticks.left_out();
+    out["seconds"] = r.seconds();
+    out["object_count"] = r.objects;
+    out["user_count"] = r.users;
   }
+  add_particulars(out, r);
+  if (r.stream) out["stream"] = stream_value(r);
+  if (r.traffic) out["traffic"] = rigid_traffic_value(r);
+  if (r.loads) out["loads"] = load_traffic_value(*r.loads, r.seconds());
+  if (r.fidelity && has_errors(*r.fidelity)) {
+    out["bounds"] = bounds_value(r.fidelity->bounds());
+    out["error"] = errors_json(r, *r.fidelity);
+  }
+  add_verdict(out, r);
+  for (const NetworkReport& user : r.networks) out["sessions"].push_back(network_json(r, user));
+  for (const MeshReport& mesh : r.meshes) out["deformables"].push_back(mesh_json(mesh, r.seconds()));
+  for (const Timing& t : r.timings)
+    if (!t.times.empty()) out["time"][t.step] = time_value(t.times, r.seconds());
+  return out;
 }
 
 }  // namespace
@@ -244,18 +244,6 @@ Outcome verdict(const Report& r, const std::string& file) {
   failure.file = file;
   return tl::unexpected(std::move(failure));
 }
-
-RigidRates rigid_rates(const Report& r, std::uint64_t header) {
-  const RateMetrics& t = *r.traffic;
-  const auto packets = static_cast<double>(t.all_packets());
-  const double bytes = static_cast<double>(t.bytes) + packets * static_cast<double>(header);
-  // Without reduction: one packet per tick with every moving object's state, raw.
-  const auto raw = [&](std::uint64_t state) { return static_cast<double>(r.ticks.count() * (r.moving * state + header)); };
-  return {8 * per(bytes, r.seconds()), per(bytes, packets), per(bytes, static_cast<double>(t.updates)), 1 - per(bytes, raw(24)),
-          1 - per(bytes, raw(48))};
-}
-
-bool has_errors(const ErrorMetrics& f) { return f.position().ticks() > 0 || f.rendered().ticks() > 0; }
 
 std::pair<std::uint64_t, std::uint64_t> Report::bytes_and_packets() const {
   std::pair<std::uint64_t, std::uint64_t> all{};
@@ -289,12 +277,136 @@ void add_meshes(const TraceInfo& info, const MeshArguments& meshes, const Trigge
 }
 
 void print(const Report& report, const CommonOptions& options, Destination destination) {
-  std::FILE* out = destination == Destination::standard_output ? stdout : stderr;
-  if (options.json) {
-    fmt::print(out, "{}\n", to_json(report));
-  } else if (!options.quiet) {
-    print_text(report, out);
+  print(value_of(report), "report", options, destination == Destination::standard_output ? stdout : stderr);
+}
+
+// ==== json parts ====
+
+namespace {
+
+double rate(std::uint64_t number, double seconds) { return per(static_cast<double>(number), seconds); }
+
+/// What is common to all kinds of packets.
+Json traffic_json(std::uint64_t packets, std::uint64_t keys, std::uint64_t updates, std::uint64_t bytes, double seconds) {
+  const auto at = [&](std::uint64_t header) -> Json {
+    const auto all = static_cast<double>(bytes + packets * header);
+    return {{"bit_per_s", 8 * per(all, seconds)},
+            {"bytes_per_packet", per(all, static_cast<double>(packets))},
+            {"bytes_per_update", per(all, static_cast<double>(updates))}};
+  };
+  return {{"packets", packets}, {"packets_per_s", rate(packets, seconds)}, {"key_packets", keys},
+          {"updates", updates}, {"updates_per_s", rate(updates, seconds)}, {"bytes", bytes},
+          {"payload", at(0)},   {"with_udp_ipv4", at(kUdpHeader)}};
+}
+
+constexpr std::array<std::pair<const char*, std::uint64_t>, 2> kSizes{{{"payload", 0}, {"with_udp_ipv4", kUdpHeader}}};
+
+const char* name_of(HapticRule rule) {
+  constexpr std::array kNames{"off", "isotropic", "cone", "fixed", "perceptual"};
+  return kNames[static_cast<std::size_t>(rule)];
+}
+
+}  // namespace
+
+Value time_value(const StepTimes& t, double seconds) {
+  Json out{{"count", t.count()}};
+  const auto add = [&](const std::string& prefix, TimeOf which) {
+    out[prefix + "p50_s"] = t.quantile(which, 0.5);
+    out[prefix + "p99_s"] = t.quantile(which, 0.99);
+    out[prefix + "max_s"] = t.quantile(which, 1);
+    out[prefix + "total_s"] = t.total(which);
+    if (seconds > 0) out[prefix + "real_time_factor"] = per(seconds, t.total(which));
+  };
+  add("", TimeOf::wall);
+  add("cpu_", TimeOf::cpu);
+  return out;
+}
+
+Value rigid_traffic_value(const Report& r) {
+  const RateMetrics& t = *r.traffic;
+  Json out = traffic_json(t.all_packets(), t.keys, t.updates, t.bytes, r.seconds());
+  // Without reduction: one packet per recorded tick with every moving object's state, raw.
+  for (const auto& [name, header] : kSizes)
+    for (const auto& [key, state] :
+         {std::pair("reduction_from_24_byte_states", 24U), std::pair("reduction_from_48_byte_states", 48U)})
+      out[name][key] = 1 - per(static_cast<double>(t.bytes + t.all_packets() * header),
+                               static_cast<double>(r.ticks.count() * (r.moving * state + header)));
+  out["reduction_of_updates"] = 1 - per(static_cast<double>(t.updates), static_cast<double>(r.ticks.count() * r.moving));
+  for (std::size_t i = kReasons.size(); i-- > 0;)
+    out["reasons"][kReasons[i]] = {{"packets", t.packets[i]}, {"packets_per_s", rate(t.packets[i], r.seconds())}};
+  return out;
+}
+
+Value load_traffic_value(const LoadRates& t, double seconds) { return traffic_json(t.packets, 0, t.updates, t.bytes, seconds); }
+
+Value mesh_traffic_value(const MeshReport& mesh, double seconds) {
+  const DeformableRates& t = *mesh.traffic;
+  Json out = traffic_json(t.sizes.size(), t.keys, t.updates, t.bytes, seconds);
+  out["p99_bytes"] = t.quantile(0.99);
+  out["max_bytes"] = t.quantile(1);
+  if (t.frames > 0) {
+    out["frames"] = t.frames;
+    out["frames_per_s"] = rate(t.frames, seconds);
+    for (const auto& [name, header] : kSizes)  // every frame as three floats per vertex
+      out[name]["ratio_to_float32"] =
+          per(12.0 * static_cast<double>(mesh.vertices * t.frames), static_cast<double>(t.bytes + t.sizes.size() * header));
   }
+  if (t.layers[0].packets + t.layers[1].packets == 0) return out;
+  for (std::size_t i = 0; i < t.layers.size(); ++i) {
+    const auto& [packets, bytes] = t.layers[i];
+    Json& layer = out["layers"][kLayers[i]] = {{"packets", packets}, {"packets_per_s", rate(packets, seconds)}, {"bytes", bytes}};
+    for (const auto& [name, header] : kSizes) layer[name]["bit_per_s"] = 8 * rate(bytes + packets * header, seconds);
+  }
+  return out;
+}
+
+Value stream_value(const Report& r) {
+  const auto [bytes, packets] = r.bytes_and_packets();
+  const std::uint64_t own = r.stream->header_bytes;
+  Json out{{"header_bytes", own}, {"payload_bytes", bytes}, {"packets", packets}};
+  if (r.stream->file_bytes) out["file_bytes"] = *r.stream->file_bytes;
+  for (const auto& [name, header] : kSizes)
+    out[name]["bit_per_s_with_header"] = 8 * rate(bytes + own + packets * header, r.seconds());
+  return out;
+}
+
+Value bounds_value(const RigidTriggers& b) {
+  Json out{{"position_m", b.visual_position}, {"rotation_rad", b.visual_rotation}, {"haptic_rule", name_of(b.haptic)}};
+  const bool is_constant = b.haptic == HapticRule::isotropic || b.haptic == HapticRule::cone;
+  if (is_constant) out["haptic_fraction"] = b.weber_fraction;
+  if (b.haptic == HapticRule::perceptual) out["perceptual_share"] = b.perceptual_share;
+  if (is_constant || b.haptic == HapticRule::perceptual) out["force_floor_N"] = b.force_floor;
+  if (b.haptic == HapticRule::cone) out["haptic_angle_rad"] = b.cone_angle;
+  if (b.haptic == HapticRule::fixed) {
+    out["haptic_position_m"] = b.fixed_position;
+    out["haptic_rotation_rad"] = b.fixed_rotation;
+  }
+  return out;
+}
+
+Value mesh_bounds_value(const DeformableThresholds& b, std::uint8_t rings, bool promised) {
+  Json out{{"position_m", b.visual},
+           {"haptic_rule", b.weber_fraction ? "isotropic" : "off"},
+           {"rings", rings},
+           {"promised", promised}};
+  if (b.weber_fraction) {
+    out["haptic_fraction"] = *b.weber_fraction;
+    out["depth_floor_m"] = b.depth_floor;
+  }
+  return out;
+}
+
+Value widening_value(const Widening& widened) {
+  return Json{{"widest", widened.widest}, {"for_s", 1e-6 * static_cast<double>(widened.time)}};
+}
+
+std::string error_json(const Failure& failure) {
+  Json error{{"text", failure.text}};
+  for (const auto& [name, value] :
+       {std::pair("remedy", &Failure::remedy), std::pair("class", &Failure::error_class), std::pair("rule", &Failure::rule),
+        std::pair("file", &Failure::file), std::pair("place", &Failure::place)})
+    if (!(failure.*value).empty()) error[name] = failure.*value;
+  return text_of_json({{"schema", "tactus.error/1"}, {"error", std::move(error)}});
 }
 
 }  // namespace tactus::cli

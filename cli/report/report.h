@@ -1,25 +1,140 @@
 // SPDX-License-Identifier: Apache-2.0
-/// The one table with which every computing command ends: what was sent, how far the replica was from the truth, what it cost.
+/// Reports of commands that compute: what was sent, how far a replica was from the truth, what it cost; as values of schema report.json, and the
+/// parts that other reports have too.
 #pragma once
 
+#include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <tactus/metrics/deformable_errors.h>
 #include <tactus/metrics/errors.h>
 #include <tactus/metrics/rates.h>
+#include <tactus/session/session_client.h>
+#include <tactus/session/session_options.h>
 #include "cli/options/options_codec.h"
-#include "cli/report/mesh_report.h"
-#include "cli/report/network_report.h"
-#include "cli/report/touch_report.h"
+#include "cli/report/printer.h"
+#include "cli/report/table.h"
 
 namespace tactus::cli {
 
+// ==== step times ====
+
+/// What a piece of work took. CPU time is that of all threads of the process: unlike wall-clock time it does not grow with what else
+/// the machine has to do.
+struct Cost {
+  std::int64_t wall_ns = 0, cpu_ns = 0;
+};
+
+class Stopwatch {
+ public:
+  Stopwatch() noexcept;
+  Cost elapsed() const noexcept;  ///< since construction, less what reading the CPU clock takes itself
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::int64_t cpu_;
+  Clock::time_point wall_;
+};
+
+enum class TimeOf : std::uint8_t { wall, cpu };
+
+/// Times of one step that is done again and again.
+class StepTimes {
+ public:
+  /// Run `work` and remember how long it took.
+  template <class Work>
+  auto measure(Work&& work) {
+    const Stopwatch watch;
+    auto result = std::forward<Work>(work)();
+    add(watch.elapsed());
+    return result;
+  }
+  void add(Cost cost);
+  bool empty() const noexcept { return wall_ns_.empty(); }
+  std::size_t count() const noexcept { return wall_ns_.size(); }
+  double quantile(TimeOf which, double share) const;  ///< [s]; 1: the longest.   pre  not empty
+  double total(TimeOf which) const noexcept;          ///< [s]
+
+ private:
+  const std::vector<std::int64_t>& times(TimeOf which) const noexcept { return which == TimeOf::wall ? wall_ns_ : cpu_ns_; }
+
+  std::vector<std::int64_t> wall_ns_, cpu_ns_;
+};
+
+// ==== mesh report ====
+// What a report tells of one deformable object.
+
+struct MeshReport {
+  std::string name;
+  std::size_t vertices = 0, triangles = 0;  ///< triangles 0: not said
+  std::optional<DeformableRates> traffic{};
+  std::optional<DeformableErrors> fidelity{};
+  std::uint64_t frames = 0;  ///< written or read; 0: not said
+  double frame_period = 0;   ///< [s] from one to the next, if frames
+  bool promised = true;      ///< the bounds are: false where they only decide what is sent
+  StepTimes encode{}, decode{};
+};
+
+/// With `header` bytes below each packet.
+inline double bytes_of(const DeformableRates& t, std::uint64_t header) {
+  return static_cast<double>(t.bytes + t.sizes.size() * header);
+}
+/// Every frame as three floats per vertex.
+inline double raw_bytes(const MeshReport& mesh) { return 12.0 * static_cast<double>(mesh.vertices * mesh.traffic->frames); }
+inline bool has_layers(const DeformableRates& t) { return t.layers[0].packets + t.layers[1].packets > 0; }
+
+// ==== traffic layers ====
+// What an end of a session sends, layer by layer.
+
+struct TrafficLayers {
+  double packets, datagrams;               ///< [1/s]
+  double payload, session, seal, headers;  ///< [bit/s]; headers of UDP and IPv4
+  double all() const noexcept { return payload + session + seal + headers; }
+};
+
+/// in   overhead  of the seal around each datagram [bytes], 0: there is none
+inline TrafficLayers sent_layers(const Traffic& traffic, double seconds, std::size_t overhead = 0) {
+  const auto rate = [seconds](std::uint64_t amount) { return per(static_cast<double>(amount), seconds); };
+  return {.packets = rate(traffic.packets_sent),
+          .datagrams = rate(traffic.datagrams_sent),
+          .payload = 8 * rate(traffic.payload_sent),
+          .session = 8 * rate(traffic.bytes_sent - traffic.payload_sent),
+          .seal = 8 * rate(overhead * traffic.datagrams_sent),
+          .headers = 8 * rate(kUdpHeader * traffic.datagrams_sent)};
+}
+
+// ==== network report ====
+// How a user's session over an emulated network went: what it cost, and how far what the client showed was from the truth of that tick.
+
+/// One direction: what an end sent, and what the network did to it.
+struct DirectionReport {
+  Traffic traffic{};                                                ///< of the end that sends
+  std::uint64_t sent = 0, lost = 0, duplicated = 0, overtaken = 0;  ///< datagrams
+};
+
+struct NetworkReport {
+  std::string user;
+  ErrorMetrics errors;               ///< of what was shown against the truth of the tick shown
+  std::vector<MeshReport> meshes{};  ///< the same, of deformable objects
+  std::uint64_t not_shown = 0;       ///< ticks in which the client had nothing to show
+  std::uint64_t without_force = 0;   ///< ticks in which old data kept the client from rendering its full force
+  double delay_sum = 0;              ///< [s] of the ticks shown, behind the server's
+  std::uint64_t shown = 0;
+  SessionStatus status{};
+  Widening widened{};  ///< of the bounds, by the server
+  DirectionReport up{}, down{};
+};
+
+// ==== report ====
+// The one table with which every computing command ends: what was sent, how far the replica was from the truth, what it cost.
+
 struct Timing {
-  std::string key;    ///< in JSON: "encode"
-  std::string label;  ///< in the table: "encode, per tick"
+  std::string step;  ///< "encode"
   StepTimes times{};
 };
 
@@ -27,6 +142,16 @@ struct Timing {
 struct StreamSize {
   std::uint64_t header_bytes = 0;
   std::optional<std::uint64_t> file_bytes{};  ///< of the whole file, if there is one
+};
+
+/// How a user touched what is there.
+struct TouchReport {
+  std::string user;
+  double share = 0;                    ///< of the ticks, in contact
+  std::uint64_t contacts = 0;          ///< begun
+  std::uint32_t most_in_a_second = 0;  ///< of them
+  double largest_force = 0;            ///< [N] felt
+  double lowest_energy = 0;            ///< [J] of a contact, at most 0
 };
 
 /// How a deformable object was simulated.
@@ -80,20 +205,10 @@ struct Report {
 /// Make place for what is sent of a trace's meshes and how far it is off.
 void add_meshes(const TraceInfo& info, const MeshArguments& meshes, const TriggerArguments& triggers, Report& report);
 
-/// Rates of rigid objects' packets; `header` bytes go below each.   pre  there is traffic
-struct RigidRates {
-  double bits_per_s, bytes_per_packet, bytes_per_update, saved_24, saved_48;
-};
-RigidRates rigid_rates(const Report& report, std::uint64_t header);
-
 /// Which bounds are broken, where and how often: "position in 12 of 1000 ticks"; empty when all hold.
 std::string broken_bounds(const Report& report);
 /// A failure that says so.   in  file  that was judged
 Outcome verdict(const Report& report, const std::string& file);
-
-bool has_errors(const ErrorMetrics& fidelity);
-/// Schema report.json: numbers in SI units.
-std::string to_json(const Report& report);
 
 enum class Destination { standard_output, standard_error };
 /// Print as the options say: JSON, text, or nothing when quiet.
@@ -102,5 +217,24 @@ void print(const Report& report, const CommonOptions& options, Destination desti
 inline Destination beside(const std::string& path) {
   return path == "-" ? Destination::standard_error : Destination::standard_output;
 }
+
+// ==== json parts ====
+// Parts of values that several commands print: cli/schemas/parts.json.
+
+struct Value;
+
+/// in   seconds  of the recording, 0: there is none
+Value time_value(const StepTimes& times, double seconds);
+Value rigid_traffic_value(const Report& report);  ///< pre  it has traffic
+Value load_traffic_value(const LoadRates& traffic, double seconds);
+Value mesh_traffic_value(const MeshReport& mesh, double seconds);
+Value stream_value(const Report& report);  ///< pre  it has a stream
+Value bounds_value(const RigidTriggers& bounds);
+/// in   promised  false: the bounds only decide what is sent
+Value mesh_bounds_value(const DeformableThresholds& bounds, std::uint8_t rings, bool promised);
+Value widening_value(const Widening& widened);
+
+/// {"error": ...}, schema error.json
+std::string error_json(const Failure& failure);
 
 }  // namespace tactus::cli

@@ -7,7 +7,7 @@
 #include <cctype>
 
 #include <tactus/base/shown.h>
-#include "cli/terminal.h"
+#include "cli/progress.h"
 
 namespace tactus::cli {
 

@@ -11,7 +11,10 @@ import sys
 
 TYPES = {"object": dict, "array": list, "string": str, "boolean": bool, "null": type(None)}
 KNOWN = {"$schema", "$id", "$defs", "$ref", "title", "description", "type", "const", "enum", "minimum", "maximum", "properties", "required",
-         "additionalProperties", "items", "minItems", "maxItems", "oneOf"}
+         "additionalProperties", "items", "minItems", "maxItems", "oneOf",
+         # for the table that a person sees (cli/report/printer.h)
+         "x-unit", "x-scale", "x-count", "x-format", "x-words", "x-text", "x-omit", "x-hidden", "x-note", "x-block", "x-row", "x-column", "x-as"}
+PARTS = pathlib.Path(__file__).resolve().parents[2] / "cli/schemas/parts.json"  # what "urn:tactus:parts" names
 
 
 def has_type(value, name):
@@ -26,7 +29,10 @@ def differences(value, schema, root, place="$"):
     if unknown:
         return [f"{place}: the schema uses {', '.join(sorted(unknown))}, which this program does not know"]
     if "$ref" in schema:
-        return differences(value, root["$defs"][schema["$ref"].removeprefix("#/$defs/")], root, place)
+        document, name = schema["$ref"].split("#/$defs/")
+        if document == "urn:tactus:parts":
+            root = json.loads(PARTS.read_text(encoding="utf-8"))
+        return differences(value, root["$defs"][name], root, place)
     if "oneOf" in schema:
         tried = [differences(value, one, root, place) for one in schema["oneOf"]]
         return [] if sum(not t for t in tried) == 1 else [f"{place}: fits {sum(not t for t in tried)} of the alternatives", *min(tried, key=len)]

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/observe/outbox.h"
-#include "cli/observe/tick_queue.h"
-#include "cli/observe/web_request.h"
+#include "cli/observe/observed_stream.h"
+#include "cli/observe/web_door.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/live/peers.h"
+#include "cli/live/wire.h"
 
 #include <gtest/gtest.h>
 

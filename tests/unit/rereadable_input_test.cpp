@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/commands/rereadable_input.h"
+#include "cli/commands/input.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/report/step_times.h"
+#include "cli/report/report.h"
 
 #include <gtest/gtest.h>
 

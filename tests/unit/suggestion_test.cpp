@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/options/suggestion.h"
+#include "cli/options/headings.h"
 
 #include <gtest/gtest.h>
 

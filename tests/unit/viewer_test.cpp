@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/viewer/columns.h"
 #include "cli/viewer/page.h"
-#include "cli/viewer/truth_data.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include "cli/command.h"
 #include "cli/options/option_needs.h"
 #include "cli/options/options_codec.h"
-#include "cli/report/traffic_layers.h"
+#include "cli/report/report.h"
 #include "lab/study/program/points.h"
 #include "lab/study/session.h"
 

@@ -13,7 +13,7 @@
 #include <tactus/sim/random.h>
 #include <tactus/sim/simulation.h>
 #include <tactus/sim/user/hand.h>
-#include "cli/report/figures.h"
+#include "cli/report/table.h"
 #include "lab/study/program/points.h"
 
 namespace tactus::study {

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/live/wire.h"
+
+#include <algorithm>
+#include <array>
+
+namespace tactus::cli {
+
+// ==== peers ====
+
+std::uint64_t Peers::name(const net::Address& from) {
+  newest_ = from;
+  return from.key();
+}
+
+void Peers::settle(const HasSession& has_session) {
+  if (!has_session(newest_.key()) || std::ranges::find(known_, newest_) != known_.end()) return;
+  if (known_.size() == most_) std::erase_if(known_, [&](const net::Address& address) { return !has_session(address.key()); });
+  if (known_.size() < most_) known_.push_back(newest_);
+}
+
+const net::Address* Peers::find(std::uint64_t peer) const {
+  const auto found = std::ranges::find(known_, peer, &net::Address::key);
+  if (found != known_.end()) return &*found;
+  return newest_.key() == peer ? &newest_ : nullptr;
+}
+
+// ==== plain wire ====
+
+namespace {
+
+class PlainServerWire final : public ServerWire {
+ public:
+  PlainServerWire(net::UdpSocket& socket, std::uint32_t clients) : socket_(socket), peers_(clients) {}
+
+  std::optional<Heard> receive(std::uint64_t /*now*/) override {
+    const auto received = socket_.receive(buffer_);
+    if (!received) return std::nullopt;
+    return Heard{peers_.name(received->from), received->bytes};
+  }
+  void settle(const HasSession& has_session) override { peers_.settle(has_session); }
+  void send(std::uint64_t peer, std::span<const std::uint8_t> bytes) override {
+    if (const net::Address* to = peers_.find(peer)) socket_.send(*to, bytes);
+  }
+  void tick(std::uint64_t /*now*/, const HasSession& /*has_session*/) override {}
+  std::optional<std::uint64_t> poll_closed() override { return std::nullopt; }
+  void close() override {}
+  std::optional<SealUse> seal() const override { return std::nullopt; }
+
+ private:
+  net::UdpSocket& socket_;
+  Peers peers_;
+  std::array<std::uint8_t, 2048> buffer_{};
+};
+
+class PlainClientWire final : public ClientWire {
+ public:
+  explicit PlainClientWire(net::UdpSocket& socket) : socket_(socket) {}
+
+  Result<std::optional<std::span<const std::uint8_t>>> receive(std::uint64_t /*now*/) override {
+    const auto received = socket_.receive(buffer_);
+    if (!received) return std::nullopt;
+    return received->bytes;
+  }
+  Result<void> handle_timeout(std::uint64_t /*now*/) override { return {}; }
+  void send(std::span<const std::uint8_t> bytes) override { socket_.send(bytes); }
+  bool is_open() const override { return true; }
+  std::optional<std::uint64_t> next_timeout() const override { return std::nullopt; }
+  void close() override {}
+  std::optional<SealUse> seal() const override { return std::nullopt; }
+
+ private:
+  net::UdpSocket& socket_;
+  std::array<std::uint8_t, 2048> buffer_{};
+};
+
+}  // namespace
+
+std::unique_ptr<ServerWire> plain_wire_of_server(net::UdpSocket& socket, std::uint32_t clients) {
+  return std::make_unique<PlainServerWire>(socket, clients);
+}
+
+std::unique_ptr<ClientWire> plain_wire_of_client(net::UdpSocket& socket) { return std::make_unique<PlainClientWire>(socket); }
+
+}  // namespace tactus::cli

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+/// What only simulations report: how hands touched, and what clients showed over an emulated network.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <tactus/metrics/past_frames.h>
+#include <tactus/metrics/played_shapes.h>
+#include "cli/options/options_codec.h"
+#include "cli/report/report.h"
+
+namespace tactus::sim {
+struct Scene;
+class Simulation;
+}  // namespace tactus::sim
+
+namespace tactus::sim {
+class SessionNetwork;
+class Simulation;
+}  // namespace tactus::sim
+
+namespace tactus::cli {
+
+// ==== touch report ====
+// What a simulation was like at each hand, and where its numbers say more about sampling than about the scene.
+
+struct Report;
+
+/// One TouchReport for each user, and a warning for each that chatters, presses a deformable object harder than eq. 4.38 allows at
+/// the place of the largest force, or was held by a coupling that its device's smoothing makes swing.
+void report_touches(const sim::Scene& scene, const sim::Simulation& simulation, Report& report);
+
+// ==== network judge ====
+
+/// Judges the clients of a simulation with a network, tick by tick.
+class NetworkJudge {
+ public:
+  /// in   triggers, meshes  with the bounds that are judged
+  NetworkJudge(const TraceInfo& info, const TriggerArguments& triggers, const MeshArguments& meshes);
+  void add(const sim::Simulation& simulation, sim::SessionNetwork& network);  ///< after each step
+  /// One report per user, with what the sessions counted.
+  std::vector<NetworkReport> finish(const sim::SessionNetwork& network);
+
+ private:
+  struct User {
+    NetworkReport report;
+    std::vector<PlayedShapes> shapes{};  // of each deformable object
+    std::int64_t judged = -1;            // last tick
+  };
+  PastFrames past_;
+  const TraceInfo& info_;
+  std::vector<User> users_;
+};
+
+}  // namespace tactus::cli
