@@ -2,8 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Check the specification and make what is made from it. Python 3 and its standard library are enough.
 
-  make.py check              links, section references, rules (here and in the sources), examples, index, page; exit 1 when anything is wrong
-  make.py index              write rules.md from rules.csv
+  make.py check              links, section references, rules (here and in the sources), examples, page; exit 1 when anything is wrong
   make.py examples           write the tables of 91-worked-examples.md by the commands beside them
   make.py html OUT           all chapters as one HTML page
   make.py markdown OUT       all chapters as one Markdown file, e.g. for pandoc OUT -o OUT.pdf
@@ -17,38 +16,13 @@ import sys
 from pathlib import Path
 
 sys.dont_write_bytecode = True
-from tools.book import ROOT, SPEC, Book, rule_key
+from tools.book import ROOT, SPEC, Book
 from tools import sources
 from tools.page import dead_links, html_page, markdown_page
 
 TITLE = "Tactus: specification"
 EXAMPLES = SPEC / "91-worked-examples.md"
 BLOCK = re.compile(r"(<!-- command: (.*?) -->\n)(.*?)(<!-- end of command -->)", re.S)
-
-
-# ---- Index of rules -------------------------------------------------------------------------------------------------
-def rules_table(head: str, rows) -> str:
-    return f"| {head} |\n|{'---|' * (head.count('|') + 1)}\n" + "".join(f"| {row} |\n" for row in rows)
-
-
-def classes_of(row: dict) -> str:
-    return row["class"].replace("|", ", ")
-
-
-def index_of_rules(book: Book) -> str:
-    of_format = [row for row in book.rules.values() if row["chapter"] != "-"]
-    of_library = [row for row in book.rules.values() if row["chapter"] == "-"]
-    place = {rule: f"{chapter.short}, section {section}" for rule, (chapter, _, section) in book.defined.items()}
-    out = ["# Index of rules\n\nInformative. Made by `spec/make.py index` from `rules.csv`; the tables of the chapters are normative.\n\n"
-           "## 1 Rules of the format\n\n\"Action\" is what a receiver of packets does (95, section 5).\n"]
-    order = sorted(of_format, key=lambda r: (r["rule"].split("-")[1] != "VAR", rule_key(r["rule"])))
-    out.append(rules_table("rule | what must hold | class | action | defined in", (
-        f"{r['rule']} | {r['text']} | {classes_of(r)} | {r['action']} | {place.get(r['rule'], '?')}" for r in order)))
-    out.append("## 2 Rules of the reference implementation\n\nThey concern calls, recordings, scenes and meshes, not streams. "
-               "Registry, section 2 tells the prefixes apart.\n")
-    out.append(rules_table("rule | what must hold | class | remedy", (
-        f"{r['rule']} | {r['text']} | {classes_of(r)} | {r['remedy']}" for r in of_library)))
-    return "\n".join(out)
 
 
 # ---- Worked examples ------------------------------------------------------------------------------------------------
@@ -88,8 +62,6 @@ def findings(book: Book):
     yield from table_findings(book)
     yield from vector_findings(book)
     yield from sources.findings(ROOT, book.rules, book.classes)
-    if index_of_rules(book) != book.by_short["rules"].text:
-        yield "rules.md is not what rules.csv says: run spec/make.py index"
     if with_examples(book.by_short["91"].text) != book.by_short["91"].text:
         yield f"{EXAMPLES.name} is not what its commands say: run spec/make.py examples"
     page = html_page(book, TITLE)
@@ -100,21 +72,17 @@ def findings(book: Book):
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", choices=("check", "index", "examples", "html", "markdown"))
+    parser.add_argument("what", choices=("check", "examples", "html", "markdown"))
     parser.add_argument("out", nargs="?", type=Path, help="file to write")
     arguments = parser.parse_args()
     if arguments.what in ("html", "markdown") and arguments.out is None:
         parser.error("name the file to write")
-    if arguments.what == "index" and not (SPEC / "rules.md").exists():
-        (SPEC / "rules.md").write_text("# Index of rules\n", encoding="utf-8")
     book = Book()
     if arguments.what == "check":
         found = list(findings(book))
         print("\n".join(found + [f"{len(found)} findings in {len(book.chapters)} chapters and {len(book.rules)} rules"]))
         return 1 if found else 0
-    if arguments.what == "index":
-        (SPEC / "rules.md").write_text(index_of_rules(book), encoding="utf-8")
-    elif arguments.what == "examples":
+    if arguments.what == "examples":
         EXAMPLES.write_text(with_examples(book.by_short["91"].text), encoding="utf-8")
     elif arguments.what == "html":
         arguments.out.write_text(html_page(book, TITLE), encoding="utf-8")

@@ -25,11 +25,12 @@ def rule_key(rule: str):
 
 
 class Chapter:
-    def __init__(self, path: Path):
+    def __init__(self, path: Path, text: str | None = None):
+        """A chapter from its file, or one whose text is made: it has no file."""
         self.path, self.name = path, path.name
         self.stem = path.stem
         self.short = self.stem[:2] if self.stem[:2].isdigit() else self.stem      # as references name it
-        self.text = path.read_text(encoding="utf-8")
+        self.text = path.read_text(encoding="utf-8") if text is None else text
         self.title = re.match(r"# (.*)", self.text).group(1)
         prose = re.sub(r"^```.*?^```", "", self.text, flags=re.S | re.M)
         self.headings = re.findall(r"^(#{2,3}) (.*)$", prose, re.M)
@@ -52,7 +53,7 @@ class Chapter:
 
 class Book:
     def __init__(self):
-        paths = sorted(SPEC.glob("[0-9][0-9]-*.md")) + [SPEC / f"{n}.md" for n in ("errata", "registry", "rules")]
+        paths = sorted(SPEC.glob("[0-9][0-9]-*.md")) + [SPEC / f"{n}.md" for n in ("errata", "registry")]
         self.chapters = [Chapter(p) for p in paths if p.exists()]
         self.by_short = {c.short: c for c in self.chapters}
         with open(SPEC / "rules.csv", encoding="utf-8", newline="") as table:
@@ -67,6 +68,30 @@ class Book:
         registry = self.by_short["registry"].text
         self.classes = set(re.findall(r"^\| \d+ \| (\w+) \| ", registry.split("## 2 ")[0], re.M))
         self.withdrawn = set(re.findall(RULE, re.search(r"^Withdrawn: .*$", registry, re.M).group(0)))
+        self.chapters.append(Chapter(SPEC / "rules.csv", self.index_of_rules()))
+        self.by_short["rules"] = self.chapters[-1]
+
+    # ---- The index of rules: a chapter of the pages, made from rules.csv ----
+    def index_of_rules(self) -> str:
+        def table(head: str, rows) -> str:
+            return f"| {head} |\n|{'---|' * (head.count('|') + 1)}\n" + "".join(f"| {row} |\n" for row in rows)
+
+        def classes(row: dict) -> str:
+            return row["class"].replace("|", ", ")
+
+        of_format = sorted((row for row in self.rules.values() if row["chapter"] != "-"),
+                           key=lambda r: (r["rule"].split("-")[1] != "VAR", rule_key(r["rule"])))
+        of_library = [row for row in self.rules.values() if row["chapter"] == "-"]
+        place = {rule: f"{chapter.short}, section {section}" for rule, (chapter, _, section) in self.defined.items()}
+        return "\n".join((
+            "# Index of rules\n\nInformative. The tables of the chapters are normative.\n\n## 1 Rules of the format\n\n"
+            "\"Action\" is what a receiver of packets does (95, section 5).\n",
+            table("rule | what must hold | class | action | defined in", (
+                f"{r['rule']} | {r['text']} | {classes(r)} | {r['action']} | {place.get(r['rule'], '?')}" for r in of_format)),
+            "## 2 Rules of the reference implementation\n\nThey concern calls, recordings, scenes and meshes, not streams. "
+            "Registry, section 2 tells the prefixes apart.\n",
+            table("rule | what must hold | class | remedy", (
+                f"{r['rule']} | {r['text']} | {classes(r)} | {r['remedy']}" for r in of_library))))
 
     # ---- References within text ----
     def references(self, chapter: Chapter, text: str):

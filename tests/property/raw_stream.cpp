@@ -29,13 +29,6 @@ Bytes first(const Bytes& bytes, std::size_t count) {
   return Bytes(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-Bytes without_last(const Bytes& bytes, std::size_t count) { return first(bytes, bytes.size() - count); }
-
-Bytes with_last_bit_flipped(Bytes bytes) {
-  bytes.back() ^= 1;
-  return bytes;
-}
-
 Bytes RawHeader::body() const {
   Bytes out;
   ByteWriter w(out);

@@ -29,8 +29,6 @@ Bytes with_crc(Bytes bytes);
 Bytes varint(std::uint64_t value);
 Bytes operator+(Bytes a, const Bytes& b);
 Bytes first(const Bytes& bytes, std::size_t count);
-Bytes without_last(const Bytes& bytes, std::size_t count);
-Bytes with_last_bit_flipped(Bytes bytes);
 
 struct RawObject {
   std::string name = "cube";
@@ -66,14 +64,6 @@ struct RawHeader {
   /// pre  the header is valid
   SharedScene parsed() const;
 };
-
-/// A header after one change.
-template <class Change>
-Bytes changed_header(Change change) {
-  RawHeader out;
-  change(out);
-  return out.bytes();
-}
 
 /// One record of a file: type, size, payload, crc.
 Bytes record(std::uint8_t type, const Bytes& payload);

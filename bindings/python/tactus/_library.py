@@ -18,7 +18,7 @@ class Error(Exception):
 
     name        class of the error as the specification writes it, such as "checksum"
     code        its number (spec/registry.md)
-    rule        rule that was broken, such as "R-FIL-5" (spec/rules.md)
+    rule        rule that was broken, such as "R-FIL-5" (spec/rules.csv)
     bit_offset  place in the input [bits]; 0: none
     remedy      a sentence on how to fix it; may be empty
     advice      how a receiver reacts: "none", "drop", "request_key" or "close"
