@@ -8,7 +8,7 @@
 #include <tactus/base/rule.h>
 #include <tactus/deformable/basis.h>
 #include <tactus/scene/elastic_syntax.h>
-#include <tactus/scene/scene_syntax.h>
+#include <tactus/scene/scene_rules.h>
 
 namespace tactus {
 namespace {

@@ -11,7 +11,7 @@
 #include <tactus/base/rule.h>
 #include <tactus/base/tri_mesh.h>
 #include <tactus/scene/scene_objects.h>
-#include <tactus/scene/scene_syntax.h>
+#include <tactus/scene/scene_rules.h>
 
 namespace tactus {
 

@@ -8,8 +8,8 @@
 
 #include <tactus/base/quantise.h>
 #include <tactus/base/rule.h>
-#include <tactus/elastic/elastic_solver.h>
-#include <tactus/scene/scene_syntax.h>
+#include <tactus/elastic/elimination.h>
+#include <tactus/scene/scene_rules.h>
 
 namespace tactus {
 namespace {

@@ -10,6 +10,7 @@
 #include <tactus/base/rule.h>
 #include <tactus/scene/deformable_syntax.h>
 #include <tactus/scene/elastic_syntax.h>
+#include <tactus/scene/scene_rules.h>
 
 namespace tactus {
 namespace {

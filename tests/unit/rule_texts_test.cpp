@@ -5,7 +5,7 @@
 #include <set>
 
 #include <tactus/deformable/main_state.h>
-#include <tactus/scene/scene_syntax.h>
+#include <tactus/scene/scene_rules.h>
 
 #include "tests/unit/rule_fixture.h"
 
