@@ -80,6 +80,8 @@ typedef struct tactus_trace_coding {
 
 /* in   path  "-": standard input   err  R-TRC */
 TACTUS_API tactus_status tactus_trace_open(const char* path, tactus_trace** trace, tactus_error* error);
+/* The same from memory that outlives the trace. */
+TACTUS_API tactus_status tactus_trace_open_memory(const uint8_t* bytes, size_t size, tactus_trace** trace, tactus_error* error);
 TACTUS_API void tactus_trace_destroy(tactus_trace* trace);
 TACTUS_API tactus_status tactus_trace_get(const tactus_trace* trace, tactus_trace_info* info, tactus_error* error);
 TACTUS_API tactus_status tactus_trace_get_object(const tactus_trace* trace, uint32_t object, tactus_trace_object* info,

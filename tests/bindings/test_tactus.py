@@ -6,6 +6,7 @@ import ctypes
 import dataclasses
 import json
 import math
+import multiprocessing
 import os
 import pathlib
 import pickle
@@ -353,3 +354,25 @@ def test_everything_public_is_documented():
         if callable(thing):
             assert thing.__doc__, name
     assert (pathlib.Path(tactus.__file__).parent / "py.typed").exists()
+
+
+def refused_ticks(path):  # in a worker
+    return len(tactus.read_trace(path).ticks)
+
+
+def test_an_error_of_a_worker_arrives_in_its_parent(tmp_path):
+    bad = tmp_path / "bad.mcap"
+    bad.write_bytes(b"no trace")
+    with multiprocessing.Pool(1) as pool:
+        waiting = pool.map_async(refused_ticks, [str(bad)])
+        with pytest.raises(tactus.Error) as refused:
+            waiting.get(timeout=60)
+    assert refused.value.rule == "R-TRC-2" and "bad.mcap" in str(refused.value) and refused.value.subject == str(bad)
+    again = pickle.loads(pickle.dumps(refused.value))
+    assert str(again) == str(refused.value) and vars(again) == vars(refused.value)
+
+
+def test_bytes_are_read_where_a_path_would_be(tmp_path):
+    with pytest.raises(tactus.Error) as refused:
+        tactus.read_trace(bytes(100_000))
+    assert refused.value.rule == "R-TRC-2" and len(str(refused.value)) < 300

@@ -19,9 +19,9 @@ from .scene import Scene
 from .trace import TraceReader
 
 
-def encode(trace: str | os.PathLike[str], rigid_bounds: RigidBounds | None = None, deformable_bounds: DeformableBounds | None = None,
+def encode(trace: str | os.PathLike[str] | bytes, rigid_bounds: RigidBounds | None = None, deformable_bounds: DeformableBounds | None = None,
            profile: str = "main", modes: int = 0, clusters: int = 0, **options: Any) -> bytes:
-    """Encode a trace file as `tactus encode` does; returns the bytes of a stream file, which declares the bounds.
+    """Encode a trace, a path or the bytes of a file, as `tactus encode` does; returns the bytes of a stream file, which declares the bounds.
 
     profile   "main": velocities lean towards the acceleration, and clients ease into updates; "thesis": linear dead reckoning; and the
               profile of meshes
@@ -60,6 +60,15 @@ class Replica:
     poses: npt.NDArray[np.float64]
     displacements: list[npt.NDArray[np.float32]]
     packets: list[Packet]
+
+    def __repr__(self) -> str:
+        return (f"Replica({len(self.ticks)} ticks at {self.tick_rate} Hz, {self.poses.shape[1]} rigid objects, "
+                f"{len(self.packets)} packets of {sum(packet.size for packet in self.packets)} bytes)")
+
+    @property
+    def time(self) -> npt.NDArray[np.float64]:
+        """(T,) [s]"""
+        return self.ticks / self.tick_rate
 
     @property
     def position(self) -> npt.NDArray[np.float64]:
@@ -182,7 +191,7 @@ class _Errors(Handle):
         return MeshErrors(out.frames, out.vertices, out.violations, out.rms, out.max, out.worst_ratio)
 
 
-def compare(trace: str | os.PathLike[str], stream: str | os.PathLike[str] | bytes, rigid_bounds: RigidBounds | None = None,
+def compare(trace: str | os.PathLike[str] | bytes, stream: str | os.PathLike[str] | bytes, rigid_bounds: RigidBounds | None = None,
             deformable_bounds: DeformableBounds | None = None, **options: Any) -> Comparison:
     """Play a stream and hold what is shown at each tick of a trace against it.
 

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _abi
-from ._library import Handle, answer, call, read_bytes, text_of, traces
+from ._library import Handle, answer, bytes_of, call, read_bytes, text_of, traces
 from .codec import Shape
 from .options import DeformableBounds, RigidBounds
 from .scene import Mesh, Scene
@@ -48,15 +48,20 @@ def _names_of_forces(bits: int) -> frozenset[str]:
 
 
 class TraceReader(Handle):
-    """Reads a trace file frame by frame, in little memory: `for frame in reader`, once. "-" is standard input."""
+    """Reads a trace file frame by frame, in little memory: `for frame in reader`, once. A path, "-" for standard input, or the bytes of a
+    file."""
 
     _destroy = "tactus_trace_destroy"
     _library = staticmethod(traces)
 
-    def __init__(self, path: str | os.PathLike[str]) -> None:
+    def __init__(self, file: str | os.PathLike[str] | bytes) -> None:
         super().__init__()
-        self._subject = os.fspath(path)
-        call(traces().tactus_trace_open, text_of(os.fsencode(path)), ctypes.byref(self._handle), subject=self._subject)
+        if isinstance(file, (bytes, bytearray, memoryview)):
+            self._subject, self._bytes = "", bytes_of(file)  # the trace reads them in place
+            call(traces().tactus_trace_open_memory, self._bytes, len(self._bytes), ctypes.byref(self._handle))
+        else:
+            self._subject = os.fspath(file)
+            call(traces().tactus_trace_open, text_of(os.fsencode(file)), ctypes.byref(self._handle), subject=self._subject)
         info = answer(_abi.tactus_trace_info)
         call(traces().tactus_trace_get, self.handle, info)
         self.tick_rate: int = info.tick_rate  #: ticks per second
@@ -184,9 +189,9 @@ class Trace:
         return self.users["device"]["position"]
 
 
-def read_trace(path: str | os.PathLike[str]) -> Trace:
-    """Read a whole trace.   raises  Error: R-TRC"""
-    with TraceReader(path) as reader:
+def read_trace(file: str | os.PathLike[str] | bytes) -> Trace:
+    """Read a whole trace, a path or the bytes of a file.   raises  Error: R-TRC"""
+    with TraceReader(file) as reader:
         ticks, objects, users = [], [], []
         shapes: list[tuple[list[int], list[Any]]] = [([], []) for _ in reader.meshes]
         for frame in reader:
