@@ -51,6 +51,13 @@ def _error_of(status: int, rule: bytes | None, bit_offset: int, subject: str) ->
     return Error(error, subject)
 
 
+def refusal(rule: str, subject: str, name: str = "TACTUS_INVALID_ARGUMENT") -> Error:
+    """An error that Python finds."""
+    error = _abi.tactus_error()
+    error.status, error.rule = getattr(_abi, name), rule.encode()
+    return Error(error, subject)
+
+
 def _whole(kind: Any) -> Any:
     """A type of arguments that takes what `kind` can hold, integers of NumPy too; ctypes alone would wrap."""
 
