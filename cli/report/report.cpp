@@ -209,6 +209,7 @@ void print_text(const Report& r, std::FILE* out) {
   if (!r.bounds_from.empty()) {
     const std::string broken = broken_bounds(r);
     fmt::print(out, "\n{}\n", broken.empty() ? "All bounds hold." : "Bounds are broken: " + broken + ".");
+    if (const std::string missing = missing_force_bound(r); !missing.empty()) fmt::print(out, "{}\n", missing);
   }
   if (r.fidelity && r.fidelity->rendered().ticks() > 0) {
     fmt::print(out,
@@ -234,6 +235,15 @@ std::string broken_bounds(const Report& r) {
     if (mesh.fidelity && mesh.promised)
       look(shown(mesh.name) + " at", mesh.fidelity->all().violations, mesh.fidelity->all().vertices, "vertex");
   return text;
+}
+
+std::string missing_force_bound(const Report& r) {
+  if (!r.fidelity || r.fidelity->bounds().haptic == HapticRule::off) return {};
+  std::vector<std::string> users = r.fidelity->unbound_users();
+  if (users.empty()) return {};
+  for (std::string& user : users) user = shown(user);
+  return fmt::format("No force bound: the recording has forces of user {} and no contacts; declare them with --contact.",
+                     fmt::join(users, ", "));
 }
 
 Outcome verdict(const Report& r, const std::string& file) {
