@@ -143,13 +143,14 @@ typedef struct tactus_arrays tactus_arrays;
    missing: <tactus/trace/array_trace.h> says what becomes of it, and of times with jitter.
    in   time  [ns] of each row, rising; INT64_MIN: missing;  tick_rate  per second, 0: found from the times;  gap  s; longest to interpolate
         over, 0: 0.1 */
-TACTUS_API tactus_status tactus_arrays_create(const int64_t* time, size_t rows, uint32_t tick_rate, double gap, const char* source,
-                                              tactus_arrays** arrays, tactus_error* error);
+TACTUS_API tactus_status tactus_arrays_create(const int64_t* time, size_t rows, uint32_t tick_rate, double gap,
+                                              const char* source, tactus_arrays** arrays, tactus_error* error);
 TACTUS_API void tactus_arrays_destroy(tactus_arrays* arrays);
 /* Rows of an object, world frame.   in  position  3 per row [m];  rotation  4 per row, w x y z, any length, NULL: it does not turn;
    velocity  3 per row [m/s];  angular_velocity  3 per row [rad/s]; NULL: from the poses */
-TACTUS_API tactus_status tactus_arrays_object(tactus_arrays* arrays, const char* name, const double* position, const double* rotation,
-                                              const double* velocity, const double* angular_velocity, tactus_error* error);
+TACTUS_API tactus_status tactus_arrays_object(tactus_arrays* arrays, const char* name, const double* position,
+                                              const double* rotation, const double* velocity, const double* angular_velocity,
+                                              tactus_error* error);
 /* Rows of a user, world frame.   in  device  3 per row [m];  force  3 per row [N] on the user; one of them may be NULL */
 TACTUS_API tactus_status tactus_arrays_user(tactus_arrays* arrays, const char* name, const double* device, const double* force,
                                             tactus_error* error);

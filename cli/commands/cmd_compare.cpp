@@ -105,8 +105,8 @@ struct Side {
 
 /// Both traces side by side; ticks that only one of them has are counted and passed over. A client that shows a tick for longer is held
 /// against it each time.
-Outcome compare_all(Side& truth, Side& replica, const ContactDeclarations& contacts, const CompareOptions& options, Report& report,
-                    std::optional<ErrorFigure>& figure) {
+Outcome compare_all(Side& truth, Side& replica, const ContactDeclarations& contacts, const CompareOptions& options,
+                    Report& report, std::optional<ErrorFigure>& figure) {
   Progress progress("compare", truth.reader.frame_count(), options.common.progress());
   Shown shown(truth.reader.info());
   TACTUS_CHECK(truth.advance());

@@ -25,7 +25,8 @@ double stiffness_of(const std::string& text, const std::string& typed) {
   }
   number.erase(number.find_last_not_of(' ') + 1);
   const auto value = parse_number<double>(number);
-  if (!value || !(*value > 0)) refuse_option("--contact", fmt::format("'{}': k is a stiffness above 0, as 500N/m or 0.5N/mm", typed));
+  if (!value || !(*value > 0))
+    refuse_option("--contact", fmt::format("'{}': k is a stiffness above 0, as 500N/m or 0.5N/mm", typed));
   return *value * unit;
 }
 
@@ -60,10 +61,11 @@ std::string names_of(const List& list) {
 
 void ContactArguments::add_to(Command& command) {
   command
-      .add_option("--contact", [this](const std::string& typed) { declared_.push_back(parse(typed)); },
-                  "What a user of a recording touches, USER=OBJECT,k=500N/m: gives its recorded forces a bound. The force stretches a "
-                  "spring of this stiffness between device and object; ,surface=plane (default) counts what lies along the force, "
-                  ",surface=spring (a grip) the whole vector; ,at=origin for a recording without device positions")
+      .add_option(
+          "--contact", [this](const std::string& typed) { declared_.push_back(parse(typed)); },
+          "What a user of a recording touches, USER=OBJECT,k=500N/m: gives its recorded forces a bound. The force stretches a "
+          "spring of this stiffness between device and object; ,surface=plane (default) counts what lies along the force, "
+          ",surface=spring (a grip) the whole vector; ,at=origin for a recording without device positions")
       ->type_name("USER=OBJECT,k=STIFFNESS");
 }
 

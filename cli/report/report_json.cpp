@@ -142,7 +142,8 @@ Json mesh_bounds_json(const DeformableErrors& f, bool promised) {
 
 Json errors_json(const Report& r, const ErrorMetrics& f) {
   Json out;
-  if (&f == (r.fidelity ? &*r.fidelity : nullptr) && !missing_force_bound(r).empty()) out["users_without_force_bound"] = f.unbound_users();
+  if (&f == (r.fidelity ? &*r.fidelity : nullptr) && !missing_force_bound(r).empty())
+    out["users_without_force_bound"] = f.unbound_users();
   if (f.position().ticks() > 0) {
     out["position_m"] = series_json(r, f.position());
     out["rotation_rad"] = series_json(r, f.rotation());

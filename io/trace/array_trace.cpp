@@ -13,7 +13,7 @@
 namespace tactus {
 namespace {
 
-constexpr double kSecond = 1e9;  // [ns]
+constexpr double kSecond = 1e9;                     // [ns]
 constexpr double kOnGrid = 1e-3, kNearGrid = 0.05;  // [ticks]
 
 std::string seconds_text(std::int64_t time) {
@@ -94,7 +94,8 @@ Result<void> ArrayWriter::take_times() {
 Result<void> ArrayWriter::add_lane(std::string where, std::span<const double> values, std::size_t width) {
   Lane lane{.where = std::move(where), .values = values, .width = width};
   if (values.size() != width * arrays_.time.size()) {
-    notes_.add(lane.where, "has " + std::to_string(values.size() / width) + " rows for " + std::to_string(arrays_.time.size()) + " times");
+    notes_.add(lane.where,
+               "has " + std::to_string(values.size() / width) + " rows for " + std::to_string(arrays_.time.size()) + " times");
     return fail(Errc::invalid_argument, "R-CSV-8");
   }
   for (std::size_t row = 0; row < rows_.size(); ++row)
@@ -119,8 +120,9 @@ void ArrayWriter::note_missing(const Lane& lane) {
     const char* what = "missing samples, the first one held backwards";
     if (next == lane.rows.size()) what = "missing samples, the last one held";
     else if (next > 0)
-      what = time_of(lane.rows[next]) - time_of(lane.rows[next - 1]) <= arrays_.gap ? "missing samples, interpolated"
-                                                                                  : "missing samples, the one before the gap held";
+      what = time_of(lane.rows[next]) - time_of(lane.rows[next - 1]) <= arrays_.gap
+                 ? "missing samples, interpolated"
+                 : "missing samples, the one before the gap held";
     notes_.add(lane.where, what, "row " + std::to_string(rows_[row]) + ", " + seconds_text(arrays_.time[rows_[row]]));
   }
 }
@@ -187,7 +189,8 @@ Result<void> ArrayWriter::find_rate() {
   is_on_grid_ = off <= kOnGrid;
   if (!is_on_grid_) {
     char text[160];
-    std::snprintf(text, sizeof text, "samples are up to %.3g ms off a grid of %u Hz; interpolated onto it", 1e3 * off / rate_, rate_);
+    std::snprintf(text, sizeof text, "samples are up to %.3g ms off a grid of %u Hz; interpolated onto it", 1e3 * off / rate_,
+                  rate_);
     notes_.add("time", text);
   }
   return {};
