@@ -14,7 +14,7 @@ namespace {
 constexpr const char* kForm = "must be USER=OBJECT,k=STIFFNESS[,surface=plane|spring][,at=device|origin], as hand=cup,k=500N/m";
 
 /// "500N/m", "0.5N/mm", "500".
-double stiffness_of(const std::string& text, const std::string& typed) {
+double stiffness_of(const std::string& text) {
   double unit = 1;
   std::string number = text;
   for (const auto& [name, scale] : {std::pair<std::string, double>{"N/mm", 1e3}, {"N/m", 1}}) {
@@ -25,28 +25,28 @@ double stiffness_of(const std::string& text, const std::string& typed) {
   }
   number.erase(number.find_last_not_of(' ') + 1);
   const auto value = parse_number<double>(number);
-  if (!value || !(*value > 0))
-    refuse_option("--contact", fmt::format("'{}': k is a stiffness above 0, as 500N/m or 0.5N/mm", typed));
-  return *value * unit;
+  return value && *value > 0 ? *value * unit : 0;
 }
 
-DeclaredContact parse(const std::string& typed) {
+/// err  a sentence
+tl::expected<DeclaredContact, std::string> parse(const std::string& typed) {
   const std::size_t equals = typed.find('='), comma = typed.find(',');
   if (equals == std::string::npos || comma == std::string::npos || equals == 0 || comma <= equals + 1)
-    refuse_option("--contact", fmt::format("'{}': {}", typed, kForm));
+    return tl::make_unexpected(fmt::format("'{}': {}", typed, kForm));
   DeclaredContact out{.user = typed.substr(0, equals), .object = typed.substr(equals + 1, comma - equals - 1)};
   for (std::size_t at = comma; at != std::string::npos;) {
     const std::size_t next = typed.find(',', at + 1);
     const std::string part = typed.substr(at + 1, next == std::string::npos ? next : next - at - 1);
-    if (part.starts_with("k=")) out.stiffness = stiffness_of(part.substr(2), typed);
+    if (part.starts_with("k=")) out.stiffness = stiffness_of(part.substr(2));
     else if (part == "surface=plane") out.kind = ContactKind::surface;
     else if (part == "surface=spring") out.kind = ContactKind::spring;
     else if (part == "at=device") out.at = ForcePoint::device;
     else if (part == "at=origin") out.at = ForcePoint::origin;
-    else refuse_option("--contact", fmt::format("'{}': {}", typed, kForm));
+    else return tl::make_unexpected(fmt::format("'{}': {}", typed, kForm));
     at = next;
   }
-  if (out.stiffness == 0) refuse_option("--contact", fmt::format("'{}': k is missing; {}", typed, kForm));
+  if (!(out.stiffness > 0))
+    return tl::make_unexpected(fmt::format("'{}': k is a stiffness above 0, as 500N/m or 0.5N/mm", typed));
   return out;
 }
 
@@ -62,15 +62,22 @@ std::string names_of(const List& list) {
 void ContactArguments::add_to(Command& command) {
   command
       .add_option(
-          "--contact", [this](const std::string& typed) { declared_.push_back(parse(typed)); },
+          "--contact", typed_,
           "What a user of a recording touches, USER=OBJECT,k=500N/m: gives its recorded forces a bound. The force stretches a "
           "spring of this stiffness between device and object; ,surface=plane (default) counts what lies along the force, "
           ",surface=spring (a grip) the whole vector; ,at=origin for a recording without device positions")
-      ->type_name("USER=OBJECT,k=STIFFNESS");
+      ->type_name("USER=OBJECT,k=STIFFNESS")
+      ->one_value()
+      ->check([](const std::string& typed) {
+        const auto parsed = parse(typed);
+        return parsed ? std::string() : parsed.error();
+      });
 }
 
 tl::expected<ContactDeclarations, Failure> ContactArguments::of(const TraceInfo& info, const std::string& file) const {
-  for (const DeclaredContact& of : declared_) {
+  std::vector<DeclaredContact> declared;
+  for (const std::string& typed : typed_) declared.push_back(parse(typed).value());  // it was checked
+  for (const DeclaredContact& of : declared) {
     if (std::ranges::find(info.users, of.user, &TraceUser::name) == info.users.end())
       return refuse(fmt::format("{}: --contact: there is no user \"{}\"", shown_path(file), shown(of.user)),
                     fmt::format("Users of this trace: {}.", names_of(info.users)));
@@ -78,7 +85,7 @@ tl::expected<ContactDeclarations, Failure> ContactArguments::of(const TraceInfo&
       return refuse(fmt::format("{}: --contact: there is no rigid object \"{}\"", shown_path(file), shown(of.object)),
                     fmt::format("Rigid objects of this trace: {}.", names_of(info.objects)));
   }
-  auto out = ContactDeclarations::create(info, declared_);
+  auto out = ContactDeclarations::create(info, declared);
   if (!out) return refuse(shown_path(file) + ": --contact: a user is declared twice", "Give one --contact for each user.");
   return std::move(*out);
 }

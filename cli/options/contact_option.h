@@ -19,7 +19,7 @@ class ContactArguments {
   tl::expected<ContactDeclarations, Failure> of(const TraceInfo& info, const std::string& file) const;
 
  private:
-  std::vector<DeclaredContact> declared_;
+  std::vector<std::string> typed_;
 };
 
 /// Say on standard error that -p was typed, but no force has a bound.

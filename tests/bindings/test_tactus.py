@@ -518,3 +518,13 @@ def test_a_mesh_survives_saving(traces, tmp_path):
 
 
 test_a_mesh_survives_saving = needs_program(test_a_mesh_survives_saving)
+
+
+def test_a_fraction_of_four_is_not_four_percent():
+    with pytest.raises(tactus.Error) as refused:
+        tactus.build_scene([tactus.RigidObject("cube")], rigid_bounds=tactus.RigidBounds(weber_fraction=4))
+    assert refused.value.rule == "R-API-4" and "100 %" in str(refused.value)
+    trace = tactus.Trace.from_arrays(np.arange(100) / 100, np.zeros((100, 3)))
+    with pytest.raises(tactus.Error) as refused:
+        trace.encode(tactus.RigidBounds(weber_fraction=4))
+    assert refused.value.rule == "R-API-4"
