@@ -102,7 +102,7 @@ Result<void> ArrayWriter::add_lane(std::string where, std::span<const double> va
     if (is_sample(lane, rows_[row])) lane.rows.push_back(row);
   if (lane.rows.empty()) {
     notes_.add(lane.where, "every sample is missing");
-    return fail(Errc::invalid, "R-CSV-4");
+    return fail(Errc::malformed, "R-CSV-4");
   }
   note_missing(lane);
   lanes_.push_back(std::move(lane));

@@ -46,7 +46,7 @@ struct SampledArrays {
 /// Write a trace. Tick 0 is the first time.
 /// out  notes  what was decided, also after an error: then the last one says where
 /// err  invalid_argument R-CSV-8 nothing to record, or an array of another length; R-CSV-7 the rate is unknown; invalid R-CSV-5 most times do
-///      not increase; R-CSV-4 of an array every sample is missing; those of TraceWriter
+///      not increase; malformed R-CSV-4 of an array every sample is missing; those of TraceWriter
 Result<TickSpan> write_arrays(const SampledArrays& arrays, const std::string& path, ReadNotes& notes);
 
 }  // namespace tactus
