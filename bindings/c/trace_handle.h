@@ -11,7 +11,7 @@
 
 struct tactus_trace {
   tactus::TraceReader reader;
-  std::string path;                      // empty: read from `bytes`
+  std::string path;                       // empty: read from `bytes`
   std::span<const std::uint8_t> bytes{};  // of the caller
   tactus::TraceFrame frame{};
   bool has_frame = false;  // `frame` is one
