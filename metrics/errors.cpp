@@ -29,6 +29,7 @@ ErrorMetrics::ErrorMetrics(const TraceInfo& info, const RigidTriggers& bounds) :
   for (std::uint32_t i = 0; i < info.objects.size(); ++i) {
     if (info.objects[i].dof != Dof::none) moving_.push_back(i);
   }
+  for (const TraceUser& user : info.users) users_.push_back({.name = user.name});
 }
 
 bool ErrorMetrics::breaks_rule(const Pose& truth, const Pose& shown, const Vec3& force, const Vec3& estimate) noexcept {
@@ -56,6 +57,11 @@ void ErrorMetrics::add(const TraceFrame& truth, std::span<const Pose> shown) noe
     position_.add(distance, distance > bounds_.visual_position);
     rotation_.add(angle, angle > bounds_.visual_rotation);
   }
+  for (std::size_t i = 0; i < users_.size(); ++i) {
+    const UserSample& user = truth.users[i];
+    users_[i].has_force = users_[i].has_force || norm(user.force) > 0 || norm(user.server_force) > 0;
+    users_[i].has_contact = users_[i].has_contact || user.contact.kind != ContactKind::none || user.surface_contact;
+  }
   for (const UserSample& user : truth.users) {
     if (user.contact.kind == ContactKind::none) continue;
     const std::uint32_t object = user.contact.object;
@@ -67,6 +73,13 @@ void ErrorMetrics::add(const TraceFrame& truth, std::span<const Pose> shown) noe
     perceived_.add(error, is_perceptible(norm(force), error));
   }
   for (ErrorSeries* series : {&position_, &rotation_, &force_, &perceived_}) series->end_tick(truth.tick);
+}
+
+std::vector<std::string> ErrorMetrics::unbound_users() const {
+  std::vector<std::string> out;
+  for (const User& user : users_)
+    if (user.has_force && !user.has_contact) out.push_back(user.name);
+  return out;
 }
 
 void ErrorMetrics::add_rendered(const TraceFrame& truth) noexcept {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <tactus/rigid/trigger.h>
@@ -51,6 +52,8 @@ class ErrorMetrics {
   const ErrorSeries& perceived() const noexcept { return perceived_; }  ///< the same errors against perceptual_fraction
   const ErrorSeries& rendered() const noexcept { return rendered_; }    ///< [N] as felt, against perceptual_fraction
   double worst_haptic_ratio() const noexcept { return worst_ratio_; }   ///< largest haptic_ratio; <= 1: the rule held
+  /// Names of users whose forces no contact explains in any tick: no bound of force holds for them.
+  std::vector<std::string> unbound_users() const;
 
  private:
   bool breaks_rule(const Pose& truth, const Pose& shown, const Vec3& force, const Vec3& estimate) noexcept;
@@ -58,6 +61,11 @@ class ErrorMetrics {
 
   RigidTriggers bounds_;
   std::vector<std::uint32_t> moving_;
+  struct User {
+    std::string name;
+    bool has_force = false, has_contact = false;
+  };
+  std::vector<User> users_;
   ErrorSeries position_, rotation_, force_, perceived_, rendered_;
   double worst_ratio_ = 0;
 };

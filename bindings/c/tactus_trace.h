@@ -80,6 +80,8 @@ typedef struct tactus_trace_coding {
 
 /* in   path  "-": standard input   err  R-TRC */
 TACTUS_API tactus_status tactus_trace_open(const char* path, tactus_trace** trace, tactus_error* error);
+/* The same from memory that outlives the trace. */
+TACTUS_API tactus_status tactus_trace_open_memory(const uint8_t* bytes, size_t size, tactus_trace** trace, tactus_error* error);
 TACTUS_API void tactus_trace_destroy(tactus_trace* trace);
 TACTUS_API tactus_status tactus_trace_get(const tactus_trace* trace, tactus_trace_info* info, tactus_error* error);
 TACTUS_API tactus_status tactus_trace_get_object(const tactus_trace* trace, uint32_t object, tactus_trace_object* info,
@@ -105,6 +107,57 @@ TACTUS_API tactus_status tactus_trace_next(tactus_trace* trace, int64_t* tick, t
    call of tactus_trace_next. */
 TACTUS_API tactus_status tactus_trace_shape(const tactus_trace* trace, uint32_t mesh, tactus_shape* shape, tactus_error* error);
 TACTUS_API int32_t tactus_trace_cut_short(const tactus_trace* trace); /* 1: the file ends early; valid at the end */
+
+/* ---------------------------------------------------------------- trace writer */
+
+typedef struct tactus_trace_writer tactus_trace_writer;
+
+/* Describe objects, users and meshes, then add ticks. in   path  "-": standard output;  tick_rate  per second;  source  NULL: "" */
+TACTUS_API tactus_status tactus_trace_writer_create(const char* path, uint32_t tick_rate, const char* source,
+                                                    tactus_trace_writer** writer, tactus_error* error);
+/* A writer destroyed without _finish leaves a readable file without an index, if it has a tick. */
+TACTUS_API void tactus_trace_writer_destroy(tactus_trace_writer* writer);
+/* in   dof  TACTUS_DOF_...   err  R-API-5 after the first tick */
+TACTUS_API tactus_status tactus_trace_writer_object(tactus_trace_writer* writer, const char* name, uint32_t dof,
+                                                    tactus_error* error);
+/* in   senses, forces  as tactus_trace_user tells   err  R-API-5 likewise; R-API-4 no such bit, or no force */
+TACTUS_API tactus_status tactus_trace_writer_user(tactus_trace_writer* writer, const char* name, uint32_t senses, uint32_t forces,
+                                                  tactus_error* error);
+/* in   vertices, triangles  as tactus_scene_builder_deformable;  period  nominal ticks from shape to shape   err  R-API-5 likewise */
+TACTUS_API tactus_status tactus_trace_writer_mesh(tactus_trace_writer* writer, const char* name, const double* vertices,
+                                                  size_t vertex_count, const uint32_t* triangles, size_t triangle_count,
+                                                  double period, tactus_error* error);
+/* The first call makes the file.   in  tick  rising, 0 or more;  counts  of all that were described;  shapes  NULL displacements: not new
+   err  R-TRC-1, 11, 17; R-API-1, 5, 6 */
+TACTUS_API tactus_status tactus_trace_writer_add(tactus_trace_writer* writer, int64_t tick, const tactus_rigid_sample* objects,
+                                                 size_t object_count, const tactus_user_sample* users, size_t user_count,
+                                                 const tactus_shape* shapes, size_t shape_count, tactus_error* error);
+/* Write index and end.   err  R-API-5 no tick was added */
+TACTUS_API tactus_status tactus_trace_writer_finish(tactus_trace_writer* writer, tactus_error* error);
+
+/* ---------------------------------------------------------------- arrays: whole recordings, evenly spaced in time or not */
+
+typedef struct tactus_arrays tactus_arrays;
+
+/* Everything that is handed over stays the caller's and lives until _write. A sample that is not a number, or a rotation of length 0, is
+   missing: <tactus/trace/array_trace.h> says what becomes of it, and of times with jitter.
+   in   time  [ns] of each row, rising; INT64_MIN: missing;  tick_rate  per second, 0: found from the times;  gap  s; longest to interpolate
+        over, 0: 0.1 */
+TACTUS_API tactus_status tactus_arrays_create(const int64_t* time, size_t rows, uint32_t tick_rate, double gap,
+                                              const char* source, tactus_arrays** arrays, tactus_error* error);
+TACTUS_API void tactus_arrays_destroy(tactus_arrays* arrays);
+/* Rows of an object, world frame.   in  position  3 per row [m];  rotation  4 per row, w x y z, any length, NULL: it does not turn;
+   velocity  3 per row [m/s];  angular_velocity  3 per row [rad/s]; NULL: from the poses */
+TACTUS_API tactus_status tactus_arrays_object(tactus_arrays* arrays, const char* name, const double* position,
+                                              const double* rotation, const double* velocity, const double* angular_velocity,
+                                              tactus_error* error);
+/* Rows of a user, world frame.   in  device  3 per row [m];  force  3 per row [N] on the user; one of them may be NULL */
+TACTUS_API tactus_status tactus_arrays_user(tactus_arrays* arrays, const char* name, const double* device, const double* force,
+                                            tactus_error* error);
+/* Write a trace.   err  R-CSV-4, 5, 7, 8; R-TRC-1, 11, 17; R-API-1, 2 */
+TACTUS_API tactus_status tactus_arrays_write(tactus_arrays* arrays, const char* path, tactus_error* error);
+/* What _write decided: lines "where: what (count; first place)"; after an error the last one says where. Lives until the next call. */
+TACTUS_API const char* tactus_arrays_notes(const tactus_arrays* arrays);
 
 /* ---------------------------------------------------------------- errors of what a client shows */
 

@@ -90,6 +90,10 @@ void copy_samples(const std::vector<From>& from, To* to, std::size_t count) noex
 /// err  R-TRC-1 it is no file that can be read once more; those of find_clusters()
 Result<std::map<std::string, ClusterBasis>> clusters_of(const tactus_trace& trace, std::size_t most) {
   if (most == 0) return {};
+  if (trace.path.empty()) {
+    TACTUS_TRY(TraceReader reader, TraceReader::open_memory(trace.bytes));
+    return find_clusters(reader, most);
+  }
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(trace.path, ignored)) return fail(Errc::io, "R-TRC-1");
   TACTUS_TRY(TraceReader reader, TraceReader::open(trace.path));
@@ -118,6 +122,14 @@ Result<std::vector<std::uint8_t>> declaration(const tactus_trace& trace, const t
   return write_scene(*scene);
 }
 
+/// A trace at its first frame, for the caller.
+Outcome hand_out(tactus_trace made, tactus_trace** trace) {
+  auto out = std::make_unique<tactus_trace>(std::move(made));
+  TACTUS_TRY(out->has_frame, out->reader.next(out->frame));
+  *trace = out.release();
+  return TACTUS_OK;
+}
+
 }  // namespace
 }  // namespace tactus::c
 
@@ -130,10 +142,16 @@ tactus_status tactus_trace_open(const char* path, tactus_trace** trace, tactus_e
   return call(error, [&]() -> Outcome {
     if (path == nullptr || trace == nullptr) return refuse();
     TACTUS_TRY(TraceReader reader, TraceReader::open(path));
-    auto out = std::make_unique<tactus_trace>(tactus_trace{std::move(reader), path});
-    TACTUS_TRY(out->has_frame, out->reader.next(out->frame));
-    *trace = out.release();
-    return TACTUS_OK;
+    return hand_out({.reader = std::move(reader), .path = path}, trace);
+  });
+}
+
+tactus_status tactus_trace_open_memory(const uint8_t* bytes, size_t size, tactus_trace** trace, tactus_error* error) {
+  return call(error, [&]() -> Outcome {
+    TACTUS_TRY(const auto all, span_of(bytes, size));
+    if (trace == nullptr) return refuse();
+    TACTUS_TRY(TraceReader reader, TraceReader::open_memory(all));
+    return hand_out({.reader = std::move(reader), .path = {}, .bytes = all}, trace);
   });
 }
 

@@ -2,6 +2,7 @@
 /// A trace that is read, at its frame.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include <tactus/trace/trace_file.h>
@@ -10,7 +11,8 @@
 
 struct tactus_trace {
   tactus::TraceReader reader;
-  std::string path;
+  std::string path;                       // empty: read from `bytes`
+  std::span<const std::uint8_t> bytes{};  // of the caller
   tactus::TraceFrame frame{};
   bool has_frame = false;  // `frame` is one
   bool is_first = true;    // ... which was read when the trace was opened, and not told yet

@@ -10,6 +10,7 @@
 #include <tactus/trace/trace_scene.h>
 #include "cli/commands/input.h"
 #include "cli/figure/error_figure.h"
+#include "cli/options/contact_option.h"
 #include "cli/report/report.h"
 #include "cli/report/table.h"
 
@@ -20,6 +21,7 @@ struct CompareOptions {
   std::string truth, replica, plot;
   TriggerArguments triggers;
   MeshArguments meshes;
+  ContactArguments contacts;
   CommonOptions common;
 };
 
@@ -103,8 +105,8 @@ struct Side {
 
 /// Both traces side by side; ticks that only one of them has are counted and passed over. A client that shows a tick for longer is held
 /// against it each time.
-Outcome compare_all(Side& truth, Side& replica, const CompareOptions& options, Report& report,
-                    std::optional<ErrorFigure>& figure) {
+Outcome compare_all(Side& truth, Side& replica, const ContactDeclarations& contacts, const CompareOptions& options,
+                    Report& report, std::optional<ErrorFigure>& figure) {
   Progress progress("compare", truth.reader.frame_count(), options.common.progress());
   Shown shown(truth.reader.info());
   TACTUS_CHECK(truth.advance());
@@ -113,6 +115,7 @@ Outcome compare_all(Side& truth, Side& replica, const CompareOptions& options, R
     const bool has_truth = !replica.is_before(truth), has_replica = !truth.is_before(replica);
     if (has_replica) shown.take(replica.frame);
     if (has_truth && has_replica) {
+      contacts.apply(truth.frame);
       report.timings[0].times.measure([&] { return add(truth.frame, shown, report, figure), true; });
       report.ticks.add(replica.frame.tick);
       progress.update(report.ticks.count());
@@ -170,6 +173,7 @@ Outcome run(const CompareOptions& options) {
   const TraceInfo& info = truth.reader.info();
   TACTUS_CHECK(check_same_scene(options, info, replica.reader.info()));
 
+  TACTUS_TRY(const ContactDeclarations contacts, options.contacts.of(info, options.truth));
   note_idle_options(*options.common.command, subjects_of(info), "truth");
 
   Report report{.command = "compare", .files = {{"truth", options.truth}, {"replica", options.replica}}};
@@ -178,7 +182,7 @@ Outcome run(const CompareOptions& options) {
   report.timings = {{"compare"}};
   std::optional<ErrorFigure> figure;
   if (!options.plot.empty()) figure.emplace(info);
-  TACTUS_CHECK(compare_all(truth, replica, options, report, figure));
+  TACTUS_CHECK(compare_all(truth, replica, contacts, options, report, figure));
   if (report.ticks.count() == 0)
     return refuse(shown_path(options.replica) + ": shares no tick with " + shown_path(options.truth),
                   "Decode with --like " + shown_path(options.truth) + ".");
@@ -187,6 +191,7 @@ Outcome run(const CompareOptions& options) {
     TACTUS_CHECK(draw(options.plot,
                       Figure{"Error of " + std::filesystem::path(options.replica).filename().string(), figure->panels(report)},
                       options.common));
+  note_idle_deadband(*options.common.command, report);
   print(report, options.common, Destination::standard_output);
   return report.bounds_from == "defaults" ? Outcome() : verdict(report, options.replica);  // nobody asked for those
 }
@@ -202,6 +207,7 @@ void setup_compare(Command& app, Action& action) {
       ->required();
   options->triggers.add_to(command);
   options->meshes.add_to(command);
+  options->contacts.add_to(command);
   add_plot_option(command, options->plot, "the errors beside their bounds, over time");
   add_output_options(command, options->common);
   command.footer(

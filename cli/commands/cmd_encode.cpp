@@ -14,6 +14,7 @@
 #include <tactus/trace/trace_scene.h>
 #include "cli/commands/input.h"
 #include "cli/figure/error_figure.h"
+#include "cli/options/contact_option.h"
 #include "cli/options/option_needs.h"
 #include "cli/report/report.h"
 
@@ -25,6 +26,7 @@ struct EncodeOptions {
   TriggerArguments triggers;
   MeshArguments meshes;
   MotionArguments motion;
+  ContactArguments contacts;
   unsigned clusters = 0;
   CommonOptions common;
 };
@@ -131,9 +133,11 @@ const std::string& to_blame(const Error& error, const EncodeOptions& options) {
   return error.code == Errc::io ? options.output : options.input;
 }
 
-Outcome encode_all(TraceReader& reader, Session& session, TraceFrame& frame, const EncodeOptions& options, Report& report) {
+Outcome encode_all(TraceReader& reader, Session& session, TraceFrame& frame, const ContactDeclarations& contacts,
+                   const EncodeOptions& options, Report& report) {
   Progress progress("encode", reader.frame_count(), options.common.progress());
   while (true) {
+    contacts.apply(frame);
     if (const auto done = encode_frame(session, frame, report); !done) {
       return refuse(to_blame(done.error(), options), place_of_tick(frame.tick), done.error());
     }
@@ -162,6 +166,7 @@ Outcome run(const EncodeOptions& options) {
     TACTUS_CHECK(check_ending(options.input, *reader, 0));
     return refuse(shown_path(options.input) + ": the trace has no frames", "Record or simulate at least one tick.");
   }
+  TACTUS_TRY(const ContactDeclarations contacts, options.contacts.of(reader->info(), options.input));
   note_idle_options(*options.common.command, subjects_of(reader->info()), "trace");
   TACTUS_CHECK(check_plot_option(options.plot, options.common, {options.input, options.output}));
   TACTUS_TRY(Clusters clusters, clusters_of(path, options));
@@ -180,7 +185,7 @@ Outcome run(const EncodeOptions& options) {
   }
   add_meshes(reader->info(), options.meshes, options.triggers, report);
   for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.is_main();
-  TACTUS_CHECK(encode_all(*reader, *session, frame, options, report));
+  TACTUS_CHECK(encode_all(*reader, *session, frame, contacts, options, report));
   TACTUS_CHECK(check_ending(options.input, *reader, report.ticks.count()));
   if (reader->cut_short())
     report.warnings.emplace_back("the trace ends without its index; everything before the cut was encoded");
@@ -192,6 +197,7 @@ Outcome run(const EncodeOptions& options) {
         draw(options.plot,
              Figure{"Encoded: " + std::filesystem::path(options.input).filename().string(), session->figure->panels(report)},
              options.common));
+  note_idle_deadband(*options.common.command, report);
   print(report, options.common, beside(options.output));
   return verdict(report, options.output);
 }
@@ -212,11 +218,13 @@ void setup_encode(Command& app, Action& action) {
       ->type_name("N")
       ->excludes(command.find("--basis"));
   options->motion.add_to(command);
+  options->contacts.add_to(command);
   add_plot_option(command, options->plot, "packets by their reasons and errors beside their bounds, over time");
   add_output_options(command, options->common);
   command.footer(
       "Examples:\n"
       "  tactus encode push.mcap -o push.tct -p 4% --visual 6mm,2deg\n"
+      "  tactus encode arm.mcap -o arm.tct -p 4% --contact hand=cup,k=500N/m\n"
       "  tactus encode tosses.mcap -o tosses.tct --visual 5mm,4deg --haptic off --gravity 9.81 --friction 0.25\n"
       "  tactus encode membrane.mcap -o membrane.tct -p 2.5% --deformable-visual 0.25mm --basis 48 --plot membrane.svg\n"
       "  tactus encode dance.mcap -o dance.tct --haptic off --deformable-visual 1mm --clusters 40");

@@ -87,6 +87,8 @@ Json series_json(const VertexErrors& e) { return series_json(e.vertices, e.viola
 
 Json errors_json(const Report& r, const ErrorMetrics& f) {
   Json out;
+  if (&f == (r.fidelity ? &*r.fidelity : nullptr) && !missing_force_bound(r).empty())
+    out["users_without_force_bound"] = f.unbound_users();
   if (f.position().ticks() > 0) {
     out["position_m"] = series_json(r, f.position());
     out["rotation_rad"] = series_json(r, f.rotation());
@@ -186,7 +188,9 @@ void add_verdict(Json& out, const Report& r) {
     const std::string broken = broken_bounds(r);
     out["bounds_from"] = r.bounds_from;
     out["bounds_held"] = broken.empty();
-    out["verdict"] = broken.empty() ? "All bounds hold." : "Bounds are broken: " + broken + ".";
+    const std::string missing = missing_force_bound(r);
+    out["verdict"] =
+        (broken.empty() ? "All bounds hold." : "Bounds are broken: " + broken + ".") + (missing.empty() ? "" : " ") + missing;
   }
 }
 
@@ -234,6 +238,15 @@ std::string broken_bounds(const Report& r) {
     if (mesh.fidelity && mesh.promised)
       look(shown(mesh.name) + " at", mesh.fidelity->all().violations, mesh.fidelity->all().vertices, "vertex");
   return text;
+}
+
+std::string missing_force_bound(const Report& r) {
+  if (!r.fidelity || r.fidelity->bounds().haptic == HapticRule::off) return {};
+  std::vector<std::string> users = r.fidelity->unbound_users();
+  if (users.empty()) return {};
+  for (std::string& user : users) user = shown(user);
+  return fmt::format("No force bound: the recording has forces of user {} and no contacts; declare them with --contact.",
+                     fmt::join(users, ", "));
 }
 
 Outcome verdict(const Report& r, const std::string& file) {

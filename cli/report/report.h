@@ -207,6 +207,8 @@ void add_meshes(const TraceInfo& info, const MeshArguments& meshes, const Trigge
 
 /// Which bounds are broken, where and how often: "position in 12 of 1000 ticks"; empty when all hold.
 std::string broken_bounds(const Report& report);
+/// Of users who feel forces without any contact; empty: there are none.   "No force bound: the recording has forces of user hand ..."
+std::string missing_force_bound(const Report& report);
 /// A failure that says so.   in  file  that was judged
 Outcome verdict(const Report& report, const std::string& file);
 

@@ -319,7 +319,7 @@ std::size_t max_packet(const DeformableObject& object) noexcept {
 Result<void> DeformableEncoder::check(const DeformableOptions& options) noexcept {
   const auto in = [](double v, double low, double high) { return v >= low && v <= high; };  // false for NaN
   const DeformableThresholds& t = options.thresholds;
-  if (in(t.visual, 0, 1e6) && in(t.weber_fraction.value_or(0), 0, 1e3) && in(t.depth_floor, 0, 1e6) &&
+  if (in(t.visual, 0, 1e6) && in(t.weber_fraction.value_or(0), 0, 1) && in(t.depth_floor, 0, 1e6) &&
       in(options.visual_share.value_or(1), 1e-3, 1) && in(options.haptic_share.value_or(1), 1e-3, 1))
     return {};
   return fail(Errc::invalid_argument, "R-API-4");

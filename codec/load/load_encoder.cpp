@@ -34,7 +34,8 @@ Vec3i steps_to(const Vec3i& base, const Vec3i& truth, unsigned level) noexcept {
 
 Result<void> LoadEncoder::check(const LoadThresholds& thresholds) noexcept {
   const auto positive = [](double v) { return std::isfinite(v) && v > 0; };
-  if (!positive(thresholds.weber_fraction) || !positive(thresholds.force_floor)) return fail(Errc::invalid_argument, "R-API-4");
+  if (!(thresholds.weber_fraction > 0 && thresholds.weber_fraction <= 1) || !positive(thresholds.force_floor))
+    return fail(Errc::invalid_argument, "R-API-4");
   return {};
 }
 

@@ -107,9 +107,9 @@ bool is_valid(const Contact& c, const Scene& scene) noexcept {
 }
 
 bool are_valid(const RigidTriggers& t) noexcept {
-  return std::isfinite(t.heartbeat) && t.heartbeat >= 0 && t.heartbeat <= 3600 && std::isfinite(t.weber_fraction) &&
-         t.weber_fraction > 0 && std::isfinite(t.perceptual_share) && t.perceptual_share > 0 && std::isfinite(t.force_floor) &&
-         t.force_floor > 0 && std::isfinite(t.cone_angle) && t.cone_angle > 0 && t.cone_angle <= std::numbers::pi;
+  return std::isfinite(t.heartbeat) && t.heartbeat >= 0 && t.heartbeat <= 3600 && t.weber_fraction > 0 && t.weber_fraction <= 1 &&
+         std::isfinite(t.perceptual_share) && t.perceptual_share > 0 && std::isfinite(t.force_floor) && t.force_floor > 0 &&
+         std::isfinite(t.cone_angle) && t.cone_angle > 0 && t.cone_angle <= std::numbers::pi;
 }
 
 }  // namespace

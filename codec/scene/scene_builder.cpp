@@ -105,6 +105,14 @@ Result<ElasticBody> on_grid(ElasticPhysics physics, unsigned position_exp) {
   return std::move(physics.body);
 }
 
+/// Not those of people who type 4 for 4 %.
+template <class Promise>
+bool are_fractions(const Promise& promise) noexcept {
+  const auto fits = [](double p) { return p >= 0 && p <= 1; };  // false for NaN
+  return fits(promise.rigid.weber_fraction) && fits(promise.deformables.weber_fraction.value_or(0)) &&
+         fits(promise.loads.weber_fraction);
+}
+
 }  // namespace
 
 SceneBuilder& SceneBuilder::rigid(std::string name, const Pose& initial, std::uint8_t dof) {
@@ -205,6 +213,7 @@ tl::expected<SharedScene, SceneFinding> SceneBuilder::build() try {
     spec.motion = *constants;
     spec.is_eased = taken.rigid_profile_ == RigidProfile::main;
   }
+  if (taken.promise_ && !are_fractions(*taken.promise_)) return refuse({Errc::invalid_argument, RuleName("R-API-4"), 0}, {});
   if (spec.driven) spec.driven->bodies.resize(spec.objects.size());
   const bool is_nearly_exact = taken.promise_ && taken.promise_->deformables.visual <= kNearlyExact;
   for (Deformable& of : taken.deformables_) {

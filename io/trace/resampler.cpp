@@ -5,28 +5,15 @@
 #include <cmath>
 #include <utility>
 
+#include <tactus/trace/differences.h>
+
 namespace tactus {
 namespace {
 
 Vec3 mixed(const Vec3& a, const Vec3& b, double share) noexcept { return a == b || share == 0 ? a : a + share * (b - a); }
 
-/// The shorter arc, at constant speed.   pre  of unit length, or nearly
-Quat mixed(const Quat& a, const Quat& b, double share) noexcept {
-  if (a == b || share == 0) return a;
-  double cosine = a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z;
-  const double sign = cosine < 0 ? -1 : 1;
-  cosine = std::min(sign * cosine, 1.0);
-  const double angle = std::acos(cosine), sine = std::sin(angle);
-  const bool is_short = sine < 1e-9;
-  const double from = is_short ? 1 - share : std::sin((1 - share) * angle) / sine;
-  const double to = sign * (is_short ? share : std::sin(share * angle) / sine);
-  const Quat q{from * a.w + to * b.w, from * a.x + to * b.x, from * a.y + to * b.y, from * a.z + to * b.z};
-  const double length = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
-  return length > 0 ? Quat{q.w / length, q.x / length, q.y / length, q.z / length} : a;
-}
-
 RigidSample mixed(const RigidSample& a, const RigidSample& b, double share) noexcept {
-  return {{mixed(a.pose.position, b.pose.position, share), mixed(a.pose.rotation, b.pose.rotation, share)},
+  return {{mixed(a.pose.position, b.pose.position, share), on_arc(a.pose.rotation, b.pose.rotation, share)},
           mixed(a.velocity, b.velocity, share),
           mixed(a.angular_velocity, b.angular_velocity, share)};
 }
@@ -34,7 +21,7 @@ RigidSample mixed(const RigidSample& a, const RigidSample& b, double share) noex
 UserSample mixed(const UserSample& a, const UserSample& b, double share) {
   UserSample out = a;
   out.device.position = mixed(a.device.position, b.device.position, share);
-  out.device.orientation = mixed(a.device.orientation, b.device.orientation, share);
+  out.device.orientation = on_arc(a.device.orientation, b.device.orientation, share);
   out.device.velocity = mixed(a.device.velocity, b.device.velocity, share);
   out.device.time = a.device.time + std::llround(share * static_cast<double>(b.device.time - a.device.time));
   out.contact.device = out.device.position;

@@ -5,6 +5,9 @@
     replica = tactus.decode(stream)                       # replica.position: (ticks, objects, 3) [m]
     assert tactus.compare("truth.mcap", stream).holds     # all bounds, at every tick
 
+    own = tactus.Trace.from_arrays(seconds, poses={"cup": (positions, quaternions)}, wrenches={"hand": forces})
+    tactus.plot(own, own.encode(), "figure.pdf")
+
 encode, decode, compare and read_trace take whole recordings; Sender, Receiver, Player and TraceReader go tick by tick. SI units,
 right-handed world frame, quaternions w x y z; time in ticks, of which a scene has tick_rate per second. What goes wrong is an Error with the
 rule that was broken. An object is used by one thread at a time; scenes may be shared.
@@ -13,7 +16,8 @@ from . import _abi
 from ._library import Error
 from .codec import CONTACT, Packet, Player, Receiver, Sender, Shape, StreamWriter
 from .options import DeformableBounds, Limits, ReceiverOptions, RigidBounds, SceneOptions, SenderOptions
-from .run import Comparison, ErrorSummary, MeshErrors, Replica, compare, decode, encode, read_table
+from .figure import plot
+from .run import Comparison, ErrorSummary, MeshErrors, Replica, Stream, compare, decode, encode, read_table
 from .scene import Driven, Elastic, Mesh, RigidObject, Scene, build_scene, find_clusters
 from .trace import USER, Frame, Trace, TraceReader, read_trace
 
@@ -34,6 +38,6 @@ __all__ = [
     "INTERPOLATION_BLENDING", "INTERPOLATION_HERMITE", "INTERPOLATION_LINEAR", "INTERPOLATION_NONE", "INTERPOLATION_PLAYOUT",
     "Limits", "Mesh", "MeshErrors", "PROFILE_MAIN", "PROFILE_THESIS", "Packet", "Player", "REDUCTION_DEAD_RECKONING",
     "REDUCTION_NONE", "Receiver", "ReceiverOptions", "Replica", "RigidBounds", "RigidObject", "Scene", "SceneOptions", "Sender",
-    "SenderOptions", "Shape", "StreamWriter", "Trace", "TraceReader", "USER", "build_scene", "compare", "decode", "encode",
-    "find_clusters", "read_table", "read_trace",
+    "SenderOptions", "Shape", "Stream", "StreamWriter", "Trace", "TraceReader", "USER", "build_scene", "compare", "decode", "encode",
+    "find_clusters", "plot", "read_table", "read_trace",
 ]

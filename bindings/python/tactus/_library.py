@@ -26,6 +26,7 @@ class Error(Exception):
     """
 
     def __init__(self, error: Any, subject: str = "") -> None:
+        self._of = (error.status, error.rule, error.bit_offset, subject)
         library = core()
         told = ctypes.byref(error)
         self.name: str = library.tactus_status_name(error.status).decode()
@@ -39,6 +40,22 @@ class Error(Exception):
         text = library.tactus_error_text(told).decode()
         subject = f"{subject}: " if subject else ""
         super().__init__(f"{subject}{text}{place} ({self.name}, {self.rule}). {self.remedy}".rstrip())
+
+    def __reduce__(self) -> Any:  # workers of multiprocessing send it to their parent
+        return _error_of, self._of
+
+
+def _error_of(status: int, rule: bytes | None, bit_offset: int, subject: str) -> Error:
+    error = _abi.tactus_error()
+    error.status, error.rule, error.bit_offset = status, rule, bit_offset
+    return Error(error, subject)
+
+
+def refusal(rule: str, subject: str, name: str = "TACTUS_INVALID_ARGUMENT") -> Error:
+    """An error that Python finds."""
+    error = _abi.tactus_error()
+    error.status, error.rule = getattr(_abi, name), rule.encode()
+    return Error(error, subject)
 
 
 def _whole(kind: Any) -> Any:

@@ -241,8 +241,9 @@ class Player(Handle, _Shown):
 
     def __init__(self, file: str | os.PathLike[str] | bytes, **options: Any) -> None:
         super().__init__()
-        self._subject = "" if isinstance(file, bytes) else os.fspath(file)
-        self._bytes = file if isinstance(file, bytes) else pathlib.Path(file).read_bytes()  # the player reads it in place
+        is_data = isinstance(file, (bytes, bytearray, memoryview))
+        self._subject = "" if is_data else os.fspath(file)
+        self._bytes = bytes_of(file) if is_data else pathlib.Path(file).read_bytes()  # the player reads it in place
         call(core().tactus_player_open, self._bytes, len(self._bytes), ReceiverOptions(**options), ctypes.byref(self._handle),
              subject=self._subject)
         self._count()

@@ -6,6 +6,7 @@ import csv
 import ctypes
 import dataclasses
 import os
+import pathlib
 from typing import Any
 
 import numpy as np
@@ -19,9 +20,31 @@ from .scene import Scene
 from .trace import TraceReader
 
 
-def encode(trace: str | os.PathLike[str], rigid_bounds: RigidBounds | None = None, deformable_bounds: DeformableBounds | None = None,
-           profile: str = "main", modes: int = 0, clusters: int = 0, **options: Any) -> bytes:
-    """Encode a trace file as `tactus encode` does; returns the bytes of a stream file, which declares the bounds.
+class Stream(bytes):
+    """The bytes of a stream file."""
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the file."""
+        pathlib.Path(path).write_bytes(self)
+
+    def decode(self, ticks: npt.ArrayLike | None = None, shapes: bool = False, **options: Any) -> Replica:  # type: ignore[override]
+        """As tactus.decode()."""
+        return decode(bytes(self), ticks, shapes, **options)
+
+    def to_arrays(self, ticks: npt.ArrayLike | None = None, **options: Any) -> dict[str, npt.NDArray[np.float64]]:
+        """What a client shows: "time" (T,) [s], and per rigid object, by its name, (T, 7) position 3 [m] and rotation 4 (w x y z)."""
+        shown = self.decode(ticks, **options)
+        with Player(bytes(self)) as player:
+            names = [of.name for of in player.scene.objects]
+        return {"time": shown.time, **{name: shown.poses[:, i] for i, name in enumerate(names)}}
+
+    def __repr__(self) -> str:
+        return f"Stream({len(self)} bytes)"
+
+
+def encode(trace: str | os.PathLike[str] | bytes, rigid_bounds: RigidBounds | None = None, deformable_bounds: DeformableBounds | None = None,
+           profile: str = "main", modes: int = 0, clusters: int = 0, **options: Any) -> Stream:
+    """Encode a trace, a path or the bytes of a file, as `tactus encode` does; returns the bytes of a stream file, which declares the bounds.
 
     profile   "main": velocities lean towards the acceleration, and clients ease into updates; "thesis": linear dead reckoning; and the
               profile of meshes
@@ -43,7 +66,7 @@ def encode(trace: str | os.PathLike[str], rigid_bounds: RigidBounds | None = Non
             for frame in reader:
                 for packet in sender.encode(frame.tick, frame.objects, frame.contacts, frame.shapes):
                     writer.add(packet)
-            return writer.finish()
+            return Stream(writer.finish())
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -60,6 +83,15 @@ class Replica:
     poses: npt.NDArray[np.float64]
     displacements: list[npt.NDArray[np.float32]]
     packets: list[Packet]
+
+    def __repr__(self) -> str:
+        return (f"Replica({len(self.ticks)} ticks at {self.tick_rate} Hz, {self.poses.shape[1]} rigid objects, "
+                f"{len(self.packets)} packets of {sum(packet.size for packet in self.packets)} bytes)")
+
+    @property
+    def time(self) -> npt.NDArray[np.float64]:
+        """(T,) [s]"""
+        return self.ticks / self.tick_rate
 
     @property
     def position(self) -> npt.NDArray[np.float64]:
@@ -182,7 +214,7 @@ class _Errors(Handle):
         return MeshErrors(out.frames, out.vertices, out.violations, out.rms, out.max, out.worst_ratio)
 
 
-def compare(trace: str | os.PathLike[str], stream: str | os.PathLike[str] | bytes, rigid_bounds: RigidBounds | None = None,
+def compare(trace: str | os.PathLike[str] | bytes, stream: str | os.PathLike[str] | bytes, rigid_bounds: RigidBounds | None = None,
             deformable_bounds: DeformableBounds | None = None, **options: Any) -> Comparison:
     """Play a stream and hold what is shown at each tick of a trace against it.
 

@@ -5,13 +5,16 @@ from __future__ import annotations
 import ctypes
 import dataclasses
 import os
+import pathlib
+import tempfile
 from typing import Any, Iterator
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _abi
-from ._library import Handle, answer, call, read_bytes, text_of, traces
+from ._library import Error, Handle, answer, bytes_of, call, read_bytes, text_of, traces
+from .arrays import write_arrays
 from .codec import Shape
 from .options import DeformableBounds, RigidBounds
 from .scene import Mesh, Scene
@@ -48,15 +51,20 @@ def _names_of_forces(bits: int) -> frozenset[str]:
 
 
 class TraceReader(Handle):
-    """Reads a trace file frame by frame, in little memory: `for frame in reader`, once. "-" is standard input."""
+    """Reads a trace file frame by frame, in little memory: `for frame in reader`, once. A path, "-" for standard input, or the bytes of a
+    file."""
 
     _destroy = "tactus_trace_destroy"
     _library = staticmethod(traces)
 
-    def __init__(self, path: str | os.PathLike[str]) -> None:
+    def __init__(self, file: str | os.PathLike[str] | bytes) -> None:
         super().__init__()
-        self._subject = os.fspath(path)
-        call(traces().tactus_trace_open, text_of(os.fsencode(path)), ctypes.byref(self._handle), subject=self._subject)
+        if isinstance(file, (bytes, bytearray, memoryview)):
+            self._subject, self._bytes = "", bytes_of(file)  # the trace reads them in place
+            call(traces().tactus_trace_open_memory, self._bytes, len(self._bytes), ctypes.byref(self._handle))
+        else:
+            self._subject = os.fspath(file)
+            call(traces().tactus_trace_open, text_of(os.fsencode(file)), ctypes.byref(self._handle), subject=self._subject)
         info = answer(_abi.tactus_trace_info)
         call(traces().tactus_trace_get, self.handle, info)
         self.tick_rate: int = info.tick_rate  #: ticks per second
@@ -64,6 +72,8 @@ class TraceReader(Handle):
         self.frames: int | None = info.frames if info.has_frames else None  #: how many, if the file tells
         objects = self._told(traces().tactus_trace_get_object, _abi.tactus_trace_object, info.objects)
         users = self._told(traces().tactus_trace_get_user, _abi.tactus_trace_user, info.users)
+        self.dofs: list[int] = [told.dof for told in objects]  #: axes that each object can move along and about
+        self.senses: list[int] = [told.senses for told in users]  #: of each device, beside its position: 1 orientation, 2 velocity, 4 buttons, 8 time
         self.objects: list[str] = [told.name.decode() for told in objects]
         self.users: list[str] = [told.name.decode() for told in users]
         #: per user: "felt", if it is known what the hand felt, else `force` is the server's; "server", if the server's force is
@@ -136,6 +146,8 @@ class Trace:
     users         (T, U) of dtype USER
     shapes        per mesh: ticks (F,) int64 at which its shape is new, and displacements (F, V, 3) float32 [m] from rest
     known_forces  per user, as TraceReader.known_forces
+    notes         what was decided where arrays left it open: missing samples, times off the grid
+    dofs, senses  as TraceReader.dofs, .senses; None: all axes, no senses
     """
     source: str
     tick_rate: int
@@ -147,6 +159,55 @@ class Trace:
     users: npt.NDArray[np.void]
     shapes: list[tuple[npt.NDArray[np.int64], npt.NDArray[np.float32]]]
     known_forces: list[frozenset[str]]
+    notes: list[str] = dataclasses.field(default_factory=list)
+    dofs: list[int] | None = None
+    senses: list[int] | None = None
+
+    @classmethod
+    def from_arrays(cls, time: Any = None, poses: Any = None, wrenches: Any = None, devices: Any = None, *, order: str = "wxyz",
+                    time_unit: str | None = None, tick_rate: int | None = None, gap: float = 0.1, source: str = "arrays") -> Trace:
+        """A trace of samples that are in memory.
+
+        time       (T,) seconds (floats), datetime64, or whole nanoseconds; time_unit "s", "ms", "us" or "ns" says otherwise. None: evenly
+                   spaced at tick_rate
+        poses      name -> (T, 3) positions [m], (T, 7) positions and quaternions, a tuple of (T, 3) and (T, 4), or a data frame with columns
+                   x, y, z and qw, qx, qy, qz; without a name "object". World frame, right-handed
+        wrenches   name -> (T, 3) force on the user [N], (T, 6) with the torque, which is left out, or columns fx, fy, fz; else "user"
+        devices    name -> (T, 3) places of the devices [m], or columns x, y, z
+        order      of quaternions in arrays: "wxyz" or "xyzw"
+        tick_rate  [1/s]; None: found from the times
+        gap        [s] missing samples (NaN, a rotation of length 0) are interpolated over so much; else the last one is held
+        raises     Error, with the array and the row
+        """
+        data, notes = write_arrays(time, poses, wrenches, devices, order, time_unit, tick_rate, gap, source)
+        return dataclasses.replace(read_trace(data), notes=notes)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write a trace file (MCAP).   raises  Error"""
+        with _Writer(path, self) as writer:
+            try:
+                writer.write(self)
+            except Error:
+                writer.close()
+                pathlib.Path(path).unlink(missing_ok=True)
+                raise
+
+    def to_bytes(self) -> bytes:
+        """The bytes of a trace file."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "trace.mcap")
+            self.save(path)
+            return path.read_bytes()
+
+    def encode(self, rigid_bounds: RigidBounds | None = None, deformable_bounds: DeformableBounds | None = None, **options: Any) -> Any:
+        """As tactus.encode(); returns a Stream."""
+        from .run import encode
+
+        return encode(self.to_bytes(), rigid_bounds, deformable_bounds, **options)
+
+    def __repr__(self) -> str:
+        return (f"Trace({len(self.ticks)} ticks at {self.tick_rate} Hz, objects {self.object_names}, users {self.user_names}, "
+                f"{len(self.meshes)} meshes, {len(self.notes)} notes)")
 
     @property
     def time(self) -> npt.NDArray[np.float64]:
@@ -184,9 +245,42 @@ class Trace:
         return self.users["device"]["position"]
 
 
-def read_trace(path: str | os.PathLike[str]) -> Trace:
-    """Read a whole trace.   raises  Error: R-TRC"""
-    with TraceReader(path) as reader:
+class _Writer(Handle):
+    _destroy = "tactus_trace_writer_destroy"
+    _library = staticmethod(traces)
+
+    def __init__(self, path: str | os.PathLike[str], of: Trace) -> None:
+        super().__init__()
+        self._subject = os.fspath(path)
+        library = traces()
+        call(library.tactus_trace_writer_create, text_of(os.fsencode(path)), of.tick_rate, text_of(of.source.encode()), ctypes.byref(self._handle))
+        for name, dof in zip(of.object_names, of.dofs or [63] * len(of.object_names)):
+            call(library.tactus_trace_writer_object, self.handle, text_of(name.encode()), dof, subject=name)
+        for name, senses, known in zip(of.user_names, of.senses or [0] * len(of.user_names), of.known_forces):
+            bits = (_abi.TACTUS_FORCE_FELT if "felt" in known else 0) | (_abi.TACTUS_FORCE_SERVER if "server" in known else 0)
+            call(library.tactus_trace_writer_user, self.handle, text_of(name.encode()), senses, bits, subject=name)
+        for mesh in of.meshes:
+            rest, triangles = np.ascontiguousarray(mesh.vertices, np.float64), np.ascontiguousarray(mesh.triangles, np.uint32)
+            call(library.tactus_trace_writer_mesh, self.handle, text_of(mesh.name.encode()), rest.ctypes.data, len(rest),
+                 triangles.ctypes.data, len(triangles), mesh.frame_period, subject=mesh.name)
+
+    def write(self, of: Trace) -> None:
+        objects, users = np.ascontiguousarray(of.objects, np.float64), np.ascontiguousarray(of.users, USER)
+        news = [dict(zip(at.tolist(), shapes)) for at, shapes in of.shapes]
+        for i, tick in enumerate(of.ticks.tolist()):
+            forms = (_abi.tactus_shape * len(news))()
+            kept = [np.ascontiguousarray(new[tick], np.float32) if tick in new else None for new in news]
+            for form, shape in zip(forms, kept):
+                if shape is not None:
+                    form.displacements, form.vertices = shape.ctypes.data, len(shape)
+            call(traces().tactus_trace_writer_add, self.handle, tick, objects[i].ctypes.data, objects.shape[1], users[i].ctypes.data,
+                 users.shape[1], ctypes.addressof(forms), len(forms), subject=f"{self._subject}, tick {tick}")
+        call(traces().tactus_trace_writer_finish, self.handle, subject=self._subject)
+
+
+def read_trace(file: str | os.PathLike[str] | bytes) -> Trace:
+    """Read a whole trace, a path or the bytes of a file.   raises  Error: R-TRC"""
+    with TraceReader(file) as reader:
         ticks, objects, users = [], [], []
         shapes: list[tuple[list[int], list[Any]]] = [([], []) for _ in reader.meshes]
         for frame in reader:
@@ -202,4 +296,4 @@ def read_trace(path: str | os.PathLike[str]) -> Trace:
                      np.array(users, USER).reshape(len(ticks), len(reader.users)),
                      [(np.array(at, np.int64), np.array(kept, np.float32).reshape(len(at), len(mesh.vertices), 3))
                       for (at, kept), mesh in zip(shapes, reader.meshes)],
-                     reader.known_forces)
+                     reader.known_forces, [], reader.dofs, reader.senses)

@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/trace/array_trace.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include <tactus/base/rule.h>
+#include <tactus/trace/differences.h>
+#include <tactus/trace/trace_file.h>
+
+namespace tactus {
+namespace {
+
+constexpr double kSecond = 1e9;                     // [ns]
+constexpr double kOnGrid = 1e-3, kNearGrid = 0.05;  // [ticks]
+
+std::string seconds_text(std::int64_t time) {
+  char text[40];
+  std::snprintf(text, sizeof text, "at %.9g s", static_cast<double>(time) / kSecond);
+  return text;
+}
+
+/// One array, without its missing samples.
+struct Lane {
+  std::string where;
+  std::span<const double> values;
+  std::size_t width = 0;
+  std::vector<std::size_t> rows{};  // with a sample
+  std::size_t at = 0;               // of them, the last one not after the time that was asked for last
+};
+
+bool is_sample(const Lane& lane, std::size_t row) {
+  const auto values = lane.values.subspan(row * lane.width, lane.width);
+  double square = 0;
+  for (const double value : values) {
+    if (!std::isfinite(value)) return false;
+    square += value * value;
+  }
+  return lane.width != 4 || square > 1e-12;
+}
+
+class ArrayWriter {
+ public:
+  ArrayWriter(const SampledArrays& arrays, ReadNotes& notes) : arrays_(arrays), notes_(notes) {}
+  Result<TickSpan> run(const std::string& path);
+
+ private:
+  Result<void> take_times();
+  Result<void> take_lanes();
+  Result<void> add_lane(std::string where, std::span<const double> values, std::size_t width);
+  void note_missing(const Lane& lane);
+  Result<void> find_rate();
+  double off_grid(double rate) const;
+  double time_of(std::size_t row) const { return static_cast<double>(arrays_.time[rows_[row]] - start_) / kSecond; }
+  bool is_pause(double time);
+  Vec3 vector_at(Lane& lane, double time) const;
+  Quat rotation_at(Lane& lane, double time) const;
+  double bracket(Lane& lane, double time, std::size_t& from, std::size_t& to) const;
+  void make(double time, TraceFrame& frame);
+  TraceInfo info() const;
+
+  const SampledArrays& arrays_;
+  ReadNotes& notes_;
+  std::vector<std::size_t> rows_;  // of the arrays, whose times rise
+  std::int64_t start_ = 0;
+  std::uint32_t rate_ = 0;
+  bool is_on_grid_ = false;
+  std::vector<Lane> lanes_;  // of objects, then users: those that are there, in the order of the fields
+  std::size_t last_row_ = 0;
+};
+
+Result<void> ArrayWriter::take_times() {
+  std::optional<std::int64_t> last;
+  for (std::size_t row = 0; row < arrays_.time.size(); ++row) {
+    const std::int64_t time = arrays_.time[row];
+    const std::string place = "row " + std::to_string(row);
+    if (time == SampledArrays::kNoTime) {
+      notes_.add("time", "missing; the row is left out", place);
+    } else if (last && time <= *last) {
+      notes_.add("time", "does not increase; the row is left out", place);
+    } else {
+      rows_.push_back(row);
+      last = time;
+    }
+  }
+  if (rows_.empty() || 2 * rows_.size() < arrays_.time.size()) return fail(Errc::invalid, "R-CSV-5");
+  start_ = arrays_.time[rows_.front()];
+  if (static_cast<double>(*last) - static_cast<double>(start_) > 2147483648.0 * kSecond) return fail(Errc::invalid, "R-CSV-5");
+  return {};
+}
+
+Result<void> ArrayWriter::add_lane(std::string where, std::span<const double> values, std::size_t width) {
+  Lane lane{.where = std::move(where), .values = values, .width = width};
+  if (values.size() != width * arrays_.time.size()) {
+    notes_.add(lane.where,
+               "has " + std::to_string(values.size() / width) + " rows for " + std::to_string(arrays_.time.size()) + " times");
+    return fail(Errc::invalid_argument, "R-CSV-8");
+  }
+  for (std::size_t row = 0; row < rows_.size(); ++row)
+    if (is_sample(lane, rows_[row])) lane.rows.push_back(row);
+  if (lane.rows.empty()) {
+    notes_.add(lane.where, "every sample is missing");
+    return fail(Errc::malformed, "R-CSV-4");
+  }
+  note_missing(lane);
+  lanes_.push_back(std::move(lane));
+  return {};
+}
+
+/// Missing samples, one by one.
+void ArrayWriter::note_missing(const Lane& lane) {
+  std::size_t next = 0;  // sample at or after the row
+  for (std::size_t row = 0; row < rows_.size(); ++row) {
+    if (next < lane.rows.size() && lane.rows[next] == row) {
+      ++next;
+      continue;
+    }
+    const char* what = "missing samples, the first one held backwards";
+    if (next == lane.rows.size()) what = "missing samples, the last one held";
+    else if (next > 0)
+      what = time_of(lane.rows[next]) - time_of(lane.rows[next - 1]) <= arrays_.gap
+                 ? "missing samples, interpolated"
+                 : "missing samples, the one before the gap held";
+    notes_.add(lane.where, what, "row " + std::to_string(rows_[row]) + ", " + seconds_text(arrays_.time[rows_[row]]));
+  }
+}
+
+Result<void> ArrayWriter::take_lanes() {
+  if (arrays_.objects.empty() && arrays_.users.empty()) return fail(Errc::invalid_argument, "R-CSV-8");
+  const auto add = [&](const std::string& of, const char* field, std::span<const double> values, std::size_t width) {
+    return values.empty() ? Result<void>() : add_lane(of + "." + field, values, width);
+  };
+  for (const SampledObject& object : arrays_.objects) {
+    if (object.position.empty()) {
+      notes_.add(object.name, "has no position");
+      return fail(Errc::invalid_argument, "R-CSV-8");
+    }
+    TACTUS_CHECK(add(object.name, "position", object.position, 3));
+    TACTUS_CHECK(add(object.name, "rotation", object.rotation, 4));
+    TACTUS_CHECK(add(object.name, "velocity", object.velocity, 3));
+    TACTUS_CHECK(add(object.name, "angular_velocity", object.angular_velocity, 3));
+  }
+  for (const SampledUser& user : arrays_.users) {
+    if (user.device.empty() && user.force.empty()) {
+      notes_.add(user.name, "has neither device nor force");
+      return fail(Errc::invalid_argument, "R-CSV-8");
+    }
+    TACTUS_CHECK(add(user.name, "device", user.device, 3));
+    TACTUS_CHECK(add(user.name, "force", user.force, 3));
+  }
+  return {};
+}
+
+/// [ticks] Largest distance of a time from a grid of this rate.
+double ArrayWriter::off_grid(double rate) const {
+  double off = 0;
+  for (std::size_t row = 0; row < rows_.size(); ++row) {
+    const double ticks = time_of(row) * rate;
+    off = std::max(off, std::abs(ticks - std::round(ticks)));
+  }
+  return off;
+}
+
+/// From the median spacing if the times lie on its grid; of a clock with jitter from the mean one, without pauses.
+Result<void> ArrayWriter::find_rate() {
+  rate_ = arrays_.tick_rate;
+  if (rate_ == 0) {
+    std::vector<double> spacings;
+    double all = 0;
+    for (std::size_t row = 1; row < rows_.size(); ++row) {
+      const double spacing = time_of(row) - time_of(row - 1);
+      if (spacing > arrays_.gap) continue;
+      spacings.push_back(spacing);
+      all += spacing;
+    }
+    if (spacings.empty()) return fail(Errc::invalid_argument, "R-CSV-7");
+    const auto middle = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2);
+    std::nth_element(spacings.begin(), middle, spacings.end());
+    double rate = std::round(1 / *middle);
+    const double mean = std::round(static_cast<double>(spacings.size()) / all);
+    if (off_grid(rate) > kNearGrid && std::abs(mean - rate) <= 0.05 * rate) rate = mean;
+    if (!(rate >= 1 && rate <= kMaxTickRate)) return fail(Errc::invalid_argument, "R-CSV-7");
+    rate_ = static_cast<std::uint32_t>(rate);
+  }
+  if (rate_ > kMaxTickRate) return fail(Errc::invalid_argument, "R-TRC-17");
+  const double off = off_grid(rate_);
+  is_on_grid_ = off <= kOnGrid;
+  if (!is_on_grid_) {
+    char text[160];
+    std::snprintf(text, sizeof text, "samples are up to %.3g ms off a grid of %u Hz; interpolated onto it", 1e3 * off / rate_,
+                  rate_);
+    notes_.add("time", text);
+  }
+  return {};
+}
+
+/// Rows between which no ticks are made.   in  time  rising
+bool ArrayWriter::is_pause(double time) {
+  const double tolerance = kOnGrid / rate_;
+  while (last_row_ + 1 < rows_.size() && time_of(last_row_ + 1) <= time + tolerance) ++last_row_;
+  if (last_row_ + 1 == rows_.size() || time <= time_of(last_row_) + tolerance) return false;
+  const double spacing = time_of(last_row_ + 1) - time_of(last_row_);
+  return spacing > arrays_.gap || (is_on_grid_ && spacing > 1.5 / rate_);  // an own grid's missing rows are missing ticks
+}
+
+/// Samples around a time, as rows of the array, and where it lies between them.
+double ArrayWriter::bracket(Lane& lane, double time, std::size_t& from, std::size_t& to) const {
+  while (lane.at + 1 < lane.rows.size() && time_of(lane.rows[lane.at + 1]) <= time + kOnGrid / rate_) ++lane.at;
+  from = to = rows_[lane.rows[lane.at]];
+  const double before = time_of(lane.rows[lane.at]);
+  if (lane.at + 1 == lane.rows.size() || time <= before + kOnGrid / rate_) return 0;
+  const double after = time_of(lane.rows[lane.at + 1]);
+  if (after - before > arrays_.gap) return 0;
+  to = rows_[lane.rows[lane.at + 1]];
+  return (time - before) / (after - before);
+}
+
+Vec3 ArrayWriter::vector_at(Lane& lane, double time) const {
+  std::size_t from = 0, to = 0;
+  const double share = bracket(lane, time, from, to);
+  const double *a = &lane.values[3 * from], *b = &lane.values[3 * to];
+  const auto mix = [&](std::size_t i) { return share == 0 ? a[i] : a[i] + share * (b[i] - a[i]); };
+  return {mix(0), mix(1), mix(2)};
+}
+
+Quat ArrayWriter::rotation_at(Lane& lane, double time) const {
+  std::size_t from = 0, to = 0;
+  const double share = bracket(lane, time, from, to);
+  const auto unit = [&](std::size_t row) {
+    const double* q = &lane.values[4 * row];
+    const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    if (std::abs(length - 1) < 1e-12) return Quat{q[0], q[1], q[2], q[3]};
+    return Quat{q[0] / length, q[1] / length, q[2] / length, q[3] / length};
+  };
+  return share == 0 ? unit(from) : on_arc(unit(from), unit(to), share);
+}
+
+void ArrayWriter::make(double time, TraceFrame& frame) {
+  std::size_t lane = 0;
+  for (std::size_t i = 0; i < arrays_.objects.size(); ++i) {
+    const SampledObject& of = arrays_.objects[i];
+    RigidSample& out = frame.objects[i];
+    out.pose.position = vector_at(lanes_[lane++], time);
+    if (!of.rotation.empty()) out.pose.rotation = rotation_at(lanes_[lane++], time);
+    if (!of.velocity.empty()) out.velocity = vector_at(lanes_[lane++], time);
+    if (!of.angular_velocity.empty()) out.angular_velocity = vector_at(lanes_[lane++], time);
+  }
+  for (std::size_t i = 0; i < arrays_.users.size(); ++i) {
+    UserSample& out = frame.users[i];
+    if (!arrays_.users[i].device.empty()) out.device.position = vector_at(lanes_[lane++], time);
+    if (!arrays_.users[i].force.empty()) out.force = out.server_force = vector_at(lanes_[lane++], time);
+    out.contact.device = out.device.position;
+  }
+}
+
+TraceInfo ArrayWriter::info() const {
+  TraceInfo out;
+  out.tick_rate = rate_;
+  out.source = arrays_.source;
+  for (const SampledObject& object : arrays_.objects) {
+    const bool can_turn = !object.rotation.empty() || !object.angular_velocity.empty();
+    out.objects.push_back({object.name, can_turn ? Dof::all : Dof::translation});
+  }
+  for (const SampledUser& user : arrays_.users) out.users.push_back({.name = user.name});
+  return out;
+}
+
+Result<TickSpan> ArrayWriter::run(const std::string& path) {
+  TACTUS_CHECK(take_times());
+  TACTUS_CHECK(find_rate());
+  TACTUS_CHECK(take_lanes());
+  TACTUS_TRY(TraceWriter writer, TraceWriter::create(path, info()));
+  TraceFrame frame, before;
+  frame.objects.resize(arrays_.objects.size());
+  frame.users.resize(arrays_.users.size());
+  TickSpan ticks;
+  const auto last = static_cast<std::int64_t>(std::floor(time_of(rows_.size() - 1) * rate_ + kOnGrid));
+  for (std::int64_t tick = 0; tick <= last; ++tick) {
+    const double time = static_cast<double>(tick) / rate_;
+    if (is_pause(time)) {  // on to the end of the pause
+      tick = std::max(tick, static_cast<std::int64_t>(std::ceil(time_of(last_row_ + 1) * rate_ - kOnGrid)) - 1);
+      continue;
+    }
+    frame.tick = tick;
+    make(time, frame);
+    for (std::size_t i = 0; i < frame.objects.size(); ++i) {
+      if (ticks.count() == 0) break;
+      const double seconds = static_cast<double>(tick - before.tick) / rate_;
+      const Twist motion = motion_between(before.objects[i].pose, frame.objects[i].pose, seconds);
+      if (arrays_.objects[i].velocity.empty()) frame.objects[i].velocity = motion.linear;
+      if (arrays_.objects[i].angular_velocity.empty()) frame.objects[i].angular_velocity = motion.angular;
+    }
+    if (const auto written = writer.write(frame); !written) {
+      notes_.add("", "cannot be recorded", seconds_text(start_ + std::llround(time * kSecond)));
+      return tl::make_unexpected(written.error());
+    }
+    ticks.add(tick);
+    before = frame;
+  }
+  TACTUS_CHECK(writer.finish());
+  return ticks;
+}
+
+}  // namespace
+
+Result<TickSpan> write_arrays(const SampledArrays& arrays, const std::string& path, ReadNotes& notes) try {
+  return ArrayWriter(arrays, notes).run(path);
+} catch (const std::bad_alloc&) {
+  return out_of_memory();
+}
+
+}  // namespace tactus
