@@ -6,7 +6,6 @@
 #include <utility>
 
 namespace tactus {
-namespace {
 
 Vec3 mixed(const Vec3& a, const Vec3& b, double share) noexcept { return a == b || share == 0 ? a : a + share * (b - a); }
 
@@ -30,6 +29,8 @@ RigidSample mixed(const RigidSample& a, const RigidSample& b, double share) noex
           mixed(a.velocity, b.velocity, share),
           mixed(a.angular_velocity, b.angular_velocity, share)};
 }
+
+namespace {
 
 UserSample mixed(const UserSample& a, const UserSample& b, double share) {
   UserSample out = a;
