@@ -157,13 +157,13 @@ CsvRows::Read CsvRows::read_sample(const std::vector<std::string>& fields, const
 void CsvRows::turn_axes(RigidSample& sample, bool is_object) const {
   const auto turned = [&](const Vec3& v) {
     const double from[3]{v.x, v.y, v.z};
-    const auto part = [&](std::int8_t axis) { return axis < 0 ? -from[-axis - 1] : from[axis - 1]; };
+    const auto part = [&](std::int8_t axis) { return axis < 0 ? 0 - from[-axis - 1] : from[axis - 1]; };
     return Vec3{part(mapping_.axes[0]), part(mapping_.axes[1]), part(mapping_.axes[2])};
   };
   sample.pose.position = turned(sample.pose.position);
   if (!is_object) return;
   const Quat& q = sample.pose.rotation;
-  const Vec3 axis = mirror_ * turned({q.x, q.y, q.z});
+  const Vec3 axis = mirror_ * turned({q.x, q.y, q.z}) + Vec3{};
   sample.pose.rotation = {q.w, axis.x, axis.y, axis.z};
   sample.velocity = turned(sample.velocity);
   sample.angular_velocity = mirror_ * turned(sample.angular_velocity);

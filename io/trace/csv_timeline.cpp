@@ -246,7 +246,9 @@ CsvResult<void> CsvTimeline::begin_segment(const CsvRow& row) {
 }
 
 CsvResult<void> CsvTimeline::end_segment() {
+  ended_ = true;
   TACTUS_CHECK(emit(true));
+  ended_ = false;
   for (auto& channel : channels_) channel.clear();
   return {};
 }
@@ -339,7 +341,8 @@ bool CsvTimeline::sample_at(std::size_t channel, std::int64_t tick, RigidSample&
   const double since = at.since(a.at);
   if (std::abs(since) < kSame) return true;
   if (since < 0 || queue.size() == 1) {
-    if (std::abs(since) > gap_) return false;
+    const bool is_border = since < 0 || ended_;  // else the next sample is too far away
+    if (!is_border || std::abs(since) > gap_) return false;
     out.velocity = out.angular_velocity = {};
     ++made_;
     return true;

@@ -62,7 +62,7 @@ class CsvTimeline {
   std::optional<std::int64_t> released_;  // [ns] time of the last row that left the window
   std::uint64_t released_line_ = 0;
   std::string segment_;
-  bool has_segment_ = false, resamples_ = false, begins_ = true;
+  bool has_segment_ = false, resamples_ = false, begins_ = true, ended_ = false;
   std::int64_t segment_time_ = 0, base_ = 0, shift_ = 0, next_tick_ = 0, row_number_ = 0;
   double gap_ = 0;  // [ticks]
   Instant now_;     // of the newest row
