@@ -294,7 +294,7 @@ CsvResult<void> CsvTimeline::ask_for_ticks(const CsvRow& row, const Instant& at)
       return tl::unexpected(mistake(Errc::invalid, "R-CSV-5", row.line,
                                     "time " + seconds_text(row.time) + " is in the tick of the row before",
                                     "Resample (without --no-resample and --strict), or give a higher --tick-rate."));
-    if (is_same) repeated_ += plan_.object ? 0 : 1;
+    if (is_same) repeated_ += plan_.object ? 0u : 1u;
     else ticks_.push_back(at.tick), next_tick_ = at.tick + 1;
     return {};
   }
