@@ -12,7 +12,7 @@ void tell(const std::vector<ReadNote>& notes, const std::string& file, Report& r
     std::string text = note.where.empty() ? note.what : note.where + ": " + note.what;
     if (note.count > 1) text += fmt::format(" ({} times{}{})", note.count, note.first.empty() ? "" : ", the first ", note.first);
     else if (!note.first.empty()) text += " (" + note.first + ")";
-    fmt::print(stderr, "note: {}: {}\n", shown_path(file), shown(text));
+    fmt::print(stderr, "note: {}: {}\n", shown_path(file), shown(text, 400));
     report.warnings.push_back(std::move(text));
   }
 }

@@ -1,18 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Recordings in text form: import with a column mapping, export of any trace. Decimal point, commas, names in the first line.
+/// Recordings in text form: import with a column mapping, export of any trace. What a table may look like: csv_reader.h, csv_header.h.
 ///
-/// rule     class             broken when
-/// R-CSV-1  truncated         the text has no line of names and one of values, or its zstd data ends early
-///          malformed         its zstd data is damaged
-/// R-CSV-2  malformed         a column of the mapping is not there, or there twice
-/// R-CSV-3  malformed         a row has more or fewer fields than there are columns
-/// R-CSV-4  malformed         a field is not a finite decimal number, not a whole number in range where one is needed, or no reports
-/// R-CSV-5  invalid           time does not increase within a segment by a tick at least, or leaves 0 .. 2^31 s
-/// R-CSV-6  limit_exceeded    a line is longer than 1 MiB
-/// R-CSV-7  invalid_argument  the rate is unknown: no tick_rate in the mapping and no column of time with two rows
-/// R-CSV-8  invalid_argument  the mapping names some columns of a vector but not all, or nothing to record, or angular velocities in the
-///                            body frame without rotations
-/// R-CSV-9  limit_exceeded    the zstd data unpacks to more than its size has earned (input_budget.h)
+/// Numbers keep their meaning: units and axes that the names of columns tell are taken, and refused where the mapping says otherwise. A
+/// value that is missing (an empty cell, NaN, "-", a rotation of length 0) is put between its neighbours, within CsvMapping::gap. Times that
+/// lie on no grid are resampled. Whatever was decided is told in CsvImport::notes.
+///
+/// rule      class             broken when
+/// R-CSV-1   truncated         the text has no line of names and one of values, or its zstd data ends early
+///           malformed         its zstd data is damaged
+/// R-CSV-2   malformed         a column of the mapping is not there, or there twice
+/// R-CSV-3   malformed         a row has more or fewer fields than there are columns
+/// R-CSV-4   malformed         a field is not a decimal number, not a whole number in range where one is needed, or no reports; CsvMapping::strict:
+///                             a value is missing
+/// R-CSV-5   invalid           times are not in order (beyond a window of rows), repeat (only strict), or leave 0 .. 2^31 s
+/// R-CSV-6   limit_exceeded    a line is longer than 1 MiB
+/// R-CSV-7   invalid_argument  the rate is unknown: no tick_rate in the mapping and no column of time with two rows
+/// R-CSV-8   invalid_argument  the mapping names some columns of a vector but not all, or nothing to record, or angular velocities in the
+///                             body frame without rotations
+/// R-CSV-9   limit_exceeded    the zstd data unpacks to, or rows are resampled to, more than its size has earned (input_budget.h)
+/// R-CSV-10  invalid_argument  the mapping contradicts what the names of columns say of units and axes, or neither says what must be known
+/// R-CSV-11  invalid           the rate is below 10 Hz or more than half of the ticks are missing, and nobody said the unit of time or the rate
 #pragma once
 
 #include <array>
@@ -23,6 +30,7 @@
 
 #include <tactus/base/diagnostic.h>
 #include <tactus/trace/frame.h>
+#include <tactus/trace/read_notes.h>
 #include <tactus/trace/trace_file.h>
 
 namespace tactus {
@@ -38,22 +46,65 @@ enum class AngularVelocityFrame : std::uint8_t { world, body };
 
 inline constexpr const char* kZeroColumn = "0";  ///< in a vector: a component that the table lacks and that is 0
 
-/// Which column feeds which quantity; an empty name means "not there". Named groups: see csv_presets().
-struct CsvMapping {
-  CsvLayout layout = CsvLayout::named_columns;
-  std::string time;     ///< [s]; empty: one row per tick
-  std::string segment;  ///< rows of equal value form a segment (a toss, a trial); segments follow without a gap, the object jumps
-  std::array<std::string, 3> position;          ///< [m]; empty: no object, a user alone
-  std::array<std::string, 4> rotation;          ///< w, x, y, z, not normalised; empty: no rotation
+enum class CsvNames : std::uint8_t {
+  automatic,  ///< csv_header.h
+  none,       ///< the first line holds values; columns are #1, #2, ...
+  first,      ///< the first line holds the names, whatever they look like
+};
+
+/// What the text of a table is like, where its own looks mislead.
+struct CsvText {
+  std::uint32_t skip_lines = 0;  ///< ahead of everything
+  CsvNames names = CsvNames::automatic;
+};
+
+/// In which order the four columns of a rotation are listed.
+enum class QuaternionOrder : std::uint8_t { by_names, wxyz, xyzw };  ///< by_names: as the columns are called, else w, x, y, z
+
+/// Which column feeds which quantity of an object or a user; an empty name means "not there". A column may also be named by its number,
+/// "#3", without its unit, or by the end of its name where that is unique. At most one kind of rotation.
+struct CsvQuantities {
+  std::array<std::string, 3> position;  ///< [m]; empty: no object, a user alone
+  std::array<std::string, 4> rotation;  ///< w, x, y, z or as CsvMapping::quaternion_order says; empty: no rotation
+  std::array<std::string, 3>
+      euler;  ///< [rad] in the order of CsvMapping::euler_order, or as roll, pitch, yaw (x, y, z) are called
+  std::array<std::string, 3> rotation_vector;   ///< [rad] axis times angle
+  std::array<std::string, 9> rotation_matrix;   ///< row by row, object to world
   std::array<std::string, 3> velocity;          ///< [m/s]; empty: backward differences, 0 where a segment begins
   std::array<std::string, 3> angular_velocity;  ///< [rad/s]; empty: likewise
+  std::array<std::string, 3> device;            ///< [m] probe of the user
+  std::array<std::string, 3> force;             ///< [N] on the user; one recorded force serves for client and server
+};
+
+/// Another object, user, or both, of a table that has several.
+struct CsvSubject : CsvQuantities {
+  std::string name;
+};
+
+/// The whole mapping. Named ones: see csv_presets().
+struct CsvMapping : CsvQuantities {
+  CsvLayout layout = CsvLayout::named_columns;
+  std::string time;     ///< a number, a date (ISO 8601) or a time of day; empty: one row per tick
+  std::string segment;  ///< rows of equal value form a segment (a toss, a trial); segments follow without a gap, the object jumps
+  std::string object_column;  ///< of a long table: each of its values is an object (and a user), in its own rows
   AngularVelocityFrame angular_velocity_frame = AngularVelocityFrame::world;  ///< of angular_velocity; body needs rotation
-  std::array<std::string, 3> device;                                          ///< [m] probe of the user
-  std::array<std::string, 3> force;  ///< [N] on the user; one recorded force serves for client and server
-  std::string object = "object";     ///< name of the object in the trace
-  std::string user = "user";         ///< name of the user in the trace, if there is a device or a force
-  double length_scale = 1.0;         ///< metres per unit of the file's lengths
-  std::uint32_t tick_rate = 0;       ///< 0: from the median spacing of the time column
+  std::string object = "object";                                              ///< name of the object in the trace
+  std::string user = "user";  ///< name of the user in the trace, if there is a device or a force
+  std::vector<CsvSubject> others{};
+  double length_scale = 1.0;                            ///< metres per unit of the file's lengths
+  bool says_length = false;                             ///< length_scale was given, and must not contradict the names
+  std::string time_unit{}, angle_unit{}, force_unit{};  ///< "ms", "deg", "mN"; empty: as the names say, else s, rad and N
+  QuaternionOrder quaternion_order = QuaternionOrder::by_names;
+  std::string euler_order{};                 ///< "ZYX": about z, then the turned y, then the turned x; "xyz": about fixed axes
+  std::array<std::int8_t, 3> axes{1, 2, 3};  ///< what the trace's x, y and z are in the file: {1, -3, 2} is x, -z, y
+  std::uint32_t tick_rate = 0;               ///< 0: from the times
+  double gap = 0;          ///< [s] missing values are put in within so much; 0: 0.1 s, or three sample periods if that is longer
+  bool resample = true;    ///< times off the grid of the rate are resampled; else rounded, and refused if two are in a tick
+  bool strict = false;     ///< what is missing, out of order or cut is refused
+  bool keep_last = false;  ///< take a last line without an end
+  bool skip_bad = false;   ///< leave out rows that cannot be read
+  std::vector<std::string> missing{};  ///< more texts that mean "no value"
+  CsvText text{};
 };
 
 struct CsvPreset {
@@ -75,9 +126,10 @@ struct AngularVelocityCheck {
 };
 
 struct CsvImport {
-  TickSpan ticks;  ///< one per row
+  TickSpan ticks;
   std::uint64_t segments = 0;
   AngularVelocityCheck angular_velocity;
+  ReadNotes notes{};  ///< what was decided
 };
 
 /// Read `path` (plain or zstd, detected by its first bytes; "-" is standard input) into `out_path`.

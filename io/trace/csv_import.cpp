@@ -1,305 +1,123 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <filesystem>
-#include <numbers>
-#include <optional>
+#include <set>
 
 #include <tactus/base/rule.h>
+#include <tactus/base/text.h>
 #include <tactus/trace/csv.h>
 #include <tactus/trace/csv_plan.h>
 #include <tactus/trace/csv_reader.h>
-#include <tactus/trace/differences.h>
-#include <tactus/base/text.h>
+#include <tactus/trace/csv_timeline.h>
 
 namespace tactus {
 namespace {
 
-constexpr std::size_t kRowsForRate = 256;  // looked at before the tick rate is settled
-
-struct Row {
-  std::uint64_t line = 0;
-  double time = 0;
-  std::string segment;
-  TraceFrame frame;  // its tick is set for layout `tactus`
-};
-
-std::uint32_t median_rate(std::vector<double> gaps) {
-  if (gaps.empty()) return 0;
-  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
-  std::nth_element(gaps.begin(), middle, gaps.end());
-  const double rate = std::round(1.0 / *middle);
-  return rate >= 1 && rate <= kMaxTickRate ? static_cast<std::uint32_t>(rate) : 0;
+tl::unexpected<Diagnostic> refuse(const Error& error, std::uint64_t line) {
+  return tl::unexpected(Diagnostic{.error = error, .line = line});
 }
 
-class Importer {
- public:
-  Importer(const CsvMapping& mapping, CsvPlan plan, std::string out_path)
-      : mapping_(mapping), plan_(std::move(plan)), out_path_(std::move(out_path)) {}
+/// A reader at the names of the table.
+CsvResult<CsvReader> open_table(const std::string& path, const CsvMapping& mapping) {
+  auto reader = CsvReader::open(path, mapping.text);
+  if (!reader) return tl::unexpected(Diagnostic{reader.error()});
+  const auto has_names = reader->names();
+  if (!has_names) return refuse(has_names.error(), reader->line() + 1);
+  if (!*has_names) return refuse(fail(Errc::truncated, "R-CSV-1").value(), 1);
+  return std::move(*reader);
+}
 
-  Result<CsvImport> run(CsvReader& reader);
-  Diagnostic place(const Error& error) const { return {.error = error, .line = line_, .detail = place_of_field(column_, text_)}; }
-  bool has_output() const noexcept { return writer_.has_value(); }
-
- private:
-  Result<Row> parse(const CsvReader& reader);
-  template <class T>
-  Result<T> number(const std::vector<std::string>& fields, std::size_t column);
-  Result<void> parse_reports(const std::vector<std::string>& fields, std::size_t column, DeviceReports& reports);
-  Result<void> parse_servo(const std::vector<std::string>& fields, const std::array<std::size_t, 4>& columns, ServoSample& servo);
-  Result<void> parse_others(const std::vector<std::string>& fields, Row& row);
-  Result<void> start();
-  std::uint32_t find_rate() const;
-  Result<void> write(Row& row);
-  Result<std::int64_t> tick_of(const Row& row, bool begins_segment);
-  void derive_motion(TraceFrame& frame) const;
-  Result<void> settle_angular_velocity(TraceFrame& frame, bool begins_segment);
-
-  const CsvMapping& mapping_;
-  CsvPlan plan_;
-  std::string out_path_;
-  std::uint64_t line_ = 1;
-  std::string column_, text_;  // of the field that is being read
-  std::vector<Row> waiting_;   // until the tick rate is known
-  std::optional<TraceWriter> writer_;
-  Row last_;                       // written before
-  double segment_time_ = 0;        // [s] of the segment's first row
-  std::int64_t segment_tick_ = 0;  // its tick
-  CsvImport done_;
-};
-
-Result<CsvImport> Importer::run(CsvReader& reader) {
+/// Of a long table: every name in its column of objects. A trace declares its objects ahead of the first sample.
+CsvResult<std::vector<std::string>> objects_of(const std::string& path, const CsvMapping& mapping, std::size_t column) {
+  std::vector<std::string> names;
+  if (path == "-") return names;
+  TACTUS_TRY(CsvReader reader, open_table(path, mapping));
+  std::set<std::string> known;
   while (true) {
-    line_ = reader.line() + 1;
-    TACTUS_TRY(const bool more, reader.next());
-    if (!more) break;
-    line_ = reader.line();
-    TACTUS_TRY(Row row, parse(reader));
-    if (writer_) {
-      TACTUS_CHECK(write(row));
-      continue;
-    }
-    waiting_.push_back(std::move(row));
-    if (waiting_.size() == kRowsForRate) TACTUS_CHECK(start());
+    const auto more = reader.next();
+    if (!more) return refuse(more.error(), reader.line() + 1);
+    if (!*more) return names;
+    if (column >= reader.fields().size() || !is_plain_name(reader.fields()[column])) continue;
+    if (known.insert(reader.fields()[column]).second) names.push_back(reader.fields()[column]);
+    if (names.size() > 4096) return names;
   }
-  if (!writer_ && waiting_.empty()) return fail(Errc::truncated, "R-CSV-1");
-  if (!writer_) TACTUS_CHECK(start());
-  TACTUS_CHECK(writer_->finish());
-  return done_;
 }
 
-template <class T>
-Result<T> Importer::number(const std::vector<std::string>& fields, std::size_t column) {
-  column_ = plan_.names[column];
-  text_ = fields[column];
-  const auto value = parse_number<T>(text_);
-  if (!value || !std::isfinite(static_cast<double>(*value))) return fail(Errc::malformed, "R-CSV-4");
-  return *value;
+/// A last line without an end may be cut within its last number.
+CsvResult<bool> takes_line(const CsvReader& reader, const CsvMapping& mapping, CsvNamedPlan& plan) {
+  const bool ends_unused = reader.fields().size() == plan.names.size() && !plan.used.back();
+  if (!reader.is_open() || mapping.keep_last || ends_unused) return true;
+  if (mapping.strict)
+    return tl::unexpected(Diagnostic{.error = fail(Errc::malformed, "R-CSV-4").value(),
+                                     .line = reader.line(),
+                                     .detail = "the last line has no end",
+                                     .remedy = "It may be cut: end it, remove it, or take it with --keep-last."});
+  plan.notes.add("", "the last line has no end: it may be cut and is left out (--keep-last takes it)",
+                 "line " + std::to_string(reader.line()));
+  return false;
 }
 
-Result<Row> Importer::parse(const CsvReader& reader) {
-  const auto& fields = reader.fields();
-  column_.clear();
-  text_.clear();
-  if (fields.size() != plan_.names.size()) return fail(Errc::malformed, "R-CSV-3");
-  Row row;
-  row.line = reader.line();
-  row.frame.objects.resize(plan_.info.objects.size());
-  row.frame.users.resize(plan_.info.users.size());
-  for (const CsvBinding& binding : plan_.bindings) {
-    TACTUS_TRY(const double value, number<double>(fields, binding.column));
-    double& field = binding.object_field != nullptr ? binding.object_field(row.frame.objects[binding.index])
-                                                    : binding.user_field(row.frame.users[binding.index]);
-    field = binding.scale * value;
+CsvResult<CsvImport> run(CsvReader& reader, const CsvMapping& mapping, CsvNamedPlan& plan, CsvRows& rows, CsvTimeline& timeline) {
+  while (true) {
+    const auto more = reader.next();
+    if (!more) return refuse(more.error(), reader.line() + 1);
+    if (!*more) break;
+    TACTUS_TRY(const bool is_whole, takes_line(reader, mapping, plan));
+    if (!is_whole) break;
+    TACTUS_TRY(auto row, rows.parse(reader));
+    if (!row) continue;
+    const std::uint64_t line = row->line;
+    auto added = timeline.add(std::move(*row));
+    if (added) continue;
+    if (added.error().line == 0) added.error().line = line;
+    return tl::unexpected(added.error());
   }
-  for (UserSample& user : row.frame.users) user.contact.device = user.device.position;
-  TACTUS_CHECK(parse_others(fields, row));
-  if (plan_.segment) row.segment = fields[*plan_.segment];
-  if (plan_.time) {
-    TACTUS_TRY(row.time, number<double>(fields, *plan_.time));
-  }
-  column_.clear();
-  text_.clear();
-  return row;
+  if (reader.decimal_commas() > 0)
+    plan.notes.add(
+        "", std::to_string(reader.decimal_commas()) + " numbers in quotes have a comma, which is taken for the decimal point");
+  auto done = timeline.finish();
+  if (!done && done.error().line == 0)
+    done.error().line = reader.line() + (done.error().error.rule == std::string_view("R-CSV-1") ? 1 : 0);
+  return done;
 }
 
-Result<void> Importer::parse_servo(const std::vector<std::string>& fields, const std::array<std::size_t, 4>& columns,
-                                   ServoSample& servo) {
-  TACTUS_TRY(servo.lateness, number<std::int64_t>(fields, columns[0]));
-  TACTUS_TRY(servo.age, number<std::int64_t>(fields, columns[1]));
-  TACTUS_TRY(servo.missed, number<std::uint32_t>(fields, columns[2]));
-  TACTUS_TRY(servo.guard, number<std::uint32_t>(fields, columns[3]));
-  return servo.lateness >= 0 && servo.age >= 0 ? Result<void>() : fail(Errc::malformed, "R-CSV-4");
+CsvResult<CsvImport> import_named(const std::string& path, CsvReader& reader, const CsvMapping& mapping,
+                                  const std::string& out_path, const std::string& source, bool& has_output) {
+  TACTUS_TRY(CsvNamedPlan plan, plan_named_csv(mapping, reader.header()));
+  plan.info.source = source;
+  CsvRows rows(mapping, plan);
+  CsvTimeline timeline(mapping, plan, rows, out_path);
+  if (plan.object) {
+    TACTUS_TRY(auto names, objects_of(path, mapping, *plan.object));
+    timeline.expect_objects(std::move(names));
+  }
+  auto done = run(reader, mapping, plan, rows, timeline);
+  has_output = timeline.has_output();
+  return done;
 }
 
-Result<void> Importer::parse_reports(const std::vector<std::string>& fields, std::size_t column, DeviceReports& reports) {
-  column_ = plan_.names[column];
-  text_ = fields[column];
-  for (std::string_view left = text_; !left.empty();) {
-    const std::size_t end = std::min(left.find(' '), left.size());
-    const auto bytes = bytes_of_hex(left.substr(0, end));
-    if (!bytes || bytes->empty()) return fail(Errc::malformed, "R-CSV-4");
-    reports.sizes.push_back(static_cast<std::uint32_t>(bytes->size()));
-    reports.bytes.insert(reports.bytes.end(), bytes->begin(), bytes->end());
-    left.remove_prefix(std::min(end + 1, left.size()));
+CsvResult<CsvImport> import_table(const std::string& path, const CsvMapping& mapping, const std::string& out_path,
+                                  bool& has_output) {
+  TACTUS_TRY(CsvReader reader, open_table(path, mapping));
+  const std::string source = "import " + (path == "-" ? "standard input" : std::filesystem::path(path).filename().string());
+  if (mapping.layout == CsvLayout::named_columns) return import_named(path, reader, mapping, out_path, source, has_output);
+  auto plan = plan_csv(reader.header().names);
+  if (!plan) {
+    plan.error().line = reader.header().line;
+    return tl::unexpected(plan.error());
   }
-  return {};
-}
-
-/// What only layout `tactus` has.
-Result<void> Importer::parse_others(const std::vector<std::string>& fields, Row& row) {
-  if (plan_.tick) {
-    TACTUS_TRY(row.frame.tick, number<std::int64_t>(fields, *plan_.tick));
-  }
-  if (plan_.shown) {
-    TACTUS_TRY(row.frame.shown, number<std::int64_t>(fields, *plan_.shown));
-  }
-  for (std::size_t i = 0; i < plan_.dof.size(); ++i) {
-    TACTUS_TRY(const auto dof, number<std::uint8_t>(fields, plan_.dof[i]));
-    const bool is_first = !writer_ && waiting_.empty();
-    if (is_first) plan_.info.objects[i].dof = dof;
-    if (dof > Dof::all || dof != plan_.info.objects[i].dof) return fail(Errc::malformed, "R-CSV-4");
-  }
-  for (std::size_t i = 0; i < plan_.users.size(); ++i) {
-    const CsvUserColumns& columns = plan_.users[i];
-    UserSample& user = row.frame.users[i];
-    TACTUS_TRY(const auto kind, number<std::uint8_t>(fields, columns.kind));
-    if (kind > static_cast<std::uint8_t>(ContactKind::spring)) return fail(Errc::malformed, "R-CSV-4");
-    user.contact.kind = static_cast<ContactKind>(kind);
-    TACTUS_TRY(user.contact.object, number<std::uint32_t>(fields, columns.object));
-    if (kind > 0 && user.contact.object >= plan_.info.objects.size()) return fail(Errc::malformed, "R-CSV-4");
-    if (columns.buttons) {
-      TACTUS_TRY(user.device.buttons, number<std::uint32_t>(fields, *columns.buttons));
-    }
-    if (columns.time) {
-      TACTUS_TRY(user.device.time, number<std::int64_t>(fields, *columns.time));
-      if (user.device.time < 0 || user.device.time / 1'000'000'000 >= kMaxSeconds) return fail(Errc::malformed, "R-CSV-4");
-    }
-    if (columns.servo) TACTUS_CHECK(parse_servo(fields, *columns.servo, user.servo));
-    if (columns.reports) TACTUS_CHECK(parse_reports(fields, *columns.reports, user.reports));
-  }
-  return {};
-}
-
-/// Ticks per second, 0 when nothing tells.
-std::uint32_t Importer::find_rate() const {
-  if (mapping_.tick_rate > 0) return mapping_.tick_rate;
-  if (plan_.tick) {
-    const Row& row = waiting_.back();
-    if (row.frame.tick == 0) return TraceInfo().tick_rate;
-    const double rate = std::round(static_cast<double>(row.frame.tick) / row.time);
-    return rate >= 1 && rate <= kMaxTickRate ? static_cast<std::uint32_t>(rate) : 0;
-  }
-  std::vector<double> gaps;
-  for (std::size_t i = 1; plan_.time && i < waiting_.size(); ++i)
-    if (waiting_[i].segment == waiting_[i - 1].segment) gaps.push_back(waiting_[i].time - waiting_[i - 1].time);
-  return median_rate(std::move(gaps));
-}
-
-Result<void> Importer::start() {
-  line_ = 1;
-  plan_.info.tick_rate = find_rate();
-  if (plan_.info.tick_rate == 0) return fail(Errc::invalid_argument, "R-CSV-7");
-  TACTUS_TRY(writer_, TraceWriter::create(out_path_, plan_.info));
-  for (Row& row : waiting_) TACTUS_CHECK(write(row));
-  waiting_.clear();
-  return {};
-}
-
-Result<std::int64_t> Importer::tick_of(const Row& row, bool begins_segment) {
-  if (plan_.tick) {
-    const double seconds = static_cast<double>(row.frame.tick) / plan_.info.tick_rate;
-    const bool agrees = std::abs(row.time - seconds) <= 0.5 / plan_.info.tick_rate;
-    if (!agrees && mapping_.tick_rate == 0) return fail(Errc::invalid, "R-CSV-5");
-    return row.frame.tick;
-  }
-  const std::int64_t next = done_.ticks.count() == 0 ? 0 : last_.frame.tick + 1;
-  if (begins_segment) {
-    segment_tick_ = next;
-    segment_time_ = row.time;
-  }
-  if (!plan_.time) return next;
-  const double ticks = std::round((row.time - segment_time_) * plan_.info.tick_rate);
-  if (!(ticks >= 0 && ticks < 0x1p53)) return fail(Errc::invalid, "R-CSV-5");
-  return segment_tick_ + static_cast<std::int64_t>(ticks);
-}
-
-Result<void> Importer::write(Row& row) {
-  line_ = row.line;
-  const bool begins_segment = done_.ticks.count() == 0 || row.segment != last_.segment;
-  TACTUS_TRY(const std::int64_t tick, tick_of(row, begins_segment));
-  const bool increases = done_.ticks.count() == 0 ? tick >= 0 : tick > last_.frame.tick;
-  if (!increases || tick / plan_.info.tick_rate >= kMaxSeconds) return fail(Errc::invalid, "R-CSV-5");
-  row.frame.tick = tick;
-  if (!begins_segment) derive_motion(row.frame);
-  if (plan_.check_angular_velocity) TACTUS_CHECK(settle_angular_velocity(row.frame, begins_segment));
-  TACTUS_CHECK(writer_->write(row.frame));
-  done_.ticks.add(tick);
-  if (begins_segment) ++done_.segments;
-  last_ = std::move(row);
-  return {};
-}
-
-/// Backward differences: what a live system would know at that tick.
-void Importer::derive_motion(TraceFrame& frame) const {
-  if ((!plan_.derive_velocity && !plan_.derive_angular_velocity) || frame.objects.empty()) return;
-  const double seconds = static_cast<double>(frame.tick - last_.frame.tick) / plan_.info.tick_rate;
-  RigidSample& sample = frame.objects.front();
-  const Twist motion = motion_between(last_.frame.objects.front().pose, sample.pose, seconds);
-  if (plan_.derive_velocity) sample.velocity = motion.linear;
-  if (plan_.derive_angular_velocity) sample.angular_velocity = motion.angular;
-}
-
-/// Turn the angular velocity that was read into the world frame, and hold it against the turn since the row before.
-Result<void> Importer::settle_angular_velocity(TraceFrame& frame, bool begins_segment) {
-  RigidSample& sample = frame.objects.front();
-  const Quat& q = sample.pose.rotation;
-  const double size = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
-  if (!(size > 0)) {
-    column_ = mapping_.rotation.front();
-    return fail(Errc::malformed, "R-CSV-4");
-  }
-  const Vec3 given = sample.angular_velocity, turned = rotate(Quat{q.w / size, q.x / size, q.y / size, q.z / size}, given);
-  const bool is_body = mapping_.angular_velocity_frame == AngularVelocityFrame::body;
-  if (is_body) sample.angular_velocity = turned;
-  if (begins_segment) return {};
-  const double seconds = static_cast<double>(frame.tick - last_.frame.tick) / plan_.info.tick_rate;
-  const Vec3 seen = motion_between(last_.frame.objects.front().pose, sample.pose, seconds).angular;
-  if (norm(seen) * seconds > std::numbers::pi / 2 || norm(given) * seconds > std::numbers::pi / 2) return {};
-  AngularVelocityCheck& angular_velocity = done_.angular_velocity;
-  const auto take = [share = 1.0 / static_cast<double>(++angular_velocity.rows)](double& mean, double value) {
-    mean += share * (value - mean);
-  };
-  take(angular_velocity.given, norm(given));
-  take(angular_velocity.off, norm(seen - sample.angular_velocity));
-  take(angular_velocity.off_other, norm(seen - (is_body ? given : turned)));
-  return {};
+  plan->info.source = source;
+  return import_tactus_csv(reader, mapping, *std::move(plan), out_path, has_output);
 }
 
 }  // namespace
 
 tl::expected<CsvImport, Diagnostic> import_csv(const std::string& path, const CsvMapping& mapping,
                                                const std::string& out_path) try {
-  const auto refuse = [](Diagnostic error) { return tl::unexpected<Diagnostic>(std::move(error)); };
-  auto reader = CsvReader::open(path);
-  if (!reader) return refuse({.error = reader.error()});
-  const auto has_names = reader->names();
-  if (!has_names) return refuse({.error = has_names.error(), .line = 1});
-  if (!*has_names) return refuse({.error = fail(Errc::truncated, "R-CSV-1").value(), .line = 1});
-  auto plan = plan_csv(mapping, reader->fields());
-  if (!plan) {
-    plan.error().line = reader->line();
-    return refuse(plan.error());
-  }
-  plan->info.source = "import " + (path == "-" ? "standard input" : std::filesystem::path(path).filename().string());
-
-  Importer importer(mapping, *std::move(plan), out_path);
-  const auto done = importer.run(*reader);
-  if (done) return *done;
+  bool has_output = false;
+  auto done = import_table(path, mapping, out_path, has_output);
   std::error_code ignored;  // what is not a plain file was there before us
-  if (importer.has_output() && std::filesystem::is_regular_file(out_path, ignored)) std::filesystem::remove(out_path, ignored);
-  return refuse(importer.place(done.error()));
+  if (!done && has_output && std::filesystem::is_regular_file(out_path, ignored)) std::filesystem::remove(out_path, ignored);
+  return done;
 } catch (const std::bad_alloc&) {
   return tl::unexpected(Diagnostic{out_of_memory().value()});
 }

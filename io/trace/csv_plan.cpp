@@ -17,9 +17,6 @@ namespace tactus {
 
 namespace {
 
-// First rows of a quantity in kObjectColumns.
-constexpr std::size_t kPosition = 0, kRotation = 3, kVelocity = 7, kAngularVelocity = 10;
-
 template <class T, std::size_t N>
 std::vector<std::string> all_columns(const std::string& path, const std::array<CsvColumn<T>, N>& columns) {
   std::vector<std::string> names;
@@ -31,7 +28,7 @@ std::vector<std::string> all_columns(const std::string& path, const std::array<C
 /// Notes the first mistake and lets the caller go on, so that a plan reads as a list of what it wants; lists of foreign length stop.
 class Planner {
  public:
-  Planner(const CsvMapping& mapping, const std::vector<std::string>& names) : mapping_(mapping) {
+  explicit Planner(const std::vector<std::string>& names) {
     plan_.names = names;
     used_.resize(names.size());
     for (std::size_t i = 0; i < plan_.names.size(); ++i)
@@ -39,26 +36,24 @@ class Planner {
   }
 
   tl::expected<CsvPlan, Diagnostic> run() {
-    mapping_.layout == CsvLayout::tactus ? plan_tactus() : plan_named();
+    plan_tactus();
     if (plan_.info.objects.empty() && plan_.info.users.empty()) note(Errc::invalid_argument, "R-CSV-8", "");
     if (mistake_) return tl::unexpected<Diagnostic>(*mistake_);
     return std::move(plan_);
   }
 
  private:
-  void plan_named();
   void plan_tactus();
   void plan_tactus_object(const std::string& path);
   void plan_tactus_user(const std::string& path);
   void plan_forces(const std::string& path);
-  bool has_group(std::span<const std::string> columns);
   template <std::size_t N>
   bool has_any(const std::string& path, const std::array<CsvColumn<UserSample>, N>& columns) const;
   template <std::size_t N>
   bool bind_sense(const std::string& path, const std::array<CsvColumn<UserSample>, N>& columns);
   std::optional<std::size_t> column_if_there(const std::string& name);
-  void bind_object(std::span<const std::string> columns, std::size_t first, double scale);
-  void bind_user(std::span<const std::string> columns, std::span<const CsvColumn<UserSample>> fields, double scale);
+  void bind_object(std::span<const std::string> columns);
+  void bind_user(std::span<const std::string> columns, std::span<const CsvColumn<UserSample>> fields);
 
   std::size_t column(const std::string& name) {
     const auto found = columns_.find(name);
@@ -69,13 +64,10 @@ class Planner {
     note(Errc::malformed, "R-CSV-2", name);
     return 0;
   }
-  /// Not recorded: zero in every row.
-  bool is_zero(const std::string& name) const { return name == kZeroColumn && !columns_.contains(name); }
   void note(Errc code, RuleName rule, const std::string& name) {
     if (!mistake_) mistake_ = Diagnostic{.error = fail(code, rule).value(), .line = 1, .detail = place_of_field(name, "")};
   }
 
-  const CsvMapping& mapping_;
   static constexpr std::size_t kTwice = SIZE_MAX;
   CsvPlan plan_;
   std::map<std::string_view, std::size_t> columns_;  // by name
@@ -83,55 +75,15 @@ class Planner {
   std::optional<Diagnostic> mistake_;
 };
 
-/// All columns of a vector are named, or none.
-bool Planner::has_group(std::span<const std::string> columns) {
-  const auto is_named = [](const std::string& name) { return !name.empty(); };
-  const bool has_any = std::any_of(columns.begin(), columns.end(), is_named);
-  if (has_any && !std::all_of(columns.begin(), columns.end(), is_named))
-    note(Errc::invalid_argument, "R-CSV-8", *std::find_if(columns.begin(), columns.end(), is_named));
-  return has_any;
-}
-
-void Planner::bind_object(std::span<const std::string> columns, std::size_t first, double scale) {
+void Planner::bind_object(std::span<const std::string> columns) {
   const auto object = static_cast<std::uint32_t>(plan_.info.objects.size() - 1);
   for (std::size_t i = 0; i < columns.size(); ++i)
-    if (!is_zero(columns[i]))
-      plan_.bindings.push_back({column(columns[i]), object, scale, kObjectColumns[first + i].field, nullptr});
+    plan_.bindings.push_back({column(columns[i]), object, kObjectColumns[i].field, nullptr});
 }
 
-void Planner::bind_user(std::span<const std::string> columns, std::span<const CsvColumn<UserSample>> fields, double scale) {
+void Planner::bind_user(std::span<const std::string> columns, std::span<const CsvColumn<UserSample>> fields) {
   const auto user = static_cast<std::uint32_t>(plan_.info.users.size() - 1);
-  for (std::size_t i = 0; i < columns.size(); ++i)
-    if (!is_zero(columns[i])) plan_.bindings.push_back({column(columns[i]), user, scale, nullptr, fields[i].field});
-}
-
-void Planner::plan_named() {
-  const CsvMapping& m = mapping_;
-  if (!m.time.empty()) plan_.time = column(m.time);
-  if (!m.segment.empty()) plan_.segment = column(m.segment);
-  const bool has_rotation = has_group(m.rotation), has_velocity = has_group(m.velocity),
-             has_angular_velocity = has_group(m.angular_velocity);
-  if (has_group(m.position)) {
-    plan_.info.objects.push_back({m.object, has_rotation || has_angular_velocity ? Dof::all : Dof::translation});
-    bind_object(m.position, kPosition, m.length_scale);
-    if (has_rotation) bind_object(m.rotation, kRotation, 1.0);
-    if (has_velocity) bind_object(m.velocity, kVelocity, m.length_scale);
-    if (has_angular_velocity) bind_object(m.angular_velocity, kAngularVelocity, 1.0);
-  } else if (has_rotation || has_velocity || has_angular_velocity) {
-    note(Errc::invalid_argument, "R-CSV-8", "position");
-  }
-  plan_.derive_velocity = !has_velocity;
-  plan_.derive_angular_velocity = has_rotation && !has_angular_velocity;
-  plan_.check_angular_velocity = has_rotation && has_angular_velocity;
-  if (has_angular_velocity && !has_rotation && m.angular_velocity_frame == AngularVelocityFrame::body)
-    note(Errc::invalid_argument, "R-CSV-8", "rotation");
-  const bool has_device = has_group(m.device), has_force = has_group(m.force);
-  if (!has_device && !has_force) return;
-  plan_.info.users.push_back({m.user});
-  if (has_device) bind_user(m.device, kDeviceColumns, m.length_scale);
-  if (!has_force) return;
-  bind_user(m.force, kForceColumns, 1.0);
-  bind_user(m.force, kServerForceColumns, 1.0);
+  for (std::size_t i = 0; i < columns.size(); ++i) plan_.bindings.push_back({column(columns[i]), user, nullptr, fields[i].field});
 }
 
 void Planner::plan_tactus() {
@@ -163,7 +115,7 @@ bool Planner::has_any(const std::string& path, const std::array<CsvColumn<UserSa
 template <std::size_t N>
 bool Planner::bind_sense(const std::string& path, const std::array<CsvColumn<UserSample>, N>& columns) {
   if (!has_any(path, columns)) return false;
-  bind_user(all_columns(path, columns), columns, 1.0);
+  bind_user(all_columns(path, columns), columns);
   return true;
 }
 
@@ -171,8 +123,8 @@ bool Planner::bind_sense(const std::string& path, const std::array<CsvColumn<Use
 void Planner::plan_forces(const std::string& path) {
   const bool has_server = has_any(path, kServerForceColumns), has_felt = !has_server || has_any(path, kForceColumns);
   plan_.info.users.back().forces = !has_server ? KnownForces::felt : has_felt ? KnownForces::both : KnownForces::server;
-  bind_user(all_columns(path, has_felt ? kForceColumns : kServerForceColumns), kForceColumns, 1.0);
-  if (has_server) bind_user(all_columns(path, kServerForceColumns), kServerForceColumns, 1.0);
+  bind_user(all_columns(path, has_felt ? kForceColumns : kServerForceColumns), kForceColumns);
+  if (has_server) bind_user(all_columns(path, kServerForceColumns), kServerForceColumns);
 }
 
 std::optional<std::size_t> Planner::column_if_there(const std::string& name) {
@@ -183,16 +135,16 @@ void Planner::plan_tactus_object(const std::string& path) {
   constexpr std::size_t kRoot = std::string_view("/objects/").size();
   plan_.info.objects.push_back({path.substr(kRoot, path.size() - kRoot - 1), Dof::all});
   plan_.dof.push_back(column(path + kDofColumn));
-  bind_object(all_columns(path, kObjectColumns), 0, 1.0);
+  bind_object(all_columns(path, kObjectColumns));
 }
 
 void Planner::plan_tactus_user(const std::string& path) {
   constexpr std::size_t kRoot = std::string_view("/users/").size();
   plan_.info.users.push_back({path.substr(kRoot, path.size() - kRoot - 1)});
   plan_.users.push_back({column(path + kContactColumn), column(path + kContactObjectColumn), {}, {}, {}, {}});
-  bind_user(all_columns(path, kDeviceColumns), kDeviceColumns, 1.0);
+  bind_user(all_columns(path, kDeviceColumns), kDeviceColumns);
   plan_forces(path);
-  bind_user(all_columns(path, kTouchColumns), kTouchColumns, 1.0);
+  bind_user(all_columns(path, kTouchColumns), kTouchColumns);
   CsvUserColumns& columns = plan_.users.back();
   columns.buttons = column_if_there(path + kButtonsColumn);
   columns.time = column_if_there(path + kDeviceTimeColumn);
@@ -217,9 +169,7 @@ std::string place_of_field(const std::string& column, const std::string& text) {
   return place;
 }
 
-tl::expected<CsvPlan, Diagnostic> plan_csv(const CsvMapping& mapping, const std::vector<std::string>& names) {
-  return Planner(mapping, names).run();
-}
+tl::expected<CsvPlan, Diagnostic> plan_csv(const std::vector<std::string>& names) { return Planner(names).run(); }
 
 // ==== csv presets ====
 

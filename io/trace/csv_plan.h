@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Maps the fields of a row to quantities, from a column mapping, or a known layout, and a line of names. Internal to the library.
+/// The columns of export_csv(), and which of them a table has. Internal to the library.
 #pragma once
 
 #include <algorithm>
@@ -107,18 +107,17 @@ inline constexpr const char* kContactColumn = "contact";
 inline constexpr const char* kContactObjectColumn = "contact_object";
 
 // ==== csv plan ====
-// Maps the fields of a row to quantities, from a column mapping and a line of names.
+// Maps the fields of a row of export_csv() to quantities, by a line of names.
 
 /// One number of every row.
 struct CsvBinding {
   std::size_t column = 0;
-  std::uint32_t index = 0;  ///< of the object or the user
-  double scale = 1.0;
+  std::uint32_t index = 0;                          ///< of the object or the user
   double& (*object_field)(RigidSample&) = nullptr;  ///< either this or the next is set
   double& (*user_field)(UserSample&) = nullptr;
 };
 
-/// What is no number, and whole numbers of a user, layout `tactus` only.
+/// What is no number, and whole numbers of a user.
 struct CsvUserColumns {
   std::size_t kind = 0, object = 0;                 ///< of the contact
   std::optional<std::size_t> buttons, time;         ///< of the device
@@ -130,17 +129,21 @@ struct CsvPlan {
   std::vector<std::string> names;  ///< of all columns
   TraceInfo info;                  ///< the rows determine tick rate and degrees of freedom
   std::vector<CsvBinding> bindings;
-  std::optional<std::size_t> tick, time, segment, shown;
-  std::vector<std::size_t> dof;       ///< per object, layout `tactus` only
-  std::vector<CsvUserColumns> users;  ///< per user, likewise
-  bool derive_velocity = false, derive_angular_velocity = false;
-  bool check_angular_velocity = false;  ///< recorded, with rotations to compare it with
+  std::optional<std::size_t> tick, time, shown;
+  std::vector<std::size_t> dof;       ///< per object
+  std::vector<CsvUserColumns> users;  ///< per user
 };
 
 /// Location of a field within its line: "column x, 'oops'".   in  either may be empty
 std::string place_of_field(const std::string& column, const std::string& text);
 
-/// err  R-CSV-2, R-CSV-8, with the offending column.
-tl::expected<CsvPlan, Diagnostic> plan_csv(const CsvMapping& mapping, const std::vector<std::string>& names);
+/// Of a table of export_csv().   err  R-CSV-2, R-CSV-8, with the offending column.
+tl::expected<CsvPlan, Diagnostic> plan_csv(const std::vector<std::string>& names);
+
+class CsvReader;
+/// The rows of such a table, strictly: what export_csv() wrote reads back to the same bits.
+/// in   reader  at its names;   out  has_output  a trace was begun;   err  as import_csv()
+tl::expected<CsvImport, Diagnostic> import_tactus_csv(CsvReader& reader, const CsvMapping& mapping, CsvPlan plan,
+                                                      const std::string& out_path, bool& has_output);
 
 }  // namespace tactus

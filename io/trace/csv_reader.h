@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Rows of a table as text (RFC 4180 quoting, but no line breaks inside quotes), plain or zstd, in bounded memory.
+/// Rows of a table as text (RFC 4180 quoting, but no line breaks inside quotes), plain or zstd, in any encoding that text.h knows, in
+/// bounded memory.
 ///
-/// The line of names tells what separates the fields: of comma, semicolon and tab the one that it has most of, outside quotes. Where that
-/// is no comma, numbers may have a decimal comma. Lines that begin with # or % are comments; if there are no other names, the last of
-/// those ahead of the numbers holds them.
+/// Commas, semicolons, tabs or blanks separate the fields; the first values tell (or a line sep=;). Where it is no comma, numbers may have
+/// a decimal comma, where it is one, numbers in quotes. A separator at the end of a row is no field. Lines that begin with #, % or // are
+/// comments. What stands ahead of the values: csv_header.h.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +14,10 @@
 #include <vector>
 
 #include <tactus/base/result.h>
+#include <tactus/base/text.h>
 #include <tactus/trace/byte_source.h>
+#include <tactus/trace/csv_fields.h>
+#include <tactus/trace/csv_header.h>
 #include <tactus/trace/input_budget.h>
 
 namespace tactus {
@@ -21,41 +25,43 @@ namespace tactus {
 class CsvReader {
  public:
   /// err  io R-TRC-1; truncated, malformed R-CSV-1: damaged zstd data; limit_exceeded R-CSV-6: a line over 1 MiB, R-CSV-9
-  static Result<CsvReader> open(const std::string& path);
-  /// Move on to the line of names; false: there is none.   pre  first call
+  static Result<CsvReader> open(const std::string& path, const CsvText& format = {});
+  /// Find the names, which are then the fields; false: the table is empty.   pre  first call
   Result<bool> names();
+  const CsvHeader& header() const noexcept { return header_; }  ///< valid after names()
   /// Move on to the next line that is neither blank nor a comment; false at the end.
   Result<bool> next();
   /// Of this line; numbers have a decimal point.
   const std::vector<std::string>& fields() const noexcept { return fields_; }
   std::uint64_t line() const noexcept { return line_; }  ///< counts from 1
+  bool is_open() const noexcept { return is_open_; }     ///< the table ends within this line, or without an end of it
+  std::size_t bytes() const noexcept { return bytes_; }  ///< of this line
+  std::uint64_t decimal_commas() const noexcept { return decimal_commas_; }  ///< numbers in quotes so far
 
  private:
   explicit CsvReader(ByteSource source) : source_(std::move(source)) {}
-  Result<void> start();
+  Result<void> start(const CsvText& format);
   Result<void> read_raw();
   Result<void> refill();
   Result<std::optional<std::string_view>> next_line();
   Result<std::optional<std::string_view>> next_row();
-  void split(std::string_view line);
-  bool holds_numbers() const;
+  Result<bool> look_ahead();
 
   ByteSource source_;
   std::optional<StreamDecompressor> zstd_;
   InputBudget budget_;
-  std::vector<std::uint8_t> raw_;  // read but not yet decompressed
+  TextDecoder decoder_;
+  std::vector<std::uint8_t> raw_, piece_;  // read but not yet decompressed; decompressed
   std::string text_;
   std::size_t line_start_ = 0, scanned_ = 0;  // in text_
-  bool ended_ = false;
-  std::uint64_t line_ = 0;
-  char separator_ = ',';
-  bool has_names_ = false;
-  std::string comment_;  // the last one ahead of the names
-  bool holds_ = false;   // held_ is the next line
-  std::vector<std::string> fields_, held_;
+  bool ended_ = false, is_open_ = false;
+  std::uint64_t line_ = 0, decimal_commas_ = 0;
+  std::size_t bytes_ = 0;
+  CsvNames wanted_names_ = CsvNames::automatic;
+  CsvHeader header_;
+  std::vector<CsvLine> ahead_;  // read to find the names
+  std::size_t replayed_ = 0;    // of ahead_
+  std::vector<std::string> fields_;
 };
-
-/// A text as a field: in quotes when it needs them.
-std::string csv_field(std::string_view text);
 
 }  // namespace tactus

@@ -8,7 +8,6 @@
 #include <tactus/trace/differences.h>
 
 namespace tactus {
-namespace {
 
 Vec3 mixed(const Vec3& a, const Vec3& b, double share) noexcept { return a == b || share == 0 ? a : a + share * (b - a); }
 
@@ -17,6 +16,8 @@ RigidSample mixed(const RigidSample& a, const RigidSample& b, double share) noex
           mixed(a.velocity, b.velocity, share),
           mixed(a.angular_velocity, b.angular_velocity, share)};
 }
+
+namespace {
 
 UserSample mixed(const UserSample& a, const UserSample& b, double share) {
   UserSample out = a;

@@ -11,6 +11,11 @@
 
 namespace tactus {
 
+/// On the straight line from a to b, and on the shorter arc; share 0 is a bit for bit.   pre  rotations are of unit length, or nearly
+Vec3 mixed(const Vec3& a, const Vec3& b, double share) noexcept;
+Quat mixed(const Quat& a, const Quat& b, double share) noexcept;
+RigidSample mixed(const RigidSample& a, const RigidSample& b, double share) noexcept;
+
 class Resampler {
  public:
   /// in   tick_rate  wanted [1/s], 1 .. kMaxTickRate;  gap  [s] no frames are made between two that are farther apart

@@ -11,6 +11,8 @@
 #include <sstream>
 
 #include <tactus/trace/byte_source.h>
+#include <tactus/trace/csv_time.h>
+#include <tactus/trace/csv_units.h>
 #include "tests/unit/trace_fixture.h"
 
 namespace tactus {
@@ -283,13 +285,14 @@ TEST(Csv, RateAndTicksFollowTheTimeColumn) {
   EXPECT_EQ(ticks, (std::vector<std::int64_t>{0, 1, 2, 5, 6, 7}));
   EXPECT_EQ(outcome.done.ticks.count(), 6u);
   EXPECT_EQ(outcome.done.ticks.length(), 8u);
+  mapping.resample = false;
   const Outcome back = import("t,s,x,y,z\n1.0,1,0,0,0\n1.002,1,0,0,0\n1.002,1,0,0,0\n1.004,1,0,0,0\n", mapping);
   EXPECT_EQ(back.rule, "R-CSV-5");
   EXPECT_EQ(back.error.line, 4u);
 }
 
 TEST(Csv, LineEndsQuotesBlanksAndByteOrderMark) {
-  const Outcome outcome = import("\xEF\xBB\xBF\"x\" , y,z\r\n1, 2 ,\"3\"\r\n\r\n4,5,6", xyz());
+  const Outcome outcome = import("\xEF\xBB\xBF\"x\" , y,z\r\n1, 2 ,\"3\"\r\n\r\n4,5,6\r\n", xyz());
   ASSERT_EQ(outcome.rule, "");
   ASSERT_EQ(outcome.frames.size(), 2u);
   EXPECT_EQ(outcome.frames[0].objects[0].pose.position, (Vec3{1, 2, 3}));
@@ -333,9 +336,8 @@ TEST(Csv, MistakesAreNamedWithTheirPlace) {
   check("x,y,z,x\n1,2,3,4\n", "R-CSV-2", "line 1, column x");
   check("x,y,z\n1,2,3\n\n1,2\n", "R-CSV-3", "line 4");
   check("x,y,z\n1,2,3,4\n", "R-CSV-3", "line 2");
-  for (const char* bad : {"nan", "inf", "-inf", "1e999", "1.5x", "", "0x10", "1 2", "--1", "+1"})
-    check(std::string("x,y,z\n1,2,3\n4,") + bad + ",6\n", "R-CSV-4",
-          std::string("line 3, column y") + (*bad == 0 ? "" : std::string(", '") + bad + '\''));
+  for (const char* bad : {"1e999", "1.5x", "0x10", "1 2", "--1", "+-1"})
+    check(std::string("x,y,z\n1,2,3\n4,") + bad + ",6\n", "R-CSV-4", std::string("line 3, column y, '") + bad + '\'');
   check("x,y,z\n1,\"2\"3,4\n1,\"2\"x,3\n", "R-CSV-4", "line 3, column y, '2x'");
   check("x,y,z\n" + std::string((1u << 20) + (1u << 17), '1'), "R-CSV-6", "line 2");
 }
@@ -441,13 +443,105 @@ TEST(Csv, TactusLayoutDistrustsDevices) {
   check("1,1", "1,0,0,0,0,5", "R-CSV-4", "line 2, column /users/u/contact_object, '1'");
 }
 
-TEST(Csv, ARotationOfNoLengthIsRefused) {
+TEST(Csv, ARotationOfNoLengthIsMissing) {
   std::string tosses(kTosses);
   const std::string_view second = "0.4373504,0.2366988,0.8673623,-0.01951942";
   tosses.replace(tosses.find(second), second.size(), "0,0,0,0");
-  const Outcome outcome = import(tosses, preset("cube-tosses"));
+  CsvMapping mapping = preset("cube-tosses");
+  const Outcome held = import(tosses, mapping);
+  ASSERT_EQ(held.frames.size(), 3u) << held.rule;
+  EXPECT_EQ(held.frames[1].objects[0].pose.rotation, held.frames[0].objects[0].pose.rotation);
+  EXPECT_FALSE(held.done.notes.all().empty());
+  mapping.strict = true;
+  const Outcome outcome = import(tosses, mapping);
   EXPECT_EQ(outcome.rule, "R-CSV-4");
   EXPECT_EQ(place_of(outcome.error), "line 3, column qw");
+}
+
+TEST(Csv, TimesLoseNothing) {
+  const auto ns = [](std::string_view text, std::int64_t unit = 1'000'000'000) {
+    const auto time = parse_csv_time(text, unit);
+    return time ? time->nanoseconds : -1;
+  };
+  EXPECT_EQ(ns("1403636579763555584", 1), 1403636579763555584);
+  EXPECT_EQ(ns("1700000000.123456789"), 1700000000123456789);
+  EXPECT_EQ(ns("-0.5"), -500000000);
+  EXPECT_EQ(ns("1.5e-3"), 1500000);
+  EXPECT_EQ(ns("2.5", 1'000'000), 2500000);
+  EXPECT_EQ(ns("2001-09-09T01:46:40Z"), 1'000'000'000'000'000'000);
+  EXPECT_EQ(ns("2001-09-09 03:46:40.000000001+02:00"), 1'000'000'000'000'000'001);
+  EXPECT_EQ(ns("01:00:00.25"), 3600250000000);
+  for (const char* wrong : {"2001-13-09T01:46:40Z", "12:61:00", "1:2", "abc", "99999999999999999999", "1.2.3"})
+    EXPECT_EQ(ns(wrong), -1) << wrong;
+  EXPECT_EQ(date_text(1'000'000'000'000'000'000), "2001-09-09 01:46:40 UTC");
+}
+
+TEST(Csv, NamesTellUnitsAndAxes) {
+  const auto scale = [](std::string_view name, CsvDimension dimension) {
+    const auto told = unit_in_name(name, dimension);
+    return told.unit ? told.unit->scale : 0;
+  };
+  for (const char* name : {"t_ms", "time_ms", "t [ms]", "t (ms)", "timeMs", "ms", "t / ms"})
+    EXPECT_EQ(scale(name, CsvDimension::time), 1e-3) << name;
+  EXPECT_EQ(scale("timestamp [ns]", CsvDimension::time), 1e-9);
+  EXPECT_EQ(scale("TimeUS", CsvDimension::time), 1e-6);
+  for (const char* name : {"x [mm]", "x_mm", "x in mm"}) EXPECT_EQ(scale(name, CsvDimension::length), 1e-3) << name;
+  EXPECT_EQ(scale("pos_x (cm)", CsvDimension::length), 1e-2);
+  EXPECT_EQ(scale("F [mN]", CsvDimension::force), 1e-3);
+  EXPECT_EQ(scale("force_kN", CsvDimension::force), 1e3);
+  for (const char* name : {"x", "pos_x", "frame_items", "Rotation X", "q_w []", "p[0]"})
+    EXPECT_EQ(scale(name, CsvDimension::length), 0) << name;
+  EXPECT_EQ(unit_in_name("x [deg]", CsvDimension::length).foreign, "deg");
+  for (const char* name : {"w", "qw", "q_w []", "Rotation W", "pose.orientation.w", "quatW"})
+    EXPECT_EQ(axis_in_name(name), 'w') << name;
+  EXPECT_EQ(axis_in_name("yaw_deg"), 'z');
+  EXPECT_EQ(axis_in_name("a"), 0);
+}
+
+TEST(Csv, MissingValuesArePutBetweenTheirNeighbours) {
+  for (const char* word : {"", "nan", "inf", "-", "NA", "null"}) {
+    const Outcome outcome = import(std::string("x,y,z\n1,2,3\n4,") + word + ",6\n5,4,7\n", xyz());
+    ASSERT_EQ(outcome.frames.size(), 3u) << word << outcome.rule;
+    EXPECT_EQ(outcome.frames[1].objects[0].pose.position, (Vec3{3, 3, 5})) << word;
+  }
+}
+
+TEST(Csv, EveryOptionOfTheMappingChangesTheTraceOrIsRefused) {
+  constexpr std::string_view kTable =
+      "t,x,y,z,a,b,c,d,fx,fy,fz\n0,1,2,3,1,0,0,0,1,2,3\n0.01,2,3,4,0.6,0.8,0,0,2,3,4\n0.02,3,4,6,0.6,0,0.8,0,1,2,3\n";
+  CsvMapping plain;
+  plain.time = "t";
+  plain.position = {"x", "y", "z"};
+  plain.rotation = {"a", "b", "c", "d"};
+  plain.force = {"fx", "fy", "fz"};
+  const auto trace_of = [&](auto change) {
+    CsvMapping mapping = plain;
+    change(mapping);
+    const Outcome outcome = import(kTable, mapping);
+    std::string all = outcome.rule + std::to_string(outcome.info.tick_rate);
+    for (const TraceFrame& frame : outcome.frames) {
+      const auto& bytes = image(frame);
+      all.append(bytes.begin(), bytes.end());
+    }
+    return all;
+  };
+  const std::string before = trace_of([](CsvMapping&) {});
+  const auto differs = [&](const char* what, auto change) { EXPECT_NE(trace_of(change), before) << what; };
+  differs("time_unit", [](CsvMapping& m) { m.time_unit = "ms"; });
+  differs("tick_rate", [](CsvMapping& m) { m.tick_rate = 50; });
+  differs("force_unit", [](CsvMapping& m) { m.force_unit = "mN"; });
+  differs("length_scale", [](CsvMapping& m) { m.length_scale = 0.001; });
+  differs("quaternion_order", [](CsvMapping& m) { m.quaternion_order = QuaternionOrder::xyzw; });
+  differs("axes", [](CsvMapping& m) { m.axes = {1, -3, 2}; });
+  differs("skip_lines", [](CsvMapping& m) { m.text.skip_lines = 2; });
+  differs("names", [](CsvMapping& m) { m.text.names = CsvNames::none; });
+  differs("segment", [](CsvMapping& m) { m.segment = "fx"; });
+  differs("object_column", [](CsvMapping& m) { m.object_column = "fx"; });
+  for (std::size_t i = 0; i < 3; ++i) {
+    differs("position", [i](CsvMapping& m) { m.position[i] = "t"; });
+    differs("force", [i](CsvMapping& m) { m.force[i] = "t"; });
+  }
+  for (std::size_t i = 0; i < 4; ++i) differs("rotation", [i](CsvMapping& m) { m.rotation[i] = "fx"; });
 }
 
 }  // namespace

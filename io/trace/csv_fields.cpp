@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/trace/csv_fields.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+
+#include <tactus/base/text.h>
+
+namespace tactus {
+namespace {
+
+constexpr std::string_view kBlankBytes = " \t\r";
+
+/// Append what stands between the quote at the front of `line` and its partner; the result is what follows.
+std::string_view unquote(std::string_view line, std::string& field) {
+  for (line.remove_prefix(1); !line.empty(); line.remove_prefix(1)) {
+    if (line[0] == '"') {
+      line.remove_prefix(1);
+      if (!line.starts_with('"')) break;  // two quotes are one, inside
+    }
+    field += line[0];
+  }
+  return line;
+}
+
+/// "1,5" becomes "1.5"; what has both signs, or one twice, is no number.
+bool give_point(std::string& field) noexcept {
+  const std::size_t comma = field.find(',');
+  if (comma == std::string::npos || field.find_first_of(".,", comma + 1) != std::string::npos || field.find('.') < comma)
+    return false;
+  const auto is_digit = [](char c) { return (c >= '0' && c <= '9') || c == '+' || c == '-'; };
+  if (!std::all_of(field.begin(), field.begin() + static_cast<std::ptrdiff_t>(comma), is_digit)) return false;
+  field[comma] = '.';
+  return true;
+}
+
+std::size_t end_of_field(std::string_view line, char separator) noexcept {
+  return std::min(separator == kBlanks ? line.find_first_of(" \t") : line.find(separator), line.size());
+}
+
+bool equals_any_case(std::string_view a, std::string_view b) noexcept {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](char x, char y) { return std::tolower(static_cast<unsigned char>(x)) == y; });
+}
+
+}  // namespace
+
+std::string_view trim_field(std::string_view text) noexcept {
+  constexpr std::string_view kHard = "\xC2\xA0";
+  while (true) {
+    const std::size_t before = text.size();
+    text.remove_prefix(std::min(text.find_first_not_of(kBlankBytes), text.size()));
+    text = text.substr(0, text.find_last_not_of(kBlankBytes) + 1);
+    if (text.starts_with(kHard)) text.remove_prefix(kHard.size());
+    if (text.ends_with(kHard)) text.remove_suffix(kHard.size());
+    if (text.size() == before) return text;
+  }
+}
+
+std::size_t split_fields(std::string_view line, char separator, std::vector<std::string>& fields) {
+  if (separator == kBlanks) line = trim_field(line);
+  const std::string_view blank = separator == '\t' ? std::string_view(" ") : kBlankBytes;  // an empty field is one, too
+  std::size_t count = 0, pointed = 0;
+  for (bool more = true; more; ++count) {
+    if (count == fields.size()) fields.emplace_back();
+    std::string& field = fields[count];
+    field.clear();
+    line.remove_prefix(std::min(line.find_first_not_of(blank), line.size()));
+    const bool is_quoted = line.starts_with('"');
+    if (is_quoted) line = unquote(line, field);
+    const std::size_t end = end_of_field(line, separator);
+    field += trim_field(line.substr(0, end));  // after a closing quote nothing should be left; if it is, the field is no number
+    if (separator != ',') give_point(field);
+    else if (is_quoted && give_point(field)) ++pointed;
+    more = end < line.size();
+    line.remove_prefix(std::min(end + 1, line.size()));
+  }
+  fields.resize(count);
+  return pointed;
+}
+
+bool is_missing_word(std::string_view text) noexcept {
+  constexpr std::array<std::string_view, 20> kWords{"-",    "--",   "---",      "na",        "n/a",     "#n/a", "nan",
+                                                    "-nan", "+nan", "null",     "none",      "nil",     "nd",   "inf",
+                                                    "-inf", "+inf", "infinity", "-infinity", "missing", "<na>"};
+  if (text.empty()) return true;
+  if (text.size() > 12) return false;
+  if (text.starts_with("1.#") || text.starts_with("-1.#") || text.starts_with("-nan(") || text.starts_with("nan(")) return true;
+  return std::ranges::any_of(kWords, [&](std::string_view word) { return equals_any_case(text, word); });
+}
+
+bool is_value(std::string_view text) noexcept {
+  if (const auto number = parse_number<double>(text)) return std::isfinite(*number);
+  const auto is_of_time = [](char c) { return std::string_view("0123456789:-./TZtz+ ,").find(c) != std::string_view::npos; };
+  if (text.size() < 5 || text[0] < '0' || text[0] > '9' || !std::ranges::all_of(text, is_of_time)) return false;
+  return text.find(':') != std::string_view::npos || (text.size() >= 10 && text[4] == '-' && text[7] == '-');
+}
+
+std::string csv_field(std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos && trim_field(text) == text) return std::string(text);
+  std::string quoted = "\"";
+  for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
+  return quoted + '"';
+}
+
+}  // namespace tactus

@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/trace/csv_named.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <map>
+#include <set>
+#include <span>
+
+#include <tactus/base/rule.h>
+#include <tactus/base/shown.h>
+#include <tactus/base/text.h>
+#include <tactus/trace/csv_plan.h>
+#include <tactus/trace/csv_units.h>
+
+namespace tactus {
+namespace {
+
+/// Notes the first mistake and lets the caller go on, so that a plan reads as a list of what it wants.
+class NamedPlanner {
+ public:
+  NamedPlanner(const CsvMapping& mapping, const CsvHeader& header) : mapping_(mapping), header_(header) {
+    plan_.names = header.names;
+    plan_.used.resize(header.names.size());
+    plan_.notes = header.notes;
+  }
+
+  CsvResult<CsvNamedPlan> run();
+
+ private:
+  void plan_time();
+  void plan_subject(const CsvQuantities& q, const std::string& object, const std::string& user);
+  void plan_rotation(const CsvQuantities& q, CsvChannel& channel);
+  void plan_quaternion(std::array<std::string, 4> columns, CsvChannel& channel);
+  void plan_euler(const CsvQuantities& q, CsvChannel& channel);
+  template <std::size_t N>
+  bool has_group(const std::array<std::string, N>& columns);
+  std::vector<std::size_t> find(const std::string& name) const;
+  std::size_t column(const std::string& name);
+  CsvNumber number(const std::string& name, CsvDimension dimension);
+  double scale_of(std::size_t column, CsvDimension dimension);
+  std::string option_of(CsvDimension dimension) const;
+  void mistake(Errc code, RuleName rule, const std::string& column, std::string remedy = {}) {
+    if (!mistake_)
+      mistake_ = Diagnostic{.error = fail(code, rule).value(),
+                            .line = header_.line,
+                            .detail = place_of_field(column, ""),
+                            .remedy = std::move(remedy)};
+  }
+
+  const CsvMapping& mapping_;
+  const CsvHeader& header_;
+  CsvNamedPlan plan_;
+  std::optional<Diagnostic> mistake_;
+};
+
+std::string lower(std::string_view text) {
+  std::string out(text);
+  std::ranges::transform(out, out.begin(), [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+  return out;
+}
+
+/// All columns that may be meant; the first way of naming by which there is one counts.
+std::vector<std::size_t> NamedPlanner::find(const std::string& name) const {
+  const auto all = [&](auto is_meant) {
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < plan_.names.size(); ++i)
+      if (is_meant(plan_.names[i])) found.push_back(i);
+    return found;
+  };
+  if (auto found = all([&](const std::string& n) { return n == name; }); !found.empty()) return found;
+  if (name.starts_with('#'))
+    if (const auto number = parse_number<std::size_t>(name.substr(1)); number && *number >= 1 && *number <= plan_.names.size())
+      return {*number - 1};
+  if (auto found = all([&](const std::string& n) { return without_brackets(n) == name; }); !found.empty()) return found;
+  return all([&](const std::string& n) { return n.size() > name.size() + 1 && n.ends_with(' ' + name); });
+}
+
+std::size_t NamedPlanner::column(const std::string& name) {
+  const auto found = find(name);
+  if (found.size() == 1) {
+    plan_.used[found[0]] = true;
+    return found[0];
+  }
+  std::string remedy =
+      found.empty() ? "The table has the columns "
+                    : "Several columns are called so: name one by its number, such as #" + std::to_string(found[0] + 1) + ", of ";
+  for (std::size_t i = 0; i < plan_.names.size() && i < 12; ++i) remedy += (i == 0 ? "" : ", ") + shown(plan_.names[i], 30);
+  mistake(Errc::malformed, "R-CSV-2", name,
+          remedy + (plan_.names.size() > 12 ? ", ..." : "") + "; --names and --skip-lines say where names are.");
+  return 0;
+}
+
+/// All columns of a vector are named, or none.
+template <std::size_t N>
+bool NamedPlanner::has_group(const std::array<std::string, N>& columns) {
+  const auto is_named = [](const std::string& name) { return !name.empty(); };
+  const bool has_any = std::any_of(columns.begin(), columns.end(), is_named);
+  if (has_any && !std::all_of(columns.begin(), columns.end(), is_named))
+    mistake(Errc::invalid_argument, "R-CSV-8", *std::find_if(columns.begin(), columns.end(), is_named));
+  return has_any;
+}
+
+std::string NamedPlanner::option_of(CsvDimension dimension) const {
+  switch (dimension) {
+    case CsvDimension::time:
+      return mapping_.time_unit;
+    case CsvDimension::angle:
+      return mapping_.angle_unit;
+    case CsvDimension::angular_speed:
+      return mapping_.angle_unit.empty() ? "" : mapping_.angle_unit + "/s";
+    case CsvDimension::force:
+      return mapping_.force_unit;
+    default:
+      return {};
+  }
+}
+
+/// SI units in one of the column: from its name, a line of units, the mapping; of two that differ none.
+double NamedPlanner::scale_of(std::size_t column, CsvDimension dimension) {
+  const std::string& name = plan_.names[column];
+  UnitInName told = unit_in_name(name, dimension);
+  if (!told.unit && !header_.units.empty() && !header_.units[column].empty()) {
+    const auto unit = unit_of(header_.units[column]);
+    if (unit && unit->dimension == dimension) told = {unit, {}};
+    else if (unit) told.foreign = header_.units[column];
+  }
+  const bool is_length = dimension == CsvDimension::length;
+  if (!told.unit && is_length && !header_.length_unit.empty())
+    if (const auto unit = unit_of(header_.length_unit); unit && unit->dimension == dimension) told.unit = unit;
+  const std::string option = option_of(dimension);
+  double wanted = is_length || dimension == CsvDimension::speed ? mapping_.length_scale : 1;
+  bool is_given = mapping_.says_length && (is_length || dimension == CsvDimension::speed);
+  if (!option.empty()) {
+    const auto unit = unit_of(option);
+    if (!unit || unit->dimension != dimension)
+      mistake(Errc::invalid_argument, "R-CSV-10", name, "'" + option + "' is no unit that is known.");
+    else wanted = unit->scale;
+    is_given = true;
+  }
+  if (told.unit) {
+    if (is_given && std::abs(wanted / told.unit->scale - 1) > 1e-9)
+      mistake(Errc::invalid_argument, "R-CSV-10", name,
+              "The name says " + std::string(told.unit->name) + ": leave the option for its unit out, or rename the column.");
+    if (!is_given && told.unit->scale != 1)
+      plan_.notes.add("column " + name, "in " + std::string(told.unit->name) + ", as its name says");
+    return told.unit->scale;
+  }
+  if (!told.foreign.empty() && !is_given) {
+    if (unit_of(told.foreign))
+      mistake(Errc::invalid_argument, "R-CSV-10", name,
+              "'" + shown(told.foreign) + "' is a unit of another quantity: map another column, or rename it.");
+    plan_.notes.add("column " + name, "'" + shown(told.foreign) + "' is not taken for a unit");
+  }
+  return wanted;
+}
+
+CsvNumber NamedPlanner::number(const std::string& name, CsvDimension dimension) {
+  if (name == kZeroColumn && std::ranges::find(plan_.names, name) == plan_.names.end()) return {};
+  const std::size_t found = column(name);
+  return {found, scale_of(found, dimension)};
+}
+
+void NamedPlanner::plan_time() {
+  if (mapping_.time.empty()) return;
+  plan_.time = column(mapping_.time);
+  plan_.time_is_told = !mapping_.time_unit.empty() || unit_in_name(plan_.names[*plan_.time], CsvDimension::time).unit ||
+                       (!header_.units.empty() && unit_of(header_.units[*plan_.time]));
+  plan_.time_unit = std::llround(1e9 * scale_of(*plan_.time, CsvDimension::time));
+}
+
+void NamedPlanner::plan_quaternion(std::array<std::string, 4> columns, CsvChannel& channel) {
+  constexpr std::string_view kListed[2]{"wxyz", "xyzw"};
+  std::string by_name(4, ' ');
+  std::size_t known = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto found = find(columns[i]);
+    if (found.size() != 1) column(columns[i]);
+    const char axis = found.size() == 1 ? axis_in_name(plan_.names[found[0]]) : static_cast<char>(0);
+    if (axis != 0) by_name[i] = axis, ++known;
+  }
+  const std::string_view option =
+      mapping_.quaternion_order == QuaternionOrder::by_names ? "" : kListed[mapping_.quaternion_order == QuaternionOrder::xyzw];
+  std::string_view order = option.empty() ? kListed[0] : option;
+  const bool are_four = known == 4 && std::set<char>(by_name.begin(), by_name.end()).size() == 4;
+  if (are_four && option.empty()) {
+    if (by_name != order)
+      plan_.notes.add("column " + columns[0], "rotations are in the order " + by_name + ", as the columns are called");
+    order = by_name;
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (by_name[i] != ' ' && by_name[i] != order[i])
+      mistake(Errc::invalid_argument, "R-CSV-10", columns[i],
+              "The name says " + std::string(1, by_name[i]) + " where the order " + std::string(order) + " has " + order[i] +
+                  ": list the columns in that order, or give --quaternion-order.");
+    channel.rotation[std::string_view("wxyz").find(order[i])] = {column(columns[i]), 1};
+  }
+  if (known == 0 && option.empty())
+    plan_.notes.add(
+        "column " + columns[0],
+        "rotations are taken as w, x, y, z: the columns are not called so; --quaternion-order xyzw is the other order");
+}
+
+void NamedPlanner::plan_euler(const CsvQuantities& q, CsvChannel& channel) {
+  const std::string order = lower(mapping_.euler_order);
+  const bool is_order =
+      order.size() == 3 && order.find_first_not_of("xyz") == std::string::npos && order[0] != order[1] && order[1] != order[2];
+  if (!is_order)
+    return mistake(Errc::invalid_argument, "R-CSV-10", q.euler[0],
+                   "Give --euler-order ZYX (about turned axes) or xyz (about fixed ones), in the order of turning.");
+  std::array<std::string, 3> columns = q.euler;
+  if (order[0] != order[2]) {  // each axis once: names may tell
+    std::array<char, 3> axes{};
+    for (std::size_t i = 0; i < 3; ++i)
+      if (const auto found = find(columns[i]); found.size() == 1) axes[i] = axis_in_name(plan_.names[found[0]]);
+    if (std::set<char>(axes.begin(), axes.end()) == std::set<char>{'x', 'y', 'z'})
+      for (std::size_t i = 0; i < 3; ++i) columns[order.find(axes[i])] = q.euler[i];
+    else
+      plan_.notes.add("column " + columns[0],
+                      "angles are taken in the order " + mapping_.euler_order + ": the columns are not called after axes");
+  }
+  const bool is_fixed = mapping_.euler_order != "" && std::islower(static_cast<unsigned char>(mapping_.euler_order[0])) != 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t to = is_fixed ? 2 - i : i;
+    const std::size_t found = column(columns[i]);
+    const bool is_told = !mapping_.angle_unit.empty() || unit_in_name(plan_.names[found], CsvDimension::angle).unit ||
+                         (!header_.units.empty() && unit_of(header_.units[found]));
+    if (!is_told)
+      mistake(Errc::invalid_argument, "R-CSV-10", columns[i], "Say whether the angles are degrees: --angle-unit deg or rad.");
+    channel.rotation[to] = {found, scale_of(found, CsvDimension::angle)};
+    channel.euler_axes[to] = static_cast<std::uint8_t>(order[i] - 'x');
+  }
+}
+
+void NamedPlanner::plan_rotation(const CsvQuantities& q, CsvChannel& channel) {
+  using Turn = CsvChannel::Turn;
+  const bool has[4]{has_group(q.rotation), has_group(q.euler), has_group(q.rotation_vector), has_group(q.rotation_matrix)};
+  if (std::count(std::begin(has), std::end(has), true) > 1)
+    return mistake(Errc::invalid_argument, "R-CSV-8", "rotation",
+                   "Map one of rotation, euler, rotation_vector and rotation_matrix.");
+  if (has[0]) channel.turn = Turn::quaternion, plan_quaternion(q.rotation, channel);
+  if (has[1]) channel.turn = Turn::euler, plan_euler(q, channel);
+  if (has[2]) {
+    channel.turn = Turn::vector;
+    for (std::size_t i = 0; i < 3; ++i) channel.rotation[i] = number(q.rotation_vector[i], CsvDimension::angle);
+  }
+  if (has[3]) {
+    channel.turn = Turn::matrix;
+    for (std::size_t i = 0; i < 9; ++i) channel.rotation[i] = {column(q.rotation_matrix[i]), 1};
+  }
+}
+
+void NamedPlanner::plan_subject(const CsvQuantities& q, const std::string& object, const std::string& user) {
+  const auto vector_of = [&](const std::array<std::string, 3>& columns, CsvDimension dimension) {
+    std::array<CsvNumber, 3> numbers;
+    for (std::size_t i = 0; i < 3; ++i) numbers[i] = number(columns[i], dimension);
+    return numbers;
+  };
+  const bool has_position = has_group(q.position), has_velocity = has_group(q.velocity),
+             has_angular_velocity = has_group(q.angular_velocity);
+  CsvChannel channel;
+  plan_rotation(q, channel);
+  const bool has_rotation = channel.turn != CsvChannel::Turn::none;
+  if (has_position) {
+    channel.index = static_cast<std::uint32_t>(plan_.info.objects.size());
+    channel.position = vector_of(q.position, CsvDimension::length);
+    channel.has_velocity = has_velocity;
+    channel.has_angular_velocity = has_angular_velocity;
+    if (has_velocity) channel.velocity = vector_of(q.velocity, CsvDimension::speed);
+    if (has_angular_velocity) channel.angular_velocity = vector_of(q.angular_velocity, CsvDimension::angular_speed);
+    plan_.info.objects.push_back({object, has_rotation || has_angular_velocity ? Dof::all : Dof::translation});
+    plan_.channels.push_back(channel);
+  } else if (has_rotation || has_velocity || has_angular_velocity) {
+    mistake(Errc::invalid_argument, "R-CSV-8", "position",
+            "Map the position of the object, too; where a table has none, --map position=0,0,0.");
+  }
+  if (has_angular_velocity && !has_rotation && mapping_.angular_velocity_frame == AngularVelocityFrame::body)
+    mistake(Errc::invalid_argument, "R-CSV-8", "rotation");
+  const bool has_device = has_group(q.device), has_force = has_group(q.force);
+  if (!has_device && !has_force) return;
+  const auto index = static_cast<std::uint32_t>(plan_.info.users.size());
+  plan_.info.users.push_back({user});
+  if (has_device)
+    plan_.channels.push_back(
+        {.kind = CsvChannel::Kind::device, .index = index, .position = vector_of(q.device, CsvDimension::length)});
+  if (has_force)
+    plan_.channels.push_back(
+        {.kind = CsvChannel::Kind::force, .index = index, .position = vector_of(q.force, CsvDimension::force)});
+}
+
+CsvResult<CsvNamedPlan> NamedPlanner::run() {
+  plan_time();
+  if (!mapping_.segment.empty()) plan_.segment = column(mapping_.segment);
+  if (!mapping_.object_column.empty()) plan_.object = column(mapping_.object_column);
+  if (plan_.object && !mapping_.others.empty())
+    mistake(Errc::invalid_argument, "R-CSV-8", mapping_.object_column,
+            "With --object-column, rows name the objects: --map takes none.");
+  plan_subject(mapping_, mapping_.object, mapping_.user);
+  for (const CsvSubject& other : mapping_.others) plan_subject(other, other.name, other.name);
+  if (plan_.channels.empty()) mistake(Errc::invalid_argument, "R-CSV-8", "");
+  if (mistake_) return tl::unexpected(*mistake_);
+  return std::move(plan_);
+}
+
+}  // namespace
+
+CsvResult<CsvNamedPlan> plan_named_csv(const CsvMapping& mapping, const CsvHeader& header) {
+  return NamedPlanner(mapping, header).run();
+}
+
+}  // namespace tactus

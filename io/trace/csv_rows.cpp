@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/trace/csv_rows.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <tactus/base/rule.h>
+#include <tactus/base/shown.h>
+#include <tactus/base/text.h>
+#include <tactus/trace/csv_plan.h>
+
+namespace tactus {
+namespace {
+
+constexpr double kLengthAsIs = 1e-3, kLengthMended = 0.02;  // what a rotation's length may be off 1: kept, made 1
+constexpr std::size_t kMostObjects = 4096;
+
+double length_of(const Quat& q) noexcept { return std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z); }
+
+Quat about(std::uint8_t axis, double angle) noexcept {
+  const double c = std::cos(angle / 2), s = std::sin(angle / 2);
+  return {c, axis == 0 ? s : 0, axis == 1 ? s : 0, axis == 2 ? s : 0};
+}
+
+/// Of a matrix, row by row, that turns and does not stretch.
+Quat of_matrix(const std::array<double, 9>& m) noexcept {
+  const double trace = m[0] + m[4] + m[8];
+  if (trace > 0) {
+    const double s = 2 * std::sqrt(trace + 1);
+    return {s / 4, (m[7] - m[5]) / s, (m[2] - m[6]) / s, (m[3] - m[1]) / s};
+  }
+  if (m[0] > m[4] && m[0] > m[8]) {
+    const double s = 2 * std::sqrt(1 + m[0] - m[4] - m[8]);
+    return {(m[7] - m[5]) / s, s / 4, (m[1] + m[3]) / s, (m[2] + m[6]) / s};
+  }
+  if (m[4] > m[8]) {
+    const double s = 2 * std::sqrt(1 + m[4] - m[0] - m[8]);
+    return {(m[2] - m[6]) / s, (m[1] + m[3]) / s, s / 4, (m[5] + m[7]) / s};
+  }
+  const double s = 2 * std::sqrt(1 + m[8] - m[0] - m[4]);
+  return {(m[3] - m[1]) / s, (m[2] + m[6]) / s, (m[5] + m[7]) / s, s / 4};
+}
+
+/// Rows and columns of length 1 at right angles, within what digits lose, and no mirror.
+bool is_rotation(const std::array<double, 9>& m) noexcept {
+  const Vec3 a{m[0], m[1], m[2]}, b{m[3], m[4], m[5]}, c{m[6], m[7], m[8]};
+  const auto off = [](double is, double wanted) { return std::abs(is - wanted) > kLengthMended; };
+  return !off(norm(a), 1) && !off(norm(b), 1) && !off(dot(a, b), 0) && !off(dot(cross(a, b), c), 1);
+}
+
+}  // namespace
+
+CsvRows::CsvRows(const CsvMapping& mapping, CsvNamedPlan& plan) : mapping_(mapping), plan_(plan) {
+  const auto& [x, y, z] = mapping.axes;
+  turns_ = x != 1 || y != 2 || z != 3;
+  const std::array<int, 3> order{std::abs(x), std::abs(y), std::abs(z)};
+  const int swaps = (order[0] > order[1]) + (order[0] > order[2]) + (order[1] > order[2]);
+  mirror_ = (swaps % 2 == 0 ? 1 : -1) * (x < 0 ? -1 : 1) * (y < 0 ? -1 : 1) * (z < 0 ? -1 : 1);
+}
+
+Diagnostic CsvRows::wrong(RuleName rule, std::string remedy) const {
+  const bool is_row = std::string_view(rule) == "R-CSV-3";
+  return {.error = fail(Errc::malformed, rule).value(),
+          .line = line_,
+          .detail = is_row ? "" : place_of_field(plan_.names[column_], text_),
+          .remedy = std::move(remedy)};
+}
+
+CsvRows::Read CsvRows::read(const std::vector<std::string>& fields, const CsvNumber& number, double& value) {
+  value = 0;
+  if (!number.column) return Read::value;
+  const std::string& field = fields[*number.column];
+  const auto parsed = parse_number<double>(field);
+  if (parsed && std::isfinite(*parsed)) {
+    value = number.scale * *parsed;
+    return Read::value;
+  }
+  column_ = *number.column;
+  text_ = field;
+  if (!parsed && !is_missing_word(field) && std::ranges::find(mapping_.missing, field) == mapping_.missing.end())
+    return Read::wrong;
+  why_ = field.empty() ? "an empty field" : "'" + shown(field) + "'";
+  return Read::missing;
+}
+
+template <std::size_t N>
+CsvRows::Read CsvRows::read(const std::vector<std::string>& fields, const std::array<CsvNumber, N>& numbers,
+                            std::span<double> values) {
+  Read worst = Read::value;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const Read one = read(fields, numbers[i], values[i]);
+    if (one == Read::wrong) return one;
+    if (one == Read::missing) worst = one;
+  }
+  return worst;
+}
+
+CsvRows::Read CsvRows::read_rotation(const std::vector<std::string>& fields, const CsvChannel& channel, Quat& rotation) {
+  using Turn = CsvChannel::Turn;
+  std::array<double, 9> n{};
+  const std::size_t count = channel.turn == Turn::quaternion ? 4 : channel.turn == Turn::matrix ? 9 : 3;
+  if (const Read read_all = read(fields, channel.rotation, std::span(n).first(count)); read_all != Read::value) return read_all;
+  if (channel.rotation[0].column) column_ = *channel.rotation[0].column;
+  text_.clear();
+  switch (channel.turn) {
+    case Turn::none:
+      break;
+    case Turn::euler:
+      rotation = about(channel.euler_axes[0], n[0]) * about(channel.euler_axes[1], n[1]) * about(channel.euler_axes[2], n[2]);
+      break;
+    case Turn::vector: {
+      const double angle = norm({n[0], n[1], n[2]}), s = angle > 0 ? std::sin(angle / 2) / angle : 0.5;
+      rotation = {std::cos(angle / 2), s * n[0], s * n[1], s * n[2]};
+      break;
+    }
+    case Turn::matrix:
+      why_ = "a matrix that is no rotation";
+      if (!is_rotation(n)) return Read::missing;
+      rotation = of_matrix(n);
+      [[fallthrough]];
+    case Turn::quaternion: {
+      if (channel.turn == Turn::quaternion) rotation = {n[0], n[1], n[2], n[3]};
+      const double length = length_of(rotation);
+      why_ = length == 0 ? "a rotation of length 0" : "a rotation whose length is off 1 by more than 2 %";
+      if (!(std::abs(length - 1) <= kLengthMended)) return Read::missing;
+      if (std::abs(length * length - 1) <= kLengthAsIs) break;
+      plan_.notes.add("column " + plan_.names[column_], "rotations whose length is off 1 by less than 2 % are made 1 long", at());
+      rotation = {rotation.w / length, rotation.x / length, rotation.y / length, rotation.z / length};
+    }
+  }
+  return Read::value;
+}
+
+CsvRows::Read CsvRows::read_sample(const std::vector<std::string>& fields, const CsvChannel& channel, RigidSample& sample) {
+  const auto vector = [&](const std::array<CsvNumber, 3>& numbers, Vec3& v) {
+    std::array<double, 3> n{};
+    const Read done = read(fields, numbers, n);
+    v = {n[0], n[1], n[2]};
+    return done;
+  };
+  Read worst = vector(channel.position, sample.pose.position);
+  const auto take = [&](Read one) { worst = std::max(worst, one); };
+  if (worst != Read::wrong && channel.turn != CsvChannel::Turn::none) take(read_rotation(fields, channel, sample.pose.rotation));
+  if (worst != Read::wrong && channel.has_velocity) take(vector(channel.velocity, sample.velocity));
+  if (worst != Read::wrong && channel.has_angular_velocity) take(vector(channel.angular_velocity, sample.angular_velocity));
+  if (worst != Read::value) return worst;
+  if (channel.has_angular_velocity && mapping_.angular_velocity_frame == AngularVelocityFrame::body) {
+    const Quat& q = sample.pose.rotation;
+    const double size = length_of(q);
+    sample.angular_velocity = rotate(Quat{q.w / size, q.x / size, q.y / size, q.z / size}, sample.angular_velocity);
+  }
+  if (turns_) turn_axes(sample, channel.kind == CsvChannel::Kind::object);
+  return worst;
+}
+
+/// M v; of a rotation and a turning axis det(M) M v.
+void CsvRows::turn_axes(RigidSample& sample, bool is_object) const {
+  const auto turned = [&](const Vec3& v) {
+    const double from[3]{v.x, v.y, v.z};
+    const auto part = [&](std::int8_t axis) { return axis < 0 ? 0 - from[-axis - 1] : from[axis - 1]; };
+    return Vec3{part(mapping_.axes[0]), part(mapping_.axes[1]), part(mapping_.axes[2])};
+  };
+  sample.pose.position = turned(sample.pose.position);
+  if (!is_object) return;
+  const Quat& q = sample.pose.rotation;
+  const Vec3 axis = mirror_ * turned({q.x, q.y, q.z}) + Vec3{};
+  sample.pose.rotation = {q.w, axis.x, axis.y, axis.z};
+  sample.velocity = turned(sample.velocity);
+  sample.angular_velocity = mirror_ * turned(sample.angular_velocity);
+}
+
+/// By the first time of the table, where nobody told.
+void CsvRows::settle_unit(const std::string& field) {
+  if (plan_.time_is_told) return;
+  const auto unit = unit_of_epoch(field);
+  if (!unit) return;
+  plan_.time_unit = *unit;
+  plan_.time_is_told = true;
+  const char* name = *unit == 1           ? "nanoseconds"
+                     : *unit == 1000      ? "microseconds"
+                     : *unit == 1'000'000 ? "milliseconds"
+                                          : "seconds";
+  if (*unit != 1'000'000'000)
+    plan_.notes.add("column " + plan_.names[*plan_.time],
+                    std::string("taken as ") + name + " since 1970, as the numbers are that large");
+}
+
+bool CsvRows::read_time(const std::vector<std::string>& fields, CsvRow& row) {
+  column_ = *plan_.time;
+  text_ = fields[column_];
+  if (!has_time_) settle_unit(text_);
+  const auto time = parse_csv_time(text_, plan_.time_unit);
+  if (!time || (has_time_ && time->kind != kind_)) return false;
+  constexpr std::int64_t kDay = 86'400'000'000'000;
+  row.time = time->nanoseconds;
+  if (time->kind == CsvTimeKind::clock) {  // past midnight
+    if (has_time_ && row.time + days_ < last_time_ - kDay / 2) days_ += kDay;
+    row.time += days_;
+  }
+  if (time->kind != CsvTimeKind::number) plan_.time_is_told = true;
+  if (!has_time_) {
+    if (time->kind == CsvTimeKind::date || (unit_of_epoch(text_) == plan_.time_unit)) first_date_ = row.time;
+    has_time_ = true;
+    kind_ = time->kind;
+  }
+  last_time_ = row.time;
+  return true;
+}
+
+bool CsvRows::find_object(const std::vector<std::string>& fields, std::size_t& index) {
+  const std::string& name = fields[*plan_.object];
+  const auto found = object_index_.find(name);
+  if (found != object_index_.end()) return index = found->second, true;
+  column_ = *plan_.object;
+  text_ = name;
+  if (!is_plain_name(name) || objects_.size() == kMostObjects) return false;
+  index = objects_.size();
+  objects_.push_back(name);
+  object_index_.emplace(name, index);
+  return true;
+}
+
+CsvResult<std::optional<CsvRow>> CsvRows::parse(const CsvReader& reader) {
+  const auto& fields = reader.fields();
+  line_ = reader.line();
+  text_.clear();
+  const auto refuse_row = [&](RuleName rule, std::string_view what) -> CsvResult<std::optional<CsvRow>> {
+    if (!mapping_.skip_bad)
+      return tl::unexpected(wrong(
+          rule,
+          std::string_view(rule) == "R-CSV-3"
+              ? "Correct the row, or leave such rows out with --skip-bad."
+              : "Correct the field; if it means that there is no value, give --missing TEXT; --skip-bad leaves such rows out."));
+    plan_.notes.add("", what, at());
+    return std::optional<CsvRow>();
+  };
+  if (fields.size() != plan_.names.size()) return refuse_row("R-CSV-3", "rows with another number of fields are left out");
+  CsvRow row{.line = line_, .time = 0, .bytes = reader.bytes() + 1, .segment = {}, .values = {}};
+  if (plan_.segment) row.segment = fields[*plan_.segment];
+  if (plan_.time) {
+    if (is_missing_word(fields[*plan_.time])) {
+      column_ = *plan_.time;
+      text_ = fields[column_];
+      if (mapping_.strict) return tl::unexpected(wrong("R-CSV-4", "Correct the time, or do not give --strict."));
+      plan_.notes.add("column " + plan_.names[column_], "rows without a time are left out", at());
+      return std::optional<CsvRow>();
+    }
+    if (!read_time(fields, row)) return refuse_row("R-CSV-4", "rows whose time cannot be read are left out");
+  }
+  std::size_t object = 0;
+  if (plan_.object && !find_object(fields, object)) return refuse_row("R-CSV-4", "rows whose object has no name are left out");
+  for (std::size_t i = 0; i < plan_.channels.size(); ++i) {
+    CsvValue& value = row.values.emplace_back();
+    value.channel = static_cast<std::uint32_t>(object * plan_.channels.size() + i);
+    const Read done = read_sample(fields, plan_.channels[i], value.sample);
+    if (done == Read::wrong) return refuse_row("R-CSV-4", "rows with a field that cannot be read are left out");
+    value.is_there = done == Read::value;
+    if (value.is_there) continue;
+    if (mapping_.strict)
+      return tl::unexpected(wrong("R-CSV-4", "A value is missing: " + why_ + ". Correct it, or do not give --strict."));
+    plan_.notes.add("column " + plan_.names[column_], "a sample is missing: " + why_,
+                    at() + (plan_.time ? ", time " + fields[*plan_.time] : ""));
+  }
+  return std::optional(std::move(row));
+}
+
+}  // namespace tactus

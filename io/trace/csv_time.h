@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+/// Times of a table, without loss: numbers in a unit, dates and times of day. Internal to the library.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace tactus {
+
+enum class CsvTimeKind : std::uint8_t { number, date, clock };
+
+struct CsvTime {
+  std::int64_t nanoseconds = 0;  ///< of a number: since the table's own 0; of a date: since 1970 UTC; of a clock: since midnight
+  CsvTimeKind kind = CsvTimeKind::number;
+};
+
+/// "1403636579763555584", "0.001", "2024-05-01T12:00:00.123456789Z" (a space for the T, +02:00 for the Z, or no zone), "12:00:00.123".
+/// in   unit  [ns] of a number; 1e-9 s to 1 h     out  nothing: it is no time, or beyond what 64 bits of nanoseconds hold
+std::optional<CsvTime> parse_csv_time(std::string_view text, std::int64_t unit) noexcept;
+
+/// [ns] The unit by which a number can be a time since 1970 within the years 1980 to 2100; nothing: by none.
+std::optional<std::int64_t> unit_of_epoch(std::string_view text) noexcept;
+
+/// "2023-11-14 22:13:20 UTC" of nanoseconds since 1970.
+std::string date_text(std::int64_t nanoseconds);
+
+}  // namespace tactus

@@ -1,0 +1,427 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/trace/csv_timeline.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <numbers>
+
+#include <tactus/base/rule.h>
+#include <tactus/base/shown.h>
+#include <tactus/trace/csv_time.h>
+#include <tactus/trace/differences.h>
+#include <tactus/trace/messages.h>
+#include <tactus/trace/resampler.h>
+
+namespace tactus {
+namespace {
+
+constexpr std::size_t kWindow = 64;            // rows that may be out of order
+constexpr std::size_t kRowsForRate = 4096;     // looked at before the rate is settled
+constexpr double kOnGrid = 0.1, kSame = 1e-3;  // [ticks]
+constexpr double kLowestRate = 10, kDefaultGap = 0.1, kGapPeriods = 3;
+
+std::string text_of(double value, const char* form = "%.6g") {
+  char text[64];
+  std::snprintf(text, sizeof text, form, value);
+  return text;
+}
+
+std::string seconds_text(std::int64_t ns) { return text_of(static_cast<double>(ns) / 1e9, "%.9g") + " s"; }
+
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// 1000 for 998.7: the roundest number as near as `tolerance` (a share), else the next whole one.
+std::uint32_t round_rate(double rate, double tolerance) {
+  for (double step = std::pow(10, std::floor(std::log10(rate))); step >= 1; step /= 10) {
+    const double rounded = std::round(rate / step) * step;
+    if (std::abs(rounded - rate) <= tolerance * rate && rounded >= 1) return static_cast<std::uint32_t>(rounded);
+  }
+  return static_cast<std::uint32_t>(std::round(rate));
+}
+
+}  // namespace
+
+CsvTimeline::CsvTimeline(const CsvMapping& mapping, CsvNamedPlan& plan, const CsvRows& rows, std::string out_path)
+    : mapping_(mapping), plan_(plan), rows_(rows), out_path_(std::move(out_path)) {}
+
+Diagnostic CsvTimeline::mistake(Errc code, RuleName rule, std::uint64_t line, std::string detail, std::string remedy) const {
+  return {.error = fail(code, rule).value(), .line = line, .detail = std::move(detail), .remedy = std::move(remedy)};
+}
+
+CsvResult<void> CsvTimeline::add(CsvRow row) {
+  budget_.earn(row.bytes);
+  if (!plan_.time) return place(std::move(row));
+  if (!window_.empty() && window_.back().segment != row.segment) {
+    while (!window_.empty()) TACTUS_CHECK(release());
+    released_.reset();
+  } else if (window_.empty() && released_ && has_segment_ && row.segment != segment_) {
+    released_.reset();
+  }
+  if (released_ && row.time < *released_) {
+    return tl::unexpected(mistake(
+        Errc::invalid, "R-CSV-5", row.line,
+        "time " + seconds_text(row.time) + " after " + seconds_text(*released_) + " in line " + std::to_string(released_line_),
+        "Name the column that separates the recordings (--segment COLUMN), or sort the rows by time."));
+  }
+  if (window_.empty() || window_.back().time <= row.time) {
+    window_.push_back(std::move(row));
+  } else {
+    if (mapping_.strict || !mapping_.resample)
+      return tl::unexpected(mistake(Errc::invalid, "R-CSV-5", row.line,
+                                    "time " + seconds_text(row.time) + " after " + seconds_text(window_.back().time),
+                                    "Sort the rows by time, or do not give --strict or --no-resample."));
+    plan_.notes.add("", "rows out of order are sorted by time", "line " + std::to_string(row.line));
+    auto at = window_.end();
+    while (at != window_.begin() && std::prev(at)->time > row.time) --at;
+    window_.insert(at, std::move(row));
+  }
+  return window_.size() > kWindow ? release() : CsvResult<void>();
+}
+
+/// The first row of the window is in order.
+CsvResult<void> CsvTimeline::release() {
+  CsvRow row = std::move(window_.front());
+  window_.pop_front();
+  released_ = row.time;
+  released_line_ = row.line;
+  if (writer_) return place(std::move(row));
+  waiting_.push_back(std::move(row));
+  return waiting_.size() < kRowsForRate ? CsvResult<void>() : start();
+}
+
+CsvResult<CsvImport> CsvTimeline::finish() {
+  while (!window_.empty()) TACTUS_CHECK(release());
+  if (!writer_ && waiting_.empty()) return tl::unexpected(mistake(Errc::truncated, "R-CSV-1", 0, ""));
+  if (!writer_) TACTUS_CHECK(start());
+  TACTUS_CHECK(end_segment());
+  if (done_.ticks.count() == 0)
+    return tl::unexpected(
+        mistake(Errc::malformed, "R-CSV-4", 0, "every sample is missing", "Check that the mapping names the right columns."));
+  const bool is_told = mapping_.tick_rate > 0 || !mapping_.time_unit.empty();
+  if (plan_.time && !is_told && 2 * done_.ticks.left_out() > done_.ticks.length())
+    return tl::unexpected(mistake(
+        Errc::invalid, "R-CSV-11", 0,
+        std::to_string(done_.ticks.left_out()) + " of " + std::to_string(done_.ticks.length()) + " ticks at " +
+            std::to_string(plan_.info.tick_rate) + " Hz have no sample",
+        "If that is right, say --tick-rate " + std::to_string(plan_.info.tick_rate) + "; else give the rate, or --time-unit."));
+  if (const auto finished = writer_->finish(); !finished) return tl::unexpected(Diagnostic{finished.error()});
+  const double period = 1.0 / plan_.info.tick_rate;
+  if (made_ > 0)
+    plan_.notes.add("", std::to_string(made_) + " samples are put between their neighbours, which are at most " +
+                            text_of(largest_gap_ * period) + " s apart");
+  if (left_out_ > 0)
+    plan_.notes.add("", std::to_string(left_out_) + " ticks are left out: samples are missing for more than " +
+                            text_of(gap_ * period) + " s (--gap)");
+  if (rested_ > 0)
+    plan_.notes.add("", std::to_string(rested_) + " samples are held, as others of the table go on: more than " +
+                            text_of(gap_ * period) + " s (--gap) without one");
+  if (repeated_ > 0)
+    plan_.notes.add("", std::to_string(repeated_) + " rows have the time (or the tick) of a row before; the last of each counts");
+  done_.notes = std::move(plan_.notes);
+  return done_;
+}
+
+/// Two estimates: the median of the gaps, and the count over the length without pauses.
+CsvResult<void> CsvTimeline::find_rate() {
+  plan_.info.tick_rate = mapping_.tick_rate;
+  if (!plan_.time)
+    return mapping_.tick_rate > 0 ? CsvResult<void>() : tl::unexpected(mistake(Errc::invalid_argument, "R-CSV-7", 1, ""));
+  std::map<std::uint32_t, std::size_t> counts;  // of the objects of a long table
+  for (const CsvRow& row : waiting_) ++counts[row.values[0].channel];
+  const auto busiest = std::ranges::max_element(counts, {}, [](const auto& c) { return c.second; })->first;
+  std::vector<double> gaps;  // [s]
+  const CsvRow* before = nullptr;
+  for (const CsvRow& row : waiting_) {
+    if (row.values[0].channel != busiest) continue;
+    if (before != nullptr && before->segment == row.segment && row.time > before->time)
+      gaps.push_back(static_cast<double>(row.time - before->time) / 1e9);
+    before = &row;
+  }
+  if (gaps.empty() && mapping_.tick_rate == 0)
+    return tl::unexpected(mistake(Errc::invalid_argument, "R-CSV-7", waiting_[0].line, ""));
+  const double median = gaps.empty() ? 1.0 / mapping_.tick_rate : median_of(gaps);
+  double length = 0, count = 0;
+  for (const double gap : gaps) length += gap;
+  const double pause = 20 * length / static_cast<double>(std::max<std::size_t>(gaps.size(), 1));
+  length = 0;
+  for (const double gap : gaps)
+    if (gap <= pause) length += gap, ++count;
+  const double by_median = 1 / median, by_count = gaps.empty() ? by_median : count / length;
+  if (!(by_median <= 4e9) || !(by_count <= 1.5 * kMaxTickRate))
+    return tl::unexpected(mistake(Errc::invalid_argument, "R-CSV-7", waiting_[0].line, "rows " + text_of(median) + " s apart",
+                                  "Give --time-unit, or --tick-rate."));
+  const auto is_off = [&](double rate) {
+    std::uint64_t off = 0, all = 0;
+    for (const CsvRow& row : waiting_) {
+      if (row.values[0].channel != busiest) continue;
+      if (all++ == 0 || row.segment != before->segment) before = &row;
+      const double at = static_cast<double>(row.time - before->time) / 1e9 * rate;
+      off += std::abs(at - std::round(at)) > kOnGrid;
+    }
+    return off > 0;
+  };
+  const double rounded = std::max(1.0, std::round(by_median));
+  const bool agree = std::abs(by_median - by_count) <= 0.1 * by_count;
+  const bool is_sparse = by_count < 0.5 * rounded;
+  if (mapping_.tick_rate == 0) {
+    const bool takes_median = rounded <= kMaxTickRate && !is_off(rounded) && !is_sparse;
+    const double exact = takes_median ? rounded : by_count;
+    plan_.info.tick_rate =
+        takes_median ? static_cast<std::uint32_t>(rounded) : std::max(1u, round_rate(exact, 1.0 / std::max(count, 1.0) + 5e-4));
+    if (!agree && !gaps.empty())
+      plan_.notes.add("", "the median gap says " + text_of(by_median, "%.4g") + " Hz, the number of rows over their time " +
+                              text_of(by_count, "%.4g") + " Hz: " + std::to_string(plan_.info.tick_rate) +
+                              " Hz is taken; --tick-rate says otherwise");
+    const bool is_told = plan_.time_is_told;
+    if (exact < kLowestRate && !is_told) {
+      return tl::unexpected(mistake(Errc::invalid, "R-CSV-11", waiting_[0].line,
+                                    "rows " + text_of(median) + " s apart, " + text_of(exact, "%.4g") + " Hz",
+                                    "Say --time-unit ms (us, ns) if the times are no seconds, --time-unit s or --tick-rate " +
+                                        std::to_string(plan_.info.tick_rate) + " if they are."));
+    }
+    if (exact < 0.99 && plan_.time_is_told)
+      return tl::unexpected(mistake(Errc::invalid_argument, "R-CSV-7", waiting_[0].line, text_of(exact, "%.4g") + " Hz",
+                                    "Give --tick-rate HZ: it is 1 at least."));
+  }
+  if (plan_.info.tick_rate > kMaxTickRate)
+    return tl::unexpected(
+        mistake(Errc::invalid_argument, "R-CSV-7", waiting_[0].line, "", "Give --tick-rate HZ, at most 1000000."));
+  resamples_ = mapping_.resample && is_off(plan_.info.tick_rate);
+  if (resamples_)
+    plan_.notes.add("", "times lie on no grid: resampled at " + std::to_string(plan_.info.tick_rate) +
+                            " Hz (--no-resample refuses such tables)");
+  return {};
+}
+
+CsvResult<void> CsvTimeline::start() {
+  TACTUS_CHECK(find_rate());
+  const double rate = plan_.info.tick_rate;
+  gap_ = mapping_.gap > 0 ? mapping_.gap * rate : std::max(kDefaultGap * rate, kGapPeriods);
+  if (plan_.object) {
+    const std::vector<std::string>& names = long_objects_.empty() ? rows_.objects() : long_objects_;
+    const TraceInfo one = plan_.info;
+    plan_.info.objects.clear();
+    plan_.info.users.clear();
+    for (const std::string& name : names) {
+      for (TraceObject object : one.objects) object.name = name, plan_.info.objects.push_back(object);
+      for (TraceUser user : one.users) user.name = name, plan_.info.users.push_back(user);
+    }
+    channels_.resize(names.size() * plan_.channels.size());
+  } else {
+    channels_.resize(plan_.channels.size());
+  }
+  auto writer = TraceWriter::create(out_path_, plan_.info);
+  if (!writer) return tl::unexpected(Diagnostic{.error = writer.error(), .line = 1});
+  writer_ = std::move(*writer);
+  if (rows_.first_date() != 0)
+    plan_.notes.add("", "time begins at 0 in the trace; the first row is of " + date_text(rows_.first_date()));
+  frame_.objects.resize(plan_.info.objects.size());
+  frame_.users.resize(plan_.info.users.size());
+  for (CsvRow& row : waiting_) TACTUS_CHECK(place(std::move(row)));
+  waiting_ = {};
+  return {};
+}
+
+CsvTimeline::Instant CsvTimeline::instant_of(std::int64_t time) const noexcept {
+  const std::int64_t since = time - segment_time_, second = since / 1'000'000'000, rest = since % 1'000'000'000;
+  const double ticks = static_cast<double>(rest) * plan_.info.tick_rate / 1e9, whole = std::round(ticks);
+  return {second * plan_.info.tick_rate + static_cast<std::int64_t>(whole), ticks - whole};
+}
+
+CsvResult<void> CsvTimeline::begin_segment(const CsvRow& row) {
+  TACTUS_CHECK(end_segment());
+  segment_ = row.segment;
+  segment_time_ = row.time;
+  has_segment_ = begins_ = true;
+  base_ = done_.ticks.count() == 0 ? 0 : done_.ticks.last() + 1;
+  shift_ = next_tick_ = row_number_ = 0;
+  now_ = {};
+  return {};
+}
+
+CsvResult<void> CsvTimeline::end_segment() {
+  ended_ = true;
+  TACTUS_CHECK(emit(true));
+  ended_ = false;
+  for (auto& channel : channels_) channel.clear();
+  return {};
+}
+
+/// Of a row that is in order.
+CsvResult<void> CsvTimeline::place(CsvRow row) {
+  if (!writer_) {
+    if (!waiting_.empty() || plan_.time) return tl::unexpected(mistake(Errc::internal, "R-CSV-7", row.line, ""));
+    TACTUS_CHECK(start());
+  }
+  if (!has_segment_ || row.segment != segment_) TACTUS_CHECK(begin_segment(row));
+  Instant at = plan_.time ? instant_of(row.time) : Instant{row_number_++, 0};
+  const std::int64_t most = kMaxSeconds * plan_.info.tick_rate;
+  if (at.tick >= most - base_)
+    return tl::unexpected(mistake(Errc::invalid, "R-CSV-5", row.line, "time " + seconds_text(row.time),
+                                  "A trace holds 2^31 s: check --time-unit."));
+  if (!resamples_ && mapping_.resample && std::abs(at.off) > kOnGrid) {
+    resamples_ = true;
+    plan_.notes.add("", "from here on times lie off the grid: resampled", "line " + std::to_string(row.line));
+  }
+  if (!resamples_) at.off = 0;
+  TACTUS_CHECK(ask_for_ticks(row, at));
+  now_ = at;
+  for (CsvValue& value : row.values) {
+    if (!value.is_there) continue;
+    if (value.channel >= channels_.size())
+      return tl::unexpected(mistake(Errc::malformed, "R-CSV-2", row.line, "an object that the first rows lack",
+                                    "Give the table as a file, not by a pipe."));
+    auto& queue = channels_[value.channel];
+    if (!queue.empty() && at.since(queue.back().at) < kSame) queue.back() = {at, value.sample};
+    else queue.push_back({at, value.sample});
+  }
+  return emit(false);
+}
+
+/// Which ticks a row brings.
+CsvResult<void> CsvTimeline::ask_for_ticks(const CsvRow& row, const Instant& at) {
+  const bool is_first = begins_ && ticks_.empty() && next_tick_ == 0;
+  const double since = is_first ? 0 : at.since(now_);
+  if (!resamples_) {
+    const bool is_same = !is_first && at.tick < next_tick_;
+    if (is_same && (mapping_.strict || !mapping_.resample) && (since == 0) && !plan_.object)
+      return tl::unexpected(mistake(Errc::invalid, "R-CSV-5", row.line,
+                                    "time " + seconds_text(row.time) + " is in the tick of the row before",
+                                    "Resample (without --no-resample and --strict), or give a higher --tick-rate."));
+    if (is_same) repeated_ += plan_.object ? 0u : 1u;
+    else ticks_.push_back(at.tick), next_tick_ = at.tick + 1;
+    return {};
+  }
+  if (!is_first && since < kSame && !plan_.object) ++repeated_;
+  if (!is_first && since < kSame && mapping_.strict && !plan_.object)
+    return tl::unexpected(mistake(Errc::invalid, "R-CSV-5", row.line, "time " + seconds_text(row.time) + " repeats",
+                                  "Do not give --strict, or remove the row."));
+  const auto last = at.tick + (at.off < -kSame ? -1 : 0);
+  if (since > gap_) {
+    left_out_ += static_cast<std::uint64_t>(std::max<std::int64_t>(last - next_tick_, 0));
+    next_tick_ = std::max(next_tick_, at.tick + (at.off > kSame ? 1 : 0));
+  }
+  while (next_tick_ <= last) ticks_.push_back(next_tick_++);
+  return {};
+}
+
+/// Nothing that comes later changes what is known at the tick.
+bool CsvTimeline::is_ready(std::int64_t tick) const {
+  const Instant at{tick, 0};
+  if (now_.since(at) < kSame) return false;
+  if (now_.since(at) > gap_) return true;
+  return std::ranges::all_of(channels_, [&](const auto& queue) {
+    return !queue.empty() && (queue.back().at.since(at) > -kSame || now_.since(queue.back().at) > gap_);
+  });
+}
+
+CsvResult<void> CsvTimeline::emit(bool is_end) {
+  while (!ticks_.empty() && (is_end || is_ready(ticks_.front()))) {
+    const std::int64_t tick = ticks_.front();
+    ticks_.pop_front();
+    TACTUS_CHECK(write(tick));
+  }
+  return {};
+}
+
+/// out  false: the channel has no sample within the gap; then `out` is the nearest one, if there is any
+bool CsvTimeline::sample_at(std::size_t channel, std::int64_t tick, RigidSample& out) {
+  auto& queue = channels_[channel];
+  const Instant at{tick, 0};
+  while (queue.size() > 1 && queue[1].at.since(at) < kSame) queue.pop_front();
+  if (queue.empty()) return false;
+  const Sample& a = queue.front();
+  out = a.value;
+  const double since = at.since(a.at);
+  if (std::abs(since) < kSame) return true;
+  if (since < 0 || queue.size() == 1) {
+    const bool is_border = since < 0 || ended_;  // else the next sample is too far away
+    if (!is_border || std::abs(since) > gap_) return false;
+    out.velocity = out.angular_velocity = {};
+    ++made_;
+    return true;
+  }
+  const double apart = queue[1].at.since(a.at);
+  if (apart > gap_ + kSame) return false;
+  out = mixed(a.value, queue[1].value, since / apart);
+  largest_gap_ = std::max(largest_gap_, apart);
+  ++made_;
+  return true;
+}
+
+CsvResult<void> CsvTimeline::write(std::int64_t tick) {
+  if (!budget_.spend(sizeof(RigidSample) * channels_.size()))
+    return tl::unexpected(mistake(Errc::limit_exceeded, "R-CSV-9", 0, "", "Give a smaller --gap or --tick-rate."));
+  std::size_t known = 0;
+  for (std::size_t i = 0; i < channels_.size(); ++i) {
+    const CsvChannel& plan = plan_.channels[i % plan_.channels.size()];
+    const auto subject = static_cast<std::uint32_t>(i / plan_.channels.size());
+    const std::uint32_t index = plan.index + subject * (plan_.object ? 1 : 0);
+    RigidSample sample;
+    const bool is_known = sample_at(i, tick, sample);
+    known += is_known;
+    if (!is_known && !channels_[i].empty()) sample.velocity = sample.angular_velocity = {};
+    if (plan.kind == CsvChannel::Kind::object) {
+      if (is_known || !channels_[i].empty() || begins_) frame_.objects[index] = sample;
+      continue;
+    }
+    UserSample& user = frame_.users[index];
+    if (plan.kind == CsvChannel::Kind::force) user.force = user.server_force = is_known ? sample.pose.position : Vec3{};
+    else if (is_known || !channels_[i].empty()) user.device.position = user.contact.device = sample.pose.position;
+  }
+  if (known == 0) return ++left_out_, CsvResult<void>();
+  rested_ += channels_.size() - known;
+  if (done_.ticks.count() == 0) shift_ = -tick;
+  frame_.tick = base_ + shift_ + tick;
+  if (frame_.tick < 0) return tl::unexpected(mistake(Errc::invalid, "R-CSV-5", 0, ""));
+  derive_motion(frame_, begins_);
+  if (const auto written = writer_->write(frame_); !written)
+    return tl::unexpected(Diagnostic{
+        .error = written.error(), .detail = "time " + text_of(static_cast<double>(frame_.tick) / plan_.info.tick_rate) + " s"});
+  done_.ticks.add(frame_.tick);
+  if (!begins_) check_angular_velocity(frame_);
+  if (begins_) ++done_.segments;
+  begins_ = false;
+  before_ = frame_;
+  return {};
+}
+
+/// Backward differences: what a live system would know at that tick.
+void CsvTimeline::derive_motion(TraceFrame& frame, bool begins) const {
+  const double seconds = begins ? 0 : static_cast<double>(frame.tick - before_.tick) / plan_.info.tick_rate;
+  for (std::size_t i = 0; i < frame.objects.size(); ++i) {
+    const auto of = [&](const CsvChannel& c) { return c.kind == CsvChannel::Kind::object && (plan_.object || c.index == i); };
+    const CsvChannel& channel = *std::ranges::find_if(plan_.channels, of);
+    RigidSample& sample = frame.objects[i];
+    const Twist motion = begins ? Twist{} : motion_between(before_.objects[i].pose, sample.pose, seconds);
+    if (!channel.has_velocity) sample.velocity = motion.linear;
+    if (!channel.has_angular_velocity && channel.turn != CsvChannel::Turn::none) sample.angular_velocity = motion.angular;
+  }
+}
+
+/// Hold the angular velocity that was read against the turn since the frame before.
+void CsvTimeline::check_angular_velocity(const TraceFrame& frame) {
+  const CsvChannel& channel = plan_.channels[0];
+  if (frame.objects.empty() || !channel.has_angular_velocity || channel.turn == CsvChannel::Turn::none) return;
+  const RigidSample& sample = frame.objects[0];
+  const double seconds = static_cast<double>(frame.tick - before_.tick) / plan_.info.tick_rate;
+  const Vec3 seen = motion_between(before_.objects[0].pose, sample.pose, seconds).angular, given = sample.angular_velocity;
+  if (norm(seen) * seconds > std::numbers::pi / 2 || norm(given) * seconds > std::numbers::pi / 2) return;
+  const bool is_body = mapping_.angular_velocity_frame == AngularVelocityFrame::body;
+  const Quat& q = sample.pose.rotation;
+  AngularVelocityCheck& check = done_.angular_velocity;
+  const auto take = [share = 1.0 / static_cast<double>(++check.rows)](double& mean, double value) {
+    mean += share * (value - mean);
+  };
+  take(check.given, norm(given));
+  take(check.off, norm(seen - given));
+  take(check.off_other, norm(seen - rotate(is_body ? conjugate(q) : q, given)));
+}
+
+}  // namespace tactus
