@@ -86,10 +86,10 @@ tl::expected<SurfaceSequence, Diagnostic> SurfaceSequence::open(const std::strin
   }
   for (const ReadNote& note : surface->notes.all()) out.notes_.add(note.where, note.what, note.first);
   if (surface->dropped_faces > 0)
-    out.notes_.add("", std::to_string(surface->dropped_faces) + " of the faces have no area in the first frame and are left out");
+    out.notes_.add("", "faces without area in the first frame left out: " + std::to_string(surface->dropped_faces));
   if (surface->unused_vertices > 0)
-    out.notes_.add("", std::to_string(surface->unused_vertices) + " of the vertices belong to no face and are left out");
-  if (surface->polygons > 0) out.notes_.add("", std::to_string(surface->polygons) + " of the faces were cut into triangles");
+    out.notes_.add("", "vertices of no face left out: " + std::to_string(surface->unused_vertices));
+  if (surface->polygons > 0) out.notes_.add("", "faces cut into triangles: " + std::to_string(surface->polygons));
   out.used_ = std::move(surface->vertex);
   out.rest_ = std::move(surface->mesh);
   return out;
