@@ -12,6 +12,7 @@
 #include <tactus/sim/tets/tet_files.h>
 #include <tactus/sim/tets/tet_mesh.h>
 #include "cli/report/json.h"
+#include "cli/report/notes.h"
 #include "cli/report/report.h"
 #ifdef TACTUS_HAS_SURFACE
 #include <tactus/sim/surface/surface_file.h>
@@ -28,7 +29,7 @@ struct MeshOptions {
   double edge = 0;         // [m], 0: as large as may be
   double quality = 0;      // 0: any
   double time_limit = 60;  // [s]
-  bool split_surface = false;
+  bool split_surface = false, drop_degenerate = false;
   CommonOptions common;
 };
 
@@ -36,6 +37,7 @@ struct MeshOptions {
 struct TetMeshReport {
   sim::TetMesh mesh;
   std::vector<std::pair<std::string, std::uint64_t>> notes;  // field of the report, number
+  std::vector<std::string> warnings;  // what a reader decided about the file
   std::vector<std::pair<std::string, StepTimes>> times;
 
   template <class Work>
@@ -74,6 +76,7 @@ Outcome read_tets(const MeshOptions& options, TetMeshReport& report) {
   auto file = report.measure("read", [&] { return sim::read_tet_mesh(options.input); });
   if (!file) return refuse(file.error());
   if (file->ignored_elements > 0) report.notes.emplace_back("ignored_elements", file->ignored_elements);
+  if (file->ignored_vertices > 0) report.notes.emplace_back("unused_vertices", file->ignored_vertices);
   report.mesh = std::move(file->mesh);
   scale(report.mesh.vertices, options.length_unit);
   return {};
@@ -84,8 +87,13 @@ Outcome read_tets(const MeshOptions& options, TetMeshReport& report) {
 double volume_of_edge(double edge) { return edge * edge * edge / (6 * std::numbers::sqrt2); }
 
 Outcome fill_surface(const MeshOptions& options, TetMeshReport& report) {
-  auto file = report.measure("read", [&] { return sim::read_surface(options.input); });
+  auto file =
+      report.measure("read", [&] { return sim::read_surface(options.input, {.drop_degenerate = options.drop_degenerate}); });
   if (!file) return refuse(file.error());
+  Report told;
+  tell(file->notes.all(), options.input, told);
+  report.warnings = std::move(told.warnings);
+  if (file->dropped_faces > 0) report.notes.emplace_back("dropped_faces", file->dropped_faces);
   if (file->polygons > 0) report.notes.emplace_back("cut_polygons", file->polygons);
   if (file->unused_vertices > 0) report.notes.emplace_back("unused_vertices", file->unused_vertices);
   scale(file->mesh.vertices, options.length_unit);
@@ -140,6 +148,7 @@ Value value_of(const MeshOptions& options, const TetMeshReport& report) {
   if (options.slab.empty()) out["files"]["input"] = options.input;
   else out["slab"] = options.slab;
   for (const auto& [key, number] : report.notes) out[key] = number;
+  if (!report.warnings.empty()) out["warnings"] = report.warnings;
   out["vertices"] = report.mesh.vertices.size();
   out["tetrahedra"] = report.mesh.tets.size();
   out["surface_vertices"] = outside.mesh.vertices.size();
@@ -200,6 +209,8 @@ void setup_mesh(Command& app, Action& action) {
   command
       .add_flag("--split-surface", options->split_surface,
                 "Add points on the surface too, so that --edge and --quality hold there")
+      ->excludes(slab);
+  command.add_flag("--drop-degenerate", options->drop_degenerate, "Leave out faces of a surface that have no area")
       ->excludes(slab);
   add_quantity(command, "--time-limit", options->time_limit, Dimension::time, "Give up after this long [60s]")
       ->check(above_zero(Dimension::time))

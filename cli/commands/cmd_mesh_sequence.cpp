@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <filesystem>
 
 #include <tactus/base/shown.h>
+#include <tactus/base/text.h>
 #include <tactus/sim/surface/surface_file.h>
 #include <tactus/sim/surface/surface_sequence.h>
 #include <tactus/trace/messages.h>
-#include <tactus/base/text.h>
 #include <tactus/trace/trace_file.h>
 #include "cli/commands/commands.h"
 #include "cli/commands/input.h"
+#include "cli/report/notes.h"
 #include "cli/report/report.h"
 #include "cli/report/table.h"
 
@@ -23,10 +27,11 @@ namespace tactus::cli {
 namespace {
 
 struct ImportMeshOptions {
-  std::string input, output, name = "mesh";
+  std::string input, output, series, name = "mesh";
   double rate = 60;        // [Hz]
   double period = 0;       // [s], 0: that of the rate
   double length_unit = 1;  // [m]
+  bool drop_degenerate = false;
   CommonOptions common;
 };
 
@@ -36,16 +41,44 @@ struct Clock {
   double period = 1;  // [ticks]
 };
 
-/// The slowest of the usual clocks on whose ticks every frame falls; where none is found, the fastest.
-Clock clock_of(const ImportMeshOptions& options) {
-  const double period = options.period > 0 ? options.period : 1 / options.rate;
-  if (const double rate = std::round(1 / period); rate >= 1 && std::abs(rate * period - 1) < 1e-9)
-    return {static_cast<std::uint32_t>(rate), 1};
-  for (const std::uint32_t rate : {1000u, 10'000u, 100'000u, kMaxTickRate}) {
-    const double ticks = period * rate, whole = std::round(ticks);
-    if (whole >= 1 && std::abs(ticks - whole) < 1e-6 * whole) return {rate, whole};
+/// True if every frame falls on a whole tick, `period` ticks from one number to the next.
+bool fits(const sim::SurfaceSequence& sequence, double period) {
+  for (std::size_t k = 0; k < sequence.size(); ++k) {
+    const double ticks = sequence.offset(k) * period, whole = std::round(ticks);
+    if (std::abs(ticks - whole) > 1e-6 * std::max(whole, 1.0)) return false;
   }
+  return period >= 0.5 && std::abs(period - std::round(period)) < 1e-6 * period;
+}
+
+/// The slowest of the usual clocks on whose ticks every frame falls; where none is found, the fastest.
+Clock clock_of(const ImportMeshOptions& options, const sim::SurfaceSequence& sequence) {
+  const double period = options.period > 0 ? options.period : 1 / options.rate;
+  if (const double rate = std::round(1 / period); rate >= 1 && std::abs(rate * period - 1) < 1e-9 && fits(sequence, 1))
+    return {static_cast<std::uint32_t>(rate), 1};
+  for (const std::uint32_t rate : {1000u, 10'000u, 100'000u, kMaxTickRate})
+    if (fits(sequence, period * rate)) return {rate, std::round(period * rate)};
   return {kMaxTickRate, period * kMaxTickRate};
+}
+
+/// An animation in one file is none that is read here; what turns it into one that is.
+Outcome check_folder(const std::string& input) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(input, ignored)) return {};
+  std::string ending = std::filesystem::path(input).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  constexpr std::array<std::pair<const char*, const char*>, 7> kKnown{{{".glb", "a glTF 2.0 scene (GLB)"},
+                                                                       {".gltf", "a glTF scene"},
+                                                                       {".fbx", "an FBX scene"},
+                                                                       {".abc", "an Alembic cache"},
+                                                                       {".blend", "a Blender file"},
+                                                                       {".usd", "a USD scene"},
+                                                                       {".usdz", "a USD scene"}}};
+  const auto known = std::find_if(kKnown.begin(), kKnown.end(), [&](const auto& k) { return ending == k.first; });
+  if (known == kKnown.end()) return {};
+  return refuse(fmt::format("{}: {}, not a folder of frames", shown_path(input), known->second),
+                "In Blender: import or open it, then File, Export, Wavefront (.obj) with Animation ticked; give the folder of "
+                "these files.");
 }
 
 /// What is kept of a frame is its distance from the first.
@@ -59,7 +92,11 @@ Outcome write_frames(const sim::SurfaceSequence& sequence, const TriMesh& rest, 
   for (std::size_t k = 0; k < sequence.size(); ++k) {
     const auto positions = report.timings[0].times.measure([&] { return sequence.positions(k); });
     if (!positions) return refuse(positions.error());
-    frame.tick = std::llround(static_cast<double>(k) * clock.period);
+    const std::int64_t tick = std::llround(sequence.offset(k) * clock.period);
+    if (k > 0 && tick <= frame.tick)
+      return refuse(fmt::format("{} and {}: on one tick", shown_path(sequence.file(k - 1)), shown_path(sequence.file(k))),
+                    "Give a lower --rate, or take one of them out of the folder.");
+    frame.tick = tick;
     float* out = frame.meshes[0].displacements.data();
     for (std::size_t v = 0; v < positions->size(); ++v) {
       const Vec3 u = options.length_unit * (*positions)[v] - rest.vertices[v];
@@ -80,12 +117,14 @@ std::string name_mistake(const std::string& name) {
 
 Outcome run(const ImportMeshOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
+  TACTUS_CHECK(check_folder(options.input));
   TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing()));
-  const auto sequence = sim::SurfaceSequence::open(options.input);
+  const auto sequence =
+      sim::SurfaceSequence::open(options.input, {.series = options.series, .drop_degenerate = options.drop_degenerate});
   if (!sequence) return refuse(sequence.error());
   TriMesh rest = sequence->rest();
   for (Vec3& p : rest.vertices) p = options.length_unit * p;
-  const Clock clock = clock_of(options);
+  const Clock clock = clock_of(options, *sequence);
   const TraceInfo info{.tick_rate = clock.tick_rate,
                        .objects = {},
                        .users = {},
@@ -96,6 +135,7 @@ Outcome run(const ImportMeshOptions& options) {
   if (!writer) return refuse(options.output, writer.error());
   Report report{.command = "import mesh", .files = {{"frames", options.input}, {"trace", options.output}}};
   report.timings = {{"read"}};
+  tell(sequence->notes(), options.input, report);
   TACTUS_CHECK(write_frames(*sequence, rest, options, clock, *writer, report));
   if (const auto finished = writer->finish(); !finished) return refuse(options.output, finished.error());
   report.describe(info);
@@ -127,6 +167,9 @@ void setup_import_mesh(Command& group, Action& action) {
       ->excludes(rate);
   add_quantity(command, "--length-unit", options->length_unit, Dimension::length, "Metres per unit of the files' lengths [1m]")
       ->check(within(Dimension::length, "1um", "1000000m"));
+  command.add_option("--series", options->series, "Take the frames whose names have this form, * stands for anything [all]")
+      ->type_name("PATTERN");
+  command.add_flag("--drop-degenerate", options->drop_degenerate, "Leave out faces that have no area in the first frame");
   command.add_option("--name", options->name, "Name of the mesh [mesh]")->check(name_mistake)->type_name("NAME");
   add_output_options(command, options->common);
   command.footer(

@@ -6,7 +6,7 @@
 namespace tactus::sim {
 namespace {
 
-tl::unexpected<Diagnostic> broken(RuleName rule, const char* kind, std::size_t element) {
+tl::unexpected<Diagnostic> refused(RuleName rule, const char* kind, std::size_t element) {
   return tl::unexpected(Diagnostic{.error = fail(Errc::invalid, rule).value(), .kind = kind, .element = element});
 }
 
@@ -16,9 +16,9 @@ tl::expected<void, Diagnostic> check_closed(const TriMesh& mesh) {
   const MeshTopology topology(mesh);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
     for (unsigned k = 0; k < 3; ++k)
-      if (topology.across(t, k) == MeshTopology::kNone) return broken("R-TGN-2", "triangle", t);
+      if (topology.across(t, k) == MeshTopology::kNone) return refused("R-TGN-2", "triangle", t);
   for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v)
-    if (topology.triangles_of(v).empty()) return broken("R-TGN-8", "vertex", v);
+    if (topology.triangles_of(v).empty()) return refused("R-TGN-8", "vertex", v);
   return {};
 }
 

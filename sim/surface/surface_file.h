@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Triangle meshes in OBJ, PLY, STL and OFF files, read and written by OpenMesh.
+/// Triangle meshes in OBJ, PLY, STL and OFF files, read in double precision and written by OpenMesh.
 ///
-/// OpenMesh keeps coordinates in single precision (6e-8 of their size), trusts the counts that a file announces, and silently
-/// drops what it cannot use. Therefore sizes are checked before it reads the file, and its result is counted against the file's
-/// content.
+/// What is used: coordinates and the corners of faces. What is told (notes): a number of facets that the size contradicts, bytes and lines behind
+/// the last element, solids read as one, lines of other kinds than faces, a last line without its end. What does not matter: normals, colours,
+/// textures, materials, groups, names, other elements and properties of a PLY, the number of edges of an OFF, weights of vertices (told).
 ///
 /// rule      class           broken when
 /// R-SRF-1   io              the file cannot be opened, read or written
 /// R-SRF-2   limit_exceeded  it is larger than 512 MiB, or announces more than 2^20 vertices or 2^21 faces
-/// R-SRF-3   unsupported     the name ends in none of .obj, .ply, .stl and .off; a binary OFF; a PLY that does not begin with vertices
-///                           and faces, whose coordinates are neither float nor double, or with other lists than the faces' corners,
-///                           counted by one byte
-/// R-SRF-4   malformed       a line is not one of the format, the header announces more than the file's size allows, or OpenMesh
-///                           refuses it
-/// R-SRF-5   malformed       it holds more faces or vertices than could be read
+/// R-SRF-3   unsupported     the name ends in none of .obj, .ply, .stl and .off; an OFF is binary or not in three dimensions; a PLY lacks
+///                           vertices with x, y and z, or lists of corners
+/// R-SRF-4   malformed       a line is not one of the format
+/// R-SRF-5   malformed       the file ends before everything announced was there
 /// R-SRF-6   invalid         a polygon has fewer than 3 or more than 1024 corners, or no corner from which all of it is seen
 /// R-SRF-7   invalid         it holds no face
 /// R-SRF-8..14               the mesh is broken, see codec/base/tri_mesh.h
@@ -22,19 +20,28 @@
 #include <string_view>
 
 #include <tactus/base/tri_mesh.h>
+#include <tactus/trace/read_notes.h>
 
 namespace tactus::sim {
 
 struct SurfaceFile {
-  TriMesh mesh;                     ///< passed check(); STL: vertices with the same coordinates are one
-  std::size_t polygons = 0;         ///< faces of more than three corners, cut into triangles
-  std::size_t unused_vertices = 0;  ///< of no face, left out
+  TriMesh mesh;                       ///< passed check(); STL: vertices with the same coordinates are one
+  std::size_t polygons = 0;           ///< faces of more than three corners, cut into triangles
+  std::size_t unused_vertices = 0;    ///< of no face, left out
+  std::size_t dropped_faces = 0;      ///< without area, left out because the options say so
+  std::vector<std::uint32_t> vertex;  ///< which of the file's vertices, from 0, each of the mesh's is
+  ReadNotes notes;                    ///< what was decided about the file
+};
+
+struct SurfaceOptions {
+  bool drop_degenerate = false;  ///< leave out faces without area instead of refusing them (R-SRF-10)
 };
 
 /// err  R-SRF-1..14
-tl::expected<SurfaceFile, Diagnostic> read_surface(const std::string& path);
+tl::expected<SurfaceFile, Diagnostic> read_surface(const std::string& path, const SurfaceOptions& options = {});
 /// The same from memory; format is the name's ending, ".obj". The error names no file.
-tl::expected<SurfaceFile, Diagnostic> parse_surface(std::string_view text, std::string_view format);
+tl::expected<SurfaceFile, Diagnostic> parse_surface(std::string_view bytes, std::string_view format,
+                                                    const SurfaceOptions& options = {});
 
 /// The format follows from the name: OBJ, PLY and OFF as text, STL binary.
 /// pre  the mesh passed check().   err  R-SRF-1, R-SRF-3

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-/// A mesh that moves, as a folder of surface files: one per frame, in the order of the numbers in their names ("f2" before "f10"), the
-/// first is the shape at rest. Files of other kinds in the folder do not matter.
+/// A mesh that moves, as a folder of surface files: one per frame, in the order of the numbers in their names ("f_-1" before "f2" before
+/// "f10", "t=0.05" before "t=0.1"), the first is the shape at rest. Missing numbers keep their time. Hidden files, copies and files of other
+/// kinds are left out with a note.
 ///
 /// rule      class        broken when
 /// R-SEQ-1   io           the folder cannot be read
 /// R-SEQ-2   invalid      it holds no surface file, or such of more than one format
 /// R-SEQ-3   unsupported  the files are STL, which does not say which vertex is which
 /// R-SEQ-4   invalid      a frame has another number of vertices than the first, or other faces
+/// R-SEQ-5   invalid      names differ in more than one number, have no number, or two have the same
 /// R-SRF-n                a file is broken, see surface_file.h; triangles without area are refused in the first frame only
 #pragma once
 
@@ -15,28 +17,37 @@
 #include <vector>
 
 #include <tactus/base/tri_mesh.h>
+#include <tactus/trace/read_notes.h>
 
 namespace tactus::sim {
 
+struct SequenceOptions {
+  std::string series;            ///< form of the names to take, * stands for anything; empty: all
+  bool drop_degenerate = false;  ///< leave out faces that have no area in the first frame
+};
+
 class SurfaceSequence {
  public:
-  /// Find the files and read the first.   err  R-SEQ-1..3, R-SRF-n
-  static tl::expected<SurfaceSequence, Diagnostic> open(const std::string& folder);
+  /// Find the files and read the first.   err  R-SEQ-1..3, R-SEQ-5, R-SRF-n
+  static tl::expected<SurfaceSequence, Diagnostic> open(const std::string& folder, const SequenceOptions& options = {});
 
   std::size_t size() const noexcept { return files_.size(); }
+  const std::string& file(std::size_t frame) const noexcept { return files_[frame]; }
+  /// When a frame comes, [frame periods] after the first.
+  double offset(std::size_t frame) const noexcept { return offsets_[frame]; }
+  const std::vector<ReadNote>& notes() const noexcept { return notes_.all(); }
   const TriMesh& rest() const noexcept { return rest_; }
   /// Positions of the vertices of rest(), [file's unit].   pre  frame < size().   err  R-SEQ-4, R-SRF-n
   tl::expected<std::vector<Vec3>, Diagnostic> positions(std::size_t frame) const;
 
  private:
   std::vector<std::string> files_;
+  std::vector<double> offsets_;
+  ReadNotes notes_;
   std::vector<std::vector<std::uint32_t>> polygons_;  // of the first file
   std::size_t vertices_ = 0;                          // of the first file
   std::vector<std::uint32_t> used_;                   // which of them rest_ has
   TriMesh rest_;
 };
-
-/// Numbers in the names compare by value.
-bool natural_less(const std::string& a, const std::string& b) noexcept;
 
 }  // namespace tactus::sim

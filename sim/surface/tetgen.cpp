@@ -25,15 +25,16 @@ namespace fs = std::filesystem;
 
 constexpr double kVolumeTolerance = 1e-9;  // relative; TetGen writes 16 digits
 constexpr double kSamePlace = 1e-12;       // of the surface's size; likewise
+constexpr double kFar = 1000;              // of the surface's size: so far from the origin 16 digits are too few
 
-tl::unexpected<Diagnostic> broken(Errc code, RuleName rule, std::string detail) {
+tl::unexpected<Diagnostic> unfilled(Errc code, RuleName rule, std::string detail) {
   return tl::unexpected(Diagnostic{.error = fail(code, rule).value(), .detail = std::move(detail)});
 }
 
 tl::expected<void, Diagnostic> check_options(const FillOptions& options) {
   const bool volume = options.max_volume == 0 || (std::isfinite(options.max_volume) && options.max_volume > 0);
   const bool quality = options.quality == 0 || (std::isfinite(options.quality) && options.quality >= 1.1);
-  if (!volume || !quality || !(options.time_limit > 0)) return broken(Errc::invalid_argument, "R-TGN-7", "");
+  if (!volume || !quality || !(options.time_limit > 0)) return unfilled(Errc::invalid_argument, "R-TGN-7", "");
   return {};
 }
 
@@ -48,14 +49,14 @@ tl::expected<void, Diagnostic> check_places(const TriMesh& mesh) {
   const auto twice =
       std::adjacent_find(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) == key(b); });
   if (twice != order.end())
-    return broken(Errc::invalid, "R-TGN-8", "vertices " + std::to_string(twice[0]) + " and " + std::to_string(twice[1]));
+    return unfilled(Errc::invalid, "R-TGN-8", "vertices " + std::to_string(twice[0]) + " and " + std::to_string(twice[1]));
   return {};
 }
 
 tl::expected<void, Diagnostic> check_volume(const TriMesh& mesh, const FillOptions& options) {
   TACTUS_TRY(const auto solid, solid_within(mesh));
   if (options.max_volume > 0 && solid.volume / options.max_volume > static_cast<double>(kMaxTets))
-    return broken(Errc::limit_exceeded, "R-TGN-5", "");
+    return unfilled(Errc::limit_exceeded, "R-TGN-5", "");
   return {};
 }
 
@@ -107,9 +108,9 @@ class TetGen {
   tl::expected<ProgramResult, Diagnostic> run(const std::string& switches) const {
     auto result = run_program({options_.program, switches, "surface.smesh"}, folder_, deadline_);
     if (result) return *result;
-    if (result.error() == ProgramFailure::not_there) return broken(Errc::unsupported, "R-TGN-1", options_.program);
-    if (result.error() == ProgramFailure::too_long) return broken(Errc::limit_exceeded, "R-TGN-5", "");
-    return broken(Errc::io, "R-TGN-6", "");
+    if (result.error() == ProgramFailure::not_there) return unfilled(Errc::unsupported, "R-TGN-1", options_.program);
+    if (result.error() == ProgramFailure::too_long) return unfilled(Errc::limit_exceeded, "R-TGN-5", "");
+    return unfilled(Errc::io, "R-TGN-6", "");
   }
 
   /// Why it failed. Its result does not tell, but a second run can look for facets that cut each other.
@@ -117,9 +118,9 @@ class TetGen {
     const auto asked = run("-dz");
     if (!asked) return asked.error();
     if (const std::string facets = first_two_facets(asked->words); !facets.empty())
-      return broken(Errc::invalid, "R-TGN-3", facets).value();
+      return unfilled(Errc::invalid, "R-TGN-3", facets).value();
     const std::string words = last_line(failed.words);
-    return broken(Errc::io, "R-TGN-6", words.empty() ? options_.program : options_.program + " says '" + words + '\'').value();
+    return unfilled(Errc::io, "R-TGN-6", words.empty() ? options_.program : options_.program + " says '" + words + '\'').value();
   }
 
  private:
@@ -127,6 +128,13 @@ class TetGen {
   const fs::path& folder_;
   std::chrono::steady_clock::time_point deadline_;
 };
+
+/// What to take away from the coordinates of a surface far from the origin; nothing near it.
+Vec3 far_middle(const TriMesh& surface) {
+  const Bounds box = bounds(surface.vertices);
+  const Vec3 middle = 0.5 * (box.low + box.high);
+  return norm(middle) > kFar * norm(box.high - box.low) ? middle : Vec3{};
+}
 
 /// Restore the bits of the surface's vertices: TetGen writes only 16 digits.
 void restore_vertices(const TriMesh& surface, TetMesh& mesh) {
@@ -138,14 +146,14 @@ void restore_vertices(const TriMesh& surface, TetMesh& mesh) {
 
 tl::expected<void, Diagnostic> check_filled(const TriMesh& surface, const TetMesh& mesh) {
   if (const auto checked = check(mesh); !checked)
-    return broken(checked.error().error.code, "R-TGN-6", to_string(checked.error()));
+    return unfilled(checked.error().error.code, "R-TGN-6", to_string(checked.error()));
   double sum = 0;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) sum += volume(mesh, t);
   const double wanted = solid_within(surface)->volume;
   if (std::abs(sum - wanted) <= kVolumeTolerance * wanted) return {};
   std::ostringstream figures;
   figures << sum << " m^3 filled, " << wanted << " m^3 enclosed";
-  return broken(Errc::invalid, "R-TGN-9", figures.str());
+  return unfilled(Errc::invalid, "R-TGN-9", figures.str());
 }
 
 }  // namespace
@@ -159,17 +167,25 @@ tl::expected<TetMesh, Diagnostic> fill(const TriMesh& surface, const FillOptions
 
   const PrivateFolder folder;
   std::ofstream out(folder.path() / "surface.smesh", std::ios::binary);
-  write_smesh(out, surface);
+  const Vec3 middle = far_middle(surface);
+  TriMesh near = surface;
+  for (Vec3& v : near.vertices) v = v - middle;
+  write_smesh(out, near);
   out.close();
-  if (!out) return broken(Errc::io, "R-TGN-6", "no room for temporary files");
+  if (!out) return unfilled(Errc::io, "R-TGN-6", "no room for temporary files");
 
   const TetGen tetgen(options, folder.path());
   TACTUS_TRY(const auto done, tetgen.run(fill_switches(options)));
   if (done.status != 0) return tl::unexpected(tetgen.reason(done));
   auto file = read_tet_mesh(folder.path() / "surface.1.ele");
-  if (!file && file.error().error.code == Errc::limit_exceeded) return broken(Errc::limit_exceeded, "R-TGN-5", "");
+  if (!file && file.error().error.code == Errc::limit_exceeded) return unfilled(Errc::limit_exceeded, "R-TGN-5", "");
   if (!file) return tl::unexpected(tetgen.reason(done));
-  restore_vertices(surface, file->mesh);
+  if (file->ignored_vertices > 0) return unfilled(Errc::io, "R-TGN-6", "vertices of no tetrahedron came out");
+  restore_vertices(near, file->mesh);
+  for (std::size_t v = 0; v < file->mesh.vertices.size(); ++v)
+    file->mesh.vertices[v] = v < surface.vertices.size() && file->mesh.vertices[v] == near.vertices[v]
+                                 ? surface.vertices[v]
+                                 : file->mesh.vertices[v] + middle;
   TACTUS_CHECK(check_filled(surface, file->mesh));
   return std::move(file->mesh);
 }

@@ -8,6 +8,8 @@
 #include <ostream>
 
 #include <tactus/base/rule.h>
+#include <tactus/base/text.h>
+#include <tactus/sim/tets/msh_mesh.h>
 #include <tactus/sim/tets/tokenizer.h>
 
 namespace tactus::sim {
@@ -135,9 +137,11 @@ void append_vertices(std::string& text, const std::vector<Vec3>& vertices) {
 
 tl::expected<TetFile, Diagnostic> parse_node_ele(std::string_view node, std::string_view ele) {
   TetFile file;
-  Tokenizer nodes(node, ".node", Tokenizer::Comments::hash), elements(ele, ".ele", Tokenizer::Comments::hash);
+  const std::string node_text = decode_text(node), ele_text = decode_text(ele);
+  Tokenizer nodes(node_text, ".node", Tokenizer::Comments::hash), elements(ele_text, ".ele", Tokenizer::Comments::hash);
   TACTUS_TRY(const auto base, read_node(nodes, file));
   TACTUS_CHECK(read_ele(elements, base, file));
+  drop_unused_vertices(file);
   return file;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Tetrahedral meshes in files: TetGen's .node with .ele, and Gmsh's .msh (ASCII, versions 2.2 and 4.1). Files are not trusted:
+/// Tetrahedral meshes in files: TetGen's .node with .ele, and Gmsh's .msh (versions 2 to 2.2, 4.0 and 4.1 as
+/// text, 2 to 2.2 and 4.1 as bytes of either order). Files are not trusted:
 /// numbers are whole and finite, and counts fit the remaining bytes before memory is reserved for them.
 ///
 /// rule      class           broken when
@@ -9,7 +10,7 @@
 /// R-TET-11  malformed       a number is expected, and the word is none or does not fit its type
 /// R-TET-12  invalid         a number is NaN or infinite
 /// R-TET-13  malformed       a line has more or fewer words than its place asks for, or a section is missing or occurs twice
-/// R-TET-14  unsupported     not three dimensions, not linear tetrahedra, a binary .msh, or another version than 2.2 and 4.1
+/// R-TET-14  unsupported     not three dimensions, not linear tetrahedra, a binary .msh of version 4.0, or another version
 /// R-TET-15  invalid         vertices or tetrahedra are not numbered one by one from 0 or 1 (.node, .ele), a vertex number occurs
 ///                           twice, or a tetrahedron names a vertex that does not exist
 /// R-TET-16  invalid         it holds no tetrahedron
@@ -32,7 +33,7 @@ struct TetFile {
   std::vector<std::int32_t> vertex_markers;  ///< .node: boundary marker of each vertex; empty when there are none
   std::vector<std::int32_t> regions;         ///< .msh: tag of the volume that each tetrahedron belongs to
   std::size_t ignored_elements = 0;          ///< .msh: points, lines, triangles, ...
-  std::size_t ignored_vertices = 0;          ///< .msh: vertices of no tetrahedron
+  std::size_t ignored_vertices = 0;          ///< vertices of no tetrahedron, left out
 };
 
 /// Read .msh, or .node and .ele beside one another (either may be named).   err  R-TET-8..17

@@ -2,9 +2,11 @@
 // Gmsh's format is described in its reference manual, chapter "MSH file format" (4.1) and "MSH file format version 2 (Legacy)".
 #include <algorithm>
 #include <array>
+#include <string>
 #include <utility>
 
-#include <tactus/sim/tets/tet_files.h>
+#include <tactus/base/text.h>
+#include <tactus/sim/tets/msh_mesh.h>
 #include <tactus/sim/tets/tokenizer.h>
 
 namespace tactus::sim {
@@ -12,8 +14,6 @@ namespace {
 
 using Read = tl::expected<void, Diagnostic>;
 
-constexpr std::size_t kTetType = 4;
-constexpr std::array<std::size_t, 4> kCurvedTetTypes{11, 29, 30, 31};
 constexpr std::size_t kNodeBytes = 8, kElementBytes = 4;  // of the shortest: "1 0 0 0\n", "1 1\n"
 constexpr std::size_t kAnyNumber = static_cast<std::size_t>(-1);
 
@@ -25,24 +25,40 @@ class MshReader {
     TACTUS_CHECK(read_format());
     while (words_.next_line()) TACTUS_CHECK(read_section(words_.word()));
     if (!has_nodes_ || !has_elements_) return words_.broken(Errc::truncated, "R-TET-10");
-    if (file_.mesh.tets.empty()) return words_.broken(Errc::invalid, "R-TET-16");
-    drop_unused_vertices();
-    return std::move(file_);
+    if (mesh_.file.mesh.tets.empty()) return words_.broken(Errc::invalid, "R-TET-16");
+    drop_unused_vertices(mesh_.file);
+    return std::move(mesh_.file);
   }
 
  private:
+  /// Sections such as $Comments may stand before the format.
   Read read_format() {
-    TACTUS_CHECK(expect("$MeshFormat"));
+    TACTUS_CHECK(words_.line());
+    for (auto name = words_.word(); name != "$MeshFormat"; name = words_.word()) {
+      if (!name.starts_with('$')) return words_.broken(Errc::malformed, "R-TET-13", name);
+      TACTUS_CHECK(skip_section(name));
+      TACTUS_CHECK(words_.line());
+    }
+    TACTUS_CHECK(words_.end_of_line());
     TACTUS_CHECK(words_.line());
     const std::string_view version = words_.word();
     std::size_t binary = 0, real_bytes = 0;
     TACTUS_CHECK(words_.number(binary));
     TACTUS_CHECK(words_.number(real_bytes));
-    if (binary != 0) return words_.broken(Errc::unsupported, "R-TET-14", "binary");
-    if (version != "4.1" && version != "2.2") return words_.broken(Errc::unsupported, "R-TET-14", version);
-    legacy_ = version == "2.2";
+    const bool known = is_legacy(version) || version == "4" || version == "4.0" || version == "4.1";
+    if (binary != 0 || !known || real_bytes != 8)
+      return words_.broken(Errc::unsupported, "R-TET-14", binary != 0 ? "binary" : known ? std::to_string(real_bytes) : version);
+    legacy_ = is_legacy(version);
+    tags_first_ = version == "4" || version == "4.0";
     TACTUS_CHECK(words_.end_of_line());
     return expect("$EndMeshFormat");
+  }
+
+  Read skip_section(std::string_view name) {
+    const std::string end = "$End" + std::string(name.substr(1));
+    do TACTUS_CHECK(words_.line());
+    while (words_.word() != end);
+    return {};
   }
 
   Read expect(std::string_view wanted) {
@@ -64,10 +80,7 @@ class MshReader {
       return expect("$EndElements");
     }
     if (!name.starts_with('$')) return words_.broken(Errc::malformed, "R-TET-13", name);
-    const std::string end = "$End" + std::string(name.substr(1));
-    do TACTUS_CHECK(words_.line());
-    while (words_.word() != end);
-    return {};
+    return skip_section(name);
   }
 
   /// number, then "tag x y z" each
@@ -76,40 +89,42 @@ class MshReader {
     TACTUS_CHECK(words_.line());
     TACTUS_CHECK(words_.count(count, kMaxMeshVertices, kNodeBytes));
     TACTUS_CHECK(words_.end_of_line());
-    reserve_vertices(count);
+    mesh_.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
       TACTUS_CHECK(words_.line());
       TACTUS_CHECK(read_tag());
-      TACTUS_CHECK(words_.coordinates(file_.mesh.vertices.emplace_back()));
+      TACTUS_CHECK(words_.coordinates(mesh_.file.mesh.vertices.emplace_back()));
       TACTUS_CHECK(words_.end_of_line());
     }
     return {};
   }
 
-  /// "blocks nodes lowest highest", then blocks of "dimension entity parametric nodes", tags, coordinates
+  /// "blocks nodes lowest highest", then blocks of "dimension entity parametric nodes", tags, coordinates. In 4.0: "blocks nodes", blocks of
+  /// "entity dimension parametric nodes", each node's tag before its coordinates.
   Read read_nodes_4() {
     std::size_t blocks = 0, count = 0;
     TACTUS_CHECK(read_totals(blocks, count, kMaxMeshVertices, kNodeBytes));
-    reserve_vertices(count);
+    mesh_.reserve(count);
     for (std::size_t b = 0; b < blocks; ++b) {
       std::array<std::int64_t, 3> entity{};  // dimension, tag, parametric
       std::size_t nodes = 0;
       TACTUS_CHECK(words_.line());
       for (std::int64_t& value : entity) TACTUS_CHECK(words_.number(value));
-      TACTUS_CHECK(words_.count(nodes, count - file_.mesh.vertices.size(), kNodeBytes));
+      TACTUS_CHECK(words_.count(nodes, count - mesh_.file.mesh.vertices.size(), kNodeBytes));
       TACTUS_CHECK(words_.end_of_line());
-      for (std::size_t i = 0; i < nodes; ++i) {
+      for (std::size_t i = 0; i < nodes && !tags_first_; ++i) {
         TACTUS_CHECK(words_.line());
         TACTUS_CHECK(read_tag());
         TACTUS_CHECK(words_.end_of_line());
       }
       for (std::size_t i = 0; i < nodes; ++i) {
         TACTUS_CHECK(words_.line());
-        TACTUS_CHECK(words_.coordinates(file_.mesh.vertices.emplace_back()));
+        if (tags_first_) TACTUS_CHECK(read_tag());
+        TACTUS_CHECK(words_.coordinates(mesh_.file.mesh.vertices.emplace_back()));
         if (entity[2] == 0) TACTUS_CHECK(words_.end_of_line());  // else coordinates on the curve or surface follow
       }
     }
-    if (file_.mesh.vertices.size() != count) return words_.broken(Errc::malformed, "R-TET-13");
+    if (mesh_.file.mesh.vertices.size() != count) return words_.broken(Errc::malformed, "R-TET-13");
     return {};
   }
 
@@ -118,28 +133,21 @@ class MshReader {
     TACTUS_CHECK(words_.line());
     TACTUS_CHECK(words_.count(blocks, kAnyNumber, kNodeBytes));
     TACTUS_CHECK(words_.count(count, most, bytes));
+    if (tags_first_) return words_.end_of_line();
     TACTUS_CHECK(words_.number(lowest));
     TACTUS_CHECK(words_.number(highest));
     return words_.end_of_line();
   }
 
-  void reserve_vertices(std::size_t count) {
-    file_.mesh.vertices.reserve(count);
-    tags_.reserve(count);
-  }
-
   Read read_tag() {
     std::size_t tag = 0;
     TACTUS_CHECK(words_.number(tag));
-    tags_.emplace_back(tag, static_cast<std::uint32_t>(tags_.size()));
+    mesh_.add_tag(tag);
     return {};
   }
 
   Read sort_tags() {
-    std::sort(tags_.begin(), tags_.end());
-    const auto twice =
-        std::adjacent_find(tags_.begin(), tags_.end(), [](const auto& a, const auto& b) { return a.first == b.first; });
-    if (twice != tags_.end()) return words_.broken(Errc::invalid, "R-TET-15", std::to_string(twice->first));
+    if (const auto twice = mesh_.sort_tags()) return words_.broken(Errc::invalid, "R-TET-15", std::to_string(*twice));
     return {};
   }
 
@@ -174,8 +182,9 @@ class MshReader {
       std::size_t dimension = 0, type = 0, elements = 0;
       std::int32_t region = 0;
       TACTUS_CHECK(words_.line());
+      if (tags_first_) TACTUS_CHECK(words_.number(region));
       TACTUS_CHECK(words_.number(dimension));
-      TACTUS_CHECK(words_.number(region));
+      if (!tags_first_) TACTUS_CHECK(words_.number(region));
       TACTUS_CHECK(words_.number(type));
       TACTUS_CHECK(words_.count(elements, count - done, kElementBytes));
       TACTUS_CHECK(words_.end_of_line());
@@ -193,49 +202,46 @@ class MshReader {
 
   /// The nodes of an element, up to the end of the line.
   Read read_element(std::size_t type, std::int32_t region) {
-    if (std::find(kCurvedTetTypes.begin(), kCurvedTetTypes.end(), type) != kCurvedTetTypes.end())
-      return words_.broken(Errc::unsupported, "R-TET-14", std::to_string(type));
-    if (type != kTetType) {
-      ++file_.ignored_elements;
+    if (is_curved_tet(type)) return words_.broken(Errc::unsupported, "R-TET-14", std::to_string(type));
+    if (type != kMshTet) {
+      ++mesh_.file.ignored_elements;
       return {};
     }
-    if (file_.mesh.tets.size() == kMaxTets) return words_.broken(Errc::limit_exceeded, "R-TET-9");
-    for (std::uint32_t& corner : file_.mesh.tets.emplace_back()) {
+    if (mesh_.file.mesh.tets.size() == kMaxTets) return words_.broken(Errc::limit_exceeded, "R-TET-9");
+    for (std::uint32_t& corner : mesh_.file.mesh.tets.emplace_back()) {
       std::size_t tag = 0;
       TACTUS_CHECK(words_.number(tag));
-      const auto found = std::lower_bound(tags_.begin(), tags_.end(), std::pair{tag, std::uint32_t{0}});
-      if (found == tags_.end() || found->first != tag) return words_.broken(Errc::invalid, "R-TET-15", std::to_string(tag));
-      corner = found->second;
+      const auto vertex = mesh_.vertex(tag);
+      if (!vertex) return words_.broken(Errc::invalid, "R-TET-15", std::to_string(tag));
+      corner = *vertex;
     }
-    file_.regions.push_back(region);
+    mesh_.file.regions.push_back(region);
     return words_.end_of_line();
   }
 
-  /// Drop points that only curves and surfaces were made of, such as the centre of a circle.
-  void drop_unused_vertices() {
-    std::vector<std::uint32_t> number(file_.mesh.vertices.size(), 0);
-    for (const Tet& tet : file_.mesh.tets)
-      for (const std::uint32_t v : tet) number[v] = 1;
-    std::uint32_t kept = 0;
-    for (std::size_t v = 0; v < number.size(); ++v) {
-      if (number[v] == 0) continue;
-      file_.mesh.vertices[kept] = file_.mesh.vertices[v];
-      number[v] = kept++;
-    }
-    for (Tet& tet : file_.mesh.tets)
-      for (std::uint32_t& v : tet) v = number[v];
-    file_.ignored_vertices = file_.mesh.vertices.size() - kept;
-    file_.mesh.vertices.resize(kept);
+  static bool is_legacy(std::string_view version) noexcept {
+    return version == "2" || version == "2.0" || version == "2.1" || version == "2.2";
   }
 
   Tokenizer words_;
-  TetFile file_;
-  std::vector<std::pair<std::size_t, std::uint32_t>> tags_;  // a vertex's number in the file, its place in the mesh
-  bool legacy_ = false, has_nodes_ = false, has_elements_ = false;
+  MshMesh mesh_;
+  bool legacy_ = false, tags_first_ = false, has_nodes_ = false, has_elements_ = false;
 };
 
 }  // namespace
 
-tl::expected<TetFile, Diagnostic> parse_msh(std::string_view text) { return MshReader(text).read(); }
+tl::expected<TetFile, Diagnostic> parse_msh(std::string_view bytes) {
+  constexpr std::string_view kFormat = "$MeshFormat";
+  const std::size_t at = bytes.find(kFormat), end = at == std::string_view::npos ? at : bytes.find('\n', at);
+  if (end != std::string_view::npos && (at == 0 || bytes[at - 1] == '\n' || bytes[at - 1] == '\xBF')) {
+    LineReader line(bytes.substr(end + 1, 64), LineReader::Comments::none);
+    const std::string_view version = line.next_word(), binary = line.word(), real_bytes = line.word();
+    const bool known = version == "2" || version == "2.1" || version == "2.2" || version == "4.1";
+    if (binary == "1" && known && real_bytes == "8")
+      return parse_binary_msh(version, bytes.substr(std::min(bytes.find('\n', end + 1), bytes.size() - 1) + 1));
+  }
+  const std::string text = decode_text(bytes);
+  return MshReader(text).read();
+}
 
 }  // namespace tactus::sim

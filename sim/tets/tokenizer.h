@@ -1,37 +1,57 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Words of an untrusted text file, line by line, for the readers of mesh files.
+/// Lines and words of an untrusted text file, for the readers of mesh files. The text has gone through decode_text (text.h).
 #pragma once
 
-#include <charconv>
 #include <cmath>
 #include <concepts>
 #include <string_view>
 
 #include <tactus/base/rule.h>
+#include <tactus/base/text.h>
 #include <tactus/sim/tets/tet_files.h>
 
 namespace tactus::sim {
 
-class Tokenizer {
+class LineReader {
  public:
   enum class Comments { none, hash };  ///< hash: from # to the end of the line
-  Tokenizer(std::string_view text, std::string_view file, Comments comments) : rest_(text), file_(file), comments_(comments) {}
+  LineReader(std::string_view text, Comments comments) noexcept : rest_(text), comments_(comments) {}
 
+  /// Go to the next line, whatever is on it.   out  false: there is none
+  bool any_line() noexcept;
   /// Go to the next line that has words.   out  false: there is none
   bool next_line() noexcept;
-  /// The same where there must be one.   err  R-TET-10
-  tl::expected<void, Diagnostic> line();
   bool has_word() noexcept;          ///< on this line
   std::string_view word() noexcept;  ///< the next on this line; empty: none
+  /// The next word, also of the lines that follow; empty: none.
+  std::string_view next_word() noexcept { return has_word() || next_line() ? word() : std::string_view(); }
+  std::string_view whole_line() const noexcept { return whole_; }  ///< without its comment
+  std::size_t line_number() const noexcept { return number_; }     ///< from 1
+  std::size_t bytes_left() const noexcept { return line_.size() + rest_.size(); }
+
+ private:
+  std::string_view rest_, whole_, line_;  // behind the line, the line, what is left of it
+  std::size_t number_ = 0;
+  Comments comments_;
+};
+
+/// Reads numbers, too, and knows the rules of tetrahedron files.
+class Tokenizer : private LineReader {
+ public:
+  using LineReader::Comments, LineReader::has_word, LineReader::next_line, LineReader::word;
+  Tokenizer(std::string_view text, std::string_view file, Comments comments) : LineReader(text, comments), file_(file) {}
+
+  /// Go to the next line that has words, where there must be one.   err  R-TET-10
+  tl::expected<void, Diagnostic> line();
 
   /// The next word as a number.   err  R-TET-11, R-TET-12, R-TET-13 (the line has no more words)
   template <class T>
   tl::expected<void, Diagnostic> number(T& value) {
     const std::string_view text = word();
     if (text.empty()) return broken(Errc::malformed, "R-TET-13");
-    const std::string_view digits = text.starts_with('+') && !text.starts_with("+-") ? text.substr(1) : text;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error != std::errc() || end != digits.data() + digits.size()) return broken(Errc::malformed, "R-TET-11", text);
+    const auto parsed = parse_number<T>(text);
+    if (!parsed) return broken(Errc::malformed, "R-TET-11", text);
+    value = *parsed;
     if constexpr (std::floating_point<T>) {
       if (!std::isfinite(value)) return broken(Errc::invalid, "R-TET-12", text);
     }
@@ -46,9 +66,7 @@ class Tokenizer {
   tl::unexpected<Diagnostic> broken(Errc code, RuleName rule, std::string_view word = {}) const;
 
  private:
-  std::string_view rest_, line_, file_;  // behind the line, what is left of it
-  std::size_t number_ = 0;
-  Comments comments_;
+  std::string_view file_;
 };
 
 }  // namespace tactus::sim

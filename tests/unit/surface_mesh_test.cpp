@@ -132,48 +132,47 @@ TEST(SurfaceFile, PolygonsAreCutWhereTheyCanBe) {
   // A comb: no corner sees both gaps.
   expect_broken(
       parse_surface("v 0 0 0\nv 5 0 0\nv 5 2 0\nv 4 2 0\nv 4 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nf 1 2 3 4 5 6 7 8\n", ".obj"),
-      "R-SRF-6", "face 0");
+      "R-SRF-6", "vertices 1 2 3 4 5 6 7 8");
 }
 
 TEST(SurfaceFile, WhatIsAnnouncedMustBeThere) {
   expect_broken(parse_surface(replaced(kOff, "4 4\n6", "2000000 4\n6"), ".off"), "R-SRF-2", "2000000 vertices, 4 faces");
-  expect_broken(parse_surface(replaced(kOff, "4 4\n6", "4 900000 6"), ".off"), "R-SRF-4",
+  expect_broken(parse_surface(replaced(kOff, "4 4\n6", "4 900000 6"), ".off"), "R-SRF-5",
                 "the file is shorter than its header says");
   expect_broken(parse_surface(replaced(kOff, "OFF", "OFF BINARY"), ".off"), "R-SRF-3", "binary");
-  expect_broken(parse_surface(replaced(kOff, "1.25", "nan"), ".off"), "R-SRF-4", "line 7, '0 nan 0'");
-  expect_broken(parse_surface(replaced(kPly, "vertex 4", "vertex 900000"), ".ply"), "R-SRF-4",
+  expect_broken(parse_surface(replaced(kOff, "1.25", "nan"), ".off"), "R-SRF-8", "(0 nan 0)");
+  expect_broken(parse_surface(replaced(kPly, "vertex 4", "vertex 900000"), ".ply"), "R-SRF-5",
                 "the file is shorter than its header says");
-  expect_broken(parse_surface(replaced(kPly, "list uchar", "list uint"), ".ply"), "R-SRF-3", " list uint int vertex_indices");
-  expect_broken(parse_surface(replaced(kPly, "double z", "real z"), ".ply"), "R-SRF-4", " real z");
-  expect_broken(parse_surface(replaced(kPly, "end_header", "header_end"), ".ply"), "R-SRF-4", "header_end");
-  expect_broken(parse_surface(replaced(kObj, "1.25", "1,25"), ".obj"), "R-SRF-4", "line 5, 'v 0 1,25 0'");
-  expect_broken(parse_surface(replaced(kObj, "f 1 4 3", "f 1 4"), ".obj"), "R-SRF-4", "line 14, 'f 1 4'");
-  expect_broken(parse_surface("v 0 0 0\n", ".obj"), "R-SRF-7", "");
-  expect_broken(parse_surface(replaced(ascii_stl(), "1.250000", "inf"), ".stl"), "R-SRF-4",
-                "line 5, 'vertex 0.000000 inf 0.000000'");
-  expect_broken(parse_surface(replaced(kOff, "3 0 1 3", "9 0 1 3"), ".off"), "R-SRF-4", "line 10, '9 0 1 3'");
-  expect_broken(parse_surface(replaced(kPly, "3 1 2 3", "4 1 2 3"), ".ply"), "R-SRF-4", "line 18, '4 1 2 3'");
-  expect_broken(parse_surface(replaced(kPly, "ascii 1.0", "ascii h1.0"), ".ply"), "R-SRF-4", "format ascii h1.0");
-  expect_broken(parse_surface(replaced(kPly, "double z", "int z"), ".ply"), "R-SRF-3", " int z");
+  EXPECT_TRUE(parse_surface(replaced(kPly, "list uchar", "list uint"), ".ply"));
+  expect_broken(parse_surface(replaced(kPly, "double z", "real z"), ".ply"), "R-SRF-4", "'property real z'");
+  expect_broken(parse_surface(replaced(kPly, "end_header", "header_end"), ".ply"), "R-SRF-4", "'header_end'");
+  expect_broken(parse_surface(replaced(kObj, "1.25", "1,25"), ".obj"), "R-SRF-4", "'v 0 1,25 0'");
+  expect_broken(parse_surface(replaced(kObj, "f 1 4 3", "f 1 4"), ".obj"), "R-SRF-4", "'f 1 4'");
+  expect_broken(parse_surface("v 0 0 0\n", ".obj"), "R-SRF-7", "1 vertices");
+  expect_broken(parse_surface(replaced(ascii_stl(), "1.250000", "inf"), ".stl"), "R-SRF-4", "'vertex 0.000000 inf 0.000000'");
+  expect_broken(parse_surface(replaced(kOff, "3 0 1 3", "9 0 1 3"), ".off"), "R-SRF-4", "'9 0 1 3': a face of 9 corners");
+  expect_broken(parse_surface(replaced(kPly, "3 1 2 3", "4 1 2 3"), ".ply"), "R-SRF-4", "'4 1 2 3': not a whole number");
+  expect_broken(parse_surface(replaced(kPly, "ascii 1.0", "ascii h1.0"), ".ply"), "R-SRF-4", "'format ascii h1.0'");
+  EXPECT_TRUE(parse_surface(replaced(kPly, "double z", "int z"), ".ply"));
   std::string bits = binary_stl();
   std::memset(bits.data() + 84 + 50 + 12, 0xff, 4);
-  expect_broken(parse_surface(bits, ".stl"), "R-SRF-4", "facet 1");
+  expect_broken(parse_surface(bits, ".stl"), "R-SRF-4", "facet 1: a corner is not finite");
   expect_broken(parse_surface(kObj, ".x3d"), "R-SRF-3", ".x3d");
 }
 
-TEST(SurfaceFile, WhatOpenMeshDropsIsNoticed) {
+TEST(SurfaceFile, WhatCannotBeUsedIsNamed) {
   std::string flat = binary_stl();
   std::memcpy(flat.data() + 84 + 12, flat.data() + 84 + 24, 12);  // two corners of facet 0 in one place
-  expect_broken(parse_surface(flat, ".stl"), "R-SRF-5", "3 of 4 faces");
+  expect_broken(parse_surface(flat, ".stl"), "R-SRF-10", "corners (0 1.25 0) (0 1.25 0) (1 0 0)");
   const auto index = parse_surface(replaced(kPly, "3 0 3 2", "3 0 3 9"), ".ply");
   ASSERT_FALSE(index);
-  EXPECT_EQ(to_string(index.error()).find("triangle 3: R-SRF-9: "), 0U);
+  EXPECT_EQ(to_string(index.error()).find(":19: face 3: no vertex 9 among 4: R-SRF-9: "), 0U) << to_string(index.error());
 }
 
 TEST(SurfaceFile, BrokenMeshesNameTheirTriangle) {
   const auto turned = parse_surface(replaced(kOff, "3 0 3 2", "3 0 2 3"), ".off");
   ASSERT_FALSE(turned);
-  EXPECT_EQ(to_string(turned.error()).find("triangle 3: R-SRF-12: "), 0U) << to_string(turned.error());
+  EXPECT_EQ(to_string(turned.error()).find(":12: face 3: vertices 0 2 3: R-SRF-12: "), 0U) << to_string(turned.error());
 }
 
 TEST(SurfaceFile, EveryPrefixIsRefused) {
@@ -199,6 +198,112 @@ TEST(SurfaceFile, WrittenSurfacesReadBack) {
   ASSERT_FALSE(missing);
   EXPECT_EQ(to_string(missing.error()).find(folder.file("gone.obj") + ": R-SRF-1: "), 0U);
   EXPECT_FALSE(write_surface(folder.file("no/folder.obj"), mesh));
+}
+
+std::string cube(std::string_view head, std::string_view face, std::string_view tail = "", std::string_view end = "\n") {
+  std::string text(head);
+  for (const char* v : {"0 0 0", "1 0 0", "0 1.25 0", "0 0 1"}) text.append(v).append(tail).append(end);
+  for (const char* f : {"0 2 1", "0 1 3", "1 2 3", "0 3 2"}) text.append(face).append(f).append(end);
+  return text;
+}
+
+void expect_tetrahedron(const std::string& text, std::string_view format) {
+  const auto file = parse_surface(text, format);
+  ASSERT_TRUE(file) << text.substr(0, 60) << to_string(file.error());
+  EXPECT_EQ(file->mesh.vertices.size(), 4U) << text.substr(0, 60);
+  EXPECT_EQ(file->mesh.triangles.size(), 4U) << text.substr(0, 60);
+  EXPECT_EQ(enclosed(file->mesh), 1.25 / 6) << text.substr(0, 60);
+}
+
+TEST(SurfaceFile, DialectsOfOffReadTheSame) {
+  for (const char* head :
+       {"OFF4 4 0\n", "OFF4 4 6\n", "OFF\n4 4\n", "\n # front\n\nOFF\n# c\n4 4 0\n", "4 4 0\n", "OFF 4\n4\n6\n"})
+    expect_tetrahedron(cube(head, "3 "), ".off");
+  expect_tetrahedron(cube("COFF\n4 4 0\n", "3 ", " 255 0 0 255"), ".off");
+  expect_tetrahedron(cube("NOFF\n4 4 0\n", "3 ", " 0 0 1"), ".off");
+  expect_tetrahedron(cube("STCNOFF\n4 4 0\n", "3 ", " 0 0 1 1 1 1 0.5 0.5"), ".off");
+  expect_tetrahedron(cube("OFF 4 4 0 ", "3 ", "", " "), ".off");
+  expect_tetrahedron(cube("COFF\n4 4 0\n", "3 ", " 1 0 0", " "), ".off");
+  for (const char* head : {"4OFF\n4 4 0\n", "nOFF\n4 4 0\n"}) {
+    const auto refused = parse_surface(cube(head, "3 ", " 1"), ".off");
+    ASSERT_FALSE(refused);
+    EXPECT_STREQ(refused.error().error.rule, "R-SRF-3");
+  }
+}
+
+TEST(SurfaceFile, TextOfAnySystemReadsTheSame) {
+  const auto ending = [](std::string text, std::string_view end) {
+    for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += end.size()) text.replace(at, 1, end);
+    return text;
+  };
+  const auto wide = [](const std::string& text) {
+    std::string out = "\xFF\xFE";
+    for (const char c : text) (out += c) += '\0';
+    return out;
+  };
+  const std::pair<const char*, std::string> files[] = {
+      {".obj", std::string(kObj)}, {".off", std::string(kOff)}, {".ply", std::string(kPly)}, {".stl", ascii_stl()}};
+  for (const auto& [format, text] : files) {
+    expect_tetrahedron("\xEF\xBB\xBF" + text, format);
+    expect_tetrahedron(ending(text, "\r\n"), format);
+    expect_tetrahedron(ending(text, "\r"), format);
+    expect_tetrahedron(wide(text), format);
+    expect_tetrahedron(wide(ending(text, "\r\n")), format);
+  }
+}
+
+TEST(SurfaceFile, OnlyCoordinatesAndCornersOfAPlyMatter) {
+  for (const char* type : {"char", "int8", "short", "ushort", "int", "uint", "uint32"})
+    expect_tetrahedron(replaced(kPly, "list uchar int", std::string("list ") + type + " short"), ".ply");
+  expect_tetrahedron(replaced(replaced(kPly, "0 0 0 1", "0 0 0 nan"), "uchar red", "float nx"), ".ply");
+  expect_tetrahedron(
+      "ply\nformat ascii 1.0\nelement camera 1\nproperty float a\nproperty list uchar float b\nelement face 4\n"
+      "property list uint uint vertex_index\nproperty list uchar float texcoord\nelement vertex 4\nproperty float z\n"
+      "property float y\nproperty double x\nend_header\n9 2 1 1\n3 0 2 1 0\n3 0 1 3 1 5\n3 1 2 3 0\n3 0 3 2 0\n"
+      "0 0 0\n0 0 1\n0 1.25 0\n1 0 0\n",
+      ".ply");
+  expect_tetrahedron(
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement tristrips 1\n"
+      "property list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1.25 0\n0 0 1\n15 0 2 1 -1 0 1 3 -1 1 2 3 -1 0 3 2\n",
+      ".ply");
+}
+
+TEST(SurfaceFile, SizeOfAnStlDecides) {
+  expect_tetrahedron(replaced(binary_stl(), std::string(5, ' '), "solid"), ".stl");
+  expect_tetrahedron(binary_stl() + "end", ".stl");
+  for (const char count : {'\0', '\3'}) {
+    std::string odd = binary_stl();
+    odd[80] = count;
+    expect_tetrahedron(odd, ".stl");
+    EXPECT_EQ(parse_surface(odd, ".stl")->notes.all().size(), 1U);
+  }
+  std::string many = binary_stl();
+  many[80] = 5;
+  expect_broken(parse_surface(many, ".stl"), "R-SRF-5", "announces 5 facets and holds 4");
+  std::string capitals = ascii_stl();
+  for (char& c : capitals) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  expect_tetrahedron(capitals, ".stl");
+}
+
+TEST(SurfaceFile, FacesWithoutAreaAreNamedOrDropped) {
+  const std::string text = std::string(kObj) + "f 1 1 2\nf 3 4 4\n";
+  const auto refused = parse_surface(text, ".obj");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(to_string(refused.error()).find(":15: face 4: vertices 1 1 2, the first of 2: R-SRF-10: "), 0U)
+      << to_string(refused.error());
+  const auto dropped = parse_surface(text, ".obj", {.drop_degenerate = true});
+  ASSERT_TRUE(dropped) << to_string(dropped.error());
+  EXPECT_EQ(dropped->dropped_faces, 2U);
+  EXPECT_EQ(dropped->mesh.triangles.size(), 4U);
+}
+
+TEST(SurfaceFile, CoordinatesKeepDoublePrecision) {
+  for (const auto& [format, text] :
+       {std::pair{".obj", std::string(kObj)}, {".off", std::string(kOff)}, {".ply", std::string(kPly)}}) {
+    const auto file = parse_surface(replaced(text, "0 1.25 0", "0 1000.00123 0"), format);
+    ASSERT_TRUE(file) << to_string(file.error());
+    EXPECT_EQ(file->mesh.vertices[2].y, 1000.00123) << format;
+  }
 }
 
 }  // namespace

@@ -23,19 +23,6 @@ std::string_view rule_of_second(std::string_view text) {
   return positions ? "" : positions.error().error.rule;
 }
 
-TEST(SurfaceSequence, NumbersInNamesCompareByValue) {
-  const std::vector<std::string> ordered{
-      "a", "a1", "a01", "a2", "a10", "a10b2", "a10b10", "a99999999999999999999", "a100000000000000000000", "b"};
-  for (std::size_t i = 0; i < ordered.size(); ++i) {
-    for (std::size_t j = 0; j < ordered.size(); ++j) {
-      if (ordered[i] == "a1" && ordered[j] == "a01") continue;  // equal in value: either order, but one
-      if (ordered[i] == "a01" && ordered[j] == "a1") continue;
-      EXPECT_EQ(natural_less(ordered[i], ordered[j]), i < j) << ordered[i] << ' ' << ordered[j];
-    }
-  }
-  EXPECT_NE(natural_less("a1", "a01"), natural_less("a01", "a1"));
-}
-
 TEST(SurfaceSequence, FramesInOrderWithoutUnusedVertices) {
   const TempFolder folder;
   folder.write("f10.obj", "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\nf 2 3 4 5\n");
@@ -48,6 +35,46 @@ TEST(SurfaceSequence, FramesInOrderWithoutUnusedVertices) {
   EXPECT_EQ(sequence->rest().triangles.size(), 2U);
   EXPECT_EQ(sequence->positions(0).value(), sequence->rest().vertices);
   EXPECT_EQ(sequence->positions(1).value()[2], (Vec3{1, 1, 0.5}));
+}
+
+/// The order of files, as "name@offset name@offset"; a rule if they are refused.
+std::string order(const std::vector<std::string>& names, const SequenceOptions& options = {}) {
+  const TempFolder folder;
+  for (const std::string& name : names) folder.write(name, kSquare);
+  const auto sequence = SurfaceSequence::open(folder.file(""), options);
+  if (!sequence) return sequence.error().error.rule + (' ' + sequence.error().detail);
+  std::string out;
+  for (std::size_t k = 0; k < sequence->size(); ++k) {
+    out += (k > 0 ? " " : "") + std::filesystem::path(sequence->file(k)).stem().string();
+    if (sequence->offset(k) != static_cast<double>(k)) out += '@' + std::to_string(static_cast<int>(sequence->offset(k)));
+  }
+  return out;
+}
+
+TEST(SurfaceSequence, NumbersGiveOrderAndTime) {
+  EXPECT_EQ(order({"f_-1.obj", "f_-2.obj", "f_-3.obj", "f_0.obj", "f_1.obj"}), "f_-3 f_-2 f_-1 f_0 f_1");
+  EXPECT_EQ(order({"f-1.obj", "f-2.obj", "f0.obj", "f1.obj"}), "f-2 f-1 f0 f1");
+  EXPECT_EQ(order({"f-1.obj", "f-2.obj", "f-10.obj"}), "f-1 f-2 f-10@9");
+  EXPECT_EQ(order({"f_-0002.obj", "f_-0001.obj", "f_0000.obj"}), "f_-0002 f_-0001 f_0000");
+  EXPECT_EQ(order({"t=0.1.obj", "t=0.2.obj", "t=0.05.obj", "t=0.15.obj", "t=0.obj"}), "t=0 t=0.05 t=0.1 t=0.15 t=0.2");
+  EXPECT_EQ(order({"f0.obj", "f1.obj", "f2.obj", "f5.obj", "f6.obj"}), "f0 f1 f2 f5@5 f6@6");
+  EXPECT_EQ(order({"f0.obj", "f10.obj", "f20.obj", "f40.obj"}), "f0 f10 f20 f40@4");
+  EXPECT_EQ(order({"v2_f_1.obj", "v2_f_9.obj", "v2_f_10.obj"}), "v2_f_1 v2_f_9@8 v2_f_10@9");
+  EXPECT_EQ(order({"a.0001.obj", "a.0002.obj"}), "a.0001 a.0002");
+}
+
+TEST(SurfaceSequence, TwoSeriesAreRefusedOrChosen) {
+  const std::vector<std::string> two{"left_0.obj", "left_1.obj", "right_0.obj", "right_1.obj"};
+  EXPECT_EQ(order(two), "R-SEQ-5 left_*.obj and right_*.obj");
+  EXPECT_EQ(order(two, {.series = "right_*"}), "right_0 right_1");
+  EXPECT_EQ(order(two, {.series = "up_*"}), "R-SEQ-2 no file is called like 'up_*'; there is left_0.obj");
+  EXPECT_EQ(order({"b1_0.obj", "b1_1.obj", "b2_0.obj", "b2_1.obj"}), "R-SEQ-5 b1_*.obj and b2_*.obj");
+  EXPECT_EQ(order({"f1.obj", "f01.obj"}), "R-SEQ-5 the same number in f01.obj and f1.obj");
+}
+
+TEST(SurfaceSequence, CopiesAndHiddenFilesAreNoFrames) {
+  EXPECT_EQ(order({"f_0.obj", "f_1.obj", "f_1 (copy).obj", "f_1.obj~", "._f_0.obj", ".DS_Store", "Thumbs.db", "f_1 - Copy.obj"}),
+            "f_0 f_1");
 }
 
 TEST(SurfaceSequence, LaterFramesMayCollapse) {
