@@ -61,8 +61,8 @@ Outcome copy(TraceReader& reader, TraceWriter& writer, const CutOptions& options
 Outcome run(const CutOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
   if (options.to <= options.from) return refuse_arguments("--to: nothing lies between it and --from", "Give a later --to.");
-  auto reader = TraceReader::open(options.input);
-  if (!reader) return refuse(options.input, reader.error());
+  auto reader = open_trace(options.input);
+  if (!reader) return tl::unexpected(reader.error());
   const TraceInfo& info = reader->info();
   if (options.rebase && info.shows_past)
     return refuse(shown_path(options.input) + ": a client's trace, whose ticks are those of the server", "Leave out --rebase.");

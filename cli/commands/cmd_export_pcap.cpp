@@ -149,8 +149,8 @@ void print_text(const Json& r, std::FILE* to) {
 
 Outcome run(const ExportPcapOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
-  auto reader = TraceReader::open(options.input);
-  if (!reader) return refuse(options.input, reader.error());
+  auto reader = open_trace(options.input);
+  if (!reader) return tl::unexpected(reader.error());
   TraceFrame first;
   const auto any = reader->next(first);
   if (!any) return refuse(options.input, any.error());

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include <tactus/base/shown.h>
+#include <tactus/base/text.h>
 #include <tactus/sim/surface/surface_sequence.h>
 #include <tactus/trace/messages.h>
-#include <tactus/base/text.h>
 #include <tactus/trace/trace_file.h>
 #include "cli/commands/commands.h"
 #include "cli/report/report.h"

@@ -117,8 +117,8 @@ Outcome run(const MergeOptions& options) {
   TraceInfo all;
   Report report{.command = "merge", .files = {{"merged", options.output}}};
   for (const std::string& path : options.inputs) {
-    auto reader = TraceReader::open(path);
-    if (!reader) return refuse(path, reader.error());
+    auto reader = open_trace(path);
+    if (!reader) return tl::unexpected(reader.error());
     parts.push_back({path, std::move(*reader), static_cast<std::uint32_t>(all.objects.size()),
                      static_cast<std::uint32_t>(all.meshes.size())});
     TACTUS_CHECK(append(parts.back(), all, report.warnings));

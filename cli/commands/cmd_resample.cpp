@@ -51,8 +51,8 @@ Outcome resample(TraceReader& reader, Resampler& resampler, TraceWriter& writer,
 
 Outcome run(const ResampleOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
-  auto reader = TraceReader::open(options.input);
-  if (!reader) return refuse(options.input, reader.error());
+  auto reader = open_trace(options.input);
+  if (!reader) return tl::unexpected(reader.error());
   if (reader->info().shows_past)
     return refuse(shown_path(options.input) + ": a client's trace, whose ticks are those of the server",
                   "Resample the recordings that it was made from.");

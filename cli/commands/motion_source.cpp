@@ -46,8 +46,8 @@ tl::expected<MotionSource, Failure> MotionSource::open(const std::string& path) 
   std::string magic(kTraceMagic.size(), '\0');
   std::ifstream(source.input_->path(), std::ios::binary).read(magic.data(), static_cast<std::streamsize>(magic.size()));
   if (magic == kTraceMagic) {
-    auto trace = TraceReader::open(source.input_->path());
-    if (!trace) return refuse(path, trace.error());
+    auto trace = open_trace(source.input_->path(), path);
+    if (!trace) return tl::unexpected(trace.error());
     source.trace_.emplace(std::move(*trace));
     return source;
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/commands/replay.h"
+#include "cli/report/trace_ending.h"
 
 #include <fmt/format.h>
 
@@ -11,8 +12,8 @@
 namespace tactus::cli {
 
 tl::expected<TraceReader, Failure> open_replay(const std::string& path) {
-  auto reader = TraceReader::open(path);
-  if (!reader) return refuse(path, reader.error());
+  auto reader = open_trace(path);
+  if (!reader) return tl::unexpected(reader.error());
   const TraceInfo& info = reader->info();
   if (info.users.empty()) return refuse(shown_path(path) + ": nobody is in this trace", "Give a trace with a user.");
   if (info.tick_rate != sim::kTickRate)

@@ -6,9 +6,19 @@
 #include <cstdio>
 
 #include <tactus/base/shown.h>
+#include "cli/report/notes.h"
 #include "cli/report/table.h"
 
 namespace tactus::cli {
+
+tl::expected<TraceReader, Failure> open_trace(const std::string& path, const std::string& shown, const ReadOptions& options) {
+  auto reader = TraceReader::open(path, options);
+  if (reader) return std::move(*reader);
+  Diagnostic error = reader.error();
+  if (error.detail.empty()) return refuse(shown, error.error);
+  error.file = shown;
+  return refuse(error);
+}
 
 void warn_cut_stream(const std::string& path, const Error& error) {
   fmt::print(stderr, "warning: {}: the stream ends inside a record at {}; everything before the cut could be read\n",
@@ -16,6 +26,11 @@ void warn_cut_stream(const std::string& path, const Error& error) {
 }
 
 Outcome check_ending(const std::string& path, const TraceReader& reader, std::uint64_t frames) {
+  if (!reader.notes().empty()) {
+    std::fflush(stdout);
+    Report unused;
+    tell(reader.notes(), path, unused);
+  }
   if (!reader.cut_short()) return {};
   if (frames == 0) {
     return refuse(shown_path(path) + ": the trace was cut before the end of its first chunk; no tick of it can be read",
