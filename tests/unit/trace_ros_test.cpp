@@ -317,6 +317,95 @@ TEST(TraceRos, AForceBesideSeveralTopicsActsAtNoneOfThem) {
   expect_near(reading.frames.back().users[0].device.position, {0, 0, 0});
 }
 
+Bytes pose_in(std::string_view frame, const Pose& value) {
+  Bytes message;
+  CdrWriter out(message);
+  header(out, frame);
+  out.vec3(value.position);
+  out.quat(value.rotation);
+  return message;
+}
+
+TEST(TraceRos, APoseIsInItsFrame) {
+  RosBag bag;
+  bag.add(0, "/tf_static", kTransformsSchema,
+          transforms({{"world", "left_base", {{0, 0.5, 0}, {}}}, {"/world", "/right_base", {{0, -0.5, 0}, about_z(kPi / 2)}}}));
+  for (int i = 0; i < 5; ++i) {
+    bag.add(10 * i, "/left/pose", schema_name(MessageType::pose), pose_in("left_base", {{0.3, 0, 0}, {}}));
+    bag.add(10 * i, "/right/pose", schema_name(MessageType::pose), pose_in("/right_base", {{0.3, 0, 0}, {}}));
+  }
+  const Reading reading = read_all(bag.open());
+  ASSERT_EQ(reading.frames.size(), 5u);
+  expect_near(reading.frames[2].objects[0].pose.position, {0.3, 0.5, 0});
+  expect_near(reading.frames[2].objects[1].pose.position, {0, -0.2, 0});
+}
+
+TEST(TraceRos, EachNamespaceHasItsTree) {
+  RosBag bag;
+  for (int i = 0; i < 5; ++i) {
+    bag.add(10 * i, "/r1/tf", kTransformsSchema, transforms({{"odom", "base", {{1, 0, 0}, {}}}}));
+    bag.add(10 * i, "/r2/tf", kTransformsSchema, transforms({{"odom", "base", {{2, 0, 0}, {}}}}));
+    bag.add(10 * i, "/r2/arm/pose", schema_name(MessageType::pose), pose_in("base", {{0, 1, 0}, {}}));
+  }
+  auto reader = bag.open();
+  ASSERT_TRUE(reader);
+  ASSERT_EQ(reader->info().objects.size(), 3u);
+  EXPECT_EQ(reader->info().objects[1].name, "r1.base");
+  EXPECT_EQ(reader->info().objects[2].name, "r2.base");
+  const Reading reading = read_all(std::move(reader));
+  ASSERT_EQ(reading.frames.size(), 5u);
+  expect_near(reading.frames[4].objects[0].pose.position, {2, 1, 0});
+  expect_near(reading.frames[4].objects[1].pose.position, {1, 0, 0});
+}
+
+TEST(TraceRos, StampsAreTheClockWhereLogTimesComeInBursts) {
+  RosBag bag;
+  for (int i = 0; i < 200; ++i) {
+    Bytes message;
+    encode_pose(message, 1'700'000'000'000'000'000 + 1'000'000ull * static_cast<std::uint64_t>(i), {{0.001 * i, 0, 0}, {}});
+    bag.add(10 * (i / 10) + 10 + 0.02 * (i % 10), "/tool/pose", schema_name(MessageType::pose), message);
+  }
+  auto reader = bag.open();
+  ASSERT_TRUE(reader);
+  EXPECT_EQ(reader->info().tick_rate, 1000u);
+  EXPECT_TRUE(has(reader->notes(), "/tool/pose", "header stamps taken: log times come in bursts of 10"));
+  const Reading reading = read_all(std::move(reader));
+  ASSERT_EQ(reading.frames.size(), 200u);
+  for (const TraceFrame& frame : reading.frames) expect_near(frame.objects[0].velocity, {1, 0, 0}, 1e-6);
+}
+
+TEST(TraceRos, ABadSampleIsMissing) {
+  RosBag bag;
+  for (int i = 0; i < 20; ++i)
+    bag.add(10 * i, "/tool/pose", schema_name(MessageType::pose),
+            pose_in("world", {{0.1 * i, 0, 0}, i == 7 ? Quat{0, 0, 0, 0} : Quat{i == 8 ? 0.985 : 1, 0, 0, 0}}));
+  auto reader = bag.open();
+  ASSERT_TRUE(reader);
+  EXPECT_TRUE(has(reader->notes(), "/tool/pose", "1 sample missing: the rotation is 0, 0, 0, 0"));
+  const Reading reading = read_all(std::move(reader));
+  ASSERT_EQ(reading.frames.size(), 20u);
+  expect_near(reading.frames[7].objects[0].pose.position, {0.7, 0, 0});
+  EXPECT_EQ(reading.frames[8].objects[0].pose.rotation, Quat());
+}
+
+TEST(TraceRos, ClocksThatStepAndMessagesThatCross) {
+  RosBag step;
+  for (int i = 0; i < 100; ++i)
+    step.add(i < 50 ? 10000 + 10 * i : 10 * i, "/a/pose", schema_name(MessageType::pose), pose({{0.1 * i, 0, 0}, {}}));
+  const Reading stepped = read_all(step.open());
+  ASSERT_FALSE(stepped.error);
+  EXPECT_NEAR(static_cast<double>(stepped.frames.size()), 99, 1);
+  for (std::size_t i = 1; i < stepped.frames.size(); ++i)
+    EXPECT_GE(stepped.frames[i].objects[0].pose.position.x, stepped.frames[i - 1].objects[0].pose.position.x);
+  RosBag cross;
+  for (int i = 0; i < 50; ++i) cross.add(10 * i, "/a/pose", schema_name(MessageType::pose), pose({{0.1 * i, 0, 0}, {}}));
+  for (int i = 0; i < 50; ++i) cross.force(10 * i, "f", {0, 0, 0.1 * i});  // topic after topic
+  const Reading crossed = read_all(cross.open());
+  ASSERT_EQ(crossed.frames.size(), 50u);
+  expect_near(crossed.frames[20].objects[0].pose.position, {2, 0, 0});
+  expect_near(crossed.frames[20].users[0].force, {0, 0, 2});
+}
+
 TEST(TraceRos, MessagesAreDistrusted) {
   const Bytes good = transforms({{"a", "b", {{1, 0, 0}, {}}}, {"a", "c", {{1, 0, 0}, {}}}});
   const auto rule = [](std::string_view schema, const Bytes& message) { return RosBag().add(0, "/t", schema, message).rule(); };
