@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <tactus/base/shown.h>
-#include "cli/report/messages.h"
 
 namespace tactus::cli {
 
@@ -18,7 +17,7 @@ std::string text_of(const ReadNote& note) {
 void tell(const std::vector<ReadNote>& notes, const std::string& file, Report& report) {
   for (const ReadNote& note : notes) {
     std::string text = text_of(note);
-    fmt::print(stderr, "note: {}: {}\n", shown_path(file), printable(text));
+    fmt::print(stderr, "note: {}: {}\n", shown_path(file), shown(text, 1000));
     report.warnings.push_back(std::move(text));
   }
 }
