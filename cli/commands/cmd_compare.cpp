@@ -142,8 +142,8 @@ void note_unmatched(const Side& truth, const Side& replica, Report& report) {
 }
 
 tl::expected<Side, Failure> open(const std::string& path) {
-  auto reader = TraceReader::open(path);
-  if (!reader) return refuse(path, reader.error());
+  auto reader = open_trace(path);
+  if (!reader) return tl::unexpected(reader.error());
   return Side{path, std::move(*reader)};
 }
 

@@ -32,8 +32,8 @@ class TickSource {
   static tl::expected<TickSource, Failure> create(const DecodeOptions& options) {
     TickSource source(options);
     if (options.like.empty()) return source;
-    auto like = TraceReader::open(options.like);
-    if (!like) return refuse(options.like, like.error());
+    auto like = open_trace(options.like);
+    if (!like) return tl::unexpected(like.error());
     source.like_.emplace(std::move(*like));
     return source;
   }

@@ -66,8 +66,8 @@ Outcome copy(TraceReader& reader, TraceWriter& writer, const CutOptions& options
 Outcome run(const CutOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
   if (options.to <= options.from) return refuse_arguments("--to: nothing lies between it and --from", "Give a later --to.");
-  auto reader = TraceReader::open(options.input);
-  if (!reader) return refuse(options.input, reader.error());
+  auto reader = open_trace(options.input);
+  if (!reader) return tl::unexpected(reader.error());
   const TraceInfo& info = reader->info();
   if (options.rebase && info.shows_past)
     return refuse(shown_path(options.input) + ": a client's trace, whose ticks are those of the server", "Leave out --rebase.");
@@ -213,8 +213,8 @@ Outcome run(const MergeOptions& options) {
   TraceInfo all;
   Report report{.command = "merge", .files = {{"merged", options.output}}};
   for (const std::string& path : options.inputs) {
-    auto reader = TraceReader::open(path);
-    if (!reader) return refuse(path, reader.error());
+    auto reader = open_trace(path);
+    if (!reader) return tl::unexpected(reader.error());
     parts.push_back({path, std::move(*reader), static_cast<std::uint32_t>(all.objects.size()),
                      static_cast<std::uint32_t>(all.meshes.size())});
     TACTUS_CHECK(append(parts.back(), all, report.warnings));
@@ -295,8 +295,8 @@ Outcome resample(TraceReader& reader, Resampler& resampler, TraceWriter& writer,
 
 Outcome run(const ResampleOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
-  auto reader = TraceReader::open(options.input);
-  if (!reader) return refuse(options.input, reader.error());
+  auto reader = open_trace(options.input);
+  if (!reader) return tl::unexpected(reader.error());
   if (reader->info().shows_past)
     return refuse(shown_path(options.input) + ": a client's trace, whose ticks are those of the server",
                   "Resample the recordings that it was made from.");

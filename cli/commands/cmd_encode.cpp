@@ -48,8 +48,8 @@ using Clusters = std::map<std::string, ClusterBasis>;
 /// Those of all meshes, for which the trace is read once more.
 tl::expected<Clusters, Failure> clusters_of(const std::string& path, const EncodeOptions& options) {
   if (options.clusters == 0) return Clusters{};
-  auto reader = TraceReader::open(path);
-  if (!reader) return refuse(options.input, reader.error());
+  auto reader = open_trace(path, options.input);
+  if (!reader) return tl::unexpected(reader.error());
   auto found = find_clusters(*reader, options.clusters);
   if (!found) return refuse(options.input, found.error());
   return std::move(*found);
@@ -157,8 +157,8 @@ Outcome run(const EncodeOptions& options) {
     TACTUS_TRY(again, RereadableInput::open(options.input));
   }
   const std::string& path = again ? again->path() : options.input;
-  auto reader = TraceReader::open(path);
-  if (!reader) return refuse(options.input, reader.error());
+  auto reader = open_trace(path, options.input);
+  if (!reader) return tl::unexpected(reader.error());
   TraceFrame frame;
   const auto any = reader->next(frame);
   if (!any) return refuse(options.input, any.error());

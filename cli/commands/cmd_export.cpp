@@ -27,8 +27,8 @@ struct ExportOptions {
 };
 
 Outcome run(const ExportOptions& options) {
-  auto reader = TraceReader::open(options.input);
-  if (!reader) return refuse(options.input, reader.error());
+  auto reader = open_trace(options.input);
+  if (!reader) return tl::unexpected(reader.error());
   TACTUS_TRY(auto output, OutputFile::create(options.output, options.common.existing(), {options.input}));
   TACTUS_TRY(const auto stream, output.open());
   Report report{.command = "export csv", .files = {{"trace", options.input}, {"table", options.output}}};

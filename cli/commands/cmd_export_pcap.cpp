@@ -123,8 +123,8 @@ Value value_of(const ExportPcapOptions& options, const Playback& play, const Ses
 
 Outcome run(const ExportPcapOptions& options) {
   TACTUS_CHECK(check_no_terminal(options.output));
-  auto reader = TraceReader::open(options.input);
-  if (!reader) return refuse(options.input, reader.error());
+  auto reader = open_trace(options.input);
+  if (!reader) return tl::unexpected(reader.error());
   TraceFrame first;
   const auto any = reader->next(first);
   if (!any) return refuse(options.input, any.error());

@@ -163,8 +163,8 @@ tl::expected<Json, Failure> channels_json(const InfoOptions& options) {
 }
 
 Outcome info_trace(const InfoOptions& options) {
-  auto reader = TraceReader::open(options.readable);
-  if (!reader) return refuse(options.input, reader.error());
+  auto reader = open_trace(options.readable, options.input);
+  if (!reader) return tl::unexpected(reader.error());
   const TraceInfo& trace = reader->info();
   note_idle_options(*options.common.command, subjects_of(trace), "trace");
   TraceFrame frame;

@@ -215,8 +215,8 @@ tl::expected<std::size_t, Failure> find_mesh(const ExportMeshOptions& options, c
 }
 
 Outcome run(const ExportMeshOptions& options) {
-  auto reader = TraceReader::open(options.input);
-  if (!reader) return refuse(options.input, reader.error());
+  auto reader = open_trace(options.input);
+  if (!reader) return tl::unexpected(reader.error());
   TACTUS_TRY(const auto index, find_mesh(options, reader->info()));
   TACTUS_TRY(const auto target, target_of(options.output));
   const std::string parent = target.has_parent_path() ? target.parent_path().string() : ".";

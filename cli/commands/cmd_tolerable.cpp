@@ -126,8 +126,8 @@ Outcome run(const TolerableOptions& options) {
 #ifdef TACTUS_HAS_SIM
   if (TolerableScene::is_meant(options.input)) return run_scene(options);
 #endif
-  auto reader = TraceReader::open(options.input);
-  if (!reader) return refuse(options.input, reader.error());
+  auto reader = open_trace(options.input);
+  if (!reader) return tl::unexpected(reader.error());
   if (reader->info().users.empty())
     return refuse(shown_path(options.input) + ": nobody is in this recording", "Give one with a user, as `tactus sim` makes.");
   TACTUS_TRY(const DelayTolerance tolerance, of_trace(options, *reader));

@@ -126,8 +126,8 @@ tl::expected<Json, Failure> page_data(const ViewOptions& options, const std::str
   std::string attached;
   report.describe(replica_info(player->scene(), ""));
   if (!options.truth.empty()) {
-    auto reader = TraceReader::open(options.truth);
-    if (!reader) return refuse(options.truth, reader.error());
+    auto reader = open_trace(options.truth);
+    if (!reader) return tl::unexpected(reader.error());
     TACTUS_CHECK(check_same_scene(options, reader->info(), player->scene()));
     attached = reader->info().scene;
     report.describe(reader->info());

@@ -14,6 +14,7 @@ namespace tactus::cli {
 void setup_sim(Command& app, Action& action);
 void setup_mesh(Command& app, Action& action);
 void setup_import(Command& app, Action& action);
+void setup_import_ros(Command& group, Action& action);
 void setup_import_mesh(Command& group, Action& action);
 void setup_encode(Command& app, Action& action);
 void setup_decode(Command& app, Action& action);

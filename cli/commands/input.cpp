@@ -16,6 +16,7 @@
 #include <tactus/trace/byte_source.h>
 #include <tactus/trace/trace_scene.h>
 #include "cli/output.h"
+#include "cli/report/notes.h"
 #include "cli/report/table.h"
 
 namespace tactus::cli {
@@ -49,7 +50,16 @@ tl::expected<RereadableInput, Failure> RereadableInput::open(const std::string& 
   return input;
 }
 
-// ==== trace ending ====
+// ==== traces ====
+
+tl::expected<TraceReader, Failure> open_trace(const std::string& path, const std::string& shown, const ReadOptions& options) {
+  auto reader = TraceReader::open(path, options);
+  if (reader) return std::move(*reader);
+  Diagnostic error = reader.error();
+  if (error.detail.empty()) return refuse(shown, error.error);
+  error.file = shown;
+  return refuse(error);
+}
 
 void warn_cut_stream(const std::string& path, const Error& error) {
   fmt::print(stderr, "warning: {}: the stream ends inside a record at {}; everything before the cut could be read\n",
@@ -57,6 +67,11 @@ void warn_cut_stream(const std::string& path, const Error& error) {
 }
 
 Outcome check_ending(const std::string& path, const TraceReader& reader, std::uint64_t frames) {
+  if (!reader.notes().empty()) {
+    std::fflush(stdout);
+    Report unused;
+    tell(reader.notes(), path, unused);
+  }
   if (!reader.cut_short()) return {};
   if (frames == 0) {
     return refuse(shown_path(path) + ": the trace was cut before the end of its first chunk; no tick of it can be read",
@@ -101,8 +116,8 @@ tl::expected<MotionSource, Failure> MotionSource::open(const std::string& path) 
   std::string magic(kTraceMagic.size(), '\0');
   std::ifstream(source.input_->path(), std::ios::binary).read(magic.data(), static_cast<std::streamsize>(magic.size()));
   if (magic == kTraceMagic) {
-    auto trace = TraceReader::open(source.input_->path());
-    if (!trace) return refuse(path, trace.error());
+    auto trace = open_trace(source.input_->path(), path);
+    if (!trace) return tl::unexpected(trace.error());
     source.trace_.emplace(std::move(*trace));
     return source;
   }

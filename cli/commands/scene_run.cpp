@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "cli/commands/input.h"
 #include "cli/commands/scene_run.h"
 
 #include <fmt/format.h>
@@ -15,8 +16,8 @@ namespace tactus::cli {
 // ==== replay ====
 
 tl::expected<TraceReader, Failure> open_replay(const std::string& path) {
-  auto reader = TraceReader::open(path);
-  if (!reader) return refuse(path, reader.error());
+  auto reader = open_trace(path);
+  if (!reader) return tl::unexpected(reader.error());
   const TraceInfo& info = reader->info();
   if (info.users.empty()) return refuse(shown_path(path) + ": nobody is in this trace", "Give a trace with a user.");
   if (info.tick_rate != sim::kTickRate)

@@ -7,12 +7,17 @@
 
 namespace tactus::cli {
 
+std::string text_of(const ReadNote& note) {
+  std::string text = note.where.empty() ? note.what : note.where + ": " + note.what;
+  if (note.count > 1) text += fmt::format(" ({} times{}{})", note.count, note.first.empty() ? "" : ", the first ", note.first);
+  else if (!note.first.empty()) text += " (" + note.first + ")";
+  return text;
+}
+
 void tell(const std::vector<ReadNote>& notes, const std::string& file, Report& report) {
   for (const ReadNote& note : notes) {
-    std::string text = note.where.empty() ? note.what : note.where + ": " + note.what;
-    if (note.count > 1) text += fmt::format(" ({} times{}{})", note.count, note.first.empty() ? "" : ", the first ", note.first);
-    else if (!note.first.empty()) text += " (" + note.first + ")";
-    fmt::print(stderr, "note: {}: {}\n", shown_path(file), shown(text, 400));
+    std::string text = text_of(note);
+    fmt::print(stderr, "note: {}: {}\n", shown_path(file), shown(text, 1000));
     report.warnings.push_back(std::move(text));
   }
 }

@@ -8,6 +8,7 @@
 
 #include <tactus/base/rule.h>
 #include <tactus/trace/differences.h>
+#include <tactus/trace/interpolation.h>
 #include <tactus/trace/trace_file.h>
 
 namespace tactus {
@@ -234,7 +235,7 @@ Quat ArrayWriter::rotation_at(Lane& lane, double time) const {
     if (std::abs(length - 1) < 1e-12) return Quat{q[0], q[1], q[2], q[3]};
     return Quat{q[0] / length, q[1] / length, q[2] / length, q[3] / length};
   };
-  return share == 0 ? unit(from) : on_arc(unit(from), unit(to), share);
+  return share == 0 ? unit(from) : mixed(unit(from), unit(to), share);
 }
 
 void ArrayWriter::make(double time, TraceFrame& frame) {

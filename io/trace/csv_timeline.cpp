@@ -11,6 +11,7 @@
 #include <tactus/base/shown.h>
 #include <tactus/trace/csv_time.h>
 #include <tactus/trace/differences.h>
+#include <tactus/trace/interpolation.h>
 #include <tactus/trace/messages.h>
 #include <tactus/trace/resampler.h>
 

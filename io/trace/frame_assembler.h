@@ -6,9 +6,12 @@
 #include <optional>
 #include <string>
 
+#include <tactus/base/diagnostic.h>
 #include <tactus/base/result.h>
 #include <tactus/trace/frame.h>
 #include <tactus/trace/mcap_reader.h>
+#include <tactus/trace/read_notes.h>
+#include <tactus/trace/trace_file.h>
 
 namespace tactus {
 
@@ -19,6 +22,10 @@ class FrameAssembler {
   virtual const TraceInfo& info() const noexcept = 0;
   /// The channel that has one message per frame, if there is one.
   virtual std::optional<std::uint16_t> frame_channel() const noexcept = 0;
+  /// What was decided so far; none: nothing ever is.
+  virtual const ReadNotes* notes() const noexcept { return nullptr; }
+  /// Of the last error, beyond its rule; may be empty.
+  virtual std::string detail() const { return {}; }
 };
 
 /// What a file tells ahead of its first message.
@@ -33,8 +40,11 @@ struct Preamble {
 /// For files with our metadata record.   err  R-TRC-3, 7, 12; next(): R-TRC-7, 13, 14, 15
 Result<std::unique_ptr<FrameAssembler>> assemble_tactus(mcap::Reader& mcap, const Preamble& preamble);
 
-/// For other files; reads ahead.   err  R-TRC-16; next(): R-TRC-7, 13, 14, 15, 16
-Result<std::unique_ptr<FrameAssembler>> assemble_ros(mcap::Reader& mcap, const Preamble& preamble);
+/// For other files. `ahead` reads the same bytes from the front, for a look at all of them before the first frame; without it, as of a
+/// pipe, the look goes a bounded way.   err  R-TRC-16, and of its samples, if none is fit or all must be, R-TRC-7, 13, 14, 15;
+///      next(): R-TRC-15, 18
+tl::expected<std::unique_ptr<FrameAssembler>, Diagnostic> assemble_ros(mcap::Reader& mcap, std::optional<mcap::Reader> ahead,
+                                                                       const Preamble& preamble, const ReadOptions& options);
 
 /// Whether a channel carries messages of this type in CDR.
 bool carries(const mcap::Reader& mcap, const mcap::Channel& channel, std::string_view schema);

@@ -5,14 +5,12 @@
 #include <cmath>
 #include <utility>
 
-#include <tactus/trace/differences.h>
+#include <tactus/trace/interpolation.h>
 
 namespace tactus {
 
-Vec3 mixed(const Vec3& a, const Vec3& b, double share) noexcept { return a == b || share == 0 ? a : a + share * (b - a); }
-
 RigidSample mixed(const RigidSample& a, const RigidSample& b, double share) noexcept {
-  return {{mixed(a.pose.position, b.pose.position, share), on_arc(a.pose.rotation, b.pose.rotation, share)},
+  return {{mixed(a.pose.position, b.pose.position, share), mixed(a.pose.rotation, b.pose.rotation, share)},
           mixed(a.velocity, b.velocity, share),
           mixed(a.angular_velocity, b.angular_velocity, share)};
 }
@@ -22,7 +20,7 @@ namespace {
 UserSample mixed(const UserSample& a, const UserSample& b, double share) {
   UserSample out = a;
   out.device.position = mixed(a.device.position, b.device.position, share);
-  out.device.orientation = on_arc(a.device.orientation, b.device.orientation, share);
+  out.device.orientation = mixed(a.device.orientation, b.device.orientation, share);
   out.device.velocity = mixed(a.device.velocity, b.device.velocity, share);
   out.device.time = a.device.time + std::llround(share * static_cast<double>(b.device.time - a.device.time));
   out.contact.device = out.device.position;

@@ -11,9 +11,7 @@
 
 namespace tactus {
 
-/// On the straight line from a to b, and on the shorter arc; share 0 is a bit for bit.   pre  rotations are of unit length, or nearly
-Vec3 mixed(const Vec3& a, const Vec3& b, double share) noexcept;
-Quat mixed(const Quat& a, const Quat& b, double share) noexcept;
+/// As interpolation.h, for all that a sample holds.
 RigidSample mixed(const RigidSample& a, const RigidSample& b, double share) noexcept;
 
 class Resampler {

@@ -1,23 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <deque>
+#include <limits>
+#include <map>
+#include <optional>
+#include <queue>
 #include <set>
 #include <utility>
 
 #include <tactus/base/rule.h>
+#include <tactus/base/text.h>
 #include <tactus/trace/differences.h>
 #include <tactus/trace/frame_assembler.h>
-#include <tactus/trace/ros_samples.h>
-#include <tactus/base/text.h>
+#include <tactus/trace/ros_frames.h>
+#include <tactus/trace/ros_survey.h>
 
 namespace tactus {
 namespace {
 
-// Samples of the look-ahead. They give the rate, and what begins behind them is refused: a topic of 1 Hz beside one of 1 kHz has begun.
-constexpr std::size_t kLookAhead = 4096;
+using Kind = RosSource::Kind;
 
-// [bytes] of the budget for each object and user of a frame, changed or not: about its size in a table.
-constexpr std::uint64_t kCostOfObject = 256;
+constexpr std::size_t kLookAhead = 4096;          // samples of a pipe
+constexpr std::uint64_t kPipeSlack = 50'000'000;  // [ns] that later samples may cross by, beyond twice what was seen
+constexpr std::size_t kMostSorted = 1u << 18;     // samples that are held back to be sorted
+constexpr std::uint64_t kCostOfObject = 256;      // [bytes] of the budget per frame, changed or not: about its size in a table
 
 std::string_view path_of(std::string_view topic) { return topic.substr(0, std::min(topic.rfind('/'), topic.size())); }
 
@@ -30,257 +36,390 @@ std::string object_name(std::string_view topic, std::string_view ending) {
   return name;
 }
 
-std::uint32_t median_rate(std::vector<std::uint64_t> times) {
-  std::vector<std::uint64_t> gaps;
-  for (std::size_t i = 1; i < times.size(); ++i) gaps.push_back(times[i] - times[i - 1]);
-  if (gaps.empty()) return TraceInfo().tick_rate;
-  const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
-  std::nth_element(gaps.begin(), middle, gaps.end());
-  const std::uint64_t gap = std::clamp<std::uint64_t>(*middle, 1'000'000'000 / kMaxTickRate, 1'000'000'000);
-  return static_cast<std::uint32_t>((1'000'000'000 + gap / 2) / gap);
-}
+/// Gives samples in the order of their times, as far as a window allows.
+class RosOrder {
+ public:
+  void add(RosSample sample) { waiting_.push({std::move(sample), number_++}); }
+  /// Times below this one are final.
+  void reach(std::uint64_t time) noexcept { final_ = std::max(final_, time); }
+  void end() noexcept { final_ = std::numeric_limits<std::uint64_t>::max(); }
+  /// The next sample whose place is certain, or that the window has no room to hold back.
+  std::optional<RosSample> take() {
+    if (waiting_.empty() || (waiting_.top().sample.time > final_ && waiting_.size() <= kMostSorted)) return std::nullopt;
+    const RosSample sample = waiting_.top().sample;
+    waiting_.pop();
+    return sample;
+  }
+
+ private:
+  struct Entry {
+    RosSample sample;
+    std::uint64_t number = 0;
+    friend bool operator<(const Entry& a, const Entry& b) noexcept {  // the queue gives the largest
+      return a.sample.time != b.sample.time ? a.sample.time > b.sample.time : a.number > b.number;
+    }
+  };
+  std::priority_queue<Entry> waiting_;
+  std::uint64_t final_ = 0, number_ = 0;
+};
 
 class RosAssembler final : public FrameAssembler {
  public:
-  explicit RosAssembler(const Preamble& preamble) : samples_(preamble.item) {
+  RosAssembler(const Preamble& preamble, const ReadOptions& options)
+      : options_(options), samples_({options.topics, options.skip}), survey_(samples_, options_) {
     info_.source = "ROS 2 recording";
     info_.scene = preamble.scene;
   }
-  Result<void> start(mcap::Reader& mcap);
+  tl::expected<void, Diagnostic> start(mcap::Reader& mcap, mcap::Item first, std::optional<mcap::Reader> ahead);
   Result<bool> next(mcap::Reader& mcap, TraceFrame& frame) override;
   const TraceInfo& info() const noexcept override { return info_; }
   std::optional<std::uint16_t> frame_channel() const noexcept override { return std::nullopt; }
+  const ReadNotes* notes() const noexcept override { return &notes_; }
+  std::string detail() const override { return detail_; }
 
  private:
-  using Kind = RosSample::Kind;
-  struct Track {
-    bool known = false;      // something told its place
-    bool has_twist = false;  // its motion comes from a twist topic
-    bool placed = false;     // has a pose,
-    std::uint64_t time = 0;  // of this time
+  struct Object {
+    std::uint32_t source = 0;
+    std::optional<std::uint32_t> twist{};
   };
-  struct Touch {
-    std::optional<std::uint32_t> frame{};  // of the force
-    std::optional<std::size_t> object{};   // where the force acts, if the frame does not tell
+  struct User {
+    std::uint32_t source = 0;
+    std::optional<std::size_t> beside{};  // object where the force acts, if its frame does not tell
   };
-  Result<void> look_ahead(mcap::Reader& mcap);
-  Result<void> find_objects(const mcap::Reader& mcap);
-  Result<void> find_users(const mcap::Reader& mcap);
-  Result<std::optional<RosSample>> next_sample(mcap::Reader& mcap);
-  Result<void> apply(const mcap::Reader& mcap, const RosSample& sample);
-  Result<void> hang(const mcap::Reader& mcap, const RosSample& transform);
-  void hear_of(std::size_t object) noexcept;
-  Result<void> move(const mcap::Reader& mcap, std::size_t object, const Pose& pose, std::uint64_t time);
-  Result<void> place_frames(const mcap::Reader& mcap);
-  Result<void> deliver(mcap::Reader& mcap, TraceFrame& frame);
+  /// A frame without velocities, and what they follow from.
+  struct Shown {
+    TraceFrame frame;
+    std::vector<std::uint64_t> chains;         // of each object: differs where it jumped
+    std::vector<std::optional<Twist>> twists;  // told
+  };
+  Result<void> look(mcap::Reader& mcap, std::size_t most, bool keeps);
+  void find_objects();
+  void find_users();
+  std::string free_name(std::string name, const std::string& of, std::set<std::string>& names);
+  Result<std::optional<RosSample>> read(mcap::Reader& mcap);
+  Result<bool> take(mcap::Reader& mcap);
+  Result<bool> show(mcap::Reader& mcap, Shown& out);
+  Result<bool> skip(mcap::Reader& mcap, std::uint64_t time);
+  void fill(Shown& out);
+  void place(std::size_t object, Shown& out);
+  void press(std::size_t user, Shown& out);
+  void set_velocities(const Shown* before, const Shown* after);
 
+  ReadOptions options_;
   TraceInfo info_;
+  ReadNotes notes_;
+  std::string detail_;  // of the last error
   RosSamples samples_;
-  std::deque<RosSample> ahead_;
-  std::set<std::pair<Kind, std::uint32_t>> sources_;       // in the look-ahead
-  std::map<std::uint32_t, std::size_t> objects_, framed_;  // channel of poses or twists -> object; frame -> object
-  std::map<std::uint32_t, std::size_t> users_;             // channel of forces -> user
-  std::uint64_t start_ = 0;                                // [ns] log time of tick 0
-  std::vector<Track> tracks_;                              // per object
-  std::vector<Touch> touches_;                             // per user
-  std::size_t known_ = 0;                                  // tracks that have had a pose
-  TraceFrame current_;
-  bool pending_ = false;  // current_ holds a tick that was not delivered
+  RosSurvey survey_;
+  std::deque<RosSample> kept_;  // of a pipe's look-ahead
+  RosOrder order_;
+  std::uint64_t newest_ = 0, released_ = 0, window_ = 0, reach_ = 0;
+  bool ended_ = false, is_whole_ = true;
+  std::vector<RosTrack> tracks_;  // per source
+  std::optional<RosFrames> frames_;
+  std::vector<Object> objects_;
+  std::vector<User> users_;
+  std::int64_t tick_ = 0;
+  Shown before_, now_, after_;
+  int held_ = -1;  // -1: nothing was shown yet; 0: all was; 1: now_ waits for its velocities
+  bool has_before_ = false;
 };
 
-tl::unexpected<Error> refuse(const mcap::Reader& mcap, Errc code, RuleName rule) noexcept {
-  return fail(code, rule, 8 * mcap.offset());
-}
-
-Result<void> RosAssembler::start(mcap::Reader& mcap) {
-  TACTUS_CHECK(look_ahead(mcap));
-  samples_.close_frames();
-  TACTUS_CHECK(find_objects(mcap));
-  TACTUS_CHECK(find_users(mcap));
-  start_ = ahead_.front().time;
-  current_.objects.resize(info_.objects.size());
-  current_.users.resize(info_.users.size());
-  return {};
-}
-
-Result<void> RosAssembler::look_ahead(mcap::Reader& mcap) {
-  std::map<std::pair<Kind, std::uint32_t>, std::vector<std::uint64_t>> times;
-  const std::vector<std::uint64_t>* densest = nullptr;
-  while (ahead_.size() < kLookAhead) {
-    TACTUS_TRY(auto sample, samples_.next(mcap));
+Result<void> RosAssembler::look(mcap::Reader& mcap, std::size_t most, bool keeps) {
+  for (std::size_t count = 0; count < most; ++count) {
+    TACTUS_TRY(const auto sample, samples_.next(mcap));
     if (!sample) break;
-    if (!ahead_.empty() && sample->time < ahead_.back().time) return refuse(mcap, Errc::invalid, "R-TRC-15");
-    sources_.emplace(sample->kind, sample->source);
-    if (sample->kind != Kind::twist) {
-      auto& own = times[{sample->kind, sample->source}];
-      own.push_back(sample->time);
-      if (densest == nullptr || own.size() > densest->size()) densest = &own;
-    }
-    ahead_.push_back(*sample);
+    survey_.add(*sample);
+    if (keeps) kept_.push_back(*sample);
   }
-  if (densest == nullptr && mcap.cut_short()) return refuse(mcap, Errc::truncated, "R-TRC-3");
-  if (densest == nullptr) return refuse(mcap, Errc::unsupported, "R-TRC-16");
-  info_.tick_rate = median_rate(*densest);
   return {};
 }
 
-/// Objects are the topics with poses in the look-ahead, in order of their channel ids, then the frames that hang on others.
-Result<void> RosAssembler::find_objects(const mcap::Reader& mcap) {
+tl::expected<void, Diagnostic> RosAssembler::start(mcap::Reader& mcap, mcap::Item first, std::optional<mcap::Reader> ahead) {
+  constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+  is_whole_ = ahead.has_value();
+  mcap::Reader& looked = ahead ? *ahead : mcap;
+  if (ahead) {
+    while (first != mcap::Item::end) {
+      const auto item = ahead->next();
+      if (!item || *item == mcap::Item::message || *item == mcap::Item::end) break;
+    }
+  }
+  samples_.restart(first);
+  const auto done = look(looked, ahead ? kAll : kLookAhead, !ahead);
+  // what was read ahead of a damage can be used: the second pass stops there, too
+  const auto decided = survey_.end(looked);
+  if (!decided && !done && decided.error().error.rule == std::string_view("R-TRC-16"))
+    return tl::unexpected(Diagnostic{.error = done.error()});
+  if (!decided) return decided;
+  is_whole_ = is_whole_ || kept_.size() < kLookAhead;
+  samples_.close();
+  survey_.tell(looked, is_whole_, notes_);
+  if (ahead) samples_.restart(first);
+  window_ = is_whole_ ? survey_.disorder() : 2 * survey_.disorder() + kPipeSlack;
+  const auto& sources = samples_.sources();
+  for (std::uint32_t i = 0; i < sources.size(); ++i) {
+    tracks_.emplace_back(survey_.facts(i).first, survey_.moves(i), survey_.gap(i));
+    if (survey_.moves(i)) reach_ = std::max(reach_, survey_.gap(i));
+  }
+  frames_.emplace(samples_, tracks_, notes_);
+  info_.tick_rate = survey_.tick_rate();
+  find_objects();
+  find_users();
+  return {};
+}
+
+/// Names of topics and frames are made fit for a trace; where two are alike, a number tells them apart.
+std::string RosAssembler::free_name(std::string name, const std::string& of, std::set<std::string>& names) {
+  for (char& c : name)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '_';
+  std::string wanted = is_plain_name(name) ? name : "unnamed";
+  std::string free = wanted;
+  for (int n = 2; !names.insert(free).second; ++n) free = wanted + "_" + std::to_string(n);
+  if (free != name) notes_.add(of, "is called " + free);
+  return free;
+}
+
+/// Objects are the topics with poses, then the frames that hang on others.
+void RosAssembler::find_objects() {
   std::map<std::string_view, std::size_t> by_path;
   std::set<std::string> names;
-  const auto add = [&](std::string name) {
-    if (!is_plain_name(name) || !names.insert(name).second) return false;
-    info_.objects.push_back({std::move(name), Dof::all});
-    return true;
-  };
-  for (const auto& [kind, source] : sources_) {
-    const std::size_t object = info_.objects.size();
-    if (kind == Kind::pose) {
-      const std::string& topic = mcap.channels().at(static_cast<std::uint16_t>(source)).topic;
-      if (!add(object_name(topic, "/pose"))) return refuse(mcap, Errc::unsupported, "R-TRC-16");
-      objects_[source] = object;
-      if (!sources_.contains({Kind::twist, source})) by_path[path_of(topic)] = object;  // odometry has its own
-    } else if (kind == Kind::transform) {
-      if (!add(object_name(samples_.frames().name(source), ""))) return refuse(mcap, Errc::unsupported, "R-TRC-16");
-      framed_[source] = object;
+  const auto& sources = samples_.sources();
+  const RosSelection wanted{options_.topics, options_.skip};
+  for (const Kind kind : {Kind::pose, Kind::link})
+    for (std::uint32_t i = 0; i < sources.size(); ++i) {
+      const RosSource& source = sources[i];
+      if (source.kind != kind || survey_.facts(i).samples == 0 || !wanted.has(source.topic)) continue;
+      std::string name = object_name(source.topic, "/pose");
+      if (kind == Kind::link) {
+        const std::string frame = samples_.name(source.child), space = samples_.name(source.space);
+        name = object_name(space.empty() || frame.starts_with(space + "/") ? frame : space + "/" + frame, "");
+      }
+      if (!wanted.has(name) && std::ranges::find(options_.skip, name) != options_.skip.end()) continue;
+      if (kind == Kind::pose && !source.is_odometry) by_path[path_of(source.topic)] = objects_.size();
+      info_.objects.push_back({free_name(std::move(name), survey_.place_of(i), names), Dof::all});
+      objects_.push_back({i});
+    }
+  for (std::uint32_t i = 0; i < sources.size(); ++i) {
+    if (sources[i].kind != Kind::twist || survey_.facts(i).samples == 0) continue;
+    if (sources[i].is_odometry) {
+      for (Object& object : objects_)
+        if (sources[object.source].kind == Kind::pose && sources[object.source].topic == sources[i].topic) object.twist = i;
+    } else if (const auto found = by_path.find(path_of(sources[i].topic)); found != by_path.end()) {
+      objects_[found->second].twist = i;
+    } else {
+      notes_.add(sources[i].topic, "no topic of poses is beside it: this twist is ignored");
     }
   }
-  tracks_.resize(info_.objects.size());
-  for (const auto& [kind, source] : sources_) {
-    if (kind != Kind::twist) continue;
-    const auto own = objects_.find(source);
-    const auto found = by_path.find(path_of(mcap.channels().at(static_cast<std::uint16_t>(source)).topic));
-    if (own == objects_.end() && found == by_path.end()) continue;
-    objects_[source] = own != objects_.end() ? own->second : found->second;
-    tracks_[objects_[source]].has_twist = true;
-  }
-  return {};
 }
 
 /// Users are the topics with forces. They are where the frame of the force is, or the object of a topic beside, if there is one alone.
-Result<void> RosAssembler::find_users(const mcap::Reader& mcap) {
+void RosAssembler::find_users() {
   std::set<std::string> names;
-  for (const RosSample& sample : ahead_) {
-    if (sample.kind != Kind::force || users_.contains(sample.source)) continue;
-    const std::string& topic = mcap.channels().at(static_cast<std::uint16_t>(sample.source)).topic;
-    std::string name = object_name(topic, "/wrench");
-    if (!is_plain_name(name) || !names.insert(name).second) return refuse(mcap, Errc::unsupported, "R-TRC-16");
-    users_[sample.source] = info_.users.size();
-    info_.users.push_back({std::move(name)});
-    Touch touch;
-    if (framed_.contains(sample.frame)) touch.frame = sample.frame;
-    std::set<std::size_t> beside;
-    for (const auto& [channel, object] : objects_)
-      if (path_of(mcap.channels().at(static_cast<std::uint16_t>(channel)).topic) == path_of(topic)) beside.insert(object);
-    if (beside.size() == 1) touch.object = *beside.begin();
-    touches_.push_back(touch);
+  const auto& sources = samples_.sources();
+  for (std::uint32_t i = 0; i < sources.size(); ++i) {
+    if (sources[i].kind != Kind::force || survey_.facts(i).samples == 0) continue;
+    info_.users.push_back({free_name(object_name(sources[i].topic, "/wrench"), sources[i].topic, names)});
+    User user{i};
+    std::size_t beside = 0;
+    for (std::size_t k = 0; k < objects_.size(); ++k) {
+      const RosSource& object = sources[objects_[k].source];
+      if (object.kind != Kind::pose || path_of(object.topic) != path_of(sources[i].topic)) continue;
+      ++beside;
+      user.beside = k;
+    }
+    if (beside != 1) user.beside.reset();
+    users_.push_back(user);
   }
-  return {};
 }
 
-Result<std::optional<RosSample>> RosAssembler::next_sample(mcap::Reader& mcap) {
-  if (ahead_.empty()) return samples_.next(mcap);
-  std::optional<RosSample> sample = ahead_.front();
-  ahead_.pop_front();
+// ==== samples in order ====
+
+Result<std::optional<RosSample>> RosAssembler::read(mcap::Reader& mcap) {
+  if (kept_.empty()) return samples_.next(mcap);
+  std::optional<RosSample> sample = kept_.front();
+  kept_.pop_front();
   return sample;
 }
 
-Result<bool> RosAssembler::next(mcap::Reader& mcap, TraceFrame& frame) {
+/// Bring the next sample in order to its track; false when there is none.
+Result<bool> RosAssembler::take(mcap::Reader& mcap) {
   while (true) {
-    TACTUS_TRY(const auto sample, next_sample(mcap));
-    if (!sample) break;
-    if (sample->time < start_) return refuse(mcap, Errc::invalid, "R-TRC-15");
-    const std::int64_t tick = tick_of_time(sample->time - start_, info_.tick_rate);
-    if (tick < current_.tick || tick / info_.tick_rate >= kMaxSeconds) return refuse(mcap, Errc::invalid, "R-TRC-15");
-    const bool is_due = pending_ && tick > current_.tick;
-    if (is_due) TACTUS_CHECK(deliver(mcap, frame));
-    current_.tick = tick;
-    TACTUS_CHECK(apply(mcap, *sample));
-    pending_ = known_ == tracks_.size();
-    if (is_due) return true;
+    if (const auto sample = order_.take()) {
+      if (sample->time < released_) {
+        notes_.add(survey_.place_of(sample->source), "came too late to be sorted: left out", survey_.text_of_time(sample->log));
+        continue;
+      }
+      released_ = sample->time;
+      tracks_[sample->source].add(*sample);
+      return true;
+    }
+    if (ended_) return false;
+    TACTUS_TRY(auto sample, read(mcap));
+    if (!sample) {
+      ended_ = true;
+      order_.end();
+      for (const auto& [topic, count] : samples_.late())
+        notes_.add(topic, "begins after what of a pipe is looked at: left out; give the file itself");
+      continue;
+    }
+    if (sample->fault != RosFault::none) continue;
+    const std::int64_t added = samples_.sources()[sample->source].is_static ? 0 : survey_.steps().added_at(sample->ordinal);
+    const auto time = survey_.clock().time_of(*sample, added);
+    if (!time) {
+      notes_.add(survey_.place_of(sample->source), "its header stamp is far from its log time: left out",
+                 survey_.text_of_time(sample->log));
+      continue;
+    }
+    sample->time = *time;
+    if (!survey_.moves(sample->source)) sample->time = std::min(sample->time, survey_.start());
+    else newest_ = std::max(newest_, static_cast<std::uint64_t>(static_cast<std::int64_t>(sample->log) + added));
+    order_.add(*sample);
+    if (survey_.moves(sample->source) && newest_ > window_) order_.reach(newest_ - window_);
   }
-  if (!std::exchange(pending_, false)) return false;
-  TACTUS_CHECK(deliver(mcap, frame));
+}
+
+// ==== frames ====
+
+Result<bool> RosAssembler::show(mcap::Reader& mcap, Shown& out) {
+  while (true) {
+    const std::uint64_t since = time_of_tick(tick_, info_.tick_rate), time = survey_.start() + since;
+    while (!ended_ && released_ <= time + reach_) {
+      TACTUS_TRY(const bool more, take(mcap));
+      if (!more) break;
+    }
+    while (ended_) {
+      TACTUS_TRY(const bool more, take(mcap));
+      if (!more) break;
+    }
+    const std::uint64_t near = 500'000'000 / info_.tick_rate;
+    bool is_covered = false;
+    for (RosTrack& track : tracks_) {
+      track.move_to(time);
+      is_covered = is_covered || (track.moves() && track.covers(near));
+    }
+    if (is_covered) {
+      TACTUS_CHECK(mcap.spend((objects_.size() + users_.size() + 1) * kCostOfObject));
+      fill(out);
+      ++tick_;
+      return true;
+    }
+    TACTUS_TRY(const bool more, skip(mcap, time));
+    if (!more) return false;
+  }
+}
+
+/// On to the tick of the next sample; false at the end.
+Result<bool> RosAssembler::skip(mcap::Reader& mcap, std::uint64_t time) {
+  while (true) {
+    std::optional<std::uint64_t> next;
+    for (const RosTrack& track : tracks_)
+      if (const auto own = track.moves() ? track.next_time() : std::nullopt; own && (!next || *own < *next)) next = own;
+    if (next) {
+      const std::uint64_t since = *next - survey_.start();
+      if (since / 1'000'000'000 >= static_cast<std::uint64_t>(kMaxSeconds) - 1) {
+        detail_ = "a sample is " + std::to_string(since / 1'000'000'000) + " s behind the first, more than a trace can hold";
+        return fail(Errc::invalid, "R-TRC-15", 8 * mcap.offset());
+      }
+      tick_ = std::max(tick_ + 1, tick_of_time(since, info_.tick_rate));
+      return true;
+    }
+    TACTUS_TRY(const bool more, take(mcap));
+    if (!more) return false;
+    for (RosTrack& track : tracks_) track.move_to(time);
+  }
+}
+
+void RosAssembler::fill(Shown& out) {
+  frames_->move();
+  out.frame.tick = tick_;
+  out.frame.objects.resize(objects_.size());
+  out.frame.users.resize(users_.size());
+  out.chains.resize(objects_.size());
+  out.twists.assign(objects_.size(), std::nullopt);
+  for (std::size_t i = 0; i < objects_.size(); ++i) place(i, out);
+  for (std::size_t i = 0; i < users_.size(); ++i) press(i, out);
+}
+
+void RosAssembler::place(std::size_t object, Shown& out) {
+  const Object& o = objects_[object];
+  const RosSource& source = samples_.sources()[o.source];
+  const RosTrack& track = tracks_[o.source];
+  Pose& pose = out.frame.objects[object].pose;
+  if (source.kind == Kind::link) {
+    const RosFrames::Placed placed = frames_->of_link(o.source);
+    pose = placed.pose;
+    out.chains[object] = placed.chain;
+    return;
+  }
+  const RosFrames::Placed base = frames_->at(source.space, track.frame());
+  const Pose own = track.pose();
+  pose = {to_world(base.pose, own.position), base.pose.rotation * own.rotation};
+  out.chains[object] = 31 * base.chain + track.jumps();
+  if (!o.twist || !tracks_[*o.twist].has_begun()) return;
+  const RosTrack& told = tracks_[*o.twist];
+  const std::uint32_t space = samples_.sources()[*o.twist].space;
+  Quat turn = frames_->at(space, told.frame()).pose.rotation;
+  const bool is_of_body = source.is_odometry && told.frame() != track.frame() && !samples_.link_of(space, told.frame());
+  if (is_of_body) turn = pose.rotation;
+  const Twist twist = told.is_between() || told.covers(500'000'000 / info_.tick_rate) ? told.twist() : Twist{};
+  out.twists[object] = Twist{rotate(turn, twist.linear), rotate(turn, twist.angular)};
+}
+
+void RosAssembler::press(std::size_t user, Shown& out) {
+  const User& u = users_[user];
+  const RosTrack& track = tracks_[u.source];
+  const std::uint32_t space = samples_.sources()[u.source].space;
+  const Pose frame = frames_->at(space, track.frame()).pose;
+  UserSample& sample = out.frame.users[user];
+  const Vec3 force = track.has_begun() ? rotate(frame.rotation, track.force()) : Vec3{};
+  sample.force = sample.server_force = force;
+  if (samples_.link_of(space, track.frame())) sample.device.position = frame.position;
+  else if (u.beside) sample.device.position = out.frame.objects[*u.beside].pose.position;
+  sample.contact.device = sample.device.position;
+}
+
+/// Of now_: told, or the mean from the tick before to the tick after; zero across jumps.
+void RosAssembler::set_velocities(const Shown* before, const Shown* after) {
+  for (std::size_t i = 0; i < objects_.size(); ++i) {
+    RigidSample& object = now_.frame.objects[i];
+    Twist motion = now_.twists[i].value_or(Twist{});
+    const auto joined = [&](const Shown* other) {
+      return other != nullptr && other->chains[i] == now_.chains[i] ? other : &now_;
+    };
+    const Shown *from = joined(before), *to = joined(after);
+    if (!now_.twists[i] && to->frame.tick > from->frame.tick) {
+      const double span = static_cast<double>(to->frame.tick - from->frame.tick) / info_.tick_rate;
+      motion = motion_between(from->frame.objects[i].pose, to->frame.objects[i].pose, span);
+    }
+    object.velocity = motion.linear;
+    object.angular_velocity = motion.angular;
+  }
+}
+
+Result<bool> RosAssembler::next(mcap::Reader& mcap, TraceFrame& frame) {
+  if (held_ == 0) return false;
+  if (held_ < 0) {
+    TACTUS_TRY(const bool any, show(mcap, now_));
+    held_ = any ? 1 : 0;
+    if (!any) return false;
+  }
+  TACTUS_TRY(const bool more, show(mcap, after_));
+  set_velocities(has_before_ ? &before_ : nullptr, more ? &after_ : nullptr);
+  frame = now_.frame;
+  std::swap(before_, now_);
+  std::swap(now_, after_);
+  has_before_ = true;
+  held_ = more ? 1 : 0;
   return true;
-}
-
-Result<void> RosAssembler::deliver(mcap::Reader& mcap, TraceFrame& frame) {
-  TACTUS_CHECK(mcap.spend((current_.objects.size() + current_.users.size()) * kCostOfObject));
-  TACTUS_CHECK(place_frames(mcap));
-  frame = current_;
-  return {};
-}
-
-/// What hangs on a frame that moved has moved, too.
-Result<void> RosAssembler::place_frames(const mcap::Reader& mcap) {
-  for (const auto& [number, object] : framed_) {
-    const RosFrames::Placed& placed = samples_.frames().placed(number);
-    if (!tracks_[object].placed || placed.time > tracks_[object].time) TACTUS_CHECK(move(mcap, object, placed.pose, placed.time));
-  }
-  for (std::size_t i = 0; i < touches_.size(); ++i) {
-    UserSample& user = current_.users[i];
-    if (touches_[i].frame) user.device.position = samples_.frames().placed(*touches_[i].frame).pose.position;
-    else if (touches_[i].object) user.device.position = current_.objects[*touches_[i].object].pose.position;
-    user.contact.device = user.device.position;
-  }
-  return {};
-}
-
-Result<void> RosAssembler::apply(const mcap::Reader& mcap, const RosSample& sample) {
-  if (sample.kind == Kind::transform) return hang(mcap, sample);
-  if (sample.kind == Kind::force) {
-    const auto user = users_.find(sample.source);
-    if (user == users_.end()) return refuse(mcap, Errc::unsupported, "R-TRC-16");
-    const std::optional<std::uint32_t>& frame = touches_[user->second].frame;
-    const Vec3 force = frame ? rotate(samples_.frames().placed(*frame).pose.rotation, sample.force) : sample.force;
-    current_.users[user->second].force = current_.users[user->second].server_force = force;
-    return {};
-  }
-  const auto found = objects_.find(sample.source);
-  if (found == objects_.end()) return sample.kind == Kind::twist ? Result<void>() : refuse(mcap, Errc::unsupported, "R-TRC-16");
-  if (sample.kind == Kind::pose) {
-    hear_of(found->second);
-    return move(mcap, found->second, sample.pose, sample.time);
-  }
-  current_.objects[found->second].velocity = sample.twist.linear;
-  current_.objects[found->second].angular_velocity = sample.twist.angular;
-  return {};
-}
-
-Result<void> RosAssembler::hang(const mcap::Reader& mcap, const RosSample& transform) {
-  const auto found = framed_.find(transform.source);
-  if (found == framed_.end()) return refuse(mcap, Errc::unsupported, "R-TRC-16");
-  const auto placed = samples_.frames().place(transform.source, transform.frame, transform.pose, transform.time);
-  if (!placed) return fail_at(placed.error(), 8 * mcap.offset());
-  hear_of(found->second);
-  return {};
-}
-
-void RosAssembler::hear_of(std::size_t object) noexcept {
-  if (!tracks_[object].known) ++known_;
-  tracks_[object].known = true;
-}
-
-Result<void> RosAssembler::move(const mcap::Reader& mcap, std::size_t object, const Pose& pose, std::uint64_t time) {
-  Track& track = tracks_[object];
-  RigidSample& moved = current_.objects[object];
-  if (!track.has_twist && track.placed && time > track.time) {
-    const Twist motion = motion_between(moved.pose, pose, 1e-9 * static_cast<double>(time - track.time));
-    if (!is_finite(motion.linear) || !is_finite(motion.angular)) return refuse(mcap, Errc::invalid, "R-TRC-14");
-    moved.velocity = motion.linear;
-    moved.angular_velocity = motion.angular;
-  }
-  moved.pose = pose;
-  track.placed = true;
-  track.time = time;
-  return {};
 }
 
 }  // namespace
 
-Result<std::unique_ptr<FrameAssembler>> assemble_ros(mcap::Reader& mcap, const Preamble& preamble) {
-  auto assembler = std::make_unique<RosAssembler>(preamble);
-  TACTUS_CHECK(assembler->start(mcap));
+tl::expected<std::unique_ptr<FrameAssembler>, Diagnostic> assemble_ros(mcap::Reader& mcap, std::optional<mcap::Reader> ahead,
+                                                                       const Preamble& preamble, const ReadOptions& options) {
+  auto assembler = std::make_unique<RosAssembler>(preamble, options);
+  TACTUS_CHECK(assembler->start(mcap, preamble.item, std::move(ahead)));
   return assembler;
 }
 

@@ -1,20 +1,91 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/trace/ros_samples.h>
 
+#include <algorithm>
+#include <utility>
+
 #include <tactus/base/rule.h>
-#include <tactus/trace/frame_assembler.h>
-#include <tactus/trace/messages.h>
 
 namespace tactus {
 namespace {
 
-template <class T>
-Result<T> located(Result<T> decoded, const mcap::Reader& mcap) {
-  if (!decoded) return fail_at(decoded.error(), 8 * mcap.offset());
-  return decoded;
+using Kind = RosSource::Kind;
+
+// [bytes] of the budget for each source, frame or name, so that a recording of names alone has earned its memory
+constexpr std::uint64_t kCostOfName = 512;
+constexpr std::uint64_t kLatest = std::uint64_t{1} << 62;  // [ns] in 2116
+
+/// "r1/arm" of "/r1/arm/pose"
+std::string_view path_of(std::string_view topic) noexcept {
+  if (topic.starts_with('/')) topic.remove_prefix(1);
+  const std::size_t slash = topic.rfind('/');
+  return slash == std::string_view::npos ? std::string_view() : topic.substr(0, slash);
+}
+
+std::array<double, 7> values(const Pose& p) noexcept {
+  return {p.position.x, p.position.y, p.position.z, p.rotation.w, p.rotation.x, p.rotation.y, p.rotation.z};
+}
+std::array<double, 7> values(const Twist& t) noexcept {
+  return {t.linear.x, t.linear.y, t.linear.z, t.angular.x, t.angular.y, t.angular.z, 0};
+}
+
+bool holds(const std::vector<std::string>& list, const std::string& topic) {
+  return std::ranges::any_of(list, [&](const std::string& one) { return one == topic || "/" + one == topic; });
 }
 
 }  // namespace
+
+bool RosSelection::has(const std::string& topic) const { return (only.empty() || holds(only, topic)) && !holds(skip, topic); }
+
+std::uint32_t RosSamples::number_of(std::string_view name) {
+  const auto found = numbers_.find(name);
+  if (found != numbers_.end()) return found->second;
+  const auto number = static_cast<std::uint32_t>(names_.size());
+  names_.push_back(&numbers_.emplace(name, number).first->first);
+  spent_ += kCostOfName;
+  return number;
+}
+
+std::optional<std::uint32_t> RosSamples::source_of(Kind kind, const std::string& topic, std::uint32_t space,
+                                                   std::uint32_t child) {
+  const auto number = static_cast<std::uint32_t>(sources_.size());
+  const RosSource source{kind, topic, space, child, false, topic.ends_with("tf_static")};
+  if (kind == Kind::link) {
+    if (const auto found = links_.find({space, child}); found != links_.end()) return found->second;
+    if (is_closed_) return std::nullopt;
+    links_[{space, child}] = number;
+  } else {
+    if (const auto found = by_topic_.find({kind, topic}); found != by_topic_.end()) return found->second;
+    if (is_closed_) return std::nullopt;
+    by_topic_[{kind, topic}] = number;
+  }
+  sources_.push_back(source);
+  spent_ += kCostOfName;
+  return number;
+}
+
+const RosSamples::ChannelUse& RosSamples::use_of(const mcap::Reader& mcap, std::uint16_t id) {
+  if (const auto found = uses_.find(id); found != uses_.end()) return found->second;
+  ChannelUse use;
+  const mcap::Channel& channel = mcap.channels().at(id);
+  const auto schema = mcap.schemas().find(channel.schema_id);
+  if (channel.message_encoding == "cdr" && schema != mcap.schemas().end()) use.type = ros_type(schema->second.name);
+  const bool is_tree = use.type == RosType::transform || use.type == RosType::transforms;
+  // a tree places what other topics tell, whether or not its frames are wanted as objects
+  if (is_tree ? holds(selection_.skip, channel.topic) : !selection_.has(channel.topic)) use.type = RosType::none;
+  if (use.type != RosType::none) {
+    ++channels_of_topic_[channel.topic];
+    use.space = number_of(use.type == RosType::transform ? std::string_view() : path_of(channel.topic));
+    const bool has_pose = use.type == RosType::pose || use.type == RosType::odometry;
+    if (has_pose) use.main = source_of(Kind::pose, channel.topic, use.space, 0);
+    if (use.type == RosType::wrench) use.main = source_of(Kind::force, channel.topic, use.space, 0);
+    if (use.type == RosType::twist || use.type == RosType::odometry)
+      use.twist = source_of(Kind::twist, channel.topic, use.space, 0);
+    if (use.type == RosType::odometry && use.main) sources_[*use.main].is_odometry = true;
+    if (use.type == RosType::odometry && use.twist) sources_[*use.twist].is_odometry = true;
+  }
+  return uses_.emplace(id, use).first->second;
+}
 
 Result<std::optional<RosSample>> RosSamples::next(mcap::Reader& mcap) {
   while (waiting_.empty()) {
@@ -27,56 +98,107 @@ Result<std::optional<RosSample>> RosSamples::next(mcap::Reader& mcap) {
   return sample;
 }
 
-Result<std::uint32_t> RosSamples::frame(std::string_view name) {
-  if (!frames_are_closed_) return frames_.number_of(name);
-  const auto known = frames_.find(name);
-  if (!known) return fail(Errc::unsupported, "R-TRC-16");
-  return *known;
-}
-
 Result<void> RosSamples::take(mcap::Reader& mcap) {
-  using Kind = RosSample::Kind;
   const mcap::Message& message = mcap.message();
-  const mcap::Channel& channel = mcap.channels().at(message.channel_id);
-  const auto add = [&](Kind kind) -> RosSample& {
-    return waiting_.emplace_back(RosSample{.kind = kind, .source = channel.id, .time = message.log_time});
-  };
-  if (carries(mcap, channel, schema_name(MessageType::pose))) {
-    TACTUS_TRY(const auto pose, located(decode_pose(message.data), mcap));
-    add(Kind::pose).pose = pose.value;
-  } else if (carries(mcap, channel, schema_name(MessageType::twist))) {
-    TACTUS_TRY(const auto twist, located(decode_twist(message.data), mcap));
-    add(Kind::twist).twist = twist.value;
-  } else if (carries(mcap, channel, kOdometrySchema)) {
-    TACTUS_TRY(const auto odometry, located(decode_odometry(message.data), mcap));
-    add(Kind::pose).pose = odometry.pose;
-    add(Kind::twist).twist = odometry.twist;
-  } else if (carries(mcap, channel, kWrenchSchema)) {
-    TACTUS_TRY(const auto wrench, located(decode_wrench(message.data), mcap));
-    TACTUS_TRY(const std::uint32_t number, located(frame(wrench.frame), mcap));
-    RosSample& sample = add(Kind::force);
-    sample.frame = number;
-    sample.force = wrench.force;
-  } else if (carries(mcap, channel, kTransformsSchema)) {
-    return located(take_transforms(mcap, true), mcap);
-  } else if (carries(mcap, channel, kTransformSchema)) {
-    return located(take_transforms(mcap, false), mcap);
+  ++ordinal_;
+  const ChannelUse& use = use_of(mcap, message.channel_id);
+  if (use.type == RosType::none) return {};
+  items_.clear();
+  decode_ros(message.data, use.type, items_);
+  TACTUS_CHECK(mcap.spend(items_.size() * sizeof(RosSample) + std::exchange(spent_, 0)));
+  const std::string& topic = mcap.channels().at(message.channel_id).topic;
+  for (RosItem& item : items_) {
+    if (message.log_time >= kLatest) item.fault = item.twist_fault = RosFault::impossible_time;
+    take_item(use, topic, item, {.ordinal = ordinal_, .log = message.log_time, .stamp = item.stamp});
   }
   return {};
 }
 
-Result<void> RosSamples::take_transforms(mcap::Reader& mcap, bool is_list) {
-  const mcap::Message& message = mcap.message();
-  transforms_.clear();
-  TACTUS_CHECK(decode_transforms(message.data, is_list, transforms_));
-  TACTUS_CHECK(mcap.spend(transforms_.size() * sizeof(RosSample)));
-  for (const RosTransform& transform : transforms_) {
-    TACTUS_TRY(const std::uint32_t parent, frame(transform.parent));
-    TACTUS_TRY(const std::uint32_t child, frame(transform.child));
-    waiting_.push_back(RosSample{
-        .kind = RosSample::Kind::transform, .source = child, .frame = parent, .time = message.log_time, .pose = transform.pose});
+void RosSamples::take_item(const ChannelUse& use, const std::string& topic, const RosItem& item, RosSample sample) {
+  if (use.type == RosType::odometry) return take_odometry(use, topic, item, sample);
+  sample.fault = item.fault;
+  sample.ignored = item.ignored;
+  sample.frame = number_of(item.frame);
+  std::optional<std::uint32_t> source = use.type == RosType::twist ? use.twist : use.main;
+  if (use.type == RosType::transform || use.type == RosType::transforms) {
+    const bool is_lost = item.fault == RosFault::malformed || item.fault == RosFault::encoding;
+    if (is_lost && is_closed_) return;
+    source = source_of(Kind::link, topic, use.space, number_of(is_lost ? topic : std::string(item.child)));
+    if (!is_closed_ && item.fault == RosFault::none) parents_[{use.space, sample.frame}] = true;
   }
-  return {};
+  if (!source) {
+    ++late_[topic];
+    return;
+  }
+  sample.source = *source;
+  if (use.type == RosType::twist) sample.value = values(item.twist);
+  else if (use.type == RosType::wrench) sample.value = {item.force.x, item.force.y, item.force.z};
+  else sample.value = values(item.pose);
+  waiting_.push_back(sample);
+}
+
+void RosSamples::take_odometry(const ChannelUse& use, const std::string& topic, const RosItem& item, RosSample sample) {
+  if (!use.main || !use.twist) {
+    ++late_[topic];
+    return;
+  }
+  sample.frame = number_of(item.frame);
+  sample.source = *use.main;
+  sample.fault = item.fault;
+  sample.ignored = item.ignored;
+  sample.value = values(item.pose);
+  waiting_.push_back(sample);
+  sample.source = *use.twist;
+  sample.frame = number_of(item.child);
+  sample.ignored = false;
+  sample.fault = item.twist_fault;
+  sample.value = values(item.twist);
+  waiting_.push_back(sample);
+}
+
+std::optional<std::uint32_t> RosSamples::link_of(std::uint32_t space, std::uint32_t frame) {
+  if (const auto known = found_.find({space, frame}); known != found_.end()) return known->second;
+  std::optional<std::uint32_t> link;
+  for (std::string_view path = name(space);;) {
+    const auto tree = numbers_.find(path);
+    const auto found = tree == numbers_.end() ? links_.end() : links_.find({tree->second, frame});
+    if (found != links_.end()) link = found->second;
+    if (link || path.empty()) break;
+    const std::size_t slash = path.rfind('/');
+    path = slash == std::string_view::npos ? std::string_view() : path.substr(0, slash);
+  }
+  if (is_closed_) found_[{space, frame}] = link;
+  return link;
+}
+
+bool RosSamples::is_in_tree(std::uint32_t space, std::uint32_t frame) {
+  if (link_of(space, frame)) return true;
+  for (std::string_view path = name(space);;) {
+    const auto tree = numbers_.find(path);
+    if (tree != numbers_.end() && parents_.contains({tree->second, frame})) return true;
+    if (path.empty()) return false;
+    const std::size_t slash = path.rfind('/');
+    path = slash == std::string_view::npos ? std::string_view() : path.substr(0, slash);
+  }
+}
+
+std::vector<RosSamples::Other> RosSamples::others(const mcap::Reader& mcap) const {
+  std::map<std::string, Other> by_type;
+  for (const auto& [id, channel] : mcap.channels()) {
+    const auto use = uses_.find(id);
+    if ((use != uses_.end() && use->second.type != RosType::none)) continue;
+    const auto schema = mcap.schemas().find(channel.schema_id);
+    std::string type = schema == mcap.schemas().end() ? "no type" : schema->second.name;
+    if (channel.message_encoding != "cdr") type += " (" + channel.message_encoding + ")";
+    else if (ros_type(type) != RosType::none && !selection_.has(channel.topic)) type += " (not chosen)";
+    else if (ros_type(type) != RosType::none) continue;  // without a message
+    Other& other = by_type[type];
+    other.type = type;
+    if (other.topics++ == 0) other.first = channel.topic;
+  }
+  std::vector<Other> all;
+  for (auto& [type, other] : by_type) all.push_back(std::move(other));
+  return all;
 }
 
 }  // namespace tactus

@@ -1,54 +1,116 @@
 // SPDX-License-Identifier: Apache-2.0
+/// What the messages of a recording tell, one source at a time: a source is a topic of poses, twists or forces, or a frame that hangs on
+/// another one. Internal to the library.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
-#include <tactus/base/geometry.h>
 #include <tactus/base/result.h>
 #include <tactus/trace/mcap_reader.h>
-#include <tactus/trace/messages.h>
-#include <tactus/trace/ros_frames.h>
 #include <tactus/trace/ros_messages.h>
 
 namespace tactus {
 
-/// What a recording says of one thing at one time.
 struct RosSample {
-  enum class Kind : std::uint8_t { pose, twist, force, transform };
-  Kind kind{};
-  std::uint32_t source = 0;  ///< the channel; of a transform, the frame that hangs
-  std::uint32_t frame = 0;   ///< the frame in which it is told; of forces and transforms
-  std::uint64_t time = 0;    ///< [ns] log time
-  Pose pose{};               ///< of a pose and a transform
-  Twist twist{};             ///< of a twist
-  Vec3 force{};              ///< [N]
+  std::uint32_t source = 0;
+  std::uint32_t frame = 0;           ///< name in which it is told; of a link: the parent
+  std::uint64_t ordinal = 0;         ///< of its message in the file
+  std::uint64_t log = 0, stamp = 0;  ///< [ns] stamp 0: none
+  std::uint64_t time = 0;            ///< [ns] by the clock that was chosen (RosClock)
+  RosFault fault = RosFault::none;
+  bool ignored = false;
+  std::array<double, 7> value{};  ///< position and rotation w x y z; linear and angular velocity; force
+
+  Pose pose() const noexcept { return {{value[0], value[1], value[2]}, {value[3], value[4], value[5], value[6]}}; }
+  Twist twist() const noexcept { return {{value[0], value[1], value[2]}, {value[3], value[4], value[5]}}; }
+  Vec3 force() const noexcept { return {value[0], value[1], value[2]}; }
 };
 
-/// The poses, twists, forces and transforms of a recording, in the order of its messages.
+struct RosSource {
+  enum class Kind : std::uint8_t { pose, twist, force, link };
+  Kind kind{};
+  std::string topic;         ///< on which it was first told
+  std::uint32_t space = 0;   ///< name: where its frames are looked up first; "/r1/tf" gives "r1", of other topics the path
+  std::uint32_t child = 0;   ///< name: of a link, the frame that hangs; of an odometry's twist, the frame it is told in
+  bool is_odometry = false;  ///< a pose or twist of one
+  bool is_static = false;    ///< a link of /tf_static
+};
+
+/// Which topics are read.
+struct RosSelection {
+  std::vector<std::string> only, skip;
+  bool has(const std::string& topic) const;
+};
+
+/// Sources and names, numbered in the order in which they come; they stay from one pass over the recording to the next.
 class RosSamples {
  public:
-  explicit RosSamples(mcap::Item first) : item_(first) {}
+  explicit RosSamples(RosSelection selection) : selection_(std::move(selection)) {}
 
-  /// The next one; none at the end.   err  those of reading and decoding, with the place
+  /// Begin a pass at a message, or the end.
+  void restart(mcap::Item first) { item_ = first, ordinal_ = 0, waiting_.clear(); }
+  /// The next one; none at the end. Of a transform that cannot be read at all, the source is the topic itself.   err  those of the container
   Result<std::optional<RosSample>> next(mcap::Reader& mcap);
-  /// Names of frames are kept from here on: one that is new is refused.   err  of next(), then: unsupported R-TRC-16
-  void close_frames() noexcept { frames_are_closed_ = true; }
+  /// Sources are kept from here on: samples of another one are counted in late() and left out.
+  void close() noexcept { is_closed_ = true; }
 
-  RosFrames& frames() noexcept { return frames_; }
+  const std::vector<RosSource>& sources() const noexcept { return sources_; }
+  const std::string& name(std::uint32_t name) const noexcept { return *names_[name]; }
+  /// The link that places this frame for topics in `space`: in its own tree, or one of a shorter path, or the common one.
+  std::optional<std::uint32_t> link_of(std::uint32_t space, std::uint32_t frame);
+  /// Whether any tree for `space` has it, as a parent if not as a child.
+  bool is_in_tree(std::uint32_t space, std::uint32_t frame);
+
+  struct Other {
+    std::string type;
+    std::uint64_t topics = 0;
+    std::string first;
+  };
+  /// Topics that are not read, by type; those that were skipped on demand are not among them.
+  std::vector<Other> others(const mcap::Reader& mcap) const;
+  const std::map<std::string, std::uint64_t>& late() const noexcept { return late_; }
+  /// Topics told of by several channels.
+  const std::map<std::string, int>& channels() const noexcept { return channels_of_topic_; }
+  /// Two types on one topic, or the like: topic, then what.
+  std::uint64_t spent() const noexcept { return spent_; }
 
  private:
+  struct ChannelUse {
+    RosType type = RosType::none;
+    std::optional<std::uint32_t> main, twist;  // sources
+    std::uint32_t space = 0;
+  };
+  const ChannelUse& use_of(const mcap::Reader& mcap, std::uint16_t channel);
+  std::uint32_t number_of(std::string_view name);
+  std::optional<std::uint32_t> source_of(RosSource::Kind kind, const std::string& topic, std::uint32_t space,
+                                         std::uint32_t child);
   Result<void> take(mcap::Reader& mcap);
-  Result<void> take_transforms(mcap::Reader& mcap, bool is_list);
-  Result<std::uint32_t> frame(std::string_view name);
+  void take_item(const ChannelUse& use, const std::string& topic, const RosItem& item, RosSample sample);
+  void take_odometry(const ChannelUse& use, const std::string& topic, const RosItem& item, RosSample sample);
 
-  mcap::Item item_;  // where the reader stands
-  RosFrames frames_;
-  bool frames_are_closed_ = false;
+  RosSelection selection_;
+  mcap::Item item_ = mcap::Item::end;
+  std::uint64_t ordinal_ = 0, spent_ = 0;
+  bool is_closed_ = false;
+  std::map<std::string, std::uint32_t, std::less<>> numbers_;
+  std::vector<const std::string*> names_;
+  std::vector<RosSource> sources_;
+  std::map<std::pair<RosSource::Kind, std::string>, std::uint32_t> by_topic_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> links_;                 // space and child
+  std::map<std::pair<std::uint32_t, std::uint32_t>, bool> parents_;                        // space and name: is one there
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::optional<std::uint32_t>> found_;  // link_of(), once closed
+  std::map<std::uint16_t, ChannelUse> uses_;
+  std::map<std::string, int> channels_of_topic_;
+  std::map<std::string, std::uint64_t> late_;
   std::deque<RosSample> waiting_;  // of the last message
-  std::vector<RosTransform> transforms_;
+  std::vector<RosItem> items_;
 };
 
 }  // namespace tactus

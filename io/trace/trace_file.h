@@ -51,9 +51,9 @@
 /// R-TRC-14  invalid           a value is NaN or infinite, a contact, an orientation or a time of a device or a time stamp is invalid, or a
 ///                             mesh has another number of vertices
 /// R-TRC-15  invalid           ticks do not increase, a message's times disagree, a tick lacks a message or has one twice, or what is
-///                             shown at a tick is not of a tick, or of an earlier one than before
-/// R-TRC-16  unsupported       a foreign file without poses, transforms and forces, or with a topic or frame that begins after the
-///                             look-ahead or shares its name, or with a frame that comes to hang on another one
+///                             shown at a tick is not of a tick, or of an earlier one than before; of a foreign file, a sample is over
+///                             2^31 s behind the first
+/// R-TRC-16  unsupported       a foreign file without poses, transforms and forces that can be used
 /// R-TRC-17  invalid_argument  TraceInfo: nothing to record, over 65535 channels, tick rate not in 1..1000000, dof bits, fixed
 ///                             vertices or the period of a mesh, bounds of another number of meshes, or a name that is empty, repeated,
 ///                             over 255 bytes, not UTF-8 or has '/' or control characters
@@ -67,9 +67,12 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
+#include <tactus/base/diagnostic.h>
 #include <tactus/base/result.h>
 #include <tactus/trace/frame.h>
+#include <tactus/trace/read_notes.h>
 
 namespace tactus {
 
@@ -102,23 +105,68 @@ class TraceWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Reads a trace front to back, one frame at a time, in memory bounded by a chunk. Foreign ROS 2 recordings are read too:
+/// Which times of a recording of another program are its samples' times.
+enum class RosStamps : std::uint8_t {
+  automatic,  ///< log times, unless header stamps are clearly better
+  header,
+  log,
+};
+
+/// How a recording of another program is read. Our own traces leave nothing to choose.
+struct ReadOptions {
+  std::vector<std::string>
+      topics{};  ///< whose poses, frames and forces become objects and users; empty: all. Trees place them all the same
+  std::vector<std::string> skip{};  ///< topics that are not read at all, and objects that are left out
+  bool strict = false;              ///< refuse a recording with a missing sample
+  double gap = 0;                   ///< [s] longest time to interpolate over; 0: see TraceReader
+  std::uint32_t tick_rate = 0;      ///< 1 .. 1000000; 0: follows from the recording
+  RosStamps stamps = RosStamps::automatic;
+};
+
+/// Reads a trace front to back, one frame at a time, in memory bounded by a chunk. Foreign ROS 2 recordings are read too. What is decided
+/// where they leave something open is in notes().
 ///
+/// What becomes what
 ///   PoseStamped, Odometry          each topic is an object; its motion is the odometry's, or the TwistStamped topic beside it (same path
-///                                  except for the last part), else backward differences
-///   TransformStamped, TFMessage    each frame that hangs on another one is an object, in the frame that hangs on none
-///   WrenchStamped                  each topic is a user who feels the force, where its frame is, or the one object of a topic beside it;
-///                                  a force in a known frame is turned to the world
+///                                  except for the last part), else differences of its poses over two ticks
+///   TransformStamped, TFMessage    each frame that hangs on another one is an object; /r1/tf is a tree of its own, whose frame `base` is
+///                                  the object r1.base
+///   WrenchStamped                  each topic is a user who feels the force, where its frame is, or the one object of a topic beside it
+///   One topic on several channels is one source. Torques and covariances are ignored; other types are not read.
+/// Frames
+///   What is told in a frame is turned and moved into the world: the frame that hangs on none. One leading slash of a name is dropped. The
+///   frames of a topic /r1/... are looked up in the tree of /r1/tf, then in the common one. An odometry's twist is told in child_frame_id:
+///   that frame of the tree, else the frame of the pose. A frame that comes to hang on another one is followed from then on; a transform
+///   that closes a loop is left out.
+/// Time
+///   Log times are the clock; header stamps are, where they are regular and log times come in bursts or jitter. Bursts without such stamps
+///   are spread evenly. The tick rate is that of the topic or frame with the most samples: their count over their length without pauses and
+///   lost samples, rounded to the roundest whole number within its uncertainty. Where a clock is set back, what follows goes on there.
+///   Messages are sorted; a window holds back as much as the recording is out of order, at most 262144 samples.
+/// Between samples
+///   At each tick poses, transforms, forces and twists follow a line and the shorter arc between the samples around it, if these are not
+///   farther apart than the gap: 3 times the median gap of the source, at least 0.1 s and at most 10 s. Over longer gaps, and after its
+///   last sample, a source rests; before its first, an object stands at its first pose and a force is 0. Ticks at which nothing is recorded
+///   by any source are left out. Of samples with the same time the last counts.
+/// Missing samples
+///   A message that is not of its type, a number that is NaN, infinite or beyond 1e15, a rotation whose length is off 1 by more than 2 %:
+///   such a sample counts as missing.
 ///
-/// Ticks follow from log_time and the median spacing of the topic or frame with the most samples. What a topic said last holds; frames
-/// begin when every object has a pose.
+/// A file and memory are read twice: all is looked at before the first frame, in memory for statistics alone. Of a pipe the first 4096
+/// samples are; topics and frames that begin later are left out.
 class TraceReader {
  public:
   /// path "-" is standard input.   err  io R-TRC-1; malformed, truncated, invalid, unsupported, checksum, limit_exceeded: R-TRC-n,
   ///      R-SRF-n
   static Result<TraceReader> open(const std::string& path);
+  /// The same, where an error says which topic, when and what.
+  static tl::expected<TraceReader, Diagnostic> open(const std::string& path, const ReadOptions& options);
   /// The same from memory that outlives the reader.
   static Result<TraceReader> open_memory(std::span<const std::uint8_t> bytes);
+  /// What was decided about a foreign recording; complete once next() has returned false.
+  const std::vector<ReadNote>& notes() const noexcept;
+  /// The last error of next(), with what is known beyond its rule.
+  Diagnostic explain(const Error& error) const;
   const TraceInfo& info() const noexcept;
   /// Number of frames if the file's summary tells it.
   std::optional<std::uint64_t> frame_count() const noexcept;

@@ -38,33 +38,75 @@ bool carries(const mcap::Reader& mcap, const mcap::Channel& channel, std::string
 }
 
 struct TraceReader::Impl {
-  static Result<TraceReader> open(Result<ByteSource> source);
+  template <class Open>
+  static tl::expected<TraceReader, Diagnostic> open(const Open& source, const ReadOptions& options);
 
   mcap::Reader mcap;
   std::optional<mcap::Statistics> statistics;
   std::unique_ptr<FrameAssembler> assembler;
 };
 
-Result<TraceReader> TraceReader::Impl::open(Result<ByteSource> source) try {
-  TACTUS_TRY(ByteSource bytes, std::move(source));
-  TACTUS_TRY(auto mcap, mcap::Reader::open(std::move(bytes)));
+namespace {
+
+template <class T>
+tl::expected<T, Diagnostic> told(Result<T> result) {
+  if (!result) return tl::unexpected(Diagnostic{.error = result.error()});
+  return std::move(*result);
+}
+
+}  // namespace
+
+/// in  source  opens the bytes; twice, if they can be read twice
+template <class Open>
+tl::expected<TraceReader, Diagnostic> TraceReader::Impl::open(const Open& source, const ReadOptions& options) try {
+  TACTUS_TRY(ByteSource bytes, told(source()));
+  const bool is_rereadable = bytes.size().has_value();
+  TACTUS_TRY(auto mcap, told(mcap::Reader::open(std::move(bytes))));
   auto statistics = mcap.statistics();
-  TACTUS_TRY(const Preamble preamble, read_preamble(mcap));
-  TACTUS_TRY(auto assembler, preamble.tactus ? assemble_tactus(mcap, preamble) : assemble_ros(mcap, preamble));
+  TACTUS_TRY(const Preamble preamble, told(read_preamble(mcap)));
+  std::unique_ptr<FrameAssembler> assembler;
+  if (preamble.tactus) {
+    TACTUS_TRY(assembler, told(assemble_tactus(mcap, preamble)));
+  } else {
+    std::optional<mcap::Reader> ahead;
+    if (is_rereadable) {
+      TACTUS_TRY(ByteSource again, told(source()));
+      TACTUS_TRY(ahead, told(mcap::Reader::open(std::move(again))));
+    }
+    TACTUS_TRY(assembler, assemble_ros(mcap, std::move(ahead), preamble, options));
+  }
   return TraceReader(std::make_unique<Impl>(Impl{std::move(mcap), std::move(statistics), std::move(assembler)}));
 } catch (const std::bad_alloc&) {
-  return out_of_memory();
+  return tl::unexpected(Diagnostic{.error = out_of_memory().value()});
+}
+
+tl::expected<TraceReader, Diagnostic> TraceReader::open(const std::string& path, const ReadOptions& options) {
+  auto reader = Impl::open([&] { return ByteSource::open_file(path); }, options);
+  if (!reader && reader.error().file.empty()) reader.error().file = path;
+  return reader;
 }
 
 Result<TraceReader> TraceReader::open(const std::string& path) try {
-  return Impl::open(ByteSource::open_file(path));
+  auto reader = Impl::open([&] { return ByteSource::open_file(path); }, {});
+  if (!reader) return tl::unexpected(reader.error().error);
+  return std::move(*reader);
 } catch (const std::bad_alloc&) {
   return out_of_memory();
 }
 
 Result<TraceReader> TraceReader::open_memory(std::span<const std::uint8_t> bytes) {
-  return Impl::open(ByteSource::over_memory(bytes));
+  auto reader = Impl::open([&]() -> Result<ByteSource> { return ByteSource::over_memory(bytes); }, {});
+  if (!reader) return tl::unexpected(reader.error().error);
+  return std::move(*reader);
 }
+
+const std::vector<ReadNote>& TraceReader::notes() const noexcept {
+  static const std::vector<ReadNote> kNone;
+  const ReadNotes* notes = impl_->assembler->notes();
+  return notes == nullptr ? kNone : notes->all();
+}
+
+Diagnostic TraceReader::explain(const Error& error) const { return {.error = error, .detail = impl_->assembler->detail()}; }
 
 const TraceInfo& TraceReader::info() const noexcept { return impl_->assembler->info(); }
 

@@ -338,10 +338,11 @@ TEST(Trace, ForeignRecordingBecomesObjects) {
   for (std::size_t i = 0; i < 100; ++i) {
     const TraceFrame& frame = reading.frames[i];
     EXPECT_EQ(frame.tick, static_cast<std::int64_t>(i));
-    EXPECT_EQ(frame.objects[0].pose.position.x, static_cast<double>(i));
+    EXPECT_NEAR(frame.objects[0].pose.position.x, static_cast<double>(i), 1e-3);  // at the ticks, not at times with jitter
     EXPECT_EQ(frame.objects[0].angular_velocity, (Vec3{4, 5, 6}));
-    EXPECT_EQ(frame.objects[1].pose.position.y, static_cast<double>(i - i % 2));
-    EXPECT_NEAR(frame.objects[1].velocity.y, i < 2 ? 0.0 : 100.0, 0.1);  // differences of the poses
+    EXPECT_NEAR(frame.objects[1].pose.position.y, static_cast<double>(std::min<std::size_t>(i, 98)),
+                1e-3);                                                                     // between its samples
+    EXPECT_NEAR(frame.objects[1].velocity.y, i < 98 ? 100.0 : i == 98 ? 50.0 : 0.0, 0.1);  // differences of the poses
   }
 }
 
@@ -352,8 +353,8 @@ TEST(Trace, ForeignFilesThatCannotBeRead) {
   EXPECT_EQ(rule_of({schema_record(1, MessageType::twist), channel_record(1, 1, "/a/twist")}), "R-TRC-16");
   EXPECT_EQ(rule_of({schema, channel, channel_record(2, 1, "a.pose/pose"), channel_record(3, 1, "/a/pose/pose"),
                      pose_record(2, 0, {}), pose_record(3, 0, {})}),
-            "R-TRC-16");  // two objects of one name
-  EXPECT_EQ(rule_of({schema, channel, pose_record(1, 5, {}), pose_record(1, 4, {})}), "R-TRC-15");
+            "");                                                                            // two objects of one name
+  EXPECT_EQ(rule_of({schema, channel, pose_record(1, 5, {}), pose_record(1, 4, {})}), "");  // sorted
   EXPECT_EQ(rule_of({schema, channel, pose_record(1, 0, {{NAN, 0, 0}, {}})}), "R-TRC-14");
   EXPECT_EQ(rule_of({schema, channel, message_record(1, 0, Bytes{0, 1, 0, 0, 9})}), "R-TRC-13");
   EXPECT_EQ(rule_of({schema, channel, message_record(1, 0, Bytes{0, 0, 0, 0, 9})}), "R-TRC-7");

@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <tactus/trace/ros_survey.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <set>
+
+#include <tactus/base/rule.h>
+#include <tactus/base/shown.h>
+
+namespace tactus {
+namespace {
+
+using Kind = RosSource::Kind;
+
+constexpr double kLeastGap = 0.1, kMostGap = 10, kGapsOfMedian = 3;  // [s], [s], medians
+constexpr double kSlow = 10;                                         // [1/s]
+
+std::string text(double value, const char* format = "%.6g") {
+  std::array<char, 40> out{};
+  std::snprintf(out.data(), out.size(), format, value);
+  return out.data();
+}
+
+std::string seconds(double value) { return text(value, "%.3f") + " s"; }
+std::string counted(std::uint64_t count, const char* one) { return std::to_string(count) + " " + one + (count == 1 ? "" : "s"); }
+
+RuleName rule_of(RosFault fault) noexcept {
+  if (fault == RosFault::malformed) return "R-TRC-13";
+  if (fault == RosFault::encoding) return "R-TRC-7";
+  if (fault == RosFault::own_parent || fault == RosFault::no_name) return "R-TRC-16";
+  if (fault == RosFault::impossible_time) return "R-TRC-15";
+  return "R-TRC-14";
+}
+
+Errc class_of(RosFault fault) noexcept {
+  if (fault == RosFault::malformed) return Errc::malformed;
+  const bool is_unsupported = fault == RosFault::encoding || fault == RosFault::own_parent || fault == RosFault::no_name;
+  return is_unsupported ? Errc::unsupported : Errc::invalid;
+}
+
+}  // namespace
+
+std::string RosSurvey::place_of(std::uint32_t source) const {
+  const RosSource& s = samples_.sources()[source];
+  return s.kind == Kind::link ? "frame " + samples_.name(s.child) + " of " + s.topic : s.topic;
+}
+
+std::string RosSurvey::text_of_time(std::uint64_t log) const {
+  const double since = 1e-9 * static_cast<double>(static_cast<std::int64_t>(log - log_start_));
+  return "at " + seconds(since);
+}
+
+void RosSurvey::add(const RosSample& sample) {
+  if (facts_.size() < samples_.sources().size()) facts_.resize(samples_.sources().size());
+  if (sample.fault != RosFault::none) {
+    Seen& seen = faults_[{sample.source, sample.fault}];
+    if (seen.count++ == 0) seen.log = sample.log;
+    if (!first_fault_) first_fault_ = sample;
+    return;
+  }
+  const RosSource& source = samples_.sources()[sample.source];
+  if (!source.is_static) steps_.add(sample.ordinal, sample.source, sample.log);
+  add_good(sample, static_cast<std::uint64_t>(static_cast<std::int64_t>(sample.log) + steps_.added()));
+}
+
+void RosSurvey::add_good(const RosSample& sample, std::uint64_t log) {
+  SourceFacts& facts = facts_[sample.source];
+  facts.log.add(log);
+  const auto lag = static_cast<std::int64_t>(log - sample.stamp);
+  if (sample.stamp == 0) ++facts.stampless;
+  else {
+    facts.least_lag = facts.stamps.count() == 0 ? lag : std::min(facts.least_lag, lag);
+    facts.most_lag = facts.stamps.count() == 0 ? lag : std::max(facts.most_lag, lag);
+    facts.stamps.add(sample.stamp);
+  }
+  if (sample.ignored) {
+    Seen& seen = ignored_[sample.source];
+    if (seen.count++ == 0) seen.log = log;
+  }
+  if (facts.samples++ == 0) {
+    facts.first = sample;
+  } else if (facts.last_parent != sample.frame) {
+    Change& change = changes_[sample.source];
+    if (change.count++ == 0) change = {1, sample.log, facts.last_parent, sample.frame};
+  }
+  facts.last_parent = sample.frame;
+}
+
+/// A recording is refused if nothing of it can be used, or anything is wrong and that was asked for.
+tl::expected<void, Diagnostic> RosSurvey::check() const {
+  const bool any = std::ranges::any_of(samples_.sources(), [&](const RosSource& s) {
+    return s.kind != Kind::twist && facts_[static_cast<std::size_t>(&s - samples_.sources().data())].samples > 0;
+  });
+  if (first_fault_ && (options_.strict || !any)) {
+    const RosFault fault = first_fault_->fault;
+    return tl::unexpected(
+        Diagnostic{.error = fail(class_of(fault), rule_of(fault)).value(),
+                   .detail = place_of(first_fault_->source) + ", " + text_of_time(first_fault_->log) + ": " + text_of(fault),
+                   .remedy = options_.strict ? "Without --strict such samples count as missing."
+                                             : "No sample of the recording can be used: check what wrote it."});
+  }
+  return {};
+}
+
+tl::expected<void, Diagnostic> RosSurvey::end(const mcap::Reader& mcap) {
+  facts_.resize(samples_.sources().size());
+  steps_.end();
+  const auto& sources = samples_.sources();
+  bool any = false, several = false;
+  log_start_ = std::numeric_limits<std::uint64_t>::max();
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    any = any || (sources[i].kind != Kind::twist && facts_[i].samples > 0);
+    several = several || (!sources[i].is_static && facts_[i].samples > 1);
+    if (facts_[i].samples > 0 && !sources[i].is_static) log_start_ = std::min(log_start_, facts_[i].log.first());
+  }
+  if (log_start_ == std::numeric_limits<std::uint64_t>::max()) log_start_ = first_fault_ ? first_fault_->log : 0;
+  TACTUS_CHECK(check());
+  if (!any) {
+    std::string detail;
+    for (const auto& other : samples_.others(mcap))
+      detail += (detail.empty() ? "it has " : ", ") + counted(other.topics, "topic") + " of " + shown(other.type);
+    if (detail.empty()) detail = "it has no messages of poses, transforms or forces";
+    if (mcap.cut_short() && !first_fault_) return tl::unexpected(Diagnostic{.error = fail(Errc::truncated, "R-TRC-3").value()});
+    return tl::unexpected(Diagnostic{.error = fail(Errc::unsupported, "R-TRC-16").value(), .detail = detail});
+  }
+  moving_.assign(sources.size(), false);
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const bool counts = facts_[i].samples > 0 && !(sources[i].is_static && several);
+    moving_[i] = counts && (facts_[i].samples > 1 || !several);
+  }
+  clock_.choose(facts_, moving_, options_.stamps);
+  find_start();
+  return {};
+}
+
+void RosSurvey::find_start() {
+  const auto& sources = samples_.sources();
+  start_ = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t most = 0;
+  gaps_.assign(sources.size(), static_cast<std::uint64_t>(1e9 * kLeastGap));
+  for (std::uint32_t i = 0; i < sources.size(); ++i) {
+    if (!moving_[i]) continue;
+    const auto pace = clock_.pace(i, facts_);
+    gaps_[i] = static_cast<std::uint64_t>(
+        1e9 *
+        (options_.gap > 0 ? options_.gap : std::clamp(kGapsOfMedian * std::max(pace.median, pace.period), kLeastGap, kMostGap)));
+    const std::uint64_t first =
+        clock_.takes_stamp(i) ? facts_[i].stamps.first() + static_cast<std::uint64_t>(clock_.offset(i)) : facts_[i].log.first();
+    start_ = std::min(start_, first);
+    const bool is_better = sources[i].kind != Kind::twist && facts_[i].samples > most;
+    if (is_better) most = facts_[i].samples, densest_ = i;
+  }
+  if (start_ == std::numeric_limits<std::uint64_t>::max()) start_ = log_start_;
+  tick_rate_ = options_.tick_rate > 0 ? options_.tick_rate : rate_of(clock_.pace(densest_, facts_));
+}
+
+// ==== notes ====
+
+void RosSurvey::tell(const mcap::Reader& mcap, bool whole, ReadNotes& notes) {
+  if (!whole)
+    notes.add("",
+              "read from a pipe: topics, rates, clocks and frames are those of its first samples; give the file itself to have "
+              "all of them seen");
+  tell_clock(notes);
+  tell_rate(notes);
+  for (std::uint32_t i = 0; i < facts_.size(); ++i) tell_source(i, notes);
+  tell_frames(notes);
+  tell_topics(mcap, notes);
+}
+
+void RosSurvey::tell_clock(ReadNotes& notes) const {
+  for (const auto& step : steps_.steps()) {
+    const std::int64_t before = steps_.added_at(step.ordinal - 1);
+    notes.add(
+        "",
+        "the clock was set back by " + seconds(1e-9 * static_cast<double>(step.added - before)) + "; what follows goes on there",
+        text_of_time(step.at));
+  }
+  if (steps_.disorder() > 0)
+    notes.add("", "messages cross in time by up to " + seconds(1e-9 * static_cast<double>(steps_.disorder())) + "; sorted");
+  tell_stamps(notes);
+  for (std::uint32_t i = 0; i < facts_.size(); ++i) {
+    if (!moving_[i] || facts_[i].samples < 8 || facts_[i].stampless > 0) continue;
+    const double log = facts_[i].log.length(), stamps = facts_[i].stamps.length();
+    const double slack = 2 * facts_[i].log.pace().bursts * facts_[i].log.pace().period;
+    if (std::abs(log - stamps) > 0.01 * std::max(log, stamps) + slack)
+      notes.add(place_of(i),
+                "log times span " + seconds(log) + ", header stamps " + seconds(stamps) + "; check which clock is right");
+  }
+}
+
+void RosSurvey::tell_stamps(ReadNotes& notes) const {
+  double least = 0, most = 0;
+  bool any = false;
+  for (std::uint32_t i = 0; i < facts_.size(); ++i) {
+    const SourceFacts& facts = facts_[i];
+    if (!moving_[i]) continue;
+    const auto log = facts.log.pace();
+    const std::string bursts = log.in_bursts() ? "log times come in bursts of " + text(log.bursts, "%.0f") : "log times jitter";
+    if (clock_.takes_stamp(i)) {
+      const double offset = 1e-9 * static_cast<double>(clock_.offset(i));
+      notes.add(place_of(i),
+                "header stamps taken: " + (options_.stamps == RosStamps::header ? std::string("as asked for") : bursts) +
+                    (offset != 0 ? "; they are of another clock, moved by " + seconds(offset) : ""));
+    } else if (clock_.spreads(i)) {
+      notes.add(place_of(i),
+                bursts + " and header stamps do not help: samples are spread evenly, " + text(1 / log.period) + " per second");
+    } else if (clock_.takes_stamps()) {
+      notes.add(place_of(i), "log times taken: header stamps are missing or fall");
+    } else if (facts.stamps.count() > 0) {
+      least = any ? std::min(least, 1e-9 * static_cast<double>(facts.least_lag)) : 1e-9 * static_cast<double>(facts.least_lag);
+      most = any ? std::max(most, 1e-9 * static_cast<double>(facts.most_lag)) : 1e-9 * static_cast<double>(facts.most_lag);
+      any = true;
+    }
+  }
+  if (any)
+    notes.add("", "log times are the clock; header stamps, which are " + text(least, "%.9g") + " to " + text(most, "%.9g") +
+                      " s before them, are ignored");
+}
+
+void RosSurvey::tell_rate(ReadNotes& notes) const {
+  const auto pace = clock_.pace(densest_, facts_);
+  if (!moving_[densest_] || !(pace.period > 0)) return;
+  const double rate = 1 / pace.period;
+  if (options_.tick_rate == 0 && rate < kSlow)
+    notes.add(place_of(densest_), "only " + text(rate) + " samples per second: check the unit of the times, or give --rate");
+  const double length = clock_.takes_stamp(densest_) ? facts_[densest_].stamps.length() : facts_[densest_].log.length();
+  const double expected = length * rate + 1;
+  if (static_cast<double>(facts_[densest_].samples) < 0.5 * expected)
+    notes.add(place_of(densest_), "more than half of the time nothing is recorded: check the unit of the times, or give --rate");
+  for (std::uint32_t i = 0; i < facts_.size(); ++i) {
+    const auto own = clock_.pace(i, facts_);
+    if (moving_[i] && own.period > 0 && std::abs(tick_rate_ * own.period - 1) > 0.1)
+      notes.add(place_of(i), text(1 / own.period, "%.4g") + " samples per second are interpolated to " +
+                                 std::to_string(tick_rate_) + " ticks");
+  }
+}
+
+void RosSurvey::tell_source(std::uint32_t source, ReadNotes& notes) const {
+  const SourceFacts& facts = facts_[source];
+  const Kind kind = samples_.sources()[source].kind;
+  for (const auto& [key, seen] : faults_)
+    if (key.first == source)
+      notes.add(place_of(source), counted(seen.count, "sample") + " missing: " + text_of(key.second),
+                "the first " + text_of_time(seen.log));
+  if (const auto found = ignored_.find(source); found != ignored_.end())
+    notes.add(place_of(source), kind == Kind::force ? "torques are ignored" : "covariances are ignored");
+  if (facts.samples == 0 || !moving_[source]) return;
+  const GapStatistics& times = clock_.takes_stamp(source) ? facts.stamps : facts.log;
+  if (times.equal() > 0 && !clock_.spreads(source))
+    notes.add(place_of(source),
+              counted(times.equal(), "sample") + " at the time of the one before: of equal times the last counts");
+  if (facts.log.backward() > 0)
+    notes.add(place_of(source), counted(facts.log.backward(), "time") + " before the one that stands before, by up to " +
+                                    seconds(1e-9 * static_cast<double>(facts.log.farthest_back())) + "; sorted");
+  tell_gaps(source, notes);
+}
+
+void RosSurvey::tell_gaps(std::uint32_t source, ReadNotes& notes) const {
+  const SourceFacts& facts = facts_[source];
+  const Kind kind = samples_.sources()[source].kind;
+  const GapStatistics& times = clock_.takes_stamp(source) ? facts.stamps : facts.log;
+  const double gap = 1e-9 * static_cast<double>(gaps_[source]);
+  const char* before = kind == Kind::force ? "before, the force is 0" : "before, it stands at its first pose";
+  const auto& densest = clock_.takes_stamp(densest_) ? facts_[densest_].stamps : facts_[densest_].log;
+  if (kind != Kind::twist && facts.log.first() > log_start_ + gaps_[source])
+    notes.add(place_of(source), std::string("begins ") + text_of_time(facts.log.first()) + "; " + before);
+  if (kind != Kind::twist && times.last() + gaps_[source] < densest.last() &&
+      clock_.takes_stamp(source) == clock_.takes_stamp(densest_))
+    notes.add(place_of(source), "ends " + text_of_time(facts.log.last()) + "; after, it rests");
+  if (!clock_.spreads(source) && times.largest() > gap)
+    notes.add(place_of(source), counted(times.longer_than(gap), "gap") + " longer than " + text(gap, "%.3g") +
+                                    " s, the largest " + seconds(times.largest()) + ": it rests there");
+}
+
+void RosSurvey::tell_frames(ReadNotes& notes) {
+  const auto& sources = samples_.sources();
+  for (const auto& [source, change] : changes_) {
+    const bool is_link = sources[source].kind == Kind::link;
+    notes.add(place_of(source),
+              std::string(is_link ? "hangs on another frame: " : "is told in another frame: ") + samples_.name(change.to) +
+                  ", before on " + samples_.name(change.from) +
+                  (change.count > 1 ? ", and so on " + counted(change.count, "time") : "") + "; followed",
+              text_of_time(change.log));
+  }
+  std::map<std::string, std::vector<std::uint32_t>> roots;  // frames that are taken for the world
+  for (std::uint32_t i = 0; i < sources.size(); ++i) {
+    if (facts_[i].samples == 0) continue;
+    const std::uint32_t frame = facts_[i].first->frame;
+    const std::string& name = samples_.name(frame);
+    const bool hangs = samples_.link_of(sources[i].space, frame).has_value();
+    if (sources[i].kind == Kind::pose && !hangs) roots[name].push_back(i);
+    if (sources[i].kind == Kind::link && !hangs) roots[name].push_back(i);
+    if (sources[i].kind == Kind::twist && !hangs)
+      notes.add(place_of(i), "frame '" + name + "' is in no tree: the twist is taken " +
+                                 (sources[i].is_odometry ? "in the frame of the pose" : "in the world"));
+  }
+  for (std::uint32_t i = 0; i < sources.size(); ++i) {
+    if (sources[i].kind != Kind::force || facts_[i].samples == 0) continue;
+    const std::uint32_t frame = facts_[i].first->frame;
+    if (roots.contains(samples_.name(frame)) || samples_.is_in_tree(sources[i].space, frame)) continue;
+    notes.add(place_of(i), "frame '" + samples_.name(frame) +
+                               "' is in no tree: the force is not turned, and acts at the topic beside, if there is one");
+  }
+  for (const auto& [name, which] : roots) {
+    if (roots.size() == 1) {
+      notes.add("", "frame '" + name + "' is the world");
+      continue;
+    }
+    std::set<std::string> told;
+    for (const std::uint32_t i : which)
+      if (told.insert(place_of(i)).second)
+        notes.add(place_of(i), "hangs on frame '" + name + "', of which nothing is told: taken for the world, like others");
+  }
+}
+
+void RosSurvey::tell_topics(const mcap::Reader& mcap, ReadNotes& notes) const {
+  for (const auto& [topic, channels] : samples_.channels())
+    if (channels > 1) notes.add(topic, "comes on " + counted(static_cast<std::uint64_t>(channels), "channel") + "; taken as one");
+  std::string text;
+  for (const auto& other : samples_.others(mcap))
+    text += (text.empty() ? "" : ", ") + counted(other.topics, "topic") + " of " + other.type + " (" + other.first + ")";
+  if (!text.empty()) notes.add("", "not read: " + text);
+}
+
+}  // namespace tactus
