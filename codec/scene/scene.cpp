@@ -10,7 +10,7 @@
 #include <tactus/base/rule.h>
 #include <tactus/base/shown.h>
 #include <tactus/deformable/basis.h>
-#include <tactus/elastic/elimination.h>
+#include <tactus/elastic/elastic_solver.h>
 #include <tactus/scene/elastic_syntax.h>
 #include <tactus/scene/scene_rules.h>
 

@@ -8,7 +8,7 @@
 
 #include <tactus/base/quantise.h>
 #include <tactus/base/rule.h>
-#include <tactus/elastic/elimination.h>
+#include <tactus/elastic/elastic_solver.h>
 #include <tactus/scene/scene_rules.h>
 
 namespace tactus {
