@@ -116,9 +116,9 @@ std::string binary_msh(bool legacy, bool big) {
     for (const double c : places[i]) put(out, std::bit_cast<std::uint64_t>(c), 8, big);
   };
   if (legacy) out += "4\n";
-  for (const std::uint64_t v : {1, 4, 5, 20})
+  for (const std::uint64_t v : {1U, 4U, 5U, 20U})
     if (!legacy) put(out, v, 8, big);
-  for (const std::uint64_t v : {3, 9, 0})
+  for (const std::uint64_t v : {3U, 9U, 0U})
     if (!legacy) put(out, v, 4, big);
   if (!legacy) put(out, 4, 8, big);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -129,13 +129,14 @@ std::string binary_msh(bool legacy, bool big) {
   out += "\n$EndNodes\n$Elements\n";
   if (legacy) {
     out += "2\n";
-    for (const std::uint64_t v : {2, 1, 2, 1, 0, 1, 10, 20, 5, 4, 1, 2, 2, 3, 9, 10, 20, 5, 7}) put(out, v, 4, big);
+    for (const std::uint64_t v : {2U, 1U, 2U, 1U, 0U, 1U, 10U, 20U, 5U, 4U, 1U, 2U, 2U, 3U, 9U, 10U, 20U, 5U, 7U})
+      put(out, v, 4, big);
   } else {
-    for (const std::uint64_t v : {2, 2, 1, 2}) put(out, v, 8, big);
-    for (const std::uint64_t v : {2, 1, 2}) put(out, v, 4, big);
-    for (const std::uint64_t v : {1, 1, 10, 20, 5}) put(out, v, 8, big);
-    for (const std::uint64_t v : {3, 9, 4}) put(out, v, 4, big);
-    for (const std::uint64_t v : {1, 2, 10, 20, 5, 7}) put(out, v, 8, big);
+    for (const std::uint64_t v : {2U, 2U, 1U, 2U}) put(out, v, 8, big);
+    for (const std::uint64_t v : {2U, 1U, 2U}) put(out, v, 4, big);
+    for (const std::uint64_t v : {1U, 1U, 10U, 20U, 5U}) put(out, v, 8, big);
+    for (const std::uint64_t v : {3U, 9U, 4U}) put(out, v, 4, big);
+    for (const std::uint64_t v : {1U, 2U, 10U, 20U, 5U, 7U}) put(out, v, 8, big);
   }
   return out + "\n$EndElements\n";
 }

@@ -362,7 +362,8 @@ TEST(TraceRos, StampsAreTheClockWhereLogTimesComeInBursts) {
   RosBag bag;
   for (int i = 0; i < 200; ++i) {
     Bytes message;
-    encode_pose(message, 1'700'000'000'000'000'000 + 1'000'000ull * static_cast<std::uint64_t>(i), {{0.001 * i, 0, 0}, {}});
+    encode_pose(message, std::uint64_t{1'700'000'000'000'000'000} + std::uint64_t{1'000'000} * static_cast<std::uint64_t>(i),
+                {{0.001 * i, 0, 0}, {}});
     bag.add(10 * (i / 10) + 10 + 0.02 * (i % 10), "/tool/pose", schema_name(MessageType::pose), message);
   }
   auto reader = bag.open();
