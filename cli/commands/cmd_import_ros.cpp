@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <tactus/trace/trace_file.h>
 #include "cli/commands/commands.h"
+#include "cli/commands/input.h"
 #include "cli/report/notes.h"
 #include "cli/report/report.h"
-#include "cli/commands/input.h"
 
 namespace tactus::cli {
 namespace {

@@ -37,7 +37,7 @@ struct MeshOptions {
 struct TetMeshReport {
   sim::TetMesh mesh;
   std::vector<std::pair<std::string, std::uint64_t>> notes;  // field of the report, number
-  std::vector<std::string> warnings;  // what a reader decided about the file
+  std::vector<std::string> warnings;                         // what a reader decided about the file
   std::vector<std::pair<std::string, StepTimes>> times;
 
   template <class Work>

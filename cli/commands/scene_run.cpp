@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cli/commands/input.h"
 #include "cli/commands/scene_run.h"
+#include "cli/commands/input.h"
 
 #include <fmt/format.h>
 #include <filesystem>

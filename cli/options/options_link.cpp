@@ -6,8 +6,8 @@
 #include <charconv>
 #include <cmath>
 
-#include <tactus/trace/csv_reader.h>
 #include <tactus/base/text.h>
+#include <tactus/trace/csv_reader.h>
 #include "cli/options/options_codec.h"
 #include "cli/options/units.h"
 

@@ -6,9 +6,9 @@
 #include <optional>
 
 #include <tactus/base/rule.h>
+#include <tactus/base/text.h>
 #include <tactus/device/falcon/falcon_frame.h>
 #include <tactus/device/falcon/falcon_kinematics.h>
-#include <tactus/base/text.h>
 
 namespace tactus::device::falcon {
 namespace {

@@ -11,8 +11,8 @@
 #include <utility>
 
 #include <tactus/base/rule.h>
-#include <tactus/device/hid/report_descriptor.h>
 #include <tactus/base/text.h>
+#include <tactus/device/hid/report_descriptor.h>
 
 namespace tactus::device::hid {
 

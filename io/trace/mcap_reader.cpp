@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include <tactus/base/bytes.h>
-#include <tactus/trace/byte_source.h>
 #include <tactus/base/text.h>
+#include <tactus/trace/byte_source.h>
 
 namespace tactus::mcap {
 namespace {

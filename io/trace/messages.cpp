@@ -7,8 +7,8 @@
 #include <vector>
 
 #include <tactus/base/rule.h>
-#include <tactus/trace/ros_definitions.h>
 #include <tactus/base/text.h>
+#include <tactus/trace/ros_definitions.h>
 
 namespace tactus {
 

@@ -3,9 +3,9 @@
 #include <utility>
 
 #include <tactus/base/rule.h>
+#include <tactus/base/text.h>
 #include <tactus/trace/frame_assembler.h>
 #include <tactus/trace/messages.h>
-#include <tactus/base/text.h>
 #include <tactus/trace/trace_bounds.h>
 #include <tactus/trace/trace_capture.h>
 #include <tactus/trace/trace_layout.h>

@@ -8,9 +8,9 @@
 #include <string_view>
 
 #include <tactus/base/rule.h>
+#include <tactus/base/text.h>
 #include <tactus/trace/mcap_writer.h>
 #include <tactus/trace/messages.h>
-#include <tactus/base/text.h>
 #include <tactus/trace/trace_bounds.h>
 #include <tactus/trace/trace_capture.h>
 #include <tactus/trace/trace_file.h>

@@ -2,9 +2,9 @@
 /// What collides in ODE: static boxes in a tree, and solids of any shape. Internal to rigid_world.cpp.
 #pragma once
 
+#include <ode/ode.h>
 #include <cstdint>
 #include <memory>
-#include <ode/ode.h>
 #include <span>
 #include <vector>
 

@@ -20,8 +20,8 @@
 #include <vector>
 
 #include <tactus/base/rule.h>
-#include <tactus/sim/scene/scene.h>
 #include <tactus/base/text.h>
+#include <tactus/sim/scene/scene.h>
 
 namespace tactus::sim {
 
