@@ -140,7 +140,7 @@ tl::expected<void, Diagnostic> RosAssembler::start(mcap::Reader& mcap, mcap::Ite
   is_whole_ = ahead.has_value();
   mcap::Reader& looked = ahead ? *ahead : mcap;
   if (ahead) {
-    while (first != mcap::Item::end) {
+    while (true) {  // to where the other reader stands, if that is the end: only then it knows whether the file was cut
       const auto item = ahead->next();
       if (!item || *item == mcap::Item::message || *item == mcap::Item::end) break;
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Any bytes as displacements of a small deformable object, touches, lost packets and settings: what the sender takes stays inside its
 /// bounds at the receiver (profile main), what it refuses changes nothing, and a packet that builds on an acknowledged state decodes.
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -66,7 +67,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (has_answers) options.policy.baseline = Baseline::acknowledged;
   DeformableThresholds& thresholds = options.deformable.thresholds;
   thresholds = {1e-6 * in.u16(), std::nullopt, 1e-6 * in.u16()};
-  if (const unsigned percent = in.u8()) thresholds.weber_fraction = 0.01 * percent;
+  if (const unsigned percent = in.u8()) thresholds.weber_fraction = std::min(0.01 * percent, 1.0);
   options.policy.key_interval = 0.1 * in.u8();
   Ends ends{Sender::create(scene, options).value(), Receiver::create(scene).value()};
   std::vector<float> displacements(3 * scene->deformables[0].rest.size());
