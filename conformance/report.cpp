@@ -17,7 +17,7 @@
 #include <tactus/packet/substream.h>
 #include <tactus/receiver.h>
 #include <tactus/scene/elastic_syntax.h>
-#include <tactus/signal/device_signal.h>
+#include <tactus/signal/device_path.h>
 
 namespace tactus::conformance {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <tactus/base/fixed.h>
 #include <tactus/rigid/rigid_syntax.h>
-#include <tactus/signal/device_signal.h>
+#include <tactus/signal/device_path.h>
 
 namespace tactus {
 

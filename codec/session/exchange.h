@@ -16,7 +16,7 @@
 #include <tactus/session/fragments.h>
 #include <tactus/session/numbers.h>
 #include <tactus/session/session_options.h>
-#include <tactus/signal/device_signal.h>
+#include <tactus/signal/device_path.h>
 
 namespace tactus {
 

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include <tactus/client/replica.h>
+#include <tactus/signal/device_path.h>
 #include <tactus/signal/device_signal.h>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

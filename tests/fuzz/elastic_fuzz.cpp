@@ -11,6 +11,7 @@
 #include <tactus/elastic/driven_shape.h>
 #include <tactus/scene/scene_builder.h>
 #include <tactus/scene/scene_syntax.h>
+#include <tactus/signal/device_path.h>
 #include <tactus/signal/device_signal.h>
 #include "tests/fuzz/require.h"
 

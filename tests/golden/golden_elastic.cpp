@@ -9,6 +9,7 @@
 #include <tactus/base/bytes.h>
 #include <tactus/elastic/driven_shape.h>
 #include <tactus/scene/scene_builder.h>
+#include <tactus/signal/device_path.h>
 #include <tactus/signal/device_signal.h>
 #include "tests/golden/golden.h"
 

@@ -8,6 +8,7 @@
 #include <tactus/base/geometry.h>
 #include <tactus/rigid/rigid_state.h>
 #include <tactus/scene/scene_builder.h>
+#include <tactus/signal/device_path.h>
 #include <tactus/signal/device_signal.h>
 
 namespace tactus::testing {

@@ -9,6 +9,7 @@
 
 #include <tactus/elastic/driven_shape.h>
 #include <tactus/scene/scene_builder.h>
+#include <tactus/signal/device_path.h>
 #include <tactus/signal/device_signal.h>
 #include <tactus/sim/tets/tet_mesh.h>
 

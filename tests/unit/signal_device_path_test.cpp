@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <tactus/signal/device_signal.h>
+#include <tactus/signal/device_path.h>
 
 #include <gtest/gtest.h>
 
