@@ -113,17 +113,14 @@ CsvResult<CsvImport> CsvTimeline::finish() {
         "If that is right, say --tick-rate " + std::to_string(plan_.info.tick_rate) + "; else give the rate, or --time-unit."));
   if (const auto finished = writer_->finish(); !finished) return tl::unexpected(Diagnostic{finished.error()});
   const double period = 1.0 / plan_.info.tick_rate;
-  if (made_ > 0)
-    plan_.notes.add("", std::to_string(made_) + " samples are put between their neighbours, which are at most " +
-                            text_of(largest_gap_ * period) + " s apart");
-  if (left_out_ > 0)
-    plan_.notes.add("", std::to_string(left_out_) + " ticks are left out: samples are missing for more than " +
-                            text_of(gap_ * period) + " s (--gap)");
-  if (rested_ > 0)
-    plan_.notes.add("", std::to_string(rested_) + " samples are held, as others of the table go on: more than " +
-                            text_of(gap_ * period) + " s (--gap) without one");
-  if (repeated_ > 0)
-    plan_.notes.add("", std::to_string(repeated_) + " rows have the time (or the tick) of a row before; the last of each counts");
+  const auto tell = [&](std::uint64_t count, const std::string& what, const std::string& detail) {
+    if (count > 0) plan_.notes.add("", what + ": " + std::to_string(count) + detail);
+  };
+  const std::string gap = text_of(gap_ * period) + " s (--gap)";
+  tell(made_, "samples interpolated", ", over at most " + text_of(largest_gap_ * period) + " s");
+  tell(left_out_, "ticks left out", ": nothing was recorded for more than " + gap);
+  tell(rested_, "samples held", ", as others of the table go on: none for more than " + gap);
+  tell(repeated_, "rows with the time, or the tick, of a row before", "; the last of each counts");
   done_.notes = std::move(plan_.notes);
   return done_;
 }

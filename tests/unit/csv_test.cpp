@@ -498,6 +498,32 @@ TEST(Csv, NamesTellUnitsAndAxes) {
   EXPECT_EQ(axis_in_name("a"), 0);
 }
 
+/// What the notes of an import say, without place.
+std::vector<std::string> notes_of(const Outcome& outcome) {
+  std::vector<std::string> out;
+  for (const ReadNote& note : outcome.done.notes.all())
+    if (note.where.empty()) out.push_back(note.what);
+  return out;
+}
+
+TEST(Csv, NotesCountWhatWasDecided) {
+  std::string table = "t,x,y,z\n";
+  for (int i = 0; i < 100; ++i) {
+    const bool is_missing = i == 3 || (i >= 40 && i < 70);
+    table += std::to_string(0.01 * i) + (is_missing ? ",,0,0\n" : ",1,0,0\n");
+    if (i == 80) table += "0.8,2,0,0\n";  // the same time again
+  }
+  CsvMapping mapping = xyz();
+  mapping.time = "t";
+  const Outcome outcome = import(table, mapping);
+  ASSERT_EQ(outcome.frames.size(), 70u) << outcome.rule;
+  EXPECT_EQ(outcome.frames.back().tick, 99);
+  EXPECT_EQ(notes_of(outcome),
+            (std::vector<std::string>{"samples interpolated: 1, over at most 0.02 s",
+                                      "ticks left out: 30: nothing was recorded for more than 0.1 s (--gap)",
+                                      "rows with the time, or the tick, of a row before: 1; the last of each counts"}));
+}
+
 TEST(Csv, MissingValuesArePutBetweenTheirNeighbours) {
   for (const char* word : {"", "nan", "inf", "-", "NA", "null"}) {
     const Outcome outcome = import(std::string("x,y,z\n1,2,3\n4,") + word + ",6\n5,4,7\n", xyz());
