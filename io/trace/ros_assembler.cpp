@@ -93,7 +93,8 @@ class RosAssembler final : public FrameAssembler {
     std::vector<std::optional<Twist>> twists;  // told
   };
   Result<void> look(mcap::Reader& mcap, std::size_t most, bool keeps);
-  void find_objects();
+  std::vector<std::string> find_objects();
+  void tell_unknown(const mcap::Reader& mcap, const std::vector<std::string>& left_out);
   void find_users();
   std::string free_name(std::string name, const std::string& of, std::set<std::string>& names);
   Result<std::optional<RosSample>> read(mcap::Reader& mcap);
@@ -164,8 +165,9 @@ tl::expected<void, Diagnostic> RosAssembler::start(mcap::Reader& mcap, mcap::Ite
   }
   frames_.emplace(samples_, tracks_, notes_);
   info_.tick_rate = survey_.tick_rate();
-  find_objects();
+  std::vector<std::string> left_out = find_objects();
   find_users();
+  tell_unknown(looked, left_out);
   return {};
 }
 
@@ -180,8 +182,9 @@ std::string RosAssembler::free_name(std::string name, const std::string& of, std
   return free;
 }
 
-/// Objects are the topics with poses, then the frames that hang on others.
-void RosAssembler::find_objects() {
+/// Objects are the topics with poses, then the frames that hang on others.   out  names of those that are left out
+std::vector<std::string> RosAssembler::find_objects() {
+  std::vector<std::string> left_out;
   std::map<std::string_view, std::size_t> by_path;
   std::set<std::string> names;
   const auto& sources = samples_.sources();
@@ -195,7 +198,10 @@ void RosAssembler::find_objects() {
         const std::string frame = samples_.name(source.child), space = samples_.name(source.space);
         name = object_name(space.empty() || frame.starts_with(space + "/") ? frame : space + "/" + frame, "");
       }
-      if (!wanted.has(name) && std::ranges::find(options_.skip, name) != options_.skip.end()) continue;
+      if (std::ranges::find(options_.skip, name) != options_.skip.end()) {
+        left_out.push_back(std::move(name));
+        continue;
+      }
       if (kind == Kind::pose && !source.is_odometry) by_path[path_of(source.topic)] = objects_.size();
       info_.objects.push_back({free_name(std::move(name), survey_.place_of(i), names), Dof::all});
       objects_.push_back({i});
@@ -211,6 +217,18 @@ void RosAssembler::find_objects() {
       notes_.add(sources[i].topic, "no topic of poses is beside it: this twist is ignored");
     }
   }
+  return left_out;
+}
+
+/// A name that was typed wrong takes or leaves out nothing.
+void RosAssembler::tell_unknown(const mcap::Reader& mcap, const std::vector<std::string>& left_out) {
+  const auto tell = [&](const std::string& name, const char* what) {
+    const auto is_it = [&](const auto& channel) { return RosSelection{{name}, {}}.has(channel.second.topic); };
+    if (std::ranges::none_of(mcap.channels(), is_it)) notes_.add(name, what);
+  };
+  for (const std::string& topic : options_.topics) tell(topic, "is to be read, but no topic is called so");
+  for (const std::string& name : options_.skip)
+    if (std::ranges::find(left_out, name) == left_out.end()) tell(name, "is to be left out, but no topic or object is called so");
 }
 
 /// Users are the topics with forces. They are where the frame of the force is, or the object of a topic beside, if there is one alone.
