@@ -9,6 +9,7 @@
 #include <tactus/base/rule.h>
 #include <tactus/trace/differences.h>
 #include <tactus/trace/interpolation.h>
+#include <tactus/trace/missing.h>
 #include <tactus/trace/trace_file.h>
 
 namespace tactus {
@@ -39,7 +40,7 @@ bool is_sample(const Lane& lane, std::size_t row) {
     if (!std::isfinite(value)) return false;
     square += value * value;
   }
-  return lane.width != 4 || square > 1e-12;
+  return lane.width != 4 || is_rotation_length(std::sqrt(square));
 }
 
 class ArrayWriter {
@@ -52,6 +53,7 @@ class ArrayWriter {
   Result<void> take_lanes();
   Result<void> add_lane(std::string where, std::span<const double> values, std::size_t width);
   void note_missing(const Lane& lane);
+  void note_mended(const Lane& lane);
   Result<void> find_rate();
   double off_grid(double rate) const;
   double time_of(std::size_t row) const { return static_cast<double>(arrays_.time[rows_[row]] - start_) / kSecond; }
@@ -106,6 +108,7 @@ Result<void> ArrayWriter::add_lane(std::string where, std::span<const double> va
     return fail(Errc::malformed, "R-CSV-4");
   }
   note_missing(lane);
+  if (width == 4) note_mended(lane);
   lanes_.push_back(std::move(lane));
   return {};
 }
@@ -125,6 +128,16 @@ void ArrayWriter::note_missing(const Lane& lane) {
                  ? "missing samples, interpolated"
                  : "missing samples, the one before the gap held";
     notes_.add(lane.where, what, "row " + std::to_string(rows_[row]) + ", " + seconds_text(arrays_.time[rows_[row]]));
+  }
+}
+
+void ArrayWriter::note_mended(const Lane& lane) {
+  constexpr double kRounding = 1e-3;  // of rotations that are written with few digits
+  for (const std::size_t row : lane.rows) {
+    const auto q = lane.values.subspan(4 * rows_[row], 4);
+    if (std::abs(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] - 1) > kRounding)
+      notes_.add(lane.where, "rotations whose length is off 1 by less than 2 % are made 1 long",
+                 "row " + std::to_string(rows_[row]));
   }
 }
 

@@ -8,11 +8,12 @@
 #include <tactus/base/shown.h>
 #include <tactus/base/text.h>
 #include <tactus/trace/csv_plan.h>
+#include <tactus/trace/missing.h>
 
 namespace tactus {
 namespace {
 
-constexpr double kLengthAsIs = 1e-3, kLengthMended = 0.02;  // what a rotation's length may be off 1: kept, made 1
+constexpr double kLengthAsIs = 1e-3;  // what the square of a rotation's length may be off 1 and keep its bits
 constexpr std::size_t kMostObjects = 4096;
 
 double length_of(const Quat& q) noexcept { return std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z); }
@@ -44,7 +45,7 @@ Quat of_matrix(const std::array<double, 9>& m) noexcept {
 /// Rows and columns of length 1 at right angles, within what digits lose, and no mirror.
 bool is_rotation(const std::array<double, 9>& m) noexcept {
   const Vec3 a{m[0], m[1], m[2]}, b{m[3], m[4], m[5]}, c{m[6], m[7], m[8]};
-  const auto off = [](double is, double wanted) { return std::abs(is - wanted) > kLengthMended; };
+  const auto off = [](double is, double wanted) { return std::abs(is - wanted) > kRotationTolerance; };
   return !off(norm(a), 1) && !off(norm(b), 1) && !off(dot(a, b), 0) && !off(dot(cross(a, b), c), 1);
 }
 
@@ -122,7 +123,7 @@ CsvRows::Read CsvRows::read_rotation(const std::vector<std::string>& fields, con
       if (channel.turn == Turn::quaternion) rotation = {n[0], n[1], n[2], n[3]};
       const double length = length_of(rotation);
       why_ = length == 0 ? "a rotation of length 0" : "a rotation whose length is off 1 by more than 2 %";
-      if (!(std::abs(length - 1) <= kLengthMended)) return Read::missing;
+      if (!is_rotation_length(length)) return Read::missing;
       if (std::abs(length * length - 1) <= kLengthAsIs) break;
       plan_.notes.add("column " + plan_.names[column_], "rotations whose length is off 1 by less than 2 % are made 1 long", at());
       rotation = {rotation.w / length, rotation.x / length, rotation.y / length, rotation.z / length};

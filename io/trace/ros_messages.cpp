@@ -7,11 +7,12 @@
 #include <string>
 #include <utility>
 
+#include <tactus/trace/missing.h>
+
 namespace tactus {
 namespace {
 
-constexpr double kNearUnit = 0.02;  // of a rotation's length
-constexpr double kLargest = 1e15;   // so that no sum or quotient of what follows overflows
+constexpr double kLargest = 1e15;  // so that no sum or quotient of what follows overflows
 constexpr std::size_t kCovariance = 36;
 constexpr std::size_t kLeastTransform = 72;  // bytes
 constexpr std::uint32_t kSecond = 1'000'000'000;
@@ -45,7 +46,7 @@ RosFault make_unit(Quat& q) noexcept {
   const double length = std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
   if (!std::isfinite(length)) return RosFault::not_finite;
   if (length == 0) return RosFault::no_rotation;
-  if (std::abs(length - 1) > kNearUnit) return RosFault::rotation_length;
+  if (!is_rotation_length(length)) return RosFault::rotation_length;
   q = {q.w / length, q.x / length, q.y / length, q.z / length};
   return RosFault::none;
 }

@@ -22,7 +22,7 @@ std::vector<TraceFrame> frames_of(const std::string& path) {
 TEST(ArrayTrace, TakesRowsOnAGridAsTheyAre) {
   const std::vector<std::int64_t> time{5'000'000, 7'000'000, 9'000'000, 11'000'000};
   const std::vector<double> position{0, 0, 0, 0.1, 0, 0, 0.3, 0, 0, 0.3, 0, 1};
-  const std::vector<double> rotation{2, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1};
+  const std::vector<double> rotation{1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1};
   const TempFile file;
   ReadNotes notes;
   const auto ticks =
@@ -51,6 +51,27 @@ TEST(ArrayTrace, MissingSamplesAndTimesAreLeftOutAndCounted) {
   EXPECT_EQ(frames[3].users[0].force.x, 4);
   ASSERT_EQ(notes.all().size(), 3u);
   EXPECT_EQ(notes.all()[2].where, "hand.force");
+}
+
+/// The rule of tables and ROS 2 recordings (missing.h).
+TEST(ArrayTrace, ARotationIsOfUnitLengthOrMissing) {
+  const std::vector<std::int64_t> time{0, 10'000'000, 20'000'000, 30'000'000};
+  const std::vector<double> position(12, 0.0);
+  for (const double length : {0.0, 0.5, 0.97, 0.99, 1.0, 1.01, 1.03, 2.0}) {
+    const std::vector<double> rotation{1, 0, 0, 0, 1, 0, 0, 0, 0, length, 0, 0, 1, 0, 0, 0};  // half a turn, for a tick
+    const TempFile file;
+    ReadNotes notes;
+    ASSERT_TRUE(write_arrays({.time = time, .objects = {{.name = "cup", .position = position, .rotation = rotation}}},
+                             file.path(), notes));
+    const auto frames = frames_of(file.path());
+    ASSERT_EQ(frames.size(), 4u);
+    const bool is_near = std::abs(length - 1) < 0.02;
+    EXPECT_EQ(frames[2].objects[0].pose.rotation, is_near ? (Quat{0, 1, 0, 0}) : (Quat{1, 0, 0, 0})) << length;
+    EXPECT_EQ(notes.all().size(), length == 1 ? 0u : 1u) << length;
+    if (length != 1) {
+      EXPECT_EQ(notes.all()[0].what.starts_with("missing"), !is_near) << length;
+    }
+  }
 }
 
 TEST(ArrayTrace, RefusesWithARule) {
