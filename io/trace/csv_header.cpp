@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <ranges>
 #include <set>
 
 #include <tactus/base/shown.h>
@@ -87,7 +88,7 @@ class Finder {
  private:
   void take_separator_line();
   void names_are_first();
-  void has_no_names(std::size_t values);
+  void has_no_names(std::size_t row);
   void find_names();
   bool begins_values(std::size_t row, char separator) const;
   bool names_are_in_a_comment(std::size_t values);
@@ -143,15 +144,15 @@ bool Finder::begins_values(std::size_t row, char separator) const {
 /// As numpy.savetxt, TUM and EuRoC write them.
 bool Finder::names_are_in_a_comment(std::size_t values) {
   const std::size_t wanted = split(lines_[rows_[values]].text, header_.separator).size();
-  for (auto comment = comments_.rbegin(); comment != comments_.rend(); ++comment) {
-    if (*comment > rows_[values]) continue;
-    const std::string_view text = words_of(lines_[*comment]);
+  for (const std::size_t comment : comments_ | std::views::reverse) {
+    if (comment > rows_[values]) continue;
+    const std::string_view text = words_of(lines_[comment]);
     for (const char separator : {header_.separator, ',', ';', '\t', kBlanks}) {
       Fields names = split(text, separator);
       if (names.size() == wanted + 1 && names.back().empty()) names.pop_back();
       if (names.size() != wanted || count_values(names).numbers > 0) continue;
       header_.names = std::move(names);
-      header_.line = lines_[*comment].number;
+      header_.line = lines_[comment].number;
       return true;
     }
     return false;

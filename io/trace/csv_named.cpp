@@ -220,7 +220,7 @@ void NamedPlanner::plan_euler(const CsvQuantities& q, CsvChannel& channel) {
       plan_.notes.add("column " + columns[0],
                       "angles are taken in the order " + mapping_.euler_order + ": the columns are not called after axes");
   }
-  const bool is_fixed = mapping_.euler_order != "" && std::islower(static_cast<unsigned char>(mapping_.euler_order[0])) != 0;
+  const bool is_fixed = !mapping_.euler_order.empty() && std::islower(static_cast<unsigned char>(mapping_.euler_order[0])) != 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t to = is_fixed ? 2 - i : i;
     const std::size_t found = column(columns[i]);

@@ -2,6 +2,7 @@
 #include <tactus/trace/csv_rows.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <tactus/base/rule.h>
@@ -51,9 +52,9 @@ bool is_rotation(const std::array<double, 9>& m) noexcept {
 
 }  // namespace
 
-CsvRows::CsvRows(const CsvMapping& mapping, CsvNamedPlan& plan) : mapping_(mapping), plan_(plan) {
+CsvRows::CsvRows(const CsvMapping& mapping, CsvNamedPlan& plan)
+    : mapping_(mapping), plan_(plan), turns_(mapping.axes != std::array<std::int8_t, 3>{1, 2, 3}) {
   const auto& [x, y, z] = mapping.axes;
-  turns_ = x != 1 || y != 2 || z != 3;
   const std::array<int, 3> order{std::abs(x), std::abs(y), std::abs(z)};
   const int swaps = (order[0] > order[1]) + (order[0] > order[2]) + (order[1] > order[2]);
   mirror_ = (swaps % 2 == 0 ? 1 : -1) * (x < 0 ? -1 : 1) * (y < 0 ? -1 : 1) * (z < 0 ? -1 : 1);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 
@@ -54,14 +55,6 @@ std::optional<std::int64_t> take_clock(std::string_view& text) noexcept {
   return (*hours * 3600 + *minutes * 60 + *seconds) * kSecond + take_fraction(text);
 }
 
-/// Days since 1970 of a date of the Gregorian calendar.
-std::int64_t days_of(std::int64_t year, std::int64_t month, std::int64_t day) noexcept {
-  year -= month <= 2;
-  const std::int64_t era = year / 400, of_era = year - era * 400;
-  const std::int64_t of_year = (153 * (month + (month > 2 ? -3 : 9)) + 2) / 5 + day - 1;
-  return era * 146097 + of_era * 365 + of_era / 4 - of_era / 100 + of_year - 719468;
-}
-
 /// [ns] east of UTC; no zone is UTC.
 std::optional<std::int64_t> take_zone(std::string_view& text) noexcept {
   if (text.empty() || take(text, "Zz")) return 0;
@@ -81,14 +74,19 @@ std::optional<CsvTime> parse_date(std::string_view text) noexcept {
   const auto month = take_digits(text, 2);
   if (!month || !take(text, "-/")) return std::nullopt;
   const auto day = take_digits(text, 2);
-  if (!day || *month < 1 || *month > 12 || *day < 1 || *day > 31 || *year < 1700 || *year > 2250) return std::nullopt;
+  if (!day || *year < 1700 || *year > 2250) return std::nullopt;
+  const std::chrono::year_month_day date{std::chrono::year(static_cast<int>(*year)),
+                                         std::chrono::month(static_cast<unsigned>(*month)),
+                                         std::chrono::day(static_cast<unsigned>(*day))};
+  if (!date.ok()) return std::nullopt;  // no 30 February
   if (!take(text, "Tt _")) return std::nullopt;
   const auto clock = take_clock(text);
   if (!clock) return std::nullopt;
   if (!text.empty() && text[0] == ' ') text.remove_prefix(1);
   const auto zone = take_zone(text);
   if (!zone || !text.empty()) return std::nullopt;
-  return CsvTime{days_of(*year, *month, *day) * 86400 * kSecond + *clock - *zone, CsvTimeKind::date};
+  return CsvTime{std::chrono::nanoseconds(std::chrono::sys_days(date).time_since_epoch()).count() + *clock - *zone,
+                 CsvTimeKind::date};
 }
 
 /// Digits with at most one point, exactly; nothing: not of that form, or too large.
@@ -143,19 +141,14 @@ std::optional<std::int64_t> unit_of_epoch(std::string_view text) noexcept {
 }
 
 std::string date_text(std::int64_t nanoseconds) {
-  const std::int64_t seconds = nanoseconds / kSecond - (nanoseconds % kSecond < 0 ? 1 : 0);
-  const std::int64_t days = seconds / 86400 - (seconds % 86400 < 0 ? 1 : 0), of_day = seconds - days * 86400;
-  const std::int64_t shifted = days + 719468, era = (shifted >= 0 ? shifted : shifted - 146096) / 146097,
-                     of_era = shifted - era * 146097;
-  const std::int64_t year_of_era = (of_era - of_era / 1460 + of_era / 36524 - of_era / 146096) / 365;
-  const std::int64_t of_year = of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100),
-                     month = (5 * of_year + 2) / 153;
-  const std::int64_t calendar = month < 10 ? month + 3 : month - 9;
+  const std::chrono::sys_time<std::chrono::nanoseconds> time{std::chrono::nanoseconds(nanoseconds)};
+  const auto day = std::chrono::floor<std::chrono::days>(time);
+  const std::chrono::year_month_day date(day);
+  const std::chrono::hh_mm_ss clock(std::chrono::floor<std::chrono::seconds>(time - day));
   std::array<char, 80> text{};
-  std::snprintf(text.data(), text.size(), "%04lld-%02lld-%02lld %02lld:%02lld:%02lld UTC",
-                static_cast<long long>(year_of_era + era * 400 + (calendar <= 2 ? 1 : 0)), static_cast<long long>(calendar),
-                static_cast<long long>(of_year - (153 * month + 2) / 5 + 1), static_cast<long long>(of_day / 3600),
-                static_cast<long long>(of_day / 60 % 60), static_cast<long long>(of_day % 60));
+  std::snprintf(text.data(), text.size(), "%04d-%02u-%02u %02d:%02d:%02d UTC", static_cast<int>(date.year()),
+                static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()), static_cast<int>(clock.hours().count()),
+                static_cast<int>(clock.minutes().count()), static_cast<int>(clock.seconds().count()));
   return text.data();
 }
 

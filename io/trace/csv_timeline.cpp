@@ -39,7 +39,8 @@ double median_of(std::vector<double> values) {
 
 /// 1000 for 998.7: the roundest number as near as `tolerance` (a share), else the next whole one.
 std::uint32_t round_rate(double rate, double tolerance) {
-  for (double step = std::pow(10, std::floor(std::log10(rate))); step >= 1; step /= 10) {
+  for (int digits = static_cast<int>(std::log10(std::max(rate, 1.0))); digits >= 0; --digits) {
+    const double step = std::pow(10, digits);
     const double rounded = std::round(rate / step) * step;
     if (std::abs(rounded - rate) <= tolerance * rate && rounded >= 1) return static_cast<std::uint32_t>(rounded);
   }

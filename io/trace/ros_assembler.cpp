@@ -39,7 +39,7 @@ std::string object_name(std::string_view topic, std::string_view ending) {
 /// Gives samples in the order of their times, as far as a window allows.
 class RosOrder {
  public:
-  void add(RosSample sample) { waiting_.push({std::move(sample), number_++}); }
+  void add(RosSample sample) { waiting_.push({sample, number_++}); }
   /// Times below this one are final.
   void reach(std::uint64_t time) noexcept { final_ = std::max(final_, time); }
   void end() noexcept { final_ = std::numeric_limits<std::uint64_t>::max(); }
@@ -149,7 +149,7 @@ tl::expected<void, Diagnostic> RosAssembler::start(mcap::Reader& mcap, mcap::Ite
   samples_.restart(first);
   const auto done = look(looked, ahead ? kAll : kLookAhead, !ahead);
   // what was read ahead of a damage can be used: the second pass stops there, too
-  const auto decided = survey_.end(looked);
+  auto decided = survey_.end(looked);
   if (!decided && !done && decided.error().error.rule == std::string_view("R-TRC-16"))
     return tl::unexpected(Diagnostic{.error = done.error()});
   if (!decided) return decided;
@@ -195,8 +195,10 @@ std::vector<std::string> RosAssembler::find_objects() {
       if (source.kind != kind || survey_.facts(i).samples == 0 || !wanted.has(source.topic)) continue;
       std::string name = object_name(source.topic, "/pose");
       if (kind == Kind::link) {
-        const std::string frame = samples_.name(source.child), space = samples_.name(source.space);
-        name = object_name(space.empty() || frame.starts_with(space + "/") ? frame : space + "/" + frame, "");
+        const std::string frame = samples_.name(source.child);
+        std::string space = samples_.name(source.space);
+        if (!space.empty()) space += '/';
+        name = object_name(frame.starts_with(space) ? frame : space + frame, "");
       }
       if (std::ranges::find(options_.skip, name) != options_.skip.end()) {
         left_out.push_back(std::move(name));

@@ -85,7 +85,7 @@ RosFrames::Placed RosFrames::of_link(std::uint32_t link) {
     const RosTrack& track = tracks_[chain_.back()];
     const Pose own = track.pose();
     above.pose = {to_world(above.pose, own.position), above.pose.rotation * own.rotation};
-    above.chain = 31 * above.chain + 7 * chain_.back() + track.jumps() + 1;
+    above.chain = 31 * above.chain + std::uint64_t{7} * chain_.back() + track.jumps() + 1;
     states_[chain_.back()].placed = above;
     states_[chain_.back()].computed = generation_;
     states_[chain_.back()].seen = 0;

@@ -17,12 +17,12 @@ constexpr std::size_t kCovariance = 36;
 constexpr std::size_t kLeastTransform = 72;  // bytes
 constexpr std::uint32_t kSecond = 1'000'000'000;
 
-const std::array<std::pair<std::string_view, RosType>, 6> kTypes{{{schema_name(MessageType::pose), RosType::pose},
-                                                                  {schema_name(MessageType::twist), RosType::twist},
-                                                                  {kOdometrySchema, RosType::odometry},
-                                                                  {kWrenchSchema, RosType::wrench},
-                                                                  {kTransformSchema, RosType::transform},
-                                                                  {kTransformsSchema, RosType::transforms}}};
+const std::array<std::pair<std::string_view, RosType>, 6> types_by_schema{{{schema_name(MessageType::pose), RosType::pose},
+                                                                           {schema_name(MessageType::twist), RosType::twist},
+                                                                           {kOdometrySchema, RosType::odometry},
+                                                                           {kWrenchSchema, RosType::wrench},
+                                                                           {kTransformSchema, RosType::transform},
+                                                                           {kTransformsSchema, RosType::transforms}}};
 
 /// tf2 drops one leading slash.
 std::string_view frame_name(std::string_view text) noexcept { return text.starts_with('/') ? text.substr(1) : text; }
@@ -136,7 +136,7 @@ const char* text_of(RosFault fault) noexcept {
 }
 
 RosType ros_type(std::string_view schema) noexcept {
-  for (const auto& [name, type] : kTypes) {
+  for (const auto& [name, type] : types_by_schema) {
     const std::size_t msg = name.find("/msg/");
     if (schema == name || (schema.size() + 4 == name.size() && schema.starts_with(name.substr(0, msg)) &&
                            schema.substr(msg) == name.substr(msg + 4)))

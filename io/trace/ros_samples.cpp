@@ -197,6 +197,7 @@ std::vector<RosSamples::Other> RosSamples::others(const mcap::Reader& mcap) cons
     if (other.topics++ == 0) other.first = channel.topic;
   }
   std::vector<Other> all;
+  all.reserve(by_type.size());
   for (auto& [type, other] : by_type) all.push_back(std::move(other));
   return all;
 }

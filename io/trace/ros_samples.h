@@ -87,7 +87,7 @@ class RosSamples {
     std::optional<std::uint32_t> main, twist;  // sources
     std::uint32_t space = 0;
   };
-  const ChannelUse& use_of(const mcap::Reader& mcap, std::uint16_t channel);
+  const ChannelUse& use_of(const mcap::Reader& mcap, std::uint16_t id);
   std::uint32_t number_of(std::string_view name);
   std::optional<std::uint32_t> source_of(RosSource::Kind kind, const std::string& topic, std::uint32_t space,
                                          std::uint32_t child);

@@ -101,9 +101,9 @@ Result<TraceReader> TraceReader::open_memory(std::span<const std::uint8_t> bytes
 }
 
 const std::vector<ReadNote>& TraceReader::notes() const noexcept {
-  static const std::vector<ReadNote> kNone;
+  static const std::vector<ReadNote> none;
   const ReadNotes* notes = impl_->assembler->notes();
-  return notes == nullptr ? kNone : notes->all();
+  return notes == nullptr ? none : notes->all();
 }
 
 Diagnostic TraceReader::explain(const Error& error) const { return {.error = error, .detail = impl_->assembler->detail()}; }
