@@ -149,8 +149,8 @@ class Layout {
   /// Calls look(member, its schema) in the order of the schema.
   template <class Look>
   void for_each_member(const Json& value, const Json& schema, Look look) {
-    static const Json kNone = Json::object();
-    const Json& known = schema.contains("properties") ? schema["properties"] : kNone;
+    static const Json none = Json::object();
+    const Json& known = schema.contains("properties") ? schema["properties"] : none;
     for (const auto& [key, property] : known.items())
       if (value.contains(key)) look(value[key], resolved(property, root_));
     for (const auto& [key, part] : value.items()) {

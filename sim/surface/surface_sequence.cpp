@@ -63,6 +63,7 @@ tl::expected<SurfaceSequence, Diagnostic> SurfaceSequence::open(const std::strin
   TACTUS_TRY(auto names, surfaces_in(folder, out.notes_));
   if (options.series.empty()) {
     std::vector<FrameFile> all;
+    all.reserve(names.size());
     for (const std::string& name : names) all.push_back({name, 0});
     TACTUS_CHECK(check_formats(all, folder));
   }
