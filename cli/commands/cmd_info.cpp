@@ -16,11 +16,13 @@
 #include <tactus/base/shown.h>
 #include <tactus/metrics/errors.h>
 #include <tactus/metrics/rates.h>
+#include <tactus/trace/bag_folder.h>
 #include <tactus/trace/mcap_reader.h>
 #include <tactus/trace/trace_file.h>
 #include "cli/commands/rereadable_input.h"
 #include "cli/options/option_needs.h"
 #include "cli/output.h"
+#include "cli/progress.h"
 #include "cli/report/figures.h"
 #include "cli/report/info_json.h"
 #include "cli/report/json_parts.h"
@@ -301,14 +303,14 @@ Outcome info_stream(const InfoOptions& options) {
 /// Topics with their types and message counts, from the container alone.
 tl::expected<Json, Failure> channels_json(const InfoOptions& options) {
   const std::string& path = options.input;
-  auto source = ByteSource::open_file(options.readable);
-  if (!source) return refuse(path, source.error());
-  auto reader = mcap::Reader::open(std::move(*source));
+  auto files = files_of(options.readable);
+  if (!files) return refuse(path, files.error());
+  auto reader = mcap::Reader::open(*std::move(files));
   if (!reader) return refuse(path, reader.error());
   std::map<std::uint16_t, std::uint64_t> counts;
   while (true) {
     const auto item = reader->next();
-    if (!item) return refuse(path, item.error());
+    if (!item) return refuse(path, reader->explain(item.error()));
     if (*item == mcap::Item::end) break;
     if (*item == mcap::Item::message) ++counts[reader->message().channel_id];
   }
@@ -331,7 +333,10 @@ Outcome info_trace(const InfoOptions& options) {
   std::uint64_t frames = 0;
   std::int64_t first = 0;
   std::vector<std::uint64_t> shapes(trace.meshes.size());
+  constexpr std::uint64_t kFramesBetween = 256;  // two looks at the bytes read
+  Progress progress("bytes", reader->bytes().all, Visibility::shown);
   while (true) {
+    if (frames % kFramesBetween == 0) progress.update(reader->bytes().read);
     const auto more = reader->next(frame);
     if (!more) return refuse(options.input, more.error());
     if (!*more) break;
@@ -431,10 +436,9 @@ Outcome run(const InfoOptions& options) {
   InfoOptions readable = options;
   readable.readable = input.path();
   std::ifstream file(readable.readable, std::ios::binary);
-  std::string magic(mcap::kMagic.size(), '\0');
+  std::string magic(4, '\0');
   file.read(magic.data(), static_cast<std::streamsize>(magic.size()));
-  if (magic.substr(0, 5) == "\x89MCAP") return info_trace(readable);
-  return info_stream(readable);
+  return magic == "\x89TCT" ? info_stream(readable) : info_trace(readable);  // what is neither is named there
 }
 
 }  // namespace

@@ -17,7 +17,7 @@
 namespace tactus::cli {
 namespace {
 
-constexpr std::string_view kTraceMagic = "\x89MCAP";
+constexpr std::string_view kStreamMagic = "\x89TCT";
 
 }  // namespace
 
@@ -43,9 +43,9 @@ tl::expected<MotionSource, Failure> MotionSource::open(const std::string& path) 
   MotionSource source(path);
   TACTUS_TRY(auto input, RereadableInput::open(path));
   source.input_ = std::make_unique<RereadableInput>(std::move(input));
-  std::string magic(kTraceMagic.size(), '\0');
+  std::string magic(kStreamMagic.size(), '\0');
   std::ifstream(source.input_->path(), std::ios::binary).read(magic.data(), static_cast<std::streamsize>(magic.size()));
-  if (magic == kTraceMagic) {
+  if (magic != kStreamMagic) {  // what is neither is named there
     auto trace = TraceReader::open(source.input_->path());
     if (!trace) return refuse(path, trace.error());
     source.trace_.emplace(std::move(*trace));

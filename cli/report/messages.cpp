@@ -48,6 +48,17 @@ tl::unexpected<Failure> refuse(const std::string& file, const Error& error) {
   return refuse(file, place_of_bit(error.bit_offset), error);
 }
 
+tl::unexpected<Failure> refuse(const std::string& file, const TraceError& error) {
+  const std::string byte = place_of_bit(error.bit_offset);
+  const std::string place = byte + (byte.empty() || error.place.empty() ? "" : ", ") + error.place;
+  auto refused = refuse(file, place, static_cast<const Error&>(error));
+  if (!error.what.empty())
+    refused.value().text = fmt::format("{}{}{}: {} ({}, {})", shown_path(file), place.empty() ? "" : ", ", place, error.what,
+                                       errc_name(error.code), error.rule);
+  if (!error.remedy.empty()) refused.value().remedy = error.remedy;
+  return refused;
+}
+
 std::string remedy_of(int cause) {
   switch (cause) {
     case ENOSPC:

@@ -35,13 +35,15 @@
 /// rule      class             broken when
 /// R-TRC-1   io                the operating system refuses to open, read or write the file; errno tells why
 /// R-TRC-2   malformed         MCAP's magic bytes are not at the front, or not at the very end behind a footer
+///           unsupported       the file is of another known kind, or a folder holds no bag of MCAP files
 /// R-TRC-3   truncated         the file ends before the header, the channels that its metadata announces, or any pose,
 ///                             or the first tick of a recording with meshes
 /// R-TRC-4   malformed         a length inside a record reaches past the record's end
 /// R-TRC-5   limit_exceeded    a record, a chunk or all declarations are larger than accepted
 /// R-TRC-6   checksum          a CRC-32 does not match
-/// R-TRC-7   unsupported       compression, message encoding or format version that this reader does not know
-/// R-TRC-8   malformed         a chunk's records are no zstd data of exactly the announced size
+/// R-TRC-7   unsupported       compression, message encoding (ROS 1, protobuf, JSON) or version that this reader does not know
+/// R-TRC-8   malformed         a chunk's records or a compressed message are no zstd or LZ4 data of exactly the announced size, or a
+///                             compressed file is damaged
 /// R-TRC-9   malformed         a record or the summary stands where it must not
 ///           invalid           the footer points elsewhere than to the summary
 /// R-TRC-10  invalid           a schema or channel is used undeclared or declared twice with a difference
@@ -67,9 +69,12 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <tactus/base/result.h>
 #include <tactus/trace/frame.h>
+#include <tactus/trace/read_notes.h>
+#include <tactus/trace/trace_error.h>
 
 namespace tactus {
 
@@ -102,6 +107,16 @@ class TraceWriter {
   std::unique_ptr<Impl> impl_;
 };
 
+enum class OnDamage : std::uint8_t { refuse, skip };
+
+/// What of a recording was left out because it is damaged.
+struct TraceLoss {
+  std::string file{};                            ///< of a recording of several files
+  Error cause{};                                 ///< its offset is that of the record
+  std::uint64_t bytes = 0;                       ///< 0: not known
+  std::optional<std::uint64_t> from{}, until{};  ///< [ns] log times, if something tells them
+};
+
 /// Reads a trace front to back, one frame at a time, in memory bounded by a chunk. Foreign ROS 2 recordings are read too:
 ///
 ///   PoseStamped, Odometry          each topic is an object; its motion is the odometry's, or the TwistStamped topic beside it (same path
@@ -114,17 +129,28 @@ class TraceWriter {
 /// begin when every object has a pose.
 class TraceReader {
  public:
-  /// path "-" is standard input.   err  io R-TRC-1; malformed, truncated, invalid, unsupported, checksum, limit_exceeded: R-TRC-n,
-  ///      R-SRF-n
-  static Result<TraceReader> open(const std::string& path);
+  /// in   path  a file, a bag's folder or its metadata.yaml; "-" is standard input. zstd and LZ4 files are unpacked on the way
+  ///      on_damage  skip: what is damaged is left out and told by losses(); a tick that lacks something then is left out, too
+  /// err  io R-TRC-1; malformed, truncated, invalid, unsupported, checksum, limit_exceeded: R-TRC-n, R-SRF-n
+  static TraceResult<TraceReader> open(const std::string& path, OnDamage on_damage = OnDamage::refuse);
   /// The same from memory that outlives the reader.
-  static Result<TraceReader> open_memory(std::span<const std::uint8_t> bytes);
+  static TraceResult<TraceReader> open_memory(std::span<const std::uint8_t> bytes);
   const TraceInfo& info() const noexcept;
   /// Number of frames if the file's summary tells it.
   std::optional<std::uint64_t> frame_count() const noexcept;
   /// Read the next frame into `frame`; false at the end. Pass the frame of the previous call: its vectors are reused, and a shape
   /// that is not new stays in it. Do not use the reader after an error.
-  Result<bool> next(TraceFrame& frame);
+  TraceResult<bool> next(TraceFrame& frame);
+  /// What was decided about the files of a folder.
+  std::vector<ReadNote> file_notes() const;
+  /// What OnDamage::skip left out so far.
+  std::vector<TraceLoss> losses() const;
+  /// Bytes of the files that were read, and of all; none for a pipe.
+  struct Bytes {
+    std::uint64_t read = 0;
+    std::optional<std::uint64_t> all{};
+  };
+  Bytes bytes() const;
   /// True if the file ends early (crash, truncation); everything up to its last whole chunk was delivered. Valid once next() has
   /// returned false.
   bool cut_short() const noexcept;
