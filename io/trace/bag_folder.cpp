@@ -202,7 +202,7 @@ TraceResult<RecordingFiles> files_of_folder(const fs::path& folder, MissingFiles
 BagMetadata parse_bag_metadata(std::string_view yaml) {
   BagMetadata metadata;
   std::size_t depth = 0;  // of the keys below rosbag2_bagfile_information; 0: not yet
-  bool within_list = false;
+  bool within_list = false, within_bag = false;
   while (!yaml.empty()) {
     const std::size_t end = std::min(yaml.find('\n'), yaml.size());
     const std::string_view line = yaml.substr(0, end);
@@ -210,13 +210,18 @@ BagMetadata parse_bag_metadata(std::string_view yaml) {
     const std::size_t indent = line.find_first_not_of(' ');
     const std::string_view text = trimmed(line);
     if (text.empty() || text.front() == '#') continue;
-    if (indent == 0 && text != "rosbag2_bagfile_information:" && !text.starts_with("- ")) depth = 0;
-    if (indent > 0 && depth == 0) depth = indent;
-    if (within_list && text.starts_with("- ") && depth > 0 && indent >= depth) {
+    if (indent == 0) {
+      within_bag = text == "rosbag2_bagfile_information:";
+      depth = 0;
+      continue;
+    }
+    if (!within_bag) continue;
+    if (depth == 0) depth = indent;
+    if (within_list && text.starts_with("- ") && indent >= depth) {
       metadata.files.push_back(scalar(text.substr(2)));
       continue;
     }
-    if (depth == 0 || indent != depth) continue;
+    if (indent != depth) continue;
     within_list = false;
     const std::size_t colon = std::min(text.find(':'), text.size());
     const std::string_view key = text.substr(0, colon);

@@ -133,7 +133,12 @@ bool Reader::is_record(std::span<const std::uint8_t> at) const {
 /// Channels may be declared only within a chunk that is lost: the summary has them once more.
 void Reader::declare_from_summary() {
   const auto bytes = read_summary();
-  if (!bytes) return;
+  constexpr std::size_t kEnding = kRecordPrefix + kFooterContent + kMagic.size();
+  std::vector<std::uint8_t> footer(kEnding);
+  if (!bytes || !source_.read_at(*source_.size() - kEnding, footer)) return;
+  const auto covered = std::span<const std::uint8_t>(footer).first(kRecordPrefix + kFooterContent - 4);
+  const std::uint32_t stored = ByteReader(std::span<const std::uint8_t>(footer).subspan(covered.size(), 4)).u32();
+  if (stored != 0 && stored != crc32(covered, crc32(*bytes))) return;  // damaged itself: what the data declare holds
   ByteReader summary(*bytes);
   while (summary.ok() && summary.remaining() > 0) {
     const auto opcode = static_cast<Opcode>(summary.u8());

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include <tactus/trace/mcap_reader.h>
 #include "tests/unit/temp_file.h"
 #include "tests/unit/trace_fixture.h"
 
@@ -14,7 +15,8 @@ namespace {
 
 TEST(TraceBagFolder, MetadataIsReadWhateverItsDepth) {
   const BagMetadata metadata = parse_bag_metadata(
-      "# a comment\nrosbag2_bagfile_information:\r\n  version: 9\r\n  storage_identifier: mcap\r\n  relative_file_paths:\r\n    - \"a_0.mcap\"\r\n"
+      "# a comment\nrosbag2_bagfile_information:\r\n  version: 9\r\n  storage_identifier: mcap\r\n  relative_file_paths:\r\n    "
+      "- \"a_0.mcap\"\r\n"
       "    - a_1.mcap\r\n  message_count: 12\n  topics_with_message_count:\n    - message_count: 99\n      topic_metadata:\n"
       "        compression_mode: no\n  compression_format: 'zstd'\n  compression_mode: FILE\nother:\n  storage_identifier: x\n");
   EXPECT_EQ(metadata.storage, "mcap");
@@ -23,7 +25,8 @@ TEST(TraceBagFolder, MetadataIsReadWhateverItsDepth) {
   EXPECT_EQ(metadata.compression_format, "zstd");
   EXPECT_EQ(metadata.compression_mode, "FILE");
   // Lists without an indentation of their own, as yaml-cpp and PyYAML write them.
-  EXPECT_EQ(parse_bag_metadata("rosbag2_bagfile_information:\n  relative_file_paths:\n  - x.mcap\n  - y.mcap\n").files.size(), 2U);
+  EXPECT_EQ(parse_bag_metadata("rosbag2_bagfile_information:\n  relative_file_paths:\n  - x.mcap\n  - y.mcap\n").files.size(),
+            2U);
 }
 
 TEST(TraceBagFolder, ARecordingCanBeReadTwice) {

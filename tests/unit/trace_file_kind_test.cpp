@@ -10,13 +10,24 @@ namespace {
 
 using std::string_view_literals::operator""sv;
 
-TraceError kind(std::string_view text) { return not_mcap({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, "in.x"); }
+TraceError kind(std::string_view text) {
+  return not_mcap({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, "in.x");
+}
 
 TEST(TraceFileKind, KnownKindsAreNamedWithTheirCommand) {
-  const std::pair<std::string_view, std::string_view> cases[] = {
-      {"#ROSBAG V2.0\n"sv, "rosbags-convert --src in.x"}, {"SQLite format 3\0"sv, "ros2 bag convert -i in.x"}, {"\x1f\x8b\x08"sv, "gunzip in.x"},
-      {"\xfd" "7zXZ\0"sv, "xz -d in.x"}, {"BZh9"sv, "bunzip2 in.x"}, {"PK\x03\x04"sv, "unzip in.x"}, {"\x89" "TCT"sv, "tactus decode in.x"},
-      {" {\"a\": 1}"sv, "import csv"}, {"t,x\n0,1\n"sv, "import csv in.x"}};
+  const std::pair<std::string_view, std::string_view> cases[] = {{"#ROSBAG V2.0\n"sv, "rosbags-convert --src in.x"},
+                                                                 {"SQLite format 3\0"sv, "ros2 bag convert -i in.x"},
+                                                                 {"\x1f\x8b\x08"sv, "gunzip in.x"},
+                                                                 {"\xfd"
+                                                                  "7zXZ\0"sv,
+                                                                  "xz -d in.x"},
+                                                                 {"BZh9"sv, "bunzip2 in.x"},
+                                                                 {"PK\x03\x04"sv, "unzip in.x"},
+                                                                 {"\x89"
+                                                                  "TCT"sv,
+                                                                  "tactus decode in.x"},
+                                                                 {" {\"a\": 1}"sv, "import csv"},
+                                                                 {"t,x\n0,1\n"sv, "import csv in.x"}};
   for (const auto& [first, command] : cases) {
     const TraceError error = kind(first);
     EXPECT_EQ(error.code, Errc::unsupported) << command;

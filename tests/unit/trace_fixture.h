@@ -127,7 +127,7 @@ struct Reading {
   bool cut_short = false;
 };
 
-inline Reading read_all(Result<TraceReader> reader) {
+inline Reading read_all(TraceResult<TraceReader> reader) {
   Reading reading;
   TraceFrame frame;
   while (reader) {

@@ -11,16 +11,23 @@
 namespace tactus {
 namespace {
 
+/// Buttons are said when they are new: behind a gap they are those from before it until they change.
+std::string without_buttons(TraceFrame frame) {
+  for (UserSample& user : frame.users) user.device.buttons = 0;
+  return image(frame);
+}
+
 std::size_t frames_of(const Bytes& bytes, const std::set<std::string>& known, std::size_t& strange) {
   const TempFile file;
-  std::ofstream(file.path(), std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  std::ofstream(file.path(), std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   auto reader = TraceReader::open(file.path(), OnDamage::skip);
   if (!reader) return 0;
   TraceFrame frame;
   std::size_t count = 0;
   while (reader->next(frame).value_or(false)) {
     ++count;
-    strange += known.contains(image(frame)) ? 0U : 1U;
+    strange += known.contains(without_buttons(frame)) ? 0U : 1U;
   }
   return count;
 }
@@ -37,11 +44,12 @@ TEST(TraceMcapSalvage, DamageAnywhereCostsNoMoreThanItsChunk) {
     return Bytes{std::istreambuf_iterator<char>(in), {}};
   }();
   std::set<std::string> known;
-  for (const TraceFrame& frame : recording.frames) known.insert(image(frame));
+  for (const TraceFrame& frame : recording.frames) known.insert(without_buttons(frame));
   std::size_t strange = 0;
   ASSERT_EQ(frames_of(whole, known, strange), 40U);
   ASSERT_EQ(strange, 0U);
-  const std::size_t first = std::search(whole.begin() + 8, whole.end(), std::begin("zstd"), std::begin("zstd") + 4) - whole.begin();
+  const std::string text(whole.begin(), whole.end());
+  const std::size_t first = text.find("zstd");
   std::size_t fewest = 40;
   for (std::size_t i = first; i < whole.size(); i += 7) {
     Bytes damaged = whole;

@@ -100,7 +100,7 @@ class RosBag {
     return add(ms, "/arm/wrench", kWrenchSchema, wrench(frame, force));
   }
 
-  Result<TraceReader> open() {
+  TraceResult<TraceReader> open() {
     EXPECT_TRUE(out_.finish());
     return TraceReader::open(file_.path());
   }
