@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 #include <tactus/base/shown.h>
 #include <tactus/trace/mcap_reader.h>
@@ -55,7 +57,10 @@ class Held {
   explicit Held(const TraceInfo& info) : info_(info), since_(info.objects.size()) {}
 
   void look(const TraceFrame& frame, std::size_t losses, std::size_t before) {
-    if (losses > before && !last_.empty())
+    // The reader is ahead by a message: the gap is before this frame or before the next one.
+    const bool is_behind_gap = losses > before || std::exchange(may_follow_, false);
+    may_follow_ = losses > before;
+    if (is_behind_gap && !last_.empty())
       for (std::size_t i = 0; i < last_.size(); ++i)
         if (info_.objects[i].dof != Dof::none && !since_[i]) since_[i] = frame.tick;
     for (std::size_t i = 0; i < last_.size(); ++i)
@@ -79,6 +84,7 @@ class Held {
   const TraceInfo& info_;
   std::vector<std::optional<std::int64_t>> since_;
   std::vector<RigidSample> last_;
+  bool may_follow_ = false;
   std::vector<std::string> said_;
 };
 
@@ -101,7 +107,9 @@ tl::expected<Rescue, Failure> copy(TraceReader& reader, TraceWriter& writer, con
     if (!more || !*more) break;
     if (const auto written = writer.write(frame); !written)
       return refuse(options.output, place_of_tick(frame.tick), written.error());
-    const std::size_t now = reader.losses().size();
+    const auto lost = reader.losses();
+    const auto now = static_cast<std::size_t>(
+        std::count_if(lost.begin(), lost.end(), [](const TraceLoss& loss) { return loss.from.has_value(); }));
     held.look(frame, now, losses);
     losses = now;
     report.ticks.add(frame.tick);

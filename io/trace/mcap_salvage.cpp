@@ -52,6 +52,11 @@ Result<void> Reader::get_over(const Error& error) {
     lose(error, 0, std::nullopt, std::nullopt);
     return {};
   }
+  if (opcode == Opcode::footer && is_whole) {  // it points elsewhere: what it ends has been read
+    lose(error, 0, std::nullopt, std::nullopt);
+    section_ = Section::done;
+    return {};
+  }
   const bool is_contained = opcode == Opcode::schema || opcode == Opcode::channel || opcode == Opcode::attachment ||
                             opcode == Opcode::metadata || opcode == Opcode::message;
   if (is_contained && is_whole && rule != "R-TRC-5" && rule != "R-TRC-4") {
