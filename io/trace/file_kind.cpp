@@ -15,6 +15,11 @@ namespace {
 
 constexpr std::string_view kConvertBag =
     "With the Python package rosbags: `rosbags-convert --src FILE --dst FOLDER --dst-storage mcap`, then give the folder.";
+constexpr std::string_view kSpreadsheet =
+    "Save it as CSV, for example by `libreoffice --convert-to csv FILE`, then `tactus import csv`.";
+constexpr std::string_view kDataFrame =
+    "`python3 -c \"import pandas; pandas.read_parquet('FILE').to_csv('table.csv', index=False)\"`, then `tactus import csv "
+    "table.csv`.";
 constexpr std::string_view kConvertDatabase =
     "`ros2 bag convert -i FILE -o mcap.yaml`, where mcap.yaml holds `output_bags: [{uri: FOLDER, storage_id: mcap, all_topics: "
     "true, "
@@ -36,11 +41,27 @@ constexpr std::array kKinds{
          "7zXZ\0"sv,
          0, "this file is compressed with xz", "Unpack it first: `xz -d FILE`."},
     Kind{"BZh"sv, 0, "this file is compressed with bzip2", "Unpack it first: `bunzip2 FILE`."},
+    Kind{"[Content_Types].xml"sv, 30, "this is a spreadsheet (xlsx), not an MCAP file", kSpreadsheet},
+    Kind{"\xd0\xcf\x11\xe0"sv, 0, "this is a spreadsheet (xls), not an MCAP file", kSpreadsheet},
     Kind{"PK\x03\x04"sv, 0, "this is a zip archive", "Unpack it first: `unzip FILE`."},
     Kind{"7z\xbc\xaf\x27\x1c"sv, 0, "this is a 7z archive", "Unpack it first: `7z x FILE`."},
     Kind{"ustar"sv, 257, "this is a tar archive", "Unpack it first: `tar -xf FILE`."},
-    Kind{"\x89HDF\r\n\x1a\n"sv, 0, "this is an HDF5 file, not an MCAP file",
-         "Write its columns as a table and read that: `tactus import csv`."},
+    Kind{
+        "\x89HDF\r\n\x1a\n"sv, 0, "this is an HDF5 file, not an MCAP file",
+        "`python3 -c \"import h5py, numpy; numpy.savetxt('table.csv', h5py.File('FILE')['NAME'], delimiter=',')\"`, then `tactus "
+        "import csv table.csv`."},
+    Kind{"\x93NUMPY"sv, 0, "this is an array of NumPy, not an MCAP file",
+         "`python3 -c \"import numpy; numpy.savetxt('table.csv', numpy.load('FILE'), delimiter=',', header='time,x,y,z', "
+         "comments='')\"` with the names of its columns, then `tactus import csv table.csv`."},
+    Kind{"MATLAB "sv, 0, "this is a MAT-file of MATLAB, not an MCAP file",
+         "Write its columns as a table, in MATLAB `writematrix(x, 'table.csv')`, then `tactus import csv table.csv`."},
+    Kind{"PAR1"sv, 0, "this is a Parquet file, not an MCAP file", kDataFrame},
+    Kind{"TDSm"sv, 0, "this is a TDMS file of LabVIEW, not an MCAP file",
+         "`python3 -c \"import nptdms; nptdms.TdmsFile.read('FILE').as_dataframe().to_csv('table.csv')\"`, then `tactus import "
+         "csv "
+         "table.csv`."},
+    Kind{"\x02\x50"sv, 0, "this is a C3D file of motion capture, not an MCAP file",
+         "Write it as a table with `c3d2csv FILE` of the Python package c3d, then `tactus import csv`."},
     Kind{"ULog\x01\x12\x35"sv, 0, "this is a ULog of PX4, not an MCAP file",
          "Write it as tables with `ulog2csv FILE`, then `tactus import csv`."},
     Kind{"\x89"
@@ -48,8 +69,11 @@ constexpr std::array kKinds{
          0, "this is a Tactus stream, not a trace", "Decode it first: `tactus decode FILE -o trace.mcap`."},
     Kind{"\x7f"
          "ELF"sv,
-         0, "this is a program, not an MCAP file", ""},
+         0, "this is a program, not an MCAP file", "Give the recording itself."},
 };
+
+constexpr const char* kRecord =
+    "Record topics of poses, transforms, odometry or wrenches: `ros2 bag record -s mcap /tf /tf_static /TOPIC`.";
 
 Diagnostic error(Errc code, RuleName rule, std::string_view what, std::string remedy) {
   return {.error = fail(code, rule).value(), .cause = std::string(what), .remedy = std::move(remedy)};
@@ -102,7 +126,8 @@ Diagnostic not_mcap(std::span<const std::uint8_t> first, const std::string& path
     return error(Errc::unsupported, "R-TRC-2", "this is JSON, not an MCAP file",
                  "Write its numbers as a table and read that: `tactus import csv`.");
   if (text[begin] == '<')
-    return error(Errc::unsupported, "R-TRC-2", "this is XML or HTML, not an MCAP file; a download may have failed", "");
+    return error(Errc::unsupported, "R-TRC-2", "this is XML or HTML, not an MCAP file; a download may have failed",
+                 "Copy it again from its source.");
   return error(Errc::unsupported, "R-TRC-2", "this is a text file, not an MCAP file",
                with_name("If it is a table, read it with `tactus import csv FILE -o trace.mcap`.", path));
 }
@@ -116,13 +141,13 @@ Diagnostic nothing_of_use(const std::map<std::uint16_t, mcap::Schema>& schemas,
     const auto schema = schemas.find(channel.schema_id);
     if (channel.message_encoding == "cdr" && schema != schemas.end()) types.insert(schema->second.name);
   }
-  if (by_encoding.empty()) return error(Errc::unsupported, "R-TRC-16", "the file has no topics", "");
+  if (by_encoding.empty()) return error(Errc::unsupported, "R-TRC-16", "the file has no topics", kRecord);
   std::string holds;
   for (const auto& [encoding, topics] : by_encoding)
     holds += (holds.empty() ? "" : "; ") + (encoding.empty() ? "no encoding" : shown(encoding)) + ": " + list_of(topics);
   if (by_encoding.contains("cdr")) {
     return error(Errc::unsupported, "R-TRC-16",
-                 "no topic has poses, transforms or forces (" + holds + "); of ROS 2 it holds " + list_of(types), "");
+                 "no topic has poses, transforms or forces (" + holds + "); of ROS 2 it holds " + list_of(types), kRecord);
   }
   const std::string what = "no topic has messages of ROS 2 (" + holds + ")";
   if (by_encoding.contains("ros1"))

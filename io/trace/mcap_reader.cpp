@@ -6,6 +6,7 @@
 
 #include <tactus/base/bytes.h>
 #include <tactus/base/text.h>
+#include <tactus/trace/block_crc.h>
 #include <tactus/trace/byte_source.h>
 #include <tactus/trace/file_kind.h>
 
@@ -202,7 +203,7 @@ Result<bool> Reader::read_exactly(std::vector<std::uint8_t>& out, std::uint64_t 
       TACTUS_TRY(const std::size_t more, read_source(piece.subspan(got)));
       got += more;
     }
-    crc_ = crc32(piece.first(got), crc_);
+    crc_ = block_crc(piece.first(got), crc_);
     position_ += got;
     if (got < piece.size()) {
       out.resize(start + got);
@@ -345,7 +346,7 @@ Result<void> Reader::open_chunk(ByteReader content) {
   chunk_.resize(static_cast<std::size_t>(size));
   if (is_packed && !decompress_exactly(*compression, records, chunk_)) return refuse(Errc::malformed, "R-TRC-8");
   if (!is_packed) std::copy(records.begin(), records.end(), chunk_.begin());
-  if (differs(crc, crc32(chunk_))) return refuse(Errc::checksum, "R-TRC-6");
+  if (differs(crc, block_crc(chunk_))) return refuse(Errc::checksum, "R-TRC-6");
   return {};
 }
 
@@ -470,7 +471,7 @@ Result<Item> Reader::take_attachment(ByteReader content) {
   const std::size_t covered = content.position();
   const std::uint32_t crc = content.u32();
   if (!content.ok()) return refuse(Errc::malformed, "R-TRC-4");
-  if (differs(crc, crc32(all.first(covered)))) return refuse(Errc::checksum, "R-TRC-6");
+  if (differs(crc, block_crc(all.first(covered)))) return refuse(Errc::checksum, "R-TRC-6");
   if (!is_utf8(attachment_.name) || !is_utf8(attachment_.media_type)) return refuse(Errc::invalid, "R-TRC-11");
   return Item::attachment;
 }

@@ -45,7 +45,7 @@ TEST(TraceBagFolder, ARecordingCanBeReadTwice) {
 }
 
 TEST(TraceBagFolder, WithoutAListTheNumbersInTheNamesOrderTheFiles) {
-  const auto folder = std::filesystem::path(testing::TempDir()) / ("tactus_bag_" + std::to_string(getpid()));
+  const auto folder = std::filesystem::path(::testing::TempDir()) / ("tactus_bag_" + std::to_string(getpid()));
   std::filesystem::create_directory(folder);
   for (const char* name : {"b_10.mcap", "b_9.mcap", "b_1.mcap", ".b_0.mcap", "notes.txt"}) std::ofstream(folder / name) << name;
   const auto files = files_of(folder.string());

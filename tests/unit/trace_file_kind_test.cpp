@@ -15,19 +15,28 @@ Diagnostic kind(std::string_view text) {
 }
 
 TEST(TraceFileKind, KnownKindsAreNamedWithTheirCommand) {
-  const std::pair<std::string_view, std::string_view> cases[] = {{"#ROSBAG V2.0\n"sv, "rosbags-convert --src in.x"},
-                                                                 {"SQLite format 3\0"sv, "ros2 bag convert -i in.x"},
-                                                                 {"\x1f\x8b\x08"sv, "gunzip in.x"},
-                                                                 {"\xfd"
-                                                                  "7zXZ\0"sv,
-                                                                  "xz -d in.x"},
-                                                                 {"BZh9"sv, "bunzip2 in.x"},
-                                                                 {"PK\x03\x04"sv, "unzip in.x"},
-                                                                 {"\x89"
-                                                                  "TCT"sv,
-                                                                  "tactus decode in.x"},
-                                                                 {" {\"a\": 1}"sv, "import csv"},
-                                                                 {"t,x\n0,1\n"sv, "import csv in.x"}};
+  const std::pair<std::string_view, std::string_view> cases[] = {
+      {"#ROSBAG V2.0\n"sv, "rosbags-convert --src in.x"},
+      {"SQLite format 3\0"sv, "ros2 bag convert -i in.x"},
+      {"\x1f\x8b\x08"sv, "gunzip in.x"},
+      {"\xfd"
+       "7zXZ\0"sv,
+       "xz -d in.x"},
+      {"BZh9"sv, "bunzip2 in.x"},
+      {"PK\x03\x04"sv, "unzip in.x"},
+      {"\x89"
+       "TCT"sv,
+       "tactus decode in.x"},
+      {" {\"a\": 1}"sv, "import csv"},
+      {"\x93NUMPY\x01\0"sv, "numpy.load('in.x')"},
+      {"MATLAB 5.0 MAT-file"sv, "writematrix"},
+      {"PAR1"sv, "read_parquet('in.x')"},
+      {"\x89HDF\r\n\x1a\n"sv, "h5py.File('in.x')"},
+      {"\xd0\xcf\x11\xe0"sv, "--convert-to csv in.x"},
+      {"PK\x03\x04xxxxxxxxxxxxxxxxxxxxxxxxxx[Content_Types].xml"sv, "--convert-to csv in.x"},
+      {"TDSm"sv, "TdmsFile.read('in.x')"},
+      {"\x02\x50xx"sv, "c3d2csv in.x"},
+      {"t,x\n0,1\n"sv, "import csv in.x"}};
   for (const auto& [first, command] : cases) {
     const Diagnostic error = kind(first);
     EXPECT_EQ(error.error.code, Errc::unsupported) << command;
