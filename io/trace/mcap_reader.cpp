@@ -117,13 +117,11 @@ tl::expected<void, Diagnostic> Reader::start_file() {
   std::vector<std::uint8_t> magic;
   TACTUS_TRY(const bool has_magic, diagnosed(read_exactly(magic, kMagic.size())));
   if (!has_magic || !std::equal(magic.begin(), magic.end(), kMagic.begin())) {
-    if (skips_damage() && has_magic && (magic[0] == kMagic[0] || is_unpacked_)) {  // damaged at its front
-      lose(fail(Errc::malformed, "R-TRC-2").value(), kMagic.size(), std::nullopt, std::nullopt);
-    } else {
-      Diagnostic error = not_mcap(is_unpacked_ ? magic : front, path);
-      if (is_unpacked_) error.detail = "within its " + std::string(name_of(packed)) + " data";
-      return tl::unexpected(std::move(error));
-    }
+    Diagnostic error = not_mcap(is_unpacked_ ? magic : front, path);
+    if (is_unpacked_) error.detail = "within its " + std::string(name_of(packed)) + " data";
+    const bool may_be_damage = has_magic && (is_unpacked_ || error.error.code == Errc::malformed || magic[0] == kMagic[0]);
+    if (!skips_damage() || !may_be_damage) return tl::unexpected(std::move(error));
+    lose(fail(Errc::malformed, "R-TRC-2").value(), kMagic.size(), std::nullopt, std::nullopt);
   }
   crc_ = crc32(std::span<const std::uint8_t>(magic));
 

@@ -11,9 +11,23 @@
 namespace tactus::mcap {
 namespace {
 
-constexpr std::size_t kLongestSign = kRecordPrefix + 8 + 8 + 8 + 4 + 4 + 4 + 8;  // of a record that the search accepts
+constexpr std::size_t kLongestSign = 512;  // [bytes] by which the search recognises a record
 constexpr std::size_t kPiece = 64u << 10;
 constexpr std::uint64_t kDay = 86'400'000'000'000;  // [ns]
+
+/// A schema or channel with plain names in lengths that fit.
+bool is_declaration(ByteReader in, Opcode opcode, std::uint64_t length) noexcept {
+  const auto is_plain = [](std::span<const std::uint8_t> text) {
+    return std::all_of(text.begin(), text.end(), [](std::uint8_t c) { return c >= 0x20 && c < 0x7f; });
+  };
+  const std::size_t before = in.position();
+  const std::uint16_t id = in.u16();
+  if (opcode == Opcode::channel) in.u16();
+  const auto name = in.bytes(in.u32()), encoding = in.bytes(in.u32());
+  in.u32();  // size of what follows
+  return in.ok() && (id > 0 || opcode == Opcode::channel) && !name.empty() && is_plain(name) && is_plain(encoding) &&
+         in.position() - before <= length;
+}
 
 }  // namespace
 
@@ -106,16 +120,19 @@ Result<void> Reader::search_record(const Error& error) {
 }
 
 /// A record that can hardly be anything else: a chunk whose lengths agree, a message of a known channel and a time near the last one,
-/// the end of the data, a footer.
+/// a schema, a channel, the end of the data, a footer.
 bool Reader::is_record(std::span<const std::uint8_t> at) const {
   if (at.empty()) return false;
   const auto opcode = static_cast<Opcode>(at[0]);
-  if (opcode != Opcode::chunk && opcode != Opcode::message && opcode != Opcode::data_end && opcode != Opcode::footer)
+  const bool is_declared = opcode == Opcode::schema || opcode == Opcode::channel;
+  if (!is_declared && opcode != Opcode::chunk && opcode != Opcode::message && opcode != Opcode::data_end &&
+      opcode != Opcode::footer)
     return false;
   ByteReader in(at);
   in.u8();
   const std::uint64_t length = in.u64();
   if (!in.ok() || length > limits_.record_bytes) return false;
+  if (is_declared) return is_declaration(in, opcode, length);
   if (opcode == Opcode::data_end) return length == 4;
   if (opcode == Opcode::footer) return length == kFooterContent;
   if (opcode == Opcode::message) {
