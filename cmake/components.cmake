@@ -4,6 +4,7 @@
 # package          Debian package          target that proves it was found
 set(TACTUS_PACKAGES
   "zstd            libzstd-dev             zstd::libzstd_shared"
+  "LZ4             liblz4-dev              LZ4::lz4"
   "ode             libode-dev,pkgconf      PkgConfig::ode"
   "GnuTLS          libgnutls28-dev         GnuTLS::GnuTLS"
   "tomlplusplus    libtomlplusplus-dev     tomlplusplus::tomlplusplus"
@@ -25,7 +26,7 @@ set(TACTUS_PACKAGES
   "WasmClang clang-16,lld-16,binaryen,wasi-libc,libc++-16-dev-wasm32,libc++abi-16-dev-wasm32,libclang-rt-16-dev-wasm32 WasmClang::compiler"
   "Node            nodejs,npm              Node::node")
 
-# These come without a CMake file: FindLDL.cmake and FindCHOLMOD.cmake (installed beside ours), FindWasmClang.cmake, FindNode.cmake.
+# These come without a CMake file: FindLZ4.cmake, FindLDL.cmake and FindCHOLMOD.cmake (installed beside ours), FindWasmClang.cmake, FindNode.cmake.
 list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})
 
 # The packages whose ways differ from `find_package(NAME)`: ODE, libusb and hidapi come without a CMake file, Python needs its component named.

@@ -5,6 +5,7 @@
 set(TACTUS_PKG_CONFIG
   "tl::expected"
   "zstd::libzstd_shared       libzstd"
+  "LZ4::lz4                   liblz4"
   "Threads::Threads           -pthread"
   "GnuTLS::GnuTLS             gnutls"
   "Eigen3::Eigen              eigen3"

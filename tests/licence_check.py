@@ -19,6 +19,7 @@ LICENCES = {
     "libstdc++": "GPL-3 with the exception for run-time libraries",
     "libgcc_s": "GPL-3 with the exception for run-time libraries",
     "libzstd": "BSD-3-Clause or GPL-2",
+    "liblz4": "BSD-2-Clause",
     "libode": "BSD-3-Clause or LGPL-2.1+",
     "libccd": "BSD-3-Clause",
     "libfmt": "MIT",

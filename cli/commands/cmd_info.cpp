@@ -13,11 +13,11 @@
 #include <vector>
 
 #include <tactus/base/shown.h>
-#include <tactus/trace/mcap_reader.h>
 #include <tactus/trace/trace_file.h>
 #include "cli/commands/input.h"
 #include "cli/options/options_codec.h"
 #include "cli/output.h"
+#include "cli/progress.h"
 #include "cli/report/info.h"
 #include "cli/report/json.h"
 #include "cli/report/table.h"
@@ -138,51 +138,45 @@ Outcome info_stream(const InfoOptions& options) {
   return end_of(options, error);
 }
 
-/// Topics with their types and message counts, from the container alone.
-tl::expected<Json, Failure> channels_json(const InfoOptions& options) {
-  const std::string& path = options.input;
-  auto source = ByteSource::open_file(options.readable);
-  if (!source) return refuse(path, source.error());
-  auto reader = mcap::Reader::open(std::move(*source));
-  if (!reader) return refuse(path, reader.error());
-  std::map<std::uint16_t, std::uint64_t> counts;
-  while (true) {
-    const auto item = reader->next();
-    if (!item) return refuse(path, item.error());
-    if (*item == mcap::Item::end) break;
-    if (*item == mcap::Item::message) ++counts[reader->message().channel_id];
-  }
+Json topics_json(const std::vector<TraceTopic>& topics) {
   Json list = Json::array();
-  for (const auto& [id, channel] : reader->channels()) {
-    const auto schema = reader->schemas().find(channel.schema_id);
-    list.push_back({{"topic", channel.topic},
-                    {"type", schema == reader->schemas().end() ? "-" : schema->second.name},
-                    {"messages", counts[id]}});
-  }
+  for (const TraceTopic& topic : topics)
+    list.push_back({{"topic", topic.topic}, {"type", topic.type.empty() ? "-" : topic.type}, {"messages", topic.messages}});
   return list;
 }
 
+/// Ticks of a trace.
+struct TickTotals {
+  std::uint64_t frames = 0;
+  std::int64_t first = 0, last = 0;
+  std::vector<std::uint64_t> shapes;  ///< new ones, of each mesh
+};
+
+tl::expected<TickTotals, Failure> read_ticks(TraceReader& reader, const InfoOptions& options) {
+  constexpr std::uint64_t kFramesBetween = 256;  // two looks at the bytes read
+  Progress progress("info", reader.bytes().all, Visibility::shown);
+  TickTotals totals{.shapes = std::vector<std::uint64_t>(reader.info().meshes.size())};
+  TraceFrame frame;
+  while (true) {
+    if (totals.frames % kFramesBetween == 0) progress.update(reader.bytes().read);
+    TACTUS_TRY(const bool more, next_frame(reader, frame, options.input));
+    if (!more) return totals;
+    for (std::size_t i = 0; i < totals.shapes.size(); ++i) totals.shapes[i] += frame.meshes[i].updated ? 1U : 0U;
+    if (totals.frames++ == 0) totals.first = frame.tick;
+    totals.last = frame.tick;
+  }
+}
+
 Outcome info_trace(const InfoOptions& options) {
-  auto reader = open_trace(options.readable, options.input);
+  auto reader = open_trace(options.readable, options.input, Visibility::shown);
   if (!reader) return tl::unexpected(reader.error());
   const TraceInfo& trace = reader->info();
   note_idle_options(*options.common.command, subjects_of(trace), "trace");
-  TraceFrame frame;
-  std::uint64_t frames = 0;
-  std::int64_t first = 0;
-  std::vector<std::uint64_t> shapes(trace.meshes.size());
-  while (true) {
-    const auto more = reader->next(frame);
-    if (!more) return refuse(options.input, more.error());
-    if (!*more) break;
-    for (std::size_t i = 0; i < shapes.size(); ++i) shapes[i] += frame.meshes[i].updated ? 1U : 0U;
-    if (frames++ == 0) first = frame.tick;
-  }
-  TACTUS_TRY(auto channels, channels_json(options));
-  Value info = trace_info_value(trace, {frames, first, frame.tick, !reader->cut_short(), shapes});
-  info.json["channels"] = std::move(channels);
+  TACTUS_TRY(const TickTotals ticks, read_ticks(*reader, options));
+  Value info = trace_info_value(trace, {ticks.frames, ticks.first, ticks.last, !reader->cut_short(), ticks.shapes});
+  info.json["channels"] = topics_json(reader->topics());
   print(info, "info", options.common);
-  return check_ending(options.input, *reader, frames);
+  return check_ending(options.input, *reader, ticks.frames);
 }
 
 #ifdef TACTUS_HAS_SIM
@@ -203,10 +197,9 @@ Outcome run(const InfoOptions& options) {
   InfoOptions readable = options;
   readable.readable = input.path();
   std::ifstream file(readable.readable, std::ios::binary);
-  std::string magic(mcap::kMagic.size(), '\0');
+  std::string magic(4, '\0');
   file.read(magic.data(), static_cast<std::streamsize>(magic.size()));
-  if (magic.substr(0, 5) == "\x89MCAP") return info_trace(readable);
-  return info_stream(readable);
+  return magic == "\x89TCT" ? info_stream(readable) : info_trace(readable);  // what is neither is named there
 }
 
 }  // namespace
@@ -217,7 +210,7 @@ void setup_info(Command& app, Action& action) {
   options->common.command = &command;
   command
       .add_option("FILE", options->input,
-                  "Stream (.tct), trace (.mcap) or scene (.toml); - is a stream or trace on standard input")
+                  "Stream (.tct), trace (.mcap, or a bag's folder) or scene (.toml); - is a stream or trace on standard input")
       ->type_name("")
       ->required();
   command.add_flag("--packets", options->packets, "List every packet of a stream");

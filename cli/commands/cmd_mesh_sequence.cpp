@@ -215,7 +215,7 @@ tl::expected<std::size_t, Failure> find_mesh(const ExportMeshOptions& options, c
 }
 
 Outcome run(const ExportMeshOptions& options) {
-  auto reader = open_trace(options.input);
+  auto reader = open_trace(options.input, options.common.progress());
   if (!reader) return tl::unexpected(reader.error());
   TACTUS_TRY(const auto index, find_mesh(options, reader->info()));
   TACTUS_TRY(const auto target, target_of(options.output));
@@ -230,9 +230,8 @@ Outcome run(const ExportMeshOptions& options) {
   report.timings = {{"write"}};
   std::uint64_t count = 0;
   while (true) {
-    const auto more = reader->next(frame);
-    if (!more) return refuse(options.input, more.error());
-    if (!*more) break;
+    TACTUS_TRY(const bool more, next_frame(*reader, frame, options.input));
+    if (!more) break;
     report.ticks.add(frame.tick);
     if (!frame.meshes[index].updated) continue;
     const std::vector<float>& u = frame.meshes[index].displacements;

@@ -97,11 +97,11 @@ tl::expected<void, Diagnostic> RosSurvey::check() const {
   });
   if (first_fault_ && (options_.strict || !any)) {
     const RosFault fault = first_fault_->fault;
-    return tl::unexpected(
-        Diagnostic{.error = fail(class_of(fault), rule_of(fault)).value(),
-                   .detail = place_of(first_fault_->source) + ", " + text_of_time(first_fault_->log) + ": " + text_of(fault),
-                   .remedy = options_.strict ? "Without --strict such samples count as missing."
-                                             : "No sample of the recording can be used: check what wrote it."});
+    return tl::unexpected(Diagnostic{.error = fail(class_of(fault), rule_of(fault)).value(),
+                                     .detail = place_of(first_fault_->source) + ", " + text_of_time(first_fault_->log),
+                                     .cause = text_of(fault),
+                                     .remedy = options_.strict ? "Without --strict such samples count as missing."
+                                                               : "No sample of the recording can be used: check what wrote it."});
   }
   return {};
 }
@@ -125,7 +125,7 @@ tl::expected<void, Diagnostic> RosSurvey::end(const mcap::Reader& mcap) {
       detail += (detail.empty() ? "it has " : ", ") + counted(other.topics, "topic") + " of " + shown(other.type);
     if (detail.empty()) detail = "it has no messages of poses, transforms or forces";
     if (mcap.cut_short() && !first_fault_) return tl::unexpected(Diagnostic{.error = fail(Errc::truncated, "R-TRC-3").value()});
-    return tl::unexpected(Diagnostic{.error = fail(Errc::unsupported, "R-TRC-16").value(), .detail = detail});
+    return tl::unexpected(Diagnostic{.error = fail(Errc::unsupported, "R-TRC-16").value(), .cause = detail});
   }
   moving_.assign(sources.size(), false);
   for (std::size_t i = 0; i < sources.size(); ++i) {

@@ -35,13 +35,15 @@
 /// rule      class             broken when
 /// R-TRC-1   io                the operating system refuses to open, read or write the file; errno tells why
 /// R-TRC-2   malformed         MCAP's magic bytes are not at the front, or not at the very end behind a footer
+///           unsupported       the file is of another known kind, or a folder holds no bag of MCAP files
 /// R-TRC-3   truncated         the file ends before the header, the channels that its metadata announces, or any pose,
 ///                             or the first tick of a recording with meshes
 /// R-TRC-4   malformed         a length inside a record reaches past the record's end
 /// R-TRC-5   limit_exceeded    a record, a chunk or all declarations are larger than accepted
 /// R-TRC-6   checksum          a CRC-32 does not match
-/// R-TRC-7   unsupported       compression, message encoding or format version that this reader does not know
-/// R-TRC-8   malformed         a chunk's records are no zstd data of exactly the announced size
+/// R-TRC-7   unsupported       compression, message encoding (ROS 1, protobuf, JSON) or version that this reader does not know
+/// R-TRC-8   malformed         a chunk's records or a compressed message are no zstd or LZ4 data of exactly the announced size, or a
+///                             compressed file is damaged
 /// R-TRC-9   malformed         a record or the summary stands where it must not
 ///           invalid           the footer points elsewhere than to the summary
 /// R-TRC-10  invalid           a schema or channel is used undeclared or declared twice with a difference
@@ -112,6 +114,12 @@ enum class RosStamps : std::uint8_t {
   log,
 };
 
+/// A topic of a file, and how many of its messages were read.
+struct TraceTopic {
+  std::string topic, type;
+  std::uint64_t messages = 0;
+};
+
 /// How a recording of another program is read. Our own traces leave nothing to choose.
 struct ReadOptions {
   std::vector<std::string>
@@ -121,6 +129,8 @@ struct ReadOptions {
   double gap = 0;                   ///< [s] longest time to interpolate over; 0: see TraceReader
   std::uint32_t tick_rate = 0;      ///< 1 .. 1000000; 0: follows from the recording
   RosStamps stamps = RosStamps::automatic;
+  OnDamage on_damage = OnDamage::refuse;  ///< also of our own traces
+  ReadWatcher* watcher = nullptr;         ///< of the look at a foreign recording that open() takes; may be null
 };
 
 /// Reads a trace front to back, one frame at a time, in memory bounded by a chunk. Foreign ROS 2 recordings are read too. What is decided
@@ -156,15 +166,17 @@ struct ReadOptions {
 /// samples are; topics and frames that begin later are left out.
 class TraceReader {
  public:
-  /// path "-" is standard input.   err  io R-TRC-1; malformed, truncated, invalid, unsupported, checksum, limit_exceeded: R-TRC-n,
-  ///      R-SRF-n
+  /// in   path  a file, a bag's folder or its metadata.yaml; "-" is standard input. zstd and LZ4 files are unpacked on the way
+  /// err  io R-TRC-1; malformed, truncated, invalid, unsupported, checksum, limit_exceeded: R-TRC-n, R-SRF-n
   static Result<TraceReader> open(const std::string& path);
-  /// The same, where an error says which topic, when and what.
+  /// The same, where an error says what is wrong, where, and what mends it.
   static tl::expected<TraceReader, Diagnostic> open(const std::string& path, const ReadOptions& options);
   /// The same from memory that outlives the reader.
   static Result<TraceReader> open_memory(std::span<const std::uint8_t> bytes);
-  /// What was decided about a foreign recording; complete once next() has returned false.
-  const std::vector<ReadNote>& notes() const noexcept;
+  /// What was decided about the files of a folder and about a foreign recording; complete once next() has returned false.
+  std::vector<ReadNote> notes() const;
+  /// What OnDamage::skip left out so far.
+  const std::vector<ReadLoss>& losses() const noexcept;
   /// The last error of next(), with what is known beyond its rule.
   Diagnostic explain(const Error& error) const;
   const TraceInfo& info() const noexcept;
@@ -173,6 +185,14 @@ class TraceReader {
   /// Read the next frame into `frame`; false at the end. Pass the frame of the previous call: its vectors are reused, and a shape
   /// that is not new stays in it. Do not use the reader after an error.
   Result<bool> next(TraceFrame& frame);
+  /// All that the file declares, and what was read of it so far.
+  std::vector<TraceTopic> topics() const;
+  /// Bytes of the files that were read, and of all; none for a pipe.
+  struct Bytes {
+    std::uint64_t read = 0;
+    std::optional<std::uint64_t> all{};
+  };
+  Bytes bytes() const;
   /// True if the file ends early (crash, truncation); everything up to its last whole chunk was delivered. Valid once next() has
   /// returned false.
   bool cut_short() const noexcept;
