@@ -13,7 +13,6 @@
 #include <tactus/trace/differences.h>
 #include <tactus/trace/interpolation.h>
 #include <tactus/trace/messages.h>
-#include <tactus/trace/resampler.h>
 
 namespace tactus {
 namespace {

@@ -22,13 +22,6 @@ std::string_view path_of(std::string_view topic) noexcept {
   return slash == std::string_view::npos ? std::string_view() : topic.substr(0, slash);
 }
 
-std::array<double, 7> values(const Pose& p) noexcept {
-  return {p.position.x, p.position.y, p.position.z, p.rotation.w, p.rotation.x, p.rotation.y, p.rotation.z};
-}
-std::array<double, 7> values(const Twist& t) noexcept {
-  return {t.linear.x, t.linear.y, t.linear.z, t.angular.x, t.angular.y, t.angular.z, 0};
-}
-
 bool holds(const std::vector<std::string>& list, const std::string& topic) {
   return std::ranges::any_of(list, [&](const std::string& one) { return one == topic || "/" + one == topic; });
 }
@@ -131,9 +124,9 @@ void RosSamples::take_item(const ChannelUse& use, const std::string& topic, cons
     return;
   }
   sample.source = *source;
-  if (use.type == RosType::twist) sample.value = values(item.twist);
-  else if (use.type == RosType::wrench) sample.value = {item.force.x, item.force.y, item.force.z};
-  else sample.value = values(item.pose);
+  if (use.type == RosType::twist) sample.value = {{}, item.twist.linear, item.twist.angular};
+  else if (use.type == RosType::wrench) sample.value.pose.position = item.force;
+  else sample.value.pose = item.pose;
   waiting_.push_back(sample);
 }
 
@@ -146,13 +139,13 @@ void RosSamples::take_odometry(const ChannelUse& use, const std::string& topic, 
   sample.source = *use.main;
   sample.fault = item.fault;
   sample.ignored = item.ignored;
-  sample.value = values(item.pose);
+  sample.value.pose = item.pose;
   waiting_.push_back(sample);
   sample.source = *use.twist;
   sample.frame = number_of(item.child);
   sample.ignored = false;
   sample.fault = item.twist_fault;
-  sample.value = values(item.twist);
+  sample.value = {{}, item.twist.linear, item.twist.angular};
   waiting_.push_back(sample);
 }
 

@@ -3,7 +3,6 @@
 /// another one. Internal to the library.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include <tactus/base/result.h>
+#include <tactus/rigid/rigid_state.h>
 #include <tactus/trace/mcap_reader.h>
 #include <tactus/trace/ros_messages.h>
 
@@ -26,11 +26,7 @@ struct RosSample {
   std::uint64_t time = 0;            ///< [ns] by the clock that was chosen (RosClock)
   RosFault fault = RosFault::none;
   bool ignored = false;
-  std::array<double, 7> value{};  ///< position and rotation w x y z; linear and angular velocity; force
-
-  Pose pose() const noexcept { return {{value[0], value[1], value[2]}, {value[3], value[4], value[5], value[6]}}; }
-  Twist twist() const noexcept { return {{value[0], value[1], value[2]}, {value[3], value[4], value[5]}}; }
-  Vec3 force() const noexcept { return {value[0], value[1], value[2]}; }
+  RigidSample value{};  ///< of a pose or link its pose, of a twist its velocities, of a force its position is the force
 };
 
 struct RosSource {

@@ -128,7 +128,8 @@ struct ReadOptions {
 ///
 /// What becomes what
 ///   PoseStamped, Odometry          each topic is an object; its motion is the odometry's, or the TwistStamped topic beside it (same path
-///                                  except for the last part), else differences of its poses over two ticks
+///                                  except for the last part), else that of its poses: at a sample from the one before to the one after,
+///                                  between samples on the line between their velocities
 ///   TransformStamped, TFMessage    each frame that hangs on another one is an object; /r1/tf is a tree of its own, whose frame `base` is
 ///                                  the object r1.base
 ///   WrenchStamped                  each topic is a user who feels the force, where its frame is, or the one object of a topic beside it
@@ -146,8 +147,9 @@ struct ReadOptions {
 /// Between samples
 ///   At each tick poses, transforms, forces and twists follow a line and the shorter arc between the samples around it, if these are not
 ///   farther apart than the gap: 3 times the median gap of the source, at least 0.1 s and at most 10 s. Over longer gaps, and after its
-///   last sample, a source rests; before its first, an object stands at its first pose and a force is 0. Ticks at which nothing is recorded
-///   by any source are left out. Of samples with the same time the last counts.
+///   last sample, an object rests, and a force is held for as long as the gap and then 0; before its first sample, an object stands at its
+///   first pose and a force is 0. Ticks at which nothing is recorded by any source are left out. Of samples with the same time the last
+///   counts.
 /// Missing samples
 ///   A message that is not of its type, a number that is NaN, infinite or beyond 1e15, a rotation whose length is off 1 by more than 2 %:
 ///   such a sample counts as missing.

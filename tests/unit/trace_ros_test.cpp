@@ -375,6 +375,31 @@ TEST(TraceRos, StampsAreTheClockWhereLogTimesComeInBursts) {
   for (const TraceFrame& frame : reading.frames) expect_near(frame.objects[0].velocity, {1, 0, 0}, 1e-6);
 }
 
+/// A frame of 25 Hz that turns and carries a hand, beside forces of 1 kHz: at each tick all move as they are told between samples.
+TEST(TraceRos, WhatComesSeldomMovesSmoothly) {
+  RosBag bag;
+  const auto angle = [](double t) { return 0.5 * std::sin(2 * t); };
+  for (int i = 0; i <= 1000; ++i) {
+    bag.force(i, "sensor", {0, 0, 1});
+    if (i % 40 != 0) continue;
+    const double t = 0.001 * i;
+    bag.tf(i, {{"map", "arm", {{0.3 * std::sin(3 * t), 0, 0}, about_z(angle(t))}}});
+    bag.add(i, "/tool/pose", schema_name(MessageType::pose), pose_in("arm", {{0.4, 0, 0}, {}}));
+  }
+  auto reader = bag.open();
+  ASSERT_TRUE(reader);
+  EXPECT_EQ(reader->info().tick_rate, 1000u);
+  const Reading reading = read_all(std::move(reader));
+  ASSERT_EQ(reading.frames.size(), 1001u);
+  for (std::size_t i = 40; i <= 960; ++i) {
+    const double t = 0.001 * static_cast<double>(i), a = angle(t), w = std::cos(2 * t);
+    const auto& objects = reading.frames[i].objects;  // the tool, the arm
+    expect_near(objects[1].angular_velocity, {0, 0, w}, 2e-3);
+    expect_near(objects[1].velocity, {0.9 * std::cos(3 * t), 0, 0}, 5e-3);
+    expect_near(objects[0].velocity, {0.9 * std::cos(3 * t) - 0.4 * w * std::sin(a), 0.4 * w * std::cos(a), 0}, 6e-3);
+  }
+}
+
 TEST(TraceRos, ABadSampleIsMissing) {
   RosBag bag;
   for (int i = 0; i < 20; ++i)
