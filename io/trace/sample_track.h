@@ -3,8 +3,9 @@
 /// and arrays. Internal to the library.
 ///
 /// Between two samples that are not farther apart than the gap, values follow a line and rotations the shorter arc. Elsewhere the value is
-/// that of the nearest sample, without velocity: before the first, after the last, and between two that are too far apart at the one before.
-/// Of samples with the same time the last counts.
+/// that of the first sample ahead of it, of the last one behind it, and between two that are too far apart that of the one before, without
+/// velocity. What has no place to rest at, as a force, is 0 where no such sample is within the gap. Of samples with the same time the last
+/// counts.
 #pragma once
 
 #include <algorithm>
@@ -57,6 +58,11 @@ class SampleTrack {
 
   Place place() const noexcept { return place_; }
   bool is_known() const noexcept { return place_ == Place::on || place_ == Place::between; }
+  /// The value is that of a sample at another time, no farther away than the gap.
+  bool is_held() const noexcept {
+    const bool is_beside = place_ == Place::before || place_ == Place::after;
+    return is_beside && std::abs(since(time_, samples_[at_].at)) <= limits_.gap;
+  }
   /// A sample is so near, or two are around.
   bool is_near(double most) const noexcept;
   /// Distance of the two samples around.   pre  place() is between
@@ -64,12 +70,15 @@ class SampleTrack {
   std::uint32_t frame() const noexcept { return samples_[at_].frame; }
   /// pre  place() is not nowhere
   RigidSample value() const noexcept;
+  /// Of what is 0 where nothing is known.
+  Vec3 vector() const noexcept { return is_known() || is_held() ? value().pose.position : Vec3{}; }
   /// With velocities that follow from the poses: at a sample over the two beside it, between samples on the line between theirs. So a
   /// quantity that comes more seldom than ticks has velocities as smooth as its motion, not the steps of its chords.
   /// in  seconds  of a unit of time
   RigidSample moving(double seconds) noexcept;
 
   const Sample* next() const noexcept;  ///< behind the time
+  bool is_empty() const noexcept { return samples_.empty(); }
   const Sample* newest() const noexcept { return samples_.empty() ? nullptr : &samples_.back(); }
   /// Nothing that comes later changes what is said at `time`, if it lies behind `known`.
   bool is_settled(const Time& time, const Time& known) const noexcept;
