@@ -20,6 +20,8 @@
 #include "cli/output.h"
 #include "cli/report/info.h"
 #include "cli/report/json.h"
+#include "cli/report/notes.h"
+#include "cli/report/report.h"
 #include "cli/report/table.h"
 #ifdef TACTUS_HAS_SIM
 #include <tactus/sim/scene/scene.h>
@@ -162,6 +164,34 @@ tl::expected<Json, Failure> channels_json(const InfoOptions& options) {
   return list;
 }
 
+/// Users who feel forces without any contact: of them a stream promises nothing.
+class UnboundForces {
+ public:
+  explicit UnboundForces(const TraceInfo& info) : info_(info), users_(info.users.size()) {}
+  void add(const TraceFrame& frame) {
+    for (std::size_t i = 0; i < users_.size(); ++i) {
+      const UserSample& user = frame.users[i];
+      users_[i].has_force = users_[i].has_force || norm(user.force) > 0 || norm(user.server_force) > 0;
+      users_[i].has_contact = users_[i].has_contact || user.contact.kind != ContactKind::none || user.surface_contact;
+    }
+  }
+  void tell(Json& out) const {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < users_.size(); ++i)
+      if (users_[i].has_force && !users_[i].has_contact) names.push_back(info_.users[i].name);
+    if (names.empty()) return;
+    out["users_without_force_bound"] = names;
+    out["force_bound"] = missing_force_bound(names);
+  }
+
+ private:
+  struct User {
+    bool has_force = false, has_contact = false;
+  };
+  const TraceInfo& info_;
+  std::vector<User> users_;
+};
+
 Outcome info_trace(const InfoOptions& options) {
   auto reader = open_trace(options.readable, options.input);
   if (!reader) return tl::unexpected(reader.error());
@@ -171,16 +201,20 @@ Outcome info_trace(const InfoOptions& options) {
   std::uint64_t frames = 0;
   std::int64_t first = 0;
   std::vector<std::uint64_t> shapes(trace.meshes.size());
+  UnboundForces unbound(trace);
   while (true) {
     const auto more = reader->next(frame);
     if (!more) return refuse(options.input, more.error());
     if (!*more) break;
     for (std::size_t i = 0; i < shapes.size(); ++i) shapes[i] += frame.meshes[i].updated ? 1U : 0U;
+    unbound.add(frame);
     if (frames++ == 0) first = frame.tick;
   }
   TACTUS_TRY(auto channels, channels_json(options));
   Value info = trace_info_value(trace, {frames, first, frame.tick, !reader->cut_short(), shapes});
   info.json["channels"] = std::move(channels);
+  unbound.tell(info.json);
+  if (const auto notes = texts_of(reader->notes()); !notes.empty()) info.json["notes"] = notes;
   print(info, "info", options.common);
   return check_ending(options.input, *reader, frames);
 }

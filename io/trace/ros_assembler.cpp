@@ -87,6 +87,7 @@ class RosAssembler final : public FrameAssembler {
   };
   Result<void> look(mcap::Reader& mcap, std::size_t most, bool keeps);
   std::vector<std::string> find_objects();
+  void take_twist(Object& object, std::uint32_t twist);
   void tell_unknown(const mcap::Reader& mcap, const std::vector<std::string>& left_out);
   void find_users();
   std::string free_name(std::string name, const std::string& of, std::set<std::string>& names);
@@ -149,7 +150,8 @@ tl::expected<void, Diagnostic> RosAssembler::start(mcap::Reader& mcap, mcap::Ite
   const auto& sources = samples_.sources();
   info_.tick_rate = survey_.tick_rate();
   for (std::uint32_t i = 0; i < sources.size(); ++i) {
-    tracks_.emplace_back(survey_.facts(i).first, survey_.moves(i), survey_.gap(i), 1'000'000'000 / info_.tick_rate);
+    tracks_.emplace_back(survey_.facts(i).first, survey_.moves(i), survey_.moves(i) ? survey_.gap(i) : 0,
+                         1'000'000'000 / info_.tick_rate);
   }
   frames_.emplace(samples_, tracks_, notes_);
   std::vector<std::string> left_out = find_objects();
@@ -199,14 +201,23 @@ std::vector<std::string> RosAssembler::find_objects() {
     if (sources[i].kind != Kind::twist || survey_.facts(i).samples == 0) continue;
     if (sources[i].is_odometry) {
       for (Object& object : objects_)
-        if (sources[object.source].kind == Kind::pose && sources[object.source].topic == sources[i].topic) object.twist = i;
+        if (sources[object.source].kind == Kind::pose && sources[object.source].topic == sources[i].topic) take_twist(object, i);
     } else if (const auto found = by_path.find(path_of(sources[i].topic)); found != by_path.end()) {
-      objects_[found->second].twist = i;
+      take_twist(objects_[found->second], i);
     } else {
       notes_.add(sources[i].topic, "no topic of poses is beside it: this twist is ignored");
     }
   }
   return left_out;
+}
+
+/// Many programs leave velocities at 0 that they do not know.
+void RosAssembler::take_twist(Object& object, std::uint32_t twist) {
+  constexpr double kMoved = 0.01, kTurned = 0.02;  // [m], [rad]
+  const SourceFacts& pose = survey_.facts(object.source);
+  const bool is_left_open = survey_.facts(twist).speed == 0 && (pose.moved > kMoved || pose.turned > kTurned);
+  if (!is_left_open) object.twist = twist;
+  else notes_.add(survey_.place_of(twist), "is 0 throughout, though the object moves: velocities follow from the poses");
 }
 
 /// A name that was typed wrong takes or leaves out nothing.
@@ -271,6 +282,7 @@ Result<bool> RosAssembler::take(mcap::Reader& mcap) {
       continue;
     }
     if (sample->fault != RosFault::none) continue;
+    sample->log = survey_.log_of(*sample);
     const std::int64_t added = samples_.sources()[sample->source].is_static ? 0 : survey_.steps().added_at(sample->ordinal);
     const auto time = survey_.clock().time_of(*sample, added);
     if (!time) {
@@ -279,7 +291,7 @@ Result<bool> RosAssembler::take(mcap::Reader& mcap) {
       continue;
     }
     sample->time = *time;
-    if (!survey_.moves(sample->source)) sample->time = std::min(sample->time, survey_.start());
+    if (!survey_.moves(sample->source)) sample->time = std::max(sample->time, released_);
     else newest_ = std::max(newest_, static_cast<std::uint64_t>(static_cast<std::int64_t>(sample->log) + added));
     order_.add(*sample);
     if (survey_.moves(sample->source) && newest_ > window_) order_.reach(newest_ - window_);
@@ -317,12 +329,14 @@ Result<bool> RosAssembler::next(mcap::Reader& mcap, TraceFrame& frame) {
 Result<bool> RosAssembler::skip(mcap::Reader& mcap, std::uint64_t time) {
   while (true) {
     std::optional<std::uint64_t> next;
-    for (const RosTrack& track : tracks_)
-      if (const auto own = track.moves() ? track.next_time() : std::nullopt; own && (!next || *own < *next)) next = own;
+    std::uint32_t source = 0;  // that goes on first
+    for (std::uint32_t i = 0; i < tracks_.size(); ++i)
+      if (const auto own = tracks_[i].moves() ? tracks_[i].next_time() : std::nullopt; own && (!next || *own < *next))
+        next = own, source = i;
     if (next) {
       const std::uint64_t since = *next - survey_.start();
       if (since / 1'000'000'000 >= static_cast<std::uint64_t>(kMaxSeconds) - 1) {
-        detail_ = "a sample is " + std::to_string(since / 1'000'000'000) + " s behind the first, more than a trace can hold";
+        detail_ = survey_.place_of(source) + ", at " + std::to_string(since / 1'000'000'000) + " s: more than a trace can hold";
         return fail(Errc::invalid, "R-TRC-15", 8 * mcap.offset());
       }
       tick_ = std::max(tick_ + 1, tick_of_time(since, info_.tick_rate));

@@ -11,7 +11,7 @@ constexpr double kNanosecond = 1e-9;  // [s]
 // ==== track ====
 
 RosTrack::RosTrack(const std::optional<RosSample>& first, bool moves, std::uint64_t gap, std::uint64_t tick)
-    : first_(first), track_({.gap = static_cast<double>(gap), .tick = static_cast<double>(tick)}), moves_(moves), gap_(gap) {}
+    : first_(first), track_({.gap = static_cast<double>(gap), .tick = static_cast<double>(tick)}), moves_(moves) {}
 
 void RosTrack::add(const RosSample& sample) { track_.add({static_cast<std::int64_t>(sample.time), sample.value, sample.frame}); }
 
@@ -25,11 +25,6 @@ std::optional<std::uint64_t> RosTrack::next_time() const noexcept {
 }
 
 RigidSample RosTrack::state() noexcept { return has_samples() ? track_.moving(kNanosecond) : first_->value; }
-
-Vec3 RosTrack::force() const noexcept {
-  const bool is_told = track_.is_known() || (track_.place() == Track::Place::after && track_.is_near(static_cast<double>(gap_)));
-  return is_told ? track_.value().pose.position : Vec3{};
-}
 
 Twist RosTrack::twist(std::uint64_t near) const noexcept {
   const bool is_told = track_.is_known() || (track_.place() == Track::Place::after && covers(near));

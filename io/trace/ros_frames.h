@@ -35,8 +35,7 @@ class RosTrack {
   std::uint32_t frame() const noexcept { return has_samples() ? track_.frame() : first_->frame; }
   /// Of a pose or link, as it moves; of a twist, as it was told.
   RigidSample state() noexcept;
-  /// Zero before the first sample, and from a gap behind the last one.
-  Vec3 force() const noexcept;
+  Vec3 force() const noexcept { return has_samples() ? track_.vector() : Vec3{}; }
   Twist twist(std::uint64_t near) const noexcept;
 
  private:
@@ -46,7 +45,6 @@ class RosTrack {
   std::optional<RosSample> first_;  // where it stands before
   Track track_;
   bool moves_;
-  std::uint64_t gap_;
 };
 
 /// What hangs on a frame that moves, in the world.

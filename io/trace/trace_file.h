@@ -146,10 +146,10 @@ struct ReadOptions {
 ///   Messages are sorted; a window holds back as much as the recording is out of order, at most 262144 samples.
 /// Between samples
 ///   At each tick poses, transforms, forces and twists follow a line and the shorter arc between the samples around it, if these are not
-///   farther apart than the gap: 3 times the median gap of the source, at least 0.1 s and at most 10 s. Over longer gaps, and after its
-///   last sample, an object rests, and a force is held for as long as the gap and then 0; before its first sample, an object stands at its
-///   first pose and a force is 0. Ticks at which nothing is recorded by any source are left out. Of samples with the same time the last
-///   counts.
+///   farther apart than the gap: 3 times the median gap of the source, at least 0.1 s and at most 10 s. Over longer gaps, ahead of its first
+///   sample and after its last, an object rests at the sample beside; a force is held for as long as the gap and is 0 beyond. A transform
+///   of /tf_static holds until it changes. Ticks at which nothing is recorded by any source are left out. Of samples with the same time the
+///   last counts; one with the stamp and the value of the sample before is left out as a copy.
 /// Missing samples
 ///   A message that is not of its type, a number that is NaN, infinite or beyond 1e15, a rotation whose length is off 1 by more than 2 %:
 ///   such a sample counts as missing.
