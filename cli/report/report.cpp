@@ -248,11 +248,11 @@ std::string missing_force_bound(const Report& r) {
   return missing_force_bound(r.fidelity->unbound_users());
 }
 
-std::string missing_force_bound(std::vector<std::string> users) {
+std::string missing_force_bound(std::vector<std::string> users, const std::string& declare) {
   if (users.empty()) return {};
   for (std::string& user : users) user = shown(user);
-  return fmt::format("No force bound: the recording has forces of user {} and no contacts; declare them with --contact.",
-                     fmt::join(users, ", "));
+  return fmt::format("No force bound: the recording has forces of user {} and no contacts; declare them with {}.",
+                     fmt::join(users, ", "), declare);
 }
 
 Outcome verdict(const Report& r, const std::string& file) {

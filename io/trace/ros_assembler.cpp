@@ -361,15 +361,16 @@ RigidSample RosAssembler::place(const Object& object) {
   if (source.kind == Kind::link) return frames_->of_link(object.source);
   RosTrack& track = tracks_[object.source];
   RigidSample placed = hung(frames_->at(source.space, track.frame()), track.state());
-  if (!object.twist || !tracks_[*object.twist].has_begun()) return placed;
+  if (!object.twist) return placed;
   const RosTrack& told = tracks_[*object.twist];
+  const auto twist = told.twist(500'000'000 / info_.tick_rate);
+  if (!twist) return placed;
   const std::uint32_t space = samples_.sources()[*object.twist].space;
   Quat turn = frames_->at(space, told.frame()).pose.rotation;
   const bool is_of_body = source.is_odometry && told.frame() != track.frame() && !samples_.link_of(space, told.frame());
   if (is_of_body) turn = placed.pose.rotation;
-  const Twist twist = told.twist(500'000'000 / info_.tick_rate);
-  placed.velocity = rotate(turn, twist.linear);
-  placed.angular_velocity = rotate(turn, twist.angular);
+  placed.velocity = rotate(turn, twist->linear);
+  placed.angular_velocity = rotate(turn, twist->angular);
   return placed;
 }
 

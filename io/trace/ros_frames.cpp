@@ -26,9 +26,11 @@ std::optional<std::uint64_t> RosTrack::next_time() const noexcept {
 
 RigidSample RosTrack::state() noexcept { return has_samples() ? track_.moving(kNanosecond) : first_->value; }
 
-Twist RosTrack::twist(std::uint64_t near) const noexcept {
+std::optional<Twist> RosTrack::twist(std::uint64_t near) const noexcept {
   const bool is_told = track_.is_known() || (track_.place() == Track::Place::after && covers(near));
-  return is_told ? Twist{track_.value().velocity, track_.value().angular_velocity} : Twist{};
+  if (!is_told) return std::nullopt;
+  const RigidSample told = track_.is_known() ? track_.value() : track_.last();
+  return Twist{told.velocity, told.angular_velocity};
 }
 
 // ==== frames ====

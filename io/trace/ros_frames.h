@@ -27,7 +27,6 @@ class RosTrack {
 
   bool is_known() const noexcept { return first_.has_value(); }
   bool moves() const noexcept { return moves_; }
-  bool has_begun() const noexcept { return has_samples() && track_.place() != Track::Place::before; }
   /// Something is recorded here: between two samples, or so near to one.
   bool covers(std::uint64_t near) const noexcept { return track_.is_near(static_cast<double>(near)); }
   std::optional<std::uint64_t> next_time() const noexcept;
@@ -36,7 +35,8 @@ class RosTrack {
   /// Of a pose or link, as it moves; of a twist, as it was told.
   RigidSample state() noexcept;
   Vec3 force() const noexcept { return has_samples() ? track_.vector() : Vec3{}; }
-  Twist twist(std::uint64_t near) const noexcept;
+  /// None where nothing is told.
+  std::optional<Twist> twist(std::uint64_t near) const noexcept;
 
  private:
   using Track = SampleTrack<std::int64_t>;

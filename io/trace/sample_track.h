@@ -70,6 +70,8 @@ class SampleTrack {
   std::uint32_t frame() const noexcept { return samples_[at_].frame; }
   /// pre  place() is not nowhere
   RigidSample value() const noexcept;
+  /// The sample before, as it was told, or the first.   pre  likewise
+  const RigidSample& last() const noexcept { return samples_[at_].value; }
   /// Of what is 0 where nothing is known.
   Vec3 vector() const noexcept { return is_known() || is_held() ? value().pose.position : Vec3{}; }
   /// With velocities that follow from the poses: at a sample over the two beside it, between samples on the line between theirs. So a

@@ -135,7 +135,7 @@ struct ReadOptions {
 ///   WrenchStamped                  each topic is a user who feels the force, where its frame is, or the one object of a topic beside it
 ///   One topic on several channels is one source. Torques and covariances are ignored; other types are not read.
 /// Frames
-///   What is told in a frame is turned and moved into the world: the frame that hangs on none. One leading slash of a name is dropped. The
+///   What is told in a frame is turned and moved into the world: the frame that hangs on none. Leading slashes of names are dropped. The
 ///   frames of a topic /r1/... are looked up in the tree of /r1/tf, then in the common one. An odometry's twist is told in child_frame_id:
 ///   that frame of the tree, else the frame of the pose. A frame that comes to hang on another one is followed from then on; a transform
 ///   that closes a loop is left out.

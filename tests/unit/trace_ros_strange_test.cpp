@@ -141,6 +141,20 @@ TEST(TraceRosStrange, AVelocityThatIsLeftAtZeroIsNone) {
   }
 }
 
+TEST(TraceRosStrange, WhereNoVelocityIsToldItFollowsFromThePoses) {
+  Bytes twist;
+  encode_twist(twist, 0, {{3, 0, 0}, {}});
+  RosBag bag;
+  for (int i = 0; i < 200; ++i) {
+    bag.add(10 * i, "/tool/pose", kPoseSchema, along_x(0.01 * i));
+    if (i >= 50 && i < 100) bag.add(10 * i, "/tool/speed", schema_name(MessageType::twist), twist);
+  }
+  const Reading reading = read_all(bag.open());
+  ASSERT_EQ(reading.frames.size(), 200u);
+  for (std::size_t i = 0; i < 200; ++i)
+    expect_near(reading.frames[i].objects[0].velocity, {i >= 50 && i < 100 ? 3.0 : 1.0, 0, 0}, 1e-6);
+}
+
 TEST(TraceRosStrange, PrefixesOfFramesAreFound) {
   RosBag bag;
   const Pose base{{1, 0, 0}, about_z(kPi / 2)};
@@ -228,7 +242,7 @@ TEST(TraceRosStrange, NamesWithBlanksAndNoNames) {
   RosBag bag;
   for (int i = 0; i < 10; ++i) {
     bag.tf(10 * i, {{"the world", "my base", {{0, 1, 0}, {}}}});
-    bag.add(10 * i, "/tool/pose", kPoseSchema, pose_in("my base", {{0.1, 0, 0}, {}}));
+    bag.add(10 * i, "/tool/pose", kPoseSchema, pose_in(i % 2 == 0 ? "my base" : "//my base", {{0.1, 0, 0}, {}}));
     bag.add(10 * i, "/robot/odom", kOdometrySchema, odometry({{0.01 * i, 0, 0}, {}}, {{1, 0, 0}, {}}));
   }
   const Reading reading = read_all(bag.open());
