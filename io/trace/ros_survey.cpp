@@ -79,7 +79,7 @@ void RosSurvey::settle(std::optional<std::uint64_t> next) {
   else if (last_log_ || next) is_stray = apart(last_log_ ? *last_log_ : *next, sample.log) > kOtherEpoch;
   own_log_[sample.source] = sample.log;
   if (is_stray && strays_.size() < kMostStrays) {
-    const std::uint64_t before = last_log_.value_or(*next), after = next.value_or(before);
+    const std::uint64_t before = last_log_ ? *last_log_ : *next, after = next ? *next : before;
     strays_[sample.ordinal] = std::min(before, after) + (std::max(before, after) - std::min(before, after)) / 2;
     for (RosSample& one : pending_) one.log = strays_[sample.ordinal];
   }
