@@ -186,6 +186,7 @@ Outcome run(const CompareOptions& options) {
     return refuse(shown_path(options.replica) + ": shares no tick with " + shown_path(options.truth),
                   "Decode with --like " + shown_path(options.truth) + ".");
   note_unmatched(truth, replica, report);
+  for (const Side* side : {&truth, &replica}) report.add(side->reader.notes());
   if (figure)
     TACTUS_CHECK(draw(options.plot,
                       Figure{"Error of " + std::filesystem::path(options.replica).filename().string(), figure->panels(report)},

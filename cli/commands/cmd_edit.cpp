@@ -12,6 +12,7 @@
 #include "cli/commands/commands.h"
 #include "cli/commands/input.h"
 #include "cli/options/units.h"
+#include "cli/report/notes.h"
 #include "cli/report/report.h"
 
 namespace tactus::cli {
@@ -50,7 +51,7 @@ Outcome copy(TraceReader& reader, TraceWriter& writer, const CutOptions& options
     if (!more) return check_ending(options.input, reader, read - 1);
     progress.update(read);
     if (frame.tick < from) continue;
-    if (frame.tick >= to) return {};
+    if (frame.tick >= to) return print_notes(reader.notes(), options.input), Outcome();
     if (!base) {
       base = options.rebase ? frame.tick : 0;
       begin_shapes(frame);
@@ -82,6 +83,7 @@ Outcome run(const CutOptions& options) {
   if (const auto finished = writer->finish(); !finished) return refuse(options.output, finished.error());
   TACTUS_CHECK(output.keep());
   report.describe(info);
+  report.add(reader->notes());
   print(report, options.common, beside(options.output));
   return {};
 }
@@ -226,6 +228,7 @@ Outcome run(const MergeOptions& options) {
   if (const auto finished = writer->finish(); !finished) return refuse(options.output, finished.error());
   TACTUS_CHECK(output.keep());
   report.describe(all);
+  for (const Part& part : parts) report.add(part.reader.notes());
   for (const Part& part : parts)
     if (part.unmatched > 0)
       report.warnings.push_back(
@@ -309,6 +312,7 @@ Outcome run(const ResampleOptions& options) {
   if (const auto finished = writer->finish(); !finished) return refuse(options.output, finished.error());
   TACTUS_CHECK(output.keep());
   report.describe(resampler.info());
+  report.add(reader->notes());
   print(report, options.common, beside(options.output));
   return {};
 }

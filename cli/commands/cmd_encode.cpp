@@ -185,6 +185,7 @@ Outcome run(const EncodeOptions& options) {
   for (MeshReport& mesh : report.meshes) mesh.promised = options.meshes.is_main();
   TACTUS_CHECK(encode_all(*reader, *session, frame, contacts, options, report));
   TACTUS_CHECK(check_ending(options.input, *reader, report.ticks.count()));
+  report.add(reader->notes());
   if (reader->cut_short())
     report.warnings.emplace_back("the trace ends without its index; everything before the cut was encoded");
   TACTUS_CHECK(output.keep());

@@ -2,7 +2,6 @@
 #include <tactus/trace/trace_file.h>
 #include "cli/commands/commands.h"
 #include "cli/commands/input.h"
-#include "cli/report/notes.h"
 #include "cli/report/report.h"
 
 namespace tactus::cli {
@@ -39,7 +38,7 @@ Outcome run(const ImportRosOptions& options) {
   TACTUS_CHECK(check_ending(options.input, reader, report.ticks.count()));
   if (const auto finished = writer->finish(); !finished) return refuse(options.output, finished.error());
   report.describe(reader.info());
-  for (const ReadNote& note : reader.notes()) report.warnings.push_back(text_of(note));
+  report.add(reader.notes());
   TACTUS_CHECK(output.keep());
   print(report, options.common, beside(options.output));
   return {};

@@ -20,6 +20,8 @@
 #include "cli/progress.h"
 #include "cli/report/info.h"
 #include "cli/report/json.h"
+#include "cli/report/notes.h"
+#include "cli/report/report.h"
 #include "cli/report/table.h"
 #ifdef TACTUS_HAS_SIM
 #include <tactus/sim/scene/scene.h>
@@ -145,6 +147,34 @@ Json topics_json(const std::vector<TraceTopic>& topics) {
   return list;
 }
 
+/// Users who feel forces without any contact: of them a stream promises nothing.
+class UnboundForces {
+ public:
+  explicit UnboundForces(const TraceInfo& info) : info_(info), users_(info.users.size()) {}
+  void add(const TraceFrame& frame) {
+    for (std::size_t i = 0; i < users_.size(); ++i) {
+      const UserSample& user = frame.users[i];
+      users_[i].has_force = users_[i].has_force || norm(user.force) > 0 || norm(user.server_force) > 0;
+      users_[i].has_contact = users_[i].has_contact || user.contact.kind != ContactKind::none || user.surface_contact;
+    }
+  }
+  void tell(Json& out) const {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < users_.size(); ++i)
+      if (users_[i].has_force && !users_[i].has_contact) names.push_back(info_.users[i].name);
+    if (names.empty()) return;
+    out["users_without_force_bound"] = names;
+    out["force_bound"] = missing_force_bound(names, "`tactus encode --contact`");
+  }
+
+ private:
+  struct User {
+    bool has_force = false, has_contact = false;
+  };
+  const TraceInfo& info_;
+  std::vector<User> users_;
+};
+
 /// Ticks of a trace.
 struct TickTotals {
   std::uint64_t frames = 0;
@@ -152,7 +182,7 @@ struct TickTotals {
   std::vector<std::uint64_t> shapes;  ///< new ones, of each mesh
 };
 
-tl::expected<TickTotals, Failure> read_ticks(TraceReader& reader, const InfoOptions& options) {
+tl::expected<TickTotals, Failure> read_ticks(TraceReader& reader, const InfoOptions& options, UnboundForces& unbound) {
   constexpr std::uint64_t kFramesBetween = 256;  // two looks at the bytes read
   Progress progress("info", reader.bytes().all, Visibility::shown);
   TickTotals totals{.shapes = std::vector<std::uint64_t>(reader.info().meshes.size())};
@@ -161,6 +191,7 @@ tl::expected<TickTotals, Failure> read_ticks(TraceReader& reader, const InfoOpti
     if (totals.frames % kFramesBetween == 0) progress.update(reader.bytes().read);
     TACTUS_TRY(const bool more, next_frame(reader, frame, options.input));
     if (!more) return totals;
+    unbound.add(frame);
     for (std::size_t i = 0; i < totals.shapes.size(); ++i) totals.shapes[i] += frame.meshes[i].updated ? 1U : 0U;
     if (totals.frames++ == 0) totals.first = frame.tick;
     totals.last = frame.tick;
@@ -172,9 +203,12 @@ Outcome info_trace(const InfoOptions& options) {
   if (!reader) return tl::unexpected(reader.error());
   const TraceInfo& trace = reader->info();
   note_idle_options(*options.common.command, subjects_of(trace), "trace");
-  TACTUS_TRY(const TickTotals ticks, read_ticks(*reader, options));
+  UnboundForces unbound(trace);
+  TACTUS_TRY(const TickTotals ticks, read_ticks(*reader, options, unbound));
   Value info = trace_info_value(trace, {ticks.frames, ticks.first, ticks.last, !reader->cut_short(), ticks.shapes});
   info.json["channels"] = topics_json(reader->topics());
+  unbound.tell(info.json);
+  if (const auto notes = texts_of(reader->notes()); !notes.empty()) info.json["notes"] = notes;
   print(info, "info", options.common);
   return check_ending(options.input, *reader, ticks.frames);
 }

@@ -92,7 +92,7 @@ Outcome fill_surface(const MeshOptions& options, TetMeshReport& report) {
   if (!file) return refuse(file.error());
   Report told;
   tell(file->notes.all(), options.input, told);
-  report.warnings = std::move(told.warnings);
+  report.warnings = std::move(told.notes);
   if (file->dropped_faces > 0) report.notes.emplace_back("dropped_faces", file->dropped_faces);
   if (file->polygons > 0) report.notes.emplace_back("cut_polygons", file->polygons);
   if (file->unused_vertices > 0) report.notes.emplace_back("unused_vertices", file->unused_vertices);

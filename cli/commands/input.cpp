@@ -88,11 +88,8 @@ void warn_cut_stream(const std::string& path, const Error& error) {
 }
 
 Outcome check_ending(const std::string& path, const TraceReader& reader, std::uint64_t frames) {
-  if (!reader.notes().empty()) {
-    std::fflush(stdout);
-    Report unused;
-    tell(reader.notes(), path, unused);
-  }
+  if (!reader.notes().empty()) std::fflush(stdout);
+  print_notes(reader.notes(), path);
   if (!reader.cut_short()) return {};
   if (frames == 0) {
     return refuse(shown_path(path) + ": the trace was cut before the end of its first chunk; no tick of it can be read",

@@ -2,8 +2,9 @@
 /// A trace from arrays: samples of objects and users at the same times, evenly spaced or not.
 ///
 /// Ticks lie on a grid of the tick rate. Rows that lie on it are taken as they are; between others positions and forces follow a straight
-/// line and rotations an arc. A sample with a value that is not finite, or a rotation of length 0, is missing: it is interpolated where
-/// its neighbours are at most `gap` apart, else the last one is held. No ticks are made between rows that are farther apart than that.
+/// line and rotations an arc. A sample with a value that is not finite, or a rotation whose length is off 1 by more than 2 %, is missing: it
+/// is interpolated where its neighbours are at most `gap` apart, else the last one is held, a force no longer than `gap` and a velocity not
+/// at all: then they are 0. No ticks are made between rows that are farther apart than that.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +22,7 @@ namespace tactus {
 struct SampledObject {
   std::string name;
   std::span<const double> position{};          ///< T x 3 [m] world
-  std::span<const double> rotation{};          ///< T x 4, w x y z, of any length; empty: it does not turn
+  std::span<const double> rotation{};          ///< T x 4, w x y z; empty: it does not turn
   std::span<const double> velocity{};          ///< T x 3 [m/s]; empty: backward differences
   std::span<const double> angular_velocity{};  ///< T x 3 [rad/s] world; empty: likewise
 };

@@ -13,7 +13,6 @@
 #include <tactus/trace/differences.h>
 #include <tactus/trace/interpolation.h>
 #include <tactus/trace/messages.h>
-#include <tactus/trace/resampler.h>
 
 namespace tactus {
 namespace {
@@ -202,19 +201,19 @@ CsvResult<void> CsvTimeline::start() {
   TACTUS_CHECK(find_rate());
   const double rate = plan_.info.tick_rate;
   gap_ = mapping_.gap > 0 ? mapping_.gap * rate : std::max(kDefaultGap * rate, kGapPeriods);
+  std::size_t subjects = 1;
   if (plan_.object) {
     const std::vector<std::string>& names = long_objects_.empty() ? rows_.objects() : long_objects_;
     const TraceInfo one = plan_.info;
     plan_.info.objects.clear();
     plan_.info.users.clear();
+    subjects = names.size();
     for (const std::string& name : names) {
       for (TraceObject object : one.objects) object.name = name, plan_.info.objects.push_back(object);
       for (TraceUser user : one.users) user.name = name, plan_.info.users.push_back(user);
     }
-    channels_.resize(names.size() * plan_.channels.size());
-  } else {
-    channels_.resize(plan_.channels.size());
   }
+  channels_.assign(subjects * plan_.channels.size(), SampleTrack<Instant>({.gap = gap_, .same = kSame, .tick = 1}));
   auto writer = TraceWriter::create(out_path_, plan_.info);
   if (!writer) return tl::unexpected(Diagnostic{.error = writer.error(), .line = 1});
   writer_ = std::move(*writer);
@@ -276,9 +275,7 @@ CsvResult<void> CsvTimeline::place(CsvRow row) {
     if (value.channel >= channels_.size())
       return tl::unexpected(mistake(Errc::malformed, "R-CSV-2", row.line, "an object that the first rows lack",
                                     "Give the table as a file, not by a pipe."));
-    auto& queue = channels_[value.channel];
-    if (!queue.empty() && at.since(queue.back().at) < kSame) queue.back() = {at, value.sample};
-    else queue.push_back({at, value.sample});
+    channels_[value.channel].add({at, value.sample});
   }
   return emit(false);
 }
@@ -315,8 +312,9 @@ bool CsvTimeline::is_ready(std::int64_t tick) const {
   const Instant at{tick, 0};
   if (now_.since(at) < kSame) return false;
   if (now_.since(at) > gap_) return true;
-  return std::ranges::all_of(channels_, [&](const auto& queue) {
-    return !queue.empty() && (queue.back().at.since(at) > -kSame || now_.since(queue.back().at) > gap_);
+  return std::ranges::all_of(channels_, [&](const SampleTrack<Instant>& track) {
+    const auto* newest = track.newest();
+    return newest != nullptr && (newest->at.since(at) > -kSame || now_.since(newest->at) > gap_);
   });
 }
 
@@ -331,27 +329,17 @@ CsvResult<void> CsvTimeline::emit(bool is_end) {
 
 /// out  false: the channel has no sample within the gap; then `out` is the nearest one, if there is any
 bool CsvTimeline::sample_at(std::size_t channel, std::int64_t tick, RigidSample& out) {
-  auto& queue = channels_[channel];
-  const Instant at{tick, 0};
-  while (queue.size() > 1 && queue[1].at.since(at) < kSame) queue.pop_front();
-  if (queue.empty()) return false;
-  const Sample& a = queue.front();
-  out = a.value;
-  const double since = at.since(a.at);
-  if (std::abs(since) < kSame) return true;
-  if (since < 0 || queue.size() == 1) {
-    const bool is_border = since < 0 || ended_;  // else the next sample is too far away
-    if (!is_border || std::abs(since) > gap_) return false;
-    out.velocity = out.angular_velocity = {};
-    ++made_;
-    return true;
-  }
-  const double apart = queue[1].at.since(a.at);
-  if (apart > gap_ + kSame) return false;
-  out = mixed(a.value, queue[1].value, since / apart);
-  largest_gap_ = std::max(largest_gap_, apart);
-  ++made_;
-  return true;
+  SampleTrack<Instant>& track = channels_[channel];
+  track.move_to({tick, 0});
+  if (track.is_empty()) return false;
+  out = track.value();
+  using Place = SampleTrack<Instant>::Place;
+  if (track.place() == Place::on) return true;
+  if (track.place() == Place::between) largest_gap_ = std::max(largest_gap_, track.span());
+  const bool is_border = track.place() == Place::before || (ended_ && track.next() == nullptr);  // else the next is too far away
+  const bool is_known = track.is_known() || (is_border && track.is_held());
+  made_ += is_known;
+  return is_known;
 }
 
 CsvResult<void> CsvTimeline::write(std::int64_t tick) {
@@ -365,14 +353,13 @@ CsvResult<void> CsvTimeline::write(std::int64_t tick) {
     RigidSample sample;
     const bool is_known = sample_at(i, tick, sample);
     known += is_known;
-    if (!is_known && !channels_[i].empty()) sample.velocity = sample.angular_velocity = {};
     if (plan.kind == CsvChannel::Kind::object) {
-      if (is_known || !channels_[i].empty() || begins_) frame_.objects[index] = sample;
+      if (!channels_[i].is_empty() || begins_) frame_.objects[index] = sample;
       continue;
     }
     UserSample& user = frame_.users[index];
-    if (plan.kind == CsvChannel::Kind::force) user.force = user.server_force = is_known ? sample.pose.position : Vec3{};
-    else if (is_known || !channels_[i].empty()) user.device.position = user.contact.device = sample.pose.position;
+    if (plan.kind == CsvChannel::Kind::force) user.force = user.server_force = channels_[i].vector();
+    else if (!channels_[i].is_empty()) user.device.position = user.contact.device = sample.pose.position;
   }
   if (known == 0) return ++left_out_, CsvResult<void>();
   rested_ += channels_.size() - known;

@@ -13,6 +13,7 @@
 
 #include <tactus/trace/csv_rows.h>
 #include <tactus/trace/input_budget.h>
+#include <tactus/trace/sample_track.h>
 
 namespace tactus {
 
@@ -29,10 +30,7 @@ class CsvTimeline {
     std::int64_t tick = 0;
     double off = 0;  // -0.5 .. 0.5
     double since(const Instant& other) const noexcept { return static_cast<double>(tick - other.tick) + (off - other.off); }
-  };
-  struct Sample {
-    Instant at;
-    RigidSample value;
+    friend double since(const Instant& time, const Instant& other) noexcept { return time.since(other); }
   };
 
   CsvResult<void> release();
@@ -66,7 +64,7 @@ class CsvTimeline {
   std::int64_t segment_time_ = 0, base_ = 0, shift_ = 0, next_tick_ = 0, row_number_ = 0;
   double gap_ = 0;  // [ticks]
   Instant now_;     // of the newest row
-  std::vector<std::deque<Sample>> channels_;
+  std::vector<SampleTrack<Instant>> channels_;
   std::deque<std::int64_t> ticks_;  // asked for, of this segment
   TraceFrame frame_, before_;
   InputBudget budget_;

@@ -138,13 +138,14 @@ struct ReadOptions {
 ///
 /// What becomes what
 ///   PoseStamped, Odometry          each topic is an object; its motion is the odometry's, or the TwistStamped topic beside it (same path
-///                                  except for the last part), else differences of its poses over two ticks
+///                                  except for the last part), else that of its poses: at a sample from the one before to the one after,
+///                                  between samples on the line between their velocities
 ///   TransformStamped, TFMessage    each frame that hangs on another one is an object; /r1/tf is a tree of its own, whose frame `base` is
 ///                                  the object r1.base
 ///   WrenchStamped                  each topic is a user who feels the force, where its frame is, or the one object of a topic beside it
 ///   One topic on several channels is one source. Torques and covariances are ignored; other types are not read.
 /// Frames
-///   What is told in a frame is turned and moved into the world: the frame that hangs on none. One leading slash of a name is dropped. The
+///   What is told in a frame is turned and moved into the world: the frame that hangs on none. Leading slashes of names are dropped. The
 ///   frames of a topic /r1/... are looked up in the tree of /r1/tf, then in the common one. An odometry's twist is told in child_frame_id:
 ///   that frame of the tree, else the frame of the pose. A frame that comes to hang on another one is followed from then on; a transform
 ///   that closes a loop is left out.
@@ -155,9 +156,10 @@ struct ReadOptions {
 ///   Messages are sorted; a window holds back as much as the recording is out of order, at most 262144 samples.
 /// Between samples
 ///   At each tick poses, transforms, forces and twists follow a line and the shorter arc between the samples around it, if these are not
-///   farther apart than the gap: 3 times the median gap of the source, at least 0.1 s and at most 10 s. Over longer gaps, and after its
-///   last sample, a source rests; before its first, an object stands at its first pose and a force is 0. Ticks at which nothing is recorded
-///   by any source are left out. Of samples with the same time the last counts.
+///   farther apart than the gap: 3 times the median gap of the source, at least 0.1 s and at most 10 s. Over longer gaps, ahead of its first
+///   sample and after its last, an object rests at the sample beside; a force is held for as long as the gap and is 0 beyond. A transform
+///   of /tf_static holds until it changes. Ticks at which nothing is recorded by any source are left out. Of samples with the same time the
+///   last counts; one with the stamp and the value of the sample before is left out as a copy.
 /// Missing samples
 ///   A message that is not of its type, a number that is NaN, infinite or beyond 1e15, a rotation whose length is off 1 by more than 2 %:
 ///   such a sample counts as missing.
