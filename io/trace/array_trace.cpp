@@ -55,6 +55,7 @@ class ArrayWriter {
   void note_missing(const Lane& lane);
   void note_mended(const Lane& lane);
   Result<void> find_rate();
+  Result<void> take_contacts();
   double off_grid(double rate) const;
   double time_of(std::size_t row) const { return static_cast<double>(arrays_.time[rows_[row]] - start_) / kSecond; }
   bool is_pause(double time);
@@ -72,6 +73,7 @@ class ArrayWriter {
   bool is_on_grid_ = false;
   std::vector<Lane> lanes_;  // of objects, then users: those that are there, in the order of the fields
   std::size_t last_row_ = 0;
+  ContactDeclarations contacts_;
 };
 
 Result<void> ArrayWriter::take_times() {
@@ -265,8 +267,10 @@ void ArrayWriter::make(double time, TraceFrame& frame) {
     UserSample& out = frame.users[i];
     if (!arrays_.users[i].device.empty()) out.device.position = vector_at(lanes_[lane++], time);
     if (!arrays_.users[i].force.empty()) out.force = out.server_force = vector_at(lanes_[lane++], time);
+    out.contact = {};
     out.contact.device = out.device.position;
   }
+  contacts_.apply(frame);
 }
 
 TraceInfo ArrayWriter::info() const {
@@ -281,10 +285,21 @@ TraceInfo ArrayWriter::info() const {
   return out;
 }
 
+Result<void> ArrayWriter::take_contacts() {
+  auto contacts = ContactDeclarations::create(info(), arrays_.contacts);
+  if (!contacts) {
+    notes_.add("contacts", "a user or an object that there is not, a user twice, or a stiffness that is not above 0");
+    return tl::make_unexpected(contacts.error());
+  }
+  contacts_ = *std::move(contacts);
+  return {};
+}
+
 Result<TickSpan> ArrayWriter::run(const std::string& path) {
   TACTUS_CHECK(take_times());
   TACTUS_CHECK(find_rate());
   TACTUS_CHECK(take_lanes());
+  TACTUS_CHECK(take_contacts());
   TACTUS_TRY(TraceWriter writer, TraceWriter::create(path, info()));
   TraceFrame frame, before;
   frame.objects.resize(arrays_.objects.size());
