@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include <tactus/base/text.h>
+#include <tactus/trace/csv_time.h>
 
 namespace tactus {
 namespace {
@@ -91,11 +92,11 @@ bool is_missing_word(std::string_view text) noexcept {
   return std::ranges::any_of(kWords, [&](std::string_view word) { return equals_any_case(text, word); });
 }
 
-bool is_value(std::string_view text) noexcept {
+bool is_value(std::string_view text) {
   if (const auto number = parse_number<double>(text)) return std::isfinite(*number);
-  const auto is_of_time = [](char c) { return std::string_view("0123456789:-./TZtz+ ,").find(c) != std::string_view::npos; };
-  if (text.size() < 5 || text[0] < '0' || text[0] > '9' || !std::ranges::all_of(text, is_of_time)) return false;
-  return text.find(':') != std::string_view::npos || (text.size() >= 10 && text[4] == '-' && text[7] == '-');
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  const auto is_time = [](std::string_view of) { return parse_csv_time(of, kSecond, DateOrder::mdy).has_value(); };
+  return text.find_first_of(":/-.") != std::string_view::npos && (is_time(text) || is_time(std::string(text) + " 00:00:00"));
 }
 
 std::string csv_field(std::string_view text) {

@@ -21,7 +21,7 @@ std::size_t split_fields(std::string_view line, char separator, std::vector<std:
 /// Says that there is no value: nothing at all, -, NA, NaN, inf, null and the like.
 bool is_missing_word(std::string_view text) noexcept;
 /// A number, or a time of day or a date: what stands in rows, not in names.
-bool is_value(std::string_view text) noexcept;
+bool is_value(std::string_view text);
 
 /// A text as a field: in quotes when it needs them.
 std::string csv_field(std::string_view text);

@@ -3,6 +3,7 @@
 #include <set>
 
 #include <tactus/base/rule.h>
+#include <tactus/base/shown.h>
 #include <tactus/base/text.h>
 #include <tactus/trace/csv.h>
 #include <tactus/trace/csv_plan.h>
@@ -56,6 +57,17 @@ CsvResult<bool> takes_line(const CsvReader& reader, const CsvMapping& mapping, C
   return false;
 }
 
+/// Columns that the mapping leaves out may say something about those that it takes.
+void note_unread(CsvNamedPlan& plan) {
+  std::string names;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < plan.names.size(); ++i) {
+    if (plan.used[i] || plan.names[i].empty()) continue;
+    if (++count <= 8) names += (count == 1 ? "" : ", ") + shown(plan.names[i], 40);
+  }
+  if (count > 0) plan.notes.add("", "columns that are not read: " + names + (count > 8 ? ", ..." : ""));
+}
+
 CsvResult<CsvImport> run(CsvReader& reader, const CsvMapping& mapping, CsvNamedPlan& plan, CsvRows& rows, CsvTimeline& timeline) {
   while (true) {
     const auto more = reader.next();
@@ -74,6 +86,10 @@ CsvResult<CsvImport> run(CsvReader& reader, const CsvMapping& mapping, CsvNamedP
   if (reader.decimal_commas() > 0)
     plan.notes.add(
         "", std::to_string(reader.decimal_commas()) + " numbers in quotes have a comma, which is taken for the decimal point");
+  if (reader.repeated_names() > 0)
+    plan.notes.add("", "lines of names come again and are left out: " + std::to_string(reader.repeated_names()),
+                   "line " + std::to_string(reader.first_repeated()));
+  note_unread(plan);
   auto done = timeline.finish();
   if (!done && done.error().line == 0)
     done.error().line = reader.line() + (done.error().error.rule == std::string_view("R-CSV-1") ? 1 : 0);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <utility>
 
 #include <tactus/base/rule.h>
@@ -14,6 +15,9 @@ constexpr std::size_t kPiece = 64u << 10;
 constexpr std::size_t kMaxLine = 1u << 20;
 constexpr std::size_t kMaxAhead = 4u << 20;                                // bytes looked at for the names
 constexpr std::array<std::uint8_t, 4> kZstdMagic{0x28, 0xB5, 0x2F, 0xFD};  // RFC 8878 3.1.1
+
+/// A byte order mark begins a line where files are put together.
+std::string_view without_mark(std::string_view line) noexcept { return line.starts_with("\xEF\xBB\xBF") ? line.substr(3) : line; }
 
 bool is_comment(std::string_view text) noexcept { return text[0] == '#' || text[0] == '%' || text.starts_with("//"); }
 
@@ -104,17 +108,27 @@ Result<std::optional<std::string_view>> CsvReader::next_row() {
   while (true) {
     TACTUS_TRY(const auto line, next_line());
     if (!line) return std::nullopt;
-    const std::string_view text = trim_field(*line);
-    if (!text.empty() && !is_comment(text)) return *line;
+    const std::string_view text = trim_field(without_mark(*line));
+    if (!text.empty() && !is_comment(text)) return without_mark(*line);
   }
 }
 
+bool CsvReader::is_name_again(std::string_view line) {
+  const auto is_it = [&](const CsvLine& name) { return !name.is_comment && name.text == line; };
+  const auto names = std::span(ahead_).first(std::min(header_.values, ahead_.size()));
+  if (!std::ranges::any_of(names, is_it)) return false;
+  if (repeated_names_++ == 0) first_repeated_ = line_;
+  return true;
+}
+
 Result<bool> CsvReader::next() {
-  TACTUS_TRY(const auto row, next_row());
-  if (!row) return false;
-  bytes_ = row->size();
-  decimal_commas_ += split_fields(*row, header_.separator, fields_);
-  if (fields_.size() == header_.names.size() + 1 && fields_.back().empty()) fields_.pop_back();
+  auto row = next_row();
+  while (row && *row && is_name_again(**row)) row = next_row();
+  if (!row) return tl::make_unexpected(row.error());
+  if (!*row) return false;
+  bytes_ = (*row)->size();
+  decimal_commas_ += split_fields(**row, header_.separator, fields_);
+  while (fields_.size() > header_.names.size() && fields_.back().empty()) fields_.pop_back();
   return true;
 }
 
@@ -124,9 +138,9 @@ Result<bool> CsvReader::look_ahead() {
   while (rows < kHeaderLines && bytes < kMaxAhead) {
     TACTUS_TRY(const auto line, next_line());
     if (!line) break;
-    const std::string_view text = trim_field(*line);
+    const std::string_view text = trim_field(without_mark(*line));
     if (text.empty()) continue;
-    ahead_.push_back({line_, std::string(*line), is_comment(text), is_open_});
+    ahead_.push_back({line_, std::string(without_mark(*line)), is_comment(text), is_open_});
     bytes += line->size();
     if (!ahead_.back().is_comment) ++rows;
     if (ahead_.back().is_comment && ahead_.size() - rows > 2 * kHeaderLines) ahead_.erase(ahead_.begin());  // the last ones count

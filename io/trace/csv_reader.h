@@ -36,6 +36,9 @@ class CsvReader {
   std::uint64_t line() const noexcept { return line_; }  ///< counts from 1
   bool is_open() const noexcept { return is_open_; }     ///< the table ends within this line, or without an end of it
   std::size_t bytes() const noexcept { return bytes_; }  ///< of this line
+  /// Lines that stand ahead of the values, too, and were left out, as where tables are put together; of which the first one.
+  std::uint64_t repeated_names() const noexcept { return repeated_names_; }
+  std::uint64_t first_repeated() const noexcept { return first_repeated_; }
   std::uint64_t decimal_commas() const noexcept { return decimal_commas_; }  ///< numbers in quotes so far
 
  private:
@@ -46,6 +49,7 @@ class CsvReader {
   Result<std::optional<std::string_view>> next_line();
   Result<std::optional<std::string_view>> next_row();
   Result<bool> look_ahead();
+  bool is_name_again(std::string_view line);
 
   ByteSource source_;
   std::optional<StreamDecompressor> zstd_;
@@ -55,7 +59,7 @@ class CsvReader {
   std::string text_;
   std::size_t line_start_ = 0, scanned_ = 0;  // in text_
   bool ended_ = false, is_open_ = false;
-  std::uint64_t line_ = 0, decimal_commas_ = 0;
+  std::uint64_t line_ = 0, decimal_commas_ = 0, repeated_names_ = 0, first_repeated_ = 0;
   std::size_t bytes_ = 0;
   CsvNames wanted_names_ = CsvNames::automatic;
   CsvHeader header_;
