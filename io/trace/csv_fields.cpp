@@ -37,6 +37,13 @@ bool give_point(std::string& field) noexcept {
   return true;
 }
 
+/// "1.000", which was "1,000"
+bool may_be_thousands(std::string_view field) noexcept {
+  if (!field.empty() && (field[0] == '-' || field[0] == '+')) field.remove_prefix(1);
+  const std::size_t point = field.find('.');
+  return point >= 1 && point <= 3 && field[0] != '0' && field.size() == point + 4;
+}
+
 std::size_t end_of_field(std::string_view line, char separator) noexcept {
   return std::min(separator == kBlanks ? line.find_first_of(" \t") : line.find(separator), line.size());
 }
@@ -60,10 +67,11 @@ std::string_view trim_field(std::string_view text) noexcept {
   }
 }
 
-std::size_t split_fields(std::string_view line, char separator, std::vector<std::string>& fields) {
+PointedFields split_fields(std::string_view line, char separator, std::vector<std::string>& fields) {
   if (separator == kBlanks) line = trim_field(line);
   const std::string_view blank = separator == '\t' ? std::string_view(" ") : kBlankBytes;  // an empty field is one, too
-  std::size_t count = 0, pointed = 0;
+  std::size_t count = 0;
+  PointedFields pointed;
   for (bool more = true; more; ++count) {
     if (count == fields.size()) fields.emplace_back();
     std::string& field = fields[count];
@@ -74,7 +82,7 @@ std::size_t split_fields(std::string_view line, char separator, std::vector<std:
     const std::size_t end = end_of_field(line, separator);
     field += trim_field(line.substr(0, end));  // after a closing quote nothing should be left; if it is, the field is no number
     if (separator != ',') give_point(field);
-    else if (is_quoted && give_point(field)) ++pointed;
+    else if (is_quoted && give_point(field)) ++pointed.count, pointed.open += may_be_thousands(field);
     more = end < line.size();
     line.remove_prefix(std::min(end + 1, line.size()));
   }

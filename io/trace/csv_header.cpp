@@ -31,7 +31,7 @@ std::string_view words_of(const CsvLine& line) {
 
 /// What separates the fields of a line of names: the most frequent one outside quotes; blanks if there is no other.
 char separator_of(std::string_view names) noexcept {
-  constexpr std::string_view kMarks = ",;\t";
+  constexpr std::string_view kMarks = ",;\t|";
   std::array<std::size_t, kMarks.size()> counts{};
   bool is_quoted = false;
   for (const char c : names) {

@@ -292,13 +292,14 @@ void NamedPlanner::plan_euler(const CsvQuantities& q, CsvChannel& channel) {
   const bool is_fixed = !mapping_.euler_order.empty() && std::islower(static_cast<unsigned char>(mapping_.euler_order[0])) != 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t to = is_fixed ? 2 - i : i;
+    channel.euler_axes[to] = static_cast<std::uint8_t>(order[i] - 'x');
+    if (columns[i] == kZeroColumn && find(columns[i]).empty()) continue;  // that angle is 0
     const std::size_t found = column(columns[i]);
     const bool is_told = !mapping_.angle_unit.empty() || unit_in_name(plan_.names[found], CsvDimension::angle).unit ||
                          (!header_.units.empty() && unit_of(header_.units[found]));
     if (!is_told)
       mistake(Errc::invalid_argument, "R-CSV-10", columns[i], "Say whether the angles are degrees: --angle-unit deg or rad.");
     channel.rotation[to] = {found, scale_of(found, CsvDimension::angle)};
-    channel.euler_axes[to] = static_cast<std::uint8_t>(order[i] - 'x');
   }
 }
 

@@ -46,6 +46,24 @@ Result<void> CsvReader::start(const CsvText& format) {
   return {};
 }
 
+std::string_view CsvReader::foreign() const noexcept {
+  const std::string_view begin = std::string_view(text_).substr(0, 4096);
+  constexpr std::pair<std::string_view, std::string_view> kKinds[]{{"PK\x03\x04", "an Excel workbook, or another zip archive"},
+                                                                   {"\xD0\xCF\x11\xE0", "an old Excel workbook"},
+                                                                   {"MATLAB 5.0 MAT-file", "a MATLAB file"},
+                                                                   {"\x89HDF", "an HDF5 or MATLAB file"},
+                                                                   {"\x93NUMPY", "a NumPy array"},
+                                                                   {"\x1F\x8B", "compressed by gzip"},
+                                                                   {"ROSBAG", "a ROS 1 bag"},
+                                                                   {"\x89MCAP", "an MCAP recording"},
+                                                                   {"SQLite format 3", "a SQLite database"}};
+  for (const auto& [magic, kind] : kKinds)
+    if (begin.starts_with(magic)) return kind;
+  const std::size_t first = begin.find_first_not_of(" \t\r\n[");
+  if (first != std::string_view::npos && begin.substr(first).starts_with('{')) return "JSON";
+  return {};
+}
+
 Result<void> CsvReader::read_raw() {
   raw_.resize(kPiece);
   TACTUS_TRY(const std::size_t count, source_.read(raw_));
@@ -103,9 +121,10 @@ Result<std::optional<std::string_view>> CsvReader::next_row() {
     const CsvLine& line = ahead_[replayed_++];
     line_ = line.number;
     is_open_ = line.is_open;
+    is_after_blank_ = line.is_after_blank;
     if (!line.is_comment) return std::string_view(line.text);
   }
-  while (true) {
+  for (is_after_blank_ = false;; is_after_blank_ = true) {
     TACTUS_TRY(const auto line, next_line());
     if (!line) return std::nullopt;
     const std::string_view text = trim_field(without_mark(*line));
@@ -127,7 +146,9 @@ Result<bool> CsvReader::next() {
   if (!row) return tl::make_unexpected(row.error());
   if (!*row) return false;
   bytes_ = (*row)->size();
-  decimal_commas_ += split_fields(**row, header_.separator, fields_);
+  const PointedFields pointed = split_fields(**row, header_.separator, fields_);
+  decimal_commas_.count += pointed.count;
+  decimal_commas_.open += pointed.open;
   while (fields_.size() > header_.names.size() && fields_.back().empty()) fields_.pop_back();
   return true;
 }
@@ -135,12 +156,20 @@ Result<bool> CsvReader::next() {
 /// Lines until find_header() has what it needs.   out  false: there are none
 Result<bool> CsvReader::look_ahead() {
   std::size_t bytes = 0, rows = 0;
+  bool is_after_blank = false;
   while (rows < kHeaderLines && bytes < kMaxAhead) {
     TACTUS_TRY(const auto line, next_line());
     if (!line) break;
     const std::string_view text = trim_field(without_mark(*line));
-    if (text.empty()) continue;
-    ahead_.push_back({line_, std::string(without_mark(*line)), is_comment(text), is_open_});
+    if (text.empty()) {
+      is_after_blank = true;
+      continue;
+    }
+    ahead_.push_back({.number = line_,
+                      .text = std::string(without_mark(*line)),
+                      .is_comment = is_comment(text),
+                      .is_after_blank = std::exchange(is_after_blank, false),
+                      .is_open = is_open_});
     bytes += line->size();
     if (!ahead_.back().is_comment) ++rows;
     if (ahead_.back().is_comment && ahead_.size() - rows > 2 * kHeaderLines) ahead_.erase(ahead_.begin());  // the last ones count

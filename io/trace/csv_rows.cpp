@@ -215,11 +215,11 @@ bool CsvRows::read_time(const std::vector<std::string>& fields, CsvRow& row) {
   if (!time || (has_time_ && time->kind != kind_)) return false;
   if (plan_.clock && time->kind != CsvTimeKind::date) return false;
   if (plan_.fraction && time->kind == CsvTimeKind::number && !add_fraction(fields, *time)) return false;
-  constexpr std::int64_t kDay = 86'400'000'000'000;
+  const std::int64_t turn = std::ranges::count(text_, ':') == 1 ? kDayUnit / 24 : kDayUnit;  // of minutes: past the hour
   row.time = time->nanoseconds;
   if (time->kind == CsvTimeKind::clock) {  // past midnight
-    if (has_time_ && row.time + days_ < last_time_ - kDay / 2) days_ += kDay;
-    row.time += days_;
+    if (has_time_ && row.time + wrapped_ < last_time_ - turn / 2) wrapped_ += turn;
+    row.time += wrapped_;
   }
   if (time->kind != CsvTimeKind::number) plan_.time_is_told = true;
   if (!has_time_) {

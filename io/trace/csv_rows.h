@@ -68,7 +68,7 @@ class CsvRows {
   std::string remedy_;      // of a time that cannot be read
   bool has_time_ = false;
   CsvTimeKind kind_ = CsvTimeKind::number;
-  std::int64_t last_time_ = 0, days_ = 0, first_date_ = 0;
+  std::int64_t last_time_ = 0, wrapped_ = 0, first_date_ = 0;
 };
 
 }  // namespace tactus

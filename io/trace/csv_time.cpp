@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include <tactus/base/text.h>
 
@@ -42,15 +43,16 @@ std::int64_t take_fraction(std::string_view& text) noexcept {
   return value;
 }
 
-/// [ns] "12:00:00.5", "12:00:00:500" or "1:00:00.5 PM" at the front.
+/// [ns] "12:00:00.5", "12:00:00:500", "1:00:00.5 PM" or, of minutes, "59:30.5" at the front.
 std::optional<std::int64_t> take_clock(std::string_view& text) noexcept {
   const std::size_t digits = text.size() > 1 && text[1] == ':' ? 1 : 2;
   auto hours = take_digits(text, digits);
   if (!hours || !take(text, ":")) return std::nullopt;
-  const auto minutes = take_digits(text, 2);
-  if (!minutes || !take(text, ":")) return std::nullopt;
-  const auto seconds = take_digits(text, 2);
-  if (!seconds || *hours > 24 || *minutes > 59 || *seconds > 60) return std::nullopt;
+  auto minutes = take_digits(text, 2);
+  std::optional<std::int64_t> seconds;
+  if (minutes && !text.empty() && (text[0] == '.' || text[0] == ',')) seconds = std::exchange(minutes, std::exchange(hours, 0));
+  else if (!minutes || !take(text, ":") || !(seconds = take_digits(text, 2))) return std::nullopt;
+  if (*hours > 24 || *minutes > 59 || *seconds > 60) return std::nullopt;
   std::int64_t fraction = take_fraction(text);
   if (text.size() >= 4 && text[0] == ':') {
     text.remove_prefix(1);

@@ -21,7 +21,7 @@ enum class DateOrder : std::uint8_t { by_digits, mdy, dmy };  ///< of 05/06/2024
 inline constexpr std::int64_t kDayUnit = 86'400'000'000'000;  ///< [ns]
 
 /// "1403636579763555584", "0.001", "2024-05-01T12:00:00.123456789Z" (a space for the T, +02:00 for the Z, or no zone), "1.5.2024 12:00:00",
-/// "01-May-2024 12:00:00", "5/13/2024 1:00:00 PM", "12:00:00.123". Numbers of days are those of Excel (since 1899-12-30) and MATLAB
+/// "01-May-2024 12:00:00", "5/13/2024 1:00:00 PM", "12:00:00.123", "59:30.5" (minutes). Numbers of days are those of Excel (since 1899-12-30) and MATLAB
 /// (datenum) where they are that large.
 /// in   unit  [ns] of a number; 1e-9 s to 1 day     out  nothing: it is no time, or beyond what 64 bits of nanoseconds hold
 std::optional<CsvTime> parse_csv_time(std::string_view text, std::int64_t unit, DateOrder order = DateOrder::by_digits) noexcept;
