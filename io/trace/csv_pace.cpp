@@ -18,6 +18,7 @@ namespace {
 constexpr double kOnGrid = 0.1;                         // [ticks]
 constexpr double kLowestRate = 10, kHighestRate = 5e4;  // [1/s] that are believed without a word of the unit
 constexpr double kTogether = 0.1;                       // of the mean gap: rows that are so close are of a group
+constexpr double kAlike = 1e-3;                         // of the mean gap: times are equal
 constexpr double kPause = 20;                           // gaps
 constexpr double kFarthest = 0.5;                       // [s] groups of rows whose times differ: what is farther apart are pauses
 
@@ -107,7 +108,7 @@ bool PaceFinder::are_samples() const {
   }
   if (10 * close_differ < close && 10 * far_differ >= far) return false;  // copies
   const double close_gap = median_of(close_gaps), close_step = median_of(close_steps);
-  if (close_gap < 1e-3 * mean_) return true;
+  if (close_gap < kAlike * mean_) return true;
   const bool moves_evenly = close_step > 0 ? median_of(far_steps) <= 3 * close_step : close_gap < 0.02 * mean_;
   return moves_evenly && median_of(far_gaps) <= kFarthest;
 }
@@ -167,8 +168,12 @@ bool PaceFinder::find_groups() {
     if (gap.seconds <= pause_) length += gap.seconds, ++count;
   if (length == 0) return false;
   mean_ = length / count;
-  const auto close = std::ranges::count_if(gaps_, [&](const Gap& gap) { return gap.seconds < kTogether * mean_; });
-  if (10 * static_cast<std::size_t>(close) < gaps_.size() || !are_samples()) return false;
+  const auto share_below = [&](double seconds) {
+    const auto below = std::ranges::count_if(gaps_, [&](const Gap& gap) { return gap.seconds < seconds; });
+    return static_cast<double>(below) / static_cast<double>(gaps_.size());
+  };
+  if (share_below(kAlike * mean_) < 0.03 && share_below(kTogether * mean_) < 0.2) return false;  // a few times that repeat
+  if (!are_samples()) return false;
   count_groups();
   return pace_.period > 0;
 }

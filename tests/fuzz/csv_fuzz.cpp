@@ -20,7 +20,8 @@ CsvMapping mapping(unsigned choice) {
   const auto& presets = csv_presets();
   if (choice % 4 < presets.size()) return presets[choice % 4].mapping;
   CsvMapping by_time;
-  by_time.time = "t";
+  by_time.time = choice & 4 ? "t,n" : "t";  // a date and a time of day
+  by_time.restarts = choice & 4;
   by_time.segment = choice & 8 ? "s" : "";
   by_time.position = {"x", "y", "z"};
   by_time.rotation = {"a", "b", "c", "d"};

@@ -56,6 +56,7 @@ TEST(CsvPace, RowsThatComeInBurstsAreSpreadEvenly) {
   expect_even(coarse, 1000, 1e-9);
   EXPECT_EQ(coarse.frames.size(), 6000u);
   expect_even(import(moving(600, 120, [](int i) { return std::floor(i / 1.2 + 1e-9) / 100; }), timed()), 120, 1e-3);
+  expect_even(import(moving(600, 110, [](int i) { return std::floor(i / 1.1 + 1e-9) / 100; }), timed()), 110, 1e-3);
   expect_even(import(moving(960, 960, [](int i) { return i / 8 / 120.0; }), timed()), 960, 1e-5);
 }
 
@@ -90,6 +91,25 @@ TEST(CsvPace, CopiesAndTruePausesAreNoBursts) {
   const Imported paused = import(rows.str(), mapping);
   ASSERT_EQ(paused.frames.size(), 300u) << paused.rule;
   EXPECT_EQ(paused.frames[10].tick, 100);
+}
+
+/// Of a mouse or a touch screen, which tell when something happened.
+TEST(CsvPace, EventsAreNoBursts) {
+  std::ostringstream text;
+  text << "t,x,y,z\n";
+  std::uint32_t random = 1;
+  double time = 0;
+  for (int i = 0; i < 3000; ++i) {
+    text << time << ',' << time << ",0,0\n";
+    random = random * 1664525 + 1013904223;
+    time += -0.01 * std::log((static_cast<double>(random >> 8) + 1) / (1 << 24));
+  }
+  const Imported outcome = import(text.str(), timed());
+  ASSERT_EQ(outcome.rule, "") << to_string(outcome.error);
+  EXPECT_NEAR(outcome.info.tick_rate, 100, 10);
+  for (std::size_t i = 1; i < outcome.frames.size(); ++i)
+    ASSERT_NEAR(outcome.frames[i].objects[0].pose.position.x,
+                static_cast<double>(outcome.frames[i].tick) / outcome.info.tick_rate, 1e-3);
 }
 
 TEST(CsvPace, StrictAndNoResampleRefuseBursts) {
