@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <ranges>
 #include <set>
 
 #include <tactus/base/shown.h>
@@ -150,7 +149,8 @@ bool Finder::begins_values(std::size_t row, char separator) const {
 /// As numpy.savetxt, TUM and EuRoC write them.
 bool Finder::names_are_in_a_comment(std::size_t values) {
   const std::size_t wanted = split(lines_[rows_[values]].text, header_.separator).size();
-  for (const std::size_t comment : comments_ | std::views::reverse) {
+  for (std::size_t i = comments_.size(); i-- > 0;) {
+    const std::size_t comment = comments_[i];
     if (comment > rows_[values]) continue;
     const std::string_view text = words_of(lines_[comment]);
     for (const char separator : {header_.separator, ',', ';', '\t', kBlanks}) {

@@ -580,10 +580,8 @@ def test_times_with_a_zone_are_those_of_utc():
             assert zone is None
             return stamps
 
-    class Column:
-        dt = Zoned()
-
-    for when in (stamps, Zoned(), Column()):
+    column = type("Column", (), {"dt": Zoned()})
+    for when in (stamps, Zoned(), column()):
         assert tactus.Trace.from_arrays(when, np.zeros((100, 3))).tick_rate == 250
 
 
