@@ -56,6 +56,7 @@ class ArrayWriter {
   void note_missing(const Lane& lane);
   void note_mended(const Lane& lane);
   Result<void> find_rate();
+  Result<void> take_contacts();
   double off_grid(double rate) const;
   double time_of(std::size_t row) const { return static_cast<double>(arrays_.time[rows_[row]] - start_) / kSecond; }
   bool is_pause(double time);
@@ -72,6 +73,7 @@ class ArrayWriter {
   bool is_on_grid_ = false;
   std::vector<Lane> lanes_;  // of objects, then users: those that are there, in the order of the fields
   std::size_t last_row_ = 0;
+  ContactDeclarations contacts_;
 };
 
 Result<void> ArrayWriter::take_times() {
@@ -258,8 +260,10 @@ void ArrayWriter::make(std::int64_t tick, TraceFrame& frame) {
     UserSample& out = frame.users[i];
     if (!arrays_.users[i].device.empty()) out.device.position = next().value().pose.position;
     if (!arrays_.users[i].force.empty()) out.force = out.server_force = next().vector();
+    out.contact = {};
     out.contact.device = out.device.position;
   }
+  contacts_.apply(frame);
 }
 
 TraceInfo ArrayWriter::info() const {
@@ -274,10 +278,21 @@ TraceInfo ArrayWriter::info() const {
   return out;
 }
 
+Result<void> ArrayWriter::take_contacts() {
+  auto contacts = ContactDeclarations::create(info(), arrays_.contacts);
+  if (!contacts) {
+    notes_.add("contacts", "a user or an object that there is not, a user twice, or a stiffness that is not above 0");
+    return tl::make_unexpected(contacts.error());
+  }
+  contacts_ = *std::move(contacts);
+  return {};
+}
+
 Result<TickSpan> ArrayWriter::run(const std::string& path) {
   TACTUS_CHECK(take_times());
   TACTUS_CHECK(find_rate());
   TACTUS_CHECK(take_lanes());
+  TACTUS_CHECK(take_contacts());
   TACTUS_TRY(TraceWriter writer, TraceWriter::create(path, info()));
   TraceFrame frame, before;
   frame.objects.resize(arrays_.objects.size());

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include <tactus/base/result.h>
+#include <tactus/trace/declared_contact.h>
 #include <tactus/trace/frame.h>
 #include <tactus/trace/read_notes.h>
 
@@ -39,15 +40,17 @@ struct SampledArrays {
   std::span<const std::int64_t> time{};  ///< [ns], rising; kNoTime: missing
   std::vector<SampledObject> objects{};
   std::vector<SampledUser> users{};
-  std::uint32_t tick_rate = 0;  ///< [1/s]; 0: found from the times
-  double gap = 0.1;             ///< [s]
+  std::vector<DeclaredContact> contacts{};  ///< what users touched: is written into the trace
+  std::uint32_t tick_rate = 0;              ///< [1/s]; 0: found from the times
+  double gap = 0.1;                         ///< [s]
   std::string source = "arrays";
 };
 
 /// Write a trace. Tick 0 is the first time.
 /// out  notes  what was decided, also after an error: then the last one says where
 /// err  invalid_argument R-CSV-8 nothing to record, or an array of another length; R-CSV-7 the rate is unknown; invalid R-CSV-5 most times do
-///      not increase; malformed R-CSV-4 of an array every sample is missing; those of TraceWriter
+///      not increase; malformed R-CSV-4 of an array every sample is missing; those of ContactDeclarations
+///      and of TraceWriter
 Result<TickSpan> write_arrays(const SampledArrays& arrays, const std::string& path, ReadNotes& notes);
 
 }  // namespace tactus

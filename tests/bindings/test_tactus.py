@@ -528,3 +528,72 @@ def test_a_fraction_of_four_is_not_four_percent():
     with pytest.raises(tactus.Error) as refused:
         trace.encode(tactus.RigidBounds(weber_fraction=4))
     assert refused.value.rule == "R-API-4"
+
+
+def test_declared_contacts_give_recorded_forces_a_bound():
+    time = np.arange(1000) / 500
+    position, rotation, force = swinging(time)
+    force[:, 1] = force[:, 2]  # a plane's force changes with what moves along it
+    arrays = time, {"cup": (position, rotation)}, {"hand": force}
+    bounds = tactus.RigidBounds(weber_fraction=0.04, visual_position=0.02, visual_rotation=0.5)
+
+    def packets(trace):
+        return sum(packet.reason == "haptic" for packet in trace.encode(bounds).decode(trace.ticks).packets)
+
+    assert packets(tactus.Trace.from_arrays(*arrays)) == 0
+    touched = tactus.Trace.from_arrays(*arrays, contacts={"hand": ("cup", 500)})
+    contact = touched.users["contact"][100, 0]
+    assert contact["kind"] == 1 and contact["stiffness"] == 500 and (contact["device"] == position[100]).all()
+    assert abs(contact["point"][2] - force[100, 2] / 500) < 1e-12  # of the object: the force stretches the spring by so much
+    assert packets(touched) > 0
+    held = tactus.Trace.from_arrays(*arrays, {"hand": position + [0, 0, 0.01]}, contacts={"hand": ("cup", 500, "spring")})
+    assert held.users["contact"]["kind"][100, 0] == 2 and (held.users["contact"]["device"][100, 0] == (position + [0, 0, 0.01])[100]).all()
+    for contacts, rule, place in [({"foot": ("cup", 500)}, "R-API-5", "contacts: a user or an object"),
+                                  ({"hand": ("saucer", 500)}, "R-API-5", ""), ({"hand": ("cup", -1)}, "R-API-4", ""),
+                                  ({"hand": 500}, "R-CSV-8", "contacts['hand'] is 500"),
+                                  ({"hand": ("cup", 500, "cube")}, "R-CSV-8", "neither 'plane' nor 'spring'")]:
+        with pytest.raises(tactus.Error) as refused:
+            tactus.Trace.from_arrays(*arrays, contacts=contacts)
+        assert refused.value.rule == rule and place in str(refused.value), contacts
+
+
+def test_frames_of_pandas():
+    pandas = pytest.importorskip("pandas")
+    time = np.arange(200) / 250
+    position, rotation, force = swinging(time)
+    plain = tactus.Trace.from_arrays(time, {"cup": (position, rotation)}, {"hand": force})
+    frame = pandas.DataFrame({name: column for names, columns in (("xyz", position), (("qw", "qx", "qy", "qz"), rotation), (("fx", "fy", "fz"), force))
+                              for name, column in zip(names, columns.T)})
+    epoch = pandas.to_datetime(1_700_000_000_000_000_000 + np.round(time * 1e9).astype(np.int64))
+    for when in (pandas.Series(time), epoch, pandas.Series(epoch), epoch.tz_localize("UTC"), pandas.Series(epoch.tz_localize("Europe/Berlin"))):
+        framed = tactus.Trace.from_arrays(when, {"cup": frame}, {"hand": frame})
+        assert (framed.objects == plain.objects).all() and (framed.users == plain.users).all()
+
+
+def test_times_with_a_zone_are_those_of_utc():
+    stamps = np.datetime64("2024-05-01T12:00:00", "ns") + np.arange(100) * np.timedelta64(4, "ms")
+
+    class Zoned:  # as an index of pandas answers
+        tz = "Europe/Berlin"
+
+        def tz_convert(self, zone):
+            assert zone is None
+            return stamps
+
+    column = type("Column", (), {"dt": Zoned()})
+    for when in (stamps, Zoned(), column()):
+        assert tactus.Trace.from_arrays(when, np.zeros((100, 3))).tick_rate == 250
+
+
+def test_the_notebook_runs_and_draws(tmp_path, monkeypatch, capsys):
+    pytest.importorskip("matplotlib")
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    for number, cell in enumerate(json.loads((ROOT / "examples" / "recording.ipynb").read_text())["cells"]):
+        assert cell.get("outputs", []) == []
+        if cell["cell_type"] == "code":
+            exec(compile("".join(cell["source"]), f"recording.ipynb, cell {number}", "exec"), names)
+    assert (tmp_path / "own.pdf").read_bytes().startswith(b"%PDF") and len(tactus.read_trace("own.mcap").ticks) == 2000
+    assert "cup.position: missing samples, interpolated (10; first row 300, at 0.6 s)" in capsys.readouterr().out
+    assert names["result"].holds and list(names["rates"].values()) == sorted(names["rates"].values(), reverse=True)
+    assert names["result"].force.max > 0
