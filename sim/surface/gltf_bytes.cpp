@@ -100,8 +100,11 @@ tl::expected<GltfChunks, Diagnostic> split_chunks(std::string_view bytes, ReadNo
     return GltfChunks{bytes, {}};
   }
   if (bytes.size() < kHeader + kChunk) return broken(Errc::malformed, "R-SRF-5", "the header of a GLB");
-  if (word_at(bytes, 4) != 2)
-    return broken(Errc::unsupported, "R-SRF-3", "GLB of version " + std::to_string(word_at(bytes, 4)) + ", not 2");
+  if (word_at(bytes, 4) != 2) {
+    auto old = broken(Errc::unsupported, "R-SRF-3", "GLB of version " + std::to_string(word_at(bytes, 4)) + ", not 2");
+    old.value().remedy = kOldGltf;
+    return old;
+  }
   const std::size_t length = word_at(bytes, 8);
   if (length > bytes.size())
     return broken(Errc::malformed, "R-SRF-5",

@@ -186,9 +186,13 @@ class GltfReader {
   /// A version that is read; extensions that must be understood, and those that say something of shape or motion.
   void read_head() {
     const Json* asset = find(root_, "asset");
-    const std::string version = asset == nullptr ? "" : text(*asset, "version");
+    const Json* stated = asset == nullptr ? nullptr : find(*asset, "version");
+    const std::string version = stated == nullptr ? "" : stated->is_string() ? stated->get<std::string>() : stated->dump();
     const bool known = version.starts_with("2.") && parse_number<unsigned>(std::string_view(version).substr(2)).has_value();
-    if (!known) fail_at("asset.version", "'" + version + "', not 2.0", "R-SRF-3", Errc::unsupported);
+    if (!known) {
+      fail_at("asset.version", "'" + version.substr(0, 20) + "', not 2.0", "R-SRF-3", Errc::unsupported);
+      error_->remedy = kOldGltf;
+    }
     const auto is_look = [](std::string_view name) {
       for (const auto* front : {"KHR_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_", "KHR_lights_", "EXT_lights_"})
         if (name.starts_with(front)) return true;

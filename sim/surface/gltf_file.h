@@ -91,6 +91,8 @@ struct GltfFile {
 struct GltfChunks {
   std::string_view json, binary;  ///< binary: null if there is none
 };
+inline constexpr const char* kOldGltf =
+    "Convert glTF 1.0 to 2.0, with gltf-pipeline -i FILE -o NEW.glb or by Blender's import and export.";
 /// Of a GLB; of other bytes all is JSON.   err  R-SRF-3..5
 tl::expected<GltfChunks, Diagnostic> split_chunks(std::string_view bytes, ReadNotes& notes);
 /// Nothing: that is not base64.

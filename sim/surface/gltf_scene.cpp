@@ -326,7 +326,9 @@ Read GltfScene::make_rest(const GltfOptions& options) {
   soup.vertices = all_positions(0);
   soup.polygons = std::move(polygons_);
   soup.first_number = 0;
-  if (soup.polygons.empty()) return broken(Errc::invalid, "R-SRF-7", std::to_string(vertices_) + " vertices");
+  if (soup.polygons.empty())
+    return broken(Errc::invalid, "R-SRF-7",
+                  vertices_ > 0 ? "primitives without corners" : "no primitive of triangles in the scene");
   PolygonSoup merged = soup;
   const std::vector<std::uint32_t> first = alike();
   for (Polygon& polygon : merged.polygons)

@@ -77,7 +77,7 @@ tl::expected<SurfaceSequence, Diagnostic> SurfaceSequence::open_scene(const std:
                                           .moves = true,
                                           .drop_degenerate = options.drop_degenerate,
                                           .axes = options.axes}));
-  const double frames = std::floor(scene.duration() / options.period + 1e-6) + 1;
+  const double frames = std::floor(scene.duration() / options.period + 1e-3) + 1;  // keys are in single precision
   const std::size_t most = std::min(kMostFrames, kMostPositions / scene.rest().mesh.vertices.size());
   if (!(frames <= static_cast<double>(most)))
     return broken(Errc::limit_exceeded, "R-SEQ-7", spelt(scene.duration()) + " s, " + spelt(frames) + " frames");

@@ -100,6 +100,8 @@ TEST(Gltf, WhatCannotBeReadIsNamed) {
   EXPECT_EQ(fault(R"("type":"SCALAR")", R"("type":"VEC2")"), "R-SRF-4 accessors[1]: elements of 2 numbers, not 1");
   EXPECT_EQ(fault(R"({"mesh":0,)", R"({"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1],)"),
             "R-SRF-4 the animation of nodes[0]: the node has a matrix, which nothing can move");
+  EXPECT_EQ(fault(R"("version":"2.0")", R"("version":1)"), "R-SRF-3 asset.version: '1', not 2.0");
+  EXPECT_EQ(fault(R"("attributes")", R"("mode":1,"attributes")"), "R-SRF-7 no primitive of triangles in the scene");
   EXPECT_EQ(fault("{}").substr(0, 7), "R-SRF-3");
   EXPECT_EQ(fault("").substr(0, 7), "R-SRF-4");
 }
