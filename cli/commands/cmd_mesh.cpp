@@ -121,7 +121,7 @@ Outcome fill_surface(const MeshOptions& options, TetMeshReport& report) {
 #else
 Outcome fill_surface(const MeshOptions& options, TetMeshReport&) {
   return refuse(shown_path(options.input) + ": this program was built without reading surfaces",
-                "Install libopenmesh-dev and build again, or give .node, .ele or .msh.");
+                "Install nlohmann-json3-dev and build again, or give .node, .ele or .msh.");
 }
 #endif
 

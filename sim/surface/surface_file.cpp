@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 
 #include <tactus/base/rule.h>
 #include <tactus/sim/surface/gltf_scene.h>
-#include <tactus/sim/surface/openmesh_io.h>
 #include <tactus/sim/surface/polygon_file.h>
 
 namespace tactus::sim {
@@ -247,16 +245,6 @@ tl::expected<SurfaceFile, Diagnostic> read_surface(const std::string& path, cons
   }
   TACTUS_TRY(auto soup, read_polygons(path));
   return make_turned(std::move(soup), options).map_error(named);
-}
-
-tl::expected<void, Diagnostic> write_surface(const std::string& path, const TriMesh& mesh) {
-  const auto text = openmesh_write(mesh, surface_format(path));
-  if (!text) return broken(Errc::unsupported, "R-SRF-3", "", path);
-  std::ofstream out(path, std::ios::binary);
-  out << *text;
-  out.close();
-  if (!out) return broken(Errc::io, "R-SRF-1", "", path);
-  return {};
 }
 
 }  // namespace tactus::sim

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// Triangle meshes in OBJ, PLY, STL, OFF and glTF 2.0 files, read in double precision and written by OpenMesh.
+/// Triangle meshes in OBJ, PLY, STL, OFF and glTF 2.0 files, read and written in double precision (STL holds single).
 ///
 /// What is used: coordinates and the corners of faces. What is told (notes): a number of facets that the size contradicts, bytes and lines behind
 /// the last element, solids read as one, lines of other kinds than faces, a last line without its end. What does not matter: normals, colours,

@@ -17,7 +17,6 @@ import sys
 
 PROGRAM, DATA = sys.argv[1], pathlib.Path(sys.argv[2])
 XYZ, TURN = ["--map", "position=x,y,z"], ["--map", "rotation=qw,qx,qy,qz"]
-SIDE = "v 0 0 0"
 
 
 def tactus(*words):
@@ -241,7 +240,7 @@ def frames(path, ticks, first_x, *notes, options=()):
     shutil.rmtree("shapes", ignore_errors=True)
     assert tactus("export", "mesh", "mesh.mcap", "-o", "shapes", "-q")[0] == 0
     found = [float(re.search(r"^v (\S+)", p.read_text(), re.M)[1]) for p in sorted(pathlib.Path("shapes").iterdir())]
-    near([len(found), *found], [len(first_x), *first_x])
+    near([len(found), *found], [len(first_x), *first_x], 1e-7)
     last = json.loads(tactus("info", "mesh.mcap", "--json")[1])
     assert re.search(rf'"last_tick": {ticks[-1]}\b', json.dumps(last)), last
 
@@ -285,6 +284,9 @@ def degenerate(path):
 
 def far(path):
     filled(path, 8, 1e-6, (500000.1234, 0, 0), (500000.1334, 0.01, 0.01))
+    pathlib.Path("one").mkdir(exist_ok=True)
+    shutil.copy(path, "one")
+    frames("one", [0], [500000.1234])
 
 
 def two_tets(path):
