@@ -63,7 +63,8 @@ bool read_elements(const GltfView& view, std::size_t offset, std::size_t count, 
                     stride = view.stride == 0 ? element : view.stride;
   const std::size_t bytes = view.bytes.size();
   if (count == 0) return true;
-  if (stride < element || offset > bytes || element > bytes - offset || count - 1 > (bytes - offset - element) / stride)
+  if (stride < std::max<std::size_t>(element, 1) || offset > bytes || element > bytes - offset ||
+      count - 1 > (bytes - offset - element) / stride)
     return false;
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t k = 0; k < width; ++k)

@@ -151,7 +151,7 @@ def lz4(path):
 
 
 def ros1(path):
-    refused(["info", path], "geometry_msgs/PoseStamped", "ros1")
+    refused(["info", path], "(ros1")
 
 
 # ==== tables ====
@@ -185,10 +185,12 @@ def jitter(path):
 
 def twice(path):
     t = Table(path, "csv", "--time", "t", *XYZ, *TURN)
-    assert (t.rate, len(t.rows)) == (500, 15)
+    if t.rate == 1000:  # spread over the time to the next
+        return is_motion(t, 1000, 29)
+    assert (t.rate, len(t.rows)) == (500, 15), f"{t.rate} Hz, {len(t.rows)} rows"
     for k in range(15):
         near(t.pose("", k), moved(min(2 * k + 1, 28)))
-    says(t.notes, "14; the last of each counts")
+    return says(t.notes, "14; the last of each counts")
 
 
 def dropout(path):
