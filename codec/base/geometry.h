@@ -46,9 +46,7 @@ constexpr Vec3 rotate(const Quat& q, const Vec3& v) noexcept {
   const Vec3 t = 2.0 * cross(u, v);
   return v + q.w * t + cross(u, t);
 }
-constexpr bool is_finite(const Quat& q) noexcept {
-  return is_finite(q.w) && is_finite(q.x) && is_finite(q.y) && is_finite(q.z);
-}
+constexpr bool is_finite(const Quat& q) noexcept { return is_finite(q.w) && is_finite(q.x) && is_finite(q.y) && is_finite(q.z); }
 /// Angle in [0, pi] rad of the rotation that takes a to b.
 inline double angle_between(const Quat& a, const Quat& b) noexcept {
   const Quat d = b * conjugate(a);
