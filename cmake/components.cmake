@@ -14,7 +14,6 @@ set(TACTUS_PACKAGES
   "LDL             libsuitesparse-dev      SuiteSparse::LDL"
   "CHOLMOD         libsuitesparse-dev      SuiteSparse::CHOLMOD"
   "Spectra         libspectra-dev          Spectra::Spectra"
-  "OpenMesh        libopenmesh-dev         OpenMeshCore"
   "libusb          libusb-1.0-0-dev,pkgconf PkgConfig::libusb"
   "hidapi          libhidapi-dev,pkgconf   PkgConfig::hidapi"
   "Boost           libboost-dev            Boost::headers"

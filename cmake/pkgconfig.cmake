@@ -12,7 +12,6 @@ set(TACTUS_PKG_CONFIG
   "SuiteSparse::LDL           -lldl"
   "SuiteSparse::CHOLMOD       -lcholmod"
   "Spectra::Spectra"
-  "OpenMeshCore               openmesh"
   "PkgConfig::ode             ode"
   "tomlplusplus::tomlplusplus tomlplusplus"
   "nlohmann_json::nlohmann_json"

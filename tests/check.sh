@@ -60,8 +60,11 @@ check_headers() { # INCLUDE_DIR
     # shellcheck disable=SC2086 # a list of words
     echo "#include <tactus/$header>" | "${CXX:-c++}" -std=c++20 -fsyntax-only -I "$1/.." $eigen -x c++ - || die "$header does not stand alone"
   done
+  # With what Windows' headers define, unless NOMINMAX is: behind those of others, which undo it.
   # shellcheck disable=SC2086
-  (cd "$1" && find . -name '*.h' | LC_ALL=C sort | sed 's,^\./\(.*\)$,#include <tactus/\1>,') |
+  (cd "$1" && grep -rhoE '^#include <[A-Za-z_/.]+>' . | grep -v tactus/ | sort -u
+    printf '#define %s\n' 'min(a, b) ((a) < (b) ? (a) : (b))' 'max(a, b) ((a) > (b) ? (a) : (b))' near far 'small char' 'ERROR 0'
+    find . -name '*.h' | LC_ALL=C sort | sed 's,^\./\(.*\)$,#include <tactus/\1>,') |
     "${CXX:-c++}" -std=c++20 -fsyntax-only -I "$1/.." $eigen -x c++ - || die 'the headers do not agree with one another'
 }
 

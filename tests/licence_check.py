@@ -25,7 +25,6 @@ LICENCES = {
     "libfmt": "MIT",
     "libtomlplusplus": "MIT",
     "libldl": "LGPL-2.1+, loaded as it is and replaceable",
-    "libOpenMeshCore": "BSD-3-Clause",
     "libgnutls": "LGPL-2.1+, loaded as it is and replaceable",
     "libtasn1": "LGPL-2.1+, loaded by libgnutls",
     "libp11-kit": "BSD-3-Clause, loaded by libgnutls",

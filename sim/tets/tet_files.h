@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Tetrahedral meshes in files: TetGen's .node with .ele, and Gmsh's .msh (versions 2 to 2.2, 4.0 and 4.1 as
 /// text, 2 to 2.2 and 4.1 as bytes of either order). Files are not trusted:
-/// numbers are whole and finite, and counts fit the remaining bytes before memory is reserved for them.
+/// numbers are whole and finite, and counts fit the remaining bytes before memory is reserved for them. What does not matter: in .msh other
+/// sections than $Nodes and $Elements, the lowest and highest number, entities and their dimensions, numbers and tags of elements, and what
+/// elements of other kinds hold, which are counted.
 ///
 /// rule      class           broken when
 /// R-TET-8   io              the file cannot be opened, read or written
