@@ -81,37 +81,46 @@ def renew(tables, name, wrong):
 
 def run(folder, one, data):
     """The commands of a folder, in it."""
-    environment = os.environ | {"TACTUS": program.tactus()}
+    environment = os.environ | {name: os.path.abspath(os.environ[name]) for name in ("TACTUS", "TACTUS_STUDY") if name in os.environ}
     for file in one.get("needs", []):
         if not data or not (data / file).exists():
             raise Refusal(f"{file} is not part of this project, and not in the folder of --data", "Its page says where it is from.")
         if not os.path.lexists(folder / file):
             (folder / file).symlink_to((data / file).resolve())
     for command in one["commands"]:
-        words = shlex.split(command.replace("{reports}", str(REPORTS)).replace("{root}", str(ROOT)))
-        script = {"sweep": "sweep.py", "bench": "bench.py", "reproduce": "reproduce.py"}.get(words[1]) if words[0] == "tactus" else None
-        words = [sys.executable, str(ROOT / "lab" / script), *words[2:]] if script else [program.tactus(), *words[1:]] \
-            if words[0] == "tactus" else words
+        words = as_run(command)
         done = subprocess.run(words, cwd=folder, env=environment, check=False, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
         if done.returncode not in (arguments.OK, arguments.BROKEN):
             raise Refusal(f"{command}\n{program.in_words(done.stderr.decode(errors='replace'))}")
+
+
+def as_run(command):
+    """tactus is the program; its commands that are scripts, and other scripts, are run from here, not from where it is installed."""
+    first, *rest = shlex.split(command.replace("{reports}", str(REPORTS)).replace("{root}", str(ROOT)))
+    if first == "tactus" and rest[0] in ("sweep", "bench", "reproduce"):
+        return [sys.executable, str(ROOT / "lab" / (rest[0] + ".py")), *rest[1:]]
+    if first == "tactus":
+        return [os.path.abspath(program.tactus()), *rest]
+    return [sys.executable, first, *(os.path.abspath(program.tactus()) if word == "tactus" else word for word in rest)]
 
 
 def differences(before, after, machine, tolerance=1e-6):
     """[(line, column, before, after)] of two tables of the same rows; columns of times are left out."""
     def read(path):
         with open(path, encoding="utf8", newline="") as file:
-            return list(csv.reader(file))
+            head, *rows = csv.reader(file)
+        compared = [i for i, column in enumerate(head) if column not in machine]
+        return [[row[i] for i in compared] for row in (head, *rows)]
     old, new = read(before), read(after)
     if old[0] != new[0] or len(old) != len(new):
         return [(1, "", f"{len(old)} rows of {', '.join(old[0])}", f"{len(new)} rows of {', '.join(new[0])}")]
     return [(line, column, a, b) for line, (left, right) in enumerate(zip(old, new), 1) for column, a, b in zip(old[0], left, right)
-            if column not in machine and not same(a, b, tolerance)]
+            if not same(a, b, tolerance)]
 
 
 def same(a, b, tolerance):
     try:
-        return a == b or abs(float(a) - float(b)) <= tolerance * max(abs(float(a)), abs(float(b)))
+        return a == b or abs(float(a) - float(b)) <= tolerance * max(abs(float(a)), abs(float(b))) + 1e-9  # what is 0 but for rounding
     except ValueError:
         return False
 

@@ -2,14 +2,16 @@
 """A table whose column `source` says where each number is from.
 
     mean{driven/points.csv | scene=push-1dof | loss=0% | packets_per_s} / 1000    a formula over cells of other tables (in reports/)
-    sum{rigid/points.csv | seed=1..8 | coder!=-p 4% | force_over}                 a whole number from 1 to 8; a text that is another
+    sum{rigid/points.csv | seed=1..8 | coder!=-p 4% | force_over}                 a whole number from 1 to 8; another text
+    least{elastic/points.csv | told=0.9 or 1.1 | packets_per_s}                   one of two texts
     {../lab/study/wall.cpp ~ kMass =} * 1000                                      the number that follows a text in any file
     defined: 714 * 3 * 32                                                         arithmetic alone
     machine: ./go bench                                                           not to be had here: a machine, another program,
     quoted: VegaFEM 3.1, its paper                                                a recording that is not shipped; why stands behind it
 
 A cell in braces names a table, conditions on its columns, and a formula over the columns of the rows that meet them. Without a word before
-the brace there is one such row; mean, least, largest, farthest (from 0), sum and rows take any number.
+the brace there is one such row; mean, least, largest, farthest (from 0), amount (of the farthest, without its sign),
+sum and rows take any number.
 
     largest over v p: {a.csv | coder=main | bits} / {a.csv | coder=thesis | bits}     of the formula for each v and p that the first cell has
 """
@@ -25,10 +27,11 @@ DEFINED = "defined:"
 NOT_HERE = ("machine:", "quoted:", "recording:", "by hand:")
 CELL = re.compile(r"(?P<join>[a-z]*)\{(?P<what>[^{}]*)\}")
 OVER = re.compile(r"(?P<join>[a-z]+) over (?P<columns>[\w ]+):")
+EITHER = " or "
 SPAN = re.compile(r"(\d+)\.\.(\d+)")
 NUMBER = re.compile(r"\s*[-+]?(?:\d[\d']*\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 JOINS = {"mean": lambda all: sum(all) / len(all), "least": min, "largest": max, "farthest": lambda all: max(all, key=abs),
-         "sum": math.fsum, "rows": len}
+         "amount": lambda all: max(map(abs, all)), "sum": math.fsum, "rows": len}
 
 
 class Tables:
@@ -44,7 +47,8 @@ class Tables:
         return self.read[name]
 
     def text(self, name):
-        return (self.folder / name).read_text(encoding="utf8")
+        """With one blank for each space between words."""
+        return " ".join((self.folder / name).read_text(encoding="utf8").split())
 
 
 def column_formula(text, row):
@@ -59,9 +63,9 @@ def is_met(row, conditions):
 
 
 def is_one_of(cell, value):
-    """1..8 stands for whole numbers from 1 to 8."""
+    """1..8 stands for whole numbers from 1 to 8, 'a or b' for either."""
     found = SPAN.fullmatch(value)
-    return cell == value or bool(found and cell.isdecimal() and int(found[1]) <= int(cell) <= int(found[2]))
+    return cell in value.split(EITHER) or bool(found and cell.isdecimal() and int(found[1]) <= int(cell) <= int(found[2]))
 
 
 def parts(tables, what):
@@ -90,7 +94,7 @@ def cell(tables, join, what, fixed):
     name, wanted, formula = parts(tables, what)
     rows = tables.rows(name)
     wanted = wanted + [(column, False, value) for column, value in fixed.items()
-                       if rows and column in rows[0] and column not in {known for known, is_other, _ in wanted if not is_other}]
+                       if rows and column in rows[0] and column not in {known for known, is_other, one in wanted if not is_other and EITHER not in one}]
     met = [row for row in rows if is_met(row, wanted)]
     if not met or (not join and len(met) > 1):
         raise Refusal(f"{name}: {len(met)} rows meet {' | '.join(f'{column}={value}' for column, _, value in wanted)}")
