@@ -348,7 +348,7 @@ def test_the_page_of_recordings(tmp_path, monkeypatch):
         exec(block, {})
     trace = tactus.read_trace("sine.mcap")
     assert len(blocks) == 1 and len(trace.ticks) == 2000
-    assert abs(float(trace.objects["position"][1000, 0, 0]) - 0.05 * math.sin(1)) < 1e-12
+    assert abs(float(trace.position[1000, 0, 0]) - 0.05 * math.sin(1)) < 1e-12
 
 
 def test_tables(tmp_path):
