@@ -75,27 +75,31 @@ def parts(tables, what):
     for condition in conditions:
         column, _, value = condition.partition("=")
         wanted.append((column.removesuffix("!").strip(), column.endswith("!"), value.strip()))
-    rows = tables.rows(name)
     for column, _, _ in wanted:
-        if rows and column not in rows[0]:
+        if column not in tables.rows(name)[0]:
             raise Refusal(f"{name}: has no column {column}")
     return name, wanted, formula
 
 
+def after_text(tables, name, text):
+    """The number that stands behind a text which is there once."""
+    places = tables.text(name).split(text)
+    found = NUMBER.match(places[1]) if len(places) == 2 else None
+    if not found:
+        raise Refusal(f"{name}: the text '{text}' stands there {len(places) - 1} times, or no number follows it")
+    return float(found[0].replace("'", ""))
+
+
 def cell(tables, join, what, fixed):
-    """in   fixed  {column: value} that holds where the cell says nothing of the column"""
+    """in   fixed  {column: value} that holds where the cell names no value of the column"""
     if "~" in what:
-        name, _, after = (part.strip() for part in what.partition("~"))
-        places = tables.text(name).split(after)
-        found = NUMBER.match(places[1]) if len(places) == 2 else None
-        if not found:
-            raise Refusal(f"{name}: the text '{after}' stands there {len(places) - 1} times, or no number follows it")
-        return float(found[0].replace("'", ""))
+        name, _, text = what.partition("~")
+        return after_text(tables, name.strip(), text.strip())
     name, wanted, formula = parts(tables, what)
-    rows = tables.rows(name)
-    wanted = wanted + [(column, False, value) for column, value in fixed.items()
-                       if rows and column in rows[0] and column not in {known for known, is_other, one in wanted if not is_other and EITHER not in one}]
-    met = [row for row in rows if is_met(row, wanted)]
+    named = {column for column, is_other, value in wanted if not is_other and EITHER not in value}
+    columns = tables.rows(name)[0]
+    wanted = wanted + [(column, False, value) for column, value in fixed.items() if column in columns and column not in named]
+    met = [row for row in tables.rows(name) if is_met(row, wanted)]
     if not met or (not join and len(met) > 1):
         raise Refusal(f"{name}: {len(met)} rows meet {' | '.join(f'{column}={value}' for column, _, value in wanted)}")
     numbers = [number for number in (column_formula(formula, row) for row in met) if math.isfinite(number)]
@@ -136,7 +140,7 @@ def one_value(tables, source, fixed):
 
 
 def decimals(text):
-    """Of a number as it is written: 2 of 0.26, -2 of 1.2e3's 1.2 * 10^3 ..., so that half a unit of its last digit is told."""
+    """Where the last digit of a written number stands: 2 for 0.26, 6 for 8.5e-5."""
     mantissa, _, exponent = text.lower().partition("e")
     return len(mantissa.partition(".")[2]) - int(exponent or 0)
 
