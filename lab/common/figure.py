@@ -136,7 +136,7 @@ def compact(svg):
     svg = re.sub(r' id="([^"]*)"', lambda found: f' id="{used[found[1]]}"' if found[1] in used else "", svg)
     svg = re.sub(r'(?<=href="#)[^"]+|(?<=url\(#)[^)]+', lambda found: used[found[0]], svg)
     styles = collections.Counter(re.findall(r' style="([^"]*)"', svg))
-    classes = {style: f"s{i}" for i, (style, count) in enumerate(styles.items()) if count > 2}
+    classes = {style: f"s{i}" for i, (style, count) in enumerate(styles.items()) if count > 2 and "url(" not in style}
     svg = re.sub(r' style="([^"]*)"', lambda found: f' class="{classes[found[1]]}"' if found[1] in classes else found[0], svg)
     told = "".join(f".{name}{{{style}}}" for style, name in classes.items())
     return re.sub(r"\n\s+", "\n", svg.replace("</style>", told + "</style>", 1))
@@ -149,23 +149,23 @@ def hundredths(number):
 
 
 def compact_path(path):
-    """Of M, L, Q, C and z with absolute coordinates; others stay as they are."""
+    """Of M, L, Q, C and z with absolute coordinates; others, such as those that are compact already, stay as they are."""
+    pieces = re.findall(r"([A-Za-z])([^A-Za-z]*)", path.replace("Z", "z"))
+    if any(letter not in "MLQCz" for letter, _ in pieces):
+        return path
     out, x, y = [], 0, 0
-    for letter, numbers in re.findall(r"([A-Za-z])([^A-Za-z]*)", path.replace("Z", "z")):
+    for letter, numbers in pieces:
         values = [round(100 * float(number)) for number in numbers.replace(",", " ").split()]
-        points = {"M": 1, "L": 1, "Q": 2, "C": 3, "z": 0}.get(letter)
-        if points is None or (letter == "M" and len(values) != 2) or (len(values) % (2 * points) if points else values):
-            return path
-        if letter != "M" and (not out or out[-1] == "z"):
-            return path
-        out += ["z"] if letter == "z" else ["M" + joined(values)] if letter == "M" else []
+        count = {"M": len(values), "L": 2, "Q": 4, "C": 6, "z": 1}[letter]  # numbers of a step
+        if letter == "M":
+            out.append("M" + joined(values))
+            x, y = values[-2:]
+            continue
         steps = []
-        for first in range(0, len(values), 2 * points) if points else ():
-            these = values[first:first + 2 * points]
-            steps += [value - (x, y)[i % 2] for i, value in enumerate(these)]
-            x, y = these[-2:]
-        if letter in "LQC":
-            out.append(letter.lower() + joined(steps))
+        for first in range(0, len(values), count):
+            steps += [value - (x, y)[i % 2] for i, value in enumerate(values[first:first + count])]
+            x, y = values[first + count - 2:first + count]
+        out.append("z" if letter == "z" else letter.lower() + joined(steps))
     return "".join(out)
 
 

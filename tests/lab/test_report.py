@@ -62,6 +62,13 @@ class Reports(unittest.TestCase):
         self.assertEqual(there - files - set(report.sourced()), {"precision/other-programs.csv"})
         self.assertEqual({target for target in files - there if target.endswith((".csv", ".svg"))}, set())
 
+    def test_figures_are_drawn_by_these_scripts(self):
+        drawn = list((ROOT / "reports").rglob("*.svg"))
+        self.assertGreater(len(drawn), 60)
+        for path in drawn:
+            text = path.read_text(encoding="utf8")
+            self.assertEqual(figure.compact(text), text, path)
+
     def test_differences(self):
         with tempfile.TemporaryDirectory() as folder:
             one, two = pathlib.Path(folder) / "1.csv", pathlib.Path(folder) / "2.csv"
