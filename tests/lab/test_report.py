@@ -56,6 +56,13 @@ class Reports(unittest.TestCase):
         self.assertEqual([wrong for _, _, wrong in counts if wrong], [])
         self.assertGreater(sum(agree for agree, _, _ in counts), 350)
 
+    def test_the_list_tells_numbers_of_results(self):
+        told = {row["value"] for row in cells.Tables(ROOT / "reports").rows("results.csv")}
+        rows = [line.split("|") for line in (ROOT / "reports/README.md").read_text(encoding="utf8").splitlines() if line.startswith("|")]
+        numbers_of = [row[2].split()[0] for row in rows if re.match(r" [\d.]", row[2])]
+        self.assertGreater(len(numbers_of), 50)
+        self.assertEqual([number for number in numbers_of if number not in told], [])
+
     def test_every_table_and_figure_has_its_command(self):
         files = {target for one in report.made().values() for target in one["files"]}
         there = {str(path.relative_to(ROOT / "reports")) for ending in ("csv", "svg") for path in (ROOT / "reports").rglob("*." + ending)}
