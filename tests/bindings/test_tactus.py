@@ -11,6 +11,7 @@ import multiprocessing
 import os
 import pathlib
 import pickle
+import re
 import subprocess
 import sys
 
@@ -338,6 +339,16 @@ def test_figure_of_the_thesis(traces, tmp_path):
     assert "<svg" in drawn and all(name in drawn for name in rate)
     refused = subprocess.run([*command, "figure.gif", traces / "rigid.mcap"], capture_output=True, text=True, cwd=tmp_path)
     assert refused.returncode == 1 and "figures are .svg, .png or .pdf" in refused.stderr
+
+
+def test_the_page_of_recordings(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    blocks = re.findall(r"^```python\n(.*?)^```$", (ROOT / "docs/recordings.md").read_text(), re.M | re.S)
+    for block in blocks:
+        exec(block, {})
+    trace = tactus.read_trace("sine.mcap")
+    assert len(blocks) == 1 and len(trace.ticks) == 2000
+    assert abs(float(trace.position[1000, 0, 0]) - 0.05 * math.sin(1)) < 1e-12
 
 
 def test_tables(tmp_path):
