@@ -15,7 +15,6 @@
 namespace tactus {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
 constexpr std::uint64_t kPatience = 100'000;
 
 Bytes random_bytes(std::size_t size, std::uint64_t seed = 3) {

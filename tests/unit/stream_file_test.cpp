@@ -8,7 +8,6 @@
 namespace tactus {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
 
 SharedScene one_object() {
   SceneSpec spec;
