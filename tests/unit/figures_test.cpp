@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/figure/motion_figure.h"
 #include "cli/figure/time_figure.h"
 
 namespace tactus::cli {
