@@ -28,9 +28,9 @@ std::string filled(std::string text, const std::string& name) {
 }
 
 const std::string& text_at(const Json& schema, const char* key) {
-  static const std::string kNone;
+  static const std::string none;
   const auto found = schema.find(key);
-  return found == schema.end() ? kNone : found->get_ref<const std::string&>();
+  return found == schema.end() ? none : found->get_ref<const std::string&>();
 }
 
 /// The unit after a number, " mm", or nothing.
@@ -155,8 +155,8 @@ class Layout {
   /// Calls look(member, its schema) in the order of the schema.
   template <class Look>
   void for_each_member(const Json& value, const Json& schema, Look look) {
-    static const Json kNone = Json::object();
-    const Json& known = schema.contains("properties") ? schema["properties"] : kNone;
+    static const Json none = Json::object();
+    const Json& known = schema.contains("properties") ? schema["properties"] : none;
     for (const auto& [key, property] : known.items())
       if (value.contains(key)) look(value[key], property);
     for (const auto& [key, part] : value.items()) {
