@@ -9,7 +9,7 @@
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_scene.h>
 #include "cli/commands/input.h"
-#include "cli/figure/error_figure.h"
+#include "cli/figure/time_figure.h"
 #include "cli/options/contact_option.h"
 #include "cli/report/report.h"
 #include "cli/report/table.h"

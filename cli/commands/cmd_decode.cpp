@@ -12,7 +12,7 @@
 #include <tactus/trace/trace_file.h>
 #include <tactus/trace/trace_scene.h>
 #include "cli/commands/input.h"
-#include "cli/figure/motion_figure.h"
+#include "cli/figure/time_figure.h"
 #include "cli/report/report.h"
 
 namespace tactus::cli {

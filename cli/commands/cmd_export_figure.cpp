@@ -4,7 +4,7 @@
 
 #include "cli/commands/commands.h"
 #include "cli/commands/input.h"
-#include "cli/figure/motion_figure.h"
+#include "cli/figure/time_figure.h"
 #include "cli/report/report.h"
 
 namespace tactus::cli {

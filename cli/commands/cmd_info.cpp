@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -59,48 +58,47 @@ std::optional<Error> for_each_packet(Player& player, OnPacket on_packet) {
   }
 }
 
-/// One line of the list of packets. Columns that no packet has are left out.
+/// The list of packets. They can be too many to be kept: the stream is played once for the widths, and again to print. Columns that no
+/// packet has are left out.
 class PacketTable {
  public:
-  void note(const Json& packet) {
-    for (const auto& item : packet.items()) seen_.insert(item.key());
+  void look(const Json& packet) {
+    const std::vector<std::string> row = cells(packet);
+    for (std::size_t i = 0; i < row.size(); ++i) seen_[i] = seen_[i] || !row[i].empty();
+    columns_.look(row, false);
   }
-  std::vector<std::string> heading() const {
-    std::vector<std::string> out;
-    for (const auto& [key, property] : items_["properties"].items())
-      if (seen_.contains(key)) out.push_back(property["title"]);
-    return out;
-  }
-  std::vector<std::string> row(const Json& packet) const {
-    std::vector<std::string> out;
-    for (const auto& [key, property] : items_["properties"].items()) {
-      if (!seen_.contains(key)) continue;
-      const std::string cell = packet.contains(key) ? cell_of(packet[key], property, root_) : "";
-      out.push_back(cell.empty() ? "-" : cell);
-    }
-    return shown_cells(std::move(out));
+  void print(Bytes bytes) {
+    std::vector<std::string> heading;
+    for (const auto& [key, property] : properties_.items()) heading.push_back(property["title"]);
+    for (std::size_t i = 0; i < seen_.size(); ++i)
+      if (!seen_[i]) heading[i].clear();
+    columns_.look(heading, true);
+    fmt::print("\n");
+    print_heading(stdout, columns_.aligned(heading));
+    if (auto player = Player::open(bytes))
+      for_each_packet(*player, [&](const PlayedPacket& played) { print_row(packet_info_value(played, player->scene()).json); });
   }
 
  private:
-  const Json& root_ = schema("info");
-  const Json& items_ = root_["oneOf"][0]["properties"]["packet_list"]["items"];
-  std::set<std::string> seen_;
-};
+  std::vector<std::string> cells(const Json& packet) const {
+    std::vector<std::string> out;
+    for (const auto& [key, property] : properties_.items()) {
+      const auto member = packet.find(key);
+      out.push_back(member == packet.end() ? "" : cell_of(*member, property));
+    }
+    return shown_cells(std::move(out));
+  }
+  void print_row(const Json& packet) const {
+    std::vector<std::string> row = cells(packet);
+    for (std::size_t i = 0; i < row.size(); ++i)
+      if (seen_[i] && row[i].empty()) row[i] = "-";
+    fmt::print("{}\n", columns_.aligned(row));
+  }
 
-/// Packets can be too many to be kept: the stream is played again for the widths, and again to print.
-void print_packets(Bytes bytes, const PacketTable& table) {
-  Columns columns;
-  columns.look(table.heading(), true);
-  const auto each = [&](auto look) {
-    if (auto player = Player::open(bytes))
-      for_each_packet(*player,
-                      [&](const PlayedPacket& played) { look(table.row(packet_info_value(played, player->scene()).json)); });
-  };
-  each([&](const std::vector<std::string>& row) { columns.look(row, false); });
-  fmt::print("\n");
-  print_heading(stdout, columns.aligned(table.heading()));
-  each([&](const std::vector<std::string>& row) { fmt::print("{}\n", columns.aligned(row)); });
-}
+  const Json& properties_ = schema("info")["oneOf"][0]["properties"]["packet_list"]["items"]["properties"];
+  std::vector<bool> seen_ = std::vector<bool>(properties_.size());
+  Columns columns_;
+};
 
 /// The same as the last member of the JSON object `info`.
 void print_with_packets(Bytes bytes, const Json& info) {
@@ -131,12 +129,12 @@ Outcome info_stream(const InfoOptions& options) {
   const bool is_table = options.packets && !options.common.json;
   const std::optional<Error> error = for_each_packet(*player, [&](const PlayedPacket& played) {
     totals.add(played);
-    if (is_table) table.note(packet_info_value(played, player->scene()).json);
+    if (is_table) table.look(packet_info_value(played, player->scene()).json);
   });
   const Value info = stream_info_value(*player, totals, bytes.size(), {error, player->complete()});
   if (options.packets && options.common.json) print_with_packets(bytes, info.json);
   else print(info, "info", options.common);
-  if (is_table && !totals.is_empty()) print_packets(bytes, table);
+  if (is_table && !totals.is_empty()) table.print(bytes);
   return end_of(options, error);
 }
 

@@ -18,7 +18,7 @@
 #include "cli/commands/input.h"
 #include "cli/commands/scene_run.h"
 #include "cli/commands/stiffness_map.h"
-#include "cli/figure/motion_figure.h"
+#include "cli/figure/time_figure.h"
 #include "cli/live/ticker.h"
 #include "cli/options/option_needs.h"
 #include "cli/options/options_link.h"

@@ -85,9 +85,6 @@ struct MeshReport {
 inline double bytes_of(const DeformableRates& t, std::uint64_t header) {
   return static_cast<double>(t.bytes + t.sizes.size() * header);
 }
-/// Every frame as three floats per vertex.
-inline double raw_bytes(const MeshReport& mesh) { return 12.0 * static_cast<double>(mesh.vertices * mesh.traffic->frames); }
-inline bool has_layers(const DeformableRates& t) { return t.layers[0].packets + t.layers[1].packets > 0; }
 
 // ==== traffic layers ====
 // What an end of a session sends, layer by layer.
