@@ -16,6 +16,7 @@ std::string text_of(const ReadNote& note) {
 
 std::vector<std::string> texts_of(const std::vector<ReadNote>& notes) {
   std::vector<std::string> texts;
+  texts.reserve(notes.size());
   for (const ReadNote& note : notes) texts.push_back(text_of(note));
   return texts;
 }

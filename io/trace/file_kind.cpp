@@ -31,7 +31,7 @@ struct Kind {
   std::string_view what, remedy;
 };
 
-using std::string_view_literals::operator""sv;
+using namespace std::string_view_literals;
 
 constexpr std::array kKinds{
     Kind{"#ROSBAG V"sv, 0, "this is a bag of ROS 1, not an MCAP file", kConvertBag},

@@ -36,7 +36,7 @@ std::string place_of(const Vec3& p) {
 /// Makes triangles of polygons. Errors name the file's own face, line and vertices.
 class SurfaceMaker {
  public:
-  SurfaceMaker(PolygonSoup&& soup, const SurfaceOptions& options) : soup_(std::move(soup)), options_(options) {}
+  SurfaceMaker(PolygonSoup&& soup, SurfaceOptions options) : soup_(std::move(soup)), options_(std::move(options)) {}
 
   tl::expected<SurfaceFile, Diagnostic> make() {
     for (std::size_t f = 0; f < soup_.polygons.size(); ++f) TACTUS_CHECK(check_corners(f));

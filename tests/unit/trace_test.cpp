@@ -369,7 +369,8 @@ TEST(Trace, ChunksOfOtherWriters) {
   const Bytes inside = join({schema_record(1, MessageType::pose), channel_record(1, 1, "/a/pose"), pose_record(1, 0, {})});
   EXPECT_EQ(rule_of({chunk_record({"", inside.size()}, inside)}), "");
   EXPECT_EQ(rule_of({chunk_record({"", inside.size() + 1}, inside)}), "R-TRC-8");
-  EXPECT_EQ(rule_of({chunk_record({"lz4", inside.size()}, inside)}), "R-TRC-7");
+  EXPECT_EQ(rule_of({chunk_record({"lz4", inside.size()}, inside)}), "R-TRC-8");
+  EXPECT_EQ(rule_of({chunk_record({"br", inside.size()}, inside)}), "R-TRC-7");
   EXPECT_EQ(rule_of({chunk_record({"zstd", inside.size()}, inside)}), "R-TRC-8");
   const Bytes nested = chunk_record({"", inside.size()}, inside);
   EXPECT_EQ(rule_of({chunk_record({"", nested.size()}, nested)}), "R-TRC-9");
