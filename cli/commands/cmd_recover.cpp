@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <filesystem>
 #include <utility>
 
@@ -64,7 +63,7 @@ class Held {
       for (std::size_t i = 0; i < last_.size(); ++i)
         if (info_.objects[i].dof != Dof::none && !since_[i]) since_[i] = frame.tick;
     for (std::size_t i = 0; i < last_.size(); ++i)
-      if (since_[i] && std::memcmp(&frame.objects[i], &last_[i], sizeof last_[i]) != 0) end(i, frame.tick);
+      if (since_[i] && !is_same(frame.objects[i], last_[i])) end(i, frame.tick);
     last_ = frame.objects;
   }
   std::vector<std::string> finish(std::int64_t last_tick) {
@@ -74,6 +73,10 @@ class Held {
   }
 
  private:
+  static bool is_same(const RigidSample& a, const RigidSample& b) {
+    return a.pose.position == b.pose.position && a.pose.rotation == b.pose.rotation && a.velocity == b.velocity &&
+           a.angular_velocity == b.angular_velocity;
+  }
   void end(std::size_t i, std::int64_t tick) {
     if (tick > *since_[i])
       said_.push_back(

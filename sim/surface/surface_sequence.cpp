@@ -101,31 +101,31 @@ void SurfaceSequence::take(SurfaceFile&& first) {
   rest_ = std::move(first.mesh);
 }
 
-tl::expected<SurfaceSequence, Diagnostic> SurfaceSequence::open(const std::string& folder, const SequenceOptions& options) {
+tl::expected<SurfaceSequence, Diagnostic> SurfaceSequence::open(const std::string& path, const SequenceOptions& options) {
   std::error_code ignored;
-  if (const std::string format = surface_format(folder);
-      (format == ".gltf" || format == ".glb") && !fs::is_directory(folder, ignored))
-    return open_scene(folder, options).map_error([&](Diagnostic e) {
-      if (e.file.empty()) e.file = folder;
+  if (const std::string format = surface_format(path);
+      (format == ".gltf" || format == ".glb") && !fs::is_directory(path, ignored))
+    return open_scene(path, options).map_error([&](Diagnostic e) {
+      if (e.file.empty()) e.file = path;
       return e;
     });
   SurfaceSequence out;
   out.turns_ = options.axes == Axes::y_up;
-  TACTUS_TRY(auto names, surfaces_in(folder, out.notes_));
+  TACTUS_TRY(auto names, surfaces_in(path, out.notes_));
   if (options.series.empty()) {
     std::vector<FrameFile> all;
     all.reserve(names.size());
     for (const std::string& name : names) all.push_back({name, 0});
-    TACTUS_CHECK(check_formats(all, folder));
+    TACTUS_CHECK(check_formats(all, path));
   }
   auto frames = order_frames(std::move(names), options.series, out.notes_);
   if (!frames) {
-    frames.error().file = folder;
+    frames.error().file = path;
     return tl::unexpected(frames.error());
   }
-  TACTUS_CHECK(check_formats(*frames, folder));
+  TACTUS_CHECK(check_formats(*frames, path));
   for (const FrameFile& frame : *frames) {
-    out.files_.push_back((fs::path(folder) / frame.name).string());
+    out.files_.push_back((fs::path(path) / frame.name).string());
     out.offsets_.push_back(frame.offset);
   }
   TACTUS_TRY(auto soup, read_polygons(out.files_[0]));

@@ -43,7 +43,7 @@ tl::expected<TetFile, Diagnostic> read_tet_mesh(const std::string& path);
 
 /// The same from memory; the error's file is empty, ".node" or ".ele".   err  R-TET-9..16
 tl::expected<TetFile, Diagnostic> parse_node_ele(std::string_view node, std::string_view ele);
-tl::expected<TetFile, Diagnostic> parse_msh(std::string_view text);
+tl::expected<TetFile, Diagnostic> parse_msh(std::string_view bytes);
 
 /// Numbered from 0, with the shortest digits that read back as the same bits.
 void write_node(std::ostream& out, const TetMesh& mesh);
