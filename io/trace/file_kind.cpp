@@ -79,10 +79,19 @@ Diagnostic error(Errc code, RuleName rule, std::string_view what, std::string re
   return {.error = fail(code, rule).value(), .cause = std::string(what), .remedy = std::move(remedy)};
 }
 
+/// Neither a shell nor Python reads anything into it: only such a name may stand in a command that somebody copies.
+bool is_safe_in_a_command(std::string_view path) {
+  const auto is_safe = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' || c == '-' ||
+           c == '/';
+  };
+  return !path.empty() && path.front() != '-' && std::all_of(path.begin(), path.end(), is_safe);
+}
+
 std::string with_name(std::string_view remedy, const std::string& path) {
   std::string text(remedy);
-  const std::string name = path.empty() || path == "-" ? "FILE" : shown(path);
-  if (const auto at = text.find("FILE"); at != std::string::npos) text.replace(at, 4, name);
+  const auto at = text.find("FILE");
+  if (at != std::string::npos && is_safe_in_a_command(path)) text.replace(at, 4, path);
   return text;
 }
 

@@ -50,6 +50,19 @@ TEST(TraceFileKind, KnownKindsAreNamedWithTheirCommand) {
   EXPECT_TRUE(kind("\x01\x02\x03\xf0").cause.empty());
 }
 
+/// What is told may be copied into a shell.
+TEST(TraceFileKind, ANameThatAShellWouldReadDoesNotStandInACommand) {
+  const auto remedy = [](std::string_view first, const std::string& path) {
+    return not_mcap(std::span(reinterpret_cast<const std::uint8_t*>(first.data()), first.size()), path).remedy;
+  };
+  EXPECT_EQ(remedy("BZh9", "/data/run_1-a.mcap"), "Unpack it first: `bunzip2 /data/run_1-a.mcap`.");
+  for (const char* name :
+       {"$(touch x).mcap", "a'); import os; ('.npy", "two words.mcap", "a;b", "`id`", "a\nb", "-rf", "\"", "", "-"}) {
+    EXPECT_EQ(remedy("BZh9", name), "Unpack it first: `bunzip2 FILE`.") << name;
+    EXPECT_NE(remedy("\x93NUMPY\x01", name).find("numpy.load('FILE')"), std::string::npos) << name;
+  }
+}
+
 TEST(TraceFileKind, TopicsAreNamedByEncoding) {
   std::map<std::uint16_t, mcap::Channel> channels;
   for (std::uint16_t i = 1; i <= 6; ++i) channels[i] = {i, 0, "/t" + std::to_string(i), i == 6 ? "json" : "protobuf", {}};
