@@ -8,6 +8,7 @@
 #include <tactus/base/rule.h>
 #include <tactus/base/shown.h>
 #include <tactus/base/text.h>
+#include <tactus/trace/file_kind.h>
 #include <tactus/trace/mcap_reader.h>
 
 namespace tactus {
@@ -128,12 +129,9 @@ tl::expected<RecordingFiles, Diagnostic> files_by_name(const fs::path& folder) {
     const char* what = has_database ? "the folder is a bag of databases (.db3), not of MCAP files"
                        : has_ros1   ? "the folder has bags of ROS 1 (.bag), no MCAP files"
                                     : "the folder has no recording: no metadata.yaml and no .mcap file";
-    const char* remedy =
-        has_database
-            ? "`ros2 bag convert -i FOLDER -o mcap.yaml`, where mcap.yaml holds `output_bags: [{uri: NEW, storage_id: mcap, "
-              "all_topics: true, all_services: true}]`, then give the new folder."
-        : has_ros1 ? "Convert each with the Python package rosbags: `rosbags-convert --src FILE --dst NEW --dst-storage mcap`."
-                   : "Give the folder that `ros2 bag record -s mcap` wrote, or a file.";
+    const char* remedy = has_database ? kConvertDatabase
+                         : has_ros1   ? kConvertBag
+                                      : "Give the folder that `ros2 bag record -s mcap` wrote, or a file.";
     return tl::unexpected(refused(Errc::unsupported, "R-TRC-2", what, remedy));
   }
   std::sort(names.begin(), names.end(), comes_before);
@@ -156,10 +154,7 @@ tl::expected<RecordingFiles, Diagnostic> files_of_folder(const fs::path& folder,
       return tl::unexpected(
           refused(Errc::unsupported, "R-TRC-2", "the bag is stored as " + shown(metadata.storage) + ", not as MCAP", ""));
     return tl::unexpected(refused(Errc::unsupported, "R-TRC-2",
-                                  "the folder is a bag of databases (storage sqlite3), not of MCAP files",
-                                  "`ros2 bag convert -i FOLDER -o mcap.yaml`, where mcap.yaml holds `output_bags: [{uri: NEW, "
-                                  "storage_id: mcap, all_topics: true, "
-                                  "all_services: true}]`, then give the new folder."));
+                                  "the folder is a bag of databases (storage sqlite3), not of MCAP files", kConvertDatabase));
   }
   const std::string format = in_lower_case(metadata.compression_format);
   const bool is_packed = !metadata.compression_mode.empty() && in_lower_case(metadata.compression_mode) != "none";

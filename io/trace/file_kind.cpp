@@ -13,18 +13,11 @@
 namespace tactus {
 namespace {
 
-constexpr std::string_view kConvertBag =
-    "With the Python package rosbags: `rosbags-convert --src FILE --dst FOLDER --dst-storage mcap`, then give the folder.";
 constexpr std::string_view kSpreadsheet =
     "Save it as CSV, for example by `libreoffice --convert-to csv FILE`, then `tactus import csv`.";
 constexpr std::string_view kDataFrame =
     "`python3 -c \"import pandas; pandas.read_parquet('FILE').to_csv('table.csv', index=False)\"`, then `tactus import csv "
     "table.csv`.";
-constexpr std::string_view kConvertDatabase =
-    "`ros2 bag convert -i FILE -o mcap.yaml`, where mcap.yaml holds `output_bags: [{uri: FOLDER, storage_id: mcap, all_topics: "
-    "true, "
-    "all_services: true}]`, then give the folder.";
-
 struct Kind {
   std::string_view magic;
   std::size_t offset;
@@ -92,6 +85,8 @@ std::string with_name(std::string_view remedy, const std::string& path) {
   std::string text(remedy);
   const auto at = text.find("FILE");
   if (at != std::string::npos && is_safe_in_a_command(path)) text.replace(at, 4, path);
+  if (text.find("`tactus import csv") != std::string::npos)
+    text += " It wants to know the columns: `--time NAME --map position=X,Y,Z -o trace.mcap`.";
   return text;
 }
 
@@ -133,12 +128,12 @@ Diagnostic not_mcap(std::span<const std::uint8_t> first, const std::string& path
   if (!is_utf16 && (!is_text || begin == std::string_view::npos)) return error(Errc::malformed, "R-TRC-2", "", "");
   if (text[begin] == '{' || text[begin] == '[')
     return error(Errc::unsupported, "R-TRC-2", "this is JSON, not an MCAP file",
-                 "Write its numbers as a table and read that: `tactus import csv`.");
+                 with_name("Write its numbers as a table and read that: `tactus import csv`.", path));
   if (text[begin] == '<')
     return error(Errc::unsupported, "R-TRC-2", "this is XML or HTML, not an MCAP file; a download may have failed",
                  "Copy it again from its source.");
   return error(Errc::unsupported, "R-TRC-2", "this is a text file, not an MCAP file",
-               with_name("If it is a table, read it with `tactus import csv FILE -o trace.mcap`.", path));
+               with_name("If it is a table, read it with `tactus import csv FILE`.", path));
 }
 
 Diagnostic nothing_of_use(const std::map<std::uint16_t, mcap::Schema>& schemas,

@@ -14,6 +14,13 @@ namespace tactus {
 
 inline constexpr std::size_t kKindBytes = 512;  ///< so many tell what a file is
 
+// Remedies: what makes MCAP of other bags. FILE stands for the name, NEW for the folder that comes out.
+inline constexpr const char* kConvertBag =
+    "With the Python package rosbags: `rosbags-convert --src FILE --dst NEW --dst-storage mcap`, then give the folder NEW.";
+inline constexpr const char* kConvertDatabase =
+    "`ros2 bag convert -i FILE -o mcap.yaml`, where mcap.yaml holds "
+    "`output_bags: [{uri: NEW, storage_id: mcap, all_topics: true, all_services: true}]`, then give the folder NEW.";
+
 /// R-TRC-2 or R-TRC-3 for a file that does not begin with MCAP's magic bytes.
 ///   in  first  its first bytes, up to kKindBytes;  path  may be empty
 Diagnostic not_mcap(std::span<const std::uint8_t> first, const std::string& path);
