@@ -115,7 +115,7 @@ tl::expected<RecordingFiles, Diagnostic> files_by_name(const fs::path& folder) {
   bool has_database = false, has_ros1 = false;
   for (fs::directory_iterator entry(folder, failed), end; !failed && entry != end; entry.increment(failed)) {
     const std::string name = entry->path().filename().string();
-    if (name.starts_with('.')) continue;
+    if (name.starts_with('.') || !entry->is_regular_file(failed)) continue;
     const bool is_mcap =
         name.ends_with(".mcap") || name.ends_with(".mcap.zstd") || name.ends_with(".mcap.zst") || name.ends_with(".mcap.lz4");
     if (is_mcap) names.push_back(name);
@@ -146,7 +146,7 @@ tl::expected<RecordingFiles, Diagnostic> files_by_name(const fs::path& folder) {
 tl::expected<RecordingFiles, Diagnostic> files_of_folder(const fs::path& folder, MissingFiles missing) {
   std::error_code failed;
   const fs::path listing = folder / "metadata.yaml";
-  if (!fs::exists(listing, failed)) return files_by_name(folder);
+  if (!fs::is_regular_file(listing, failed)) return files_by_name(folder);
   TACTUS_TRY(const std::string yaml, diagnosed(read_text(listing.string())));
   const BagMetadata metadata = parse_bag_metadata(yaml);
   if (!metadata.storage.empty() && metadata.storage != "mcap") {
@@ -169,16 +169,17 @@ tl::expected<RecordingFiles, Diagnostic> files_of_folder(const fs::path& folder,
   files.is_folder = true;
   files.announced_messages = metadata.message_count;
   for (const std::string& name : metadata.files) {
-    fs::path path = folder / fs::path(name).filename();  // a bag lies in one folder; nothing outside of it is opened
+    fs::path path = folder / fs::path(name).filename();  // a bag lies in one folder; nothing outside of it is opened, and no pipe
     // What was packed or unpacked by hand has got or lost an ending.
     for (const char* ending : {".zstd", ".zst"}) {
-      if (fs::exists(path, failed)) break;
+      if (fs::is_regular_file(path, failed)) break;
       const std::string text = path.string();
-      if (fs::exists(text + ending, failed)) path = text + ending;
-      else if (text.ends_with(ending) && fs::exists(text.substr(0, text.size() - std::string_view(ending).size()), failed))
+      if (fs::is_regular_file(text + ending, failed)) path = text + ending;
+      else if (text.ends_with(ending) &&
+               fs::is_regular_file(text.substr(0, text.size() - std::string_view(ending).size()), failed))
         path = text.substr(0, text.size() - std::string_view(ending).size());
     }
-    if (fs::exists(path, failed)) {
+    if (fs::is_regular_file(path, failed)) {
       files.paths.push_back(path.string());
     } else if (missing == MissingFiles::refuse) {
       return tl::unexpected(refused(Errc::io, "R-TRC-1", "metadata.yaml lists " + shown(name) + ", which is not there",

@@ -128,5 +128,17 @@ TEST(SampleTrack, FramesAndEqualTimes) {
   EXPECT_EQ(track.frame(), 2u);
 }
 
+TEST(SampleTrack, TwoSamplesAreJoinedUpToTheGapAndNoFarther) {
+  for (const auto& [apart, is_joined] : {std::pair{100, true}, std::pair{101, false}}) {
+    Track track({.gap = 100.0 * kMs, .tick = kMs});
+    track.add({0, {along_x(0), {}, {}}});
+    track.add({apart * kMs, {along_x(apart), {}, {}}});
+    track.move_to(50 * kMs);
+    EXPECT_EQ(track.place(), is_joined ? Place::between : Place::after) << apart;
+    EXPECT_NEAR(track.moving(kNanosecond).pose.position.x, is_joined ? 50 : 0, 1e-9) << apart;
+    EXPECT_NEAR(track.moving(kNanosecond).velocity.x, is_joined ? 1000 : 0, 1e-6) << apart;
+  }
+}
+
 }  // namespace
 }  // namespace tactus

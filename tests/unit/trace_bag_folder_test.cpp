@@ -57,5 +57,21 @@ TEST(TraceBagFolder, WithoutAListTheNumbersInTheNamesOrderTheFiles) {
   EXPECT_EQ(files->notes.size(), 1U);
 }
 
+/// A bag lies in one folder: what its list says opens nothing outside of it.
+TEST(TraceBagFolder, NothingOutsideOfTheFolderIsOpened) {
+  const auto outer = std::filesystem::path(::testing::TempDir()) / ("tactus_outer_" + std::to_string(getpid()));
+  std::filesystem::create_directories(outer / "bag");
+  std::ofstream(outer / "secret.mcap") << "secret";
+  for (const std::string& name : {std::string("../secret.mcap"), (outer / "secret.mcap").string(), std::string("..")}) {
+    std::ofstream(outer / "bag" / "metadata.yaml")
+        << "rosbag2_bagfile_information:\n  relative_file_paths:\n    - " << name << '\n';
+    const auto files = files_of((outer / "bag").string());
+    ASSERT_FALSE(files) << name;
+    EXPECT_EQ(files.error().error.rule, std::string_view("R-TRC-1")) << name;
+    EXPECT_NE(files.error().cause.find("not there"), std::string::npos) << name;
+  }
+  std::filesystem::remove_all(outer);
+}
+
 }  // namespace
 }  // namespace tactus
