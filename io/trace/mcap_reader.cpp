@@ -101,8 +101,8 @@ tl::expected<void, Diagnostic> Reader::start_file() {
   ahead_.clear();
   chunk_position_ = ahead_begin_ = 0;
   chunk_number_ = 0;
-  schema_ids_.clear();
-  channel_ids_.clear();
+  schema_numbers_.of_file.clear();
+  channel_numbers_.of_file.clear();
   within_ = Within::top;
   at_message_ = false;
   TACTUS_TRY(const Compression packed, diagnosed(source_.unpack()));
@@ -348,55 +348,58 @@ Result<void> Reader::open_chunk(ByteReader content) {
   return {};
 }
 
-/// The number that something declared has in all files of a recording: that of its equal in the files before, its own, or a free one.
-template <class T, class Equals>
-std::optional<std::uint16_t> number_for(std::uint16_t own, const std::map<std::uint16_t, T>& known, const Equals& equals) {
-  const auto same = known.find(own);
-  if (same == known.end() || equals(same->second)) {
-    if (same != known.end()) return own;
-    const auto equal = std::find_if(known.begin(), known.end(), [&](const auto& entry) { return equals(entry.second); });
-    return equal == known.end() ? own : equal->first;
+std::string rest_of(ByteReader content) {
+  const auto bytes = content.bytes(content.remaining());
+  return {bytes.begin(), bytes.end()};
+}
+
+/// Keep what is declared for the first time; the same once more, under this number or of another file, changes nothing. Among all files of a
+/// recording it has the number of its equal before, its own, or a free one.
+/// in  content  all that it says but its number
+template <class Declared, class Equals>
+Result<void> Reader::declare(Declared said, std::string content, std::map<std::uint16_t, Declared>& known, Numbers& numbers,
+                             const Equals& equals) {
+  if (const auto old = numbers.of_file.find(said.id); old != numbers.of_file.end())
+    return equals(known.at(old->second), said) ? Result<void>() : refuse(Errc::invalid, "R-TRC-10");
+  const std::size_t size = content.size();
+  const auto [same, is_new] = numbers.by_content.try_emplace(std::move(content), said.id);
+  if (is_new && known.contains(said.id)) {
+    while (numbers.free <= 0xFFFF && known.contains(static_cast<std::uint16_t>(numbers.free))) ++numbers.free;
+    if (numbers.free > 0xFFFF) return refuse(Errc::limit_exceeded, "R-TRC-5");
+    same->second = static_cast<std::uint16_t>(numbers.free);
   }
-  const auto equal = std::find_if(known.begin(), known.end(), [&](const auto& entry) { return equals(entry.second); });
-  if (equal != known.end()) return equal->first;
-  for (std::uint32_t id = 1; id <= 0xFFFF; ++id)
-    if (!known.contains(static_cast<std::uint16_t>(id))) return static_cast<std::uint16_t>(id);
-  return std::nullopt;
+  numbers.of_file.emplace(said.id, same->second);
+  if (!is_new) return {};
+  declared_bytes_ += size;
+  if (declared_bytes_ > limits_.declaration_bytes) return refuse(Errc::limit_exceeded, "R-TRC-5");
+  said.id = same->second;
+  known.emplace(said.id, std::move(said));
+  return {};
 }
 
 Result<void> Reader::add_schema(ByteReader content) {
   if (section_ == Section::summary) return {};
-  const std::size_t size = content.remaining();
   Schema schema;
   schema.id = content.u16();
+  std::string said = rest_of(content);
   schema.name = get_text(content);
   schema.encoding = get_text(content);
   schema.data = get_text(content);
   if (!content.ok()) return refuse(Errc::malformed, "R-TRC-4");
   if (schema.id == 0) return {};  // the format: invalid, to be ignored
   if (!is_utf8(schema.name) || !is_utf8(schema.encoding)) return refuse(Errc::invalid, "R-TRC-11");
-  const auto equals = [&](const Schema& old) {
-    return old.name == schema.name && old.encoding == schema.encoding && old.data == schema.data;
+  const auto equals = [](const Schema& a, const Schema& b) {
+    return a.name == b.name && a.encoding == b.encoding && a.data == b.data;
   };
-  if (const auto old = schema_ids_.find(schema.id); old != schema_ids_.end())
-    return equals(schemas_.at(old->second)) ? Result<void>() : refuse(Errc::invalid, "R-TRC-10");
-  const auto id = number_for(schema.id, schemas_, equals);
-  if (!id) return refuse(Errc::limit_exceeded, "R-TRC-5");
-  schema_ids_.emplace(schema.id, *id);
-  schema.id = *id;
-  if (schemas_.contains(*id)) return {};
-  declared_bytes_ += size;
-  if (declared_bytes_ > limits_.declaration_bytes) return refuse(Errc::limit_exceeded, "R-TRC-5");
-  schemas_.emplace(*id, std::move(schema));
-  return {};
+  return declare(std::move(schema), std::move(said), schemas_, schema_numbers_, equals);
 }
 
 Result<void> Reader::add_channel(ByteReader content) {
   if (section_ == Section::summary) return {};
-  const std::size_t size = content.remaining();
   Channel channel;
   channel.id = content.u16();
   channel.schema_id = content.u16();
+  std::string said = rest_of(content);
   channel.topic = get_text(content);
   channel.message_encoding = get_text(content);
   auto metadata = get_map(content);
@@ -404,25 +407,16 @@ Result<void> Reader::add_channel(ByteReader content) {
   if (!metadata || !is_utf8(channel.topic) || !is_utf8(channel.message_encoding)) return refuse(Errc::invalid, "R-TRC-11");
   channel.metadata = *std::move(metadata);
   if (channel.schema_id != 0) {
-    const auto schema = schema_ids_.find(channel.schema_id);
-    if (schema == schema_ids_.end()) return refuse(Errc::invalid, "R-TRC-10");
+    const auto schema = schema_numbers_.of_file.find(channel.schema_id);
+    if (schema == schema_numbers_.of_file.end()) return refuse(Errc::invalid, "R-TRC-10");
     channel.schema_id = schema->second;
   }
-  const auto equals = [&](const Channel& old) {
-    return old.schema_id == channel.schema_id && old.topic == channel.topic && old.message_encoding == channel.message_encoding &&
-           old.metadata == channel.metadata;
+  said.insert(0, std::to_string(channel.schema_id) + ":");
+  const auto equals = [](const Channel& a, const Channel& b) {
+    return a.schema_id == b.schema_id && a.topic == b.topic && a.message_encoding == b.message_encoding &&
+           a.metadata == b.metadata;
   };
-  if (const auto old = channel_ids_.find(channel.id); old != channel_ids_.end())
-    return equals(channels_.at(old->second)) ? Result<void>() : refuse(Errc::invalid, "R-TRC-10");
-  const auto id = number_for(channel.id, channels_, equals);
-  if (!id) return refuse(Errc::limit_exceeded, "R-TRC-5");
-  channel_ids_.emplace(channel.id, *id);
-  channel.id = *id;
-  if (channels_.contains(*id)) return {};
-  declared_bytes_ += size;
-  if (declared_bytes_ > limits_.declaration_bytes) return refuse(Errc::limit_exceeded, "R-TRC-5");
-  channels_.emplace(*id, std::move(channel));
-  return {};
+  return declare(std::move(channel), std::move(said), channels_, channel_numbers_, equals);
 }
 
 Result<Item> Reader::take_message(ByteReader content) {
@@ -432,8 +426,8 @@ Result<Item> Reader::take_message(ByteReader content) {
   message_.publish_time = content.u64();
   message_.data = whole_of(content);
   if (!content.ok()) return refuse(Errc::malformed, "R-TRC-4");
-  const auto channel = channel_ids_.find(message_.channel_id);
-  if (channel == channel_ids_.end()) return refuse(Errc::invalid, "R-TRC-10");
+  const auto channel = channel_numbers_.of_file.find(message_.channel_id);
+  if (channel == channel_numbers_.of_file.end()) return refuse(Errc::invalid, "R-TRC-10");
   message_.channel_id = channel->second;
   at_message_ = true;
   if (counts_.size() <= message_.channel_id) counts_.resize(std::size_t{message_.channel_id} + 1);

@@ -108,6 +108,15 @@ class Reader {
   Result<void> open_chunk(ByteReader content);
   Result<void> add_schema(ByteReader content);
   Result<void> add_channel(ByteReader content);
+  /// Of the schemas or the channels of this file and of the files before.
+  struct Numbers {
+    std::map<std::uint16_t, std::uint16_t> of_file;  // that this file gives them -> in schemas_, channels_
+    std::map<std::string, std::uint16_t> by_content;
+    std::uint32_t free = 1;  // none below is
+  };
+  template <class Declared, class Equals>
+  Result<void> declare(Declared said, std::string content, std::map<std::uint16_t, Declared>& known, Numbers& numbers,
+                       const Equals& equals);
   Result<Item> take_message(ByteReader content);
   Result<Item> take_attachment(ByteReader content);
   Result<Item> take_metadata(ByteReader content);
@@ -139,9 +148,9 @@ class Reader {
   std::size_t chunk_position_ = 0;
   std::uint64_t chunk_number_ = 0, chunk_from_ = 0, chunk_until_ = 0;  // of the file, from 1; log times that it announces
   Within within_ = Within::top;
-  bool at_message_ = false;                                          // the current record is message_
-  std::optional<std::uint64_t> last_time_;                           // [ns] of the last message
-  std::map<std::uint16_t, std::uint16_t> schema_ids_, channel_ids_;  // of this file -> in schemas_, channels_
+  bool at_message_ = false;                 // the current record is message_
+  std::optional<std::uint64_t> last_time_;  // [ns] of the last message
+  Numbers schema_numbers_, channel_numbers_;
   std::vector<std::uint8_t> unpacked_message_;
   std::uint64_t declared_bytes_ = 0;
   std::map<std::uint16_t, Schema> schemas_;

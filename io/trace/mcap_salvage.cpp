@@ -136,7 +136,7 @@ bool Reader::is_record(std::span<const std::uint8_t> at) const {
   if (opcode == Opcode::data_end) return length == 4;
   if (opcode == Opcode::footer) return length == kFooterContent;
   if (opcode == Opcode::message) {
-    const bool is_known = channel_ids_.contains(in.u16());
+    const bool is_known = channel_numbers_.of_file.contains(in.u16());
     in.u32();
     const std::uint64_t time = in.u64();
     return in.ok() && is_known && length >= 22 && last_time_ && time + kDay > *last_time_ && time < *last_time_ + kDay;
