@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -58,6 +59,25 @@ TEST(CsvPace, RowsThatComeInBurstsAreSpreadEvenly) {
   expect_even(import(moving(600, 120, [](int i) { return std::floor(i / 1.2 + 1e-9) / 100; }), timed()), 120, 1e-3);
   expect_even(import(moving(600, 110, [](int i) { return std::floor(i / 1.1 + 1e-9) / 100; }), timed()), 110, 1e-3);
   expect_even(import(moving(960, 960, [](int i) { return i / 8 / 120.0; }), timed()), 960, 1e-5);
+}
+
+/// Where the limits are: what is 0.4 s apart came in groups, what is 0.6 s apart are pauses; so with rates above 50 kHz.
+TEST(CsvPace, LimitsOfGroupsAndRates) {
+  for (const auto& [seconds, are_groups] : {std::pair{0.4, true}, std::pair{0.6, false}}) {
+    const auto time = [&](int i) { return i / 10 * seconds + i % 10 * 1e-4; };
+    CsvMapping mapping = timed();
+    mapping.time_unit = "s";
+    const Imported outcome = import(moving(400, 10 / seconds, time), mapping);
+    ASSERT_EQ(outcome.rule, "") << seconds;
+    const std::vector<std::string> notes = notes_of(outcome);
+    const bool told =
+        std::ranges::any_of(notes, [](const std::string& note) { return note.find("come in groups") != note.npos; });
+    EXPECT_EQ(told, are_groups) << seconds;
+  }
+  for (const auto& [rate, is_asked] : {std::pair{48'000.0, false}, std::pair{52'000.0, true}}) {
+    const Imported outcome = import(moving(400, rate, [&](int i) { return i / rate; }), timed());
+    EXPECT_EQ(outcome.rule, is_asked ? "R-CSV-11" : "") << rate;
+  }
 }
 
 TEST(CsvPace, AClockThatDiffersFromTheRateIsFollowed) {
