@@ -95,7 +95,7 @@ class RosBag {
       EXPECT_TRUE(out_.add(mcap::Schema{id, std::string(schema), "ros2msg", ""}));
       EXPECT_TRUE(out_.add(mcap::Channel{id, id, topic, "cdr", {}}));
     }
-    const auto time = std::uint64_t{1'700'000'000'000'000'000} + static_cast<std::uint64_t>(1e6 * ms);
+    const auto time = static_cast<std::uint64_t>(1'700'000'000'000'000'000 + static_cast<std::int64_t>(1e6 * ms));
     out_.add(mcap::Message{channels_[topic], 0, time, time, message});
     return *this;
   }
