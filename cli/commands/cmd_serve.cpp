@@ -7,7 +7,9 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
+#include <tactus/device/real_time.h>
 #include <tactus/net/udp.h>
 #include <tactus/session/session_server.h>
 #include <tactus/sim/server.h>
@@ -52,8 +54,8 @@ class Service {
 
   /// Take what has come, and what time has brought.
   void hear();
-  /// A tick of the world.
-  Outcome step(std::uint64_t now, std::optional<TraceWriter>& trace, const std::string& output);
+  /// The world comes to this tick.
+  Outcome step(std::uint64_t now, std::int64_t tick, std::optional<TraceWriter>& trace, const std::string& output);
   void say(std::uint64_t now);
   /// Take leave of all.
   void close(std::uint64_t now);
@@ -61,7 +63,9 @@ class Service {
   std::uint64_t refused() const { return refused_; }
 
  private:
-  void seat(const ServerEvent& event);
+  Outcome make_tick(std::uint64_t now, std::optional<TraceWriter>& trace, const std::string& output);
+  void seat(std::uint64_t now);
+  std::uint64_t silence_of(std::uint16_t client, std::uint64_t now) const;
   void end(std::uint64_t peer);
   bool has_session(std::uint64_t peer) const { return sessions_.has_peer(peer); }
 
@@ -71,6 +75,7 @@ class Service {
   Observation* observation_;
   std::vector<std::optional<std::uint16_t>> players_;  // the client that plays each user of the scene
   std::vector<DeviceSample> devices_;
+  std::int64_t next_ = 0, left_out_ = 0;  // [ticks] the one to be made, those that the world was not simulated
   std::uint64_t refused_ = 0;
 };
 
@@ -101,33 +106,58 @@ void Service::close(std::uint64_t now) {
   wire_.close();
 }
 
-/// A participant plays the first user of the scene whom nobody plays. The hand of one who left is where it was before anybody came.
-void Service::seat(const ServerEvent& event) {
-  if (event.kind == ServerEvent::Kind::left) {
-    for (std::size_t i = 0; i < players_.size(); ++i) {
-      if (players_[i] != event.client) continue;
+std::uint64_t Service::silence_of(std::uint16_t client, std::uint64_t now) const {
+  const std::uint64_t heard = sessions_.status(client).heard;
+  return now > heard ? now - heard : 0;
+}
+
+/// A participant plays the first user of the scene whom nobody plays, as long as it is heard. A hand that is not heard lifts off within a
+/// second; that of one who left, or was silent for too long, is where it was before anybody came.
+void Service::seat(std::uint64_t now) {
+  constexpr std::uint64_t kFresh = 300'000, kLifted = 1'000'000, kEmpty = 10'000'000;  // [us] of silence
+  for (std::size_t i = 0; i < players_.size(); ++i) {
+    if (!players_[i]) continue;
+    const std::uint64_t silence = silence_of(*players_[i], now);
+    if (sessions_.status(*players_[i]).state == SessionState::closed || silence > kEmpty) {
       players_[i].reset();
       devices_[i] = {.position = world_.scene().users[i].start};
+      world_.lift(i, 1);
+      continue;
     }
-    return;
+    world_.lift(i, static_cast<double>(kLifted - std::clamp(silence, kFresh, kLifted)) / (kLifted - kFresh));
   }
-  if (event.kind != ServerEvent::Kind::live || sessions_.status(event.client).role != Role::participant) return;
-  const auto free = std::ranges::find_if(players_, [](const auto& player) { return !player; });
-  if (free != players_.end()) *free = event.client;
+  for (std::uint16_t client = 0; client < sessions_.clients(); ++client) {
+    const ClientStatus status = sessions_.status(client);
+    const bool plays = status.state == SessionState::live && status.role == Role::participant;
+    if (!plays || silence_of(client, now) > kFresh || std::ranges::find(players_, client) != players_.end()) continue;
+    const auto free = std::ranges::find_if(players_, [](const auto& player) { return !player; });
+    if (free != players_.end()) *free = client;
+  }
 }
 
 void Service::say(std::uint64_t now) {
   while (const auto datagram = sessions_.poll_datagram(now)) wire_.send(datagram->peer, datagram->bytes);
-  while (const auto event = sessions_.poll_event()) seat(*event);
+  while (sessions_.poll_event()) {
+  }
 }
 
-Outcome Service::step(std::uint64_t now, std::optional<TraceWriter>& trace, const std::string& output) {
+/// Ticks that were missed are made at once, if they are few; of many the world knows nothing, but time has passed.
+Outcome Service::step(std::uint64_t now, std::int64_t tick, std::optional<TraceWriter>& trace, const std::string& output) {
+  constexpr std::int64_t kAtOnce = 10;
   wire_.tick(now, [this](std::uint64_t peer) { return has_session(peer); });
+  seat(now);
+  if (tick - next_ > kAtOnce) left_out_ += tick - std::exchange(next_, tick);
+  for (; next_ <= tick; ++next_) TACTUS_CHECK(make_tick(now, trace, output));
+  return {};
+}
+
+Outcome Service::make_tick(std::uint64_t now, std::optional<TraceWriter>& trace, const std::string& output) {
   for (std::size_t i = 0; i < players_.size(); ++i)
     if (players_[i]) devices_[i] = sessions_.device(*players_[i], now).value_or(devices_[i]);
   world_.observe();
+  TraceFrame& frame = world_.frame();
+  frame.tick += left_out_;
   world_.touch(devices_);
-  const TraceFrame& frame = world_.frame();
   const Truth truth = world_.truth();
   if (const auto sent = sessions_.submit(now, frame.tick, truth); !sent)
     return refuse("session", place_of_tick(frame.tick), sent.error());
@@ -259,17 +289,45 @@ tl::expected<std::unique_ptr<ServerWire>, Failure> make_wire(const ServeOptions&
   return sealed_wire_of_server(socket, options.clients, options.key);
 }
 
+/// Tells of ticks that this machine did not make in time.
+class MissedTicks {
+ public:
+  explicit MissedTicks(bool quiet) : quiet_(quiet) {}
+  /// Every ten seconds in which more than one in a hundred were.
+  void look(std::uint64_t now, const Ticker& ticker) {
+    constexpr std::uint64_t kEvery = 10'000'000;
+    if (now < looked_at_ + kEvery) return;
+    const std::uint64_t ticks = ticker.ticks() + ticker.missed() - ticks_, missed = ticker.missed() - missed_;
+    if (looked_at_ > 0 && 100 * missed > ticks && !quiet_)
+      fmt::print(
+          stderr,
+          "missed {} of {} ticks in {:.0f} s: this machine has no time for them. Serve fewer clients, or end other programs\n",
+          missed, ticks, 1e-6 * static_cast<double>(now - looked_at_));
+    looked_at_ = now;
+    ticks_ += ticks;
+    missed_ += missed;
+  }
+
+ private:
+  bool quiet_;
+  std::uint64_t looked_at_ = 0, ticks_ = 0, missed_ = 0;
+};
+
 /// Until it is to end.
 Outcome serve(const ServeOptions& options, const sim::Server& world, SessionServer& sessions, Service& service, Ticker& ticker,
               const net::UdpSocket& socket, std::optional<TraceWriter>& trace) {
   const StopOnSignal stop;
   Meter meter(options.common.progress());
+  MissedTicks missed(options.common.quiet);
   const auto ticks = options.duration > 0 ? std::llround(options.duration * sim::kTickRate) : INT64_MAX;
   while (StopOnSignal::caught() == 0 && world.frame().tick < ticks) {
     const auto woken = ticker.wait(socket.handle(), sessions.next_timeout().value_or(UINT64_MAX));
     service.hear();
     const std::uint64_t now = microseconds_now();
-    if (woken == Ticker::Woken::by_tick) TACTUS_CHECK(service.step(now, trace, options.output));
+    if (woken == Ticker::Woken::by_tick) {
+      TACTUS_CHECK(service.step(now, ticker.tick(), trace, options.output));
+      missed.look(now, ticker);
+    }
     service.say(now);
     if (meter.is_due(now)) meter.draw(now, meter_text(world, sessions, service, ticker));
   }
@@ -289,17 +347,19 @@ Outcome run(const ServeOptions& typed) {
                                       .clients = static_cast<std::uint16_t>(options.clients),
                                       .rate = static_cast<std::uint64_t>(options.rate),
                                       .headers = static_cast<std::uint32_t>(kUdpHeader + seal)};
-  auto sessions = SessionServer::create(world->stream_scene(), settings, system_entropy(), microseconds_now());
-  if (!sessions) return refuse(options.scene, sessions.error());
   TACTUS_TRY(auto recording, make_recording(options, *world));
   TACTUS_TRY(const auto observation, make_observation(options, *world));
+  const device::RealTime real_time;
+  const std::uint64_t origin = microseconds_now();
+  auto sessions = SessionServer::create(world->stream_scene(), settings, system_entropy(), origin);
+  if (!sessions) return refuse(options.scene, sessions.error());
   if (!options.common.quiet) fmt::print(stderr, "serving {} at {}\n", options.scene, options.listen);
   if (!options.common.quiet && observation) fmt::print(stderr, "observe it at {}\n", observation->address());
 
   Service service(*world, *sessions, *wire, observation.get());
-  Ticker ticker(1'000'000 / sim::kTickRate);
+  Ticker ticker(1'000'000 / sim::kTickRate, origin);
   const Outcome worked = serve(options, *world, *sessions, service, ticker, *socket, recording.trace);
-  const double seconds = static_cast<double>(ticker.ticks()) / sim::kTickRate;
+  const double seconds = static_cast<double>(ticker.tick() + 1) / sim::kTickRate;
   Json report = to_json(options, *sessions, *world->stream_scene(), service, ticker, seconds, wire->seal());
   service.close(microseconds_now());
   if (observation) report["observers"] = observers_json(observation->finish());

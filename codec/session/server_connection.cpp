@@ -109,6 +109,7 @@ Result<void> ServerConnection::handle_datagram(std::uint64_t now, std::span<cons
   }
   if (heard->round_trip) measured(*heard->round_trip, now);
   if (device_clock_) device_clock_->heard(heard->number, heard->tick, now);
+  if (device_clock_ && heard->round_trip) device_clock_->measured(*heard->round_trip, now);
   if (pace_ && heard->tick) pace_->heard(*heard->tick);
   if (pace_) pace_->acknowledged(exchange_->sent().highest_acknowledged());
   return {};
@@ -141,7 +142,8 @@ Result<void> ServerConnection::go_live(std::uint64_t now) noexcept try {
   congestion_.begin(now);
   if (join_.role == Role::participant) {
     TACTUS_TRY(exchange_->receiver, Receiver::create(served_.device));
-    device_clock_.emplace(served_.scene->tick_rate, PlayoutOptions{.fixed = 0});
+    const auto& limits = served_.scene->has_paths() ? ForceFade::kDriven : ForceFade::kUsual;
+    device_clock_.emplace(served_.scene->tick_rate, PlayoutOptions{.fixed = 0}, static_cast<std::int64_t>(limits.stale));
     if (served_.scene->has_paths()) {
       exchange_->path = std::make_shared<DevicePath>(served_.device);
       exchange_->sender->know(exchange_->path);
@@ -270,12 +272,14 @@ ClientStatus ServerConnection::status() const noexcept {
                    .peer = peer_,
                    .state = state_,
                    .role = join_.role,
+                   .heard = 0,
                    .round_trip = {},
                    .loss = 0,
                    .widening = widening(),
                    .widened = congestion_.so_far(),
                    .traffic = {}};
   if (!exchange_) return out;
+  out.heard = exchange_->heard_at();
   out.round_trip = exchange_->sent().round_trip();
   out.loss = std::ldexp(exchange_->sent().loss(), -16);
   out.traffic = exchange_->traffic();

@@ -22,6 +22,7 @@ constexpr std::uint64_t kSeldom = 2;  // times these, of a client that works out
 constexpr std::uint32_t kSomeLoss = 65536 / 50;
 constexpr std::uint64_t kRecent = 1'000'000;     // [us]: what counts as now
 constexpr std::uint64_t kButtonsEvery = 20'000;  // [us] until they are acknowledged
+constexpr std::uint64_t kAsleep = 100'000;       // [us] without a call: the program, or its machine, stood still
 constexpr unsigned kLeaves = 3;                  // one of them should arrive
 
 /// An epoch, from its welcome on.
@@ -51,6 +52,8 @@ struct SessionClient::Impl {
   Result<void> complete(std::uint64_t now) noexcept;
   std::uint64_t sign_due() const noexcept;
   bool has_buttons_due(std::uint64_t now) const noexcept;
+  Epoch* shown_epoch() const noexcept { return shown ? shown.get() : current.get(); }
+  void look(std::uint64_t now) noexcept;
   void note(ClientEvent event) noexcept {
     if (event_count < events.size()) events[event_count++] = event;
   }
@@ -59,6 +62,7 @@ struct SessionClient::Impl {
   SessionState state = SessionState::closed;
   std::uint64_t nonce = 0;
   std::uint64_t opened_at = 0, join_at = 0, retry = 0;
+  std::uint64_t looked_at = 0;     // [us] of the last call
   std::unique_ptr<Epoch> current;  // the newest
   std::unique_ptr<Epoch> shown;    // the one before, until the newest is live
   std::uint64_t sign_at = 0;       // [us] of the last sign of life
@@ -121,8 +125,15 @@ void SessionClient::open(std::uint64_t now, std::uint64_t nonce) noexcept {
 
 void SessionClient::close() noexcept { impl_->close(SessionEvent::close, LeaveReason::bye); }
 
+/// The program calls. If it did not for long, what comes now has waited.
+void SessionClient::Impl::look(std::uint64_t now) noexcept {
+  if (now > looked_at + kAsleep && shown_epoch() != nullptr && shown_epoch()->playout) shown_epoch()->playout->wake(now);
+  looked_at = now;
+}
+
 Result<void> SessionClient::handle_datagram(std::uint64_t now, std::span<const std::uint8_t> datagram) noexcept {
   Impl& in = *impl_;
+  in.look(now);
   const bool active = in.state == SessionState::receiving || in.state == SessionState::live;
   const bool before = is_before_epochs(datagram);
   if (!before && !active) return fail(Errc::checksum, "R-SES-1");
@@ -171,6 +182,7 @@ Result<void> SessionClient::Impl::handle(std::uint64_t now, const Numbered& said
   if (heard.hash) hash = heard.hash;
   if (heard.tick) packet_at = now;
   if (current->playout) current->playout->heard(heard.number, heard.tick, now);
+  if (current->playout && heard.round_trip) current->playout->measured(*heard.round_trip, now);
   if (current->playout && heard.oldest < heard.tick) current->playout->late(*heard.oldest, now);
   if (buttons_wait && current->exchange.sent().highest_acknowledged() >= buttons_number && buttons_number > 0)
     buttons_wait = false;
@@ -181,6 +193,8 @@ Result<void> SessionClient::Impl::handle(std::uint64_t now, const Numbered& said
 Result<void> SessionClient::Impl::take(const Part& part, const Exchange::Heard& heard, std::uint64_t now) noexcept {
   if (const auto* clock = std::get_if<ClockPart>(&part)) {
     if (heard.round_trip) offset.add(clock->time, *heard.round_trip, now);
+    if (current->playout)
+      current->playout->told(static_cast<std::int64_t>(clock->time) - static_cast<std::int64_t>(current->welcome.start), now);
   } else if (const auto* piece = std::get_if<PiecePart>(&part)) {
     return current->pieces.take(piece->index, piece->bytes);
   } else if (const auto* pace = std::get_if<PacePart>(&part)) {
@@ -198,11 +212,12 @@ Result<void> SessionClient::Impl::complete(std::uint64_t now) noexcept try {
     TACTUS_TRY(Receiver receiver,
                Receiver::create(scene, {.replica = {.interpolation = Interpolation::playout}, .limits = options.limits}));
     current->exchange.receive_with(std::move(receiver));
-    current->playout.emplace(scene->tick_rate, options.playout);
+    const ForceFade::Limits& limits = scene->has_paths() ? ForceFade::kDriven : ForceFade::kUsual;
+    current->playout.emplace(scene->tick_rate, options.playout, static_cast<std::int64_t>(limits.stale));
     if (options.role == Role::observer) return {};
     TACTUS_TRY(SharedScene device, device_scene(*scene));
     TACTUS_TRY(auto sender, Sender::create(std::move(device), device_sender_options(options.device)));
-    fade.set_limits(scene->has_paths() ? ForceFade::kDriven : ForceFade::kUsual);
+    fade.set_limits(limits);
     if (scene->has_paths()) {
       current->exchange.path = std::make_shared<DevicePath>(sender.scene());
       current->exchange.receiver->know(current->exchange.path);
@@ -246,6 +261,7 @@ bool SessionClient::Impl::has_buttons_due(std::uint64_t now) const noexcept {
 
 void SessionClient::handle_timeout(std::uint64_t now) noexcept {
   Impl& in = *impl_;
+  in.look(now);
   if (in.state == SessionState::joining && now >= in.opened_at + kJoinFor) in.close(SessionEvent::silent, LeaveReason::silence);
   if ((in.state == SessionState::receiving || in.state == SessionState::live) &&
       now >= in.current->exchange.heard_at() + in.options.silence)
@@ -328,13 +344,14 @@ Receiver* SessionClient::receiver() noexcept {
 }
 
 std::int64_t SessionClient::shown_tick(std::uint64_t now) noexcept {
-  Epoch* epoch = impl_->shown ? impl_->shown.get() : impl_->current.get();
+  impl_->look(now);
+  Epoch* const epoch = impl_->shown_epoch();
   return epoch != nullptr && epoch->playout ? epoch->playout->shown(now) : -1;
 }
 
 /// The fastest way up and down, and how much later than the fastest packet the tick is shown. No clock but the own one counts.
 std::optional<std::uint64_t> SessionClient::round_trip_shown(std::uint64_t now) const noexcept {
-  const Epoch* epoch = impl_->shown ? impl_->shown.get() : impl_->current.get();
+  const Epoch* const epoch = impl_->shown_epoch();
   if (epoch == nullptr || !epoch->playout) return std::nullopt;
   const auto& trip = epoch->exchange.sent().round_trip();
   if (!trip) return std::nullopt;
@@ -343,11 +360,15 @@ std::optional<std::uint64_t> SessionClient::round_trip_shown(std::uint64_t now) 
   return static_cast<std::uint64_t>(std::max<std::int64_t>(0, behind + trip->least));
 }
 
+/// Without news none; nor for a state that is ahead of all news, or too old whatever came.
 double SessionClient::force_share(std::uint64_t now) noexcept {
-  const Impl& in = *impl_;
-  const std::uint64_t heard = in.state == SessionState::live ? in.current->exchange.heard_at() : 0;
-  if (!in.feels) impl_->fade.release(now);
-  return std::ldexp(static_cast<double>(impl_->fade.share(now, heard)), -16);
+  Impl& in = *impl_;
+  in.look(now);
+  if (!in.feels) in.fade.release(now);
+  const bool is_live = in.state == SessionState::live;
+  std::uint64_t heard = is_live ? in.current->exchange.heard_at() : 0;
+  if (is_live) heard = std::min(heard, now - std::min(now, static_cast<std::uint64_t>(in.current->playout->ahead())));
+  return std::ldexp(static_cast<double>(in.fade.share(now, heard, round_trip_shown(now).value_or(0))), -16);
 }
 
 SessionStatus SessionClient::status() const noexcept {

@@ -30,6 +30,7 @@ struct ClientStatus {
   std::uint64_t peer = 0;
   SessionState state = SessionState::closed;
   Role role = Role::observer;
+  std::uint64_t heard = 0;  ///< [us] when its newest datagram came
   std::optional<RoundTrip> round_trip;
   double loss = 0;      ///< share of the last 256 datagrams to the client
   double widening = 1;  ///< factor of the bounds now
@@ -53,7 +54,7 @@ struct ServerEvent {
 /// Threads: one at a time. No call on the way of a datagram allocates but those that bring a client live; none throws.
 class SessionServer {
  public:
-  /// in   entropy  64 bits from the system, that nobody else can tell;  now  [us]. Epochs are drawn from them so that who has one could
+  /// in   entropy  64 bits from the system, that nobody else can tell;  now  [us], the time of tick 0. Epochs are drawn from them so that who has one could
   ///               work out the next: without the seal, clients of one server trust each other
   /// err  as Sender::create; invalid_argument R-API-4: no client, or more than 65535
   static Result<SessionServer> create(SharedScene scene, const SessionServerOptions& options, std::uint64_t entropy,
@@ -63,7 +64,8 @@ class SessionServer {
   /// err  the datagram is dropped, and nothing has changed but the traffic: checksum R-SES-1; those of R-SES rules
   Result<void> handle_datagram(std::uint64_t now, std::uint64_t peer, std::span<const std::uint8_t> datagram) noexcept;
   void handle_timeout(std::uint64_t now) noexcept;
-  /// Code a tick for every live client.   time that of Sender::encode for each client
+  /// Code a tick for every live client. Tick n is the state at the time of create(), or replace_scene(), + n ticks: whoever misses some
+  /// leaves out numbers, or makes them at once.   time that of Sender::encode for each client
   /// err  as Sender::encode, the first; all clients that can are served
   Result<void> submit(std::uint64_t now, std::int64_t tick, const Truth& truth) noexcept;
   /// Another scene: clients get a new epoch, and show the old one until they hold the new. Ticks begin anew.   err  as create()
