@@ -363,7 +363,7 @@ std::optional<std::uint64_t> SessionClient::round_trip_shown(std::uint64_t now) 
 /// Without news none; nor for a state that is ahead of all news, or too old whatever came.
 double SessionClient::force_share(std::uint64_t now) noexcept {
   Impl& in = *impl_;
-  in.look(now);
+  shown_tick(now);  // of it the ages are
   if (!in.feels) in.fade.release(now);
   const bool is_live = in.state == SessionState::live;
   std::uint64_t heard = is_live ? in.current->exchange.heard_at() : 0;
